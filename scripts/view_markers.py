@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What RViz shows beside model and odometry: wheel forces, safety state, reasons, the path driven; see --help."""
+"""Shows in RViz, beside model and odometry: wheel forces, safety state, reasons, the path driven; see --help."""
 
 from robot_control.common.program import run
 from robot_control.view.main import main

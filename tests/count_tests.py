@@ -3,9 +3,10 @@
 
 usage: count_tests.py FOLDER…
 
-What was skipped stands above it by name, one line per reason. JUnit files of gtest, pytest and rosunit count case by
-case. CTest's own Test.xml counts a whole entry, and only when it failed without any failed case in a JUnit file of its
-name: a program that crashed, hung or never started. Exit code 0 if and only if something passed and nothing failed.
+The skipped cases stand above it by name, one line per reason. JUnit files of gtest, pytest and rosunit count case by
+case. CTest's own Test.xml counts a whole entry, and only if it failed without a failed case in a JUnit file of its
+name. That is a program that crashed, hung or never started. The exit code is 0 if and only if something passed and
+nothing failed.
 """
 
 import sys
@@ -17,7 +18,7 @@ PASSED, FAILED, SKIPPED = "passed", "failed", "skipped"
 
 
 def outcome(case: ET.Element) -> str:
-    """Of one <testcase>."""
+    """Outcome of one <testcase>."""
     if case.find("failure") is not None or case.find("error") is not None:
         return FAILED
     if case.find("skipped") is not None or case.get("status") == "notrun" or case.get("result") == "skipped":
@@ -55,7 +56,7 @@ def is_summary_of_nodes(path: Path) -> bool:
 
 
 def ros_name(stem: str) -> str:
-    """What a result file of rostest shares with the name of its CTest entry."""
+    """The part of the name that a result file of rostest shares with its CTest entry."""
     return stem.removeprefix("rostest-").removeprefix("rosunit-").removesuffix("_test")
 
 
@@ -94,7 +95,7 @@ def count(folders: list[Path]) -> tuple[Counter[str], list[str], dict[str, list[
 
 
 def main(folders: list[str]) -> int:
-    """Prints what was skipped, what failed as a whole, then the line."""
+    """Prints the skipped cases, the failures of whole entries, then the last line."""
     total, wholly_failed, skipped = count([Path(folder) for folder in folders])
     for reason, names in sorted(skipped.items()):
         print(f"skipped: {reason}: {', '.join(sorted(set(names)))}")

@@ -76,11 +76,12 @@ class ClosedLoop:
         return _ClosedLoop(self._path, [*self._values, ("mujoco_plant.seed", str(seed))])
 
     def set_pause(self, pause: bool) -> None:  # noqa: FBT001 (the service's own form)
-        """As `mujoco_plant/set_pause`: while paused `step` runs, `run` refuses."""
+        """Pauses as `mujoco_plant/set_pause` does: while paused `step` runs, `run` refuses."""
         self._paused = pause
 
     def inject_fault(self, component: str, kind: str) -> None:
-        """The machine, as by `mujoco_plant/inject_fault`, or the output of a node fails from the next cycle on.
+        """Injects a fault of the machine, as `mujoco_plant/inject_fault` does, or of a node's output, from the next
+        cycle on.
 
         Args:
             component: left_encoder right_encoder gyro accelerometer left_motor right_motor controller estimator
@@ -93,7 +94,8 @@ class ClosedLoop:
         self._loop.inject_fault(utf8(component), utf8(kind))
 
     def set_parameters(self, values: Mapping[str, Any]) -> None:
-        """As `diff_drive_controller/set_parameter_map`: limits and gains from the next cycle on, kept over `reset()`.
+        """Sets limits and gains from the next cycle on, as `diff_drive_controller/set_parameter_map`; `reset()` keeps
+        them.
 
         Args:
             values: keys of the block `diff_drive_controller` in SI units, such as
@@ -105,19 +107,19 @@ class ClosedLoop:
         self._loop.set_parameters(flow_text(values))
 
     def command(self, linear: float = 0.0, angular: float = 0.0) -> None:
-        """As if just received on cmd_vel: linear [m/s], angular [rad/s]. Times out like cmd_vel."""
+        """Acts as a message on cmd_vel: linear [m/s], angular [rad/s]; it times out like cmd_vel."""
         self._loop.command(linear, angular)
 
     def e_stop(self) -> None:
-        """As if `e_stop_trigger` had been called: brake, latched."""
+        """Acts as a call of `e_stop_trigger`: the robot brakes, and the stop is latched."""
         self._loop.e_stop()
 
     def e_stop_reset(self) -> None:
-        """As if `e_stop_reset` had been called; accepted only at standstill with zero command."""
+        """Acts as a call of `e_stop_reset`; it is accepted only at standstill with zero command."""
         self._loop.e_stop_reset()
 
     def heartbeat(self) -> None:
-        """As if a message had arrived on `heartbeat`."""
+        """Acts as a message on `heartbeat`."""
         self._loop.heartbeat()
 
     def step(self, cycles: int = 1) -> Log:
@@ -191,9 +193,9 @@ class ClosedLoop:
             raise RuntimeError(f"{what} cannot be called from the command function of a run")
 
     def stop_distance(self, speed: float, *, emergency: bool = False) -> float:
-        """Distance [m] to rest, straight on from a steady `speed` [m/s], that the limits predict, from the cycle that
-        takes the command, with the period until its torque acts (control/limits/stop_distance.h). `emergency`: as
-        after a timeout.
+        """Distance [m] to rest that the limits predict, straight on from a steady `speed` [m/s]. It counts from the
+        cycle that takes the command and includes the delay until its torque acts (control/limits/stop_distance.h). With
+        `emergency` the deceleration is that after a timeout.
         """
         return self._loop.stop_distance(speed, emergency)
 
@@ -206,7 +208,7 @@ class ClosedLoop:
 
     @property
     def paused(self) -> bool:
-        """What `set_pause` said last."""
+        """The last value that `set_pause` set."""
         return self._paused
 
     @property
@@ -227,8 +229,8 @@ class ClosedLoop:
     @property
     def robot(self) -> dict[str, Any]:
         """The robot as it was understood, SI units, base axes: `wheels`, `casters`, `joints`, `mass`,
-        `centre_of_gravity`, `wheel_base`, `wheel_base_multiplier`, `imu`, `shapes`, and `notes`, which say what was
-        assumed, repaired, ignored. `inspect_robot.py` prints it.
+        `centre_of_gravity`, `wheel_base`, `wheel_base_multiplier`, `imu`, `shapes` and `notes`. The notes name what was
+        assumed, repaired or ignored. `inspect_robot.py` prints it.
         """
         return self._loop.robot
 

@@ -1,9 +1,9 @@
-"""A .xacro file on standard output as the URDF it stands for: python3 -m robot_control.expand_xacro FILE.
+"""Prints a .xacro file on standard output as the URDF for which it stands: python3 -m robot_control.expand_xacro FILE.
 
-Behind it stands a comment, `xacro macros: …`: the macros that were called, for a text without macros does not say so.
+A comment after it, `xacro macros: …`, names the macros that were called, because the expanded text does not.
 
-PyPI's xacro asks ROS 2's package index for `$(find PACKAGE)`, through the module `ament_index_python.packages`. Here
-that module is ours: rospkg answers, then the folders above the file.
+PyPI's xacro resolves `$(find PACKAGE)` by ROS 2's package index, through the module `ament_index_python.packages`. This
+module replaces it: rospkg answers first, then the folders above the file.
 """
 
 import io
@@ -18,9 +18,9 @@ from typing import IO
 
 from robot_control.common.files import check_input
 
-LARGEST_INCLUDED = 64 << 20  # bytes
+MAX_INCLUDED = 64 << 20  # bytes
 NOT_INSTALLED = 69  # EX_UNAVAILABLE of sysexits.h
-MOST_MEMORY = 2 << 30  # bytes: macros that double each other in turn have no end before that
+MAX_MEMORY = 2 << 30  # bytes; macros that call each other without end reach it
 LFS_POINTER = b"version https://git-lfs.github.com/spec/"
 
 
@@ -45,7 +45,7 @@ def package_folder(package: str, file: Path) -> str:
 
 
 def answer_find(file: Path) -> None:
-    """Lets `$(find …)` ask `package_folder`."""
+    """Lets xacro resolve `$(find …)` by `package_folder`."""
     packages = ModuleType("ament_index_python.packages")
     packages.get_package_share_directory = lambda name: package_folder(name, file)  # type: ignore[attr-defined]
     sys.modules["ament_index_python"] = ModuleType("ament_index_python")
@@ -66,13 +66,13 @@ def note_macros(called: set[str]) -> None:
 
 
 def open_text(name: str, mode: str = "r") -> IO[str]:
-    """What the module xacro uses as `open`: a file that is included may be no device, and none without end.
+    """Replaces `open` in the module xacro: an included file may be no device and no file without end.
 
     Raises:
         InputFileError, OSError: it names the file.
     """
     if mode == "r":
-        check_input(Path(name), LARGEST_INCLUDED)
+        check_input(Path(name), MAX_INCLUDED)
     file: IO[str] = Path(name).open(mode)  # noqa: SIM115 (xacro closes it)
     return file
 
@@ -86,7 +86,7 @@ def circle(names: Sequence[str]) -> str:
 
 
 def foreign(file: str) -> str:
-    """What a file is that is no text of XML; empty: it may be."""
+    """The kind of a file that is no XML text; empty if it may be one."""
     if not Path(file).is_file():
         return ""  # a FIFO would wait for its writer
     try:
@@ -102,7 +102,7 @@ def foreign(file: str) -> str:
 
 
 def better_reason(said: str, files: Sequence[str], macros: Sequence[str]) -> str:
-    """What went wrong where xacro's own words do not name it, or at length; empty: they do.
+    """The reason of a failure if xacro's own message does not name it, or is too long; empty otherwise.
 
     Args:
         said: what xacro wrote.
@@ -124,7 +124,7 @@ def better_reason(said: str, files: Sequence[str], macros: Sequence[str]) -> str
 
 def main() -> None:
     """Exits with xacro's own code, or with NOT_INSTALLED."""
-    resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, resource.getrlimit(resource.RLIMIT_AS)[1]))
+    resource.setrlimit(resource.RLIMIT_AS, (MAX_MEMORY, resource.getrlimit(resource.RLIMIT_AS)[1]))
     try:
         import xacro
     except ImportError:

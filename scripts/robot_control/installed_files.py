@@ -1,4 +1,4 @@
-"""Where the package's files lie: in the source tree, or installed."""
+"""Finds the package's files in the source tree or in the installation."""
 
 from pathlib import Path
 

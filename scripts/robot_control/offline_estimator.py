@@ -27,8 +27,8 @@ def _bits(kind: str) -> dict[str, int]:
 
 
 SENSORS: tuple[str, ...] = tuple(signal_names["SensorIndex"])
-"""Columns of `confidence`, `nis` and `rejected`. The contacts are what the ground says: wheels do not slide sideways,
-the robot neither sinks nor flies."""
+"""Columns of `confidence`, `nis` and `rejected`. The contacts are pseudo-measurements of the ground: wheels do not
+slide sideways, and the robot neither sinks nor flies."""
 
 FLAGS: dict[str, int] = _bits("StateFlag")
 """Name → bit of `flags`: valid, slip, standstill, …; their meaning stands in src/signals/names.h."""
@@ -40,12 +40,12 @@ DEGRADED_REASONS: dict[str, int] = _bits("DegradedReason")
 """Name → bit of `degraded`."""
 
 _STAMP_ROUNDING = 1e-9  # s: text and ROS stamps hold nanoseconds
-_FARTHEST, _MOST_TURNED = 1e6, 1e6  # m, rad: as the node's service set_odometry takes
+_FARTHEST, _MAX_TURNED = 1e6, 1e6  # m, rad: largest values that the node's service set_odometry accepts
 _QUATERNION_TOLERANCE = 1e-3  # of the norm: four decimals, as people write them
 
 
 class Estimator:
-    """Where a robot was, from what its wheels and its IMU measured.
+    """Estimates the path of a robot from the measurements of its wheels and its IMU.
 
     Args:
         params: path of a YAML file, or a nested dict laid over the installed `config/robot_params.yaml`, as
@@ -72,9 +72,9 @@ class Estimator:
         RobotError: the robot description cannot be driven.
         ValueError: wheel_radius without wheel_base, or numbers that are none.
 
-    The frames are those of REP 103 and 105: base_link x forward, y left, z up; poses in an `odom` that begins where the
-    robot was at the first sample. Same arguments and calls give the same bits; a node that is given the same samples
-    in the same cycles gives them, too.
+    The frames are those of REP 103 and 105: base_link has x forward, y left, z up; `odom` begins at the robot's first
+    sample. Same arguments and calls give the same bits. A node that is given the same samples in the same cycles gives
+    the same bits, too.
     """
 
     def __init__(
@@ -120,25 +120,25 @@ class Estimator:
         self._pose = None
 
     def reset_odometry(self) -> None:
-        """As the node's service: pose and its covariance are zero in the first row of the next `process`; speeds,
+        """Zeroes pose and covariance in the first row of the next `process`, as the node's service does. Speeds,
         biases, calibration and distance stay.
         """
         self.set_odometry(0.0, 0.0, 0.0)
 
     def set_odometry(self, x: float, y: float, yaw: float) -> None:
-        """As the node's service: in the first row of the next `process` the pose is x [m], y [m], yaw [rad], its
-        covariance zero; all else stays.
+        """Sets the pose x [m], y [m], yaw [rad] in the first row of the next `process`, as the node's service does. Its
+        covariance becomes zero; all else stays.
 
         Raises:
             ValueError: a number that is none, or beyond 1000 km or 10⁶ rad; then nothing has changed.
         """
-        for name, value, most, unit in (
+        for name, value, bound, unit in (
             ("x", x, _FARTHEST, "m"),
             ("y", y, _FARTHEST, "m"),
-            ("yaw", yaw, _MOST_TURNED, "rad"),
+            ("yaw", yaw, _MAX_TURNED, "rad"),
         ):
-            if not abs(value) <= most:
-                raise ValueError(f"{name} is {value}; it must be a number of -{most:g} … {most:g} {unit}")
+            if not abs(value) <= bound:
+                raise ValueError(f"{name} is {value}; it must be a number of -{bound:g} … {bound:g} {unit}")
         self._pose = [float(x), float(y), float(yaw)]
 
     def process(
@@ -227,7 +227,7 @@ class Estimator:
         return out
 
     def save_calibration(self, path: str | PathLike[str]) -> None:
-        """Writes what was learned so far of wheels and gyro: the file that `state_estimator.calibration_file` names.
+        """Writes the calibration of wheels and gyro so far to the file format of `state_estimator.calibration_file`.
 
         Raises:
             RuntimeError: nothing was learned, or beyond what a robot can be.
@@ -295,7 +295,7 @@ def _vector(name: str, given: Sequence[float] | FloatArray, shapes: tuple[int, .
 
 
 def _roll_pitch_yaw(given: Sequence[float] | FloatArray) -> list[float]:
-    """rad, from that or from a quaternion x, y, z, w."""
+    """rad, converted from these or from a quaternion x, y, z, w."""
     values = _vector("imu_orientation", given, (3, 4))
     if values.size == 3:
         return [float(angle) for angle in values]

@@ -12,7 +12,7 @@ using ::testing::AnyOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-/// What reading a chunk of these bytes says, that announces `size` bytes; its content where it is read.
+/// Reads a chunk of these bytes that announces `size` bytes; returns its content, or the message of the refusal.
 std::string said_of(const std::string& bytes, std::uint32_t size, BagCompression compression) {
   const BagOfBytes memory(bytes);
   BagFile file(memory.path());
@@ -49,7 +49,7 @@ TEST_P(ACompressedChunk, ThatIsBrokenIsRefused) {
   for (std::size_t at = 0; at < stream.size(); ++at) {
     std::string flipped = stream;
     flipped[at] = static_cast<char>(flipped[at] ^ 0x10);
-    // Some bits of bz2's symbol map mean nothing.
+    // Some bits of bz2's symbol map have no meaning.
     EXPECT_THAT(said_of(flipped, size, GetParam()), AnyOf(content, StartsWith("byte "))) << "byte " << at;
   }
 }

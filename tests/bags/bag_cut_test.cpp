@@ -67,7 +67,7 @@ TEST(ABagWithAnEnd, IsRefusedWhereItsMiddleIsMissing) {
   const MadeBag made = make_bag(BagCompression::kNone, 3, 50);
   std::string bytes = made.bytes;
   bytes.erase(made.records[2].first, made.records[2].second + made.records[3].second);  // the second chunk
-  bytes += std::string(10'000, '\0');                                                   // so that index_pos is in it
+  bytes += std::string(10'000, '\0');                                                   // so that it contains index_pos
   EXPECT_THAT(refusal(bytes), HasSubstr("field index_pos"));
 }
 

@@ -45,7 +45,7 @@ TEST_P(ASoundBag, IsReadOnceWhereItIsReadWhileItIsChecked) {
   EXPECT_GE(chunks, 1U);
 }
 
-/// One contradiction each: everything else in the bag agrees.
+/// Each case has one contradiction: everything else in the bag agrees.
 TEST_P(ASoundBag, WithOneContradictionIsRefusedWithByteAndField) {
   const auto said = [&](const BagFlaw& flaw) { return refusal(make_bag(GetParam(), 2, 20, flaw).bytes); };
   EXPECT_THAT(said({.time_in_index = 1}), HasSubstr("field time: contradicts that of the message itself"));

@@ -10,7 +10,7 @@ namespace {
 
 using Random = std::mt19937_64;
 
-constexpr double kMostSeconds = 2.0;  // of processor time; it takes milliseconds, under a sanitizer some hundred
+constexpr double kMaxSeconds = 2.0;  // s of processor time; a trial takes milliseconds, under a sanitizer some hundred
 
 std::size_t below(Random& random, std::size_t end) {
   return end == 0 ? 0 : std::uniform_int_distribution<std::size_t>(0, end - 1)(random);
@@ -51,7 +51,7 @@ std::string damaged(const MadeBag& made, Random& random) {
         byte = static_cast<char>(byte ^ (1 << below(random, 8)));
       }
       break;
-    case 1: {  // of what stands between the data: lengths, fields
+    case 1: {  // change between the data: lengths, fields
       const auto [begin, size] = made.records[below(random, made.records.size())];
       char& byte = bytes[begin + below(random, std::min<std::size_t>(size, 70))];
       byte = static_cast<char>(byte ^ (1 << below(random, 8)));
@@ -80,7 +80,7 @@ std::string damaged(const MadeBag& made, Random& random) {
   return bytes;
 }
 
-/// "" or in what a message read differs from the one that was written.
+/// "" or the difference between a message that was read and the one that was written.
 std::string difference(const MadeMessage& read, const MadeMessage& written, bool content_may_differ) {
   if (read.connection != written.connection) return "its connection";
   if (read.time_ns != written.time_ns) return "its time";
@@ -90,7 +90,7 @@ std::string difference(const MadeMessage& read, const MadeMessage& written, bool
 
 using Chunks = std::vector<std::vector<MadeMessage>>;
 
-/// `early`: what was read while the bag was checked.
+/// The first error of the bag; `early` holds the chunks that were read while the bag was checked.
 std::string wrong_in(BagReader& bag, const Chunks& early, const MadeBag& made, bool uncompressed) {
   const Chunks chunks = read_all(bag);
   if (early != chunks) return "what was read while it was checked is something else";
@@ -143,7 +143,7 @@ std::optional<std::string> bag_violation(std::uint64_t seed, BagFigures& figures
     if (!text.starts_with("byte ") || text.find(", field ") == std::string::npos || text.size() > 600) wrong = text;
   }
   const double seconds = processor_seconds() - begin;
-  if (seconds > kMostSeconds) wrong = "it took " + std::to_string(seconds) + " s of processor time";
+  if (seconds > kMaxSeconds) wrong = "it took " + std::to_string(seconds) + " s of processor time";
   return wrong.empty() ? std::nullopt : std::optional(wrong);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Damaged bags, one per seed: bits flipped, lengths overwritten, bytes removed or inserted, records exchanged,
-/// repeated or removed, cut off, foreign. What BagReader makes of it is right if
+/// Each seed gives one damaged bag: bits flipped, lengths overwritten, bytes removed or inserted, records exchanged,
+/// repeated or removed, cut off, foreign. BagReader is right with the verdict
 ///   refused    with byte and field
 ///   accepted   every connection, time and length of a message is that of the undamaged bag; so is its content, but in
 ///              uncompressed chunks, which have no checksum
@@ -18,7 +18,7 @@ struct BagFigures {
   std::uint64_t refused = 0, cut = 0, whole = 0;
 };
 
-/// What is wrong with the verdict on the bag of `seed`; none: nothing. Adds to `figures`.
+/// Describes a wrong verdict on the bag of `seed`; none if it is right. Adds to `figures`.
 std::optional<std::string> bag_violation(std::uint64_t seed, BagFigures& figures);
 
 }  // namespace robot_control

@@ -1,5 +1,5 @@
 #pragma once
-/// A sound bag made by hand, field by field, so that a test can make exactly one thing wrong.
+/// A valid bag that is made field by field, so that a test can spoil exactly one thing.
 
 #include <cstdint>
 #include <string>
@@ -23,20 +23,20 @@ struct MadeMessage {
   bool operator==(const MadeMessage&) const = default;
 };
 
-/// What is wrong with it.
+/// Errors of the bag.
 struct BagFlaw {
   std::uint32_t time_in_index = 0;     ///< s, added to the time of the first index entry
   bool message_without_index = false;  ///< the last message of each chunk
   bool message_indexed_twice = false;  ///< the first message of each chunk
   std::uint32_t count_in_list = 0;     ///< added to the first count of each chunk info
   std::uint32_t start_in_list = 0;     ///< s, added to the start of each chunk info
-  std::uint32_t size_of_chunk = 0;     ///< added to the size that a chunk says
+  std::uint32_t size_of_chunk = 0;     ///< added to the size that a chunk states
   std::uint64_t index_pos = 0;         ///< added
   std::uint32_t chunk_count = 0;       ///< added
   std::uint32_t connection_count = 0;  ///< added
-  std::string other_type = {};         ///< of the connections in the list behind the chunks
+  std::string other_type = {};         ///< type of the connections in the list behind the chunks
   std::string behind_stream = {};      ///< bytes behind the compressed stream of each chunk
-  bool unfinished = false;             ///< as its recorder leaves it at SIGKILL: the last chunk has no sizes, no index
+  bool unfinished = false;  ///< as its recorder leaves it at SIGKILL: the last chunk has neither sizes nor index
 };
 
 struct MadeBag {

@@ -1,5 +1,5 @@
 #pragma once
-/// A bag out of bytes, and what BagReader makes of it.
+/// Reads a bag from bytes in memory.
 
 #include <sys/mman.h>
 #include <unistd.h>
@@ -48,7 +48,7 @@ inline std::vector<std::vector<MadeMessage>> read_all(BagReader& bag) {
   return chunks;
 }
 
-/// The refusal; empty: none.
+/// The message of the refusal; empty if the bag is accepted.
 inline std::string refusal(const std::string& bytes) {
   const BagOfBytes file(bytes);
   try {

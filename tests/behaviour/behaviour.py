@@ -1,11 +1,11 @@
-"""SHA-256 sums of recorded runs: a change that is meant to keep the behaviour reproduces every one of them.
+"""SHA-256 sums of recorded runs: a change that keeps the behaviour reproduces all of them.
 
     scripts/behaviour [--check]    compares this build with the recorded sums
     scripts/behaviour --record     records the sums of this build
 
-A sum covers the physical quantities of `ROW_QUANTITIES` and `JOINT_QUANTITIES`, by name and value, in every cycle. How
-and in which order the log stores them does not count, and neither do the log's other fields. Where a field gets another
-name, `RENAMED` maps the quantity to it, and the sums stay.
+A sum covers the physical quantities of `ROW_QUANTITIES` and `JOINT_QUANTITIES`, by name and value, in every cycle.
+Neither their storage and order in the log nor its other fields count. If a field is renamed, `RENAMED` maps the
+quantity to it, and the sums stay.
 
 Runs: `sim.launch clock:=lockstep` with a command script, and `ClosedLoop` on five robots, each with two seeds, the
 second with faults of sensors, motors, battery, button and nodes. A robot whose description is absent is skipped;
@@ -137,7 +137,7 @@ def _canonical(values: FloatArray) -> FloatArray:
 
 
 class _Recorder:
-    """Sends a command as a sender does, and adds every row that results to a sum."""
+    """Sends a command as a sender does, and adds every resulting row to a sum."""
 
     def __init__(self, loop: ClosedLoop) -> None:
         self._loop = loop
@@ -240,7 +240,7 @@ def launch_lockstep() -> str:
 
 
 def runs() -> dict[str, Sum]:
-    """Name of each run, and what gives its sum."""
+    """Name of each run, and the function that computes its sum."""
     result: dict[str, Sum] = {LAUNCH: launch_lockstep}
     for robot in ROBOTS:
         result[healthy_name(robot)] = lambda robot=robot: drive_healthy(robot, HEALTHY_SEED)  # type: ignore[misc]
@@ -249,17 +249,17 @@ def runs() -> dict[str, Sum]:
 
 
 def healthy_name(robot: str) -> str:
-    """Of the run without faults."""
+    """Name of the run without faults."""
     return f"ClosedLoop {robot}, seed {HEALTHY_SEED}"
 
 
 def faulty_name(robot: str) -> str:
-    """Of the run with faults."""
+    """Name of the run with faults."""
     return f"ClosedLoop {robot}, seed {FAULTY_SEED}, faults"
 
 
 def libm_kind() -> str:
-    """Architecture, and a sum of what libm gives for a thousand arguments."""
+    """Architecture, and a sum of libm's results for a thousand arguments."""
     seeded = random.Random(0)
     functions = (math.sin, math.cos, math.tan, math.atan, math.tanh, math.exp, math.expm1, math.erfc)
     result = hashlib.sha256()
@@ -287,7 +287,7 @@ def sums(chosen: Mapping[str, Sum]) -> Iterator[tuple[str, str | None, str]]:
 
 
 def check() -> int:
-    """Compares; prints one line per run. The exit code."""
+    """Compares and prints one line per run; returns the exit code."""
     kind, expected = recorded()
     if kind != libm_kind():
         print(f"recorded with another libm ({kind}, here {libm_kind()}): {REMEDY}")
@@ -305,7 +305,7 @@ def check() -> int:
 
 
 def record() -> int:
-    """Writes the file of sums. The exit code."""
+    """Writes the file of sums; returns the exit code."""
     kind, kept = recorded() if SUMS.is_file() else (libm_kind(), {})
     if kind != libm_kind():
         kept = {}

@@ -2,7 +2,7 @@
 
     /usr/bin/python3 tests/behaviour/public_names.py > tests/behaviour/public_names.json
 
-renews the list after `source install/setup.bash`. A name of the list stays. Where one is wrong, a better one is added
+renews the list after `source install/setup.bash`. A name of the list stays. If a name is wrong, a better one is added,
 and the old one goes on working with a warning.
 """
 
@@ -27,7 +27,7 @@ ALIASES = (
     "robot.wheel_separation",
     "robot.wheel_separation_multiplier",
 )
-"""Keys that the parameter file mentions in its comments alone."""
+"""Keys that appear in the parameter file in comments only."""
 
 Names = dict[str, list[str]]
 
@@ -76,7 +76,7 @@ def _keys(tree: dict[str, Any], prefix: str = "") -> Iterator[str]:
 
 
 def launch_arguments() -> Iterator[str]:
-    """Those that a user may give, with their defaults where these are plain."""
+    """The arguments that a user may give, with their defaults if these are plain."""
     for path in sorted(ROOT.glob("launch/*.launch")):
         for argument in ET.parse(path).getroot().findall("arg"):
             if "value" not in argument.attrib:
@@ -85,7 +85,7 @@ def launch_arguments() -> Iterator[str]:
 
 
 def programs() -> Iterator[str]:
-    """What stands in scripts/, and the nodes."""
+    """The files in scripts/, and the nodes."""
     for path in ROOT.glob("scripts/*"):
         if path.is_file() and path.stat().st_mode & 0o111:
             yield f"scripts/{path.name}"
@@ -105,7 +105,7 @@ def python() -> Iterator[str]:
 
 
 def public_names() -> Names:
-    """All of them, by kind."""
+    """All public names, by kind."""
     return {
         "topics": sorted(set(topics())),
         "services": sorted(set(services())),

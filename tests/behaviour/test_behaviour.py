@@ -1,4 +1,4 @@
-"""The default robot behaves as recorded, and the sums would show it if it did not."""
+"""The default robot behaves as recorded, and the sums would show a difference."""
 
 import os
 import subprocess
@@ -20,7 +20,7 @@ COLUMNS = [
 
 @pytest.fixture
 def sums():
-    """The recorded ones; skips where they cannot be compared."""
+    """The recorded sums; skips if they cannot be compared."""
     kind, sums = behaviour.recorded()
     if kind != behaviour.libm_kind():
         pytest.skip(f"sums were recorded with {kind}, this is {behaviour.libm_kind()}; {behaviour.REMEDY}")
@@ -41,7 +41,7 @@ def sum_of(*parts):
 
 
 def kind_without(instructions):
-    """As computed by a process whose libm does not use these instructions."""
+    """The kind of libm of a process whose libm does not use these instructions."""
     environment = {**os.environ, "GLIBC_TUNABLES": f"glibc.cpu.hwcaps={instructions}"}
     environment["PYTHONPATH"] = os.pathsep.join(sys.path)
     program = "import behaviour; print(behaviour.libm_kind())"
@@ -58,7 +58,7 @@ def test_a_drive_with_faults_gives_its_recorded_sum(sums):
 
 
 def test_two_runs_give_one_sum_and_another_seed_another():
-    """On every processor."""
+    """This holds on every processor."""
     first = behaviour.drive_healthy(DIFFBOT, 1)
     assert first == behaviour.drive_healthy(DIFFBOT, 1)
     assert first != behaviour.drive_healthy(DIFFBOT, 2)

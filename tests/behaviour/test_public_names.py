@@ -1,4 +1,4 @@
-"""What users have written down goes on working."""
+"""Names that users have written down go on working."""
 
 import json
 from pathlib import Path
@@ -35,7 +35,7 @@ def test_every_recorded_parameter_is_accepted():
         block = tree
         for group in groups:
             block = block.setdefault(group, {})
-        block[key] = [[]]  # of no key's type: the answer names every key that is known
+        block[key] = [[]]  # no key has this type, so the answer names every known key
     with pytest.raises(ParameterError) as refused:
         ClosedLoop(tree)
     unknown = [line for line in str(refused.value).splitlines() if "unknown key" in line]

@@ -1,4 +1,4 @@
-/// bench_bags FIRST RUNS: so many damaged bags (tests/bags/bag_trials.h), on all cores.
+/// bench_bags FIRST RUNS: reads RUNS damaged bags (tests/bags/bag_trials.h) on all cores.
 
 #include <sys/resource.h>
 
@@ -12,7 +12,8 @@
 namespace robot_control::bench {
 namespace {
 
-constexpr double kMostMegabytes = 512;  // of the process: two bags of some 10 kB at a time, which inflate to 64 MiB
+constexpr double kMaxMegabytes =
+    512;  // memory of the process: two bags of some 10 kB at a time, which inflate to 64 MiB
 
 double peak_megabytes() {
   rusage usage{};
@@ -34,8 +35,8 @@ void run(std::uint64_t first, std::uint64_t runs) {
                                       return violated;
                                     }).run(first, runs));
   const double seconds = 1e-9 * static_cast<double>(monotonic_ns() - start);
-  if (peak_megabytes() > kMostMegabytes) {
-    std::cerr << "peak memory " << peak_megabytes() << " MB, more than " << kMostMegabytes << std::endl;
+  if (peak_megabytes() > kMaxMegabytes) {
+    std::cerr << "peak memory " << peak_megabytes() << " MB, more than " << kMaxMegabytes << std::endl;
     ++failed;
   }
   print("bags", {{"damaged bags", static_cast<double>(runs), "", 0, "none", 0},

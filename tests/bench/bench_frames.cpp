@@ -1,8 +1,8 @@
 /// bench_frames PARAMS.yaml [COUNT]: frames and rows between two processes over shared memory, 10⁹ of each.
 ///
-/// The parameters are not used. In kRounds parts, each beside a bare memcpy of as many frames in one process; the
-/// rates are the median over the parts, torn and reordered ones are counted over all of them. Frames read are
-/// look-ups that found a frame, of the newest and of one shortly before it in turn.
+/// The parameters are not used. The run has kRounds parts, each beside a bare memcpy of as many frames in one process.
+/// Rates are the median over the parts; torn and reordered frames are counted over all of them. A frame counts as read
+/// if a look-up found it; look-ups alternate between the newest frame and an earlier one.
 
 #include <cstdlib>
 #include <cstring>

@@ -1,5 +1,5 @@
-/// bench_limiter FIRST RUNS: so many random command sequences over the limiter (tests/control/limiter_properties.h),
-/// on all cores.
+/// bench_limiter FIRST RUNS: random command sequences over the limiter (tests/control/limiter_properties.h), on all
+/// cores.
 
 #include <cstdlib>
 

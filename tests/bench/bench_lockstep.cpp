@@ -1,8 +1,8 @@
 /// bench_lockstep PARAMS.yaml: the closed loop in virtual time against the bare physics engine.
 ///
-/// Per round, one after the other: a bare loop of `mj_step` of the same model, the ClosedLoop in this process,
-/// and four processes in lockstep on a bus of their own. Simulated seconds per second, median over the rounds,
-/// and the ratio to the bare loop of the same round.
+/// Each round runs three loops, one after the other: `mj_step` of the same model, the ClosedLoop in this process, and
+/// four processes in lockstep on a bus of their own. The figures are simulated seconds per second, median over the
+/// rounds, and the ratio to the bare loop of the same round.
 
 #include <iostream>
 #include <string>

@@ -1,9 +1,9 @@
-/// bench_plant PARAMS.yaml: what the driver costs beyond the physics.
+/// bench_plant PARAMS.yaml: measures the driver's cost beyond the physics.
 ///
-/// Per round, one after the other, all on a curve of 0.5 m/s and 0.4 rad/s: MujocoPlant::write, with exact sensors and
-/// with those that err; a bare loop of mj_step1, tyre forces and mj_step2 of the same model; mj_step of the model with
-/// native friction. Cycles per second,
-/// median over the rounds, and the ratio to the bare loop of the same round.
+/// Each round runs four loops, one after the other, on a curve of 0.5 m/s and 0.4 rad/s. MujocoPlant::write runs with
+/// exact and with erring sensors. The bare loop has mj_step1, tyre forces and mj_step2 of the same model. The last one
+/// is mj_step of the model with native friction. The figures are cycles per second, median over the rounds, and the
+/// ratio to the bare loop of the same round.
 
 #include <iostream>
 #include <string>
@@ -39,7 +39,7 @@ double rate(Step step) {
   return kSteps * 1e9 / static_cast<double>(monotonic_ns() - start);
 }
 
-/// The model alone, and what a loop needs to drive it.
+/// The model alone, with the functions that a loop needs to drive it.
 class Bare {
  public:
   Bare(const RobotModel& robot, const MujocoPlantParameters& parameters, double period)

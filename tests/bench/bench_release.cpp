@@ -1,4 +1,4 @@
-/// bench_release FIRST RUNS: so many random sequences of deaths, restarts, resets and senders
+/// bench_release FIRST RUNS: random sequences of deaths, restarts, resets and senders
 /// (tests/runtime/release_sequences.h), on all cores.
 
 #include <cstdlib>

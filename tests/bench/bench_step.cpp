@@ -1,8 +1,8 @@
-/// bench_step PARAMS.yaml: what one step of each law costs, without frame transport, and whether it allocates.
+/// bench_step PARAMS.yaml: measures the cost of one step of each law, without frame transport, and its allocations.
 ///
-/// Inputs are the frames of a real drive (the closed loop at 0.5 m/s, 0.2 rad/s), replayed in blocks; the estimator's
-/// are those of its steady part, where it corrects by both encoders and both contacts in every cycle. The reference is
-/// a fixed arithmetic kernel (a chain of dependent multiply-adds), interleaved block by block.
+/// Inputs are the frames of a real drive (the closed loop at 0.5 m/s, 0.2 rad/s), replayed in blocks. The estimator's
+/// are those of its steady part, in which both encoders and both contacts correct it in every cycle. The reference is a
+/// fixed arithmetic kernel (a chain of dependent multiply-adds), interleaved block by block.
 
 #include <iostream>
 #include <string>
@@ -45,7 +45,7 @@ Drive record(ClosedLoop& loop) {
   return drive;
 }
 
-/// The drive goes on: the sensors of the next cycles.
+/// Sensors of the next cycles of the same drive.
 std::vector<SensorFrame> record_sensors(ClosedLoop& loop) {
   std::vector<SensorFrame> sensors;
   for (std::size_t k = 0; k < kRecorded; ++k) {

@@ -1,8 +1,8 @@
-/// bench_stops PARAMS.yaml: how long until the brake comes, and how far the robot goes meanwhile.
+/// bench_stops PARAMS.yaml: measures the time until the brake acts, and the way of the robot until then.
 ///
-/// Wall clock: four processes at 1 m/s; one gets a signal, 200 times each. Counted in cycles of the plant, from the
-/// newest one seen before the signal to the first from which on the gate brakes; the way is that to standstill.
-/// Virtual time: what the simulated machine can produce, cause by cause (stop_budget.h).
+/// Wall clock: one of four processes at 1 m/s gets a signal, 200 times each. The count runs in cycles of the plant,
+/// from the newest cycle before the signal to the first one of the lasting brake. The way is that to standstill.
+/// Virtual time: the facts that the simulated machine can produce, cause by cause (stop_budget.h).
 
 #include <iostream>
 #include <string>

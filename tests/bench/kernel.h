@@ -1,6 +1,6 @@
 #pragma once
-/// The yardstick of every step's cost: a chain of 64 dependent multiply-adds, 512 cycles of latency whatever the
-/// caches, branches and compilers do; 92 ns on the quiet development machine.
+/// The kernel is the reference for every step's cost: a chain of 64 dependent multiply-adds. It takes 512 cycles of
+/// latency for any caches, branches and compilers; on the quiet development machine that is 92 ns.
 
 #include <algorithm>
 #include <cstddef>
@@ -26,7 +26,7 @@ inline double kernel_block(std::size_t steps) {
   return static_cast<double>(end - start) / static_cast<double>(steps);
 }
 
-/// The same, and at least kKernelNs: what is promised in nanoseconds is not less on a faster machine.
+/// The same, at least kKernelNs: a bound in nanoseconds does not shrink on a faster machine.
 inline double reference_block(std::size_t steps) {
   return std::max(kKernelNs, kernel_block(steps));
 }

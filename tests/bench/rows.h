@@ -1,6 +1,6 @@
 #pragma once
-/// What a benchmark prints: one JSON object, every absolute figure beside its ratio to a reference that was
-/// measured in the same run, interleaved.
+/// The output of a benchmark: one JSON object. Every absolute figure stands beside its ratio to a reference of the same
+/// run, measured interleaved.
 
 #include <algorithm>
 #include <chrono>
@@ -28,16 +28,16 @@ inline double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Ratio pair by pair, so that a machine whose speed drifts does not distort it.
+/// The median of the pairwise ratios, which a machine whose speed drifts does not distort.
 inline double median_ratio(const std::vector<double>& values, const std::vector<double>& references) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < values.size(); ++i) ratios.push_back(values[i] / references[i]);
   return median(ratios);
 }
 
-/// The least of up to 240 rounds of `ratio`, spread over a minute, or the first within `bound`. A neighbour on the
-/// same core halves throughput, for seconds, and hardly touches the kernel's latency. What costs too much does so in
-/// every round; one good round proves that it does not.
+/// The least of up to 240 rounds of `ratio`, spread over a minute, or the first within `bound`. Another load on the
+/// same core halves throughput for seconds, and hardly changes the kernel's latency. A step that costs too much does so
+/// in every round; one good round proves that it does not.
 template <typename Ratio>
 double best_ratio(double bound, const Ratio& ratio) {
   constexpr int kRounds = 240;

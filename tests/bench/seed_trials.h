@@ -1,5 +1,5 @@
 #pragma once
-/// So many seeds of one property, on all cores. The first violations go to stderr, each with its seed.
+/// Runs many seeds of one property on all cores. The first violations go to stderr, each with its seed.
 
 #include <algorithm>
 #include <atomic>
@@ -17,7 +17,7 @@ namespace robot_control::bench {
 
 class SeedTrials {
  public:
-  /// `violation` of a seed: which property, where and by what; called from several threads.
+  /// Returns the violated property, its place and its cause; it is called from several threads.
   using Violation = std::function<std::optional<std::string>(std::uint64_t seed)>;
 
   SeedTrials(std::string bench, Violation violation) : bench_(std::move(bench)), violation_(std::move(violation)) {}
@@ -40,11 +40,11 @@ class SeedTrials {
     const std::uint64_t block = std::max<std::uint64_t>(1, runs_ / 1000);  // seeds that a thread takes at a time
     for (std::uint64_t from = next_.fetch_add(block); from < runs_; from = next_.fetch_add(block)) {
       if (from > 0 && from / block % 100 == 0) report(std::to_string(from) + " of " + std::to_string(runs_));
-      for (std::uint64_t i = from; i < std::min(from + block, runs_); ++i) judge(first_ + i);
+      for (std::uint64_t i = from; i < std::min(from + block, runs_); ++i) test_seed(first_ + i);
     }
   }
 
-  void judge(std::uint64_t seed) {
+  void test_seed(std::uint64_t seed) {
     const auto violated = violation_(seed);
     if (violated && failed_.fetch_add(1) < kTold) {
       report("seed " + std::to_string(seed) + ": " + *violated + "\n    again: scripts/bench " + bench_ + " --first " +

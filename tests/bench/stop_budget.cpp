@@ -25,7 +25,7 @@ bool turning(const TruthFrame& truth) {
   return std::abs(truth.twist_base.angular[2]) > 0.05;  // rad/s: 12 mm/s at diffbot's wheels
 }
 
-/// Where scenes are named without their folder, beside the parameter file's own.
+/// The parameters for a scenario; scenes without a folder lie beside the parameter file's own.
 Parameters parameters_of(const std::string& path, const StopScenario& scenario) {
   std::vector<Overlay> overlays = scenario.parameters;
   const std::filesystem::path scenes = std::filesystem::path(path).parent_path() / "../urdf/scenes";
@@ -35,12 +35,12 @@ Parameters parameters_of(const std::string& path, const StopScenario& scenario) 
   return read_parameters(path, overlays);
 }
 
-/// What one cycle adds.
+/// Adds the data of each cycle.
 class Observer {
  public:
   Observer(StopMeasurement& measured, bool fact_known) : measured_(measured), fact_known_(fact_known) {}
 
-  void see(const JoinedRow& row) {
+  void add(const JoinedRow& row) {
     const TruthFrame& truth = row.driver->truth;
     const double speed = speed_of(truth);
     if (!fact_known_) await_blow(truth.head.cycle, speed, row);
@@ -64,7 +64,8 @@ class Observer {
     const TruthFrame& truth = row.driver->truth;
     const std::uint64_t cycle = truth.head.cycle;
     if (!measured_.standing_cycle) {
-      measured_.way += std::hypot(truth.pose_world.position[0] - last_[0], truth.pose_world.position[1] - last_[1]);
+      measured_.distance +=
+          std::hypot(truth.pose_world.position[0] - last_[0], truth.pose_world.position[1] - last_[1]);
     }
     const bool stops =
         row.driver->gate.verdict == GateVerdict::kBrake || row.driver->gate.verdict == GateVerdict::kRamp;
@@ -118,15 +119,15 @@ StopMeasurement measure_stop(const std::string& path, const StopScenario& scenar
     if (k == begin && announced) {
       measured.fact_cycle = k;
       measured.speed = speed_of(loop.row().driver->truth);
-      after.see(loop.row());
-      measured.way = 0;
+      after.add(loop.row());
+      measured.distance = 0;
       measured.standing_cycle.reset();
       measured.stopped_cycle.reset();
       scenario.begin(loop);
     }
     loop.step();
-    if (announced && k >= begin) after.see(loop.row());
-    if (!announced) before.see(loop.row());
+    if (announced && k >= begin) after.add(loop.row());
+    if (!announced) before.add(loop.row());
     if ((announced ? after : before).done()) break;
   }
   return measured;
@@ -141,7 +142,7 @@ std::vector<Row> stop_rows(const std::vector<StopMeasurement>& measured) {
       rows.push_back(row(name + (stop.ramps ? ": ramp" : ": brake"), seconds * 1e3, "ms"));
     }
     if (stop.reaction()) rows.push_back(row(name + ": from latch", static_cast<double>(*stop.reaction()), "cycles"));
-    if (stop.standing_cycle) rows.push_back(row(name + ": way", stop.way, "m"));
+    if (stop.standing_cycle) rows.push_back(row(name + ": way", stop.distance, "m"));
   }
   return rows;
 }

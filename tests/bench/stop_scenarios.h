@@ -1,7 +1,7 @@
 #pragma once
-/// Facts that the simulated machine can produce, one scenario or more for each cause of a stop.
+/// The facts that the simulated machine can produce, one scenario or more for each cause of a stop.
 ///
-/// Not here, for want of such a fact in one process and in virtual time:
+/// These causes have no such fact in one process and in virtual time:
 ///   e_stop_topic       what e_stop_service is, after its message
 ///   driver_lost, monitor_restarted, monitor_late, overruns     wall clock and processes: bench_stops
 ///   driver_fault       a diverged simulation stands still: there is no truth to measure
@@ -20,11 +20,11 @@
 namespace robot_control::bench {
 
 struct StopScenario {
-  StopCause cause;                 ///< what it shows; another one may be faster
+  StopCause cause;                 ///< the cause that the scenario shows; another one may be faster
   std::string fact;                ///< in words
   double linear = 0, angular = 0;  ///< m/s, rad/s: commanded before and after
   std::vector<Overlay> parameters;
-  std::function<void(ClosedLoop&)> begin;  ///< makes the fact true; empty: it comes by itself, at the first blow
+  std::function<void(ClosedLoop&)> begin;  ///< makes the fact true; empty if the first blow does
 };
 
 /// s, when `begin` is called, and pushes begin.

@@ -1,4 +1,4 @@
-// Which connection gives way where descriptors run out.
+// These tests show which connection is closed when descriptors run out.
 #include "bridge/network/accepted_sockets.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What a publisher may put on the wire, and what of it is looked at.
+// Checks which bytes a publisher may send, and which part of them is read.
 #include "bridge/messages/bounded_message.h"
 
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@
 namespace robot_control {
 namespace {
 
-/// Healthy: a state that learned something, a file in a folder that is there.
+/// The healthy case has a state that learned something, and a file in an existing folder.
 class CalibrationKeeperTest : public testing::Test {
  protected:
   CalibrationKeeperTest() {

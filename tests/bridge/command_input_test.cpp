@@ -26,7 +26,7 @@ class CommandInputTest : public testing::Test {
     input_.receive(arrived, now_);
   }
 
-  /// The same process for the same name, until `restart`, and the same connection, until `reopen`.
+  /// The same process for the same name until `restart`, and the same connection until `reopen`.
   Publisher publisher(const std::string& name) {
     Publisher& publisher = publishers_[name];
     if (publisher.name.empty()) publisher = {name, boost::make_shared<char>(), std::to_string(++processes_)};
@@ -120,7 +120,7 @@ TEST_F(CommandInputTest, AJumpOfACommonClockRefusesNothing) {
   EXPECT_EQ(value().count, 4u);
 }
 
-// … and while one is under way: it alone is refused.
+// The clock may also jump while a message is under way: that message alone is refused.
 TEST_F(CommandInputTest, AJumpWhileAMessageIsUnderWayCostsThatMessage) {
   for (const std::int64_t jump : {kHour, -kHour}) {
     const std::int64_t stamp_ns = now_.ros_ns;

@@ -20,7 +20,7 @@ using testing::HasSubstr;
 enum Source : std::size_t { kJoy, kKey, kCmd, kPath };
 enum LockIndex : std::size_t { kPause, kWatchdog };
 
-/// The shipped list and a lock that silence sets.
+/// The shipped list with a lock that silence sets.
 CommandSourceList shipped() {
   return {.sources = {{"joy_vel", "joy_vel", 0.5, 40, true},
                       {"key_vel", "key_vel", 0.5, 30, true},
@@ -231,8 +231,8 @@ TEST_F(CommandMuxTest, AStampTooOldMakesNoSourceLive) {
   EXPECT_THAT(said, HasSubstr("key_vel: "));
 }
 
-/// A planner whose source never times out, or does so after a minute, has died; then a stop and its reset, a new run or
-/// the end of a pause.
+/// The source of a planner never times out, or after a minute. The planner has died; then come a stop and its reset, a
+/// new run or the end of a pause.
 class DeadSourceTest : public CommandMuxTest, public testing::WithParamInterface<double> {
  protected:
   DeadSourceTest() {

@@ -29,7 +29,7 @@ class CommandReportTest : public testing::Test {
     return report().look(frame_);
   }
 
-  /// The same goes on for `reasons`; all lines until `seconds` later.
+  /// Continues with the same command and `reasons`; returns all lines until `seconds` later.
   std::vector<ReportLine> go_on(std::uint64_t reasons, double seconds = 1.5) {
     frame_.reasons = reasons;
     std::vector<ReportLine> lines;

@@ -1,4 +1,4 @@
-// Where a socket that wants every address ends up.
+// Checks the address of a socket that was bound to every address.
 #include "bridge/network/loopback.h"
 
 #include <arpa/inet.h>
@@ -13,7 +13,7 @@
 namespace robot_control {
 namespace {
 
-/// Healthy: a process that has asked for it, and ROS on the loopback.
+/// The healthy case is a process that has requested it, with ROS on the loopback.
 class LoopbackTest : public testing::Test {
  protected:
   LoopbackTest() {
@@ -60,7 +60,7 @@ TEST_F(LoopbackTest, OnANetworkEveryAddressStays) {
   EXPECT_EQ(bound_to("0.0.0.0"), "0.0.0.0");
 }
 
-// As in ROS: ROS_HOSTNAME outweighs ROS_IP.
+// As in ROS, ROS_HOSTNAME takes precedence over ROS_IP.
 TEST_F(LoopbackTest, TheHostNameIsAskedFirst) {
   setenv("ROS_HOSTNAME", "robot", 1);
   EXPECT_FALSE(listens_on_the_loopback_alone());

@@ -48,7 +48,7 @@ TEST_F(MotionMessagesTest, JointStatesCarryEveryJointInFrameOrder) {
   EXPECT_EQ(message.header.stamp, stamp_);
 }
 
-// What an encoder reports jumps by a count per period.
+// The speed that an encoder reports jumps by a count per period.
 TEST_F(MotionMessagesTest, JointStatesCarryTheWheelsTrackedVelocities) {
   for (std::size_t i = 0; i < 3; ++i) sensors_.joints[i].velocity = 4.60;
   state_.wheel_velocity = {4.5, 5.5, 7};
@@ -147,8 +147,8 @@ TEST_F(MotionMessagesTest, WheelOdometryIsTheWheelsAloneWithUnknownCovariance) {
   EXPECT_THAT(message.twist.covariance, Each(0));
 }
 
-// The base pitched up by a right angle (x of the base points up), the IMU yawed by one on it: x of the IMU is y of the
-// base, and that stays y of odom. Half angles of 45°: exact but for the rounding of √½.
+// The base is pitched up by a right angle (x of the base points up), and the IMU yawed by one on it. So x of the IMU is
+// y of the base, and stays y of odom. The half angles are 45°, which is exact but for the rounding of √½.
 TEST_F(MotionMessagesTest, ImuDataHasTheOrientationOfTheImuNotOfTheBase) {
   const double half = std::sqrt(0.5);
   state_.attitude = {0, -half, 0, half};

@@ -34,7 +34,7 @@ class MotionRequestsTest : public testing::Test {
     requests_.follow(permission_, now_);
   }
 
-  /// Of motion that this process requests over a new connection, which then closes.
+  /// True if motion that this process requests over a new connection, which then closes, is revoked.
   bool revoked_again(Publisher sender) {
     sender.connection = boost::make_shared<char>();
     requests_.request(sender, now_);

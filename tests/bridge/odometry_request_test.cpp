@@ -28,7 +28,7 @@ TEST(OdometryRequest, ThatIsNoNumberOrFarAwayIsNamedWithItsRule) {
   EXPECT_THAT(odometry_problem({kNan, 0, kNan}), testing::AllOf(HasSubstr("x = nan m"), HasSubstr("; yaw = nan rad")));
 }
 
-// Tolerance: the rounding of a few turns.
+// The tolerance is the rounding of a few turns.
 TEST(OdometryRequest, TurnsYawIntoOneTurn) {
   constexpr double kPi = std::numbers::pi;
   EXPECT_EQ(normalised({1, 2, 0.5}), (Vector3{1, 2, 0.5}));

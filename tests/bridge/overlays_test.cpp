@@ -82,7 +82,7 @@ TEST(Overlays, AreNoneWhereNothingIsSet) {
   EXPECT_TRUE(overlays_of(XmlRpc::XmlRpcValue(), "robot", "/robot").empty());
 }
 
-// What a launch file sets for an argument that was not given.
+// A launch file sets an empty text for an argument that was not given.
 TEST(Overlays, LeaveOutAnEmptyText) {
   XmlRpc::XmlRpcValue tree;
   tree["urdf"] = std::string();
@@ -100,7 +100,7 @@ std::string refusal_of(const XmlRpc::XmlRpcValue& value) {
   }
 }
 
-// A list in ~config is no reason to drive with the limits of the installed file.
+// A list in ~config must not start the robot with the limits of the installed file.
 TEST(ATextOfTheServer, OfAnotherTypeIsRefusedWithItsValueAndTheRemedy) {
   EXPECT_EQ(refusal_of(XmlRpc::XmlRpcValue()), "");
   EXPECT_EQ(refusal_of(std::string("my.yaml")), "my.yaml");
@@ -117,7 +117,7 @@ TEST(ATextOfTheServer, OfAnotherTypeIsRefusedWithItsValueAndTheRemedy) {
   EXPECT_NE(refusal_of(tree).find("/node/config is a group of parameters: must be a text"), std::string::npos);
 }
 
-// rospy takes 1 and "false" for true, roscpp for nothing: some nodes would wait for /clock, others not.
+// rospy takes 1 and "false" for true, roscpp ignores them: some nodes would wait for /clock, others not.
 TEST(SimulatedTime, IsTrueOrFalseAndNothingElse) {
   EXPECT_FALSE(truth_parameter(XmlRpc::XmlRpcValue(), "/use_sim_time"));
   EXPECT_FALSE(truth_parameter(XmlRpc::XmlRpcValue(false), "/use_sim_time"));

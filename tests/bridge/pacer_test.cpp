@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::int64_t kMillisecond = 1'000'000;
 
-/// Topics of `rate` Hz sent in one second, looked at every `step_ns`.
+/// Messages of a topic of `rate` Hz in one second, checked every `step_ns`.
 int sent_in_a_second(double rate, std::int64_t step_ns) {
   Pacer pacer(rate);
   int sent = 0;

@@ -7,7 +7,7 @@
 namespace robot_control {
 namespace {
 
-/// A controller that publishes every cycle, and a thread that looks now and then.
+/// A controller that publishes every cycle, and a thread that reads now and then.
 class ReasonHistoryTest : public testing::Test {
  protected:
   void publish(std::uint64_t reasons, std::uint64_t run = 7) {
@@ -16,7 +16,7 @@ class ReasonHistoryTest : public testing::Test {
     writer_.publish(newest_);
   }
 
-  std::uint64_t look() { return history_.look(FrameReader<CommandFrame>(memory_.get()), newest_); }
+  std::uint64_t poll() { return history_.look(FrameReader<CommandFrame>(memory_.get()), newest_); }
 
   std::unique_ptr<LatestFrames<CommandFrame>> memory_ = std::make_unique<LatestFrames<CommandFrame>>();
   FrameWriter<CommandFrame> writer_{memory_.get(), Wake::kNobody};
@@ -27,33 +27,33 @@ class ReasonHistoryTest : public testing::Test {
 
 TEST_F(ReasonHistoryTest, FindsAReasonOfOneCycleBetweenTwoLooks) {
   publish(0);
-  EXPECT_EQ(look(), 0u);
+  EXPECT_EQ(poll(), 0u);
   publish(0);
   publish(kReasonJerkYielded);
   publish(0);
   publish(kReasonSaturated);
-  EXPECT_EQ(look(), kReasonJerkYielded | kReasonSaturated);
+  EXPECT_EQ(poll(), kReasonJerkYielded | kReasonSaturated);
   publish(0);
-  EXPECT_EQ(look(), 0u) << "reported once";
+  EXPECT_EQ(poll(), 0u) << "reported once";
 }
 
 TEST_F(ReasonHistoryTest, GoesBackAsFarAsTheChannelDoes) {
   publish(0);
-  look();
+  poll();
   publish(kReasonRefused);
   for (std::size_t i = 0; i < kFrameSlots; ++i) publish(0);
-  EXPECT_EQ(look(), 0u) << "that slot was used again";
+  EXPECT_EQ(poll(), 0u) << "that slot was used again";
   publish(kReasonRefused);
   for (std::size_t i = 1; i < kFrameSlots; ++i) publish(0);
-  EXPECT_EQ(look(), kReasonRefused);
+  EXPECT_EQ(poll(), kReasonRefused);
 }
 
 TEST_F(ReasonHistoryTest, RestartsWithARun) {
   publish(0);
-  look();
+  poll();
   publish(kReasonRefused);
   publish(kReasonHolding, 8);
-  EXPECT_EQ(look(), kReasonHolding);
+  EXPECT_EQ(poll(), kReasonHolding);
 }
 
 }  // namespace

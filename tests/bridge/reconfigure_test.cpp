@@ -1,4 +1,4 @@
-// The live parameters as dynamic_reconfigure shows and sets them.
+// Checks the live parameters that dynamic_reconfigure shows and sets.
 #include "bridge/inputs/reconfigure.h"
 
 #include <gtest/gtest.h>

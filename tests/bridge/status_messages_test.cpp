@@ -86,7 +86,7 @@ TEST_F(SafetyStatusTest, HasWhatWasMeasuredBesideItsCause) {
               ElementsAre("", "17.3 rad/s, limit 15 rad/s, left_wheel_joint", "0.4 rad, limit 0.35 rad"));
 }
 
-// A joint of another robot's model, or a cause whose evidence found no room.
+// The evidence is of a joint of another robot's model, or of a cause without room for evidence.
 TEST_F(SafetyStatusTest, InventsNoEvidence) {
   permit_.causes = kCauseTilt;
   EXPECT_THAT(message().details, ElementsAre(""));

@@ -21,7 +21,7 @@ using testing::StartsWith;
 constexpr double kLogPeriod = 0.001;  // s
 constexpr std::uint64_t kLogSecond = 1000;
 
-/// A robot that has just become ready; its permits go the way of the node, through the message.
+/// A robot that has just become ready; its permits pass through the message, as in the node.
 class StopLogTest : public testing::Test {
  protected:
   StopLogTest() {
@@ -30,15 +30,15 @@ class StopLogTest : public testing::Test {
     robot_.joints.resize(1);
     robot_.joints[0].name = "left_wheel_joint";
     permit_.missing = kMissingState;
-    look();
+    report();
     permit_.missing = 0;
     enter(SupervisorState::kReady);
   }
 
-  std::string look() { return look(message()); }
+  std::string report() { return report(message()); }
 
   /// "W text" and "I text", a line each.
-  std::string look(const msg::SafetyStatus& status) {
+  std::string report(const msg::SafetyStatus& status) {
     std::string text;
     for (const ReportLine& line : log_.look(status)) text += (line.warning ? "W " : "I ") + line.text + "\n";
     return text;
@@ -47,7 +47,7 @@ class StopLogTest : public testing::Test {
   std::string enter(SupervisorState state) {
     ++permit_.head.cycle;
     permit_.state = state;
-    return look();
+    return report();
   }
 
   std::string stop(std::uint64_t causes, SupervisorState state = SupervisorState::kStopped) {
@@ -84,7 +84,7 @@ TEST_F(StopLogTest, SaysStateCauseValueLimitAndRemedyOfAStop) {
       stop(kCauseStall),
       "W STOPPED: stall: a wheel stands although its target is not zero (0.6 rad, limit 0.5 rad, left_wheel_joint). "
       "To drive again: free the wheel, or look at its motor and encoder, then call e_stop_reset\n");
-  EXPECT_EQ(look(), "");
+  EXPECT_EQ(report(), "");
 }
 
 TEST_F(StopLogTest, EveryCauseOfTheTableGivesOneLineWithItsRemedyAndTheReset) {
@@ -119,8 +119,8 @@ TEST_F(StopLogTest, SaysThatARampBeginsAndEnds) {
 
 TEST_F(StopLogTest, ALookWithoutAPermitReleasesNothing) {
   stop(kCauseEmergencyStopService);
-  EXPECT_EQ(look(waiting_status({"mujoco_plant"})), "");
-  EXPECT_EQ(look(), "") << "the same latch";
+  EXPECT_EQ(report(waiting_status({"mujoco_plant"})), "");
+  EXPECT_EQ(report(), "") << "the same latch";
   EXPECT_EQ(release(), "I released: READY; send cmd_vel\n");
   EXPECT_THAT(stop(kCauseEmergencyStopService), StartsWith("W STOPPED: e_stop_service")) << "a new one";
 }
@@ -140,24 +140,24 @@ TEST_F(StopLogTest, SaysOnceThatItWaitsForAZeroRequestWhenSilenceWouldHaveEndedT
   std::vector<std::string> said;
   for (std::uint64_t i = 0; i < 5 * kLogSecond; i += 20) {
     status.cycle = 100 + i;
-    if (const std::string text = look(status); !text.empty()) said.push_back(std::to_string(i) + " " + text);
+    if (const std::string text = report(status); !text.empty()) said.push_back(std::to_string(i) + " " + text);
   }
   EXPECT_THAT(said, ElementsAre("1500 W INIT: waits for a zero request; stop the sender for 1.25 s or send zero\n"));
   status.awaiting_zero_request = 0;
-  look(status);
+  report(status);
   status.awaiting_zero_request = 1;
-  look(status);
+  report(status);
   status.cycle += 2 * kLogSecond;
-  EXPECT_THAT(look(status), HasSubstr("waits for a zero request")) << "another wait";
+  EXPECT_THAT(report(status), HasSubstr("waits for a zero request")) << "another wait";
 }
 
 TEST_F(StopLogTest, SaysNothingOfAWaitThatSilenceEnds) {
   msg::SafetyStatus status = message();
   status.state = msg::SafetyStatus::INIT;
   status.awaiting_zero_request = 1;
-  look(status);
+  report(status);
   status.cycle += 1260;
-  EXPECT_EQ(look(status), "");
+  EXPECT_EQ(report(status), "");
 }
 
 TEST_F(StopLogTest, AWarningIsSaidWhenItBeginsAndNotEachTimeItFlickers) {
@@ -166,21 +166,21 @@ TEST_F(StopLogTest, AWarningIsSaidWhenItBeginsAndNotEachTimeItFlickers) {
   for (std::uint64_t i = 0; i < 9 * kLogSecond; i += 20) {
     permit_.head.cycle += 20;
     permit_.warnings = i % 40 == 0 ? std::uint64_t{kCauseImuStuck} : 0;
-    said += look();
+    said += report();
   }
   EXPECT_THAT(said, AllOf(StartsWith("W warning: imu_stuck: "), EndsWith("; no faster than 0.3 m/s\n")));
   EXPECT_EQ(std::ranges::count(said, '\n'), 1);
   permit_.head.cycle += 2 * kLogSecond;
   permit_.warnings = 0;
-  EXPECT_EQ(look(), "");
+  EXPECT_EQ(report(), "");
   permit_.warnings = kCauseImuStuck;
-  EXPECT_THAT(look(), StartsWith("W warning: imu_stuck: "));
+  EXPECT_THAT(report(), StartsWith("W warning: imu_stuck: "));
 }
 
 TEST_F(StopLogTest, SaysThatTheWayIsNotFree) {
   permit_.speed_limit = 0;
-  EXPECT_THAT(look(), HasSubstr("clearance leaves no speed"));
-  EXPECT_EQ(look(), "");
+  EXPECT_THAT(report(), HasSubstr("clearance leaves no speed"));
+  EXPECT_EQ(report(), "");
 }
 
 TEST_F(StopLogTest, IsSilentWhileAHealthyRobotDrives) {

@@ -1,4 +1,4 @@
-// What peers send, as the checked functions of roscpp take it.
+// Checks how the replaced functions of roscpp handle data of peers.
 #include "bridge/network/wire_guard.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ std::string field(const std::string& text) {
   return field(text, static_cast<std::uint32_t>(text.size()));
 }
 
-/// The header lies at the end of memory that is mapped: a read beyond it is a fault.
+/// The header lies at the end of mapped memory, so that a read beyond it is a fault.
 class HeaderAtTheEdge {
  public:
   explicit HeaderAtTheEdge(const std::string& bytes) : size_(static_cast<std::uint32_t>(bytes.size())) {
@@ -106,7 +106,7 @@ TEST(WireGuard, NoRandomHeaderIsReadBeyondItsEnd) {
   }
 }
 
-/// An array of so many levels, as XML-RPC writes it.
+/// An array with that many levels, as XML-RPC writes it.
 std::string nested(int levels) {
   std::string text;
   for (int i = 0; i < levels; ++i) text += "<value><array><data>";

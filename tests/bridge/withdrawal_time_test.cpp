@@ -8,16 +8,16 @@ namespace {
 /// Looks at times that grow by one.
 class WithdrawalTimeTest : public testing::Test {
  protected:
-  void look(PermitAction action, std::uint64_t causes = 0) {
+  void observe(PermitAction action, std::uint64_t causes = 0) {
     permit_.action = action;
     permit_.causes = causes;
     time_.look(permit_, ++now_ns_);
   }
 
   void start() {
-    look(PermitAction::kBrake);
+    observe(PermitAction::kBrake);
     permit_.withdrawals = 3;
-    look(PermitAction::kDrive);
+    observe(PermitAction::kDrive);
   }
 
   Permit permit_;
@@ -31,8 +31,8 @@ TEST_F(WithdrawalTimeTest, IsNoneBeforeAPermissionEnded) {
 }
 
 TEST_F(WithdrawalTimeTest, IsTheEndOfALatchedStop) {
-  look(PermitAction::kBrake, kCauseEmergencyStopService);
-  look(PermitAction::kBrake, kCauseEmergencyStopService);
+  observe(PermitAction::kBrake, kCauseEmergencyStopService);
+  observe(PermitAction::kBrake, kCauseEmergencyStopService);
   EXPECT_EQ(time_.last_ns(), now_ns_);
   start();
   EXPECT_EQ(time_.last_ns(), 2);
@@ -40,19 +40,19 @@ TEST_F(WithdrawalTimeTest, IsTheEndOfALatchedStop) {
 
 TEST_F(WithdrawalTimeTest, IsTheEndOfAPermissionAndNotOfTheWaitForTheNextOne) {
   start();
-  look(PermitAction::kBrake);
+  observe(PermitAction::kBrake);
   EXPECT_EQ(time_.last_ns(), 3);
-  look(PermitAction::kBrake);
-  look(PermitAction::kDrive);
+  observe(PermitAction::kBrake);
+  observe(PermitAction::kDrive);
   EXPECT_EQ(time_.last_ns(), 3);
 }
 
 TEST_F(WithdrawalTimeTest, IsTheLookAfterAStopThatWasReleasedBetweenTwo) {
   start();
   ++permit_.withdrawals;
-  look(PermitAction::kDrive);
+  observe(PermitAction::kDrive);
   EXPECT_EQ(time_.last_ns(), 3);
-  look(PermitAction::kDrive);
+  observe(PermitAction::kDrive);
   EXPECT_EQ(time_.last_ns(), 3);
 }
 

@@ -10,8 +10,8 @@
 namespace robot_control {
 namespace {
 
-/// Breaks one thing of a bench that drives at 0.5 m/s and 0.2 rad/s, and steps it no farther than where the reason
-/// stands in its command.
+/// Spoils one thing of a bench that drives at 0.5 m/s and 0.2 rad/s. It steps the bench no farther than to the command
+/// with the reason.
 using Break = std::function<void(ControlBench&)>;
 
 const std::map<std::uint64_t, Break> kBreaks{
@@ -49,7 +49,7 @@ const std::map<std::uint64_t, Break> kBreaks{
      }},
     {kReasonPermitSlow, [](ControlBench& bench) { bench.permit.speed_limit = 0.1; }},
     {kReasonJerkYielded,
-     [](ControlBench& bench) {  // told to stop where it passes zero on its way into reverse
+     [](ControlBench& bench) {  // a stop is requested while it passes zero on its way into reverse
        bench.send(-1, 0);
        while (bench.command.twist_limited.linear[0] > 0.02) bench.step();
        bench.send(0, 0);

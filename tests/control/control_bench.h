@@ -1,7 +1,6 @@
 #pragma once
-/// The controller against the rigid plant with the bus's order of events: the command of cycle k acts over
-/// [t_k+1, t_k+2), the gate's verdict of tick k−1 stands in the sensors of k. Everything is healthy until a test
-/// breaks it.
+/// The controller drives the rigid plant with the bus's order of events. The command of cycle k acts over [t_k+1,
+/// t_k+2), and the sensors of k hold the gate's verdict of tick k−1. Everything is healthy until a test spoils it.
 
 #include <cstdint>
 #include <functional>
@@ -13,8 +12,7 @@
 
 namespace robot_control {
 
-/// Without a jerk limit, and with no stronger deceleration in an emergency: ramps are straight lines of 1 m/s², 4
-/// rad/s².
+/// Without a jerk limit and without a stronger emergency deceleration, ramps are straight lines of 1 m/s², 4 rad/s².
 inline DriveControllerParameters straight_ramps() {
   DriveControllerParameters parameters;
   parameters.max_linear_jerk = parameters.max_angular_jerk = 0;

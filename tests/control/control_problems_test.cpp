@@ -63,7 +63,7 @@ TEST(ControlProblems, RefusesALoopThatOscillatesAndItsRemedyIsAccepted) {
   }
 }
 
-// Every mode of these loops is damped by 0.3; the counts of an encoder keep the one of 80 Hz oscillating.
+// Every mode of these loops is damped by 0.3; the counts of an encoder keep the mode of 80 Hz oscillating.
 TEST(ControlProblems, RefusesALoopThatTheCountsOfAnEncoderMakeOscillate) {
   RobotModel robot = make_test_robot();
   for (JointModel& joint : robot.joints) joint.effort_limit = 3.5;
@@ -142,7 +142,7 @@ TEST(ControlProblems, NameWhatIsSuspiciousOfARobotThatNoGainsFit) {
   EXPECT_THAT(control_problems(parameters, robot, 1e-3), Each(HasSubstr("are lengths in millimetres?")));
 }
 
-// Stable with the wheels that the set makes heavier, and unstable with those that are there.
+// The gains are stable with the heavier wheels of the set, and unstable with the real ones.
 TEST(ControlProblems, RefuseGainsThatOnlyTheRobotOfTheSetBears) {
   DriveControllerParameters parameters;
   parameters.feed_forward.wheel_inertia = 0.03;

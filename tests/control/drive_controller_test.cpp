@@ -147,7 +147,7 @@ TEST_F(DriveControllerTest, BrakesForOneCycleOnAnAngleThatJumpsAndDrivesOn) {
     for (int k = 0; k < 500; ++k) {
       bench.step();
       ASSERT_FALSE(braked());
-      // One cycle of the brake, 2 N·m·s/rad at 5 rad/s: the speed falls by no more than that.
+      // One cycle of the brake, 2 N·m·s/rad at 5 rad/s, bounds the fall of the speed.
       ASSERT_NEAR(bench.plant.twist.linear, 0.5, 0.1) << "jump " << jump << " cycle " << k;
     }
     ASSERT_NEAR(bench.plant.twist.linear, 0.5, 1e-3);
@@ -272,7 +272,7 @@ TEST_F(DriveControllerTest, DrivesAWheelThatIsMountedTheOtherWayRound) {
   EXPECT_NEAR(bench.command.joints[1].velocity, -5.5, 1e-12);
 }
 
-// The right wheel is held. Taken for one of 45 counts a turn, its encoder would not contradict 0.5 rad/s for 0.3 s.
+// The right wheel is held. An encoder of 45 counts a turn would not contradict 0.5 rad/s for 0.3 s.
 TEST(DriveControllerOfAHeldWheel, KnowsByTheCountsOfTheOtherThatItStands) {
   DriveController controller({}, make_test_robot(), 1e-3);
   controller.enter_run();
@@ -386,7 +386,7 @@ TEST_F(DriveControllerTest, NeverExceedsLimitsUnderRandomCommandsPermitsAndFault
         ASSERT_TRUE(std::isfinite(joint.effort)) << "seed " << seed;
         ASSERT_LE(std::abs(joint.effort), 5) << "seed " << seed;
       }
-      // Plan to plan; a seed is the measured speed and no plan.
+      // Compares plan with plan; a seed is the measured speed and no plan.
       const std::uint64_t own = kReasonAccelerationLimited;
       if ((before.reasons & own) && (bench.command.reasons & own)) {
         ASSERT_LE(std::abs(limited() - before.twist_limited.linear[0]), 1e-3 + 1e-12) << "seed " << seed;
@@ -397,12 +397,12 @@ TEST_F(DriveControllerTest, NeverExceedsLimitsUnderRandomCommandsPermitsAndFault
   }
 }
 
-/// With the default limits: 1 m/s² usually, 2 m/s² in an emergency, 10 m/s³.
+/// These are the default limits: 1 m/s² usually, 2 m/s² in an emergency, 10 m/s³.
 class Emergency : public DriveControllerTest {
  protected:
   Emergency() { bench = ControlBench(); }
 
-  /// m/s², of the limited speed, over the next 0.6 s, and the way in m until it stands.
+  /// Expects this deceleration of the limited speed, m/s², over the next 0.6 s, and the way in m to standstill.
   void expect_a_ramp_of(double deceleration, std::uint64_t reason) {
     const double start = bench.plant.distance;
     double strongest = 0;
@@ -417,8 +417,9 @@ class Emergency : public DriveControllerTest {
     EXPECT_EQ(reasons & reason, reason);
     EXPECT_EQ(limited(), 0);
     const double speed = std::hypot(0.5, 0);
-    const double way = speed * speed / (2 * deceleration) + speed * deceleration / (2 * 10);
-    EXPECT_NEAR(bench.plant.distance - start, way, 2e-3 + 2e-3 * speed) << "two cycles of delay, and what a curve adds";
+    const double distance = speed * speed / (2 * deceleration) + speed * deceleration / (2 * 10);
+    EXPECT_NEAR(bench.plant.distance - start, distance, 2e-3 + 2e-3 * speed)
+        << "two cycles of delay, and what a curve adds";
   }
 };
 

@@ -66,7 +66,7 @@ TEST(DrivePerformance, StaysWithinTwoMillimetresPerSecondWithEncoderAndFriction)
     EXPECT_LT(figures.rms, 2e-3);        // measured 0.9 mm/s
     EXPECT_LT(figures.overshoot, 0.01);  // the article's loop shall stay within 1 %; measured 0.05 %
     EXPECT_LT(figures.undershoot, 0.01);
-    // kp times 0.060 rad/s, by which one count may move the tracked speed at most: a tenth of differencing's 3 N·m.
+    // One count may move the tracked speed by 0.060 rad/s at most, times kp: a tenth of differencing's 3 N·m.
     EXPECT_LT(figures.torque_step, 2 * 0.060);
   }
 }
@@ -100,7 +100,8 @@ TEST(DrivePerformance, KeepsALiftedWheelAtItsTargetSpeed) {
     bench.step();
     largest = std::max(largest, std::abs(bench.plant.speed.left - 2.5));
   }
-  // Noise of the encoder, kp·0.06 rad/s over a lifted wheel of 0.005 kg·m²: 0.024 rad/s in a cycle, some of them.
+  // The noise of the encoder, kp·0.06 rad/s over a lifted wheel of 0.005 kg·m², is 0.024 rad/s per cycle, for some
+  // cycles.
   EXPECT_LT(largest, 0.2);
 }
 

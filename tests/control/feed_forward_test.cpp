@@ -25,8 +25,8 @@ TEST(FeedForward, IsThatInertiaTimesTheWheelsAcceleration) {
   EXPECT_NEAR(law.efforts({}, {0, 4})[1], 0.45, 1e-14);
 }
 
-// 24 kg · 1 m/s² on four wheels: 6 N · 0.1 m + 0.005 · 10 rad/s². Yaw 4 rad/s²: moment 2 N·m over the lever of 0.5 m is
-// 4 N a side, 2 N a wheel; its rim gains 4 · 0.41 m/s², 16.4 rad/s².
+// 24 kg · 1 m/s² on four wheels give 6 N · 0.1 m + 0.005 · 10 rad/s². Yaw at 4 rad/s² needs a moment of 2 N·m over the
+// lever of 0.5 m, so 4 N a side and 2 N a wheel. Its rim gains 4 · 0.41 m/s², 16.4 rad/s².
 TEST(FeedForward, SharesTheLoadOverAllWheels) {
   const RobotModel robot = make_skid_steer();
   EXPECT_NEAR(straight_inertia(robot, robot.wheels[0]), 0.065, 1e-15);

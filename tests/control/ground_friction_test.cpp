@@ -21,7 +21,7 @@ class GroundFrictionTest : public testing::Test {
     for (int i = 0; i < cycles; ++i) law_.move({linear, angular}, kCycle);
   }
 
-  /// One cycle of learning, as the controller does it.
+  /// Learns for one cycle, as the controller does.
   double learn() {
     const double more = law_.learn([&](std::size_t wheel) { return integral_[wheel]; });
     for (std::size_t i = 0; i < integral_.size(); ++i) integral_[i] -= more * law_.strain(i);
@@ -33,7 +33,7 @@ class GroundFrictionTest : public testing::Test {
   }
 };
 
-// 59 N a wheel, of which the rolling direction takes 0.16/√(0.16² + 0.2²): 3.7 N·m at friction 1.
+// The rolling direction takes 0.16/√(0.16² + 0.2²) of 59 N a wheel: 3.7 N·m at friction 1.
 TEST_F(GroundFrictionTest, TurnsTreadsThatScrub) {
   for (const double direction : {1.0, -1.0}) {
     turn(direction);
@@ -75,7 +75,7 @@ TEST_F(GroundFrictionTest, RisesUntilTheRobotTurnsAndThenSearchesNoMore) {
   EXPECT_TRUE(law_.searches());
 }
 
-// Treads that take 0.5 while torque rises by 10 a second: what is more accelerates a turn of inertia 0.05 s.
+// Treads take 0.5 while torque rises by 10 a second; the excess accelerates a turn of inertia 0.05 s.
 TEST_F(GroundFrictionTest, GivesBackWhatTheTorqueRoseByUntilTheRobotWasSeenToTurn) {
   turn(1);
   constexpr double kTaken = 0.5, kRise = 10, kIntegral = 0.1;

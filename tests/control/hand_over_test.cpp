@@ -1,4 +1,4 @@
-/// From the brake to the wheel loops and back, on a slope.
+/// Checks the hand-over from the brake to the wheel loops and back, on a slope.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ class HandOver : public testing::Test {
  protected:
   void SetUp() override { bench.plant.slope = kSlope; }
 
-  /// m; drives up at 5 mm/s, so that feed-forward does not hide what the hand-over does.
+  /// m, lowest position while it drives up at 5 mm/s, too slowly for feed-forward to hide the hand-over.
   double lowest_while_creeping() {
     bench.send(0.005, 0);
     double lowest = 0;
@@ -44,7 +44,7 @@ TEST_F(HandOver, BeginsWithTheTorqueThatTheBrakeWasHolding) {
 }
 
 TEST_F(HandOver, TakesNoTremblingOfTheBrakeForALoad) {
-  // As after a hard stop: ±8 mm/s at 6 Hz, held by springs of the brake.
+  // The body swings as after a hard stop: ±8 mm/s at 6 Hz, held by springs of the brake.
   for (int phase = 0; phase < 160; phase += 20) {
     ControlBench level{make_test_robot(), straight_ramps()};
     level.spoil = [&](SensorFrame& sensors) {
@@ -83,7 +83,7 @@ TEST_F(HandOver, HoldsThoughAnEncoderJumpsWhileNobodyAsksForAMotion) {
 }
 
 TEST_F(HandOver, SagsWithoutTheLoadInTheIntegrator) {
-  // The counter-proof that the test above can fail: a driver that reports no effort.
+  // This shows that the test above can fail, with a driver that reports no effort.
   bench.spoil = [](SensorFrame& sensors) {
     for (JointSample& joint : sensors.joints) joint.effort = 0;
   };
@@ -133,8 +133,8 @@ TEST_F(HandOver, ContinuesFromTheMeasuredSpeedAfterAShortBrake) {
   const double speed = bench.plant.twist.linear;
   ASSERT_GT(speed, 0.05);
   ASSERT_LT(speed, 0.9);
-  // No jump: the plan starts at the measured speed (to the tracking loop's lag under hard braking), and the first
-  // torque is small, not the brake's.
+  // There is no jump. The plan starts at the measured speed, within the tracking loop's lag under hard braking. The
+  // first torque is small, unlike the brake's.
   EXPECT_NEAR(bench.command.twist_limited.linear[0], speed, 0.1);
   EXPECT_LT(std::abs(bench.command.joints[0].effort), 0.1);
   double slowest = speed;

@@ -66,8 +66,8 @@ struct Axis {
   double speed = 0;
   double acceleration = 0;
   double goal = 0;
-  double low = 0;   ///< where it may be until the next command: where it was, its goal, and where it would have come
-  double high = 0;  ///< to rest had it only let its acceleration fade
+  double low = 0;   ///< lower end of the range until the next command
+  double high = 0;  ///< its upper end; the range holds start, goal and the point at which the acceleration fades
   bool emergency_fades = false;
   bool yielded_before = false;
 
@@ -78,13 +78,13 @@ struct Axis {
     high = std::max({speed, goal, speed + fades});
   }
 
-  /// The name of what was violated by going on to `next`; null: nothing.
+  /// Goes on to `next` and returns the name of the violated property; null if there is none.
   const char* go(double next, bool emergency, bool yielded) {
     const double step = (next - speed) / dt;
     const double grain = 1e-12 * limits.speed / dt;  // of a difference of two speeds
     const double tolerance = kLimitRounding * (1 + std::abs(step)) + grain;
     const double slows = emergency ? limits.emergency_deceleration : limits.deceleration_from(speed);
-    const auto side = [](double of) { return (of > 0) - (of < 0); };
+    const auto side = [](double value) { return (value > 0) - (value < 0); };
     const bool crosses = side(speed) * side(next) < 0 && std::abs(next) > grain * dt;
     const bool slower = !crosses && std::abs(next) <= std::abs(speed);
     double bound = slower ? slows : limits.acceleration_towards(next - speed);
@@ -109,7 +109,7 @@ struct Axis {
     return violated;
   }
 
-  /// Cycles in which it must have arrived from anywhere: let everything fade, slow down, speed up.
+  /// Cycles within which it must arrive from anywhere: the acceleration fades, it slows down and speeds up.
   double patience() const {
     const double gentlest = std::min(limits.acceleration, limits.acceleration_towards(-1));
     const double slowest = std::min(limits.deceleration, limits.deceleration_from(-1));

@@ -1,5 +1,5 @@
 #pragma once
-/// What must hold of the limiter whatever is asked of it, put to the test by one random sequence of commands per seed.
+/// Properties of the limiter for any commands, tested by one random sequence of commands per seed.
 ///
 ///   finite        every speed is a number
 ///   speed         no axis above its speed limit
@@ -21,7 +21,7 @@ namespace robot_control {
 
 inline constexpr int kLimiterCycles = 200;
 
-/// Which property `seed` violates, where and by what; none: nothing.
+/// The property that `seed` violates, with place and cause; none if all hold.
 std::optional<std::string> limiter_violation(std::uint64_t seed);
 
 }  // namespace robot_control

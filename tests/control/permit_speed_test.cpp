@@ -1,4 +1,4 @@
-/// The permit's speed limit: no rim over the ground is faster, and a curve stays the curve it was.
+/// The permit limits the speed: no rim over the ground is faster, and a curve keeps its radius.
 
 #include <gtest/gtest.h>
 
@@ -64,7 +64,7 @@ TEST(RimSpeedScale, NoRimOfAnyRobotExceedsIt) {
   }
 }
 
-/// Healthy case: a curve of 1 m radius at 0.8 m/s, its outer rim at 1 m/s, driven until it is steady.
+/// The healthy case is a curve of 1 m radius at 0.8 m/s, its outer rim at 1 m/s, driven until it is steady.
 class PermitSpeed : public testing::Test {
  protected:
   PermitSpeed() {

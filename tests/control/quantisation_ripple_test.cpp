@@ -19,7 +19,7 @@ TEST(QuantisationRipple, IsSmallWithDerivedGainsAtAnySpeed) {
   for (const double speed : {10.0, 3.0, 1.0, 0.3}) EXPECT_LT(ripple_at(20, speed), 0.04 * kRippleLimit) << speed;
 }
 
-// The simulated diffbot at 80 Hz: 0.27 … 0.34 of its limit, at 95 Hz 0.31 … 0.40.
+// The reference is the simulated diffbot: 0.27 … 0.34 of its limit at 80 Hz, and 0.31 … 0.40 at 95 Hz.
 TEST(QuantisationRipple, IsThatOfTheSimulatedRobotWithAFastTrackingLoop) {
   for (const double speed : {10.0, 3.0, 1.0, 0.3}) {
     EXPECT_GT(ripple_at(80, speed), 0.25 * kRippleLimit) << speed;
@@ -34,7 +34,7 @@ TEST(QuantisationRipple, EndsWithALoopOfAQuarterOfTheGains) {
   EXPECT_LT(ripple_at(80, 3, slow), 0.5 * ripple_at(80, 3));
 }
 
-// Damping far faster than the period: the speed is τ/d, and nothing overflows.
+// The damping is far faster than the period: the speed is τ/d, and nothing overflows.
 TEST(QuantisationRipple, IsFiniteInAJointOfStiffDamping) {
   const double ripple =
       quantisation_ripple(kRippleGains, {.inertia = 1e-6, .damping = 0.1}, 20, kRippleLimit, 10, kPeriod);

@@ -1,4 +1,4 @@
-/// A wheel at its limit: the path is kept, the plan waits, and nothing beyond the limit is ordered.
+/// With a wheel at its limit the path is kept, the plan waits, and no command exceeds the limit.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 constexpr double kWeak = 0.4;  // N·m; straight ahead 1 m/s² takes 0.65
 constexpr PlanarTwist kCurve{.linear = 0.7, .angular = 1.0};
 
-/// A command stands until the next one.
+/// A command stays valid until the next one.
 DriveControllerParameters patient() {
   DriveControllerParameters parameters;
   parameters.cmd_vel_timeout = 0;
@@ -28,7 +28,7 @@ RobotModel with_effort_limit(double limit) {
   return robot;
 }
 
-/// From rest to kCurve: how far heading and way are off the arc at most, as part of the way, beyond the first 2 cm.
+/// Drives from rest to kCurve; returns the largest error of heading and way relative to the arc, beyond the first 2 cm.
 double off_the_arc(ControlBench& bench, double seconds) {
   bench.run(0.3);
   bench.send(kCurve.linear, kCurve.angular);
@@ -37,14 +37,14 @@ double off_the_arc(ControlBench& bench, double seconds) {
   for (double t = 0; t < seconds; t += bench.period) {
     bench.step();
     heading += bench.plant.twist.angular * bench.period;
-    const double way = bench.plant.distance;
-    if (way < 0.02) continue;
-    largest = std::max(largest, std::abs(heading * kCurve.linear / (kCurve.angular * way) - 1));
+    const double distance = bench.plant.distance;
+    if (distance < 0.02) continue;
+    largest = std::max(largest, std::abs(heading * kCurve.linear / (kCurve.angular * distance) - 1));
   }
   return largest;
 }
 
-// 2 %: what is promised of a curve that saturates a wheel.
+// 2 % is promised for a curve that saturates a wheel.
 TEST(TorqueSaturation, KeepsTheCurveDuringTheRamp) {
   for (const double limit : {0.6, kWeak, 0.2}) {
     ControlBench bench(with_effort_limit(limit), patient());
@@ -60,7 +60,7 @@ TEST(TorqueSaturation, KeepsTheCurveWithAPayloadThatFeedForwardDoesNotKnow) {
   loaded.yaw_inertia *= 2;
   ControlBench bench(with_effort_limit(kWeak), patient(), 1e-3, loaded);
   bench.plant.counts = 4096;
-  // One count moves the torque by a third of the limit, which clips it unevenly; each wheel for itself loses all of it.
+  // One count moves the torque by a third of the limit, which clips it unevenly; each wheel alone would lose all of it.
   EXPECT_LT(off_the_arc(bench, 6), 0.1);
   EXPECT_NEAR(bench.plant.twist.linear, kCurve.linear, 0.01);
 }
@@ -86,7 +86,7 @@ TEST(TorqueSaturation, NeverLetsThePlanRunAway) {
     bench.step();
     largest = std::max(largest, std::abs(bench.command.twist_limited.linear[0] - bench.plant.twist.linear));
   }
-  // What kp holds against the whole limit, 0.4 N·m/2 N·m·s/rad at 0.1 m.
+  // This is the error with which kp reaches the whole limit, 0.4 N·m/2 N·m·s/rad at 0.1 m.
   EXPECT_LT(largest, kWeak / 2 * 0.1);
   EXPECT_NEAR(bench.plant.twist.linear, 1, 0.01);
 }
@@ -151,8 +151,8 @@ TEST(SpeedSaturation, NothingBeyondAWheelsLimitIsOrderedWhateverTheTargetsDo) {
   EXPECT_GT(led_past, 0) << "no sequence led there: the test tests nothing";
 }
 
-/// The smallest speed after a stop from 1 m/s of a robot that is `heavier` than its feed-forward takes it for, with
-/// wheels that brake the described one with 0.8 m/s² at most.
+/// The smallest speed after a stop from 1 m/s, of a robot that is `heavier` than its feed-forward assumes. Its wheels
+/// brake the described robot with 0.8 m/s² at most.
 double swings_back(double heavier, double rate) {
   constexpr double kSpeed = 1, kNeeded = 0.65;  // N·m at 1 m/s²
   RobotModel loaded = with_effort_limit(0.8 * kNeeded);
@@ -171,7 +171,7 @@ double swings_back(double heavier, double rate) {
   return smallest;
 }
 
-// 1 % of the speed: what is promised of a swing back.
+// 1 % of the speed is promised for a swing back.
 TEST(TorqueSaturation, LeavesNothingToUnwindAfterAStop) {
   for (const double rate : {200.0, 500.0, 1000.0}) {
     for (const double heavier : {1.0, 1.5, 2.0, 3.0}) {
@@ -180,7 +180,8 @@ TEST(TorqueSaturation, LeavesNothingToUnwindAfterAStop) {
   }
 }
 
-// Three times as heavy as it thinks, wheels of 0.4 N·m brake with 0.2 m/s² at most: the plan is at zero in time.
+// The robot is three times as heavy as assumed, and its wheels of 0.4 N·m brake with 0.2 m/s² at most. The plan reaches
+// zero in time.
 TEST(TorqueSaturation, NeverStretchesARampTowardsZero) {
   RobotModel loaded = with_effort_limit(kWeak);
   loaded.mass *= 3;

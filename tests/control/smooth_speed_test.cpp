@@ -16,7 +16,7 @@ double smooth_from(const DriveControllerParameters& parameters, const RobotModel
   return smooth_speed(parameters, robot, kCoarseCount, 1e-3);
 }
 
-// The law of the header, step by step: torque that grows with ki·v from the moment at which the wheel begins to turn.
+// Computes the law of the header step by step: the torque grows with ki·v from the wheel's first motion on.
 TEST(SmoothSpeed, IsWhereTorqueThatGrowsUntilTheFirstCountReachesThePlannedSpeed) {
   const double inertia = 0.045, ki = 20, radius = 0.1;  // turning; derived gains
   const double planned = smooth_from({}) / radius;

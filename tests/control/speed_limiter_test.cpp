@@ -52,7 +52,7 @@ TEST(SpeedLimiter, NeverExceedsALimitNorOvershoots) {
         ASSERT_LE(std::abs(after.angular), 2) << "seed " << seed;
         ASSERT_LE(std::abs(after.linear - before.linear) / kDt, 1 + kRoundedAcceleration) << "seed " << seed;
         ASSERT_LE(std::abs(after.angular - before.angular) / kDt, 4 + kRoundedAcceleration) << "seed " << seed;
-        // Between where it was and the reachable target: no overshoot, no reversal.
+        // The value lies between the last one and the reachable target: no overshoot, no reversal.
         const double s = std::fmin(1, std::fmin(1 / std::abs(target.linear), 2 / std::abs(target.angular)));
         const auto between = [](double x, double a, double b) {
           return x >= std::fmin(a, b) - 1e-15 && x <= std::fmax(a, b) + 1e-15;
@@ -122,8 +122,8 @@ TEST(SpeedLimiter, ViolatesNoPropertyInTenThousandRandomSequences) {
   }
 }
 
-// A step that ends at the target by rounding alone left an acceleration that led away from it in the next one. One
-// sequence in a million.
+// A step that reached the target by rounding alone left an acceleration that led away from it in the next one. One
+// sequence in a million shows it.
 TEST(SpeedLimiter, StaysAtATargetThatItReachedByRounding) {
   EXPECT_EQ(limiter_violation(5'712'238).value_or(""), "");
 }
@@ -137,7 +137,7 @@ int cycles_to(SpeedLimiter& limiter, const PlanarTwist& target, bool emergency =
   return -1;
 }
 
-// A ramp of v takes v/a + a/j; a sampled one acts from its first step on, and saves one.
+// A ramp of v takes v/a + a/j; a sampled one acts from its first step on, and needs one step less.
 TEST(SpeedLimiter, TakesTheTimeOfTheIdealSCurve) {
   SpeedLimiter limiter(kSmooth);
   EXPECT_NEAR(cycles_to(limiter, {1, 0}), 1000 * (1 / 1.0 + 1.0 / 10), 1);
@@ -147,7 +147,8 @@ TEST(SpeedLimiter, TakesTheTimeOfTheIdealSCurve) {
   EXPECT_NEAR(cycles_to(limiter, {0, 0}, true), 1000 * (1 / 3.0 + 3.0 / 10), 1);
 }
 
-// v/1.5 until zero, beyond it v/1; from 1.5 down to 1 m/s² within 0.05 s before zero, in which 0.0625 m/s pass.
+// It takes v/1.5 until zero and v/1 beyond it. The deceleration falls from 1.5 to 1 m/s² within 0.05 s before zero, in
+// which 0.0625 m/s pass.
 TEST(SpeedLimiter, ReversesWithoutStoppingAndWithEachLimitOnItsSideOfZero) {
   SpeedLimiter limiter(kSmooth);
   cycles_to(limiter, {1, 0});
@@ -195,7 +196,7 @@ TEST(SpeedLimiter, SaysWhichLimitShapesTheMotion) {
   EXPECT_EQ(limiter.reasons(), 0u);
 }
 
-// Both axes in the shape of the slower one: 1 m/s needs 1.1 s, 1 rad/s would need 0.35 s.
+// Both axes have the shape of the slower one: 1 m/s needs 1.1 s, 1 rad/s alone would need 0.35 s.
 TEST(SpeedLimiter, KeepsTheCurvatureUnderAJerkLimit) {
   SpeedLimiter limiter(kSmooth);
   for (const double target : {1.0, 0.0}) {
@@ -237,7 +238,7 @@ TEST(SpeedLimiter, ReturnsFromLimitsThatWereLowered) {
   EXPECT_EQ(before, 0.4);
 }
 
-// A machine that follows a part of the acceleration only, another one in every cycle.
+// The machine follows only a part of the acceleration, another one in every cycle.
 TEST(SpeedLimiter, APartOfTheLimitsKeepsLineAndJerk) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::mt19937 random(seed);
@@ -317,7 +318,7 @@ TEST(SpeedLimiter, ATurnDoesNotHoldUpTheStopInAnEmergency) {
   EXPECT_GT(limiter.value().angular, 0.5);
 }
 
-// The turn, of which the wheels can give a hundredth, must speed up while the robot slows down.
+// The wheels can give a hundredth of the turn, which must speed up while the robot slows down.
 TEST(SpeedLimiter, TooLittleTorqueForATurnDoesNotHoldUpWhoSlowsDown) {
   SpeedLimiter limiter(kSmooth);
   cycles_to(limiter, {0.3, 0});
@@ -329,7 +330,7 @@ TEST(SpeedLimiter, TooLittleTorqueForATurnDoesNotHoldUpWhoSlowsDown) {
   EXPECT_LE(weak, whole + 1);
 }
 
-/// 1 m/s at 1 m/s² and 2 m/s² forwards, 0.2 m/s at 0.4 m/s² and 0.5 m/s² in reverse, without a jerk limit.
+/// There is no jerk limit. Forwards the limits are 1 m/s at 1 m/s² and 2 m/s², in reverse 0.2 m/s at 0.4 and 0.5 m/s².
 SpeedLimits with_a_reverse_gear() {
   SpeedLimits limits;
   limits.linear = {.speed = 1, .acceleration = 1, .deceleration = 2, .emergency_deceleration = 4};
@@ -339,7 +340,7 @@ SpeedLimits with_a_reverse_gear() {
   return limits;
 }
 
-/// Largest change of speed, m/s², of the steps in which |v| grows and shrinks, from `start` to `target` and there.
+/// Largest change of speed, m/s², of the steps in which |v| grows and shrinks, between `start` and `target`.
 struct Steepest {
   double grows = 0, shrinks = 0, end = 0;
 };
@@ -348,8 +349,8 @@ Steepest drive_to(SpeedLimiter& limiter, double target) {
   for (int k = 0; k < 3000; ++k) {
     const double before = limiter.value().linear;
     const double after = limiter.step({target, 0}, 1e-3).linear;
-    double& most = std::abs(after) > std::abs(before) ? steepest.grows : steepest.shrinks;
-    most = std::max(most, std::abs(after - before) / 1e-3);
+    double& largest = std::abs(after) > std::abs(before) ? steepest.grows : steepest.shrinks;
+    largest = std::max(largest, std::abs(after - before) / 1e-3);
     steepest.end = after;
   }
   return steepest;

@@ -1,4 +1,4 @@
-/// What one step of the controller costs: limits, kinematics, wheel loops, without the transport of frames.
+/// Measures the cost of one step of the controller: limits, kinematics, wheel loops, without the transport of frames.
 
 #include <gtest/gtest.h>
 
@@ -15,12 +15,12 @@ namespace robot_control {
 namespace {
 
 constexpr double kPromisedNs = 200;  // the median on a quiet machine, whose kernel takes 92
-/// Between kinds of processors: one without AVX-512 takes 2.37 kernels where the development machine takes 1.9.
+/// factor between kinds of processors: one without AVX-512 takes 2.37 kernels instead of 1.9
 constexpr double kAnotherProcessor = 1.5;
 constexpr std::size_t kCycles = 1000;
 constexpr int kBlocks = 21;
 
-/// Commands, cycle by cycle, and the sensors that answered to them.
+/// Commands, cycle by cycle, and the sensors that answered them.
 struct Recording {
   std::vector<SensorFrame> sensors;
   std::vector<VelocityCommand> requests;
@@ -41,7 +41,7 @@ class StepCost : public testing::Test {
  protected:
   StepCost() { bench_.plant.counts = 4096; }
 
-  /// Of one round: the median over blocks of step over kernel.
+  /// The ratio of one round: the median over blocks of step over kernel.
   double ratio(const Recording& recording) {
     std::vector<double> steps;
     std::vector<double> kernels;
@@ -76,7 +76,7 @@ TEST_F(StepCost, IsWithinItsPromiseOnASteadyCurve) {
   expect_cheap(record(bench_, [](std::size_t) { return PlanarTwist{0.5, 0.2}; }));
 }
 
-// Both axes on their way all the time: every branch of the limiter, its square roots among them.
+// Both axes change all the time, so that every branch of the limiter runs, with its square roots.
 TEST_F(StepCost, IsWithinItsPromiseWhereTheLimiterIsBusy) {
   expect_cheap(record(bench_, [](std::size_t k) {
     const double sign = k / 200 % 2 == 0 ? 1 : -1;

@@ -41,12 +41,12 @@ TEST(StopDistance, IsWhatTheLimiterTakes) {
     const double speed = of_scale(0.02, 2);
     SpeedLimiter limiter(limits);
     limiter.restart_from({speed, 0});
-    double way = 0;
+    double distance = 0;
     for (double before = speed; before > 0; before = limiter.value().linear) {
-      way += 0.5 * (before + limiter.step({}, kPeriod, emergency).linear) * kPeriod;
+      distance += 0.5 * (before + limiter.step({}, kPeriod, emergency).linear) * kPeriod;
     }
     const double deceleration = emergency ? 10 : limits.linear.deceleration;
-    ASSERT_NEAR(way, stop_distance(speed, deceleration, limits.linear.jerk), speed * kPeriod)
+    ASSERT_NEAR(distance, stop_distance(speed, deceleration, limits.linear.jerk), speed * kPeriod)
         << speed << " m/s, " << deceleration << " m/s², " << limits.linear.jerk << " m/s³, against "
         << limits.linear.acceleration;
   }

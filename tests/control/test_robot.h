@@ -1,5 +1,5 @@
 #pragma once
-/// The robots of the unit tests, built by hand.
+/// The robots of the unit tests, built in code.
 
 #include <string>
 

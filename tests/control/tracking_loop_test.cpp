@@ -14,7 +14,7 @@ namespace {
 constexpr double kBandwidth = 20;
 constexpr double kW = 2 * std::numbers::pi * kBandwidth;
 
-/// At rest at 0, of an encoder that has shown a step of 10⁻⁶ rad.
+/// A loop at rest at 0, on an encoder that has shown a step of 10⁻⁶ rad.
 TrackingLoop of_exact_encoder(double dt) {
   TrackingLoop loop(kBandwidth, dt);
   loop.restart_from(0, 0);
@@ -23,7 +23,7 @@ TrackingLoop of_exact_encoder(double dt) {
   return loop;
 }
 
-/// RMS of the velocity about `speed`, after a second of 5, of an encoder of `counts`; and its mean.
+/// RMS of the velocity about `speed`, and its mean, in the last four of five seconds, with an encoder of `counts`.
 struct Steady {
   double rms, mean;
 };
@@ -64,7 +64,7 @@ Errors track(double v, double a, double j, double dt, double seconds, double kno
 class TrackingLoopRates : public testing::TestWithParam<double> {};
 
 TEST_P(TrackingLoopRates, HasNoErrorLeftForConstantAcceleration) {
-  // After 1 s the triple pole has faded to (w·t)²/2·e^(−w·t) < 10⁻⁴⁹; what is left is rounding, amplified by 1/dt².
+  // After 1 s the triple pole has faded to (w·t)²/2·e^(−w·t) < 10⁻⁴⁹; the rest is rounding, amplified by 1/dt².
   const Errors errors = track(5, 10, 0, 1 / GetParam(), 1);
   EXPECT_NEAR(errors.position, 0, 1e-12);
   EXPECT_NEAR(errors.velocity, 0, 1e-10);
@@ -89,7 +89,7 @@ TEST_P(TrackingLoopRates, FadesWithTheTriplePoleItPromises) {
     scaled[3] = (1 - loop.position()) * std::pow(p, -n);
     if (n >= 4) {
       const double third = scaled[3] - 3 * scaled[2] + 3 * scaled[1] - scaled[0];
-      // Rounding of the position, 10⁻¹⁶, is blown up by p⁻ⁿ.
+      // The rounding of the position, 10⁻¹⁶, grows by p⁻ⁿ.
       EXPECT_NEAR(third, 0, 1e-14 * std::pow(p, -n)) << "n " << n;
     }
   }
@@ -105,9 +105,9 @@ TEST(TrackingLoop, LagsAConstantJerkByTheErrorInItsHeader) {
   EXPECT_NEAR(errors.velocity, 3 * jerk / (kW * kW), 0.03 * 3 * jerk / (kW * kW));
 }
 
-// At 20 Hz a linear law would have 0.04, 0.16 and 1.3 rad/s. `most`: where counts and period almost agree.
+// At 20 Hz a linear law would have 0.04, 0.16 and 1.3 rad/s. `bound` is large if counts and period almost agree.
 TEST(TrackingLoop, ShowsHardlyAnyCountsInSteadyMotion) {
-  const struct { double counts, usual, most; } encoders[] = {{4096, 0.006, 0.1}, {512, 0.03, 0.13}, {90, 0.05, 0.25}};
+  const struct { double counts, usual, bound; } encoders[] = {{4096, 0.006, 0.1}, {512, 0.03, 0.13}, {90, 0.05, 0.25}};
   for (const auto& encoder : encoders) {
     std::mt19937 random(static_cast<unsigned>(encoder.counts));
     std::vector<double> ripples;
@@ -119,12 +119,12 @@ TEST(TrackingLoop, ShowsHardlyAnyCountsInSteadyMotion) {
     }
     std::ranges::sort(ripples);
     EXPECT_LT(ripples[20], encoder.usual) << encoder.counts;
-    EXPECT_LT(ripples[40], encoder.most) << encoder.counts;
+    EXPECT_LT(ripples[40], encoder.bound) << encoder.counts;
   }
 }
 
-// A wheel that is stopped at once, against what the motor explains: the speed has gone after some time constants of the
-// bandwidth, and a count that the wheel would still have to cross.
+// A wheel stops at once, against its motor's torque. The speed must vanish after some time constants of the bandwidth,
+// and one count that the wheel would still have to cross.
 TEST(TrackingLoop, SeesAWheelStopWhateverItsCounts) {
   const double dt = 1e-3;
   const double speed = 8;
@@ -133,16 +133,16 @@ TEST(TrackingLoop, SeesAWheelStopWhateverItsCounts) {
     TrackingLoop loop(kBandwidth, dt);
     loop.restart_from(0, speed);
     for (int k = 1; k <= 2000; ++k) loop.step(std::floor(speed * k * dt / count) * count, 0, 1);
-    const double there = loop.position();
+    const double stopped = loop.position();
     const double measured = std::floor(speed * 2 / count) * count;
     const int cycles = static_cast<int>((0.06 + count / speed) / dt);
     for (int k = 0; k < cycles; ++k) loop.step(measured, 0, 1);
     EXPECT_LT(loop.velocity(), 0.2 * speed) << counts;
-    EXPECT_NEAR(loop.position(), there, 2 * count + 0.02 * speed) << counts;
+    EXPECT_NEAR(loop.position(), stopped, 2 * count + 0.02 * speed) << counts;
   }
 }
 
-// Under a torque that would accelerate a free wheel by 5 rad/s², and grows.
+// The torque would accelerate a free wheel by 5 rad/s², and grows.
 TEST(TrackingLoop, DoesNotTakeAWheelThatShowsNoCountsForATurningOne) {
   const double count = 2 * std::numbers::pi / 64;
   TrackingLoop loop(kBandwidth, 1e-3);
@@ -153,7 +153,8 @@ TEST(TrackingLoop, DoesNotTakeAWheelThatShowsNoCountsForATurningOne) {
   EXPECT_LT(std::abs(loop.velocity()), 0.1);
 }
 
-// Of a light wheel in dry friction, whose torque grows by 0.1 N·m/s: without the silence of its counts 1.5 rad/s.
+// A light wheel stands in dry friction while its torque grows by 0.1 N·m/s. Without the silence of its counts the loop
+// would show 1.5 rad/s.
 TEST(TrackingLoop, DoesNotTakeTorqueThatGrowsAgainstFrictionForASpeed) {
   const double count = 2 * std::numbers::pi / 90;
   TrackingLoop loop(kBandwidth, 1e-3);

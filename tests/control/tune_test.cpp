@@ -1,4 +1,4 @@
-/// Other limits and gains while the robot drives: nothing jumps, everything holds from the next cycle on.
+/// Limits and gains change while the robot drives: nothing jumps, and everything holds from the next cycle on.
 
 #include <gtest/gtest.h>
 
@@ -12,17 +12,17 @@
 namespace robot_control {
 namespace {
 
-/// Between rounding and anything that a wheel could feel.
+/// The bound lies between rounding and anything that a wheel could feel.
 constexpr double kTuneRounding = 1e-9;
 
-/// The rigid plant with friction that the controller does not know of, so that error and integral are not zero.
+/// The rigid plant has friction that the controller does not know, so that error and integral are not zero.
 class Tune : public testing::Test {
  protected:
   static ControlBench driving(const DriveControllerParameters& parameters = straight_ramps()) {
     ControlBench bench(make_test_robot(), parameters);
     bench.plant.viscous_friction = 0.02;
     bench.send(1.0, 0.5);
-    bench.run(0.6);  // amid the ramp of 1 s
+    bench.run(0.6);  // in the middle of the ramp of 1 s
     return bench;
   }
 
@@ -30,7 +30,7 @@ class Tune : public testing::Test {
     bench.controller.tune(drive_tuning(parameters, bench.robot, bench.period));
   }
 
-  /// rad/s: planned two cycles ago, less what is measured now.
+  /// rad/s: the speed planned two cycles ago, minus the measured one.
   static double error(const CommandFrame& planned, const CommandFrame& now, std::size_t wheel) {
     return planned.joints[wheel].velocity - now.velocity_measured[wheel];
   }
@@ -111,14 +111,14 @@ TEST_F(Tune, OfGainsLetsTheTorqueGoOn) {
   const DriveTuning derived = drive_tuning(straight_ramps(), left.robot, left.period);
   for (std::size_t i = 0; i < 2; ++i) {
     const double wheel_error = error(before_last, tuned.command, i);
-    // What the test would miss without the hand-over: a jump of this size.
+    // Without the hand-over the test would find a jump of this size.
     ASSERT_GT(std::abs((*given.pid_kp - derived.wheels[i].kp) * wheel_error), 1e3 * kTuneRounding);
     const double learnt_more = (*given.pid_ki - derived.wheels[i].ki) * wheel_error * tuned.period;
     EXPECT_NEAR(tuned.command.joints[i].effort, left.command.joints[i].effort + learnt_more, kTuneRounding);
   }
 }
 
-// A large error, of a load that nothing plans, under small gains: its torque passes from them to the hand-over.
+// A load that nothing plans causes a large error under small gains; its torque passes from them to the hand-over.
 TEST_F(Tune, OfGainsUnderALargeErrorLetsTrackingGoOn) {
   given.pid_kp = 0.7;
   given.pid_ki = 0.3;
@@ -220,7 +220,7 @@ TEST_F(Tune, OfTheBandwidthKeepsWhatIsTracked) {
   given.pid_ki = 5.0;
   given.cmd_vel_timeout = 0;
   ControlBench bench(make_test_robot(), given);
-  bench.plant.viscous_friction = 1.05;  // a surprise of 0.1 N·m at 2 rad/s
+  bench.plant.viscous_friction = 1.05;  // an unknown torque of 0.1 N·m at 2 rad/s
   bench.send(0.2, 0);
   bench.run(4.0);
   const double before = bench.command.velocity_measured[0];
@@ -230,7 +230,7 @@ TEST_F(Tune, OfTheBandwidthKeepsWhatIsTracked) {
   tune(bench, given);
   for (int k = 0; k < 20; ++k) {
     bench.step();
-    // Without the residual's share it would be told 0.1·(63 − 25) = 3.8 rad/s² that are not there: 4e-3 rad/s a cycle.
+    // Without the residual's share it would assume 0.1·(63 − 25) = 3.8 rad/s² too much: 4e-3 rad/s a cycle.
     ASSERT_NEAR(bench.command.velocity_measured[0], before, 1e-5) << k;
   }
 }
@@ -308,14 +308,14 @@ TEST_F(Tune, AllocatesNothing) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-/// One axis of the limited twist, watched through sets that change at random.
+/// One axis of the limited twist, watched while the limits change at random.
 struct WatchedAxis {
   double speed = 0;
   double acceleration = 0;
 
-  /// Within the new limits, or on the way back to them: |a| no further than before, and a speed beyond its limit grows
-  /// only while the acceleration that it had fades at the new jerk.
-  void look(double now, const AxisTuning& limits, double dt) {
+  /// The value is within the new limits, or on the way back to them. Then |a| does not grow, and a speed beyond its
+  /// limit grows only while its acceleration fades at the new jerk.
+  void check(double now, const AxisTuning& limits, double dt) {
     const double next = (now - speed) / dt;
     const double fastest = std::max({limits.acceleration, limits.deceleration, std::abs(acceleration)});
     EXPECT_LE(std::abs(next), fastest + kTuneRounding / dt);
@@ -354,8 +354,8 @@ TEST_F(Tune, AtRandomWhileDrivingNeverExceedsTheOldOrTheNewLimits) {
         bench.controller.tune(tuning);
       }
       bench.step();
-      linear.look(bench.command.twist_limited.linear[0], tuning.linear, bench.period);
-      angular.look(bench.command.twist_limited.angular[2], tuning.angular, bench.period);
+      linear.check(bench.command.twist_limited.linear[0], tuning.linear, bench.period);
+      angular.check(bench.command.twist_limited.angular[2], tuning.angular, bench.period);
       ASSERT_EQ(bench.command.reasons & kReasonBadSensors, 0u);
       if (HasFailure()) FAIL() << "seed " << seed << ", cycle " << k;
     }

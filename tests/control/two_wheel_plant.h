@@ -5,7 +5,7 @@
 ///   (I + Σ J·b²/(4·r²))·ω̇ = M − m·x_c·v·ω                 M = (τ_right − τ_left)·b/(2·r)
 ///
 /// Equal radii, wheels centred. Torque is constant over a step; v and ω move by their acceleration at its start.
-/// `lifted_left` takes the left wheel off the ground: it then sees nothing but its own inertia, and the robot stands.
+/// `lifted_left` takes the left wheel off the ground: it then moves its own inertia alone, and the robot stands.
 
 #include <cmath>
 #include <numbers>
@@ -59,7 +59,7 @@ class TwoWheelPlant {
     move({v_dot, w_dot}, dt);
   }
 
-  /// The driver's brake law, idealised: damping, and below kBrakeHolds it stands and carries the slope.
+  /// Idealises the driver's brake law: it damps, and below kBrakeHolds it stands and carries the slope.
   void brake(double dt) {
     const double limit = robot_.joints[robot_.wheels[0].joint].effort_limit;
     if (std::abs(speed.left) < kBrakeHolds && std::abs(speed.right) < kBrakeHolds) {

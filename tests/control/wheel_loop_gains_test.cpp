@@ -53,7 +53,7 @@ TEST(TrackingBandwidth, ShrinksBelow500HzUnlessTheUserSaysOtherwise) {
   EXPECT_EQ(tracking_bandwidth(parameters, 1 / 100.0), 30);
 }
 
-// From a lifted wheel to ten times the load, and with all gains times four.
+// The loads range from a lifted wheel to ten times the load, with all gains times four.
 TEST(WheelLoopGains, AreStableWithAMarginOfFourWhateverTheWheelDrives) {
   for (const double rate : {100.0, 150.0, 250.0, 333.0, 500.0, 1000.0, 2000.0}) {
     for (const double ratio : {0.01, 0.05, 0.2, 0.5, 1.0}) {
@@ -76,7 +76,7 @@ TEST(WheelLoopGains, AreStableWithAMarginOfFourWhateverTheWheelDrives) {
   }
 }
 
-// Damping from what is not noticed to what leaves nothing of the inertia, and with all gains times three.
+// The damping ranges from a negligible one to one that outweighs the inertia, with all gains times three.
 TEST(WheelLoopGains, AreStableWithAMarginOfThreeInADampedJoint) {
   for (const double rate : {100.0, 150.0, 250.0, 500.0, 1000.0, 2000.0}) {
     for (const double ratio : {0.01, 0.1, 0.5, 0.7, 1.0}) {
@@ -99,7 +99,8 @@ TEST(WheelLoopGains, AreStableWithAMarginOfThreeInADampedJoint) {
   }
 }
 
-// A creeping wheel of next to no inertia, whose damping takes the whole torque: the loop must not see it race.
+// A creeping wheel has almost no inertia, and its damping takes the whole torque: the loop must not report a fast
+// speed.
 TEST(WheelLoopGains, SeeNoSpeedThatADampedWheelDoesNotHave) {
   constexpr double kDamping = 0.2;
   RobotModel robot = make_test_robot();

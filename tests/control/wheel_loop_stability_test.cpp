@@ -22,10 +22,10 @@ double radius(const WheelLoopGains& gains, double inertia, double period = kPeri
   return wheel_loop_spectral_radius(gains, {inertia}, period, kTrackingBandwidth);
 }
 
-/// The classes themselves on one wheel, disturbed at the start: growth per cycle of the envelope between the middle and
-/// the end of `cycles`.
+/// Runs the classes themselves on one wheel, disturbed at the start. Returns the growth per cycle of the envelope
+/// between the middle and the end of `cycles`.
 double simulated_growth(const WheelLoopGains& gains, const WheelLoad& load, int cycles, std::size_t delay = 0) {
-  constexpr int kParts = 100;  // of a cycle, for the damping
+  constexpr int kParts = 100;  // parts of a cycle, for the damping
   WheelLoop loop(gains, kTrackingBandwidth, std::numeric_limits<double>::max(), kPeriod);
   double angle = 0;
   double speed = 1e-3;
@@ -98,7 +98,7 @@ TEST(WheelLoopSpectralRadius, IsAboveOneOnceTheGainTimesThePeriodExceedsTheInert
 }
 
 TEST(WheelLoopSpectralRadius, IsTheGrowthOfTheRealClasses) {
-  // Dominated by a real eigenvalue (the slow integrator), or by a pair that grows: the envelope shows it to 0.1 %.
+  // A real eigenvalue dominates (the slow integrator), or a pair that grows: the envelope shows it to 0.1 %.
   EXPECT_NEAR(simulated_growth({}, {kStraight}, 1600), radius({}, kStraight), 1e-3);
   EXPECT_NEAR(simulated_growth({}, {kLifted}, 1600), radius({}, kLifted), 1e-3);
   EXPECT_NEAR(simulated_growth({12, 20, 0, 0.01}, {kStraight}, 400), radius({12, 20, 0, 0.01}, kStraight), 5e-3);
@@ -119,7 +119,7 @@ TEST(WheelLoopSpectralRadius, IsTheGrowthOfTheRealClassesBehindALateActuatorToo)
     const double predicted = wheel_loop_spectral_radius({}, {kStraight}, kPeriod, kTrackingBandwidth, delay);
     EXPECT_NEAR(simulated_growth({}, {kStraight}, 1600, delay), predicted, 1e-3) << delay;
   }
-  // A lifted wheel that oscillates ever more: a pair dominates, the envelope shows it to 0.5 %.
+  // A lifted wheel oscillates ever more: a pair dominates, and the envelope shows it to 0.5 %.
   const double predicted = wheel_loop_spectral_radius({}, {kLifted}, kPeriod, kTrackingBandwidth, 8);
   EXPECT_GT(predicted, 1);
   EXPECT_NEAR(simulated_growth({}, {kLifted}, 400, 8), predicted, 5e-3);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLimit = 5;
 
-/// Of an encoder that has shown a step of 10⁻⁶ rad, so that it is taken for exact.
+/// A loop whose encoder has shown a step of 10⁻⁶ rad, so that it is taken for exact.
 WheelLoop seeded(double velocity = 0, const WheelLoopGains& gains = {}) {
   WheelLoop loop(gains, 20, kLimit, kPeriod);
   loop.measure({}, 1, false);
@@ -36,7 +36,7 @@ TEST(WheelLoop, PassesFeedForwardThroughWhenThereIsNoError) {
 
 TEST(WheelLoop, GivesTheCarriedEffortFirst) {
   WheelLoop loop = seeded(0, {.kd = 0.02});
-  // A moving, accelerating wheel: kd must not show either.
+  // A moving wheel accelerates: kd must show neither.
   for (int k = 1; k <= 50; ++k) {
     const double t = k * kPeriod;
     loop.measure({.position = 5 * t * t, .effort = 1.3}, 1, false);
@@ -65,7 +65,7 @@ TEST(WheelLoop, TakesTheLoadAtTheHandOverForNoAcceleration) {
   }
 }
 
-// A slope that began on the way. Left in the residual it made 2 rad/s of a wheel that the brake holds.
+// A slope began on the way. If the residual kept it, the loop would report 2 rad/s of a wheel that the brake holds.
 TEST(WheelLoop, TakesALoadThatTheBrakeTakesOverForNoAcceleration) {
   WheelLoop loop = seeded();
   double effort = 0;
@@ -98,8 +98,8 @@ TEST(WheelLoop, NeverExceedsTheEffortLimitAndSaysThatItIsThere) {
   EXPECT_TRUE(loop.saturated());
 }
 
-/// N·m that the integral gains in 0.1 s of a wheel that stands 1 rad/s below its plan, while the gate clamps and passes
-/// a part of the torque.
+/// N·m that the integral gains in 0.1 s. The wheel stands 1 rad/s below its plan, and the gate clamps the torque to
+/// `part` of it.
 double gained_while_clamped(double part) {
   WheelLoop loop = seeded(0, {.model_inertia = 1e9});
   double acting = 0;
@@ -119,7 +119,7 @@ TEST(WheelLoop, DoesNotWindUpWhileTheGateTakesItsTorque) {
 }
 
 TEST(WheelLoop, IntegratesWhileTheGateTakesTheTorqueOfAnotherWheel) {
-  // ki·error·time; the tracked speed still shows the step of the seed.
+  // The gain is ki·error·time; the tracked speed still shows the step of the seed.
   EXPECT_NEAR(gained_while_clamped(1), 20 * 1 * 0.1, 1e-4);
 }
 
@@ -130,15 +130,15 @@ TEST(WheelLoop, UnwindsWhileTheGateClamps) {
   EXPECT_LT(loop.integral(), 1);
 }
 
-/// A wheel in a joint of strong damping with a loop that is weak beside it, as derived gains at 500 Hz may be. Its
+/// A wheel in a joint of strong damping has a loop that is weak beside it, as derived gains at 500 Hz may be. Its
 /// integrator unwinds with ki/(kp + damping), 0.24 1/s.
 struct DampedWheel {
   static constexpr double kStep = 0.002, kInertia = 2e-4, kDamping = 0.2;  // s, kg·m², N·m·s/rad
   WheelLoop loop{{.kp = 0.005, .ki = 0.05, .model_inertia = 0.0032}, 20, 0.28, kStep};
   double angle = 0, speed = 0;
-  double acting = 0, next = 0;  ///< N·m, of this cycle and ordered for the next
+  double acting = 0, next = 0;  ///< N·m of this cycle, and the command for the next one
 
-  /// The gate passes `part` of the torque in one cycle of `every`.
+  /// The gate passes `part` of the torque in one cycle of every `every`.
   void run(double seconds, double velocity, double part, int every) {
     for (int k = 0; k < std::lround(seconds / kStep); ++k) {
       loop.measure({.position = angle, .velocity = speed, .effort = acting}, 1, true);
@@ -156,7 +156,7 @@ struct DampedWheel {
   bool clamped_ = false;
 };
 
-// The gate's taper acts in some cycles alone, where the measured speed is near the limit. The wheel lags all the time.
+// The gate's taper acts in some cycles alone, when the measured speed is near the limit. The wheel lags all the time.
 TEST(WheelLoop, LeavesNothingToUnwindWhereTheGateTookTorqueNowAndThen) {
   for (const int every : {1, 2, 5}) {
     DampedWheel wheel;
@@ -175,7 +175,7 @@ TEST(WheelLoop, DoesNotWindUpWhileItIsBlocked) {
       loop.step({.velocity = 10}, 1);  // kp·10 = 20 N·m, four times the limit
     }
   };
-  push(100);  // until the tracking loop has understood that torque does not move this wheel
+  push(100);  // until the tracking loop has learned that torque does not move this wheel
   const double before = loop.integral();
   push(10000);
   EXPECT_EQ(loop.integral(), before);
@@ -189,7 +189,7 @@ TEST(WheelLoop, HoldsAnIntegralWithinTheEffortLimit) {
     loop.step({.velocity = 10}, 1);
     ASSERT_LE(loop.integral(), kLimit);
   }
-  // And leaves the limit at once when the error turns.
+  // It also leaves the limit at once when the error turns.
   loop.reset_to_measured();
   loop.step({.velocity = -10}, 1);
   loop.step({.velocity = -10}, 1);

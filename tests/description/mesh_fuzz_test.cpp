@@ -1,4 +1,4 @@
-/// Broken files: refused or read, never more. The failing seed is printed, and under AddressSanitizer what it broke.
+/// Broken files are refused or read, and nothing else happens. The failing seed is printed.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr unsigned kSeeds = 2000;
 
-/// One to four changes: a bit, a cut, a piece said twice or elsewhere, another number.
+/// Makes one to four changes: a bit, a cut, a piece repeated or moved, another number.
 std::string broken(std::string text, std::mt19937& random) {
   const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
   for (std::size_t change = 1 + below(4); change > 0 && !text.empty(); --change) {
@@ -66,7 +66,7 @@ TEST(MeshFuzz, TextStl) {
   expect_only_faces_or_a_problem(kTextStl, 0, kSeeds, parse_stl);
 }
 
-/// First and last seed + 1. Each is a process, of which a sanitizer's takes a tenth of a second.
+/// First seed, and last seed + 1. Each runs as a process, which under a sanitizer takes a tenth of a second.
 class AssimpFuzz : public testing::TestWithParam<std::pair<unsigned, unsigned>> {
  protected:
   static void expect_only_faces_or_a_problem_of(const std::string& healthy, const char* format) {

@@ -79,7 +79,7 @@ TEST_F(Mesh, UnitOfADaeApplies) {
   EXPECT_NEAR((points[1] - Corner(0, 2 * 0.0254, 0)).norm(), 0, 1e-8);  // single precision
 }
 
-// As in rviz and Gazebo; assimp by itself turns Z_UP by 90°.
+// rviz and Gazebo do the same; assimp by itself turns Z_UP by 90°.
 TEST_F(Mesh, UpAxisOfADaeDoesNot) {
   for (const char* axis : {"X_UP", "Y_UP"}) EXPECT_EQ(read("a.dae", dae_with("Z_UP", axis)), kTriangle) << axis;
   EXPECT_EQ(read("a.dae", dae_with("<up_axis>Z_UP</up_axis>", "")), kTriangle);

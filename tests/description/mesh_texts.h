@@ -18,7 +18,7 @@ std::string bytes_of(T value) {
   return bytes;
 }
 
-/// 80 bytes of header, the count, and 50 per face; `header` is what the first bytes say.
+/// 80 bytes of header, the count, and 50 per face; `header` holds the first bytes.
 inline std::string binary_stl(const std::string& header, const std::vector<std::array<float, 9>>& faces) {
   std::string bytes = header;
   bytes.resize(80, ' ');

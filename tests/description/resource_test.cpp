@@ -58,7 +58,7 @@ TEST_F(Resource, FirstEntryOfTheSearchPathCounts) {
   EXPECT_EQ(resolved("package://bot_description/meshes/base.stl"), over);
 }
 
-// A FIFO would hold the search for ever.
+// A FIFO would block the search.
 TEST_F(Resource, AManifestThatIsNoRegularFileNamesNoPackage) {
   std::filesystem::create_directories(folder_.path() / "ws/src/odd");
   ASSERT_EQ(mkfifo((folder_.path() / "ws/src/odd/package.xml").c_str(), 0600), 0);

@@ -48,7 +48,7 @@ def links(page):
 
 
 def anchors(page):
-    """As GitHub derives them from the headings."""
+    """Anchors as GitHub derives them from the headings."""
     headings = re.findall(r"^#+ (.*)$", prose(page), re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 

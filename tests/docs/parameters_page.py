@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""docs/parameters.md from the schema (ranges, units) and config/robot_params.yaml (defaults, meaning); before that, the
-lines of this file for the conditions of the safety monitor from src/signals/stop_causes.def.
+"""Writes docs/parameters.md from the schema (ranges, units) and config/robot_params.yaml (defaults, meaning). Before
+that it writes the lines of this file for the conditions of the safety monitor from src/signals/stop_causes.def.
 
 tests/docs/parameters_page.py      after a build with tests; writes both
 """
@@ -42,7 +42,7 @@ class Entry:
 
 
 def read_yaml(text, paths):
-    """The file in its order: ("block", name), ("remark", text), ("key", path, Entry)."""
+    """The lines in their order: ("block", name), ("remark", text), ("key", path, Entry)."""
     items, block, group, latest = [], "", "", None
     for line in text.splitlines():
         if found := BLOCK.match(line):
@@ -126,7 +126,7 @@ def row(path, entry, rules):
 
 
 def without_unit(text, allowed):
-    """The comment begins with the unit, which the column before holds already."""
+    """The meaning without the unit at its begin, which another column holds already."""
     unit = re.search(r"… \S+ (?!of )([^\s;]+)", allowed)
     if unit and re.match(re.escape(unit[1]) + r"(?![\w·/²³√])", text):
         return text.removeprefix(unit[1]).lstrip(",:; ")

@@ -2,7 +2,7 @@
 
     /usr/bin/python3 tests/docs/sentences.py FILE…
 
-No comment begins with Of, What, Where or Likewise, no sentence has more than 25 words, and no name is on the list below.
+No comment begins with Of, What, Where or Likewise, no sentence has more than 25 words, and no name is listed below.
 Tables, formulas and indented lines are no sentences. Ends with 1 if anything is found.
 """
 

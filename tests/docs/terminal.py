@@ -1,4 +1,4 @@
-"""A terminal of a user's: runs the commands of the documentation in order, starts and ends those that do not end.
+"""A user's terminal: runs the commands of the documentation in order, and ends those that do not end by themselves.
 
 A private ROS master on the loopback. Programs are ended by process id only.
 """
@@ -20,7 +20,7 @@ LIMIT = 60.0
 START = 30.0
 """s, until a server is ready; measured below 4."""
 WATCH = 2.0
-"""s, for which an observer is looked at."""
+"""s, for which an observer is watched."""
 
 NODES = {"mujoco_plant", "state_estimator", "diff_drive_controller", "safety_monitor"}
 SERVICES = {"/mujoco_plant/inject_fault", "/e_stop_reset", "/diff_drive_controller/set_parameter_map", "/set_odometry"}
@@ -28,7 +28,7 @@ RECORD = "/telemetry/record"
 
 
 class FailedError(AssertionError):
-    """A command of the documentation that does not do what a reader expects; with its output."""
+    """A command of the documentation did not do what a reader expects; the message holds its output."""
 
 
 class Program:
@@ -56,7 +56,7 @@ class Program:
         return self.output.read_text(errors="replace")
 
     def end(self):
-        """SIGINT to the program; what is still there after 15 s is killed with its group."""
+        """Sends SIGINT to the program; its group is killed if it still runs after 15 s."""
         if self.running:
             self.process.send_signal(signal.SIGINT)
             with suppress(subprocess.TimeoutExpired):
@@ -77,7 +77,7 @@ def until(condition, what, program=None, limit=START):
 
 
 def never_ends(command):
-    """What a command that does not end by itself is: a launch, a node, a sender or an observer; else ""."""
+    """The kind of a command that does not end by itself: a launch, a node, a sender or an observer; else ""."""
     words = shlex.split(command)
     if words[0] == "roslaunch":
         return "" if any(word.startswith("cycles:=") for word in words) else "launch"
@@ -89,7 +89,7 @@ def never_ends(command):
 
 
 class Terminal:
-    """`folder`: where commands run; holds what they write."""
+    """`folder`: working folder of the commands, which holds what they write."""
 
     def __init__(self, folder: Path):
         self.folder = folder
@@ -128,7 +128,7 @@ class Terminal:
             self._run_to_its_end(command)
 
     def _start_launch(self, command):
-        """A launch that runs already with the same arguments goes on."""
+        """A launch that already runs with the same arguments goes on."""
         if self.launch is not None and self.launch.running and self.launch.command == command:
             return
         self.end_programs()
@@ -162,7 +162,7 @@ class Terminal:
         self.judge(text, [sys.executable, "-c", text])
 
     def judge(self, what, command):
-        """Must end by itself within LIMIT, with exit code 0 and without a message of an error."""
+        """The command must end by itself within LIMIT, with exit code 0 and without an error message."""
         process = subprocess.Popen(
             command,
             cwd=self.folder,

@@ -1,6 +1,7 @@
 """The code blocks of README and docs: `sh` and `python` run in order, `console` is checked word by word.
 
-`console` is for what needs root, hardware, another machine or many minutes, and for entry points that tests run anyway.
+`console` marks commands that need root, hardware, another machine or many minutes, and entry points that tests run
+anyway.
 """
 
 import re
@@ -44,7 +45,7 @@ def terminal(tmp_path_factory):
 
 
 def prepare(folder):
-    """The files of a reader: a robot, a drive as CSV and as bag, a log of this package."""
+    """The files that a reader has: a robot, a drive as CSV and as bag, a log of this package."""
     shutil.copy(ROOT / "urdf" / "diffbot.urdf", folder / "robot.urdf")
     time = np.arange(0, 4, 0.01)
     angle = np.where(time < 1, 0, 4 * (time - 1))  # rad; a second of rest, then 0.4 m/s
@@ -71,7 +72,7 @@ def write_bag(path, time, angle):
 
 
 def pages_to_follow():
-    """The README in every run of the tests, the reference pages every night."""
+    """The README is followed in every run of the tests, the reference pages every night."""
     for page in PAGES:
         if any(block.page == page for block in RUN):
             yield pytest.param(page, id=page.name, marks=() if page == README else pytest.mark.nightly)
@@ -79,7 +80,7 @@ def pages_to_follow():
 
 @pytest.mark.parametrize("page", pages_to_follow())
 def test_a_page_can_be_followed_from_top_to_bottom(page, terminal):
-    """In a terminal that has sourced install/setup.bash; what a page starts and does not end is ended after it."""
+    """The terminal has sourced install/setup.bash; programs that a page starts and does not end are ended after it."""
     for block in RUN:
         if block.page == page:
             if block.language == "python":

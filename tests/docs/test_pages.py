@@ -1,4 +1,4 @@
-"""README and docs: what they link to and name exists."""
+"""Files and names that README and docs link to and mention exist."""
 
 import re
 import subprocess

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""msg/Trace.msg from the table of its fields in src/recording.
+"""Writes msg/Trace.msg from the table of its fields in src/recording.
 
 tests/docs/trace_message.py      after a build with tests; then build again
 """

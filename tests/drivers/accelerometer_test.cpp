@@ -1,5 +1,5 @@
-/// The exact accelerometer integrates to the velocity, whatever damps the joints (specific_force.h): 1 mm/s over any
-/// second, with the wheels ramped up, in a curve, on the spot, and braked hard.
+/// The exact accelerometer integrates to the velocity with any damping of the joints (specific_force.h). The bound is 1
+/// mm/s over any second: with the wheels ramped up, in a curve, on the spot, and braked hard.
 
 #include "integrated_force.h"
 #include "made_robot.h"
@@ -17,7 +17,7 @@ RobotModel diffbot() {
   return read_robot(diffbot_urdf(), {});
 }
 
-/// Its IMU turned about two axes and far from the wheels' middle.
+/// diffbot with its IMU turned about two axes and far from the wheels' middle.
 RobotModel diffbot_with_a_remote_imu() {
   return read_robot(
       diffbot_with("<joint name=\"imu_joint\"", "xyz=\"0.05 0.02 0.06\"", "xyz=\"0.4 -0.3 0.5\" rpy=\"1.2 0.3 -2\""),
@@ -33,7 +33,7 @@ RobotModel skid_steer() {
 
 class Accelerometer : public testing::TestWithParam<std::tuple<double, double>> {
  protected:
-  /// m/s, the worst second of a drive.
+  /// m/s, the largest error over a second of a drive.
   static double worst(const RobotModel& robot, double damping, double period) {
     MujocoPlantParameters parameters;
     parameters.scene = kFlat;

@@ -1,4 +1,4 @@
-/// The voltage under load, of the law alone and in the plant.
+/// The voltage under load, from the law alone and in the plant.
 
 #include "drivers/motors/battery.h"
 
@@ -78,7 +78,7 @@ TEST_F(BatteryOfThePlant, FeedsTheMechanicalPowerOfTheWheels) {
     const double speed = truth(*plant).joints[0].velocity;
     plant->write(both(effort_command(1), effort_command(1)));
     const SensorFrame frame = sensors(*plant);
-    // To within what the two wheels differ from each other and in the course of a period: 1 N·m · 0.1 rad/s.
+    // The bound is the difference between the two wheels, and within a period: 1 N·m · 0.1 rad/s.
     ASSERT_NEAR((frame.battery_current - kIdleCurrent) * frame.battery_voltage, 2 * speed, 0.1);
   }
   EXPECT_GT(truth(*plant).joints[0].velocity, 5);

@@ -48,7 +48,7 @@ TEST(BrakeOf, HoldsATopHeavyRobotOnASlopeOfTenDegrees) {
               20 * kEarthGravity * std::sin(10 * M_PI / 180) * robot.radius / 4, 1e-9);
 }
 
-// Half of what lifts it is less than the slope takes, all of it is not.
+// Half of the lifting force is less than the slope takes; all of it is not.
 TEST(BrakeOf, SlowsATopHeavyRobotAlmostUntilItTips) {
   MadeRobot robot = four_wheels();
   robot.body_z = 1.0;  // centre of gravity at (16 · 1.1 + 4 · 0.1)/20 = 0.9 m, lifts at g/6
@@ -58,7 +58,7 @@ TEST(BrakeOf, SlowsATopHeavyRobotAlmostUntilItTips) {
   EXPECT_GT(brake.hold_effort, brake.effort);
 }
 
-// Right above its only axle the centre of gravity has no lever at all.
+// The centre of gravity right above the only axle has no lever.
 TEST(BrakeOf, SlowsOnASlopeOfFiveDegreesWhateverTips) {
   EXPECT_NEAR(brake_of(MadeRobot{}.model(), 0, {}, kStep).effort,
               12 * kEarthGravity * std::sin(5 * M_PI / 180) * 0.1 / 2, 1e-9);

@@ -1,4 +1,4 @@
-/// What the brush tyre promises, on robots that slide.
+/// The promises of the brush tyre, on robots that slide.
 
 #include <gtest/gtest.h>
 
@@ -58,7 +58,7 @@ MadeRobot skid_steer(double length) {
 
 class SkidSteer : public BrushTyreTest, public testing::WithParamInterface<double> {};
 
-// Coulomb: the moment balance of four equally loaded wheels, 1 + (L/B)². 2 %: the body leans, loads differ.
+// Coulomb's moment balance of four equally loaded wheels is 1 + (L/B)². The body leans and loads differ: 2 %.
 TEST_P(SkidSteer, TurnsByTheFactorOfCoulombFriction) {
   const MadeRobot robot = skid_steer(GetParam());
   auto plant = started(robot);
@@ -106,7 +106,7 @@ INSTANTIATE_TEST_SUITE_P(BrushTyre, LockedWheels, testing::Values(0.3, 0.6, 1.0)
 
 class OfAnySize : public BrushTyreTest, public testing::WithParamInterface<MadeRobot> {};
 
-// Below 1 % of creep at walking pace, as tyre.h has it; nothing moves when braked.
+// Creep stays below 1 % at walking pace, as tyre.h says; nothing moves when braked.
 TEST_P(OfAnySize, DrivesTurnsAndStands) {
   const MadeRobot& robot = GetParam();
   auto plant = started(robot);

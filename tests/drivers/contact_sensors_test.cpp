@@ -1,5 +1,5 @@
-/// The forces of the ground on the wheels: what stands, accelerates and leans is held by them. diffbot's centre of
-/// gravity is 0.06 m behind the axle, its ball caster 0.25 m: the wheels carry 0.76 of the weight.
+/// The forces of the ground on the wheels hold whatever stands, accelerates and leans. diffbot's centre of gravity is
+/// 0.06 m behind the axle and its ball caster 0.25 m, so the wheels carry 0.76 of the weight.
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ class ContactSensors : public PlantTest, public testing::WithParamInterface<Tyre
 TEST_P(ContactSensors, FeelTheWeightThatStandsOnTheWheels) {
   const SensorFrame frame = sensors(*sensing());
   EXPECT_NE(frame.valid & kValidContacts, 0u);
-  // Wheels and caster sink in by different micrometres; that moves the load by less than a thousandth.
+  // Wheels and caster sink in by different micrometres, which changes the load by less than a thousandth.
   for (const std::size_t wheel : {0u, 1u})
     EXPECT_NEAR(frame.contact_forces[wheel][2], kOnWheels * weight_ / 2, 1e-3 * weight_);
   EXPECT_NEAR(sum(frame)[0], 0, 1e-3 * weight_);

@@ -1,4 +1,4 @@
-/// Robots on feet that do not end where the wheels do.
+/// Robots on feet whose lowest points differ from those of the wheels.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-/// What the field adds to the errors of the data sheet, against its theory. A sample variance of n independent normal
-/// numbers has the relative deviation √(2/n): every bound is five of them, and the seeds are fixed.
+/// Checks the additional errors of the field, beyond the data sheet, against their theory. A sample variance of n
+/// independent normal numbers has the relative deviation √(2/n). Every bound is five of them, and the seeds are fixed.
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ class VibrationTest : public testing::Test {
     vibration.reset(3);
     return vibration;
   }
-  /// What is added at `speed` m/s, one cycle after the other.
+  /// The vibration that is added at `speed` m/s, one cycle after the other.
   ImuSample step(Vibration& vibration, double speed) const {
     Measurement measurement;
     measurement.joints[kLeftWheel].velocity = measurement.joints[kRightWheel].velocity = speed / 0.1;
@@ -278,13 +278,13 @@ TEST_F(FieldPlant, EncodersAreAsLateAsTheirJitterSays) {
   const Driven on_time = drive();
   parameters_.encoder_jitter = 0.005;
   const Driven late = drive();
-  double most = 0;
+  double largest = 0;
   for (std::size_t k = 0; k < late.positions.size(); ++k) {
     ASSERT_LE(late.positions[k], on_time.positions[k] + 1e-9);
-    most = std::max(most, on_time.positions[k] - late.positions[k]);
+    largest = std::max(largest, on_time.positions[k] - late.positions[k]);
   }
-  EXPECT_GT(most, 0.005 * 10) << "a standard deviation at 10 rad/s";
-  EXPECT_LT(most, 6 * 0.005 * 10 + 0.01) << "six of them and a cycle";
+  EXPECT_GT(largest, 0.005 * 10) << "a standard deviation at 10 rad/s";
+  EXPECT_LT(largest, 6 * 0.005 * 10 + 0.01) << "six of them and a cycle";
 }
 
 TEST_F(FieldPlant, TheCentreOfGravityIsOff) {
@@ -304,7 +304,7 @@ TEST_F(FieldPlant, TheCentreOfGravityIsOff) {
   EXPECT_NEAR(field[1] - described[1], off, 1e-4);
 }
 
-// Else the noise of one sample would be the bias that a short rest shows.
+// Otherwise the noise of one sample would pass for the bias in a short rest.
 TEST(FieldErrors, BeginWithWhatTheImuMeasuredBefore) {
   MujocoPlantParameters parameters;
   parameters.sensor_errors = ErrorLevel::kField;

@@ -41,7 +41,7 @@ TEST(FlatInertias, AreValidInEveryOrientation) {
       if (!rotate_tensor)
         origin << "<origin rpy=\"" << exact(rpy[2]) << ' ' << exact(rpy[1]) << ' ' << exact(rpy[0]) << "\"/>";
       const std::string name = "part_" + std::to_string(part);
-      // One moves by itself, so that nothing round is added to it.
+      // One part moves by itself, so that nothing round is added to it.
       const std::string joint = part == 2 ? "base_link" : "fixed";
       robot.more += "<link name=\"" + name + "\"><inertial>" + origin.str() + "<mass value=\"" +
                     exact(0.05 + uniform(random)) + "\"/><inertia ixx=\"" + exact(i(0, 0)) + "\" iyy=\"" +

@@ -1,10 +1,10 @@
 #pragma once
-/// Does the accelerometer integrate to the velocity? With the true attitude R of the IMU and the true velocity v of its
-/// origin, on level ground,
+/// Checks that the accelerometer integrates to the velocity. With the true attitude R of the IMU and the true velocity
+/// v of its origin, on level ground,
 ///
 ///   e = Σ (R̄ f + g) T − v        R̄ halfway between the two ends of a period
 ///
-/// is constant where it does. `worst` is the largest change of |e| over a second, m/s.
+/// is constant. `worst` is the largest change of |e| over a second, m/s.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace robot_control {
 
 class IntegratedForce {
  public:
-  /// `imu`: of the IMU in the base. `period` in s.
+  /// `imu`: pose of the IMU in the base. `period` in s.
   IntegratedForce(const Pose& imu, double period)
       : place_(imu.position.data()), mounting_(quaternion(imu.orientation)), period_(period) {}
 

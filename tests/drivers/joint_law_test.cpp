@@ -108,7 +108,7 @@ TEST_F(JointLawTest, HoldingBeginsWithTheTorqueThatSlowingEndedWith) {
   EXPECT_NEAR(effort, before, 1e-12);
 }
 
-// A drive that holds a load and hands over to the brake: the torque stays, so does the wheel.
+// A drive that holds a load hands over to the brake: the torque stays, and so does the wheel.
 TEST_F(JointLawTest, TakesOverALoadFromTheDriveWithoutSag) {
   constexpr double kLoad = -0.5;  // N·m
   JointCommand drive;
@@ -142,7 +142,8 @@ TEST_F(JointLawTest, HoldsWithMoreThanItSlowsWith) {
   EXPECT_NEAR(law_.step({}, position_, velocity_), -2.0, 1e-6);
 }
 
-// Downhill with 2 N·m against 1 N·m of slowing: what holds takes over within 50 steps, and wins by 1 N·m.
+// The wheel turns downhill with 2 N·m against 1 N·m of slowing. The holding torque takes over within 50 steps, and
+// exceeds the load by 1 N·m.
 TEST_F(JointLawTest, ALoadThatSlowingDoesNotBearIsBrakedByWhatHolds) {
   Brake gentle = kBrake;
   gentle.effort = 1.0;

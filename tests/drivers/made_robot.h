@@ -1,5 +1,5 @@
 #pragma once
-/// Robots made to measure: a box on wheels, one pair per axle, and where asked a frictionless ball behind it.
+/// Robots with given dimensions: a box on wheels, one pair per axle, and on request a frictionless ball behind it.
 
 #include <sstream>
 #include <string>

@@ -1,4 +1,4 @@
-/// From rigid bodies to MuJoCo's model: shapes, joints, springs, ties.
+/// Converts rigid bodies to MuJoCo's model: shapes, joints, springs, ties.
 
 #include "drivers/model/mjcf.h"
 
@@ -117,7 +117,7 @@ TEST_F(MjcfTest, MeshesAreHullsOfTheirOwn) {
   EXPECT_EQ(compiled_->mesh_vertnum[0], 4);
 }
 
-// A sheet, a rod and a point: no volume, no hull.
+// A sheet, a rod and a point have no volume and no hull.
 TEST_F(MjcfTest, FlatMeshesAreThickened) {
   add(mesh({{0, 0, 0.1}, {0.3, 0, 0.1}, {0, 0.2, 0.1}, {0.3, 0.2, 0.1}}));
   add(mesh({{0, 0, 0}, {0.1, 0.1, 0.1}, {0.2, 0.2, 0.2}}));
@@ -207,7 +207,7 @@ TEST_F(MjcfTest, NamesMayHoldWhatXmlEscapes) {
   EXPECT_GE(mj_name2id(compiled_.get(), mjOBJ_JOINT, "<j>"), 0);
 }
 
-// What mujoco-simulate opens: the written file alone, in another directory than the scene's.
+// mujoco-simulate opens the written file alone, in another directory than the scene's.
 TEST_F(MjcfTest, TheExportedTextOpensByItselfAndStands) {
   parameters_.scene = kSlope;
   robot_.ball_x = -0.3;

@@ -1,4 +1,4 @@
-/// Motors × every kind, on a bench: the effort that comes of a drive that was asked for one.
+/// Every kind of fault of the motors, on a bench: the effort of a drive that received a request.
 
 #include "drivers/motors/motor_faults.h"
 
@@ -19,7 +19,7 @@ constexpr double kLimit = 3.5;  // N·m, as two_wheels has it
 
 class MotorFaultsTest : public testing::Test {
  protected:
-  /// One cycle in which each wheel is asked for `effort`, all joints at rest; what the left and the right one give.
+  /// Runs one cycle in which each wheel is asked for `effort`, all joints at rest.
   void step(FaultKind left, FaultKind right, double effort, JointMode mode = JointMode::kEffort) {
     InjectedFaults faults{};
     faults[static_cast<std::size_t>(FaultComponent::kLeftMotor)] = left;
@@ -76,7 +76,7 @@ TEST_F(MotorFaultsTest, AGarbageMotorPushesAtRandomWithinItsLimit) {
     EXPECT_LE(std::abs(left_), kLimit);
     square += left_ * left_ / kCycles;
   }
-  // As for garbage sensors: relative deviation √(0.8/n).
+  // The relative deviation is √(0.8/n), as for garbage sensors.
   EXPECT_NEAR(square / (kLimit * kLimit / 3), 1, 5 * std::sqrt(0.8 / kCycles));
 }
 

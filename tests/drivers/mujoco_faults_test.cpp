@@ -1,4 +1,4 @@
-/// When the physics fails: a fault, the last good values, no file, no exit, no reset behind our back.
+/// The physics fails: a fault is reported, the last good values stay, no file is written, no exit, no reset by itself.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ class MujocoFaultTest : public PlantTest {
   void SetUp() override { std::filesystem::remove("MUJOCO_LOG.TXT"); }
   void TearDown() override { EXPECT_FALSE(std::filesystem::exists("MUJOCO_LOG.TXT")); }
 
-  // A drive without bounds: 10¹² N·m makes accelerations that MuJoCo calls bad.
+  // A drive without bounds: 10¹² N·m cause accelerations that MuJoCo calls bad.
   std::unique_ptr<MujocoPlant> unbounded() {
     RobotParameters robot;
     robot.wheel_effort_limit = 1e12;

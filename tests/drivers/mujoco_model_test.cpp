@@ -44,7 +44,7 @@ TEST_F(MujocoModelTest, FloatsOnSixAxesAndTurnsOnTwo) {
   EXPECT_EQ(compiled(kFlat).model->nv, 8);
 }
 
-// "world" is MuJoCo's own word; slashes come with prefixes of robots.
+// "world" is MuJoCo's own word; slashes appear in prefixes of robots.
 TEST_F(MujocoModelTest, ALinkMayHaveAnyName) {
   for (const std::string link : {"base_link", "left_wheel_link"}) {
     for (const std::string name : {"world", "robot1/link", "../link", "a link"}) {
@@ -164,7 +164,7 @@ TEST_F(MujocoModelTest, ASceneThatChangesTheRobotsMassIsRefused) {
               testing::AllOf(HasSubstr("heavy.xml"), HasSubstr("weigh")));
 }
 
-// The scene of its own text, and one that includes it: both include themselves without end.
+// The scene's own text includes itself, and so does one that it includes.
 TEST_F(MujocoModelTest, AnIncludeCycleInASceneIsRefused) {
   const std::string own = scene_file("own.xml", R"(<mujoco><include file="own.xml"/><worldbody><site name="start"/>
     </worldbody></mujoco>)");

@@ -1,4 +1,4 @@
-/// What the simulated machine does, seen through the driver's four calls.
+/// The behaviour of the simulated machine, observed through the driver's four calls.
 
 #include <gtest/gtest.h>
 
@@ -36,8 +36,8 @@ TEST_F(MujocoPlantTest, TruthBeginsAtZero) {
   }
 }
 
-// Lever law about the caster: the axle carries (0.25 − l)/0.25 of the weight, l the centre of gravity's distance
-// behind the axle; the hard contact's residual accelerations at rest are far below 0.1 %.
+// The law of the lever about the caster: the axle carries (0.25 − l)/0.25 of the weight. The centre of gravity is l
+// behind the axle. The hard contact's residual accelerations at rest are far below 0.1 %.
 TEST_F(MujocoPlantTest, WheelsCarryTheirShareOfTheWeight) {
   const RobotModel robot = read_robot(diffbot_urdf(), {});
   const double share = (0.25 + robot.centre_of_gravity_base[0]) / 0.25;
@@ -166,8 +166,9 @@ TEST_F(MujocoPlantTest, GyroShowsTheYawRateInItsOwnAxes) {
   EXPECT_NEAR(imu.linear_acceleration[1], kEarthGravity, 0.01);
 }
 
-// SensorFrame: velocity at t_k, acceleration of [t_k-1, t_k). Under a torque that changes every tick the two only
-// agree if they belong to the same interval. 2 % of the 4 m/s² steps: pitching on the contact's compliance.
+// The SensorFrame holds the velocity at t_k and the acceleration of [t_k-1, t_k). Under a torque that changes every
+// tick the two agree only if they belong to the same interval. The bound is 2 % of the 4 m/s² steps, for pitching on
+// the contact's compliance.
 TEST_F(MujocoPlantTest, AccelerationBelongsToTheIntervalThatEndsAtTheSample) {
   auto plant = started();
   double before = truth(*plant).twist_base.linear[0];
@@ -249,7 +250,7 @@ TEST_F(MujocoPlantTest, CommandsForAnotherNumberOfJointsBrake) {
 
 class Repeats : public PlantTest, public testing::WithParamInterface<double> {
  protected:
-  // Everything that is read on the way, as bytes.
+  // Everything that is read during a drive, as bytes.
   std::string record(MujocoPlant& plant) const {
     std::string bytes;
     for (int k = 0; k < 2000; ++k) {

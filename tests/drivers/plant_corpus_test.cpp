@@ -65,7 +65,7 @@ class RealRobot : public testing::TestWithParam<const char*> {
     for (int k = 1; k <= 3000; ++k) step(std::min(1.0, k / 2000.0) * left, std::min(1.0, k / 2000.0) * right);
   }
   double full_speed() const {
-    double speed = 1;  // m/s, where the description knows none
+    double speed = 1;  // m/s, if the description has no limit
     for (const WheelModel& wheel : robot_.wheels) {
       const double limit = robot_.joints[wheel.joint].velocity_limit;
       if (limit > 0) speed = std::min(speed, limit * wheel.radius);
@@ -109,7 +109,7 @@ TEST_P(RealRobot, StopsHardFromFullSpeedWithoutTipping) {
   }
 }
 
-// At 0.5 rad/s, or what the wheels' speed limits leave of it.
+// The rate is 0.5 rad/s, or as much as the wheels' speed limits allow.
 TEST_P(RealRobot, TurnsWithoutHopping) {
   const double rim = std::min(0.25 * robot_.effective_wheel_base(), 0.6 * full_speed());
   drive(-rim, rim);
@@ -124,7 +124,8 @@ TEST_P(RealRobot, TurnsWithoutHopping) {
   EXPECT_GT(truth().twist_base.angular[2], 0.8 * 2 * rim / robot_.effective_wheel_base()) << "it does turn";
 }
 
-// From rest to full speed, a turn, and the brake: the accelerometer integrates to the velocity (SensorFrame).
+// The drive goes from rest to full speed, a turn, and the brake: the accelerometer integrates to the velocity
+// (SensorFrame).
 TEST_P(RealRobot, MeasuresTheForceThatMovesIt) {
   IntegratedForce force(robot_.imu_in_base, 0.001);
   const auto look = [&] {
@@ -151,7 +152,7 @@ class RealRobotOnIce : public RealRobot {
 
   void SetUp() override { set_down(kFriction); }
 
-  /// Springs that hold the wheels where they are now: μ N moves their rims by a millimetre.
+  /// Springs that hold the wheels at their present angles: μ N moves their rims by a millimetre.
   std::vector<JointCommand> locks() {
     SensorFrame sensors;
     plant_->read(sensors);
@@ -166,7 +167,7 @@ class RealRobotOnIce : public RealRobot {
   }
 };
 
-// Fixed casters slide without friction; those that roll have to be slowed as well, as masses of J/r².
+// Fixed casters slide without friction; rolling ones have to be slowed as well, as masses of J/r².
 TEST_P(RealRobotOnIce, SlidesOnLockedWheelsWithFrictionTimesTheirLoad) {
   drive(full_speed(), full_speed());
   const std::vector<JointCommand> locked = locks();
@@ -185,7 +186,7 @@ TEST_P(RealRobotOnIce, SlidesOnLockedWheelsWithFrictionTimesTheirLoad) {
   EXPECT_NEAR(deceleration, kFriction * load / mass, 0.02 * kFriction * load / mass);
 }
 
-// All but diffbot_ros2control, whose 15 mm/s are over within 5 ms.
+// diffbot_ros2control is left out, because its 15 mm/s are over within 5 ms.
 INSTANTIATE_TEST_SUITE_P(Corpus, RealRobotOnIce,
                          testing::Values("jackal", "kobuki", "create3", "pmb2", "boxer", "scout_v2", "p3dx_mario",
                                          "linorobot2_2wd", "rosbot2r", "dingo_d", "create_2"),

@@ -1,4 +1,4 @@
-/// The plant that errs: where its errors, delays and faults sit between state and `read`, command and torque.
+/// Checks where the plant's errors, delays and faults act between state and `read`, and between command and torque.
 
 #include <cmath>
 #include <cstring>
@@ -29,7 +29,7 @@ class PlantErrors : public PlantTest {
     EXPECT_TRUE(plant.inject(faults));
   }
 
-  /// One cycle; the frame read before it.
+  /// Runs one cycle; returns the frame read before it.
   SensorFrame cycle(MujocoPlant& plant, const std::array<JointCommand, 2>& commands) const {
     const SensorFrame frame = sensors(plant);
     plant.write(commands);

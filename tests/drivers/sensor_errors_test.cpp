@@ -1,6 +1,6 @@
-/// Sensor errors against their theory. A sample variance of n normal numbers has the relative deviation √(2/n), a
-/// mean σ/√n, a correlation 1/√n; every bound is five of them, which one test in a million misses, and the seeds are
-/// fixed.
+/// Sensor errors are compared with their theory. A sample variance of n normal numbers has the relative deviation
+/// √(2/n), a mean σ/√n, a correlation 1/√n. Every bound is five of them, which one test in a million misses, and the
+/// seeds are fixed.
 
 #include "drivers/sensors/sensor_errors.h"
 
@@ -60,7 +60,7 @@ class SensorErrorsTest : public testing::Test {
 
   SensorErrors errors() const { return {robot_, parameters_, period_}; }
 
-  /// What a robot at rest measures, one vector per axis.
+  /// The measurements of a robot at rest, one vector per axis.
   using Axes = std::array<std::vector<double>, 3>;
   struct Record {
     Axes gyro, accelerometer;
@@ -82,7 +82,7 @@ class SensorErrorsTest : public testing::Test {
     return record(fresh, count);
   }
 
-  /// Bias and walk off: white noise alone.
+  /// Switches bias and walk off, so that white noise alone is left.
   void white_only() {
     parameters_.gyro_bias = parameters_.gyro_bias_walk = 0;
     parameters_.accelerometer_bias = parameters_.accelerometer_bias_walk = 0;
@@ -133,7 +133,8 @@ TEST_F(SensorErrorsTest, AreNormal) {
     fourth += z * z * z * z / kSamples;
     within += std::abs(z) < 1 ? 1.0 / kSamples : 0;
   }
-  // Deviations of skewness and kurtosis of n normal numbers: √(6/n), √(24/n); of a share p: √(p(1 − p)/n).
+  // The deviations of skewness and kurtosis of n normal numbers are √(6/n) and √(24/n), that of a share p is √(p(1 −
+  // p)/n).
   EXPECT_NEAR(third, 0, kDeviations * std::sqrt(6.0 / kSamples));
   EXPECT_NEAR(fourth, 3, kDeviations * std::sqrt(24.0 / kSamples));
   EXPECT_NEAR(within, 0.6827, kDeviations * std::sqrt(0.6827 * 0.3173 / kSamples));

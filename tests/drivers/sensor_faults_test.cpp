@@ -1,6 +1,6 @@
-/// Every sensor × every kind: what comes out of it. In cycle k the healthy left wheel is at k mrad and turns with
-/// k mrad/s, the right one at −k and −k, gyro and accelerometer read (k, 2k, 3k)·10⁻³, the battery gives 24 V + k mV
-/// and k mA, the e-stop button is not pressed.
+/// Checks the output of every sensor under every kind of fault. In cycle k the healthy left wheel is at k mrad with k
+/// mrad/s, and the right one at −k and −k. Gyro and accelerometer read (k, 2k, 3k)·10⁻³. The battery gives 24 V + k mV
+/// and k mA, and the e-stop button is not pressed.
 
 #include "drivers/sensors/sensor_faults.h"
 
@@ -49,7 +49,7 @@ class SensorFaultsTest : public testing::Test {
   static JointSample left_at(std::uint64_t cycle) { return healthy(cycle).joints[kLeftWheel]; }
   static Vector3 axes_at(std::uint64_t cycle) { return healthy(cycle).imu.angular_velocity; }
 
-  /// What is not of the left encoder is untouched.
+  /// Everything but the left encoder is unchanged.
   void expect_rest_healthy(std::uint64_t cycle) const {
     const Measurement expected = healthy(cycle);
     EXPECT_EQ(right().position, expected.joints[kRightWheel].position);
@@ -145,7 +145,7 @@ TEST_F(SensorFaultsTest, ADelayedEncoderIsTenCyclesLate) {
 }
 
 TEST_F(SensorFaultsTest, AnIntermittentEncoderIsThereAndNot) {
-  int there = 0, gone = 0;
+  int present = 0, gone = 0;
   for (std::uint64_t cycle = kOnset; cycle < kOnset + 500; ++cycle) {
     step(FaultComponent::kLeftEncoder, FaultKind::kIntermittent, cycle);
     if (std::isnan(left().position)) {
@@ -153,10 +153,10 @@ TEST_F(SensorFaultsTest, AnIntermittentEncoderIsThereAndNot) {
       ++gone;
     } else {
       EXPECT_EQ(left().position, left_at(cycle).position);
-      ++there;
+      ++present;
     }
   }
-  EXPECT_GT(there, 50);
+  EXPECT_GT(present, 50);
   EXPECT_GT(gone, 50);
 }
 
@@ -341,7 +341,7 @@ TEST_F(BatteryFaults, AreOverAfterOk) {
 
 class ButtonFaults : public SensorFaultsTest {
  protected:
-  /// Of 500 cycles.
+  /// Number of 500 cycles in which the button is pressed.
   int pressed(FaultKind kind) {
     int count = 0;
     for (std::uint64_t cycle = kOnset; cycle < kOnset + 500; ++cycle) {

@@ -1,4 +1,4 @@
-/// Robots whose wheels are not all that carries them.
+/// Robots that stand on more than their wheels.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ class Standing : public PlantTest {
   }
 };
 
-// The bumper hangs 2 cm lower than the wheels reach.
+// The bumper hangs 2 cm below the wheels.
 TEST_F(Standing, OnItsBodyWithTheWheelsInTheAirIsRefused) {
   MadeRobot robot;
   robot.more = part("bumper", "<collision><geometry><box size=\"0.6 0.6 0.04\"/></geometry></collision>", "base_link",
@@ -46,7 +46,7 @@ TEST_F(Standing, OnItsBodyWithTheWheelsInTheAirIsRefused) {
   }
 }
 
-// What makes the description suspicious may be the reason, and is read with the refusal.
+// A suspicious entry of the description may be the reason, so the refusal quotes it.
 TEST_F(Standing, ARefusalNamesWhatIsSuspiciousInTheDescription) {
   MadeRobot robot;
   robot.body_x = 0.05;
@@ -84,9 +84,9 @@ TEST_F(Standing, WhileSomethingOnItSwings) {
   EXPECT_NO_THROW(stood(robot));
 }
 
-// Rear ball that turns about its own axle alone, with half of the weight on it, 0.4 m behind the wheels: were it to
-// grip, μ · 60 N · 0.4 m would outweigh what the wheels have, 2 · μ · 30 N · 0.25 m. It is to turn the robot at
-// 2 r q̇/b all the same, but for the creep of the tyres: less than 1 %.
+// Half of the weight is on a rear ball 0.4 m behind the wheels, which turns about its own axle alone. If it gripped, μ
+// · 60 N · 0.4 m would outweigh the wheels' 2 · μ · 30 N · 0.25 m. The robot must still turn at 2 r q̇/b, except for
+// the creep of the tyres: less than 1 %.
 TEST_F(Standing, OnABallWithoutASwivelTurns) {
   MadeRobot robot;
   robot.body_x = -0.24;

@@ -82,7 +82,7 @@ TEST_F(TrueRobotTest, TheRotorTurnsWithTheSquareOfTheGear) {
   EXPECT_NEAR(real().wheels[0].rotor_inertia, believed_.wheels[0].rotor_inertia + 2e-3, 1e-12);
 }
 
-// Two point masses' worth of parallel axes: m₁ m₂ / (m₁ + m₂) d².
+// The parallel axes of two point masses add m₁ m₂ / (m₁ + m₂) d².
 TEST_F(TrueRobotTest, APayloadIsAPointMassOnTheBase) {
   believed_ = MadeRobot{}.model();
   parameters_.payload = 5;

@@ -1,5 +1,5 @@
 #pragma once
-/// Two wheels and a caster's swivel: as much of a robot as sensors and motors need.
+/// Two wheels and a caster's swivel, which is enough of a robot for sensors and motors.
 
 #include "robot/robot_model.h"
 

@@ -18,7 +18,7 @@ constexpr double kLoad = 50;         // N
 
 class TyreTest : public testing::Test {
  protected:
-  /// F in x, on a mass whose slip velocity is velocity_.
+  /// Force in x, N, on a mass with the slip velocity velocity_.
   double step(double load, double rim_speed = 0) {
     TyreInput input;
     input.velocity.x() = velocity_;

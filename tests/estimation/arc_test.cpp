@@ -9,7 +9,7 @@
 namespace robot_control {
 namespace {
 
-// Rounding of a handful of operations on numbers of order 1.
+// Bound for the rounding of a few operations on numbers of order 1.
 constexpr double kArcRounding = 1e-15;
 
 TEST(Arc, QuarterCircleEndsOneRadiusAheadAndOneRadiusLeft) {
@@ -39,7 +39,7 @@ TEST(Arc, ReverseIsTheMirrorOfForward) {
   EXPECT_NEAR(forward.y + back.y, 0, kArcRounding);
 }
 
-// Midpoint rule with n steps: its error falls with n²; at 20000 steps of a 1 rad turn below 1e-9.
+// The midpoint rule with n steps has an error that falls with n²; 20000 steps of a 1 rad turn give less than 1e-9.
 TEST(Arc, EqualsFineIntegrationOfItsTwist) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> any(-1, 1);

@@ -1,4 +1,4 @@
-// What is learned of wheels, and what for.
+// Checks what the estimator learns about its wheels, and how it uses that.
 
 #include "estimation/estimator_fixture.h"
 #include "estimation/estimator_setup.h"
@@ -14,7 +14,8 @@ EstimatorParameters held() {
   return parameters;
 }
 
-/// Wheels of 0.4 % opposite radius error on a base that is 1.5 % wider than said; five minutes of turning either way.
+/// The wheels have 0.4 % opposite radius error on a base that is 1.5 % wider than described; the drive turns either way
+/// for five minutes.
 class EstimatorCalibrationTest : public EstimatorFixture {
  protected:
   explicit EstimatorCalibrationTest(const EstimatorParameters& parameters = {})
@@ -33,7 +34,7 @@ class EstimatorHeldCalibrationTest : public EstimatorCalibrationTest {
   EstimatorHeldCalibrationTest() : EstimatorCalibrationTest(held()) {}
 };
 
-// Within three of its own deviations, which shrank to a fraction of the prior.
+// The result is within three of its own deviations, which shrank to a fraction of the prior.
 TEST_F(EstimatorCalibrationTest, RecoversRatioAndBase) {
   practise(120);
   EXPECT_NEAR(state_.calibration.radius_ratio - 1, 0.004, 3 * state_.calibration.radius_ratio_deviation);
@@ -64,8 +65,7 @@ TEST_F(EstimatorCalibrationTest, WhatARestartHoldsIsNotLearned) {
   EXPECT_EQ(state_.calibration.radius_ratio_deviation, 0);
 }
 
-// On a straight way the wheel base is not observable; noise of the gyro, in rate and innovation alike, must not
-// change it.
+// On a straight way the wheel base is not observable; noise of the gyro, in rate and innovation, must not change it.
 TEST(EstimatorCalibration, TheWheelBaseStaysWhereNothingTurns) {
   RollingRobot robot;
   robot.noise = {.gyro = 2.44e-4, .accelerometer = 1.7e-3, .counts = 4096};
@@ -105,7 +105,7 @@ TEST(EstimatorCalibration, StartsWithWhatIsGiven) {
   EXPECT_EQ(state.gyro_bias, (Vector3{0.001, 0.002, 0.003}));
 }
 
-// A deviation of 0 holds a value for ever.
+// A deviation of 0 holds a value permanently.
 TEST(EstimatorCalibration, HoldsWhatIsGivenAsExact) {
   EstimatorParameters parameters;
   parameters.calibration = {
@@ -121,7 +121,7 @@ TEST(EstimatorCalibration, HoldsWhatIsGivenAsExact) {
   EXPECT_NEAR(state.calibration.wheel_base_factor, 1.02, 1e-12);
 }
 
-// Promised: killed after calibration, at most a fifth of the error of uncalibrated wheel odometry.
+// The promise for a loss after calibration is at most a fifth of the error of uncalibrated wheel odometry.
 TEST_F(EstimatorCalibrationTest, AGyroThatIsLostLeavesCalibratedWheels) {
   practise(120);
   estimator_.set_pose({0, 0, 0});

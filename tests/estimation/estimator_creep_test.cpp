@@ -1,4 +1,4 @@
-// Tyres that creep under force.
+// Tyres creep under force.
 
 #include <utility>
 
@@ -8,7 +8,7 @@
 namespace robot_control {
 namespace {
 
-// Pulled with 1 m/s², these tyres turn 1 % faster than they go; in curves they drift outwards.
+// Pulled with 1 m/s², these tyres turn 1 % faster than the robot moves; in curves they drift outwards.
 class CreepingTyres : public EstimatorFixture {
  protected:
   static constexpr double kCreep = 0.01;  // s²/m
@@ -17,8 +17,8 @@ class CreepingTyres : public EstimatorFixture {
     robot_.creep = kCreep;
     stand();
   }
-  /// Largest error of the speed, m/s, from 0.1 s after the last change of the acceleration on: then the tread's speed
-  /// jumps, and the tracking loop of the wheels follows.
+  /// Largest error of the speed, m/s, from 0.1 s after the last change of the acceleration on. At that change the
+  /// tread's speed jumps, and the tracking loop of the wheels follows.
   double shuttle(double rate = 0.5) {
     double worst = 0, last = 0;
     int steady = 0;
@@ -39,7 +39,7 @@ class CreepingTyresTakenForRigid : public CreepingTyres {
   CreepingTyresTakenForRigid() : CreepingTyres(0) {}
 };
 
-/// The IMU swings in curves: what it feels is not what the tyres hold.
+/// The IMU swings in curves: its measured force is not that of the tyres.
 class CreepingTyresUnderAFarImu : public CreepingTyres {
  protected:
   CreepingTyresUnderAFarImu() : CreepingTyres(kCreep, far()) {}
@@ -50,7 +50,7 @@ class CreepingTyresUnderAFarImu : public CreepingTyres {
   }
 };
 
-// Straight on: in curves the creep of one side more than of the other is a part of wheel base and clock offset.
+// The drive is straight: in curves a difference of the sides' creep counts as wheel base and clock offset.
 TEST_F(CreepingTyres, TheWayIsThatOfTheGround) {
   shuttle(0);
   EXPECT_LT(position_error(), 2e-4);
@@ -74,7 +74,7 @@ TEST_F(CreepingTyresTakenForRigid, SpeedIsThatOfTheTread) {
   EXPECT_GT(position_error(), 0.003);
 }
 
-// Uphill the treads turn 1 % of a tenth of gravity more than the robot goes.
+// Uphill the treads turn by 1 % of a tenth of gravity more than the robot moves.
 TEST(EstimatorCreep, TheWayUphillIsThatOfTheGround) {
   constexpr double kCreep = 0.01;
   constexpr double kSlope = 0.1;  // rad
@@ -101,8 +101,8 @@ TEST(EstimatorCreep, TheWayUphillIsThatOfTheGround) {
   EXPECT_NEAR(error(kCreep), 0, 0.1 * crept);
 }
 
-// It stands on a slope that may be the accelerometer's bias, or the other way round: a force that may be either makes
-// the way neither longer nor shorter.
+// It stands on a slope that may also be the accelerometer's bias. Such an uncertain force makes the way neither longer
+// nor shorter.
 TEST(EstimatorCreep, ATiltInDoubtMakesNoCreep) {
   RollingRobot robot;
   robot.accelerometer_bias = {0.5, 0, 0};
@@ -116,7 +116,7 @@ TEST(EstimatorCreep, ATiltInDoubtMakesNoCreep) {
   };
   drive(0, 3000);
   drive(0.5, 4000);
-  // Taken for a slope it would be 0.005 of the way; the tilt of 0.05 rad shortens its projection by 0.00125.
+  // As a slope it would be 0.005 of the way; the tilt of 0.05 rad shortens its projection by 0.00125.
   EXPECT_NEAR(state.pose_odom.position[0], robot.x(), 0.002 * robot.x());
 }
 

@@ -1,4 +1,4 @@
-// Samples that are missing, not finite or impossible, and sensors that are lost.
+// Samples are missing, not finite or impossible, and sensors are lost.
 
 #include <cstring>
 
@@ -51,7 +51,7 @@ TEST_F(EstimatorFaultsTest, EncodersMissingForLongAreNoValidState) {
   EXPECT_TRUE(has(kStateValid));
 }
 
-// Two seconds without both: the next good reading brings the whole travel.
+// Both are missing for two seconds: the next good reading brings the whole travel.
 TEST_F(EstimatorFaultsTest, EncodersThatComeBackBringTheWholeTravel) {
   lose(kValidJoints);
   drive(0.5, 0, 2000);
@@ -192,7 +192,8 @@ TEST_F(EstimatorFaultsTest, WithWheelsAloneItIsTheirOdometry) {
   EXPECT_TRUE(has(kStateValid));
   EXPECT_LT(yaw_error(), std::sqrt(state_.pose_covariance[35]));
   EXPECT_LT(position_error(), std::sqrt(state_.pose_covariance[0] + state_.pose_covariance[7]));
-  // 3 % of a wheel base in doubt, and 0.05 rad/√rad of turn slip, which a straight way does not teach, in 1 rad.
+  // The bound holds 3 % of an uncertain wheel base, and turn slip of 0.05 rad/√rad over 1 rad, which a straight way
+  // does not teach.
   EXPECT_LT(std::sqrt(state_.pose_covariance[35]), 0.08);
 }
 
@@ -220,7 +221,7 @@ TEST_F(EstimatorFaultsTest, AFrameThatIsRepeatedIsNotTravelledTwice) {
   EXPECT_LT(position_error(), kExact);
 }
 
-/// 100 000 frames in which anything may stand.
+/// 100 000 frames with arbitrary content.
 class EstimatorGarbageTest : public EstimatorFixture, public testing::WithParamInterface<unsigned> {};
 
 TEST_P(EstimatorGarbageTest, NeverPoisonsTheState) {
@@ -260,7 +261,7 @@ TEST_P(EstimatorGarbageTest, NeverPoisonsTheState) {
     }
   }
   robot_.frame().head.cycle += 10;
-  // Should the gyro's bias be poisoned: Tuning::kConstantRate, and as long again for what a stop and two windows take.
+  // If the gyro's bias is wrong, it recovers after Tuning::kConstantRate; a stop and two windows take as long again.
   drive(0, 0, static_cast<int>(2 * Tuning::kConstantRate / kPeriod));
   EXPECT_TRUE(has(kStateValid));
   EXPECT_TRUE(has(kStateStandstill));
@@ -276,7 +277,7 @@ TEST_P(EstimatorGarbageTest, NeverPoisonsTheState) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, EstimatorGarbageTest, testing::Range(0U, 10U));
 
-// Which of both fails is not known: the deviation of the heading is the whole difference, until a rest and beyond.
+// Either sensor may have failed: the deviation of the heading is the whole difference, until a rest and beyond.
 class ALyingGyro : public EstimatorFixture, public testing::WithParamInterface<double> {};
 
 TEST_P(ALyingGyro, WidensTheHeading) {

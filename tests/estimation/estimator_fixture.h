@@ -1,5 +1,5 @@
 #pragma once
-/// An estimator on a robot that rolls: what most of its tests begin with.
+/// An estimator on a rolling robot, with which most of its tests begin.
 
 #include <gtest/gtest.h>
 
@@ -48,7 +48,7 @@ class EstimatorFixture : public testing::Test {
       : robot_(model, period), estimator_(parameters, model, period) {}
 
   void observe() { estimator_.step(robot_.frame(), state_); }
-  /// Towards a planar twist, with the accelerations of RollingRobot::drive.
+  /// Drives towards a planar twist with the accelerations of RollingRobot::drive.
   void drive(double linear, double angular, int cycles) {
     for (int i = 0; i < cycles; ++i) {
       robot_.drive(linear, angular);
@@ -59,7 +59,7 @@ class EstimatorFixture : public testing::Test {
     observe();
     drive(0, 0, cycles);
   }
-  /// One cycle at the present twist in which `fault` has been at the frame.
+  /// Runs one cycle at the present twist after `fault` has changed the frame.
   template <class Fault>
   void broken(Fault fault) {
     robot_.go(robot_.motion);

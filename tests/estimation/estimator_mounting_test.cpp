@@ -1,4 +1,4 @@
-// Any mounting of the IMU is as good as one that is aligned, and samples may come at any rate.
+// Any mounting of the IMU is as good as an aligned one, and samples may come at any rate.
 
 #include <cstring>
 
@@ -8,7 +8,7 @@
 namespace robot_control {
 namespace {
 
-/// Ten seconds of standing and driving. `biased`: constant errors in base axes, wherever the IMU sits.
+/// Stands and drives for ten seconds. `biased`: constant errors in base axes, wherever the IMU is.
 StateFrame drive_with(const RobotModel& model, RollingRobot& robot) {
   Estimator estimator(rigid_tyres(), model, kPeriod);
   StateFrame state;
@@ -28,7 +28,7 @@ RobotModel mounted(const Eigen::Quaterniond& q, const Vector3& position) {
 
 class EstimatorMountingTest : public testing::TestWithParam<unsigned> {};
 
-// The same samples in other axes: the same state to rounding; biases are published in the IMU's own axes.
+// The same samples in other axes give the same state up to rounding; biases are published in the IMU's own axes.
 TEST_P(EstimatorMountingTest, AnyOrientationGivesTheSameState) {
   std::mt19937 random(GetParam());
   std::normal_distribution<double> normal(0, 1);
@@ -60,7 +60,7 @@ TEST_P(EstimatorMountingTest, AnyOrientationGivesTheSameState) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, EstimatorMountingTest, testing::Range(0U, 10U));
 
-// Wherever it sits: what a lever does to the accelerometer is known.
+// The effect of the lever on the accelerometer is known at any place.
 TEST(EstimatorMounting, AnyPlaceFindsTheTruth) {
   for (const Vector3& place : {Vector3{0.3, 0.2, 0.5}, Vector3{-0.4, -0.3, 0.05}, Vector3{0, 0, 1}}) {
     const RobotModel model = mounted(Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5), place);
@@ -74,7 +74,7 @@ TEST(EstimatorMounting, AnyPlaceFindsTheTruth) {
   }
 }
 
-// Cycle by cycle or by time: the same law, the same bits.
+// Steps by cycle and by time are the same law with the same bits.
 TEST(EstimatorRates, BothStepsAgree) {
   RollingRobot robot;
   robot.noise = {.gyro = 2.44e-4, .accelerometer = 2e-3, .counts = 4096};
@@ -98,8 +98,8 @@ struct Rates {
 
 class EstimatorRatesTest : public testing::TestWithParam<Rates> {};
 
-// The pose is compared where the wheels were just read. A gyro at rate f of a turn that changes by α rad/s² misses
-// less than α/(8 f²) rad per sample, which is nothing; a late gyro sample turns the robot late by one gap.
+// The pose is compared right after a reading of the wheels. A gyro at rate f misses less than α/(8 f²) rad per sample
+// of a turn that changes by α rad/s². A late gyro sample turns the robot late by one gap.
 TEST_P(EstimatorRatesTest, FindTheTruth) {
   RollingRobot robot;
   Estimator estimator(rigid_tyres(), two_wheeler(), kPeriod);

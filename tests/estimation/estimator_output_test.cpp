@@ -1,4 +1,4 @@
-// What is published of the state: of base_link, in its axes or in odom's, with covariances.
+// The published state describes base_link, in its axes or in odom's, with covariances.
 
 #include "estimation/estimator_fixture.h"
 #include "support/constants.h"
@@ -8,7 +8,8 @@ namespace {
 
 constexpr double kAhead = 0.2;  // m, of base_link from the axle
 
-/// The same wheels under a base_link on the axle and one ahead of it. Slip is not looked for: the IMUs differ.
+/// The same wheels are under a base_link on the axle and one ahead of it. Slip detection is off, because the IMUs
+/// differ.
 class EstimatorLeverTest : public testing::Test {
  protected:
   EstimatorLeverTest() {
@@ -69,8 +70,8 @@ TEST_F(EstimatorLeverTest, TheTwistIsThatOfBaseLink) {
               of_middle_.twist_covariance[7] + kAhead * kAhead * of_middle_.twist_covariance[35], 1e-12);
 }
 
-// Grown by the restart's constants; that of the yaw swings base_link, too. The clock offset is open again: whether the
-// wheels are late is even, and then the robot is ahead of them by its speed times the offset.
+// The covariance grows by the restart's constants; that of the yaw moves base_link, too. The clock offset is unknown
+// again. So it may be that the wheels are late, and then the robot is ahead of them by its speed times the offset.
 TEST_F(EstimatorLeverTest, ARestartKeepsTheCovariance) {
   for (int i = 0; i < 2000; ++i) step(0.4, 0);
   const auto expect_kept = [&](const StateFrame& before, double axle) {
@@ -95,8 +96,8 @@ TEST_F(EstimatorLeverTest, ARestartKeepsTheCovariance) {
   expect_kept(of_ahead_, -kAhead);
 }
 
-// Deviations of the bias are published in the IMU's axes, and continued from these. A drive without a rest leaves that
-// about the vertical another one than those of tilting.
+// Deviations of the bias are published in the IMU's axes, and continued from these. After a drive without a rest that
+// about the vertical differs from those of tilting.
 TEST(EstimatorOutput, ARestartKeepsTheDeviationsOfTheBias) {
   RobotModel model = two_wheeler();
   model.imu_in_base.orientation = {std::sqrt(0.5), 0, 0, std::sqrt(0.5)};  // its y axis upwards
@@ -120,7 +121,7 @@ TEST(EstimatorOutput, ARestartKeepsTheDeviationsOfTheBias) {
 
 class EstimatorPlaneTest : public testing::TestWithParam<bool> {};
 
-// Nose up at 0.05 rad/s.
+// The nose rises at 0.05 rad/s.
 TEST_P(EstimatorPlaneTest, ThePitchRateIsPublishedOutsideOfThePlaneAlone) {
   EstimatorParameters parameters = rigid_tyres();
   parameters.planar = GetParam();

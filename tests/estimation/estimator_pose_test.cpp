@@ -1,4 +1,4 @@
-// Where the robot is: the estimator against a truth in closed form, with ideal sensors.
+// The estimated pose against a truth in closed form, with ideal sensors.
 
 #include <cstring>
 
@@ -9,7 +9,7 @@
 namespace robot_control {
 namespace {
 
-/// Ideal sensors leave no more than two readings of an encoder, at either end of a way.
+/// Ideal sensors leave at most two readings of an encoder, at either end of a way.
 double reading() {
   return 2 * EstimatorParameters{}.encoder_noise * two_wheeler().wheels[0].radius;  // m
 }
@@ -76,7 +76,7 @@ TEST_F(EstimatorPoseTest, FirstEncoderReadingIsTheOffset) {
   EXPECT_EQ(state_.distance, 0);
 }
 
-// Rest is held until a wheel has left its tolerance; what happened in that window is made good at once.
+// Rest is held until a wheel has left its tolerance; the motion in that window is then added at once.
 TEST_F(EstimatorPoseTest, NothingOfAnEndedRestIsLost) {
   int waited = 0;
   while (x() == 0 && waited < 100) {
@@ -122,7 +122,7 @@ TEST(EstimatorPoseOfOtherRobots, FourWheelsTurnAboutTheirMiddleByTheEffectiveWhe
   EXPECT_NEAR(state.wheels.yaw, robot.yaw(), 1e-9);
 }
 
-// Constant velocity through a gap of eight cycles.
+// The velocity is constant through a gap of eight cycles.
 TEST_F(EstimatorPoseTest, SkippedCyclesAreTravelledAndCounted) {
   drive(0.5, 0.2, 1000);
   for (int i = 0; i < 8; ++i) robot_.drive(0.5, 0.2);
@@ -159,7 +159,7 @@ TEST_F(EstimatorPoseTest, ResetPoseIsZeroInTheNextFrameAndKeepsTheTwist) {
   EXPECT_GT(state_.distance, distance);
 }
 
-// An IMU high on a robot that may be tilted: its own place is in doubt, base_link's is not.
+// The IMU is high on a robot that may be tilted: its own place is uncertain, that of base_link is not.
 TEST(EstimatorPoseOfOtherRobots, ResetPoseIsExactForBaseLinkUnderAnyImu) {
   RobotModel model = two_wheeler();
   model.imu_in_base.position = {0.2, -0.1, 0.8};
@@ -179,7 +179,7 @@ TEST(EstimatorPoseOfOtherRobots, ResetPoseIsExactForBaseLinkUnderAnyImu) {
   }
 }
 
-// From (1, 2, 90°) ahead is odom y.
+// From (1, 2, 90°), ahead is y of odom.
 TEST_F(EstimatorPoseTest, SetPoseContinuesFromThere) {
   drive(0.5, 0.2, 1000);
   drive(0.5, 0, 1000);
@@ -194,7 +194,7 @@ TEST_F(EstimatorPoseTest, SetPoseContinuesFromThere) {
   EXPECT_GT(state_.pose_covariance[7], 0);
 }
 
-// The covariance of what is learned turns with the pose: from then on both drive by the same numbers.
+// The covariance of the calibration turns with the pose: from then on both drives give the same numbers.
 TEST_F(EstimatorPoseTest, SetPoseIsTheSameDriveInOtherAxes) {
   drive(0.5, 0.2, 2000);
   Estimator turned = estimator_;
@@ -308,9 +308,9 @@ TEST_F(EstimatorPoseTest, CovarianceGrowsWithDistanceAndWithTurn) {
   EXPECT_GT(state_.pose_covariance[35], yaw_straight);
 }
 
-// The mean of two independent wheels: σ² after d metres is wheel_slip_noise² · d / 2, once the residuals of a perfect
-// floor have brought the learned slip noise down to that least one. Compared at rest, where the clock offset does not
-// matter.
+// The mean of two independent wheels has σ² after d metres of wheel_slip_noise² · d / 2. It holds once the residuals of
+// a perfect floor have reduced the learned slip noise to that lower bound. The comparison is at rest, where the clock
+// offset does not matter.
 TEST_F(EstimatorPoseTest, DistanceVarianceIsThatOfTwoIndependentWheels) {
   drive(0.5, 0, 200000);
   drive(0, 0, 3000);
@@ -319,10 +319,10 @@ TEST_F(EstimatorPoseTest, DistanceVarianceIsThatOfTwoIndependentWheels) {
   drive(0.5, 0, 20000);
   drive(0, 0, 3000);
   const double noise = EstimatorParameters{}.wheel_slip_noise;
-  const double way = robot_.distance - distance;
+  const double distance_driven = robot_.distance - distance;
   const double radius = EstimatorParameters{}.wheel_radius_deviation;
   const double scaled = radius * radius * (robot_.distance * robot_.distance - distance * distance);
-  const double expected = noise * noise / 2 * way;
+  const double expected = noise * noise / 2 * distance_driven;
   EXPECT_NEAR(state_.pose_covariance[0] - before - scaled, expected, 0.02 * expected + 1e-6 * scaled);
 }
 

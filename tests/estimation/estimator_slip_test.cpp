@@ -1,4 +1,4 @@
-// Wheels that do not roll: which and why is published soon, and the pose hardly suffers. And no flag where they roll.
+// Wheels slip: the state soon reports which and why, and the pose hardly changes. Rolling wheels raise no flag.
 
 #include <cstring>
 
@@ -8,7 +8,8 @@
 namespace robot_control {
 namespace {
 
-/// Two seconds of standing, curves in which the clock offset is found, then 0.5 m/s; noise as of a consumer IMU.
+/// Stands for two seconds, drives curves in which the clock offset is found, then 0.5 m/s; the noise is that of a
+/// consumer IMU.
 class EstimatorSlipTest : public EstimatorFixture {
  protected:
   explicit EstimatorSlipTest(int curves = 20000) {
@@ -19,7 +20,7 @@ class EstimatorSlipTest : public EstimatorFixture {
     EXPECT_EQ(state_.slip, 0u);
   }
   bool names(std::uint64_t reasons) const { return (state_.slip & reasons) == reasons; }
-  /// Cycles, of `cycles` in which the robot moves on as it does, until slip is flagged; counts those in which it was.
+  /// Cycles, of `cycles` with the present motion, until slip is flagged; counts the flagged ones.
   int flagged(int cycles) {
     int count = 0;
     for (int i = 0; i < cycles; ++i) {
@@ -52,7 +53,7 @@ TEST_F(EstimatorSlipTest, AWheelThatSpinsIsNamed) {
   EXPECT_LT(position_error(), raw_error() / 5);
 }
 
-// The accelerometer's bias is not known: what it says of a slide would move the path by metres.
+// The accelerometer's bias is not known, so its integral of a slide would move the path by metres.
 TEST_F(EstimatorFixture, ASlideBeforeTheFirstRestIsNotCorrected) {
   robot_.noise = {.gyro = 1e-4, .accelerometer = 1e-3, .counts = 4096};
   const auto slipping = [&] {
@@ -115,7 +116,7 @@ TEST_F(EstimatorSlipTest, LockedWheelsOfARobotThatSlidesOn) {
   EXPECT_LT(position_error(), 3 * std::sqrt(state_.pose_covariance[0] + state_.pose_covariance[7]));
 }
 
-/// Has not turned yet: wheels and accelerometer may be a tenth of a second apart.
+/// The robot has not turned yet: wheels and accelerometer may be a tenth of a second apart.
 class EstimatorSlipBeforeATurn : public EstimatorSlipTest {
  protected:
   EstimatorSlipBeforeATurn() : EstimatorSlipTest(0) {}
@@ -143,7 +144,7 @@ TEST_F(EstimatorSlipTest, SlidingSidewaysIsNamed) {
   EXPECT_LT(position_error(), 3 * std::sqrt(state_.pose_covariance[0] + state_.pose_covariance[7]));
 }
 
-// The body leans by 2°: the accelerometer shows a slide without end. The path does not move.
+// The body leans by 2°: the accelerometer shows an endless slide. The path does not move.
 TEST_F(EstimatorSlipTest, ABodyThatLeansDoesNotDriftAway) {
   robot_.accelerometer_bias.y() += 0.34;
   double farthest = 0;
@@ -171,7 +172,7 @@ TEST_F(EstimatorSlipTest, TheVelocityOfASlideIsTheInertialOne) {
   EXPECT_LT(worst, 0.02);  // 1 s of 1e-3 m/s²/√Hz, and of the tilt's deviation
 }
 
-// From the first cycle of the verdict on.
+// This holds from the first cycle of the verdict on.
 TEST_F(EstimatorSlipTest, TheVelocityOfASlideIsAsUncertainAsItIsWrong) {
   robot_.tread = {1.5, 1.5};
   while (flagged(1) == 0) ASSERT_LT(robot_.distance, 20);
@@ -194,7 +195,7 @@ TEST_F(EstimatorSlipTest, IsNotForgottenWhereThePoseIsSet) {
   EXPECT_NEAR(speed(), forward, 0.05);
 }
 
-// However long it spun.
+// This holds for any duration of the spin.
 TEST_F(EstimatorSlipTest, EndsWhenTheWheelRollsAgain) {
   robot_.tread[0] = 1.0;
   constexpr int cycles = 6000;
@@ -226,7 +227,7 @@ double level(double) {
   return 0;
 }
 
-/// Random drives with noise, rolling all the time: how much of it is flagged.
+/// Random drives with noise, always rolling; the flagged share is measured.
 class EstimatorRollingTest : public testing::Test {
  protected:
   static constexpr unsigned kSeeds = 4;
@@ -282,14 +283,14 @@ TEST_F(EstimatorRollingTest, GroundThatPitchesTheBodyIsNotCalledSlip) {
   EXPECT_LE(flagged(model, rolls, pitch_rate), 0.03);
 }
 
-constexpr double kLargestCreep = 0.03;  // of rubber under force
+constexpr double kMaxCreep = 0.03;  // of rubber under force
 
 TEST_F(EstimatorRollingTest, CreepIsNotCalledSlip) {
   const auto creeps = [](RollingRobot& robot, int) {
     for (const std::size_t side : {0U, 1U}) {
       const double sign = side == 0 ? -1 : 1;
       const double rolling = robot.motion.velocity.x() + sign / 2 * two_wheeler().wheel_base * robot.motion.rate.z();
-      robot.tread[side] = rolling * (1 - 0.4 * kLargestCreep * sign);
+      robot.tread[side] = rolling * (1 - 0.4 * kMaxCreep * sign);
     }
   };
   EXPECT_LE(flagged(two_wheeler(), creeps, level), 0.03);

@@ -1,4 +1,4 @@
-// Ground that is not level: height, roll and pitch in three dimensions, or the horizontal projection.
+// The ground is not level: height, roll and pitch in three dimensions, or the horizontal projection.
 
 #include "estimation/estimator_fixture.h"
 #include "support/constants.h"
@@ -10,8 +10,8 @@ constexpr double kSlope = 0.1;  // rad, upwards
 constexpr double kTime = 1.0;   // s, in which the robot pitches
 constexpr double kSpeed = 0.5;
 
-/// From level ground onto a ramp: the body pitches up about its contacts by kSlope, evenly accelerated and braked. On
-/// the ramp the way s rises by s sin(slope) and goes s cos(slope) far.
+/// The robot drives from level ground onto a ramp: the body pitches up about its contacts by kSlope, evenly accelerated
+/// and braked. On the ramp the way s rises by s sin(slope) and reaches s cos(slope) far.
 class EstimatorSlopeTest : public testing::TestWithParam<bool> {
  protected:
   EstimatorSlopeTest() {
@@ -44,9 +44,9 @@ TEST_P(EstimatorSlopeTest, TheWayOnARampIsThatOfItsClosedForm) {
   const double x = state_.pose_odom.position[0];
   const double z = state_.pose_odom.position[2];
   for (int i = 0; i < 6000; ++i) step(robot, estimator, kSpeed);
-  const double way = kSpeed * 6000 * kPeriod;
-  ASSERT_NEAR(robot.position.z() - at_foot.z(), way * std::sin(kSlope), 1e-4) << "the truth itself";
-  EXPECT_NEAR(state_.pose_odom.position[0] - x, way * std::cos(kSlope), 0.002 * way);
+  const double travel = kSpeed * 6000 * kPeriod;
+  ASSERT_NEAR(robot.position.z() - at_foot.z(), travel * std::sin(kSlope), 1e-4) << "the truth itself";
+  EXPECT_NEAR(state_.pose_odom.position[0] - x, travel * std::cos(kSlope), 0.002 * travel);
   EXPECT_EQ(state_.slip, 0u);
   EXPECT_TRUE(state_.flags & kStateValid);
   // Attitude is always published; nose up is a negative pitch.
@@ -60,7 +60,7 @@ TEST_P(EstimatorSlopeTest, TheWayOnARampIsThatOfItsClosedForm) {
     EXPECT_EQ(state_.twist_base.linear[2], 0);
     EXPECT_EQ(state_.pose_covariance[14], Tuning::kPlanarVariance);
   } else {
-    EXPECT_NEAR(state_.pose_odom.position[2] - z, way * std::sin(kSlope), 0.01 * way);
+    EXPECT_NEAR(state_.pose_odom.position[2] - z, travel * std::sin(kSlope), 0.01 * travel);
     EXPECT_EQ(state_.pose_odom.orientation, state_.attitude);
     EXPECT_TRUE(is_covariance(state_.pose_covariance, 1e-12));
   }
@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Planar, EstimatorSlopeTest, testing::Bool(), [](const t
   return planar.param ? "Projected" : "InThreeDimensions";
 });
 
-// It stands on a ramp when it is switched on: tilt and bias cannot be separated; it does not move.
+// It stands on a ramp when it is switched on: tilt and bias cannot be separated, and it does not move.
 TEST(EstimatorOnARamp, StartsWithTheTiltThatItStandsAt) {
   EstimatorParameters parameters;
   parameters.planar = false;

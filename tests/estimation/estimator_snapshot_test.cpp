@@ -21,7 +21,7 @@ static_assert(kCopyableState<Tilt>);
 class EstimatorSnapshotTest : public EstimatorFixture {
  protected:
   EstimatorSnapshotTest() { robot_.noise = {.gyro = 2.44e-4, .accelerometer = 2e-3, .counts = 4096}; }
-  /// Rest, drive, a wheel that spins, a gyro that is lost, rest again.
+  /// The events are rest, drive, a wheel that spins, a gyro that is lost, and rest again.
   void event(int cycle) {
     const bool moves = cycle > 1500 && cycle < 9000;
     if (cycle == 5000) robot_.tread[0] = 1.2;

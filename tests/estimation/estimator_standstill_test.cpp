@@ -1,4 +1,4 @@
-// Standing: biases are learned, and nothing moves.
+// At standstill biases are learned, and nothing moves.
 
 #include "estimation/estimator_fixture.h"
 #include "support/constants.h"
@@ -79,7 +79,7 @@ TEST_F(EstimatorStandstillTest, NeitherPoseNorItsCovarianceMovesUnderNoise) {
   drive(0, 0, 20000);
   EXPECT_EQ(x(), before.pose_odom.position[0]);
   EXPECT_EQ(y(), before.pose_odom.position[1]);
-  // A yaw is what the tilt leaves of it: that is learned, and turns by nothing about the vertical.
+  // The yaw is the part of the turn that the tilt leaves; it is learned, and does not turn about the vertical.
   EXPECT_NEAR(yaw(), yaw_of(before.pose_odom), 1e-6);
   EXPECT_LE(state_.pose_covariance[0], before.pose_covariance[0] * (1 + 1e-12));
   EXPECT_LE(state_.pose_covariance[7], before.pose_covariance[7] * (1 + 1e-12));
@@ -121,7 +121,7 @@ TEST_F(EstimatorStandstillTest, CovarianceStopsGrowingAfterADrive) {
   for (const std::size_t i : {0U, 7U, 35U}) EXPECT_LE(state_.pose_covariance[i], before.pose_covariance[i] + 1e-15);
 }
 
-// Learned at rest, the bias changes while driving only by as much as it may have walked: three of its deviations.
+// The bias is learned at rest and changes while driving at most by its random walk: three of its deviations.
 TEST_F(EstimatorStandstillTest, ALearnedBiasIsKeptWhileDriving) {
   robot_.gyro_bias.z() = 0.01;
   drive(0, 0, 2000);
@@ -136,14 +136,14 @@ TEST_F(EstimatorStandstillTest, DoesNotLearnFromAGyroThatTurnsWithHeldWheels) {
   const double learned = state_.gyro_bias[2];
   robot_.tread = {0.0, 0.0};
   const double before = robot_.yaw();
-  drive(0, 0.5, 3000);  // turned on ice, which the gyro measures
+  drive(0, 0.5, 3000);  // the robot turns on ice, which the gyro measures
   EXPECT_FALSE(standing());
   // The window in which the turn begins may hold standstill_speed, and no gain is above 1/8 by then.
   EXPECT_NEAR(state_.gyro_bias[2], learned, EstimatorParameters{}.standstill_speed / 8);
   EXPECT_NEAR(std::remainder(yaw() - robot_.yaw(), 2 * std::numbers::pi), 0, 0.02 * (robot_.yaw() - before));
 }
 
-// A motor's hum: rest is judged by wheels and gyro alone.
+// A motor hums: rest is judged by wheels and gyro alone.
 TEST_F(EstimatorStandstillTest, LearnsTheBiasWhileTheAccelerometerShakes) {
   robot_.gyro_bias.z() = 0.02;
   for (int i = 0; i < 3000; ++i) {
@@ -164,7 +164,7 @@ TEST_F(EstimatorStandstillTest, LearnsWithoutAnAccelerometer) {
   EXPECT_TRUE(has(kStateNoAccelerometer));
 }
 
-// 30 s at 0.02 rad/s of uncorrected bias would be 0.6 rad; that of a rest of 10 s is known to 2.44e-4/√10 rad/s.
+// 30 s at 0.02 rad/s of uncorrected bias would be 0.6 rad; a rest of 10 s gives the bias to 2.44e-4/√10 rad/s.
 TEST_F(EstimatorStandstillTest, ALearnedBiasKeepsTheYawOfALongDrive) {
   robot_.gyro_bias.z() = 0.02;
   drive(0, 0, 10000);
@@ -182,8 +182,8 @@ TEST_F(EstimatorStandstillTest, ARestLearnsTheBiasAnew) {
   EXPECT_NEAR(state_.gyro_bias[2], 0.0205, 0.0002);
 }
 
-// As that of another temperature: its stated deviation is a thousandth of its error. Nothing turns a robot so evenly
-// on wheels that stand.
+// The bias jumps as between temperatures: its stated deviation is a thousandth of its error. Nothing turns a robot so
+// evenly on wheels that stand.
 TEST_F(EstimatorStandstillTest, ABiasThatChangedAtOnceIsLearnedAnew) {
   drive(0, 0, 1000);
   robot_.gyro_bias.z() = 0.1;
@@ -206,7 +206,7 @@ TEST_F(EstimatorStandstillTest, AnEncoderThatFlickersByOneCountStillStands) {
   EXPECT_EQ(yaw(), 0);
 }
 
-// Slower than the tolerance in a window: nothing is lost when it ends, either.
+// The creep is slower than the tolerance in a window: nothing is lost at its end, either.
 TEST_F(EstimatorStandstillTest, ACreepThatIsTakenForRestIsMadeGoodWhenItEnds) {
   drive(0, 0, 1000);
   const double creep = 0.5 * tolerance() / (kWindow * kPeriod);
@@ -218,7 +218,7 @@ TEST_F(EstimatorStandstillTest, ACreepThatIsTakenForRestIsMadeGoodWhenItEnds) {
   }
   EXPECT_EQ(x(), 0);
   drive(0.5, 0, 200);
-  // What a completed window held before is at most its tolerance.
+  // The motion in a completed window is at most its tolerance.
   EXPECT_NEAR(x(), robot_.x(), tolerance());
 }
 

@@ -1,4 +1,4 @@
-// What a run begins with is not always rest: in motion, anew in the midst of a drive, after a hole in all samples.
+// A run may begin in motion, during a drive, or after a gap in all samples.
 
 #include "estimation/estimator_fixture.h"
 #include "support/constants.h"
@@ -14,7 +14,8 @@ class EstimatorStartTest : public EstimatorFixture {
   }
 };
 
-// 12 s at 0.5 m/s: the speed is found out of travel, within a count's deviation per 0.1 s; 1 % is ten times that.
+// It drives 12 s at 0.5 m/s. The speed is found from travel, within a count's deviation per 0.1 s; 1 % is ten times
+// that.
 TEST_F(EstimatorStartTest, ARunThatBeginsInMotionFindsItsSpeed) {
   drive_unseen(0.5, 0.1, 1000);
   observe();
@@ -25,7 +26,7 @@ TEST_F(EstimatorStartTest, ARunThatBeginsInMotionFindsItsSpeed) {
   EXPECT_TRUE(has(kStateValid));
 }
 
-// Tilt and bias are learned while it stands; nothing of that moves the robot.
+// Tilt and bias are learned at rest, and do not move the robot.
 TEST_F(EstimatorStartTest, AFreshRunStandsAtZero) {
   stand();
   EXPECT_LT(std::hypot(state_.pose_odom.position[0], state_.pose_odom.position[1]), 1e-6);

@@ -10,7 +10,7 @@
 namespace robot_control {
 namespace {
 
-/// A gyro and an accelerometer that brought their first samples: 0.1 rad/s and 1 m/s² along z.
+/// A gyro and an accelerometer have given their first samples: 0.1 rad/s and 1 m/s² along z.
 class ImuSamplesTest : public testing::Test {
  protected:
   ImuSamplesTest() { both(0.1, 1.0, 0); }
@@ -50,7 +50,7 @@ TEST_F(ImuSamplesTest, TheAccelerometerIsTheSampleItself) {
   EXPECT_EQ(imu_.accelerometer()->z(), 3.0);
 }
 
-// Steps without a sample take the last one; the step that brings the next one makes the trapezoid whole.
+// Steps without a sample use the last one; the step with the next sample completes the trapezoid.
 TEST_F(ImuSamplesTest, TheIntegralOverIrregularGapsIsTheTrapezoidOfTheSamples) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> value(-2, 2);
@@ -79,7 +79,7 @@ TEST_F(ImuSamplesTest, TheIntegralOverIrregularGapsIsTheTrapezoidOfTheSamples) {
 TEST_F(ImuSamplesTest, AGapLongerThanTheHoldIsNotBridged) {
   gyro(0.1);
   gyro(0.5, 2 * Tuning::kMaxHoldTime);
-  EXPECT_FALSE(imu_.gyro().has_value());  // neither sample speaks for all that time
+  EXPECT_FALSE(imu_.gyro().has_value());  // neither sample covers all that time
   gyro(0.5);
   EXPECT_EQ(rate(), 0.5);
 }
@@ -110,7 +110,7 @@ TEST_F(ImuSamplesTest, ASampleHoldsForTheLongHoldAtMost) {
   EXPECT_FALSE(imu_.gyro().has_value());
 }
 
-// The first gap ends beyond the short hold: it must be learned all the same.
+// The first gap ends beyond the short hold: it must be learned nevertheless.
 TEST_F(ImuSamplesTest, ASensorSlowerThanTheShortHoldIsHeldFromItsSecondSampleOn) {
   constexpr int kRows = 5;
   constexpr double kGap = 2 * Tuning::kMinHoldTime;
@@ -158,7 +158,7 @@ TEST_F(ImuSamplesTest, ALostSensorComesBackWithItsNextSample) {
   EXPECT_EQ(imu_.accelerometer()->z(), 2.0) << "with two: one after a long gap may be a slow sensor's";
 }
 
-// What happens between its samples is not known.
+// The motion between its samples is not known.
 TEST_F(ImuSamplesTest, ASlowAccelerometerIsNone) {
   for (int i = 0; i < 10; ++i) accelerometer(1.0, 0.9 * Tuning::kSlowAccelerometer);
   EXPECT_TRUE(imu_.accelerometer().has_value());
@@ -166,7 +166,7 @@ TEST_F(ImuSamplesTest, ASlowAccelerometerIsNone) {
   EXPECT_FALSE(imu_.accelerometer().has_value());
 }
 
-// Otherwise a gyro slower than the shortest hold would be lost for ever.
+// Otherwise a gyro slower than the shortest hold would be lost permanently.
 TEST_F(ImuSamplesTest, AGyroSlowerThanTheShortHoldIsFoundOut) {
   const double gap = 1.5 * Tuning::kMinHoldTime;
   for (int i = 0; i < 4; ++i) gyro(0.2, gap);
@@ -204,7 +204,7 @@ TEST_F(ImuSamplesTest, WhatIsNotOfferedIsNotRefused) {
   EXPECT_FALSE(imu_.refused());
 }
 
-// A quarter turn about z: the IMU's x looks to the left.
+// A quarter turn about z points the IMU's x to the left.
 TEST_F(ImuSamplesTest, SamplesAreInBaseAxes) {
   base_from_imu_ = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   imu_ = {};

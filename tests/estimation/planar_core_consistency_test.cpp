@@ -1,5 +1,5 @@
-// Drives with noise that is exactly the one that the planar core's model has: is the error as large as stated, and is
-// the level of the slip noise found?
+// Drives with noise that equals the model of the planar core show whether the error is as large as stated. They also
+// show whether the level of the slip noise is found.
 
 #include <Eigen/Cholesky>
 #include <deque>
@@ -11,7 +11,7 @@
 namespace robot_control {
 namespace {
 
-/// Wheels that slip, a gyro with noise and bias, and a core that follows both. A block is 1 s.
+/// Wheels slip, a gyro has noise and bias, and a core follows both. A block is 1 s.
 class NoisyDrive {
  public:
   NoisyDrive(const PlanarCoreParams& params, double slip, double twist, unsigned seed)
@@ -40,7 +40,7 @@ class NoisyDrive {
     core_.end_block(left, right, rate_, 1.0);
   }
 
-  /// Steps by which the wheels are read later than the gyro.
+  /// Sets the steps by which the wheels are read later than the gyro.
   void delay_wheels(int steps) { late_.assign(static_cast<std::size_t>(steps), {0, 0}); }
 
   /// Normalised estimation error squared of x, y and yaw.
@@ -59,14 +59,14 @@ class NoisyDrive {
   double normal() { return normal_(random_); }
 
   /// m, of either side, as read in this step.
-  std::pair<double, double> step(double way, double turn) {
-    truth_.x += way * std::cos(truth_.yaw + turn / 2);
-    truth_.y += way * std::sin(truth_.yaw + turn / 2);
+  std::pair<double, double> step(double travel, double turn) {
+    truth_.x += travel * std::cos(truth_.yaw + turn / 2);
+    truth_.y += travel * std::sin(truth_.yaw + turn / 2);
     truth_.yaw += turn;
-    // What the treads roll: the turn that the contacts do not follow, and the slip of either side by itself.
+    // The treads roll with the turn that the contacts do not follow, and with the slip of either side.
     const double turned = params_.wheel_base * (1 + base_) * (turn + twist_ * std::sqrt(std::abs(turn)) * normal());
-    const double rolled_left = way - turned / 2;
-    const double rolled_right = way + turned / 2;
+    const double rolled_left = travel - turned / 2;
+    const double rolled_right = travel + turned / 2;
     const double slipped_left = slip_ * std::sqrt(std::abs(rolled_left)) * normal();
     const double slipped_right = slip_ * std::sqrt(std::abs(rolled_right)) * normal();
     late_.emplace_back((rolled_left + slipped_left) * (1 + ratio_ / 2),
@@ -78,7 +78,7 @@ class NoisyDrive {
     core_.turn_by_gyro(measured, kStep);
     const double middle = (before + core_.pose().yaw) / 2 - rate_ * core_.offset();
     const double ahead = (read.first + read.second) / 2 + core_.ratio() * (read.second - read.first) / 4;
-    const double aside = slip_ / std::sqrt(2.0) * std::sqrt(std::abs(way)) * normal();
+    const double aside = slip_ / std::sqrt(2.0) * std::sqrt(std::abs(travel)) * normal();
     core_.roll(std::cos(middle) * ahead - std::sin(middle) * aside, std::sin(middle) * ahead + std::cos(middle) * aside,
                rate_);
     return read;
@@ -105,8 +105,8 @@ void drive_legs(NoisyDrive& drive, int blocks) {
 
 constexpr double kSlipNoise = 5e-3;  // m/√m, with which the core begins
 
-// A minute each; the yaw stays so well known that the error is linear. Mean of 200 χ² of 3 degrees of freedom: its 95 %
-// band is 3 ± 1.96 √(2·3/200).
+// Each drive takes a minute; the yaw stays so well known that the error is linear. The mean of 200 χ² of 3 degrees of
+// freedom has the 95 % band 3 ± 1.96 √(2·3/200).
 TEST(CoreConsistency, TheErrorIsAsLargeAsStatedWhereTheSlipNoiseIsKnown) {
   constexpr int kDrives = 200;
   double sum = 0;
@@ -133,8 +133,8 @@ TEST(CoreConsistency, ALearnedSlipNoiseCostsNoMoreThanItsScatter) {
   EXPECT_LT(sum / kDrives, 2.0 * (1 + 1.96 * std::sqrt(2.0 / kDrives)));
 }
 
-// Readings of the wheels that are late by τ. The rates at the ends of a block alone give τ to the first order: where
-// the rate changes by α, α τ²/2 is left of α τ, 5 % at 0.1 s.
+// Readings of the wheels are late by τ. The rates at the ends of a block give τ only to the first order. If the rate
+// changes by α, α τ²/2 is left of α τ, 5 % at 0.1 s.
 TEST(CoreConsistency, TheClockOffsetIsFound) {
   for (const int steps : {0, 1, 5}) {
     const double late = steps * NoisyDrive::kStep;
@@ -160,7 +160,8 @@ double learned(double slip, unsigned seed) {
 
 class CoreSlipNoise : public testing::TestWithParam<double> {};
 
-// Its mean over ten drives. The gyro's noise and the doubt about turn slip explain a part of it: never more than all.
+// The mean is taken over ten drives. The gyro's noise and the uncertain turn slip explain a part of it, so it never
+// exceeds the whole.
 TEST_P(CoreSlipNoise, IsThatOfTheFloor) {
   double sum = 0;
   for (unsigned seed = 0; seed < 10; ++seed) sum += std::log(learned(GetParam(), seed)) / 10;
@@ -179,7 +180,7 @@ TEST(CoreConsistency, TheSlipNoiseBeginsPessimisticAndFallsToTheLeast) {
   EXPECT_EQ(core.slip(), PlanarCoreParams{}.slip_least);
 }
 
-// Whatever is done to it, in any order.
+// This holds for any operations in any order.
 TEST(CoreConsistency, TheCovarianceIsNeverNegative) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::mt19937 random(seed);

@@ -1,5 +1,5 @@
 #pragma once
-/// A planar core in the midst of a drive, and matrices of the textbook beside it.
+/// A planar core during a drive, and matrices of the textbook for comparison.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace robot_control {
 using CoreMatrix = PlanarCore::Matrix;
 using CoreVector = PlanarCore::Vector;
 
-/// What of the error state is a value: all but the gyro's scale, which is 0.
+/// The values of the error state; the gyro's scale has none and is 0.
 inline CoreVector values_of(const PlanarCore& core) {
   CoreVector x = CoreVector::Zero();
   x[PlanarCore::kX] = core.pose().x;
@@ -32,7 +32,7 @@ inline PlanarCoreParams core_without_noise() {
   return {.gyro_noise = 0, .gyro_bias_walk = 0};
 }
 
-/// `blocks` of 1 s at 0.4 m/s with a turn of 0.3 rad, exact sensors and clocks. The rate goes to and fro.
+/// Drives `blocks` of 1 s at 0.4 m/s with a turn of 0.3 rad, exact sensors and clocks. The rate alternates.
 inline void practise(PlanarCore& core, int blocks) {
   constexpr int kSteps = 20;
   constexpr double kWay = 0.4;

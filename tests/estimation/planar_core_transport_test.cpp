@@ -1,4 +1,4 @@
-// What a step does to the covariance of the planar core, against derivatives of the step by differences.
+// Compares the transport of the planar core's covariance in a step with derivatives of the step by differences.
 
 #include <functional>
 
@@ -25,7 +25,7 @@ CoreMatrix derivative(const Step& step, const CoreVector& at) {
   return by;
 }
 
-/// A core whose error state is correlated throughout, in the midst of a block.
+/// A core whose error state is correlated throughout, in the middle of a block.
 class CoreTransportTest : public testing::Test {
  protected:
   CoreTransportTest() : core_(core_without_noise()) {
@@ -86,7 +86,7 @@ TEST_F(CoreTransportTest, AWayTurnsWithTheYawOfItsReading) {
   expect_transport(step, before, at, noise);
 }
 
-// Where the calibration is that of the model.
+// The calibration is that of the model here.
 TEST_F(CoreTransportTest, TheWheelsTurnByTheirCalibration) {
   PlanarCoreParams params = core_without_noise();
   params.slip_least = 0;

@@ -1,4 +1,5 @@
-// The planar core's update against that of the textbook: a Kalman filter with a considered state (S. F. Schmidt, 1966).
+// Compares the planar core's update with that of the textbook: a Kalman filter with a considered state (S. F. Schmidt,
+// 1966).
 
 #include "estimation/planar_core_fixture.h"
 
@@ -8,7 +9,7 @@ namespace {
 constexpr double kRounding = 1e-12;  // relative
 constexpr double kBase = PlanarCoreParams{}.wheel_base;
 
-/// A block of 0.4 m and 0.3 rad that is about to end. The calibration is held, so that it does not walk.
+/// A block of 0.4 m and 0.3 rad is about to end. The calibration is held, so that it does not walk.
 class CoreUpdateTest : public testing::Test {
  protected:
   CoreUpdateTest() {
@@ -17,7 +18,7 @@ class CoreUpdateTest : public testing::Test {
     core_.turn_by_gyro(0.3, 1.0);
     core_.roll(0.4 * std::cos(core_.pose().yaw), 0.4 * std::sin(core_.pose().yaw), 0.3);
   }
-  /// m: of the right side beyond what the gyro turned.
+  /// m: motion of the right side beyond the turn of the gyro.
   PlanarCore::Innovation end_block(double innovation) {
     const double turn = kBase * (1 + core_.base()) * (core_.turned() - core_.offset() * kLater);
     const double difference = turn + innovation - core_.ratio() * kWay;
@@ -78,7 +79,7 @@ TEST_F(CoreUpdateTest, TheGyrosScaleIsNeverBetterKnown) {
   EXPECT_EQ(core_.covariance(PlanarCore::kScale, PlanarCore::kScale), before);
 }
 
-// Of an innovation of n deviations, Huber's bound lets 2 pull.
+// Huber's bound lets an innovation of n deviations pull like 2.
 TEST_F(CoreUpdateTest, AnInnovationPullsNoHarderThanHubersBound) {
   PlanarCore other = core_;
   const double deviation = 1e-4 / std::sqrt(end_block(1e-4).nis);
@@ -111,8 +112,8 @@ TEST_F(CoreUpdateTest, WhatIsHeldIsNotLearned) {
   EXPECT_EQ(core_.calibration().wheel_base_factor, 1.02);
 }
 
-// Gyro's mean at rest, of variance r: a Kalman update. What it would make of the pose beyond what the bias made of it
-// enters the covariance.
+// The gyro's mean at rest, of variance r, is a Kalman update. The part of its effect on the pose beyond that of the
+// bias enters the covariance.
 TEST_F(CoreUpdateTest, ARestIsAKalmanUpdateOfTheBias) {
   const CoreMatrix before = core_.covariance();
   const CoreVector x = values_of(core_);
@@ -147,8 +148,8 @@ TEST_F(CoreUpdateTest, ASettledRestLeavesThePose) {
   EXPECT_NEAR(core_.bias(), 0.003, 1e-3);
 }
 
-// Before the first rest a bias and wheels of two sizes look the same: the plain odometry goes on, and its covariance
-// has the correction that was held back. The calibration is corrected.
+// Before the first rest a bias and wheels of two sizes look the same. The plain odometry goes on, and its covariance
+// includes the correction that was held back. The calibration is corrected.
 TEST_F(CoreUpdateTest, CorrectionsThatAreHeldBackAreGivenOutAtOnce) {
   PlanarCore free = core_;
   core_.set_bias_known(false);
@@ -165,7 +166,7 @@ TEST_F(CoreUpdateTest, CorrectionsThatAreHeldBackAreGivenOutAtOnce) {
   EXPECT_LT((core_.covariance() - expected).cwiseAbs().maxCoeff(), kRounding * expected.cwiseAbs().maxCoeff());
 }
 
-// A gyro that is off by 0.05 rad/s, and wheels that say so. Those which a turn drags could be of two sizes.
+// A gyro is off by 0.05 rad/s, and the wheels show that. Wheels that a turn drags could also be of two sizes.
 TEST_F(CoreUpdateTest, OnlyWheelsThatAreNotDraggedShowABias) {
   constexpr double kBias = 0.05;
   for (const bool drags : {false, true}) {
@@ -184,7 +185,7 @@ TEST_F(CoreUpdateTest, OnlyWheelsThatAreNotDraggedShowABias) {
   }
 }
 
-// Blocks in which the wheels turned the other way do not change by how much.
+// Blocks in which the wheels turned the other way do not change the amount.
 TEST_F(CoreUpdateTest, TheFirstRestCorrectsThePathByItsBiasAlone) {
   constexpr double kBias = 0.01;
   for (const double wheels : {0.0, 0.05}) {
@@ -221,7 +222,7 @@ TEST_F(CoreUpdateTest, AnUncertainYawShortensThePath) {
   EXPECT_EQ(core.covariance()(PlanarCore::kX, PlanarCore::kX), 0);
 }
 
-// The rest shows that the yaw was as good as known.
+// The rest shows that the yaw was almost known.
 TEST_F(CoreUpdateTest, WhatTheFirstRestShowsOfTheYawIsNoLongerUncertain) {
   PlanarCore core{PlanarCoreParams{}};
   core.set_bias_known(false);

@@ -29,7 +29,7 @@ TEST(RateTracker, PassesOnWhatComesSlowerThanItsBandwidth) {
   EXPECT_NEAR(tracker.rate().z(), 1, 1e-9);
 }
 
-// Against 10⁶ samples, each the mean of two neighbours of white noise: the deviation is known to below 1 %.
+// The reference is 10⁶ samples, each the mean of two neighbours of white noise: the deviation is known to below 1 %.
 TEST(RateTracker, KnowsItsNoise) {
   for (const double bandwidth : {5.0, 20.0, 100.0, 500.0}) {
     RateTracker tracker(bandwidth, kPeriod);
@@ -50,7 +50,8 @@ TEST(RateTracker, KnowsItsNoise) {
 
 class PublishedRate : public EstimatorFixture {};
 
-// Gyro noise of 2.44e-4 rad/s/√Hz is 7.7 mrad/s a sample at 1 kHz, 5.5 of the mean of two; behind the loop below 3.1.
+// A gyro noise of 2.44e-4 rad/s/√Hz is 7.7 mrad/s per sample at 1 kHz. The mean of two has 5.5; behind the loop it is
+// below 3.1.
 TEST_F(PublishedRate, IsQuietOnAStraightDriveAndSaysHowQuiet) {
   robot_.noise.gyro = EstimatorParameters{}.gyro_noise;
   drive(0, 0, 1000);
@@ -67,7 +68,7 @@ TEST_F(PublishedRate, IsQuietOnAStraightDriveAndSaysHowQuiet) {
   EXPECT_NEAR(std::sqrt(stated / kCycles) / deviation, 1, 0.2) << "what it says of itself";
 }
 
-// At rest until the window breaks, which it does within 20 ms at 4 rad/s².
+// The estimate is at rest until the window breaks, which takes at most 20 ms at 4 rad/s².
 TEST_F(PublishedRate, FollowsATurnFromItsFirstCycleOn) {
   drive(0, 0, 1000);
   for (int i = 0; i < 1500; ++i) {
@@ -77,7 +78,8 @@ TEST_F(PublishedRate, FollowsATurnFromItsFirstCycleOn) {
   EXPECT_NEAR(state_.twist_base.angular[2], 1.0, 1e-3);
 }
 
-// 4096 counts at 1 kHz: the encoder's own speed jumps by 1.53 rad/s. Half a per cent of that is the loop's noise, RMS.
+// With 4096 counts at 1 kHz the encoder's own speed jumps by 1.53 rad/s. Half a per cent of that is the loop's noise,
+// RMS.
 TEST_F(PublishedRate, OfEachWheelDoesNotJumpWithItsCounts) {
   robot_.noise.counts = 4096;
   drive(0, 0, 1000);

@@ -1,4 +1,4 @@
-// Whether the robot stands, by wheels and gyro alone.
+// Detects by wheels and gyro alone whether the robot stands.
 
 #include "estimation/rest/rest_watch.h"
 
@@ -67,7 +67,7 @@ TEST_F(RestWatchTest, AWheelThatFlickersWithinItsToleranceIsQuiet) {
   EXPECT_EQ(step(0), RestWindow::kQuiet);
 }
 
-// `steady` and three deviations.
+// The limit is `steady` and three deviations.
 TEST_F(RestWatchTest, ATurnOnWheelsThatStandIsNoRest) {
   EXPECT_EQ(window(0.0125), RestWindow::kQuiet);
   EXPECT_EQ(window(0.0135), RestWindow::kTurned);

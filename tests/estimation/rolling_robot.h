@@ -1,12 +1,12 @@
 #pragma once
-/// A robot that rolls on even or tilted ground, its truth, and what ideal sensors read of it, for tests of the
+/// A robot that rolls on even or tilted ground, its truth, and the measurements of ideal sensors, for tests of the
 /// estimator. Within a cycle its velocities change evenly from those of the beginning to those of the end:
 ///
 ///   R ← R Exp(ω̄ dt)     p ← p + dt R½ v̄     f = R½ᵀ ((V₁ − V₀)/dt + g)      (¯ mean, ½ middle, V of the IMU, odom
 ///   axes)
 ///
 /// each exact to O(dt³). The gyro reads the rate of the cycle's end, the accelerometer the mean over the cycle,
-/// encoders what the contacts travelled.
+/// encoders the travel of the contacts.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -54,12 +54,12 @@ inline RobotModel four_wheeler() {
   return robot;
 }
 
-/// For a RollingRobot whose tyres do not creep.
+/// Parameters for a RollingRobot whose tyres do not creep.
 inline EstimatorParameters rigid_tyres() {
   return {.tyre_creep = 0};
 }
 
-/// Of the middle between the contacts. Base axes.
+/// Motion of the middle between the contacts, in base axes.
 struct Rolling {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();      ///< rad/s
@@ -94,7 +94,7 @@ class RollingRobot {
   const SensorFrame& frame() const { return frame_; }
   SensorFrame& frame() { return frame_; }
 
-  /// One cycle, at whose end it moves as `end` says.
+  /// Runs one cycle; at its end the robot moves as `end` says.
   void go(const Rolling& end) {
     const Eigen::Matrix3d before = rotation;
     const Eigen::Vector3d rate = (motion.rate + end.rate) / 2;
@@ -113,7 +113,8 @@ class RollingRobot {
     read_imu(force);
   }
 
-  /// One cycle with constant acceleration towards a planar twist, until it is reached. `pitch_rate`: at its end, rad/s.
+  /// Runs one cycle with constant acceleration towards a planar twist, until it is reached. `pitch_rate`: at its end,
+  /// rad/s.
   void drive(double linear, double angular, double pitch_rate = 0) {
     Rolling end = motion;
     const auto towards = [&](double from, double to, double rate) {
@@ -135,7 +136,7 @@ class RollingRobot {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, of base_link
   double distance = 0;                                 ///< m
 
-  // What is wrong with robot and sensors.
+  // Errors of robot and sensors.
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();           ///< rad/s, IMU axes
   Eigen::Vector3d accelerometer_bias = Eigen::Vector3d::Zero();  ///< m/s², IMU axes
   double radius_ratio = 0;                                       ///< right over left radius, beyond 1

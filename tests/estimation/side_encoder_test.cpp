@@ -81,7 +81,7 @@ TEST_F(SideEncoderOfFourWheels, OneWheelThatIsNotUsedRejectsTheReading) {
   EXPECT_EQ(right_.step(sensors_, kPeriod), EncoderReading::kTravel);
 }
 
-// Without a limit a wheel is believed up to 1000 rad/s.
+// Without a limit a wheel is trusted up to 1000 rad/s.
 TEST_F(SideEncoderOfFourWheels, NeedsNoVelocityLimit) {
   const double possible = 1000 * kPeriod + Tuning::kEncoderSlack;
   sensors_.joints[0].position = possible - 0.01;

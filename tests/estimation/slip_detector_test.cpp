@@ -1,4 +1,4 @@
-// The detector of slip: E is a straight line without slip, and the levels are those of floor and robot.
+// Tests the detector of slip: E is a straight line without slip, and the levels follow floor and robot.
 
 #include "estimation/slip_fixture.h"
 #include "support/constants.h"
@@ -6,13 +6,13 @@
 namespace robot_control {
 namespace {
 
-constexpr double kShortest = Tuning::kResidualSpans[0];
+constexpr double kMinSpan = Tuning::kResidualSpans[0];
 constexpr double kNext = Tuning::kResidualSpans[1];
 
 class SlipLine : public testing::TestWithParam<double> {};
 
-// Accelerating, braking and turning, from any speed on: E's slope is that speed, and W is constant. What is left are
-// the steps of 5 ms, of third order.
+// The robot accelerates, brakes and turns from any speed: E's slope is that speed, and W is constant. The rest comes
+// from the steps of 5 ms, of third order.
 TEST_P(SlipLine, IsStraightWithoutSlip) {
   SlidingBody body;
   body.speed = GetParam();
@@ -27,7 +27,7 @@ TEST_P(SlipLine, IsStraightWithoutSlip) {
 
 INSTANTIATE_TEST_SUITE_P(Speeds, SlipLine, testing::Values(0.0, 0.5, -1.0, 4.0));
 
-// The IMU swings about the middle of the wheels: its lever is taken off.
+// The IMU swings about the middle of the wheels: its lever is compensated.
 TEST(SlipLineOfAFarImu, IsStraightWithoutSlip) {
   SlidingBody body({.imu_x = 0.4, .imu_y = -0.2});
   for (int i = 0; i < 1000; ++i) {
@@ -38,14 +38,14 @@ TEST(SlipLineOfAFarImu, IsStraightWithoutSlip) {
   }
 }
 
-/// Steps by which the wheels' stamps are late; < 0: early.
+/// Steps by which the wheels' stamps are late; negative values: early.
 class SlipOfOtherClocks : public SlipFixture, public testing::WithParamInterface<int> {
  protected:
   SlipOfOtherClocks() {
     body_.late = GetParam();
     body_.detector.set_clock_offset(GetParam() * SlidingBody::kStep);
   }
-  /// s in which slip was proven, of 30 starts and stops with turns.
+  /// Duration of proven slip, s, in 30 starts and stops with turns.
   double start_and_stop() {
     double proven = 0;
     for (int i = 0; i < 30; ++i) {
@@ -73,7 +73,7 @@ TEST_P(SlipOfOtherClocks, AnAccelerationIsNoSlip) {
   EXPECT_EQ(start_and_stop(), 0);
 }
 
-// The points of before are compared by the offset of now.
+// Earlier points are compared by the present offset.
 TEST_P(SlipOfOtherClocks, AnOffsetThatIsLearnedIsNoSlip) {
   body_.detector.set_clock_offset(0);
   drive(0.5, 1.0);
@@ -82,7 +82,7 @@ TEST_P(SlipOfOtherClocks, AnOffsetThatIsLearnedIsNoSlip) {
   EXPECT_EQ(drive(5), 0);
 }
 
-// A slide that ends while the robot brakes: what the IMU measured before is compared with wheels that come later.
+// A slide ends while the robot brakes: earlier samples of the IMU are compared with later ones of the wheels.
 TEST_P(SlipOfOtherClocks, BehindASlideTheLineIsStraight) {
   body_.noise = 0;
   drive(1, 1.0);
@@ -99,7 +99,7 @@ TEST_P(SlipOfOtherClocks, BehindASlideTheLineIsStraight) {
   }
 }
 
-// The wheels' slip is known when their readings are, and compared when those of the IMU are.
+// The wheels' slip is known with their readings, and compared with those of the IMU.
 TEST_P(SlipOfOtherClocks, ASpinIsProvenWithinTheNextSpan) {
   learn();
   body_.left = body_.right = 0.5;
@@ -114,7 +114,7 @@ class SlipOfAFarImu : public SlipFixture {
   SlipOfAFarImu() : SlipFixture({.imu_x = 0.4, .imu_y = -0.2}) {}
 };
 
-// E continues the line of rest: the lever of the IMU is none of its steps.
+// E continues the line of rest: the lever of the IMU does not step it.
 TEST_F(SlipOfAFarImu, BehindARestTheLeverIsNoSlip) {
   EXPECT_EQ(drive(2, 0.3), 0);
 }
@@ -140,7 +140,7 @@ TEST_F(SlipDetectorTest, ASpinOfOneWheelIsProvenByTheGyro) {
   EXPECT_LE(time_to_proof(SlipResidual::kTurn, 1), kNext);
 }
 
-// Pushed with 1 m/s²: 0.1 m in the next but one span.
+// The push is 1 m/s²: 0.1 m in the next but one span.
 TEST_F(SlipDetectorTest, SlidingSidewaysIsProven) {
   EXPECT_LE(time_to_proof(SlipResidual::kAcross, 2, 0, 1.0), Tuning::kResidualSpans[2]);
 }
@@ -148,11 +148,11 @@ TEST_F(SlipDetectorTest, SlidingSidewaysIsProven) {
 TEST_F(SlipDetectorTest, TheShortestSpanProvesIt) {
   body_.left = body_.right = 0.5;
   time_to_proof(SlipResidual::kAlong, 1);
-  EXPECT_GE(body_.detector.shortest_proven_span(), 0.8 * kShortest);
+  EXPECT_GE(body_.detector.shortest_proven_span(), 0.8 * kMinSpan);
   EXPECT_LE(body_.detector.shortest_proven_span(), 1.6 * kNext);
 }
 
-// Wheels at 20 Hz: two readings in the shortest span.
+// The wheels come at 20 Hz: two readings in the shortest span.
 TEST_F(SlipDetectorTest, SlowWheelsProveItAsWell) {
   body_.gap = 10;
   drive(10);
@@ -160,7 +160,7 @@ TEST_F(SlipDetectorTest, SlowWheelsProveItAsWell) {
   EXPECT_LE(time_to_proof(SlipResidual::kAlong, 1), 2 * kNext);
 }
 
-// One reading at 0.5 m/s that comes 5 ms late: as large in every span.
+// One reading at 0.5 m/s comes 5 ms late: it is as large in every span.
 TEST_F(SlipDetectorTest, ALateReadingIsNoSlip) {
   body_.left = body_.right = -0.5;
   double proven = drive(SlidingBody::kStep);
@@ -170,7 +170,7 @@ TEST_F(SlipDetectorTest, ALateReadingIsNoSlip) {
   EXPECT_EQ(proven + drive(2), 0);
 }
 
-// A tilt that is wrong by e accelerates it by g e, which D shows.
+// A tilt with the error e accelerates it by g e, which D shows.
 TEST_F(SlipDetectorTest, TheAccelerometersSlowErrorIsTheGravityError) {
   body_.error = 0.03;
   drive(5);
@@ -178,7 +178,7 @@ TEST_F(SlipDetectorTest, TheAccelerometersSlowErrorIsTheGravityError) {
   int count = 0;
   for (int i = 0; i < 4000; ++i) {
     if (!body_.step()) continue;
-    judge(true);
+    evaluate(true);
     if (!body_.detector.gravity_error().known) continue;
     sum += body_.detector.gravity_error().along;
     ++count;
@@ -212,19 +212,19 @@ TEST_F(SlipDetectorTest, ARestartProvesNothing) {
   EXPECT_TRUE(body_.detector.difference().empty());
 }
 
-// Before anything is learned it shakes as real floors do.
+// Before anything is learned the levels are those of real floors.
 TEST_F(SlipFixture, BeginsPessimistic) {
   EXPECT_EQ(body_.detector.levels().level(), 0);
   EXPECT_DOUBLE_EQ(body_.detector.acceleration_noise(0).white, Tuning::kFirstLevel * SlipParams{}.accelerometer);
 }
 
-/// Times the data sheet.
+/// Factor on the noise of the data sheet.
 class SlipNoise : public SlipFixture, public testing::WithParamInterface<double> {
  protected:
   SlipNoise() { body_.noise = GetParam() * SlipParams{}.accelerometer; }
 };
 
-// 20 minutes, the pessimistic start included; at most a point or two.
+// The drive takes 20 minutes with the pessimistic start; at most a point or two exceed the level.
 TEST_P(SlipNoise, OfTheAccelerometerIsNoSlip) {
   double proven = drive(0.5, 1.0);
   proven += drive(1200);
@@ -233,7 +233,7 @@ TEST_P(SlipNoise, OfTheAccelerometerIsNoSlip) {
 
 INSTANTIATE_TEST_SUITE_P(Factors, SlipNoise, testing::Values(1.0, 3.0, 10.0, 30.0, 100.0));
 
-// Where it shakes: a tenth of the differences exceeds the 90 % quantile. The steps of the level scatter it.
+// On a shaking floor a tenth of the differences exceeds the 90 % quantile. The steps of the level scatter it.
 TEST_F(SlipFixture, TheLevelIsTheQuantileOfTheResiduals) {
   body_.noise = 100 * SlipParams{}.accelerometer;
   drive(0.5, 1.0);
@@ -243,14 +243,14 @@ TEST_F(SlipFixture, TheLevelIsTheQuantileOfTheResiduals) {
   int count = 0;
   for (int i = 0; i < 200000; ++i) {
     if (!body_.step()) continue;
-    judge(true);
+    evaluate(true);
     ++count;
     beyond += body_.detector.nis(SlipResidual::kAlong) > 1.645 * 1.645 ? 1 : 0;
   }
   EXPECT_NEAR(beyond / static_cast<double>(count), 0.1, 0.04);
 }
 
-// Anything finite.
+// The input is anything finite.
 TEST(SlipDetector, GarbageLeavesItFinite) {
   for (unsigned seed = 0; seed < 10; ++seed) {
     std::mt19937 random(seed);

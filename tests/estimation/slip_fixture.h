@@ -1,6 +1,6 @@
 #pragma once
-/// A body on wheels in the plane, and what wheels, gyro and accelerometer bring of it to the slip detector, as the
-/// estimator brings it.
+/// A body on wheels in the plane, and the data of wheels, gyro and accelerometer for the slip detector, in the form of
+/// the estimator.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ class SlidingBody {
   explicit SlidingBody(const SlipParams& params = {}, unsigned seed = 1)
       : params_(params), detector(params), random_(seed) {}
 
-  /// Of the middle of the wheels.
+  /// Motion of the middle of the wheels.
   double speed = 0;              ///< m/s, ahead
   double lateral = 0;            ///< m/s, to the left, which wheels do not measure
   double rate = 0;               ///< rad/s
@@ -39,7 +39,7 @@ class SlidingBody {
  public:
   SlipDetector detector;
 
-  /// One step with these accelerations, m/s² and rad/s². True: the detector has a new point.
+  /// Runs one step with these accelerations, m/s² and rad/s². True: the detector has a new point.
   bool step(double ahead = 0, double across = 0, double turning = 0) {
     const double middle_rate = rate + turning * kStep / 2;
     const double middle_speed = speed + ahead * kStep / 2;
@@ -84,7 +84,7 @@ class SlidingBody {
   double wheel_speed() const { return speed + (left + right) / 2; }
 
  private:
-  /// With the stamps of the sensors' clocks.
+  /// The sample with the stamps of the sensors' clocks.
   MotionDifference::Sample stamped(const MotionDifference::Sample& now) {
     samples_.push_back(now);
     const auto before = [&](int steps) {
@@ -109,7 +109,7 @@ class SlidingBody {
   Planar wheels_;
 };
 
-/// Stands, then drives at 0.5 m/s with noise of the data sheet for 20 s, in which the levels are learned.
+/// The body stands, then drives at 0.5 m/s with noise of the data sheet for 20 s, in which the levels are learned.
 class SlipFixture : public testing::Test {
  protected:
   explicit SlipFixture(const SlipParams& params = {}) : body_(params) {
@@ -117,19 +117,19 @@ class SlipFixture : public testing::Test {
     body_.detector.restart_at_rest(0, {0, 0, 1}, {});
   }
 
-  void judge(bool learns) {
+  void evaluate(bool learns) {
     body_.detector.evaluate({.acceleration_variance = {1e-6, 1e-6}, .wheel_base = 0.003, .gyro_bias = 1e-5}, learns);
   }
   bool any_proven() const {
     return body_.detector.proven(SlipResidual::kAlong) || body_.detector.proven(SlipResidual::kAcross) ||
            body_.detector.proven(SlipResidual::kTurn);
   }
-  /// Judged at each point; s in which slip was proven.
+  /// Drives, judged at each point; returns the duration of proven slip, s.
   double drive(double seconds, double ahead = 0, double across = 0, double turning = 0) {
     double proven = 0;
     for (double t = 0; t < seconds - SlidingBody::kStep / 2; t += SlidingBody::kStep) {
       if (!body_.step(ahead, across, turning)) continue;
-      judge(true);
+      evaluate(true);
       if (any_proven()) proven += Tuning::kPointInterval;
     }
     return proven;
@@ -142,7 +142,7 @@ class SlipFixture : public testing::Test {
   double time_to_proof(SlipResidual::Channel channel, double longest, double ahead = 0, double across = 0) {
     for (double t = 0; t < longest; t += SlidingBody::kStep) {
       if (!body_.step(ahead, across)) continue;
-      judge(false);
+      evaluate(false);
       if (body_.detector.proven(channel)) return t;
     }
     return longest;

@@ -1,4 +1,4 @@
-// Wheel speeds in steps, at whatever rate and stamps, and those without.
+// Wheel speeds in steps, at any rate and with any stamps, and speeds without steps.
 
 #include "estimation/wheels/speed_quantum.h"
 
@@ -13,7 +13,7 @@ namespace {
 
 class SpeedReadings : public testing::Test {
  protected:
-  /// A speed that changes, read every `gap` s or so; rounded to `step` m/s.
+  /// A changing speed, read every `gap` s or so, and rounded to `step` m/s.
   SpeedQuantum read(double step, double gap, double count = 1e-4) {
     SpeedQuantum quantum(count);
     for (int i = 1; i < 400; ++i) {
@@ -46,7 +46,7 @@ TEST_F(SpeedReadings, StepsThatTheEncodersCountExplainsAreNone) {
   EXPECT_EQ(read(0.08, 0.02, 0.001).step(), 0);
 }
 
-// Ten equal readings are all off alike: ten times the error of one.
+// Ten equal readings have the same error, ten times that of one.
 TEST_F(SpeedReadings, EqualReadingsAreOffAlike) {
   SpeedQuantum quantum;
   quantum.add(0.5 * 0.1, 0.1);

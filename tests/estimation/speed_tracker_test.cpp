@@ -39,7 +39,7 @@ TEST(SpeedTracker, DoesNotCareHowTheTravelOfAGapWasSampled) {
   EXPECT_NEAR(tracker.speed(), 0.5, 1e-12);
 }
 
-// 4096 counts, wheel radius 0.1 m: a count is 0.153 mm, differenced 0.153 m/s.
+// With 4096 counts and a wheel radius of 0.1 m a count is 0.153 mm, differenced 0.153 m/s.
 TEST(SpeedTracker, SmoothsEncoderCountsToAFewPercentOfTheirQuantum) {
   SpeedTracker tracker(kBandwidth, kPeriod);
   const double count = 2 * std::numbers::pi / 4096 * 0.1;

@@ -1,4 +1,4 @@
-/// What one step of the estimator costs on the move: tilt, core, both encoders, slip statistic.
+/// Measures the cost of one step of the estimator in motion: tilt, core, both encoders, slip statistic.
 
 #include <iostream>
 #include <vector>
@@ -28,7 +28,7 @@ class EstimatorCost : public EstimatorFixture {
     }
   }
 
-  /// Of one round: the median over blocks of step over kernel.
+  /// The ratio of one round: the median over blocks of step over kernel.
   double ratio() {
     std::vector<double> steps;
     std::vector<double> kernels;

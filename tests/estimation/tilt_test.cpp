@@ -1,4 +1,5 @@
-// Tilt of the body and bias of the accelerometer, from rests, the gyro between them, and the wheels' acceleration.
+// Tests the tilt of the body and the bias of the accelerometer, from rests, the gyro between them, and the wheels'
+// acceleration.
 
 #include "estimation/tilt/tilt.h"
 
@@ -10,24 +11,25 @@
 namespace robot_control {
 namespace {
 
-constexpr double kTiltStep = 0.01;                             // s
-constexpr double kAllowedTilt = 0.5 * std::numbers::pi / 180;  // rad: what a failed sensor may leave behind a rest
+constexpr double kTiltStep = 0.01;  // s
+constexpr double kAllowedTilt =
+    0.5 * std::numbers::pi / 180;  // rad: largest error that a failed sensor may leave behind a rest
 
-/// Of a robot that stands, its nose down by `pitch`.
+/// Gravity on a robot that stands with its nose down by `pitch`.
 Vector3 gravity(double pitch) {
   return {-kGravity * std::sin(pitch), 0, kGravity * std::cos(pitch)};
 }
 
-/// On level ground with an accelerometer of 0.3 m/s² of bias.
+/// The robot stands on level ground; its accelerometer has a bias of 0.3 m/s².
 constexpr double kForceBias = 0.3;
 constexpr Vector3 kBiased{kForceBias, 0, kGravity};
 
-/// Two seconds; `force` m/s²: what the accelerometer reads.
+/// Stands for two seconds; `force` m/s²: the reading of the accelerometer.
 void stand(Tilt& tilt, const Vector3& force) {
   for (int i = 0; i < 4; ++i) tilt.rest(force, 0.5);
 }
 
-/// Half a turn, while the gyro reads `tipping` rad/s about y for the first tenth of a second.
+/// Makes half a turn, while the gyro reads `tipping` rad/s about y for the first tenth of a second.
 void turn_back(Tilt& tilt, double tipping = 0) {
   constexpr int kTurn = 628;
   for (int i = 0; i < kTurn; ++i) {
@@ -65,7 +67,7 @@ TEST(TiltTest, ItsVarianceIsBoundedHoweverLongNothingCorrectsIt) {
   for (const int axis : {0, 1}) EXPECT_LE(tilt.covariance(axis, axis), Tuning::kSteepest * Tuning::kSteepest);
 }
 
-// Of what a first rest shows, the bias has the share of its own variance: 0.0004 of 0.0104.
+// The bias takes the share of its own variance of a first rest: 0.0004 of 0.0104.
 TEST(TiltTest, IsThatOfGravityButForTheShareThatTheBiasMayHave) {
   Tilt tilt;
   tilt.rest(gravity(0.05), 0.5);
@@ -89,7 +91,7 @@ TEST(TiltTest, RestsInTwoHeadingsSeparateBiasFromTilt) {
   EXPECT_NEAR(tilt.bias(0), kForceBias, 0.1 * kForceBias);
 }
 
-// On a slope of 0.1 rad that the robot leaves and comes back to turned by 180°: gravity turns, the bias does not.
+// The robot leaves a slope of 0.1 rad and comes back to it turned by 180°: gravity turns, the bias does not.
 TEST(TiltTest, OnASlopeTooTheTwoAreSeparated) {
   Tilt tilt;
   Vector3 uphill = gravity(-0.1);
@@ -127,14 +129,14 @@ TEST(TiltTest, AGyroThatRepeatsOneSampleIsInDoubt) {
   EXPECT_NEAR(tilt.up()[0], 0, kAllowedTilt);
 }
 
-/// s, rad/s: for so long the gyro reads that about y.
+/// The gyro reads this rate about y, rad/s, for so long, s.
 struct GyroFault {
   double time, rate;
 };
 
 class TiltBehindAFault : public testing::TestWithParam<GyroFault> {};
 
-// The bias is known by rests in two headings; a fault of the gyro changes it by a tenth at most, whatever its size.
+// Rests in two headings give the bias; a fault of the gyro changes it by a tenth at most, whatever its size.
 TEST_P(TiltBehindAFault, TheBiasStays) {
   Tilt tilt;
   stand(tilt, kBiased);
@@ -154,7 +156,7 @@ INSTANTIATE_TEST_SUITE_P(Faults, TiltBehindAFault,
                            return "Nr" + std::to_string(fault.index);
                          });
 
-// Down by 0.1 rad where it stands next, which the gyro measured: no plane floor, and no bias either.
+// The gyro measured that the next place slopes down by 0.1 rad: the floor is not plane, and this is no bias either.
 TEST(TiltTest, WhatTheGyroMeasuredIsASlope) {
   Tilt tilt;
   stand(tilt, gravity(0));
@@ -164,7 +166,7 @@ TEST(TiltTest, WhatTheGyroMeasuredIsASlope) {
   EXPECT_NEAR(tilt.bias(0), 0, 0.05);
 }
 
-// A slope of 0.2 rad that a broken gyro did not measure; the bias is known by rests in two headings.
+// A broken gyro did not measure a slope of 0.2 rad; rests in two headings gave the bias.
 TEST(TiltTest, ARestThatContradictsGyroAndFloorOpensTheTiltAndLeavesTheBias) {
   Tilt tilt;
   stand(tilt, kBiased);
@@ -176,7 +178,7 @@ TEST(TiltTest, ARestThatContradictsGyroAndFloorOpensTheTiltAndLeavesTheBias) {
   EXPECT_NEAR(tilt.bias(0), kForceBias, 0.1 * kForceBias);
 }
 
-// Onto a slope of 0.05 rad without a gyro that counts: the wheels' acceleration finds it.
+// It drives onto a slope of 0.05 rad without a trusted gyro: the wheels' acceleration finds the slope.
 TEST(TiltTest, TheErrorOfGravityTurnsIt) {
   Tilt tilt;
   stand(tilt, gravity(0));

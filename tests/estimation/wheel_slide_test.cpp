@@ -1,4 +1,4 @@
-// A slide as the estimator follows it: the path takes the carried-on speed, within its bounds, and the slide ends.
+// A slide in the estimator: the path takes the carried-on speed, within its bounds, and the slide ends.
 
 #include "estimation/slip_fixture.h"
 #include "signals/state_frame.h"
@@ -21,11 +21,11 @@ class WheelSlideTest : public SlipFixture {
     corrected_ = corrected_ + correction.shift;
     variance_ += correction.variance;
   }
-  /// s until the slide ends, or `seconds`.
+  /// Drives until the slide ends, or for `seconds`.
   double go(double seconds, double ahead = 0, double across = 0) {
     for (double t = 0; t < seconds - SlidingBody::kStep / 2; t += SlidingBody::kStep) {
       if (!body_.step(ahead, across)) continue;
-      judge(false);
+      evaluate(false);
       if (slide_.active()) {
         add(slide_.step(body_.detector.difference(), input()));
         if (!slide_.active()) return t;
@@ -35,13 +35,13 @@ class WheelSlideTest : public SlipFixture {
     }
     return seconds;
   }
-  /// Both treads are `faster` than the ground until a slide has begun.
+  /// Makes both treads faster than the ground by `faster` until a slide has begun.
   void spin(double faster) {
     body_.left = body_.right = faster;
     for (int i = 0; i < 200 && !slide_.active(); ++i) go(SlidingBody::kStep);
     ASSERT_TRUE(slide_.active());
   }
-  /// m, of the path by wheels and slide.
+  /// m, error of the path by wheels and slide.
   double error() const {
     return std::hypot(body_.wheels().x + corrected_.x - body_.x, body_.wheels().y + corrected_.y - body_.y);
   }
@@ -96,7 +96,7 @@ TEST_F(WheelSlideTest, ABlockedRobotStaysWhereItIsHoweverLongItsWheelsSpin) {
 
 class WheelSlideBounds : public WheelSlideTest, public testing::WithParamInterface<double> {};
 
-// Whatever the accelerometer reads in a slide, the path moves between standstill and the wheels.
+// The path moves between standstill and the wheels for any reading of the accelerometer in a slide.
 TEST_P(WheelSlideBounds, ThePathStaysBetweenRestAndTheWheels) {
   spin(0.7);
   body_.error = GetParam();
@@ -121,7 +121,7 @@ TEST_F(WheelSlideTest, EndsWhenTheWheelsAgreeWithTheBody) {
   EXPECT_FALSE(slide_.active());
 }
 
-// An accelerometer that drifts would show slip without end, and wheels that grip show no bend.
+// A drifting accelerometer would show endless slip, and wheels that grip show no bend.
 TEST_F(WheelSlideTest, AWeakSlideEndsWhereTheAccelerometerNoLongerProvesIt) {
   body_.left = body_.right = 0.08;
   for (int i = 0; i < 400 && !slide_.active(); ++i) go(SlidingBody::kStep);
@@ -140,7 +140,7 @@ TEST_F(SlipFixture, ARobotThatIsTippedOnStandingWheelsDoesNotMove) {
   for (int i = 0; i < 600; ++i) {
     body_.error = i < 200 ? 3.0 : -2.0;
     if (!body_.step()) continue;
-    judge(false);
+    evaluate(false);
     const WheelSlide::Input input{.noise = body_.detector.acceleration_noise(1e-6),
                                   .path_slope_deviation = body_.detector.slope_deviation(SlipResidual::kAlong)};
     const double span = body_.detector.shortest_proven_span();

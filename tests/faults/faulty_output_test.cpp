@@ -1,4 +1,4 @@
-/// An output whose healthy value in cycle k is k: what comes out of it under each kind of fault.
+/// Checks an output whose healthy value in cycle k is k, under each kind of fault.
 
 #include "faults/faulty_output.h"
 
@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint64_t kSeed = 42;
 constexpr std::uint64_t kOnset = 100;
 
-/// Nothing: no value came out.
+/// No value: nothing was published.
 using Outcome = std::optional<double>;
 
 class FaultyOutputTest : public testing::Test {
@@ -30,7 +30,7 @@ class FaultyOutputTest : public testing::Test {
     return output_.step(kind, cycle, value_, distort) == Emission::kValue ? Outcome(value_) : Outcome();
   }
 
-  /// Healthy up to kOnset, then so many cycles of `kind`.
+  /// Runs healthily up to kOnset, then for `cycles` with `kind`.
   std::vector<Outcome> run(FaultKind kind, std::uint64_t cycles) {
     for (std::uint64_t cycle = 0; cycle < kOnset; ++cycle) EXPECT_EQ(step(FaultKind::kOk, cycle), Outcome(cycle));
     std::vector<Outcome> outcomes;

@@ -1,4 +1,4 @@
-/// Who may open a channel's object, and what a node does about an object that is not its user's alone.
+/// Checks who may open a channel's object, and what a node does with an object that others may open.
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -29,7 +29,7 @@ using testing::HasSubstr;
 using Frames = LatestFrames<TestFrame>;
 
 constexpr uid_t kNobody = 65534;
-constexpr unsigned kAlarm = 10;  // s; who waits that long on a pipe waits for ever
+constexpr unsigned kAlarm = 10;  // s; a process that waits that long on a pipe would wait endlessly
 
 class BusAccessTest : public testing::Test {
  protected:
@@ -42,7 +42,7 @@ class BusAccessTest : public testing::Test {
     return error_of([&] { ForeignChannel<Frames>(bus_.name(), ChannelNames::kState).poll(); });
   }
 
-  /// What both say, who must say the same.
+  /// The error of both, which must be the same.
   std::string error() const {
     const std::string read = read_error();
     EXPECT_EQ(write_error(), read);
@@ -60,7 +60,7 @@ class BusAccessTest : public testing::Test {
     ASSERT_EQ(chmod(file().c_str(), mode), 0);
   }
 
-  /// What `call` returns in a process of another user.
+  /// The result of `call` in a process of another user.
   template <class Call>
   static std::string as_nobody(Call call) {
     const AnonymousMemory<std::array<char, 1000>> answer;
@@ -187,7 +187,7 @@ TEST_F(BusAccessTest, AChildProgramInheritsNoObject) {
   EXPECT_EQ(found, 1);
 }
 
-/// As long as it lives no file can be opened.
+/// While it lives no file can be opened.
 class NoDescriptors {
  public:
   NoDescriptors() {

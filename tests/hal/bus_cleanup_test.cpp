@@ -42,7 +42,7 @@ void publish_permit(const std::string& bus, std::uint64_t causes) {
   FrameWriter<Permit>(channel.memory()).publish(permit);
 }
 
-/// As its nodes left it when they ended.
+/// Leaves the bus as its nodes do when they end.
 void end_bus(const std::string& bus, std::uint64_t causes = 0) {
   for (const char* name : {ChannelNames::kSensors, ChannelNames::kState, ChannelNames::kCommand}) {
     const OwnedChannel<Frames> channel(bus, name);
@@ -129,7 +129,7 @@ TEST_F(BusCleanup, ARemoverThatHoldsTheLocksForAMomentRefusesNoStart) {
   EXPECT_NO_THROW(OwnedChannel<Frames>(other_.name(), ChannelNames::kState));
 }
 
-/// Five on a bus that ended, five on a new one; a third has one writer left, a fourth is latched.
+/// Five start on a bus that ended, five on a new one; a third bus has one writer left, a fourth is latched.
 TEST_F(BusCleanup, TenNodesThatStartAtOnceBesideAHalfDeadBusAllStartAndHarmNothing) {
   constexpr std::array<const char*, 5> kChannels{ChannelNames::kSensors, ChannelNames::kState, ChannelNames::kCommand,
                                                  ChannelNames::kTruth, "trace_x"};

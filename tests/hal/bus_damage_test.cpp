@@ -1,5 +1,5 @@
-/// Damaged objects, from their heads on: a reader maps them or says why not, the next writer makes
-/// the channel whole.
+/// Objects are damaged from their heads on: a reader maps or refuses them with a reason, the next writer makes the
+/// channel whole.
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -37,7 +37,7 @@ class BusDamageTest : public testing::Test {
     FrameWriter<TestFrame>(channel.memory()).publish(frame);
   }
 
-  /// Strikes the whole object, its head, or its length.
+  /// Damages the whole object, its head, or its length.
   static void strike(Damage& damage, std::vector<char>& object) {
     const std::span<std::byte> bytes(reinterpret_cast<std::byte*>(object.data()), object.size());
     switch (damage.below(4)) {
@@ -57,8 +57,8 @@ class BusDamageTest : public testing::Test {
     ASSERT_EQ(chmod(file().c_str(), 0600), 0);
   }
 
-  /// Whatever is mapped can be looked at, and shows no frame but the one that was published.
-  static void look(const ForeignChannel<Frames>& reader) {
+  /// A mapped object can be read, and shows no frame but the published one.
+  static void check_frames(const ForeignChannel<Frames>& reader) {
     if (reader.memory() == nullptr) return;
     TestFrame frame;
     const Lookup found = FrameReader<TestFrame>(reader.memory()).newest(frame);
@@ -80,7 +80,7 @@ TEST_F(BusDamageTest, ADamagedLeftoverIsMappedOrNotAndTheNextWriterMakesItWhole)
     ForeignChannel<Frames> reader(bus_.name(), ChannelNames::kState);
     const bool mapped = reader.poll();
     EXPECT_EQ(mapped, reader.obstacle().empty());
-    look(reader);
+    check_frames(reader);
     const OwnedChannel<Frames> writer(bus_.name(), ChannelNames::kState);
     publish(writer, 6);
     reader.poll();
@@ -101,7 +101,7 @@ TEST_F(BusDamageTest, WhatIsDamagedUnderALivingWriterIsMappedOrAnErrorThatNamesI
     ForeignChannel<Frames> before(bus_.name(), ChannelNames::kState);
     ASSERT_TRUE(before.poll());
     damage.strike({reinterpret_cast<std::byte*>(writer.memory()), sizeof(ChannelHead)});
-    look(before);
+    check_frames(before);
     ForeignChannel<Frames> after(bus_.name(), ChannelNames::kState);
     for (ForeignChannel<Frames>* const reader : {&before, &after}) {
       try {
@@ -109,7 +109,7 @@ TEST_F(BusDamageTest, WhatIsDamagedUnderALivingWriterIsMappedOrAnErrorThatNamesI
       } catch (const BusError& error) {
         EXPECT_NE(std::string(error.what()).find(file()), std::string::npos);
       }
-      look(*reader);
+      check_frames(*reader);
     }
   }
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// What a bus says when it refuses.
+/// The message with which a bus refuses.
 
 #include <string>
 
@@ -7,7 +7,7 @@
 
 namespace robot_control {
 
-/// "": it does not.
+/// "" if it does not refuse.
 template <class Call>
 std::string error_of(Call call) {
   try {

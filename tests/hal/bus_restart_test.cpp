@@ -1,4 +1,4 @@
-/// The bus between processes that are killed and started again.
+/// Tests the bus between processes that are killed and started again.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -19,7 +19,7 @@ namespace {
 using Frames = LatestFrames<TestFrame>;
 constexpr std::int64_t kLong = 10'000'000'000;  // ns; a wait that ends this late was not woken
 
-/// A writer in a process of its own, which has published cycle 5, and a reader here.
+/// A writer in a process of its own has published cycle 5; the reader is here.
 class BusRestartTest : public testing::Test {
  protected:
   BusRestartTest() : writer_([this] { return write(5, true); }) {
@@ -108,7 +108,7 @@ TEST_F(BusRestartTest, AReaderThatWaitsOnARetiredObjectGoesOnWithItsSuccessor) {
   EXPECT_EQ(woken_by, 3u);
 }
 
-/// Writers of one bus that start at the same time, each in a process.
+/// Writers of one bus start at the same time, each in a process.
 class Race {
  public:
   Race() {
@@ -140,7 +140,7 @@ class Race {
   std::vector<std::unique_ptr<ChildProcess>> writers_;
 };
 
-// A writer that is refused has waited for the lock: ten races at a time wait together.
+// A refused writer has waited for the lock, so ten races run at a time.
 TEST(BusRace, OfManyWritersAtOnceOneWinsAndTheOthersAreRefused) {
   for (int round = 0; round < 5; ++round) {
     std::vector<std::unique_ptr<Race>> races;

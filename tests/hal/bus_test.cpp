@@ -35,7 +35,7 @@ class BusTest : public testing::Test {
   std::string write_error() const {
     return error_of([&] { OwnedChannel<Frames>(bus_.name(), ChannelNames::kState); });
   }
-  /// A file in the channel's place, by this user.
+  /// Puts a file of this user in the channel's place.
   void plant(const std::string& content) const {
     std::ofstream(file(), std::ios::binary) << content;
     chmod(file().c_str(), 0600);
@@ -203,7 +203,7 @@ TEST_F(BusTest, ALockedObjectOfAnotherLayoutIsAnErrorForWriterAndReader) {
   const auto other = wide();
   EXPECT_THAT(write_error(), HasSubstr("its object has another layout"));
   EXPECT_THAT(error_of([&] { reader_.poll(); }), HasSubstr("all nodes must be of one build"));
-  EXPECT_EQ(other.memory()->head.retired.load(), 0u);  // not ours to touch
+  EXPECT_EQ(other.memory()->head.retired.load(), 0u);  // this object belongs to another writer
 }
 
 TEST_F(BusTest, AReaderWaitsOutAnUnlockedLeftoverOfAnotherLayout) {

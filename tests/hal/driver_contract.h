@@ -1,5 +1,5 @@
 #pragma once
-/// The contract of hal/driver.h as tests that any driver can be handed to:
+/// The contract of hal/driver.h as tests, to which any driver can be given:
 ///
 ///   INSTANTIATE_TEST_SUITE_P(MyMachine, DriverContract, testing::Values(MachineUnderTest{…}), machine_name);
 ///
@@ -26,10 +26,10 @@ struct MachineUnderTest {
   std::size_t joints = 2;
   double period = 0.001;                      ///< s
   double effort_limit = 0;                    ///< N·m, of every joint
-  double effort = 0;                          ///< N·m that turns a single joint
-  double damping = 0;                         ///< N·m·s/rad with which a joint follows a velocity
+  double effort = 0;                          ///< N·m, turns a single joint
+  double damping = 0;                         ///< N·m·s/rad, lets a joint follow a velocity
   double stiffness = 0;                       ///< N·m/rad, with that damping
-  std::function<void()> next_period = [] {};  ///< hardware: waits for it
+  std::function<void()> next_period = [] {};  ///< waits for the period, on hardware
 };
 
 inline void PrintTo(const MachineUnderTest& machine, std::ostream* out) {
@@ -68,7 +68,7 @@ class DriverContract : public testing::TestWithParam<MachineUnderTest> {
     return {.mode = JointMode::kVelocity, .velocity = value, .damping = GetParam().damping};
   }
 
-  /// Cycles of read and write, as DriverCycle makes them.
+  /// Runs cycles of read and write, as DriverCycle makes them.
   void hold(const std::vector<JointCommand>& commands, double seconds) {
     for (long i = 0; i < std::lround(seconds / GetParam().period); ++i) {
       driver_->read(frame_);
@@ -107,7 +107,7 @@ TEST_P(DriverContract, StandsWithValidJointsAfterStart) {
   expect_standing_under(all(brake_));
 }
 
-/// They belong to the cycle (DriverCycle).
+/// These fields belong to the cycle (DriverCycle).
 TEST_P(DriverContract, LeavesHeadInstanceGateAndCountersAlone) {
   SensorFrame frame;
   frame.head = {.checksum = 1, .run = 2, .cycle = 3, .stamp_ns = 4};
@@ -192,7 +192,7 @@ TEST_P(DriverContract, ABrakeStopsAMovingJoint) {
   expect_standing_under(all(brake_));
 }
 
-/// The gate refuses such commands already; this is the last place where one can be stopped.
+/// The gate refuses such commands already; the driver is the last place that can stop one.
 TEST_P(DriverContract, ACommandThatIsNotFiniteOrOfUnknownModeBrakes) {
   const JointCommand unknown{.mode = static_cast<JointMode>(77), .effort = GetParam().effort};
   for (const JointCommand& bad : {effort(std::numeric_limits<double>::quiet_NaN()), unknown}) {

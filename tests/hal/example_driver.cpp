@@ -9,7 +9,7 @@ namespace robot_control {
 namespace {
 
 /// Cycles without a status: one may be late, by the jitter of a bus.
-constexpr std::uint64_t kLongestSilence = 3;
+constexpr std::uint64_t kMaxSilence = 3;
 
 double torque_of(const JointCommand& command, const JointSample& at) {
   switch (command.mode) {
@@ -33,7 +33,7 @@ ExampleDriver::ExampleDriver(const RobotModel& robot, std::vector<std::unique_pt
   }
 }
 
-// May block: the loop does not run yet.
+// It may block: the loop does not run yet.
 void ExampleDriver::start() {
   faults_ = 0;
   state_ = DriverState::kStarting;
@@ -66,7 +66,7 @@ void ExampleDriver::read(SensorFrame& sensors) noexcept {
 void ExampleDriver::receive(Joint& joint) noexcept {
   DriveStatus status;
   joint.silent_for = joint.link->receive(status) ? 0 : joint.silent_for + 1;
-  if (joint.silent_for > kLongestSilence) faults_ |= kFaultLink;
+  if (joint.silent_for > kMaxSilence) faults_ |= kFaultLink;
   if (joint.silent_for > 0) return;
   if (status.fault) faults_ |= kFaultDrive;
   if (!std::isfinite(status.joint.position + status.joint.velocity + status.joint.effort)) {

@@ -1,6 +1,6 @@
 #pragma once
 /// A driver to start from: wheels with one motor drive each, on a bus such as CAN. It keeps the contract of
-/// hal/driver.h (driver_contract.h); replace DriveLink by your bus, and add the sensors that your machine has.
+/// hal/driver.h (driver_contract.h). Replace DriveLink by your bus, and add the sensors of your machine.
 
 #include <cstdint>
 #include <memory>
@@ -12,24 +12,24 @@
 
 namespace robot_control {
 
-/// What a motor drive reports of its joint; SI, the joint's own sign.
+/// The report of a motor drive on its joint; SI, the joint's own sign.
 struct DriveStatus {
   JointSample joint;
   bool fault = false;
 };
 
-/// To one motor drive. Neither call blocks; both exchange what the bus has buffered.
+/// The link to one motor drive. Neither call blocks; both exchange what the bus has buffered.
 class DriveLink {
  public:
   virtual ~DriveLink() = default;
 
-  /// The newest status since the last call. False: none arrived.
+  /// Reads the newest status since the last call. False: none arrived.
   virtual bool receive(DriveStatus& status) noexcept = 0;
 
-  /// N·m, until the next call. The drive brakes by itself when calls stop: its watchdog.
+  /// Sends N·m, which hold until the next call. The drive's watchdog brakes by itself when calls stop.
   virtual void send_torque(double torque) noexcept = 0;
 
-  /// The drive's own brake: damping, then position hold.
+  /// Switches to the drive's own brake: damping, then position hold.
   virtual void send_brake() noexcept = 0;
 };
 

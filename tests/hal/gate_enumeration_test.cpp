@@ -1,4 +1,4 @@
-/// Every combination of what a permit and a command can be: motion if and only if all four questions are answered yes.
+/// Tests every combination of permit and command: the joints move if and only if all four answers are yes.
 
 #include <array>
 
@@ -10,7 +10,7 @@ namespace {
 constexpr std::array kLookups{Lookup::kMissing, Lookup::kFrame, Lookup::kToken, Lookup::kCorrupt};
 constexpr std::array<std::int64_t, 8> kAges{-1, 0, 1, 2, 3, 4, 5, 6};  // in cycles; 0: this very one, -1: the future
 constexpr std::array<std::uint64_t, 2> kRuns{kRun, kRun + 1};
-constexpr std::array<std::int64_t, 3> kExpiries{-1, 0, 1000};  // in cycles from now on: over, just alive, for ever
+constexpr std::array<std::int64_t, 3> kExpiries{-1, 0, 1000};  // in cycles from now on: over, still valid, unlimited
 
 enum class Order { kBrake, kRamp, kRampOver, kDrive, kUnknown };
 constexpr std::array kOrders{Order::kBrake, Order::kRamp, Order::kRampOver, Order::kDrive, Order::kUnknown};
@@ -54,7 +54,7 @@ std::vector<CommandCase> commands() {
   return all;
 }
 
-// The four questions, as DESIGN says them.
+// The four questions of the gate's specification.
 bool alive(const PermitCase& permit) {
   return permit.found == Lookup::kFrame && permit.run == kRun && permit.age >= 1 && permit.age <= 4 &&
          permit.expiry >= 0;

@@ -1,6 +1,6 @@
 #pragma once
-/// A gate in its healthy case: tick 100 at 1 kHz, a permit to drive and a command of cycle 99, two joints in effort and
-/// velocity mode within their limits, of which only the efforts are known, and both standing.
+/// A gate in its healthy case: tick 100 at 1 kHz, with a permit to drive and a command of cycle 99. Two joints stand,
+/// in effort and velocity mode, within their limits; only their efforts are limited.
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ class GateFixture : public testing::Test {
   }
   void command_of(std::uint64_t cycle) { command_.head.cycle = cycle; }
 
-  /// The next step is tick k, its frames those of k − 1.
+  /// The next step is tick `cycle`; its frames are those of the cycle before.
   void tick_at(std::uint64_t cycle) {
     input_.cycle = cycle;
     permit_of(cycle - 1);

@@ -1,4 +1,4 @@
-/// What the gate makes of the limits of its joints, and how it fails.
+/// Tests the gate's limits on its joints, and its failure modes.
 
 #include <cstring>
 #include <stdexcept>
@@ -80,18 +80,18 @@ TEST_F(GateRamp, ABrakePermitDoes) {
 class GateRate : public GateFixture {
  protected:
   GateRate() : GateFixture({.effort = kLimit, .effort_rate = 400}) { command_.joints[1].effort = 0; }
-  void ask(double effort) { command_.joints[0].effort = effort; }
+  void request(double effort) { command_.joints[0].effort = effort; }
 };
 
 TEST_F(GateRate, BoundsTheChangePerTick) {
-  ask(1.0);
+  request(1.0);
   for (const double expected : {0.4, 0.8, 1.0}) {
     next();
     EXPECT_NEAR(joints_[0].effort, expected, 1e-15);
   }
   EXPECT_EQ(reasons(), 0u);
   EXPECT_EQ(verdict(), GateVerdict::kPassed);
-  ask(-1.0);
+  request(-1.0);
   next();
   EXPECT_NEAR(joints_[0].effort, 0.6, 1e-15);
   EXPECT_EQ(reasons(), std::uint64_t{kGateRateClamped});
@@ -99,7 +99,7 @@ TEST_F(GateRate, BoundsTheChangePerTick) {
 }
 
 TEST_F(GateRate, SkippedTicksAddUp) {
-  ask(5.0);
+  request(5.0);
   next();
   tick_at(input_.cycle + 3);
   step();
@@ -107,7 +107,7 @@ TEST_F(GateRate, SkippedTicksAddUp) {
 }
 
 TEST_F(GateRate, AHeldCommandGoesOnTowardsIt) {
-  ask(1.0);
+  request(1.0);
   next();
   command_of(input_.cycle - 2);
   step();
@@ -115,10 +115,10 @@ TEST_F(GateRate, AHeldCommandGoesOnTowardsIt) {
   EXPECT_EQ(reasons(), kGateCommandHeld | kGateRateClamped);
 }
 
-// A robot held on a slope: the controller takes over what the brake was holding.
+// The brake held a robot on a slope: the controller takes over its torque.
 TEST_F(GateRate, AfterABrakeItMayBeginWhereTheBrakeHeld) {
   sensors_.joints[0].effort = -3;
-  ask(-3);
+  request(-3);
   step();
   EXPECT_EQ(joints_[0].effort, -3);
   EXPECT_EQ(reasons(), 0u);
@@ -128,12 +128,12 @@ TEST_F(GateRate, AfterABrakeItMayBeginAtZeroAndBetween) {
   sensors_.joints[0].effort = -3;
   for (const double effort : {0.0, -1.2, 0.4, -3.4}) {
     gate_.enter_run();
-    ask(effort);
+    request(effort);
     step();
     EXPECT_EQ(joints_[0].effort, effort);
   }
   gate_.enter_run();
-  ask(0.5);
+  request(0.5);
   step();
   EXPECT_NEAR(joints_[0].effort, 0.4, 1e-15);
 }
@@ -142,29 +142,29 @@ TEST_F(GateRate, WhatTheBrakeHeldCountsUpToTheEffortLimit) {
   for (const double absurd : {1e9, kInfinity, kNaN}) {
     gate_.enter_run();
     sensors_.joints[0].effort = absurd;
-    ask(kLimit);
+    request(kLimit);
     step();
     EXPECT_NEAR(joints_[0].effort, absurd == 1e9 ? kLimit : 0.4, 1e-15) << absurd;
   }
 }
 
 TEST_F(GateRate, WhileItDrivesTheMeasuredEffortCountsForNothing) {
-  ask(0.4);
+  request(0.4);
   next();
   sensors_.joints[0].effort = 5;
-  ask(5);
+  request(5);
   next();
   EXPECT_NEAR(joints_[0].effort, 0.8, 1e-15);
 }
 
 TEST_F(GateRate, AJointThatBrakedAloneRestarts) {
-  ask(0.4);
+  request(0.4);
   next();
   command_.joints[0].mode = JointMode::kBrake;
   next();
   command_.joints[0].mode = JointMode::kEffort;
   sensors_.joints[0].effort = 2;
-  ask(2);
+  request(2);
   next();
   EXPECT_EQ(joints_[0].effort, 2);
 }

@@ -1,4 +1,4 @@
-/// Properties that hold whatever the gate is fed. The failing seed is printed.
+/// Tests properties that hold for any input of the gate. The failing seed is printed.
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ constexpr JointLimits kArm{
     .effort = kLimit, .effort_rate = 900, .velocity = 20, .lower = -1, .upper = 3, .soft_zone = 0.1};
 constexpr double kRounding = 1e-12;  // of torques up to 10⁴ N·m
 
-/// Words that are often nearly right, so that the fuzz gets past the first question.
+/// A word that is often nearly right, so that the fuzz passes the first question.
 std::uint64_t word(std::mt19937_64& random, std::uint64_t near) {
   switch (random() % 12) {
     case 0:
@@ -91,7 +91,7 @@ TEST_F(GateGarbage, NeverMovesAJointBeyondItsLimitsOrWithoutAPermit) {
   EXPECT_GT(moved, 100u);  // else the fuzz proved nothing
 }
 
-/// Random joints on random paths with random commands, tick after tick.
+/// Random joints move on random paths with random commands, tick after tick.
 class GateRandomDrive : public GateFixture {
  protected:
   GateRandomDrive() : GateFixture(kArm) {}
@@ -107,7 +107,7 @@ class GateRandomDrive : public GateFixture {
   }
   double within(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
 
-  /// A joint that speeds up and slows down as it likes, up to 1.5 times its limit.
+  /// A joint speeds up and slows down at random, up to 1.5 times its limit.
   void move() {
     for (std::size_t i = 0; i < 2; ++i) {
       if (random_() % 50 == 0) velocity_[i] = within(-30, 30);
@@ -116,7 +116,7 @@ class GateRandomDrive : public GateFixture {
       sensors_.joints[i] = {.position = position_[i], .velocity = velocity_[i], .effort = within(-8, 8)};
     }
   }
-  void ask() {
+  void request() {
     for (JointCommand& joint : command_.joints) {
       joint = {.mode = static_cast<JointMode>(random_() % 4),
                .position = within(-4, 6),
@@ -127,7 +127,7 @@ class GateRandomDrive : public GateFixture {
     }
   }
 
-  /// τ of the driver's law, without the driver's own clamp.
+  /// The torque of the driver's law, without the driver's own clamp.
   static double torque(const JointCommand& joint, double position, double velocity) {
     double torque = joint.effort;
     if (joint.mode == JointMode::kImpedance) torque += joint.stiffness * (joint.position - position);
@@ -146,10 +146,10 @@ TEST_F(GateRandomDrive, NeitherSpeedsUpBeyondTheLimitNorDrivesIntoAnEndStopNorJu
     begin(seed);
     JointSpeed speed[2] = {JointSpeed(kPeriod), JointSpeed(kPeriod)};
     double last[2] = {};
-    bool drove[2] = {};
+    bool driven_before[2] = {};
     for (int tick = 0; tick < 500; ++tick) {
       move();
-      ask();
+      request();
       const std::uint64_t cycle = input_.cycle;
       next();
       for (std::size_t i = 0; i < 2; ++i) {
@@ -159,7 +159,7 @@ TEST_F(GateRandomDrive, NeitherSpeedsUpBeyondTheLimitNorDrivesIntoAnEndStopNorJu
         ASSERT_TRUE(finite(joint)) << "seed " << seed << ", tick " << tick;
         ASSERT_LE(std::abs(joint.effort), kLimit) << "seed " << seed << ", tick " << tick;
         if (joint.mode == JointMode::kBrake) {
-          drove[i] = false;
+          driven_before[i] = false;
           continue;
         }
         const double turns = speed[i].value();
@@ -172,18 +172,18 @@ TEST_F(GateRandomDrive, NeitherSpeedsUpBeyondTheLimitNorDrivesIntoAnEndStopNorJu
           const double left = end > 0 ? kArm.upper - sample.position : sample.position - kArm.lower;
           if (left > 0) continue;
           ++at_stop;
-          // At the end stop nothing pushes on: what its law gives at rest. (Damping pulls back what moves away.)
+          // At the end stop the law at rest does not push on. (Damping pulls back a joint that moves away.)
           ASSERT_LE(torque(joint, sample.position, 0) * end, kRounding) << "seed " << seed << ", tick " << tick;
         }
-        // The later clamps only take away: beyond the rate lies at most a smaller torque of the same sign.
+        // The later clamps only reduce: beyond the rate lies at most a smaller torque of the same sign.
         const double step = kArm.effort_rate * kPeriod;
-        if (drove[i] && std::abs(joint.effort - last[i]) > step + kRounding) {
+        if (driven_before[i] && std::abs(joint.effort - last[i]) > step + kRounding) {
           ASSERT_NE(reasons() & (kGateSpeedClamped | kGatePositionClamped), 0u) << "seed " << seed << ", tick " << tick;
           ASSERT_LT(std::abs(joint.effort), std::abs(last[i])) << "seed " << seed << ", tick " << tick;
           ASSERT_GE(joint.effort * last[i], 0) << "seed " << seed << ", tick " << tick;
         }
         rated += (reasons() & kGateRateClamped) != 0;
-        drove[i] = true;
+        driven_before[i] = true;
         last[i] = joint.effort;
       }
     }
@@ -200,7 +200,7 @@ TEST_F(GateRandomDrive, SameInputsGiveTheSameBits) {
       begin(seed);
       for (std::size_t tick = 0; tick < 200; ++tick) {
         move();
-        ask();
+        request();
         next();
         for (std::size_t i = 0; i < 2; ++i) {
           if (round == 0) {

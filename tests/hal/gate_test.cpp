@@ -105,7 +105,7 @@ TEST_F(GateTest, APermitWhoseCycleDoesNotAdvanceDiesAtItsAge) {
   }
   input_.cycle = 104;
   command_of(103);
-  permit_.expiry = 1000;  // it claims to live
+  permit_.expiry = 1000;  // it claims to be valid
   expect_brake(kGatePermitExpired);
 }
 

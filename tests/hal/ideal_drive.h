@@ -1,5 +1,5 @@
 #pragma once
-/// A wheel in the air behind an ideal motor drive; each command turns it for one period.
+/// A wheel in the air on an ideal motor drive; each command turns it for one period.
 
 #include <cmath>
 #include <memory>
@@ -50,7 +50,7 @@ class IdealDrive final : public DriveLink {
   double held_ = 0;
 };
 
-/// diffbot's two wheels, and the drives to break something of.
+/// diffbot's two wheels, and the drives that a test can spoil.
 struct ExampleMachine {
   std::vector<IdealDrive*> drives;
   std::unique_ptr<Driver> driver;

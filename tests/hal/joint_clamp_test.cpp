@@ -37,7 +37,7 @@ TEST_P(SpeedClamp, TapersTheEffortTowardsMoreSpeed) {
   for (const auto& [speed, left] : {std::pair{18.5, 3.0}, {19.0, 2.0}, {19.5, 1.0}}) {
     JointCommand command = effort(4);
     EXPECT_EQ(clamp_speed(kWheel, 0, sign * speed, command), std::uint64_t{kGateSpeedClamped});
-    // Differences of 1 − x, ten times as coarse.
+    // The differences of 1 − x are ten times as coarse.
     EXPECT_NEAR(command.effort, sign * left, 10 * kClampRounding) << speed;
   }
 }

@@ -20,7 +20,7 @@ double counted(double angle, double quantum) {
   return quantum == 0 ? angle : quantum * std::floor(angle / quantum);
 }
 
-/// A wheel that turns steadily, seen through an encoder of so many counts a turn (0: exact).
+/// A wheel turns steadily, read by an encoder of `counts` a turn (0: exact).
 struct Wheel {
   double speed;
   int counts;
@@ -49,8 +49,8 @@ TEST(JointSpeed, IsZeroAtFirstAndAtRest) {
   }
 }
 
-// Off by a cycle of the base, or by a count within it: joint_speed.h. Twelve cycles are the base at 1 kHz, 24 at 2 kHz,
-// two at 100 Hz.
+// The error is one cycle of the base, or one count within it: joint_speed.h. The base is twelve cycles at 1 kHz, 24 at
+// 2 kHz, two at 100 Hz.
 TEST(JointSpeed, ASteadySpeedIsOffByOneCycleOrOneCountOfTheBase) {
   for (const double rate : {100.0, 1000.0, 2000.0}) {
     const double base = std::fmax(2.0, std::ceil(kSpeedBase * rate)) / rate;

@@ -1,1 +1,1 @@
-"""What measures, campaigns and judges: run by scripts/bench and by the tests, installed nowhere."""
+"""Measurements, campaigns and their judges: scripts/bench and the tests run them, and none is installed."""

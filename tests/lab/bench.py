@@ -3,10 +3,8 @@
 Each program `bench_NAME` prints one JSON object:
     {"bench": NAME, "rows": [{"name", "value", "unit", "reference", "reference_name", "ratio"}, …]}
 
-The trials that judge give results of the same form: faults/campaign.py, faults/replayed.py, drives/normal_driving.py,
-drives/drive_promises.py, odometry/bench.py, log_bench.py, black_box_bench.py, process_bench.py, hostile.py, tuning.py,
-bench_limiter, bench_release, bench_bags. There, "not_judged" beside the rows names the robots left out, and "table"
-holds lines to be shown above the rows.
+The trials that judge give results of the same form; `JUDGED` lists them. Beside their rows, "not_judged" names the
+robots that were left out, and "table" holds lines to be shown above the rows.
 """
 
 from __future__ import annotations
@@ -31,7 +29,7 @@ from lab.runs.address import check_address
 from lab.runs.runner import Processes, Runner
 
 MEASURED = ("step", "plant", "lockstep", "frames", "stops")
-# Only when they are named.
+# These run only if they are named.
 JUDGED = (
     "campaign",
     "replay",
@@ -62,7 +60,7 @@ def run_program(program: Path, *arguments: str | Path) -> dict[str, Any]:
 
 
 def say(text: str) -> None:
-    """Progress, and what went wrong."""
+    """Prints progress and errors."""
     print(text, file=sys.stderr, flush=True)
 
 
@@ -163,7 +161,7 @@ TRIALS = {
 
 
 def run(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    """What NAME measured, and whether that is as it has to be."""
+    """The result of NAME, and whether it meets its bounds."""
     if name in SEED_PROGRAMS:
         return run_seed_program(name, given)
     if name in ON_CLUSTERS:
@@ -175,7 +173,9 @@ def run(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
 
 
 def to_table(result: dict[str, Any]) -> str:
-    """One line per figure: value, unit, reference of the same run, ratio to it; and one of robots not judged."""
+    """One line per figure: value, unit, reference of the same run, ratio to it; then a line of robots that were not
+    judged.
+    """
     wide = max(24, *(len(row["name"]) for row in result["rows"]))
     lines = [*result["table"], ""] if result.get("table") else []
     lines += [f"{result['bench']:<{wide + 2}}{'value':>12}  {'unit':<22}{'reference':>12}{'ratio':>10}"]

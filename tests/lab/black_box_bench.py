@@ -1,8 +1,8 @@
-"""What a black box holds after SIGKILL of all nodes: four nodes and a telemetry as processes on the wall clock, without
-ROS, killed at a random moment, again and again.
+"""Measures what a black box holds after SIGKILL of all nodes. Four nodes and a telemetry run as processes on the wall
+clock, without ROS, and are killed at random moments.
 
-Judged are trials whose black box cannot be read or has a gap, and what is missing: of each node, the cycles from its
-newest row in the black box to the newest frame that it has published, which is still in shared memory.
+A trial fails if its black box cannot be read or has a gap, or if too many cycles are missing. The missing cycles of a
+node lie between its newest row in the black box and its newest published frame. That frame is still in shared memory.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from lab.log_bench import row
 from lab.participants import LOOP, START_LIMIT, TELEMETRY, command, remove_shared_memory, script
 
 ALL_TRIALS = 100
-MOST_MISSING = 10.0  # ms
-LONGEST = 2.0  # s from the first second in run.bag to the kill
+MAX_MISSING = 10.0  # ms
+MAX_DRIVE = 2.0  # s from the first second in run.bag to the kill
 A_SECOND = 100_000  # bytes, less than one of run.bag
 PROCESSES = (*LOOP, TELEMETRY)
 
 
 def bench(first: int, trials: int, programs: Path, say: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
-    """The table of `trials` from seed `first` on, and whether all figures are as they have to be."""
+    """The table of `trials` from seed `first` on, and whether all figures meet their bounds."""
     missing: list[float] = []
     bad = 0
     with tempfile.TemporaryDirectory(prefix="blackbox-") as name:
@@ -55,19 +55,19 @@ def bench(first: int, trials: int, programs: Path, say: Callable[[str], None]) -
     rows = [
         row("black boxes not readable or with a gap", bad, "of " + str(trials), 0),
         row("missing, median", figures[len(figures) // 2], "ms", 0),
-        row("missing, most", figures[-1], "ms", MOST_MISSING),
-        row("with more missing than that", sum(each > MOST_MISSING for each in figures), "of " + str(trials), 0),
+        row("missing, most", figures[-1], "ms", MAX_MISSING),
+        row("with more missing than that", sum(each > MAX_MISSING for each in figures), "of " + str(trials), 0),
     ]
-    return {"bench": "blackbox", "rows": rows}, bad == 0 and figures[-1] <= MOST_MISSING
+    return {"bench": "blackbox", "rows": rows}, bad == 0 and figures[-1] <= MAX_MISSING
 
 
 def bus() -> str:
-    """The same for all trials: what the killed nodes leave in shared memory is used again."""
+    """All trials share one bus, so that shared memory of killed nodes is used again."""
     return f"blackbox-{os.getpid()}"
 
 
 def start(programs: Path, folder: Path) -> list[subprocess.Popen[bytes]]:
-    """All nodes, in one process group."""
+    """Starts all nodes in one process group."""
     (folder / "run.bag").unlink(missing_ok=True)
     settings = {"telemetry.black_box": 0.03, "telemetry.incidents": 0}
     nodes: list[subprocess.Popen[bytes]] = []
@@ -79,7 +79,7 @@ def start(programs: Path, folder: Path) -> list[subprocess.Popen[bytes]]:
 
 
 def trial(nodes: list[subprocess.Popen[bytes]], folder: Path, programs: Path, seed: int) -> float:
-    """Kills all nodes at the same moment; ms of cycles that are missing of the node of which most are.
+    """Kills all nodes at the same moment; returns the missing cycles of the worst node, ms.
 
     Raises:
         RuntimeError: a node ended before, or the black box has a gap.
@@ -90,7 +90,7 @@ def trial(nodes: list[subprocess.Popen[bytes]], folder: Path, programs: Path, se
         if time.monotonic() > end:
             raise RuntimeError("no second of rows was written")
         time.sleep(0.05)
-    time.sleep(np.random.default_rng(seed).uniform(0, LONGEST))
+    time.sleep(np.random.default_rng(seed).uniform(0, MAX_DRIVE))
     ended = [name for name, node in zip(PROCESSES, nodes, strict=True) if node.poll() is not None]
     os.killpg(nodes[0].pid, signal.SIGKILL)
     for node in nodes:
@@ -110,7 +110,7 @@ def trial(nodes: list[subprocess.Popen[bytes]], folder: Path, programs: Path, se
 
 
 def newest_stamps(programs: Path) -> list[int]:
-    """Of the newest frame that each node has published, ns."""
+    """Stamps of the newest frame that each node has published, ns."""
     program = programs.parent / "support" / "rc_newest_stamps"
     answer = subprocess.run([program, "--bus", bus()], capture_output=True, text=True, check=True)
     return [int(line) for line in answer.stdout.split()]

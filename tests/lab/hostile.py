@@ -1,7 +1,7 @@
-"""Connections to the ports of ROS nodes that no well-behaved program makes: no node may end by them.
+"""Makes connections to the ports of ROS nodes that no well-behaved program makes; no node may end by them.
 
-Each seed is one connection to the TCPROS or the XML-RPC port of one node: a sound header or request, or noise, mutated.
-It ends by RST, so that no port stays in TIME_WAIT. What by its protocol ends a node, the XML-RPC call `shutdown`, is
+Each seed is one connection to the TCPROS or the XML-RPC port of one node: a valid header or request, or noise, mutated.
+It ends by RST, so that no port stays in TIME_WAIT. The XML-RPC call `shutdown`, which ends a node by its protocol, is
 never sent (docs/safety.md).
 """
 
@@ -27,7 +27,7 @@ CALLER = "/hostile"
 LIMIT = 30.0
 """s for what takes a second on an idle machine."""
 _WAITED = 16
-"""Of so many connections one waits for the node's answer: the others would only overrun its listen queue."""
+"""One of so many connections waits for the node's answer; more would only overrun its listen queue."""
 _INTERESTING = (0, 1, 3, 4, 27, 0x7F, 0xFF, 0xFFFF, 999_999, 1_000_000, 1_000_001, 10**9, 2**31 - 1, 2**31, 2**32 - 1)
 
 OVERLONG_FIELD = struct.pack("<II", 24, 999_999) + b"x" * 20
@@ -35,7 +35,7 @@ OVERLONG_FIELD = struct.pack("<II", 24, 999_999) + b"x" * 20
 
 
 class Target(NamedTuple):
-    """Where one node listens."""
+    """The address of one node."""
 
     name: str
     host: str
@@ -61,7 +61,7 @@ def find_target(name: str, limit: float = LIMIT) -> Target:
 
 
 def pid_of(target: Target) -> int:
-    """As the node says; OSError if it does not."""
+    """The process id that the node reports; OSError if it does not answer."""
     node = xmlrpc.client.ServerProxy(f"http://{target.host}:{target.xmlrpc}")
     try:
         return int(_answer(node.getPid(CALLER)))
@@ -124,14 +124,14 @@ def _sound_request(chance: random.Random) -> bytes:
 
 
 def _deep_request(chance: random.Random) -> bytes:
-    """A value within a value within a value …"""
+    """A value within a value, many levels deep."""
     body = "<methodCall><methodName>getPid</methodName><params><param>"
     body += "<value><array><data>" * chance.choice((10, 100, 1000, 20_000))
     return f"POST / HTTP/1.1\r\nContent-length: {len(body)}\r\n\r\n{body}".encode()
 
 
 def mutated(data: bytes, chance: random.Random) -> bytes:
-    """A few bytes changed, lengths above all; or cut off, repeated, left as it is."""
+    """Changes a few bytes, mostly lengths, cuts the data off, repeats them or leaves them unchanged."""
     changed = bytearray(data)
     for _ in range(chance.choice((0, 1, 1, 2, 5))):
         place = chance.randrange(len(changed) + 1)
@@ -189,7 +189,7 @@ def attack(target: Target, port: int, data: bytes, *, wait: bool) -> bool:
 
 
 def run(targets: list[Target], first: int, runs: int, alive: Callable[[], list[str]]) -> tuple[int, list[str]]:
-    """Connections made, and what went wrong: the seeds by which a node ended."""
+    """Number of connections made, and the seeds by which a node ended."""
     for done, seed in enumerate(range(first, first + runs)):
         target, port, data = connection(seed, targets)
         made = attack(target, port, data, wait=seed % _WAITED == 0)
@@ -200,7 +200,7 @@ def run(targets: list[Target], first: int, runs: int, alive: Callable[[], list[s
 
 @contextlib.contextmanager
 def _launched() -> Iterator[list[Target]]:
-    """A robot of its own, with a master of its own."""
+    """A robot with a master, both for this program alone."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]

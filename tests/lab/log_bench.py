@@ -1,8 +1,8 @@
-"""What recording every cycle costs: four nodes and a telemetry as processes on the wall clock, without ROS.
+"""Measures the cost of recording every cycle: four nodes and a telemetry as processes on the wall clock, without ROS.
 
-Ten minutes at 1 kHz with the default sensor errors: diffbot, and a real robot with four wheels where there is one.
-Judged are rows lost, the telemetry's processor time, bytes on disk, the processor time of loading the log, its replay,
-that of the black box, which has been written several times over, how long that reaches back, and the report.
+Ten minutes at 1 kHz are recorded with the default sensor errors, of diffbot and of a real robot with four wheels if
+there is one. The bounds are on lost rows, bytes on disk, and the processor times of telemetry, loading, replay and
+report. The black box, which was overwritten several times, is replayed as well, and its length is judged.
 """
 
 from __future__ import annotations
@@ -31,32 +31,32 @@ SECONDS = 600.0
 FOUR_WHEELS = "jackal"
 ROBOTS = (DIFFBOT, FOUR_WHEELS)
 
-MOST_LOST = 0
-MOST_PROCESSOR = 0.10  # of one core
-MOST_BYTES = 0.7  # MB/s, of diffbot; of four wheels it is stated
-MOST_LOADING = 3.0  # s of processor time for ten minutes
+MAX_LOST = 0
+MAX_PROCESSOR = 0.10  # of one core
+MAX_BYTES = 0.7  # MB/s, of diffbot; the figure of four wheels is only reported
+MAX_LOADING = 3.0  # s of processor time for ten minutes
 SLOWEST_REPLAY = 20.0  # s of the log per s of processor time
-MOST_REPORTING = 20.0  # s of processor time, of ten minutes or less
-LARGEST_PAGE = 15.0  # MB
-MOST_BEFORE_SNAPSHOT = 1024 + 8  # cycles at the begin of a black box; kSnapshotCycles, and what was on its way
-BLACK_BOX = 0.2  # GB, telemetry.black_box for ten minutes; in proportion for less
-LEAST_HELD = 60.0  # s in it
+MAX_REPORTING = 20.0  # s of processor time, of ten minutes or less
+MAX_PAGE = 15.0  # MB
+MAX_BEFORE_SNAPSHOT = 1024 + 8  # cycles at the begin of a black box; kSnapshotCycles, and what was on its way
+BLACK_BOX = 0.2  # GB, telemetry.black_box for ten minutes; a shorter run has a share of it
+MIN_HELD = 60.0  # s in it
 
 
 @dataclass(frozen=True)
 class Replayed:
-    """A log, computed again; rows are those of all laws."""
+    """The result of a replay; rows are those of all laws."""
 
     different: int
     not_compared: int
-    seconds: float  # of processor time
+    seconds: float  # s of processor time
 
 
 @dataclass(frozen=True)
 class Recorded:
     """One run."""
 
-    cycles: int  # that the plant made
+    cycles: int  # made by the plant
     rows: int  # in the log
     lost: int  # as the log itself says
     megabytes: float
@@ -70,49 +70,49 @@ class Recorded:
 
 
 def bench(share: float, programs: Path, keep: Path | None, say: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
-    """`share` of ten minutes for each robot; the table, and whether all figures are as they have to be.
+    """Records `share` of ten minutes for each robot; returns the table, and whether all figures meet their bounds.
 
     `keep`: folder for the logs and pages; None: they are removed.
     """
     seconds = SECONDS * share
     rows: list[dict[str, Any]] = []
     good = True
-    there = [robot for robot in ROBOTS if robot in robot_names()]
-    for robot in there:
+    present = [robot for robot in ROBOTS if robot in robot_names()]
+    for robot in present:
         say(f"{robot}: {seconds:.0f} s on the wall clock")
         with tempfile.TemporaryDirectory(prefix="record-") if keep is None else nullcontext(keep / robot) as folder:
             Path(folder).mkdir(parents=True, exist_ok=True)
             found = record(urdf_of(robot), seconds, programs, Path(folder))
-        for name, (value, unit, least, most) in figures(
-            found, share, MOST_BYTES if robot == DIFFBOT else math.inf
+        for name, (value, unit, lower, upper) in figures(
+            found, share, MAX_BYTES if robot == DIFFBOT else math.inf
         ).items():
-            promised = most if least == 0 else least
+            promised = upper if lower == 0 else lower
             rows.append(row(f"{robot}: {name}", value, unit, promised if math.isfinite(promised) else 0))
-            good = good and least <= value <= most
-    return {"bench": "record", "rows": rows, "not_judged": sorted(set(ROBOTS) - set(there))}, good
+            good = good and lower <= value <= upper
+    return {"bench": "record", "rows": rows, "not_judged": sorted(set(ROBOTS) - set(present))}, good
 
 
 def figures(found: Recorded, share: float, most_bytes: float) -> dict[str, tuple[float, str, float, float]]:
-    """By name: value, unit, the least and the most it may be; `most_bytes`: MB/s."""
+    """By name: value, unit, lower and upper bound; `most_bytes`: MB/s."""
     seconds = SECONDS * share
     return {
-        "rows lost": (found.cycles - found.rows + found.lost, "rows", 0, MOST_LOST),
-        "telemetry": (found.processor / seconds, "of a core", 0, MOST_PROCESSOR),
+        "rows lost": (found.cycles - found.rows + found.lost, "rows", 0, MAX_LOST),
+        "telemetry": (found.processor / seconds, "of a core", 0, MAX_PROCESSOR),
         "on disk": (found.megabytes / seconds, "MB/s", 0, most_bytes),
-        "loading ten minutes": (found.loading / share, "s, processor", 0, MOST_LOADING),
+        "loading ten minutes": (found.loading / share, "s, processor", 0, MAX_LOADING),
         "replay, rows different": (found.whole.different, "rows", 0, 0),
         "replay, rows not compared": (found.whole.not_compared, "rows", 0, 0),
         "speed of the replay": (seconds / found.whole.seconds, "s per s, processor", SLOWEST_REPLAY, math.inf),
-        f"{BLACK_BOX:g} GB of black box hold": (found.held / share, "s", LEAST_HELD, math.inf),
+        f"{BLACK_BOX:g} GB of black box hold": (found.held / share, "s", MIN_HELD, math.inf),
         "black box, rows different": (found.latest.different, "rows", 0, 0),
-        "black box, rows not compared": (found.latest.not_compared, "rows", 0, 4 * MOST_BEFORE_SNAPSHOT),
-        "report": (found.reporting, "s, processor", 0, MOST_REPORTING),
-        "its page": (found.page, "MB", 0, LARGEST_PAGE),
+        "black box, rows not compared": (found.latest.not_compared, "rows", 0, 4 * MAX_BEFORE_SNAPSHOT),
+        "report": (found.reporting, "s, processor", 0, MAX_REPORTING),
+        "its page": (found.page, "MB", 0, MAX_PAGE),
     }
 
 
 def row(name: str, value: float, unit: str, reference: float) -> dict[str, Any]:
-    """Of the table: a value beside what is promised, 0 where nothing is."""
+    """A row of the table: a value beside its bound, 0 without one."""
     return {
         "name": name,
         "value": value,
@@ -163,7 +163,7 @@ def record(urdf: str, seconds: float, programs: Path, folder: Path) -> Recorded:
 
 
 def replayed(bag: Path) -> Replayed:
-    """As replay.py does."""
+    """Replays as replay.py does."""
     began = time.process_time()
     with tempfile.TemporaryDirectory() as folder:
         report = replay_log(str(bag), recorded_setup(bag, Path(folder)).layers(), None)

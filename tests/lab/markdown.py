@@ -24,7 +24,7 @@ def table(result: dict[str, Any]) -> str:
 
 
 def _by_robot(rows: Sequence[dict[str, Any]]) -> str:
-    """Names are "robot figure"; bounds may depend on the robot, so the worst ratio to them stands at the end."""
+    """Names are "robot figure". Bounds may depend on the robot, so the worst ratio to them stands at the end."""
     figures = list(dict.fromkeys(row["name"].split(" ", 1)[1] for row in rows))
     robots = list(dict.fromkeys(row["name"].split(" ", 1)[0] for row in rows))
     by_name = {row["name"]: row for row in rows}

@@ -1,4 +1,4 @@
-"""Nodes of a robot as processes without ROS (tests/support/participant.cpp), whose telemetry records every cycle."""
+"""Runs a robot's nodes as processes without ROS (tests/support/participant.cpp); their telemetry records all cycles."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ RECORDING = {
 
 
 def command(programs: Path, node: str, bus: str, folder: Path, settings: Mapping[str, object]) -> list[str]:
-    """Of one node, which takes commands from script.csv in `folder`; the log goes there, too."""
+    """Command line of one node, which reads commands from script.csv in `folder`; the log goes there, too."""
     script_and_log = {"robot.command_script": folder / "script.csv", "telemetry.directory": folder}
     pairs = [f"{key}={value}" for key, value in {**RECORDING, **script_and_log, **settings}.items()]
     program = programs.parent / "support" / "rc_participant"
@@ -28,13 +28,13 @@ def command(programs: Path, node: str, bus: str, folder: Path, settings: Mapping
 
 
 def remove_shared_memory(bus: str) -> None:
-    """That killed nodes have left."""
+    """Removes the shared memory that killed nodes have left."""
     for path in Path("/dev/shm").glob(f"robot_control.*.{bus}.*"):
         path.unlink(missing_ok=True)
 
 
 def script(cycles: int) -> str:
-    """A command every half second, so that none times out: speeds and turns that never repeat."""
+    """A script with a command every half second, so that none times out; speeds and turns never repeat."""
     rows = ["cycle,linear,angular,event"]
     for k in range(1, cycles, 500):
         t = k / 1000

@@ -1,5 +1,5 @@
-"""Four nodes and a telemetry as processes on the wall clock: nodes are killed, stopped, started again and tuned at
-random moments, on a drive with emergency stops and resets. What the log says is computed again, bit for bit.
+"""Four nodes and a telemetry run as processes on the wall clock, on a drive with emergency stops and resets. Nodes are
+killed, stopped, restarted and tuned at random moments. The log is then computed again, bit by bit.
 
 scripts/bench processes --first 17 --runs 1
 """
@@ -24,24 +24,24 @@ from lab.participants import LOOP, START_LIMIT, TELEMETRY, command, remove_share
 
 ALL_RUNS = 20
 EVENTS = 12  # of each run
-LONGEST_PAUSE = 1.0  # s, before each
-LONGEST_STOP = 0.3  # s, of a node that gets SIGSTOP
-LEAST_COMPARED = 500  # rows of each law
+MAX_PAUSE = 1.0  # s, before each
+MAX_STOP = 0.3  # s, of a node that gets SIGSTOP
+MIN_COMPARED = 500  # rows of each law
 ACTS = ("kill", "stop", "tune")
 LAP = 4000  # cycles: a drive, an emergency stop in every other lap, rest, a reset
 
 
 class Nodes:
-    """As processes of rc_participant."""
+    """The nodes as processes of rc_participant."""
 
     def __init__(self, programs: Path, folder: Path) -> None:
-        signal.signal(signal.SIGUSR1, signal.SIG_IGN)  # which the nodes inherit until they take it
+        signal.signal(signal.SIGUSR1, signal.SIG_IGN)  # the nodes inherit it until they install their own handler
         settings = {"telemetry.black_box": 0}
         self._commands = {node: command(programs, node, bus(), folder, settings) for node in (*LOOP, TELEMETRY)}
         self._running = {node: self._begin(node) for node in self._commands}
 
     def act(self, what: str, node: str, seconds: float) -> None:
-        """`seconds`: how long a stopped node stays so."""
+        """Acts on a node; a stopped node stays so for `seconds`."""
         if what == "tune":
             self._running["diff_drive_controller"].send_signal(signal.SIGUSR1)
         elif what == "stop":
@@ -54,7 +54,7 @@ class Nodes:
             self._running[node] = self._begin(node)
 
     def end(self) -> None:
-        """Telemetry last. Raises RuntimeError where one had ended by itself."""
+        """Ends all nodes, telemetry last. Raises RuntimeError if one had ended by itself."""
         ended = [name for name, node in self._running.items() if node.poll() is not None]
         for node in self._running.values():
             node.send_signal(signal.SIGINT)
@@ -63,7 +63,7 @@ class Nodes:
             raise RuntimeError(f"{', '.join(ended)} ended by itself")
 
     def kill(self) -> None:
-        """Whatever still runs."""
+        """Kills all processes that still run."""
         for node in self._running.values():
             node.kill()
             node.wait()
@@ -73,7 +73,7 @@ class Nodes:
 
 
 def bench(first: int, runs: int, programs: Path, say: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
-    """The table of `runs` from seed `first` on, and whether every row that was compared is the same."""
+    """The table of `runs` from seed `first` on, and whether every compared row is the same."""
     compared = missed = failed = 0
     for seed in range(first, first + runs):
         try:
@@ -84,7 +84,7 @@ def bench(first: int, runs: int, programs: Path, say: Callable[[str], None]) -> 
             continue
         compared += sum(law["compared"] for law in laws)
         missed += sum(law["not_compared"] for law in laws)
-        failed += different_rows > 0 or any(law["different"] or law["compared"] < LEAST_COMPARED for law in laws)
+        failed += different_rows > 0 or any(law["different"] or law["compared"] < MIN_COMPARED for law in laws)
     rows = [
         row("runs", runs, "", 0),
         row("runs not exact", failed, "", 0),
@@ -95,12 +95,13 @@ def bench(first: int, runs: int, programs: Path, say: Callable[[str], None]) -> 
 
 
 def bus() -> str:
-    """Of all runs."""
+    """Name of the bus of all runs."""
     return f"processes-{os.getpid()}"
 
 
 def replayed_run(seed: int, programs: Path, say: Callable[[str], None]) -> tuple[list[dict[str, int]], int]:
-    """Counts of each law, and rows of which a field differs; `say` receives what differs or is not compared.
+    """Counts of each law, and the number of rows with a different field; `say` receives what differs or is not
+    compared.
 
     Raises:
         RuntimeError: a node ended by itself, or the log cannot be replayed.
@@ -113,9 +114,9 @@ def replayed_run(seed: int, programs: Path, say: Callable[[str], None]) -> tuple
         try:
             await_rows(folder / "run.bag")
             for _ in range(EVENTS):
-                time.sleep(random.uniform(0, LONGEST_PAUSE))
-                nodes.act(random.choice(ACTS), random.choice(LOOP), random.uniform(0, LONGEST_STOP))
-            time.sleep(LONGEST_PAUSE)
+                time.sleep(random.uniform(0, MAX_PAUSE))
+                nodes.act(random.choice(ACTS), random.choice(LOOP), random.uniform(0, MAX_STOP))
+            time.sleep(MAX_PAUSE)
             nodes.end()
         finally:
             nodes.kill()
@@ -128,7 +129,7 @@ def replayed_run(seed: int, programs: Path, say: Callable[[str], None]) -> tuple
 
 
 def await_rows(log: Path) -> None:
-    """Raises RuntimeError: none are written in time."""
+    """Waits for rows. Raises RuntimeError: none are written in time."""
     end = time.monotonic() + START_LIMIT
     while not log.exists() or log.stat().st_size < LAP:
         if time.monotonic() > end:

@@ -1,7 +1,7 @@
-"""Robots to try: the project's own, and descriptions of real ones where a folder of them is there.
+"""Robots for trials: the project's own, and descriptions of real ones if a folder of them exists.
 
-A folder per robot with `robot.urdf` and the ROS packages of its meshes, and TRUTH.json, an object by robot. Looked for
-in the folder named by ROBOT_CORPUS, else beside the repository in `shared/robots`.
+The folder has a subfolder per robot with `robot.urdf` and the ROS packages of its meshes, and TRUTH.json, an object by
+robot. It is named by ROBOT_CORPUS; otherwise `shared/robots` beside the repository is used.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ GRAVITY = 9.81  # m/s²
 
 
 def corpus_folder() -> Path | None:
-    """The folder of real robots; None where there is none."""
+    """The folder of real robots; None if there is none."""
     named = os.environ.get("ROBOT_CORPUS")
     if named:
         return Path(named)
@@ -36,7 +36,7 @@ def corpus_folder() -> Path | None:
 
 
 def robot_names() -> list[str]:
-    """Those that drive: the project's own first, then the real ones by name."""
+    """The robots that drive: the project's own first, then the real ones by name."""
     folder = corpus_folder()
     if folder is None:
         return [DIFFBOT]
@@ -61,9 +61,12 @@ def urdf_of(name: str) -> str:
 
 @cache
 def stop_deceleration_of(name: str, friction: float = ICE) -> float:
-    """m/s² of the faster side, at least, of a robot that brakes; no more than the parameter's default.
+    """Lower bound of the deceleration of a braking robot's faster side, m/s²; at most the parameter's default.
 
-    Wheels on half the base b from the middle carry the part c of the mass m, which has the yaw inertia I; brakes hold a
+    Wheels on half the base b from the middle carry the part c of the mass m, which has the yaw inertia I. Brakes hold a
+    robot on a slope of 5°, and may do no more (brake_limits.h). Sliding straight slows down with a = g·min(μ·c, sin5°),
+    a spin with a·m·(b/2)²/I; on ice a long robot on a short base takes seconds. The result is a fifth less, because
+    casters take weight off the wheels while the robot slows down.
     robot on a slope of 5°, and may do no more (brake_limits.h). Sliding straight slows down with a = g·min(μ·c, sin5°),
     a spin with a·m·(b/2)²/I: seconds on ice, of a long robot on a short base. A fifth less, because casters take weight
     off the wheels while it slows down.

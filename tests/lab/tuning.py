@@ -1,19 +1,20 @@
-"""Random sets of limits, gains and feed-forward that set_parameters takes, driven: none makes a robot exceed the
-commanded speed by much, or shake without a cause.
+"""Drives random sets of limits, gains and feed-forward that set_parameters accepts.
 
-A set is drawn around what is derived and described, far enough out that most are refused; the first that is taken is
-driven. It is given at rest, or on the way, to a robot that then drives on and stops. A pure function of the seed, which
-names the robot, too: ROBOTS[seed mod their number].
+None makes a robot exceed the commanded speed by much, or shake without a cause.
 
-    exceeds    a true speed beyond the commanded one, or below rest, by 5 % of it, at least LEAST, for 50 ms without a
-               break; where 0 is commanded, by 20 % of the fastest rim's. Of skid steers, whose treads scrub, the mean
-               of the wheels over 50 ms
+A set is drawn around derived and described values, so widely that most sets are refused; the first accepted one is
+driven. It is set at rest or in motion, and the robot then drives on and stops. The drive is a pure function of the
+seed, which also selects the robot: ROBOTS[seed mod their number].
+
+    exceeds    a true speed beyond the commanded one, or below rest, by 5 % of it, at least MIN_EXCESS, for 50 ms
+               without a break; where 0 is commanded, by 20 % of the fastest rim's. On skid steers, whose treads scrub,
+               the mean of the wheels over 50 ms counts
     shakes     a motor whose torque varies within 0.2 s by more than SHAKES of its limit, RMS, all of the last half
                second, while the monitor neither stops nor warns
 
-What happens after the monitor has stopped the robot does not count. Neither does what the same drive shows with the
-same limits and derived gains: tyres and suspension follow steep limits with that much, and a set may add to it no more
-than the tolerance. A drive that shakes so, or exceeds by more than the tolerance, is counted as one of its limits.
+Motion after a stop by the monitor does not count. Neither does motion of the same drive with the same limits and
+derived gains: tyres and suspension follow steep limits in that way. A set may add to it no more than the tolerance. A
+drive whose limits alone shake it, or exceed by more than the tolerance, is counted as such.
 """
 
 from __future__ import annotations
@@ -35,14 +36,14 @@ from lab.runs.runner import Processes, Runner
 ROBOTS = (DIFFBOT, "kobuki", "boxer", "jackal", "pmb2")
 ALL_RUNS = 100_000
 PART = 0.05
-ASIDE = 0.2  # of the fastest rim, along an axis that is to stand
-LEAST = 0.2  # m/s of a rim
+ASIDE = 0.2  # share of the fastest rim's speed, along an axis that is to stand
+MIN_EXCESS = 0.2  # m/s of a rim
 EXCESS_TIME = 0.05  # s
-SHAKES = 0.6  # of the torque limit: 0.3, and what the counts make of it on the robots here
+SHAKES = 0.6  # share of the torque limit: 0.3 plus the effect of the encoders' counts on these robots
 BEFORE, DRIVEN, STOPPING = 0.5, 1.5, 0.7  # s
-DRAWS = 200  # sets refused in a row, then the seed is given up
+DRAWS = 200  # refused sets in a row after which the seed is given up
 
-GAINS = {"pid_kp": 100.0, "pid_ki": 100.0, "tracking_bandwidth": 20.0}  # drawn up to so many times either way
+GAINS = {"pid_kp": 100.0, "pid_ki": 100.0, "tracking_bandwidth": 20.0}  # factors of the drawn range, either way
 FORWARD = {"mass": 6.0, "yaw_inertia": 12.0, "wheel_inertia": 40.0}
 LIMITS = {
     "max_linear_speed": (0.05, 1.2),
@@ -59,7 +60,7 @@ EMERGENCY = {"max_linear_emergency_deceleration": 4.0, "max_angular_emergency_de
 
 @dataclass(frozen=True)
 class Tuned:
-    """What came of one seed. `values`: the set that was driven; empty where every one that was drawn was refused."""
+    """Result of one seed. `values`: the set that was driven; empty if every drawn set was refused."""
 
     robot: str
     seed: int
@@ -77,26 +78,26 @@ class Tuned:
 
 
 def draw(random: np.random.Generator, derived: Log, joint: str, effort_limit: float, speed: float) -> dict[str, Any]:
-    """A set; `derived`: a row of the log, `joint` a wheel's, `effort_limit` [N m] and `speed` [rad/s] of the wheels."""
+    """Draws a set; `derived`: a row of the log, `joint`: a wheel's; `effort_limit` N m and `speed` rad/s are limits."""
 
-    def times(most: float) -> float:
-        return float(np.exp(random.uniform(-np.log(most), np.log(most))))
+    def times(factor: float) -> float:
+        return float(np.exp(random.uniform(-np.log(factor), np.log(factor))))
 
     def between(low: float, high: float) -> float:
         return float(np.exp(random.uniform(np.log(low), np.log(high))))
 
     values: dict[str, Any] = {}
     forward: dict[str, float] = {}
-    for name, most in GAINS.items():
+    for name, bound in GAINS.items():
         if random.random() < 0.3:
             column = name if name == "tracking_bandwidth" else f"{joint}_{name}"
-            values[name] = float(derived[column][0]) * times(most)
+            values[name] = float(derived[column][0]) * times(bound)
     if random.random() < 0.1:
         values["pid_kd"] = float(derived[f"{joint}_pid_kp"][0]) * between(1e-5, 1e-2)
-    for name, most in FORWARD.items():
+    for name, bound in FORWARD.items():
         if random.random() < 0.2:
             column = f"{joint}_feed_forward_inertia" if name == "wheel_inertia" else f"feed_forward_{name}"
-            forward[name] = float(derived[column][0]) * times(most)
+            forward[name] = float(derived[column][0]) * times(bound)
     if random.random() < 0.2:
         forward["wheel_damping"] = effort_limit / speed * between(1e-3, 10)
     if random.random() < 0.2:
@@ -114,20 +115,20 @@ def draw(random: np.random.Generator, derived: Log, joint: str, effort_limit: fl
 
 
 def longest_excess(speed: NDArray[np.float64], bound: float, back: float, cycles: int) -> float:
-    """By how much `speed` lies beyond `bound`, or below −`back`, for `cycles` in a row; not above 0: never."""
+    """By how much `speed` exceeds `bound`, or falls below −`back`, for `cycles` in a row; at most 0: never."""
     windows = np.lib.stride_tricks.sliding_window_view(np.maximum(speed - bound, -speed - back), cycles)
     return float(windows.min(axis=1).max(initial=-np.inf))
 
 
 def shaking(effort: NDArray[np.float64], cycles: int) -> float:
-    """RMS of what is left of a torque without its mean over `cycles`."""
+    """RMS of a torque without its mean over `cycles`."""
     mean = np.convolve(effort, np.full(cycles, 1 / cycles), mode="valid")
     inner = effort[cycles // 2 : cycles // 2 + len(mean)]
     return float(np.sqrt(np.mean((inner - mean) ** 2)))
 
 
 def carry_out(robot: str, seed: int) -> Tuned:
-    """One set, taken and driven."""
+    """Sets and drives one set."""
     random = np.random.default_rng([seed, ROBOTS.index(robot)])
     motion = _Motion(robot, seed, random)
     limits = {joint["name"]: joint["effort_limit"] for joint in motion.loop.robot["joints"]}
@@ -147,20 +148,20 @@ def carry_out(robot: str, seed: int) -> Tuned:
 
 @dataclass(frozen=True)
 class Judged:
-    """One motion. `shares`: by kind of fault, how much of it there was, of what is tolerated; with it in words."""
+    """One motion. `shares`: each kind of fault as a share of its tolerance, with a description."""
 
     shares: dict[str, tuple[float, str]]
     causes: tuple[str, ...]
 
     def faults(self, usual: dict[str, tuple[float, str]]) -> tuple[str, ...]:
-        """In words, what is beyond tolerance, and beyond what is `usual` by as much."""
+        """Descriptions of all that exceeds its tolerance, and the `usual` share by as much."""
         return tuple(
             text for kind, (share, text) in self.shares.items() if share > 1 + max(0.0, usual.get(kind, (0.0, ""))[0])
         )
 
 
 class _Motion:
-    """A robot that stands or drives, drives on, and stops; which of it `random` decides."""
+    """A robot stands or drives, drives on, and stops; `random` selects the motion."""
 
     def __init__(self, robot: str, seed: int, random: np.random.Generator) -> None:
         errors = {"sensor_errors": "data_sheet"}  # gains and limits are judged, not what shakes the IMU
@@ -175,7 +176,7 @@ class _Motion:
         self.before = self.loop.run(BEFORE, self.command if on_the_way else (0.0, 0.0))
 
     def judge(self) -> Judged:
-        """The rest of the motion."""
+        """Drives and judges the rest of the motion."""
         driven = self.loop.run(DRIVEN, self.command)
         stopping = self.loop.run(STOPPING, (0.0, 0.0))
         limits = {joint["name"]: joint["effort_limit"] for joint in self.loop.robot["joints"]}
@@ -186,7 +187,7 @@ class _Motion:
 
 
 def _taken(loop: ClosedLoop, draw_one: Callable[[], dict[str, Any]]) -> tuple[dict[str, Any], int]:
-    """The first set that is taken, and how many were refused before."""
+    """The first set that is accepted, and the number of refused ones before."""
     for refused in range(DRAWS):
         values = draw_one()
         try:
@@ -208,25 +209,25 @@ def _exceeds(
     speeds = _speeds(loop, [driven, stopping], cycles)
     for name, asked, scale in (("linear", command[0], 1.0), ("angular", command[1], rim)):
         speed = speeds[name][:good]
-        tolerance = max(PART * abs(asked) * scale if asked else ASIDE * fastest, LEAST) / scale
+        tolerance = max(PART * abs(asked) * scale if asked else ASIDE * fastest, MIN_EXCESS) / scale
         if len(speed) < cycles:
             continue
-        for way, bound, back in (("beyond", asked, np.inf), ("below", np.inf, 0.0)):
+        for side, bound, back in (("beyond", asked, np.inf), ("below", np.inf, 0.0)):
             excess = longest_excess(speed, bound, back, cycles)
-            text = f"{name} speed {way} {asked if way == 'beyond' else 0:.3g} by {excess:.3g} for {EXCESS_TIME} s"
-            shares[f"{name} {way}"] = (excess / tolerance, text)
+            text = f"{name} speed {side} {asked if side == 'beyond' else 0:.3g} by {excess:.3g} for {EXCESS_TIME} s"
+            shares[f"{name} {side}"] = (excess / tolerance, text)
     return shares
 
 
 def _speeds(loop: ClosedLoop, logs: list[Log], cycles: int) -> dict[str, NDArray[np.float64]]:
-    """Linear [m/s] and angular [rad/s]: true; of skid steers by the wheels, over `cycles`."""
+    """Linear [m/s] and angular [rad/s] speed: true; on skid steers by the wheels, over `cycles`."""
     wheels = loop.robot["wheels"]
     if len(wheels) == 2:
         return {name: np.concatenate([log[f"truth_{name}"] for log in logs]) for name in ("linear", "angular")}
     rims: dict[str, list[NDArray[np.float64]]] = {"left": [], "right": []}
     for wheel in wheels:
-        way = wheel["sign"] * wheel["radius"] * np.concatenate([log[f"{wheel['joint']}_position"] for log in logs])
-        moved = np.concatenate([np.zeros(cycles), way[cycles:] - way[:-cycles]])
+        travel = wheel["sign"] * wheel["radius"] * np.concatenate([log[f"{wheel['joint']}_position"] for log in logs])
+        moved = np.concatenate([np.zeros(cycles), travel[cycles:] - travel[:-cycles]])
         rims[wheel["side"]].append(moved / (cycles * loop.period))
     left, right = (np.mean(rims[side], axis=0) for side in ("left", "right"))
     return {"linear": (left + right) / 2, "angular": (right - left) / loop.robot["effective_wheel_base"]}
@@ -243,7 +244,7 @@ def _shakes(loop: ClosedLoop, driven: Log, wheels: list[str], limits: dict[str, 
 
 
 def robot_of(seed: int) -> str:
-    """The robot that `seed` is about."""
+    """The robot of `seed`."""
     return ROBOTS[seed % len(ROBOTS)]
 
 
@@ -254,10 +255,12 @@ def _one(seed: int) -> Tuned:
 def bench(
     first: int, runs: int, say: Callable[[str], None], runner: Runner | None = None
 ) -> tuple[dict[str, Any], bool]:
-    """`runs` seeds from `first` on, but those of robots that are not here, and whether none was amiss."""
+    """Runs `runs` seeds from `first` on, except those of absent robots; returns the table, and whether there was no
+    fault.
+    """
     began = time.monotonic()
-    there = robot_names()
-    seeds = [seed for seed in range(first, first + runs) if robot_of(seed) in there]
+    present = robot_names()
+    seeds = [seed for seed in range(first, first + runs) if robot_of(seed) in present]
     driven = refused = amiss = stopped = of_limits = 0
     runner = runner or Processes()
     for outcome in runner.outcomes(_one, seeds, say, chunk=8):
@@ -280,5 +283,5 @@ def bench(
         {"name": name, "value": value, "unit": unit, "reference": 0, "reference_name": "none", "ratio": 0}
         for name, value, unit in figures
     ]
-    absent = [robot for robot in ROBOTS if robot not in there]
+    absent = [robot for robot in ROBOTS if robot not in present]
     return {"bench": "tuning", "rows": rows, "not_judged": absent}, amiss == 0 and driven == len(seeds) > 0

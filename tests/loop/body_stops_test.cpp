@@ -1,6 +1,5 @@
-/// What happens to the body of the simulated robot, and what the monitor makes of it, in virtual time. The healthy
-/// case: diffbot on the flat with exact sensors, 12 kg, its centre of gravity 0.06 m behind the axle. A push acts at
-/// the middle of the axle.
+/// The body of the simulated robot moves, and the monitor reacts, in virtual time. The healthy case is diffbot on the
+/// flat with exact sensors, 12 kg, its centre of gravity 0.06 m behind the axle. A push acts at the middle of the axle.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +31,7 @@ class BodyStops : public testing::Test {
 
   using Look = std::function<void(ClosedLoop&)>;
 
-  /// Asks for `linear` all the time; `look` before each step.
+  /// Requests `linear` all the time; calls `look` before each step.
   void run(std::uint64_t cycles, double linear, const Look& look = {}) {
     ClosedLoop loop(parameters_);
     caused_ = warned_ = 0;
@@ -40,13 +39,13 @@ class BodyStops : public testing::Test {
       if (loop.cycle() % 100 == 1) loop.command({.linear = {linear, 0, 0}, .angular = {}});
       if (look) look(loop);
       loop.step();
-      note(loop.row());
+      record(loop.row());
     }
     truth_ = loop.row().driver->truth;
     permit_ = loop.row().monitor->permit;
   }
 
-  /// Cycle in which a cause was first latched; kNever: it was not.
+  /// Cycle in which a cause was first latched; kNever if it was not.
   std::uint64_t latched(StopCause cause) const { return cycle_of(cause, latched_); }
 
   static double tilt_of(const TruthFrame& truth) {
@@ -63,7 +62,7 @@ class BodyStops : public testing::Test {
   Permit permit_;                          ///< in the end
 
  private:
-  void note(const JoinedRow& row) {
+  void record(const JoinedRow& row) {
     const Permit& permit = row.monitor->permit;
     for (std::size_t bit = 0; bit < kStopCauses; ++bit) {
       const std::uint64_t cause = std::uint64_t{1} << bit;
@@ -104,7 +103,7 @@ TEST_F(BodyStops, ARampSteeperThanTheLimitKeepsItFromStarting) {
   EXPECT_NEAR(truth_.pose_world.position[0], 0, 1e-4);
 }
 
-// Pushed up at the axle by twice its weight it turns over backwards about its centre of gravity.
+// A push up at the axle by twice its weight turns it over backwards about its centre of gravity.
 TEST_F(BodyStops, ARobotThatTurnsOverIsStopped) {
   push_up(2 * 12 * kGravity, 100);
   std::uint64_t tips = kNever, tilted = kNever;
@@ -120,7 +119,7 @@ TEST_F(BodyStops, ARobotThatTurnsOverIsStopped) {
   });
   ASSERT_NE(tips, kNever);
   ASSERT_NE(tilted, kNever);
-  // The filter takes the push for gravity where its size is in the band: 0.01 rad at 5 rad/s are 2 cycles.
+  // The filter takes the push for gravity if its size is in the band: 0.01 rad at 5 rad/s are 2 cycles.
   EXPECT_NEAR(static_cast<double>(latched(kCauseTipOver)),
               static_cast<double>(tips + cycles(parameters_.safety.tip_over) - 1), 5);
   EXPECT_NEAR(static_cast<double>(latched(kCauseTilt)),
@@ -128,7 +127,7 @@ TEST_F(BodyStops, ARobotThatTurnsOverIsStopped) {
   EXPECT_EQ(permit_.action, PermitAction::kBrake);
 }
 
-// A payload moves the centre of gravity under the push, 5 mm behind it: up and away it goes, without turning over.
+// A payload moves the centre of gravity to 5 mm behind the push: the robot rises without turning over.
 TEST_F(BodyStops, AFallIsFelt) {
   parameters_.plant.payload = 3.6;
   parameters_.plant.payload_x = 0.18;
@@ -148,7 +147,7 @@ TEST_F(BodyStops, AHopIsNotFelt) {
   EXPECT_EQ(caused_ & (kCauseFreeFall | kCauseTilt | kCauseTipOver | kCauseImpact), 0u);
 }
 
-// From 1 m/s, which is gone in a few milliseconds.
+// The robot stops from 1 m/s within a few milliseconds.
 TEST_F(BodyStops, AWallAtFullSpeedIsAnImpact) {
   in("walls.xml");
   std::uint64_t hit = kNever;

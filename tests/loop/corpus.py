@@ -1,6 +1,6 @@
-"""Real robots to try: where their descriptions lie, and what is true of them.
+"""Finds descriptions of real robots, and their true data.
 
-Where the folder is looked for: lab/robot_corpus.py. Tests that need it skip where it is absent.
+lab/robot_corpus.py defines the search for the folder. Tests that need it skip if it is absent.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class CorpusRobot:
 
 
 def drivable_robots() -> list[CorpusRobot]:
-    """Sorted by name; empty where the folder is absent."""
+    """The robots, sorted by name; empty if the folder is absent."""
     if FOLDER is None:
         return []
     truths = json.loads((FOLDER / "TRUTH.json").read_text())

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kTimeout = 240;  // s
 
-// One fault after the other, each in a block of cycles: drive, fail, recover, stop, reset what was latched.
+// One fault after the other, each in a block of cycles: drive, fail, recover, stop, reset of the latched stop.
 constexpr std::uint64_t kBlock = 1200;
 constexpr std::uint64_t kFails = 400;
 constexpr std::uint64_t kRecovers = 460;
@@ -90,17 +90,17 @@ TEST_F(Faults, OfFourProcessesGiveTheNumbersOfTheClosedLoop) {
   LogTable one(joint_names(robot_), parameters_.loop.period(), false);
   ClosedLoop loop(parameters_);
   for (const Fault& fault : faults_) {
-    bool drove = false;
+    bool driving = false;
     for (std::uint64_t k = 0; k < kBlock; ++k) {
       if (k == kFails) {
-        drove = loop.row().monitor->permit.state == SupervisorState::kDrive;
+        driving = loop.row().monitor->permit.state == SupervisorState::kDrive;
         loop.inject_fault(fault.component, fault.kind);
       }
       if (k == kRecovers) loop.inject_fault(fault.component, "ok");
       loop.step();
       one.add(loop.row());
     }
-    EXPECT_TRUE(drove) << "before " << fault.component << ' ' << fault.kind << " nothing was shown";
+    EXPECT_TRUE(driving) << "before " << fault.component << ' ' << fault.kind << " nothing was shown";
   }
   EXPECT_EQ(LogTable::difference(LogTable::of_bag(folder_.path() / "log" / "run.bag"), one), "");
 }

@@ -1,4 +1,4 @@
-/// The gate's clamps are for what goes wrong: no shipped loop ever meets one.
+/// The gate's clamps are for faults: no shipped loop ever reaches one.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ Twist twist(double linear, double angular) {
   return {.linear = {linear, 0, 0}, .angular = {0, 0, angular}};
 }
 
-/// Full speed, hard reversals, spins, and stops that are long enough for the brake: a new request every 0.7 s.
+/// Full speed, hard reversals, spins, and stops that are long enough for the brake, with a new request every 0.7 s.
 Twist restless(double time) {
   constexpr double kTable[][2] = {{1, 0},  {-1, 0}, {0, 2}, {0, -2}, {1, 2},  {-1, 2},
                                   {1, -2}, {0, 0},  {0, 0}, {0, 0},  {-1, -2}};
@@ -55,7 +55,7 @@ TEST_F(GateInTheLoop, NeverClampsAtAnyRate) {
   }
 }
 
-// What the brake held is what the controller begins with: no step from zero.
+// The controller begins with the torque that the brake held, without a step from zero.
 TEST_F(GateInTheLoop, NeverClampsWhereTheBrakeLetsGoOnASlope) {
   parameters_.plant.slope = 0.0873;  // 5°
   expect_no_clamp(restless, 16);
@@ -69,7 +69,7 @@ TEST_F(GateInTheLoop, DoesNotTakeACoarseEncoderForATooFastWheel) {
   expect_no_clamp([](double) { return twist(1, 0); }, 5);
 }
 
-// Uphill at the wheels' speed limit the gate would take away the torque that the load needs.
+// At the wheels' speed limit the gate would take away the torque that the load uphill needs.
 TEST_F(GateInTheLoop, AtTheSpeedLimitTheControllerKeepsOutOfTheTaper) {
   static_assert(kUsableWheelSpeed == kTaperStart);
   parameters_.plant.slope = 0.0873;

@@ -115,11 +115,11 @@ std::size_t equal_rows(const LogTable& reference, const LogTable& other) {
   return rows;
 }
 
-/// A machine that stalls makes a frame late, and from there on the two runs may differ: each wall-clock run is judged
+/// A machine that stalls makes a frame late, and from there on the two runs may differ. Each wall-clock run is judged
 /// up to its first missed or late frame. Runs are repeated until these stretches add up to 2 s.
 TEST_F(Lockstep, AWallClockRunEqualsLockstepUntilTheFirstMissedCycle) {
   constexpr std::size_t kNeeded = 2000;  // rows
-  constexpr int kMostRuns = 40;          // a machine that stalls every 50 ms
+  constexpr int kMaxRuns = 40;           // a machine that stalls every 50 ms
   parameters_.plant.cycles = 2500;
   const LogTable lockstep = four_processes("lockstep", ClockMode::kLockstep);
   std::size_t judged = 0;

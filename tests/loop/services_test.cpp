@@ -55,7 +55,7 @@ class Services : public ::testing::Test {
   RobotModel robot_;
 };
 
-/// Pauses before cycle 0, so that everything happens in a cycle that is known.
+/// Pauses before cycle 0, so that every event happens in a known cycle.
 void step_from_the_beginning(SimulationServices& services, std::uint64_t cycles) {
   services.set_pause(true);
   ServiceAnswer answer;
@@ -136,7 +136,7 @@ TEST_F(Services, OnTheWallClockAResetAtSpeedIsFollowedWithoutAJump) {
   EXPECT_EQ(static_cast<std::uint64_t>(rows.at(second + 20, "permit_causes")) & kCauseDriverLost, 0u);
 }
 
-/// What the operator reads of the sensors channel.
+/// The operator reads this frame from the sensors channel.
 SensorFrame newest(DriverProcess& driver) {
   SensorFrame sensors;
   while (driver.sensors().newest(sensors) != Lookup::kFrame) sleep_ns(1'000'000);

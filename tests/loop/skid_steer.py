@@ -1,4 +1,4 @@
-"""A skid steer whose description is written where a test wants it."""
+"""Writes the description of a skid steer into a given folder."""
 
 from pathlib import Path
 

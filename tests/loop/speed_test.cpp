@@ -1,4 +1,4 @@
-/// Virtual time runs as fast as promised, judged against the bare physics engine of the same run.
+/// Virtual time is as fast as promised, judged against the bare physics engine of the same run.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 constexpr double kClosedLoopShare = 60.0 / 150.0;
 constexpr double kFourNodesShare = 20.0 / 150.0;
 constexpr std::uint64_t kTimedCycles = 10'000;
-constexpr int kRounds = 5;  // until one is good: a stall in another process's favour proves nothing
+constexpr int kRounds = 5;  // rounds until one is good: a stall in favour of another process proves nothing
 
 class Speed : public ::testing::Test {
  protected:

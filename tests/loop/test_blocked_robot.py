@@ -1,4 +1,4 @@
-"""A robot that a wall blocks while its wheels spin: where the pose says it is."""
+"""The estimated pose of a robot that a wall blocks while its wheels spin."""
 
 import numpy as np
 import pytest

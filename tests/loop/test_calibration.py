@@ -1,4 +1,4 @@
-"""calibrate.py's way from hidden errors to parameters, in virtual time: the pilot drives the closed loop."""
+"""calibrate.py finds hidden errors in virtual time: its pilot drives the closed loop."""
 
 import math
 
@@ -13,7 +13,7 @@ from robot_control.identify.excitation_watch import Pose
 
 LEFT, RIGHT, BASE = 0.012, 0.004, 0.02
 HIDDEN = {
-    "sensor_errors": "data_sheet",  # the fit is judged
+    "sensor_errors": "data_sheet",  # these tests judge the fit
     "left_radius_error": LEFT,
     "right_radius_error": RIGHT,
     "wheel_base_error": BASE,
@@ -28,7 +28,7 @@ def pose_of(log, name):
 
 
 def drive(loop, moves, speed=0.3):
-    """(n, 3) path by wheel odometry; the end as it truly is and as the estimator estimates it, seen from the start."""
+    """(n, 3) path by wheel odometry; the true end and the estimated one, seen from the start."""
     pilot = Pilot(moves, speed, turn_speed=0.6)
     loop.command(0.0, 0.0)
     log = loop.step(1000)  # at rest: a moment in which the gyro's bias is learned
@@ -43,7 +43,7 @@ def drive(loop, moves, speed=0.3):
 
 
 def drive_squares(loop):
-    """Squares both ways, and m by which the estimate's mean return is wrong in the worse direction."""
+    """Drives squares both ways; returns m by which the estimate's mean return errs in the worse direction as well."""
     squares, wrong = [], []
     for clockwise in WAYS:
         path, truth, estimate = drive(loop, square(SIDE, clockwise=clockwise))
@@ -54,10 +54,10 @@ def drive_squares(loop):
 
 @pytest.fixture(scope="module")
 def before():
-    """Loop, straight drives, squares, error of the estimate: uncalibrated, without a gyro."""
+    """Loop, straight drives, squares and error of the estimate: uncalibrated, without a gyro."""
     parameters = {"mujoco_plant": HIDDEN, "state_estimator": {"self_calibration": False}}
     loop = ClosedLoop(parameters, seed=1)
-    loop.inject_fault("gyro", "off")  # else it straightens what the wheels get wrong
+    loop.inject_fault("gyro", "off")  # a gyro would correct the wheels' errors
     straights = []
     for _ in range(2):
         path, truth, _ = drive(loop, straight(3.0))
@@ -80,7 +80,7 @@ def test_finds_the_hidden_wheels(outcome):
 
 
 def test_makes_the_odometry_of_squares_ten_times_better(before, outcome):
-    """On squares of another seed: as wheel odometry is replayed, and as the estimator drives it without a gyro."""
+    """The squares have another seed; wheel odometry is replayed, and the estimator drives them without a gyro."""
     parameters = yaml.safe_load(outcome.yaml)
     parameters["state_estimator"] |= {"self_calibration": False}
     loop = ClosedLoop({**parameters, "mujoco_plant": HIDDEN}, seed=2)

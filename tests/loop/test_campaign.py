@@ -1,4 +1,4 @@
-"""Random fault sequences end at standstill; and who judges them would notice if they did not."""
+"""Random fault sequences end at standstill, and their judge notices if they do not."""
 
 import dataclasses
 
@@ -22,7 +22,7 @@ DRIVEN = 1.0  # s
 
 
 def expect_survived(step, least_stops):
-    """One seed in `step`; stops for `least_stops` different causes, else hardly anything was put to the test."""
+    """Runs one seed in `step`; requires stops for `least_stops` different causes, so that enough is tested."""
     sample, lines = range(0, ALL_RUNS, step), []
     tally = campaign(sample, lines.append)
     assert tally.runs == len(sample)
@@ -55,7 +55,7 @@ def sequence():
 
 @pytest.fixture
 def log(sequence):
-    """Drives at 1 m/s, ramps down at 1 m/s², stands under the brake."""
+    """A log that drives at 1 m/s, ramps down at 1 m/s², and stands under the brake."""
     cycles = round(sequence.released / PERIOD)
     time = np.arange(cycles) * PERIOD
     log = {name: np.zeros(cycles) for name in COLUMNS}
@@ -75,7 +75,7 @@ def rules_broken(sequence, log):
 
 
 def rows(first, end):
-    """From `first` to `end`, s."""
+    """Rows from `first` to `end`, s."""
     return slice(round(first / PERIOD), round(end / PERIOD))
 
 

@@ -50,7 +50,7 @@ COMMANDS = [(0.5, 0.2), (-0.5, 0.2), (0.0, 1.0), (0.8, -0.5)]  # m/s, rad/s
 
 
 def driven_after_a_rest(loop, command):
-    drive(loop, 1.0, (0.0, 0.0))  # at rest the gyro's bias shows
+    drive(loop, 1.0, (0.0, 0.0))  # at rest the gyro's bias is learned
     return drive(loop, 15.0, command)
 
 
@@ -58,13 +58,13 @@ def driven_after_a_rest(loop, command):
 def test_estimates_the_position_within_one_percent_of_the_distance(loop, command):
     log = driven_after_a_rest(loop, command)
     error = math.hypot(log["estimate_x"][-1] - log["truth_x"][-1], log["estimate_y"][-1] - log["truth_y"][-1])
-    rim = 0.25 * np.sum(np.abs(np.diff(np.unwrap(log["truth_yaw"]))))  # a spin travels at the wheels
+    rim = 0.25 * np.sum(np.abs(np.diff(np.unwrap(log["truth_yaw"]))))  # way of a rim in a spin
     assert error < 0.01 * max(path_length(log), rim)
 
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_estimates_the_heading_where_the_gyro_is_on_time(command):
-    """In the field it is late by 50 ms, in which a spin of 1 rad/s turns by 0.05 rad."""
+    """The field's gyro is late by 50 ms, in which a spin of 1 rad/s turns by 0.05 rad."""
     log = driven_after_a_rest(ClosedLoop({"mujoco_plant": {"sensor_errors": "data_sheet"}}), command)
     assert abs(math.remainder(log["estimate_yaw"][-1] - log["truth_yaw"][-1], 2 * math.pi)) < 0.01
 
@@ -121,7 +121,7 @@ def test_drives_again_after_a_reset_at_rest_without_a_jump(loop):
 @pytest.mark.parametrize("scene", [None, SLOPE], ids=["flat", "slope"])
 @pytest.mark.parametrize("command", [(0.5, 0.2), (-0.5, 0.0)])
 def test_stands_within_a_millimetre_for_a_minute(scene, command):
-    """From the first cycle of standstill, hand-over between drive and brake included."""
+    """The limit holds from the first cycle of standstill, with the hand-over between drive and brake."""
     loop = ClosedLoop(scene=scene)
     drive(loop, 2.0, command)
     log = loop.run(62.0, (0.0, 0.0))
@@ -134,7 +134,7 @@ def test_stands_within_a_millimetre_for_a_minute(scene, command):
 def test_takes_over_from_the_brake_on_a_slope_without_sagging():
     loop = ClosedLoop(scene=SLOPE)
     loop.run(2.0, (0.0, 0.0))
-    log = loop.run(1.0, (1e-4, 0.0))  # the smallest motion: the controller holds the robot now
+    log = loop.run(1.0, (1e-4, 0.0))  # the smallest motion: the controller now holds the robot
     assert log["gate_verdict"][-1] == PASSED
     assert moved(log) < 1e-3
 
@@ -175,7 +175,7 @@ def test_a_new_run_after_a_reset_at_speed_has_the_bits_of_the_first(loop):
     assert first["truth_linear"][-1] > 0.4
     loop.inject_fault("right_motor", "off")
     loop.step(10)
-    loop.command(1.0, 0.0)  # dropped
+    loop.command(1.0, 0.0)  # this command is dropped
     loop.reset()
     assert loop.cycle == 0
     second = drive(loop, 2.0)
@@ -253,7 +253,7 @@ def test_a_command_script_speaks_like_a_sender(tmp_path):
 
 @pytest.mark.parametrize("rate", [100, 500, 1000, 2000])
 def test_tracks_at_every_rate(rate):
-    gains = {"pid_kp": 0.17, "pid_ki": 0.6} if rate == 100 else {}  # 2, 20 would be unstable there
+    gains = {"pid_kp": 0.17, "pid_ki": 0.6} if rate == 100 else {}  # 2, 20 would be unstable at that rate
     loop = ClosedLoop({"robot": {"rate": rate}, "diff_drive_controller": gains})
     log = drive(loop, 5.0)
     assert log["truth_linear"][-1] == pytest.approx(0.5, rel=0.02)
@@ -268,9 +268,9 @@ def test_takes_lists():
 
 @pytest.mark.parametrize("rate", [100, 250, 333, 500, 2000])
 def test_derived_gains_hold_the_commanded_motion_at_every_rate(rate):
-    """With the sensors' errors; 1 % is the promise for 1 kHz. Then the brake holds: nothing disturbs it.
+    """The sensors err; 1 % is the promise for 1 kHz. Then the brake holds, and nothing disturbs it.
 
-    Of the data sheet: where the centre of gravity is off, the slow loops of 100 Hz take longer than these 2 s.
+    The errors are those of the data sheet: with a wrong centre of gravity the slow loops of 100 Hz need more than 2 s.
     """
     loop = ClosedLoop({"robot": {"rate": rate}, "mujoco_plant": {"sensor_errors": "data_sheet"}})
     log = drive(loop, 4.0)
@@ -284,7 +284,7 @@ def test_derived_gains_hold_the_commanded_motion_at_every_rate(rate):
 @pytest.mark.parametrize(("gains", "cycles"), [({}, 2), ({"pid_kp": 1.0, "pid_ki": 5.0}, 7)])
 @pytest.mark.parametrize("where", ["actuator_delay", "sensor_delay"])
 def test_gains_bear_delays(gains, cycles, where):
-    """A limit cycle takes all of the 3.5 N·m."""
+    """A limit cycle would use all of the 3.5 N·m."""
     plant = {"sensor_errors": "data_sheet", where: cycles}
     log = drive(ClosedLoop({"mujoco_plant": plant, "diff_drive_controller": gains}), 4.0)
     steady = log["time"] > 2.0

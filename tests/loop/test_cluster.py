@@ -39,7 +39,7 @@ def worker(folder, name, **environment):
 
 
 def certificate(folder):
-    """One, self-signed, for all of them."""
+    """One self-signed certificate for all processes."""
     made = ["-keyout", "key.pem", "-out", "cert.pem", "-days", "1", "-subj", "/CN=robot_control test"]
     command = ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", *made]
     subprocess.run(command, cwd=folder, check=True, capture_output=True)
@@ -56,7 +56,7 @@ def other_robots(folder):
 
 @pytest.fixture
 def cluster(tmp_path):
-    """Scheduler, two workers, and one with other robots."""
+    """Starts a scheduler, two workers, and a worker with other robots."""
     pytest.importorskip("distributed", reason="python3-distributed is not installed: scripts/setup --cluster")
     if shutil.which("openssl") is None:
         pytest.skip("no openssl to make a certificate with")

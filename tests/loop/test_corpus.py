@@ -1,4 +1,4 @@
-"""Descriptions of real robots drive as they are: nothing written by hand."""
+"""Descriptions of real robots drive as they are, without hand-written additions."""
 
 import os
 
@@ -25,12 +25,14 @@ def skid_steer(request) -> CorpusRobot:
 
 
 def make(robot: CorpusRobot, **params) -> ClosedLoop:
-    """The robot as it is described: its centre of gravity is where it says, its wheels do not slip at random."""
+    """The robot as described: its centre of gravity is where the description says, and its wheels do not slip at
+    random.
+    """
     return ClosedLoop(urdf=robot.urdf, params={"mujoco_plant": {"sensor_errors": "data_sheet"}, **params})
 
 
 def processor_time() -> float:
-    """s, of this process and of those that read meshes for it."""
+    """s, of this process and of its children that read meshes."""
     return sum(os.times()[:4])
 
 

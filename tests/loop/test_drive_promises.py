@@ -1,4 +1,4 @@
-"""The drive does what its limits promise, on the simulated machine; `scripts/bench drive` shows the same figures."""
+"""The drive keeps the promises of its limits on the simulated machine; `scripts/bench drive` shows the same figures."""
 
 import pytest
 from lab.drives import drive_figures, drive_promises
@@ -55,7 +55,7 @@ def test_drives_what_the_test_of_diff_drive_controller_drives():
 
 @pytest.mark.parametrize(("deceleration", "jerk"), [(0.5, 10.0), (2.0, 0.0), (2.0, 3.0)])
 def test_stops_as_predicted_with_other_limits(deceleration, jerk):
-    """Weaker than the acceleration, stronger, without and with little jerk."""
+    """Decelerations are weaker and stronger than the acceleration, without and with little jerk."""
     limits = {
         "max_linear_deceleration": deceleration,
         "max_linear_emergency_deceleration": 2.5,
@@ -83,7 +83,7 @@ def test_follows_its_profile_at_every_rate(rate):
 
 @pytest.mark.parametrize("counts", [64, 128, 256])
 def test_follows_its_profile_with_a_coarse_encoder_and_a_slower_tracking_loop(counts):
-    """The robot's speed is then known no better than a count per tracking time: whether it settled is unknown."""
+    """The robot's speed is then known no better than a count per tracking time, so its settling is not judged."""
     plant, controller = {"encoder_resolution": counts}, {"tracking_bandwidth": 8.0}
     figures = expect_straight({"mujoco_plant": plant, "diff_drive_controller": controller})
     assert figures.overshoot < 0.04
@@ -96,7 +96,7 @@ def test_bears_motors_with_friction_and_gears_that_are_not_described():
 
 
 def test_a_robot_that_is_pushed_back_at_full_torque_is_stopped():
-    """Its ramp waits for wheels that cannot follow, but not so long that it would be noticed."""
+    """Its ramp waits for wheels that cannot follow, but not so long that the fault is missed."""
     params = {
         "robot": {"wheel_effort_limit": 0.4},
         "mujoco_plant": {"push_x": -9.0, "push_start": 1.0, "push_duration": 10.0},
@@ -121,7 +121,9 @@ def test_a_figure_that_is_no_number_is_not_good():
 
 @pytest.mark.parametrize("seed", range(8))
 def test_the_demo_keeps_its_bounds_with_any_sensors(seed):
-    """Their errors are those of the field; it drives off 0.8 s after it was switched on, sooner than scripts/demo."""
+    """The sensors have the errors of the field; the robot drives off 0.8 s after it was switched on, sooner than
+    scripts/demo.
+    """
     loop = ClosedLoop(seed=seed)
     loop.run(0.8)
     verdict = judge(loop.run(10.0, (LINEAR, ANGULAR)), LINEAR, ANGULAR)

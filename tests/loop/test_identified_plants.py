@@ -1,4 +1,4 @@
-"""Identification on the MuJoCo plant: what the plant hides is found, and what is proposed drives better."""
+"""Identification finds the hidden properties of the MuJoCo plant, and its proposals drive better."""
 
 import numpy as np
 import pytest
@@ -16,10 +16,10 @@ from robot_control.installed_files import share_file
 from skid_steer import write_skid_steer
 
 PARAMS = share_file("config/robot_params.yaml")
-ERRORS = {"sensor_errors": "data_sheet"}  # identification is a law: its promises are for sensors that are on time
+ERRORS = {"sensor_errors": "data_sheet"}  # identification promises its accuracy for sensors that are on time
 TOLERANCE = 0.05  # what identification promises
-DELAYED = {"pid_kp": 1.0, "pid_ki": 5.0}  # bear 10 cycles on the ground (wheel_loop_gains.h)
-FRICTION_SHARE = 0.02  # of the effort limit, dry, and as much viscous at 0.5 m/s: a good gear motor's
+DELAYED = {"pid_kp": 1.0, "pid_ki": 5.0}  # stable with 10 cycles of delay on the ground (wheel_loop_gains.h)
+FRICTION_SHARE = 0.02  # share of the effort limit, dry, and as much viscous at 0.5 m/s, as in a good gear motor
 OPTIONS = Options(space=1.0, max_speed=0.5, repeats=2, mass=None, output=None, log=None, params=None, urdf=None)
 CORPUS = [
     pytest.param(name, marks=[pytest.mark.nightly, pytest.mark.skipif(FOLDER is None, reason=ABSENT)])
@@ -45,7 +45,7 @@ def hidden_in(robot):
 
 
 def excited(robot, hidden, controller=None, seed=1):
-    """The log of the excitation, and the settings it was driven with."""
+    """The log of the excitation, and its settings."""
     controller = controller or {}
     settings = settings_of(robot, controller)
     excitation = plan(settings, OPTIONS)
@@ -58,7 +58,7 @@ def excited(robot, hidden, controller=None, seed=1):
 
 
 def true_straight(robot, hidden):
-    """kg·m² that a wheel sees straight: the URDF's, rotor and payload beside it."""
+    """kg·m² of a wheel in straight motion: from the URDF, with rotor and payload."""
     wheel = wheel_loops(PARAMS, [("robot.urdf", urdf_of(robot))])[0]
     load = hidden.get("payload", 0) * wheel["radius"] ** 2 / (2 * wheel["wheels_beside"])
     return wheel["straight"] + hidden.get("rotor_inertia", 0) + load
@@ -72,7 +72,7 @@ def test_finds_hidden_inertia_and_friction_within_five_percent(robot):
         assert side.straight.value == pytest.approx(true_straight(robot, hidden), rel=TOLERANCE)
         assert side.friction.value == pytest.approx(hidden["motor_friction"], rel=TOLERANCE)
         assert side.damping.value == pytest.approx(hidden["motor_damping"], rel=TOLERANCE)
-    # The plan ends where it began, and keeps to its space.
+    # The plan ends at its begin, and stays in its space.
     assert np.hypot(log["truth_x"][-1], log["truth_y"][-1]) < 0.02
     assert log["truth_x"].max() < excitation.reach + 0.02 < OPTIONS.space
 
@@ -92,7 +92,7 @@ def test_finds_the_friction_of_the_ground_under_a_skid_steer(ground, tmp_path):
 
 
 def test_finds_the_turning_inertia_that_a_payload_at_the_rim_adds():
-    """A kilogram 0.2 m ahead: 0.04 kg·m² of yaw inertia, by 2r²/(b·b') of it at the wheels."""
+    """A kilogram 0.2 m ahead adds 0.04 kg·m² of yaw inertia, 2r²/(b·b') of it at the wheels."""
     without, with_load = (
         identify(excited(DIFFBOT, hidden)[0], base_of(ClosedLoop().robot)).mean("turning").value
         for hidden in ({}, {"payload": 2.0, "payload_x": 0.2, "payload_y": 0.2})
@@ -129,7 +129,7 @@ def test_finds_a_hidden_delay_to_the_cycle(where, cycles):
 
 
 def tracking_rms(robot, hidden, controller, excitation):
-    """m/s and rad/s, true against the plan of two cycles before, over a ramp there and back and a turn."""
+    """m/s and rad/s, true against planned two cycles before, over a ramp there and back and a turn."""
     loop = ClosedLoop(
         {"mujoco_plant": {**ERRORS, **hidden}, "diff_drive_controller": controller}, seed=5, urdf=urdf_of(robot)
     )

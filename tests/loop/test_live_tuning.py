@@ -48,7 +48,7 @@ def test_the_log_shows_from_which_cycle_on_which_values_held(loop):
     for name, old, new in (("max_linear_speed", 1.0, 0.4), ("left_wheel_joint_pid_kp", 2.0, 1.0)):
         assert before[name] == pytest.approx(old), name
         assert np.all(after[name] == new), name
-    # Left out, ki stays derived: kp²/(3·J_straight), from the new kp.
+    # A gain that is left out stays derived: ki is kp²/(3·J_straight), from the new kp.
     ratio = after["right_wheel_joint_pid_ki"][0] / before["right_wheel_joint_pid_ki"][0]
     assert ratio == pytest.approx(0.25, rel=0.1)
     assert loop.units["max_linear_speed"] == "m/s"
@@ -57,11 +57,11 @@ def test_the_log_shows_from_which_cycle_on_which_values_held(loop):
 @pytest.mark.parametrize(
     ("values", "jump"),
     [
-        # N·m. What the integrator learns in one cycle: (20 − 5) N·m/rad · 0.3 rad/s · 1 ms.
+        # N·m. The integrator changes in one cycle by (20 − 5) N·m/rad · 0.3 rad/s · 1 ms.
         ({"pid_kp": 1.0, "pid_ki": 5.0, "pid_kd": 0.001}, 5e-3),
         # Without the hand-over 2 kg · 1 m/s² · 0.1 m/2 = 0.1, of which 1 % decays in the first cycle.
         ({"feed_forward": {"mass": 14.0, "wheel_friction": 0.05}, "pid_kp": 2, "pid_ki": 20}, 2e-3),
-        # The same sample, weighed otherwise: half of what a count of the encoder does, kp · 0.06 rad/s.
+        # The same sample has another weight: half of the effect of an encoder's count, kp · 0.06 rad/s.
         ({"tracking_bandwidth": 15}, 0.06),
     ],
     ids=["gains", "feed_forward", "bandwidth"],
@@ -69,7 +69,7 @@ def test_the_log_shows_from_which_cycle_on_which_values_held(loop):
 def test_the_torque_of_the_next_cycle_does_not_jump(values, jump):
     tuned, left = ClosedLoop(DATA_SHEET), ClosedLoop(DATA_SHEET)
     for loop in (tuned, left):
-        loop.run(0.4, (1.0, 0.5))  # amid the ramp: error and integral are not zero
+        loop.run(0.4, (1.0, 0.5))  # in the middle of the ramp: error and integral are not zero
     tuned.set_parameters(values)
     one, two = tuned.step(), left.step()
     for name in EFFORTS:

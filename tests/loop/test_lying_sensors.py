@@ -1,4 +1,4 @@
-"""A gyro or an encoder that lies for a while: the pose is off by no more than it says, or the robot stops."""
+"""A gyro or an encoder is wrong for a while: the pose error stays within its covariance, or the robot stops."""
 
 import pytest
 from lab.odometry.lying_sensors import COMBINATIONS, outcome

@@ -1,4 +1,4 @@
-"""Who drives normally is not stopped, and not warned."""
+"""A robot that drives normally is not stopped, and not warned."""
 
 import pytest
 from corpus import ABSENT as NO_CORPUS
@@ -9,7 +9,7 @@ from lab.odometry.recordings import ABSENT, recordings_folder
 from lab.robot_corpus import DIFFBOT, SCENES
 from robot_control import ClosedLoop
 
-ONE_MINUTE, TWO_MINUTES, TEN_MINUTES = 1 / 120, 1 / 60, 1 / 12  # of the two hours
+ONE_MINUTE, TWO_MINUTES, TEN_MINUTES = 1 / 120, 1 / 60, 1 / 12  # shares of the two hours
 
 
 @pytest.mark.parametrize("share", [TWO_MINUTES, pytest.param(TEN_MINUTES, marks=pytest.mark.nightly)])
@@ -46,7 +46,7 @@ def test_a_drive_is_the_same_each_time(scene):
     assert carry_out(drive) == carry_out(drive)
 
 
-# Its targets are where the gate's taper begins, and its joints damp so much that an integrator unwinds for seconds.
+# Its targets lie where the gate's taper begins, and its joints damp so much that an integrator unwinds for seconds.
 @pytest.mark.skipif(FOLDER is None, reason=NO_CORPUS)
 @pytest.mark.parametrize("seed", [5014, 5026])
 def test_wheels_that_the_gate_clamped_stand_when_they_are_to(seed):

@@ -1,9 +1,9 @@
 """The odometry on three simulated robots, held to its promises every night; `scripts/bench odometry` tries fifty.
 
-A promise that fifty robots keep is asserted as promised. What three cannot show is looser, and why stands beside it:
-LOOSER holds the factor by which a figure may miss its bound. What fifty robots miss, or these three, which are the same
-in every build, is in MISSED: the figure of the three may become worse by a quarter, no more; the benchmark's table and
-its exit code go on saying what is missed.
+A promise that fifty robots keep is asserted as promised. LOOSER holds the factor by which a figure of three robots may
+miss its bound, with the reason. MISSED holds promises that fifty robots miss, or these three, which are the same in
+every build. A missed figure of the three may become worse by a quarter, no more. The benchmark's table and its exit
+code go on reporting it.
 """
 
 import numpy as np
@@ -16,40 +16,41 @@ from lab.odometry.table import table
 from lab.odometry.tested_estimator import OURS
 
 SEEDS = range(3)
-LONG = ("umbmark", "eight", "standstill", "waves")  # one robot: minutes of the same, or ground that is slow to compute
+LONG = ("umbmark", "eight", "standstill", "waves")  # one robot: minutes of one motion, or ground slow to compute
 LOOSER = {
-    # Of three errors that are as good as normal the mean is √(50/3) times less certain than of fifty, 95th percentiles
-    # are the worst of three.
+    # The mean of three nearly normal errors is √(50/3) times less certain than that of fifty; the 95th percentile of
+    # three is the worst one.
     "UMBmark, mean": 1.5,
     "random drive, position, p95": 1.5,
     "random drive, yaw, mean": 1.5,
     "slip, 5 × better than wheels": 1.25,  # two of three
     "false alarms, kerb": 1.25,  # 2.57 with fifty; they come in bursts of a second after a bump
-    # The middle one of three |errors|, over that of another method: a lucky draw of either is a factor of 2, of the
-    # heading, in which both are often a few hundredths of a degree, of 4.
+    # The median of three |errors| over that of another method may be wrong by a factor of 2 by chance. For the heading,
+    # where both are often a few hundredths of a degree, the factor is 4.
     **{f"{scenario}, position over simple odometry's": 2 for scenario in SCENARIOS},
     **{f"{scenario}, yaw over simple odometry's": 4 for scenario in SCENARIOS},
 }
-UNTOLD = {  # by one run
+UNTOLD = {  # one run does not show them
     "standstill, position over simple odometry's",
     "standstill, yaw over simple odometry's",
     "waves, position over simple odometry's",
     "waves, yaw over simple odometry's",
 }
 MISSED = {
-    # Slip is proven against the residuals of a real floor (docs/recordings.md), so a slow or long slide is found late:
-    # here 80 % of the time, and its end, too, with 3.3 % false. The covariance has the clock offset and the floor of
-    # real robots in it: with the sensors of a data sheet the mean NEES is 0.9 of 3, and too small 63 % of the times.
+    # Slip is proven against the residuals of a real floor (docs/recordings.md), so a slow or long slide is detected
+    # late. Here that is 80 % of the time, and its end is late, too, with 3.3 % false. The covariance includes the clock
+    # offset and the floor of real robots. With the sensors of a data sheet the mean NEES is 0.9 of 3, and too small 63
+    # % of the times.
     "slip above 20 % flagged": 62,
     "false alarms, slip": 4.5,
     "NEES of the pose in its band": 27,
 }
-# Robots whose estimate once was lost: tilt and bias pried apart by a body that rocked, calibration pulled off before a
-# slide was found, gravity learned amid a slide, a window that for ever was too large to teach.
+# Robots whose estimate was lost in earlier versions. A rocking body separated tilt and bias, or a calibration moved
+# before a slide was detected. Gravity was learned in a slide, or a window stayed too large to learn from.
 LOST_ONCE = [("slip", 2), ("slope", 3)]
 LOST_ONCE_NIGHTLY = [("standstill", 18), ("slip", 28), ("slip", 31)]
-SURE_OF_A_SLIDE = {28: 265}  # NEES, measured 211: a slide that was taken for rolling
-LARGEST_NEES = 40
+SURE_OF_A_SLIDE = {28: 265}  # NEES, measured 211: the estimate took a slide for rolling
+MAX_NEES = 40
 
 
 @pytest.fixture(scope="module")
@@ -83,7 +84,7 @@ def test_robots_that_were_lost_once_know_where_they_are(scenario, seed):
     assert yaw < 2, f"{yaw} °"
     if scenario == "slip":
         assert outcome.position[OURS] < 0.5 * outcome.position[CALIBRATED]
-        assert np.nanmean(outcome.pose_nees) < SURE_OF_A_SLIDE.get(seed, LARGEST_NEES)
+        assert np.nanmean(outcome.pose_nees) < SURE_OF_A_SLIDE.get(seed, MAX_NEES)
     else:
         assert outcome.notice.alarms == 0
         assert outcome.position[OURS] < 0.01 * outcome.distance + 0.001
@@ -91,8 +92,8 @@ def test_robots_that_were_lost_once_know_where_they_are(scenario, seed):
 
 @pytest.mark.parametrize("scenario", ["kerb", "ice"])
 def test_short_slips_make_it_little_worse_than_the_simple_odometry(scenario):
-    """Slips that are too short to be proven. The middle one of five robots, for slides are chaotic: another control law
-    of the wheels changes the error of one threefold, either way. The promises are the nightly suite's.
+    """Slips are too short to be proven. The median of five robots is judged, because slides are chaotic: another
+    control law of the wheels changes the error of one threefold, either way. The nightly suite judges the promises.
     """
     outcomes = [run(scenario, seed) for seed in range(5)]
     assert not any(outcome.stopped or outcome.invalid for outcome in outcomes)

@@ -1,4 +1,4 @@
-"""The drives of the odometry benchmark are what they are said to be."""
+"""The drives of the odometry benchmark have the properties that they claim."""
 
 import dataclasses
 
@@ -77,10 +77,10 @@ def test_every_run_begins_at_rest_and_no_monitor_stops_it(scenario):
 
 
 def test_on_the_square_nominal_wheels_return_to_where_they_began():
-    """But for whole cycles, 0.5 ms of 1 rad/s in each of four turns, the creep of the wheel loops, at most one and a
-    half counts of 0.15 mm of both wheels, 0.5 m apart, after each of eight ramps, what the brakes take of each turn,
-    and the count that each wheel may be away from its next one: 12.5 mrad, of squares whose corners are at most 5.7 m
-    away.
+    """The wheels return except for 12.5 mrad, on squares whose corners are at most 5.7 m away. That bound has
+    several parts. Whole cycles make 0.5 ms of 1 rad/s in each of four turns, and the brakes take a share of each turn.
+    The wheel loops creep by at most one and a half counts of 0.15 mm of both wheels, 0.5 m apart, after each of eight
+    ramps. Each wheel may miss its next count.
     """
     trial = draw_trial("umbmark", 0)
     begin, end = trial.marks["cw"][0], trial.marks["end"][0]
@@ -101,7 +101,7 @@ def test_the_pitching_ground_pitches_by_a_degree_and_no_wheel_slips():
 
 
 def test_slip_runs_slip_between_stretches_of_grip():
-    """One of each kind. Calibrated wheels are wrong by more than 0.2 m in most."""
+    """One run of each kind is driven. Calibrated wheels are wrong by more than 0.2 m in most."""
     wrong = []
     for seed, kind in enumerate(KINDS):
         recording = record(draw_trial("slip", seed))

@@ -1,4 +1,4 @@
-"""Estimator: the node's law over arrays."""
+"""Estimator runs the node's law over arrays."""
 
 import threading
 import time as clock
@@ -21,7 +21,7 @@ LOGGED = {
 
 
 def wander(t):
-    """Rest, then curves either way: everything that the estimator learns from."""
+    """Rests, then drives curves either way, which excites everything that the estimator learns."""
     return (0.0, 0.0) if t < 1 else (0.5, 0.8 * np.sin(t))
 
 
@@ -32,7 +32,7 @@ def samples_of(log, left=("left_wheel_joint",), right=("right_wheel_joint",)):
     return [log["time"], *columns, *axes]
 
 
-ERRORS = {"mujoco_plant": {"sensor_errors": "data_sheet"}}  # what is absent is judged, not what shakes the IMU
+ERRORS = {"mujoco_plant": {"sensor_errors": "data_sheet"}}  # these tests judge absent samples, not what shakes the IMU
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +76,7 @@ def test_gives_the_bits_of_a_node_of_another_rate(rate):
 
 
 def four_wheels():
-    """diffbot's measures, an axle at ± 0.2 m."""
+    """diffbot's dimensions with an axle at ± 0.2 m."""
     parts = ['<robot name="four"><link name="base_link">', body("box size='0.5 0.4 0.1'", 10), "</link>"]
     for x, y in ((0.2, 0.25), (-0.2, 0.25), (0.2, -0.25), (-0.2, -0.25)):
         name = f"{'front' if x > 0 else 'rear'}_{'left' if y > 0 else 'right'}"
@@ -100,7 +100,7 @@ def test_gives_the_bits_of_a_node_with_two_wheels_a_side(tmp_path):
     urdf.write_text(four_wheels())
     loop = ClosedLoop(urdf=urdf)
     wheels = [(wheel["joint"], wheel["side"]) for wheel in loop.robot["wheels"]]
-    sides = [[joint for joint, of in wheels if of == side] for side in ("left", "right")]
+    sides = [[joint for joint, own_side in wheels if own_side == side] for side in ("left", "right")]
     log = loop.run(4.0, wander)
     assert_node_and_estimator_agree(Estimator(urdf=urdf).process(*samples_of(log, *sides)), log)
 
@@ -150,7 +150,8 @@ def test_the_odometry_is_set_in_the_first_row_and_only_there(samples):
     assert (out["x"][0], out["y"][0]) == (1.0, -2.0)
     cos, sin = np.cos(0.5), np.sin(0.5)
     assert out["yaw"][0] == pytest.approx(0.5)
-    # A run begins with the IMU's place as sure, a pose that is set with base_link's: 6 cm below, at a tilt of 0.1 rad.
+    # A run begins with a certain place of the IMU, a pose that is set with that of base_link: 6 cm below, at a tilt of
+    # 0.1 rad.
     assert out["x"][-1] == pytest.approx(1 + cos * plain["x"][-1] - sin * plain["y"][-1], abs=0.006)
     assert out["y"][-1] == pytest.approx(-2 + sin * plain["x"][-1] + cos * plain["y"][-1], abs=0.006)
 
@@ -223,7 +224,7 @@ def test_any_mounting_of_the_imu_gives_the_same_path(samples):
     turned = [*samples[:3], samples[3] @ to_base, samples[4] @ to_base]  # rows: (Rᵀ v)ᵀ
     even = Estimator(**GEOMETRY).process(*samples)
     out = Estimator(**GEOMETRY, imu_orientation=(roll, pitch, yaw)).process(*turned)
-    # Rounding is amplified where a gate or a window decides by a hair: 0.1 mm and 0.01° over 3 m.
+    # Rounding is amplified if a gate or a window decides by a small margin: 0.1 mm and 0.01° over 3 m.
     assert np.max(np.hypot(out["x"] - even["x"], out["y"] - even["y"])) < 1e-4
     assert np.max(np.abs(out["yaw"] - even["yaw"])) < 2e-4
     assert out["gyro_bias"][-1] @ to_base.T == pytest.approx(even["gyro_bias"][-1], abs=1e-4)
@@ -246,7 +247,7 @@ def path_error(out, log):
 
 
 def assert_on_the_path(out, log):
-    """Within 1 % of the 3.5 m that it drove, and within 1°."""
+    """The end is right within 1 % of the 3.5 m that it drove, and within 1°."""
     position, yaw = path_error(out, log)
     assert position < 0.035
     assert yaw < 0.0175
@@ -276,8 +277,8 @@ def test_samples_may_come_at_irregular_times(log, samples):
 
 
 def at_rates(samples, wheels, imu, offset):
-    """Exact rows of a 1 kHz log as sensors of other rates [Hz] would have given them; the IMU's stamps are `offset` s
-    late, its samples means over its period.
+    """Rows that sensors of other rates [Hz] would give for the exact rows of a 1 kHz log. The IMU's stamps are `offset`
+    s late, and its samples are means over its period.
     """
     time, left, right, gyro, accel = samples
     of_wheels = np.arange(0, time.size, 1000 // wheels)
@@ -294,7 +295,7 @@ def at_rates(samples, wheels, imu, offset):
     return out
 
 
-# From bags: stamps of two drivers lie anyhow, 10 µs apart among others.
+# The stamps of two drivers in a bag have any distance, for instance 10 µs.
 @pytest.mark.parametrize("offset", [1e-5, 0.0033])
 @pytest.mark.parametrize(("wheels", "imu"), [(50, 200), (100, 100), (20, 100), (10, 50)])
 def test_rates_that_people_have_give_path_and_twist(log, samples, wheels, imu, offset):
@@ -302,7 +303,7 @@ def test_rates_that_people_have_give_path_and_twist(log, samples, wheels, imu, o
     rows = np.clip(np.round(out["time"] * 1000).astype(int), 0, log["time"].size - 1)
     assert np.hypot(out["x"][-1] - log["truth_x"][rows[-1]], out["y"][-1] - log["truth_y"][rows[-1]]) < 0.1
     moving = out["time"] > 2  # past the ramp
-    # The gyro's samples may be 0.02 s old, of a turn that changes by 0.8 rad/s²; the truth's own ripple has 0.03 rad/s.
+    # The gyro's samples may be 0.02 s old, in a turn that changes by 0.8 rad/s²; the truth's own ripple has 0.03 rad/s.
     # Samples of the wheels may come every 0.1 s only.
     assert np.max(np.abs(out["linear"][moving, 0] - log["truth_linear"][rows[moving]])) < 0.1
     assert np.max(np.abs(out["angular"][moving, 2] - log["truth_angular"][rows[moving]])) < 0.1
@@ -313,7 +314,7 @@ def test_rates_that_people_have_give_path_and_twist(log, samples, wheels, imu, o
 
 def test_wheels_alone_make_a_path(log, samples):
     out = Estimator().process(*samples[:3])
-    assert_on_the_path(out, log)  # the simulated wheels hardly slip, and are as the URDF says
+    assert_on_the_path(out, log)  # the simulated wheels hardly slip, and match the URDF
     assert np.all(out["flags"] & FLAGS["no_gyro"])
 
 
@@ -322,7 +323,7 @@ def test_without_a_gyro_the_wheels_are_not_calibrated_and_the_yaw_is_less_certai
     time, left, right, _, accel = samples
     out = Estimator().process(time, left, right * 1.01, accel=accel if accelerometer else None)
     assert out["radius_ratio"][-1] == pytest.approx(1, abs=1e-3)
-    assert out["radius_ratio_deviation"][-1] > 0.009  # the parameter's 0.01, less what rounding and counts show
+    assert out["radius_ratio_deviation"][-1] > 0.009  # the parameter's 0.01, less what rounding and counts reveal
     _, yaw = path_error(out, log)
     assert yaw > 0.05  # 1 % of 3.5 m over a base of 0.5 m: 0.07 rad
     assert yaw < 2 * np.sqrt(out["pose_covariance"][-1, 5, 5])
@@ -435,7 +436,7 @@ def test_what_was_learned_is_kept_and_read_again(tmp_path, samples):
     again = Estimator({"state_estimator": {"calibration_file": str(path)}}).process(*part(samples, slice(0, 1)))
     assert again["radius_ratio"][0] == learned["radius_ratio"][-1]
     assert again["wheel_base_factor"][0] == learned["wheel_base_factor"][-1]
-    assert again["radius_ratio_deviation"][0] < 0.01  # the parameter's, of an unknown robot
+    assert again["radius_ratio_deviation"][0] < 0.01  # the parameter's, for an unknown robot
 
 
 def standing(rows):
@@ -467,7 +468,7 @@ def test_other_threads_run_meanwhile_and_may_not_enter():
             est.process([1e9], [0.0], [0.0])
         except RuntimeError as error:
             refused += "another thread" in str(error)
-        except ValueError:  # it had not begun, or had ended
+        except ValueError:  # the run had not begun, or had ended
             pass
     assert turns > 100
     assert refused > 100

@@ -1,4 +1,4 @@
-"""Paths driven by the closed loop, in virtual time: how far from the path, and from its end."""
+"""Paths driven by the closed loop, in virtual time: the distances from the path and from its end."""
 
 import math
 
@@ -11,19 +11,21 @@ from robot_control.path.shapes import SHAPES
 from robot_control.path.waypoints import Waypoint
 
 ODOM = 20
-"""cycles between two odometry messages; what is commanded on one acts before the next"""
-LONGEST = 120.0
+"""cycles between two odometry messages; a command acts before the next message"""
+MAX_TIME = 120.0
 """s"""
 
 
 def driven(waypoints, **loop):
-    """Follows the path by odometry; the follower, the last pose by odometry and by truth, the errors on the way."""
+    """Follows the path by odometry; returns the follower, the last pose by odometry and by truth, and the errors on the
+    way.
+    """
     robot = ClosedLoop(**loop)
     follower = Follower(route(waypoints))
     log = robot.step(1000)
-    true_route = route(waypoints)  # feet of its own
+    true_route = route(waypoints)  # this route has its own feet
     true_errors = []
-    while not follower.over and robot.time < LONGEST:
+    while not follower.over and robot.time < MAX_TIME:
         pose = Pose(*(log[f"estimate_{axis}"][-1] for axis in ("x", "y", "yaw")))
         command = follower.step(pose, Motion(log["estimate_linear"][-1], log["estimate_angular"][-1]))
         robot.command(command.linear, command.angular)

@@ -1,7 +1,7 @@
-"""The odometry on drives of real robots, and on one whose sensors err as theirs do.
+"""The odometry on drives of real robots, and on a synthetic one with the same sensor errors.
 
-The recordings are compared with the simple odometry of each (lab/odometry/recordings.py); the outdoor one with the path
-of its camera, the made one with the truth.
+Each recording is compared with its simple odometry (lab/odometry/recordings.py), and the outdoor one with the path of
+its camera. The synthetic drive is compared with the truth.
 """
 
 from pathlib import Path
@@ -38,14 +38,14 @@ BOUNDS = {
 SLIP = 0.05  # share of the drive that may be called slip
 CAMERA = 1.05  # RMS over that of the simple odometry
 WITHIN = 0.85  # share of the time within three deviations
-LITTLE = 0.002  # of the distance: errors that are smaller are none
-DEVIATION = 0.03  # of the distance, at the end of the indoor drives
+LITTLE = 0.002  # share of the distance; smaller errors do not count
+DEVIATION = 0.03  # share of the distance, at the end of the indoor drives
 
 needs_recordings = pytest.mark.skipif(recordings_folder() is None, reason=ABSENT)
 
 
 class Drive:
-    """A recording and what the estimator makes of it."""
+    """A recording and its estimate."""
 
     def __init__(self, drive: Recording) -> None:
         self.drive = drive
@@ -57,13 +57,13 @@ class Drive:
         self.distance = np.abs(np.diff(drive.radius * (drive.left + drive.right)[moved] / 2)).sum()
 
     def share(self, flag: str) -> float:
-        """Of the time after the first rest."""
+        """Share of the time after the first rest with this flag."""
         steps = np.diff(self.drive.time, prepend=self.drive.time[0])
         on = (self.out["flags"] & FLAGS[flag]) != 0
         return float(steps[on].sum() / (self.drive.time[-1] - self.drive.rest))
 
     def deviation(self) -> np.ndarray:
-        """m, of the position."""
+        """m, standard deviation of the position."""
         return np.sqrt(np.maximum(0, self.out["pose_covariance"][:, 0, 0] + self.out["pose_covariance"][:, 1, 1]))
 
 
@@ -120,7 +120,7 @@ def test_outdoors_it_is_as_near_to_the_camera_as_the_simple_odometry(drives, nam
 @pytest.mark.parametrize("begin", [15.0, 32.0, 50.0])
 @pytest.mark.parametrize("name", ["skid_steer_a", "skid_steer_b", "skid_steer_c", "skid_steer_d", "vehicle"])
 def test_a_real_drive_that_begins_in_motion_is_no_worse_than_the_simple_odometry(name, begin):
-    """Beside the simple odometry of the whole, which knows the gyro's bias from a rest before."""
+    """The reference is the simple odometry of the whole drive, which knows the gyro's bias from an earlier rest."""
     whole = recording(name)
     drive = Drive(without_beginning(whole, begin))
     first = whole.time.size - drive.drive.time.size
@@ -148,7 +148,9 @@ def error_at_the_end(drive: Drive, path: np.ndarray) -> float:
 
 
 def test_a_drive_with_the_errors_of_real_sensors_is_as_good_as_the_simple_odometry():
-    """Late and jittering stamps, an accelerometer that shakes by forty times its data sheet, slip of 5 mm per √m."""
+    """The errors are late and jittering stamps, an accelerometer that shakes by forty times its data sheet, and slip of
+    5 mm per √m.
+    """
     drive = Drive(load(MADE))
     assert error_at_the_end(drive, drive.path) <= 1.15 * error_at_the_end(drive, drive.simple)
     assert drive.share("slip") <= SLIP
@@ -162,7 +164,9 @@ def test_a_drive_with_the_errors_of_real_sensors_is_as_good_as_the_simple_odomet
 
 @pytest.mark.parametrize("seed", [5, 10, 15])
 def test_a_start_in_motion_is_the_simple_odometry_until_the_first_rest(seed):
-    """By a gyro whose bias is zero, as the simple odometry takes it; then by the bias that a rest of a second shows."""
+    """At first the gyro's bias is taken as zero, as in the simple odometry; later as that which a rest of a second
+    shows.
+    """
     drive = Drive(field_drive(Errors(rest=0.0, bias=(0.0, 0.0, 0.0)), seed))
     moving = drive.drive.time < 29  # its first stop comes at 30 s
     assert drive.away[moving].max() <= 0.02 * drive.distance  # the clock offset and the slopes of the tilt

@@ -1,4 +1,4 @@
-"""A robot that may reverse only slowly does."""
+"""A robot that may reverse only slowly does so."""
 
 import numpy as np
 import pytest
@@ -33,8 +33,8 @@ def test_stops_in_reverse_where_its_limits_predict(silence):
     reversed_from_rest(loop)
     log = loop.run(3.0, None if silence else (0.0, 0.0))
     start = int(np.flatnonzero(log["limited_linear"] != -0.2)[0])
-    way = log["truth_x"][start] - log["truth_x"][-1]
-    assert way == pytest.approx(loop.stop_distance(-0.2, emergency=silence), abs=0.003)
+    distance = log["truth_x"][start] - log["truth_x"][-1]
+    assert distance == pytest.approx(loop.stop_distance(-0.2, emergency=silence), abs=0.003)
     if not silence:
         assert loop.stop_distance(-0.2) > 1.4 * loop.stop_distance(0.2)
 

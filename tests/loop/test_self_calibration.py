@@ -1,4 +1,4 @@
-"""What the estimator learns of unequal wheels while the robot wanders at one speed, in virtual time.
+"""The estimator learns unequal wheels while the robot wanders at one speed, in virtual time.
 
 At one speed, a radius ratio ε and a bias of the gyro b turn the heading alike: ε v/B = b. Only a rest separates them.
 """
@@ -8,17 +8,17 @@ from robot_control import ClosedLoop
 from robot_control.report.figures import DEGRADED
 
 LEFT = 0.02
-"""Of the left radius, hidden in the plant."""
+"""Relative error of the left radius, hidden in the plant."""
 RATIO = 1 / (1 + LEFT)
 SPEED = 0.5
 """m/s."""
 CYCLES = 100
-"""Between two commands, as the system tests send them."""
+"""Cycles between two commands, as the system tests send them."""
 SEEDS = range(3)
 
 
 def wander(rest: int, seconds: int, seed: int):
-    """The last cycle after `rest` cycles at rest, then straight on and in curves by turns of 2 s."""
+    """Log of the last cycle after `rest` cycles at rest, and then turns of 2 s between straight lines and curves."""
     loop = ClosedLoop({"mujoco_plant": {"left_radius_error": LEFT, "sensor_errors": "data_sheet"}}, seed=seed)
     loop.command(0.0, 0.0)
     log = loop.step(rest)
@@ -40,8 +40,8 @@ def test_a_robot_that_rested_learns_its_wheels(seconds, deviation, seed):
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_robot_that_never_rested_claims_nothing_of_its_wheels(seed):
-    """60 ms are no rest: the state says that the bias is not known, the deviation stays that of new tyres, and the
-    ratio within a part of it.
+    """60 ms are too short for a rest. The state then reports that the bias is not known. The deviation stays that of
+    new tyres, and the ratio within a part of it.
     """
     end = wander(rest=60, seconds=60, seed=seed)
     assert int(end["estimate_flags"]) & DEGRADED

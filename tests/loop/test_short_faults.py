@@ -1,4 +1,4 @@
-"""A sensor that fails for 20 ms … 3 s leaves nothing behind after 20 s of rest: each kind of fault of each sensor."""
+"""Each kind of fault of each sensor lasts 20 ms … 3 s, and leaves no error after 20 s of rest."""
 
 import pytest
 from lab.odometry.short_faults import COMBINATIONS, Verdict, drive, estimate, judge

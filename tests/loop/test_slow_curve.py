@@ -28,7 +28,7 @@ def test_starts_in_a_curve_without_a_surge(skid_steer, command):
         loop.run(1.2, (0.0, 0.0))
 
 
-# What integrators hold of the ground's friction would turn the robot back by itself: with these, at 0.15 rad/s.
+# Integrators that hold the ground's friction would turn the robot back by themselves: with these, at 0.15 rad/s.
 def test_does_not_turn_back_after_a_turn_with_slow_integrators(skid_steer):
     loop = ClosedLoop({"mujoco_plant": {"sensor_errors": "data_sheet"}}, urdf=skid_steer)
     loop.set_parameters({"pid_ki": 0.4})
@@ -51,7 +51,7 @@ def test_a_turn_follows_its_reversal_on_any_ground(skid_steer, ground):
         assert late * loop.period < 0.2
 
 
-# Treads that the brake holds tremble. A start from that speed, instead of from rest, surged by 0.08 m/s now and then.
+# Treads under the brake tremble. A start from that speed, instead of from rest, surged by 0.08 m/s now and then.
 @pytest.mark.skipif(FOLDER is None, reason=ABSENT)
 def test_no_start_from_the_brake_surges():
     errors = {"sensor_errors": "data_sheet", "ground_friction": 1.0}
@@ -66,8 +66,8 @@ def test_no_start_from_the_brake_surges():
         loop.run(1.2, (0.0, 0.0))
 
 
-# With a torque for a floor of 0.7 from the beginning it surged by 73 mm/s of a rim on 0.4, with a search that gives
-# nothing back by 25 on 0.7; now by at most 21 on any, 6 by the wheels.
+# A first torque for a floor of 0.7 surged by 73 mm/s of a rim on 0.4. A search that does not give torque back surged by
+# 25 on 0.7. Now it surges by at most 21 on any floor, by 6 at the wheels.
 @pytest.mark.skipif(FOLDER is None, reason=ABSENT)
 @pytest.mark.parametrize("ground", [0.4, 0.7, 1.0])
 def test_the_first_turn_of_a_run_does_not_surge_on_any_floor(ground):

@@ -1,4 +1,4 @@
-"""Wheels whose radius is off, and wheels that report coarse speeds: the ellipse holds the truth, and nothing slips."""
+"""With a wrong radius or coarse wheel speeds the ellipse holds the truth, and no slip is reported."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Sets of limits and gains that are taken do no harm: none makes a robot exceed its speed or shake without a cause."""
+"""Accepted sets of limits and gains do no harm: none makes a robot exceed its speed or shake without a cause."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from robot_control import ClosedLoop, ParameterError
 from robot_control.common.cause_names import causes_in
 
 
-# Of the 10⁵ of scripts/bench tuning.
+# A part of the 10⁵ sets of scripts/bench tuning.
 @pytest.mark.parametrize("runs", [10, pytest.param(50, marks=pytest.mark.nightly)])
 def test_no_set_that_is_taken_exceeds_the_speed_or_shakes_without_a_cause(runs):
     lines = []
@@ -22,7 +22,7 @@ def test_no_set_that_is_taken_exceeds_the_speed_or_shakes_without_a_cause(runs):
 
 
 class Remembering(Processes):
-    """This process alone; what came of each seed stays."""
+    """Runs in this process alone and keeps the result of each seed."""
 
     def __init__(self):
         super().__init__(1)

@@ -1,4 +1,4 @@
-/// All nodes and telemetry are killed at full speed, at a random moment: the black box holds what they did until then.
+/// All nodes and telemetry are killed at full speed, at a random moment: the black box holds everything until then.
 
 #include <sys/resource.h>
 
@@ -18,11 +18,11 @@ namespace {
 
 class ABlackBox : public Losses {
  protected:
-  /// ns; ten milliseconds are promised where telemetry's thread precedes others. Elsewhere up to 144 were measured.
-  static constexpr std::int64_t kMostMissing = 1'000'000'000;
+  /// ns; ten milliseconds are promised if telemetry's thread precedes others. Otherwise up to 144 were measured.
+  static constexpr std::int64_t kMaxMissing = 1'000'000'000;
 
-  /// s; five seconds after a stop, and a thread of the lowest priority writes it.
-  static constexpr double kMostSaving = 120;
+  /// s; the black box is saved five seconds after a stop, by a thread of the lowest priority.
+  static constexpr double kMaxSaving = 120;
 
   ABlackBox() {
     std::filesystem::create_directories(folder_);
@@ -32,7 +32,7 @@ class ABlackBox : public Losses {
   }
 
   bool await_bag(const std::string& name) {
-    return robot_.await([&] { return std::filesystem::exists(folder_ / "black_box" / name); }, kMostSaving);
+    return robot_.await([&] { return std::filesystem::exists(folder_ / "black_box" / name); }, kMaxSaving);
   }
 
   std::filesystem::path folder_ = nodes().folder() / "log";
@@ -49,7 +49,7 @@ TEST_F(ABlackBox, HoldsEveryCycleUpToTheSigkillOfAllNodes) {
     const std::filesystem::path to = folder_ / ("trial" + std::to_string(trial));
     const SavedBlackBox saved = save_black_box(ring_, build_id(), to / "run.bag");
     EXPECT_EQ(saved.missing, "");
-    for (const std::int64_t newest_ns : saved.newest_ns) EXPECT_LT(killed_ns - newest_ns, kMostMissing);
+    for (const std::int64_t newest_ns : saved.newest_ns) EXPECT_LT(killed_ns - newest_ns, kMaxMissing);
     EXPECT_GT(saved.rows, 100u);
 
     std::uint64_t last = 0, rows = 0, run = 0;
@@ -57,7 +57,7 @@ TEST_F(ABlackBox, HoldsEveryCycleUpToTheSigkillOfAllNodes) {
     reader.read({.row = [&](const TraceRow& row, std::int64_t) {
       if (row.repeats) return;
       ++rows;
-      // A law that starts before the driver answers the newest frame of the run before.
+      // A law that starts before the driver computes the newest frame of the previous run.
       const bool begins = std::exchange(run, row.run_id) != row.run_id;
       EXPECT_TRUE(begins || row.cycle == last + 1) << "trial " << trial << ", cycle " << row.cycle << " after " << last;
       last = row.cycle;
@@ -87,7 +87,7 @@ TEST_F(NightlyBlackBox, IsSavedWithFiveSecondsAfterALatchedStop) {
   EXPECT_GT(last, stop + 2500) << "of 5000; this machine may stall";
 }
 
-/// Telemetry came later than the nodes' first snapshots: the rows that were still there hold the next ones.
+/// Telemetry came later than the nodes' first snapshots: the remaining rows hold the next ones.
 TEST_F(ABlackBox, HoldsASnapshotOfEachLawBeforeAStopRightAfterTheStartOfTelemetry) {
   nodes().end(LoopNode::kTelemetry);
   std::filesystem::remove_all(folder_);

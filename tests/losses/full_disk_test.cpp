@@ -1,5 +1,5 @@
-/// The disk under the log is full, at full speed: a file system of 512 kB in a mount namespace of telemetry's own,
-/// which ends with it, where that is granted; else a limit on the file's size.
+/// The disk under the log is full, at full speed. If it is granted, that is a file system of 512 kB in a mount
+/// namespace of telemetry's own, which ends with it. Otherwise a limit on the file's size replaces it.
 
 #include <fcntl.h>
 #include <sched.h>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr rlim_t kLimit = 512 * 1024;  // bytes, less than half a second of log
 
-/// No other process sees it.
+/// The mount is invisible to every other process.
 bool mount_small_disk(const std::string& folder) {
   return unshare(CLONE_NEWNS) == 0 && mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
          mount("tmpfs", folder.c_str(), "tmpfs", MS_NOSUID | MS_NODEV, "size=512k") == 0;
@@ -83,8 +83,8 @@ TEST_F(NightlyFullDisk, OrAFolderThatIsRemovedIsReportedAndCountedToo) {
   EXPECT_NE(nodes().said(LoopNode::kTelemetry).find("is not there any more"), std::string::npos);
 }
 
-/// A file system cannot be made read-only while a log on it is open. But one that is may be mounted over the folder:
-/// what is written on then goes where no other process can read it.
+/// A file system cannot be made read-only while a log on it is open. But a read-only one may be mounted over the
+/// folder: no other process can then read what is written on.
 TEST_F(NightlyFullDisk, OrAReadOnlyOneOverTheFolderIsReportedAndCountedAndTheLogsGoOnAfterwards) {
   if (ChildProcess([this] { return mount_small_disk(folder_) ? 0 : 1; }).wait() != 0) {
     GTEST_SKIP() << "mounting is not granted";
@@ -99,8 +99,8 @@ TEST_F(NightlyFullDisk, OrAReadOnlyOneOverTheFolderIsReportedAndCountedAndTheLog
   const std::string space = "/proc/" + std::to_string(nodes().process(LoopNode::kTelemetry).id()) + "/ns/mnt";
   const auto in_its_space = [&](auto act) {
     return ChildProcess([&] {
-             const int there = open(space.c_str(), O_RDONLY | O_CLOEXEC);
-             return setns(there, CLONE_NEWNS) == 0 && act() == 0 ? 0 : 1;
+             const int name_space = open(space.c_str(), O_RDONLY | O_CLOEXEC);
+             return setns(name_space, CLONE_NEWNS) == 0 && act() == 0 ? 0 : 1;
            })
         .wait();
   };

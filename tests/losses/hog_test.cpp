@@ -1,4 +1,4 @@
-/// Another program takes the chain's core, in real time. Needs SCHED_FIFO, and a core for the test.
+/// Another program takes the chain's core, in real time. The test needs SCHED_FIFO, and a core for itself.
 
 #include <sched.h>
 #include <sys/prctl.h>
@@ -67,7 +67,7 @@ class AHog : public Losses {
   }
   AHog() : Losses(on_one_core()) {}
 
-  /// The test must not starve with the chain.
+  /// The chain must not starve the test.
   void SetUp() override {
     if (!may_run_in_real_time()) GTEST_SKIP() << "SCHED_FIFO is not granted";
     CPU_ZERO(&before_);
@@ -89,7 +89,7 @@ class AHog : public Losses {
 
 TEST_F(AHog, AtTheControllersPriorityStarvesItAndTheRobotBrakes) {
   Hog hog(static_cast<int>(LoopPriority::kController), 0);
-  robot_.look();
+  robot_.poll();
   log().forget();
   const std::uint64_t before = robot_.cycle();
   hog.begin();
@@ -102,12 +102,12 @@ TEST_F(AHog, AtTheControllersPriorityStarvesItAndTheRobotBrakes) {
   expect_latched_until_reset_and_new_command(kCauseControllerLost);
 }
 
-/// Nothing of this software runs then. In the simulation the world stands still, too; on a machine it does not, and
+/// Nothing of this software runs then. In the simulation the world stands still, too. On a machine it does not, and
 /// only the drives' own watchdogs brake.
 TEST_F(AHog, AboveTheDriverStopsEverythingAndAfterItNothingJumps) {
   constexpr std::int64_t kSpell = 300'000'000;  // ns; less than what the kernel's real-time throttling lets pass
   Hog hog(static_cast<int>(LoopPriority::kDriver) + 1, 0);
-  robot_.look();
+  robot_.poll();
   log().forget();
   hog.begin();
   sleep_ns(kSpell / 3);

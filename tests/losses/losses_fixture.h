@@ -1,6 +1,6 @@
 #pragma once
-/// A healthy robot at full speed, four processes in `clock: wall`: each test takes one thing from it. What is promised
-/// is written down in docs/losses.md, a row for each test.
+/// A healthy robot drives at full speed as four processes in `clock: wall`, and each test removes one thing. The
+/// promises stand in docs/losses.md, a row for each test.
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ class Losses : public ::testing::Test {
 
   void expect_lives(LoopNode node) { EXPECT_TRUE(nodes().lives(node)) << name_of(node) << ":\n" << nodes().said(node); }
 
-  /// It died of that signal, and said so in one line.
+  /// The node died of that signal, and reported it in one line.
   void expect_last_words(LoopNode node, int signal, const std::string& name) {
     EXPECT_EQ(nodes().process(node).ending_signal(), signal) << name_of(node) << ":\n" << nodes().said(node);
     const std::string said = nodes().said(node);
@@ -42,7 +42,7 @@ class Losses : public ::testing::Test {
     EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
   }
 
-  /// Full speed, as before, and nothing latched but after a stall of this machine.
+  /// The robot drives at full speed as before, and nothing latched except after a stall of this machine.
   void expect_undisturbed() {
     constexpr double kFast = 0.9 * DrivingRobot::kFullSpeed;
     robot_.await_cycles(300);
@@ -52,7 +52,7 @@ class Losses : public ::testing::Test {
     expect_no_jump();
   }
 
-  /// Of which one cannot say how many cycles braked: a full ring takes no rows.
+  /// The number of braked cycles is unknown: a full ring takes no rows.
   void expect_drives_on(std::uint64_t cycles) {
     const std::uint64_t end = robot_.cycle() + cycles;
     EXPECT_TRUE(robot_.await([&] { return robot_.cycle() >= end; })) << robot_.situation();
@@ -62,12 +62,12 @@ class Losses : public ::testing::Test {
     }
   }
 
-  /// The robot went its way in steps: none is longer than top speed allows, and 5 % for the wheel loops.
+  /// The robot moved in steps: none is longer than top speed allows, and 5 % for the wheel loops.
   void expect_no_jump() {
     EXPECT_LT(log().longest_step(), 1.05 * DrivingRobot::kFullSpeed * nodes().parameters().loop.period());
   }
 
-  /// Stopped for good: a continuing request to drive moves nothing and is what a reset is refused for; released, the
+  /// The stop is permanent: a continuing request to drive moves nothing and makes a reset fail. After the release the
   /// robot stands until a new command, and then drives.
   void expect_latched_until_reset_and_new_command(std::uint64_t cause) {
     EXPECT_TRUE(robot_.await([&] { return (robot_.permit().causes & cause) != 0; }))
@@ -82,7 +82,7 @@ class Losses : public ::testing::Test {
     expect_no_jump();
   }
 
-  /// In as many cycles from now on, however many go by before the test looks: a braked robot still rocks.
+  /// Expects standstill after `cycles`, however many pass before the test looks: a braked robot still rocks.
   void expect_stands(std::uint64_t cycles) {
     const std::uint64_t from = log().last().cycle;
     ASSERT_TRUE(robot_.await_cycles(cycles)) << robot_.situation();

@@ -1,4 +1,4 @@
-/// The memory of a channel is unlinked, cut off, or overwritten, at full speed.
+/// The memory of a channel is unlinked, cut off, or overwritten at full speed.
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -31,8 +31,8 @@ struct Channel {
   bool by_this_test;  ///< which would end with them
 };
 
-// Mapped by every node and by this test; by every node but not by this test; not by the plant, which lives on and
-// brakes.
+// Every node and this test map the first one; every node but not this test maps the second. The plant does not map the
+// third: it lives on and brakes.
 const Channel kChannels[] = {
     {"sensors", kPlant, bits({kPlant, kEstimator, kController, kMonitor}), true},
     {"state", kEstimator, bits({kEstimator, kController, kMonitor, kPlant}), false},
@@ -69,7 +69,7 @@ class AWoundedChannel : public Losses, public ::testing::WithParamInterface<Chan
     close(descriptor);
   }
 
-  /// Braked for good or drives as before: never on numbers that no node wrote.
+  /// The robot brakes permanently or drives as before: never on numbers that no node wrote.
   void expect_brakes_or_drives_on(std::uint64_t before) {
     robot_.await([&] { return log().rested(DrivingRobot::kRestCycles) || !nodes().lives(LoopNode::kPlant); }, 1.0);
     if (!nodes().lives(LoopNode::kPlant)) return;

@@ -1,4 +1,4 @@
-/// A node is stopped, killed, or crashes, at full speed.
+/// A node is stopped, killed, or crashes at full speed.
 
 #include <filesystem>
 
@@ -30,11 +30,11 @@ TEST_P(ALostNode, StopsTheRobotUntilResetAndANewCommand) {
   const MeasuredStop stop = robot_.lose(node, signal);
   std::printf("  %s of %s: brake after %llu cycles (%s), %.3f m to standstill\n", name_of_signal(signal).c_str(),
               name_of(node), static_cast<unsigned long long>(stop.cycles),
-              names_of(kGateReasonNames, stop.reasons).c_str(), stop.way);
+              names_of(kGateReasonNames, stop.reasons).c_str(), stop.distance);
   if (stop.measured()) {
     EXPECT_LE(stop.cycles, kBrakeWithin);
   }
-  EXPECT_LT(stop.way, 0.5) << "v²/2a with brakes of 2 · 2.2 N·m on wheels of 0.1 m under 12 kg: 0.14 m";
+  EXPECT_LT(stop.distance, 0.5) << "v²/2a with brakes of 2 · 2.2 N·m on wheels of 0.1 m under 12 kg: 0.14 m";
   if (signal != SIGSTOP) {
     EXPECT_FALSE(nodes().lives(node));
     EXPECT_EQ(nodes().process(node).ending_signal(), signal) << "and it hangs nowhere on its way";
@@ -97,7 +97,7 @@ TEST_P(ALostPlant, IsNamedByEveryOtherAndHoldsTheLatch) {
 INSTANTIATE_TEST_SUITE_P(Each, ALostPlant, ::testing::Values(SIGSTOP, SIGKILL, SIGSEGV),
                          [](const auto& each) { return name_of_signal(each.param); });
 
-/// It was away for some milliseconds, or its absence could not be seen: time proves nothing.
+/// The plant was absent for some milliseconds, or its absence could not be detected: time proves nothing.
 class APlantStartedAgain : public Losses {
  protected:
   void start_again() {
@@ -132,7 +132,7 @@ TEST_F(APlantStartedAgain, BesideAMonitorThatSleptMeanwhileIsLost) {
   expect_lost();
 }
 
-/// The log's reader.
+/// The reader of the rows, which writes the log.
 class ALostTelemetry : public Losses, public ::testing::WithParamInterface<int> {};
 
 TEST_P(ALostTelemetry, HarmsNothing) {

@@ -1,4 +1,4 @@
-/// The witness of stalls sees what stops the loop's core, and nothing that the loop itself does to it.
+/// The witness of stalls detects what stops the loop's core, and nothing that the loop itself does to it.
 
 #include "support/stall_witness.h"
 
@@ -34,7 +34,7 @@ TEST_F(Witness, SeesThatItWasStoppedAndForgetsItWhereALaterTimeIsAskedFor) {
 
 }  // namespace
 
-/// The loop's own: a node that computes without end is no stall of the machine.
+/// The stop is the loop's own: a node that computes without end is no stall of the machine.
 using AStop = Losses;
 
 TEST_F(AStop, WithoutAStallIsNoStall) {

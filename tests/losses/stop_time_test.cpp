@@ -1,5 +1,5 @@
-/// How long the brake takes to come, node by node, in 20 of 20 trials. 200 of 200: `scripts/bench stops`. Every day
-/// ALostNode (signal_test.cpp) has one trial of five of the nine pairs of node and signal.
+/// Measures the time until the brake acts, node by node, in 20 of 20 trials; `scripts/bench stops` makes 200 of 200.
+/// ALostNode (signal_test.cpp) has one trial of five of the nine pairs of node and signal every day.
 
 #include <tuple>
 

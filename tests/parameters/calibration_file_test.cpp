@@ -17,7 +17,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-/// Healthy: what a robot learned in an hour. Each test breaks one thing.
+/// The healthy case is the calibration of a robot after an hour. Each test spoils one thing.
 class CalibrationFile : public ::testing::Test {
  protected:
   CalibrationFile() {
@@ -115,7 +115,7 @@ TEST_F(CalibrationFile, OfAnotherRobotIsRefusedWithAllThatDiffers) {
                     HasSubstr("delete it to restart the calibration")));
 }
 
-// A radius_ratio that was measured and set again is meant: an old file must not override it silently.
+// A radius_ratio that was measured and set again is intended: an old file must not override it silently.
 TEST_F(CalibrationFile, OfOtherInitialValuesIsRefused) {
   write();
   parameters_.calibration.radius_ratio = 1.004;
@@ -154,7 +154,7 @@ TEST_F(CalibrationFile, ThatIsBrokenIsRefusedWhereItIs) {
   }
 }
 
-// A power cut in the middle of a write leaves the old file: half a one is only ever found under the other name.
+// A power cut in the middle of a write leaves the old file: an incomplete one only ever has the other name.
 TEST_F(CalibrationFile, CutAnywhereIsRefusedOrWhole) {
   write();
   const std::string whole = text();
@@ -226,7 +226,7 @@ TEST_F(CalibrationFile, TakesOverWhatSaysMore) {
   EXPECT_EQ(kept.gyro_bias_deviation[2], now.gyro_bias_deviation[2]);
 }
 
-// A new run begins with what the parameters say, of which the ratio alone has been learned again.
+// A new run begins with the parameters' values, and has learned only the ratio again.
 TEST_F(CalibrationFile, KeepsWhatANewRunHasNotLearnedAgain) {
   LearnedCalibration kept = learned_;
   LearnedCalibration now{.wheels = {.radius_ratio = 1.0063,

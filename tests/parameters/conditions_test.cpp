@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::Optional;
 
-/// Healthy: a copy of the shipped file. Each test breaks one thing.
+/// The healthy case is a copy of the shipped file. Each test spoils one thing.
 class ReadConditions : public ::testing::Test {
  protected:
   std::string at(const std::string& group) const {

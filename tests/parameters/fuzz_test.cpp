@@ -1,4 +1,4 @@
-// Random damage to a valid file: it is read or refused, never anything else. A failing seed is printed.
+// Random damage to a valid file: it is read or refused, and nothing else happens. A failing seed is printed.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -36,7 +36,7 @@ std::string damaged(std::string text, std::mt19937& random) {
   return text;
 }
 
-/// First and last seed + 1.
+/// First seed, and last seed + 1.
 class ReadParametersFuzz : public testing::TestWithParam<std::pair<unsigned, unsigned>> {
  protected:
   /// `read(seed, random)` may throw a ParameterError, and nothing else.
@@ -64,7 +64,7 @@ TEST_P(ReadParametersFuzz, ReadsOrRefusesWhateverStandsInTheFile) {
   });
 }
 
-// The conditions are maps: damage there alone, where braces open and close.
+// The conditions are maps: the damage is there alone, where braces open and close.
 TEST_P(ReadParametersFuzz, ReadsOrRefusesWhateverStandsInACondition) {
   const std::string text = shipped_text();
   const std::size_t begin = text.find("\n  wheel_speed:");

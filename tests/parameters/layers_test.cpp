@@ -1,4 +1,4 @@
-/// A file over the installed one, configurations of the peer, and YAML tags.
+/// Tests a file over the installed one, configurations of the peer, and YAML tags.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -123,7 +123,7 @@ TEST_F(Layers, DerivedLimitsAreThoseOfTheUsualOnes) {
   EXPECT_EQ(limits.angular.jerk, 40.0);
 }
 
-// Whatever is given of the legal ranges, what is derived of it contradicts nothing.
+// For any given legal values the derived ones do not contradict them.
 TEST_F(Layers, DerivedLimitsNeverContradictTheGivenOnes) {
   for (const double acceleration : {0.001, 0.5, 4.0, 6.0, 100.0}) {
     for (const double deceleration : {0.001, 0.5, 4.0, 6.0, 100.0}) {

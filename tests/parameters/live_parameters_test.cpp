@@ -1,4 +1,4 @@
-// A request to change values while a node runs: taken whole, or refused with every reason.
+// A request changes values while a node runs: it is accepted as a whole, or refused with every reason.
 #include "parameters/live_parameters.h"
 
 #include <gmock/gmock.h>
@@ -21,7 +21,7 @@ using ::testing::IsEmpty;
 
 const std::string kBlock = "diff_drive_controller";
 
-/// Healthy: the shipped values in force. Each test breaks one thing of a request.
+/// The healthy case has the shipped values in force. Each test spoils one thing of a request.
 class LiveParameters : public ::testing::Test {
  protected:
   LiveChange read(const std::string& request) const { return read_live(base, kBlock, request); }
@@ -65,7 +65,7 @@ TEST_F(LiveParameters, LaysARequestOverTheLastOne) {
   EXPECT_EQ(next.parameters.controller.max_linear_jerk, 3);
 }
 
-// What holds is written down and read back for that, and must come back as the same numbers.
+// The values in force are written and read back for that, and must be the same numbers.
 TEST_F(LiveParameters, KeepEveryBitThatHoldsWhereARequestIsRefused) {
   base.controller.max_linear_acceleration = 0.1 + 0.2;
   base.controller.pid_kp = 1.0 / 3;
@@ -79,9 +79,10 @@ TEST_F(LiveParameters, KeepEveryBitThatHoldsWhereARequestIsRefused) {
       Parameters after = change.parameters;
       Parameters before = base;
       for (const Block& any : schema()) {
-        for (const Key& of : any.keys) {
-          std::visit([&](auto* value) { EXPECT_EQ(*value, *std::get<decltype(value)>(of.field(before))) << of.name; },
-                     of.field(after));
+        for (const Key& alias : any.keys) {
+          std::visit(
+              [&](auto* value) { EXPECT_EQ(*value, *std::get<decltype(value)>(alias.field(before))) << alias.name; },
+              alias.field(after));
         }
       }
     }
@@ -161,7 +162,8 @@ TEST_F(LiveParameters, RefusesDeepAndHugeTextsAtOnce) {
         std::string(100 << 20, 'x'), "{pid_kp: " + std::string(kMaxRequest, '1') + "}"}) {
     EXPECT_FALSE(read(text).problems.empty());
   }
-  // None of them may hold the node's thread; 100 MB are compared with one number. Generous: sanitizers, stalls.
+  // No message may hold the node's thread; 100 MB are compared with one number. The bound allows for sanitizers and
+  // stalls.
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// A YAML file of the test's own: the shipped one with lines replaced.
+/// A YAML file for a test: the shipped one with replaced lines.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -35,7 +35,7 @@ inline std::vector<std::string> parameter_paths() {
   return paths;
 }
 
-/// One a line.
+/// Number of problems, of which each has a line.
 inline std::size_t problems_in(const std::string& message) {
   return static_cast<std::size_t>(std::count(message.begin(), message.end(), '\n'));
 }
@@ -103,7 +103,7 @@ class ParameterFile {
     return 0;
   }
 
-  /// What read_parameters says; empty when it is content.
+  /// The message of read_parameters; empty if it accepts the file.
   std::string refusal(const std::vector<Overlay>& overlays = {}) const {
     try {
       read_parameters(path(), overlays);

@@ -1,6 +1,6 @@
-/// Prints by tabs, for tests/docs/parameters_page.py, a line per parameter: path, rule, "optional", "live", key whose
-/// other name it is. With an argument a line per condition of the safety monitor: name, default limit, persistence and
-/// reaction, unit with meaning.
+/// Prints a line per parameter for tests/docs/parameters_page.py, with tabs: path, rule, "optional", "live", key whose
+/// other name it is. With an argument it prints a line per condition of the safety monitor: name, default limit,
+/// persistence and reaction, unit with meaning.
 
 #include <iostream>
 

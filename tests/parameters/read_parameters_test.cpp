@@ -20,7 +20,7 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::Optional;
 
-/// Healthy: a copy of the shipped file. Each test breaks one thing.
+/// The healthy case is a copy of the shipped file. Each test spoils one thing.
 class ReadParameters : public ::testing::Test {
  protected:
   std::string at(const std::string& start, int nth = 1) const {
@@ -34,7 +34,7 @@ TEST_F(ReadParameters, AcceptsTheShippedFile) {
   EXPECT_EQ(file.refusal(), "");
 }
 
-// A file that says something else than the structs would make tests and nodes disagree.
+// If the file differed from the structs, tests and nodes would disagree.
 TEST_F(ReadParameters, ShippedValuesAreTheDefaultsOfTheStructs) {
   Parameters shipped = read_parameters(shipped_path());
   Parameters defaults;
@@ -69,7 +69,7 @@ TEST_F(ReadParameters, AbsolutePathsStay) {
   EXPECT_EQ(parameters.urdf, "/opt/other.urdf");
 }
 
-// The sweep of bad input: one start shows everything that is wrong.
+// This sweeps bad input: one start shows everything that is wrong.
 TEST_F(ReadParameters, ReportsEveryProblemAtOnce) {
   file.set("rate", "  rate: fast");
   file.set("core", "");
@@ -155,7 +155,7 @@ TEST_F(ReadParameters, OverlaysAloneAreEnough) {
       if ((key.traits & kOptional) == 0) all.push_back({path_of(block, key), "", "dict"});
     }
   }
-  // Values as a Python dict would bring them.
+  // The values are those of a Python dict.
   const std::map<std::string, std::string> values{{"robot.urdf", "a.urdf"},
                                                   {"robot.rate", "200"},
                                                   {"robot.clock", "lockstep"},
@@ -266,7 +266,7 @@ TEST_F(ReadParameters, RefusesASecondDocument) {
   EXPECT_THAT(file.refusal(), HasSubstr("must hold one YAML document, not more"));
 }
 
-// yaml-cpp 0.7 reads documents without end there.
+// yaml-cpp 0.7 would read documents endlessly there.
 TEST_F(ReadParameters, RefusesATextThatBeginsWithAComma) {
   file.write(", " + shipped_text());
   EXPECT_NE(file.refusal(), "");
@@ -368,7 +368,7 @@ TEST_F(ReadParameters, RefusesWhatIsNoVectorOfThreeNumbers) {
   EXPECT_THAT(file.refusal({{"robot.centre_of_gravity", "[1, .nan, 3]", "dict"}}), HasSubstr("must be finite"));
 }
 
-// A list that holds itself is good YAML.
+// A list that contains itself is valid YAML.
 TEST_F(ReadParameters, RefusesAListWithinItself) {
   EXPECT_THAT(file.refusal({{"robot.left_wheel_joints", "&a [*a]", "dict"}}), HasSubstr("must be"));
 }
@@ -522,7 +522,7 @@ TEST(Schema, PathsAreUnique) {
   EXPECT_EQ(std::set<std::string>(paths.begin(), paths.end()).size(), paths.size());
 }
 
-// Two keys that write one field would let the later one win without a word.
+// If two keys wrote one field, the later one would win silently.
 TEST(Schema, EveryKeyHasAFieldOfItsOwn) {
   Parameters parameters;
   std::set<Field> fields;
@@ -534,7 +534,7 @@ TEST(Schema, EveryKeyHasAFieldOfItsOwn) {
   }
 }
 
-// Words of eight bytes that no key writes would be a member without one.
+// A word of eight bytes that no key writes would be a member without a key.
 TEST(Schema, EveryMemberOfALawsParametersHasAKey) {
   Parameters parameters;
   const auto bytes_in = [&](const auto& group) {

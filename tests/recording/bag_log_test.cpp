@@ -25,7 +25,7 @@ struct Found {
   std::string cut;
 };
 
-/// Read while the file is checked, and again afterwards.
+/// Rows that are read while the file is checked, and again afterwards.
 Found rows_of(const std::string& path) {
   Found found, again;
   const auto into = [](Found& to) -> TraceReader::Use {

@@ -1,5 +1,5 @@
 #pragma once
-/// A drive that is stored in a black box.
+/// A drive for a black box.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-/// What is kept of black boxes: after stops, after a telemetry that was killed, after an orderly end.
+/// Checks which black boxes are kept: after stops, after a telemetry that was killed, after an orderly end.
 
 #include "recording/black_box/black_box_keeper.h"
 
@@ -37,7 +37,7 @@ struct ABlackBoxKeeper : testing::Test {
     return keeper;
   }
 
-  void take(BlackBoxKeeper& keeper, const JoinedRow& row) {
+  void store(BlackBoxKeeper& keeper, const JoinedRow& row) {
     keeper.add(*row.driver);
     keeper.add(*row.estimator);
     keeper.add(*row.controller);
@@ -46,18 +46,18 @@ struct ABlackBoxKeeper : testing::Test {
   }
 
   void drive_on(BlackBoxKeeper& keeper, std::uint64_t cycles) {
-    drive(loop, cycles, [&](const JoinedRow& row) { take(keeper, row); });
+    drive(loop, cycles, [&](const JoinedRow& row) { store(keeper, row); });
   }
 
   void stand(BlackBoxKeeper& keeper, std::uint64_t cycles) {
     loop.command({});
     for (std::uint64_t i = 0; i < cycles; ++i) {
       loop.step();
-      take(keeper, loop.row());
+      store(keeper, loop.row());
     }
   }
 
-  /// Until all that is due is saved; what it says, but for its size, which is small here.
+  /// Waits until all due black boxes are saved; returns the messages without the sizes, which are small here.
   std::vector<std::string> notes(BlackBoxKeeper& keeper, std::size_t count) {
     std::vector<std::string> all;
     for (int tries = 0; tries < 100'000 && all.size() < count; ++tries) {
@@ -146,7 +146,8 @@ TEST_F(ABlackBoxKeeper, SaysHowManySecondsItHoldsWhereTheyAreFewerThanPromised) 
   EXPECT_THAT(keeper->take_notes(), ElementsAre()) << "once";
 }
 
-/// Who may open the ring may hold its lock, and so keep telemetry from starting. A log is a file as any other.
+/// A process that may open the ring may hold its lock, and so prevent telemetry from starting. A log is an ordinary
+/// file.
 TEST_F(ABlackBoxKeeper, KeepsItsRingToItsUserAndItsIncidentsAsTheUmaskSays) {
   const mode_t before = umask(027);
   const auto keeper = start();
@@ -212,7 +213,7 @@ TEST_F(ABlackBoxKeeper, AfterAnOrderlyEndIsKeptOnceAndSavesAStopThatWaited) {
   EXPECT_EQ(rows_of("stop.1.bag"), 600u);
 }
 
-/// Its thread gets little of a busy machine.
+/// Its thread gets little time on a busy machine.
 TEST_F(ABlackBoxKeeper, AtItsEndSavesWhatItsThreadIsSavingWithThePriorityOfItsCaller) {
   const auto keeper = start();
   drive_on(*keeper, 2000);

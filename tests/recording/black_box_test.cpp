@@ -14,7 +14,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-/// As bits: every message of a log.
+/// Every message of a log, as bits.
 std::vector<std::string> messages_of(const std::string& bag) {
   std::vector<std::string> messages;
   BagReader reader(bag);

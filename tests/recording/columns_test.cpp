@@ -230,7 +230,7 @@ TEST_F(Columns, TellWhatTheControllerWasSetTo) {
   EXPECT_EQ(value("left_wheel_joint_pid_kp"), 0);
 }
 
-// More joints than wheels may have loops: an arm's have no such columns.
+// More joints than wheels may have loops: those of an arm have no such columns.
 TEST_F(Columns, OfGainsAreThoseOfWheels) {
   std::vector<std::string> many;
   for (std::size_t i = 0; i < kMaxJoints; ++i) many.push_back("joint_" + std::to_string(i));
@@ -269,7 +269,7 @@ TEST_F(Columns, TakeThePlanarBlocksOfTheCovariances) {
   EXPECT_EQ(value("estimate_angular_variance"), 135);
 }
 
-// Yaw 0.7, then pitch 0.2, then roll −0.3 about the turned axes. Tolerance: a few roundings.
+// The attitude is yaw 0.7, then pitch 0.2, then roll −0.3 about the turned axes. The tolerance is a few roundings.
 TEST_F(Columns, TakeRollAndPitchFromTheAttitude) {
   const double cr = std::cos(-0.15), sr = std::sin(-0.15), cp = std::cos(0.1), sp = std::sin(0.1);
   const double cy = std::cos(0.35), sy = std::sin(0.35);

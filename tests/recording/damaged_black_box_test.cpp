@@ -1,4 +1,4 @@
-/// What is left of a black box that was damaged or cut off, and what is said of the rest.
+/// A damaged or cut black box gives its valid part, and reports the rest.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -82,13 +82,13 @@ TEST_F(ADamagedBlackBox, IsReadAroundASegmentOfWhichNothingIsLeft) {
   const auto gap = std::ranges::adjacent_find(left, [](auto one, auto next) { return next != one + 1; });
   ASSERT_NE(gap, left.end());
   EXPECT_THAT(saved.missing, HasSubstr("1 segment of 33, 1 MiB each, cannot be read"));
-  // Of the last cycle before the gap a node's row may be missing.
+  // A node's row of the last cycle before the gap may be missing.
   const std::string cycles = "in the cycles ";
   EXPECT_THAT(saved.missing, AnyOf(HasSubstr(cycles + std::to_string(*gap) + " to "),
                                    HasSubstr(cycles + std::to_string(*gap + 1) + " to ")));
 }
 
-/// A sequence number that is too large would make every other segment one of laps before.
+/// A sequence number that is too large would make every other segment one of earlier laps.
 TEST_F(ADamagedBlackBox, LosesOneRecordWhereASequenceNumberIsDamaged) {
   const std::uint64_t sequence = 2 + 1000 * (kBytes / kSegment + 1);
   overwrite(segment_at(2) + sizeof sequence, {reinterpret_cast<const char*>(&sequence), sizeof sequence});
@@ -137,7 +137,7 @@ TEST_F(ADamagedBlackBox, LeavesNoBagWhereItsBagCannotBeWritten) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("saved")), {}), 1);
 }
 
-/// Records by number: of whatever was not damaged nothing is lost, and every gap is noticed.
+/// Records are numbered: no undamaged one is lost, and every gap is noticed.
 TEST(ARingOfRecords, GivesWhatIsSoundAndNoticesEveryGapWhateverIsDamaged) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     SCOPED_TRACE(seed);

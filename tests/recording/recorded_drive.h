@@ -12,7 +12,7 @@ inline Parameters drive_parameters(const std::vector<Overlay>& overlays = {}) {
   return read_parameters(std::string(PROJECT_DIRECTORY) + "/config/robot_params.yaml", overlays);
 }
 
-/// `visit(row)` for each of `cycles`; the robot drives a curve from the start.
+/// Calls `visit(row)` in each of `cycles`; the robot drives a curve from the start.
 template <class Visit>
 void drive(ClosedLoop& loop, std::uint64_t cycles, Visit visit) {
   for (std::uint64_t i = 0; i < cycles; ++i) {

@@ -1,4 +1,4 @@
-/// A log holds everything that a replay needs: what the laws computed is computed again from the file, bit for bit.
+/// A log holds everything that a replay needs: the results of the laws are computed again from the file, bit by bit.
 
 #include <gtest/gtest.h>
 

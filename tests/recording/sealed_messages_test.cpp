@@ -1,4 +1,4 @@
-/// What a log holds beside its rows shows any change of a byte.
+/// The messages of a log beside its rows reveal any changed byte.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace robot_control {
 namespace {
 
-/// Is the message, with any one byte of it changed, refused or not intact? Names the byte that is not.
+/// Changes each byte of the message: it must be refused or not intact. Names the byte that is not detected.
 template <class Decode>
 void expect_every_change_is_noticed(const std::string& message, std::size_t step, Decode decode) {
   EXPECT_TRUE(intact(decode(message)));
@@ -29,7 +29,7 @@ TEST(SealedMessages, OfAHeaderShowEveryChange) {
   const Parameters parameters = drive_parameters();
   const ClosedLoop loop(parameters);
   LogHeader header = log_header(parameters, loop.robot());
-  header.parameters.resize(100);  // for speed; as are the other two
+  header.parameters.resize(100);  // for speed; so are the other two
   header.urdf.resize(100);
   header.scene.resize(100);
   expect_every_change_is_noticed(encode(header), 1, [](const std::string& message) {

@@ -21,7 +21,7 @@ struct TraceMessages : testing::Test {
   TraceMessages() : TraceMessages(drive_parameters()) {}
   explicit TraceMessages(const Parameters& parameters) : loop(parameters) {}
 
-  /// Every row of a drive, and what was read of its message.
+  /// Visits every row of a drive, and the row that was read from its message.
   template <class Visit>
   void each(std::uint64_t cycles, Visit visit) {
     drive(loop, cycles, [&](const JoinedRow& row) {
@@ -71,7 +71,7 @@ TEST_F(TraceMessages, HoldEveryColumnOfTheTable) {
         ASSERT_TRUE(LogTable::same(expected, found)) << column.name;
         continue;
       }
-      // Angles are computed of four float32 up to 1.
+      // Angles are computed from four float32 up to 1.
       ASSERT_NEAR(found, expected, 4 * kFloat * std::max(1.0, std::abs(expected))) << column.name;
     }
   });

@@ -1,4 +1,4 @@
-/// Drives of the closed loop, computed again from their rows, bit for bit.
+/// Drives of the closed loop, computed again from their rows, bit by bit.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ constexpr std::uint64_t kSecond = 1000;  // cycles
 
 class ReplayedDrive : public testing::Test {
  protected:
-  /// `act(k)` before each step.
+  /// Calls `act(k)` before each step.
   void drive(
       std::uint64_t cycles, const std::function<void(std::uint64_t)>& act = [](std::uint64_t) {}) {
     for (std::uint64_t k = 0; k < cycles; ++k) {
@@ -32,10 +32,10 @@ class ReplayedDrive : public testing::Test {
   void expect_all_compared() const {
     const ReplayReport report = replay();
     EXPECT_TRUE(report.exact()) << text_of(report);
-    EXPECT_EQ(of(report, LawName::kGate).compared, recording.rows.size());
-    EXPECT_EQ(of(report, LawName::kEstimator).compared, count(&RecordedRow::has_estimator));
-    EXPECT_EQ(of(report, LawName::kController).compared, count(&RecordedRow::has_controller));
-    EXPECT_EQ(of(report, LawName::kMonitor).compared, count(&RecordedRow::has_monitor));
+    EXPECT_EQ(report_of(report, LawName::kGate).compared, recording.rows.size());
+    EXPECT_EQ(report_of(report, LawName::kEstimator).compared, count(&RecordedRow::has_estimator));
+    EXPECT_EQ(report_of(report, LawName::kController).compared, count(&RecordedRow::has_controller));
+    EXPECT_EQ(report_of(report, LawName::kMonitor).compared, count(&RecordedRow::has_monitor));
     EXPECT_TRUE(report.gaps.empty()) << text_of(report);
   }
 
@@ -44,7 +44,7 @@ class ReplayedDrive : public testing::Test {
   }
 
   RecordedRow& row(std::uint64_t cycle) { return recording.rows.at(cycle); }
-  static const LawReport& of(const ReplayReport& report, LawName law) {
+  static const LawReport& report_of(const ReplayReport& report, LawName law) {
     return report.laws[static_cast<std::size_t>(law)];
   }
 
@@ -113,7 +113,7 @@ TEST_F(ReplayedDrive, NamesTheCyclesThatAreNotComparedAfterALostRowAndResumes) {
   row(kLost).has_monitor = false;
   const ReplayReport report = replay();
   EXPECT_TRUE(report.exact()) << text_of(report);
-  const LawReport& monitor = of(report, LawName::kMonitor);
+  const LawReport& monitor = report_of(report, LawName::kMonitor);
   EXPECT_EQ(monitor.compared, kSnapshot + 100) << text_of(report);
   ASSERT_FALSE(report.gaps.empty());
   const auto gap = std::ranges::find(report.gaps, LawName::kMonitor, &ReplayGap::law);

@@ -1,5 +1,6 @@
-/// Every field of the message Trace, edited in random rows: a replay notices it. Where the author of an edit renews the
-/// checksum of the message, some are not: those are listed in docs/log.md, which this test reads.
+/// Every field of the message Trace is edited in random rows, and a replay notices it. An edit whose author renews the
+/// checksum of the message may escape. The page docs/log.md lists the fields with such edits, and this test reads the
+/// list.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -46,7 +47,7 @@ struct LoggedDrive {
     return robot_control::replay(edited, snapshots, parameters, loop.robot());
   }
 
-  /// Something differs, was not compared, or cannot be read.
+  /// True if something differs, was not compared, or cannot be read.
   bool notices(const std::vector<LoggedMessage>& edited) const {
     try {
       const ReplayReport report = replay(edited);
@@ -68,7 +69,7 @@ struct Place {
   std::size_t begin = 0, end = 0;
 };
 
-/// By field: where it has elements.
+/// The places of its elements, by field.
 std::vector<std::vector<Place>> places_in(const std::vector<LoggedMessage>& log) {
   std::vector<std::vector<Place>> all(trace_fields().size());
   TraceRow passed_over;
@@ -85,7 +86,7 @@ std::vector<std::vector<Place>> places_in(const std::vector<LoggedMessage>& log)
   return all;
 }
 
-/// Of a message whose fields before the last one were changed.
+/// Renews the checksum of a message whose fields before the last one were changed.
 void renew_checksum(LoggedMessage& message) {
   const std::size_t end = message.bytes.size() - sizeof(std::uint32_t);
   const std::uint32_t sum = message_checksum(std::string_view(message.bytes).substr(0, end), message.time_ns);
@@ -117,7 +118,7 @@ class ForgedFields : public testing::Test {
     return drive;
   }
 
-  /// A random bit of a random element of the field in a random row is flipped; is it noticed?
+  /// Flips a random bit of a random element of the field in a random row; returns whether that is noticed.
   bool notices_edit(const std::vector<Place>& places, bool renewed) {
     std::vector<LoggedMessage> log = drive().messages;
     const Place& place = places[random_() % places.size()];

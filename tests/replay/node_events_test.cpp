@@ -1,5 +1,5 @@
-/// What happens to nodes in real time, in random order: late and skipped cycles, pauses, silence, corrupt frames,
-/// restarts, new runs, and requests in the middle of all that. What they did is computed again, bit for bit.
+/// Events of nodes in real time come in random order: late and skipped cycles, pauses, silence, corrupt frames,
+/// restarts, new runs. Requests come in the middle of all that. The results are computed again, bit by bit.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ class RandomNodes {
  public:
   explicit RandomNodes(unsigned seed) : random_(seed) {}
 
-  /// One cycle, and perhaps something before it.
+  /// One cycle, and perhaps an event before it.
   void cycle() {
     if (chance(0.02)) act();
     loop_.driver.step();
@@ -40,7 +40,7 @@ class RandomNodes {
     return robot_control::replay(messages_, recording.snapshots, parameters(), loop_.robot);
   }
 
-  /// States that an estimator with the same parameters would have given otherwise than the log's.
+  /// Number of states that an estimator with the same parameters would compute differently from the log.
   int varied_otherwise() {
     join_.finish();
     int otherwise = 0;
@@ -104,7 +104,7 @@ class RandomNodes {
         return pause();
       case 7:
         add_silence(loop_.monitor->time_out());
-        return ask();
+        return request_stop_or_reset();
       case 8:
         return corrupt();
       case 9:
@@ -114,12 +114,12 @@ class RandomNodes {
         set_fault(loop_.machine.faults, "monitor", chance(0.5) ? "intermittent" : "garbage");
         return;
       default:
-        return ask();
+        return request_stop_or_reset();
     }
   }
 
-  /// An emergency stop or a reset, in time or while nothing comes.
-  void ask() {
+  /// An emergency stop or a reset, in time or during silence.
+  void request_stop_or_reset() {
     if (chance(0.3)) {
       ++requests_.e_stop_services;
     } else {
@@ -132,7 +132,7 @@ class RandomNodes {
   void pause() {
     for (int i = 0; i < 3; ++i) {
       loop_.driver.publish_paused();
-      if (chance(0.5)) ask();
+      if (chance(0.5)) request_stop_or_reset();
       add_silence(loop_.monitor->step());
     }
   }

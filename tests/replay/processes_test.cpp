@@ -1,4 +1,4 @@
-/// Four processes on the wall clock: what they did is computed again from what their traces say, bit for bit.
+/// Four processes run on the wall clock: their results are computed again from their traces, bit by bit.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 class ReplayedProcesses : public testing::Test {
  protected:
-  /// Rows may be lost where this machine stands still; then they are named, and most are compared all the same.
+  /// Rows may be lost if this machine stands still; then they are named, and most are still compared.
   void expect_exact() {
     const Recording recording = file_.end();
     const ReplayReport report = recording.replay(robot_.nodes().parameters(), robot_.nodes().robot());

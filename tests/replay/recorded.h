@@ -1,6 +1,6 @@
 #pragma once
-/// A log in memory, as the log's reader gives it: rows, of which the frames that a law computed are known by their
-/// checksum alone, and snapshots.
+/// A log in memory in the form of the log's reader: rows and snapshots. The rows hold only the checksum of a frame that
+/// a law computed.
 
 #include <cmath>
 #include <cstdint>
@@ -19,7 +19,7 @@ inline Parameters default_parameters() {
   return read_parameters(std::string(PROJECT_DIRECTORY) + "/config/robot_params.yaml", {});
 }
 
-/// Of a frame that its law computed, the log holds the head; near a snapshot, all.
+/// The log holds the head of a frame that its law computed, and near a snapshot all of it.
 template <class Frame>
 void cut(const LawRow& law, Frame& frame) {
   if (frame.head.checksum != law.output || near_snapshot(frame.head.cycle)) return;
@@ -82,7 +82,7 @@ struct Recording {
   }
 };
 
-/// Messages of a log, in their order, each with the time under which it stands there.
+/// The messages of a log in their order, each with its time.
 struct LoggedMessage {
   std::string bytes = {};
   std::int64_t time_ns = 0;
@@ -94,7 +94,7 @@ inline void log(const JoinedRow& row, std::size_t joints, std::vector<LoggedMess
   encode_trace({.row = row, .joints = joints, .time_ns = message.time_ns}, message.bytes);
 }
 
-/// As from a file. Throws TraceError: a message cannot be read.
+/// Replays them as from a file. Throws TraceError: a message cannot be read.
 inline ReplayReport replay(const std::vector<LoggedMessage>& messages, const std::vector<LawSnapshot>& snapshots,
                            const Parameters& parameters, const RobotModel& robot) {
   static const TraceDecoder kDecoder(trace_definition());
@@ -108,7 +108,7 @@ inline ReplayReport replay(const std::vector<LoggedMessage>& messages, const std
   return again.report();
 }
 
-/// What went wrong, for the output of a test.
+/// The errors as text, for the output of a test.
 inline std::string text_of(const ReplayReport& report) {
   std::string text;
   for (std::size_t i = 0; i < kLaws; ++i) {

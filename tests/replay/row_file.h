@@ -1,5 +1,5 @@
 #pragma once
-/// A process that writes down what the nodes of a bus give, until it is asked to end; and what it wrote.
+/// A process that writes the rows of a bus's nodes until it is asked to end, and the file that it wrote.
 
 #include <atomic>
 #include <cstdio>
@@ -30,8 +30,8 @@ class SnapshotSource {
     if (channel_.poll()) reader_.emplace(channel_.memory(), 0);
   }
 
-  /// The next one, sealed; false: there is none yet.
-  bool take(LawSnapshot& snapshot) {
+  /// Takes the next snapshot, sealed; false: there is none yet.
+  bool next(LawSnapshot& snapshot) {
     if (!reader_ || !reader_->take(snapshot)) return false;
     seal(snapshot);
     return true;
@@ -66,7 +66,7 @@ class RowFile {
     new (end_.get()) std::atomic<int>(0);
   }
 
-  /// Nothing is written any more.
+  /// Ends the writing.
   Recording end() {
     end_.get()->store(1);
     writer_.wait();
@@ -114,7 +114,7 @@ class RowFile {
       monitor.drain(join);
       for (SnapshotSource& source : sources) {
         source.poll();
-        while (source.take(*snapshot)) std::fwrite(snapshot.get(), sizeof(LawSnapshot), 1, snapshots.get());
+        while (source.next(*snapshot)) std::fwrite(snapshot.get(), sizeof(LawSnapshot), 1, snapshots.get());
       }
       sleep_ns(5'000'000);
     }

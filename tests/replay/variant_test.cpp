@@ -1,4 +1,4 @@
-/// The laws of a log with other parameters.
+/// Runs the laws of a log with other parameters.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ struct VariedDrive : testing::Test {
     }
   }
 
-  /// `watch` gets what the laws of `varied` would have given.
+  /// `watch` gets the results that the laws of `varied` would have given.
   ReplayReport replay(const Parameters& varied, const std::function<void(const VariedRow&)>& watch) const {
     Replay again(parameters, loop.robot());
     again.vary(varied, loop.robot(), watch);

@@ -1,4 +1,4 @@
-/// Joints between the body and the floor: legs that fold are refused, what only looks like them stands.
+/// Joints between the body and the floor: legs that fold are refused, robots that only look like them stand.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -93,7 +93,7 @@ TEST(BearingJoints, ThatAreFixedOrMoveLittleOrRubHardAreAccepted) {
   EXPECT_EQ(refusal_of(robot_of(quadruped(rubbing))), "accepted");
 }
 
-/// The user's own names of the wheels change nothing of the physics.
+/// The user's own names of the wheels do not change the physics.
 TEST(BearingJoints, AreRefusedForNamedWheels) {
   RobotParameters named;
   named.left_wheel_joints = {"FL_foot_joint", "RL_foot_joint"};
@@ -101,7 +101,7 @@ TEST(BearingJoints, AreRefusedForNamedWheels) {
   EXPECT_THAT(refusal_of(robot_of(quadruped({})), named), HasSubstr("nothing holds"));
 }
 
-/// Of which half of the robot's wheels hang; `more` stands beside them.
+/// Swing arms on which half of the robot's wheels hang; `more` is added beside them.
 std::string swing_arms(const std::string& more) {
   std::string text = base();
   for (const std::string side : {"left", "right"}) {
@@ -130,7 +130,7 @@ TEST(BearingJoints, ThatTheRobotStandsWithoutAreAccepted) {
   EXPECT_EQ(refusal_of(robot_of(swing_arms(rear + front))), "accepted") << "as pmb2 does on its casters";
 }
 
-/// A body of `wheels` below a mast or lift of that joint.
+/// A body with `wheels` below a mast or lift on that joint.
 std::string above(const std::string& type, const std::string& axis, const std::string& limits,
                   const std::string& place) {
   std::string text = link("base_link", inertial("10") + collision("<box size=\"0.6 0.4 0.1\"/>")) +
@@ -209,7 +209,7 @@ std::string rocker_bogie(const std::string& side, double y) {
 
 TEST(BearingJoints, ThatAreBalancedAreAccepted) {
   EXPECT_EQ(refusal_of(robot_of(base() + rocker_bogie("left", 0.25) + rocker_bogie("right", -0.25))), "accepted");
-  // A front axle that pivots about x, as a tractor's.
+  // A front axle pivots about x, as a tractor's does.
   const std::string pivot =
       link("axle", inertial("1")) +
       joint({.name = "pivot", .child = "axle", .xyz = "0.4 0 0", .axis = "<axis xyz=\"1 0 0\"/>"});
@@ -222,7 +222,7 @@ TEST(BearingJoints, ThatAreBalancedAreAccepted) {
   EXPECT_EQ(refusal_of(robot_of(two_wheels() + pivot + front)), "accepted");
 }
 
-/// A caster whose roller is no wheel to the software, for want of roundness, turns on its axle all the same.
+/// A caster's roller is not round enough for a wheel, but turns on its axle nevertheless.
 TEST(BearingJoints, AreNotTheAxlesOfWhatIsNearlyRound) {
   const std::string roller = link("roller", inertial("0.2") + collision("<box size=\"0.07 0.04 0.07\"/>")) +
                              joint({.name = "axle", .child = "roller", .xyz = "-0.25 0 -0.065"});

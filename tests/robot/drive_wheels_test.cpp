@@ -1,4 +1,4 @@
-/// Which wheels drive: by position, shape and axis; by name only where the user names them.
+/// Selects the drive wheels by position, shape and axis; by name only if the user names them.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -99,7 +99,7 @@ TEST(DriveWheels, TwoPairsSteerBySkidding) {
   EXPECT_EQ(read_robot(robot_of(robot.urdf.substr(16, robot.urdf.size() - 24)), parameters).wheel_base_multiplier, 1.5);
 }
 
-// As TwoPairsSteerBySkidding, but the URDF says which two are driven: the others roll along.
+// Like TwoPairsSteerBySkidding, but the URDF says which two are driven: the others roll along.
 TEST(DriveWheels, DrivenOnesDriveTheOthersRollAlong) {
   const RobotModel robot =
       read_robot(robot_of(two_wheels() + wheel("rear_left", "-0.3 0.25 0") + wheel("rear_right", "-0.3 -0.25 0") +

@@ -1,4 +1,4 @@
-/// Parts that end where the wheels do, or almost.
+/// Parts that end at the height of the wheels, or almost.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ std::string ball(const std::string& name, double x, double y, double radius, dou
                                                       .axis = ""});
 }
 
-/// m: where the shapes of `link` end.
+/// m: lowest point of the shapes of `link`.
 double end_of(const RobotModel& robot, const std::string& link) {
   double end = std::numeric_limits<double>::infinity();
   for (const RigidBody& body : robot.bodies->bodies) {
@@ -106,7 +106,7 @@ TEST(Feet, AThinBoxOnTheFootprintAtFloorHeightIsNoPart) {
   }
 }
 
-// The kobuki's, for instance: nothing but the chassis there.
+// The kobuki's is an example: it has nothing but the chassis there.
 TEST(Feet, OfAFootprintThatCarriesTheRobotStay) {
   const std::string skid = collision("<sphere radius=\"0.01\"/>", "xyz=\"0.2 0 0.01\"");
   const std::string text = two_wheels() + link("base_footprint", skid) +

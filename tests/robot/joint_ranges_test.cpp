@@ -6,7 +6,7 @@
 namespace robot_control {
 namespace {
 
-/// The healthy robot with one joint more, as its limits say.
+/// The healthy robot with one more joint, with these limits.
 JointModel with_joint(const std::string& type, const std::string& limit) {
   const RobotModel robot = read_robot(
       robot_of(two_wheels() + link("part", inertial("1")) +

@@ -15,7 +15,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// OBJ: a prism about z, 0.03 long, the corner at φ at reach(φ).
+/// OBJ: a prism about z, 0.03 long, with the corner of the angle φ at the radius reach(φ).
 template <typename Reach>
 std::string prism_of(int sides, Reach reach) {
   std::string vertices, faces;
@@ -30,7 +30,7 @@ std::string prism_of(int sides, Reach reach) {
   return vertices + faces;
 }
 
-/// Out of round by `off`: beside its axle, oval, or with a bump.
+/// A wheel that is out of round by `off`: beside its axle, oval, or with a bump.
 std::string out_of_round(Random& random, double radius, double off) {
   const int sides = 24 + static_cast<int>(below(random, 40));
   const double towards = between(random, 0, 2 * M_PI);
@@ -75,7 +75,7 @@ TEST(OutOfRound, ByAMillimetreAWheelIsAWheelFoundOrNamed) {
     for (const RobotParameters& parameters : {RobotParameters{}, named}) {
       ASSERT_EQ(refusal_of(with_meshes(folder, radius), parameters), "accepted");
       const RobotModel robot = read_robot(with_meshes(folder, radius), parameters);
-      // A corner of the polygon within its own sagitta, an oval's mean within the polygon's.
+      // The bounds are the polygon's own sagitta for a corner, and that of the mean for an oval.
       EXPECT_NEAR(robot.wheels[0].radius, radius, 0.01 * radius);
       EXPECT_NEAR(robot.wheels[1].radius, radius, std::max(0.01 * radius, 0.0005));
     }

@@ -8,8 +8,8 @@ namespace robot_control {
 
 using Random = std::mt19937_64;
 
-inline double between(Random& random, double least, double most) {
-  return std::uniform_real_distribution<double>(least, most)(random);
+inline double between(Random& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
 }
 
 inline std::size_t below(Random& random, std::size_t end) {
@@ -20,7 +20,7 @@ inline bool toss(Random& random) {
   return below(random, 2) == 1;
 }
 
-/// In decimals, 1 nm.
+/// A decimal number, to 1 nm.
 inline std::string metres(double value) {
   std::string text = std::to_string(std::llround(value * 1e9));
   const bool negative = text[0] == '-';

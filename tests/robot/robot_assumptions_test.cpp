@@ -1,4 +1,4 @@
-/// What a URDF leaves out or says wrongly, and what is made of it; each is noted.
+/// A URDF omits or misstates values; the reader replaces them, and each replacement is noted.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -78,7 +78,7 @@ TEST_P(RobotCorpus, IsReadAsItIs) {
   EXPECT_NEAR(robot_.wheel_base_multiplier, factor.IsNull() ? 1 : factor.as<double>(), 1e-3);
 }
 
-// With ten-fold room: it has to hold in a sanitizer build on a busy machine, too.
+// The bound is ten-fold: it has to hold in a sanitizer build on a busy machine, too.
 TEST_P(RobotCorpus, IsReadInLessThanTwoSeconds) {
   RecordProperty("seconds", std::to_string(seconds_));
   EXPECT_LT(seconds_, 2);

@@ -1,4 +1,4 @@
-/// Whatever is done to a URDF, it is read as a robot that holds together, or refused by a message.
+/// A URDF with any changes is read as a consistent robot, or refused by a message.
 
 #include <gtest/gtest.h>
 

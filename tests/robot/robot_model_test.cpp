@@ -211,8 +211,8 @@ TEST(RobotModel, ImuSitsAtItsLink) {
   EXPECT_NEAR(robot.imu_in_base.orientation[3], std::sqrt(0.5), kRounding);
 }
 
-// Roll then pitch then yaw about fixed axes: x of an IMU rolled and yawed by a right angle each points to the left, its
-// y up.
+// Roll, pitch and yaw turn about fixed axes in this order. After roll and yaw by a right angle each, x of an IMU points
+// to the left, and its y up.
 TEST(RobotModel, AnotherPlaceOfTheImuReplacesTheUrdfs) {
   RobotParameters parameters;
   parameters.imu_position = Vector3{-0.1, 0.03, 0.2};
@@ -230,7 +230,7 @@ TEST(RobotModel, AnotherPlaceOfTheImuReplacesTheUrdfs) {
                        "robot/imu_orientation: 1.5708, 0, 1.5708 rad holds, the URDF says 0, 0, 0 rad"}));
 }
 
-// 4 mm of a wheel base of 0.5 m, and 0.005 rad: a ruler's and a screw's.
+// The differences are 4 mm of a wheel base of 0.5 m, and 0.005 rad: the accuracy of a ruler and of a screw.
 TEST(RobotModel, AnImuAlmostWhereTheUrdfSaysIsNotNoted) {
   RobotParameters parameters;
   parameters.imu_position = Vector3{0.054, 0.02, 0.06};

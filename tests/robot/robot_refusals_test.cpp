@@ -1,4 +1,4 @@
-/// Every refusal names the file, the element and what to do.
+/// Every refusal names the file, the element and the remedy.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-/// What carries a robot besides its drive wheels: casters with and without a swivel, rockers, many axles, tracks.
+/// The parts that carry a robot besides its drive wheels: casters with and without a swivel, rockers, many axles,
+/// tracks.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -44,7 +45,7 @@ TEST(Caster, WithoutASwivelIsAnOmniWheel) {
   EXPECT_THAT(notes_of(robot, RobotNote::Kind::kAssumed), HasSubstr("no swivel turns it"));
 }
 
-/// Two wheels on an arm that pitches about the body's middle, on the side of `y`.
+/// Two wheels on an arm on the side of `y`, which pitches about the body's middle.
 std::string rocker(const std::string& name, const std::string& y, const std::string& axis = "0 1 0",
                    const std::string& rest = "") {
   const std::string arm = name + "_arm";
@@ -89,7 +90,7 @@ TEST(Rockers, ThatTheUrdfTiesItselfAreLeftAlone) {
   EXPECT_THAT(notes_of(robot, RobotNote::Kind::kAssumed), Not(HasSubstr("differential")));
 }
 
-// 10 g with 1 kg·m²: 10 m. The robot is the box about body and wheels.
+// 10 g with 1 kg·m² give 10 m. The robot is the box about body and wheels.
 TEST(Inertia, BeyondTheRobotsOwnSizeIsScaledDownToIt) {
   const std::string tensor = "ixx=\"1\" iyy=\"0.01\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"";
   const std::string sensor = link("sensor", inertial("0.01", tensor)) +
@@ -117,7 +118,7 @@ TEST(ScrubMultiplier, OfThreeAxlesBalancesTheirMoments) {
   EXPECT_GT(slip, 0);
 }
 
-// The middle axle alone outweighs what the outer two, 1 cm away, oppose: b/2 > 2 · 0.01.
+// The middle axle alone outweighs the outer two, 1 cm away: b/2 > 2 · 0.01.
 TEST(ScrubMultiplier, OfAxlesThatStandCloseIsOne) {
   EXPECT_NEAR(read_robot(robot_of(axles({"0.01", "0", "-0.01"})), {}).wheel_base_multiplier, 1, kRounding);
 }

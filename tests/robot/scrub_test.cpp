@@ -1,4 +1,4 @@
-/// The torque of treads that slide in a turn, against Coulomb's law written out.
+/// The torque of treads that slide in a turn, compared with Coulomb's law.
 
 #include "robot/wheels/scrub.h"
 
@@ -26,7 +26,7 @@ RobotModel skid_steer() {
   return robot;
 }
 
-/// A quarter of 20 kg at friction 1: 49 N, of which the rolling direction takes 0.16/√(0.16² + 0.2²).
+/// A quarter of 20 kg at friction 1 is 49 N, of which the rolling direction takes 0.16/√(0.16² + 0.2²).
 constexpr double kTorque = 0.1 * 5 * 9.81 * 0.6247;
 
 TEST(Scrub, OnTheSpotIsCoulombFrictionOfTheTreads) {
@@ -71,9 +71,10 @@ class Strain : public testing::Test {
 
   /// m, by which the treads slid.
   double turn(double linear, double angular, double seconds, double dt = 1e-3) {
-    double way = 0;
-    for (double time = 0; time < seconds - 0.5 * dt; time += dt) way += scrub_.strain(efforts_, linear, angular, dt);
-    return way;
+    double distance = 0;
+    for (double time = 0; time < seconds - 0.5 * dt; time += dt)
+      distance += scrub_.strain(efforts_, linear, angular, dt);
+    return distance;
   }
 };
 

@@ -1,4 +1,4 @@
-/// Machines that are no differential drive: omni wheels, rollers, steered wheels, a drive that the file names.
+/// Machines without differential drive: omni wheels, rollers, steered wheels, a drive that the file names.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -38,7 +38,8 @@ TEST(HolonomicDrive, PluginsThatMoveARobotSidewaysAreNoted) {
   EXPECT_THAT(notes_of(plain, RobotNote::Kind::kSuspicious), Not(HasSubstr("sideways")));
 }
 
-/// n rollers about a hub of 0.08 m, each turned by `slant` from the rolling direction, as joints or as shapes of it.
+/// A wheel with n rollers about a hub of 0.08 m, each turned by `slant` from the rolling direction, as joints or as
+/// shapes.
 std::string roller_wheel(const std::string& name, const std::string& place, int n, double slant, bool joints) {
   std::string shapes = tyre("0.08"), more;
   for (int i = 0; i < n; ++i) {
@@ -112,7 +113,8 @@ TEST(HolonomicDrive, OneWheelWithRollersAmongPlainOnesIsNamedFirst) {
   }
 }
 
-/// Plain wheels in front and, `drop` m deeper, wheels with rollers behind; what is not said to drive is a caster.
+/// Plain wheels in front and, `drop` m deeper, wheels with rollers behind; wheels that are not named as driven are
+/// casters.
 std::string with_roller_wheels_behind(double drop, bool joints) {
   const auto behind = [&](double y) { return xyz(-0.2, y, -drop); };
   return base() + wheel("fl", kPlaces[0]) + wheel("fr", kPlaces[1]) + roller_wheel("rl", behind(0.25), 8, 0, joints) +
@@ -150,8 +152,8 @@ TEST(HolonomicDrive, ADriveWheelThatIsCalledMecanumOrOmniIsRefusedEvenIfItIsTheO
   EXPECT_THAT(notes_of(robot, RobotNote::Kind::kSuspicious), HasSubstr("its name says omni"));
 }
 
-/// A robot of four wheels; `name`, `base`, `wheel` stand in the names of robot, root link and of the front left wheel's
-/// link, `mesh` in a mesh of the body.
+/// A robot of four wheels. `name`, `base` and `wheel` appear in the names of robot, root link and the front left
+/// wheel's link, `mesh` in a mesh of the body.
 std::string base_with_names(const std::string& robot, const std::string& root, const std::string& mesh,
                             const std::string& behind = "") {
   std::string text =
@@ -216,7 +218,7 @@ TEST(HolonomicDrive, WheelsThatRollAcrossAreRefusedWithTheReason) {
   }
 }
 
-/// A wheel below a steering joint, `offset` m outwards of it.
+/// A wheel below a steering joint, `offset` m outwards from it.
 std::string steered(const std::string& name, double x, double y, double offset, const std::string& type,
                     const std::string& limit) {
   return link(name + "_knuckle", inertial("0.3")) +
@@ -280,7 +282,7 @@ TEST(SteeredWheels, ADrivenCasterIsNoted) {
       AllOf(HasSubstr("caster"), HasSubstr("driven")));
 }
 
-// A tricycle's front wheel, driven.
+// The front wheel of a tricycle is driven.
 TEST(NamedDrive, AWheelOnTheMiddleLineThatTheFileDrivesIsRefused) {
   EXPECT_THAT(refusal_of(robot_of(two_wheels() + wheel("front", "0.4 0 0") + transmission("front"))),
               AllOf(HasSubstr("front"), HasSubstr("middle line"), HasSubstr("driven")));

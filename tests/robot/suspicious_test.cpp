@@ -1,4 +1,4 @@
-/// What a file says that cannot be meant is noted as suspicious.
+/// A value of a file that cannot be intended is noted as suspicious.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,8 +17,8 @@ using testing::HasSubstr;
 using testing::Not;
 
 struct Made {
-  double unit = 1;   ///< of all lengths, m
-  double grain = 1;  ///< of all masses, kg
+  double unit = 1;   ///< m, factor on all lengths
+  double grain = 1;  ///< kg, factor on all masses
   double radius = 0.1, base = 0.5, high = 0, mass = 10, wheel_mass = 1;
   bool casters = true;
 };
@@ -128,7 +128,7 @@ Made healthy(Random& random) {
   return m;
 }
 
-/// Every healthy robot that `change` spoils in one thing is suspicious for `reason`.
+/// Every healthy robot in which `change` spoils one thing is suspicious for `reason`.
 template <class Change>
 void expect_suspicion(unsigned seeds, Change change, const std::string& reason) {
   for (unsigned seed = 0; seed < seeds; ++seed) {
@@ -175,7 +175,8 @@ TEST(Suspicious, ACentreOfGravityThatTipsTheRobotWhenItBrakes) {
     Random random(seed);
     Made m = healthy(random);
     EXPECT_THAT(suspicion(made(m)), Not(HasSubstr("tips"))) << seed;
-    // The supports stand 0.4 of the base before and behind: at c above the floor it tips at g 0.4 base / c.
+    // The supports stand 0.4 of the base in front and behind: with its centre c above the floor it tips at g 0.4 base /
+    // c.
     m.high = 0.4 * m.base * 9.81 / between(random, 0.1, 0.7) * (m.mass + 2 * m.wheel_mass) / m.mass;
     EXPECT_THAT(suspicion(made(m)), AllOf(HasSubstr("centre of gravity"), HasSubstr("tips"))) << seed;
   }
@@ -286,7 +287,7 @@ TEST_F(Files, AMissingCollisionMeshOfWhatTouchesNothingIsNoted) {
               AllOf(HasSubstr("<link name=\"top\">"), HasSubstr("top.stl"), HasSubstr("left out")));
 }
 
-// Two wheels and what was to be a caster: it would fall over, and nothing would say why.
+// Two wheels and a missing caster would fall over, and nothing would tell why.
 TEST_F(Files, AMissingCollisionMeshOnWhichTheRobotStandsIsRefused) {
   const std::string text = link("base_link", "<inertial><origin xyz=\"-0.05 0 0\"/><mass value=\"10\"/><inertia " +
                                                  kBall + "/></inertial>" + collision("<box size=\"0.6 0.4 0.1\"/>")) +

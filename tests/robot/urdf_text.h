@@ -1,6 +1,5 @@
 #pragma once
-/// Small robots written in a few words. The healthy one: a box of 10 kg on two wheels of 1 kg, radius 0.1 m, 0.5 m
-/// apart.
+/// Small robots in short texts. The healthy one is a box of 10 kg on two wheels of 1 kg, radius 0.1 m, 0.5 m apart.
 
 #include <string>
 
@@ -79,7 +78,7 @@ inline std::string refusal_of(const RobotDescription& description, const RobotPa
   return "accepted";
 }
 
-/// All notes of one kind, one a line: "element: text".
+/// All notes of one kind, one per line: "element: text".
 inline std::string notes_of(const RobotModel& robot, RobotNote::Kind kind) {
   std::string text;
   for (const RobotNote& note : robot.notes) {

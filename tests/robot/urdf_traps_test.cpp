@@ -1,4 +1,4 @@
-/// XML that ROS accepts and that is to be accepted here, and meshes as shapes.
+/// XML that ROS accepts is accepted here, too, and so are meshes as shapes.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -14,7 +14,7 @@ struct Aligned {
   alignas(64) double value = 0;
 };
 
-/// The compiler may drop an allocation whose memory is not used.
+/// The compiler may remove an allocation whose memory is not used.
 void keep(const void* memory) {
   asm volatile("" : : "g"(memory) : "memory");
 }

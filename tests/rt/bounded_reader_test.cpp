@@ -1,5 +1,5 @@
-/// Against a writer that changes any word between any two looks, a reader still ends within a fixed number of
-/// loads: the atomics of this test give another value at every load.
+/// A writer changes any word between any two reads, and a reader still ends within a fixed number of loads. The atomics
+/// of this test give another value at every load.
 
 #include <gtest/gtest.h>
 
@@ -35,16 +35,16 @@ struct Row {
   std::array<std::uint64_t, 3> values{};
 };
 
-/// The most loads that one call made.
+/// The largest number of loads in one call.
 template <class Look>
 std::uint64_t most_loads(Look look) {
-  std::uint64_t most = 0;
+  std::uint64_t largest = 0;
   for (int i = 0; i < kLooks; ++i) {
     counted_loads = 0;
     look();
-    most = std::max(most, counted_loads);
+    largest = std::max(largest, counted_loads);
   }
-  return most;
+  return largest;
 }
 
 TEST(BoundedReader, OfFramesTriesAsOftenAsItMay) {
@@ -63,18 +63,18 @@ TEST(BoundedReader, OfFramesTriesAsOftenAsItMay) {
 TEST(BoundedReader, OfAValueTriesAsOftenAsItMay) {
   const LatestValue<Row, HostileAtomic> latest;
   Row value;
-  const std::uint64_t most = most_loads([&] { latest.load(value); });
-  EXPECT_LE(most, 4u * (2 + 3));
-  EXPECT_GT(most, 2u + 3u);
+  const std::uint64_t largest = most_loads([&] { latest.load(value); });
+  EXPECT_LE(largest, 4u * (2 + 3));
+  EXPECT_GT(largest, 2u + 3u);
 }
 
 TEST(BoundedReader, OfARingTriesAsOftenAsItMay) {
   const Ring<Row, HostileAtomic, 16> ring{};
   RingReader<Row, HostileAtomic, 16> reader(&ring, 0);
   Row row;
-  const std::uint64_t most = most_loads([&] { reader.take(row); });
-  EXPECT_LE(most, kReadTries * (1 + 2 + 3));
-  EXPECT_GT(most, 1u + 2u + 3u);
+  const std::uint64_t largest = most_loads([&] { reader.take(row); });
+  EXPECT_LE(largest, kReadTries * (1 + 2 + 3));
+  EXPECT_GT(largest, 1u + 2u + 3u);
 }
 
 }  // namespace

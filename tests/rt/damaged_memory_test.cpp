@@ -1,5 +1,4 @@
-/// Readers on damaged memory: they end, within the memory, and take nothing for a frame that its
-/// writer did not seal.
+/// Readers on damaged memory end, stay within the memory, and accept no frame that its writer did not seal.
 
 #include <gtest/gtest.h>
 
@@ -24,8 +23,8 @@ std::span<std::byte> bytes_of(Object& object) {
   return {reinterpret_cast<std::byte*>(&object), sizeof object};
 }
 
-/// Cycles 0 … 9 were published; a copy of that is what gets damaged. On the heap, where the address sanitizer
-/// sees a touch behind its end.
+/// Cycles 0 … 9 were published; a copy of that is damaged. It lies on the heap, where the address sanitizer detects an
+/// access beyond its end.
 class DamagedFrames : public testing::Test {
  protected:
   using Frames = LatestFrames<TestFrame>;
@@ -42,9 +41,9 @@ class DamagedFrames : public testing::Test {
 
   bool is_frame(Lookup found) const { return found == Lookup::kFrame || found == Lookup::kToken; }
 
-  /// Calls `check` with what each look-up took for a frame.
+  /// Calls `check` with each frame that a look-up returned.
   template <class Check>
-  void look(Damage& damage, Check check) {
+  void check_frames(Damage& damage, Check check) {
     TestFrame frame;
     if (is_frame(reader_.newest(frame))) check(frame);
     for (const std::uint64_t cycle : {kCycles - 1, kCycles - kFrameSlots, damage.number()}) {
@@ -74,7 +73,7 @@ TEST_F(DamagedFrames, NothingIsTakenForAFrameThatWasNotPublished) {
     Damage damage(seed);
     heal();
     damage.strike(bytes_of(*damaged_));
-    look(damage, [&](const TestFrame& frame) {
+    check_frames(damage, [&](const TestFrame& frame) {
       ++accepted;
       EXPECT_TRUE(intact(frame));
       EXPECT_TRUE(whole(frame));

@@ -1,4 +1,4 @@
-/// Processes that die, and what they say. Each is a child of its own.
+/// Processes die and write last words. Each is a child of its own.
 
 #include "rt/last_words.h"
 
@@ -43,7 +43,7 @@ struct Death {
   int signal = 0;     ///< 0: it lived
 };
 
-/// Runs `body` in a child with last words, its stderr in a pipe.
+/// Runs `body` in a child with last words and its stderr in a pipe.
 Death death_of(const std::function<void()>& body, bool reader_stopped = false) {
   int pipe_ends[2];
   if (pipe(pipe_ends) != 0) throw std::runtime_error("no pipe");
@@ -98,7 +98,7 @@ void write_nowhere() {
   *reinterpret_cast<volatile int*>(nowhere) = 1;
 }
 
-/// Deeper and deeper; not a loop for the optimiser.
+/// Recurses endlessly, in a form that the optimiser cannot turn into a loop.
 [[gnu::noinline]] int overflow(int depth) {
   volatile char frame[4096];
   frame[depth % 4096] = 1;
@@ -193,7 +193,7 @@ TEST(LastWords, SoDoesTheStackOfARealtimeThread) {
   EXPECT_THAT(death.words, StartsWith("some_node: SIGSEGV at 0x"));
 }
 
-// It would hang for ever in the write otherwise, and with it this test.
+// Otherwise it would hang in the write, and with it this test.
 TEST(LastWords, AReaderThatHasStoppedDoesNotKeepItAlive) {
   const Death death = death_of(write_nowhere, true);
   EXPECT_EQ(death.signal, SIGSEGV);

@@ -1,5 +1,6 @@
-/// The code of LatestFrames itself, with two slots and frames of five words, in every execution of a writer and a
-/// reader that the memory model of C++ allows. A reader writes nothing, so what holds for one holds for all.
+/// Runs the code of LatestFrames itself, with two slots and frames of five words, in every execution of a writer and a
+/// reader. The executions are those that the memory model of C++ allows. A reader writes nothing, so the result for one
+/// reader holds for all.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +19,7 @@ struct Frame {
   FrameHead head;
 };
 
-/// Publication 1, of cycle 1, is there before a reader starts.
+/// Publication 1, of cycle 1, exists before a reader starts.
 class LatestFramesModelTest : public testing::Test {
  protected:
   LatestFramesModelTest() {
@@ -39,7 +40,7 @@ class LatestFramesModelTest : public testing::Test {
     writer_.publish(frame);
   }
 
-  /// The number of the publication that the reader finds; 0: none. Fails where it is torn.
+  /// The number of the publication that the reader finds; 0: none. Fails on a torn frame.
   std::int64_t newest() {
     Frame frame;
     const Lookup found = reader_.newest(frame);
@@ -49,7 +50,7 @@ class LatestFramesModelTest : public testing::Test {
 
   enum class Finds { kAlways, kPerhaps };
 
-  /// Looks twice, from when publication 1 is known.
+  /// Reads twice, after publication 1 is known.
   void look_twice(Finds finds) {
     const std::int64_t first = newest();
     const std::int64_t second = newest();
@@ -57,7 +58,7 @@ class LatestFramesModelTest : public testing::Test {
     if (second != 0 && second < first) model_.fail("back");
   }
 
-  /// What holds when writer and reader are at rest.
+  /// The state when writer and reader are at rest.
   MemoryModel::Body rest(std::int64_t published, std::uint32_t sequence) {
     return [this, published, sequence] {
       if (newest() != published) model_.fail("the last publication is not the newest");
@@ -73,7 +74,7 @@ class LatestFramesModelTest : public testing::Test {
         [this] { look_twice(Finds::kAlways); }, rest(1 + publications, static_cast<std::uint32_t>(1 + publications)));
   }
 
-  /// Cycles 1 and 3 share a slot: the newest slot is the one being written. Then a new run begins.
+  /// Cycles 1 and 3 share a slot: the newest slot is being written. Then a new run begins.
   Report two_looks_while_cycles_are_skipped() {
     return model_.explore(
         [this] {
@@ -83,7 +84,7 @@ class LatestFramesModelTest : public testing::Test {
         [this] { look_twice(Finds::kPerhaps); }, rest(3, 3));
   }
 
-  /// Its successor publishes the same cycle once more.
+  /// Its successor publishes the same cycle again.
   Report two_looks_while_the_writer_is_killed() {
     return model_.explore(
         [this] {
@@ -98,7 +99,7 @@ class LatestFramesModelTest : public testing::Test {
         });
   }
 
-  /// A reader that saw `sequence` finds that publication or a later one: it may sleep until the next.
+  /// A reader that read `sequence` finds that publication or a later one: it may sleep until the next.
   Report look_after_a_wake_up() {
     return model_.explore(
         [this] {

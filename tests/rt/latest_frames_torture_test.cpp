@@ -1,4 +1,4 @@
-/// One writer as fast as it can, a reader that must never see a torn frame or time going back.
+/// One writer writes as fast as it can; a reader must never get a torn frame, nor an older one after a newer.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kTorturedRun = 7;
 constexpr std::int64_t kDuration = 700'000'000;    // ns, at least
-constexpr std::int64_t kTimeout = 60'000'000'000;  // ns; how many frames fit into a time is the machine's affair
+constexpr std::int64_t kTimeout = 60'000'000'000;  // ns; the number of frames in a time depends on the machine
 constexpr std::uint64_t kFrames = 100;             // at least
 
 void write_until(const std::atomic<bool>& stop, LatestFrames<TestFrame>* memory, std::uint64_t first = 0) {
@@ -26,7 +26,7 @@ void write_until(const std::atomic<bool>& stop, LatestFrames<TestFrame>* memory,
   }
 }
 
-/// Reads for kDuration and kFrames, in both ways; returns how many frames it saw.
+/// Reads for kDuration and kFrames, in both ways; returns the number of frames found.
 std::uint64_t read_and_check(const LatestFrames<TestFrame>* memory) {
   const FrameReader<TestFrame> reader(memory);
   TestFrame frame;

@@ -1,4 +1,4 @@
-/// The code of LatestValue itself, with two words, in every execution of a writer and a reader that the memory
+/// Runs the code of LatestValue itself, with two words, in every execution of a writer and a reader that the memory
 /// model of C++ allows.
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ class LatestValueModelTest : public testing::Test {
                           });
   }
 
-  /// What one load during one store may find: the value, or that the writer was in the way (99).
+  /// The results of one load during one store: the value, or that the writer interfered (99).
   std::set<std::uint64_t> found_by(Schedules schedules) {
     std::set<std::uint64_t> found;
     model_.explore([this] { store_numbers(1); },

@@ -57,7 +57,7 @@ TEST(LatestValue, IsNeverTornAndNeverGoesBack) {
   std::uint64_t last = 0;
   std::uint64_t loads = 0;
   const std::int64_t begin = monotonic_ns();
-  // How many loads fit into a time is the machine's affair; patience only ends a hang.
+  // The number of loads in a time depends on the machine; patience only ends a hang.
   while ((loads < 100 || monotonic_ns() < begin + 500'000'000) && monotonic_ns() < begin + 60'000'000'000) {
     if (!latest.load(value)) continue;
     ++loads;

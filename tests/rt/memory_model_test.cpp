@@ -1,4 +1,4 @@
-/// The model itself, on the litmus tests of the literature: it shows every outcome that the memory model of C++
+/// Tests the model itself on the litmus tests of the literature. It shows every outcome that the memory model of C++
 /// allows, and none that it forbids.
 
 #include "rt/model/memory_model.h"
@@ -20,7 +20,7 @@ class MemoryModelTest : public testing::TestWithParam<Schedules> {
  protected:
   MemoryModelTest() { model_.second_writes(y_.word()); }
 
-  /// What ends up in `result_`.
+  /// The values of `result_`.
   Outcomes outcomes(const MemoryModel::Body& first, const MemoryModel::Body& second) {
     Outcomes found;
     const Report report = model_.explore(

@@ -57,7 +57,7 @@ TEST_F(PeriodicTest, AStallSlipsTheGridInsteadOfABurst) {
   EXPECT_EQ(schedule_.deadline_ns(), woke + kPeriod);  // a full period later, not at once
 }
 
-// A machine that needs 1.5 periods a tick: 2 periods of plant time take 3 of wall time.
+// A machine needs 1.5 periods per tick: 2 periods of plant time take 3 of wall time.
 TEST_F(PeriodicTest, ATooSlowMachineSlipsByWhatItLacksAndNeverRunsTwoTicksInOnePeriod) {
   std::int64_t now = kStart;
   std::vector<std::int64_t> begins;

@@ -8,7 +8,7 @@
 namespace robot_control {
 namespace {
 
-/// 0: no problem; 1: one that names the limit and the remedy.
+/// Returns 0 without a problem, 1 with one that names the limit and the remedy.
 int verdict_with(rlim_t soft, rlim_t hard) {
   return ChildProcess([&] {
            const rlimit limit{soft, hard};

@@ -1,4 +1,5 @@
-/// Ten million frames and ten million rows between two processes; scripts/bench frames takes a thousand million.
+/// Transfers ten million frames and ten million rows between two processes; scripts/bench frames takes a thousand
+/// million.
 
 #include <gtest/gtest.h>
 
@@ -8,7 +9,7 @@
 namespace robot_control {
 namespace {
 
-// A sanitizer sees one process at a time: there it is the wiring that is tested.
+// A sanitizer observes one process at a time: there the wiring is tested.
 constexpr std::uint64_t kCount = AllocationGuard::kCounts ? 10'000'000 : 100'000;
 
 TEST(ProcessTorture, NoFrameIsTornAndNoneIsOlderThanTheOneBefore) {

@@ -27,7 +27,7 @@ int first_core() {
   return -1;
 }
 
-/// What the calling thread finds about itself.
+/// The attributes of the calling thread.
 struct Self {
   int policy = -1;
   int priority = -1;
@@ -51,7 +51,7 @@ Self self() {
   return found;
 }
 
-/// No limit and no capability that would grant anything. False where that cannot be had.
+/// Drops every limit and capability that would grant anything. Returns false if that is not possible.
 bool drop_privileges() {
   for (const auto resource : {RLIMIT_RTPRIO, RLIMIT_MEMLOCK}) {
     const rlimit none{0, 0};
@@ -66,7 +66,7 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// Exit codes of a child: 0 as claimed, kSkip not to be tried here, else the number of the claim that failed.
+/// Exit codes of a child: 0: the claim holds, kSkip: it cannot be tested here, else the number of the failed claim.
 constexpr int kSkip = 77;
 
 template <class Body>

@@ -1,5 +1,5 @@
-/// The code of Ring itself, with two slots and rows of two words, in every execution of a writer and a reader that
-/// the memory model of C++ allows.
+/// Runs the code of Ring itself, with two slots and rows of two words, in every execution of a writer and a reader. The
+/// executions are those that the memory model of C++ allows.
 
 #include <gtest/gtest.h>
 
@@ -34,8 +34,8 @@ class RingModelTest : public testing::Test {
 
   using Reader = RingReader<Row, ModelAtomic, kRows>;
 
-  /// Takes a row, which must be the one that the reader's position says.
-  bool take(Reader& reader) {
+  /// Takes a row, which must be that of the reader's position.
+  bool take_next(Reader& reader) {
     Row row;
     if (!reader.take(row)) return false;
     if (row.first != row.second) model_.fail("torn");
@@ -44,24 +44,24 @@ class RingModelTest : public testing::Test {
     return true;
   }
 
-  /// The writer does not learn what was read.
+  /// The writer does not know which rows were read.
   Report rows_overwritten(std::uint64_t rows) {
     return explore(rows, nullptr, [this](Reader& reader) {
-      for (int i = 0; i < 3; ++i) take(reader);
+      for (int i = 0; i < 3; ++i) take_next(reader);
     });
   }
 
-  /// The reader publishes its position; the writer drops what finds no room.
+  /// The reader publishes its position; the writer drops rows without room.
   Report rows_dropped(std::uint64_t rows) {
     return explore(rows, &read_, [this](Reader& reader) {
       for (int i = 0; i < 3; ++i) {
-        if (take(reader)) read_.store(reader.position(), std::memory_order_release);
+        if (take_next(reader)) read_.store(reader.position(), std::memory_order_release);
       }
       if (reader.overwritten() != 0) model_.fail("overwritten before it was read");
     });
   }
 
-  /// Killed anywhere in its second row, whose place its successor fills.
+  /// The writer is killed anywhere in its second row, whose place its successor fills.
   Report rows_of_a_killed_writer() {
     return model_.explore(
         [this] {
@@ -74,11 +74,11 @@ class RingModelTest : public testing::Test {
         },
         [this] {
           reader_.emplace(&ring_, 0);
-          for (int i = 0; i < 2; ++i) take(*reader_);
+          for (int i = 0; i < 2; ++i) take_next(*reader_);
         });
   }
 
-  /// What is known to be written is found.
+  /// A row that is known to be written is found.
   Report row_that_was_told_of() {
     return model_.explore(
         [this] {
@@ -87,12 +87,12 @@ class RingModelTest : public testing::Test {
         },
         [this] {
           reader_.emplace(&ring_, 0);
-          const bool found = take(*reader_);
-          if (told_.load(std::memory_order_acquire) == 1 && !found && !take(*reader_)) model_.fail("not found");
+          const bool found = take_next(*reader_);
+          if (told_.load(std::memory_order_acquire) == 1 && !found && !take_next(*reader_)) model_.fail("not found");
         });
   }
 
-  /// What is known to be read has made room.
+  /// A row that is known to be read has made room.
   Report room_that_was_told_of() {
     return model_.explore(
         [this] {
@@ -104,7 +104,7 @@ class RingModelTest : public testing::Test {
         },
         [this] {
           reader_.emplace(&ring_, 0);
-          if (!take(*reader_)) return;
+          if (!take_next(*reader_)) return;
           read_.store(reader_->position(), std::memory_order_release);
           asked_.store(1, std::memory_order_release);
         });
@@ -125,7 +125,7 @@ class RingModelTest : public testing::Test {
           look(*reader_);
         },
         [this, rows] {
-          for (std::uint64_t i = 0; i < rows; ++i) take(*reader_);
+          for (std::uint64_t i = 0; i < rows; ++i) take_next(*reader_);
           if (taken_ + reader_->overwritten() + reader_->dropped() != rows) model_.fail("miscounted");
         });
   }
@@ -156,7 +156,7 @@ TEST_F(RingModelTest, WhatIsKnownToBeWrittenIsFoundAndWhatIsKnownToBeReadMakesRo
 }
 
 TEST_F(RingModelTest, EveryOrderAndEveryCheckIsNeeded) {
-  // That the writer acquires `read` keeps its stores behind the reader's loads, which the model never mixes up.
+  // The writer acquires `read` to keep its stores behind the reader's loads; the model never exchanges these.
   EXPECT_EQ(unnoticed(model_, "ring.h",
                       {[this] { return row_that_was_told_of(); }, [this] { return room_that_was_told_of(); },
                        [this] { return rows_overwritten(4); }, [this] { return rows_dropped(4); },

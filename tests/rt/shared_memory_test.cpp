@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kBytes = 8192;
 
-/// An object of kBytes, mapped by its maker.
+/// An object of kBytes, mapped by its creator.
 class SharedMemoryTest : public testing::Test {
  protected:
   SharedMemoryTest() : object_(*SharedMemory::create(name_)) {
@@ -91,7 +91,7 @@ TEST_F(SharedMemoryTest, AReadOnlyDescriptorSeesTheLock) {
   EXPECT_FALSE(reader().locked_elsewhere());
   ASSERT_TRUE(object_.lock());
   EXPECT_TRUE(reader().locked_elsewhere());
-  EXPECT_FALSE(object_.locked_elsewhere());  // one's own is not elsewhere
+  EXPECT_FALSE(object_.locked_elsewhere());  // the own lock does not count
 }
 
 TEST_F(SharedMemoryTest, TheLockEndsWithAKilledProcess) {

@@ -1,5 +1,5 @@
-// Wall clock: a monitor that sees no current sensor frame latches, whatever the reason, and hears the operator all the
-// time.
+// Wall clock: a monitor without a current sensor frame latches for any reason, and receives the operator's input all
+// the time.
 
 #include <gtest/gtest.h>
 

@@ -73,7 +73,7 @@ TEST(CommandScript, AnEventMayComeWithAVelocity) {
   EXPECT_EQ(events.resets, 1u);
 }
 
-// Cycles 1 … 29 were never seen: the second velocity and the stop arrive late, none is lost.
+// Cycles 1 … 29 were skipped: the second velocity and the stop arrive late, and none is lost.
 TEST(CommandScript, DeliversTheRowsOfSkippedCyclesTogether) {
   CommandScript script = CommandScript::parse(kHealthy, "script.csv");
   const ScriptEvents events = script.advance(29);

@@ -1,5 +1,5 @@
 #pragma once
-/// Four cycles on channels in private memory, around a machine that only remembers what it was reported.
+/// Four cycles on channels in private memory, around a machine that only stores the reports it receives.
 
 #include <memory>
 #include <string>
@@ -35,7 +35,7 @@ inline RobotModel two_wheels() {
   return robot;
 }
 
-/// Stands still whatever it is reported.
+/// A machine that stands still for any report.
 class StandingMachine final : public Driver {
  public:
   void start() override {}
@@ -65,7 +65,7 @@ struct TestChannel {
   FrameReader<Frame> reader{memory.get()};
 };
 
-/// Each run begins with a zero request: it is released at once.
+/// Each run begins with a zero request, which releases it at once.
 inline CommandScript script_with_zero() {
   CommandScript script;
   script.begin_with_zero();
@@ -81,7 +81,7 @@ struct Loop {
     restart_monitor();
   }
 
-  /// What a killed and restarted node is: a new object on the channels that its predecessor left.
+  /// A killed and restarted node is a new object on the channels that its predecessor left.
   void restart_estimator() {
     estimator =
         std::make_unique<EstimatorCycle>(EstimatorParameters{}, robot, kPeriod, sensors.reader, state.writer, nullptr);
@@ -99,7 +99,7 @@ struct Loop {
         nullptr);
   }
 
-  /// One cycle of a node, and what an injected fault makes of its output, as in ClosedLoop; null: it has no row.
+  /// Runs one cycle of a node, and applies an injected fault to its output, as ClosedLoop does; null: it has no row.
   const EstimatorTrace* step_estimator() {
     return estimator->step() ? estimator_faults.replace(driver.trace().sensors, estimator->trace()) : nullptr;
   }
@@ -110,7 +110,7 @@ struct Loop {
     return monitor->step() ? monitor_faults.replace(driver.trace().sensors, monitor->trace()) : nullptr;
   }
 
-  /// One cycle of all four.
+  /// Runs one cycle of all four.
   void step() {
     driver.step();
     step_estimator();

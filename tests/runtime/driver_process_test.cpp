@@ -1,4 +1,4 @@
-/// The driver's process and the services of its simulated machine: who may touch what, from which thread.
+/// Tests which thread may call the driver's process and the services of its simulated machine.
 
 #include "runtime/processes/driver_process.h"
 
@@ -17,10 +17,10 @@ namespace {
 
 constexpr std::int64_t kMoment = 1'000'000;  // ns
 
-/// Is set down again slowly, and notes in a plain number that it is in use.
+/// A machine that resets slowly, and notes in a plain number that it is in use.
 class SlowMachine final : public Driver {
  public:
-  /// `again`: becomes true once it is being set down again.
+  /// `again` becomes true once the machine is being reset.
   explicit SlowMachine(std::atomic<bool>& again) : again_(again) {}
 
   void start() override {
@@ -78,7 +78,7 @@ TEST_F(DriverProcessTest, ItsServicesNameTheNodesThatTheLoopWaitsFor) {
             "running; waiting for state_estimator, diff_drive_controller, safety_monitor");
 }
 
-/// Channels come and go while an operator asks.
+/// Channels appear and disappear while an operator makes requests.
 TEST_F(DriverProcessTest, ItsServicesMayBeCalledWhileItLooksForTheOthers) {
   parameters_.loop.wait_for_nodes = true;
   DriverProcess& process = opened();

@@ -81,7 +81,7 @@ TEST(GateSetup, TheFailActionIsTheUsers) {
   EXPECT_EQ(gate_parameters(parameters).fail_action, FailAction::kCoast);
 }
 
-/// A machine whose wheel runs away, or whose encoder is gone.
+/// A machine whose wheel runs away, or whose encoder is lost.
 class RunawayMachine final : public Driver {
  public:
   void start() override {}

@@ -1,5 +1,5 @@
-/// What the rows say of the calls on each law (signals/law_calls.h). That nothing is missing in them is shown by
-/// tests/replay, which runs the laws again from them.
+/// The rows record the calls on each law (signals/law_calls.h). The tests of the folder replay show that they are
+/// complete, because a replay runs the laws again from them.
 
 #include <gtest/gtest.h>
 

@@ -66,7 +66,7 @@ TEST(LoopHold, HandsTheFaultsOver) {
   EXPECT_EQ(hold.faults(), faults);
 }
 
-/// The parked loop's thread leaves `guarded` alone, although its wait is over again and again.
+/// The parked loop's thread does not touch `guarded`, although its wait ends again and again.
 TEST(LoopHold, AParkedLoopLeavesTheMachineToItsHolder) {
   LoopHold hold;
   std::atomic<bool> stopping{false};

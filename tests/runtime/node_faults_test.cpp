@@ -1,4 +1,5 @@
-/// Faults injected into estimator, controller and monitor: what each publishes, and how the other nodes react.
+/// Faults are injected into estimator, controller and monitor: the tests check their output, and the reaction of the
+/// other nodes.
 
 #include <gtest/gtest.h>
 
@@ -35,7 +36,7 @@ class NodeFaults : public ::testing::Test {
   }
   void inject(FaultComponent component, FaultKind kind) { inject(loop, component, kind); }
 
-  /// Steps once; what this node then published in that cycle.
+  /// Steps once; returns the node's published output of that cycle.
   Lookup publishes(FaultComponent component) {
     loop.step();
     const std::uint64_t cycle = loop.driver.next_cycle() - 1;
@@ -46,7 +47,7 @@ class NodeFaults : public ::testing::Test {
 
   static double effort(const CommandFrame& command) { return command.joints[0].effort; }
 
-  /// Cycles until the gate brakes; limit + 1: it never did.
+  /// Cycles until the gate brakes; limit + 1 if it never does.
   int cycles_until_brake(int limit) {
     for (int cycles = 1; cycles <= limit; ++cycles) {
       loop.step();
@@ -224,7 +225,7 @@ TEST_F(NodeFaults, ACorruptStateCostsTheCommandButNotTheCycle) {
   EXPECT_GT(corrupt, 0);
 }
 
-// What stops the robot, and how soon.
+// The cause of the stop, and the time until it.
 
 TEST_F(NodeFaults, OfAControllerThatIsOffTheGateHoldsThreeCyclesThenBrakesAndTheMonitorLatches) {
   inject(FaultComponent::kController, FaultKind::kOff);
@@ -271,8 +272,8 @@ TEST_F(NodeFaults, OfASlowMonitorThePermitExpiresAgainAndAgain) {
     loop.step();
     braked += loop.gate().verdict == GateVerdict::kBrake ? 1 : 0;
   }
-  // A permit lives for kPermitLife of 10 ticks; in the first of them the command is still that of a controller that
-  // saw no permit. The first spell begins with what was under way.
+  // A permit lives for kPermitLife of 10 ticks. In the first of them the command is still that of a controller without
+  // a permit. The first spell begins with frames that were under way.
   EXPECT_NEAR(braked, 100 - 10 * (static_cast<int>(kPermitLife) - 1), static_cast<int>(kPermitLife));
 }
 

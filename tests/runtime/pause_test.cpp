@@ -1,4 +1,4 @@
-/// A simulated machine that is paused, or set down again, and what the other nodes make of it.
+/// A simulated machine is paused, or reset, and the other nodes react.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ class PausedLoop : public ::testing::Test {
     loop.steps(20);
   }
 
-  /// The others wake as often as the paused frame is published.
+  /// The other nodes wake as often as the paused frame is published.
   void pause(int times = 1) {
     for (int i = 0; i < times; ++i) {
       loop.driver.publish_paused();

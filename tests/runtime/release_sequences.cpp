@@ -35,7 +35,7 @@ constexpr std::int64_t kNever = -1'000'000;
 
 constexpr std::array kSourceTimeouts{0.6 * kTimeout, kTimeout, 60.0, 0.0};  // s
 
-/// One for each sender.
+/// One source for each sender.
 CommandSourceList two_sources(double first_timeout, double second_timeout) {
   return {.sources = {{"a", "a", first_timeout, 20, false}, {"b", "b", second_timeout, 10, false}},
           .locks = {{"pause", "pause", 0, 255}}};
@@ -56,10 +56,10 @@ struct Sender {
 
   std::int64_t silence = kTimeoutTicks;  // ticks, the shortest since then after which it is forgotten
 
-  std::int64_t motion_at = kNever;  // tick of the last message but an accepted zero, of this process
+  std::int64_t motion_at = kNever;  // tick of the last message except an accepted zero, of this process
   bool zero_since = true;           // the last withdrawal of the permission to drive
   bool owes_zero = false;
-  bool left_requesting = false;  // its process before this one, which owed nothing: its command may be in force
+  bool left_requesting = false;  // an earlier process, which owed nothing: its command may be in force
 
   bool has_requested() const { return received != Message::kNone && received != Message::kZero; }
 
@@ -68,11 +68,11 @@ struct Sender {
   }
 };
 
-/// A publisher of e_stop, as the judge knows it.
+/// A publisher of e_stop in the judge's model.
 struct Button {
   std::string name;
-  bool level = false;      // its last word
-  bool withdrawn = false;  // another publisher's first message said false since
+  bool level = false;      // its last level
+  bool withdrawn = false;  // another publisher's first message was false since
   bool present = true;
 };
 
@@ -146,7 +146,8 @@ class Sequence {
     }
   }
 
-  /// As the node does. Where this was no restart, the judge forgets as the node does, at its first look.
+  /// Acts as the node does. After a connection without a restart, the judge forgets as the node does, at its first
+  /// pass.
   void start_intake() {
     EarlierController earlier;
     CommandFrame command;
@@ -167,7 +168,7 @@ class Sequence {
     withdraw();
   }
 
-  /// What was requested until now moves nothing from now on.
+  /// Every earlier request loses its effect.
   void withdraw() {
     withdrawn_cycle_ = cycles_;
     for (Sender& sender : senders_) {
@@ -176,7 +177,7 @@ class Sequence {
     }
   }
 
-  /// The robot may drive again: a request during the stop that no zero ended is void, too.
+  /// The robot may drive again: a request during the stop without a later zero has no effect, either.
   void release() {
     for (Sender& sender : senders_) {
       const bool with_release = sender.zero_since && cycles_ - sender.received_cycle <= kWithRelease;
@@ -262,7 +263,7 @@ class Sequence {
     stopped_ = true;
   }
 
-  /// As set_parameters does.
+  /// Changes cmd_vel_timeout as set_parameters does.
   void tune() {
     silence_before_ = silence();
     parameters_.cmd_vel_timeout = kTimeouts[random_() % kTimeouts.size()];
@@ -311,7 +312,7 @@ class Sequence {
     levels_.settle(present);
     operator_input_.e_stop_level = levels_.stopped() ? 1 : 0;
     ++operator_input_.resets;
-    // What ends with this request is decided now, whatever becomes of the publishers until the answer.
+    // The levels that end with this request are decided now, whatever the publishers do until the answer.
     for (Button& button : buttons_) button.level = button.level && (button.present || !button.withdrawn);
     held_ = std::ranges::any_of(buttons_, &Button::level);
   }
@@ -337,7 +338,7 @@ class Sequence {
       sender.sent = now_;
       last_sent_ = now_;
       if (!controller_) continue;  // lost
-      // A process that is stopped receives the newest message of each sender when it goes on.
+      // A stopped process receives the newest message of each sender when it goes on.
       waiting_[static_cast<std::size_t>(&sender - senders_.data())] = true;
     }
     if (!controller_) waiting_ = {};
@@ -351,7 +352,7 @@ class Sequence {
     controller_->inbox().store(intake().value());
   }
 
-  /// As the node does, before each message and at each of its ticks.
+  /// Acts as the node does, before each message and at each of its ticks.
   void follow_permission() {
     Permit permit;
     if (permit_.reader.newest(permit) != Lookup::kFrame) return;
@@ -370,7 +371,7 @@ class Sequence {
     if (message == Message::kMotion || message == Message::kAgedMotion) arrived.twist.linear[0] = 0.5;
     if (message == Message::kNotFinite) arrived.twist.linear[0] = std::numeric_limits<double>::quiet_NaN();
     if (message == Message::kStale) arrived.stamp_ns = 1;
-    // The clock that senders stamp with jumps as it likes.
+    // The clock of the senders' stamps jumps at random.
     const ArrivalTime time{.ros_ns = 1'000'000'000'000 + below(2'000'000'000), .loop_ns = loop_ns()};
     const bool aged = message == Message::kAgedZero || message == Message::kAgedMotion;
     if (aged) arrived.stamp_ns = time.ros_ns - below(150'000'000) + (chance(5) ? 120'000'000 : 0);
@@ -495,15 +496,16 @@ class Sequence {
   std::int64_t started_at_ = 0;
   std::int64_t last_sent_ = kNever;
   bool ticked_ = false;
-  bool released_ = false;    ///< something released motion since the last start
+  bool released_ = false;    ///< motion was released since the last start
   bool stopped_ = false;     ///< an emergency stop was requested since the last accepted reset
-  bool accepted_ = false;    ///< a reset, in this tick
+  bool accepted_ = false;    ///< a reset was accepted in this tick
   Permit last_permit_;       ///< of this monitor
   std::int64_t cycles_ = 0;  ///< that the driver has ticked, in all runs
   std::int64_t start_cycle_ = 0;
   std::int64_t stop_cycle_ = 0;
   std::int64_t withdrawn_cycle_ = 0;
-  std::int64_t requested_cycle_ = 0;   ///< in which a sender that owed nothing requested motion, or none was in force
+  std::int64_t requested_cycle_ =
+      0;  ///< cycle in which a sender that owed nothing requested motion, or none was in force
   std::int64_t pause_until_ = kNever;  ///< tick
 };
 

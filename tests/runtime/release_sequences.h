@@ -1,10 +1,9 @@
 #pragma once
-/// Does anything move that nothing released? One random sequence per seed of deaths, restarts, stalls, pauses and
-/// resets of the four nodes, of two senders of commands whose clocks jump and which are suspended, restarted, and close
-/// and open their connections, of publishers of e_stop that come and go, of other cmd_vel_timeouts, emergency stops and
-/// resets, in virtual time: a restart builds the node's classes again on the channels that the last ones left, with an
-/// empty inbox. In a third of the sequences the senders are two sources of a list with a lock, whose timeouts are
-/// short, long or none.
+/// Nothing moves without a release: each seed gives one random sequence in virtual time. Nodes die, restart, stall,
+/// pause and reset. Two senders of commands have clocks that jump; they are suspended, restarted, and close and open
+/// their connections. Publishers of e_stop come and go; cmd_vel_timeouts change; emergency stops and resets are
+/// requested. A restart builds the node's classes again on the channels of their predecessors, with an empty inbox. In
+/// a third of the sequences the senders are two sources of a list with a lock, whose timeouts are short, long or none.
 ///
 /// The judge knows only what was sent, which stamps were refused, and what was started. With T = the shorter of
 /// cmd_vel_timeout and the one before it, in cycles:
@@ -28,14 +27,14 @@ namespace robot_control {
 
 inline constexpr int kReleaseCycles = 2000;
 
-/// What a sequence was about; a judge that never saw motion proves nothing.
+/// Figures of a sequence; a sequence without any motion proves nothing.
 struct ReleaseFigures {
   std::uint64_t moving_cycles = 0;
   std::uint64_t accepted_resets = 0;
   std::uint64_t starts = 0;
 };
 
-/// Which rule `seed` violates, and in which cycle; none: nothing. Adds to `figures`.
+/// The rule that `seed` violates, and its cycle; none if all hold. Adds to `figures`.
 std::optional<std::string> release_violation(std::uint64_t seed, ReleaseFigures& figures);
 
 }  // namespace robot_control

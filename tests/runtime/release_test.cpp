@@ -1,4 +1,4 @@
-// Nothing moves that nothing released: 1 % of scripts/bench release.
+// Nothing moves without a release: 1 % of scripts/bench release.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ TEST(MotionReleaseSequences, NothingMovesWithoutARelease) {
     const auto violated = release_violation(seed, figures);
     ASSERT_FALSE(violated) << "seed " << seed << ", " << *violated;
   }
-  // Else the sequences proved nothing.
+  // Otherwise the sequences proved nothing.
   EXPECT_GT(figures.moving_cycles, 30 * kSeeds);
   EXPECT_GT(figures.accepted_resets, kSeeds / 2);
   EXPECT_GT(figures.starts, 10 * kSeeds);

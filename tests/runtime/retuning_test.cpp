@@ -152,7 +152,7 @@ TEST_F(RetuningTest, CountsWhatSeveralThreadsSetAtOnce) {
   EXPECT_EQ(handed_over().angular.speed, 1.0);
 }
 
-/// A loop in DRIVE with a standing command, and a set that waits for it.
+/// A loop in DRIVE with a standing command, and a new set that waits for it.
 class RetunedLoop : public ::testing::Test {
  protected:
   RetunedLoop() {

@@ -21,7 +21,7 @@ class TelemetryProcessTest : public testing::Test {
     for (; rows != 0; --rows, ++row.sensors.head.cycle) writer.append(row, nullptr);
   }
 
-  /// Of a node that has ended.
+  /// Leaves rows of a node that has ended.
   void leave_rows(std::uint64_t rows) const {
     const Channel channel = claim();
     RingWriter<DriverTrace> writer(channel.memory());
@@ -44,7 +44,7 @@ class TelemetryProcessTest : public testing::Test {
 
 TEST_F(TelemetryProcessTest, TakesNoRowOfAnEndedWriterWhileTheNextOneStarts) {
   leave_rows(10);
-  const Channel channel = claim();  // locked; nothing in it is of its new writer yet
+  const Channel channel = claim();  // locked; it holds nothing of its new writer yet
   TelemetryProcess telemetry = this->telemetry();
   telemetry.poll();
   EXPECT_EQ(telemetry.drain(), 0u);

@@ -1,4 +1,4 @@
-/// Up, from gyro and accelerometer at 1 kHz. The healthy case: upright, at rest, known.
+/// Tests the vertical from gyro and accelerometer at 1 kHz. The healthy case is upright, at rest, and initialised.
 
 #include "safety/measurements/attitude.h"
 
@@ -38,7 +38,7 @@ TEST_F(AttitudeTest, IsUprightAtRest) {
   EXPECT_NEAR(attitude_.tilt(), 0, kSmall);
 }
 
-// Numbers that no device means, but a broken one may send: their squares overflow.
+// No device sends such numbers on purpose, but a broken one may: their squares overflow.
 TEST_F(AttitudeTest, IsANumberWhateverFiniteNumbersCome) {
   for (const double absurd : {1e160, -1e300}) {
     step({absurd, absurd, 0}, {absurd, 0, -absurd});
@@ -46,7 +46,7 @@ TEST_F(AttitudeTest, IsANumberWhateverFiniteNumbersCome) {
     EXPECT_TRUE(std::isfinite(attitude_.tilt_rate())) << absurd;
     EXPECT_NEAR(attitude_.up().norm(), 1, kSmall) << absurd;
   }
-  // What the caller takes away may be infinite, too, and then nothing is left.
+  // The force that the caller subtracts may be infinite, too, and then nothing is left.
   const double infinite = std::numeric_limits<double>::infinity();
   step({0, 0, 0}, {infinite, 0, infinite - infinite});
   EXPECT_NEAR(attitude_.tilt(), 0, kSmall);
@@ -101,7 +101,7 @@ TEST_F(AttitudeTest, TurningOnTheSpotChangesNothing) {
   EXPECT_EQ(attitude_.tilt_rate(), 0);
 }
 
-// Of a leaning body that turns about the vertical the tilt stays.
+// The tilt of a leaning body that turns about the vertical stays.
 TEST_F(AttitudeTest, TurningAboutTheVerticalKeepsTheTilt) {
   const Eigen::AngleAxisd lean(0.3, Vector3d::UnitX());
   Attitude leans;
@@ -120,7 +120,7 @@ TEST_F(AttitudeTest, ErrsByBiasTimesTimeConstant) {
   EXPECT_NEAR(attitude_.tilt(), std::atan(0.05 * kTime), 2e-4) << "tan or sine: a third of the cube";
 }
 
-// (A/g)·(1 − e^{−t/T}), of small angles: to a hundredth.
+// The error is (A/g)·(1 − e^{−t/T}) for small angles, to a hundredth.
 TEST_F(AttitudeTest, ErrsLittleInAnAcceleration) {
   steps(1000, {0, 0, 0}, {1, 0, kGravity});
   const double expected = std::atan(1 / kGravity) * (1 - std::exp(-1 / kTime));
@@ -137,7 +137,7 @@ TEST_F(AttitudeTest, IgnoresAHardBrake) {
 TEST_F(AttitudeTest, LivesOnTheAccelerometerWithoutAGyro) {
   const Vector3d leaning = kGravity * Vector3d(std::sin(0.3), 0, std::cos(0.3));
   for (int i = 0; i < 3000; ++i) attitude_.step(nullptr, &leaning, kStep);
-  // What is left of 0.3 rad after 2 T, on the chord: within a percent of the arc.
+  // The rest of 0.3 rad after 2 T, on the chord, is within a percent of the arc.
   EXPECT_NEAR(attitude_.tilt(), 0.3 * (1 - std::exp(-3 / kTime)), 0.003);
   EXPECT_EQ(attitude_.tilt_rate(), 0);
 }

@@ -1,5 +1,5 @@
-/// What happens to the body, at 1 kHz. The healthy case: a robot of 10 kg on two wheels of 0.1 m, 0.4 m apart, its IMU
-/// in the middle, upright, rolling straight at 0.5 m/s; the last bits of every sample are others.
+/// Tests conditions of the body at 1 kHz. The healthy case is a robot of 10 kg on two wheels of 0.1 m, 0.4 m apart,
+/// with its IMU in the middle. It is upright and rolls straight at 0.5 m/s; the last bits of every sample differ.
 
 #include "safety/conditions/body_conditions.h"
 
@@ -40,7 +40,7 @@ class BodyConditionsTest : public testing::Test {
     begin();
   }
 
-  /// Restarts with the parameters and the robot as they are now; healthy for 10 cycles.
+  /// Restarts with the present parameters and robot; it is healthy for 10 cycles.
   void begin() {
     facts_ = BodyConditions(parameters_, robot_, kPeriod);
     steps(10);
@@ -50,10 +50,10 @@ class BodyConditionsTest : public testing::Test {
     jitter_ = -jitter_;
     sensors_.imu.angular_velocity = plain(rate_ + jitter_ * Vector3d::Ones());
     sensors_.imu.linear_acceleration = plain(force_ + jitter_ * Vector3d::Ones());
-    look();
+    check();
   }
-  /// At the frame as it is.
-  void look(std::uint64_t elapsed = 1) {
+  /// Checks the present frame.
+  void check(std::uint64_t elapsed = 1) {
     out_.clear();
     facts_.step(sensors_, elapsed, wheels_turn_, out_);
   }
@@ -61,9 +61,9 @@ class BodyConditionsTest : public testing::Test {
     for (int i = 0; i < count; ++i) step();
   }
 
-  /// Cycles until this very cause is active, none besides; −1: not within `most`.
-  int cycles_until(StopCause cause, int most = 2000) {
-    for (int i = 1; i <= most; ++i) {
+  /// Cycles until this cause alone is active; −1: not within `limit`.
+  int cycles_until(StopCause cause, int limit = 2000) {
+    for (int i = 1; i <= limit; ++i) {
       step();
       if (out_.stopping() == 0 && out_.with(Reaction::kSlow) == 0) continue;
       EXPECT_EQ(out_.stopping() | out_.with(Reaction::kSlow), cause);
@@ -76,7 +76,7 @@ class BodyConditionsTest : public testing::Test {
   }
   bool quiet() const { return out_.measurements().empty(); }
 
-  /// Leans by `angle` about x from now on, as a robot that is set on a ramp.
+  /// Leans by `angle` about x from now on, like a robot that is set on a ramp.
   void lean(double angle) { force_ = kGravity * Vector3d(0, std::sin(angle), std::cos(angle)); }
 
   SafetyParameters parameters_;
@@ -111,7 +111,7 @@ TEST_F(BodyConditionsTest, ALeanBelowTheLimitIsNone) {
   EXPECT_EQ(cycles_until(kCauseTilt), -1);
 }
 
-// Tipping at 1 rad/s, slower than the limit of tip_over: at the limit after 0.42 s, and its persistence.
+// It tips at 1 rad/s, slower than the limit of tip_over: it reaches the limit after 0.42 s, and its persistence.
 TEST_F(BodyConditionsTest, TiltIsFoundWhileItGrows) {
   int count = 0;
   for (double angle = 0; quiet() && count < 2000; ++count) {
@@ -241,7 +241,7 @@ TEST_F(BodyConditionsTest, CastersCarryToo) {
   EXPECT_EQ(cycles_until(kCauseLift, 200), -1);
 }
 
-// On a ramp of 0.3 rad weight m g stands on the wheels, along the vertical.
+// On a ramp of 0.3 rad the weight m g rests on the wheels, along the vertical.
 TEST_F(BodyConditionsTest, WeightIsVertical) {
   lean(0.3);
   facts_.enter_run();
@@ -260,7 +260,7 @@ TEST_F(BodyConditionsTest, AStuckDeviceIsFoundWhileTheWheelsTurn) {
     int count = 0;
     for (; quiet() && count < 2000; ++count) {
       other[0] = -other[0];
-      look();
+      check();
     }
     EXPECT_EQ(count, cycles(parameters_.imu_stuck));
     EXPECT_EQ(out_.with(Reaction::kSlow), kCauseImuStuck);
@@ -271,7 +271,7 @@ TEST_F(BodyConditionsTest, AStuckDeviceIsFoundWhileTheWheelsTurn) {
 TEST_F(BodyConditionsTest, StandsStillWithoutAStuckImu) {
   wheels_turn_ = false;
   for (int i = 0; i < 2000; ++i) {
-    look();
+    check();
     ASSERT_TRUE(quiet());
   }
 }
@@ -281,7 +281,7 @@ TEST_F(BodyConditionsTest, ASlowImuIsNotStuck) {
     jitter_ = i / 10 % 2 == 0 ? 1e-12 : -1e-12;
     if (i % 10 == 0) sensors_.imu.angular_velocity = plain(rate_ + jitter_ * Vector3d::Ones());
     if (i % 10 == 5) sensors_.imu.linear_acceleration = plain(force_ + jitter_ * Vector3d::Ones());
-    look();
+    check();
     ASSERT_TRUE(quiet());
   }
 }
@@ -294,7 +294,7 @@ TEST_F(BodyConditionsTest, ASampleThatIsNotFiniteIsIgnored) {
       sensors_.imu.linear_acceleration = {0, 0, kGravity};
       sensors_.imu.angular_velocity[axis] = bad;
       sensors_.imu.linear_acceleration[axis] = bad;
-      look();
+      check();
       EXPECT_TRUE(quiet());
     }
   }
@@ -318,7 +318,7 @@ TEST_F(BodyConditionsTest, ContactForcesThatAreNotFiniteTellNothing) {
   EXPECT_EQ(cycles_until(kCauseLift, 500), -1);
 }
 
-// 1 m/s at 2 rad/s: 2 m/s² to the left, 0.2 rad if it were taken for gravity.
+// 1 m/s at 2 rad/s gives 2 m/s² to the left, which would be 0.2 rad as gravity.
 TEST_F(BodyConditionsTest, ACurveIsNoTilt) {
   rate_ = {0, 0, 2};
   force_ = {0, 2, kGravity};
@@ -356,7 +356,7 @@ TEST_F(BodyConditionsTest, EncodersThatSayNothingDoNoHarm) {
   EXPECT_LT(facts_.attitude().tilt(), 1e-6);
 }
 
-// Mounted upside down and turned: what it measures is turned back into base axes.
+// The IMU is mounted upside down and turned: its samples are turned back into base axes.
 TEST_F(BodyConditionsTest, TheMountingOfTheImuCounts) {
   const Eigen::Quaterniond mounting =
       Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitX()) * Eigen::AngleAxisd(0.5, Vector3d::UnitZ());
@@ -386,7 +386,7 @@ TEST_F(BodyConditionsTest, ANewRunKnowsNothing) {
 
 TEST_F(BodyConditionsTest, SkippedCyclesCount) {
   sensors_.imu.linear_acceleration = {0, 0, 0.5};
-  look(static_cast<std::uint64_t>(cycles(parameters_.free_fall)));
+  check(static_cast<std::uint64_t>(cycles(parameters_.free_fall)));
   EXPECT_EQ(out_.stopping(), kCauseFreeFall);
 }
 
@@ -401,7 +401,7 @@ TEST_F(BodyConditionsTest, WhatIsOffIsNotFound) {
     force_ = force;
     rate_ = {0, 3, 0};
     steps(500);
-    for (int i = 0; i < 500; ++i) look();
+    for (int i = 0; i < 500; ++i) check();
     EXPECT_TRUE(quiet());
   }
 }

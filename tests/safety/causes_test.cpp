@@ -187,7 +187,7 @@ TEST_F(CausesTest, CorruptSensorFramesInARowStopWithoutAnother) {
 
 // Category 1.
 
-/// A beat every 10 cycles so far, the last one in this cycle.
+/// A heartbeat came every 10 cycles so far, the last one in this cycle.
 class HeartbeatTest : public CausesTest {
  protected:
   HeartbeatTest() {
@@ -360,7 +360,7 @@ TEST_F(MonitorTest, ReadyPermitsAndBecomesDriveWithARequestOrAMotion) {
   EXPECT_EQ(permit_.state, SupervisorState::kReady);
 }
 
-// The wheel rests at the edge of a count: 1.53 rad/s for a cycle, every now and then, is a count.
+// The wheel rests at the edge of a count: 1.53 rad/s for a cycle, every now and then, is one count.
 TEST_F(CausesTest, ACountOfAWheelAtRestIsNoMotion) {
   stand();
   for (int count = 0; count < 3; ++count) {

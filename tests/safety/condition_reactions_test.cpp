@@ -1,8 +1,8 @@
-// Every condition under every reaction: the right permit in the right cycle, and the brake behind it.
+// Tests every condition under every reaction: the right permit in the right cycle, and the brake behind it.
 //
-// `onset`: a robot that drives at 5 rad/s (0.5 m/s) begins to break one thing, and goes on. `seen`: after so many
-// cycles at most the fact is beyond its limit: a window of wheel speeds is 20 cycles long, so that a speed that jumps
-// beyond is beyond within 20; other facts are there at once. From then on its persistence counts.
+// At `onset` a robot that drives at 5 rad/s (0.5 m/s) breaks one thing, and goes on. After at most `seen` cycles the
+// fact is beyond its limit. A window of wheel speeds is 20 cycles long, so a speed that jumps takes 20 cycles; other
+// facts are immediate. From then on its persistence counts.
 
 #include <cmath>
 #include <functional>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint64_t kWindow = 20;
 
-/// What a row may change in each cycle.
+/// The values that a row may change in each cycle.
 struct Robot {
   SensorFrame& sensors;
   CommandFrame& command;
@@ -47,7 +47,7 @@ const std::vector<Row>& rows() {
       {kCauseWheelEffort, &P::wheel_effort, 1.05, 0.02, 0, [](Robot& r) { r.sensors.joints[1].effort = -3.3; }},
       {kCausePower, &P::power, 60, 0.1, 0,  // 15 N·m · 5 rad/s = 75 W
        [](Robot& r) { r.sensors.joints[1].effort = 15; }},
-      // Slower than a fifth of the target after a window, then 0.3 rad at 5 rad/s, and a count.
+      // It is slower than a fifth of the target after a window, then 0.3 rad at 5 rad/s, and a count.
       {kCauseStall, &P::stall, 0.3, 0, kWindow + 62, [](Robot& r) { r.speed[0] = 0; }},
       {kCauseRunaway, &P::runaway, 4, 0.05, kWindow, [](Robot& r) { r.speed[1] = 12; }},
       {kCauseWrongDirection, &P::wrong_direction, 1.5, 0.05, kWindow, [](Robot& r) { r.speed[1] = -5; }},
@@ -81,7 +81,7 @@ const std::vector<Row>& rows() {
          r.noisy = false;
        }},
       {kCauseLift, &P::lift, 0.2, 0.1, 0, [](Robot& r) { r.sensors.contact_forces = {}; }},
-      // An impact may be looked at over a window of its own.
+      // An impact may have a window of its own.
       {kCauseImpact, &P::impact, 60, 0, kWindow,
        [](Robot& r) {
          r.sensors.imu.linear_acceleration[0] = -200;
@@ -90,7 +90,7 @@ const std::vector<Row>& rows() {
       {kCauseEncodersLost, &P::encoders_lost, 0, 0.01, 0, [](Robot& r) { r.sensors.valid &= ~kValidJoints; }},
       {kCauseImuLost, &P::imu_lost, 0, 0.1, 0, [](Robot& r) { r.sensors.valid &= ~kValidGyro; }},
       {kCauseImuStuck, &P::imu_stuck, 0, 0.25, 1, [](Robot& r) { r.noisy = false; }},
-      // 51 at once, then 100 a second.
+      // 51 come at once, then 100 a second.
       {kCauseOverruns, &P::overruns, 50, 1, 0,
        [](Robot& r) { r.sensors.overruns += r.t < 1e-9 ? 51 : (std::lround(r.t * 1000) % 10 == 0 ? 1 : 0); }},
       {kCauseBatteryLow, &P::battery_low, 22, 1, 0, [](Robot& r) { r.sensors.battery_voltage = 21.9; }},
@@ -124,7 +124,7 @@ class Conditions : public MonitorTest, public testing::WithParamInterface<std::t
     steps(100);
   }
 
-  /// Cycles from the onset to the first in which `reported` says so; `patience` at most.
+  /// Cycles from the onset to the first in which `reported` is true; at most `patience`.
   template <class Reported>
   std::uint64_t break_until(std::uint64_t patience, Reported reported) {
     Robot robot{sensors_, command_, speed_, noisy_gyro_};
@@ -203,12 +203,12 @@ INSTANTIATE_TEST_SUITE_P(Every, Conditions,
                                                           Reaction::kRamp, Reaction::kBrake)),
                          name_of_row);
 
-// Whether a reset is needed depends on the reaction; the messages add it.
+// The reaction decides whether a reset is needed; the messages add it.
 TEST(CauseNames, RemediesDoNotSpeakOfTheReset) {
   for (const BitName& row : kStopCauseNames) EXPECT_EQ(row.remedy.find("e_stop_reset"), row.remedy.npos) << row.name;
 }
 
-// The rows are all that can be set: whatever is not fixed is in the table.
+// The table has every cause that is not fixed, so its rows are all that can be set.
 TEST(ConditionTable, HasEveryCauseThatIsNotFixed) {
   std::uint64_t all = kAllCauses;
   for (const FixedCause& rule : kFixedCauses) all &= ~std::uint64_t{rule.cause};

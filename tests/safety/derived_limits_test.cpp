@@ -1,5 +1,5 @@
-/// What a limit becomes that was not given. Two wheels of 3.5 N·m, 0.005 kg·m² and 30 rad/s, commanded at most 15
-/// rad/s.
+/// Tests the limits that are derived if they are not given. The robot has two wheels of 3.5 N·m, 0.005 kg·m² and 30
+/// rad/s, commanded at most 15 rad/s.
 
 #include "safety/derived_limits.h"
 

@@ -1,4 +1,4 @@
-// What a permit reports of its causes, and for how long.
+// A permit reports evidence of its causes for a limited time.
 
 #include "safety/monitor_fixture.h"
 

@@ -1,4 +1,4 @@
-// Every cause whose reaction cannot be set (fixed_reactions.h): latched in its cycle, and what the gate then does.
+// Every cause with a fixed reaction (fixed_reactions.h) latches in its cycle, and the gate then acts.
 
 #include <string>
 
@@ -9,7 +9,7 @@
 namespace robot_control {
 namespace {
 
-/// Driving at full speed, a heartbeat in the last cycle.
+/// The robot drives at full speed, with a heartbeat in the last cycle.
 class FixedCauses : public MonitorTest, public testing::WithParamInterface<FixedCause> {
  protected:
   FixedCauses() {
@@ -21,7 +21,7 @@ class FixedCauses : public MonitorTest, public testing::WithParamInterface<Fixed
 
   static StopCause cause() { return GetParam().cause; }
 
-  /// The fact begins with the next step. Steps until it is active; 0: no such fact is known here.
+  /// The fact begins with the next step. Steps until it is active; 0 if there is no such fact here.
   std::uint64_t break_it() {
     switch (cause()) {
       case kCauseEmergencyStopTopic:
@@ -98,7 +98,7 @@ TEST_P(FixedCauses, LatchInTheirCycleAndReachTheMotors) {
   const std::uint64_t deadline = permit_.ramp_until;
   EXPECT_EQ(deadline, ramp ? latched + kRamp : 0);
 
-  gate_obeys_ = true;  // what it reports and what it does are two things
+  gate_obeys_ = true;  // its report and its action differ
   const auto acts = [&] { return ramp ? ramps() : braked(); };
   while (!acts() && cycle() < latched + kToMotors) step();
   EXPECT_TRUE(acts());

@@ -1,4 +1,4 @@
-// What the gate does against what the permits say.
+// The gate acts against the permits.
 
 #include <cmath>
 
@@ -7,7 +7,7 @@
 namespace robot_control {
 namespace {
 
-/// Driving, without a heartbeat.
+/// The robot drives without a heartbeat.
 class GateConditionsTest : public MonitorTest {
  protected:
   GateConditionsTest() {
@@ -15,7 +15,7 @@ class GateConditionsTest : public MonitorTest {
     drive();
     steps(50);
   }
-  /// One command in `of` is missing for longer than a command lives.
+  /// One command in every `period` is missing for longer than a command lives.
   std::uint64_t braked_ticks_until_refused(std::uint64_t period, std::uint64_t braked, std::uint64_t patience) {
     for (std::uint64_t k = 0; k < patience; ++k) {
       gate_works_ = k % period >= braked;
@@ -36,7 +36,8 @@ TEST_F(GateConditionsTest, AGateThatBrakesInSpiteOfThePermitIsRefusingAfterLossC
   EXPECT_EQ(permit_.evidence[0].value, static_cast<double>(kLoss));
 }
 
-// 6 ticks of 10, as of a controller whose commands come every tenth cycle: more than a half of 1000 after 833 ticks.
+// It brakes in 6 ticks of 10, as with a controller whose commands come every tenth cycle: more than half of 1000 after
+// 833 ticks.
 TEST_F(GateConditionsTest, AGateThatBrakesInMoreThanHalfOfASecondIsRefusing) {
   const std::uint64_t ticks = braked_ticks_until_refused(10, 6, 2000);
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseGateRefuses});
@@ -53,7 +54,7 @@ TEST_F(GateConditionsTest, ABrakeThatTheControllerAskedForIsNoRefusal) {
   EXPECT_EQ(permit_.causes, 0u);
 }
 
-// It may drive on by the frame before, and count.
+// It may drive on with the previous frame, and counts.
 TEST_F(GateConditionsTest, AGateThatRefusesFramesIsRefusing) {
   for (std::uint64_t i = 0; i < kLoss; ++i) {
     ASSERT_EQ(permit_.causes, 0u);

@@ -1,4 +1,4 @@
-// What the machine says of itself: overruns of the last second.
+// The machine reports its overruns of the last second.
 
 #include "safety/conditions/machine_conditions.h"
 
@@ -7,7 +7,7 @@
 namespace robot_control {
 namespace {
 
-/// 1 kHz; more than 50 overruns within a second, for a tenth of it, are reported.
+/// At 1 kHz, more than 50 overruns within a second are reported after a tenth of it.
 class MachineConditionsTest : public testing::Test {
  protected:
   bool overruns(std::uint64_t counted, std::uint64_t cycles = 1) {
@@ -40,7 +40,7 @@ TEST_F(MachineConditionsTest, OverrunsOfTheLastSecondCount) {
   EXPECT_FALSE(overruns(101, 1000));
 }
 
-// A monitor that starts, or is restarted, beside a driver that runs for hours.
+// A monitor starts, or restarts, beside a driver that has run for hours.
 TEST_F(MachineConditionsTest, OverrunsOfBeforeTheFirstLookDoNotCount) {
   EXPECT_FALSE(overruns(1000, 2000));
   EXPECT_TRUE(overruns(1051, 200));

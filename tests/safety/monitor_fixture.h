@@ -17,7 +17,7 @@
 
 namespace robot_control {
 
-inline constexpr std::uint64_t kToMotors = 3;  ///< cycles from a cause to what the gate does about it
+inline constexpr std::uint64_t kToMotors = 3;  ///< cycles from a cause to the gate's action
 
 /// Two wheels of 0.1 m radius, 0.5 m apart.
 inline RobotModel two_wheels() {
@@ -31,8 +31,8 @@ inline RobotModel two_wheels() {
   return robot;
 }
 
-/// Healthy case: standing in READY at cycle kStart, nothing asked for, encoders of 4096 counts. Heartbeat timeout 0.3
-/// s, ramp at most 0.3 s. Two wheels of 0.1 m radius, 0.5 m apart, of at most 15 rad/s.
+/// The healthy case stands in READY at cycle kStart, without a request, with encoders of 4096 counts. The heartbeat
+/// timeout is 0.3 s, the ramp at most 0.3 s. Two wheels of 0.1 m radius are 0.5 m apart and turn with at most 15 rad/s.
 class MonitorTest : public testing::Test {
  protected:
   static constexpr double kPeriod = 1e-3;
@@ -78,7 +78,7 @@ class MonitorTest : public testing::Test {
 
   static RobotModel robot() { return two_wheels(); }
 
-  /// As the healthy case, with another monitor.
+  /// Begins the healthy case with another monitor.
   void begin_with(const SafetyParameters& chosen) {
     monitor_ = SafetyMonitor(chosen, robot(), kPeriod);
     new_run();
@@ -121,7 +121,7 @@ class MonitorTest : public testing::Test {
   void steps(std::uint64_t cycles) {
     for (std::uint64_t i = 0; i < cycles; ++i) step();
   }
-  /// The monitor does not look at the next `cycles` ones.
+  /// The monitor skips the next `cycles` ones.
   void skip(std::uint64_t cycles) { skip_ = cycles; }
   void new_run() {
     ++sensors_.head.run;
@@ -143,7 +143,7 @@ class MonitorTest : public testing::Test {
   void wait(SensorSilence silence = SensorSilence::kNone, std::uint64_t corrupt = 0) {
     monitor_.step({.silence = silence, .corrupt = corrupt, .operator_input = input_.operator_input}, permit_);
   }
-  /// `linear` m/s requested, and the wheels' targets; 0: the brake holds.
+  /// Requests `linear` m/s, with the wheels' targets; 0: the brake holds.
   void ask_for(double linear) {
     command_.twist_requested.linear[0] = linear;
     target(linear == 0 ? 0 : kSpeed);
@@ -160,14 +160,14 @@ class MonitorTest : public testing::Test {
     steps(5);
     ASSERT_EQ(permit_.state, SupervisorState::kDrive);
   }
-  /// Standing long enough to count as standing.
+  /// Stands until it counts as standing.
   void stand() {
     ask_for(0);
     turn_wheels(0);
     steps(kStands);
   }
   void request_reset() { ++input_.operator_input.resets; }
-  /// A reset request, handled in the next cycle.
+  /// Requests a reset, which the next cycle handles.
   std::uint64_t reset() {
     request_reset();
     step();
@@ -177,12 +177,12 @@ class MonitorTest : public testing::Test {
   std::uint64_t cycle() const { return sensors_.head.cycle; }
   bool gate_passes() const { return sensors_.gate.verdict != GateVerdict::kBrake; }
 
-  /// In the tick of this cycle every motor brakes.
+  /// True if every motor brakes in the tick of this cycle.
   bool braked() const {
     const auto brakes = [](const JointCommand& joint) { return joint.mode == JointMode::kBrake; };
     return std::all_of(joints_.begin(), joints_.end(), brakes);
   }
-  /// … the gate passes commands under a ramp.
+  /// True if the gate passes commands under a ramp.
   bool ramps() const { return gate_.report().verdict == GateVerdict::kRamp; }
 
   SensorFrame sensors_;
@@ -202,7 +202,7 @@ class MonitorTest : public testing::Test {
   std::array<double, kWheels> speed_{};  ///< rad/s, true
 
  private:
-  /// Tick `next_tick_`, with the last permit and a command of the cycle before, or the last one there was.
+  /// Runs tick `next_tick_`, with the last permit and the newest command before it.
   void tick(const Permit& permit) {
     if (input_.command != nullptr) {
       heard_ = *input_.command;
@@ -218,7 +218,7 @@ class MonitorTest : public testing::Test {
     ++next_tick_;
   }
 
-  /// What a gate reports that works and follows the permit, or does not.
+  /// The report of a gate that works and follows the permit, or does not.
   GateReport reported_by(const GateReport& true_report) const {
     constexpr std::uint64_t kRefusal = kGateNoPermit | kGatePermitExpired | kGatePermitBrake | kGateRampOver;
     GateReport report = true_report;
@@ -230,7 +230,7 @@ class MonitorTest : public testing::Test {
 
   std::uint64_t skip_ = 0;
   std::array<double, kWheels> angle_{};
-  // Of the joints the efforts are known alone: then the gate needs no samples, and is well when sensors are not.
+  // Only the joints' efforts are limited: the gate then needs no samples, and stays well when sensors are not.
   Gate gate_{std::vector<JointLimits>(kWheels, {.effort = 3, .wheel = true}), {.longest_ramp = kRamp + kLoss}, kPeriod};
   std::uint64_t next_tick_ = 0;
   FrameHead given_head_;  ///< of the last permit

@@ -5,8 +5,8 @@
 namespace robot_control {
 namespace {
 
-/// Healthy case: of a run that was seen from cycle 0, estimator and controller computed every cycle; a motion is
-/// requested since the start, silence_needed is 100 cycles.
+/// The healthy case is a run that was followed from cycle 0; estimator and controller computed every cycle. A motion is
+/// requested since the start, and silence_needed is 100 cycles.
 class MotionReleaseTest : public testing::Test {
  protected:
   static constexpr std::uint64_t kSilence = 100;
@@ -42,7 +42,7 @@ class MotionReleaseTest : public testing::Test {
     ++command_.zero_requests;
     command_.silent_cycles = 0;
   }
-  /// A refused message; what is in force ramps to zero.
+  /// A message was refused; the command in force ramps to zero.
   void refuse() {
     command_.twist_requested = {};
     command_.zero_requested = 0;

@@ -1,4 +1,4 @@
-// Torque that the planned acceleration takes, and what a stall makes of it.
+// Tests the torque of the planned acceleration, and its effect on a stall.
 
 #include "safety/measurements/planned_torque.h"
 
@@ -25,8 +25,8 @@ class PlannedTorqueTest : public MonitorTest {
     steps(100);
   }
 
-  /// A curve around the left wheel, which stands and holds `torque`, N·m, for `cycles`; the right one gets faster by
-  /// `acceleration` rad/s².
+  /// Drives a curve around the left wheel, which stands and holds `torque`, N·m, for `cycles`. The right one gets
+  /// faster by `acceleration` rad/s².
   void curve(double torque, double acceleration, int cycles) {
     turn_wheels(0);
     for (int k = 0; k < cycles; ++k) {

@@ -1,4 +1,4 @@
-// What a reset needs, and what it does not clear.
+// Tests the requirements of a reset, and what it does not clear.
 
 #include <random>
 
@@ -9,7 +9,7 @@
 namespace robot_control {
 namespace {
 
-/// Healthy case: stopped by e_stop_trigger while driving, the robot stands, nothing is asked for.
+/// The healthy case was stopped by e_stop_trigger while driving; the robot stands, and nothing is requested.
 class ResetTest : public MonitorTest {
  protected:
   ResetTest() {
@@ -149,8 +149,8 @@ TEST_F(MonitorTest, AResetInInitIsRefusedNamingTheMissingNode) {
   EXPECT_EQ(permit_.missing, std::uint64_t{kMissingCommand});
 }
 
-// Random facts for 2000 cycles per seed. Whatever happens: no drive under a latch, no latch lost but by an accepted
-// reset, drive in READY and DRIVE alone, and the first cause is one of all.
+// Each seed gives random facts for 2000 cycles. No permit drives under a latch, and a latch ends only by an accepted
+// reset. Permits drive in READY and DRIVE alone, and the first cause is one of all.
 TEST_F(MonitorTest, NeverPermitsDrivingUnderALatch) {
   std::uint64_t drives = 0;
   std::uint64_t stops = 0;
@@ -210,7 +210,7 @@ TEST_F(MonitorTest, NeverPermitsDrivingUnderALatch) {
       ramps += permit_.action == PermitAction::kRamp ? 1 : 0;
     }
   }
-  // Else the sequences proved nothing.
+  // Otherwise the sequences proved nothing.
   EXPECT_GT(drives, 10000u);
   EXPECT_GT(stops, 10000u);
   EXPECT_GT(ramps, 100u);

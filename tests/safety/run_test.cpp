@@ -1,4 +1,4 @@
-// Start, a new run, a restart of the monitor: what is forgotten and what is not.
+// Tests what a start, a new run and a restart of the monitor forget, and what they keep.
 
 #include <cstring>
 
@@ -164,7 +164,7 @@ TEST_F(RunTest, HeartbeatsOfTheLastRunAreNotAwaited) {
   EXPECT_EQ(permit_.state, SupervisorState::kReady);
 }
 
-// A restart of the driver, which no clock shows.
+// No clock shows a restart of the driver.
 
 TEST_F(RunTest, ADriverStartedAgainIsLostHoweverSoonItIsBack) {
   drive();

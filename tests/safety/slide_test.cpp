@@ -12,7 +12,7 @@ constexpr double kSecond = 1000;  // cycles
 class SlideTest : public MonitorTest {
  protected:
   SlideTest() { begin_with(without_heartbeat()); }
-  /// Long enough for the bound to have grown to the rims' speed.
+  /// Drives until the bound has grown to the rims' speed.
   void drive_for_long() {
     ask_for(0.5);
     turn_wheels(kSpeed);
@@ -22,14 +22,14 @@ class SlideTest : public MonitorTest {
     ++input_.operator_input.e_stop_services;
     stand();
   }
-  /// Cycles from now until a reset is accepted, asked for in each of them.
-  std::uint64_t cycles_until_released(std::uint64_t most) {
-    for (std::uint64_t cycles = 0; cycles < most; ++cycles) {
+  /// Cycles from now until a reset is accepted, requested in each of them.
+  std::uint64_t cycles_until_released(std::uint64_t limit) {
+    for (std::uint64_t cycles = 0; cycles < limit; ++cycles) {
       const std::uint64_t refusal = reset();
       if (refusal == 0) return cycles;
-      if (refusal != kRefusalSliding) return most;
+      if (refusal != kRefusalSliding) return limit;
     }
-    return most;
+    return limit;
   }
 };
 

@@ -21,7 +21,7 @@ SupervisorState after(SupervisorState state, std::initializer_list<Trigger> trig
   return next_state(state, set);
 }
 
-// The specification, written down a second time as a full matrix: '-' stays.
+// Repeats the specification as a full matrix, independently of the table.
 TEST(SupervisorTable, EveryStateAnswersEveryTriggerAsSpecified) {
   const std::map<SupervisorState, std::array<SupervisorState, kTriggers>> expected{
       // fault, brake, ramp, ramp ended, unreleased, reset incomplete, reset complete, complete, motion, rest

@@ -1,11 +1,11 @@
-// A motor that pulls to and fro for nothing, and everything that only looks like it.
+// A motor's torque oscillates without need; other torques only look like it.
 
 #include "safety/monitor_fixture.h"
 
 namespace robot_control {
 namespace {
 
-/// Driving at 5 rad/s with motors of 3 N·m; limit 0.3 of that for 1 s. A wheel drives 0.065 kg·m².
+/// It drives at 5 rad/s with motors of 3 N·m; the limit is 0.3 of that for 1 s. A wheel drives 0.065 kg·m².
 class TorqueOscillationTest : public MonitorTest {
  protected:
   static constexpr double kLimit = 3;  // N·m
@@ -13,7 +13,7 @@ class TorqueOscillationTest : public MonitorTest {
 
   TorqueOscillationTest() { begin({}); }
 
-  /// With so much torque per rad of a count.
+  /// Begins with this torque per rad of a count.
   void begin(double count_ripple) {
     SafetyParameters chosen = parameters();
     chosen.heartbeat_timeout = 0;
@@ -33,7 +33,7 @@ class TorqueOscillationTest : public MonitorTest {
     sensors_.joints[wheel].effort = command_.joints[wheel].effort = effort;
   }
 
-  /// Between ±`amplitude` N·m, at 62.5 Hz.
+  /// Alternates between ±`amplitude` N·m, at 62.5 Hz.
   void alternate(double amplitude, double seconds) {
     const auto cycles = static_cast<std::uint64_t>(seconds / kPeriod);
     for (std::uint64_t k = 0; k < cycles && permit_.causes == 0; ++k) {
@@ -68,7 +68,7 @@ TEST_F(TorqueOscillationTest, IsNoneBelowItsLimitOrForAMoment) {
   EXPECT_EQ(permit_.causes | permit_.warnings, 0u);
 }
 
-// Full torque up a slope, for ever.
+// The torque is full and constant, up a slope.
 TEST_F(TorqueOscillationTest, IsNoneWhereTheTorqueIsLargeAndSteady) {
   pull(0, kLimit);
   pull(1, kLimit);
@@ -91,7 +91,7 @@ TEST_F(TorqueOscillationTest, IsNoneWhereThePlannedMotionAsksForIt) {
   }
 }
 
-// 4096 counts, of which derived gains make 1000 N·m/rad: 1.5 N·m. Half of the limit and 0.3 of it are allowed.
+// Derived gains make 1000 N·m/rad from 4096 counts: 1.5 N·m. Half of the limit and 0.3 of it are allowed.
 TEST_F(TorqueOscillationTest, IsNoneWhereTheEncodersCountsMakeIt) {
   begin(1000);
   alternate(0.8 * kLimit, 10);

@@ -1,4 +1,4 @@
-// A wheel against its target, where the table of conditions says nothing.
+// Compares a wheel with its target in cases beyond the table of conditions.
 
 #include "safety/monitor_fixture.h"
 
@@ -16,7 +16,8 @@ class WheelFollowingTest : public MonitorTest {
   }
 };
 
-// From 5 rad/s to −5 rad/s at 10 rad/s², by a drive that reaches 6 rad/s²: up to 4 rad/s against the target.
+// The target goes from 5 rad/s to −5 rad/s at 10 rad/s², and the drive reaches 6 rad/s²: up to 4 rad/s against the
+// target.
 TEST_F(WheelFollowingTest, AWeakDriveThatTurnsRoundIsNotWrong) {
   double wanted = kSpeed;
   double speed = kSpeed;
@@ -36,7 +37,7 @@ TEST_F(WheelFollowingTest, AWheelThatKeepsTurningWronglyIs) {
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseWrongDirection});
 }
 
-// Slowing down by 6 rad/s² as in the first test, but the target was there at once: 10 rad/s against it.
+// It slows down by 6 rad/s² as in the first test, but the target jumped: 10 rad/s against it.
 TEST_F(WheelFollowingTest, AWheelThatIsFarFromFollowingIsWrongThoughItSlowsDown) {
   turn_wheels(2 * kSpeed);
   target(2 * kSpeed);
@@ -49,7 +50,8 @@ TEST_F(WheelFollowingTest, AWheelThatIsFarFromFollowingIsWrongThoughItSlowsDown)
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseWrongDirection});
 }
 
-// Runaway has 3.75 rad/s and 0.15 s; 95 rad/s too fast are 25 times as much, and do with a 25th of that and the window.
+// Runaway has 3.75 rad/s and 0.15 s. A speed that is 95 rad/s too high is 25 times as much: a 25th of that time
+// suffices, and the window.
 TEST_F(WheelFollowingTest, TheFasterAWheelRunsAwayTheSoonerItIsReported) {
   turn_wheels(100);
   steps(20 + 150 / 25 + 1);
@@ -62,7 +64,8 @@ TEST_F(WheelFollowingTest, AWheelThatStaysBelowItsTargetButTurnsIsNotStalled) {
   EXPECT_EQ(permit_.causes, 0u);
 }
 
-// kStall at kPushed: 0.25 s; a quantum and the window of the speed are less than 30 ms. The target alone: 2.5 s.
+// kStall at kPushed takes 0.25 s; a quantum and the window of the speed are less than 30 ms. The target alone would
+// take 2.5 s.
 TEST_F(WheelFollowingTest, AWheelThatStandsThoughItsMotorPushesIsStalledHoweverSlowItsTarget) {
   target(0.2);
   turn_wheels(0);
@@ -73,7 +76,7 @@ TEST_F(WheelFollowingTest, AWheelThatStandsThoughItsMotorPushesIsStalledHoweverS
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
 }
 
-/// 64 counts a turn, one in 0.49 s at 0.2 rad/s. The motors push all the time, as inside a skid steer's curve.
+/// 64 counts a turn give one in 0.49 s at 0.2 rad/s. The motors push all the time, as inside a skid steer's curve.
 class CoarseEncoderTest : public WheelFollowingTest {
  protected:
   static constexpr double kSlow = 0.2;             // rad/s
@@ -98,8 +101,8 @@ TEST_F(CoarseEncoderTest, AWheelThatTurnsFromCountToCountIsNotStalled) {
   EXPECT_EQ(permit_.causes, 0u);
 }
 
-// The next count may be a whole one away, and the last one leaves the window late; then kStall, with a quantum, at
-// kPushed.
+// The next count may be a whole one away, and the last one leaves the window late. Then kStall, with a quantum, passes
+// at kPushed.
 TEST_F(CoarseEncoderTest, AWheelThatStandsIsStalledOnceItsCountIsOverdue) {
   const double owed = kCount / kSlow, missed = (kStall + kCount) / WheelFollowing::kPushed;
   steps(static_cast<std::uint64_t>(owed / kPeriod));
@@ -175,7 +178,7 @@ TEST_F(WheelFollowingTest, ACommandIsNotStaleForWantOfAState) {
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseEstimatorLost});
 }
 
-/// Axles behind each other, of which the fixture has one wheel each: in a turn on the spot either scrubs with `kScrub`.
+/// Two axles, of which the fixture has one wheel each: in a turn on the spot either scrubs with `kScrub`.
 class ScrubbingTest : public WheelFollowingTest {
  protected:
   static constexpr double kScrub = 0.1 * 6 * 9.81 * 0.6247;  ///< N·m: 12 kg, friction 1 (scrub_test.cpp)
@@ -198,7 +201,7 @@ class ScrubbingTest : public WheelFollowingTest {
     steps(100);
   }
 
-  /// On the spot with kSpeed; the wheels turn with `speed` and have `torque`, both towards their targets.
+  /// Turns on the spot with kSpeed; the wheels turn with `speed` and have `torque`, both towards their targets.
   void turn(double speed, double torque) {
     target(kSpeed);
     command_.joints[0].velocity = -kSpeed;
@@ -208,7 +211,7 @@ class ScrubbingTest : public WheelFollowingTest {
   }
 };
 
-// No later than half again as late as any other.
+// The report is at most half as late again as any other.
 TEST_F(ScrubbingTest, WheelsWhoseTorqueIsBelowTheirFrictionAndGrowsAreStalledLater) {
   const double usual = kStall / kSpeed;
   int k = 0;

@@ -28,7 +28,7 @@ class WheelMotionTest : public testing::Test {
     motion_.step(sensors_);
     standstill_.step(motion_, sensors_.head.cycle);
   }
-  /// At `speed` rad/s for so many cycles.
+  /// Turns at `speed` rad/s for `cycles`.
   void turn(double speed, std::uint64_t cycles) {
     for (std::uint64_t i = 0; i < cycles; ++i) step(angle_ += speed * kPeriod);
   }

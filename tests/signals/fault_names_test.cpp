@@ -1,4 +1,4 @@
-/// The words of inject_fault: both directions, and what is said of a word that is none.
+/// Tests the words of inject_fault in both directions, and the message for an unknown word.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-/// What every frame on the bus has in common.
+/// Properties that all frames on the bus share.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@
 namespace robot_control {
 namespace {
 
-/// A constant expression cannot read padding, so this compiles only where there is none.
+/// A constant expression cannot read padding, so this compiles only without any.
 template <class Plain>
 constexpr bool kWithoutPadding = [] {
   constexpr auto words = std::bit_cast<std::array<std::uint64_t, sizeof(Plain) / 8>>(Plain{});
@@ -61,7 +61,7 @@ TYPED_TEST(FrameTest, SealingTwiceChangesNothing) {
   EXPECT_EQ(this->frame_.head.checksum, once);
 }
 
-// Every step of the hash is a bijection of the word it takes in, so a change of one word can never cancel.
+// Every step of the hash is a bijection of its input word, so a change of one word can never cancel.
 TYPED_TEST(FrameTest, NoticesEveryFlippedBit) {
   constexpr std::size_t kBits = sizeof(TypeParam) * 8;
   for (std::size_t bit = 0; bit < kBits; ++bit) {

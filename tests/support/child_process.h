@@ -1,5 +1,5 @@
 #pragma once
-/// A forked process that runs a function and exits with its result. Killed, if it still lives, at the end.
+/// A forked process that runs a function and exits with its result. It is killed at the end if it still lives.
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -29,7 +29,7 @@ class ChildProcess {
   ChildProcess& operator=(const ChildProcess&) = delete;
   ~ChildProcess() { kill(); }
 
-  /// SIGKILL, and gone on return.
+  /// Sends SIGKILL and waits for the end.
   void kill() noexcept {
     if (id_ <= 0) return;
     ::kill(id_, SIGKILL);
@@ -42,7 +42,7 @@ class ChildProcess {
     return code_;
   }
 
-  /// Does it still live, be it stopped?
+  /// True if it still lives, even stopped.
   bool lives() noexcept {
     if (id_ > 0) collect(WNOHANG);
     return id_ > 0;
@@ -52,9 +52,9 @@ class ChildProcess {
     if (id_ > 0) ::kill(id_, signal);
   }
 
-  /// Sends SIGSTOP or a signal that ends it. After SIGSTOP it waits until all threads stand still, which takes time
-  /// where they have no core. After SIGKILL it does not wait: no thread runs again, but the kernel frees memory for
-  /// many cycles.
+  /// Sends SIGSTOP or a signal that ends it. After SIGSTOP it waits until all threads stand still, which takes time if
+  /// they have no core. After SIGKILL it does not wait: no thread runs again, but the kernel frees memory for many
+  /// cycles.
   void stop_with(int signal) const noexcept {
     if (id_ <= 0) return;
     ::kill(id_, signal);
@@ -64,9 +64,9 @@ class ChildProcess {
     }
   }
 
-  /// Of one that has ended: -1 after a signal.
+  /// The exit code of a process that has ended: -1 after a signal.
   int code() const noexcept { return code_; }
-  /// That ended it; 0: none.
+  /// The signal that ended it; 0: none.
   int ending_signal() const noexcept { return signal_; }
 
   pid_t id() const noexcept { return id_; }

@@ -1,5 +1,5 @@
 #pragma once
-/// What passes between a test and the nodes it forked: an operator's inputs to them, and whom they miss.
+/// The shared data of a test and its forked nodes: an operator's inputs, and the nodes that are missing.
 
 #include <array>
 #include <atomic>
@@ -28,14 +28,14 @@ inline const char* name_of(LoopNode node) {
   return kLoopNodeNames[index_of(node)];
 }
 
-/// Lives in memory that the forked nodes share with the test. Counters count from the start of the node that hears
-/// them, as those of a ROS node do.
+/// It lives in memory that the forked nodes share with the test. Counters count from the start of the receiving node,
+/// like those of a ROS node.
 struct ControlDesk {
   LatestValue<VelocityCommand> command;       ///< to the controller
   LatestValue<OperatorInput> operator_input;  ///< to the monitor
   /// Per node, as of its last look: one bit for each node that it misses.
   std::array<std::atomic<std::uint64_t>, kLoopNodeNames.size()> missing{};
-  /// By telemetry's own count.
+  /// The count by telemetry itself.
   std::atomic<std::uint64_t> lost_rows{0};
   std::atomic<std::uint64_t> unwritten_rows{0};
 };

@@ -1,6 +1,6 @@
 #pragma once
-/// Where descriptions of real robots lie (TRUTH.json says what is true of them): the folder named by ROBOT_CORPUS, else
-/// `shared/robots` above the repository. Tests that need them skip where they are absent.
+/// The folder with descriptions of real robots, and their true data in TRUTH.json. ROBOT_CORPUS names it; otherwise it
+/// is `shared/robots` above the repository. Tests that need it skip if it is absent.
 
 #include <cstdlib>
 #include <filesystem>
@@ -9,7 +9,7 @@ namespace robot_control {
 
 inline constexpr const char* kNoCorpus = "no folder of real robots: set ROBOT_CORPUS";
 
-/// Empty where there is none.
+/// Empty if there is none.
 inline std::filesystem::path corpus() {
   if (const char* named = std::getenv("ROBOT_CORPUS")) return named;
   for (std::filesystem::path folder = PROJECT_DIRECTORY; folder != folder.root_path(); folder = folder.parent_path()) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Damage to memory, drawn from a seed: what a stray writer, a bad bit or another program leaves behind.
+/// Damage to memory, drawn from a seed: the traces of a stray writer, a bad bit or another program.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,7 +15,7 @@ class Damage {
 
   std::uint64_t below(std::uint64_t limit) { return random_() % limit; }
 
-  /// Numbers that look right, and those at the edges.
+  /// A number that looks right, or one at the edges.
   std::uint64_t number() {
     constexpr std::uint64_t kTop = ~std::uint64_t{0};
     constexpr std::uint64_t kNumbers[] = {0,        1,   2, 7, 8, 9, 10, 18, 19, 20, 255, kTop / 2, kTop / 2 + 1,
@@ -23,7 +23,7 @@ class Damage {
     return below(8) == 0 ? random_() : kNumbers[below(std::size(kNumbers))];
   }
 
-  /// One of: single bits, a stretch of random bytes, everything, whole words.
+  /// Damages single bits, a stretch of random bytes, everything, or whole words.
   void strike(std::span<std::byte> memory) {
     switch (below(8)) {
       case 0:

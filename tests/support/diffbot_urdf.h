@@ -12,7 +12,7 @@ inline RobotDescription diffbot_urdf() {
   return load_description(PROJECT_DIRECTORY "/urdf/diffbot.urdf");
 }
 
-/// `text` with the first `from` after `anchor` replaced; throws when there is none, so that no test passes unawares.
+/// `text` with the first `from` after `anchor` replaced; throws if there is none, so that no test passes by accident.
 inline std::string replaced(std::string text, const std::string& anchor, const std::string& from,
                             const std::string& to) {
   const std::size_t begin = text.find(anchor);

@@ -1,5 +1,5 @@
 #pragma once
-/// What the plant really did, cycle by cycle: read from its trace ring, which outlives a look that comes late.
+/// The true motion of the plant, cycle by cycle, from its trace ring, which tolerates a late reader.
 
 #include <cmath>
 #include <cstdint>
@@ -37,8 +37,8 @@ class DriveLog {
     if (channel_.poll()) reader_.emplace(channel_.memory());
   }
 
-  /// Takes what is there. A ring holds 2 s at 1 kHz: look more often.
-  void look() {
+  /// Takes the available rows. A ring holds 2 s at 1 kHz: call it more often.
+  void read_rows() {
     while (reader_ && reader_->take(row_)) {
       const TruthFrame& truth = row_.truth;
       cycles_.push_back({.run = row_.sensors.head.run,
@@ -59,7 +59,7 @@ class DriveLog {
   bool empty() const noexcept { return cycles_.empty(); }
   const DrivenCycle& last() const { return cycles_.back(); }
 
-  /// The last `count` cycles all braked, at rest.
+  /// True if the last `count` cycles all braked, at rest.
   bool rested(std::size_t count) const {
     constexpr double kRest = 0.01;  // m/s, a hundredth of full speed
     if (cycles_.size() < count) return false;
@@ -69,7 +69,7 @@ class DriveLog {
     return true;
   }
 
-  /// The first cycle from which on every one braked; nothing: the last one did not.
+  /// The first cycle from which on every one braked; nothing if the last one did not.
   std::optional<std::uint64_t> braking_since() const {
     std::optional<std::uint64_t> since;
     for (std::size_t i = cycles_.size(); i-- > 0 && cycles_[i].verdict == GateVerdict::kBrake;)
@@ -79,15 +79,15 @@ class DriveLog {
 
   /// m, along the path, from `cycle` to `last`.
   double way_since(std::uint64_t cycle, std::uint64_t last = std::numeric_limits<std::uint64_t>::max()) const {
-    double way = 0;
+    double distance = 0;
     for (std::size_t i = 1; i < cycles_.size(); ++i) {
       if (cycles_[i].cycle <= cycle || cycles_[i].cycle > last) continue;
-      way += std::hypot(cycles_[i].x - cycles_[i - 1].x, cycles_[i].y - cycles_[i - 1].y);
+      distance += std::hypot(cycles_[i].x - cycles_[i - 1].x, cycles_[i].y - cycles_[i - 1].y);
     }
-    return way;
+    return distance;
   }
 
-  /// m, the longest step from a cycle to the next: top speed · period, where nothing jumps.
+  /// m, the longest step from a cycle to the next: top speed · period, if nothing jumps.
   double longest_step() const {
     double longest = 0;
     for (std::size_t i = 1; i < cycles_.size(); ++i) {

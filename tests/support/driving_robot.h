@@ -1,5 +1,5 @@
 #pragma once
-/// A robot of four processes that is driven at full speed and then loses one of them.
+/// A robot of four processes drives at full speed and then loses one of them.
 
 #include <cstdint>
 #include <optional>
@@ -17,27 +17,27 @@
 
 namespace robot_control {
 
-/// What a machine that stood still for loss_cycles may latch by itself.
+/// Causes that a machine may latch by itself after it stood still for loss_cycles.
 inline constexpr std::uint64_t kStallCauses = kCauseDriverLost | kCauseControllerLost | kCauseEstimatorLost |
                                               kCauseMonitorLate | kCauseCommandStale | kCauseGateRefuses;
 
-/// From a signal to standstill.
+/// A stop, from a signal to standstill.
 struct MeasuredStop {
-  std::uint64_t cycles = 0;   ///< from the newest one seen before the signal to the first of all that braked
+  std::uint64_t cycles = 0;   ///< from the newest cycle before the signal to the first of all that braked
   std::uint64_t blurred = 0;  ///< cycles that passed until the signal had its effect: the uncertainty of `cycles`
-  bool before = false;        ///< it braked already: this machine stood still, nothing is measured
-  double way = 0;             ///< m, true, from then to standstill
+  bool before = false;        ///< it braked already: this machine stood still, and nothing is measured
+  double distance = 0;        ///< m, true, from then to standstill
   std::uint64_t reasons = 0;  ///< the gate's, in the first cycle that braked
 
-  /// Else this machine kept the test, or the process that gets the signal, from its work: to be measured again.
+  /// False if this machine delayed the test, or the process that gets the signal: the trial must be repeated.
   bool measured() const noexcept { return !before && blurred <= 2; }
 };
 
 class DrivingRobot {
  public:
   static constexpr double kFullSpeed = 1.0;       ///< m/s: max_linear_speed
-  static constexpr double kTimeout = 30.0;        ///< s: what takes longer has not happened
-  static constexpr std::size_t kRestCycles = 20;  ///< twice what the monitor asks for
+  static constexpr double kTimeout = 30.0;        ///< s; an event that takes longer has not happened
+  static constexpr std::size_t kRestCycles = 20;  ///< twice as many as the monitor requires
 
   explicit DrivingRobot(const Parameters& parameters)
       : witness_(parameters.loop.core),
@@ -82,7 +82,7 @@ class DrivingRobot {
     return truth_.reader.newest(truth) == Lookup::kFrame ? truth.twist_base.linear[0] : 0;
   }
 
-  /// From now on an operator asks for this, 20 times a second.
+  /// From now on an operator requests this speed, 20 times a second.
   void ask_for(double speed) {
     asked_ = speed;
     next_send_ns_ = 0;
@@ -90,7 +90,7 @@ class DrivingRobot {
   void ask_for_nothing() { asked_.reset(); }
 
   /// Sends, maps and reads what is due.
-  void look() {
+  void poll() {
     const std::int64_t now_ns = monotonic_ns();
     if (asked_ && now_ns >= next_send_ns_) {
       next_send_ns_ = now_ns + kSendNs;
@@ -106,10 +106,10 @@ class DrivingRobot {
       truth_.poll();
       log_.poll();
     }
-    log_.look();
+    log_.read_rows();
   }
 
-  /// Objects are not looked at again: of a wreck that would be an error.
+  /// Objects are no longer opened again: a damaged one would be an error.
   void keep_mappings() noexcept { mapping_ = false; }
 
   /// Memory that is about to be cut off must not be touched: nothing of all this is known until `look_anew`.
@@ -121,7 +121,7 @@ class DrivingRobot {
     truth_.reader = FrameReader<TruthFrame>();
   }
 
-  /// At objects of those names that are whole.
+  /// Opens the valid objects of those names.
   void look_anew() {
     look_away();
     sensors_.channel = ForeignChannel<LatestFrames<SensorFrame>>(nodes_.bus(), ChannelNames::kSensors);
@@ -131,37 +131,37 @@ class DrivingRobot {
     mapping_ = true;
   }
 
-  /// Until the condition holds. False: it did not in time.
+  /// Waits until the condition holds. False: it did not in time.
   template <class Condition>
   bool await(Condition condition, double timeout_s = kTimeout) {
     const std::int64_t end_ns = monotonic_ns() + static_cast<std::int64_t>(timeout_s * 1e9);
-    for (look(); !condition(); look()) {
+    for (poll(); !condition(); poll()) {
       if (monotonic_ns() > end_ns) return false;
       sleep_ns(kLookNs);
     }
     return true;
   }
 
-  /// So many cycles go by.
+  /// Waits for so many cycles.
   bool await_cycles(std::uint64_t count) {
     const std::uint64_t end = log_.empty() ? count : log_.last().cycle + count;
     return await([&] { return !log_.empty() && log_.last().cycle >= end; });
   }
 
-  /// Kills what may still live of it, and starts it.
+  /// Kills the remains of the node, and starts it.
   void restart(LoopNode node) {
     nodes_.start(node);
     if (node == LoopNode::kController) command_ = {};
     if (node == LoopNode::kMonitor) operator_input_ = {};
   }
 
-  /// Ends and starts all of them. What was latched stays latched.
+  /// Ends and starts all of them. A latched stop stays latched.
   void restart_all() {
     for (const LoopNode node : kLoop) nodes_.end(node);
     for (const LoopNode node : kLoop) restart(node);
   }
 
-  /// Asks once; the answer's refusals, 0: accepted. Throws std::runtime_error where none comes.
+  /// Requests a reset once; returns the refusals, 0 if accepted. Throws std::runtime_error without an answer.
   std::uint64_t ask_reset() {
     ++operator_input_.resets;
     nodes_.desk().operator_input.store(operator_input_);
@@ -171,15 +171,15 @@ class DrivingRobot {
     return permit().reset_refusal;
   }
 
-  /// The operator lets go, and asks until it is accepted.
+  /// The operator requests zero, and resets until one is accepted.
   void release() {
     ask_for(0);
     if (!await([&] { return log_.rested(kRestCycles); })) throw std::runtime_error("does not stand: " + situation());
     if (!await([&] { return ask_reset() == 0; })) throw std::runtime_error("is not released: " + situation());
   }
 
-  /// Stopped by nothing but what a stall latches, after one that the witness saw while the robot was to drive. Of
-  /// loss_cycles periods, command and permit may have survived the first kPermitLife.
+  /// True if only causes of a stall stopped it, after a stall that the witness measured while the robot was to drive.
+  /// Command and permit may have survived the first kPermitLife of loss_cycles periods.
   bool stalled() const {
     const std::uint64_t causes = permit().causes;
     const auto& parameters = nodes_.parameters();
@@ -188,8 +188,8 @@ class DrivingRobot {
            static_cast<double>(witness_.longest_gap_ns(released_ns_)) * 1e-9 >= lost;
   }
 
-  /// From whatever state the robot is in: its stop may be seen late, so one on the way is released. A second one is
-  /// released after a stall alone; else it throws std::runtime_error.
+  /// Starts from any state: a stop may be noticed late, so one on the way is released. A second one is released after a
+  /// stall alone; otherwise it throws std::runtime_error.
   void drive_at_full_speed() {
     const auto fast = [&] { return !log_.empty() && log_.last().speed > 0.97 * kFullSpeed; };
     const auto latched = [&] { return permit().state == SupervisorState::kStopped; };
@@ -207,9 +207,9 @@ class DrivingRobot {
     throw std::runtime_error("does not reach full speed: " + situation());
   }
 
-  /// At full speed: sends the signal and looks on until the robot stands. Throws std::runtime_error where it does not.
+  /// Sends the signal at full speed and watches until the robot stands. Throws std::runtime_error if it does not.
   MeasuredStop lose(LoopNode node, int signal) {
-    look();
+    poll();
     log_.forget();
     const std::uint64_t before = cycle();
     nodes_.process(node).stop_with(signal);
@@ -218,14 +218,14 @@ class DrivingRobot {
     const std::uint64_t braked = *log_.braking_since();
     stop.before = braked <= before;
     stop.cycles = stop.before ? 0 : braked - before;
-    stop.way = log_.way_since(before);
+    stop.distance = log_.way_since(before);
     for (const DrivenCycle& driven : log_.cycles()) {
       if (driven.cycle == braked) stop.reasons = driven.reasons;
     }
     return stop;
   }
 
-  /// What is the case, for messages.
+  /// The present state as text, for messages.
   std::string situation() {
     const Permit last = permit();
     std::string text = "monitor: state " + std::string(name_of(last.state)) + ", causes " +
@@ -259,7 +259,7 @@ class DrivingRobot {
   std::optional<double> asked_;
   std::int64_t next_send_ns_ = 0;
   std::int64_t next_poll_ns_ = 0;
-  std::int64_t released_ns_ = 0;  // when it was last free to drive
+  std::int64_t released_ns_ = 0;  // time at which it was last free to drive
   bool watching_ = true;
   bool mapping_ = true;
 };

@@ -1,5 +1,5 @@
 #pragma once
-/// All bytes of a file; "" where there is none.
+/// All bytes of a file; "" if there is none.
 
 #include <filesystem>
 #include <fstream>

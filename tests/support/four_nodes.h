@@ -28,7 +28,8 @@ namespace robot_control {
 
 class FourNodes {
  public:
-  /// Ends by itself after `parameters.plant.cycles`. `record`: telemetry writes into parameters.telemetry.directory.
+  /// The run ends by itself after `parameters.plant.cycles`. `record`: telemetry writes into
+  /// parameters.telemetry.directory.
   FourNodes(const Parameters& parameters, const RobotModel& robot, bool record)
       : parameters_(parameters),
         robot_(robot),
@@ -39,8 +40,9 @@ class FourNodes {
 
   using Operator = std::function<void(DriverProcess&)>;
 
-  /// Real-time factor of the run. It ends after `parameters.plant.cycles`, or when `operate` returns, which runs in a
-  /// thread of its own and may call the services. Throws std::runtime_error when it does not end within `timeout_s`.
+  /// Runs and returns the real-time factor. It ends after `parameters.plant.cycles`, or when `operate` returns, which
+  /// has a thread of its own and may call the services. Throws std::runtime_error if it does not end within
+  /// `timeout_s`.
   double run(double timeout_s, const Operator& operate = {}) {
     std::unique_ptr<TelemetryProcess> telemetry;
     if (record_) telemetry = std::make_unique<TelemetryProcess>(parameters_, robot_, bus_.name());
@@ -55,7 +57,7 @@ class FourNodes {
     });
     while (!driver.finished() && !operated.load()) {
       if (monotonic_ns() > give_up_ns) {
-        driver.stop();  // what the operator waits for comes to an end
+        driver.stop();  // ends what the operator waits for
         throw std::runtime_error("the four nodes did not end in time");
       }
       driver.poll();

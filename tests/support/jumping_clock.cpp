@@ -1,5 +1,5 @@
-/// A library to preload: CLOCK_REALTIME runs off by what stands in the file that JUMPING_CLOCK names, ns as one
-/// 64-bit number, which may change at any time. Every other clock is the system's.
+/// A library to preload: CLOCK_REALTIME is off by the number in the file that JUMPING_CLOCK names, ns as one 64-bit
+/// number. The number may change at any time. Every other clock is the system's.
 
 #include <dlfcn.h>
 #include <fcntl.h>

@@ -1,6 +1,6 @@
 #pragma once
-/// How fast virtual time runs: simulated seconds per second of the bare physics engine, of the loop in one
-/// process, and of the four nodes in lockstep.
+/// Measures the speed of virtual time, in simulated seconds per second. It compares the bare physics engine, the loop
+/// in one process, and the four nodes in lockstep.
 
 #include <cstdint>
 

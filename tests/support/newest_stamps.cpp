@@ -3,7 +3,7 @@
 ///
 ///   rc_newest_stamps --bus NAME
 ///
-/// Exit code 1: a channel has none.
+/// The exit code is 1 if a channel has none.
 
 #include <cinttypes>
 #include <cstdio>

@@ -1,6 +1,6 @@
 #pragma once
-/// The nodes of the loop as processes of their own, the plant too, without ROS: each may be stopped, killed and started
-/// again while the test, which has no thread but its own, looks on.
+/// The nodes of the loop run as processes of their own, the plant too, without ROS. Each may be stopped, killed and
+/// started again by the test, which has a single thread.
 
 #include <fcntl.h>
 #include <sys/prctl.h>
@@ -45,18 +45,18 @@ class NodeProcesses {
     for (const LoopNode node : kLoop) start(node);
   }
 
-  /// Forks the node. It hears nothing that was said before; what it said itself, it goes on saying.
+  /// Forks the node. It receives no earlier message; its own outputs continue.
   void start(LoopNode node) {
     if (node == LoopNode::kController) desk_->command.store({});
     if (node == LoopNode::kMonitor) desk_->operator_input.store({});
     if (node == LoopNode::kTelemetry) desk_->lost_rows.store(0);
     desk_->missing[index_of(node)].store(0);
     processes_[index_of(node)] = std::make_unique<ChildProcess>([this, node] { return run(node); });
-    // Only cycle 0 of the first run waits for all nodes; a plant that is started again finds others braking.
+    // Only cycle 0 of the first run waits for all nodes; a restarted plant finds the others braking.
     if (node == LoopNode::kPlant) parameters_.loop.wait_for_nodes = false;
   }
 
-  /// Gone on return.
+  /// Ends the node and waits for that.
   void end(LoopNode node) {
     if (processes_[index_of(node)] != nullptr) processes_[index_of(node)]->kill();
   }
@@ -70,13 +70,13 @@ class NodeProcesses {
     return (desk_->missing[index_of(node)].load() >> index_of(whom) & 1U) != 0;
   }
 
-  /// What the node wrote to stderr.
+  /// The node's output on stderr.
   std::string said(LoopNode node) const {
     std::ifstream file(log_of(node));
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
-  /// What else the process does before it is a node.
+  /// Sets an action of the process before it becomes a node.
   void prepare(LoopNode node, std::function<void()> act) { preparations_[index_of(node)] = std::move(act); }
 
   ControlDesk& desk() const noexcept { return *desk_.get(); }
@@ -85,14 +85,15 @@ class NodeProcesses {
   const RobotModel& robot() const noexcept { return robot_; }
   const std::filesystem::path& folder() const { return folder_.path(); }
 
-  /// Telemetry writes there, from its next start on.
+  /// Telemetry writes there from its next start on.
   void log_into(const std::string& directory) { parameters_.telemetry.directory = directory; }
 
-  /// Telemetry keeps a black box of so many GB, from its next start on.
+  /// Telemetry keeps a black box of so many GB from its next start on.
   void give_black_box(double gigabytes) { parameters_.telemetry.black_box = gigabytes; }
 
  private:
-  static constexpr std::int64_t kLookNs = 5'000'000;  // twenty times what a ROS node looks: a test shall not wait
+  static constexpr std::int64_t kLookNs =
+      5'000'000;  // twenty times as often as a ROS node polls, so that a test does not wait
 
   std::string log_of(LoopNode node) const { return folder_.path() / (std::string(name_of(node)) + ".log"); }
 

@@ -1,10 +1,10 @@
-/// One node of the loop without ROS, for benches and tests:
+/// Runs one node of the loop without ROS, for benches and tests:
 ///
 ///   rc_participant NODE --bus NAME --params YAML [--set path=value]… [--seconds S]
 ///
-/// NODE: mujoco_plant, state_estimator, diff_drive_controller, safety_monitor, telemetry. Ends on SIGTERM or
-/// SIGINT, after S seconds, or, the plant, after mujoco_plant.cycles. At each SIGUSR1 the controller takes another
-/// speed limit over. Exit code 1: refused, reason on stderr.
+/// NODE: mujoco_plant, state_estimator, diff_drive_controller, safety_monitor, telemetry. It ends on SIGTERM or SIGINT,
+/// after S seconds, or, as the plant, after mujoco_plant.cycles. At each SIGUSR1 the controller takes another speed
+/// limit over. Exit code 1: refused, reason on stderr.
 
 #include <array>
 #include <atomic>
@@ -72,7 +72,7 @@ Arguments parse(const std::vector<std::string>& words) {
   return arguments;
 }
 
-/// Calls `look` until it says that this is the end.
+/// Calls `look` until it returns that the end has come.
 void run(double seconds, const std::function<bool()>& look, std::int64_t pause_ns = kLookNs) {
   const std::int64_t end_ns = monotonic_ns() + static_cast<std::int64_t>(seconds * 1e9);
   while (!interrupted.load() && monotonic_ns() < end_ns && look()) sleep_ns(pause_ns);

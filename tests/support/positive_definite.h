@@ -1,5 +1,6 @@
 #pragma once
-/// Whether a matrix can be a covariance. By hand, for an instance of Eigen's solvers takes seconds of compilation.
+/// Checks whether a matrix can be a covariance. The code is our own, because an instance of Eigen's solvers takes
+/// seconds to compile.
 
 #include <cmath>
 #include <cstddef>
@@ -7,9 +8,9 @@
 
 namespace robot_control {
 
-/// Of the symmetric matrix p(i, j) of `size` rows, scaled to correlations: whether its smallest eigenvalue is above
-/// -`slack`, that is, whether the pivots of Cholesky's decomposition are positive once `slack` is added to the
-/// diagonal. Quantities without variance, and so without covariances, are left out.
+/// True if the smallest eigenvalue of the symmetric matrix p(i, j) of `size` rows, scaled to correlations, is above
+/// -`slack`. Then the pivots of Cholesky's decomposition are positive once `slack` is added to the diagonal. Quantities
+/// without variance, and so without covariances, are left out.
 template <class Matrix>
 bool positive_definite(const Matrix& p, std::size_t size, double slack) {
   std::vector<std::size_t> kept;
@@ -32,7 +33,7 @@ bool positive_definite(const Matrix& p, std::size_t size, double slack) {
       } else if (rest + slack > 0) {
         root[i][i] = std::sqrt(rest + slack);
       } else {
-        return false;  // not a number, too: a variance below 0
+        return false;  // true for a NaN, too: a variance below 0
       }
     }
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// The message of a refusal, and that nothing else is said: libraries that parse would write to stderr or stdout.
+/// The message of a refusal, which must be the only output: libraries that parse would write to stderr or stdout.
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 namespace robot_control {
 
-/// What `act` throws as an Error, or "accepted".
+/// The message of the Error that `act` throws, or "accepted".
 template <class Error, class Act>
 std::string quiet_refusal(Act act) {
   testing::internal::CaptureStderr();

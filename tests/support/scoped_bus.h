@@ -1,5 +1,5 @@
 #pragma once
-/// A bus of this test's own, named after the process; its objects are gone at the end.
+/// A bus of this test's own, named after the process; its objects are removed at the end.
 
 #include <unistd.h>
 

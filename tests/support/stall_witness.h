@@ -1,6 +1,6 @@
 #pragma once
-/// A process beside the loop that measures its own gaps. It shares the loop's core and, where that is granted, has a
-/// priority above all of the loop: nothing of the loop's own can keep it waiting, so what does is the machine.
+/// A process beside the loop that measures its own gaps. It shares the loop's core, and if that is granted it has a
+/// priority above all of the loop. No thread of the loop can then delay it, so a delay is one of the machine.
 
 #include <sched.h>
 #include <sys/prctl.h>
@@ -24,7 +24,7 @@ class StallWitness {
   /// `core`: of the loop; -1: any.
   explicit StallWitness(std::int64_t core) : process_([this, core] { return watch(core); }) {}
 
-  /// ns, from one of its wake-ups to the next, of those that ended since then; the running one counts, too.
+  /// ns between two of its wake-ups, the longest gap that ended since `since_ns`; the running one counts, too.
   std::int64_t longest_gap_ns(std::int64_t since_ns) const noexcept {
     const std::uint64_t count = seen_->count.load();
     std::int64_t longest = count == 0 ? 0 : monotonic_ns() - seen_->woke_ns.load();

@@ -1,5 +1,5 @@
 #pragma once
-/// Trials of one loss: full speed, signal, standstill, the node back, reset, again.
+/// Trials of one loss: full speed, signal, standstill, restart of the node, reset, again.
 
 #include <algorithm>
 #include <array>
@@ -31,7 +31,7 @@ inline constexpr auto kLossCells = std::to_array<LossCell>({
 struct StopTrials {
   std::vector<double> cycles;  ///< from the signal to the brake
   std::vector<double> ways;    ///< m to standstill
-  int repeated = 0;            ///< trials that this machine blurred, done again
+  int repeated = 0;            ///< trials that this machine disturbed, and that were repeated
 };
 
 inline std::string to_name(const LossCell& cell) {
@@ -60,10 +60,10 @@ inline std::string to_text(const StopTrials& trials) {
   return text.data();
 }
 
-/// Trials that may be blurred beyond as many as are asked for.
+/// The number of disturbed trials that are allowed beyond the requested ones.
 inline constexpr int kRepeatedTrials = 20;
 
-/// Throws std::runtime_error where the robot does not stop, or not drive again, or too many trials are blurred.
+/// Throws std::runtime_error if the robot does not stop, does not drive again, or too many trials are disturbed.
 inline StopTrials run_trials(DrivingRobot& robot, const LossCell& cell, int count) {
   StopTrials trials;
   while (static_cast<int>(trials.cycles.size()) < count) {
@@ -71,7 +71,7 @@ inline StopTrials run_trials(DrivingRobot& robot, const LossCell& cell, int coun
     const MeasuredStop stop = robot.lose(cell.node, cell.signal);
     if (stop.measured()) {
       trials.cycles.push_back(static_cast<double>(stop.cycles));
-      trials.ways.push_back(stop.way);
+      trials.ways.push_back(stop.distance);
     } else if (++trials.repeated > count + kRepeatedTrials) {
       throw std::runtime_error("this machine stalls too often to measure anything");
     }

@@ -1,5 +1,5 @@
 #pragma once
-/// A folder of a test's own, gone afterwards.
+/// A folder of a test's own, which is removed afterwards.
 
 #include <stdlib.h>
 
@@ -38,7 +38,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// An environment variable for as long as this lives.
+/// Sets an environment variable while this lives.
 class ScopedVariable {
  public:
   ScopedVariable(const char* name, const std::string& value) : name_(name) {

@@ -1,6 +1,6 @@
 #pragma once
-/// A writer as fast as it can in a process of its own, a reader that looks as often as it can, and what it saw.
-/// The memory is an object of /dev/shm, mapped by each process for itself, by the reader for reading only.
+/// A writer in a process of its own writes as fast as it can. A reader reads as often as it can, and counts the
+/// results. The memory is an object of /dev/shm, which each process maps for itself, the reader for reading only.
 
 #include <sched.h>
 #include <sys/mman.h>
@@ -39,15 +39,15 @@ struct TortureCount {
   std::uint64_t written = 0;
   std::uint64_t read = 0;       ///< look-ups that found something; of a ring: rows
   std::uint64_t distinct = 0;   ///< different frames among them
-  std::uint64_t overtaken = 0;  ///< look-ups in whose way the writer was kReadTries times
+  std::uint64_t overtaken = 0;  ///< look-ups in which the writer interfered kReadTries times
   std::uint64_t torn = 0;
-  std::uint64_t reordered = 0;  ///< older than one seen before, or not the one asked for; of a ring: also lost
+  std::uint64_t reordered = 0;  ///< older than an earlier one, or not the requested one; of a ring: also lost
   double seconds = 0;
 
   std::uint64_t errors() const noexcept { return torn + reordered; }
 };
 
-/// A zeroed object of this test's own, gone at the end. Each process opens and maps it for itself.
+/// A zeroed object of this test's own, which is removed at the end. Each process opens and maps it for itself.
 template <class Object>
 class TortureMemory {
  public:
@@ -66,8 +66,8 @@ class TortureMemory {
   SharedMemory object_;
 };
 
-/// Keeps this thread on one of the cores it may use, while it lives: writer and reader on two, where there are
-/// two, or they would take turns instead of meeting.
+/// Keeps this thread on one of the cores that it may use, while it lives. Writer and reader get two cores if there are
+/// two; otherwise they would take turns instead of interfering.
 class OnCore {
  public:
   explicit OnCore(int index) {
@@ -107,7 +107,7 @@ bool all_are(const Values& values, std::uint64_t number) {
   return std::ranges::all_of(values, [&](std::uint64_t value) { return value == number; });
 }
 
-/// One frame after the other, without pause, until stopped.
+/// Writes one frame after the other, without pause, until stopped.
 inline int write_torture_frames(const TortureMemory<LatestFrames<TortureFrame>>& memory, TortureControl& control) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);  // a benchmark that is interrupted leaves no writer behind
   const OnCore core(1);
@@ -121,9 +121,9 @@ inline int write_torture_frames(const TortureMemory<LatestFrames<TortureFrame>>&
   return 0;
 }
 
-/// Until as many were written, as many look-ups, of the newest frame and of one shortly before it in turn, found
-/// one, and at least every 100 000th of these another one (on one core the two take turns); or until the first
-/// error.
+/// Looks the newest frame and an earlier one up in turn, until `frames` were written and as many look-ups found one. At
+/// least every 100 000th of these has to find another frame, since on one core the two take turns. It also ends at the
+/// first error.
 inline TortureCount torture_frames(std::uint64_t frames) {
   const TortureMemory<LatestFrames<TortureFrame>> memory;
   const AnonymousMemory<TortureControl> control;
@@ -162,7 +162,7 @@ inline TortureCount torture_frames(std::uint64_t frames) {
   return count;
 }
 
-/// As many rows through a ring whose writer waits for room: each must come once, whole and in order. On any core:
+/// Sends `rows` through a ring whose writer waits for room: each must come once, whole and in order. It uses any core:
 /// the two wait for each other, and on two busy cores they would wait for their turns as well.
 inline TortureCount torture_ring(std::uint64_t rows) {
   const TortureMemory<Ring<TortureRow>> memory;

@@ -17,7 +17,7 @@ from system_support import ESTIMATOR, PLANT, Program, RobotTestCase, init_test_n
 
 HIDDEN = {"left_radius_error": 0.012, "right_radius_error": 0.004, "wheel_base_error": 0.02}
 SHORT = ("--truth", "--yes", "--distance=1", "--repeats=1", "--side=1", "--runs=1", "--speed=0.5", "--turn-speed=1.2")
-ATTEMPTS = 3  # a stalling machine may stop the robot in the middle of the minute that this takes
+ATTEMPTS = 3  # a stalling machine may stop the robot during the minute of this test
 
 
 class CalibrateTest(RobotTestCase):
@@ -43,7 +43,7 @@ class CalibrateTest(RobotTestCase):
 
     @contextlib.contextmanager
     def started(self, *arguments: str) -> Iterator[Program]:
-        """This test is no sender on cmd_vel meanwhile."""
+        """A block in which this test is no sender on cmd_vel."""
         self.robot._cmd_vel.unregister()
         program = Program("calibrate.py", f"--out={self.out}", *arguments)
         try:

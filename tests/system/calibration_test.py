@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What state_estimator learns while it drives survives its end, and nothing else takes its place."""
+"""The calibration of state_estimator survives its end, and no other values replace it."""
 
 import shutil
 import tempfile
@@ -14,7 +14,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from system_support import ESTIMATOR, PLANT, RobotTestCase, init_test_node, refusal, wait_for
 
 LEFT = 0.02
-"""Of the left radius, hidden in the plant: the ratio is 1/1.02"""
+"""Relative error of the left radius, hidden in the plant: the ratio is 1/1.02"""
 
 
 class CalibrationTest(RobotTestCase):
@@ -25,7 +25,7 @@ class CalibrationTest(RobotTestCase):
         cls.file = cls.folder / "learned.yaml"
         cls.estimator: dict[str, str] = {}
         rospy.set_param(f"{PLANT}/left_radius_error", LEFT)
-        rospy.set_param(f"{PLANT}/sensor_errors", "data_sheet")  # what is learned is kept, however well it is known
+        rospy.set_param(f"{PLANT}/sensor_errors", "data_sheet")  # only the storage is judged, not the accuracy
         rospy.set_param(f"{ESTIMATOR}/calibration_file", str(cls.file))
         rospy.Subscriber("/diagnostics", DiagnosticArray, cls.receive_diagnostics)
         super().setUpClass()
@@ -60,7 +60,7 @@ class CalibrationTest(RobotTestCase):
         )
 
     def wander(self, known: Callable[[], bool]) -> None:
-        """Straight on and in curves, by turns: one curve alone hardly separates unequal wheels from a wrong base."""
+        """Drives straight on and in curves by turns: one curve hardly separates unequal wheels from a wrong base."""
         for angular in (0.0, 0.8, 0.0, -0.8) * 10:
             end = time.monotonic() + 2.0
             self.robot.drive_until("two seconds", lambda end=end: time.monotonic() > end, angular=angular)
@@ -84,7 +84,7 @@ class CalibrationTest(RobotTestCase):
         self.assertAlmostEqual(kept["radius_ratio"], 1 / (1 + LEFT), delta=0.008)
         self.assertEqual(list(self.folder.iterdir()), [self.file], "no temporary file is left")
 
-        self.robot.end()  # all of it: the shared memory with the last state is gone, the file alone remembers
+        self.robot.end()  # the shared memory with the last state is gone as well, so only the file remembers
         self.robot.start()
         self.robot.await_ready()
         self.assertIn("calibration of", self.robot.nodes[ESTIMATOR].output)

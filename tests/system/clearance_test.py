@@ -29,7 +29,7 @@ class ClearanceTest(RobotTestCase):
         self.clearance.publish(0.05)
         limit = allowed_speed(0.05)
         wait_for("the limit in the status", lambda: abs(self.robot.status.speed_limit - limit) < 1e-6)
-        # 2 %: what an estimate of odometry is off at most; the controller keeps the limit at the wheels.
+        # 2 %: the largest error of the estimated speed; the controller keeps the limit at the wheels.
         self.robot.drive_until("the allowed speed", lambda: self.robot.speed < 1.02 * limit, angular=0.0)
         self.robot.drive_until("that speed, and no standstill", lambda: self.robot.speed > 0.9 * limit, angular=0.0)
         self.clearance.publish(100.0)

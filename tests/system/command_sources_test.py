@@ -179,7 +179,7 @@ class CommandSourcesTest(RobotTestCase):
         wait_for("that it waits for its plan", lambda: plan.get_num_connections() > 0)
         self.robot.call("e_stop_trigger")
         self.robot.release()
-        time.sleep(0.5)  # the release reaches that program, too; before, it would be refused because of the stop
+        time.sleep(0.5)  # the release has to reach that program first; otherwise it would refuse because of the stop
         message = PathMessage()
         message.header.frame_id = "base_link"
         message.poses = [PoseStamped(), PoseStamped()]
@@ -230,7 +230,7 @@ class CommandSourcesTest(RobotTestCase):
         self.assertTrue(self.robot.rests())
 
     def fake_pad(self) -> dict[str, str]:
-        """With nothing held (tests/support/fake_evdev)."""
+        """Environment of a pad with no button held (tests/support/fake_evdev)."""
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         device = Path(folder.name, "event5")

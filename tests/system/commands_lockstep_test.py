@@ -31,12 +31,12 @@ class CommandsLockstepTest(RobotTestCase):
         self.robot.await_ready()
         wait_for("a subscriber", self.desk.connected)
         rospy.ServiceProxy(f"{PLANT}/set_pause", SetBool)(True)
-        self.step(3000)  # whatever was commanded has timed out, and the robot stands
+        self.step(3000)  # all commands have timed out, and the robot stands
         self.await_clock()
         type(self).fastest = 0.0
 
     def await_clock(self) -> None:
-        """Until this node's clock stands, too: a stamp of now is the robot's now."""
+        """Waits until this node's clock stands, too: a stamp of now is then the robot's now."""
         last = -1.0
         while rospy.get_time() != last:
             last = rospy.get_time()
@@ -47,8 +47,8 @@ class CommandsLockstepTest(RobotTestCase):
         self.assertTrue(answer.success, answer.message)
 
     def send(self, age: float, expected: str) -> None:
-        """One command, stamped `age` s of simulated time ago; waits for what the log or diagnostics say of it."""
-        self.desk.values = {}  # they may hold the sender of what was sent before, and so may the log
+        """Sends one command, stamped `age` s of simulated time ago; waits for the text in log or diagnostics."""
+        self.desk.values = {}  # values and log may hold the sender of an earlier command
         logged = len(self.robot.nodes[CONTROLLER].output)
         stamp = rospy.Time.from_sec(rospy.get_time() - age)
         wait_for(

@@ -1,4 +1,4 @@
-"""What the tests of commands send and receive beside system_support."""
+"""Senders and receivers for the tests of commands, in addition to system_support."""
 
 import time
 
@@ -10,7 +10,7 @@ from system_support import CONTROLLER, SEND_PERIOD, Robot
 
 
 class CommandDesk:
-    """A sender on cmd_vel_stamped, and what the controller says of commands."""
+    """A sender on cmd_vel_stamped, and the controller's reports on commands."""
 
     def __init__(self, robot: Robot) -> None:
         self.robot = robot
@@ -25,7 +25,7 @@ class CommandDesk:
         ]
 
     def send(self, linear: float, angular: float, stamp: rospy.Time) -> None:
-        """cmd_vel_stamped, at most every SEND_PERIOD; the zero that it owes first, if it is revoked."""
+        """Sends on cmd_vel_stamped, at most every SEND_PERIOD; a revoked sender first sends a zero."""
         if rospy.get_name() in self.robot.revoked:
             linear = angular = 0.0
         if time.monotonic() - self._last_send < SEND_PERIOD:
@@ -37,7 +37,7 @@ class CommandDesk:
         self.publisher.publish(message)
 
     def send_aged(self, linear: float, age: float) -> None:
-        """Stamped `age` s ago on this process' clock."""
+        """Sends a stamp `age` s ago on this process' clock."""
         self.send(linear, 0.0, rospy.Time.from_sec(rospy.get_time() - age))
 
     def connected(self) -> bool:
@@ -45,7 +45,7 @@ class CommandDesk:
 
     @property
     def reasons(self) -> set[str]:
-        """Of drive_state."""
+        """Reasons in drive_state."""
         return set() if self.drive is None else set(self.drive.reasons)
 
     def _receive_drive(self, message: DriveState) -> None:

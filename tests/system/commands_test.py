@@ -24,7 +24,7 @@ SPELL = 0.5
 STANDING = 0.01
 """m/s"""
 MOVED = 0.05
-"""m/s: who obeyed an old command of 0.5 m/s is faster after 0.1 s, and what is left of a ramp is slower."""
+"""m/s: a robot that obeyed an old command of 0.5 m/s is faster after 0.1 s, and the rest of a ramp is slower."""
 
 
 class CommandsTest(RobotTestCase):
@@ -48,7 +48,7 @@ class CommandsTest(RobotTestCase):
         return self.robot.nodes[CONTROLLER].output
 
     def drive_until(self, what: str, condition: Callable[[], bool], send: Callable[[], None]) -> None:
-        """`send` at every look; what a stalling machine latches is released on the way."""
+        """Calls `send` in every pass; stops that a stalling machine latches are released on the way."""
 
         def look() -> None:
             send()
@@ -61,7 +61,7 @@ class CommandsTest(RobotTestCase):
         self.drive_until("0.5 m/s", self.robot.driving, lambda: self.desk.send_aged(0.5, age))
 
     def expect_refusal(self, age: float, words: str) -> None:
-        """Driving, the robot comes to rest under commands of this age, and each way of asking says why."""
+        """The robot comes to rest under commands of this age, and every report gives the reason."""
         before = self.log.count(words)
         self.drive_stamped()
         wait_for("standstill", lambda: abs(self.robot.speed) < STANDING, every=lambda: self.desk.send_aged(0.5, age))
@@ -72,7 +72,7 @@ class CommandsTest(RobotTestCase):
         wait_for("the reason", reported, every=lambda: self.desk.send_aged(0.5, age))
         self.assertIn("the last cmd_vel_stamped was older", self.desk.message)
         self.assertGreater(int(self.desk.values["commands_stale"]), 0)
-        # Of a test before this one it may have been reported less than 10 s ago: then it comes when they are over.
+        # An earlier test may have caused the report less than 10 s ago: then it appears after they are over.
         wait_for(words, lambda: self.log.count(words) > before, every=lambda: self.desk.send_aged(0.5, age))
         self.assertEqual(self.log.count(words), before + 1, "one warning for a series")
         self.assertLess(abs(self.robot.speed), MOVED)
@@ -130,7 +130,7 @@ class CommandsTest(RobotTestCase):
         self.drive_stamped()
 
     def test_a_common_clock_that_jumps_changes_no_motion(self) -> None:
-        # Messages under way at a jump are refused; the command before them stands.
+        # Messages under way at a jump are refused; the earlier command stays valid.
         self.drive_stamped()
         slowest = self.slowest_over_jumps()
         if self.robot.stalled:
@@ -139,7 +139,7 @@ class CommandsTest(RobotTestCase):
         self.assertGreater(slowest, 0.4)
 
     def slowest_over_jumps(self) -> float:
-        """m/s, while the clocks of sender and robot jump together."""
+        """m/s, smallest speed while the clocks of sender and robot jump together."""
         slowest = self.robot.speed
         for jump in JUMPS:
             self.clock.jump(jump)
@@ -190,7 +190,7 @@ class CommandsTest(RobotTestCase):
             lambda: self.desk.values.get("senders") == rospy.get_name(),
             every=lambda: self.desk.send_aged(0.5, 0.0),
         )
-        # Where one of them stalls for longer than a sender counts, that is the first end, and the line for it.
+        # If one sender stalls for longer than it counts, that is the first end, with its own line.
         self.assertRegex(self.log, "one sender of commands is left: |no node sends commands any more")
 
     def test_drive_state_compares_every_wheel_with_its_target(self) -> None:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Any robot drives, however its description comes: by the plant's argument or on the parameter server."""
+"""Any robot drives, however its description is given: by the plant's argument or on the parameter server."""
 
 import tempfile
 import unittest

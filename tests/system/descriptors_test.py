@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Somebody makes more connections than the nodes have descriptors: the robot drives on, and e_stop_trigger works."""
+"""A program makes more connections than the nodes have descriptors: the robot drives on, and e_stop_trigger works."""
 
 import contextlib
 import os
@@ -16,7 +16,7 @@ from robot_control.msg import SafetyStatus
 from system_support import MONITOR, PLANT, RobotTestCase, wait_for
 
 DESCRIPTORS = 256
-"""Of each node; the usual 1024 would only make the test longer."""
+"""Limit of each node; the usual 1024 would only make the test longer."""
 
 SETTLE = 2.0
 """s, at most, for making the connections."""
@@ -24,7 +24,9 @@ SETTLE = 2.0
 
 @contextlib.contextmanager
 def connections(target: hostile.Target, port: int, count: int, data: bytes = b"") -> Iterator[None]:
-    """So many at once, which send this and then nothing. What the node's listen queue does not take tries on."""
+    """Opens `count` connections at once, which send `data` and then nothing. A connection that the node's listen queue
+    refuses is tried again.
+    """
     with contextlib.ExitStack() as stack:
         waiting = [stack.enter_context(socket.socket()) for _ in range(count)]
         for client in waiting:
@@ -37,7 +39,7 @@ def connections(target: hostile.Target, port: int, count: int, data: bytes = b""
         while looking.get_map() and time.monotonic() < end:
             for key, _ in looking.select(0.1):
                 looking.unregister(key.fileobj)
-                with contextlib.suppress(OSError):  # it may have been the one to give way
+                with contextlib.suppress(OSError):  # the node may have closed this one
                     os.write(key.fd, data)
         yield
 
@@ -50,7 +52,7 @@ class DescriptorsTest(RobotTestCase):
         self.robot.drive_until("0.5 m/s", self.robot.driving)
 
     def drive_on(self) -> None:
-        """Two seconds of it: the nodes look at their channels ten times a second."""
+        """Drives for two seconds: the nodes check their channels ten times a second."""
         end = rospy.get_time() + 2.0
         wait_for("the end", lambda: rospy.get_time() > end, every=lambda: self.robot.send(0.5, 0.2))
         self.robot.drive_until("0.5 m/s still", self.robot.driving)

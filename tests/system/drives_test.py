@@ -18,7 +18,7 @@ from tf2_msgs.msg import TFMessage
 
 
 def publish(value: str) -> None:
-    """On e_stop, by a node of its own, which has left on return."""
+    """Publishes on e_stop from a node of its own, which has left on return."""
     subprocess.run(["rostopic", "pub", "-1", "e_stop", "std_msgs/Bool", value], check=True, capture_output=True)
 
 
@@ -43,7 +43,8 @@ class DrivesTest(RobotTestCase):
         self.robot.drive_until("4.5 and 5.5 rad/s on joint_commands", reached)
 
     def test_publishes_joint_states_at_100_hz_and_odom_at_50(self) -> None:
-        # By the stamps, which do not stall with the machine: one sample every 10 ms, one odometry every 20.
+        # The stamps are judged, since they do not stall with the machine: one sample every 10 ms, one odometry every
+        # 20.
         robot = self.robot
         stamps: dict[str, list[float]] = {"joints": [], "odom": []}
         subscribers = [
@@ -136,7 +137,7 @@ class DrivesTest(RobotTestCase):
     def test_the_level_of_a_publisher_that_has_left_ends_at_a_reset_after_the_false_of_another_one(self) -> None:
         publish("true")
         wait_for("the stop", lambda: "e_stop_topic" in self.robot.causes)
-        self.robot.send_e_stop(False)  # of a publisher that sent before
+        self.robot.send_e_stop(False)  # a publisher that sent before
         refused = self.robot.call("e_stop_reset")
         self.assertIn("true on e_stop: /rostopic_", refused.message)
         self.assertIn("rostopic pub -1 e_stop std_msgs/Bool false", refused.message)
@@ -166,7 +167,7 @@ class DrivesTest(RobotTestCase):
                 self.assertTrue(all(affinity == {0} for affinity in fifo), f"{name}: {tasks}")
 
     def test_takes_no_page_fault_in_a_real_time_thread(self) -> None:
-        # Where the memory is locked; elsewhere the kernel may take a page away at any time.
+        # This holds if the memory is locked; otherwise the kernel may take a page away at any time.
         robot = self.robot
         robot.drive_until("0.5 m/s", robot.driving)  # every part of the loop has run once
         before = {}

@@ -1,5 +1,5 @@
-/// flood RATE: RATE messages a second on every input topic of a robot, and calls of its services as often, or as fast
-/// as they are answered. None of them stops the robot. Ends on SIGINT, and then says how many it sent.
+/// flood RATE: sends RATE messages a second on every input topic of a robot. It calls the services as often, or as fast
+/// as they are answered. None of them stops the robot. It ends on SIGINT, and then prints how many it sent.
 
 #include <ros/ros.h>
 
@@ -20,7 +20,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// `act` so many times a second, in spells of a millisecond; behind a stop of this program nothing is made up for.
+/// Calls `act` so many times a second, in spells of a millisecond; calls that this program missed are not repeated.
 void at_rate(double rate, const std::function<bool()>& act, std::atomic<std::uint64_t>& count) {
   constexpr auto kSpell = std::chrono::milliseconds(1);
   const int each = static_cast<int>(rate / 1000);

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """A flood on every input of the robot harms no deadline.
 
-Quiet and flooded spells in turn, on one drive; from the log, for each spell, the 99th percentile of the time from the
-driver's wake-up to the published command. The ratio of neighbours is judged by its median: this machine is shared.
+Quiet and flooded spells alternate on one drive. The log gives the 99th percentile of the time from the driver's wake-up
+to the published command for each spell. The median of the ratios of neighbours is judged, because this machine is
+shared.
 """
 
 import os
@@ -28,7 +29,8 @@ SETTLE = 0.2
 """s after a change that belong to no spell."""
 WORST_RATIO = 2.0
 ATTEMPTS = 3
-"""Until a ratio is good: what a neighbour on this machine does hits flood and quiet alike, but not always evenly."""
+"""Attempts until a ratio is good: another load on this machine disturbs flood and quiet spells, but not always evenly.
+"""
 
 
 def stolen() -> float:
@@ -55,7 +57,7 @@ class FloodTest(RobotTestCase):
         self.robot.drive_until("1 m/s", lambda: self.robot.speed > FAST, FULL_SPEED, 0.0)
 
     def spell(self, flooded: bool) -> tuple[float, float]:
-        """Beginning and end on CLOCK_MONOTONIC, s; the robot is commanded all the while."""
+        """Begin and end on CLOCK_MONOTONIC, s; the robot is commanded meanwhile."""
         self.flood.send_signal(signal.SIGCONT if flooded else signal.SIGSTOP)
         begin = time.monotonic() + SETTLE
         end = begin + SPELL

@@ -42,7 +42,7 @@ class Client:
         self._client.cancel_goal()
 
     def says(self, state: str, reason: str = "") -> bool:
-        """The last feedback."""
+        """True if the last feedback has this state and reason."""
         return bool(self.feedback) and self.feedback[-1].state == state and reason in self.feedback[-1].reason
 
     def end(self) -> tuple[int, FollowPathResult]:
@@ -72,7 +72,7 @@ class FollowPathTest(RobotTestCase):
         self.robot.await_rest()
 
     def goal(self, points: Points, frame: str = "odom", **fields: float) -> FollowPathGoal:
-        """Points before the robot, x ahead."""
+        """A goal with points ahead of the robot, x forward."""
         goal = FollowPathGoal(**fields)
         goal.path.header.frame_id = frame
         here = self.robot.odom.pose.pose
@@ -224,7 +224,7 @@ class FollowPathTest(RobotTestCase):
         self.assert_does_not_begin(client, "")
 
     def send_unstamped(self, name: str, length: float, *, latch: bool = False) -> Callable[[], tuple[int, str]]:
-        """A goal of this name that says no time; waits for its end."""
+        """Sends a goal of this name without a time; returns a function that waits for its end."""
         ends: dict[str, tuple[int, str]] = {}
         results = rospy.Subscriber(
             "follow_path/result",
@@ -339,7 +339,7 @@ class FollowPathTest(RobotTestCase):
         self.await_rest()
 
     def place_map(self, _event: object) -> None:
-        """Odometry's origin is the map's."""
+        """Publishes odometry's origin as that of the map."""
         transform = TransformStamped()
         transform.header.frame_id, transform.child_frame_id = "map", "odom"
         transform.header.stamp = rospy.Time.now()

@@ -19,7 +19,7 @@ from system_support import CONTROLLER, PLANT, Program, RobotTestCase, init_test_
 FRICTION = 0.1  # N·m, hidden in the plant
 BEGINNING = 60.0
 """s; before it drives, identify.py loads numpy, reads all parameters and starts a telemetry of its own."""
-ATTEMPTS = 3  # a stalling machine may stop the robot in the middle of the half minute that this takes
+ATTEMPTS = 3  # a stalling machine may stop the robot during the half minute of this test
 
 
 class IdentifyTest(RobotTestCase):
@@ -39,7 +39,7 @@ class IdentifyTest(RobotTestCase):
 
     @contextlib.contextmanager
     def silence(self) -> Iterator[None]:
-        """This test is no sender on cmd_vel meanwhile."""
+        """A block in which this test is no sender on cmd_vel."""
         self.robot._cmd_vel.unregister()
         try:
             yield
@@ -56,7 +56,7 @@ class IdentifyTest(RobotTestCase):
             program.end()
 
     def refused(self, *arguments: str) -> str:
-        """What it says when it does not begin."""
+        """The message with which it refuses to begin."""
         start = self.robot.distance
         with self.started(*arguments) as program:
             self.assertEqual(program.wait(BEGINNING), 1, program.output)
@@ -65,7 +65,7 @@ class IdentifyTest(RobotTestCase):
             return program.output
 
     def measured(self) -> str:
-        """Runs it to its end; what it printed."""
+        """Runs it to its end; returns what it printed."""
         for _ in range(ATTEMPTS):
             with self.started("--repeats=1") as program:
                 code = program.wait(120.0)
@@ -79,7 +79,7 @@ class IdentifyTest(RobotTestCase):
         words = self.measured()
         self.assertIn("inertia straight", words)
         forward = yaml.safe_load(self.output.read_text())["diff_drive_controller"]["feed_forward"]
-        # The fit itself is judged in virtual time; here a wrong column, sign or unit would show.
+        # The fit itself is judged in virtual time; a wrong column, sign or unit would appear here.
         self.assertAlmostEqual(forward["wheel_friction"], FRICTION, delta=0.2 * FRICTION)
         self.assertAlmostEqual(forward["mass"], 15.0, delta=0.2 * 15.0)
         self.assertLess(abs(self.robot.distance - start), 0.2, "it ends where it began")
@@ -106,7 +106,7 @@ class IdentifyTest(RobotTestCase):
 
     @contextlib.contextmanager
     def in_motion(self) -> Iterator[Program]:
-        """While it drives. A stalling machine may stop the robot before: then it ends, and is started again."""
+        """A block in which it drives. If a stalling machine stops the robot before, the program is started again."""
         for _ in range(ATTEMPTS):
             with self.started() as program:
                 wait_for(
@@ -135,7 +135,7 @@ class IdentifyTest(RobotTestCase):
             program.send_signal(signal.SIGINT)
             self.assertEqual(program.wait(), 1, program.output)
             self.assertIn("interrupted", program.output)
-            # Well before cmd_vel_timeout ends, which would stop it, too: the zero has arrived.
+            # This is well before cmd_vel_timeout ends, which would stop it, too: the zero has arrived.
             wait_for("rest", lambda: abs(self.robot.speed) < 0.01)
         self.assertFalse(self.output.exists())
 

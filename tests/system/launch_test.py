@@ -21,8 +21,8 @@ from system_support import ESTIMATOR, LIMIT, MONITOR, Robot, init_test_node, ref
 from tf2_msgs.msg import TFMessage
 
 SILENT = {"cmd_vel", "cmd_vel_stamped", "e_stop", "heartbeat", "clearance", "tf_static", "/clock", "/rosout"}
-"""Topics without messages, certainly or perhaps: no node commands, no transform is static, /clock is of lockstep alone,
-and what the nodes log they may have logged before the recorder came."""
+"""Topics on which there may be no messages. No node commands, no transform is static, and /clock belongs to lockstep.
+The nodes may have logged all messages before the recorder came."""
 LAUNCH_LIMIT = 3 * LIMIT
 """s; a launch is a dozen programs, and roslaunch gives each 15 s to end."""
 
@@ -53,7 +53,7 @@ class Launch:
         return self._process.wait(LAUNCH_LIMIT)
 
     def end(self) -> None:
-        """SIGINT; roslaunch ends its nodes in any case."""
+        """Sends SIGINT; roslaunch ends its nodes in any case."""
         if self.running:
             self._process.send_signal(signal.SIGINT)
         self.wait()
@@ -69,7 +69,7 @@ def received_by_recorder(namespace: str) -> set[str]:
         # roscpp answers with the bare statistics: publications first, then subscriptions.
         subscriptions = ServerProxy(master.lookupNode(recorder)).getBusStats("/launch_test")[1]
     except (StopIteration, rosgraph.MasterException, OSError):
-        return set()  # not there yet
+        return set()  # the recorder is not there yet
     return {topic for topic, links in subscriptions if any(link[2] > 0 for link in links)}
 
 
@@ -82,7 +82,7 @@ class LaunchTest(unittest.TestCase):
         self.addCleanup(self.remove_what_stays)
 
     def remove_what_stays(self) -> None:
-        """Parameters outlive a launch; so does shared memory."""
+        """Removes parameters and shared memory, which outlive a launch."""
         for name in ("/robot", "/mujoco_plant"):
             if rospy.has_param(name):
                 rospy.delete_param(name)
@@ -95,7 +95,7 @@ class LaunchTest(unittest.TestCase):
         return launch
 
     def run_lockstep(self, cycles: int, *arguments: str) -> list[str]:
-        """Ends by itself, with a row for every cycle; returns the names of the log's columns."""
+        """Runs a launch that ends by itself, with a row for every cycle; returns the names of the log's columns."""
         script = self.out.parents[2] / "script.csv"
         script.write_text("cycle,linear,angular\n0,0.5,0.2\n1000,0.5,0.2\n")
         launch = self.launch("clock:=lockstep", f"cycles:={cycles}", f"command_script:={script}", *arguments)
@@ -132,7 +132,7 @@ class LaunchTest(unittest.TestCase):
         self.run_lockstep(200)
         self.assertEqual((self.out / "run.1.bag").read_bytes(), first)
 
-        # Both outlive the launch; a reader of one of them is pointed to the other.
+        # Both outlive the launch; a message of either refers to the other.
         self.assertEqual((rospy.get_param("/use_sim_time"), rospy.get_param("/robot/clock")), (True, "lockstep"))
         rospy.set_param("/use_sim_time", False)
         self.assertIn("`rosparam delete /robot/clock`", refusal(MONITOR))
@@ -197,7 +197,7 @@ class LaunchTest(unittest.TestCase):
 
 
 def pid_of(node: str) -> int:
-    """0: there is none."""
+    """Process id of a node; 0 if there is none."""
     try:
         return int(ServerProxy(rosgraph.Master("/launch_test").lookupNode(node)).getPid("/launch_test")[2])
     except (rosgraph.MasterException, OSError):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Where the nodes of sim.launch listen: on the loopback, unless set otherwise."""
+"""The nodes of sim.launch listen on the loopback, unless set otherwise."""
 
 import os
 import signal
@@ -71,7 +71,7 @@ class LoopbackTest(unittest.TestCase):
 
             try:
                 wait_for("listening nodes", all_listen)
-                time.sleep(0.5)  # what else they open
+                time.sleep(0.5)  # the other ports that they open
                 all_listen()
             finally:
                 launch.send_signal(signal.SIGINT)

@@ -49,7 +49,8 @@ class LossesLinkTest(unittest.TestCase):
         self.robot = Robot()
 
     def tearDown(self) -> None:
-        # In order: of a sender that dies the master goes on to tell the next controller, which then may miss another.
+        # Senders end in order: the master announces a dying sender to the next controller, which may then miss another
+        # one.
         self.link.plug(True)
         for program in self.teleop:
             program.send_signal(signal.SIGCONT)
@@ -68,7 +69,7 @@ class LossesLinkTest(unittest.TestCase):
         end = time.monotonic() + LIMIT
         while not self.robot.speed > FAST:
             self.assertLess(time.monotonic(), end, f"not at full speed; {self.robot.status}")
-            # What a stalling machine latched is released; what was sent before a stop counts no more.
+            # Stops that a stalling machine latched are released; commands from before a stop count no more.
             if self.robot.state == SafetyStatus.STOPPED:
                 self.pause_and_release()
                 self.restart_commands()
@@ -93,7 +94,7 @@ class LossesLinkTest(unittest.TestCase):
         self.publish_commands()
 
     def cut(self) -> float:
-        """Seconds until the robot stands."""
+        """Cuts the link; returns the seconds until the robot stands."""
         began = time.monotonic()
         self.link.plug(False)
         wait_for("standstill", lambda: abs(self.robot.speed) < 0.01)
@@ -106,12 +107,12 @@ class LossesLinkTest(unittest.TestCase):
         self.assertIn("heartbeat_lost", self.robot.causes)
         self.assertLess(seconds, 10 * (HEARTBEAT_TIMEOUT + RAMP))
         self.link.plug(True)
-        time.sleep(2.0)  # TCP sends again; teleop never stopped asking
+        time.sleep(2.0)  # TCP sends again; teleop never stopped requesting
         self.assertLess(abs(self.robot.speed), 0.01)
         self.assertEqual(self.robot.state, SafetyStatus.STOPPED)
         self.pause_and_release()
         end = time.monotonic() + 1.0
-        while time.monotonic() < end:  # it goes on with what it sent before the stop
+        while time.monotonic() < end:  # it goes on with the requests from before the stop
             self.assertLess(abs(self.robot.speed), 0.01)
             time.sleep(0.02)
         self.restart_commands()

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""roscore is killed while the robot drives: connections that are there stay, and the loop never asked it."""
+"""roscore is killed while the robot drives: existing connections stay, and the loop never calls the master."""
 
 import time
 
@@ -11,12 +11,12 @@ from system_support import LOOP, RobotTestCase, wait_for
 
 MASTER = Master()
 ATTEMPTS = 3
-"""What a machine that stalls latches by itself is released, and the drive done again."""
+"""Stops that a stalling machine latches are released, and the drive is repeated."""
 
 
 class LossesMasterTest(RobotTestCase):
     def slowest(self) -> float:
-        """m/s, while commands go on for twice cmd_vel_timeout and more."""
+        """m/s, smallest speed while commands go on for more than twice cmd_vel_timeout."""
         end = time.monotonic() + 3.0
         slowest = FULL_SPEED
         while time.monotonic() < end:

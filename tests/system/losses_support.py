@@ -1,4 +1,4 @@
-"""What the loss tests take away: a master of their own, the clock of the nodes, a link between two networks."""
+"""The losses for the loss tests: a master of their own, the clock of the nodes, a link between two networks."""
 
 import atexit
 import contextlib
@@ -16,20 +16,20 @@ CLONE_NEWNET = 0x40000000
 FULL_SPEED = 1.0
 """m/s: max_linear_speed."""
 FAST = 0.97 * FULL_SPEED
-"""m/s; who is faster than that is there."""
+"""m/s; a robot that is faster has reached full speed."""
 KEPT = 0.9 * FULL_SPEED
-"""m/s; a robot that is never slower than that was not stopped: the brake passes it in 30 ms."""
+"""m/s; a robot that is never slower was not stopped: the brake passes this range in 30 ms."""
 
 
 def free_port(address: str) -> int:
-    """Of TCP, on that address."""
+    """A free TCP port on that address."""
     with socket.socket() as probe:
         probe.bind((address, 0))
         return int(probe.getsockname()[1])
 
 
 class Master:
-    """A ROS master that may be lost; this process and all it starts use it. Make it before rospy is initialised."""
+    """A ROS master that may be lost; this process and its children use it. Make it before rospy is initialised."""
 
     def __init__(self, address: str = "127.0.0.1") -> None:
         self.address = address
@@ -46,18 +46,18 @@ class Master:
         atexit.register(self.kill)
 
     def kill(self) -> None:
-        """kill -9, and gone on return; twice is once."""
+        """Kills with -9 and waits for the end; a second call does nothing."""
         self._process.kill()
         self._process.wait()
 
 
 def run(*words: str) -> None:
-    """A command that must succeed."""
+    """Runs a command that must succeed."""
     subprocess.run(words, check=True, stdin=subprocess.DEVNULL)
 
 
 def enter_network_of_own() -> None:
-    """This process and all it starts see no other network. To be called before any thread; OSError: not granted."""
+    """Gives this process and its children a network of their own. Call it before any thread; OSError: not granted."""
     libc = ctypes.CDLL(None, use_errno=True)
     if libc.unshare(CLONE_NEWNET) != 0:
         number = ctypes.get_errno()
@@ -68,7 +68,7 @@ def enter_network_of_own() -> None:
 class Link:
     """A cable (veth pair) from this network to one behind it, where `run_there` runs programs.
 
-    Addresses of 192.0.2.0/24, which RFC 5737 keeps for such ends.
+    The addresses are of 192.0.2.0/24, which RFC 5737 reserves for documentation.
     """
 
     HERE, THERE = "192.0.2.1", "192.0.2.2"
@@ -89,9 +89,9 @@ class Link:
         self._there("ip", "link", "set", "lo", "up")
         self.plug(True)
 
-    def plug(self, there: bool) -> None:
-        """False: pulls it out at the far end."""
-        self._there("ip", "link", "set", "teleop0", "up" if there else "down")
+    def plug(self, plugged: bool) -> None:
+        """Plugs the cable in, or pulls it out at the far end."""
+        self._there("ip", "link", "set", "teleop0", "up" if plugged else "down")
 
     def run_there(self, *words: str) -> subprocess.Popen[bytes]:
         """A program behind the link."""
@@ -116,7 +116,7 @@ class Link:
 
 
 class JumpingClock:
-    """The wall clock as programs see it that are started in `worn`: off by what `jump` says. No other clock moves."""
+    """The wall clock of programs started in `worn`: off by the value of `jump`. No other clock moves."""
 
     def __init__(self, library: str, file: Path) -> None:
         self._library = library
@@ -124,8 +124,8 @@ class JumpingClock:
         self.jump(0.0)
 
     def jump(self, seconds: float) -> None:
-        """From the true time."""
-        # One write of eight bytes, in place: who has the file mapped never sees a part of it.
+        """Sets the offset from the true time."""
+        # One write of eight bytes, in place: a process that has the file mapped never reads a part of it.
         with self._file.open("r+b" if self._file.exists() else "w+b", buffering=0) as file:
             file.write(struct.pack("=q", int(seconds * 1e9)))
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""ROS time jumps while the robot drives in `clock: wall`: the loop counts cycles, and paces them by a clock that none
-of this moves."""
+"""ROS time jumps while the robot drives in `clock: wall`: the loop counts cycles, and paces them by a clock that does
+not jump."""
 
 import itertools
 import os
@@ -39,7 +39,9 @@ class LossesTimeTest(RobotTestCase):
         self.clock.jump(0.0)
 
     def slowest_during(self, jump: Callable[[float], None]) -> float:
-        """m/s, over all jumps. What a machine that stalls latches meanwhile is released, and that spell done again."""
+        """Smallest speed over all jumps, m/s. Stops that a stalling machine latches meanwhile are released, and that
+        spell is repeated.
+        """
         slowest = FULL_SPEED
         for seconds in JUMPS:
             jump(seconds)
@@ -71,7 +73,7 @@ class LossesTimeTest(RobotTestCase):
         wait_for("nodes that live in an hour", lambda: any(stamp > time.time() + 3000.0 for stamp in stamps))
 
     def test_a_clock_topic_with_wild_times_changes_no_motion(self) -> None:
-        rospy.set_param("/use_sim_time", True)  # what the running nodes are not to look at
+        rospy.set_param("/use_sim_time", True)  # the running nodes must ignore it
         publisher = rospy.Publisher("/clock", Clock, queue_size=1)
         lots = random.Random(0)
         try:

@@ -22,7 +22,7 @@ from system_support import CONTROLLER, LIMIT, LOOP, MONITOR, NoBool, RobotTestCa
 
 HOSTILE_RUNS = 10_000
 HOSTILE_TIME = 10.0
-"""s: 1 % of `scripts/bench hostile`, or what a slow machine does of it."""
+"""s: 1 % of `scripts/bench hostile`, or as much of it as a slow machine does."""
 COMPLAINT = "a message of the wrong length was refused"
 
 
@@ -46,7 +46,7 @@ class PublishingNode:
 
 
 class LongTwist(Twist):
-    """A megabyte of ones, which read as tiny speeds."""
+    """A megabyte of bytes 1, which read as tiny speeds."""
 
     def serialize(self, buff: BytesIO) -> None:
         buff.write(b"\x01" * 1_000_000)
@@ -170,7 +170,7 @@ class MalformedTest(RobotTestCase):
         wait_for("a line of it", lambda: "connections were closed that announced" in log.output)
 
     def announce_900_mb_on_cmd_vel(self) -> None:
-        """As a publisher: the subscriber connects to it by itself."""
+        """Acts as a publisher: the subscriber connects to it by itself."""
         with socket.create_server(("127.0.0.1", 0)) as publisher:
             publisher.settimeout(LIMIT)
             slave = PublishingNode(publisher.getsockname()[1])
@@ -190,7 +190,7 @@ class MalformedTest(RobotTestCase):
             slave.end()
 
     def address_space(self, name: str) -> int:
-        """Bytes (proc(5), VmSize)."""
+        """Address space of a node, bytes (proc(5), VmSize)."""
         status = Path(f"/proc/{self.robot.nodes[name].pid}/status").read_text()
         return 1024 * int(re.search(r"VmSize:\s+(\d+) kB", status)[1])
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What state_estimator publishes, and setting its pose."""
+"""state_estimator publishes odometry and sets its pose on request."""
 
 import math
 
@@ -74,7 +74,9 @@ class OdometryTest(RobotTestCase):
         return rospy.ServiceProxy("set_odometry", SetOdometry)(x, y, yaw)
 
     def at(self, x: float, y: float, yaw: float) -> bool:
-        """The newest odometry, within 1 mm and 0.06°: what a standing robot may learn of its last centimetre."""
+        """True if the newest odometry is within 1 mm and 0.06°, which a standing robot may still learn of its last
+        centimetre.
+        """
         pose = self.robot.odom.pose.pose
         near = math.hypot(pose.position.x - x, pose.position.y - y) < 0.001
         return near and abs(math.remainder(yaw_of(pose.orientation) - yaw, 2 * math.pi)) < 0.001
@@ -163,7 +165,7 @@ class OdometryTest(RobotTestCase):
         for sensor in ("left_encoder", "right_encoder", "gyro", "accelerometer", "lateral_contact", "vertical_contact"):
             for figure in ("confidence", "nis", "rejected"):
                 self.assertTrue(math.isfinite(float(self.estimator[f"{figure}_{sensor}"])))
-        # The plant's bias is drawn with 1 °/s on each axis; who stands knows it to a hundredth.
+        # The plant's bias is drawn with 1 °/s on each axis; a standing robot knows it to a hundredth.
         self.assertLess(float(self.estimator["gyro_bias_z_deviation_deg_s"]), 0.1)
         self.assertAlmostEqual(float(self.estimator["wheel_base_factor"]), 1.0, delta=0.1)
 

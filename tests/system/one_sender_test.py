@@ -49,7 +49,7 @@ class OneSenderTest(RobotTestCase):
         self.assertNotIn("many_senders", self.desk.reasons)
 
     def expect_answer(self) -> None:
-        """Of why.py, which takes some seconds to start, while both go on."""
+        """Expects the answer of why.py, which takes some seconds to start, while both senders go on."""
         why = Program("why.py", "--once")
         try:
             wait_for("why.py's end", lambda: not why.running, every=self.send)

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """pad.py as a process with a pad of this machine: held, released, unplugged and plugged in again while it drives.
 
-The kernel of a test machine has no uinput, so the library is a fake one (tests/support/fake_evdev); test_pad.py
-compares its form with the real one's.
+The kernel of a test machine has no uinput, so the library is a fake one (tests/support/fake_evdev). The case of a real
+device in test_pad.py compares its interface with the real one's.
 """
 
 import json
@@ -20,7 +20,7 @@ from system_support import Program, RobotTestCase, again_after_a_stall, reposito
 ENABLE = 0x134
 """The fifth of the codes from 0x130: button 4"""
 FORWARD = 0
-"""of 0 to 255: the kernel counts down"""
+"""value of 0 to 255: the kernel counts down"""
 
 
 class PadTest(RobotTestCase):
@@ -40,7 +40,7 @@ class PadTest(RobotTestCase):
         self.addCleanup(self.pad.end)
 
     def plug(self, *held: int, forward: int = 128) -> None:
-        """The state of the pad, at once as a whole."""
+        """Sets the state of the pad at once as a whole."""
         new = self.device.with_suffix(".new")
         new.write_text(json.dumps({"axes": {"1": forward}, "held": held}))
         new.replace(self.device)
@@ -81,7 +81,7 @@ class PadTest(RobotTestCase):
     def test_a_pad_that_was_released_just_before_a_stop_drives_after_its_reset(self) -> None:
         self.drive()
         self.plug(forward=FORWARD)
-        time.sleep(1.1)  # longer than it sends zeros, shorter than cmd_vel_timeout
+        time.sleep(1.1)  # longer than zeros are sent, shorter than cmd_vel_timeout
         self.robot.call("e_stop_trigger")
         self.robot.release()
         time.sleep(0.5)  # pad.py sees the release, and then the button

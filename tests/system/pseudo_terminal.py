@@ -23,18 +23,18 @@ looks=0
 while now=$(stty -g) && [ "$now" != "$before" ] && [ $looks -lt 100 ]; do sleep 0.1; looks=$((looks + 1)); done
 exit $code
 """
-"""The session's leader. Its death hangs up the terminal, so it waits for one that is being restored, as a user's shell
-stays; a signal's exit code is 128 + its number. Signals are as in a login shell: tests that run in the background
-inherit that SIGINT is ignored."""
+"""The leader of the session. Its death hangs up the terminal, so it waits until the terminal is restored, as a user's
+shell stays. A signal's exit code is 128 + its number. Signals are as in a login shell: tests that run in the background
+inherit an ignored SIGINT."""
 
 
 class PseudoTerminal:
-    """`type` writes keys, `written` is all that the program wrote; `close` hangs up."""
+    """`type` writes keys, `written` is all output of the program; `close` hangs up."""
 
     def __init__(
         self, command: Sequence[str], environment: Mapping[str, str] | None = None, *, reading: bool = True
     ) -> None:
-        """`reading`: else nothing takes what the program writes, like a link that stalls."""
+        """Without `reading` nothing takes the program's output, as on a link that stalls."""
         self._master, self._slave = pty.openpty()
         fcntl.ioctl(self._slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
         self.before = termios.tcgetattr(self._slave)
@@ -51,7 +51,7 @@ class PseudoTerminal:
             self.read_on()
 
     def read_on(self) -> None:
-        """Takes what the program writes."""
+        """Reads the program's output."""
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
 
@@ -66,14 +66,14 @@ class PseudoTerminal:
         return text.replace("\x1b[K", "").replace("\x1b[J", "").replace("\r", "")
 
     def settings(self) -> list[object]:
-        """Of the terminal now."""
+        """The terminal's settings now."""
         return termios.tcgetattr(self._slave)
 
     def type(self, keys: str) -> None:
         os.write(self._master, keys.encode())
 
     def hold(self, key: str, seconds: float, delay: float = 0.3, period: float = 0.03) -> None:
-        """As a keyboard does."""
+        """Types as a keyboard does."""
         end = time.monotonic() + seconds
         self.type(key)
         time.sleep(delay)
@@ -90,7 +90,7 @@ class PseudoTerminal:
         os.close(self._master)
 
     def send_signal(self, number: int) -> None:
-        """To the program."""
+        """Sends a signal to the program."""
         children = Path(f"/proc/{self._shell.pid}/task/{self._shell.pid}/children")
         for pid in children.read_text().split():
             os.kill(int(pid), number)
@@ -99,7 +99,7 @@ class PseudoTerminal:
         return self._shell.wait(LIMIT)
 
     def end(self) -> None:
-        """Whatever state it is in."""
+        """Ends the program in whatever state it is."""
         if self._shell.poll() is None:
             self.send_signal(signal.SIGCONT)
             self.send_signal(signal.SIGKILL)

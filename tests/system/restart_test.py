@@ -57,7 +57,7 @@ class RestartTest(RobotTestCase):
         self.robot.drive_until("0.5 m/s", self.robot.driving)
 
     def expect_latched(self, cause: str) -> None:
-        """STOPPED for this cause, however often a motion is asked for; after a reset the robot drives."""
+        """STOPPED for this cause, however often a motion is requested; after a reset the robot drives."""
         robot = self.robot
         wait_for(
             cause,
@@ -123,7 +123,7 @@ class RestartTest(RobotTestCase):
         self.expect_latched("estimator_lost")
 
     def test_blames_the_estimator_alone_for_its_loss(self) -> None:
-        # A machine that stands still at this very moment latches something else first: another try.
+        # A machine that stands still at this moment latches another cause first; then the test tries again.
         robot = self.robot
         reported = []
         for _ in range(3):
@@ -159,7 +159,7 @@ class RestartTest(RobotTestCase):
         plant = robot.nodes[PLANT]
         plant.send_signal(signal.SIGSTOP)
         try:
-            time.sleep(3.0)  # what slips
+            time.sleep(3.0)  # time that slips
             wait_for("driver_lost", lambda: "driver_lost" in robot.causes)
         finally:
             plant.send_signal(signal.SIGCONT)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""robot_status from a robot that is not there to one that is stopped."""
+"""robot_status reports a robot from its absence to its stop."""
 
 import time
 import unittest

@@ -1,5 +1,6 @@
-"""rosunit knows no skips: in its result file a skipped case is a passed one. With `record` it stands there as skipped,
-with its reason, as pytest and gtest write it."""
+"""rosunit knows no skips: in its result file a skipped case is a passed one. After `record` the file has it as skipped,
+with its reason, in the form of pytest and gtest.
+"""
 
 import unittest
 import xml.etree.ElementTree as ET
@@ -9,7 +10,7 @@ from rosunit import xmlrunner
 
 
 def record() -> None:
-    """For all result files that this process writes. Twice is once."""
+    """Acts on all result files that this process writes; a second call does nothing."""
     result: Any = xmlrunner._XMLTestResult
     if result.addSkip is not unittest.TestResult.addSkip:
         return
@@ -30,7 +31,7 @@ def record() -> None:
 
 
 def note_skip(info: Any, reason: str) -> None:
-    """`info`: what rosunit knows of one case, and writes down by its method `xml`."""
+    """`info`: rosunit's record of one case, which its method `xml` writes."""
     write = info.xml
 
     def write_skipped() -> ET.Element:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""send_cmd.py repeats its command while it may, and takes it back on Ctrl-C: proven at the receiver."""
+"""send_cmd.py repeats its command while it may, and takes it back on Ctrl-C, as the receiver shows."""
 
 import math
 import os
@@ -43,14 +43,14 @@ class SendCmdTest(unittest.TestCase):
         monitor.publish(status)
 
     def commands(self) -> list[tuple[float, float]]:
-        """Received, in their order, without the zeros."""
+        """Received commands in their order, without the zeros."""
         return [twist for _, *twist in self.received if twist != [0.0, 0.0]]
 
     def receive(self, message: Twist) -> None:
         self.received.append((time.monotonic(), message.linear.x, message.angular.z))
 
     def started(self, *arguments: str) -> Program:
-        """With nothing received yet."""
+        """Starts it with no command received yet."""
         self.received.clear()
         sender = Program("send_cmd.py", *arguments)
         self.addCleanup(sender.end)
@@ -77,7 +77,7 @@ class SendCmdTest(unittest.TestCase):
         master = rosgraph.Master(rospy.get_name()).getPid()
         os.kill(master, signal.SIGSTOP)
         try:
-            time.sleep(0.5)  # so that it waits for the master: every line of its log asks there
+            time.sleep(0.5)  # so that it waits for the master, which every line of its log calls
             sender.send_signal(signal.SIGINT)
             time.sleep(0.5)
         finally:

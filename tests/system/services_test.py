@@ -62,14 +62,14 @@ class ServicesTest(RobotTestCase):
         return answer.success, answer.message
 
     def cycle(self) -> int:
-        """Which the plant says it is in, once it has said so again."""
+        """The cycle that the plant reports, once it has reported again."""
         self.plant.clear()
         wait_for("diagnostics of the plant", lambda: "cycle" in self.plant)
         return int(self.plant["cycle"])
 
     def test_paused_the_robot_stands_and_so_does_its_time(self) -> None:
         self.set_pause(True)
-        time.sleep(0.3)  # what was published before arrives
+        time.sleep(0.3)  # earlier messages arrive
         truth, odom = self.truth, self.robot.odom
         time.sleep(1.5)  # far longer than the 20 periods after which a silent driver is lost
         self.assertIs(self.truth, truth)

@@ -16,7 +16,7 @@ from std_srvs.srv import SetBool
 from system_support import CONTROLLER, ESTIMATOR, LIMIT, MONITOR, PLANT, Program, Robot, init_test_node, wait_for
 
 CYCLES = 600
-"""Between two sets: at 0.5 m/s after the first."""
+"""Cycles between two sets: at 0.5 m/s after the first."""
 SETS = (
     {"pid_kp": 1.5, "pid_kd": 0.001, "max_linear_speed": 0.4},
     {"feed_forward": {"mass": 13.0}, "max_linear_jerk": 4.0, "keep_curvature": False},

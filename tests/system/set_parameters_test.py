@@ -20,7 +20,7 @@ from system_support import CONTROLLER, LIMIT, Program, RobotTestCase, wait_for
 
 SERVICE = f"/{CONTROLLER}/set_parameter_map"
 START = "{max_linear_speed: 1.0, cmd_vel_timeout: 1.25}"
-"""What the tests begin with, whatever one before left on the parameter server."""
+"""The tests begin with these values, whatever an earlier test left on the parameter server."""
 
 
 class SetParametersTest(RobotTestCase):
@@ -94,7 +94,7 @@ class SetParametersTest(RobotTestCase):
     def header_holds(self, jerk: float, mass: float) -> bool:
         try:
             header = read_run_header(str(Path(self.folder.name, "run.bag")))
-        except (BagError, TraceError):  # it has just begun
+        except (BagError, TraceError):  # the file has just begun
             return False
         controller = yaml.safe_load(header["parameters"])[CONTROLLER]
         mass_there = controller.get("feed_forward", {}).get("mass")
@@ -154,7 +154,7 @@ class SetParametersTest(RobotTestCase):
         self.assertEqual(ranges["keep_curvature"]["type"], "bool")
         answer = client.update_configuration({"max_linear_speed": 0.6, "keep_curvature": False})
         self.assertEqual((answer["max_linear_speed"], answer["keep_curvature"]), (0.6, False))
-        self.accept("{max_linear_speed: 0.7, keep_curvature: true}")  # another client's
+        self.accept("{max_linear_speed: 0.7, keep_curvature: true}")  # a set of another client
         wait_for("an update", lambda: bool(seen) and seen[-1]["max_linear_speed"] == 0.7)
 
     def test_a_refusal_answers_what_is_in_force_and_warns(self) -> None:

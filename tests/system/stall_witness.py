@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""A process that measures its own gaps: an independent witness that this machine stood still.
+"""A process that measures its own gaps, as an independent witness that this machine stood still.
 
-As a program, `stall_witness.py CORE PRIORITY`, it wakes up again and again on that core (-1: any), under SCHED_FIFO
-where the priority is above 0 and granted. It prints when each gap ended and how long it was, until its parent ends.
+As a program, `stall_witness.py CORE PRIORITY`, it wakes up again and again on that core (-1: any). It runs under
+SCHED_FIFO if the priority is above 0 and granted. It prints the end and the length of each gap, until its parent ends.
 """
 
 import contextlib
@@ -15,12 +15,12 @@ from pathlib import Path
 
 PERIOD = 0.002
 """s"""
-SHORTEST = 0.01
+MIN_GAP = 0.01
 """s; shorter gaps are not reported"""
 
 
 class StallWitness:
-    """Runs it. Above the loop's priority on the loop's core, nothing of the loop can keep it waiting."""
+    """Runs the program. Above the loop's priority on the loop's core, no thread of the loop can delay it."""
 
     def __init__(self, core: int, priority: int) -> None:
         self._output = tempfile.NamedTemporaryFile(prefix="stall_witness-", suffix=".log")
@@ -28,7 +28,7 @@ class StallWitness:
         self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=self._output)
 
     def saw(self, length: float, begin: float, end: float) -> bool:
-        """A gap at least so long, in s, that lies in that time (s, monotonic) in part."""
+        """True if a gap of at least `length` s overlaps that time (s, monotonic)."""
         for line in Path(self._output.name).read_text().splitlines():
             ended, gap = map(float, line.split())
             if gap >= length and ended >= begin and ended - gap <= end:
@@ -49,7 +49,7 @@ def main() -> None:
     while os.getppid() == parent:
         time.sleep(PERIOD)
         now = time.monotonic()
-        if now - last >= SHORTEST:
+        if now - last >= MIN_GAP:
             print(f"{now:.6f} {now - last:.6f}", flush=True)
         last = now
 

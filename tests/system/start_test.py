@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What must not start does not, and says why; what runs is not disturbed."""
+"""A program that must not start refuses with a reason, and does not disturb running ones."""
 
 import os
 import socket
@@ -32,7 +32,7 @@ from system_support import (
 
 
 def unprivileged() -> list[str]:
-    """A command that runs another one without real-time privileges; skips the test where there is none."""
+    """A prefix that runs a command without real-time privileges; skips the test if there is none."""
     prefix = ["prlimit", "--rtprio=0:0", "--memlock=65536:65536"]
     if os.geteuid() == 0:
         prefix += ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", "--inh-caps=-all"]
@@ -48,7 +48,7 @@ def unprivileged() -> list[str]:
 
 @contextmanager
 def parameter(name: str, value: object) -> Iterator[None]:
-    """Stands on the parameter server meanwhile."""
+    """Sets a parameter on the server for the block."""
     rospy.set_param(name, value)
     try:
         yield
@@ -122,7 +122,7 @@ class StartTest(unittest.TestCase):
         self.forget(PLANT)
 
     def test_refuses_without_the_real_time_that_is_required(self) -> None:
-        # At once: no other node runs.
+        # They are refused at once: no other node runs.
         prefix = unprivileged()
         with parameter("robot/realtime", "required"), tempfile.TemporaryDirectory() as home:
             Path(home).chmod(0o777)
@@ -280,7 +280,7 @@ class StartTest(unittest.TestCase):
             wait_for("50 commands", lambda: len(limited) > 50 and len(wheels) > 100)
             for subscriber in subscribers:
                 subscriber.unregister()
-            # What lay there: 0.5 m/s, 4.5 and 5.5 rad/s.
+            # The channel held 0.5 m/s, 4.5 and 5.5 rad/s.
             self.assertLess(max(map(abs, limited)), 0.01)
             self.assertLess(max(map(abs, wheels)), 0.1)
             self.assertNotIn("left 0.45 m/s", robot.nodes[CONTROLLER].output)

@@ -1,6 +1,6 @@
-"""Nodes as processes and the robot as ROS sees it: what the system tests are written with.
+"""Runs nodes as processes and observes the robot through ROS, for the system tests.
 
-The tests judge wiring, not timing: every wait has a limit far beyond what a busy machine needs.
+The tests judge wiring, not timing: every wait has a limit far beyond the need of a busy machine.
 """
 
 import contextlib
@@ -35,7 +35,7 @@ Case = TypeVar("Case", bound=Callable[..., None])
 PLANT, ESTIMATOR, CONTROLLER, MONITOR = "mujoco_plant", "state_estimator", "diff_drive_controller", "safety_monitor"
 LOOP = (PLANT, ESTIMATOR, CONTROLLER, MONITOR)
 LIMIT = 30.0
-"""s; what takes longer has not happened. On an idle machine nothing here takes longer than 3 s."""
+"""s; an event that takes longer has not happened. On an idle machine nothing here takes longer than 3 s."""
 SEND_PERIOD = 0.1
 """s; a twelfth of cmd_vel_timeout."""
 STANDING = 0.01
@@ -43,7 +43,7 @@ STANDING = 0.01
 SETTLING = 0.5
 """s; for 0.3 s after a ramp the estimate still shows single counts of an encoder as 1 cm/s."""
 STALL_CAUSES = {"driver_lost", "controller_lost", "estimator_lost", "monitor_late", "command_stale", "gate_refuses"}
-"""What a machine that stood still for loss_cycles, 20 ms, may latch by itself."""
+"""Causes that a machine may latch by itself after it stood still for loss_cycles, 20 ms."""
 LOOP_STALL = 0.016
 """s; of these 20, command and permit may have survived the first 4 (kPermitLife)."""
 LOOP_WITNESS = StallWitness(core=0, priority=85)  # robot.core of robot_params.yaml, above LoopPriority::kDriver
@@ -58,9 +58,9 @@ def nightly(case: Case) -> Case | None:
 
 
 def again_after_a_stall(case: Callable[[Any], None]) -> Callable[[Any], None]:
-    """Decorates a case of RobotTestCase: after a stall of this machine that a witness saw, it is done once more.
+    """Decorates a case of RobotTestCase: it is repeated after a stall of this machine that a witness measured.
 
-    Without one the failure stands, for a fault of our own scheduling looks the same.
+    Without such a stall the failure stands, because a fault of our own scheduling looks the same.
     """
 
     @functools.wraps(case)
@@ -81,7 +81,7 @@ def again_after_a_stall(case: Callable[[Any], None]) -> Callable[[Any], None]:
 def wait_for(
     what: str, condition: Callable[[], bool], limit: float = LIMIT, every: Callable[[], object] | None = None
 ) -> None:
-    """Polls until the condition holds; `every` is called at each look. Fails naming `what`."""
+    """Polls until the condition holds; `every` is called in each pass. Fails naming `what`."""
     end = time.monotonic() + limit
     while not condition():
         if time.monotonic() > end:
@@ -94,7 +94,7 @@ def wait_for(
 class Program:
     """A program of the package with its output in a file.
 
-    `prefix`: a command that runs the program; `environment`: lies over that of the test.
+    `prefix`: a command that runs the program; `environment`: laid over that of the test.
     """
 
     def __init__(
@@ -135,14 +135,14 @@ class Program:
         self._process.send_signal(number)
 
     def wait(self, limit: float = LIMIT) -> int:
-        """The exit code; negative after a signal. Fails with what the program said."""
+        """The exit code; negative after a signal. Fails with the program's output."""
         try:
             return self._process.wait(limit)
         except subprocess.TimeoutExpired:
             raise AssertionError(f"{self.name} has not ended within {limit:g} s:\n{self.output}") from None
 
     def end(self) -> int:
-        """SIGINT, SIGKILL if that does not help; the exit code."""
+        """Sends SIGINT, then SIGKILL if that does not help; returns the exit code."""
         if self.running:
             self.send_signal(signal.SIGINT)
             try:
@@ -152,12 +152,12 @@ class Program:
         return self.wait()
 
     def kill(self) -> None:
-        """kill -9, and gone on return."""
+        """Kills with -9 and waits for the end."""
         self.send_signal(signal.SIGKILL)
         self.wait()
 
     def shared_memory(self) -> set[Path]:
-        """The objects that it has mapped."""
+        """The shared-memory objects that it has mapped."""
         with contextlib.suppress(OSError):
             lines = Path(f"/proc/{self.pid}/maps").read_text().splitlines()
             paths = (Path(line.split(maxsplit=5)[5]) for line in lines if "/dev/shm/robot_control." in line)
@@ -168,7 +168,7 @@ class Program:
 def refusal(
     name: str, *arguments: str, prefix: Sequence[str] = (), environment: Mapping[str, str] | None = None
 ) -> str:
-    """Starts a node that must refuse; what it says."""
+    """Starts a node that must refuse; returns its output."""
     program = Program(name, *arguments, prefix=prefix, environment=environment)
     try:
         code = program.wait()
@@ -179,14 +179,14 @@ def refusal(
 
 
 class NoBool(Bool):
-    """Nothing at all."""
+    """A Bool without any content."""
 
     def serialize(self, buff: BytesIO) -> None:
         buff.write(b"")
 
 
 class Robot:
-    """Four nodes in a namespace, and what they publish.
+    """Four nodes in a namespace, and their messages.
 
     `prefix`: a command that runs each of them.
     """
@@ -203,7 +203,7 @@ class Robot:
         """Senders whose motion is refused until they send zero."""
         self.odom_count = 0
         self._moved_at = -math.inf  # s, monotonic
-        self._stopped_at = -math.inf  # likewise
+        self._stopped_at = -math.inf  # s, monotonic
         self.joints_count = 0
         self._subscribers = [
             rospy.Subscriber(self.name("odom"), Odometry, self._receive_odom),
@@ -235,14 +235,14 @@ class Robot:
         self.status = self.odom = None
 
     def restart(self, name: str) -> None:
-        """kill -9 and start again."""
+        """Kills a node with -9 and starts it again."""
         self.nodes[name].kill()
         self.start(name)
 
     # what to ask of it
 
     def send(self, linear: float, angular: float) -> None:
-        """cmd_vel, at most every SEND_PERIOD."""
+        """Sends on cmd_vel, at most every SEND_PERIOD."""
         if time.monotonic() - self._last_send < SEND_PERIOD:
             return
         self._last_send = time.monotonic()
@@ -251,7 +251,7 @@ class Robot:
         self._cmd_vel.publish(message)
 
     def send_e_stop(self, stop: bool) -> None:
-        """Once, to a monitor that is connected: what is published before that is lost."""
+        """Publishes once, to a monitor that is connected: earlier messages would be lost."""
         wait_for("a subscriber of e_stop", lambda: self._e_stop.get_num_connections() > 0)
         self._e_stop.publish(Bool(stop))
 
@@ -271,7 +271,7 @@ class Robot:
         wait_for("an accepted reset", accepted, every=lambda: self.send(0, 0))
 
     def await_ready(self) -> None:
-        """All nodes there, permit to drive; what a stalling machine latched is released."""
+        """Waits for all nodes and the permit to drive; stops that a stalling machine latched are released."""
         wait_for("safety_status", lambda: self.status is not None)
         wait_for("the end of INIT", lambda: self.state != SafetyStatus.INIT, every=lambda: self.send(0, 0))
         wait_for("odometry", lambda: self.odom is not None)
@@ -279,8 +279,9 @@ class Robot:
             self.release()
 
     def drive_until(self, what: str, condition: Callable[[], bool], linear: float = 0.5, angular: float = 0.2) -> None:
-        """Sends until the condition holds, zeros while the robot waits for one or this sender owes one. Stops that a
-        stalling machine may latch are released on the way."""
+        """Sends until the condition holds, and zeros while the robot waits for one or this sender owes one. Stops that
+        a stalling machine may latch are released on the way.
+        """
         end = time.monotonic() + LIMIT
         while not condition():
             if time.monotonic() > end:
@@ -291,7 +292,7 @@ class Robot:
             time.sleep(0.02)
 
     def release_after_a_stall(self) -> bool:
-        """Where the robot is `stalled`. True: it was."""
+        """Releases a robot that is `stalled`; returns whether it was."""
         if self.state != SafetyStatus.STOPPED or not self.stalled:
             return False
         self.release()
@@ -313,7 +314,7 @@ class Robot:
 
     @property
     def stalled(self) -> bool:
-        """Stopped by nothing but what a stall of the machine latches, within a second of one that the witness saw."""
+        """True if only causes of a stall stopped the robot, within a second of a stall that the witness measured."""
         near = (self._stopped_at - 1.0, self._stopped_at + 1.0)
         return bool(self.causes) and self.causes <= STALL_CAUSES and LOOP_WITNESS.saw(LOOP_STALL, *near)
 
@@ -323,7 +324,7 @@ class Robot:
         return math.nan if self.odom is None else self.odom.twist.twist.linear.x
 
     def rests(self) -> bool:
-        """For SETTLING: not that it passes through zero."""
+        """True if the speed is zero for SETTLING, instead of passing through zero."""
         return self.odom is not None and time.monotonic() - self._moved_at > SETTLING
 
     @property
@@ -361,7 +362,7 @@ class Robot:
 
 @contextlib.contextmanager
 def running_robot(namespace: str = "") -> Iterator[Robot]:
-    """Four nodes, ready; ended whatever happens."""
+    """Four nodes, ready; they end whatever happens."""
     robot = Robot(namespace)
     try:
         robot.start()
@@ -372,7 +373,7 @@ def running_robot(namespace: str = "") -> Iterator[Robot]:
 
 
 def init_test_node(name: str) -> None:
-    """SIGINT stays with unittest."""
+    """Initialises the node; SIGINT stays with unittest."""
     rospy.init_node(name, anonymous=True, disable_signals=True)
 
 

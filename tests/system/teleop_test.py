@@ -29,7 +29,7 @@ class TeleopTest(RobotTestCase):
         self.terminal = self.started()
 
     def started(self, *arguments: str) -> PseudoTerminal:
-        """Ready: it shows that the robot may move."""
+        """Starts it and waits until it shows that the robot may move."""
         self.robot.await_rest()
         terminal = PseudoTerminal([roslib.packages.find_node("robot_control", "teleop.py")[0], *arguments])
         self.addCleanup(terminal.end)
@@ -42,7 +42,7 @@ class TeleopTest(RobotTestCase):
         end = pressed + 30.0
         self.terminal.type("w")
         while not self.robot.driving():
-            # A key that was held during a stop counts once it was let go; a stop may have passed unseen.
+            # A key that was held during a stop counts after its release; this test may not have noticed the stop.
             if self.robot.release_after_a_stall() or time.monotonic() > pressed + 5.0:
                 time.sleep(1.0)
                 pressed = time.monotonic()
@@ -51,7 +51,7 @@ class TeleopTest(RobotTestCase):
             self.assertLess(time.monotonic(), end, self.terminal.screen)
 
     def await_rest(self) -> None:
-        """By itself: nothing is sent from here."""
+        """Waits for rest without sending anything."""
         wait_for("standstill", lambda: abs(self.robot.speed) < 0.01)
 
     def test_a_held_key_drives_and_its_release_stops(self) -> None:
@@ -67,7 +67,7 @@ class TeleopTest(RobotTestCase):
         pressed = -math.inf
         while not self.robot.driving():
             self.assertLess(time.monotonic(), end)
-            if time.monotonic() > pressed + 5.0:  # what is held over a pause of teleop.py has to be released first
+            if time.monotonic() > pressed + 5.0:  # a key held over a pause of teleop.py has to be released first
                 pressed = time.monotonic()
                 self.terminal.type("\x1b[119;1:3u\x1b[119;1:1u")
             time.sleep(0.03)
@@ -87,7 +87,7 @@ class TeleopTest(RobotTestCase):
         wait_for("the answer", lambda: "reset accepted" in self.terminal.screen)
 
     def request_reset(self) -> None:
-        """Refused until the robot stands."""
+        """Requests a reset, which is refused until the robot stands."""
         self.terminal.type("r")
         wait_for("the question or its answer", lambda: "reset?" in self.terminal.screen)
         time.sleep(RESET_PAUSE)

@@ -26,7 +26,7 @@ COMPLAINT = re.compile(r"\[ ?(?:WARN|ERROR|FATAL)\].*")
 
 
 def missing() -> str:
-    """The program that is not there."""
+    """The name of the program that is missing."""
     return next((program for program in ("Xvfb", "rviz") if shutil.which(program) is None), "")
 
 
@@ -40,7 +40,7 @@ def read_xwd(path: Path) -> np.ndarray:
 
 
 def near(picture: np.ndarray, colour: tuple[int, int, int]) -> int:
-    """How many pixels have this colour."""
+    """Number of pixels with this colour."""
     return int((np.abs(picture.astype(int) - colour).max(axis=2) < 40).sum())
 
 

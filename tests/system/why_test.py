@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""why.py beside a running robot, and beside none."""
+"""why.py answers beside a running robot, and beside none."""
 
 import signal
 import socket
@@ -12,7 +12,7 @@ from system_support import LIMIT, LOOP, MONITOR, PLANT, Program, RobotTestCase, 
 
 
 def answer(*arguments: str, **environment: str) -> tuple[int, str]:
-    """Exit code and words of `why.py --once`."""
+    """Exit code and text of `why.py --once`."""
     program = Program("why.py", "--once", *arguments, environment=environment)
     try:
         return program.wait(), program.output
@@ -25,12 +25,12 @@ class WhyTest(RobotTestCase):
         self.robot.await_ready()
 
     def request(self, linear: float, angular: float) -> None:
-        """Of a robot that no stall of this machine has stopped."""
+        """Requests motion of a robot that no stall of this machine has stopped."""
         self.robot.release_after_a_stall()
         self.robot.send(linear, angular)
 
     def ask_until(self, words: str, named: str = "") -> tuple[int, str]:
-        """The answer that begins so and holds `named`; what a node reports is up to a second old."""
+        """The answer that begins with `words` and holds `named`; a node's report is up to a second old."""
         last = (0, "")
 
         def found() -> bool:
@@ -45,7 +45,7 @@ class WhyTest(RobotTestCase):
         return last
 
     def await_silence(self, program: Program) -> None:
-        """Nothing new for 12 frames, once all that a stop changes was said."""
+        """Waits until there is nothing new for 12 frames, after all changes of a stop were reported."""
         said, since = "", time.monotonic()
 
         def silent() -> bool:

@@ -17,7 +17,7 @@ using ::testing::IsEmpty;
 constexpr double kPeriod = 0.001;
 constexpr std::size_t kWindow = 8;
 
-/// Emitted rows as "run:cycle parts", a part being d, e, c or m where the node has a frame.
+/// Emitted rows as "run:cycle parts", a part being d, e, c or m if the node has a frame.
 class JoinTest : public ::testing::Test {
  protected:
   void cycle(std::uint64_t run, std::uint64_t k, const std::string& nodes = "decm") {
@@ -131,7 +131,7 @@ TEST_F(JoinTest, DropsAndCountsRowsOfCyclesAlreadyEmitted) {
   EXPECT_EQ(rows.size(), 21u);
 }
 
-// A restarted node answers the frame that is there once more.
+// A restarted node computes the present frame once more.
 TEST_F(JoinTest, DropsTheSecondRowOfACycle) {
   cycle(7, 0);
   cycle(7, 1, "ee");
@@ -180,7 +180,7 @@ TEST_F(JoinTest, NumbersRunsInTheirOrder) {
   EXPECT_THAT(rows, ElementsAre("0:0 decm", "0:1 decm", "1:0 decm", "2:0 decm"));
 }
 
-// The driver has begun anew while the monitor still answers the old run.
+// The driver has begun a new run while the monitor still processes the old one.
 TEST_F(JoinTest, FinishesARunBeforeTheNextWhenNodesSeeItAtDifferentTimes) {
   cycle(50, 0);
   cycle(50, 1, "dec");
@@ -230,8 +230,8 @@ TEST_F(JoinTest, FinishTwiceIsAsGoodAsOnce) {
   EXPECT_EQ(rows.size(), 1u);
 }
 
-// However rows of one node are lost and however the nodes interleave within the window, every cycle that some
-// node delivered is emitted once and in order, and with exactly the parts that were delivered.
+// Rows of one node are lost and the nodes interleave within the window in any way. Every cycle that some node delivered
+// is emitted once and in order, with exactly the delivered parts.
 TEST_F(JoinTest, LosesNothingOverRandomInterleavings) {
   for (unsigned seed = 0; seed < 200; ++seed) {
     std::mt19937 random(seed);

@@ -1,5 +1,5 @@
 #pragma once
-/// Rows as four healthy nodes would write them.
+/// Rows in the form of four healthy nodes.
 
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-"""A robot that rolls exactly as its wheels say, and what exact sensors measure of it."""
+"""A robot that rolls exactly with its wheels, and the measurements of exact sensors."""
 
 from dataclasses import dataclass
 
@@ -26,7 +26,7 @@ class Drive:
     accel: np.ndarray
 
     def at(self, time):
-        """The same at other times, within this one's."""
+        """The same drive at other times within this one's."""
         names = [name for name in self.__dataclass_fields__ if name != "time"]
         values = {name: getattr(self, name) for name in names}
         taken = {
@@ -48,11 +48,11 @@ def drive(seconds=12.0, rest=2.0):
     linear, angular = 0.5 * ramp, 0.5 * ramp * np.sin(0.9 * (t - rest))
     yaw = _integral(angular)
     x, y = _integral(linear * np.cos(yaw)), _integral(linear * np.sin(yaw))
-    way = _integral(linear)
+    travel = _integral(linear)
     side = yaw * WHEEL_BASE / 2
     turning = np.gradient(angular, STEP)
     accel = np.column_stack([np.gradient(linear, STEP), linear * angular, np.full_like(t, GRAVITY)])
     accel[:, 0] += -turning * IMU[1] - angular**2 * IMU[0]
     accel[:, 1] += turning * IMU[0] - angular**2 * IMU[1]
     gyro = np.column_stack([np.zeros_like(t), np.zeros_like(t), angular])
-    return Drive(t, x, y, yaw, linear, angular, (way - side) / RADIUS, (way + side) / RADIUS, gyro, accel)
+    return Drive(t, x, y, yaw, linear, angular, (travel - side) / RADIUS, (travel + side) / RADIUS, gyro, accel)

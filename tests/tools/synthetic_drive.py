@@ -1,4 +1,4 @@
-"""A drive that obeys the law of wheel_law.py to the letter, for tests that break one thing each."""
+"""A drive that obeys the law of wheel_law.py exactly, for tests that break one thing each."""
 
 import numpy as np
 from robot_control.identify.wheel_law import Base, Wheel
@@ -40,8 +40,8 @@ def plan(straight=True, turns=True):
 def drive(wanted=None, delay=0, echo=False, counts=0):
     """The log of wheels that follow `wanted` exactly, `delay` rows later than the bus.
 
-    `echo`: the drive reports at once what was commanded, and does it `delay` rows later. `counts`: of the encoders per
-    turn; 0: exact.
+    `echo`: the drive reports a command at once, and executes it `delay` rows later. `counts`: of the encoders per turn;
+    0: exact.
     """
     wanted = plan() if wanted is None else wanted
     rows = len(wanted)

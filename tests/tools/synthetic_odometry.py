@@ -1,4 +1,4 @@
-"""A recording made of formulas: a robot on level ground that does exactly what is commanded, without any noise."""
+"""A recording from formulas: a robot on level ground that follows its commands exactly, without any noise."""
 
 import numpy as np
 from lab.odometry.errors import Errors
@@ -10,7 +10,7 @@ GRAVITY = 9.81
 
 
 def drive(*legs, errors=Errors(0.0, 0.0, 0.0, 0.0), bias=0.0, scenario="random", marks=None):  # noqa: B008 (frozen)
-    """`legs`: (m/s, rad/s, s), one after the other, begun and ended at once; `bias` rad/s of the gyro about z."""
+    """`legs`: (m/s, rad/s, s), one after the other, without ramps; `bias` rad/s of the gyro about z."""
     linear, angular = (np.concatenate([np.full(round(leg[2] / PERIOD), leg[i]) for leg in legs]) for i in (0, 1))
     count = len(linear) + 1
     yaw = np.concatenate([[0.0], np.cumsum(angular) * PERIOD])
@@ -25,7 +25,7 @@ def drive(*legs, errors=Errors(0.0, 0.0, 0.0, 0.0), bias=0.0, scenario="random",
     ]
     left, right = (np.concatenate([[0.0], np.cumsum(rate[:-1]) * PERIOD]) for rate in rates)
     gyro, accel = np.zeros((count, 3)), np.zeros((count, 3))
-    # The mean of a trapezoid's two samples is to be the rate between them: exact but in the cycle of a jump.
+    # The mean of a trapezoid's two samples has to be the rate between them; it is exact except in the cycle of a jump.
     gyro[:, 2] = (1 + errors.gyro_scale) * angular + bias
     accel[:, 2] = GRAVITY
     index = np.arange(0, count, TRUTH_EVERY)

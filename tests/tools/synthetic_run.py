@@ -22,7 +22,7 @@ def integrate(linear, angular):
 
 
 def with_truth(log, linear, angular):
-    """The same log in which the body, and the estimate with it, moved otherwise."""
+    """The same log with another motion of the body and of the estimate."""
     log = dict(log)
     log["truth_linear"], log["truth_angular"] = linear, angular
     log["truth_x"], log["truth_y"], log["truth_yaw"] = integrate(linear, angular)

@@ -1,4 +1,4 @@
-"""Which folder may know which. What this test refuses is a change of architecture, not of style."""
+"""The table of folders and their dependencies. A refusal of this test is a change of architecture, not of style."""
 
 import ast
 import re
@@ -23,7 +23,7 @@ MAY_INCLUDE = {
     "control": {"signals", "robot"},
     "safety": {"signals", "robot"},
     "hal": {"signals", "rt", "robot"},
-    # Simulated faults: of the machine in drivers, of nodes in simulation.
+    # This holds simulated faults: of the machine in drivers, of nodes in simulation.
     "faults": {"signals", "rt"},
     "drivers": {"signals", "faults", "hal", "description", "robot", "rt", "files"},
     # The schema fills in the parameter structs that the laws define.
@@ -31,7 +31,7 @@ MAY_INCLUDE = {
     "telemetry": {"signals"},
     # The log as a ROS bag; it knows the format, not ROS.
     "recording": {"signals", "bags", "telemetry"},
-    # What each node does in one cycle, and the process around it.
+    # The step of each node in one cycle, and the process around it.
     "runtime": CORE - {"runtime", "bags", "description", "drivers"} | {"telemetry"},
     # The laws of a log, run again from its rows.
     "replay": CORE - {"drivers", "files", "description"} | {"telemetry"},
@@ -138,7 +138,7 @@ def test_only_rt_reads_clocks():
 
 
 def test_laws_and_drivers_are_given_their_time():
-    """runtime hands rt's clock to the cycles; ordinary threads of bridge, telemetry and nodes may look at it."""
+    """runtime hands rt's clock to the cycles; ordinary threads of bridge, telemetry and nodes may read it."""
 
     def rule(path):
         if folder(path) not in ("rt", "runtime", "bridge", "nodes", "telemetry"):
@@ -156,7 +156,7 @@ def test_only_the_bridge_knows_ros_time():
 
 
 def test_linked_libraries_are_included_libraries():
-    """CMake's wall is the same wall."""
+    """The libraries that CMake links obey the same table."""
     texts = {path.parent.name: re.sub(r"#[^\n]*", "", path.read_text()) for path in SRC.glob("*/CMakeLists.txt")}
     defined_in = {
         library: name for name, text in texts.items() for library in re.findall(r"robot_control_library\((\w+)", text)
@@ -193,17 +193,17 @@ def test_source_files_stay_small():
     assert [str(path.relative_to(ROOT)) for path in FILES if len(path.read_text().splitlines()) > 400] == []
 
 
-LONGEST_FUNCTION = 60
+MAX_FUNCTION = 60
 """lines, from the line of its name to its last brace; in Python without the docstring"""
-LONGEST_IN = {SRC / "estimation": 40}
-"""lines, in folders with a bound of their own; that of the innermost holds"""
+MAX_FUNCTION_IN = {SRC / "estimation": 40}
+"""lines, in folders with a bound of their own; the innermost bound holds"""
 NO_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.DOTALL)
 FUNCTION_HEAD = re.compile(r"\)\s*(?:const\b|noexcept\b|override\b|final\b|->|:[^:]|$)")
 NO_FUNCTION = re.compile(r"^\s*(?:if|for|while|switch|do|else|try|return|namespace|struct|class|enum|union)\b")
 
 
 def cpp_functions(text):
-    """Name (the text before its brace) and length of every function; a lambda counts with the function around it."""
+    """Name (the text before its brace) and length of every function; a lambda counts with its enclosing function."""
     code = NO_CODE.sub(lambda found: re.sub(r"[^\n]", " ", found.group()), text)
     opened, head = [], 0
     for at, sign in enumerate(code):
@@ -242,7 +242,7 @@ def test_functions_stay_short():
     assert len(lengths) > 1000
 
     def longest(path):
-        return next((LONGEST_IN[folder] for folder in path.parents if folder in LONGEST_IN), LONGEST_FUNCTION)
+        return next((MAX_FUNCTION_IN[folder] for folder in path.parents if folder in MAX_FUNCTION_IN), MAX_FUNCTION)
 
     assert {
         f"{path.relative_to(ROOT)}: {name}": length
@@ -260,7 +260,7 @@ def imported_modules(path):
 
 
 def test_nothing_that_is_installed_imports_the_laboratory():
-    """Installed are scripts/*.py and the packages below scripts/; tests/lab is for tests and scripts/bench."""
+    """scripts/*.py and the packages below scripts/ are installed; tests/lab is for tests and scripts/bench."""
     installed = sorted((ROOT / "scripts").rglob("*.py"))
     assert len(installed) > 40
     wrong = [

@@ -1,4 +1,4 @@
-"""What crosses a ROS interface is ASCII: rosservice and rostopic print anything else as escapes."""
+"""Texts that cross a ROS interface are ASCII: rosservice and rostopic print anything else as escapes."""
 
 import re
 from pathlib import Path
@@ -19,7 +19,7 @@ def test_definitions_of_messages_and_services_are_ascii(path):
 
 
 def literals(path):
-    """The string literals of a source, without what stands in comments."""
+    """The string literals of a source without its comments."""
     code = re.sub(r"//[^\n]*", lambda match: "" if match[0].count('"') % 2 == 0 else match[0], path.read_text())
     return re.findall(r'"(?:[^"\\\n]|\\.)*"', code)
 

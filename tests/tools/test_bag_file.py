@@ -1,4 +1,4 @@
-"""BagFile: bags of other programs. Their structure is tested in tests/bags."""
+"""BagFile reads bags of other programs. Their structure is tested in tests/bags."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ def folder(tmp_path, monkeypatch):
 
 
 def written(messages, **options):
-    """in.bag of (topic, message or raw message), one in 10 ms."""
+    """Writes in.bag from (topic, message or raw message), one in 10 ms."""
     from rospy import Time
 
     with rosbag.Bag("in.bag", "w", **options) as bag:
@@ -57,7 +57,7 @@ def test_a_recorder_that_is_still_writing_or_was_killed_costs_the_end_alone():
 
 
 def test_a_definition_out_of_the_file_is_never_used():
-    """genpy would make a program of it."""
+    """genpy would turn it into a program."""
     kind = type(text(""))
     for name, md5sum, said in (
         ("std_msgs/String", "0" * 32, "another definition of std_msgs/String than the installed one"),

@@ -1,4 +1,4 @@
-"""blackbox.py: where it finds a black box, and what it refuses. That it reads one: tests/losses/black_box_test.cpp."""
+"""blackbox.py finds a black box and refuses others. tests/losses/black_box_test.cpp tests that it reads one."""
 
 import os
 from pathlib import Path

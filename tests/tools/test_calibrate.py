@@ -56,7 +56,7 @@ def test_writes_parameters_that_the_loop_takes_and_says_before_and_after(robot):
 
 
 def test_a_second_calibration_starts_from_the_first(robot):
-    """What is relative to a nominal radius comes out absolute."""
+    """A value that is relative to a nominal radius comes out absolute."""
     nominal = ClosedLoop({"robot": {"wheel_radius": 0.1008, "wheel_base": 0.51}}).robot
     wheels = wheels_of(nominal)
     truth = Truth(ratio=TRUE.ratio)

@@ -1,4 +1,4 @@
-"""The law of calibrate.py against closed forms and against itself."""
+"""Checks the law of calibrate.py against closed forms and against itself."""
 
 import math
 
@@ -31,7 +31,7 @@ def line(length, count=50):
 
 
 def driven(truth, side=4.0, wheels=WHEELS, per_metre=100):
-    """One square each way as a robot whose wheels are `truth` drives it by its odometry."""
+    """One square each way as a robot with the wheels `truth` drives it by its odometry."""
     squares = []
     for clockwise in (True, False):
         path = square_path(side, clockwise=clockwise, per_metre=per_metre)
@@ -118,7 +118,7 @@ def test_straight_drives_alone_leave_ratio_and_base():
 
 
 def test_deviations_are_those_of_many_readings_of_a_tape():
-    """100 robots measured with a tape of 3 mm: the spread is what is said, within three times its own 1/√200."""
+    """A tape of 3 mm measures 100 robots: the spread equals the deviation, within three times its own 1/√200."""
     random = np.random.default_rng(0)
     length = float(np.linalg.norm(replay(line(3.0), WHEELS, TRUE)[-1, :2]))
     exact = driven(TRUE, per_metre=10)
@@ -139,7 +139,7 @@ def test_deviations_are_those_of_many_readings_of_a_tape():
 
 
 def test_the_authors_formulas_agree_for_small_errors():
-    """They leave out products of angles: a side turns by 8 mrad here, four by 32, which is how far they may be off."""
+    """They leave out products of angles: a side turns by 8 mrad here, four by 32, which bounds their error."""
     small = Truth(ratio=1.001, base=1.001)
     errors = return_errors(driven(small), WHEELS, Truth())
     classic = umbmark(errors[:1], errors[1:], 4.0, 0.5)

@@ -1,4 +1,4 @@
-"""calibrate.py's pilot on a robot that does exactly what is commanded, late."""
+"""Tests calibrate.py's pilot on a robot that follows its commands exactly, but late."""
 
 import math
 

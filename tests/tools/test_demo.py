@@ -9,7 +9,7 @@ from robot_control.demo import main as demo
 from robot_control.demo.arguments import parse
 
 WAIT = "import time\nprint('ready')\nfor _ in range(6000): time.sleep(0.01)"
-"""Not one sleep of 60 s: a signal that arrives just before it begins would be heeded at its end."""
+"""The sleeps are short, because a signal just before one is handled at its end."""
 
 
 def test_each_kind_of_refusal_is_said_once_with_its_remedy():

@@ -1,4 +1,4 @@
-"""What is used beside the packages that scripts/shell/dependencies.txt names: nothing, neither package nor variable."""
+"""The project uses no package and no variable beyond those of scripts/shell/dependencies.txt."""
 
 import ast
 import importlib.util
@@ -13,7 +13,7 @@ import roslib.packages
 ROOT = Path(__file__).parents[2]
 ONLY_LISTED = ROOT / ".ci/only_listed.py"
 OPTIONAL = {"evdev", "mcap", "bokeh", "xacro"}
-"""modules of a section of the list, or of PyPI, without which the programs do less"""
+"""modules of a section of the list, or of PyPI, without which the programs offer less"""
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +25,7 @@ def only_listed():
 
 
 def hidden(*command, names=None, tmp_path=None):
-    """Runs a command that sees the listed packages alone; `names`: of another list."""
+    """Runs a command that has access to the listed packages alone; `names`: of another list."""
     given = []
     if names is not None:
         (tmp_path / "list").write_text("\n".join(names))
@@ -64,7 +64,7 @@ def test_what_a_package_needs_counts_and_what_needs_it_does_not(only_listed):
 
 
 def test_a_name_that_the_list_forgets_is_found(only_listed, tmp_path):
-    """Its module, and what its own packages alone bring, are not there; the rest is."""
+    """Its module and the packages that only it brings are absent; the rest is there."""
     names = only_listed.listed(only_listed.LIST, [])
     names.remove("python3-visualization-msgs")
     done = hidden(sys.executable, "-c", "import rospy; import visualization_msgs", names=names, tmp_path=tmp_path)
@@ -73,7 +73,7 @@ def test_a_name_that_the_list_forgets_is_found(only_listed, tmp_path):
 
 
 def test_what_was_installed_by_hand_is_hidden(only_listed, tmp_path):
-    """Any program of a package outside the list's; the command sees it before, and does not inside."""
+    """The program belongs to a package outside the list; the command finds it outside, and not inside."""
     packages = only_listed.installed()
     others = packages.keys() - only_listed.closure(only_listed.listed(only_listed.LIST, []), packages)
     programs = [
@@ -89,7 +89,7 @@ def test_what_was_installed_by_hand_is_hidden(only_listed, tmp_path):
 
 
 def imported():
-    """Modules that the shipped programs import, also those inside of functions."""
+    """Modules that the shipped programs import, also inside of functions."""
     for path in (ROOT / "scripts").rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.Import):

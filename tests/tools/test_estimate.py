@@ -1,4 +1,6 @@
-"""estimate.py: recordings in, estimate out. Bags need Debian's python3-rosbag and are skipped by name without it."""
+"""estimate.py reads recordings and writes estimates. Bags need Debian's python3-rosbag and are skipped by name without
+it.
+"""
 
 import csv
 import os
@@ -18,7 +20,7 @@ from robot_control.installed_files import share_file
 
 SCRIPT = Path(__file__).parents[2] / "scripts/estimate.py"
 ROBOT = [f"--wheel-radius={RADIUS}", f"--wheel-base={WHEEL_BASE}", f"--imu-position={','.join(map(str, IMU))}"]
-CLOSE = 0.02  # m and rad, after some 5 m of exact sensors: what gates, lags and interpolation may make of them
+CLOSE = 0.02  # m and rad, after some 5 m of exact sensors: the effect of gates, lags and interpolation
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +30,7 @@ def exact():
 
 @pytest.fixture
 def run(tmp_path, monkeypatch, capsys):
-    """estimate.py in an empty folder: report and message of exit, "" where it went well."""
+    """Runs estimate.py in an empty folder; returns its report and its exit message, "" after success."""
     monkeypatch.chdir(tmp_path)
 
     def call(*arguments):
@@ -43,7 +45,7 @@ def run(tmp_path, monkeypatch, capsys):
 
 
 def write_csv(path, columns, delimiter=","):
-    """NaN is an empty cell."""
+    """Writes a CSV; NaN is an empty cell."""
     rows = zip(*[np.asarray(values).tolist() for values in columns.values()], strict=True)
     lines = [delimiter.join("" if cell != cell else repr(cell) for cell in row) for row in rows]  # noqa: PLR0124
     Path(path).write_text("\n".join([delimiter.join(columns), *lines]) + "\n")
@@ -63,7 +65,7 @@ def columns_of(some):
 
 @pytest.fixture
 def columns(exact):
-    """A healthy file: everything at 200 Hz."""
+    """A healthy file with everything at 200 Hz."""
     return columns_of(exact.at(np.arange(0, 12, 0.005)))
 
 
@@ -367,7 +369,7 @@ def test_wheel_angles_come_out_of_the_odometry_that_they_made(exact, source):
     robot = Estimator(wheel_radius=RADIUS, wheel_base=WHEEL_BASE).robot
     angles, used = wheel_angles(Stream((some.time * 1e9).astype(np.int64), values), robot, source)
     assert used == source
-    # Between two samples the speeds are taken as even: second order in 10 ms.
+    # Between two samples the speeds are taken as constant: second order in 10 ms.
     assert np.max(np.abs(angles[:, 0] - some.left)) < 2e-3
     assert np.max(np.abs(angles[:, 1] - some.right)) < 2e-3
 
@@ -671,7 +673,7 @@ def test_outputs_keep_what_they_are_written_through(run, columns, tmp_path, opti
 
 
 def mutated(data, random):
-    """One of the ways in which a file is damaged."""
+    """The data, damaged in one of several ways."""
     data = bytearray(data)
     kind = random.choice(4, p=(0.5, 0.1, 0.1, 0.3))  # a wrong length leaves no index, and little to read
     if kind == 0:
@@ -743,7 +745,7 @@ def test_an_imu_orientation_may_begin_with_a_minus(run, columns, form):
     write_csv("in.csv", columns)
     report, message = run("in.csv", *ROBOT, *form)
     assert message == ""
-    assert "warning         gravity is 90° away" in report  # it was given, and is wrong
+    assert "warning         gravity is 90° away" in report  # the given mounting is wrong
     assert "--imu-orientation=0,0,0 fits" in report
 
 

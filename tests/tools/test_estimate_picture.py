@@ -1,4 +1,4 @@
-"""The picture of an estimate: everything that its legends name can be seen, or its size can be read."""
+"""Every item in the legends of an estimate's picture is visible, or its size is readable."""
 
 import numpy as np
 import pytest
@@ -11,19 +11,19 @@ SECONDS, STEP = 12.0, 0.01
 
 @pytest.fixture
 def panels(monkeypatch, tmp_path):
-    """Of a second of rest, a ramp and a curve, with or without an IMU; axes: path, yaw, speeds, gyro bias."""
+    """Panels of a second of rest, a ramp and a curve, with or without an IMU; axes: path, yaw, speeds, gyro bias."""
 
     def draw(*, imu):
         time = np.arange(0, SECONDS, STEP)
         speed = 5 * np.clip(time - 1, 0, 1)  # rad/s of the wheels' mean, a ramp of a second
-        way = np.cumsum(speed) * STEP  # rad
+        angle = np.cumsum(speed) * STEP  # rad
         gyro = np.zeros((time.size, 3))
         gyro[:, 2] = speed * 0.1 * 0.2 / 0.5
         accel = np.tile([0, 0, 9.81], (time.size, 1))
         accel[:, 0] = np.where((time > 1) & (time <= 2), 0.5, 0)
         accel[:, 1] = 0.1 * speed * gyro[:, 2]
         estimator = Estimator(wheel_radius=0.1, wheel_base=0.5)
-        out = estimator.process(time, 0.9 * way, 1.1 * way, gyro if imu else None, accel if imu else None)
+        out = estimator.process(time, 0.9 * angle, 1.1 * angle, gyro if imu else None, accel if imu else None)
         picture = Picture(time.size)
         picture.add(np.round(time * 1e9).astype(np.int64), out)
         figures = []

@@ -1,4 +1,4 @@
-"""estimate.py says when its result is not to be trusted, and which sensor it did without."""
+"""estimate.py reports if its result cannot be trusted, and which sensor it did not use."""
 
 import math
 
@@ -14,7 +14,7 @@ TIME = np.arange(ROWS) * 100_000_000  # ns: 10 s at 10 Hz
 
 @pytest.fixture
 def estimate():
-    """A healthy one: 10 m, the yaw known to 1°."""
+    """A healthy estimate: 10 m, the yaw known to 1°."""
     covariance = np.zeros((ROWS, 6, 6))
     covariance[:, 5, 5] = math.radians(1) ** 2
     return {

@@ -1,4 +1,4 @@
-"""The plan keeps to its space, and who drives it stops when something is not as planned."""
+"""The plan stays in its space, and the program stops it when something is not as planned."""
 
 import math
 
@@ -17,31 +17,31 @@ def planned(*, linear=LINEAR, angular=ANGULAR, wheel_base=0.5, space=1.0, max_sp
 
 def driven(excitation, limits, axis):
     """Way of one axis under a limiter without jerk limit, m or rad, at every millisecond."""
-    speed = way = 0.0
+    speed = travel = 0.0
     ways = []
     for k in range(round(excitation.seconds / PERIOD)):
         request = excitation.command(k * PERIOD)[axis]
         speed += max(-limits.deceleration * PERIOD, min(limits.acceleration * PERIOD, request - speed))
-        way += speed * PERIOD
-        ways.append(way)
+        travel += speed * PERIOD
+        ways.append(travel)
     return ways
 
 
 def test_the_plan_uses_its_space_and_ends_where_it_began():
     straight = AxisLimits(1.0, 1.0, 1.0, math.inf)
     excitation = planned(linear=straight, space=0.5, max_speed=1.0)
-    way = driven(excitation, straight, 0)
-    assert max(way) == pytest.approx(excitation.reach, abs=0.005)
+    travel = driven(excitation, straight, 0)
+    assert max(travel) == pytest.approx(excitation.reach, abs=0.005)
     assert excitation.reach == pytest.approx(REACH * 0.5)
-    assert min(way) > -0.005
-    assert way[-1] == pytest.approx(0, abs=0.005)
+    assert min(travel) > -0.005
+    assert travel[-1] == pytest.approx(0, abs=0.005)
 
 
 def test_turns_undo_each_other():
     limits = AxisLimits(2.0, 4.0, 4.0, math.inf)
-    way = driven(planned(angular=limits), limits, 1)
-    assert max(way) == pytest.approx(planned(angular=limits).turn, abs=0.01)
-    assert way[-1] == pytest.approx(0, abs=0.01)
+    travel = driven(planned(angular=limits), limits, 1)
+    assert max(travel) == pytest.approx(planned(angular=limits).turn, abs=0.01)
+    assert travel[-1] == pytest.approx(0, abs=0.01)
 
 
 def test_it_drives_both_ways_at_three_speeds_straight_and_turning():

@@ -1,4 +1,4 @@
-"""export.py: one log in other formats."""
+"""export.py writes one log in other formats."""
 
 import csv
 import importlib

@@ -1,4 +1,4 @@
-"""A file that is not there, and a package that is not built, in words."""
+"""A missing file and a missing build are reported in words."""
 
 import os
 import subprocess
@@ -32,7 +32,7 @@ def test_any_other_error_keeps_its_words():
 
 
 def imported(folder):
-    """What `from robot_control import ClosedLoop` says with `folder` alone on the path."""
+    """The message of `from robot_control import ClosedLoop` with `folder` alone on the path."""
     environment = {**os.environ, "PYTHONPATH": str(folder)}
     code = "from robot_control import ClosedLoop"
     done = subprocess.run(

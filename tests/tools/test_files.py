@@ -1,4 +1,4 @@
-"""Files that a user names: what is read, what is replaced, and what of them stands in a message."""
+"""Files that a user names: which are read, which are replaced, and how messages quote them."""
 
 import importlib
 import os

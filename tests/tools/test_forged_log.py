@@ -1,4 +1,4 @@
-"""replay.py on logs that were changed with ROS's own tools: what people read in a log is what the laws computed."""
+"""replay.py on logs that were changed with ROS's own tools detects values that the laws did not compute."""
 
 import importlib
 
@@ -15,7 +15,7 @@ LATER = 450
 
 @pytest.fixture(scope="module")
 def log(tmp_path_factory):
-    """Of a drive with an emergency stop."""
+    """A log of a drive with an emergency stop."""
     folder = tmp_path_factory.mktemp("log")
     loop = ClosedLoop()
     loop.log_into(folder)
@@ -27,7 +27,7 @@ def log(tmp_path_factory):
 
 
 def forged(log, folder, edit, later=0):
-    """A copy; `edit(topic, message)` changes each message in its place, False leaves it out. All are `later`, s."""
+    """A copy in which `edit(topic, message)` changes each message, or leaves it out by False; all are `later`, s."""
     changed = folder / "changed.bag"
     with rosbag.Bag(str(log)) as source, rosbag.Bag(str(changed), "w") as target:
         for topic, message, time in source.read_messages():
@@ -38,7 +38,7 @@ def forged(log, folder, edit, later=0):
 
 @pytest.fixture
 def replayed(log, tmp_path, capsys):
-    """Exit code for a forged copy, and what was printed."""
+    """Exit code for a forged copy, and the printed text."""
 
     def judge(edit, later=0):
         changed = forged(log, tmp_path, edit, later)
@@ -51,7 +51,7 @@ def replayed(log, tmp_path, capsys):
 
 
 def rows(edit, cycles=None):
-    """Of `edit(row)` for each row, or each row of `cycles`."""
+    """An edit that calls `edit(row)` for each row, or each row of `cycles`."""
 
     def of_trace(topic, message):
         if topic == "trace" and (cycles is None or message.cycle in cycles):
@@ -157,7 +157,7 @@ def test_a_row_that_is_hidden_as_a_repetition_is_noticed(replayed):
 
 @pytest.fixture
 def hostile_log(log, tmp_path):
-    """Its names, as a terminal must not get them."""
+    """A log whose names must not reach a terminal unescaped."""
     name = "\x1b[2J\x07\nexact\x9b"
 
     def edit(topic, message):

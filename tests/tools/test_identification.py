@@ -1,4 +1,4 @@
-"""The fit, on drives that obey its law."""
+"""Tests the fit on drives that obey its law."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ def log():
 
 def test_finds_the_law_that_a_drive_follows(log):
     found = identify(log, drive.BASE)
-    # Within a cycle the torque is constant and the plan is not: of second order in the period.
+    # Within a cycle the torque is constant and the plan is not, which is of second order in the period.
     assert values(found) == pytest.approx(TRUTH, rel=1e-4)
     assert found.mean("scrub").value == pytest.approx(0, abs=1e-4)
     assert found.delay.value == pytest.approx(0, abs=0.01)
@@ -51,7 +51,7 @@ def test_the_standard_errors_cover_what_noise_does(log):
             for name, truth in TRUTH.items():
                 estimate = getattr(side, name)
                 beyond += abs(estimate.value - truth) > 2.5 * estimate.error
-    # Of 40 normal ones 1 in 80 lies beyond 2.5 standard errors; errors half too small would leave 8 there.
+    # A normal value lies beyond 2.5 standard errors in 1 of 80 cases; errors half too small would leave 8 of 40 there.
     assert beyond <= 4
 
 

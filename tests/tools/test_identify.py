@@ -1,4 +1,4 @@
-"""identify.py as a user meets it, without a robot: logs that are there, command lines, refusals."""
+"""identify.py without a robot: existing logs, command lines, refusals."""
 
 import math
 import sys

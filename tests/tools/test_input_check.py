@@ -1,4 +1,4 @@
-"""What is wrong with an input is said at once, with the remedy: one thing broken in a healthy recording, each time."""
+"""Faults of an input are reported at once, with the remedy: each test breaks one thing in a healthy recording."""
 
 import math
 
@@ -54,7 +54,9 @@ def test_the_offset_of_the_clocks_is_found_to_a_millisecond(exact, late):
 
 
 def test_the_delay_of_the_simulated_imu_is_found_to_a_millisecond():
-    """With the noise and the vibration of the field; the robot itself follows its wheels 1.1 ms late, tyres yield."""
+    """The errors are the noise and vibration of the field; the robot follows its wheels 1.1 ms late, because tyres
+    yield.
+    """
 
     def offset(delay):
         field = {"sensor_errors": "field", "imu_delay": delay, "imu_jitter": 0.0}
@@ -89,7 +91,7 @@ def test_taking_an_offset_out_keeps_all_columns(exact):
     "rpy", [(math.pi / 2, 0, 0), (math.pi, 0, 0), (0, -math.pi / 2, 0), (-math.pi / 2, 0, math.pi / 2)]
 )
 def test_gravity_on_another_axis_names_the_mounting_that_fits(exact, rpy):
-    """With the mounting that is named, nothing is wrong."""
+    """With the named mounting nothing is wrong."""
     right = Estimator(wheel_radius=RADIUS, wheel_base=WHEEL_BASE, imu_position=IMU, imu_orientation=rpy)
     samples = samples_of(exact, mounting=rotation(right.robot["imu"]["orientation"]))
     assert check(samples, right.robot).warnings == []
@@ -171,7 +173,7 @@ def test_a_start_in_motion_is_said(exact):
     assert "never rests" in warnings_of(samples_of(exact, begin=5.0))
     samples = samples_of(exact)
     for table in (samples.left, samples.right):
-        table[:] = table[::-1]  # backwards in time: it ends with its rest
+        table[:] = table[::-1]  # backwards in time: the drive ends with its rest
     samples.gyro, samples.accel = None, None
     assert warnings_of(samples) == ""  # no gyro, no bias
     samples = samples_of(exact)
@@ -201,7 +203,7 @@ def test_wheels_alone_are_nothing_to_check_against(exact):
     assert check(samples, ROBOT).warnings == []
 
 
-# Offsets as README of the recordings and a correlation by hand have them; the others' IMUs share a row with the wheels.
+# Offsets from the README of the recordings and from a correlation by hand; the other IMUs share a row with the wheels.
 OFFSETS = {
     "skid_steer_a": 0.05,
     "skid_steer_b": 0.05,
@@ -249,7 +251,7 @@ def test_a_real_broken_gyro_axis_is_said():
 @pytest.mark.skipif(recordings_folder() is None, reason=ABSENT)
 @pytest.mark.parametrize("name", ["skid_steer_a", "skid_steer_d", "vacuum_b", "outdoor_skid_steer"])
 def test_a_real_imu_on_its_side_names_its_mounting(name):
-    """Turned about x by a quarter: y was up."""
+    """The IMU was turned about x by a quarter, so y was up."""
     aside = np.array([[1.0, 0, 0], [0, 0, -1.0], [0, 1.0, 0]])
     samples, robot = recorded(name, gyro=lambda table: table @ aside, accel=lambda table: table @ aside)
     said = " · ".join(check(samples, robot).warnings)

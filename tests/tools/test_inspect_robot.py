@@ -1,4 +1,4 @@
-"""What inspect_robot.py says and draws; that it reads robots at all needs the built package and is skipped without."""
+"""inspect_robot.py reports and draws robots. Cases that read one are skipped without the built package."""
 
 import json
 import os
@@ -95,7 +95,7 @@ def test_what_is_nearer_hides_what_is_behind():
         assert picture[20, 20, 2] == 0
     below = render([red, blue], View.towards((0, 0, -1)), window, 40)
     assert below[20, 20, 2] > 0
-    assert picture[0, 0, 3] == 0  # nothing there: transparent
+    assert picture[0, 0, 3] == 0  # empty area: transparent
 
 
 def test_views_have_z_up():
@@ -206,7 +206,7 @@ def test_a_robot_that_does_not_stand_is_reported_all_the_same(tmp_path):
 
 
 def test_a_wheel_that_hangs_in_the_air_is_named_with_what_stands_instead(tmp_path):
-    # Two of four skids end 2 mm below the wheels, on a diagonal: on them and one wheel the robot stands.
+    # Two of four skids end 2 mm below the wheels, on a diagonal: the robot stands on them and one wheel.
     text = DIFFBOT.read_text()
     skids = ""
     for number, (x, y) in enumerate(((0.2, 0.2), (-0.3, -0.2), (-0.3, 0.2), (0.2, -0.2))):

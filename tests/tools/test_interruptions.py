@@ -1,4 +1,4 @@
-"""What was requested, held or planned before a stop, or before a program was suspended, moves nothing after it."""
+"""A request, hold or plan from before a stop, or before a suspension of the program, moves nothing after it."""
 
 import math
 import subprocess
@@ -54,7 +54,7 @@ def test_what_is_requested_during_a_stop_does_not_begin_with_its_reset():
 
 
 def before_the_first_look(status, *, heard=()):
-    """Of a program that began at 1 s and first looked at 3 s."""
+    """A program that began at 1 s and made its first pass at 3 s."""
     made = Interruptions(3.0, 1.0)
     made.step(3.0, [*heard, status], waited=True)
     return made

@@ -1,4 +1,4 @@
-"""Where sim.launch and backend.launch let their nodes listen, and which files their arguments mean."""
+"""The launch files set the addresses of their nodes and pass the files of their arguments."""
 
 import re
 from pathlib import Path
@@ -77,7 +77,7 @@ def test_a_word_alone_is_a_shipped_scene(monkeypatch):
 
 
 def config_of(launch, *arguments):
-    """What roslaunch makes of it."""
+    """The configuration that roslaunch derives."""
     config = ROSLaunchConfig()
     XmlLoader(resolve_anon=False).load(str(LAUNCH / launch), config, argv=list(arguments), verbose=False)
     return config
@@ -90,13 +90,13 @@ def programs_of(*arguments):
 
 @pytest.mark.parametrize("launch", ["sim.launch", "backend.launch", "view.launch"])
 def test_the_argument_ns_moves_every_node_and_parameter_and_changes_nothing_else(launch):
-    here, there = config_of(launch), config_of(launch, "ns:=robot2")
-    assert [(node.namespace, node.name, node.type) for node in there.nodes] == [
+    here, moved_config = config_of(launch), config_of(launch, "ns:=robot2")
+    assert [(node.namespace, node.name, node.type) for node in moved_config.nodes] == [
         ("/robot2/", node.name, node.type) for node in here.nodes
     ]
     moved = {"/robot2" + name if name != "/use_sim_time" else name for name in here.params}
-    assert set(there.params) == moved
-    values = {name.removeprefix("/robot2"): param.value for name, param in there.params.items()}
+    assert set(moved_config.params) == moved
+    values = {name.removeprefix("/robot2"): param.value for name, param in moved_config.params.items()}
     assert values == {name: param.value for name, param in here.params.items()}
 
 
@@ -107,7 +107,7 @@ def test_arguments_reach_the_nodes_in_a_namespace_too():
 
 
 def telemetry_of(launch, *arguments):
-    """What is set for the node; None: it is not started."""
+    """The parameters of the node; None if it is not started."""
     config = config_of(launch, *arguments)
     if "telemetry" not in {node.name for node in config.nodes}:
         return None
@@ -157,7 +157,7 @@ def test_a_simulation_starts_the_programs_of_the_robot():
 
 
 def test_every_argument_that_a_user_may_give_is_set_in_every_launch():
-    """What is set under a condition stays in the roscore when the condition is false the next time."""
+    """A parameter that is set under a condition stays in the roscore when the condition is false the next time."""
     for name in ("sim", "backend"):
         text = (LAUNCH / f"{name}.launch").read_text()
         outside = re.sub(r"<node .*?</node>", "", text, flags=re.DOTALL)

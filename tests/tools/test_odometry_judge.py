@@ -1,4 +1,4 @@
-"""How odometry is judged: truth, errors, consistency, promises, each against a result known by hand."""
+"""The judgement of odometry by truth, errors, consistency and promises, each against a result known by hand."""
 
 import dataclasses
 import math
@@ -93,7 +93,7 @@ def test_a_pose_is_expressed_in_the_frame_of_another():
 
 
 def test_a_return_error_is_that_of_its_own_square():
-    """What went wrong before a square began is not counted: two lines after a turn that the wheels misjudge."""
+    """An error from before the begin of a square does not count: two lines after a turn that the wheels misjudge."""
     turn, back = (0.0, 1.0, 1.0), (-0.5, 0.0, 4.0)
     marks = {"cw": [1000], "ccw": [9000], "end": [9000, 17000]}
     recording = drive(turn, LINE, back, LINE, back, errors=Errors(0.0, 0.0, 0.02, 0.0), marks=marks)
@@ -152,7 +152,7 @@ def test_the_band_is_that_of_the_table_of_chi_square(runs, dimension, low, high)
     assert nees_band(runs, dimension) == pytest.approx((low / runs, high / runs), rel=0.01)
 
 
-# Slip noticed.
+# Detected slip.
 
 
 def test_only_slip_above_a_fifth_has_to_be_flagged_and_only_below_a_twentieth_it_must_not():

@@ -1,4 +1,4 @@
-"""The odometries to compare with, on drives whose result is known by formula."""
+"""The odometries for comparison, on drives whose result is known by formula."""
 
 import dataclasses
 
@@ -84,7 +84,7 @@ def test_it_stands_only_while_wheels_and_gyro_are_quiet():
 
 
 def test_errors_are_drawn_from_the_stated_priors():
-    """Relative deviation of a standard deviation of n: 1/√(2n); of a mean: 1/√n. Bounds: five of them."""
+    """Relative deviation of a standard deviation from n values: 1/√(2n); of a mean: 1/√n. Bounds: five of them."""
     count = 2000
     drawn = [draw_errors(seed) for seed in range(count)]
     left, base, scale = (

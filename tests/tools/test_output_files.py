@@ -1,4 +1,4 @@
-"""What a program refuses to write, before its work."""
+"""A program checks its output files before its work."""
 
 import importlib
 import os

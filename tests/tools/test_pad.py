@@ -18,14 +18,14 @@ NONE, ENABLE, TURBO = (0,) * 6, (0, 0, 0, 0, 1, 0), (0, 0, 0, 0, 0, 1)
 
 @pytest.fixture
 def pad():
-    """It was seen with nothing held, at 0 s."""
+    """A pad that was read with nothing held, at 0 s."""
     pad = Pad(GIVEN)
     pad.receive(REST, NONE, 0.0)
     return pad
 
 
 def hold(pad, axes, buttons, begin, seconds):
-    """As a device does that is read all the time; the last time."""
+    """Answers as a device does that is read all the time; returns the last time."""
     now = begin
     for number in range(round(seconds / PERIOD) + 1):
         now = begin + number * PERIOD
@@ -96,7 +96,7 @@ def test_a_pad_that_is_plugged_in_with_the_button_held_moves_nothing():
 
 
 def test_a_lost_wireless_link_ends_after_max_hold(pad):
-    """Its receiver repeats what it saw last."""
+    """Its receiver repeats the last values."""
     now = hold(pad, FORWARD, ENABLE, 0.1, 0.1)
     last = None
     while now < GIVEN.max_hold + 1.0:
@@ -120,7 +120,7 @@ def test_noise_of_the_stick_lengthens_no_hold(pad):
 
 
 def test_a_second_publisher_of_joy_zeroes_and_is_named():
-    """A lost pad with its button held, and an idle one that was switched on meanwhile."""
+    """A lost pad with its button held, and an idle one that was switched on meanwhile, publish at once."""
     pad = Pad(GIVEN)
     pad.receive(REST, NONE, 0.0, "/lost")
     for number in range(60):
@@ -181,7 +181,7 @@ def test_what_is_held_over_a_stop_moves_nothing_until_it_was_released(pad):
 
 @pytest.mark.parametrize("buttons", [NONE, ENABLE])
 def test_a_stop_is_followed_by_zeros_whatever_is_held(pad, buttons):
-    """The controller may refuse what was sent before it."""
+    """The controller may refuse earlier commands."""
     now = hold(pad, FORWARD, buttons, 0.1, 1.0) + 2 * ZEROS
     pad.interrupt(now)
     assert pad.command(now + ZEROS - PERIOD) == Command()
@@ -277,7 +277,7 @@ class Info:
 
 
 class FakeDevice:
-    """Of evdev.InputDevice what pad.py uses: an Xbox pad's layout."""
+    """The part of evdev.InputDevice that pad.py uses, with an Xbox pad's layout."""
 
     name = "a pad"
 

@@ -15,7 +15,7 @@ PERIOD = 0.02  # s
 
 
 class Ideal:
-    """A robot that does at once what it is commanded."""
+    """A robot that follows its commands at once."""
 
     def __init__(self, x=0.0, y=0.0, yaw=0.0):
         self.pose, self.motion = Pose(x, y, yaw), Motion()

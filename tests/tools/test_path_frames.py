@@ -91,7 +91,7 @@ def test_poses_of_several_frames_are_refused():
 
 @pytest.fixture
 def robot(monkeypatch):
-    """One that just sent everything: (robot, now)."""
+    """A robot with fresh messages of all topics: (robot, now)."""
     monkeypatch.setattr(rospy, "Subscriber", lambda *_, **__: None)
     robot = Robot()
     robot._receive_odometry(Odometry())

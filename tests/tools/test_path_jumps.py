@@ -1,9 +1,9 @@
-"""Poses that jump while a path is driven: set_odometry, a localisation. The robot is one that does as commanded."""
+"""The pose jumps while a path is driven, by set_odometry or a localisation. The robot follows its commands exactly."""
 
 import math
 
 import pytest
-from lab.release.path_jumps import FARTHEST, LONGEST, PERIOD, STRAIGHT, Jumping, excess
+from lab.release.path_jumps import FARTHEST, MAX_TIME, PERIOD, STRAIGHT, Jumping, excess
 from robot_control.path.follower import Motion, Pose, State
 from robot_control.path.waypoints import Waypoint
 
@@ -50,7 +50,7 @@ def test_a_correction_of_a_localisation_is_driven_out():
     robot = Jumping(STRAIGHT)
     robot.drive(1.0)
     robot.jump(-0.03, 0.05, 0.05)
-    robot.drive(LONGEST)
+    robot.drive(MAX_TIME)
     assert robot.follower.state is State.DONE
 
 
@@ -74,7 +74,7 @@ def test_a_turn_that_falls_back_for_ever_ends_the_path():
 
 
 def test_what_lies_behind_the_farthest_point_reached_is_off_the_path():
-    """The tangent of the first piece goes on for ever, and a robot that was carried back stood on it."""
+    """The tangent of the first piece is infinite, and a robot that was carried back stood on it."""
     robot = Jumping(STRAIGHT)
     robot.drive(3.0)
     for _ in range(40):
@@ -86,7 +86,7 @@ def test_what_lies_behind_the_farthest_point_reached_is_off_the_path():
 def test_a_path_that_begins_before_the_robot_is_driven_to():
     robot = Jumping(STRAIGHT)
     robot.pose = Pose(-0.45, 0.1, 0.0)
-    robot.drive(LONGEST)
+    robot.drive(MAX_TIME)
     assert robot.follower.state is State.DONE
 
 

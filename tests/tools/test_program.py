@@ -1,4 +1,4 @@
-"""What a shell does to the output of a program, and a name that is taken: one message, no traceback."""
+"""Output that a shell has closed, and a name that is taken, give one message and no traceback."""
 
 import ast
 import os
@@ -66,7 +66,7 @@ def begins_with(path, call):
 
 
 def test_every_program_writes_its_lines_at_once():
-    """Python's by `run`, nodes by `run_node`; expand_xacro writes a document for the program that called it."""
+    """`run` does this for Python's programs, `run_node` for nodes; expand_xacro writes a document for its caller."""
     modules = [path for path in (SCRIPTS / "robot_control").rglob("*.py") if "__main__" in path.read_text()]
     python = {*SCRIPTS.glob("*.py"), *modules} - {SCRIPTS / "robot_control/expand_xacro.py"}
     assert [str(path) for path in sorted(python) if not begins_with(path, "run(main)")] == []
@@ -77,7 +77,7 @@ def test_every_program_writes_its_lines_at_once():
 
 
 class Answering:
-    """A master that knows one node, and this node: one server for both."""
+    """A master that lists one node, and this node: one server for both."""
 
     def __init__(self, name):
         self.server = xmlrpc.server.SimpleXMLRPCServer(("127.0.0.1", 0), logRequests=False)

@@ -1,4 +1,4 @@
-"""What record.py asks of rosbag, without ROS running."""
+"""record.py calls rosbag with these arguments; no ROS runs."""
 
 import os
 import sys

@@ -83,7 +83,7 @@ def test_keyframes_hold_the_joints_in_the_models_order_and_the_pose_by_the_start
     model = ET.fromstring(Scene(MJCF).written(moments, 640, 360))
     (key,) = model.findall("keyframe/key")
     half = math.sqrt(0.5)
-    expected = [0.0, 1.0, 2.0, 0.1, half, 0.0, 0.0, half, 0.3]  # door; 2 m ahead of a start that looks along y; wheel
+    expected = [0.0, 1.0, 2.0, 0.1, half, 0.0, 0.0, half, 0.3]  # door; 2 m ahead of a start towards y; wheel
     assert [float(number) for number in key.get("qpos").split()] == pytest.approx(expected, abs=1e-5)
     wheel = model.find(".//geom[@name='robot_control/wheel/0']")
     assert (wheel.get("type"), wheel.get("size")) == ("cylinder", "0.1 0.02")

@@ -1,4 +1,4 @@
-"""replay.py as a user meets it: a log is computed again, another one is refused, and what if."""
+"""replay.py computes a log again, refuses another one, and answers what-if questions."""
 
 import os
 
@@ -11,7 +11,7 @@ CYCLES = 1500
 
 @pytest.fixture(scope="module")
 def log(tmp_path_factory):
-    """Of a drive with an emergency stop and a live change."""
+    """A log of a drive with an emergency stop and a live change."""
     folder = tmp_path_factory.mktemp("log")
     loop = ClosedLoop()
     loop.log_into(folder)
@@ -25,7 +25,7 @@ def log(tmp_path_factory):
 
 
 def replay(capsys, *arguments):
-    """Exit code, what was printed, and the message of a refusal."""
+    """Exit code, printed text, and the message of a refusal."""
     with pytest.raises(SystemExit) as end:
         main([str(argument) for argument in arguments])
     printed = capsys.readouterr()

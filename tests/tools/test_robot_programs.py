@@ -1,4 +1,4 @@
-"""The programs of a robot hold nothing that is simulated: by their symbols and by the libraries they load."""
+"""The programs of a robot contain no simulation, by their symbols and by the libraries they load."""
 
 import re
 import subprocess
@@ -25,7 +25,7 @@ def program(name):
 
 
 def simulated_symbols(name):
-    """Those of `simulated_names` that occur in the symbols of the program."""
+    """The names of `simulated_names` that occur in the symbols of the program."""
     listed = subprocess.run(["nm", "-C", program(name)], check=True, capture_output=True, text=True).stdout
     return set(re.findall(r"\w+", listed)) & simulated_names()
 

@@ -46,7 +46,7 @@ def test_last_skips_nan():
 
 @pytest.fixture(scope="module")
 def bag_and_log(tmp_path_factory):
-    """A run.bag, and what the loop itself gave."""
+    """A run.bag, and the log that the loop itself returned."""
     folder = tmp_path_factory.mktemp("bag")
     loop = ClosedLoop(seed=3)
     loop.log_into(folder)

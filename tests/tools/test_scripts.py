@@ -1,4 +1,4 @@
-"""The shell scripts, as far as they go without building."""
+"""Tests the shell scripts without building."""
 
 import re
 import shutil
@@ -24,7 +24,9 @@ def test_help_says_how_to_call_it_and_does_nothing(script):
 
 @pytest.mark.parametrize("script", ["demo", "test", "lint", "bench", "behaviour"])
 def test_help_needs_nothing_that_is_not_installed_yet(script, tmp_path):
-    """From another folder, by a relative path, with other arguments before it: scripts/setup is not called."""
+    """It is called from another folder, by a relative path, with other arguments before it: scripts/setup is not
+    called.
+    """
     copied = tmp_path / "scripts"
     shutil.copytree(SCRIPTS, copied, ignore=shutil.ignore_patterns("robot_control"))
     (copied / "setup").write_text("#!/bin/bash\necho installing >&2\nexit 9\n")
@@ -116,7 +118,7 @@ def make_build_folder(folder):
 
 
 def progress(folder, *lines, target="all"):
-    """What a build with such a log has done."""
+    """The progress of a build with such a log."""
     (folder / "log").write_text("".join(f"{line}\n" for line in lines))
     script = 'source "$0"; build_progress "$@"'
     command = ["bash", "-euc", script, str(SCRIPTS / "shell" / "build_progress.sh"), str(folder / "log"), str(folder)]
@@ -155,7 +157,7 @@ def test_every_build_shows_its_progress():
 
 
 def listed_packages(sections):
-    """What scripts/setup would install, with the names of the sections that its arguments select."""
+    """The packages that scripts/setup would install, with the names of the sections that its arguments select."""
     command = """cd "$0"/..; sections=$1; eval "$(sed -n '/^listed()/,/^}/p' scripts/setup)"; listed"""
     done = shell("bash", "-euc", command, str(SCRIPTS), sections)
     assert done.returncode == 0, done.stderr
@@ -176,7 +178,7 @@ def test_packages_of_a_section_are_installed_only_where_they_are_asked_for():
 
 @pytest.mark.parametrize(("arguments", "testing"), [([], "ON"), (["without_tests"], "OFF")])
 def test_a_build_without_tests_switches_them_off_in_catkin(arguments, testing, tmp_path):
-    """The demo's; always given, for CMake remembers the options of an earlier build."""
+    """The options are always given, because CMake remembers those of an earlier build."""
     script = 'source "$0"; cd "$1"; colcon() { echo "$@"; }; build_workspace "${@:2}"; cat build/colcon.log'
     done = shell("bash", "-euc", script, str(SCRIPTS / "shell" / "environment.sh"), str(tmp_path), *arguments)
     assert f"-DCATKIN_ENABLE_TESTING={testing}" in done.stdout.split()

@@ -1,4 +1,4 @@
-"""What any node may have set on the parameter server is refused by name, value and remedy, without a traceback."""
+"""Values that any node may set on the parameter server are refused by name, value and remedy, without a traceback."""
 
 import contextlib
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The witness of tests/system sees that this machine, here the witness alone, stood still, and when."""
+"""The witness of tests/system detects that this machine, here the witness alone, stood still, and when."""
 
 import signal
 import time

@@ -19,7 +19,7 @@ ESTIMATOR |= {f"confidence_{name}": "1" for name in ("left_encoder", "right_enco
 
 
 def reports(state="READY", commander="", senders="", **changes):
-    """A healthy robot; `changes`: diagnostics of nodes, None: silent."""
+    """Reports of a healthy robot; `changes`: diagnostics of nodes, None: silent."""
     diagnostics = {name: report() for name in (*REQUIRED, "mujoco_plant")}
     diagnostics["state_estimator"] = report(**ESTIMATOR)
     diagnostics["diff_drive_controller"] = report(senders=senders)

@@ -1,4 +1,4 @@
-"""What was typed while teleop.py did not run, in virtual time."""
+"""Keys that were typed while teleop.py did not run, in virtual time."""
 
 from robot_control.teleop.backlog import LATE, Backlog
 

@@ -1,4 +1,4 @@
-"""The dead-man switch of teleop.py, in virtual time."""
+"""Tests the dead-man switch of teleop.py in virtual time."""
 
 import itertools
 

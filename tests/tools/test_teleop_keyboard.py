@@ -114,7 +114,7 @@ def test_a_stop_that_follows_an_escape_hides_it_not():
 @pytest.mark.parametrize("begun", [b"\x1b[", b"\x1bO", b"\x1b[1;2"])  # Alt-[ alone is such a beginning
 @pytest.mark.parametrize(("stop", "name"), [(b" ", "space"), (b"!", "!")])
 def test_a_sequence_that_was_begun_swallows_no_stop(begun, stop, name):
-    """What follows may be the sequence's end, and moves nothing."""
+    """The stop may also be the sequence's end; it moves nothing."""
     assert keys(begun + stop + b"~w")[:1] == [Key(name)]
     assert keys(begun + stop + b"~w")[-1] == Key("w")
 
@@ -135,7 +135,7 @@ def test_a_key_has_one_meaning(name):
 
 @pytest.mark.parametrize("name", KEY_MAPS)
 def test_the_e_stop_does_not_lie_beside_a_motion_key(name):
-    """Of a US keyboard; Esc and ! (above 1) lie in its upper left corner."""
+    """The keys are those of a US keyboard; Esc and ! (above 1) lie in its upper left corner."""
     beside = {"1", "2", "`", "tab"}
     assert not beside & set(KEY_MAPS[name].motions)
 

@@ -18,7 +18,7 @@ def operator():
 
 
 def hold(operator, key, begin, seconds):
-    """Bytes of a held key; the time of the last one."""
+    """Types the bytes of a held key; returns the time of the last one."""
     times = [begin, *(begin + 0.5 + 0.03 * number for number in range(round((seconds - 0.5) / 0.03) + 1))]
     for time in times:
         operator.key(Key(key), time)

@@ -119,14 +119,14 @@ def test_a_paste_without_an_end_swallows_no_stop_that_the_terminal_reports_later
 
 
 def unbound(chance):
-    """A byte that is no key of ours, and begins nothing."""
+    """A byte that is no key of teleop.py and begins no sequence."""
     bound = {*"wasdqezc+-=_.>,<uiojlm,.kxry", *E_STOPS, " "}
     letters = [byte for byte in range(0x21, 0x7F) if chr(byte).lower() not in bound]
     return bytes([chance.choice([*letters, 0x00, 0x05, 0x7F])])
 
 
 def mouse(chance):
-    """In one of four encodings."""
+    """A mouse report in one of four encodings."""
     numbers = ";".join(str(chance.randrange(300)) for _ in range(3))
     places = "".join(chr(32 + chance.randrange(1, 2000)) for _ in range(2))
     return chance.choice(
@@ -184,7 +184,7 @@ def test_random_input_without_a_bound_key_never_moves_the_robot(seed, name):
 @pytest.mark.parametrize("name", KEY_MAPS)
 @pytest.mark.parametrize("seed", range(150))
 def test_nor_does_random_input_that_is_torn_in_time(seed, name):
-    """Each stop that a tear makes of a byte is taken back at once, so that it hides no motion."""
+    """Each stop that a pause makes of a byte is taken back at once, so that it hides no motion."""
     chance = random.Random(seed)
     operator = Operator(KEY_MAPS[name], Command(0.5, 1.0), Limits(1.0, 2.0, reverse=1.0))
     operator.permit(True, 0.0)
@@ -192,7 +192,7 @@ def test_nor_does_random_input_that_is_torn_in_time(seed, name):
     data = b"".join(random_unit(chance) for _ in range(100))
     while data:
         size = chance.choice([1, 2, 5, 40])
-        for _ in range(chance.choice([1, 1, 1, 3, 70, 300])):  # looks until more comes
+        for _ in range(chance.choice([1, 1, 1, 3, 70, 300])):  # passes until more comes
             now += 0.02
             for key in [*decoder.feed(b"", now), *decoder.look(now)]:
                 operator.key(key, now)

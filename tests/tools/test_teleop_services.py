@@ -11,7 +11,7 @@ from std_srvs.srv import TriggerResponse
 
 
 class Robot:
-    """Its services, and what the topic e_stop carried."""
+    """Its services, and the messages on the topic e_stop."""
 
     def __init__(self):
         self.calls, self.levels = [], []

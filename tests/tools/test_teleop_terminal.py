@@ -1,4 +1,4 @@
-"""teleop.py's terminal is as before after every end of the program."""
+"""teleop.py restores its terminal at every end of the program."""
 
 import os
 import re
@@ -52,7 +52,7 @@ def wait_for(condition):
 
 
 def assert_restored(program):
-    """Settings and screen; a guard may still be at it after the program's end."""
+    """Settings and screen are restored; a guard may still be busy after the program's end."""
     wait_for(lambda: program.settings() == program.before)
     wait_for(lambda: END in program.written)
 
@@ -117,7 +117,7 @@ def test_a_terminal_that_takes_nothing_has_its_settings_at_the_end_and_its_scree
 
 
 def private_modes(written, modes):
-    """Those that are on after these bytes (xterm's DECSET, DECRST, XTSAVE, XTRESTORE), by those that were before."""
+    """Modes that are on after these bytes (xterm's DECSET, DECRST, XTSAVE, XTRESTORE), from those on before."""
     saved, modes = {}, set(modes)
     for numbers, action in re.findall(rb"\x1b\[\?([0-9;]+)([hlsr])", written):
         for mode in map(int, numbers.split(b";")):

@@ -1,4 +1,4 @@
-"""The last message of a node leaves, whatever its connections do."""
+"""A node sends its last message, whatever its connections do."""
 
 import threading
 import time

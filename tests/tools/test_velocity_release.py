@@ -1,4 +1,4 @@
-"""When send_cmd.py may send its command: by what safety_status says, without ROS."""
+"""Tests when send_cmd.py may send its command by safety_status, without ROS."""
 
 import random
 

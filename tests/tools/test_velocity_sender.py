@@ -1,4 +1,4 @@
-"""What send_cmd.py sends, without ROS."""
+"""Tests the commands of send_cmd.py, without ROS."""
 
 import pytest
 from robot_control.drive.send_plan import SendPlan, parse_plan

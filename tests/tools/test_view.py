@@ -1,4 +1,4 @@
-"""What RViz shows, without RViz."""
+"""Tests the markers for RViz, without RViz."""
 
 import math
 import xml.etree.ElementTree as ET
@@ -11,8 +11,8 @@ from robot_control.inspect.description import describe
 from robot_control.view.scene import (
     AMBER,
     GREEN,
-    MOST_LINES,
-    MOST_POINTS,
+    MAX_LINES,
+    MAX_POINTS,
     RED,
     WIDTH,
     Trail,
@@ -71,7 +71,7 @@ def test_a_robot_of_which_nothing_is_asked_is_not_limited():
 
 def test_a_text_stays_small():
     text = status_text("STOPPED", ["words " * 50] * 9, [], [], math.inf).text
-    assert len(text.splitlines()) == MOST_LINES
+    assert len(text.splitlines()) == MAX_LINES
     assert max(map(len, text.splitlines())) <= WIDTH
 
 
@@ -79,9 +79,9 @@ def test_the_path_driven_is_bounded_and_begins_again_after_a_jump():
     trail = Trail()
     assert trail.add(0.0, 0.0)
     assert not trail.add(0.01, 0.0)
-    for number in range(3 * MOST_POINTS):
+    for number in range(3 * MAX_POINTS):
         trail.add(0.06 * number, 0.0)
-    assert MOST_POINTS / 4 < len(trail.points) <= MOST_POINTS
+    assert MAX_POINTS / 4 < len(trail.points) <= MAX_POINTS
     trail.add(-500.0, 0.0)
     assert trail.points == [(-500.0, 0.0, 0.0)]
 

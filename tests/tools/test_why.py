@@ -1,4 +1,4 @@
-"""What why.py answers, without ROS. The fixture drives; each test breaks one thing."""
+"""Tests the answers of why.py, without ROS. The fixture drives; each test breaks one thing."""
 
 import re
 from dataclasses import replace
@@ -63,7 +63,7 @@ def test_text_of_other_programs_is_shown_without_control_characters(driving: Fac
 
 
 def without(facts: Facts, *nodes: str) -> Facts:
-    """These nodes are gone, and the monitor, if there, says so."""
+    """Removes these nodes; the monitor, if it is there, reports that."""
     reports = {name: report for name, report in facts.reports.items() if name not in nodes}
     safety = None if MONITOR in nodes else replace(facts.safety, missing=nodes)
     return replace(facts, reports=reports, safety=safety, measured=None)

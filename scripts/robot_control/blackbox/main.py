@@ -15,7 +15,7 @@ from robot_control.common.files import escaped, escaped_lines, fit_for_message, 
 RING = "ring"
 BEFORE = "ring.before"
 LOGS = Path(os.environ.get("ROS_HOME") or "~/.ros", "robot_control")
-"""Where sim.launch and backend.launch let telemetry write."""
+"""The folder into which sim.launch and backend.launch let telemetry write."""
 INCIDENT = re.compile(r"(stop|crash)\.\d+\.bag")
 
 EPILOG = """
@@ -58,7 +58,7 @@ def ring_of(path: Path) -> Path:
 
 
 def incidents_of(path: Path) -> list[Path]:
-    """What telemetry has saved there by itself, the newest last; of a folder that cannot be read, nothing."""
+    """The black boxes that telemetry has saved in a folder, the newest last; none if the folder cannot be read."""
     try:
         box = _box_of(path) if path.is_dir() else path.parent
         found = [each for each in box.iterdir() if INCIDENT.fullmatch(each.name)] if box.is_dir() else []

@@ -29,13 +29,15 @@ from robot_control.drive.send_plan import number_of_sends, positive
 RATIO = (0.95, 1.05)
 BASE = (0.7, 1.3)
 SCALE = (0.8, 1.2)
-"""What the parameters take (src/parameters/calibration_bounds.h); of the radius: a quarter more is another wheel"""
-LEAST_RATIO, LEAST_BASE = 0.0005, 0.003
-"""Deviations that are written at least: what another load and another floor change (calibration_file.h)"""
+"""The parameters accept these factors (src/parameters/calibration_bounds.h). A radius that is a quarter larger belongs
+to another wheel."""
+MIN_RATIO, MIN_BASE = 0.0005, 0.003
+"""Smaller standard deviations are never written: another load and another floor change the wheels by so much
+(calibration_file.h)."""
 FAR = 0.25
-"""Of a square's side: no robot that can be calibrated returns further off"""
+"""Share of a square's side; a robot that can be calibrated returns less far from its start."""
 WRONG = 0.15
-"""Of a distance: no wheel is so wrong; feet, paces and centimetres are"""
+"""Share of a distance; no wheel is so wrong, but a reading in feet, paces or centimetres is."""
 
 
 @dataclass(frozen=True)
@@ -116,7 +118,7 @@ def margin(length: float) -> float:
 
 
 def space(options: Options) -> str:
-    """What must be free, in words."""
+    """The space that must be free, as text."""
     if options.manual:
         return "Another sender or a person moves the robot; nothing is sent."
     needs = []
@@ -133,7 +135,7 @@ def space(options: Options) -> str:
 
 
 def implausible_distance(measured: float, by_wheels: float) -> str:
-    """Why that cannot be the tape's answer; empty: it can."""
+    """Why the tape cannot have measured that; empty if it can."""
     if abs(measured - by_wheels) <= WRONG * by_wheels:
         return ""
     return (
@@ -143,7 +145,7 @@ def implausible_distance(measured: float, by_wheels: float) -> str:
 
 
 def implausible_return(returned: tuple[float, float], side: float) -> str:
-    """Why that cannot be where the robot came to; empty: it can."""
+    """Why the robot cannot have come to that place; empty if it can."""
     if math.hypot(*returned) <= FAR * side:
         return ""
     return (
@@ -154,7 +156,7 @@ def implausible_return(returned: tuple[float, float], side: float) -> str:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What there is to print and to write."""
+    """The report to print and the parameters to write."""
 
     truth: Truth
     table: str
@@ -172,7 +174,7 @@ def wheels_of(robot: Mapping[str, Any]) -> Wheels:
 def evaluate(
     robot: Mapping[str, Any], straights: Sequence[Straight], squares: Sequence[Square], side: float
 ) -> Outcome:
-    """Fits, judges, words.
+    """Fits the wheels to the measurements, checks the result and reports it.
 
     Raises:
         NotCalibratedError: the measurements fit no robot.
@@ -226,21 +228,21 @@ def evaluate(
 
 
 def overlay(robot: Mapping[str, Any], truth: Truth) -> dict[str, dict[str, float]]:
-    """The parameters that say it, relative to what `robot` was when it was measured."""
+    """The parameters that express `truth`, relative to those of `robot` when it was measured."""
     own: dict[str, float] = {}
     estimator: dict[str, float] = {}
     if truth.scale_deviation > 0:
         own["wheel_radius"] = truth.scale * _radius(robot)
     if truth.base_deviation > 0:
-        if len(robot["wheels"]) == 2:  # a skid steer's base is not wider, it scrubs
+        if len(robot["wheels"]) == 2:  # a skid steer's wheels scrub
             own["wheel_base"] = truth.base * robot["wheel_base"]
         else:
             own["wheel_base_multiplier"] = truth.base * robot["wheel_base_multiplier"]
         estimator = {
             "radius_ratio": truth.ratio,
-            "radius_ratio_deviation": max(LEAST_RATIO, truth.ratio_deviation),
+            "radius_ratio_deviation": max(MIN_RATIO, truth.ratio_deviation),
             "wheel_base_factor": 1.0,
-            "wheel_base_deviation": max(LEAST_BASE, truth.base_deviation),
+            "wheel_base_deviation": max(MIN_BASE, truth.base_deviation),
         }
     return {"robot": own} | ({"state_estimator": estimator} if estimator else {})
 
@@ -278,8 +280,8 @@ def _warnings(straights: Sequence[Straight], squares: Sequence[Square], wheels: 
         errors = return_errors(squares, wheels, truth)
         clockwise = np.array([square.clockwise for square in squares])
         spread = max(
-            float(np.linalg.norm(errors[way] - errors[way].mean(axis=0), axis=1).max())
-            for way in (clockwise, ~clockwise)
+            float(np.linalg.norm(errors[direction] - errors[direction].mean(axis=0), axis=1).max())
+            for direction in (clockwise, ~clockwise)
         )
         before = largest_mean_return_error(squares, wheels, Truth())
         if spread > max(0.03, before):

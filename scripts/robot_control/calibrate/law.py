@@ -1,6 +1,7 @@
-"""What driven distances and squares say of the wheels: common radius, ratio of the radii, wheel base. numpy alone.
+"""Computes common radius, ratio of the radii and wheel base from driven distances and squares. It needs numpy alone.
 
-Wheel odometry uses the nominal radius R and wheel base b; truly left and right roll s·c_l·R and s·c_r·R over a base of
+Wheel odometry uses the nominal radius R and wheel base b. In truth the left and right wheels roll s·c_l·R and s·c_r·R
+over a base of
 E_b·b. With E_d = right over left radius and the mean radius in s (Borenstein & Feng, "Measurement and
 Correction of Systematic Odometry Errors in Mobile Robots", IEEE Trans. Robotics and Automation 12(6), 1996):
 
@@ -11,15 +12,15 @@ Each step of the path of wheel odometry, Δs and Δθ, is then in truth
     left = Δs − Δθ·b/2     right = Δs + Δθ·b/2
     Δs'  = s·(c_l·left + c_r·right)/2      Δθ' = s·(c_r·right − c_l·left)/(E_b·b)
 
-and integrating that says where the robot really is (`replay`). s, E_d and E_b are those for which this agrees with the
-tape: the length of straight drives, the place to which squares driven both ways return. Least squares by Gauss-Newton
-on the exact arcs, so large errors, round corners and a square that did not close by odometry do no harm.
+`replay` integrates that to the robot's true path. s, E_d and E_b are fitted until this path agrees with the tape. The
+tape measures the length of straight drives, and the place to which squares driven both ways return. Gauss-Newton
+minimises the squares on the exact arcs, so large errors, round corners and an open square do no harm.
 
-Only straight drives separate the common radius from the wheel base: squares see E_b/s. Without straight
-drives s is 1.
+Only straight drives separate the common radius from the wheel base, because squares show E_b/s. Without straight drives
+s is 1.
 
-The authors' own formulas for small errors are `umbmark`. On a square of side L, α is what every quarter turn lacks, β
-what every side turns to the left. Adding the four sides' displacements to first order, a return of
+`umbmark` has the authors' own formulas for small errors. On a square of side L, every quarter turn lacks α, and every
+side turns to the left by β. Adding the four sides' displacements to first order, a return of
 
     clockwise          x =  y = −2L(α + β)
     counter-clockwise  x = −y = −2L(α − β)
@@ -45,12 +46,13 @@ TAPE = 0.003
 """m, standard deviation of one reading: half a finger's width, on marks on a floor"""
 ITERATIONS = 30
 TOLERANCE = 1e-10
-LONGEST_STEP = 0.02
-"""Of Gauss-Newton, of each factor: on a side of 4 m even so much makes another path of a square"""
+MAX_STEP = 0.02
+"""A step of Gauss-Newton changes each factor by at most this much. On a side of 4 m even this gives a different path of
+a square."""
 
 
 class NotCalibratedError(ValueError):
-    """The measurements do not say it; the message says why and what to do."""
+    """The measurements do not determine the wheels; the message names the reason and the remedy."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +60,7 @@ class Wheels:
     """The nominal geometry of wheel odometry."""
 
     wheel_base: float  # m, effective
-    axle: tuple[float, float] = (0.0, 0.0)  # m, middle of the wheels in the axes of the frame that odometry is of
+    axle: tuple[float, float] = (0.0, 0.0)  # m, middle of the wheels in the axes of odometry's child frame
 
 
 @dataclass(frozen=True)
@@ -74,13 +76,13 @@ class Square:
     """One closed path."""
 
     path: FloatArray  # (n, 3)
-    measured: tuple[float, float]  # m, where the middle of the wheels came to: ahead of and to the left of the start
+    measured: tuple[float, float]  # m, end of the middle of the wheels: ahead, to the left of the start
     clockwise: bool
 
 
 @dataclass(frozen=True)
 class Truth:
-    """What the wheels are, relative to their nominal values; and standard deviations, 0: not measured, so held."""
+    """The true wheels relative to their nominal values, with standard deviations; 0 means not measured."""
 
     scale: float = 1.0  # mean radius
     ratio: float = 1.0  # E_d, right over left radius
@@ -96,7 +98,7 @@ def sides(ratio: float) -> tuple[float, float]:
 
 
 def of_axle(path: FloatArray, axle: tuple[float, float]) -> FloatArray:
-    """The path of the middle of the wheels, where `path` is that of a frame in whose axes it lies at `axle`."""
+    """The path of the middle of the wheels, which lies at `axle` in the axes of the frame that follows `path`."""
     x, y, yaw = np.asarray(path, float).T
     cosine, sine = np.cos(yaw), np.sin(yaw)
     return np.column_stack([x + cosine * axle[0] - sine * axle[1], y + sine * axle[0] + cosine * axle[1], yaw])
@@ -112,7 +114,7 @@ def steps(path: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def replay(path: FloatArray, wheels: Wheels, truth: Truth) -> FloatArray:
-    """(n, 3): where the middle of the wheels truly was, seen from where it began."""
+    """(n, 3): the true path of the middle of the wheels, seen from its start."""
     advance, turn = steps(of_axle(path, wheels.axle))
     left, right = sides(truth.ratio)
     left *= truth.scale
@@ -129,7 +131,7 @@ def replay(path: FloatArray, wheels: Wheels, truth: Truth) -> FloatArray:
 
 
 def return_errors(squares: Sequence[Square], wheels: Wheels, truth: Truth) -> FloatArray:
-    """(n, 2) m: measured minus calculated, what UMBmark calls ε."""
+    """(n, 2) m: measured minus calculated return; UMBmark calls it ε."""
     return np.array([np.array(square.measured) - replay(square.path, wheels, truth)[-1, :2] for square in squares])
 
 
@@ -137,11 +139,12 @@ def largest_mean_return_error(squares: Sequence[Square], wheels: Wheels, truth: 
     """m, E_max,syst: the longer of the two directions' mean ε."""
     errors = return_errors(squares, wheels, truth)
     clockwise = np.array([square.clockwise for square in squares])
-    return max(float(np.linalg.norm(errors[way].mean(axis=0))) for way in (clockwise, ~clockwise) if way.any())
+    directions = (rows for rows in (clockwise, ~clockwise) if rows.any())
+    return max(float(np.linalg.norm(errors[rows].mean(axis=0))) for rows in directions)
 
 
 def fit(straights: Sequence[Straight], squares: Sequence[Square], wheels: Wheels) -> Truth:
-    """Scale from straight drives, ratio and base from squares both ways, each where there are any.
+    """Fits the scale to straight drives, and ratio and base to squares both ways, if there are any.
 
     Raises:
         NotCalibratedError: nothing was measured, squares go one way only, or the numbers fit no robot.
@@ -168,7 +171,7 @@ def fit(straights: Sequence[Straight], squares: Sequence[Square], wheels: Wheels
     for _ in range(ITERATIONS):
         at = residual(values)
         jacobian = _jacobian(residual, values, index)
-        step = np.clip(np.linalg.lstsq(jacobian, -at, rcond=None)[0], -LONGEST_STEP, LONGEST_STEP)
+        step = np.clip(np.linalg.lstsq(jacobian, -at, rcond=None)[0], -MAX_STEP, MAX_STEP)
         values[index] += step
         if np.abs(step).max() < TOLERANCE:
             break
@@ -182,7 +185,7 @@ def fit(straights: Sequence[Straight], squares: Sequence[Square], wheels: Wheels
 
 
 def _jacobian(residual: Callable[[FloatArray], FloatArray], values: FloatArray, index: NDArray[np.intp]) -> FloatArray:
-    """By central differences of 1e-6: the law is smooth, and its second derivatives are of order one."""
+    """The Jacobian by central differences of 1e-6: the law is smooth, and its second derivatives are of order one."""
     columns = []
     for one in index:
         up, down = values.copy(), values.copy()
@@ -193,7 +196,7 @@ def _jacobian(residual: Callable[[FloatArray], FloatArray], values: FloatArray, 
 
 
 def _deviations(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
-    """Standard deviations by the residuals' spread, which is never taken for less than that of a tape."""
+    """Standard deviations from the spread of the residuals, which is taken to be at least that of a tape."""
     freedom = len(residual) - jacobian.shape[1]
     variance = max(TAPE**2, float(residual @ residual) / freedom if freedom > 0 else 0.0)
     return np.asarray(np.sqrt(variance * np.diag(np.linalg.inv(jacobian.T @ jacobian))))
@@ -201,7 +204,7 @@ def _deviations(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class Umbmark:
-    """The authors' two errors, of a robot that drove squares by its wheels."""
+    """The authors' two errors for a robot that drove squares by its wheels."""
 
     alpha: float  # rad that a quarter turn lacks
     beta: float  # rad that a side turns to the left
@@ -210,7 +213,7 @@ class Umbmark:
 
 
 def umbmark(clockwise: FloatArray, counter_clockwise: FloatArray, side: float, wheel_base: float) -> Umbmark:
-    """From return errors ε, (n, 2) m each way, of squares of `side` m."""
+    """Computes the errors from returns ε, (n, 2) m each way, on squares of `side` m."""
     x_cw, y_cw = np.mean(clockwise, axis=0)
     x_ccw, y_ccw = np.mean(counter_clockwise, axis=0)
     together = -(x_cw + y_cw) / (4 * side)  # α + β

@@ -1,4 +1,4 @@
-"""calibrate.py's ROS side: asks, drives, follows the wheels, and stops whenever something is not as planned."""
+"""The ROS side of calibrate.py asks, drives, follows the wheels, and stops whenever something is not as planned."""
 
 from __future__ import annotations
 
@@ -50,9 +50,9 @@ PERIOD = 0.05
 SILENCE = 1.0
 """s without wheel_odom, which comes 50 times a second"""
 JUMP = 0.3
-"""m between two messages of wheel_odom, at most one of a reset or another run: 15 m/s at its 50 Hz"""
-LEAST_WAY = 0.3
-"""m; half of the shortest drive, beyond what a robot creeps"""
+"""m between two messages of wheel_odom; a larger step is a reset or another run: 15 m/s at 50 Hz"""
+MIN_DISTANCE = 0.3
+"""m; half of the shortest drive, and more than a robot creeps"""
 STANDSTILL = 0.5
 """s of standing before a pose is read: the body has stopped rocking"""
 ESTIMATOR = "state_estimator"
@@ -65,7 +65,7 @@ REFUSALS = (RefusedError, NotCalibratedError, NoAnswerError, ParameterError, Rob
 
 @dataclass
 class Drive:
-    """One measurement: what happens, and where it may happen."""
+    """One measurement: its moves, and the area in which they may happen."""
 
     what: str
     moves: Sequence[Move]
@@ -74,7 +74,7 @@ class Drive:
     right: float  # m
 
     def astray(self, start: Pose, here: Pose) -> str:
-        """Why the robot may not be there; empty: it may."""
+        """Why the robot may not be here; empty if it may."""
         ahead, left = here.seen_from(start)
         beside = margin(self.ahead)
         if -beside <= ahead <= self.ahead + beside and -self.right - beside <= left <= self.left + beside:
@@ -147,7 +147,7 @@ class Wizard:
         return Square(path, measured, clockwise)
 
     def _driven(self, drive: Drive, title: str) -> tuple[FloatArray, tuple[float, float]]:
-        """Path by wheel odometry, and where the middle of the wheels truly came to (simulation; else zero)."""
+        """The path by wheel odometry, and the true end of the middle of the wheels (in simulation; else zero)."""
         if not self.options.truth:
             print(MARKS)
         self._permission(f"{title}: ready?")
@@ -162,7 +162,7 @@ class Wizard:
         self._rest()
         path = self.robot.path()
         hops = np.linalg.norm(np.diff(path[:, :2], axis=0), axis=1)
-        if hops.sum() < LEAST_WAY:
+        if hops.sum() < MIN_DISTANCE:
             raise RefusedError(f"{title}: the wheels have not turned")
         if hops.max() > JUMP:
             raise RefusedError(
@@ -183,7 +183,7 @@ class Wizard:
         return self.robot.truth
 
     def _follow(self, drive: Drive) -> None:
-        """Drives it; whatever happens, a zero is the last thing sent."""
+        """Drives the measurement; the last message is a zero, whatever happens."""
         robot, pilot = self.robot, Pilot(drive.moves, self.options.speed, self.options.turn_speed)
         start = robot.look().pose or Pose(0.0, 0.0, 0.0)  # hindrance has seen one
         received, received_at = robot.received, time.monotonic()
@@ -209,7 +209,7 @@ class Wizard:
             robot.send(0, 0)
 
     def _rest(self) -> None:
-        """Until it stands."""
+        """Waits until the robot stands."""
         end = time.monotonic() + 20 * STANDSTILL
         since = time.monotonic()
         while time.monotonic() - since < STANDSTILL:

@@ -1,7 +1,7 @@
-"""How calibrate.py drives: straight lines and squares by wheel odometry, pure.
+"""calibrate.py drives straight lines and squares by wheel odometry with these moves, which know no ROS.
 
-A pilot is asked with every pose and answers with a velocity. It need not be exact: what was driven is measured, not
-what was planned. So it is simple: proportional, with the cruise speed as a ceiling.
+A pilot receives every pose and answers with a velocity. It need not be exact, because calibrate.py measures what was
+driven, not what was planned. A proportional law with the cruise speed as a ceiling suffices.
 
     on a line  v = clip(creep + k·(rest of the path)),  ω = −k_θ·(heading error) − k_y·(m to the left of the line)
     corner     ω = ±clip(creep_ω + k·|rest of the turn|),  v = 0
@@ -28,7 +28,7 @@ REST = 0.6  # s of zero between two moves: the body stops rocking
 
 @dataclass(frozen=True)
 class Line:
-    """From `begin` to `length` m ahead of it; poses in the frame of the run's start."""
+    """A straight line from `begin` to `length` m ahead of it; poses in the frame of the run's start."""
 
     begin: Pose
     length: float  # m
@@ -36,7 +36,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Corner:
-    """On the spot, to this heading."""
+    """A turn on the spot to this heading."""
 
     yaw: float  # rad, in the frame of the run's start
     left: bool
@@ -63,7 +63,7 @@ def square(side: float, *, clockwise: bool) -> list[Move]:
 
 
 class Pilot:
-    """Follows moves from where it is asked first."""
+    """Follows moves from the pose at the first call of `command`."""
 
     def __init__(self, moves: Sequence[Move], speed: float, turn_speed: float) -> None:
         """`speed` m/s, `turn_speed` rad/s: ceilings."""
@@ -76,12 +76,12 @@ class Pilot:
 
     @property
     def done(self) -> bool:
-        """All moves are over, and so is the rest after the last one."""
+        """True when all moves and the rest after the last one are over."""
         return self._number >= len(self._moves) and self._rest_until == 0.0
 
     @property
     def number(self) -> int:
-        """Moves that are over."""
+        """Number of moves that are over."""
         return self._number
 
     def command(self, pose: Pose, time: float) -> tuple[float, float]:
@@ -119,5 +119,5 @@ class Pilot:
 
 
 def _wrap(angle: float) -> float:
-    """Into (−π, π]."""
+    """The same angle in (−π, π]."""
     return math.pi - (math.pi - angle) % (2 * math.pi)

@@ -1,4 +1,4 @@
-"""calibrate.py's view of a running robot: what identify.py sees, the path of its wheels, in simulation truth."""
+"""calibrate.py sees a running robot as identify.py does, and adds the wheels' path and the simulated truth."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from robot_control.identify.robot import RunningRobot
 
 
 class CalibratedRobot(RunningRobot):
-    """Receives wheel_odom, too."""
+    """Receives wheel_odom as well."""
 
     def __init__(self, *, sends: bool = True) -> None:
         super().__init__(sends=sends)
@@ -26,7 +26,7 @@ class CalibratedRobot(RunningRobot):
         ]
 
     def begin(self) -> None:
-        """A path begins here."""
+        """Begins a new path."""
         del self._path[:-1]
 
     def path(self) -> FloatArray:
@@ -35,12 +35,12 @@ class CalibratedRobot(RunningRobot):
 
     @property
     def wheels(self) -> Pose | None:
-        """By wheel odometry, now."""
+        """The present pose by wheel odometry."""
         return Pose(*self._path[-1]) if self._path else None
 
     @property
     def truth(self) -> Pose | None:
-        """Of the simulation; None: it is not published."""
+        """The true pose in simulation; None if it is not published."""
         return self._truth
 
     def _receive_wheels(self, message: Odometry) -> None:

@@ -1,1 +1,1 @@
-"""What several of the programs use: files, logs, topics and the terminal."""
+"""Files, logs, topics and the terminal, as several of the programs use them."""

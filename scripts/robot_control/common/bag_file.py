@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from robot_control._robot_control import BagError, BagReader
-from robot_control.common.files import LARGEST_TABLE, check_input, printable, utf8
+from robot_control.common.files import MAX_TABLE, check_input, printable, utf8
 
 
 class BagFileError(ValueError):
-    """A bag that is not read; the message names it, with byte and field where its structure is not sound."""
+    """The bag is not read; the message names it, with byte and field where its structure is not sound."""
 
 
 class BagFile:
@@ -34,7 +34,7 @@ class BagFile:
             BagFileError: it is no sound bag.
             OSError: it cannot be opened.
         """
-        check_input(path, LARGEST_TABLE)
+        check_input(path, MAX_TABLE)
         with path.open("rb"):
             pass
         self._path = path
@@ -47,18 +47,18 @@ class BagFile:
             raise BagFileError(f"{path} holds no message that can be read: {self.cut}")
         self.topics = {}
         self._connections: dict[str, dict[int, str]] = {}  # md5sum by number, by topic
-        for number, of in self._reader.connections.items():
-            topic, kind = self._word(of["topic"]), self._word(of["type"])
+        for number, fields in self._reader.connections.items():
+            topic, kind = self._word(fields["topic"]), self._word(fields["type"])
             if self.topics.setdefault(topic, kind) != kind:
                 raise BagFileError(f"{path}: {printable(topic)} has messages of two types")
-            self._connections.setdefault(topic, {})[number] = self._word(of["md5sum"])
+            self._connections.setdefault(topic, {})[number] = self._word(fields["md5sum"])
 
     def raw(self, topics: Iterable[str]) -> Iterator[tuple[str, int, bytes]]:
         """Topic, time of reception [ns] and serialized message, in the order of the file."""
-        of = {number: topic for topic in topics for number in self._connections[topic]}
+        topic_of = {number: topic for topic in topics for number in self._connections[topic]}
         for chunk in range(self._reader.chunks):
-            for number, time_ns, data in self._reader.messages(chunk, set(of)):
-                yield of[number], time_ns, data
+            for number, time_ns, data in self._reader.messages(chunk, set(topic_of)):
+                yield topic_of[number], time_ns, data
 
     def messages(self, topic: str) -> Iterator[tuple[Any, int]]:
         """Message and time of reception [ns].

@@ -9,6 +9,6 @@ from robot_control.common.signal_names import bits_in
 
 
 def causes_in(column: NDArray[np.float64]) -> list[str]:
-    """Names of all that ever stood in it, lowest bit first; NaN, where the monitor published nothing, is none."""
+    """Names of all bits that were ever set in it, lowest first; a NaN, which stands for no message, has none."""
     found = int(np.bitwise_or.reduce(column[~np.isnan(column)].astype(np.int64), initial=0))
     return [cause.name for cause in bits_in("StopCause", found)]

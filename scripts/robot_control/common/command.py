@@ -18,15 +18,15 @@ class Command:
 
 
 class Pace:
-    """Sends a command when it changes, and again every SEND_PERIOD."""
+    """Publishes a command when it changes, and again every SEND_PERIOD."""
 
     def __init__(self, send: Callable[[float, float], None]) -> None:
         self._send = send
-        self.last: Command | None = None  # of the last look; None: there was nothing to send
+        self.last: Command | None = None  # command at the last call; None: there was nothing to send
         self.sent_at: float | None = None  # s, as `now`
 
     def look(self, command: Command | None, now: float) -> None:
-        """What is commanded now; None: nothing."""
+        """Updates the pace with the present command; None means that nothing is commanded."""
         due = self.sent_at is None or now - self.sent_at >= SEND_PERIOD
         if command is not None and (due or command != self.last):
             self._send(command.linear, command.angular)

@@ -1,8 +1,8 @@
-"""Where a program's commands go: to its source's topic where the robot has a list of command sources, else to
+"""Sends a program's commands to the topic of its source if the robot has a list of command sources, else to
 cmd_vel_stamped.
 
-Both topics are advertised; the controller subscribes to its sources alone, and that decides. Nothing is sent on the
-other one.
+Both topics are advertised. The controller subscribes to its sources alone, and that decides; the other topic stays
+silent.
 """
 
 import rospy
@@ -15,7 +15,7 @@ CONTROLLER = "diff_drive_controller"
 
 
 class CommandTopic:
-    """`source`: the topic of the program's source, for instance key_vel."""
+    """Sends to the topic `source` of the program, for instance key_vel."""
 
     def __init__(self, source: str) -> None:
         self._publishers = [
@@ -26,12 +26,12 @@ class CommandTopic:
 
     @property
     def name(self) -> str:
-        """Absolute, of the topic that is used now."""
+        """Absolute name of the topic that is used now."""
         name: str = self._publishers[self._chosen()].resolved_name
         return name
 
     def send(self, linear: float, angular: float) -> None:
-        """m/s, rad/s; stamped now."""
+        """Sends m/s and rad/s, stamped now."""
         message = TwistStamped()
         message.header.stamp = rospy.Time.now()
         message.twist.linear.x, message.twist.angular.z = linear, angular
@@ -39,7 +39,7 @@ class CommandTopic:
 
     @property
     def connected(self) -> bool:
-        """The controller takes what is sent."""
+        """True if the controller receives what is sent."""
         return self._reaches(0) or self._reaches(1)
 
     def _chosen(self) -> int:

@@ -16,7 +16,7 @@ LARGEST_TABLE = 16 << 30
 """bytes of a log, a CSV or a bag"""
 LARGEST_ECHO = 200
 """characters of any one input in a message"""
-LARGEST_MESSAGE = 1500
+MAX_MESSAGE = 1500
 """characters of a sentence with several inputs in it"""
 
 _KINDS = (
@@ -32,8 +32,8 @@ class InputFileError(ValueError):
     """A path that is no file to read; the message names it."""
 
 
-def check_input(path: Path, most: int) -> None:
-    """Regular files of at most `most` bytes are read, nothing else: a device has no end, a FIFO none to wait for.
+def check_input(path: Path, max_size: int) -> None:
+    """Accepts regular files of at most `max_size` bytes alone: a device has no end, and a FIFO may have no writer.
 
     Raises:
         InputFileError: it is none.
@@ -43,8 +43,8 @@ def check_input(path: Path, most: int) -> None:
     for is_kind, kind in _KINDS:
         if is_kind(status.st_mode):
             raise InputFileError(f"{path} is {kind}; only a regular file is read")
-    if status.st_size > most:
-        raise InputFileError(f"{path} has {status.st_size} bytes; at most {most} are read")
+    if status.st_size > max_size:
+        raise InputFileError(f"{path} has {status.st_size} bytes; at most {max_size} are read")
 
 
 def utf8(text: str | bytes | os.PathLike[str] | os.PathLike[bytes]) -> str:
@@ -61,9 +61,9 @@ def utf8(text: str | bytes | os.PathLike[str] | os.PathLike[bytes]) -> str:
     return name
 
 
-def printable(text: str, most: int = LARGEST_ECHO) -> str:
-    """Text from outside for a message: at most `most` characters of it, those that do not print as escapes."""
-    return escaped(text[:most]) + ("…" if len(text) > most else "")
+def printable(text: str, max_length: int = MAX_ECHO) -> str:
+    """Text from outside for a message: at most `max_length` characters of it, those that do not print as escapes."""
+    return escaped(text[:max_length]) + ("…" if len(text) > max_length else "")
 
 
 def escaped(line: str) -> str:
@@ -89,7 +89,7 @@ def fit_for_message(sentence: str) -> str:
 def _fit_line(line: str) -> str:
     result, at = "", 0
     while at < len(line):
-        if len(result) > LARGEST_MESSAGE:
+        if len(result) > MAX_MESSAGE:
             return result + " …"
         if line[at] == " ":
             result += " "
@@ -108,18 +108,18 @@ def _end_of_part(line: str, at: int) -> int:
 
 
 class NewFiles:
-    """Files that get their content when the block ends well, all of them; otherwise they stay as they were.
+    """New files receive their content only if the block ends without an exception; otherwise all stay as they were.
 
     Nothing and regular files are replaced by a temporary file beside them, which has the old one's mode and owner. A
-    symbolic link holds for the file that it leads to. A device, a FIFO or a socket is written to, never replaced; so is
-    a file whose owner cannot be kept.
+    symbolic link is followed to its file. A device, a FIFO or a socket is written to, never replaced; so is a file
+    whose owner cannot be kept.
     """
 
     def __init__(self) -> None:
         self._names: list[tuple[Path, Path]] = []
 
     def name(self, final: Path) -> Path:
-        """Where to write what will be `final`.
+        """The path to write instead of `final` until the block ends.
 
         Raises:
             OSError: nothing can be written there.
@@ -157,8 +157,8 @@ class NewFiles:
             raise named from error
 
     def _named(self, error: OSError) -> OSError:
-        """The same error with the names that the user gave: that of a temporary file means nothing to him, and that of
-        a full disk has none.
+        """The same error with the names that the user gave. A temporary file's name means nothing to a user, and the
+        error of a full disk has none.
         """
         given = {str(partial): str(target) for partial, target in self._names}
         if error.errno is None or (error.filename is not None and error.filename not in given):

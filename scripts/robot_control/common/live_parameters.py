@@ -9,14 +9,14 @@ CONTROLLER = "diff_drive_controller"
 
 
 class LiveParameters:
-    """The newest ones; none until they are received."""
+    """The newest parameters; there are none until a message arrives."""
 
     def __init__(self) -> None:
         self._values: dict[str, float] = {}
         rospy.Subscriber(f"{CONTROLLER}/parameter_updates", Config, self._receive, queue_size=1)
 
     def value(self, name: str, default: float) -> float:
-        """In force; `default`: it is not known."""
+        """The value in force, or `default` if it is not known."""
         return self._values.get(name, default)
 
     @property

@@ -1,4 +1,4 @@
-"""The files that a program will write, looked at before its work: minutes of driving are not lost to a typing error."""
+"""Checks the files that a program will write before its work, so that a typing error costs no minutes of driving."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 
 def check_outputs(outputs: Sequence[Path | None], inputs: Sequence[Path | None] = ()) -> None:
-    """None: not named by the user.
+    """Checks the outputs; None stands for a file that the user did not name.
 
     Raises:
         ValueError: one of the outputs cannot be written, is one of the inputs, or is named twice.

@@ -9,7 +9,7 @@ from robot_control.common.output_files import check_outputs
 
 
 def check_picture(path: Path, inputs: Sequence[Path | None] = ()) -> None:
-    """Before the work that is drawn.
+    """Checks the file before the work whose result is drawn.
 
     Raises:
         ValueError: no picture can be written there, or it is one of the inputs.

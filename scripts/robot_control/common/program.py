@@ -1,4 +1,4 @@
-"""The outermost call of a program: each line is written at once, and an output that fails is no traceback."""
+"""The outermost call of a program writes each line at once, and reports an output that fails without a traceback."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ def run(main: Callable[[], int | None]) -> None:
 
     A line that is printed reaches a file or a pipe at once, not when Python's buffer is full.
 
-    Where the reader of the output has left, as after `| head`, the program ends as SIGPIPE ends others: without a word,
-    with 141. An output that cannot be written, and any other OSError, is one message and exit code 1.
+    If the reader of the output has left, as after `| head`, the program ends silently with 141, as SIGPIPE ends others.
+    An output that cannot be written, and any other OSError, is one message and exit code 1.
     """
     if isinstance(sys.stdout, io.TextIOWrapper):  # it is None after `>&-`
         sys.stdout.reconfigure(line_buffering=True)
@@ -39,6 +39,6 @@ def run(main: Callable[[], int | None]) -> None:
 
 
 def _discard_output() -> None:
-    """What is still in Python's buffer would fail again at the end."""
+    """Python would try to write the rest of its buffer again at the end, and fail again."""
     with contextlib.suppress(OSError, ValueError, AttributeError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -9,7 +9,7 @@ from robot_control._robot_control import project_folder
 
 
 def use_packages(section: str) -> None:
-    """Makes what `scripts/setup --SECTION` has installed importable, where it has."""
+    """Makes the packages importable that `scripts/setup --SECTION` has installed, if there are any."""
     packages = Path(project_folder, "build", section, "lib")
     for path in map(str, packages.glob("python3.*/site-packages")):
         if path not in sys.path:

@@ -30,7 +30,7 @@ def require_master() -> None:
 
 
 def living(node: str) -> bool:
-    """A node of this name (absolute) is known to the master and answers."""
+    """True if a node of this name (absolute) is known to the master and answers."""
     try:
         master: Any = xmlrpc.client.ServerProxy(rosgraph.get_master_uri(), transport=_Transport())
         known, _, uri = master.lookupNode(node, node)
@@ -51,7 +51,7 @@ class Master:
         self._proxy = xmlrpc.client.ServerProxy(self.uri, transport=_Transport())
 
     def state(self) -> Sequence[Any] | None:
-        """Publishers, subscribers and servers; None where it does not answer."""
+        """Publishers, subscribers and servers; None if the master does not answer."""
         try:
             answer: Any = self._proxy.getSystemState(self._own)
         except (OSError, xmlrpc.client.Error, http.client.HTTPException, ValueError):

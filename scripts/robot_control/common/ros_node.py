@@ -15,8 +15,8 @@ from robot_control.common.topic_sender import Signals, ended_by_signals
 def begin_node(name: str, *, anonymous: bool = False) -> None:
     """`rospy.init_node`; ends the program without a traceback where SIGINT or SIGTERM came before it was done.
 
-    A node that lives under this name is not replaced, as the master would: it may be driving the robot, or another
-    program relies on it. This one ends with a message instead.
+    A running node of this name is not replaced, although the master would do so. It may be driving the robot, or
+    another program may rely on it. This program ends with a message instead.
     """
     if not anonymous:
         own = _resolved(name)
@@ -43,6 +43,6 @@ def running_node(name: str) -> Iterator[Signals]:
 
 
 def _resolved(name: str) -> str:
-    """As `init_node` does, with __name and __ns of the command line."""
+    """Resolves the name as `init_node` does, with __name and __ns of the command line."""
     given = rosgraph.names.load_mappings(sys.argv).get("__name", name)
     return str(rosgraph.names.ns_join(rosgraph.names.get_ros_namespace(argv=sys.argv), given))

@@ -25,11 +25,11 @@ columns and their units; `ClosedLoop.run` gives the same columns."""
 
 
 class LogError(ValueError):
-    """The file is not a log, or holds no rows."""
+    """The file is no log, or holds no rows."""
 
 
 class Columns(dict[str, FloatArray]):
-    """`Log` of a file: a column that is asked for and is not there is an error of the file."""
+    """The `Log` of a file; a missing column that is asked for is reported as an error of the file."""
 
     def __init__(self, path: Path, columns: Mapping[str, FloatArray]) -> None:
         super().__init__(columns)
@@ -41,7 +41,7 @@ class Columns(dict[str, FloatArray]):
 
 @dataclass(frozen=True)
 class RunLog:
-    """A log with what stands around its rows."""
+    """A log with the data that describe its rows."""
 
     columns: dict[str, FloatArray]
     """Of the last run; as `Log`."""
@@ -51,21 +51,21 @@ class RunLog:
     """Of run.bag: robot, joints, wheels, period, clock, record, part, parameters, urdf, scene, calibration, version,
     build, host, kernel, processor, libraries, missing, as msg/TraceHeader.msg says."""
     runs: int
-    """In the file."""
+    """Number of runs in the file."""
     lost: int
     """Rows that telemetry counted as lost before the last one in the file."""
     cut: str
-    """Which part of a file that was not completed could be read; empty: it is whole."""
+    """The part that could be read of a file that was not completed; empty if the file is whole."""
 
     @property
     def notes(self) -> list[str]:
-        """Sentences: which part of the file is here, where it is not all of it."""
+        """Sentences that name the part of the file that was read, if it is not all of it."""
         parts = [part for part in (self.header.get("missing"), self.cut) if part]
         return [*parts, *notes_on_runs(self.runs)]
 
 
 def notes_on_runs(runs: int) -> list[str]:
-    """For a file that holds so many, of which the last one was read."""
+    """The note for a file with several runs, of which the last one was read."""
     return [f"{runs} runs in the file; this is the last one"] if runs > 1 else []
 
 
@@ -76,7 +76,7 @@ def is_bag(path: Path) -> bool:
         InputFileError, OSError: it is no file to read.
         LogError: it is a black box.
     """
-    check_input(path, LARGEST_TABLE)
+    check_input(path, MAX_TABLE)
     with path.open("rb") as file:
         begin = file.read(len(BAG_MAGIC))
     if begin == BLACK_BOX_MAGIC:

@@ -1,4 +1,4 @@
-"""What a tool that drives a running robot needs first: its parameters, other senders, whether all nodes run."""
+"""A tool that drives a running robot first needs its parameters, the other senders, and whether all nodes run."""
 
 from __future__ import annotations
 
@@ -26,13 +26,14 @@ State = Sequence[Sequence[tuple[str, Sequence[str]]]]
 
 
 class RefusedError(RuntimeError):
-    """It cannot be begun, or had to end; the message says why."""
+    """The drive cannot begin, or had to end; the message names the reason."""
 
 
 @contextmanager
 def running_settings(tool: str, node: str, without_master: str, in_simulated_time: str) -> Iterator[Settings]:
-    """Becomes the ROS node `tool`; the parameters of the running `node`: file, server, robot_description, as it reads
-    them. The last two are what else can be done where there is no master, or no wall clock.
+    """Becomes the ROS node `tool` and yields the parameters of the running `node` as it reads them: file, server,
+    robot_description. `without_master` and `in_simulated_time` name the alternative if there is no master, or no wall
+    clock.
 
     Raises:
         RefusedError: there is no robot that could be driven.
@@ -60,14 +61,14 @@ def running_settings(tool: str, node: str, without_master: str, in_simulated_tim
 
 
 def await_all(condition: Callable[[], bool], signals: Signals) -> None:
-    """Until it holds, at most TIMEOUT."""
+    """Waits until the condition holds, at most TIMEOUT."""
     end = time.monotonic() + TIMEOUT
     while not condition() and time.monotonic() < end and signals.going_on():
         time.sleep(0.02)
 
 
 def master_state() -> State:
-    """What the master knows.
+    """The master's lists of publishers, subscribers and services.
 
     Raises:
         RefusedError: it does not answer.
@@ -79,5 +80,5 @@ def master_state() -> State:
 
 
 def other_senders(state: State) -> tuple[str, ...]:
-    """Nodes but this one that may send commands."""
+    """Other nodes that may send commands."""
     return senders_of(state[0], map(rospy.resolve_name, COMMAND_TOPICS), rospy.get_name())

@@ -10,7 +10,7 @@ from robot_control.common.files import printable
 
 
 class ServerValueError(ValueError):
-    """A value of a type that no reader of it takes; the message names it, its value, the rule and the remedy."""
+    """A value has a type that no reader accepts; the message names it, its value, the rule and the remedy."""
 
 
 def server_text(name: str, rule: str) -> str:

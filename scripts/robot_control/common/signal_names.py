@@ -18,16 +18,16 @@ class BitName:
     sentence: str
     remedy: str = ""
     unit: str = ""
-    """of the measurement that goes with it"""
+    """unit of the measurement that belongs to the bit"""
 
 
 def states(kind: str) -> list[str]:
-    """In the order of their numbers."""
+    """Names of the states in the order of their numbers."""
     return list(_ALL[kind])
 
 
 def number_of(kind: str, name: str) -> int:
-    """Of a state."""
+    """Number of a state."""
     return states(kind).index(name)
 
 
@@ -38,16 +38,16 @@ def mask_of(kind: str, *names: str) -> int:
 
 
 def bits(kind: str) -> list[BitName]:
-    """Lowest first."""
+    """All bits, the lowest first."""
     return [BitName(*row) for row in _ALL[kind]]
 
 
 def bit(kind: str, number: int) -> BitName:
-    """A log may hold bits of a later version."""
+    """The bit of this number, which may be that of a later version of the log."""
     known = bits(kind)
     return known[number] if number < len(known) else BitName(f"bit {number}", "unknown to this version")
 
 
 def bits_in(kind: str, value: int) -> list[BitName]:
-    """Of all bits that are set."""
+    """All bits that are set in `value`."""
     return [bit(kind, number) for number in range(value.bit_length()) if value >> number & 1]

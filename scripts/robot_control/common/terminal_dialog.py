@@ -1,4 +1,4 @@
-"""Questions on a terminal that a signal can interrupt: input() would go on waiting after Ctrl-C is only noted."""
+"""Questions on a terminal that a signal can interrupt; input() would go on waiting after Ctrl-C was only noted."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Questions:
         return text.decode(errors="replace").strip()
 
     def yes(self, question: str) -> bool:
-        """Until y or n was typed."""
+        """Asks until y or n was typed."""
         while True:
             word = self.line(f"{question} [y/n]").lower()
             if word in ("y", "yes"):
@@ -55,7 +55,7 @@ class Questions:
             print("  y or n, please")
 
     def value(self, question: str, read: Callable[[str], Answer], objection: Callable[[Answer], str]) -> Answer:
-        """Until one was typed that `read` takes (else ValueError) and that has no `objection`, or was typed twice."""
+        """Asks until `read` accepts an answer (else ValueError) that has no `objection`, or that was typed twice."""
         refused: Answer | None = None
         while True:
             try:

@@ -1,10 +1,10 @@
-"""A node that sends on a topic and ends properly: its last message is one that stops the robot, and it leaves.
+"""A node that sends on a topic and ends properly: its last message stops the robot before the node leaves.
 
     publish      queues; a thread of each connection writes later, and a node that ends closes its connections at once
     a signal     rospy shuts the node down inside the handler, while the main thread is in any call. If that is a call
                  to the master (every loginfo is one), the handler waits for that call's lock, which is never released
 
-Hence a signal is only noted here, the main thread ends the node, and the end waits until the last message is written.
+Hence a signal is only noted here. The main thread ends the node after the last message was written.
 """
 
 from __future__ import annotations
@@ -30,7 +30,9 @@ NUMBERS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class Publisher(Protocol):
-    """What is used of a rospy.Publisher; `impl.get_stats()[2]`: (id, bytes, messages written, connected) of each."""
+    """The part of rospy.Publisher that is used; `impl.get_stats()[2]`: (id, bytes, messages written, connected) of
+    each.
+    """
 
     impl: Any
 
@@ -39,7 +41,7 @@ class Publisher(Protocol):
 
 
 class Sender:
-    """Publishes until the node is shut down, for whatever reason; `last` is the last message then."""
+    """Publishes until the node is shut down, for whatever reason; the last message is then `last`."""
 
     def __init__(self, publisher: Publisher, last: object, said: Callable[[int], None] = lambda _: None) -> None:
         """`said` is called after the last message with the number of subscribers that were not sent it."""
@@ -61,7 +63,7 @@ class Sender:
 
 
 class Signals:
-    """SIGINT, SIGTERM and SIGHUP, noted; one that comes when the end has had its time ends the program as it is.
+    """Notes SIGINT, SIGTERM and SIGHUP. A signal after the time of the node's end is over ends the program at once.
 
     A SIGHUP that is ignored stays so (nohup).
     """
@@ -74,11 +76,11 @@ class Signals:
 
     @property
     def came(self) -> bool:
-        """One at least."""
+        """True if at least one signal came."""
         return self._came_at < math.inf
 
     def going_on(self) -> bool:
-        """No signal came, and the node is not being shut down."""
+        """True while no signal came and the node is not being shut down."""
         return not (self.came or rospy.core.is_shutdown_requested())
 
     def _note(self, number: int, _frame: FrameType | None) -> None:
@@ -91,7 +93,9 @@ class Signals:
 
 @contextlib.contextmanager
 def ended_by_signals() -> Iterator[Signals]:
-    """After init_node, in the main thread: the node lives as long as the block; then its last message is sent."""
+    """Lets the node live as long as the block and then sends its last message; call it after init_node in the main
+    thread.
+    """
     signals = Signals()
     try:
         yield signals
@@ -103,15 +107,16 @@ def ended_by_signals() -> Iterator[Signals]:
 
 
 def written(publisher: Publisher) -> dict[int, int]:
-    """Messages handed to the kernel, by connection that is open."""
+    """Number of messages handed to the kernel, by open connection."""
     return {connection: messages for connection, _, messages, is_open in publisher.impl.get_stats()[2] if is_open}
 
 
 def publish_last(publisher: Publisher, message: object, limit: float = LIMIT) -> int:
-    """Publishes and waits until all present subscribers were sent it; how many were not, within `limit` seconds.
+    """Publishes, waits until all present subscribers were sent it, and returns how many were not within `limit`
+    seconds.
 
-    Published twice: the first message written from now on may be one that a connection's thread had taken from its
-    queue, the second is this one.
+    The message is published twice: a connection's thread may have taken an earlier one from its queue. Then the first
+    message written from now on is that one, and the second is this one.
     """
     end = time.monotonic() + limit
     before = written(publisher)
@@ -127,6 +132,6 @@ def publish_last(publisher: Publisher, message: object, limit: float = LIMIT) ->
 
 
 def _behind(publisher: Publisher, before: dict[int, int], messages: int) -> int:
-    """Connections that were open then, still are, and have written fewer messages since."""
+    """Number of connections that were open then, are still open, and have written fewer messages since."""
     now = written(publisher)
     return sum(now[connection] < count + messages for connection, count in before.items() if connection in now)

@@ -1,4 +1,4 @@
-"""When the gate braked although the robot was to drive; table and picture of a run both say it from here."""
+"""Finds when the gate braked although the robot was to drive; the table and the picture of a run both use it."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ class Brake:
     begin: float  # s
     end: float  # s, of its last row
     cycles: int
-    reasons: tuple[str, ...]  # of all its cycles
+    reasons: tuple[str, ...]  # reasons of all its cycles
 
-    def describe(self, most: int = len(bits("GateReason"))) -> str:
-        """For a line of text, with at most so many reasons: 1 cycle, permit_expired."""
-        named = ", ".join(self.reasons[:most]) + (", ..." if len(self.reasons) > most else "")
+    def describe(self, max_reasons: int = len(bits("GateReason"))) -> str:
+        """One line of text with at most `max_reasons` reasons, for instance: 1 cycle, permit_expired."""
+        named = ", ".join(self.reasons[:max_reasons]) + (", ..." if len(self.reasons) > max_reasons else "")
         return f"{self.cycles} cycle{'s' if self.cycles != 1 else ''}, {named or 'no reason given'}"
 
 

@@ -1,4 +1,4 @@
-"""How punctual was the loop? Reported, never judged: the machine may be shared."""
+"""Measures how punctual the loop was. It is reported, never judged: the machine may be shared."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from robot_control.common.run_log import FloatArray, Log
 
 @dataclass(frozen=True)
 class Distribution:
-    """Of a duration, µs."""
+    """Distribution of a duration, µs."""
 
     p50: float
     p99: float
@@ -21,7 +21,7 @@ class Distribution:
 
 @dataclass(frozen=True)
 class LoopTiming:
-    """Of one wall-clock run. A deadline is missed when a tick finds no fresh command or permit, or ends late."""
+    """Timing of one wall-clock run. A deadline is missed when a tick finds no fresh command or permit, or ends late."""
 
     period: Distribution
     """From one wake-up of the driver to the next."""
@@ -46,8 +46,8 @@ def loop_timing(log: Log) -> LoopTiming:
     log = while_all_ran(log)
     follows = np.diff(log["cycle"]) == 1
     woke = log["driver_woke_ns"]
-    # The wake-up is logged relative to when the cycle was due: its stamp, later by what has slipped so far. The tick
-    # that slips begins its new grid itself; it was late by what slipped in it.
+    # The wake-up is logged relative to the time at which the cycle was due: its stamp, later by what has slipped so
+    # far. The tick that slips begins the new grid itself, and was late by what slipped in it.
     slipped = np.diff(log["slipped_ns"])
     period = (np.diff(log["stamp_ns"]) + slipped + np.diff(woke))[follows]
     return LoopTiming(
@@ -88,11 +88,11 @@ def _count(counter: FloatArray) -> int:
 
 @dataclass(frozen=True)
 class ProcessorTime:
-    """Of all processors together since boot, in clock ticks."""
+    """Time of all processors together since boot, in clock ticks."""
 
     total: int
     stolen: int
-    """Runnable, but the hypervisor gave the processor to another machine."""
+    """Time in which a task was runnable, but the hypervisor gave the processor to another machine."""
 
 
 def parse_processor_time(stat: str) -> ProcessorTime:
@@ -102,7 +102,7 @@ def parse_processor_time(stat: str) -> ProcessorTime:
 
 
 def processor_time() -> ProcessorTime:
-    """Now."""
+    """The processor time now."""
     return parse_processor_time(Path("/proc/stat").read_text())
 
 

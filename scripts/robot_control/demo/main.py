@@ -47,7 +47,7 @@ EVERY_CYCLE = "telemetry: {record: always}\n"
 
 
 class DemoError(RuntimeError):
-    """Something did not start, or died; the message says where to look."""
+    """Something did not start, or died; the message names the file with the reason."""
 
 
 class Child:
@@ -56,7 +56,7 @@ class Child:
     def __init__(self, command: Sequence[str], output: Path) -> None:
         self.output = output
         self._file: IO[bytes] = output.open("wb")
-        # A shell starts its background jobs deaf to SIGINT, and that would be inherited.
+        # A shell starts its background jobs with SIGINT ignored, and children would inherit that.
         hearing = ("env", "--default-signal=INT", *command)
         self._process = subprocess.Popen(
             hearing, stdin=subprocess.DEVNULL, stdout=self._file, stderr=subprocess.STDOUT, start_new_session=True
@@ -64,7 +64,7 @@ class Child:
 
     @property
     def running(self) -> bool:
-        """Has it not ended?"""
+        """True while it has not ended."""
         return self._process.poll() is None
 
     def end(self, limit: float = END_LIMIT) -> bool:
@@ -115,7 +115,9 @@ def run_demo(seconds: float, out: Path) -> int:
 
 
 def refusals(launch_log: str) -> list[str]:
-    """What real-time privileges were not granted, each kind once although every node says it, with its remedy."""
+    """The real-time privileges that were not granted, with their remedy. Each kind appears once although every node
+    reports it.
+    """
     found: dict[str, str] = {}
     for match in re.finditer(r"(memory is|SCHED_FIFO priority|core) [^(\n]*\([^)\n]*remedy: [^)\n]*\)", launch_log):
         found.setdefault(match[1], match[0])

@@ -24,7 +24,7 @@ COMMANDED, TRUE, ESTIMATED, BRAKED = "#9a9a9a", "#1f5fa8", "#f2b366", "#c0392b"
 ESTIMATED_PATH = "#e07b00"
 """dashed over the true one, which it covers"""
 BRAKES_NAMED = 3
-"""in the picture; the table and summary.json name more"""
+"""in the picture; the table and summary.json name all of them"""
 JOINTS = ("#1f5fa8", "#c0392b", "#2e8b57", "#7d3c98")
 
 
@@ -128,14 +128,14 @@ def _draw_torques(axes: Axes, log: Log) -> None:
 
 
 def _mark_brakes(axes: Axes, brakes: tuple[Brake, ...]) -> None:
-    """Line and area: a brake of a cycle is narrower than a pixel."""
+    """Marks a brake by a line and an area, because a brake of one cycle is narrower than a pixel."""
     for i, brake in enumerate(brakes):
         label = f"gate braked, {len(brakes)} ×" if i == 0 else None
         axes.axvspan(brake.begin, brake.end, color=BRAKED, alpha=0.25, linewidth=1.5, label=label)
 
 
 def _name_brakes(axes: Axes, brakes: tuple[Brake, ...]) -> None:
-    """Above the panel, where no curve is; those that would overlap are left to the table."""
+    """Writes the names above the panel, where no curve is; the table names those that would overlap."""
     begin, end = axes.get_xlim()
     free = begin
     for brake in brakes[:BRAKES_NAMED]:

@@ -25,14 +25,14 @@ WIDTH = 80
 
 @dataclass(frozen=True)
 class Safety:
-    """What the safety monitor said."""
+    """The reports of the safety monitor."""
 
     state: str
-    """At the end of the log."""
+    """State at the end of the log."""
     states: tuple[str, ...]
-    """In the order in which they were entered."""
+    """States in the order in which they were entered."""
     causes: tuple[str, ...]
-    """Of any stop during the run."""
+    """Causes of all stops during the run."""
 
 
 @dataclass(frozen=True)
@@ -40,19 +40,19 @@ class RunSummary:
     """One run on a constant command."""
 
     tracking: Tracking | None
-    """None: there was nothing to judge."""
+    """None if there was nothing to judge."""
     untracked: str
-    """Why not; empty when there was."""
+    """Why nothing was judged; empty otherwise."""
     timing: LoopTiming
     stolen_share: float
-    """0 … 1 of the processors' time."""
+    """Share of the processors' time, 0 … 1."""
     safety: Safety
     brakes: tuple[Brake, ...] = ()
-    """Of the gate, while a motion was asked for."""
+    """Brakes of the gate while a motion was requested."""
 
     @property
     def passed(self) -> bool:
-        """Did the robot track its command? Timing has no say in it."""
+        """True if the robot tracked its command; timing does not count."""
         return self.tracking is not None and self.tracking.passed
 
 
@@ -74,7 +74,7 @@ def summarize(log: Log, linear: float, angular: float, driven: float, stolen_sha
         untracked = str(error)
     timing = loop_timing(log)
     if tracking is not None:
-        # What a slow plant lost against the wall clock is no fault.
+        # The time that a slow plant lost against the wall clock is no fault.
         missing = driven - timing.slipped - (tracking.end - tracking.begin)
         if missing > RISE_LIMIT + SETTLE:
             tracking, untracked = None, f"{missing:.1f} s of the {driven:g} s driven are not in the steady part"

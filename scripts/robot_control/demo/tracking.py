@@ -1,4 +1,4 @@
-"""Did the robot follow its command? Judged on the truth, never on the robot's own estimate.
+"""Judges whether the robot followed its command, by the truth, never by the robot's own estimate.
 
 The command is a constant twist (v, ω), sent from rest. With the log's rows k of one run:
 
@@ -34,13 +34,13 @@ SETTLE = 0.5
 RISE_LIMIT = 2.0
 """s from first asked to reached; the article's command needs 0.5 s at 1 m/s², the default acceleration limit."""
 ROWS_NEEDED = 0.99
-"""Share of the steady cycles whose truth must be in the log: what is not seen cannot be judged."""
+"""Share of the steady cycles whose truth must be in the log: a cycle without truth cannot be judged."""
 
 GATE_LATE = mask_of("GateReason", "no_permit", "permit_expired", "no_command")
 
 
 class NotSteadyError(ValueError):
-    """There is no steady part to judge; the message says why."""
+    """There is no steady part to judge; the message names the reason."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Pose:
 
 @dataclass(frozen=True)
 class Check:
-    """One demand, and how the run stands to it; relative values."""
+    """One demand and the value that the run reached; both relative."""
 
     name: str
     value: float
@@ -62,7 +62,7 @@ class Check:
 
     @property
     def passed(self) -> bool:
-        """NaN never passes."""
+        """True if the demand is met; a NaN never meets it."""
         return abs(self.value) <= self.tolerance
 
 
@@ -79,7 +79,7 @@ class Axis:
 
 @dataclass(frozen=True)
 class Tracking:
-    """The command, the true motion and the estimate."""
+    """The command, the true motion and the estimated one."""
 
     begin: float
     """s, time of the first steady row."""
@@ -216,7 +216,7 @@ def commanded_path(log: Log) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 def _is_twist(log: Log, prefix: str, linear: float, angular: float) -> BoolArray:
-    # 1e-9: the values are the very ones that were sent; what differs is another command.
+    # 1e-9: the values are those that were sent, bit by bit; a different value is another command.
     same: BoolArray = (np.abs(log[f"{prefix}_linear"] - linear) < 1e-9) & (
         np.abs(log[f"{prefix}_angular"] - angular) < 1e-9
     )

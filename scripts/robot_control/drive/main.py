@@ -34,7 +34,7 @@ def _twist(linear: float, angular: float) -> Twist:
 
 
 def _wait_for_subscriber(publisher: rospy.Publisher, signals: Signals) -> None:
-    """So that the first send is not lost."""
+    """Waits for a subscriber, so that the first message is not lost."""
     begin = time.monotonic()
     warned = False
     while publisher.get_num_connections() == 0 and signals.going_on() and time.monotonic() < begin + TIMEOUT:
@@ -45,12 +45,12 @@ def _wait_for_subscriber(publisher: rospy.Publisher, signals: Signals) -> None:
 
 
 def _say_last(missed: int) -> None:
-    """On stdout: rospy's logging may be closed already."""
+    """Prints on stdout, because rospy's logging may be closed already."""
     print("cmd_vel: zero" + (f", which {missed} of the subscribers did not take" if missed else ""))
 
 
 class Statuses:
-    """What safety_status says, every message of it: a stop that is followed by a release at once is a stop, too."""
+    """Every message of safety_status: a stop that is followed by a release at once is a stop, too."""
 
     def __init__(self) -> None:
         self._received: deque[Status] = deque()
@@ -58,7 +58,7 @@ class Statuses:
         self._subscriber = rospy.Subscriber("safety_status", SafetyStatus, self._receive, tcp_nodelay=True)
 
     def look(self, release: Release) -> list[Line]:
-        """Gives `release` what has come since the last look, or how long nothing has."""
+        """Hands the messages since the last look to `release`, or how long there were none."""
         newest = [self._received.popleft() for _ in range(len(self._received))]
         release.command_timeout = self._parameters.command_timeout
         return release.step(time.monotonic(), newest, connected=self._subscriber.get_num_connections() > 0)

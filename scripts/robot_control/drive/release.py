@@ -1,4 +1,4 @@
-"""When send_cmd.py may send its command, by what safety_status says; no ROS in here.
+"""Decides by safety_status when send_cmd.py may send its command; no ROS in here.
 
     WAITING   zeros, until the state is READY or DRIVE for the first time since this program started
     SENDING   the command, while it stays so
@@ -6,8 +6,8 @@
               So it begins where this program was started during a stop, and wherever what was requested with its start
               is revoked (interruptions.py)
 
-Without any safety_status there is nothing to wait for: after NO_MONITOR the command is sent, provisionally: the first
-status decides as if it had come at the start.
+Without any safety_status the command is sent provisionally after NO_MONITOR. The first status then decides as if it had
+come at the start.
 """
 
 import math
@@ -30,14 +30,14 @@ STANDING = 0.01
 
 @dataclass(frozen=True)
 class Line:
-    """For the log."""
+    """A line for the log."""
 
     text: str
     warning: bool = True
 
 
 class Phase(Enum):
-    """What is sent."""
+    """The kind of message that is sent."""
 
     WAITING = auto()
     SENDING = auto()
@@ -64,11 +64,11 @@ class Release:
 
     @property
     def phase(self) -> Phase:
-        """What is sent now."""
+        """The kind of message that is sent now."""
         return self._phase
 
     def step(self, now: float, statuses: Sequence[Status] = (), *, connected: bool = True) -> list[Line]:
-        """One look of the program, with all messages since the last one.
+        """One look of the program, with all messages since the previous one.
 
         Args:
             now: s.
@@ -82,7 +82,7 @@ class Release:
         return lines + self.look(now, self._interruptions.status, now - self._received_at, connected=connected)
 
     def look(self, now: float, status: Status | None, age: float = 0.0, *, connected: bool = True) -> list[Line]:
-        """Takes in what is known `now`.
+        """Updates the state with what is known `now`.
 
         Args:
             now: s.

@@ -1,4 +1,4 @@
-"""What send_cmd.py sends and when; no ROS in here."""
+"""The commands that send_cmd.py sends, and their times; no ROS in here."""
 
 import argparse
 import math
@@ -26,7 +26,7 @@ class SendPlan:
     count: int | None = None  # sends; None: until interrupted
 
     def sends_left(self, sent: int) -> bool:
-        """Is there another one to send after `sent`?"""
+        """True if another command has to be sent after `sent`."""
         return self.count is None or sent < self.count
 
     @property

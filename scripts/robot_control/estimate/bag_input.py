@@ -20,7 +20,7 @@ NO_IMU = "none"  # of --imu
 
 @dataclass(frozen=True)
 class BagTopics:
-    """Which topics hold the samples; None: the only one that can."""
+    """The topics that hold the samples; None stands for the only topic of the right type."""
 
     wheels: str | None = None
     imu: str | None = None  # "none": wheels alone
@@ -62,23 +62,25 @@ class _Reader:
         self._types = bag.topics
 
     def imu_topic(self, wanted: str | None) -> str | None:
-        """None: there is none, which is noted."""
+        """The topic of the IMU; None if there is none, which is noted."""
         if wanted is not None:
             return self._known(wanted, (IMU,))
-        there = self._of_type(IMU)
-        raw = [name for name in there if name.endswith("/data_raw")]
+        found = self._of_type(IMU)
+        raw = [name for name in found if name.endswith("/data_raw")]
         # REP 145: imu/data is imu/data_raw with an orientation.
-        there = [name for name in there if name.removesuffix("data") + "data_raw" not in raw or name in raw]
-        if len(there) > 1:
-            raise InputError(f"{self._path} has several IMU topics: say --imu with one of {listed(there)}, or none")
-        if not there:
+        found = [name for name in found if name.removesuffix("data") + "data_raw" not in raw or name in raw]
+        if len(found) > 1:
+            raise InputError(f"{self._path} has several IMU topics: say --imu with one of {listed(found)}, or none")
+        if not found:
             self.notes.append(f"no topic of {IMU}; the wheels are all there is")
             return None
-        self.notes.append(f"IMU: {there[0]}")
-        return there[0]
+        self.notes.append(f"IMU: {found[0]}")
+        return found[0]
 
     def wheel_topic(self, wanted: str | None, robot: Robot, joints: tuple[str, str] | None) -> tuple[str, str]:
-        """Topic and type: joint states before odometry, which may have been fused with something already."""
+        """Topic and type of the wheels. Joint states are preferred to odometry, which may have been fused with another
+        sensor already.
+        """
         if wanted is not None:
             name = self._known(wanted, (JOINT_STATE, ODOMETRY))
             return name, self._types[name]
@@ -99,11 +101,11 @@ class _Reader:
         self._refuse_joints(states, robot, joints)
         raise InputError(
             f"{self._path} has no topic of {JOINT_STATE} or {ODOMETRY}; it has "
-            f"{listed([f'{name} ({of})' for name, of in sorted(self._types.items())]) or 'no topic at all'}"
+            f"{listed([f'{name} ({kind})' for name, kind in sorted(self._types.items())]) or 'no topic at all'}"
         )
 
     def joints(self, topic: str, robot: Robot, joints: tuple[str, str] | None) -> tuple[Stream, Stream]:
-        """Angles of the wheels, of each side."""
+        """Angles of the wheels on each side."""
         names = self._names_of(topic, robot, joints)
         if names is None:
             self._refuse_joints([topic], robot, joints)
@@ -134,7 +136,7 @@ class _Reader:
         return Stream(ordered.time_ns, angles[:, :1]), Stream(ordered.time_ns, angles[:, 1:])
 
     def imu(self, topic: str, robot: Robot) -> list[Stream]:
-        """Angular velocity and specific force; a first covariance of −1 says that there is none (REP 145)."""
+        """Angular velocity and specific force; a first covariance of −1 declares that there is none (REP 145)."""
         stamps, rows = [], []
         frame = ""
         for message, stamp in self._messages(topic):
@@ -154,7 +156,7 @@ class _Reader:
         return [Stream(both.time_ns, both.values[:, :3]), Stream(both.time_ns, both.values[:, 3:])]
 
     def _messages(self, topic: str) -> Iterator[tuple[Any, int]]:
-        """Message and stamp [ns]; where the header has none, the time of recording."""
+        """Message and stamp [ns]; a header without stamp is replaced by the time of recording."""
         unstamped = 0
         for message, recorded in self._bag.messages(topic):
             stamp = message.header.stamp.to_nsec()
@@ -177,20 +179,20 @@ class _Reader:
         return stream
 
     def _of_type(self, type_of: str) -> list[str]:
-        return sorted(name for name, of in self._types.items() if of == type_of)
+        return sorted(name for name, kind in self._types.items() if kind == type_of)
 
     def _known(self, wanted: str, types: tuple[str, ...]) -> str:
         names = [name for name in self._types if name.strip("/") == wanted.strip("/")]
         if names and self._types[names[0]] in types:
             return names[0]
         what = f"is of {self._types[names[0]]}" if names else "is not in it"
-        there = sorted(name for name, of in self._types.items() if of in types)
+        candidates = sorted(name for name, kind in self._types.items() if kind in types)
         raise InputError(
-            f"{self._path}: {wanted} {what}; topics of {' or '.join(types)}: {listed(there) or 'none at all'}"
+            f"{self._path}: {wanted} {what}; topics of {' or '.join(types)}: {listed(candidates) or 'none at all'}"
         )
 
     def _names_of(self, topic: str, robot: Robot, joints: tuple[str, str] | None) -> dict[str, list[str]] | None:
-        """The joints of each side that a topic holds positions of; None: not all of them."""
+        """The joints of each side whose positions a topic holds; None if some are missing."""
         if joints is not None:
             wanted = {"left": [joints[0]], "right": [joints[1]]}
         else:
@@ -199,19 +201,19 @@ class _Reader:
 
     def _positions_in(self, topic: str) -> set[str]:
         """Joints with a position in the first messages."""
-        there: set[str] = set()
+        joints: set[str] = set()
         for count, (message, _) in enumerate(self._bag.messages(topic)):
-            there |= {name for name, _ in zip(message.name, message.position, strict=False)}
+            joints |= {name for name, _ in zip(message.name, message.position, strict=False)}
             if count == 100:
                 break
-        return there
+        return joints
 
     def _refuse_joints(self, states: list[str], robot: Robot, joints: tuple[str, str] | None) -> None:
         if not states:
             return
         wanted = list(joints or (*wheel_joints(robot, "left"), *wheel_joints(robot, "right")))
-        there = "; ".join(f"{name}: {listed(sorted(self._positions_in(name))) or 'none'}" for name in states)
+        positions = "; ".join(f"{name}: {listed(sorted(self._positions_in(name))) or 'none'}" for name in states)
         raise InputError(
             f"{self._path}: no topic holds positions of the wheels {listed(wanted)}. Joints with a position: "
-            f"{there}. Name two of them: --joints left=…,right=…"
+            f"{positions}. Name two of them: --joints left=…,right=…"
         )

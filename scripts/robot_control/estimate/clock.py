@@ -1,11 +1,12 @@
-"""How wheels and gyro of a recording fit together: the offset of their clocks, the wheel base, the sense of turning.
+"""Fits wheels and gyro of a recording to each other: the offset of their clocks, the wheel base, the sense of turning.
 
 Both measure the turning. With W = right − left travel, ψ the integral of the gyro's rate about the vertical, s the way,
 
     ΔW(t) = B · Δψ(t + τ) + ρ · Δs + β · Δt        over blocks of BLOCK seconds between two readings of the wheels
 
-τ is by how much the IMU's stamps are later than those of the wheels, B the effective wheel base (negative where the
-two turn opposite ways), ρ a difference of the radii, β/B the gyro's bias. Least squares, Huber's weights: the best of
+The IMU's stamps are later than those of the wheels by τ. B is the effective wheel base, negative if the two turn
+opposite ways. ρ is a difference of the radii, and β/B the gyro's bias. Huber's weights make the least squares robust.
+The best of
 a grid of τ, then Gauss–Newton steps with ∂ΔW/∂τ = B · Δω.
 """
 
@@ -22,12 +23,12 @@ FARTHEST, GRID = 0.5, 0.02  # s, of τ
 STEPS = 8  # of Gauss–Newton
 HUBER = 2.0  # standard deviations
 FEWEST = 20  # blocks
-ILL = 1e6  # condition number of what the drive does not determine
+ILL = 1e6  # condition number above which the drive does not determine the unknowns
 
 
 @dataclass(frozen=True)
 class TurnFit:
-    """What the turning shows."""
+    """The result of the fit to the turning."""
 
     offset: float  # s, τ
     offset_deviation: float  # s
@@ -39,7 +40,7 @@ class TurnFit:
 def fit_turning(
     wheel_time: FloatArray, left: FloatArray, right: FloatArray, gyro_time: FloatArray, yaw_rate: FloatArray
 ) -> TurnFit | None:
-    """None: too short, or the robot does not turn.
+    """None if the drive is too short, or the robot does not turn.
 
     Args:
         wheel_time: (n,) s.
@@ -56,10 +57,10 @@ def fit_turning(
     rows = _block_ends(wheel_time, np.flatnonzero(inside))
     if rows.size < FEWEST:
         return None
-    way, difference = (np.diff(table[rows]) for table in ((left + right) / 2, right - left))
+    travel, difference = (np.diff(table[rows]) for table in ((left + right) / 2, right - left))
     if np.ptp(difference) == 0:
         return None
-    problem = _Problem(wheel_time[rows], way, difference, gyro_time, np.column_stack([angle, yaw_rate]))
+    problem = _Problem(wheel_time[rows], travel, difference, gyro_time, np.column_stack([angle, yaw_rate]))
     costs = [problem.solve(offset)[1] for offset in _grid()]
     offset = float(_grid()[int(np.argmin(costs))])
     return problem.refined(offset)
@@ -70,7 +71,7 @@ def _grid() -> FloatArray:
 
 
 def _block_ends(time: FloatArray, rows: IntArray) -> IntArray:
-    """Of `rows`, those that are at least BLOCK apart."""
+    """Those of `rows` that are at least BLOCK apart."""
     chosen: list[int] = []
     for row in rows.tolist():
         if not chosen or time[row] - time[chosen[-1]] >= BLOCK:
@@ -81,18 +82,18 @@ def _block_ends(time: FloatArray, rows: IntArray) -> IntArray:
 @dataclass(frozen=True)
 class _Problem:
     time: FloatArray  # (b + 1,) s, ends of the blocks
-    way: FloatArray  # (b,) m, Δs
+    travel: FloatArray  # (b,) m, Δs
     difference: FloatArray  # (b,) m, ΔW
     gyro_time: FloatArray  # (m,) s
     turning: FloatArray  # (m, 2) ψ, ω
 
     def solve(self, offset: float) -> tuple[FloatArray, float]:
-        """B, ρ, β at this τ, and the cost."""
+        """B, ρ, β and the cost at this τ."""
         columns = self._columns(offset)[:, :3]
         return self._weighted(columns)
 
     def refined(self, offset: float) -> TurnFit | None:
-        """Gauss–Newton from `offset` on; None where it leaves the grid or is not determined."""
+        """Gauss–Newton steps from `offset` on; None if they leave the grid or are not determined."""
         base = float(self.solve(offset)[0][0])
         for _ in range(STEPS):
             columns = self._columns(offset)
@@ -114,7 +115,7 @@ class _Problem:
 
     def _columns(self, offset: float) -> FloatArray:
         turned, faster = (np.diff(np.interp(self.time + offset, self.gyro_time, column)) for column in self.turning.T)
-        return np.column_stack([turned, self.way, np.diff(self.time), faster])
+        return np.column_stack([turned, self.travel, np.diff(self.time), faster])
 
     def _weighted(self, columns: FloatArray) -> tuple[FloatArray, float]:
         weights = np.ones(self.difference.size)

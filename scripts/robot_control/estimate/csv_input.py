@@ -28,7 +28,7 @@ class CsvForm:
     """How a CSV file is to be understood."""
 
     columns: Mapping[str, str] = field(default_factory=dict)  # our name → the file's
-    counts_per_turn: float = 2 * math.pi  # of the wheel columns; 2π: they are in rad
+    counts_per_turn: float = 2 * math.pi  # counts of the wheel columns per turn; 2π: they are in rad
     time_unit: str = "s"
     gyro_unit: str = "rad/s"
     accel_unit: str = "m/s2"
@@ -42,19 +42,19 @@ def read_csv(path: Path, form: CsvForm) -> Samples:
             the line.
         OSError: it cannot be opened.
     """
-    check_input(path, LARGEST_TABLE)
+    check_input(path, MAX_TABLE)
     with path.open(newline="", encoding="utf-8-sig", errors="replace") as file:
         table = _Table(path, _lines(path, file))
         return _read_table(table, form)
 
 
 def _lines(path: Path, file: TextIO) -> Iterator[str]:
-    """The lines of a text; a file without any is not read to its end."""
+    """The lines of a text; reading stops early in a file that has none."""
     number = 0
-    while line := file.readline(LONGEST_LINE + 1):
+    while line := file.readline(MAX_LINE + 1):
         number += 1
-        if len(line) > LONGEST_LINE:
-            raise InputError(f"{path}, line {number}: longer than {LONGEST_LINE} characters; is it a CSV?")
+        if len(line) > MAX_LINE:
+            raise InputError(f"{path}, line {number}: longer than {MAX_LINE} characters; is it a CSV?")
         if "\0" in line:
             raise InputError(f"{path}, line {number}: holds a NUL character; is it a CSV?")
         yield line
@@ -73,7 +73,7 @@ def _read_table(table: _Table, form: CsvForm) -> Samples:
 
 
 def _gyro(cells: Mapping[str, FloatArray], scale: float) -> FloatArray | None:
-    """Of a gyro with one axis the others are zero."""
+    """Angular velocity; a gyro with one axis has zeros in the others."""
     if "gyro_z" not in cells:
         return None
     absent = np.where(np.isnan(cells["gyro_z"]), np.nan, 0.0)
@@ -95,15 +95,15 @@ def _columns_of(table: _Table, form: CsvForm) -> dict[str, str]:
         )
     found = {name: column for name, column in columns.items() if column in table.header}
     for group, needed in ((GYRO, ("gyro_z",)), (ACCEL, ACCEL)):
-        there = [name for name in group if name in found]
+        present = [name for name in group if name in found]
         absent = [columns[name] for name in needed if name not in found]
-        if there and absent:
-            raise InputError(f"{table.path}: there is {found[there[0]]}, but no {', '.join(absent)}")
+        if present and absent:
+            raise InputError(f"{table.path}: there is {found[present[0]]}, but no {', '.join(absent)}")
     return found
 
 
 class _Table:
-    """The rows of a file, from the one below its header on."""
+    """The rows of a file below its header."""
 
     def __init__(self, path: Path, file: Iterator[str]) -> None:
         self.path = path

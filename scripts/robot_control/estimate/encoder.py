@@ -1,4 +1,4 @@
-"""How fine the wheel angles of a recording are."""
+"""Measures how fine the wheel angles of a recording are."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ import numpy as np
 from robot_control.estimate.samples import FloatArray, Samples
 
 FINE = 4096 / 1.5
-"""counts a turn; those of the default encoder_noise, and what makes little difference to it"""
-FEW, MOST = 20, 20  # steps to judge by, and of how many counts they may be
+"""counts a turn of the default encoder_noise; a finer encoder makes little difference to it"""
+MIN_STEPS, MAX_COUNTS = 20, 20  # number of steps that suffice for a judgement, and the largest one in counts
 KINDS = 2
-"""different steps at least; where all are one, it may be a steady speed"""
+"""number of different steps that are needed; a single one may be a steady speed"""
 
 
 def counts_per_turn(samples: Samples) -> float | None:
-    """Of an encoder that is coarser than the default; None: it is not, or the data do not show it."""
+    """Counts per turn of an encoder that is coarser than the default; None if it is not, or the data do not show it."""
     steps = [_step(np.diff(column[~np.isnan(column)])) for column in _columns(samples)]
     known = [step for step in steps if step is not None]
     counts = 2 * np.pi / max(known) if known else np.inf
@@ -26,13 +26,13 @@ def _columns(samples: Samples) -> list[FloatArray]:
 
 
 def _step(differences: FloatArray) -> float | None:
-    """The unit [rad] that all small differences are multiples of."""
+    """The unit [rad] of which all small differences are multiples."""
     sizes = np.abs(differences[differences != 0])
-    if sizes.size < FEW:
+    if sizes.size < MIN_STEPS:
         return None
     unit = float(sizes[sizes < 1.5 * sizes.min()].mean())
-    multiples = sizes[sizes < (MOST + 0.5) * unit] / unit
+    multiples = sizes[sizes < (MAX_COUNTS + 0.5) * unit] / unit
     whole = np.round(multiples)
-    if multiples.size < FEW or np.mean(np.abs(multiples - whole) < 0.05) < 0.98 or np.unique(whole).size < KINDS:
+    if multiples.size < MIN_STEPS or np.mean(np.abs(multiples - whole) < 0.05) < 0.98 or np.unique(whole).size < KINDS:
         return None
     return unit

@@ -1,4 +1,4 @@
-"""What is wrong with a recording, in sentences that say what to do: before anything is estimated from it."""
+"""Finds what is wrong with a recording before anything is estimated from it, in sentences that name the remedy."""
 
 from __future__ import annotations
 
@@ -13,38 +13,38 @@ from robot_control.estimate.samples import FloatArray, InputError, Robot, Sample
 from robot_control.estimate.streams import Streams, streams_of
 
 IN_G = (0.8, 1.25)
-"""of |accelerometer| that is gravity in g"""
+"""norm of an accelerometer at rest that measures in g"""
 SCALE = 0.12
-"""part by which |accelerometer| at rest may differ from gravity; a vacuum robot's is 4 % low"""
+"""share by which the accelerometer's norm at rest may differ from gravity; a vacuum robot's is 4 % low"""
 NO_GRAVITY = 0.5  # m/s²
-LARGEST_BIAS = math.radians(5)
-"""rad/s of a gyro at rest; beyond what a MEMS gyro's data sheet allows"""
+MAX_BIAS = math.radians(5)
+"""rad/s of a gyro at rest; the data sheets of MEMS gyros allow less"""
 BASES = (0.75, 1.35)
-"""of the turning's wheel base over the given one: tyres and floor explain no more"""
+"""wheel base by the turning over the given one; tyres and floor explain no more"""
 DEGREES_INSTEAD = (0.4, 3.0)
-"""of the same ratio, were the gyro in °/s; skid steers have up to 2.4"""
+"""the same ratio if the gyro were in °/s; skid steers reach 2.4"""
 CLEAR = 0.8
-"""share of the wheels' turning that the gyro must explain before anything is concluded"""
+"""share of the wheels' turning that the gyro must explain before a conclusion is drawn"""
 OFFSET, OFFSET_DEVIATION = 0.005, 0.02
-"""s: an offset of the clocks that is worth taking out, and how well it must be known"""
+"""s: the smallest offset of the clocks that is corrected, and its largest standard deviation"""
 FEWEST = 10
-"""samples that say how far apart they are"""
-LEAST_APART, MOST_APART = 2e-5, 2.0
-"""s between samples: a robot's sensors are sampled neither at 50 kHz nor once in two seconds"""
+"""number of samples from which their distance can be judged"""
+MIN_APART, MAX_APART = 2e-5, 2.0
+"""s between samples; a robot's sensors are sampled neither at 50 kHz nor once in two seconds"""
 COUNTS = 20
-"""different whole numbers that are no angles"""
+"""number of different whole numbers from which they are counts, not angles"""
 
 
 @dataclass
 class Findings:
-    """What the checks found."""
+    """The results of the checks."""
 
     warnings: list[str] = field(default_factory=list)
-    offset: float | None = None  # s, of the IMU's stamps after the wheels'; None: none that is worth taking out
+    offset: float | None = None  # s, delay of the IMU's stamps against the wheels'; None if none needs correction
 
 
 def check_angles(samples: Samples) -> None:
-    """Of angles that were given without a unit.
+    """Checks angles that were given without a unit.
 
     Raises:
         InputError: they are counts.
@@ -58,7 +58,7 @@ def check_angles(samples: Samples) -> None:
 
 
 def check(samples: Samples, robot: Robot) -> Findings:
-    """Of a recording whose wheel angles are in rad.
+    """Checks a recording whose wheel angles are in rad.
 
     Raises:
         InputError: a wheel has no angles, the times are in another unit, the accelerometer is in g, the gyro in °/s.
@@ -85,15 +85,15 @@ def _check_time(samples: Samples) -> None:
     if samples.own_log or samples.time_ns.size < FEWEST:
         return
     apart = 1e-9 * float(np.median(np.diff(samples.time_ns)))
-    if not LEAST_APART <= apart <= MOST_APART:
+    if not MIN_APART <= apart <= MAX_APART:
         raise InputError(
-            f"half of the samples are less than {apart:.3g} s apart; expected is {LEAST_APART:g} to {MOST_APART:g} s: "
+            f"half of the samples are less than {apart:.3g} s apart; expected is {MIN_APART:g} to {MAX_APART:g} s: "
             "look at the unit of the times (of a CSV: --time-unit, s unless given)"
         )
 
 
 def _check_gravity(streams: Streams, gravity: FloatArray, findings: Findings) -> bool:
-    """True: the accelerometer says where up is."""
+    """True if the accelerometer shows the vertical."""
     size = float(np.linalg.norm(gravity))
     if size < NO_GRAVITY:
         findings.warnings.append(
@@ -154,7 +154,7 @@ def _check_rest(streams: Streams, findings: Findings) -> None:
         return
     bias = streams.gyro[inside].mean(axis=0)
     for axis, rate in zip("xyz", bias.tolist(), strict=True):
-        if abs(rate) > LARGEST_BIAS:
+        if abs(rate) > MAX_BIAS:
             findings.warnings.append(
                 f"the gyro's {axis} axis shows {math.degrees(rate):.1f} °/s at rest: is it broken, or in another unit?"
             )

@@ -1,4 +1,4 @@
-"""estimate.py: where a robot was, from a recording of its wheels and its IMU."""
+"""estimate.py computes the path of a robot from a recording of its wheels and its IMU."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def _with_negative_lists(arguments: list[str]) -> list[str]:
 
 
 def estimate(options: argparse.Namespace) -> str:
-    """The report; the files are there.
+    """Writes the files and returns the report.
 
     Raises:
         ValueError, OSError: one message.
@@ -125,7 +125,7 @@ def estimate(options: argparse.Namespace) -> str:
 
 
 def _checked(options: argparse.Namespace, samples: Samples, robot: Robot) -> Samples:
-    """With warnings and notes, and the IMU's stamps on the wheels' clock."""
+    """The samples after all checks, with warnings, notes, and the IMU's stamps on the wheels' clock."""
     if options.counts_per_turn is None and options.input.suffix != ".bag" and not samples.own_log:
         check_angles(samples)
     findings = check(samples, robot)
@@ -144,7 +144,7 @@ def _checked(options: argparse.Namespace, samples: Samples, robot: Robot) -> Sam
 
 
 def _check_robot(options: argparse.Namespace, samples: Samples) -> None:
-    """Its size is never silently that of the installed default robot; a log of this package names its joints."""
+    """Refuses to assume the installed default robot silently; a log of this package names its joints."""
     given = options.urdf is not None or options.wheel_radius is not None or samples.own_log
     if not given and options.params is not None:
         blocks = yaml.safe_load(options.params.read_text(encoding="utf-8")) or {}
@@ -170,7 +170,7 @@ def _estimator(options: argparse.Namespace, encoder_counts: float | None) -> Est
 
 
 def _blocks(estimator: Estimator, samples: Samples) -> Iterator[tuple[IntArray, Estimate]]:
-    """A few rows at a time: the covariances of all of them may not fit into memory."""
+    """Yields a few rows at a time: the covariances of all of them may not fit into memory."""
     seconds = samples.seconds
     for first in range(0, seconds.size, BLOCK):
         some = slice(first, first + BLOCK)
@@ -245,7 +245,7 @@ def _check_options(options: argparse.Namespace) -> None:
 
 
 def _check_paths(options: argparse.Namespace) -> None:
-    """Before minutes of work."""
+    """Checks the paths before minutes of work."""
     check_outputs(_outputs(options), [options.input, options.urdf, options.params])
     if options.plot is not None:
         check_picture(options.plot)

@@ -1,7 +1,7 @@
 """Which mounting of the IMU fits a recording: the one in which gravity points up and the horizontal forces are those of
 the wheels' motion.
 
-Over blocks of BLOCK seconds the wheels say by how much the robot became faster, Δv, and how much it was pulled aside,
+Over blocks of BLOCK seconds the wheels show by how much the robot became faster, Δv, and how much it was pulled aside,
 ∫ v ω dt. The accelerometer's integrals in the axes of a mounting should be the same, but for a constant. `agreement` is
 their correlation; of the four mountings on the axes with gravity upwards the best one fits. A left-handed frame agrees
 best with its y axis mirrored.
@@ -21,10 +21,10 @@ GRAVITY = 9.80665  # m/s²
 BLOCK = 0.5  # s
 FEWEST = 10  # blocks in motion
 OBLIQUE = math.radians(25)
-"""from an axis; what slopes and crooked mountings of a robot that stands make of gravity is less"""
+"""angle from an axis; slopes and crooked mountings make less of gravity in a robot that stands"""
 AGREES, BETTER = 0.25, 0.25
-"""of an agreement that shows something, and by how much a better one exceeds it; right mountings of recordings of real
-robots have 0.17 … 0.91, wrong ones up to 0.1"""
+"""An agreement is significant from AGREES on, and better only if it is larger by BETTER. Right mountings of recordings
+of real robots have 0.17 … 0.91, wrong ones up to 0.1."""
 
 
 @dataclass(frozen=True)
@@ -37,12 +37,12 @@ class Mounting:
 
     @property
     def option(self) -> str:
-        """As estimate.py takes it."""
+        """The value of the option of estimate.py."""
         return "--imu-orientation=" + ",".join(f"{round(angle, 4) + 0.0:.4g}" for angle in self.rpy)
 
 
 def gravity_of(streams: Streams) -> FloatArray | None:
-    """m/s², IMU axes: the mean of the first rest, else of everything; None: no accelerometer."""
+    """m/s², IMU axes: the mean over the first rest, else over everything; None without an accelerometer."""
     if streams.accel_time.size == 0:
         return None
     for begin, end in streams.rests()[:1]:
@@ -53,7 +53,7 @@ def gravity_of(streams: Streams) -> FloatArray | None:
 
 
 def tilt_of(gravity: FloatArray, base_from_imu: FloatArray) -> float:
-    """rad, between what the accelerometer says is up and the base's z axis."""
+    """rad, between the measured vertical and the base's z axis."""
     up = base_from_imu @ gravity / np.linalg.norm(gravity)
     return float(np.arccos(np.clip(up[2], -1, 1)))
 
@@ -79,7 +79,7 @@ def fitting(streams: Streams, gravity: FloatArray) -> list[Mounting]:
 
 
 def agreement(streams: Streams) -> float:
-    """Of the mounting that was given; 0: the drive shows nothing."""
+    """Agreement of the given mounting; 0 if the drive shows nothing."""
     return _agreements(streams, _motion(streams), streams.base_from_imu)[0]
 
 
@@ -92,9 +92,9 @@ def _motion(streams: Streams) -> tuple[FloatArray, FloatArray, FloatArray]:
     marks = np.arange(begin, end, BLOCK)
     if marks.size < FEWEST + 2:
         return np.empty(0), np.empty(0), np.empty(0)
-    way = np.interp(marks, time, streams.way)
+    travel = np.interp(marks, time, streams.way)
     turn = np.interp(marks, time, streams.right - streams.left) / streams.wheel_base
-    speed = np.diff(way) / BLOCK  # in the middle of each block: Δv is between middles
+    speed = np.diff(travel) / BLOCK  # in the middle of each block: Δv is between middles
     rate = np.diff(turn) / BLOCK
     sideways = (speed * rate)[1:] / 2 + (speed * rate)[:-1] / 2
     return (marks[1:] + marks[:-1]) / 2, np.diff(speed), sideways * BLOCK
@@ -103,7 +103,7 @@ def _motion(streams: Streams) -> tuple[FloatArray, FloatArray, FloatArray]:
 def _agreements(
     streams: Streams, motion: tuple[FloatArray, FloatArray, FloatArray], mounting: FloatArray
 ) -> tuple[float, float]:
-    """Of a mounting, plain and with the IMU's y axis mirrored."""
+    """Agreement of a mounting, plain and with the IMU's y axis mirrored."""
     marks, faster, aside = motion
     if marks.size == 0:
         return 0.0, 0.0

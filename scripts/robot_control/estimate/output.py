@@ -43,7 +43,7 @@ class CsvSink:
         self._file.writelines(",".join(row) + "\n" for row in zip(*cells, strict=True))
 
     def close(self) -> None:
-        """Everything is on the disk, or OSError says why not."""
+        """Writes everything to the disk; raises OSError if that fails."""
         self._file.close()
 
 
@@ -67,7 +67,7 @@ class BagSink:
         self._bag = rosbag.Bag(str(path), "w")
 
     def add(self, time_ns: IntArray, estimate: Estimate) -> None:
-        """Writes a message on either topic per row."""
+        """Writes a message on either topic for each row."""
         if time_ns[0] < 0:
             raise InputError("times below zero cannot be stamps of ROS: write --csv, or shift the time")
         for row, stamp_ns in enumerate(time_ns.tolist()):
@@ -101,7 +101,7 @@ class BagSink:
         return transform
 
     def close(self) -> None:
-        """The bag has its index."""
+        """Closes the bag with its index."""
         self._bag.close()
 
 

@@ -1,4 +1,4 @@
-"""An estimate as one picture: the path with its uncertainty, yaw, speeds, gyro bias, innovations; where it slipped."""
+"""Draws an estimate as one picture: the path with its uncertainty, yaw, speeds, gyro bias, innovations and slip."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ if TYPE_CHECKING:
 WHEELS, OURS, SLIP, ANGULAR = "#c4c4c4", "#1f5fa8", "#c0392b", "#e07b00"
 AXES = (("x", "#c0392b"), ("y", "#2e8b57"), ("z", "#1f5fa8"))
 POINTS = 4000
-"""of a curve; the picture is 1760 pixels wide"""
+"""points of a curve; the picture is 1760 pixels wide"""
 ELLIPSES = 14
 NINETY_FIVE = 2.4477
-"""standard deviations of a circle that holds 95 % of a two-dimensional normal distribution: √(−2 ln 0.05)"""
+"""Standard deviations of a circle that holds 95 % of a two-dimensional normal distribution: √(−2 ln 0.05)"""
 DEGREES = 180 / np.pi
 SMOOTH = 0.05
-"""s over which speeds are drawn as their mean: counts of an encoder in one millisecond would be all there is to see"""
-LEAST_NIS = 1e-3  # drawn; below, a sensor agrees better than it can
+"""s over which drawn speeds are averaged; without it the counts of an encoder in one millisecond would hide them"""
+MIN_NIS = 1e-3  # smallest innovation that is drawn; a sensor that agrees better does so by chance
 UNDER = 5.0
-"""points; width of a curve that the estimate may cover: it stays visible on both sides"""
+"""points; width of a curve below the estimate, so that it stays visible on both sides"""
 
 
 class Picture:
@@ -45,7 +45,7 @@ class Picture:
         self._slip: list[tuple[IntArray, FloatArray]] = []
 
     def add(self, time_ns: IntArray, estimate: Estimate) -> None:
-        """Takes the rows in."""
+        """Adds rows."""
         chosen = np.arange(-self._count % self._every, time_ns.size, self._every)
         self._count += time_ns.size
         rows = dict(estimate)
@@ -95,7 +95,7 @@ class Picture:
 
 
 def _mean_of_neighbours(values: FloatArray, time_ns: IntArray) -> FloatArray:
-    """Over SMOOTH about each row of (rows, 3)."""
+    """Means over SMOOTH about each row of (rows, 3)."""
     step = float(np.median(np.diff(time_ns))) / 1e9 if time_ns.size > 1 else np.inf
     half = round(SMOOTH / 2 / step)
     if half < 1:
@@ -129,14 +129,14 @@ def _draw_path(axes: Axes, time: FloatArray, rows: Estimate, spans: list[tuple[f
 
 
 def _along(distance: FloatArray) -> IntArray:
-    """Rows that share the path evenly, the last one among them."""
+    """Rows that are spread evenly along the path, the last one included."""
     marks = np.linspace(distance[0], distance[-1], ELLIPSES + 1)[1:]
     rows: IntArray = np.unique(np.minimum(np.searchsorted(distance, marks), distance.size - 1))
     return rows
 
 
 def _last_half_axis(rows: Estimate) -> float:
-    """m, of the ellipse at the end."""
+    """m, half axis of the last covariance ellipse."""
     return float(NINETY_FIVE * np.sqrt(np.linalg.eigvalsh(rows["pose_covariance"][-1, :2, :2])[1]))
 
 
@@ -148,7 +148,7 @@ def _ellipse(x: float, y: float, covariance: FloatArray) -> Ellipse:
 
 
 def _legend_above(axes: Axes) -> None:
-    """Beside the title, where no curve can be."""
+    """Places the legend beside the title, where no curve can be."""
     axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=3, borderaxespad=0.2)
 
 
@@ -177,14 +177,14 @@ def _draw_bias(axes: Axes, time: FloatArray, rows: Estimate) -> None:
         axes.text(0.5, 0.5, "no gyro in the recording: yaw comes from the wheels alone", ha="center", va="center",
                   color="#666666", transform=axes.transAxes)  # fmt: skip
         return
-    spread = 2 * float(np.median(rows["gyro_bias_deviation"])) * DEGREES + 0.02  # that of the start would hide all else
+    spread = 2 * float(np.median(rows["gyro_bias_deviation"])) * DEGREES + 0.02  # the first band would hide all else
     all_axes = rows["gyro_bias"] * DEGREES
     low, high = float(all_axes.min()) - 2 * spread, float(all_axes.max()) + 2 * spread
     axes.set_ylim(low, high)
     for i, (name, color) in enumerate(AXES):
         bias = rows["gyro_bias"][:, i] * DEGREES
         deviation = rows["gyro_bias_deviation"][:, i] * DEGREES
-        known = 4 * deviation < high - low  # before, it is anything: no band of that fits the panel
+        known = 4 * deviation < high - low  # the bias is unknown before, and its band would not fit the panel
         axes.plot(time, np.where(known, bias, np.nan), color=color, linewidth=1.4, label=name)
         axes.fill_between(
             time, bias - 2 * deviation, bias + 2 * deviation, where=known, color=color, alpha=0.12, linewidth=0
@@ -196,7 +196,7 @@ def _draw_innovations(axes: Axes, time: FloatArray, rows: Estimate) -> None:
     axes.set_title("Innovations, squared over their variance: 1 is as expected")
     shown = False
     for i, name in enumerate(SENSORS):
-        nis = np.where(rows["nis"][:, i] > 0, np.maximum(rows["nis"][:, i], LEAST_NIS), np.nan)
+        nis = np.where(rows["nis"][:, i] > 0, np.maximum(rows["nis"][:, i], MIN_NIS), np.nan)
         if not np.isnan(nis).all():
             axes.plot(time, nis, linewidth=1.2, label=name.replace("_", " "))
             shown = True

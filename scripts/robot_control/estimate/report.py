@@ -1,4 +1,4 @@
-"""The end of an estimate in a few lines."""
+"""Summarises the end of an estimate in a few lines."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ DEGREE = math.pi / 180
 
 
 class Summary:
-    """Times of the states, and the last row."""
+    """Durations of the states, and the last row."""
 
     def __init__(self) -> None:
         self.seconds = {"slip": 0.0, "standstill": 0.0, "degraded": 0.0, "invalid": 0.0}
@@ -25,7 +25,7 @@ class Summary:
         self._before: int | None = None
 
     def add(self, time_ns: IntArray, estimate: Estimate) -> None:
-        """A row counts for the time since the one before."""
+        """Adds rows; each counts for the time since the one before."""
         begin = time_ns[0] if self._before is None else self._before
         steps = np.diff(time_ns, prepend=begin) / 1e9
         flags = estimate["flags"]
@@ -39,7 +39,7 @@ class Summary:
         self._before = int(time_ns[-1])
 
     def report(self, samples: Samples, robot: Robot) -> str:
-        """What a user reads."""
+        """The report for a user."""
         last = self.last
         deviation = np.sqrt(np.maximum(np.diagonal(last["pose_covariance"]), 0))
         rates = ", ".join(f"{name} {rate:.4g} Hz" for name, rate in samples.rates().items())

@@ -1,4 +1,4 @@
-"""What a recording measured, in one table: a row per time, NaN where a sample is absent."""
+"""The measurements of a recording in one table: a row per time, NaN if a sample is absent."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ GYRO = tuple(f"gyro_{axis}" for axis in AXES)
 ACCEL = tuple(f"accel_{axis}" for axis in AXES)
 
 GAP = 0.5
-"""s without any sample that are worth telling; a robot at 1 m/s is half a metre on"""
+"""s without any sample from which a gap is reported; a robot at 1 m/s is half a metre on"""
 
 
 class InputError(ValueError):
-    """The recording cannot be read; the message says what, where, and what to do."""
+    """The recording cannot be read; the message names the error, its place and the remedy."""
 
 
 @dataclass
@@ -35,9 +35,9 @@ class Samples:
     right: FloatArray
     gyro: FloatArray | None  # (N, 3), rad/s, IMU axes
     accel: FloatArray | None  # (N, 3), m/s², IMU axes
-    notes: list[str] = field(default_factory=list)  # for the user's eyes
-    warnings: list[str] = field(default_factory=list)  # likewise; what makes the result doubtful
-    own_log: bool = False  # of this package's node, whose parameters are those to estimate with
+    notes: list[str] = field(default_factory=list)  # remarks for the user
+    warnings: list[str] = field(default_factory=list)  # reasons to doubt the result
+    own_log: bool = False  # recorded by this package's node, whose parameters the estimate then uses
 
     @property
     def seconds(self) -> FloatArray:
@@ -51,7 +51,7 @@ class Samples:
         return float(self.seconds[-1])
 
     def with_imu_earlier(self, seconds: float) -> Samples:
-        """The same with all stamps of the IMU earlier by `seconds`; rows outside the wheels' time are left out."""
+        """The same samples with IMU stamps earlier by `seconds`; rows outside the wheels' time are left out."""
         tables = [table.reshape(self.time_ns.size, -1) for table in (self.left, self.right)]
         imu = [table for table in (self.gyro, self.accel) if table is not None]
         streams = [Stream(*_of_any(self.time_ns, tables))]
@@ -60,7 +60,7 @@ class Samples:
         inside = (time_ns >= streams[0].time_ns[0]) & (time_ns <= streams[0].time_ns[-1])
         wheels = np.split(values[0][inside], [tables[0].shape[1]], axis=1)
         left, right = (
-            table[:, 0] if of.ndim == 1 else table for table, of in zip(wheels, (self.left, self.right), strict=True)
+            table[:, 0] if own.ndim == 1 else table for table, own in zip(wheels, (self.left, self.right), strict=True)
         )
         moved = iter(values[1:])
         gyro, accel = (None if table is None else next(moved)[inside] for table in (self.gyro, self.accel))
@@ -90,14 +90,14 @@ class Stream:
     values: FloatArray
 
     def ordered(self) -> tuple[Stream, int, int]:
-        """By time, the first one of each; how many came out of order, and how many of a time that was there."""
+        """The samples by time, without repeated times; how many were out of order, and how many repeated a time."""
         back = int(np.count_nonzero(np.diff(self.time_ns) < 0))
         _, first = np.unique(self.time_ns, return_index=True)
         return Stream(self.time_ns[first], self.values[first]), back, self.time_ns.size - first.size
 
 
 def merged(streams: Sequence[Stream]) -> tuple[IntArray, list[FloatArray]]:
-    """One row per time of any of the streams, each increasing; NaN where a stream has none."""
+    """One row per time of any stream, strictly increasing; NaN where a stream has no sample."""
     time_ns = np.unique(np.concatenate([stream.time_ns for stream in streams]))
     tables = []
     for stream in streams:
@@ -110,8 +110,8 @@ def merged(streams: Sequence[Stream]) -> tuple[IntArray, list[FloatArray]]:
 def _of_any(time_ns: IntArray, tables: Sequence[FloatArray]) -> tuple[IntArray, FloatArray]:
     """Times and rows at which any of the columns has a value."""
     table = np.column_stack(tables)
-    there = ~np.all(np.isnan(table), axis=1)
-    return time_ns[there], table[there]
+    present = ~np.all(np.isnan(table), axis=1)
+    return time_ns[present], table[present]
 
 
 def wheel_joints(robot: Robot, side: str) -> list[str]:
@@ -120,5 +120,5 @@ def wheel_joints(robot: Robot, side: str) -> list[str]:
 
 
 def _rate(seconds: FloatArray, table: FloatArray) -> float:
-    there = seconds[np.any(~np.isnan(table.reshape(seconds.size, -1)), axis=1)]
-    return 0.0 if there.size < 2 else (there.size - 1) / float(there[-1] - there[0])
+    present = seconds[np.any(~np.isnan(table.reshape(seconds.size, -1)), axis=1)]
+    return 0.0 if present.size < 2 else (present.size - 1) / float(present[-1] - present[0])

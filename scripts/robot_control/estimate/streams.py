@@ -1,4 +1,4 @@
-"""A recording by sensor: what the checks of an input look at."""
+"""Splits a recording by sensor, for the checks of an input."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from robot_control.estimate.samples import FloatArray, Robot, Samples
 REST = 0.5
 """s without motion that count as rest"""
 STILL = 0.002
-"""m of a side's travel that count as none: a count of a coarse encoder"""
+"""m of a side's travel that count as rest: one count of a coarse encoder"""
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Streams:
 
     @property
     def way(self) -> FloatArray:
-        """(n,) m, of the middle."""
+        """(n,) m, travel of the middle of the wheels."""
         return (self.left + self.right) / 2
 
     def rests(self) -> list[tuple[float, float]]:
@@ -51,7 +51,7 @@ class Streams:
 
 
 def streams_of(samples: Samples, robot: Robot) -> Streams:
-    """Of all that was measured."""
+    """The streams of all measurements."""
     seconds = samples.seconds
     left, right = (_travel(table, robot, side) for table, side in ((samples.left, "left"), (samples.right, "right")))
     read = ~(np.isnan(left) | np.isnan(right))
@@ -71,7 +71,7 @@ def streams_of(samples: Samples, robot: Robot) -> Streams:
 
 
 def _travel(table: FloatArray, robot: Robot, side: str) -> FloatArray:
-    """(N,) m: the mean of the side's wheels; a single column has the sign of the side's first wheel."""
+    """(N,) m: mean travel of the side's wheels; a single column has the sign of the side's first wheel."""
     wheels = [wheel for wheel in robot["wheels"] if wheel["side"] == side]
     columns = table.reshape(table.shape[0], -1)
     scales = [wheel["sign"] * wheel["radius"] for wheel in wheels[: columns.shape[1]]]
@@ -82,5 +82,5 @@ def _travel(table: FloatArray, robot: Robot, side: str) -> FloatArray:
 def _axes(seconds: FloatArray, table: FloatArray | None) -> tuple[FloatArray, FloatArray]:
     if table is None:
         return np.empty(0), np.empty((0, 3))
-    there = ~np.any(np.isnan(table), axis=1)
-    return seconds[there], table[there]
+    present = ~np.any(np.isnan(table), axis=1)
+    return seconds[present], table[present]

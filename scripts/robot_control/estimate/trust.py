@@ -1,4 +1,4 @@
-"""Whether an estimate can be relied on, and which sensors it did without."""
+"""Judges whether an estimate can be relied on, and which sensors it did not use."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ import numpy as np
 from robot_control.estimate.samples import IntArray, Samples
 from robot_control.offline_estimator import FLAGS, Estimate
 
-LARGEST_YAW_DEVIATION = math.radians(10)
-MOST_SLIP = 0.2  # of the distance
+MAX_YAW_DEVIATION = math.radians(10)
+MAX_SLIP = 0.2  # of the distance
 UNUSED = 0.05  # of the time
 USED_BY = {"gyro": "no_gyro", "accelerometer": "no_accelerometer"}
 """sensor → the flag that says that it was not used"""
 
 
 class Trust:
-    """Gathers what the judgement needs, a piece at a time."""
+    """Gathers the data for the judgement, block by block."""
 
     def __init__(self) -> None:
         self._slipped = 0.0  # m
@@ -28,7 +28,7 @@ class Trust:
         self._yaw_deviation = 0.0  # rad
 
     def add(self, time_ns: IntArray, estimate: Estimate) -> None:
-        """A row counts for the time and the way since the one before."""
+        """Adds rows; each counts for the time and the way since the one before."""
         stamp, distance = self._before or (int(time_ns[0]), float(estimate["distance"][0]))
         steps = np.diff(time_ns, prepend=stamp) / 1e9
         ways = np.diff(estimate["distance"], prepend=distance)
@@ -42,11 +42,11 @@ class Trust:
         self._before = int(time_ns[-1]), float(estimate["distance"][-1])
 
     def doubts(self, samples: Samples) -> list[str]:
-        """Sentences; none where nothing is doubtful."""
+        """Reasons to doubt the estimate, a sentence each; empty if there are none."""
         found = []
-        if self._yaw_deviation > LARGEST_YAW_DEVIATION:
+        if self._yaw_deviation > MAX_YAW_DEVIATION:
             found.append(f"not to be trusted: the last yaw is known to ± {math.degrees(self._yaw_deviation):.0f}°")
-        if self._distance > 0 and self._slipped > MOST_SLIP * self._distance:
+        if self._distance > 0 and self._slipped > MAX_SLIP * self._distance:
             found.append(
                 f"not to be trusted: slip on {100 * self._slipped / self._distance:.0f} % of the distance is rare; "
                 "look at clocks, units and mounting, and at what shakes the IMU"

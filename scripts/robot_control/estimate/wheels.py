@@ -1,4 +1,4 @@
-"""Wheel angles that another program's odometry stands for."""
+"""Converts another program's odometry into wheel angles."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ import numpy as np
 from robot_control.estimate.samples import FloatArray, Robot, Stream
 
 STILL = 1e-6
-"""m, rad: a pose that never leaves its first value by more was never filled in"""
+"""m, rad: a pose that stays so close to its first value was never filled in"""
 
 
 def wheel_angles(odometry: Stream, robot: Robot, source: str | None) -> tuple[FloatArray, str]:
-    """Angles (n, 2) [rad] of the left and the right wheel, as their joints would report them, and what they come from.
+    """Angles (n, 2) [rad] of the left and the right wheel, as their joints would report them, and the source in words.
 
-    A step of base_link by `forward` [m] and `turn` [rad] is a travel of forward − turn · axle_y ∓ turn · base / 2 of
-    the left and right wheels. From the pose: over the arc between two poses, whose chord is c, forward is
-    c · (turn/2) / sin(turn/2), with the sign that c has along the mean heading. From the twist: its trapezoid.
+    base_link moves by `forward` [m] and `turn` [rad] in a step. The left and right wheels then travel forward − turn ·
+    axle_y ∓ turn · base / 2. Between two poses with the chord c, forward is
+    c · (turn/2) / sin(turn/2). Its sign is that of c along the mean heading. A twist gives both by its trapezoid.
 
     Args:
         odometry: columns x, y [m], yaw [rad], linear [m/s], angular [rad/s], increasing in time.

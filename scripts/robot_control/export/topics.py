@@ -50,7 +50,7 @@ class Topics:
         self._requests = set(self._requested.tolist())
 
     def of_row(self, row: int) -> Iterator[tuple[str, Any, Any]]:
-        """Topic, message and time of what is due in this row."""
+        """Topic, message and time of each message that is due in this row."""
         stamp = Time.from_sec(float(self._time[row]))
         if row in self._requests:
             yield "cmd_vel", self._twist(row), stamp
@@ -129,13 +129,13 @@ def covariance(row: int, columns: Mapping[str, FloatArray], entries: Mapping[tup
 
 
 def root_link(urdf: str) -> str:
-    """The link that is no joint's child."""
+    """The link that is not the child of any joint."""
     robot = ET.fromstring(urdf)
     children = {child.get("link") for child in robot.iterfind("joint/child")}
     return next((link.get("name", "") for link in robot.iterfind("link") if link.get("name") not in children), "")
 
 
 def odom_frame(parameters: str) -> str:
-    """Of the YAML text of a log's header."""
+    """The name of the frame odom, from the YAML text in a log's header."""
     blocks = yaml.safe_load(parameters) or {}
     return str((blocks.get("state_estimator") or {}).get("odom_frame", "odom"))

@@ -1,4 +1,4 @@
-"""identify.py without ROS: its command line, and the way from a log to a table and a YAML."""
+"""identify.py without ROS: its command line, and the steps from a log to a table and a YAML."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from robot_control.identify.report import to_table, to_yaml, warnings
 from robot_control.identify.tuning_proposal import base_of, feed_forward, propose
 
 RIM_RESERVE = 0.9
-"""Of a joint's velocity limit: near it the gate takes torque away"""
+"""Share of a joint's velocity limit; nearer to it the gate reduces the torque."""
 
 
 @dataclass(frozen=True)
@@ -31,14 +31,14 @@ class Options:
     repeats: int
     mass: float | None  # kg, weighed
     output: Path
-    log: Path | None  # fit this one and drive nothing
+    log: Path | None  # log to fit instead of driving
     params: Path | None  # parameter file of the log; None: the installed one
     urdf: Path | None  # robot of the log; None: that of the parameters
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What there is to print and to write."""
+    """The report to print and the parameters to write."""
 
     table: str
     warnings: list[str]

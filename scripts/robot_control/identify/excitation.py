@@ -1,13 +1,13 @@
-"""How a robot is driven to be identified: ramps forwards and back, then turns on the spot, both ways, at three speeds.
+"""The plan by which a robot is driven to be identified: ramps forwards and back, then turns both ways, at three speeds.
 
-Every move is a step of the command, which the robot's own limiter turns into a ramp, and ends in rest; the next one
-undoes it. So the plan ends where it began, and never leaves `space` m ahead of that. A move to speed v within the
-limits (a, d, j: acceleration, deceleration, jerk) covers no more than
+Every move is a step of the command, which the robot's own limiter turns into a ramp, and ends in rest. The next move
+undoes it. So the plan ends at its begin, and never leaves `space` m ahead of it. A move to speed v within the limits
+(a, d, j: acceleration, deceleration, jerk) covers no more than
 
     v·(cruise + v/(2a) + v/(2d) + (a + d)/(2j))
 
-(src/control/limits/axis_limiter.h: a ramp to v lasts v/a + a/j and covers half of v times that); the fastest speed is
-the largest for which this fits, less a REACH of reserve.
+A ramp to v lasts v/a + a/j and covers half of v times that (src/control/limits/axis_limiter.h). The fastest speed is
+the largest for which the move fits into REACH times the space.
 """
 
 from __future__ import annotations
@@ -17,26 +17,26 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 LEVELS = (1 / 3, 2 / 3, 1.0)
-"""Of the fastest speed: three distinguish viscous from dry friction"""
+"""Shares of the fastest speed; three of them distinguish viscous from dry friction."""
 CRUISE = 0.8
-"""s at the speed of a move; five times the filters of the fit, so that friction is seen without inertia"""
+"""s at the speed of a move; five times the filters of the fit, so that friction is measured without inertia"""
 PAUSE = 0.2
 """s at rest; below 0.25 s the controller does not yet hand over to the brake (standstill.h)"""
 REACH = 0.9
-"""Of the space: a tenth for what tracking and odometry do not know"""
+"""Share of the space; the remaining tenth covers the errors of tracking and odometry."""
 SLOWEST = 0.05
-"""m/s at the wheels' rims: below, three levels are no three speeds for dry friction"""
-LONGEST_TURN = 2 * math.pi
+"""m/s at the wheels' rims; below it the three levels are too close to show dry friction"""
+MAX_TURN = 2 * math.pi
 """rad; a larger turn winds up cables"""
 
 
 class NoRoomError(ValueError):
-    """The space is too small; the message says how much it takes."""
+    """The space is too small; the message names the space that is needed."""
 
 
 @dataclass(frozen=True)
 class AxisLimits:
-    """What the limiter does with one axis; m/s or rad/s and its derivatives; jerk may be infinite."""
+    """Limits of one axis; m/s or rad/s and its derivatives; jerk may be infinite."""
 
     speed: float
     acceleration: float
@@ -57,7 +57,7 @@ class AxisLimits:
         return speed / self.acceleration + self.acceleration / self.jerk
 
     def fastest_within(self, distance: float) -> float:
-        """The largest speed at which a move takes no more than `distance`; 0: none."""
+        """The largest speed at which a move covers at most `distance`; 0 if there is none."""
         square = 1 / (2 * self.acceleration) + 1 / (2 * self.deceleration)
         linear = CRUISE + (self.acceleration + self.deceleration) / (2 * self.jerk)
         return (math.sqrt(linear**2 + 4 * square * distance) - linear) / (2 * square)
@@ -65,7 +65,7 @@ class AxisLimits:
 
 @dataclass(frozen=True)
 class Move:
-    """A command, and how long it stands."""
+    """A command and its duration."""
 
     linear: float  # m/s
     angular: float  # rad/s
@@ -84,7 +84,7 @@ class Excitation:
 
     @property
     def seconds(self) -> float:
-        """How long it takes."""
+        """Duration of the plan, s."""
         return sum(move.seconds for move in self.moves)
 
     def command(self, time: float) -> tuple[float, float]:
@@ -111,7 +111,7 @@ def plan_excitation(
             f"--space {space:g} m, --max-speed {max_speed:g} m/s: the robot would drive {v:.3g} m/s at most, "
             f"{SLOWEST:g} m/s are needed. Give at least {math.ceil(100 * needed) / 100:g} m and {SLOWEST:g} m/s"
         )
-    w = min(angular.speed, 2 * max_speed / wheel_base, angular.fastest_within(LONGEST_TURN))
+    w = min(angular.speed, 2 * max_speed / wheel_base, angular.fastest_within(MAX_TURN))
     moves = [*_moves(linear, v, repeats, turn=False), *_moves(angular, w, repeats, turn=True)]
     return Excitation(tuple(moves), v, w, v * CRUISE + linear.ramps(v), w * CRUISE + angular.ramps(w))
 

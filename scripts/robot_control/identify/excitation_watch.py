@@ -1,4 +1,4 @@
-"""Whether a robot that is being identified may go on: pure, asked before every command."""
+"""Decides before every command whether a robot that is being identified may go on; no ROS in here."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from dataclasses import dataclass
 from robot_control.safety.states import DRIVABLE
 
 SILENCE = 1.0
-"""s without odometry or safety_status (each comes at least once per second); beyond, the robot is not supervised"""
+"""s without odometry or safety_status; each comes at least once per second, so a silent robot is not supervised"""
 MARGIN = 0.1
 """m around the planned path: tracking, odometry and a late command"""
 ANSWER = 2.0
-"""s of motion asked for after which a robot that stands has refused"""
+"""s of requested motion after which a robot that stands has refused it"""
 STANDING = 0.01
 """m/s and rad/s; a fifth of the slowest move"""
 
 
 @dataclass(frozen=True)
 class Pose:
-    """In odom."""
+    """Pose in odom."""
 
     x: float  # m
     y: float  # m
@@ -35,7 +35,7 @@ class Pose:
 
 @dataclass(frozen=True)
 class Look:
-    """What is known of the robot now; None: never received."""
+    """The robot's present state; None stands for a message that was never received."""
 
     pose: Pose | None
     linear: float  # m/s
@@ -43,7 +43,7 @@ class Look:
     pose_age: float  # s
     state: str  # of SafetyStatus; empty: never received
     status_age: float  # s
-    sentences: Sequence[str]  # why it is stopped
+    sentences: Sequence[str]  # reasons why it is stopped
     missing: Sequence[str]
     speed_limit: float  # m/s
     senders: Sequence[str]  # others on cmd_vel
@@ -51,12 +51,12 @@ class Look:
 
 
 def moves(look: Look) -> bool:
-    """By odometry."""
+    """True if it moves by odometry."""
     return abs(look.linear) > STANDING or abs(look.angular) > STANDING
 
 
 def hindrance(look: Look) -> str:
-    """Why it cannot be begun; empty: it can."""
+    """Why the plan cannot begin; empty if it can."""
     if not look.state:
         return "no safety_status: does safety_monitor run? Start the robot (roslaunch robot_control sim.launch) first"
     if look.pose is None:
@@ -74,7 +74,7 @@ def hindrance(look: Look) -> str:
 
 
 def interruption(look: Look, start: Pose, reach: float, unanswered: float) -> str:
-    """Why it must end now; empty: go on.
+    """Why the plan must end now; empty if it goes on.
 
     Args:
         look: now.
@@ -86,12 +86,12 @@ def interruption(look: Look, start: Pose, reach: float, unanswered: float) -> st
 
 
 def unattended(look: Look) -> str:
-    """Why no robot may drive on, wherever it is; empty: it may."""
+    """Why no robot may drive on, wherever it is; empty if it may."""
     return _unwatched(look) or _stopped(look)
 
 
 def ignored(unanswered: float) -> str:
-    """Why it must end after `unanswered` s of motion asked for without any; empty: go on."""
+    """Why the plan must end after `unanswered` s of requested motion without any; empty if it goes on."""
     if unanswered <= ANSWER:
         return ""
     return f"the robot was asked to move for {unanswered:.0f} s and stands; rosrun robot_control why.py says why"

@@ -1,12 +1,12 @@
-"""What the wheels of a driven robot are like: inertia, friction and delay, fitted to a log of every cycle.
+"""Fits inertia, friction and delay of a driven robot's wheels to a log of every cycle.
 
 The law is that of wheel_law.py. The loop is closed and the angle quantised, so torque and motion share noise, and least
 squares would be biased. The planned motion knows nothing of that noise: it is the instrument Z of θ = (ZᵀX)⁻¹Zᵀτ
 (Söderström, Stoica, System Identification, ch. 8; for robots Janot, Vandanjon, Gautier, IEEE TCST 22(1), 2014).
 Standard errors are those of blocks of BLOCK s, between which the residuals no longer know of each other.
 
-Delay: beyond the bus' one, from command to measured torque by the shift at which both agree best, from measured torque
-to motion by the shift with the smallest residual.
+The delay from command to measured torque, beyond that of the bus, is the shift at which both agree best. The delay from
+measured torque to motion is the shift with the smallest residual.
 """
 
 from __future__ import annotations
@@ -33,25 +33,26 @@ from robot_control.identify.wheel_law import (
 BLOCK = 0.5
 """s; three times the filter"""
 SLOW_PACE = 0.1
-"""Of the RMS acceleration: below, a wheel cruises, and its tyre's give and the angle's counts disturb least"""
+"""Share of the RMS acceleration; below it a wheel cruises, and its tyre's elasticity and the angle's counts disturb
+least."""
 WEIGHINGS = 3
 """Rounds; the weights settle in two"""
 BUS_LAG = 2
 """Cycles from a command to the sample of its torque: the command of cycle k acts over [t_k+1, t_k+2)."""
 QUIET = 1e-9
-"""RMS of a term, SI; below, it is not in the log"""
+"""RMS of a term, SI; below it, the term is not in the log"""
 TINY = 1e-18
-"""(N·m)²: what an ideal machine leaves over is rounding, and weighs no more than this"""
+"""(N·m)²: the residual of an ideal machine is rounding, and counts for at least this"""
 MAX_DELAY = 40
 """Cycles, searched"""
 INERTIA_ERROR = 0.05
 """Largest standard error of an inertia, relative: what identification promises"""
 LEFT_OVER = 0.2
-"""Largest RMS of what the law leaves over, of the RMS torque; a robot on even ground leaves 1 … 7 %"""
+"""Largest RMS of the residual over that of the torque; a robot on even ground has 1 … 7 %"""
 FRICTION_ERROR = 0.05
 """Largest standard error of friction at the fastest speed, of the RMS torque"""
 MIN_SECONDS = 2.0
-"""s in motion: below, the blocks are too few for a standard error"""
+"""s in motion; fewer blocks give no standard error"""
 
 
 @dataclass(frozen=True)
@@ -62,13 +63,13 @@ class Estimate:
     error: float
 
     def __format__(self, spec: str) -> str:
-        """`0.0651 ± 0.0002`, both by `spec`."""
+        """`0.0651 ± 0.0002`, both formatted by `spec`."""
         return f"{self.value:{spec}} ± {self.error:{spec}}"
 
 
 @dataclass(frozen=True)
 class SideFit:
-    """What a wheel of one side is like, mean over the side; about its own axle, forward positive."""
+    """The wheels of one side, mean over the side; about their own axles, forward positive."""
 
     joints: tuple[str, ...]
     straight: Estimate  # kg·m², inertia while driving straight
@@ -76,13 +77,13 @@ class SideFit:
     damping: Estimate  # N·m·s/rad
     friction: Estimate  # N·m, dry
     scrub: Estimate  # N·m, beyond friction while turning
-    residual: float  # N·m RMS, of what the law leaves over
+    residual: float  # N·m RMS, residual of the law
     effort: float  # N·m RMS
 
 
 @dataclass(frozen=True)
 class Identification:
-    """A robot's wheels, and how late its torque is."""
+    """A robot's wheels, and the delay of its torque."""
 
     sides: tuple[SideFit, SideFit]  # left, right
     delay: Estimate  # cycles beyond the bus' one
@@ -90,7 +91,7 @@ class Identification:
     period: float  # s
 
     def mean(self, name: str) -> Estimate:
-        """Of both sides; `name` of a field of SideFit. The errors are those of independent sides."""
+        """Mean over both sides of the field `name` of SideFit; the errors are those of independent sides."""
         values = [getattr(side, name) for side in self.sides]
         error = np.sqrt(sum(value.error**2 for value in values)) / len(values)
         return Estimate(float(np.mean([value.value for value in values])), float(error))
@@ -134,7 +135,7 @@ def _effort_lag(log: Log, stretches: Sequence[slice], base: Base) -> int:
     misses = np.zeros(len(lags))
     for rows in stretches:
         for wheel in base.wheels:
-            # Differences: what a drive takes away evenly (a wrong torque constant, an offset) moves no lag.
+            # Differences remove what a drive changes evenly (a wrong torque constant, an offset), which moves no lag.
             command = np.diff(log[f"{wheel.joint}_effort_command"][rows])
             effort = np.diff(log[f"{wheel.joint}_effort"][rows])
             count = len(command) - int(lags[-1])
@@ -153,15 +154,15 @@ class _Solution:
 def _solve(parts: Sequence[Regression], side: int, block: int) -> _Solution:
     """Instrumental variables for one side; `block` rows. A term that is not in the log has value and error NaN.
 
-    Cruising and accelerating rows each weigh by the inverse of their own variance, from the residuals: with equal
-    weights what the tyres do in ramps passes for friction, 5 % of it.
+    Cruising and accelerating rows are weighted by the inverse of their own residuals' variance. With equal weights the
+    tyres' work in ramps would count as friction, 5 % of it.
     """
     torque = np.concatenate([part.torque[:, side] for part in parts])
     x = np.concatenate([part.regressors[:, side] for part in parts])
     z = np.concatenate([part.instruments[:, side] for part in parts])
     scale = np.sqrt(np.mean(z**2, axis=0))
-    there = scale > QUIET
-    x, z = x[:, there] / scale[there], z[:, there] / scale[there]
+    excited = scale > QUIET
+    x, z = x[:, excited] / scale[excited], z[:, excited] / scale[excited]
     pace = np.hypot(z[:, 0], z[:, 1])
     slow = pace < SLOW_PACE * np.sqrt(np.mean(pace**2))
     weight = np.ones(len(torque))
@@ -176,14 +177,14 @@ def _solve(parts: Sequence[Regression], side: int, block: int) -> _Solution:
     scores = weighted * residual[:, None]
     sums = np.add.reduceat(scores, np.arange(0, len(scores), block), axis=0)
     variances = np.diag(inverse @ (sums.T @ sums) @ inverse.T)
-    errors = np.sqrt(np.where(variances >= 0, variances, np.nan))  # no information: rounding is left
+    errors = np.sqrt(np.where(variances >= 0, variances, np.nan))  # rounding may be negative
     values, spread = np.full(len(TERMS), np.nan), np.full(len(TERMS), np.nan)
-    values[there], spread[there] = theta / scale[there], errors / scale[there]
+    values[excited], spread[excited] = theta / scale[excited], errors / scale[excited]
     return _Solution(values, spread, residual)
 
 
 def _motion_lag(signals: Sequence[Signals], base: Base, period: float, width: int) -> Estimate:
-    """Cycles from measured torque to motion: where the law leaves least over, between cycles by a parabola."""
+    """Cycles from measured torque to motion: the shift with the smallest residual, interpolated by a parabola."""
 
     def left_over(shift: int) -> float:
         parts = [regression(one, base, period, width, shift) for one in signals]
@@ -198,7 +199,7 @@ def _motion_lag(signals: Sequence[Signals], base: Base, period: float, width: in
         left[best + 1] = left_over(best + 1)
     low, middle, high = left[best - 1], left[best], left[best + 1]
     bend = low - 2 * middle + high
-    rows = sum(len(one.angle) for one in signals) * len(SIDES) / (FILTERS * width)  # that know nothing of each other
+    rows = sum(len(one.angle) for one in signals) * len(SIDES) / (FILTERS * width)  # number of independent values
     if not bend > 0:
         return Estimate(float(best), float("inf"))
     return Estimate(best + (low - high) / (2 * bend), float(np.sqrt(2 * middle / (bend * rows))))

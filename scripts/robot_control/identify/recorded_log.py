@@ -1,4 +1,4 @@
-"""The log of every cycle of a running robot: that of its telemetry, else one of our own."""
+"""The log of every cycle of a running robot, written by its telemetry, else by one that is started here."""
 
 from __future__ import annotations
 
@@ -28,25 +28,25 @@ SETTLE = 4.0
 
 
 class RecordingError(RuntimeError):
-    """There is no log; the message says why."""
+    """There is no log; the message names the reason."""
 
 
 @dataclass(frozen=True)
 class RunningTelemetry:
-    """Of the robot, as it reports itself."""
+    """The telemetry as the robot reports it."""
 
     node: str
     path: str
     """Of run.bag."""
     records: bool
-    """run.bag holds the cycles of now."""
+    """True if run.bag holds the present cycles."""
 
 
 class Recording:
     """Rows of the run.bag of a telemetry from a moment on; which records all of them until they are read."""
 
     def __init__(self, path: Path, telemetry: str, *, records: bool) -> None:
-        """`telemetry`: the node; `records`: it recorded before, and shall go on.
+        """`telemetry` is the node; `records`: it was recording before and shall go on.
 
         Raises:
             RecordingError: it does not record.
@@ -58,7 +58,7 @@ class Recording:
         self._begin = rospy.get_time()
 
     def read(self) -> dict[str, FloatArray]:
-        """What was written since.
+        """The columns of the rows that were written since the begin.
 
         Raises:
             LogError: nothing.
@@ -72,7 +72,7 @@ class Recording:
         return rows
 
     def end(self) -> None:
-        """As before."""
+        """Restores the telemetry's recording as it was."""
         if not self._records:
             with contextlib.suppress(RecordingError):
                 self._switch(on=False)

@@ -1,4 +1,4 @@
-"""What was identified and is proposed: as a table, and as the YAML that is laid over the parameters."""
+"""Reports the identified wheels and the proposal: as a table, and as the YAML that is laid over the parameters."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from robot_control.identify.fit import Estimate, Identification
 from robot_control.identify.tuning_proposal import RESERVE, Proposal
 
 UNLIKE = 0.2
-"""Between the sides, of their mean: more is a machine to look at"""
+"""Difference between the sides relative to their mean; a larger one is a defect of the machine"""
 
 
 def to_table(
@@ -54,10 +54,12 @@ def to_table(
 
 
 def ground_friction(found: Identification, now: Sequence[Mapping[str, Any]]) -> Estimate | None:
-    """Of treads that scrub, by their torque at friction 1 (robot/wheels/scrub.h); None: they do not."""
-    most = sum(float(wheel["scrub"]) for wheel in now) / len(now)
+    """Friction of the ground from the torque of scrubbing treads at friction 1 (robot/wheels/scrub.h); None if none
+    scrub.
+    """
+    at_friction_one = sum(float(wheel["scrub"]) for wheel in now) / len(now)
     scrub = found.mean("scrub")
-    return Estimate(scrub.value / most, scrub.error / most) if most > 0 else None
+    return Estimate(scrub.value / at_friction_one, scrub.error / at_friction_one) if at_friction_one > 0 else None
 
 
 def _ground_friction(found: Identification, now: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, str, str, str]]:
@@ -67,7 +69,7 @@ def _ground_friction(found: Identification, now: Sequence[Mapping[str, Any]]) ->
 
 
 def warnings(found: Identification, proposal: Proposal) -> list[str]:
-    """What to look at, a sentence each."""
+    """Remarks on what the user should examine, a sentence each."""
     said = []
     delay = round(found.delay.value)
     if proposal.margins_before.delay < delay + RESERVE:

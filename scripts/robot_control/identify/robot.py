@@ -23,7 +23,7 @@ class RunningRobot:
     """Receives the reports of one robot; sends commands on cmd_vel, a zero when the node is shut down."""
 
     def __init__(self, *, sends: bool = True) -> None:
-        """`sends` False: it only receives, and is no sender on cmd_vel."""
+        """If `sends` is false, it only receives and does not count as a sender on cmd_vel."""
         self.logs: dict[str, RunningTelemetry] = {}
         self._odometry: Odometry | None = None
         self._odometry_at = NEVER
@@ -46,11 +46,11 @@ class RunningRobot:
         self._sender.send(message)
 
     def has_receiver(self) -> bool:
-        """A controller receives what is sent."""
+        """True if a controller receives what is sent."""
         return self._publisher is not None and int(self._publisher.get_num_connections()) > 0
 
     def look(self, senders: tuple[str, ...] = ()) -> Look:
-        """As of now; `senders`: others on cmd_vel."""
+        """The present state; `senders` are the others on cmd_vel."""
         revoked = self._watch.revoked(self.requested, waited=True)
         now = time.monotonic()
         odometry, status = self._odometry, self._watch.message

@@ -1,4 +1,4 @@
-"""Which cycles of a log say something of the machine: driven ones, by the wheels' own torque, with grip."""
+"""Selects the cycles of a log that describe the machine: driven ones, by the wheels' own torque, with grip."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ SATURATED = mask_of("CommandReason", "saturated")
 CLAMPED = mask_of("GateReason", "effort_clamped", "rate_clamped", "speed_clamped", "position_clamped")
 SLIP = mask_of("StateFlag", "slip")
 SLIP_SHARE = 0.2
-"""Of the driven cycles; a bump is no reason to refuse"""
+"""Largest share of slip among the driven cycles; a bump alone does not exceed it."""
 CLAMPED_SHARE = 0.02
-"""Likewise"""
+"""Largest share of clamped cycles among the driven ones."""
 
 
 class UnfitError(ValueError):
-    """The log cannot be used; the message says why and what to do."""
+    """The log cannot be used; the message names the reason and the remedy."""
 
 
 def fit_rows(log: Log, joints: Sequence[str]) -> tuple[list[slice], float]:
@@ -95,8 +95,8 @@ def _bits(log: Log, column: str, bits: int) -> BoolArray:
     return found
 
 
-def _refuse(bad: BoolArray, of: BoolArray, share: float, what: str, remedy: str) -> None:
-    found = bad.sum() / of.sum()
+def _refuse(bad: BoolArray, considered: BoolArray, share: float, what: str, remedy: str) -> None:
+    found = bad.sum() / considered.sum()
     if found > share:
         raise UnfitError(f"{what} in {found:.0%} of the driven cycles, {share:.0%} are allowed: {remedy}")
 

@@ -1,15 +1,16 @@
 """What was identified → feed-forward and gains of the `diff_drive_controller` block, with the margins they have.
 
-Feed-forward: the inertias that the wheels show, J_straight and J_turning, fix mass and yaw inertia once the wheel's own
-inertia J is known (src/control/wheel_loops/feed_forward.h, with its symbols):
+The feed-forward follows from the inertias that the wheels show, J_straight and J_turning. They determine mass and yaw
+inertia once the wheel's own inertia J is known (src/control/wheel_loops/feed_forward.h, with its symbols):
 
     mass = 2h·(J_straight − J)/r²      yaw_inertia = (J_turning − J)·h·b·b'/(2r²)
 
 J cannot be seen on the ground. A robot that was weighed gives it: J = J_straight − mass·r²/(2h). Otherwise J is
 its nominal value; a rotor that the parameters omit then counts as mass, with the same motion.
 
-Gains: those that wheel_loop_gains.h derives of that robot, if they bear the measured delay and one cycle more, lifted
-wheel included, with a gain margin of two. Else the largest kp·s, ki·s² that do: with s, the loop's pace falls as one.
+wheel_loop_gains.h derives the gains of that robot. They are proposed if they bear one cycle more than the measured
+delay with a gain margin of two, also on a lifted wheel. Otherwise the largest kp·s, ki·s² with this property are
+proposed; s scales the bandwidth of the loop.
 """
 
 from __future__ import annotations
@@ -24,31 +25,31 @@ from robot_control.identify.wheel_law import Base, Wheel
 from robot_control.identify.wheel_margins import Loop, Margins, gain_margin, margins
 
 RESERVE = 1
-"""Cycles of delay beyond the measured one that proposed gains bear"""
+"""Cycles of delay beyond the measured one at which proposed gains are stable"""
 GAIN_MARGIN = 2.0
-"""The textbook's 6 dB"""
+"""The usual 6 dB"""
 STEP = 2**-0.25
-"""Of the search for slower gains"""
+"""Step of the search for slower gains."""
 STEPS = 32
-"""Down to 1/256 of kp: slower than any robot needs"""
+"""Steps down to 1/256 of kp, which is slower than any robot needs"""
 LIGHTEST = 0.9
-"""Of the smaller inertia on the ground: the largest share that is attributed to the wheel itself"""
+"""Largest share of the smaller inertia on the ground that is attributed to the wheel itself."""
 
 
 class NoGainsError(ValueError):
-    """No gains bear the delay; the message says which delay."""
+    """No gains are stable at the delay; the message names it."""
 
 
 @dataclass(frozen=True)
 class Proposal:
-    """What to write, and what it promises."""
+    """The parameters to write, and their margins."""
 
     feed_forward: dict[str, float]  # keys of the map feed_forward
     before: Loop
     after: Loop
     margins_before: Margins  # behind the measured delay, driving the measured robot
     margins_after: Margins
-    derived_bear: bool  # the derived gains are proposed
+    derived_bear: bool  # true if the derived gains are proposed
     weighed: bool
 
     def overlay(self) -> dict[str, Any]:
@@ -96,7 +97,7 @@ def feed_forward(found: Identification, base: Base, lifted: float, mass: float |
 
 
 def loop_of(loops: Sequence[Mapping[str, Any]], found: Identification, lifted: float) -> Loop:
-    """The gains of `loops` (_robot_control.wheel_loops) on the measured robot; of unequal wheels the quickest."""
+    """The gains of `loops` (_robot_control.wheel_loops) on the measured robot; the fastest if the wheels differ."""
     quickest = max(loops, key=lambda loop: loop["kp"] / loop["model_inertia"])
     straight, turning = found.mean("straight").value, found.mean("turning").value
     return Loop(
@@ -127,7 +128,7 @@ def propose(
     delay = round(found.delay.value)
     before = loop_of(now, found, forward["wheel_inertia"])
     after = loop_of(derived, found, forward["wheel_inertia"])
-    # One pid_kp for all wheels: the smallest that any of them requires.
+    # All wheels share one pid_kp, the smallest that any of them requires.
     after = replace(after, kp=min(loop["kp"] for loop in derived), ki=min(loop["ki"] for loop in derived))
     for step in range(STEPS):
         part = STEP**step
@@ -152,5 +153,5 @@ def propose(
 
 
 def _rounded(value: float) -> float:
-    """To four digits: more than any measurement holds."""
+    """Four digits, which is more than any measurement holds."""
     return 0.0 if value == 0 else round(value, 3 - math.floor(math.log10(abs(value))))

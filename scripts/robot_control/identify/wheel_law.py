@@ -1,19 +1,20 @@
 """The law that an identified robot is taken to obey, as rows of a linear regression.
 
-Torque τ and angle q of a wheel, forward positive; v, ω the robot's speeds by its wheels, r the wheel's radius,
-side −1 left, +1 right, h wheels a side, b the wheel base, b' the effective one (the law of
-src/control/wheel_loops/feed_forward.h). Wheels behind each other are fitted as one, their mean: the ground carries
-torque from one to the other, and how much each of them bears is chance.
+τ and q are torque and angle of a wheel, forward positive; v and ω are the robot's speeds by its wheels. The wheel's
+radius is r, and side is −1 left, +1 right. There are h wheels a side; b is the wheel base, b' the effective one. The
+law is that of src/control/wheel_loops/feed_forward.h. Wheels behind each other are fitted as one, their mean: the
+ground moves torque between them, and the share of each is chance.
 
     τ = J_straight·v̇/r + J_turning·side·ω̇·b'/(2r) + d·q̇ + f·sign(q̇) + side·(s·sign(ω) + e·ω)
         + p·r/h·(side·v·ω/b − ω²/2) + c
 
-s, e: what scrubbing takes beyond f and d while turning; p: mass times centre of gravity ahead of the wheels; c: slope.
+s and e: torque of scrubbing beyond f and d while turning; p: mass times centre of gravity ahead of the wheels; c:
+slope.
 
-Nothing noisy is differentiated: a difference of angles commutes with a moving average, so both sides of the equation
-go through the same four moving averages of WINDOW s (a cubic B-spline), and the very same law holds for what comes out,
-whatever the torque does from cycle to cycle. The torque of sample k acted over [t_k−1, t_k), hence τ(t_k) is the mean
-of samples k and k+1.
+No noisy signal is differentiated. A difference of angles commutes with a moving average. So both sides of the equation
+pass the same four moving averages of WINDOW s (a cubic B-spline). The same law holds for the filtered signals, whatever
+the torque does from cycle to cycle. The torque of sample k acted over [t_k−1, t_k), hence τ(t_k) is the mean of samples
+k and k+1.
 """
 
 from __future__ import annotations
@@ -25,13 +26,13 @@ import numpy as np
 from robot_control.common.run_log import FloatArray, Log
 
 WINDOW = 0.04
-"""s, of each moving average, together 0.16 s: what oscillates faster than 10 Hz on its tyres averages out"""
+"""s, of each moving average, together 0.16 s; oscillations on the tyres faster than 10 Hz average out"""
 FILTERS = 4
 """Moving averages on either side"""
 STANDING = 0.5
 """rad/s below which dry friction is undefined: five times ε of feed_forward.h"""
 SPIN = 1e-6
-"""rad/s; a plan below it is straight"""
+"""rad/s; a plan with a smaller rate is straight"""
 
 
 @dataclass(frozen=True)
@@ -73,40 +74,40 @@ SIDES = (-1, 1)
 
 @dataclass(frozen=True)
 class Signals:
-    """Of one stretch of cycles without a gap, unfiltered; arrays of shape (rows, sides)."""
+    """Signals of one stretch of cycles without a gap, unfiltered; arrays of shape (rows, sides)."""
 
     angle: FloatArray  # rad
     effort: FloatArray  # N·m
-    plan: FloatArray  # rad/s, planned, in the row in which it is carried out
+    plan: FloatArray  # rad/s, planned, in the row in which the plan is carried out
 
 
 def signals_of(log: Log, rows: slice, base: Base, lag: int) -> Signals:
-    """`lag`: cycles from a command to the sample of its torque."""
+    """The signals of `rows`; `lag`: cycles from a command to the sample of its torque."""
 
-    def of(column: str) -> FloatArray:
+    def mean_of(column: str) -> FloatArray:
         sides = [[wheel.sign * log[f"{wheel.joint}_{column}"][rows] for wheel in base.beside(side)] for side in SIDES]
         mean: FloatArray = np.mean(sides, axis=1).T
         return mean
 
-    # What was planned in cycle k is carried out from k + lag on.
-    plan = of("velocity_command")[: -lag or None]
-    return Signals(of("position")[lag:], of("effort")[lag:], plan)
+    # The plan of cycle k is carried out from k + lag on.
+    plan = mean_of("velocity_command")[: -lag or None]
+    return Signals(mean_of("position")[lag:], mean_of("effort")[lag:], plan)
 
 
 @dataclass(frozen=True)
 class Regression:
-    """Filtered; rows in which the friction of both sides is known."""
+    """Filtered signals in rows in which the friction of both sides is known."""
 
     torque: FloatArray  # (rows, sides), N·m
     regressors: FloatArray  # (rows, sides, terms)
-    instruments: FloatArray  # the same of the plan
+    instruments: FloatArray  # (rows, sides, terms), the same terms of the plan
 
 
 TERMS = ("straight", "turning", "damping", "friction", "scrub", "scrub_damping", "ahead", "slope")
 
 
 def regression(signals: Signals, base: Base, period: float, width: int, shift: int) -> Regression:
-    """`shift`: cycles by which the motion follows the measured torque."""
+    """The filtered terms; `shift`: cycles by which the motion follows the measured torque."""
     early, late = max(0, -shift), max(0, shift)
     rows = len(signals.angle) - abs(shift)
     angle = signals.angle[late : late + rows]

@@ -1,4 +1,6 @@
-"""How much more gain and delay a wheel loop bears: eigenvalues as in src/control/wheel_loops/wheel_loop_stability.h."""
+"""Computes how much more gain and delay a wheel loop bears, by eigenvalues as in
+src/control/wheel_loops/wheel_loop_stability.h.
+"""
 
 from __future__ import annotations
 
@@ -7,17 +9,17 @@ from dataclasses import dataclass, replace
 
 from robot_control._robot_control import spectral_radius
 
-MOST_DELAY = 60
-"""Cycles, looked for"""
-MOST_GAIN = 64.0
-"""Factor, looked for"""
+MAX_DELAY = 60
+"""Largest delay that the search tries, cycles"""
+MAX_GAIN = 64.0
+"""Largest factor that the search tries"""
 GAIN_STEPS = 12
-"""Halvings of that in the logarithm: 0.1 %"""
+"""Halvings of that range in the logarithm: 0.1 %"""
 
 
 @dataclass(frozen=True)
 class Loop:
-    """Gains and what they hold: a wheel's loop."""
+    """The loop of a wheel: gains and plant."""
 
     kp: float  # N·m·s/rad
     ki: float  # N·m/rad
@@ -25,11 +27,11 @@ class Loop:
     model_inertia: float  # kg·m²
     bandwidth: float  # Hz
     period: float  # s
-    inertias: tuple[float, ...]  # kg·m²: lifted, turning, straight, straight with the mass doubled
+    inertias: tuple[float, ...]  # kg·m²: lifted, turning, straight, straight with twice the mass
     damping: float  # N·m·s/rad
 
     def radius(self, delay: int) -> float:
-        """The worst spectral radius of all inertias, `delay` cycles beyond the bus' one."""
+        """The largest spectral radius over all inertias, `delay` cycles beyond the bus' one."""
         worst: float = max(
             spectral_radius(
                 kp=self.kp,
@@ -47,24 +49,24 @@ class Loop:
         return worst
 
     def scaled(self, kp: float, ki: float) -> Loop:
-        """kp and kd times `kp`, ki times `ki`."""
+        """The loop with kp and kd times `kp`, ki times `ki`."""
         return replace(self, kp=kp * self.kp, ki=ki * self.ki, kd=kp * self.kd)
 
 
 @dataclass(frozen=True)
 class Margins:
-    """Of a loop behind a delay."""
+    """Margins of a loop behind a delay."""
 
     radius: float
     """Spectral radius; below 1: stable"""
     gain: float
-    """All gains together may be multiplied by it; at most MOST_GAIN, 0 where the loop is unstable already"""
+    """The loop stays stable if all gains are multiplied by it; at most MAX_GAIN, 0 if the loop is unstable already"""
     delay: int
-    """Cycles beyond the bus' one that it bears; −1: not even that"""
+    """Largest delay beyond the bus' one with a stable loop, cycles; −1 if there is none"""
 
 
 def margins(loop: Loop, delay: int) -> Margins:
-    """Of `loop` behind `delay` cycles beyond the bus' one."""
+    """The margins of `loop` behind `delay` cycles beyond the bus' one."""
     return Margins(loop.radius(delay), gain_margin(loop, delay), delay_margin(loop))
 
 
@@ -76,19 +78,19 @@ def gain_margin(loop: Loop, delay: int) -> float:
 
     if not stable(1.0):
         return 0.0
-    return _last(stable, 1.0, MOST_GAIN)
+    return _last(stable, 1.0, MAX_GAIN)
 
 
 def delay_margin(loop: Loop) -> int:
-    """The most cycles n for which the loop is stable behind 0 … n."""
-    for delay in range(MOST_DELAY + 1):
+    """The largest n for which the loop is stable behind 0 … n cycles."""
+    for delay in range(MAX_DELAY + 1):
         if not loop.radius(delay) < 1:
             return delay - 1
-    return MOST_DELAY
+    return MAX_DELAY
 
 
 def _last(holds: Callable[[float], bool], low: float, high: float) -> float:
-    """Where `holds`, true at `low`, ends; `high` where it does not."""
+    """The largest value up to `high` at which `holds`, true at `low`, is still true."""
     if holds(high):
         return high
     for _ in range(GAIN_STEPS):

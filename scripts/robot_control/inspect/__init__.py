@@ -1,1 +1,1 @@
-"""inspect_robot.py: what a robot description means for this package, as a report and a picture."""
+"""inspect_robot.py reports how this package understands a robot description, as text and as a picture."""

@@ -36,8 +36,8 @@ def mjcf(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) -
 
 
 def stand(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) -> dict[str, Any]:
-    """How the robot stands in the scene, brakes on: `lean` [rad]; `carried`, the part of its weight that the drive
-    wheels carry; `unloaded`, the wheels that carry nothing and the links that touch the ground instead, "" if none.
+    """The robot's rest in the scene, brakes on. `lean` is its tilt [rad], `carried` the part of its weight on the drive
+    wheels. `unloaded` names the wheels without load and the links that touch the ground instead, "" if there are none.
 
     Raises:
         RobotError, ParameterError: as `describe`.

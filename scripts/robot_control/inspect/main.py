@@ -1,4 +1,4 @@
-"""inspect_robot.py: what is understood of a robot description."""
+"""inspect_robot.py reports how a robot description is understood."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _json(robot: Description) -> str:
-    """Without the corners of meshes."""
+    """The robot as JSON, without the corners of meshes."""
     shapes = [
         {key: value for key, value in shape.items() if key not in ("points", "triangles")} for shape in robot["shapes"]
     ]

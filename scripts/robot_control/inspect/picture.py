@@ -1,4 +1,4 @@
-"""A robot as it was understood, drawn: from the front corner, from its right, from above; in true scale."""
+"""Draws a robot as it was understood: from the front corner, from its right, from above; in true scale."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ LEFT, RIGHT, CASTER, OTHER, BODY = "#2f6fb7", "#d2553f", "#5d8f4e", "#c9a24b", "
 INK, SOFT, FLOOR = "#22262b", "#7b838c", "#9aa1a9"
 CORNER, FROM_THE_RIGHT, FROM_ABOVE = (View.towards(d) for d in ((0.62, -0.72, 0.46), (0, -1, 0), (0, 0, 1)))
 ROLLING = {to_rgb(LEFT), to_rgb(RIGHT), to_rgb(CASTER)}
-THROUGH = 0.4  # how much wheels shine through what hides them
+THROUGH = 0.4  # opacity of wheels behind other shapes
 PIXELS = 1000  # width of a rendered view
 
 
@@ -96,7 +96,7 @@ def _show(axes: Axes, parts: list[Part], view: View, extent: tuple[float, float,
 
 
 def _frame(axes: Axes, left: float, right: float, bottom: float, top: float) -> None:
-    """Limits that hold at least this, in true scale."""
+    """Sets limits that hold at least this area, in true scale."""
     box = axes.get_window_extent()
     wide = max(right - left, (top - bottom) * box.width / box.height)
     high = wide * box.height / box.width

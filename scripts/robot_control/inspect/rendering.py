@@ -16,13 +16,13 @@ CREASE = 0.8  # cosine between neighbouring normals below which an outline is dr
 
 @dataclass(frozen=True)
 class View:
-    """Where one looks from: unit vectors to the right, up and towards the viewer."""
+    """The orientation of a viewer: unit vectors to the right, up and towards the viewer."""
 
     axes: Array
 
     @staticmethod
     def towards(direction: tuple[float, float, float]) -> View:
-        """A viewer in this direction, z up on his picture; from above, y is up."""
+        """A viewer in this direction with z up in the picture; from above, y is up."""
         towards = np.asarray(direction, dtype=float) / np.linalg.norm(direction)
         right = np.cross((0.0, 0.0, 1.0), towards)
         right = right / np.linalg.norm(right) if np.linalg.norm(right) > 1e-9 else np.array([1.0, 0.0, 0.0])
@@ -43,7 +43,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Window:
-    """What of the picture plane is seen, m."""
+    """The visible part of the picture plane, m."""
 
     left: float
     right: float

@@ -20,7 +20,7 @@ HEADINGS = {
 
 
 def report(robot: dict[str, Any]) -> str:
-    """What was understood, what was assumed, repaired, ignored, overridden, and what looks suspicious."""
+    """The text names what was understood, assumed, repaired, ignored and overridden, and what looks suspicious."""
     lines = [f"{robot['name'] or 'robot'}: {robot['source']}", "", *_body(robot), "", *_wheels(robot)]
     lines += ["", *_base(robot)]
     for section in (_casters(robot), _joints(robot), *(_notes(robot, kind) for kind in HEADINGS)):
@@ -129,7 +129,7 @@ def _vector(values: tuple[float, ...] | list[float]) -> str:
 
 
 def _table(rows: list[tuple[str, ...]], left: int) -> list[str]:
-    """Columns as wide as need be; the first `left` flush left, numbers flush right."""
+    """Columns are as wide as their texts need; the first `left` are flush left, numbers flush right."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return [
         "  ".join(

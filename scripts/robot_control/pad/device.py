@@ -1,7 +1,7 @@
 """A game pad of this machine, by Linux's event devices (python3-evdev, an optional package).
 
-Axes and buttons are numbered as the kernel's joystick interface does, in the order of their codes, so that numbers
-found with another joystick tool fit; forward and left are positive, as in ROS's joy.
+Axes and buttons are numbered as the kernel's joystick interface numbers them, in the order of their codes. Numbers
+found with another joystick tool therefore fit. Forward and left are positive, as in ROS's joy.
 """
 
 from __future__ import annotations
@@ -20,22 +20,22 @@ PACKAGE = "python3-evdev"
 
 
 class EventDevice(Protocol):
-    """What is used of an evdev.InputDevice."""
+    """The part of evdev.InputDevice that is used."""
 
     name: str
 
     def capabilities(self) -> dict[int, Any]:
-        """Codes by type; an axis with its AbsInfo."""
+        """Codes by type; an axis comes with its AbsInfo."""
 
     def active_keys(self) -> list[int]:
         """Buttons that are held, read from the kernel; OSError: the device is gone."""
 
     def absinfo(self, code: int) -> Any:
-        """Value, min and max of an axis, read from the kernel; OSError likewise."""
+        """Value, min and max of an axis, read from the kernel; OSError: the device is gone."""
 
 
 class Device:
-    """Read as a whole at every look: no event can be missed, and a device that is gone says so."""
+    """The device is read as a whole at every call, so no event is missed and a lost device raises an error."""
 
     def __init__(self, device: EventDevice) -> None:
         self._device = device
@@ -45,7 +45,7 @@ class Device:
 
     @property
     def name(self) -> str:
-        """Of its maker."""
+        """The name that its maker gave it."""
         return self._device.name
 
     def read(self) -> tuple[tuple[float, ...], tuple[int, ...]]:
@@ -56,13 +56,13 @@ class Device:
 
 
 def _share(info: Any) -> float:
-    """The kernel counts right and down; joy left and up."""
+    """The share of an axis. The kernel counts right and down positive, joy left and up."""
     span = info.max - info.min
     return 0.0 if span <= 0 else -(2.0 * (info.value - info.min) / span - 1.0)
 
 
 def is_pad(device: EventDevice) -> bool:
-    """It has the buttons of a game pad, or two axes and a joystick's button."""
+    """True if it has the buttons of a game pad, or two axes and a joystick's button."""
     able = device.capabilities()
     buttons = set(able.get(EV_KEY, []))
     axes = {code for code, _ in able.get(EV_ABS, [])}
@@ -70,7 +70,7 @@ def is_pad(device: EventDevice) -> bool:
 
 
 def open_device(path: str | None) -> Device | None:
-    """The pad at `path`, or the first one; None: there is none now.
+    """The pad at `path`, or the first one; None if there is none now.
 
     Raises:
         ModuleNotFoundError: the package is not installed.

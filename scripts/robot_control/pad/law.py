@@ -1,15 +1,15 @@
-"""From a pad's axes and buttons to a velocity. Pure: time is an argument, s of any one clock.
+"""Converts a pad's axes and buttons to a velocity. It reads no clock: time is an argument, s of any one clock.
 
     v = scale_linear · axes[axis_linear]      while enable_button is held, else 0
     ω = scale_angular · axes[axis_angular]
 
 With enable_turbo_button held, the turbo scales hold instead. The names are those of teleop_twist_joy.
 
-The enable button counts only after it was seen released: since the pad was plugged in or came back, since a stop or a
-pause of this program (interruptions.py), and while the robot may drive. A hold ends after max_hold, whatever the stick
-does: a wireless receiver that has lost its pad goes on reporting what it saw last, noise included.
+The enable button counts only after it was seen released. That release has to follow the pad's connection and every stop
+and pause of this program (interruptions.py), while the robot may drive. A hold ends after max_hold, whatever the
+stick does. The reason: a wireless receiver that has lost its pad goes on reporting its last values, noise included.
 
-One pad is one sender. While messages of another one come within joy_timeout, nothing moves.
+One pad is one sender. While messages of another sender arrive within joy_timeout, nothing moves.
 """
 
 from collections.abc import Sequence
@@ -18,10 +18,10 @@ from dataclasses import dataclass, fields
 from robot_control.common.command import Command
 
 SETTLING = 0.3
-"""s after an interruption in which messages may still come that were sent before it"""
+"""s after an interruption in which messages may still arrive that were sent before it"""
 ZEROS = 1.0
-"""s for which zeros are sent after a motion; then nothing is, so that another sender may command"""
-LONGEST = 256
+"""s for which zeros are sent after a motion; then the topic is silent, so that another sender may command"""
+MAX_INPUTS = 256
 """axes or buttons of a message"""
 
 
@@ -43,12 +43,12 @@ class PadParameters:
 
     @classmethod
     def names(cls) -> tuple[str, ...]:
-        """Of the private ROS parameters."""
+        """Names of the private ROS parameters."""
         return tuple(field.name for field in fields(cls))
 
 
 class Pad:
-    """What the person with the pad commands."""
+    """Derives the command from the pad."""
 
     def __init__(self, parameters: PadParameters | None = None) -> None:
         self._given = parameters or PadParameters()
@@ -57,19 +57,19 @@ class Pad:
         self._answered_at = float("-inf")
         self._held_since = float("inf")
         self._sender = ""
-        self._newest: dict[str, float] = {}  # of each sender in the last joy_timeout, when its newest message came
+        self._newest: dict[str, float] = {}  # time of each sender's newest message, for senders of the last joy_timeout
         self._drivable: bool | None = None
-        self._armed = False  # the enable buttons were seen released
+        self._armed = False  # true once the enable buttons were seen released
         self._arms_from = float("-inf")
         self._zeros_until = float("-inf")
 
     def start(self, now: float) -> None:
-        """Zeros, so that the robot may be released."""
+        """Sends zeros, so that the robot may be released."""
         self._zeros_until = now + ZEROS
 
     def receive(self, axes: Sequence[float], buttons: Sequence[int], now: float, sender: str = "") -> None:
-        """The device answered, or a message of this sender came: its axes, −1 … 1, and buttons, 0 or 1."""
-        if len(axes) > LONGEST or len(buttons) > LONGEST:
+        """Takes an answer of the device or a message of this sender: its axes, −1 … 1, and buttons, 0 or 1."""
+        if len(axes) > MAX_INPUTS or len(buttons) > MAX_INPUTS:
             return
         came_back = not self.answers(now)
         self._newest = {name: self._newest[name] for name in self._senders(now)} | {sender: now}
@@ -87,26 +87,26 @@ class Pad:
             self._held_since = float("inf")
 
     def interrupt(self, now: float) -> None:
-        """What is held was pressed before a stop, or before this program stood still (interruptions.py)."""
+        """Ends a hold: it began before a stop, or before this program stood still (interruptions.py)."""
         self.refuse(now)
         self._arms_from = now + SETTLING
 
     def refuse(self, now: float) -> None:
-        """The controller refuses motion until it has received a zero."""
+        """Notes that the controller refuses motion until it has received a zero."""
         self._armed, self._zeros_until = False, now + ZEROS
 
     def permit(self, drivable: bool | None) -> None:  # noqa: FBT001 (a three-valued state)
-        """May the robot drive, by its safety monitor? None: it says nothing."""
+        """Sets whether the robot may drive by its safety monitor; None if there is no message of it."""
         if self._drivable is False and drivable is not False:
-            self._armed = False  # it may have been pressed during the stop
+            self._armed = False  # the button may have been pressed during the stop
         self._drivable = drivable
 
     def lose(self) -> None:
-        """The device is gone."""
+        """Notes that the device is gone."""
         self._answered_at = float("-inf")
 
     def command(self, now: float) -> Command | None:
-        """What to send now; None: nothing."""
+        """The command to send now; None: nothing is sent."""
         if self._held() and (self._drivable is False or now - self._held_since >= self._given.max_hold):
             self._armed = False
         if not (self.answers(now) and self._armed and self._held()):
@@ -118,11 +118,11 @@ class Pad:
         return Command(linear * self._axis(self._given.axis_linear), angular * self._axis(self._given.axis_angular))
 
     def answers(self, now: float) -> bool:
-        """The device answers, or messages come."""
+        """True while the device answers, or messages arrive."""
         return now - self._answered_at <= self._given.joy_timeout
 
     def state(self, now: float) -> str:
-        """In words."""
+        """The state as text."""
         if not self.answers(now):
             return "no pad answers"
         if len(self._senders(now)) > 1:

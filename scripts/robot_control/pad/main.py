@@ -31,7 +31,7 @@ SEARCH_PERIOD = 1.0
 MESSAGES = 100
 """on joy, kept between two looks"""
 SILENCE = 3.0
-"""s without safety_status, which comes once per second: then it says nothing"""
+"""s without safety_status, which comes once per second, after which its last message no longer counts"""
 
 REFUSED = "diff_drive_controller refuses what was requested before a stop: zero; release the enable button once"
 
@@ -66,7 +66,7 @@ def parameters() -> PadParameters:
 
 
 class Source:
-    """Where axes and buttons come from."""
+    """The source of axes and buttons."""
 
     def __init__(self, pad: Pad, path: str | None, *, topic: bool) -> None:
         self._pad, self._path = pad, path
@@ -78,7 +78,7 @@ class Source:
             rospy.Subscriber("joy", Joy, self._received.append, queue_size=MESSAGES, tcp_nodelay=True)
 
     def look(self, now: float) -> None:
-        """Hands what there is to the pad."""
+        """Hands new messages or the device's state to the pad."""
         if self._publisher is None:
             while self._received:
                 message = self._received.popleft()
@@ -119,7 +119,7 @@ class Refusal:
 
 
 def drive(given: argparse.Namespace, signals: Signals) -> None:
-    """Until a signal."""
+    """Drives until a signal comes."""
     pad, topic = Pad(parameters()), CommandTopic(SOURCE)
     source = Source(pad, given.device, topic=given.joy)
     pad.start(time.monotonic())

@@ -1,8 +1,8 @@
-"""The law that drives a robot along a path. Pure: no clock, no ROS.
+"""The law that drives a robot along a path. It reads no clock and needs no ROS.
 
-Regulated pure pursuit: S. Macenski, S. Singh, F. Martín, J. Ginés, Regulated pure pursuit for robot path tracking,
-Autonomous Robots 47 (2023), doi:10.1007/s10514-023-10097-6. With the lookahead point at the distance L along the path,
-at (x_L, y_L) in the robot's axes (turned by π where it drives backwards), and d what remains of the piece:
+It is the regulated pure pursuit of S. Macenski, S. Singh, F. Martín, J. Ginés, Regulated pure pursuit for robot path
+tracking, Autonomous Robots 47 (2023), doi:10.1007/s10514-023-10097-6. The lookahead point at the distance L along the
+path lies at (x_L, y_L) in the robot's axes, turned by π if it drives backwards. The rest of the piece is d:
 
     κ = 2·y_L/(x_L² + y_L²)                      curvature of the arc to it
     v = min(speed, √(a_lateral/|κ|), ω_max/|κ|, √(2·a·d), limit)
@@ -30,33 +30,33 @@ from robot_control.path.pieces import Foot, Route, turned
 
 @dataclass(frozen=True)
 class FollowParameters:
-    """Of the law; SI units."""
+    """Parameters of the law; SI units."""
 
     speed: float = 0.5  # m/s, where the path says none
     max_angular_speed: float = 1.0  # rad/s
     lateral_acceleration: float = 0.3  # m/s²
-    deceleration: float = 0.3  # m/s², towards the end of a piece; below the robot's own, which the wheels follow late
-    angular_deceleration: float = 1.0  # rad/s², likewise
+    deceleration: float = 0.3  # m/s², towards the end of a piece; lower than the robot's own
+    angular_deceleration: float = 1.0  # rad/s², at the end of a turn
     lookahead_time: float = 0.5  # s of driving
     shortest_lookahead: float = 0.15  # m
-    slowest: float = 0.02  # m/s, rad/s; what is left of a piece or a turn is crept
+    slowest: float = 0.02  # m/s, rad/s; speed of the last bit of a piece or a turn
     reaction: float = 0.08  # s from a pose to the wheels' answer
     at_end: float = 0.003  # m
     heading_tolerance: float = 0.008  # rad, after a turn
     start_turn: float = 0.25  # rad; a smaller error of the first heading is driven out
     standing: float = 0.01  # m/s and rad/s
-    off_path: float = 0.3  # m; farther aside it ends
+    off_path: float = 0.3  # m; a robot farther aside ends the path
     start_distance: float = 0.5  # m; farther from its first point a path is not begun
     jump: float = 0.1  # m; a localisation corrects a pose by less at once
-    heading_jump: float = 0.2  # rad, likewise
+    heading_jump: float = 0.2  # rad; a localisation corrects a heading by less at once
     in_vain: float = 0.15  # m
     turned_in_vain: float = 0.5  # rad
-    speed_error: float = 0.1  # share by which a measured speed may exceed that of the poses, as where wheels slip
-    scale_error: float = 0.01  # share by which a way in the path's frame may be shorter than by odometry
+    speed_error: float = 0.1  # share by which a measured speed may exceed that of the poses
+    scale_error: float = 0.01  # share by which a length in the path's frame may be shorter than by odometry
 
 
 class State(Enum):
-    """What the follower does."""
+    """The state of the follower."""
 
     TURNING = auto()
     DRIVING = auto()
@@ -67,7 +67,7 @@ class State(Enum):
 
 @dataclass(frozen=True)
 class Pose:
-    """Of the robot, in the path's frame."""
+    """Pose of the robot in the path's frame."""
 
     x: float  # m
     y: float  # m
@@ -94,17 +94,17 @@ class Follower:
     def __init__(self, route: Route, parameters: FollowParameters | None = None) -> None:
         self._route = route
         self._parameters = parameters or FollowParameters()
-        self._number = 0  # of the piece; that of the last + 1: the turn to the end heading
+        self._number = 0  # number of the piece; that of the last + 1: the turn to the end heading
         self._state = State.TURNING
         self._settling = True  # a turn first waits until the robot stands
         self._before_pause = State.TURNING
-        self._last: tuple[Pose, Motion] | None = None  # of the step before
-        self._reachable = 0.0  # m off the path that is allowed until it is reached
+        self._last: tuple[Pose, Motion] | None = None  # pose and command of the step before
+        self._reachable = 0.0  # m off the path that are allowed until the robot reaches it
         given = self._parameters
         self._headway = Headway(given.in_vain, given.scale_error)
         self._turning_headway = Headway(given.turned_in_vain, given.scale_error)
-        self._driven = 0.0  # m, of pieces that are done
-        self._along = 0.0  # m, of the present piece
+        self._driven = 0.0  # m, length of the pieces that are done
+        self._along = 0.0  # m, progress on the present piece
         self.reason = ""
         self.cross_track_error = 0.0  # m, to the left
         self.heading_error = 0.0  # rad, the robot's heading minus the path's
@@ -112,17 +112,17 @@ class Follower:
 
     @property
     def state(self) -> State:
-        """What it does."""
+        """The present state."""
         return self._state
 
     @property
     def over(self) -> bool:
-        """Nothing follows."""
+        """True when nothing follows."""
         return self._state in {State.DONE, State.FAILED}
 
     @property
     def distance(self) -> float:
-        """m along the path that were reached."""
+        """m along the path that the robot has reached."""
         return min(max(0.0, self._driven + self._along), self._route.length)
 
     @property
@@ -136,7 +136,7 @@ class Follower:
         return 1.0 if self._state is State.DONE else 1.0 - self.remaining / self._route.length
 
     def pause(self) -> None:
-        """Stands until `resume`."""
+        """Stands until `resume` is called."""
         if not self.over and self._state is not State.PAUSED:
             self._before_pause, self._state = self._state, State.PAUSED
 
@@ -146,12 +146,12 @@ class Follower:
             self._state = self._before_pause
 
     def fail(self, reason: str) -> None:
-        """Ends, with zero."""
+        """Ends the path with a zero command."""
         if not self.over:
             self._state, self.reason = State.FAILED, reason
 
     def step(self, pose: Pose, measured: Motion, limit: float = math.inf, elapsed: float = PERIOD) -> Motion:
-        """What to command now.
+        """The command for this pose.
 
         Args:
             pose: of the robot, by odometry.
@@ -175,16 +175,16 @@ class Follower:
         return self._drive(pose, measured, limit, moved.linear)
 
     def _moved(self, last: Pose, before: Motion, pose: Pose, measured: Motion, elapsed: float) -> Motion:
-        """m, rad since the last message, in which the robot was as fast as in the faster of both; a jump ends it."""
+        """m, rad since the last message, at the faster speed of both ends; a larger jump ends the path."""
         given = self._parameters
-        way = math.dist((last.x, last.y), (pose.x, pose.y))
+        distance = math.dist((last.x, last.y), (pose.x, pose.y))
         angle = abs(turned(pose.yaw - last.yaw))
-        if way > max(abs(before.linear), abs(measured.linear)) * elapsed + given.jump:
-            self.fail(f"the pose jumped by {way:.2f} m in {elapsed:.2f} s: {JUMPED}")
+        if distance > max(abs(before.linear), abs(measured.linear)) * elapsed + given.jump:
+            self.fail(f"the pose jumped by {distance:.2f} m in {elapsed:.2f} s: {JUMPED}")
         elif angle > max(abs(before.angular), abs(measured.angular)) * elapsed + given.heading_jump:
             self.fail(f"the pose jumped by {math.degrees(angle):.0f} deg in {elapsed:.2f} s: {JUMPED}")
         driven = abs(measured.linear) * elapsed
-        driven = min(driven, max(way, (1 - given.speed_error) * driven))
+        driven = min(driven, max(distance, (1 - given.speed_error) * driven))
         return Motion(math.copysign(driven, measured.linear), measured.angular * elapsed)
 
     def _begin(self, pose: Pose) -> None:
@@ -258,7 +258,7 @@ class Follower:
         return Motion(piece.sign * speed, speed * curvature)
 
     def _goes_wrong(self, foot: Foot, left: float, driven: float) -> bool:
-        """Off the path, or in vain; then it has ended."""
+        """True if the robot is off the path or moves in vain; the path has then ended."""
         given = self._parameters
         allowed = max(given.off_path, self._reachable)
         if foot.distance <= given.off_path:

@@ -1,4 +1,4 @@
-"""Where a path's frame lies relative to odometry's, by tf; of a planar robot: x, y and yaw."""
+"""Locates a path's frame relative to odometry's by tf; for a planar robot that is x, y and yaw."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ class Transform:
 
 
 class Frames(Protocol):
-    """What is used of tf."""
+    """The part of tf that is used."""
 
     def lookup(self, target: str, source: str) -> Transform:
-        """The newest one. Raises PathError: tf does not connect them."""
+        """The newest transform. Raises PathError: tf does not connect them."""
 
 
 class Tf:
@@ -50,8 +50,8 @@ class Tf:
         rospy.Subscriber("tf_static", TFMessage, self._receive, self._buffer.set_transform_static)
 
     def lookup(self, target: str, source: str) -> Transform:
-        """The newest one; what is not there in the first PATIENCE seconds is waited for. Raises PathError: tf does not
-        connect them.
+        """The newest transform; a missing one is waited for in the first PATIENCE seconds. Raises PathError: tf does
+        not connect them.
         """
         while True:
             try:
@@ -81,7 +81,7 @@ class PathFrame:
 
     @property
     def scale_error(self) -> float:
-        """Share by which the wheels' speed and the poses may differ: a localisation knows nothing of the wheels."""
+        """Share by which the wheels' speed and the poses may differ: a localisation does not measure the wheels."""
         return 0.01 if self.name == self._odom else 0.05
 
     def pose(self, pose: Pose, now: float) -> Pose:
@@ -104,8 +104,8 @@ class PathFrame:
 def located(
     points: list[Waypoint], frame: str, own: tuple[str, str], frames: Frames
 ) -> tuple[list[Waypoint], PathFrame]:
-    """The path as it is driven, and the frame in which it is: its own, or where that is fixed to the robot, odometry's,
-    with the path where it is now. `own`: frames of odometry and of the robot.
+    """The path as it is driven, and the frame in which it is given. A frame that is fixed to the robot is replaced by
+    that of odometry, with the path at its present place. `own`: frames of odometry and of the robot.
 
     Raises:
         PathError: the frame is unknown.

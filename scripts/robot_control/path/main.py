@@ -38,8 +38,8 @@ def received(name: str) -> Path:
 
 
 def drive(points: list[Waypoint] | None, given: argparse.Namespace, signals: Signals) -> str:
-    """The reason why the path was not driven to its end; empty: it was. `points` None: the topic's. The request is as
-    old as this process: a plan or a file that takes until after a stop and its reset is refused.
+    """The reason why the path was not driven to its end; empty if it was. `points` None stands for those of the topic.
+    The request is as old as this process: a plan or a file that comes after a stop and its reset is refused.
 
     Raises:
         PathError: the topic brings none.
@@ -102,7 +102,7 @@ def arguments(given: list[str]) -> argparse.Namespace:
 
 
 def points_named(path: str, size: float) -> list[Waypoint]:
-    """Of a shape, or of a file. Raises PathError, OSError."""
+    """The points of a shape or of a file. Raises PathError, OSError."""
     points = SHAPES[path](size) if path in SHAPES else read_csv(FilePath(path))
     route(points)
     return points

@@ -1,4 +1,4 @@
-"""A path as pieces that are driven without a stop: cut at corners and where the direction of driving changes. Pure."""
+"""Cuts a path at corners and reversals into pieces that are driven without a stop."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ class Piece:
     """A polyline; lengths in m."""
 
     def __init__(self, points: Sequence[Point], sign: int, speeds: Sequence[float | None]) -> None:
-        """`sign` −1: driven backwards; `speeds` of each segment, None: as asked for."""
+        """`sign` −1: driven backwards; `speeds` of each segment, None: the requested speed."""
         self.points, self.sign, self.speeds = list(points), sign, list(speeds)
         lengths = (math.dist(a, b) for a, b in pairwise(self.points))
         self.starts = list(accumulate(lengths, initial=0.0))
         self._segment = 0
-        self._along = 0.0  # m, of the last foot
+        self._along = 0.0  # m, position of the last foot
 
     @property
     def length(self) -> float:
@@ -50,20 +50,20 @@ class Piece:
 
     @property
     def first_heading(self) -> float:
-        """rad, of a robot that drives it from its begin."""
+        """rad, heading of the robot at the begin of the piece."""
         return self.heading(self._tangent(0))
 
     @property
     def last_heading(self) -> float:
-        """rad, likewise, at its end."""
+        """rad, heading of the robot at its end."""
         return self.heading(self._tangent(len(self.points) - 2))
 
     def heading(self, tangent: float) -> float:
-        """Of a robot that drives along this direction."""
+        """Heading of a robot that drives along this direction."""
         return turned(tangent if self.sign > 0 else tangent + math.pi)
 
     def foot(self, x: float, y: float, reach: float) -> Foot:
-        """Nearest to this point, searched from the last answer on, no more than `reach` ahead, never behind."""
+        """The nearest point to this one, searched from the last answer on, at most `reach` ahead, never behind."""
         best, best_along, best_distance = self._segment, self._along, math.inf
         for number in range(self._segment, len(self.points) - 1):
             if self.starts[number] > self._along + reach:
@@ -77,13 +77,13 @@ class Piece:
         return Foot(best_along, best_distance, dy * math.cos(tangent) - dx * math.sin(tangent), tangent)
 
     def at(self, along: float) -> Point:
-        """The point so far from its begin; beyond the ends on their tangents."""
+        """The point at this distance from its begin; beyond the ends it lies on their tangents."""
         number = min(max(bisect_right(self.starts, along) - 1, 0), len(self.points) - 2)
         tangent, rest = self._tangent(number), along - self.starts[number]
         return self.points[number][0] + rest * math.cos(tangent), self.points[number][1] + rest * math.sin(tangent)
 
     def speed_at(self, along: float) -> float | None:
-        """m/s, where the path says one."""
+        """m/s, if the path gives a speed."""
         return self.speeds[min(max(bisect_right(self.starts, along) - 1, 0), len(self.speeds) - 1)]
 
     def _tangent(self, number: int) -> float:
@@ -91,7 +91,7 @@ class Piece:
         return math.atan2(by - ay, bx - ax)
 
     def _nearest(self, number: int, x: float, y: float) -> tuple[float, float]:
-        """Of a segment, not behind the last answer: m from the begin of the piece, m from this point."""
+        """The nearest point of a segment, not behind the last one: m from the begin of the piece, m from this point."""
         (ax, ay), (bx, by) = self.points[number], self.points[number + 1]
         dx, dy = bx - ax, by - ay
         start, size = self.starts[number], self.starts[number + 1] - self.starts[number]
@@ -102,7 +102,7 @@ class Piece:
 
 @dataclass(frozen=True)
 class Route:
-    """What is driven, piece after piece."""
+    """All pieces in their order."""
 
     pieces: tuple[Piece, ...]
     end_heading: float  # rad
@@ -134,7 +134,7 @@ def route(waypoints: Sequence[Waypoint]) -> Route:
 
 
 def _sign(begin: Waypoint, end: Waypoint, tangent: float) -> int:
-    """−1 where the robot's headings at both ends point against the segment, by their mean."""
+    """−1 if the mean of the robot's headings at both ends points against the segment, else 1."""
     headings = [point.yaw for point in (begin, end) if point.yaw is not None]
     if len(headings) < 2:
         return 1

@@ -26,44 +26,44 @@ PATIENCE = 10.0
 
 
 def pose_of(odometry: Odometry) -> Pose:
-    """Of the robot, in the frame odom."""
+    """Pose of the robot in the frame odom."""
     pose = odometry.pose.pose
     return Pose(pose.position.x, pose.position.y, yaw_of(pose.orientation))
 
 
 class Robot:
-    """The last of each message."""
+    """The last message of each topic."""
 
     def __init__(self, *, attended: bool = False) -> None:
-        """`attended`: a thread that never plans looks at `watch` all the time, so that every gap is a suspension."""
+        """`attended`: a thread that never plans calls `watch` all the time, so that every gap is a suspension."""
         self._attended = attended
         self.odometry: Odometry | None = None
         self.odometry_at = -math.inf
         self.watch = SafetyWatch()
-        self.commands = False  # what is sent here reaches the wheels
-        self.refused = False  # the controller awaits a zero from here after a stop
+        self.commands = False  # true if the commands of this program reach the wheels
+        self.refused = False  # true if the controller awaits a zero from this program after a stop
         self.masked_by = ""
         rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1, tcp_nodelay=True)
         rospy.Subscriber("drive_state", DriveState, self._receive_state, queue_size=1, tcp_nodelay=True)
 
     @property
     def frames(self) -> tuple[str, str]:
-        """Of odometry and of the robot; empty before the first odometry."""
+        """Frames of odometry and of the robot; empty before the first odometry."""
         return (self.odometry.header.frame_id, self.odometry.child_frame_id) if self.odometry is not None else ("", "")
 
     @property
     def safety(self) -> SafetyStatus | None:
-        """The newest one."""
+        """The newest safety_status."""
         return self.watch.message
 
     @property
     def drivable(self) -> bool:
-        """The monitor permits to drive."""
+        """True if the monitor permits to drive."""
         return self.safety is not None and self.safety.state_name in DRIVABLE
 
     @property
     def stopped(self) -> bool:
-        """Only a reset ends what stands against motion."""
+        """True if only a reset ends the stop."""
         return self.safety is not None and self.safety.state_name in STOPPED
 
     @property
@@ -72,14 +72,14 @@ class Robot:
         return math.inf if self.safety is None else float(self.safety.speed_limit)
 
     def revoked(self, requested: float, *, waited: bool) -> str:
-        """Why a path that was requested at `requested` s (monotonic) is not driven any more; empty: nothing. `waited`:
-        since the last look it was not driven.
+        """Why a path that was requested at `requested` s (monotonic) may not be driven any more; empty if it may.
+        `waited`: the path was not driven since the last look.
         """
         why = self.watch.revoked(requested, waited=waited and not self._attended)
         return why and f"{why}: what was requested before does not begin, or go on, by itself. Start the path again"
 
     def against_driving(self, now: float) -> str:
-        """Why a path that is driven has to end; empty: nothing."""
+        """Why a path that is driven has to end; empty if it goes on."""
         if now - self.odometry_at > SILENCE:
             return f"odom is silent for {SILENCE:g} s"
         if now - self.watch.received_at > SAFETY_SILENCE:
@@ -89,16 +89,16 @@ class Robot:
         return "diff_drive_controller refuses what was requested before a stop" if self.refused else ""
 
     def stop_in_words(self) -> str:
-        """Why it may not drive."""
+        """Why the robot may not drive."""
         if self.safety is None:
             return "no safety_status: safety_monitor does not run"
         why = "; ".join(self.safety.sentences) or "it is not ready"
         return f"{self.safety.state_name}: {why}. Call e_stop_reset, then start the path again"
 
     def await_drivable(self, topic: CommandTopic, going_on: Callable[[], bool], requested: float) -> str:
-        """With zeros until it may drive; why it may not, within PATIENCE, or empty.
+        """Sends zeros until the robot may drive; returns why it may not within PATIENCE, or an empty text.
 
-        The end of a stop is not waited for: a path that was requested before a reset does not begin with it.
+        It does not wait for the end of a stop: a path that was requested before a reset does not begin with it.
         """
         end = time.monotonic() + PATIENCE
         while going_on() and time.monotonic() < end:

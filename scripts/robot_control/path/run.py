@@ -1,4 +1,4 @@
-"""One path, driven: odometry in, commands out, until its end. What drive_path.py and follow_path.py share."""
+"""Drives one path, from odometry to commands, until its end. drive_path.py and follow_path.py share it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Drive:
     def __init__(
         self, robot: Robot, topic: CommandTopic, follower: Follower, frame: PathFrame, requested: float
     ) -> None:
-        """`requested`: s (monotonic) when."""
+        """The path was requested at `requested` s (monotonic)."""
         self._robot, self._topic, self.follower, self._frame = robot, topic, follower, frame
         self._requested = requested
         self._lock = threading.Lock()  # services come in threads of their own
@@ -36,7 +36,7 @@ class Drive:
         self.paused_by = ""
 
     def run(self, going_on: Callable[[], bool], look: Callable[[], None]) -> None:
-        """Until the follower's end, or as long as it shall; `look` is called at every look. Sends no last zero."""
+        """Drives until the follower ends or `going_on` is false; `look` is called in every pass. Sends no last zero."""
         last, waited = -math.inf, True
         while going_on() and not self.follower.over:
             revoked = self._robot.revoked(self._requested, waited=waited)
@@ -50,13 +50,13 @@ class Drive:
             time.sleep(LOOK)
 
     def pause(self, why: str) -> None:
-        """Stands until `resume`."""
+        """Stands until `resume` is called."""
         with self._lock:
             self.follower.pause()
             self.paused_by = why
 
     def resume(self) -> str:
-        """Why it does not go on; empty: it does."""
+        """Why it does not go on; empty if it does."""
         with self._lock:
             if self._robot.masked_by:
                 return f"{SOURCE} is {self._robot.masked_by}"

@@ -41,7 +41,9 @@ UNSTAMPED = f"a goal without goal_id.stamp counts as sent {GAP:g} s before it ar
 
 
 class TimedGoal(FollowPathActionGoal):  # type: ignore[misc]
-    """Notes when it was requested: a long one takes seconds to be read, and actionlib stamps one that has no time."""
+    """A goal that notes its time of request: a long one takes seconds to be read, and actionlib stamps one without
+    time.
+    """
 
     stamped = False
     requested = math.inf
@@ -80,11 +82,11 @@ class Server:
         self._action.start()
 
     def attend(self) -> None:
-        """At each look of the program, whether a goal is driven or not: notes a gap in which goals may have waited."""
+        """Notes a gap in which goals may have waited; it is called in every pass, whether a goal is driven or not."""
         self._robot.watch.interruptions()
 
     def await_end(self) -> None:
-        """Of the goal that is driven, after a signal."""
+        """Waits after a signal for the end of the goal that is driven."""
         self._idle.wait(END)
 
     def _going_on(self) -> bool:
@@ -118,7 +120,7 @@ class Server:
         conclude(result, result.reason)
 
     def _drive(self, goal: FollowPathGoal, result: FollowPathResult) -> str:
-        """Why it ended. Raises PathError: the goal cannot be driven."""
+        """Why the path ended. Raises PathError: the goal cannot be driven."""
         if not (math.isfinite(goal.speed) and goal.speed >= 0):
             raise PathError(f"speed is {goal.speed:g} m/s: it must be a number from zero on; zero is the default")
         message = self._action.current_goal.goal
@@ -142,7 +144,7 @@ class Server:
         return "done" if follower.state is State.DONE else follower.reason
 
     def _refusal(self, message: TimedGoal) -> str:
-        """Why the goal does not begin; empty: it does. This program knows of no stop before its own begin."""
+        """Why the goal does not begin; empty if it does. This program knows of no stop before its own begin."""
         if message.requested < self._began:
             return "it was sent before this program began. Start the path again"
         return self._robot.await_drivable(self._topic, self._going_on, message.requested)
@@ -156,7 +158,7 @@ class Reporter:
         self._sent_at, self._said = -math.inf, State.PAUSED
 
     def look(self) -> None:
-        """Sends it where it is due."""
+        """Sends the feedback if it is due."""
         now, follower = time.monotonic(), self._drive.follower
         if follower.state is self._said and now - self._sent_at < FEEDBACK_PERIOD:
             return

@@ -1,4 +1,4 @@
-"""Paths that begin at the origin, along x, and end where and as they began. Pure."""
+"""Paths that begin at the origin along x and end at their begin."""
 
 import math
 from collections.abc import Callable
@@ -16,7 +16,7 @@ def square(size: float) -> list[Waypoint]:
 
 
 def circle(size: float) -> list[Waypoint]:
-    """Of `size` m across, to the left."""
+    """A circle of `size` m across, to the left."""
     return [*_arc(size / 2, 1.0)[:-1], Waypoint(0.0, 0.0, yaw=0.0)]
 
 

@@ -10,16 +10,16 @@ from pathlib import Path
 from robot_control.common.files import InputFileError, check_input, listed
 
 COLUMNS = ("x", "y", "yaw", "speed")
-MOST = 100_000
+MAX_POINTS = 100_000
 """points"""
-LARGEST_FILE = 1 << 24
+MAX_FILE = 1 << 24
 """bytes of a CSV file"""
 JUMP, JUMP_RATIO, ENOUGH = 1.0, 20.0, 10
-"""m, times the median distance, points: what exceeds both in a path of so many is no part of it"""
+"""m, times the median distance, points: in a path of so many a longer step than both is an error"""
 
 
 class PathError(ValueError):
-    """No path can be driven; the message says why."""
+    """No path can be driven; the message names the reason."""
 
 
 @dataclass(frozen=True)
@@ -33,13 +33,13 @@ class Waypoint:
 
 
 def checked(points: Sequence[Waypoint]) -> list[Waypoint]:
-    """Without repeated points; the last one's yaw stays.
+    """The points without repetitions; the last one's yaw stays.
 
     Raises:
         PathError: fewer than two points, a number that is not finite, a speed that is not above zero, a jump.
     """
-    if len(points) > MOST:
-        raise PathError(f"the path has {len(points)} points, more than {MOST}")
+    if len(points) > MAX_POINTS:
+        raise PathError(f"the path has {len(points)} points, more than {MAX_POINTS}")
     for number, point in enumerate(points):
         numbers = (point.x, point.y, point.yaw or 0.0, point.speed or 0.0)
         if not all(map(math.isfinite, numbers)):
@@ -72,8 +72,8 @@ Quaternion = tuple[float, float, float, float]
 
 
 def from_poses(poses: Sequence[tuple[float, float, Quaternion]]) -> list[Waypoint]:
-    """The points of a nav_msgs/Path: x, y [m] and the orientation x, y, z, w of each. An orientation of four zeros is
-    none: along the path.
+    """The points of a nav_msgs/Path: x, y [m] and the orientation x, y, z, w of each. Four zeros stand for no
+    orientation: the robot then drives along the path.
     """
     return [Waypoint(x, y, _yaw(orientation)) for x, y, orientation in poses]
 
@@ -86,7 +86,7 @@ def _yaw(orientation: Quaternion) -> float | None:
 
 
 def shortened(points: Sequence[Waypoint], begin_at: float) -> list[Waypoint]:
-    """What remains of a path from `begin_at` m on.
+    """The rest of a path from `begin_at` m on.
 
     Raises:
         PathError: it is not that long, or the length is none.
@@ -128,7 +128,7 @@ def read_csv(path: Path) -> list[Waypoint]:
         OSError: the file cannot be read.
     """
     try:
-        check_input(path, LARGEST_FILE)
+        check_input(path, MAX_FILE)
     except InputFileError as error:
         raise PathError(str(error)) from None
     try:

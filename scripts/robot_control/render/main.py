@@ -31,12 +31,12 @@ AHEAD = 12
 FAR = 6.0
 """the camera's distance over the robot's size"""
 AZIMUTH, ELEVATION = 125.0, -24.0
-LARGEST = 4096
+MAX_PIXELS = 4096
 """pixels"""
 
 
 def model_of(given: argparse.Namespace) -> str:
-    """The MJCF that the simulation of this robot in this scene has."""
+    """The MJCF that the simulation uses for this robot in this scene."""
     path = share_file(DEFAULTS) if given.params is None else str(given.params)
     values = []
     if given.urdf is not None:
@@ -50,7 +50,7 @@ def model_of(given: argparse.Namespace) -> str:
 
 
 class Film:
-    """All moments, drawn when they are asked for."""
+    """All moments of a run; each is drawn when it is requested."""
 
     def __init__(self, scene: Scene, moments: Sequence[Moment], given: argparse.Namespace) -> None:
         self._places = [scene.place(moment) for moment in moments]
@@ -59,18 +59,18 @@ class Film:
 
     def picture(self, number: int) -> Picture:
         """The camera follows the robot, smoothly."""
-        reach = min(AHEAD, number, len(self._places) - 1 - number)  # the same to both sides
+        reach = min(AHEAD, number, len(self._places) - 1 - number)  # as many moments on both sides
         near = self._places[number - reach : number + reach + 1]
         x, y, z = (sum(parts) / len(near) for parts in zip(*near, strict=True))
         return self._renderer.draw(number, Camera((x, y, z), self._distance, AZIMUTH, ELEVATION))
 
     def pictures(self) -> Iterator[Picture]:
-        """All of them."""
+        """All pictures."""
         return (self.picture(number) for number in range(len(self._places)))
 
 
 def write_video(film: Film, size: tuple[int, int], path: Path) -> str:
-    """Why there is none; empty: it is written."""
+    """Why there is no video; empty if it is written."""
     ffmpeg = shutil.which("ffmpeg")
     if ffmpeg is None:
         return "no MP4: ffmpeg is not installed (apt install ffmpeg)"
@@ -92,8 +92,8 @@ def size_of(text: str) -> tuple[int, int]:
         size = int(width), int(height)
     except ValueError:
         size = 0, 0
-    if min(size) < 2 or size[0] % 2 or size[1] % 2 or max(size) > LARGEST:
-        raise argparse.ArgumentTypeError(f"{text!r} is not WIDTHxHEIGHT, even numbers of 2 to {LARGEST}")
+    if min(size) < 2 or size[0] % 2 or size[1] % 2 or max(size) > MAX_PIXELS:
+        raise argparse.ArgumentTypeError(f"{text!r} is not WIDTHxHEIGHT, even numbers of 2 to {MAX_PIXELS}")
     return size
 
 

@@ -25,17 +25,17 @@ SURFACELESS, OPENGL_API, OPENGL_BIT = 0x31DD, 0x30A2, 0x0008
 """EGL_PLATFORM_SURFACELESS_MESA, EGL_OPENGL_API, EGL_OPENGL_BIT"""
 CONFIG = (0x3033, 0x0001, 0x3040, OPENGL_BIT, 0x3024, 8, 0x3023, 8, 0x3022, 8, 0x3025, 24, 0x3026, 8, 0x3038)
 """EGL: a pixel buffer for OpenGL with 8 bits per colour, 24 of depth, 8 of stencil"""
-OFFSCREEN, ALL, FONT_SCALE, MOST_SHAPES = 1, 7, 100, 5000
+OFFSCREEN, ALL, FONT_SCALE, MAX_SHAPES = 1, 7, 100, 5000
 """mjFB_OFFSCREEN, mjCAT_ALL, mjFONTSCALE_100"""
 
 
 class RenderError(RuntimeError):
-    """Nothing can be drawn here; the message says why."""
+    """Nothing can be drawn here; the message names the reason."""
 
 
 @dataclass(frozen=True)
 class Camera:
-    """Where it looks at, and from where."""
+    """The point at which the camera looks, and its own place."""
 
     lookat: tuple[float, float, float]  # m
     distance: float  # m
@@ -105,7 +105,7 @@ class Renderer:
         mj.mjv_defaultOption(self._option)
         mj.mjv_defaultPerturb(self._perturbation)
         mj.mjv_defaultScene(self._scene)
-        mj.mjv_makeScene(self._model, self._scene, MOST_SHAPES)
+        mj.mjv_makeScene(self._model, self._scene, MAX_SHAPES)
         mj.mjr_defaultContext(self._context)
         mj.mjr_makeContext(self._model, self._context, FONT_SCALE)
         mj.mjr_setBuffer(OFFSCREEN, self._context)

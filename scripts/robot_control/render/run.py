@@ -11,9 +11,9 @@ import numpy as np
 from robot_control.common.run_log import Log, LogError, read_log
 
 FLAT = 0.01
-"""rad; a robot that never tilts more stands on a plane, and what its estimator says of height and tilt is drift"""
+"""rad; a robot that never tilts more stands on a plane, and its estimated height and tilt are drift"""
 POSES = ("truth", "estimate")
-"""Begins of the columns of a pose; the first that is there is drawn"""
+"""Begins of the columns of a pose; the first one that is in the log is drawn"""
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Moment:
 
 
 def read_moments(path: Path, period: float) -> list[Moment]:
-    """Of the last run in the file, `period` s apart at least.
+    """The moments of the last run in the file, at least `period` s apart.
 
     Raises:
         LogError: it is no log, or holds no pose.

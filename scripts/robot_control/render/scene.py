@@ -11,7 +11,7 @@ from robot_control.render.run import Moment
 
 STEP = 0.05
 """m between two points of the path driven"""
-MOST_POINTS = 1500
+MAX_POINTS = 1500
 DEGREES_OF_FREEDOM = {"free": 7, "ball": 4, "slide": 1, "hinge": 1}
 """numbers in qpos per type of joint"""
 BODY, RUBBER, MARK = "0.30 0.45 0.62 1", "0.12 0.12 0.13 1", "0.85 0.86 0.88 1"
@@ -27,7 +27,7 @@ Quaternion = tuple[float, float, float, float]
 
 
 def product(a: Quaternion, b: Quaternion) -> Quaternion:
-    """First b, then a."""
+    """The product of b, then a."""
     aw, ax, ay, az = a
     bw, bx, by, bz = b
     return (
@@ -78,7 +78,7 @@ class Scene:
         return max(reach)
 
     def place(self, moment: Moment) -> Vector:
-        """Of the robot's origin in the world, m."""
+        """Place of the robot's origin in the world, m."""
         moved = rotated(self._attitude, (moment.x, moment.y, moment.z))
         x, y, z = (begin + shift for begin, shift in zip(self._start, moved, strict=True))
         return x, y, z
@@ -118,14 +118,14 @@ class Scene:
         ET.SubElement(assets, "material", name=floor, texture=floor, texrepeat="1 1", texuniform="true")
         for light in self._world.findall("light"):
             self._world.remove(light)
-        # As bright everywhere; it moves with the robot, so that its shadow stays sharp.
+        # Light that is equally bright everywhere; it moves with the robot, so that its shadow stays sharp.
         sun = {"pos": "-1 1 3", "dir": "0.3 -0.3 -1", "diffuse": "0.55 0.55 0.55", "specular": "0.1 0.1 0.1"}
         ET.SubElement(self._robot, "light", sun, mode="trackcom", directional="true", castshadow="true")
         self._colour_world(floor)
         self._colour_robot()
 
     def _colour_world(self, floor: str) -> None:
-        """What has no colour of its own."""
+        """Colours the shapes that have no colour of their own."""
         robot = set(self._robot.iter("geom"))
         for geom in self._root.iter("geom"):
             if geom in robot or geom.get("material") is not None or geom.get("rgba") is not None:
@@ -148,7 +148,7 @@ class Scene:
     def _add_path(self, moments: Sequence[Moment]) -> None:
         places = [self.place(moment) for moment in moments]
         points = [places[0]]
-        step = max(STEP, sum(math.dist(a, b) for a, b in pairwise(places)) / MOST_POINTS)
+        step = max(STEP, sum(math.dist(a, b) for a, b in pairwise(places)) / MAX_POINTS)
         for place in places[1:]:
             if math.dist(place, points[-1]) > step:
                 points.append(place)
@@ -170,7 +170,7 @@ class Scene:
 
 
 def _make_wheel(body: ET.Element, geom: ET.Element) -> None:
-    """A wheel is simulated as an ellipsoid; it is drawn as a cylinder with a mark, so that its turning is seen."""
+    """Draws a wheel, which is simulated as an ellipsoid, as a cylinder with a mark that shows its turning."""
     geom.set("rgba", RUBBER)
     sizes = _numbers(geom.get("size"), (0.0,))
     if geom.get("type") != "ellipsoid" or len(sizes) != 3 or abs(sizes[0] - sizes[1]) > 1e-9:

@@ -19,7 +19,7 @@ from robot_control.replay.recorded_setup import RecordedSetup, recorded_setup
 LAWS = ("gate", "state_estimator", "diff_drive_controller", "safety_monitor")
 VARIED = ("state_estimator.", "safety_monitor.")
 WITHOUT_EFFECT = "the controller reads it at its start alone, or it belongs to no law that is varied"
-MOST_LINES = 20
+MAX_LINES = 20
 EXACT, NOT_COMPARED, REFUSED, DIFFERENT = 0, 1, 2, 3
 
 
@@ -86,7 +86,7 @@ def chosen(law: str | None) -> list[str]:
 
 
 def without_effect(keys: Sequence[str], live: Sequence[str]) -> list[str]:
-    """Of the keys that are set, those that no law takes over; `live`: of the controller, it takes them over."""
+    """The set keys that no law reads; the controller reads the keys `live` from the log."""
     taken = [f"diff_drive_controller.{key}" for key in live]
     return [key for key in keys if not key.startswith(("robot.", *VARIED)) and not key.startswith(tuple(taken))]
 
@@ -101,7 +101,7 @@ def verdict(report: Mapping[str, Any], law: str | None) -> int:
 
 
 def _differences(report: Mapping[str, Any], law: str | None) -> list[str]:
-    """What differs, in words; empty: nothing does."""
+    """The differences in words; empty if there are none."""
     rows = max([report["different_rows"], *(report["laws"][name]["different"] for name in chosen(law))])
     found = [f"{rows} rows DIFFER"] if rows else []
     if report["header"]:
@@ -112,7 +112,7 @@ def _differences(report: Mapping[str, Any], law: str | None) -> list[str]:
 
 
 def _left_out(report: Mapping[str, Any], law: str | None) -> list[str]:
-    """What was not compared, in words; empty: all was."""
+    """The parts that were not compared, in words; empty if all were."""
     rows = sum(report["laws"][name]["not_compared"] for name in chosen(law))
     missing = max(report["laws"][name]["missing"] for name in chosen(law))
     found = [f"{rows} rows NOT COMPARED"] if rows else []
@@ -124,7 +124,7 @@ def _left_out(report: Mapping[str, Any], law: str | None) -> list[str]:
 
 
 def text_of(report: Mapping[str, Any], setup: RecordedSetup, law: str | None) -> str:
-    """What was found; in the first line whether all was compared, and whether it is the same."""
+    """The report; its first line states whether all was compared, and whether it is the same."""
     found = [*_differences(report, law), *_left_out(report, law)]
     lines = [
         f"{setup.path}: {', '.join(found) or 'every row is the same, bit for bit'}",
@@ -150,6 +150,6 @@ def _of(sentences: Sequence[str], law: str | None) -> list[str]:
 
 
 def _listed(what: str, sentences: Sequence[str]) -> list[str]:
-    lines = [f"{what}: {text}" for text in sentences[:MOST_LINES]]
-    more = len(sentences) - MOST_LINES
+    lines = [f"{what}: {text}" for text in sentences[:MAX_LINES]]
+    more = len(sentences) - MAX_LINES
     return [*lines, f"{what}: {more} more"] if more > 0 else lines

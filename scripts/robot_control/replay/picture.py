@@ -1,4 +1,4 @@
-"""What the laws gave and would have given, in one picture."""
+"""Draws the recorded results of the laws and those of the replay in one picture."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ Layers = tuple[str, list[tuple[str, str]]]
 
 @dataclass(frozen=True)
 class RecordedSetup:
-    """As the header of a log has it."""
+    """Robot and parameters in the header of a log."""
 
     path: Path
     robot: str
@@ -28,7 +28,7 @@ class RecordedSetup:
         return str(self.parameters), [("robot.urdf", str(self.urdf))]
 
     def varied(self, params: Path | None, values: Sequence[tuple[str, str]]) -> Layers:
-        """Those of another file and `values`, to be laid over the parameters of the log."""
+        """Layers of another file and `values` that are laid over the parameters of the log."""
         path, over = self.layers()
         return (path if params is None else str(params)), [*over, *values]
 

@@ -14,17 +14,17 @@ import yaml  # type: ignore[import-untyped]
 from robot_control.common.files import check_input, printable
 from robot_control.report.figures import Figure
 
-LARGEST_BUDGETS = 1 << 20
+MAX_BUDGETS = 1 << 20
 """bytes"""
 BOUNDS = ("most", "least")
 
 
 class BudgetError(ValueError):
-    """A file of budgets that cannot be applied; the message holds all that is wrong with it."""
+    """A file of budgets cannot be applied; the message names all errors in it."""
 
 
 class Verdict(Enum):
-    """Of one figure."""
+    """Verdict on one figure."""
 
     OK = "ok"
     FAILED = "FAILED"
@@ -47,7 +47,7 @@ class Judged:
 
     @property
     def verdict(self) -> Verdict:
-        """Without a bound there is none."""
+        """The verdict; a figure without a bound has none."""
         if self.most is None and self.least is None:
             return Verdict.UNJUDGED
         if math.isnan(self.figure.value):
@@ -68,7 +68,7 @@ def read_budgets(path: Path, known: Mapping[str, Figure]) -> Budgets:
         BudgetError: no budget at all, no such figure or bound, or a bound that is no number.
         OSError: it cannot be opened.
     """
-    check_input(path, LARGEST_BUDGETS)
+    check_input(path, MAX_BUDGETS)
     try:
         tree: Any = yaml.safe_load(path.read_text(encoding="utf-8"))
     except (yaml.YAMLError, UnicodeDecodeError) as error:

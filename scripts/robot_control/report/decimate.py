@@ -1,4 +1,4 @@
-"""Many rows on few pixels without a lie: of every stretch its least and its largest value stay, where they are."""
+"""Reduces many rows to few pixels: the least and the largest value of every stretch stay at their times."""
 
 from __future__ import annotations
 

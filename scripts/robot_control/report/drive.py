@@ -29,9 +29,10 @@ class Drive:
     name: str
     log: Log
     lost: int | None = None
-    """Rows that telemetry counted as lost; None: the file does not hold it, and every cycle that is absent is lost."""
+    """Rows that telemetry counted as lost; None if the file does not hold it: every absent cycle then counts as lost.
+    """
     part: str = ""
-    """Which part of the file is here, where it was not completed or holds several runs; empty: all of it."""
+    """The part that was read of a file that was not completed or holds several runs; empty if all was read."""
 
     @property
     def time(self) -> FloatArray:
@@ -51,16 +52,16 @@ class Drive:
         return joint_names(self.log)
 
     def column(self, name: str) -> FloatArray:
-        """NaN in every row where the log has no such column."""
+        """The values; NaN in every row if the log has no such column."""
         values = self.log.get(name)
         return np.full(self.time.shape, np.nan) if values is None else values
 
     def has(self, *names: str) -> bool:
-        """All of them have at least one value."""
+        """True if all of these columns have at least one value."""
         return all(name in self.log and not np.all(np.isnan(self.log[name])) for name in names)
 
     def count(self, name: str) -> float:
-        """What a counter, which restarts at 0 with its node, counted; NaN: it is not in the log."""
+        """Sum of a counter that restarts at 0 with its node; NaN if it is not in the log."""
         values = self.column(name)
         values = values[~np.isnan(values)]
         if values.size == 0:
@@ -73,7 +74,7 @@ class Drive:
         return np.nan_to_num(self.column(name)).astype(np.int64)
 
     def driving(self) -> BoolArray:
-        """The monitor permits it, and motion is commanded or there."""
+        """True while the monitor permits to drive, and motion is commanded or measured."""
         moving = np.zeros(self.time.shape, dtype=bool)
         for name in ("limited_linear", "limited_angular", "estimate_linear", "estimate_angular"):
             moving |= np.abs(np.nan_to_num(self.column(name))) > MOVING
@@ -82,9 +83,9 @@ class Drive:
         return moving
 
     def gate_braked(self) -> BoolArray:
-        """The gate braked while driving.
+        """True where the gate braked while driving.
 
-        A command k-1 is executed in tick k; the brake that the controller itself commands at standstill is none.
+        A command k-1 is executed in tick k; the brake that the controller itself commands at standstill does not count.
         """
         driving = self.driving()
         standing = np.ones(self.time.shape, dtype=bool)
@@ -97,7 +98,7 @@ class Drive:
 
 
 def drive_of(path: Path, run: RunLog) -> Drive:
-    """Without the tail in which the nodes end one after the other."""
+    """The drive without its tail, in which the nodes end one after the other."""
     log: Log = run.columns
     if "command_published_ns" in log and "permit_published_ns" in log:
         log = while_all_ran(log)

@@ -1,4 +1,4 @@
-"""What a log amounts to, in figures that budgets can bound."""
+"""Computes the figures of a log that budgets can bound."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SLIP, DEGRADED = mask_of("StateFlag", "slip"), mask_of("StateFlag", "degraded")
 
 @dataclass(frozen=True)
 class Figure:
-    """One number; NaN: this log does not tell."""
+    """One number; NaN if this log does not hold it."""
 
     name: str
     unit: str
@@ -120,7 +120,7 @@ def _position_error(drive: Drive) -> Iterator[Figure]:
 
 
 def position_error(drive: Drive) -> tuple[FloatArray, FloatArray]:
-    """Distance [m] of the true from the estimated position, the first pose being common; its standard deviation [m]."""
+    """Distance [m] of the true from the estimated position, first poses aligned; its standard deviation [m]."""
     x, y = drive.column("estimate_x"), drive.column("estimate_y")
     true_x, true_y = true_path(drive)
     spread = drive.column("estimate_x_variance") + drive.column("estimate_y_variance")
@@ -128,7 +128,7 @@ def position_error(drive: Drive) -> tuple[FloatArray, FloatArray]:
 
 
 def true_path(drive: Drive) -> tuple[FloatArray, FloatArray]:
-    """The true path [m], turned and shifted so that it begins as the estimate does; NaN: no truth in the log."""
+    """The true path [m], turned and shifted so that it begins as the estimate does; NaN without truth in the log."""
     names = ("truth_x", "truth_y", "truth_yaw", "estimate_x", "estimate_y", "estimate_yaw")
     x, y, yaw, own_x, own_y, own_yaw = (drive.column(name) for name in names)
     known = np.flatnonzero(~np.isnan(x) & ~np.isnan(own_x))

@@ -1,4 +1,4 @@
-"""Where something lasts."""
+"""Finds the stretches in which a condition lasts."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def intervals(true: BoolArray) -> list[tuple[int, int]]:
 
 
 def joined(found: list[tuple[int, int]], gap: int) -> list[tuple[int, int]]:
-    """Stretches that no more than `gap` rows part, as one."""
+    """Joins stretches that at most `gap` rows separate."""
     result: list[tuple[int, int]] = []
     for begin, end in found:
         if result and begin - result[-1][1] <= gap:

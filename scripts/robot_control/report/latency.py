@@ -1,4 +1,4 @@
-"""How long each step of a cycle took; only runs in wall-clock time have these columns."""
+"""Computes how long each step of a cycle took; only runs in wall-clock time have these columns."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from robot_control.report.drive import Drive
 
 @dataclass(frozen=True)
 class Latency:
-    """From one time stamp of a cycle to another; `begin` empty: from one cycle's to the next one's."""
+    """Time from one stamp of a cycle to another; an empty `begin` stands for that of the cycle before."""
 
     name: str
     meaning: str
@@ -51,7 +51,7 @@ LATENCIES = (
 
 
 def durations_ns(drive: Drive, latency: Latency) -> FloatArray:
-    """By row of the log; NaN where a cycle does not tell."""
+    """Durations by row of the log; NaN where a cycle does not hold them."""
     if not np.any(np.nan_to_num(drive.column("command_published_ns"))):  # a loop in one process reads no clock
         return np.full(drive.time.shape, np.nan)
     woke = drive.column("driver_woke_ns")
@@ -60,7 +60,7 @@ def durations_ns(drive: Drive, latency: Latency) -> FloatArray:
         late: FloatArray = woke + slipped
         return late
     if latency.name == "period":
-        # The wake-up stands relative to the cycle's own deadline, which moves by what a simulated plant slips.
+        # The wake-up is relative to the cycle's own deadline, which moves by the slip of a simulated plant.
         period = np.diff(drive.column("stamp_ns"), prepend=np.nan) + slipped + np.diff(woke, prepend=np.nan)
         return np.where(np.diff(drive.log["cycle"], prepend=np.nan) == 1, period, np.nan)
     duration: FloatArray = drive.column(latency.end) - drive.column(latency.begin)

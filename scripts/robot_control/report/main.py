@@ -30,17 +30,17 @@ def main(arguments: list[str] | None = None) -> None:
         sys.exit(f"report.py: {fit_for_message(in_words(error))}")
     except MemoryError:
         sys.exit("report.py: the log needs more memory than there is; cut it into pieces")
-    for path, of in zip(options.compare or [options.log], judged, strict=True):
-        if options.ci and not any(one.verdict in (Verdict.OK, Verdict.FAILED) for one in of):
+    for path, verdicts in zip(options.compare or [options.log], judged, strict=True):
+        if options.ci and not any(one.verdict in (Verdict.OK, Verdict.FAILED) for one in verdicts):
             reason = "none of the figures with a budget is in this log; name others: --budgets FILE"
             sys.exit(f"report.py: {fit_for_message(str(path))}: nothing was judged: {reason}")
-    wrong = [one for of in judged for one in failed(of)]
+    wrong = [one for verdicts in judged for one in failed(verdicts)]
     if options.ci and wrong:
         sys.exit(f"report.py: {len(wrong)} figures break their budget: {', '.join(one.figure.name for one in wrong)}")
 
 
 def report(options: argparse.Namespace) -> list[list[Judged]]:
-    """The verdicts of each log; they are printed, and the page is there.
+    """Writes and prints; returns the verdicts of each log.
 
     Raises:
         ValueError, OSError: one message.
@@ -51,11 +51,11 @@ def report(options: argparse.Namespace) -> list[list[Judged]]:
     drives = [drive_of(path, read_run(path)) for path in paths]
     found = [figures(drive) for drive in drives]
     budgets = read_budgets(options.budgets or Path(share_file(BUDGETS)), found[0])
-    judged = [judge(of, budgets) for of in found]
-    for drive, of in zip(drives, judged, strict=True):
+    judged = [judge(verdicts, budgets) for verdicts in found]
+    for drive, verdicts in zip(drives, judged, strict=True):
         if drive.part:
             print(escaped(f"report.py: {drive.name}: {drive.part}"), file=sys.stderr)
-        print(escaped_lines(_table(drive, of)))
+        print(escaped_lines(_table(drive, verdicts)))
     if out is not None:
         _write(out, drives, judged)
         print(escaped(f"wrote {out}"), file=sys.stderr)

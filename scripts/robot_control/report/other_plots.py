@@ -53,9 +53,9 @@ ROWS = (
 """columns of bits: kind of name, word before it, colour"""
 STATE_ROWS = ("state", "permit", "gate verdict")
 WORD_WIDTH = 0.07
-"""of the run, which a bar with a word in it lasts at least"""
+"""share of the run; a shorter bar has no word in it"""
 ORDINARY = {"valid"}
-"""bits that are always set where all is well"""
+"""bits that are set in normal operation"""
 ACTIONS = {"brake": RED, "ramp": ORANGE, "drive": GREEN}
 VERDICTS = {"brake": RED, "passed": GREEN, "held": ORANGE, "clamped": PURPLE, "ramp": ORANGE}
 
@@ -103,9 +103,9 @@ def _first(drive: Drive) -> tuple[list[float], list[float]]:
 def _path(plot: Any, x: FloatArray, y: FloatArray, look: Line) -> list[Any]:  # noqa: ANN401 (Bokeh's)
     if np.all(np.isnan(x)):
         return []
-    way = np.concatenate([[0.0], np.cumsum(np.hypot(np.nan_to_num(np.diff(x)), np.nan_to_num(np.diff(y))))])
-    step = max(float(way[-1]) / PATH_POINTS, 1e-9)
-    ticks = np.floor(way / step)
+    distance = np.concatenate([[0.0], np.cumsum(np.hypot(np.nan_to_num(np.diff(x)), np.nan_to_num(np.diff(y))))])
+    step = max(float(distance[-1]) / PATH_POINTS, 1e-9)
+    ticks = np.floor(distance / step)
     kept = np.concatenate([[True], np.diff(ticks) > 0])
     kept[-1] = True
     return [plot.line(x[kept].astype(np.float32), y[kept].astype(np.float32), color=look.colour, line_width=look.width,
@@ -113,15 +113,15 @@ def _path(plot: Any, x: FloatArray, y: FloatArray, look: Line) -> list[Any]:  # 
 
 
 def _ellipses(plot: Any, drive: Drive, colour: str) -> list[Any]:  # noqa: ANN401 (Bokeh's)
-    """Of 95 %, from the eigenvalues of the covariance of x and y."""
+    """Ellipses of 95 %, from the eigenvalues of the covariance of x and y."""
     columns = ("estimate_x", "estimate_y", "estimate_x_variance", "estimate_y_variance", "estimate_xy_covariance")
     table = np.column_stack([drive.column(name) for name in columns])
-    way = drive.column("estimate_distance")
-    known = np.flatnonzero(~np.isnan(table).any(axis=1) & ~np.isnan(way))
+    distance = drive.column("estimate_distance")
+    known = np.flatnonzero(~np.isnan(table).any(axis=1) & ~np.isnan(distance))
     if known.size == 0:
         return []
-    places = np.linspace(way[known[0]], way[known[-1]], ELLIPSES)
-    rows = np.unique(known[np.searchsorted(way[known], places).clip(0, known.size - 1)])
+    places = np.linspace(distance[known[0]], distance[known[-1]], ELLIPSES)
+    rows = np.unique(known[np.searchsorted(distance[known], places).clip(0, known.size - 1)])
     x, y, xx, yy, xy = table[rows].T
     middle, difference = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
     half = [np.sqrt(CHI_SQUARE_95 * np.maximum(value, 0)) for value in (middle + difference, middle - difference)]
@@ -135,7 +135,7 @@ def _ellipses(plot: Any, drive: Drive, colour: str) -> list[Any]:  # noqa: ANN40
 
 
 def time_lines(axis: TimeAxis, drive: Drive) -> Any:  # noqa: ANN401 (Bokeh's)
-    """A bar per state and per reason, as long as it lasted."""
+    """Draws a bar per state and per reason, as long as it lasted."""
     bars: list[tuple[str, int, int, str, str]] = []  # row of the plot, first row of the log, end, colour, words
     order: list[str] = []
     for column, kind, label, colours in (
@@ -155,12 +155,12 @@ def time_lines(axis: TimeAxis, drive: Drive) -> Any:  # noqa: ANN401 (Bokeh's)
         values = drive.bits(column)
         present = int(np.bitwise_or.reduce(values, initial=0))
         for number in range(present.bit_length()):
-            of = names.bit(kind, number)
-            if not present >> number & 1 or of.name in ORDINARY:
+            bit = names.bit(kind, number)
+            if not present >> number & 1 or bit.name in ORDINARY:
                 continue
-            order.append(f"{label}: {of.name}")
+            order.append(f"{label}: {bit.name}")
             bars += [
-                (order[-1], begin, end, colour, of.sentence)
+                (order[-1], begin, end, colour, bit.sentence)
                 for begin, end in joined(intervals(values >> number & 1 != 0), gap)
             ]
     if not bars:
@@ -169,7 +169,7 @@ def time_lines(axis: TimeAxis, drive: Drive) -> Any:  # noqa: ANN401 (Bokeh's)
 
 
 def _thinned(found: list[tuple[int, int, int]], rows: int) -> list[tuple[int, int, int]]:
-    """Changes faster than a pixel: those that last longest there."""
+    """Keeps of the changes within one pixel those that last longest."""
     if len(found) <= 2 * BINS:
         return found
     kept: dict[int, tuple[int, int, int]] = {}
@@ -203,7 +203,7 @@ def _bars(axis: TimeAxis, drive: Drive, order: list[str], bars: list[tuple[str, 
 
 
 def histograms(drives: list[Drive]) -> list[Any]:
-    """Of each latency; counts on a logarithmic axis, because the rare ones matter."""
+    """Histograms of each latency; the counts have a logarithmic axis, because the rare ones matter."""
     plots = []
     for latency in LATENCIES:
         found = [durations_ns(drive, latency) / 1000 for drive in drives]

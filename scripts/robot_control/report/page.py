@@ -37,15 +37,15 @@ Section = tuple[str, str, list[Any]]
 def page(drives: list[Drive], judged: list[list[Judged]], found: list[list[Incident]]) -> str:
     """The HTML of one drive, or of two that are compared; verdicts and incidents of each."""
     sections = [section for section in _sections(drives, found[0]) if section[2]]
-    plots = [plot for _, _, of in sections for plot in of]
+    plots = [plot for _, _, section_plots in sections for plot in section_plots]
     script, divs = components(plots, wrap_script=False) if plots else ("", ())
     placed = iter(divs)
     body = "".join(
         f'<section id="s{i}"><h2>{escape(title)}</h2><p class="how">{escape(how)}</p>'
         + '<div class="plots">'
-        + "".join(f'<div class="plot {plot.name or ""}">{next(placed)}</div>' for plot in of)
+        + "".join(f'<div class="plot {plot.name or ""}">{next(placed)}</div>' for plot in section_plots)
         + "</div></section>"
-        for i, (title, how, of) in enumerate(sections)
+        for i, (title, how, section_plots) in enumerate(sections)
     )
     links = "".join(f'<a href="#s{i}">{escape(title)}</a>' for i, (title, _, _) in enumerate(sections))
     title = " against ".join(printable(drive.name, 80) for drive in drives)
@@ -59,7 +59,7 @@ def page(drives: list[Drive], judged: list[list[Judged]], found: list[list[Incid
         "<footer>Lines show the least and the largest value of every 1/1500 of the run: nothing is smoothed, no peak is"
         " left out. Drag to zoom all time plots together, scroll to zoom one axis, click a legend entry to hide a"
         " series.</footer></main>"
-        # Names in a log are text from outside: no part of them ends the script.
+        # Names in a log are text from outside; none of them may end the script.
         f"<script>{script.replace('</', '<' + chr(92) + '/')}</script></body></html>"
     )
 
@@ -124,9 +124,9 @@ def _plots(*made: Any) -> list[Any]:  # noqa: ANN401 (Bokeh's)
 
 def _facts(drives: list[Drive], judged: list[list[Judged]]) -> str:
     lines = []
-    for drive, of in zip(drives, judged, strict=True):
-        wrong = failed(of)
-        by_name = {one.figure.name: one.figure.value for one in of}
+    for drive, verdicts in zip(drives, judged, strict=True):
+        wrong = failed(verdicts)
+        by_name = {one.figure.name: one.figure.value for one in verdicts}
         duration = float(drive.time[-1] - drive.time[0])
         facts = [
             f"{duration:.1f} s",
@@ -134,7 +134,7 @@ def _facts(drives: list[Drive], judged: list[list[Judged]]) -> str:
             f"{by_name['distance']:.1f} m",
             f"{by_name['latched_stops']:.0f} latched stops",
         ]
-        count = sum(one.verdict is Verdict.OK for one in of)
+        count = sum(one.verdict is Verdict.OK for one in verdicts)
         badge = f'<b class="badge bad">{len(wrong)} FAILED</b>' if wrong else f'<b class="badge good">{count} ok</b>'
         name = f"<b>{escape(printable(drive.name, 80))}</b> " if len(drives) > 1 else ""
         part = f'<p class="part">{escape(drive.part)}</p>' if drive.part else ""
@@ -149,8 +149,8 @@ def _verdicts(drives: list[Drive], judged: list[list[Judged]]) -> str:
     change = "<th class='n'>change</th>" if len(drives) > 1 else ""
     rows: list[str] = []
     rest: list[str] = []
-    for of in zip(*judged, strict=True):
-        (rest if of[0].verdict is Verdict.UNJUDGED else rows).append(_verdict_row(of))
+    for figure in zip(*judged, strict=True):
+        (rest if figure[0].verdict is Verdict.UNJUDGED else rows).append(_verdict_row(figure))
     head = f"<tr><th>figure</th>{heads}{change}<th class='n'>budget</th><th>verdict</th><th>meaning</th></tr>"
     return (
         f'<section id="verdict"><h2>Verdict</h2><div class="wide"><table>{head}{"".join(rows)}</table></div>'
@@ -159,17 +159,17 @@ def _verdicts(drives: list[Drive], judged: list[list[Judged]]) -> str:
     )
 
 
-def _verdict_row(of: tuple[Judged, ...]) -> str:
-    first = of[0]
+def _verdict_row(figure: tuple[Judged, ...]) -> str:
+    first = figure[0]
     budget = " ".join(f"{sign} {first.figure.shown(bound)}" for sign, bound in first.bounds)
-    worst = min(of, key=lambda one: one.verdict is not Verdict.FAILED).verdict
+    worst = min(figure, key=lambda one: one.verdict is not Verdict.FAILED).verdict
     style = {Verdict.OK: "good", Verdict.FAILED: "bad"}.get(worst, "unknown")
     values = "".join(
         f'<td class="{"n bad" if one.verdict is Verdict.FAILED else "n"}">{one.figure.shown(one.figure.value)}</td>'
-        for one in of
+        for one in figure
     )
-    if len(of) > 1:
-        values += f'<td class="n">{first.figure.shown(of[1].figure.value - first.figure.value)}</td>'
+    if len(figure) > 1:
+        values += f'<td class="n">{first.figure.shown(figure[1].figure.value - first.figure.value)}</td>'
     verdict = f'<b class="badge {style}">{worst.value}</b>' if worst.value else ""
     return (
         f"<tr><td>{escape(first.figure.name.replace('_', ' '))}</td>{values}"
@@ -180,8 +180,8 @@ def _verdict_row(of: tuple[Judged, ...]) -> str:
 
 def _incidents(drives: list[Drive], found: list[list[Incident]]) -> str:
     lists = "".join(
-        (f"<h3>{escape(printable(drive.name, 80))}</h3>" if len(drives) > 1 else "") + _incident_list(of)
-        for drive, of in zip(drives, found, strict=True)
+        (f"<h3>{escape(printable(drive.name, 80))}</h3>" if len(drives) > 1 else "") + _incident_list(incidents)
+        for drive, incidents in zip(drives, found, strict=True)
     )
     return f'<section id="incidents"><h2>Incidents</h2>{lists}</section>'
 

@@ -1,4 +1,4 @@
-"""How the page looks."""
+"""The style sheet of the page."""
 
 STYLE = """
 :root { --ink: #202124; --soft: #5f6368; --line: #e0e3e7; --good: #00734f; --bad: #b3261e; }

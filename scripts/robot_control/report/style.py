@@ -83,5 +83,5 @@ def with_legend(plot: Any, items: list[tuple[str, list[Any]]]) -> Any:  # noqa: 
 
 
 def with_values(plot: Any, renderers: list[Any], tips: list[tuple[str, str]], mode: str = "mouse") -> None:  # noqa: ANN401
-    """What the pointer shows."""
+    """Sets what the pointer shows."""
     plot.add_tools(HoverTool(renderers=renderers, tooltips=tips, mode=mode, line_policy="nearest"))

@@ -38,7 +38,7 @@ OF_SENSORS = (BLUE, SKY, ORANGE, GREEN, PURPLE, GREY)
 
 
 def line_plot(axis: TimeAxis, unit: str, series: Iterable[Series], **options: Any) -> Any:  # noqa: ANN401 (Bokeh's)
-    """One plot of several series; None: there is nothing to draw."""
+    """One plot of several series; None if there is nothing to draw."""
     known = [one for one in series if not np.all(np.isnan(one[2]))]
     if not known:
         return None
@@ -55,7 +55,7 @@ def line_plot(axis: TimeAxis, unit: str, series: Iterable[Series], **options: An
 
 
 def band(plot: Any, time: FloatArray, low: FloatArray, high: FloatArray, colour: str) -> None:  # noqa: ANN401
-    """Between two series, lightly."""
+    """Fills the area between two series lightly."""
     known = ~np.isnan(low) & ~np.isnan(high)
     if not known.any():
         return
@@ -65,7 +65,7 @@ def band(plot: Any, time: FloatArray, low: FloatArray, high: FloatArray, colour:
 
 
 def _of(drive: Drive, number: int, count: int, lines: list[tuple[str, Line]]) -> list[Series]:
-    """Columns of one of `count` drives; of two only the first and last of the lines, in the drive's colour."""
+    """Columns of one of `count` drives; two drives show only the first and last of the lines, in the drive's colour."""
     if count == 1:
         return [(line, drive.time, drive.column(name)) for name, line in lines]
     colour = OF_DRIVES[number]
@@ -115,7 +115,7 @@ def _merged_legend(plot: Any) -> Any:  # noqa: ANN401 (Bokeh's)
 
 
 def tracking_error(axis: TimeAxis, drives: list[Drive], which: str, unit: str) -> Any:  # noqa: ANN401 (Bokeh's)
-    """Commanded minus estimated; of one drive with the band of the estimate's own doubt."""
+    """Draws commanded minus estimated speed; with a single drive the band shows the estimate's standard deviation."""
     series = [
         (Line(drive.name if len(drives) > 1 else "after limits − estimated", OF_DRIVES[i]), drive.time,
          drive.column(f"limited_{which}") - drive.column(f"estimate_{which}"))

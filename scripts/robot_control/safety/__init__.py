@@ -1,1 +1,1 @@
-"""What safety_status says, as programs that send commands take it."""
+"""Evaluates safety_status for programs that send commands."""

@@ -1,6 +1,6 @@
-"""Which requests still count, by what safety_status says. Pure: time is an argument.
+"""Decides by safety_status which requests still count. It reads no clock: time is an argument.
 
-What is requested, planned, held or waited for belongs to the time in which it began. An interruption ends that time:
+A request, a plan, a hold or a wait belongs to the time in which it began. An interruption ends that time:
 
     stop     the state was READY or DRIVE, and is not any more
     reset    `withdrawals` or `run` differ between two messages that permit to drive: a stop lies between them
@@ -8,10 +8,10 @@ What is requested, planned, held or waited for belongs to the time in which it b
              it knows is old
     unseen   the monitor says that a permission ended after this program began, or since its last message
 
-A request that was made during a stop is one from before its reset. A request that arrives as a message began when it
-was sent (`requested_at`), for a queue holds it while the program stands still. What a program is started for was
-requested when it began, not when it first looked.
-Times are s of any one clock that never turns back. The clock has to run on while a program is suspended.
+A request that was made during a stop counts as older than its reset. A request that arrives as a message began when it
+was sent (`requested_at`), because a queue holds it while the program stands still. The purpose for which a program is
+started was requested when the program began, not at its first pass. Times are s of any one clock that never turns back.
+The clock has to run on while a program is suspended.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ from dataclasses import dataclass
 from robot_control.safety.states import DRIVABLE, STOPPED
 
 GAP = 1.0
-"""s; programs look every 0.02 s, and a loaded machine keeps one waiting for half a second now and then. What such a
-program requested before a stop is refused by the loop, however short its gap."""
+"""s; programs look every 0.02 s, and a loaded machine delays one by half a second now and then. The loop refuses a
+request from before a stop, however short the gap of the program."""
 RESTARTED = "INIT: a node or the simulation was started again, and releases no command from before"
 UNSEEN = "the robot was stopped and released, or started again"
 
 
 def requested_at(arrived: float, sent: float | None) -> float:
-    """When a request that came as a message began: GAP before it arrived, if the time when it was sent is not known.
+    """The begin of a request that came as a message: GAP before its arrival if the time of sending is not known.
 
-    A time after the arrival is that of another clock, and none.
+    A time of sending after the arrival belongs to another clock and does not count.
     """
     return arrived - GAP if sent is None or sent > arrived else sent
 
@@ -49,22 +49,22 @@ class Status:
     missing: tuple[str, ...] = ()
     awaiting_zero: bool = False
     speed_limit: float = math.inf  # m/s
-    withdrawals: int = 0  # starts and latched causes so far
+    withdrawals: int = 0  # number of starts and latched causes so far
     run: int = 0
     withdrawn: float = -math.inf  # s: until then, what was requested is void
 
     @property
     def drivable(self) -> bool:
-        """A permit to drive."""
+        """True if the robot is permitted to drive."""
         return self.state in DRIVABLE
 
     @property
     def stopped(self) -> bool:
-        """Only a reset ends what stands against motion."""
+        """True if only a reset ends the stop."""
         return self.state in STOPPED
 
     def why(self) -> str:
-        """State and cause: STOPPED: the robot hit something (51 m/s^2, limit 30 m/s^2)."""
+        """State and cause, for instance: STOPPED: the robot hit something (51 m/s^2, limit 30 m/s^2)."""
         if self.state == "INIT":
             return RESTARTED
         if not self.sentence:
@@ -75,18 +75,18 @@ class Status:
 
 
 class Interruptions:
-    """Of one program: `step` at every look, with all messages that have come since the last one."""
+    """Interruptions of one program: it calls `step` in every pass, with all messages since the last one."""
 
     def __init__(self, now: float, began: float | None = None) -> None:
         """`began`: s when the program did, where that is not `now`."""
         self._looked = now
         self._heard = now if began is None else began  # of the last message
         self._interrupted = self._stopped = (-math.inf, "")  # when last, why
-        self.status: Status | None = None  # the newest one
-        self.count = 0  # of interruptions
+        self.status: Status | None = None  # the newest message
+        self.count = 0
 
     def step(self, now: float, statuses: Iterable[Status] = (), *, waited: bool = False) -> None:
-        """One look: notes how long there was none, unless it `waited` or planned, and takes in what has come."""
+        """One pass: notes how long there was none, unless the program `waited` or planned, and takes the messages."""
         gap, self._looked = now - self._looked, now
         if gap > GAP and not waited:
             self._interrupt(now, f"this program stood still for {gap:.1f} s")
@@ -114,11 +114,11 @@ class Interruptions:
 
     @property
     def reason(self) -> str:
-        """Of the last interruption; empty: there was none."""
+        """Reason of the last interruption; empty if there was none."""
         return self._interrupted[1]
 
     def revoked(self, requested: float) -> str:
-        """Why what was requested at `requested` s does not begin any more; empty: it may."""
+        """Why a request of the time `requested` s may not begin any more; empty if it may."""
         at, why = max(self._stopped, self._interrupted)
         return why if at >= requested else ""
 

@@ -1,4 +1,4 @@
-"""safety_status as a program hears it: every message, not the newest alone."""
+"""Receives safety_status for a program: every message, not the newest alone."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from robot_control.safety.process_start import process_began
 LATE = 0.1
 """s between two looks after which messages may wait that the receiving thread has not taken"""
 CATCH_UP = 0.02
-"""s that it is given then"""
+"""s that the receiving thread gets then"""
 
 
 def status_of(message: SafetyStatus) -> Status:
-    """Of the causes the one that came first; `withdrawn` on this process's monotonic clock."""
+    """The status of a message, with the cause that came first; `withdrawn` on this process's monotonic clock."""
     first = message.causes.index(message.first_cause) if message.first_cause in message.causes else 0
     sentence, detail, remedy = (
         texts[first] if first < len(texts) else "" for texts in (message.sentences, message.details, message.remedies)
@@ -42,7 +42,7 @@ def status_of(message: SafetyStatus) -> Status:
 
 
 class SafetyWatch:
-    """Takes in each message when it comes; looks when it is asked."""
+    """Takes each message when it arrives, and evaluates them on request."""
 
     def __init__(self) -> None:
         self.message: SafetyStatus | None = None  # the newest one
@@ -59,20 +59,20 @@ class SafetyWatch:
             self._interruptions.receive(status_of(message), self.received_at)
 
     def interruptions(self) -> tuple[int, str]:
-        """One look: how many there were, and why the last one."""
+        """One pass: the number of interruptions and the reason of the last one."""
         with self._look(waited=False) as interruptions:
             return interruptions.count, interruptions.reason
 
     def revoked(self, requested: float, *, waited: bool) -> str:
-        """Why what was requested at `requested` s (monotonic) does not begin, or go on, any more; empty: it may.
+        """Why a request of the time `requested` s (monotonic) may not begin or go on; empty if it may.
 
-        `waited`: since the last look the program did not drive, but waited or planned.
+        `waited`: since the last pass the program did not drive, but waited or planned.
         """
         with self._look(waited=waited) as interruptions:
             return interruptions.revoked(requested)
 
     def drivable(self, silence: float) -> bool | None:
-        """Does the monitor permit to drive? None: it has said nothing for `silence` s."""
+        """True if the monitor permits to drive; None if no message has come for `silence` s."""
         with self._lock:
             status = self._interruptions.status
             fresh = time.monotonic() - self.received_at < silence

@@ -1,4 +1,4 @@
-"""How a robot that waits for a zero request (awaiting_zero_request) is released, in words. Pure."""
+"""Describes how a robot that waits for a zero request (awaiting_zero_request) is released."""
 
 
 def silent_long_enough(command_timeout: float) -> str:

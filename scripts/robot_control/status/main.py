@@ -25,7 +25,7 @@ PERIOD = 1.0
 
 
 class Status:
-    """The last of each message, and what was published of it."""
+    """Publishes the robot's status from the last message of each topic."""
 
     def __init__(self) -> None:
         self._namespace = rospy.get_namespace()
@@ -42,7 +42,7 @@ class Status:
         rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive_diagnostics)
 
     def look(self, now: float) -> None:
-        """Publishes where it is due."""
+        """Publishes if a message is due."""
         status = status_of(self._reports_of_now(now))
         status.software_version = self._version
         status.uptime = now - self._began

@@ -21,14 +21,14 @@ ODOMETRY_SENSORS = ("left_encoder", "right_encoder", "gyro")
 
 @dataclass(frozen=True)
 class Reports:
-    """The last report of each node, where it is not too old to count."""
+    """The last report of each node that is recent enough to count."""
 
     safety: SafetyStatus | None = None
     diagnostics: Mapping[str, DiagnosticStatus] = field(default_factory=dict)  # by node, below the namespace
-    commander: str = ""  # of drive_state: where there is a list of command sources
+    commander: str = ""  # from drive_state, if there is a list of command sources
 
     def value(self, node: str, key: str) -> str:
-        """Of a node's report; empty: it does not say."""
+        """A value in a node's report; empty if it is not there."""
         report = self.diagnostics.get(node)
         return next((pair.value for pair in report.values if pair.key == key), "") if report is not None else ""
 
@@ -88,6 +88,6 @@ def _confidence(reports: Reports) -> float:
 
 
 def changed(new: RobotStatus, old: RobotStatus) -> bool:
-    """Another state, not merely other numbers: what is to be said at once."""
+    """True if the state differs, not merely its numbers; it is then published at once."""
     names = [name for name in new.__slots__ if name not in {"header", "uptime", "odometry_confidence"}]
     return any(getattr(new, name) != getattr(old, name) for name in names)

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 BURST = 0.01
 """s; the fastest keyboards repeat every 20 ms"""
-SHORTEST_DELAY = 0.15
+MIN_DELAY = 0.15
 """s; below the shortest usual delay until the first repeat (0.25 s), above the time between two quick taps"""
 SLOWEST_REPEAT = 0.12
 """s; keyboards repeat at 10 to 50 Hz"""
@@ -28,7 +28,7 @@ MARGIN = 0.1
 
 @dataclass(frozen=True)
 class HoldParameters:
-    """How long what holds."""
+    """Durations of the holds."""
 
     first_hold: float = 0.7  # s; most desktops repeat after 0.25 to 0.66 s
     hold: float = 0.3  # s
@@ -39,7 +39,7 @@ class HoldParameters:
 
 @dataclass(frozen=True)
 class Held:
-    """What is held now."""
+    """The present hold."""
 
     key: str
     share: float  # of the chosen speed
@@ -47,7 +47,7 @@ class Held:
 
 
 class RepeatDelay:
-    """The keyboard's delay until the first repeat, from presses that were followed by a regular train of bytes."""
+    """Measures the keyboard's delay until the first repeat, from presses with a regular train of bytes after them."""
 
     def __init__(self, longest: float) -> None:
         self._longest = longest
@@ -57,11 +57,11 @@ class RepeatDelay:
 
     @property
     def measured(self) -> float | None:
-        """s, the longest of the last five; None: not known yet."""
+        """s, the longest of the last five; None until one is known."""
         return max(self._measured) if self._measured else None
 
     def byte(self, key: str, now: float) -> None:
-        """One byte of a motion key."""
+        """Takes one byte of a motion key."""
         if key != self._key or (self._times and now - self._times[-1] > self._longest):
             self._key, self._times = key, []
         if len(self._times) == 4:
@@ -70,15 +70,15 @@ class RepeatDelay:
         self._times.append(now)
         if len(self._times) == 4:
             delay, second, third = (b - a for a, b in zip(self._times, self._times[1:], strict=False))
-            if delay >= SHORTEST_DELAY and max(second, third) <= SLOWEST_REPEAT:
+            if delay >= MIN_DELAY and max(second, third) <= SLOWEST_REPEAT:
                 self._measured.append(delay)
 
 
 class DeadMan:
-    """Which motion key is held."""
+    """Determines which motion key is held."""
 
     def __init__(self, parameters: HoldParameters | None = None, motions: Mapping[str, Hashable] | None = None) -> None:
-        """`motions`: of each key; a key that is not among them has one of its own."""
+        """`motions`: the motion of each key; a key that is not among them has one of its own."""
         self._parameters = parameters or HoldParameters()
         self._motions = motions or {}
         self._delay = RepeatDelay(self._parameters.first_hold)
@@ -89,19 +89,19 @@ class DeadMan:
         self._fast = False
         self._last_key, self._last_byte = "", float("-inf")
         self._stopped_in_burst = False
-        self._down: set[str] = set()  # by a terminal that reports releases; else all that were ever pressed
-        self._blocked: set[Hashable] | None = None  # None: no motion is; else these, or with an empty set all
+        self._down: set[str] = set()  # keys that are down; without reports of releases all that were pressed
+        self._blocked: set[Hashable] | None = None  # None: no motion is blocked; else these, or all if it is empty
         self._blocked_byte = 0.0
 
     @property
     def first_hold(self) -> float:
-        """s that the first byte of a press holds, as it is now."""
+        """s for which the first byte of a press holds, at present."""
         measured = self._delay.measured
         longest = self._parameters.first_hold
         return longest if measured is None else min(longest, measured + MARGIN)
 
     def press(self, key: str, now: float, *, repeat: bool = False) -> None:
-        """A byte of a motion key came; `repeat`: the terminal says that it is no first one."""
+        """Takes a byte of a motion key; `repeat`: the terminal reports that it is a repeat."""
         self._down.add(key)
         burst = now - self._last_byte < BURST
         again = key == self._last_key
@@ -122,7 +122,7 @@ class DeadMan:
             self._since = begin
         else:
             self._bytes += 1
-            tapped = self._bytes == 2 and gap < SHORTEST_DELAY and not repeat
+            tapped = self._bytes == 2 and gap < MIN_DELAY and not repeat
             self._fast = self._fast or not tapped
             self._until = now + (self.first_hold if tapped else self._parameters.hold)
 
@@ -135,26 +135,26 @@ class DeadMan:
             self._blocked = None
 
     def stop(self, now: float) -> None:
-        """A key that stops came."""
+        """Takes a key that stops."""
         self._key = ""
         self._last_key, self._last_byte = "", now
         self._stopped_in_burst = True
 
     def block(self, key: str, now: float) -> None:
-        """A byte of `key` comes while there can be no motion: none until all keys have paused."""
+        """Blocks all motions until all keys have paused: a byte of `key` came while there can be no motion."""
         self._down.add(key)
         self._key = ""
         self._last_key, self._last_byte = key, now
         self._blocked, self._blocked_byte = set(), now
 
     def end(self, now: float) -> None:
-        """The motion ends for another reason than the keys: what is pressed now has to pause first."""
+        """Ends the motion for another reason than the keys: a key that is pressed now has to pause first."""
         self._key = ""
         if now - self._last_byte <= self._parameters.first_hold:
             self._blocked, self._blocked_byte = set(), self._last_byte
 
     def look(self, now: float) -> Held | None:
-        """What is held; None: nothing."""
+        """The present hold; None if there is none."""
         if not self._key or now >= self._until:
             self._key = ""
             return None
@@ -166,16 +166,16 @@ class DeadMan:
         return Held(self._key, 1.0 if self._fast else self._parameters.slow, left)
 
     def ends_soon(self, held: Held) -> bool:
-        """The end by max_hold is to be announced."""
+        """True if the end by max_hold is to be announced."""
         return held.left <= self._parameters.announce
 
     @property
     def overlong(self) -> bool:
-        """The last motion was ended by max_hold."""
+        """True if max_hold ended the last motion."""
         return bool(self._blocked)
 
     def blocked(self, now: float) -> bool:
-        """A key has to be released first."""
+        """True if a key has to be released first."""
         return self._blocked is not None and now - self._blocked_byte <= self._parameters.first_hold
 
     def _motion(self, key: str) -> Hashable:
@@ -189,7 +189,7 @@ class DeadMan:
         if self._blocked is None:
             return False
         if self._blocked and self._motion(key) not in self._blocked:
-            self._blocked = None  # another motion: a person is there
+            self._blocked = None  # another motion shows that a person is there
             return False
         paused = now - self._blocked_byte > self._parameters.first_hold
         self._blocked_byte = now

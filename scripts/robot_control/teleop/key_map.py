@@ -1,4 +1,4 @@
-"""What each key does. Pure.
+"""Assigns a function to each key.
 
 `arrows`   arrow keys and w a s d, curves with q e (forward) and z c (backward)
 `classic`  the keys of teleop_twist_keyboard, where z and q change both speeds, w x the linear, e c the angular one

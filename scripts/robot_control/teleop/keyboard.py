@@ -13,12 +13,13 @@ Everything else that a terminal sends is consumed to its end and means nothing (
     ESC [200~ … ESC [201~    a paste
     UTF-8                    letters of several bytes
 
-Bytes end a sequence, time does not: a link may stall anywhere in it. A paste ends with its end mark, everything else
-also with Ctrl-X.
+Bytes end a sequence, time does not: a link may stall anywhere in it. A paste ends with its end mark, and every other
+sequence also with Ctrl-X.
 
-An ESC alone is the key Esc once ESCAPE_WAIT has passed, or a byte has followed that begins no sequence; it ends none.
-No sequence swallows a stop: Space and ! count inside ESC [ and ESC O, where no report has them, and elsewhere when they
-come ESCAPE_WAIT after the byte before, as a typed key does. So do the stops that a terminal reports during a paste.
+An ESC alone is the key Esc once ESCAPE_WAIT has passed, or after a byte that begins no sequence; it ends none. No
+sequence swallows a stop. Space and ! count inside ESC [ and ESC O, where no report has them. Elsewhere they count when
+they come ESCAPE_WAIT after the byte before, as a typed key does. Stops that a terminal reports during a paste count as
+well.
 """
 
 import re
@@ -28,11 +29,11 @@ from enum import Enum, auto
 
 ESCAPE_WAIT = 0.05
 """s; the bytes of one sequence come together, on a slow link within this time"""
-LONGEST = 32
+MAX_SEQUENCE = 32
 """bytes of a sequence that may mean something"""
 
 QUERY_RELEASES = b"\x1b[?u"
-"""does this terminal speak kitty's protocol?"""
+"""asks whether the terminal speaks kitty's protocol"""
 REPORT_RELEASES = b"\x1b[>15u"
 """1 disambiguate, 2 event types, 4 shifted keys, 8 all keys as sequences"""
 END_RELEASES = b"\x1b[<u"
@@ -57,7 +58,7 @@ SHIFT, CONTROL = 1, 4
 
 
 class Event(Enum):
-    """What happened to a key; a terminal without releases reports presses only."""
+    """The kind of a key event; a terminal without releases reports presses only."""
 
     PRESS = 1
     REPEAT = 2
@@ -74,7 +75,7 @@ class Key:
 
 
 class Part(Enum):
-    """Of which a byte is one."""
+    """The part of a sequence to which a byte belongs."""
 
     KEYS = auto()
     ESCAPE = auto()
@@ -85,13 +86,13 @@ class Part(Enum):
 
 
 class Decoder:
-    """Keeps what of a sequence has come."""
+    """Keeps the bytes of a sequence that is not complete yet."""
 
     def __init__(self) -> None:
         self._part = self._before_escape = Part.KEYS
         self._escape_due = False  # the last byte is an ESC, which may yet be the key
         self._pasting = False
-        self._typed = False  # the key or the sequence began ESCAPE_WAIT after the byte before
+        self._typed = False  # true if the key or the sequence began ESCAPE_WAIT after the byte before
         self._sequence = ""  # after ESC [ or ESC O
         self._raw = 0  # characters that are still to come
         self._letter = 0  # bytes of a UTF-8 letter that may still come
@@ -113,7 +114,7 @@ class Decoder:
         return keys
 
     def look(self, now: float) -> list[Key]:
-        """The key Esc, if an ESC has stayed alone."""
+        """The key Esc if no byte has followed an ESC."""
         if not self._escape_due or now - self._last < ESCAPE_WAIT:
             return []
         self._escape_due = False
@@ -121,7 +122,7 @@ class Decoder:
 
     @property
     def unfinished(self) -> str:
-        """What has begun, has no end yet and takes all keys but stops, in words; empty: nothing."""
+        """Description of a sequence that has no end yet and takes all keys but stops; empty if there is none."""
         if self._pasting:
             return "a paste has begun, and no key drives before its end; if that is lost, start teleop.py again"
         if Part.STRING in {self._part, self._before_escape}:
@@ -171,12 +172,12 @@ class Decoder:
         return part is not None
 
     def _control(self, byte: int) -> Iterator[Key]:
-        """After ESC [ or ESC O."""
+        """Takes a byte after ESC [ or ESC O."""
         if 0x40 <= byte <= 0x7E:
             single, self._part = self._part is Part.SINGLE, Part.KEYS
             yield from self._complete(chr(byte), single=single)
             return
-        self._sequence = (self._sequence + chr(byte))[: LONGEST + 1]
+        self._sequence = (self._sequence + chr(byte))[: MAX_SEQUENCE + 1]
         if byte in STOPS or byte < 0x20:
             yield from plain(byte)
 
@@ -189,17 +190,17 @@ class Decoder:
             self._part, self._raw = Part.RAW, RAW_CHARACTERS[final]
         elif body + final in (PASTE, PASTE_END):
             self._pasting = body + final == PASTE
-        elif len(body) <= LONGEST:
+        elif len(body) <= MAX_SEQUENCE:
             yield from control_key(body, final)
 
 
 def letter_bytes(byte: int) -> int:
-    """How many bytes of a UTF-8 letter follow its first one; 0: it is no first one."""
+    """Number of bytes that follow the first one of a UTF-8 letter; 0 if it is no first one."""
     return (0xC2 <= byte <= 0xF4) + (0xE0 <= byte <= 0xF4) + (0xF0 <= byte <= 0xF4)
 
 
 def plain(byte: int) -> Iterator[Key]:
-    """One byte outside a sequence."""
+    """The keys of one byte outside a sequence."""
     if byte in NAMES:
         yield Key(NAMES[byte])
     elif 0x21 <= byte <= 0x7E:
@@ -207,7 +208,7 @@ def plain(byte: int) -> Iterator[Key]:
 
 
 def control_key(body: str, final: str) -> Iterator[Key]:
-    """ESC [ body final."""
+    """The keys of the sequence ESC [ body final."""
     if final == "u" and re.fullmatch(r"\?[0-9]+", body):
         yield Key("", Event.SPEAKS_KITTY)
         return

@@ -60,7 +60,7 @@ class Teleop:
         threading.Thread(target=self._query_master, daemon=True).start()
 
     def run(self, signals: Signals) -> None:
-        """Until Ctrl-C, a signal, or the end of the terminal (NoTerminalError)."""
+        """Runs until Ctrl-C, a signal, or the end of the terminal (NoTerminalError)."""
         begin = time.monotonic()
         self._operator.start(begin)
         backlog = Backlog(begin)
@@ -85,7 +85,7 @@ class Teleop:
                 self._draw(now)
 
     def _take(self, data: bytes, now: float, *, late: bool) -> bool:
-        """True: the program shall end."""
+        """True if the program shall end."""
         for key in [*self._decoder.feed(data, now), *self._decoder.look(now)]:
             if key.event is Event.SPEAKS_KITTY:
                 self._releases = True

@@ -1,11 +1,11 @@
-"""From keys to a velocity command, an e-stop and a reset. Pure: time is an argument.
+"""Converts keys to a velocity command, an e-stop and a reset. It reads no clock: time is an argument.
 
-Motion is commanded only while a key is held and the robot may drive. A robot that stopped, for whatever reason, does
-not move again under a key that was held all the time: keys count after they have paused. The first key of a reset arms
-it for RESET_WINDOW, the second one, RESET_PAUSE later or more, requests it.
+Motion is commanded only while a key is held and the robot may drive. A robot that stopped does not move again under a
+key that was held all the time: keys count after they have paused. The first key of a reset arms it for RESET_WINDOW.
+The second one, at least RESET_PAUSE later, requests it.
 
-The chosen speeds stay within the robot's limits, so that the share of them until a key's first repeat is a share of
-what the robot drives, and a held key changes them once per press.
+The chosen speeds stay within the robot's limits. Until a key's first repeat the robot drives a share of them, which is
+then a share of what it can drive. A held key changes them once per press.
 """
 
 from dataclasses import dataclass
@@ -22,11 +22,11 @@ RESET_WINDOW = 5.0
 RESET_PAUSE = 0.2
 """s; two keys within it are one act: a paste, a macro of the keyboard, the burst of a link that had stalled"""
 ZEROS = 1.0
-"""s for which zeros are sent after a motion; then nothing is, so that another sender may command"""
+"""s for which zeros are sent after a motion; then the topic is silent, so that another sender may command"""
 
 
 class Request(Enum):
-    """What else a key requests."""
+    """A request of a key other than motion."""
 
     E_STOP = auto()
     RESET = auto()
@@ -35,7 +35,7 @@ class Request(Enum):
 
 @dataclass(frozen=True)
 class Limits:
-    """Of the robot."""
+    """Limits of the robot."""
 
     linear: float  # m/s
     angular: float  # rad/s
@@ -43,10 +43,10 @@ class Limits:
 
 
 class Operator:
-    """What the person at the keyboard commands and requests."""
+    """Derives commands and requests from the keys."""
 
     def __init__(self, keys: KeyMap, chosen: Command, limits: Limits, hold: HoldParameters | None = None) -> None:
-        """`chosen`: the speeds at first; `limits`: the robot's."""
+        """`chosen`: the initial speeds; `limits`: the robot's."""
         self._keys = keys
         self._chosen, self._limits = chosen, limits
         self._speed_keys = SinglePress()
@@ -57,11 +57,11 @@ class Operator:
         self._zeros_until = float("-inf")
 
     def start(self, now: float) -> None:
-        """Zeros, so that the robot may be released."""
+        """Sends zeros, so that the robot may be released."""
         self._zeros_until = now + ZEROS
 
     def key(self, key: Key, now: float, *, late: bool = False) -> Request | None:
-        """A key event; `late`: this program stood still before it read it, so it may be old."""
+        """Takes a key event; `late`: this program stood still before it read it, so it may be old."""
         name = key.name
         if key.event is Event.RELEASE:
             self._dead_man.release(name)
@@ -101,11 +101,11 @@ class Operator:
         return Command(min(self._chosen.linear, self._limits.linear), min(self._chosen.angular, self._limits.angular))
 
     def limit(self, limits: Limits) -> None:
-        """The robot's limits are these now."""
+        """Sets the robot's present limits."""
         self._limits = limits
 
     def permit(self, drivable: bool | None, now: float) -> None:  # noqa: FBT001 (a three-valued state)
-        """May the robot drive, by its safety monitor? None: it says nothing."""
+        """Sets whether the robot may drive by its safety monitor; None if there is no message of it."""
         if drivable is False and self._drivable is not False:
             self.interrupt(now)
         if drivable is True and self._drivable is False:
@@ -113,17 +113,17 @@ class Operator:
         self._drivable = drivable
 
     def interrupt(self, now: float) -> None:
-        """What is held was pressed before a stop, or before this program stood still (interruptions.py)."""
+        """Ends a hold: it began before a stop, or before this program stood still (interruptions.py)."""
         self._dead_man.end(now)
         self._reset_at = float("-inf")
         self._zeros_until = now + ZEROS
 
     def reset_accepted(self) -> None:
-        """The answer to Request.RESET."""
+        """Takes the answer to Request.RESET."""
         self._e_stopped = False
 
     def command(self, now: float) -> Command | None:
-        """What to send now; None: nothing."""
+        """The command to send now; None: nothing is sent."""
         self._change_speeds(self._speed_keys.look(now))
         held = self.held(now)
         if held is not None:
@@ -139,7 +139,7 @@ class Operator:
         return None if self._e_stopped else held
 
     def message(self, now: float) -> str:
-        """What this program has to say about itself; empty: nothing."""
+        """The program's message about itself; empty if there is none."""
         held = self.held(now)
         if self._e_stopped:
             text = "EMERGENCY STOP requested; no motion until a reset (r, then y)"

@@ -11,20 +11,20 @@ from robot_control.why.diagnosis import CONTROLLER, Facts, Verdict, judge
 WIDTH, HEIGHT = 80, 24
 LABEL = 10
 """columns of the word before each line"""
-MOST_LINES = {"to do": 3, "causes": 3, "answer": 3, "warnings": 2, "limits": 2}
-"""of one label, so that all of them find room"""
+MAX_LINES = {"to do": 3, "causes": 3, "answer": 3, "warnings": 2, "limits": 2}
+"""lines of each label, so that all of them find room"""
 
 
 @dataclass(frozen=True)
 class View:
-    """What is shown beside the facts about the robot."""
+    """The values that are shown beside the facts about the robot."""
 
     keys: KeyMap
     topic: str  # absolute
     own_name: str  # of this node
     chosen: Command  # m/s, rad/s: the speeds of a held key
     requested: Command | None  # what is sent now; None: nothing
-    held: str = ""  # which key, and how
+    held: str = ""  # the held key and the kind of hold
     sent_age: float | None = None  # s since the last command; None: none was sent
     message: str = ""  # of this program
     answer: str = ""  # of the last e-stop or reset
@@ -32,8 +32,8 @@ class View:
 
 
 def render(facts: Facts, view: View, height: int = HEIGHT) -> list[str]:
-    """At most HEIGHT lines of at most WIDTH columns, for a terminal of `height` lines. Where it has
-    fewer, the body is cut, and the foot with the keys of the emergency stop stays, if need be its last line alone.
+    """The screen, at most HEIGHT lines of at most WIDTH columns, for a terminal of `height` lines. In a lower terminal
+    the body is cut. The foot with the keys of the emergency stop stays, if need be its last line alone.
     """
     height = min(height, HEIGHT)
     safety = facts.received()
@@ -52,7 +52,7 @@ def render(facts: Facts, view: View, height: int = HEIGHT) -> list[str]:
         *_wrapped(_headline(facts), "", 2),
     ]
     for label, text in _rows(facts, view):
-        body += _wrapped(text, label, MOST_LINES.get(label, 2))
+        body += _wrapped(text, label, MAX_LINES.get(label, 2))
     body = body[: height - len(foot)]
     body += [""] * (height - len(foot) - len(body))
     return [line[:WIDTH].rstrip() for line in body + foot]
@@ -102,7 +102,7 @@ def _command(facts: Facts, view: View) -> str:
     return f"{own}; also commanding: {', '.join(others) or 'no node'}; {end}"
 
 
-def _wrapped(text: str, label: str, most: int) -> list[str]:
+def _wrapped(text: str, label: str, max_lines: int) -> list[str]:
     width = WIDTH - LABEL if label else WIDTH
-    lines = textwrap.wrap(text, width, max_lines=most, placeholder=" ... (why.py)", break_on_hyphens=False)
+    lines = textwrap.wrap(text, width, max_lines=max_lines, placeholder=" ... (why.py)", break_on_hyphens=False)
     return [f"{label if number == 0 else '':<{LABEL if label else 0}}{line}" for number, line in enumerate(lines)]

@@ -1,4 +1,4 @@
-"""The e-stop and the reset as requests that never delay the keys: a thread calls, the answer is read later."""
+"""Requests the e-stop and the reset without delaying the keys: a thread calls, and the answer is read later."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from robot_control.why.diagnosis import Facts
 PATIENCE = 0.3
 """s for the answer of e_stop_trigger; then `true` goes out on the topic e_stop as well"""
 LATEST = 5.0
-"""s after which a reset that could not be called yet, behind a service that does not answer, is dropped"""
+"""s after which a reset that still waits behind a service without an answer is dropped"""
 AGAIN = 0.5
 """s in which a repeated key is one request"""
 
 
 @dataclass(frozen=True)
 class Answer:
-    """Of a service."""
+    """Answer of a service."""
 
     service: str
-    accepted: bool | None  # None: there was none in time, or no service; the e-stop went out on the topic instead
+    accepted: bool | None  # None: no answer in time, or no service; the e-stop was sent on the topic instead
     text: str
 
 
@@ -34,8 +34,9 @@ VERDICTS = {True: "accepted", False: "REFUSED", None: "sent on the topic e_stop"
 
 
 def in_words(answer: Answer, facts: Facts) -> str:
-    """For the screen. A reset does not take back a level of the topic e_stop that another node published, even if that
-    node has ended: the level may be that of a pressed button. The command for it is named instead.
+    """The answer for the screen. A reset does not take back a level of the topic e_stop that another node published,
+    even after that node has ended. The level may be that of a pressed button; the text names the command to take it
+    back.
     """
     if answer.service != "e_stop_reset":
         return f"emergency stop {VERDICTS[answer.accepted]}: {answer.text}"
@@ -72,7 +73,7 @@ class Services:
         self._wanted.put(("e_stop_trigger", now))
 
     def reset(self) -> None:
-        """Takes back the topic's level, if it was raised here."""
+        """Takes back the topic's level if it was raised here."""
         if self._topic_said_true:
             self._topic.publish(Bool(data=False))
             self._topic_said_true = False
@@ -80,7 +81,7 @@ class Services:
         self._wanted.put(("e_stop_reset", time.monotonic()))
 
     def look(self) -> list[Answer]:
-        """The answers that have come."""
+        """The answers that have arrived."""
         answers = []
         while not self._answers.empty():
             answer = self._answers.get()
@@ -88,7 +89,8 @@ class Services:
                 self._e_stop_at = None
                 answer = answer if answer.accepted else self._e_stop_on_topic(answer.text)
             elif not answer.accepted and not self._topic_said_true:
-                # A restarted safety_monitor does not know it, and holds the topic true for a publisher that is silent.
+                # A restarted safety_monitor holds the topic true for a publisher that it does not know and that is
+                # silent.
                 self._topic.publish(Bool(data=False))
             answers.append(answer)
         if self._e_stop_at is not None and time.monotonic() - self._e_stop_at > PATIENCE:

@@ -1,6 +1,6 @@
-"""One act per press of a key, on a terminal that reports no releases. Pure: time is an argument.
+"""Lets a key act once per press, on a terminal that reports no releases. It reads no clock: time is an argument.
 
-first byte                       acts at once: no byte of this key within LONGEST_DELAY before it
+first byte                       acts at once: no byte of this key within MAX_DELAY before it
 byte after SLOWEST_REPEAT        a tap or the keyboard's first repeat; it acts after SLOWEST_REPEAT, unless a
                                  further byte comes within that time and shows that the key repeats
 byte sooner than SLOWEST_REPEAT  a repeat, which does not act
@@ -8,12 +8,12 @@ byte sooner than SLOWEST_REPEAT  a repeat, which does not act
 
 from robot_control.teleop.dead_man import SLOWEST_REPEAT, HoldParameters
 
-LONGEST_DELAY = HoldParameters.first_hold
+MAX_DELAY = HoldParameters.first_hold
 """s until a keyboard's first repeat"""
 
 
 class SinglePress:
-    """Of all keys that act once per press."""
+    """All keys that act once per press."""
 
     def __init__(self) -> None:
         self._key = ""
@@ -21,17 +21,17 @@ class SinglePress:
         self._undecided = False  # the last byte may be a tap
 
     def press(self, key: str, now: float, *, repeat: bool = False) -> list[str]:
-        """A byte of `key` came; `repeat`: the terminal reports it as a repeat. The keys that act now."""
+        """The keys that act now, after a byte of `key`; `repeat`: the terminal reports it as a repeat."""
         acts = self.look(now)
         gap = now - self._last_byte if key == self._key else float("inf")
         if key != self._key and self._undecided:
             acts.append(self._key)
         self._key, self._last_byte = key, now
-        self._undecided = not repeat and SLOWEST_REPEAT < gap <= LONGEST_DELAY
-        return [*acts, key] if gap > LONGEST_DELAY and not repeat else acts
+        self._undecided = not repeat and SLOWEST_REPEAT < gap <= MAX_DELAY
+        return [*acts, key] if gap > MAX_DELAY and not repeat else acts
 
     def release(self, key: str) -> list[str]:
-        """The terminal reports that `key` was released: its next byte is another press. The keys that act now."""
+        """The keys that act now, after the terminal reported the release of `key`: its next byte is another press."""
         if key != self._key:
             return []
         acts = [key] if self._undecided else []
@@ -39,7 +39,7 @@ class SinglePress:
         return acts
 
     def look(self, now: float) -> list[str]:
-        """The keys that act now, since no repeat has followed."""
+        """The keys that act now, because no repeat has followed."""
         if not self._undecided or now - self._last_byte <= SLOWEST_REPEAT:
             return []
         self._undecided = False

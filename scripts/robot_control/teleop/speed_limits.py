@@ -1,5 +1,5 @@
-"""The robot's max_linear_speed, max_angular_speed and min_linear_speed: those in force, which diff_drive_controller
-publishes latched; until they are received, those of the installed parameter file.
+"""The robot's max_linear_speed, max_angular_speed and min_linear_speed, which diff_drive_controller publishes latched.
+Until they are received, those of the installed parameter file are used.
 """
 
 from pathlib import Path
@@ -13,14 +13,14 @@ from robot_control.teleop.operator import Limits
 
 
 class SpeedLimits:
-    """The newest ones."""
+    """The newest limits."""
 
     def __init__(self) -> None:
         self._defaults = yaml.safe_load(Path(share_file(DEFAULTS)).read_text())[CONTROLLER]
         self._live = LiveParameters()
 
     def newest(self) -> Limits:
-        """Where min_linear_speed is left out, the robot is as fast backwards as forwards."""
+        """The limits; without min_linear_speed the robot is as fast backwards as forwards."""
         linear, angular = self._value("max_linear_speed"), self._value("max_angular_speed")
         return Limits(linear, angular, reverse=min(linear, -self._value("min_linear_speed", -linear)))
 

@@ -1,10 +1,10 @@
-"""A terminal that reports every key at once and shows one screen; it is as before after every end of the program.
+"""A terminal that reports every key at once and shows one screen; every end of the program restores it.
 
 The terminal is opened a second time, non-blocking: a stalled link then delays no loop, and the shell's own descriptors
-stay as they are. What the program prints meanwhile goes to a file, and to the terminal at the end.
+stay as they are. The program's other output goes to a file, and to the terminal at the end.
 
 An ordinary end restores the terminal here. A process in a group of its own (`_guard`) waits for the end of the program
-and restores what the program could not: after SIGKILL or a crash all, and the screen of a terminal that stalls.
+and restores the rest. After SIGKILL or a crash that is everything, and on a stalled terminal the screen.
 """
 
 from __future__ import annotations
@@ -33,15 +33,15 @@ BEGIN = (
 )
 """alternate screen, no cursor, modes saved and set (xterm's control sequences)"""
 END = END_RELEASES + b"\x1b[?" + PASTE + b"l\x1b[?" + MODES + b"r\x1b[?25h\x1b[?1049l"
-"""modes as before; where the terminal saves none, off"""
-LONGEST_READ = 4096
+"""modes as before; off if the terminal saves none"""
+MAX_READ = 4096
 """bytes"""
 SETTINGS, ALL = b"settings", b"all"
-"""what the program has restored, as its guard reads it"""
+"""parts that the program has restored, as reported to its guard"""
 
 
 class NoTerminalError(RuntimeError):
-    """The standard input is no terminal, one without control sequences, or it is gone."""
+    """The standard input is no terminal, or one without control sequences, or it is gone."""
 
 
 def undelayed(settings: list[Any]) -> list[Any]:
@@ -113,7 +113,7 @@ class Terminal:
             shutil.copyfileobj(self._printed, output)
 
     def read(self, timeout: float) -> bytes:
-        """What was typed, as soon as it was, after `timeout` s nothing.
+        """Bytes that were typed, without delay; empty after `timeout` s.
 
         Raises:
             NoTerminalError: the terminal is gone.
@@ -121,7 +121,7 @@ class Terminal:
         if not select.select([self._descriptor], [], [], timeout)[0]:
             return b""
         try:
-            data = os.read(self._descriptor, LONGEST_READ)
+            data = os.read(self._descriptor, MAX_READ)
         except BlockingIOError:
             return b""
         except OSError as error:
@@ -131,7 +131,7 @@ class Terminal:
         return data
 
     def report_releases(self) -> None:
-        """After the terminal said that it can."""
+        """Switches reports of releases on, after the terminal has answered that it can send them."""
         self.write(REPORT_RELEASES)
 
     def size(self) -> tuple[int, int]:
@@ -143,7 +143,7 @@ class Terminal:
         return (size.columns, size.lines) if size.columns and size.lines else (80, 24)
 
     def draw(self, lines: Sequence[str]) -> None:
-        """The screen, from its first line on; not at all while the one before is still on its way."""
+        """Draws the screen from its first line on; it is skipped while the one before is still being written."""
         columns, height = self.size()
         if not self._flush():
             return
@@ -151,7 +151,7 @@ class Terminal:
         self.write(b"\x1b[H" + b"\r\n".join(shown) + b"\x1b[J")
 
     def write(self, data: bytes) -> None:
-        """Without waiting; what does not go out now does at the next call."""
+        """Writes without waiting; the rest is written at the next call."""
         self._unwritten += data
         self._flush()
 
@@ -179,7 +179,7 @@ def _restore_settings(descriptor: int, settings: list[Any]) -> None:
 
 
 def _restore_screen(descriptor: int) -> bool:
-    """False: the terminal takes no bytes now."""
+    """False if the terminal takes no bytes now."""
     try:
         return os.write(descriptor, END) == len(END)
     except BlockingIOError:
@@ -189,7 +189,7 @@ def _restore_screen(descriptor: int) -> bool:
 
 
 def _guard(pipe: int, descriptor: int, settings: list[Any]) -> None:
-    """Another process: restores at the end of the program what that has not."""
+    """Another process, which restores at the end of the program what is not restored yet."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGTTOU, signal.SIGTSTP):
         signal.signal(number, signal.SIG_IGN)
     try:

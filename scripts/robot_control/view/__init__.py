@@ -1,1 +1,1 @@
-"""view_markers.py: what RViz shows beside model and odometry."""
+"""view_markers.py shows markers in RViz beside model and odometry."""

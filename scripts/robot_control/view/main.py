@@ -37,7 +37,7 @@ class View:
         rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1)
 
     def draw(self) -> None:
-        """Nothing before the first odometry: its frames are those of the markers."""
+        """Draws nothing before the first odometry, because the markers use its frames."""
         odometry = self._odometry
         if odometry is None:
             return
@@ -91,7 +91,7 @@ class View:
 
 
 def _marker(frame: str, number: int, kind: int, colour: tuple[float, float, float]) -> Marker:
-    """In the robot's axes; a stamp of zero: where the robot is now."""
+    """A marker in the robot's axes; a stamp of zero stands for the robot's present place."""
     marker = Marker(id=number, type=kind, action=Marker.ADD)
     marker.header.frame_id, marker.ns = frame, "robot_control"
     marker.pose.orientation.w = 1.0

@@ -1,4 +1,4 @@
-"""What is shown: texts, wheel forces, the path driven. Pure."""
+"""Texts, wheel forces and the path driven, as RViz shows them."""
 
 from __future__ import annotations
 
@@ -11,30 +11,30 @@ from robot_control.safety.states import DRIVABLE
 
 WIDTH = 60
 """columns of the text above the robot"""
-MOST_LINES = 6
+MAX_LINES = 6
 STEP = 0.05
 """m between two points of the path driven"""
-MOST_POINTS = 5000
-"""then every other one is dropped"""
+MAX_POINTS = 5000
+"""points; beyond that, every other one is dropped"""
 METRES_PER_NEWTON = 0.02
 """length of an arrow"""
 
 Point = tuple[float, float, float]
 IDLE = {"holding", "timed_out", "no_command"}
-"""reasons of a robot that stands because no motion is asked for (kCommandReasonNames)"""
+"""reasons of a robot that stands because no motion is requested (kCommandReasonNames)"""
 GREEN, AMBER, RED = (0.3, 0.9, 0.4), (1.0, 0.75, 0.2), (1.0, 0.3, 0.25)
 
 
 @dataclass(frozen=True)
 class Wheel:
-    """Where a wheel is, in base axes."""
+    """Place of a wheel in base axes."""
 
     position: Point  # m, its centre
     radius: float  # m
 
 
 def force_arrows(wheels: dict[str, Wheel], names: Sequence[str], efforts: Sequence[float]) -> list[tuple[Point, Point]]:
-    """Begin and end, in base axes, of the force that each wheel's torque is at the ground."""
+    """Begin and end, in base axes, of the force at the ground that each wheel's torque makes."""
     arrows = []
     for name, effort in zip(names, efforts, strict=False):
         wheel = wheels.get(name)
@@ -47,13 +47,13 @@ def force_arrows(wheels: dict[str, Wheel], names: Sequence[str], efforts: Sequen
 
 
 def limits_of(reasons: Sequence[str], sentences: Sequence[str]) -> list[str]:
-    """The sentences about what limits a motion; a robot of which none is asked for is not limited."""
+    """Sentences about the limits of a motion; a robot without a requested motion has none."""
     return [text for name, text in zip(reasons, sentences, strict=False) if name not in IDLE]
 
 
 @dataclass(frozen=True)
 class Text:
-    """Above the robot."""
+    """The text above the robot."""
 
     text: str
     colour: tuple[float, float, float]
@@ -71,7 +71,7 @@ def status_text(
         lines += [f"limited: {reason}" for reason in reasons]
     wrapped = [part for line in lines for part in textwrap.wrap(line, WIDTH)]
     colour = RED if state not in DRIVABLE else AMBER if len(lines) > 1 else GREEN
-    return Text("\n".join(wrapped[:MOST_LINES]), colour)
+    return Text("\n".join(wrapped[:MAX_LINES]), colour)
 
 
 @dataclass
@@ -82,7 +82,7 @@ class Trail:
     _step: float = STEP
 
     def add(self, x: float, y: float) -> bool:
-        """True if it grew. A jump of more than a metre (the odometry was reset) begins another one."""
+        """True if it grew. A jump of more than a metre (after a reset of the odometry) begins another path."""
         if self.points:
             distance = math.dist(self.points[-1][:2], (x, y))
             if distance < self._step:
@@ -90,6 +90,6 @@ class Trail:
             if distance > 1.0:
                 self.points, self._step = [], STEP
         self.points.append((x, y, 0.0))
-        if len(self.points) > MOST_POINTS:
+        if len(self.points) > MAX_POINTS:
             self.points, self._step = self.points[::2], 2 * self._step
         return True

@@ -1,7 +1,7 @@
 """state_publisher.py: waits for robot_description, then becomes robot_state_publisher.
 
-Debian's robot_state_publisher ends where robot_description is not there yet, and warns about every root link with an
-inertia, which moves no transform. It is given the description without it, as a parameter of its own.
+Debian's robot_state_publisher ends if robot_description is not set yet. It also warns about every root link with an
+inertia, which moves no transform. It is given the description without that inertia, as a parameter of its own.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ PACKAGE = "ros-robot-state-publisher"
 
 
 def without_root_inertia(urdf: str) -> str:
-    """The same robot for readers of its joints alone. A text that is no URDF is returned as it is."""
+    """The same robot for readers of its joints alone. A text that is no URDF is returned unchanged."""
     try:
         robot = ET.fromstring(urdf)
     except ET.ParseError:
@@ -52,7 +52,7 @@ def program() -> str:
 
 
 def await_description() -> str:
-    """Empty: a signal came first. Raises ServerValueError: it is no text."""
+    """The description; empty if a signal came first. Raises ServerValueError: it is no text."""
     with ended_by_signals() as signals:
         while signals.going_on():
             description = server_description()

@@ -22,7 +22,7 @@ def _wheel(wheel: dict[str, Any]) -> Wheel:
 
 
 def running_wheels() -> dict[str, Wheel]:
-    """Of robot_description, read as the robot's nodes read it; none while it is not there, or cannot be driven."""
+    """The wheels of robot_description, read as the robot's nodes read it; none if it is missing or cannot be driven."""
     try:
         robot = {key: value for key, value in server_tree("robot").items() if key != "urdf"}
         with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:

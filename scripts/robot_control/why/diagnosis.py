@@ -1,4 +1,4 @@
-"""Why does it not move? From what is known of a robot, the one answer; no ROS in here."""
+"""Derives the one reason why a robot does not move from its known state; no ROS in here."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -11,7 +11,7 @@ PLANT, ESTIMATOR, CONTROLLER, MONITOR = "mujoco_plant", "state_estimator", "diff
 LOOP = (PLANT, ESTIMATOR, CONTROLLER, MONITOR)
 
 SILENCE = 3.0
-"""s; every node reports once per second: after three it is not there, or hangs."""
+"""s; every node reports once per second: after three it is absent, or hangs."""
 
 MOVING = 0.01
 """m/s and rad/s; slower is standing."""
@@ -19,30 +19,30 @@ MOVING = 0.01
 
 @dataclass(frozen=True)
 class Cause:
-    """What stopped the robot."""
+    """A cause that stopped the robot."""
 
     name: str
     sentence: str
-    remedy: str = ""  # before the reset
+    remedy: str = ""  # action before the reset
     actor: str = ""  # operator, integrator, technician
     detail: str = ""  # measured value and limit
-    first: bool = False  # it came first
-    active: bool = False  # it is still true
+    first: bool = False  # true if it came first
+    active: bool = False  # true if it still holds
 
 
 @dataclass(frozen=True)
 class Safety:
-    """What safety_monitor said last."""
+    """The last message of safety_monitor."""
 
     state: str  # INIT, READY, DRIVE, STOPPING, STOPPED, FAULT
     permit: str  # brake, ramp, drive
     held: float = 0.0  # s in this state
-    age: float = 0.0  # s since it was said
+    age: float = 0.0  # s since it was received
     causes: tuple[Cause, ...] = ()
     warnings: tuple[str, ...] = ()
     speed_limit: float = float("inf")  # m/s
-    missing: tuple[str, ...] = ()  # nodes, or what of them was not seen
-    refusal: tuple[str, ...] = ()  # of the last reset
+    missing: tuple[str, ...] = ()  # missing nodes, or their missing data
+    refusal: tuple[str, ...] = ()  # reasons why the last reset was refused
     awaiting_zero: bool = False  # INIT ends with a zero request, or with silence on cmd_vel
 
 
@@ -62,7 +62,7 @@ class Report:
 
 @dataclass(frozen=True)
 class Facts:
-    """Everything that the answer depends on."""
+    """All facts on which the answer depends."""
 
     master: str  # URI
     master_answers: bool = True
@@ -78,7 +78,7 @@ class Facts:
     command_timeout: float = 0.0  # s, cmd_vel_timeout of the running controller; 0: off, or not known
 
     def there(self, node: str) -> bool:
-        """Its last report is recent."""
+        """True if the last report of the node is recent."""
         report = self.reports.get(node)
         return report is not None and report.age < SILENCE
 
@@ -88,11 +88,11 @@ class Facts:
         return self.safety if fresh else None
 
     def value(self, node: str, key: str) -> str:
-        """Of a node that reports; else empty."""
+        """A value of a node that reports; else empty."""
         return self.reports[node].values.get(key, "") if self.there(node) else ""
 
     def reasons(self, node: str, whose: str) -> dict[str, str]:
-        """Likewise."""
+        """The reasons of a node that reports, by name; else empty."""
         return self.reports[node].reasons(whose) if self.there(node) else {}
 
     def remedies(self, node: str, whose: str) -> dict[str, str]:
@@ -100,12 +100,12 @@ class Facts:
         return self.reasons(node, f"{whose} remedy")
 
     def commanders(self) -> tuple[str, ...]:
-        """Nodes that send commands: as the controller reports, where it runs; else by registrations."""
+        """Nodes that send commands, as the controller reports; without it, those that are registered."""
         reported = self.value(CONTROLLER, "senders")
         return tuple(reported.split(", ")) if reported else self.senders
 
     def sources(self) -> dict[str, str]:
-        """Where the robot has a list of command sources: what each does, by priority; else empty."""
+        """The state of each command source, by priority; empty if the robot has no list of them."""
         text = self.value(CONTROLLER, "sources")
         return dict(part.split(": ", 1) for part in text.split(", ")) if text else {}
 
@@ -117,23 +117,23 @@ class Facts:
 class Verdict(Enum):
     """The answer in one word."""
 
-    STOPPED = "stopped"  # something stands against motion
-    IDLE = "idle"  # it may move, and no velocity command is being received
+    STOPPED = "stopped"  # something prevents motion
+    IDLE = "idle"  # it may move, but no velocity command is received
     MOVING = "moving"
 
 
 @dataclass(frozen=True)
 class Answer:
-    """What a user wants to know first."""
+    """The answer for a user."""
 
     verdict: Verdict
     headline: str
-    actions: tuple[tuple[str, str], ...] = ()  # the role that has to act ("" where any may), what to do
+    actions: tuple[tuple[str, str], ...] = ()  # the role that has to act ("" if any may), and the action
     commands: tuple[str, ...] = ()  # lines for a shell
 
 
 def judge(facts: Facts) -> Answer:
-    """The answer: of all that stands against motion, what has to be repaired first."""
+    """Chooses from all that prevents motion what has to be repaired first."""
     for look in (_no_nodes, _paused, _stopped, _gate, _no_path, _locked, _controller):
         answer = look(facts)
         if answer is not None:
@@ -142,7 +142,7 @@ def judge(facts: Facts) -> Answer:
 
 
 def missing_nodes(facts: Facts) -> tuple[str, ...]:
-    """Nodes of the loop that are not there; the monitor, which sees their locks, knows it sooner than reports do."""
+    """Missing nodes of the loop; the monitor, which checks their locks, detects them earlier than reports do."""
     safety = facts.received()
     if safety is None:
         return tuple(node for node in LOOP if not facts.there(node))
@@ -264,7 +264,7 @@ def _commands(facts: Facts, causes: list[Cause], absent: tuple[str, ...]) -> Ite
 
 
 def _gate(facts: Facts) -> Answer | None:
-    # Permit and command report what follows from them; a report is a second old, a permit is not.
+    # These reasons of permit and command only follow from others; a report is a second old, a permit is not.
     theirs = {"permit_brake", "controller_brake", "first_tick", "command_held"}
     reasons = {name: text for name, text in facts.reasons(PLANT, "gate").items() if name not in theirs}
     if facts.value(PLANT, "gate_verdict") != "brake" or not reasons:

@@ -7,7 +7,7 @@ from robot_control.why.diagnosis import LOOP, Cause, Safety
 
 
 def safety_of(status: SafetyStatus, held: float, age: float) -> Safety:
-    """What a message says; `held` s in its state, `age` s since it was received."""
+    """The content of a message; `held` s in its state, `age` s since it was received."""
     causes = zip(
         status.causes, status.sentences, status.remedies_before_reset, status.actors, status.details, strict=True
     )
@@ -35,7 +35,7 @@ def below(namespace: str, name: str) -> str:
 
 
 def other_robots(namespace: str, names: Iterable[str]) -> tuple[str, ...]:
-    """Namespaces beside this one in which a node of the loop reports; `names` absolute."""
+    """Other namespaces in which a node of the loop reports; `names` are absolute."""
     found = {name.rpartition("/")[0] or "/" for name in names if name.rpartition("/")[2] in LOOP}
     return tuple(sorted(found - {namespace.rstrip("/") or "/"}))
 

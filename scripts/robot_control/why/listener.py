@@ -1,4 +1,4 @@
-"""What the robot and the master say, as facts for a diagnosis."""
+"""Receives the messages of the robot and the answers of the master, as facts for a diagnosis."""
 
 import time
 from collections.abc import Sequence
@@ -33,7 +33,7 @@ class Listener:
         self._limited: tuple[float, float, float] | None = None  # m/s, rad/s, when
         self._measured: tuple[float, float, float] | None = None
         self._parameters = LiveParameters()
-        self.unknown_to_master = 0  # how often in a row the master did not know this program
+        self.unknown_to_master = 0  # how often in a row the master did not list this program
         rospy.Subscriber("safety_status", SafetyStatus, self._receive_status)
         rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive_diagnostics)
         rospy.Subscriber("cmd_vel_out", TwistStamped, self._receive_limited, queue_size=1)
@@ -54,7 +54,7 @@ class Listener:
         self._measured = (message.twist.twist.linear.x, message.twist.twist.angular.z, time.monotonic())
 
     def query_master(self) -> None:
-        """At most every MASTER_PERIOD; waits up to ros_master.TIMEOUT."""
+        """Queries the master at most every MASTER_PERIOD; waits up to ros_master.TIMEOUT."""
         now = time.monotonic()
         if now - self._queried_at < MASTER_PERIOD:
             return
@@ -65,12 +65,12 @@ class Listener:
         self.unknown_to_master = 0 if known else self.unknown_to_master + 1
 
     def complete(self) -> bool:
-        """Every node of the loop has reported."""
+        """True if every node of the loop has reported."""
         facts = self.facts()
         return facts.safety is not None and all(facts.there(node) for node in LOOP)
 
     def facts(self) -> Facts:
-        """As of now."""
+        """The present facts."""
         now = time.monotonic()
         state = self._state or ([], [], [])
         reports = {name: Report(last.message, last.values, now - at) for name, (at, last) in self._reports.items()}

@@ -28,7 +28,7 @@ def _look_of(stream: TextIO) -> Look:
 
 
 class Screen:
-    """Draws over itself on a terminal; elsewhere prints what changed."""
+    """Overwrites itself on a terminal; elsewhere it prints the changes."""
 
     def __init__(self) -> None:
         self._terminal = sys.stdout.isatty()
@@ -54,7 +54,7 @@ def _print_once(facts: Facts) -> int:
 
 
 def _master_is_there(screen: Screen | None) -> bool:
-    """Waits for it and says so on `screen`; without a screen prints that there is none."""
+    """Waits for the master and reports that on `screen`; without a screen it prints that there is none."""
     namespace = rosgraph.names.get_ros_namespace()
     for argument in sys.argv[1:]:
         namespace = argument.removeprefix("__ns:=") if argument.startswith("__ns:=") else namespace
@@ -82,19 +82,19 @@ def _listen() -> Listener:
 
 
 def answer_once() -> int:
-    """One answer on stdout; the exit code."""
+    """Prints one answer on stdout and returns the exit code."""
     return _print_once(_listen().facts()) if _master_is_there(None) else 1
 
 
 def answer_live() -> int:
-    """Until interrupted."""
+    """Shows answers until interrupted."""
     screen = Screen()
     _master_is_there(screen)
     listener = _listen()
     while not rospy.is_shutdown():
         listener.query_master()
         screen.show(listener.facts())
-        if listener.unknown_to_master > 1:  # another master: this program is no part of its graph
+        if listener.unknown_to_master > 1:  # another master was started: this program is no part of its graph
             os.execv(sys.executable, [sys.executable, *sys.argv])
         time.sleep(FRAME)
     return 0

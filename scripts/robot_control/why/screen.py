@@ -33,11 +33,11 @@ BOLD = "1"
 
 @dataclass(frozen=True)
 class Look:
-    """How the answer is shown."""
+    """Format of the answer."""
 
     width: int = 80  # columns; no line is longer
     colour: bool = False  # with escape sequences, for a terminal
-    times: bool = True  # with what changes by itself, speeds and seconds; without, only another answer looks different
+    times: bool = True  # with values that change by themselves, speeds and seconds
 
     def paint(self, text: str, style: str) -> str:
         """The text in SGR `style`."""

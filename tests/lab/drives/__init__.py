@@ -1,1 +1,1 @@
-"""Drives without faults: what they reach, and that no safety condition reports one."""
+"""Drives without faults: their figures, and the claim that no safety condition reports a fault."""

@@ -1,4 +1,4 @@
-"""How well a robot does what its limits promise, measured on the simulated machine.
+"""Measures on the simulated machine how well a robot keeps the promises of its limits.
 
 Each function drives robots of robot_corpus.py and gives `Figure`s: a value and the bound it must not exceed.
 """
@@ -21,12 +21,12 @@ from lab.robot_corpus import DIFFBOT, urdf_of
 Array = NDArray[np.float64]
 
 REST = 1.0  # s at rest before a drive
-BAND = 0.01  # of the speed: who stays within has settled
+BAND = 0.01  # share of the speed; a speed within it has settled
 SLOPES = (0.0, radians(5), -radians(5))  # uphill positive
 GRAVITY = 9.81  # m/s²
 CASTER = -0.25  # m, of diffbot's caster ahead of its axle
 RIPPLE_START, RIPPLE_TIME, RIPPLE_TURN = 2.0, 4.0, 0.2  # s, s, rad/s
-WEAK_SPEED, WEAK_TORQUE = 0.8, 0.6  # of what a drive would take of its wheels: what saturated ones have
+WEAK_SPEED, WEAK_TORQUE = 0.8, 0.6  # shares of a drive's speed and torque that saturated wheels have
 
 
 @dataclass(frozen=True)
@@ -40,13 +40,13 @@ class Figure:
 
     @property
     def good(self) -> bool:
-        """Within its bound; NaN is not."""
+        """True within its bound; NaN is not."""
         return abs(self.value) <= self.bound
 
 
 def make(robot: str, params: Mapping[str, Any] | None = None) -> ClosedLoop:
-    """At rest for `REST` seconds, `params` laid over the defaults; sensors err as their data sheets say: these are
-    figures of the control law.
+    """A loop at rest for `REST` seconds, `params` laid over the defaults. Sensors err as their data sheets say, because
+    the figures are those of the control law.
     """
     plant = {"sensor_errors": "data_sheet", **(params or {}).get("mujoco_plant", {})}
     loop = ClosedLoop({**(params or {}), "mujoco_plant": plant}, urdf=urdf_of(robot))
@@ -60,7 +60,7 @@ def mass_of(robot: str) -> float:
 
 
 def profile(log: Log) -> Array:
-    """m/s, what an ideal robot does at each sample: the torque of cycle k acts over [t_k+1, t_k+2)."""
+    """m/s, speed of an ideal robot at each sample: the torque of cycle k acts over [t_k+1, t_k+2)."""
     return np.concatenate([[0.0, 0.0], log["limited_linear"][:-2]])
 
 
@@ -76,8 +76,8 @@ class Straight:
 
     rms: float
     overshoot: float
-    swing: float  # back to the other side, after it
-    late: float  # s until it has settled after its profile has
+    swing: float  # swing to the other side after it
+    late: float  # s from the end of its profile until it has settled
 
 
 def straight(robot: str, speed: float, payload: float = 0.0, params: Mapping[str, Any] | None = None) -> Straight:
@@ -91,8 +91,8 @@ def straight(robot: str, speed: float, payload: float = 0.0, params: Mapping[str
     size = abs(speed)
     half = len(true) // 2
     over, back, late = [], [], []
-    for part, target, way in ((slice(0, half), size, 1), (slice(half, None), 0.0, -1)):
-        beyond = way * (true[part] - target) / size
+    for part, target, sign in ((slice(0, half), size, 1), (slice(half, None), 0.0, -1)):
+        beyond = sign * (true[part] - target) / size
         over.append(float(beyond.max()))
         back.append(-float(beyond[int(beyond.argmax()) :].min()))
         late.append(settled(true[part], target, BAND * size) - settled(wanted[part], target, BAND * size))
@@ -110,9 +110,9 @@ def stop_error(robot: str, speed: float, slope: float, *, silence: bool) -> tupl
     loop.run(2.0, (speed, 0.0))
     log = loop.run(3.0, None if silence else (0.0, 0.0))
     start = int(np.flatnonzero(log["limited_linear"] != speed)[0])
-    way = float(np.hypot(log["truth_x"][-1] - log["truth_x"][start], log["truth_y"][-1] - log["truth_y"][start]))
+    distance = float(np.hypot(log["truth_x"][-1] - log["truth_x"][start], log["truth_y"][-1] - log["truth_y"][start]))
     predicted = loop.stop_distance(speed, emergency=silence)
-    return way - predicted, max(0.03 * predicted, 0.005)
+    return distance - predicted, max(0.03 * predicted, 0.005)
 
 
 def rims(loop: ClosedLoop, linear: float, angular: float) -> float:
@@ -123,19 +123,19 @@ def rims(loop: ClosedLoop, linear: float, angular: float) -> float:
 
 
 def off_the_curve(log: Log, linear: float, angular: float) -> float:
-    """The driven radius, from turn and way over all of the log, against the commanded: part of it."""
-    way, turn = np.sum(log["truth_linear"]), np.sum(log["truth_angular"])
-    return float(way / turn) / (linear / angular) - 1
+    """Relative error of the driven radius, from turn and way over all of the log, against the commanded one."""
+    distance, turn = np.sum(log["truth_linear"]), np.sum(log["truth_angular"])
+    return float(distance / turn) / (linear / angular) - 1
 
 
 def scrubs(loop: ClosedLoop) -> bool:
-    """It has wheels behind each other: how it turns is the ground's doing as much as theirs."""
+    """True if it has wheels behind each other: its turning then depends on the ground as much as on the wheels."""
     return len(loop.robot["wheels"]) > 2
 
 
 def fast_curve(robot: str, linear: float, angular: float) -> float:
-    """Part of the commanded radius by which a curve that is too fast for the wheels differs; of skid steers, part of
-    the radius of the fastest curve that is not.
+    """Relative error of the radius in a curve that is too fast for the wheels. Skid steers are compared with the radius
+    of the fastest curve that is not too fast.
 
     Raises:
         RuntimeError: it was not too fast.
@@ -151,8 +151,8 @@ def fast_curve(robot: str, linear: float, angular: float) -> float:
 
 
 def weak_curve(robot: str, linear: float, angular: float) -> float:
-    """The same of one whose ramp asks for more torque than its wheels have, against one that they can do. Not for skid
-    steers: what turning takes of them is no matter of the ramp.
+    """Relative error of the radius in a curve whose ramp asks for more torque than the wheels have, against one that
+    they can do. It does not apply to skid steers: the torque of their turning does not depend on the ramp.
     """
     full = make(robot)
     log = full.run(3.0, (linear, angular))
@@ -165,14 +165,12 @@ def weak_curve(robot: str, linear: float, angular: float) -> float:
 
 
 def wheel_column(loop: ClosedLoop, log: Log, name: str) -> Array:
-    """Of every wheel, shape (wheels, cycles)."""
+    """A column of every wheel, shape (wheels, cycles)."""
     return np.array([log[f"{wheel['joint']}_{name}"] for wheel in loop.robot["wheels"]])
 
 
 def standstill(robot: str) -> tuple[float, float]:
-    """Torque's RMS [N·m] about its mean on the level, and the way [m] in 20 s on a slope, hand-over to the brake
-    included.
-    """
+    """RMS of the torque [N·m] about its mean on the level, and the way [m] in 20 s on a slope, hand-over included."""
     level = make(robot)
     level.run(1.5, (0.3, 0.0))
     level.run(1.5, (0.0, 0.0))
@@ -181,12 +179,12 @@ def standstill(robot: str) -> tuple[float, float]:
     slope.run(1.5, (0.3, 0.0))
     slope.run(1.0, (0.0, 0.0))
     log = slope.run(20.0, (0.0, 0.0))
-    way = np.hypot(log["truth_x"] - log["truth_x"][0], log["truth_y"] - log["truth_y"][0])
-    return float(torque.std(axis=1).max()), float(way.max())
+    distance = np.hypot(log["truth_x"] - log["truth_x"][0], log["truth_y"] - log["truth_y"][0])
+    return float(torque.std(axis=1).max()), float(distance.max())
 
 
 def released(robot: str, speed: float) -> tuple[float, float]:
-    """Braked for some cycles at `speed` [m/s], for want of commands, and released.
+    """Brakes for some cycles at `speed` [m/s] for want of commands, and releases the brake.
 
     Returns:
         By how much it still slows down after the release, part of the speed; the largest torque then, part of the
@@ -213,7 +211,7 @@ def released(robot: str, speed: float) -> tuple[float, float]:
 def lifted(robot: str) -> float:
     """rad/s by which a wheel is off its target while a push lifts the robot onto its caster.
 
-    It carries just more than what the wheels do: the robot stands up slowly, its wheels 10 mm above the ground.
+    The push carries just more than the wheels do: the robot stands up slowly, its wheels 10 mm above the ground.
     """
     description = ClosedLoop(urdf=urdf_of(robot)).robot
     centre, caster = float(description["centre_of_gravity"][0]), CASTER
@@ -229,7 +227,7 @@ def lifted(robot: str) -> float:
 
 
 def coarse(counts: int) -> dict[str, Any]:
-    """Parameters of an encoder of `counts` a turn, which the estimator knows."""
+    """Parameters of an encoder of `counts` a turn, which are known to the estimator."""
     return {
         "mujoco_plant": {"encoder_resolution": counts},
         "state_estimator": {"encoder_noise": 2 * np.pi / counts / 12**0.5},
@@ -238,7 +236,7 @@ def coarse(counts: int) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Steady:
-    """Of `RIPPLE_TIME` in a steady curve."""
+    """Means over `RIPPLE_TIME` in a steady curve."""
 
     ripple: float  # RMS of the wheels' torque about its mean, part of its limit, the worst wheel's
     off: float  # mean linear speed, part of the commanded
@@ -255,8 +253,8 @@ def steady_curve(robot: str, counts: int, linear: float) -> Steady:
 
 
 def of_the_peer() -> tuple[float, float]:
-    """The two drives of diff_drive_controller's own test, with its robot's radius and separation: 10 s at 0.1 m/s, and
-    10 s at π/10 rad/s; then a stop.
+    """Makes the two drives of diff_drive_controller's own test: 10 s at 0.1 m/s, and 10 s at π/10 rad/s; then a stop.
+    The robot has that test's radius and separation.
 
     Returns:
         Way less 1 m [m], turn less half a turn [rad].
@@ -274,7 +272,7 @@ def of_the_peer() -> tuple[float, float]:
     start = ahead.run(REST, (0.0, 0.0))
     ahead.run(10.0, (0.1, 0.0))
     end = ahead.run(2.0, (0.0, 0.0))
-    way = float(np.hypot(end["truth_x"][-1] - start["truth_x"][-1], end["truth_y"][-1] - start["truth_y"][-1]))
+    distance = float(np.hypot(end["truth_x"][-1] - start["truth_x"][-1], end["truth_y"][-1] - start["truth_y"][-1]))
     logs = [around.run(10.0, (0.0, np.pi / 10)), around.run(2.0, (0.0, 0.0))]
     yaw = np.unwrap(np.concatenate([log["truth_yaw"] for log in logs]))
-    return way - 1.0, float(yaw[-1] - yaw[0]) - np.pi
+    return distance - 1.0, float(yaw[-1] - yaw[0]) - np.pi

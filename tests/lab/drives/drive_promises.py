@@ -1,6 +1,6 @@
-"""What the drive promises under default limits, robot by robot, each with its figure: `scripts/bench drive`.
+"""The promises of the drive under default limits, robot by robot, each with its figure: `scripts/bench drive`.
 
-The bounds are those of the project's requirements; where a figure has another origin, it stands beside it.
+The bounds are those of the project's requirements; a figure from another source names it beside it.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def straight(robot: str) -> list[Figure]:
 
 
 def curves(robot: str) -> list[Figure]:
-    """Wheels that are too slow for a curve, or too weak for its ramp."""
+    """Curves for which the wheels are too slow, or too weak during the ramp."""
     fast = [measured.fast_curve(robot, *curve) for curve in CURVES]
     figures = [Figure("radius, wheel too slow", 100 * max(map(abs, fast)), 2, "%")]
     if not measured.scrubs(measured.make(robot)):
@@ -47,7 +47,7 @@ def curves(robot: str) -> list[Figure]:
 
 
 def stops(robot: str) -> list[Figure]:
-    """From each speed, both directions, up, down and level: the one that used most of what is allowed."""
+    """Stops from each speed, in both directions, up, down and level; the figure is the one nearest to its bound."""
     speeds = SPEEDS if robot == DIFFBOT else (0.1, FULL)
     figures = []
     for name, silence in (("stop distance", False), ("stop distance, silence", True)):
@@ -63,12 +63,12 @@ def stops(robot: str) -> list[Figure]:
 
 
 def rest(robot: str) -> list[Figure]:
-    """Quiet at standstill, holding on a slope, steady in the air, no jump after a brake."""
-    torque, way = measured.standstill(robot)
+    """Figures at rest: quiet at standstill, holding on a slope, steady in the air, no jump after a brake."""
+    torque, distance = measured.standstill(robot)
     dip, jump = measured.released(robot, FULL)
     return [
         Figure("torque at rest, RMS", torque, 1e-3, "N·m"),
-        Figure("way in 20 s on 5°", 1e3 * way, 1, "mm"),  # that of the stand test
+        Figure("way in 20 s on 5°", 1e3 * distance, 1, "mm"),  # that of the stand test
         Figure("lifted wheels' error", measured.lifted(robot), 0.2, "rad/s"),  # some counts, drive_performance_test.cpp
         Figure("dip after a brake", 100 * dip, 2, "%"),  # the tracking RMS
         Figure("torque after a brake", 100 * jump, 50, "% of it"),  # a release, not another brake
@@ -76,7 +76,7 @@ def rest(robot: str) -> list[Figure]:
 
 
 def coarse_encoders(robot: str) -> list[Figure]:
-    """The ripple of the torque, and the drive of coarse encoders; payload at low rates."""
+    """Ripple of the torque and the drive with coarse encoders; payload at low rates."""
     figures = []
     for counts, bound in RIPPLES.items():
         curves = {speed: measured.steady_curve(robot, counts, speed) for speed in (0.5, 0.1)}
@@ -95,19 +95,19 @@ def coarse_encoders(robot: str) -> list[Figure]:
 
 def peer(_robot: str) -> list[Figure]:
     """The drives of diff_drive_controller's own test, and its tolerances."""
-    way, turn = measured.of_the_peer()
-    return [Figure("10 s at 0.1 m/s", 1e3 * way, 10, "mm"), Figure("10 s at π/10 rad/s", 1e3 * turn, 30, "mrad")]
+    distance, turn = measured.of_the_peer()
+    return [Figure("10 s at 0.1 m/s", 1e3 * distance, 10, "mm"), Figure("10 s at π/10 rad/s", 1e3 * turn, 30, "mrad")]
 
 
 def promises(robot: str) -> Iterator[Figure]:
-    """All of `robot`; standing and hand-over of the own one, whose brakes are known."""
+    """All promises of `robot`; standing and hand-over apply to the own robot, whose brakes are known."""
     parts: list[Callable[[str], list[Figure]]] = [straight, curves, stops]
     for part in [*parts, rest, coarse_encoders, peer] if robot == DIFFBOT else parts:
         yield from part(robot)
 
 
 def bench(say: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
-    """The result, and whether every promise is kept by every robot that is here."""
+    """The result, and whether every present robot keeps every promise."""
     rows, absent, good = [], [], True
     for robot in ROBOTS:
         if robot not in robot_names():

@@ -1,6 +1,7 @@
-"""Normal driving: from waypoint to waypoint near the start, with pauses, in reverse at times, and a silent sender.
+"""Normal driving goes from waypoint to waypoint near the start, with pauses, reverse and a silent sender.
 
-Steered by the truth of the log, as a person would by looking: no node sees it. A pure function of the seed.
+The drive is steered by the truth of the log, as a person steers by sight; no node receives it. It is a pure function of
+the seed.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from robot_control.closed_loop import ClosedLoop, Log
 STEP = 0.1  # s, between two commands
 LINEAR_LIMIT, ANGULAR_LIMIT = 1.0, 2.0  # m/s, rad/s: full speed of the default parameters
 ARRIVED = 0.15  # m
-TIMEOUT = 15.0  # s, then another waypoint
+TIMEOUT = 15.0  # s, after which another waypoint is drawn
 WHEEL_COLUMNS = ("effort", "velocity_measured", "velocity_command")
 COLUMNS = (
     *("permit_action", "permit_causes", "permit_warnings", "gate_verdict", "supervisor_state"),
@@ -24,7 +25,7 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class Area:
-    """Of the waypoints, m, in the frame of the start."""
+    """Area of the waypoints, m, in the frame of the start."""
 
     x_min: float
     x_max: float
@@ -33,7 +34,9 @@ class Area:
 
 @dataclass
 class Trip:
-    """To a waypoint. `pause` [s] there; `quiet`: the sender falls silent for it, so that its command times out."""
+    """A trip to a waypoint with a `pause` [s] there; `quiet`: the sender is silent in it, so that its command times
+    out.
+    """
 
     x: float
     y: float
@@ -45,14 +48,14 @@ class Trip:
 
 
 def area_of(scene: str) -> Area:
-    """Free of walls, with room to turn; over bumps and ice where the scene has them."""
+    """The area is free of walls, with room to turn; it lies over bumps and ice if the scene has them."""
     if scene == "walls":
         return Area(-1.0, 1.0, 1.0)
     return Area(-1.0, 4.0, 1.5)
 
 
 class NormalDrive:
-    """Drives `loop`, whose robot stands at the start; `seed`: of the waypoints."""
+    """Drives `loop`, whose robot stands at the start; `seed` draws the waypoints."""
 
     def __init__(self, loop: ClosedLoop, area: Area, seed: int, top_speed: float = LINEAR_LIMIT) -> None:
         self._top_speed = top_speed  # m/s

@@ -1,6 +1,7 @@
-"""Hours of normal driving, over all scenes, robots and rates: the safety monitor has nothing to say, but that wheels
-slip where they do: on ice, and of robots that turn astride a bump; and that who got stuck there is stalled. Beside
-them the turns of turning_drive.py, of every robot. So is a wheel that stands before a bump under all of its torque.
+"""Hours of normal driving over all scenes, robots and rates: the safety monitor reports nothing but true slip and true
+stalls. Wheels slip on ice, and on robots that turn astride a bump. A robot that got stuck there is stalled, and so is a
+wheel that stands before a bump under all of its torque. The turns of turning_drive.py are driven by every robot as
+well.
 
 python3 -m lab.drives.normal_driving --share 0.1     # a tenth of the two hours
 """
@@ -30,15 +31,15 @@ from lab.robot_corpus import DIFFBOT, SCENES, robot_names, scene_of, urdf_of
 from lab.runs.runner import Processes, Runner
 
 RATES = {1000: 960.0, 100: 240.0, 2000: 120.0}  # Hz → s in each scene, of the project's own robot
-SLOW = 500  # Hz; below, the loops are too weak for bumps: wheels stand before them for a second, stalled indeed
+SLOW = 500  # Hz; below, the loops are too weak for bumps: wheels truly stall before them for a second
 SKID_ICE_SPEED = 0.4  # m/s
 OTHERS_SECONDS = 15.0  # in each scene, of each real robot
 TRUE_WARNINGS = {"low_friction_patch": {"yaw_rate"}, "bumps": {"yaw_rate"}}
-HARDLY = 0.3  # of the target
+HARDLY = 0.3  # share of the target speed of a wheel that hardly turns
 REST = 1.0  # s, in which the estimator learns the bias of the gyro
 STANDSTILL = mask_of("StateFlag", "standstill")
 TURNS = 40  # seeds of turning_drive.py, of each robot
-LONGEST = 300.0  # s, of one drive: so that all processors have something to do to the end
+MAX_DRIVE = 300.0  # s, of one drive; shorter drives keep all processors busy to the end
 
 
 @dataclass(frozen=True)
@@ -55,13 +56,13 @@ class Drive:
 
 @dataclass(frozen=True)
 class Driven:
-    """What came of it. `causes`, `warnings`: names; empty where nothing was amiss."""
+    """Result of a drive. `causes`, `warnings`: names; empty if there were none."""
 
     drive: Drive
     causes: list[str]
-    warnings: list[str]  # but for the true ones
+    warnings: list[str]  # names of warnings without the true ones
     distance: float  # m
-    degraded: float  # share of the time while driving after the first rest, as report.py has it; NaN: there was none
+    degraded: float  # share of the time after the first rest, as report.py computes it; NaN without a rest
 
     def __str__(self) -> str:
         drive = self.drive
@@ -73,7 +74,7 @@ class Driven:
 
 
 def all_drives(share: float, errors: str = "data_sheet") -> list[Drive]:
-    """Two hours, where the real robots are there, times `share`, with sensors that err as `errors` says."""
+    """Two hours, if the real robots are there, times `share`, with sensors that err as `errors` says."""
     drives: list[Drive] = []
     for scene in SCENES:
         for rate, seconds in RATES.items():
@@ -87,12 +88,12 @@ def all_drives(share: float, errors: str = "data_sheet") -> list[Drive]:
 
 
 def _split(drive: Drive) -> list[Drive]:
-    count = max(1, round(drive.seconds / LONGEST))
+    count = max(1, round(drive.seconds / MAX_DRIVE))
     return [replace(drive, seconds=drive.seconds / count, seed=seed) for seed in range(count)]
 
 
 def stuck(log: Log, rate: int) -> bool:
-    """By truth: in the quarter second before its first stop it moved by less than 1 cm, and 0.05 rad."""
+    """True if it moved by less than 1 cm and 0.05 rad in the quarter second before its first stop, by the truth."""
     stop = int(np.argmax(log["permit_causes"] > 0))
     before = max(0, stop - rate // 4)
     moved = np.hypot(log["truth_x"][stop] - log["truth_x"][before], log["truth_y"][stop] - log["truth_y"][before])
@@ -100,7 +101,7 @@ def stuck(log: Log, rate: int) -> bool:
 
 
 def pushed_in_vain(log: Log, loop: ClosedLoop) -> bool:
-    """In the quarter second before the first stop a motor was at its torque limit, and its wheel hardly turned."""
+    """True if a motor was at its torque limit in the quarter second before the first stop and hardly turned."""
     stop = int(np.argmax(log["permit_causes"] > 0))
     before = slice(max(0, stop - round(0.25 / loop.period)), stop)
     limits = {joint["name"]: joint["effort_limit"] for joint in loop.robot["joints"]}
@@ -113,12 +114,12 @@ def pushed_in_vain(log: Log, loop: ClosedLoop) -> bool:
 
 
 def top_speed(loop: ClosedLoop, scene: str) -> float:
-    """m/s. Skid steers that slide sideways off the ice stand on blocked wheels: a person slows down there."""
+    """m/s. Skid steers that slide sideways off the ice stand on blocked wheels, so a person would slow down there."""
     return SKID_ICE_SPEED if scene == "low_friction_patch" and len(loop.robot["wheels"]) > 2 else LINEAR_LIMIT
 
 
 def carry_out(drive: Drive) -> Driven:
-    """Drives it."""
+    """Carries out a drive."""
     loop = ClosedLoop(
         params={"robot": {"rate": drive.rate}, "mujoco_plant": plant_parameters(drive.errors)},
         seed=drive.seed,
@@ -134,7 +135,7 @@ def carry_out(drive: Drive) -> Driven:
 
 
 def degraded_share(log: Log) -> float:
-    """Before its first rest a robot does not know the bias of its gyro: that is no matter of how it drives."""
+    """Share of degraded time after the first rest; before it a robot does not know the bias of its gyro."""
     flags, time = log["estimate_flags"].astype(int), log["time"]
     rests = [end for begin, end in intervals(flags & STANDSTILL != 0) if time[end - 1] - time[begin] > REST]
     judged = ReportedDrive("", log).driving()
@@ -149,7 +150,7 @@ def _turn(job: tuple[str, int, str]) -> turning_drive.Turning:
 def bench(
     share: float, say: Callable[[str], None], runner: Runner | None = None, errors: str = "data_sheet"
 ) -> tuple[dict[str, Any], bool]:
-    """The result, and whether nothing was amiss; `say` receives what was."""
+    """The result, and whether no drive had a fault; `say` receives the faults."""
     began = time.monotonic()
     drives = all_drives(share, errors)
     driven = []
@@ -189,7 +190,7 @@ def bench(
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Exit code 0: nothing was amiss."""
+    """Exit code 0 if no drive had a fault."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--share", type=float, default=1.0, help="of the two hours")
     parser.add_argument("--errors", choices=LEVELS, default=LEVELS[0], help="of the sensors")

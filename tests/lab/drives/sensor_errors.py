@@ -1,8 +1,8 @@
-"""Which errors the sensors of a drive have: those of the data sheet, of the field, or as recorded on real robots.
+"""Selects the errors of a drive's sensors: those of the data sheet, of the field, or as recorded on real robots.
 
-`recorded` is the field with vibrations as strong as the strongest of the recordings (`lab.odometry.recordings`): the
-standard deviation of what varies within WINDOW seconds, of the axis that shakes most, while the robot moves. Noise of
-the density D, up to the bandwidth f of the plant's vibration (vibration.h), has D·√(π f) of it.
+`recorded` is the field with vibrations as strong as the strongest of the recordings (`lab.odometry.recordings`). Its
+measure is the standard deviation within WINDOW seconds on the axis that shakes most, while the robot moves. Noise of
+the density D, up to the bandwidth f of the plant's vibration (vibration.h), has a standard deviation of D·√(π f).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ FIELD = {"accelerometer_vibration": 0.12, "gyro_vibration": 7e-4}  # the plant's
 
 
 def plant_parameters(level: str) -> dict[str, Any]:
-    """Of the block `mujoco_plant`.
+    """Parameters of the block `mujoco_plant`.
 
     Raises:
         FileNotFoundError: `recorded` without recordings.
@@ -36,7 +36,7 @@ def plant_parameters(level: str) -> dict[str, Any]:
 
 @cache
 def recorded_vibration() -> dict[str, float]:
-    """The strongest of all recordings, and no less than the field's."""
+    """The strongest vibration of all recordings, at least that of the field."""
     strongest = dict(FIELD)
     for name in NAMES:
         some = recording(name)
@@ -49,7 +49,7 @@ def recorded_vibration() -> dict[str, float]:
 
 
 def _motion(some: Recording) -> tuple[float, NDArray[np.bool_]]:
-    """m/s while it moves, and at which samples of the IMU it does."""
+    """Mean speed [m/s] in motion, and the samples of the IMU in motion."""
     read = ~np.isnan(some.left)
     time = some.time[read]
     sides = [np.abs(np.gradient(side[read], time)) for side in (some.left, some.right)]
@@ -60,9 +60,9 @@ def _motion(some: Recording) -> tuple[float, NDArray[np.bool_]]:
 
 
 def _shaking(some: Recording, table: FloatArray, moving: NDArray[np.bool_]) -> float:
-    there = ~np.isnan(some.gyro[:, 2])
-    time = some.time[there]
-    fast = [column - _smooth(column, time, WINDOW) for column in table[there].T]
+    present = ~np.isnan(some.gyro[:, 2])
+    time = some.time[present]
+    fast = [column - _smooth(column, time, WINDOW) for column in table[present].T]
     return max(float(np.std(column[moving])) for column in fast)
 
 

@@ -1,10 +1,10 @@
-"""Turns that ask most of wheels behind each other: on the spot and back, and around a wheel that nearly stands.
+"""Turns that load wheels behind each other most: on the spot and back, and around a wheel that nearly stands.
 
-On floors between slippery and sticky, with more and less friction in the joints than described, with coarse and fine
-encoders. A pure function of robot and seed.
+Floors are between slippery and sticky, joints have more and less friction than described, and encoders are coarse and
+fine. The drive is a pure function of robot and seed.
 
-A warning of `yaw_rate` is true, and no fault, where by truth tyres slide: some robots turn faster than a slippery floor
-carries.
+A warning of `yaw_rate` is true, and no fault, if tyres slide by the truth: some robots turn faster than a slippery
+floor allows.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from lab.robot_corpus import urdf_of
 
 GRAVITY = 9.81  # m/s²
 GROUND = (0.3, 3.0)  # times friction 1, that of the scenes
-JOINTS = (0.3, 3.0)  # times the dry friction that the description says
+JOINTS = (0.3, 3.0)  # times the described dry friction
 COUNTS = (64, 90, 128, 256, 512, 1024, 2048, 4096)
-SPARE = 0.8  # of the torque limit: what a turn may take, else no loop turns the robot
+SPARE = 0.8  # share of the torque limit that a turn may need; with more no loop turns the robot
 REST, PHASE, PHASES = 1.0, 2.0, 5  # s
 SLIDES, SLIDES_FOR, WINDOW = 0.8, 0.2, 0.05  # rad/s between wheels and body, s; s over which wheels are measured
 LINEAR_LIMIT, ANGULAR_LIMIT = 1.0, 2.0  # m/s, rad/s: full speed of the default parameters
@@ -32,7 +32,7 @@ LINEAR_LIMIT, ANGULAR_LIMIT = 1.0, 2.0  # m/s, rad/s: full speed of the default 
 
 @dataclass(frozen=True)
 class Turning:
-    """What came of one seed. `causes`, `warnings`: names; empty where nothing was amiss."""
+    """Result of one seed. `causes`, `warnings`: names; empty if there were none."""
 
     robot: str
     seed: int
@@ -42,11 +42,11 @@ class Turning:
     commands: tuple[tuple[float, float], ...]
     causes: tuple[str, ...]
     warnings: tuple[str, ...]
-    worst: float  # rad/s between commanded and true yaw rate at the end of a phase; 0 where the ground is slippery
+    worst: float  # rad/s between commanded and true yaw rate at the end of a phase; 0 on slippery ground
 
     @property
     def seconds(self) -> float:
-        """Simulated."""
+        """Simulated time, s."""
         return REST + PHASE * len(self.commands)
 
     def __str__(self) -> str:
@@ -57,13 +57,13 @@ class Turning:
 
 
 def _joint_friction(robot: str) -> float:
-    """N·m, the largest of the description."""
+    """N·m, the largest friction in the description."""
     joints = ET.parse(urdf_of(robot)).iter("dynamics")
     return max((float(joint.get("friction", 0.0)) for joint in joints), default=0.0)
 
 
 def _scrub(robot: dict[str, Any]) -> float:
-    """N·m of the most loaded wheel in a turn at friction 1; 0: no wheel behind another. The law: scrub.h."""
+    """N·m of the most loaded wheel in a turn at friction 1 (scrub.h); 0 if no wheel is behind another."""
     wheels = robot["wheels"]
     if len(wheels) == 2:
         return 0.0
@@ -76,7 +76,9 @@ def _scrub(robot: dict[str, Any]) -> float:
 
 
 def draw_frictions(random: np.random.Generator, robot: str, loop: ClosedLoop) -> tuple[float, float]:
-    """Of the ground, and of the joints times the described one: with which the motors can still turn the robot."""
+    """Friction of the ground, and of the joints relative to the description, with which the motors can still turn the
+    robot.
+    """
     scrub = _scrub(loop.robot)
     limits = {joint["name"]: joint["effort_limit"] for joint in loop.robot["joints"]}
     spare = SPARE * min(limits[wheel["joint"]] for wheel in loop.robot["wheels"])
@@ -85,14 +87,14 @@ def draw_frictions(random: np.random.Generator, robot: str, loop: ClosedLoop) ->
     return _between(random, GROUND, (spare - joints * own) / scrub if scrub else GROUND[1]), joints
 
 
-def _between(random: np.random.Generator, ends: tuple[float, float], most: float) -> float:
-    """Of a range, evenly by its logarithm, and no more than `most`."""
-    return float(np.exp(random.uniform(np.log(ends[0]), np.log(np.clip(most, *ends)))))
+def _between(random: np.random.Generator, ends: tuple[float, float], bound: float) -> float:
+    """A value from a range, evenly by its logarithm, and at most `bound`."""
+    return float(np.exp(random.uniform(np.log(ends[0]), np.log(np.clip(bound, *ends)))))
 
 
 def draw(random: np.random.Generator, half_base: float) -> list[tuple[float, float]]:
-    """Commands [m/s, rad/s]: turns on the spot and their reversals, curves whose inner wheel is within a tenth of the
-    outer one's speed of standing, and any other.
+    """Commands [m/s, rad/s]: turns on the spot and their reversals, and other curves. In some curves the inner wheel
+    nearly stands, within a tenth of the outer one's speed.
     """
     commands: list[tuple[float, float]] = []
     while len(commands) < PHASES:
@@ -109,15 +111,15 @@ def draw(random: np.random.Generator, half_base: float) -> list[tuple[float, flo
 
 
 def slides(loop: ClosedLoop, log: dict[str, Any]) -> bool:
-    """By truth: wheels, one a side, turn the robot otherwise than it turns, by more than SLIDES for SLIDES_FOR."""
+    """True if wheels, one a side, turn otherwise than the robot by more than SLIDES for SLIDES_FOR, by the truth."""
     wheels = loop.robot["wheels"]
     if len(wheels) > 2:
         return False
     window = round(WINDOW / loop.period)
     yaw = np.zeros(len(log["truth_yaw"]) - window)
     for wheel in wheels:
-        way = wheel["sign"] * wheel["radius"] * log[f"{wheel['joint']}_position"]
-        yaw += (way[window:] - way[:-window]) * (1 if wheel["side"] == "right" else -1)
+        travel = wheel["sign"] * wheel["radius"] * log[f"{wheel['joint']}_position"]
+        yaw += (travel[window:] - travel[:-window]) * (1 if wheel["side"] == "right" else -1)
     rate = yaw / loop.robot["effective_wheel_base"] / (window * loop.period)
     true = np.convolve(log["truth_angular"], np.full(window, 1 / window), mode="valid")[1:]
     spans = np.lib.stride_tricks.sliding_window_view(np.abs(rate - true) > SLIDES, round(SLIDES_FOR / loop.period))

@@ -1,4 +1,4 @@
-"""Thousands of random fault sequences over random drives and robots, each judged by what really happened.
+"""Thousands of random fault sequences over random drives and robots, each judged by the truth.
 
     scripts/bench campaign --first 17 --runs 1     # repeats one and says what happened
 
@@ -26,7 +26,7 @@ from lab.runs.runner import Processes, Runner
 
 @dataclass(frozen=True)
 class Outcome:
-    """Of one seed. `violations`: (rule, what happened)."""
+    """Result of one seed. `violations`: (rule, description)."""
 
     seed: int
     story: str
@@ -36,7 +36,7 @@ class Outcome:
 
     @property
     def text(self) -> str:
-        """What was tried, which rules did not hold, and how to see it again."""
+        """A report of the sequence, its violations, and the command that repeats it."""
         lines = [f"seed {self.seed}: {self.story}"]
         lines += [f"    {what}" for _, what in self.violations]
         if self.violations:
@@ -46,7 +46,7 @@ class Outcome:
 
 @dataclass
 class Tally:
-    """Of a campaign."""
+    """Sums over a campaign."""
 
     runs: int = 0
     simulated: float = 0.0  # s
@@ -55,7 +55,7 @@ class Tally:
     failed: list[Outcome] = field(default_factory=list)
 
     def add(self, outcome: Outcome) -> None:
-        """One more."""
+        """Adds one outcome."""
         self.runs += 1
         self.simulated += outcome.seconds
         self.violations.update(rule for rule, _ in outcome.violations)
@@ -65,7 +65,7 @@ class Tally:
 
 
 def fastest_rim(loop: ClosedLoop) -> float:
-    """m/s, of the speed over the ground that the controller may ask of a side of the robot."""
+    """m/s, largest speed over the ground that the controller may request of a side of the robot."""
     return LINEAR_LIMIT + ANGULAR_LIMIT * float(loop.robot["wheel_base"]) / 2
 
 
@@ -113,7 +113,7 @@ def result_of(tally: Tally, seconds: float) -> dict[str, Any]:
 def bench(
     first: int, runs: int, say: Callable[[str], None], runner: Runner | None = None
 ) -> tuple[dict[str, Any], bool]:
-    """The result, and whether every sequence was survived."""
+    """The result, and whether the robot survived every sequence."""
     began = time.monotonic()
     if runs == 1:
         say(draw_sequence(first, robot_names()).describe())

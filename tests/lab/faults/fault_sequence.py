@@ -1,4 +1,4 @@
-"""A random sequence of faults during a random drive: what one seed of the campaign is.
+"""A random sequence of faults during a random drive; each seed of the campaign stands for one.
 
     0 … driven       the sender asks for the legs of the drive; faults, emergency stops, resets come in between
     … rested         the sender says zero, or nothing; what fails may go on failing
@@ -22,11 +22,11 @@ COMPONENTS = states("FaultComponent")
 KINDS = states("FaultKind")[1:]  # without "ok"
 
 ALL_RUNS = 10_000
-OWN_SHARE = 0.75  # of the sequences are the project's own robot's
+OWN_SHARE = 0.75  # share of the sequences with the project's own robot
 LINEAR_LIMIT = 1.0  # m/s, max_linear_speed
 ANGULAR_LIMIT = 2.0  # rad/s, max_angular_speed
 BATTERY_VOLTAGE = 24.0  # V
-REST_TIME = 5.5  # s; what it has to suffice for: sequence_judge.py
+REST_TIME = 5.5  # s; sequence_judge.py says for what it has to suffice
 RELEASE_TIME = 0.8  # s
 
 
@@ -50,13 +50,13 @@ class FaultSequence:
     legs: list[Leg]
     interval: float  # s, at which the sender repeats itself
     driven: float
-    falls_silent: bool  # after `driven`: nothing more is sent; else zero is
+    falls_silent: bool  # nothing is sent after `driven`; otherwise zeros are
     faults_end: bool  # before the release
     events: list[Event] = field(default_factory=list)
 
     @property
     def rested(self) -> float:
-        """s, when the reset is asked for."""
+        """s, time of the reset request."""
         return self.driven + REST_TIME
 
     @property
@@ -65,7 +65,7 @@ class FaultSequence:
         return self.rested + RELEASE_TIME
 
     def describe(self) -> str:
-        """One line: robot, scene, what happens when."""
+        """One line: robot, scene, and the events with their times."""
         events = ", ".join(f"{e.time:.3f} s {e.action} {e.component} {e.kind}".rstrip() for e in self.events)
         silent = "then silence" if self.falls_silent else "then zero"
         return f"{self.robot} in {self.scene}, driven {self.driven:.2f} s, {silent}: {events or 'no fault'}"
@@ -104,7 +104,7 @@ def _faults(random: np.random.Generator, driven: float) -> list[Event]:
 
 
 def _operator(random: np.random.Generator, driven: float) -> list[Event]:
-    """Every third drive is stopped, every second one reset, on the way, too; one plant in twenty is reset."""
+    """Every third drive is stopped on the way, every second one reset as well; one plant in twenty is reset."""
     events = []
     if random.random() < 1 / 3:
         events.append(Event(random.uniform(0.3, driven), "e_stop"))

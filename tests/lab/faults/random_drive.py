@@ -1,4 +1,4 @@
-"""A drive at random: what a sender on cmd_vel asks for over time, as a pure function of its random numbers."""
+"""A random drive: the requests of a sender on cmd_vel over time, as a pure function of its random numbers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Leg:
 
 
 def draw_drive(random: np.random.Generator, seconds: float, linear_limit: float, angular_limit: float) -> list[Leg]:
-    """Legs of 0.2 … 2 s over `seconds`; half of those ahead or in reverse at the full `linear_limit` [m/s]."""
+    """Legs of 0.2 … 2 s over `seconds`; half of those ahead or in reverse have the full `linear_limit` [m/s]."""
     legs = []
     time = 0.0
     while time < seconds:

@@ -1,4 +1,4 @@
-"""Sequences of the fault campaign, each computed again from its log: every output of every law, bit for bit.
+"""Sequences of the fault campaign are computed again from their logs: every output of every law, bit by bit.
 
 scripts/bench replay --first 17 --runs 1
 """
@@ -19,19 +19,19 @@ from lab.faults.sequence_run import loop_arguments, run_sequence
 from lab.robot_corpus import robot_names
 
 ALL_RUNS = 200
-STEP = CAMPAIGN_RUNS // ALL_RUNS  # from one seed to the next: sequences from all over the campaign
+STEP = CAMPAIGN_RUNS // ALL_RUNS  # from one seed to the next, so that the sequences cover the whole campaign
 
 
 class ReplayedLoop(ClosedLoop):
-    """Steps are computed again as soon as they are made."""
+    """A loop whose steps are computed again as soon as they are made."""
 
     def __init__(self, *arguments: Any, **named: Any) -> None:  # noqa: ANN401 (those of ClosedLoop)
         super().__init__(*arguments, **named)
         self._replay = LoopReplay(self._loop)
-        self.seconds = 0.0  # of processor time, of the replay alone
+        self.seconds = 0.0  # s of processor time, of the replay alone
 
     def step(self, cycles: int = 1) -> Log:
-        """As that of the loop."""
+        """Steps as the loop does, then replays the cycles."""
         log: Log = self._loop.run(cycles, None, self._replay)
         began = time.process_time()
         self._replay.check()
@@ -39,19 +39,19 @@ class ReplayedLoop(ClosedLoop):
         return log
 
     def report(self) -> dict[str, Any]:
-        """What was found."""
+        """The report of the replay."""
         return dict(self._replay.report())
 
 
 @dataclass
 class Tally:
-    """Of all sequences."""
+    """Sums over all sequences."""
 
     runs: int = 0
-    rows: int = 0  # of all laws, compared
+    rows: int = 0  # compared rows of all laws
     simulated: float = 0.0  # s
-    seconds: float = 0.0  # of processor time, of the replays
-    failed: list[str] = field(default_factory=list)  # what differs or was not compared
+    seconds: float = 0.0  # s of processor time, of the replays
+    failed: list[str] = field(default_factory=list)  # descriptions of rows that differ or were not compared
 
 
 def replay_seed(seed: int, robots: Sequence[str], tally: Tally) -> None:
@@ -82,7 +82,7 @@ def replay_seeds(seeds: Sequence[int], say: Callable[[str], None]) -> Tally:
 
 
 def bench(first: int, runs: int, say: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
-    """The result, and whether every row of every sequence was computed again, bit for bit."""
+    """The result, and whether every row of every sequence was computed again, bit by bit."""
     tally = replay_seeds(range(first, first + runs * STEP, STEP), say)
 
     def row(name: str, value: float, unit: str) -> dict[str, Any]:

@@ -1,7 +1,8 @@
-"""Was a fault sequence survived? Judged by the truth of the plant, which no node sees, and by what the gate let pass.
+"""Judges whether a robot survived a fault sequence, by the truth of the plant, which no node receives, and by the gate.
 
-Speed s: of the faster side over the ground, m/s: |v| + |ω| b/2, with the wheel base b. Standing: the means of v and ω
-over MEAN_TIME give less than STANDING_SPEED; or the robot rocks on its casters, which light ones do for seconds.
+The speed s is that of the faster side over the ground, m/s: |v| + |ω| b/2, with the wheel base b. The robot stands if
+the means of v and ω over MEAN_TIME give less than STANDING_SPEED. It also stands if it rocks on its casters, as light
+robots do for seconds.
 
     permit     Where the gate does not brake, a permit to drive or to ramp of one of the last four cycles is there.
     brake      While it brakes, s does not grow (but while wheels that spun pull on, SPIN_TIME), and after STOP_TIME +
@@ -12,12 +13,12 @@ over MEAN_TIME give less than STANDING_SPEED; or the robot rocks on its casters,
     tilt       It never leans by TILT_LIMIT, nor among walls and bumps, which lift it, by HIT_TILT_LIMIT.
     machine    The simulation does not diverge.
 
-What no brake can do, is not asked for. A motor that is off, intermittent or gives garbage takes its brake with it
-(drivers/motors/motor_faults.h): while one does, s may grow by what the slope gives a free robot, g sin 5° t, and by
-GARBAGE_SPEED, and the robot need not come to rest. A monitor that errs (garbage, wrong) gives permits by itself: then
-only what the gate answers for is judged: "permit", "machine", that "brake" ends at rest, and "rest" once it is well. A
-blocked wheel, or a motor that gives a wrong torque, jolts the robot harder than any brake: its tilt is not the
-brake's. A drive that is slow or delayed learns of the brake LATE_DRIVE later.
+No rule demands more than a brake can do. A motor that is off, intermittent or sends garbage has no brake
+(drivers/motors/motor_faults.h). Meanwhile s may grow by what the slope gives a free robot, g sin 5° t, and by
+GARBAGE_SPEED; the robot need not come to rest. A monitor that errs (garbage, wrong) gives permits by itself. Then
+the rules of the gate alone count: "permit", "machine", that "brake" ends at rest, and "rest" after its recovery. A
+blocked wheel, or a motor with a wrong torque, jolts the robot harder than any brake. Its tilt then does not count. A
+drive that is slow or delayed receives the brake LATE_DRIVE later.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ from lab.robot_corpus import ICE, stop_deceleration_of
 
 BRAKE = number_of("GateVerdict", "brake")
 RAMP, DRIVE = (number_of("PermitAction", name) for name in ("ramp", "drive"))
-PERMIT_LIFE = 4  # cycles that are promised, whatever the code under judgement says
+PERMIT_LIFE = 4  # cycles that are promised, whatever the tested code says
 DRIVER_FAULT = number_of("DriverState", "fault")
 STOPPED_STATES = [number_of("SupervisorState", name) for name in ("STOPPED", "FAULT")]
 RULES = ("permit", "brake", "speed", "rest", "release", "tilt", "machine")
@@ -43,11 +44,11 @@ RULES = ("permit", "brake", "speed", "rest", "release", "tilt", "machine")
 STANDING_SPEED = 0.01  # m/s
 MEAN_TIME = 0.3  # s
 ROCKING = 0.005  # rad, change of tilt within MEAN_TIME
-LATE_DRIVE = 0.02  # s, for 10 cycles of 1 ms, and what it takes to act
-STOP_TIME = 1.0  # s, the mean included, and that a light robot falls back on its casters
+LATE_DRIVE = 0.02  # s, for 10 cycles of 1 ms and the reaction
+STOP_TIME = 1.0  # s, with the mean and the fall of a light robot back on its casters
 SPIN_TIME = 0.15  # s
 BRAKE_MARGIN = 0.3  # m/s; walls turn v into ω
-SPEED_FACTOR, SPEED_MARGIN = 1.5, 0.7  # 1, m/s: 0.1 s of the strongest drives, until a fault is sure
+SPEED_FACTOR, SPEED_MARGIN = 1.5, 0.7  # 1, m/s: 0.1 s of the strongest drives, until a fault is certain
 GARBAGE_SPEED = 1.0  # m/s
 TILT_LIMIT = np.radians(10)
 HIT_TILT_LIMIT = np.radians(30)  # a light robot that runs into a wall at 1 m/s stands up by 20° and falls back
@@ -60,7 +61,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Violation:
-    """Which rule did not hold, `time` [s] after the beginning."""
+    """The violated rule, `time` [s] after the beginning."""
 
     rule: str
     time: float
@@ -71,13 +72,15 @@ class Violation:
 
 
 def failing(log: Log, component: str, *kinds: str) -> Mask:
-    """Where `component` fails in one of these ways; shape (cycles,)."""
+    """Cycles in which `component` fails in one of these ways; shape (cycles,)."""
     digit = (log["injected"].astype(np.int64) >> (3 * number_of("FaultComponent", component))) & 7
     return np.isin(digit, [number_of("FaultKind", kind) for kind in kinds])
 
 
 def judge(sequence: FaultSequence, log: Log, wheel_base: float, period: float, fastest: float) -> list[Violation]:
-    """The first violation of each rule; `wheel_base` m, `period` s, `fastest` m/s that the controller asks of a rim."""
+    """The first violation of each rule; `wheel_base` m, `period` s, `fastest` m/s that the controller requests of a
+    rim.
+    """
     court = _Court(sequence, log, wheel_base, period)
     rules = (court.permit, court.brake, court.rest, court.release, court.tilt, court.machine)
     found = [next(rule(), None) for rule in rules] + [next(court.speed(fastest), None)]
@@ -91,7 +94,7 @@ def blocks(mask: Mask) -> list[tuple[int, int]]:
 
 
 def _mean(values: Array, window: int) -> Array:
-    """Over the last `window` values, at the beginning over those there are."""
+    """Means over the last `window` values, at the beginning over fewer."""
     sums = np.concatenate([[0.0], np.cumsum(values)])
     rows = np.arange(1, len(sums))
     first = np.maximum(rows - window, 0)
@@ -99,7 +102,7 @@ def _mean(values: Array, window: int) -> Array:
 
 
 class _Court:
-    """What the rules have in common. Every rule yields violations in the order of time."""
+    """The data that all rules share. Every rule yields violations in the order of time."""
 
     def __init__(self, sequence: FaultSequence, log: Log, wheel_base: float, period: float) -> None:
         self._sequence = sequence
@@ -123,7 +126,7 @@ class _Court:
         return Violation(rule, cycle * self._period, text)
 
     def permit(self) -> Iterator[Violation]:
-        """A live permit wherever the gate lets a command pass."""
+        """A live permit is there whenever the gate lets a command pass."""
         log = self._log
         rows = np.flatnonzero(log["gate_verdict"] != BRAKE)
         age = log["cycle"][rows] - log["gate_permit_cycle"][rows]
@@ -133,7 +136,9 @@ class _Court:
             yield self._violation("permit", row, f"verdict {log['gate_verdict'][row]:.0f} without a live permit")
 
     def brake(self) -> Iterator[Violation]:
-        """Braking slows down, and ends at standstill; where a motor is dead, no faster than slope or garbage."""
+        """Braking slows the robot down and ends at standstill; with a dead motor it gains no more than by slope or
+        garbage.
+        """
         braking = self._log["gate_verdict"] == BRAKE
         for first, end in blocks(braking & ~self._new_run):
             mask = np.zeros_like(braking)
@@ -168,14 +173,14 @@ class _Court:
             yield self._violation("brake", row, f"without motors {speed[0]:.3f} m/s grew to {self._speed[row]:.3f} m/s")
 
     def speed(self, fastest: float) -> Iterator[Violation]:
-        """No runaway."""
+        """The robot does not run away."""
         limit = SPEED_FACTOR * fastest + SPEED_MARGIN
-        excused = np.logical_or.accumulate(self._unbraked | self._monitor_errs)  # what coasts is judged by `brake`
+        excused = np.logical_or.accumulate(self._unbraked | self._monitor_errs)  # `brake` judges a coasting robot
         for row in np.flatnonzero((self._speed > limit) & ~excused):
             yield self._violation("speed", row, f"{self._speed[row]:.3f} m/s above {limit:.3f} m/s")
 
     def rest(self) -> Iterator[Violation]:
-        """Standing in the last tenth of a second of the rest."""
+        """The robot stands in the last tenth of a second of the rest."""
         last = round(self._sequence.rested / self._period)
         first = last - round(0.1 / self._period)
         if (self._unbraked | self._monitor_errs)[first:last].any():
@@ -185,7 +190,7 @@ class _Court:
                 yield self._violation("rest", row, f"still {self._speed[row]:.3f} m/s")
 
     def release(self) -> Iterator[Violation]:
-        """Standing from each accepted reset on until a motion is asked for."""
+        """The robot stands from each accepted reset on until a motion is requested."""
         log = self._log
         stopped = np.isin(log["supervisor_state"], STOPPED_STATES)
         resets = np.flatnonzero(stopped[:-1] & ~stopped[1:] & ~np.isnan(log["supervisor_state"][1:]))
@@ -193,7 +198,7 @@ class _Court:
         for reset in resets:
             commands = np.flatnonzero(asked[reset:])
             end = reset + int(commands[0]) if commands.size else len(asked)
-            first = reset + round(MEAN_TIME / self._period)  # the mean forgets what was before
+            first = reset + round(MEAN_TIME / self._period)  # from here on the mean contains no earlier values
             excused = self._unbraked | self._monitor_errs | self._new_run
             moving = ~self._standing[reset:end] & ~np.logical_or.accumulate(excused[reset:end])
             for row in range(first, end):
@@ -202,13 +207,13 @@ class _Court:
                 yield self._violation("release", row, f"{self._speed[row]:.3f} m/s without a command")
 
     def tilt(self) -> Iterator[Violation]:
-        """Upright, but after a motor jolted it."""
+        """The robot stays upright, unless a motor jolted it."""
         tilt = self._log["truth_tilt"]
         limit = HIT_TILT_LIMIT if self._sequence.scene in ("walls", "bumps") else TILT_LIMIT
         for row in np.flatnonzero((tilt > limit) & ~np.logical_or.accumulate(self._jolted | self._monitor_errs)):
             yield self._violation("tilt", row, f"leans by {np.degrees(tilt[row]):.1f}°")
 
     def machine(self) -> Iterator[Violation]:
-        """The physics held."""
+        """The simulation did not diverge."""
         for row in np.flatnonzero(self._log["driver_state"] == DRIVER_FAULT):
             yield self._violation("machine", row, "driver fault")

@@ -33,7 +33,7 @@ COLUMNS = (
 
 
 def loop_arguments(sequence: FaultSequence) -> dict[str, Any]:
-    """The robot of this sequence in its scene, its sensors err as the seed says."""
+    """Arguments for the robot of this sequence in its scene; its sensors err as the seed says."""
     return {
         "params": {
             "mujoco_plant": {"sensor_errors": "data_sheet", "battery_voltage": BATTERY_VOLTAGE},
@@ -46,7 +46,7 @@ def loop_arguments(sequence: FaultSequence) -> dict[str, Any]:
 
 
 def make_loop(sequence: FaultSequence) -> ClosedLoop:
-    """A loop of these arguments."""
+    """A loop with these arguments."""
     return ClosedLoop(**loop_arguments(sequence))
 
 
@@ -66,14 +66,14 @@ def run_sequence(sequence: FaultSequence, loop: ClosedLoop) -> Log:
 
 
 class _Player:
-    """Runs to the next event, sending as the sender does."""
+    """Runs to the next event and sends like the sender of the sequence."""
 
     def __init__(self, sequence: FaultSequence, loop: ClosedLoop) -> None:
         self.parts: list[Log] = []
         self._sequence = sequence
         self._loop = loop
         self._cycles = 0
-        self._send_cycle = 1  # what arrives in cycle 0 is dropped
+        self._send_cycle = 1  # messages in cycle 0 are dropped
         self._interval = max(1, round(sequence.interval / loop.period))
 
     def act(self, event: Event) -> None:
@@ -88,7 +88,7 @@ class _Player:
                 self._loop.reset()
 
     def run_until(self, time: float) -> None:
-        """`time` s since the first cycle."""
+        """Runs to `time` s after the first cycle."""
         until = round(time / self._loop.period)
         while self._cycles < until:
             if self._cycles == self._send_cycle:

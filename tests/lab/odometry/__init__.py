@@ -1,1 +1,1 @@
-"""The accuracy of odometry on simulated robots with the errors of real ones."""
+"""Measures the accuracy of odometry on simulated robots with the errors of real ones."""

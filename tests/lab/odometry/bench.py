@@ -1,4 +1,5 @@
-"""`scripts/bench odometry`: every scenario with every seed, over all processors; table, promises, plots.
+"""`scripts/bench odometry` runs every scenario with every seed on all processors; it prints a table, promises and
+plots.
 
 python3 -P -m lab.odometry.bench --runs 3 --only slip,waves --plots FOLDER
 """
@@ -17,13 +18,13 @@ import numpy as np
 
 from lab.drives.sensor_errors import LEVELS
 from lab.odometry.judge import Run, run
-from lab.odometry.promises import all_promises, of
+from lab.odometry.promises import all_promises, runs_of
 from lab.odometry.scenarios import SCENARIOS
 from lab.odometry.table import table
 from lab.runs.runner import Processes, Runner
 
 SEEDS = 50
-LONGEST_FIRST = ("umbmark", "random", "standstill", "waves")  # so that all processors have something to do to the end
+SLOW_SCENARIOS = ("umbmark", "random", "standstill", "waves")  # so that all processors are busy to the end
 
 
 def all_runs(
@@ -36,10 +37,10 @@ def all_runs(
     cache: Path | None = None,
     runner: Runner | None = None,
 ) -> list[Run]:
-    """In the order of scenarios and seeds; `level`: one of sensor_errors.LEVELS; `pictured`: the seed whose runs keep
-    what a plot needs; `cache`: folder of recordings, taken where they are there.
+    """Runs in the order of scenarios and seeds. `level`: one of sensor_errors.LEVELS. `pictured`: the seed whose runs
+    keep the data of a plot. `cache`: folder of recordings, which are used if they exist.
     """
-    order = sorted(scenarios, key=lambda name: LONGEST_FIRST.index(name) if name in LONGEST_FIRST else 9)
+    order = sorted(scenarios, key=lambda name: SLOW_SCENARIOS.index(name) if name in SLOW_SCENARIOS else 9)
     work = [(scenario, seed) for scenario in order for seed in seeds]
     runner = runner or Processes()
     runs = list(runner.outcomes(partial(_one, level=level, pictured=pictured, cache=cache), work, say))
@@ -67,7 +68,7 @@ def result_of(runs: Sequence[Run], seconds: float, level: str = "data_sheet") ->
         for promise in all_promises(runs, level)
     ]
     for scenario in SCENARIOS:
-        pitch = [each.pitch for each in of(runs, scenario)]
+        pitch = [each.pitch for each in runs_of(runs, scenario)]
         if scenario == "waves" and pitch:
             rows.append(_plain("waves, pitch RMS", float(np.rad2deg(np.median(pitch))), "°"))
     rows.append(_plain("seeds", len({each.seed for each in runs}), ""))
@@ -102,7 +103,7 @@ def bench(
     scenarios: Sequence[str] = tuple(SCENARIOS),
     runner: Runner | None = None,
 ) -> tuple[dict[str, Any], bool]:
-    """The result, and whether every promise is kept; `say` receives progress and what is not."""
+    """The result, and whether every promise is kept; `say` receives progress and broken promises."""
     began = time.monotonic()
     for folder in (plots, cache):
         if folder is not None:

@@ -1,4 +1,4 @@
-"""How honest the estimate is about itself: does its covariance fit its errors, does it notice slip?
+"""Measures how honest the estimate is: whether its covariance fits its errors, and whether it reports slip.
 
 NEES    eᵀ P⁻¹ e of e = (x, y, yaw) and of e = (forward speed, yaw rate); ideal 3 and 2 (Bar-Shalom, Li &
         Kirubarajan, "Estimation with Applications to Tracking and Navigation", 2001, section 5.4)
@@ -31,22 +31,22 @@ class Notice:
     alarms: int  # of the rolling ones
     rows: int  # all of them
     spins: int = 0  # slips of SPIN s or more
-    reported: int = 0  # of the spins: flagged at any time
+    reported: int = 0  # number of the spins that were flagged at any time
 
 
 def pose_error(ours: Ours, truth: Truth) -> Array:
-    """(M, 3)"""
+    """(M, 3) errors of x, y, yaw."""
     yaw = wrapped(ours.path.yaw - truth.odom.yaw)
     return np.column_stack([ours.path.x - truth.odom.x, ours.path.y - truth.odom.y, yaw])
 
 
 def twist_error(ours: Ours, truth: Truth) -> Array:
-    """(M, 2)"""
+    """(M, 2) errors of forward speed and yaw rate."""
     return np.column_stack([ours.linear - truth.linear, ours.angular - truth.angular])
 
 
 def nees(error: Array, covariance: Array) -> Array:
-    """(M,) of (M, n) and (M, n, n); infinite where the covariance is none."""
+    """(M,) from (M, n) and (M, n, n); infinite if the covariance is invalid."""
     result = np.full(len(error), np.inf)
     for row, (e, p) in enumerate(zip(error, covariance, strict=True)):
         if np.isfinite(p).all() and np.linalg.eigvalsh(p)[0] > 0:
@@ -55,7 +55,8 @@ def nees(error: Array, covariance: Array) -> Array:
 
 
 def nees_band(runs: int, dimension: int) -> tuple[float, float]:
-    """In which the mean of `runs` values of χ² with `dimension` degrees of freedom lies with 95 %: quantiles of χ² with
+    """The band that holds the mean of `runs` values of χ² with `dimension` degrees of freedom with 95 %. It uses
+    quantiles of χ² with
     n = runs · dimension, over runs, by Wilson & Hilferty (1931), n (1 − 2/(9n) ± 1.96 √(2/(9n)))³, right to 3 % for
     n = 6 and to 0.01 % for n = 100.
     """
@@ -66,7 +67,7 @@ def nees_band(runs: int, dimension: int) -> tuple[float, float]:
 
 
 def notice(ours: Ours, truth: Truth) -> Notice:
-    """How long slip was there, and noticed."""
+    """Counts how long slip lasted, and how long it was reported."""
     slipping = (truth.slip > SLIPPING).any(axis=1)
     rolling = (truth.slip < ROLLING).all(axis=1)
     edges = np.flatnonzero(np.diff(slipping.astype(int), prepend=0, append=0))

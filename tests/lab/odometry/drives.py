@@ -1,6 +1,6 @@
-"""The drives of the odometry benchmark, each a pure function of the random numbers it is handed.
+"""The drives of the odometry benchmark, each a pure function of the random numbers that it receives.
 
-A drive writes its commands, and what it needs of world, controller and monitor, into a Draft.
+A drive writes its commands and its settings of world, controller and monitor into a Draft.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ SQUARES = 5  # each way
 
 @dataclass
 class Draft:
-    """What a scenario fills in."""
+    """The data that a scenario fills in."""
 
     random: np.random.Generator
-    kind: int = 0  # of those a scenario has, in turn
+    kind: int = 0  # the scenario's variant, in turn
     program: Program = field(default_factory=Program)
     plant: dict[str, Any] = field(default_factory=dict)
     controller: dict[str, Any] = field(default_factory=dict)
@@ -35,58 +35,58 @@ class Draft:
     marks: dict[str, list[int]] = field(default_factory=dict)
 
     def mark(self, what: str) -> None:
-        """The next cycle."""
+        """Marks the next cycle."""
         self.marks.setdefault(what, []).append(self.program.cycle)
 
 
 def umbmark(draft: Draft) -> None:
     """Borenstein & Feng 1996: a square of 4 m, five times each way, corners turned on the spot, at 0.2 … 0.5 m/s.
 
-    They set the robot down at the start, measure its place and reset its odometry before each run. Here the next run
-    begins where it stands; it stands SET_DOWN s before each, as long as that takes at the very least, then the odometry
-    is reset (at the marks cw, ccw).
+    The authors set the robot down at the start, measure its place and reset its odometry before each run. Here the next
+    run begins at the robot's present place. It stands SET_DOWN s before each run, which is the least that setting down
+    takes. Then the odometry is reset (at the marks cw, ccw).
     """
     speed = draft.random.uniform(0.2, 0.5)
     rate = draft.random.uniform(0.5, 1.0)  # rad/s
     draft.program.stand(SET_DOWN - FIRST_STAND)
-    for way in (-1, 1):
+    for direction in (-1, 1):
         for _ in range(SQUARES):
-            draft.mark("cw" if way < 0 else "ccw")
+            draft.mark("cw" if direction < 0 else "ccw")
             for _ in range(4):
                 draft.program.ways(speed, SIDE, 0.3)
-                draft.program.turn(way * rate, np.pi / 2, 0.3)
+                draft.program.turn(direction * rate, np.pi / 2, 0.3)
             draft.mark("end")
             draft.program.stand(SET_DOWN)
 
 
 def random_drive(draft: Draft) -> None:
-    """Ten minutes of what a mobile robot does all day, 8 of 100 of its moves are stops of 0.5 … 2 s."""
+    """Ten minutes of a mobile robot's daily moves; 8 of 100 are stops of 0.5 … 2 s."""
     _moves(draft, 600.0, 0.8)
 
 
 def figure_eight(draft: Draft) -> None:
-    """Five eights of 0.8 … 1.5 m radius."""
+    """Five figures of eight with radii of 0.8 … 1.5 m."""
     speed, radius = draft.random.uniform(0.3, 0.6), draft.random.uniform(0.8, 1.5)
     for _ in range(5):
-        for way in (1, -1):
-            draft.program.drive(speed, way * speed / radius, 2 * np.pi * radius / speed)
+        for direction in (1, -1):
+            draft.program.drive(speed, direction * speed / radius, 2 * np.pi * radius / speed)
     draft.program.stand(2.0)
 
 
 def slope(draft: Draft) -> None:
-    """Two minutes on 3 … 8°, in all directions."""
+    """Drives for two minutes on 3 … 8°, in all directions."""
     draft.plant["slope"] = np.deg2rad(draft.random.uniform(3.0, 8.0))
     _moves(draft, 120.0, 0.5)
 
 
 def ice(draft: Draft) -> None:
-    """Over the patch of friction 0.1 that lies 1 … 3 m ahead, bending, stopping and starting on it within default
-    limits: 1 m/s² is just what it carries.
+    """Drives over the patch of friction 0.1, 1 … 3 m ahead, bending, stopping and starting on it within default limits.
+    Their 1 m/s² is just what the patch carries.
     """
     draft.scene = _scene("low_friction_patch")
     for _ in range(3):
-        for way in (1.0, -1.0):
-            speed = way * draft.random.uniform(0.4, 0.8)
+        for direction in (1.0, -1.0):
+            speed = direction * draft.random.uniform(0.4, 0.8)
             bend = draft.random.uniform(-0.4, 0.4)
             draft.program.drive(speed, 0.0, 1.5 / abs(speed))
             draft.program.drive(speed, bend, 0.5)
@@ -97,33 +97,33 @@ def ice(draft: Draft) -> None:
 
 
 def kerb(draft: Draft) -> None:
-    """Over a kerb of 20 mm, to and fro, aslant."""
+    """Drives over a kerb of 20 mm, to and fro, aslant."""
     draft.scene = _scene("kerb")
     draft.program.turn(0.5 * np.sign(draft.random.uniform(-1, 1)), draft.random.uniform(0.0, 0.6), 0.3)
     for _ in range(4):
-        for way in (1.0, -1.0):
-            draft.program.drive(way * draft.random.uniform(0.3, 0.7), 0.0, 5.0)
+        for direction in (1.0, -1.0):
+            draft.program.drive(direction * draft.random.uniform(0.3, 0.7), 0.0, 5.0)
             draft.program.stand(2.0)
 
 
 def standstill(draft: Draft) -> None:
-    """A short drive, then ten minutes of nothing."""
+    """Drives a little, then stands for ten minutes."""
     draft.program.ways(0.4, 1.0, 0.3)
     draft.program.turn(0.8, 1.0, 1.0)
     draft.program.stand(600.0)
 
 
 def waves(draft: Draft) -> None:
-    """Over humps that pitch the body by 1° RMS, to and fro and in eights, within the 6 m that they cover."""
+    """Drives over humps that pitch the body by 1° RMS, to and fro and in eights, within the 6 m that they cover."""
     draft.scene = _scene("waves")
     for _ in range(3):
         speed = draft.random.uniform(0.2, 0.5)
-        for way in (1.0, -1.0):
-            draft.program.ways(way * speed, 2.0, 0.5)
+        for direction in (1.0, -1.0):
+            draft.program.ways(direction * speed, 2.0, 0.5)
         draft.program.turn(0.8, draft.random.uniform(0.5, 2.5), 0.5)
         radius = draft.random.uniform(0.6, 1.0)
-        for way in (1, -1):
-            draft.program.drive(speed, way * speed / radius, 2 * np.pi * radius / speed)
+        for direction in (1, -1):
+            draft.program.drive(speed, direction * speed / radius, 2 * np.pi * radius / speed)
         draft.program.stand(1.0 + draft.random.uniform(0.5, 2.0))
 
 
@@ -132,7 +132,7 @@ def _scene(name: str) -> str:
 
 
 def _moves(draft: Draft, seconds: float, top: float) -> None:
-    """Arcs, straight lines, turns on the spot, some reverse, stops; up to `top` m/s."""
+    """Drives arcs, straight lines, turns on the spot, some in reverse, and stops; up to `top` m/s."""
     random, program = draft.random, draft.program
     end = program.cycle + round(seconds * 1000)
     while program.cycle < end:
@@ -153,7 +153,7 @@ def _moves(draft: Draft, seconds: float, top: float) -> None:
 
 
 def slip(draft: Draft) -> None:
-    """A minute of spinning, locked and sliding wheels between stretches of normal grip (slip.py)."""
+    """Spins, locks and slides wheels for a minute between stretches of normal grip (slip.py)."""
     kind = slip_trial.KINDS[draft.kind % len(slip_trial.KINDS)]
     draft.scene = slip_trial.slip_world(kind, draft.random)
     draft.controller = slip_trial.HARD_LIMITS

@@ -1,4 +1,4 @@
-"""How robot and sensors of a seed differ from the parameters of the estimator: the priors of the odometry benchmark.
+"""The priors of the odometry benchmark: the differences of a seed's robot and sensors from the estimator's parameters.
 
     wheel radii    left (1 + e), right (1 − e),  e ~ N(0, 0.5 %): their mean, which wheels and IMU do not show, is exact
     wheel base     1 + N(0, 2 %)
@@ -21,7 +21,7 @@ RADIUS_DEVIATION = 0.005
 BASE_DEVIATION = 0.02
 GYRO_BIAS = np.deg2rad(0.1)  # rad/s
 GYRO_SCALE = 0.001
-STREAM = 1  # of the random numbers: the scenarios' are others
+STREAM = 1  # index of this random stream; the scenarios use another one
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Errors:
 
 
 def draw_errors(seed: int) -> Errors:
-    """Of a seed: the same in every scenario, as one robot drives them all."""
+    """Errors of a seed; they are the same in every scenario, as if one robot drove them all."""
     random = np.random.default_rng([STREAM, seed])
     radius = RADIUS_DEVIATION * random.standard_normal()
     base = BASE_DEVIATION * random.standard_normal()

@@ -1,4 +1,4 @@
-"""The odometry beside the simple one, on drives whose sensors err as real ones do: one row per kind of error.
+"""Compares the odometry with the simple one on drives whose sensors err as real ones do: one row per kind of error.
 
 source install/setup.bash; PYTHONPATH=tests:$PYTHONPATH /usr/bin/python3 -m lab.odometry.field_bench --runs 50
 """
@@ -71,7 +71,7 @@ def outcome(errors: Errors, seed: int) -> Outcome:
 
 
 def row(name: str, outcomes: list[Outcome]) -> str:
-    """Of the table."""
+    """A row of the table."""
     ours, simple = (np.array([getattr(one, which) for one in outcomes]) for which in ("ours", "simple"))
     little = LITTLE * np.array([one.distance for one in outcomes])
     ratio = ours / np.maximum(simple, little)

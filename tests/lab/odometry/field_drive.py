@@ -1,7 +1,8 @@
-"""Drives of a wheeled robot whose sensors err as those of real robots do, from a seed.
+"""Drives of a wheeled robot from a seed, with the sensor errors of real robots.
 
-Kinematic, no physics: a path, the wheels' travel on it with slip, and what encoders, gyro and accelerometer of the
-given quality report, each with its own stamps. The defaults are what recordings of real skid steers show.
+The drive is kinematic, without physics. It has a path and the travel of the wheels on it with slip. Encoders, gyro and
+accelerometer of the given quality report it, each with its own stamps. The defaults follow recordings of real skid
+steers.
 
     /usr/bin/python3 -m lab.odometry.field_drive tests/loop/field_drive.npz   # writes the recording of the tests
 """
@@ -25,13 +26,13 @@ _STEP = 1e-3  # s, of the truth
 _SPEED = 0.5  # m/s, at which the vibration is given
 _SLOW_TIME = 3.0  # s, in which the accelerometer's slow error changes
 _GRAVITY = 9.80665
-_TAILS = 0.05  # share of the stamps that are late three times as much
-SEED = 16  # of the recording that stands beside the tests
+_TAILS = 0.05  # share of the stamps that are three times as late
+SEED = 16  # seed of the recording that is stored beside the tests
 
 
 @dataclass(frozen=True)
 class Errors:
-    """What is wrong with the sensors.
+    """The errors of the sensors.
 
     Attributes:
         jitter: s, standard deviation of the wheels' stamps.
@@ -95,7 +96,7 @@ def field_drive(errors: Errors, seed: int, duration: float = 60.0, name: str = "
 
 
 def _motion(time: FloatArray, rest: float, random: np.random.Generator) -> tuple[FloatArray, FloatArray]:
-    """m/s, rad/s: targets that change every two seconds, approached with bounded accelerations."""
+    """m/s, rad/s: targets that change every two seconds, with bounded accelerations."""
     legs = int(time[-1] / 2) + 1
     speeds = random.uniform(0.3, 0.9, legs)
     rates = random.uniform(-1, 1, legs) * (random.random(legs) < 0.6)
@@ -151,7 +152,7 @@ def _inertial(
 
 
 def save(drive: Recording, path: Path) -> None:
-    """Written small: half a millidegree per second and 0.1 mm/s² are less than any sensor's noise."""
+    """Writes small numbers: half a millidegree per second and 0.1 mm/s² are less than any sensor's noise."""
     turn = 2 * np.pi / (drive.counts or 360)
     read, seen = ~np.isnan(drive.left), ~np.isnan(drive.gyro[:, 2])
     np.savez_compressed(
@@ -167,7 +168,7 @@ def save(drive: Recording, path: Path) -> None:
 
 
 def load(path: Path) -> Recording:
-    """What `save` wrote, of the default errors."""
+    """Reads what `save` wrote, with the default errors."""
     errors = Errors()
     turn = 2 * np.pi / errors.counts
     with np.load(path) as data:

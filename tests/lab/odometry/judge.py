@@ -1,9 +1,9 @@
-"""What one run of the odometry benchmark shows of each method: errors, consistency, slip noticed.
+"""Judges one run of the odometry benchmark by method: errors, consistency, detected slip.
 
-position error   |estimated − true position| at the end of the run. UMBmark: of the ten return errors, each in the
-                 frame of its own start, the larger of the two distances of their centres of gravity, one of the
-                 five clockwise runs and one of the five counter-clockwise, from zero (Borenstein & Feng 1996,
-                 section III: E_max,syst). The odometry is reset before each
+position error   |estimated − true position| at the end of the run. In UMBmark each of the ten
+                 return errors lies in the frame of its own start. The error is the larger distance from zero of their
+                 two centres of gravity, clockwise and counter-clockwise (Borenstein & Feng 1996, section III:
+                 E_max,syst). The odometry is reset before each
 yaw error        |estimated − true| at the end, within half a turn. UMBmark: the largest of the ten
 NEES             of consistency.py, every SAMPLE s, where the robot moves: one at rest errs by micrometres and
                  has no dynamics that a covariance could describe
@@ -30,15 +30,15 @@ from lab.odometry.scenarios import draw_trial
 from lab.odometry.tested_estimator import OURS, estimate, resets_of, true_track
 from lab.odometry.truth import Array, Track, Truth, after_resets, moving, truth_of, wrapped
 
-SAMPLE = 10.0  # s, between two looks at the NEES: errors of pose change over many seconds
+SAMPLE = 10.0  # s, between two samples of the NEES: errors of the pose are correlated over many seconds
 SETTLED = 3.0  # s
 
 
 @dataclass(frozen=True)
 class Run:
-    """`position` m and `yaw` rad by method. `pose_nees`, `twist_nees` at `times`, NaN where the robot stands. `returns`
-    (10, 2) m by method: of UMBmark. `killed`: position error of the second half alone, driven without gyro, by method.
-    `drift`: m and rad while it stands.
+    """`position` m and `yaw` rad by method. `pose_nees`, `twist_nees` at `times`, NaN at rest. `returns` (10, 2) m by
+    method, for UMBmark. `killed`: position error of the second half alone, driven without gyro, by method. `drift`: m
+    and rad at rest.
     """
 
     scenario: str
@@ -52,8 +52,8 @@ class Run:
     twist_nees: Array
     notice: Notice
     pitch: float  # rad, RMS while it drives
-    jump: float  # m, most that ours moved from one truth row to the next beyond what the robot did: REP 105 wants none
-    invalid: float  # part of the run in which ours says that it is not valid
+    jump: float  # m, largest step of our pose between truth rows beyond the robot's motion: REP 105 wants none
+    invalid: float  # share of the run in which our state is not valid
     returns: dict[str, Array] = field(default_factory=dict)
     killed: dict[str, float] = field(default_factory=dict)
     drift: tuple[float, float] | None = None
@@ -63,14 +63,12 @@ class Run:
 def run(
     scenario: str, seed: int, level: str = "data_sheet", *, picture: bool = False, cache: Path | None = None
 ) -> Run:
-    """Drives, estimates and compares. `level`: one of sensor_errors.LEVELS. `cache`: folder in which the recording is
-    looked for, and kept.
-    """
+    """Drives, estimates and compares. `level`: one of sensor_errors.LEVELS. `cache`: folder of recordings."""
     return judge(recorded(scenario, seed, level, cache), picture=picture)
 
 
 def recorded(scenario: str, seed: int, level: str, cache: Path | None) -> Recording:
-    """Out of the cache, else driven."""
+    """The recording from the cache; it is driven if it is not there."""
     path = None if cache is None else cache / f"{scenario}_{seed}_{level}.npz"
     if path is not None and path.exists():
         return load_recording(path)
@@ -122,7 +120,7 @@ def relative(path: Track, begin: int, end: int) -> Array:
 
 
 def return_errors(recording: Recording, path: Track, true: Track) -> Array:
-    """(10, 3) m, m, rad: of the clockwise squares, then the others."""
+    """(10, 3) m, m, rad: return errors of the clockwise squares, then of the others."""
     starts = sorted(recording.marks["cw"]) + sorted(recording.marks["ccw"])
     ends = sorted(recording.marks["end"])
     errors = np.zeros((len(starts), 3))
@@ -134,7 +132,7 @@ def return_errors(recording: Recording, path: Track, true: Track) -> Array:
 
 
 def largest_mean(returns: Array) -> float:
-    """m, of (10, 2): the first half clockwise."""
+    """m, of (10, 2); the first half is clockwise."""
     half = len(returns) // 2
     return float(max(np.linalg.norm(returns[:half].mean(axis=0)), np.linalg.norm(returns[half:].mean(axis=0))))
 
@@ -175,5 +173,5 @@ def _drift(recording: Recording, path: Track, truth: Truth) -> tuple[float, floa
     begin = int(np.searchsorted(times, times[np.flatnonzero(moving(truth))[-1]] + SETTLED))
     moved_x, moved_y = path.x - true.x, path.y - true.y
     turned = path.yaw - true.yaw
-    way = np.hypot(moved_x[begin:] - moved_x[begin], moved_y[begin:] - moved_y[begin])
-    return float(way.max()), float(np.abs(turned[begin:] - turned[begin]).max())
+    drift = np.hypot(moved_x[begin:] - moved_x[begin], moved_y[begin:] - moved_y[begin])
+    return float(drift.max()), float(np.abs(turned[begin:] - turned[begin]).max())

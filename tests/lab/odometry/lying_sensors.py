@@ -1,4 +1,4 @@
-"""A sensor of the simulated robot that lies for a time: where the robot is beside where it is said to be."""
+"""Compares the true pose with the estimate after a sensor of the simulated robot was wrong for a time."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ BEGIN = 5.0  # s, of the fault: two seconds after the robot set off
 
 @dataclass(frozen=True)
 class Outcome:
-    """At the end of the drive. Errors over their standard deviations; `stopped`: the monitor braked before."""
+    """Errors at the end of the drive over their standard deviations; `stopped`: the monitor braked before."""
 
     position: float
     yaw: float
@@ -27,7 +27,7 @@ class Outcome:
 
 
 def outcome(sensor: str, kind: str, duration: float, seed: int) -> Outcome:
-    """Of one drive in curves to either side, with a rest at the end."""
+    """Outcome of one drive in curves to either side, with a rest at the end."""
     program = Program()
     program.stand(3.0)
     program.drive(0.5, 0.3, 5.0)

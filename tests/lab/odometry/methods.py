@@ -1,4 +1,4 @@
-"""What the estimator is compared with: the usual odometries, each a few lines, in the plane of the ground.
+"""The usual odometries, with which the estimator is compared, in the plane of the ground.
 
     raw wheels         Δs = (r Δφ_r + r Δφ_l)/2      Δθ = (r Δφ_r − r Δφ_l)/b      r, b as the robot is described
     calibrated wheels  the same with the true radii r_l, r_r and the true base: what a perfect calibration could reach
@@ -13,8 +13,8 @@ b̂ is a scalar Kalman filter with the true noise densities σ, s of the gyro (s
     while it moves                             P += s² Δt
     after T s of standstill, ω̄ its mean        K = P/(P + σ²/T)    b̂ += K (ω̄ − b̂)    P −= K P
 
-It stands where neither wheel moves by more than a count for STILL seconds and the gyro's mean is under 0.01 rad/s then.
-The first and last STILL seconds of a standstill are not used: there it may still rock.
+The robot stands if neither wheel moves by more than a count for STILL seconds and the gyro's mean is under 0.01 rad/s.
+The first and last STILL seconds of a standstill are not used, because it may still rock.
 """
 
 from __future__ import annotations
@@ -29,17 +29,17 @@ from lab.odometry.truth import Array, Track
 STILL = 0.1  # s
 COUNT = 2 * np.pi / 4096 * 1.01  # rad, of the plant's encoders
 QUIET = 0.01  # rad/s
-GYRO_NOISE, GYRO_WALK = 2.44e-4, 8.7e-6  # rad/s/√Hz, rad/s/√s: of the plant
+GYRO_NOISE, GYRO_WALK = 2.44e-4, 8.7e-6  # rad/s/√Hz, rad/s/√s: those of the plant
 
 
 def raw_wheels(recording: Recording) -> Track:
-    """By the numbers of the description."""
+    """The path by the numbers of the description."""
     radius, base = recording.nominal["wheel_radius"], recording.nominal["wheel_base"]
     return _wheels(recording, radius, radius, base)
 
 
 def calibrated_wheels(recording: Recording) -> Track:
-    """By the true ones."""
+    """The path by the true numbers."""
     radius, base = recording.nominal["wheel_radius"], recording.nominal["wheel_base"]
     errors = recording.errors
     return _wheels(
@@ -63,7 +63,7 @@ def simple_odometry(recording: Recording) -> Track:
 
 
 def standing(recording: Recording) -> NDArray[np.bool_]:
-    """(N,): it stands in this cycle."""
+    """(N,): true in cycles at rest."""
     window = round(STILL / _period(recording))
     quiet = np.abs(_mean_before(recording.gyro[:, 2], window)) < QUIET
     for angle in (recording.left, recording.right):
@@ -124,7 +124,7 @@ def _integrated(recording: Recording, rate: Array) -> Array:
 
 
 def _sampled(recording: Recording, distance: Array, yaw: Array) -> Track:
-    """From distance and heading of each cycle to the poses at the truth rows."""
+    """Poses at the truth rows from distance and heading of each cycle."""
     step, heading = np.diff(distance), (yaw[1:] + yaw[:-1]) / 2
     x = np.concatenate([[0.0], np.cumsum(step * np.cos(heading))])
     y = np.concatenate([[0.0], np.cumsum(step * np.sin(heading))])

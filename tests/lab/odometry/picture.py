@@ -1,4 +1,4 @@
-"""What a plot needs of one run, at 20 Hz."""
+"""The data of one run for a plot, at 20 Hz."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ EVERY = 5  # truth rows
 
 @dataclass(frozen=True)
 class Picture:
-    """`deviation` m: of the position, along its worst direction."""
+    """`deviation` m: standard deviation of the position along its worst direction."""
 
     time: Array
     distance: Array
@@ -28,7 +28,7 @@ class Picture:
 
 
 def picture_of(recording: Recording, truth: Truth, ours: Ours, paths: dict[str, Track]) -> Picture:
-    """Out of what was judged; `paths` by method, ours among them."""
+    """Reduces the judged data; `paths` by method, ours among them."""
 
     def thin(path: Track) -> Track:
         return Track(path.x[::EVERY], path.y[::EVERY], path.yaw[::EVERY])

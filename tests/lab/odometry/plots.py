@@ -1,4 +1,4 @@
-"""The odometry benchmark as pictures: what one sees at a glance beside its table."""
+"""Draws the odometry benchmark as pictures beside its table."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from robot_control.common.picture_style import STYLE
 from lab.odometry.consistency import ROLLING, SLIPPING
 from lab.odometry.judge import SAMPLE, Run
 from lab.odometry.picture import Picture
-from lab.odometry.promises import CALIBRATED, RAW, SIMPLE, mean_nees, of
+from lab.odometry.promises import CALIBRATED, RAW, SIMPLE, mean_nees, runs_of
 from lab.odometry.tested_estimator import OURS
 
 if TYPE_CHECKING:
@@ -33,14 +33,14 @@ TRUE, SLIP = "black", "#c0392b"
 
 
 def draw_all(runs: Sequence[Run], folder: Path) -> None:
-    """Writes those for which there are runs: PNG, 110 dots per inch."""
-    there = {run.scenario for run in runs}
+    """Writes the pictures of all present runs: PNG, 110 dots per inch."""
+    present = {run.scenario for run in runs}
     pictured = {run.scenario: run.picture for run in runs if run.picture is not None}
     with mpl.rc_context(STYLE):
-        if "umbmark" in there:
-            _save(_umbmark(of(runs, "umbmark")), folder / "umbmark.png")
-        if "random" in there:
-            _save(_consistency(of(runs, "random")), folder / "nees.png")
+        if "umbmark" in present:
+            _save(_umbmark(runs_of(runs, "umbmark")), folder / "umbmark.png")
+        if "random" in present:
+            _save(_consistency(runs_of(runs, "random")), folder / "nees.png")
         if "random" in pictured:
             _save(_random_drive(pictured["random"]), folder / "random_drive.png")
         if "slip" in pictured:
@@ -67,8 +67,8 @@ def _umbmark(runs: Sequence[Run]) -> plt.Figure:
 def _returns(axes: Axes, runs: Sequence[Run], methods: Sequence[str], scale: float) -> None:
     for method in methods:
         means = np.array([run.returns[method].reshape(2, -1, 2).mean(axis=1) for run in runs]) * scale
-        for way, marker, size in ((0, "v", 42), (1, "o", 34)):
-            axes.scatter(*means[:, way].T, marker=marker, s=size, color=COLOURS[method], alpha=0.7, lw=0)
+        for direction, marker, size in ((0, "v", 42), (1, "o", 34)):
+            axes.scatter(*means[:, direction].T, marker=marker, s=size, color=COLOURS[method], alpha=0.7, lw=0)
         axes.plot([], [], "s", color=COLOURS[method], label=method)
     for name, marker in (("clockwise", "v"), ("counter-clockwise", "o")):
         axes.plot([], [], marker, color="none", markeredgecolor="black", label=name)

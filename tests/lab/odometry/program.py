@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 PERIOD = 0.001  # s, of the default rate
-RAMP = 0.15  # s, that the default jerk limits add to a ramp of v/a seconds
+RAMP = 0.15  # s that the default jerk limits add to a ramp of v/a seconds
 
 Array = NDArray[np.float64]
 
 
 class Program:
-    """Commands one after the other."""
+    """Collects commands one after the other."""
 
     def __init__(self) -> None:
         self._parts: list[Array] = []
@@ -20,7 +20,7 @@ class Program:
 
     @property
     def cycle(self) -> int:
-        """Number of the next one."""
+        """Number of the next cycle."""
         return self._cycles
 
     @property
@@ -29,16 +29,17 @@ class Program:
         return np.concatenate(self._parts)
 
     def drive(self, linear: float, angular: float, seconds: float) -> None:
-        """One command for so long."""
+        """Adds one command for `seconds`."""
         self._add(np.tile((linear, angular), (max(1, round(seconds / PERIOD)), 1)))
 
     def stand(self, seconds: float) -> None:
-        """Zero for so long; the ramp to rest is part of it."""
+        """Adds a zero for `seconds`, which include the ramp to rest."""
         self.drive(0.0, 0.0, seconds)
 
     def ramp(self, linear: float, angular: float, acceleration: float) -> None:
-        """From the last command to this one, straight: a wheel 0.25 m beside the middle changes by `acceleration`
-        m/s² at most, whatever the controller's limits.
+        """Adds a linear ramp from the last command to this one, whatever the controller's limits are.
+
+        A wheel 0.25 m beside the middle changes by at most `acceleration` m/s².
         """
         last = self._parts[-1][-1] if self._parts else np.zeros(2)
         change = abs(linear - last[0]) + 0.25 * abs(angular - last[1])
@@ -47,14 +48,14 @@ class Program:
         self._add(last + part * (np.array([linear, angular]) - last))
 
     def ways(self, linear: float, metres: float, pause: float) -> None:
-        """Straight on by `metres` as the wheels count them, then rest: the way lost in the ramp up is that of the
-        ramp down, so that speed times seconds is exact under any limits that are alike both ways.
+        """Drives straight on by `metres` as the wheels count them, then rests. The ramp down adds the way that the ramp
+        up loses. So speed times seconds is exact under any limits that are equal both ways.
         """
         self.drive(linear, 0.0, metres / abs(linear))
         self.stand(abs(linear) / 1.0 + RAMP + pause)
 
     def turn(self, angular: float, angle: float, pause: float) -> None:
-        """On the spot by `angle` rad, likewise; `angular` rad/s has its sign."""
+        """Turns on the spot by `angle` rad with the same exactness; `angular` rad/s has its sign."""
         self.drive(0.0, angular, abs(angle / angular))
         self.stand(abs(angular) / 4.0 + RAMP + pause)
 

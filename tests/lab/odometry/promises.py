@@ -1,7 +1,7 @@
-"""What the odometry promises, each with its measured figure: `scripts/bench odometry`.
+"""The promises of the odometry, each with its measured figure: `scripts/bench odometry`.
 
-The bounds are those of the project's requirements. They hold for robots and sensors as errors.py draws them,
-in the drives of scenarios.py, judged as judge.py says; "with n seeds" where fewer prove less.
+The bounds are those of the project's requirements. They hold for robots and sensors of errors.py, in the drives of
+scenarios.py, judged by judge.py. A row says "with n seeds" if fewer seeds prove less.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from lab.odometry.tested_estimator import OURS
 from lab.odometry.truth import Array
 
 SIMPLE, RAW, CALIBRATED = "simple odometry", "raw wheels", "calibrated wheels"
-WITHOUT_SLIP = "random"  # the scenario whose NEES is judged; within default limits on dry ground nothing slips
-WORTH = 0.2  # m, that calibrated wheels have to err by for a slip run to count
+WITHOUT_SLIP = "random"  # its NEES is judged; within default limits on dry ground nothing slips
+WORTH = 0.2  # m; a slip run counts only if calibrated wheels err by more
 
 
 @dataclass(frozen=True)
 class Promise:
-    """`bound` is the most that `value` may be; with `least`, the least."""
+    """`bound` is the upper bound of `value`; with `least` it is the lower one."""
 
     name: str
     value: float
@@ -35,7 +35,7 @@ class Promise:
 
     @property
     def kept(self) -> bool:
-        """NaN is not."""
+        """True if the bound holds; NaN never does."""
         return self.value >= self.bound if self.least else self.value <= self.bound
 
     def __str__(self) -> str:
@@ -43,26 +43,26 @@ class Promise:
         return f"{self.name}: {self.value:.4g} {self.unit}, promised {rule} {self.bound:.4g}".replace(" ,", ",")
 
 
-def of(runs: Sequence[Run], scenario: str) -> list[Run]:
-    """Those of one scenario."""
+def runs_of(runs: Sequence[Run], scenario: str) -> list[Run]:
+    """The runs of one scenario."""
     return [run for run in runs if run.scenario == scenario]
 
 
 def positions(runs: Sequence[Run], scenario: str, method: str = OURS) -> Array:
     """m, by seed."""
-    return np.array([run.position[method] for run in of(runs, scenario)])
+    return np.array([run.position[method] for run in runs_of(runs, scenario)])
 
 
 def yaws(runs: Sequence[Run], scenario: str, method: str = OURS) -> Array:
     """degrees, by seed."""
-    return np.rad2deg([run.yaw[method] for run in of(runs, scenario)])
+    return np.rad2deg([run.yaw[method] for run in runs_of(runs, scenario)])
 
 
 def all_promises(runs: Sequence[Run], level: str = "data_sheet") -> list[Promise]:
-    """Of the scenarios that there are runs of; beyond the errors of the data sheet, those of the field."""
+    """The promises of all present scenarios; beyond the errors of the data sheet, those of the field."""
     if level != "data_sheet":
         return field(runs)
-    there = {run.scenario for run in runs}
+    present = {run.scenario for run in runs}
     promises = []
     for scenario, part in {
         "umbmark": umbmark,
@@ -70,18 +70,18 @@ def all_promises(runs: Sequence[Run], level: str = "data_sheet") -> list[Promise
         "standstill": standstill,
         "slip": slip,
     }.items():
-        if scenario in there:
+        if scenario in present:
             promises += part(runs)
     return promises + false_alarms(runs) + never_worse(runs)
 
 
 def field(runs: Sequence[Run]) -> list[Promise]:
-    """Of sensors that err as in the field."""
+    """Promises for sensors that err as in the field."""
     promises = []
-    if of(runs, "umbmark"):
+    if runs_of(runs, "umbmark"):
         promises.append(Promise("UMBmark, mean", 1e3 * positions(runs, "umbmark").mean(), 30, "mm"))
-    if of(runs, "slip"):
-        notices = [run.notice for run in of(runs, "slip")]
+    if runs_of(runs, "slip"):
+        notices = [run.notice for run in runs_of(runs, "slip")]
         spins, reported = sum(each.spins for each in notices), sum(each.reported for each in notices)
         worst = float((positions(runs, "slip") / positions(runs, "slip", RAW)).max())
         promises += [
@@ -92,7 +92,7 @@ def field(runs: Sequence[Run]) -> list[Promise]:
 
 
 def umbmark(runs: Sequence[Run]) -> list[Promise]:
-    """Largest mean return error."""
+    """Promises on the largest mean return error."""
     ours, raw = positions(runs, "umbmark"), positions(runs, "umbmark", RAW)
     return [
         Promise("UMBmark, worst seed", 1e3 * ours.max(), 40, "mm"),
@@ -102,8 +102,8 @@ def umbmark(runs: Sequence[Run]) -> list[Promise]:
 
 
 def random_drive(runs: Sequence[Run]) -> list[Promise]:
-    """Ten minutes; and the second half of them without gyro."""
-    drives = of(runs, "random")
+    """Promises on ten minutes, and on their second half without gyro."""
+    drives = runs_of(runs, "random")
     share = 100 * np.array([run.position[OURS] / run.distance for run in drives])
     yaw = yaws(runs, "random")
     killed = {name: float(np.median([run.killed[name] for run in drives])) for name in (OURS, RAW)}
@@ -118,8 +118,8 @@ def random_drive(runs: Sequence[Run]) -> list[Promise]:
 
 
 def standstill(runs: Sequence[Run]) -> list[Promise]:
-    """Ten minutes of it, the worst seed."""
-    drifts = np.array([run.drift for run in of(runs, "standstill")])
+    """Promises on ten minutes at rest, the worst seed."""
+    drifts = np.array([run.drift for run in runs_of(runs, "standstill")])
     return [
         Promise("standstill, way in 10 min", 1e3 * drifts[:, 0].max(), 0.1, "mm"),
         Promise("standstill, yaw in 10 min", np.rad2deg(drifts[:, 1].max()), 0.01, "°"),
@@ -127,12 +127,12 @@ def standstill(runs: Sequence[Run]) -> list[Promise]:
 
 
 def slip(runs: Sequence[Run]) -> list[Promise]:
-    """A minute of it each."""
+    """Promises on a minute of slip in each run."""
     ours, wheels = positions(runs, "slip"), positions(runs, "slip", CALIBRATED)
     worth = wheels > WORTH
-    notices = [run.notice for run in of(runs, "slip")]
+    notices = [run.notice for run in runs_of(runs, "slip")]
     noticed = sum(each.noticed for each in notices) / max(1, sum(each.slipping for each in notices))
-    nees = np.concatenate([run.pose_nees for run in of(runs, "slip")])
+    nees = np.concatenate([run.pose_nees for run in runs_of(runs, "slip")])
     better = float(np.mean(wheels[worth] >= 5 * ours[worth])) if worth.any() else math.nan
     return [
         Promise("slip, 5 × better than wheels", 100 * better, 80, "% of runs", least=True),
@@ -143,10 +143,10 @@ def slip(runs: Sequence[Run]) -> list[Promise]:
 
 
 def false_alarms(runs: Sequence[Run]) -> list[Promise]:
-    """Of all runs of a scenario together, where no wheel slips by more than 5 %."""
+    """Promises on all runs of a scenario together, in rows in which no wheel slips by more than 5 %."""
     promises = []
     for scenario in SCENARIOS:
-        notices = [run.notice for run in of(runs, scenario)]
+        notices = [run.notice for run in runs_of(runs, scenario)]
         if notices and scenario != "standstill":
             alarms = sum(each.alarms for each in notices) / max(1, sum(each.rolling for each in notices))
             promises.append(Promise(f"false alarms, {scenario}", 100 * alarms, 3, "% of time"))
@@ -154,9 +154,9 @@ def false_alarms(runs: Sequence[Run]) -> list[Promise]:
 
 
 def never_worse(runs: Sequence[Run]) -> list[Promise]:
-    """Than 1.1 × the simple odometry: ratio of the medians over the seeds, in every scenario."""
+    """Promise to stay below 1.1 × the simple odometry: ratio of the medians over the seeds, in every scenario."""
     promises = []
-    for scenario in (name for name in SCENARIOS if of(runs, name)):
+    for scenario in (name for name in SCENARIOS if runs_of(runs, name)):
         for what, errors in (("position", positions), ("yaw", yaws)):
             ratio = np.median(errors(runs, scenario)) / np.median(errors(runs, scenario, SIMPLE))
             promises.append(Promise(f"{scenario}, {what} over simple odometry's", float(ratio), 1.1, ""))
@@ -164,14 +164,14 @@ def never_worse(runs: Sequence[Run]) -> list[Promise]:
 
 
 def in_band(runs: Sequence[Run], what: str) -> float:
-    """Part of the sampled times at which the mean NEES over the runs is inside the band."""
+    """Share of the sampled times at which the mean NEES over the runs is inside the band."""
     _, means, low, high = mean_nees(runs, what)
     return float(np.mean((means >= low) & (means <= high)))
 
 
 def mean_nees(runs: Sequence[Run], what: str) -> tuple[Array, Array, Array, Array]:
-    """(K,) each: time s, mean over the runs that move then, and the band of as many; of the sampled times that all runs
-    reach, those at which any moves.
+    """(K,) each: time s, mean over the runs in motion, and the band for as many runs. The times are those that all runs
+    reach, with any of them in motion.
     """
     series = [run.pose_nees if what == "pose" else run.twist_nees for run in runs]
     count = min(len(each) for each in series)

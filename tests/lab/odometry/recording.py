@@ -1,4 +1,4 @@
-"""What a trial's sensors measured, beside the truth, kept in memory or as .npz: estimators are tried on it, offline.
+"""The measurements of a trial's sensors beside the truth, in memory or as .npz: estimators are tried on them offline.
 
 python3 -P -m lab.odometry.recording FOLDER slip 0 30     # seeds 0 … 29 → FOLDER/slip_0.npz …
 """
@@ -29,11 +29,11 @@ class Recording:
     """N cycles of 1 ms, M = N/10 rows of truth. `base` and `imu` axes are those of the links, REP 103.
 
     Measured: `time` (N,) s; `left`, `right` (N,) rad, encoder angles; `gyro` (N, 3) rad/s, `accel` (N, 3) m/s² in IMU
-    axes. Truth, at the cycles `index` (M,): `position` (M, 3) m and `orientation` (M, 4) x y z w of base_link from
-    where it was at cycle 0, x its heading there, z the ground's normal; `linear` (M, 3) m/s, `angular` (M, 3) rad/s in
-    base axes; `wheel_speed` (M, 2) rad/s, left and right; `slip` (M, 2) m/s, speed of the contact patches over the
-    ground; `load` (M, 2) N. `up` (3,): away from the earth, in truth's axes. `stopped`: the safety monitor ever braked.
-    `nominal`: wheel_radius, wheel_base in m; `errors`: what is really so, relative to it.
+    axes. `index` (M,) has the cycles of the truth. `position` (M, 3) m and `orientation` (M, 4) x y z w are base_link's
+    pose relative to cycle 0: x ahead, z the ground's normal. `linear` (M, 3) m/s and `angular` (M, 3) rad/s are in base
+    axes; `wheel_speed` (M, 2) rad/s is left and right. `slip` (M, 2) m/s is the speed of the contact patches over the
+    ground; `load` (M, 2) is in N. `up` (3,) points away from the earth, in truth's axes. `stopped`: the safety monitor
+    ever braked. `nominal` has wheel_radius and wheel_base in m; `errors` has the true values relative to them.
     """
 
     scenario: str
@@ -58,7 +58,7 @@ class Recording:
     marks: dict[str, list[int]]
 
     def save(self, path: Path) -> None:
-        """As .npz; numbers and dicts as the JSON text `about`."""
+        """Writes .npz; numbers and dicts go into the JSON text `about`."""
         arrays: dict[str, Any] = {}
         about: dict[str, Any] = {}
         for field in dataclasses.fields(self):
@@ -69,7 +69,7 @@ class Recording:
 
 
 def load_recording(path: Path) -> Recording:
-    """What `save` wrote."""
+    """Reads what `save` wrote."""
     with np.load(path) as file:
         about: dict[str, Any] = json.loads(str(file["about"]))
         arrays = {key: file[key] for key in file.files if key != "about"}
@@ -78,10 +78,10 @@ def load_recording(path: Path) -> Recording:
 
 
 def record(trial: Trial) -> Recording:
-    """Drives it."""
+    """Drives a trial and records it."""
     loop = _loop(trial)
     parts: list[dict[str, Array]] = []
-    block = 60_000 // TRUTH_EVERY * TRUTH_EVERY  # cycles whose truth of every cycle is held at once
+    block = 60_000 // TRUTH_EVERY * TRUTH_EVERY  # cycles whose truth is held at once
     for first in range(0, len(trial.commands), block):
         log = loop.record(trial.commands[first : first + block])
         for name in ("position", "orientation", "linear", "angular", "wheel_speed", "slip", "load"):
@@ -113,7 +113,7 @@ def _loop(trial: Trial) -> ClosedLoop:
 
 
 def main() -> None:
-    """Records into a folder."""
+    """Records trials into a folder."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
     parser.add_argument("scenario", choices=list(SCENARIOS))

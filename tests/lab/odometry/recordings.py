@@ -1,4 +1,4 @@
-"""Drives of real robots that were recorded, and a simple odometry of each to compare with.
+"""Recorded drives of real robots, and a simple odometry of each for comparison.
 
 NumPy archives of public recordings, in the folder that ROBOT_RECORDINGS names. They are not part of the project: a test
 that needs one skips where the folder is absent.
@@ -37,9 +37,9 @@ NAMES = (
 
 _SKID_COUNTS = 360  # of a wheel's turn
 _VACUUM_COUNTS = 508.8
-_VEHICLE_RADIUS, _VEHICLE_BASE = 0.3, 1.0  # m: it gives speeds and rates; any pair gives them back
-_OUTDOOR_END = 121.0  # s; then its recorder has gaps
-_TIME_STEP = 1e-6  # s between two rows at least: some stamps are equal
+_VEHICLE_RADIUS, _VEHICLE_BASE = 0.3, 1.0  # m: any pair gives the speeds and rates back
+_OUTDOOR_END = 121.0  # s; after it its recorder has gaps
+_TIME_STEP = 1e-6  # s between two rows at least, because some stamps are equal
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ class Recording:
 
 
 def recordings_folder() -> Path | None:
-    """The folder of recordings; None where none is named."""
+    """The folder of recordings; None if no folder is named."""
     named = os.environ.get("ROBOT_RECORDINGS")
     return Path(named) if named else None
 
@@ -108,7 +108,7 @@ def recording(name: str) -> Recording:
 
 
 def without_beginning(drive: Recording, begin: float) -> Recording:
-    """From `begin` s on, as if it had been switched on there. It has no truth."""
+    """The drive from `begin` s on, as if it had been switched on there. It has no truth."""
     rest = drive.time >= begin
     names = ("left", "right", "gyro", "accel")
     columns = {name: getattr(drive, name)[rest] for name in names}
@@ -182,7 +182,7 @@ def _outdoor(name: str, data: Mapping[str, FloatArray]) -> Recording:
 
 
 def _vehicle(name: str, data: Mapping[str, FloatArray]) -> Recording:
-    """Its IMU's frame is left-handed; which of the horizontal axes is mirrored is not known."""
+    """Its IMU's frame is left-handed; the data do not show which horizontal axis is mirrored."""
     since = np.diff(data["odom_time"], prepend=data["odom_time"][0])
     forward = np.cumsum(data["odom_linear"] * since)
     half_turn = np.cumsum(data["odom_angular"] * since) * _VEHICLE_BASE / 2
@@ -203,23 +203,23 @@ def _rest_of(rows: tuple[FloatArray, ...]) -> float:
 
 
 def simple_path(drive: Recording) -> FloatArray:
-    """(n, 3) x, y, yaw: wheels for the distance, gyro minus its mean of the rest at the beginning for the heading."""
+    """(n, 3) x, y, yaw: distance by the wheels, heading by the gyro minus its mean in the first rest."""
     seen = ~np.isnan(drive.gyro[:, 2])
     time, rate = drive.time[seen], drive.gyro[seen, 2]
-    # A wheel's first count may come late: the last tenths of a second before it may not be rest.
+    # A wheel's first count may come late, so the last tenths of a second before it may not be rest.
     rests = time < drive.rest - min(0.5, drive.rest / 4)
     bias = rate[rests].mean() if rests.any() else 0.0
     turned = np.concatenate([[0], np.cumsum(np.diff(time) * (rate[1:] + rate[:-1]) / 2)])
     yaw = np.interp(drive.time, time, turned - bias * (time - time[0]))
     read = ~np.isnan(drive.left)
-    way = np.interp(drive.time, drive.time[read], drive.radius * (drive.left + drive.right)[read] / 2)
+    travel = np.interp(drive.time, drive.time[read], drive.radius * (drive.left + drive.right)[read] / 2)
     middle = yaw - np.diff(yaw, prepend=yaw[0]) / 2
-    steps = np.diff(way, prepend=way[0])
+    steps = np.diff(travel, prepend=travel[0])
     return np.column_stack([np.cumsum(steps * np.cos(middle)), np.cumsum(steps * np.sin(middle)), yaw])
 
 
 def aligned_rms(path: FloatArray, reference: FloatArray) -> float:
-    """m: (n, 2) against (n, 2) after the rigid motion of the plane that fits best."""
+    """m: (n, 2) against (n, 2) after the best rigid motion of the plane."""
     a, b = path - path.mean(axis=0), reference - reference.mean(axis=0)
     angle = np.arctan2(np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]), np.sum(a * b))
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])

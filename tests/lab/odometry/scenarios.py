@@ -1,7 +1,7 @@
 """What is driven in the odometry benchmark: scenario and seed → robot, world, commands. A pure function of both.
 
-Every run begins with FIRST_STAND s of standstill, as a robot does that is switched on. Controllers use no pose, so what
-the sensors see does not depend on who estimates.
+Every run begins with FIRST_STAND s of standstill, as a robot does that is switched on. Controllers use no pose, so the
+sensors' data do not depend on the estimator.
 """
 
 from __future__ import annotations
@@ -18,20 +18,20 @@ from lab.odometry.drives import FIRST_STAND, Draft
 from lab.odometry.errors import Errors, draw_errors
 from lab.odometry.program import Array
 
-SCENARIO_STREAM = 2  # of the random numbers: those of errors.py are others
+SCENARIO_STREAM = 2  # index of this random stream; errors.py uses another one
 
 
 @dataclass(frozen=True)
 class Trial:
-    """One run. `params`: over the defaults. `scene`: text of an MJCF world; "": that of the parameters.
-    `marks`: cycles at which something begins, by what it is. `up`: away from the centre of the earth, in truth's axes
-    (z of those is the ground's normal).
+    """One run. `params` lie over the defaults. `scene` is the text of an MJCF world; "" stands for that of the
+    parameters. `marks` has the cycles of events by name. `up` points away from the centre of the earth, in truth's axes
+    (their z is the ground's normal).
     """
 
     scenario: str
     seed: int
     errors: Errors
-    plant_seed: int  # of the sensors' random numbers
+    plant_seed: int  # seed of the sensors' random numbers
     params: dict[str, Any]
     commands: Array
     scene: str = ""

@@ -1,7 +1,7 @@
-"""A sensor that fails for a short time while the robot drives; then it stands for 20 s, then it drives again.
+"""A sensor fails for a short time while the robot drives; then the robot stands for 20 s and drives again.
 
-One drive in lockstep, whose samples are spoiled afterwards: the controllers use no pose, so what the sensors see does
-not depend on the estimate. Judged against the same drive with sound sensors.
+One drive in lockstep is recorded, and its samples are spoiled afterwards. The controllers use no pose, so the sensors'
+data do not depend on the estimate. The reference is the same drive with healthy sensors.
 
     source install/setup.bash; PYTHONPATH=tests:$PYTHONPATH /usr/bin/python3 -m lab.odometry.short_faults
 """
@@ -22,7 +22,7 @@ SENSORS = ("gyro", "accelerometer", "left encoder", "both encoders")
 DURATIONS = (0.02, 0.3, 1.0, 3.0)  # s
 BEGIN = 7.0  # s, of the fault: two seconds after the robot set off
 STOPPED, SETTLED, AGAIN = 12.5, 14.5, 32.0  # s: at rest, 2 s later, before it sets off again
-GYRO, FORCE = 5.0, 30.0  # rad/s, m/s²: how far a fault reaches
+GYRO, FORCE = 5.0, 30.0  # rad/s, m/s²: size of the wrong values
 ANGLE = 5.0  # rad, of an encoder
 
 Spoil = Callable[[Array, float, np.random.Generator], Array]
@@ -72,13 +72,13 @@ class Drive:
     yaw: Array
 
     def row(self, time: float) -> int:
-        """Of that moment, s."""
+        """Row of that time, s."""
         return int(np.searchsorted(self.time, time))
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """Of one combination.
+    """Verdict on one combination.
 
     Attributes:
         speed: m/s, two seconds after the rest began.
@@ -97,7 +97,7 @@ class Verdict:
     distance: float
 
     def broken(self) -> list[str]:
-        """What is not as it has to be."""
+        """The bounds that do not hold."""
         allowed = max(2 * self.plain, 0.005 * self.distance)
         found = []
         if not self.speed <= 0.002:
@@ -112,7 +112,7 @@ class Verdict:
 
 
 def drive(seed: int = 0) -> Drive:
-    """With the errors of a data sheet."""
+    """Drives with the errors of a data sheet."""
     program = Program()
     program.stand(5.0)
     program.drive(0.5, 0.3, 6.0)
@@ -138,7 +138,7 @@ def drive(seed: int = 0) -> Drive:
 
 
 def estimate(sound: Drive, kind: str | None = None, sensor: str = "", duration: float = 0.0) -> Estimate:
-    """Of the drive with that fault."""
+    """Estimate of the drive with that fault."""
     samples = {
         "left": sound.left.copy(),
         "right": sound.right.copy(),
@@ -186,7 +186,7 @@ def _relative(path: Array, begin: int) -> Array:
 
 
 def _vertical(attitude: Array) -> float:
-    """Of the robot's z axis, its part along the vertical."""
+    """Vertical component of the robot's z axis."""
     x, y, _, _ = attitude
     return float(1 - 2 * (x * x + y * y))
 

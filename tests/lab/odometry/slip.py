@@ -1,7 +1,7 @@
-"""Drives on which wheels spin, lock and slide between stretches of normal grip: the slip runs of the benchmark.
+"""The slip runs of the benchmark: wheels spin, lock and slide between stretches of normal grip.
 
-The controller's limits are raised to 8 m/s², more than any of this ground carries and than the motors give; gentle
-stretches are ramped by the commands themselves. The safety monitor, which would stop such driving, only watches.
+The controller's limits are raised to 8 m/s², more than any of this ground carries and than the motors give. The
+commands themselves ramp gentle stretches. The safety monitor, which would stop such driving, only watches.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ KINDS = ("straight", "turns", "patches", "one side", "kerbs", "wall")
 SECONDS = 60.0
 GRAVITY = 9.81
 
-# m/s², rad/s²; no jerk limit: as hard as the motors can.
+# m/s², rad/s²; without a jerk limit the motors give all they can.
 HARD_LIMITS: dict[str, Any] = {
     "max_linear_acceleration": 8.0,
     "max_angular_acceleration": 32.0,
@@ -85,7 +85,7 @@ def _patch(number: int, random: np.random.Generator, length: float, width: float
 
 
 def slip_drive(kind: str, random: np.random.Generator, program: Program) -> None:
-    """A minute of it."""
+    """Drives a slip run of a minute."""
     if kind == "wall":
         _wall(random, program)
         return

@@ -1,4 +1,4 @@
-"""Drives whose wheels report speeds in steps, as some drives of motors do, and whose radius is off."""
+"""Drives with a wrong radius and wheels that report speeds in steps, as some motor drives do."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ERRORS = Errors(accelerometer=0.01, slow=0.02, counts=1e6, slip=1e-3)
 
 @dataclass(frozen=True)
 class Outcome:
-    """Shares of the time: within the 95 % ellipse of the position, called slip."""
+    """Shares of the time: with the truth in the 95 % ellipse of the position, and with reported slip."""
 
     within: float
     slip: float

@@ -1,4 +1,4 @@
-"""The odometry benchmark as lines of text."""
+"""Prints the odometry benchmark as lines of text."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from lab.odometry.judge import Run
 from lab.odometry.methods import METHODS
-from lab.odometry.promises import CALIBRATED, of, positions, yaws
+from lab.odometry.promises import CALIBRATED, positions, runs_of, yaws
 from lab.odometry.scenarios import SCENARIOS
 from lab.odometry.slip import KINDS
 from lab.odometry.tested_estimator import OURS
@@ -21,12 +21,12 @@ def table(runs: Sequence[Run]) -> list[str]:
     """Errors of each method by scenario; how honest ours is; slip runs by their kind."""
     lines = _errors(runs)
     lines += ["", *_by_scenario(runs)]
-    return [*lines, "", *_by_kind(of(runs, "slip"))] if of(runs, "slip") else lines
+    return [*lines, "", *_by_kind(runs_of(runs, "slip"))] if runs_of(runs, "slip") else lines
 
 
 def _errors(runs: Sequence[Run]) -> list[str]:
     lines = [f"{'median / p95 over seeds':<26}" + "".join(f"{name:>20}" for name in NAMES)]
-    for scenario in (name for name in SCENARIOS if of(runs, name)):
+    for scenario in (name for name in SCENARIOS if runs_of(runs, name)):
         for what, values, unit, scale in (("position", positions, "mm", 1e3), ("yaw", yaws, "°", 1.0)):
             cells = [_spread(scale * values(runs, scenario, name)) for name in NAMES]
             lines.append(f"{f'{scenario}, {what} [{unit}]':<26}" + "".join(f"{cell:>20}" for cell in cells))
@@ -46,8 +46,8 @@ def _by_scenario(runs: Sequence[Run]) -> list[str]:
         "jump [mm]",
     )
     lines = [f"{'mean':<26}" + "".join(f"{title:>14}" for title in titles)]
-    for scenario in (name for name in SCENARIOS if of(runs, name)):
-        some = of(runs, scenario)
+    for scenario in (name for name in SCENARIOS if runs_of(runs, name)):
+        some = runs_of(runs, scenario)
         cells = [
             float(len(some)),
             np.mean([run.distance for run in some]),
@@ -62,7 +62,7 @@ def _by_scenario(runs: Sequence[Run]) -> list[str]:
 
 
 def _noticed(runs: Sequence[Run]) -> list[float]:
-    """%: of the time with slip that is flagged, of the time without that is, of all time that slips."""
+    """%: flagged share of the time with slip, of the time without slip, and share of the time with slip."""
 
     def total(of_run: Callable[[Run], int]) -> int:
         return sum(map(of_run, runs))

@@ -1,4 +1,4 @@
-"""The estimator under judgement: robot_control.Estimator with default parameters, over a recording."""
+"""Runs the tested estimator, robot_control.Estimator with default parameters, over a recording."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ DRIVEN = [0, 5]
 
 @dataclass(frozen=True)
 class Ours:
-    """At the M truth rows. `pose_covariance` (M, 3, 3) of x, y, yaw; `twist_covariance` (M, 2, 2) of `linear` m/s and
-    `angular` rad/s; `slip`, `valid`: flags.
+    """The estimate at the M truth rows. `pose_covariance` (M, 3, 3) is that of x, y, yaw, `twist_covariance` (M, 2, 2)
+    that of `linear` m/s and `angular` rad/s; `slip`, `valid` are flags.
     """
 
     path: Track
@@ -35,7 +35,7 @@ class Ours:
 
 
 def estimate(recording: Recording, gyro_until: float = np.inf) -> Ours:
-    """`gyro_until`: s, from which on the gyro is dead (NaN)."""
+    """Estimates; from `gyro_until` s on the gyro is dead (NaN)."""
     gyro = recording.gyro
     if np.isfinite(gyro_until):
         gyro = np.where(recording.time[:, None] < gyro_until, gyro, np.nan)
@@ -61,7 +61,7 @@ def resets_of(recording: Recording) -> list[int]:
 
 
 def _processed(samples: list[Array], resets: list[int]) -> Estimate:
-    """At the rows of truth: without the last row of a part, which always comes out, where it is none of them."""
+    """The rows of truth. The last row of a part is always returned, and dropped if it is not among them."""
     bounds = [0, *(TRUTH_EVERY * row for row in resets), len(samples[0])]
     estimator, parts = Estimator(), []
     for begin, end in pairwise(bounds):
@@ -74,5 +74,5 @@ def _processed(samples: list[Array], resets: list[int]) -> Estimate:
 
 
 def true_track(truth: Truth, method: str) -> Track:
-    """Of the truth that a method is judged in: who does not know which way is up is judged in the ground's."""
+    """The frame in which a method is judged: that of the ground for a method that does not measure the vertical."""
     return truth.odom if method == OURS else truth.ground

@@ -1,22 +1,22 @@
-"""What really happened in a recording, in the terms odometry is judged by.
+"""The true motion in a recording, in the terms by which odometry is judged.
 
-Truth lies in the frame G of the ground: origin and heading of the start, z the ground's normal. An estimate lies in
-odom, which has the same origin and z against gravity, u in G. The rows of the rotation from G to odom are
+The truth is given in the frame G of the ground: origin and heading of the start, z the ground's normal. An estimate is
+given in odom, which has the same origin and z against gravity, u in G. The rows of the rotation from G to odom are
 
     x = (e − (e·u) u)/|…|,  e = (1, 0, 0)        y = z × x        z = u
 
-so that both headings are zero at the start. On the level both are the same. Who integrates distance and turns in the
-plane of the ground, as wheels alone do, is judged in G; who knows which way is up, in odom: on a slope of angle a the
-way up is shorter there by cos a.
+so that both headings are zero at the start. On the level both frames are the same. A method that integrates distance
+and turns in the plane of the ground, as wheels alone do, is judged in G. A method that measures the vertical is judged
+in odom: a slope of angle a shortens the way there by cos a.
 
-Slip of a wheel, with r its true radius, q̇ its speed relative to the body, ω the body's turning, v its centre's
-velocity, both in base axes:
+The slip of a wheel follows from its true radius r and its speed q̇ relative to the body. The body turns by ω, and the
+wheel's centre moves by v, both in base axes:
 
     rim = r (q̇ + ω_y)      ground = ±√(v_x² + v_z²), sign of v_x
     slip = |rim − ground| / max(|rim|, |ground|, 0.1 m/s)
 
-The ground speed is that along the wheel's plane, upwards too: a wheel that rolls over a kerb does not slip. What slides
-sideways does not show in it. Below 0.1 m/s a difference of 2 cm/s is 20 %: a wheel at rest does not slip by a count.
+The ground speed is that along the wheel's plane, upwards too: a wheel that rolls over a kerb does not slip. Sideways
+sliding does not count. Below 0.1 m/s a difference of 2 cm/s is 20 %, so that a wheel at rest does not slip by a count.
 """
 
 from __future__ import annotations
@@ -46,8 +46,8 @@ class Track:
 
 @dataclass(frozen=True)
 class Truth:
-    """At the M truth rows of a recording. `linear` m/s along base x, `angular` rad/s about base z; `distance` m so far;
-    `slip` (M, 2), left and right.
+    """The truth at the M truth rows of a recording. `linear` m/s along base x, `angular` rad/s about base z; `distance`
+    m so far; `slip` (M, 2), left and right.
     """
 
     ground: Track
@@ -60,7 +60,7 @@ class Truth:
 
 
 def rotation(quaternion: Array) -> Array:
-    """(M, 3, 3) of (M, 4), x y z w."""
+    """(M, 3, 3) from (M, 4), x y z w."""
     x, y, z, w = quaternion.T
     rows = [
         [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
@@ -71,7 +71,7 @@ def rotation(quaternion: Array) -> Array:
 
 
 def levelling(up: Array) -> Array:
-    """(3, 3): from the ground's axes to odom."""
+    """(3, 3): rotation from the ground's axes to odom."""
     ahead = np.array([1.0, 0.0, 0.0]) - up[0] * up
     ahead /= np.linalg.norm(ahead)
     return np.array([ahead, np.cross(up, ahead), up])
@@ -92,22 +92,22 @@ def slip_ratio(recording: Recording) -> Array:
 
 
 def truth_of(recording: Recording) -> Truth:
-    """All of it."""
+    """The truth of a recording."""
     turned = rotation(recording.orientation)
-    way = np.linalg.norm(np.diff(recording.position, axis=0), axis=1)
+    steps = np.linalg.norm(np.diff(recording.position, axis=0), axis=1)
     return Truth(
         ground=_path(recording.position, turned),
         odom=_path(recording.position @ levelling(recording.up).T, levelling(recording.up) @ turned),
         linear=recording.linear[:, 0],
         angular=recording.angular[:, 2],
-        distance=np.concatenate([[0.0], np.cumsum(way)]),
+        distance=np.concatenate([[0.0], np.cumsum(steps)]),
         slip=slip_ratio(recording),
         pitch=-np.arcsin(np.clip(turned[:, 2, 0], -1, 1)),
     )
 
 
 def moving(truth: Truth) -> NDArray[np.bool_]:
-    """(M,): body moves, by more than a robot that rocks to rest."""
+    """(M,): true if the body moves by more than a robot that rocks to rest."""
     result: NDArray[np.bool_] = (np.abs(truth.linear) > MOVING) | (np.abs(truth.angular) > MOVING)
     return result
 

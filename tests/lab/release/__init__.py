@@ -1,1 +1,1 @@
-"""Whether anything moves that nothing released: the shipped senders in virtual time."""
+"""Checks with the shipped senders in virtual time whether anything moves without a release."""

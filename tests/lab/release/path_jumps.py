@@ -1,4 +1,4 @@
-"""A robot that does as commanded along a path while its pose jumps at random: set_odometry, a localisation."""
+"""A robot that follows its commands exactly along a path while its pose jumps: set_odometry, a localisation."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from robot_control.path.shapes import SHAPES
 from robot_control.path.waypoints import Waypoint
 
 PERIOD = 0.02  # s, odometry
-LONGEST = 60.0  # s, of every path here
-FARTHEST = 0.3  # m beyond what the path is long
+MAX_TIME = 60.0  # s, of every path here
+FARTHEST = 0.3  # m beyond the length of the path
 STRAIGHT = [Waypoint(0.0, 0.0), Waypoint(2.0, 0.0)]
 BENT = [Waypoint(0.0, 0.0), Waypoint(0.8, 0.0), Waypoint(0.8, 0.8)]
 BACK = [Waypoint(0.0, 0.0, 0.0), Waypoint(0.8, 0.0, 0.0), Waypoint(0.0, 0.0, 0.0)]
@@ -22,7 +22,7 @@ PATHS = [STRAIGHT, BENT, BACK, CURVE, SHAPES["circle"](0.8), SHAPES["square"](0.
 
 
 class Jumping:
-    """Its pose by odometry jumps; how far it has driven does not."""
+    """A robot whose pose by odometry jumps; its driven distance does not."""
 
     def __init__(self, waypoints: Sequence[Waypoint]) -> None:
         self.route = route(waypoints)
@@ -45,7 +45,7 @@ class Jumping:
         )
 
     def drive(self, seconds: float) -> None:
-        """So long, or until the path has ended."""
+        """Drives for `seconds`, or until the path has ended."""
         for _ in range(round(seconds / PERIOD)):
             if self.follower.over:
                 return
@@ -53,7 +53,7 @@ class Jumping:
 
 
 def jumps(chance: random.Random) -> Callable[[float, Jumping], None]:
-    """At random times: once, some, or small ones all the time."""
+    """Jumps at random times: one, some, or small ones all the time."""
     size = chance.choice([0.01, 0.05, 0.1, 0.3, 1.0, 5.0])
     angle = chance.choice([0.01, 0.05, 0.2, 0.5, math.pi])
     what = chance.choice(["position", "heading", "both"])
@@ -66,21 +66,21 @@ def jumps(chance: random.Random) -> Callable[[float, Jumping], None]:
         first = begin <= now < begin + PERIOD
         if not first and (now < begin or chance.random() >= often):
             return
-        way = chance.uniform(-math.pi, math.pi) if wander else direction
+        course = chance.uniform(-math.pi, math.pi) if wander else direction
         length = chance.uniform(0.5, 1.0) * size if what != "heading" else 0.0
         yaw = chance.uniform(-angle, angle) if what != "position" else 0.0
-        robot.jump(length * math.cos(way), length * math.sin(way), yaw)
+        robot.jump(length * math.cos(course), length * math.sin(course), yaw)
 
     return jump
 
 
 def excess(seed: int) -> float:
-    """m that the robot drives beyond the path's length; infinity where it still moves when the path has ended."""
+    """m that the robot drives beyond the path's length; infinity if it still moves after the path has ended."""
     chance = random.Random(seed)  # noqa: S311 (a seeded sequence)
     robot = Jumping(chance.choice(PATHS))
     jump = jumps(chance)
     pause = chance.uniform(0.0, 6.0) if chance.random() < 0.2 else math.inf
-    for number in range(round(LONGEST / PERIOD)):
+    for number in range(round(MAX_TIME / PERIOD)):
         now = number * PERIOD
         jump(now, robot)
         if pause <= now < pause + PERIOD:

@@ -1,8 +1,8 @@
 """Random sequences of stops, resets, suspensions, planning times and inputs for the shipped senders, in virtual time.
 
-Each sequence asks one question: does anything move that was requested, held or planned before the last stop? The judge
-knows when the monitor released the robot, when the program was suspended, and when a person or a client asked for the
-motion. A sequence is given by its seed.
+Each sequence asks whether anything moves that was requested, held or planned before the last stop. The judge knows the
+times of the monitor's release, of the program's suspensions, and of the person's or client's request. A sequence is
+given by its seed.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ from lab.release.path_jumps import FARTHEST, excess
 from lab.release.senders import CommandSender, GoalSender, PadSender, PathSender, TeleopSender
 from lab.runs.runner import Runner
 
-PERIOD = 0.02  # s between two looks
+PERIOD = 0.02  # s between two passes
 LONG = 20.0  # s of a sequence
 LOOKS = round(LONG / PERIOD)
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """Of one sequence."""
+    """Outcome of one sequence."""
 
     seed: int
     violation: str = ""  # empty: none
-    moving: int = 0  # looks at which the sender requested motion; a judge that never saw motion proves nothing
+    moving: int = 0  # passes in which the sender requested motion; without any the sequence proves nothing
 
     def at(self, now: float, violation: str) -> Outcome:
         """The same with a violation at `now` s."""
@@ -40,8 +40,8 @@ class Outcome:
 
 
 class Monitor:
-    """Stops and resets at random; its messages, of which a subscriber may miss all but the newest. With `first` it was
-    just started: it permits nothing yet.
+    """Stops and resets at random; a subscriber may miss all its messages but the newest. With `first` it was just
+    started and permits nothing yet.
     """
 
     def __init__(self, chance: random.Random, *, first: bool = False) -> None:
@@ -52,7 +52,7 @@ class Monitor:
         self._due = chance.uniform(1.0, 5.0)
 
     def step(self, now: float) -> None:
-        """One look."""
+        """One pass."""
         if now < self._due:
             return
         status, withdrawals = self.status, self.status.withdrawals
@@ -66,20 +66,20 @@ class Monitor:
         self.messages.append(self.status)
 
     def take(self) -> list[Status]:
-        """What has come since the last call."""
+        """The messages since the last call."""
         taken, self.messages = self.messages, []
         return taken[-1:] if self._chance.random() < 0.3 else taken
 
 
 class Hand:
-    """A key or a button that is held now and then; since when."""
+    """A key or a button that is held now and then, and the begin of the hold."""
 
     def __init__(self, chance: random.Random) -> None:
         self._chance = chance
         self.down, self.since, self._due = False, 0.0, 0.5
 
     def step(self, now: float) -> None:
-        """One look."""
+        """One pass."""
         if now >= self._due:
             self.down, self.since = not self.down, now
             self._due = now + self._chance.choice([0.1, 0.5, 1.5, 4.0])
@@ -92,7 +92,7 @@ class Keyboard:
         self.hand, self._waiting, self._next = Hand(chance), b"", 0.0
 
     def step(self, now: float) -> None:
-        """One look."""
+        """One pass."""
         before = self.hand.down
         self.hand.step(now)
         if self.hand.down and (not before or now >= self._next):
@@ -100,47 +100,47 @@ class Keyboard:
             self._waiting += b"w"
 
     def take(self) -> bytes:
-        """What waits."""
+        """The bytes that wait."""
         taken, self._waiting = self._waiting, b""
         return taken
 
 
 class Joystick:
-    """The messages of a pad, likewise."""
+    """The messages of a pad, which wait while the program does not read."""
 
     def __init__(self, chance: random.Random) -> None:
         self.hand = Hand(chance)
         self._waiting: list[tuple[Sequence[float], Sequence[int], str]] = []
 
     def step(self, now: float) -> None:
-        """One look."""
+        """One pass."""
         self.hand.step(now)
         self._waiting.append(((0.0, 1.0), (0, 0, 0, 0, int(self.hand.down), 0), "/pad"))
 
     def take(self) -> list[tuple[Sequence[float], Sequence[int], str]]:
-        """What waits, at most a subscriber's queue of it."""
+        """The waiting messages, at most a subscriber's queue of them."""
         taken, self._waiting = self._waiting[-100:], []
         return taken
 
 
 class Suspensions:
-    """When the program does not run; `begin`: the first s at which it may not."""
+    """The times in which the program does not run, from `begin` s on."""
 
     def __init__(self, chance: random.Random, begin: int = 1) -> None:
         self._pauses = [(second, chance.choice([0.1, 0.4, 1.0, 3.0])) for second in chance.sample(range(begin, 18), 2)]
 
     def lasting(self, now: float) -> float:
-        """s of the suspension that lasts at `now`; 0: it runs."""
+        """s of the suspension at `now`; 0 if it runs."""
         return max((length for begin, length in self._pauses if begin <= now < begin + length), default=0.0)
 
 
 def moves(command: Command | None) -> bool:
-    """Does it request motion?"""
+    """True if it requests motion."""
     return command not in (None, Command())
 
 
 def held(seed: int, sender: Callable[[float], Any], source: Callable[[random.Random], Any]) -> Outcome:
-    """What a person holds over a stop or a suspension moves nothing before it was let go."""
+    """A key or button that is held over a stop or a suspension moves nothing before its release."""
     chance = random.Random(seed)  # noqa: S311 (a seeded sequence)
     monitor, person, suspensions = Monitor(chance), source(chance), Suspensions(chance)
     made, woke, outcome = sender(0.0), -1.0, Outcome(seed)
@@ -209,7 +209,7 @@ def goal(seed: int) -> Outcome:
     chance = random.Random(seed)  # noqa: S311 (a seeded sequence)
     monitor, suspensions, outcome = Monitor(chance), Suspensions(chance), Outcome(seed)
     made, woke, sent, x, linear = GoalSender(0.0), -1.0, 0.0, 0.0, 0.0
-    waiting: list[tuple[float, float | None]] = []  # when each was sent, and when it says so
+    waiting: list[tuple[float, float | None]] = []  # times of sending, and the times that the goals state
     read_from = 0.0  # after a suspension the thread that reads goals may be later than that of safety_status
     for number in range(LOOKS):
         now = number * PERIOD
@@ -276,7 +276,7 @@ def run_sequence(seed: int) -> Outcome:
 
 
 def sender_rows(first: int, runs: int, say: Callable[[str], None], runner: Runner) -> list[dict[str, Any]]:
-    """Rows of `scripts/bench release`: the sequences of so many seeds, their failures, the looks in motion."""
+    """Rows of `scripts/bench release`: the numbers of sequences, of failures, and of passes in motion."""
     failed = moving = 0
     for one in runner.outcomes(run_sequence, range(first, first + runs), say, chunk=50):
         moving += one.moving

@@ -1,8 +1,8 @@
-"""The shipped senders in virtual time: their laws, put together as their programs do it, one `step` per look.
+"""The shipped senders in virtual time: their laws, combined as in their programs, one `step` per pass.
 
-Each begins at its first look, or at `began` [s] before it. It is given `now` [s], the messages of safety_status since
-its last look, and its own input; it answers with the command that it sends, None where it sends nothing. To suspend a
-program is not to call its `step`.
+Each begins at its first pass, or at `began` [s] before it. Its `step` gets `now` [s], the messages of safety_status
+since the last pass, and its own input. It returns the command that it sends, or None. A suspended program is one whose
+`step` is not called.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ CHOSEN, LIMITS = Command(0.5, 1.0), Limits(1.0, 2.0, reverse=1.0)
 
 
 class _Watch:
-    """What of safety_status all have in common."""
+    """The evaluation of safety_status that all senders share."""
 
     def __init__(self, now: float, began: float | None = None) -> None:
         self.interruptions = Interruptions(now, began)
@@ -52,7 +52,7 @@ class TeleopSender:
         self._operator.start(now)
 
     def step(self, now: float, statuses: Sequence[Status], data: bytes) -> Command | None:
-        """One look."""
+        """One pass."""
         late = self._backlog.late(data, now)
         if self._watch.interrupted(now, statuses):
             self._operator.interrupt(now)
@@ -72,7 +72,7 @@ class PadSender:
     def step(
         self, now: float, statuses: Sequence[Status], messages: Sequence[tuple[Sequence[float], Sequence[int], str]]
     ) -> Command | None:
-        """One look."""
+        """One pass."""
         for axes, buttons, sender in messages:
             self._pad.receive(axes, buttons, now, sender)
         if self._watch.interrupted(now, statuses):
@@ -82,7 +82,7 @@ class PadSender:
 
 
 class PathSender:
-    """drive_path.py, or one goal of follow_path.py: requested when it is made, driven once it is planned."""
+    """drive_path.py, or one goal of follow_path.py: requested at construction, driven once it is planned."""
 
     def __init__(self, now: float, watch: _Watch | None = None, requested: float | None = None) -> None:
         """`requested`: s when, where that is not `now`; without a `watch` the process began then."""
@@ -93,11 +93,11 @@ class PathSender:
         self.reason = ""  # why it ended
 
     def plan(self, waypoints: Sequence[Waypoint]) -> None:
-        """The plan has come, or is made."""
+        """Takes the plan when it comes."""
         self._follower = Follower(route(waypoints))
 
     def step(self, now: float, statuses: Sequence[Status], odometry: tuple[Pose, Motion] | None) -> Command | None:
-        """One look; none is needed while it plans."""
+        """One pass; none is needed while it plans."""
         self._watch.interrupted(now, statuses, waited=not self._driving)
         stopped = self._watch.interruptions.status is not None and self._watch.interruptions.status.stopped
         self.reason = (
@@ -113,7 +113,7 @@ class PathSender:
 
 
 class GoalSender:
-    """follow_path.py; its further input: goals, each with the time when it says that it was sent, or None."""
+    """follow_path.py; its further input: goals, each with the stated time of sending, or None."""
 
     def __init__(self, now: float) -> None:
         self._watch = _Watch(now)
@@ -126,7 +126,7 @@ class GoalSender:
         odometry: tuple[Pose, Motion],
         goals: Sequence[tuple[Sequence[Waypoint], float | None]],
     ) -> Command | None:
-        """One look; the newest goal counts."""
+        """One pass; the newest goal counts."""
         self._watch.interrupted(now, statuses)
         for waypoints, sent in goals:
             self._path = PathSender(now, self._watch, requested_at(now, sent))
@@ -142,7 +142,7 @@ class CommandSender:
         self._due = -math.inf
 
     def step(self, now: float, statuses: Sequence[Status], _input: object = None) -> Command | None:
-        """One look; it sends once per period, and at once where that changes."""
+        """One pass; it sends once per period, and at once on a change."""
         phase = self._release.phase
         self._release.step(now, statuses)
         if self._release.phase is Phase.RELEASED or (self._release.phase is phase and now < self._due):

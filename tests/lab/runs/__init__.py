@@ -1,1 +1,1 @@
-"""Runs many seeds: with the processes of this machine, or with the workers of a Dask cluster."""
+"""Runs many seeds with the processes of this machine, or with the workers of a Dask cluster."""

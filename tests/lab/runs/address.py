@@ -1,4 +1,4 @@
-"""Which addresses of a Dask scheduler are accepted."""
+"""Checks the address of a Dask scheduler."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from urllib.parse import urlsplit
 
 
 def check_address(address: str, *, insecure: bool) -> None:
-    """Accepts tls://HOST:PORT, and tcp://HOST:PORT of the loopback or where `insecure` allows it.
+    """Accepts tls://HOST:PORT, and tcp://HOST:PORT on the loopback or if `insecure` allows it.
 
     Raises:
         ValueError: any other address.

@@ -1,7 +1,7 @@
 """Runs seeds with the workers of a Dask cluster (Debian: python3-distributed).
 
 Every worker runs one chunk of items at a time. Each chunk carries the `Identity` of this process, which the worker
-compares with its own before it runs the chunk; a worker that differs is refused by name and gets no more chunks. The
+compares with its own before it runs the chunk. A worker that differs is refused by name and gets no more chunks. The
 chunk of a worker that disappears runs again on another one. Workers that join later are used as well.
 
 A worker is a `dask-worker ADDRESS` in the environment of scripts/bench: install/setup.bash sourced, tests/ on
@@ -33,23 +33,23 @@ LOOK_EVERY = 0.5
 CONNECTING = 20.0
 """s for the scheduler to answer"""
 GATHERING = 20.0
-"""s for a worker to hand over the outcomes of a chunk that has ended; longer, and it is lost"""
+"""s for a worker to hand over the outcomes of a chunk that has ended; after it they are lost"""
 WITHOUT_WORKER = 60.0
 """s without any worker that may be used; then the run ends"""
 ATTEMPTS = 3
-"""Workers that a chunk may lose; then it is the chunk that ends them"""
+"""Workers that a chunk may lose before the chunk itself is taken for the cause"""
 
 
 class ClusterError(RuntimeError):
-    """The cluster cannot be used, or not any more; the message says why."""
+    """The cluster cannot be used any more, or at all; the message names the reason."""
 
 
 class DifferentWorkerError(RuntimeError):
-    """The worker is not what the run needs; the message says in what it differs."""
+    """The worker differs from this process; the message says in what."""
 
 
 def run_chunk(expected: Identity, one: Callable[[Item], Outcome], items: Sequence[Item]) -> list[Outcome]:
-    """On the worker.
+    """Runs on the worker.
 
     Raises:
         DifferentWorkerError: its identity is not the expected one.
@@ -81,7 +81,7 @@ class _Work:
 class Cluster:
     """The workers of the scheduler at `address`, used as a context.
 
-    `tls`: folder with ca.pem, cert.pem and key.pem; None: what the configuration of Dask names.
+    `tls`: folder with ca.pem, cert.pem and key.pem; None stands for the configuration of Dask.
 
     Raises:
         ValueError: the address is refused.
@@ -110,7 +110,7 @@ class Cluster:
     def outcomes(
         self, one: Callable[[Item], Outcome], items: Sequence[Item], say: Callable[[str], None], chunk: int = 1
     ) -> Iterator[Outcome]:
-        """As `Runner.outcomes`.
+        """Yields outcomes as `Runner.outcomes` does.
 
         Raises:
             ClusterError: there is no worker left, or one chunk ended several.
@@ -140,12 +140,12 @@ class Cluster:
 
     def _assign(self, work: _Work) -> None:
         """Takes the chunks of lost workers back and gives each idle worker one."""
-        there = set(self._client.scheduler_info()["workers"])
-        for worker in [worker for worker in work.running if worker not in there]:
+        present = set(self._client.scheduler_info()["workers"])
+        for worker in [worker for worker in work.running if worker not in present]:
             chunk, future = work.running.pop(worker)
             future.cancel()
             self._repeat(work, worker, chunk)
-        for worker in sorted(there - self._refused - set(work.running)):
+        for worker in sorted(present - self._refused - set(work.running)):
             if not work.open:
                 return
             chunk = work.open.popleft()
@@ -155,7 +155,7 @@ class Cluster:
             future.add_done_callback(lambda ended, worker=worker: work.ready.put((worker, ended)))
 
     def _take(self, work: _Work, worker: str, future: Future) -> dict[int, list[Any]]:
-        """The outcomes of a chunk that has ended, by its number; none where it has to run again."""
+        """The outcomes of a chunk that has ended, by its number; none if it has to run again."""
         if worker not in work.running or work.running[worker][1] is not future:
             return {}  # it was taken back before
         chunk, _ = work.running.pop(worker)

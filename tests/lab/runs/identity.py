@@ -1,4 +1,4 @@
-"""What a process that runs seeds proves before its outcomes count: same sources, same robots, same numbers."""
+"""A process that runs seeds proves its identity before its outcomes count: same sources, same robots, same numbers."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from robot_control.closed_loop import ClosedLoop
 from lab.robot_corpus import robot_names, urdf_of
 
 UNKNOWN = "unknown"
-"""The commit where the sources are no git checkout."""
+"""The commit of sources that are no git checkout."""
 
 
 @dataclass(frozen=True)
 class Identity:
-    """Of one process."""
+    """Identity of one process."""
 
     commit: str  # with "-dirty" where files differ from it
     robots: str  # SHA-256 of the descriptions of all robots there
     reference: str  # SHA-256 of the log of a reference run
 
     def difference(self, other: Identity) -> str:
-        """In which of the three `other` differs; empty where in none."""
+        """The part in which `other` differs; empty if there is none."""
         if self.commit != other.commit:
             return f"its commit is {other.commit}, here it is {self.commit}"
         if self.robots != other.robots:
@@ -37,7 +37,7 @@ class Identity:
 
 @cache
 def identity() -> Identity:
-    """Of this process; the first call takes a second."""
+    """Identity of this process; the first call takes a second."""
     return Identity(_commit(), _robots(), _reference())
 
 
@@ -57,7 +57,7 @@ def _robots() -> str:
 
 
 def _reference() -> str:
-    """Of half a second of driving a curve, all columns of the log."""
+    """Sum of all columns of the log of half a second in a curve."""
     log = ClosedLoop(seed=1).run(0.5, (0.5, 0.2))
     digest = hashlib.sha256()
     for name in sorted(log):

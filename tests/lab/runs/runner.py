@@ -18,12 +18,12 @@ REPORT_EVERY = 20.0
 
 
 class Runner(Protocol):
-    """Where the items run."""
+    """A place where items run."""
 
     def outcomes(
         self, one: Callable[[Item], Outcome], items: Sequence[Item], say: Callable[[str], None], chunk: int = 1
     ) -> Iterator[Outcome]:
-        """`one(item)` of every item, in the order of `items`.
+        """Yields `one(item)` of every item, in the order of `items`.
 
         Args:
             one: importable by name, for other processes call it.
@@ -42,7 +42,7 @@ class Processes:
     def outcomes(
         self, one: Callable[[Item], Outcome], items: Sequence[Item], say: Callable[[str], None], chunk: int = 1
     ) -> Iterator[Outcome]:
-        """As `Runner.outcomes`."""
+        """Yields outcomes as `Runner.outcomes` does."""
         if self._count == 1:
             yield from with_progress(map(one, items), len(items), say)
             return

@@ -1,5 +1,5 @@
 #pragma once
-/// All sequences of choices that a deterministic program asks for, depth first.
+/// All sequences of choices of a deterministic program, depth first.
 ///
 ///   Choices choices;
 ///   do {
@@ -13,14 +13,14 @@ namespace robot_control::model {
 
 class Choices {
  public:
-  /// 0 … options − 1.
+  /// Returns the next choice, 0 … options − 1.
   std::size_t choose(std::size_t options) {
     if (options < 2) return 0;
     if (depth_ == path_.size()) path_.push_back({0, options});
     return path_[depth_++].taken;
   }
 
-  /// Begins the next sequence; false when all were visited.
+  /// Begins the next sequence; false after the last one.
   bool next() {
     depth_ = 0;
     while (!path_.empty() && path_.back().taken + 1 == path_.back().options) path_.pop_back();

@@ -1,6 +1,6 @@
 #pragma once
-/// What a test asks of an exploration. Mutation: every access of the code under test is broken in every way, one
-/// at a time; a mutant that no scenario notices is an order or a check that is not needed, or not tested.
+/// Expectations of an exploration. In a mutation every access of the tested code is broken in every way, one at a time.
+/// A mutant that no scenario notices is an order or a check that is not needed, or not tested.
 
 #include <gtest/gtest.h>
 
@@ -21,8 +21,8 @@ inline void expect_no_violation(const Report& report) {
 
 using Scenario = std::function<Report()>;
 
-/// Runs the scenarios unbroken, so that every access is known, then once per mutant of that file. What no scenario
-/// notices.
+/// Runs the scenarios unbroken, so that every access is known, then once per mutant of that file. Returns the mutants
+/// that no scenario notices.
 inline std::set<std::string> unnoticed(MemoryModel& model, const std::string& file,
                                        const std::vector<Scenario>& scenarios) {
   std::set<std::string> names;

@@ -15,7 +15,7 @@ class Fiber {
   Fiber(const Fiber&) = delete;
   Fiber& operator=(const Fiber&) = delete;
 
-  /// The function runs with the first `resume`. The one before has ended.
+  /// Starts the function with the first `resume`. An earlier function has ended.
   void start(std::function<void()> body) {
     body_ = std::move(body);
     ended_ = false;
@@ -32,7 +32,7 @@ class Fiber {
     swapcontext(&outside_, &inside_);
   }
 
-  /// Called by the function itself.
+  /// The function itself calls it.
   void pause() { swapcontext(&inside_, &outside_); }
 
   bool ended() const noexcept { return ended_; }

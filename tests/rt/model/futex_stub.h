@@ -1,5 +1,5 @@
 #pragma once
-/// Whom a publication wakes is none of the model's affair: what counts is what a reader finds who saw `sequence`.
+/// The model wakes no thread: it only checks what a reader finds after it has read `sequence`.
 
 #include "rt/model/memory_model.h"
 

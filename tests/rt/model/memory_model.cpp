@@ -16,7 +16,7 @@ bool releases(std::memory_order order) noexcept {
   return order == std::memory_order_release || order == std::memory_order_acq_rel;
 }
 
-constexpr std::uint64_t kMostSchedules = 3'000'000;  // some 10 s
+constexpr std::uint64_t kMaxSchedules = 3'000'000;  // some 10 s
 
 template <class View>
 void join(View& into, const View& from) noexcept {
@@ -61,7 +61,7 @@ Report MemoryModel::explore(const Body& first, const Body& second, const Body& a
     reset(initial);
     run(first, second);
     if (after) after();
-    if (++report.schedules > kMostSchedules) throw std::logic_error("more schedules than a test should visit");
+    if (++report.schedules > kMaxSchedules) throw std::logic_error("more schedules than a test should visit");
   } while (violation_.empty() && choices_.next());
   reset(initial);
   report.violation = violation_;

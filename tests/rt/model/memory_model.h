@@ -1,23 +1,23 @@
 #pragma once
-/// Two threads on atomic words, in every execution that the memory model of C++ allows them.
+/// Runs two threads on atomic words, in every execution that the memory model of C++ allows them.
 ///
-/// Each word keeps the history of its stores. Each thread has a *view*: per word the oldest store that it may
-/// still read. A load takes any store from there on, and each is a branch of the exploration; so a thread may go
-/// on seeing an old value for as long as nothing orders it otherwise. A release store carries the view of its
-/// thread; an acquire load joins what it read from carries. Read-modify-writes read the last store and continue
-/// its release sequence. This is the view semantics of release/acquire and relaxed accesses (J. Kang et al., "A
-/// promising semantics for relaxed-memory concurrency", POPL 2017, sections 2 to 3) without its promises: no
-/// store is seen before it is executed (no load buffering), hence an order that only keeps a load in front of a
-/// later store cannot be missed here. Words have one writing thread; fences and seq_cst are refused.
+/// Each word keeps the history of its stores. Each thread has a *view*: per word the oldest store that it may still
+/// read. A load reads any store from there on, and each is a branch of the exploration. So a thread may read an old
+/// value for as long as nothing orders it otherwise. A release store carries the view of its thread; an acquire load
+/// joins the view of the store that it read. Read-modify-writes read the last store and continue its release sequence.
+/// This is the view semantics of release/acquire and relaxed accesses without its promises (J. Kang et al., "A
+/// promising semantics for relaxed-memory concurrency", POPL 2017, sections 2 to 3). No store is read before it is
+/// executed (no load buffering). Hence the model cannot show that an order is missing which only keeps a load in front
+/// of a later store. Words have one writing thread; fences and seq_cst are refused.
 ///
-/// Scheduling. With Schedules::kAll every access is a point where the other thread may go on instead.
-/// Schedules::kDistinct leaves out what cannot be distinguished: only which store a load reads from matters, and a
-/// thread may read old stores anyway. So thread 0 runs ahead until it loads a word that thread 1 writes; there
-/// it reads a store that is there, or lets thread 1 run up to its next store to that word. Thread 1 runs
-/// when thread 0 waits or has ended. Where thread 1 writes nothing that thread 0 reads, this needs no switch at
-/// all. memory_model_test.cpp holds both to the same outcomes.
+/// With Schedules::kAll every access is a point at which the other thread may go on instead. Schedules::kDistinct
+/// leaves out schedules that cannot be distinguished: only the store that a load reads matters, and a thread may read
+/// old stores anyway. So thread 0 runs ahead until it loads a word that thread 1 writes. There it reads an existing
+/// store, or lets thread 1 run up to its next store to that word. Thread 1 runs when thread 0 waits or has ended. If
+/// thread 1 writes nothing that thread 0 reads, this needs no switch at all. memory_model_test.cpp compares the
+/// outcomes of both.
 ///
-/// Before `explore`, accesses are executed at once: what they leave is known to both threads.
+/// Before `explore`, accesses are executed at once: both threads know their results.
 
 #include <array>
 #include <cstdint>
@@ -51,7 +51,7 @@ class MemoryModel {
   MemoryModel& operator=(const MemoryModel&) = delete;
   ~MemoryModel();
 
-  /// The model that atomics made now belong to.
+  /// The model to which new atomics belong.
   static MemoryModel& current();
 
   // ---- what a test does
@@ -62,21 +62,21 @@ class MemoryModel {
 
   void set_mutant(const std::optional<Mutant>& mutant) { mutant_ = mutant; }
 
-  /// Runs both bodies in every way. `after` runs behind them, sees all they did, and may call `fail`.
+  /// Runs both bodies in every way. `after` runs behind them, knows all their stores, and may call `fail`.
   Report explore(const Body& first, const Body& second, const Body& after = {}, Schedules = Schedules::kDistinct);
 
-  /// A body found what must not be; ends the exploration.
+  /// A body reports a violation, which ends the exploration.
   void fail(const std::string& violation);
 
   /// A body goes on in `options` ways.
   std::size_t choose(std::size_t options) { return choices_.choose(options); }
 
-  /// What the body does from here on may end before any of its stores, as if its process were killed there:
-  /// its later stores are lost. `revive` ends that: a successor starts, who knows what became of it.
+  /// The body may end before any of its stores from here on, as if its process were killed there: its later stores are
+  /// lost. `revive` ends that: a successor starts, and knows the result.
   void mortal() noexcept { mortal_ = true; }
   void revive() noexcept { mortal_ = dead_ = false; }
 
-  /// Every way to break one of the accesses seen so far in source files whose name ends so.
+  /// Every way to break one of the accesses so far in source files whose name ends with `file`.
   std::vector<Mutant> mutants(const std::string& file) const;
 
   /// "load-acquire newest #2 without order": the second such access in the source.
@@ -139,7 +139,7 @@ class MemoryModel {
   bool dead_ = false;
 };
 
-/// Stands for std::atomic in the code under test.
+/// Replaces std::atomic in the tested code.
 template <class T>
 class ModelAtomic {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-/// One atomic access in the code under test, and the ways to break it.
+/// One atomic access in the tested code, and the ways to break it.
 
 #include <atomic>
 #include <compare>
@@ -14,7 +14,7 @@ struct Site {
   const char* file = nullptr;
   std::uint32_t line = 0;
   std::uint32_t column = 0;
-  std::size_t name = 0;  ///< of what is accessed ("version", "words"), MemoryModel::names
+  std::size_t name = 0;  ///< index in MemoryModel::names of the accessed member ("version", "words")
   Operation operation = Operation::kLoad;
   std::memory_order order = std::memory_order_relaxed;
 
@@ -24,7 +24,7 @@ struct Site {
 enum class Defect {
   kRelaxed,  ///< the access orders nothing
   kSkipped,  ///< the store is not done
-  kStale,    ///< the load gives what this thread last read there: a check that is not made
+  kStale,    ///< the load gives the last value that this thread read there: a check that is not made
 };
 
 struct Mutant {

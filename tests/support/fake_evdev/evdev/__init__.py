@@ -1,4 +1,4 @@
-"""What pad.py uses of python3-evdev, for a pad that is a file: its axes (0 … 255) and held buttons by code, as JSON.
+"""The part of python3-evdev that pad.py uses, for a pad that is a JSON file of axes (0 … 255) and held buttons by code.
 
 A file that is gone is a pad that was unplugged: the kernel then answers ENODEV. The test of a real kernel needs uinput.
 """
@@ -14,7 +14,7 @@ AXES = [0, 1, 2, 3, 4, 5]
 
 
 class AbsInfo(NamedTuple):
-    """Of an axis."""
+    """Range and value of an axis."""
 
     value: int
     min: int
