@@ -3,8 +3,8 @@
 
     .ci/only_listed.py [--list FILE] [--section NAME]… COMMAND…
 
-In a mount namespace of the command's own, /usr shows nothing that other packages alone have installed, and nothing of
-/usr/local; it is read-only there. The installed packages and other processes notice nothing. Needs root and overlayfs:
+In a mount namespace of the command's own, /usr is read-only. It shows nothing of /usr/local and nothing that other
+packages alone have installed. The installed packages and other processes notice nothing. Needs root and overlayfs:
 exit code 125 where they are not granted, else that of the command.
 """
 
@@ -58,9 +58,9 @@ def names_of(relation: str) -> list[str]:
 
 
 def closure(names: list[str], packages: dict[str, Package]) -> set[str]:
-    """Of the installed packages: what every Debian has, apt, these, and what all of them depend on.
+    """Names of the installed packages that every Debian has, of apt, of `names`, and of all that these depend on.
 
-    Where alternatives would do, the first installed one counts, as apt takes it, be it by a name that it provides.
+    Among alternatives the first installed one counts, as for apt; a name that a package provides is its name, too.
 
     Raises:
         LookupError: one of the names is not installed.

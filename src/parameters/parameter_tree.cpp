@@ -125,7 +125,7 @@ class Documents : public YAML::EventHandler {
 
  private:
   // Collects a tag. yaml-cpp passes "" for no tag, "?" for a plain scalar and "!" for a quoted one.
-  void look(const std::string& tag, const Mark& mark) {
+  void collect(const std::string& tag, const Mark& mark) {
     if (tag.empty() || tag == "?" || tag == "!") return;
     constexpr std::string_view kCore = "tag:yaml.org,2002:";
     tags_.emplace_back(tag.starts_with(kCore) ? "!!" + tag.substr(kCore.size()) : tag, mark);
@@ -135,10 +135,10 @@ class Documents : public YAML::EventHandler {
   void OnDocumentEnd() override {}
   void OnNull(const Mark&, Anchor) override {}
   void OnAlias(const Mark&, Anchor) override {}
-  void OnScalar(const Mark& mark, const std::string& tag, Anchor, const std::string&) override { look(tag, mark); }
-  void OnSequenceStart(const Mark& mark, const std::string& tag, Anchor, Style) override { look(tag, mark); }
+  void OnScalar(const Mark& mark, const std::string& tag, Anchor, const std::string&) override { collect(tag, mark); }
+  void OnSequenceStart(const Mark& mark, const std::string& tag, Anchor, Style) override { collect(tag, mark); }
   void OnSequenceEnd() override {}
-  void OnMapStart(const Mark& mark, const std::string& tag, Anchor, Style) override { look(tag, mark); }
+  void OnMapStart(const Mark& mark, const std::string& tag, Anchor, Style) override { collect(tag, mark); }
   void OnMapEnd() override {}
 
   std::vector<std::pair<std::string, Mark>> tags_;

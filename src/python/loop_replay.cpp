@@ -9,7 +9,7 @@ namespace py = pybind11;
 
 namespace robot_control {
 
-void LoopReplay::note(const ClosedLoop& loop) {
+void LoopReplay::store(const ClosedLoop& loop) {
   for (const LawSnapshot* snapshot : loop.snapshots()) {
     if (snapshot == nullptr) continue;
     const auto copy = std::make_unique<LawSnapshot>(*snapshot);

@@ -19,7 +19,7 @@ class LoopReplay {
       : replay_(loop.parameters(), loop.robot()), joints_(loop.robot().joints.size()) {}
 
   /// Stores the rows of the last step; is called after each step.
-  void note(const ClosedLoop& loop);
+  void store(const ClosedLoop& loop);
 
   /// Runs the laws again over the rows that were stored since the last call.
   void check();

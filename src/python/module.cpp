@@ -74,7 +74,7 @@ py::dict run(ClosedLoop& loop, std::int64_t cycles, const py::object& command, L
   }
   const auto step = [&](std::int64_t row) {
     loop.step();
-    if (replay != nullptr) replay->note(loop);
+    if (replay != nullptr) replay->store(loop);
     for (std::size_t i = 0; i < columns.size(); ++i) {
       cells[i][row] = columns[i].value(loop.row(), columns[i].element);
     }

@@ -139,7 +139,7 @@ class FrameReader {
       if (!copy(memory->slots[newest - 1], out)) continue;
       // A reader that slept meanwhile has copied the slot's next frame. A later call could then return the frame before
       // it, and time would go backwards.
-      if (memory->newest.load(std::memory_order_relaxed) == newest) return judge(out);
+      if (memory->newest.load(std::memory_order_relaxed) == newest) return classify(out);
     }
     return Lookup::kMissing;
   }
@@ -154,7 +154,7 @@ class FrameReader {
     Frame frame;
     for (const auto& slot : memory->slots) {
       if (slot.version.load(std::memory_order_acquire) % 2 != 0) written = true;
-      if (!copy(slot, frame) || judge(frame) != Lookup::kFrame) continue;
+      if (!copy(slot, frame) || classify(frame) != Lookup::kFrame) continue;
       if (found && frame.head.stamp_ns < out.head.stamp_ns) continue;
       out = frame;
       found = true;
@@ -169,7 +169,7 @@ class FrameReader {
     if (memory == nullptr) return Lookup::kMissing;
     for (int tries = 0; tries < kReadTries; ++tries) {
       if (!copy(memory->slots[cycle % SlotCount], out)) continue;
-      const Lookup found = judge(out);
+      const Lookup found = classify(out);
       if (found == Lookup::kCorrupt) return found;
       return out.head.run == run && out.head.cycle == cycle ? found : Lookup::kMissing;
     }
@@ -227,7 +227,7 @@ class FrameReader {
     return slot.version.load(std::memory_order_acquire) == before;
   }
 
-  static Lookup judge(const Frame& frame) noexcept {
+  static Lookup classify(const Frame& frame) noexcept {
     if (frame.head.run == 0) return Lookup::kMissing;  // the slot was never written
     if (!intact(frame)) return Lookup::kCorrupt;
     if (frame.head.kind == FrameKind::kToken) return Lookup::kToken;

@@ -106,7 +106,7 @@ class RingReader {
 
   /// Reads the next row. Returns false if there is none yet, or if the writer disturbed it kReadTries times; the caller
   /// tries again later. Rows that were overwritten meanwhile are skipped and counted.
-  bool take(Row& row) noexcept {
+  bool read(Row& row) noexcept {
     for (int tries = 0; tries < kReadTries; ++tries) {
       const std::uint64_t written = memory_->written.load(std::memory_order_acquire);
       if (position_ >= written) {

@@ -33,19 +33,19 @@ class CalibrationKeeperTest : public testing::Test {
 
 TEST_F(CalibrationKeeperTest, WritesAfterThirtySecondsAndNotBefore) {
   CalibrationKeeper keeper(parameters_, robot_);
-  keeper.look(state_, 100 * kSecond);
-  keeper.look(state_, 129 * kSecond);
+  keeper.write_if_due(state_, 100 * kSecond);
+  keeper.write_if_due(state_, 129 * kSecond);
   keeper.wait();
   EXPECT_FALSE(kept());
-  keeper.look(state_, 130 * kSecond);
+  keeper.write_if_due(state_, 130 * kSecond);
   keeper.wait();
   ASSERT_TRUE(kept());
   EXPECT_EQ(kept()->wheels.radius_ratio, 1.01);
   state_.calibration = {.radius_ratio = 1.02, .radius_ratio_deviation = 0.0005};
-  keeper.look(state_, 159 * kSecond);
+  keeper.write_if_due(state_, 159 * kSecond);
   keeper.wait();
   EXPECT_EQ(kept()->wheels.radius_ratio, 1.01);
-  keeper.look(state_, 160 * kSecond);
+  keeper.write_if_due(state_, 160 * kSecond);
   keeper.wait();
   EXPECT_EQ(kept()->wheels.radius_ratio, 1.02);
 }

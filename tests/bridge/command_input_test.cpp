@@ -139,9 +139,9 @@ TEST_F(CommandInputTest, AJumpChangesNothingOfWhatArrivedBefore) {
   receive_stamped("/teleop", 0.5, kSecond / 10);
   const VelocityCommand before = value();
   now_.ros_ns -= kHour;
-  EXPECT_FALSE(input_.look(now_.loop_ns));
+  EXPECT_FALSE(input_.update(now_.loop_ns));
   now_.ros_ns += 2 * kHour;
-  EXPECT_FALSE(input_.look(now_.loop_ns));
+  EXPECT_FALSE(input_.update(now_.loop_ns));
   EXPECT_EQ(value().count, before.count);
   EXPECT_EQ(value().age_ns, before.age_ns);
 }
@@ -228,7 +228,7 @@ TEST_F(CommandInputTest, WithOneSenderMessagesOfAllAreRefusedUntilOneIsLeft) {
   EXPECT_EQ(value().count, 1u);
   EXPECT_THAT(reported(), HasSubstr("refused (one_sender), ramping down to standstill until one is left"));
   pass(kSecond / 10);
-  EXPECT_TRUE(input_.look(now_.loop_ns)) << "without any message, too";
+  EXPECT_TRUE(input_.update(now_.loop_ns)) << "without any message, too";
   EXPECT_EQ(value().many_senders, 0u);
   receive("/teleop", 0.5);
   EXPECT_EQ(value().count, 2u);
@@ -383,9 +383,9 @@ TEST_F(RevokedSenderTest, ACommandOfADeadSenderEndsInAStopWhateverItsTimeout) {
   stop();
   receive("/teleop", 0);
   receive("/teleop", 0.5);
-  EXPECT_FALSE(input_.look(now_.loop_ns));
+  EXPECT_FALSE(input_.update(now_.loop_ns));
   restart("/teleop");
-  EXPECT_TRUE(input_.look(now_.loop_ns));
+  EXPECT_TRUE(input_.update(now_.loop_ns));
   EXPECT_EQ(value().twist.linear[0], 0);
   EXPECT_EQ(value().contested, kNoMessage);
 }

@@ -41,7 +41,7 @@ class CommandMuxTest : public testing::Test {
   void pass(std::int64_t time_ns) {
     now_.ros_ns += time_ns;
     now_.loop_ns += time_ns;
-    mux_.look(now_.loop_ns);
+    mux_.update(now_.loop_ns);
   }
 
   double result() const { return mux_.value().twist.linear[0]; }
@@ -283,12 +283,12 @@ INSTANTIATE_TEST_SUITE_P(Timeouts, DeadSourceTest, testing::Values(0.0, 1.25, 60
 TEST_F(CommandMuxTest, TimeThatTurnsBackLeavesNothingLive) {
   receive(kKey, 0.3);
   now_.loop_ns = kSecond;
-  mux_.look(now_.loop_ns);
+  mux_.update(now_.loop_ns);
   EXPECT_EQ(result(), 0);
 }
 
 TEST_F(CommandMuxTest, EveryChangeOfTheCommanderIsOneLine) {
-  mux_.look(now_.loop_ns);
+  mux_.update(now_.loop_ns);
   EXPECT_TRUE(mux_.lines().empty());
   receive(kCmd, 0.2);
   receive(kCmd, 0.2);

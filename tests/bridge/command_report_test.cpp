@@ -26,7 +26,7 @@ class CommandReportTest : public testing::Test {
     frame_.reasons = reasons;
     frame_.twist_requested.linear[0] = linear;
     frame_.twist_requested.angular[2] = angular;
-    return report().look(frame_);
+    return report().update(frame_);
   }
 
   /// Continues with the same command and `reasons`; returns all lines until `seconds` later.
@@ -35,7 +35,7 @@ class CommandReportTest : public testing::Test {
     std::vector<ReportLine> lines;
     for (double t = 0; t < seconds; t += static_cast<double>(kLookTick) / 1e9) {
       frame_.head.stamp_ns += kLookTick;
-      for (const ReportLine& line : report().look(frame_)) lines.push_back(line);
+      for (const ReportLine& line : report().update(frame_)) lines.push_back(line);
     }
     return lines;
   }
@@ -46,7 +46,7 @@ class CommandReportTest : public testing::Test {
     ++frame_.requests_refused;
     frame_.reasons = kReasonRefused;
     frame_.twist_requested = {};
-    return report().look(frame_);
+    return report().update(frame_);
   }
 
   std::vector<ReportLine> time_out() {
@@ -54,7 +54,7 @@ class CommandReportTest : public testing::Test {
     ++frame_.timeouts;
     frame_.reasons = kReasonTimedOut;
     frame_.twist_requested = {};
-    return report().look(frame_);
+    return report().update(frame_);
   }
 
   CommandReport& report() { return report_; }
@@ -117,7 +117,7 @@ TEST_F(CommandReportTest, SpeaksOfNoLimitWhereNoneWasMet) {
 TEST_F(CommandReportTest, IsSilentWhileTheValueStays) {
   receive(0.5, 0.2);
   EXPECT_THAT(receive(0.5, 0.2), IsEmpty());
-  EXPECT_THAT(report().look(frame_), IsEmpty());
+  EXPECT_THAT(report().update(frame_), IsEmpty());
 }
 
 TEST_F(CommandReportTest, ReportsAChangedValue) {
@@ -131,7 +131,7 @@ TEST_F(CommandReportTest, WarnsOncePerTimeout) {
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_TRUE(lines[0].warning);
   EXPECT_THAT(lines[0].text, HasSubstr("1.25 s"));
-  EXPECT_THAT(report().look(frame_), IsEmpty());
+  EXPECT_THAT(report().update(frame_), IsEmpty());
   EXPECT_EQ(receive(0.5, 0.2).size(), 1u) << "the motion begins again: reported again";
 }
 
@@ -154,13 +154,13 @@ TEST_F(CommandReportTest, LeavesStampsAndSendersToTheirOwnWarnings) {
   ++frame_.requests_refused;
   ++frame_.requests_stale;
   frame_.reasons = kReasonStale;
-  EXPECT_THAT(report().look(frame_), IsEmpty()) << "the command before it stands";
+  EXPECT_THAT(report().update(frame_), IsEmpty()) << "the command before it stands";
   ++frame_.requests_received;
   ++frame_.requests_refused;
   ++frame_.requests_crowded;
   frame_.reasons = kReasonManySenders;
   frame_.twist_requested = {};
-  EXPECT_THAT(report().look(frame_), IsEmpty()) << "no zero was commanded";
+  EXPECT_THAT(report().update(frame_), IsEmpty()) << "no zero was commanded";
 }
 
 TEST_F(CommandReportTest, ReportsWhatIsDoneAndNotWhatIsRequestedWhileTheRobotIsStopped) {
@@ -227,12 +227,12 @@ TEST_F(CommandReportTest, TimeoutsAndRefusalsOfAFlickeringSenderAreReportedOnceA
     lines += receive(0.5, 0.2, 0, kLookTick).size();
     ++frame_.timeouts;
     frame_.head.stamp_ns += kLookTick;
-    lines += report().look(frame_).size();
+    lines += report().update(frame_).size();
     ++frame_.requests_received;
     ++frame_.requests_refused;
     frame_.reasons = kReasonRefused;
     frame_.head.stamp_ns += kLookTick;
-    lines += report().look(frame_).size();
+    lines += report().update(frame_).size();
   }
   EXPECT_LE(lines, 3u * 6 + 3) << "three kinds, 6 s";
 }

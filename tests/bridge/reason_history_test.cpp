@@ -16,7 +16,7 @@ class ReasonHistoryTest : public testing::Test {
     writer_.publish(newest_);
   }
 
-  std::uint64_t poll() { return history_.look(FrameReader<CommandFrame>(memory_.get()), newest_); }
+  std::uint64_t poll() { return history_.collect(FrameReader<CommandFrame>(memory_.get()), newest_); }
 
   std::unique_ptr<LatestFrames<CommandFrame>> memory_ = std::make_unique<LatestFrames<CommandFrame>>();
   FrameWriter<CommandFrame> writer_{memory_.get(), Wake::kNobody};

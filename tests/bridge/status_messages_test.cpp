@@ -133,18 +133,18 @@ TEST_F(SafetyStatusTest, NamesTheMissingNodeInInitAlone) {
 TEST_F(SafetyStatusTest, DistinguishesNewsFromRepetition) {
   Permit later = permit_;
   later.head.cycle += 1;
-  EXPECT_FALSE(news(permit_, later));
+  EXPECT_FALSE(differs(permit_, later));
   later.active = kCauseEmergencyStopTopic;
-  EXPECT_TRUE(news(permit_, later));
+  EXPECT_TRUE(differs(permit_, later));
   later = permit_;
   later.resets_handled = 1;
-  EXPECT_TRUE(news(permit_, later));
+  EXPECT_TRUE(differs(permit_, later));
   later = permit_;
   later.warnings = kCauseBatteryLow;
-  EXPECT_TRUE(news(permit_, later));
+  EXPECT_TRUE(differs(permit_, later));
   later = permit_;
   later.speed_limit = 0.3;
-  EXPECT_TRUE(news(permit_, later));
+  EXPECT_TRUE(differs(permit_, later));
 }
 
 TEST_F(SafetyStatusTest, AnswersAnAcceptedReset) {

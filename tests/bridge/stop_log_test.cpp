@@ -40,7 +40,7 @@ class StopLogTest : public testing::Test {
   /// "W text" and "I text", a line each.
   std::string report(const msg::SafetyStatus& status) {
     std::string text;
-    for (const ReportLine& line : log_.look(status)) text += (line.warning ? "W " : "I ") + line.text + "\n";
+    for (const ReportLine& line : log_.update(status)) text += (line.warning ? "W " : "I ") + line.text + "\n";
     return text;
   }
 

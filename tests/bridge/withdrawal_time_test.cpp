@@ -11,7 +11,7 @@ class WithdrawalTimeTest : public testing::Test {
   void observe(PermitAction action, std::uint64_t causes = 0) {
     permit_.action = action;
     permit_.causes = causes;
-    time_.look(permit_, ++now_ns_);
+    time_.update(permit_, ++now_ns_);
   }
 
   void start() {

@@ -118,7 +118,7 @@ TEST_F(BusTest, CarriesRingsAndPositions) {
   RingReader<Row> reader(ring_view.memory());
   RingWriter<Row>(ring.memory()).append({42}, nullptr);
   Row row;
-  ASSERT_TRUE(reader.take(row));
+  ASSERT_TRUE(reader.read(row));
   EXPECT_EQ(row.number, 42u);
   positions.memory()->read[2].store(9);
   EXPECT_EQ(positions_view.memory()->read[2].load(), 9u);

@@ -123,7 +123,7 @@ TEST_F(Lockstep, AWallClockRunEqualsLockstepUntilTheFirstMissedCycle) {
   parameters_.plant.cycles = 2500;
   const LogTable lockstep = four_processes("lockstep", ClockMode::kLockstep);
   std::size_t judged = 0;
-  for (int run = 0; run < kMostRuns && judged < kNeeded; ++run) {
+  for (int run = 0; run < kMaxRuns && judged < kNeeded; ++run) {
     const LogTable wall = four_processes("wall" + std::to_string(run), ClockMode::kWall);
     const std::size_t equal = equal_rows(lockstep, wall);
     const std::size_t miss = first_miss(wall);

@@ -32,7 +32,7 @@ class SnapshotSource {
 
   /// Takes the next snapshot, sealed; false: there is none yet.
   bool next(LawSnapshot& snapshot) {
-    if (!reader_ || !reader_->take(snapshot)) return false;
+    if (!reader_ || !reader_->read(snapshot)) return false;
     seal(snapshot);
     return true;
   }
@@ -50,7 +50,7 @@ class RowSource {
 
   void drain(Join& join) {
     if (channel_.poll()) reader_.emplace(channel_.memory(), 0);
-    while (reader_ && reader_->take(row_)) join.add(row_);
+    while (reader_ && reader_->read(row_)) join.add(row_);
   }
 
  private:

@@ -135,13 +135,13 @@ TEST(DamagedRing, AReaderEndsAndAfterTheNextRowsItIsInStepAgain) {
     RingReader<SmallRow, std::atomic, kRows> reader(memory.get(), damage.number());
     RingWriter<SmallRow, std::atomic, kRows> writer(memory.get());
     SmallRow row;
-    for (std::size_t i = 0; i < 2 * kRows; ++i) reader.take(row);
+    for (std::size_t i = 0; i < 2 * kRows; ++i) reader.read(row);
     for (std::size_t i = 0; i < kRows; ++i) writer.append({}, nullptr);
-    for (std::size_t i = 0; i < 2 * kRows; ++i) reader.take(row);
+    for (std::size_t i = 0; i < 2 * kRows; ++i) reader.read(row);
     writer.append({{seed, seed, seed, seed}}, nullptr);
-    ASSERT_TRUE(reader.take(row));
+    ASSERT_TRUE(reader.read(row));
     EXPECT_EQ(row.values[3], seed);
-    EXPECT_FALSE(reader.take(row));
+    EXPECT_FALSE(reader.read(row));
   }
 }
 

@@ -37,7 +37,7 @@ class RingModelTest : public testing::Test {
   /// Takes a row, which must be that of the reader's position.
   bool take_next(Reader& reader) {
     Row row;
-    if (!reader.take(row)) return false;
+    if (!reader.read(row)) return false;
     if (row.first != row.second) model_.fail("torn");
     if (row.first + 1 != reader.position()) model_.fail("reordered");
     ++taken_;

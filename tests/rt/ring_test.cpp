@@ -43,17 +43,17 @@ class RingTest : public testing::Test {
 TEST_F(RingTest, GivesEveryRowOnceAndInOrder) {
   append(0, 3);
   for (std::uint64_t i = 0; i < 3; ++i) {
-    ASSERT_TRUE(reader_.take(row_));
+    ASSERT_TRUE(reader_.read(row_));
     EXPECT_TRUE(is_row(row_, i));
   }
-  EXPECT_FALSE(reader_.take(row_));
+  EXPECT_FALSE(reader_.read(row_));
   EXPECT_EQ(reader_.overwritten(), 0u);
 }
 
 TEST_F(RingTest, WrapsAround) {
   for (std::uint64_t i = 0; i < 3 * kRingRows + 5; ++i) {
     append(i, 1);
-    ASSERT_TRUE(reader_.take(row_));
+    ASSERT_TRUE(reader_.read(row_));
     ASSERT_TRUE(is_row(row_, i));
   }
 }
@@ -61,32 +61,32 @@ TEST_F(RingTest, WrapsAround) {
 TEST_F(RingTest, AReaderStartsAtTheRowThatComesNext) {
   append(0, 10);
   RingReader<WideRow> late(memory_.get());
-  EXPECT_FALSE(late.take(row_));
+  EXPECT_FALSE(late.read(row_));
   append(10, 1);
-  ASSERT_TRUE(late.take(row_));
+  ASSERT_TRUE(late.read(row_));
   EXPECT_TRUE(is_row(row_, 10));
 }
 
 TEST_F(RingTest, AReaderMayStartWhereAnEarlierOneEnded) {
   append(0, 10);
   RingReader<WideRow> successor(memory_.get(), 4);
-  ASSERT_TRUE(successor.take(row_));
+  ASSERT_TRUE(successor.read(row_));
   EXPECT_TRUE(is_row(row_, 4));
 }
 
 TEST_F(RingTest, APositionOfAnotherObjectIsBroughtBack) {
   append(0, 10);
   RingReader<WideRow> other(memory_.get(), 5000);
-  EXPECT_FALSE(other.take(row_));
+  EXPECT_FALSE(other.read(row_));
   append(10, 1);
-  ASSERT_TRUE(other.take(row_));
+  ASSERT_TRUE(other.read(row_));
   EXPECT_TRUE(is_row(row_, 10));
 }
 
 TEST_F(RingTest, WithNoReaderPresentTheOldestRowsAreOverwrittenAndTheirLossIsCountedByTheNextReader) {
   append(0, kRingRows + 7);
   EXPECT_EQ(reader_.dropped(), 0u);
-  ASSERT_TRUE(reader_.take(row_));
+  ASSERT_TRUE(reader_.read(row_));
   EXPECT_TRUE(is_row(row_, 7));
   EXPECT_EQ(reader_.overwritten(), 7u);
 }
@@ -97,14 +97,14 @@ TEST_F(RingTest, WithAReaderPresentAFullRingDropsTheNewRowAndCountsIt) {
   EXPECT_TRUE(writer_.full(&read));
   EXPECT_FALSE(writer_.append(row_of(kRingRows), &read));
   EXPECT_EQ(reader_.dropped(), 1u);
-  ASSERT_TRUE(reader_.take(row_));
+  ASSERT_TRUE(reader_.read(row_));
   EXPECT_TRUE(is_row(row_, 0));
 }
 
 TEST_F(RingTest, ARowTakenMakesRoomForOne) {
   std::atomic<std::uint64_t> read{0};
   append(0, kRingRows, &read);
-  ASSERT_TRUE(reader_.take(row_));
+  ASSERT_TRUE(reader_.read(row_));
   read.store(reader_.position());
   EXPECT_TRUE(writer_.append(row_of(kRingRows), &read));
   EXPECT_TRUE(writer_.full(&read));
@@ -118,8 +118,8 @@ TEST_F(RingTest, AReadPositionAheadOfTheRingIsNotFull) {
 TEST_F(RingTest, ARowThatIsBeingOverwrittenIsSkippedAndCounted) {
   append(0, 3);
   memory_->slots[1].version.store(2 * kRingRows + 3);  // odd: row kRingRows + 1 is half written
-  ASSERT_TRUE(reader_.take(row_));
-  ASSERT_TRUE(reader_.take(row_));
+  ASSERT_TRUE(reader_.read(row_));
+  ASSERT_TRUE(reader_.read(row_));
   EXPECT_TRUE(is_row(row_, 2));
   EXPECT_EQ(reader_.overwritten(), 1u);
 }
@@ -129,7 +129,7 @@ TEST_F(RingTest, AWriterKilledHalfWayLosesNoRowBeforeIt) {
   memory_->slots[3].version.store(2 * 3 + 1);
   RingWriter<WideRow> successor(memory_.get());
   successor.append(row_of(33), nullptr);
-  for (int i = 0; i < 4; ++i) ASSERT_TRUE(reader_.take(row_));
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(reader_.read(row_));
   EXPECT_TRUE(is_row(row_, 33));
   EXPECT_EQ(reader_.overwritten(), 0u);
 }
@@ -138,7 +138,7 @@ TEST_F(RingTest, AppendAndTakeAllocateNothing) {
   if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
   AllocationGuard guard;
   append(0, 1);
-  reader_.take(row_);
+  reader_.read(row_);
   EXPECT_EQ(guard.count(), 0u);
 }
 
@@ -154,7 +154,7 @@ TEST_F(RingTest, AWaitingWriterInAnotherProcessLosesNothing) {
     return 0;
   });
   for (std::uint64_t i = 0; i < kRows;) {
-    if (!reader_.take(row_)) {
+    if (!reader_.read(row_)) {
       sched_yield();
       continue;
     }
@@ -171,7 +171,7 @@ TEST_F(RingTest, AWriterThatNeverWaitsTearsNoRowAndEveryLossIsCounted) {
   std::thread other([&] { append(0, kRows); });
   std::uint64_t taken = 0;
   for (;;) {
-    if (!reader_.take(row_)) {
+    if (!reader_.read(row_)) {
       if (reader_.position() == kRows) break;
       std::this_thread::yield();
       continue;

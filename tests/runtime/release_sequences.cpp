@@ -348,7 +348,7 @@ class Sequence {
     }
     follow_permission();
     if (with_list_ && chance(200)) mux_->receive_lock(0, chance(3), loop_ns());
-    intake().look(loop_ns());
+    intake().update(loop_ns());
     controller_->inbox().store(intake().value());
   }
 

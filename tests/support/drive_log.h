@@ -39,7 +39,7 @@ class DriveLog {
 
   /// Takes the available rows. A ring holds 2 s at 1 kHz: call it more often.
   void read_rows() {
-    while (reader_ && reader_->take(row_)) {
+    while (reader_ && reader_->read(row_)) {
       const TruthFrame& truth = row_.truth;
       cycles_.push_back({.run = row_.sensors.head.run,
                          .cycle = row_.sensors.head.cycle,

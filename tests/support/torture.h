@@ -186,7 +186,7 @@ inline TortureCount torture_ring(std::uint64_t rows) {
   TortureRow row;
   const std::int64_t begin_ns = monotonic_ns();
   while (count.read < rows && count.errors() == 0 && monotonic_ns() < begin_ns + kTorturePatienceNs) {
-    if (!reader.take(row)) {
+    if (!reader.read(row)) {
       sched_yield();
       continue;
     }

@@ -12,9 +12,9 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-LARGEST_TABLE = 16 << 30
+MAX_TABLE = 16 << 30
 """bytes of a log, a CSV or a bag"""
-LARGEST_ECHO = 200
+MAX_ECHO = 200
 """characters of any one input in a message"""
 MAX_MESSAGE = 1500
 """characters of a sentence with several inputs in it"""

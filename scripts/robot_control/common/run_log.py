@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot_control._robot_control import BagError, TraceError, read_run_bag, read_run_header
-from robot_control.common.files import LARGEST_TABLE, check_input, utf8
+from robot_control.common.files import MAX_TABLE, check_input, utf8
 
 BAG_MAGIC = b"#ROSBAG"
 BLACK_BOX_MAGIC = b"RCBLACK"
@@ -44,12 +44,11 @@ class RunLog:
     """A log with the data that describe its rows."""
 
     columns: dict[str, FloatArray]
-    """Of the last run; as `Log`."""
+    """The columns of the last run, as in `Log`."""
     ros_time: FloatArray
     """s, of each row"""
     header: Mapping[str, Any]
-    """Of run.bag: robot, joints, wheels, period, clock, record, part, parameters, urdf, scene, calibration, version,
-    build, host, kernel, processor, libraries, missing, as msg/TraceHeader.msg says."""
+    """The header of run.bag; its fields are those of msg/TraceHeader.msg."""
     runs: int
     """Number of runs in the file."""
     lost: int

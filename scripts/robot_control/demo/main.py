@@ -40,7 +40,7 @@ RAMP_TIME = 1.5
 END_LIMIT = 20.0
 """s for an orderly end after SIGINT; roslaunch itself gives its nodes 15 s."""
 BUS = f"demo_{os.getpid()}"
-"""Of this demo alone. It goes with it: an object of 12 MB that outlives its nodes would fill a small /dev/shm."""
+"""The bus belongs to this demo alone, which removes it: 12 MB that outlive the nodes would fill a small /dev/shm."""
 OUTPUTS = ("run.bag", "run.csv", "summary.json", "run.png", "launch.log", "send_cmd.log")
 EVERY_CYCLE = "telemetry: {record: always}\n"
 """parameters laid over the package's"""

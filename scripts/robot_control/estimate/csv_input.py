@@ -12,11 +12,11 @@ from typing import TextIO
 
 import numpy as np
 
-from robot_control.common.files import LARGEST_TABLE, check_input, listed
+from robot_control.common.files import MAX_TABLE, check_input, listed
 from robot_control.estimate.samples import ACCEL, GYRO, FloatArray, InputError, IntArray, Samples
 
 NAMES = ("time", "left", "right", *GYRO, *ACCEL)
-LONGEST_LINE = 100_000
+MAX_LINE = 100_000
 """characters; below the field limit of Python's csv, and a row of run.csv has some 3000"""
 TIME_UNITS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}  # in ns
 GYRO_UNITS = {"rad/s": 1.0, "deg/s": math.pi / 180}

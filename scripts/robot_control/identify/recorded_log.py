@@ -37,7 +37,7 @@ class RunningTelemetry:
 
     node: str
     path: str
-    """Of run.bag."""
+    """Path of run.bag."""
     records: bool
     """True if run.bag holds the present cycles."""
 

@@ -51,7 +51,7 @@ void CommandInput::receive(const ArrivedCommand& arrived, const ArrivalTime& tim
   }
   reported_stamps_.erase(arrived.sender.name);
   senders_.add(arrived.sender.name, time.loop_ns);
-  look(time.loop_ns);
+  update(time.loop_ns);
   if (value_.many_senders != 0) {
     ++value_.crowded;
     requests_.request(arrived.sender, time.loop_ns);
@@ -73,7 +73,7 @@ void CommandInput::receive(const ArrivedCommand& arrived, const ArrivalTime& tim
   ++value_.count;
 }
 
-bool CommandInput::look(std::int64_t loop_ns) {
+bool CommandInput::update(std::int64_t loop_ns) {
   report_senders(loop_ns);
   const bool over = !requests_.granted() && !zero(value_.twist) && !motion_requested(loop_ns);
   if (over) end_command();

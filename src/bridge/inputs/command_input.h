@@ -66,7 +66,7 @@ class CommandInput final : public CommandIntake {
   void start(const EarlierController& earlier) override { requests_.start(earlier); }
 
   /// Removes senders that have become silent. Returns true if that changed the value of the inbox.
-  bool look(std::int64_t loop_ns) override;
+  bool update(std::int64_t loop_ns) override;
 
   const VelocityCommand& value() const noexcept override { return value_; }
   std::vector<ReportLine> lines() override;

@@ -25,9 +25,9 @@ class CommandIntake {
   virtual void start(const EarlierController& earlier) = 0;
 
   /// Updates the value for the time that has passed without a message. Returns true if the value of the inbox changed.
-  virtual bool look(std::int64_t loop_ns) = 0;
+  virtual bool update(std::int64_t loop_ns) = 0;
 
-  /// Applies the safety monitor's permission. It is called before each message and at least at every `look`. Returns
+  /// Applies the safety monitor's permission. It is called before each message and at least at every `update`. Returns
   /// true if the command in force ended (motion_requests.h).
   virtual bool follow(const MotionPermission& permission, std::int64_t loop_ns) = 0;
 

@@ -51,12 +51,12 @@ void CommandMux::receive(std::size_t source, const ArrivedCommand& arrived, cons
 void CommandMux::receive_lock(std::size_t lock, bool set, std::int64_t loop_ns) {
   locks_[lock].set = set;
   locks_[lock].last_ns = loop_ns;
-  look(loop_ns);
+  update(loop_ns);
 }
 
-bool CommandMux::look(std::int64_t loop_ns) {
+bool CommandMux::update(std::int64_t loop_ns) {
   bool changed = false;
-  for (Source& source : sources_) changed |= source.input.look(loop_ns);
+  for (Source& source : sources_) changed |= source.input.update(loop_ns);
   changed |= select(loop_ns);
   if (!changed && (winner_ || unread(loop_ns))) return false;
   take_result(loop_ns, false);

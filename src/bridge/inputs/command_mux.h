@@ -46,7 +46,7 @@ class CommandMux final : public CommandIntake {
   void receive_lock(std::size_t lock, bool set, std::int64_t loop_ns);
 
   /// Updates winner and value by timeouts and locks. Returns true if the value of the inbox changed.
-  bool look(std::int64_t loop_ns) override;
+  bool update(std::int64_t loop_ns) override;
 
   bool follow(const MotionPermission& permission, std::int64_t loop_ns) override;
   std::vector<std::string> revoked() const override;

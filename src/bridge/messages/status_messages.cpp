@@ -117,7 +117,7 @@ msg::SafetyStatus waiting_status(const std::vector<std::string>& missing) {
   return message;
 }
 
-bool news(const Permit& last, const Permit& now) {
+bool differs(const Permit& last, const Permit& now) {
   return last.state != now.state || last.action != now.action || last.causes != now.causes ||
          last.active != now.active || last.warnings != now.warnings || last.speed_limit != now.speed_limit ||
          last.first_cause != now.first_cause || last.missing != now.missing || last.unreleased != now.unreleased ||

@@ -24,7 +24,7 @@ std::string detail(const Permit& permit, std::uint64_t cause, const RobotModel& 
 msg::SafetyStatus waiting_status(const std::vector<std::string>& missing);
 
 /// Returns whether `now` differs from `last` in more than cycle, stamp and measured values.
-bool news(const Permit& last, const Permit& now);
+bool differs(const Permit& last, const Permit& now);
 
 /// These nodes may be the reason why a reset is refused.
 struct Publishers {

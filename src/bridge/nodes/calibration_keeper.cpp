@@ -11,7 +11,7 @@ bool CalibrationKeeper::busy() const {
   return writing_.valid() && writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
 }
 
-void CalibrationKeeper::look(const StateFrame& state, std::int64_t now_ns) {
+void CalibrationKeeper::write_if_due(const StateFrame& state, std::int64_t now_ns) {
   if (next_ns_ == 0) next_ns_ = now_ns + kPeriod;
   if (now_ns < next_ns_ || busy()) return;
   next_ns_ = now_ns + kPeriod;

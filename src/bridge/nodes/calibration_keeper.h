@@ -23,7 +23,7 @@ class CalibrationKeeper {
         parameters_(parameters.estimator) {}
 
   /// Begins to write if a write is due; may be called at any time.
-  void look(const StateFrame& state, std::int64_t now_ns);
+  void write_if_due(const StateFrame& state, std::int64_t now_ns);
 
   /// Waits until a write that has begun ends. A failure is reported once.
   void wait();

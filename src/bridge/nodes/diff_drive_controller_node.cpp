@@ -79,7 +79,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     look_at_senders();
     if (process().output().newest(command_) != Lookup::kFrame || command_.head.run != sensors.head.run) return;
     const FrameHead& head = command_.head;
-    const std::uint64_t reasons = history_.look(process().output(), command_);
+    const std::uint64_t reasons = history_.collect(process().output(), command_);
     since_message_ |= reasons;
     since_report_ |= reasons;
     time().follow(sensors);
@@ -92,7 +92,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     add_senders(state);
     drive_state_.publish(state);
     if (report_outdated_.exchange(false)) command_report_.limit(process().retuning().in_force());
-    write_log(command_report_.look(command_));
+    write_log(command_report_.update(command_));
   }
 
   void diagnose(DiagnosticReport& report) override {
@@ -278,7 +278,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     {
       const std::lock_guard lock(input_mutex_);
       const bool ended = follow_permission();
-      if (intake_->look(loop_ns()) || ended) process().cycle().inbox().store(intake_->value());
+      if (intake_->update(loop_ns()) || ended) process().cycle().inbox().store(intake_->value());
       lines = intake_->lines();
     }
     write_log(lines);

@@ -52,7 +52,7 @@ void catch_signals() {
 /// A WaitingNote reports once, after kSilentWait, for which nodes this node waits, and once that all of them run.
 class WaitingNote {
  public:
-  void look(const std::vector<std::string>& missing, std::int64_t now_ns) {
+  void report(const std::vector<std::string>& missing, std::int64_t now_ns) {
     if (missing.empty()) {
       if (reported_) ROS_INFO("all required nodes are running");
       reported_ = false;
@@ -86,7 +86,7 @@ bool await_master(const std::string& name) {
 /// Reports closed connections, at most once in 10 s.
 class ConnectionNote {
  public:
-  void look(std::int64_t now_ns) {
+  void report(std::int64_t now_ns) {
     const std::uint64_t evicted = evicted_connections();
     const std::uint64_t refused = overlong_announcements();
     if ((evicted == evicted_ && refused == overlong_) || now_ns < next_ns_) return;
@@ -143,8 +143,8 @@ class NodeLoop {
   void poll(std::int64_t now_ns) {
     next_poll_ns_ = now_ns + kPollPeriod;
     node_.poll();
-    waiting_.look(node_.missing(), now_ns);
-    connections_.look(now_ns);
+    waiting_.report(node_.missing(), now_ns);
+    connections_.report(now_ns);
     log_refusals(node_.realtime_messages());
   }
 

@@ -55,9 +55,10 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     const std::int64_t now_ns = monotonic_ns();
     Permit permit;
     const bool found = seen(permit);
-    if (found) withdrawal_.look(permit, now_ns);
+    if (found) withdrawal_.update(permit, now_ns);
     const std::vector<std::string> absent = missing();
-    const bool changed = found != reported_permit_ || absent != reported_missing_ || (found && news(reported_, permit));
+    const bool changed =
+        found != reported_permit_ || absent != reported_missing_ || (found && differs(reported_, permit));
     const std::int64_t silence_ns = now_ns - reported_ns_;
     if (reported_ns_ != 0 && silence_ns < (changed ? kStatusGap : kStatusPeriod)) return;
     if (SensorFrame sensors; live(sensors)) time().follow(sensors);
@@ -69,7 +70,7 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     }
     note_latch_file(status);
     status_.publish(status);
-    write_log(stop_log_.look(status));
+    write_log(stop_log_.update(status));
     reported_permit_ = found;
     reported_missing_ = absent;
     reported_ = permit;

@@ -82,7 +82,7 @@ std::string CommandReport::text(const Report& report, const CommandFrame& comman
   return format("left %.2f m/s, right %.2f m/s (%s)", report.rims.left, report.rims.right, requested_text.c_str());
 }
 
-std::vector<ReportLine> CommandReport::look(const CommandFrame& command) {
+std::vector<ReportLine> CommandReport::update(const CommandFrame& command) {
   std::vector<ReportLine> lines;
   if (command.head.run != run_) enter_run(command);
   const std::int64_t now_ns = command.head.stamp_ns;

@@ -37,7 +37,7 @@ class CommandReport {
   void limit(const DriveControllerParameters& parameters);
 
   /// Returns the lines that are due at this frame. Any number of cycles may lie between two frames.
-  std::vector<ReportLine> look(const CommandFrame& command);
+  std::vector<ReportLine> update(const CommandFrame& command);
 
  private:
   /// The content of a line about a command.

@@ -12,7 +12,7 @@ class ReasonHistory {
  public:
   /// Returns the bits of all cycles after that of the last call up to `newest`, as far as the channel still has them.
   /// In a new run it returns those of `newest` alone.
-  std::uint64_t look(const FrameReader<CommandFrame>& channel, const CommandFrame& newest) noexcept {
+  std::uint64_t collect(const FrameReader<CommandFrame>& channel, const CommandFrame& newest) noexcept {
     const bool same_run = newest.head.run == run_;
     std::uint64_t bits = newest.reasons;
     CommandFrame frame;

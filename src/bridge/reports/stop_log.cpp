@@ -27,7 +27,7 @@ std::string speed_text(double speed) {
 
 }  // namespace
 
-std::vector<ReportLine> StopLog::look(const msg::SafetyStatus& status) {
+std::vector<ReportLine> StopLog::update(const msg::SafetyStatus& status) {
   if (status.run != run_) {
     run_ = status.run;
     awaiting_ = false;

@@ -33,7 +33,7 @@ class StopLog {
   StopLog(double period, double cmd_vel_timeout) : period_(period), zero_silence_(silence_needed(cmd_vel_timeout)) {}
 
   /// Returns the lines that are due at this status. Every published status is passed in the order of publication.
-  std::vector<ReportLine> look(const msg::SafetyStatus& status);
+  std::vector<ReportLine> update(const msg::SafetyStatus& status);
 
  private:
   void look_at_causes(const msg::SafetyStatus& status, std::vector<ReportLine>& lines);

@@ -15,7 +15,7 @@ namespace robot_control {
 class WithdrawalTime {
  public:
   /// Updates the time at each tick; `now_ns` is in ns of any clock that never goes backwards.
-  void look(const Permit& permit, std::int64_t now_ns) {
+  void update(const Permit& permit, std::int64_t now_ns) {
     const bool granted = permit.action == PermitAction::kDrive;
     const bool ended = granted_ && (!granted || permit.withdrawals != withdrawals_);
     if (ended || permit.causes != 0) last_ns_ = now_ns;

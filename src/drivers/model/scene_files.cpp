@@ -32,7 +32,7 @@ std::vector<std::string> attribute_values(std::string_view text, std::string_vie
 
 class SceneFiles {
  public:
-  explicit SceneFiles(const std::filesystem::path& scene) : folder_(scene.parent_path()), folders_{""} { look(scene); }
+  explicit SceneFiles(const std::filesystem::path& scene) : folder_(scene.parent_path()), folders_{""} { read(scene); }
 
  private:
   [[noreturn]] static void refuse_scene(const std::filesystem::path& path, const std::string& problem) {
@@ -40,7 +40,7 @@ class SceneFiles {
                       ". Set mujoco_plant/scene to an MJCF file whose files are regular ones.");
   }
 
-  void look(const std::filesystem::path& path) {
+  void read(const std::filesystem::path& path) {
     if (!seen_.insert(path).second) return;
     const InputFile file = read_input_file(path, kMaxDescription);
     if (!file.problem.empty()) refuse_scene(path, file.problem);
@@ -57,7 +57,7 @@ class SceneFiles {
     if (!std::filesystem::exists(path, error)) return;
     const std::string problem = input_file_problem(path, kMaxDescription);
     if (!problem.empty()) refuse_scene(path, problem);
-    if (path.extension() == ".xml" || path.extension() == ".mjcf") look(path);
+    if (path.extension() == ".xml" || path.extension() == ".mjcf") read(path);
   }
 
   std::filesystem::path folder_;

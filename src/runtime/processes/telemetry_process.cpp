@@ -49,9 +49,9 @@ class TelemetryProcess::Source {
     // One ring's worth at most, so that a writer that is faster than this does not hold the others up.
     while (begun_ && rows < kRingRows) {
       batch_.clear();
-      while (batch_.size() < kBatch && reader_->take(row_)) batch_.push_back(row_);
+      while (batch_.size() < kBatch && reader_->read(row_)) batch_.push_back(row_);
       if (batch_.empty()) break;
-      while (snapshots_ && snapshots_->take(snapshot_)) keep(snapshot_);
+      while (snapshots_ && snapshots_->read(snapshot_)) keep(snapshot_);
       for (const Row& row : batch_) store(row);
       for (const Row& row : batch_) join.add(row);
       rows += batch_.size();
