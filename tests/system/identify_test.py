@@ -157,7 +157,7 @@ class IdentifyTest(RobotTestCase):
     def test_refuses_a_log_that_is_none(self) -> None:
         file = self.output.with_name("empty.csv")
         file.write_text("")
-        self.assertIn("no columns", self.refused(f"--log={file}"))
+        self.assertIn("is no run.bag", self.refused(f"--log={file}"))
         self.assertTrue(math.isfinite(self.robot.speed))
 
 

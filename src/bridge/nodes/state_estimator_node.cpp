@@ -101,7 +101,7 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
   }
 
   /// Requests this pose from the next cycle on. Returns "" or the reason of a refusal.
-  std::string request(const Vector3& pose) {
+  std::string request_pose(const Vector3& pose) {
     const std::vector<std::string> missing = this->missing();
     if (!missing.empty()) return "not done: no sensors, " + missing.front() + " does not run";
     const std::lock_guard<std::mutex> one(requesting_);  // callbacks run in two threads
@@ -110,7 +110,7 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
   }
 
   bool reset_odometry(msg::TriggerRequest& /*request*/, msg::TriggerResponse& response) {
-    const std::string refusal = request({0, 0, 0});
+    const std::string refusal = request_pose({0, 0, 0});
     response.success = refusal.empty();
     response.message = ascii(refusal.empty() ? "the pose is zero from the next cycle on" : refusal);
     return true;
@@ -119,7 +119,7 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
   bool set_odometry(msg::SetOdometryRequest& request, msg::SetOdometryResponse& response) {
     const Vector3 requested{request.x, request.y, request.yaw};
     const std::string problem = odometry_problem(requested);
-    const std::string refusal = problem.empty() ? request(normalised(requested)) : "not done: " + problem;
+    const std::string refusal = problem.empty() ? request_pose(normalised(requested)) : "not done: " + problem;
     response.success = refusal.empty();
     response.message = ascii(refusal.empty() ? taken_sentence(normalised(requested)) : refusal);
     return true;
