@@ -44,9 +44,13 @@ class Services : public ::testing::Test {
   }
 
   /// run.bag of four processes under these hands.
-  LogTable four_processes(ClockMode clock, const FourNodes::Operator& operate) {
+  void run_processes(ClockMode clock, const FourNodes::Operator& operate) {
     parameters_.loop.clock = clock;
     FourNodes(parameters_, robot_, true).run(kServicePatience, operate);
+  }
+
+  LogTable four_processes(ClockMode clock, const FourNodes::Operator& operate) {
+    run_processes(clock, operate);
     return LogTable::of_bag(folder_ / "log" / "run.bag");
   }
 
@@ -183,7 +187,7 @@ TEST_F(Services, OnTheWallClockAPauseStopsTimeAndIsNeitherCaughtUpNorSlip) {
 }
 
 TEST_F(Services, SayWhyTheyDoNot) {
-  four_processes(ClockMode::kLockstep, [](DriverProcess& driver) {
+  run_processes(ClockMode::kLockstep, [](DriverProcess& driver) {
     SimulationServices& services = *driver.services();
     const ServiceAnswer running = services.step(1);
     EXPECT_FALSE(running.success);
@@ -204,7 +208,7 @@ TEST_F(Services, SayWhyTheyDoNot) {
 }
 
 TEST_F(Services, AStepThatIsTakenBackSaysHowFarItCame) {
-  four_processes(ClockMode::kWall, [](DriverProcess& driver) {
+  run_processes(ClockMode::kWall, [](DriverProcess& driver) {
     SimulationServices& services = *driver.services();
     step_from_the_beginning(services, 10);
     ServiceAnswer long_step;

@@ -107,7 +107,7 @@ class SendCmdTest(unittest.TestCase):
 
     def test_waits_with_zeros_until_the_robot_is_ready(self) -> None:
         self.say(self.monitor, "INIT")
-        sender = self.started("--period=0.1", "--count=2")
+        sender = self.started("--period=0.1", "--count=20")  # one that a stalling machine holds back is replaced
         wait_for("what it waits for", lambda: "waits for a zero request; stop the other sender" in sender.output)
         self.assertGreater(len(self.received), 2)
         self.assertEqual(self.commands(), [])
@@ -132,7 +132,7 @@ class SendCmdTest(unittest.TestCase):
 
     def test_sends_all_the_same_where_no_monitor_runs(self) -> None:
         self.monitor.unregister()
-        sender = self.started("--period=0.1", "--count=1")
+        sender = self.started("--period=0.1", "--count=20")  # as above
         self.assertEqual(sender.wait(), 0, sender.output)
         wait_for("the command", lambda: bool(self.commands()))
         self.assertEqual(sender.output.count("no safety_status within"), 1)
