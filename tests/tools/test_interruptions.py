@@ -68,6 +68,14 @@ def test_a_stop_and_its_reset_that_a_program_did_not_see_revoke_what_it_was_star
     assert made.revoked(3.1) == ""
 
 
+def test_a_restart_that_is_not_over_at_the_first_look_revokes_what_the_program_was_started_for():
+    made = before_the_first_look(Status("INIT", withdrawals=4, run=8, withdrawn=2.0))
+    made.step(3.5, [Status("READY", withdrawals=4, run=8, withdrawn=2.0)], waited=True)
+    assert made.count == 1
+    assert "started again" in made.revoked(1.0)
+    assert made.revoked(2.1) == "", "what was requested after the restart begins with its permission"
+
+
 @pytest.mark.parametrize("withdrawn", [-math.inf, 0.9])
 def test_what_was_withdrawn_before_a_program_began_revokes_nothing_of_it(withdrawn):
     made = before_the_first_look(Status("READY", withdrawals=4, run=7, withdrawn=withdrawn))

@@ -98,7 +98,7 @@ class Interruptions:
         why = self._change(status)
         if why:
             self._interrupt(now, why)
-        elif self._waits and status.drivable and status.withdrawn >= self._heard:
+        elif self._waits and not status.stopped and status.withdrawn >= self._heard:
             self._interrupt(min(now, status.withdrawn), UNSEEN)
         self._heard = now
         if status.stopped:

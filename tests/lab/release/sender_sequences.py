@@ -24,6 +24,7 @@ from lab.runs.runner import Runner
 PERIOD = 0.02  # s between two passes
 LONG = 20.0  # s of a sequence
 LOOKS = round(LONG / PERIOD)
+RESTARTS = 0.3  # share of the ends of a permission that no reset follows
 
 
 @dataclass(frozen=True)
@@ -40,15 +41,15 @@ class Outcome:
 
 
 class Monitor:
-    """Stops and resets at random; a subscriber may miss all its messages but the newest. With `first` it was just
-    started and permits nothing yet.
+    """Stops with resets, and restarts, at random; a subscriber may miss all its messages but the newest. With `first` it
+    was just started and permits nothing yet.
     """
 
     def __init__(self, chance: random.Random, *, first: bool = False) -> None:
         self._chance = chance
         self.status = Status("INIT" if first else "READY", run=1)
         self.messages = [self.status]
-        self.released = -1.0  # s, after a stop
+        self.released = -1.0  # s: the last reset, or restart
         self._due = chance.uniform(1.0, 5.0)
 
     def step(self, now: float) -> None:
@@ -56,7 +57,11 @@ class Monitor:
         if now < self._due:
             return
         status, withdrawals = self.status, self.status.withdrawals
-        if status.drivable:
+        if status.drivable and self._chance.random() < RESTARTS:
+            self.released = now
+            self.status = Status("INIT", withdrawals=withdrawals + 1, run=1, withdrawn=now)
+            self._due = now + self._chance.choice([0.05, 0.3, 1.5, 4.0])
+        elif status.drivable:
             self.status = Status("STOPPED", "e_stop was called", withdrawals=withdrawals + 1, run=1, withdrawn=now)
             self._due = now + self._chance.choice([0.05, 0.3, 1.5, 4.0])
         else:
