@@ -18,18 +18,18 @@ NONE, ENABLE, TURBO = (0,) * 6, (0, 0, 0, 0, 1, 0), (0, 0, 0, 0, 0, 1)
 
 @pytest.fixture
 def pad():
-    """A pad that was read with nothing held, at 0 s."""
+    """A pad that was read with nothing held, until 0 s."""
     pad = Pad(GIVEN)
-    pad.receive(REST, NONE, 0.0)
+    hold(pad, REST, NONE, -0.5, 0.5)
     return pad
 
 
-def hold(pad, axes, buttons, begin, seconds):
+def hold(pad, axes, buttons, begin, seconds, sender=""):
     """Answers as a device does that is read all the time; returns the last time."""
     now = begin
     for number in range(round(seconds / PERIOD) + 1):
         now = begin + number * PERIOD
-        pad.receive(axes, buttons, now)
+        pad.receive(axes, buttons, now, sender)
     return now
 
 
@@ -89,6 +89,14 @@ def test_a_pad_that_comes_back_with_the_button_held_moves_nothing(pad):
     assert pad.command(now).linear > 0
 
 
+def test_what_a_stalled_link_delivers_at_once_when_it_goes_on_moves_nothing(pad):
+    now = hold(pad, FORWARD, ENABLE, 0.1, 1.0) + 5.0
+    for buttons in (ENABLE, NONE, ENABLE):
+        pad.receive(FORWARD, buttons, now)
+        assert pad.command(now) in (None, Command())
+    assert pad.state(now) == "release the enable button once"
+
+
 def test_a_pad_that_is_plugged_in_with_the_button_held_moves_nothing():
     pad = Pad(GIVEN)
     now = hold(pad, FORWARD, ENABLE, 0.0, 1.0)
@@ -122,7 +130,7 @@ def test_noise_of_the_stick_lengthens_no_hold(pad):
 def test_a_second_publisher_of_joy_zeroes_and_is_named():
     """A lost pad with its button held, and an idle one that was switched on meanwhile, publish at once."""
     pad = Pad(GIVEN)
-    pad.receive(REST, NONE, 0.0, "/lost")
+    hold(pad, REST, NONE, -0.5, 0.5, "/lost")
     for number in range(60):
         now = 0.1 + number * PERIOD
         pad.receive(FORWARD, ENABLE, now, "/lost")

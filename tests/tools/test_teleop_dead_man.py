@@ -73,12 +73,24 @@ def test_another_key_takes_over_without_a_gap_and_without_slowing_down(dead_man)
         assert share(dead_man, end - SHORT) == 1.0
 
 
-def test_a_burst_after_a_gap_counts_as_one_byte(dead_man):
-    press(dead_man, "w", train(0.0, 2.0))
-    for number in range(60):  # two seconds of a link that stalled
-        dead_man.press("w", 4.0 + number * BURST / 2)
-    assert share(dead_man, 4.3) == PARAMETERS.slow
-    assert dead_man.look(4.0 + PARAMETERS.first_hold) is None
+@pytest.mark.parametrize("held_before", [True, False])
+def test_a_burst_that_would_begin_a_motion_was_typed_before_its_link_stalled(dead_man, held_before):
+    if held_before:
+        press(dead_man, "w", train(0.0, 2.0))
+    last = press(dead_man, "w", [4.0 + number * BURST / 2 for number in range(60)])
+    assert dead_man.look(4.0 + BURST) is None
+    assert dead_man.blocked(last)
+    last = press(dead_man, "w", train(last + PERIOD, 1.0, delay=PERIOD))
+    assert dead_man.look(last) is None, "it is held all the time"
+    dead_man.press("w", last + PARAMETERS.first_hold + SHORT)
+    assert dead_man.look(last + PARAMETERS.first_hold + SHORT) is not None
+
+
+def test_a_burst_while_a_key_is_held_counts_as_one_byte(dead_man):
+    last = press(dead_man, "w", train(0.0, 2.0))
+    press(dead_man, "w", [last + PERIOD + number * BURST / 2 for number in range(5)])
+    assert share(dead_man, last + PERIOD + PARAMETERS.hold - SHORT) == 1.0
+    assert dead_man.look(last + PERIOD + PARAMETERS.hold) is None
 
 
 def test_a_flood_holds_no_longer_than_its_first_byte(dead_man):

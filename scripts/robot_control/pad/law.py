@@ -5,8 +5,8 @@
 
 With enable_turbo_button held, the turbo scales hold instead. The names are those of teleop_twist_joy.
 
-The enable button counts only after it was seen released. That release has to follow the pad's connection and every stop
-and pause of this program (interruptions.py), while the robot may drive. A hold ends after max_hold, whatever the
+The enable button counts only after it was seen released. That release has to follow each silence of the pad, each stop
+and each pause of this program (interruptions.py) by SETTLING, while the robot may drive. A hold ends after max_hold, whatever the
 stick does. The reason: a wireless receiver that has lost its pad goes on reporting its last values, noise included.
 
 One pad is one sender. While messages of another sender arrive within joy_timeout, nothing moves.
@@ -18,7 +18,7 @@ from dataclasses import dataclass, fields
 from robot_control.common.command import Command
 
 SETTLING = 0.3
-"""s after an interruption in which messages may still arrive that were sent before it"""
+"""s after an interruption, or a silence of the pad, in which messages may still arrive that were sent before it"""
 ZEROS = 1.0
 """s for which zeros are sent after a motion; then the topic is silent, so that another sender may command"""
 MAX_INPUTS = 256
@@ -76,6 +76,8 @@ class Pad:
         if sender != self._sender and not came_back:
             self._armed = False
             return
+        if came_back:
+            self._arms_from = max(self._arms_from, now + SETTLING)
         self._sender = sender
         self._axes, self._buttons = tuple(axes), tuple(buttons)
         self._answered_at = now
@@ -127,7 +129,7 @@ class Pad:
             return "no pad answers"
         if len(self._senders(now)) > 1:
             return f"{' and '.join(self._senders(now))} publish joy: zero until one is left"
-        if self._held() and not self._armed:
+        if not self._armed:
             return "release the enable button once"
         return "drives" if self._held() else f"hold button {self._given.enable_button} to drive"
 

@@ -3,7 +3,8 @@
     press              the first byte of a key; it holds for `first_hold`, and only slowly until the first repeat
     repeat             a later byte of the same key; it holds for `hold`
     burst              bytes less than BURST apart, which no keyboard sends: a link that had stalled delivers them. They
-                       count as one byte, and after a stop among them no motion key of the same burst counts
+                       count as one byte. Where they would begin a motion, they are old, and that key has to pause. After
+                       a stop among them no motion key of the same burst counts
     change of keys     while one key is held, another takes over at once and at the same speed
     max_hold           a motion whose keys repeat for so long without a pause ends in zero, until all of its keys have
                        paused for `first_hold`
@@ -108,6 +109,8 @@ class DeadMan:
         gap = now - self._last_byte
         self._last_key, self._last_byte = key, now
         if burst and (again or self._stopped_in_burst):
+            if key == self._key and self._bytes == 1:
+                self.block(key, now)
             return
         self._stopped_in_burst = False
         self._delay.byte(key, now)
@@ -141,7 +144,7 @@ class DeadMan:
         self._stopped_in_burst = True
 
     def block(self, key: str, now: float) -> None:
-        """Blocks all motions until all keys have paused: a byte of `key` came while there can be no motion."""
+        """Blocks all motions until all keys have paused: a byte of `key` came too late, or while nothing may move."""
         self._down.add(key)
         self._key = ""
         self._last_key, self._last_byte = key, now
