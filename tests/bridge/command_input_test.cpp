@@ -320,6 +320,27 @@ TEST_F(RevokedSenderTest, WhatAStopInterruptedIsRefusedUntilItsSendersOwnZero) {
   EXPECT_THAT(input_.revoked(), IsEmpty());
 }
 
+TEST_F(RevokedSenderTest, MotionThatItsStampDatesBeforeTheReleaseIsRefusedWhateverTheTimeout) {
+  for (const double timeout : {1.25, 60.0, 0.0}) {
+    input_.set_timeout(timeout);
+    receive("/relay", 0);
+    pass(100 * kSecond);
+    const std::uint64_t refused = value().revoked;
+    const std::int64_t before_ns = now_.ros_ns;
+    stop();
+    pass(kSecond / 2);
+    grant();
+    receive("/relay", 0.5, before_ns);
+    receive_stamped("/relay", 0.5);
+    EXPECT_EQ(value().revoked, refused + 2) << timeout;
+    EXPECT_EQ(value().twist.linear[0], 0) << timeout;
+    receive_stamped("/relay", 0);
+    receive_stamped("/relay", 0.5);
+    EXPECT_EQ(value().twist.linear[0], 0.5) << timeout;
+    receive_stamped("/relay", 0);
+  }
+}
+
 TEST_F(RevokedSenderTest, MotionWithinTheTimeoutBeforeAStopCountsAsWell) {
   receive("/teleop", 0.5);
   receive("/teleop", 0);

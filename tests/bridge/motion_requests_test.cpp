@@ -5,6 +5,7 @@
 
 #include <boost/make_shared.hpp>
 #include <string>
+#include <vector>
 
 #include "bridge/nanoseconds.h"
 
@@ -44,6 +45,7 @@ class MotionRequestsTest : public testing::Test {
   std::int64_t now_ = 100 * kSecond;
   MotionPermission permission_{.run = 7, .withdrawals = 0, .granted = true};
   MotionRequests requests_;
+  std::vector<boost::shared_ptr<const void>> connections_;
   Publisher teleop_{"/teleop", boost::make_shared<char>(), "http://robot:40001/"};
 };
 
@@ -118,7 +120,15 @@ TEST_F(MotionRequestsOfARestartTest, AreRevokedOfAllProcessesThatWereThere) {
   EXPECT_FALSE(revoked_again({"/planner", nullptr, "http://robot:40003/"}));
   requests_.end(teleop_);
   EXPECT_FALSE(requests_.revoked(teleop_));
-  EXPECT_FALSE(revoked_again(teleop_)) << "and so does its zero count";
+  EXPECT_FALSE(revoked_again(teleop_)) << "that connection has closed before this zero, which counts for it, too";
+}
+
+TEST_F(MotionRequestsOfARestartTest, EndWithAZeroOverTheirOwnConnectionAlone) {
+  requests_.follow(permission_, now_);
+  grant();
+  requests_.end(teleop_);
+  EXPECT_FALSE(requests_.revoked(teleop_));
+  EXPECT_TRUE(revoked_again(teleop_)) << "over another connection, which is open as well";
 }
 
 TEST_F(MotionRequestsOfARestartTest, CountAsMadeAtTheStart) {
@@ -133,6 +143,14 @@ TEST_F(MotionRequestsOfARestartTest, CountAsMadeAtTheStart) {
 TEST_F(MotionRequestsOfARestartTest, LikewiseInAnotherRunWhileAStopIsLatched) {
   permission_.run = 8;
   permission_.stopped = true;
+  requests_.follow(permission_, now_);
+  grant();
+  EXPECT_TRUE(revoked_again(teleop_));
+}
+
+TEST_F(MotionRequestsOfARestartTest, LikewiseInAnotherRunIfMotionWasRequestedAtTheEndOfTheOneBefore) {
+  requests_.start({.present = {{"/teleop", nullptr, teleop_.uri}}, .run = 7, .requested = true});
+  permission_.run = 8;
   requests_.follow(permission_, now_);
   grant();
   EXPECT_TRUE(revoked_again(teleop_));
@@ -159,6 +177,51 @@ TEST_F(MotionRequestsTest, AZeroBeforeAnotherWithdrawalDoesNotCountAfterIt) {
   withdraw();
   now_ += 2 * kWindow;
   requests_.request(teleop_, now_);
+  grant();
+  EXPECT_TRUE(requests_.revoked(teleop_));
+}
+
+TEST_F(MotionRequestsTest, OfSeveralClosedConnectionsTheRevokedOneGoesOn) {
+  for (const bool revoked_first : {false, true}) {
+    Publisher node{"/node", nullptr, revoked_first ? "http://robot:1/" : "http://robot:2/"};
+    for (const bool moves : {revoked_first, !revoked_first}) {
+      node.connection = boost::make_shared<char>();
+      requests_.request(node, now_);
+      if (!moves) requests_.end(node);
+      if (!moves) now_ += 2 * kWindow;
+      connections_.push_back(node.connection);
+    }
+    withdraw();
+    grant();
+    connections_.clear();
+    node.connection.reset();
+    EXPECT_TRUE(revoked_again(node)) << revoked_first;
+  }
+}
+
+TEST_F(MotionRequestsTest, OfAnEarlierTimeThanTheGrantAreRevokedByTheirStamp) {
+  withdraw();
+  requests_.end(teleop_);
+  now_ += 10 * kWindow;
+  grant();
+  now_ += kSecond;
+  requests_.request(teleop_, now_, kSecond + MotionRequests::kInTransit);
+  EXPECT_FALSE(requests_.revoked(teleop_)) << "with the grant";
+  requests_.request(teleop_, now_, kSecond + MotionRequests::kInTransit + 1);
+  EXPECT_TRUE(requests_.revoked(teleop_));
+  requests_.request(teleop_, now_, 0);
+  EXPECT_TRUE(requests_.revoked(teleop_)) << "it requested motion before the grant, and goes on";
+  requests_.end(teleop_);
+  requests_.request(teleop_, now_, 0);
+  EXPECT_FALSE(requests_.revoked(teleop_));
+}
+
+TEST_F(MotionRequestsTest, OlderThanTheWindowWereNotMadeWithTheGrant) {
+  requests_.set_window(MotionRequests::kInTransit / 2);
+  withdraw();
+  requests_.end(teleop_);
+  requests_.request(teleop_, now_);
+  now_ += MotionRequests::kInTransit / 2 + 1;  // a silence that a reset accepts
   grant();
   EXPECT_TRUE(requests_.revoked(teleop_));
 }

@@ -151,13 +151,17 @@ class Sequence {
   void start_intake() {
     EarlierController earlier;
     CommandFrame command;
-    if (command_.reader.newest(command) == Lookup::kFrame) earlier.run = command.head.run;
+    if (command_.reader.newest(command) == Lookup::kFrame) {
+      earlier.run = command.head.run;
+      earlier.requested = command.requests_received != 0 && command.zero_requested == 0;
+    }
     for (Sender& sender : senders_) {
       earlier.present.push_back({sender.name, nullptr, sender.uri});
       reopen(sender);
     }
     intake().start(earlier);
     earlier_run_ = earlier.run;
+    earlier_requested_ = earlier.requested;
     has_looked_ = false;
   }
 
@@ -358,7 +362,7 @@ class Sequence {
     if (permit_.reader.newest(permit) != Lookup::kFrame) return;
     if (!current(sensors_.reader, permit.head, robot_.hash)) return;
     const MotionPermission permission = motion_permission(permit);
-    if (!std::exchange(has_looked_, true) && !permission.stopped && permission.run != earlier_run_) {
+    if (!std::exchange(has_looked_, true) && !permission.stopped && permission.run != earlier_run_ && !earlier_requested_) {
       for (Sender& sender : senders_) forget(sender);
     }
     intake().follow(permission, loop_ns());
@@ -478,6 +482,7 @@ class Sequence {
   std::optional<CommandInput> inbox_;
   std::optional<CommandMux> mux_;  ///< instead, with a list of sources
   std::uint64_t earlier_run_ = 0;  ///< of the last command before this controller
+  bool earlier_requested_ = false;  ///< motion was requested at that command
   bool has_looked_ = false;        ///< this controller, at a permit
   int processes_ = 0;              ///< of senders
   OperatorInput operator_input_;

@@ -60,7 +60,7 @@ void CommandInput::receive(const ArrivedCommand& arrived, const ArrivalTime& tim
   if (zero(arrived.twist)) {
     requests_.end(arrived.sender);
   } else {
-    requests_.request(arrived.sender, time.loop_ns);
+    requests_.request(arrived.sender, time.loop_ns, arrived.stamp_ns == 0 ? 0 : time.ros_ns - arrived.stamp_ns);
   }
   if (requests_.revoked(arrived.sender)) {
     ++value_.revoked;

@@ -18,13 +18,15 @@ bool any_same_process(const std::vector<Publisher>& senders, const Publisher& se
 }  // namespace
 
 MotionRequests::Record& MotionRequests::record_of(const Publisher& sender) {
+  Record* closed = nullptr;
   for (Record& record : records_) {
     if (same(record.connection, sender.connection)) return record;
+    const bool continued = record.connection.expired() && same_process(record.sender, sender);
+    if (continued && (closed == nullptr || record.revoked)) closed = &record;
   }
-  for (Record& record : records_) {
-    if (!record.connection.expired() || !same_process(record.sender, sender)) continue;
-    record.connection = sender.connection;
-    return record;
+  if (closed != nullptr) {
+    closed->connection = sender.connection;
+    return *closed;
   }
   forget_the_oldest_closed();
   Record& record = records_.emplace_back();
@@ -41,9 +43,10 @@ void MotionRequests::forget_the_oldest_closed() {
     records_.erase(std::ranges::find_if(records_, closed));
 }
 
-void MotionRequests::request(const Publisher& sender, std::int64_t now_ns) {
+void MotionRequests::request(const Publisher& sender, std::int64_t now_ns, std::int64_t age_ns) {
   Record& record = record_of(sender);
   record.requests = true;
+  record.revoked |= permission_.granted && now_ns - age_ns < granted_ns_ - kInTransit;
   record.requested_ns = now_ns;
 }
 
@@ -55,23 +58,24 @@ void MotionRequests::end(const Publisher& sender) {
     record.requests = record.revoked = false;
     record.zero_sent = true;
   }
-  std::erase_if(earlier_.present, [&](const Publisher& one) { return same_process(one, sender); });
 }
 
 bool MotionRequests::follow(const MotionPermission& permission, std::int64_t now_ns) {
-  const bool restarted = permission.stopped || permission.run == earlier_.run;
+  const bool restarted = permission.stopped || permission.run == earlier_.run || earlier_.requested;
   if (permission_.run == 0) started_ns_ = now_ns;
   if (permission_.run == 0 && !restarted) earlier_.present.clear();
   const bool withdrawn = permission.run != permission_.run || permission.withdrawals != permission_.withdrawals;
   const bool granted = permission.granted && (withdrawn || !permission_.granted);
   permission_ = permission;
+  if (granted) granted_ns_ = now_ns;
   bool ended = withdrawn;
   for (Record& record : records_) {
     if (withdrawn) {
       record.revoked |= record.requests || recent(record, now_ns);
       record.zero_sent = false;
     }
-    const bool with_grant = record.zero_sent && now_ns - record.requested_ns.value_or(now_ns) <= kInTransit;
+    const bool with_grant =
+        record.zero_sent && recent(record, now_ns) && now_ns - *record.requested_ns <= kInTransit;
     if (granted && record.requests && !with_grant && !record.revoked) ended = record.revoked = true;
   }
   return ended;

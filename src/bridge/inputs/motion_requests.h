@@ -6,11 +6,12 @@
 /// (Permit::withdrawals). A connection is revoked
 ///   - by a withdrawal, if it requests motion then or did so within `window` before;
 ///   - when permission is granted again, if it requests motion then: such a request was made during the stop. A request
-///     that follows a zero velocity and is no older than kInTransit was made with the grant;
+///     that follows a zero velocity and is no older than kInTransit and `window` was made with the grant;
+///   - by a request whose stamp is older than the last grant by more than kInTransit: it was made before that grant;
 ///   - from the beginning, if this controller was restarted and the sender's process was present at its start
 ///     (EarlierController): its requests to the earlier controller are not known.
 /// It stays revoked until its own next accepted zero velocity. A new connection of a process (same_process) continues
-/// the state of one that the process has closed. A restarted process begins without revocation. The state of the newest
+/// the state of one that the process has closed, first that of a revoked one. A restarted process begins without revocation. The state of the newest
 /// kMaxClosed closed connections is kept.
 ///
 /// Time is that of the loop's frames.
@@ -42,11 +43,12 @@ inline MotionPermission motion_permission(const Permit& permit) {
           .stopped = permit.causes != 0};
 }
 
-/// The situation at the start of this controller. The start was a restart if the present run already had a command, or
-/// if a stop is latched.
+/// The situation at the start of this controller. The start was a restart if the present run already had a command, if
+/// a stop is latched, or if the last command before it reports that motion was requested.
 struct EarlierController {
   std::vector<Publisher> present;  ///< publishers of command topics, without connections
   std::uint64_t run = 0;           ///< run of the last command of an earlier controller; 0: none
+  bool requested = false;          ///< the last message of its run was received, and was no zero velocity
 };
 
 class MotionRequests {
@@ -61,8 +63,8 @@ class MotionRequests {
   /// Sets the situation at the start; is called before the first call of `follow`.
   void start(const EarlierController& earlier) { earlier_ = earlier; }
 
-  /// Records a message that was refused or is not of zero velocity.
-  void request(const Publisher& sender, std::int64_t now_ns);
+  /// Records a message that was refused or is not of zero velocity, of this age by its stamp (0 without one).
+  void request(const Publisher& sender, std::int64_t now_ns, std::int64_t age_ns = 0);
 
   /// Records an accepted zero velocity.
   void end(const Publisher& sender);
@@ -100,6 +102,7 @@ class MotionRequests {
   std::int64_t window_ns_ = 0;
   EarlierController earlier_;
   std::int64_t started_ns_ = 0;  ///< time of the first call of `follow`
+  std::int64_t granted_ns_ = 0;  ///< time of the last grant
   MotionPermission permission_;
   std::vector<Record> records_;
 };

@@ -142,7 +142,10 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     for (const CommandSource& source : list_.sources) topics.push_back(handle.resolveName(source.topic));
     if (!mux_) topics = {handle.resolveName("cmd_vel"), handle.resolveName("cmd_vel_stamped")};
     EarlierController earlier;
-    if (process().output().newest(command_) == Lookup::kFrame) earlier.run = command_.head.run;
+    if (process().output().newest(command_) == Lookup::kFrame) {
+      earlier.run = command_.head.run;
+      earlier.requested = command_.requests_received != 0 && command_.zero_requested == 0;
+    }
     for (const std::string& node : publishers_of(topics)) earlier.present.push_back({node, nullptr, uri_of(node)});
     return earlier;
   }
