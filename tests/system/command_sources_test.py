@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """A list of command sources, on a running robot: priority, timeout, lock; teleop.py and drive_path.py find theirs."""
 
+import itertools
 import json
 import math
 import os
@@ -15,7 +16,7 @@ import rostest
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from nav_msgs.msg import Path as PathMessage
 from pseudo_terminal import PseudoTerminal
-from robot_control.msg import DriveState
+from robot_control.msg import DriveState, SafetyStatus
 from sensor_msgs.msg import Joy
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
@@ -192,17 +193,26 @@ class CommandSourcesTest(RobotTestCase):
         self.assertAlmostEqual(self.robot.distance, before, delta=0.01)
 
     def test_what_was_started_before_a_stop_but_suspended_before_its_first_line_moves_nothing(self) -> None:
-        before = self.robot.distance
-        for name, argument in (("drive_path.py", "square"), ("send_cmd.py", "--angular=0")):
+        def stop() -> None:
+            self.robot.call("e_stop_trigger")
+            self.robot.release()
+
+        def restart() -> None:
+            self.robot.call("mujoco_plant/reset")
+            wait_for("the restart", lambda: self.robot.state == SafetyStatus.INIT)
+            time.sleep(0.2)  # the odometry begins again
+
+        programs = (("drive_path.py", "square"), ("send_cmd.py", "--angular=0"))
+        for (name, argument), end_permission in itertools.product(programs, (stop, restart)):
             program = Program(name, argument)
             program.send_signal(signal.SIGSTOP)
             self.addCleanup(program.end)
-            self.robot.call("e_stop_trigger")
-            self.robot.release()
+            end_permission()
+            before = self.robot.distance
             program.send_signal(signal.SIGCONT)
             self.assertEqual(program.wait(), 1, program.output)
             self.assertIn("the robot was stopped and released", program.output)
-        self.assertAlmostEqual(self.robot.distance, before, delta=0.01)
+            self.assertAlmostEqual(self.robot.distance, before, delta=0.01)
 
     def test_a_command_that_is_started_during_a_stop_does_not_begin_with_its_reset(self) -> None:
         before = self.robot.distance

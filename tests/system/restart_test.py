@@ -102,6 +102,16 @@ class RestartTest(RobotTestCase):
         self.robot.release()
         self.expect_refusal(sender)
 
+    def test_a_sender_that_slept_over_the_restart_of_all_nodes_moves_nothing(self) -> None:
+        sender = self.sender_that_drives()
+        for name in LOOP:
+            self.robot.nodes[name].end()
+        self.robot.status = self.robot.odom = None
+        self.robot.start()
+        self.robot.await_ready()
+        wait_for("READY", lambda: self.robot.state == SafetyStatus.READY)
+        self.expect_refusal(sender)
+
     def test_a_sender_that_opens_its_connection_again_owes_its_zero(self) -> None:
         sender = self.sender_that_drives()
         self.robot.call("e_stop_trigger")
