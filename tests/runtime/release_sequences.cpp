@@ -362,7 +362,8 @@ class Sequence {
     if (permit_.reader.newest(permit) != Lookup::kFrame) return;
     if (!current(sensors_.reader, permit.head, robot_.hash)) return;
     const MotionPermission permission = motion_permission(permit);
-    if (!std::exchange(has_looked_, true) && !permission.stopped && permission.run != earlier_run_ && !earlier_requested_) {
+    if (!std::exchange(has_looked_, true) && !permission.stopped && permission.run != earlier_run_ &&
+        !earlier_requested_) {
       for (Sender& sender : senders_) forget(sender);
     }
     intake().follow(permission, loop_ns());
@@ -480,11 +481,11 @@ class Sequence {
   bool with_list_ = false;
   std::array<double, 2> source_timeouts_{};
   std::optional<CommandInput> inbox_;
-  std::optional<CommandMux> mux_;  ///< instead, with a list of sources
-  std::uint64_t earlier_run_ = 0;  ///< of the last command before this controller
+  std::optional<CommandMux> mux_;   ///< instead, with a list of sources
+  std::uint64_t earlier_run_ = 0;   ///< of the last command before this controller
   bool earlier_requested_ = false;  ///< motion was requested at that command
-  bool has_looked_ = false;        ///< this controller, at a permit
-  int processes_ = 0;              ///< of senders
+  bool has_looked_ = false;         ///< this controller, at a permit
+  int processes_ = 0;               ///< of senders
   OperatorInput operator_input_;
   EStopLevels levels_;
   std::array<Button, 2> buttons_{Button{.name = "/panel"}, Button{.name = "/gate"}};

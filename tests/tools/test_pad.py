@@ -24,7 +24,7 @@ def pad():
     return pad
 
 
-def hold(pad, axes, buttons, begin, seconds, sender=""):
+def hold(pad, axes, buttons, begin, seconds, *, sender=""):
     """Answers as a device does that is read all the time; returns the last time."""
     now = begin
     for number in range(round(seconds / PERIOD) + 1):
@@ -130,7 +130,7 @@ def test_noise_of_the_stick_lengthens_no_hold(pad):
 def test_a_second_publisher_of_joy_zeroes_and_is_named():
     """A lost pad with its button held, and an idle one that was switched on meanwhile, publish at once."""
     pad = Pad(GIVEN)
-    hold(pad, REST, NONE, -0.5, 0.5, "/lost")
+    hold(pad, REST, NONE, -0.5, 0.5, sender="/lost")
     for number in range(60):
         now = 0.1 + number * PERIOD
         pad.receive(FORWARD, ENABLE, now, "/lost")

@@ -3,8 +3,8 @@
     press              the first byte of a key; it holds for `first_hold`, and only slowly until the first repeat
     repeat             a later byte of the same key; it holds for `hold`
     burst              bytes less than BURST apart, which no keyboard sends: a link that had stalled delivers them. They
-                       count as one byte. Where they would begin a motion, they are old, and that key has to pause. After
-                       a stop among them no motion key of the same burst counts
+                       count as one byte, and begin no motion, since they are old: that key has to pause. After a stop
+                       among them no motion key of the same burst counts
     change of keys     while one key is held, another takes over at once and at the same speed
     max_hold           a motion whose keys repeat for so long without a pause ends in zero, until all of its keys have
                        paused for `first_hold`

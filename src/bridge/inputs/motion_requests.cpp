@@ -74,8 +74,7 @@ bool MotionRequests::follow(const MotionPermission& permission, std::int64_t now
       record.revoked |= record.requests || recent(record, now_ns);
       record.zero_sent = false;
     }
-    const bool with_grant =
-        record.zero_sent && recent(record, now_ns) && now_ns - *record.requested_ns <= kInTransit;
+    const bool with_grant = record.zero_sent && recent(record, now_ns) && now_ns - *record.requested_ns <= kInTransit;
     if (granted && record.requests && !with_grant && !record.revoked) ended = record.revoked = true;
   }
   return ended;

@@ -11,8 +11,8 @@
 ///   - from the beginning, if this controller was restarted and the sender's process was present at its start
 ///     (EarlierController): its requests to the earlier controller are not known.
 /// It stays revoked until its own next accepted zero velocity. A new connection of a process (same_process) continues
-/// the state of one that the process has closed, first that of a revoked one. A restarted process begins without revocation. The state of the newest
-/// kMaxClosed closed connections is kept.
+/// the state of one that the process has closed, first that of a revoked one. A restarted process begins without
+/// revocation. The state of the newest kMaxClosed closed connections is kept.
 ///
 /// Time is that of the loop's frames.
 
@@ -43,8 +43,8 @@ inline MotionPermission motion_permission(const Permit& permit) {
           .stopped = permit.causes != 0};
 }
 
-/// The situation at the start of this controller. The start was a restart if the present run already had a command, if
-/// a stop is latched, or if the last command before it reports that motion was requested.
+/// The situation at the start of this controller. The start was a restart if the present run already had a command, or
+/// if a stop is latched. It also was one if the last command before it reports that motion was requested.
 struct EarlierController {
   std::vector<Publisher> present;  ///< publishers of command topics, without connections
   std::uint64_t run = 0;           ///< run of the last command of an earlier controller; 0: none

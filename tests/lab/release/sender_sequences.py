@@ -41,8 +41,8 @@ class Outcome:
 
 
 class Monitor:
-    """Stops with resets, and restarts, at random; a subscriber may miss all its messages but the newest. With `first` it
-    was just started and permits nothing yet.
+    """Stops with resets, and restarts, at random. A subscriber may miss all its messages but the newest. With `first`
+    it was just started and permits nothing yet.
     """
 
     def __init__(self, chance: random.Random, *, first: bool = False) -> None:
