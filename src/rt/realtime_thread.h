@@ -18,6 +18,8 @@
 #include <string>
 #include <vector>
 
+#include "parameters/block.h"
+
 namespace robot_control {
 
 enum class RealtimePolicy {
@@ -25,6 +27,11 @@ enum class RealtimePolicy {
   kPreferred,  ///< the node uses what is granted
   kOff,        ///< only the core is set; neither priority nor locked memory is requested
 };
+
+inline std::vector<Word> words_of(RealtimePolicy) {
+  return {
+      {"required", RealtimePolicy::kRequired}, {"preferred", RealtimePolicy::kPreferred}, {"off", RealtimePolicy::kOff}};
+}
 
 enum class Grant { kNotAsked, kGranted, kRefused };
 
