@@ -29,16 +29,17 @@ enum class RealtimePolicy {
 };
 
 inline std::vector<Word> words_of(RealtimePolicy) {
-  return {
-      {"required", RealtimePolicy::kRequired}, {"preferred", RealtimePolicy::kPreferred}, {"off", RealtimePolicy::kOff}};
+  return {{"required", RealtimePolicy::kRequired},
+          {"preferred", RealtimePolicy::kPreferred},
+          {"off", RealtimePolicy::kOff}};
 }
 
-enum class Grant { kNotAsked, kGranted, kRefused };
+enum class Grant { kNotRequested, kGranted, kRefused };
 
 struct RealtimeReport {
-  Grant memory_lock = Grant::kNotAsked;
-  Grant priority = Grant::kNotAsked;
-  Grant core = Grant::kNotAsked;
+  Grant memory_lock = Grant::kNotRequested;
+  Grant priority = Grant::kNotRequested;
+  Grant core = Grant::kNotRequested;
   std::vector<std::string> refusals;  ///< one per Grant::kRefused
 };
 
