@@ -15,7 +15,7 @@ CORE |= {"bags", "hal", "drivers", "parameters", "configuration", "runtime", "re
 MAY_INCLUDE = {
     "signals": set(),
     "files": set(),
-    # The engine. What it configures sees the declaration of a block alone, parameters/block.h.
+    # The engine; the folders that it configures include parameters/block.h alone.
     "parameters": {"files"},
     "rt": {"signals", "parameters"},
     "bags": {"files"},
@@ -128,7 +128,7 @@ def test_only_drivers_see_mujoco():
 
 
 SIMULATED = {"drivers", "faults"}
-SIMULATORS = {"bridge/nodes/mujoco_plant_node.cpp", "configuration/parameters.h"}  # the latter: the simulator's parameters
+SIMULATORS = {"bridge/nodes/mujoco_plant_node.cpp", "configuration/parameters.h"}  # the latter: its parameters
 
 
 def test_nothing_simulated_is_in_the_product():
