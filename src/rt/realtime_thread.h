@@ -29,9 +29,8 @@ enum class RealtimePolicy {
 };
 
 inline std::vector<Word> words_of(RealtimePolicy) {
-  return {{"required", RealtimePolicy::kRequired},
-          {"preferred", RealtimePolicy::kPreferred},
-          {"off", RealtimePolicy::kOff}};
+  using enum RealtimePolicy;
+  return {{"required", kRequired}, {"preferred", kPreferred}, {"off", kOff}};
 }
 
 enum class Grant { kNotRequested, kGranted, kRefused };

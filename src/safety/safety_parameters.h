@@ -26,11 +26,8 @@ enum class Reaction : std::uint8_t {
 };
 
 inline std::vector<Word> words_of(Reaction) {
-  return {{"off", Reaction::kOff},
-          {"warn", Reaction::kWarn},
-          {"slow", Reaction::kSlow},
-          {"ramp", Reaction::kRamp},
-          {"brake", Reaction::kBrake}};
+  using enum Reaction;
+  return {{"off", kOff}, {"warn", kWarn}, {"slow", kSlow}, {"ramp", kRamp}, {"brake", kBrake}};
 }
 
 struct Condition {

@@ -16,10 +16,8 @@ enum class RecordMode {
 };
 
 inline std::vector<Word> words_of(RecordMode) {
-  return {{"motion", RecordMode::kMotion},
-          {"always", RecordMode::kAlways},
-          {"request", RecordMode::kRequest},
-          {"off", RecordMode::kOff}};
+  using enum RecordMode;
+  return {{"motion", kMotion}, {"always", kAlways}, {"request", kRequest}, {"off", kOff}};
 }
 
 struct TelemetryParameters {

@@ -17,16 +17,15 @@ enum class ErrorLevel {
 
 /// true and false are the words of versions without levels.
 inline std::vector<Word> words_of(ErrorLevel) {
-  return {
-      {"ideal", ErrorLevel::kIdeal},
-      {"data_sheet", ErrorLevel::kDataSheet},
-      {"field", ErrorLevel::kField},
-      {"true", ErrorLevel::kDataSheet, "data_sheet"},
-      {"yes", ErrorLevel::kDataSheet, "data_sheet"},
-      {"on", ErrorLevel::kDataSheet, "data_sheet"},
-      {"off", ErrorLevel::kIdeal, "ideal"},
-      {"no", ErrorLevel::kIdeal, "ideal"},
-  };
+  using enum ErrorLevel;
+  return {{"ideal", kIdeal},
+          {"data_sheet", kDataSheet},
+          {"field", kField},
+          {"true", kDataSheet, "data_sheet"},
+          {"yes", kDataSheet, "data_sheet"},
+          {"on", kDataSheet, "data_sheet"},
+          {"off", kIdeal, "ideal"},
+          {"no", kIdeal, "ideal"}};
 }
 
 struct Errors {
