@@ -7,6 +7,7 @@
 #include <string>
 
 #include "drivers/sensors/errors.h"
+#include "parameters/block.h"
 
 namespace robot_control {
 
@@ -14,6 +15,10 @@ enum class TyreModel {
   kBrush,   ///< tyre.h: Coulomb friction that is also correct while sliding
   kNative,  ///< MuJoCo's own contact friction
 };
+
+inline std::vector<Word> words_of(TyreModel) {
+  return {{"brush", TyreModel::kBrush}, {"native", TyreModel::kNative}};
+}
 
 struct MujocoPlantParameters : Errors {
   std::string scene;         ///< MJCF path: the world around the robot
@@ -61,5 +66,50 @@ struct MujocoPlantParameters : Errors {
   double push_start = 0;                      ///< s
   double push_duration = 0;                   ///< s; 0: none
 };
+
+inline Keys keys(MujocoPlantParameters& plant) {
+  // A YAML integer, a Python int and a ROS parameter represent every value below it.
+  constexpr double kMaxCount = 9007199254740992.0;  // 2^53
+  return joined({
+      {
+          {"scene", &plant.scene, {}, 0, 0, kPath},
+          {"seed", &plant.seed, {}, 0, kMaxCount},
+          {"cycles", &plant.cycles, "cycles", 0, kMaxCount, kZeroIsOff},
+          {"tyre", &plant.tyre},
+          {"ground_friction", &plant.ground_friction, {}, 0, 10, kOptional},
+          {"slope", &plant.slope, "rad", -1, 1},
+          {"brake_effort", &plant.brake_effort, "N·m", 0.001, 10000, kOptional},
+          {"brake_damping", &plant.brake_damping, "N·m·s/rad", 0, 10000, kOptional},
+          {"brake_stiffness", &plant.brake_stiffness, "N·m/rad", 0, 1.0e6, kOptional},
+          {"brake_hold_speed", &plant.brake_hold_speed, "rad/s", 0, 10, kOptional},
+          {"left_radius_error", &plant.left_radius_error, {}, -0.5, 0.5},
+          {"right_radius_error", &plant.right_radius_error, {}, -0.5, 0.5},
+          {"wheel_base_error", &plant.wheel_base_error, {}, -0.5, 0.5},
+          {"wheel_friction_error", &plant.wheel_friction_error, {}, -1, 10},
+          {"payload", &plant.payload, "kg", 0, 10000},
+          {"payload_x", &plant.payload_x, "m", -10, 10},
+          {"payload_y", &plant.payload_y, "m", -10, 10},
+          {"payload_z", &plant.payload_z, "m", -10, 10},
+          {"gear_ratio", &plant.gear_ratio, {}, 0.001, 10000},
+          {"rotor_inertia", &plant.rotor_inertia, "kg·m²", 0, 100},
+          {"no_load_speed", &plant.no_load_speed, "rad/s", 0, 100000, kZeroIsOff},
+          {"motor_friction", &plant.motor_friction, "N·m", 0, 1000},
+          {"motor_damping", &plant.motor_damping, "N·m·s/rad", 0, 1000},
+          {"actuator_delay", &plant.actuator_delay, "cycles", 0, 100},
+      },
+      keys(static_cast<Errors&>(plant)),
+      {
+          {"contact_sensors", &plant.contact_sensors},
+          // At the idle current at most half a volt is lost (battery.h), so the voltage stays positive.
+          {"battery_voltage", &plant.battery_voltage, "V", 1, 1000, kZeroIsOff},
+          {"battery_resistance", &plant.battery_resistance, "Ω", 0, 1},
+          {"push_x", &plant.push_x, "N", -100000, 100000},
+          {"push_y", &plant.push_y, "N", -100000, 100000},
+          {"push_z", &plant.push_z, "N", -100000, 100000},
+          {"push_start", &plant.push_start, "s", 0, 1.0e6},
+          {"push_duration", &plant.push_duration, "s", 0, 1.0e6, kZeroIsOff},
+      },
+  });
+}
 
 }  // namespace robot_control

@@ -1,6 +1,8 @@
 #pragma once
 /// These are the parameters of the state estimator that a user sets. Deviations are standard deviations.
 
+#include "estimation/calibration_bounds.h"
+#include "parameters/block.h"
 #include "signals/geometry.h"
 #include "signals/state_frame.h"
 
@@ -31,5 +33,33 @@ struct EstimatorParameters {
   WheelCalibration calibration{.radius_ratio_deviation = 0.01, .wheel_base_deviation = 0.03};
   Vector3 gyro_bias{};  ///< rad/s, IMU axes, from an earlier run; its deviation is gyro_bias_initial
 };
+
+inline Keys keys(EstimatorParameters& estimator) {
+  return {
+      {"wheel_slip_noise", &estimator.wheel_slip_noise, "m/√m", 1.0e-6, 1},
+      {"tyre_creep", &estimator.tyre_creep, "s²/m", 0, 0.05},
+      {"gyro_noise", &estimator.gyro_noise, "rad/s/√Hz", 1.0e-9, 1},
+      {"standstill_speed", &estimator.standstill_speed, "rad/s", 1.0e-6, 1},
+      {"standstill_time", &estimator.standstill_time, "s", 0.01, 60},
+      {"encoder_noise", &estimator.encoder_noise, "rad", 1.0e-6, 1},
+      {"wheel_radius_deviation", &estimator.wheel_radius_deviation, {}, 0, 0.1},
+      {"gyro_scale_deviation", &estimator.gyro_scale_deviation, {}, 0, 0.1},
+      {"gyro_bias_initial", &estimator.gyro_bias_initial, "rad/s", 1.0e-6, 10},
+      {"gyro_bias_walk", &estimator.gyro_bias_walk, "rad/s/√s", 1.0e-9, 1},
+      {"accelerometer_noise", &estimator.accelerometer_noise, "m/s²/√Hz", 1.0e-9, 10},
+      {"accelerometer_bias_initial", &estimator.accelerometer_bias_initial, "m/s²", 1.0e-6, 10},
+      {"accelerometer_bias_walk", &estimator.accelerometer_bias_walk, "m/s²/√s", 1.0e-9, 10},
+      {"slip_detection", &estimator.slip_detection},
+      {"self_calibration", &estimator.self_calibration},
+      {"planar", &estimator.planar},
+      {"radius_ratio", &estimator.calibration.radius_ratio, {}, kRadiusRatioMin, kRadiusRatioMax},
+      {"radius_ratio_deviation", &estimator.calibration.radius_ratio_deviation, {}, 0, 0.05},
+      {"wheel_base_factor", &estimator.calibration.wheel_base_factor, {}, kWheelBaseFactorMin, kWheelBaseFactorMax},
+      {"wheel_base_deviation", &estimator.calibration.wheel_base_deviation, {}, 0, 0.3},
+      {"gyro_bias", &estimator.gyro_bias, "rad/s", -kGyroBiasMax, kGyroBiasMax},
+      {"speed_bandwidth", &estimator.speed_bandwidth, "Hz", 0.1, 500},
+      {"rate_bandwidth", &estimator.rate_bandwidth, "Hz", 0.1, 500},
+  };
+}
 
 }  // namespace robot_control

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "parameters/block.h"
+
 namespace robot_control {
 
 /// The command of the wheels while the gate brakes.
@@ -11,6 +13,10 @@ enum class FailAction {
   kBrake,  ///< the driver's brake: damped, then held
   kCoast,  ///< no torque: the robot rolls until friction stops it, and on a slope it rolls away
 };
+
+inline std::vector<Word> words_of(FailAction) {
+  return {{"brake", FailAction::kBrake}, {"coast", FailAction::kCoast}};
+}
 
 struct GateParameters {
   FailAction fail_action = FailAction::kBrake;

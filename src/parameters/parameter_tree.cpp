@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include "files/input_file.h"
-#include "parameters/peer_file.h"
 #include "parameters/text_file.h"
 #include "parameters/value_reader.h"
 
@@ -144,7 +143,9 @@ class Documents : public YAML::EventHandler {
   std::vector<std::pair<std::string, Mark>> tags_;
 };
 
-void read_file(const std::string& yaml_path, ParameterTree& tree, ProblemList& problems) {
+using Foreign = std::optional<Problem> (*)(const std::string& path, const YAML::Node& root);
+
+void read_file(const std::string& yaml_path, Foreign foreign, ParameterTree& tree, ProblemList& problems) {
   std::error_code ignored;
   const std::filesystem::path path = std::filesystem::absolute(yaml_path, ignored);
   const auto text =
@@ -158,9 +159,8 @@ void read_file(const std::string& yaml_path, ParameterTree& tree, ProblemList& p
       return;
     }
     const YAML::Node root = YAML::Load(*text);
-    if (const std::string what = peer_configuration(root); !what.empty()) {
-      problems.add({yaml_path, "", "is a configuration of ros_controllers, not of robot_control (" + what + ")", "",
-                    kPeerTable});
+    if (const std::optional<Problem> problem = foreign(yaml_path, root)) {
+      problems.add(*problem);
       return;
     }
     documents.refuse_tags(yaml_path, problems);
@@ -171,12 +171,13 @@ void read_file(const std::string& yaml_path, ParameterTree& tree, ProblemList& p
 }
 
 /// Adds those keys of the base file that the tree does not have, also inside a map that both have.
-void lay_under(const std::string& base_path, const std::string& yaml_path, ParameterTree& tree, ProblemList& problems) {
+void lay_under(const std::string& base_path, const std::string& yaml_path, Foreign foreign, ParameterTree& tree,
+               ProblemList& problems) {
   std::error_code error;
   if (base_path.empty() || !std::filesystem::exists(base_path, error)) return;
   if (!yaml_path.empty() && std::filesystem::equivalent(base_path, yaml_path, error)) return;
   ParameterTree base;
-  read_file(base_path, base, problems);
+  read_file(base_path, foreign, base, problems);
   for (auto& [path, entry] : base.entries) {
     const std::size_t inner = path.find('.', path.find('.') + 1);
     const auto map = inner == std::string::npos ? tree.entries.end() : tree.entries.find(path.substr(0, inner));
@@ -245,11 +246,11 @@ void lay_request_over(const std::string& block, const std::string& text, Paramet
 }
 
 ParameterTree read_tree(const std::string& yaml_path, const std::vector<Overlay>& overlays, ProblemList& problems,
-                        const std::string& base_path) {
+                        Foreign foreign, const std::string& base_path) {
   ParameterTree tree;
-  if (!yaml_path.empty()) read_file(yaml_path, tree, problems);
+  if (!yaml_path.empty()) read_file(yaml_path, foreign, tree, problems);
   if (!problems.empty() && tree.blocks.empty()) return tree;
-  lay_under(base_path, yaml_path, tree, problems);
+  lay_under(base_path, yaml_path, foreign, tree, problems);
   for (const Overlay& overlay : overlays) lay_over(overlay, tree, problems);
   return tree;
 }

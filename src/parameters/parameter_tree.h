@@ -3,13 +3,26 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "parameters/parameters.h"
 #include "parameters/problem_list.h"
 
+namespace YAML {
+class Node;
+}
+
 namespace robot_control {
+
+/// One value that is laid over the file: path "robot.rate", YAML text "500", origin "/robot/rate". A condition of the
+/// safety monitor is a map. The path "safety_monitor.tilt.limit" sets one value of it, "safety_monitor.tilt" all values
+/// that the text names.
+struct Overlay {
+  std::string path;
+  std::string text;  ///< a scalar, or a list or a map in brackets; an empty text is the empty string
+  std::string origin;
+};
 
 struct Entry {
   enum class Kind { kPlain, kQuoted, kNothing, kList, kMap };
@@ -35,8 +48,10 @@ struct ParameterTree {
 /// Reads the file (none if `yaml_path` is empty), then lays the overlays over it, the last one on top. Unreadable and
 /// malformed YAML, duplicate keys and blocks that are no maps become problems. An overlay that is a map replaces only
 /// the keys that it names. In the same way the file is laid over that of `base_path`, if that is another file and
-/// exists. Every YAML tag (`!degrees`, `!!str`) is a problem, because tags have no effect.
+/// exists. Every YAML tag (`!degrees`, `!!str`) is a problem, because tags have no effect. A file in which `foreign`
+/// finds a problem, because it is one of another package, has this problem alone.
 ParameterTree read_tree(const std::string& yaml_path, const std::vector<Overlay>& overlays, ProblemList& problems,
+                        std::optional<Problem> (*foreign)(const std::string& path, const YAML::Node& root),
                         const std::string& base_path = "");
 
 /// Lays a request over the tree. The request is the text of a YAML map of keys of `block`, with at most kMaxRequest

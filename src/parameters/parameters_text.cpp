@@ -4,17 +4,10 @@
 #include <array>
 #include <cmath>
 
-#include "parameters/problem_list.h"
-#include "parameters/schema/schema.h"
-
 namespace robot_control {
 namespace {
 
-/// Returns the value in YAML; empty if there is none.
-class ValueText {
- public:
-  explicit ValueText(const Field& field) : field_(field) {}
-
+struct ValueText {
   std::string operator()(const double* value) const { return yaml_number(*value); }
   std::string operator()(const std::optional<double>* value) const { return *value ? yaml_number(**value) : ""; }
   template <std::size_t N>
@@ -36,16 +29,10 @@ class ValueText {
     for (const std::string& name : *value) text += (text.empty() ? "" : ", ") + yaml_quoted(name);
     return "[" + text + "]";
   }
-  template <class Enum>
-  std::string operator()(const Enum* value) const {
-    const auto words = words_of(field_);
-    const auto word = std::find_if(words.begin(), words.end(),
-                                   [&](const Word& each) { return each.value == static_cast<int>(*value); });
-    return std::string(word->text);
+  std::string operator()(const Choice& choice) const {
+    const int value = choice.get(choice.place);
+    return std::string(std::ranges::find(choice.words, value, &Word::value)->text);
   }
-
- private:
-  const Field& field_;
 };
 
 bool left_out(const Key& key, const std::string& text) {
@@ -54,14 +41,17 @@ bool left_out(const Key& key, const std::string& text) {
 
 }  // namespace
 
-std::string parameters_text(Parameters parameters) {
+std::string value_text(const Field& field) {
+  return std::visit(ValueText{}, field);
+}
+
+std::string blocks_text(std::span<const Block> blocks) {
   std::string text;
-  for (const Block& block : schema()) {
+  for (const Block& block : blocks) {
     text.append(block.name).append(":\n");
     std::string group;
     for (const Key& key : block.keys) {
-      const Field field = key.field(parameters);
-      const std::string value = std::visit(ValueText(field), field);
+      const std::string value = value_text(key.field);
       if (left_out(key, value)) continue;
       if (key.group != group && !key.group.empty()) text.append("  ").append(key.group).append(":\n");
       group = key.group;

@@ -1,14 +1,18 @@
 #pragma once
-/// These functions write parameters as the text of a complete YAML file, which read_parameters reads back as the same
-/// values. Derived values are left out, and paths are absolute.
+/// These functions write parameters as YAML, which is read back as the same values.
 
+#include <span>
 #include <string>
 
-#include "parameters/parameters.h"
+#include "parameters/schema.h"
 
 namespace robot_control {
 
-std::string parameters_text(Parameters parameters);
+/// Returns the text of a complete file. Values that are left out, because they are derived, stay out.
+std::string blocks_text(std::span<const Block> blocks);
+
+/// Returns the YAML value; "" if an optional one is left out.
+std::string value_text(const Field& field);
 
 /// Returns a YAML scalar that is read back as the same number.
 std::string yaml_number(double value);

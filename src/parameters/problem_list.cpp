@@ -1,11 +1,5 @@
 #include "parameters/problem_list.h"
 
-#include <algorithm>
-#include <array>
-#include <charconv>
-
-#include "parameters/parameters.h"
-
 namespace robot_control {
 namespace {
 
@@ -40,12 +34,6 @@ std::string listing(std::string_view subject, const std::vector<std::string>& li
     message.append("\n  ").append(lines[i]);
   }
   return message;
-}
-
-std::string shortest(double value) {
-  std::array<char, 32> buffer;
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-  return {buffer.data(), end};
 }
 
 }  // namespace robot_control

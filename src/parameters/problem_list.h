@@ -1,6 +1,7 @@
 #pragma once
 /// A ProblemList collects all problems of an input, so that one error reports all of them.
 
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,6 +9,11 @@
 #include "files/message_text.h"
 
 namespace robot_control {
+
+class ParameterError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// A problem is printed as one line: `path = value: rule [origin]; remedy`. Empty parts are left out.
 struct Problem {
@@ -38,8 +44,5 @@ inline constexpr std::size_t kMaxListing = 1900;
 
 /// Returns "`subject`: 2 problems" and one line per problem; beyond kMaxListing it ends with "… and 7 more".
 std::string listing(std::string_view subject, const std::vector<std::string>& lines);
-
-/// Returns the shortest text that is read back as the same number.
-std::string shortest(double value);
 
 }  // namespace robot_control

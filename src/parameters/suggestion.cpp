@@ -4,9 +4,6 @@
 #include <numeric>
 #include <vector>
 
-#include "parameters/peer_file.h"
-#include "parameters/schema/schema.h"
-
 namespace robot_control {
 namespace {
 
@@ -36,11 +33,11 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-std::string suggest_key(std::string_view path) {
+std::string suggest_key(const Schema& schema, std::string_view path) {
   const std::size_t dot = path.find('.');
   const std::string_view block_name = path.substr(0, dot);
   const std::string_view key_name = dot == std::string_view::npos ? path : path.substr(dot + 1);
-  if (std::string peer = suggest_for_peer_key(key_name); !peer.empty()) return peer;
+  if (std::string remedy = schema.other_package_remedy(key_name); !remedy.empty()) return remedy;
   constexpr std::size_t kMaxWord = 100;
   if (key_name.size() > kMaxWord) return {};
   std::size_t nearest = farthest(key_name) + 1;
@@ -53,7 +50,7 @@ std::string suggest_key(std::string_view path) {
     nearest = distance;
     word = here ? name : candidate;
   };
-  for (const Block& block : schema()) {
+  for (const Block& block : schema.blocks) {
     for (const Key& key : block.keys) {
       if (!key.group.empty()) consider(block, group_path_of(block, key));
       consider(block, path_of(block, key));
@@ -62,10 +59,10 @@ std::string suggest_key(std::string_view path) {
   return question(word);
 }
 
-std::string suggest_block(std::string_view name) {
+std::string suggest_block(const Schema& schema, std::string_view name) {
   std::size_t nearest = farthest(name) + 1;
   std::string word;
-  for (const Block& block : schema()) {
+  for (const Block& block : schema.blocks) {
     const std::size_t distance = edit_distance(name, block.name);
     if (distance >= nearest) continue;
     nearest = distance;

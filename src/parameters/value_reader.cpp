@@ -34,10 +34,10 @@ std::errc parse(std::string_view text, Number& number) {
 
 // Finds the allowed word. YAML 1.1 (PyYAML, the parameter server) turns a plain `off` into a boolean, `false`. Some old
 // words are booleans.
-const Word* find_word(const Entry& entry, const Field& field) {
+const Word* find_word(const Entry& entry, const Choice& choice) {
   const std::string small = lower(entry.text);
   const std::string text = small == "false" ? "off" : entry.text;
-  for (const Word& allowed : words_of(field)) {
+  for (const Word& allowed : choice.words) {
     if (allowed.text == text || (!allowed.now.empty() && allowed.text == small)) return &allowed;
   }
   return nullptr;
@@ -45,8 +45,8 @@ const Word* find_word(const Entry& entry, const Field& field) {
 
 class Reader {
  public:
-  Reader(const Entry& entry, const std::string& path, const Key& key, const Field& field, ProblemList& problems)
-      : entry_(entry), path_(path), key_(key), field_(field), problems_(problems) {}
+  Reader(const Entry& entry, const std::string& path, const Key& key, ProblemList& problems)
+      : entry_(entry), path_(path), key_(key), problems_(problems) {}
 
   bool operator()(double* to) { return number(*to); }
   bool operator()(std::int64_t* to) { return number(*to); }
@@ -59,9 +59,9 @@ class Reader {
     return true;
   }
 
-  bool operator()(Vector3* to) { return numbers<Vector3>(*to); }
-  bool operator()(std::optional<Vector3>* to) { return numbers<Vector3>(*to); }
-  bool operator()(std::optional<CovarianceDiagonal>* to) { return numbers<CovarianceDiagonal>(*to); }
+  bool operator()(NumberList<3>* to) { return numbers<NumberList<3>>(*to); }
+  bool operator()(std::optional<NumberList<3>>* to) { return numbers<NumberList<3>>(*to); }
+  bool operator()(std::optional<NumberList<6>>* to) { return numbers<NumberList<6>>(*to); }
 
   bool operator()(std::vector<std::string>* to) {
     // A single name stands for a list of one.
@@ -97,13 +97,12 @@ class Reader {
     return true;
   }
 
-  bool operator()(ClockMode* to) { return word(*to); }
-  bool operator()(RealtimePolicy* to) { return word(*to); }
-  bool operator()(TyreModel* to) { return word(*to); }
-  bool operator()(ErrorLevel* to) { return word(*to); }
-  bool operator()(Reaction* to) { return word(*to); }
-  bool operator()(FailAction* to) { return word(*to); }
-  bool operator()(RecordMode* to) { return word(*to); }
+  bool operator()(const Choice& to) {
+    const Word* allowed = find_word(entry_, to);
+    if (allowed == nullptr) return refuse("must be " + rule_of(key_));
+    to.set(to.place, allowed->value);
+    return true;
+  }
 
  private:
   bool plain() const { return entry_.kind == Entry::Kind::kPlain; }
@@ -144,18 +143,9 @@ class Reader {
     return true;
   }
 
-  template <class Enum>
-  bool word(Enum& to) {
-    const Word* allowed = find_word(entry_, field_);
-    if (allowed == nullptr) return refuse("must be " + rule_of(key_));
-    to = static_cast<Enum>(allowed->value);
-    return true;
-  }
-
   const Entry& entry_;
   const std::string& path_;
   const Key& key_;
-  const Field& field_;
   ProblemList& problems_;
 };
 
@@ -184,13 +174,13 @@ std::string as_written(const Entry& entry) {
 }
 
 std::string_view word_now(const Entry& entry, const Field& field) {
-  const Word* word = find_word(entry, field);
+  const auto* choice = std::get_if<Choice>(&field);
+  const Word* word = choice == nullptr ? nullptr : find_word(entry, *choice);
   return word == nullptr ? std::string_view() : word->now;
 }
 
-bool read_value(const Entry& entry, const std::string& path, const Key& key, const Field& field,
-                ProblemList& problems) {
-  return std::visit(Reader(entry, path, key, field, problems), field);
+bool read_value(const Entry& entry, const std::string& path, const Key& key, ProblemList& problems) {
+  return std::visit(Reader(entry, path, key, problems), key.field);
 }
 
 }  // namespace robot_control

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "parameters/live_parameters.h"
+#include "configuration/live_parameters.h"
 #include "python/loop_replay.h"
 #include "recording/trace_reader.h"
 #include "replay/replay_error.h"

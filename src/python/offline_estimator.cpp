@@ -10,7 +10,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "parameters/calibration_file.h"
+#include "configuration/calibration_file.h"
 #include "python/installed_file.h"
 #include "signals/names.h"
 #include "signals/rotation.h"

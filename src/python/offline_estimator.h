@@ -19,8 +19,8 @@
 #include <utility>
 #include <vector>
 
+#include "configuration/parameters.h"
 #include "estimation/estimator.h"
-#include "parameters/parameters.h"
 #include "robot/robot_model.h"
 
 namespace robot_control {
@@ -47,7 +47,7 @@ class OfflineEstimator {
                          const Array& accel, double rounding, pybind11::ssize_t every, bool covariance,
                          const std::optional<Vector3>& pose);
 
-  /// Writes the learned calibration as the node does (parameters/calibration_file.h). Throws std::runtime_error if
+  /// Writes the learned calibration as the node does (configuration/calibration_file.h). Throws std::runtime_error if
   /// nothing was learned or it is beyond its bounds; throws std::system_error if the file cannot be written.
   void save_calibration(const std::string& path) const;
 

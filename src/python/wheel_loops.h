@@ -4,7 +4,7 @@
 
 #include <pybind11/pybind11.h>
 
-#include "parameters/parameters.h"
+#include "configuration/parameters.h"
 #include "robot/robot_model.h"
 
 namespace robot_control {

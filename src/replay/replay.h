@@ -19,7 +19,7 @@
 #include <memory>
 #include <string_view>
 
-#include "parameters/parameters.h"
+#include "configuration/parameters.h"
 #include "recording/trace_row.h"
 #include "replay/report.h"
 #include "replay/variant.h"

@@ -1,10 +1,10 @@
 #pragma once
 /// The four laws of a log, each with the state it has reached in its replay.
 
+#include "configuration/parameters.h"
 #include "control/drive_controller.h"
 #include "estimation/estimator.h"
 #include "hal/gate.h"
-#include "parameters/parameters.h"
 #include "replay/continuity.h"
 #include "replay/frame_history.h"
 #include "robot/robot_model.h"

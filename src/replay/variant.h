@@ -8,9 +8,9 @@
 #include <cstdint>
 #include <optional>
 
+#include "configuration/parameters.h"
 #include "control/drive_controller.h"
 #include "estimation/estimator.h"
-#include "parameters/parameters.h"
 #include "robot/robot_model.h"
 #include "safety/safety_monitor.h"
 #include "signals/law_calls.h"

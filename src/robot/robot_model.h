@@ -11,29 +11,10 @@
 #include <vector>
 
 #include "description/robot_description.h"
+#include "robot/robot_parameters.h"
 #include "signals/geometry.h"
 
 namespace robot_control {
-
-/// Holds the user's values for the robot beside its URDF (the `robot:` block). Estimator and controller use them; a
-/// simulated plant follows the URDF. A note reports a difference of more than 1 % between both.
-struct RobotParameters {
-  std::vector<std::string> left_wheel_joints;           ///< both empty: the wheels are found (drive_wheels.h)
-  std::vector<std::string> right_wheel_joints;          ///< as many as left ones
-  std::optional<double> wheel_base;                     ///< m, between left and right wheel centres
-  std::optional<double> wheel_base_multiplier;          ///< effective over geometric wheel base; see RobotModel
-  std::optional<double> wheel_radius;                   ///< m, every wheel
-  std::optional<double> left_wheel_radius_multiplier;   ///< multiplies the left wheels' radius, given or the URDF's
-  std::optional<double> right_wheel_radius_multiplier;  ///< multiplies the right wheels' radius
-  std::optional<double> wheel_effort_limit;             ///< N·m, every wheel; also that of the simulated drive
-  std::optional<double> wheel_velocity_limit;           ///< rad/s, every wheel
-  std::optional<double> wheel_effort_rate;              ///< N·m/s, every wheel; empty: kEffortRise
-  std::optional<double> mass;                           ///< kg
-  std::optional<Vector3> centre_of_gravity;             ///< m, base axes
-  std::string imu_link;                    ///< empty: found by its name, else the IMU is in the base (imu_place.h)
-  std::optional<Vector3> imu_position;     ///< m, base axes
-  std::optional<Vector3> imu_orientation;  ///< rad, roll, pitch and yaw of the IMU's axes in the base's, as URDF's rpy
-};
 
 enum class JointRole {
   kWheel,    ///< driven by the controller

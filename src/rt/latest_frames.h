@@ -61,7 +61,7 @@ struct LatestFrames {
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
 /// The waiting threads that a publication wakes. A loop in one thread on private memory avoids the system call.
-enum class Wake { kReaders, kNobody };
+enum class Wake { kReaders, kNone };
 
 template <class Frame, template <class> class Atomic = std::atomic, std::size_t SlotCount = kFrameSlots>
 class FrameWriter {

@@ -18,7 +18,7 @@
 #include <system_error>
 #include <utility>
 
-#include "rt/last_words.h"
+#include "rt/crash_report.h"
 
 namespace robot_control {
 namespace {
@@ -148,12 +148,13 @@ struct RealtimeThread::Thread {
 
   static void* run(void* argument) {
     auto& self = *static_cast<Thread*>(argument);
-    const RealtimeParameters& asked = self.parameters;
-    const AlternateStack last_words;
-    pthread_setname_np(pthread_self(), asked.name.substr(0, 15).c_str());
-    take_core(asked.core, self.report);
-    if (asked.policy != RealtimePolicy::kOff && asked.priority > 0) take_priority(asked.priority, self.report);
-    const bool go = !refused(asked, self.report);
+    const RealtimeParameters& requested = self.parameters;
+    const AlternateStack signal_stack;
+    pthread_setname_np(pthread_self(), requested.name.substr(0, 15).c_str());
+    take_core(requested.core, self.report);
+    if (requested.policy != RealtimePolicy::kOff && requested.priority > 0)
+      take_priority(requested.priority, self.report);
+    const bool go = !refused(requested, self.report);
     self.ready.set_value();
     if (go) self.body();
     return nullptr;

@@ -18,6 +18,8 @@
 #include <string>
 #include <vector>
 
+#include "parameters/block.h"
+
 namespace robot_control {
 
 enum class RealtimePolicy {
@@ -26,12 +28,17 @@ enum class RealtimePolicy {
   kOff,        ///< only the core is set; neither priority nor locked memory is requested
 };
 
-enum class Grant { kNotAsked, kGranted, kRefused };
+inline std::vector<Word> words_of(RealtimePolicy) {
+  using enum RealtimePolicy;
+  return {{"required", kRequired}, {"preferred", kPreferred}, {"off", kOff}};
+}
+
+enum class Grant { kNotRequested, kGranted, kRefused };
 
 struct RealtimeReport {
-  Grant memory_lock = Grant::kNotAsked;
-  Grant priority = Grant::kNotAsked;
-  Grant core = Grant::kNotAsked;
+  Grant memory_lock = Grant::kNotRequested;
+  Grant priority = Grant::kNotRequested;
+  Grant core = Grant::kNotRequested;
   std::vector<std::string> refusals;  ///< one per Grant::kRefused
 };
 

@@ -7,8 +7,8 @@
 
 #include <vector>
 
+#include "configuration/parameters.h"
 #include "hal/gate_parameters.h"
-#include "parameters/parameters.h"
 #include "robot/robot_model.h"
 
 namespace robot_control {

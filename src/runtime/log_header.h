@@ -1,6 +1,6 @@
 #pragma once
 
-#include "parameters/parameters.h"
+#include "configuration/parameters.h"
 #include "recording/log_messages.h"
 #include "robot/robot_model.h"
 

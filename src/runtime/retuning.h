@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "parameters/live_parameters.h"
-#include "parameters/parameters.h"
+#include "configuration/live_parameters.h"
+#include "configuration/parameters.h"
 #include "robot/robot_model.h"
 #include "rt/latest_value.h"
 #include "safety/safety_parameters.h"

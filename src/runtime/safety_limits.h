@@ -2,7 +2,7 @@
 /// The monitor's limits in every composition of the loop. Limits that the user left out follow from the robot and from
 /// the speed limits of its controller.
 
-#include "parameters/parameters.h"
+#include "configuration/parameters.h"
 #include "robot/robot_model.h"
 #include "safety/safety_parameters.h"
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "parameters/parameters.h"
+#include "configuration/parameters.h"
 #include "robot/robot_model.h"
 
 namespace robot_control {

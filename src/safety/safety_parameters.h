@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "parameters/block.h"
 #include "robot/robot_model.h"
 
 namespace robot_control {
@@ -24,12 +25,23 @@ enum class Reaction : std::uint8_t {
   kBrake,  ///< latched, stop category 0: brake at once
 };
 
+inline std::vector<Word> words_of(Reaction) {
+  using enum Reaction;
+  return {{"off", kOff}, {"warn", kWarn}, {"slow", kSlow}, {"ramp", kRamp}, {"brake", kBrake}};
+}
+
 struct Condition {
   std::optional<double>
       limit;               ///< absent: derived from the robot where it can be (derived_limits.h), else no condition
   double persistence = 0;  ///< s; 0: the first cycle counts
   Reaction reaction = Reaction::kBrake;
 };
+
+/// The persistence is at most a minute; a longer one would not stop the robot in time.
+inline Keys keys(std::string_view name, Condition& condition) {
+  return {{"persistence", &condition.persistence, "s", 0, 60, 0, {}, name},
+          {"reaction", &condition.reaction, {}, 0, 0, 0, {}, name}};
+}
 
 struct SafetyParameters {
   std::uint64_t loss_cycles = 20;  ///< cycles without a command or a state after which the stop latches
@@ -55,5 +67,39 @@ struct SafetyParameters {
   /// size of a count. Not a user parameter: it follows from robot and rate (runtime/safety_limits.h).
   std::array<double, kMaxWheels> count_ripple{};
 };
+
+// clang-format off
+inline Keys keys(SafetyParameters& safety) {
+  return joined({
+      {
+        // The limit is above the four cycles for which the gate uses a command: a held command does not mean a lost node.
+        {"loss_cycles", &safety.loss_cycles, "cycles", 5, 10000},
+        {"heartbeat_timeout", &safety.heartbeat_timeout, "s", 0, 60, kLoopTimeout | kZeroIsOff},
+        {"ramp_time", &safety.ramp_time, "s", 0.01, 60},
+        // A reset must not release a moving robot.
+        {"standstill_speed", &safety.standstill_speed, "rad/s", 1.0e-6, 0.5},
+        {"slow_speed", &safety.slow_speed, "m/s", 0, 50},
+        {"clearance", &safety.clearance, "m", 0, 10000, kZeroIsOff},
+        {"stop_delay", &safety.stop_delay, "s", 0, 10},
+        {"stop_deceleration", &safety.stop_deceleration, "m/s²", 0.001, 100},
+      },
+#define CAUSE(...)
+#define CONDITION(id, name, sentence, remedy, actor, unit, min, max, ...) \
+      {{"limit", &safety.name.limit, unit, min, max, SafetyParameters{}.name.limit ? 0U : unsigned{kOptional}, {}, #name}}, \
+      keys(#name, safety.name),
+#define CONDITION_WITHOUT_LIMIT(id, name, ...) keys(#name, safety.name),
+#include "signals/stop_causes.def"
+  });
+}
+// clang-format on
+
+/// Checks that an empty battery has a lower voltage than a low one. `block` is the name of the block that has these
+/// keys.
+inline void check(const SafetyParameters& safety, const std::string& block, GivenValues& given) {
+  const std::string low = block + ".battery_low.limit";
+  const std::string empty = block + ".battery_empty.limit";
+  if (!given.accepted(low) || !given.accepted(empty) || *safety.battery_empty.limit < *safety.battery_low.limit) return;
+  given.refuse(empty, "must be below " + given.shown(low));
+}
 
 }  // namespace robot_control

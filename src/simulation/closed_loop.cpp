@@ -43,7 +43,7 @@ struct ClosedLoop::Parts {
   template <class Frame>
   struct Channel {
     std::unique_ptr<LatestFrames<Frame>> memory = std::make_unique<LatestFrames<Frame>>();
-    FrameWriter<Frame> writer{memory.get(), Wake::kNobody};
+    FrameWriter<Frame> writer{memory.get(), Wake::kNone};
     FrameReader<Frame> reader{memory.get()};
   };
 

@@ -10,7 +10,7 @@
 #include <memory>
 #include <string>
 
-#include "parameters/parameters.h"
+#include "configuration/parameters.h"
 #include "robot/robot_model.h"
 #include "signals/geometry.h"
 #include "signals/law_snapshot.h"

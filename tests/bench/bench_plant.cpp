@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "bench/rows.h"
+#include "configuration/parameters.h"
 #include "drivers/mujoco_plant.h"
-#include "parameters/parameters.h"
 #include "rt/clock.h"
 
 namespace robot_control::bench {

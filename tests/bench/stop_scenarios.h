@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "parameters/parameters.h"
+#include "configuration/parameters.h"
 #include "signals/permit.h"
 #include "simulation/closed_loop.h"
 

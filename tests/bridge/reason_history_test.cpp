@@ -19,7 +19,7 @@ class ReasonHistoryTest : public testing::Test {
   std::uint64_t poll() { return history_.collect(FrameReader<CommandFrame>(memory_.get()), newest_); }
 
   std::unique_ptr<LatestFrames<CommandFrame>> memory_ = std::make_unique<LatestFrames<CommandFrame>>();
-  FrameWriter<CommandFrame> writer_{memory_.get(), Wake::kNobody};
+  FrameWriter<CommandFrame> writer_{memory_.get(), Wake::kNone};
   ReasonHistory history_;
   CommandFrame newest_;
   std::uint64_t cycle_ = 100;

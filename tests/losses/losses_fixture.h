@@ -35,7 +35,7 @@ class Losses : public ::testing::Test {
   void expect_lives(LoopNode node) { EXPECT_TRUE(nodes().lives(node)) << name_of(node) << ":\n" << nodes().said(node); }
 
   /// The node died of that signal, and reported it in one line.
-  void expect_last_words(LoopNode node, int signal, const std::string& name) {
+  void expect_crash_report(LoopNode node, int signal, const std::string& name) {
     EXPECT_EQ(nodes().process(node).ending_signal(), signal) << name_of(node) << ":\n" << nodes().said(node);
     const std::string said = nodes().said(node);
     EXPECT_TRUE(said.starts_with(std::string(name_of(node)) + ": " + name)) << said;

@@ -97,7 +97,7 @@ TEST_P(AWoundedChannel, UnlinkedIsStillSharedAndItsNextWriterIsFound) {
 
 TEST_P(AWoundedChannel, CutOffEndsThoseAloneWhoMapItAndTheRobotBrakes) {
   const std::uint64_t before = robot_.cycle();
-  if (GetParam().by_this_test) robot_.look_away();
+  if (GetParam().by_this_test) robot_.close_channels();
   std::filesystem::resize_file(file(), 0);
   EXPECT_TRUE(robot_.await([&] { return !nodes().lives(GetParam().writer); })) << "its writer does not notice";
   if (!maps(kPlant)) {
@@ -110,12 +110,12 @@ TEST_P(AWoundedChannel, CutOffEndsThoseAloneWhoMapItAndTheRobotBrakes) {
       expect_lives(node);
     } else if (!nodes().lives(node)) {
       ended.append(" ").append(name_of(node));
-      expect_last_words(node, SIGBUS, "SIGBUS");
+      expect_crash_report(node, SIGBUS, "SIGBUS");
     }
   }
   std::printf("  %s: ended by SIGBUS:%s\n", channel(), ended.c_str());
   robot_.restart_all();
-  robot_.look_anew();
+  robot_.reopen_channels();
   robot_.drive_at_full_speed();
   expect_undisturbed();
 }
@@ -133,7 +133,7 @@ TEST_P(AWoundedChannel, OverwrittenIsNotTrusted) {
     EXPECT_NE(nodes().said(node).find(std::string("channel '") + channel()), std::string::npos) << nodes().said(node);
   }
   robot_.restart_all();
-  robot_.look_anew();
+  robot_.reopen_channels();
   robot_.drive_at_full_speed();
   expect_undisturbed();
 }

@@ -38,7 +38,7 @@ TEST_P(ALostNode, StopsTheRobotUntilResetAndANewCommand) {
   if (signal != SIGSTOP) {
     EXPECT_FALSE(nodes().lives(node));
     EXPECT_EQ(nodes().process(node).ending_signal(), signal) << "and it hangs nowhere on its way";
-    if (signal == SIGSEGV) expect_last_words(node, SIGSEGV, "SIGSEGV");
+    if (signal == SIGSEGV) expect_crash_report(node, SIGSEGV, "SIGSEGV");
     if (node != LoopNode::kMonitor) {
       EXPECT_TRUE(robot_.await([&] { return nodes().misses(LoopNode::kMonitor, node); })) << "the monitor names it";
     }

@@ -1,4 +1,4 @@
-#include "parameters/calibration_file.h"
+#include "configuration/calibration_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <limits>
 #include <sstream>
 
-#include "parameters/parameters.h"
+#include "configuration/parameters.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {

@@ -1,12 +1,12 @@
-#include "parameters/command_sources.h"
+#include "configuration/command_sources.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
 
+#include "configuration/parameters.h"
 #include "files/message_text.h"
-#include "parameters/parameters.h"
 #include "parameters/problem_list.h"
 #include "support/temporary_folder.h"
 

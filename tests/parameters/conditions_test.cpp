@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "configuration/parameters.h"
 #include "parameters/parameter_file.h"
-#include "parameters/parameters.h"
 #include "parameters/suggestion.h"
 
 namespace robot_control {
@@ -129,12 +129,14 @@ TEST_F(ReadConditions, RefusesAMapWithinAValue) {
 }
 
 TEST_F(ReadConditions, SuggestsTheConditionThatWasMeant) {
+  Parameters parameters;
+  const Schema all = schema(parameters);
   set("tilt", "{limit: 0.35, persistence: 0.05, reaction: brake}\n  tpi_over: {limit: 1, persistence: 0}");
   EXPECT_THAT(file.refusal(), HasSubstr("safety_monitor.tpi_over = (a block): unknown key " + at("tpi_over") +
                                         "; did you mean tip_over?"));
   EXPECT_EQ(problems_in(file.refusal()), 1u) << file.refusal();
-  EXPECT_EQ(suggest_key("safety_monitor.tilt.limti"), "did you mean tilt.limit?");
-  EXPECT_EQ(suggest_key("robot.tip_over.limit"), "did you mean safety_monitor.tip_over.limit?");
+  EXPECT_EQ(suggest_key(all, "safety_monitor.tilt.limti"), "did you mean tilt.limit?");
+  EXPECT_EQ(suggest_key(all, "robot.tip_over.limit"), "did you mean safety_monitor.tip_over.limit?");
 }
 
 TEST_F(ReadConditions, RefusesAKeyGivenTwice) {

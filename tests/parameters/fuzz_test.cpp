@@ -3,8 +3,8 @@
 
 #include <random>
 
+#include "configuration/parameters.h"
 #include "parameters/parameter_file.h"
-#include "parameters/parameters.h"
 
 namespace robot_control {
 namespace {

@@ -183,7 +183,9 @@ TEST_F(Layers, AKeyOfThePeerIsAnsweredByTheOneOfOurs) {
   EXPECT_THAT(said("velocity_rolling_window_size"), HasSubstr("speed_bandwidth"));
   EXPECT_THAT(said("use_stamped_vel"), HasSubstr("needs no key here"));
   EXPECT_THAT(refusal("diff_drive_controller:\n  linear: {x: {max_velocity: 1}}\n"), HasSubstr("max_linear_speed"));
-  EXPECT_THAT(suggest_key("diff_drive_controller.angular.z.max_jerk"), HasSubstr("here max_angular_jerk"));
+  Parameters parameters;
+  EXPECT_THAT(suggest_key(schema(parameters), "diff_drive_controller.angular.z.max_jerk"),
+              HasSubstr("here max_angular_jerk"));
 }
 
 TEST_F(Layers, ATagIsRefusedAndNeverIgnored) {

@@ -1,5 +1,5 @@
 // A request changes values while a node runs: it is accepted as a whole, or refused with every reason.
-#include "parameters/live_parameters.h"
+#include "configuration/live_parameters.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 
 #include "parameters/parameter_file.h"
 #include "parameters/parameter_tree.h"
-#include "parameters/schema/schema.h"
+#include "parameters/schema.h"
 
 namespace robot_control {
 namespace {
@@ -70,21 +70,13 @@ TEST_F(LiveParameters, KeepEveryBitThatHoldsWhereARequestIsRefused) {
   base.controller.max_linear_acceleration = 0.1 + 0.2;
   base.controller.pid_kp = 1.0 / 3;
   base.controller.pid_ki = 1e-7;
-  for (const Block& block : schema()) {
+  for (const Block& block : blocks()) {
     if (block.name != kBlock) continue;
     for (const Key& key : block.keys) {
       if ((key.traits & kLive) == 0) continue;
       const LiveChange change = read("{" + path_of(block, key).substr(kBlock.size() + 1) + ": x}");
       EXPECT_EQ(change.problems.size(), 1u) << key.name;
-      Parameters after = change.parameters;
-      Parameters before = base;
-      for (const Block& any : schema()) {
-        for (const Key& alias : any.keys) {
-          std::visit(
-              [&](auto* value) { EXPECT_EQ(*value, *std::get<decltype(value)>(alias.field(before))) << alias.name; },
-              alias.field(after));
-        }
-      }
+      EXPECT_EQ(parameters_text(change.parameters), parameters_text(base));
     }
   }
 }

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "parameters/parameters.h"
-#include "parameters/schema/schema.h"
+#include "configuration/parameters.h"
+#include "parameters/schema.h"
 
 namespace robot_control {
 
@@ -26,10 +26,16 @@ inline std::string shipped_text() {
   return text.str();
 }
 
+/// All blocks, with places of their own.
+inline std::vector<Block> blocks() {
+  static Parameters parameters;
+  return schema(parameters).blocks;
+}
+
 /// Every path that may be set ("robot.rate", …), in the order of the schema.
 inline std::vector<std::string> parameter_paths() {
   std::vector<std::string> paths;
-  for (const Block& block : schema()) {
+  for (const Block& block : blocks()) {
     for (const Key& key : block.keys) paths.push_back(path_of(block, key));
   }
   return paths;

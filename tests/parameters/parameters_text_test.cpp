@@ -1,7 +1,6 @@
-#include "parameters/parameters_text.h"
-
 #include <gtest/gtest.h>
 
+#include "configuration/parameters.h"
 #include "parameter_file.h"
 
 namespace robot_control {

@@ -4,13 +4,14 @@
 
 #include <iostream>
 
-#include "parameters/schema/schema.h"
+#include "configuration/parameters.h"
 
 namespace robot_control {
 namespace {
 
 void print_parameters() {
-  for (const Block& block : schema()) {
+  Parameters parameters;
+  for (const Block& block : schema(parameters).blocks) {
     for (const Key& key : block.keys) {
       std::cout << path_of(block, key) << '\t' << rule_of(key) << '\t'
                 << ((key.traits & kOptional) != 0 ? "optional" : "") << '\t'

@@ -113,7 +113,7 @@ TEST_F(DamagedFrames, TheNextPublicationIsFoundWhateverLayThere) {
     heal();
     damage.strike(bytes_of(*damaged_));
     TestFrame frame = test_frame(kDamagedRun, kCycles);
-    FrameWriter<TestFrame>(damaged_.get(), Wake::kNobody).publish(frame);
+    FrameWriter<TestFrame>(damaged_.get(), Wake::kNone).publish(frame);
     TestFrame found;
     ASSERT_EQ(reader_.newest(found), Lookup::kFrame);
     EXPECT_EQ(found.head.cycle, kCycles);

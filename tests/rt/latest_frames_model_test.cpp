@@ -133,7 +133,7 @@ class LatestFramesModelTest : public testing::Test {
 
   MemoryModel model_;
   LatestFrames<Frame, ModelAtomic, kSlots> frames_;
-  FrameWriter<Frame, ModelAtomic, kSlots> writer_{&frames_, Wake::kNobody};
+  FrameWriter<Frame, ModelAtomic, kSlots> writer_{&frames_, Wake::kNone};
   FrameReader<Frame, ModelAtomic, kSlots> reader_{&frames_};
 };
 

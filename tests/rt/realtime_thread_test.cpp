@@ -132,8 +132,8 @@ TEST(RealtimeThread, AsksNothingElseWhenOff) {
     thread.join();
     if (inside.policy != SCHED_OTHER || inside.priority != 0) return 1;
     const RealtimeReport& report = thread.report();
-    return report.memory_lock == Grant::kNotAsked && report.priority == Grant::kNotAsked &&
-                   report.core == Grant::kNotAsked && report.refusals.empty()
+    return report.memory_lock == Grant::kNotRequested && report.priority == Grant::kNotRequested &&
+                   report.core == Grant::kNotRequested && report.refusals.empty()
                ? 0
                : 2;
   });

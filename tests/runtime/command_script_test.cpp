@@ -10,7 +10,7 @@
 #include <fstream>
 #include <random>
 
-#include "parameters/parameters.h"
+#include "configuration/parameters.h"
 #include "support/allocation_guard.h"
 
 namespace robot_control {

@@ -112,8 +112,8 @@ class DrivingRobot {
   /// Objects are no longer opened again: a damaged one would be an error.
   void keep_mappings() noexcept { mapping_ = false; }
 
-  /// Memory that is about to be cut off must not be touched: nothing of all this is known until `look_anew`.
-  void look_away() {
+  /// Memory that is about to be cut off must not be touched: nothing of all this is known until `reopen_channels`.
+  void close_channels() {
     watching_ = false;
     log_ = DriveLog(nodes_.bus());
     sensors_.reader = FrameReader<SensorFrame>();
@@ -122,8 +122,8 @@ class DrivingRobot {
   }
 
   /// Opens the valid objects of those names.
-  void look_anew() {
-    look_away();
+  void reopen_channels() {
+    close_channels();
     sensors_.channel = ForeignChannel<LatestFrames<SensorFrame>>(nodes_.bus(), ChannelNames::kSensors);
     permits_.channel = ForeignChannel<LatestFrames<Permit>>(nodes_.bus(), ChannelNames::kPermit);
     truth_.channel = ForeignChannel<LatestFrames<TruthFrame>>(nodes_.bus(), ChannelNames::kTruth);

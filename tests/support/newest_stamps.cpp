@@ -10,6 +10,10 @@
 #include <string_view>
 
 #include "runtime/processes/process.h"
+#include "signals/command_frame.h"
+#include "signals/permit.h"
+#include "signals/sensor_frame.h"
+#include "signals/state_frame.h"
 
 namespace robot_control {
 namespace {

@@ -16,8 +16,8 @@
 #include <string>
 
 #include "drivers/mujoco_plant.h"
+#include "rt/crash_report.h"
 #include "rt/futex.h"
-#include "rt/last_words.h"
 #include "rt/realtime_thread.h"
 #include "runtime/processes/controller_process.h"
 #include "runtime/processes/driver_process.h"
@@ -102,7 +102,8 @@ class NodeProcesses {
     if (getppid() != test_) return 1;  // it was gone before
     const int log = open(log_of(node).c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
     dup2(log, STDERR_FILENO);
-    install_last_words(name_of(node), node == LoopNode::kTelemetry ? "the log with it" : "the motors brake without it");
+    install_crash_report(name_of(node),
+                         node == LoopNode::kTelemetry ? "the log with it" : "the motors brake without it");
     try {
       if (preparations_[index_of(node)]) preparations_[index_of(node)]();
       prepare_process(parameters_.loop.realtime);

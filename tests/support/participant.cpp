@@ -18,8 +18,8 @@
 
 #include "drivers/mujoco_plant.h"
 #include "rt/clock.h"
+#include "rt/crash_report.h"
 #include "rt/futex.h"
-#include "rt/last_words.h"
 #include "rt/realtime_thread.h"
 #include "rt/thread_priority.h"
 #include "runtime/processes/controller_process.h"
@@ -107,7 +107,7 @@ void participate(const Arguments& arguments) {
   const Parameters parameters = read_parameters(arguments.params, arguments.overlays);
   const RobotModel robot = read_robot(load_description(parameters.urdf), parameters.robot);
   const LoopParameters& loop = parameters.loop;
-  install_last_words(arguments.node, "the motors brake without it");
+  install_crash_report(arguments.node, "the motors brake without it");
   prepare_process(loop.clock == ClockMode::kWall ? loop.realtime : RealtimePolicy::kOff);
   if (arguments.node == "mujoco_plant") {
     DriverProcess driver(parameters, robot, arguments.bus);

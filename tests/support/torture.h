@@ -112,7 +112,7 @@ inline int write_torture_frames(const TortureMemory<LatestFrames<TortureFrame>>&
   prctl(PR_SET_PDEATHSIG, SIGKILL);  // a benchmark that is interrupted leaves no writer behind
   const OnCore core(1);
   const MemoryMapping mapping = memory.map(Access::kReadWrite);
-  FrameWriter<TortureFrame> writer(static_cast<LatestFrames<TortureFrame>*>(mapping.data()), Wake::kNobody);
+  FrameWriter<TortureFrame> writer(static_cast<LatestFrames<TortureFrame>*>(mapping.data()), Wake::kNone);
   for (std::uint64_t cycle = 0; !control.stop.load(std::memory_order_relaxed); ++cycle) {
     TortureFrame frame = torture_frame(cycle);
     writer.publish(frame);

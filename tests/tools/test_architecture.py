@@ -11,24 +11,26 @@ ROOT = Path(__file__).parents[2]
 SRC = ROOT / "src"
 
 CORE = {"signals", "rt", "files", "description", "robot", "estimation", "control", "safety"}
-CORE |= {"bags", "hal", "drivers", "parameters", "runtime", "recording"}
+CORE |= {"bags", "hal", "drivers", "parameters", "configuration", "runtime", "recording"}
 MAY_INCLUDE = {
     "signals": set(),
-    "rt": {"signals"},
     "files": set(),
+    # The engine; the folders that it configures include parameters/block.h alone.
+    "parameters": {"files"},
+    "rt": {"signals", "parameters"},
     "bags": {"files"},
     "description": {"files"},
-    "robot": {"signals", "description", "files"},
-    "estimation": {"signals", "robot"},
-    "control": {"signals", "robot"},
-    "safety": {"signals", "robot"},
-    "hal": {"signals", "rt", "robot"},
+    "robot": {"signals", "description", "files", "parameters"},
+    "estimation": {"signals", "robot", "parameters"},
+    "control": {"signals", "robot", "parameters"},
+    "safety": {"signals", "robot", "parameters"},
+    "hal": {"signals", "rt", "robot", "parameters"},
     # This holds simulated faults: of the machine in drivers, of nodes in simulation.
     "faults": {"signals", "rt"},
-    "drivers": {"signals", "faults", "hal", "description", "robot", "rt", "files"},
-    # The schema fills in the parameter structs that the laws define.
-    "parameters": {"signals", "telemetry", "rt", "files", "robot", "estimation", "control", "safety", "hal", "drivers"},
-    "telemetry": {"signals"},
+    "drivers": {"signals", "faults", "hal", "description", "robot", "rt", "files", "parameters"},
+    # All blocks together, and the other files that a user writes.
+    "configuration": CORE - {"bags", "description", "configuration", "runtime", "recording"} | {"telemetry"},
+    "telemetry": {"signals", "parameters"},
     # The log as a ROS bag; it knows the format, not ROS.
     "recording": {"signals", "bags", "telemetry"},
     # The step of each node in one cycle, and the process around it.
@@ -90,6 +92,16 @@ def test_folders_include_only_what_they_may():
     assert violations(rule) == []
 
 
+def test_what_is_configured_sees_only_the_declaration_of_a_block():
+    above = {"parameters", *(name for name, others in MAY_INCLUDE.items() if "configuration" in others | {name})}
+
+    def rule(path):
+        if folder(path) not in above:
+            yield from (name for name in includes(path) if re.match(r"parameters/(?!block\.h$)", name))
+
+    assert violations(rule) == []
+
+
 def test_project_headers_are_named_from_the_root():
     def rule(path):
         for name in includes(path):
@@ -116,7 +128,7 @@ def test_only_drivers_see_mujoco():
 
 
 SIMULATED = {"drivers", "faults"}
-SIMULATORS = {"bridge/nodes/mujoco_plant_node.cpp", "parameters/parameters.h"}  # the latter: the simulator's parameters
+SIMULATORS = {"bridge/nodes/mujoco_plant_node.cpp", "configuration/parameters.h"}  # the latter: its parameters
 
 
 def test_nothing_simulated_is_in_the_product():

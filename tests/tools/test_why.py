@@ -366,7 +366,7 @@ def test_without_a_free_path_clearance_is_reported_and_not_a_zero_on_cmd_vel(dri
     assert judge(facts).verdict is Verdict.STOPPED
     assert judge(facts).headline == "The path is not free: clearance leaves it no speed."
     assert judge(facts).commands == ("rostopic pub -1 /clearance std_msgs/Float64 inf",)
-    assert "/lidar does" in text(replace(facts, seers=("/lidar",)))
+    assert "/lidar does" in text(replace(facts, clearance_senders=("/lidar",)))
 
 
 def test_without_a_warning_a_limit_is_that_of_clearance(driving):

@@ -29,7 +29,7 @@ from robot_control.drive.send_plan import number_of_sends, positive
 RATIO = (0.95, 1.05)
 BASE = (0.7, 1.3)
 SCALE = (0.8, 1.2)
-"""The parameters accept these factors (src/parameters/calibration_bounds.h). A radius that is a quarter larger belongs
+"""The parameters accept these factors (src/estimation/calibration_bounds.h). A radius that is a quarter larger belongs
 to another wheel."""
 MIN_RATIO, MIN_BASE = 0.0005, 0.003
 """Smaller standard deviations are never written: another load and another floor change the wheels by so much

@@ -72,7 +72,7 @@ class Facts:
     registered: frozenset[str] = frozenset()  # nodes that the master knows, below the namespace
     elsewhere: tuple[str, ...] = ()  # namespaces of other robots
     senders: tuple[str, ...] = ()  # on cmd_vel and cmd_vel_stamped
-    seers: tuple[str, ...] = ()  # on clearance
+    clearance_senders: tuple[str, ...] = ()  # on clearance
     limited: tuple[float, float] | None = None  # m/s, rad/s: the command after limits
     measured: tuple[float, float] | None = None  # m/s, rad/s: by odometry
     command_timeout: float = 0.0  # s, cmd_vel_timeout of the running controller; 0: off, or not known
@@ -281,13 +281,13 @@ def _no_path(facts: Facts) -> Answer | None:
     if safety is None or safety.speed_limit >= MOVING or not _requested(facts):
         return None
     remedy = "clear the path, and publish it on clearance in metres"
-    if facts.seers:
-        remedy += f": {', '.join(facts.seers)} {'does' if len(facts.seers) == 1 else 'do'}"
+    if facts.clearance_senders:
+        remedy += f": {', '.join(facts.clearance_senders)} {'does' if len(facts.clearance_senders) == 1 else 'do'}"
     return Answer(
         Verdict.STOPPED,
         "The path is not free: clearance leaves it no speed.",
         (("operator", remedy),),
-        () if facts.seers else (f"rostopic pub -1 {facts.path('clearance')} std_msgs/Float64 inf",),
+        () if facts.clearance_senders else (f"rostopic pub -1 {facts.path('clearance')} std_msgs/Float64 inf",),
     )
 
 

@@ -83,7 +83,7 @@ class Listener:
             registered=frozenset(below(self.namespace, name) for name in nodes_of(state)),
             elsewhere=other_robots(self.namespace, (name for name, report in reports.items() if report.age < SILENCE)),
             senders=senders_of(state[0], map(rospy.resolve_name, COMMAND_TOPICS), rospy.get_name()),
-            seers=senders_of(state[0], [rospy.resolve_name("clearance")], rospy.get_name()),
+            clearance_senders=senders_of(state[0], [rospy.resolve_name("clearance")], rospy.get_name()),
             limited=_fresh(self._limited, now),
             measured=_fresh(self._measured, now),
             command_timeout=self._parameters.command_timeout,

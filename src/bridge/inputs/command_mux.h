@@ -27,7 +27,7 @@
 #include <vector>
 
 #include "bridge/inputs/command_input.h"
-#include "parameters/command_sources.h"
+#include "configuration/command_sources.h"
 
 namespace robot_control {
 

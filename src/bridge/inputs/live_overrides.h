@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "parameters/live_parameters.h"
+#include "configuration/live_parameters.h"
 
 namespace robot_control {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bridge/messages/reconfigure_messages.h"
-#include "parameters/live_parameters.h"
+#include "configuration/live_parameters.h"
 
 namespace robot_control {
 

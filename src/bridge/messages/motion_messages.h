@@ -7,8 +7,8 @@
 #include <string>
 
 #include "bridge/messages/messages.h"
+#include "configuration/parameters.h"
 #include "estimation/estimator_parameters.h"
-#include "parameters/parameters.h"
 #include "robot/robot_model.h"
 #include "signals/command_frame.h"
 #include "signals/sensor_frame.h"

@@ -10,7 +10,7 @@
 
 #include <cstdint>
 
-#include "parameters/parameters.h"
+#include "configuration/parameters.h"
 #include "signals/sensor_frame.h"
 
 namespace ros {

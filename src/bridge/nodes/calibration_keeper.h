@@ -7,8 +7,8 @@
 #include <future>
 #include <string>
 
-#include "parameters/calibration_file.h"
-#include "parameters/parameters.h"
+#include "configuration/calibration_file.h"
+#include "configuration/parameters.h"
 
 namespace robot_control {
 

@@ -21,8 +21,8 @@
 #include "bridge/startup/description.h"
 #include "hal/bus_cleanup.h"
 #include "rt/clock.h"
+#include "rt/crash_report.h"
 #include "rt/futex.h"
-#include "rt/last_words.h"
 #include "rt/process_limits.h"
 #include "rt/realtime_thread.h"
 
@@ -190,7 +190,7 @@ int run_node(int argc, char** argv, const NodeProgram& program) {
   }
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // else a log file stays empty until the end
   std::setlocale(LC_CTYPE, "C.UTF-8");       // else rosconsole prints "N·m" as "N??m"; numbers keep the decimal point
-  install_last_words(name, name == "telemetry" ? "the log with it" : "the motors brake without it");
+  install_crash_report(name, name == "telemetry" ? "the log with it" : "the motors brake without it");
   ignore_file_size_signal();
   if (const std::string problem = descriptor_problem(); !problem.empty()) {
     std::fprintf(stderr, "%s: refused:\n%s\n", name.c_str(), problem.c_str());

@@ -13,7 +13,7 @@
 #include <optional>
 #include <string>
 
-#include "parameters/parameters.h"
+#include "configuration/parameters.h"
 #include "robot/robot_model.h"
 
 namespace robot_control {

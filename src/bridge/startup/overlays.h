@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "parameters/parameters.h"
+#include "configuration/parameters.h"
 
 namespace XmlRpc {
 class XmlRpcValue;

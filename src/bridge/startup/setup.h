@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "parameters/parameters.h"
+#include "configuration/parameters.h"
 #include "robot/robot_model.h"
 
 namespace robot_control {

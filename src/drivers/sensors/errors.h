@@ -5,6 +5,8 @@
 
 #include <cstdint>
 
+#include "parameters/block.h"
+
 namespace robot_control {
 
 enum class ErrorLevel {
@@ -12,6 +14,19 @@ enum class ErrorLevel {
   kDataSheet,  ///< encoder counts; noise, bias, walk and scale of gyro and accelerometer; delay
   kField,      ///< errors of the data sheet, and those of a floor, a load and a serial line
 };
+
+/// true and false are the words of versions without levels.
+inline std::vector<Word> words_of(ErrorLevel) {
+  using enum ErrorLevel;
+  return {{"ideal", kIdeal},
+          {"data_sheet", kDataSheet},
+          {"field", kField},
+          {"true", kDataSheet, "data_sheet"},
+          {"yes", kDataSheet, "data_sheet"},
+          {"on", kDataSheet, "data_sheet"},
+          {"off", kIdeal, "ideal"},
+          {"no", kIdeal, "ideal"}};
+}
 
 struct Errors {
   ErrorLevel sensor_errors = ErrorLevel::kField;
@@ -43,5 +58,29 @@ struct Errors {
   double wheel_slip_noise = 5e-3;  ///< m/√m, for a side with wheels behind each other (slip_noise.h)
   double centre_of_gravity_error = 0.03;  ///< part of the wheel base, ahead and to the left (true_robot.h)
 };
+
+inline Keys keys(Errors& errors) {
+  return {
+      {"sensor_errors", &errors.sensor_errors},
+      {"roughness", &errors.roughness, {}, 0, 100},
+      {"accelerometer_vibration", &errors.accelerometer_vibration, "m/s²/√Hz", 0, 10},
+      {"gyro_vibration", &errors.gyro_vibration, "rad/s/√Hz", 0, 1},
+      {"accelerometer_slow_error", &errors.accelerometer_slow_error, "m/s²", 0, 10},
+      {"imu_delay", &errors.imu_delay, "s", 0, 0.5},
+      {"imu_jitter", &errors.imu_jitter, "s", 0, 0.1},
+      {"encoder_jitter", &errors.encoder_jitter, "s", 0, 0.1},
+      {"wheel_slip_noise", &errors.wheel_slip_noise, "m/√m", 0, 0.1},
+      {"centre_of_gravity_error", &errors.centre_of_gravity_error, {}, -0.2, 0.2},
+      {"encoder_resolution", &errors.encoder_resolution, "counts", 0, 1.0e9, kZeroIsOff},
+      {"gyro_noise", &errors.gyro_noise, "rad/s/√Hz", 0, 1},
+      {"gyro_bias", &errors.gyro_bias, "rad/s", 0, 10},
+      {"gyro_bias_walk", &errors.gyro_bias_walk, "rad/s/√s", 0, 1},
+      {"gyro_scale_error", &errors.gyro_scale_error, {}, -0.5, 0.5},
+      {"accelerometer_noise", &errors.accelerometer_noise, "m/s²/√Hz", 0, 10},
+      {"accelerometer_bias", &errors.accelerometer_bias, "m/s²", 0, 10},
+      {"accelerometer_bias_walk", &errors.accelerometer_bias_walk, "m/s²/√s", 0, 10},
+      {"sensor_delay", &errors.sensor_delay, "cycles", 0, 100},
+  };
+}
 
 }  // namespace robot_control

@@ -32,7 +32,7 @@ std::set<std::string> idle_massless_joints(const LumpedBodies& lumped) {
   return idle;
 }
 
-void lend_mass(LumpedBodies& lumped) {
+void assign_massless_inertia(LumpedBodies& lumped) {
   RigidBodies& robot = lumped.robot;
   if (robot.bodies.size() > 1 && !(robot.bodies[0].mass > 0)) {
     refuse(robot.source, link_element(robot.bodies[0].name), "neither it nor anything fixed to it has a mass",

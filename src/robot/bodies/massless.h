@@ -19,6 +19,6 @@ std::set<std::string> idle_massless_joints(const LumpedBodies& lumped);
 
 /// Gives the other massless bodies their share of the parent's mass; the sum stays. Throws RobotError if a base without
 /// mass carries something that moves, or if the <mass> of a moving body is zero.
-void lend_mass(LumpedBodies& lumped);
+void assign_massless_inertia(LumpedBodies& lumped);
 
 }  // namespace robot_control

@@ -251,7 +251,7 @@ RigidBodies read_rigid_bodies(const RobotDescription& description) {
     lumped.robot.notes.push_back({RobotNote::Kind::kAssumed, joint_element(joint),
                                   "what it moves has no <inertial>, and nothing rolls on it: taken as fixed"});
   }
-  lend_mass(lumped);
+  assign_massless_inertia(lumped);
   for (RigidBody& body : lumped.robot.bodies) {
     if (!of_this_world(body)) {
       refuse(document.source, link_element(body.name),

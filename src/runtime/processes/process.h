@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "configuration/parameters.h"
 #include "hal/bus.h"
-#include "parameters/parameters.h"
 #include "robot/robot_model.h"
 #include "rt/latest_frames.h"
 #include "rt/realtime_thread.h"

@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "configuration/parameters.h"
 #include "hal/bus.h"
-#include "parameters/parameters.h"
 #include "recording/bag_log.h"
 #include "recording/black_box/black_box_keeper.h"
 #include "robot/robot_model.h"

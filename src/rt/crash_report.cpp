@@ -1,4 +1,4 @@
-#include "rt/last_words.h"
+#include "rt/crash_report.h"
 
 #include <poll.h>
 #include <sys/syscall.h>
@@ -95,7 +95,7 @@ void die_of(int signal, siginfo_t& info) noexcept {
   if (syscall(SYS_rt_tgsigqueueinfo, getpid(), gettid(), signal, &info) != 0) raise(signal);
 }
 
-extern "C" void handle_last_words(int signal, siginfo_t* info, void* /*context*/) {
+extern "C" void report_crash(int signal, siginfo_t* info, void* /*context*/) {
   // A second failing thread waits here: its end would interrupt the report of the first one.
   while (dying.exchange(true)) pause();
   for (const Death& death : kDeaths) {
@@ -106,14 +106,14 @@ extern "C" void handle_last_words(int signal, siginfo_t* info, void* /*context*/
 
 }  // namespace
 
-void install_last_words(const std::string& name, const std::string& consequence) {
+void install_crash_report(const std::string& name, const std::string& consequence) {
   static AlternateStack stack;
   node_name = {};
   node_name.add(name);
   consequence_of_death = {};
   consequence_of_death.add(consequence);
   struct sigaction action {};
-  action.sa_sigaction = &handle_last_words;
+  action.sa_sigaction = &report_crash;
   action.sa_flags = SA_SIGINFO | SA_ONSTACK;
   sigfillset(&action.sa_mask);
   for (const Death& death : kDeaths) sigaction(death.signal, &action, nullptr);

@@ -1,12 +1,11 @@
-#include "parameters/peer_file.h"
+#include "configuration/peer_file.h"
 
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <array>
 
-#include "files/message_text.h"
-#include "parameters/schema/schema.h"
+#include "configuration/parameters.h"
 
 namespace robot_control {
 namespace {
@@ -78,10 +77,6 @@ constexpr auto kPeerKeys = std::to_array<PeerKey>({
     {"velocity_rolling_window_size", "state_estimator.speed_bandwidth"},
 });
 
-bool is_ours(std::string_view block) {
-  return std::ranges::any_of(schema(), [&](const Block& own) { return own.name == block; });
-}
-
 /// Returns the evidence that no file of this package has.
 std::string sign_in(const YAML::Node& node, bool foreign, int depth) {
   constexpr int kMaxDepth = 6;  // bounds a map that contains itself by an alias
@@ -103,19 +98,24 @@ std::string sign_in(const YAML::Node& node, bool foreign, int depth) {
 
 }  // namespace
 
-std::string peer_configuration(const YAML::Node& root) {
-  if (!root.IsMap()) return "";
+std::optional<Problem> peer_problem(const std::string& path, const YAML::Node& root) {
+  if (!root.IsMap()) return {};
+  Parameters own;
+  const std::vector<Block> blocks = schema(own).blocks;
   for (const auto& pair : root) {
     if (!pair.first.IsScalar()) continue;
     const std::string& name = pair.first.Scalar();
     YAML::Node alone;
     alone[name] = pair.second;
-    const std::string sign = sign_in(alone, !is_ours(name), 0);
+    const bool foreign = std::ranges::find(blocks, name, &Block::name) == blocks.end();
+    const std::string sign = sign_in(alone, foreign, 0);
     if (sign.empty()) continue;
     const std::string line = ", line " + std::to_string(pair.first.Mark().line + 1);
-    return (sign.starts_with(name) ? "" : printable(name) + " with ") + printable(sign) + line;
+    const std::string evidence = (sign.starts_with(name) ? "" : printable(name) + " with ") + printable(sign) + line;
+    return Problem{path, "", "is a configuration of ros_controllers, not of robot_control (" + evidence + ")", "",
+                   kPeerTable};
   }
-  return "";
+  return {};
 }
 
 std::string suggest_for_peer_key(std::string_view name) {

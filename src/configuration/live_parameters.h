@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "parameters/parameters.h"
+#include "configuration/parameters.h"
 
 namespace robot_control {
 

@@ -1,4 +1,4 @@
-#include "parameters/command_sources.h"
+#include "configuration/command_sources.h"
 
 #include <yaml-cpp/yaml.h>
 

@@ -1,6 +1,6 @@
-/// Processes die and write last words. Each is a child of its own.
+/// Processes crash and report it. Each is a child of its own.
 
-#include "rt/last_words.h"
+#include "rt/crash_report.h"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -43,7 +43,7 @@ struct Death {
   int signal = 0;     ///< 0: it lived
 };
 
-/// Runs `body` in a child with last words and its stderr in a pipe.
+/// Runs `body` in a child with a crash report and its stderr in a pipe.
 Death death_of(const std::function<void()>& body, bool reader_stopped = false) {
   int pipe_ends[2];
   if (pipe(pipe_ends) != 0) throw std::runtime_error("no pipe");
@@ -59,7 +59,7 @@ Death death_of(const std::function<void()>& body, bool reader_stopped = false) {
       }
       fcntl(STDERR_FILENO, F_SETFL, 0);
     }
-    install_last_words("some_node", "the motors brake without it");
+    install_crash_report("some_node", "the motors brake without it");
     body();
     _exit(0);
   }
@@ -105,7 +105,7 @@ void write_nowhere() {
   return depth < 0 ? 0 : overflow(depth + 1) + frame[depth % 4096];
 }
 
-TEST(LastWords, TruncatedSharedMemoryIsNamedWithItsRemedyAndTheConsequence) {
+TEST(CrashReport, TruncatedSharedMemoryIsNamedWithItsRemedyAndTheConsequence) {
   const Death death = death_of(read_truncated);
   EXPECT_EQ(death.signal, SIGBUS);
   EXPECT_EQ(lines_of(death.words), 1);
@@ -114,51 +114,51 @@ TEST(LastWords, TruncatedSharedMemoryIsNamedWithItsRemedyAndTheConsequence) {
                     HasSubstr("the process ends, the motors brake without it"), HasSubstr("remedy: look at 'df")));
 }
 
-TEST(LastWords, AnAddressThatIsNotItsOwnIsReported) {
+TEST(CrashReport, AnAddressThatIsNotItsOwnIsReported) {
   const Death death = death_of(write_nowhere);
   EXPECT_EQ(death.signal, SIGSEGV);
   EXPECT_EQ(lines_of(death.words), 1);
   EXPECT_THAT(death.words, AllOf(StartsWith("some_node: SIGSEGV at 0x10: "), HasSubstr("core dump")));
 }
 
-TEST(LastWords, AnImpossibleInstructionIsReported) {
+TEST(CrashReport, AnImpossibleInstructionIsReported) {
   const Death death = death_of([] { __builtin_trap(); });
   EXPECT_EQ(death.signal, SIGILL);
   EXPECT_THAT(death.words, StartsWith("some_node: SIGILL at 0x"));
 }
 
-TEST(LastWords, ADivisionByZeroIsReported) {
+TEST(CrashReport, ADivisionByZeroIsReported) {
   const Death death = death_of([] { raise(SIGFPE); });
   EXPECT_EQ(death.signal, SIGFPE);
   EXPECT_THAT(death.words, StartsWith("some_node: SIGFPE: it divided"));
 }
 
-TEST(LastWords, AnAbortIsReported) {
+TEST(CrashReport, AnAbortIsReported) {
   const Death death = death_of([] { std::abort(); });
   EXPECT_EQ(death.signal, SIGABRT);
   EXPECT_EQ(lines_of(death.words), 1);
   EXPECT_THAT(death.words, StartsWith("some_node: SIGABRT: it gave up"));
 }
 
-TEST(LastWords, ASignalFromAnotherProcessIsReported) {
+TEST(CrashReport, ASignalFromAnotherProcessIsReported) {
   const Death death = death_of([] { kill(getpid(), SIGSEGV); });
   EXPECT_EQ(death.signal, SIGSEGV);
   EXPECT_THAT(death.words, StartsWith("some_node: SIGSEGV from another process: "));
 }
 
-TEST(LastWords, ALivingProcessReportsNothing) {
+TEST(CrashReport, ALivingProcessReportsNothing) {
   const Death death = death_of([] {});
   EXPECT_EQ(death.signal, 0);
   EXPECT_EQ(death.words, "");
 }
 
-TEST(LastWords, AnyThreadMaySpeakThem) {
+TEST(CrashReport, AnyThreadMayWriteIt) {
   const Death death = death_of([] { std::thread(read_truncated).join(); });
   EXPECT_EQ(death.signal, SIGBUS);
   EXPECT_THAT(death.words, StartsWith("some_node: SIGBUS at 0x"));
 }
 
-TEST(LastWords, ThreadsThatDieTogetherSpeakOnce) {
+TEST(CrashReport, ThreadsThatCrashTogetherReportOnce) {
   for (int trial = 0; trial < 20; ++trial) {
     const Death death = death_of([] {
       std::atomic<int> ready{0};
@@ -176,14 +176,14 @@ TEST(LastWords, ThreadsThatDieTogetherSpeakOnce) {
   }
 }
 
-TEST(LastWords, AStackThatOverflowsStillSpeaks) {
+TEST(CrashReport, AStackOverflowIsReported) {
   if (kSanitized) GTEST_SKIP() << "the sanitizer's frames are too large for it";
   const Death death = death_of([] { overflow(0); });
   EXPECT_EQ(death.signal, SIGSEGV);
   EXPECT_THAT(death.words, StartsWith("some_node: SIGSEGV at 0x"));
 }
 
-TEST(LastWords, SoDoesTheStackOfARealtimeThread) {
+TEST(CrashReport, AStackOverflowOfARealtimeThreadIsReported) {
   if (kSanitized) GTEST_SKIP() << "the sanitizer's frames are too large for it";
   const Death death = death_of([] {
     RealtimeThread thread({.policy = RealtimePolicy::kOff}, [] { overflow(0); });
@@ -194,13 +194,13 @@ TEST(LastWords, SoDoesTheStackOfARealtimeThread) {
 }
 
 // Otherwise it would hang in the write, and with it this test.
-TEST(LastWords, AReaderThatHasStoppedDoesNotKeepItAlive) {
+TEST(CrashReport, AReaderThatHasStoppedDoesNotKeepItAlive) {
   const Death death = death_of(write_nowhere, true);
   EXPECT_EQ(death.signal, SIGSEGV);
   EXPECT_THAT(death.words, Not(HasSubstr("some_node")));
 }
 
-TEST(LastWords, WithoutAStderrItDiesAllTheSame) {
+TEST(CrashReport, WithoutAStderrTheProcessEndsByTheSameSignal) {
   const Death death = death_of([] {
     close(STDERR_FILENO);
     write_nowhere();
@@ -209,9 +209,9 @@ TEST(LastWords, WithoutAStderrItDiesAllTheSame) {
   EXPECT_EQ(death.words, "");
 }
 
-TEST(LastWords, ALongNameIsCutOff) {
+TEST(CrashReport, ALongNameIsCutOff) {
   const Death death = death_of([] {
-    install_last_words(std::string(1000, 'x'), std::string(1000, 'y'));
+    install_crash_report(std::string(1000, 'x'), std::string(1000, 'y'));
     write_nowhere();
   });
   EXPECT_EQ(death.signal, SIGSEGV);

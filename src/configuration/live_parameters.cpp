@@ -1,12 +1,9 @@
-#include "parameters/live_parameters.h"
+#include "configuration/live_parameters.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "files/ascii.h"
-#include "parameters/parameter_tree.h"
-#include "parameters/problem_list.h"
-#include "parameters/schema/schema.h"
 #include "parameters/tree_reader.h"
 #include "parameters/value_reader.h"
 
@@ -30,10 +27,13 @@ std::string text_of(const Value& value) {
   return std::get<bool>(*value) ? "true" : "false";
 }
 
-std::vector<Key> live_keys(const Block& block) {
-  std::vector<Key> keys;
-  std::ranges::copy_if(block.keys, std::back_inserter(keys), [](const Key& key) { return (key.traits & kLive) != 0; });
-  return keys;
+const Block& block_named(const std::string& name, const Schema& schema) {
+  return *std::ranges::find(schema.blocks, name, &Block::name);
+}
+
+Block live_part(Block block) {
+  std::erase_if(block.keys, [](const Key& key) { return (key.traits & kLive) == 0; });
+  return block;
 }
 
 Entry in_force(Entry::Kind kind, std::string text = {}) {
@@ -45,12 +45,12 @@ Entry in_force(Entry::Kind kind, std::string text = {}) {
 }
 
 /// Returns the values in force as a tree, as if a file contained them.
-ParameterTree tree_in_force(Parameters base, const Block& block) {
+ParameterTree tree_in_force(const Block& block) {
   ParameterTree tree;
   for (const Key& key : block.keys) {
     const std::string group = group_path_of(block, key);
     if (!group.empty()) tree.entries[group] = in_force(Entry::Kind::kMap);
-    const Value value = value_of(key.field(base));
+    const Value value = value_of(key.field);
     if (value) tree.entries[path_of(block, key)] = in_force(Entry::Kind::kPlain, text_of(value));
   }
   return tree;
@@ -75,10 +75,10 @@ void refuse_fixed(const Block& block, const ParameterTree& tree, ProblemList& pr
 
 std::vector<LiveParameter> live_parameters(const Parameters& whole, const std::string& block_name) {
   Parameters parameters = whole;
-  const Block& block = *std::ranges::find(schema(), block_name, &Block::name);
+  const Block block = live_part(block_named(block_name, schema(parameters)));
   std::vector<LiveParameter> live;
-  for (const Key& key : live_keys(block)) {
-    const Value value = value_of(key.field(parameters));
+  for (const Key& key : block.keys) {
+    const Value value = value_of(key.field);
     if (!value) continue;
     live.push_back({.key = path_of(block, key).substr(block_name.size() + 1),
                     .value = *value,
@@ -90,24 +90,24 @@ std::vector<LiveParameter> live_parameters(const Parameters& whole, const std::s
 }
 
 LiveChange read_live(const Parameters& base, const std::string& block_name, const std::string& text) {
-  const Block& whole = *std::ranges::find(schema(), block_name, &Block::name);
-  const std::vector<Key> keys = live_keys(whole);
-  const Block block{whole.name, keys};
-  Parameters before = base;
-  ParameterTree tree = tree_in_force(base, block);
+  LiveChange change;
+  change.parameters = base;
+  const Schema all = schema(change.parameters);
+  const Block& whole = block_named(block_name, all);
+  const Block block = live_part(whole);
+  std::vector<std::string> before;
+  for (const Key& key : block.keys) before.push_back(text_of(value_of(key.field)));
+  ParameterTree tree = tree_in_force(block);
   ProblemList problems;
   lay_request_over(block_name, text, tree, problems);
   refuse_fixed(whole, tree, problems);
-  LiveChange change;
-  change.parameters = read_blocks(tree, {&block, 1}, "request", base, problems);
-  for (const Key& key : keys) {
-    const std::string path = path_of(block, key);
-    const Value value = value_of(key.field(change.parameters));
+  read_blocks(tree, all, {&block, 1}, "request", problems);
+  for (std::size_t i = 0; i < block.keys.size(); ++i) {
+    const std::string path = path_of(block, block.keys[i]);
+    const Value value = value_of(block.keys[i].field);
     if (!given(tree, path) || !value) continue;
-    change.values.push_back({.key = path.substr(block_name.size() + 1),
-                             .value = *value,
-                             .before = text_of(value_of(key.field(before))),
-                             .after = text_of(value)});
+    change.values.push_back(
+        {.key = path.substr(block_name.size() + 1), .value = *value, .before = before[i], .after = text_of(value)});
   }
   if (problems.empty() && change.values.empty()) {
     problems.add({"request", printable(text), "names no value", "", "for example {max_linear_speed: 0.5}"});

@@ -22,7 +22,7 @@ inline constexpr std::size_t kMaxConsequence = 100;
 /// Installs the handlers. `name` is the node's name, `consequence` the consequence of its end: "the motors brake
 /// without it". Earlier handlers of these signals are replaced, and the calling main thread gets an AlternateStack. It
 /// is called once per process, before other threads exist.
-void install_last_words(const std::string& name, const std::string& consequence);
+void install_crash_report(const std::string& name, const std::string& consequence);
 
 /// While this object lives, the calling thread has a second stack, on which it can report an overflow of its own stack.
 /// If the thread has such a stack already (from AddressSanitizer), that one stays.

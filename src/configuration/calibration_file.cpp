@@ -1,4 +1,4 @@
-#include "parameters/calibration_file.h"
+#include "configuration/calibration_file.h"
 
 #include <unistd.h>
 
@@ -9,9 +9,11 @@
 #include <filesystem>
 #include <functional>
 
+#include "configuration/peer_file.h"
+#include "estimation/calibration_bounds.h"
 #include "files/output_file.h"
-#include "parameters/calibration_bounds.h"
 #include "parameters/parameter_tree.h"
+#include "parameters/parameters_text.h"
 #include "parameters/value_reader.h"
 
 namespace robot_control {
@@ -42,66 +44,44 @@ Content content_of(const LearnedCalibration& calibration, const RobotModel& robo
           calibration};
 }
 
-Field a_number(Parameters& parameters) {
-  return &parameters.estimator.calibration.radius_ratio;
+Keys keys(Content& content) {
+  WheelCalibration& wheels = content.learned.wheels;
+  return {
+      {"robot", &content.robot},
+      {"wheel_radius", &content.wheel_radius, "m", 0, 10},
+      {"wheel_base", &content.wheel_base, "m", 0, 100},
+      {"initial_radius_ratio", &content.initial_radius_ratio, {}, kRadiusRatioMin, kRadiusRatioMax},
+      {"initial_wheel_base_factor", &content.initial_wheel_base_factor, {}, kWheelBaseFactorMin, kWheelBaseFactorMax},
+      {"radius_ratio", &wheels.radius_ratio, {}, kRadiusRatioMin, kRadiusRatioMax},
+      {"radius_ratio_deviation", &wheels.radius_ratio_deviation, {}, 0, 1},
+      {"wheel_base_factor", &wheels.wheel_base_factor, {}, kWheelBaseFactorMin, kWheelBaseFactorMax},
+      {"wheel_base_deviation", &wheels.wheel_base_deviation, {}, 0, 1},
+      {"gyro_bias", &content.learned.gyro_bias, "rad/s", -kGyroBiasMax, kGyroBiasMax},
+      {"gyro_bias_deviation", &content.learned.gyro_bias_deviation, "rad/s", 0, 10},
+  };
 }
-Field a_vector(Parameters& parameters) {
-  return &parameters.estimator.gyro_bias;
-}
-Field a_text(Parameters& parameters) {
-  return &parameters.report.odom_frame;
-}
-
-struct Row {
-  Key key;
-  Field (*in)(Content&);
-};
-
-// clang-format off
-const Row kRows[] = {
-    {{"robot", a_text}, [](Content& c) -> Field { return &c.robot; }},
-    {{"wheel_radius", a_number, "m", 0, 10}, [](Content& c) -> Field { return &c.wheel_radius; }},
-    {{"wheel_base", a_number, "m", 0, 100}, [](Content& c) -> Field { return &c.wheel_base; }},
-    {{"initial_radius_ratio", a_number, {}, kRadiusRatioMin, kRadiusRatioMax},
-     [](Content& c) -> Field { return &c.initial_radius_ratio; }},
-    {{"initial_wheel_base_factor", a_number, {}, kWheelBaseFactorMin, kWheelBaseFactorMax},
-     [](Content& c) -> Field { return &c.initial_wheel_base_factor; }},
-    {{"radius_ratio", a_number, {}, kRadiusRatioMin, kRadiusRatioMax},
-     [](Content& c) -> Field { return &c.learned.wheels.radius_ratio; }},
-    {{"radius_ratio_deviation", a_number, {}, 0, 1},
-     [](Content& c) -> Field { return &c.learned.wheels.radius_ratio_deviation; }},
-    {{"wheel_base_factor", a_number, {}, kWheelBaseFactorMin, kWheelBaseFactorMax},
-     [](Content& c) -> Field { return &c.learned.wheels.wheel_base_factor; }},
-    {{"wheel_base_deviation", a_number, {}, 0, 1},
-     [](Content& c) -> Field { return &c.learned.wheels.wheel_base_deviation; }},
-    {{"gyro_bias", a_vector, "rad/s", -kGyroBiasMax, kGyroBiasMax},
-     [](Content& c) -> Field { return &c.learned.gyro_bias; }},
-    {{"gyro_bias_deviation", a_vector, "rad/s", 0, 10},
-     [](Content& c) -> Field { return &c.learned.gyro_bias_deviation; }},
-};
-// clang-format on
 
 Content content_of(const ParameterTree& tree, const std::string& path, ProblemList& problems) {
   Content content;
-  for (const BlockEntry& block : tree.blocks) {
-    if (block.name != kBlock) problems.add({printable(block.name), "", "unknown block", block.origin, kRemedy});
+  const Block block{kBlock, keys(content)};
+  for (const BlockEntry& found : tree.blocks) {
+    if (found.name != kBlock) problems.add({printable(found.name), "", "unknown block", found.origin, kRemedy});
   }
   for (const auto& found : tree.entries) {
     const std::string& name = found.first;
     const Entry& entry = found.second;
-    const bool known = std::ranges::any_of(
-        kRows, [&](const Row& row) { return name == std::string(kBlock) + "." + std::string(row.key.name); });
+    const bool known = std::ranges::any_of(block.keys, [&](const Key& key) { return name == path_of(block, key); });
     if (!known && name.starts_with(std::string(kBlock) + ".")) {
       problems.add({printable(name), as_written(entry), "unknown key", entry.origin, kRemedy});
     }
   }
-  for (const Row& row : kRows) {
-    const std::string name = std::string(kBlock) + "." + std::string(row.key.name);
+  for (const Key& key : block.keys) {
+    const std::string name = path_of(block, key);
     const auto entry = tree.entries.find(name);
     if (entry == tree.entries.end()) {
       problems.add({name, "", "missing", path, kRemedy});
     } else {
-      read_value(entry->second, name, row.key, row.in(content), problems);
+      read_value(entry->second, name, key, problems);
     }
   }
   return content;
@@ -132,24 +112,12 @@ std::filesystem::path folder_of(const std::string& path) {
   return folder.empty() ? "." : folder;
 }
 
-std::string text_of(const Content& content) {
-  const auto vector = [](const Vector3& v) {
-    return "[" + shortest(v[0]) + ", " + shortest(v[1]) + ", " + shortest(v[2]) + "]";
-  };
+std::string text_of(Content content) {
   std::string text = "# The calibration that state_estimator learned; delete this file to restart it.\n";
   text.append(kBlock).append(":\n");
-  Content copy = content;
-  for (const Row& row : kRows) {
-    text.append("  ").append(row.key.name).append(": ");
-    const Field field = row.in(copy);
-    if (const auto* number = std::get_if<double*>(&field)) text += shortest(**number);
-    if (const auto* numbers = std::get_if<Vector3*>(&field)) text += vector(**numbers);
-    if (const auto* name = std::get_if<std::string*>(&field)) {
-      text += '"';
-      for (const char c : **name) text.append(c == '"' || c == '\\' ? "\\" : "").append(1, c);
-      text += '"';
-    }
-    if (!row.key.unit.empty()) text.append("  # ").append(row.key.unit);
+  for (const Key& key : keys(content)) {
+    text.append("  ").append(key.name).append(": ").append(value_text(key.field));
+    if (!key.unit.empty()) text.append("  # ").append(key.unit);
     text += '\n';
   }
   return text;
@@ -221,7 +189,7 @@ std::optional<LearnedCalibration> read_calibration(const std::string& path, cons
   const auto status =
       std::filesystem::status(path, error);  // a link to a file that does not exist yet counts as no file
   if (status.type() == std::filesystem::file_type::not_found) return {};
-  const ParameterTree tree = read_tree(path, {}, problems);
+  const ParameterTree tree = read_tree(path, {}, problems, &peer_problem);
   if (tree.blocks.empty() && problems.empty()) problems.add({path, "", "holds no calibration", "", kRemedy});
   problems.throw_if_any(subject);
   const Content found = content_of(tree, path, problems);

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "hal/gate_parameters.h"
+#include "parameters/block.h"
+#include "rt/realtime_thread.h"
+
+namespace robot_control {
+
+enum class ClockMode { kWall, kLockstep };
+
+inline std::vector<Word> words_of(ClockMode) {
+  return {{"wall", ClockMode::kWall}, {"lockstep", ClockMode::kLockstep}};
+}
+
+/// Values on which all nodes must agree; they are in the block `robot:`, beside those of the robot itself.
+struct LoopParameters {
+  double rate = 1000;  ///< Hz, 100 … 2000
+  ClockMode clock = ClockMode::kWall;
+  RealtimePolicy realtime = RealtimePolicy::kPreferred;
+  std::int64_t core = 0;  ///< core to which the real-time threads are pinned; -1: not pinned
+  FailAction fail_action = FailAction::kBrake;
+  std::string bus;                  ///< empty: derived from master and namespace
+  std::string command_script;       ///< CSV path; empty: none
+  bool wait_for_nodes = false;      ///< cycle 0 begins when all four nodes hold their channels; always in lockstep
+  bool wait_for_telemetry = false;  ///< … and when telemetry reads
+
+  double period() const { return 1.0 / rate; }                           ///< s
+  std::int64_t period_ns() const { return std::llround(1.0e9 / rate); }  ///< ns
+};
+
+inline Keys keys(LoopParameters& loop) {
+  return {
+      {"fail_action", &loop.fail_action},
+      {"rate", &loop.rate, "Hz", 100, 2000},
+      {"clock", &loop.clock},
+      {"realtime", &loop.realtime},
+      {"core", &loop.core, {}, -1, 1023},
+      {"bus", &loop.bus, {}, 0, 0, kMayBeEmpty},
+      {"command_script", &loop.command_script, {}, 0, 0, kPath | kMayBeEmpty},
+      {"wait_for_nodes", &loop.wait_for_nodes},
+      {"wait_for_telemetry", &loop.wait_for_telemetry},
+  };
+}
+
+}  // namespace robot_control

@@ -1,0 +1,89 @@
+#include "configuration/parameters.h"
+
+#include "configuration/peer_file.h"
+#include "parameters/parameters_text.h"
+#include "parameters/tree_reader.h"
+
+namespace robot_control {
+namespace {
+
+void check_rates(const Schema& schema, const LoopParameters& loop, GivenValues& given) {
+  if (given.refused("robot.rate")) return;
+  for (const Block& block : schema.blocks) {
+    for (const Key& key : block.keys) {
+      const std::string path = path_of(block, key);
+      const auto* const* number = std::get_if<double*>(&key.field);
+      if (number == nullptr || !given.accepted(path)) continue;
+      if ((key.traits & kLoopTimeout) != 0 && **number != 0 && **number < 2 * loop.period()) {
+        given.refuse(path, "must be 0 (off) or at least two periods, " + shortest(2 * loop.period()) + " s at " +
+                               shortest(loop.rate) + " Hz");
+      }
+      if ((key.traits & kPublishRate) != 0 && **number > loop.rate) {
+        given.refuse(path, "must be at most the loop's rate, " + shortest(loop.rate) + " Hz",
+                     "lower it or raise robot.rate");
+      }
+    }
+  }
+}
+
+void check_stop_delay(const Parameters& parameters, GivenValues& given) {
+  // A stop takes the sensors of one cycle, the permit of the next and the torque of the one after.
+  constexpr double kCyclesToStop = 3;
+  const std::string delay = "safety_monitor.stop_delay";
+  const double fastest = kCyclesToStop * parameters.loop.period();
+  if (!given.accepted(delay) || !given.accepted("robot.rate") || parameters.safety.stop_delay >= fastest) return;
+  given.refuse(delay, "must be at least three periods, " + shortest(fastest) + " s at " +
+                          shortest(parameters.loop.rate) + " Hz: no stop is faster");
+}
+
+}  // namespace
+
+Schema schema(Parameters& p) {
+  const auto file = [](std::string_view name, std::string& path, unsigned traits) {
+    return Keys{{name, &path, {}, 0, 0, kPath | traits}};
+  };
+  const Key no_effect{"standstill_acceleration", &p.no_effect, "m/s²", 0.001, 10, kOptional | kObsolete};
+  return {
+      .blocks = {{"robot", joined({file("urdf", p.urdf, 0), keys(p.robot), keys(p.loop)})},
+                 {"mujoco_plant", joined({keys(p.plant), plant_keys(p.report)})},
+                 {"state_estimator", joined({keys(p.estimator),
+                                             {no_effect},
+                                             file("calibration_file", p.calibration_file, kMayBeEmpty),
+                                             estimator_keys(p.report)})},
+                 {"diff_drive_controller",
+                  joined({keys(p.controller), file("command_sources", p.command_sources, kMayBeEmpty | kOptional),
+                          controller_keys(p.report)})},
+                 {"safety_monitor",
+                  joined({keys(p.safety), file("latch_file", p.latch_file, kMayBeEmpty | kOptional)})},
+                 {"telemetry", keys(p.telemetry)}},
+      .check =
+          [&p](const Schema& all, GivenValues& given) {
+            check_rates(all, p.loop, given);
+            check(p.safety, "safety_monitor", given);
+            check(p.controller, "diff_drive_controller", given);
+            check_stop_delay(p, given);
+          },
+      .other_package_remedy = &suggest_for_peer_key,
+  };
+}
+
+Parameters read_parameters(const std::string& yaml_path, const std::vector<Overlay>& overlays,
+                           const std::string& base_path) {
+  const std::string source = yaml_path.empty() ? "the given values" : yaml_path;
+  const std::string subject = "parameters refused (" + source + ")";
+  ProblemList problems;
+  ParameterTree tree = read_tree(yaml_path, overlays, problems, &peer_problem, base_path);
+  if (tree.blocks.empty() && !yaml_path.empty())
+    problems.throw_if_any(subject);  // without any block the file is no parameter file
+  Parameters parameters;
+  const Schema all = schema(parameters);
+  parameters.warnings = read_blocks(std::move(tree), all, all.blocks, source, problems);
+  problems.throw_if_any(subject);
+  return parameters;
+}
+
+std::string parameters_text(Parameters parameters) {
+  return blocks_text(schema(parameters).blocks);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,65 @@
+#pragma once
+/// Parameters hold everything that a user sets: the blocks that the folders declare (parameters/block.h), composed.
+///
+/// A tree of values (the YAML file, then overlays from a parameter server or a Python dict) is read into `Parameters`
+/// at once. Missing, unknown, mistyped, NaN, infinite and out-of-range values are collected. One ParameterError lists
+/// them all with path, value, rule, unit and origin.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "configuration/loop_parameters.h"
+#include "configuration/report_parameters.h"
+#include "control/drive_controller_parameters.h"
+#include "drivers/mujoco_plant_parameters.h"
+#include "estimation/estimator_parameters.h"
+#include "parameters/parameter_tree.h"
+#include "parameters/problem_list.h"
+#include "parameters/schema.h"
+#include "robot/robot_parameters.h"
+#include "safety/safety_parameters.h"
+#include "telemetry/log_parameters.h"
+
+namespace robot_control {
+
+struct Parameters {
+  std::string urdf;  ///< path, relative to the folder of the file that names it
+  RobotParameters robot;
+  LoopParameters loop;
+  MujocoPlantParameters plant;
+  EstimatorParameters estimator;
+  std::string calibration_file;  ///< path, see calibration_file.h; empty: none
+  DriveControllerParameters controller;
+  std::string command_sources;  ///< path, see command_sources.h; empty: none, cmd_vel and cmd_vel_stamped command
+  SafetyParameters safety;
+  std::string latch_file;  ///< path, see runtime/latch_file.h; empty: none
+  ReportParameters report;
+  TelemetryParameters telemetry;
+  std::optional<double> no_effect;    ///< value of a key of an earlier version
+  std::vector<std::string> warnings;  ///< about accepted values in an old form
+};
+
+/// Returns the blocks of the file with their places in `parameters`, which must outlive it: `robot`, `mujoco_plant`,
+/// `state_estimator`, `diff_drive_controller`, `safety_monitor`, `telemetry`.
+Schema schema(Parameters& parameters);
+
+/// Throws ParameterError. Every key of the schema must be in the file or in an overlay, unless it is kOptional.
+/// Optional values come from the URDF (`robot.wheel_base`, …) or are derived from it (`pid_kp`, …). With an empty
+/// `yaml_path` only the overlays are read.
+///
+/// `base_path` names a complete file over which that of `yaml_path` is laid key by key. The latter may therefore hold
+/// only the keys that it changes. It has no effect if it is empty, does not exist or names the same file.
+///
+/// A file that is a configuration of ros_controllers' or ros2_controllers' diff_drive_controller is one problem.
+///
+/// Relative paths of input files (`urdf`, `scene`, `command_script`) refer to the folder of the YAML file, in an
+/// overlay to the current folder. The returned paths are absolute.
+Parameters read_parameters(const std::string& yaml_path, const std::vector<Overlay>& overlays = {},
+                           const std::string& base_path = "");
+
+/// Returns the text of a complete YAML file, which read_parameters reads back as the same values. Derived values are
+/// left out, and paths are absolute.
+std::string parameters_text(Parameters parameters);
+
+}  // namespace robot_control
