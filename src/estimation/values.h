@@ -2,6 +2,7 @@
 /// These functions compute with plain values, of which the estimator's state consists.
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 
 #include "signals/geometry.h"
@@ -14,6 +15,22 @@ inline double square(double value) noexcept {
 inline Vector3 array(const Eigen::Vector3d& v) noexcept {
   return {v.x(), v.y(), v.z()};
 }
+inline Eigen::Vector3d vector(const Vector3& v) noexcept {
+  return {v[0], v[1], v[2]};
+}
+
+/// Stores an Eigen matrix of fixed size as plain numbers, because Eigen's types are not trivially copyable.
+template <class Matrix>
+class Stored {
+ public:
+  Stored(const Matrix& matrix = Matrix::Zero()) noexcept { **this = matrix; }  // NOLINT(google-explicit-constructor)
+
+  Eigen::Map<Matrix> operator*() noexcept { return Eigen::Map<Matrix>(numbers_.data()); }
+  Eigen::Map<const Matrix> operator*() const noexcept { return Eigen::Map<const Matrix>(numbers_.data()); }
+
+ private:
+  std::array<double, Matrix::SizeAtCompileTime> numbers_{};
+};
 
 /// This vector in the plane is trivially copyable, which Eigen's vectors are not.
 struct Planar {
@@ -24,7 +41,6 @@ struct Planar {
   friend Planar operator-(const Planar& a) noexcept { return {-a.x, -a.y}; }
   friend Planar operator*(const Planar& a, double factor) noexcept { return {a.x * factor, a.y * factor}; }
   friend Planar operator/(const Planar& a, double divisor) noexcept { return {a.x / divisor, a.y / divisor}; }
-  friend double dot(const Planar& a, const Planar& b) noexcept { return a.x * b.x + a.y * b.y; }
   double norm() const noexcept { return std::hypot(x, y); }
 };
 
