@@ -43,7 +43,6 @@ Estimator::State::State(const EstimatorParameters& parameters, const RobotModel&
     : wheel_sides(robot, parameters.speed_bandwidth, period, std::sqrt(12.0) * encoder_deviation(parameters, robot)),
       core(core_params(parameters, robot)),
       tilt(tilt_params(parameters)),
-      gyro_noise(parameters.gyro_noise),
       slip(slip_params(parameters, robot)),
       rest(rest_params(parameters, robot)),
       rate(parameters.rate_bandwidth, period),
@@ -55,7 +54,7 @@ Estimator::Estimator(const EstimatorParameters& parameters, const RobotModel& ro
       geometry_(robot),
       base_from_imu_(rotation_of(robot.imu_in_base.orientation)),
       encoder_(encoder_deviation(parameters, robot)),
-      drags_wheels_(drags_wheels(robot)),
+      gyro_noise_(core_params(parameters, robot).gyro_noise),
       state_(parameters, robot, period),
       fresh_(state_) {
   rate_noise_gain_ = state_.rate.noise_gain();
@@ -198,8 +197,6 @@ void Estimator::move(double dt) noexcept {
   for (const auto& travel : s.middle_travel.step(s.wheels, turned, geometry_.wheel_base, s.core.ratio())) {
     path = path + roll(travel);
   }
-  if (s.wheels.both_received()) s.core.shift(0, 0, s.wheels.speed_step_variance / 2);
-  s.tilt.roll(geometry_.turn(s.wheels.left(), s.wheels.right()));
   if (s.imu.gyro) turn_tilt(*s.imu.gyro, dt);
   if (parameters_.slip_detection) watch_slip(dt, turned, path);
   compare_turns(dt, angle.has_value());
@@ -207,10 +204,9 @@ void Estimator::move(double dt) noexcept {
 
 /// `gyro` is in rad/s and includes the bias.
 void Estimator::turn_tilt(const Vector3& gyro, double dt) noexcept {
-  const bool known = state_.rest.bias_measured();
   Eigen::Vector3d rate = vector(gyro) - gyro_bias();
-  if (!known) rate.head<2>().setZero();
-  state_.tilt.turn(array(rate), dt, known);
+  if (!state_.rest.bias_measured()) rate.head<2>().setZero();
+  state_.tilt.turn(array(rate), dt);
 }
 
 /// Slope and creep shorten the distance, which is laid along the heading that the robot had halfway. Returns the path
@@ -267,7 +263,7 @@ void Estimator::watch_slip(double dt, double turned, const Planar& path) noexcep
                        .clock_offset = s.core.deviation(PlanarCore::kOffset),
                        .gyro_bias = std::sqrt(s.core.bias_variance()),
                        .speed_step = s.wheels.speed_step},
-       .corrects = !drags_wheels_ || s.rest.bias_measured()});
+       .corrects = s.rest.bias_measured()});
   if (!slip.judged) return;
   smooth_nis(kAccelerometer, slip.nis[SlipResidual::kAlong], Tuning::kPointInterval);
   smooth_nis(kLateralContact, slip.nis[SlipResidual::kAcross], Tuning::kPointInterval);
@@ -291,8 +287,7 @@ void Estimator::compare_turns(double dt, bool by_gyro) noexcept {
                                                   .slide = s.slip.slide().active(),
                                                   .gyro_unchanged = s.imu.gyro_unchanged});
   if (ended) {
-    const auto [nis, used, apart, usual] =
-        s.core.end_block(ended->left, ended->right, rate, ended->time, s.wheels.stamp_variance);
+    const auto [nis, used, apart, usual] = s.core.end_block(ended->left, ended->right, rate, ended->time);
     for (const SensorIndex sensor : {kLeftEncoder, kRightEncoder}) {
       smooth_nis(sensor, nis, ended->time);
       if (!used) ++s.rejected[sensor];
@@ -310,21 +305,19 @@ void Estimator::watch_rest(double dt) noexcept {
     const std::array<double, 2> now = s.tilt.acceleration(*s.imu.accelerometer);
     acceleration = {now[0], now[1]};
   }
-  const Rest::Output output =
-      s.rest.step({.sample = {.dt = dt,
-                              .left = s.wheels.left(),
-                              .right = s.wheels.right(),
-                              .gyro = s.imu.gyro,
-                              .accelerometer = s.imu.accelerometer},
-                   .acceleration = acceleration,
-                   .any_lost = s.wheels.any_lost(),
-                   .fell_silent = s.wheels.fell_silent,
-                   .bias = array(gyro_bias()),
-                   .bias_variance = array(gyro_bias_variance()),
-                   .bias_known = s.core.bias_known(),
-                   .mean_variance = square(s.gyro_noise.density()) / parameters_.standstill_time});
+  const Rest::Output output = s.rest.step({.sample = {.dt = dt,
+                                                      .left = s.wheels.left(),
+                                                      .right = s.wheels.right(),
+                                                      .gyro = s.imu.gyro,
+                                                      .accelerometer = s.imu.accelerometer},
+                                           .acceleration = acceleration,
+                                           .any_lost = s.wheels.any_lost(),
+                                           .fell_silent = s.wheels.fell_silent,
+                                           .bias = array(gyro_bias()),
+                                           .bias_variance = array(gyro_bias_variance()),
+                                           .bias_known = s.core.bias_known(),
+                                           .mean_variance = square(gyro_noise_) / parameters_.standstill_time});
   if (output.began) {
-    s.gyro_noise.interrupt();
     s.slip.end_slide();
     s.core.end_contradiction();
     s.comparison.interrupt();
@@ -361,9 +354,7 @@ void Estimator::learn_at_rest(const RestWatch::Means& means, bool bias_changed) 
   s.core.age(means.time);
   if (means.gyro) {
     const Vector3& mean = *means.gyro;
-    s.gyro_noise.add(mean[2], means.time);
-    s.core.set_gyro_noise(s.gyro_noise.density());
-    const double noise = square(parameters_.gyro_noise) / means.time;
+    const double noise = square(gyro_noise_) / means.time;
     const double walk = square(parameters_.gyro_bias_walk) * means.time;
     if (bias_changed) s.core.open_bias(square(mean[2] - s.core.bias()));
     s.core.rest(mean[2], noise, s.rest.rested());

@@ -48,7 +48,6 @@
 #include "estimation/planar/planar_core.h"
 #include "estimation/planar/turn_comparison.h"
 #include "estimation/rest/bias_estimate.h"
-#include "estimation/rest/gyro_noise.h"
 #include "estimation/rest/rest.h"
 #include "estimation/slip/slip_watch.h"
 #include "estimation/tilt/tilt.h"
@@ -83,7 +82,6 @@ class Estimator {
     TurnComparison comparison;
     Tilt tilt;                              ///< tilt and the accelerometer's bias
     std::array<BiasEstimate, 2> gyro_bias;  ///< rad/s, about x and y
-    GyroNoise gyro_noise;
     SlipWatch slip;
     Rest rest;
     double yaw_rate = 0;  ///< rad/s, in this step
@@ -169,7 +167,6 @@ class Estimator {
   void fill_twist_covariance(double yaw_rate, StateFrame& out) const noexcept;
   void fill_learned(StateFrame& out) const noexcept;
   void fill_health(StateFrame& out) const noexcept;
-  double wheels_late() const noexcept;
   Planar axle(double yaw) const noexcept;
 
   EstimatorParameters parameters_;
@@ -177,8 +174,8 @@ class Estimator {
   WheelGeometry geometry_;
   Eigen::Matrix3d base_from_imu_;
   double encoder_;          ///< m, deviation of one side's reading
+  double gyro_noise_;       ///< rad/s/√Hz, of the mounted gyro
   double rate_noise_gain_;  ///< RateTracker::noise_gain
-  bool drags_wheels_;       ///< A turn drags wheels over the floor (estimator_setup.h).
   State state_;
   State fresh_;  ///< state at the beginning of a run
 };

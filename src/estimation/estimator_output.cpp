@@ -42,18 +42,11 @@ void Estimator::fill_pose(StateFrame& out) const noexcept {
   fill_pose_covariance(middle.yaw, lever, out);
 }
 
-/// Returns the probability that the clock offset is positive.
-double Estimator::wheels_late() const noexcept {
-  const double deviation = state_.core.deviation(PlanarCore::kOffset);
-  if (deviation == 0) return state_.core.offset() > 0 ? 1 : 0;
-  return std::erfc(-state_.core.offset() / deviation / std::numbers::sqrt2) / 2;
-}
-
-///   P = J P_core Jᵀ + m mᵀ gap²/8 + a aᵀ (σ_encoder² + v² σ_stamp²)
+///   P = J P_core Jᵀ + m mᵀ gap²/8 + a aᵀ σ_encoder²
 /// J is the Jacobian by clock offset, x, y and yaw, a the direction of travel and m the velocity of base_link. The
 /// present is evenly distributed over the gap between two samples of the gyro.
 void Estimator::fill_pose_covariance(double yaw, const Planar& lever, StateFrame& out) const noexcept {
-  const double late = wheels_late();
+  const double late = state_.core.offset() >= 0 ? 1 : 0;
   const double yaw_rate = state_.rest.resting() ? 0 : state_.yaw_rate;
   const Eigen::Vector3d along(std::cos(yaw), std::sin(yaw), 0);
   const Eigen::Vector3d turning(lever.y, -lever.x, 1);
@@ -64,7 +57,7 @@ void Estimator::fill_pose_covariance(double yaw, const Planar& lever, StateFrame
   Eigen::Matrix3d covariance = jacobian * states * jacobian.transpose();
   const Eigen::Vector3d motion = forward_speed() * along + yaw_rate * turning;
   covariance += square(state_.imu.gyro_gap) / 8 * motion * motion.transpose();
-  covariance += (square(encoder_) + square(forward_speed()) * state_.wheels.stamp_variance) * along * along.transpose();
+  covariance += square(encoder_) * along * along.transpose();
   if (state_.pose_set) covariance.setZero();
   Eigen::Map<PoseMatrix> published(out.pose_covariance.data());
   published = Tuning::kPlanarVariance * PoseMatrix::Identity();

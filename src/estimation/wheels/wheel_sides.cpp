@@ -37,14 +37,11 @@ WheelReading WheelSides::step(const SensorFrame& sensors, double dt) noexcept {
   }
   reading.fell_silent = reading.both_lost() && sides_[0].encoder.gap() > 0 && sides_[1].encoder.gap() > 0;
   reading.batch = reading.both_received() && sides_[0].encoder.time() < Tuning::kBatch * usual_gap_;
-  reading.stamp_variance = jitter_.variance();
   reading.speed_step = quantum_.step();
-  reading.speed_step_variance = quantum_.travel_variance();
   return reading;
 }
 
 void WheelSides::follow_stamps(const SideEncoder& left) noexcept {
-  jitter_.add(left.time());
   quantum_.add(left.travel(), left.time());
   usual_gap_ = usual_gap_ == 0 ? left.time() : usual_gap_ * (left.time() > usual_gap_ ? 1.05 : 0.95);
 }

@@ -9,7 +9,6 @@
 #include "estimation/wheels/side_encoder.h"
 #include "estimation/wheels/speed_quantum.h"
 #include "estimation/wheels/speed_tracker.h"
-#include "estimation/wheels/stamp_jitter.h"
 #include "robot/robot_model.h"
 #include "signals/sensor_frame.h"
 
@@ -22,9 +21,7 @@ struct WheelReading {
   std::array<bool, 2> received{};     ///< A reading was accepted in this step.
   std::array<bool, 2> lost{};         ///< The side is lost.
   double unread = 0;                  ///< m, travel of the middle by sides without a reading, at their last speeds
-  double stamp_variance = 0;          ///< s²
   double speed_step = 0;              ///< m/s, in which speeds are reported; 0: none
-  double speed_step_variance = 0;     ///< m², that such a step adds to the travel
   bool refused = false;               ///< A reading was not used.
   bool restarted = false;             ///< A side began from a new offset; its travel does not continue the earlier one.
   bool fell_silent = false;           ///< Both are lost and had brought readings.
@@ -60,7 +57,6 @@ class WheelSides {
 
   double longest_held_;  ///< s
   std::array<SideState, 2> sides_;
-  StampJitter jitter_;
   SpeedQuantum quantum_;
   double usual_gap_ = 0;  ///< s, between two readings
 };
