@@ -65,7 +65,7 @@ namespace robot_control {
 class Estimator {
  public:
   /// Holds all that changes from cycle to cycle. Each part has its own state and one step; Estimator::advance hands the
-  /// values on from part to part.
+  /// values on from part to part. It is trivially copyable.
   struct State {
     State(const EstimatorParameters& parameters, const RobotModel& robot, double period);
 
@@ -109,6 +109,10 @@ class Estimator {
   /// `period` is in s and > 0. Throws std::invalid_argument if a parameter or a measure of the robot is out of range or
   /// a side has no wheel.
   Estimator(const EstimatorParameters& parameters, const RobotModel& robot, double period);
+
+  /// Give and replace the state, for snapshots (signals/law_snapshot.h).
+  const State& state() const noexcept { return state_; }
+  void set_state(const State& state) noexcept { state_ = state; }
 
   /// Begins a new run: the first sample is the offset of the encoders, and the pose is zero.
   void enter_run() noexcept { state_ = fresh_; }

@@ -28,8 +28,7 @@ struct Tuning {
 
   static constexpr double kPathSlip = 2e-3;  ///< m/√m, slip of rolling wheels in the path difference; recordings
   static constexpr double kWindUp = 1.6e-3;  ///< rad/√(rad/s), wind-up of treads and gears; recordings
-  static constexpr double kSlowAcceleration =
-      0.02;  ///< m/s², slow error of the accelerometer: 2 mrad of tilt, a hum; recordings
+  static constexpr double kSlowAcceleration = 0.02;  ///< m/s², slow error: 2 mrad of tilt, a motor's hum; recordings
 
   // These constants are conventions of statistics.
 

@@ -2,10 +2,10 @@
 /// These functions compute with plain values, of which the estimator's state consists.
 
 #include <Eigen/Core>
-#include <array>
 #include <cmath>
 
 #include "signals/geometry.h"
+#include "signals/stored.h"
 
 namespace robot_control {
 
@@ -18,19 +18,6 @@ inline Vector3 array(const Eigen::Vector3d& v) noexcept {
 inline Eigen::Vector3d vector(const Vector3& v) noexcept {
   return {v[0], v[1], v[2]};
 }
-
-/// Stores an Eigen matrix of fixed size as plain numbers, because Eigen's types are not trivially copyable.
-template <class Matrix>
-class Stored {
- public:
-  Stored(const Matrix& matrix = Matrix::Zero()) noexcept { **this = matrix; }  // NOLINT(google-explicit-constructor)
-
-  Eigen::Map<Matrix> operator*() noexcept { return Eigen::Map<Matrix>(numbers_.data()); }
-  Eigen::Map<const Matrix> operator*() const noexcept { return Eigen::Map<const Matrix>(numbers_.data()); }
-
- private:
-  std::array<double, Matrix::SizeAtCompileTime> numbers_{};
-};
 
 /// This vector in the plane is trivially copyable, which Eigen's vectors are not.
 struct Planar {

@@ -136,7 +136,10 @@ PlanarCore::Innovation PlanarCore::end_block(double left, double right, double r
     bias_known_ = true;
   }
   noise_.learn(normalised, parts, s);
-  walk(mean, rolled, dt);
+  const double calibration = square(Tuning::kCalibrationWalk * slip());
+  walk(kOffset, square(Tuning::kOffsetWalk) * dt);
+  walk(kRatio, calibration * std::abs(mean));
+  walk(kBase, calibration * rolled / 2);
   return {.nis = square(normalised),
           .used = used,
           .apart = innovation / b,
@@ -148,17 +151,6 @@ void PlanarCore::contradict(double angle, double distance) noexcept {
   const double earlier = std::exchange(largest_apart_, std::max(largest_apart_, std::abs(apart_)));
   add_yaw_variance(square(largest_apart_) - square(earlier));
   shift(0, 0, square(angle * distance / 2));
-}
-
-/// A held value has no variance and does not walk.
-void PlanarCore::walk(double mean, double rolled, double dt) noexcept {
-  const auto grow = [&](int i, double variance) {
-    if ((*covariance_)(i, i) > 0) (*covariance_)(i, i) += variance;
-  };
-  grow(kOffset, square(Tuning::kOffsetWalk) * dt);
-  const double calibration = square(Tuning::kCalibrationWalk * slip());
-  grow(kRatio, calibration * std::abs(mean));
-  grow(kBase, calibration * rolled / 2);
 }
 
 ///   P ← (I − k hᵀ) P (I − k hᵀ)ᵀ + k r kᵀ, with s = hᵀ P h + r

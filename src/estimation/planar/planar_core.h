@@ -16,15 +16,13 @@
 ///   x_ICR    centre of rotation ahead of the middle of the wheels: a turn dψ moves the middle by −x_ICR dψ sideways
 ///   radius   mean radius of the wheels, relative; it scales the path
 ///
-/// An innovation counts with at most kHuber deviations, and beyond kGate deviations it is not used. The values of ε and
+/// An innovation counts with at most kHuber deviations, and beyond kGate deviations it is not used. ε and
 /// β walk in proportion to the slip noise (wheel_noise.h). If wheels and gyro contradict each other, the heading
 /// follows the gyro. Its deviation is the largest angle by which both have turned apart since the last rest.
 ///
 /// Until the bias is known, corrections of pose and b are held back, and P is that of the uncorrected pose. The bias is
 /// known after a rest, or once undragged wheels prove that b differs from the bias used so far. The first rest corrects
-/// the pose by ∂(x, y, ψ)/∂b alone.
-///
-/// The reasons are in docs/evidence/derivations.md.
+/// the pose by ∂(x, y, ψ)/∂b alone. The reasons are in docs/evidence/derivations.md.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -129,14 +127,16 @@ class PlanarCore {
   void forget(int first, int count) noexcept;
   void slide(double turned) noexcept;
   void correct(Vector gain, const Vector& ph, double s, double innovation) noexcept;
-  void walk(double mean, double rolled, double dt) noexcept;
+  void walk(int i, double variance) noexcept {  ///< A held value has no variance and does not walk.
+    if ((*covariance_)(i, i) > 0) (*covariance_)(i, i) += variance;
+  }
   bool bias_proven() const noexcept;
 
   PlanarCoreParams params_;
   Stored<Vector> state_;
   Stored<Matrix> covariance_;
-  Stored<Vector> held_;                                   ///< corrections that are held back
-  Stored<Vector> by_bias_ = Vector(Vector::Unit(kBias));  ///< derivative of the pose by the bias of its integration
+  Stored<Vector> held_;                          ///< corrections that are held back
+  Stored<Vector> by_bias_{Vector::Unit(kBias)};  ///< derivative of the pose by the bias of its integration
   WheelNoise noise_;
   double apart_ = 0;          ///< rad, sum of the contradictions since the last rest
   double largest_apart_ = 0;  ///< rad, largest |apart_| since the last rest

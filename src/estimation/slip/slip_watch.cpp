@@ -5,18 +5,12 @@
 namespace robot_control {
 
 SlipWatch::Output SlipWatch::step(const Input& input) noexcept {
-  yaw_ += input.turned;
+  yaw_ += input.motion.turned;
+  MotionDifference::Sample motion = input.motion;
+  motion.yaw = yaw_;
+  motion.path = rotated(motion.path, yaw_);
   Output output;
-  const bool point = detector_.step({.dt = input.dt,
-                                     .acceleration = input.acceleration,
-                                     .up = input.up,
-                                     .turned = input.turned,
-                                     .yaw = yaw_,
-                                     .path = rotated(input.path, yaw_),
-                                     .right_minus_left = input.right_minus_left,
-                                     .distance = input.distance,
-                                     .both_sides_read = input.both_sides_read,
-                                     .yaw_rate = input.yaw_rate});
+  const bool point = detector_.step(motion);
   if (point) judge(input, output);
   output.correction.shift = rotated(output.correction.shift, -yaw_);
   return output;

@@ -18,17 +18,9 @@ class SlipWatch {
 
   /// Describes one step.
   struct Input {
-    double dt = 0;                         ///< s
-    std::array<double, 2> acceleration{};  ///< m/s², base axes, without gravity
-    Vector3 up{0, 0, 1};                   ///< base axes
-    double turned = 0;                     ///< rad, by the gyro
-    double yaw_rate = 0;                   ///< rad/s
-    Planar path{};                         ///< m, base axes at the end of the step, by wheels and gyro
-    double right_minus_left = 0;           ///< m, by the calibration scaled to the nominal wheel base
-    double distance = 0;                   ///< m, (|left| + |right|)/2
-    bool both_sides_read = false;          ///< The travel of both sides was read in this step.
-    std::array<double, 2> side_speed{};    ///< m/s, of the treads
-    double clock_offset = 0;               ///< s, by which the wheels are late
+    MotionDifference::Sample motion;     ///< without `yaw`; its path is in base axes at the end of the step
+    std::array<double, 2> side_speed{};  ///< m/s, of the treads
+    double clock_offset = 0;             ///< s, by which the wheels are late
     SlipUncertainty uncertainty;
     bool corrects = true;  ///< A slide may begin, because the accelerometer's bias is known or no turn drags wheels.
   };

@@ -67,7 +67,7 @@ class Tilt {
   double variance(int axis) const noexcept;  ///< variance of u + β
 
   TiltParams params_;
-  Stored<Eigen::Vector3d> up_ = Eigen::Vector3d(Eigen::Vector3d::UnitZ());
+  Stored<Eigen::Vector3d> up_{Eigen::Vector3d::UnitZ()};
   Stored<Eigen::Vector2d> bias_;   ///< β
   Stored<Covariance> covariance_;  ///< covariance of u_x, u_y, β_x, β_y
   double vertical_ = 0;            ///< m/s²
