@@ -12,33 +12,6 @@
 #include "signals/rotation.h"
 
 namespace robot_control {
-namespace {
-
-bool continuable(const StateFrame& last) noexcept {
-  bool good = (last.flags & kStateValid) != 0 && finite(last.pose_odom.position) && finite(last.twist_base.linear) &&
-              finite(last.twist_base.angular) && finite(last.gyro_bias) && finite(last.accelerometer_bias) &&
-              finite(last.gyro_bias_deviation) && std::isfinite(last.distance) &&
-              std::isfinite(yaw_of(last.pose_odom.orientation));
-  for (const double entry : last.pose_covariance) good = good && std::isfinite(entry);
-  const WheelCalibration& c = last.calibration;
-  for (const double entry : {c.radius_ratio, c.wheel_base_factor, c.radius_ratio_deviation, c.wheel_base_deviation}) {
-    good = good && std::isfinite(entry);
-  }
-  const Quaternion& q = last.attitude;
-  return good && std::abs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) < 1e-6;
-}
-
-/// Returns the covariance of a frame's pose, moved from base_link to the middle of the wheels by `lever`, m.
-Eigen::Matrix3d covariance_of_middle(const StateFrame& frame, const Planar& lever) noexcept {
-  using PoseMatrix = Eigen::Matrix<double, 6, 6>;
-  const std::array<int, 3> plane{0, 1, 5};  // x, y and yaw
-  Eigen::Matrix3d jacobian = Eigen::Matrix3d::Identity();
-  jacobian.col(2) << -lever.y, lever.x, 1;
-  return jacobian * Eigen::Map<const PoseMatrix>(frame.pose_covariance.data())(plane, plane) * jacobian.transpose();
-}
-
-}  // namespace
-
 Estimator::State::State(const EstimatorParameters& parameters, const RobotModel& robot, double period)
     : wheel_sides(robot, parameters.speed_bandwidth, period, std::sqrt(12.0) * encoder_deviation(parameters, robot)),
       core(core_params(parameters, robot)),
@@ -65,34 +38,6 @@ Estimator::Estimator(const EstimatorParameters& parameters, const RobotModel& ro
   state_.core.set_bias_known(false);
   place({0, 0, 0});
   fresh_ = state_;
-}
-
-void Estimator::resume(const StateFrame& last) noexcept {
-  enter_run();
-  if (!continuable(last)) return;
-  State& s = state_;
-  const Eigen::Vector3d bias = base_from_imu_ * vector(last.gyro_bias);
-  const Eigen::Vector3d force = base_from_imu_ * vector(last.accelerometer_bias);
-  const Eigen::Vector3d variance = base_from_imu_.cwiseAbs2() * vector(last.gyro_bias_deviation).cwiseAbs2();
-  for (const int i : {0, 1}) s.gyro_bias[i] = {bias[i], variance[i]};
-  s.core.set_bias(bias.z(), std::sqrt(variance.z()));
-  s.core.set_calibration(last.calibration);
-  s.tilt.set(array(rotation_of(last.attitude).row(2)), {force.x(), force.y()});
-  s.height = last.pose_odom.position[2];
-  place({last.pose_odom.position[0], last.pose_odom.position[1], yaw_of(last.pose_odom.orientation)});
-  s.core.set_pose_covariance(covariance_of_middle(last, axle(yaw_of(last.pose_odom.orientation))));
-  s.core.set_bias_known(true);
-  s.yaw_rate = last.twist_base.angular[2];
-  const double speed = last.twist_base.linear[0] - s.yaw_rate * geometry_.axle_y;
-  const double faster = s.yaw_rate * geometry_.wheel_base / 2;
-  s.wheel_sides.set_speed(speed - faster, speed + faster);
-  s.rest.resume();
-  s.wheel_odometry = last.wheels;
-  s.distance = last.distance;
-  s.rejected = last.rejected;
-  s.skipped = last.skipped;
-  s.cycle = last.head.cycle;
-  s.began = s.restarted = s.restart_pending = true;
 }
 
 void Estimator::place(const Vector3& pose) noexcept {
@@ -241,29 +186,33 @@ Planar Estimator::tyres_creep(double distance) const noexcept {
   return Planar{creep[0], creep[1]} * (parameters_.tyre_creep * std::abs(distance));
 }
 
+SlipWatch::Input Estimator::slip_input(double dt, double turned, const Planar& path) const noexcept {
+  const State& s = state_;
+  const double left = s.wheels.left();
+  const double right = s.wheels.right();
+  return {.motion = {.dt = dt,
+                     .acceleration = s.tilt.acceleration(*s.imu.accelerometer),
+                     .up = s.tilt.up(),
+                     .turned = turned,
+                     .path = path,
+                     .right_minus_left = (right - left + s.core.ratio() * (left + right) / 2) / (1 + s.core.base()),
+                     .distance = (std::abs(left) + std::abs(right)) / 2,
+                     .both_sides_read = s.wheels.both_received(),
+                     .yaw_rate = s.yaw_rate},
+          .side_speed = s.wheels.speed,
+          .clock_offset = s.core.offset(),
+          .uncertainty = {.acceleration_variance = {s.tilt.acceleration_variance(0), s.tilt.acceleration_variance(1)},
+                          .wheel_base = s.core.deviation(PlanarCore::kBase),
+                          .clock_offset = s.core.deviation(PlanarCore::kOffset),
+                          .gyro_bias = std::sqrt(s.core.bias_variance()),
+                          .speed_step = s.wheels.speed_step},
+          .corrects = s.rest.bias_measured()};
+}
+
 void Estimator::watch_slip(double dt, double turned, const Planar& path) noexcept {
   State& s = state_;
   if (!s.imu.gyro || !s.imu.accelerometer || s.wheels.any_lost() || s.wheels.batch) return s.slip.restart();
-  const double left = s.wheels.left();
-  const double right = s.wheels.right();
-  const SlipWatch::Output slip = s.slip.step(
-      {.motion = {.dt = dt,
-                  .acceleration = s.tilt.acceleration(*s.imu.accelerometer),
-                  .up = s.tilt.up(),
-                  .turned = turned,
-                  .path = path,
-                  .right_minus_left = (right - left + s.core.ratio() * (left + right) / 2) / (1 + s.core.base()),
-                  .distance = (std::abs(left) + std::abs(right)) / 2,
-                  .both_sides_read = s.wheels.both_received(),
-                  .yaw_rate = s.yaw_rate},
-       .side_speed = s.wheels.speed,
-       .clock_offset = s.core.offset(),
-       .uncertainty = {.acceleration_variance = {s.tilt.acceleration_variance(0), s.tilt.acceleration_variance(1)},
-                       .wheel_base = s.core.deviation(PlanarCore::kBase),
-                       .clock_offset = s.core.deviation(PlanarCore::kOffset),
-                       .gyro_bias = std::sqrt(s.core.bias_variance()),
-                       .speed_step = s.wheels.speed_step},
-       .corrects = s.rest.bias_measured()});
+  const SlipWatch::Output slip = s.slip.step(slip_input(dt, turned, path));
   if (!slip.judged) return;
   smooth_nis(kAccelerometer, slip.nis[SlipResidual::kAlong], Tuning::kPointInterval);
   smooth_nis(kLateralContact, slip.nis[SlipResidual::kAcross], Tuning::kPointInterval);
@@ -305,18 +254,18 @@ void Estimator::watch_rest(double dt) noexcept {
     const std::array<double, 2> now = s.tilt.acceleration(*s.imu.accelerometer);
     acceleration = {now[0], now[1]};
   }
-  const Rest::Output output = s.rest.step({.sample = {.dt = dt,
-                                                      .left = s.wheels.left(),
-                                                      .right = s.wheels.right(),
-                                                      .gyro = s.imu.gyro,
-                                                      .accelerometer = s.imu.accelerometer},
-                                           .acceleration = acceleration,
-                                           .any_lost = s.wheels.any_lost(),
-                                           .fell_silent = s.wheels.fell_silent,
-                                           .bias = array(gyro_bias()),
-                                           .bias_variance = array(gyro_bias_variance()),
-                                           .bias_known = s.core.bias_known(),
-                                           .mean_variance = square(gyro_noise_) / parameters_.standstill_time});
+  const RobotRest::Output output = s.rest.step({.sample = {.dt = dt,
+                                                           .left = s.wheels.left(),
+                                                           .right = s.wheels.right(),
+                                                           .gyro = s.imu.gyro,
+                                                           .accelerometer = s.imu.accelerometer},
+                                                .acceleration = acceleration,
+                                                .any_lost = s.wheels.any_lost(),
+                                                .fell_silent = s.wheels.fell_silent,
+                                                .bias = array(gyro_bias()),
+                                                .bias_variance = array(gyro_bias_variance()),
+                                                .bias_known = s.core.bias_known(),
+                                                .mean_variance = square(gyro_noise_) / parameters_.standstill_time});
   if (output.began) {
     s.slip.end_slide();
     s.core.end_contradiction();

@@ -14,9 +14,8 @@
 /// to rest at the beginning of a run. A window that turns out not to be quiet is integrated at once, together with the
 /// one before.
 ///
-/// A run that begins in motion uses wheels and gyro until the robot rests. If turns drag the wheels, no slide is
-/// corrected before that rest. The accelerometer's bias is not known then, and such wheels do not show the gyro's bias
-/// (planar/planar_core.h).
+/// A run that begins in motion uses wheels and gyro until the robot rests. No slide is corrected before that rest,
+/// because the accelerometer's bias is not known then.
 ///
 /// Samples may come at any rate. A sample that is not finite or impossible is not used and sets kStateBadSample. A
 /// missing encoder sample sets the same flag. The last good sample holds for three times the gap between the last two,
@@ -48,7 +47,7 @@
 #include "estimation/planar/planar_core.h"
 #include "estimation/planar/turn_comparison.h"
 #include "estimation/rest/bias_estimate.h"
-#include "estimation/rest/rest.h"
+#include "estimation/rest/robot_rest.h"
 #include "estimation/slip/slip_watch.h"
 #include "estimation/tilt/tilt.h"
 #include "estimation/tuning.h"
@@ -83,7 +82,7 @@ class Estimator {
     Tilt tilt;                              ///< tilt and the accelerometer's bias
     std::array<BiasEstimate, 2> gyro_bias;  ///< rad/s, about x and y
     SlipWatch slip;
-    Rest rest;
+    RobotRest rest;
     double yaw_rate = 0;  ///< rad/s, in this step
     double height = 0;    ///< m
     double distance = 0;  ///< m, always growing
@@ -147,6 +146,7 @@ class Estimator {
   void move(double dt) noexcept;
   void turn_tilt(const Vector3& gyro, double dt) noexcept;
   Planar roll(const MiddleTravel::Travel& travel) noexcept;
+  SlipWatch::Input slip_input(double dt, double turned, const Planar& path) const noexcept;
   void watch_slip(double dt, double turned, const Planar& path) noexcept;
   void compare_turns(double dt, bool by_gyro) noexcept;
   void watch_rest(double dt) noexcept;

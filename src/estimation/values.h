@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <cmath>
 
+#include "robot/stored.h"
 #include "signals/geometry.h"
-#include "signals/stored.h"
 
 namespace robot_control {
 

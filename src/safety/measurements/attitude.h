@@ -27,7 +27,7 @@
 
 #include <Eigen/Core>
 
-#include "signals/stored.h"
+#include "robot/stored.h"
 
 namespace robot_control {
 

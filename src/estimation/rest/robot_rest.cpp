@@ -1,11 +1,11 @@
-#include "estimation/rest/rest.h"
+#include "estimation/rest/robot_rest.h"
 
 #include <cmath>
 #include <utility>
 
 namespace robot_control {
 
-RestWatch::Bias Rest::bias(const Input& input) const noexcept {
+RestWatch::Bias RobotRest::bias(const Input& input) const noexcept {
   RestWatch::Bias bias{.value = input.bias, .known = input.bias_known || bias_measured_ || !moved_};
   for (std::size_t i = 0; i < 3; ++i) {
     bias.deviation[i] = std::sqrt(input.mean_variance + (bias.known ? input.bias_variance[i] : input.mean_variance));
@@ -13,7 +13,7 @@ RestWatch::Bias Rest::bias(const Input& input) const noexcept {
   return bias;
 }
 
-Rest::Output Rest::step(const Input& input) noexcept {
+RobotRest::Output RobotRest::step(const Input& input) noexcept {
   if (!resting_) {
     const RestWindow window = watch_.step(input.sample, bias(input));
     if (input.any_lost) watch_.reset();
@@ -39,7 +39,7 @@ Rest::Output Rest::step(const Input& input) noexcept {
   return close(watch_.step(input.sample, bias(input)));
 }
 
-Rest::Output Rest::close(RestWindow window) noexcept {
+RobotRest::Output RobotRest::close(RestWindow window) noexcept {
   if (window == RestWindow::kOpen) return {};
   if (window == RestWindow::kQuiet) {
     last_ = std::exchange(open_, {});
@@ -54,7 +54,7 @@ Rest::Output Rest::close(RestWindow window) noexcept {
   return {.held = held, .was_standing = std::exchange(standing_, false)};
 }
 
-Rest::Output Rest::learn(bool began) noexcept {
+RobotRest::Output RobotRest::learn(bool began) noexcept {
   bias_measured_ = bias_measured_ || watch_.means().gyro;
   return {.began = began, .means = watch_.means(), .bias_changed = watch_.bias_changed()};
 }

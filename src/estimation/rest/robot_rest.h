@@ -29,9 +29,9 @@ struct HeldMotion {
   }
 };
 
-class Rest {
+class RobotRest {
  public:
-  explicit Rest(const RestWatchParams& params) noexcept : watch_(params) {}
+  explicit RobotRest(const RestWatchParams& params) noexcept : watch_(params) {}
 
   struct Input {
     RestWatch::Sample sample;
