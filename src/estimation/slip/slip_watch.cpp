@@ -11,12 +11,12 @@ SlipWatch::Output SlipWatch::step(const Input& input) noexcept {
   motion.path = rotated(motion.path, yaw_);
   Output output;
   const bool point = detector_.step(motion);
-  if (point) judge(input, output);
+  if (point) evaluate(input, output);
   output.correction.shift = rotated(output.correction.shift, -yaw_);
   return output;
 }
 
-void SlipWatch::judge(const Input& input, Output& output) noexcept {
+void SlipWatch::evaluate(const Input& input, Output& output) noexcept {
   const bool learns = !slide_.active();
   if (learns) detector_.set_clock_offset(input.clock_offset);
   detector_.evaluate(input.uncertainty, learns);

@@ -44,7 +44,7 @@ class SlipWatch {
   double level() const noexcept { return detector_.levels().level(); }  ///< ResidualLevels::level
 
  private:
-  void judge(const Input& input, Output& output) noexcept;
+  void evaluate(const Input& input, Output& output) noexcept;
   WheelSlide::Input slide_input(const Input& input) const noexcept;
 
   SlipDetector detector_;
