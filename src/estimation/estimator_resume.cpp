@@ -27,11 +27,11 @@ bool continuable(const StateFrame& last) noexcept {
 
 /// Returns the covariance of a frame's pose, moved from base_link to the middle of the wheels by `lever`, m.
 Eigen::Matrix3d covariance_of_middle(const StateFrame& frame, const Planar& lever) noexcept {
-  using PoseMatrix = Eigen::Matrix<double, 6, 6>;
+  using Full = Eigen::Matrix<double, 6, 6>;
   const std::array<int, 3> plane{0, 1, 5};  // x, y and yaw
   Eigen::Matrix3d jacobian = Eigen::Matrix3d::Identity();
   jacobian.col(2) << -lever.y, lever.x, 1;
-  return jacobian * Eigen::Map<const PoseMatrix>(frame.pose_covariance.data())(plane, plane) * jacobian.transpose();
+  return jacobian * Eigen::Map<const Full>(frame.pose_covariance.data())(plane, plane) * jacobian.transpose();
 }
 
 }  // namespace
