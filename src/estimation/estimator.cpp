@@ -8,209 +8,356 @@
 #include "estimation/estimator_setup.h"
 #include "estimation/values.h"
 #include "estimation/wheels/arc.h"
+#include "robot/gravity.h"
 #include "signals/rotation.h"
 
 namespace robot_control {
-namespace {
-
-bool continuable(const StateFrame& last) noexcept {
-  bool good = (last.flags & kStateValid) != 0 && finite(last.pose_odom.position) && finite(last.twist_base.linear) &&
-              finite(last.twist_base.angular) && finite(last.gyro_bias) && finite(last.accelerometer_bias) &&
-              finite(last.gyro_bias_deviation) && std::isfinite(last.distance) &&
-              std::isfinite(yaw_of(last.pose_odom.orientation));
-  for (const double entry : last.pose_covariance) good = good && std::isfinite(entry);
-  const WheelCalibration& c = last.calibration;
-  for (const double entry : {c.radius_ratio, c.wheel_base_factor, c.radius_ratio_deviation, c.wheel_base_deviation}) {
-    good = good && std::isfinite(entry);
-  }
-  const Quaternion& q = last.attitude;
-  return good && std::abs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) < 1e-6;
-}
-
-}  // namespace
-
-EstimatorState::EstimatorState(const EstimatorParameters& parameters, const RobotModel& robot, double period)
-    : wheels_(robot, parameters.speed_bandwidth, period, std::sqrt(12.0) * encoder_deviation(parameters, robot)),
-      core_(core_params(parameters, robot)),
-      tilt_(tilt_params(parameters)),
-      gyro_noise_(parameters.gyro_noise),
-      rate_(parameters.rate_bandwidth, period),
-      wheel_velocities_(robot, parameters.speed_bandwidth, period),
-      slip_detector_(slip_params(parameters, robot)),
-      watch_(rest_params(parameters, robot)) {}
+Estimator::State::State(const EstimatorParameters& parameters, const RobotModel& robot, double period)
+    : wheel_sides(robot, parameters.speed_bandwidth, period, std::sqrt(12.0) * encoder_deviation(parameters, robot)),
+      core(core_params(parameters, robot)),
+      tilt(tilt_params(parameters)),
+      slip(slip_params(parameters, robot)),
+      rest(rest_params(parameters, robot)),
+      rate(parameters.rate_bandwidth, period),
+      wheel_velocities(robot, parameters.speed_bandwidth, period) {}
 
 Estimator::Estimator(const EstimatorParameters& parameters, const RobotModel& robot, double period)
-    : EstimatorState(checked(parameters, robot, period), robot, period),
-      parameters_(parameters),
+    : parameters_(checked(parameters, robot, period)),
       period_(period),
       geometry_(robot),
       base_from_imu_(rotation_of(robot.imu_in_base.orientation)),
       encoder_(encoder_deviation(parameters, robot)),
-      rate_noise_gain_(rate_.noise_gain()),
-      drags_wheels_(drags_wheels(robot)),
-      fresh_(*this) {
-  const Vector3 bias = in_base(parameters.gyro_bias);
-  for (const std::size_t i : {0U, 1U}) gyro_bias_[i] = {bias[i], square(parameters.gyro_bias_initial)};
-  core_.set_bias(bias[2], parameters.gyro_bias_initial);
-  core_.set_calibration(parameters.calibration);
-  core_.set_bias_known(false);
+      gyro_noise_(core_params(parameters, robot).gyro_noise),
+      state_(parameters, robot, period),
+      fresh_(state_) {
+  rate_noise_gain_ = state_.rate.noise_gain();
+  const Eigen::Vector3d bias = base_from_imu_ * vector(parameters.gyro_bias);
+  for (const int i : {0, 1}) state_.gyro_bias[i] = {bias[i], square(parameters.gyro_bias_initial)};
+  state_.core.set_bias(bias.z(), parameters.gyro_bias_initial);
+  state_.core.set_calibration(parameters.calibration);
+  state_.core.set_bias_known(false);
   place({0, 0, 0});
-  fresh_ = *this;
-}
-
-Vector3 Estimator::in_base(const Vector3& imu) const noexcept {
-  return array(base_from_imu_ * Eigen::Vector3d(imu.data()));
-}
-
-Eigen::Vector3d Estimator::gyro_bias() const noexcept {
-  return {gyro_bias_[0].value, gyro_bias_[1].value, core_.bias()};
-}
-
-Eigen::Vector3d Estimator::gyro_bias_variance() const noexcept {
-  return {gyro_bias_[0].variance, gyro_bias_[1].variance, core_.bias_variance()};
-}
-
-void Estimator::resume(const StateFrame& last) noexcept {
-  enter_run();
-  if (!continuable(last)) return;
-  const Vector3 bias = in_base(last.gyro_bias);
-  const Vector3 force = in_base(last.accelerometer_bias);
-  const Eigen::Vector3d deviation(last.gyro_bias_deviation.data());
-  const Eigen::Vector3d variance = base_from_imu_.cwiseAbs2() * deviation.cwiseAbs2();
-  for (const std::size_t i : {0U, 1U}) gyro_bias_[i] = {bias[i], variance[static_cast<int>(i)]};
-  core_.set_bias(bias[2], std::sqrt(variance[2]));
-  core_.set_calibration(last.calibration);
-  tilt_.set(array(rotation_of(last.attitude).row(2)), {force[0], force[1]});
-  height_ = last.pose_odom.position[2];
-  place({last.pose_odom.position[0], last.pose_odom.position[1], yaw_of(last.pose_odom.orientation)});
-  core_.set_pose_covariance(covariance_of_middle(last));
-  core_.set_bias_known(true);
-  yaw_rate_ = last.twist_base.angular[2];
-  wheels_.set_speed(last.twist_base.linear[0] - yaw_rate_ * geometry_.axle_y, yaw_rate_);
-  wheel_odometry_ = last.wheels;
-  distance_ = last.distance;
-  rejected_ = last.rejected;
-  skipped_ = last.skipped;
-  cycle_ = last.head.cycle;
-  rested_ = moved_ = true;
-  began_ = restart_pending_ = true;
-  resting_ = false;
-  lasting_flags_ = kStateRestarted;
+  fresh_ = state_;
 }
 
 void Estimator::place(const Vector3& pose) noexcept {
   const Planar lever = axle(pose[2]);
   const Prediction ahead = prediction();
-  core_.place({pose[0] + lever.x - ahead.distance * std::cos(pose[2]),
-               pose[1] + lever.y - ahead.distance * std::sin(pose[2]), pose[2] - ahead.turn});
-  comparison_ = {};
+  state_.core.place({pose[0] + lever.x - ahead.distance * std::cos(pose[2]),
+                     pose[1] + lever.y - ahead.distance * std::sin(pose[2]), pose[2] - ahead.turn});
+  state_.comparison.interrupt();
 }
 
 void Estimator::step(const SensorFrame& sensors, StateFrame& out) noexcept {
+  State& s = state_;
   const std::uint64_t cycle = sensors.head.cycle;
-  if (began_ && cycle <= cycle_ && !restart_pending_) return fill(out);
-  flags_ = lasting_flags_;
-  std::uint64_t cycles = 0;
-  if (!began_) {
-    skipped_ = cycle;  // The run began before the first frame.
-  } else if (cycle > cycle_) {
-    cycles = cycle - cycle_;
-    skipped_ += cycles - 1;
-    if (cycles > 1) flags_ |= kStateSkipped;
-  }
-  began_ = true;
-  cycle_ = cycle;
+  if (s.began && cycle <= s.cycle && !s.restart_pending) return fill(out);
+  const std::uint64_t cycles = s.began && cycle > s.cycle ? cycle - s.cycle : 0;
+  s.flags = cycles > 1 ? std::uint64_t{kStateSkipped} : 0;
+  if (!s.began) s.skipped = cycle;  // The run began before the first frame.
+  if (cycles > 1) s.skipped += cycles - 1;
+  s.began = true;
+  s.cycle = cycle;
   advance(sensors, static_cast<double>(cycles) * period_);
   fill(out);
 }
 
 void Estimator::step(const SensorFrame& sensors, double dt, StateFrame& out) noexcept {
-  flags_ = lasting_flags_;
-  advance(sensors, began_ ? dt : 0);
-  began_ = true;
+  state_.flags = 0;
+  advance(sensors, std::exchange(state_.began, true) ? dt : 0);
   fill(out);
 }
 
 void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
+  State& s = state_;
   read(sensors, dt);
-  if (restart_pending_) {
-    restart_pending_ = false;
-    core_.shift(0, 0, square(Tuning::kRestart) + square(wheels_.speed() * dt));
-    core_.add_yaw_variance(square(Tuning::kRestart) + square(wheels_.rate() * dt));
+  if (std::exchange(s.restart_pending, false)) {
+    s.core.shift(0, 0, square(Tuning::kRestart) + square(s.wheels.mean_speed() * dt));
+    s.core.add_yaw_variance(square(Tuning::kRestart) + square(wheel_rate() * dt));
   } else if (dt > 0) {
     integrate_wheels();
-    if (wheels_.both_received()) wheels_.average_speed(std::abs(core_.offset()));
-    if (resting_) {
-      rest(dt);
-    } else {
-      move(dt);
-    }
+    if (!s.rest.resting()) move(dt);
+    watch_rest(dt);
   }
-  follow_rate(dt);
-  wheel_velocities_.step(sensors, dt);
-  pose_set_ = std::exchange(pose_request_, std::nullopt);
-  if (pose_set_) {
-    place(*pose_set_);
-    open_window_ = last_window_ = {};
-    slip_detector_.begin_path();
-  }
+  const bool by_gyro = s.imu.gyro && !s.rest.resting();
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
+  if (!s.rest.resting()) rate.z() = s.yaw_rate;
+  if (by_gyro) rate = vector(s.imu.rate) - gyro_bias();
+  s.rate.follow(rate, by_gyro, dt);
+  s.wheel_velocities.step(sensors, dt);
+  s.pose_set = std::exchange(s.pose_request, std::nullopt);
+  if (!s.pose_set) return;
+  place(*s.pose_set);
+  s.rest.forget_held();
+  s.slip.begin_path();
 }
 
 void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
-  imu_.step(sensors, base_from_imu_, dt);
-  const WheelSides::Readings readings = wheels_.step(sensors, dt);
-  if (imu_.refused() || readings.refused) flags_ |= kStateBadSample;
-  if (!imu_.gyro()) flags_ |= kStateNoGyro;
-  if (!imu_.accelerometer()) flags_ |= kStateNoAccelerometer;
-  if (!wheels_.received(kLeft)) flags_ |= kStateNoLeftEncoder;
-  if (!wheels_.received(kRight)) flags_ |= kStateNoRightEncoder;
-  if (readings.restarted) comparison_ = {};
-  if (readings.lost_travels == 0) return;
-  core_.shift(0, 0, readings.lost_travels * square(Tuning::kRestart));
-  end_slide();
+  State& s = state_;
+  s.imu = s.imu_samples.step(sensors, base_from_imu_, dt);
+  s.wheels = s.wheel_sides.step(sensors, dt);
+  if (s.imu.refused || s.wheels.refused) s.flags |= kStateBadSample;
+  if (!s.imu.gyro) s.flags |= kStateNoGyro;
+  if (!s.imu.accelerometer) s.flags |= kStateNoAccelerometer;
+  if (!s.wheels.received[kLeft]) s.flags |= kStateNoLeftEncoder;
+  if (!s.wheels.received[kRight]) s.flags |= kStateNoRightEncoder;
+  if (s.wheels.restarted) s.comparison.interrupt();
+  for (const std::size_t side : {kLeft, kRight}) {
+    if (!s.wheels.lost_travel[side]) continue;
+    s.middle_travel.forget_credit(side);
+    s.core.shift(0, 0, square(Tuning::kRestart));
+    s.slip.restart();
+  }
 }
 
 /// Raw odometry integrates the travel of either side since its last reading.
 void Estimator::integrate_wheels() noexcept {
-  const Motion motion = geometry_.base_motion(wheels_.mean(), wheels_.turned());
-  const Planar chord = chord_of(motion, wheel_odometry_.yaw);
-  wheel_odometry_.x += chord.x;
-  wheel_odometry_.y += chord.y;
-  wheel_odometry_.yaw = std::remainder(wheel_odometry_.yaw + motion.turn, 2 * std::numbers::pi);
-  const Motion velocity = geometry_.base_motion(wheels_.speed(), wheels_.rate());
-  wheel_odometry_.linear = velocity.forward;
-  wheel_odometry_.angular = velocity.turn;
+  WheelOdometry& odometry = state_.wheel_odometry;
+  const WheelReading& wheels = state_.wheels;
+  const Motion motion = geometry_.base_motion(wheels.mean(), geometry_.turn(wheels.left(), wheels.right()));
+  const Planar chord = chord_of(motion, odometry.yaw);
+  odometry.x += chord.x;
+  odometry.y += chord.y;
+  odometry.yaw = std::remainder(odometry.yaw + motion.turn, 2 * std::numbers::pi);
+  const Motion velocity = geometry_.base_motion(wheels.mean_speed(), wheel_rate());
+  odometry.linear = velocity.forward;
+  odometry.angular = velocity.turn;
 }
 
-void Estimator::follow_rate(double dt) noexcept {
-  const bool smooth = !resting_ && imu_.gyro();
-  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
-  if (smooth) {
-    rate = imu_.gyro_rate() - gyro_bias();
-  } else if (!resting_) {
-    rate.z() = yaw_rate_;
+/// The gyro turns, the wheels move, slip is watched and the calibration is learned.
+void Estimator::move(double dt) noexcept {
+  State& s = state_;
+  const double before = s.core.pose().yaw;
+  const double wheel_turn = s.core.wheel_turn(s.wheels.left(), s.wheels.right());
+  const std::optional<double> angle = s.gyro_turn.step(s.imu, wheel_turn, s.core.bias(), dt);
+  if (angle) {
+    s.core.turn_by_gyro(*angle, dt);
+  } else {
+    s.core.turn_by_wheels(s.wheels.left(), s.wheels.right());
+    s.comparison.interrupt();
   }
-  rate_.follow(rate, smooth, dt);
+  s.yaw_rate = angle ? s.imu.rate[2] - s.core.bias() : wheel_rate();
+  const double turned = s.core.pose().yaw - before;
+  Planar path;
+  for (const auto& travel : s.middle_travel.step(s.wheels, turned, geometry_.wheel_base, s.core.ratio())) {
+    path = path + roll(travel);
+  }
+  if (s.imu.gyro) turn_tilt(*s.imu.gyro, dt);
+  if (parameters_.slip_detection) watch_slip(dt, turned, path);
+  compare_turns(dt, angle.has_value());
+}
+
+/// `gyro` is in rad/s and includes the bias.
+void Estimator::turn_tilt(const Vector3& gyro, double dt) noexcept {
+  Eigen::Vector3d rate = vector(gyro) - gyro_bias();
+  if (!state_.rest.bias_measured()) rate.head<2>().setZero();
+  state_.tilt.turn(array(rate), dt);
+}
+
+/// Slope and creep shorten the distance, which is laid along the heading that the robot had halfway. Returns the path
+/// in m, base axes at the end of the step.
+Planar Estimator::roll(const MiddleTravel::Travel& travel) noexcept {
+  State& s = state_;
+  const double sine = s.tilt.up()[0];
+  const double level = travel.distance * std::sqrt(std::max(0.0, 1 - sine * sine));
+  const Planar creep = tyres_creep(travel.distance);
+  const double turned = travel.turn_since + s.yaw_rate * s.core.offset();
+  const Planar path = rotated({level - creep.x, -creep.y}, -turned);
+  const Planar odom = rotated(path, s.core.pose().yaw);
+  s.core.roll(odom.x, odom.y, s.yaw_rate);
+  s.height += travel.distance * sine;
+  s.distance += std::abs(travel.distance);
+  return path;
+}
+
+/// Returns by how much less the robot travels than its treads roll, along and to the left, in m. A tyre under force
+/// creeps by tyre_creep times the specific force per distance (H. B. Pacejka, Tire and Vehicle Dynamics, 2012, chapter
+/// 3, linear range). Gravity counts only beyond kSignificant deviations of the tilt.
+Planar Estimator::tyres_creep(double distance) const noexcept {
+  const Tilt& tilt = state_.tilt;
+  if (!state_.imu.accelerometer || parameters_.tyre_creep == 0) return {};
+  std::array<double, 2> creep = tilt.acceleration(*state_.imu.accelerometer);
+  for (const int axis : {0, 1}) {
+    const double sine = tilt.up()[axis];
+    const double uncertain = Tuning::kSignificant * std::sqrt(std::max(0.0, tilt.covariance(axis, axis)));
+    creep[axis] += kGravity * std::copysign(std::max(0.0, std::abs(sine) - uncertain), sine);
+    creep[axis] = std::clamp(creep[axis], -kGravity, kGravity);  // No tyre holds more.
+  }
+  return Planar{creep[0], creep[1]} * (parameters_.tyre_creep * std::abs(distance));
+}
+
+SlipWatch::Input Estimator::slip_input(double dt, double turned, const Planar& path) const noexcept {
+  const State& s = state_;
+  const double left = s.wheels.left();
+  const double right = s.wheels.right();
+  return {.motion = {.dt = dt,
+                     .acceleration = s.tilt.acceleration(*s.imu.accelerometer),
+                     .up = s.tilt.up(),
+                     .turned = turned,
+                     .path = path,
+                     .right_minus_left = (right - left + s.core.ratio() * (left + right) / 2) / (1 + s.core.base()),
+                     .distance = (std::abs(left) + std::abs(right)) / 2,
+                     .both_sides_read = s.wheels.both_received(),
+                     .yaw_rate = s.yaw_rate},
+          .side_speed = s.wheels.speed,
+          .clock_offset = s.core.offset(),
+          .uncertainty = {.acceleration_variance = {s.tilt.acceleration_variance(0), s.tilt.acceleration_variance(1)},
+                          .wheel_base = s.core.deviation(PlanarCore::kBase),
+                          .clock_offset = s.core.deviation(PlanarCore::kOffset),
+                          .gyro_bias = std::sqrt(s.core.bias_variance()),
+                          .speed_step = s.wheels.speed_step},
+          .corrects = s.rest.bias_measured()};
+}
+
+void Estimator::watch_slip(double dt, double turned, const Planar& path) noexcept {
+  State& s = state_;
+  if (!s.imu.gyro || !s.imu.accelerometer || s.wheels.any_lost() || s.wheels.batch) return s.slip.restart();
+  const SlipWatch::Output slip = s.slip.step(slip_input(dt, turned, path));
+  if (!slip.judged) return;
+  smooth_nis(kAccelerometer, slip.nis[SlipResidual::kAlong], Tuning::kPointInterval);
+  smooth_nis(kLateralContact, slip.nis[SlipResidual::kAcross], Tuning::kPointInterval);
+  smooth_nis(kGyro, slip.nis[SlipResidual::kTurn], Tuning::kPointInterval);
+  if (slip.sideways_began) ++s.rejected[kLateralContact];
+  const Planar shift = rotated(slip.correction.shift, s.core.pose().yaw);
+  s.core.shift(shift.x, shift.y, slip.correction.variance);
+  s.core.contradict(slip.correction.contradiction, 0);
+  if (slip.gravity.known) {
+    s.tilt.correct(slip.gravity.along, slip.gravity.across, slip.gravity.interval, slip.gravity.deviation);
+  }
+}
+
+void Estimator::compare_turns(double dt, bool by_gyro) noexcept {
+  State& s = state_;
+  const double rate = s.rate.rate().z();
+  const auto [begins, ended] = s.comparison.step({.dt = dt,
+                                                  .left = s.wheels.left(),
+                                                  .right = s.wheels.right(),
+                                                  .border = s.wheels.both_received() && by_gyro,
+                                                  .slide = s.slip.slide().active(),
+                                                  .gyro_unchanged = s.imu.gyro_unchanged});
+  if (ended) {
+    const auto [nis, used, apart, usual] = s.core.end_block(ended->left, ended->right, rate, ended->time);
+    for (const SensorIndex sensor : {kLeftEncoder, kRightEncoder}) {
+      smooth_nis(sensor, nis, ended->time);
+      if (!used) ++s.rejected[sensor];
+    }
+    const double explained = ended->stuck ? 0 : std::copysign(usual, apart);
+    if (!used || ended->stuck) s.core.contradict(apart - explained, (ended->left + ended->right) / 2);
+  }
+  if (begins) s.core.begin_block(rate);
+}
+
+void Estimator::watch_rest(double dt) noexcept {
+  State& s = state_;
+  Planar acceleration;
+  if (s.imu.accelerometer) {
+    const std::array<double, 2> now = s.tilt.acceleration(*s.imu.accelerometer);
+    acceleration = {now[0], now[1]};
+  }
+  const RobotRest::Output output = s.rest.step({.sample = {.dt = dt,
+                                                           .left = s.wheels.left(),
+                                                           .right = s.wheels.right(),
+                                                           .gyro = s.imu.gyro,
+                                                           .accelerometer = s.imu.accelerometer},
+                                                .acceleration = acceleration,
+                                                .any_lost = s.wheels.any_lost(),
+                                                .fell_silent = s.wheels.fell_silent,
+                                                .bias = array(gyro_bias()),
+                                                .bias_variance = array(gyro_bias_variance()),
+                                                .bias_known = s.core.bias_known(),
+                                                .mean_variance = square(gyro_noise_) / parameters_.standstill_time});
+  if (output.began) {
+    s.slip.end_slide();
+    s.core.end_contradiction();
+    s.comparison.interrupt();
+    s.middle_travel.forget_turn();
+  }
+  if (output.means) learn_at_rest(*output.means, output.bias_changed);
+  if (output.held) integrate(*output.held, output.was_standing);
+}
+
+/// Integrates a motion that was held back. A robot that `stood` before it began had no speed.
+void Estimator::integrate(const HeldMotion& held, bool stood) noexcept {
+  State& s = state_;
+  const double before = s.core.pose().yaw;
+  if (held.gyro) {
+    s.core.turn_by_gyro(held.turn[2], held.time);
+    turn_tilt(array(vector(held.turn) / held.time), held.time);
+  } else {
+    s.core.turn_by_wheels(held.left, held.right);
+  }
+  roll({.distance = (held.left + held.right) / 2, .turn_since = (s.core.pose().yaw - before) / 2});
+  s.middle_travel.forget_turn();
+  if (stood) {
+    s.slip.restart_at_rest(s.tilt.up(), held.velocity);
+  } else {
+    s.slip.restart();
+  }
+  if (!s.wheels.both_received()) return;
+  s.core.begin_block(s.rate.rate().z());
+  s.comparison.begin();
+}
+
+void Estimator::learn_at_rest(const RestWatch::Means& means, bool bias_changed) noexcept {
+  State& s = state_;
+  s.core.age(means.time);
+  if (means.gyro) {
+    const Vector3& mean = *means.gyro;
+    const double noise = square(gyro_noise_) / means.time;
+    const double walk = square(parameters_.gyro_bias_walk) * means.time;
+    if (bias_changed) s.core.open_bias(square(mean[2] - s.core.bias()));
+    s.core.rest(mean[2], noise, s.rest.rested());
+    for (const std::size_t i : {0U, 1U}) {
+      if (bias_changed) s.gyro_bias[i].variance += square(mean[i] - s.gyro_bias[i].value);
+      s.gyro_bias[i].measure(mean[i], noise, walk);
+    }
+  }
+  if (means.accelerometer) s.tilt.rest(*means.accelerometer, means.time);
+}
+
+void Estimator::smooth_nis(SensorIndex sensor, double nis, double dt) noexcept {
+  if (!(nis >= 0)) return;  // A sensor of this comparison is lost.
+  double& smoothed = state_.nis[sensor];
+  smoothed += dt / (Tuning::kBlock + dt) * (std::min(nis, Tuning::kMaxNis) - smoothed);
 }
 
 /// Predicts the motion since the readings that the core has used. A positive clock offset means that the wheels are
 /// late, a negative one that the gyro is late. A side without a reading in this step is predicted by its speed.
 Estimator::Prediction Estimator::prediction() const noexcept {
-  if (resting_) return {};
-  Prediction ahead;
-  if (core_.offset() > 0) {
-    const double speed = wheels_.any_lost() ? forward_speed() : wheels_.recent_speed() - slide_.excess_speed();
-    ahead.distance = speed * core_.offset();
-  } else {
-    ahead.turn = -yaw_rate_ * core_.offset();
-  }
-  ahead.distance += wheels_.unread_distance(kLeft);
-  ahead.distance += wheels_.unread_distance(kRight);
-  return ahead;
+  const State& s = state_;
+  if (s.rest.resting()) return {};
+  const double offset = s.core.offset();
+  return {.distance = s.wheels.unread + (offset > 0 ? forward_speed() * offset : 0),
+          .turn = offset > 0 ? 0 : -s.yaw_rate * offset};
 }
 
+/// If one side is lost, the speed of the middle follows from the other side and the yaw rate.
 double Estimator::forward_speed() const noexcept {
-  return resting_ ? 0 : wheels_.speed_at(rate_.rate().z()) - slide_.excess_speed();
+  const State& s = state_;
+  if (s.rest.resting()) return 0;
+  double speed = s.wheels.mean_speed();
+  const double faster = s.rate.rate().z() * geometry_.wheel_base / 2;
+  if (s.wheels.any_lost() && !s.wheels.both_lost()) {
+    speed = s.wheels.lost[kLeft] ? s.wheels.speed[kRight] - faster : s.wheels.speed[kLeft] + faster;
+  }
+  return speed - s.slip.slide().excess_speed();
+}
+
+double Estimator::wheel_rate() const noexcept {
+  return geometry_.turn(state_.wheels.speed[kLeft], state_.wheels.speed[kRight]);
+}
+
+Eigen::Vector3d Estimator::gyro_bias() const noexcept {
+  return {state_.gyro_bias[0].value, state_.gyro_bias[1].value, state_.core.bias()};
+}
+
+Eigen::Vector3d Estimator::gyro_bias_variance() const noexcept {
+  return {state_.gyro_bias[0].variance, state_.gyro_bias[1].variance, state_.core.bias_variance()};
+}
+
+/// Returns the vector from base_link to the middle of the wheels, in m, odom axes.
+Planar Estimator::axle(double yaw) const noexcept {
+  return rotated({geometry_.axle_x, geometry_.axle_y}, yaw);
 }
 
 }  // namespace robot_control

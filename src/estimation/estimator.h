@@ -14,9 +14,8 @@
 /// to rest at the beginning of a run. A window that turns out not to be quiet is integrated at once, together with the
 /// one before.
 ///
-/// A run that begins in motion uses wheels and gyro until the robot rests. If turns drag the wheels, no slide is
-/// corrected before that rest. The accelerometer's bias is not known then, and such wheels do not show the gyro's bias
-/// (planar/planar_core.h).
+/// A run that begins in motion uses wheels and gyro until the robot rests. No slide is corrected before that rest,
+/// because the accelerometer's bias is not known then.
 ///
 /// Samples may come at any rate. A sample that is not finite or impossible is not used and sets kStateBadSample. A
 /// missing encoder sample sets the same flag. The last good sample holds for three times the gap between the last two,
@@ -42,23 +41,80 @@
 #include <optional>
 
 #include "estimation/estimator_parameters.h"
-#include "estimation/estimator_state.h"
+#include "estimation/inertial/gyro_turn.h"
+#include "estimation/inertial/imu_samples.h"
+#include "estimation/inertial/rate_tracker.h"
+#include "estimation/planar/planar_core.h"
+#include "estimation/planar/turn_comparison.h"
+#include "estimation/rest/bias_estimate.h"
+#include "estimation/rest/robot_rest.h"
+#include "estimation/slip/slip_watch.h"
+#include "estimation/tilt/tilt.h"
 #include "estimation/tuning.h"
+#include "estimation/wheels/middle_travel.h"
 #include "estimation/wheels/wheel_geometry.h"
+#include "estimation/wheels/wheel_sides.h"
+#include "estimation/wheels/wheel_velocities.h"
 #include "robot/robot_model.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
 
 namespace robot_control {
 
-class Estimator : private EstimatorState {
+class Estimator {
  public:
+  /// Holds all that changes from cycle to cycle. Each part has its own state and one step; Estimator::advance hands the
+  /// values on from part to part. It is trivially copyable.
+  struct State {
+    State(const EstimatorParameters& parameters, const RobotModel& robot, double period);
+
+    // These parts read the samples. Beside them are the readings of this step.
+    ImuSamples imu_samples;
+    WheelSides wheel_sides;
+    ImuReading imu;
+    WheelReading wheels;
+
+    // These parts hold the estimates.
+    GyroTurn gyro_turn;
+    MiddleTravel middle_travel;
+    PlanarCore core;  ///< pose of the middle of the wheels, calibration, bias of the gyro about z
+    TurnComparison comparison;
+    Tilt tilt;                              ///< tilt and the accelerometer's bias
+    std::array<BiasEstimate, 2> gyro_bias;  ///< rad/s, about x and y
+    SlipWatch slip;
+    RobotRest rest;
+    double yaw_rate = 0;  ///< rad/s, in this step
+    double height = 0;    ///< m
+    double distance = 0;  ///< m, always growing
+
+    // These are published beside the estimates.
+    RateTracker rate;
+    WheelVelocities wheel_velocities;
+    WheelOdometry wheel_odometry;
+    std::array<double, kMaxConfidences> nis{};
+    std::array<std::uint64_t, kMaxConfidences> rejected{};
+
+    // These members describe the run.
+    bool began = false;                   ///< A cycle was seen.
+    bool restarted = false;               ///< The run continues an earlier process.
+    bool restart_pending = false;         ///< The next cycle is the first one of that.
+    std::optional<Vector3> pose_request;  ///< set at the end of this cycle
+    std::optional<Vector3> pose_set;      ///< set in this cycle
+    std::uint64_t cycle = 0;
+    std::uint64_t skipped = 0;
+    std::uint64_t flags = 0;  ///< flags of this cycle
+  };
+
   /// `period` is in s and > 0. Throws std::invalid_argument if a parameter or a measure of the robot is out of range or
   /// a side has no wheel.
   Estimator(const EstimatorParameters& parameters, const RobotModel& robot, double period);
 
+  /// Give and replace the state, for snapshots (signals/law_snapshot.h).
+  const State& state() const noexcept { return state_; }
+  void set_state(const State& state) noexcept { state_ = state; }
+
   /// Begins a new run: the first sample is the offset of the encoders, and the pose is zero.
-  void enter_run() noexcept { static_cast<EstimatorState&>(*this) = fresh_; }
+  void enter_run() noexcept { state_ = fresh_; }
 
   /// Continues from the last published frame after a restart within a run. The covariance grows by the restart
   /// constants and by the distance that the last twist travels in the missed cycles. A frame that is not finite or
@@ -67,7 +123,7 @@ class Estimator : private EstimatorState {
 
   /// Requests the pose (x [m], y [m], yaw [rad]) for the services set_odometry and reset_odometry. The next frame has
   /// exactly this pose, with a covariance of zero. All else stays.
-  void set_pose(const Vector3& pose) noexcept { pose_request_ = pose; }
+  void set_pose(const Vector3& pose) noexcept { state_.pose_request = pose; }
 
   /// Fills everything but `out.head`. The time step is (cycle − last cycle) · period.
   void step(const SensorFrame& sensors, StateFrame& out) noexcept;
@@ -76,8 +132,7 @@ class Estimator : private EstimatorState {
   void step(const SensorFrame& sensors, double dt, StateFrame& out) noexcept;
 
  private:
-  static constexpr std::size_t kLeft = WheelSides::kLeft;
-  static constexpr std::size_t kRight = WheelSides::kRight;
+  static constexpr std::size_t kLeft = 0, kRight = 1;
 
   /// Holds the motion from the core's pose, which belongs to the sensor that is late by the clock offset, to the
   /// present pose.
@@ -88,58 +143,45 @@ class Estimator : private EstimatorState {
   void advance(const SensorFrame& sensors, double dt) noexcept;
   void read(const SensorFrame& sensors, double dt) noexcept;
   void integrate_wheels() noexcept;
-  void follow_rate(double dt) noexcept;
-  void place(const Vector3& pose) noexcept;
-  Prediction prediction() const noexcept;
-  double forward_speed() const noexcept;  ///< m/s, of the middle of the wheels
-  Eigen::Vector3d gyro_bias() const noexcept;
-  Eigen::Vector3d gyro_bias_variance() const noexcept;
-  Vector3 in_base(const Vector3& imu) const noexcept;
-  Planar axle(double yaw) const noexcept;
-
-  // estimator_rest.cpp
-  void rest(double dt) noexcept;
-  void begin_rest() noexcept;
-  void end_rest() noexcept;
-  void learn_at_rest() noexcept;
-  void learn_gyro_bias(const Vector3& mean, double window) noexcept;
-  RestWindow watch_rest(double dt) noexcept;
-
-  // estimator_motion.cpp
   void move(double dt) noexcept;
-  void turn_tilt(const Eigen::Vector3d& gyro, double dt) noexcept;
-  double turn(double dt) noexcept;
-  void advance_path(const WheelSides::Travel& travel) noexcept;
-  std::array<double, 2> tyres_creep(double distance) const noexcept;
-  void watch_slip(double dt, double turned) noexcept;
-  void end_slide() noexcept;
-  void evaluate_slip() noexcept;
-  void correct(const WheelSlide::Correction& correction) noexcept;
-  WheelSlide::Input slide_input() const noexcept;
-  void compare_turns(double dt) noexcept;
-  void begin_comparison() noexcept;
+  void turn_tilt(const Vector3& gyro, double dt) noexcept;
+  Planar roll(const MiddleTravel::Travel& travel) noexcept;
+  SlipWatch::Input slip_input(double dt, double turned, const Planar& path) const noexcept;
+  void watch_slip(double dt, double turned, const Planar& path) noexcept;
+  void compare_turns(double dt, bool by_gyro) noexcept;
+  void watch_rest(double dt) noexcept;
+  void integrate(const HeldMotion& held, bool stood) noexcept;
+  void learn_at_rest(const RestWatch::Means& means, bool bias_changed) noexcept;
+  void place(const Vector3& pose) noexcept;
   void smooth_nis(SensorIndex sensor, double nis, double dt) noexcept;
 
-  // estimator_output.cpp
+  Prediction prediction() const noexcept;
+  double forward_speed() const noexcept;  ///< m/s, of the middle of the wheels
+  double wheel_rate() const noexcept;     ///< rad/s, by the wheels
+  Planar tyres_creep(double distance) const noexcept;
+  Eigen::Vector3d gyro_bias() const noexcept;
+  Eigen::Vector3d gyro_bias_variance() const noexcept;
+
+  // These functions are in estimator_output.cpp.
   void fill(StateFrame& out) const noexcept;
   void fill_pose(StateFrame& out) const noexcept;
-  double wheels_late() const noexcept;
   void fill_pose_covariance(double yaw, const Planar& lever, StateFrame& out) const noexcept;
   void fill_attitude_covariance(double yaw, double yaw_variance, StateFrame& out) const noexcept;
   void fill_twist(StateFrame& out) const noexcept;
   void fill_twist_covariance(double yaw_rate, StateFrame& out) const noexcept;
   void fill_learned(StateFrame& out) const noexcept;
   void fill_health(StateFrame& out) const noexcept;
-  Eigen::Matrix3d covariance_of_middle(const StateFrame& frame) const noexcept;
+  Planar axle(double yaw) const noexcept;
 
   EstimatorParameters parameters_;
   double period_;
   WheelGeometry geometry_;
   Eigen::Matrix3d base_from_imu_;
   double encoder_;          ///< m, deviation of one side's reading
+  double gyro_noise_;       ///< rad/s/√Hz, of the mounted gyro
   double rate_noise_gain_;  ///< RateTracker::noise_gain
-  bool drags_wheels_;       ///< A turn drags wheels over the floor (estimator_setup.h).
-  EstimatorState fresh_;    ///< state at the beginning of a run
+  State state_;
+  State fresh_;  ///< state at the beginning of a run
 };
 
 }  // namespace robot_control

@@ -24,61 +24,41 @@ void Estimator::fill(StateFrame& out) const noexcept {
   fill_health(out);
 }
 
-/// Returns the vector from base_link to the middle of the wheels, in m, odom axes.
-Planar Estimator::axle(double yaw) const noexcept {
-  return rotated({geometry_.axle_x, geometry_.axle_y}, yaw);
-}
-
-/// Returns the covariance of a frame's pose, moved from base_link to the middle of the wheels.
-Eigen::Matrix3d Estimator::covariance_of_middle(const StateFrame& frame) const noexcept {
-  const Planar lever = axle(yaw_of(frame.pose_odom.orientation));
-  Eigen::Matrix3d jacobian = Eigen::Matrix3d::Identity();
-  jacobian.col(2) << -lever.y, lever.x, 1;
-  return jacobian * Eigen::Map<const PoseMatrix>(frame.pose_covariance.data())(kPlane, kPlane) * jacobian.transpose();
-}
-
 void Estimator::fill_pose(StateFrame& out) const noexcept {
   const Prediction ahead = prediction();
-  PlanarPose middle = core_.pose();
+  PlanarPose middle = state_.core.pose();
   middle.yaw += ahead.turn;
   middle.x += std::cos(middle.yaw) * ahead.distance;
   middle.y += std::sin(middle.yaw) * ahead.distance;
   const Planar lever = axle(middle.yaw);
   const Eigen::Quaterniond attitude = Eigen::AngleAxisd(middle.yaw, Eigen::Vector3d::UnitZ()) *
-                                      Eigen::AngleAxisd(tilt_.pitch(), Eigen::Vector3d::UnitY()) *
-                                      Eigen::AngleAxisd(tilt_.roll(), Eigen::Vector3d::UnitX());
+                                      Eigen::AngleAxisd(state_.tilt.pitch(), Eigen::Vector3d::UnitY()) *
+                                      Eigen::AngleAxisd(state_.tilt.roll(), Eigen::Vector3d::UnitX());
   out.attitude = {attitude.x(), attitude.y(), attitude.z(), attitude.w()};
-  out.pose_odom.position = {middle.x - lever.x, middle.y - lever.y, parameters_.planar ? 0 : height_};
-  if (pose_set_) std::copy_n(pose_set_->begin(), 2, out.pose_odom.position.begin());
+  out.pose_odom.position = {middle.x - lever.x, middle.y - lever.y, parameters_.planar ? 0 : state_.height};
+  if (state_.pose_set) std::copy_n(state_.pose_set->begin(), 2, out.pose_odom.position.begin());
   out.pose_odom.orientation =
       parameters_.planar ? Quaternion{0, 0, std::sin(middle.yaw / 2), std::cos(middle.yaw / 2)} : out.attitude;
   fill_pose_covariance(middle.yaw, lever, out);
 }
 
-/// Returns the probability that the clock offset is positive.
-double Estimator::wheels_late() const noexcept {
-  const double deviation = core_.deviation(PlanarCore::kOffset);
-  if (deviation == 0) return core_.offset() > 0 ? 1 : 0;
-  return std::erfc(-core_.offset() / deviation / std::numbers::sqrt2) / 2;
-}
-
-///   P = J P_core Jᵀ + m mᵀ gap²/8 + a aᵀ (σ_encoder² + v² σ_stamp²)
+///   P = J P_core Jᵀ + m mᵀ gap²/8 + a aᵀ σ_encoder²
 /// J is the Jacobian by clock offset, x, y and yaw, a the direction of travel and m the velocity of base_link. The
 /// present is evenly distributed over the gap between two samples of the gyro.
 void Estimator::fill_pose_covariance(double yaw, const Planar& lever, StateFrame& out) const noexcept {
-  const double late = wheels_late();
-  const double yaw_rate = resting_ ? 0 : yaw_rate_;
+  const double late = state_.core.offset() >= 0 ? 1 : 0;
+  const double yaw_rate = state_.rest.resting() ? 0 : state_.yaw_rate;
   const Eigen::Vector3d along(std::cos(yaw), std::sin(yaw), 0);
   const Eigen::Vector3d turning(lever.y, -lever.x, 1);
   Eigen::Matrix<double, 3, 4> jacobian;
   jacobian << late * forward_speed() * along + (late - 1) * yaw_rate * turning, Eigen::Vector3d::UnitX(),
       Eigen::Vector3d::UnitY(), turning;
-  const Eigen::Matrix4d states = core_.covariance().topLeftCorner<4, 4>();
+  const Eigen::Matrix4d states = state_.core.covariance().topLeftCorner<4, 4>();
   Eigen::Matrix3d covariance = jacobian * states * jacobian.transpose();
   const Eigen::Vector3d motion = forward_speed() * along + yaw_rate * turning;
-  covariance += square(imu_.gyro_gap()) / 8 * motion * motion.transpose();
-  covariance += (square(encoder_) + square(forward_speed()) * wheels_.stamp_variance()) * along * along.transpose();
-  if (pose_set_) covariance.setZero();
+  covariance += square(state_.imu.gyro_gap) / 8 * motion * motion.transpose();
+  covariance += square(encoder_) * along * along.transpose();
+  if (state_.pose_set) covariance.setZero();
   Eigen::Map<PoseMatrix> published(out.pose_covariance.data());
   published = Tuning::kPlanarVariance * PoseMatrix::Identity();
   published(kPlane, kPlane) = covariance;
@@ -88,83 +68,86 @@ void Estimator::fill_pose_covariance(double yaw, const Planar& lever, StateFrame
 /// An error of u across is an error of roll, and an error of u along is one of −pitch. Both are turned to odom axes.
 void Estimator::fill_attitude_covariance(double yaw, double yaw_variance, StateFrame& out) const noexcept {
   Eigen::Matrix2d tilt;
-  tilt << tilt_.covariance(1, 1), -tilt_.covariance(1, 0), -tilt_.covariance(0, 1), tilt_.covariance(0, 0);
+  tilt << state_.tilt.covariance(1, 1), -state_.tilt.covariance(1, 0), -state_.tilt.covariance(0, 1),
+      state_.tilt.covariance(0, 0);
   tilt = (Eigen::Rotation2Dd(yaw) * tilt * Eigen::Rotation2Dd(-yaw)).eval();
   out.attitude_covariance = {tilt(0, 0), tilt(0, 1), 0, tilt(1, 0), tilt(1, 1), 0, 0, 0, yaw_variance};
   if (parameters_.planar) return;
-  out.pose_covariance[14] += tilt_.covariance(0, 0) * square(distance_);
+  out.pose_covariance[14] += state_.tilt.covariance(0, 0) * square(state_.distance);
   for (const std::size_t i : {0U, 1U}) {
     for (const std::size_t j : {0U, 1U}) out.pose_covariance[6 * (i + 3) + j + 3] = out.attitude_covariance[3 * i + j];
   }
 }
 
 void Estimator::fill_twist(StateFrame& out) const noexcept {
-  const Eigen::Vector3d rate = resting_ ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : rate_.rate();
+  const Eigen::Vector3d rate = state_.rest.resting() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : state_.rate.rate();
   const Motion velocity = geometry_.base_motion(forward_speed(), rate.z());
-  const std::array<double, 2> creep = resting_ ? std::array<double, 2>{} : tyres_creep(velocity.forward);
-  out.twist_base = {{velocity.forward - creep[0], velocity.left - creep[1], 0}, {0, 0, rate.z()}};
+  const Planar creep = state_.rest.resting() ? Planar{} : tyres_creep(velocity.forward);
+  out.twist_base = {{velocity.forward - creep.x, velocity.left - creep.y, 0}, {0, 0, rate.z()}};
   if (!parameters_.planar) out.twist_base.angular = array(rate);
   fill_twist_covariance(rate.z(), out);
 }
 
 void Estimator::fill_twist_covariance(double yaw_rate, StateFrame& out) const noexcept {
   const double quantum = std::sqrt(12.0) * encoder_ / period_;
-  const double speed = std::abs(wheels_.speed()) + geometry_.wheel_base / 2 * std::abs(wheels_.rate());
-  double wheel = square(Tuning::kSpeedShare * quantum) + square(core_.slip()) * parameters_.speed_bandwidth * speed;
-  double turn = core_.bias_variance() + square(parameters_.gyro_noise) / period_ * rate_noise_gain_ +
+  const double speed = std::abs(state_.wheels.mean_speed()) + geometry_.wheel_base / 2 * std::abs(wheel_rate());
+  double wheel =
+      square(Tuning::kSpeedShare * quantum) + square(state_.core.slip()) * parameters_.speed_bandwidth * speed;
+  double turn = state_.core.bias_variance() + square(parameters_.gyro_noise) / period_ * rate_noise_gain_ +
                 square(parameters_.gyro_scale_deviation * yaw_rate);
-  if (!imu_.gyro()) turn = 4 * wheel / square(geometry_.wheel_base);
-  if (resting_) wheel = turn = 0;
-  const double slides = slide_.active() ? square(slide_.speed_deviation()) : 0;
+  if (!state_.imu.gyro) turn = 4 * wheel / square(geometry_.wheel_base);
+  if (state_.rest.resting()) wheel = turn = 0;
+  const double slides = state_.slip.slide().active() ? square(state_.slip.slide().speed_deviation()) : 0;
   out.twist_covariance = {};
   out.twist_covariance[0] = wheel / 2 + slides + square(parameters_.wheel_radius_deviation * forward_speed()) +
                             square(geometry_.axle_y) * turn;
   out.twist_covariance[7] =
-      wheel / 2 + slides + square(geometry_.axle_x) * turn + square(yaw_rate * core_.deviation(PlanarCore::kIcr));
+      wheel / 2 + slides + square(geometry_.axle_x) * turn + square(yaw_rate * state_.core.deviation(PlanarCore::kIcr));
   out.twist_covariance[35] = turn;
   for (const std::size_t i : {14U, 21U, 28U}) out.twist_covariance[i] = Tuning::kPlanarVariance;
 }
 
 void Estimator::fill_learned(StateFrame& out) const noexcept {
   const Eigen::Matrix3d imu_from_base = base_from_imu_.transpose();
-  const Eigen::Vector3d force(tilt_.bias(0), tilt_.bias(1), tilt_.vertical_bias());
+  const Eigen::Vector3d force(state_.tilt.bias(0), state_.tilt.bias(1), state_.tilt.vertical_bias());
   const Eigen::Matrix3d bias_covariance = imu_from_base * gyro_bias_variance().asDiagonal() * base_from_imu_;
   out.gyro_bias = array(imu_from_base * gyro_bias());
   out.gyro_bias_deviation = array(bias_covariance.diagonal().cwiseMax(0).cwiseSqrt());
   out.accelerometer_bias = array(imu_from_base * force);
-  out.calibration = core_.calibration();
+  out.calibration = state_.core.calibration();
 }
 
 void Estimator::fill_health(StateFrame& out) const noexcept {
-  out.wheels = wheel_odometry_;
-  wheel_velocities_.write(out.wheel_velocity);
-  out.nis = nis_;
-  out.rejected = rejected_;
-  out.slip = resting_ ? 0 : slide_.reasons();
-  out.residual_level = slip_detector_.levels().level();
-  out.distance = distance_;
-  out.skipped = skipped_;
+  out.wheels = state_.wheel_odometry;
+  state_.wheel_velocities.write(out.wheel_velocity);
+  out.nis = state_.nis;
+  out.rejected = state_.rejected;
+  out.slip = state_.rest.resting() ? 0 : state_.slip.slide().reasons();
+  out.residual_level = state_.slip.level();
+  out.distance = state_.distance;
+  out.skipped = state_.skipped;
 
   const auto confidence = [&](SensorIndex sensor, bool used) {
     out.confidence[sensor] = used ? 1 / std::max(1.0, out.nis[sensor]) : 0;
   };
   out.confidence = {};
-  confidence(kLeftEncoder, wheels_.received(kLeft) && !slide_.slips(kLeft));
-  confidence(kRightEncoder, wheels_.received(kRight) && !slide_.slips(kRight));
-  confidence(kGyro, imu_.gyro().has_value());
-  confidence(kAccelerometer, imu_.accelerometer().has_value());
-  confidence(kLateralContact, !slide_.sideways());
+  confidence(kLeftEncoder, state_.wheels.received[kLeft] && !state_.slip.slide().slips(kLeft));
+  confidence(kRightEncoder, state_.wheels.received[kRight] && !state_.slip.slide().slips(kRight));
+  confidence(kGyro, state_.imu.gyro.has_value());
+  confidence(kAccelerometer, state_.imu.accelerometer.has_value());
+  confidence(kLateralContact, !state_.slip.slide().sideways());
   confidence(kVerticalContact, true);
 
-  out.flags = flags_;
-  if (!wheels_.any_lost() || (!wheels_.both_lost() && imu_.gyro())) out.flags |= kStateValid;
-  if (resting_) out.flags |= lasting_flags_ & kStateStandstill;
+  out.flags = state_.flags;
+  if (!state_.wheels.any_lost() || (!state_.wheels.both_lost() && state_.imu.gyro)) out.flags |= kStateValid;
+  if (state_.rest.standing()) out.flags |= kStateStandstill;
+  if (state_.restarted) out.flags |= kStateRestarted;
   if (out.slip != 0) out.flags |= kStateSlip;
   out.degraded = 0;
-  if (slide_.active()) out.degraded |= kDegradedPosition;
-  if (core_.contradicted()) out.degraded |= kDegradedHeading;
-  const bool unknown_bias = core_.bias_variance() > square(Tuning::kUnknownBias);
-  if (!resting_ && imu_.gyro() && unknown_bias) out.degraded |= kDegradedHeading;
+  if (state_.slip.slide().active()) out.degraded |= kDegradedPosition;
+  if (state_.core.contradicted()) out.degraded |= kDegradedHeading;
+  const bool unknown_bias = state_.core.bias_variance() > square(Tuning::kUnknownBias);
+  if (!state_.rest.resting() && state_.imu.gyro && unknown_bias) out.degraded |= kDegradedHeading;
   if (out.degraded != 0) out.flags |= kStateDegraded;
 }
 

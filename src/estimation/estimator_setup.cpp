@@ -66,7 +66,7 @@ bool drags_wheels(const RobotModel& robot) {
 PlanarCoreParams core_params(const EstimatorParameters& parameters, const RobotModel& robot) {
   const double learns = parameters.self_calibration ? 1.0 : 0.0;
   return {.wheel_base = robot.effective_wheel_base(),
-          .gyro_noise = parameters.gyro_noise,
+          .gyro_noise = Tuning::kMountedGyro * parameters.gyro_noise,
           .gyro_bias_walk = parameters.gyro_bias_walk,
           .gyro_bias_initial = parameters.gyro_bias_initial,
           .gyro_scale = parameters.gyro_scale_deviation,

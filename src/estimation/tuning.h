@@ -14,27 +14,21 @@ namespace robot_control {
 struct Tuning {
   // These constants were measured or chosen on drives.
 
-  static constexpr double kFirstSlip = 5e-3;    ///< m/√m, slip noise of a side at the start; skid steers, recordings
-  static constexpr double kFirstScrub = 0.05;   ///< rad/√rad, noise of a turn at the start; skid steers, recordings
-  static constexpr double kFirstTwist = 0.016;  ///< rad/√rad, for one wheel on either side; recordings, vacuum robot
-  static constexpr double kLevelStep = 0.2;     ///< step of the logarithm of these levels per block; recordings
+  static constexpr double kFirstSlip = 5e-3;   ///< m/√m, slip noise of a side at the start; skid steers, recordings
+  static constexpr double kFirstScrub = 0.05;  ///< rad/√rad, noise of a turn at the start; skid steers, recordings
+  static constexpr double kLevelStep = 0.2;    ///< step of the logarithm of these levels per block; recordings
   static constexpr double kCalibrationWalk = 0.04;  ///< 1/m, walk of ratio and base, of the slip noise; recordings
   static constexpr double kOffset = 0.08;  ///< s, deviation of the clock offset at the start; recordings: 0.03 … 0.17
-  static constexpr double kOffsetWalk = 2e-3;           ///< s/√s, walk of the clock offset; recordings
-  static constexpr double kAccelerometerAtRest = 0.03;  ///< m/s², rocking and a motor's hum in a mean; recordings
-  static constexpr double kSlowTime = 3.0;   ///< s, in which slow errors of the accelerometer change; recordings
+  static constexpr double kOffsetWalk = 2e-3;  ///< s/√s, walk of the clock offset; recordings
+  static constexpr double kSlowTime = 3.0;     ///< s, in which slow errors of the accelerometer change; recordings
   static constexpr double kMountedGyro = 2;  ///< noise of a mounted gyro over its data sheet's; recordings: 1.5 … 1.9
-  static constexpr double kTipping = 0.5;    ///< rad/s about x and y, beyond which a gyro counts as failed; faults
-  static constexpr double kConstantRate = 10.0;  ///< s of one rate on standing wheels: it is the gyro's bias; faults
   static constexpr double kBatch = 0.3;      ///< share of the usual gap, below which readings are a batch; recordings
-  static constexpr double kGapFading = 0.9;  ///< factor of the largest gap per reading; recordings, jittering stamps
 
   // These constants of slip (slip/) were measured or chosen on drives.
 
   static constexpr double kPathSlip = 2e-3;  ///< m/√m, slip of rolling wheels in the path difference; recordings
   static constexpr double kWindUp = 1.6e-3;  ///< rad/√(rad/s), wind-up of treads and gears; recordings
-  static constexpr double kSlowAcceleration = 0.02;  ///< m/s², slow error, as from 2 mrad of tilt; recordings
-  static constexpr double kFirstLevel = 10;          ///< first level of residuals: the robot shakes; recordings
+  static constexpr double kSlowAcceleration = 0.02;  ///< m/s², slow error: 2 mrad of tilt, a motor's hum; recordings
 
   // These constants are conventions of statistics.
 
@@ -42,15 +36,12 @@ struct Tuning {
   static constexpr double kHuber = 2;        ///< deviations by which an innovation counts at most; P. J. Huber, 1964
   static constexpr double kGate = 6;         ///< deviations, beyond which an innovation is not used
   static constexpr double kSignificantTurn = 10;     ///< deviations of a turn above which a block shows the wheel base
-  static constexpr double kLevelMemory = 0.05;       ///< 1/blocks, memory of the correlation of innovations: 20 blocks
-  static constexpr double kStampMemory = 50;         ///< readings, memory of the stamps' jitter, known to 10 %
-  static constexpr double kNoisePrior = 4;           ///< windows, weight of kMountedGyro: 1 s
   static constexpr double kProof = 5;                ///< deviations that prove slip: 1 of 1.7 million normal residuals
   static constexpr double kChoiceDeviation = 0.577;  ///< 1/√3: the truth lies evenly within ± a difference of speeds
   static constexpr double kNormal90 = 1.645;         ///< deviations, 90 % quantile of |normal|
   static constexpr std::uint64_t kFirstResiduals = 8;  ///< residuals whose largest is the first level: 90 % quantile
+  static constexpr double kForgetting = 0.1;           ///< weight of one reading in a fading mean or maximum
   static constexpr double kQuantileStep = 0.5;         ///< step of the logarithm of a level: 1.6 up, 1/1.05 down
-  static constexpr double kUsualSpeedShare = 0.1;      ///< weight of one residual's speed in the usual speed
 
   // These constants are time scales.
 
@@ -63,6 +54,8 @@ struct Tuning {
   static constexpr double kSlowAccelerometer = 0.03;  ///< s between samples, above which motion is not resolved
   static constexpr double kMaxGap = 0.5;              ///< s, upper bound of the usual gap between readings of a wheel
 
+  static constexpr double kConstantRate = 10.0;  ///< s of one rate on standing wheels: time-out for an old bias
+
   // These limits are physical bounds or stated tolerances. None was tuned.
 
   static constexpr double kGyroRange = 100;            ///< rad/s, beyond the range of MEMS gyros
@@ -71,12 +64,11 @@ struct Tuning {
   static constexpr double kEncoderSlack = 0.1;         ///< rad, some counts of a coarse encoder, and backlash
   static constexpr double kSteepest = 0.6;     ///< sine of a tilt, 37°, at which rubber on dry ground begins to slide
   static constexpr double kInitialTilt = 0.1;  ///< rad, deviation at switch-on; the steepest road
-  static constexpr double kFloor = 0.01;       ///< rad, tilt between two places; twice the tolerance of DIN 18202
   static constexpr double kMaxOffset = 0.4;    ///< s, twice the largest clock offset of the recordings
   static constexpr double kMinTwistNoise = 5e-4;   ///< rad/√rad, turn noise of a hard tyre on a hard floor
   static constexpr double kMaxSlipNoise = 0.05;    ///< m/√m, slip noise, ten times that of skid steers
   static constexpr double kMaxTwistNoise = 1.0;    ///< rad/√rad, turn noise at which nothing is known of a turn
-  static constexpr double kMaxCorrelation = 0.9;   ///< correlation of two innovations in a row
+  static constexpr double kFirstLevel = 10;        ///< level before any residual: real floors shake 10 … 40 times
   static constexpr double kMaxNis = 1e6;           ///< nis that enters a confidence
   static constexpr double kRestart = 0.05;         ///< m and rad, deviation added by a restart or a lost travel
   static constexpr double kPlanarVariance = 1e-4;  ///< m² and rad² of z, roll and pitch on an even floor: 1 cm, 0.6°

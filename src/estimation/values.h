@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
+#include "robot/stored.h"
 #include "signals/geometry.h"
 
 namespace robot_control {
@@ -13,6 +14,9 @@ inline double square(double value) noexcept {
 }
 inline Vector3 array(const Eigen::Vector3d& v) noexcept {
   return {v.x(), v.y(), v.z()};
+}
+inline Eigen::Vector3d vector(const Vector3& v) noexcept {
+  return {v[0], v[1], v[2]};
 }
 
 /// This vector in the plane is trivially copyable, which Eigen's vectors are not.
@@ -24,7 +28,6 @@ struct Planar {
   friend Planar operator-(const Planar& a) noexcept { return {-a.x, -a.y}; }
   friend Planar operator*(const Planar& a, double factor) noexcept { return {a.x * factor, a.y * factor}; }
   friend Planar operator/(const Planar& a, double divisor) noexcept { return {a.x / divisor, a.y / divisor}; }
-  friend double dot(const Planar& a, const Planar& b) noexcept { return a.x * b.x + a.y * b.y; }
   double norm() const noexcept { return std::hypot(x, y); }
 };
 

@@ -38,24 +38,45 @@ struct LawSnapshot {
   std::array<std::byte, kSnapshotBytes> state{};
 };
 
-/// A law's object is its complete state, because it owns nothing outside of itself. This also holds for Eigen's small
-/// matrices, although C++ does not define them as trivially copyable.
+/// The state of a law is its member `State`, which `state` and `set_state` give and replace; without such a member it
+/// is the whole object. Parameters and what the law allocated are not part of `State`.
 template <class Law>
-inline constexpr bool kCopyableState = std::is_trivially_destructible_v<Law> && sizeof(Law) <= kSnapshotBytes;
+struct StateOf {
+  using Type = Law;
+};
+template <class Law>
+requires requires {
+  typename Law::State;
+}
+struct StateOf<Law> {
+  using Type = typename Law::State;
+};
 
 template <class Law>
 void save_state(const Law& law, LawSnapshot& snapshot) noexcept {
-  static_assert(kCopyableState<Law>);
-  snapshot.bytes = sizeof(Law);
-  std::memcpy(snapshot.state.data(), static_cast<const void*>(&law), sizeof(Law));
+  using State = typename StateOf<Law>::Type;
+  static_assert(std::is_trivially_copyable_v<State> && sizeof(State) <= kSnapshotBytes);
+  snapshot.bytes = sizeof(State);
+  if constexpr (std::is_same_v<State, Law>) {
+    std::memcpy(snapshot.state.data(), &law, sizeof(State));
+  } else {
+    std::memcpy(snapshot.state.data(), &law.state(), sizeof(State));
+  }
 }
 
 /// Returns false if the snapshot has another size.
 template <class Law>
 bool restore_state(const LawSnapshot& snapshot, Law& law) noexcept {
-  static_assert(kCopyableState<Law>);
-  if (snapshot.bytes != sizeof(Law)) return false;
-  std::memcpy(static_cast<void*>(&law), snapshot.state.data(), sizeof(Law));
+  using State = typename StateOf<Law>::Type;
+  static_assert(std::is_trivially_copyable_v<State> && sizeof(State) <= kSnapshotBytes);
+  if (snapshot.bytes != sizeof(State)) return false;
+  if constexpr (std::is_same_v<State, Law>) {
+    std::memcpy(&law, snapshot.state.data(), sizeof(State));
+  } else {
+    State state = law.state();
+    std::memcpy(&state, snapshot.state.data(), sizeof(State));
+    law.set_state(state);
+  }
   return true;
 }
 

@@ -42,7 +42,8 @@ TEST_F(EstimatorStandstillTest, LearnsAConstantBiasExactlyInTheLimit) {
   observe();
   drive(0, 0, 80 * kWindow);
   const EstimatorParameters parameters;
-  const double r = parameters.gyro_noise * parameters.gyro_noise / parameters.standstill_time;
+  const double noise = Tuning::kMountedGyro * parameters.gyro_noise;
+  const double r = noise * noise / parameters.standstill_time;
   const double p = parameters.gyro_bias_initial * parameters.gyro_bias_initial;
   EXPECT_NEAR(state_.gyro_bias[2], 0.03, 0.03 * r / (80 * p) * 1.1);
   EXPECT_EQ(yaw(), 0);
@@ -59,16 +60,15 @@ TEST_F(EstimatorStandstillTest, LearnsTheBiasUnderNoise) {
   }
 }
 
-// Noise as in the parameters: the published deviation is that of the mean, 2.44e-4/√T, and the error is within it. The
-// noise is learned from nineteen differences of windows, which scatter by √(3/19)/2 = 20 % of it, and begins as twice
-// as much, worth four: √((4·4 + 19)/23) = 1.23.
+// Noise as in the parameters: the published deviation is that of the mean of a mounted gyro, kMountedGyro 2.44e-4/√T,
+// and the error is within it. One window of twenty does not count yet: √(20/19) = 1.03.
 TEST_F(EstimatorStandstillTest, KnowsHowWellItKnowsTheBias) {
   const EstimatorParameters parameters;
   robot_.gyro_bias.z() = 0.01;
   robot_.noise = {.gyro = parameters.gyro_noise, .accelerometer = 1e-3, .counts = 0};
   drive(0, 0, 20 * kWindow);
   const double expected = parameters.gyro_noise / std::sqrt(20 * parameters.standstill_time);
-  EXPECT_NEAR(state_.gyro_bias_deviation[2], 1.23 * expected, 2 * 0.2 * expected);
+  EXPECT_NEAR(state_.gyro_bias_deviation[2], Tuning::kMountedGyro * expected, 0.1 * expected);
   EXPECT_NEAR(state_.gyro_bias[2], 0.01, 4 * expected);
 }
 

@@ -209,33 +209,6 @@ TEST_F(CoreUpdateTest, TheFirstRestCorrectsThePathByItsBiasAlone) {
   }
 }
 
-// Before the first rest. A yaw that is wrong by δ, σ = 0.5 rad, on all of the way lays it short by 1 − cos δ: 0.196 of
-// it in the mean square.
-TEST_F(CoreUpdateTest, AnUncertainYawShortensThePath) {
-  PlanarCore core{PlanarCoreParams{.slip_least = 1e-9}};
-  core.set_bias_known(false);
-  core.add_yaw_variance(0.25);
-  for (int i = 0; i < 100; ++i) core.roll(0.1, 0, 0);
-  const double along = std::sqrt(core.covariance()(PlanarCore::kX, PlanarCore::kX));
-  EXPECT_NEAR(along, 1.96, 0.25);
-  core.place({});
-  EXPECT_EQ(core.covariance()(PlanarCore::kX, PlanarCore::kX), 0);
-}
-
-// The rest shows that the yaw was almost known.
-TEST_F(CoreUpdateTest, WhatTheFirstRestShowsOfTheYawIsNoLongerUncertain) {
-  PlanarCore core{PlanarCoreParams{}};
-  core.set_bias_known(false);
-  for (int i = 0; i < 20; ++i) {
-    core.turn_by_gyro(0, 1.0);
-    core.roll(0.5, 0, 0);
-  }
-  const auto along = [&] { return std::sqrt(core.covariance()(PlanarCore::kX, PlanarCore::kX)); };
-  const double before = along();
-  core.rest(0, 1e-8, false);
-  EXPECT_LT(along(), 0.1 * before);
-}
-
 TEST_F(CoreUpdateTest, PlacingForgetsWhatThePoseWasCorrelatedWith) {
   core_.place({1, 2, 3});
   const CoreMatrix p = core_.covariance();

@@ -17,7 +17,7 @@ class RestWatchTest : public testing::Test {
   RestWindow step(double rate, double left = 0, double right = 0) {
     const Vector3 gyro{0, 0, rate};
     const Vector3 force{0.1, 0, 9.8};
-    return watch_.step({.dt = kStep, .gyro = &gyro, .accelerometer = &force, .left = left, .right = right}, bias_);
+    return watch_.step({.dt = kStep, .left = left, .right = right, .gyro = gyro, .accelerometer = force}, bias_);
   }
   /// The verdict of a whole window at a constant rate.
   RestWindow window(double rate) {
@@ -32,11 +32,11 @@ class RestWatchTest : public testing::Test {
 // A robot may have begun to move at the end of a window.
 TEST_F(RestWatchTest, TheMeansOfAQuietWindowCountBehindTheNextOne) {
   EXPECT_EQ(window(0.004), RestWindow::kQuiet);
-  EXPECT_FALSE(watch_.gyro().has_value());
+  EXPECT_FALSE(watch_.means().gyro.has_value());
   EXPECT_EQ(window(0.002), RestWindow::kQuiet);
-  EXPECT_NEAR(watch_.time(), params_.window, 1e-12);
-  EXPECT_NEAR((*watch_.gyro())[2], 0.004, 1e-12);
-  EXPECT_NEAR((*watch_.force())[2], 9.8, 1e-12);
+  EXPECT_NEAR(watch_.means().time, params_.window, 1e-12);
+  EXPECT_NEAR((*watch_.means().gyro)[2], 0.004, 1e-12);
+  EXPECT_NEAR((*watch_.means().accelerometer)[2], 9.8, 1e-12);
   EXPECT_FALSE(watch_.bias_changed());
 }
 
@@ -50,16 +50,16 @@ TEST_F(RestWatchTest, TheMeansBeforeABrokenWindowDoNotCount) {
   window(0.004);
   step(0, 1, 1);
   window(0.002);
-  EXPECT_FALSE(watch_.gyro().has_value());
+  EXPECT_FALSE(watch_.means().gyro.has_value());
   window(0);
-  EXPECT_NEAR((*watch_.gyro())[2], 0.002, 1e-12);
+  EXPECT_NEAR((*watch_.means().gyro)[2], 0.002, 1e-12);
 }
 
 TEST_F(RestWatchTest, AWindowThatIsDiscardedDoesNotCount) {
   window(0.004);
   watch_.discard();
   window(0.002);
-  EXPECT_FALSE(watch_.gyro().has_value());
+  EXPECT_FALSE(watch_.means().gyro.has_value());
 }
 
 TEST_F(RestWatchTest, AWheelThatFlickersWithinItsToleranceIsQuiet) {
@@ -86,7 +86,7 @@ TEST_F(RestWatchTest, TheMeanIsLessWhatTheWheelsTurned) {
   for (int i = 0; i < kWindow - 1; ++i) step(rate, -creep, creep);
   ASSERT_EQ(step(rate, -creep, creep), RestWindow::kQuiet);
   window(0.004);
-  EXPECT_NEAR((*watch_.gyro())[2], 0, 1e-12);
+  EXPECT_NEAR((*watch_.means().gyro)[2], 0, 1e-12);
 }
 
 // Nothing turns a robot so evenly on wheels that stand.
@@ -98,7 +98,7 @@ TEST_F(RestWatchTest, ARateThatStaysForTenSecondsIsTheBias) {
   }
   EXPECT_NEAR(time + params_.window, Tuning::kConstantRate, 1e-9);
   EXPECT_TRUE(watch_.bias_changed());
-  EXPECT_NEAR((*watch_.gyro())[2], 0.3, 1e-12);
+  EXPECT_NEAR((*watch_.means().gyro)[2], 0.3, 1e-12);
 }
 
 TEST_F(RestWatchTest, ARateThatChangesIsNone) {
@@ -113,7 +113,7 @@ TEST_F(RestWatchTest, WhereNoBiasIsKnownARestIsSteadyForASecond) {
   }
   EXPECT_EQ(window(-0.0060), RestWindow::kQuiet);
   EXPECT_TRUE(watch_.bias_changed());
-  EXPECT_NEAR((*watch_.gyro())[2], -0.0065, 1e-12);
+  EXPECT_NEAR((*watch_.means().gyro)[2], -0.0065, 1e-12);
 }
 
 TEST_F(RestWatchTest, WhereNoBiasIsKnownAGyroThatIsLouderTakesTenSeconds) {
@@ -136,9 +136,9 @@ TEST_F(RestWatchTest, WithoutGyroTheWheelsDecide) {
   for (int i = 0; i < kWindow - 1; ++i) watch_.step({.dt = kStep}, bias_);
   EXPECT_EQ(watch_.step({.dt = kStep}, bias_), RestWindow::kQuiet);
   window(0);
-  EXPECT_NEAR(watch_.time(), params_.window, 1e-12);
-  EXPECT_FALSE(watch_.gyro().has_value());
-  EXPECT_FALSE(watch_.force().has_value());
+  EXPECT_NEAR(watch_.means().time, params_.window, 1e-12);
+  EXPECT_FALSE(watch_.means().gyro.has_value());
+  EXPECT_FALSE(watch_.means().accelerometer.has_value());
 }
 
 // A gyro that came for less than half of the window has no mean.
@@ -147,14 +147,14 @@ TEST_F(RestWatchTest, AMeanIsThatOfHalfAWindowAtLeast) {
   for (int i = 10; i < kWindow - 1; ++i) watch_.step({.dt = kStep}, bias_);
   EXPECT_EQ(watch_.step({.dt = kStep}, bias_), RestWindow::kQuiet);
   window(0);
-  EXPECT_FALSE(watch_.gyro().has_value());
+  EXPECT_FALSE(watch_.means().gyro.has_value());
 }
 
 TEST_F(RestWatchTest, AnAccelerometerThatShakesIsNoMotion) {
   const Vector3 gyro{};
   for (int i = 0; i < kWindow; ++i) {
     const Vector3 force{i % 2 == 0 ? 20.0 : -20.0, 0, 9.8};
-    const RestWindow verdict = watch_.step({.dt = kStep, .gyro = &gyro, .accelerometer = &force}, bias_);
+    const RestWindow verdict = watch_.step({.dt = kStep, .gyro = gyro, .accelerometer = force}, bias_);
     EXPECT_EQ(verdict, i + 1 < kWindow ? RestWindow::kOpen : RestWindow::kQuiet);
   }
 }

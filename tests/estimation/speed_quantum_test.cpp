@@ -46,17 +46,5 @@ TEST_F(SpeedReadings, StepsThatTheEncodersCountExplainsAreNone) {
   EXPECT_EQ(read(0.08, 0.02, 0.001).step(), 0);
 }
 
-// Ten equal readings have the same error, ten times that of one.
-TEST_F(SpeedReadings, EqualReadingsAreOffAlike) {
-  SpeedQuantum quantum;
-  quantum.add(0.5 * 0.1, 0.1);
-  double variance = 0;
-  for (int i = 0; i < 10; ++i) {
-    quantum.add(0.58 * 0.1, 0.1);
-    variance += quantum.travel_variance();
-  }
-  EXPECT_NEAR(variance, square(10 * quantum.step() * 0.1) / 12, 1e-12);
-}
-
 }  // namespace
 }  // namespace robot_control

@@ -209,6 +209,10 @@ MAX_FUNCTION = 60
 """lines, from the line of its name to its last brace; in Python without the docstring"""
 MAX_FUNCTION_IN = {SRC / "estimation": 40}
 """lines, in folders with a bound of their own; the innermost bound holds"""
+MAX_LINES = {SRC / "estimation": 3820}
+"""lines of a whole folder, comments included"""
+MAX_TUNED_CONSTANTS = 12
+"""in src/estimation/tuning.h, before the conventions of statistics"""
 NO_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.DOTALL)
 FUNCTION_HEAD = re.compile(r"\)\s*(?:const\b|noexcept\b|override\b|final\b|->|:[^:]|$)")
 NO_FUNCTION = re.compile(r"^\s*(?:if|for|while|switch|do|else|try|return|namespace|struct|class|enum|union)\b")
@@ -269,6 +273,19 @@ def imported_modules(path):
             yield from (name.name for name in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module:
             yield node.module
+
+
+def test_a_folder_with_a_bound_of_its_own_stays_small():
+    lines = {
+        folder: sum(len(path.read_text().splitlines()) for path in folder.rglob("*") if path.is_file())
+        for folder in MAX_LINES
+    }
+    assert [(str(folder), lines[folder]) for folder, limit in MAX_LINES.items() if lines[folder] > limit] == []
+
+
+def test_the_estimator_has_few_tuned_constants():
+    tuned = (SRC / "estimation/tuning.h").read_text().split("conventions of statistics")[0]
+    assert tuned.count("static constexpr") <= MAX_TUNED_CONSTANTS
 
 
 def test_nothing_that_is_installed_imports_the_laboratory():

@@ -20,12 +20,11 @@ class GyroTurn {
  public:
   /// Returns the angle in rad, bias included; empty: the wheels turn. `wheel_turn` is in rad, `bias` in rad/s, `dt` in
   /// s.
-  std::optional<double> step(const ImuSamples& imu, double wheel_turn, double bias, double dt) noexcept {
-    const bool fresh = imu.new_gyro();
-    const double before = std::exchange(sample_, fresh ? imu.last_gyro().z() : sample_);
-    if (imu.gyro() && silence_ == 0) return imu.gyro()->z() * dt;
+  std::optional<double> step(const ImuReading& imu, double wheel_turn, double bias, double dt) noexcept {
+    const double before = std::exchange(sample_, imu.fresh_gyro ? imu.sample[2] : sample_);
+    if (imu.gyro && silence_ == 0) return (*imu.gyro)[2] * dt;
     silence_ += dt;
-    if (!fresh) {
+    if (!imu.fresh_gyro) {
       wheel_turn_ += wheel_turn;
       return std::nullopt;
     }
@@ -34,8 +33,6 @@ class GyroTurn {
     if (silence >= Tuning::kMaxHoldTime) return std::nullopt;
     return (before + sample_) / 2 * silence - bias * (silence - dt) - turned;
   }
-
-  bool silent() const noexcept { return silence_ > 0; }
 
  private:
   double sample_ = 0;      ///< rad/s, last sample

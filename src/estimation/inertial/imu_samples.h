@@ -15,48 +15,41 @@
 
 namespace robot_control {
 
+/// Holds what the IMU shows in one step.
+struct ImuReading {
+  std::optional<Vector3> gyro;           ///< rad/s, mean over the step, bias included; empty: lost
+  std::optional<Vector3> accelerometer;  ///< m/s², mean; empty: lost, or its samples come > kSlowAccelerometer apart
+  Vector3 rate{};                        ///< rad/s, bias included: the mean, or the sample that completes a trapezoid
+  Vector3 sample{};                      ///< rad/s, last sample of the gyro
+  bool fresh_gyro = false;               ///< The step brought a sample of the gyro.
+  bool refused = false;                  ///< The step brought an invalid sample.
+  double gyro_gap = 0;                   ///< s between two samples
+  double gyro_unchanged = 0;             ///< s for which the gyro has repeated one sample
+};
+
 class ImuSamples {
  public:
   /// `base_from_imu` is a rotation. `dt` is the time in s since the last call, 0 in the first.
-  void step(const SensorFrame& sensors, const Eigen::Matrix3d& base_from_imu, double dt) noexcept;
-
-  /// Returns the mean over the last step; empty: the gyro is lost.
-  const std::optional<Eigen::Vector3d>& gyro() const noexcept { return gyro_.mean; }
-  /// Returns the mean over the last step; empty if the sensor is lost or its samples come more than kSlowAccelerometer
-  /// apart.
-  std::optional<Eigen::Vector3d> accelerometer() const noexcept {
-    return accelerometer_.gap > Tuning::kSlowAccelerometer ? std::nullopt : accelerometer_.mean;
-  }
-  bool new_gyro() const noexcept { return gyro_.fresh; }  ///< The last step brought a sample.
-  const Eigen::Vector3d& last_gyro() const noexcept { return gyro_.last; }
-  /// Returns the rate in rad/s, bias included; the gyro must not be lost. The mean of a step that completes a trapezoid
-  /// is no rate, and the sample is returned instead.
-  const Eigen::Vector3d& gyro_rate() const noexcept { return gyro_.catches_up ? gyro_.last : *gyro_.mean; }
-  double gyro_unchanged() const noexcept { return gyro_unchanged_; }  ///< s for which the gyro has repeated one sample
-  double gyro_gap() const noexcept { return gyro_.gap; }              ///< s between two samples
-  bool refused() const noexcept { return refused_; }                  ///< The last step brought an invalid sample.
+  ImuReading step(const SensorFrame& sensors, const Eigen::Matrix3d& base_from_imu, double dt) noexcept;
 
  private:
   struct Channel {
-    std::optional<Eigen::Vector3d> mean;
-    Eigen::Vector3d last = Eigen::Vector3d::Zero();
-    bool received = false;  ///< A sample was received in this run.
-    bool known = false;     ///< The sensor is not lost.
-    bool fresh = false;
-    bool catches_up = false;
-    double age = 0;       ///< s since the last sample
-    double last_gap = 0;  ///< s between the last two
-    double gap = 0;       ///< s, the shorter of the last two gaps, so that one lost sample does not make a slow sensor
+    Vector3 last{};
+    bool received = false;    ///< A sample was received in this run.
+    bool known = false;       ///< The sensor is not lost.
+    bool catches_up = false;  ///< The last step completed a trapezoid.
+    double age = 0;           ///< s since the last sample
+    double last_gap = 0;      ///< s between the last two
+    double gap = 0;           ///< s, shorter one of the last two gaps: a lost sample does not make a slow sensor
     double hold = Tuning::kMinHoldTime;
+
+    /// Returns the mean over the step.
+    std::optional<Vector3> step(const std::optional<Vector3>& sample, double dt, bool trapezoid) noexcept;
   };
 
-  static void accept(Channel& channel, const std::optional<Eigen::Vector3d>& sample, double dt,
-                     bool trapezoid) noexcept;
-
   Channel gyro_;
-  double gyro_unchanged_ = 0;  ///< s
   Channel accelerometer_;
-  bool refused_ = false;
+  double gyro_unchanged_ = 0;  ///< s
 };
 
 }  // namespace robot_control

@@ -14,6 +14,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "estimation/values.h"
+
 namespace robot_control {
 
 class RateTracker {
@@ -24,17 +26,17 @@ class RateTracker {
 
   /// `rate` is in rad/s.
   void reset(const Eigen::Vector3d& rate) noexcept {
-    rate_ = rate;
-    acceleration_.setZero();
+    *rate_ = rate;
+    (*acceleration_).setZero();
   }
 
   /// `measured` is in rad/s, `dt` > 0 s after the last one.
   void step(const Eigen::Vector3d& measured, double dt) noexcept {
     const double b = dt == period_ ? period_beta_ : beta(dt);
-    rate_ += dt * acceleration_;
-    const Eigen::Vector3d error = measured - rate_;
-    rate_ += (1 - b * b) * error;
-    acceleration_ += (1 - b) * (1 - b) / dt * error;
+    *rate_ += dt * *acceleration_;
+    const Eigen::Vector3d error = measured - *rate_;
+    *rate_ += (1 - b * b) * error;
+    *acceleration_ += (1 - b) * (1 - b) / dt * error;
   }
 
   /// Follows `measured`, smoothed from the second step in a row with `smooth`. At rest, in the first step of a motion
@@ -48,7 +50,7 @@ class RateTracker {
     following_ = smooth;
   }
 
-  const Eigen::Vector3d& rate() const noexcept { return rate_; }  ///< rad/s
+  Eigen::Vector3d rate() const noexcept { return *rate_; }  ///< rad/s
 
   /// Returns the variance of `rate` over that of the samples of a white gyro, between 0 and 1/2. Each `measured` is the
   /// mean of two neighbours, so the gain is Σ(cᵢ + cᵢ₋₁)²/4 over the loop's impulse response c. It costs some 10³
@@ -62,8 +64,8 @@ class RateTracker {
   double period_;
   double period_beta_;
   bool following_ = false;
-  Eigen::Vector3d rate_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d acceleration_ = Eigen::Vector3d::Zero();  ///< rad/s²
+  Stored<Eigen::Vector3d> rate_;
+  Stored<Eigen::Vector3d> acceleration_;  ///< rad/s²
 };
 
 inline double RateTracker::noise_gain() const noexcept {
@@ -73,8 +75,8 @@ inline double RateTracker::noise_gain() const noexcept {
   double last = 0;
   for (double left = 1; left > kFaded; left *= period_beta_) {
     loop.step(left == 1 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::Zero().eval(), period_);
-    sum += (loop.rate_.x() + last) * (loop.rate_.x() + last) / 4;
-    last = loop.rate_.x();
+    sum += (loop.rate().x() + last) * (loop.rate().x() + last) / 4;
+    last = loop.rate().x();
   }
   return sum + last * last / 4;
 }

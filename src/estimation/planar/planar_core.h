@@ -10,24 +10,19 @@
 ///   right − left = B (1 + β)(ψ − ψ₀ − τ (ω − ω₀)) − ε s    s = (left + right)/2, B: effective wheel base of the model
 ///
 /// The state is τ, x, y, ψ, ψ₀ (yaw at the beginning of the block), b (gyro bias), ε (radius_ratio − 1) and β
-/// (wheel_base_factor − 1). Four further errors widen the covariance and are not corrected (S. F. Schmidt, 1966):
+/// (wheel_base_factor − 1). Three further errors widen the covariance and are not corrected (S. F. Schmidt, 1966):
 ///
 ///   κ        scale of the gyro
-///   b_rest   part of b's error that a gyro noisier than its data sheet causes during rests
 ///   x_ICR    centre of rotation ahead of the middle of the wheels: a turn dψ moves the middle by −x_ICR dψ sideways
 ///   radius   mean radius of the wheels, relative; it scales the path
 ///
-/// An innovation counts with at most kHuber deviations, and beyond kGate deviations it is not used. The values of ε and
-/// β walk in proportion to the slip noise (wheel_noise.h). If wheels and gyro contradict each other, the heading
-/// follows the gyro. Its deviation is the largest angle by which both have turned apart since the last rest.
+/// An innovation counts with at most kHuber deviations. Beyond kGate deviations it is not used. ε and β walk in
+/// proportion to the slip noise (wheel_noise.h). If wheels and gyro contradict each other, the heading follows the gyro.
+/// Its deviation is the largest angle by which both have turned apart since the last rest.
 ///
 /// Until the bias is known, corrections of pose and b are held back, and P is that of the uncorrected pose. The bias is
 /// known after a rest, or once undragged wheels prove that b differs from the bias used so far. The first rest corrects
-/// the pose by ∂(x, y, ψ)/∂b alone. Until then P_xy also contains q qᵀ:
-///
-///   q = Σ min(1, √¾ σ_ψ²) (dx, dy)
-///
-/// The reasons are in docs/evidence/derivations.md.
+/// the pose by ∂(x, y, ψ)/∂b alone. The reasons are in docs/evidence/derivations.md.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -63,8 +58,8 @@ struct PlanarCoreParams {
 
 class PlanarCore {
  public:
-  enum Index : int { kOffset, kX, kY, kYaw, kAnchor, kBias, kRatio, kBase, kScale, kRestBias, kIcr, kRadius, kSize };
-  static constexpr int kConsidered = 4;  ///< the last states, which are considered and not corrected
+  enum Index : int { kOffset, kX, kY, kYaw, kAnchor, kBias, kRatio, kBase, kScale, kIcr, kRadius, kSize };
+  static constexpr int kConsidered = 3;  ///< the last states, which are considered and not corrected
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
   using Vector = Eigen::Matrix<double, kSize, 1>;
 
@@ -89,7 +84,7 @@ class PlanarCore {
   /// Moves the pose by x, y (m, odom axes) while the robot turns at `rate` rad/s.
   void roll(double x, double y, double rate) noexcept;
   void shift(double x, double y, double variance) noexcept;  ///< m, m²
-  void add_yaw_variance(double variance) noexcept { covariance_(kYaw, kYaw) += variance; }
+  void add_yaw_variance(double variance) noexcept { (*covariance_)(kYaw, kYaw) += variance; }
 
   /// While the bias is unknown, corrections of pose and bias are held back, and the covariance includes them. Clock
   /// offset and calibration are corrected nevertheless.
@@ -98,9 +93,8 @@ class PlanarCore {
 
   /// Begins a block when the travel of both sides has been read.
   void begin_block(double rate) noexcept;
-  /// Ends the block after `left` and `right` m in `dt` s. `rate` (rad/s) is the gyro's at the end. `jitter` (s²) is the
-  /// variance of the stamps of the wheels.
-  Innovation end_block(double left, double right, double rate, double dt, double jitter = 0) noexcept;
+  /// Ends the block after `left` and `right` m in `dt` s. `rate` (rad/s) is the gyro's at the end.
+  Innovation end_block(double left, double right, double rate, double dt) noexcept;
   /// Adds a contradiction of wheels and gyro by `angle` rad, which arose while the robot travelled `distance` m.
   void contradict(double angle, double distance) noexcept;
   /// Returns true if the contradiction since the last rest exceeded kUnknownHeading.
@@ -108,54 +102,45 @@ class PlanarCore {
   void end_contradiction() noexcept { apart_ = largest_apart_ = 0; }  ///< The covariance stays.
   /// Measures the bias by the gyro's mean at rest, rad/s. With `keeps_pose` the pose is not corrected.
   void rest(double mean, double variance, bool keeps_pose) noexcept;
-  void set_gyro_noise(double density) noexcept { gyro_noise_ = density; }  ///< rad/s/√Hz, learned
-  void age(double dt) noexcept { covariance_(kBias, kBias) += square(params_.gyro_bias_walk) * dt; }
-  void open_bias(double variance) noexcept { covariance_(kBias, kBias) += variance; }
+  void age(double dt) noexcept { (*covariance_)(kBias, kBias) += square(params_.gyro_bias_walk) * dt; }
+  void open_bias(double variance) noexcept { (*covariance_)(kBias, kBias) += variance; }
 
-  PlanarPose pose() const noexcept { return {state_[kX], state_[kY], state_[kYaw]}; }
-  double bias() const noexcept { return state_[kBias]; }                     ///< rad/s
-  double ratio() const noexcept { return state_[kRatio]; }                   ///< ε
-  double base() const noexcept { return state_[kBase]; }                     ///< β
-  double offset() const noexcept { return state_[kOffset]; }                 ///< τ, s
-  double turned() const noexcept { return state_[kYaw] - state_[kAnchor]; }  ///< rad, in this block
-  double slip() const noexcept { return noise_.slip(); }                     ///< m/√m, learned
+  PlanarPose pose() const noexcept { return {(*state_)[kX], (*state_)[kY], (*state_)[kYaw]}; }
+  double bias() const noexcept { return (*state_)[kBias]; }                        ///< rad/s
+  double ratio() const noexcept { return (*state_)[kRatio]; }                      ///< ε
+  double base() const noexcept { return (*state_)[kBase]; }                        ///< β
+  double offset() const noexcept { return (*state_)[kOffset]; }                    ///< τ, s
+  double turned() const noexcept { return (*state_)[kYaw] - (*state_)[kAnchor]; }  ///< rad, in this block
+  double slip() const noexcept { return noise_.slip(); }                           ///< m/√m, learned
   WheelCalibration calibration() const noexcept {
     return {1 + ratio(), 1 + base(), deviation(kRatio), deviation(kBase)};
   }
 
   /// Covariance of the published state, including the corrections that are held back.
-  Matrix covariance() const noexcept {
-    Matrix all = covariance_ + held_ * held_.transpose();
-    all.block<2, 2>(kX, kX) += second_order_ * second_order_.transpose();
-    return all;
-  }
-  double covariance(int i, int k) const noexcept { return covariance_(i, k) + held_[i] * held_[k]; }
+  Matrix covariance() const noexcept { return *covariance_ + *held_ * (*held_).transpose(); }
+  double covariance(int i, int k) const noexcept { return (*covariance_)(i, k) + (*held_)[i] * (*held_)[k]; }
   double deviation(int i) const noexcept { return std::sqrt(std::max(0.0, covariance(i, i))); }
-  double bias_variance() const noexcept { return own_bias_variance() + square(held_[kBias]); }  ///< (rad/s)²
+  double bias_variance() const noexcept { return covariance(kBias, kBias); }  ///< (rad/s)²
 
  private:
   void add(int to, double factor, int from) noexcept;
   void forget(int first, int count) noexcept;
   void slide(double turned) noexcept;
   void correct(Vector gain, const Vector& ph, double s, double innovation) noexcept;
-  void consider_rest(Vector gain, double variance) noexcept;
-  void walk(double mean, double rolled, double dt) noexcept;
-  bool bias_proven() const noexcept;
-  double own_bias_variance() const noexcept {  ///< without the corrections that are held back
-    return covariance_(kBias, kBias) + 2 * covariance_(kBias, kRestBias) + covariance_(kRestBias, kRestBias);
+  void walk(int i, double variance) noexcept {  ///< A held value has no variance and does not walk.
+    if ((*covariance_)(i, i) > 0) (*covariance_)(i, i) += variance;
   }
+  bool bias_proven() const noexcept;
 
   PlanarCoreParams params_;
-  Vector state_ = Vector::Zero();
-  Matrix covariance_ = Matrix::Zero();
-  Vector held_ = Vector::Zero();          ///< corrections that are held back
-  Vector by_bias_ = Vector::Unit(kBias);  ///< derivative of the pose by the bias that it was integrated with
-  Eigen::Vector2d second_order_ = Eigen::Vector2d::Zero();  ///< q, m
+  Stored<Vector> state_;
+  Stored<Matrix> covariance_;
+  Stored<Vector> held_;                          ///< corrections that are held back
+  Stored<Vector> by_bias_{Vector::Unit(kBias)};  ///< derivative of the pose by the bias of its integration
   WheelNoise noise_;
   double apart_ = 0;          ///< rad, sum of the contradictions since the last rest
   double largest_apart_ = 0;  ///< rad, largest |apart_| since the last rest
   double anchor_rate_ = 0;    ///< rad/s, at the beginning of the block
-  double gyro_noise_;         ///< rad/s/√Hz, learned
   bool bias_known_ = true;
 };
 

@@ -31,14 +31,14 @@ RestWindow RestWatch::step(const Sample& sample, const Bias& bias) noexcept {
     return RestWindow::kBroken;
   }
   time_ += sample.dt;
-  if (sample.gyro != nullptr) gyro_.add(*sample.gyro, sample.dt);
-  if (sample.accelerometer != nullptr) force_.add(*sample.accelerometer, sample.dt);
+  if (sample.gyro) gyro_.add(*sample.gyro, sample.dt);
+  if (sample.accelerometer) force_.add(*sample.accelerometer, sample.dt);
   return time_ < params_.window * (1 - 1e-9) ? RestWindow::kOpen : close(bias);
 }
 
 RestWindow RestWatch::close(const Bias& bias) noexcept {
-  Window now{.time = time_, .gyro = {}, .force = {}};
-  if (force_.over(time_)) now.force = force_.mean();
+  Means now{.time = time_};
+  if (force_.over(time_)) now.accelerometer = force_.mean();
   RestWindow verdict = RestWindow::kQuiet;
   if (gyro_.over(time_)) {
     Vector3 mean = gyro_.mean();

@@ -35,9 +35,7 @@ class TimeMean {
     time_ += dt;
     for (std::size_t i = 0; i < 3; ++i) sum_[i] += value[i] * dt;
   }
-  bool over(double window) const noexcept {
-    return time_ >= window / 2;
-  }  ///< The samples cover half the window at least.
+  bool over(double window) const noexcept { return time_ >= window / 2; }  ///< The samples cover half the window.
   Vector3 mean() const noexcept { return {sum_[0] / time_, sum_[1] / time_, sum_[2] / time_}; }
 
  private:
@@ -59,9 +57,9 @@ class RestWatch {
 
   struct Sample {
     double dt = 0;
-    const Vector3* gyro = nullptr;           ///< rad/s, base axes
-    const Vector3* accelerometer = nullptr;  ///< m/s²
     double left = 0, right = 0;              ///< m, travel in this step
+    std::optional<Vector3> gyro{};           ///< rad/s, base axes
+    std::optional<Vector3> accelerometer{};  ///< m/s²
   };
   /// Describes the bias of the gyro, in rad/s.
   struct Bias {
@@ -69,32 +67,31 @@ class RestWatch {
     Vector3 deviation{};  ///< between a window's mean and the bias, or two means if it is unknown
     bool known = true;
   };
+  /// Holds the means over a quiet window.
+  struct Means {
+    double time = 0;                         ///< s, length of the window
+    std::optional<Vector3> gyro{};           ///< rad/s, minus the turn of the wheels
+    std::optional<Vector3> accelerometer{};  ///< m/s²
+  };
   RestWindow step(const Sample& sample, const Bias& bias) noexcept;
 
   void reset() noexcept;
 
-  void discard() noexcept { pending_ = {}; }  ///< Discards the last window, in which the body still rocked.
+  void discard() noexcept { pending_ = {}; }  ///< discards the last window, in which the body still rocked
 
-  double time() const noexcept { return done_.time; }  ///< s, length of the window that counts
-  /// rad/s, mean of that window, minus the turn of the wheels.
-  const std::optional<Vector3>& gyro() const noexcept { return done_.gyro; }
-  const std::optional<Vector3>& force() const noexcept { return done_.force; }          ///< m/s²
-  const std::optional<Vector3>& last_force() const noexcept { return pending_.force; }  ///< m/s², of the last window
-  bool bias_changed() const noexcept { return bias_changed_; }  ///< The bias differs from the known one.
+  const Means& means() const noexcept { return done_; }  ///< those of the window that counts
+  /// Returns true if the last window shows another bias of the gyro than the known one.
+  bool bias_changed() const noexcept { return bias_changed_; }
 
  private:
-  struct Window {
-    double time = 0;
-    std::optional<Vector3> gyro, force;
-  };
   void begin() noexcept;
   RestWindow close(const Bias& bias) noexcept;
 
   RestWatchParams params_;
   double time_ = 0, left_ = 0, right_ = 0;
   TimeMean gyro_, force_;
-  Window pending_;
-  Window done_;
+  Means pending_;
+  Means done_;
   Vector3 steady_gyro_{};
   double steady_time_ = 0, repeated_time_ = 0;
   bool bias_changed_ = false;

@@ -48,7 +48,7 @@ Planar MotionDifference::lever(double yaw, const Vector3& up) const noexcept {
 
 bool MotionDifference::step(const Sample& sample) noexcept {
   const Planar acceleration = rotated({sample.acceleration[0], sample.acceleration[1]}, sample.yaw - sample.turned / 2);
-  InertialMotion& inertial = now_.inertial;
+  Inertial& inertial = now_.inertial;
   inertial.time += sample.dt;
   inertial.path = inertial.path + (inertial.velocity + acceleration * sample.dt / 2) * sample.dt;
   inertial.lever = lever(sample.yaw, sample.up);
@@ -74,13 +74,29 @@ MotionDifference::Point MotionDifference::before(double time) const noexcept {
   return difference(record(std::min(index_before(time), last_index())));
 }
 
-InertialMotion MotionDifference::inertial_at(double time) const noexcept {
+/// Path and yaw follow the cubic through values and derivatives of both points (Hermite), the rest a line.
+MotionDifference::Inertial MotionDifference::inertial_at(double time) const noexcept {
   const std::size_t i = index_before(time);
-  return interpolated(record(i).inertial, i + 1 < count_ ? record(i + 1).inertial : now_.inertial, time);
+  const Inertial& from = record(i).inertial;
+  const Inertial& to = i + 1 < count_ ? record(i + 1).inertial : now_.inertial;
+  const double span = to.time - from.time;
+  const double passed = time - from.time;
+  const double part = span > 0 ? std::clamp(passed / span, 0.0, 1.0) : 0;
+  const auto cubic = [&](const auto& a, const auto& a_rate, const auto& b, const auto& b_rate, const auto& rate) {
+    return a + (a_rate + rate) * (passed / 2) +
+           (b - a - (a_rate + b_rate) * (span / 2)) * (part * part * (3 - 2 * part));
+  };
+  Inertial motion{.time = time,
+                  .lever = from.lever + (to.lever - from.lever) * part,
+                  .velocity = from.velocity + (to.velocity - from.velocity) * part,
+                  .yaw_rate = from.yaw_rate + (to.yaw_rate - from.yaw_rate) * part};
+  motion.path = cubic(from.path, from.velocity, to.path, to.velocity, motion.velocity);
+  motion.yaw = cubic(from.yaw, from.yaw_rate, to.yaw, to.yaw_rate, motion.yaw_rate);
+  return motion;
 }
 
 MotionDifference::Point MotionDifference::difference(const Record& record) const noexcept {
-  const InertialMotion inertial = inertial_at(record.inertial.time - clock_offset_);
+  const Inertial inertial = inertial_at(record.inertial.time - clock_offset_);
   return {.time = record.inertial.time,
           .path_difference = record.wheel_path + inertial.lever - inertial.path,
           .turn_difference = record.right_minus_left - params_.wheel_base * inertial.yaw,

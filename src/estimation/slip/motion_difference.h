@@ -22,7 +22,6 @@
 #include <array>
 #include <cstddef>
 
-#include "estimation/slip/inertial_motion.h"
 #include "estimation/tuning.h"
 #include "estimation/values.h"
 
@@ -90,9 +89,18 @@ class MotionDifference {
  private:
   static constexpr std::size_t kPoints = 64;
 
+  /// Holds the motion by gyro and accelerometer at one time.
+  struct Inertial {
+    double time = 0;      ///< s
+    Planar path{};        ///< m, odom axes: ∬ acceleration dt² of the IMU since the restart
+    Planar lever{};       ///< m, odom axes: from the middle of the wheels to the IMU
+    Planar velocity{};    ///< m/s, odom axes: integral of the acceleration since the restart
+    double yaw = 0;       ///< rad
+    double yaw_rate = 0;  ///< rad/s
+  };
   /// Holds both motions until `inertial.time`.
   struct Record {
-    InertialMotion inertial;
+    Inertial inertial;
     Planar wheel_path{};          ///< m, odom axes
     double right_minus_left = 0;  ///< m
     double distance = 0;          ///< m
@@ -104,7 +112,7 @@ class MotionDifference {
   std::size_t oldest() const noexcept { return count_ > kPoints ? count_ - kPoints : 0; }
   std::size_t last_index() const noexcept { return index_before(waits() ? time() + clock_offset_ : time()); }
   std::size_t index_before(double time) const noexcept;  ///< newest record that is not later, else the oldest
-  InertialMotion inertial_at(double time) const noexcept;
+  Inertial inertial_at(double time) const noexcept;
   Point difference(const Record& record) const noexcept;
 
   SlipParams params_;

@@ -32,7 +32,7 @@ void ResidualLevels::learn(double time, std::size_t span, const SlipResidual& re
   learned_at_[span] = time;
   if (span == kTiltSpan) {
     const double share = 1.0 / static_cast<double>(count_[span][SlipResidual::kAlong] + 1);
-    usual_speed_ += std::max(Tuning::kUsualSpeedShare, share) * (residual.speed() - usual_speed_);
+    usual_speed_ += std::max(Tuning::kForgetting, share) * (residual.speed() - usual_speed_);
   }
   for (const Channel channel : SlipResidual::kEach) {
     const double nominal = residual_deviation(channel, residual, uncertainty, params_);

@@ -52,7 +52,7 @@ EncoderReading SideEncoder::step(const SensorFrame& sensors, double dt) noexcept
   for (Wheel& wheel : wheels_) sum += wheel.accept(sensors);
   if (reading == EncoderReading::kTravel) travel_ = sum / static_cast<double>(wheels_.size());
   time_ = waiting_;
-  gap_ = std::min(std::max(waiting_, Tuning::kGapFading * gap_), Tuning::kMaxGap);
+  gap_ = std::min(std::max(waiting_, (1 - Tuning::kForgetting) * gap_), Tuning::kMaxGap);
   waiting_ = 0;
   known_ = true;
   rejected_ = 0;

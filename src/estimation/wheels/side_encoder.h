@@ -40,7 +40,7 @@ class SideEncoder {
   bool received() const noexcept { return waiting_ == 0 && known_; }
   bool known() const noexcept { return known_; }        ///< A reading was accepted in this run.
   double waiting() const noexcept { return waiting_; }  ///< s since a reading was accepted
-  /// Returns the usual gap between readings, in s. It is the largest gap, fading by kGapFading per reading because
+  /// Returns the usual gap between readings, in s. It is the largest gap, fading by kForgetting per reading because
   /// stamps jitter and readings come in batches. It is at most kMaxGap.
   double gap() const noexcept { return gap_; }
 

@@ -4,9 +4,6 @@
 /// The step is the greatest common divisor of the changes between readings (Euclid), to kRounding of the speed. Speeds
 /// without steps leave only that rounding. An encoder's counts are steps of the travel, whose error does not grow, so
 /// that a step that the count explains is ignored.
-///
-/// A reading is wrong by up to half a step. Readings that repeat it have the same error. So the travel of n equal
-/// readings in a row is wrong by n times as much.
 
 #include <algorithm>
 #include <cmath>
@@ -26,26 +23,20 @@ class SpeedQuantum {
     const double speed = travel / time;
     const double rounding = kRounding * std::max(std::abs(speed), std::abs(last_));
     double change = std::abs(speed - last_);
-    if (change > rounding) repeated_ = 0;
     while (change > rounding) change = std::abs(std::remainder(std::exchange(step_, change), change));
-    repeated_ += 1;
     time_ = time;
     last_ = speed;
   }
 
   double step() const noexcept { return step_ * time_ > 2 * count_ ? step_ : 0; }  ///< m/s
-  /// Returns the variance that the last reading adds to that of the travel, in m². The error of n equal readings is n
-  /// times as large.
-  double travel_variance() const noexcept { return (2 * repeated_ - 1) * square(step() * time_) / 12; }
 
  private:
   static constexpr double kRounding = 1e-3;  ///< stamps in ms
 
   double count_;
-  double step_ = 0;      ///< m/s
-  double last_ = 0;      ///< m/s
-  double time_ = 0;      ///< s
-  double repeated_ = 0;  ///< readings in a row
+  double step_ = 0;  ///< m/s
+  double last_ = 0;  ///< m/s
+  double time_ = 0;  ///< s
 };
 
 }  // namespace robot_control

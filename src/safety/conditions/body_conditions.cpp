@@ -38,7 +38,6 @@ BodyConditions::BodyConditions(const SafetyParameters& parameters, const RobotMo
       gyro_{.watch{kCauseImuStuck, parameters.imu_stuck, period}},
       accelerometer_{.watch{kCauseImuStuck, parameters.imu_stuck, period}},
       window_(std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(kImpactWindow / period)), 1, kMaxSamples)) {
-  across_.fill(Eigen::Vector3d::Zero());
   for (std::size_t i = 0; i < wheel_count_; ++i) {
     const WheelModel& wheel = robot.wheels[i];
     wheels_[i] = {.joint = wheel.joint, .rim_per_joint = wheel.sign * wheel.radius};
@@ -53,16 +52,16 @@ void BodyConditions::enter_run() noexcept {
     device->cycles = 0;
   }
   attitude_.reset();
-  force_.setZero();
-  across_.fill(Eigen::Vector3d::Zero());
+  force_ = {};
+  across_ = {};
   shock_ = 0;
   carried_ = 1;
 }
 
 bool BodyConditions::sample(const SensorFrame& sensors, SensorValidity validity, const Vector3& axes,
-                            Eigen::Vector3d& base) const noexcept {
+                            Eigen::Ref<Eigen::Vector3d> base) const noexcept {
   if ((sensors.valid & validity) == 0 || !finite(axes)) return false;
-  base = to_base_ * Vector(axes.data());
+  base = *to_base_ * Vector(axes.data());
   return true;
 }
 
@@ -96,11 +95,12 @@ void BodyConditions::weigh(const SensorFrame& sensors) noexcept {
 }
 
 void BodyConditions::shake(bool felt) noexcept {
-  const Eigen::Vector3d& up = attitude_.up();
-  across_[next_] = felt ? Eigen::Vector3d(force_ - force_.dot(up) * up) : Eigen::Vector3d::Zero();
+  const Eigen::Vector3d up = attitude_.up();
+  across_[next_] = {};
+  if (felt) *across_[next_] = *force_ - (*force_).dot(up) * up;
   next_ = next_ + 1 == window_ ? 0 : next_ + 1;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < window_; ++i) sum += across_[i];
+  for (std::size_t i = 0; i < window_; ++i) sum += *across_[i];
   shock_ = sum.norm() / static_cast<double>(window_);
 }
 
@@ -108,10 +108,10 @@ void BodyConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, boo
                           ActiveCauses& out) noexcept {
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();
   const bool turned = sample(sensors, kValidGyro, sensors.imu.angular_velocity, rate);
-  const bool felt = sample(sensors, kValidAccelerometer, sensors.imu.linear_acceleration, force_);
+  const bool felt = sample(sensors, kValidAccelerometer, sensors.imu.linear_acceleration, *force_);
 
-  const Eigen::Vector3d velocity = forward_speed(sensors) * Eigen::Vector3d::UnitX() + rate.cross(imu_);
-  const Eigen::Vector3d gravity = force_ - rate.cross(velocity);
+  const Eigen::Vector3d velocity = forward_speed(sensors) * Eigen::Vector3d::UnitX() + rate.cross(*imu_);
+  const Eigen::Vector3d gravity = *force_ - rate.cross(velocity);
   attitude_.step(turned ? &rate : nullptr, felt ? &gravity : nullptr, static_cast<double>(elapsed) * period_);
   const double tilt = attitude_.tilt();
   const double tilt_rate = attitude_.tilt_rate();

@@ -55,7 +55,7 @@ class BodyConditions {
   const Attitude& attitude() const noexcept { return attitude_; }
   double shock() const noexcept { return shock_; }      ///< m/s², the mean that is compared with the limit of impact
   double carried() const noexcept { return carried_; }  ///< part of the weight on the wheels; 1 without contact sensors
-  double force() const noexcept { return force_.norm(); }  ///< m/s², |a|, of the last good sample
+  double force() const noexcept { return (*force_).norm(); }  ///< m/s², |a|, of the last good sample
 
  private:
   static constexpr std::size_t kMaxSamples = 20;  ///< kImpactWindow at 2 kHz
@@ -73,7 +73,7 @@ class BodyConditions {
   };
 
   bool sample(const SensorFrame& sensors, SensorValidity validity, const Vector3& axes,
-              Eigen::Vector3d& base) const noexcept;
+              Eigen::Ref<Eigen::Vector3d> base) const noexcept;
   void repeat(Repetition& device, bool good, const Vector3& axes, std::uint64_t elapsed, bool wheels_turn,
               ActiveCauses& out) const noexcept;
   void weigh(const SensorFrame& sensors) noexcept;
@@ -85,18 +85,18 @@ class BodyConditions {
   double persistence_;  ///< s, of imu_stuck
   double tip_tilt_;     ///< rad
   std::size_t contacts_;
-  Eigen::Matrix3d to_base_;  ///< from IMU axes
-  Eigen::Vector3d imu_;      ///< m, from the middle of the axles, base axes
+  Stored<Eigen::Matrix3d> to_base_;  ///< from IMU axes
+  Stored<Eigen::Vector3d> imu_;      ///< m, from the middle of the axles, base axes
   std::size_t wheel_count_ = 0;
   std::array<Wheel, kMaxWheels> wheels_{};
 
   ConditionWatch tilt_, tip_over_, free_fall_, lift_, impact_;
   Attitude attitude_;
   Repetition gyro_, accelerometer_;
-  Eigen::Vector3d force_ = Eigen::Vector3d::Zero();
+  Stored<Eigen::Vector3d> force_;
   std::size_t window_;  ///< samples in kImpactWindow
   std::size_t next_ = 0;
-  std::array<Eigen::Vector3d, kMaxSamples> across_;  ///< m/s², the last ones
+  std::array<Stored<Eigen::Vector3d>, kMaxSamples> across_;  ///< m/s², the last ones
   double shock_ = 0;
   double carried_ = 1;
 };

@@ -17,15 +17,15 @@ void Attitude::step(const Eigen::Vector3d* rate, const Eigen::Vector3d* force, d
   uncorrected_ = std::min(uncorrected_ + dt, 2 * kTrust);
   if (rate != nullptr) carry(*rate, dt);
   if (force != nullptr) pull(*force, dt);
-  horizontal_ = std::hypot(up_.x(), up_.y());
+  horizontal_ = std::hypot((*up_).x(), (*up_).y());
   const bool leaning = rate != nullptr && horizontal_ > kUpright;
-  tilt_rate_ = leaning ? (rate->x() * up_.y() - rate->y() * up_.x()) / horizontal_ : 0;
+  tilt_rate_ = leaning ? (rate->x() * (*up_).y() - rate->y() * (*up_).x()) / horizontal_ : 0;
 }
 
 void Attitude::carry(const Eigen::Vector3d& rate, double dt) noexcept {
   const double size = rate.norm();
   const double angle = size * dt;
-  if (angle > 0 && std::isfinite(angle)) up_ = Eigen::AngleAxisd(-angle, rate / size) * up_;
+  if (angle > 0 && std::isfinite(angle)) *up_ = Eigen::AngleAxisd(-angle, rate / size) * up();
 }
 
 void Attitude::pull(const Eigen::Vector3d& force, double dt) noexcept {
@@ -33,14 +33,14 @@ void Attitude::pull(const Eigen::Vector3d& force, double dt) noexcept {
   if (!(std::abs(size - kGravity) < kBand)) return;
   const Eigen::Vector3d measured = force / size;
   const double weight = known() ? std::min(1.0, dt / kTimeConstant) : 1;
-  const Eigen::Vector3d pulled = up_ + weight * (measured - up_);
+  const Eigen::Vector3d pulled = *up_ + weight * (measured - *up_);
   uncorrected_ = 0;
   const double length = pulled.norm();
-  up_ = length > 0.5 ? Eigen::Vector3d(pulled / length) : measured;
+  *up_ = length > 0.5 ? Eigen::Vector3d(pulled / length) : measured;
 }
 
 double Attitude::tilt() const noexcept {
-  return std::atan2(horizontal_, up_.z());
+  return std::atan2(horizontal_, (*up_).z());
 }
 
 }  // namespace robot_control

@@ -27,6 +27,8 @@
 
 #include <Eigen/Core>
 
+#include "robot/stored.h"
+
 namespace robot_control {
 
 class Attitude {
@@ -44,7 +46,7 @@ class Attitude {
   bool known() const noexcept { return uncorrected_ <= kTrust; }
 
   /// u; while it is not known, the base's z axis or the last one known.
-  const Eigen::Vector3d& up() const noexcept { return up_; }
+  Eigen::Vector3d up() const noexcept { return *up_; }
 
   /// rad, 0 … π, between u and the base's z axis.
   double tilt() const noexcept;
@@ -56,7 +58,7 @@ class Attitude {
   void carry(const Eigen::Vector3d& rate, double dt) noexcept;
   void pull(const Eigen::Vector3d& force, double dt) noexcept;
 
-  Eigen::Vector3d up_ = Eigen::Vector3d::UnitZ();
+  Stored<Eigen::Vector3d> up_{Eigen::Vector3d::UnitZ()};
   double horizontal_ = 0;            ///< length of u's part across the base's z axis
   double uncorrected_ = 2 * kTrust;  ///< s since the last correction
   double tilt_rate_ = 0;
