@@ -210,11 +210,12 @@ EstimatorParameters continued(const EstimatorParameters& parameters, const Learn
   const WheelCalibration& was = calibration.wheels;
   if (wheels.radius_ratio_deviation > 0 && was.radius_ratio_deviation > 0) {
     wheels.radius_ratio = was.radius_ratio;
-    wheels.radius_ratio_deviation = grown(was.radius_ratio_deviation, kRatioWear, wheels.radius_ratio_deviation);
+    wheels.radius_ratio_deviation =
+        grown(was.radius_ratio_deviation, kRadiusRatioChange, wheels.radius_ratio_deviation);
   }
   if (wheels.wheel_base_deviation > 0 && was.wheel_base_deviation > 0) {
     wheels.wheel_base_factor = was.wheel_base_factor;
-    wheels.wheel_base_deviation = grown(was.wheel_base_deviation, kBaseWear, wheels.wheel_base_deviation);
+    wheels.wheel_base_deviation = grown(was.wheel_base_deviation, kWheelBaseChange, wheels.wheel_base_deviation);
   }
   if (estimated(calibration.gyro_bias_deviation)) {
     result.gyro_bias = calibration.gyro_bias;

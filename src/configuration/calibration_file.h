@@ -56,8 +56,8 @@ void write_calibration(const std::string& path, const LearnedCalibration& calibr
 /// Standard deviations of the changes between two runs. The radius ratio changes by 0.05 %: another load compresses a
 /// wheel of 0.2 m by 0.1 mm. The wheel base changes by 0.3 %: the contact point of a tyre moves by 1.5 mm at 0.5 m. The
 /// gyro's bias changes by 0.3 °/s: 20 K at the 0.015 °/s/K of a Bosch BMI088 (data sheet BST-BMI088-DS001, section 1).
-inline constexpr double kRatioWear = 0.0005;
-inline constexpr double kBaseWear = 0.003;
+inline constexpr double kRadiusRatioChange = 0.0005;
+inline constexpr double kWheelBaseChange = 0.003;
 inline constexpr double kBiasSwitchOn = 0.0052;  ///< rad/s
 
 /// Returns the parameters with the learned values in place of the initial ones. Deviations grow by the changes between

@@ -180,7 +180,9 @@ class Terminal:
             os.killpg(process.pid, signal.SIGKILL)
             output, _ = process.communicate()
             output += f"\nnot ended after {LIMIT:.0f} s"
-        if process.returncode != 0 or re.search(r"Traceback|^usage: |ERROR: ", without_cut_thread(output), re.MULTILINE):
+        if process.returncode != 0 or re.search(
+            r"Traceback|^usage: |ERROR: ", without_cut_thread(output), re.MULTILINE
+        ):
             raise FailedError(f"{what}\nexit code {process.returncode}\n{output}")
 
     def end_senders(self):
@@ -204,7 +206,9 @@ def without_cut_thread(output):
 
     roslaunch ends while its own threads wait for the master; what they print then says nothing of the command.
     """
-    return re.sub(r"^Exception in thread .*\nTraceback .*\n(  File .*\n(    .*\n?)*)*\Z", "", output, flags=re.MULTILINE)
+    return re.sub(
+        r"^Exception in thread .*\nTraceback .*\n(  File .*\n(    .*\n?)*)*\Z", "", output, flags=re.MULTILINE
+    )
 
 
 def free_port():

@@ -313,7 +313,8 @@ class FollowPathTest(RobotTestCase):
             pose.pose.orientation = self.robot.odom.pose.pose.orientation
         client = Client(goal)
         wait_for("reverse", lambda: self.robot.speed < -0.2)
-        self.assertEqual(client.end()[0], SUCCEEDED)
+        state, result = client.end()
+        self.assertEqual((state, result.reason), (SUCCEEDED, "done"))
 
     @again_after_a_stall
     def test_a_path_before_the_robot_is_taken_where_it_is_at_the_start(self) -> None:

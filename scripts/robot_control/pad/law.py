@@ -7,8 +7,8 @@ With enable_turbo_button held, the turbo scales hold instead. The names are thos
 
 The enable button counts only after it was seen released. That release has to follow each silence of the pad, each stop
 and each pause of this program by SETTLING (interruptions.py). The robot has to be permitted to drive then. A hold ends
-after max_hold, whatever the stick does. The reason: a wireless receiver that has lost its pad goes on reporting its last
-values, noise included.
+after max_hold, whatever the stick does. The reason: a wireless receiver that has lost its pad goes on reporting its
+last values, noise included.
 
 One pad is one sender. While messages of another sender arrive within joy_timeout, nothing moves.
 """
