@@ -33,7 +33,8 @@ struct VelocityCommand {
 
   /// 1 if, when the command arrived, another sender's newest message within silence_needed was refused or not of zero
   /// velocity. Then a zero velocity is no evidence that no motion is requested. The value is kNoMessage for the zero
-  /// velocity that is in force while no source commands (command_mux.h).
+  /// velocity that is in force while no source commands (command_mux.h), or because a command ended. If that command
+  /// arrived so recently that the controller may not have read it, the value is 1 instead.
   std::uint64_t contested = 0;
 };
 

@@ -406,9 +406,22 @@ TEST_F(RevokedSenderTest, ACommandOfADeadSenderEndsInAStopWhateverItsTimeout) {
   receive("/teleop", 0.5);
   EXPECT_FALSE(input_.update(now_.loop_ns));
   restart("/teleop");
+  pass(kSecond);
   EXPECT_TRUE(input_.update(now_.loop_ns));
   EXPECT_EQ(value().twist.linear[0], 0);
   EXPECT_EQ(value().contested, kNoMessage);
+}
+
+TEST_F(RevokedSenderTest, ACommandThatEndsBeforeTheControllerReadItStillContestsAnEarlierZero) {
+  receive("/teleop", 0);
+  receive("/teleop", 0.5);
+  stop();
+  EXPECT_EQ(value().twist.linear[0], 0);
+  EXPECT_EQ(value().contested, 1u);
+  receive("/other", 0.5);
+  pass(kSecond);
+  grant();
+  EXPECT_EQ(value().contested, kNoMessage) << "it was read, and has ended";
 }
 
 TEST_F(RevokedSenderTest, AZeroDuringTheStopIsEnough) {

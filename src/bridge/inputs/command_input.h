@@ -80,7 +80,7 @@ class CommandInput final : public CommandIntake {
   bool motion_requested(std::int64_t loop_ns) const { return requests_.any(loop_ns); }
 
  private:
-  void end_command();
+  void end_command(std::int64_t loop_ns);
   void refuse_revoked(const std::string& sender, std::int64_t loop_ns);
   void refuse_stamp(const std::string& sender, const JudgedStamp& stamp, std::int64_t loop_ns);
   void report_senders(std::int64_t loop_ns);
@@ -92,6 +92,7 @@ class CommandInput final : public CommandIntake {
   CommandSenders senders_;
   MotionRequests requests_;
   VelocityCommand value_;
+  std::int64_t command_ns_ = 0;  ///< when the command in force arrived
   std::map<std::string, StampVerdict> reported_stamps_;  ///< last reported verdict of each sender with wrong stamps
   std::map<std::string, std::int64_t>
       reported_ns_;  ///< time of each report, by sender and verdict or by the competing senders' names

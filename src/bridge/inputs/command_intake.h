@@ -12,6 +12,9 @@
 
 namespace robot_control {
 
+/// ns of the loop's time for which the controller may not have read a message: one cycle at 100 Hz, the lowest robot.rate.
+inline constexpr std::int64_t kUnread = 10'000'000;
+
 class CommandIntake {
  public:
   CommandIntake() = default;

@@ -8,7 +8,6 @@
 namespace robot_control {
 namespace {
 
-constexpr std::int64_t kMaxCycle = 10'000'000;  // ns; robot.rate is at least 100 Hz
 
 /// Returns whether a message is not older than `timeout`. A time that went back by more than that (a new simulation)
 /// makes it old.
@@ -127,7 +126,7 @@ void CommandMux::take_result(std::int64_t loop_ns, bool message) {
 }
 
 bool CommandMux::unread(std::int64_t loop_ns) const {
-  return message_ns_ && std::abs(loop_ns - *message_ns_) < kMaxCycle;
+  return message_ns_ && std::abs(loop_ns - *message_ns_) < kUnread;
 }
 
 void CommandMux::add_refusals() {
