@@ -17,8 +17,8 @@
 ///   radius   mean radius of the wheels, relative; it scales the path
 ///
 /// An innovation counts with at most kHuber deviations. Beyond kGate deviations it is not used. ε and β walk in
-/// proportion to the slip noise (wheel_noise.h). If wheels and gyro contradict each other, the heading follows the gyro.
-/// Its deviation is the largest angle by which both have turned apart since the last rest.
+/// proportion to the slip noise (wheel_noise.h). If wheels and gyro contradict each other, the heading follows the
+/// gyro. Its deviation is the largest angle by which both have turned apart since the last rest.
 ///
 /// Until the bias is known, corrections of pose and b are held back, and P is that of the uncorrected pose. The bias is
 /// known after a rest, or once undragged wheels prove that b differs from the bias used so far. The first rest corrects

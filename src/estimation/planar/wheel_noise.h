@@ -25,9 +25,9 @@ class WheelNoise {
     double slips = 0, twists = 0;
   };
 
-  /// `least_slip` (m/√m) is that of the best floor.
-  explicit WheelNoise(double least_slip) noexcept
-      : least_(least_slip), slip_(std::max(Tuning::kFirstSlip, least_slip)) {}
+  /// `least` (m/√m) is that of the best floor. A turn that drags no wheel begins with a third of the noise.
+  WheelNoise(double least, bool drags_wheels) noexcept
+      : least_(least), slip_(std::max(Tuning::kFirstSlip, least)), twist_(drags_wheels ? kScrub : kScrub / 3) {}
 
   /// `rolled` is the sum of both sides in m, `angle` is in rad and `wheel_base` in m.
   Variances variances(double rolled, double angle, double wheel_base) const noexcept {
@@ -46,9 +46,8 @@ class WheelNoise {
   double twist() const noexcept { return twist_; }  ///< rad/√rad
 
  private:
-  double least_;
-  double slip_;
-  double twist_ = Tuning::kFirstScrub;
+  static constexpr double kScrub = Tuning::kFirstScrub;
+  double least_, slip_, twist_;
 };
 
 }  // namespace robot_control
