@@ -142,6 +142,7 @@ void Estimator::move(double dt) noexcept {
   for (const auto& travel : s.middle_travel.step(s.wheels, turned, geometry_.wheel_base, s.core.ratio())) {
     path = path + roll(travel);
   }
+  s.core.shift(0, 0, s.wheels.travel_variance / 2);
   if (s.imu.gyro) turn_tilt(*s.imu.gyro, dt);
   if (parameters_.slip_detection) watch_slip(dt, turned, path);
   compare_turns(dt, angle.has_value());

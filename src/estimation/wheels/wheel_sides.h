@@ -22,6 +22,7 @@ struct WheelReading {
   std::array<bool, 2> lost{};         ///< The side is lost.
   double unread = 0;                  ///< m, travel of the middle by sides without a reading, at their last speeds
   double speed_step = 0;              ///< m/s, in which speeds are reported; 0: none
+  double travel_variance = 0;         ///< m², of each side's travel, by that step
   bool refused = false;               ///< A reading was not used.
   bool restarted = false;             ///< A side began from a new offset; its travel does not continue the earlier one.
   bool fell_silent = false;           ///< Both are lost and had brought readings.
