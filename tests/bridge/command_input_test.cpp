@@ -300,6 +300,7 @@ class RevokedSenderTest : public CommandInputTest {
 
 TEST_F(RevokedSenderTest, WhatAStopInterruptedIsRefusedUntilItsSendersOwnZero) {
   receive("/teleop", 0.5);
+  pass(kSecond / 10);  // the controller reads it
   stop();
   EXPECT_EQ(value().twist.linear[0], 0);
   EXPECT_EQ(value().contested, kNoMessage);

@@ -25,10 +25,11 @@ def children(pid: int) -> dict[str, int]:
     for status in Path("/proc").glob("[0-9]*/status"):
         try:
             fields = dict(line.split(":\t", 1) for line in status.read_text().splitlines() if ":\t" in line)
-        except OSError:
+            command = status.with_name("cmdline").read_text()
+        except OSError:  # It has ended meanwhile.
             continue
         if fields.get("PPid") == str(pid):
-            found[Path(status.with_name("cmdline").read_text().split("\0")[0]).name] = int(fields["Pid"])
+            found[Path(command.split("\0")[0]).name] = int(fields["Pid"])
     return found
 
 

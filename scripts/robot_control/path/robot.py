@@ -23,6 +23,8 @@ SAFETY_SILENCE = 3.0
 """s without safety_status; it comes once per second"""
 PATIENCE = 10.0
 """s to wait for odometry and the permit to drive"""
+CAUSE_DELAY = 0.5
+"""s by which the cause of a stop may follow the refusal that it leads to: they come from two nodes"""
 
 
 def pose_of(odometry: Odometry) -> Pose:
@@ -41,7 +43,7 @@ class Robot:
         self.odometry_at = -math.inf
         self.watch = SafetyWatch()
         self.commands = False  # true if the commands of this program reach the wheels
-        self.refused = False  # true if the controller awaits a zero from this program after a stop
+        self.refused_at = math.inf  # s, since when the controller awaits a zero from this program after a stop
         self.masked_by = ""
         rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1, tcp_nodelay=True)
         rospy.Subscriber("drive_state", DriveState, self._receive_state, queue_size=1, tcp_nodelay=True)
@@ -86,7 +88,8 @@ class Robot:
             return f"safety_status is silent for {SAFETY_SILENCE:g} s"
         if not self.drivable:
             return self.stop_in_words()
-        return "diff_drive_controller refuses what was requested before a stop" if self.refused else ""
+        refused = now - self.refused_at > CAUSE_DELAY
+        return "diff_drive_controller refuses what was requested before a stop" if refused else ""
 
     def stop_in_words(self) -> str:
         """Why the robot may not drive."""
@@ -124,5 +127,6 @@ class Robot:
         states = dict(text.split(": ", 1) for text in message.sources)
         state = states.get(SOURCE, "")
         self.masked_by = state if state.startswith(("masked", "locked")) else ""
-        self.refused = rospy.get_name() in message.revoked
-        self.commands = state in {"", "commands"} and not self.refused
+        refused = rospy.get_name() in message.revoked
+        self.refused_at = min(self.refused_at, time.monotonic()) if refused else math.inf
+        self.commands = state in {"", "commands"} and not refused
