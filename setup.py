@@ -25,4 +25,4 @@ PROGRAMS = (
 )
 packages = ["robot_control", *(f"robot_control.{name}" for name in ("common", "safety", *PROGRAMS))]
 
-setup(**generate_distutils_setup(packages=packages, package_dir={"": "scripts"}))
+setup(**generate_distutils_setup(packages=packages, package_dir={"": "python"}))

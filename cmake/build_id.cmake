@@ -1,5 +1,5 @@
-# Writes a source file with the number of this build (src/runtime/build_id.h): cmake -DSOURCE=src -DOPTIONS=… -DOUT=… -P
-set(folders signals robot estimation control safety hal)
+# Writes a source file with the number of this build (src/loop/build_id.h): cmake -DSOURCE=src -DOPTIONS=… -DOUT=… -P
+set(folders signals machine estimation control safety gate bus)
 list(TRANSFORM folders PREPEND ${SOURCE}/)
 list(TRANSFORM folders APPEND "/*.*")
 file(GLOB_RECURSE sources RELATIVE ${SOURCE} ${folders})
@@ -11,7 +11,7 @@ foreach(name ${sources})
 endforeach()
 string(SHA256 sum "${all}")
 string(SUBSTRING ${sum} 0 16 number)
-file(WRITE ${OUT} "#include \"runtime/build_id.h\"\n
+file(WRITE ${OUT} "#include \"loop/build_id.h\"\n
 namespace robot_control {
 
 std::uint64_t build_id() noexcept {

@@ -22,7 +22,7 @@ function(robot_control_ros target)
   add_dependencies(${target} ${PROJECT_NAME}_generate_messages_cpp)
 endfunction()
 
-# robot_control_node(NAME LIBRARY…): src/nodes/NAME.cpp, started with `rosrun robot_control NAME`.
+# robot_control_node(NAME LIBRARY…): src/main/NAME.cpp, started with `rosrun robot_control NAME`.
 function(robot_control_node name)
   add_executable(${name} ${name}.cpp)
   target_link_libraries(${name} PRIVATE ${ARGN})

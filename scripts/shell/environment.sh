@@ -24,7 +24,7 @@ export PATH=/usr/bin:/bin:/usr/sbin:/sbin:$PATH
 PYTHON=/usr/bin/python3
 unset PYTHONHOME
 LINTERS=$REPOSITORY/build/linters  # venv with ruff and mypy
-XACRO=$REPOSITORY/build/xacro      # venv with xacro; src/description/xacro.h looks for it
+XACRO=$REPOSITORY/build/xacro      # venv with xacro; src/machine/description/xacro.h looks for it
 
 # shellcheck source-path=SCRIPTDIR
 source "$REPOSITORY/scripts/shell/build_progress.sh"
@@ -71,7 +71,7 @@ build_workspace() {  # [without_tests]
   say "built in $((SECONDS - started)) s"
 }
 
-# The programs of tests/bench, which a build of the workspace leaves out.
+# The programs of bench/programs, which a build of the workspace leaves out.
 build_benchmarks() {
   local log=build/benchmarks.log
   if ! with_progress "$log" build/robot_control cmake --build build/robot_control --target benchmarks -j "$(compilers)"; then

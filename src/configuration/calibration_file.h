@@ -19,7 +19,7 @@
 #include <string>
 
 #include "estimation/estimator_parameters.h"
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 #include "signals/state_frame.h"
 
 namespace robot_control {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "hal/gate_parameters.h"
+#include "gate/gate_parameters.h"
 #include "parameters/block.h"
 #include "rt/realtime_thread.h"
 

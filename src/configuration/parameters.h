@@ -12,14 +12,14 @@
 #include "configuration/loop_parameters.h"
 #include "configuration/report_parameters.h"
 #include "control/drive_controller_parameters.h"
-#include "drivers/mujoco_plant_parameters.h"
+#include "drivers/mujoco/mujoco_plant_parameters.h"
 #include "estimation/estimator_parameters.h"
+#include "log/log_parameters.h"
+#include "machine/robot_parameters.h"
 #include "parameters/parameter_tree.h"
 #include "parameters/problem_list.h"
 #include "parameters/schema.h"
-#include "robot/robot_parameters.h"
 #include "safety/safety_parameters.h"
-#include "telemetry/log_parameters.h"
 
 namespace robot_control {
 
@@ -33,7 +33,7 @@ struct Parameters {
   DriveControllerParameters controller;
   std::string command_sources;  ///< path, see command_sources.h; empty: none, cmd_vel and cmd_vel_stamped command
   SafetyParameters safety;
-  std::string latch_file;  ///< path, see runtime/latch_file.h; empty: none
+  std::string latch_file;  ///< path, see loop/latch_file.h; empty: none
   ReportParameters report;
   TelemetryParameters telemetry;
   std::optional<double> no_effect;    ///< value of a key of an earlier version

@@ -11,7 +11,7 @@
 #include "control/wheel_loops/quantisation_ripple.h"
 #include "control/wheel_loops/wheel_loop_gains.h"
 #include "control/wheel_loops/wheel_loop_stability.h"
-#include "robot/suspicions.h"
+#include "machine/suspicions.h"
 
 namespace robot_control {
 

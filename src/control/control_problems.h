@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "control/drive_controller_parameters.h"
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 
 namespace robot_control {
 

@@ -8,7 +8,7 @@
 #include "control/drive_controller_parameters.h"
 #include "control/limits/speed_limiter.h"
 #include "control/wheel_loops/wheel_loop.h"
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 #include "signals/drive_tuning.h"
 
 namespace robot_control {

@@ -58,7 +58,7 @@
 #include "control/wheel_loops/feed_forward.h"
 #include "control/wheel_loops/ground_friction.h"
 #include "control/wheel_loops/wheel_loop.h"
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 #include "signals/command_frame.h"
 #include "signals/drive_tuning.h"
 #include "signals/fixed_vector.h"

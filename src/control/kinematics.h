@@ -10,11 +10,11 @@
 /// own radius and sign.
 
 #include "control/planar_twist.h"
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 
 namespace robot_control {
 
-/// Plans use this share of a joint's velocity limit. Beyond it the gate reduces the torque (hal/joint_clamp.h,
+/// Plans use this share of a joint's velocity limit. Beyond it the gate reduces the torque (gate/joint_clamp.h,
 /// kTaperStart), and a loaded wheel without that torque leaves the curve.
 inline constexpr double kUsableWheelSpeed = 0.9;
 

@@ -5,7 +5,7 @@
 /// mass with which the controller drives better is not necessarily the true mass. Geometry, limits and hash stay.
 
 #include "control/drive_controller_parameters.h"
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 
 namespace robot_control {
 

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 
 namespace robot_control {
 

@@ -16,7 +16,7 @@
 /// as late. Measured values are in docs/evidence/drive.md.
 
 #include "control/drive_controller_parameters.h"
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 
 namespace robot_control {
 

@@ -8,7 +8,7 @@
 #include "estimation/estimator_setup.h"
 #include "estimation/values.h"
 #include "estimation/wheels/arc.h"
-#include "robot/gravity.h"
+#include "machine/gravity.h"
 #include "signals/rotation.h"
 
 namespace robot_control {

@@ -55,7 +55,7 @@
 #include "estimation/wheels/wheel_geometry.h"
 #include "estimation/wheels/wheel_sides.h"
 #include "estimation/wheels/wheel_velocities.h"
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
 

@@ -7,7 +7,7 @@
 #include "estimation/slip/motion_difference.h"
 #include "estimation/tilt/tilt.h"
 #include "estimation/wheels/wheel_geometry.h"
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 
 namespace robot_control {
 

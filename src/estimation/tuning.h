@@ -2,9 +2,9 @@
 /// These are the constants of the estimator that are neither parameters (estimator_parameters.h) nor derived. Each line
 /// states unit, meaning and origin. Deviations are standard deviations.
 ///
-/// The origin "recordings" means drives of real robots and drives with their errors (lab/odometry/recordings.py,
+/// The origin "recordings" means drives of real robots and drives with their errors (bench/odometry/recordings.py,
 /// field_bench.py). The origin "faults" means drives in which a sensor fails for a short time
-/// (lab/odometry/short_faults.py).
+/// (bench/odometry/short_faults.py).
 
 #include <array>
 #include <cstdint>
@@ -48,7 +48,7 @@ struct Tuning {
   static constexpr std::array<double, 4> kResidualSpans{0.1, 0.2, 0.4, 0.8};  ///< s: T of slip_residual.h
   static constexpr double kPointInterval = 0.05;  ///< s between two points of the differences: half the shortest T
   static constexpr double kBlock = 1.0;           ///< s between comparisons of wheels and gyro; memory of confidences
-  static constexpr std::uint64_t kMaxHeld = 4;    ///< cycles or readings, the life of a command (hal/gate.h)
+  static constexpr std::uint64_t kMaxHeld = 4;    ///< cycles or readings, the life of a command (gate/gate.h)
   static constexpr double kMinHoldTime = 0.02;    ///< s for which a sample of an IMU holds at least: 50 Hz
   static constexpr double kMaxHoldTime = 0.2;     ///< s for which a sample or a bridged gap holds at most
   static constexpr double kSlowAccelerometer = 0.03;  ///< s between samples, above which motion is not resolved

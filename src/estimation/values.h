@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "robot/stored.h"
+#include "machine/stored.h"
 #include "signals/geometry.h"
 
 namespace robot_control {

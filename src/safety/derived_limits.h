@@ -28,7 +28,7 @@
 /// Battery limits are never derived: a URDF does not describe the battery. Measured values:
 /// docs/evidence/derivations.md.
 
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 #include "safety/safety_parameters.h"
 
 namespace robot_control {

@@ -36,7 +36,7 @@
 /// instance still runs or the gate has used a permit of this run.
 ///
 /// Permit::withdrawals counts starts (motion_release.h), latched causes and the end of an earlier monitor. A request
-/// from before one of them moves nothing after it (bridge/inputs/motion_requests.h).
+/// from before one of them moves nothing after it (ros/inputs/motion_requests.h).
 ///
 /// The speed limit of a permit is the smaller of the limit that the clearance gives and slow_speed. The latter applies
 /// while a cause with Reaction::kSlow is active and for kWarningHold after it (warnings.h). It never latches.
@@ -44,7 +44,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 #include "safety/conditions/body_conditions.h"
 #include "safety/conditions/frame_conditions.h"
 #include "safety/conditions/gate_conditions.h"

@@ -11,8 +11,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "machine/robot_model.h"
 #include "parameters/block.h"
-#include "robot/robot_model.h"
 
 namespace robot_control {
 
@@ -64,7 +64,7 @@ struct SafetyParameters {
   // clang-format on
 
   /// N·m/rad, of each wheel: RMS of the torque that the derived gains produce from encoder quantisation, divided by the
-  /// size of a count. Not a user parameter: it follows from robot and rate (runtime/safety_limits.h).
+  /// size of a count. Not a user parameter: it follows from robot and rate (loop/safety_limits.h).
   std::array<double, kMaxWheels> count_ripple{};
 };
 

@@ -21,7 +21,7 @@ inline constexpr std::size_t kLaws = 4;
 inline constexpr std::array<std::string_view, kLaws> kLawNodes{"mujoco_plant", "state_estimator",
                                                                "diff_drive_controller", "safety_monitor"};
 
-/// The distance of two snapshots of a law in cycles. It is half the length of a trace ring (rt/ring.h). So telemetry
+/// The distance of two snapshots of a law in cycles. It is half the length of a trace ring (bus/ring.h). So telemetry
 /// that begins to read finds a snapshot in the ring, and all later rows can be replayed.
 inline constexpr std::uint64_t kSnapshotCycles = 1024;
 inline constexpr std::size_t kSnapshotBytes = 40 * 1024;  ///< bytes of the longest state; that of the monitor has 30 KB

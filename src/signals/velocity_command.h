@@ -20,7 +20,7 @@ inline double silence_needed(double timeout) noexcept {
 
 /// The last usable command on `cmd_vel` or `cmd_vel_stamped`, with counts of refused ones. `count` grows by one with
 /// every usable command, so that no clock is needed to recognise a new one. When a message arrives, its stamp is
-/// converted to an age (bridge/inputs/command_input.h). From then on its age is counted in cycles, independent of any
+/// converted to an age (ros/inputs/command_input.h). From then on its age is counted in cycles, independent of any
 /// clock.
 struct VelocityCommand {
   Twist twist;  ///< base axes; NaN and infinity are passed on, the controller refuses them

@@ -4,18 +4,18 @@
 #include <string>
 #include <utility>
 
-#include "drivers/mujoco_plant.h"
-#include "faults/node_faults.h"
-#include "runtime/cycles/controller_cycle.h"
-#include "runtime/cycles/driver_cycle.h"
-#include "runtime/cycles/estimator_cycle.h"
-#include "runtime/cycles/monitor_cycle.h"
-#include "runtime/gate_setup.h"
-#include "runtime/retuning.h"
-#include "runtime/safety_limits.h"
-#include "runtime/start_check.h"
+#include "drivers/mujoco/mujoco_plant.h"
+#include "log/log_error.h"
+#include "loop/cycles/controller_cycle.h"
+#include "loop/cycles/driver_cycle.h"
+#include "loop/cycles/estimator_cycle.h"
+#include "loop/cycles/monitor_cycle.h"
+#include "loop/gate_setup.h"
+#include "loop/retuning.h"
+#include "loop/safety_limits.h"
+#include "loop/start_check.h"
 #include "signals/names.h"
-#include "telemetry/log_error.h"
+#include "simulation/faults/node_faults.h"
 
 namespace robot_control {
 namespace {

@@ -11,11 +11,11 @@
 #include <string>
 
 #include "configuration/parameters.h"
-#include "robot/robot_model.h"
+#include "log/rows/joined_row.h"
+#include "log/rows/row_log.h"
+#include "machine/robot_model.h"
 #include "signals/geometry.h"
 #include "signals/law_snapshot.h"
-#include "telemetry/joined_row.h"
-#include "telemetry/row_log.h"
 
 namespace robot_control {
 
@@ -50,8 +50,8 @@ class ClosedLoop {
   void set_parameters(const std::string& request);
 
   /// Injects a fault from the next step on, into the machine as by `~inject_fault`, or into a node
-  /// (faults/node_faults.h). The file names.h has the words. Throws std::invalid_argument with the list of words if one
-  /// is unknown.
+  /// (simulation/faults/node_faults.h). The file names.h has the words. Throws std::invalid_argument with the list of
+  /// words if one is unknown.
   void inject_fault(const std::string& component, const std::string& kind);
 
   /// Return cycle and time [s] of the sample in the next step.

@@ -33,9 +33,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from lab.robot_corpus import DIFFBOT, urdf_of
 from robot_control import ClosedLoop
 from robot_control.common.run_log import FloatArray, Log, read_run
+
+from bench.robot_corpus import DIFFBOT, urdf_of
 
 SUMS = Path(__file__).with_name("sums.json")
 ROW_QUANTITIES = (

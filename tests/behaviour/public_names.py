@@ -38,7 +38,7 @@ def _sources(folder: str) -> str:
 
 def topics() -> Iterator[str]:
     """Name and type; `~`: below the node's name."""
-    bridge = _sources("src/bridge")
+    bridge = _sources("src/ros")
     for owner, message, name in re.findall(r'(\w+)\.advertise<msg::(\w+)>\("([^"]+)"', bridge):
         yield f"{'~' if owner == 'own' else ''}{name} {message}"
     for message, name in re.findall(r'InputTopic<Bounded(\w+)> \w+\{"([^"]+)"', bridge):
@@ -47,7 +47,7 @@ def topics() -> Iterator[str]:
 
 def services() -> Iterator[str]:
     """`~`: below the node's name."""
-    for owner, name in re.findall(r'(\w+)\.advertiseService\("([^"]+)"', _sources("src/bridge")):
+    for owner, name in re.findall(r'(\w+)\.advertiseService\("([^"]+)"', _sources("src/ros")):
         yield f"{'~' if owner == 'own' else ''}{name}"
 
 
@@ -89,7 +89,7 @@ def programs() -> Iterator[str]:
     for path in ROOT.glob("scripts/*"):
         if path.is_file() and path.stat().st_mode & 0o111:
             yield f"scripts/{path.name}"
-    for path in ROOT.glob("src/nodes/*.cpp"):
+    for path in ROOT.glob("src/main/*.cpp"):
         yield f"node {path.stem}"
 
 

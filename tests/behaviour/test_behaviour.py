@@ -8,7 +8,8 @@ from pathlib import Path
 import behaviour
 import numpy as np
 import pytest
-from lab.robot_corpus import DIFFBOT
+
+from bench.robot_corpus import DIFFBOT
 
 JOINTS = ("left", "right")
 FLAGS = set(Path("/proc/cpuinfo").read_text().split())

@@ -6,8 +6,8 @@
 #include <iostream>
 #include <vector>
 
-#include "bench/kernel.h"
-#include "bench/rows.h"
+#include "bench/programs/kernel.h"
+#include "bench/programs/rows.h"
 #include "control/control_bench.h"
 #include "support/allocation_guard.h"
 

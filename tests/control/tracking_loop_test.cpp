@@ -1,4 +1,4 @@
-#include "robot/encoders/tracking_loop.h"
+#include "machine/encoders/tracking_loop.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "control/planar_twist.h"
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 
 namespace robot_control {
 

@@ -119,6 +119,6 @@ def check(words):
     elif program == "rosservice":
         assert f"`{words[2]}`" in (ROOT / "docs" / "interfaces.md").read_text(), words
     elif program == "rosparam":
-        assert any(words[2] in path.read_text() for path in (ROOT / "scripts").rglob("*.py")), words
+        assert any(words[2] in path.read_text() for path in (ROOT / "python").rglob("*.py")), words
     else:
         assert program in FOREIGN, words

@@ -26,7 +26,7 @@ def tree():
 @pytest.fixture(scope="module")
 def words(tree):
     """Every identifier of the program: sources, scripts, configuration, messages."""
-    folders = ("src/", "scripts/", "config/", "msg/", "srv/", "launch/")
+    folders = ("src/", "scripts/", "python/", "bench/", "config/", "msg/", "srv/", "launch/")
     texts = ((ROOT / path).read_text(errors="replace") for path in tree if path.startswith(folders))
     return set().union(*(re.findall(r"\w+", text) for text in texts))
 
@@ -70,7 +70,9 @@ def test_every_entry_script_of_a_table_exists_with_its_selection(page, tree):
     """`scripts/bench stops` names a bench, `scripts/test lockstep` a part of a test's name."""
     benches = (ROOT / "scripts" / "bench").read_text()
     cmake = [
-        (ROOT / path).read_text() for path in tree if path.startswith("tests/") and path.endswith("CMakeLists.txt")
+        (ROOT / path).read_text()
+        for path in tree
+        if path.startswith(("tests/", "bench/")) and path.endswith("CMakeLists.txt")
     ]
     tests = "\n".join([*(path for path in tree if path.startswith("tests/")), *cmake])
     for code in inline_code(page):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes msg/Trace.msg from the table of its fields in src/recording.
+"""Writes msg/Trace.msg from the table of its fields in src/log.
 
 tests/docs/trace_message.py      after a build with tests; then build again
 """
@@ -8,7 +8,7 @@ import subprocess
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-PROGRAM = ROOT / "build" / "robot_control" / "tests" / "recording" / "print_trace_message"
+PROGRAM = ROOT / "build" / "robot_control" / "tests" / "log" / "print_trace_message"
 
 if __name__ == "__main__":
     text = subprocess.run([PROGRAM], check=True, capture_output=True, text=True).stdout

@@ -2,7 +2,7 @@
 
 #include "estimation/estimator_fixture.h"
 #include "estimation/estimator_setup.h"
-#include "robot/bodies/rigid_bodies.h"
+#include "machine/bodies/rigid_bodies.h"
 #include "support/constants.h"
 
 namespace robot_control {

@@ -20,7 +20,7 @@
 
 #include "estimation/estimator_parameters.h"
 #include "estimation/wheels/wheel_geometry.h"
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 #include "signals/sensor_frame.h"
 
 namespace robot_control {

@@ -3,8 +3,8 @@
 #include <iostream>
 #include <vector>
 
-#include "bench/kernel.h"
-#include "bench/rows.h"
+#include "bench/programs/kernel.h"
+#include "bench/programs/rows.h"
 #include "estimation/estimator_fixture.h"
 #include "support/allocation_guard.h"
 

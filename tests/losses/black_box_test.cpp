@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "log/black_box/saved_black_box.h"
+#include "log/trace_reader.h"
+#include "loop/build_id.h"
 #include "losses_fixture.h"
-#include "recording/black_box/saved_black_box.h"
-#include "recording/trace_reader.h"
-#include "runtime/build_id.h"
 
 namespace robot_control {
 namespace {

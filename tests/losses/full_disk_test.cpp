@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "log/trace_reader.h"
 #include "losses_fixture.h"
-#include "recording/trace_reader.h"
 
 namespace robot_control {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
+#include "log/trace_reader.h"
 #include "losses_fixture.h"
-#include "recording/trace_reader.h"
 
 namespace robot_control {
 namespace {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "robot/gravity.h"
+#include "machine/gravity.h"
 
 namespace robot_control {
 namespace {

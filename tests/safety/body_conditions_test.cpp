@@ -10,7 +10,7 @@
 #include <limits>
 #include <numbers>
 
-#include "robot/gravity.h"
+#include "machine/gravity.h"
 #include "support/allocation_guard.h"
 #include "support/constants.h"
 

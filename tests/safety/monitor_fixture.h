@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "hal/gate.h"
+#include "gate/gate.h"
 #include "safety/derived_limits.h"
 #include "safety/safety_monitor.h"
 

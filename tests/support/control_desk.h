@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "rt/latest_value.h"
+#include "bus/latest_value.h"
 #include "signals/velocity_command.h"
 
 namespace robot_control {

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 
 namespace robot_control {
 

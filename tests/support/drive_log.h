@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "hal/bus.h"
-#include "rt/ring.h"
-#include "runtime/cycles/trace_sink.h"
+#include "bus/bus.h"
+#include "bus/ring.h"
+#include "loop/cycles/trace_sink.h"
 #include "signals/trace.h"
 
 namespace robot_control {

@@ -7,9 +7,9 @@
 #include <string>
 #include <utility>
 
+#include "loop/processes/process.h"
 #include "rt/clock.h"
 #include "rt/futex.h"
-#include "runtime/processes/process.h"
 #include "signals/names.h"
 #include "support/drive_log.h"
 #include "support/node_processes.h"

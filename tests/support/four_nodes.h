@@ -13,14 +13,14 @@
 #include <thread>
 #include <utility>
 
-#include "drivers/mujoco_plant.h"
+#include "drivers/mujoco/mujoco_plant.h"
+#include "loop/processes/controller_process.h"
+#include "loop/processes/driver_process.h"
+#include "loop/processes/estimator_process.h"
+#include "loop/processes/monitor_process.h"
+#include "loop/processes/telemetry_process.h"
 #include "rt/clock.h"
 #include "rt/futex.h"
-#include "runtime/processes/controller_process.h"
-#include "runtime/processes/driver_process.h"
-#include "runtime/processes/estimator_process.h"
-#include "runtime/processes/monitor_process.h"
-#include "runtime/processes/telemetry_process.h"
 #include "support/child_process.h"
 #include "support/scoped_bus.h"
 

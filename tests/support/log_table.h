@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "recording/trace_message.h"
-#include "recording/trace_reader.h"
-#include "robot/robot_model.h"
+#include "log/messages/trace_message.h"
+#include "log/trace_reader.h"
+#include "machine/robot_model.h"
 
 namespace robot_control {
 

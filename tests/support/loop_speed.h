@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "drivers/model/mujoco_model.h"
+#include "drivers/mujoco/model/mujoco_model.h"
 #include "rt/clock.h"
 #include "simulation/closed_loop.h"
 #include "support/four_nodes.h"

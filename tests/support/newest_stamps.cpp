@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <string_view>
 
-#include "runtime/processes/process.h"
+#include "loop/processes/process.h"
 #include "signals/command_frame.h"
 #include "signals/permit.h"
 #include "signals/sensor_frame.h"

@@ -15,15 +15,15 @@
 #include <new>
 #include <string>
 
-#include "drivers/mujoco_plant.h"
+#include "drivers/mujoco/mujoco_plant.h"
+#include "loop/processes/controller_process.h"
+#include "loop/processes/driver_process.h"
+#include "loop/processes/estimator_process.h"
+#include "loop/processes/monitor_process.h"
+#include "loop/processes/telemetry_process.h"
 #include "rt/crash_report.h"
 #include "rt/futex.h"
 #include "rt/realtime_thread.h"
-#include "runtime/processes/controller_process.h"
-#include "runtime/processes/driver_process.h"
-#include "runtime/processes/estimator_process.h"
-#include "runtime/processes/monitor_process.h"
-#include "runtime/processes/telemetry_process.h"
 #include "support/anonymous_memory.h"
 #include "support/child_process.h"
 #include "support/control_desk.h"

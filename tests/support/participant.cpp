@@ -16,17 +16,17 @@
 #include <string>
 #include <vector>
 
-#include "drivers/mujoco_plant.h"
+#include "drivers/mujoco/mujoco_plant.h"
+#include "loop/processes/controller_process.h"
+#include "loop/processes/driver_process.h"
+#include "loop/processes/estimator_process.h"
+#include "loop/processes/monitor_process.h"
+#include "loop/processes/telemetry_process.h"
 #include "rt/clock.h"
 #include "rt/crash_report.h"
 #include "rt/futex.h"
 #include "rt/realtime_thread.h"
 #include "rt/thread_priority.h"
-#include "runtime/processes/controller_process.h"
-#include "runtime/processes/driver_process.h"
-#include "runtime/processes/estimator_process.h"
-#include "runtime/processes/monitor_process.h"
-#include "runtime/processes/telemetry_process.h"
 
 namespace robot_control {
 namespace {

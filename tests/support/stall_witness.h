@@ -10,8 +10,8 @@
 #include <atomic>
 #include <cstdint>
 
+#include "loop/processes/process.h"
 #include "rt/clock.h"
-#include "runtime/processes/process.h"
 #include "support/anonymous_memory.h"
 #include "support/child_process.h"
 

@@ -13,9 +13,9 @@
 #include <cstdint>
 #include <string>
 
+#include "bus/latest_frames.h"
+#include "bus/ring.h"
 #include "rt/clock.h"
-#include "rt/latest_frames.h"
-#include "rt/ring.h"
 #include "rt/shared_memory.h"
 #include "support/anonymous_memory.h"
 #include "support/child_process.h"

@@ -11,9 +11,10 @@ from collections.abc import Iterator
 
 import rospy
 import rostest
-from lab import hostile
 from robot_control.msg import SafetyStatus
 from system_support import MONITOR, PLANT, RobotTestCase, wait_for
+
+from bench import hostile
 
 DESCRIPTORS = 256
 """Limit of each node; the usual 1024 would only make the test longer."""

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "bridge/messages/simulation_messages.h"
+#include "ros/messages/simulation_messages.h"
 
 namespace robot_control {
 namespace {

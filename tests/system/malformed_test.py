@@ -15,10 +15,11 @@ from pathlib import Path
 import rospy
 import rostest
 from geometry_msgs.msg import Twist, TwistStamped
-from lab import hostile
 from robot_control.srv import SetParameters
 from roscpp.srv import GetLoggers, SetLoggerLevel
 from system_support import CONTROLLER, LIMIT, LOOP, MONITOR, NoBool, RobotTestCase, wait_for
+
+from bench import hostile
 
 HOSTILE_RUNS = 10_000
 HOSTILE_TIME = 10.0

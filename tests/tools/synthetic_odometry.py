@@ -1,8 +1,9 @@
 """A recording from formulas: a robot on level ground that follows its commands exactly, without any noise."""
 
 import numpy as np
-from lab.odometry.errors import Errors
-from lab.odometry.recording import TRUTH_EVERY, Recording
+
+from bench.odometry.errors import Errors
+from bench.odometry.recording import TRUTH_EVERY, Recording
 
 PERIOD = 0.001  # s
 RADIUS, BASE = 0.1, 0.5  # m

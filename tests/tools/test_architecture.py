@@ -10,48 +10,67 @@ import pytest
 ROOT = Path(__file__).parents[2]
 SRC = ROOT / "src"
 
-CORE = {"signals", "rt", "files", "description", "robot", "estimation", "control", "safety"}
-CORE |= {"bags", "hal", "drivers", "parameters", "configuration", "runtime", "recording"}
+LAWS = {"signals", "machine", "estimation", "control", "safety", "gate"}
+LOOP = LAWS | {"rt", "bus", "drivers", "parameters", "configuration", "loop", "log"}
+ALL = LOOP | {"files", "machine/description", "log/bag", "simulation", "simulation/faults", "drivers/mujoco"}
 MAY_INCLUDE = {
     "signals": set(),
     "files": set(),
     # The engine; the folders that it configures include parameters/block.h alone.
     "parameters": {"files"},
-    "rt": {"signals", "parameters"},
-    "bags": {"files"},
-    "description": {"files"},
-    "robot": {"signals", "description", "files", "parameters"},
-    "estimation": {"signals", "robot", "parameters"},
-    "control": {"signals", "robot", "parameters"},
-    "safety": {"signals", "robot", "parameters"},
-    "hal": {"signals", "rt", "robot", "parameters"},
-    # This holds simulated faults: of the machine in drivers, of nodes in simulation.
-    "faults": {"signals", "rt"},
-    "drivers": {"signals", "faults", "hal", "description", "robot", "rt", "files", "parameters"},
-    # All blocks together, and the other files that a user writes.
-    "configuration": CORE - {"bags", "description", "configuration", "runtime", "recording"} | {"telemetry"},
-    "telemetry": {"signals", "parameters"},
+    "rt": {"parameters"},
+    "bus": {"signals", "rt"},
+    "machine/description": {"files"},
+    "machine": {"signals", "machine/description", "files", "parameters"},
+    "estimation": {"signals", "machine", "parameters"},
+    "control": {"signals", "machine", "parameters"},
+    "safety": {"signals", "machine", "parameters"},
+    "gate": {"signals", "bus", "parameters"},
+    "drivers": {"signals"},
+    # This holds simulated faults: of the machine in drivers/mujoco, of nodes in simulation.
+    "simulation/faults": {"signals", "rt", "bus"},
+    "drivers/mujoco": {
+        "signals",
+        "simulation/faults",
+        "drivers",
+        "gate",
+        "machine/description",
+        "machine",
+        "rt",
+        "files",
+        "parameters",
+    },
+    "log/bag": {"files"},
     # The log as a ROS bag; it knows the format, not ROS.
-    "recording": {"signals", "bags", "telemetry"},
+    "log": {"signals", "log/bag", "parameters"},
+    # All blocks together, and the other files that a user writes.
+    "configuration": LAWS | {"rt", "files", "parameters", "log", "drivers/mujoco"},
     # The step of each node in one cycle, and the process around it.
-    "runtime": CORE - {"runtime", "bags", "description", "drivers"} | {"telemetry"},
+    "loop": LOOP - {"loop"} | {"files"},
     # The laws of a log, run again from its rows.
-    "replay": CORE - {"drivers", "files", "description"} | {"telemetry"},
-    "simulation": CORE | {"faults", "telemetry"},
-    "python": CORE | {"faults", "telemetry", "replay", "simulation"},
-    "bridge": CORE | {"telemetry"},
-    "nodes": CORE | {"telemetry", "bridge"},
+    "log/replay": LOOP,
+    "simulation": ALL - {"simulation"},
+    "bindings": ALL | {"log/replay"},
+    "ros": LOOP | {"files", "machine/description", "drivers/mujoco"},
+    "main": {"ros"},
 }
 ROS = re.compile(r"^(ros|tf2?|tf2_\w+|\w+_msgs|std_srvs|rosgraph_msgs|robot_control)/")
+"""of headers that are included in angle brackets; those of src/ros are included in quotes"""
 MUJOCO = re.compile(r"^mujoco")
 CLOCK = re.compile(r"\bclock_gettime\b|\bclock_nanosleep\b|\b\w*_clock::now\b|\bgettimeofday\b|\bnanosleep\b")
 MONOTONIC = re.compile(r"\bmonotonic_ns\b")
 
-FILES = sorted(path for path in SRC.rglob("*") if path.suffix in (".h", ".cpp"))
+BINDINGS = ROOT / "python" / "bindings"
+FILES = sorted(path for root in (SRC, BINDINGS) for path in root.rglob("*") if path.suffix in (".h", ".cpp"))
 
 
 def includes(path):
-    return re.findall(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', path.read_text(), re.MULTILINE)
+    """Names of the project's headers."""
+    return re.findall(r'^\s*#\s*include\s*"([^"]+)"', path.read_text(), re.MULTILINE)
+
+
+def foreign_includes(path):
+    return re.findall(r"^\s*#\s*include\s*<([^>]+)>", path.read_text(), re.MULTILINE)
 
 
 def code(path):
@@ -59,8 +78,15 @@ def code(path):
     return re.sub(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\])*"', "", path.read_text(), flags=re.DOTALL)
 
 
+def room(name):
+    """The room of a file that is named from the include root: the longest entry of the table that begins its path."""
+    parts = name.split("/")
+    names = ["/".join(parts[:count]) for count in range(len(parts) - 1, 0, -1)]
+    return next((each for each in names if each in MAY_INCLUDE), parts[0])
+
+
 def folder(path):
-    return path.relative_to(SRC).parts[0]
+    return "bindings" if BINDINGS in path.parents else room(str(path.relative_to(SRC)))
 
 
 def violations(rule):
@@ -85,7 +111,7 @@ def test_folders_include_only_what_they_may():
     def rule(path):
         own = folder(path)
         for name in includes(path):
-            other = name.split("/")[0]
+            other = room(name)
             if "/" in name and other in MAY_INCLUDE and other != own and other not in MAY_INCLUDE[own]:
                 yield f"{own} includes {name}"
 
@@ -111,32 +137,32 @@ def test_project_headers_are_named_from_the_root():
     assert violations(rule) == []
 
 
-def test_only_bridge_and_nodes_see_ros():
+def test_only_ros_and_main_see_ros():
     def rule(path):
-        if folder(path) not in ("bridge", "nodes"):
-            yield from (name for name in includes(path) if ROS.match(name))
+        if folder(path) not in ("ros", "main"):
+            yield from (name for name in foreign_includes(path) if ROS.match(name))
 
     assert violations(rule) == []
 
 
-def test_only_drivers_see_mujoco():
+def test_only_its_driver_sees_mujoco():
     def rule(path):
-        if folder(path) != "drivers":
-            yield from (name for name in includes(path) if MUJOCO.match(name))
+        if folder(path) != "drivers/mujoco":
+            yield from (name for name in foreign_includes(path) if MUJOCO.match(name))
 
     assert violations(rule) == []
 
 
-SIMULATED = {"drivers", "faults"}
-SIMULATORS = {"bridge/nodes/mujoco_plant_node.cpp", "configuration/parameters.h"}  # the latter: its parameters
+SIMULATED = {"drivers/mujoco", "simulation/faults"}
+SIMULATORS = {"ros/nodes/mujoco_plant_node.cpp", "configuration/parameters.h"}  # the latter: its parameters
 
 
 def test_nothing_simulated_is_in_the_product():
     def rule(path):
-        name = str(path.relative_to(SRC))
-        if folder(path) in SIMULATED | {"simulation", "python"} or name in SIMULATORS:
+        own = folder(path)
+        if own in SIMULATED | {"simulation", "bindings"} or str(path.relative_to(SRC)) in SIMULATORS:
             return
-        yield from (other for other in includes(path) if other.split("/")[0] in SIMULATED)
+        yield from (other for other in includes(path) if room(other) in SIMULATED)
 
     assert violations(rule) == []
 
@@ -150,18 +176,18 @@ def test_only_rt_reads_clocks():
 
 
 def test_laws_and_drivers_are_given_their_time():
-    """runtime hands rt's clock to the cycles; ordinary threads of bridge, telemetry and nodes may read it."""
+    """loop hands rt's clock to the cycles; ordinary threads of ros, log and main may read it."""
 
     def rule(path):
-        if folder(path) not in ("rt", "runtime", "bridge", "nodes", "telemetry"):
+        if folder(path) not in ("rt", "loop", "ros", "main", "log"):
             yield from MONOTONIC.findall(code(path))
 
     assert violations(rule) == []
 
 
-def test_only_the_bridge_knows_ros_time():
+def test_only_ros_knows_ros_time():
     def rule(path):
-        if folder(path) != "bridge":
+        if folder(path) != "ros":
             yield from re.findall(r"\bros::(?:Time|WallTime|SteadyTime)::now\b", code(path))
 
     assert violations(rule) == []
@@ -169,7 +195,11 @@ def test_only_the_bridge_knows_ros_time():
 
 def test_linked_libraries_are_included_libraries():
     """The libraries that CMake links obey the same table."""
-    texts = {path.parent.name: re.sub(r"#[^\n]*", "", path.read_text()) for path in SRC.glob("*/CMakeLists.txt")}
+    texts = {
+        str(path.parent.relative_to(SRC)): re.sub(r"#[^\n]*", "", path.read_text())
+        for path in SRC.rglob("CMakeLists.txt")
+        if path.parent != SRC
+    }
     defined_in = {
         library: name for name, text in texts.items() for library in re.findall(r"robot_control_library\((\w+)", text)
     }
@@ -182,7 +212,7 @@ def test_linked_libraries_are_included_libraries():
 
 def product_folders():
     """Folders with code of the product, each with the number of files that lie directly in it."""
-    folders = [SRC, *(path for path in SRC.rglob("*") if path.is_dir())]
+    folders = [SRC, BINDINGS, *(path for path in SRC.rglob("*") if path.is_dir())]
     return {str(path.relative_to(ROOT)): sum(item.is_file() for item in path.iterdir()) for path in folders}
 
 
@@ -253,7 +283,11 @@ def test_the_length_of_a_function_is_counted():
 
 def test_functions_stay_short():
     sources = {path: cpp_functions(path.read_text()) for path in FILES}
-    sources |= {path: python_functions(path.read_text()) for path in (ROOT / "scripts").rglob("*.py")}
+    sources |= {
+        path: python_functions(path.read_text())
+        for name in ("scripts", "python")
+        for path in (ROOT / name).rglob("*.py")
+    }
     lengths = {(path, name): length for path, functions in sources.items() for name, length in functions}
     assert len(lengths) > 1000
 
@@ -289,28 +323,27 @@ def test_the_estimator_has_few_tuned_constants():
 
 
 def test_nothing_that_is_installed_imports_the_laboratory():
-    """scripts/*.py and the packages below scripts/ are installed; tests/lab is for tests and scripts/bench."""
-    installed = sorted((ROOT / "scripts").rglob("*.py"))
+    """scripts/*.py and python/robot_control are installed; bench is for tests and scripts/bench."""
+    installed = sorted(path for name in ("scripts", "python") for path in (ROOT / name).rglob("*.py"))
     assert len(installed) > 40
     wrong = [
         f"{path.relative_to(ROOT)} imports {name}"
         for path in installed
         for name in imported_modules(path)
-        if name.split(".")[0] in {"lab", "tests"}
+        if name.split(".")[0] in {"bench", "tests"}
     ]
-    bindings = sorted((SRC / "python").rglob("*.cpp")) + sorted((SRC / "python").rglob("*.h"))
-    wrong += [f"{path.relative_to(ROOT)} names lab" for path in bindings if '"lab.' in path.read_text()]
+    wrong += [f"{path.name} names bench" for path in BINDINGS.rglob("*.*") if '"bench.' in path.read_text()]
     assert wrong == []
 
 
 def test_every_package_is_installed():
     packages = re.search(r"PROGRAMS = \((.*?)\)", (ROOT / "setup.py").read_text(), re.DOTALL)
     named = {"common", "safety", *re.findall(r'"(\w+)"', packages.group(1))}
-    assert named == {path.parent.name for path in (ROOT / "scripts/robot_control").glob("*/__init__.py")}
+    assert named == {path.parent.name for path in (ROOT / "python/robot_control").glob("*/__init__.py")}
 
 
 def test_no_folder_of_python_holds_more_than_25_files():
-    folders = {path.parent for name in ("scripts", "tests/lab") for path in (ROOT / name).rglob("*.py")}
+    folders = {path.parent for name in ("scripts", "python", "bench") for path in (ROOT / name).rglob("*.py")}
     assert len(folders) > 10
     counts = {str(folder.relative_to(ROOT)): sum(path.is_file() for path in folder.glob("*")) for folder in folders}
     assert {name: count for name, count in counts.items() if count > 25} == {}
@@ -318,9 +351,9 @@ def test_no_folder_of_python_holds_more_than_25_files():
 
 def test_what_the_programs_share_knows_none_of_them():
     """robot_control.common stands below the packages of the programs, and the top package below common."""
-    top = sorted((ROOT / "scripts/robot_control").glob("*.py"))
-    common = sorted((ROOT / "scripts/robot_control/common").glob("*.py"))
-    programs = {path.parent.name for path in (ROOT / "scripts/robot_control").glob("*/__init__.py")} - {"common"}
+    top = sorted((ROOT / "python/robot_control").glob("*.py"))
+    common = sorted((ROOT / "python/robot_control/common").glob("*.py"))
+    programs = {path.parent.name for path in (ROOT / "python/robot_control").glob("*/__init__.py")} - {"common"}
     wrong = [
         f"{path.relative_to(ROOT)} imports {name}"
         for path in top + common
@@ -334,7 +367,7 @@ def test_the_laboratory_is_not_installed():
     for name in ("setup.py", "cmake/ros.cmake"):
         installs = re.findall(r"(?:package_dir|packages|install)\b[^\n]*", (ROOT / name).read_text())
         assert installs
-        assert [line for line in installs if "tests" in line or "lab" in line] == []
+        assert [line for line in installs if "tests" in line or "bench" in line] == []
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-BRIDGE = sorted((ROOT / "src/bridge").rglob("*.cpp"))
+BRIDGE = sorted((ROOT / "src/ros").rglob("*.cpp"))
 KNOWN = set(re.findall(r'\{"([^"\x00-\x7f]+)",', (ROOT / "src/files/ascii.cpp").read_text()))
 
 

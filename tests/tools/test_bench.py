@@ -1,9 +1,10 @@
 import sys
 
 import pytest
-from lab import bench
-from lab.runs import seed_programs
-from lab.runs.runner import Processes
+
+from bench import main as bench
+from bench.runs import seed_programs
+from bench.runs.runner import Processes
 
 ROW = '{"name": "gate step", "value": 88.5, "unit": "ns", "reference": 59, "reference_name": "kernel", "ratio": 1.5}'
 

@@ -1,6 +1,6 @@
 import re
 
-from lab import markdown
+from bench import markdown
 
 
 def row(name, value, reference=0.0, reference_name="none", unit="ns"):

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from robot_control.common.file_errors import in_words
 
-SCRIPTS = Path(__file__).parents[2] / "scripts"
+PYTHON = Path(__file__).parents[2] / "python"
 
 
 def error_of(path):
@@ -43,13 +43,13 @@ def imported(folder):
 
 
 def test_sources_that_are_not_built_say_what_to_do():
-    message = imported(SCRIPTS)
+    message = imported(PYTHON)
     assert "the compiled part of robot_control is not in" in message
     assert "source install/setup.bash" in message
 
 
 def test_for_another_python_the_message_names_the_right_one(tmp_path):
-    for source in (SCRIPTS / "robot_control").glob("*.py"):
+    for source in (PYTHON / "robot_control").glob("*.py"):
         (tmp_path / "robot_control").mkdir(exist_ok=True)
         (tmp_path / "robot_control" / source.name).write_text(source.read_text())
     (tmp_path / "robot_control" / "_robot_control.cpython-300-x86_64-linux-gnu.so").touch()

@@ -5,13 +5,14 @@ import math
 import numpy as np
 import pytest
 from kinematic_drive import IMU, RADIUS, WHEEL_BASE, drive
-from lab.odometry.recordings import ABSENT, NAMES, recording, recordings_folder
 from robot_control import ClosedLoop, Estimator
 from robot_control.common.rotation import rotation
 from robot_control.estimate.clock import fit_turning
 from robot_control.estimate.input_check import check, check_angles
 from robot_control.estimate.samples import InputError, Samples, Stream, merged
 from robot_control.estimate.streams import streams_of
+
+from bench.odometry.recordings import ABSENT, NAMES, recording, recordings_folder
 
 ROBOT = Estimator(wheel_radius=RADIUS, wheel_base=WHEEL_BASE, imu_position=IMU).robot
 MILLISECOND = 0.001

@@ -6,9 +6,10 @@ import sys
 import time
 
 import pytest
-from lab.release.sender_sequences import command, goal, pad, path, teleop
 from robot_control.safety.interruptions import GAP, RESTARTED, Interruptions, Status, requested_at
 from robot_control.teleop.dead_man import DeadMan, HoldParameters
+
+from bench.release.sender_sequences import command, goal, pad, path, teleop
 
 READY, STOPPED = Status("READY", withdrawals=3, run=7), Status("STOPPED", "e_stop was called", withdrawals=4, run=7)
 RELEASED = Status("READY", withdrawals=4, run=7)

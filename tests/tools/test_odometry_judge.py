@@ -5,11 +5,13 @@ import math
 
 import numpy as np
 import pytest
-from lab.odometry.consistency import Notice, nees, nees_band, notice
-from lab.odometry.errors import Errors
-from lab.odometry.judge import Run, largest_mean, relative, return_errors
-from lab.odometry.methods import raw_wheels
-from lab.odometry.promises import (
+from synthetic_odometry import RADIUS, drive
+
+from bench.odometry.consistency import Notice, nees, nees_band, notice
+from bench.odometry.errors import Errors
+from bench.odometry.judge import Run, largest_mean, relative, return_errors
+from bench.odometry.methods import raw_wheels
+from bench.odometry.promises import (
     CALIBRATED,
     RAW,
     SIMPLE,
@@ -22,9 +24,8 @@ from lab.odometry.promises import (
     slip,
     umbmark,
 )
-from lab.odometry.tested_estimator import OURS, Ours
-from lab.odometry.truth import Track, after_resets, levelling, rotation, slip_ratio, truth_of
-from synthetic_odometry import RADIUS, drive
+from bench.odometry.tested_estimator import OURS, Ours
+from bench.odometry.truth import Track, after_resets, levelling, rotation, slip_ratio, truth_of
 
 STAND, LINE = (0.0, 0.0, 1.0), (0.5, 0.0, 4.0)
 ROUNDING = 1e-9

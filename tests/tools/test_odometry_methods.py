@@ -4,8 +4,10 @@ import dataclasses
 
 import numpy as np
 import pytest
-from lab.odometry.errors import GYRO_BIAS, Errors, draw_errors
-from lab.odometry.methods import (
+from synthetic_odometry import PERIOD, drive
+
+from bench.odometry.errors import GYRO_BIAS, Errors, draw_errors
+from bench.odometry.methods import (
     GYRO_NOISE,
     GYRO_WALK,
     METHODS,
@@ -17,8 +19,7 @@ from lab.odometry.methods import (
     simple_odometry,
     standing,
 )
-from lab.odometry.truth import truth_of
-from synthetic_odometry import PERIOD, drive
+from bench.odometry.truth import truth_of
 
 STAND, ARC, LINE = (0.0, 0.0, 3.0), (0.5, 0.4, 10.0), (0.4, 0.0, 10.0)
 JUMPS = 3 * 0.5 * PERIOD * 0.4  # rad: the trapezoid smears each of three jumps of 0.4 rad/s over a cycle

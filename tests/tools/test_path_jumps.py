@@ -3,9 +3,10 @@
 import math
 
 import pytest
-from lab.release.path_jumps import FARTHEST, MAX_TIME, PERIOD, STRAIGHT, Jumping, excess
 from robot_control.path.follower import Motion, Pose, State
 from robot_control.path.waypoints import Waypoint
+
+from bench.release.path_jumps import FARTHEST, MAX_TIME, PERIOD, STRAIGHT, Jumping, excess
 
 
 @pytest.mark.parametrize("jump", [(-5.0, 0.0, 0.0), (0.0, 0.0, math.pi), (1.0, 0.0, 0.0), (0.0, 0.2, 0.0)])

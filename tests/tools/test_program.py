@@ -70,7 +70,7 @@ def test_every_program_writes_its_lines_at_once():
     modules = [path for path in (SCRIPTS / "robot_control").rglob("*.py") if "__main__" in path.read_text()]
     python = {*SCRIPTS.glob("*.py"), *modules} - {SCRIPTS / "robot_control/expand_xacro.py"}
     assert [str(path) for path in sorted(python) if not begins_with(path, "run(main)")] == []
-    nodes = set((SCRIPTS.parent / "src/nodes").glob("*.cpp"))
+    nodes = set((SCRIPTS.parent / "src/main").glob("*.cpp"))
     assert [str(path) for path in sorted(nodes) if "return run_node(" not in path.read_text()] == []
     installed = Path(roslib.packages.find_node("robot_control", "telemetry")[0]).parent
     assert {path.stem for path in installed.iterdir()} <= {path.stem for path in python | nodes}

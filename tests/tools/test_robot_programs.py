@@ -13,8 +13,10 @@ NODE_FAULTS = {"NodeFaults", "distort"}
 
 
 def simulated_names():
-    """Classes of src/drivers and src/faults, and the functions that distort frames."""
-    headers = "\n".join(path.read_text() for folder in ("drivers", "faults") for path in (SRC / folder).rglob("*.h"))
+    """Classes of src/drivers/mujoco and src/simulation/faults, and the functions that distort frames."""
+    headers = "\n".join(
+        path.read_text() for folder in ("drivers/mujoco", "simulation/faults") for path in (SRC / folder).rglob("*.h")
+    )
     return {"distort", *re.findall(r"^class (\w+)", headers, re.MULTILINE)}
 
 

@@ -95,6 +95,6 @@ def test_every_part_of_our_robot_that_is_seen_has_a_material():
 def test_rviz_shows_topics_that_are_published():
     displays = yaml.safe_load((ROOT / "config/view.rviz").read_text())["Visualization Manager"]["Displays"]
     topics = {display.get("Topic") or display.get("Marker Topic") for display in displays} - {None}
-    sources = "\n".join(path.read_text() for path in [*ROOT.glob("scripts/**/*.py"), *ROOT.glob("src/bridge/**/*.cpp")])
+    sources = "\n".join(path.read_text() for path in [*ROOT.glob("python/**/*.py"), *ROOT.glob("src/ros/**/*.cpp")])
     assert topics == {"odom", "ground_truth/odom", "path_wanted", "view/path_driven", "view/markers"}
     assert all(f'"{topic}"' in sources for topic in topics)

@@ -24,7 +24,7 @@
 /// (ground_friction.h). The integrator compensates slopes.
 
 #include "control/planar_twist.h"
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 #include "signals/drive_tuning.h"
 
 namespace robot_control {

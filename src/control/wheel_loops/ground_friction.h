@@ -32,8 +32,8 @@
 #include <cstddef>
 
 #include "control/planar_twist.h"
-#include "robot/robot_model.h"
-#include "robot/wheels/scrub.h"
+#include "machine/robot_model.h"
+#include "machine/wheels/scrub.h"
 
 namespace robot_control {
 

@@ -48,7 +48,7 @@
 #include <array>
 #include <optional>
 
-#include "robot/encoders/tracking_loop.h"
+#include "machine/encoders/tracking_loop.h"
 #include "signals/joint.h"
 
 namespace robot_control {

@@ -22,7 +22,7 @@
 
 #include "control/drive_controller_parameters.h"
 #include "control/wheel_loops/wheel_loop.h"
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 
 namespace robot_control {
 

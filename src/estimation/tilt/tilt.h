@@ -17,7 +17,7 @@
 #include <array>
 
 #include "estimation/values.h"
-#include "robot/gravity.h"
+#include "machine/gravity.h"
 #include "signals/geometry.h"
 
 namespace robot_control {

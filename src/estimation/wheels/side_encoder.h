@@ -11,7 +11,7 @@
 
 #include <cstdint>
 
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 #include "signals/fixed_vector.h"
 #include "signals/sensor_frame.h"
 

@@ -8,7 +8,7 @@
 /// is the middle of the wheels in base axes. `ground` is the height of the contacts.
 
 #include "estimation/wheels/arc.h"
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 
 namespace robot_control {
 

@@ -9,7 +9,7 @@
 #include "estimation/wheels/side_encoder.h"
 #include "estimation/wheels/speed_quantum.h"
 #include "estimation/wheels/speed_tracker.h"
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 #include "signals/sensor_frame.h"
 
 namespace robot_control {

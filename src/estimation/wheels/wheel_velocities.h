@@ -1,6 +1,6 @@
 #pragma once
 /// Estimates how fast each wheel turns, for joint_states. It runs the tracking loop of the wheel loops
-/// (robot/encoders/tracking_loop.h) on each wheel's own angle, without a torque that explains its acceleration.
+/// (machine/encoders/tracking_loop.h) on each wheel's own angle, without a torque that explains its acceleration.
 ///
 /// The speed that an encoder reports is a difference over one period, which jumps by a count per period: 1.5 rad/s with
 /// 4096 counts at 1 kHz. Samples that are missing, not finite or that jump by more than kFastestWheel are left out.
@@ -12,8 +12,8 @@
 #include <cstddef>
 
 #include "estimation/tuning.h"
-#include "robot/encoders/tracking_loop.h"
-#include "robot/robot_model.h"
+#include "machine/encoders/tracking_loop.h"
+#include "machine/robot_model.h"
 #include "signals/fixed_vector.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"

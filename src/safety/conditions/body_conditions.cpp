@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "robot/gravity.h"
+#include "machine/gravity.h"
 #include "signals/rotation.h"
 
 namespace robot_control {

@@ -29,7 +29,7 @@
 #include <array>
 #include <cstdint>
 
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 #include "safety/conditions/condition_watch.h"
 #include "safety/latch/active_causes.h"
 #include "safety/measurements/attitude.h"

@@ -20,7 +20,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 #include "safety/latch/active_causes.h"
 #include "safety/measurements/wheel_motion.h"
 #include "safety/measurements/wheel_targets.h"

@@ -36,8 +36,8 @@
 #include <cstdint>
 #include <limits>
 
-#include "robot/robot_model.h"
-#include "robot/wheels/scrub.h"
+#include "machine/robot_model.h"
+#include "machine/wheels/scrub.h"
 #include "safety/latch/active_causes.h"
 #include "safety/measurements/joint_standstill.h"
 #include "safety/measurements/planned_torque.h"

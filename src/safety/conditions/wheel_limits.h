@@ -14,7 +14,7 @@
 #include <array>
 #include <cstdint>
 
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 #include "safety/latch/active_causes.h"
 #include "safety/measurements/wheel_motion.h"
 #include "signals/sensor_frame.h"

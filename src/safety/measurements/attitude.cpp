@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "robot/gravity.h"
+#include "machine/gravity.h"
 
 namespace robot_control {
 namespace {

@@ -27,7 +27,7 @@
 
 #include <Eigen/Core>
 
-#include "robot/stored.h"
+#include "machine/stored.h"
 
 namespace robot_control {
 

@@ -15,7 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 #include "safety/measurements/wheel_motion.h"
 
 namespace robot_control {

@@ -12,7 +12,7 @@
 #include <array>
 #include <cstddef>
 
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 #include "safety/measurements/wheel_targets.h"
 
 namespace robot_control {

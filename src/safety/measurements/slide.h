@@ -14,7 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 #include "safety/measurements/wheel_motion.h"
 #include "safety/safety_parameters.h"
 

@@ -20,7 +20,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 #include "safety/derived_limits.h"
 #include "signals/sensor_frame.h"
 

@@ -8,7 +8,7 @@
 #include <array>
 #include <cstddef>
 
-#include "robot/robot_model.h"
+#include "machine/robot_model.h"
 #include "safety/monitor_input.h"
 
 namespace robot_control {

@@ -1,0 +1,121 @@
+"""Thousands of random fault sequences over random drives and robots, each judged by the truth.
+
+    scripts/bench campaign --first 17 --runs 1     # repeats one and says what happened
+
+A seed gives the same bits on the same build and robots, alone or among others, on however many processors.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+from robot_control.closed_loop import ClosedLoop
+from robot_control.common.cause_names import causes_in
+
+from bench.faults.fault_sequence import ANGULAR_LIMIT, LINEAR_LIMIT, draw_sequence
+from bench.faults.sequence_judge import RULES, judge
+from bench.faults.sequence_run import make_loop, run_sequence
+from bench.robot_corpus import robot_names
+from bench.runs.runner import Processes, Runner
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Result of one seed. `violations`: (rule, description)."""
+
+    seed: int
+    story: str
+    violations: list[tuple[str, str]]
+    stops: list[str]  # causes that ever latched
+    seconds: float  # of simulated time
+
+    @property
+    def text(self) -> str:
+        """A report of the sequence, its violations, and the command that repeats it."""
+        lines = [f"seed {self.seed}: {self.story}"]
+        lines += [f"    {what}" for _, what in self.violations]
+        if self.violations:
+            lines.append(f"    again: scripts/bench campaign --first {self.seed} --runs 1")
+        return "\n".join(lines)
+
+
+@dataclass
+class Tally:
+    """Sums over a campaign."""
+
+    runs: int = 0
+    simulated: float = 0.0  # s
+    violations: Counter[str] = field(default_factory=Counter)
+    stops: Counter[str] = field(default_factory=Counter)
+    failed: list[Outcome] = field(default_factory=list)
+
+    def add(self, outcome: Outcome) -> None:
+        """Adds one outcome."""
+        self.runs += 1
+        self.simulated += outcome.seconds
+        self.violations.update(rule for rule, _ in outcome.violations)
+        self.stops.update(outcome.stops)
+        if outcome.violations:
+            self.failed.append(outcome)
+
+
+def fastest_rim(loop: ClosedLoop) -> float:
+    """m/s, largest speed over the ground that the controller may request of a side of the robot."""
+    return LINEAR_LIMIT + ANGULAR_LIMIT * float(loop.robot["wheel_base"]) / 2
+
+
+def run_seed(seed: int, robots: Sequence[str]) -> Outcome:
+    """Draws, runs and judges one sequence."""
+    sequence = draw_sequence(seed, robots)
+    loop = make_loop(sequence)
+    log = run_sequence(sequence, loop)
+    found = judge(sequence, log, loop.robot["wheel_base"], loop.period, fastest_rim(loop))
+    violations = [(violation.rule, str(violation)) for violation in found]
+    return Outcome(
+        seed, sequence.describe(), violations, causes_in(log["permit_causes"]), len(log["cycle"]) * loop.period
+    )
+
+
+def campaign(seeds: Sequence[int], say: Callable[[str], None], runner: Runner | None = None) -> Tally:
+    """Runs all seeds; `say` receives every failure, and the progress."""
+    tally = Tally()
+    runner = runner or Processes()
+    for outcome in runner.outcomes(partial(run_seed, robots=robot_names()), seeds, say, chunk=4):
+        tally.add(outcome)
+        if outcome.violations:
+            say(outcome.text)
+    return tally
+
+
+def result_of(tally: Tally, seconds: float) -> dict[str, Any]:
+    """As the benchmark programs print it; `seconds` of wall-clock time."""
+
+    def row(name: str, value: float, unit: str) -> dict[str, Any]:
+        return {"name": name, "value": value, "unit": unit, "reference": 0, "reference_name": "none", "ratio": 0}
+
+    rows = [row("sequences", tally.runs, ""), row("sequences failed", len(tally.failed), "")]
+    rows += [row(f"{rule} violated", tally.violations[rule], "") for rule in RULES]
+    rows.append(row("simulated", tally.simulated / 3600, "h"))
+    rows.append(row("speed", tally.simulated / seconds, "simulated s per s"))
+    return {
+        "bench": "campaign",
+        "rows": rows,
+        "stops": dict(tally.stops.most_common()),
+        "failed": [outcome.text for outcome in tally.failed],
+    }
+
+
+def bench(
+    first: int, runs: int, say: Callable[[str], None], runner: Runner | None = None
+) -> tuple[dict[str, Any], bool]:
+    """The result, and whether the robot survived every sequence."""
+    began = time.monotonic()
+    if runs == 1:
+        say(draw_sequence(first, robot_names()).describe())
+    tally = campaign(range(first, first + runs), say, runner)
+    return result_of(tally, time.monotonic() - began), not tally.failed

@@ -1,0 +1,115 @@
+"""A random sequence of faults during a random drive; each seed of the campaign stands for one.
+
+    0 … driven       the sender asks for the legs of the drive; faults, emergency stops, resets come in between
+    … rested         the sender says zero, or nothing; what fails may go on failing
+    … released       faults end or do not; a reset is requested, no command is sent
+
+Drawing is a pure function of the seed and of the robots that are there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from robot_control.common.signal_names import states
+
+from bench.faults.random_drive import Leg, draw_drive
+from bench.robot_corpus import DIFFBOT, SCENES
+
+COMPONENTS = states("FaultComponent")
+KINDS = states("FaultKind")[1:]  # without "ok"
+
+ALL_RUNS = 10_000
+OWN_SHARE = 0.75  # share of the sequences with the project's own robot
+LINEAR_LIMIT = 1.0  # m/s, max_linear_speed
+ANGULAR_LIMIT = 2.0  # rad/s, max_angular_speed
+BATTERY_VOLTAGE = 24.0  # V
+REST_TIME = 5.5  # s; sequence_judge.py says for what it has to suffice
+RELEASE_TIME = 0.8  # s
+
+
+@dataclass(frozen=True)
+class Event:
+    """At `time` [s]: "inject" (component, kind), "e_stop", "e_stop_reset" or "reset" (of the plant)."""
+
+    time: float
+    action: str
+    component: str = ""
+    kind: str = ""
+
+
+@dataclass(frozen=True)
+class FaultSequence:
+    """Times in s of simulated time, from the start on."""
+
+    seed: int
+    robot: str
+    scene: str
+    legs: list[Leg]
+    interval: float  # s, at which the sender repeats itself
+    driven: float
+    falls_silent: bool  # nothing is sent after `driven`; otherwise zeros are
+    faults_end: bool  # before the release
+    events: list[Event] = field(default_factory=list)
+
+    @property
+    def rested(self) -> float:
+        """s, time of the reset request."""
+        return self.driven + REST_TIME
+
+    @property
+    def released(self) -> float:
+        """s, the end."""
+        return self.rested + RELEASE_TIME
+
+    def describe(self) -> str:
+        """One line: robot, scene, and the events with their times."""
+        events = ", ".join(f"{e.time:.3f} s {e.action} {e.component} {e.kind}".rstrip() for e in self.events)
+        silent = "then silence" if self.falls_silent else "then zero"
+        return f"{self.robot} in {self.scene}, driven {self.driven:.2f} s, {silent}: {events or 'no fault'}"
+
+
+def draw_sequence(seed: int, robots: Sequence[str]) -> FaultSequence:
+    """The sequence of this seed; `robots`: those that are there, the project's own first."""
+    random = np.random.default_rng(seed)
+    others = robots[1:]
+    robot = str(random.choice(others)) if others and random.random() >= OWN_SHARE else DIFFBOT
+    driven = random.uniform(2.0, 5.0)
+    events = _faults(random, driven) + _operator(random, driven)
+    return FaultSequence(
+        seed=seed,
+        robot=robot,
+        scene=str(random.choice(SCENES)),
+        legs=draw_drive(random, driven, LINEAR_LIMIT, ANGULAR_LIMIT),
+        interval=float(random.choice([0.02, 0.1, 0.5])),
+        driven=driven,
+        falls_silent=bool(random.random() < 0.5),
+        faults_end=bool(random.random() < 0.5),
+        events=sorted(events, key=lambda event: event.time),
+    )
+
+
+def _faults(random: np.random.Generator, driven: float) -> list[Event]:
+    """0 … 4 faults; every second one ends, after 5 ms … 2 s."""
+    events = []
+    for _ in range(random.integers(5)):
+        component = str(random.choice(COMPONENTS))
+        begins = random.uniform(0.3, driven)
+        events.append(Event(begins, "inject", component, str(random.choice(KINDS))))
+        if random.random() < 0.5:
+            events.append(Event(begins + random.choice([0.005, 0.03, 0.2, 2.0]), "inject", component, "ok"))
+    return events
+
+
+def _operator(random: np.random.Generator, driven: float) -> list[Event]:
+    """Every third drive is stopped on the way, every second one reset as well; one plant in twenty is reset."""
+    events = []
+    if random.random() < 1 / 3:
+        events.append(Event(random.uniform(0.3, driven), "e_stop"))
+    if random.random() < 0.5:
+        events += [Event(random.uniform(0.3, driven + 1.0), "e_stop_reset") for _ in range(3)]
+    if random.random() < 0.05:
+        events.append(Event(random.uniform(0.3, driven), "reset"))
+    return events

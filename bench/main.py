@@ -1,0 +1,282 @@
+"""Runs the benchmark programs and shows what they measured.
+
+Each program `bench_NAME` prints one JSON object:
+    {"bench": NAME, "rows": [{"name", "value", "unit", "reference", "reference_name", "ratio"}, …]}
+
+The trials that judge give results of the same form; `JUDGED` lists them. Beside their rows, "not_judged" names the
+robots that were left out, and "table" holds lines to be shown above the rows.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from robot_control.common.files import write_text
+
+from bench import markdown
+from bench.drives.sensor_errors import LEVELS
+from bench.faults.fault_sequence import ALL_RUNS
+from bench.release.sender_sequences import sender_rows
+from bench.runs import seed_programs
+from bench.runs.address import check_address
+from bench.runs.runner import Processes, Runner
+
+MEASURED = ("step", "plant", "lockstep", "frames", "stops")
+# These run only if they are named.
+JUDGED = (
+    "campaign",
+    "replay",
+    "driving",
+    "limiter",
+    "release",
+    "drive",
+    "odometry",
+    "hostile",
+    "tuning",
+    "bags",
+    "record",
+    "blackbox",
+    "processes",
+)
+NAMES = MEASURED + JUDGED
+SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores
+ON_CLUSTERS = ("campaign", "driving", "odometry", "tuning", *SEED_PROGRAMS)
+
+
+def run_program(program: Path, *arguments: str | Path) -> dict[str, Any]:
+    """Runs one benchmark and reads its answer; its messages go to this program's stderr."""
+    done = subprocess.run(
+        [program, *map(str, arguments)], stdout=subprocess.PIPE, check=True, text=True, stdin=subprocess.DEVNULL
+    )
+    result: dict[str, Any] = json.loads(done.stdout)
+    return result
+
+
+def say(text: str) -> None:
+    """Prints progress and errors."""
+    print(text, file=sys.stderr, flush=True)
+
+
+@contextmanager
+def opened_runner(given: argparse.Namespace) -> Iterator[Runner]:
+    """The processes of this machine, or the workers of the cluster that --scheduler names.
+
+    Raises:
+        RuntimeError: there is no such cluster, or it must not be used.
+    """
+    if given.scheduler is None:
+        yield Processes()
+        return
+    from bench.runs.cluster import Cluster
+
+    with Cluster(given.scheduler, insecure=given.insecure, tls=given.tls) as cluster:
+        yield cluster
+
+
+def run_many(name: str, given: argparse.Namespace, runner: Runner) -> tuple[dict[str, Any], bool]:
+    """The benchmarks of `ON_CLUSTERS` but the programs among them."""
+    if name == "campaign":
+        from bench.faults import campaign
+
+        return campaign.bench(given.first, given.runs or ALL_RUNS, say, runner)
+    if name == "driving":
+        from bench.drives import normal_driving
+
+        return normal_driving.bench(given.share, say, runner, given.errors)
+    if name == "odometry":
+        from bench.odometry import bench as odometry
+
+        count = given.runs or odometry.SEEDS
+        return odometry.bench(given.first, count, say, given.errors, plots=given.plots, runner=runner)
+    from bench import tuning
+
+    return tuning.bench(given.first, given.runs or tuning.ALL_RUNS, say, runner)
+
+
+def run_seed_program(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    """One of `SEED_PROGRAMS`: it uses all processors by itself, or runs in blocks on the workers of a cluster."""
+    runs = given.runs or SEED_PROGRAMS[name]
+    if given.scheduler is None:
+        result = run_program(given.programs / f"bench_{name}", str(given.first), str(runs))
+    else:
+        with opened_runner(given) as runner:
+            result = seed_programs.run_seeds(name, given.first, runs, say, runner)
+    if name == "release":
+        with opened_runner(given) as runner:
+            result["rows"] += sender_rows(given.first, runs, say, runner)
+    return result, all(row["value"] == 0 for row in result["rows"] if row["name"].endswith("sequences failed"))
+
+
+def _replay(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    from bench.faults import replayed
+
+    return replayed.bench(given.first, given.runs or replayed.ALL_RUNS, say)
+
+
+def _hostile(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    from bench import hostile
+
+    return hostile.bench(given.first, given.runs or hostile.ALL_RUNS, say)
+
+
+def _record(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    from bench import log_bench
+
+    return log_bench.bench(given.share, given.programs, given.keep, say)
+
+
+def _blackbox(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    from bench import black_box_bench
+
+    return black_box_bench.bench(given.first, given.runs or black_box_bench.ALL_TRIALS, given.programs, say)
+
+
+def _processes(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    from bench import process_bench
+
+    return process_bench.bench(given.first, given.runs or process_bench.ALL_RUNS, given.programs, say)
+
+
+def _drive(_given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    from bench.drives import drive_promises
+
+    return drive_promises.bench(say)
+
+
+TRIALS = {
+    "replay": _replay,
+    "hostile": _hostile,
+    "record": _record,
+    "blackbox": _blackbox,
+    "processes": _processes,
+    "drive": _drive,
+}
+
+
+def run(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    """The result of NAME, and whether it meets its bounds."""
+    if name in SEED_PROGRAMS:
+        return run_seed_program(name, given)
+    if name in ON_CLUSTERS:
+        with opened_runner(given) as runner:
+            return run_many(name, given, runner)
+    if name in TRIALS:
+        return TRIALS[name](given)
+    return run_program(given.programs / f"bench_{name}", given.params), True
+
+
+def to_table(result: dict[str, Any]) -> str:
+    """One line per figure: value, unit, reference of the same run, ratio to it; then a line of robots that were not
+    judged.
+    """
+    wide = max(24, *(len(row["name"]) for row in result["rows"]))
+    lines = [*result["table"], ""] if result.get("table") else []
+    lines += [f"{result['bench']:<{wide + 2}}{'value':>12}  {'unit':<22}{'reference':>12}{'ratio':>10}"]
+    for row in result["rows"]:
+        compared = row["reference"] != 0
+        reference = f"{row['reference']:12.4g}{row['ratio']:10.3f}  of {row['reference_name']}" if compared else ""
+        lines.append(f"  {row['name']:<{wide}}{row['value']:12.4g}  {row['unit']:<22}{reference}".rstrip())
+    if result.get("not_judged"):
+        absent = ", ".join(result["not_judged"])
+        lines.append(f"  not judged: {absent}; no descriptions here, ROBOT_CORPUS names the folder of real robots")
+    return "\n".join(lines)
+
+
+def _writable_file(text: str) -> Path:
+    path = Path(text)
+    try:
+        path.open("a").close()
+    except OSError as error:
+        raise argparse.ArgumentTypeError(f"{text} cannot be written to: {error.strerror}") from None
+    return path
+
+
+def _whole(least: int) -> Callable[[str], int]:
+    def convert(text: str) -> int:
+        if not text.isdecimal() or int(text) < least:
+            raise argparse.ArgumentTypeError(f"{text} is no whole number ≥ {least}")
+        return int(text)
+
+    return convert
+
+
+def _share(text: str) -> float:
+    try:
+        share = float(text)
+    except ValueError:
+        share = 0.0
+    if not 0 < share <= 100:
+        raise argparse.ArgumentTypeError(f"{text} is no number above 0, up to 100")
+    return share
+
+
+def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
+    """The command line of scripts/bench; ends the program on a wrong one."""
+    parser = argparse.ArgumentParser(prog="scripts/bench", description="Measures this machine.")
+    which = f"of {', '.join(NAMES)} (default: {', '.join(MEASURED)})"
+    parser.add_argument("names", nargs="*", metavar="NAME", help=which)
+    seeds = "campaign, replay, limiter, release, bags, odometry, hostile, tuning, blackbox, processes"
+    parser.add_argument("--first", type=_whole(0), default=0, help=f"{seeds}: first seed")
+    parser.add_argument("--runs", type=_whole(1), help=f"{seeds}: number of seeds")
+    parser.add_argument(
+        "--share", type=_share, default=1.0, help="driving: of the two hours; record: of the ten minutes"
+    )
+    parser.add_argument("--errors", choices=LEVELS, default=LEVELS[0], help="driving, odometry: of the sensors")
+    parser.add_argument("--plots", type=Path, help="odometry: folder for pictures")
+    parser.add_argument("--keep", type=Path, help="record: folder for the logs and their reports")
+    cluster = parser.add_argument_group("cluster", f"{', '.join(ON_CLUSTERS)} run with the workers of a Dask scheduler")
+    cluster.add_argument("--scheduler", metavar="tls://HOST:8786", help="its address; default: this machine alone")
+    cluster.add_argument("--tls", type=Path, metavar="FOLDER", help="of ca.pem, cert.pem, key.pem; default: as Dask")
+    cluster.add_argument("--insecure", action="store_true", help="allow tcp:// beyond the loopback: plain text")
+    parser.add_argument("--json", type=_writable_file, help="file to write all figures to")
+    parser.add_argument("--markdown", action="store_true", help="write the tables to docs/evidence")
+    parser.add_argument("--programs", type=Path, default=Path(), help=argparse.SUPPRESS)
+    parser.add_argument("--params", type=Path, default=Path(), help=argparse.SUPPRESS)
+    given = parser.parse_args(arguments)
+    unknown = [name for name in given.names if name not in NAMES]
+    if unknown:
+        parser.error(f"no benchmark {', '.join(unknown)}; there are {', '.join(NAMES)}")
+    given.names = given.names or list(MEASURED)
+    alone = [name for name in given.names if name not in ON_CLUSTERS]
+    if given.scheduler is not None and alone:
+        parser.error(f"{', '.join(alone)} cannot run on a cluster; {', '.join(ON_CLUSTERS)} can")
+    if given.markdown and given.errors != LEVELS[0]:
+        parser.error(f"--markdown writes the tables of {LEVELS[0]}, not of --errors {given.errors}")
+    if given.scheduler is not None:
+        try:
+            check_address(given.scheduler, insecure=given.insecure)
+        except ValueError as error:
+            parser.error(str(error))
+    return given
+
+
+def main() -> int:
+    """Entry point of scripts/bench."""
+    given = parse()
+    results, failed = [], 0
+    for name in given.names:
+        try:
+            result, good = run(name, given)
+        except (OSError, RuntimeError, subprocess.CalledProcessError, json.JSONDecodeError) as error:
+            print(f"scripts/bench: {name}: {error}", file=sys.stderr)
+            failed += 1
+            continue
+        results.append(result)
+        failed += not good
+        print(f"\n{to_table(result)}", flush=True)
+    if given.json is not None:
+        write_text(given.json, json.dumps(results, indent=2) + "\n")
+    if given.markdown:
+        markdown.write(results)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,55 @@
+"""Compares the true pose with the estimate after a sensor of the simulated robot was wrong for a time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from robot_control import ClosedLoop, Estimator
+
+from bench.odometry.program import PERIOD, Program
+
+SENSORS = ("gyro", "left_encoder")
+KINDS = ("off", "stuck", "garbage", "wrong", "slow", "delayed", "intermittent")
+DURATIONS = (0.5, 1.0, 3.0)  # s
+COMBINATIONS = tuple(product(SENSORS, KINDS, DURATIONS))
+BEGIN = 5.0  # s, of the fault: two seconds after the robot set off
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Errors at the end of the drive over their standard deviations; `stopped`: the monitor braked before."""
+
+    position: float
+    yaw: float
+    stopped: bool
+
+
+def outcome(sensor: str, kind: str, duration: float, seed: int) -> Outcome:
+    """Outcome of one drive in curves to either side, with a rest at the end."""
+    program = Program()
+    program.stand(3.0)
+    program.drive(0.5, 0.3, 5.0)
+    program.drive(0.4, -0.4, 5.0)
+    program.drive(0.5, 0.0, 4.0)
+    program.stand(3.0)
+    begin, end = round(BEGIN / PERIOD), round((BEGIN + duration) / PERIOD)
+    loop = ClosedLoop(seed=seed)
+    parts = [loop.record(program.commands[:begin])]
+    loop.inject_fault(sensor, kind)
+    parts.append(loop.record(program.commands[begin:end]))
+    loop.inject_fault(sensor, "ok")
+    parts.append(loop.record(program.commands[end:]))
+    log = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    time, wheels = PERIOD * np.arange(len(log["gyro"])), log["wheel_position"]
+    out = Estimator().process(time, wheels[:, 0].copy(), wheels[:, 1].copy(), log["gyro"], log["accel"], every=10)
+    off = np.array([out["x"][-1], out["y"][-1]]) - log["position"][-1, :2]
+    x, y, z, w = log["orientation"][-1]
+    yaw = out["yaw"][-1] - np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+    covariance = out["pose_covariance"][-1]
+    return Outcome(
+        position=float(np.sqrt(off @ np.linalg.solve(covariance[:2, :2] + 1e-6 * np.eye(2), off))),
+        yaw=float(abs(np.remainder(yaw + np.pi, 2 * np.pi) - np.pi) / np.sqrt(covariance[5, 5])),
+        stopped=bool(log["stopped"][round(0.5 / PERIOD) :].any()),
+    )

@@ -1,0 +1,172 @@
+#include "bindings/log_replay.h"
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <map>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bindings/loop_replay.h"
+#include "configuration/live_parameters.h"
+#include "log/replay/replay_error.h"
+#include "log/trace_reader.h"
+#include "loop/log_header.h"
+
+namespace py = pybind11;
+
+namespace robot_control {
+namespace {
+
+/// The path of a parameter file and the values that are laid over it.
+using Layers = std::pair<std::string, std::vector<std::pair<std::string, std::string>>>;
+
+/// Reads the parameters of `layers`, laid over those of the file `base`.
+Parameters parameters_in(const Layers& layers, const std::string& base) {
+  std::vector<Overlay> overlays;
+  for (const auto& [key, text] : layers.second) overlays.push_back({.path = key, .text = text, .origin = "replay"});
+  return read_parameters(layers.first, overlays, base);
+}
+
+RobotModel robot_in(const Parameters& parameters) {
+  return read_robot(load_description(parameters.urdf), parameters.robot);
+}
+
+/// VariedColumns holds the outputs of the laws, logged and with other parameters, by column of a log.
+class VariedColumns {
+ public:
+  explicit VariedColumns(const RobotModel& robot) {
+    for (const WheelModel& wheel : robot.wheels) {
+      efforts_.emplace_back(wheel.joint, "command_effort_" + robot.joints[wheel.joint].name);
+    }
+  }
+
+  void add(const VariedRow& row) {
+    if (row.state != nullptr) {
+      const StateFrame& was = *row.state;
+      const StateFrame& would = *row.varied_state;
+      add("estimate_x", was.pose_odom.position[0], would.pose_odom.position[0]);
+      add("estimate_y", was.pose_odom.position[1], would.pose_odom.position[1]);
+      add("estimate_linear", was.twist_base.linear[0], would.twist_base.linear[0]);
+      add("estimate_angular", was.twist_base.angular[2], would.twist_base.angular[2]);
+    }
+    if (row.command != nullptr) {
+      const CommandFrame& was = *row.command;
+      const CommandFrame& would = *row.varied_command;
+      add("limited_linear", was.twist_limited.linear[0], would.twist_limited.linear[0]);
+      add("limited_angular", was.twist_limited.angular[2], would.twist_limited.angular[2]);
+      for (const auto& [joint, name] : efforts_) add(name, was.joints[joint].effort, would.joints[joint].effort);
+    }
+    if (row.permit != nullptr) {
+      add("supervisor_state", static_cast<double>(row.permit->state), static_cast<double>(row.varied_permit->state));
+    }
+  }
+
+  /// Returns {name: (logged, varied)}, with one value per row of that law.
+  py::dict arrays() const {
+    py::dict result;
+    for (const auto& [name, column] : columns_) {
+      result[py::str(name)] =
+          py::make_tuple(py::array_t<double>(py::ssize_t(column.first.size()), column.first.data()),
+                         py::array_t<double>(py::ssize_t(column.second.size()), column.second.data()));
+    }
+    return result;
+  }
+
+ private:
+  void add(const std::string& name, double was, double would) {
+    auto& column = columns_[name];
+    column.first.push_back(was);
+    column.second.push_back(would);
+  }
+
+  std::vector<std::pair<std::size_t, std::string>> efforts_;  ///< joint of a wheel, column
+  std::map<std::string, std::pair<std::vector<double>, std::vector<double>>> columns_;
+};
+
+/// Returns the differences of processor and C library, which can change the computed bits of equal programs.
+std::vector<std::string> doubts(const LogHeader& logged, const LogHeader& here) {
+  std::vector<std::string> found;
+  const auto compare = [&](const char* what, const std::string& was, const std::string& is) {
+    if (was != is) found.push_back(std::string("the log is of another ") + what + ": " + was + "; here: " + is);
+  };
+  compare("processor", logged.processor, here.processor);
+  compare("C library", logged.libraries, here.libraries);
+  return found;
+}
+
+/// Returns one sentence per field of the header that contradicts its own parameters and URDF, or was changed after it
+/// was written.
+std::vector<std::string> header_differences(const LogHeader& logged, const LogHeader& computed) {
+  std::vector<std::string> found;
+  if (!intact(logged)) found.emplace_back("header: one of its fields was changed: its checksum is that of others");
+  const auto compare = [&](const char* field, const auto& was, const auto& is) {
+    if (was != is) found.push_back(std::string("header: ") + field + " is not that of its parameters and its URDF");
+  };
+  compare("robot", logged.robot, computed.robot);
+  compare("joints", logged.joints, computed.joints);
+  compare("wheels", logged.wheels, computed.wheels);
+  compare("period", logged.period, computed.period);
+  compare("clock", logged.clock, computed.clock);
+  return found;
+}
+
+/// `logged` are the parameters of the log, `varied` are other parameters or None.
+py::dict replay_log(const std::string& path, const Layers& logged, const std::optional<Layers>& varied) {
+  const Parameters parameters = parameters_in(logged, logged.first);
+  const RobotModel robot = robot_in(parameters);
+  Replay replay(parameters, robot);
+  VariedColumns columns(robot);
+  std::vector<std::string> live;  // values that the log leaves out but `varied` sets are included
+  if (varied) {
+    const Parameters others = parameters_in(*varied, logged.first);
+    if (others.loop.rate != parameters.loop.rate) {
+      std::ostringstream text;
+      text << "robot.rate is " << others.loop.rate << " Hz, that of the log " << parameters.loop.rate
+           << " Hz: its rows cannot be made more or fewer; leave robot.rate out";
+      throw ReplayError(text.str());
+    }
+    replay.vary(others, robot_in(others), [&](const VariedRow& row) { columns.add(row); });
+    for (const LiveParameter& each : live_parameters(others, "diff_drive_controller")) live.push_back(each.key);
+  }
+  LogHeader header;
+  std::string cut;
+  {
+    const py::gil_scoped_release release;
+    // All snapshots are read first: telemetry may have found a node's rows before its first snapshot and written the
+    // latter late.
+    TraceReader reader(path, {.snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});
+    if (!reader.of_this_version()) {
+      throw ReplayError(
+          "its messages Trace have other fields than those of this version: replay with the build that "
+          "made the log");
+    }
+    header = reader.header();
+    cut = reader.cut();
+    reader.read({.message = [&](const TraceRow& row, const BagMessage& message) {
+      replay.add(row, message.data, static_cast<std::int64_t>(message.time_ns));
+    }});
+  }
+  py::dict result = described(replay.report());
+  result["varied"] = columns.arrays();
+  const LogHeader here = log_header(parameters, robot);
+  result["doubts"] = doubts(header, here);
+  result["header"] = header_differences(header, here);
+  result["cut"] = cut;
+  result["record"] = header.record;
+  result["live"] = live;
+  result["period"] = header.period;
+  return result;
+}
+
+}  // namespace
+
+void bind_log_replay(py::module_& module) {
+  py::register_exception<ReplayError>(module, "ReplayError", PyExc_RuntimeError);
+  module.def("replay_log", &replay_log, py::arg("path"), py::arg("logged"), py::arg("varied"));
+}
+
+}  // namespace robot_control

@@ -1,0 +1,68 @@
+#include "bindings/loop_replay.h"
+
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <string>
+
+namespace py = pybind11;
+
+namespace robot_control {
+
+void LoopReplay::store(const ClosedLoop& loop) {
+  for (const LawSnapshot* snapshot : loop.snapshots()) {
+    if (snapshot == nullptr) continue;
+    const auto copy = std::make_unique<LawSnapshot>(*snapshot);
+    seal(*copy);
+    replay_.add(*copy);
+  }
+  encode_trace({.row = loop.row(), .joints = joints_}, messages_.emplace_back());
+}
+
+void LoopReplay::check() {
+  TraceRow row;
+  for (const std::string& message : messages_) {
+    decoder_.decode(message, row);
+    replay_.add(row, message, 0);
+  }
+  messages_.clear();
+}
+
+py::dict LoopReplay::report() {
+  check();
+  return described(replay_.report());
+}
+
+py::dict described(const ReplayReport& report) {
+  py::dict laws;
+  for (std::size_t i = 0; i < kLaws; ++i) {
+    const LawReport& law = report.laws[i];
+    py::dict counts;
+    counts["compared"] = law.compared;
+    counts["different"] = law.different;
+    counts["not_compared"] = law.not_compared;
+    counts["missing"] = law.missing;
+    laws[py::str(name_of(static_cast<LawName>(i)))] = counts;
+  }
+  py::list differences, gaps;
+  for (const ReplayDifference& difference : report.differences) differences.append(sentence(difference));
+  for (const ReplayGap& gap : report.gaps) gaps.append(sentence(gap));
+  py::dict result;
+  result["exact"] = report.exact();
+  result["laws"] = laws;
+  result["rows"] = report.rows;
+  result["different_rows"] = report.different_rows;
+  result["damaged_snapshots"] = report.damaged_snapshots;
+  result["differences"] = differences;
+  result["gaps"] = gaps;
+  return result;
+}
+
+void bind_loop_replay(py::module_& module) {
+  py::class_<LoopReplay>(module, "LoopReplay")
+      .def(py::init<const ClosedLoop&>(), py::arg("loop"))
+      .def("check", &LoopReplay::check, py::call_guard<py::gil_scoped_release>())
+      .def("report", &LoopReplay::report);
+}
+
+}  // namespace robot_control

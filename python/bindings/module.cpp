@@ -1,0 +1,252 @@
+/// This is the extension module behind robot_control.ClosedLoop. The Python package documents shapes, units and
+/// defaults.
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bindings/bag.h"
+#include "bindings/describe.h"
+#include "bindings/installed_file.h"
+#include "bindings/log_replay.h"
+#include "bindings/loop_replay.h"
+#include "bindings/offline_estimator.h"
+#include "bindings/recorder.h"
+#include "bindings/run_bag.h"
+#include "bindings/signal_names.h"
+#include "bindings/wheel_loops.h"
+#include "control/limits/drive_limits.h"
+#include "control/limits/stop_distance.h"
+#include "control/smooth_speed.h"
+#include "control/wheel_loops/wheel_loop_stability.h"
+#include "drivers/driver.h"
+#include "drivers/mujoco/model/mujoco_model.h"
+#include "drivers/mujoco/mujoco_plant.h"
+#include "log/fields/trace_fields.h"
+#include "loop/start_check.h"
+#include "signals/cause_names.h"
+#include "signals/slip_detection.h"
+#include "simulation/closed_loop.h"
+
+namespace py = pybind11;
+
+namespace robot_control {
+namespace {
+
+Twist planar(double linear, double angular) {
+  return {.linear = {linear, 0, 0}, .angular = {0, 0, angular}};
+}
+
+std::vector<TraceColumn> columns_of(const ClosedLoop& loop) {
+  std::vector<std::string> names;
+  for (const JointModel& joint : loop.robot().joints) names.push_back(joint.name);
+  return log_columns(names, false);
+}
+
+/// Passes the result of a command function to the loop as a command that arrives now.
+void receive(ClosedLoop& loop, const py::object& given) {
+  try {
+    const auto [linear, angular] = given.cast<std::pair<double, double>>();
+    loop.command(planar(linear, angular));
+  } catch (const py::cast_error&) {
+    throw py::type_error("command must give (linear, angular), two numbers in m/s and rad/s; it gave " +
+                         std::string(py::repr(given)));
+  }
+}
+
+/// Runs `cycles` cycles. `command(t)` returns (linear, angular), or is None. Other Python threads run meanwhile if no
+/// command function needs the interpreter. `replay` stores the cycles, or is None.
+py::dict run(ClosedLoop& loop, std::int64_t cycles, const py::object& command, LoopReplay* replay) {
+  constexpr std::int64_t kBlock = 1000;  // cycles between two checks for Ctrl-C
+  if (cycles < 0) throw py::value_error("cycles must not be negative");
+  const std::vector<TraceColumn> columns = columns_of(loop);
+  std::vector<py::array_t<double>> arrays;
+  std::vector<double*> cells;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    arrays.emplace_back(cycles);
+    cells.push_back(arrays.back().mutable_data());
+  }
+  const auto step = [&](std::int64_t row) {
+    loop.step();
+    if (replay != nullptr) replay->store(loop);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      cells[i][row] = columns[i].value(loop.row(), columns[i].element);
+    }
+  };
+  for (std::int64_t first = 0; first < cycles; first += kBlock) {
+    const std::int64_t last = std::min(first + kBlock, cycles);
+    if (command.is_none()) {
+      const py::gil_scoped_release release;
+      for (std::int64_t row = first; row < last; ++row) step(row);
+    } else {
+      for (std::int64_t row = first; row < last; ++row) {
+        receive(loop, command(loop.time()));
+        step(row);
+      }
+    }
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  }
+  py::dict log;
+  for (std::size_t i = 0; i < columns.size(); ++i) log[py::str(columns[i].name)] = arrays[i];
+  return log;
+}
+
+RobotModel robot_of(const Parameters& parameters) {
+  return read_robot(load_description(parameters.urdf), parameters.robot);
+}
+
+/// Returns the machine as described: without the errors of the field, which add a load beside its centre of gravity.
+MujocoPlantParameters without_errors(MujocoPlantParameters parameters) {
+  parameters.sensor_errors = ErrorLevel::kIdeal;
+  return parameters;
+}
+
+/// Places the robot in the scene and waits for rest. Returns how far it leans in rad and the share of its weight on the
+/// drive wheels. `unloaded` names the drive wheels that carry nothing, and the bodies that touch the ground instead.
+py::dict stand(const Parameters& parameters) {
+  const RobotModel robot = robot_of(parameters);
+  MujocoPlant plant(robot, without_errors(parameters.plant), parameters.loop.period());
+  plant.start();
+  TruthFrame truth;
+  plant.truth(truth);
+  double load = 0;
+  for (std::size_t wheel = 0; wheel < robot.wheels.size(); ++wheel) load += truth.normal_force[wheel];
+  const Quaternion& q = truth.pose_world.orientation;
+  const mjModel& model = *plant.model().model;
+  py::dict result;
+  result["lean"] = 2 * std::asin(std::min(1.0, std::hypot(q[0], q[1])));
+  result["carried"] = load / (model.body_subtreemass[plant.model().base_body] * mju_norm3(model.opt.gravity));
+  result["unloaded"] = plant.unloaded();
+  return result;
+}
+
+using Values = std::vector<std::pair<std::string, std::string>>;
+
+Parameters parameters_from(const std::string& path, const Values& values) {
+  std::vector<Overlay> overlays;
+  for (const auto& [key, text] : values) overlays.push_back({.path = key, .text = text, .origin = "ClosedLoop"});
+  Parameters parameters = read_parameters(path, overlays, path.empty() ? "" : installed_parameters());
+  for (const std::string& text : parameters.warnings) {
+    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+  }
+  return parameters;
+}
+
+py::dict controller_parameters(const Parameters& parameters) {
+  using namespace py::literals;
+  const SpeedLimits limits = speed_limits(parameters.controller);
+  const auto axis = [](const MotionLimits& axis_limits) {
+    return py::dict("speed"_a = axis_limits.speed, "acceleration"_a = axis_limits.acceleration,
+                    "deceleration"_a = axis_limits.deceleration, "jerk"_a = axis_limits.jerk);
+  };
+  return py::dict("linear"_a = axis(limits.linear), "angular"_a = axis(limits.angular),
+                  "cmd_vel_timeout"_a = parameters.controller.cmd_vel_timeout, "rate"_a = parameters.loop.rate,
+                  "lockstep"_a = parameters.loop.clock == ClockMode::kLockstep);
+}
+
+py::list derived_wheel_loops(Parameters parameters) {
+  parameters.controller.pid_kp.reset();
+  parameters.controller.pid_ki.reset();
+  parameters.controller.pid_kd = 0;
+  return wheel_loops(parameters, robot_of(parameters));
+}
+
+/// Returns the distance in m of a ramp from `speed`, including the cycle before it begins.
+double distance_to_stop(const ClosedLoop& loop, double speed, bool emergency) {
+  const Parameters& parameters = loop.parameters();
+  const MotionLimits limits = speed_limits(parameters.controller).linear;
+  const double deceleration = emergency ? limits.emergency_deceleration : limits.deceleration_from(speed);
+  return stop_distance(speed, deceleration, limits.jerk) + std::abs(speed) * parameters.loop.period();
+}
+
+double smooth_speed_of(const ClosedLoop& loop) {
+  const Parameters& parameters = loop.parameters();
+  return smooth_speed(parameters.controller, loop.robot(), encoder_count(parameters.estimator),
+                      parameters.loop.period());
+}
+
+std::vector<std::pair<std::string, std::string>> column_meanings(const ClosedLoop& loop) {
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const TraceColumn& column : columns_of(loop)) names.emplace_back(column.name, column.meaning);
+  return names;
+}
+
+/// Binds the functions that take a parameter file and values laid over it.
+void bind_parameters(py::module_& module) {
+  const auto define = [&](const char* name, auto function) {
+    module.def(
+        name,
+        [function](const std::string& path, const Values& values) { return function(parameters_from(path, values)); },
+        py::arg("path"), py::arg("values"));
+  };
+  define("describe", [](const Parameters& parameters) { return describe(robot_of(parameters)); });
+  define("mjcf", [](const Parameters& parameters) {
+    return exported_mjcf(robot_of(parameters), without_errors(parameters.plant), parameters.loop.period());
+  });
+  define("stand", stand);
+  define("wheel_loops", [](const Parameters& parameters) { return wheel_loops(parameters, robot_of(parameters)); });
+  define("derived_wheel_loops", derived_wheel_loops);
+  define("controller_parameters", controller_parameters);
+}
+
+void bind_spectral_radius(py::module_& module) {
+  module.def(
+      "spectral_radius",
+      [](double kp, double ki, double kd, double model_inertia, double inertia, double damping, double period,
+         double bandwidth, unsigned delay) {
+        return wheel_loop_spectral_radius({.kp = kp, .ki = ki, .kd = kd, .model_inertia = model_inertia},
+                                          {.inertia = inertia, .damping = damping}, period, bandwidth, delay);
+      },
+      py::kw_only(), py::arg("kp"), py::arg("ki"), py::arg("kd"), py::arg("model_inertia"), py::arg("inertia"),
+      py::arg("damping"), py::arg("period"), py::arg("bandwidth"), py::arg("delay") = 0);
+}
+
+void bind_closed_loop(py::module_& module) {
+  py::class_<ClosedLoop>(module, "ClosedLoop")
+      .def(py::init(
+               [](const std::string& path, const Values& values) { return ClosedLoop(parameters_from(path, values)); }),
+           py::arg("path"), py::arg("values"))
+      .def("command", [](ClosedLoop& loop, double linear, double angular) { loop.command(planar(linear, angular)); })
+      .def("e_stop", &ClosedLoop::e_stop)
+      .def("e_stop_reset", &ClosedLoop::e_stop_reset)
+      .def("heartbeat", &ClosedLoop::heartbeat)
+      .def("reset", &ClosedLoop::reset)
+      .def("set_parameters", &ClosedLoop::set_parameters, py::arg("request"))
+      .def("inject_fault", &ClosedLoop::inject_fault, py::arg("component"), py::arg("kind"))
+      .def("run", &run, py::arg("cycles"), py::arg("command"), py::arg("replay") = nullptr)
+      .def("record", &record, py::arg("commands"))
+      .def("stop_distance", &distance_to_stop, py::arg("speed"), py::arg("emergency"))
+      .def_property_readonly("smooth_speed", &smooth_speed_of)
+      .def_property_readonly("period", [](const ClosedLoop& loop) { return loop.parameters().loop.period(); })
+      .def_property_readonly("robot", [](const ClosedLoop& loop) { return describe(loop.robot()); })
+      .def_property_readonly("cycle", &ClosedLoop::cycle)
+      .def_property_readonly("time", &ClosedLoop::time)
+      .def_property_readonly("columns", &column_meanings);
+}
+
+}  // namespace
+}  // namespace robot_control
+
+PYBIND11_MODULE(_robot_control, module) {
+  using namespace robot_control;
+  py::register_exception<ParameterError>(module, "ParameterError", PyExc_ValueError);
+  py::register_exception<RobotError>(module, "RobotError", PyExc_ValueError);
+  py::register_exception<DriverError>(module, "DriverError", PyExc_RuntimeError);
+  module.attr("signal_names") = signal_names();
+  module.def("slip_detection", &slip_detection, py::arg("residual_level"));
+  module.attr("project_folder") = ROBOT_CONTROL_PROJECT;  // folder of the checkout, where PyPI's packages are installed
+  bind_parameters(module);
+  bind_spectral_radius(module);
+  bind_offline_estimator(module);
+  bind_loop_replay(module);
+  bind_log_replay(module);
+  bind_closed_loop(module);
+  bind_bag(module);
+  bind_run_bag(module);
+}

@@ -1,0 +1,58 @@
+#include "bindings/signal_names.h"
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "signals/names.h"
+
+namespace py = pybind11;
+
+namespace robot_control {
+namespace {
+
+py::list bits(std::span<const BitName> table) {
+  py::list rows;
+  for (const BitName& row : table) {
+    rows.append(py::make_tuple(std::string(row.name), std::string(row.sentence), std::string(row.remedy),
+                               std::string(row.unit)));
+  }
+  return rows;
+}
+
+py::list words(std::span<const std::string_view> names) {
+  py::list all;
+  for (const std::string_view name : names) all.append(std::string(name));
+  return all;
+}
+
+template <typename State>
+py::list states(int count) {
+  py::list names;
+  for (int i = 0; i < count; ++i) names.append(std::string(name_of(static_cast<State>(i))));
+  return names;
+}
+
+}  // namespace
+
+py::dict signal_names() {
+  py::dict all;
+  all["StopCause"] = bits(kStopCauseNames);
+  all["CommandReason"] = bits(kCommandReasonNames);
+  all["GateReason"] = bits(kGateReasonNames);
+  all["StateFlag"] = bits(kStateFlagNames);
+  all["SlipReason"] = bits(kSlipReasonNames);
+  all["DegradedReason"] = bits(kDegradedReasonNames);
+  all["DriverFault"] = bits(kDriverFaultNames);
+  all["SupervisorState"] = states<SupervisorState>(6);
+  all["PermitAction"] = states<PermitAction>(3);
+  all["GateVerdict"] = states<GateVerdict>(5);
+  all["DriverState"] = states<DriverState>(5);
+  all["JointMode"] = states<JointMode>(4);
+  all["SensorIndex"] = words(kStateSensorNames);
+  all["FaultComponent"] = words(kFaultComponentNames);
+  all["FaultKind"] = words(kFaultKindNames);
+  return all;
+}
+
+}  // namespace robot_control

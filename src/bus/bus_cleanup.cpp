@@ -1,0 +1,97 @@
+#include "bus/bus_cleanup.h"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "bus/bus.h"
+#include "bus/bus_object.h"
+#include "bus/latest_frames.h"
+#include "rt/shared_memory.h"
+#include "signals/permit.h"
+
+namespace robot_control {
+namespace {
+
+/// Names of channels by bus. A bus may have dots in its name, a channel has none.
+std::map<std::string, std::vector<std::string>> channels_by_bus() {
+  std::map<std::string, std::vector<std::string>> found;
+  const std::string prefix = "robot_control." + std::to_string(geteuid()) + ".";
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry("/dev/shm", error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename();
+    const std::size_t dot = name.rfind('.');
+    if (!name.starts_with(prefix) || dot < prefix.size()) continue;
+    found[name.substr(prefix.size(), dot - prefix.size())].push_back(name.substr(dot + 1));
+  }
+  return found;
+}
+
+struct LockedObject {
+  std::string channel;
+  std::string name;
+  SharedMemory object;
+};
+
+/// All of them, or none.
+std::vector<LockedObject> locked(const std::string& bus, const std::vector<std::string>& channels) {
+  std::vector<LockedObject> objects;
+  for (const std::string& channel : channels) {
+    const std::string name = bus_object_name(bus, channel);
+    std::optional<SharedMemory> object = SharedMemory::open(name, Access::kReadWrite);
+    if (!object || !object->is_private() || !object->lock() || !object->still_named()) return {};
+    objects.push_back({channel, name, std::move(*object)});
+  }
+  return objects;
+}
+
+bool latched(const SharedMemory& permits) {
+  constexpr BusLayout kLayout = BusLayoutOf<LatestFrames<Permit>>::value;
+  const BusContent content = content_of(permits, kLayout);
+  if (content != BusContent::kUsable) return content == BusContent::kUnreadable;
+  const MemoryMapping mapping = permits.map(kLayout.object_bytes);
+  Permit last;
+  switch (FrameReader<Permit>(static_cast<const LatestFrames<Permit>*>(mapping.data())).newest(last)) {
+    case Lookup::kMissing:
+      return static_cast<const LatestFrames<Permit>*>(mapping.data())->newest.load() != 0;  // torn by a death
+    case Lookup::kFrame:
+      return last.causes != 0;
+    case Lookup::kToken:
+    case Lookup::kCorrupt:
+      break;
+  }
+  return true;
+}
+
+bool remove_bus(const std::string& bus, const std::vector<std::string>& channels) {
+  const std::vector<LockedObject> objects = locked(bus, channels);
+  if (objects.empty()) return false;
+  for (const LockedObject& each : objects) {
+    if (each.channel == ChannelNames::kPermit && latched(each.object)) return false;
+  }
+  for (const LockedObject& each : objects) shm_unlink(each.name.c_str());
+  return true;
+}
+
+}  // namespace
+
+std::vector<std::string> remove_ended_buses(const std::string& own) {
+  std::vector<std::string> removed;
+  for (const auto& [bus, channels] : channels_by_bus()) {
+    if (bus == own) continue;
+    try {
+      if (remove_bus(bus, channels)) removed.push_back(bus);
+    } catch (const std::exception&) {
+      continue;  // another user's, or gone meanwhile
+    }
+  }
+  return removed;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,240 @@
+#pragma once
+/// LatestFrames holds the latest frames of one channel, with one writer and any number of readers in any process.
+///
+/// There are eight slots; the frame of cycle c is in slot c mod 8. The writer is wait-free, a reader copies and retries
+/// at most kReadTries times. Each slot is a sequence lock whose words are atomics. The writer stores an odd version,
+/// then every word with release, then the even version. A reader that loads one new word with acquire therefore sees
+/// the odd version afterwards and discards its copy. No fence is needed (H.-J. Boehm, "Can seqlocks get along with
+/// programming language memory models?", MSPC 2012, section 4). On x86-64 every access is a plain move.
+///
+/// The memory model of C++ guarantees: an accepted copy is one complete publication, and `newest` never returns an
+/// older frame than before. Versions are stored with release and loaded with acquire, so that after a failed try the
+/// next one sees the publication that disturbed it. With consecutive cycles `newest` therefore misses only if
+/// kReadTries publications overtook it. The test tests/bus/latest_frames_model_test.cpp visits every execution that C++
+/// allows of a small model of this code. It shows that no memory order and no check can be left out.
+///
+/// `sequence` counts the publications of all successive writers, and readers wait on it as futex word. Readers need
+/// only read access to the memory. After Lookup::kMissing the content of `out` has no meaning.
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#include "rt/futex.h"
+#include "signals/frame_head.h"
+
+namespace robot_control {
+
+inline constexpr std::size_t kFrameSlots = 8;
+inline constexpr int kReadTries = 4;
+
+inline constexpr std::uint64_t kChannelMagic = 0x6c74635f746f6272ULL;  // "rbot_ctl"
+inline constexpr std::uint64_t kLayoutVersion = 4;
+
+/// The first bytes of every shared object, LatestFrames or Ring. `magic` to `retired` have the same place in every
+/// layout version, so that a process can check and retire an object that it cannot read.
+struct ChannelHead {
+  std::atomic<std::uint64_t> magic;                 ///< kChannelMagic, stored last when the object is made
+  std::uint64_t layout_version;                     ///< kLayoutVersion
+  std::uint64_t frame_bytes;                        ///< sizeof(Frame)
+  std::uint64_t slots;                              ///< number of slots for frames
+  std::atomic<std::uint64_t> retired;               ///< 1: the name belongs to another object now, which must be mapped
+  std::atomic<std::uint64_t> attached_run;          ///< run whose sensors the writer of this channel waits on
+  std::atomic<std::uint64_t> robot_hash;            ///< RobotModel::hash of the writer's robot; sensors channel only
+  std::array<std::atomic<char>, 256> robot_source;  ///< file of that robot, zero-terminated
+};
+
+/// Atomic and SlotCount have other values than their defaults only in the tests' model.
+template <class Frame, template <class> class Atomic = std::atomic, std::size_t SlotCount = kFrameSlots>
+struct LatestFrames {
+  struct Slot {
+    Atomic<std::uint64_t> version;
+    std::array<Atomic<std::uint64_t>, kFrameWords<Frame>> words;
+  };
+  ChannelHead head;
+  alignas(64) Atomic<std::uint32_t> sequence;  ///< futex word
+  Atomic<std::uint64_t> newest;                ///< slot of the last publication + 1; 0 = none
+  alignas(64) std::array<Slot, SlotCount> slots;
+};
+static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
+
+/// The waiting threads that a publication wakes. A loop in one thread on private memory avoids the system call.
+enum class Wake { kReaders, kNone };
+
+template <class Frame, template <class> class Atomic = std::atomic, std::size_t SlotCount = kFrameSlots>
+class FrameWriter {
+ public:
+  using Frames = LatestFrames<Frame, Atomic, SlotCount>;
+
+  /// `memory` is zeroed or was left by an earlier writer of the same layout. It is not owned.
+  explicit FrameWriter(Frames* memory = nullptr, Wake wake = Wake::kReaders) noexcept : memory_(memory), wake_(wake) {}
+
+  /// Seals the frame, stores it and wakes all readers with one futex call.
+  void publish(Frame& frame) noexcept {
+    seal(frame);
+    publish_sealed(frame);
+  }
+
+  /// Publishes a frame that is already sealed.
+  void publish_sealed(const Frame& frame) noexcept {
+    store(frame);
+    wake();
+  }
+
+  /// Publishes a token with run, cycle and stamp of `head`: this cycle has passed without a frame.
+  void publish_token(const FrameHead& head) noexcept {
+    Frame token{};
+    token.head = {.run = head.run, .cycle = head.cycle, .stamp_ns = head.stamp_ns, .kind = FrameKind::kToken};
+    publish(token);
+  }
+
+  /// Stores a frame without sealing it or waking readers, for tests with a broken frame.
+  void store(const Frame& frame) noexcept {
+    const std::size_t index = frame.head.cycle % SlotCount;
+    auto& slot = memory_->slots[index];
+    const std::uint64_t version = slot.version.load(std::memory_order_relaxed) | 1;  // odd also after a crash
+    slot.version.store(version, std::memory_order_release);
+    for (std::size_t i = 0; i < kFrameWords<Frame>; ++i)
+      slot.words[i].store(word_of(frame, i), std::memory_order_release);
+    slot.version.store(version + 1, std::memory_order_release);
+    memory_->newest.store(index + 1, std::memory_order_release);
+  }
+
+  Frames* memory() const noexcept { return memory_; }
+
+ private:
+  void wake() noexcept {
+    memory_->sequence.fetch_add(1, std::memory_order_release);
+    if (wake_ == Wake::kReaders) futex_wake_all(memory_->sequence);
+  }
+
+  Frames* memory_;
+  Wake wake_;
+};
+
+template <class Frame, template <class> class Atomic = std::atomic, std::size_t SlotCount = kFrameSlots>
+class FrameReader {
+ public:
+  using Frames = LatestFrames<Frame, Atomic, SlotCount>;
+
+  explicit FrameReader(const Frames* memory = nullptr) noexcept : memory_(memory) {}
+  FrameReader(const FrameReader& other) noexcept : memory_(other.memory_.load()) {}
+  FrameReader& operator=(const FrameReader& other) noexcept {
+    memory_.store(other.memory_.load());
+    return *this;
+  }
+
+  /// Maps the object that replaced the channel's; an ordinary thread calls it. The old mapping must stay valid.
+  void remap(const Frames* memory) noexcept { memory_.store(memory, std::memory_order_release); }
+
+  /// Reads the last published frame.
+  Lookup newest(Frame& out) const noexcept {
+    const auto* memory = memory_.load(std::memory_order_acquire);
+    if (memory == nullptr) return Lookup::kMissing;
+    for (int tries = 0; tries < kReadTries; ++tries) {
+      const std::uint64_t newest = memory->newest.load(std::memory_order_acquire);
+      if (newest == 0 || newest > SlotCount) return Lookup::kMissing;
+      if (!copy(memory->slots[newest - 1], out)) continue;
+      // A reader that slept meanwhile has copied the slot's next frame. A later call could then return the frame before
+      // it, and time would go backwards.
+      if (memory->newest.load(std::memory_order_relaxed) == newest) return classify(out);
+    }
+    return Lookup::kMissing;
+  }
+
+  /// Reads the complete frame with the latest stamp that an ended writer left, also if a torn frame follows it. Returns
+  /// kCorrupt if frames were published but none is complete. It reads every slot and is not meant for the loop.
+  Lookup last_whole(Frame& out) const noexcept {
+    const auto* memory = memory_.load(std::memory_order_acquire);
+    if (memory == nullptr) return Lookup::kMissing;
+    bool found = false;
+    bool written = memory->newest.load(std::memory_order_acquire) != 0;
+    Frame frame;
+    for (const auto& slot : memory->slots) {
+      if (slot.version.load(std::memory_order_acquire) % 2 != 0) written = true;
+      if (!copy(slot, frame) || classify(frame) != Lookup::kFrame) continue;
+      if (found && frame.head.stamp_ns < out.head.stamp_ns) continue;
+      out = frame;
+      found = true;
+    }
+    if (found) return Lookup::kFrame;
+    return written ? Lookup::kCorrupt : Lookup::kMissing;
+  }
+
+  /// Reads the frame of this run and cycle.
+  Lookup at(std::uint64_t run, std::uint64_t cycle, Frame& out) const noexcept {
+    const auto* memory = memory_.load(std::memory_order_acquire);
+    if (memory == nullptr) return Lookup::kMissing;
+    for (int tries = 0; tries < kReadTries; ++tries) {
+      if (!copy(memory->slots[cycle % SlotCount], out)) continue;
+      const Lookup found = classify(out);
+      if (found == Lookup::kCorrupt) return found;
+      return out.head.run == run && out.head.cycle == cycle ? found : Lookup::kMissing;
+    }
+    return Lookup::kMissing;
+  }
+
+  /// Reads the newest frame of cycles first … last of this run (both included). It searches downwards as far as frames
+  /// are kept. A corrupt frame ends the search. A token counts as missing.
+  Lookup newest_within(std::uint64_t run, std::uint64_t first, std::uint64_t last, Frame& out) const noexcept {
+    std::uint64_t cycle = last;
+    for (std::size_t looks = 0; looks < SlotCount && cycle >= first && cycle <= last; ++looks, --cycle) {
+      const Lookup found = at(run, cycle, out);
+      if (found == Lookup::kFrame || found == Lookup::kCorrupt) return found;
+    }
+    return Lookup::kMissing;
+  }
+
+  std::uint32_t sequence() const noexcept {
+    const auto* memory = memory_.load(std::memory_order_acquire);
+    return memory == nullptr ? 0 : memory->sequence.load(std::memory_order_acquire);
+  }
+
+  /// Waits until `sequence()` differs from `seen`, or the timeout (negative: none) has passed. Returns true if it
+  /// differs, or if the channel was mapped meanwhile. A mapping is noticed within kRemapNs, also without a timeout. The
+  /// caller reads `seen` before it looks up a frame, not after.
+  bool wait(std::uint32_t seen, std::int64_t timeout_ns) const noexcept {
+    const auto* memory = memory_.load(std::memory_order_acquire);
+    for (std::int64_t left_ns = timeout_ns; left_ns != 0;) {
+      const std::int64_t slice_ns = left_ns < 0 || left_ns > kRemapNs ? kRemapNs : left_ns;
+      if (memory == nullptr) {
+        sleep_ns(slice_ns);
+      } else if (futex_wait(memory->sequence, seen, slice_ns)) {
+        return true;
+      }
+      if (memory_.load(std::memory_order_acquire) != memory) return true;
+      if (left_ns > 0) left_ns -= slice_ns;
+    }
+    return memory != nullptr && memory->sequence.load(std::memory_order_acquire) != seen;
+  }
+
+  static constexpr std::int64_t kRemapNs = 20'000'000;
+
+  const Frames* memory() const noexcept { return memory_.load(std::memory_order_acquire); }
+
+ private:
+  /// Returns false if `out` is not one complete publication.
+  static bool copy(const typename Frames::Slot& slot, Frame& out) noexcept {
+    const std::uint64_t before = slot.version.load(std::memory_order_acquire);
+    if (before % 2 != 0) return false;
+    auto* const bytes = reinterpret_cast<std::byte*>(&out);
+    for (std::size_t i = 0; i < kFrameWords<Frame>; ++i) {
+      const std::uint64_t word = slot.words[i].load(std::memory_order_acquire);
+      std::memcpy(bytes + 8 * i, &word, sizeof(word));
+    }
+    return slot.version.load(std::memory_order_acquire) == before;
+  }
+
+  static Lookup classify(const Frame& frame) noexcept {
+    if (frame.head.run == 0) return Lookup::kMissing;  // the slot was never written
+    if (!intact(frame)) return Lookup::kCorrupt;
+    if (frame.head.kind == FrameKind::kToken) return Lookup::kToken;
+    return frame.head.kind == FrameKind::kFrame ? Lookup::kFrame : Lookup::kCorrupt;
+  }
+
+  std::atomic<const Frames*> memory_;
+};
+
+}  // namespace robot_control

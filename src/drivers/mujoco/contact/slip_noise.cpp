@@ -1,0 +1,28 @@
+#include "drivers/mujoco/contact/slip_noise.h"
+
+#include <cmath>
+
+namespace robot_control {
+
+SlipNoise::SlipNoise(const RobotModel& robot, const MujocoPlantParameters& parameters)
+    : seed_(parameters.seed),
+      deviation_(parameters.sensor_errors == ErrorLevel::kField && robot.wheels.size() > 2
+                     ? parameters.wheel_slip_noise / std::sqrt(2 * kLength)
+                     : 0) {
+  reset();
+}
+
+void SlipNoise::reset() {
+  random_[0].seed(seed_, kLeftSlipStream);
+  random_[1].seed(seed_, kRightSlipStream);
+  error_ = {};
+}
+
+void SlipNoise::step(Side side, double distance) noexcept {
+  if (deviation_ == 0 || distance == 0) return;
+  const double kept = std::exp(-std::abs(distance) / kLength);
+  double& error = error_[index(side)];
+  error = kept * error + deviation_ * std::sqrt(1 - kept * kept) * random_[index(side)].next();
+}
+
+}  // namespace robot_control

@@ -1,0 +1,29 @@
+#pragma once
+/// These functions write collision shapes as MJCF elements by the rules in mjcf.h.
+
+#include <Eigen/Geometry>
+#include <string>
+
+#include "drivers/mujoco/mujoco_plant_parameters.h"
+#include "machine/bodies/rigid_bodies.h"
+
+namespace robot_control {
+
+/// Return numbers with 17 digits and the decimal point ".", which are read back without a change.
+std::string mjcf_number(double value);
+std::string mjcf_numbers(const Eigen::Vector3d& values);
+
+/// Returns ` pos="…" quat="…"`.
+std::string mjcf_pose(const Eigen::Isometry3d& frame);
+
+/// Returns `<geom …/>` of a shape that slides; `mesh` names its asset.
+std::string mjcf_sliding_shape(const Shape& shape, const std::string& mesh);
+
+/// Returns `<geom …/>` of a drive wheel or caster; the z axis of `frame` is the axle.
+std::string mjcf_rolling_shape(const std::string& name, const Eigen::Isometry3d& frame, const WheelModel& wheel,
+                               const MujocoPlantParameters& parameters);
+
+/// Returns `<mesh …/>` with its corners; flat meshes are thickened.
+std::string mjcf_mesh(const std::string& name, const std::vector<Eigen::Vector3d>& corners);
+
+}  // namespace robot_control

@@ -1,0 +1,192 @@
+#include "drivers/mujoco/model/mujoco_model.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "drivers/driver.h"
+#include "drivers/mujoco/model/mjcf.h"
+#include "drivers/mujoco/model/scene_files.h"
+#include "drivers/mujoco/model/true_robot.h"
+#include "drivers/mujoco/mujoco_errors.h"
+#include "files/message_text.h"
+#include "machine/bodies/ground_points.h"
+#include "machine/description/wording.h"
+
+namespace robot_control {
+namespace {
+
+using ModelPointer = std::unique_ptr<mjModel, DeleteMujoco>;
+
+class VirtualFiles {
+ public:
+  VirtualFiles() : files_(std::make_unique<mjVFS>()) { mj_defaultVFS(files_.get()); }
+  ~VirtualFiles() { mj_deleteVFS(files_.get()); }
+  VirtualFiles(const VirtualFiles&) = delete;
+  VirtualFiles& operator=(const VirtualFiles&) = delete;
+
+  void add(const std::string& name, const std::string& text) {
+    if (mj_makeEmptyFileVFS(files_.get(), name.c_str(), static_cast<int>(text.size())) != 0) {
+      throw DriverError(name + ": MuJoCo takes no such file name.");
+    }
+    std::memcpy(files_->filedata[mj_findFileVFS(files_.get(), name.c_str())], text.data(), text.size());
+  }
+  const mjVFS* get() const { return files_.get(); }
+
+ private:
+  std::unique_ptr<mjVFS> files_;
+};
+
+ModelPointer load(const std::string& path, const mjVFS* files, const std::string& blamed) {
+  std::array<char, 1000> error{};
+  ModelPointer model(mj_loadXML(path.c_str(), files, error.data(), static_cast<int>(error.size())));
+  if (!model) {
+    throw DriverError(blamed + ": MuJoCo does not compile it: " + fit_for_message(on_one_line(error.data())) +
+                      ". Repair the scene, or set another one (mujoco_plant/scene).");
+  }
+  return model;
+}
+
+int find(const mjModel& model, mjtObj type, const std::string& name) {
+  return mj_name2id(&model, type, name.c_str());
+}
+
+MjcfPlace place_of(const mjModel& scene, const std::filesystem::path& path, double height) {
+  const int site = find(scene, mjOBJ_SITE, kMjcfStart);
+  if (site < 0) {
+    throw DriverError(
+        path.string() +
+        ": there is no site \"start\". Add <site name=\"start\" pos=\"…\"/> where the robot is set down.");
+  }
+  const MujocoData data(mj_makeData(&scene));
+  mj_kinematics(&scene, data.get());
+  const mjtNum* matrix = data->site_xmat + 9 * site;
+  MjcfPlace place;
+  place.scene_file = path.filename().string();
+  for (int axis = 0; axis < 3; ++axis) {
+    place.pose[static_cast<std::size_t>(axis)] = data->site_xpos[3 * site + axis] + height * matrix[3 * axis + 2];
+  }
+  mju_mat2Quat(place.pose.data() + 3, matrix);
+  return place;
+}
+
+void check_mass(const MujocoModel& robot, const std::string& path) {
+  const double simulated = robot.model->body_subtreemass[robot.base_body];
+  if (std::abs(simulated - robot.robot.mass) <= 1e-9 * robot.robot.mass) return;
+  throw DriverError(path + ": it makes the robot weigh " + std::to_string(simulated) + " kg instead of " +
+                    std::to_string(robot.robot.mass) +
+                    " kg. Remove settotalmass, boundmass or inertiafromgeom from its <compiler>.");
+}
+
+// Sets the options of the plant; `start` is the pose of the base at its start.
+void set_options(mjModel& model, double timestep, double slope, const std::array<double, 7>& start) {
+  model.opt.timestep = timestep;
+  model.opt.integrator = mjINT_EULER;
+  model.opt.solver = mjSOL_NEWTON;
+  model.opt.cone = mjCONE_ELLIPTIC;
+  model.opt.impratio = 100;
+  if (slope == 0) return;
+  const mjtNum lateral[3] = {0, 1, 0};
+  mjtNum axis[3], turn[4];
+  mju_rotVecQuat(axis, lateral, start.data() + 3);
+  mju_axisAngle2Quat(turn, axis, slope);
+  const mjtNum level[3] = {model.opt.gravity[0], model.opt.gravity[1], model.opt.gravity[2]};
+  mju_rotVecQuat(model.opt.gravity, level, turn);
+}
+
+void find_addresses(MujocoModel& result) {
+  const mjModel& model = *result.model;
+  const RobotModel& robot = result.robot;
+  result.base_body = find(model, mjOBJ_BODY, mjcf_body_name(robot.base_link));
+  const int base_joint = model.body_jntadr[result.base_body];
+  result.base_position = model.jnt_qposadr[base_joint];
+  result.base_velocity = model.jnt_dofadr[base_joint];
+  for (const JointModel& joint : robot.joints) {
+    const int id = find(model, mjOBJ_JOINT, joint.name);
+    result.joint_position.push_back(model.jnt_qposadr[id]);
+    result.joint_velocity.push_back(model.jnt_dofadr[id]);
+  }
+  result.drive_wheels = robot.wheels.size();
+  for (std::size_t wheel = 0; wheel < robot.wheels.size() + robot.casters.size(); ++wheel) {
+    result.wheel_shape.push_back(find(model, mjOBJ_GEOM, mjcf_wheel_name(wheel)));
+  }
+  result.gyro = model.sensor_adr[find(model, mjOBJ_SENSOR, kMjcfGyro)];
+  result.imu = find(model, mjOBJ_SITE, kMjcfImu);
+}
+
+/// Returns ", such as flat, kerb in its folder"; "" if there is no other scene.
+std::string scenes_beside(const std::filesystem::path& scene) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(scene.parent_path(), error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (entry->path().extension() == ".xml") names.push_back(entry->path().stem());
+  }
+  std::sort(names.begin(), names.end());
+  return names.empty() ? "" : ", such as " + printable(list(names)) + " in its folder";
+}
+
+std::string read_file(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+}  // namespace
+
+MujocoModel compile_model(const RobotModel& robot, const MujocoPlantParameters& parameters, double period) {
+  install_mujoco_handlers();
+  const std::filesystem::path scene = parameters.scene;
+  if (std::error_code error; !std::filesystem::exists(scene, error)) {
+    throw DriverError(printable(scene.string()) +
+                      ": there is no such file. Set mujoco_plant/scene to the path of an MJCF file" +
+                      scenes_beside(scene) + ".");
+  }
+  check_scene_files(scene);
+  MujocoModel result;
+  result.robot = true_robot(robot, parameters);
+  const MjcfPlace place =
+      place_of(*load(scene.string(), nullptr, scene.string()), scene, standing_height(result.robot));
+
+  const std::string name = scene.stem().string() + "+robot.xml";
+  VirtualFiles files;
+  files.add(name, robot_mjcf(result.robot, parameters, place));
+  // The text is loaded in the scene's directory, so that relative paths in the scene stay valid.
+  result.model = load((scene.parent_path() / name).string(), files.get(), robot.source + " in scene " + scene.string());
+  result.substeps = static_cast<int>(std::ceil(period / kMaxStep - 1e-9));
+  set_options(*result.model, period / result.substeps, parameters.slope, place.pose);
+  apply_angles(result.robot, *result.model);
+  find_addresses(result);
+  check_mass(result, scene.string());
+  const mjtNum up[3] = {0, 0, 1};
+  mju_rotVecQuat(result.up.data(), up, place.pose.data() + 3);
+  return result;
+}
+
+MujocoData set_down(const MujocoModel& robot) {
+  return MujocoData(mj_makeData(robot.model.get()));
+}
+
+std::string exported_mjcf(const RobotModel& robot, const MujocoPlantParameters& parameters, double period) {
+  MujocoPlantParameters native = parameters;
+  native.tyre = TyreModel::kNative;
+  const MujocoModel compiled = compile_model(robot, native, period);
+  std::string path = (std::filesystem::temp_directory_path() / "robot_control_XXXXXX").string();
+  const int file = mkstemp(path.data());
+  if (file < 0) throw DriverError(path + ": cannot be created: " + std::strerror(errno));
+  close(file);
+  std::array<char, 1000> error{};
+  const bool saved = mj_saveLastXML(path.c_str(), compiled.model.get(), error.data(), error.size()) != 0;
+  std::string text = read_file(path);
+  std::filesystem::remove(path);
+  if (!saved) throw DriverError(robot.source + ": MuJoCo does not write it: " + error.data());
+  return text;
+}
+
+}  // namespace robot_control

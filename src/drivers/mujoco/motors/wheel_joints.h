@@ -1,0 +1,19 @@
+#pragma once
+/// wheel_joints returns the wheels of one side as indices into the frames' joint arrays.
+
+#include <cstddef>
+#include <vector>
+
+#include "machine/robot_model.h"
+
+namespace robot_control {
+
+inline std::vector<std::size_t> wheel_joints(const RobotModel& robot, Side side) {
+  std::vector<std::size_t> joints;
+  for (const WheelModel& wheel : robot.wheels) {
+    if (wheel.side == side) joints.push_back(wheel.joint);
+  }
+  return joints;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,128 @@
+#include "drivers/mujoco/sensors/sensor_errors.h"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "drivers/driver.h"
+
+namespace robot_control {
+namespace {
+
+// The numbers of the streams; each device has three.
+constexpr std::uint64_t kBiasStream = 0;
+constexpr std::uint64_t kNoiseStream = 1;
+constexpr std::uint64_t kWalkStream = 2;
+constexpr std::uint64_t kStreams = 3;
+constexpr std::uint64_t kGyroDevice = 0;
+constexpr std::uint64_t kAccelerometerDevice = 1;
+
+}  // namespace
+
+InertialError::InertialError(double noise, double bias, double walk, double period, std::uint64_t device)
+    : noise_(noise / std::sqrt(period)), draw_(bias), walk_(walk * std::sqrt(kWalkCycles * period)), device_(device) {}
+
+void InertialError::reset(std::uint64_t seed) {
+  NormalStream bias_stream;
+  bias_stream.seed(seed, kStreams * device_ + kBiasStream);
+  for (double& axis : bias_) axis = draw_ * bias_stream.next();
+  noise_stream_.seed(seed, kStreams * device_ + kNoiseStream);
+  walk_stream_.seed(seed, kStreams * device_ + kWalkStream);
+  cycle_ = 0;
+}
+
+void InertialError::step(Vector3& value) noexcept {
+  if (walk_ > 0 && cycle_ > 0 && cycle_ % kWalkCycles == 0) {
+    for (double& axis : bias_) axis += walk_ * walk_stream_.next();
+  }
+  ++cycle_;
+  for (std::size_t axis = 0; axis < value.size(); ++axis) value[axis] += bias_[axis];
+  if (noise_ > 0) {
+    for (double& axis : value) axis += noise_ * noise_stream_.next();
+  }
+}
+
+SensorErrors::SensorErrors(const RobotModel& robot, const MujocoPlantParameters& parameters, double period)
+    : level_(parameters.sensor_errors),
+      seed_(parameters.seed),
+      period_(period),
+      count_(parameters.encoder_resolution > 0 ? 2 * std::numbers::pi / parameters.encoder_resolution : 0),
+      gyro_scale_(1 + parameters.gyro_scale_error),
+      gyro_(parameters.gyro_noise, parameters.gyro_bias, parameters.gyro_bias_walk, period, kGyroDevice),
+      accelerometer_(parameters.accelerometer_noise, parameters.accelerometer_bias, parameters.accelerometer_bias_walk,
+                     period, kAccelerometerDevice),
+      vibration_(robot, parameters, period),
+      late_imu_(parameters.imu_delay, parameters.imu_jitter, period, kImuLateStream),
+      late_encoders_(0, parameters.encoder_jitter, period, kEncodersLateStream),
+      delay_(checked_delay("sensor_delay", parameters.sensor_delay)) {
+  for (const WheelModel& wheel : robot.wheels) wheels_.push_back(wheel.joint);
+  reset();
+}
+
+void SensorErrors::reset() {
+  first_ = true;
+  gyro_.reset(seed_);
+  accelerometer_.reset(seed_);
+  vibration_.reset(seed_);
+  late_imu_.reset(seed_);
+  late_encoders_.reset(seed_);
+}
+
+void SensorErrors::encode(Measurement& measurement) noexcept {
+  for (std::size_t i = 0; i < wheels_.size(); ++i) {
+    JointSample& joint = measurement.joints[wheels_[i]];
+    const double counted = std::round(joint.position / count_);
+    joint.position = counted * count_;
+    joint.velocity = first_ ? 0 : (counted - counted_[i]) * count_ / period_;
+    counted_[i] = counted;
+  }
+}
+
+/// Delays the samples. Efforts are those of this cycle, because the encoder does not sample them.
+void SensorErrors::make_late(Measurement& measurement) noexcept {
+  late_imu_.step(measurement.imu);
+  Encoders encoders{};
+  for (std::size_t i = 0; i < wheels_.size(); ++i) encoders[i] = measurement.joints[wheels_[i]];
+  late_encoders_.step(encoders);
+  for (std::size_t i = 0; i < wheels_.size(); ++i) {
+    JointSample& joint = measurement.joints[wheels_[i]];
+    joint.position = encoders[i].position;
+    joint.velocity = encoders[i].velocity;
+  }
+}
+
+void SensorErrors::disturb(Measurement& measurement) noexcept {
+  if (level_ == ErrorLevel::kField) vibration_.step(measurement);
+  for (double& rate : measurement.imu.angular_velocity) rate *= gyro_scale_;
+  gyro_.step(measurement.imu.angular_velocity);
+  accelerometer_.step(measurement.imu.linear_acceleration);
+}
+
+void SensorErrors::begin(const Measurement& standing) noexcept {
+  for (std::size_t cycle = late_imu_.longest(); cycle > 0; --cycle) {
+    Measurement before = standing;
+    disturb(before);
+    late_imu_.step(before.imu);
+  }
+}
+
+void SensorErrors::step(Measurement& measurement) noexcept {
+  if (level_ == ErrorLevel::kIdeal) return;
+  if (first_ && level_ == ErrorLevel::kField) begin(measurement);
+  disturb(measurement);
+  if (count_ > 0) encode(measurement);
+  if (level_ == ErrorLevel::kField) make_late(measurement);
+  if (first_) delay_.fill(measurement);
+  delay_.step(measurement);
+  first_ = false;
+}
+
+std::size_t checked_delay(const char* name, std::uint64_t cycles) {
+  if (cycles > kMaxDelay) {
+    throw DriverError("mujoco_plant/" + std::string(name) + " = " + std::to_string(cycles) + " cycles: at most " +
+                      std::to_string(kMaxDelay) + " are possible. Set a smaller delay.");
+  }
+  return static_cast<std::size_t>(cycles);
+}
+
+}  // namespace robot_control

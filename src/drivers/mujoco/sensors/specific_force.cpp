@@ -1,0 +1,23 @@
+#include "drivers/mujoco/sensors/specific_force.h"
+
+namespace robot_control {
+
+SpecificForce::SpecificForce(const MujocoModel& model) : model_(model.model.get()), site_(model.imu) {}
+
+void SpecificForce::reset(const mjData& data) noexcept {
+  mjtNum motion[6];  // angular, then linear velocity, world axes
+  mj_objectVelocity(model_, &data, mjOBJ_SITE, site_, motion, 0);
+  velocity_ = Eigen::Map<const Eigen::Vector3d>(motion + 3);
+  orientation_ = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(data.site_xmat + 9 * site_);
+}
+
+Eigen::Vector3d SpecificForce::step(const mjData& data) noexcept {
+  const Eigen::Vector3d velocity_before = velocity_;
+  const Eigen::Matrix3d orientation_before = orientation_;
+  reset(data);
+  const Eigen::Vector3d gravity(model_->opt.gravity);
+  const Eigen::Vector3d force = (velocity_ - velocity_before) / model_->opt.timestep - gravity;
+  return 0.5 * (orientation_before + orientation_).transpose() * force;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,241 @@
+#include "gate/gate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "gate/joint_clamp.h"
+
+namespace robot_control {
+namespace {
+
+constexpr std::uint64_t kClamps = kGateEffortClamped | kGateRateClamped | kGateSpeedClamped | kGatePositionClamped;
+
+bool is_brake(const JointCommand& joint) noexcept {
+  return joint.mode == JointMode::kBrake;
+}
+
+void check(const JointLimits& limits, std::size_t joint) {
+  const auto refuse = [&](const std::string& what, double value, const std::string& rule) {
+    throw std::invalid_argument("gate: " + what + " of joint " + std::to_string(joint) + " is " +
+                                std::to_string(value) + ", must be a number " + rule);
+  };
+  if (!(limits.effort >= 0) || std::isinf(limits.effort)) refuse("effort limit", limits.effort, ">= 0");
+  if (!(limits.effort_rate > 0)) refuse("effort rate", limits.effort_rate, "> 0");
+  if (!(limits.velocity > 0)) refuse("velocity limit", limits.velocity, "> 0");
+  if (!(limits.lower < limits.upper)) refuse("lower end stop", limits.lower, "< the upper one");
+  if (!(limits.soft_zone >= 0) || std::isinf(limits.soft_zone)) refuse("soft zone", limits.soft_zone, ">= 0");
+}
+
+bool needs_sample(const JointLimits& limits) noexcept {
+  return std::isfinite(limits.velocity) || std::isfinite(limits.lower) || std::isfinite(limits.upper);
+}
+
+}  // namespace
+
+Gate::Gate(const std::vector<JointLimits>& limits, const GateParameters& parameters, double period)
+    : parameters_(parameters), period_(period) {
+  if (limits.size() > kMaxJoints) {
+    throw std::invalid_argument("gate: " + std::to_string(limits.size()) + " joints, at most " +
+                                std::to_string(kMaxJoints) + " are possible");
+  }
+  if (!(period > 0)) throw std::invalid_argument("gate: period " + std::to_string(period) + " s, must be > 0");
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    check(limits[i], i);
+    limits_.emplace_back(limits[i]);
+    memory_.emplace_back(JointMemory{.speed = JointSpeed(period)});
+  }
+}
+
+void Gate::enter_run() noexcept {
+  for (JointMemory& memory : memory_) memory = {.speed = JointSpeed(period_)};
+  last_cycle_.reset();
+  newest_permit_ = ramp_began_ = 0;
+  ramping_ = false;
+  report_ = GateReport{};
+}
+
+std::span<const JointCommand> Gate::step(const GateInput& input) noexcept {
+  report_.verdict = GateVerdict::kBrake;
+  report_.reasons = 0;
+  read_samples(input);
+  if (!check_and_clamp(input)) brake(parameters_.fail_action);
+  remember();
+  samples_ = {};
+  last_cycle_ = input.cycle;
+  return {commands_.data(), limits_.size()};
+}
+
+void Gate::read_samples(const GateInput& input) noexcept {
+  const SensorFrame& sensors = *input.sensors;
+  const bool sampled = (sensors.valid & kValidJoints) != 0 && sensors.joint_count == limits_.size();
+  samples_ = std::span(sensors.joints).first(sampled ? limits_.size() : 0);
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    if (std::isfinite(samples_[i].position)) memory_[i].speed.step(samples_[i].position, input.cycle);
+  }
+}
+
+bool Gate::check_and_clamp(const GateInput& input) noexcept {
+  if (input.cycle == 0) {
+    report_.reasons = kGateFirstTick;
+    return false;
+  }
+  if (!permit_is_alive(input) || !permit_allows_motion(*input.permit, input.cycle) || !command_is_fresh(input) ||
+      !command_is_valid(*input.command) || !samples_suffice(*input.command)) {
+    return false;
+  }
+
+  std::copy_n(input.command->joints.begin(), limits_.size(), commands_.begin());
+  const bool held = (report_.reasons & kGateCommandHeld) != 0;
+  if (held) ++report_.held;
+  if (std::all_of(commands_.begin(), commands_.begin() + static_cast<std::ptrdiff_t>(limits_.size()), is_brake)) {
+    brake(FailAction::kBrake);
+    report_.reasons |= kGateControllerBrake;
+    return true;
+  }
+  const bool later = last_cycle_ && input.cycle > *last_cycle_;
+  const std::uint64_t elapsed = later ? input.cycle - *last_cycle_ : 1;
+  clamp(static_cast<double>(elapsed) * period_);
+  if (input.permit->action == PermitAction::kRamp) {
+    report_.verdict = GateVerdict::kRamp;
+  } else if ((report_.reasons & kClamps) != 0) {
+    report_.verdict = GateVerdict::kClamped;
+  } else {
+    report_.verdict = held ? GateVerdict::kHeld : GateVerdict::kPassed;
+  }
+  return true;
+}
+
+bool Gate::permit_is_alive(const GateInput& input) noexcept {
+  if (input.permit_found == Lookup::kCorrupt) {
+    report_.reasons |= kGateChecksum;
+    ++report_.refused;
+    return false;
+  }
+  const Permit& permit = *input.permit;
+  if (input.permit_found != Lookup::kFrame || permit.head.run != input.run) {
+    report_.reasons |= kGateNoPermit;
+    return false;
+  }
+  if (permit.head.cycle >= input.cycle) {
+    report_.reasons |= kGateFuture;
+    ++report_.refused;
+    return false;
+  }
+  report_.permit_cycle = permit.head.cycle;
+  const std::uint64_t age = input.cycle - permit.head.cycle;
+  if (age > 1) ++report_.late_permits;
+  const bool superseded = permit.head.cycle < newest_permit_;
+  newest_permit_ = std::max(newest_permit_, permit.head.cycle);
+  if (superseded || input.cycle > permit.expiry || age > kPermitLife) {
+    report_.reasons |= kGatePermitExpired;
+    return false;
+  }
+  return true;
+}
+
+bool Gate::permit_allows_motion(const Permit& permit, std::uint64_t cycle) noexcept {
+  switch (permit.action) {
+    case PermitAction::kDrive:
+      ramping_ = false;
+      return true;
+    case PermitAction::kRamp:
+      if (!ramping_) ramp_began_ = cycle;
+      ramping_ = true;
+      if (cycle > permit.ramp_until) report_.reasons |= kGateRampOver;
+      if (cycle - ramp_began_ >= parameters_.longest_ramp) report_.reasons |= kGateRampTooLong;
+      return report_.reasons == 0;
+    case PermitAction::kBrake:
+      ramping_ = false;
+      report_.reasons |= kGatePermitBrake;
+      return false;
+  }
+  report_.reasons |= kGateUnknownMode;
+  ++report_.refused;
+  return false;
+}
+
+bool Gate::command_is_fresh(const GateInput& input) noexcept {
+  if (input.command_found == Lookup::kCorrupt) {
+    report_.reasons |= kGateChecksum;
+    ++report_.refused;
+    return false;
+  }
+  const FrameHead& head = input.command->head;
+  const bool found = input.command_found == Lookup::kFrame && head.run == input.run;
+  if (found && head.cycle >= input.cycle) {
+    report_.reasons |= kGateFuture;
+    ++report_.refused;
+    return false;
+  }
+  if (!found || input.cycle - head.cycle > kCommandLife) {
+    report_.reasons |= kGateNoCommand;
+    ++report_.missed;
+    return false;
+  }
+  report_.command_cycle = head.cycle;
+  if (input.cycle - head.cycle > 1) report_.reasons |= kGateCommandHeld;
+  return true;
+}
+
+bool Gate::command_is_valid(const CommandFrame& command) noexcept {
+  if (command.joint_count != limits_.size()) {
+    report_.reasons |= kGateWrongJointCount;
+    ++report_.refused;
+    return false;
+  }
+  std::uint64_t wrong = 0;
+  for (std::size_t i = 0; i < limits_.size(); ++i) {
+    if (!finite(command.joints[i])) wrong |= kGateNotFinite;
+    if (command.joints[i].mode > JointMode::kImpedance) wrong |= kGateUnknownMode;
+  }
+  report_.reasons |= wrong;
+  if (wrong != 0) ++report_.refused;
+  return wrong == 0;
+}
+
+bool Gate::samples_suffice(const CommandFrame& command) noexcept {
+  for (std::size_t i = 0; i < limits_.size(); ++i) {
+    if (is_brake(command.joints[i]) || !needs_sample(limits_[i]) || has_position(i)) continue;
+    report_.reasons |= kGateBadSensors;
+    return false;
+  }
+  return true;
+}
+
+void Gate::clamp(double elapsed) noexcept {
+  for (std::size_t i = 0; i < limits_.size(); ++i) {
+    const JointLimits& limits = limits_[i];
+    JointCommand& command = commands_[i];
+    report_.reasons |= clamp_effort(limits, command);
+    if (is_brake(command)) continue;
+    report_.reasons |= clamp_gains(command);
+    const JointMemory& memory = memory_[i];
+    const bool measured = has_position(i) && std::isfinite(samples_[i].effort);
+    const double from = memory.driven ? memory.effort : 0.0;
+    const double to = memory.driven || !measured ? from : std::clamp(samples_[i].effort, -limits.effort, limits.effort);
+    const double step = limits.effort_rate * elapsed;
+    report_.reasons |= clamp_rate(std::min(from, to) - step, std::max(from, to) + step, command);
+    if (!has_position(i)) continue;
+    report_.reasons |= clamp_speed(limits, samples_[i].position, memory.speed.value(), command);
+    report_.reasons |= clamp_position(limits, samples_[i].position, command);
+  }
+}
+
+void Gate::brake(FailAction wheels) noexcept {
+  for (std::size_t i = 0; i < limits_.size(); ++i) {
+    const bool coasts = wheels == FailAction::kCoast && limits_[i].wheel;
+    commands_[i] = {.mode = coasts ? JointMode::kEffort : JointMode::kBrake};
+  }
+}
+
+void Gate::remember() noexcept {
+  const bool braked = report_.verdict == GateVerdict::kBrake;
+  for (std::size_t i = 0; i < limits_.size(); ++i) {
+    memory_[i].driven = !braked && !is_brake(commands_[i]);
+    memory_[i].effort = commands_[i].effort;
+  }
+}
+
+}  // namespace robot_control

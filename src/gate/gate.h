@@ -1,0 +1,107 @@
+#pragma once
+/// The last check before the motors. It checks in this order, and brakes at the first check that fails:
+///   1. the permit is whole (checksum) and has not expired: safety_monitor is running
+///   2. the permit allows motion
+///   3. the command is whole and of a recent cycle: diff_drive_controller is running
+///   4. the command fits the robot, and all its numbers are finite
+/// Then it clamps the command. Up to 3 missed commands the last one is held; after that the gate brakes, which is
+/// counted and not latched.
+///
+/// Conditions in tick k. `cycle`, `expiry` … are fields of the frame; frames of another run than the driver's count as
+/// missing. Permits and commands are valid for 4 cycles (kPermitLife in permit.h, kCommandLife in command_frame.h).
+///   permit   cycle < k  ∧  k ≤ min(expiry, cycle + kPermitLife), and no newer permit was found in an earlier tick: a
+///            revoked permit does not become valid again
+///   action   kDrive; or kRamp while k ≤ ramp_until, and for at most GateParameters::longest_ramp cycles in a row
+///   command  k − kCommandLife ≤ cycle ≤ k − 1; one of cycle k − 1 is on time, an older one is *held*
+///   numbers  every field of every joint is finite, every mode is a JointMode, joint_count is that of the robot. The
+///            position sample of a joint that is to move and has a speed limit or end stops is finite, too
+///   clamps   joint_clamp.h, in this order: |effort| ≤ limit; gains ≥ 0; |Δeffort| ≤ effort_rate·Δt; speed limit; end
+///            stops
+///
+/// The torque of a brake is the driver's and may be large. When a brake ends, its torque is removed at once. The first
+/// effort command after it may therefore lie between the torque measured last and zero, ± effort_rate·Δt.
+///
+/// Tick 0 brakes. A brake is JointCommand{} on every joint. Under FailAction::kCoast, wheels get no torque (kEffort 0)
+/// instead, unless the command itself requests the brake on every joint. GateReport counts: `refused` frames (checksum,
+/// future cycle, joint count, finiteness, mode), `missed` ticks in which the permit was good and the command missing.
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "bus/latest_frames.h"
+#include "gate/gate_parameters.h"
+#include "gate/joint_speed.h"
+#include "signals/command_frame.h"
+#include "signals/fixed_vector.h"
+#include "signals/gate_report.h"
+#include "signals/joint.h"
+#include "signals/permit.h"
+#include "signals/sensor_frame.h"
+
+namespace robot_control {
+
+struct GateInput {
+  std::uint64_t run = 0;
+  std::uint64_t cycle = 0;  ///< k
+  Lookup permit_found = Lookup::kMissing;
+  const Permit* permit = nullptr;  ///< never null; meaningful when found
+  Lookup command_found = Lookup::kMissing;
+  const CommandFrame* command = nullptr;  ///< never null; meaningful when found
+  const SensorFrame* sensors = nullptr;   ///< never null; of this tick
+};
+
+class Gate {
+ public:
+  /// One entry per joint; `period` > 0, s. Throws std::invalid_argument: a limit outside the range that
+  /// JointLimits names, a period that is not, or more than kMaxJoints joints.
+  Gate(const std::vector<JointLimits>& limits, const GateParameters& parameters, double period);
+
+  /// A new run: counters restart.
+  void enter_run() noexcept;
+
+  /// The commands for the driver in tick k, one per joint. `report()` holds the verdict and its reasons.
+  std::span<const JointCommand> step(const GateInput& input) noexcept;
+
+  const GateReport& report() const noexcept { return report_; }
+
+ private:
+  /// The state of one joint between two ticks.
+  struct JointMemory {
+    JointSpeed speed;
+    bool driven = false;  ///< a command moved it in the last tick
+    double effort = 0;    ///< the effort that it got then
+  };
+
+  void read_samples(const GateInput& input) noexcept;
+  /// All checks; false: brake. Else `commands_` is the clamped command and the verdict is set.
+  bool check_and_clamp(const GateInput& input) noexcept;
+  bool permit_is_alive(const GateInput& input) noexcept;
+  bool permit_allows_motion(const Permit& permit, std::uint64_t cycle) noexcept;
+  bool command_is_fresh(const GateInput& input) noexcept;
+  bool command_is_valid(const CommandFrame& command) noexcept;
+  bool samples_suffice(const CommandFrame& command) noexcept;
+  bool has_position(std::size_t joint) const noexcept {
+    return joint < samples_.size() && std::isfinite(samples_[joint].position);
+  }
+  void clamp(double elapsed) noexcept;
+  void brake(FailAction wheels) noexcept;
+  void remember() noexcept;
+
+  FixedVector<JointLimits, kMaxJoints> limits_;
+  GateParameters parameters_;
+  double period_;
+  FixedVector<JointMemory, kMaxJoints> memory_;
+  std::span<const JointSample> samples_;     ///< of this tick; empty: missing, or between two ticks
+  std::optional<std::uint64_t> last_cycle_;  ///< of the last tick
+  std::uint64_t newest_permit_ = 0;          ///< cycle of the newest permit seen in this run
+  bool ramping_ = false;                     ///< the last permit that had not expired was a ramp
+  std::uint64_t ramp_began_ = 0;             ///< the tick of its first permit
+  std::array<JointCommand, kMaxJoints> commands_{};
+  GateReport report_;
+};
+
+}  // namespace robot_control

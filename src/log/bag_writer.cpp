@@ -1,0 +1,83 @@
+#include "log/bag_writer.h"
+
+#include <string_view>
+#include <utility>
+
+#include "log/log_error.h"
+
+namespace robot_control {
+namespace {
+
+// The first record is padded to this length, so that it can be replaced in place; rosbag does the same.
+constexpr std::size_t kHeaderBytes = 4096;
+
+std::string connection_record(std::uint32_t number, const WrittenConnection& connection) {
+  BagFields data(BagOp::kConnection);
+  const std::size_t op = data.bytes().size();  // the data has no field `op`
+  data.text("topic", connection.topic).text("type", connection.type.name).text("md5sum", connection.type.md5);
+  data.text("message_definition", connection.type.definition);
+  if (connection.latching) data.text("latching", "1");
+  BagFields fields(BagOp::kConnection);
+  fields.number("conn", number).text("topic", connection.topic);
+  std::string record;
+  append_record(record, fields, std::string_view(data.bytes()).substr(op));
+  return record;
+}
+
+}  // namespace
+
+BagWriter::BagWriter(std::string path, std::vector<WrittenConnection> connections, LogFile::Room room)
+    : file_(std::move(path), std::move(room)), connections_(std::move(connections)) {
+  file_.append(opening(0));
+}
+
+BagWriter::~BagWriter() {
+  try {
+    close();
+  } catch (const LogError&) {
+    // A caller that needs to know the result has called close().
+  }
+}
+
+std::string BagWriter::opening(std::uint64_t index_position) const {
+  BagFields fields(BagOp::kBagHeader);
+  fields.number("index_pos", index_position);
+  fields.number("conn_count", static_cast<std::uint32_t>(connections_.size())).number("chunk_count", chunks_);
+  std::string bytes(kBagMagic);
+  append_record(bytes, fields, std::string(kHeaderBytes - fields.bytes().size(), ' '));
+  return bytes;
+}
+
+std::string BagWriter::connection_records() const {
+  std::string bytes;
+  for (std::uint32_t i = 0; i < connections_.size(); ++i) bytes += connection_record(i, connections_[i]);
+  return bytes;
+}
+
+void BagWriter::write(const PackedChunk& chunk) {
+  if (!open()) return;
+  file_.check_presence();
+  BagFields fields(BagOp::kChunkInfo);
+  fields.number("ver", std::uint32_t{1}).number("chunk_pos", static_cast<std::uint64_t>(bytes()));
+  fields.time("start_time", chunk.begin_ns).time("end_time", chunk.end_ns);
+  fields.number("count", static_cast<std::uint32_t>(chunk.count.size()));
+  std::string counts;
+  ByteSink sink(counts);
+  for (const auto& [connection, count] : chunk.count) {
+    sink.number(connection);
+    sink.number(count);
+  }
+  file_.append(chunk.record + chunk.index);
+  append_record(chunk_infos_, fields, counts);
+  ++chunks_;
+}
+
+void BagWriter::close() {
+  if (!open()) return;
+  const auto index_position = static_cast<std::uint64_t>(bytes());
+  file_.append(connection_records() + chunk_infos_);
+  file_.replace_begin(opening(index_position));
+  file_.close();
+}
+
+}  // namespace robot_control

@@ -1,0 +1,121 @@
+#include "log/black_box/black_box_folder.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+#include "log/black_box/black_box_reader.h"
+#include "log/log_error.h"
+#include "log/numbered_name.h"
+
+namespace robot_control {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kBag = ".bag";
+constexpr const char* kRing = ".ring";
+
+std::string prefix_of(IncidentKind kind) {
+  return kind == IncidentKind::kStop ? "stop." : "crash.";
+}
+
+/// The result is false also for a file that is no black box.
+bool ended_without_order(const std::string& path) {
+  try {
+    return !BlackBoxReader(path).ended();
+  } catch (const LogError&) {
+    return false;
+  }
+}
+
+bool in_use(const std::string& path) {
+  try {
+    return BlackBoxReader(path).in_use();
+  } catch (const LogError&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+std::string BlackBoxFolder::ring() const {
+  return (fs::path(folder_) / "ring").string();
+}
+
+std::string BlackBoxFolder::name(IncidentKind kind, std::uint64_t number, const std::string& suffix) const {
+  return (fs::path(folder_) / (prefix_of(kind) + std::to_string(number) + suffix)).string();
+}
+
+std::vector<BlackBoxFolder::File> BlackBoxFolder::files(IncidentKind kind, const std::string& suffix) const {
+  std::vector<File> found;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error)) {
+    std::error_code gone;
+    const auto number = number_in(entry->path().filename().string(), prefix_of(kind), suffix);
+    if (!number || !fs::is_regular_file(entry->symlink_status(gone))) continue;
+    found.push_back({.number = *number, .path = entry->path().string()});
+  }
+  std::ranges::sort(found, {}, &File::number);
+  return found;
+}
+
+std::uint64_t BlackBoxFolder::next(IncidentKind kind) const {
+  std::uint64_t newest = 0;
+  for (const char* suffix : {kBag, kRing}) {
+    for (const File& file : files(kind, suffix)) newest = std::max(newest, file.number);
+  }
+  return newest + 1;
+}
+
+void BlackBoxFolder::remove_oldest(IncidentKind kind) const {
+  std::vector<File> all = files(kind, kBag);
+  std::ranges::copy(files(kind, kRing), std::back_inserter(all));
+  std::ranges::sort(all, {}, &File::number);
+  std::error_code ignored;
+  for (std::size_t i = 0; i + keep_ < all.size(); ++i) fs::remove(all[i].path, ignored);
+}
+
+void BlackBoxFolder::put_ring_aside() {
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  if (error) {
+    throw LogError("folder " + folder_ + " of the black box cannot be made: " + error.message() +
+                   "; name one that can be written (telemetry.directory)");
+  }
+  if (in_use(ring())) {
+    throw LogError("black box " + ring() +
+                   " is written by another telemetry; name another folder (telemetry.directory)");
+  }
+  // A telemetry that was killed while it saved an incident leaves such a folder.
+  for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error)) {
+    if (entry->path().extension() == kSavingSuffix) fs::remove_all(entry->path(), error);
+  }
+  if (!fs::exists(fs::symlink_status(ring(), error))) return;
+  const bool crash = keep_ != 0 && ended_without_order(ring());
+  fs::rename(ring(), crash ? name(IncidentKind::kCrash, next(IncidentKind::kCrash), kRing) : ring() + ".before", error);
+  if (error) {
+    throw LogError("black box " + ring() + " of an earlier run cannot be renamed: " + error.message() +
+                   "; name a folder that can be written (telemetry.directory)");
+  }
+  if (crash) remove_oldest(IncidentKind::kCrash);
+}
+
+std::vector<std::string> BlackBoxFolder::unsaved() const {
+  std::vector<std::string> paths;
+  for (const File& file : files(IncidentKind::kCrash, kRing)) paths.push_back(file.path);
+  return paths;
+}
+
+SavedIncident BlackBoxFolder::save(const std::string& ring, IncidentKind kind, std::uint64_t build,
+                                   const GiveUp& give_up) const {
+  const auto number = number_in(fs::path(ring).filename().string(), prefix_of(kind), kRing);
+  const std::string bag = name(kind, number.value_or(next(kind)), kBag);
+  const SavedBlackBox saved = save_black_box(ring, build, bag, give_up);
+  std::error_code ignored;
+  if (number) fs::remove(ring, ignored);
+  remove_oldest(kind);
+  return {.bag = bag, .missing = saved.missing};
+}
+
+}  // namespace robot_control

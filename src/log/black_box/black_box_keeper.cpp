@@ -1,0 +1,155 @@
+#include "log/black_box/black_box_keeper.h"
+
+#include <sys/resource.h>
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+
+#include "log/black_box/saved_black_box.h"
+#include "log/log_error.h"
+#include "signals/names.h"
+
+namespace robot_control {
+namespace {
+
+constexpr const char* kCrashed = "telemetry had not ended orderly, or had no time to save a stop";
+
+}  // namespace
+
+BlackBoxKeeper::BlackBoxKeeper(const std::string& folder, std::size_t bytes, std::size_t keep, std::uint64_t build,
+                               const LogHeader& header)
+    : folder_(folder, keep), keep_(keep), build_(build), bytes_(bytes), header_(header), encoded_(encode(header)) {
+  folder_.put_ring_aside();
+  if (keep_ != 0) unsaved_ = folder_.unsaved();
+  try {
+    make_box();
+  } catch (const LogError&) {
+    if (unsaved_.empty()) throw;
+    // The ring of a killed telemetry may fill the disk; the saved bag is a third as large.
+    for (const std::string& ring : std::exchange(unsaved_, {})) report(save(ring, IncidentKind::kCrash, kCrashed, {}));
+    make_box();
+  }
+}
+
+void BlackBoxKeeper::make_box() {
+  box_ = std::make_unique<BlackBox>(folder_.ring(), bytes_, build_, header_);
+}
+
+void BlackBoxKeeper::set_header(const LogHeader& header) {
+  header_ = header;
+  encoded_ = encode(header);
+  header_ns_ = 0;
+}
+
+void BlackBoxKeeper::check_ring(std::int64_t now_ns) {
+  constexpr std::int64_t kCheckNs = 1'000'000'000;
+  if (now_ns < check_ns_) return;
+  check_ns_ = now_ns + kCheckNs;
+  if (box_ != nullptr && box_->at_its_path()) return;
+  box_.reset();  // a removed file keeps its room on the disk while it is open
+  try {
+    folder_.put_ring_aside();
+    make_box();
+    absent_ = false;
+    notes_.push_back(folder_.ring() + " was removed, and what it held with it; another one was begun");
+  } catch (const LogError& error) {
+    check_ns_ = now_ns + kRetryNs;
+    if (std::exchange(absent_, true)) return;
+    notes_.push_back(folder_.ring() +
+                     " was removed, and no other can be made, which is tried every 10 s: " + error.what());
+  }
+}
+
+void BlackBoxKeeper::check_size() {
+  if (size_checked_ || box_ == nullptr || box_->seconds_added() < kRateKnown) return;
+  size_checked_ = true;
+  const double held = box_->seconds_held();
+  if (held >= kPromised) return;
+  std::array<char, 200> text{};
+  std::snprintf(
+      text.data(), text.size(), "telemetry.black_box of %.3g GB holds %.0f s of this robot; %.0f s need %.2g GB",
+      static_cast<double>(bytes_) * 1e-9, held, kPromised, static_cast<double>(bytes_) * 1e-9 * 1.1 * kPromised / held);
+  notes_.emplace_back(text.data());
+}
+
+BlackBoxKeeper::~BlackBoxKeeper() {
+  ends_.store(true);
+}
+
+BlackBoxKeeper::Outcome BlackBoxKeeper::save(const std::string& ring, IncidentKind kind, const std::string& why,
+                                             const GiveUp& give_up) const {
+  try {
+    const SavedIncident saved = folder_.save(ring, kind, build_, give_up);
+    const std::string missing = saved.missing.empty() ? "" : "; " + saved.missing;
+    return {.saved = true, .note = "saved " + saved.bag + ": " + why + missing};
+  } catch (const EmptyBlackBox&) {
+    std::error_code ignored;
+    if (kind == IncidentKind::kCrash) std::filesystem::remove(ring, ignored);
+    return {};
+  } catch (const SavingGivenUp&) {
+    return {.given_up = true, .note = {}};
+  } catch (const std::exception& error) {
+    return {.note = "not saved (" + why + "): " + error.what()};
+  }
+}
+
+void BlackBoxKeeper::begin(const std::string& ring, IncidentKind kind, const std::string& why) {
+  saving_ = kind == IncidentKind::kStop ? why : "";
+  outcome_ = std::async(std::launch::async, [this, ring, kind, why] {
+    constexpr int kLowest = 19;
+    setpriority(PRIO_PROCESS, 0, kLowest);  // this applies to the calling thread alone
+    return save(ring, kind, why, [this] { return ends_.load(); });
+  });
+}
+
+/// Reports what the thread has saved; false: it gave up.
+bool BlackBoxKeeper::finish_saving() {
+  if (!outcome_.valid()) return true;
+  Outcome outcome = outcome_.get();
+  const bool given_up = outcome.given_up;
+  report(std::move(outcome));
+  return !given_up;
+}
+
+void BlackBoxKeeper::report(Outcome outcome) {
+  if (outcome.saved) ++saved_;
+  if (!outcome.note.empty()) notes_.push_back(std::move(outcome.note));
+}
+
+void BlackBoxKeeper::poll(std::int64_t now_ns) {
+  check_ring(now_ns);
+  check_size();
+  if (box_ != nullptr && now_ns >= header_ns_) {
+    box_->add_header(encoded_);
+    header_ns_ = now_ns + kHeaderNs;
+  }
+  if (outcome_.valid() && outcome_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  finish_saving();
+  if (watch_.due(now_ns)) {
+    const std::uint64_t causes = watch_.clear();
+    if (keep_ != 0) begin(folder_.ring(), IncidentKind::kStop, names_of(kStopCauseNames, causes, ", "));
+  } else if (!unsaved_.empty()) {
+    begin(unsaved_.front(), IncidentKind::kCrash, kCrashed);
+    unsaved_.erase(unsaved_.begin());
+  }
+}
+
+/// The caller saves, because the thread may get little processor time, and roslaunch kills a node after 15 s.
+void BlackBoxKeeper::finish(const GiveUp& late) {
+  ends_.store(true);
+  std::string why = finish_saving() ? "" : saving_;
+  if (watch_.pending()) why += (why.empty() ? "" : ", ") + names_of(kStopCauseNames, watch_.clear(), ", ");
+  if (!why.empty() && keep_ != 0) {
+    Outcome outcome = save(folder_.ring(), IncidentKind::kStop, why, late);
+    if (outcome.given_up) {
+      notes_.push_back("not saved (" + why + "): telemetry ends; the next one in this folder saves it as a crash");
+      return;
+    }
+    report(std::move(outcome));
+  }
+  if (box_ != nullptr) box_->mark_ended();
+}
+
+}  // namespace robot_control

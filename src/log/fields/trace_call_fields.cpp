@@ -1,0 +1,143 @@
+#include <algorithm>
+#include <bit>
+
+#include "log/fields/trace_field_groups.h"
+#include "log/fields/trace_field_kinds.h"
+#include "signals/law_snapshot.h"
+
+namespace robot_control {
+
+using namespace trace_words;
+
+namespace {
+
+template <class Part>
+void add_law(TraceFields& to, const std::string& node) {
+  const auto number = [&](const char* name, const char* comment, auto get) {
+    to.push_back(field<Part, u64>(node + "_" + name, comment, get));
+  };
+  number("output", "checksum of what it computed", MEMBER(calls.law.output));
+  number("sensors", "checksum of the sensors it used", MEMBER(calls.law.sensors));
+  number("row", "rows of its process before this one", MEMBER(calls.law.number));
+  number("process", "random number of its process", MEMBER(calls.law.process));
+  number("new_run", "1: it entered a run since the row before", MEMBER(calls.law.new_run));
+}
+
+template <class Part, class Get>
+void add_used(TraceFields& to, const std::string& name, Get) {
+  to.push_back(field<Part, u64>(
+      name + "_checksum", "of the frame that was found", [](auto& part) -> auto& { return Get{}(part).checksum; }));
+  to.push_back(field<Part, u64>(
+      name + "_cycle", "in which it was found", [](auto& part) -> auto& { return Get{}(part).cycle; }));
+  to.push_back(field<Part, u8>(
+      name + "_found", "Lookup", [](auto& part) -> auto& { return Get{}(part).found; }));
+}
+
+template <class Get>
+void add_velocity(TraceFields& to, const std::string& name, Get) {
+  const auto number = [&](const char* what, const char* comment, auto get) {
+    to.push_back(field<C, u64>(name + "_" + what, comment, get));
+  };
+#define OF(member)             \
+  [](auto& part) -> auto& {    \
+    return Get{}(part).member; \
+  }
+  to.push_back(field<C, f64>(name + "_linear", "m/s", OF(twist.linear)));
+  to.push_back(field<C, f64>(name + "_angular", "rad/s", OF(twist.angular)));
+  number("count", "usable commands so far", OF(count));
+  to.push_back(field<C, std::int64_t>(name + "_age_ns", "ns, when it arrived, by its stamp", OF(age_ns)));
+  number("stale", "refused for their stamp", OF(stale));
+  number("crowded", "refused because more than one node sends", OF(crowded));
+  number("revoked", "refused because their sender owes a zero velocity", OF(revoked));
+  number("many_senders", "1: more than one node sends now", OF(many_senders));
+  number("contested", "1: another sender requested motion; 2: a zero velocity of no sender", OF(contested));
+#undef OF
+}
+
+template <class Get>
+void add_operator(TraceFields& to, const std::string& name, Get) {
+  const auto number = [&](const char* what, const char* comment, auto get) {
+    to.push_back(field<M, u64>(name + "_" + what, comment, get));
+  };
+#define OF(member)             \
+  [](auto& part) -> auto& {    \
+    return Get{}(part).member; \
+  }
+  number("e_stop_level", "1: last value on e_stop is true", OF(e_stop_level));
+  number("e_stop_messages", "on that topic", OF(e_stop_messages));
+  number("e_stop_triggers", "true on that topic", OF(e_stop_triggers));
+  number("e_stop_services", "calls of e_stop_trigger", OF(e_stop_services));
+  number("resets", "calls of e_stop_reset", OF(resets));
+  number("heartbeats", "messages", OF(heartbeats));
+  number("clearances", "messages", OF(clearances));
+  to.push_back(field<M, f64>(name + "_clearance", "m, last value", OF(clearance)));
+#undef OF
+}
+
+template <class Frame>
+using Words = std::array<u64, kFrameWords<Frame>>;
+
+/// The whole published frame is recorded if an injected fault changed it, and near a snapshot (signals/law_snapshot.h).
+/// Otherwise the list is empty.
+template <class Part, class Frame, class Get>
+TraceField whole_frame(std::string name, Get) {
+  TraceField result{
+      .name = std::move(name),
+      .type = "uint64[]",
+      .comment = "the published frame, word by word, where a fault changed it, and near a snapshot; else empty"};
+  result.write = [](const TraceSource& source, std::string& to) {
+    const Part* part = part_of<Part>(source.row);
+    const bool published = part != nullptr && Get{}(*part).head.kind == FrameKind::kFrame;
+    const bool whole =
+        published && (near_snapshot(source.row.cycle) || Get{}(*part).head.checksum != part->calls.law.output);
+    write_number(to, static_cast<std::uint32_t>(whole ? kFrameWords<Frame> : 0));
+    if (!whole) return;
+    for (const u64 word : std::bit_cast<Words<Frame>>(Get{}(*part))) write_number(to, word);
+  };
+  result.read = [](ByteSource& from, TraceRow& row) {
+    const auto size = from.number<std::uint32_t>();
+    if (size == 0) return true;
+    if (size != kFrameWords<Frame>) return false;
+    Words<Frame> words;
+    for (u64& word : words) word = from.number<u64>();
+    Get{}(part_of<Part>(row)) = std::bit_cast<Frame>(words);
+    return true;
+  };
+  return result;
+}
+
+}  // namespace
+
+void add_calls(TraceFields& to) {
+  to.push_back(field<D, u64>("sensors_checksum", "of the frame", MEMBER(sensors.head.checksum)));
+  to.push_back(field<E, u64>("state_checksum", "of the frame", MEMBER(state.head.checksum)));
+  to.push_back(field<C, u64>("command_checksum", "of the frame", MEMBER(command.head.checksum)));
+  to.push_back(field<M, u64>("permit_checksum", "of the frame", MEMBER(permit.head.checksum)));
+  add_law<D>(to, "gate");
+  add_law<E>(to, "estimator");
+  add_law<C>(to, "controller");
+  add_law<M>(to, "monitor");
+  add_used<D>(to, "gate_used_command", MEMBER(calls.command));
+  add_used<D>(to, "gate_used_permit", MEMBER(calls.permit));
+  add_used<C>(to, "controller_used_permit", MEMBER(calls.permit));
+  add_used<M>(to, "monitor_used_command", MEMBER(calls.command));
+  to.push_back(field<C, u64>("controller_used_state_checksum", "of the state of this cycle", MEMBER(calls.state)));
+  to.push_back(field<E, u64>("estimator_first_cycle", "", MEMBER(calls.first_cycle)));
+  to.push_back(field<E, u64>("pose_set", "1: the pose was set before this step", MEMBER(calls.pose_set)));
+  to.push_back(field<E, f64>("pose", "m, m, rad: to which", MEMBER(calls.pose)));
+  to.push_back(field<C, u64>("controller_with_zero", "1: a run that it entered began with a zero request",
+                             MEMBER(calls.with_zero)));
+  to.push_back(field<C, u64>("controller_tuned", "1: tuned before this step", MEMBER(calls.tuned)));
+  add_velocity(to, "request", MEMBER(calls.request));
+  add_velocity(to, "inbox", MEMBER(calls.inbox));
+  to.push_back(field<M, u8>("monitor_silence", "SensorSilence, where it used no sensors", MEMBER(calls.silence)));
+  to.push_back(field<M, u64>("monitor_state_seen", "", MEMBER(calls.state_seen)));
+  to.push_back(field<M, u64>("monitor_state_first_cycle", "", MEMBER(calls.state_first_cycle)));
+  to.push_back(field<M, u64>("monitor_corrupt", "", MEMBER(calls.corrupt)));
+  add_operator(to, "operator", MEMBER(calls.operator_input));
+  to.push_back(whole_frame<E, StateFrame>("whole_state", MEMBER(state)));
+  to.push_back(whole_frame<C, CommandFrame>("whole_command", MEMBER(command)));
+  to.push_back(whole_frame<M, Permit>("whole_permit", MEMBER(permit)));
+}
+
+}  // namespace robot_control

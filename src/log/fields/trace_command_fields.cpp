@@ -1,0 +1,95 @@
+#include "log/fields/trace_field_groups.h"
+#include "log/fields/trace_field_kinds.h"
+
+namespace robot_control {
+
+using namespace trace_words;
+
+void add_command(TraceFields& to) {
+  const auto number = [&](const char* name, const char* comment, auto get) {
+    to.push_back(field<C, u64>(name, comment, get));
+  };
+  const auto shown = [&](const char* name, const char* comment, auto get) {
+    to.push_back(field<C, u64>(name, comment, get).shown());
+  };
+  to.push_back(
+      field<C, f64>("requested_linear", "m/s, base axes, as last received", MEMBER(command.twist_requested.linear))
+          .shown({"requested_linear"}));
+  to.push_back(field<C, f64>("requested_angular", "rad/s, base axes", MEMBER(command.twist_requested.angular))
+                   .shown_as(column<C>("requested_angular", "rad/s",
+                                       [](const C& c, std::size_t) { return c.command.twist_requested.angular[2]; })));
+  to.push_back(field<C, f32>("limited_linear", "m/s, after limits", MEMBER(command.twist_limited.linear))
+                   .shown({"limited_linear"}));
+  to.push_back(field<C, f32>("limited_angular", "rad/s, after limits", MEMBER(command.twist_limited.angular))
+                   .shown_as(column<C>("limited_angular", "rad/s",
+                                       [](const C& c, std::size_t) { return c.command.twist_limited.angular[2]; })));
+  to.push_back(per_joint<C, f32>("effort_command", "N*m or N", ELEMENT(command.joints[i].effort))
+                   .shown_per_joint("effort_command"));
+  to.push_back(per_joint<C, f32>("velocity_command", "rad/s or m/s", ELEMENT(command.joints[i].velocity))
+                   .shown_per_joint("velocity_command"));
+  to.push_back(
+      per_joint<C, f32>("velocity_measured", "rad/s, of the tracking loop", ELEMENT(command.velocity_measured[i]))
+          .shown_per_joint("velocity_measured"));
+  to.push_back(per_joint<C, u8>("mode_command", "JointMode", ELEMENT(command.joints[i].mode)).shown_per_joint("mode"));
+  number("command_state_cycle", "of the state used", MEMBER(command.state_cycle));
+  number("command_permit_cycle", "of the permit used", MEMBER(command.permit_cycle));
+  number("silent_cycles", "since the last message of any sender", MEMBER(command.silent_cycles));
+  number("command_joint_count", "", MEMBER(command.joint_count));
+  shown("command_reasons", "CommandReason bits", MEMBER(command.reasons));
+  number("request_cycle", "in which the last command was received", MEMBER(command.request_cycle));
+  shown("requests_received", "in this run", MEMBER(command.requests_received));
+  shown("requests_refused", "in this run", MEMBER(command.requests_refused));
+  shown("requests_stale", "of these, for their stamp", MEMBER(command.requests_stale));
+  shown("requests_crowded", "of these, while more than one node sent", MEMBER(command.requests_crowded));
+  number("requests_revoked", "of these, of senders that owe a zero velocity", MEMBER(command.requests_revoked));
+  shown("timeouts", "in this run", MEMBER(command.timeouts));
+  number("command_first_cycle", "of this process in this run", MEMBER(command.first_cycle));
+  number("zero_requests", "zero velocities accepted since then", MEMBER(command.zero_requests));
+  number("zero_requested", "1: nothing else since the last of them", MEMBER(command.zero_requested));
+  number("silence_needed", "cycles", MEMBER(command.silence_needed));
+}
+
+void add_tuning(TraceFields& to) {
+  const auto number = [&](const char* name, const char* unit, auto get) {
+    to.push_back(field<C, f64>(name, unit, get).shown());
+  };
+  to.push_back(
+      field<C, u64>("tuning", "sets of live parameters accepted; what follows was in force", MEMBER(tuning.count))
+          .shown());
+  number("max_linear_speed", "m/s", MEMBER(tuning.linear.speed));
+  number("max_linear_acceleration", "m/s^2", MEMBER(tuning.linear.acceleration));
+  number("max_linear_deceleration", "m/s^2", MEMBER(tuning.linear.deceleration));
+  number("max_linear_emergency_deceleration", "m/s^2", MEMBER(tuning.linear.emergency_deceleration));
+  number("max_linear_jerk", "m/s^3, 0: none", MEMBER(tuning.linear.jerk));
+  to.push_back(field<C, f64>("linear_reverse_speed", "m/s, backwards", MEMBER(tuning.linear.reverse_speed))
+                   .shown_as(column<C>("min_linear_speed", "m/s, at most 0",
+                                       [](const C& c, std::size_t) { return -c.tuning.linear.reverse_speed; })));
+  number("max_linear_acceleration_reverse", "m/s^2", MEMBER(tuning.linear.reverse_acceleration));
+  number("max_linear_deceleration_reverse", "m/s^2", MEMBER(tuning.linear.reverse_deceleration));
+  number("max_angular_speed", "rad/s", MEMBER(tuning.angular.speed));
+  number("max_angular_acceleration", "rad/s^2", MEMBER(tuning.angular.acceleration));
+  number("max_angular_deceleration", "rad/s^2", MEMBER(tuning.angular.deceleration));
+  number("max_angular_emergency_deceleration", "rad/s^2", MEMBER(tuning.angular.emergency_deceleration));
+  number("max_angular_jerk", "rad/s^3, 0: none", MEMBER(tuning.angular.jerk));
+  to.push_back(field<C, f64>("angular_reverse_speed", "rad/s", MEMBER(tuning.angular.reverse_speed)));
+  to.push_back(field<C, f64>("angular_reverse_acceleration", "rad/s^2", MEMBER(tuning.angular.reverse_acceleration)));
+  to.push_back(field<C, f64>("angular_reverse_deceleration", "rad/s^2", MEMBER(tuning.angular.reverse_deceleration)));
+  to.push_back(field<C, u64>("keep_curvature", "1: kept", MEMBER(tuning.keep_curvature)).shown());
+  number("cmd_vel_timeout", "s, 0: never", MEMBER(tuning.cmd_vel_timeout));
+  number("tracking_bandwidth", "Hz", MEMBER(tuning.tracking_bandwidth));
+  number("feed_forward_mass", "kg", MEMBER(tuning.mass));
+  number("feed_forward_yaw_inertia", "kg*m^2", MEMBER(tuning.yaw_inertia));
+  to.push_back(per_wheel<C, f64>("pid_kp", "N*m*s/rad", ELEMENT(tuning.wheels[i].kp)).shown_per_joint("pid_kp"));
+  to.push_back(per_wheel<C, f64>("pid_ki", "N*m/rad", ELEMENT(tuning.wheels[i].ki)).shown_per_joint("pid_ki"));
+  to.push_back(per_wheel<C, f64>("pid_kd", "N*m*s^2/rad", ELEMENT(tuning.wheels[i].kd)).shown_per_joint("pid_kd"));
+  to.push_back(
+      per_wheel<C, f64>("model_inertia", "kg*m^2, of the tracking loop", ELEMENT(tuning.wheels[i].model_inertia)));
+  to.push_back(per_wheel<C, f64>("feed_forward_inertia", "kg*m^2", ELEMENT(tuning.wheels[i].inertia))
+                   .shown_per_joint("feed_forward_inertia"));
+  to.push_back(per_wheel<C, f64>("feed_forward_damping", "N*m*s/rad", ELEMENT(tuning.wheels[i].damping))
+                   .shown_per_joint("feed_forward_damping"));
+  to.push_back(per_wheel<C, f64>("feed_forward_friction", "N*m", ELEMENT(tuning.wheels[i].friction))
+                   .shown_per_joint("feed_forward_friction"));
+}
+
+}  // namespace robot_control

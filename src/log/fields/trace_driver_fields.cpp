@@ -1,0 +1,126 @@
+#include <algorithm>
+#include <cmath>
+
+#include "log/fields/trace_field_groups.h"
+#include "log/fields/trace_field_kinds.h"
+
+namespace robot_control {
+
+using namespace trace_words;
+
+namespace {
+
+/// The angle between the vertical of the start pose and that of the base.
+double tilt_of(const Quaternion& q) {
+  return 2 * std::asin(std::min(1.0, std::hypot(q[0], q[1])));
+}
+
+}  // namespace
+
+void add_sensors(TraceFields& to) {
+  to.push_back(per_joint<D, f64>("joint_position", "rad or m, at t_k", ELEMENT(sensors.joints[i].position))
+                   .shown_per_joint("position"));
+  to.push_back(per_joint<D, f64>("joint_velocity", "rad/s or m/s, at t_k", ELEMENT(sensors.joints[i].velocity))
+                   .shown_per_joint("velocity"));
+  to.push_back(per_joint<D, f64>("joint_effort", "N*m or N, the mean applied over [t_k-1, t_k)",
+                                 ELEMENT(sensors.joints[i].effort))
+                   .shown_per_joint("effort"));
+  to.push_back(field<D, f64>("gyro", "rad/s, IMU axes, at t_k", MEMBER(sensors.imu.angular_velocity))
+                   .shown({"gyro_x", "gyro_y", "gyro_z"}));
+  to.push_back(field<D, f64>("accel", "m/s^2, IMU axes, specific force over [t_k-1, t_k)",
+                             MEMBER(sensors.imu.linear_acceleration))
+                   .shown({"accel_x", "accel_y", "accel_z"}));
+  to.push_back(field<D, f64>("battery_voltage", "V, at the terminals", MEMBER(sensors.battery_voltage))
+                   .shown_as(column<D>("battery_voltage", "V; NaN: not measured", [](const D& d, std::size_t) {
+                     return where((d.sensors.valid & kValidBattery) != 0, d.sensors.battery_voltage);
+                   })));
+  to.push_back(field<D, f64>("battery_current", "A, positive when discharging", MEMBER(sensors.battery_current)));
+  to.push_back(
+      field<D, f64>("imu_orientation", "x, y, z, w; zero where the device has none", MEMBER(sensors.imu.orientation)));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    static constexpr auto kSize = [](const D*, std::size_t) { return kMaxContacts; };
+    const std::string name = std::string("contact_force_") + "xyz"[axis];
+    const std::string comment = "N, on the wheels, base axes, mean over [t_k-1, t_k): wheels, then casters";
+    if (axis == 0) {
+      to.push_back(list<D, f64, kMaxContacts>(name, comment, kSize, ELEMENT(sensors.contact_forces[i][0])));
+    } else if (axis == 1) {
+      to.push_back(list<D, f64, kMaxContacts>(name, comment, kSize, ELEMENT(sensors.contact_forces[i][1])));
+    } else {
+      to.push_back(list<D, f64, kMaxContacts>(name, comment, kSize, ELEMENT(sensors.contact_forces[i][2])));
+    }
+  }
+  to.push_back(per_joint<D, f64>("joint_temperature", "degrees Celsius; 0 where there is no sensor",
+                                 ELEMENT(sensors.joints[i].temperature)));
+}
+
+void add_driver(TraceFields& to) {
+  to.push_back(field<D, u64>("driver_instance", "number of the driver's process", MEMBER(sensors.driver_instance)));
+  to.push_back(field<D, u8>("driver_state", "DriverState", MEMBER(sensors.driver_state)).shown());
+  to.push_back(field<D, u64>("faults", "DriverFault bits", MEMBER(sensors.faults)).shown());
+  to.push_back(field<D, u64>("valid", "SensorValidity bits", MEMBER(sensors.valid)));
+  to.push_back(field<D, u64>("joint_count", "", MEMBER(sensors.joint_count)));
+  to.push_back(field<D, u64>("digital_inputs", "DigitalInput bits", MEMBER(sensors.digital_inputs)));
+  to.push_back(field<D, u8>("last_gate_verdict", "GateVerdict, of tick k-1", MEMBER(sensors.gate.verdict)));
+  to.push_back(field<D, u64>("last_gate_reasons", "GateReason bits, of tick k-1", MEMBER(sensors.gate.reasons)));
+  to.push_back(field<D, u64>("last_gate_command_cycle", "of tick k-1", MEMBER(sensors.gate.command_cycle)));
+  to.push_back(field<D, u64>("last_gate_permit_cycle", "of tick k-1", MEMBER(sensors.gate.permit_cycle)));
+  to.push_back(field<D, u64>("last_gate_held", "of tick k-1", MEMBER(sensors.gate.held)));
+  to.push_back(field<D, u64>("last_gate_missed", "of tick k-1", MEMBER(sensors.gate.missed)));
+  to.push_back(field<D, u64>("last_gate_late_permits", "of tick k-1", MEMBER(sensors.gate.late_permits)));
+  to.push_back(field<D, u64>("last_gate_refused", "of tick k-1", MEMBER(sensors.gate.refused)));
+  to.push_back(field<D, u8>("gate_verdict", "GateVerdict, of tick k", MEMBER(gate.verdict)).shown());
+  to.push_back(field<D, u64>("gate_reasons", "GateReason bits", MEMBER(gate.reasons)).shown());
+  to.push_back(field<D, u64>("gate_command_cycle", "of the command used", MEMBER(gate.command_cycle)).shown());
+  to.push_back(field<D, u64>("gate_permit_cycle", "of the permit used", MEMBER(gate.permit_cycle)).shown());
+  to.push_back(field<D, u64>("gate_held", "ticks of this run on a held command", MEMBER(gate.held)).shown({"held"}));
+  to.push_back(field<D, u64>("gate_missed", "ticks of this run braked for want of a command", MEMBER(gate.missed))
+                   .shown({"missed"}));
+  to.push_back(
+      field<D, u64>("gate_late_permits", "ticks of this run with a permit older than k-1", MEMBER(gate.late_permits))
+          .shown({"late_permits"}));
+  to.push_back(field<D, u64>("gate_refused", "frames of this run refused", MEMBER(gate.refused)).shown({"refused"}));
+  to.push_back(
+      field<D, u64>("overruns", "ticks of this run that ended after the next deadline", MEMBER(sensors.overruns))
+          .shown()
+          .as_timing());
+  to.push_back(field<D, u8>("injected", "FaultKind of each FaultComponent, of a simulator", MEMBER(sensors.injected))
+                   .shown_as(column<D>("injected", "one octal digit per FaultComponent: its FaultKind",
+                                       [](const D& d, std::size_t) { return fault_code(d.sensors.injected); })));
+  to.push_back(
+      field<D, u64>("slipped_ns", "ns by which a simulated plant fell behind in this run", MEMBER(sensors.slipped_ns))
+          .shown()
+          .as_timing());
+  to.push_back(field<D, u64>("resumes", "times a simulated plant went on after a pause", MEMBER(sensors.resumes)));
+  to.push_back(field<D, u64>("held_ns", "ns for which a simulated plant stood", MEMBER(sensors.held_ns)));
+}
+
+void add_truth(TraceFields& to) {
+  to.push_back(field<D, f32>("truth_position", "m, of base_link from where it was in cycle 0; simulation only",
+                             MEMBER(truth.pose_world.position))
+                   .shown({"truth_x", "truth_y"}));
+  to.push_back(
+      field<D, f32>("truth_orientation", "x, y, z, w", MEMBER(truth.pose_world.orientation))
+          .shown_as(column<D>("truth_tilt", "rad, between the verticals of the start pose and of the base",
+                              [](const D& d, std::size_t) { return tilt_of(d.truth.pose_world.orientation); })));
+  to.push_back(yaw<D>("truth_yaw", MEMBER(truth.pose_world.orientation)).shown());
+  to.push_back(
+      field<D, f32>("truth_linear", "m/s, base axes", MEMBER(truth.twist_base.linear)).shown({"truth_linear"}));
+  to.push_back(field<D, f32>("truth_angular", "rad/s, base axes", MEMBER(truth.twist_base.angular))
+                   .shown_as(column<D>("truth_angular", "rad/s",
+                                       [](const D& d, std::size_t) { return d.truth.twist_base.angular[2]; })));
+}
+
+void add_timing(TraceFields& to) {
+  to.push_back(field<D, i64>("driver_woke_ns", "ns after the cycle was due; 0 in lockstep", MEMBER(timing.woke_ns))
+                   .shown()
+                   .as_timing());
+  to.push_back(field<D, i64>("sensors_published_ns", "ns", MEMBER(timing.published_ns)).shown().as_timing());
+  to.push_back(field<E, i64>("estimator_woke_ns", "ns", MEMBER(timing.woke_ns)).shown().as_timing());
+  to.push_back(field<E, i64>("state_published_ns", "ns", MEMBER(timing.published_ns)).shown().as_timing());
+  to.push_back(field<C, i64>("controller_woke_ns", "ns", MEMBER(timing.woke_ns)).shown().as_timing());
+  to.push_back(field<C, i64>("command_published_ns", "ns", MEMBER(timing.published_ns)).shown().as_timing());
+  to.push_back(field<M, i64>("monitor_woke_ns", "ns", MEMBER(timing.woke_ns)).shown().as_timing());
+  to.push_back(field<M, i64>("permit_published_ns", "ns", MEMBER(timing.published_ns)).shown().as_timing());
+}
+
+}  // namespace robot_control

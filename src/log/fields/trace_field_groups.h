@@ -1,0 +1,19 @@
+#pragma once
+/// The fields of Trace form groups; each function appends those of one group.
+
+#include "log/fields/trace_fields.h"
+
+namespace robot_control {
+
+void add_sensors(TraceFields& to);
+void add_timing(TraceFields& to);
+void add_truth(TraceFields& to);
+void add_estimate(TraceFields& to);
+void add_trust(TraceFields& to);
+void add_command(TraceFields& to);
+void add_permit(TraceFields& to);
+void add_driver(TraceFields& to);
+void add_calls(TraceFields& to);
+void add_tuning(TraceFields& to);
+
+}  // namespace robot_control

@@ -1,0 +1,222 @@
+#pragma once
+/// These templates make fields of members of a row; only the tables of fields, trace_*_fields.cpp, use them.
+///
+/// `Get` is a stateless lambda that returns a reference to a member of one part of a row, as `MEMBER` makes it. `Wire`
+/// is the type in the message. If the part is missing, numbers are NaN and integers 0.
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+#include "log/fields/trace_fields.h"
+#include "log/packed_chunk.h"
+#include "signals/rotation.h"
+
+namespace robot_control {
+
+/// The tables of fields use these names for the parts of a row and for the types in the message.
+namespace trace_words {
+using D = DriverTrace;
+using E = EstimatorTrace;
+using C = ControllerTrace;
+using M = MonitorTrace;
+using f64 = double;
+using f32 = float;
+using u8 = std::uint8_t;
+using u32 = std::uint32_t;
+using u64 = std::uint64_t;
+using i64 = std::int64_t;
+}  // namespace trace_words
+
+#define MEMBER(member)      \
+  [](auto& part) -> auto& { \
+    return part.member;     \
+  }
+/// The reference is to a member of element i of a list.
+#define ELEMENT(member)                    \
+  [](auto& part, std::size_t i) -> auto& { \
+    return part.member;                    \
+  }
+
+/// A law has its part also where an injected fault suppressed the frame: the law ran.
+template <class Part>
+const Part* part_of(const JoinedRow& row) {
+  if constexpr (std::is_same_v<Part, DriverTrace>) return row.driver;
+  if constexpr (std::is_same_v<Part, EstimatorTrace>) return row.laws.estimator;
+  if constexpr (std::is_same_v<Part, ControllerTrace>) return row.laws.controller;
+  if constexpr (std::is_same_v<Part, MonitorTrace>) return row.laws.monitor;
+}
+
+/// Columns show the frames that were published.
+template <class Part>
+const Part* published_part(const JoinedRow& row) {
+  if constexpr (std::is_same_v<Part, DriverTrace>) return row.driver;
+  if constexpr (std::is_same_v<Part, EstimatorTrace>) return row.estimator;
+  if constexpr (std::is_same_v<Part, ControllerTrace>) return row.controller;
+  if constexpr (std::is_same_v<Part, MonitorTrace>) return row.monitor;
+}
+
+/// A column of a part. `Compute` is a stateless lambda of the part and the element.
+template <class Part, class Compute>
+TraceColumn column(std::string name, std::string meaning, Compute) {
+  return {.name = std::move(name),
+          .meaning = std::move(meaning),
+          .integer = !std::is_floating_point_v<std::invoke_result_t<Compute, const Part&, std::size_t>>,
+          .value = [](const JoinedRow& row, std::size_t element) -> double {
+            const Part* part = published_part<Part>(row);
+            if (part == nullptr) return std::numeric_limits<double>::quiet_NaN();
+            return static_cast<double>(Compute{}(*part, element));
+          }};
+}
+
+/// The number is NaN where `exists` is false.
+inline double where(bool exists, double value) {
+  return exists ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
+template <class Part>
+Part& part_of(TraceRow& row) {
+  if constexpr (std::is_same_v<Part, DriverTrace>) return row.driver;
+  if constexpr (std::is_same_v<Part, EstimatorTrace>) return row.estimator;
+  if constexpr (std::is_same_v<Part, ControllerTrace>) return row.controller;
+  if constexpr (std::is_same_v<Part, MonitorTrace>) return row.monitor;
+}
+
+template <class Wire>
+constexpr const char* wire_name() {
+  if constexpr (std::is_same_v<Wire, double>) return "float64";
+  if constexpr (std::is_same_v<Wire, float>) return "float32";
+  if constexpr (std::is_same_v<Wire, std::uint8_t>) return "uint8";
+  if constexpr (std::is_same_v<Wire, std::uint32_t>) return "uint32";
+  if constexpr (std::is_same_v<Wire, std::uint64_t>) return "uint64";
+  if constexpr (std::is_same_v<Wire, std::int64_t>) return "int64";
+}
+
+template <class Wire>
+constexpr Wire none() {
+  if constexpr (std::is_floating_point_v<Wire>) return std::numeric_limits<Wire>::quiet_NaN();
+  return Wire{};
+}
+
+template <class Wire>
+void write_number(std::string& to, Wire value) {
+  ByteSink(to).number(value);
+}
+
+/// Enums become integers.
+template <class Value>
+auto as_number(const Value& value) {
+  if constexpr (std::is_enum_v<Value>) {
+    return static_cast<std::underlying_type_t<Value>>(value);
+  } else {
+    return value;
+  }
+}
+
+template <class Value>
+struct ArraySize : std::integral_constant<std::size_t, 0> {};
+template <class Element, std::size_t N>
+struct ArraySize<std::array<Element, N>> : std::integral_constant<std::size_t, N> {};
+
+/// The field is a number, or an array of fixed length.
+template <class Part, class Wire, class Get>
+TraceField field(std::string name, std::string comment, Get) {
+  using Value = std::decay_t<std::invoke_result_t<Get, Part&>>;
+  constexpr std::size_t kSize = ArraySize<Value>::value;
+  TraceField result{.name = std::move(name), .type = wire_name<Wire>(), .comment = std::move(comment)};
+  if constexpr (kSize == 0) {
+    result.plain = column<Part>("", "", [](const Part& part, std::size_t) { return as_number(Get{}(part)); });
+    result.write = [](const TraceSource& source, std::string& to) {
+      const Part* part = part_of<Part>(source.row);
+      write_number(to, part != nullptr ? static_cast<Wire>(Get{}(*part)) : none<Wire>());
+    };
+    result.read = [](ByteSource& from, TraceRow& row) {
+      Get{}(part_of<Part>(row)) = static_cast<Value>(from.number<Wire>());
+      return true;
+    };
+  } else {
+    result.type += "[" + std::to_string(kSize) + "]";
+    if constexpr (std::is_arithmetic_v<typename Value::value_type>) {
+      result.plain = column<Part>("", "", [](const Part& part, std::size_t i) { return as_number(Get{}(part)[i]); });
+    }
+    result.write = [](const TraceSource& source, std::string& to) {
+      const Part* part = part_of<Part>(source.row);
+      for (std::size_t i = 0; i < kSize; ++i) {
+        write_number(to, part != nullptr ? static_cast<Wire>(Get{}(*part)[i]) : none<Wire>());
+      }
+    };
+    result.read = [](ByteSource& from, TraceRow& row) {
+      auto& values = Get{}(part_of<Part>(row));
+      for (auto& value : values) value = static_cast<std::decay_t<decltype(value)>>(from.number<Wire>());
+      return true;
+    };
+  }
+  return result;
+}
+
+/// A list has at most `Max` elements. `Size` is a stateless lambda of a part (null: missing) and the number of joints.
+template <class Part, class Wire, std::size_t Max, class Size, class Get>
+TraceField list(std::string name, std::string comment, Size, Get) {
+  using Value = std::decay_t<std::invoke_result_t<Get, Part&, std::size_t>>;
+  TraceField result{
+      .name = std::move(name), .type = std::string(wire_name<Wire>()) + "[]", .comment = std::move(comment)};
+  result.plain = column<Part>("", "", [](const Part& part, std::size_t i) { return as_number(Get{}(part, i)); });
+  result.write = [](const TraceSource& source, std::string& to) {
+    const Part* part = part_of<Part>(source.row);
+    const std::size_t size = Size{}(part, source.joints);
+    write_number(to, static_cast<std::uint32_t>(size));
+    for (std::size_t i = 0; i < size; ++i) {
+      write_number(to, part != nullptr ? static_cast<Wire>(Get{}(*part, i)) : none<Wire>());
+    }
+  };
+  result.read = [](ByteSource& from, TraceRow& row) {
+    const auto size = from.number<std::uint32_t>();
+    if (size > Max) return false;
+    for (std::size_t i = 0; i < size; ++i) {
+      Get{}(part_of<Part>(row), i) = static_cast<Value>(from.number<Wire>());
+    }
+    return true;
+  };
+  return result;
+}
+
+/// The list holds a value for each joint.
+template <class Part, class Wire, class Get>
+TraceField per_joint(std::string name, std::string comment, Get get) {
+  return list<Part, Wire, kMaxJoints>(
+      std::move(name), std::move(comment), [](const Part*, std::size_t joints) { return joints; }, get);
+}
+
+/// The list holds a value for each joint that a wheel loop may drive.
+template <class Part, class Wire, class Get>
+TraceField per_wheel(std::string name, std::string comment, Get get) {
+  TraceField result = list<Part, Wire, kTunedWheels>(
+      std::move(name), std::move(comment),
+      [](const Part*, std::size_t joints) { return std::min(joints, kTunedWheels); }, get);
+  result.max_joints = kTunedWheels;
+  return result;
+}
+
+/// The field holds the yaw of an orientation, computed from the recorded float32. A reader ignores it. The column is
+/// the yaw of the member.
+template <class Part, class Get>
+TraceField yaw(std::string name, Get) {
+  TraceField result{.name = std::move(name), .type = wire_name<float>(), .comment = "rad"};
+  result.plain = column<Part>("", "", [](const Part& part, std::size_t) { return yaw_of(Get{}(part)); });
+  result.write = [](const TraceSource& source, std::string& to) {
+    const Part* part = part_of<Part>(source.row);
+    if (part == nullptr) return write_number(to, none<float>());
+    Quaternion recorded = Get{}(*part);
+    for (double& entry : recorded) entry = static_cast<float>(entry);
+    write_number(to, static_cast<float>(yaw_of(recorded)));
+  };
+  result.read = [](ByteSource& from, TraceRow&) {
+    from.number<float>();
+    return true;
+  };
+  return result;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,212 @@
+#include "log/fields/trace_fields.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "log/fields/trace_field_groups.h"
+#include "log/fields/trace_field_kinds.h"
+#include "log/messages/message_checksum.h"
+
+namespace robot_control {
+
+using namespace trace_words;
+
+namespace {
+
+const FrameHead* head_of(const JoinedRow& row) {
+  if (row.driver != nullptr) return &row.driver->sensors.head;
+  if (row.laws.estimator != nullptr) return &row.laws.estimator->state.head;
+  if (row.laws.controller != nullptr) return &row.laws.controller->command.head;
+  return row.laws.monitor != nullptr ? &row.laws.monitor->permit.head : nullptr;
+}
+
+u8 bits_of(const void* driver, const void* estimator, const void* controller, const void* monitor) {
+  return static_cast<u8>((driver != nullptr ? kPartDriver : 0) | (estimator != nullptr ? kPartEstimator : 0) |
+                         (controller != nullptr ? kPartController : 0) | (monitor != nullptr ? kPartMonitor : 0));
+}
+
+template <class Wire, class Put, class Take>
+TraceField of_row(std::string name, std::string comment, Put, Take) {
+  return {.name = std::move(name),
+          .type = wire_name<Wire>(),
+          .comment = std::move(comment),
+          .plain = {.integer = true,
+                    .value = [](const JoinedRow& row,
+                                std::size_t) { return static_cast<double>(Put{}(TraceSource{.row = row})); }},
+          .write = [](const TraceSource& source, std::string& to) { write_number(to, Wire(Put{}(source))); },
+          .read =
+              [](ByteSource& from, TraceRow& row) {
+                Take{}(row, from.number<Wire>());
+                return true;
+              }};
+}
+
+void add_row(TraceFields& to) {
+  using S = const TraceSource&;
+  using R = TraceRow&;
+  to.push_back(of_row<std::int64_t>(
+                   "run", "0, 1, ... in the order in which the runs began; a run ends with the driver or a reset",
+                   [](S s) { return s.row.run; }, [](R r, i64 value) { r.run = value; })
+                   .shown());
+  to.push_back(of_row<u64>(
+      "run_id", "random number of the run",
+      [](S s) {
+        const FrameHead* head = head_of(s.row);
+        return head != nullptr ? head->run : 0;
+      },
+      [](R r, u64 value) { r.run_id = value; }));
+  to.push_back(
+      of_row<u64>(
+          "cycle", "k, from 0 in each run", [](S s) { return s.row.cycle; }, [](R r, u64 value) { r.cycle = value; })
+          .shown()
+          .shown_as({.name = "time",
+                     .meaning = "s since the run began, cycle times period",
+                     .value = [](const JoinedRow& row, std::size_t) { return row.time; }}));
+  to.push_back(of_row<i64>(
+                   "stamp_ns",
+                   "ns, of the sensor sample, on the clock of the loop (CLOCK_MONOTONIC, or simulated time)",
+                   [](S s) {
+                     const FrameHead* head = head_of(s.row);
+                     return head != nullptr ? head->stamp_ns : 0;
+                   },
+                   [](R r, i64 value) { r.stamp_ns = value; })
+                   .shown()
+                   .as_timing());
+  to.push_back(of_row<u8>(
+      "parts", "bits of the nodes that have a row in this cycle: 1 driver, 2 estimator, 4 controller, 8 monitor",
+      [](S s) { return bits_of(s.row.driver, s.row.laws.estimator, s.row.laws.controller, s.row.laws.monitor); },
+      [](R r, u8 value) { r.parts = value; }));
+  to.push_back(of_row<u8>(
+      "published", "bits of those whose frame was published; the others were suppressed by an injected fault",
+      [](S s) { return bits_of(s.row.driver, s.row.estimator, s.row.controller, s.row.monitor); },
+      [](R r, u8 value) { r.published = value; }));
+  to.push_back(of_row<u8>(
+      "repeats",
+      "1: a node answered a cycle again (started again, or the monitor without a new sensor frame); no row of the run",
+      [](S s) { return s.row.repeats; }, [](R r, u8 value) { r.repeats = value != 0; }));
+  to.push_back(of_row<u64>(
+      "lost",
+      "rows lost since telemetry began: in the rings, or not taken by the disk. Cycles that are missing though it "
+      "stays the same were left out, because nothing moved (telemetry.record)",
+      [](S s) { return s.lost; }, [](R r, u64 value) { r.lost = value; }));
+}
+
+/// A reader ignores it: a replay computes it again.
+void add_checksum(TraceFields& to) {
+  to.push_back({.name = "checksum",
+                .type = wire_name<u32>(),
+                .comment = "of the fields before it and of the message's time in the bag",
+                .write = [](const TraceSource& source,
+                            std::string& message) { write_number(message, message_checksum(message, source.time_ns)); },
+                .read =
+                    [](ByteSource& from, TraceRow&) {
+                      from.number<u32>();
+                      return true;
+                    }});
+}
+
+TraceFields all_fields() {
+  TraceFields all;
+  const auto group = [&](const char* heading, void (*add)(TraceFields&)) {
+    const std::size_t first = all.size();
+    add(all);
+    all[first].heading = heading;
+  };
+  group("The row.", add_row);
+  group("Sensors: what estimator, controller and monitor took in; joints in the order of the header.", add_sensors);
+  group("When each node woke and published, relative to when the cycle was due.", add_timing);
+  group("Truth, of a simulator.", add_truth);
+  group("Estimate.", add_estimate);
+  group("How far each sensor agrees, and what was learned of it.", add_trust);
+  group("Command.", add_command);
+  group("Permit of the safety monitor.", add_permit);
+  group("Driver and gate.", add_driver);
+  group("What each law was given beside these, and the checksum of what it computed: for a replay.", add_calls);
+  group("Limits and gains in force.", add_tuning);
+  group("The message.", add_checksum);
+  return all;
+}
+
+}  // namespace
+
+TraceField TraceField::shown() && {
+  return std::move(*this).shown({name});
+}
+
+TraceField TraceField::shown(const std::vector<std::string>& names) && {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    columns.push_back(plain);
+    columns.back().name = names[i];
+    columns.back().element = i;
+  }
+  return std::move(*this);
+}
+
+TraceField TraceField::shown_per_joint(std::string suffix) && {
+  columns.push_back(plain);
+  columns.back().name = std::move(suffix);
+  columns.back().per_joint = true;
+  return std::move(*this);
+}
+
+TraceField TraceField::shown_as(TraceColumn column) && {
+  columns.push_back(std::move(column));
+  return std::move(*this);
+}
+
+TraceField TraceField::as_timing() && {
+  for (TraceColumn& column : columns) column.timing = true;
+  return std::move(*this);
+}
+
+const std::vector<TraceField>& trace_fields() {
+  static const TraceFields fields = all_fields();
+  return fields;
+}
+
+std::vector<TraceColumn> log_columns(const std::vector<std::string>& joints, bool timing) {
+  std::vector<TraceColumn> columns;
+  for (const TraceField& field : trace_fields()) {
+    for (const TraceColumn& column : field.columns) {
+      if (column.timing && !timing) continue;
+      const std::size_t count = column.per_joint ? std::min(joints.size(), field.max_joints) : 1;
+      for (std::size_t j = 0; j < count; ++j) {
+        columns.push_back(column);
+        if (column.meaning.empty()) columns.back().meaning = field.comment;
+        if (!column.per_joint) continue;
+        columns.back().name = joints[j] + "_" + column.name;
+        columns.back().element = j;
+      }
+    }
+  }
+  return columns;
+}
+
+std::string trace_definition() {
+  std::string text =
+      "# One control cycle of all four nodes: sensors k, state k, command k, permit k. Topic `trace` of a log, beside\n"
+      "# TraceHeader. Enums and bits: src/signals. Behind | stand the columns of Python's arrays and of run.csv.\n"
+      "# Written by tests/docs/trace_message.py; do not edit.\n";
+  for (const TraceField& field : trace_fields()) {
+    if (!field.heading.empty()) text += "\n# " + field.heading + "\n";
+    std::string comment = field.comment;
+    for (const TraceColumn& column : field.columns) {
+      comment += (&column == field.columns.data() ? " | " : ", ");
+      comment += (column.per_joint ? "<joint>_" : "") + column.name;
+    }
+    text += field.type + " " + field.name + (comment.empty() ? "" : "  # " + comment) + "\n";
+  }
+  return text;
+}
+
+JoinedRow TraceRow::joined(double period) const {
+  JoinedRow result{.run = run, .cycle = cycle, .time = row_time(cycle, period)};
+  result.repeats = repeats;
+  if ((parts & kPartDriver) != 0) result.driver = &driver;
+  result.set({.estimator = (parts & kPartEstimator) != 0 ? &estimator : nullptr,
+              .controller = (parts & kPartController) != 0 ? &controller : nullptr,
+              .monitor = (parts & kPartMonitor) != 0 ? &monitor : nullptr});
+  return result;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,65 @@
+#pragma once
+/// The four laws of a log, each with the state it has reached in its replay.
+
+#include "configuration/parameters.h"
+#include "control/drive_controller.h"
+#include "estimation/estimator.h"
+#include "gate/gate.h"
+#include "log/replay/continuity.h"
+#include "log/replay/frame_history.h"
+#include "machine/robot_model.h"
+#include "safety/safety_monitor.h"
+#include "signals/trace.h"
+
+namespace robot_control {
+
+/// The published frames, found by checksum.
+struct PublishedFrames {
+  FrameHistory<SensorFrame> sensors;
+  FrameHistory<StateFrame> state;
+  FrameHistory<CommandFrame> command;
+  FrameHistory<Permit> permit;
+};
+
+/// Finds the sensor frame that a node used. A driver that paused or ended published its last frame again, with that
+/// state.
+inline bool sensors_of(const FrameHistory<SensorFrame>& published, const FrameHead& head, std::uint64_t checksum,
+                       SensorFrame& out) {
+  const SensorFrame* found = published.find(checksum);
+  const bool again = found == nullptr;
+  if (again) found = published.find(head.run, head.cycle);
+  if (found == nullptr) return false;
+  out = *found;
+  if (!again) return true;
+  for (const DriverState state : {DriverState::kPaused, DriverState::kEnded}) {
+    out.driver_state = state;
+    seal(out);
+    if (out.head.checksum == checksum) return true;
+  }
+  return false;
+}
+
+struct GateReplica {
+  Gate law;
+  Continuity continuity;
+};
+
+struct EstimatorReplica {
+  Estimator law;
+  Continuity continuity;
+  StateFrame output;
+};
+
+struct ControllerReplica {
+  DriveController law;
+  Continuity continuity;
+  CommandFrame output;
+};
+
+struct MonitorReplica {
+  SafetyMonitor law;
+  Continuity continuity;
+  Permit output;
+};
+
+}  // namespace robot_control

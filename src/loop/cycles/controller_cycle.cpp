@@ -1,0 +1,112 @@
+#include "loop/cycles/controller_cycle.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace robot_control {
+
+ControllerCycle::ControllerCycle(const DriveControllerParameters& parameters, const RobotModel& robot, double period,
+                                 const Channels& channels, CommandScript script, Now now)
+    : controller_(parameters, robot, period),
+      clock_(now),
+      channels_(channels),
+      script_(std::move(script)),
+      robot_hash_(robot.hash),
+      snapshots_(LawName::kController) {
+  trace_.tuning = controller_.tuning();
+}
+
+/// Takes over every member but the command itself, which script and inbox share.
+void ControllerCycle::take_over(const VelocityCommand& arrived) noexcept {
+  received_ = arrived;
+  request_.stale = arrived.stale;
+  request_.crowded = arrived.crowded;
+  request_.revoked = arrived.revoked;
+  request_.many_senders = arrived.many_senders;
+  request_.contested = arrived.contested;
+}
+
+void ControllerCycle::enter_run() noexcept {
+  inbox_.load(received_);
+  take_over(received_);
+  script_.rewind();
+  const auto last = published_before(channels_.command, state_.head.run);
+  if (last) script_.advance(*last);
+  calls_.law.new_run = 1;
+  calls_.inbox = request_;
+  calls_.with_zero = script_.begins_with_zero() && !last ? 1 : 0;
+  controller_.enter_run(request_, calls_.with_zero != 0);
+}
+
+void ControllerCycle::receive(std::uint64_t cycle) noexcept {
+  VelocityCommand arrived = received_;
+  inbox_.load(arrived);
+  if (arrived.count != received_.count) {
+    request_.twist = arrived.twist;
+    request_.age_ns = arrived.age_ns;
+    request_.count += arrived.count - received_.count;
+  }
+  take_over(arrived);
+  const ScriptEvents events = script_.advance(cycle);
+  if (events.has_twist) {
+    request_.twist = events.twist;
+    request_.age_ns = 0;
+    request_.count += events.twists;
+  }
+}
+
+void ControllerCycle::tune() noexcept {
+  const std::uint64_t version = tunings_.version();
+  if (version == tunings_seen_) return;
+  DriveTuning tuning;
+  if (!tunings_.load(tuning)) return;
+  tunings_seen_ = version;
+  if (tuning.count == trace_.tuning.count) return;
+  controller_.tune(tuning);
+  trace_.tuning = tuning;
+  calls_.tuned = 1;
+}
+
+bool ControllerCycle::step() noexcept {
+  const std::int64_t woke_ns = clock_.now();
+  const Lookup found = channels_.state->newest(state_);
+  if (found == Lookup::kMissing) return false;
+  if (!current(*channels_.sensors, state_.head, robot_hash_)) return false;
+  const Arrival arrival = clock_.compare(state_.head);
+  if (arrival == Arrival::kOld) return false;
+  const std::uint64_t run = state_.head.run;
+  const std::uint64_t cycle = state_.head.cycle;
+  const Lookup sensors_found = channels_.sensors->at(run, cycle, sensors_);
+  // The head of a corrupt frame is used only if sensors of that cycle exist.
+  if (found == Lookup::kCorrupt && sensors_found != Lookup::kFrame) return false;
+  if (arrival == Arrival::kNewRun) enter_run();
+  clock_.accept(state_.head);
+  if (found == Lookup::kCorrupt) state_.head = sensors_.head;
+  if (found != Lookup::kFrame) {
+    channels_.command.publish_token(state_.head);
+    return false;
+  }
+  if (sensors_found != Lookup::kFrame) return false;
+
+  snapshots_.copy_if_due(controller_, calls_.law, state_.head);
+  receive(cycle);
+  tune();
+  ControlInput input{.sensors = &sensors_, .state = &state_, .request = request_};
+  if (cycle > 0 &&
+      channels_.permit->newest_within(run, cycle - std::min(cycle, kPermitLife), cycle - 1, permit_) ==
+          Lookup::kFrame &&
+      permit_.expiry >= cycle) {
+    input.permit = &permit_;
+    calls_.permit = used(Lookup::kFrame, permit_);
+  }
+  controller_.step(input, trace_.command);
+  trace_.command.head = {.run = run, .cycle = cycle, .stamp_ns = state_.head.stamp_ns};
+  channels_.command.publish(trace_.command);
+  trace_.timing = clock_.timing(woke_ns, sensors_);
+  calls_.request = request_;
+  calls_.state = state_.head.checksum;
+  close_row(calls_, sensors_.head.checksum, trace_.command.head.checksum, trace_.calls);
+  return true;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,106 @@
+#include "loop/cycles/driver_cycle.h"
+
+#include <algorithm>
+
+#include "bus/bus.h"
+#include "loop/gate_setup.h"
+#include "signals/gate_digest.h"
+
+namespace robot_control {
+
+DriverCycle::DriverCycle(Driver& driver, const RobotModel& robot, const Channels& channels, std::int64_t period_ns,
+                         Now now, const GateParameters& gate)
+    : driver_(driver),
+      channels_(channels),
+      gate_(joint_limits(robot), gate, static_cast<double>(period_ns) * 1e-9),
+      period_ns_(period_ns),
+      now_(now),
+      snapshots_(LawName::kGate) {
+  announce_robot(channels_.sensors.memory()->head, robot.hash, robot.source);
+}
+
+void DriverCycle::begin_run(std::uint64_t run) noexcept {
+  run_ = run;
+  cycle_ = 0;
+  overruns_ = 0;
+  slipped_ns_ = 0;
+  gate_.enter_run();
+  calls_.law.new_run = 1;
+  trace_ = {};
+  auto* memory = channels_.sensors.memory();
+  attach_to_run(memory->head, run);
+  memory->sequence.fetch_add(1, std::memory_order_release);
+  futex_wake_all(memory->sequence);
+}
+
+void DriverCycle::publish_last_as(DriverState state) noexcept {
+  if (cycle_ == 0) return;
+  paused_ = trace_.sensors;
+  if (paused_.driver_state != DriverState::kFault) paused_.driver_state = state;
+  channels_.sensors.publish(paused_);
+}
+
+void DriverCycle::inject(const InjectedFaults& faults) noexcept {
+  if (faults == injected_) return;
+  injected_ = faults;
+  driver_.inject(faults);
+}
+
+void DriverCycle::set_due(std::int64_t deadline_ns) noexcept {
+  held_ns_ = static_cast<std::uint64_t>(deadline_ns - next_stamp_ns()) - slipped_ns_;
+}
+
+double DriverCycle::real_time_factor() const noexcept {
+  const double simulated = static_cast<double>(cycle_) * static_cast<double>(period_ns_);
+  return simulated / (simulated + static_cast<double>(slipped_ns_));
+}
+
+GateInput DriverCycle::latch() noexcept {
+  GateInput input;
+  input.run = run_;
+  input.cycle = cycle_;
+  input.command = &command_;
+  input.permit = &permit_;
+  input.sensors = &trace_.sensors;
+  if (cycle_ == 0) return input;
+  const std::uint64_t last = cycle_ - 1;
+  input.command_found = channels_.command->newest_within(run_, cycle_ - std::min(cycle_, kCommandLife), last, command_);
+  // Further back than a permit lives, to distinguish an expired permit from a missing one.
+  constexpr std::uint64_t kSearched = kFrameSlots - 1;
+  input.permit_found = channels_.permit->newest_within(run_, cycle_ - std::min(cycle_, kSearched), last, permit_);
+  return input;
+}
+
+void DriverCycle::step() noexcept {
+  const std::int64_t stamp_ns = next_stamp_ns();
+  const std::int64_t woke_ns = now_ == nullptr ? 0 : now_();
+  const GateInput input = latch();
+
+  SensorFrame& sensors = trace_.sensors;
+  driver_.read(sensors);
+  sensors.head = {.run = run_, .cycle = cycle_, .stamp_ns = stamp_ns};
+  sensors.driver_instance = driver_instance_;
+  sensors.gate = gate_.report();
+  sensors.overruns = overruns_;
+  sensors.slipped_ns = slipped_ns_;
+  sensors.resumes = resumes_;
+  sensors.held_ns = held_ns_;
+  channels_.sensors.publish(sensors);
+  if (now_ != nullptr) trace_.timing = {woke_ns - due_ns(sensors), now_() - due_ns(sensors)};
+
+  if (driver_.truth(trace_.truth)) {
+    trace_.truth.head = {.run = run_, .cycle = cycle_, .stamp_ns = stamp_ns};
+    if (channels_.truth.memory() != nullptr) channels_.truth.publish(trace_.truth);
+  }
+
+  snapshots_.copy_if_due(gate_, calls_.law, sensors.head);
+  const std::span<const JointCommand> commands = gate_.step(input);
+  driver_.write(commands);
+  trace_.gate = gate_.report();
+  calls_.command = used(input.command_found, command_);
+  calls_.permit = used(input.permit_found, permit_);
+  close_row(calls_, sensors.head.checksum, digest_of(commands, trace_.gate), trace_.calls);
+  ++cycle_;
+}
+
+}  // namespace robot_control

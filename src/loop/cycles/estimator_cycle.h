@@ -1,0 +1,64 @@
+#pragma once
+/// The estimator's duty in one cycle: newest sensors k → state k.
+
+#include <cstdint>
+
+#include "bus/latest_frames.h"
+#include "bus/latest_value.h"
+#include "estimation/estimator.h"
+#include "loop/cycles/close_row.h"
+#include "loop/cycles/cycle_clock.h"
+#include "loop/cycles/snapshots.h"
+#include "signals/trace.h"
+
+namespace robot_control {
+
+class EstimatorCycle {
+  struct PoseRequest {
+    std::uint64_t count = 0;
+    Vector3 pose{};
+  };
+
+ public:
+  EstimatorCycle(const EstimatorParameters& parameters, const RobotModel& robot, double period,
+                 const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now);
+
+  /// True when there was a new sensor frame of the driver's current run, and a state was computed from it and
+  /// published.
+  bool step() noexcept;
+
+  /// One thread: the pose is (x [m], y [m], yaw [rad]) from the next cycle on.
+  void request_pose(const Vector3& pose) noexcept {
+    ++requested_.count;
+    requested_.pose = pose;
+    inbox_.store(requested_);
+  }
+
+  /// Random number of this process, in every row.
+  void set_process(std::uint64_t process) noexcept { calls_.law.process = process; }
+
+  /// The row of the last step that returned true.
+  const EstimatorTrace& trace() const noexcept { return trace_; }
+
+  /// The law's state before the step of the last row, where it was copied; else null.
+  const LawSnapshot* snapshot() const noexcept { return snapshots_.taken(); }
+
+ private:
+  void enter_run() noexcept;
+
+  Estimator estimator_;
+  CycleClock clock_;
+  const FrameReader<SensorFrame>& sensors_channel_;
+  FrameWriter<StateFrame> state_channel_;
+  std::uint64_t robot_hash_;
+  PoseRequest requested_;  ///< the requesting thread's
+  LatestValue<PoseRequest> inbox_;
+  std::uint64_t received_ = 0;     ///< requests that were carried out
+  std::uint64_t first_cycle_ = 0;  ///< StateFrame::first_cycle
+  SensorFrame sensors_;
+  EstimatorCalls calls_ = first_row<EstimatorCalls>();  ///< since the last row
+  Snapshots snapshots_;
+  EstimatorTrace trace_;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,165 @@
+#include "loop/cycles/monitor_cycle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace robot_control {
+
+MonitorCycle::MonitorCycle(const SafetyParameters& parameters, const RobotModel& robot, double period,
+                           const Channels& channels, CommandScript script, Now now, InheritedLatch latch)
+    : monitor_(parameters, robot, period),
+      clock_(now),
+      channels_(channels),
+      script_(std::move(script)),
+      robot_hash_(robot.hash),
+      loss_ns_(std::llround(static_cast<double>(parameters.loss_cycles) * period * 1e9)),
+      snapshots_(LawName::kMonitor) {
+  inherit(latch);
+}
+
+void MonitorCycle::inherit(InheritedLatch latch) noexcept {
+  Permit last;
+  const Lookup found = FrameReader<Permit>(channels_.permit.memory()).last_whole(last);
+  if (found == Lookup::kFrame) latch.permit = &last;
+  if (found == Lookup::kCorrupt) {
+    latch.causes |= kCauseLatchUnreadable;
+    latch.first_cause = kCauseLatchUnreadable;
+  }
+  monitor_.step({.inherited = &latch}, trace_.permit);
+}
+
+void MonitorCycle::receive_messages() noexcept {
+  OperatorInput arrived = received_;
+  inbox_.load(arrived);
+  operator_input_.e_stop_level = arrived.e_stop_level;
+  operator_input_.e_stop_messages += arrived.e_stop_messages - received_.e_stop_messages;
+  operator_input_.e_stop_triggers += arrived.e_stop_triggers - received_.e_stop_triggers;
+  operator_input_.e_stop_services += arrived.e_stop_services - received_.e_stop_services;
+  operator_input_.resets += arrived.resets - received_.resets;
+  operator_input_.heartbeats += arrived.heartbeats - received_.heartbeats;
+  operator_input_.clearances += arrived.clearances - received_.clearances;
+  operator_input_.clearance = arrived.clearance;
+  received_ = arrived;
+}
+
+void MonitorCycle::advance_script() noexcept {
+  if (calls_.law.new_run != 0) {
+    script_.rewind();
+    if (const auto last = published_before(channels_.permit, sensors_.head.run)) script_.advance(*last);
+  }
+  const ScriptEvents events = script_.advance(sensors_.head.cycle);
+  operator_input_.e_stop_services += events.e_stops;
+  operator_input_.resets += events.resets;
+}
+
+bool MonitorCycle::step() noexcept {
+  const std::int64_t woke_ns = clock_.now();
+  const Lookup found = channels_.sensors->newest(arrived_);
+  if (found == Lookup::kCorrupt) ++corrupt_sensors_;
+  if (found != Lookup::kFrame || !current(*channels_.sensors, arrived_.head, robot_hash_)) {
+    const bool timed_out = woke_ns != 0 && current_ns_ != 0 && woke_ns - current_ns_ >= loss_ns_;
+    return (timed_out || corrupt_sensors_ == FrameConditions::kPersistence) && step_without_frame(timed_out);
+  }
+  const Arrival arrival = clock_.compare(arrived_.head);
+  current_ns_ = woke_ns;
+  if (arrival == Arrival::kOld) return republished() && step_without_frame(false);
+  sensors_ = arrived_;
+  clock_.accept(sensors_.head);
+  calls_.law.new_run = arrival == Arrival::kNewRun ? 1 : 0;
+  receive_messages();
+  advance_script();
+  read_inputs();
+  step_law(woke_ns);
+  return true;
+}
+
+void MonitorCycle::read_inputs() noexcept {
+  input_ = {.sensors = &sensors_, .corrupt = corrupt_sensors_ > 0 ? 1U : 0U, .operator_input = operator_input_};
+  corrupt_sensors_ = 0;
+  const std::uint64_t run = sensors_.head.run;
+  const std::uint64_t cycle = sensors_.head.cycle;
+  if (cycle == 0) return;
+  const Lookup command_found = channels_.command->at(run, cycle - 1, command_);
+  const Lookup state_found = channels_.state->at(run, cycle - 1, state_);
+  input_.command = command_found == Lookup::kFrame ? &command_ : nullptr;
+  calls_.command = used(command_found, command_);
+  input_.state_seen = state_found == Lookup::kFrame;
+  input_.state_first_cycle = input_.state_seen ? state_.first_cycle : 0;
+  if (command_found == Lookup::kCorrupt || state_found == Lookup::kCorrupt) input_.corrupt = 1;
+}
+
+/// A driver that pauses or ends publishes its last frame again, a paused one ten times a second. No other frame will
+/// come, so an operator's request is answered then.
+bool MonitorCycle::republished() noexcept {
+  const bool ends = arrived_.driver_state == DriverState::kPaused || arrived_.driver_state == DriverState::kEnded;
+  if (!ends || arrived_.head.cycle != clock_.cycle()) return false;
+  sensors_.driver_state = arrived_.driver_state;
+  return true;
+}
+
+bool MonitorCycle::time_out() noexcept {
+  return step_without_frame(true);
+}
+
+bool MonitorCycle::idle() noexcept {
+  return step_without_frame(false);
+}
+
+SensorSilence MonitorCycle::silence(bool timed_out) const noexcept {
+  if (clock_.run() == 0) return SensorSilence::kNone;
+  if (sensors_.driver_state == DriverState::kPaused) return SensorSilence::kPaused;
+  if (sensors_.driver_state == DriverState::kEnded) return SensorSilence::kEnded;
+  return timed_out ? SensorSilence::kTimedOut : SensorSilence::kNone;
+}
+
+/// `input` holds a fact that the last step did not. A pause alone is none.
+bool MonitorCycle::happened(const MonitorInput& input) const noexcept {
+  const OperatorInput& now = input.operator_input;
+  const OperatorInput& before = input_.operator_input;
+  const bool requested = now.resets != before.resets || now.e_stop_services != before.e_stop_services ||
+                         now.e_stop_messages != before.e_stop_messages || now.e_stop_level != before.e_stop_level;
+  const bool restored = published_run() == 0 && permit().causes != 0;
+  const bool corrupt = clock_.run() != 0 && input.corrupt == FrameConditions::kPersistence;
+  const bool silent = input.silence == SensorSilence::kTimedOut || input.silence == SensorSilence::kEnded;
+  return requested || restored || (corrupt && input_.corrupt != input.corrupt) ||
+         (silent && input_.silence != input.silence);
+}
+
+bool MonitorCycle::step_without_frame(bool timed_out) noexcept {
+  receive_messages();
+  const MonitorInput input{.silence = silence(timed_out),
+                           .corrupt = std::min(corrupt_sensors_, FrameConditions::kPersistence),
+                           .operator_input = operator_input_};
+  if (!happened(input)) return false;
+  input_ = input;
+  if (clock_.run() != 0) {
+    step_law(clock_.now());
+    return true;
+  }
+  monitor_.step(input_, trace_.permit);
+  publish(kRunBeforeDriver);
+  return false;
+}
+
+void MonitorCycle::step_law(std::int64_t woke_ns) noexcept {
+  snapshots_.copy_if_due(monitor_, calls_.law, sensors_.head);
+  monitor_.step(input_, trace_.permit);
+  publish(clock_.run());
+  trace_.timing = clock_.timing(woke_ns, sensors_);
+  calls_.silence = input_.silence;
+  calls_.state_seen = input_.state_seen ? 1 : 0;
+  calls_.state_first_cycle = input_.state_first_cycle;
+  calls_.corrupt = input_.corrupt;
+  calls_.operator_input = input_.operator_input;
+  const std::uint64_t sensors = input_.sensors != nullptr ? sensors_.head.checksum : 0;
+  close_row(calls_, sensors, trace_.permit.head.checksum, trace_.calls);
+}
+
+void MonitorCycle::publish(std::uint64_t run) noexcept {
+  trace_.permit.head = {.run = run, .cycle = clock_.cycle(), .stamp_ns = sensors_.head.stamp_ns};
+  published_run_.store(run, std::memory_order_release);
+  channels_.permit.publish(trace_.permit);
+}
+
+}  // namespace robot_control

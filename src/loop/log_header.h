@@ -1,0 +1,12 @@
+#pragma once
+
+#include "configuration/parameters.h"
+#include "log/messages/log_messages.h"
+#include "machine/robot_model.h"
+
+namespace robot_control {
+
+/// The header of a log of this robot with these parameters, on this computer.
+LogHeader log_header(const Parameters& parameters, const RobotModel& robot);
+
+}  // namespace robot_control

@@ -1,0 +1,107 @@
+#pragma once
+/// The common part of the three nodes that a frame wakes: state_estimator, diff_drive_controller, safety_monitor.
+///
+/// Such a node writes one channel (`output`), always reads the sensors, and is woken by the sensors or by another
+/// input. It starts once a living driver has announced the robot that it was itself started with.
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "loop/cycles/cycle_clock.h"
+#include "loop/cycles/trace_sink.h"
+#include "loop/processes/process.h"
+#include "loop/start_check.h"
+
+namespace robot_control {
+
+/// The clock with which the cycles stamp their trace; null in lockstep, where time stands still.
+Now clock_of(const LoopParameters& loop);
+
+/// The names of a consumer: thread, channel and ring.
+struct ConsumerNames {
+  LoopPriority priority;
+  const char* thread;
+  const char* channel;
+  TraceRing ring;
+};
+
+template <class Frame, class Row>
+class ConsumerProcess : public Process {
+ public:
+  const FrameReader<SensorFrame>& sensors() const noexcept { return sensors_.reader; }
+
+  /// Any thread: is this frame of the present run of a living driver? A frame that an earlier driver left is not.
+  bool is_current(const FrameHead& head) const noexcept {
+    return robot_agrees_.load() && current(sensors_.reader, head, robot_.hash);
+  }
+
+  /// The channel that this node publishes.
+  const FrameReader<Frame>& output() const noexcept { return output_.reader; }
+
+ protected:
+  /// Longest wait before the end of the loop is noticed, ns.
+  static constexpr std::int64_t kStopCheck = 100'000'000;
+
+  ConsumerProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus,
+                  const ConsumerNames& names)
+      : Process(parameters.loop, names.priority, names.thread),
+        output_(bus, names.channel),
+        sensors_(bus, ChannelNames::kSensors),
+        robot_(identified(robot, parameters.loop)),
+        trace_(bus, names.ring, lockstep()) {}
+
+  /// The driver, and before cycle 0 the telemetry that was asked for. Later the loop goes on without one.
+  std::vector<std::string> missing_anywhere() const {
+    std::vector<std::string> names;
+    if (!sensors_.channel.locked()) names.emplace_back("mujoco_plant");
+    if (waits_for_telemetry()) names.emplace_back("telemetry");
+    return names;
+  }
+
+  void poll_channels() override {
+    sensors_.poll();
+    trace_.poll();
+    robot_agrees_ = sensors_.reader.memory() != nullptr && sensors_.channel.locked() &&
+                    same_robot(sensors_.reader.memory()->head, robot_.hash, robot_.source);
+  }
+
+  bool ready() override { return robot_agrees_ && !waits_for_telemetry(); }
+
+  /// The loop: the frame that is there first, then one step per wake-up. `silence` is called when nothing woke it for
+  /// `wait_ns`; like a step, it returns whether there is a row. A driver that starts, or an object that is mapped
+  /// again, wakes the loop and restarts the wait. So silence alone does not show whether the driver was interrupted.
+  template <class Cycle, class Waking, class Silence>
+  void consume(Cycle& cycle, const FrameReader<Waking>& wake, std::int64_t wait_ns, Silence silence) noexcept {
+    const auto append = [&] { trace_.append(cycle.trace(), cycle.snapshot(), stopping()); };
+    while (!stopping().load(std::memory_order_relaxed)) {
+      const std::uint32_t seen = wake.sequence();
+      attach();
+      if (cycle.step()) append();
+      if (!wake.wait(seen, wait_ns) && silence()) append();
+    }
+  }
+
+  Output<Frame> output_;
+  Input<SensorFrame> sensors_;
+  RobotModel robot_;  ///< identified
+
+ private:
+  bool waits_for_telemetry() const {
+    if (!loop_parameters().wait_for_telemetry || trace_.reader_present()) return false;
+    SensorFrame first;
+    return sensors_.reader.newest(first) != Lookup::kFrame || !current(sensors_.reader, first.head, robot_.hash);
+  }
+
+  /// Publishes for the driver that this node waits on the sensors of its current run.
+  void attach() noexcept {
+    const auto* memory = sensors_.reader.memory();
+    if (memory != nullptr) attach_to_run(output_.writer.memory()->head, attached_run(memory->head));
+  }
+
+  TraceSink<Row> trace_;
+  std::atomic<bool> robot_agrees_{false};  ///< the driver lives, on this robot
+};
+
+}  // namespace robot_control

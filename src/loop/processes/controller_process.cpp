@@ -1,0 +1,41 @@
+#include "loop/processes/controller_process.h"
+
+#include "loop/mint_number.h"
+
+namespace robot_control {
+
+ControllerProcess::ControllerProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
+    : ConsumerProcess(parameters, robot, bus,
+                      {LoopPriority::kController, "drive_control", ChannelNames::kCommand, TraceRing::kController}),
+      state_(bus, ChannelNames::kState),
+      permit_(bus, ChannelNames::kPermit),
+      cycle_(parameters.controller, robot_, parameters.loop.period(),
+             {&sensors_.reader, &state_.reader, &permit_.reader, output_.writer},
+             load_script(parameters.loop.command_script), clock_of(parameters.loop)),
+      retuning_(parameters, robot_, cycle_.tunings()) {
+  require_drivable(parameters, robot);
+  cycle_.set_process(mint_number());
+}
+
+std::vector<std::string> ControllerProcess::missing() const {
+  std::vector<std::string> names = missing_anywhere();
+  if (!state_.channel.locked()) names.emplace_back("state_estimator");
+  if (!permit_.channel.locked()) names.emplace_back("safety_monitor");
+  return names;
+}
+
+void ControllerProcess::poll_channels() {
+  state_.poll();
+  permit_.poll();
+  ConsumerProcess::poll_channels();
+}
+
+bool ControllerProcess::ready() {
+  return ConsumerProcess::ready() && state_.reader.memory() != nullptr && permit_.reader.memory() != nullptr;
+}
+
+void ControllerProcess::loop() noexcept {
+  consume(cycle_, state_.reader, kStopCheck, [] { return false; });
+}
+
+}  // namespace robot_control

@@ -1,0 +1,23 @@
+#include "loop/processes/estimator_process.h"
+
+#include "loop/mint_number.h"
+
+namespace robot_control {
+
+EstimatorProcess::EstimatorProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
+    : ConsumerProcess(parameters, robot, bus,
+                      {LoopPriority::kEstimator, "state_estimator", ChannelNames::kState, TraceRing::kEstimator}),
+      cycle_(parameters.estimator, robot_, parameters.loop.period(), sensors_.reader, output_.writer,
+             clock_of(parameters.loop)) {
+  cycle_.set_process(mint_number());
+}
+
+std::vector<std::string> EstimatorProcess::missing() const {
+  return missing_anywhere();
+}
+
+void EstimatorProcess::loop() noexcept {
+  consume(cycle_, sensors_.reader, kStopCheck, [] { return false; });
+}
+
+}  // namespace robot_control

@@ -1,0 +1,26 @@
+#pragma once
+/// state_estimator without ROS: woken by sensors, writes state.
+
+#include <string>
+#include <vector>
+
+#include "loop/cycles/estimator_cycle.h"
+#include "loop/processes/consumer_process.h"
+
+namespace robot_control {
+
+class EstimatorProcess final : public ConsumerProcess<StateFrame, EstimatorTrace> {
+ public:
+  EstimatorProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus);
+  ~EstimatorProcess() override { stop(); }
+
+  std::vector<std::string> missing() const override;
+  EstimatorCycle& cycle() noexcept { return cycle_; }
+
+ private:
+  void loop() noexcept override;
+
+  EstimatorCycle cycle_;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,75 @@
+#include "loop/processes/monitor_process.h"
+
+#include "loop/mint_number.h"
+#include "loop/safety_limits.h"
+#include "signals/names.h"
+
+namespace robot_control {
+
+MonitorProcess::MonitorProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
+    : ConsumerProcess(parameters, robot, bus,
+                      {LoopPriority::kMonitor, "safety_monitor", ChannelNames::kPermit, TraceRing::kMonitor}),
+      state_(bus, ChannelNames::kState),
+      command_(bus, ChannelNames::kCommand),
+      latch_file_(parameters.latch_file),
+      cycle_(safety_limits(parameters, robot_), robot_, parameters.loop.period(),
+             {&sensors_.reader, &state_.reader, &command_.reader, output_.writer},
+             load_script(parameters.loop.command_script), clock_of(parameters.loop),
+             {.causes = latch_file_.found().causes, .first_cause = latch_file_.found().first_cause}),
+      inherited_(cycle_.permit()),
+      loss_ns_(static_cast<std::int64_t>(parameters.safety.loss_cycles) * parameters.loop.period_ns()) {
+  cycle_.set_process(mint_number());
+  if (inherited_.causes == 0) return;
+  const std::string& since = latch_file_.found().since;
+  restored_ = "latched since " + (since.empty() ? "before this start" : since) + ": " +
+              names_of(kStopCauseNames, inherited_.causes, ", ") +
+              "; the robot brakes until e_stop_reset is called (rosservice call e_stop_reset)";
+}
+
+MonitorProcess::~MonitorProcess() {
+  stop();
+  with_latched([this](std::uint64_t causes, std::uint64_t first) { latch_file_.finish(causes, first); });
+}
+
+/// Calls `keep` with the causes that are latched now, and the first of them.
+template <class Keep>
+void MonitorProcess::with_latched(Keep keep) const {
+  Permit permit;
+  const std::uint64_t run = cycle_.published_run();
+  if (run == 0) {
+    keep(inherited_.causes, inherited_.first_cause);  // the real-time thread has published nothing yet
+  } else if (output_.reader.newest(permit) == Lookup::kFrame && permit.head.run == run) {
+    keep(permit.causes, permit.first_cause);
+  }
+}
+
+std::vector<std::string> MonitorProcess::missing() const {
+  std::vector<std::string> names = missing_anywhere();
+  if (!state_.channel.locked()) names.emplace_back("state_estimator");
+  if (!command_.channel.locked()) names.emplace_back("diff_drive_controller");
+  return names;
+}
+
+void MonitorProcess::poll_channels() {
+  state_.poll();
+  command_.poll();
+  ConsumerProcess::poll_channels();
+  if (!started()) cycle_.idle();
+  with_latched([this](std::uint64_t causes, std::uint64_t first) { latch_file_.update(causes, first); });
+}
+
+/// With wait_for_nodes, every channel is mapped before the first cycle. Otherwise the monitor reports a missing node.
+bool MonitorProcess::ready() {
+  const bool all = state_.reader.memory() != nullptr && command_.reader.memory() != nullptr;
+  return ConsumerProcess::ready() && (all || !loop_parameters().wait_for_nodes);
+}
+
+void MonitorProcess::loop() noexcept {
+  if (lockstep()) {
+    consume(cycle_, sensors_.reader, kStopCheck, [this] { return cycle_.idle(); });
+  } else {
+    consume(cycle_, sensors_.reader, loss_ns_, [this] { return cycle_.time_out(); });
+  }
+}
+
+}  // namespace robot_control

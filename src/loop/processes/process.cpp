@@ -1,0 +1,48 @@
+#include "loop/processes/process.h"
+
+#include <utility>
+
+namespace robot_control {
+
+Process::Process(const LoopParameters& loop, LoopPriority priority, std::string thread_name)
+    : loop_(loop), priority_(priority), thread_name_(std::move(thread_name)) {
+  if (thread_parameters().policy == RealtimePolicy::kRequired) RealtimeThread(thread_parameters(), [] {});
+}
+
+Process::~Process() {
+  stop();
+}
+
+RealtimeParameters Process::thread_parameters() const {
+  const bool paced = loop_.clock == ClockMode::kWall;  // lockstep under SCHED_FIFO would starve the rest
+  return {.name = thread_name_,
+          .policy = paced ? loop_.realtime : RealtimePolicy::kOff,
+          .priority = paced ? static_cast<int>(priority_) : 0,
+          .core = static_cast<int>(loop_.core)};
+}
+
+void Process::poll() {
+  poll_channels();
+  if (thread_ == nullptr && ready()) {
+    thread_ = std::make_unique<RealtimeThread>(thread_parameters(), [this] { loop(); });
+  }
+  std::vector<std::string> names = missing();
+  const std::lock_guard lock(missing_mutex_);
+  last_missing_ = std::move(names);
+}
+
+std::vector<std::string> Process::last_missing() const {
+  const std::lock_guard lock(missing_mutex_);
+  return last_missing_;
+}
+
+void Process::stop() noexcept {
+  stopping_.store(true);
+  thread_.reset();
+}
+
+std::vector<std::string> Process::realtime_messages() const {
+  return thread_ == nullptr ? std::vector<std::string>{} : thread_->report().refusals;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,115 @@
+#include "loop/retuning.h"
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+
+#include "control/control_problems.h"
+#include "control/derived_tuning.h"
+#include "loop/safety_limits.h"
+#include "parameters/problem_list.h"
+#include "safety/derived_limits.h"
+
+namespace robot_control {
+namespace {
+
+const std::string kBlock = "diff_drive_controller";
+
+bool stops(const Condition& condition) {
+  return condition.limit && (condition.reaction == Reaction::kRamp || condition.reaction == Reaction::kBrake);
+}
+
+double smallest_radius(const RobotModel& robot) {
+  return std::ranges::min_element(robot.wheels, {}, &WheelModel::radius)->radius;
+}
+
+/// Derived values as if they had been set.
+DriveControllerParameters spelled_out(DriveControllerParameters given, const DriveTuning& tuning) {
+  const auto fill = [](std::optional<double>& value, double derived) { value = value.value_or(derived); };
+  const WheelTuning& wheel = tuning.wheels.front();
+  fill(given.max_linear_deceleration, tuning.linear.deceleration);
+  fill(given.min_linear_speed, -tuning.linear.reverse_speed);
+  fill(given.max_linear_acceleration_reverse, tuning.linear.reverse_acceleration);
+  fill(given.max_linear_deceleration_reverse, tuning.linear.reverse_deceleration);
+  fill(given.max_angular_deceleration, tuning.angular.deceleration);
+  fill(given.pid_kp, wheel.kp);
+  fill(given.pid_ki, wheel.ki);
+  fill(given.tracking_bandwidth, tuning.tracking_bandwidth);
+  fill(given.feed_forward.mass, tuning.mass);
+  fill(given.feed_forward.yaw_inertia, tuning.yaw_inertia);
+  fill(given.feed_forward.wheel_inertia, wheel.inertia);
+  fill(given.feed_forward.wheel_damping, wheel.damping);
+  fill(given.feed_forward.wheel_friction, wheel.friction);
+  return given;
+}
+
+}  // namespace
+
+std::string sentence(const Retuned& retuned) {
+  std::string text = "set " + std::to_string(retuned.count) + ": ";
+  for (const LiveValue& value : retuned.values) {
+    text +=
+        (&value == &retuned.values.front() ? "" : ", ") + value.key + " from " + value.before + " to " + value.after;
+  }
+  return text;
+}
+
+Retuning::Retuning(const Parameters& parameters, const RobotModel& robot, LatestValue<DriveTuning>& inbox)
+    : parameters_(parameters),
+      robot_(robot),
+      commanded_at_start_(commanded_wheel_speed(parameters.controller, robot)),
+      wheel_speed_(safety_limits(parameters, robot).wheel_speed),
+      inbox_(inbox) {}
+
+void Retuning::expect_monitor(const Parameters& monitor) {
+  const std::lock_guard lock(mutex_);
+  wheel_speed_ = safety_limits(monitor, robot_).wheel_speed;
+}
+
+std::string Retuning::monitor_problem(const DriveControllerParameters& wanted) const {
+  const double asked = commanded_wheel_speed(wanted, robot_);
+  const double needed = least_wheel_speed_limit(asked);
+  if (!stops(wheel_speed_) || asked <= commanded_at_start_) return "";
+  if (needed <= *wheel_speed_.limit) return "";
+  std::ostringstream text;
+  text.precision(4);
+  text << kBlock << ": max_linear_speed " << wanted.max_linear_speed << " m/s with max_angular_speed "
+       << wanted.max_angular_speed << " rad/s turns a wheel at " << asked
+       << " rad/s; safety_monitor, whose wheel_speed limit was fixed at its start, stops the robot beyond "
+       << *wheel_speed_.limit << " rad/s, and would have to bear " << needed << ". Keep max_linear_speed + "
+       << robot_.effective_wheel_base() / 2 << " m·max_angular_speed at or below "
+       << smallest_radius(robot_) * fastest_within(*wheel_speed_.limit)
+       << " m/s, or set both in the YAML file and start all nodes again.";
+  return text.str();
+}
+
+Retuned Retuning::set(const std::string& request) {
+  const std::lock_guard lock(mutex_);
+  LiveChange change = read_live(parameters_, kBlock, request);
+  const DriveControllerParameters& wanted = change.parameters.controller;
+  std::ranges::move(control_problems(wanted, robot_, parameters_.loop.period()), std::back_inserter(change.problems));
+  if (std::string problem = monitor_problem(wanted); !problem.empty()) change.problems.push_back(std::move(problem));
+  if (!change.problems.empty()) {
+    throw ParameterError(listing("set_parameters refused, nothing is changed", change.problems));
+  }
+  DriveTuning tuning = drive_tuning(wanted, robot_, parameters_.loop.period());
+  tuning.count = ++count_;
+  inbox_.store(tuning);
+  parameters_ = std::move(change.parameters);
+  return {.count = count_, .values = std::move(change.values)};
+}
+
+std::vector<LiveParameter> Retuning::live() const {
+  const std::lock_guard lock(mutex_);
+  Parameters parameters = parameters_;
+  const DriveTuning tuning = drive_tuning(parameters.controller, robot_, parameters.loop.period());
+  parameters.controller = spelled_out(parameters.controller, tuning);
+  return live_parameters(parameters, kBlock);
+}
+
+DriveControllerParameters Retuning::in_force() const {
+  const std::lock_guard lock(mutex_);
+  return parameters_.controller;
+}
+
+}  // namespace robot_control

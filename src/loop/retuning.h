@@ -1,0 +1,67 @@
+#pragma once
+/// Limits and gains of the controller, changed while it drives: the services ~set_parameters and
+/// ~set_parameter_map, without ROS.
+///
+/// A request is accepted as a whole or refused. It is refused for every reason that would refuse a start: the schema's
+/// rules and contradictions, control_problems. The monitor's limits stay those of its start: it stops a robot whose
+/// wheels exceed its wheel_speed limit Ω. Speed limits that command a wheel to turn faster than those of the start must
+/// leave the monitor its smallest margin (derived_limits.h),
+///
+///   least_wheel_speed_limit(commanded_wheel_speed) ≤ Ω
+///
+/// Values that the request leaves out stay derived, from the new values. The next request is laid over accepted values.
+
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "bus/latest_value.h"
+#include "configuration/live_parameters.h"
+#include "configuration/parameters.h"
+#include "machine/robot_model.h"
+#include "safety/safety_parameters.h"
+#include "signals/drive_tuning.h"
+
+namespace robot_control {
+
+/// An accepted request.
+struct Retuned {
+  std::uint64_t count = 0;  ///< DriveTuning::count, column `tuning` of the log
+  std::vector<LiveValue> values;
+};
+
+/// "set 2: max_linear_speed from 1 to 0.5, pid_kp from derived to 1.5"
+std::string sentence(const Retuned& retuned);
+
+class Retuning {
+ public:
+  /// `parameters` with which the controller starts; the cycle takes `inbox` over. The monitor is assumed to run with
+  /// the same parameters.
+  Retuning(const Parameters& parameters, const RobotModel& robot, LatestValue<DriveTuning>& inbox);
+
+  /// With which the monitor runs where it read others (an override of its own); its limits are derived from them.
+  void expect_monitor(const Parameters& monitor);
+
+  /// Throws ParameterError with every reason; then nothing changes. Any ordinary thread.
+  Retuned set(const std::string& request);
+
+  /// The values in force, as the user would have to set them. Any ordinary thread.
+  DriveControllerParameters in_force() const;
+
+  /// The same, each value with its range; those that are derived as the numbers that hold (of the first wheel). Any
+  /// ordinary thread.
+  std::vector<LiveParameter> live() const;
+
+ private:
+  std::string monitor_problem(const DriveControllerParameters& wanted) const;
+
+  mutable std::mutex mutex_;
+  Parameters parameters_;  ///< in force
+  RobotModel robot_;
+  double commanded_at_start_;  ///< rad/s of a wheel
+  Condition wheel_speed_;      ///< the monitor's
+  LatestValue<DriveTuning>& inbox_;
+  std::uint64_t count_ = 0;
+};
+
+}  // namespace robot_control

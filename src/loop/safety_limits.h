@@ -1,0 +1,27 @@
+#pragma once
+/// The monitor's limits in every composition of the loop. Limits that the user left out follow from the robot and from
+/// the speed limits of its controller.
+
+#include "configuration/parameters.h"
+#include "machine/robot_model.h"
+#include "safety/safety_parameters.h"
+
+namespace robot_control {
+
+/// rad/s, the fastest that the controller's limits ask of any wheel:
+///
+///   max over wheels of (max_linear_speed + max_angular_speed·b/2)/radius,   b the effective wheel base
+///
+/// and no more than the slowest wheel's velocity limit; the controller scales its command to kUsableWheelSpeed of that
+/// (control/kinematics.h).
+double commanded_wheel_speed(const DriveControllerParameters& controller, const RobotModel& robot);
+
+/// N·m/rad: RMS of the torque that the derived gains of control/wheel_loops/wheel_loop_gains.h make of encoder counts,
+/// by the size q of a count. A step by q moves the tracked speed by up to 0.8·w·q, w = 2π·bandwidth (the critically
+/// damped third-order loop of machine/encoders/tracking_loop.h); over a turn that is an RMS of at most 0.5·w·q,
+/// times kp.
+double count_ripple(const RobotModel& robot, const WheelModel& wheel, double period);
+
+SafetyParameters safety_limits(const Parameters& parameters, const RobotModel& robot);
+
+}  // namespace robot_control

@@ -1,0 +1,12 @@
+#pragma once
+/// Computes how far a shape reaches.
+
+#include "machine/bodies/rigid_bodies.h"
+
+namespace robot_control {
+
+/// Returns the reach along the unit vector `u` of the body's axes from the body's origin, m; −∞ for a mesh without
+/// points.
+double support(const Shape& shape, const Eigen::Vector3d& u);
+
+}  // namespace robot_control

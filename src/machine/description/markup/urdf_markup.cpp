@@ -1,0 +1,374 @@
+#include "machine/description/markup/urdf_markup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <sstream>
+#include <string_view>
+
+#include "files/message_text.h"
+#include "machine/description/urdf_document.h"
+#include "machine/description/wording.h"
+
+namespace robot_control {
+namespace {
+
+std::string attribute(const TiXmlElement& element, const char* name) {
+  const char* value = element.Attribute(name);
+  return value == nullptr ? "" : value;
+}
+
+std::string at_line(const RobotDescription& description, const TiXmlBase& place) {
+  return description.source + (place.Row() > 0 ? " line " + std::to_string(place.Row()) : "");
+}
+
+void check_joint(const RobotDescription& description, const TiXmlElement& joint) {
+  const std::string type = attribute(joint, "type");
+  const std::string element = joint_element(attribute(joint, "name"));
+  const std::string remedy = "Use fixed, revolute, continuous or prismatic";
+  if (type == "floating" || type == "planar") {
+    refuse(at_line(description, joint), element, "floating and planar joints are not supported", remedy);
+  }
+  if (type != "fixed" && type != "revolute" && type != "continuous" && type != "prismatic") {
+    refuse(at_line(description, joint), element, "type=\"" + type + "\" is unknown", remedy);
+  }
+  if ((type == "revolute" || type == "prismatic") && joint.FirstChildElement("limit") == nullptr) {
+    refuse(at_line(description, joint), element, "a " + type + " joint has no <limit>",
+           type == "revolute" ? "Add <limit lower upper effort velocity>, or make it type=\"continuous\""
+                              : "Add <limit lower upper effort velocity>");
+  }
+}
+
+void check_tree(const RobotDescription& description, const TiXmlElement& robot) {
+  struct Above {
+    std::string joint, parent;
+  };
+  std::map<std::string, Above> above;
+  for (const TiXmlElement* joint = robot.FirstChildElement("joint"); joint != nullptr;
+       joint = joint->NextSiblingElement("joint")) {
+    const TiXmlElement* child = joint->FirstChildElement("child");
+    const TiXmlElement* parent = joint->FirstChildElement("parent");
+    if (child == nullptr || parent == nullptr) continue;
+    const std::string link = attribute(*child, "link");
+    const auto [other, first] = above.emplace(link, Above{attribute(*joint, "name"), attribute(*parent, "link")});
+    if (!first) {
+      refuse(at_line(description, *joint), joint_element(attribute(*joint, "name")),
+             "its child \"" + link + "\" already hangs on joint \"" + other->second.joint + "\"",
+             "Give each link one parent: a URDF is a tree");
+    }
+  }
+  // Links are removed from the ends of the tree upwards; a ring has no end. (urdfdom would never free one.)
+  std::map<std::string, std::size_t> hanging;
+  for (const auto& [link, place] : above) ++hanging[place.parent];
+  std::vector<std::string> ends;
+  for (const auto& [link, place] : above) {
+    if (!hanging.contains(link)) ends.push_back(link);
+  }
+  while (!ends.empty()) {
+    const auto end = above.find(ends.back());
+    ends.pop_back();
+    const std::string parent = end->second.parent;
+    above.erase(end);
+    if (--hanging[parent] == 0 && above.contains(parent)) ends.push_back(parent);
+  }
+  if (!above.empty()) {
+    refuse(description.source, joint_element(above.begin()->second.joint),
+           "its child \"" + above.begin()->first + "\" hangs on itself, in a ring of joints",
+           "Give each link one way up to the root: a URDF is a tree");
+  }
+}
+
+/// TinyXML descends by recursion, so the depth is bounded.
+void check_depth(const RobotDescription& description) {
+  const std::string& text = description.text;
+  int depth = 0;
+  for (std::size_t i = 0; i + 1 < text.size(); ++i) {
+    if (text.compare(i, 4, "<!--") == 0) {
+      i = std::min(text.find("-->", i), text.size());
+    } else if (text.compare(i, 2, "</") == 0 || text.compare(i, 2, "/>") == 0) {
+      --depth;
+    } else if (text[i] == '<' && text[i + 1] != '!' && text[i + 1] != '?' && ++depth > kDeepest) {
+      refuse(description.source, "XML", "elements within elements, " + std::to_string(kDeepest) + " deep",
+             "Close each element; a URDF needs five levels");
+    }
+  }
+}
+
+/// urdfdom passes its messages, which contain text of the file, to printf as the format.
+void check_percent(const RobotDescription& description, const TiXmlElement& element) {
+  for (const TiXmlAttribute* given = element.FirstAttribute(); given != nullptr; given = given->Next()) {
+    const std::string text = std::string(given->Name()) + "=\"" + given->Value() + "\"";
+    if (std::string(given->Name()) == "filename" || text.find('%') == std::string::npos) continue;
+    refuse(at_line(description, element), "<" + element.ValueStr() + ">", text + " has a percent sign",
+           "Names and numbers have none");
+  }
+  for (const TiXmlElement* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+    check_percent(description, *child);
+  }
+}
+
+/// Elements of xacro stand for links and joints that would be missing.
+void check_expanded(const RobotDescription& description, const TiXmlElement& robot) {
+  for (const TiXmlElement* child = robot.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+    if (!child->ValueStr().starts_with("xacro:")) continue;
+    refuse(at_line(description, *child), "<" + child->ValueStr() + ">", "it is xacro, which is not expanded here",
+           "Let the file's name end in .xacro, or expand it: xacro FILE > robot.urdf");
+  }
+}
+
+void check_size(const RobotDescription& description, const TiXmlElement& robot) {
+  std::size_t links = 0;
+  for (const TiXmlElement* link = robot.FirstChildElement("link"); link != nullptr;
+       link = link->NextSiblingElement("link")) {
+    ++links;
+  }
+  if (links <= kMaxLinks) return;
+  refuse(description.source, "<robot>", std::to_string(links) + " links",
+         "At most " + std::to_string(kMaxLinks) + " are read; join those that never move against each other");
+}
+
+std::set<std::string> words(const std::string& text) {
+  std::set<std::string> result;
+  std::string word;
+  for (const char c : text + " ") {
+    if (c == ' ' || c == ',' || c == ';' || c == '\t' || c == '\n' || c == '\r') {
+      if (!word.empty()) result.insert(word);
+      word.clear();
+    } else {
+      word += c;
+    }
+  }
+  return result;
+}
+
+bool says_drive(const std::string& text) {
+  return lower_case(text).find("drive") != std::string::npos;
+}
+
+void add_plugin_joints(const TiXmlElement& element, bool drive, std::set<std::string>& joints) {
+  for (const TiXmlElement* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+    add_plugin_joints(*child, drive, joints);
+    if (child->GetText() == nullptr) continue;
+    if (drive || says_left(child->Value()) || says_right(child->Value())) joints.merge(words(child->GetText()));
+  }
+}
+
+void add_gazebo_joints(const TiXmlElement& element, std::set<std::string>& joints) {
+  for (const TiXmlElement* plugin = element.FirstChildElement("plugin"); plugin != nullptr;
+       plugin = plugin->NextSiblingElement("plugin")) {
+    add_plugin_joints(*plugin, says_drive(attribute(*plugin, "name") + attribute(*plugin, "filename")), joints);
+  }
+}
+
+void add_plugins_that_say(const TiXmlElement& element, const std::vector<std::string>& words,
+                          std::set<std::string>& plugins) {
+  for (const TiXmlElement* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+    if (child->ValueStr() != "plugin") {
+      add_plugins_that_say(*child, words, plugins);
+      continue;
+    }
+    const std::string file = attribute(*child, "filename"), name = attribute(*child, "name");
+    const std::string text = child->GetText() == nullptr ? "" : child->GetText();
+    const std::string said = lower_case(file + " " + name + " " + text);
+    const bool says = std::any_of(words.begin(), words.end(),
+                                  [&](const std::string& word) { return said.find(word) != std::string::npos; });
+    if (says) plugins.insert(!file.empty() ? file : !name.empty() ? name : text);
+  }
+}
+
+/// Refuses text that TinyXML would misread or ignore.
+void check_text(const RobotDescription& description) {
+  const std::string& text = description.text;
+  const std::string source = description.source;
+  if (is_lfs_pointer(text)) refuse(source, "URDF", kLfsPointer, kLfsRemedy);
+  const bool marked = text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
+  const std::string_view start = std::string_view(text).substr(0, 4);
+  const std::string_view little("<\0", 2), big("\0<", 2);
+  if (marked || start.find(little) != std::string_view::npos || start.find(big) != std::string_view::npos) {
+    refuse(source, "XML", "it is UTF-16, not UTF-8", "Save it as UTF-8: iconv -f UTF-16 -t UTF-8 FILE");
+  }
+  if (const std::size_t at = text.find('\0'); at != std::string::npos) {
+    refuse(source, "XML", "it has a NUL character, at byte " + std::to_string(at), "Write text alone");
+  }
+  if (const std::size_t at = utf8_end(text); at != text.size()) {
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    refuse(source + " line " + std::to_string(line), "XML", printable(text.substr(at, 1)) + " is not UTF-8",
+           "Save it as UTF-8, for instance iconv -f ISO-8859-1 -t UTF-8 FILE");
+  }
+  for (std::size_t i = text.find("<!"); i != std::string::npos; i = text.find("<!", i + 2)) {
+    if (text.compare(i, 4, "<!--") == 0) {
+      i = std::min(text.find("-->", i), text.size() - 2);
+    } else if (text.compare(i, 8, "<!ENTITY") == 0) {
+      refuse(source, "<!ENTITY>", "it defines entities of its own, which a URDF does not need and which are not read",
+             "Write what they stand for, or use xacro");
+    }
+  }
+}
+
+void remove(TiXmlElement& parent, const std::string& name) {
+  TiXmlElement* child = parent.FirstChildElement(name);
+  while (child != nullptr) {
+    TiXmlElement* next = child->NextSiblingElement(name);
+    parent.RemoveChild(child);
+    child = next;
+  }
+}
+
+bool three_numbers(const std::string& text) {
+  std::istringstream stream(text);
+  stream.imbue(std::locale::classic());
+  double x = 0, y = 0, z = 0;
+  std::string rest;
+  return stream >> x >> y >> z && !(stream >> rest);
+}
+
+constexpr double kRoundedTurn = 0.01;  // rad; 6.29 is a whole turn
+
+/// Returns the largest absolute value of the numbers in a text; 0: there is none.
+double largest_of(const std::string& text) {
+  std::istringstream stream(text);
+  stream.imbue(std::locale::classic());
+  double largest = 0;
+  for (double x = 0; stream >> x;) largest = std::max(largest, std::abs(x));
+  return largest;
+}
+
+void repair_shape(TiXmlElement& visual_or_collision) {
+  TiXmlElement* geometry = visual_or_collision.FirstChildElement("geometry");
+  TiXmlElement* mesh = geometry == nullptr ? nullptr : geometry->FirstChildElement("mesh");
+  if (mesh == nullptr || mesh->Attribute("scale") == nullptr) return;
+  if (!three_numbers(mesh->Attribute("scale"))) mesh->SetAttribute("scale", "0 0 0");
+}
+
+void repair_link(TiXmlElement& link) {
+  TiXmlElement* visual = link.FirstChildElement("visual");
+  while (visual != nullptr) {
+    TiXmlElement* next = visual->NextSiblingElement("visual");
+    const TiXmlElement* geometry = visual->FirstChildElement("geometry");
+    remove(*visual, "material");
+    repair_shape(*visual);
+    if (geometry == nullptr || geometry->FirstChildElement() == nullptr) link.RemoveChild(visual);
+    visual = next;
+  }
+  for (TiXmlElement* collision = link.FirstChildElement("collision"); collision != nullptr;
+       collision = collision->NextSiblingElement("collision")) {
+    repair_shape(*collision);
+  }
+}
+
+void repair_joint(TiXmlElement& joint) {
+  remove(joint, "safety_controller");
+  remove(joint, "calibration");
+  const TiXmlElement* axis = joint.FirstChildElement("axis");
+  if (axis != nullptr && axis->Attribute("xyz") == nullptr) remove(joint, "axis");
+  TiXmlElement* limit = joint.FirstChildElement("limit");
+  if (limit == nullptr) return;
+  for (const char* name : {"effort", "velocity"}) {
+    if (limit->Attribute(name) == nullptr) limit->SetAttribute(name, "0");
+  }
+}
+
+}  // namespace
+
+TiXmlElement& parse_markup(const RobotDescription& description, TiXmlDocument& xml) {
+  check_text(description);
+  check_depth(description);
+  xml.Parse(description.text.c_str());
+  if (xml.Error()) {
+    const std::string line = xml.ErrorRow() > 0 ? " line " + std::to_string(xml.ErrorRow()) : "";
+    refuse(description.source + line, "XML", xml.ErrorDesc(), "Repair the markup");
+  }
+  TiXmlElement* root = xml.RootElement();
+  if (root == nullptr || root->ValueStr() != "robot") {
+    refuse(description.source, "<robot>", "there is no such element",
+           "Give a URDF, whose outermost element is <robot>");
+  }
+  if (const TiXmlElement* second = root->NextSiblingElement()) {
+    refuse(at_line(description, *second), "<" + second->ValueStr() + ">",
+           "a second outermost element, beside <robot> in line " + std::to_string(root->Row()),
+           "Keep one: one file is one robot");
+  }
+  check_expanded(description, *root);
+  for (const char* kind : {"link", "joint"}) {
+    for (const TiXmlElement* element = root->FirstChildElement(kind); element != nullptr;
+         element = element->NextSiblingElement(kind)) {
+      check_percent(description, *element);
+    }
+  }
+  for (const TiXmlElement* joint = root->FirstChildElement("joint"); joint != nullptr;
+       joint = joint->NextSiblingElement("joint")) {
+    check_joint(description, *joint);
+  }
+  check_size(description, *root);
+  check_tree(description, *root);
+  return *root;
+}
+
+std::set<std::string> driven_joints(const TiXmlElement& robot) {
+  std::set<std::string> joints;
+  for (const TiXmlElement* element = robot.FirstChildElement(); element != nullptr;
+       element = element->NextSiblingElement()) {
+    if (element->ValueStr() == "gazebo") add_gazebo_joints(*element, joints);
+    const bool transmission = element->ValueStr() == "transmission";
+    if (!transmission && element->ValueStr() != "ros2_control") continue;
+    for (const TiXmlElement* joint = element->FirstChildElement("joint"); joint != nullptr;
+         joint = joint->NextSiblingElement("joint")) {
+      if (transmission || joint->FirstChildElement("command_interface") != nullptr) {
+        joints.insert(attribute(*joint, "name"));
+      }
+    }
+  }
+  return joints;
+}
+
+std::set<std::string> plugins_that_say(const TiXmlElement& robot, const std::vector<std::string>& words) {
+  std::set<std::string> plugins;
+  add_plugins_that_say(robot, words, plugins);
+  return plugins;
+}
+
+std::set<std::string> unsaid_axes(const TiXmlElement& robot) {
+  std::set<std::string> joints;
+  for (const TiXmlElement* joint = robot.FirstChildElement("joint"); joint != nullptr;
+       joint = joint->NextSiblingElement("joint")) {
+    const TiXmlElement* axis = joint->FirstChildElement("axis");
+    const bool fixed = attribute(*joint, "type") == "fixed";
+    if (axis == nullptr ? !fixed : axis->Attribute("xyz") == nullptr) joints.insert(attribute(*joint, "name"));
+  }
+  return joints;
+}
+
+std::map<std::string, std::string> turned_origins(const TiXmlElement& robot) {
+  std::map<std::string, std::string> origins;
+  const auto look = [&](const TiXmlElement& owner, const std::string& words) {
+    const TiXmlElement* origin = owner.FirstChildElement("origin");
+    const std::string rpy = origin == nullptr ? "" : attribute(*origin, "rpy");
+    if (largest_of(rpy) > 2 * M_PI + kRoundedTurn) origins.emplace(words, rpy);
+  };
+  for (const TiXmlElement* element = robot.FirstChildElement(); element != nullptr;
+       element = element->NextSiblingElement()) {
+    if (element->ValueStr() == "joint") look(*element, joint_element(attribute(*element, "name")));
+    if (element->ValueStr() != "link") continue;
+    for (const TiXmlElement* part = element->FirstChildElement(); part != nullptr; part = part->NextSiblingElement()) {
+      look(*part, link_element(attribute(*element, "name")) + "<" + part->ValueStr() + ">");
+    }
+  }
+  return origins;
+}
+
+void repair_markup(TiXmlElement& robot) {
+  TiXmlElement* element = robot.FirstChildElement();
+  while (element != nullptr) {
+    TiXmlElement* next = element->NextSiblingElement();
+    if (element->ValueStr() == "link") {
+      repair_link(*element);
+    } else if (element->ValueStr() == "joint") {
+      repair_joint(*element);
+    } else {
+      robot.RemoveChild(element);
+    }
+    element = next;
+  }
+}
+
+}  // namespace robot_control

@@ -1,0 +1,175 @@
+#include "machine/description/other_process.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <fstream>
+#include <string_view>
+#include <utility>
+
+namespace robot_control {
+namespace {
+
+class Pipe {
+ public:
+  Pipe() {
+    if (pipe2(ends_.data(), O_CLOEXEC) != 0) ends_ = {-1, -1};
+  }
+  ~Pipe() {
+    close_end(0);
+    close_end(1);
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+
+  int reader() const { return ends_[0]; }
+  int writer() const { return ends_[1]; }
+  void close_writer() { close_end(1); }
+  void close_reader() { close_end(0); }
+
+ private:
+  void close_end(std::size_t end) {
+    if (ends_[end] >= 0) close(ends_[end]);
+    ends_[end] = -1;
+  }
+  std::array<int, 2> ends_{-1, -1};
+};
+
+std::vector<std::string> overlaid(const std::vector<std::string>& over) {
+  std::vector<std::string> result = over;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string_view given = *entry;
+    bool is_hidden = false;
+    for (const std::string& other : over) {
+      is_hidden = is_hidden || given.starts_with(std::string_view(other).substr(0, other.find('=') + 1));
+    }
+    if (!is_hidden) result.emplace_back(given);
+  }
+  return result;
+}
+
+std::vector<char*> pointers(std::vector<std::string>& texts) {
+  std::vector<char*> result;
+  for (std::string& text : texts) result.push_back(text.data());
+  result.push_back(nullptr);
+  return result;
+}
+
+pid_t spawn(std::vector<std::string> arguments, std::vector<std::string> environment, const Pipe& output,
+            const Pipe& errors) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, output.writer(), STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, errors.writer(), STDERR_FILENO);
+  pid_t child = -1;
+  const int error = posix_spawnp(&child, arguments[0].c_str(), &actions, nullptr, pointers(arguments).data(),
+                                 pointers(environment).data());
+  posix_spawn_file_actions_destroy(&actions);
+  return error == 0 ? child : -1;
+}
+
+/// Returns false at the end of the data.
+bool read_some(int from, std::string& to) {
+  std::array<char, 65536> block;
+  const ssize_t got = read(from, block.data(), block.size());
+  if (got < 0 && errno == EINTR) return true;
+  if (got > 0) to.append(block.data(), static_cast<std::size_t>(got));
+  return got > 0;
+}
+
+/// Reads until both are closed; returns false if they are silent for too long or write too much.
+bool read_all(Pipe& output, Pipe& errors, int silence, ProcessResult& result) {
+  while (output.reader() >= 0 || errors.reader() >= 0) {
+    // poll ignores a negative descriptor.
+    std::array<pollfd, 2> watched{{{output.reader(), POLLIN, 0}, {errors.reader(), POLLIN, 0}}};
+    const int ready = poll(watched.data(), watched.size(), silence * 1000);
+    if (ready < 0 && errno == EINTR) continue;
+    if (ready <= 0) return false;
+    if (watched[0].revents != 0 && !read_some(output.reader(), result.output)) output.close_reader();
+    if (watched[1].revents != 0 && !read_some(errors.reader(), result.errors)) errors.close_reader();
+    if (result.output.size() > kMaxOutput || result.errors.size() > kMaxOutput) return false;
+  }
+  return true;
+}
+
+ProcessResult watched(pid_t child, Pipe& output, Pipe& errors, int silence) {
+  ProcessResult result;
+  output.close_writer();
+  errors.close_writer();
+  const bool is_complete = read_all(output, errors, silence, result);
+  if (!is_complete) kill(child, SIGKILL);
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  result.end = !is_complete        ? ProcessResult::End::kEnded
+               : WIFEXITED(status) ? ProcessResult::End::kExited
+                                   : ProcessResult::End::kKilled;
+  result.code = WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status);
+  return result;
+}
+
+void limit(int resource, rlim_t value) {
+  rlimit limits{};
+  getrlimit(static_cast<__rlimit_resource>(resource), &limits);
+  limits.rlim_cur = std::min(value, limits.rlim_max);
+  setrlimit(static_cast<__rlimit_resource>(resource), &limits);
+}
+
+rlim_t address_space() {
+  rlim_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
+}
+
+[[noreturn]] void work_apart(const std::function<std::string()>& work, const Pipe& output, const Pipe& errors) {
+  dup2(errors.writer(), STDERR_FILENO);
+  // A crash ends the process, without a handler of a sanitizer or of this program.
+  for (const int signal_number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(signal_number, SIG_DFL);
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_CPU, kApartSeconds);
+  limit(RLIMIT_AS, address_space() + kApartMemory);
+  try {
+    const std::string text = work();
+    for (std::size_t done = 0; done < text.size();) {
+      const ssize_t wrote = write(output.writer(), text.data() + done, text.size() - done);
+      if (wrote < 0 && errno != EINTR) _exit(1);
+      if (wrote > 0) done += static_cast<std::size_t>(wrote);
+    }
+  } catch (...) {
+    _exit(1);
+  }
+  _exit(0);
+}
+
+}  // namespace
+
+ProcessResult run_program(const std::vector<std::string>& arguments, const std::vector<std::string>& environment,
+                          int silence) {
+  Pipe output;
+  Pipe errors;
+  if (output.reader() < 0 || errors.reader() < 0) return {};
+  const pid_t child = spawn(arguments, overlaid(environment), output, errors);
+  if (child < 0) return {};
+  return watched(child, output, errors, silence);
+}
+
+ProcessResult run_apart(const std::function<std::string()>& work) {
+  Pipe output;
+  Pipe errors;
+  if (output.reader() < 0 || errors.reader() < 0) return {};
+  const pid_t child = fork();
+  if (child < 0) return {};
+  if (child == 0) work_apart(work, output, errors);
+  return watched(child, output, errors, 2 * kApartSeconds);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,103 @@
+#pragma once
+/// CommandInput checks messages of `cmd_vel` and `cmd_vel_stamped`, passes them to the controller's inbox and reports
+/// about them. It is pure.
+///
+/// A message passes these checks:
+///   1. its stamp (command_stamp.h): a message that is too old or in the future is refused. The last command stays in
+///      force until its timeout, and the sender of the refused message does not count as a sender;
+///   2. its sender (command_senders.h): with `one_sender`, two or more senders within cmd_vel_timeout, but at least
+///      within kSenderWindow, exclude each other: all their messages are refused, and the robot ramps to rest until one
+///      sender is left. Without `one_sender` each message overrides the one before, and that is reported;
+///   3. its connection (motion_requests.h): motion is refused while the connection is revoked;
+///   4. NaN and infinity are refused by the controller (control/command_watch.h).
+///
+/// A zero velocity is contested (VelocityCommand::contested) if another connection has requested motion within
+/// cmd_vel_timeout (1 s if that is 0). It is executed, but does not count as evidence (safety/latch/motion_release.h).
+/// The command in force ends when the permission to move is withdrawn. Until permission is granted again, it also ends
+/// when no connection requests motion any more, whatever its timeout.
+///
+/// One warning is reported per sender with wrong stamps, per revoked sender and per set of competing senders. A warning
+/// is repeated after kRepeatAfter at the earliest, in the loop's time.
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "ros/inputs/command_intake.h"
+#include "ros/inputs/command_senders.h"
+#include "ros/inputs/command_stamp.h"
+#include "ros/inputs/motion_requests.h"
+#include "ros/reports/command_report.h"
+#include "signals/velocity_command.h"
+
+namespace robot_control {
+
+/// s, the default of cmd_vel_timeout. A shorter timeout may be below the senders' periods, so that two of them would
+/// never be counted at the same time.
+inline constexpr double kSenderWindow = 1.25;
+inline constexpr std::int64_t kRepeatAfter = 10'000'000'000;  ///< ns
+
+struct ArrivedCommand {
+  Publisher sender;
+  Twist twist;
+  std::int64_t stamp_ns = 0;  ///< 0 if the message has none
+};
+
+/// The time at which a message arrived, on two clocks.
+struct ArrivalTime {
+  std::int64_t ros_ns = 0;   ///< on the clock that senders use for stamps
+  std::int64_t loop_ns = 0;  ///< stamp of the newest sensor frame; 0 before the first
+};
+
+class CommandInput final : public CommandIntake {
+ public:
+  /// `timeout` is cmd_vel_timeout in s; 0 means that commands never time out.
+  CommandInput(double timeout, bool one_sender);
+
+  /// Sets the timeout in s for the next message and all later ones.
+  void set_timeout(double timeout) override;
+
+  /// Sets for how many seconds (> 0) a sender's last message requests motion, if that is not `timeout`.
+  void set_silence(double silence);
+
+  void receive(const ArrivedCommand& arrived, const ArrivalTime& time);
+
+  void start(const EarlierController& earlier) override { requests_.start(earlier); }
+
+  /// Removes senders that have become silent. Returns true if that changed the value of the inbox.
+  bool update(std::int64_t loop_ns) override;
+
+  const VelocityCommand& value() const noexcept override { return value_; }
+  std::vector<ReportLine> lines() override;
+  std::vector<std::string> senders(std::int64_t loop_ns) override { return senders_.at(loop_ns); }
+
+  bool follow(const MotionPermission& permission, std::int64_t loop_ns) override;
+
+  std::vector<std::string> revoked() const override { return requests_.revoked_names(); }
+
+  /// Returns whether any connection requests motion.
+  bool motion_requested(std::int64_t loop_ns) const { return requests_.any(loop_ns); }
+
+ private:
+  void end_command(std::int64_t loop_ns);
+  void refuse_revoked(const std::string& sender, std::int64_t loop_ns);
+  void refuse_stamp(const std::string& sender, const JudgedStamp& stamp, std::int64_t loop_ns);
+  void report_senders(std::int64_t loop_ns);
+  bool may_report(const std::string& what, std::int64_t loop_ns);
+
+  bool one_sender_;
+  double timeout_ = 0;  ///< s
+  std::int64_t timeout_ns_ = 0;
+  CommandSenders senders_;
+  MotionRequests requests_;
+  VelocityCommand value_;
+  std::int64_t command_ns_ = 0;                          ///< when the command in force arrived
+  std::map<std::string, StampVerdict> reported_stamps_;  ///< last reported verdict of each sender with wrong stamps
+  std::map<std::string, std::int64_t>
+      reported_ns_;  ///< time of each report, by sender and verdict or by the competing senders' names
+  std::vector<std::string> reported_senders_;  ///< last reported competing senders; empty: one sender, or none
+  std::vector<ReportLine> lines_;
+};
+
+}  // namespace robot_control

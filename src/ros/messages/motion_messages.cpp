@@ -1,0 +1,223 @@
+#include "ros/messages/motion_messages.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "signals/names.h"
+
+namespace robot_control {
+namespace {
+
+msg::Vector3 vector_message(const Vector3& vector) {
+  msg::Vector3 message;
+  message.x = vector[0];
+  message.y = vector[1];
+  message.z = vector[2];
+  return message;
+}
+
+msg::Quaternion quaternion_message(const Quaternion& quaternion) {
+  msg::Quaternion message;
+  message.x = quaternion[0];
+  message.y = quaternion[1];
+  message.z = quaternion[2];
+  message.w = quaternion[3];
+  return message;
+}
+
+msg::Twist twist_message(const Twist& twist) {
+  msg::Twist message;
+  message.linear = vector_message(twist.linear);
+  message.angular = vector_message(twist.angular);
+  return message;
+}
+
+msg::Odometry odometry_of(const Pose& pose, const Twist& twist, const std::string& odom_frame,
+                          const std::string& base_frame, ros::Time stamp) {
+  msg::Odometry message;
+  message.header.stamp = stamp;
+  message.header.frame_id = odom_frame;
+  message.child_frame_id = base_frame;
+  message.pose.pose.position.x = pose.position[0];
+  message.pose.pose.position.y = pose.position[1];
+  message.pose.pose.position.z = pose.position[2];
+  message.pose.pose.orientation = quaternion_message(pose.orientation);
+  message.twist.twist = twist_message(twist);
+  return message;
+}
+
+}  // namespace
+
+Twist twist_of(const msg::Twist& message) {
+  return {.linear = {message.linear.x, message.linear.y, message.linear.z},
+          .angular = {message.angular.x, message.angular.y, message.angular.z}};
+}
+
+msg::JointState joint_states(const SensorFrame& sensors, const StateFrame* state, const RobotModel& robot,
+                             ros::Time stamp) {
+  msg::JointState message;
+  message.header.stamp = stamp;
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    message.name.push_back(robot.joints[i].name);
+    message.position.push_back(sensors.joints[i].position);
+    const bool tracked = state != nullptr && i < robot.wheels.size();
+    message.velocity.push_back(tracked ? state->wheel_velocity[i] : sensors.joints[i].velocity);
+    message.effort.push_back(sensors.joints[i].effort);
+  }
+  return message;
+}
+
+msg::Odometry odometry(const StateFrame& state, const std::string& odom_frame, const std::string& base_frame,
+                       ros::Time stamp) {
+  msg::Odometry message = odometry_of(state.pose_odom, state.twist_base, odom_frame, base_frame, stamp);
+  std::ranges::copy(state.pose_covariance, message.pose.covariance.begin());
+  std::ranges::copy(state.twist_covariance, message.twist.covariance.begin());
+  return message;
+}
+
+void state_covariances(const ReportParameters& given, msg::Odometry& message) {
+  const auto replace = [](const std::optional<CovarianceDiagonal>& diagonal, auto& covariance) {
+    if (!diagonal) return;
+    covariance.fill(0);
+    for (std::size_t i = 0; i < diagonal->size(); ++i) covariance[i * (diagonal->size() + 1)] = (*diagonal)[i];
+  };
+  replace(given.pose_covariance_diagonal, message.pose.covariance);
+  replace(given.twist_covariance_diagonal, message.twist.covariance);
+}
+
+std::string covariance_note(const ReportParameters& given) {
+  const bool pose = given.pose_covariance_diagonal.has_value();
+  const bool twist = given.twist_covariance_diagonal.has_value();
+  if (!pose && !twist) return "";
+  const std::string keys = std::string(pose ? "pose_covariance_diagonal" : "") + (pose && twist ? " and " : "") +
+                           (twist ? "twist_covariance_diagonal" : "");
+  return "odom: " + keys + " given: constant, whatever the estimate's uncertainty is. Leave out to publish that";
+}
+
+msg::TransformStamped transform(const msg::Odometry& odometry) {
+  msg::TransformStamped message;
+  message.header = odometry.header;
+  message.child_frame_id = odometry.child_frame_id;
+  message.transform.translation.x = odometry.pose.pose.position.x;
+  message.transform.translation.y = odometry.pose.pose.position.y;
+  message.transform.translation.z = odometry.pose.pose.position.z;
+  message.transform.rotation = odometry.pose.pose.orientation;
+  return message;
+}
+
+msg::Odometry wheel_odometry(const StateFrame& state, const std::string& odom_frame, const std::string& base_frame,
+                             ros::Time stamp) {
+  const WheelOdometry& wheels = state.wheels;
+  const Pose pose{.position = {wheels.x, wheels.y, 0},
+                  .orientation = {0, 0, std::sin(wheels.yaw / 2), std::cos(wheels.yaw / 2)}};
+  return odometry_of(pose, {.linear = {wheels.linear, 0, 0}, .angular = {0, 0, wheels.angular}}, odom_frame, base_frame,
+                     stamp);
+}
+
+msg::Odometry ground_truth(const TruthFrame& truth, const std::string& odom_frame, const std::string& base_frame,
+                           ros::Time stamp) {
+  return odometry_of(truth.pose_world, truth.twist_base, odom_frame, base_frame, stamp);
+}
+
+msg::Imu imu(const SensorFrame& sensors, const RobotModel& robot, ros::Time stamp) {
+  msg::Imu message;
+  message.header.stamp = stamp;
+  message.header.frame_id = robot.imu_link.empty() ? robot.base_link : robot.imu_link;
+  message.angular_velocity = vector_message(sensors.imu.angular_velocity);
+  message.linear_acceleration = vector_message(sensors.imu.linear_acceleration);
+  message.orientation = quaternion_message(sensors.imu.orientation);
+  constexpr double kNotMeasured = -1;
+  if ((sensors.valid & kValidOrientation) == 0) message.orientation_covariance[0] = kNotMeasured;
+  if ((sensors.valid & kValidGyro) == 0) message.angular_velocity_covariance[0] = kNotMeasured;
+  if ((sensors.valid & kValidAccelerometer) == 0) message.linear_acceleration_covariance[0] = kNotMeasured;
+  return message;
+}
+
+msg::Imu imu_data(const SensorFrame& sensors, const StateFrame& state, const RobotModel& robot,
+                  const EstimatorParameters& parameters, double period, ros::Time stamp) {
+  msg::Imu message = imu(sensors, robot, stamp);
+  const auto rotation = [](const Quaternion& q) { return Eigen::Quaterniond(q[3], q[0], q[1], q[2]); };
+  const Eigen::Quaterniond q = rotation(state.attitude) * rotation(robot.imu_in_base.orientation);
+  message.orientation = quaternion_message({q.x(), q.y(), q.z(), q.w()});
+  std::ranges::copy(state.attitude_covariance, message.orientation_covariance.begin());
+  const double gyro = parameters.gyro_noise * parameters.gyro_noise / period;
+  const double accelerometer = parameters.accelerometer_noise * parameters.accelerometer_noise / period;
+  for (const std::size_t diagonal : {0, 4, 8}) {
+    message.angular_velocity_covariance[diagonal] = gyro;
+    message.linear_acceleration_covariance[diagonal] = accelerometer;
+  }
+  return message;
+}
+
+bool has_imu_data(const SensorFrame& sensors, const StateFrame& state) {
+  constexpr std::uint64_t kMeasured = kValidGyro | kValidAccelerometer;
+  constexpr std::uint64_t kNotBelieved = kStateNoGyro | kStateNoAccelerometer;
+  return (sensors.valid & kMeasured) == kMeasured && (state.flags & kNotBelieved) == 0 &&
+         (state.flags & kStateValid) != 0;
+}
+
+msg::Float64MultiArray joint_commands(const CommandFrame& command, const RobotModel& robot) {
+  msg::Float64MultiArray message;
+  for (const WheelModel& wheel : robot.wheels) message.data.push_back(command.joints[wheel.joint].velocity);
+  msg::MultiArrayDimension dimension;
+  dimension.label = "wheel";
+  dimension.size = dimension.stride = static_cast<std::uint32_t>(message.data.size());
+  message.layout.dim.push_back(dimension);
+  return message;
+}
+
+msg::JointState joint_targets(const CommandFrame& command, const RobotModel& robot, ros::Time stamp) {
+  msg::JointState message;
+  message.header.stamp = stamp;
+  for (const WheelModel& wheel : robot.wheels) {
+    message.name.push_back(robot.joints[wheel.joint].name);
+    message.velocity.push_back(command.joints[wheel.joint].velocity);
+  }
+  return message;
+}
+
+msg::DriveState drive_state(const CommandFrame& command, const CommandFrame& plan, std::uint64_t reasons,
+                            const RobotModel& robot, ros::Time stamp) {
+  msg::DriveState message;
+  message.header.stamp = stamp;
+  for (const BitName& row : kCommandReasonNames) {
+    if ((reasons & row.bit) == 0) continue;
+    message.reasons.emplace_back(row.name);
+    message.sentences.push_back(sentences_of({&row, 1}, row.bit));
+  }
+  for (const WheelModel& wheel : robot.wheels) {
+    const double wanted = plan.joints[wheel.joint].velocity;
+    const double actual = command.velocity_measured[wheel.joint];
+    message.name.push_back(robot.joints[wheel.joint].name);
+    message.wanted.push_back(wanted);
+    message.actual.push_back(actual);
+    message.error.push_back(wanted - actual);
+    message.effort.push_back(command.joints[wheel.joint].effort);
+  }
+  return message;
+}
+
+msg::BatteryState battery_state(const SensorFrame& sensors, ros::Time stamp) {
+  constexpr float kUnmeasured = std::numeric_limits<float>::quiet_NaN();
+  msg::BatteryState message;
+  message.header.stamp = stamp;
+  message.voltage = static_cast<float>(sensors.battery_voltage);
+  message.current = static_cast<float>(-sensors.battery_current);
+  message.temperature = message.charge = message.capacity = message.design_capacity = message.percentage = kUnmeasured;
+  message.power_supply_status = sensors.battery_current > 0 ? msg::BatteryState::POWER_SUPPLY_STATUS_DISCHARGING
+                                                            : msg::BatteryState::POWER_SUPPLY_STATUS_UNKNOWN;
+  message.present = 1;
+  return message;
+}
+
+msg::TwistStamped velocity_out(const CommandFrame& command, const std::string& base_frame, ros::Time stamp) {
+  msg::TwistStamped message;
+  message.header.stamp = stamp;
+  message.header.frame_id = base_frame;
+  message.twist = twist_message(command.twist_limited);
+  return message;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,87 @@
+#pragma once
+/// These functions convert frames to standard messages. They are pure: the stamp is an argument, nothing is published
+/// here.
+
+#include <ros/time.h>
+
+#include <string>
+
+#include "configuration/parameters.h"
+#include "estimation/estimator_parameters.h"
+#include "machine/robot_model.h"
+#include "ros/messages/messages.h"
+#include "signals/command_frame.h"
+#include "signals/sensor_frame.h"
+#include "signals/state_frame.h"
+#include "signals/truth_frame.h"
+#include "signals/velocity_command.h"
+
+namespace robot_control {
+
+Twist twist_of(const msg::Twist& message);
+
+/// Returns all joints in the order of the frames: wheels first, left before right, then casters and other joints. The
+/// wheels' velocities are those that the estimator tracks (StateFrame::wheel_velocity), because those of the encoder
+/// jump by a count per period. Other joints have the reported velocities, and so have wheels if `state` is null because
+/// this run has no state yet.
+msg::JointState joint_states(const SensorFrame& sensors, const StateFrame* state, const RobotModel& robot,
+                             ros::Time stamp);
+
+/// Returns the pose in `odom_frame` and the twist in `base_frame`, both with complete covariances (REP 105,
+/// nav_msgs/Odometry).
+msg::Odometry odometry(const StateFrame& state, const std::string& odom_frame, const std::string& base_frame,
+                       ros::Time stamp);
+
+/// Replaces the covariances by the diagonals that the user gave, for programs that need constant covariances.
+void state_covariances(const ReportParameters& given, msg::Odometry& message);
+
+/// Returns the log line that reports given covariances at start; "" if none are given.
+std::string covariance_note(const ReportParameters& given);
+
+/// Returns the transform from odom_frame to base_frame.
+msg::TransformStamped transform(const msg::Odometry& odometry);
+
+/// Returns the odometry of the wheels alone. Its uncertainty is not estimated, so both covariances are all zero, which
+/// means "unknown" in sensor_msgs.
+msg::Odometry wheel_odometry(const StateFrame& state, const std::string& odom_frame, const std::string& base_frame,
+                             ros::Time stamp);
+
+/// Returns the true motion as odometry. The covariances are zero, because the truth is exact.
+msg::Odometry ground_truth(const TruthFrame& truth, const std::string& odom_frame, const std::string& base_frame,
+                           ros::Time stamp);
+
+/// Returns the measured rates and accelerations in the axes of the IMU's link (REP 145). A covariance that begins with
+/// −1 means "not measured", one that is all zero "unknown".
+msg::Imu imu(const SensorFrame& sensors, const RobotModel& robot, ros::Time stamp);
+
+/// Returns `imu` with orientation and covariances (REP 145 "imu/data"). The orientation is that of the IMU's axes in
+/// odom, whose z axis points against gravity,
+///   q = attitude ⊗ imu_in_base,   covariance StateFrame::attitude_covariance, about odom axes;
+/// Rates and accelerations are as measured, with their biases. Their covariance is that of white noise sampled at the
+/// loop's rate, density² / period. `sensors` and `state` are of the same cycle.
+msg::Imu imu_data(const SensorFrame& sensors, const StateFrame& state, const RobotModel& robot,
+                  const EstimatorParameters& parameters, double period, ros::Time stamp);
+
+/// Returns whether imu_data is complete: gyro and accelerometer were measured in this cycle and are trusted, and the
+/// state is valid.
+bool has_imu_data(const SensorFrame& sensors, const StateFrame& state);
+
+/// Returns voltage and current as measured; the current is negative when discharging. Quantities that no driver reports
+/// are NaN or unknown.
+msg::BatteryState battery_state(const SensorFrame& sensors, ros::Time stamp);
+
+/// Returns the velocity targets of the wheels [rad/s] in the order of RobotModel::wheels; dim[0].label is "wheel".
+msg::Float64MultiArray joint_commands(const CommandFrame& command, const RobotModel& robot);
+
+/// Returns the velocity targets of the wheels with the names of their joints.
+msg::JointState joint_targets(const CommandFrame& command, const RobotModel& robot, ros::Time stamp);
+
+/// Returns the limited twist.
+msg::TwistStamped velocity_out(const CommandFrame& command, const std::string& base_frame, ros::Time stamp);
+
+/// `plan` is the command two cycles before `command`; an ideal wheel now has its targets (wheel_loop.h). `reasons` are
+/// CommandReason bits. While the brake acts, the reported target is standstill.
+msg::DriveState drive_state(const CommandFrame& command, const CommandFrame& plan, std::uint64_t reasons,
+                            const RobotModel& robot, ros::Time stamp);
+
+}  // namespace robot_control

@@ -1,0 +1,144 @@
+#include "ros/messages/status_messages.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <limits>
+#include <span>
+#include <string_view>
+
+#include "files/ascii.h"
+#include "ros/reports/name_list.h"
+#include "signals/names.h"
+
+namespace robot_control {
+namespace {
+
+/// Returns "sentence (remedy)" for each bit that is set.
+std::vector<std::string> sentences(std::span<const BitName> table, std::uint64_t bits) {
+  std::vector<std::string> texts;
+  for (const BitName& row : table) {
+    if ((bits & row.bit) != 0) texts.push_back(sentences_of({&row, 1}, row.bit));
+  }
+  return texts;
+}
+
+/// Copies texts into a message, whose vector has its own allocator.
+template <class Strings>
+void assign(Strings& to, const std::vector<std::string>& from) {
+  to.assign(from.begin(), from.end());
+}
+
+/// Returns "17.3 rad/s".
+std::string quantity(double value, std::string_view unit) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g ", value);
+  return std::string(text.data()).append(unit);
+}
+
+/// Returns "free the wheel, then call e_stop_reset".
+std::string with_reset(std::string_view remedy) {
+  return std::string(remedy).append(remedy.empty() ? "" : ", then ").append("call e_stop_reset");
+}
+
+/// Returns "the battery is low: 20.9 V, limit 21 V (charge it soon)".
+std::string warning_sentence(const BitName& row, const std::string& measured) {
+  std::string text(row.sentence);
+  if (!measured.empty()) text.append(": ").append(measured);
+  if (!row.remedy.empty()) text.append(" (").append(row.remedy).append(")");
+  return text;
+}
+
+}  // namespace
+
+std::string detail(const Permit& permit, std::uint64_t cause, const RobotModel& robot) {
+  const auto* evidence = std::ranges::find(permit.evidence, cause, &CauseEvidence::cause);
+  const BitName* row = row_of(kStopCauseNames, cause);
+  if (evidence == permit.evidence.end() || row == nullptr) return {};
+  std::string text;
+  if (!row->unit.empty()) {
+    text = quantity(evidence->value, row->unit) + ", limit " + quantity(evidence->limit, row->unit);
+  }
+  if (evidence->joint < robot.joints.size()) {
+    text.append(text.empty() ? "" : ", ").append(robot.joints[evidence->joint].name);
+  }
+  return ascii(text);
+}
+
+msg::SafetyStatus safety_status(const Permit& permit, const RobotModel& robot, const std::vector<std::string>& absent,
+                                const TimeMap& time, std::int64_t period_ns) {
+  msg::SafetyStatus message;
+  message.header.stamp = time.at(permit.head.stamp_ns);
+  message.state = static_cast<std::uint8_t>(permit.state);
+  message.state_name = name_of(permit.state);
+  message.permit = static_cast<std::uint8_t>(permit.action);
+  message.permit_name = name_of(permit.action);
+  const auto cycles = static_cast<std::int64_t>(permit.head.cycle - permit.since_cycle);
+  message.since = time.at(permit.head.stamp_ns - cycles * period_ns);
+  for (const BitName& row : kStopCauseNames) {
+    if ((permit.active & row.bit) != 0) message.active.emplace_back(row.name);
+    if ((permit.warnings & row.bit) != 0) {
+      message.warnings.emplace_back(row.name);
+      message.warning_sentences.push_back(warning_sentence(row, detail(permit, row.bit, robot)));
+    }
+    if ((permit.causes & row.bit) == 0) continue;
+    message.causes.emplace_back(row.name);
+    message.sentences.emplace_back(row.sentence);
+    message.remedies.push_back(with_reset(row.remedy));
+    message.remedies_before_reset.emplace_back(row.remedy);
+    message.actors.emplace_back(row.actor);
+    message.details.push_back(detail(permit, row.bit, robot));
+  }
+  message.speed_limit =
+      permit.speed_limit < kNoSpeedLimit ? permit.speed_limit : std::numeric_limits<double>::infinity();
+  message.first_cause = names_of(kStopCauseNames, permit.first_cause);
+  assign(message.missing, absent);
+  if (absent.empty() && permit.state == SupervisorState::kInit) {
+    assign(message.missing, sentences(kMissingNodeNames, permit.missing));
+  }
+  message.awaiting_zero_request =
+      permit.state == SupervisorState::kInit && permit.missing == 0 && permit.unreleased != 0 && absent.empty();
+  message.resets = permit.resets_handled;
+  message.withdrawals = permit.withdrawals;
+  assign(message.reset_refusal, sentences(kResetRefusalNames, permit.reset_refusal));
+  message.run = permit.head.run;
+  message.cycle = permit.head.cycle;
+  return message;
+}
+
+msg::SafetyStatus waiting_status(const std::vector<std::string>& missing) {
+  msg::SafetyStatus message;
+  message.state = msg::SafetyStatus::INIT;
+  message.state_name = name_of(SupervisorState::kInit);
+  message.permit = msg::SafetyStatus::PERMIT_BRAKE;
+  message.permit_name = name_of(PermitAction::kBrake);
+  message.speed_limit = std::numeric_limits<double>::infinity();
+  assign(message.missing, missing);
+  return message;
+}
+
+bool differs(const Permit& last, const Permit& now) {
+  return last.state != now.state || last.action != now.action || last.causes != now.causes ||
+         last.active != now.active || last.warnings != now.warnings || last.speed_limit != now.speed_limit ||
+         last.first_cause != now.first_cause || last.missing != now.missing || last.unreleased != now.unreleased ||
+         last.withdrawals != now.withdrawals || last.resets_handled != now.resets_handled ||
+         last.reset_refusal != now.reset_refusal || last.head.run != now.head.run;
+}
+
+std::string reset_text(const Permit& before, const Permit& permit, const Publishers& publishers) {
+  if (permit.reset_refusal == 0) return before.causes == 0 ? "nothing was stopped" : "released";
+  std::string text = "refused: " + sentences_of(kResetRefusalNames, permit.reset_refusal);
+  if ((permit.reset_refusal & kRefusalCauseActive) != 0) {
+    text += "; persists: " + sentences_of(kStopCauseNames, permit.active);
+    if (!publishers.e_stop.empty()) text += "; true on e_stop: " + joined(publishers.e_stop);
+  }
+  if ((permit.reset_refusal & kRefusalCommand) != 0 && !publishers.commands.empty()) {
+    text += "; publishing on cmd_vel: " + joined(publishers.commands);
+  }
+  if ((permit.reset_refusal & kRefusalInit) != 0) {
+    text += "; waiting: " + sentences_of(kMissingNodeNames, permit.missing);
+  }
+  return text;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,39 @@
+#pragma once
+/// These functions convert permits to words. They are pure.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "machine/robot_model.h"
+#include "ros/messages/messages.h"
+#include "ros/messages/time_map.h"
+#include "signals/permit.h"
+
+namespace robot_control {
+
+/// `absent` are the nodes that do not run now, `period_ns` is the loop's period for the field `since`, and `robot`
+/// names the joints.
+msg::SafetyStatus safety_status(const Permit& permit, const RobotModel& robot, const std::vector<std::string>& absent,
+                                const TimeMap& time, std::int64_t period_ns);
+
+/// Returns the evidence of a cause, "17.3 rad/s, limit 15 rad/s, left_wheel_joint"; "" if nothing was measured.
+std::string detail(const Permit& permit, std::uint64_t cause, const RobotModel& robot);
+
+/// Returns the status before the first permit: the state is INIT, and the monitor waits for these nodes.
+msg::SafetyStatus waiting_status(const std::vector<std::string>& missing);
+
+/// Returns whether `now` differs from `last` in more than cycle, stamp and measured values.
+bool differs(const Permit& last, const Permit& now);
+
+/// These nodes may be the reason why a reset is refused.
+struct Publishers {
+  std::vector<std::string> commands;  ///< on cmd_vel
+  std::vector<std::string> e_stop;    ///< those whose last message on e_stop was true
+};
+
+/// Returns the answer to e_stop_reset: the causes that it released, or why it was refused and the remedy. `before` is
+/// the last permit before the reset, `permit` the first one with its result.
+std::string reset_text(const Permit& before, const Permit& permit, const Publishers& publishers);
+
+}  // namespace robot_control

@@ -1,0 +1,153 @@
+#include "ros/nodes/mujoco_plant_node.h"
+
+#include <ros/ros.h>
+
+#include "drivers/mujoco/mujoco_plant.h"
+#include "files/ascii.h"
+#include "loop/processes/driver_process.h"
+#include "ros/messages/motion_messages.h"
+#include "ros/messages/simulation_messages.h"
+#include "ros/nodes/process_node.h"
+#include "ros/reports/diagnostics.h"
+#include "ros/reports/pacer.h"
+#include "ros/reports/robot_report.h"
+#include "ros/startup/description.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kClockRate = 100;  // Hz of simulated time
+
+class MujocoPlantNode final : public ProcessNode<DriverProcess> {
+ public:
+  explicit MujocoPlantNode(const Setup& setup)
+      : ProcessNode(setup), imu_pace_(report().imu_rate), truth_pace_(report().truth_rate), clock_pace_(kClockRate) {
+    const LoopParameters& loop = parameters().loop;
+    auto plant = std::make_unique<MujocoPlant>(robot(), parameters().plant, loop.period());
+    plant_ = plant.get();
+    description_ = std::make_unique<PublishedDescription>(robot(), parameters().urdf);
+    process().open_driver(std::move(plant));
+  }
+
+  void connect(ros::NodeHandle& handle) override {
+    log_robot();
+    imu_ = handle.advertise<msg::Imu>("imu/data_raw", 10);
+    truth_ = handle.advertise<msg::Odometry>("ground_truth/odom", 10);
+    if (parameters().loop.clock == ClockMode::kLockstep) clock_ = handle.advertise<msg::Clock>("/clock", 1);
+    ros::NodeHandle own("~");
+    set_pause_ = own.advertiseService("set_pause", &MujocoPlantNode::set_pause, this);
+    step_ = own.advertiseService("step", &MujocoPlantNode::step, this);
+    reset_ = own.advertiseService("reset", &MujocoPlantNode::reset, this);
+    inject_fault_ = own.advertiseService("inject_fault", &MujocoPlantNode::inject_fault, this);
+  }
+
+  std::int64_t tick_ns() const override {
+    return publish_tick_ns(parameters(), {report().imu_rate, report().truth_rate, kClockRate});
+  }
+
+  void publish() override {
+    if (process().sensors().newest(sensors_) != Lookup::kFrame || !process().is_current(sensors_.head)) return;
+    const FrameHead& head = sensors_.head;
+    time().follow(sensors_);
+    if (clock_ && clock_pace_.due(head.run, head.stamp_ns)) publish_clock();
+    if (imu_pace_.due(head.run, head.stamp_ns)) imu_.publish(imu(sensors_, robot(), time().at(head.stamp_ns)));
+    if (!truth_pace_.due(head.run, head.stamp_ns) || process().truth().newest(truth_frame_) != Lookup::kFrame) return;
+    truth_.publish(
+        ground_truth(truth_frame_, report().odom_frame, report().base_frame, time().at(truth_frame_.head.stamp_ns)));
+  }
+
+  void stop() override {
+    ProcessNode::stop();
+    if (finished()) log_end();
+  }
+
+  void diagnose(DiagnosticReport& report) override {
+    report_driver(report, sensors_, process().real_time_factor());
+    double slip = 0;
+    for (const double wheel : truth_frame_.slip) slip = std::max(slip, wheel);
+    report.value("wheel_slip_m_s", slip);
+    if (!plant_->unloaded().empty()) report.value("unloaded_wheels", plant_->unloaded());
+    if (sensors_.driver_state == DriverState::kFault)
+      report.value("fault_message", std::string(plant_->fault_message()));
+  }
+
+ private:
+  void log_robot() {
+    ROS_INFO("%s", summary(robot()).c_str());
+    for (const RobotNote& note : robot().notes) {
+      const std::string text = sentence(note);
+      if (needs_a_look(note)) {
+        ROS_WARN("%s", text.c_str());
+      } else {
+        ROS_INFO("%s", text.c_str());
+      }
+    }
+    if (!plant_->unloaded().empty()) ROS_WARN("suspicious: %s", plant_->unloaded().c_str());
+  }
+
+  void log_end() {
+    TruthFrame truth;
+    if (process().truth().newest(truth) != Lookup::kFrame) return;
+    const auto cycles = static_cast<double>(truth.head.cycle + 1);
+    const auto& position = truth.pose_world.position;
+    ROS_INFO("the run has ended after %.0f cycles (%g s): the robot is at x = %.3f m, y = %.3f m", cycles,
+             cycles * parameters().loop.period(), position[0], position[1]);
+  }
+
+  template <class Response>
+  static bool answer(const ServiceAnswer& given, Response& response) {
+    response.success = given.success ? 1 : 0;
+    response.message = ascii(given.message);
+    if (given.success) {
+      ROS_INFO("%s", given.message.c_str());
+    } else {
+      ROS_WARN("%s", given.message.c_str());
+    }
+    return true;
+  }
+
+  bool set_pause(msg::SetBoolRequest& request, msg::SetBoolResponse& response) {
+    return answer(process().services()->set_pause(request.data != 0), response);
+  }
+
+  bool step(msg::StepRequest& request, msg::StepResponse& response) {
+    return answer(process().services()->step(request.cycles), response);
+  }
+
+  bool reset(msg::TriggerRequest& /*request*/, msg::TriggerResponse& response) {
+    return answer(process().services()->reset(), response);
+  }
+
+  bool inject_fault(msg::InjectFaultRequest& request, msg::InjectFaultResponse& response) {
+    return answer(process().services()->inject_fault(request.component, request.kind), response);
+  }
+
+  void publish_clock() {
+    msg::Clock message;
+    message.clock = time().at(sensors_.head.stamp_ns);
+    clock_.publish(message);
+  }
+
+  const MujocoPlant* plant_ = nullptr;
+  std::unique_ptr<PublishedDescription> description_;
+  ros::Publisher imu_;
+  ros::Publisher truth_;
+  ros::Publisher clock_;
+  ros::ServiceServer set_pause_;
+  ros::ServiceServer step_;
+  ros::ServiceServer reset_;
+  ros::ServiceServer inject_fault_;
+  Pacer imu_pace_;
+  Pacer truth_pace_;
+  Pacer clock_pace_;
+  SensorFrame sensors_;
+  TruthFrame truth_frame_;
+};
+
+}  // namespace
+
+std::unique_ptr<Node> make_mujoco_plant(const Setup& setup) {
+  return std::make_unique<MujocoPlantNode>(setup);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,233 @@
+#include "ros/nodes/safety_monitor_node.h"
+
+#include <ros/ros.h>
+
+#include <mutex>
+
+#include "configuration/command_sources.h"
+#include "files/ascii.h"
+#include "loop/processes/monitor_process.h"
+#include "ros/inputs/e_stop_levels.h"
+#include "ros/inputs/input_topic.h"
+#include "ros/messages/messages.h"
+#include "ros/messages/status_messages.h"
+#include "ros/network/graph.h"
+#include "ros/nodes/process_node.h"
+#include "ros/reports/diagnostics.h"
+#include "ros/reports/stop_log.h"
+#include "ros/reports/withdrawal_time.h"
+#include "rt/clock.h"
+#include "rt/futex.h"
+
+namespace robot_control {
+namespace {
+
+constexpr std::int64_t kStatusPeriod = 1'000'000'000;  // ns, at most, between two messages
+constexpr std::int64_t kStatusGap = 20'000'000;        // ns, at least: a flickering cause does not flood subscribers
+constexpr std::int64_t kTriggerWait = 500'000'000;     // ns; the other callback thread still receives the topic e_stop
+constexpr std::int64_t kResetWait = 1'000'000'000;     // ns
+constexpr std::int64_t kResetLook = 2'000'000;         // ns
+
+class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
+ public:
+  using ProcessNode::ProcessNode;
+
+  void connect(ros::NodeHandle& handle) override {
+    for (const std::string& topic : command_topics()) command_topics_.push_back(handle.resolveName(topic));
+    status_ = handle.advertise<msg::SafetyStatus>("safety_status", 10, true);
+    e_stop_topic_ = handle.resolveName("e_stop");
+    if (process().e_stop_restored()) hold_e_stop();
+    // A malformed message stops the robot, too: its sender may have meant a stop.
+    e_stop_.connect_with_sender(
+        handle,
+        [this](const msg::Bool& message, const Publisher& sender) { receive_e_stop(sender.name, message.data != 0); },
+        [this](const std::string& sender) { receive_e_stop(sender, true); });
+    heartbeat_.connect(handle, [this](const msg::Empty&) { add(&OperatorInput::heartbeats); });
+    clearance_.connect(handle, [this](const msg::Float64& message) { receive_clearance(message.data); });
+    trigger_ = handle.advertiseService("e_stop_trigger", &SafetyMonitorNode::trigger, this);
+    reset_ = handle.advertiseService("e_stop_reset", &SafetyMonitorNode::reset, this);
+    if (!process().restored().empty()) ROS_WARN("%s", process().restored().c_str());
+  }
+
+  std::int64_t tick_ns() const override { return publish_tick_ns(parameters(), {1.0e9 / kStatusGap}); }
+
+  void publish() override {
+    const std::int64_t now_ns = monotonic_ns();
+    Permit permit;
+    const bool found = seen(permit);
+    if (found) withdrawal_.update(permit, now_ns);
+    const std::vector<std::string> absent = missing();
+    const bool changed =
+        found != reported_permit_ || absent != reported_missing_ || (found && differs(reported_, permit));
+    const std::int64_t silence_ns = now_ns - reported_ns_;
+    if (reported_ns_ != 0 && silence_ns < (changed ? kStatusGap : kStatusPeriod)) return;
+    if (SensorFrame sensors; live(sensors)) time().follow(sensors);
+    msg::SafetyStatus status =
+        found ? safety_status(permit, robot(), absent, time(), parameters().loop.period_ns()) : waiting_status(absent);
+    if (const auto last_ns = withdrawal_.last_ns()) {
+      status.withdrawn =
+          ros::Time().fromNSec(ros::WallTime::now().toNSec() - static_cast<std::uint64_t>(now_ns - *last_ns));
+    }
+    note_latch_file(status);
+    status_.publish(status);
+    write_log(stop_log_.update(status));
+    reported_permit_ = found;
+    reported_missing_ = absent;
+    reported_ = permit;
+    reported_ns_ = now_ns;
+  }
+
+  void diagnose(DiagnosticReport& report) override {
+    if (Permit permit; seen(permit)) report_permit(report, permit);
+  }
+
+ private:
+  bool live(SensorFrame& sensors) {
+    return process().sensors().newest(sensors) == Lookup::kFrame && process().is_current(sensors.head);
+  }
+
+  /// Reads the newest permit of this process. The permit of an earlier process does not count.
+  bool seen(Permit& permit) {
+    return process().output().newest(permit) == Lookup::kFrame && permit.head.run == process().cycle().published_run();
+  }
+
+  /// Returns the topics to which the controller subscribes. With a list that is refused the controller does not start.
+  std::vector<std::string> command_topics() {
+    std::vector<std::string> topics;
+    try {
+      const std::string path = parameters_of("diff_drive_controller").command_sources;
+      if (path.empty()) return {"cmd_vel", "cmd_vel_stamped"};
+      for (const CommandSource& source : read_command_sources(path).sources) topics.push_back(source.topic);
+    } catch (const ParameterError&) {
+    }
+    return topics;
+  }
+
+  void note_latch_file(msg::SafetyStatus& status) {
+    const std::string& problem = process().latch_file_problem();
+    if (problem.empty()) return;
+    status.warnings.emplace_back("latch_file");
+    status.warning_sentences.push_back(
+        ascii("a stop would not outlive a reboot, latch_file cannot be written: " + problem +
+              " (set safety_monitor/latch_file to a file that this user may write)"));
+  }
+
+  void add(std::uint64_t OperatorInput::*counter) {
+    const std::lock_guard lock(input_mutex_);
+    ++(input_.*counter);
+    process().cycle().inbox().store(input_);
+  }
+
+  void receive_e_stop(const std::string& publisher, bool stop) {
+    const std::lock_guard lock(input_mutex_);
+    levels_.receive(publisher, stop);
+    input_.e_stop_level = levels_.stopped() ? 1 : 0;
+    ++input_.e_stop_messages;
+    if (stop) ++input_.e_stop_triggers;
+    process().cycle().inbox().store(input_);
+  }
+
+  void hold_e_stop() {
+    const std::lock_guard lock(input_mutex_);
+    levels_.hold();
+    input_.e_stop_level = 1;
+    process().cycle().inbox().store(input_);
+  }
+
+  /// Ends the levels that end with a reset request, if the publishers are known. The request to the master may take
+  /// long, so the inputs are not locked during it.
+  void settle_e_stop() {
+    {
+      const std::lock_guard lock(input_mutex_);
+      if (!levels_.stopped()) return;
+    }
+    const auto present = publishers_known_to_reach(e_stop_topic_);
+    if (!present) return;
+    const std::lock_guard lock(input_mutex_);
+    levels_.settle(*present);
+    input_.e_stop_level = levels_.stopped() ? 1 : 0;
+  }
+
+  std::vector<std::string> e_stop_publishers() {
+    const std::lock_guard lock(input_mutex_);
+    return levels_.publishers();
+  }
+
+  void receive_clearance(double clearance) {
+    const std::lock_guard lock(input_mutex_);
+    input_.clearance = clearance;
+    ++input_.clearances;
+    process().cycle().inbox().store(input_);
+  }
+
+  bool trigger(msg::TriggerRequest& /*request*/, msg::TriggerResponse& response) {
+    add(&OperatorInput::e_stop_services);
+    Permit permit;
+    for (const std::int64_t end = monotonic_ns() + kTriggerWait; monotonic_ns() < end; sleep_ns(kResetLook)) {
+      if (!seen(permit) || (permit.causes & kCauseEmergencyStopService) == 0) continue;
+      response.success = 1;
+      response.message = "stopped; e_stop_reset releases";
+      return true;
+    }
+    response.success = 0;
+    response.message = "the stop is not confirmed: the monitor's loop has not latched it yet; use the hardware e-stop";
+    for (const std::string& name : missing()) response.message += "; waiting for " + ascii(name);
+    return true;
+  }
+
+  bool reset(msg::TriggerRequest& /*request*/, msg::TriggerResponse& response) {
+    const std::unique_lock one_at_a_time(reset_mutex_, std::try_to_lock);
+    if (!one_at_a_time) {  // waiting here would leave no thread to receive e_stop
+      response.success = 0;
+      response.message = "another reset is being answered: ask again";
+      return true;
+    }
+    settle_e_stop();
+    Permit permit;
+    Permit before;
+    if (seen(permit)) before = permit;
+    add(&OperatorInput::resets);
+    for (const std::int64_t end = monotonic_ns() + kResetWait; monotonic_ns() < end; sleep_ns(kResetLook)) {
+      if (!seen(permit)) continue;
+      if (permit.resets_handled == before.resets_handled) {
+        before = permit;
+        continue;
+      }
+      response.success = permit.reset_refusal == 0;
+      response.message = ascii(
+          reset_text(before, permit, {.commands = publishers_of(command_topics_), .e_stop = e_stop_publishers()}));
+      return true;
+    }
+    response.success = 0;
+    response.message = "not handled within 1 s: the monitor sees no sensor frames";
+    for (const std::string& name : missing()) response.message += ascii("; waiting for " + name);
+    return true;
+  }
+
+  std::vector<std::string> command_topics_;
+  std::string e_stop_topic_;
+  ros::Publisher status_;
+  InputTopic<BoundedBool> e_stop_{"e_stop", 10};
+  InputTopic<BoundedEmpty> heartbeat_{"heartbeat", 1};
+  InputTopic<BoundedFloat64> clearance_{"clearance", 1};
+  ros::ServiceServer trigger_;
+  ros::ServiceServer reset_;
+  std::mutex input_mutex_;
+  std::mutex reset_mutex_;
+  EStopLevels levels_;
+  OperatorInput input_;
+  StopLog stop_log_{static_cast<double>(parameters().loop.period_ns()) * 1e-9, parameters().controller.cmd_vel_timeout};
+  WithdrawalTime withdrawal_;
+  Permit reported_;
+  bool reported_permit_ = false;
+  std::vector<std::string> reported_missing_;
+  std::int64_t reported_ns_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Node> make_safety_monitor(const Setup& setup) {
+  return std::make_unique<SafetyMonitorNode>(setup);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,130 @@
+#include "ros/reports/command_report.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "control/limits/drive_limits.h"
+#include "signals/names.h"
+
+namespace robot_control {
+namespace {
+
+constexpr std::uint64_t kNoWish = kReasonNoCommand | kReasonTimedOut | kReasonRefused | kReasonManySenders;
+constexpr std::uint64_t kNoEffect = kReasonNoPermit | kReasonPermitBrake | kReasonPermitRamp | kReasonBadSensors;
+constexpr std::uint64_t kHindrances = kNoEffect | kReasonPermitSlow;
+
+template <class... Values>
+std::string format(const char* pattern, Values... values) {
+  std::array<char, 300> text{};
+  std::snprintf(text.data(), text.size(), pattern, values...);
+  return text.data();
+}
+
+/// Returns the text of the request. Speeds below kRounding, remains of a sender's arithmetic, are shown as zero.
+std::string requested_text_of(const PlanarTwist& requested) {
+  constexpr double kRounding = 1e-6;  // m/s and rad/s
+  const auto shown = [](double speed) { return std::abs(speed) < kRounding ? 0.0 : speed; };
+  return format("cmd_vel %.4g m/s, %.4g rad/s", shown(requested.linear), shown(requested.angular));
+}
+
+PlanarTwist requested_twist(const CommandFrame& command) {
+  return {command.twist_requested.linear[0], command.twist_requested.angular[2]};
+}
+
+}  // namespace
+
+CommandReport::CommandReport(const RobotModel& robot, const DriveControllerParameters& parameters)
+    : kinematics_(robot), limits_(speed_limits(parameters)), timeout_(parameters.cmd_vel_timeout) {}
+
+void CommandReport::limit(const DriveControllerParameters& parameters) {
+  limits_ = speed_limits(parameters);
+  timeout_ = parameters.cmd_vel_timeout;
+}
+
+void CommandReport::enter_run(const CommandFrame& command) {
+  run_ = command.head.run;
+  refused_ = timeouts_ = 0;
+  refusing_ = false;
+  reported_.reset();
+  line_gap_ = timeout_gap_ = refusal_gap_ = {};
+}
+
+CommandReport::Report CommandReport::made_of(const CommandFrame& command) const {
+  const PlanarTwist requested = requested_twist(command);
+  const double scale = kinematics_.wheel_speed_scale(requested);
+  const PlanarTwist twist = within_speed({scale * requested.linear, scale * requested.angular}, limits_);
+  return {.rims = kinematics_.rim_speeds(twist),
+          .zero = requested.linear == 0 && requested.angular == 0,
+          .limited = twist.linear != requested.linear || twist.angular != requested.angular,
+          .hindrance = command.reasons & kHindrances};
+}
+
+bool CommandReport::same(const Report& one, const Report& other) {
+  if (one.hindrance != other.hindrance || one.zero != other.zero) return false;
+  return std::abs(one.rims.left - other.rims.left) < kSpeedStep &&
+         std::abs(one.rims.right - other.rims.right) < kSpeedStep && one.limited == other.limited;
+}
+
+std::string CommandReport::text(const Report& report, const CommandFrame& command) const {
+  const PlanarTwist requested = requested_twist(command);
+  std::string requested_text = requested_text_of(requested);
+  if ((report.hindrance & kNoEffect) != 0) {
+    const std::uint64_t why = report.hindrance & kNoEffect;
+    return requested_text + " has no effect: " + sentences_of(kCommandReasonNames, why & (~why + 1));
+  }
+  if (report.hindrance != 0) return requested_text + ", but " + sentences_of(kCommandReasonNames, report.hindrance);
+  if (report.limited) {
+    const double scale = kinematics_.wheel_speed_scale(requested);
+    const PlanarTwist twist = within_speed({scale * requested.linear, scale * requested.angular}, limits_);
+    requested_text += format(", limited to %.3g m/s, %.3g rad/s", twist.linear, twist.angular);
+  }
+  return format("left %.2f m/s, right %.2f m/s (%s)", report.rims.left, report.rims.right, requested_text.c_str());
+}
+
+std::vector<ReportLine> CommandReport::update(const CommandFrame& command) {
+  std::vector<ReportLine> lines;
+  if (command.head.run != run_) enter_run(command);
+  const std::int64_t now_ns = command.head.stamp_ns;
+  const bool timed_out = command.timeouts > timeouts_;
+  const std::uint64_t not_finite =
+      command.requests_refused - command.requests_stale - command.requests_crowded - command.requests_revoked;
+  const bool refused = not_finite > refused_;
+  const bool stands = (command.reasons & kNoEffect) != 0;
+  timeouts_ = command.timeouts;
+  refused_ = not_finite;
+
+  if (timed_out) {
+    const bool moved = reported_ && !reported_->zero && !stands;
+    if (moved && timeout_gap_.over(now_ns)) {
+      lines.push_back({true, format("cmd_vel is silent for %g s: ramping down to standstill", timeout_)});
+      timeout_gap_.begin(now_ns);
+    }
+    reported_.reset();
+  }
+  if (refused) {
+    if (!refusing_ && refusal_gap_.over(now_ns)) {
+      lines.push_back({true, std::string("cmd_vel holds NaN or infinity: refused") +
+                                 (stands ? "" : ", ramping down to standstill")});
+      refusal_gap_.begin(now_ns);
+    }
+    refusing_ = true;
+    reported_.reset();
+  }
+  if ((command.reasons & kNoWish) != 0 || command.requests_received == 0) return lines;
+
+  refusing_ = false;
+  const Report made = made_of(command);
+  if (made.hindrance != hindrance_) hindered_since_ns_ = now_ns;
+  hindrance_ = made.hindrance;
+  const bool settled = !reported_ || made.hindrance == reported_->hindrance || now_ns - hindered_since_ns_ >= kSettle;
+  if ((reported_ && same(made, *reported_)) || !settled || !line_gap_.over(now_ns)) return lines;
+  const bool stood = !reported_ || reported_->zero;
+  reported_ = made;
+  if (made.zero && (stood || made.hindrance != 0)) return lines;  // the robot stands as requested
+  lines.push_back({made.hindrance != 0, text(made, command)});
+  line_gap_.begin(now_ns);
+  return lines;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,157 @@
+#include "ros/reports/diagnostics.h"
+
+#include <array>
+#include <cstdio>
+#include <numbers>
+
+#include "files/ascii.h"
+#include "ros/reports/name_list.h"
+#include "signals/names.h"
+#include "signals/slip_detection.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;  // ° per rad
+
+}  // namespace
+
+DiagnosticReport::DiagnosticReport(const std::string& node, const std::string& hardware) {
+  message_.level = msg::DiagnosticStatus::OK;
+  message_.name = node;
+  message_.hardware_id = hardware;
+}
+
+void DiagnosticReport::value(const std::string& key, const std::string& text) {
+  msg::KeyValue pair;
+  pair.key = key;
+  pair.value = ascii(text);
+  message_.values.push_back(pair);
+}
+
+void DiagnosticReport::value(const std::string& key, double number) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", number);
+  value(key, std::string(text.data()));
+}
+
+void DiagnosticReport::reasons(const std::string& subject, std::span<const BitName> table, std::uint64_t bits) {
+  for (const BitName& row : table) {
+    if ((bits & row.bit) == 0) continue;
+    value(subject + ": " + std::string(row.name), std::string(row.sentence));
+    if (!row.remedy.empty()) value(subject + " remedy: " + std::string(row.name), std::string(row.remedy));
+  }
+}
+
+void DiagnosticReport::raise(msg::DiagnosticStatus::_level_type level, const std::string& sentence) {
+  if (level < message_.level) return;
+  if (level > message_.level) message_.message.clear();
+  message_.level = level;
+  if (!message_.message.empty()) message_.message += "; ";
+  message_.message += ascii(sentence);
+}
+
+void report_missing(DiagnosticReport& report, const std::vector<std::string>& missing) {
+  const std::string names = joined(missing);
+  if (!names.empty()) report.warn("waiting for " + names);
+  report.value("waiting_for", names);
+}
+
+void report_driver(DiagnosticReport& report, const SensorFrame& sensors, double real_time_factor) {
+  if (sensors.driver_state == DriverState::kFault) report.error(sentences_of(kDriverFaultNames, sensors.faults));
+  if (sensors.driver_state == DriverState::kPaused) report.ok("paused");
+  if (sensors.injected != InjectedFaults{}) report.warn("injected faults: " + names_of(sensors.injected));
+  report.value("driver_state", std::string(name_of(sensors.driver_state)));
+  report.value("faults", names_of(kDriverFaultNames, sensors.faults));
+  report.value("cycle", sensors.head.cycle);
+  report.value("real_time_factor", real_time_factor);
+  report.value("overruns", sensors.overruns);
+  report.value("slipped_s", static_cast<double>(sensors.slipped_ns) * 1.0e-9);
+  report.value("held_s", static_cast<double>(sensors.held_ns) * 1.0e-9);
+  report.value("injected", names_of(sensors.injected));
+  report.value("gate_verdict", std::string(name_of(sensors.gate.verdict)));
+  report.value("gate_reasons", names_of(kGateReasonNames, sensors.gate.reasons));
+  report.value("commands_held", sensors.gate.held);
+  report.value("commands_missed", sensors.gate.missed);
+  report.value("permits_late", sensors.gate.late_permits);
+  report.value("frames_refused", sensors.gate.refused);
+  report.reasons("gate", kGateReasonNames, sensors.gate.reasons);
+}
+
+void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64_t slip_lately) {
+  constexpr std::uint64_t kLost = kStateNoGyro | kStateNoAccelerometer | kStateNoLeftEncoder | kStateNoRightEncoder;
+  if ((state.flags & kStateValid) == 0) report.warn("pose and twist are not valid");
+  if ((state.flags & kLost) != 0) report.warn(sentences_of(kStateFlagNames, state.flags & kLost));
+  if ((slip_lately | state.slip) != 0) {
+    report.warn("slip: " + sentences_of(kSlipReasonNames, slip_lately | state.slip));
+  } else if ((state.flags & kStateSlip) != 0) {
+    report.warn("slip: wheels and inertial sensors disagree");
+  }
+  if ((state.flags & kStateDegraded) != 0) {
+    report.warn("odometry is degraded: " + sentences_of(kDegradedReasonNames, state.degraded));
+  }
+  report.value("cycle", state.head.cycle);
+  report.value("flags", names_of(kStateFlagNames, state.flags));
+  report.value("degraded", names_of(kDegradedReasonNames, state.degraded));
+  report.value("residual_level", state.residual_level);
+  report.value("slip_detection", slip_detection(state.residual_level));
+  report.value("distance_m", state.distance);
+  report.value("skipped", state.skipped);
+  report.value("slip", names_of(kSlipReasonNames, state.slip));
+  report.value("slip_lately", names_of(kSlipReasonNames, slip_lately));
+  report.reasons("slip", kSlipReasonNames, slip_lately | state.slip);
+  report.reasons("estimate", kStateFlagNames, state.flags & kLost);
+  report.reasons("degraded", kDegradedReasonNames, state.degraded);
+  for (std::size_t i = 0; i < kStateSensorNames.size(); ++i) {
+    const std::string sensor(kStateSensorNames[i]);
+    report.value("confidence_" + sensor, state.confidence[i]);
+    report.value("nis_" + sensor, state.nis[i]);
+    report.value("rejected_" + sensor, state.rejected[i]);
+  }
+  report.value("radius_ratio", state.calibration.radius_ratio);
+  report.value("radius_ratio_deviation", state.calibration.radius_ratio_deviation);
+  report.value("wheel_base_factor", state.calibration.wheel_base_factor);
+  report.value("wheel_base_deviation", state.calibration.wheel_base_deviation);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string name = std::string("gyro_bias_") + "xyz"[axis];
+    report.value(name + "_deg_s", state.gyro_bias[axis] * kDegrees);
+    report.value(name + "_deviation_deg_s", state.gyro_bias_deviation[axis] * kDegrees);
+  }
+}
+
+void report_command(DiagnosticReport& report, const CommandFrame& command, std::uint64_t lately,
+                    const std::vector<std::string>& senders, const std::vector<std::string>& sources,
+                    const std::vector<std::string>& revoked) {
+  constexpr std::uint64_t kRefusals = kReasonRefused | kReasonStale | kReasonManySenders | kReasonRevoked;
+  if ((lately & kRefusals) != 0) report.warn(sentences_of(kCommandReasonNames, lately & kRefusals));
+  if (senders.size() > 1 && sources.empty()) report.warn("commands come from more than one node: " + joined(senders));
+  report.value("cycle", command.head.cycle);
+  report.value("reasons", names_of(kCommandReasonNames, command.reasons));
+  report.value("reasons_lately", names_of(kCommandReasonNames, lately));
+  report.value("senders", joined(senders));
+  if (!sources.empty()) report.value("sources", joined(sources));
+  report.value("revoked_senders", joined(revoked));
+  report.value("commands_received", command.requests_received);
+  report.value("commands_refused", command.requests_refused);
+  report.value("commands_stale", command.requests_stale);
+  report.value("commands_of_too_many_senders", command.requests_crowded);
+  report.value("commands_of_revoked_senders", command.requests_revoked);
+  report.value("timeouts", command.timeouts);
+  report.value("requested_m_s", command.twist_requested.linear[0]);
+  report.value("requested_rad_s", command.twist_requested.angular[2]);
+  report.reasons("command", kCommandReasonNames, command.reasons);
+}
+
+void report_permit(DiagnosticReport& report, const Permit& permit) {
+  if (permit.causes != 0) report.error(sentences_of(kStopCauseNames, permit.causes) + "; then call e_stop_reset");
+  if (permit.warnings != 0) report.warn(sentences_of(kStopCauseNames, permit.warnings));
+  report.value("cycle", permit.head.cycle);
+  report.value("state", std::string(name_of(permit.state)));
+  report.value("permit", std::string(name_of(permit.action)));
+  report.value("causes", names_of(kStopCauseNames, permit.causes));
+  report.value("active", names_of(kStopCauseNames, permit.active));
+  report.value("warnings", names_of(kStopCauseNames, permit.warnings));
+  if (permit.speed_limit < kNoSpeedLimit) report.value("speed_limit_m_s", permit.speed_limit);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,120 @@
+#include "ros/reports/stop_log.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <string_view>
+
+namespace robot_control {
+namespace {
+
+bool may_drive(const msg::SafetyStatus& status) {
+  return status.state == msg::SafetyStatus::READY || status.state == msg::SafetyStatus::DRIVE;
+}
+
+/// Returns "stall: a wheel stands although its target is not zero (0.6 rad, limit 0.5 rad, left_wheel_joint)".
+std::string cause_text(const msg::SafetyStatus& status, std::size_t i) {
+  std::string text = status.causes[i] + ": " + status.sentences[i];
+  if (!status.details[i].empty()) text += " (" + status.details[i] + ")";
+  return text;
+}
+
+std::string speed_text(double speed) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g m/s", speed);
+  return text.data();
+}
+
+}  // namespace
+
+std::vector<ReportLine> StopLog::update(const msg::SafetyStatus& status) {
+  if (status.run != run_) {
+    run_ = status.run;
+    awaiting_ = false;
+    reported_.clear();
+  }
+  std::vector<ReportLine> lines;
+  look_at_causes(status, lines);
+  look_at_start(status, lines);
+  look_at_warnings(status, lines);
+  return lines;
+}
+
+void StopLog::look_at_causes(const msg::SafetyStatus& status, std::vector<ReportLine>& lines) {
+  std::string causes;
+  std::string remedies;
+  for (std::size_t i = 0; i < status.causes.size(); ++i) {
+    if (!latched_.insert(status.causes[i]).second) continue;
+    const std::string text = cause_text(status, i);
+    const bool first = status.causes[i] == status.first_cause;
+    causes = causes.empty() ? text : first ? text + "; " + causes : causes + "; " + text;
+    const std::string& remedy = status.remedies_before_reset[i];
+    if (remedies.find(remedy) == std::string::npos) remedies += (remedies.empty() ? "" : "; ") + remedy;
+  }
+  const bool stopping = status.state == msg::SafetyStatus::STOPPING;
+  if (!causes.empty()) {
+    lines.push_back({true, status.state_name + ": " + causes + ". To drive again: " + remedies +
+                               (remedies.empty() ? "" : ", then ") + "call e_stop_reset"});
+  } else if (stopping_ && status.state == msg::SafetyStatus::STOPPED) {
+    lines.push_back({false, "STOPPED: the ramp has ended, the robot brakes"});
+  }
+  stopping_ = stopping;
+  // A status without a permit has no causes, which does not mean that the stop was released.
+  if (!latched_.empty() && status.causes.empty() && may_drive(status)) {
+    latched_.clear();
+    starting_ = false;
+    lines.push_back({false, "released: " + status.state_name + "; send cmd_vel"});
+  }
+}
+
+void StopLog::look_at_start(const msg::SafetyStatus& status, std::vector<ReportLine>& lines) {
+  const double now = static_cast<double>(status.cycle) * period_;
+  if (may_drive(status)) {
+    if (starting_) lines.push_back({false, "ready: send cmd_vel"});
+    starting_ = false;
+  }
+  if (status.state == msg::SafetyStatus::INIT) starting_ = true;
+  const bool awaiting = status.awaiting_zero_request != 0;
+  if (awaiting && !awaiting_) awaiting_since_ = now;
+  awaiting_ = awaiting;
+  if (!awaiting || awaiting_since_ < 0 || now - awaiting_since_ < zero_silence_ + kReserve) return;
+  awaiting_since_ = -1;
+  std::array<char, 128> text{};
+  std::snprintf(text.data(), text.size(), "%s: waits for a zero request; stop the sender for %g s or send zero",
+                status.state_name.c_str(), zero_silence_);
+  lines.push_back({true, text.data()});
+}
+
+bool StopLog::due(const std::string& name, bool present, double now) {
+  const bool before = present_.contains(name);
+  if (!present) {
+    present_.erase(name);
+    return false;
+  }
+  present_.insert(name);
+  if (before || (reported_.contains(name) && now - reported_[name] < kRepeat)) return false;
+  reported_[name] = now;
+  return true;
+}
+
+void StopLog::look_at_warnings(const msg::SafetyStatus& status, std::vector<ReportLine>& lines) {
+  const double now = static_cast<double>(status.cycle) * period_;
+  for (auto i = present_.begin(); i != present_.end();) {
+    const bool stays = *i == "clearance" || std::ranges::find(status.warnings, *i) != status.warnings.end();
+    i = stays ? std::next(i) : present_.erase(i);
+  }
+  for (std::size_t i = 0; i < status.warnings.size(); ++i) {
+    if (!due(status.warnings[i], true, now)) continue;
+    std::string text = "warning: " + status.warnings[i] + ": " + status.warning_sentences[i];
+    if (status.speed_limit < std::numeric_limits<double>::infinity()) {
+      text += "; no faster than " + speed_text(status.speed_limit);
+    }
+    lines.push_back({true, text});
+  }
+  const bool no_speed = status.warnings.empty() && status.speed_limit < kNoSpeed;
+  if (due("clearance", no_speed, now)) {
+    lines.push_back({true, "the clearance leaves no speed: the robot stands until the way is free"});
+  }
+}
+
+}  // namespace robot_control

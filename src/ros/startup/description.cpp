@@ -1,0 +1,60 @@
+#include "ros/startup/description.h"
+
+#include <ros/param.h>
+
+namespace robot_control {
+namespace {
+
+constexpr const char* kDescription = "robot_description";
+constexpr const char* kUrdf = "robot/urdf";
+
+void restore(const char* name, const std::string& before) {
+  if (before.empty()) {
+    ros::param::del(name);
+  } else {
+    ros::param::set(name, before);
+  }
+}
+
+}  // namespace
+
+RobotDescription chosen_description(const Parameters& parameters, bool urdf_requested, const std::string& published,
+                                    const std::string& name) {
+  if (urdf_requested || published.empty()) return load_description(parameters.urdf);
+  try {
+    RobotDescription file = load_description(parameters.urdf);
+    if (file.text == published) return file;
+  } catch (const RobotError&) {
+    // The text on the server is used; the file is not needed.
+  }
+  return {published, name};
+}
+
+void forget_argument() {
+  ros::param::del("~urdf");
+}
+
+std::string unread_description(const RobotDescription& chosen, const std::string& published, const std::string& name,
+                               const std::string& asked_for) {
+  if (published.empty() || published == chosen.text) return "";
+  return name + " holds another robot and is not read: " + asked_for + " = " + chosen.source +
+         " goes before it, perhaps left over from an earlier launch: then `rosparam delete " + asked_for + "`";
+}
+
+PublishedDescription::PublishedDescription(const RobotModel& robot, const std::string& urdf) {
+  ros::param::get(kDescription, description_before_);
+  changed_description_ = description_before_ != robot.urdf;
+  if (changed_description_) ros::param::set(kDescription, robot.urdf);
+  if (!ros::param::has("~urdf")) return;
+  ros::param::get(kUrdf, urdf_before_);
+  changed_urdf_ = urdf_before_ != urdf;
+  if (changed_urdf_) ros::param::set(kUrdf, urdf);
+  forget_argument();
+}
+
+PublishedDescription::~PublishedDescription() {
+  if (changed_description_) restore(kDescription, description_before_);
+  if (changed_urdf_) restore(kUrdf, urdf_before_);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,159 @@
+#include "ros/startup/setup.h"
+
+#include <ros/master.h>
+#include <ros/names.h>
+#include <ros/package.h>
+#include <ros/param.h>
+#include <ros/this_node.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+
+#include "bus/bus.h"
+#include "loop/latch_file.h"
+#include "ros/startup/description.h"
+#include "ros/startup/overlays.h"
+
+namespace robot_control {
+namespace {
+
+std::string installed_config() {
+  return ros::package::getPath("robot_control") + "/config/robot_params.yaml";
+}
+
+constexpr const char* kYamlPath = "the path of a YAML file";
+
+XmlRpc::XmlRpcValue on_server(const std::string& name) {
+  XmlRpc::XmlRpcValue value;
+  ros::param::get(name, value);
+  return value;
+}
+
+std::string server_text(const std::string& name, const std::string& what) {
+  return text_parameter(on_server(name), name, what);
+}
+
+/// Returns `~config`, whose file is laid over the installed one, else the path of the installed file.
+std::string config_path() {
+  const std::string path = server_text(ros::names::resolve("~config"), kYamlPath);
+  return path.empty() ? installed_config() : path;
+}
+
+void append(std::vector<Overlay>& overlays, const std::string& name, const std::string& block,
+            const std::vector<std::string>& ignored = {}) {
+  const std::string resolved = ros::names::resolve(name);
+  const std::vector<Overlay> found = overlays_of(on_server(resolved), block, resolved, ignored);
+  overlays.insert(overlays.end(), found.begin(), found.end());
+}
+
+std::vector<Overlay> server_overlays(const std::string& node) {
+  std::vector<Overlay> overlays;
+  append(overlays, "robot", "robot");
+  append(overlays, ros::this_node::getName(), node, {"config", "urdf"});
+  append(overlays, "~urdf", "robot.urdf");
+  return overlays;
+}
+
+RobotDescription description(const Parameters& parameters, const std::vector<Overlay>& overlays, std::string& unread) {
+  const std::string name = ros::names::resolve("robot_description");
+  const std::string published = server_text(name, "that of a URDF");
+  std::string asked_for;  // the last overlay is in force
+  for (const Overlay& overlay : overlays) {
+    if (overlay.path == "robot.urdf") asked_for = overlay.origin;
+  }
+  RobotDescription chosen = chosen_description(parameters, !asked_for.empty(), published, name);
+  if (asked_for == ros::names::resolve("robot/urdf")) unread = unread_description(chosen, published, name, asked_for);
+  return chosen;
+}
+
+void add(std::string& problems, const std::string& problem) {
+  if (problem.empty()) return;
+  if (!problems.empty()) problems += '\n';
+  problems += problem;
+}
+
+}  // namespace
+
+std::string clock_problem(ClockMode clock, bool use_sim_time) {
+  if (clock == ClockMode::kWall && use_sim_time) {
+    return "robot.clock is wall, but /use_sim_time is true, perhaps left over in this roscore: "
+           "run `rosparam set /use_sim_time false`, or set robot.clock to lockstep";
+  }
+  if (clock == ClockMode::kLockstep && !use_sim_time) {
+    return "robot.clock is lockstep, but /use_sim_time is not true: run `rosparam set /use_sim_time true` "
+           "before the nodes are started (sim.launch clock:=lockstep does), or set robot.clock to wall; where an "
+           "earlier launch left robot/clock on the parameter server: `rosparam delete /robot/clock`";
+  }
+  return "";
+}
+
+namespace {
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+void fill_setup(const std::string& node, Setup& setup) {
+  std::string path;
+  std::vector<Overlay> overlays;
+  bool use_sim_time = false;
+  try {
+    path = config_path();
+    overlays = server_overlays(node);
+    use_sim_time = truth_parameter(on_server("/use_sim_time"), "/use_sim_time");
+  } catch (const ParameterError& error) {
+    throw SetupError(error.what());
+  }
+  setup.overrides = override_lines(overlays, path);
+  setup.unexpected_overrides = override_lines(overlays, path, set_by_launch(environ));
+  std::string problems;
+  try {
+    setup.parameters = read_parameters(path, overlays, installed_config());
+  } catch (const ParameterError& error) {
+    throw SetupError(error.what());  // without parameters nothing else can be checked
+  }
+  add(problems, clock_problem(setup.parameters.loop.clock, use_sim_time));
+  try {
+    setup.robot = read_robot(description(setup.parameters, overlays, setup.unread_description), setup.parameters.robot);
+    std::string& base_frame = setup.parameters.report.base_frame;
+    if (base_frame.empty()) base_frame = setup.robot.base_link;
+  } catch (const RobotError& error) {
+    add(problems, error.what());
+  } catch (const ParameterError& error) {
+    add(problems, error.what());
+  }
+  if (!problems.empty()) throw SetupError(problems);
+  // Each namespace has a folder of its own, so that two robots never write to one file.
+  std::string& directory = setup.parameters.telemetry.directory;
+  directory += (directory.empty() ? "." : "") + ros::this_node::getNamespace();
+  setup.parameters.latch_file = latch_path(setup.parameters.latch_file, host_name(), ros::this_node::getNamespace());
+  setup.bus = setup.parameters.loop.bus;
+  if (setup.bus.empty()) setup.bus = bus_name(ros::master::getURI(), ros::this_node::getNamespace());
+}
+
+}  // namespace
+
+Parameters parameters_of(const std::string& node) {
+  std::vector<Overlay> overlays;
+  append(overlays, "robot", "robot");
+  append(overlays, node, node, {"config", "urdf"});
+  std::string path = server_text(ros::names::resolve(node + "/config"), kYamlPath);
+  if (path.empty()) path = config_path();
+  return read_parameters(path, overlays, installed_config());
+}
+
+Setup read_setup(const std::string& node) {
+  Setup setup;
+  try {
+    fill_setup(node, setup);
+  } catch (const SetupError& error) {
+    std::string text = error.what();
+    for (const std::string& line : setup.overrides) text += "\n  " + line;
+    throw SetupError(text);
+  }
+  return setup;
+}
+
+}  // namespace robot_control

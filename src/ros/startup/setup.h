@@ -1,0 +1,43 @@
+#pragma once
+/// A Setup holds everything that a node reads before it takes its locks: parameters, robot, name of the bus.
+///
+/// It is read after ros::init and before the first NodeHandle. A NodeHandle registers this node's name, and ROS would
+/// then shut down a running node of that name.
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "configuration/parameters.h"
+#include "machine/robot_model.h"
+
+namespace robot_control {
+
+/// The text lists every reason not to start, one per line.
+class SetupError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct Setup {
+  Parameters parameters;
+  RobotModel robot;
+  std::string bus;
+  std::vector<std::string> overrides;  ///< "/robot/rate = 500 overrides robot.rate of config/robot_params.yaml"
+  std::vector<std::string> unexpected_overrides;  ///< those of `overrides` that the launch file does not cause itself
+  std::string unread_description;                 ///< warning that another robot_description is on the server, or empty
+};
+
+/// Returns the problem if `clock: wall` meets /use_sim_time = true, or `clock: lockstep` meets false; "" if they agree.
+/// Otherwise all stamps and times would be wrong.
+std::string clock_problem(ClockMode clock, bool use_sim_time);
+
+/// Returns the parameters that another node, `node`, would read from its file and its overrides if it started now.
+/// Throws ParameterError.
+Parameters parameters_of(const std::string& node);
+
+/// `node` names the program and its block of the YAML file ("state_estimator"). The robot is selected as in
+/// description.h. Throws SetupError with all problems at once.
+Setup read_setup(const std::string& node);
+
+}  // namespace robot_control

@@ -1,0 +1,129 @@
+/// One writer writes as fast as it can; a reader must never get a torn frame, nor an older one after a newer.
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "bus/latest_frames.h"
+#include "rt/clock.h"
+#include "support/anonymous_memory.h"
+#include "support/child_process.h"
+#include "support/test_frame.h"
+
+namespace robot_control {
+namespace {
+
+constexpr std::uint64_t kTorturedRun = 7;
+constexpr std::int64_t kDuration = 700'000'000;    // ns, at least
+constexpr std::int64_t kTimeout = 60'000'000'000;  // ns; the number of frames in a time depends on the machine
+constexpr std::uint64_t kFrames = 100;             // at least
+
+void write_until(const std::atomic<bool>& stop, LatestFrames<TestFrame>* memory, std::uint64_t first = 0) {
+  FrameWriter<TestFrame> writer(memory);
+  for (std::uint64_t cycle = first; !stop.load(std::memory_order_relaxed); ++cycle) {
+    TestFrame frame = test_frame(kTorturedRun, cycle);
+    writer.publish(frame);
+  }
+}
+
+/// Reads for kDuration and kFrames, in both ways; returns the number of frames found.
+std::uint64_t read_and_check(const LatestFrames<TestFrame>* memory) {
+  const FrameReader<TestFrame> reader(memory);
+  TestFrame frame;
+  std::uint64_t last = 0;
+  std::uint64_t seen = 0;
+  const std::int64_t begin = monotonic_ns();
+  while ((seen < kFrames || monotonic_ns() < begin + kDuration) && monotonic_ns() < begin + kTimeout) {
+    const Lookup newest = reader.newest(frame);
+    EXPECT_NE(newest, Lookup::kCorrupt);
+    if (newest != Lookup::kFrame) continue;
+    EXPECT_TRUE(whole(frame));
+    EXPECT_GE(frame.head.cycle, last);
+    last = frame.head.cycle;
+    ++seen;
+    const std::uint64_t asked = last > 3 ? last - 3 : 0;
+    const Lookup older = reader.at(kTorturedRun, asked, frame);
+    EXPECT_NE(older, Lookup::kCorrupt);
+    if (older == Lookup::kFrame) {
+      EXPECT_TRUE(whole(frame));
+      EXPECT_EQ(frame.head.cycle, asked);
+    }
+    if (testing::Test::HasFailure()) break;
+  }
+  return seen;
+}
+
+TEST(LatestFramesTorture, TwoThreadsSeeWholeFramesInOrder) {
+  const AnonymousMemory<LatestFrames<TestFrame>> memory;
+  std::atomic<bool> stop{false};
+  std::thread writer([&] { write_until(stop, memory.get()); });
+  EXPECT_GE(read_and_check(memory.get()), kFrames);
+  stop.store(true);
+  writer.join();
+}
+
+TEST(LatestFramesTorture, TwoProcessesSeeWholeFramesInOrder) {
+  const AnonymousMemory<LatestFrames<TestFrame>> memory;
+  ChildProcess writer([&] {
+    const std::atomic<bool> never{false};
+    write_until(never, memory.get());
+    return 0;
+  });
+  EXPECT_GE(read_and_check(memory.get()), kFrames);
+}
+
+TEST(LatestFramesTorture, WritersKilledAnywhereLeaveWholeFrames) {
+  const AnonymousMemory<LatestFrames<TestFrame>> memory;
+  const FrameReader<TestFrame> reader(memory.get());
+  TestFrame frame;
+  for (std::uint64_t life = 0; life < 50; ++life) {
+    const std::uint32_t before = reader.sequence();
+    {
+      ChildProcess writer([&] {
+        const std::atomic<bool> never{false};
+        write_until(never, memory.get(), life * 1'000'000);
+        return 0;
+      });
+      ASSERT_TRUE(reader.wait(before, 10'000'000'000));
+      sleep_ns(static_cast<std::int64_t>(life) * 13'000);  // another place each time
+    }
+    const Lookup newest = reader.newest(frame);
+    ASSERT_NE(newest, Lookup::kCorrupt);
+    if (newest == Lookup::kFrame) {
+      EXPECT_TRUE(whole(frame));
+    }
+    FrameWriter<TestFrame> successor(memory.get());
+    TestFrame next = test_frame(kTorturedRun, frame.head.cycle + 1);
+    successor.publish(next);
+    ASSERT_EQ(reader.newest(frame), Lookup::kFrame);
+    EXPECT_TRUE(whole(frame));
+  }
+}
+
+TEST(LatestFramesTorture, AReaderThatWaitsForEverMissesNoWakeUp) {
+  const AnonymousMemory<LatestFrames<TestFrame>> ping;
+  const AnonymousMemory<LatestFrames<TestFrame>> pong;
+  constexpr std::uint64_t kRounds = 5000;
+  ChildProcess echo([&] {
+    const FrameReader<TestFrame> in(ping.get());
+    FrameWriter<TestFrame> out(pong.get());
+    TestFrame frame;
+    for (std::uint64_t round = 0; round < kRounds; ++round) {
+      if (!in.wait(static_cast<std::uint32_t>(round), -1)) return 1;
+      if (in.newest(frame) != Lookup::kFrame || frame.head.cycle != round) return 2;
+      out.publish(frame);
+    }
+    return 0;
+  });
+  const FrameReader<TestFrame> in(pong.get());
+  FrameWriter<TestFrame> out(ping.get());
+  for (std::uint64_t round = 0; round < kRounds; ++round) {
+    TestFrame frame = test_frame(kTorturedRun, round);
+    out.publish(frame);
+    ASSERT_TRUE(in.wait(static_cast<std::uint32_t>(round), 10'000'000'000)) << round;
+  }
+  EXPECT_EQ(echo.wait(), 0);
+}
+
+}  // namespace
+}  // namespace robot_control

@@ -1,0 +1,37 @@
+#include "drivers/driver_contract.h"
+
+#include "drivers/ideal_drive.h"
+#include "drivers/mujoco/mujoco_plant.h"
+#include "support/diffbot_urdf.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kEffortLimit = 3.5;  // N·m, of diffbot's wheels
+
+std::unique_ptr<Driver> mujoco_plant() {
+  MujocoPlantParameters parameters;
+  parameters.scene = PROJECT_DIRECTORY "/urdf/scenes/flat.xml";
+  return std::make_unique<MujocoPlant>(read_robot(diffbot_urdf(), {}), parameters, 0.001);
+}
+
+// One wheel moves half of the robot's 12 kg at 0.1 m: 0.06 kg·m² with its own inertia. 1 N·m turns it by 0.7 rad in
+// 0.3 s; 20 N·m/rad and 2 N·m·s/rad are an impedance of damping ratio 0.9.
+const MachineUnderTest kSimulatedMachine{.name = "MujocoPlant",
+                                         .make = mujoco_plant,
+                                         .effort_limit = kEffortLimit,
+                                         .effort = 1,
+                                         .damping = 2,
+                                         .stiffness = 20};
+
+const MachineUnderTest kExample{.name = "ExampleDriver",
+                                .make = [] { return example_machine().driver; },
+                                .effort_limit = kEffortLimit,
+                                .effort = 0.1,
+                                .damping = 0.5,
+                                .stiffness = 5};
+
+INSTANTIATE_TEST_SUITE_P(Machines, DriverContract, testing::Values(kSimulatedMachine, kExample), machine_name);
+
+}  // namespace
+}  // namespace robot_control

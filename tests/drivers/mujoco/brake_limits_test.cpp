@@ -1,0 +1,145 @@
+#include "drivers/mujoco/motors/brake_limits.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "drivers/driver.h"
+#include "drivers/mujoco/constants.h"
+#include "machine/bodies/tipping.h"
+#include "made_robot.h"
+#include "support/diffbot_urdf.h"
+
+namespace robot_control {
+namespace {
+
+// Centre of gravity 0.2 m above the ground, axles 0.15 m before and behind it.
+MadeRobot four_wheels() {
+  MadeRobot robot;
+  robot.axles = {0.15, -0.15};
+  robot.body_mass = 16;
+  robot.body_z = 0.125;  // 16 kg at 0.225 m, 4 kg at 0.1 m
+  return robot;
+}
+
+TEST(LiftingDeceleration, IsTheLeverOfTheWeightOverThatOfTheInertia) {
+  EXPECT_NEAR(lifting_deceleration(four_wheels().model()), kEarthGravity * 0.15 / 0.2, 1e-9);
+}
+
+TEST(LiftingDeceleration, CountsABallBehindTheAxleAsASupport) {
+  MadeRobot robot;
+  robot.body_x = -0.12;  // 10 of 12 kg: centre of gravity at −0.1 m
+  robot.ball_x = -0.3;
+  EXPECT_NEAR(lifting_deceleration(robot.model()), kEarthGravity * 0.1 / 0.1, 1e-9);
+}
+
+TEST(BrakeOf, BrakesWithHalfTheLiftingDeceleration) {
+  const MadeRobot robot = four_wheels();
+  const Brake brake = brake_of(robot.model(), 0, {}, kStep);
+  const double moved = 20 + 4 * robot.wheel_inertia() / std::pow(robot.radius, 2);
+  EXPECT_NEAR(brake.effort, moved * 0.5 * kEarthGravity * 0.75 * robot.radius / 4, 1e-9);
+}
+
+TEST(BrakeOf, HoldsATopHeavyRobotOnASlopeOfTenDegrees) {
+  MadeRobot robot = four_wheels();
+  robot.body_z = 3;
+  EXPECT_NEAR(brake_of(robot.model(), 0, {}, kStep).hold_effort,
+              20 * kEarthGravity * std::sin(10 * M_PI / 180) * robot.radius / 4, 1e-9);
+}
+
+// Half of the lifting force is less than the slope takes; all of it is not.
+TEST(BrakeOf, SlowsATopHeavyRobotAlmostUntilItTips) {
+  MadeRobot robot = four_wheels();
+  robot.body_z = 1.0;  // centre of gravity at (16 · 1.1 + 4 · 0.1)/20 = 0.9 m, lifts at g/6
+  const Brake brake = brake_of(robot.model(), 0, {}, kStep);
+  const double moved = 20 + 4 * robot.wheel_inertia() / std::pow(robot.radius, 2);
+  EXPECT_NEAR(brake.effort, moved * 0.9 * kEarthGravity * 0.15 / 0.9 * robot.radius / 4, 1e-9);
+  EXPECT_GT(brake.hold_effort, brake.effort);
+}
+
+// The centre of gravity right above the only axle has no lever.
+TEST(BrakeOf, SlowsOnASlopeOfFiveDegreesWhateverTips) {
+  EXPECT_NEAR(brake_of(MadeRobot{}.model(), 0, {}, kStep).effort,
+              12 * kEarthGravity * std::sin(5 * M_PI / 180) * 0.1 / 2, 1e-9);
+}
+
+TEST(BrakeOf, LeavesToTheMotorsFrictionWhatThatBrakes) {
+  MujocoPlantParameters parameters;
+  parameters.gear_ratio = 10;
+  parameters.motor_friction = 0.02;
+  const RobotModel robot = four_wheels().model();
+  EXPECT_NEAR(brake_of(robot, 0, parameters, kStep).effort, brake_of(robot, 0, {}, kStep).effort - 0.2, 1e-9);
+}
+
+TEST(BrakeOf, IsNeverStrongerThanTheDrive) {
+  MadeRobot robot = four_wheels();
+  robot.effort = 0.7;
+  EXPECT_EQ(brake_of(robot.model(), 0, {}, kStep).effort, 0.7);
+}
+
+TEST(BrakeOf, TakesWhatTheUserSays) {
+  MujocoPlantParameters parameters;
+  parameters.brake_effort = 1.5;
+  parameters.brake_damping = 1;
+  parameters.brake_stiffness = 100;
+  parameters.brake_hold_speed = 0.2;
+  const Brake brake = brake_of(four_wheels().model(), 0, parameters, kStep);
+  EXPECT_EQ(brake.effort, 1.5);
+  EXPECT_EQ(brake.hold_effort, 1.5);
+  EXPECT_EQ(brake.damping, 1);
+  EXPECT_EQ(brake.stiffness, 100);
+  EXPECT_EQ(brake.hold_speed, 0.2);
+}
+
+// 0.4 · 0.005 / 0.001, 0.06 · 0.005 / 0.001², 0.03 / 0.1
+TEST(BrakeOf, FitsTheWheelOfDiffbot) {
+  const Brake brake = brake_of(read_robot(diffbot_urdf(), {}), 0, {}, kStep);
+  EXPECT_NEAR(brake.damping, 2.0, 1e-9);
+  EXPECT_NEAR(brake.stiffness, 300, 1e-6);
+  EXPECT_NEAR(brake.hold_speed, 0.3, 1e-12);
+}
+
+class CheckBrake : public testing::Test {
+ protected:
+  std::string refusal() const {
+    try {
+      check_brake(brake_, "left_wheel_joint", 0.005, kStep);
+    } catch (const DriverError& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+  Brake brake_{.effort = 3, .damping = 2, .stiffness = 300, .hold_speed = 0.3};
+};
+
+TEST_F(CheckBrake, AcceptsWhatALightWheelBears) {
+  EXPECT_EQ(refusal(), "accepted");
+}
+
+TEST_F(CheckBrake, RefusesDampingThatALightWheelDoesNotBear) {
+  brake_.damping = 2.6;  // 2.6 · 0.001 / 0.005 = 0.52
+  EXPECT_THAT(refusal(), testing::HasSubstr("brake_damping"));
+}
+
+TEST_F(CheckBrake, RefusesStiffnessThatALightWheelDoesNotBear) {
+  brake_.stiffness = 2600;  // 2600 · 10⁻⁶ / 0.005 = 0.52
+  EXPECT_THAT(refusal(), testing::HasSubstr("brake_stiffness"));
+}
+
+TEST(CheckBrakeOfATinyWheel, NamesItsNumbers) {
+  try {
+    check_brake({.effort = 1, .damping = 1, .stiffness = 1, .hold_speed = 1}, "tiny", 4e-7, kStep);
+    FAIL() << "accepted";
+  } catch (const DriverError& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("4e-07 kg·m²"), testing::HasSubstr("up to 0.0002 ")));
+  }
+}
+
+TEST_F(CheckBrake, RefusesABrakeThatDoesNotHold) {
+  brake_.stiffness = 0;
+  EXPECT_THAT(refusal(), testing::HasSubstr("brake_stiffness"));
+}
+
+}  // namespace
+}  // namespace robot_control

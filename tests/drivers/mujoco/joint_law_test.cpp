@@ -1,0 +1,195 @@
+/// The law alone, on a wheel of inertia J: q̇' = q̇ + (τ + load)/J h, q' = q + h q̇'.
+
+#include "drivers/mujoco/motors/joint_law.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "drivers/mujoco/constants.h"
+#include "support/allocation_guard.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kFreeInertia = 0.005;   // kg·m², a wheel off the ground
+constexpr double kRobotInertia = 0.065;  // kg·m², a wheel that moves its half of 12 kg
+constexpr double kEffortLimit = 3.5;     // N·m
+constexpr Brake kBrake{.effort = 3.0, .hold_effort = 3.0, .damping = 2.0, .stiffness = 300, .hold_speed = 0.3};
+
+class JointLawTest : public testing::Test {
+ protected:
+  double step(const JointCommand& command, double load = 0) {
+    const double effort = law_.step(command, position_, velocity_);
+    velocity_ += (effort + load) / inertia_ * kStep;
+    position_ += velocity_ * kStep;
+    return effort;
+  }
+  void brake(double seconds, double load = 0) {
+    for (int i = 0; i < seconds / kStep; ++i) step({}, load);
+  }
+
+  JointLaw law_{kBrake, kEffortLimit};
+  double inertia_ = kRobotInertia;
+  double position_ = 0;
+  double velocity_ = 0;
+};
+
+TEST_F(JointLawTest, EveryModeIsItsEquation) {
+  JointCommand command{JointMode::kEffort, 0.3, 2.0, 1.5, 0.25, 0.5};
+  EXPECT_DOUBLE_EQ(law_.step(command, 0.1, 1.0), 0.5);
+  command.mode = JointMode::kVelocity;
+  EXPECT_DOUBLE_EQ(law_.step(command, 0.1, 1.0), 0.5 + 0.25 * (2.0 - 1.0));
+  command.mode = JointMode::kImpedance;
+  EXPECT_DOUBLE_EQ(law_.step(command, 0.1, 1.0), 0.5 + 1.5 * (0.3 - 0.1) + 0.25 * (2.0 - 1.0));
+}
+
+TEST_F(JointLawTest, ClampsToTheEffortLimitBothWays) {
+  JointCommand command;
+  command.mode = JointMode::kEffort;
+  command.effort = 100;
+  EXPECT_EQ(law_.step(command, 0, 0), kEffortLimit);
+  command.effort = -100;
+  EXPECT_EQ(law_.step(command, 0, 0), -kEffortLimit);
+}
+
+TEST_F(JointLawTest, BrakesWithItsBoundWhileFast) {
+  velocity_ = 10;
+  EXPECT_EQ(step({}), -kBrake.effort);
+  velocity_ = -10;
+  law_.reset();
+  EXPECT_EQ(step({}), kBrake.effort);
+}
+
+TEST_F(JointLawTest, ABrakeIsNeverStrongerThanTheJoint) {
+  JointLaw weak(kBrake, 1.0);
+  EXPECT_EQ(weak.step({}, 0, 10), -1.0);
+}
+
+TEST_F(JointLawTest, NumbersThatAreNotFiniteBrake) {
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    JointCommand command;
+    command.mode = JointMode::kVelocity;
+    command.damping = 1;
+    command.velocity = bad;
+    law_.reset();
+    EXPECT_EQ(law_.step(command, 0, 10), -kBrake.effort);
+  }
+}
+
+TEST_F(JointLawTest, AnUnknownModeBrakes) {
+  JointCommand command;
+  command.mode = static_cast<JointMode>(99);
+  command.effort = 2;
+  EXPECT_EQ(law_.step(command, 0, 10), -kBrake.effort);
+}
+
+TEST_F(JointLawTest, StopsAndHoldsAFreeWheelAndAHeavyOne) {
+  for (const double inertia : {kFreeInertia, kRobotInertia}) {
+    law_.reset();
+    inertia_ = inertia;
+    velocity_ = 10;
+    brake(3);
+    EXPECT_TRUE(law_.holding());
+    // Slowest pole: e^(−d/(2J) t) = e^(−15 t), three seconds.
+    EXPECT_NEAR(velocity_, 0, 1e-9);
+  }
+}
+
+TEST_F(JointLawTest, HoldingBeginsWithTheTorqueThatSlowingEndedWith) {
+  velocity_ = 10;
+  double before = 0;
+  double effort = 0;
+  while (!law_.holding()) {
+    before = effort;
+    effort = step({});
+  }
+  EXPECT_NEAR(effort, before, 1e-12);
+}
+
+// A drive that holds a load hands over to the brake: the torque stays, and so does the wheel.
+TEST_F(JointLawTest, TakesOverALoadFromTheDriveWithoutSag) {
+  constexpr double kLoad = -0.5;  // N·m
+  JointCommand drive;
+  drive.mode = JointMode::kEffort;
+  drive.effort = -kLoad;
+  step(drive, kLoad);
+  EXPECT_EQ(step({}, kLoad), -kLoad);
+  brake(1, kLoad);
+  EXPECT_NEAR(position_, 0, 1e-12);
+}
+
+TEST_F(JointLawTest, AWheelThatSlidesDownASlopeIsCaughtAndHeld) {
+  constexpr double kLoad = 1.5;  // N·m: damping alone would let it turn at 1.5 / 2 = 0.75 rad/s for ever
+  velocity_ = 1.0;
+  brake(3, kLoad);
+  EXPECT_TRUE(law_.holding());
+  EXPECT_NEAR(velocity_, 0, 1e-9);
+  EXPECT_NEAR(law_.step({}, position_, velocity_), -kLoad, 1e-6);
+}
+
+TEST_F(JointLawTest, HoldsWithMoreThanItSlowsWith) {
+  Brake gentle = kBrake;
+  gentle.effort = 1.0;
+  law_ = JointLaw(gentle, kEffortLimit);
+  velocity_ = 5;
+  EXPECT_EQ(step({}), -1.0);
+  brake(3);
+  EXPECT_TRUE(law_.holding());
+  brake(3, 2.0);
+  EXPECT_NEAR(velocity_, 0, 1e-9);
+  EXPECT_NEAR(law_.step({}, position_, velocity_), -2.0, 1e-6);
+}
+
+// The wheel turns downhill with 2 N·m against 1 N·m of slowing. The holding torque takes over within 50 steps, and
+// exceeds the load by 1 N·m.
+TEST_F(JointLawTest, ALoadThatSlowingDoesNotBearIsBrakedByWhatHolds) {
+  Brake gentle = kBrake;
+  gentle.effort = 1.0;
+  law_ = JointLaw(gentle, kEffortLimit);
+  velocity_ = 1.0;
+  brake(0.051, 2.0);
+  EXPECT_TRUE(law_.holding());
+  brake(3, 2.0);
+  EXPECT_NEAR(velocity_, 0, 1e-9);
+}
+
+TEST_F(JointLawTest, ALoadAboveTheBoundDragsTheHeldWheelAndIsNotThrownBack) {
+  brake(0.1);
+  for (int i = 0; i < 200; ++i) EXPECT_LE(std::abs(step({}, 4.0)), kBrake.effort);
+  EXPECT_GT(velocity_, 0);
+  brake(3);
+  const double rest = position_;
+  EXPECT_NEAR(velocity_, 0, 1e-9);
+  brake(1);
+  EXPECT_NEAR(position_, rest, 1e-9);
+}
+
+// 2a + b < 4 is the limit; the law itself shows it on either side.
+TEST_F(JointLawTest, TheStabilityLimitIsWhereTheHeaderSaysItIs) {
+  for (const double excess : {0.98, 1.02}) {
+    Brake brake = kBrake;
+    brake.effort = brake.hold_effort = 1e9;  // linear
+    const double b = brake.stiffness * kStep * kStep / kFreeInertia;
+    brake.damping = excess * (4 - b) / 2 * kFreeInertia / kStep;
+    JointLaw law(brake, 1e9);
+    double position = 0, velocity = 0.01;
+    for (int i = 0; i < 2000; ++i) {
+      velocity += law.step({}, position, velocity) / kFreeInertia * kStep;
+      position += velocity * kStep;
+    }
+    EXPECT_EQ(std::abs(velocity) < 0.01, excess < 1) << excess;
+  }
+}
+
+TEST_F(JointLawTest, StepDoesNotAllocate) {
+  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
+  AllocationGuard guard;
+  velocity_ = 3;
+  brake(1);
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+}  // namespace
+}  // namespace robot_control

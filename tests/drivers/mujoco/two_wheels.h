@@ -1,0 +1,25 @@
+#pragma once
+/// Two wheels and a caster's swivel, which is enough of a robot for sensors and motors.
+
+#include "machine/robot_model.h"
+
+namespace robot_control {
+
+inline constexpr std::size_t kLeftWheel = 0;
+inline constexpr std::size_t kRightWheel = 1;
+inline constexpr std::size_t kSwivel = 2;
+
+inline RobotModel two_wheels() {
+  RobotModel robot;
+  robot.joints.resize(3);
+  robot.joints[kLeftWheel].effort_limit = robot.joints[kRightWheel].effort_limit = 3.5;
+  robot.joints[kSwivel].role = JointRole::kPassive;
+  robot.wheels.resize(2);
+  robot.wheels[0].joint = kLeftWheel;
+  robot.wheels[1].joint = kRightWheel;
+  robot.wheels[1].side = Side::kRight;
+  for (WheelModel& wheel : robot.wheels) wheel.inertia = 0.005;
+  return robot;
+}
+
+}  // namespace robot_control

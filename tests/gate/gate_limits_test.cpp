@@ -1,0 +1,378 @@
+/// Tests the gate's limits on its joints, and its failure modes.
+
+#include <cstring>
+#include <stdexcept>
+
+#include "gate/gate_fixture.h"
+#include "gate/joint_clamp.h"
+#include "support/allocation_guard.h"
+
+namespace robot_control {
+namespace {
+
+// Gains.
+
+TEST_F(GateFixture, AJointWithoutLimitsAndWithoutAPositionGetsNoDampingBelowZero) {
+  sensors_.valid = 0;
+  command_.joints[1].damping = -2.0;
+  step();
+  EXPECT_EQ(verdict(), GateVerdict::kClamped);
+  EXPECT_EQ(joints_[1].damping, 0);
+}
+
+// Ramps.
+
+class GateRamp : public GateFixture {
+ protected:
+  GateRamp() : GateFixture({.effort = kLimit}, {.longest_ramp = 10}) { ramp_for_ever(); }
+  void ramp_for_ever() {
+    permit_.action = PermitAction::kRamp;
+    permit_.ramp_until = ~0ULL;
+  }
+};
+
+TEST_F(GateRamp, PassesForItsLongestTimeAndThenBrakesWhateverThePermitSays) {
+  for (int tick = 0; tick < 10; ++tick) {
+    next();
+    ASSERT_EQ(verdict(), GateVerdict::kRamp) << tick;
+  }
+  for (int tick = 0; tick < 50; ++tick) {
+    expect_brake(kGateRampTooLong);
+    tick_at(input_.cycle + 1);
+  }
+}
+
+TEST_F(GateRamp, CountsCyclesThatWereSkipped) {
+  next();
+  tick_at(input_.cycle + 9);  // tick 110
+  expect_brake(kGateRampTooLong);
+}
+
+TEST_F(GateRamp, AMissingPermitDoesNotRestartIt) {
+  for (int tick = 0; tick < 10; ++tick) next();
+  input_.permit_found = Lookup::kMissing;
+  next();
+  input_.permit_found = Lookup::kFrame;
+  expect_brake(kGateRampTooLong);
+}
+
+TEST_F(GateRamp, ADrivePermitDoes) {
+  for (int tick = 0; tick < 20; ++tick) next();
+  permit_.action = PermitAction::kDrive;
+  next();
+  EXPECT_EQ(verdict(), GateVerdict::kPassed);
+  ramp_for_ever();
+  next();
+  EXPECT_EQ(verdict(), GateVerdict::kRamp);
+}
+
+TEST_F(GateRamp, ABrakePermitDoes) {
+  for (int tick = 0; tick < 20; ++tick) next();
+  permit_.action = PermitAction::kBrake;
+  next();
+  ramp_for_ever();
+  next();
+  EXPECT_EQ(verdict(), GateVerdict::kRamp);
+}
+
+// How fast an effort may change: 400 N·m/s are 0.4 N·m a tick.
+
+class GateRate : public GateFixture {
+ protected:
+  GateRate() : GateFixture({.effort = kLimit, .effort_rate = 400}) { command_.joints[1].effort = 0; }
+  void request(double effort) { command_.joints[0].effort = effort; }
+};
+
+TEST_F(GateRate, BoundsTheChangePerTick) {
+  request(1.0);
+  for (const double expected : {0.4, 0.8, 1.0}) {
+    next();
+    EXPECT_NEAR(joints_[0].effort, expected, 1e-15);
+  }
+  EXPECT_EQ(reasons(), 0u);
+  EXPECT_EQ(verdict(), GateVerdict::kPassed);
+  request(-1.0);
+  next();
+  EXPECT_NEAR(joints_[0].effort, 0.6, 1e-15);
+  EXPECT_EQ(reasons(), std::uint64_t{kGateRateClamped});
+  EXPECT_EQ(verdict(), GateVerdict::kClamped);
+}
+
+TEST_F(GateRate, SkippedTicksAddUp) {
+  request(5.0);
+  next();
+  tick_at(input_.cycle + 3);
+  step();
+  EXPECT_NEAR(joints_[0].effort, 0.4 + 4 * 0.4, 1e-15);
+}
+
+TEST_F(GateRate, AHeldCommandGoesOnTowardsIt) {
+  request(1.0);
+  next();
+  command_of(input_.cycle - 2);
+  step();
+  EXPECT_NEAR(joints_[0].effort, 0.8, 1e-15);
+  EXPECT_EQ(reasons(), kGateCommandHeld | kGateRateClamped);
+}
+
+// The brake held a robot on a slope: the controller takes over its torque.
+TEST_F(GateRate, AfterABrakeItMayBeginWhereTheBrakeHeld) {
+  sensors_.joints[0].effort = -3;
+  request(-3);
+  step();
+  EXPECT_EQ(joints_[0].effort, -3);
+  EXPECT_EQ(reasons(), 0u);
+}
+
+TEST_F(GateRate, AfterABrakeItMayBeginAtZeroAndBetween) {
+  sensors_.joints[0].effort = -3;
+  for (const double effort : {0.0, -1.2, 0.4, -3.4}) {
+    gate_.enter_run();
+    request(effort);
+    step();
+    EXPECT_EQ(joints_[0].effort, effort);
+  }
+  gate_.enter_run();
+  request(0.5);
+  step();
+  EXPECT_NEAR(joints_[0].effort, 0.4, 1e-15);
+}
+
+TEST_F(GateRate, WhatTheBrakeHeldCountsUpToTheEffortLimit) {
+  for (const double absurd : {1e9, kInfinity, kNaN}) {
+    gate_.enter_run();
+    sensors_.joints[0].effort = absurd;
+    request(kLimit);
+    step();
+    EXPECT_NEAR(joints_[0].effort, absurd == 1e9 ? kLimit : 0.4, 1e-15) << absurd;
+  }
+}
+
+TEST_F(GateRate, WhileItDrivesTheMeasuredEffortCountsForNothing) {
+  request(0.4);
+  next();
+  sensors_.joints[0].effort = 5;
+  request(5);
+  next();
+  EXPECT_NEAR(joints_[0].effort, 0.8, 1e-15);
+}
+
+TEST_F(GateRate, AJointThatBrakedAloneRestarts) {
+  request(0.4);
+  next();
+  command_.joints[0].mode = JointMode::kBrake;
+  next();
+  command_.joints[0].mode = JointMode::kEffort;
+  sensors_.joints[0].effort = 2;
+  request(2);
+  next();
+  EXPECT_EQ(joints_[0].effort, 2);
+}
+
+// How fast a joint may turn: 20 rad/s.
+
+class GateSpeed : public GateFixture {
+ protected:
+  GateSpeed() : GateFixture({.effort = kLimit, .velocity = 20}) {}
+  void turn(double speed, int ticks = 40) {
+    for (int i = 0; i < ticks; ++i) {
+      sensors_.joints[0].position += speed * kPeriod;
+      next();
+    }
+  }
+};
+
+TEST_F(GateSpeed, DrivesOnBelowTheTaper) {
+  turn(17.9);
+  EXPECT_EQ(verdict(), GateVerdict::kPassed);
+  EXPECT_EQ(joints_[0].effort, 1.5);
+}
+
+TEST_F(GateSpeed, RefusesEffortTowardsMoreSpeedAboveTheLimit) {
+  turn(20.1);
+  EXPECT_EQ(verdict(), GateVerdict::kClamped);
+  EXPECT_EQ(reasons(), std::uint64_t{kGateSpeedClamped});
+  EXPECT_EQ(joints_[0].effort, 0);
+  EXPECT_EQ(joints_[1].effort, -0.5);
+}
+
+TEST_F(GateSpeed, LetsItBrakeByTorque) {
+  turn(-30);
+  EXPECT_EQ(joints_[0].effort, 1.5);
+  EXPECT_EQ(verdict(), GateVerdict::kPassed);
+}
+
+TEST_F(GateSpeed, ReportsItOfARampToo) {
+  permit_.action = PermitAction::kRamp;
+  permit_.ramp_until = 1000;
+  turn(30);
+  EXPECT_EQ(verdict(), GateVerdict::kRamp);
+  EXPECT_EQ(reasons(), std::uint64_t{kGateSpeedClamped});
+}
+
+TEST_F(GateSpeed, WatchesWhileItBrakes) {
+  permit_.action = PermitAction::kBrake;
+  turn(30);
+  permit_.action = PermitAction::kDrive;
+  turn(30, 1);
+  EXPECT_EQ(joints_[0].effort, 0);
+}
+
+TEST_F(GateSpeed, WhatTheDriverMeasuresAsVelocityIsNotAsked) {
+  sensors_.joints[0].velocity = kNaN;
+  turn(0);
+  EXPECT_EQ(verdict(), GateVerdict::kPassed);
+}
+
+TEST_F(GateSpeed, ANewRunBeginsAtRest) {
+  turn(30);
+  gate_.enter_run();
+  step();
+  EXPECT_EQ(verdict(), GateVerdict::kPassed);
+}
+
+// Samples.
+
+TEST_F(GateSpeed, BrakesWhereTheSamplesAreMissing) {
+  sensors_.valid = 0;
+  expect_brake(kGateBadSensors);
+  sensors_.valid = kValidJoints;
+  sensors_.joint_count = 1;
+  expect_brake(kGateBadSensors);
+}
+
+TEST_F(GateSpeed, BrakesOnAPositionThatIsNotFinite) {
+  for (const double position : {kNaN, kInfinity, -kInfinity}) {
+    sensors_.joints[1].position = position;
+    expect_brake(kGateBadSensors);
+  }
+  sensors_.joints[1].position = 0;
+  step();
+  EXPECT_EQ(verdict(), GateVerdict::kPassed);
+}
+
+TEST_F(GateSpeed, AJointThatBrakesNeedsNoSample) {
+  command_.joints[1].mode = JointMode::kBrake;
+  sensors_.joints[1].position = kNaN;
+  step();
+  EXPECT_EQ(verdict(), GateVerdict::kPassed);
+}
+
+class GateWithoutLimits : public GateFixture {};
+
+TEST_F(GateWithoutLimits, NeedsNoSamplesWhereNothingIsKnown) {
+  sensors_.valid = 0;
+  step();
+  EXPECT_EQ(verdict(), GateVerdict::kPassed);
+}
+
+// End stops.
+
+class GateRange : public GateFixture {
+ protected:
+  GateRange() : GateFixture({.effort = kLimit, .lower = -1, .upper = 1, .soft_zone = 0.1}) {}
+};
+
+TEST_F(GateRange, BrakesTheJointAloneAtItsEndStop) {
+  sensors_.joints[0].position = 1;
+  step();
+  EXPECT_EQ(joints_[0].mode, JointMode::kBrake);
+  EXPECT_EQ(joints_[1].mode, JointMode::kVelocity);
+  EXPECT_EQ(verdict(), GateVerdict::kClamped);
+  EXPECT_EQ(reasons(), std::uint64_t{kGatePositionClamped});
+}
+
+TEST_F(GateRange, BrakesWithoutAPosition) {
+  sensors_.valid = 0;
+  expect_brake(kGateBadSensors);
+}
+
+// Failing: coast.
+
+class GateThatCoasts : public GateFixture {
+ protected:
+  GateThatCoasts() : GateFixture({.effort = kLimit}, {.fail_action = FailAction::kCoast}) {
+    gate_ = Gate({{.effort = kLimit, .wheel = true}, {.effort = kLimit}}, {.fail_action = FailAction::kCoast}, kPeriod);
+  }
+  void expect_coast() {
+    step();
+    EXPECT_EQ(verdict(), GateVerdict::kBrake);
+    const JointCommand coast{.mode = JointMode::kEffort};
+    const JointCommand brake;
+    EXPECT_EQ(std::memcmp(&joints_[0], &coast, sizeof coast), 0);
+    EXPECT_EQ(std::memcmp(&joints_[1], &brake, sizeof brake), 0);
+  }
+};
+
+TEST_F(GateThatCoasts, GivesWheelsNoTorqueAndBrakesTheOthersWhateverIsMissing) {
+  permit_.action = PermitAction::kBrake;
+  expect_coast();
+  permit_.action = PermitAction::kDrive;
+  input_.permit_found = Lookup::kMissing;
+  expect_coast();
+  input_.permit_found = Lookup::kFrame;
+  input_.command_found = Lookup::kMissing;
+  expect_coast();
+  input_.command_found = Lookup::kFrame;
+  command_.joints[0].effort = kNaN;
+  expect_coast();
+  input_.cycle = 0;
+  expect_coast();
+}
+
+TEST_F(GateThatCoasts, ACommandThatBrakesEveryJointIsApplied) {
+  command_.joints[0].mode = command_.joints[1].mode = JointMode::kBrake;
+  expect_brake(kGateControllerBrake);
+}
+
+TEST_F(GateThatCoasts, DrivesAsEver) {
+  step();
+  EXPECT_EQ(verdict(), GateVerdict::kPassed);
+  EXPECT_EQ(joints_[0].effort, 1.5);
+}
+
+// Construction.
+
+TEST(GateConstruction, RefusesLimitsThatAreNone) {
+  const auto refused = [](const JointLimits& limits) {
+    try {
+      Gate({JointLimits{}, limits}, {}, kPeriod);
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what()).find("joint 1") != std::string::npos;
+    }
+    return false;
+  };
+  EXPECT_TRUE(refused({.effort = -1.0}));
+  EXPECT_TRUE(refused({.effort = kNaN}));
+  EXPECT_TRUE(refused({.effort = kInfinity}));
+  EXPECT_TRUE(refused({.effort_rate = 0}));
+  EXPECT_TRUE(refused({.effort_rate = kNaN}));
+  EXPECT_TRUE(refused({.velocity = 0}));
+  EXPECT_TRUE(refused({.velocity = kNaN}));
+  EXPECT_TRUE(refused({.lower = 1, .upper = 1}));
+  EXPECT_TRUE(refused({.lower = kNaN}));
+  EXPECT_TRUE(refused({.upper = kNaN}));
+  EXPECT_TRUE(refused({.soft_zone = -0.1}));
+  EXPECT_TRUE(refused({.soft_zone = kInfinity}));
+}
+
+TEST(GateConstruction, RefusesMoreJointsThanAFrameHoldsAndNoPeriod) {
+  EXPECT_THROW(Gate(std::vector<JointLimits>(kMaxJoints + 1), {}, kPeriod), std::invalid_argument);
+  EXPECT_NO_THROW(Gate(std::vector<JointLimits>(kMaxJoints), {}, kPeriod));
+  EXPECT_THROW(Gate({}, {}, 0), std::invalid_argument);
+  EXPECT_THROW(Gate({}, {}, kNaN), std::invalid_argument);
+}
+
+TEST_F(GateRange, StepsWithoutAllocating) {
+  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
+  AllocationGuard guard;
+  for (int i = 0; i < 100; ++i) {
+    sensors_.joints[0].position = 0.02 * i;
+    next();
+  }
+  gate_.enter_run();
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+}  // namespace
+}  // namespace robot_control

@@ -1,0 +1,313 @@
+#include <cstring>
+
+#include "gate/gate_fixture.h"
+#include "support/allocation_guard.h"
+
+namespace robot_control {
+namespace {
+
+class GateTest : public GateFixture {};
+
+TEST_F(GateTest, PassesTheHealthyCommandUnchanged) {
+  step();
+  EXPECT_EQ(gate_.report().verdict, GateVerdict::kPassed);
+  EXPECT_EQ(gate_.report().reasons, 0u);
+  EXPECT_EQ(gate_.report().command_cycle, 99u);
+  EXPECT_EQ(gate_.report().permit_cycle, 99u);
+  ASSERT_EQ(joints_.size(), 2u);
+  EXPECT_EQ(std::memcmp(joints_.data(), command_.joints.data(), joints_.size_bytes()), 0);
+}
+
+// 1. Is the permit alive?
+
+TEST_F(GateTest, BrakesInTickZero) {
+  input_.cycle = 0;
+  expect_brake(kGateFirstTick);
+  EXPECT_EQ(gate_.report().missed, 0u);
+}
+
+TEST_F(GateTest, BrakesWithoutAPermit) {
+  input_.permit_found = Lookup::kMissing;
+  expect_brake(kGateNoPermit);
+}
+
+TEST_F(GateTest, BrakesOnATokenInPlaceOfAPermit) {
+  input_.permit_found = Lookup::kToken;
+  expect_brake(kGateNoPermit);
+}
+
+TEST_F(GateTest, BrakesOnAPermitOfAnotherRun) {
+  permit_.head.run = kRun + 1;
+  expect_brake(kGateNoPermit);
+}
+
+TEST_F(GateTest, BrakesOnACorruptPermit) {
+  input_.permit_found = Lookup::kCorrupt;
+  expect_brake(kGateChecksum);
+  EXPECT_EQ(gate_.report().refused, 1u);
+}
+
+TEST_F(GateTest, BrakesOnAPermitOfThisCycleOrTheFuture) {
+  permit_of(100);
+  expect_brake(kGateFuture);
+  permit_of(101);
+  expect_brake(kGateFuture);
+  EXPECT_EQ(gate_.report().refused, 2u);
+}
+
+TEST_F(GateTest, PermitIsAliveThroughItsExpiryCycleAndNoLonger) {
+  permit_of(96);
+  input_.cycle = 100;
+  command_of(99);
+  step();
+  EXPECT_EQ(gate_.report().verdict, GateVerdict::kPassed);
+  input_.cycle = 101;
+  command_of(100);
+  expect_brake(kGatePermitExpired);
+}
+
+TEST_F(GateTest, PermitThatClaimsALongerLifeDoesNotGetIt) {
+  permit_of(95);
+  permit_.expiry = 1000;
+  expect_brake(kGatePermitExpired);
+}
+
+TEST_F(GateTest, APermitThatExpiresEarlierCounts) {
+  permit_.expiry = 99;
+  expect_brake(kGatePermitExpired);
+}
+
+TEST_F(GateTest, CountsPermitsThatAreLate) {
+  step();
+  EXPECT_EQ(gate_.report().late_permits, 0u);
+  for (const std::uint64_t cycle : {98U, 97U, 96U, 95U}) {
+    permit_of(cycle);
+    step();
+  }
+  EXPECT_EQ(gate_.report().late_permits, 4u);
+}
+
+TEST_F(GateTest, ARevokedPermitDoesNotComeBack) {
+  permit_.action = PermitAction::kBrake;
+  step();
+  tick_at(101);
+  permit_of(98);  // the newest that can still be read
+  permit_.action = PermitAction::kDrive;
+  expect_brake(kGatePermitExpired);
+}
+
+TEST_F(GateTest, APermitWhoseCycleDoesNotAdvanceDiesAtItsAge) {
+  for (std::uint64_t tick = 100; tick <= 103; ++tick) {
+    input_.cycle = tick;
+    command_of(tick - 1);
+    step();
+    EXPECT_EQ(gate_.report().verdict, GateVerdict::kPassed) << tick;
+  }
+  input_.cycle = 104;
+  command_of(103);
+  permit_.expiry = 1000;  // it claims to be valid
+  expect_brake(kGatePermitExpired);
+}
+
+// 2. Does it allow motion?
+
+TEST_F(GateTest, BrakesWhenThePermitSaysSo) {
+  permit_.action = PermitAction::kBrake;
+  expect_brake(kGatePermitBrake);
+}
+
+TEST_F(GateTest, BrakesOnAnUnknownAction) {
+  permit_.action = static_cast<PermitAction>(3);
+  expect_brake(kGateUnknownMode);
+}
+
+TEST_F(GateTest, RampPassesThroughItsLastCycleAndNoLonger) {
+  permit_.action = PermitAction::kRamp;
+  permit_.ramp_until = 100;
+  step();
+  EXPECT_EQ(gate_.report().verdict, GateVerdict::kRamp);
+  EXPECT_EQ(joints_[0].effort, 1.5);
+  permit_.ramp_until = 99;
+  expect_brake(kGateRampOver);
+}
+
+TEST_F(GateTest, RampClampsToo) {
+  permit_.action = PermitAction::kRamp;
+  permit_.ramp_until = 100;
+  command_.joints[0].effort = 2 * kLimit;
+  step();
+  EXPECT_EQ(gate_.report().verdict, GateVerdict::kRamp);
+  EXPECT_EQ(gate_.report().reasons, std::uint64_t{kGateEffortClamped});
+  EXPECT_EQ(joints_[0].effort, kLimit);
+}
+
+// 3. Is the command fresh?
+
+TEST_F(GateTest, HoldsACommandForExactlyThreeCycles) {
+  for (std::uint64_t tick = 101; tick <= 103; ++tick) {
+    input_.cycle = tick;
+    permit_of(tick - 1);
+    step();
+    EXPECT_EQ(gate_.report().verdict, GateVerdict::kHeld) << tick;
+    EXPECT_EQ(gate_.report().reasons, std::uint64_t{kGateCommandHeld}) << tick;
+    EXPECT_EQ(joints_[0].effort, 1.5) << tick;
+  }
+  EXPECT_EQ(gate_.report().held, 3u);
+  EXPECT_EQ(gate_.report().missed, 0u);
+  input_.cycle = 104;
+  permit_of(103);
+  expect_brake(kGateNoCommand);
+  EXPECT_EQ(gate_.report().missed, 1u);
+  EXPECT_EQ(gate_.report().held, 3u);
+}
+
+TEST_F(GateTest, BrakesWithoutACommand) {
+  input_.command_found = Lookup::kMissing;
+  expect_brake(kGateNoCommand);
+  EXPECT_EQ(gate_.report().missed, 1u);
+}
+
+TEST_F(GateTest, BrakesOnATokenInPlaceOfACommand) {
+  input_.command_found = Lookup::kToken;
+  expect_brake(kGateNoCommand);
+}
+
+TEST_F(GateTest, BrakesOnACommandOfAnotherRun) {
+  command_.head.run = kRun - 1;
+  expect_brake(kGateNoCommand);
+}
+
+TEST_F(GateTest, BrakesOnACommandOfThisCycleOrTheFuture) {
+  command_of(100);
+  expect_brake(kGateFuture);
+  command_of(1000);
+  expect_brake(kGateFuture);
+  EXPECT_EQ(gate_.report().refused, 2u);
+}
+
+TEST_F(GateTest, ABrakingPermitIsTheReasonNotTheMissingCommand) {
+  permit_.action = PermitAction::kBrake;
+  input_.command_found = Lookup::kMissing;
+  expect_brake(kGatePermitBrake);
+  EXPECT_EQ(gate_.report().missed, 0u);
+}
+
+TEST_F(GateTest, MovesAgainOnceTheCommandIsBack) {
+  input_.command_found = Lookup::kMissing;
+  step();
+  input_.command_found = Lookup::kFrame;
+  step();
+  EXPECT_EQ(gate_.report().verdict, GateVerdict::kPassed);
+}
+
+// 4. Is every number finite, every checksum right?
+
+TEST_F(GateTest, BrakesOnACorruptCommand) {
+  input_.command_found = Lookup::kCorrupt;
+  expect_brake(kGateChecksum);
+  EXPECT_EQ(gate_.report().refused, 1u);
+}
+
+TEST_F(GateTest, BrakesOnAnyFieldThatIsNotFinite) {
+  const CommandFrame healthy = command_;
+  std::uint64_t refused = 0;
+  for (const double value : {kNaN, kInfinity, -kInfinity}) {
+    for (const auto field : {&JointCommand::position, &JointCommand::velocity, &JointCommand::stiffness,
+                             &JointCommand::damping, &JointCommand::effort}) {
+      for (const std::size_t joint : {0U, 1U}) {
+        command_ = healthy;
+        command_.joints[joint].*field = value;
+        expect_brake(kGateNotFinite);
+        EXPECT_EQ(gate_.report().refused, ++refused);
+      }
+    }
+  }
+}
+
+TEST_F(GateTest, DoesNotLookAtJointsThatTheRobotHasNot) {
+  command_.joints[2].effort = kNaN;
+  step();
+  EXPECT_EQ(gate_.report().verdict, GateVerdict::kPassed);
+}
+
+TEST_F(GateTest, BrakesOnAnotherNumberOfJoints) {
+  for (const std::uint64_t count : {0ULL, 1ULL, 3ULL, ~0ULL}) {
+    command_.joint_count = count;
+    expect_brake(kGateWrongJointCount);
+  }
+}
+
+TEST_F(GateTest, BrakesOnAnUnknownMode) {
+  command_.joints[1].mode = static_cast<JointMode>(4);
+  expect_brake(kGateUnknownMode);
+}
+
+// Then it clamps.
+
+TEST_F(GateTest, ClampsEffortToTheJointsLimitWithItsSign) {
+  command_.joints[0].effort = kLimit + 1e-9;
+  command_.joints[1].effort = -1e300;
+  step();
+  EXPECT_EQ(gate_.report().verdict, GateVerdict::kClamped);
+  EXPECT_EQ(gate_.report().reasons, std::uint64_t{kGateEffortClamped});
+  EXPECT_EQ(joints_[0].effort, kLimit);
+  EXPECT_EQ(joints_[1].effort, -kLimit);
+}
+
+TEST_F(GateTest, LeavesTheLimitItselfAlone) {
+  command_.joints[0].effort = -kLimit;
+  step();
+  EXPECT_EQ(gate_.report().verdict, GateVerdict::kPassed);
+}
+
+TEST_F(GateTest, ReportsAHeldCommandThatWasClampedAsBoth) {
+  command_of(98);
+  command_.joints[0].effort = 2 * kLimit;
+  step();
+  EXPECT_EQ(gate_.report().verdict, GateVerdict::kClamped);
+  EXPECT_EQ(gate_.report().reasons, kGateCommandHeld | kGateEffortClamped);
+  EXPECT_EQ(gate_.report().held, 1u);
+}
+
+TEST_F(GateTest, ACommandThatBrakesEveryJointIsABrake) {
+  command_.joints[0] = {.mode = JointMode::kBrake, .velocity = 3};
+  command_.joints[1] = {.mode = JointMode::kBrake};
+  expect_brake(kGateControllerBrake);
+}
+
+TEST_F(GateTest, OneBrakingJointAmongDrivingOnesPasses) {
+  command_.joints[0].mode = JointMode::kBrake;
+  step();
+  EXPECT_EQ(gate_.report().verdict, GateVerdict::kPassed);
+}
+
+TEST_F(GateTest, ANewRunRestartsItsCounters) {
+  input_.command_found = Lookup::kMissing;
+  step();
+  gate_.enter_run();
+  const GateReport fresh;
+  EXPECT_EQ(std::memcmp(&gate_.report(), &fresh, sizeof fresh), 0);
+}
+
+TEST_F(GateTest, ANewRunForgetsWhatItKnew) {
+  permit_of(1000);
+  input_.cycle = 1001;
+  command_of(1000);
+  step();
+  gate_.enter_run();
+  tick_at(5);  // else a permit of cycle 4 were superseded by that of cycle 1000
+  step();
+  EXPECT_EQ(gate_.report().verdict, GateVerdict::kPassed);
+}
+
+TEST_F(GateTest, StepsWithoutAllocating) {
+  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
+  AllocationGuard guard;
+  step();
+  input_.permit_found = Lookup::kCorrupt;
+  step();
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+}  // namespace
+}  // namespace robot_control

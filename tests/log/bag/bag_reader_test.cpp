@@ -1,0 +1,124 @@
+#include "log/bag/bag_reader.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "log/bag/read_bag.h"
+
+namespace robot_control {
+namespace {
+
+using ::testing::HasSubstr;
+
+class ASoundBag : public ::testing::TestWithParam<BagCompression> {};
+
+TEST_P(ASoundBag, IsReadToItsLastMessage) {
+  const MadeBag made = make_bag(GetParam(), 3, 200);
+  const BagOfBytes file(made.bytes);
+  BagReader bag(file.path());
+  EXPECT_EQ(bag.cut(), "");
+  EXPECT_EQ(bag.messages(), 600U);
+  EXPECT_EQ(read_all(bag), made.chunks);
+  ASSERT_EQ(bag.connections().size(), 2U);
+  EXPECT_EQ(bag.connections().at(1).topic, "/imu");
+  EXPECT_EQ(bag.connections().at(1).type, "std_msgs/String");
+  EXPECT_EQ(bag.chunks()[1].first_ns, made.chunks[1].front().time_ns);
+  EXPECT_EQ(bag.chunks()[1].last_ns, made.chunks[1].back().time_ns);
+}
+
+TEST_P(ASoundBag, ThatShrinksBetweenTwoReadsIsAnError) {
+  const BagOfBytes file(make_bag(GetParam(), 3, 10'000).bytes);
+  BagReader bag(file.path());
+  file.shorten(1000);
+  EXPECT_THROW(read_all(bag), BagError);
+}
+
+TEST_P(ASoundBag, IsReadOnceWhereItIsReadWhileItIsChecked) {
+  const MadeBag made = make_bag(GetParam(), 3, 10'000);
+  const BagOfBytes file(made.bytes);
+  std::size_t chunks = 0;
+  const auto compare = [&](BagReader& bag, const BagChunk& chunk) {
+    file.shorten(0);
+    EXPECT_EQ(read_chunk(bag, chunk), made.chunks[chunks++]) << "from memory";
+  };
+  EXPECT_THROW(BagReader(file.path(), compare), BagError);
+  EXPECT_GE(chunks, 1U);
+}
+
+/// Each case has one contradiction: everything else in the bag agrees.
+TEST_P(ASoundBag, WithOneContradictionIsRefusedWithByteAndField) {
+  const auto said = [&](const BagFlaw& flaw) { return refusal(make_bag(GetParam(), 2, 20, flaw).bytes); };
+  EXPECT_THAT(said({.time_in_index = 1}), HasSubstr("field time: contradicts that of the message itself"));
+  EXPECT_THAT(said({.message_without_index = true}), HasSubstr("field offset: the message is not in the index"));
+  EXPECT_THAT(said({.message_indexed_twice = true}), HasSubstr("field offset: the message is in the index twice"));
+  EXPECT_THAT(said({.count_in_list = 1}), HasSubstr("field count: contradicts the messages in the chunk"));
+  EXPECT_THAT(said({.start_in_list = 1}), HasSubstr("field start_time: contradicts the messages in the chunk"));
+  EXPECT_THAT(said({.size_of_chunk = 1}), HasSubstr("field size: "));
+  EXPECT_THAT(said({.index_pos = 1}), HasSubstr("field index_pos: the chunks end here"));
+  EXPECT_THAT(said({.chunk_count = 1}), HasSubstr("field chunk_count: 3, but there are 2 chunks"));
+  EXPECT_THAT(said({.connection_count = 1}), HasSubstr("field conn_count: 3, but there are 2 connections"));
+  EXPECT_THAT(said({.other_type = "std_msgs/Bool"}), HasSubstr("another connection record 0 stands before"));
+  if (GetParam() != BagCompression::kNone) {
+    EXPECT_THAT(said({.behind_stream = "x"}), HasSubstr("1 bytes stand behind the end of the compressed stream"));
+  }
+  EXPECT_EQ(said({}), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Compressed, ASoundBag,
+                         ::testing::Values(BagCompression::kNone, BagCompression::kBz2, BagCompression::kLz4));
+
+TEST(AForeignFile, IsRefusedInOneSentence) {
+  EXPECT_THAT(refusal(""), HasSubstr("byte 0, field version: the file begins with ''"));
+  EXPECT_THAT(refusal("time,left,right\n"), HasSubstr("begins with 'time,left,rig'"));
+  EXPECT_THAT(refusal("#ROSBAG V1.2\n"), HasSubstr("instead of '#ROSBAG V2.0'"));
+  EXPECT_THAT(refusal("#ROSBAG V2.0\n"), HasSubstr("byte 13, field header_len: 4 bytes, but the file ends after 0"));
+  EXPECT_THAT(refusal("#ROSBAG V2.0\n" + std::string(100, '\xFF')), HasSubstr("field header_len: 4294967295 bytes"));
+  EXPECT_THAT(refusal("#ROSBAG V2.0\n" + std::string(100, '\0')), HasSubstr("field op: is absent"));
+}
+
+TEST(AForeignFile, ThatIsNoRegularOneIsRefused) {
+  EXPECT_THROW(BagReader("/dev/zero"), std::runtime_error);
+  EXPECT_THROW(BagReader("/nowhere.bag"), std::runtime_error);
+}
+
+TEST(ABagHeader, OfAnEncryptedBagIsRefused) {
+  const std::string fields = bag_field("op", "\x03") + bag_field("index_pos", little_endian(0, 8)) +
+                             bag_field("conn_count", little_endian(0, 4)) +
+                             bag_field("chunk_count", little_endian(0, 4)) + bag_field("encryptor", "aes");
+  EXPECT_THAT(refusal("#ROSBAG V2.0\n" + bag_record(fields, "")), HasSubstr("field encryptor: encrypted bags"));
+}
+
+TEST(AHeader, IsReadFieldByField) {
+  const std::string bytes = bag_field("op", "\x02") + bag_field("conn", little_endian(7, 4));
+  const BagHeader header(bytes, {.offset = 100});
+  EXPECT_EQ(header.op(), BagOp::kMessage);
+  EXPECT_EQ(header.u32("conn"), 7U);
+  EXPECT_THROW(header.u32("op"), BagError);
+  EXPECT_THROW(header.u64("conn"), BagError);
+  EXPECT_THROW(header.time_ns("time"), BagError);
+  EXPECT_THROW(header.text("topic"), BagError);
+}
+
+TEST(AHeader, WithABrokenFieldIsRefusedAtItsByte) {
+  const auto said = [](const std::string& bytes) -> std::string {
+    try {
+      const BagHeader header(bytes, {.offset = 100});
+      return "";
+    } catch (const BagError& error) {
+      return error.what();
+    }
+  };
+  const std::string sound = bag_field("op", "\x02");  // 8 bytes
+  EXPECT_THAT(said(sound + "xyz"), HasSubstr("byte 108, field field_len: the header ends within its 4 bytes"));
+  EXPECT_THAT(said(sound + little_endian(999'999, 4) + "x="), HasSubstr("byte 108, field field_len: 999999 bytes"));
+  EXPECT_THAT(said(sound + little_endian(3, 4) + "abc"), HasSubstr("byte 112, field 'abc': is no name=value"));
+  EXPECT_THAT(said(sound + little_endian(3, 4) + "=bc"), HasSubstr("is no name=value"));
+  EXPECT_THAT(said(sound + sound), HasSubstr("field 'op': stands in the header twice"));
+  std::string many;
+  for (int i = 0; i < 40; ++i) many += bag_field("f" + std::to_string(i), "");
+  EXPECT_THAT(said(many), HasSubstr("too many fields"));
+  EXPECT_EQ(said(sound), "");
+}
+
+}  // namespace
+}  // namespace robot_control

@@ -1,0 +1,141 @@
+#include "loop/gate_setup.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+#include "loop/cycle_fixture.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// One joint of a robot: a wheel of 3 N·m, 20 rad/s, 500 N·m/s.
+JointLimits limits_of(const std::function<void(JointModel&)>& change) {
+  RobotModel robot = two_wheels();
+  robot.joints[1].effort_rate = 500;
+  change(robot.joints[1]);
+  return joint_limits(robot).at(1);
+}
+
+TEST(GateSetup, AWheelsLimitsAreThoseOfItsModel) {
+  const JointLimits limits = limits_of([](JointModel&) {});
+  EXPECT_EQ(limits.effort, 3);
+  EXPECT_EQ(limits.velocity, 20);
+  EXPECT_EQ(limits.effort_rate, 500);
+  EXPECT_EQ(limits.lower, -kInfinity);
+  EXPECT_EQ(limits.upper, kInfinity);
+  EXPECT_TRUE(limits.wheel);
+}
+
+TEST(GateSetup, WhatIsUnknownIsNoLimit) {
+  const JointLimits limits = limits_of([](JointModel& joint) {
+    joint.velocity_limit = 0;
+    joint.effort_rate = 0;
+  });
+  EXPECT_EQ(limits.velocity, kInfinity);
+  EXPECT_EQ(limits.effort_rate, kInfinity);
+}
+
+TEST(GateSetup, AnArmDoesNotCoast) {
+  EXPECT_FALSE(limits_of([](JointModel& joint) { joint.role = JointRole::kHeld; }).wheel);
+}
+
+TEST(GateSetup, TheSoftZoneIsATwentiethOfTheRangeAndNeverMuch) {
+  const auto zone = [](double lower, double upper, bool prismatic) {
+    return limits_of([&](JointModel& joint) {
+             joint.range = JointRange{lower, upper};
+             joint.prismatic = prismatic;
+           })
+        .soft_zone;
+  };
+  EXPECT_DOUBLE_EQ(zone(-0.5, 0.5, false), 0.05);
+  EXPECT_DOUBLE_EQ(zone(-3, 3, false), 0.1);
+  EXPECT_DOUBLE_EQ(zone(0, 0.2, true), 0.01);
+  EXPECT_DOUBLE_EQ(zone(0, 2, true), 0.02);
+}
+
+TEST(GateSetup, EndStopsAreThoseOfTheRange) {
+  const JointLimits limits = limits_of([](JointModel& joint) { joint.range = JointRange{-1, 2}; });
+  EXPECT_EQ(limits.lower, -1);
+  EXPECT_EQ(limits.upper, 2);
+}
+
+TEST(GateSetup, TheLongestRampIsTheMonitorsAndALossLonger) {
+  Parameters parameters;
+  parameters.loop.rate = 1000;
+  parameters.safety.ramp_time = 2;
+  parameters.safety.loss_cycles = 20;
+  EXPECT_EQ(gate_parameters(parameters).longest_ramp, 2020u);
+  parameters.loop.rate = 300;
+  parameters.safety.ramp_time = 0.011;  // 3.3 periods
+  EXPECT_EQ(gate_parameters(parameters).longest_ramp, 24u);
+}
+
+TEST(GateSetup, TheFailActionIsTheUsers) {
+  Parameters parameters;
+  EXPECT_EQ(gate_parameters(parameters).fail_action, FailAction::kBrake);
+  parameters.loop.fail_action = FailAction::kCoast;
+  EXPECT_EQ(gate_parameters(parameters).fail_action, FailAction::kCoast);
+}
+
+/// A machine whose wheel runs away, or whose encoder is lost.
+class RunawayMachine final : public Driver {
+ public:
+  void start() override {}
+  void read(SensorFrame& sensors) noexcept override {
+    position += speed * kPeriod;
+    sensors.valid = valid;
+    sensors.joint_count = 2;
+    sensors.joints[0].position = position;
+  }
+  void write(std::span<const JointCommand> commands) noexcept override { command = commands[0]; }
+  void stop() noexcept override {}
+
+  double speed = 0;
+  double position = 0;
+  std::uint64_t valid = kValidJoints;
+  JointCommand command;
+};
+
+TEST(DriverCycleAndGate, TheGateSeesTheSamplesOfItsOwnTick) {
+  RobotModel robot = two_wheels();
+  RunawayMachine machine;
+  TestChannel<SensorFrame> sensors;
+  TestChannel<TruthFrame> truth;
+  TestChannel<CommandFrame> command;
+  TestChannel<Permit> permit;
+  DriverCycle driver(machine, robot, {sensors.writer, truth.writer, &command.reader, &permit.reader}, kPeriodNs,
+                     nullptr);
+  driver.begin_run(1);
+  const auto tick = [&] {
+    driver.step();
+    const FrameHead head{.run = 1, .cycle = driver.next_cycle() - 1};
+    CommandFrame next;
+    next.head = head;
+    next.joint_count = 2;
+    next.joints[0] = {.mode = JointMode::kEffort, .effort = 1};
+    command.writer.publish(next);
+    Permit drive;
+    drive.head = head;
+    drive.action = PermitAction::kDrive;
+    drive.expiry = head.cycle + kPermitLife;
+    permit.writer.publish(drive);
+  };
+  for (int i = 0; i < 10; ++i) tick();
+  EXPECT_EQ(driver.trace().gate.verdict, GateVerdict::kPassed);
+  machine.valid = 0;
+  tick();
+  EXPECT_EQ(driver.trace().gate.reasons, std::uint64_t{kGateBadSensors});
+  EXPECT_EQ(machine.command.mode, JointMode::kBrake);
+  machine.valid = kValidJoints;
+  machine.speed = 25;  // of 20 rad/s
+  for (int i = 0; i < 30; ++i) tick();
+  EXPECT_EQ(driver.trace().gate.reasons, std::uint64_t{kGateSpeedClamped});
+  EXPECT_EQ(machine.command.effort, 0);
+}
+
+}  // namespace
+}  // namespace robot_control

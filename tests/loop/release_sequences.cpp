@@ -1,0 +1,524 @@
+#include "loop/release_sequences.h"
+
+#include <algorithm>
+#include <array>
+#include <boost/make_shared.hpp>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "control/derived_tuning.h"
+#include "cycle_fixture.h"
+#include "ros/inputs/command_input.h"
+#include "ros/inputs/command_mux.h"
+#include "ros/inputs/e_stop_levels.h"
+
+namespace robot_control {
+namespace {
+
+enum Node : std::size_t { kDriverNode, kEstimatorNode, kControllerNode, kMonitorNode, kNodes };
+enum class Message { kNone, kZero, kMotion, kNotFinite, kStale, kAgedZero, kAgedMotion };
+
+constexpr double kTimeout = 0.05;  // s, at first
+constexpr std::int64_t kTimeoutTicks = 50;
+constexpr std::array kTimeouts{0.0, 0.02, kTimeout, 0.1};  // s, that set_parameters takes
+constexpr std::int64_t kJudgesMargin = 6;                  // ticks, of the judge's T
+constexpr std::int64_t kWithRelease = 100;                 // driver cycles, MotionRequests::kInTransit
+constexpr std::int64_t kInTransit = 3;  // driver cycles from a message to the command frame that the monitor reads
+constexpr std::int64_t kBrakesWithin = kPermitLife + 2;  // driver cycles for which the last permit lives at the gate
+constexpr std::int64_t kNever = -1'000'000;
+
+constexpr std::array kSourceTimeouts{0.6 * kTimeout, kTimeout, 60.0, 0.0};  // s
+
+/// One source for each sender.
+CommandSourceList two_sources(double first_timeout, double second_timeout) {
+  return {.sources = {{"a", "a", first_timeout, 20, false}, {"b", "b", second_timeout, 10, false}},
+          .locks = {{"pause", "pause", 0, 255}}};
+}
+
+struct Sender {
+  std::string name;
+  std::string uri = "0";  // of its process
+  boost::shared_ptr<const void> connection = boost::make_shared<char>();
+  std::int64_t suspended_until = 0;
+  Message message = Message::kNone;
+  bool zero_first = false;            // the next message is a zero, as of a sender that begins a motion properly
+  std::int64_t period = 10;           // ticks
+  std::int64_t sent = kNever;         // tick of the last message
+  Message received = Message::kNone;  // the last one that this controller's inbox took
+  std::int64_t received_at = kNever;
+  std::int64_t received_cycle = kNever;  // of all driver cycles
+
+  std::int64_t silence = kTimeoutTicks;  // ticks, the shortest since then after which it is forgotten
+
+  std::int64_t motion_at = kNever;  // tick of the last message except an accepted zero, of this process
+  bool zero_since = true;           // the last withdrawal of the permission to drive
+  bool owes_zero = false;
+  bool left_requesting = false;  // an earlier process, which owed nothing: its command may be in force
+
+  bool has_requested() const { return received != Message::kNone && received != Message::kZero; }
+
+  bool requests_motion(std::int64_t now) const {
+    return has_requested() && now - received_at < silence - kJudgesMargin;
+  }
+};
+
+/// A publisher of e_stop in the judge's model.
+struct Button {
+  std::string name;
+  bool level = false;      // its last level
+  bool withdrawn = false;  // another publisher's first message was false since
+  bool present = true;
+};
+
+class Sequence {
+ public:
+  Sequence(std::uint64_t seed, ReleaseFigures& figures) : random_(seed), figures_(figures) {
+    parameters_.cmd_vel_timeout = kTimeout;
+    parameters_.one_sender = chance(3);
+    with_list_ = chance(3);
+    for (double& timeout : source_timeouts_) timeout = kSourceTimeouts[random_() % kSourceTimeouts.size()];
+    for (std::size_t node = 0; node < kNodes; ++node) start(static_cast<Node>(node));
+  }
+
+  std::optional<std::string> run() {
+    for (now_ = 0; now_ < kReleaseCycles; ++now_) {
+      disturb();
+      send();
+      step();
+      if (const char* violated = judge()) return "tick " + std::to_string(now_) + ": " + violated;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  bool chance(unsigned one_in) { return random_() % one_in == 0; }
+  std::int64_t below(std::int64_t end) {
+    return static_cast<std::int64_t>(random_() % static_cast<std::uint64_t>(end));
+  }
+
+  void start(Node node) {
+    ++figures_.starts;
+    take_release_back();
+    unseen_[node] = true;
+    switch (node) {
+      case kDriverNode:
+        driver_ = std::make_unique<DriverCycle>(
+            machine_, robot_, DriverCycle::Channels{sensors_.writer, truth_.writer, &command_.reader, &permit_.reader},
+            kPeriodNs, nullptr);
+        driver_->set_driver_instance(random_());
+        driver_->begin_run(random_() | 1);
+        break;
+      case kEstimatorNode:
+        estimator_ = std::make_unique<EstimatorCycle>(EstimatorParameters{}, robot_, kPeriod, sensors_.reader,
+                                                      state_.writer, nullptr);
+        break;
+      case kControllerNode:
+        controller_ = std::make_unique<ControllerCycle>(
+            parameters_, robot_, kPeriod,
+            ControllerCycle::Channels{&sensors_.reader, &state_.reader, &permit_.reader, command_.writer},
+            CommandScript(), nullptr);
+        inbox_.emplace(parameters_.cmd_vel_timeout, parameters_.one_sender);
+        mux_.emplace(two_sources(source_timeouts_[0], source_timeouts_[1]), parameters_.cmd_vel_timeout,
+                     parameters_.one_sender);
+        start_intake();
+        break;
+      case kMonitorNode:
+        monitor_ = std::make_unique<MonitorCycle>(
+            SafetyParameters{}, robot_, kPeriod,
+            MonitorCycle::Channels{&sensors_.reader, &state_.reader, &command_.reader, permit_.writer}, CommandScript(),
+            nullptr);
+        operator_input_ = {};
+        levels_ = {};
+        if ((monitor_->permit().active & kCauseEmergencyStopTopic) != 0) levels_.hold();
+        operator_input_.e_stop_level = levels_.stopped() ? 1 : 0;
+        for (Button& button : buttons_) button.withdrawn = false;
+        buttons_heard_.clear();
+        last_permit_ = {};
+        break;
+      case kNodes:
+        break;
+    }
+  }
+
+  /// Acts as the node does. After a connection without a restart, the judge forgets as the node does, at its first
+  /// pass.
+  void start_intake() {
+    EarlierController earlier;
+    CommandFrame command;
+    if (command_.reader.newest(command) == Lookup::kFrame) {
+      earlier.run = command.head.run;
+      earlier.requested = command.requests_received != 0 && command.zero_requested == 0;
+    }
+    for (Sender& sender : senders_) {
+      earlier.present.push_back({sender.name, nullptr, sender.uri});
+      reopen(sender);
+    }
+    intake().start(earlier);
+    earlier_run_ = earlier.run;
+    earlier_requested_ = earlier.requested;
+    has_looked_ = false;
+  }
+
+  void take_release_back() {
+    started_at_ = now_;
+    start_cycle_ = cycles_;
+    released_ = false;
+    withdraw();
+  }
+
+  /// Every earlier request loses its effect.
+  void withdraw() {
+    withdrawn_cycle_ = cycles_;
+    for (Sender& sender : senders_) {
+      sender.zero_since = sender.left_requesting = false;
+      sender.owes_zero |= sender.has_requested() || now_ - sender.motion_at < sender.silence - kJudgesMargin;
+    }
+  }
+
+  /// The robot may drive again: a request during the stop without a later zero has no effect, either.
+  void release() {
+    for (Sender& sender : senders_) {
+      const bool with_release = sender.zero_since && cycles_ - sender.received_cycle <= kWithRelease;
+      sender.owes_zero |= sender.has_requested() && !with_release;
+    }
+  }
+
+  /// The same process closes its connection and opens another one, or does so to another controller.
+  static void reopen(Sender& sender) {
+    sender.connection = boost::make_shared<char>();
+    sender.received_at = kNever;
+  }
+
+  void restart(Sender& sender) {
+    reopen(sender);
+    sender.uri = std::to_string(++processes_);
+    forget(sender);
+  }
+
+  static void forget(Sender& sender) {
+    sender.left_requesting |= sender.has_requested() && !sender.owes_zero;
+    sender.received = Message::kNone;
+    sender.motion_at = kNever;
+    sender.zero_since = true;
+    sender.owes_zero = false;
+  }
+
+  void end(Node node) {
+    if (node == kDriverNode) driver_.reset();
+    if (node == kEstimatorNode) estimator_.reset();
+    if (node == kControllerNode) controller_.reset();
+    if (node == kMonitorNode) monitor_.reset();
+  }
+
+  void disturb() {
+    for (std::size_t i = 0; i < kNodes; ++i) {
+      const Node node = static_cast<Node>(i);
+      if (dead_[i] && now_ >= away_until_[i]) {
+        dead_[i] = false;
+        start(node);
+      }
+      if (now_ < away_until_[i]) continue;
+      if (chance(700)) {
+        end(node);
+        dead_[i] = true;
+        away_until_[i] = now_ + 1 + below(chance(2) ? 4 : 80);
+      } else if (chance(700)) {
+        away_until_[i] = now_ + 1 + below(chance(2) ? 4 : 80);  // stopped, and goes on
+      }
+    }
+    if (driver_ && chance(900)) {
+      driver_->begin_run(random_() | 1);
+      take_release_back();
+    }
+    pause();
+    if (chance(300) && controller_ && !away(kControllerNode)) tune();
+    if (!monitor_ || away(kMonitorNode)) return;
+    if (chance(500)) {
+      ++operator_input_.e_stop_services;
+      stop();
+    }
+    press();
+    if (chance(20)) reset();
+  }
+
+  /// A zero that is sent in the pause counts after it, because nothing older may move then.
+  void pause() {
+    if (driver_ && !away(kDriverNode) && now_ > pause_until_ && chance(700)) {
+      pause_until_ = now_ + 1 + below(chance(2) ? 4 : 80);
+      take_release_back();
+    }
+    if (driver_ && now_ == pause_until_) {
+      driver_->count_resume();
+      release();
+    }
+  }
+
+  void stop() {
+    if (!stopped_) {
+      stop_cycle_ = cycles_;
+      withdraw();
+    }
+    stopped_ = true;
+  }
+
+  /// Changes cmd_vel_timeout as set_parameters does.
+  void tune() {
+    silence_before_ = silence();
+    parameters_.cmd_vel_timeout = kTimeouts[random_() % kTimeouts.size()];
+    DriveTuning tuning = drive_tuning(parameters_, robot_, kPeriod);
+    tuning.count = ++tunings_;
+    controller_->tunings().store(tuning);
+    inbox_->set_timeout(parameters_.cmd_vel_timeout);
+    mux_->set_timeout(parameters_.cmd_vel_timeout);
+    for (Sender& sender : senders_) sender.silence = std::min(sender.silence, silence());
+  }
+
+  std::int64_t silence() const { return std::llround(silence_needed(parameters_.cmd_vel_timeout) / kPeriod); }
+
+  /// The shorter of the present timeout and the one before it, whose frames may still be under way.
+  std::int64_t shortest_silence() const { return std::min(silence(), silence_before_); }
+
+  /// Publishers of e_stop: two that come and go, and now and then one that sends a single false.
+  void press() {
+    for (Button& button : buttons_) {
+      if (chance(400)) button.present = !button.present;
+      if (button.present && chance(button.level ? 60 : 400)) publish(button, !button.level);
+    }
+    if (!chance(100)) return;
+    Button once{.name = "/once_" + std::to_string(now_)};
+    publish(once, false);
+  }
+
+  void publish(Button& button, bool level) {
+    button.level = level;
+    button.withdrawn = false;
+    levels_.receive(button.name, level);
+    operator_input_.e_stop_level = levels_.stopped() ? 1 : 0;
+    ++operator_input_.e_stop_messages;
+    if (level) ++operator_input_.e_stop_triggers;
+    if (level) stop();
+    const bool first = std::exchange(buttons_heard_[button.name], true) == false;
+    if (level || !first) return;
+    for (Button& other : buttons_) other.withdrawn |= other.name != button.name;
+  }
+
+  void reset() {
+    std::vector<std::string> present;
+    for (const Button& button : buttons_) {
+      if (button.present) present.push_back(button.name);
+    }
+    levels_.settle(present);
+    operator_input_.e_stop_level = levels_.stopped() ? 1 : 0;
+    ++operator_input_.resets;
+    // The levels that end with this request are decided now, whatever the publishers do until the answer.
+    for (Button& button : buttons_) button.level = button.level && (button.present || !button.withdrawn);
+    held_ = std::ranges::any_of(buttons_, &Button::level);
+  }
+
+  bool away(Node node) const { return dead_[node] || now_ < away_until_[node]; }
+
+  void send() {
+    for (Sender& sender : senders_) {
+      if (chance(150)) {
+        constexpr std::array kChoices{Message::kNone,  Message::kNone,     Message::kZero,
+                                      Message::kZero,  Message::kMotion,   Message::kNotFinite,
+                                      Message::kStale, Message::kAgedZero, Message::kAgedMotion};
+        sender.message = kChoices[random_() % kChoices.size()];
+        if (chance(3)) sender.message = Message::kMotion;
+        sender.zero_first = chance(2);
+        sender.period = 1 + below(kTimeoutTicks - 2 * kJudgesMargin);
+      }
+      if (chance(300)) sender.suspended_until = now_ + below(4 * kTimeoutTicks);
+      if (chance(400)) restart(sender);
+      if (chance(400)) reopen(sender);
+      if (now_ < sender.suspended_until) continue;
+      if (sender.message == Message::kNone || now_ - sender.sent < sender.period) continue;
+      sender.sent = now_;
+      last_sent_ = now_;
+      if (!controller_) continue;  // lost
+      // A stopped process receives the newest message of each sender when it goes on.
+      waiting_[static_cast<std::size_t>(&sender - senders_.data())] = true;
+    }
+    if (!controller_) waiting_ = {};
+    if (away(kControllerNode)) return;
+    for (std::size_t i = 0; i < senders_.size(); ++i) {
+      if (std::exchange(waiting_[i], false)) receive(senders_[i]);
+    }
+    follow_permission();
+    if (with_list_ && chance(200)) mux_->receive_lock(0, chance(3), loop_ns());
+    intake().update(loop_ns());
+    controller_->inbox().store(intake().value());
+  }
+
+  /// Acts as the node does, before each message and at each of its ticks.
+  void follow_permission() {
+    Permit permit;
+    if (permit_.reader.newest(permit) != Lookup::kFrame) return;
+    if (!current(sensors_.reader, permit.head, robot_.hash)) return;
+    const MotionPermission permission = motion_permission(permit);
+    if (!std::exchange(has_looked_, true) && !permission.stopped && permission.run != earlier_run_ &&
+        !earlier_requested_) {
+      for (Sender& sender : senders_) forget(sender);
+    }
+    intake().follow(permission, loop_ns());
+  }
+
+  void receive(Sender& sender) {
+    follow_permission();
+    ArrivedCommand arrived{.sender = {sender.name, sender.connection, sender.uri}, .twist = {}, .stamp_ns = 0};
+    const Message message = std::exchange(sender.zero_first, false) ? Message::kZero : sender.message;
+    if (message == Message::kMotion || message == Message::kAgedMotion) arrived.twist.linear[0] = 0.5;
+    if (message == Message::kNotFinite) arrived.twist.linear[0] = std::numeric_limits<double>::quiet_NaN();
+    if (message == Message::kStale) arrived.stamp_ns = 1;
+    // The clock of the senders' stamps jumps at random.
+    const ArrivalTime time{.ros_ns = 1'000'000'000'000 + below(2'000'000'000), .loop_ns = loop_ns()};
+    const bool aged = message == Message::kAgedZero || message == Message::kAgedMotion;
+    if (aged) arrived.stamp_ns = time.ros_ns - below(150'000'000) + (chance(5) ? 120'000'000 : 0);
+    const std::uint64_t refused = intake().value().stale;
+    if (with_list_) {
+      mux_->receive(static_cast<std::size_t>(&sender - senders_.data()), arrived, time);
+    } else {
+      inbox_->receive(arrived, time);
+    }
+    const bool accepted_zero =
+        zero(arrived.twist) && intake().value().stale == refused;  // without a timeout none is old
+    sender.received = accepted_zero ? Message::kZero : Message::kMotion;
+    if (accepted_zero) {
+      sender.zero_since = true;
+      sender.owes_zero = false;
+    } else {
+      sender.motion_at = now_;
+    }
+    sender.received_at = now_;
+    sender.silence = shortest_silence();
+    sender.received_cycle = cycles_;
+    const bool alone = std::ranges::none_of(
+        senders_, [&](const Sender& other) { return &other != &sender && other.requests_motion(now_); });
+    if (sender.received == Message::kZero && alone) released_ = true;
+  }
+
+  CommandIntake& intake() {
+    if (with_list_) return *mux_;
+    return *inbox_;
+  }
+
+  std::int64_t loop_ns() const { return cycles_ * kPeriodNs; }
+
+  void step() {
+    ticked_ = driver_ && !away(kDriverNode) && now_ >= pause_until_;
+    if (driver_ && now_ < pause_until_ && !away(kDriverNode)) driver_->publish_paused();
+    if (ticked_) {
+      driver_->step();
+      ++cycles_;
+    }
+    if (estimator_ && !away(kEstimatorNode) && estimator_->step()) note_frame(kEstimatorNode);
+    if (controller_ && !away(kControllerNode) && controller_->step()) note_frame(kControllerNode);
+    if (!monitor_ || away(kMonitorNode)) return;
+    monitor_->inbox().store(operator_input_);
+    if (!monitor_->step() && !ticked_) monitor_->idle();  // as its waits end, or its ordinary thread polls
+    Permit permit;
+    if (permit_.reader.newest(permit) != Lookup::kFrame || permit.head.run != monitor_->published_run()) return;
+    accepted_ = permit.resets_handled != last_permit_.resets_handled && permit.reset_refusal == 0 &&
+                last_permit_.causes != 0 && permit.causes == 0;
+    last_permit_ = permit;
+  }
+
+  /// The monitor learns of a start from the first frame (safety/latch/motion_release.h), which may come late.
+  void note_frame(Node node) {
+    if (std::exchange(unseen_[node], false)) start_cycle_ = withdrawn_cycle_ = cycles_;
+  }
+
+  const char* judge() {
+    if (!released_ && now_ - std::max(started_at_, last_sent_) >= shortest_silence() - kJudgesMargin) {
+      released_ = true;
+      release();
+    }
+    if (std::exchange(accepted_, false)) {
+      ++figures_.accepted_resets;
+      release();
+      stopped_ = false;
+      if (held_) return "a reset was accepted while a publisher's last word on e_stop was true";
+      for (const Sender& sender : senders_) {
+        if (sender.requests_motion(now_) && cycles_ - sender.received_cycle >= kInTransit)
+          return "a reset was accepted while a motion was requested";
+      }
+    }
+    if (!ticked_ || machine_.mode == JointMode::kBrake) return nullptr;
+    ++figures_.moving_cycles;
+    if (!released_ && cycles_ - start_cycle_ > kBrakesWithin) return "motion before a zero request";
+    if (stopped_ && cycles_ - stop_cycle_ > kBrakesWithin) return "motion after an emergency stop";
+    const bool requested = std::ranges::any_of(senders_, [](const Sender& sender) {
+      return sender.left_requesting || (sender.has_requested() && !sender.owes_zero);
+    });
+    CommandFrame command;  // the request in force; a ramp to zero may outlast it
+    const bool in_force = command_.reader.newest(command) == Lookup::kFrame && !zero(command.twist_requested);
+    if (requested || !in_force) requested_cycle_ = cycles_;
+    if (cycles_ - std::max(requested_cycle_, withdrawn_cycle_) > kBrakesWithin)
+      return "motion that was requested before a withdrawal";
+    return nullptr;
+  }
+
+  std::mt19937_64 random_;
+  ReleaseFigures& figures_;
+  RobotModel robot_ = two_wheels();
+  DriveControllerParameters parameters_;
+  StandingMachine machine_;
+  TestChannel<SensorFrame> sensors_;
+  TestChannel<TruthFrame> truth_;
+  TestChannel<StateFrame> state_;
+  TestChannel<CommandFrame> command_;
+  TestChannel<Permit> permit_;
+  std::unique_ptr<DriverCycle> driver_;
+  std::unique_ptr<EstimatorCycle> estimator_;
+  std::unique_ptr<ControllerCycle> controller_;
+  std::unique_ptr<MonitorCycle> monitor_;
+  bool with_list_ = false;
+  std::array<double, 2> source_timeouts_{};
+  std::optional<CommandInput> inbox_;
+  std::optional<CommandMux> mux_;   ///< instead, with a list of sources
+  std::uint64_t earlier_run_ = 0;   ///< of the last command before this controller
+  bool earlier_requested_ = false;  ///< motion was requested at that command
+  bool has_looked_ = false;         ///< this controller, at a permit
+  int processes_ = 0;               ///< of senders
+  OperatorInput operator_input_;
+  EStopLevels levels_;
+  std::array<Button, 2> buttons_{Button{.name = "/panel"}, Button{.name = "/gate"}};
+  std::map<std::string, bool> buttons_heard_;
+  bool held_ = false;  ///< at the last reset request a level was not to end
+  std::uint64_t tunings_ = 0;
+  std::int64_t silence_before_ = kTimeoutTicks;
+  std::array<Sender, 2> senders_{Sender{.name = "/a"}, Sender{.name = "/b"}};
+  std::array<bool, 2> waiting_{};
+  std::array<bool, kNodes> dead_{};
+  std::array<bool, kNodes> unseen_{};  ///< no frame since its start
+  std::array<std::int64_t, kNodes> away_until_{};
+  std::int64_t now_ = 0;
+  std::int64_t started_at_ = 0;
+  std::int64_t last_sent_ = kNever;
+  bool ticked_ = false;
+  bool released_ = false;    ///< motion was released since the last start
+  bool stopped_ = false;     ///< an emergency stop was requested since the last accepted reset
+  bool accepted_ = false;    ///< a reset was accepted in this tick
+  Permit last_permit_;       ///< of this monitor
+  std::int64_t cycles_ = 0;  ///< that the driver has ticked, in all runs
+  std::int64_t start_cycle_ = 0;
+  std::int64_t stop_cycle_ = 0;
+  std::int64_t withdrawn_cycle_ = 0;
+  std::int64_t requested_cycle_ =
+      0;  ///< cycle in which a sender that owed nothing requested motion, or none was in force
+  std::int64_t pause_until_ = kNever;  ///< tick
+};
+
+}  // namespace
+
+std::optional<std::string> release_violation(std::uint64_t seed, ReleaseFigures& figures) {
+  return Sequence(seed, figures).run();
+}
+
+}  // namespace robot_control

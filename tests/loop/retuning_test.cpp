@@ -1,0 +1,220 @@
+#include "loop/retuning.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string_view>
+#include <thread>
+
+#include "cycle_fixture.h"
+#include "support/allocation_guard.h"
+
+namespace robot_control {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+/// Healthy: the defaults on two wheels, which the controller drives at up to (1 + 2·0.25)/0.1 = 15 rad/s; the monitor
+/// stops beyond 1.25·15 = 18.75.
+class RetuningTest : public ::testing::Test {
+ protected:
+  std::string refusal(const std::string& request) {
+    const DriveTuning before = handed_over();
+    try {
+      retuning.set(request);
+    } catch (const ParameterError& error) {
+      EXPECT_EQ(handed_over().count, before.count);
+      return error.what();
+    }
+    ADD_FAILURE() << request << " was accepted";
+    return "";
+  }
+
+  DriveTuning handed_over() const {
+    DriveTuning tuning;
+    EXPECT_TRUE(inbox.load(tuning));
+    return tuning;
+  }
+
+  Parameters parameters;
+  RobotModel robot = two_wheels();
+  LatestValue<DriveTuning> inbox;
+  Retuning retuning{parameters, robot, inbox};
+};
+
+TEST_F(RetuningTest, HandsOverTheWholeSet) {
+  const Retuned retuned = retuning.set("{max_linear_speed: 0.5, pid_kp: 1.5}");
+  EXPECT_EQ(sentence(retuned), "set 1: max_linear_speed from 1 to 0.5, pid_kp from derived to 1.5");
+  const DriveTuning tuning = handed_over();
+  EXPECT_EQ(tuning.count, 1u);
+  EXPECT_EQ(tuning.linear.speed, 0.5);
+  EXPECT_EQ(tuning.wheels[0].kp, 1.5);
+  EXPECT_EQ(tuning.wheels[1].kp, 1.5);
+  EXPECT_EQ(retuning.in_force().max_linear_speed, 0.5);
+}
+
+TEST_F(RetuningTest, LaysEachSetOverTheLast) {
+  retuning.set("{max_linear_acceleration: 0.5}");
+  EXPECT_EQ(handed_over().linear.deceleration, 0.5) << "left out: as the acceleration";
+  retuning.set("{max_linear_speed: 0.7}");
+  EXPECT_EQ(handed_over().count, 2u);
+  EXPECT_EQ(handed_over().linear.acceleration, 0.5);
+  EXPECT_EQ(handed_over().linear.speed, 0.7);
+}
+
+// wheel_loop_gains.h: kp = 0.4·J/dt, ki = min(10 kp, kp²/(3·J_straight))
+TEST_F(RetuningTest, DerivesFromTheNewValuesWhatWasDerived) {
+  retuning.set("{feed_forward: {wheel_inertia: 0.002}}");
+  EXPECT_NEAR(handed_over().wheels[0].kp, 0.8, 1e-12);
+  retuning.set("{pid_kp: 0.4}");
+  EXPECT_NEAR(handed_over().wheels[0].ki, 0.16 / (3 * (0.002 + 0.5 * 12 * 0.01)), 1e-12);
+}
+
+TEST_F(RetuningTest, RefusesGainsThatAreUnstableOnThisRobot) {
+  EXPECT_THAT(refusal("{pid_kp: 20}"), AllOf(HasSubstr("is unstable"), HasSubstr("Use at most pid_kp")));
+}
+
+TEST_F(RetuningTest, RefusesTheWholeSetWithEveryReason) {
+  const std::string text = refusal("{max_linear_speed: 3, pid_kp: 20, pid_kd: .nan, command_rate: 1, typo: 2}");
+  EXPECT_THAT(text, HasSubstr("set_parameters refused, nothing is changed: 5 problems\n"));
+  for (const char* reason : {"safety_monitor", "unstable", "must be finite", "read at start alone", "unknown key"}) {
+    EXPECT_THAT(text, HasSubstr(reason));
+  }
+  EXPECT_EQ(retuning.in_force().max_linear_speed, 1.0);
+  EXPECT_EQ(sentence(retuning.set("{max_linear_speed: 0.9}")), "set 1: max_linear_speed from 1 to 0.9");
+}
+
+TEST_F(RetuningTest, WhateverTextComesIsTakenOrRefusedAsAWhole) {
+  constexpr std::string_view kSigns = ":#-[]{}\"'\n \t,!&*|>%@?.~é";
+  std::uint64_t taken = 0;
+  for (unsigned seed = 0; seed < 2000; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    std::string text = "{max_linear_speed: 0.5, keep_curvature: true, cmd_vel_timeout: 1.0}";
+    for (auto left = 1 + random() % 6; left != 0; --left) {
+      text.insert(random() % (text.size() + 1), 1, kSigns[random() % kSigns.size()]);
+    }
+    try {
+      retuning.set(text);
+      ++taken;
+    } catch (const ParameterError&) {
+      continue;
+    }
+    EXPECT_EQ(handed_over().count, taken);
+  }
+  EXPECT_GT(taken, 0u);
+  EXPECT_LT(taken, 2000u);
+}
+
+// A speed of the wheels ω needs a limit of max(1.1 ω, ω + 1): 18.75/1.1 = 17.05 rad/s, 1.2 m/s beside 2 rad/s.
+TEST_F(RetuningTest, RefusesSpeedsAtWhichTheMonitorWouldStopTheRobot) {
+  retuning.set("{max_linear_speed: 1.2}");
+  const std::string text = refusal("{max_linear_speed: 1.25}");
+  EXPECT_THAT(text, AllOf(HasSubstr("turns a wheel at 17.5 rad/s"), HasSubstr("beyond 18.75 rad/s"),
+                          HasSubstr("max_linear_speed + 0.25 m·max_angular_speed at or below 1.705 m/s")));
+  retuning.set("{max_linear_speed: 1.4, max_angular_speed: 1.2}");  // 1.7 m/s at the rim
+}
+
+TEST_F(RetuningTest, AsksNoMarginForTheSpeedsOfTheStart) {
+  parameters.safety.wheel_speed.limit = 15.5;
+  Retuning close(parameters, robot, inbox);
+  close.set("{max_linear_speed: 0.5}");
+  close.set("{max_linear_speed: 1.0}");
+  EXPECT_THROW(close.set("{max_linear_speed: 1.01}"), ParameterError);
+}
+
+TEST_F(RetuningTest, LetsPassWhatTheMonitorOnlyReports) {
+  parameters.safety.wheel_speed.reaction = Reaction::kWarn;
+  Retuning warned(parameters, robot, inbox);
+  EXPECT_NO_THROW(warned.set("{max_linear_speed: 5}"));
+}
+
+TEST_F(RetuningTest, GoesByTheMonitorsOwnParameters) {
+  Parameters monitor;
+  monitor.controller.max_linear_speed = 0.5;  // Ω = 1.25·10 rad/s
+  retuning.expect_monitor(monitor);
+  EXPECT_THAT(refusal("{max_linear_speed: 1.01}"), HasSubstr("beyond 12.5 rad/s"));
+}
+
+TEST_F(RetuningTest, CountsWhatSeveralThreadsSetAtOnce) {
+  constexpr int kEach = 50;
+  const auto caller = [this](const char* request) {
+    for (int i = 0; i < kEach; ++i) retuning.set(request);
+  };
+  std::thread one(caller, "{max_linear_speed: 0.5}");
+  std::thread two(caller, "{max_angular_speed: 1.0}");
+  one.join();
+  two.join();
+  EXPECT_EQ(handed_over().count, 2u * kEach);
+  EXPECT_EQ(handed_over().linear.speed, 0.5);
+  EXPECT_EQ(handed_over().angular.speed, 1.0);
+}
+
+/// A loop in DRIVE with a standing command, and a new set that waits for it.
+class RetunedLoop : public ::testing::Test {
+ protected:
+  RetunedLoop() {
+    loop.step();  // a command from before the run would be dropped
+    loop.controller->inbox().store({.twist = {.linear = {0.5, 0, 0}}, .count = 1});
+    loop.steps(20);
+    tuning = loop.controller->trace().tuning;
+  }
+
+  void hand_over() {
+    ++tuning.count;
+    loop.controller->tunings().store(tuning);
+  }
+
+  Loop loop;
+  DriveTuning tuning;
+};
+
+TEST_F(RetunedLoop, ReportsFromTheStartWhatHolds) {
+  EXPECT_EQ(tuning.count, 0u);
+  EXPECT_EQ(tuning.linear.speed, 1.0);
+  EXPECT_GT(tuning.wheels[1].kp, 0);
+}
+
+TEST_F(RetunedLoop, RunsWithASetFromTheNextCycleOn) {
+  tuning.linear.acceleration = 0.25;
+  tuning.linear.jerk = 0;
+  const double before = loop.newest_command().twist_limited.linear[0];
+  hand_over();
+  EXPECT_EQ(loop.controller->trace().tuning.count, 0u);
+  loop.step();
+  EXPECT_EQ(loop.controller->trace().tuning.count, 1u);
+  EXPECT_EQ(loop.controller->trace().tuning.linear.acceleration, 0.25);
+  EXPECT_NEAR(loop.newest_command().twist_limited.linear[0], before + 0.25 * kPeriod, 1e-12);
+}
+
+TEST_F(RetunedLoop, AllocatesNothingForASet) {
+  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
+  tuning.wheels[0].kp = 1;
+  hand_over();
+  const AllocationGuard guard;
+  loop.step();
+  EXPECT_EQ(guard.count(), 0u);
+  EXPECT_EQ(loop.controller->trace().tuning.count, 1u);
+}
+
+TEST_F(RetunedLoop, KeepsASetInANewRun) {
+  tuning.cmd_vel_timeout = 0.5;
+  hand_over();
+  loop.step();
+  loop.driver.begin_run(2);
+  loop.steps(3);
+  EXPECT_EQ(loop.controller->trace().tuning.cmd_vel_timeout, 0.5);
+  EXPECT_EQ(loop.controller->trace().tuning.count, 1u);
+}
+
+TEST_F(RetunedLoop, TakesASetOnceThatArrivedBeforeTheFirstCycle) {
+  loop.restart_controller();
+  hand_over();
+  loop.step();
+  EXPECT_EQ(loop.controller->trace().tuning.count, 1u);
+}
+
+}  // namespace
+}  // namespace robot_control

@@ -1,0 +1,60 @@
+#include "loop/safety_limits.h"
+
+#include <gtest/gtest.h>
+
+#include "control/wheel_loops/wheel_loop_gains.h"
+#include "cycle_fixture.h"
+#include "safety/derived_limits.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kRounding = 1e-12;
+
+DriveControllerParameters limits(double linear, double angular) {
+  DriveControllerParameters parameters;
+  parameters.max_linear_speed = linear;
+  parameters.max_angular_speed = angular;
+  return parameters;
+}
+
+// (1 + 2·0.5/2)/0.1 = 15 rad/s
+TEST(CommandedWheelSpeed, IsTheOuterWheelsAtBothLimits) {
+  EXPECT_NEAR(commanded_wheel_speed(limits(1, 2), two_wheels()), 15, kRounding);
+}
+
+TEST(CommandedWheelSpeed, IsTheSmallestWheels) {
+  RobotModel robot = two_wheels();
+  robot.wheels[1].radius = 0.0875;
+  EXPECT_NEAR(commanded_wheel_speed(limits(1, 2), robot), 1.5 / 0.0875, kRounding);
+}
+
+TEST(CommandedWheelSpeed, IsNoFasterThanTheSlowestWheelCan) {
+  RobotModel robot = two_wheels();
+  robot.joints[1].velocity_limit = 9;
+  EXPECT_EQ(commanded_wheel_speed(limits(1, 2), robot), 9);
+}
+
+TEST(SafetyLimits, KeepWhatIsGivenAndDeriveTheRest) {
+  Parameters parameters;
+  parameters.safety.power.limit = 7;
+  const SafetyParameters filled = safety_limits(parameters, two_wheels());
+  EXPECT_EQ(filled.power.limit, 7);
+  ASSERT_TRUE(filled.wheel_speed.limit.has_value());
+  EXPECT_GT(*filled.wheel_speed.limit, commanded_wheel_speed(parameters.controller, two_wheels()));
+}
+
+// 20 Hz, and the gain of control/wheel_loops/wheel_loop_gains.h: 0.5·2·2π·20 Hz per N·m·s/rad.
+TEST(SafetyLimits, KnowWhatTheDerivedGainsMakeOfACount) {
+  const RobotModel robot = two_wheels();
+  const double kp = wheel_loop_gains(DriveControllerParameters{}, robot, robot.wheels[0], 1e-3).kp;
+  Parameters parameters;
+  parameters.controller.pid_kp = 0.1;
+  const SafetyParameters filled = safety_limits(parameters, robot);
+  EXPECT_NEAR(filled.count_ripple[0], 62.83 * kp, 0.01) << "whatever the user has set";
+  EXPECT_EQ(filled.count_ripple[1], filled.count_ripple[0]);
+  EXPECT_EQ(filled.count_ripple[2], 0);
+}
+
+}  // namespace
+}  // namespace robot_control

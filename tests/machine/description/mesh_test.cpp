@@ -1,0 +1,216 @@
+#include "machine/description/mesh.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+#include "machine/description/robot_description.h"
+#include "mesh_texts.h"
+#include "support/quiet_refusal.h"
+#include "support/temporary_folder.h"
+
+namespace robot_control {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+using Corner = Eigen::Vector3d;
+
+const Points kTriangle{{0, 0, 0}, {0, 2, 0}, {1, 0, 0}};
+
+std::string nested(int depth) {
+  std::string begin;
+  std::string end = "</node>";
+  for (int i = 0; i < depth; ++i) {
+    begin += "<node>";
+    end += "</node>";
+  }
+  return replaced(dae_with("<node id=\"n\">", begin + "<node id=\"n\">"), "instance_geometry", "</node>", end);
+}
+
+class Mesh : public testing::Test {
+ protected:
+  Points read(const std::string& name, const std::string& bytes) { return read_mesh(folder_.write(name, bytes)); }
+
+  std::string refusal(const std::string& name, const std::string& bytes) {
+    return quiet_refusal<RobotError>([&] { read(name, bytes); });
+  }
+
+  auto says(const std::string& what) { return AllOf(HasSubstr(folder_.path().string()), HasSubstr(what)); }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Mesh, IsTheSameInEveryFormat) {
+  EXPECT_EQ(read("binary.stl", kBinaryStl), kTriangle);
+  EXPECT_EQ(read("text.stl", kTextStl), kTriangle);
+  EXPECT_EQ(read("a.obj", kObj), kTriangle);
+  EXPECT_EQ(read("a.dae", kDae), kTriangle);
+}
+
+TEST_F(Mesh, EndingCountsInUpperCaseToo) {
+  EXPECT_EQ(read("a.STL", kBinaryStl), kTriangle);
+  EXPECT_EQ(read("a.Dae", kDae), kTriangle);
+}
+
+TEST_F(Mesh, BinaryStlMayBeginWithTheWordSolid) {
+  EXPECT_EQ(read("a.stl", binary_stl("solid part exported", {{0, 0, 0, 1, 0, 0, 0, 2, 0}})), kTriangle);
+}
+
+TEST_F(Mesh, PointsThatNoFaceUsesDoNotCount) {
+  EXPECT_EQ(read("a.obj", kObj + "v 9 9 9\n"), kTriangle);
+  EXPECT_EQ(read("a.dae", dae_with("0 2 0<", "0 2 0 9 9 9<")), kTriangle);
+}
+
+TEST_F(Mesh, ObjFacesMayCountBackwards) {
+  EXPECT_EQ(read("a.obj", "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 2 0\nf -1 -2 -3\n"), kTriangle);
+}
+
+TEST_F(Mesh, ObjDoesNotLookForItsMaterials) {
+  EXPECT_EQ(read("a.obj", "mtllib /dev/stdin\n" + kObj), kTriangle);
+}
+
+TEST_F(Mesh, UnitOfADaeApplies) {
+  const Points points = read("a.dae", dae_with("meter=\"1\"", "name=\"inch\" meter=\"0.0254\""));
+  EXPECT_NEAR((points[1] - Corner(0, 2 * 0.0254, 0)).norm(), 0, 1e-8);  // single precision
+}
+
+// rviz and Gazebo do the same; assimp by itself turns Z_UP by 90°.
+TEST_F(Mesh, UpAxisOfADaeDoesNot) {
+  for (const char* axis : {"X_UP", "Y_UP"}) EXPECT_EQ(read("a.dae", dae_with("Z_UP", axis)), kTriangle) << axis;
+  EXPECT_EQ(read("a.dae", dae_with("<up_axis>Z_UP</up_axis>", "")), kTriangle);
+}
+
+TEST_F(Mesh, NodesOfADaePlaceTheirMeshes) {
+  const Points points = read("a.dae", dae_with("<node id=\"n\">",
+                                               "<node id=\"n\"><translate>0 0 5</translate><rotate>0 0 1 90</rotate>"
+                                               "<scale>2 2 2</scale>"));
+  for (const Corner& expected : {Corner(0, 0, 5), Corner(0, 2, 5), Corner(-4, 0, 5)}) {
+    double nearest = 1;
+    for (const Corner& point : points) nearest = std::min(nearest, (point - expected).norm());
+    EXPECT_NEAR(nearest, 0, 1e-6);  // single precision
+  }
+}
+
+TEST_F(Mesh, NodesOfADaeMayStandForOthers) {
+  const Points points =
+      read("a.dae", dae_with("</node>", "</node><node><translate>0 0 5</translate><instance_node url=\"#n\"/></node>"));
+  EXPECT_EQ(points.size(), 6U);
+}
+
+TEST_F(Mesh, PolygonsOfADaeAreFaces) {
+  EXPECT_EQ(read("a.dae", replaced(dae_with("<triangles", "<polygons"), "<p>", "</triangles", "</polygons")),
+            kTriangle);
+}
+
+TEST_F(Mesh, InfinityIsNoPartOfIt) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(read("a.stl", binary_stl("", {{0, 0, 0, 1, 0, 0, 0, 2, 0}, {infinity, 0, 0, 1, 0, 0, 0, 2, 0}})),
+            kTriangle);
+}
+
+TEST_F(Mesh, NumbersThatADoubleCannotHoldAreZeroOrInfinity) {
+  const std::string tiny = replaced(kTextStl, "outer loop", "vertex 0 0 0", "vertex 1e-400 -1e-400 0");
+  EXPECT_EQ(read("tiny.stl", tiny), kTriangle);
+  const std::string far =
+      replaced(kTextStl, "endfacet", "endsolid", "vertex 1e400 0 0\n vertex 0 0 0\n vertex 0 0 0\nendsolid");
+  EXPECT_EQ(read("far.stl", far), kTriangle);
+}
+
+TEST_F(Mesh, AbsentFileIsRefused) {
+  try {
+    read_mesh(folder_.path() / "nowhere.stl");
+    FAIL();
+  } catch (const RobotError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("nowhere.stl"), HasSubstr("no such file")));
+  }
+}
+
+TEST_F(Mesh, EmptyFileIsRefused) {
+  for (const char* name : {"a.stl", "a.obj", "a.dae"}) EXPECT_THAT(refusal(name, ""), says("0 bytes")) << name;
+}
+
+TEST_F(Mesh, UnknownFormatIsRefused) {
+  EXPECT_THAT(refusal("a.blend", "BLENDER"), says("\".blend\""));
+  EXPECT_THAT(refusal("a", "BLENDER"), says("no format"));
+}
+
+TEST_F(Mesh, FileThatIsCutShortIsRefused) {
+  EXPECT_THAT(refusal("a.stl", kBinaryStl.substr(0, 100)), says("cut short"));
+  EXPECT_THAT(refusal("a.stl", kTextStl.substr(0, 90)), says("unreadable"));
+  EXPECT_THAT(refusal("a.obj", kObj.substr(0, 30)), says("mesh: "));
+  EXPECT_THAT(refusal("a.dae", kDae.substr(0, 700)), says("unreadable"));
+}
+
+TEST_F(Mesh, GarbageIsRefused) {
+  for (const char* name : {"a.stl", "a.obj", "a.dae"}) {
+    EXPECT_THAT(refusal(name, "\x01\x02garbage \xff\xfe <<<>> garbage"), says("mesh: ")) << name;
+  }
+}
+
+TEST_F(Mesh, StlFacesHaveThreeCorners) {
+  EXPECT_THAT(refusal("a.stl", replaced(kTextStl, "solid", "   vertex 0 +2 0\n", "")), says("three"));
+  EXPECT_THAT(refusal("a.stl", replaced(kTextStl, "solid", "0 +2 0", "0 two 0")), says("no three numbers"));
+}
+
+TEST_F(Mesh, WithoutFacesIsRefused) {
+  EXPECT_THAT(refusal("a.stl", binary_stl("", {})), says("empty"));
+  EXPECT_THAT(refusal("a.stl", "solid nothing\nendsolid nothing\n"), says("empty"));
+  EXPECT_THAT(refusal("a.dae", dae_with("<instance_geometry url=\"#g\"/>", "")), says("empty"));
+}
+
+TEST_F(Mesh, OfLinesIsRefused) {
+  std::string lines = dae_with("<triangles count=\"1\"", "<lines count=\"1\"");
+  lines = replaced(replaced(lines, "<p>", "0 1 2", "0 1"), "<p>", "</triangles>", "</lines>");
+  EXPECT_THAT(refusal("a.dae", lines), says("lines"));
+}
+
+TEST_F(Mesh, NodesInACircleAreRefused) {
+  EXPECT_THAT(refusal("a.dae", dae_with("<node id=\"n\">", "<node id=\"n\"><instance_node url=\"#n\"/>")),
+              says("breaks down"));
+  EXPECT_THAT(refusal("a.dae", dae_with("<node id=\"n\">", "<node name='n'><node><instance_node url = '#n' /></node>")),
+              says("breaks down"));
+}
+
+TEST_F(Mesh, NodesThatMultiplyAreRefused) {
+  std::string library = "<library_nodes><node id=\"n40\"><instance_geometry url=\"#g\"/></node>";
+  for (int i = 0; i < 40; ++i) {
+    const std::string next = "<instance_node url=\"#n" + std::to_string(i + 1) + "\"/>";
+    library.append("<node id=\"n").append(std::to_string(i)).append("\">").append(next).append(next).append("</node>");
+  }
+  EXPECT_THAT(refusal("a.dae", replaced(dae_with("<library_visual", library + "</library_nodes><library_visual"),
+                                        "<node id=\"n\">", "</node>", "<instance_node url=\"#n0\"/></node>")),
+              says("unreadable"));
+}
+
+TEST_F(Mesh, ElementsThatNestTooDeepAreRefused) {
+  EXPECT_EQ(read("a.dae", nested(50)), kTriangle);
+  EXPECT_THAT(refusal("a.dae", nested(100'000)), says("breaks down"));
+}
+
+TEST_F(Mesh, CountsThatAreNotMetAreRefusedOrIgnored) {
+  for (const char* count : {"4000000000", "-1", "x", ""}) {
+    for (const char* element : {"count=\"9\"", "count=\"3\"", "count=\"1\"", "stride=\"3\"", "0 1 2"}) {
+      const std::string attribute = std::string(element).substr(0, std::string(element).find('"'));
+      const std::string to = element[0] == '0' ? count : attribute + "\"" + count + "\"";
+      EXPECT_THAT(refusal("a.dae", dae_with(element, to)), testing::AnyOf("accepted", says("mesh: "))) << to;
+    }
+  }
+  EXPECT_THAT(refusal("a.obj", kObj + "f 1 2 99999999999\n"), says("unreadable"));
+}
+
+TEST_F(Mesh, CornersAreReadAgainWhenTheFileIsAnother) {
+  const auto file = folder_.write("a.stl", kBinaryStl);
+  EXPECT_EQ(mesh_corners(file).points, kTriangle);
+  const auto before = std::filesystem::last_write_time(file);
+  folder_.write("a.stl", binary_stl("", {{0, 0, 0, 1, 0, 0, 0, 3, 0}}));
+  std::filesystem::last_write_time(file, before + std::chrono::seconds(1));
+  EXPECT_EQ(mesh_corners(file).points[1], Corner(0, 3, 0));
+}
+
+}  // namespace
+}  // namespace robot_control

@@ -1,0 +1,237 @@
+#include "ros/inputs/motion_requests.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <boost/make_shared.hpp>
+#include <string>
+#include <vector>
+
+#include "ros/nanoseconds.h"
+
+namespace robot_control {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr std::int64_t kWindow = kSecond;
+
+class MotionRequestsTest : public testing::Test {
+ protected:
+  MotionRequestsTest() {
+    requests_.set_window(kWindow);
+    requests_.follow(permission_, now_);
+  }
+
+  void withdraw() {
+    ++permission_.withdrawals;
+    permission_.granted = false;
+    requests_.follow(permission_, now_);
+  }
+
+  void grant() {
+    permission_.granted = true;
+    requests_.follow(permission_, now_);
+  }
+
+  /// True if motion that this process requests over a new connection, which then closes, is revoked.
+  bool revoked_again(Publisher sender) {
+    sender.connection = boost::make_shared<char>();
+    requests_.request(sender, now_);
+    return requests_.revoked(sender);
+  }
+
+  std::int64_t now_ = 100 * kSecond;
+  MotionPermission permission_{.run = 7, .withdrawals = 0, .granted = true};
+  MotionRequests requests_;
+  std::vector<boost::shared_ptr<const void>> connections_;
+  Publisher teleop_{"/teleop", boost::make_shared<char>(), "http://robot:40001/"};
+};
+
+TEST_F(MotionRequestsTest, EndWithinTheWindow) {
+  requests_.request(teleop_, now_);
+  EXPECT_TRUE(requests_.any(now_ + kWindow));
+  EXPECT_FALSE(requests_.any(now_ + kWindow + 1));
+}
+
+TEST_F(MotionRequestsTest, AreFoundByTheConnectionAndNotByTheName) {
+  requests_.request(teleop_, now_);
+  withdraw();
+  EXPECT_TRUE(requests_.revoked(teleop_));
+  EXPECT_FALSE(revoked_again(teleop_)) << "another connection of the same process, which is open";
+}
+
+TEST_F(MotionRequestsTest, GoOnOverAConnectionThatTheSameProcessOpensAgain) {
+  requests_.request(teleop_, now_);
+  withdraw();
+  grant();
+  EXPECT_THAT(requests_.revoked_names(), ElementsAre("/teleop"));
+  teleop_.connection.reset();
+  EXPECT_THAT(requests_.revoked_names(), IsEmpty()) << "closed";
+  now_ += 1000 * kWindow;
+  EXPECT_TRUE(revoked_again(teleop_));
+  EXPECT_THAT(requests_.revoked_names(), IsEmpty()) << "closed again";
+  teleop_.connection = boost::make_shared<char>();
+  requests_.end(teleop_);
+  requests_.request(teleop_, now_);
+  EXPECT_FALSE(requests_.revoked(teleop_));
+}
+
+TEST_F(MotionRequestsTest, OfANewProcessOfTheSameNameAreItsOwn) {
+  requests_.request(teleop_, now_);
+  withdraw();
+  grant();
+  teleop_.connection.reset();
+  EXPECT_FALSE(revoked_again({"/teleop", nullptr, "http://robot:40002/"}));
+  EXPECT_FALSE(revoked_again({"/pad", nullptr, teleop_.uri})) << "it got the port of the other";
+  EXPECT_TRUE(revoked_again({"/teleop"})) << "it cannot be distinguished";
+}
+
+TEST_F(MotionRequestsTest, OfClosedConnectionsAreForgottenBeyondABound) {
+  const auto name = [](std::size_t number) { return "/once_" + std::to_string(number); };
+  requests_.request(teleop_, now_);
+  for (std::size_t i = 0; i <= MotionRequests::kMaxClosed; ++i) {
+    requests_.request({name(i), boost::make_shared<char>()}, now_);
+  }
+  withdraw();
+  EXPECT_TRUE(requests_.revoked(teleop_)) << "it is open";
+  EXPECT_TRUE(revoked_again({name(MotionRequests::kMaxClosed)}));
+  EXPECT_FALSE(revoked_again({name(0)}));
+}
+
+/// This controller was started beside a node that publishes already.
+class MotionRequestsOfARestartTest : public MotionRequestsTest {
+ protected:
+  MotionRequestsOfARestartTest() {
+    requests_ = MotionRequests();
+    requests_.set_window(kWindow);
+    requests_.start({.present = {{"/teleop", nullptr, teleop_.uri}}, .run = 7});
+    permission_.granted = false;
+  }
+};
+
+TEST_F(MotionRequestsOfARestartTest, AreRevokedOfAllProcessesThatWereThere) {
+  requests_.follow(permission_, now_);
+  grant();
+  requests_.request(teleop_, now_);
+  EXPECT_TRUE(requests_.revoked(teleop_));
+  EXPECT_TRUE(revoked_again(teleop_)) << "over another connection, too";
+  EXPECT_FALSE(revoked_again({"/planner", nullptr, "http://robot:40003/"}));
+  requests_.end(teleop_);
+  EXPECT_FALSE(requests_.revoked(teleop_));
+  EXPECT_FALSE(revoked_again(teleop_)) << "that connection has closed before this zero, which counts for it, too";
+}
+
+TEST_F(MotionRequestsOfARestartTest, EndWithAZeroOverTheirOwnConnectionAlone) {
+  requests_.follow(permission_, now_);
+  grant();
+  requests_.end(teleop_);
+  EXPECT_FALSE(requests_.revoked(teleop_));
+  EXPECT_TRUE(revoked_again(teleop_)) << "over another connection, which is open as well";
+}
+
+TEST_F(MotionRequestsOfARestartTest, CountAsMadeAtTheStart) {
+  requests_.follow(permission_, now_);
+  requests_.end(teleop_);
+  grant();
+  now_ += kWindow;
+  withdraw();
+  EXPECT_TRUE(requests_.revoked(teleop_)) << "within the window before another withdrawal";
+}
+
+TEST_F(MotionRequestsOfARestartTest, LikewiseInAnotherRunWhileAStopIsLatched) {
+  permission_.run = 8;
+  permission_.stopped = true;
+  requests_.follow(permission_, now_);
+  grant();
+  EXPECT_TRUE(revoked_again(teleop_));
+}
+
+TEST_F(MotionRequestsOfARestartTest, LikewiseInAnotherRunIfMotionWasRequestedAtTheEndOfTheOneBefore) {
+  requests_.start({.present = {{"/teleop", nullptr, teleop_.uri}}, .run = 7, .requested = true});
+  permission_.run = 8;
+  requests_.follow(permission_, now_);
+  grant();
+  EXPECT_TRUE(revoked_again(teleop_));
+}
+
+TEST_F(MotionRequestsOfARestartTest, AreNotRevokedByTheFirstStartOfARun) {
+  permission_.run = 8;
+  requests_.follow(permission_, now_);
+  grant();
+  EXPECT_FALSE(revoked_again(teleop_));
+}
+
+TEST_F(MotionRequestsTest, AWithdrawalThatWasNotSeenByItselfRevokesAll) {
+  requests_.request(teleop_, now_);
+  permission_.withdrawals += 2;  // and granted again meanwhile
+  EXPECT_TRUE(requests_.follow(permission_, now_));
+  EXPECT_TRUE(requests_.revoked(teleop_));
+  EXPECT_FALSE(requests_.follow(permission_, now_));
+}
+
+TEST_F(MotionRequestsTest, AZeroBeforeAnotherWithdrawalDoesNotCountAfterIt) {
+  withdraw();
+  requests_.end(teleop_);
+  withdraw();
+  now_ += 2 * kWindow;
+  requests_.request(teleop_, now_);
+  grant();
+  EXPECT_TRUE(requests_.revoked(teleop_));
+}
+
+TEST_F(MotionRequestsTest, OfSeveralClosedConnectionsTheRevokedOneGoesOn) {
+  for (const bool revoked_first : {false, true}) {
+    Publisher node{"/node", nullptr, revoked_first ? "http://robot:1/" : "http://robot:2/"};
+    for (const bool moves : {revoked_first, !revoked_first}) {
+      node.connection = boost::make_shared<char>();
+      requests_.request(node, now_);
+      if (!moves) requests_.end(node);
+      if (!moves) now_ += 2 * kWindow;
+      connections_.push_back(node.connection);
+    }
+    withdraw();
+    grant();
+    connections_.clear();
+    node.connection.reset();
+    EXPECT_TRUE(revoked_again(node)) << revoked_first;
+  }
+}
+
+TEST_F(MotionRequestsTest, OfAnEarlierTimeThanTheGrantAreRevokedByTheirStamp) {
+  withdraw();
+  requests_.end(teleop_);
+  now_ += 10 * kWindow;
+  grant();
+  now_ += kSecond;
+  requests_.request(teleop_, now_, kSecond + MotionRequests::kInTransit);
+  EXPECT_FALSE(requests_.revoked(teleop_)) << "with the grant";
+  requests_.request(teleop_, now_, kSecond + MotionRequests::kInTransit + 1);
+  EXPECT_TRUE(requests_.revoked(teleop_));
+  requests_.request(teleop_, now_, 0);
+  EXPECT_TRUE(requests_.revoked(teleop_)) << "it requested motion before the grant, and goes on";
+  requests_.end(teleop_);
+  requests_.request(teleop_, now_, 0);
+  EXPECT_FALSE(requests_.revoked(teleop_));
+}
+
+TEST_F(MotionRequestsTest, OlderThanTheWindowWereNotMadeWithTheGrant) {
+  requests_.set_window(MotionRequests::kInTransit / 2);
+  withdraw();
+  requests_.end(teleop_);
+  requests_.request(teleop_, now_);
+  now_ += MotionRequests::kInTransit / 2 + 1;  // a silence that a reset accepts
+  grant();
+  EXPECT_TRUE(requests_.revoked(teleop_));
+}
+
+TEST_F(MotionRequestsTest, NothingIsRevokedWithoutARequest) {
+  requests_.end(teleop_);
+  withdraw();
+  grant();
+  EXPECT_FALSE(requests_.revoked(teleop_));
+}
+
+}  // namespace
+}  // namespace robot_control

@@ -1,0 +1,60 @@
+#include "ros/reports/reason_history.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+namespace robot_control {
+namespace {
+
+/// A controller that publishes every cycle, and a thread that reads now and then.
+class ReasonHistoryTest : public testing::Test {
+ protected:
+  void publish(std::uint64_t reasons, std::uint64_t run = 7) {
+    newest_.head = {.run = run, .cycle = cycle_++};
+    newest_.reasons = reasons;
+    writer_.publish(newest_);
+  }
+
+  std::uint64_t poll() { return history_.collect(FrameReader<CommandFrame>(memory_.get()), newest_); }
+
+  std::unique_ptr<LatestFrames<CommandFrame>> memory_ = std::make_unique<LatestFrames<CommandFrame>>();
+  FrameWriter<CommandFrame> writer_{memory_.get(), Wake::kNone};
+  ReasonHistory history_;
+  CommandFrame newest_;
+  std::uint64_t cycle_ = 100;
+};
+
+TEST_F(ReasonHistoryTest, FindsAReasonOfOneCycleBetweenTwoLooks) {
+  publish(0);
+  EXPECT_EQ(poll(), 0u);
+  publish(0);
+  publish(kReasonJerkYielded);
+  publish(0);
+  publish(kReasonSaturated);
+  EXPECT_EQ(poll(), kReasonJerkYielded | kReasonSaturated);
+  publish(0);
+  EXPECT_EQ(poll(), 0u) << "reported once";
+}
+
+TEST_F(ReasonHistoryTest, GoesBackAsFarAsTheChannelDoes) {
+  publish(0);
+  poll();
+  publish(kReasonRefused);
+  for (std::size_t i = 0; i < kFrameSlots; ++i) publish(0);
+  EXPECT_EQ(poll(), 0u) << "that slot was used again";
+  publish(kReasonRefused);
+  for (std::size_t i = 1; i < kFrameSlots; ++i) publish(0);
+  EXPECT_EQ(poll(), kReasonRefused);
+}
+
+TEST_F(ReasonHistoryTest, RestartsWithARun) {
+  publish(0);
+  poll();
+  publish(kReasonRefused);
+  publish(kReasonHolding, 8);
+  EXPECT_EQ(poll(), kReasonHolding);
+}
+
+}  // namespace
+}  // namespace robot_control

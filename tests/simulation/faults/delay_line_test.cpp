@@ -1,0 +1,60 @@
+#include "simulation/faults/delay_line.h"
+
+#include <gtest/gtest.h>
+
+#include "support/allocation_guard.h"
+
+namespace robot_control {
+namespace {
+
+TEST(DelayLine, GivesWhatWentInSoManyStepsAgo) {
+  for (const std::size_t delay : {1u, 2u, 5u}) {
+    DelayLine<int, 5> line(delay);
+    line.fill(-1);
+    for (int k = 0; k < 20; ++k) {
+      int value = k;
+      line.step(value);
+      const int expected = k < static_cast<int>(delay) ? -1 : k - static_cast<int>(delay);
+      EXPECT_EQ(value, expected) << "delay " << delay << ", step " << k;
+    }
+  }
+}
+
+TEST(DelayLine, OfNoDelayChangesNothing) {
+  DelayLine<int, 5> line(0);
+  line.fill(-1);
+  int value = 7;
+  line.step(value);
+  EXPECT_EQ(value, 7);
+}
+
+TEST(DelayLine, ForgetsWhenFilled) {
+  DelayLine<int, 5> line(3);
+  line.fill(0);
+  for (int value : {1, 2}) line.step(value);
+  line.fill(9);
+  for (int k = 0; k < 3; ++k) {
+    int value = 5;
+    line.step(value);
+    EXPECT_EQ(value, 9);
+  }
+}
+
+TEST(DelayLine, RefusesADelayItCannotHold) {
+  EXPECT_THROW((DelayLine<int, 5>(6)), std::invalid_argument);
+}
+
+TEST(DelayLine, NeverAllocates) {
+  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
+  DelayLine<double, 100> line(100);
+  const AllocationGuard guard;
+  line.fill(0);
+  for (double value = 0; value < 200; ++value) {
+    double passed = value;
+    line.step(passed);
+  }
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+}  // namespace
+}  // namespace robot_control

@@ -1,0 +1,17 @@
+"""A gyro or an encoder is wrong for a while: the pose error stays within its covariance, or the robot stops."""
+
+import pytest
+
+from bench.odometry.lying_sensors import COMBINATIONS, outcome
+
+QUICK = {("gyro", "wrong", 3.0, 0), ("gyro", "stuck", 3.0, 0), ("left_encoder", "stuck", 0.5, 0)}
+CASES = [(*each, seed) for seed in range(4) for each in COMBINATIONS]
+
+
+@pytest.mark.parametrize(
+    ("sensor", "kind", "duration", "seed"),
+    [pytest.param(*case, marks=() if case in QUICK else pytest.mark.nightly) for case in CASES],
+)
+def test_a_lying_sensor_leaves_the_pose_within_four_deviations_or_the_robot_stops(sensor, kind, duration, seed):
+    found = outcome(sensor, kind, duration, seed)
+    assert found.stopped or max(found.position, found.yaw) <= 4
