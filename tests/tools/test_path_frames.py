@@ -123,4 +123,5 @@ def test_a_path_whose_requests_the_controller_refuses_since_a_stop_ends(robot, m
     for revoked, commands in ((["/planner"], True), (["/planner", "/drive_path"], False)):
         robot[0]._receive_state(SimpleNamespace(sources=[], revoked=revoked))
         assert robot[0].commands is commands
+        robot[0].refused_at -= 10.0
         assert ("refuses what was requested before a stop" in robot[0].against_driving(robot[1])) is not commands

@@ -23,7 +23,7 @@ SAFETY_SILENCE = 3.0
 """s without safety_status; it comes once per second"""
 PATIENCE = 10.0
 """s to wait for odometry and the permit to drive"""
-CAUSE_DELAY = 0.5
+CAUSE_DELAY = 0.3
 """s by which the cause of a stop may follow the refusal that it leads to: they come from two nodes"""
 
 

@@ -4,7 +4,8 @@
 
 namespace robot_control {
 
-PlanarCore::PlanarCore(const PlanarCoreParams& params) noexcept : params_(params), noise_(params.slip_least, params.drags_wheels) {
+PlanarCore::PlanarCore(const PlanarCoreParams& params) noexcept
+    : params_(params), noise_(params.slip_least, params.drags_wheels) {
   (*covariance_)(kOffset, kOffset) = square(params.clock_offset);
   (*covariance_)(kBias, kBias) = square(params.gyro_bias_initial);
   (*covariance_)(kRatio, kRatio) = square(params.ratio_deviation);
