@@ -24,7 +24,7 @@ from robot_control.common.run_log import read_run
 from robot_control.replay.recorded_setup import recorded_setup
 from robot_control.report.main import main as report_main
 
-from bench.participants import LOOP, PLANT, START_LIMIT, TELEMETRY, command, script
+from bench.participants import DRIVER, LOOP, START_LIMIT, TELEMETRY, command, script
 from bench.robot_corpus import DIFFBOT, robot_names, urdf_of
 
 SECONDS = 600.0
@@ -176,7 +176,7 @@ def replayed(bag: Path) -> Replayed:
 def run_nodes(programs: Path, folder: Path, settings: dict[str, Any], seconds: float) -> float:
     """Processor time of the telemetry, s."""
     commands = {node: command(programs, node, f"record.{os.getpid()}", folder, settings) for node in (*LOOP, TELEMETRY)}
-    plant_command = commands.pop(PLANT)
+    plant_command = commands.pop(DRIVER)
     nodes = {node: subprocess.Popen(each) for node, each in commands.items()}
     try:
         plant = subprocess.run(plant_command, check=False, timeout=2 * seconds + START_LIMIT)

@@ -15,6 +15,7 @@
 #include "log/replay/replay_error.h"
 #include "log/trace_reader.h"
 #include "loop/log_header.h"
+#include "signals/roles.h"
 
 namespace py = pybind11;
 
@@ -130,7 +131,8 @@ py::dict replay_log(const std::string& path, const Layers& logged, const std::op
       throw ReplayError(text.str());
     }
     replay.vary(others, robot_in(others), [&](const VariedRow& row) { columns.add(row); });
-    for (const LiveParameter& each : live_parameters(others, "diff_drive_controller")) live.push_back(each.key);
+    for (const LiveParameter& each : live_parameters(others, std::string(program_of(Role::kController))))
+      live.push_back(each.key);
   }
   LogHeader header;
   std::string cut;

@@ -30,7 +30,7 @@
 #include "drivers/mujoco/mujoco_plant.h"
 #include "log/fields/trace_fields.h"
 #include "loop/start_check.h"
-#include "signals/cause_names.h"
+#include "signals/names.h"
 #include "signals/slip_detection.h"
 #include "simulation/closed_loop.h"
 
@@ -122,7 +122,7 @@ py::dict stand(const Parameters& parameters) {
   py::dict result;
   result["lean"] = 2 * std::asin(std::min(1.0, std::hypot(q[0], q[1])));
   result["carried"] = load / (model.body_subtreemass[plant.model().base_body] * mju_norm3(model.opt.gravity));
-  result["unloaded"] = plant.unloaded();
+  result["unloaded"] = plant.warning();
   return result;
 }
 

@@ -14,7 +14,7 @@ namespace {
 py::list bits(std::span<const BitName> table) {
   py::list rows;
   for (const BitName& row : table) {
-    rows.append(py::make_tuple(std::string(row.name), std::string(row.sentence), std::string(row.remedy),
+    rows.append(py::make_tuple(std::string(row.name), std::string(row.sentence), with_programs(row.remedy),
                                std::string(row.unit)));
   }
   return rows;
@@ -37,6 +37,9 @@ py::list states(int count) {
 
 py::dict signal_names() {
   py::dict all;
+  py::list roles;
+  for (const RoleNames& row : kRoles) roles.append(py::make_tuple(std::string(row.role), std::string(row.program)));
+  all["Role"] = roles;
   all["StopCause"] = bits(kStopCauseNames);
   all["CommandReason"] = bits(kCommandReasonNames);
   all["GateReason"] = bits(kGateReasonNames);

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from robot_control._robot_control import ClosedLoop as _ClosedLoop
 from robot_control._robot_control import end_log, log_into
 from robot_control.common.files import utf8
+from robot_control.common.roles import DRIVER
 from robot_control.parameter_layers import flow_text, layered
 
 Log = dict[str, NDArray[np.float64]]
@@ -53,7 +54,7 @@ class ClosedLoop:
         self._running = False
         self._path, self._values = layered(params, urdf)
         if scene is not None:
-            self._values.append(("mujoco_plant.scene", utf8(scene)))
+            self._values.append((f"{DRIVER}.scene", utf8(scene)))
         self._paused = False
         self._loop = self._new_loop(seed)
 
@@ -73,7 +74,7 @@ class ClosedLoop:
         self._loop = self._new_loop(seed)
 
     def _new_loop(self, seed: int) -> _ClosedLoop:
-        return _ClosedLoop(self._path, [*self._values, ("mujoco_plant.seed", str(seed))])
+        return _ClosedLoop(self._path, [*self._values, (f"{DRIVER}.seed", str(seed))])
 
     def set_pause(self, pause: bool) -> None:  # noqa: FBT001 (the service's own form)
         """Pauses as `mujoco_plant/set_pause` does: while paused `step` runs, `run` refuses."""

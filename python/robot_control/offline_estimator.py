@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from robot_control._robot_control import OfflineEstimator, signal_names
 from robot_control.common.files import utf8
+from robot_control.common.roles import ESTIMATOR
 from robot_control.parameter_layers import layered, leaves
 
 FloatArray = NDArray[np.float64]
@@ -101,7 +102,7 @@ class Estimator:
         if encoder_counts is not None:
             if not (np.isfinite(encoder_counts) and encoder_counts > 0):
                 raise ValueError(f"encoder_counts is {encoder_counts}; it must be above 0 counts per turn of a wheel")
-            values.append(("state_estimator.encoder_noise", repr(2 * np.pi / encoder_counts / np.sqrt(12))))
+            values.append((f"{ESTIMATOR}.encoder_noise", repr(2 * np.pi / encoder_counts / np.sqrt(12))))
         values += leaves({"robot": {name: value for name, value in given.items() if value is not None}})
         if period is not None and not (np.isfinite(period) and period > 0):
             raise ValueError(f"period is {period}; it must be above 0 s")

@@ -15,6 +15,7 @@
 #include "parameters/parameter_tree.h"
 #include "parameters/parameters_text.h"
 #include "parameters/value_reader.h"
+#include "signals/roles.h"
 
 namespace robot_control {
 namespace {
@@ -113,7 +114,8 @@ std::filesystem::path folder_of(const std::string& path) {
 }
 
 std::string text_of(Content content) {
-  std::string text = "# The calibration that state_estimator learned; delete this file to restart it.\n";
+  std::string text = "# The calibration that " + std::string(program_of(Role::kEstimator)) +
+                     " learned; delete this file to restart it.\n";
   text.append(kBlock).append(":\n");
   for (const Key& key : keys(content)) {
     text.append("  ").append(key.name).append(": ").append(value_text(key.field));
@@ -178,7 +180,7 @@ bool improve(LearnedCalibration& kept, const LearnedCalibration& now) {
 
 std::optional<LearnedCalibration> read_calibration(const std::string& path, const RobotModel& robot,
                                                    const EstimatorParameters& parameters) {
-  const std::string subject = "state_estimator.calibration_file refused (" + path + ")";
+  const std::string subject = std::string(program_of(Role::kEstimator)) + ".calibration_file refused (" + path + ")";
   ProblemList problems;
   if (parameters.self_calibration && access(folder_of(path).c_str(), W_OK | X_OK) != 0) {
     problems.add({folder_of(path).string(), "", std::string("cannot be written to: ") + std::strerror(errno), "",

@@ -1,5 +1,5 @@
 #pragma once
-/// The calibration file keeps the calibration of wheels and gyro that state_estimator has learned for its next start.
+/// The calibration file keeps the calibration of wheels and gyro that the estimator has learned for its next start.
 ///
 ///   calibration:
 ///     robot: "diffbot"

@@ -9,6 +9,7 @@
 
 #include "parameters/problem_list.h"
 #include "parameters/text_file.h"
+#include "signals/roles.h"
 
 namespace robot_control {
 namespace {
@@ -142,7 +143,7 @@ void refuse_twice(const std::vector<Entry>& entries, Value Entry::*member, const
 }  // namespace
 
 CommandSourceList read_command_sources(const std::string& path) {
-  const std::string subject = "diff_drive_controller.command_sources refused (" + path + ")";
+  const std::string subject = std::string(program_of(Role::kController)) + ".command_sources refused (" + path + ")";
   ProblemList problems;
   const auto text = read_text_file(path, kMaxSourceFile, "name a file that can be read, or \"\" for none", problems);
   problems.throw_if_any(subject);

@@ -3,6 +3,7 @@
 #include "configuration/peer_file.h"
 #include "parameters/parameters_text.h"
 #include "parameters/tree_reader.h"
+#include "signals/roles.h"
 
 namespace robot_control {
 namespace {
@@ -29,7 +30,7 @@ void check_rates(const Schema& schema, const LoopParameters& loop, GivenValues& 
 void check_stop_delay(const Parameters& parameters, GivenValues& given) {
   // A stop takes the sensors of one cycle, the permit of the next and the torque of the one after.
   constexpr double kCyclesToStop = 3;
-  const std::string delay = "safety_monitor.stop_delay";
+  const std::string delay = std::string(program_of(Role::kMonitor)) + ".stop_delay";
   const double fastest = kCyclesToStop * parameters.loop.period();
   if (!given.accepted(delay) || !given.accepted("robot.rate") || parameters.safety.stop_delay >= fastest) return;
   given.refuse(delay, "must be at least three periods, " + shortest(fastest) + " s at " +
@@ -45,22 +46,22 @@ Schema schema(Parameters& p) {
   const Key no_effect{"standstill_acceleration", &p.no_effect, "m/s²", 0.001, 10, kOptional | kObsolete};
   return {
       .blocks = {{"robot", joined({file("urdf", p.urdf, 0), keys(p.robot), keys(p.loop)})},
-                 {"mujoco_plant", joined({keys(p.plant), plant_keys(p.report)})},
-                 {"state_estimator", joined({keys(p.estimator),
-                                             {no_effect},
-                                             file("calibration_file", p.calibration_file, kMayBeEmpty),
-                                             estimator_keys(p.report)})},
-                 {"diff_drive_controller",
+                 {program_of(Role::kDriver), joined({keys(p.plant), plant_keys(p.report)})},
+                 {program_of(Role::kEstimator), joined({keys(p.estimator),
+                                                        {no_effect},
+                                                        file("calibration_file", p.calibration_file, kMayBeEmpty),
+                                                        estimator_keys(p.report)})},
+                 {program_of(Role::kController),
                   joined({keys(p.controller), file("command_sources", p.command_sources, kMayBeEmpty | kOptional),
                           controller_keys(p.report)})},
-                 {"safety_monitor",
+                 {program_of(Role::kMonitor),
                   joined({keys(p.safety), file("latch_file", p.latch_file, kMayBeEmpty | kOptional)})},
-                 {"telemetry", keys(p.telemetry)}},
+                 {program_of(Role::kTelemetry), keys(p.telemetry)}},
       .check =
           [&p](const Schema& all, GivenValues& given) {
             check_rates(all, p.loop, given);
-            check(p.safety, "safety_monitor", given);
-            check(p.controller, "diff_drive_controller", given);
+            check(p.safety, std::string(program_of(Role::kMonitor)), given);
+            check(p.controller, std::string(program_of(Role::kController)), given);
             check_stop_delay(p, given);
           },
       .other_package_remedy = &suggest_for_peer_key,

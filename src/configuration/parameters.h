@@ -40,8 +40,8 @@ struct Parameters {
   std::vector<std::string> warnings;  ///< about accepted values in an old form
 };
 
-/// Returns the blocks of the file with their places in `parameters`, which must outlive it: `robot`, `mujoco_plant`,
-/// `state_estimator`, `diff_drive_controller`, `safety_monitor`, `telemetry`.
+/// Returns the blocks of the file with their places in `parameters`, which must outlive it: `robot`, and one per role
+/// (signals/roles.h).
 Schema schema(Parameters& parameters);
 
 /// Throws ParameterError. Every key of the schema must be in the file or in an overlay, unless it is kOptional.

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "configuration/parameters.h"
+#include "signals/roles.h"
 
 namespace robot_control {
 namespace {
@@ -62,19 +63,19 @@ constexpr auto kPeerKeys = std::to_array<PeerKey>({
     {"use_stamped_vel", ""},
     {"allow_multiple_cmd_vel_publishers", "one_sender"},
     {"preserve_turning_radius", "keep_curvature"},
-    {"publish_rate", "command_rate, state_estimator.odom_rate, state_estimator.joint_states_rate"},
+    {"publish_rate", "command_rate, {estimator}.odom_rate, {estimator}.joint_states_rate"},
     {"publish_cmd", ""},
     {"publish_limited_velocity", ""},
     {"publish_wheel_joint_controller_state", ""},
     {"publish_joint_trajectory_controller_state", ""},
     {"open_loop", ""},
     {"position_feedback", ""},
-    {"enable_odom_tf", "state_estimator.publish_tf"},
-    {"odom_frame_id", "state_estimator.odom_frame"},
-    {"base_frame_id", "state_estimator.base_frame"},
-    {"pose_covariance_diagonal", "state_estimator.pose_covariance_diagonal"},
-    {"twist_covariance_diagonal", "state_estimator.twist_covariance_diagonal"},
-    {"velocity_rolling_window_size", "state_estimator.speed_bandwidth"},
+    {"enable_odom_tf", "{estimator}.publish_tf"},
+    {"odom_frame_id", "{estimator}.odom_frame"},
+    {"base_frame_id", "{estimator}.base_frame"},
+    {"pose_covariance_diagonal", "{estimator}.pose_covariance_diagonal"},
+    {"twist_covariance_diagonal", "{estimator}.twist_covariance_diagonal"},
+    {"velocity_rolling_window_size", "{estimator}.speed_bandwidth"},
 });
 
 /// Returns the evidence that no file of this package has.
@@ -122,7 +123,7 @@ std::string suggest_for_peer_key(std::string_view name) {
   const auto found = std::ranges::find(kPeerKeys, name, &PeerKey::peer_name);
   if (found == kPeerKeys.end()) return "";
   const std::string here = found->own_path.empty() ? "needs no key here" : "here " + std::string(found->own_path);
-  return "a key of ros_controllers, " + here + "; " + kPeerTable;
+  return "a key of ros_controllers, " + with_programs(here) + "; " + kPeerTable;
 }
 
 }  // namespace robot_control

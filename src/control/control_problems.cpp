@@ -12,6 +12,7 @@
 #include "control/wheel_loops/wheel_loop_gains.h"
 #include "control/wheel_loops/wheel_loop_stability.h"
 #include "machine/suspicions.h"
+#include "signals/roles.h"
 
 namespace robot_control {
 
@@ -159,7 +160,7 @@ std::string unstable_message(const Loop& loop, const Loop& derived, const std::s
   const WheelLoopGains& gains = loop.gains;
   std::ostringstream text;
   text.precision(3);
-  text << "diff_drive_controller: pid_kp " << gains.kp << ", pid_ki " << gains.ki << ", pid_kd " << gains.kd
+  text << program_of(Role::kController) << ": pid_kp " << gains.kp << ", pid_ki " << gains.ki << ", pid_kd " << gains.kd
        << ", tracking_bandwidth " << loop.bandwidth << " Hz at " << std::lround(1 / loop.period)
        << " Hz: the loop of joint '" << joint << "' is unstable with the wheel " << load.name << " ("
        << load.load.inertia << " kg·m²" << (described(loop, load) ? " by the description" : "") << "): spectral radius "
@@ -179,7 +180,7 @@ std::string unstable_message(const Loop& loop, const Loop& derived, const std::s
 std::string underdamped_message(const Loop& loop, const Loop& derived, const std::string& joint, const Load& load) {
   std::ostringstream text;
   text.precision(3);
-  text << "diff_drive_controller: pid_kp " << loop.gains.kp << ", pid_ki " << loop.gains.ki << ", pid_kd "
+  text << program_of(Role::kController) << ": pid_kp " << loop.gains.kp << ", pid_ki " << loop.gains.ki << ", pid_kd "
        << loop.gains.kd << ", tracking_bandwidth " << loop.bandwidth << " Hz: the loop of joint '" << joint
        << "' oscillates with the wheel " << load.name << " (" << load.load.inertia << " kg·m²"
        << (described(loop, load) ? " by the description" : "") << "): damping ratio " << loop.damping(load)
@@ -196,11 +197,12 @@ std::string underdamped_message(const Loop& loop, const Loop& derived, const std
 std::string oscillation_message(const Loop& loop, const Loop& derived, const std::string& joint, const Load& load) {
   std::ostringstream text;
   text.precision(3);
-  text << "diff_drive_controller: pid_kp " << loop.gains.kp << ", pid_kd " << loop.gains.kd << ", tracking_bandwidth "
-       << loop.bandwidth << " Hz: behind an encoder of " << kCounts << " counts the torque of joint '" << joint
-       << "' oscillates by " << loop.ripple(load) << " of its limit, RMS, with the wheel " << load.name << " ("
-       << load.load.inertia << " kg·m²" << (described(loop, load) ? " by the description" : "") << "), must be at most "
-       << kMaxRipple << ". Lower tracking_bandwidth, derived are " << derived.bandwidth
+  text << program_of(Role::kController) << ": pid_kp " << loop.gains.kp << ", pid_kd " << loop.gains.kd
+       << ", tracking_bandwidth " << loop.bandwidth << " Hz: behind an encoder of " << kCounts
+       << " counts the torque of joint '" << joint << "' oscillates by " << loop.ripple(load)
+       << " of its limit, RMS, with the wheel " << load.name << " (" << load.load.inertia << " kg·m²"
+       << (described(loop, load) ? " by the description" : "") << "), must be at most " << kMaxRipple
+       << ". Lower tracking_bandwidth, derived are " << derived.bandwidth
        << " Hz, or pid_kp and pid_kd; or leave them out: then they are derived from the robot.";
   return text.str();
 }
@@ -208,8 +210,8 @@ std::string oscillation_message(const Loop& loop, const Loop& derived, const std
 std::string tracking_message(double bandwidth, double limit, double period) {
   std::ostringstream text;
   text.precision(3);
-  text << "diff_drive_controller.tracking_bandwidth = " << bandwidth << " Hz: must be at most " << limit << " Hz, "
-       << kMaxTracking << " of the rate of " << std::lround(1 / period)
+  text << program_of(Role::kController) << ".tracking_bandwidth = " << bandwidth << " Hz: must be at most " << limit
+       << " Hz, " << kMaxTracking << " of the rate of " << std::lround(1 / period)
        << " Hz: above, wheel speeds follow the encoder's counts. Leave it out: then it is derived from the rate.";
   return text.str();
 }
@@ -217,7 +219,7 @@ std::string tracking_message(double bandwidth, double limit, double period) {
 std::string weak_message(const std::string& key, double value, double derived, const char* unit) {
   std::ostringstream text;
   text.precision(3);
-  text << "diff_drive_controller." << key << " = " << value << " " << unit << ": must be at least "
+  text << program_of(Role::kController) << "." << key << " = " << value << " " << unit << ": must be at least "
        << kMinShare * derived << " " << unit << ", a tenth of what is derived from the robot: below, the wheels follow "
        << "feed_forward alone. Raise it, or leave it out: then it is derived.";
   return text.str();

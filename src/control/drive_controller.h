@@ -1,5 +1,5 @@
 #pragma once
-/// The drive controller computes one cycle of diff_drive_controller: request → limits → kinematics → wheel loops →
+/// The drive controller computes one cycle: request → limits → kinematics → wheel loops →
 /// torque.
 ///
 /// Every joint is braked (JointMode::kBrake) in these cases:

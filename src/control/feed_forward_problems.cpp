@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "control/kinematics.h"
+#include "signals/roles.h"
 
 namespace robot_control {
 
@@ -28,7 +29,8 @@ void check_plausible(const MeasuredValue& value, std::vector<std::string>& probl
   }
   std::ostringstream text;
   text.precision(4);
-  text << "diff_drive_controller.feed_forward." << value.key << " = " << *value.given << " " << value.unit << ": "
+  text << program_of(Role::kController) << ".feed_forward." << value.key << " = " << *value.given << " " << value.unit
+       << ": "
        << "the description says " << value.described << " " << value.unit << "; more than " << value.max_factor
        << " times either way is taken for a typing error. Correct the one or the other.";
   problems.push_back(text.str());
@@ -58,7 +60,7 @@ void check_joint_losses(const DriveControllerParameters& parameters, const Robot
     if (!given || *given <= limit) return;
     std::ostringstream text;
     text.precision(4);
-    text << "diff_drive_controller.feed_forward." << key << " = " << *given << " " << unit
+    text << program_of(Role::kController) << ".feed_forward." << key << " = " << *given << " " << unit
          << ": plausible for this robot are 0 … " << limit << " " << unit << ", " << why
          << ", or twice what the description says. Where it really is more, say so in the URDF (<dynamics>).";
     problems.push_back(text.str());

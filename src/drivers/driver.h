@@ -4,6 +4,8 @@
 
 #include <span>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 
 #include "signals/injected_fault.h"
 #include "signals/joint.h"
@@ -34,6 +36,12 @@ class Driver {
 
   /// Brakes, at once and until the next `start`.
   virtual void stop() noexcept = 0;
+
+  /// Returns what is suspicious about the machine, known after `start`; "" if nothing is.
+  virtual std::string warning() const { return {}; }
+
+  /// Returns the fault of the last `read` in words; "" without one.
+  virtual std::string_view fault_message() const noexcept { return {}; }
 
   /// A simulated machine waits when its node is late: time slips, cycles stay consecutive. Hardware does not:
   /// the cycle number jumps by the periods missed.

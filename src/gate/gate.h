@@ -1,8 +1,8 @@
 #pragma once
 /// The last check before the motors. It checks in this order, and brakes at the first check that fails:
-///   1. the permit is whole (checksum) and has not expired: safety_monitor is running
+///   1. the permit is whole (checksum) and has not expired: the monitor is running
 ///   2. the permit allows motion
-///   3. the command is whole and of a recent cycle: diff_drive_controller is running
+///   3. the command is whole and of a recent cycle: the controller is running
 ///   4. the command fits the robot, and all its numbers are finite
 /// Then it clamps the command. Up to 3 missed commands the last one is held; after that the gate brakes, which is
 /// counted and not latched.

@@ -1,5 +1,5 @@
 #pragma once
-/// The file that keeps a latched stop over a reboot: parameter safety_monitor/latch_file.
+/// The file that keeps a latched stop over a reboot: parameter `latch_file` of the monitor.
 ///
 ///   causes: [e_stop_service stall]
 ///   first_cause: e_stop_service

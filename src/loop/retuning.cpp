@@ -9,11 +9,12 @@
 #include "loop/safety_limits.h"
 #include "parameters/problem_list.h"
 #include "safety/derived_limits.h"
+#include "signals/roles.h"
 
 namespace robot_control {
 namespace {
 
-const std::string kBlock = "diff_drive_controller";
+const std::string kBlock{program_of(Role::kController)};
 
 bool stops(const Condition& condition) {
   return condition.limit && (condition.reaction == Reaction::kRamp || condition.reaction == Reaction::kBrake);
@@ -74,9 +75,9 @@ std::string Retuning::monitor_problem(const DriveControllerParameters& wanted) c
   std::ostringstream text;
   text.precision(4);
   text << kBlock << ": max_linear_speed " << wanted.max_linear_speed << " m/s with max_angular_speed "
-       << wanted.max_angular_speed << " rad/s turns a wheel at " << asked
-       << " rad/s; safety_monitor, whose wheel_speed limit was fixed at its start, stops the robot beyond "
-       << *wheel_speed_.limit << " rad/s, and would have to bear " << needed << ". Keep max_linear_speed + "
+       << wanted.max_angular_speed << " rad/s turns a wheel at " << asked << " rad/s; " << program_of(Role::kMonitor)
+       << ", whose wheel_speed limit was fixed at its start, stops the robot beyond " << *wheel_speed_.limit
+       << " rad/s, and would have to bear " << needed << ". Keep max_linear_speed + "
        << robot_.effective_wheel_base() / 2 << " m·max_angular_speed at or below "
        << smallest_radius(robot_) * fastest_within(*wheel_speed_.limit)
        << " m/s, or set both in the YAML file and start all nodes again.";

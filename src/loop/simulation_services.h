@@ -1,5 +1,5 @@
 #pragma once
-/// The services of mujoco_plant, without ROS: an operator controls a simulated machine while it runs.
+/// The services of a simulator, without ROS: an operator controls a simulated machine while it runs.
 ///
 /// Every call may come from any ordinary thread. It returns once it is done, or says why it is not; `step` and
 /// `reset` refuse while another one of them is under way.

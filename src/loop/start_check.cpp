@@ -9,6 +9,7 @@
 #include "control/control_problems.h"
 #include "control/smooth_speed.h"
 #include "signals/checksum.h"
+#include "signals/roles.h"
 
 namespace robot_control {
 
@@ -29,11 +30,10 @@ std::string note_on_slow_driving(const Parameters& parameters, const RobotModel&
   const double speed = smooth_speed(parameters.controller, robot, count, parameters.loop.period());
   if (speed <= kSlowRim) return {};
   std::array<char, 300> text{};
-  std::snprintf(
-      text.data(), text.size(),
-      "encoders of %.0f counts a turn (state_estimator.encoder_noise): below about %.2g m/s of their rims, wheels "
-      "may start and creep in jerks where friction, ground or load is not as described",
-      2 * std::numbers::pi / count, speed);
+  std::snprintf(text.data(), text.size(),
+                "encoders of %.0f counts a turn (%s.encoder_noise): below about %.2g m/s of their rims, wheels "
+                "may start and creep in jerks where friction, ground or load is not as described",
+                2 * std::numbers::pi / count, std::string(program_of(Role::kEstimator)).c_str(), speed);
   return text.data();
 }
 

@@ -1,4 +1,4 @@
-#include "ros/nodes/diff_drive_controller_node.h"
+#include "ros/nodes/controller_node.h"
 #include "ros/nodes/node.h"
 
 int main(int argc, char** argv) {
@@ -6,5 +6,5 @@ int main(int argc, char** argv) {
   return run_node(argc, argv,
                   {.name = "diff_drive_controller",
                    .purpose = "Turns velocity commands into torques of the wheels, within the limits of the robot.",
-                   .make = make_diff_drive_controller});
+                   .make = make_controller});
 }

@@ -1,5 +1,5 @@
+#include "ros/nodes/monitor_node.h"
 #include "ros/nodes/node.h"
-#include "ros/nodes/safety_monitor_node.h"
 
 int main(int argc, char** argv) {
   using namespace robot_control;
@@ -7,5 +7,5 @@ int main(int argc, char** argv) {
       argc, argv,
       {.name = "safety_monitor",
        .purpose = "Permits motion or stops it, beside the chain of the other nodes; holds stops until they are reset.",
-       .make = make_safety_monitor});
+       .make = make_monitor});
 }

@@ -1,10 +1,10 @@
+#include "ros/nodes/estimator_node.h"
 #include "ros/nodes/node.h"
-#include "ros/nodes/state_estimator_node.h"
 
 int main(int argc, char** argv) {
   using namespace robot_control;
   return run_node(argc, argv,
                   {.name = "state_estimator",
                    .purpose = "Estimates pose and speed of the robot from its wheels and its inertial sensors.",
-                   .make = make_state_estimator});
+                   .make = make_estimator});
 }

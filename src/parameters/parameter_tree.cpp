@@ -73,7 +73,7 @@ void put_value(const std::string& path, const YAML::Node& value, const std::stri
 void read_document(const YAML::Node& root, const std::string& source, const std::filesystem::path& folder,
                    ParameterTree& tree, ProblemList& problems) {
   if (!root.IsMap()) {
-    problems.add({source, "", "must consist of blocks (robot:, mujoco_plant:, …)", "", ""});
+    problems.add({source, "", "must consist of blocks, such as robot:", "", ""});
     return;
   }
   for_each_key(root, "", source, problems, [&](const auto& block, const auto& block_origin, const YAML::Node& keys) {

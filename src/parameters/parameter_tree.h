@@ -16,7 +16,7 @@ class Node;
 namespace robot_control {
 
 /// One value that is laid over the file: path "robot.rate", YAML text "500", origin "/robot/rate". A condition of the
-/// safety monitor is a map. The path "safety_monitor.tilt.limit" sets one value of it, "safety_monitor.tilt" all values
+/// safety monitor is a map. The path "block.tilt.limit" sets one value of it, "block.tilt" all values
 /// that the text names.
 struct Overlay {
   std::string path;

@@ -1,5 +1,5 @@
 #pragma once
-/// The law of safety_monitor: conditions of one cycle → permit of that cycle.
+/// The law of the monitor: conditions of one cycle → permit of that cycle.
 ///
 ///   conditions ─► active causes, by reaction ─► Warnings: reported, may limit the speed    ─► Permit
 ///                 (ActiveCauses)            └─► Supervisor: latch, state table ─► action

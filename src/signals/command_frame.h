@@ -1,5 +1,5 @@
 #pragma once
-/// diff_drive_controller sends this frame to gate and monitor: the commands of all joints, and why they differ from the
+/// The controller sends this frame to gate and monitor: the commands of all joints, and why they differ from the
 /// request.
 
 #include <array>

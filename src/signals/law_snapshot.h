@@ -17,9 +17,7 @@ namespace robot_control {
 enum class LawName : std::uint64_t { kGate = 0, kEstimator = 1, kController = 2, kMonitor = 3 };
 inline constexpr std::size_t kLaws = 4;
 
-/// The node in which each law runs, by LawName.
-inline constexpr std::array<std::string_view, kLaws> kLawNodes{"mujoco_plant", "state_estimator",
-                                                               "diff_drive_controller", "safety_monitor"};
+inline constexpr std::array<std::string_view, kLaws> kLawNames{"gate", "estimator", "controller", "monitor"};
 
 /// The distance of two snapshots of a law in cycles. It is half the length of a trace ring (bus/ring.h). So telemetry
 /// that begins to read finds a snapshot in the ring, and all later rows can be replayed.

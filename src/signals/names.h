@@ -14,17 +14,26 @@
 #include <string_view>
 
 #include "signals/bit_name.h"
-#include "signals/cause_names.h"
 #include "signals/command_frame.h"
 #include "signals/gate_report.h"
 #include "signals/injected_fault.h"
 #include "signals/permit.h"
+#include "signals/roles.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
 
 namespace robot_control {
 
 // clang-format off
+/// A latched cause needs e_stop_reset after its remedy; with an empty remedy it needs only that. The actor is
+///   operator     drives the robot
+///   integrator   sets the robot up: nodes, parameters, URDF, network
+///   technician   repairs the machine: sensors, motors, cables, battery
+inline constexpr auto kStopCauseNames = std::to_array<BitName>({
+#define CAUSE(id, name, sentence, remedy, actor, unit, ...) {kCause##id, #name, sentence, remedy, actor, unit},
+#include "signals/stop_causes.def"
+});
+
 inline constexpr auto kResetRefusalNames = std::to_array<BitName>({
     {kRefusalCauseActive, "cause_active", "a cause of the stop persists", "remove the cause"},
     {kRefusalCommand, "command", "a motion is still being requested, or it is not certain yet that none is",
@@ -32,27 +41,27 @@ inline constexpr auto kResetRefusalNames = std::to_array<BitName>({
     {kRefusalMoving, "moving", "the robot has not come to rest", "wait until every wheel stands"},
     {kRefusalInit, "init", "the monitor still waits for a node", "start the missing node"},
     {kRefusalSilent, "silent", "no sensor frame comes", "look whether the driver node runs, then ask again"},
-    {kRefusalPaused, "paused", "the simulation is paused", "let it run (mujoco_plant/set_pause), then ask again"},
+    {kRefusalPaused, "paused", "the simulation is paused", "let it run ({driver}/set_pause), then ask again"},
     {kRefusalSliding, "sliding", "the wheels stand, but the robot may still slide",
      "ask again: from speed v it is assumed to stand after v/stop_deceleration"},
 });
 
 inline constexpr auto kMissingNodeNames = std::to_array<BitName>({
-    {kMissingSensors, "sensors", "no sensors of this run were seen", "start the driver"},
-    {kMissingState, "state", "no state of this run was seen", "start state_estimator"},
-    {kMissingCommand, "command", "no command of this run was seen", "start diff_drive_controller"},
+    {kMissingSensors, "sensors", "no sensors of this run were seen", "start {driver}"},
+    {kMissingState, "state", "no state of this run was seen", "start {estimator}"},
+    {kMissingCommand, "command", "no command of this run was seen", "start {controller}"},
 });
 
 inline constexpr auto kGateReasonNames = std::to_array<BitName>({
     {kGateFirstTick, "first_tick", "the first tick of a run brakes", ""},
     {kGateNoPermit, "no_permit", "there is no permit of this run from the last 7 cycles",
-     "look whether safety_monitor runs and gets its core"},
+     "look whether {monitor} runs and gets its core"},
     {kGatePermitExpired, "permit_expired", "the newest permit has expired",
-     "look whether safety_monitor runs and gets its core"},
+     "look whether {monitor} runs and gets its core"},
     {kGatePermitBrake, "permit_brake", "the permit orders the brake", "read the cause in safety_status"},
     {kGateRampOver, "ramp_over", "the ramp's last cycle has passed", "read the cause in safety_status"},
     {kGateNoCommand, "no_command", "there is no command of the last 4 cycles",
-     "look whether diff_drive_controller runs and gets its core"},
+     "look whether {controller} runs and gets its core"},
     {kGateCommandHeld, "command_held", "the command is older than one cycle and is held", ""},
     {kGateNotFinite, "not_finite", "the command holds NaN or infinity", "look at the controller's log"},
     {kGateChecksum, "checksum", "a frame's checksum is wrong", "look for two builds on one bus or failing memory"},
@@ -81,10 +90,10 @@ inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
     {kReasonJerkLimited, "jerk_limited", "the jerk limit shapes the motion", ""},
     {kReasonCurvatureKept, "curvature_kept", "one axis was scaled to keep the commanded curvature", ""},
     {kReasonSaturated, "saturated", "a wheel's torque or speed is at its limit", ""},
-    {kReasonNoPermit, "no_permit", "there is no live permit", "start safety_monitor"},
+    {kReasonNoPermit, "no_permit", "there is no live permit", "start {monitor}"},
     {kReasonPermitBrake, "permit_brake", "the permit orders the brake", "read the cause in safety_status"},
     {kReasonPermitRamp, "permit_ramp", "the permit orders a ramp to standstill", "read the cause in safety_status"},
-    {kReasonNoState, "no_state", "the state of this cycle is missing, held or invalid", "start state_estimator"},
+    {kReasonNoState, "no_state", "the state of this cycle is missing, held or invalid", "start {estimator}"},
     {kReasonBadSensors, "bad_sensors", "joint samples are missing or not finite", "look at the driver's faults"},
     {kReasonHolding, "holding", "standing with zero command: the brake holds the position", ""},
     {kReasonPermitSlow, "permit_slow", "the safety monitor limits the speed", "read the warning in safety_status"},
@@ -113,7 +122,7 @@ inline constexpr auto kStateFlagNames = std::to_array<BitName>({
     {kStateSlip, "slip", "wheels and inertial sensors disagree", ""},
     {kStateStandstill, "standstill", "wheels and gyro are quiet", ""},
     {kStateRestarted, "restarted", "the estimator continues an earlier process's state", ""},
-    {kStateSkipped, "skipped", "a cycle of sensors was never seen", "look whether state_estimator gets its core"},
+    {kStateSkipped, "skipped", "a cycle of sensors was never seen", "look whether {estimator} gets its core"},
     {kStateNoGyro, "no_gyro", "yaw comes from the wheels alone", "look at the IMU"},
     {kStateBadSample, "bad_sample", "a sample was missing, not finite or impossible and was not used",
      "look at the driver's faults"},
@@ -270,7 +279,7 @@ inline std::string sentences_of(std::span<const BitName> table, std::uint64_t bi
     if ((bits & row.bit) == 0) continue;
     if (!text.empty()) text += "; ";
     text += row.sentence;
-    if (!row.remedy.empty()) text.append(" (").append(row.remedy).append(")");
+    if (!row.remedy.empty()) text.append(" (").append(with_programs(row.remedy)).append(")");
   }
   return text;
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// safety_monitor sends this frame to gate and controller: the permission to move.
+/// The monitor sends this frame to gate and controller: the permission to move.
 
 #include <array>
 #include <cstddef>

@@ -1,5 +1,5 @@
 #pragma once
-/// state_estimator sends this frame to all nodes: pose and twist of the robot with covariances.
+/// The estimator sends this frame to all nodes: pose and twist of the robot with covariances.
 
 #include <array>
 #include <cstdint>

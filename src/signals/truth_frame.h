@@ -1,5 +1,5 @@
 #pragma once
-/// mujoco_plant sends this frame to telemetry and tests: the true state. No estimator, controller or monitor receives
+/// A simulator sends this frame to telemetry and tests: the true state. No estimator, controller or monitor receives
 /// it.
 
 #include <array>

@@ -40,12 +40,12 @@ class ClosedLoop {
   /// Runs one cycle. Time does not pass between two steps.
   void step() noexcept;
 
-  /// Acts like `~reset` of mujoco_plant: the robot returns to its initial pose without injected faults, and a new run
+  /// Acts like `~reset` of the simulator: the robot returns to its initial pose without injected faults, and a new run
   /// begins at cycle 0. Estimator, controller and counters restart, earlier commands are dropped, latched stops stay.
   /// Except for `run` and such a stop, its rows equal those of a new ClosedLoop bit for bit. Throws DriverError.
   void reset();
 
-  /// Acts like `~set_parameter_map` of diff_drive_controller: a YAML map of its limits and gains is in force from the
+  /// Acts like `~set_parameter_map` of the controller: a YAML map of its limits and gains is in force from the
   /// next step on, also after `reset`. Throws ParameterError with every problem and then changes nothing.
   void set_parameters(const std::string& request);
 

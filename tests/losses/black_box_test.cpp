@@ -114,7 +114,7 @@ TEST_F(ABlackBox, HoldsASnapshotOfEachLawBeforeAStopRightAfterTheStartOfTelemetr
     EXPECT_TRUE(std::ranges::any_of(snapshots, [&](const LawSnapshot& snapshot) {
       const std::uint64_t cycle = snapshot.head.cycle;
       return static_cast<std::size_t>(snapshot.law) == law && first <= cycle && cycle < stop;
-    })) << kLawNodes.at(law);
+    })) << kLawNames.at(law);
   }
 }
 

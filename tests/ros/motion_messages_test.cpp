@@ -250,7 +250,7 @@ TEST_F(MotionMessagesTest, DriveStateReportsEveryReasonWithSentenceAndRemedy) {
     EXPECT_THAT(message.reasons, ElementsAre(std::string(row.name)));
     ASSERT_EQ(message.sentences.size(), 1u);
     EXPECT_THAT(message.sentences[0], testing::StartsWith(std::string(row.sentence)));
-    EXPECT_THAT(message.sentences[0], testing::HasSubstr(std::string(row.remedy)));
+    EXPECT_THAT(message.sentences[0], testing::HasSubstr(with_programs(row.remedy)));
   }
 }
 

@@ -13,7 +13,7 @@ import rostest
 import yaml
 from geometry_msgs.msg import Twist
 from robot_control.msg import SafetyStatus
-from system_support import ESTIMATOR, PLANT, Program, RobotTestCase, init_test_node, nightly, wait_for
+from system_support import DRIVER, ESTIMATOR, Program, RobotTestCase, init_test_node, nightly, wait_for
 
 HIDDEN = {"left_radius_error": 0.012, "right_radius_error": 0.004, "wheel_base_error": 0.02}
 SHORT = ("--truth", "--yes", "--distance=1", "--repeats=1", "--side=1", "--runs=1", "--speed=0.5", "--turn-speed=1.2")
@@ -25,14 +25,14 @@ class CalibrateTest(RobotTestCase):
     def setUpClass(cls) -> None:
         init_test_node(cls.__name__)
         for name, value in HIDDEN.items():
-            rospy.set_param(f"{PLANT}/{name}", value)
+            rospy.set_param(f"{DRIVER}/{name}", value)
         super().setUpClass()
 
     @classmethod
     def tearDownClass(cls) -> None:
         super().tearDownClass()
         for name in HIDDEN:
-            rospy.delete_param(f"{PLANT}/{name}")
+            rospy.delete_param(f"{DRIVER}/{name}")
 
     def setUp(self) -> None:
         self.robot.await_ready()

@@ -11,7 +11,7 @@ import rospy
 import rostest
 import yaml
 from diagnostic_msgs.msg import DiagnosticArray
-from system_support import ESTIMATOR, PLANT, RobotTestCase, init_test_node, refusal, wait_for
+from system_support import DRIVER, ESTIMATOR, RobotTestCase, init_test_node, refusal, wait_for
 
 LEFT = 0.02
 """Relative error of the left radius, hidden in the plant: the ratio is 1/1.02"""
@@ -24,8 +24,8 @@ class CalibrationTest(RobotTestCase):
         cls.folder = Path(tempfile.mkdtemp(prefix="calibration-test-"))
         cls.file = cls.folder / "learned.yaml"
         cls.estimator: dict[str, str] = {}
-        rospy.set_param(f"{PLANT}/left_radius_error", LEFT)
-        rospy.set_param(f"{PLANT}/sensor_errors", "data_sheet")  # only the storage is judged, not the accuracy
+        rospy.set_param(f"{DRIVER}/left_radius_error", LEFT)
+        rospy.set_param(f"{DRIVER}/sensor_errors", "data_sheet")  # only the storage is judged, not the accuracy
         rospy.set_param(f"{ESTIMATOR}/calibration_file", str(cls.file))
         rospy.Subscriber("/diagnostics", DiagnosticArray, cls.receive_diagnostics)
         super().setUpClass()
@@ -33,8 +33,8 @@ class CalibrationTest(RobotTestCase):
     @classmethod
     def tearDownClass(cls) -> None:
         super().tearDownClass()
-        rospy.delete_param(f"{PLANT}/left_radius_error")
-        rospy.delete_param(f"{PLANT}/sensor_errors")
+        rospy.delete_param(f"{DRIVER}/left_radius_error")
+        rospy.delete_param(f"{DRIVER}/sensor_errors")
         rospy.delete_param(f"{ESTIMATOR}/calibration_file")
         shutil.rmtree(cls.folder)
 

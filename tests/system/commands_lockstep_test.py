@@ -9,7 +9,7 @@ from commands_support import CommandDesk
 from geometry_msgs.msg import TwistStamped
 from robot_control.srv import Step
 from std_srvs.srv import SetBool
-from system_support import CONTROLLER, LIMIT, PLANT, RobotTestCase, wait_for
+from system_support import CONTROLLER, DRIVER, LIMIT, RobotTestCase, wait_for
 
 
 class CommandsLockstepTest(RobotTestCase):
@@ -21,7 +21,7 @@ class CommandsLockstepTest(RobotTestCase):
         cls.desk = CommandDesk(cls.robot)
         cls.fastest = 0.0
         rospy.Subscriber("cmd_vel_out", TwistStamped, cls.receive)
-        rospy.wait_for_service(f"{PLANT}/step", LIMIT)
+        rospy.wait_for_service(f"{DRIVER}/step", LIMIT)
 
     @classmethod
     def receive(cls, message: TwistStamped) -> None:
@@ -30,7 +30,7 @@ class CommandsLockstepTest(RobotTestCase):
     def setUp(self) -> None:
         self.robot.await_ready()
         wait_for("a subscriber", self.desk.connected)
-        rospy.ServiceProxy(f"{PLANT}/set_pause", SetBool)(True)
+        rospy.ServiceProxy(f"{DRIVER}/set_pause", SetBool)(True)
         self.step(3000)  # all commands have timed out, and the robot stands
         self.await_clock()
         type(self).fastest = 0.0
@@ -43,7 +43,7 @@ class CommandsLockstepTest(RobotTestCase):
             time.sleep(0.5)
 
     def step(self, cycles: int) -> None:
-        answer = rospy.ServiceProxy(f"{PLANT}/step", Step)(cycles)
+        answer = rospy.ServiceProxy(f"{DRIVER}/step", Step)(cycles)
         self.assertTrue(answer.success, answer.message)
 
     def send(self, age: float, expected: str) -> None:

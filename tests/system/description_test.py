@@ -7,7 +7,7 @@ from pathlib import Path
 
 import rospy
 import rostest
-from system_support import LOOP, PLANT, Program, Robot, init_test_node, repository, wait_for
+from system_support import DRIVER, LOOP, Program, Robot, init_test_node, repository, wait_for
 
 PORT, STARBOARD = "port_joint", "starboard_joint"
 
@@ -38,14 +38,14 @@ class DescriptionTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             urdf = Path(folder, "other.urdf")
             urdf.write_text(other_robot())
-            self.robot.nodes[PLANT] = Program(PLANT, f"_urdf:={urdf}")
+            self.robot.nodes[DRIVER] = Program(DRIVER, f"_urdf:={urdf}")
             wait_for("the description", lambda: PORT in rospy.get_param("robot_description", ""))
             wait_for("its file", lambda: rospy.get_param("robot/urdf", "") == str(urdf))
-            self.robot.start(*(name for name in LOOP if name != PLANT))
+            self.robot.start(*(name for name in LOOP if name != DRIVER))
             self.await_other_robot()
-            self.assertIn(f"left wheels {PORT}", self.robot.nodes[PLANT].output)
-            self.robot.nodes[PLANT].end()
-        for name in ("robot_description", "robot/urdf", f"{PLANT}/urdf"):
+            self.assertIn(f"left wheels {PORT}", self.robot.nodes[DRIVER].output)
+            self.robot.nodes[DRIVER].end()
+        for name in ("robot_description", "robot/urdf", f"{DRIVER}/urdf"):
             self.assertFalse(rospy.has_param(name), name)
 
     def test_a_description_on_the_parameter_server_drives_the_plant_too(self) -> None:
@@ -53,7 +53,7 @@ class DescriptionTest(unittest.TestCase):
         try:
             self.robot.start()
             self.await_other_robot()
-            self.robot.nodes[PLANT].end()
+            self.robot.nodes[DRIVER].end()
             self.assertEqual(rospy.get_param("robot_description"), other_robot(), "the user's, left as it was")
         finally:
             rospy.delete_param("robot_description")

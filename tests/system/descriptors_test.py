@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import rospy
 import rostest
 from robot_control.msg import SafetyStatus
-from system_support import MONITOR, PLANT, RobotTestCase, wait_for
+from system_support import DRIVER, MONITOR, RobotTestCase, wait_for
 
 from bench import hostile
 
@@ -67,7 +67,7 @@ class DescriptorsTest(RobotTestCase):
 
     def test_idle_connections_take_nothing_that_is_needed(self) -> None:
         with contextlib.ExitStack() as stack:
-            for name in (PLANT, MONITOR):
+            for name in (DRIVER, MONITOR):
                 target = hostile.find_target(name)
                 stack.enter_context(connections(target, target.tcpros, DESCRIPTORS + 50))
             self.drive_on()
@@ -94,7 +94,7 @@ class DescriptorsTest(RobotTestCase):
 
     def test_nor_do_idle_connections_to_the_port_of_xml_rpc(self) -> None:
         with contextlib.ExitStack() as stack:
-            for name in (PLANT, MONITOR):
+            for name in (DRIVER, MONITOR):
                 target = hostile.find_target(name)
                 stack.enter_context(connections(target, target.xmlrpc, DESCRIPTORS + 50))
             self.drive_on()

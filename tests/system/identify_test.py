@@ -14,7 +14,7 @@ import rostest
 import yaml
 from geometry_msgs.msg import Twist
 from robot_control.msg import SafetyStatus
-from system_support import CONTROLLER, PLANT, Program, RobotTestCase, init_test_node, nightly, wait_for
+from system_support import CONTROLLER, DRIVER, Program, RobotTestCase, init_test_node, nightly, wait_for
 
 FRICTION = 0.1  # N·m, hidden in the plant
 BEGINNING = 60.0
@@ -26,8 +26,8 @@ class IdentifyTest(RobotTestCase):
     @classmethod
     def setUpClass(cls) -> None:
         init_test_node(cls.__name__)
-        rospy.set_param(f"{PLANT}/motor_friction", FRICTION)
-        rospy.set_param(f"{PLANT}/payload", 3.0)
+        rospy.set_param(f"{DRIVER}/motor_friction", FRICTION)
+        rospy.set_param(f"{DRIVER}/payload", 3.0)
         super().setUpClass()
 
     def setUp(self) -> None:

@@ -10,7 +10,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
 from robot_control.srv import InjectFault, SetOdometry, SetOdometryResponse
 from sensor_msgs.msg import BatteryState, Imu
-from system_support import ESTIMATOR, LIMIT, PLANT, RobotTestCase, wait_for
+from system_support import DRIVER, ESTIMATOR, LIMIT, RobotTestCase, wait_for
 
 
 def rotation(q) -> np.ndarray:
@@ -32,7 +32,7 @@ def yaw_of(q) -> float:
 class OdometryTest(RobotTestCase):
     @classmethod
     def setUpClass(cls) -> None:
-        rospy.set_param(f"/{PLANT}/battery_voltage", 24.0)
+        rospy.set_param(f"/{DRIVER}/battery_voltage", 24.0)
         super().setUpClass()
         cls.wheels: Odometry | None = None
         cls.imu: Imu | None = None
@@ -67,7 +67,7 @@ class OdometryTest(RobotTestCase):
         wait_for("a standing robot", lambda: "standstill" in self.estimator.get("flags", ""))
 
     def inject(self, component: str, kind: str) -> None:
-        answer = rospy.ServiceProxy(f"{PLANT}/inject_fault", InjectFault)(component, kind)
+        answer = rospy.ServiceProxy(f"{DRIVER}/inject_fault", InjectFault)(component, kind)
         self.assertTrue(answer.success, answer.message)
 
     def set_odometry(self, x: float, y: float, yaw: float) -> SetOdometryResponse:

@@ -12,7 +12,7 @@ import rostest
 from nav_msgs.msg import Odometry
 from robot_control.msg import SafetyStatus
 from sensor_msgs.msg import JointState
-from system_support import CONTROLLER, ESTIMATOR, LIMIT, LOOP, MONITOR, PLANT, RobotTestCase, wait_for
+from system_support import CONTROLLER, DRIVER, ESTIMATOR, LIMIT, LOOP, MONITOR, RobotTestCase, wait_for
 
 SENDER = """
 import sys
@@ -166,7 +166,7 @@ class RestartTest(RobotTestCase):
             ),
         ]
         wait_for("messages before", lambda: all(stamps.values()))
-        plant = robot.nodes[PLANT]
+        plant = robot.nodes[DRIVER]
         plant.send_signal(signal.SIGSTOP)
         try:
             time.sleep(3.0)  # time that slips
@@ -182,7 +182,7 @@ class RestartTest(RobotTestCase):
 
     def test_a_latch_outlives_plant_and_monitor(self) -> None:
         robot = self.robot
-        for order, number in (((PLANT, MONITOR), signal.SIGKILL), ((MONITOR, PLANT), signal.SIGTERM)):
+        for order, number in (((DRIVER, MONITOR), signal.SIGKILL), ((MONITOR, DRIVER), signal.SIGTERM)):
             robot.call("e_stop_trigger")
             wait_for("the stop", lambda: "e_stop_service" in robot.causes)
             for name in order:
@@ -231,9 +231,9 @@ class RestartTest(RobotTestCase):
 
     def test_plant(self) -> None:
         run = self.robot.status.run
-        self.robot.nodes[PLANT].kill()
+        self.robot.nodes[DRIVER].kill()
         wait_for("driver_lost", lambda: "driver_lost" in self.robot.causes)
-        self.robot.start(PLANT)
+        self.robot.start(DRIVER)
         wait_for("a new run", lambda: self.robot.status.run not in (0, run))
         self.expect_latched("driver_lost")
 

@@ -11,7 +11,7 @@ from nav_msgs.msg import Odometry
 from robot_control.msg import SafetyStatus
 from robot_control.srv import InjectFault, Step
 from std_srvs.srv import SetBool, Trigger
-from system_support import LIMIT, PLANT, SEND_PERIOD, RobotTestCase, wait_for
+from system_support import DRIVER, LIMIT, SEND_PERIOD, RobotTestCase, wait_for
 
 
 class ServicesTest(RobotTestCase):
@@ -24,7 +24,7 @@ class ServicesTest(RobotTestCase):
         rospy.Subscriber("ground_truth/odom", Odometry, cls.receive_truth)
         rospy.Subscriber("/diagnostics", DiagnosticArray, cls.receive_diagnostics)
         for name in ("set_pause", "step", "reset", "inject_fault"):
-            rospy.wait_for_service(f"{PLANT}/{name}", LIMIT)
+            rospy.wait_for_service(f"{DRIVER}/{name}", LIMIT)
 
     @classmethod
     def receive_truth(cls, message: Odometry) -> None:
@@ -33,7 +33,7 @@ class ServicesTest(RobotTestCase):
     @classmethod
     def receive_diagnostics(cls, message: DiagnosticArray) -> None:
         for status in message.status:
-            if status.name == PLANT:
+            if status.name == DRIVER:
                 cls.plant_message = status.message
                 cls.plant = {pair.key: pair.value for pair in status.values}
 
@@ -45,20 +45,20 @@ class ServicesTest(RobotTestCase):
         self.set_pause(False)
 
     def set_pause(self, pause: bool) -> str:
-        answer = rospy.ServiceProxy(f"{PLANT}/set_pause", SetBool)(pause)
+        answer = rospy.ServiceProxy(f"{DRIVER}/set_pause", SetBool)(pause)
         self.assertTrue(answer.success, answer.message)
         return str(answer.message)
 
     def step(self, cycles: int) -> tuple[bool, str]:
-        answer = rospy.ServiceProxy(f"{PLANT}/step", Step)(cycles)
+        answer = rospy.ServiceProxy(f"{DRIVER}/step", Step)(cycles)
         return answer.success, answer.message
 
     def reset(self) -> None:
-        answer = rospy.ServiceProxy(f"{PLANT}/reset", Trigger)()
+        answer = rospy.ServiceProxy(f"{DRIVER}/reset", Trigger)()
         self.assertTrue(answer.success, answer.message)
 
     def inject(self, component: str, kind: str) -> tuple[bool, str]:
-        answer = rospy.ServiceProxy(f"{PLANT}/inject_fault", InjectFault)(component, kind)
+        answer = rospy.ServiceProxy(f"{DRIVER}/inject_fault", InjectFault)(component, kind)
         return answer.success, answer.message
 
     def cycle(self) -> int:

@@ -13,7 +13,7 @@ from robot_control import ClosedLoop
 from robot_control.common.run_log import LogError, read_log
 from robot_control.srv import SetParameters, Step
 from std_srvs.srv import SetBool
-from system_support import CONTROLLER, ESTIMATOR, LIMIT, MONITOR, PLANT, Program, Robot, init_test_node, wait_for
+from system_support import CONTROLLER, DRIVER, ESTIMATOR, LIMIT, MONITOR, Program, Robot, init_test_node, wait_for
 
 CYCLES = 600
 """Cycles between two sets: at 0.5 m/s after the first."""
@@ -48,7 +48,7 @@ class SetParametersLockstepTest(unittest.TestCase):
         self.assertTrue(answer.success, answer.message)
 
     def step(self) -> None:
-        self.call(f"{PLANT}/step", Step, CYCLES)
+        self.call(f"{DRIVER}/step", Step, CYCLES)
 
     def rows(self) -> int:
         with contextlib.suppress(LogError, OSError):  # it has just begun
@@ -56,8 +56,8 @@ class SetParametersLockstepTest(unittest.TestCase):
         return 0
 
     def test_the_same_numbers_in_every_cycle(self) -> None:
-        self.robot.start(PLANT)
-        self.call(f"{PLANT}/set_pause", SetBool, True)  # cycle 0 waits for the others
+        self.robot.start(DRIVER)
+        self.call(f"{DRIVER}/set_pause", SetBool, True)  # cycle 0 waits for the others
         self.robot.start(ESTIMATOR, CONTROLLER, MONITOR)
         rospy.wait_for_service("e_stop_reset", LIMIT)
         rospy.wait_for_service(f"{CONTROLLER}/set_parameter_map", LIMIT)

@@ -18,10 +18,10 @@ from robot_control.msg import SafetyStatus
 from std_msgs.msg import Float64MultiArray
 from system_support import (
     CONTROLLER,
+    DRIVER,
     ESTIMATOR,
     LOOP,
     MONITOR,
-    PLANT,
     Program,
     init_test_node,
     refusal,
@@ -101,8 +101,8 @@ class StartTest(unittest.TestCase):
 
     def test_refuses_paths_that_are_no_regular_files_and_too_few_descriptors(self) -> None:
         for argument in ("_config:=/dev/zero", "_urdf:=/dev/zero", "_scene:=/dev/zero"):
-            self.assertIn("is a device; only a regular file is read", refusal(PLANT, argument))
-            self.forget(PLANT)
+            self.assertIn("is a device; only a regular file is read", refusal(DRIVER, argument))
+            self.forget(DRIVER)
         for name in LOOP:
             for files in (8, 32):
                 said = refusal(name, prefix=["prlimit", f"--nofile={files}:{files}"])
@@ -116,10 +116,10 @@ class StartTest(unittest.TestCase):
         self.forget(CONTROLLER)
 
     def test_refusal_shows_the_overrides_in_force(self) -> None:
-        output = refusal(PLANT, "_urdf:=/nonexistent.urdf")
+        output = refusal(DRIVER, "_urdf:=/nonexistent.urdf")
         self.assertIn("/mujoco_plant/urdf", output, "where it stands")
         self.assertIn("/nonexistent.urdf", output)
-        self.forget(PLANT)
+        self.forget(DRIVER)
 
     def test_refuses_without_the_real_time_that_is_required(self) -> None:
         # They are refused at once: no other node runs.
@@ -152,10 +152,10 @@ class StartTest(unittest.TestCase):
             inertia = "<mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/>"
             urdf.write_text(f"<robot name='box'><link name='base_link'><inertial>{inertia}</inertial></link></robot>")
             scene.write_text("<mujoco><worldbody><geom type='nonsense'/></worldbody></mujoco>")
-            self.assertIn("left_wheel_joint", refusal(PLANT, f"_urdf:={urdf}"))
-            self.forget(PLANT)
-            self.assertIn("nonsense", refusal(PLANT, f"_scene:={scene}"))
-            self.forget(PLANT)
+            self.assertIn("left_wheel_joint", refusal(DRIVER, f"_urdf:={urdf}"))
+            self.forget(DRIVER)
+            self.assertIn("nonsense", refusal(DRIVER, f"_scene:={scene}"))
+            self.forget(DRIVER)
 
     def test_second_instance_is_refused_and_the_first_drives_on(self) -> None:
         with running_robot() as robot:
@@ -262,7 +262,7 @@ class StartTest(unittest.TestCase):
                 rospy.Subscriber("safety_status", SafetyStatus, reported.append),
             ]
             robot.start(MONITOR)
-            absent = {PLANT, ESTIMATOR, CONTROLLER}
+            absent = {DRIVER, ESTIMATOR, CONTROLLER}
             wait_for("the names of the missing nodes", lambda: reported and set(reported[-1].missing) == absent)
             robot.start(CONTROLLER)
             wait_for("the controller's wait", lambda: "waiting for mujoco_plant" in robot.nodes[CONTROLLER].output)
@@ -274,7 +274,7 @@ class StartTest(unittest.TestCase):
             self.assertTrue(answer.success, answer.message)
             wait_for("the stop", lambda: "e_stop_service" in robot.causes)
 
-            robot.start(PLANT, ESTIMATOR)
+            robot.start(DRIVER, ESTIMATOR)
             robot.await_ready()
             self.assertNotEqual(robot.status.run, run)
             wait_for("50 commands", lambda: len(limited) > 50 and len(wheels) > 100)

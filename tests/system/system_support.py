@@ -32,8 +32,8 @@ rosunit_skips.record()
 
 Case = TypeVar("Case", bound=Callable[..., None])
 
-PLANT, ESTIMATOR, CONTROLLER, MONITOR = "mujoco_plant", "state_estimator", "diff_drive_controller", "safety_monitor"
-LOOP = (PLANT, ESTIMATOR, CONTROLLER, MONITOR)
+DRIVER, ESTIMATOR, CONTROLLER, MONITOR = "mujoco_plant", "state_estimator", "diff_drive_controller", "safety_monitor"
+LOOP = (DRIVER, ESTIMATOR, CONTROLLER, MONITOR)
 LIMIT = 30.0
 """s; an event that takes longer has not happened. On an idle machine nothing here takes longer than 3 s."""
 SEND_PERIOD = 0.1

@@ -8,7 +8,7 @@ import time
 import rospy
 import rostest
 from std_srvs.srv import SetBool
-from system_support import LIMIT, LOOP, MONITOR, PLANT, Program, RobotTestCase, wait_for
+from system_support import DRIVER, LIMIT, LOOP, MONITOR, Program, RobotTestCase, wait_for
 
 
 def answer(*arguments: str, **environment: str) -> tuple[int, str]:
@@ -104,7 +104,7 @@ class WhyTest(RobotTestCase):
         self.robot.release()
 
     def test_a_paused_simulation_is_reported_with_its_remedy(self) -> None:
-        pause = rospy.ServiceProxy(f"{PLANT}/set_pause", SetBool)
+        pause = rospy.ServiceProxy(f"{DRIVER}/set_pause", SetBool)
         pause(True)
         try:
             code, words = self.ask_until("The simulation is paused.")

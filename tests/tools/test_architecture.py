@@ -51,8 +51,8 @@ MAY_INCLUDE = {
     "log/replay": LOOP,
     "simulation": ALL - {"simulation"},
     "bindings": ALL | {"log/replay"},
-    "ros": LOOP | {"files", "machine/description", "drivers/mujoco"},
-    "main": {"ros"},
+    "ros": LOOP | {"files", "machine/description"},
+    "main": {"ros", "drivers/mujoco"},
 }
 ROS = re.compile(r"^(ros|tf2?|tf2_\w+|\w+_msgs|std_srvs|rosgraph_msgs|robot_control)/")
 """of headers that are included in angle brackets; those of src/ros are included in quotes"""
@@ -154,7 +154,7 @@ def test_only_its_driver_sees_mujoco():
 
 
 SIMULATED = {"drivers/mujoco", "simulation/faults"}
-SIMULATORS = {"ros/nodes/mujoco_plant_node.cpp", "configuration/parameters.h"}  # the latter: its parameters
+SIMULATORS = {"main/mujoco_plant.cpp", "configuration/parameters.h"}  # the latter: its parameters
 
 
 def test_nothing_simulated_is_in_the_product():
@@ -165,6 +165,39 @@ def test_nothing_simulated_is_in_the_product():
         yield from (other for other in includes(path) if room(other) in SIMULATED)
 
     assert violations(rule) == []
+
+
+PROGRAMS = re.compile(r"\b(?:mujoco_plant|state_estimator|diff_drive_controller|safety_monitor)\b")
+OTHER_PACKAGES = {"configuration/parameters.h", "configuration/peer_file.h"}
+"""They speak of the diff_drive_controller of ros_controllers."""
+
+
+def test_the_core_speaks_of_roles():
+    """Program names stand in main, in the table of signals/roles.h and, as its block's name, in a driver's folder."""
+
+    def rule(path):
+        own = str(path.relative_to(SRC if path.is_relative_to(SRC) else ROOT))
+        if own.startswith(("main/", "drivers/")) or own in OTHER_PACKAGES | {"signals/roles.h"}:
+            return
+        yield from (line for line in path.read_text().splitlines() if PROGRAMS.search(line) and "#include" not in line)
+
+    assert violations(rule) == []
+
+
+def test_the_tools_speak_of_roles():
+    """Texts of the tools take program names from common/roles.py; docstrings may name a block of parameters."""
+    named = []
+    for path in (ROOT / "python" / "robot_control").rglob("*.py"):
+        tree = ast.parse(path.read_text())
+        parts = [
+            node
+            for parent in ast.walk(tree)
+            for node in ast.iter_child_nodes(parent)
+            if not isinstance(parent, ast.Expr)
+        ]
+        texts = [node for node in parts if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+        named += [f"{path.name}:{node.lineno}" for node in texts if PROGRAMS.search(node.value)]
+    assert named == []
 
 
 def test_only_rt_reads_clocks():

@@ -47,7 +47,7 @@ def test_every_row_of_a_log_is_computed_again(log, capsys):
 def test_one_law_alone(log, capsys):
     code, text, _ = replay(capsys, log, "--law", "estimator")
     assert code == 0
-    assert list(compared(text)) == ["state_estimator"]
+    assert list(compared(text)) == ["estimator"]
 
 
 def test_what_if_draws_both(log, capsys, tmp_path):

@@ -4,19 +4,8 @@ import re
 from dataclasses import replace
 
 import pytest
-from robot_control.why.diagnosis import (
-    CONTROLLER,
-    ESTIMATOR,
-    LOOP,
-    MONITOR,
-    PLANT,
-    Cause,
-    Facts,
-    Report,
-    Safety,
-    Verdict,
-    judge,
-)
+from robot_control.common.roles import CONTROLLER, DRIVER, ESTIMATOR, LOOP, MONITOR
+from robot_control.why.diagnosis import Cause, Facts, Report, Safety, Verdict, judge
 from robot_control.why.screen import Look, render
 
 E_STOP = Cause(
@@ -43,7 +32,7 @@ def driving() -> Facts:
         master="http://127.0.0.1:11311",
         safety=Safety("DRIVE", "drive", held=12.0),
         reports={
-            PLANT: Report("running", {"driver_state": "running", "gate_verdict": "passed", "injected": "none"}),
+            DRIVER: Report("running", {"driver_state": "running", "gate_verdict": "passed", "injected": "none"}),
             ESTIMATOR: Report("running", {"flags": "valid"}),
             CONTROLLER: Report("running", {"requested_m_s": "0.5", "requested_rad_s": "0.2"}),
             MONITOR: Report("running"),
@@ -118,10 +107,10 @@ def test_a_moving_robot_moves(driving):
 def test_wheels_without_load_are_named_while_they_turn(driving):
     said = "left bears no load at rest, on the ground stand skid"
     for measured in ((0.5, 0.2), (0.0, 0.0)):
-        answer = judge(replace(saying(driving, PLANT, unloaded_wheels=said), measured=measured))
+        answer = judge(replace(saying(driving, DRIVER, suspicious=said), measured=measured))
         assert said in answer.headline
         assert answer.actions
-    standing = replace(saying(driving, PLANT, unloaded_wheels=said), limited=(0.0, 0.0), measured=(0.0, 0.0))
+    standing = replace(saying(driving, DRIVER, suspicious=said), limited=(0.0, 0.0), measured=(0.0, 0.0))
     assert said in text(standing)
 
 
@@ -161,7 +150,7 @@ def test_what_the_monitor_said_long_ago_does_not_count(driving):
 
 
 def test_before_every_node_was_seen_it_names_the_missing_ones(driving):
-    waiting = without(driving, PLANT)
+    waiting = without(driving, DRIVER)
     waiting = replace(waiting, safety=replace(waiting.safety, state="INIT", permit="brake"))
     answer = judge(waiting)
     assert answer.headline == "Not ready: the monitor waits for mujoco_plant."
@@ -216,7 +205,7 @@ def test_commands_are_for_the_robots_own_namespace(driving):
 
 
 def test_a_paused_simulation_is_reported_before_a_stop(driving):
-    facts = saying(stopped(driving, E_STOP), PLANT, **PAUSED)
+    facts = saying(stopped(driving, E_STOP), DRIVER, **PAUSED)
     answer = judge(facts)
     assert answer.headline == "The simulation is paused."
     assert answer.commands == ("rosservice call /mujoco_plant/set_pause false",)
@@ -327,7 +316,7 @@ def test_several_senders_are_all_named(driving):
 def test_a_gate_that_brakes_by_itself_is_reported(driving):
     facts = saying(
         driving,
-        PLANT,
+        DRIVER,
         gate_verdict="brake",
         gate__no_command=("there is no command of the last 4 cycles", "look whether diff_drive_controller runs"),
     )
@@ -337,7 +326,7 @@ def test_a_gate_that_brakes_by_itself_is_reported(driving):
 
 
 def test_a_gate_that_applied_a_permit_of_a_second_ago_is_no_answer(driving):
-    facts = saying(driving, PLANT, gate_verdict="brake", gate__permit_brake="the permit orders the brake")
+    facts = saying(driving, DRIVER, gate_verdict="brake", gate__permit_brake="the permit orders the brake")
     assert judge(facts).verdict is Verdict.MOVING
 
 
@@ -389,7 +378,7 @@ def test_a_master_that_died_is_reported_while_the_robot_drives_on(driving):
 
 
 def test_injected_faults_and_slip_are_shown(driving):
-    facts = saying(saying(driving, PLANT, injected="gyro stuck"), ESTIMATOR, flags="valid slip")
+    facts = saying(saying(driving, DRIVER, injected="gyro stuck"), ESTIMATOR, flags="valid slip")
     assert "gyro stuck" in text(facts)
     assert "wheels and inertial sensors disagree" in text(facts)
 

@@ -24,6 +24,7 @@ from robot_control.calibrate.law import (
     return_errors,
     umbmark,
 )
+from robot_control.common.roles import ESTIMATOR
 from robot_control.drive.send_plan import number_of_sends, positive
 
 RATIO = (0.95, 1.05)
@@ -244,7 +245,7 @@ def overlay(robot: Mapping[str, Any], truth: Truth) -> dict[str, dict[str, float
             "wheel_base_factor": 1.0,
             "wheel_base_deviation": max(MIN_BASE, truth.base_deviation),
         }
-    return {"robot": own} | ({"state_estimator": estimator} if estimator else {})
+    return {"robot": own} | ({ESTIMATOR: estimator} if estimator else {})
 
 
 def _radius(robot: Mapping[str, Any]) -> float:

@@ -39,6 +39,7 @@ from robot_control.calibrate.robot import CalibratedRobot
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message, printable, write_text
 from robot_control.common.output_files import check_outputs
+from robot_control.common.roles import CONTROLLER, ESTIMATOR
 from robot_control.common.running_robot import RefusedError, await_all, master_state, other_senders, running_settings
 from robot_control.common.settings import Settings
 from robot_control.common.terminal_dialog import NoAnswerError, Questions
@@ -55,7 +56,6 @@ MIN_DISTANCE = 0.3
 """m; half of the shortest drive, and more than a robot creeps"""
 STANDSTILL = 0.5
 """s of standing before a pose is read: the body has stopped rocking"""
-ESTIMATOR = "state_estimator"
 MARKS = (
     "Mark on the floor where the middle between the wheels stands, and which way the robot points (a string along the "
     "axle, and one ahead). Each run begins where the robot stands: set it back whenever the path is no longer free."
@@ -273,7 +273,7 @@ def _measured(
     if robot.received == 0:
         raise RefusedError(f"no wheel_odom: does {ESTIMATOR} run? Start the robot first")
     if not options.manual and not robot.has_receiver():
-        raise RefusedError(f"no node subscribes to {rospy.resolve_name('cmd_vel')}: does diff_drive_controller run?")
+        raise RefusedError(f"no node subscribes to {rospy.resolve_name('cmd_vel')}: does {CONTROLLER} run?")
     questions = Questions(signals.going_on)
     wizard = Wizard(robot, options, wheels_of(described), signals, questions, senders)
     straights, squares = wizard.run()

@@ -8,10 +8,10 @@ silent.
 import rospy
 from geometry_msgs.msg import TwistStamped
 
+from robot_control.common.roles import CONTROLLER
 from robot_control.common.topic_sender import Sender
 
 PLAIN = "cmd_vel_stamped"
-CONTROLLER = "diff_drive_controller"
 
 
 class CommandTopic:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import rospy
 from dynamic_reconfigure.msg import Config
 
-CONTROLLER = "diff_drive_controller"
+from robot_control.common.roles import CONTROLLER
 
 
 class LiveParameters:

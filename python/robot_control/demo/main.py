@@ -19,6 +19,7 @@ from robot_control._robot_control import BagError, BagReader
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import printable, utf8
 from robot_control.common.program import run
+from robot_control.common.roles import LOOP, TELEMETRY
 from robot_control.common.run_log import LogError, read_log
 from robot_control.demo.arguments import parse
 from robot_control.demo.loop_timing import processor_time, stolen_share
@@ -131,7 +132,7 @@ def _drive(seconds: float, out: Path) -> float:
     parameters.parent.mkdir()
     parameters.write_text(EVERY_CYCLE)
     with _ended_at_the_end() as children:
-        print("starting roscore, mujoco_plant, state_estimator, diff_drive_controller, safety_monitor, telemetry")
+        print(f"starting roscore, {', '.join(LOOP)}, {TELEMETRY}")
         port = os.environ["ROS_MASTER_URI"].rsplit(":", 1)[1].strip("/")
         launch = Child(
             [

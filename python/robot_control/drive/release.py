@@ -15,6 +15,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
 
+from robot_control.common.roles import MONITOR
 from robot_control.safety.interruptions import Interruptions, Status
 from robot_control.safety.zero_request import silent_long_enough
 
@@ -127,7 +128,7 @@ class Release:
         self._provisional = True
         self._phase = Phase.SENDING
         yield Line(
-            f"no safety_status within {NO_MONITOR:g} s: safety_monitor does not run, and without it the robot brakes; "
+            f"no safety_status within {NO_MONITOR:g} s: {MONITOR} does not run, and without it the robot brakes; "
             "sending the command all the same"
         )
 
@@ -146,23 +147,23 @@ class Release:
 
     def _obstacle(self, status: Status, *, gone: bool) -> str:
         if gone:
-            return "safety_status is silent: waits with zeros for safety_monitor"
+            return f"safety_status is silent: waits with zeros for {MONITOR}"
         if status.awaiting_zero:
             silence = silent_long_enough(self.command_timeout)
             return f"waits for a zero request; stop the other sender{silence} or let it send zero"
-        return f"waits with zeros: safety_monitor waits for {', '.join(status.missing) or 'the first cycles'}"
+        return f"waits with zeros: {MONITOR} waits for {', '.join(status.missing) or 'the first cycles'}"
 
     def _drive(self, now: float, status: Status, age: float) -> Iterator[Line]:
         if now - self._gone_since > GONE:
             self._phase = Phase.STOPPED
             yield Line(
-                "safety_monitor is gone, and without it the robot brakes: the command has no effect, zeros are sent "
-                "from now on. To drive again: start safety_monitor, call e_stop_reset, start send_cmd.py again"
+                f"{MONITOR} is gone, and without it the robot brakes: the command has no effect, zeros are sent "
+                f"from now on. To drive again: start {MONITOR}, call e_stop_reset, start send_cmd.py again"
             )
             return
         if age > NO_MONITOR and not self._silence_logged:
             self._silence_logged = True
-            yield Line(f"no safety_status for {NO_MONITOR:g} s: safety_monitor may hang; then the robot brakes")
+            yield Line(f"no safety_status for {NO_MONITOR:g} s: {MONITOR} may hang; then the robot brakes")
         no_speed = status.speed_limit < STANDING
         if no_speed and not self._no_speed:
             yield Line("the command has no effect now: clearance leaves the robot no speed")

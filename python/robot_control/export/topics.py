@@ -17,6 +17,7 @@ from rospy import Time
 from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
 
+from robot_control.common.roles import ESTIMATOR
 from robot_control.common.run_log import FloatArray, RunLog, read_run
 
 ODOM_RATE = 50.0
@@ -138,4 +139,4 @@ def root_link(urdf: str) -> str:
 def odom_frame(parameters: str) -> str:
     """The name of the frame odom, from the YAML text in a log's header."""
     blocks = yaml.safe_load(parameters) or {}
-    return str((blocks.get("state_estimator") or {}).get("odom_frame", "odom"))
+    return str((blocks.get(ESTIMATOR) or {}).get("odom_frame", "odom"))

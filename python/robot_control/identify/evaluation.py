@@ -10,6 +10,7 @@ from typing import Any
 
 from robot_control._robot_control import controller_parameters, derived_wheel_loops, wheel_loops
 from robot_control._robot_control import describe as describe_robot
+from robot_control.common.roles import CONTROLLER
 from robot_control.common.run_log import Log
 from robot_control.common.settings import Settings
 from robot_control.drive.send_plan import number_of_sends, positive
@@ -50,7 +51,7 @@ def parse_options(arguments: list[str]) -> Options:
     parser = argparse.ArgumentParser(
         prog="identify.py",
         description="Drives ramps and turns on the spot, measures inertia, friction and delay of the wheels, and "
-        "writes feed-forward and gains for diff_drive_controller.",
+        f"writes feed-forward and gains for {CONTROLLER}.",
     )
     parser.add_argument("--space", type=positive, default=1.0, help="m free ahead of the robot (default %(default)s)")
     parser.add_argument("--max-speed", type=positive, default=0.5, help="m/s, of robot and rims (default %(default)s)")
@@ -100,14 +101,14 @@ def evaluate(log: Log, settings: Settings, mass: float | None, source: str) -> O
     now = wheel_loops(settings.path, settings.values)
     found = identify(log, base)
     forward = feed_forward(found, base, now[0]["lifted"], mass)
-    overlaid = [(f"diff_drive_controller.feed_forward.{key}", repr(value)) for key, value in forward.items()]
+    overlaid = [(f"{CONTROLLER}.feed_forward.{key}", repr(value)) for key, value in forward.items()]
     derived = derived_wheel_loops(settings.path, [*settings.values, *overlaid])
     proposal = propose(found, forward, now, derived, weighed=mass is not None)
     table = to_table(found, proposal, robot, now)
     said = warnings(found, proposal)
     head = [
         f"Measured on {robot['name']} by identify.py, {found.seconds:.0f} s of motion, {source}.",
-        "Load it and restart diff_drive_controller: rosparam load FILE",
+        f"Load it and restart {CONTROLLER}: rosparam load FILE",
         "",
         *table.splitlines(),
         *(f"! {sentence}" for sentence in said),

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from robot_control.common.roles import ESTIMATOR, MONITOR
 from robot_control.safety.states import DRIVABLE
 
 SILENCE = 1.0
@@ -58,9 +59,9 @@ def moves(look: Look) -> bool:
 def hindrance(look: Look) -> str:
     """Why the plan cannot begin; empty if it can."""
     if not look.state:
-        return "no safety_status: does safety_monitor run? Start the robot (roslaunch robot_control sim.launch) first"
+        return f"no safety_status: does {MONITOR} run? Start the robot (roslaunch robot_control sim.launch) first"
     if look.pose is None:
-        return "no odometry: does state_estimator run? Start the robot first"
+        return f"no odometry: does {ESTIMATOR} run? Start the robot first"
     if look.senders:
         return f"{', '.join(look.senders)} may send on cmd_vel, too: two senders would pull at one robot. End it first"
     if moves(look):
@@ -101,7 +102,7 @@ def _unwatched(look: Look) -> str:
     if look.pose is None or look.pose_age > SILENCE:
         return f"no odometry for {SILENCE:g} s: the position of the robot is unknown"
     if look.status_age > SILENCE + 1.0:  # published once per second where nothing changes
-        return f"no safety_status for {SILENCE + 1.0:g} s: safety_monitor or its link is gone"
+        return f"no safety_status for {SILENCE + 1.0:g} s: {MONITOR} or its link is gone"
     return ""
 
 

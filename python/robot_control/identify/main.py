@@ -11,6 +11,7 @@ from robot_control import ParameterError, RobotError
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import escaped, fit_for_message, write_text
 from robot_control.common.output_files import check_outputs
+from robot_control.common.roles import CONTROLLER
 from robot_control.common.run_log import FloatArray, LogError, read_log
 from robot_control.common.running_robot import RefusedError, await_all, master_state, other_senders, running_settings
 from robot_control.common.settings import Settings
@@ -27,7 +28,6 @@ from robot_control.why.facts import nodes_of
 
 PERIOD = 0.05
 """s between two commands: 25 are lost before the default cmd_vel_timeout"""
-CONTROLLER = "diff_drive_controller"
 NO_MASTER = "or fit a log with --log"
 SIMULATED_TIME = "or fit the log of a command_script with --log"
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+from robot_control.common.roles import CONTROLLER
 from robot_control.identify.fit import Estimate, Identification
 from robot_control.identify.tuning_proposal import RESERVE, Proposal
 
@@ -97,7 +98,7 @@ def warnings(found: Identification, proposal: Proposal) -> list[str]:
 def to_yaml(proposal: Proposal, lines: Iterable[str]) -> str:
     """The overlay, below `lines` as comments."""
     head = "".join(f"# {line}".rstrip() + "\n" for line in lines)
-    return head + "diff_drive_controller:\n" + "".join(_yaml_lines(proposal.overlay(), "  "))
+    return head + f"{CONTROLLER}:\n" + "".join(_yaml_lines(proposal.overlay(), "  "))
 
 
 def _yaml_lines(tree: Mapping[str, Any], indent: str) -> Iterator[str]:

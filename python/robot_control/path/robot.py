@@ -11,6 +11,7 @@ from nav_msgs.msg import Odometry
 
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.orientation import yaw_of
+from robot_control.common.roles import CONTROLLER, ESTIMATOR, MONITOR
 from robot_control.msg import DriveState, SafetyStatus
 from robot_control.path.follower import Pose
 from robot_control.safety.states import DRIVABLE, STOPPED
@@ -89,12 +90,12 @@ class Robot:
         if not self.drivable:
             return self.stop_in_words()
         refused = now - self.refused_at > CAUSE_DELAY
-        return "diff_drive_controller refuses what was requested before a stop" if refused else ""
+        return f"{CONTROLLER} refuses what was requested before a stop" if refused else ""
 
     def stop_in_words(self) -> str:
         """Why the robot may not drive."""
         if self.safety is None:
-            return "no safety_status: safety_monitor does not run"
+            return f"no safety_status: {MONITOR} does not run"
         why = "; ".join(self.safety.sentences) or "it is not ready"
         return f"{self.safety.state_name}: {why}. Call e_stop_reset, then start the path again"
 
@@ -115,10 +116,10 @@ class Robot:
         if not going_on():
             return "interrupted"
         if self.odometry is None:
-            return "no odom: state_estimator does not run"
+            return f"no odom: {ESTIMATOR} does not run"
         if not self.drivable:
             return self.stop_in_words()
-        return f"{SOURCE} is {self.masked_by}" if self.masked_by else "diff_drive_controller does not take commands"
+        return f"{SOURCE} is {self.masked_by}" if self.masked_by else f"{CONTROLLER} does not take commands"
 
     def _receive_odometry(self, message: Odometry) -> None:
         self.odometry, self.odometry_at = message, time.monotonic()

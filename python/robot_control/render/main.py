@@ -17,6 +17,7 @@ from robot_control._robot_control import DriverError, ParameterError, RobotError
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import printable
 from robot_control.common.program import run
+from robot_control.common.roles import DRIVER
 from robot_control.common.run_log import LogError
 from robot_control.drive.send_plan import positive
 from robot_control.installed_files import share_file
@@ -44,7 +45,7 @@ def model_of(given: argparse.Namespace) -> str:
     if given.scene is not None:
         known = not {"/", "."} & set(given.scene)
         scene = share_file(f"urdf/scenes/{given.scene}.xml") if known else str(Path(given.scene).resolve())
-        values.append(("mujoco_plant.scene", scene))
+        values.append((f"{DRIVER}.scene", scene))
     mjcf: str = _robot_control.mjcf(path, values)
     return mjcf
 

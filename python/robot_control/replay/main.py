@@ -14,10 +14,11 @@ from robot_control._robot_control import BagError, replay_log
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import escaped, escaped_lines, fit_for_message, utf8
 from robot_control.common.picture_file import check_picture
+from robot_control.common.roles import CONTROLLER, ESTIMATOR, MONITOR
 from robot_control.replay.recorded_setup import RecordedSetup, recorded_setup
 
-LAWS = ("gate", "state_estimator", "diff_drive_controller", "safety_monitor")
-VARIED = ("state_estimator.", "safety_monitor.")
+LAWS = ("gate", "estimator", "controller", "monitor")
+VARIED = (f"{ESTIMATOR}.", f"{MONITOR}.")
 WITHOUT_EFFECT = "the controller reads it at its start alone, or it belongs to no law that is varied"
 MAX_LINES = 20
 EXACT, NOT_COMPARED, REFUSED, DIFFERENT = 0, 1, 2, 3
@@ -63,7 +64,7 @@ def parse(arguments: Sequence[str] | None) -> argparse.Namespace:
         "replayed; 3: something differs.",
     )
     parser.add_argument("log", type=Path, metavar="LOG", help="run.bag")
-    parser.add_argument("--law", choices=[*LAWS, "estimator", "controller", "monitor"], help="of this law alone")
+    parser.add_argument("--law", choices=LAWS, help="of this law alone")
     what_if = parser.add_argument_group("what if", "the laws with other parameters beside, on the recorded inputs")
     what_if.add_argument(
         "--set", action="append", default=[], type=_assignment, metavar="NODE.PARAMETER=VALUE", help="repeatable"
@@ -81,13 +82,13 @@ def _assignment(text: str) -> tuple[str, str]:
 
 
 def chosen(law: str | None) -> list[str]:
-    """Full names of the laws that are meant."""
-    return [name for name in LAWS if law is None or name.endswith(law)]
+    """The laws that are meant."""
+    return [name for name in LAWS if law in {None, name}]
 
 
 def without_effect(keys: Sequence[str], live: Sequence[str]) -> list[str]:
     """The set keys that no law reads; the controller reads the keys `live` from the log."""
-    taken = [f"diff_drive_controller.{key}" for key in live]
+    taken = [f"{CONTROLLER}.{key}" for key in live]
     return [key for key in keys if not key.startswith(("robot.", *VARIED)) and not key.startswith(tuple(taken))]
 
 

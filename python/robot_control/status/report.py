@@ -8,10 +8,11 @@ from dataclasses import dataclass, field
 
 from diagnostic_msgs.msg import DiagnosticStatus
 
+from robot_control.common.roles import CONTROLLER, ESTIMATOR, MONITOR
 from robot_control.msg import RobotStatus, SafetyStatus
 from robot_control.safety.states import DRIVABLE
 
-REQUIRED = ("state_estimator", "diff_drive_controller", "safety_monitor")
+REQUIRED = (ESTIMATOR, CONTROLLER, MONITOR)
 """Nodes of every robot; the driver's has its own name"""
 MANUAL_SOURCES = frozenset({"joy_vel", "key_vel"})
 MANUAL_NODES = ("teleop", "pad")
@@ -36,7 +37,7 @@ class Reports:
 def status_of(reports: Reports) -> RobotStatus:
     """All but stamp, version and uptime."""
     status = RobotStatus()
-    senders = reports.value("diff_drive_controller", "senders")
+    senders = reports.value(CONTROLLER, "senders")
     status.senders = senders.split(", ") if senders else []
     status.commander = reports.commander
     status.health, status.problems = _health(reports)
@@ -46,7 +47,7 @@ def status_of(reports: Reports) -> RobotStatus:
         status.remedies, status.warnings = reports.safety.remedies, reports.safety.warning_sentences
     status.mode = _mode(status)
     status.odometry_confidence = _confidence(reports)
-    status.odometry_degraded = bool(reports.value("state_estimator", "degraded"))
+    status.odometry_degraded = bool(reports.value(ESTIMATOR, "degraded"))
     return status
 
 
@@ -79,12 +80,12 @@ def _health(reports: Reports) -> tuple[int, list[str]]:
 
 
 def _confidence(reports: Reports) -> float:
-    flags = reports.value("state_estimator", "flags")
-    if "state_estimator" not in reports.diagnostics:
+    flags = reports.value(ESTIMATOR, "flags")
+    if ESTIMATOR not in reports.diagnostics:
         return math.nan
     if "valid" not in flags.split():
         return 0.0
-    return min(float(reports.value("state_estimator", f"confidence_{sensor}") or "nan") for sensor in ODOMETRY_SENSORS)
+    return min(float(reports.value(ESTIMATOR, f"confidence_{sensor}") or "nan") for sensor in ODOMETRY_SENSORS)
 
 
 def changed(new: RobotStatus, old: RobotStatus) -> bool:

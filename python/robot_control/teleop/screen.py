@@ -5,8 +5,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from robot_control.common.command import Command
+from robot_control.common.roles import CONTROLLER
 from robot_control.teleop.key_map import KeyMap
-from robot_control.why.diagnosis import CONTROLLER, Facts, Verdict, judge
+from robot_control.why.diagnosis import Facts, Verdict, judge
 
 WIDTH, HEIGHT = 80, 24
 LABEL = 10

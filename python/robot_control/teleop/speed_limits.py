@@ -6,7 +6,8 @@ from pathlib import Path
 
 import yaml  # type: ignore[import-untyped]
 
-from robot_control.common.live_parameters import CONTROLLER, LiveParameters
+from robot_control.common.live_parameters import LiveParameters
+from robot_control.common.roles import CONTROLLER
 from robot_control.installed_files import share_file
 from robot_control.parameter_layers import DEFAULTS
 from robot_control.teleop.operator import Limits

@@ -4,11 +4,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 
+from robot_control.common.roles import CONTROLLER, DRIVER, ESTIMATOR, LOOP, MONITOR
 from robot_control.safety.states import DRIVABLE
 from robot_control.safety.zero_request import silent_long_enough
-
-PLANT, ESTIMATOR, CONTROLLER, MONITOR = "mujoco_plant", "state_estimator", "diff_drive_controller", "safety_monitor"
-LOOP = (PLANT, ESTIMATOR, CONTROLLER, MONITOR)
 
 SILENCE = 3.0
 """s; every node reports once per second: after three it is absent, or hangs."""
@@ -200,13 +198,13 @@ def _no_nodes(facts: Facts) -> Answer | None:
 
 
 def _paused(facts: Facts) -> Answer | None:
-    if facts.value(PLANT, "driver_state") != "paused":
+    if facts.value(DRIVER, "driver_state") != "paused":
         return None
     return Answer(
         Verdict.STOPPED,
         "The simulation is paused.",
         (("", "let it run"),),
-        (f"rosservice call {facts.path(PLANT)}/set_pause false",),
+        (f"rosservice call {facts.path(DRIVER)}/set_pause false",),
     )
 
 
@@ -266,13 +264,13 @@ def _commands(facts: Facts, causes: list[Cause], absent: tuple[str, ...]) -> Ite
 def _gate(facts: Facts) -> Answer | None:
     # These reasons of permit and command only follow from others; a report is a second old, a permit is not.
     theirs = {"permit_brake", "controller_brake", "first_tick", "command_held"}
-    reasons = {name: text for name, text in facts.reasons(PLANT, "gate").items() if name not in theirs}
-    if facts.value(PLANT, "gate_verdict") != "brake" or not reasons:
+    reasons = {name: text for name, text in facts.reasons(DRIVER, "gate").items() if name not in theirs}
+    if facts.value(DRIVER, "gate_verdict") != "brake" or not reasons:
         return None
     return Answer(
         Verdict.STOPPED,
         f"The gate brakes: {next(iter(reasons.values()))}.",
-        tuple(("integrator", text) for name, text in facts.remedies(PLANT, "gate").items() if name in reasons),
+        tuple(("integrator", text) for name, text in facts.remedies(DRIVER, "gate").items() if name in reasons),
     )
 
 
@@ -370,7 +368,7 @@ def speeds(pair: tuple[float, float]) -> str:
 def _moving(facts: Facts) -> Answer:
     safety = facts.received()
     slow = f", no faster than {safety.speed_limit:.2g} m/s" if safety and safety.speed_limit < float("inf") else ""
-    unloaded = facts.value(PLANT, "unloaded_wheels")
+    unloaded = facts.value(DRIVER, "suspicious")
     if unloaded and _motion_commanded(facts):
         return Answer(
             Verdict.MOVING,

@@ -2,8 +2,9 @@
 
 from collections.abc import Iterable, Sequence
 
+from robot_control.common.roles import LOOP
 from robot_control.msg import SafetyStatus
-from robot_control.why.diagnosis import LOOP, Cause, Safety
+from robot_control.why.diagnosis import Cause, Safety
 
 
 def safety_of(status: SafetyStatus, held: float, age: float) -> Safety:

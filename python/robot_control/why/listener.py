@@ -10,9 +10,10 @@ from geometry_msgs.msg import TwistStamped
 from nav_msgs.msg import Odometry
 
 from robot_control.common.live_parameters import LiveParameters
+from robot_control.common.roles import LOOP
 from robot_control.common.ros_master import COMMAND_TOPICS, Master, senders_of
 from robot_control.msg import SafetyStatus
-from robot_control.why.diagnosis import LOOP, SILENCE, Facts, Report, Safety
+from robot_control.why.diagnosis import SILENCE, Facts, Report, Safety
 from robot_control.why.facts import below, nodes_of, other_robots, safety_of
 
 MASTER_PERIOD = 1.0

@@ -5,20 +5,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from robot_control.common.files import escaped
-from robot_control.why.diagnosis import (
-    CONTROLLER,
-    ESTIMATOR,
-    LOOP,
-    PLANT,
-    Answer,
-    Facts,
-    Safety,
-    Verdict,
-    judge,
-    missing_nodes,
-    senders_in_words,
-    speeds,
-)
+from robot_control.common.roles import CONTROLLER, DRIVER, ESTIMATOR, LOOP
+from robot_control.why.diagnosis import Answer, Facts, Safety, Verdict, judge, missing_nodes, senders_in_words, speeds
 
 LABEL = 11
 """columns for the word before each line"""
@@ -144,18 +132,18 @@ def _command(facts: Facts, look: Look) -> Rows:
 
 
 def _gate(facts: Facts) -> Rows:
-    verdict = facts.value(PLANT, "gate_verdict")
+    verdict = facts.value(DRIVER, "gate_verdict")
     if not verdict:
         return
-    reasons = "; ".join(facts.reasons(PLANT, "gate").values())
+    reasons = "; ".join(facts.reasons(DRIVER, "gate").values())
     yield "gate", f"{verdict}: {reasons}" if reasons else verdict, ""
 
 
 def _circumstances(facts: Facts) -> Rows:
-    faults = facts.value(PLANT, "injected")
+    faults = facts.value(DRIVER, "injected")
     if faults not in {"", "none"}:
         yield "injected", faults, "33"
-    unloaded = facts.value(PLANT, "unloaded_wheels")
+    unloaded = facts.value(DRIVER, "suspicious")
     if unloaded:
         yield "wheels", unloaded, "33"
     slip = facts.reasons(ESTIMATOR, "slip").values()

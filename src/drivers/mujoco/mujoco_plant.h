@@ -67,12 +67,11 @@ class MujocoPlant final : public Driver {
   bool truth(TruthFrame& truth) noexcept override;
   bool inject(const InjectedFaults& faults) noexcept override;
 
-  /// Returns MuJoCo's message about the fault; "" without one.
-  const char* fault_message() const noexcept { return fault_message_.data(); }
+  /// Returns MuJoCo's message about the fault.
+  std::string_view fault_message() const noexcept override { return fault_message_.data(); }
 
-  /// Returns a warning from the first `start`, "left_wheel_joint bears no load at rest, on the ground stand skid"; ""
-  /// if all drive wheels carry load.
-  const std::string& unloaded() const noexcept { return unloaded_; }
+  /// Returns for instance "left_wheel_joint bears no load at rest, on the ground stand skid".
+  std::string warning() const override { return unloaded_; }
 
   /// Return model and data for tests and tools; the data are null before `start`.
   const MujocoModel& model() const noexcept { return model_; }

@@ -136,7 +136,7 @@ bool intact(const LogHeader& header) {
 
 std::string encode(const LawSnapshot& snapshot) {
   Writer write;
-  write(std::string(kLawNodes.at(static_cast<std::size_t>(snapshot.law))));
+  write(std::string(kLawNames.at(static_cast<std::size_t>(snapshot.law))));
   each_snapshot_number(snapshot, write);
   write(std::string(reinterpret_cast<const char*>(snapshot.state.data()), snapshot.bytes));
   return write.bytes;
@@ -169,11 +169,11 @@ LawSnapshot decode_snapshot(std::string_view message) {
   read(node);
   each_snapshot_number(snapshot, read);
   read(state);
-  const auto* const law = std::find(kLawNodes.begin(), kLawNodes.end(), node);
-  if (!read.whole() || law == kLawNodes.end() || state.size() > kSnapshotBytes) {
+  const auto* const law = std::find(kLawNames.begin(), kLawNames.end(), node);
+  if (!read.whole() || law == kLawNames.end() || state.size() > kSnapshotBytes) {
     throw TraceError("a message Snapshot has not the length of its fields, or is of no known node");
   }
-  snapshot.law = static_cast<LawName>(law - kLawNodes.begin());
+  snapshot.law = static_cast<LawName>(law - kLawNames.begin());
   snapshot.bytes = state.size();
   std::memcpy(snapshot.state.data(), state.data(), state.size());
   return snapshot;

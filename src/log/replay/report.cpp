@@ -6,7 +6,7 @@
 namespace robot_control {
 
 std::string_view name_of(LawName law) noexcept {
-  return law == LawName::kGate ? "gate" : kLawNodes[static_cast<std::size_t>(law)];
+  return kLawNames[static_cast<std::size_t>(law)];
 }
 
 void ReplayReport::add(ReplayDifference difference) {

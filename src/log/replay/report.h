@@ -60,10 +60,10 @@ struct ReplayReport {
   bool exact() const noexcept;
 };
 
-/// "diff_drive_controller, run 0, cycle 1234: joints[1].effort is 0.5, logged as 0.25"; of a field of the row: "row, …"
+/// "controller, run 0, cycle 1234: joints[1].effort is 0.5, logged as 0.25"; of a field of the row: "row, …"
 std::string sentence(const ReplayDifference& difference);
 
-/// "safety_monitor, run 0, cycles 10 … 29 (20 rows): rows are missing"
+/// "monitor, run 0, cycles 10 … 29 (20 rows): rows are missing"
 std::string sentence(const ReplayGap& gap);
 
 }  // namespace robot_control

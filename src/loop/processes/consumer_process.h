@@ -1,5 +1,5 @@
 #pragma once
-/// The common part of the three nodes that a frame wakes: state_estimator, diff_drive_controller, safety_monitor.
+/// The common part of the three nodes that a frame wakes: estimator, controller and monitor.
 ///
 /// Such a node writes one channel (`output`), always reads the sensors, and is woken by the sensors or by another
 /// input. It starts once a living driver has announced the robot that it was itself started with.
@@ -13,6 +13,7 @@
 #include "loop/cycles/trace_sink.h"
 #include "loop/processes/process.h"
 #include "loop/start_check.h"
+#include "signals/roles.h"
 
 namespace robot_control {
 
@@ -55,8 +56,8 @@ class ConsumerProcess : public Process {
   /// The driver, and before cycle 0 the telemetry that was asked for. Later the loop goes on without one.
   std::vector<std::string> missing_anywhere() const {
     std::vector<std::string> names;
-    if (!sensors_.channel.locked()) names.emplace_back("mujoco_plant");
-    if (waits_for_telemetry()) names.emplace_back("telemetry");
+    if (!sensors_.channel.locked()) names.emplace_back(program_of(Role::kDriver));
+    if (waits_for_telemetry()) names.emplace_back(program_of(Role::kTelemetry));
     return names;
   }
 

@@ -1,12 +1,13 @@
 #include "loop/processes/controller_process.h"
 
 #include "loop/mint_number.h"
+#include "signals/roles.h"
 
 namespace robot_control {
 
 ControllerProcess::ControllerProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
     : ConsumerProcess(parameters, robot, bus,
-                      {LoopPriority::kController, "drive_control", ChannelNames::kCommand, TraceRing::kController}),
+                      {LoopPriority::kController, "controller", ChannelNames::kCommand, TraceRing::kController}),
       state_(bus, ChannelNames::kState),
       permit_(bus, ChannelNames::kPermit),
       cycle_(parameters.controller, robot_, parameters.loop.period(),
@@ -19,8 +20,8 @@ ControllerProcess::ControllerProcess(const Parameters& parameters, const RobotMo
 
 std::vector<std::string> ControllerProcess::missing() const {
   std::vector<std::string> names = missing_anywhere();
-  if (!state_.channel.locked()) names.emplace_back("state_estimator");
-  if (!permit_.channel.locked()) names.emplace_back("safety_monitor");
+  if (!state_.channel.locked()) names.emplace_back(program_of(Role::kEstimator));
+  if (!permit_.channel.locked()) names.emplace_back(program_of(Role::kMonitor));
   return names;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// diff_drive_controller without ROS: woken by state, writes command.
+/// The controller without ROS: woken by state, writes command.
 
 #include <string>
 #include <vector>

@@ -7,6 +7,7 @@
 #include "loop/start_check.h"
 #include "rt/clock.h"
 #include "rt/periodic.h"
+#include "signals/roles.h"
 
 namespace robot_control {
 namespace {
@@ -69,16 +70,17 @@ std::vector<std::string> DriverProcess::missing() const {
   std::vector<std::string> names;
   const std::uint64_t run = attached_run(sensors_.writer.memory()->head);
   if (loop_parameters().wait_for_nodes || lockstep()) {
-    if (!attached(state_, run)) names.emplace_back("state_estimator");
-    if (!attached(command_, run)) names.emplace_back("diff_drive_controller");
-    if (!attached(permit_, run)) names.emplace_back("safety_monitor");
+    if (!attached(state_, run)) names.emplace_back(program_of(Role::kEstimator));
+    if (!attached(command_, run)) names.emplace_back(program_of(Role::kController));
+    if (!attached(permit_, run)) names.emplace_back(program_of(Role::kMonitor));
   }
-  if (loop_parameters().wait_for_telemetry && !trace_.reader_present()) names.emplace_back("telemetry");
+  if (loop_parameters().wait_for_telemetry && !trace_.reader_present())
+    names.emplace_back(program_of(Role::kTelemetry));
   if (!names.empty() || !lockstep()) return names;
   if (const std::uint64_t awaited = awaited_.load(); awaited != 0) {
-    if (!published(state_.reader, run, awaited - 1)) names.emplace_back("state_estimator");
-    if (!published(command_.reader, run, awaited - 1)) names.emplace_back("diff_drive_controller");
-    if (!published(permit_.reader, run, awaited - 1)) names.emplace_back("safety_monitor");
+    if (!published(state_.reader, run, awaited - 1)) names.emplace_back(program_of(Role::kEstimator));
+    if (!published(command_.reader, run, awaited - 1)) names.emplace_back(program_of(Role::kController));
+    if (!published(permit_.reader, run, awaited - 1)) names.emplace_back(program_of(Role::kMonitor));
   }
   return names;
 }

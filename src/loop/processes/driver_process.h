@@ -1,5 +1,5 @@
 #pragma once
-/// The node that owns the machine and the time: mujoco_plant today, a fieldbus master tomorrow.
+/// The node that owns the machine and the time: a simulator or a fieldbus master.
 ///
 /// `clock: wall` paces with absolute deadlines; a simulated plant that falls behind lets time slip.
 /// `clock: lockstep` waits for state, command and permit k before tick k+1; time stands still while one is

@@ -1,5 +1,5 @@
 #pragma once
-/// state_estimator without ROS: woken by sensors, writes state.
+/// The estimator without ROS: woken by sensors, writes state.
 
 #include <string>
 #include <vector>

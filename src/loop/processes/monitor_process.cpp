@@ -8,7 +8,7 @@ namespace robot_control {
 
 MonitorProcess::MonitorProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
     : ConsumerProcess(parameters, robot, bus,
-                      {LoopPriority::kMonitor, "safety_monitor", ChannelNames::kPermit, TraceRing::kMonitor}),
+                      {LoopPriority::kMonitor, "monitor", ChannelNames::kPermit, TraceRing::kMonitor}),
       state_(bus, ChannelNames::kState),
       command_(bus, ChannelNames::kCommand),
       latch_file_(parameters.latch_file),
@@ -45,8 +45,8 @@ void MonitorProcess::with_latched(Keep keep) const {
 
 std::vector<std::string> MonitorProcess::missing() const {
   std::vector<std::string> names = missing_anywhere();
-  if (!state_.channel.locked()) names.emplace_back("state_estimator");
-  if (!command_.channel.locked()) names.emplace_back("diff_drive_controller");
+  if (!state_.channel.locked()) names.emplace_back(program_of(Role::kEstimator));
+  if (!command_.channel.locked()) names.emplace_back(program_of(Role::kController));
   return names;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// safety_monitor without ROS: woken by sensors, writes permit.
+/// The monitor without ROS: woken by sensors, writes permit.
 
 #include <string>
 #include <vector>

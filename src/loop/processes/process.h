@@ -38,7 +38,7 @@ class Process {
   /// Ends the real-time thread within 0.2 s. Called by every destructor below.
   void stop() noexcept;
 
-  /// True once the loop has ended by itself (mujoco_plant after `cycles`).
+  /// True once the loop has ended by itself (a simulator after `cycles`).
   bool finished() const noexcept { return finished_.load(); }
 
   /// The nodes that this node is waiting for, by name; empty if none. Only for the thread that polls.

@@ -10,11 +10,12 @@
 #include "loop/cycles/trace_sink.h"
 #include "loop/log_header.h"
 #include "rt/clock.h"
+#include "signals/roles.h"
 
 namespace robot_control {
 namespace {
 
-static_assert(kLawNodes.size() == kTraceRings);  // each law writes one ring, in the same order
+static_assert(kLawNames.size() == kTraceRings);  // each law writes one ring, in the same order
 
 std::int64_t bytes_of(double gigabytes) {
   return std::llround(gigabytes * 1.0e9);
@@ -249,7 +250,7 @@ void TelemetryProcess::write_to_bag(Act act) {
 std::vector<std::string> TelemetryProcess::missing() const {
   std::vector<std::string> names;
   sources_->each([&](const auto& source, std::size_t ring) {
-    if (!source.alive()) names.emplace_back(kLawNodes[ring]);
+    if (!source.alive()) names.emplace_back(kRoles[ring].program);
   });
   return names;
 }

@@ -9,8 +9,8 @@ namespace {
 // false message ends.
 constexpr std::size_t kMaxPublishers = 1000;
 const char* const kFurther = "(further publishers)";
-const char* const kSilent = " (has sent nothing since safety_monitor was restarted)";
-const char* const kUnknown = "an unknown publisher, from before safety_monitor was restarted";
+const char* const kSilent = " (has sent nothing since the monitor was restarted)";
+const char* const kUnknown = "an unknown publisher, from before the monitor was restarted";
 
 }  // namespace
 

@@ -10,7 +10,7 @@
 /// A publisher that always sends false therefore never ends the level of another one, and the end of a process releases
 /// nothing. A level is no latch: after the levels have ended, only e_stop_reset releases the robot.
 ///
-/// After a restart of safety_monitor the publishers whose level was true are not known (`hold`), and may have left. The
+/// After a restart of the monitor the publishers whose level was true are not known (`hold`), and may have left. The
 /// topic then stays true until a reset request at which three conditions hold. Every present publisher has sent a
 /// message since the restart. The first message of at least one of them was false. No level is true.
 
@@ -29,7 +29,7 @@ class EStopLevels {
   /// Returns whether the topic is true.
   bool stopped() const noexcept { return held_ || !levels_.empty(); }
 
-  /// Records that the topic was true when an earlier safety_monitor ended. It is called before the first message.
+  /// Records that the topic was true when an earlier monitor ended. It is called before the first message.
   void hold() { held_ = true; }
 
   /// Ends levels at a reset request, as described above; `present` are the present publishers. A publisher in `present`

@@ -38,14 +38,14 @@ std::string quantity(double value, std::string_view unit) {
 
 /// Returns "free the wheel, then call e_stop_reset".
 std::string with_reset(std::string_view remedy) {
-  return std::string(remedy).append(remedy.empty() ? "" : ", then ").append("call e_stop_reset");
+  return with_programs(remedy).append(remedy.empty() ? "" : ", then ").append("call e_stop_reset");
 }
 
 /// Returns "the battery is low: 20.9 V, limit 21 V (charge it soon)".
 std::string warning_sentence(const BitName& row, const std::string& measured) {
   std::string text(row.sentence);
   if (!measured.empty()) text.append(": ").append(measured);
-  if (!row.remedy.empty()) text.append(" (").append(row.remedy).append(")");
+  if (!row.remedy.empty()) text.append(" (").append(with_programs(row.remedy)).append(")");
   return text;
 }
 
@@ -85,7 +85,7 @@ msg::SafetyStatus safety_status(const Permit& permit, const RobotModel& robot, c
     message.causes.emplace_back(row.name);
     message.sentences.emplace_back(row.sentence);
     message.remedies.push_back(with_reset(row.remedy));
-    message.remedies_before_reset.emplace_back(row.remedy);
+    message.remedies_before_reset.push_back(with_programs(row.remedy));
     message.actors.emplace_back(row.actor);
     message.details.push_back(detail(permit, row.bit, robot));
   }

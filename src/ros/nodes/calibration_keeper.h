@@ -1,5 +1,5 @@
 #pragma once
-/// Writes the calibration that state_estimator learns to its file: every 30 s if it changed, and at the end. It is
+/// Writes the calibration that the estimator learns to its file: every 30 s if it changed, and at the end. It is
 /// called from the ordinary thread, which also publishes. A disk may take a second, so a thread of its own writes the
 /// file.
 

@@ -17,6 +17,7 @@
 #include "ros/reports/diagnostics.h"
 #include "ros/startup/setup.h"
 #include "rt/thread_priority.h"
+#include "signals/roles.h"
 
 namespace robot_control {
 namespace {
@@ -28,20 +29,21 @@ constexpr std::int64_t kLockstepDrainPeriod = 1'000'000;  // ns; in lockstep a f
 /// Returns the parameters of all nodes for the header of a log, with their private ones. A node whose parameters are
 /// refused does not start; for it the header has those that this node has read.
 Parameters with_blocks_of_other_nodes(Parameters parameters) {
-  const auto take = [](const char* node, auto put) {
+  const auto take = [](Role role, auto put) {
     try {
-      put(parameters_of(node));
+      put(parameters_of(role));
     } catch (const ParameterError&) {
-      ROS_WARN("the parameters of %s are refused; the header of the log holds others", node);
+      ROS_WARN("the parameters of %s are refused; the header of the log holds others",
+               std::string(program_of(role)).c_str());
     }
   };
-  take("mujoco_plant", [&](const Parameters& read) { parameters.plant = read.plant; });
-  take("state_estimator", [&](const Parameters& read) { parameters.estimator = read.estimator; });
-  take("diff_drive_controller", [&](const Parameters& read) {
+  take(Role::kDriver, [&](const Parameters& read) { parameters.plant = read.plant; });
+  take(Role::kEstimator, [&](const Parameters& read) { parameters.estimator = read.estimator; });
+  take(Role::kController, [&](const Parameters& read) {
     parameters.controller = read.controller;
     parameters.command_sources = read.command_sources;
   });
-  take("safety_monitor", [&](const Parameters& read) { parameters.safety = read.safety; });
+  take(Role::kMonitor, [&](const Parameters& read) { parameters.safety = read.safety; });
   return parameters;
 }
 

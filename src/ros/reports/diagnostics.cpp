@@ -39,7 +39,7 @@ void DiagnosticReport::reasons(const std::string& subject, std::span<const BitNa
   for (const BitName& row : table) {
     if ((bits & row.bit) == 0) continue;
     value(subject + ": " + std::string(row.name), std::string(row.sentence));
-    if (!row.remedy.empty()) value(subject + " remedy: " + std::string(row.name), std::string(row.remedy));
+    if (!row.remedy.empty()) value(subject + " remedy: " + std::string(row.name), with_programs(row.remedy));
   }
 }
 

@@ -135,7 +135,8 @@ void fill_setup(const std::string& node, Setup& setup) {
 
 }  // namespace
 
-Parameters parameters_of(const std::string& node) {
+Parameters parameters_of(Role role) {
+  const std::string node(program_of(role));
   std::vector<Overlay> overlays;
   append(overlays, "robot", "robot");
   append(overlays, node, node, {"config", "urdf"});

@@ -10,6 +10,7 @@
 
 #include "configuration/parameters.h"
 #include "machine/robot_model.h"
+#include "signals/roles.h"
 
 namespace robot_control {
 
@@ -32,11 +33,11 @@ struct Setup {
 /// Otherwise all stamps and times would be wrong.
 std::string clock_problem(ClockMode clock, bool use_sim_time);
 
-/// Returns the parameters that another node, `node`, would read from its file and its overrides if it started now.
+/// Returns the parameters that the node of another role would read from its file and its overrides if it started now.
 /// Throws ParameterError.
-Parameters parameters_of(const std::string& node);
+Parameters parameters_of(Role role);
 
-/// `node` names the program and its block of the YAML file ("state_estimator"). The robot is selected as in
+/// `node` names the program and its block of the YAML file (signals/roles.h). The robot is selected as in
 /// description.h. Throws SetupError with all problems at once.
 Setup read_setup(const std::string& node);
 

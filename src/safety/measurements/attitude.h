@@ -1,6 +1,6 @@
 #pragma once
 /// The direction of the vertical in base axes, from gyro and accelerometer alone: the monitor's own estimate,
-/// independent of state_estimator.
+/// independent of the estimator.
 ///
 ///   prediction (gyro)            u̇ = −ω × u
 ///   correction (accelerometer)   u ← u + dt/T·(â − u),   â = (a − c)/|a − c|,   if ||a − c| − g| < kBand

@@ -82,7 +82,7 @@ TEST_F(MujocoFaultTest, StartRecoversFromDivergence) {
   plant->start();
   EXPECT_EQ(sensors(*plant).driver_state, DriverState::kRunning);
   EXPECT_EQ(sensors(*plant).faults, 0u);
-  EXPECT_STREQ(plant->fault_message(), "");
+  EXPECT_EQ(plant->fault_message(), "");
 }
 
 TEST_F(MujocoFaultTest, AFaultDoesNotAllocate) {

@@ -1,4 +1,4 @@
-#include "ros/nodes/diff_drive_controller_node.h"
+#include "ros/nodes/controller_node.h"
 
 #include <ros/ros.h>
 
@@ -25,13 +25,14 @@
 #include "ros/reports/pacer.h"
 #include "ros/reports/reason_history.h"
 #include "ros/reports/report_line.h"
+#include "signals/roles.h"
 
 namespace robot_control {
 namespace {
 
-class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
+class ControllerNode final : public ProcessNode<ControllerProcess> {
  public:
-  explicit DiffDriveControllerNode(const Setup& setup)
+  explicit ControllerNode(const Setup& setup)
       : ProcessNode(setup),
         input_(parameters().controller.cmd_vel_timeout, parameters().controller.one_sender),
         pace_(report().command_rate),
@@ -47,8 +48,8 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     if (const std::string note = note_on_slow_driving(parameters(), robot()); !note.empty())
       ROS_INFO("%s", note.c_str());
     ros::NodeHandle own("~");
-    set_parameters_ = own.advertiseService("set_parameters", &DiffDriveControllerNode::set_parameters, this);
-    set_parameter_map_ = own.advertiseService("set_parameter_map", &DiffDriveControllerNode::set_parameter_map, this);
+    set_parameters_ = own.advertiseService("set_parameters", &ControllerNode::set_parameters, this);
+    set_parameter_map_ = own.advertiseService("set_parameter_map", &ControllerNode::set_parameter_map, this);
     descriptions_ = own.advertise<msg::ConfigDescription>("parameter_descriptions", 1, true);
     updates_ = own.advertise<msg::Config>("parameter_updates", 1, true);
     descriptions_.publish(description_of(process().retuning().live()));
@@ -217,7 +218,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   /// need no check here.
   void expect_monitor() {
     try {
-      process().retuning().expect_monitor(parameters_of("safety_monitor"));
+      process().retuning().expect_monitor(parameters_of(Role::kMonitor));
     } catch (const ParameterError&) {
     }
   }
@@ -328,8 +329,8 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
 
 }  // namespace
 
-std::unique_ptr<Node> make_diff_drive_controller(const Setup& setup) {
-  return std::make_unique<DiffDriveControllerNode>(setup);
+std::unique_ptr<Node> make_controller(const Setup& setup) {
+  return std::make_unique<ControllerNode>(setup);
 }
 
 }  // namespace robot_control

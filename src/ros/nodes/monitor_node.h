@@ -1,5 +1,5 @@
 #pragma once
-/// safety_monitor subscribes to e_stop, heartbeat and clearance, publishes safety_status (latched), and has the
+/// The monitor subscribes to e_stop, heartbeat and clearance, publishes safety_status (latched), and has the
 /// services e_stop_trigger and e_stop_reset.
 
 #include <memory>
@@ -9,6 +9,6 @@
 
 namespace robot_control {
 
-std::unique_ptr<Node> make_safety_monitor(const Setup& setup);
+std::unique_ptr<Node> make_monitor(const Setup& setup);
 
 }  // namespace robot_control

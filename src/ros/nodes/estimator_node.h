@@ -1,5 +1,5 @@
 #pragma once
-/// state_estimator publishes joint_states, odom, wheel_odom, imu/data and tf. It has the services reset_odometry and
+/// The estimator publishes joint_states, odom, wheel_odom, imu/data and tf. It has the services reset_odometry and
 /// set_odometry, and writes the calibration file.
 
 #include <memory>
@@ -9,6 +9,6 @@
 
 namespace robot_control {
 
-std::unique_ptr<Node> make_state_estimator(const Setup& setup);
+std::unique_ptr<Node> make_estimator(const Setup& setup);
 
 }  // namespace robot_control

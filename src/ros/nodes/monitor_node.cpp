@@ -1,4 +1,4 @@
-#include "ros/nodes/safety_monitor_node.h"
+#include "ros/nodes/monitor_node.h"
 
 #include <ros/ros.h>
 
@@ -18,6 +18,7 @@
 #include "ros/reports/withdrawal_time.h"
 #include "rt/clock.h"
 #include "rt/futex.h"
+#include "signals/roles.h"
 
 namespace robot_control {
 namespace {
@@ -28,7 +29,7 @@ constexpr std::int64_t kTriggerWait = 500'000'000;     // ns; the other callback
 constexpr std::int64_t kResetWait = 1'000'000'000;     // ns
 constexpr std::int64_t kResetLook = 2'000'000;         // ns
 
-class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
+class MonitorNode final : public ProcessNode<MonitorProcess> {
  public:
   using ProcessNode::ProcessNode;
 
@@ -44,8 +45,8 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
         [this](const std::string& sender) { receive_e_stop(sender, true); });
     heartbeat_.connect(handle, [this](const msg::Empty&) { add(&OperatorInput::heartbeats); });
     clearance_.connect(handle, [this](const msg::Float64& message) { receive_clearance(message.data); });
-    trigger_ = handle.advertiseService("e_stop_trigger", &SafetyMonitorNode::trigger, this);
-    reset_ = handle.advertiseService("e_stop_reset", &SafetyMonitorNode::reset, this);
+    trigger_ = handle.advertiseService("e_stop_trigger", &MonitorNode::trigger, this);
+    reset_ = handle.advertiseService("e_stop_reset", &MonitorNode::reset, this);
     if (!process().restored().empty()) ROS_WARN("%s", process().restored().c_str());
   }
 
@@ -95,7 +96,7 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
   std::vector<std::string> command_topics() {
     std::vector<std::string> topics;
     try {
-      const std::string path = parameters_of("diff_drive_controller").command_sources;
+      const std::string path = parameters_of(Role::kController).command_sources;
       if (path.empty()) return {"cmd_vel", "cmd_vel_stamped"};
       for (const CommandSource& source : read_command_sources(path).sources) topics.push_back(source.topic);
     } catch (const ParameterError&) {
@@ -108,8 +109,8 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     if (problem.empty()) return;
     status.warnings.emplace_back("latch_file");
     status.warning_sentences.push_back(
-        ascii("a stop would not outlive a reboot, latch_file cannot be written: " + problem +
-              " (set safety_monitor/latch_file to a file that this user may write)"));
+        ascii("a stop would not outlive a reboot, latch_file cannot be written: " + problem + " (set " +
+              std::string(program_of(Role::kMonitor)) + "/latch_file to a file that this user may write)"));
   }
 
   void add(std::uint64_t OperatorInput::*counter) {
@@ -226,8 +227,8 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
 
 }  // namespace
 
-std::unique_ptr<Node> make_safety_monitor(const Setup& setup) {
-  return std::make_unique<SafetyMonitorNode>(setup);
+std::unique_ptr<Node> make_monitor(const Setup& setup) {
+  return std::make_unique<MonitorNode>(setup);
 }
 
 }  // namespace robot_control

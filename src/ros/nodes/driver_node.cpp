@@ -1,8 +1,7 @@
-#include "ros/nodes/mujoco_plant_node.h"
+#include "ros/nodes/driver_node.h"
 
 #include <ros/ros.h>
 
-#include "drivers/mujoco/mujoco_plant.h"
 #include "files/ascii.h"
 #include "loop/processes/driver_process.h"
 #include "ros/messages/motion_messages.h"
@@ -18,15 +17,14 @@ namespace {
 
 constexpr double kClockRate = 100;  // Hz of simulated time
 
-class MujocoPlantNode final : public ProcessNode<DriverProcess> {
+class DriverNode final : public ProcessNode<DriverProcess> {
  public:
-  explicit MujocoPlantNode(const Setup& setup)
+  DriverNode(const Setup& setup, MakeDriver make)
       : ProcessNode(setup), imu_pace_(report().imu_rate), truth_pace_(report().truth_rate), clock_pace_(kClockRate) {
-    const LoopParameters& loop = parameters().loop;
-    auto plant = std::make_unique<MujocoPlant>(robot(), parameters().plant, loop.period());
-    plant_ = plant.get();
+    auto driver = make(setup);
+    driver_ = driver.get();
     description_ = std::make_unique<PublishedDescription>(robot(), parameters().urdf);
-    process().open_driver(std::move(plant));
+    process().open_driver(std::move(driver));
   }
 
   void connect(ros::NodeHandle& handle) override {
@@ -35,10 +33,10 @@ class MujocoPlantNode final : public ProcessNode<DriverProcess> {
     truth_ = handle.advertise<msg::Odometry>("ground_truth/odom", 10);
     if (parameters().loop.clock == ClockMode::kLockstep) clock_ = handle.advertise<msg::Clock>("/clock", 1);
     ros::NodeHandle own("~");
-    set_pause_ = own.advertiseService("set_pause", &MujocoPlantNode::set_pause, this);
-    step_ = own.advertiseService("step", &MujocoPlantNode::step, this);
-    reset_ = own.advertiseService("reset", &MujocoPlantNode::reset, this);
-    inject_fault_ = own.advertiseService("inject_fault", &MujocoPlantNode::inject_fault, this);
+    set_pause_ = own.advertiseService("set_pause", &DriverNode::set_pause, this);
+    step_ = own.advertiseService("step", &DriverNode::step, this);
+    reset_ = own.advertiseService("reset", &DriverNode::reset, this);
+    inject_fault_ = own.advertiseService("inject_fault", &DriverNode::inject_fault, this);
   }
 
   std::int64_t tick_ns() const override {
@@ -66,9 +64,10 @@ class MujocoPlantNode final : public ProcessNode<DriverProcess> {
     double slip = 0;
     for (const double wheel : truth_frame_.slip) slip = std::max(slip, wheel);
     report.value("wheel_slip_m_s", slip);
-    if (!plant_->unloaded().empty()) report.value("unloaded_wheels", plant_->unloaded());
-    if (sensors_.driver_state == DriverState::kFault)
-      report.value("fault_message", std::string(plant_->fault_message()));
+    if (const std::string warning = driver_->warning(); !warning.empty()) report.value("suspicious", warning);
+    if (sensors_.driver_state == DriverState::kFault) {
+      report.value("fault_message", std::string(driver_->fault_message()));
+    }
   }
 
  private:
@@ -82,7 +81,7 @@ class MujocoPlantNode final : public ProcessNode<DriverProcess> {
         ROS_INFO("%s", text.c_str());
       }
     }
-    if (!plant_->unloaded().empty()) ROS_WARN("suspicious: %s", plant_->unloaded().c_str());
+    if (const std::string warning = driver_->warning(); !warning.empty()) ROS_WARN("suspicious: %s", warning.c_str());
   }
 
   void log_end() {
@@ -128,7 +127,7 @@ class MujocoPlantNode final : public ProcessNode<DriverProcess> {
     clock_.publish(message);
   }
 
-  const MujocoPlant* plant_ = nullptr;
+  const Driver* driver_ = nullptr;
   std::unique_ptr<PublishedDescription> description_;
   ros::Publisher imu_;
   ros::Publisher truth_;
@@ -146,8 +145,8 @@ class MujocoPlantNode final : public ProcessNode<DriverProcess> {
 
 }  // namespace
 
-std::unique_ptr<Node> make_mujoco_plant(const Setup& setup) {
-  return std::make_unique<MujocoPlantNode>(setup);
+std::unique_ptr<Node> make_driver_node(const Setup& setup, MakeDriver make) {
+  return std::make_unique<DriverNode>(setup, make);
 }
 
 }  // namespace robot_control

@@ -1,5 +1,5 @@
 #pragma once
-/// diff_drive_controller subscribes to cmd_vel and cmd_vel_stamped. It publishes joint_commands, joint_targets,
+/// The controller subscribes to cmd_vel and cmd_vel_stamped. It publishes joint_commands, joint_targets,
 /// cmd_vel_out and drive_state. It has the services ~set_parameters (dynamic_reconfigure, with ~parameter_descriptions
 /// and ~parameter_updates) and ~set_parameter_map.
 ///
@@ -14,6 +14,6 @@
 
 namespace robot_control {
 
-std::unique_ptr<Node> make_diff_drive_controller(const Setup& setup);
+std::unique_ptr<Node> make_controller(const Setup& setup);
 
 }  // namespace robot_control

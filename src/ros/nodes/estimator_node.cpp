@@ -1,4 +1,4 @@
-#include "ros/nodes/state_estimator_node.h"
+#include "ros/nodes/estimator_node.h"
 
 #include <ros/ros.h>
 
@@ -23,9 +23,9 @@ Setup calibrated(Setup setup) {
   return setup;
 }
 
-class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
+class EstimatorNode final : public ProcessNode<EstimatorProcess> {
  public:
-  explicit StateEstimatorNode(const Setup& setup)
+  explicit EstimatorNode(const Setup& setup)
       : ProcessNode(calibrated(setup)),
         keeper_(setup.parameters, setup.robot),
         joint_pace_(report().joint_states_rate),
@@ -40,8 +40,8 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
     battery_ = handle.advertise<msg::BatteryState>("battery_state", 1);
     // The name is relative, so that the frames of two robots in two namespaces do not mix.
     if (report().publish_tf) tf_ = handle.advertise<msg::TFMessage>("tf", 100);
-    reset_ = handle.advertiseService("reset_odometry", &StateEstimatorNode::reset_odometry, this);
-    set_ = handle.advertiseService("set_odometry", &StateEstimatorNode::set_odometry, this);
+    reset_ = handle.advertiseService("reset_odometry", &EstimatorNode::reset_odometry, this);
+    set_ = handle.advertiseService("set_odometry", &EstimatorNode::set_odometry, this);
     if (const std::string note = covariance_note(report()); !note.empty()) ROS_INFO("%s", note.c_str());
   }
 
@@ -146,8 +146,8 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
 
 }  // namespace
 
-std::unique_ptr<Node> make_state_estimator(const Setup& setup) {
-  return std::make_unique<StateEstimatorNode>(setup);
+std::unique_ptr<Node> make_estimator(const Setup& setup) {
+  return std::make_unique<EstimatorNode>(setup);
 }
 
 }  // namespace robot_control
