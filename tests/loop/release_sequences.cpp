@@ -59,7 +59,8 @@ struct Sender {
   std::int64_t motion_at = kNever;  // tick of the last message except an accepted zero, of this process
   bool zero_since = true;           // the last withdrawal of the permission to drive
   bool owes_zero = false;
-  bool left_requesting = false;  // an earlier process, which owed nothing: its command may be in force
+  bool requested_lately = false;  ///< it owes one only because of `motion_at`, and the controller has not learned yet
+  bool left_requesting = false;   // an earlier process, which owed nothing: its command may be in force
 
   bool has_requested() const { return received != Message::kNone && received != Message::kZero; }
 
@@ -158,6 +159,7 @@ class Sequence {
     for (Sender& sender : senders_) {
       earlier.present.push_back({sender.name, nullptr, sender.uri});
       reopen(sender);
+      sender.motion_at = kNever;  // It owes a zero since this start, and no more for what it sent before.
     }
     intake().start(earlier);
     earlier_run_ = earlier.run;
@@ -177,7 +179,19 @@ class Sequence {
     withdrawn_cycle_ = cycles_;
     for (Sender& sender : senders_) {
       sender.zero_since = sender.left_requesting = false;
-      sender.owes_zero |= sender.has_requested() || now_ - sender.motion_at < sender.silence - kJudgesMargin;
+      sender.requested_lately = !sender.owes_zero && !sender.has_requested() && lately(sender);
+      sender.owes_zero |= sender.has_requested() || sender.requested_lately;
+    }
+  }
+
+  bool lately(const Sender& sender) const { return now_ - sender.motion_at < sender.silence - kJudgesMargin; }
+
+  /// The controller counts T back from the moment at which it learns of a withdrawal; a node may sleep until then.
+  void learn(const MotionPermission& permission) {
+    const std::uint64_t before = std::exchange(withdrawals_, permission.withdrawals);
+    if (permission.withdrawals == before) return;
+    for (Sender& sender : senders_) {
+      if (std::exchange(sender.requested_lately, false) && !lately(sender)) sender.owes_zero = false;
     }
   }
 
@@ -206,7 +220,7 @@ class Sequence {
     sender.received = Message::kNone;
     sender.motion_at = kNever;
     sender.zero_since = true;
-    sender.owes_zero = false;
+    sender.owes_zero = sender.requested_lately = false;
   }
 
   void end(Node node) {
@@ -247,11 +261,14 @@ class Sequence {
     if (chance(20)) reset();
   }
 
-  /// A zero that is sent in the pause counts after it, because nothing older may move then.
+  /// A zero that is sent in the pause, or since the last cycle before it, counts after it, because nothing older may
+  /// move then.
   void pause() {
     if (driver_ && !away(kDriverNode) && now_ > pause_until_ && chance(700)) {
       pause_until_ = now_ + 1 + below(chance(2) ? 4 : 80);
+      const bool since_last_cycle = released_ && released_cycle_ == cycles_;
       take_release_back();
+      released_ = since_last_cycle;
     }
     if (driver_ && now_ == pause_until_) {
       driver_->count_resume();
@@ -367,6 +384,7 @@ class Sequence {
       for (Sender& sender : senders_) forget(sender);
     }
     intake().follow(permission, loop_ns());
+    learn(permission);
   }
 
   void receive(Sender& sender) {
@@ -391,7 +409,7 @@ class Sequence {
     sender.received = accepted_zero ? Message::kZero : Message::kMotion;
     if (accepted_zero) {
       sender.zero_since = true;
-      sender.owes_zero = false;
+      sender.owes_zero = sender.requested_lately = false;
     } else {
       sender.motion_at = now_;
     }
@@ -400,7 +418,9 @@ class Sequence {
     sender.received_cycle = cycles_;
     const bool alone = std::ranges::none_of(
         senders_, [&](const Sender& other) { return &other != &sender && other.requests_motion(now_); });
-    if (sender.received == Message::kZero && alone) released_ = true;
+    if (sender.received != Message::kZero || !alone) return;
+    released_ = true;
+    released_cycle_ = cycles_;
   }
 
   CommandIntake& intake() {
@@ -485,6 +505,7 @@ class Sequence {
   std::uint64_t earlier_run_ = 0;   ///< of the last command before this controller
   bool earlier_requested_ = false;  ///< motion was requested at that command
   bool has_looked_ = false;         ///< this controller, at a permit
+  std::uint64_t withdrawals_ = 0;   ///< that this controller has learned of
   int processes_ = 0;               ///< of senders
   OperatorInput operator_input_;
   EStopLevels levels_;
@@ -508,6 +529,7 @@ class Sequence {
   Permit last_permit_;       ///< of this monitor
   std::int64_t cycles_ = 0;  ///< that the driver has ticked, in all runs
   std::int64_t start_cycle_ = 0;
+  std::int64_t released_cycle_ = kNever;  ///< of the last zero that released motion
   std::int64_t stop_cycle_ = 0;
   std::int64_t withdrawn_cycle_ = 0;
   std::int64_t requested_cycle_ =

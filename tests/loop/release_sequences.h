@@ -11,7 +11,8 @@
 ///               the run), a zero velocity was sent while no other sender requested motion, or nothing was sent for T
 ///   stop        … and only if no emergency stop was requested since the last accepted reset
 ///   requested   … and only while some sender requests motion that owes no zero velocity: a sender owes one from a
-///               start, a pause or a stop that finds it requesting motion, or having done so within T, and from a
+///               start, a pause or a stop that finds it requesting motion, or having done so within T of when the
+///               controller learns of it, and from a
 ///               release that finds it requesting motion, to its own next accepted zero, over all its connections and
 ///               all controllers of a run or of a stop
 ///   reset       is accepted only if no sender's newest message of the last T, to this controller, requested motion
