@@ -228,7 +228,7 @@ void OfflineEstimator::sense(const Rows& rows, py::ssize_t row) noexcept {
       if (wheel.side != side) continue;
       if (sign == 0 || angles.columns > 1) sign = wheel.sign;
       sensors_.joints[wheel.joint].position = *angle * sign * wheel.sign;
-      if (!std::isnan(*angle)) sensors_.valid |= kValidJoints;
+      sensors_.joints[wheel.joint].valid = std::isnan(*angle) ? 0U : std::uint32_t{kValidPosition};
       if (angles.columns > 1) ++angle;
     }
   }

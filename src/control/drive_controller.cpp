@@ -100,7 +100,7 @@ void DriveController::tune(const DriveTuning& tuning) noexcept {
 }
 
 bool DriveController::usable(const SensorFrame& sensors) const noexcept {
-  if (!(sensors.valid & kValidJoints) || sensors.joint_count != joint_count_) return false;
+  if (sensors.joint_count != joint_count_ || !joints_have(sensors, loops_.size(), kValidMotion)) return false;
   if (last_cycle_ && sensors.head.cycle <= *last_cycle_) return false;
   return std::all_of(sensors.joints.begin(), sensors.joints.begin() + static_cast<std::ptrdiff_t>(loops_.size()),
                      [](const JointSample& sample) {

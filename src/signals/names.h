@@ -174,6 +174,12 @@ constexpr std::string_view name_of(DriverState state) noexcept {
   return index < kNames.size() ? kNames[index] : "unknown";
 }
 
+constexpr std::string_view name_of(LinkState state) noexcept {
+  constexpr std::array<std::string_view, 4> kNames{"starting", "up", "degraded", "down"};
+  const auto index = static_cast<std::size_t>(state);
+  return index < kNames.size() ? kNames[index] : "unknown";
+}
+
 constexpr std::string_view name_of(JointMode mode) noexcept {
   constexpr std::array<std::string_view, 4> kNames{"brake", "effort", "velocity", "impedance"};
   const auto index = static_cast<std::size_t>(mode);

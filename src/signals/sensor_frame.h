@@ -10,10 +10,17 @@
 #include "signals/geometry.h"
 #include "signals/injected_fault.h"
 #include "signals/joint.h"
+#include "signals/link_status.h"
 
 namespace robot_control {
 
 inline constexpr std::size_t kMaxContacts = 8;
+
+/// The measured force of one contact of the machine with the ground.
+struct ContactSample {
+  Vector3 force{};          ///< N, on the machine, base axes, mean over [t_k-1, t_k)
+  std::uint64_t valid = 0;  ///< 1: the force was measured
+};
 
 /// The sample is in the axes of the IMU's link. The angular velocity belongs to t_k. The linear acceleration is the
 /// specific force (+g upwards at rest), averaged over [t_k-1, t_k). In world axes, plus gravity, times the period, it
@@ -41,14 +48,12 @@ enum DriverFault : std::uint64_t {
   kFaultDrive = 1u << 4,               ///< A motor drive reports a fault.
 };
 
-/// Bits of SensorFrame::valid.
+/// Bits of SensorFrame::valid; joints and contacts have their own.
 enum SensorValidity : std::uint64_t {
-  kValidJoints = 1u << 0,
-  kValidGyro = 1u << 1,
-  kValidAccelerometer = 1u << 2,
-  kValidOrientation = 1u << 3,
-  kValidContacts = 1u << 4,
-  kValidBattery = 1u << 5,
+  kValidGyro = 1u << 0,
+  kValidAccelerometer = 1u << 1,
+  kValidOrientation = 1u << 2,
+  kValidBattery = 1u << 3,
 };
 
 /// Bits of SensorFrame::digital_inputs.
@@ -63,10 +68,12 @@ struct SensorFrame {
   std::uint64_t joint_count = 0;
   std::array<JointSample, kMaxJoints> joints{};  ///< in the order of RobotModel::joints
   ImuSample imu;
+  std::uint64_t contact_count = 0;  ///< contacts with a sensor
 
-  /// Forces on the wheels in N, base axes, mean over [t_k-1, t_k): first those on RobotModel::wheels, then casters, as
-  /// many as fit.
-  std::array<Vector3, kMaxContacts> contact_forces{};
+  /// Contacts of the model, as many as fit: the wheels in the order of RobotModel::wheels, then the casters.
+  std::array<ContactSample, kMaxContacts> contacts{};
+  std::uint64_t link_count = 0;
+  std::array<LinkStatus, kMaxLinks> links{};  ///< the links from the driver to its drives and sensors
   std::uint64_t digital_inputs = 0;
   double battery_voltage = 0;    ///< V, at the terminals
   double battery_current = 0;    ///< A, positive when discharging
@@ -78,5 +85,27 @@ struct SensorFrame {
   std::uint64_t held_ns =
       0;  ///< Total time in which a simulated plant was paused or being reset; not cleared by a reset.
 };
+
+/// Sets JointSample::valid of every joint.
+inline void set_joints_valid(SensorFrame& sensors, std::uint32_t bits) noexcept {
+  for (JointSample& sample : sensors.joints) sample.valid = bits;
+}
+
+/// Returns whether the first `count` joints of the frame have all numbers that `bits` names.
+inline bool joints_have(const SensorFrame& sensors, std::size_t count, std::uint32_t bits) noexcept {
+  if (sensors.joint_count < count || count > kMaxJoints) return false;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!has(sensors.joints[i], bits)) return false;
+  }
+  return true;
+}
+
+/// Returns the first joint whose drive reports a fault; kMaxJoints: none.
+inline std::size_t first_faulty_joint(const SensorFrame& sensors) noexcept {
+  for (std::size_t i = 0; i < kMaxJoints && i < sensors.joint_count; ++i) {
+    if (sensors.joints[i].fault != 0) return i;
+  }
+  return kMaxJoints;
+}
 
 }  // namespace robot_control

@@ -30,7 +30,7 @@ class ControlBench {
     permit.action = PermitAction::kDrive;
     permit.speed_limit = kNoSpeedLimit;
     state.flags = kStateValid;
-    sensors.valid = kValidJoints;
+    set_joints_valid(sensors, kValidMotion);
     sensors.joint_count = model.joints.size();
   }
 
@@ -79,8 +79,10 @@ class ControlBench {
   void sample() {
     const SidePair angle = plant.measured_angle();
     sensors.head.cycle = state.head.cycle = permit.head.cycle = cycle;
-    sensors.joints[0] = {.position = angle.left, .velocity = plant.speed.left, .effort = plant.effort.left};
-    sensors.joints[1] = {.position = angle.right, .velocity = plant.speed.right, .effort = plant.effort.right};
+    sensors.joints[0] = {
+        .position = angle.left, .velocity = plant.speed.left, .effort = plant.effort.left, .valid = kValidMotion};
+    sensors.joints[1] = {
+        .position = angle.right, .velocity = plant.speed.right, .effort = plant.effort.right, .valid = kValidMotion};
     spoil(sensors);
   }
 };

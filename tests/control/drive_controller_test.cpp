@@ -165,7 +165,7 @@ TEST_F(DriveControllerTest, RecoversFromAnAbsurdEffort) {
 }
 
 TEST_F(DriveControllerTest, BrakesOnJointSamplesThatAreNotValid) {
-  bench.spoil = [](SensorFrame& sensors) { sensors.valid = 0; };
+  bench.spoil = [](SensorFrame& sensors) { set_joints_valid(sensors, 0); };
   bench.step();
   EXPECT_TRUE(braked());
 }
@@ -277,7 +277,7 @@ TEST(DriveControllerOfAHeldWheel, KnowsByTheCountsOfTheOtherThatItStands) {
   DriveController controller({}, make_test_robot(), 1e-3);
   controller.enter_run();
   SensorFrame sensors;
-  sensors.valid = kValidJoints;
+  set_joints_valid(sensors, kValidMotion);
   sensors.joint_count = 2;
   Permit permit;
   permit.action = PermitAction::kDrive;
@@ -308,7 +308,7 @@ TEST(DriveControllerOfFourWheels, DrivesEveryWheelOfASideAlikeAndBrakesForAnyTha
   DriveController controller({}, robot, 1e-3);
   controller.enter_run();
   SensorFrame sensors;
-  sensors.valid = kValidJoints;
+  set_joints_valid(sensors, kValidMotion);
   sensors.joint_count = 4;
   Permit permit;
   permit.action = PermitAction::kDrive;
@@ -323,7 +323,9 @@ TEST(DriveControllerOfFourWheels, DrivesEveryWheelOfASideAlikeAndBrakesForAnyTha
     sensors.head.cycle = permit.head.cycle = k;
     sensors.gate.verdict = k == 0 ? GateVerdict::kBrake : GateVerdict::kPassed;
     for (std::size_t i = 0; i < 4; ++i) {
-      sensors.joints[i] = {.position = sensors.joints[i].position + 0.5e-3 * (last[i] + plan[i]), .velocity = plan[i]};
+      sensors.joints[i] = {.position = sensors.joints[i].position + 0.5e-3 * (last[i] + plan[i]),
+                           .velocity = plan[i],
+                           .valid = kValidMotion};
     }
     controller.step({&sensors, nullptr, &permit, request}, out);
     last = plan;

@@ -40,7 +40,7 @@ TEST_F(EstimatorFaultsTest, AMissingReadingOfOneEncoderDoesNotHoldThePoseBack) {
 }
 
 TEST_F(EstimatorFaultsTest, EncodersMissingForLongAreNoValidState) {
-  const auto silence = [](SensorFrame& frame) { frame.valid &= ~std::uint64_t{kValidJoints}; };
+  const auto silence = [](SensorFrame& frame) { set_joints_valid(frame, 0); };
   for (std::uint64_t i = 0; i < Tuning::kMaxHeld; ++i) {
     broken(silence);
     EXPECT_TRUE(has(kStateValid)) << i;
@@ -53,11 +53,11 @@ TEST_F(EstimatorFaultsTest, EncodersMissingForLongAreNoValidState) {
 
 // Both are missing for two seconds: the next good reading brings the whole travel.
 TEST_F(EstimatorFaultsTest, EncodersThatComeBackBringTheWholeTravel) {
-  lose(kValidJoints);
+  set_joints_valid(robot_.frame(), 0);
   drive(0.5, 0, 2000);
   EXPECT_FALSE(has(kStateValid));
   EXPECT_TRUE(all_finite(state_));
-  robot_.frame().valid |= kValidJoints;
+  set_joints_valid(robot_.frame(), kValidMotion);
   drive(0.5, 0, 500);
   EXPECT_TRUE(has(kStateValid));
   EXPECT_LT(position_error(), 0.01);
@@ -198,7 +198,8 @@ TEST_F(EstimatorFaultsTest, WithWheelsAloneItIsTheirOdometry) {
 }
 
 TEST_F(EstimatorFaultsTest, NothingAtAllIsFlagged) {
-  lose(kValidAccelerometer | kValidGyro | kValidJoints);
+  lose(kValidAccelerometer | kValidGyro);
+  set_joints_valid(robot_.frame(), 0);
   drive(0.5, 0.2, 60000);
   EXPECT_FALSE(has(kStateValid));
   for (const StateFlag flag :
@@ -206,7 +207,8 @@ TEST_F(EstimatorFaultsTest, NothingAtAllIsFlagged) {
     EXPECT_TRUE(has(flag));
   }
   EXPECT_TRUE(all_finite(state_));
-  robot_.frame().valid |= kValidAccelerometer | kValidGyro | kValidJoints;
+  robot_.frame().valid |= kValidAccelerometer | kValidGyro;
+  set_joints_valid(robot_.frame(), kValidMotion);
   drive(0, 0, 3000);
   EXPECT_TRUE(has(kStateValid));
   EXPECT_NEAR(speed(), 0, 0.01);
@@ -238,7 +240,11 @@ TEST_P(EstimatorGarbageTest, NeverPoisonsTheState) {
       if (random() % 2 == 0) frame.valid = random();
       if (random() % 4 == 0) frame.joint_count = random() % 40;
       if (random() % 8 == 0) frame.head.cycle += random() % 3;
-      if (random() % 2 == 0) frame.joints[0] = {pick(), pick(), pick(), pick()};
+      if (random() % 2 == 0) {
+        frame.joints[0] = {.position = pick(), .velocity = pick(), .effort = pick(), .temperature = pick()};
+        frame.joints[0].age_ns = static_cast<std::int64_t>(random());
+        frame.joints[0].valid = static_cast<std::uint32_t>(random());
+      }
       if (random() % 2 == 0) frame.joints[1].position = pick();
       if (random() % 2 == 0) frame.imu.angular_velocity = {pick(), pick(), pick()};
       if (random() % 2 == 0) frame.imu.linear_acceleration = {pick(), pick(), pick()};

@@ -66,7 +66,7 @@ TEST_F(EstimatorStartTest, WithoutEncodersItIsNotAtRest) {
   for (int i = 0; i < 3000; ++i) {
     robot_.drive(0, 0.1);
     SensorFrame frame = robot_.frame();
-    frame.valid &= ~std::uint64_t{kValidJoints};
+    set_joints_valid(frame, 0);
     estimator_.step(frame, state_);
   }
   EXPECT_FALSE(has(kStateStandstill));

@@ -25,7 +25,8 @@ class MotionMessagesTest : public testing::Test {
     robot_.joints[2].name = "mast";
     robot_.wheels = {WheelModel{.joint = 0}, WheelModel{.joint = 1, .side = Side::kRight}};
     sensors_.joint_count = 3;
-    sensors_.valid = kValidJoints | kValidGyro | kValidAccelerometer;
+    set_joints_valid(sensors_, kValidMotion);
+    sensors_.valid = kValidGyro | kValidAccelerometer;
   }
 
   const ros::Time stamp_{12, 34};
@@ -189,7 +190,7 @@ TEST_F(MotionMessagesTest, ThereIsImuDataOnlyWhereBothSensorsAreValid) {
   }
   state_.flags = kStateValid;
   for (const std::uint64_t one : {std::uint64_t{kValidGyro}, std::uint64_t{kValidAccelerometer}}) {
-    sensors_.valid = kValidJoints | one;
+    sensors_.valid = one;
     EXPECT_FALSE(has_imu_data(sensors_, state_)) << one;
   }
 }

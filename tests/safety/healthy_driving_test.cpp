@@ -70,7 +70,8 @@ class HealthyDriving : public testing::TestWithParam<Machine> {
   void fill(const std::array<double, 2>& target) {
     sensors_.head.cycle = cycle_;
     sensors_.driver_state = DriverState::kRunning;
-    sensors_.valid = kValidJoints | kValidGyro | kValidAccelerometer;
+    set_joints_valid(sensors_, kValidMotion);
+    sensors_.valid = kValidGyro | kValidAccelerometer;
     sensors_.joint_count = command_.joint_count = 2;
     const double quantum = GetParam().counts > 0 ? 2 * std::numbers::pi / GetParam().counts : 0;
     const bool rests = target[0] == 0 && target[1] == 0 && speed_[0] == 0 && speed_[1] == 0;

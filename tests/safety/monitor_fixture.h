@@ -52,7 +52,8 @@ class MonitorTest : public testing::Test {
     sensors_.head.run = 1;
     sensors_.driver_instance = 77;
     sensors_.driver_state = DriverState::kRunning;
-    sensors_.valid = kValidJoints | kValidGyro | kValidAccelerometer;
+    set_joints_valid(sensors_, kValidMotion);
+    sensors_.valid = kValidGyro | kValidAccelerometer;
     sensors_.imu.linear_acceleration = {0, 0, 9.81};
     sensors_.joint_count = command_.joint_count = kWheels;
     input_.sensors = &sensors_;

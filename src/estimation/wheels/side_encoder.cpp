@@ -14,8 +14,9 @@ SideEncoder::Wheel::Wheel(const WheelModel& wheel, const RobotModel& robot) noex
 }
 
 bool SideEncoder::Wheel::measured(const SensorFrame& sensors) const noexcept {
-  return (sensors.valid & kValidJoints) != 0 && joint < sensors.joint_count && joint < kMaxJoints &&
-         std::isfinite(sensors.joints[joint].position);
+  if (joint >= sensors.joint_count || joint >= kMaxJoints) return false;
+  const JointSample& sample = sensors.joints[joint];
+  return has(sample, kValidPosition) && std::isfinite(sample.position) && taken.precedes(sensors, sample);
 }
 
 bool SideEncoder::Wheel::plausible(const SensorFrame& sensors, double time) const noexcept {
@@ -26,6 +27,7 @@ double SideEncoder::Wheel::accept(const SensorFrame& sensors) noexcept {
   const double position = sensors.joints[joint].position;
   const double travel = metres_per_radian * (position - angle);
   angle = position;
+  taken.accept(sensors, sensors.joints[joint]);
   return travel;
 }
 

@@ -3,7 +3,8 @@
 /// (machine/encoders/tracking_loop.h) on each wheel's own angle, without a torque that explains its acceleration.
 ///
 /// The speed that an encoder reports is a difference over one period, which jumps by a count per period: 1.5 rad/s with
-/// 4096 counts at 1 kHz. Samples that are missing, not finite or that jump by more than kFastestWheel are left out.
+/// 4096 counts at 1 kHz. Samples that are missing, not finite, used before or that jump by more than kFastestWheel
+/// are left out.
 /// After kMaxHoldTime without a sample, the next one restarts the loop.
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <cstddef>
 
 #include "estimation/tuning.h"
+#include "estimation/wheels/sample_time.h"
 #include "machine/encoders/tracking_loop.h"
 #include "machine/robot_model.h"
 #include "signals/fixed_vector.h"
@@ -29,8 +31,8 @@ class WheelVelocities {
 
   /// `dt` is the time in s since the last call; 0 in the first one and for a repeated frame.
   void step(const SensorFrame& sensors, double dt) noexcept {
-    const bool valid = (sensors.valid & kValidJoints) != 0 && sensors.joint_count >= wheels_.size();
-    for (std::size_t i = 0; i < wheels_.size(); ++i) wheels_[i].step(sensors.joints[i], valid, dt, period_);
+    const bool valid = sensors.joint_count >= wheels_.size();
+    for (std::size_t i = 0; i < wheels_.size(); ++i) wheels_[i].step(sensors, i, valid, dt, period_);
     for (std::size_t i = 0; i < wheels_.size(); ++i)
       wheels_[i].tracking.assume_encoder_of(wheels_[(i + 1) % wheels_.size()].tracking);
   }
@@ -45,12 +47,15 @@ class WheelVelocities {
   struct Wheel {
     TrackingLoop tracking;
     double angle = 0;  ///< rad, last good sample
+    SampleTime taken{};  ///< of that sample
     double since = 0;  ///< s
     bool known = false;
 
-    void step(const JointSample& sample, bool valid, double dt, double period) noexcept {
+    void step(const SensorFrame& sensors, std::size_t joint, bool valid, double dt, double period) noexcept {
+      const JointSample& sample = sensors.joints[joint];
       since += dt;
-      if (!valid || !std::isfinite(sample.position)) return;
+      if (!valid || !has(sample, kValidPosition) || !std::isfinite(sample.position)) return;
+      if (!taken.precedes(sensors, sample)) return;
       const double travel = sample.position - angle;
       if (!known || since > Tuning::kMaxHoldTime) {
         tracking.restart_from(sample.position, 0);
@@ -61,6 +66,7 @@ class WheelVelocities {
         return;
       }
       angle = sample.position;
+      taken.accept(sensors, sample);
       since = 0;
     }
   };

@@ -1,5 +1,6 @@
 #include "ros/reports/diagnostics.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <numbers>
@@ -61,6 +62,17 @@ void report_driver(DiagnosticReport& report, const SensorFrame& sensors, double 
   if (sensors.driver_state == DriverState::kFault) report.error(sentences_of(kDriverFaultNames, sensors.faults));
   if (sensors.driver_state == DriverState::kPaused) report.ok("paused");
   if (sensors.injected != InjectedFaults{}) report.warn("injected faults: " + names_of(sensors.injected));
+  for (std::size_t i = 0; i < std::min<std::size_t>(sensors.link_count, kMaxLinks); ++i) {
+    const LinkStatus& link = sensors.links[i];
+    const std::string name = "link_" + std::to_string(i);
+    const std::string state(name_of(link.state));
+    if (link.state != LinkState::kUp) report.warn(name + " is " + state);
+    report.value(name, state);
+    report.value(name + "_sent", link.sent);
+    report.value(name + "_lost", link.lost);
+    report.value(name + "_late", link.late);
+    report.value(name + "_errors", link.errors);
+  }
   report.value("driver_state", std::string(name_of(sensors.driver_state)));
   report.value("faults", names_of(kDriverFaultNames, sensors.faults));
   report.value("cycle", sensors.head.cycle);
