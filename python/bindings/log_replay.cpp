@@ -48,10 +48,10 @@ class VariedColumns {
     if (row.state != nullptr) {
       const StateFrame& was = *row.state;
       const StateFrame& would = *row.varied_state;
-      add("estimate_x", was.pose_odom.position[0], would.pose_odom.position[0]);
-      add("estimate_y", was.pose_odom.position[1], would.pose_odom.position[1]);
-      add("estimate_linear", was.twist_base.linear[0], would.twist_base.linear[0]);
-      add("estimate_angular", was.twist_base.angular[2], would.twist_base.angular[2]);
+      add("estimate_x", was.base.pose_odom.position[0], would.base.pose_odom.position[0]);
+      add("estimate_y", was.base.pose_odom.position[1], would.base.pose_odom.position[1]);
+      add("estimate_linear", was.base.twist_base.linear[0], would.base.twist_base.linear[0]);
+      add("estimate_angular", was.base.twist_base.angular[2], would.base.twist_base.angular[2]);
     }
     if (row.command != nullptr) {
       const CommandFrame& was = *row.command;

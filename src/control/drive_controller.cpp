@@ -153,7 +153,7 @@ std::uint64_t DriveController::permit_reasons(const Permit* permit, std::uint64_
 std::uint64_t DriveController::state_reasons(const StateFrame* state, std::uint64_t cycle) noexcept {
   if (state == nullptr) return kReasonNoState;
   state_cycle_ = state->head.cycle;
-  const bool usable_now = state_cycle_ == cycle && (state->flags & kStateValid);
+  const bool usable_now = state_cycle_ == cycle && (state->base.flags & kStateValid);
   return usable_now ? 0u : std::uint64_t{kReasonNoState};
 }
 

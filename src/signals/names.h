@@ -142,7 +142,7 @@ inline constexpr auto kSlipReasonNames = std::to_array<BitName>({
 });
 
 /// The names are in the order of SensorIndex.
-inline constexpr std::array<std::string_view, 6> kStateSensorNames{"left_encoder",  "right_encoder",   "gyro",
+inline constexpr std::array<std::string_view, kWheeledSensors> kStateSensorNames{"left_encoder",  "right_encoder",   "gyro",
                                                                    "accelerometer", "lateral_contact", "vertical_contact"};
 
 inline constexpr auto kDigitalInputNames = std::to_array<BitName>({

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "signals/contact.h"
 #include "signals/frame_head.h"
 #include "signals/gate_report.h"
 #include "signals/geometry.h"
@@ -13,14 +14,6 @@
 #include "signals/link_status.h"
 
 namespace robot_control {
-
-inline constexpr std::size_t kMaxContacts = 8;
-
-/// The measured force of one contact of the machine with the ground.
-struct ContactSample {
-  Vector3 force{};          ///< N, on the machine, base axes, mean over [t_k-1, t_k)
-  std::uint64_t valid = 0;  ///< 1: the force was measured
-};
 
 /// The sample is in the axes of the IMU's link. The angular velocity belongs to t_k. The linear acceleration is the
 /// specific force (+g upwards at rest), averaged over [t_k-1, t_k). In world axes, plus gravity, times the period, it

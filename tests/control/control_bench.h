@@ -29,7 +29,7 @@ class ControlBench {
     controller.enter_run();
     permit.action = PermitAction::kDrive;
     permit.speed_limit = kNoSpeedLimit;
-    state.flags = kStateValid;
+    state.base.flags = kStateValid;
     set_joints_valid(sensors, kValidMotion);
     sensors.joint_count = model.joints.size();
   }

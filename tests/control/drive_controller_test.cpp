@@ -193,7 +193,7 @@ TEST_F(DriveControllerTest, DrivesOnWithoutAStateAndSaysSo) {
 }
 
 TEST_F(DriveControllerTest, SaysThatTheStateIsInvalid) {
-  bench.state.flags = 0;
+  bench.state.base.flags = 0;
   bench.step();
   EXPECT_EQ(bench.command.reasons, kReasonNoState);
 }

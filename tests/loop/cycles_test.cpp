@@ -71,9 +71,9 @@ TEST_F(RunningLoop, ResumesTheEstimateAfterARestart) {
   loop.restart_estimator();
   loop.step();
   const StateFrame after = loop.newest_state();
-  EXPECT_EQ(after.pose_odom.position, before.pose_odom.position);
-  EXPECT_NE(after.flags & kStateRestarted, 0u);
-  EXPECT_GT(after.pose_covariance[0], before.pose_covariance[0]);
+  EXPECT_EQ(after.base.pose_odom.position, before.base.pose_odom.position);
+  EXPECT_NE(after.base.flags & kStateRestarted, 0u);
+  EXPECT_GT(after.base.pose_covariance[0], before.base.pose_covariance[0]);
 }
 
 TEST_F(RunningLoop, StopsWhenTheMonitorIsRestarted) {

@@ -151,13 +151,13 @@ TEST_F(NodeFaults, AWrongControllerTurnsEveryEffortRound) {
 }
 
 TEST_F(NodeFaults, AWrongEstimatorMirrorsTheMotion) {
-  state_.pose_odom.position = {1, 2, 0};
-  state_.twist_base = {.linear = {0.5, 0, 0}, .angular = {0, 0, 0.2}};
+  state_.base.pose_odom.position = {1, 2, 0};
+  state_.base.twist_base = {.linear = {0.5, 0, 0}, .angular = {0, 0, 0.2}};
   FaultRandom random;
   distort(FaultKind::kWrong, state_, random);
-  EXPECT_EQ(state_.pose_odom.position, (Vector3{-1, -2, 0}));
-  EXPECT_EQ(state_.twist_base.linear, (Vector3{-0.5, 0, 0}));
-  EXPECT_EQ(state_.twist_base.angular, (Vector3{0, 0, -0.2}));
+  EXPECT_EQ(state_.base.pose_odom.position, (Vector3{-1, -2, 0}));
+  EXPECT_EQ(state_.base.twist_base.linear, (Vector3{-0.5, 0, 0}));
+  EXPECT_EQ(state_.base.twist_base.angular, (Vector3{0, 0, -0.2}));
 }
 
 TEST_F(NodeFaults, AWrongMonitorBrakesARobotThatMayDrive) {

@@ -18,7 +18,6 @@
 #include "machine/robot_model.h"
 #include "signals/fixed_vector.h"
 #include "signals/sensor_frame.h"
-#include "signals/state_frame.h"
 
 namespace robot_control {
 
@@ -37,18 +36,17 @@ class WheelVelocities {
       wheels_[i].tracking.assume_encoder_of(wheels_[(i + 1) % wheels_.size()].tracking);
   }
 
-  /// Writes rad/s in the joint's own sign; wheels without a sample get 0.
-  void write(std::array<double, kMaxWheelVelocities>& out) const noexcept {
-    out = {};
+  /// Writes rad/s of the wheels in the joint's own sign; wheels without a sample get 0.
+  void write(std::array<double, kMaxJoints>& out) const noexcept {
     for (std::size_t i = 0; i < wheels_.size(); ++i) out[i] = wheels_[i].known ? wheels_[i].tracking.velocity() : 0;
   }
 
  private:
   struct Wheel {
     TrackingLoop tracking;
-    double angle = 0;  ///< rad, last good sample
+    double angle = 0;    ///< rad, last good sample
     SampleTime taken{};  ///< of that sample
-    double since = 0;  ///< s
+    double since = 0;    ///< s
     bool known = false;
 
     void step(const SensorFrame& sensors, std::size_t joint, bool valid, double dt, double period) noexcept {
@@ -74,7 +72,5 @@ class WheelVelocities {
   double period_;
   FixedVector<Wheel, kMaxWheels> wheels_;
 };
-
-static_assert(kMaxWheelVelocities == kMaxWheels);
 
 }  // namespace robot_control

@@ -92,42 +92,42 @@ void report_driver(DiagnosticReport& report, const SensorFrame& sensors, double 
 
 void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64_t slip_lately) {
   constexpr std::uint64_t kLost = kStateNoGyro | kStateNoAccelerometer | kStateNoLeftEncoder | kStateNoRightEncoder;
-  if ((state.flags & kStateValid) == 0) report.warn("pose and twist are not valid");
-  if ((state.flags & kLost) != 0) report.warn(sentences_of(kStateFlagNames, state.flags & kLost));
-  if ((slip_lately | state.slip) != 0) {
-    report.warn("slip: " + sentences_of(kSlipReasonNames, slip_lately | state.slip));
-  } else if ((state.flags & kStateSlip) != 0) {
+  if ((state.base.flags & kStateValid) == 0) report.warn("pose and twist are not valid");
+  if ((state.base.flags & kLost) != 0) report.warn(sentences_of(kStateFlagNames, state.base.flags & kLost));
+  if ((slip_lately | state.wheeled.slip) != 0) {
+    report.warn("slip: " + sentences_of(kSlipReasonNames, slip_lately | state.wheeled.slip));
+  } else if ((state.base.flags & kStateSlip) != 0) {
     report.warn("slip: wheels and inertial sensors disagree");
   }
-  if ((state.flags & kStateDegraded) != 0) {
-    report.warn("odometry is degraded: " + sentences_of(kDegradedReasonNames, state.degraded));
+  if ((state.base.flags & kStateDegraded) != 0) {
+    report.warn("odometry is degraded: " + sentences_of(kDegradedReasonNames, state.base.degraded));
   }
   report.value("cycle", state.head.cycle);
-  report.value("flags", names_of(kStateFlagNames, state.flags));
-  report.value("degraded", names_of(kDegradedReasonNames, state.degraded));
-  report.value("residual_level", state.residual_level);
-  report.value("slip_detection", slip_detection(state.residual_level));
-  report.value("distance_m", state.distance);
+  report.value("flags", names_of(kStateFlagNames, state.base.flags));
+  report.value("degraded", names_of(kDegradedReasonNames, state.base.degraded));
+  report.value("residual_level", state.wheeled.residual_level);
+  report.value("slip_detection", slip_detection(state.wheeled.residual_level));
+  report.value("distance_m", state.base.distance);
   report.value("skipped", state.skipped);
-  report.value("slip", names_of(kSlipReasonNames, state.slip));
+  report.value("slip", names_of(kSlipReasonNames, state.wheeled.slip));
   report.value("slip_lately", names_of(kSlipReasonNames, slip_lately));
-  report.reasons("slip", kSlipReasonNames, slip_lately | state.slip);
-  report.reasons("estimate", kStateFlagNames, state.flags & kLost);
-  report.reasons("degraded", kDegradedReasonNames, state.degraded);
+  report.reasons("slip", kSlipReasonNames, slip_lately | state.wheeled.slip);
+  report.reasons("estimate", kStateFlagNames, state.base.flags & kLost);
+  report.reasons("degraded", kDegradedReasonNames, state.base.degraded);
   for (std::size_t i = 0; i < kStateSensorNames.size(); ++i) {
     const std::string sensor(kStateSensorNames[i]);
-    report.value("confidence_" + sensor, state.confidence[i]);
-    report.value("nis_" + sensor, state.nis[i]);
-    report.value("rejected_" + sensor, state.rejected[i]);
+    report.value("confidence_" + sensor, state.wheeled.confidence[i]);
+    report.value("nis_" + sensor, state.wheeled.nis[i]);
+    report.value("rejected_" + sensor, state.wheeled.rejected[i]);
   }
-  report.value("radius_ratio", state.calibration.radius_ratio);
-  report.value("radius_ratio_deviation", state.calibration.radius_ratio_deviation);
-  report.value("wheel_base_factor", state.calibration.wheel_base_factor);
-  report.value("wheel_base_deviation", state.calibration.wheel_base_deviation);
+  report.value("radius_ratio", state.wheeled.calibration.radius_ratio);
+  report.value("radius_ratio_deviation", state.wheeled.calibration.radius_ratio_deviation);
+  report.value("wheel_base_factor", state.wheeled.calibration.wheel_base_factor);
+  report.value("wheel_base_deviation", state.wheeled.calibration.wheel_base_deviation);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string name = std::string("gyro_bias_") + "xyz"[axis];
-    report.value(name + "_deg_s", state.gyro_bias[axis] * kDegrees);
-    report.value(name + "_deviation_deg_s", state.gyro_bias_deviation[axis] * kDegrees);
+    report.value(name + "_deg_s", state.base.gyro_bias[axis] * kDegrees);
+    report.value(name + "_deviation_deg_s", state.base.gyro_bias_deviation[axis] * kDegrees);
   }
 }
 

@@ -47,7 +47,7 @@ class RandomNodes {
     Replay again(parameters(), loop_.robot);
     again.vary(parameters(), loop_.robot, [&](const VariedRow& row) {
       if (row.state == nullptr) return;
-      otherwise += row.varied_state->pose_odom.position != row.state->pose_odom.position ? 1 : 0;
+      otherwise += row.varied_state->base.pose_odom.position != row.state->base.pose_odom.position ? 1 : 0;
     });
     for (const LawSnapshot& snapshot : recording.snapshots) again.add(snapshot);
     for (const RecordedRow& row : recording.rows) again.add(row.joined());
