@@ -267,24 +267,25 @@ void DriveController::drive(const PlanarTwist& requested, const SensorFrame& sen
   if (in_control_) {
     const PlanarTwist goal = scaled(requested, kinematics_.wheel_speed_scale(requested));
     if (goal.linear != requested.linear || goal.angular != requested.angular || acceleration_scale_ < 1)
-      out.reasons |= kReasonSaturated;
+      out.wheeled.reasons |= kReasonSaturated;
     limiter_.step(goal, periods_ * period_, (out.reasons & kEmergencies) != 0, acceleration_scale_);
-    out.reasons |= limiter_.reasons();
+    out.reasons |= limiter_.reasons() & ~kWheeledReasons;
+    out.wheeled.reasons |= limiter_.reasons() & kWheeledReasons;
   }
   // A target that changed during a ramp may lead past the wheels' limits.
   const double scale = kinematics_.wheel_speed_scale(limiter_.value());
-  if (scale < 1) out.reasons |= kReasonSaturated;
+  if (scale < 1) out.wheeled.reasons |= kReasonSaturated;
   const PlanarTwist limited = scaled(limiter_.value(), scale);
   const PlanarTwist rate = scaled(limiter_.acceleration(), scale);
   const WheelValues velocity = kinematics_.joint_speeds(limited);
   const WheelValues acceleration = kinematics_.joint_speeds(rate);
   const WheelValues feed_forward = planned_efforts(limited, rate);
   const bool clamped = in_control_ && (sensors.gate.reasons & kGateClamps) != 0;
-  if (clamped) out.reasons |= kReasonSaturated;
+  if (clamped) out.wheeled.reasons |= kReasonSaturated;
   for (std::size_t i = 0; i < loops_.size(); ++i) {
     const double effort = loops_[i].step({velocity[i], acceleration[i], feed_forward[i]}, periods_, clamped);
     out.joints[i] = effort_command(velocity[i], effort);
-    if (loops_[i].saturated()) out.reasons |= kReasonSaturated;
+    if (loops_[i].saturated()) out.wheeled.reasons |= kReasonSaturated;
   }
   acceleration_scale_ = in_control_ ? affordable_acceleration_scale(limited, feed_forward) : 1.0;
   out.twist_limited = spatial(limited);
@@ -295,7 +296,7 @@ void DriveController::step(const ControlInput& input, CommandFrame& out) noexcep
   const std::uint64_t cycle = sensors.head.cycle;
   out.joint_count = joint_count_;
   out.joints.fill({});
-  out.velocity_measured.fill(0);
+  out.wheeled = {};
   out.twist_limited = {};
 
   out.twist_requested = watch_.step(input.request, cycle);
@@ -304,7 +305,7 @@ void DriveController::step(const ControlInput& input, CommandFrame& out) noexcep
 
   if (measure(sensors)) {
     drive(permitted_twist(input.permit, out), sensors, out);
-    for (std::size_t i = 0; i < loops_.size(); ++i) out.velocity_measured[i] = loops_[i].velocity();
+    for (std::size_t i = 0; i < loops_.size(); ++i) out.wheeled.velocity[i] = loops_[i].velocity();
   } else {
     out.reasons |= kReasonBadSensors;
     driving_ = false;

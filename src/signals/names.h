@@ -79,8 +79,6 @@ inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
     {kReasonSpeedLimited, "speed_limited", "cmd_vel is above max_linear_speed or max_angular_speed", ""},
     {kReasonAccelerationLimited, "acceleration_limited", "the acceleration limit shapes the motion", ""},
     {kReasonJerkLimited, "jerk_limited", "the jerk limit shapes the motion", ""},
-    {kReasonCurvatureKept, "curvature_kept", "one axis was scaled to keep the commanded curvature", ""},
-    {kReasonSaturated, "saturated", "a wheel's torque or speed is at its limit", ""},
     {kReasonNoPermit, "no_permit", "there is no live permit", "start safety_monitor"},
     {kReasonPermitBrake, "permit_brake", "the permit orders the brake", "read the cause in safety_status"},
     {kReasonPermitRamp, "permit_ramp", "the permit orders a ramp to standstill", "read the cause in safety_status"},
@@ -96,6 +94,8 @@ inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
     {kReasonRevoked, "revoked",
      "a sender goes on requesting motion that was requested before a stop, a restart or a pause, or meanwhile",
      "let it send a zero velocity, or restart it"},
+    {kReasonCurvatureKept, "curvature_kept", "one axis was scaled to keep the commanded curvature", ""},
+    {kReasonSaturated, "saturated", "a wheel's torque or speed is at its limit", ""},
 });
 
 inline constexpr auto kDriverFaultNames = std::to_array<BitName>({

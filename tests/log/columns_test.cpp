@@ -184,7 +184,7 @@ TEST_F(Columns, KeepTheJointsApart) {
   driver.sensors.joints[0].effort = 1.5;
   driver.sensors.joints[1].effort = -2.5;
   controller.command.joints[1].velocity = 3;
-  controller.command.velocity_measured[0] = 4;
+  controller.command.wheeled.velocity[0] = 4;
   EXPECT_EQ(value("left_wheel_joint_effort"), 1.5);
   EXPECT_EQ(value("right_wheel_joint_effort"), -2.5);
   EXPECT_EQ(value("right_wheel_joint_velocity_command"), 3);

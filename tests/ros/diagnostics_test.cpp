@@ -168,7 +168,7 @@ TEST(CommandReasons, AreEachAValueInWords) {
 
 TEST(CommandReasons, OfAMomentAreReported) {
   DiagnosticReport report("diff_drive_controller", "diffbot");
-  report_command(report, {}, kReasonJerkYielded | kReasonSaturated, {});
+  report_command(report, {}, std::uint64_t{kReasonJerkYielded} | kReasonSaturated, {});
   EXPECT_EQ(value_of(report, "reasons"), "");
   EXPECT_EQ(value_of(report, "reasons_lately"), "saturated jerk_yielded");
   EXPECT_EQ(report.message().level, static_cast<int>(msg::DiagnosticStatus::OK));

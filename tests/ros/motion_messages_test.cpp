@@ -233,7 +233,7 @@ TEST_F(MotionMessagesTest, DriveStateComparesTheWheelsWithThePlanOfTwoCyclesBefo
   plan.joints[1] = {.mode = JointMode::kEffort, .velocity = 5.5};
   command_.joints[0] = {.mode = JointMode::kEffort, .velocity = 9, .effort = 0.25};
   command_.joints[1] = {.mode = JointMode::kEffort, .velocity = 9, .effort = -0.5};
-  command_.velocity_measured = {4.25, 5.75, 99};
+  command_.wheeled.velocity = {4.25, 5.75, 99};
   const msg::DriveState message = drive_state(command_, plan, 0, robot_, stamp_);
   EXPECT_EQ(message.header.stamp, stamp_);
   EXPECT_THAT(message.name, ElementsAre("left", "right"));

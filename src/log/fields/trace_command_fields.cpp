@@ -27,15 +27,23 @@ void add_command(TraceFields& to) {
                    .shown_per_joint("effort_command"));
   to.push_back(per_joint<C, f32>("velocity_command", "rad/s or m/s", ELEMENT(command.joints[i].velocity))
                    .shown_per_joint("velocity_command"));
+  TraceColumn measured = column<C>(
+      "velocity_measured", "rad/s, of the tracking loop; 0: no wheel",
+      [](const C& c, std::size_t joint) { return joint < kMaxWheels ? c.command.wheeled.velocity[joint] : 0; });
+  measured.per_joint = true;
   to.push_back(
-      per_joint<C, f32>("velocity_measured", "rad/s, of the tracking loop", ELEMENT(command.velocity_measured[i]))
-          .shown_per_joint("velocity_measured"));
+      per_wheel<C, f32>("velocity_measured", "rad/s, of the tracking loop", ELEMENT(command.wheeled.velocity[i]))
+          .shown_as(measured));
+  to.back().max_joints = kMaxJoints;
   to.push_back(per_joint<C, u8>("mode_command", "JointMode", ELEMENT(command.joints[i].mode)).shown_per_joint("mode"));
   number("command_state_cycle", "of the state used", MEMBER(command.state_cycle));
   number("command_permit_cycle", "of the permit used", MEMBER(command.permit_cycle));
   number("silent_cycles", "since the last message of any sender", MEMBER(command.silent_cycles));
   number("command_joint_count", "", MEMBER(command.joint_count));
-  shown("command_reasons", "CommandReason bits", MEMBER(command.reasons));
+  to.push_back(field<C, u64>("command_reasons", "CommandReason bits", MEMBER(command.reasons))
+                   .shown_as(column<C>("command_reasons", "CommandReason and WheeledReason bits",
+                                       [](const C& c, std::size_t) { return reasons_of(c.command); })));
+  number("wheeled_reasons", "WheeledReason bits", MEMBER(command.wheeled.reasons));
   number("request_cycle", "in which the last command was received", MEMBER(command.request_cycle));
   shown("requests_received", "in this run", MEMBER(command.requests_received));
   shown("requests_refused", "in this run", MEMBER(command.requests_refused));

@@ -105,7 +105,6 @@ std::vector<FieldDifference> differences(const CommandFrame& logged, const Comma
   static const std::vector<Member> kMembers{
       whole("joint_count"),
       {"joints", kMaxJoints * 6, {"#mode", "position", "velocity", "stiffness", "damping", "effort"}},
-      {"velocity_measured", kMaxJoints},
       {"twist_requested", 6, kTwist},
       {"twist_limited", 6, kTwist},
       whole("reasons"),
@@ -122,7 +121,9 @@ std::vector<FieldDifference> differences(const CommandFrame& logged, const Comma
       whole("zero_requests"),
       whole("zero_requested"),
       whole("silent_cycles"),
-      whole("silence_needed")};
+      whole("silence_needed"),
+      whole("wheeled_reasons"),
+      {"velocity_measured", kMaxWheels}};
   return compare(logged, replayed, kHead, kMembers);
 }
 

@@ -188,7 +188,7 @@ msg::DriveState drive_state(const CommandFrame& command, const CommandFrame& pla
   }
   for (const WheelModel& wheel : robot.wheels) {
     const double wanted = plan.joints[wheel.joint].velocity;
-    const double actual = command.velocity_measured[wheel.joint];
+    const double actual = command.wheeled.velocity[wheel.joint];
     message.name.push_back(robot.joints[wheel.joint].name);
     message.wanted.push_back(wanted);
     message.actual.push_back(actual);

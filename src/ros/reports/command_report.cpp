@@ -57,7 +57,7 @@ CommandReport::Report CommandReport::made_of(const CommandFrame& command) const 
   return {.rims = kinematics_.rim_speeds(twist),
           .zero = requested.linear == 0 && requested.angular == 0,
           .limited = twist.linear != requested.linear || twist.angular != requested.angular,
-          .hindrance = command.reasons & kHindrances};
+          .hindrance = reasons_of(command) & kHindrances};
 }
 
 bool CommandReport::same(const Report& one, const Report& other) {

@@ -138,7 +138,7 @@ void report_command(DiagnosticReport& report, const CommandFrame& command, std::
   if ((lately & kRefusals) != 0) report.warn(sentences_of(kCommandReasonNames, lately & kRefusals));
   if (senders.size() > 1 && sources.empty()) report.warn("commands come from more than one node: " + joined(senders));
   report.value("cycle", command.head.cycle);
-  report.value("reasons", names_of(kCommandReasonNames, command.reasons));
+  report.value("reasons", names_of(kCommandReasonNames, reasons_of(command)));
   report.value("reasons_lately", names_of(kCommandReasonNames, lately));
   report.value("senders", joined(senders));
   if (!sources.empty()) report.value("sources", joined(sources));
@@ -151,7 +151,7 @@ void report_command(DiagnosticReport& report, const CommandFrame& command, std::
   report.value("timeouts", command.timeouts);
   report.value("requested_m_s", command.twist_requested.linear[0]);
   report.value("requested_rad_s", command.twist_requested.angular[2]);
-  report.reasons("command", kCommandReasonNames, command.reasons);
+  report.reasons("command", kCommandReasonNames, reasons_of(command));
 }
 
 void report_permit(DiagnosticReport& report, const Permit& permit) {
