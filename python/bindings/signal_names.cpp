@@ -39,6 +39,7 @@ py::dict signal_names() {
   py::dict all;
   all["StopCause"] = bits(kStopCauseNames);
   all["CommandReason"] = bits(kCommandReasonNames);
+  all["RequestPart"] = bits(kRequestPartNames);
   all["GateReason"] = bits(kGateReasonNames);
   all["StateFlag"] = bits(kStateFlagNames);
   all["SlipReason"] = bits(kSlipReasonNames);

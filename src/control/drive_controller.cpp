@@ -60,7 +60,7 @@ DriveController::DriveController(const DriveControllerParameters& parameters, co
       kinematics_(robot),
       feed_forward_(measured_robot(robot, parameters.feed_forward)),
       ground_friction_(robot),
-      watch_(parameters.cmd_vel_timeout, period),
+      watch_(parameters.cmd_vel_timeout, period, kPartLinearX | kPartAngularZ),
       limiter_(speed_limits(parameters)),
       standstill_(period),
       loops_(make_loops(parameters, robot, period)) {}
@@ -159,7 +159,7 @@ std::uint64_t DriveController::state_reasons(const StateFrame* state, std::uint6
 
 /// Returns the requested twist, limited by the permit.
 PlanarTwist DriveController::permitted_twist(const Permit* permit, CommandFrame& out) const noexcept {
-  const PlanarTwist requested{out.twist_requested.linear[0], out.twist_requested.angular[2]};
+  const PlanarTwist requested{out.requested.twist.linear[0], out.requested.twist.angular[2]};
   if ((out.reasons & kReasonPermitRamp) != 0) return {};
   if ((out.reasons & (kReasonNoPermit | kReasonPermitBrake)) != 0)
     return requested;  // The joints are braked in any case.
@@ -299,7 +299,7 @@ void DriveController::step(const ControlInput& input, CommandFrame& out) noexcep
   out.wheeled = {};
   out.twist_limited = {};
 
-  out.twist_requested = watch_.step(input.request, cycle);
+  out.requested = watch_.step(input.request, cycle);
   out.reasons = watch_.reasons() | permit_reasons(input.permit, cycle) | state_reasons(input.state, cycle);
   if (input.permit != nullptr) permit_cycle_ = input.permit->head.cycle;
 
@@ -319,6 +319,8 @@ void DriveController::step(const ControlInput& input, CommandFrame& out) noexcep
   out.requests_stale = watch_.stale();
   out.requests_crowded = watch_.crowded();
   out.requests_revoked = watch_.revoked();
+  out.requests_partial = watch_.partial();
+  out.ignored = watch_.ignored();
   out.timeouts = watch_.timeouts();
   out.first_cycle = watch_.first_cycle();
   out.zero_requests = watch_.zero_requests();

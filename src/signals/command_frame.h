@@ -8,6 +8,7 @@
 #include "signals/frame_head.h"
 #include "signals/geometry.h"
 #include "signals/joint.h"
+#include "signals/request.h"
 #include "signals/wheeled_command.h"
 
 namespace robot_control {
@@ -33,9 +34,10 @@ enum CommandReason : std::uint64_t {
   kReasonStale = 1u << 14,  ///< The last message was refused for its stamp; the command before it stays in force.
   kReasonManySenders = 1u << 15,  ///< More than one node sends, and one_sender forbids it.
   kReasonRevoked = 1u << 16,      ///< A sender requested motion before a withdrawal and has not sent zero since.
+  kReasonPartIgnored = 1u << 17,  ///< The request has a part that this machine cannot execute (CommandFrame::ignored).
 };
 
-static_assert(kReasonRevoked == 1u << (kFirstWheeledReason - 1));
+static_assert(kReasonPartIgnored == 1u << (kFirstWheeledReason - 1));
 
 /// The gate uses a command in at most this many ticks: at tick k one of cycles k-kCommandLife … k-1.
 inline constexpr std::uint64_t kCommandLife = 4;
@@ -44,7 +46,7 @@ struct CommandFrame {
   FrameHead head;
   std::uint64_t joint_count = 0;
   std::array<JointCommand, kMaxJoints> joints{};  ///< in the order of RobotModel::joints
-  Twist twist_requested;                          ///< as last received; zero once timed out or refused
+  Request requested;                              ///< as last received; zero once timed out or refused
   Twist twist_limited;                            ///< after limits: the target of the base
   std::uint64_t reasons = 0;
   std::uint64_t state_cycle = 0;        ///< cycle of the state that was used
@@ -55,6 +57,8 @@ struct CommandFrame {
   std::uint64_t requests_stale = 0;     ///< those of requests_refused with a wrong stamp
   std::uint64_t requests_crowded = 0;   ///< those of requests_refused while more than one node sent
   std::uint64_t requests_revoked = 0;   ///< those of requests_refused from revoked senders (Permit::withdrawals)
+  std::uint64_t requests_partial = 0;   ///< accepted in this run with a part that this machine ignores
+  std::uint64_t ignored = 0;            ///< RequestPart bits of `requested` that this machine cannot execute
   std::uint64_t timeouts = 0;           ///< in this run, one per event
 
   // The monitor reads the following members before it permits motion (safety/latch/motion_release.h).

@@ -94,8 +94,23 @@ inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
     {kReasonRevoked, "revoked",
      "a sender goes on requesting motion that was requested before a stop, a restart or a pause, or meanwhile",
      "let it send a zero velocity, or restart it"},
+    {kReasonPartIgnored, "part_ignored", "a part of the request is ignored, because this robot cannot execute it",
+     "request only what this robot can do; a differential drive takes linear.x and angular.z"},
     {kReasonCurvatureKept, "curvature_kept", "one axis was scaled to keep the commanded curvature", ""},
     {kReasonSaturated, "saturated", "a wheel's torque or speed is at its limit", ""},
+});
+
+inline constexpr auto kRequestPartNames = std::to_array<BitName>({
+    {kPartLinearX, "linear.x", "", ""},
+    {kPartLinearY, "linear.y", "", ""},
+    {kPartLinearZ, "linear.z", "", ""},
+    {kPartAngularX, "angular.x", "", ""},
+    {kPartAngularY, "angular.y", "", ""},
+    {kPartAngularZ, "angular.z", "", ""},
+    {kPartHeight, "posture.height", "", ""},
+    {kPartRoll, "posture.roll", "", ""},
+    {kPartPitch, "posture.pitch", "", ""},
+    {kPartMode, "mode", "", ""},
 });
 
 inline constexpr auto kDriverFaultNames = std::to_array<BitName>({
@@ -290,7 +305,7 @@ constexpr bool in_bit_order(std::span<const BitName> table) noexcept {
 }
 static_assert(in_bit_order(kStopCauseNames) && kStopCauseNames.size() == kStopCauses);
 static_assert(in_bit_order(kResetRefusalNames) && in_bit_order(kMissingNodeNames));
-static_assert(in_bit_order(kGateReasonNames) && in_bit_order(kCommandReasonNames));
+static_assert(in_bit_order(kGateReasonNames) && in_bit_order(kCommandReasonNames) && in_bit_order(kRequestPartNames));
 static_assert(in_bit_order(kDriverFaultNames) && in_bit_order(kStateFlagNames) && in_bit_order(kSlipReasonNames) &&
               in_bit_order(kDegradedReasonNames) && in_bit_order(kDigitalInputNames));
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "signals/geometry.h"
+#include "signals/request.h"
 
 namespace robot_control {
 
@@ -23,7 +23,7 @@ inline double silence_needed(double timeout) noexcept {
 /// converted to an age (ros/inputs/command_input.h). From then on its age is counted in cycles, independent of any
 /// clock.
 struct VelocityCommand {
-  Twist twist;  ///< base axes; NaN and infinity are passed on, the controller refuses them
+  Request content;  ///< NaN and infinity are passed on, the controller refuses them
   std::uint64_t count = 0;
   std::int64_t age_ns = 0;         ///< ≥ 0, age of the command at its arrival by its stamp; 0 without a stamp
   std::uint64_t stale = 0;         ///< grows with every message refused for its stamp: too old, or in the future

@@ -9,7 +9,7 @@
 namespace robot_control {
 
 /// The bits below belong to CommandReason, so that one number holds both.
-inline constexpr unsigned kFirstWheeledReason = 17;
+inline constexpr unsigned kFirstWheeledReason = 18;
 
 /// Bits of WheeledCommand::reasons.
 enum WheeledReason : std::uint64_t {

@@ -58,6 +58,11 @@ const std::map<std::uint64_t, Break> kBreaks{
     {kReasonStale, [](ControlBench& bench) { ++bench.request.stale; }},
     {kReasonManySenders, [](ControlBench& bench) { bench.request.many_senders = 1; }},
     {kReasonRevoked, [](ControlBench& bench) { ++bench.request.revoked; }},
+    {kReasonPartIgnored,
+     [](ControlBench& bench) {
+       bench.request.content.twist.linear[1] = 0.2;
+       ++bench.request.count;
+     }},
 };
 
 ControlBench driving() {
@@ -84,6 +89,18 @@ TEST(CommandReasons, AreEachRaisedByWhatTheySay) {
     if ((reasons_of(bench.command) & row.bit) == 0) bench.step();
     EXPECT_NE(reasons_of(bench.command) & row.bit, 0u);
   }
+}
+
+TEST(CommandReasons, OfAnIgnoredPartNameItAndTheOthersAreExecuted) {
+  ControlBench bench = driving();
+  const double before = bench.plant.twist.linear;
+  bench.request.content.twist.linear[1] = 0.2;
+  ++bench.request.count;
+  bench.run(1);
+  EXPECT_NEAR(bench.plant.twist.linear, before, 1e-6);
+  EXPECT_EQ(bench.command.ignored, kPartLinearY);
+  EXPECT_EQ(bench.command.requests_partial, 1u);
+  EXPECT_EQ(bench.command.requests_refused, 0u);
 }
 
 TEST(CommandReasons, OfOneSenderTooManyRampWithTheEmergencyDeceleration) {

@@ -49,7 +49,7 @@ class ControlBench {
   std::function<void(SensorFrame&)> spoil = [](SensorFrame&) {};
 
   void send(double linear, double angular) {
-    request.twist = {.linear = {linear, 0, 0}, .angular = {0, 0, angular}};
+    request.content.twist = {.linear = {linear, 0, 0}, .angular = {0, 0, angular}};
     ++request.count;
   }
 

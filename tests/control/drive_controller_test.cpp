@@ -103,7 +103,7 @@ TEST_F(DriveControllerTest, RampsDownFromTheExactCycleOfTheTimeout) {
   EXPECT_NEAR(limited(), 0.499, 1e-12);
   EXPECT_TRUE(reasons_of(bench.command) & kReasonTimedOut);
   EXPECT_EQ(bench.command.timeouts, 1u);
-  EXPECT_EQ(bench.command.twist_requested.linear[0], 0);
+  EXPECT_EQ(bench.command.requested.twist.linear[0], 0);
   bench.run(2);
   EXPECT_EQ(bench.command.timeouts, 1u);
   EXPECT_TRUE(reasons_of(bench.command) & kReasonHolding);
@@ -283,7 +283,7 @@ TEST(DriveControllerOfAHeldWheel, KnowsByTheCountsOfTheOtherThatItStands) {
   permit.action = PermitAction::kDrive;
   permit.speed_limit = kNoSpeedLimit;
   VelocityCommand request;
-  request.twist = {.linear = {0.05, 0, 0}};
+  request.content.twist = {.linear = {0.05, 0, 0}};
   request.count = 1;
   CommandFrame out;
   double angle = 0;
@@ -314,7 +314,7 @@ TEST(DriveControllerOfFourWheels, DrivesEveryWheelOfASideAlikeAndBrakesForAnyTha
   permit.action = PermitAction::kDrive;
   permit.speed_limit = kNoSpeedLimit;
   VelocityCommand request;
-  request.twist = {.linear = {0.5, 0, 0}, .angular = {0, 0, 0.2}};
+  request.content.twist = {.linear = {0.5, 0, 0}, .angular = {0, 0, 0.2}};
   CommandFrame out;
   WheelValues plan{};
   WheelValues last{};

@@ -105,7 +105,7 @@ TEST_F(PermitSpeed, EndsAtTheLimitOnTheSameCurve) {
   EXPECT_NEAR(limited().linear, 0.2, kPermitRounding);
   EXPECT_NEAR(limited().angular / limited().linear, 1, kPermitRounding);
   EXPECT_TRUE(slowed());
-  EXPECT_EQ(bench.command.twist_requested.linear[0], 0.8);
+  EXPECT_EQ(bench.command.requested.twist.linear[0], 0.8);
 }
 
 // 1 m/s² is the stricter of the two: 4 rad/s² on the curve would be 4 m/s².

@@ -34,7 +34,7 @@ TEST_F(AMotionWatch, SeesNothingWhereNothingMoves) {
 }
 
 TEST_F(AMotionWatch, SeesARequestBeforeTheRobotMoves) {
-  controller.command.twist_requested.linear[0] = 0.1;
+  controller.command.requested.twist.linear[0] = 0.1;
   EXPECT_TRUE(step());
 }
 

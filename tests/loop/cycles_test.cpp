@@ -11,7 +11,7 @@ class RunningLoop : public ::testing::Test {
  protected:
   RunningLoop() {
     loop.step();  // a command from before the run would be dropped
-    loop.controller->inbox().store({.twist = kForward, .count = 1});
+    loop.controller->inbox().store({.content = {.twist = kForward}, .count = 1});
     loop.steps(20);
   }
 
@@ -101,7 +101,7 @@ TEST_F(RunningLoop, ForgetsTheCommandInANewRun) {
 }
 
 TEST_F(RunningLoop, TakesAgeAndRefusalsFromTheInbox) {
-  VelocityCommand command{.twist = kForward, .count = 2};
+  VelocityCommand command{.content = {.twist = kForward}, .count = 2};
   command.age_ns = 1'249 * kPeriodNs;  // of the default timeout's 1250
   loop.controller->inbox().store(command);
   loop.steps(2);
@@ -199,7 +199,7 @@ TEST_F(RunningLoop, LatchesTheLossOfADriverThatIsBackBeforeItsSilenceIsNoticed) 
 }
 
 TEST_F(RunningLoop, AResetAskedForDuringSilenceReleasesNothingLater) {
-  loop.controller->inbox().store({.twist = {}, .count = 2});
+  loop.controller->inbox().store({.content = {}, .count = 2});
   loop.steps(20);
   loop.monitor->time_out();
   loop.monitor->inbox().store({.resets = 1});

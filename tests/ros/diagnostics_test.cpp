@@ -155,7 +155,7 @@ TEST_F(StateReport, ReportsTheSelfCalibration) {
 TEST(CommandReasons, AreEachAValueInWords) {
   CommandFrame command;
   command.reasons = kReasonTimedOut | kReasonHolding;
-  command.twist_requested.linear[0] = 0.5;
+  command.requested.twist.linear[0] = 0.5;
   DiagnosticReport report("diff_drive_controller", "diffbot");
   report_command(report, command, command.reasons, {});
   EXPECT_EQ(value_of(report, "reasons"), "timed_out holding");
@@ -166,16 +166,29 @@ TEST(CommandReasons, AreEachAValueInWords) {
   EXPECT_EQ(value_of(report, "requested_m_s"), "0.5");
 }
 
+TEST(CommandReasons, OfIgnoredPartsNameThem) {
+  CommandFrame command;
+  command.reasons = kReasonPartIgnored;
+  command.ignored = kPartLinearY | kPartMode;
+  command.requests_partial = 3;
+  DiagnosticReport report("diff_drive_controller", "diffbot");
+  report_command(report, command, 0, {});
+  EXPECT_EQ(value_of(report, "ignored"), "linear.y mode");
+  EXPECT_EQ(value_of(report, "commands_partly_ignored"), "3");
+  EXPECT_EQ(value_of(report, "reasons"), "part_ignored");
+}
+
 TEST(CommandReasons, OfAMomentAreReported) {
   DiagnosticReport report("diff_drive_controller", "diffbot");
   report_command(report, {}, std::uint64_t{kReasonJerkYielded} | kReasonSaturated, {});
   EXPECT_EQ(value_of(report, "reasons"), "");
-  EXPECT_EQ(value_of(report, "reasons_lately"), "saturated jerk_yielded");
+  EXPECT_EQ(value_of(report, "reasons_lately"), "jerk_yielded saturated");
   EXPECT_EQ(report.message().level, static_cast<int>(msg::DiagnosticStatus::OK));
 }
 
 TEST(CommandReasons, ThatRefuseCommandsWarn) {
-  for (const std::uint64_t bit : {kReasonRefused, kReasonStale, kReasonManySenders, kReasonRevoked}) {
+  for (const std::uint64_t bit :
+       {kReasonRefused, kReasonStale, kReasonManySenders, kReasonRevoked, kReasonPartIgnored}) {
     DiagnosticReport report("diff_drive_controller", "diffbot");
     report_command(report, {}, bit, {});
     EXPECT_EQ(report.message().level, static_cast<int>(msg::DiagnosticStatus::WARN));

@@ -218,7 +218,7 @@ TEST_F(MotionMessagesTest, JointCommandsAreOfAllWheelsInTheOrderOfTheModel) {
 }
 
 TEST_F(MotionMessagesTest, VelocityOutIsWhatTheLimitsLeft) {
-  command_.twist_requested.linear[0] = 9;
+  command_.requested.twist.linear[0] = 9;
   command_.twist_limited.linear[0] = 0.5;
   command_.twist_limited.angular[2] = 0.2;
   const msg::TwistStamped message = velocity_out(command_, "base_link", stamp_);

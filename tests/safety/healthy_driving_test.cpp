@@ -89,7 +89,7 @@ class HealthyDriving : public testing::TestWithParam<Machine> {
                      .permit_cycle = newest_ + 1 < cycle_ ? newest_ : older_};
     if (cycle_ < 3) sensors_.gate = {};
     command_.head.cycle = command_.state_cycle = cycle_ == 0 ? 0 : cycle_ - 1;
-    command_.twist_requested.linear[0] = request(static_cast<double>(cycle_) / GetParam().rate);
+    command_.requested.twist.linear[0] = request(static_cast<double>(cycle_) / GetParam().rate);
     command_.zero_requests = 1;  // the run begins with a zero request
     input_ = {.sensors = &sensors_, .command = &command_, .state_seen = true, .operator_input = {}};
   }

@@ -42,7 +42,7 @@ TEST_F(ResetTest, IsRefusedWhileAMotionIsAskedFor) {
 }
 
 TEST_F(ResetTest, IsRefusedWhileATurnIsAskedFor) {
-  command_.twist_requested.angular[2] = -0.1;
+  command_.requested.twist.angular[2] = -0.1;
   EXPECT_EQ(reset(), std::uint64_t{kRefusalCommand});
 }
 

@@ -13,11 +13,17 @@ void add_command(TraceFields& to) {
     to.push_back(field<C, u64>(name, comment, get).shown());
   };
   to.push_back(
-      field<C, f64>("requested_linear", "m/s, base axes, as last received", MEMBER(command.twist_requested.linear))
+      field<C, f64>("requested_linear", "m/s, base axes, as last received", MEMBER(command.requested.twist.linear))
           .shown({"requested_linear"}));
-  to.push_back(field<C, f64>("requested_angular", "rad/s, base axes", MEMBER(command.twist_requested.angular))
+  to.push_back(field<C, f64>("requested_angular", "rad/s, base axes", MEMBER(command.requested.twist.angular))
                    .shown_as(column<C>("requested_angular", "rad/s",
-                                       [](const C& c, std::size_t) { return c.command.twist_requested.angular[2]; })));
+                                       [](const C& c, std::size_t) { return c.command.requested.twist.angular[2]; })));
+  to.push_back(
+      field<C, f64>("requested_height", "m, above the nominal posture", MEMBER(command.requested.posture.height)));
+  to.push_back(field<C, f64>("requested_roll", "rad", MEMBER(command.requested.posture.roll)));
+  to.push_back(field<C, f64>("requested_pitch", "rad", MEMBER(command.requested.posture.pitch)));
+  number("requested_mode", "0: the default of the machine", MEMBER(command.requested.mode));
+  shown("request_ignored", "RequestPart bits that the machine cannot execute", MEMBER(command.ignored));
   to.push_back(field<C, f32>("limited_linear", "m/s, after limits", MEMBER(command.twist_limited.linear))
                    .shown({"limited_linear"}));
   to.push_back(field<C, f32>("limited_angular", "rad/s, after limits", MEMBER(command.twist_limited.angular))
@@ -50,6 +56,7 @@ void add_command(TraceFields& to) {
   shown("requests_stale", "of these, for their stamp", MEMBER(command.requests_stale));
   shown("requests_crowded", "of these, while more than one node sent", MEMBER(command.requests_crowded));
   number("requests_revoked", "of these, of senders that owe a zero velocity", MEMBER(command.requests_revoked));
+  shown("requests_partial", "accepted with a part that the machine ignores", MEMBER(command.requests_partial));
   shown("timeouts", "in this run", MEMBER(command.timeouts));
   number("command_first_cycle", "of this process in this run", MEMBER(command.first_cycle));
   number("zero_requests", "zero velocities accepted since then", MEMBER(command.zero_requests));

@@ -134,7 +134,8 @@ void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64
 void report_command(DiagnosticReport& report, const CommandFrame& command, std::uint64_t lately,
                     const std::vector<std::string>& senders, const std::vector<std::string>& sources,
                     const std::vector<std::string>& revoked) {
-  constexpr std::uint64_t kRefusals = kReasonRefused | kReasonStale | kReasonManySenders | kReasonRevoked;
+  constexpr std::uint64_t kRefusals =
+      kReasonRefused | kReasonStale | kReasonManySenders | kReasonRevoked | kReasonPartIgnored;
   if ((lately & kRefusals) != 0) report.warn(sentences_of(kCommandReasonNames, lately & kRefusals));
   if (senders.size() > 1 && sources.empty()) report.warn("commands come from more than one node: " + joined(senders));
   report.value("cycle", command.head.cycle);
@@ -148,9 +149,11 @@ void report_command(DiagnosticReport& report, const CommandFrame& command, std::
   report.value("commands_stale", command.requests_stale);
   report.value("commands_of_too_many_senders", command.requests_crowded);
   report.value("commands_of_revoked_senders", command.requests_revoked);
+  report.value("commands_partly_ignored", command.requests_partial);
+  report.value("ignored", names_of(kRequestPartNames, command.ignored));
   report.value("timeouts", command.timeouts);
-  report.value("requested_m_s", command.twist_requested.linear[0]);
-  report.value("requested_rad_s", command.twist_requested.angular[2]);
+  report.value("requested_m_s", command.requested.twist.linear[0]);
+  report.value("requested_rad_s", command.requested.twist.angular[2]);
   report.reasons("command", kCommandReasonNames, reasons_of(command));
 }
 

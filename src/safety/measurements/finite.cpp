@@ -38,7 +38,7 @@ bool finite(const CommandFrame& command) noexcept {
   for (std::size_t i = 0; i < count; ++i) {
     if (!finite(command.joints[i])) return false;
   }
-  return finite(command.twist_requested) && finite(command.twist_limited);
+  return finite(command.requested) && finite(command.twist_limited);
 }
 
 }  // namespace robot_control

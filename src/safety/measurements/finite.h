@@ -14,7 +14,7 @@ std::uint64_t not_finite_joint(const SensorFrame& sensors) noexcept;
 /// Joints, gyro, accelerometer, contact forces and battery, as far as they are marked as valid.
 bool finite(const SensorFrame& sensors) noexcept;
 
-/// Used joints and both twists.
+/// Used joints, the request and the limited twist.
 bool finite(const CommandFrame& command) noexcept;
 
 }  // namespace robot_control
