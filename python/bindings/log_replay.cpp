@@ -12,6 +12,7 @@
 
 #include "bindings/loop_replay.h"
 #include "configuration/live_parameters.h"
+#include "log/messages/message_types.h"
 #include "log/replay/replay_error.h"
 #include "log/trace_reader.h"
 #include "loop/log_header.h"
@@ -140,9 +141,9 @@ py::dict replay_log(const std::string& path, const Layers& logged, const std::op
     // latter late.
     TraceReader reader(path, {.snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});
     if (!reader.of_this_version()) {
-      throw ReplayError(
-          "its messages Trace have other fields than those of this version: replay with the build that "
-          "made the log");
+      const LogHeader other = reader.header();
+      throw ReplayError("its messages Trace have other fields than those of this version (" + package_version() +
+                        "): version " + other.version + ", build " + other.build + " wrote it; replay with that build");
     }
     header = reader.header();
     cut = reader.cut();
