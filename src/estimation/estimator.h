@@ -54,9 +54,9 @@
 #include "estimation/wheels/middle_travel.h"
 #include "estimation/wheels/wheel_geometry.h"
 #include "estimation/wheels/wheel_sides.h"
-#include "estimation/wheels/wheel_slip.h"
 #include "estimation/wheels/wheel_velocities.h"
 #include "machine/robot_model.h"
+#include "machine/wheels/wheel_slip.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
 
@@ -165,14 +165,13 @@ class Estimator {
 
   // These functions are in estimator_output.cpp.
   void fill(const SensorFrame& sensors, StateFrame& out) const noexcept;
-  void fill_pose(StateFrame& out) const noexcept;
-  void fill_pose_covariance(double yaw, const Planar& lever, StateFrame& out) const noexcept;
-  void fill_attitude_covariance(double yaw, double yaw_variance, StateFrame& out) const noexcept;
-  void fill_twist(StateFrame& out) const noexcept;
-  void fill_twist_covariance(double yaw_rate, StateFrame& out) const noexcept;
+  void fill_pose(BaseState& base) const noexcept;
+  void fill_pose_covariance(double yaw, const Planar& lever, BaseState& base) const noexcept;
+  void fill_attitude_covariance(double yaw, double yaw_variance, BaseState& base) const noexcept;
+  void fill_twist(BaseState& base) const noexcept;
+  void fill_twist_covariance(double yaw_rate, BaseState& base) const noexcept;
   void fill_learned(StateFrame& out) const noexcept;
   void fill_health(StateFrame& out) const noexcept;
-  void fill_joints(const SensorFrame& sensors, StateFrame& out) const noexcept;
   Planar axle(double yaw) const noexcept;
 
   EstimatorParameters parameters_;

@@ -11,18 +11,16 @@
 namespace robot_control {
 namespace {
 
-bool continuable(const StateFrame& last) noexcept {
-  bool good = (last.base.flags & kStateValid) != 0 && finite(last.base.pose_odom.position) &&
-              finite(last.base.twist_base.linear) && finite(last.base.twist_base.angular) &&
-              finite(last.base.gyro_bias) && finite(last.base.accelerometer_bias) &&
-              finite(last.base.gyro_bias_deviation) && std::isfinite(last.base.distance) &&
-              std::isfinite(yaw_of(last.base.pose_odom.orientation));
-  for (const double entry : last.base.pose_covariance) good = good && std::isfinite(entry);
-  const WheelCalibration& c = last.wheeled.calibration;
+bool continuable(const BaseState& last, const WheelCalibration& c) noexcept {
+  bool good = (last.flags & kStateValid) != 0 && finite(last.pose_odom.position) && finite(last.twist_base.linear) &&
+              finite(last.twist_base.angular) && finite(last.gyro_bias) && finite(last.accelerometer_bias) &&
+              finite(last.gyro_bias_deviation) && std::isfinite(last.distance) &&
+              std::isfinite(yaw_of(last.pose_odom.orientation));
+  for (const double entry : last.pose_covariance) good = good && std::isfinite(entry);
   for (const double entry : {c.radius_ratio, c.wheel_base_factor, c.radius_ratio_deviation, c.wheel_base_deviation}) {
     good = good && std::isfinite(entry);
   }
-  const Quaternion& q = last.base.attitude;
+  const Quaternion& q = last.attitude;
   return good && std::abs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) < 1e-6;
 }
 
@@ -39,7 +37,7 @@ Eigen::Matrix3d covariance_of_middle(const StateFrame& frame, const Planar& leve
 
 void Estimator::resume(const StateFrame& last) noexcept {
   enter_run();
-  if (!continuable(last)) return;
+  if (!continuable(last.base, last.wheeled.calibration)) return;
   State& s = state_;
   const Eigen::Vector3d bias = base_from_imu_ * vector(last.base.gyro_bias);
   const Eigen::Vector3d force = base_from_imu_ * vector(last.base.accelerometer_bias);

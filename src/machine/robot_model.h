@@ -13,7 +13,7 @@
 #include "machine/description/robot_description.h"
 #include "machine/robot_parameters.h"
 #include "signals/geometry.h"
-#include "signals/wheels.h"
+#include "signals/wheeled/wheel_count.h"
 
 namespace robot_control {
 

@@ -8,8 +8,8 @@
 #include "signals/frame_head.h"
 #include "signals/geometry.h"
 #include "signals/joint.h"
-#include "signals/request.h"
-#include "signals/wheeled_command.h"
+#include "signals/velocity_command.h"
+#include "signals/wheeled/wheeled_command.h"
 
 namespace robot_control {
 

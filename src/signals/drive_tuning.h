@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "signals/wheels.h"
+#include "signals/wheeled/wheel_count.h"
 
 namespace robot_control {
 

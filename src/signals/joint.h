@@ -36,6 +36,16 @@ inline bool has(const JointSample& sample, std::uint32_t bits) noexcept {
   return (sample.valid & bits) == bits;
 }
 
+/// Returns whether the position may be used and is finite.
+inline bool has_position(const JointSample& sample) noexcept {
+  return has(sample, kValidPosition) && std::isfinite(sample.position);
+}
+
+/// Returns the velocity; 0 if it may not be used or is not finite.
+inline double valid_velocity(const JointSample& sample) noexcept {
+  return has(sample, kValidVelocity) && std::isfinite(sample.velocity) ? sample.velocity : 0;
+}
+
 enum class JointMode : std::uint64_t {
   kBrake = 0,      ///< The driver's own law damps the velocity and, below a small speed, holds the position.
   kEffort = 1,     ///< τ = effort

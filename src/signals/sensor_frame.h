@@ -11,7 +11,6 @@
 #include "signals/geometry.h"
 #include "signals/injected_fault.h"
 #include "signals/joint.h"
-#include "signals/link_status.h"
 
 namespace robot_control {
 
@@ -22,6 +21,24 @@ struct ImuSample {
   Vector3 angular_velocity{};     ///< rad/s
   Vector3 linear_acceleration{};  ///< m/s²
   Quaternion orientation{};       ///< all zero if the device has none
+};
+
+inline constexpr std::size_t kMaxLinks = 4;
+
+enum class LinkState : std::uint64_t {
+  kStarting = 0,
+  kUp = 1,
+  kDegraded = 2,  ///< It still carries messages, but reports errors, as a CAN controller that is error-passive.
+  kDown = 3,      ///< It carries nothing: unplugged, or a CAN controller that is bus-off.
+};
+
+/// Counts what a link between the driver and its drives and sensors carried in this run: a bus, or a serial line.
+struct LinkStatus {
+  LinkState state = LinkState::kStarting;
+  std::uint64_t sent = 0;    ///< messages
+  std::uint64_t lost = 0;    ///< expected answers that never came
+  std::uint64_t late = 0;    ///< answers that came after the cycle in which they were due
+  std::uint64_t errors = 0;  ///< errors that the link itself reported
 };
 
 enum class DriverState : std::uint64_t {

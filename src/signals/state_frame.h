@@ -8,7 +8,7 @@
 #include "signals/frame_head.h"
 #include "signals/geometry.h"
 #include "signals/joint.h"
-#include "signals/wheeled_state.h"
+#include "signals/wheeled/wheeled_state.h"
 
 namespace robot_control {
 

@@ -1,5 +1,4 @@
-// One joint of a machine fails: the cause names this joint, and the reaction comes in the cycle in which it would come
-// if all joints failed together.
+// One joint of a machine fails. The cause names this joint, and the reaction comes as early as if all joints failed.
 
 #include <gtest/gtest.h>
 

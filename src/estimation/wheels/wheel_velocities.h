@@ -3,8 +3,7 @@
 /// (machine/encoders/tracking_loop.h) on each wheel's own angle, without a torque that explains its acceleration.
 ///
 /// The speed that an encoder reports is a difference over one period, which jumps by a count per period: 1.5 rad/s with
-/// 4096 counts at 1 kHz. Samples that are missing, not finite, used before or that jump by more than kFastestWheel
-/// are left out.
+/// 4096 counts at 1 kHz. Samples that are missing, not finite, used before or too far (kFastestWheel) are left out.
 /// After kMaxHoldTime without a sample, the next one restarts the loop.
 
 #include <algorithm>
@@ -13,7 +12,7 @@
 #include <cstddef>
 
 #include "estimation/tuning.h"
-#include "estimation/wheels/sample_time.h"
+#include "machine/encoders/sample_time.h"
 #include "machine/encoders/tracking_loop.h"
 #include "machine/robot_model.h"
 #include "signals/fixed_vector.h"
@@ -30,8 +29,7 @@ class WheelVelocities {
 
   /// `dt` is the time in s since the last call; 0 in the first one and for a repeated frame.
   void step(const SensorFrame& sensors, double dt) noexcept {
-    const bool valid = sensors.joint_count >= wheels_.size();
-    for (std::size_t i = 0; i < wheels_.size(); ++i) wheels_[i].step(sensors, i, valid, dt, period_);
+    for (std::size_t i = 0; i < wheels_.size(); ++i) wheels_[i].step(sensors, i, dt, period_);
     for (std::size_t i = 0; i < wheels_.size(); ++i)
       wheels_[i].tracking.assume_encoder_of(wheels_[(i + 1) % wheels_.size()].tracking);
   }
@@ -49,11 +47,10 @@ class WheelVelocities {
     double since = 0;    ///< s
     bool known = false;
 
-    void step(const SensorFrame& sensors, std::size_t joint, bool valid, double dt, double period) noexcept {
+    void step(const SensorFrame& sensors, std::size_t joint, double dt, double period) noexcept {
       const JointSample& sample = sensors.joints[joint];
       since += dt;
-      if (!valid || !has(sample, kValidPosition) || !std::isfinite(sample.position)) return;
-      if (!taken.precedes(sensors, sample)) return;
+      if (joint >= sensors.joint_count || !has_position(sample) || !taken.precedes(sensors, sample)) return;
       const double travel = sample.position - angle;
       if (!known || since > Tuning::kMaxHoldTime) {
         tracking.restart_from(sample.position, 0);

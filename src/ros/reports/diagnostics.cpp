@@ -8,7 +8,7 @@
 #include "files/ascii.h"
 #include "ros/reports/name_list.h"
 #include "signals/names.h"
-#include "signals/slip_detection.h"
+#include "signals/wheeled/slip_detection.h"
 
 namespace robot_control {
 namespace {

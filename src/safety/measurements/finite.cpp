@@ -26,8 +26,8 @@ bool finite(const SensorFrame& sensors) noexcept {
   if (not_finite_joint(sensors) < kMaxJoints) return false;
   if ((sensors.valid & kValidGyro) != 0 && !finite(sensors.imu.angular_velocity)) return false;
   if ((sensors.valid & kValidAccelerometer) != 0 && !finite(sensors.imu.linear_acceleration)) return false;
-  for (const ContactSample& contact : sensors.contacts) {
-    if (contact.valid != 0 && !finite(contact.force)) return false;
+  for (std::size_t i = 0; i < kMaxContacts && i < sensors.contact_count; ++i) {
+    if (sensors.contacts[i].valid != 0 && !finite(sensors.contacts[i].force)) return false;
   }
   return (sensors.valid & kValidBattery) == 0 ||
          (std::isfinite(sensors.battery_voltage) && std::isfinite(sensors.battery_current));

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "signals/wheels.h"
+#include "signals/wheeled/wheel_count.h"
 
 namespace robot_control {
 

@@ -28,8 +28,6 @@ class WheelSlip {
     }
   }
 
-  std::size_t wheels() const noexcept { return wheels_.size(); }
-
   /// Writes the contacts of the frame.
   void write(StateFrame& out) const noexcept {
     const Twist& twist = out.base.twist_base;
