@@ -105,7 +105,7 @@ int run(const std::string& path) {
   add(rows, "controller",
       measure([&] { controller.enter_run(); },
               [&](std::size_t k) {
-                const VelocityCommand request{.twist = drive.commands[k].twist_requested, .count = k};
+                const VelocityCommand request{.content = drive.commands[k].requested, .count = k};
                 controller.step({.sensors = &drive.sensors[k],
                                  .state = &drive.states[k],
                                  .permit = &drive.permits[k - 1],

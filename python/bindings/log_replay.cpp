@@ -12,6 +12,7 @@
 
 #include "bindings/loop_replay.h"
 #include "configuration/live_parameters.h"
+#include "log/messages/message_types.h"
 #include "log/replay/replay_error.h"
 #include "log/trace_reader.h"
 #include "loop/log_header.h"
@@ -49,10 +50,10 @@ class VariedColumns {
     if (row.state != nullptr) {
       const StateFrame& was = *row.state;
       const StateFrame& would = *row.varied_state;
-      add("estimate_x", was.pose_odom.position[0], would.pose_odom.position[0]);
-      add("estimate_y", was.pose_odom.position[1], would.pose_odom.position[1]);
-      add("estimate_linear", was.twist_base.linear[0], would.twist_base.linear[0]);
-      add("estimate_angular", was.twist_base.angular[2], would.twist_base.angular[2]);
+      add("estimate_x", was.base.pose_odom.position[0], would.base.pose_odom.position[0]);
+      add("estimate_y", was.base.pose_odom.position[1], would.base.pose_odom.position[1]);
+      add("estimate_linear", was.base.twist_base.linear[0], would.base.twist_base.linear[0]);
+      add("estimate_angular", was.base.twist_base.angular[2], would.base.twist_base.angular[2]);
     }
     if (row.command != nullptr) {
       const CommandFrame& was = *row.command;
@@ -142,9 +143,9 @@ py::dict replay_log(const std::string& path, const Layers& logged, const std::op
     // latter late.
     TraceReader reader(path, {.snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});
     if (!reader.of_this_version()) {
-      throw ReplayError(
-          "its messages Trace have other fields than those of this version: replay with the build that "
-          "made the log");
+      const LogHeader other = reader.header();
+      throw ReplayError("its messages Trace have other fields than those of this version (" + package_version() +
+                        "): version " + other.version + ", build " + other.build + " wrote it; replay with that build");
     }
     header = reader.header();
     cut = reader.cut();

@@ -31,7 +31,7 @@
 #include "log/fields/trace_fields.h"
 #include "loop/start_check.h"
 #include "signals/names.h"
-#include "signals/slip_detection.h"
+#include "signals/wheeled/slip_detection.h"
 #include "simulation/closed_loop.h"
 
 namespace py = pybind11;

@@ -2,7 +2,7 @@
 /// robot_control.Estimator runs the node's law (estimation/estimator.h) over recorded samples, row by row.
 ///
 /// A row is a time and the samples taken at that time. These samples are absent:
-///   a wheel              if its angle is NaN; a row without any angle has kValidJoints off
+///   a wheel              if its angle is NaN
 ///   gyro, accelerometer  if all three axes are NaN, or if it is not given at all: its validity bit is off
 /// A sample that is partly NaN, or infinite, is passed to the law unchanged, which refuses it as a bad sample.
 ///

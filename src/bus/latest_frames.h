@@ -31,7 +31,7 @@ inline constexpr std::size_t kFrameSlots = 8;
 inline constexpr int kReadTries = 4;
 
 inline constexpr std::uint64_t kChannelMagic = 0x6c74635f746f6272ULL;  // "rbot_ctl"
-inline constexpr std::uint64_t kLayoutVersion = 4;
+inline constexpr std::uint64_t kLayoutVersion = 5;
 
 /// The first bytes of every shared object, LatestFrames or Ring. `magic` to `retired` have the same place in every
 /// layout version, so that a process can check and retire an object that it cannot read.

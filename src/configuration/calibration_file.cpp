@@ -148,7 +148,7 @@ bool take_over(double& kept, double& kept_deviation, double now, double deviatio
 }  // namespace
 
 LearnedCalibration learned(const StateFrame& state) {
-  return {state.calibration, state.gyro_bias, state.gyro_bias_deviation};
+  return {state.wheeled.calibration, state.base.gyro_bias, state.base.gyro_bias_deviation};
 }
 
 bool may_be_kept(const LearnedCalibration& calibration) {

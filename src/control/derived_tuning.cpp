@@ -9,8 +9,6 @@
 namespace robot_control {
 namespace {
 
-static_assert(kTunedWheels == kMaxWheels);
-
 AxisTuning axis_tuning(const MotionLimits& limits) noexcept {
   return {.speed = limits.speed,
           .acceleration = limits.acceleration,

@@ -69,10 +69,9 @@ std::span<const JointCommand> Gate::step(const GateInput& input) noexcept {
 
 void Gate::read_samples(const GateInput& input) noexcept {
   const SensorFrame& sensors = *input.sensors;
-  const bool sampled = (sensors.valid & kValidJoints) != 0 && sensors.joint_count == limits_.size();
-  samples_ = std::span(sensors.joints).first(sampled ? limits_.size() : 0);
+  samples_ = std::span(sensors.joints).first(sensors.joint_count == limits_.size() ? limits_.size() : 0);
   for (std::size_t i = 0; i < samples_.size(); ++i) {
-    if (std::isfinite(samples_[i].position)) memory_[i].speed.step(samples_[i].position, input.cycle);
+    if (has_position(i)) memory_[i].speed.step(samples_[i].position, input.cycle);
   }
 }
 
@@ -212,7 +211,7 @@ void Gate::clamp(double elapsed) noexcept {
     if (is_brake(command)) continue;
     report_.reasons |= clamp_gains(command);
     const JointMemory& memory = memory_[i];
-    const bool measured = has_position(i) && std::isfinite(samples_[i].effort);
+    const bool measured = has_position(i) && has(samples_[i], kValidEffort) && std::isfinite(samples_[i].effort);
     const double from = memory.driven ? memory.effort : 0.0;
     const double to = memory.driven || !measured ? from : std::clamp(samples_[i].effort, -limits.effort, limits.effort);
     const double step = limits.effort_rate * elapsed;

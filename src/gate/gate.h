@@ -85,7 +85,7 @@ class Gate {
   bool command_is_valid(const CommandFrame& command) noexcept;
   bool samples_suffice(const CommandFrame& command) noexcept;
   bool has_position(std::size_t joint) const noexcept {
-    return joint < samples_.size() && std::isfinite(samples_[joint].position);
+    return joint < samples_.size() && has(samples_[joint], kValidPosition) && std::isfinite(samples_[joint].position);
   }
   void clamp(double elapsed) noexcept;
   void brake(FailAction wheels) noexcept;

@@ -13,6 +13,7 @@
 #include "machine/description/robot_description.h"
 #include "machine/robot_parameters.h"
 #include "signals/geometry.h"
+#include "signals/wheeled/wheel_count.h"
 
 namespace robot_control {
 
@@ -62,8 +63,6 @@ struct WheelModel {
   Side side = Side::kLeft;
   bool omni = false;  ///< a caster without a swivel, which slides sideways without friction
 };
-
-inline constexpr std::size_t kMaxWheels = 8;
 
 /// Informs the user about a value that was not simply taken from the URDF.
 struct RobotNote {

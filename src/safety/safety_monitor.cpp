@@ -92,7 +92,7 @@ void SafetyMonitor::evaluate_frame(const MonitorInput& input) noexcept {
   evaluate_conditions(input);
   if (monitor_restarted) active_.add(kCauseMonitorRestarted, Reaction::kBrake, {.beyond = true});
   if (driver_restarted) active_.add(kCauseDriverLost, Reaction::kBrake, {.beyond = true});
-  motion_requested_ = input.command != nullptr && !zero(input.command->twist_requested);
+  motion_requested_ = input.command != nullptr && !zero(input.command->requested.twist);
   end_run(sensors.driver_state == DriverState::kEnded);
 }
 

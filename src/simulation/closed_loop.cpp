@@ -99,7 +99,7 @@ ClosedLoop::ClosedLoop(ClosedLoop&&) noexcept = default;
 ClosedLoop& ClosedLoop::operator=(ClosedLoop&&) noexcept = default;
 
 void ClosedLoop::command(const Twist& twist) noexcept {
-  parts_->request = {.twist = twist, .count = parts_->request.count + 1};
+  parts_->request = {.content = {.twist = twist}, .count = parts_->request.count + 1};
 }
 
 void ClosedLoop::e_stop() noexcept {

@@ -29,8 +29,8 @@ class ControlBench {
     controller.enter_run();
     permit.action = PermitAction::kDrive;
     permit.speed_limit = kNoSpeedLimit;
-    state.flags = kStateValid;
-    sensors.valid = kValidJoints;
+    state.base.flags = kStateValid;
+    set_joints_valid(sensors, kValidMotion);
     sensors.joint_count = model.joints.size();
   }
 
@@ -49,7 +49,7 @@ class ControlBench {
   std::function<void(SensorFrame&)> spoil = [](SensorFrame&) {};
 
   void send(double linear, double angular) {
-    request.twist = {.linear = {linear, 0, 0}, .angular = {0, 0, angular}};
+    request.content.twist = {.linear = {linear, 0, 0}, .angular = {0, 0, angular}};
     ++request.count;
   }
 
@@ -79,8 +79,10 @@ class ControlBench {
   void sample() {
     const SidePair angle = plant.measured_angle();
     sensors.head.cycle = state.head.cycle = permit.head.cycle = cycle;
-    sensors.joints[0] = {.position = angle.left, .velocity = plant.speed.left, .effort = plant.effort.left};
-    sensors.joints[1] = {.position = angle.right, .velocity = plant.speed.right, .effort = plant.effort.right};
+    sensors.joints[0] = {
+        .position = angle.left, .velocity = plant.speed.left, .effort = plant.effort.left, .valid = kValidMotion};
+    sensors.joints[1] = {
+        .position = angle.right, .velocity = plant.speed.right, .effort = plant.effort.right, .valid = kValidMotion};
     spoil(sensors);
   }
 };

@@ -103,7 +103,7 @@ TEST_P(DriverContract, StandsWithValidJointsAfterStart) {
   EXPECT_EQ(frame.driver_state, DriverState::kRunning);
   EXPECT_EQ(frame.faults, 0u);
   EXPECT_EQ(frame.joint_count, GetParam().joints);
-  EXPECT_TRUE(frame.valid & kValidJoints);
+  EXPECT_TRUE(joints_have(frame, GetParam().joints, kValidPosition | kValidVelocity));
   expect_standing_under(all(brake_));
 }
 

@@ -85,7 +85,8 @@ class RollingRobot {
     base_from_imu_ = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).toRotationMatrix();
     imu_ = Eigen::Vector3d(model.imu_in_base.position.data());
     frame_.head.run = 7;
-    frame_.valid = kValidJoints | kValidGyro | kValidAccelerometer;
+    set_joints_valid(frame_, kValidMotion);
+    frame_.valid = kValidGyro | kValidAccelerometer;
     frame_.joint_count = model.joints.size();
     read_imu({0, 0, kGravity});
   }

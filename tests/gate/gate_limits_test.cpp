@@ -13,7 +13,7 @@ namespace {
 // Gains.
 
 TEST_F(GateFixture, AJointWithoutLimitsAndWithoutAPositionGetsNoDampingBelowZero) {
-  sensors_.valid = 0;
+  set_joints_valid(sensors_, 0);
   command_.joints[1].damping = -2.0;
   step();
   EXPECT_EQ(verdict(), GateVerdict::kClamped);
@@ -234,9 +234,9 @@ TEST_F(GateSpeed, ANewRunBeginsAtRest) {
 // Samples.
 
 TEST_F(GateSpeed, BrakesWhereTheSamplesAreMissing) {
-  sensors_.valid = 0;
+  set_joints_valid(sensors_, 0);
   expect_brake(kGateBadSensors);
-  sensors_.valid = kValidJoints;
+  set_joints_valid(sensors_, kValidMotion);
   sensors_.joint_count = 1;
   expect_brake(kGateBadSensors);
 }
@@ -261,7 +261,7 @@ TEST_F(GateSpeed, AJointThatBrakesNeedsNoSample) {
 class GateWithoutLimits : public GateFixture {};
 
 TEST_F(GateWithoutLimits, NeedsNoSamplesWhereNothingIsKnown) {
-  sensors_.valid = 0;
+  set_joints_valid(sensors_, 0);
   step();
   EXPECT_EQ(verdict(), GateVerdict::kPassed);
 }
@@ -283,7 +283,7 @@ TEST_F(GateRange, BrakesTheJointAloneAtItsEndStop) {
 }
 
 TEST_F(GateRange, BrakesWithoutAPosition) {
-  sensors_.valid = 0;
+  set_joints_valid(sensors_, 0);
   expect_brake(kGateBadSensors);
 }
 

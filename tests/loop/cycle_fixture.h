@@ -42,7 +42,8 @@ class StandingMachine final : public Driver {
   void read(SensorFrame& sensors) noexcept override {
     sensors.injected = faults;
     sensors.driver_state = state;
-    sensors.valid = kValidJoints | kValidGyro | kValidAccelerometer;
+    for (std::size_t i = 0; i < 2; ++i) sensors.joints[i].valid = kValidMotion;
+    sensors.valid = kValidGyro | kValidAccelerometer;
     sensors.joint_count = 2;
     sensors.imu.linear_acceleration = {0, 0, 9.81};
   }

@@ -87,7 +87,7 @@ class RunawayMachine final : public Driver {
   void start() override {}
   void read(SensorFrame& sensors) noexcept override {
     position += speed * kPeriod;
-    sensors.valid = valid;
+    set_joints_valid(sensors, valid);
     sensors.joint_count = 2;
     sensors.joints[0].position = position;
   }
@@ -96,7 +96,7 @@ class RunawayMachine final : public Driver {
 
   double speed = 0;
   double position = 0;
-  std::uint64_t valid = kValidJoints;
+  std::uint32_t valid = kValidMotion;
   JointCommand command;
 };
 
@@ -130,7 +130,7 @@ TEST(DriverCycleAndGate, TheGateSeesTheSamplesOfItsOwnTick) {
   tick();
   EXPECT_EQ(driver.trace().gate.reasons, std::uint64_t{kGateBadSensors});
   EXPECT_EQ(machine.command.mode, JointMode::kBrake);
-  machine.valid = kValidJoints;
+  machine.valid = kValidMotion;
   machine.speed = 25;  // of 20 rad/s
   for (int i = 0; i < 30; ++i) tick();
   EXPECT_EQ(driver.trace().gate.reasons, std::uint64_t{kGateSpeedClamped});

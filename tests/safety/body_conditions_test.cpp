@@ -13,6 +13,7 @@
 #include "machine/gravity.h"
 #include "support/allocation_guard.h"
 #include "support/constants.h"
+#include "support/measured_contacts.h"
 
 namespace robot_control {
 namespace {
@@ -34,7 +35,8 @@ class BodyConditionsTest : public testing::Test {
       robot_.wheels[i].radius = 0.1;
       robot_.wheels[i].centre_base = {0, i == 0 ? 0.2 : -0.2, 0};
     }
-    sensors_.valid = kValidJoints | kValidGyro | kValidAccelerometer;
+    set_joints_valid(sensors_, kValidMotion);
+    sensors_.valid = kValidGyro | kValidAccelerometer;
     sensors_.joint_count = 2;
     for (std::size_t i = 0; i < 2; ++i) sensors_.joints[i].velocity = 5;
     begin();
@@ -220,10 +222,10 @@ TEST_F(BodyConditionsTest, GravityOnARampIsNoPartOfAnImpact) {
 }
 
 TEST_F(BodyConditionsTest, LiftIsFoundWhereContactsAreFelt) {
-  sensors_.valid |= kValidContacts;
-  sensors_.contact_forces[0] = sensors_.contact_forces[1] = {3, 0, 0.15 * 10 * kGravity};
+  measure_contacts(sensors_);
+  sensors_.contacts[0].force = sensors_.contacts[1].force = {3, 0, 0.15 * 10 * kGravity};
   EXPECT_EQ(cycles_until(kCauseLift, 200), -1);
-  sensors_.contact_forces[0] = {3, 0, 0};
+  sensors_.contacts[0].force = {3, 0, 0};
   EXPECT_EQ(cycles_until(kCauseLift), cycles(parameters_.lift));
   EXPECT_NEAR(out_.measurements()[0].value, 0.15, 1e-9);
 }
@@ -235,8 +237,8 @@ TEST_F(BodyConditionsTest, WithoutContactSensorsThereIsNoLift) {
 
 TEST_F(BodyConditionsTest, CastersCarryToo) {
   robot_.casters.resize(1);
-  sensors_.valid |= kValidContacts;
-  sensors_.contact_forces[2] = {0, 0, 0.9 * 10 * kGravity};
+  measure_contacts(sensors_);
+  sensors_.contacts[2].force = {0, 0, 0.9 * 10 * kGravity};
   begin();
   EXPECT_EQ(cycles_until(kCauseLift, 200), -1);
 }
@@ -245,8 +247,8 @@ TEST_F(BodyConditionsTest, CastersCarryToo) {
 TEST_F(BodyConditionsTest, WeightIsVertical) {
   lean(0.3);
   facts_.enter_run();
-  sensors_.valid |= kValidContacts;
-  sensors_.contact_forces[0] = plain(10 * force_);
+  measure_contacts(sensors_);
+  sensors_.contacts[0].force = plain(10 * force_);
   step();
   EXPECT_NEAR(facts_.carried(), 1, 1e-9);
 }
@@ -304,7 +306,7 @@ TEST_F(BodyConditionsTest, ASampleThatIsNotFiniteIsIgnored) {
 }
 
 TEST_F(BodyConditionsTest, ASampleThatIsNotValidIsIgnored) {
-  sensors_.valid = kValidJoints;
+  sensors_.valid = 0;
   force_ = {100, 0, 0};
   rate_ = {30, 0, 0};
   steps(100);
@@ -313,8 +315,8 @@ TEST_F(BodyConditionsTest, ASampleThatIsNotValidIsIgnored) {
 }
 
 TEST_F(BodyConditionsTest, ContactForcesThatAreNotFiniteTellNothing) {
-  sensors_.valid |= kValidContacts;
-  sensors_.contact_forces[0] = {kNaN, 0, 0};
+  measure_contacts(sensors_);
+  sensors_.contacts[0].force = {kNaN, 0, 0};
   EXPECT_EQ(cycles_until(kCauseLift, 500), -1);
 }
 
@@ -396,7 +398,7 @@ TEST_F(BodyConditionsTest, WhatIsOffIsNotFound) {
     condition->reaction = Reaction::kOff;
   }
   begin();
-  sensors_.valid |= kValidContacts;
+  measure_contacts(sensors_);
   for (const Vector3d& force : {Vector3d(100, 0, 0), Vector3d(0, 0, 0), Vector3d(kGravity, 0, 0)}) {
     force_ = force;
     rate_ = {0, 3, 0};

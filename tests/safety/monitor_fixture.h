@@ -52,7 +52,8 @@ class MonitorTest : public testing::Test {
     sensors_.head.run = 1;
     sensors_.driver_instance = 77;
     sensors_.driver_state = DriverState::kRunning;
-    sensors_.valid = kValidJoints | kValidGyro | kValidAccelerometer;
+    set_joints_valid(sensors_, kValidMotion);
+    sensors_.valid = kValidGyro | kValidAccelerometer;
     sensors_.imu.linear_acceleration = {0, 0, 9.81};
     sensors_.joint_count = command_.joint_count = kWheels;
     input_.sensors = &sensors_;
@@ -101,8 +102,8 @@ class MonitorTest : public testing::Test {
     if (noisy_gyro_) sensors_.imu.linear_acceleration[0] = cycle % 2 == 0 ? 1e-3 : -1e-3;
     command_.head.cycle = cycle == 0 ? 0 : cycle - 1;
     if (fresh_state_) command_.state_cycle = command_.head.cycle;
-    if (zero(command_.twist_requested)) ++command_.zero_requests;  // a sender that repeats its request every cycle
-    command_.zero_requested = zero(command_.twist_requested) ? 1 : 0;
+    if (zero(command_.requested.twist)) ++command_.zero_requests;  // a sender that repeats its request every cycle
+    command_.zero_requested = zero(command_.requested.twist) ? 1 : 0;
     command_.silent_cycles = 0;
     command_.silence_needed = kSilence;
     Permit given = permit_;
@@ -145,7 +146,7 @@ class MonitorTest : public testing::Test {
   }
   /// Requests `linear` m/s, with the wheels' targets; 0: the brake holds.
   void ask_for(double linear) {
-    command_.twist_requested.linear[0] = linear;
+    command_.requested.twist.linear[0] = linear;
     target(linear == 0 ? 0 : kSpeed);
   }
   void target(double speed) {

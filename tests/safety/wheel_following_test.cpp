@@ -158,7 +158,7 @@ TEST_F(WheelFollowingTest, ARobotThatSwingsAboutItsRestDoesNotStop) {
 TEST_F(WheelFollowingTest, ARobotWithoutEncodersIsNotSaidToMove) {
   target(0);
   turn_wheels(0);
-  sensors_.valid &= ~static_cast<std::uint64_t>(kValidJoints);
+  set_joints_valid(sensors_, 0);
   steps(5000);
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseEncodersLost});
 }

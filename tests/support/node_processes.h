@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <functional>
@@ -149,7 +150,9 @@ class NodeProcesses {
 
   [[noreturn]] void run_plant() {
     DriverProcess driver(parameters_, robot_, bus_.name());
-    driver.open_driver(std::make_unique<MujocoPlant>(robot_, parameters_.plant, parameters_.loop.period()));
+    const double period = parameters_.loop.period();
+    auto plant = std::make_unique<MujocoPlant>(robot_, parameters_.plant, period);
+    driver.open_driver(std::make_unique<SpoiledJoint>(std::move(plant), desk_->spoil, std::llround(1e9 * period)));
     for (;;) {
       driver.poll();
       desk_->missing[index_of(LoopNode::kPlant)].store(missing_bits(driver.missing()));

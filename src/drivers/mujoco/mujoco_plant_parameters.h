@@ -55,7 +55,7 @@ struct MujocoPlantParameters : Errors {
   std::uint64_t actuator_delay = 0;  ///< cycles in addition to the one of the bus
 
   // This member describes the sensors.
-  bool contact_sensors = false;  ///< true: forces at wheels and casters (SensorFrame::contact_forces)
+  bool contact_sensors = false;  ///< true: forces at wheels and casters (SensorFrame::contacts)
 
   // These members describe the battery (battery.h), which does not discharge.
   double battery_voltage = 0;       ///< V without load; 0: no battery is reported

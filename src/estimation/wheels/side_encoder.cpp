@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "estimation/tuning.h"
 
@@ -14,8 +15,8 @@ SideEncoder::Wheel::Wheel(const WheelModel& wheel, const RobotModel& robot) noex
 }
 
 bool SideEncoder::Wheel::measured(const SensorFrame& sensors) const noexcept {
-  return (sensors.valid & kValidJoints) != 0 && joint < sensors.joint_count && joint < kMaxJoints &&
-         std::isfinite(sensors.joints[joint].position);
+  return joint < sensors.joint_count && joint < kMaxJoints && has_position(sensors.joints[joint]) &&
+         taken.precedes(sensors, sensors.joints[joint]);
 }
 
 bool SideEncoder::Wheel::plausible(const SensorFrame& sensors, double time) const noexcept {
@@ -24,9 +25,8 @@ bool SideEncoder::Wheel::plausible(const SensorFrame& sensors, double time) cons
 
 double SideEncoder::Wheel::accept(const SensorFrame& sensors) noexcept {
   const double position = sensors.joints[joint].position;
-  const double travel = metres_per_radian * (position - angle);
-  angle = position;
-  return travel;
+  taken.accept(sensors, sensors.joints[joint]);
+  return metres_per_radian * (position - std::exchange(angle, position));
 }
 
 SideEncoder::SideEncoder(const RobotModel& robot, Side side) {

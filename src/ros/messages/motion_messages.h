@@ -21,9 +21,8 @@ namespace robot_control {
 Twist twist_of(const msg::Twist& message);
 
 /// Returns all joints in the order of the frames: wheels first, left before right, then casters and other joints. The
-/// wheels' velocities are those that the estimator tracks (StateFrame::wheel_velocity), because those of the encoder
-/// jump by a count per period. Other joints have the reported velocities, and so have wheels if `state` is null because
-/// this run has no state yet.
+/// velocities are those of the state (StateFrame::joint_velocity), because those of an encoder jump by a count per
+/// period. If `state` is null because this run has no state yet, they are those of the sensors.
 msg::JointState joint_states(const SensorFrame& sensors, const StateFrame* state, const RobotModel& robot,
                              ros::Time stamp);
 

@@ -78,19 +78,26 @@ void BodyConditions::repeat(Repetition& device, bool good, const Vector3& axes, 
 }
 
 double BodyConditions::forward_speed(const SensorFrame& sensors) const noexcept {
-  if ((sensors.valid & kValidJoints) == 0 || wheel_count_ == 0) return 0;
+  if (wheel_count_ == 0) return 0;
   double sum = 0;
   for (std::size_t i = 0; i < wheel_count_; ++i) {
-    sum += wheels_[i].rim_per_joint * sensors.joints[wheels_[i].joint].velocity;
+    const JointSample& sample = sensors.joints[wheels_[i].joint];
+    if (!has(sample, kValidVelocity)) return 0;
+    sum += wheels_[i].rim_per_joint * sample.velocity;
   }
   return std::isfinite(sum) ? sum / static_cast<double>(wheel_count_) : 0;
 }
 
 void BodyConditions::weigh(const SensorFrame& sensors) noexcept {
   carried_ = 1;
-  if ((sensors.valid & kValidContacts) == 0) return;
+  const std::size_t sensed = std::min<std::size_t>(contacts_, sensors.contact_count);
+  if (sensed == 0) return;
   double sum = 0;
-  for (std::size_t i = 0; i < contacts_; ++i) sum += attitude_.up().dot(Vector(sensors.contact_forces[i].data()));
+  for (std::size_t i = 0; i < sensed; ++i) {
+    const ContactSample& contact = sensors.contacts[i];
+    if (contact.valid == 0) return;
+    sum += attitude_.up().dot(Vector(contact.force.data()));
+  }
   if (std::isfinite(sum)) carried_ = sum / weight_;
 }
 

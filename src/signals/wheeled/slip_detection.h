@@ -1,5 +1,5 @@
 #pragma once
-/// slip_detection describes in words how StateFrame::residual_level affects the detection of slip.
+/// slip_detection describes in words how WheeledState::residual_level affects the detection of slip.
 ///
 /// With an IMU such as the BMI088, slip above 0.025 m/s times the level is detected within 0.2 s
 /// (estimation/slip/slip_detector.h). From kSlowDetection on this is 0.08 m/s, from kNoDetection on 1 m/s.
