@@ -87,7 +87,7 @@ void add(std::vector<Row>& rows, const std::string& name, const Timing& timing) 
 int run(const std::string& path) {
   const Parameters parameters = read_parameters(path);
   ClosedLoop loop(parameters);
-  const RobotModel& robot = loop.robot();
+  const DriveTrain& robot = loop.robot();
   const double period = parameters.loop.period();
   const Drive drive = record(loop);
   std::vector<Row> rows;

@@ -5,10 +5,10 @@
 
 namespace robot_control {
 
-std::vector<JointLimits> joint_limits(const RobotModel& robot) {
+std::vector<JointLimits> joint_limits(const MachineModel& robot) {
   std::vector<JointLimits> all;
   for (const JointModel& joint : robot.joints) {
-    JointLimits limits{.effort = joint.effort_limit, .wheel = joint.role == JointRole::kWheel};
+    JointLimits limits{.effort = joint.effort_limit, .wheel = joint.role == JointRole::kDriven};
     if (joint.effort_rate > 0) limits.effort_rate = joint.effort_rate;
     if (joint.velocity_limit > 0) limits.velocity = joint.velocity_limit;
     if (joint.range) {

@@ -9,7 +9,7 @@
 
 #include "configuration/parameters.h"
 #include "gate/gate_parameters.h"
-#include "machine/robot_model.h"
+#include "machine/machine_model.h"
 
 namespace robot_control {
 
@@ -19,7 +19,7 @@ inline constexpr double kSoftAngle =
 inline constexpr double kSoftLength = 0.02;  ///< m
 
 /// One entry per joint of the robot.
-std::vector<JointLimits> joint_limits(const RobotModel& robot);
+std::vector<JointLimits> joint_limits(const MachineModel& robot);
 
 GateParameters gate_parameters(const Parameters& parameters);
 

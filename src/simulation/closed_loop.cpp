@@ -30,8 +30,8 @@ CommandScript script_of(const Parameters& parameters) {
   return script;
 }
 
-RobotModel load_robot(const Parameters& parameters) {
-  RobotModel robot = read_robot(load_description(parameters.urdf), parameters.robot);
+DriveTrain load_robot(const Parameters& parameters) {
+  DriveTrain robot = read_drive_train(load_description(parameters.urdf), parameters.robot);
   require_drivable(parameters, robot);
   return robot;
 }
@@ -71,7 +71,7 @@ struct ClosedLoop::Parts {
   }
 
   Parameters parameters;
-  RobotModel robot;
+  DriveTrain robot;
   MujocoPlant plant;
   Channel<SensorFrame> sensors;
   Channel<StateFrame> state;
@@ -187,7 +187,7 @@ std::array<const LawSnapshot*, kLaws> ClosedLoop::snapshots() const noexcept {
           laws.controller != nullptr ? parts_->controller.snapshot() : nullptr,
           laws.monitor != nullptr ? parts_->monitor.snapshot() : nullptr};
 }
-const RobotModel& ClosedLoop::robot() const noexcept {
+const DriveTrain& ClosedLoop::robot() const noexcept {
   return parts_->robot;
 }
 const Parameters& ClosedLoop::parameters() const noexcept {

@@ -27,7 +27,7 @@ double torque_of(const JointCommand& command, const JointSample& at) {
 
 }  // namespace
 
-ExampleDriver::ExampleDriver(const RobotModel& robot, std::vector<std::unique_ptr<DriveLink>> links) {
+ExampleDriver::ExampleDriver(const MachineModel& robot, std::vector<std::unique_ptr<DriveLink>> links) {
   for (std::size_t i = 0; i < links.size(); ++i) {
     joints_.push_back({.link = std::move(links[i]), .effort_limit = robot.joints.at(i).effort_limit});
   }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "drivers/driver.h"
-#include "machine/robot_model.h"
+#include "machine/machine_model.h"
 
 namespace robot_control {
 
@@ -35,8 +35,8 @@ class DriveLink {
 
 class ExampleDriver final : public Driver {
  public:
-  /// `links`: one per joint, in the order of RobotModel::joints.
-  ExampleDriver(const RobotModel& robot, std::vector<std::unique_ptr<DriveLink>> links);
+  /// `links`: one per joint, in the order of MachineModel::joints.
+  ExampleDriver(const MachineModel& robot, std::vector<std::unique_ptr<DriveLink>> links);
 
   void start() override;
   void read(SensorFrame& sensors) noexcept override;

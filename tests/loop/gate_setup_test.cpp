@@ -14,7 +14,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// One joint of a robot: a wheel of 3 N·m, 20 rad/s, 500 N·m/s.
 JointLimits limits_of(const std::function<void(JointModel&)>& change) {
-  RobotModel robot = two_wheels();
+  DriveTrain robot = two_wheels();
   robot.joints[1].effort_rate = 500;
   change(robot.joints[1]);
   return joint_limits(robot).at(1);
@@ -101,7 +101,7 @@ class RunawayMachine final : public Driver {
 };
 
 TEST(DriverCycleAndGate, TheGateSeesTheSamplesOfItsOwnTick) {
-  RobotModel robot = two_wheels();
+  DriveTrain robot = two_wheels();
   RunawayMachine machine;
   TestChannel<SensorFrame> sensors;
   TestChannel<TruthFrame> truth;

@@ -30,7 +30,7 @@ class FourNodes {
  public:
   /// The run ends by itself after `parameters.plant.cycles`. `record`: telemetry writes into
   /// parameters.telemetry.directory.
-  FourNodes(const Parameters& parameters, const RobotModel& robot, bool record)
+  FourNodes(const Parameters& parameters, const DriveTrain& robot, bool record)
       : parameters_(parameters),
         robot_(robot),
         record_(record),
@@ -91,7 +91,7 @@ class FourNodes {
 
   ScopedBus bus_;
   Parameters parameters_;
-  RobotModel robot_;
+  DriveTrain robot_;
   bool record_;
   ChildProcess estimator_;
   ChildProcess controller_;

@@ -35,7 +35,7 @@ namespace robot_control {
 class NodeProcesses {
  public:
   explicit NodeProcesses(const Parameters& parameters)
-      : parameters_(parameters), robot_(read_robot(load_description(parameters.urdf), parameters.robot)) {
+      : parameters_(parameters), robot_(read_drive_train(load_description(parameters.urdf), parameters.robot)) {
     new (desk_.get()) ControlDesk();
     parameters_.telemetry.black_box = 0;     // see give_black_box
     parameters_.loop.wait_for_nodes = true;  // a run begins with all nodes there
@@ -82,7 +82,7 @@ class NodeProcesses {
   ControlDesk& desk() const noexcept { return *desk_.get(); }
   const std::string& bus() const noexcept { return bus_.name(); }
   const Parameters& parameters() const noexcept { return parameters_; }
-  const RobotModel& robot() const noexcept { return robot_; }
+  const DriveTrain& robot() const noexcept { return robot_; }
   const std::filesystem::path& folder() const { return folder_.path(); }
 
   /// Telemetry writes there from its next start on.
@@ -177,7 +177,7 @@ class NodeProcesses {
   TemporaryFolder folder_;
   AnonymousMemory<ControlDesk> desk_;
   Parameters parameters_;
-  RobotModel robot_;
+  DriveTrain robot_;
   std::array<std::function<void()>, kLoopNodeNames.size()> preparations_;
   std::array<std::unique_ptr<ChildProcess>, kLoopNodeNames.size()> processes_;
 };

@@ -105,7 +105,7 @@ void run_telemetry(TelemetryProcess& telemetry, double seconds) {
 
 void participate(const Arguments& arguments) {
   const Parameters parameters = read_parameters(arguments.params, arguments.overlays);
-  const RobotModel robot = read_robot(load_description(parameters.urdf), parameters.robot);
+  const DriveTrain robot = read_drive_train(load_description(parameters.urdf), parameters.robot);
   const LoopParameters& loop = parameters.loop;
   install_crash_report(arguments.node, "the motors brake without it");
   prepare_process(loop.clock == ClockMode::kWall ? loop.realtime : RealtimePolicy::kOff);

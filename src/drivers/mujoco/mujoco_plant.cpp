@@ -32,7 +32,7 @@ void check_battery(double voltage, double resistance) {
 
 }  // namespace
 
-MujocoPlant::MujocoPlant(const RobotModel& robot, const MujocoPlantParameters& parameters, double period)
+MujocoPlant::MujocoPlant(const DriveTrain& robot, const MujocoPlantParameters& parameters, double period)
     : model_(compile_model(robot, parameters, period)),
       wheels_(model_, parameters),
       parameters_(parameters),

@@ -40,7 +40,7 @@ FrameHead own_head(const FrameHead& head) {
 }  // namespace
 
 struct Replay::Parts {
-  Parts(const Parameters& parameters, const RobotModel& robot)
+  Parts(const Parameters& parameters, const DriveTrain& robot)
       : row_check(robot.joints.size(), report),
         gate{Gate(joint_limits(robot), gate_parameters(parameters), parameters.loop.period()),
              Continuity(LawName::kGate, report)},
@@ -90,11 +90,11 @@ struct Replay::Parts {
   std::function<void(const VariedRow&)> watch;
 };
 
-Replay::Replay(const Parameters& parameters, const RobotModel& robot)
+Replay::Replay(const Parameters& parameters, const DriveTrain& robot)
     : parts_(std::make_unique<Parts>(parameters, robot)) {}
 Replay::~Replay() = default;
 
-void Replay::vary(const Parameters& parameters, const RobotModel& robot, std::function<void(const VariedRow&)> watch) {
+void Replay::vary(const Parameters& parameters, const DriveTrain& robot, std::function<void(const VariedRow&)> watch) {
   parts_->variant = std::make_unique<Variant>(parameters, robot);
   parts_->watch = std::move(watch);
 }

@@ -8,7 +8,7 @@
 
 namespace robot_control {
 
-DriverCycle::DriverCycle(Driver& driver, const RobotModel& robot, const Channels& channels, std::int64_t period_ns,
+DriverCycle::DriverCycle(Driver& driver, const MachineModel& robot, const Channels& channels, std::int64_t period_ns,
                          Now now, const GateParameters& gate)
     : driver_(driver),
       channels_(channels),

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "loop/gate_setup.h"
+#include "loop/machine_identity.h"
 #include "loop/mint_number.h"
-#include "loop/start_check.h"
 #include "rt/clock.h"
 #include "rt/periodic.h"
 
@@ -32,7 +32,7 @@ bool published(const FrameReader<Frame>& reader, std::uint64_t run, std::uint64_
 
 }  // namespace
 
-DriverProcess::DriverProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
+DriverProcess::DriverProcess(const Parameters& parameters, const MachineModel& robot, const std::string& bus)
     : Process(parameters.loop, LoopPriority::kDriver, "driver"),
       robot_(identified(robot, parameters.loop)),
       cycles_(parameters.plant.cycles),

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "drivers/driver.h"
-#include "machine/bodies/tipping.h"
 #include "machine/description/wording.h"
 #include "machine/gravity.h"
+#include "machine/wheeled/tipping.h"
 
 namespace robot_control {
 namespace {
@@ -20,7 +20,7 @@ constexpr double kHoldSpeed = 0.03;  // m/s at the rim
 
 }  // namespace
 
-Brake brake_of(const RobotModel& robot, std::size_t index, const MujocoPlantParameters& parameters, double step) {
+Brake brake_of(const DriveTrain& robot, std::size_t index, const MujocoPlantParameters& parameters, double step) {
   const WheelModel& wheel = robot.wheels[index];
   const JointModel& joint = robot.joints[wheel.joint];
   double moved = robot.mass;

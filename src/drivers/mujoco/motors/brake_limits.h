@@ -10,7 +10,7 @@
 ///
 /// The robot has n drive wheels and the mass m. A wheel has the inertia J about its axle and the radius r; h is the
 /// time step. The dry friction f of joint and motor also brakes. At the deceleration a wheels lift
-/// (machine/bodies/tipping.h). A robot that tips easily is still held on slopes of 10°. It slows down on slopes of 5°,
+/// (machine/wheeled/tipping.h). A robot that tips easily is still held on slopes of 10°. It slows down on slopes of 5°,
 /// and on steeper ones as far as it does not tip. A torque above the ground's friction is harmless, because the wheel
 /// then slides.
 ///
@@ -19,7 +19,7 @@
 #include <string>
 
 #include "drivers/mujoco/mujoco_plant_parameters.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -33,7 +33,7 @@ struct Brake {
 
 /// Returns the brake of a wheel of the true robot; `step` is h in s. Throws DriverError, with value and bound, for a
 /// given value that is not stable.
-Brake brake_of(const RobotModel& robot, std::size_t wheel, const MujocoPlantParameters& parameters, double step);
+Brake brake_of(const DriveTrain& robot, std::size_t wheel, const MujocoPlantParameters& parameters, double step);
 
 /// Throws DriverError unless 0 < d h / J ≤ 0.5 and 0 < k h² / J ≤ 0.5.
 void check_brake(const Brake& brake, const std::string& joint, double inertia, double step);

@@ -27,7 +27,7 @@
 #include <span>
 #include <vector>
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "signals/joint.h"
 #include "simulation/faults/faulty_output.h"
 
@@ -36,7 +36,7 @@ namespace robot_control {
 class MotorFaults {
  public:
   /// `step` is the simulation's time step h in s.
-  MotorFaults(const RobotModel& robot, std::uint64_t seed, double step);
+  MotorFaults(const DriveTrain& robot, std::uint64_t seed, double step);
 
   /// Removes all faults.
   void reset() noexcept;
