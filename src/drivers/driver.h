@@ -5,6 +5,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "gate/stop_action.h"
 #include "signals/injected_fault.h"
 #include "signals/joint.h"
 #include "signals/sensor_frame.h"
@@ -34,6 +35,10 @@ class Driver {
 
   /// Brakes, at once and until the next `start`.
   virtual void stop() noexcept = 0;
+
+  /// Returns true if the drives carry out the order of this stop action (order_of). The loop does not start with a
+  /// joint that is to be stopped by another one.
+  virtual bool implements(StopKind kind) const noexcept { return kind == StopKind::kBrake; }
 
   /// A simulated machine waits when its node is late: time slips, cycles stay consecutive. Hardware does not:
   /// the cycle number jumps by the periods missed.

@@ -1,5 +1,6 @@
 #pragma once
-/// What the driver announces in the head of the sensors channel, and every other node compares with its own.
+/// The identity of a machine is announced by the driver in the head of the sensors channel. Every other node compares
+/// it with its own.
 
 #include "configuration/loop_parameters.h"
 #include "machine/machine_model.h"

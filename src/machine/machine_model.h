@@ -1,6 +1,6 @@
 #pragma once
 /// The machine model is the description of any machine with moving joints, from which every node derives its numbers.
-/// What only one kind of robot has stands on top of it: machine/wheeled/drive_train.h.
+/// Robots of one kind have more, which stands on top of it: machine/wheeled/drive_train.h.
 ///
 /// It is read from a URDF with urdfdom; positions come from a KDL tree at the zero pose. `base` is the frame of the
 /// root link (REP 103: x forward, y left, z up).

@@ -10,10 +10,10 @@
 #include "loop/cycles/driver_cycle.h"
 #include "loop/cycles/estimator_cycle.h"
 #include "loop/cycles/monitor_cycle.h"
-#include "loop/gate_setup.h"
 #include "loop/retuning.h"
 #include "loop/safety_limits.h"
 #include "loop/start_check.h"
+#include "loop/wheeled_gate.h"
 #include "signals/names.h"
 #include "simulation/faults/node_faults.h"
 
@@ -52,7 +52,7 @@ struct ClosedLoop::Parts {
         robot(load_robot(given)),
         plant(robot, given.plant, given.loop.period()),
         driver(plant, robot, {sensors.writer, FrameWriter<TruthFrame>(), &command.reader, &permit.reader},
-               given.loop.period_ns(), nullptr, gate_parameters(given)),
+               given.loop.period_ns(), nullptr, gate_parameters(given, robot)),
         estimator(given.estimator, robot, given.loop.period(), sensors.reader, state.writer, nullptr),
         controller(given.controller, robot, given.loop.period(),
                    {&sensors.reader, &state.reader, &permit.reader, command.writer}, script_of(given), nullptr),

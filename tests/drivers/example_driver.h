@@ -42,6 +42,8 @@ class ExampleDriver final : public Driver {
   void read(SensorFrame& sensors) noexcept override;
   void write(std::span<const JointCommand> commands) noexcept override;
   void stop() noexcept override;
+  /// Its drives take torques, so they follow every order.
+  bool implements(StopKind) const noexcept override { return true; }
 
  private:
   struct Joint {

@@ -232,7 +232,7 @@ class MonitorTest : public testing::Test {
   std::uint64_t skip_ = 0;
   std::array<double, kWheels> angle_{};
   // Only the joints' efforts are limited: the gate then needs no samples, and stays well when sensors are not.
-  Gate gate_{std::vector<JointLimits>(kWheels, {.effort = 3, .wheel = true}), {.longest_ramp = kRamp + kLoss}, kPeriod};
+  Gate gate_{std::vector<JointLimits>(kWheels, {.effort = 3}), {.longest_ramp = kRamp + kLoss}, kPeriod};
   std::uint64_t next_tick_ = 0;
   FrameHead given_head_;  ///< of the last permit
   CommandFrame heard_;    ///< by the gate

@@ -21,6 +21,7 @@
 #include "loop/processes/estimator_process.h"
 #include "loop/processes/monitor_process.h"
 #include "loop/processes/telemetry_process.h"
+#include "loop/wheeled_gate.h"
 #include "rt/crash_report.h"
 #include "rt/futex.h"
 #include "rt/realtime_thread.h"
@@ -149,7 +150,8 @@ class NodeProcesses {
 
   [[noreturn]] void run_plant() {
     DriverProcess driver(parameters_, robot_, bus_.name());
-    driver.open_driver(std::make_unique<MujocoPlant>(robot_, parameters_.plant, parameters_.loop.period()));
+    driver.open_driver(std::make_unique<MujocoPlant>(robot_, parameters_.plant, parameters_.loop.period()),
+                       gate_parameters(parameters_, robot_));
     for (;;) {
       driver.poll();
       desk_->missing[index_of(LoopNode::kPlant)].store(missing_bits(driver.missing()));

@@ -22,6 +22,7 @@
 #include "loop/processes/estimator_process.h"
 #include "loop/processes/monitor_process.h"
 #include "loop/processes/telemetry_process.h"
+#include "loop/wheeled_gate.h"
 #include "rt/clock.h"
 #include "rt/crash_report.h"
 #include "rt/futex.h"
@@ -111,7 +112,8 @@ void participate(const Arguments& arguments) {
   prepare_process(loop.clock == ClockMode::kWall ? loop.realtime : RealtimePolicy::kOff);
   if (arguments.node == "mujoco_plant") {
     DriverProcess driver(parameters, robot, arguments.bus);
-    driver.open_driver(std::make_unique<MujocoPlant>(robot, parameters.plant, loop.period()));
+    driver.open_driver(std::make_unique<MujocoPlant>(robot, parameters.plant, loop.period()),
+                       gate_parameters(parameters, robot));
     run_process(driver, arguments.seconds);
   } else if (arguments.node == "state_estimator") {
     EstimatorProcess estimator(parameters, robot, arguments.bus);

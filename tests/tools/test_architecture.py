@@ -10,7 +10,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 SRC = ROOT / "src"
 
-LAWS = {"signals", "machine", "machine/wheeled", "estimation", "control", "safety", "gate"}
+LAWS = {"signals", "machine", "machine/wheeled", "estimation", "control", "safety", "gate", "gate/wheeled"}
 LOOP = LAWS | {"rt", "bus", "drivers", "parameters", "configuration", "loop", "log"}
 ALL = LOOP | {"files", "machine/description", "log/bag", "simulation", "simulation/faults", "drivers/mujoco"}
 MAY_INCLUDE = {
@@ -28,7 +28,9 @@ MAY_INCLUDE = {
     "control": {"signals", "machine", "machine/wheeled", "parameters"},
     "safety": {"signals", "machine", "machine/wheeled", "parameters"},
     "gate": {"signals", "bus", "parameters"},
-    "drivers": {"signals"},
+    # The stop actions of one robot kind.
+    "gate/wheeled": {"signals", "gate", "machine", "machine/wheeled"},
+    "drivers": {"signals", "gate"},
     # This holds simulated faults: of the machine in drivers/mujoco, of nodes in simulation.
     "simulation/faults": {"signals", "rt", "bus"},
     "drivers/mujoco": {
@@ -36,6 +38,7 @@ MAY_INCLUDE = {
         "simulation/faults",
         "drivers",
         "gate",
+        "gate/wheeled",
         "machine/description",
         "machine",
         "machine/wheeled",
@@ -131,7 +134,7 @@ def test_what_is_configured_sees_only_the_declaration_of_a_block():
     assert violations(rule) == []
 
 
-WHEELED = {"machine/wheeled", "estimation", "control", "safety"}
+WHEELED = {"machine/wheeled", "gate/wheeled", "estimation", "control", "safety"}
 """The rooms of the wheeled kind's laws."""
 NOT_YET_COMMON = {
     # A robot kind that is composed in one file takes these away.
@@ -145,6 +148,8 @@ NOT_YET_COMMON = {
     "src/loop/retuning.h",
     "src/loop/safety_limits.h",
     "src/loop/start_check.h",
+    "src/loop/wheeled_gate.cpp",
+    "src/loop/wheeled_gate.h",
     "src/ros/messages/motion_messages.h",
     "src/ros/reports/command_report.h",
     "src/ros/reports/robot_report.h",
@@ -173,13 +178,13 @@ NOT_YET_COMMON = {
 
 
 def test_only_the_wheeled_kind_sees_the_drive_train():
-    """What is common takes a MachineModel: gate, drivers, cycles, the monitor's common conditions, joint limits."""
+    """Gate, drivers, the driver's cycle, the monitor's common conditions and the joint limits take a MachineModel."""
     own = ROOT / "src/drivers/mujoco/contact"
     seen = {
         str(path.relative_to(ROOT))
         for path in FILES
         if folder(path) not in WHEELED and own not in path.parents
-        if any(room(name) == "machine/wheeled" for name in includes(path))
+        if any(room(name) in ("machine/wheeled", "gate/wheeled") for name in includes(path))
     }
     assert seen == NOT_YET_COMMON
 

@@ -63,6 +63,7 @@ class MujocoPlant final : public Driver {
   void read(SensorFrame& sensors) noexcept override;
   void write(std::span<const JointCommand> commands) noexcept override;
   void stop() noexcept override;
+  bool implements(StopKind) const noexcept override { return true; }
   bool simulated() const noexcept override { return true; }
   bool truth(TruthFrame& truth) noexcept override;
   bool inject(const InjectedFaults& faults) noexcept override;

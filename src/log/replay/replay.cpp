@@ -12,6 +12,7 @@
 #include "log/replay/row_check.h"
 #include "loop/gate_setup.h"
 #include "loop/safety_limits.h"
+#include "loop/wheeled_gate.h"
 #include "signals/gate_digest.h"
 
 namespace robot_control {
@@ -42,7 +43,7 @@ FrameHead own_head(const FrameHead& head) {
 struct Replay::Parts {
   Parts(const Parameters& parameters, const DriveTrain& robot)
       : row_check(robot.joints.size(), report),
-        gate{Gate(joint_limits(robot), gate_parameters(parameters), parameters.loop.period()),
+        gate{Gate(joint_limits(robot), gate_parameters(parameters, robot), parameters.loop.period()),
              Continuity(LawName::kGate, report)},
         estimator{Estimator(parameters.estimator, robot, parameters.loop.period()),
                   Continuity(LawName::kEstimator, report),

@@ -16,6 +16,7 @@ DriverCycle::DriverCycle(Driver& driver, const MachineModel& robot, const Channe
       period_ns_(period_ns),
       now_(now),
       snapshots_(LawName::kGate) {
+  require_stop_actions(driver, gate, robot);
   announce_robot(channels_.sensors.memory()->head, robot.hash, robot.source);
 }
 

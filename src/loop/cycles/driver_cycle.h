@@ -28,6 +28,7 @@ class DriverCycle {
     const FrameReader<Permit>* permit;
   };
 
+  /// Throws DriverError as require_stop_actions does.
   DriverCycle(Driver& driver, const MachineModel& robot, const Channels& channels, std::int64_t period_ns, Now now,
               const GateParameters& gate = {});
 

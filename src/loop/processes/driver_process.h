@@ -29,7 +29,7 @@ class DriverProcess final : public Process {
   ~DriverProcess() override;
 
   /// Starts the machine and announces the first run. Throws DriverError.
-  void open_driver(std::unique_ptr<Driver> driver);
+  void open_driver(std::unique_ptr<Driver> driver, const GateParameters& gate);
 
   std::vector<std::string> missing() const override;
   const FrameReader<SensorFrame>& sensors() const noexcept { return sensors_.reader; }
@@ -59,7 +59,6 @@ class DriverProcess final : public Process {
 
   MachineModel robot_;
   std::uint64_t cycles_;
-  GateParameters gate_;
   Output<SensorFrame> sensors_;
   Output<TruthFrame> truth_;
   Input<StateFrame> state_;

@@ -5,6 +5,7 @@
 #include "drivers/mujoco/mujoco_plant.h"
 #include "files/ascii.h"
 #include "loop/processes/driver_process.h"
+#include "loop/wheeled_gate.h"
 #include "ros/messages/motion_messages.h"
 #include "ros/messages/simulation_messages.h"
 #include "ros/nodes/process_node.h"
@@ -26,7 +27,7 @@ class MujocoPlantNode final : public ProcessNode<DriverProcess> {
     auto plant = std::make_unique<MujocoPlant>(robot(), parameters().plant, loop.period());
     plant_ = plant.get();
     description_ = std::make_unique<PublishedDescription>(robot(), parameters().urdf);
-    process().open_driver(std::move(plant));
+    process().open_driver(std::move(plant), gate_parameters(parameters(), robot()));
   }
 
   void connect(ros::NodeHandle& handle) override {
