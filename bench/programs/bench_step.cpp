@@ -14,6 +14,7 @@
 #include "estimation/estimator.h"
 #include "gate/gate.h"
 #include "loop/gate_setup.h"
+#include "loop/wheeled_gate.h"
 #include "rt/clock.h"
 #include "safety/safety_monitor.h"
 #include "simulation/closed_loop.h"
@@ -87,7 +88,7 @@ void add(std::vector<Row>& rows, const std::string& name, const Timing& timing) 
 int run(const std::string& path) {
   const Parameters parameters = read_parameters(path);
   ClosedLoop loop(parameters);
-  const RobotModel& robot = loop.robot();
+  const DriveTrain& robot = loop.robot();
   const double period = parameters.loop.period();
   const Drive drive = record(loop);
   std::vector<Row> rows;
@@ -113,7 +114,7 @@ int run(const std::string& path) {
                                 command);
               }));
 
-  Gate gate(joint_limits(robot), gate_parameters(parameters), period);
+  Gate gate(joint_limits(robot), gate_parameters(parameters, robot), period);
   add(rows, "gate",
       measure([&] { gate.enter_run(); },
               [&](std::size_t k) {

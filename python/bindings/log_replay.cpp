@@ -33,14 +33,14 @@ Parameters parameters_in(const Layers& layers, const std::string& base) {
   return read_parameters(layers.first, overlays, base);
 }
 
-RobotModel robot_in(const Parameters& parameters) {
-  return read_robot(load_description(parameters.urdf), parameters.robot);
+DriveTrain robot_in(const Parameters& parameters) {
+  return read_drive_train(load_description(parameters.urdf), parameters.robot);
 }
 
 /// VariedColumns holds the outputs of the laws, logged and with other parameters, by column of a log.
 class VariedColumns {
  public:
-  explicit VariedColumns(const RobotModel& robot) {
+  explicit VariedColumns(const DriveTrain& robot) {
     for (const WheelModel& wheel : robot.wheels) {
       efforts_.emplace_back(wheel.joint, "command_effort_" + robot.joints[wheel.joint].name);
     }
@@ -119,7 +119,7 @@ std::vector<std::string> header_differences(const LogHeader& logged, const LogHe
 /// `logged` are the parameters of the log, `varied` are other parameters or None.
 py::dict replay_log(const std::string& path, const Layers& logged, const std::optional<Layers>& varied) {
   const Parameters parameters = parameters_in(logged, logged.first);
-  const RobotModel robot = robot_in(parameters);
+  const DriveTrain robot = robot_in(parameters);
   Replay replay(parameters, robot);
   VariedColumns columns(robot);
   std::vector<std::string> live;  // values that the log leaves out but `varied` sets are included

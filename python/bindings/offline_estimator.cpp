@@ -30,8 +30,8 @@ Parameters parameters_of(const std::string& path, const OfflineEstimator::Values
 }
 
 /// Returns a robot with two wheels on one axle, whose middle is base_link.
-RobotModel two_wheels(const RobotParameters& given) {
-  RobotModel robot;
+DriveTrain two_wheels(const DriveTrainParameters& given) {
+  DriveTrain robot;
   robot.name = robot.source = "wheel_radius and wheel_base";
   robot.base_link = "base_link";
   robot.wheel_base = given.wheel_base.value();
@@ -47,7 +47,7 @@ RobotModel two_wheels(const RobotParameters& given) {
     robot.joints.push_back({.name = left ? "left_wheel_joint" : "right_wheel_joint",
                             .child_link = left ? "left_wheel" : "right_wheel",
                             .velocity_limit = given.wheel_velocity_limit.value_or(0),
-                            .role = JointRole::kWheel});
+                            .role = JointRole::kDriven});
   }
   const auto [roll, pitch, yaw] = given.imu_orientation.value_or(Vector3{});
   const Eigen::Quaterniond turn = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
@@ -183,8 +183,8 @@ struct OfflineEstimator::Rows {
 
 OfflineEstimator::OfflineEstimator(const std::string& path, const Values& values, bool use_two_wheels) {
   const Parameters parameters = parameters_of(path, values);
-  robot_ =
-      use_two_wheels ? two_wheels(parameters.robot) : read_robot(load_description(parameters.urdf), parameters.robot);
+  robot_ = use_two_wheels ? two_wheels(parameters.robot)
+                          : read_drive_train(load_description(parameters.urdf), parameters.robot);
   given_ = parameters_ = parameters.estimator;
   if (!parameters.calibration_file.empty()) {
     const auto kept = read_calibration(parameters.calibration_file, robot_, given_);

@@ -21,7 +21,7 @@
 
 #include "configuration/parameters.h"
 #include "estimation/estimator.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -64,7 +64,7 @@ class OfflineEstimator {
 
   EstimatorParameters given_;       ///< the parameters without the calibration of the file
   EstimatorParameters parameters_;  ///< the parameters with which the run begins
-  RobotModel robot_;
+  DriveTrain robot_;
   double loop_period_ = 0;
   double period_ = 0;
   std::unique_ptr<Estimator> estimator_;

@@ -13,8 +13,8 @@ namespace robot_control {
 
 namespace {
 
-WheelLoops make_loops(const DriveControllerParameters& parameters, const RobotModel& described, double period) {
-  const RobotModel robot = measured_robot(described, parameters.feed_forward);
+WheelLoops make_loops(const DriveControllerParameters& parameters, const DriveTrain& described, double period) {
+  const DriveTrain robot = measured_robot(described, parameters.feed_forward);
   WheelLoops loops;
   for (const WheelModel& wheel : robot.wheels) {
     loops.emplace_back(wheel_loop_gains(parameters, robot, wheel, period), tracking_bandwidth(parameters, period),
@@ -53,7 +53,7 @@ constexpr std::uint64_t kBrakeReasons = kReasonNoPermit | kReasonPermitBrake | k
 
 }  // namespace
 
-DriveController::DriveController(const DriveControllerParameters& parameters, const RobotModel& robot, double period)
+DriveController::DriveController(const DriveControllerParameters& parameters, const DriveTrain& robot, double period)
     : tuning_(drive_tuning(parameters, robot, period)),
       period_(period),
       joint_count_(robot.joints.size()),

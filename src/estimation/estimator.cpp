@@ -12,7 +12,7 @@
 #include "signals/rotation.h"
 
 namespace robot_control {
-Estimator::State::State(const EstimatorParameters& parameters, const RobotModel& robot, double period)
+Estimator::State::State(const EstimatorParameters& parameters, const DriveTrain& robot, double period)
     : wheel_sides(robot, parameters.speed_bandwidth, period, std::sqrt(12.0) * encoder_deviation(parameters, robot)),
       core(core_params(parameters, robot)),
       tilt(tilt_params(parameters)),
@@ -21,7 +21,7 @@ Estimator::State::State(const EstimatorParameters& parameters, const RobotModel&
       rate(parameters.rate_bandwidth, period),
       wheel_velocities(robot, parameters.speed_bandwidth, period) {}
 
-Estimator::Estimator(const EstimatorParameters& parameters, const RobotModel& robot, double period)
+Estimator::Estimator(const EstimatorParameters& parameters, const DriveTrain& robot, double period)
     : parameters_(checked(parameters, robot, period)),
       period_(period),
       geometry_(robot),

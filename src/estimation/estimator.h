@@ -55,8 +55,8 @@
 #include "estimation/wheels/wheel_geometry.h"
 #include "estimation/wheels/wheel_sides.h"
 #include "estimation/wheels/wheel_velocities.h"
-#include "machine/robot_model.h"
-#include "machine/wheels/wheel_slip.h"
+#include "machine/wheeled/drive_train.h"
+#include "machine/wheeled/wheels/wheel_slip.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
 
@@ -67,7 +67,7 @@ class Estimator {
   /// Holds all that changes from cycle to cycle. Each part has its own state and one step; Estimator::advance hands the
   /// values on from part to part. It is trivially copyable.
   struct State {
-    State(const EstimatorParameters& parameters, const RobotModel& robot, double period);
+    State(const EstimatorParameters& parameters, const DriveTrain& robot, double period);
 
     // These parts read the samples. Beside them are the readings of this step.
     ImuSamples imu_samples;
@@ -108,7 +108,7 @@ class Estimator {
 
   /// `period` is in s and > 0. Throws std::invalid_argument if a parameter or a measure of the robot is out of range or
   /// a side has no wheel.
-  Estimator(const EstimatorParameters& parameters, const RobotModel& robot, double period);
+  Estimator(const EstimatorParameters& parameters, const DriveTrain& robot, double period);
 
   /// Give and replace the state, for snapshots (signals/law_snapshot.h).
   const State& state() const noexcept { return state_; }

@@ -45,7 +45,7 @@ inline constexpr std::uint64_t kCommandLife = 4;
 struct CommandFrame {
   FrameHead head;
   std::uint64_t joint_count = 0;
-  std::array<JointCommand, kMaxJoints> joints{};  ///< in the order of RobotModel::joints
+  std::array<JointCommand, kMaxJoints> joints{};  ///< in the order of MachineModel::joints
   Request requested;                              ///< as last received; zero once timed out or refused
   Twist twist_limited;                            ///< after limits: the target of the base
   std::uint64_t reasons = 0;

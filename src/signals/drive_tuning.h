@@ -43,7 +43,7 @@ struct DriveTuning {
   double tracking_bandwidth = 0;                 ///< Hz
   double mass = 0;                               ///< kg, for feed-forward
   double yaw_inertia = 0;                        ///< kg·m²
-  std::array<WheelTuning, kMaxWheels> wheels{};  ///< in the order of RobotModel::wheels, which is that of the joints
+  std::array<WheelTuning, kMaxWheels> wheels{};  ///< in the order of DriveTrain::wheels, which is that of the joints
 };
 
 }  // namespace robot_control

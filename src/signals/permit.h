@@ -51,7 +51,7 @@ inline constexpr auto kStopCauses = static_cast<std::size_t>(StopCauseBit::kCoun
 struct CauseEvidence {
   std::uint64_t cause = 0;           ///< one bit; 0: unused
   std::uint64_t cycle = 0;           ///< cycle in which it became active
-  std::uint64_t joint = kMaxJoints;  ///< index into RobotModel::joints; kMaxJoints: no single joint
+  std::uint64_t joint = kMaxJoints;  ///< index into MachineModel::joints; kMaxJoints: no single joint
   double value = 0;
   double limit = 0;
 };

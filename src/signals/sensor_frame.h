@@ -76,11 +76,11 @@ struct SensorFrame {
   std::uint64_t faults = 0;
   std::uint64_t valid = 0;
   std::uint64_t joint_count = 0;
-  std::array<JointSample, kMaxJoints> joints{};  ///< in the order of RobotModel::joints
+  std::array<JointSample, kMaxJoints> joints{};  ///< in the order of MachineModel::joints
   ImuSample imu;
   std::uint64_t contact_count = 0;  ///< contacts with a sensor
 
-  /// Contacts of the model, as many as fit: the wheels in the order of RobotModel::wheels, then the casters.
+  /// Contacts of the model, as many as fit: the wheels in the order of DriveTrain::wheels, then the casters.
   std::array<ContactSample, kMaxContacts> contacts{};
   std::uint64_t link_count = 0;
   std::array<LinkStatus, kMaxLinks> links{};  ///< the links from the driver to its drives and sensors

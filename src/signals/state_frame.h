@@ -57,7 +57,7 @@ struct StateFrame {
   std::uint64_t skipped = 0;      ///< missed sensor cycles of this run
   BaseState base;
   std::array<double, kMaxJoints>
-      joint_velocity{};  ///< rad/s or m/s, in the order of RobotModel::joints; of wheels tracked, of others as measured
+      joint_velocity{};  ///< rad/s or m/s, in the order of MachineModel::joints; of wheels tracked, of others as measured
   std::uint64_t contact_count = 0;                    ///< estimated contacts
   std::array<ContactState, kMaxContacts> contacts{};  ///< in the order of SensorFrame::contacts
   WheeledState wheeled;                               ///< only wheeled machines fill it

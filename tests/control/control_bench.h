@@ -23,8 +23,8 @@ inline DriveControllerParameters straight_ramps() {
 
 class ControlBench {
  public:
-  explicit ControlBench(const RobotModel& model = make_test_robot(), const DriveControllerParameters& parameters = {},
-                        double period_s = 1e-3, const std::optional<RobotModel>& truth = {})
+  explicit ControlBench(const DriveTrain& model = make_test_robot(), const DriveControllerParameters& parameters = {},
+                        double period_s = 1e-3, const std::optional<DriveTrain>& truth = {})
       : period(period_s), controller(parameters, model, period_s), plant(truth.value_or(model)), robot(model) {
     controller.enter_run();
     permit.action = PermitAction::kDrive;
@@ -37,7 +37,7 @@ class ControlBench {
   double period;
   DriveController controller;
   TwoWheelPlant plant;
-  RobotModel robot;
+  DriveTrain robot;
   SensorFrame sensors;
   StateFrame state;
   Permit permit;

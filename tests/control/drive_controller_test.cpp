@@ -226,7 +226,7 @@ TEST_F(DriveControllerTest, ReseedsAfterMoreSkippedCyclesThanTheGateHolds) {
 }
 
 TEST_F(DriveControllerTest, KeepsTheCurvatureWhenAWheelIsTooFast) {
-  RobotModel slow = make_test_robot();
+  DriveTrain slow = make_test_robot();
   for (JointModel& joint : slow.joints) joint.velocity_limit = 4;  // 0.4 m/s
   bench = ControlBench(slow);
   start();
@@ -237,7 +237,7 @@ TEST_F(DriveControllerTest, KeepsTheCurvatureWhenAWheelIsTooFast) {
 }
 
 TEST_F(DriveControllerTest, SaysThatATorqueIsAtItsLimitAndDoesNotOvershootForIt) {
-  RobotModel weak = make_test_robot();
+  DriveTrain weak = make_test_robot();
   for (JointModel& joint : weak.joints) joint.effort_limit = 0.4;  // 0.65 N·m would be needed
   bench = ControlBench(weak);
   bench.run(0.3);
@@ -264,7 +264,7 @@ TEST_F(DriveControllerTest, DrivesBackwardsAsItDrivesForwards) {
 }
 
 TEST_F(DriveControllerTest, DrivesAWheelThatIsMountedTheOtherWayRound) {
-  RobotModel mirrored = make_test_robot();
+  DriveTrain mirrored = make_test_robot();
   mirrored.wheels[1].sign = -1;
   bench = ControlBench(mirrored);
   start();
@@ -304,7 +304,7 @@ TEST(DriveControllerOfAHeldWheel, KnowsByTheCountsOfTheOtherThatItStands) {
 
 // Sensors that do as commanded: the plans of 0.5 m/s, 0.2 rad/s on all four wheels, load shared.
 TEST(DriveControllerOfFourWheels, DrivesEveryWheelOfASideAlikeAndBrakesForAnyThatFails) {
-  const RobotModel robot = make_skid_steer();
+  const DriveTrain robot = make_skid_steer();
   DriveController controller({}, robot, 1e-3);
   controller.enter_run();
   SensorFrame sensors;
@@ -344,7 +344,7 @@ TEST(DriveControllerOfFourWheels, DrivesEveryWheelOfASideAlikeAndBrakesForAnyTha
 }
 
 TEST_F(DriveControllerTest, BrakesTheJointsThatAreNotWheels) {
-  RobotModel arm = make_test_robot();
+  DriveTrain arm = make_test_robot();
   arm.joints.push_back({.name = "arm", .child_link = "arm", .effort_limit = 1, .velocity_limit = 1});
   bench = ControlBench(arm);
   start();

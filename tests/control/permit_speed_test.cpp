@@ -47,7 +47,7 @@ TEST(RimSpeedScale, ALimitThatIsNoSpeedLetsNothingMove) {
 }
 
 TEST(RimSpeedScale, NoRimOfAnyRobotExceedsIt) {
-  for (const RobotModel& robot : {make_test_robot(), make_skid_steer()}) {
+  for (const DriveTrain& robot : {make_test_robot(), make_skid_steer()}) {
     const DriveKinematics kinematics(robot);
     for (unsigned seed = 0; seed < 1000; ++seed) {
       std::mt19937 random(seed);

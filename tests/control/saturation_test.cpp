@@ -22,8 +22,8 @@ DriveControllerParameters patient() {
   return parameters;
 }
 
-RobotModel with_effort_limit(double limit) {
-  RobotModel robot = make_test_robot();
+DriveTrain with_effort_limit(double limit) {
+  DriveTrain robot = make_test_robot();
   for (JointModel& joint : robot.joints) joint.effort_limit = limit;
   return robot;
 }
@@ -55,7 +55,7 @@ TEST(TorqueSaturation, KeepsTheCurveDuringTheRamp) {
 }
 
 TEST(TorqueSaturation, KeepsTheCurveWithAPayloadThatFeedForwardDoesNotKnow) {
-  RobotModel loaded = with_effort_limit(kWeak);
+  DriveTrain loaded = with_effort_limit(kWeak);
   loaded.mass *= 2;
   loaded.yaw_inertia *= 2;
   ControlBench bench(with_effort_limit(kWeak), patient(), 1e-3, loaded);
@@ -76,7 +76,7 @@ TEST(TorqueSaturation, UsesWhatTorqueThereIs) {
 }
 
 TEST(TorqueSaturation, NeverLetsThePlanRunAway) {
-  RobotModel loaded = with_effort_limit(kWeak);
+  DriveTrain loaded = with_effort_limit(kWeak);
   loaded.mass *= 2;
   ControlBench bench(with_effort_limit(kWeak), patient(), 1e-3, loaded);
   bench.run(0.3);
@@ -119,7 +119,7 @@ TEST(TorqueSaturation, TheTargetGoesOnWhereTheWheelsCannot) {
 
 TEST(SpeedSaturation, NothingBeyondAWheelsLimitIsOrderedWhateverTheTargetsDo) {
   constexpr double kLimit = kUsableWheelSpeed * 8;  // rad/s, 0.72 m/s
-  RobotModel robot = make_test_robot();
+  DriveTrain robot = make_test_robot();
   for (JointModel& joint : robot.joints) joint.velocity_limit = 8;
   DriveControllerParameters parameters = patient();
   parameters.max_linear_jerk = 2;  // slow to turn back: that is what leads past a limit
@@ -155,7 +155,7 @@ TEST(SpeedSaturation, NothingBeyondAWheelsLimitIsOrderedWhateverTheTargetsDo) {
 /// brake the described robot with 0.8 m/s² at most.
 double swings_back(double heavier, double rate) {
   constexpr double kSpeed = 1, kNeeded = 0.65;  // N·m at 1 m/s²
-  RobotModel loaded = with_effort_limit(0.8 * kNeeded);
+  DriveTrain loaded = with_effort_limit(0.8 * kNeeded);
   loaded.mass *= heavier;
   ControlBench bench(with_effort_limit(0.8 * kNeeded), patient(), 1 / rate, loaded);
   bench.run(0.3);
@@ -183,7 +183,7 @@ TEST(TorqueSaturation, LeavesNothingToUnwindAfterAStop) {
 // The robot is three times as heavy as assumed, and its wheels of 0.4 N·m brake with 0.2 m/s² at most. The plan reaches
 // zero in time.
 TEST(TorqueSaturation, NeverStretchesARampTowardsZero) {
-  RobotModel loaded = with_effort_limit(kWeak);
+  DriveTrain loaded = with_effort_limit(kWeak);
   loaded.mass *= 3;
   ControlBench bench(with_effort_limit(kWeak), patient(), 1e-3, loaded);
   bench.run(0.3);

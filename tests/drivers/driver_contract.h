@@ -186,6 +186,26 @@ TEST_P(DriverContract, AnEffortBeyondTheLimitIsClamped) {
   EXPECT_GT(joint(0).effort, GetParam().effort_limit * 0.9);
 }
 
+TEST_P(DriverContract, ImplementsTheBrake) {
+  EXPECT_TRUE(driver_->implements(StopKind::kBrake));
+}
+
+TEST_P(DriverContract, AStopActionThatItImplementsActsAtOnce) {
+  for (const StopKind kind : {StopKind::kBrake, StopKind::kCoast, StopKind::kDamp}) {
+    if (!driver_->implements(kind)) continue;
+    hold(all(velocity(3.0)), 1.0);
+    hold(all(order_of({.kind = kind, .damping = GetParam().damping})), 2 * GetParam().period);
+    for (std::size_t i = 0; i < GetParam().joints; ++i) {
+      const double effort = joint(i).effort;
+      if (kind == StopKind::kCoast) {
+        EXPECT_NEAR(effort, 0, 0.05 * GetParam().effort_limit) << i;
+      } else {
+        EXPECT_LT(effort, 0) << i << ", action " << static_cast<int>(kind);
+      }
+    }
+  }
+}
+
 TEST_P(DriverContract, ABrakeStopsAMovingJoint) {
   hold(all(velocity(3.0)), 1.0);
   hold(all(brake_), 2.0);

@@ -27,7 +27,7 @@ double torque_of(const JointCommand& command, const JointSample& at) {
 
 }  // namespace
 
-ExampleDriver::ExampleDriver(const RobotModel& robot, std::vector<std::unique_ptr<DriveLink>> links,
+ExampleDriver::ExampleDriver(const MachineModel& robot, std::vector<std::unique_ptr<DriveLink>> links,
                              std::int64_t period_ns)
     : period_ns_(period_ns) {
   for (std::size_t i = 0; i < links.size(); ++i) {

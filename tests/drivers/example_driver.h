@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "drivers/driver.h"
-#include "machine/robot_model.h"
+#include "machine/machine_model.h"
 
 namespace robot_control {
 
@@ -34,13 +34,15 @@ class DriveLink {
 
 class ExampleDriver final : public Driver {
  public:
-  /// `links`: one per joint, in the order of RobotModel::joints. `period_ns`: of the loop.
-  ExampleDriver(const RobotModel& robot, std::vector<std::unique_ptr<DriveLink>> links, std::int64_t period_ns);
+  /// `links`: one per joint, in the order of MachineModel::joints. `period_ns`: of the loop.
+  ExampleDriver(const MachineModel& robot, std::vector<std::unique_ptr<DriveLink>> links, std::int64_t period_ns);
 
   void start() override;
   void read(SensorFrame& sensors) noexcept override;
   void write(std::span<const JointCommand> commands) noexcept override;
   void stop() noexcept override;
+  /// Its drives take torques, so they follow every order.
+  bool implements(StopKind) const noexcept override { return true; }
 
  private:
   struct Joint {

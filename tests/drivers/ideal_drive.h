@@ -63,7 +63,7 @@ inline ExampleMachine example_machine() {
     machine.drives.push_back(drive.get());
     links.push_back(std::move(drive));
   }
-  machine.driver = std::make_unique<ExampleDriver>(read_robot(diffbot_urdf(), {}), std::move(links),
+  machine.driver = std::make_unique<ExampleDriver>(read_drive_train(diffbot_urdf(), {}), std::move(links),
                                                    static_cast<std::int64_t>(IdealDrive::kPeriod * 1e9));
   return machine;
 }

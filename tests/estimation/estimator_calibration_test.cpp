@@ -82,7 +82,7 @@ TEST(EstimatorCalibration, TheWheelBaseStaysWhereNothingTurns) {
 }
 
 TEST(EstimatorCalibration, ATurnDragsWheelsBehindEachOther) {
-  RobotModel robot = two_wheeler();
+  DriveTrain robot = two_wheeler();
   EXPECT_TRUE(drags_wheels(robot)) << "there may be other wheels";
   robot.bodies = std::make_shared<RigidBodies>();
   EXPECT_FALSE(drags_wheels(robot));

@@ -12,7 +12,7 @@ namespace {
 class CreepingTyres : public EstimatorFixture {
  protected:
   static constexpr double kCreep = 0.01;  // s²/m
-  explicit CreepingTyres(double known = kCreep, const RobotModel& model = two_wheeler())
+  explicit CreepingTyres(double known = kCreep, const DriveTrain& model = two_wheeler())
       : EstimatorFixture(model, {.tyre_creep = known}) {
     robot_.creep = kCreep;
     stand();
@@ -43,8 +43,8 @@ class CreepingTyresTakenForRigid : public CreepingTyres {
 class CreepingTyresUnderAFarImu : public CreepingTyres {
  protected:
   CreepingTyresUnderAFarImu() : CreepingTyres(kCreep, far()) {}
-  static RobotModel far() {
-    RobotModel model = two_wheeler();
+  static DriveTrain far() {
+    DriveTrain model = two_wheeler();
     model.imu_in_base.position = {0.5, 0.2, 0.2};
     return model;
   }

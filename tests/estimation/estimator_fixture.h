@@ -43,7 +43,7 @@ inline bool is_covariance(const Matrix6& published, double slack) {
 
 class EstimatorFixture : public testing::Test {
  protected:
-  explicit EstimatorFixture(const RobotModel& model = two_wheeler(),
+  explicit EstimatorFixture(const DriveTrain& model = two_wheeler(),
                             const EstimatorParameters& parameters = rigid_tyres(),
                             double period = RollingRobot::kPeriod)
       : robot_(model, period), estimator_(parameters, model, period) {}

@@ -9,7 +9,7 @@ namespace robot_control {
 namespace {
 
 /// Stands and drives for ten seconds. `biased`: constant errors in base axes, wherever the IMU is.
-StateFrame drive_with(const RobotModel& model, RollingRobot& robot) {
+StateFrame drive_with(const DriveTrain& model, RollingRobot& robot) {
   Estimator estimator(rigid_tyres(), model, kPeriod);
   StateFrame state;
   for (int i = 0; i < 10000; ++i) {
@@ -19,8 +19,8 @@ StateFrame drive_with(const RobotModel& model, RollingRobot& robot) {
   return state;
 }
 
-RobotModel mounted(const Eigen::Quaterniond& q, const Vector3& position) {
-  RobotModel model = two_wheeler();
+DriveTrain mounted(const Eigen::Quaterniond& q, const Vector3& position) {
+  DriveTrain model = two_wheeler();
   model.imu_in_base.orientation = {q.x(), q.y(), q.z(), q.w()};
   model.imu_in_base.position = position;
   return model;
@@ -63,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, EstimatorMountingTest, testing::Range(0U, 10U));
 // The effect of the lever on the accelerometer is known at any place.
 TEST(EstimatorMounting, AnyPlaceFindsTheTruth) {
   for (const Vector3& place : {Vector3{0.3, 0.2, 0.5}, Vector3{-0.4, -0.3, 0.05}, Vector3{0, 0, 1}}) {
-    const RobotModel model = mounted(Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5), place);
+    const DriveTrain model = mounted(Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5), place);
     RollingRobot robot(model);
     const StateFrame state = drive_with(model, robot);
     const double deviation = std::sqrt(state.base.pose_covariance[0] + state.base.pose_covariance[7]);

@@ -17,8 +17,8 @@ class EstimatorLeverTest : public testing::Test {
     for (Estimator* estimator : {&middle_, &ahead_}) estimator->set_pose({0, 0, 0});
     for (int i = 0; i < 3000; ++i) step(0.4, 0.6 * std::sin(i * 1e-3));
   }
-  static RobotModel model(double axle) {
-    RobotModel model = two_wheeler();
+  static DriveTrain model(double axle) {
+    DriveTrain model = two_wheeler();
     for (WheelModel& wheel : model.wheels) wheel.centre_base[0] = axle;
     return model;
   }
@@ -101,7 +101,7 @@ TEST_F(EstimatorLeverTest, ARestartKeepsTheCovariance) {
 // Deviations of the bias are published in the IMU's axes, and continued from these. After a drive without a rest that
 // about the vertical differs from those of tilting.
 TEST(EstimatorOutput, ARestartKeepsTheDeviationsOfTheBias) {
-  RobotModel model = two_wheeler();
+  DriveTrain model = two_wheeler();
   model.imu_in_base.orientation = {std::sqrt(0.5), 0, 0, std::sqrt(0.5)};  // its y axis upwards
   RollingRobot robot(model);
   Estimator estimator(rigid_tyres(), model, kPeriod);

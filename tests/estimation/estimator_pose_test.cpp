@@ -90,7 +90,7 @@ TEST_F(EstimatorPoseTest, NothingOfAnEndedRestIsLost) {
 
 // An axle 0.2 m behind base_link: spinning moves base_link on a circle of that radius.
 TEST(EstimatorPoseOfOtherRobots, ABaseBesideTheAxleMovesOnItsOwnCircle) {
-  RobotModel model = two_wheeler();
+  DriveTrain model = two_wheeler();
   model.wheels[0].centre_base[0] = model.wheels[1].centre_base[0] = -0.2;
   Estimator estimator(rigid_tyres(), model, kPeriod);
   RollingRobot robot(model);
@@ -107,7 +107,7 @@ TEST(EstimatorPoseOfOtherRobots, ABaseBesideTheAxleMovesOnItsOwnCircle) {
 }
 
 TEST(EstimatorPoseOfOtherRobots, FourWheelsTurnAboutTheirMiddleByTheEffectiveWheelBase) {
-  const RobotModel model = four_wheeler();
+  const DriveTrain model = four_wheeler();
   Estimator estimator(rigid_tyres(), model, kPeriod);
   RollingRobot robot(model);
   StateFrame state;
@@ -161,7 +161,7 @@ TEST_F(EstimatorPoseTest, ResetPoseIsZeroInTheNextFrameAndKeepsTheTwist) {
 
 // The IMU is high on a robot that may be tilted: its own place is uncertain, that of base_link is not.
 TEST(EstimatorPoseOfOtherRobots, ResetPoseIsExactForBaseLinkUnderAnyImu) {
-  RobotModel model = two_wheeler();
+  DriveTrain model = two_wheeler();
   model.imu_in_base.position = {0.2, -0.1, 0.8};
   Estimator estimator(rigid_tyres(), model, kPeriod);
   RollingRobot robot(model);
@@ -378,18 +378,18 @@ static_assert(noexcept(std::declval<Estimator>().step(SensorFrame{}, std::declva
 static_assert(noexcept(std::declval<Estimator>().step(SensorFrame{}, 1e-3, std::declval<StateFrame&>())));
 
 TEST(EstimatorConstruction, RefusesWhatCannotBe) {
-  const RobotModel robot = two_wheeler();
+  const DriveTrain robot = two_wheeler();
   EXPECT_THROW(Estimator(EstimatorParameters{}, robot, 0), std::invalid_argument);
   EXPECT_THROW(Estimator(EstimatorParameters{}, robot, std::nan("")), std::invalid_argument);
   const auto refuses_robot = [&](auto fault) {
-    RobotModel broken = robot;
+    DriveTrain broken = robot;
     fault(broken);
     EXPECT_THROW(Estimator(EstimatorParameters{}, broken, kPeriod), std::invalid_argument);
   };
-  refuses_robot([](RobotModel& broken) { broken.wheel_base = 0; });
-  refuses_robot([](RobotModel& broken) { broken.wheels.pop_back(); });
-  refuses_robot([](RobotModel& broken) { broken.wheels[0].radius = -0.1; });
-  refuses_robot([](RobotModel& broken) { broken.imu_in_base.orientation = {0, 0, 0, 0}; });
+  refuses_robot([](DriveTrain& broken) { broken.wheel_base = 0; });
+  refuses_robot([](DriveTrain& broken) { broken.wheels.pop_back(); });
+  refuses_robot([](DriveTrain& broken) { broken.wheels[0].radius = -0.1; });
+  refuses_robot([](DriveTrain& broken) { broken.imu_in_base.orientation = {0, 0, 0, 0}; });
   using Parameters = EstimatorParameters;
   for (double Parameters::*const positive :
        {&Parameters::gyro_noise, &Parameters::accelerometer_noise, &Parameters::encoder_noise,

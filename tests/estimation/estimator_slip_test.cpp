@@ -235,13 +235,13 @@ class EstimatorRollingTest : public testing::Test {
   static constexpr unsigned kSeeds = 4;
 
   template <class Shake, class PitchRate>
-  double flagged(const RobotModel& model, Shake shake, PitchRate pitch_rate) {
+  double flagged(const DriveTrain& model, Shake shake, PitchRate pitch_rate) {
     double sum = 0;
     for (unsigned seed = 1; seed <= kSeeds; ++seed) sum += flagged(seed, model, shake, pitch_rate);
     return sum / kSeeds;
   }
   template <class Shake, class PitchRate>
-  double flagged(unsigned seed, const RobotModel& model, Shake shake, PitchRate pitch_rate) {
+  double flagged(unsigned seed, const DriveTrain& model, Shake shake, PitchRate pitch_rate) {
     RollingRobot robot(model, kPeriod, seed);
     robot.noise = {.gyro = 2.44e-4, .accelerometer = 2e-3, .counts = 4096};
     robot.radius_ratio = 0.003;
@@ -277,7 +277,7 @@ TEST_F(EstimatorRollingTest, RollingIsNotCalledSlip) {
 
 // 1° RMS at 1.5 Hz, about the contact; the IMU is 0.3 m above it.
 TEST_F(EstimatorRollingTest, GroundThatPitchesTheBodyIsNotCalledSlip) {
-  RobotModel model = two_wheeler();
+  DriveTrain model = two_wheeler();
   model.imu_in_base.position = {0.1, 0, 0.3};
   const double amplitude = std::numbers::sqrt2 * std::numbers::pi / 180;
   const double frequency = 2 * std::numbers::pi * 1.5;

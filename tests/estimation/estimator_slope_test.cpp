@@ -31,7 +31,7 @@ class EstimatorSlopeTest : public testing::TestWithParam<bool> {
     robot.drive(speed, 0, pitch_rate);
     estimator.step(robot.frame(), state_);
   }
-  RobotModel model_ = two_wheeler();
+  DriveTrain model_ = two_wheeler();
   EstimatorParameters parameters_ = rigid_tyres();
   StateFrame state_;
 };

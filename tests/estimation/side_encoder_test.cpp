@@ -20,7 +20,7 @@ class SideEncoderTest : public testing::Test {
     sensors_.joints[0].position = angle;
     return encoder_.step(sensors_, dt);
   }
-  RobotModel robot_ = two_wheeler();
+  DriveTrain robot_ = two_wheeler();
   SideEncoder encoder_{robot_, Side::kLeft};
   SensorFrame sensors_;
 };

@@ -486,7 +486,7 @@ class Sequence {
 
   std::mt19937_64 random_;
   ReleaseFigures& figures_;
-  RobotModel robot_ = two_wheels();
+  DriveTrain robot_ = two_wheels();
   DriveControllerParameters parameters_;
   StandingMachine machine_;
   TestChannel<SensorFrame> sensors_;

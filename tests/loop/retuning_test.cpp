@@ -39,7 +39,7 @@ class RetuningTest : public ::testing::Test {
   }
 
   Parameters parameters;
-  RobotModel robot = two_wheels();
+  DriveTrain robot = two_wheels();
   LatestValue<DriveTuning> inbox;
   Retuning retuning{parameters, robot, inbox};
 };

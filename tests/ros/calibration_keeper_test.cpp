@@ -26,7 +26,7 @@ class CalibrationKeeperTest : public testing::Test {
   }
 
   TemporaryFolder folder_;
-  RobotModel robot_;
+  DriveTrain robot_;
   Parameters parameters_;
   StateFrame state_;
 };

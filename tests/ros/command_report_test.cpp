@@ -62,8 +62,8 @@ class CommandReportTest : public testing::Test {
   CommandFrame frame_;
 
  private:
-  static RobotModel robot() {
-    RobotModel robot;
+  static DriveTrain robot() {
+    DriveTrain robot;
     robot.wheel_base = 0.5;
     robot.wheels = {WheelModel{.joint = 0, .radius = 0.1}, WheelModel{.joint = 1, .radius = 0.1, .side = Side::kRight}};
     robot.joints.resize(2);

@@ -30,7 +30,7 @@ class MotionMessagesTest : public testing::Test {
   }
 
   const ros::Time stamp_{12, 34};
-  RobotModel robot_;
+  DriveTrain robot_;
   SensorFrame sensors_;
   StateFrame state_;
   CommandFrame command_;

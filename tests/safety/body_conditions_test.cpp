@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "machine/gravity.h"
+#include "safety/measurements/rim_speed.h"
 #include "support/allocation_guard.h"
 #include "support/constants.h"
 #include "support/measured_contacts.h"
@@ -30,6 +31,7 @@ class BodyConditionsTest : public testing::Test {
     robot_.mass = 10;
     robot_.joints.resize(2);
     robot_.wheels.resize(2);
+    robot_.contacts = {"left_wheel", "right_wheel"};
     for (std::size_t i = 0; i < 2; ++i) {
       robot_.wheels[i].joint = i;
       robot_.wheels[i].radius = 0.1;
@@ -44,9 +46,11 @@ class BodyConditionsTest : public testing::Test {
 
   /// Restarts with the present parameters and robot; it is healthy for 10 cycles.
   void begin() {
-    facts_ = BodyConditions(parameters_, robot_, kPeriod);
+    facts_ = made();
     steps(10);
   }
+
+  BodyConditions made() const { return {parameters_, robot_, middle_of_axles(robot_), kPeriod}; }
 
   void step() {
     jitter_ = -jitter_;
@@ -57,7 +61,7 @@ class BodyConditionsTest : public testing::Test {
   /// Checks the present frame.
   void check(std::uint64_t elapsed = 1) {
     out_.clear();
-    facts_.step(sensors_, elapsed, wheels_turn_, out_);
+    facts_.step(sensors_, elapsed, RimSpeed(robot_).value(sensors_), wheels_turn_, out_);
   }
   void steps(int count) {
     for (int i = 0; i < count; ++i) step();
@@ -82,9 +86,9 @@ class BodyConditionsTest : public testing::Test {
   void lean(double angle) { force_ = kGravity * Vector3d(0, std::sin(angle), std::cos(angle)); }
 
   SafetyParameters parameters_;
-  RobotModel robot_;
+  DriveTrain robot_;
   SensorFrame sensors_;
-  BodyConditions facts_{parameters_, robot_, kPeriod};
+  BodyConditions facts_ = made();
   ActiveCauses out_;
   Vector3d rate_ = Vector3d::Zero();
   Vector3d force_{0, 0, kGravity};
@@ -236,7 +240,7 @@ TEST_F(BodyConditionsTest, WithoutContactSensorsThereIsNoLift) {
 }
 
 TEST_F(BodyConditionsTest, CastersCarryToo) {
-  robot_.casters.resize(1);
+  robot_.contacts.push_back("caster");
   measure_contacts(sensors_);
   sensors_.contacts[2].force = {0, 0, 0.9 * 10 * kGravity};
   begin();
@@ -364,7 +368,7 @@ TEST_F(BodyConditionsTest, TheMountingOfTheImuCounts) {
       Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitX()) * Eigen::AngleAxisd(0.5, Vector3d::UnitZ());
   robot_.imu_in_base.orientation = {mounting.x(), mounting.y(), mounting.z(), mounting.w()};
   force_ = mounting.inverse() * Vector3d(0, 0, kGravity);
-  facts_ = BodyConditions(parameters_, robot_, kPeriod);
+  facts_ = made();
   steps(100);
   EXPECT_NEAR(facts_.attitude().tilt(), 0, 1e-9);
   double angle = 0;

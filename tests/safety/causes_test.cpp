@@ -404,7 +404,7 @@ TEST(SafetyMonitorConstruction, RefusesParametersOutOfRange) {
   const auto refused = [](auto change, double period) {
     SafetyParameters parameters;
     change(parameters);
-    EXPECT_THROW(SafetyMonitor(parameters, RobotModel(), period), std::invalid_argument);
+    EXPECT_THROW(SafetyMonitor(parameters, DriveTrain(), period), std::invalid_argument);
   };
   refused([](SafetyParameters&) {}, 0);
   refused([](SafetyParameters& p) { p.loss_cycles = 0; }, 1e-3);

@@ -94,7 +94,7 @@ class HealthyDriving : public testing::TestWithParam<Machine> {
     input_ = {.sensors = &sensors_, .command = &command_, .state_seen = true, .operator_input = {}};
   }
 
-  const RobotModel robot_ = two_wheels();
+  const DriveTrain robot_ = two_wheels();
   std::optional<SafetyMonitor> monitor_;
   SensorFrame sensors_;
   CommandFrame command_;

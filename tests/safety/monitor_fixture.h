@@ -20,12 +20,13 @@ namespace robot_control {
 inline constexpr std::uint64_t kToMotors = 3;  ///< cycles from a cause to the gate's action
 
 /// Two wheels of 0.1 m radius, 0.5 m apart.
-inline RobotModel two_wheels() {
-  RobotModel robot;
+inline DriveTrain two_wheels() {
+  DriveTrain robot;
   robot.joints.assign(2, {.name = "wheel", .child_link = "wheel", .effort_limit = 3, .velocity_limit = 20});
   robot.wheels = {{.joint = 0, .centre_base = {0, 0.25, 0}, .radius = 0.1, .width = 0.04, .inertia = 0.005},
                   {.joint = 1, .centre_base = {0, -0.25, 0}, .radius = 0.1, .width = 0.04, .inertia = 0.005}};
   robot.wheels[1].side = Side::kRight;
+  robot.contacts = {"left_wheel", "right_wheel"};
   robot.wheel_base = 0.5;
   robot.mass = 12;
   return robot;
@@ -77,7 +78,7 @@ class MonitorTest : public testing::Test {
     return chosen;
   }
 
-  static RobotModel robot() { return two_wheels(); }
+  static DriveTrain robot() { return two_wheels(); }
 
   /// Begins the healthy case with another monitor.
   void begin_with(const SafetyParameters& chosen) {
@@ -232,7 +233,7 @@ class MonitorTest : public testing::Test {
   std::uint64_t skip_ = 0;
   std::array<double, kWheels> angle_{};
   // Only the joints' efforts are limited: the gate then needs no samples, and stays well when sensors are not.
-  Gate gate_{std::vector<JointLimits>(kWheels, {.effort = 3, .wheel = true}), {.longest_ramp = kRamp + kLoss}, kPeriod};
+  Gate gate_{std::vector<JointLimits>(kWheels, {.effort = 3}), {.longest_ramp = kRamp + kLoss}, kPeriod};
   std::uint64_t next_tick_ = 0;
   FrameHead given_head_;  ///< of the last permit
   CommandFrame heard_;    ///< by the gate

@@ -81,7 +81,7 @@ TEST(Slide, GrowsNoFasterThanTyresCarryAndNotBeyondTheLimit) {
   SafetyParameters parameters;
   parameters.stop_deceleration = 0.5;
   parameters.wheel_speed.limit = 20;  // 2 m/s
-  RobotModel robot;
+  DriveTrain robot;
   robot.wheels = {{.joint = 0, .radius = 0.1}};
   WheelMotion motion(1, 1e-3);
   Slide slide(parameters, robot, 1e-3);

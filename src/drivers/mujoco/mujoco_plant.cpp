@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "drivers/mujoco/contact/rest.h"
+#include "drivers/mujoco/motors/brake_limits.h"
 #include "drivers/mujoco/mujoco_errors.h"
 #include "machine/description/wording.h"
 #include "machine/suspicions.h"
@@ -32,7 +33,7 @@ void check_battery(double voltage, double resistance) {
 
 }  // namespace
 
-MujocoPlant::MujocoPlant(const RobotModel& robot, const MujocoPlantParameters& parameters, double period)
+MujocoPlant::MujocoPlant(const DriveTrain& robot, const MujocoPlantParameters& parameters, double period)
     : model_(compile_model(robot, parameters, period)),
       wheels_(model_, parameters),
       parameters_(parameters),

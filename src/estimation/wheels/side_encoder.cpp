@@ -8,7 +8,7 @@
 
 namespace robot_control {
 
-SideEncoder::Wheel::Wheel(const WheelModel& wheel, const RobotModel& robot) noexcept
+SideEncoder::Wheel::Wheel(const WheelModel& wheel, const DriveTrain& robot) noexcept
     : joint(wheel.joint), metres_per_radian(wheel.sign * wheel.radius), velocity_bound(Tuning::kFastestWheel) {
   const double limit = joint < robot.joints.size() ? robot.joints[joint].velocity_limit : 0;
   if (limit > 0 && std::isfinite(limit)) velocity_bound = 2 * limit;
@@ -29,7 +29,7 @@ double SideEncoder::Wheel::accept(const SensorFrame& sensors) noexcept {
   return metres_per_radian * (position - std::exchange(angle, position));
 }
 
-SideEncoder::SideEncoder(const RobotModel& robot, Side side) {
+SideEncoder::SideEncoder(const DriveTrain& robot, Side side) {
   for (const WheelModel& wheel : robot.wheels) {
     if (wheel.side == side) wheels_.emplace_back(wheel, robot);
   }

@@ -12,7 +12,7 @@
 #include <cstdint>
 
 #include "machine/encoders/sample_time.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "signals/fixed_vector.h"
 #include "signals/sensor_frame.h"
 
@@ -28,7 +28,7 @@ enum class EncoderReading : std::uint8_t {
 class SideEncoder {
  public:
   /// There must be at least one wheel on that side.
-  SideEncoder(const RobotModel& robot, Side side);
+  SideEncoder(const DriveTrain& robot, Side side);
 
   /// `dt` is the time in s since the last call.
   EncoderReading step(const SensorFrame& sensors, double dt) noexcept;
@@ -53,7 +53,7 @@ class SideEncoder {
     double angle = 0;       ///< rad, as last accepted
     SampleTime taken{};     ///< of that angle
 
-    Wheel(const WheelModel& wheel, const RobotModel& robot) noexcept;
+    Wheel(const WheelModel& wheel, const DriveTrain& robot) noexcept;
     bool measured(const SensorFrame& sensors) const noexcept;
     bool plausible(const SensorFrame& sensors, double time) const noexcept;
     double accept(const SensorFrame& sensors) noexcept;  ///< m, travel

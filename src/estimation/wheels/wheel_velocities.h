@@ -14,7 +14,7 @@
 #include "estimation/tuning.h"
 #include "machine/encoders/sample_time.h"
 #include "machine/encoders/tracking_loop.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "signals/fixed_vector.h"
 #include "signals/sensor_frame.h"
 
@@ -23,7 +23,7 @@ namespace robot_control {
 class WheelVelocities {
  public:
   /// `bandwidth` is in Hz and `period` in s.
-  WheelVelocities(const RobotModel& robot, double bandwidth, double period)
+  WheelVelocities(const DriveTrain& robot, double bandwidth, double period)
       : period_(period),
         wheels_(std::min(robot.wheels.size(), kMaxWheels), Wheel{.tracking = TrackingLoop(bandwidth, period)}) {}
 

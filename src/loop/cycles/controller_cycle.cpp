@@ -5,7 +5,7 @@
 
 namespace robot_control {
 
-ControllerCycle::ControllerCycle(const DriveControllerParameters& parameters, const RobotModel& robot, double period,
+ControllerCycle::ControllerCycle(const DriveControllerParameters& parameters, const DriveTrain& robot, double period,
                                  const Channels& channels, CommandScript script, Now now)
     : controller_(parameters, robot, period),
       clock_(now),

@@ -55,7 +55,7 @@ Twist twist_of(const msg::Twist& message) {
           .angular = {message.angular.x, message.angular.y, message.angular.z}};
 }
 
-msg::JointState joint_states(const SensorFrame& sensors, const StateFrame* state, const RobotModel& robot,
+msg::JointState joint_states(const SensorFrame& sensors, const StateFrame* state, const DriveTrain& robot,
                              ros::Time stamp) {
   msg::JointState message;
   message.header.stamp = stamp;
@@ -120,7 +120,7 @@ msg::Odometry ground_truth(const TruthFrame& truth, const std::string& odom_fram
   return odometry_of(truth.pose_world, truth.twist_base, odom_frame, base_frame, stamp);
 }
 
-msg::Imu imu(const SensorFrame& sensors, const RobotModel& robot, ros::Time stamp) {
+msg::Imu imu(const SensorFrame& sensors, const MachineModel& robot, ros::Time stamp) {
   msg::Imu message;
   message.header.stamp = stamp;
   message.header.frame_id = robot.imu_link.empty() ? robot.base_link : robot.imu_link;
@@ -134,7 +134,7 @@ msg::Imu imu(const SensorFrame& sensors, const RobotModel& robot, ros::Time stam
   return message;
 }
 
-msg::Imu imu_data(const SensorFrame& sensors, const StateFrame& state, const RobotModel& robot,
+msg::Imu imu_data(const SensorFrame& sensors, const StateFrame& state, const MachineModel& robot,
                   const EstimatorParameters& parameters, double period, ros::Time stamp) {
   msg::Imu message = imu(sensors, robot, stamp);
   const auto rotation = [](const Quaternion& q) { return Eigen::Quaterniond(q[3], q[0], q[1], q[2]); };
@@ -157,7 +157,7 @@ bool has_imu_data(const SensorFrame& sensors, const StateFrame& state) {
          (state.base.flags & kStateValid) != 0;
 }
 
-msg::Float64MultiArray joint_commands(const CommandFrame& command, const RobotModel& robot) {
+msg::Float64MultiArray joint_commands(const CommandFrame& command, const DriveTrain& robot) {
   msg::Float64MultiArray message;
   for (const WheelModel& wheel : robot.wheels) message.data.push_back(command.joints[wheel.joint].velocity);
   msg::MultiArrayDimension dimension;
@@ -167,7 +167,7 @@ msg::Float64MultiArray joint_commands(const CommandFrame& command, const RobotMo
   return message;
 }
 
-msg::JointState joint_targets(const CommandFrame& command, const RobotModel& robot, ros::Time stamp) {
+msg::JointState joint_targets(const CommandFrame& command, const DriveTrain& robot, ros::Time stamp) {
   msg::JointState message;
   message.header.stamp = stamp;
   for (const WheelModel& wheel : robot.wheels) {
@@ -178,7 +178,7 @@ msg::JointState joint_targets(const CommandFrame& command, const RobotModel& rob
 }
 
 msg::DriveState drive_state(const CommandFrame& command, const CommandFrame& plan, std::uint64_t reasons,
-                            const RobotModel& robot, ros::Time stamp) {
+                            const DriveTrain& robot, ros::Time stamp) {
   msg::DriveState message;
   message.header.stamp = stamp;
   for (const BitName& row : kCommandReasonNames) {

@@ -44,7 +44,7 @@ void CalibrationKeeper::wait() {
   }
 }
 
-Parameters with_calibration(const Parameters& parameters, const RobotModel& robot) {
+Parameters with_calibration(const Parameters& parameters, const DriveTrain& robot) {
   if (parameters.calibration_file.empty()) return parameters;
   Parameters result = parameters;
   const auto kept = read_calibration(parameters.calibration_file, robot, parameters.estimator);

@@ -34,7 +34,7 @@ PlanarTwist requested_twist(const CommandFrame& command) {
 
 }  // namespace
 
-CommandReport::CommandReport(const RobotModel& robot, const DriveControllerParameters& parameters)
+CommandReport::CommandReport(const DriveTrain& robot, const DriveControllerParameters& parameters)
     : kinematics_(robot), limits_(speed_limits(parameters)), timeout_(parameters.cmd_vel_timeout) {}
 
 void CommandReport::limit(const DriveControllerParameters& parameters) {

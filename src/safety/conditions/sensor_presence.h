@@ -1,9 +1,8 @@
 #pragma once
 /// Do the sensors report?
 ///
-///   encoders lost  a wheel's joint gave no new valid position for the persistence. The time is JointSample::age_ns of
-///   a
-///                  valid sample, and grows by the elapsed time while there is none. The wheel with the longest time is
+///   encoders lost  a wheel's joint gave no new valid position for the persistence. The time is the age of a valid
+///                  sample, and grows by the elapsed time while there is none. The wheel with the longest time is
 ///                  named.
 ///   IMU lost       gyro or accelerometer is not valid, but was valid earlier in this run: a robot without an IMU may
 ///                  drive
@@ -14,9 +13,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "machine/robot_model.h"
 #include "safety/latch/active_causes.h"
 #include "signals/sensor_frame.h"
+#include "signals/wheeled/wheel_count.h"
 
 namespace robot_control {
 

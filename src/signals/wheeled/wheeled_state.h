@@ -29,7 +29,7 @@ enum SlipReason : std::uint64_t {
   kSlipSideways = 1u << 5,  ///< The robot slides sideways.
 };
 
-/// The estimated calibration of wheels and gyro relative to RobotModel, with standard deviations.
+/// The estimated calibration of wheels and gyro relative to DriveTrain, with standard deviations.
 struct WheelCalibration {
   double radius_ratio = 1;            ///< right over left radius, relative to the model's
   double wheel_base_factor = 1;       ///< effective wheel base over the model's

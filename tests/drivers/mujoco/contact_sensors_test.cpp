@@ -35,7 +35,7 @@ class ContactSensors : public PlantTest, public testing::WithParamInterface<Tyre
   }
 
   static constexpr double kOnWheels = 0.76;
-  RobotModel robot_ = read_robot(diffbot_urdf(), {});
+  DriveTrain robot_ = read_drive_train(diffbot_urdf(), {});
   const double weight_ = robot_.mass * kGravity;
   MujocoPlantParameters parameters_;
 };
@@ -106,7 +106,7 @@ TEST_P(ContactSensors, ChangeNothingElse) {
 TEST_P(ContactSensors, FeelTheCastersBehindTheWheels) {
   if (corpus().empty()) GTEST_SKIP() << kNoCorpus;
   setenv("ROS_PACKAGE_PATH", (corpus() / "pmb2").c_str(), 1);
-  robot_ = read_robot(load_description((corpus() / "pmb2/robot.urdf").string()), {});
+  robot_ = read_drive_train(load_description((corpus() / "pmb2/robot.urdf").string()), {});
   ASSERT_EQ(robot_.wheels.size() + robot_.casters.size(), 6u);
   const SensorFrame frame = sensors(*sensing());
   EXPECT_NEAR(sum(frame)[2], robot_.mass * kGravity, 1e-3 * robot_.mass * kGravity);

@@ -18,7 +18,7 @@ class PlantErrors : public PlantTest {
   }
 
   std::unique_ptr<MujocoPlant> erring() const {
-    auto plant = std::make_unique<MujocoPlant>(read_robot(diffbot_urdf(), {}), parameters_, period_);
+    auto plant = std::make_unique<MujocoPlant>(read_drive_train(diffbot_urdf(), {}), parameters_, period_);
     plant->start();
     return plant;
   }

@@ -4,29 +4,11 @@
 ///   kEffort     τ = effort
 ///   kVelocity   τ = effort + damping · (velocity − q̇)
 ///   kImpedance  τ = effort + stiffness · (position − q) + damping · (velocity − q̇)
+///   kBrake      the law of gate/brake_law.h
 ///
-/// The torque is clamped to the joint's effort limit.
-///
-/// kBrake is bounded by B, the effort or hold effort of a Brake (brake_limits.h):
-///
-///   slowing   τ = −d q̇
-///   holding   τ = k (q* − q) − d q̇,   where the bound is reached, q* follows so that τ = ±B
-///
-/// d is the brake's damping, k its stiffness. The brake begins to hold in three cases:
-///
-///   |q̇| reaches the hold speed;
-///   below the bound, a load keeps the speed from falling by a tenth in 50 steps (on a slope, damping alone creeps);
-///   at the bound, the speed grows within 50 steps (on a steeper slope, the bound for slowing is too small).
-///
-/// Holding begins with the last applied torque, q* = q + (τ₋ + d q̇)/k, so that it takes over a load on a slope without
-/// a jolt. The brake then continues to hold, as a dry brake does; a load above B moves it against the torque B.
-///
-/// An unknown mode or a number that is not finite causes braking.
-///
-/// With a wheel's inertia J and the time step h, the law is stable for 2a + b < 4, where a = d h / J and b = k h² / J
-/// (docs/simulation.md). `check_brake` requires a ≤ 0.5 and b ≤ 0.5; the defaults are a = 0.4 and b = 0.06.
+/// The torque is clamped to the joint's effort limit. An unknown mode or a number that is not finite causes braking.
 
-#include "drivers/mujoco/motors/brake_limits.h"
+#include "gate/brake_law.h"
 #include "signals/joint.h"
 
 namespace robot_control {
@@ -42,20 +24,12 @@ class JointLaw {
   /// Returns τ in N·m or N. The caller applies it over the next time step.
   double step(const JointCommand& command, double position, double velocity) noexcept;
 
-  bool holding() const noexcept { return holding_; }
+  bool holding() const noexcept { return brake_.holding(); }
 
  private:
-  double brake(double position, double velocity) noexcept;
-  bool speed_stays(double speed) noexcept;
-
-  Brake brake_;
+  BrakeLaw brake_;
   double effort_limit_;
-  double applied_ = 0;    ///< τ of the last step
-  double reference_ = 0;  ///< q*
-  bool braking_ = false;
-  bool holding_ = false;
-  int steps_since_mark_ = 0;
-  double marked_speed_ = 0;
+  double applied_ = 0;  ///< τ of the last step
 };
 
 }  // namespace robot_control
