@@ -12,7 +12,7 @@ SRC = ROOT / "src"
 
 LAWS = {"signals", "machine", "estimation", "control", "safety", "gate"}
 LOOP = LAWS | {"rt", "bus", "drivers", "parameters", "configuration", "loop", "log"}
-ALL = LOOP | {"files", "machine/description", "log/bag", "simulation", "simulation/faults", "drivers/mujoco"}
+ALL = LOOP | {"files", "machine/description", "log/bag", "simulation", "simulation/faults", "drivers/can", "drivers/mujoco"}
 MAY_INCLUDE = {
     "signals": set(),
     "files": set(),
@@ -29,6 +29,7 @@ MAY_INCLUDE = {
     "drivers": {"signals"},
     # This holds simulated faults: of the machine in drivers/mujoco, of nodes in simulation.
     "simulation/faults": {"signals", "rt", "bus"},
+    "drivers/can": {"signals", "drivers", "files"},
     "drivers/mujoco": {
         "signals",
         "simulation/faults",

@@ -1,0 +1,68 @@
+#pragma once
+/// ODrive CANSimple: the frames of one axis.
+///
+/// The 11-bit identifier is node (6 bits) << 5 | command (5 bits). Data are little-endian. A remote request under the
+/// identifier of a message asks the axis to send it now. A message that an axis sends always has 8 bytes; one to an
+/// axis has the bytes that its layout uses, which is what both firmwares need. The codec judges no number: NaN in a
+/// frame is NaN in the message. Sources: tests/data/odrive-cansimple-*.dbc; ODrive firmware 0.5.6,
+/// communication/can/can_simple.cpp; ros_odrive, can_simple_messages.hpp (0.6).
+
+#include <cstdint>
+#include <optional>
+
+#include "drivers/can/can_frame.h"
+#include "drivers/can/wire_layout.h"
+
+namespace robot_control::odrive {
+
+inline constexpr std::uint8_t kMaxNode = 0x3F;
+
+inline std::uint8_t node_of(const can_frame& frame) noexcept {
+  return static_cast<std::uint8_t>(frame.can_id >> 5U & kMaxNode);
+}
+
+inline std::uint8_t command_of(const can_frame& frame) noexcept {
+  return static_cast<std::uint8_t>(frame.can_id & 0x1FU);
+}
+
+constexpr canid_t identifier(std::uint8_t node, std::uint8_t command) noexcept {
+  return static_cast<canid_t>((node & kMaxNode) << 5U | command);
+}
+
+/// The command of a message and its direction.
+struct Command {
+  std::uint8_t number = 0;  ///< 5 bits
+  bool from_axis = false;
+};
+
+constexpr Command from_axis(std::uint8_t number) noexcept {
+  return {.number = number, .from_axis = true};
+}
+
+constexpr Command to_axis(std::uint8_t number) noexcept {
+  return {.number = number, .from_axis = false};
+}
+
+template <class Message>
+can_frame encode(std::uint8_t node, const Message& message) noexcept {
+  constexpr std::uint8_t kBytes = Message::kCommand.from_axis ? 8 : used_bytes<Message>();
+  return word_frame(identifier(node, Message::kCommand.number), packed(message), kBytes);
+}
+
+/// Returns nothing if the frame is another message, or shorter than the layout.
+template <class Message>
+std::optional<Message> decode(const can_frame& frame) noexcept {
+  if (!is_standard_data(frame) || command_of(frame) != Message::kCommand.number || frame.len < used_bytes<Message>()) {
+    return std::nullopt;
+  }
+  return unpacked<Message>(data_word(frame));
+}
+
+/// Asks the axis to send this message.
+template <class Message>
+can_frame request(std::uint8_t node) noexcept {
+  static_assert(Message::kCommand.from_axis);
+  return word_frame(identifier(node, Message::kCommand.number) | CAN_RTR_FLAG, 0, 0);
+}
+
+}  // namespace robot_control::odrive
