@@ -110,9 +110,9 @@ CanBus::Sent CanBus::send_to_parties(std::span<const can_frame> frames) noexcept
 }
 
 ReceivedFrames CanBus::receive(const CanTime& now) noexcept {
-  if (now.monotonic_ns - searched_ns_ >= kPartySearchNs) {
+  if (now.time_ns - searched_ns_ >= kPartySearchNs) {
     present_.set();
-    searched_ns_ = now.monotonic_ns;
+    searched_ns_ = now.time_ns;
   }
   alignas(cmsghdr) std::array<std::array<char, kControlBytes>, kMaxDatagrams> controls;
   std::array<iovec, kMaxDatagrams> parts;
@@ -135,7 +135,7 @@ ReceivedFrames CanBus::receive(const CanTime& now) noexcept {
     accept(datagrams_[static_cast<std::size_t>(i)], whole ? message.msg_len : 0, stamp_of(message.msg_hdr, now));
   }
   const bool more = received == static_cast<int>(kMaxDatagrams);
-  if (!more) emptied_ns_ = now.monotonic_ns;
+  if (!more) emptied_ns_ = now.time_ns;
   return {.frames = {received_.data(), received_count_}, .more = more};
 }
 
@@ -174,9 +174,9 @@ void CanBus::judge_error_frame(const can_frame& frame) noexcept {
 
 std::int64_t CanBus::stamp_of(msghdr& head, const CanTime& now) noexcept {
   const auto* stamp = control_value<timespec>(head, SCM_TIMESTAMPNS);
-  if (stamp == nullptr) return now.monotonic_ns;
-  const std::int64_t age_ns = now.realtime_ns - (stamp->tv_sec * 1'000'000'000 + stamp->tv_nsec);
-  return now.monotonic_ns - std::clamp<std::int64_t>(age_ns, 0, now.monotonic_ns - emptied_ns_);
+  if (stamp == nullptr) return now.time_ns;
+  const std::int64_t age_ns = now.utc_ns - (stamp->tv_sec * 1'000'000'000 + stamp->tv_nsec);
+  return now.time_ns - std::clamp<std::int64_t>(age_ns, 0, now.time_ns - emptied_ns_);
 }
 
 void CanBus::count_dropped(msghdr& head) noexcept {

@@ -23,8 +23,8 @@ inline constexpr std::int64_t kPartySearchNs = 100'000'000;
 
 /// The time of one call on two clocks, ns. Time stamps of the kernel are on CLOCK_REALTIME.
 struct CanTime {
-  std::int64_t monotonic_ns = 0;
-  std::int64_t realtime_ns = 0;
+  std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC
+  std::int64_t utc_ns = 0;   ///< CLOCK_REALTIME
 };
 
 struct ReceivedFrame {

@@ -41,7 +41,7 @@ class CanFolder : public ::testing::Test {
   /// The numbers that the party received, at a time at which it searches for others.
   std::vector<std::uint64_t> heard(CanBus& party) {
     std::vector<std::uint64_t> numbers;
-    now_.monotonic_ns += kPartySearchNs;
+    now_.time_ns += kPartySearchNs;
     for (const ReceivedFrame& each : party.receive(now_).frames) numbers.push_back(data_word(each.frame));
     return numbers;
   }
@@ -148,6 +148,14 @@ TEST(CanSocket, AFolderOfOthersIsRefused) {
   chmod(folder.path().c_str(), 0770);
   EXPECT_THAT(refusal("unix:" + folder.path().string()),
               AllOf(HasSubstr("other users may write"), HasSubstr("chmod 700")));
+}
+
+TEST(CanSocket, ALinkToAFolderIsRefused) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "bus");
+  std::filesystem::create_symlink("bus", folder.path() / "link");
+  EXPECT_EQ(refusal("unix:" + (folder.path() / "bus").string()), "accepted");
+  EXPECT_THAT(refusal("unix:" + (folder.path() / "link").string()), HasSubstr("name a folder of your own"));
 }
 
 TEST(CanSocket, AFolderThatCannotBeMadeIsRefused) {
