@@ -12,7 +12,7 @@ SRC = ROOT / "src"
 
 LAWS = {"signals", "machine", "estimation", "control", "safety", "gate"}
 LOOP = LAWS | {"rt", "bus", "drivers", "parameters", "configuration", "loop", "log"}
-ALL = LOOP | {"files", "machine/description", "log/bag", "simulation", "simulation/faults", "drivers/can", "drivers/mujoco"}
+ALL = LOOP | {"files", "machine/description", "log/bag", "simulation", "simulation/faults", "drivers/mujoco"}
 MAY_INCLUDE = {
     "signals": set(),
     "files": set(),

@@ -148,7 +148,7 @@ void CanBus::accept(const Frames& frames, std::size_t bytes, std::int64_t stamp_
     if (frame.len > CAN_MAX_DLEN) {
       ++counts_.malformed;
     } else if (is_error(frame)) {
-      judge_error_frame(frame);
+      evaluate_error_frame(frame);
     } else if (socket_.passes(frame.can_id)) {
       ++counts_.received;
       received_[received_count_++] = {.frame = frame, .stamp_ns = stamp_ns};
@@ -156,7 +156,7 @@ void CanBus::accept(const Frames& frames, std::size_t bytes, std::int64_t stamp_
   }
 }
 
-void CanBus::judge_error_frame(const can_frame& frame) noexcept {
+void CanBus::evaluate_error_frame(const can_frame& frame) noexcept {
   ++counts_.error_frames;
   const std::uint8_t controller = (frame.can_id & CAN_ERR_CRTL) != 0 ? frame.data[1] : 0;
   if ((controller & CAN_ERR_CRTL_RX_OVERFLOW) != 0) ++counts_.lost;

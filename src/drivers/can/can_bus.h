@@ -88,7 +88,7 @@ class CanBus {
   Sent send_singly(std::span<const can_frame> frames) noexcept;
   Sent send_to_parties(std::span<const can_frame> frames) noexcept;
   void accept(const Frames& frames, std::size_t bytes, std::int64_t stamp_ns) noexcept;
-  void judge_error_frame(const can_frame& frame) noexcept;
+  void evaluate_error_frame(const can_frame& frame) noexcept;
   std::int64_t stamp_of(msghdr& head, const CanTime& now) noexcept;
   void count_dropped(msghdr& head) noexcept;
   void count_error(int error) noexcept;

@@ -1,6 +1,5 @@
 #pragma once
-/// The load of a bus: bits of a frame on the wire with stuffing, and the share of the bit rate that a plan of frames
-/// takes.
+/// The load of a bus is the share of its bit rate that a plan of frames takes, with the stuffed bits of each frame.
 ///
 /// A classic frame of n data bytes has from the start bit to the checksum s = 34 + 8n bits (identifier of 11 bits) or
 /// s = 54 + 8n bits (29 bits), which are stuffed: after five equal bits one opposite bit is inserted, which itself

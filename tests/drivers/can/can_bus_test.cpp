@@ -18,7 +18,7 @@
 
 namespace {
 
-/// What the next calls of sendmmsg do: a negative entry is an error, another one the number of messages accepted.
+/// Results of the next calls of sendmmsg: a negative entry is an error, another one the number of messages accepted.
 std::deque<int> planned_sends;
 
 }  // namespace

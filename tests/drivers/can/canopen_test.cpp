@@ -36,7 +36,7 @@ TEST(Canopen, OtherFramesAreNoHeartbeat) {
   EXPECT_FALSE(decode_heartbeat(word_frame(0x692, 5, 1)));
   EXPECT_FALSE(decode_heartbeat(word_frame(0x712, 5, 0)));
   EXPECT_FALSE(decode_heartbeat(word_frame(0x712, 5, 2)));
-  EXPECT_FALSE(decode_heartbeat(word_frame(0x712 | CAN_RTR_FLAG, 0, 1))) << "node guarding asks so";
+  EXPECT_FALSE(decode_heartbeat(word_frame(0x712 | CAN_RTR_FLAG, 0, 1))) << "a request of node guarding";
   EXPECT_FALSE(decode_heartbeat(word_frame(0x712 | CAN_EFF_FLAG, 5, 1)));
 }
 

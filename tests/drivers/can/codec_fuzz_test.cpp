@@ -1,4 +1,4 @@
-/// Random and mutated frames through every decoder: no crash under the sanitizers, and what a decoder accepted has one
+/// Random and mutated frames pass through every decoder without a crash under the sanitizers. An accepted frame has one
 /// meaning: encoded and decoded again it is the same.
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
-/// Every layout is compared with the DBC files by tests/tools/test_can_codecs.py; here is what those files do not
-/// state.
+/// Every layout is compared with the DBC files by tests/tools/test_can_codecs.py; these tests are for the rest.
 
 #include <gtest/gtest.h>
 

@@ -61,18 +61,5 @@ TEST(Pdo, OtherFramesChangeNothing) {
   EXPECT_THAT(values, ElementsAre(7, 8, 9));
 }
 
-TEST(DriveObjects, TheSecondAxisIs800Farther) {
-  EXPECT_EQ(cia402::on_axis(cia402::kRatedTorque, 1), (ObjectAddress{0x6876, 0}));
-  EXPECT_EQ(cia402::on_axis(cia402::kPeriodIndex, 1), (ObjectAddress{0x68C2, 2}));
-  EXPECT_EQ(cia402::on_axis(cia402::kSerialNumber, 1), cia402::kSerialNumber);
-}
-
-TEST(DriveObjects, AModeIsSupportedByItsBit) {
-  constexpr std::uint32_t kExampleDrive = 0x303EF;  // tests/data/cia402_example_e35.eds
-  EXPECT_TRUE(cia402::supports(kExampleDrive, cia402::Mode::kCyclicTorque));
-  EXPECT_TRUE(cia402::supports(kExampleDrive, cia402::Mode::kTorque));
-  EXPECT_FALSE(cia402::supports(0x1EF, cia402::Mode::kCyclicTorque));
-}
-
 }  // namespace
 }  // namespace robot_control::canopen

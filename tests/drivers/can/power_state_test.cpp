@@ -70,8 +70,7 @@ TEST(PowerState, AFaultIsNotResetByAStep) {
   EXPECT_EQ(transition(kFault, kSwitchOnDisabled), Controlword::kFaultReset);
 }
 
-/// What the drive does for a controlword, after the table of commands of the standard: a pattern of the bits 7 and 3 …
-/// 0.
+/// Returns whether a controlword is this command of the standard: a pattern of the bits 7 and 3 … 0.
 bool commands(std::uint16_t controlword, const char* pattern) {
   const unsigned bits[] = {7, 3, 2, 1, 0};
   for (unsigned i = 0; i < 5; ++i) {

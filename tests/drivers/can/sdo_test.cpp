@@ -99,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(Cia301, SdoExample, ::testing::ValuesIn(kExamples),
                          [](const auto& each) { return std::string(each.param.name); });
 
 TEST(Sdo, AnExpeditedValueWithoutASizeHasFourBytes) {
-  const auto message = decode_sdo(kResponse, 9, word_frame(0x589, 0x04030201'03'1A02'42, 8));
+  const auto message = decode_sdo(kResponse, 9, word_frame(0x589, 0x04030201'03'1A02'4E, 8));
   ASSERT_TRUE(message);
   EXPECT_EQ(message->length, 4);
   EXPECT_EQ(expedited_value(*message), 0x04030201u);

@@ -1,7 +1,7 @@
 #pragma once
-/// Objects of CiA 402 that a torque drive is set up and driven with, and the process data of the cyclic synchronous
-/// torque mode (CST) and the torque profile mode (TQ). A drive with several axes repeats all 6xxx with 800 more per
-/// axis. Sources: CiA 402-2; CiA 301 for 1xxx.
+/// Objects of CiA 402 with which a torque drive is set up and driven, and its process data. The modes are cyclic
+/// synchronous torque (CST) and profile torque (TQ), which have the same objects. A drive with several axes repeats all
+/// 6xxx with 800 more per axis. Sources: CiA 402-2; CiA 301 for 1xxx.
 
 #include "drivers/can/cia402/pdo.h"
 

@@ -14,8 +14,8 @@
 namespace robot_control::cia402 {
 
 struct DriveUnits {
-  double rated_torque = 1;           ///< N·m
-  double counts_per_turn = 4096;     ///< of 6064
+  double rated_torque = 1;                           ///< N·m
+  double counts_per_turn = 4096;                     ///< of 6064
   double velocity_unit = 2 * std::numbers::pi / 60;  ///< rad/s of one raw unit of 606C; the default is 1 rpm
 
   double torque(std::int16_t raw) const noexcept { return raw * rated_torque / 1000; }

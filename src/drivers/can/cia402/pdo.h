@@ -84,9 +84,10 @@ struct PdoSetup {
   std::span<const SdoWrite> all() const noexcept { return {writes.data(), count}; }
 };
 
-/// Returns the writes, in their order, that set the mapping of a PDO in the state pre-operational: disable, clear the
-/// mapping, write its entries, their number, the transmission type, enable. `present` is the COB-ID that was read from
-/// the drive. Its bit kPdoWithoutRtr is kept, because a drive without remote requests refuses to clear it.
+/// Returns the writes, in their order, that set the mapping of a PDO in the state pre-operational. They disable the
+/// PDO, clear its mapping, write entries, their number and the transmission type, and enable it. `present` is the
+/// COB-ID that was read from the drive. Its bit kPdoWithoutRtr is kept, because a drive without remote requests refuses
+/// to clear it.
 PdoSetup pdo_setup(const Pdo& pdo, std::uint8_t node, std::uint8_t transmission_type, std::uint32_t present) noexcept;
 
 /// Returns the frame of a PDO with one value per entry, of which the lowest bits are sent.

@@ -46,8 +46,8 @@ struct SdoMessage {
 /// a segment.
 can_frame encode_sdo(SdoSide side, std::uint8_t node, const SdoMessage& message) noexcept;
 
-/// Returns nothing if the frame is not this side's of this node, has not 8 bytes, or has a first byte that is not in
-/// the table. Reserved bits and bytes without data are ignored.
+/// Returns nothing if the frame is not of this side and node, has not 8 bytes, or its first byte is not in the table.
+/// Reserved bits and bytes without data are ignored.
 std::optional<SdoMessage> decode_sdo(SdoSide side, std::uint8_t node, const can_frame& frame) noexcept;
 
 /// The request to write the lowest `bytes` (1, 2 or 4) bytes of `value`.

@@ -2,10 +2,10 @@
 /// ODrive CANSimple: the frames of one axis.
 ///
 /// The 11-bit identifier is node (6 bits) << 5 | command (5 bits). Data are little-endian. A remote request under the
-/// identifier of a message asks the axis to send it now. A message that an axis sends always has 8 bytes; one to an
-/// axis has the bytes that its layout uses, which is what both firmwares need. The codec judges no number: NaN in a
-/// frame is NaN in the message. Sources: tests/data/odrive-cansimple-*.dbc; ODrive firmware 0.5.6,
-/// communication/can/can_simple.cpp; ros_odrive, can_simple_messages.hpp (0.6).
+/// identifier of a message makes the axis send it now. A message that an axis sends always has 8 bytes. One to an axis
+/// has the bytes that its layout uses; both firmwares accept that. Numbers are not checked: NaN in a frame is NaN in
+/// the message. Sources: tests/data/odrive-cansimple-*.dbc; ODrive firmware 0.5.6, communication/can/can_simple.cpp;
+/// ros_odrive, can_simple_messages.hpp (0.6).
 
 #include <cstdint>
 #include <optional>
@@ -58,7 +58,7 @@ std::optional<Message> decode(const can_frame& frame) noexcept {
   return unpacked<Message>(data_word(frame));
 }
 
-/// Asks the axis to send this message.
+/// Requests this message from the axis.
 template <class Message>
 can_frame request(std::uint8_t node) noexcept {
   static_assert(Message::kCommand.from_axis);

@@ -10,7 +10,7 @@ namespace robot_control::odrive {
 /// The message that an error came with. Sensorless: v05::SensorlessError.
 enum class ErrorKind : std::uint8_t { kAxis05, kMotor05, kEncoder05, kSensorless05, kController05, kAny06 };
 
-/// Bits that the driver judges; the axis errors of v05::Heartbeat, the errors of v06::Heartbeat and v06::Error.
+/// Bits with a reaction of the driver: the axis errors of v05::Heartbeat, the errors of v06::Heartbeat and v06::Error.
 inline constexpr std::uint32_t kWatchdogExpired05 = 0x800, kWatchdogExpired06 = 0x0100'0000;
 inline constexpr std::uint32_t kEstopRequested05 = 0x4000, kEstopRequested06 = 0x0200'0000;
 inline constexpr std::uint32_t kOverTemperature05 = 0x40000;

@@ -106,7 +106,7 @@ struct AdcVoltage {
   static constexpr auto layout() { return std::tuple{wire_float(&AdcVoltage::voltage, 0)}; }
 };
 
-/// Asks for AdcVoltage, under the same identifier. A remote request has no place for the number of the input.
+/// Requests AdcVoltage, under the same identifier. A remote request has no place for the number of the input.
 struct GetAdcVoltage {
   static constexpr Command kCommand = to_axis(0x1C);
   std::uint8_t gpio = 0;

@@ -50,7 +50,7 @@ struct Error {
   }
 };
 
-/// Reads or writes an endpoint, whose number and type only the endpoint list of that exact firmware tells.
+/// Reads or writes an endpoint, whose number and type stand in the endpoint list of that exact firmware.
 struct RxSdo {
   static constexpr Command kCommand = to_axis(0x04);
   static constexpr std::uint8_t kRead = 0, kWrite = 1;
