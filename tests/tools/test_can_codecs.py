@@ -12,7 +12,7 @@ import pytest
 from robot_control.common.pypi import use_packages
 
 ROOT = Path(__file__).parents[2]
-PROGRAM = ROOT / "build/robot_control/tests/drivers/can/can_codec_lines"
+PROGRAM = ROOT / "build/robot_control/tests/drivers/can/odrive_codec_lines"
 FILES = {"0.5": "odrive-cansimple-0.5.6.dbc", "0.6": "odrive-cansimple-0.6.10.dbc"}
 VALUES = 10_000
 TURN = 2 * math.pi

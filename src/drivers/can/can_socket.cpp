@@ -118,7 +118,7 @@ CanSocket::~CanSocket() {
 bool CanSocket::passes(canid_t id) const noexcept {
   for (const can_filter& filter : filters_) {
     const bool inverted = (filter.can_id & CAN_INV_FILTER) != 0;
-    if (((id ^ filter.can_id) & filter.can_mask & ~CAN_INV_FILTER) == 0 ? !inverted : inverted) return true;
+    if (((id ^ filter.can_id) & filter.can_mask) == 0 ? !inverted : inverted) return true;
   }
   return filters_.empty();
 }

@@ -150,6 +150,12 @@ TEST(CanSocket, AFolderOfOthersIsRefused) {
               AllOf(HasSubstr("other users may write"), HasSubstr("chmod 700")));
 }
 
+TEST(CanSocket, AFolderOfAnotherUserIsRefused) {
+  const TemporaryFolder folder;
+  if (chown(folder.path().c_str(), 65534, 65534) != 0) GTEST_SKIP() << "only root gives a folder away";
+  EXPECT_THAT(refusal("unix:" + folder.path().string()), HasSubstr("other users may write"));
+}
+
 TEST(CanSocket, ALinkToAFolderIsRefused) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.path() / "bus");
