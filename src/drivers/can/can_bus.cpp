@@ -158,6 +158,7 @@ void CanBus::accept(const Frames& frames, std::size_t bytes, std::int64_t stamp_
 
 void CanBus::evaluate_error_frame(const can_frame& frame) noexcept {
   ++counts_.error_frames;
+  last_error_frame_ = frame;
   const std::uint8_t controller = (frame.can_id & CAN_ERR_CRTL) != 0 ? frame.data[1] : 0;
   if ((controller & CAN_ERR_CRTL_RX_OVERFLOW) != 0) ++counts_.lost;
   if ((frame.can_id & CAN_ERR_BUSOFF) != 0) {

@@ -74,6 +74,9 @@ class CanBus {
   CanState state() const noexcept { return state_; }
   const CanCounts& counts() const noexcept { return counts_; }
 
+  /// Returns the last frame that `error_frames` counts (can_errors.h); one without an identifier: there was none.
+  const can_frame& last_error_frame() const noexcept { return last_error_frame_; }
+
   /// Returns errno of the last failed system call that `errors` counts; 0: none failed.
   int last_error() const noexcept { return last_error_; }
 
@@ -96,6 +99,7 @@ class CanBus {
   CanSocket socket_;
   CanState state_ = CanState::kActive;
   CanCounts counts_;
+  can_frame last_error_frame_{};
   int last_error_ = 0;
   std::bitset<kMaxParties> present_;  // parties that may be there
   std::int64_t searched_ns_ = 0;

@@ -183,6 +183,7 @@ TEST_F(CanBusTest, ErrorFramesMoveTheStateAndAreNotReturned) {
   report(CAN_ERR_ACK);
   EXPECT_EQ(bus_->state(), CanState::kActive);
   EXPECT_EQ(bus_->counts().error_frames, 4u);
+  EXPECT_EQ(bus_->last_error_frame().can_id, CAN_ERR_FLAG | CAN_ERR_ACK);
   EXPECT_EQ(bus_->counts().received, 0u);
 }
 
