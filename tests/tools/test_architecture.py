@@ -29,7 +29,7 @@ MAY_INCLUDE = {
     "drivers": {"signals"},
     # This holds simulated faults: of the machine in drivers/mujoco, of nodes in simulation.
     "simulation/faults": {"signals", "rt", "bus"},
-    "drivers/can": {"signals", "drivers", "files"},
+    "drivers/can": {"signals", "drivers", "files", "parameters"},
     "drivers/mujoco": {
         "signals",
         "simulation/faults",
