@@ -279,7 +279,6 @@ void OdriveDrive::advance_power(const DriveCommand& command, std::int64_t now_ns
   set(DriveState::kReady, DriveCause::kPower, "in closed loop; axis state", static_cast<std::uint32_t>(axis_state_));
   if (tries_ < kZeroCycles) {
     ++tries_;
-    if (axis_error_ != 0) send.add(encode(node(), v06::ClearErrors{}));
     send.add(encode(node(), SetControllerMode{}));
     const DriveParameters& drive = drive_parameters();
     const double velocity = parameters_.motor_velocity_limit > 0 ? parameters_.motor_velocity_limit
@@ -293,6 +292,7 @@ void OdriveDrive::advance_power(const DriveCommand& command, std::int64_t now_ns
     axis_error_ != 0 ? fail(DriveCause::kDriveError, "", axis_error_)
                      : fail(DriveCause::kStaysOff, "axis state", static_cast<std::uint32_t>(axis_state_));
   } else if (due(next_request_ns_, kRetryNs, now_ns)) {
+    if (axis_error_ != 0) send.add(encode(node(), v06::ClearErrors{}));
     send.add(encode(node(), SetAxisState{.state = AxisState::kClosedLoopControl}));
   }
 }
