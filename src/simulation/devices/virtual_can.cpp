@@ -46,15 +46,16 @@ VirtualCan::Party* VirtualCan::next_sender(std::int64_t start_ns) {
 }
 
 void VirtualCan::advance(std::int64_t until_ns) {
-  const auto connected = [](const Party& party) { return party.connected; };
-  while (true) {
+  const bool acknowledged = std::ranges::count_if(parties_, [](const Party& party) { return party.connected; }) > 1;
+  if (!acknowledged) free_ns_ = std::max(free_ns_, until_ns);
+  while (acknowledged) {
     std::int64_t ready_ns = until_ns;
     for (const Party& party : parties_) {
       if (!party.queue.empty()) ready_ns = std::min(ready_ns, party.queue.front().ready_ns);
     }
     const std::int64_t start_ns = std::max(free_ns_, ready_ns);
     Party* const sender = next_sender(start_ns);
-    if (sender == nullptr || std::ranges::count_if(parties_, connected) < 2) break;
+    if (sender == nullptr) break;
     const can_frame frame = sender->queue.front().frame;
     const std::int64_t end_ns = start_ns + std::llround(bit_ns_ * frame_bits(frame));
     if (end_ns > until_ns) break;

@@ -128,7 +128,7 @@ void Cia402Drive::advance(const DriveCommand& command, std::int64_t now_ns, Fram
     return read_error(now_ns, send);
   }
   const Cia402Drive* other = first_axis_ != nullptr ? first_axis_ : second_axis_;
-  if (other != nullptr && other->disabled()) return fail(DriveCause::kOtherAxis);
+  if (other != nullptr && other->disabled() && set_up()) return fail(DriveCause::kOtherAxis);
   if (first_axis_ != nullptr && set_up() && !first_axis_->set_up()) restart(reset_, now_ns);
   if (phase_ == Phase::kSetup) return advance_setup(now_ns, send);
   if (phase_ == Phase::kStart) {

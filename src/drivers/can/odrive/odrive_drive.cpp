@@ -132,14 +132,8 @@ void OdriveDrive::receive_heartbeat(const can_frame& frame, std::int64_t now_ns)
   heartbeat_ns_ = now_ns;
   axis_state_ = heartbeat->state;
   axis_error_ = heartbeat->error;
-  if (phase_ == Phase::kHeartbeat) return enter(Phase::kVersion);
+  if (phase_ == Phase::kHeartbeat) enter(Phase::kVersion);
   if (firmware_ == Firmware::k05) axis_error_ |= parts_in_error(frame);
-  if (axis_error_ != 0 && phase_ > Phase::kVersion && !clears(axis_error_)) {
-    return fail(DriveCause::kDriveError, "", axis_error_);
-  }
-  if (phase_ == Phase::kRunning && axis_state_ != AxisState::kClosedLoopControl) {
-    fail(DriveCause::kReleased, "axis state", static_cast<std::uint32_t>(axis_state_));
-  }
 }
 
 void OdriveDrive::receive_identity(const can_frame& frame) noexcept {
@@ -212,6 +206,12 @@ void OdriveDrive::advance(const DriveCommand& command, std::int64_t now_ns, Fram
   if (now_ns - heartbeat_ns_ > max_silence) {
     if (phase_ == Phase::kRunning) return fail(DriveCause::kSilent, "heartbeat");
     return restart(reset_, now_ns);
+  }
+  if (axis_error_ != 0 && phase_ > Phase::kVersion && !clears(axis_error_)) {
+    return fail(DriveCause::kDriveError, "", axis_error_);
+  }
+  if (phase_ == Phase::kRunning && axis_state_ != AxisState::kClosedLoopControl) {
+    return fail(DriveCause::kReleased, "axis state", static_cast<std::uint32_t>(axis_state_));
   }
   if (phase_ < Phase::kPosition) return advance_identity(now_ns, send);
   request_measurements(now_ns, send);
