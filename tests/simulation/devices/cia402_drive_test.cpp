@@ -172,14 +172,13 @@ TEST(Cia402Drive, StatesWhatTheDriveDoesOnSilenceAndTheDeviceDoesIt) {
 class TwoAxes : public ::testing::Test {
  protected:
   TwoAxes() {
-    rig_.add_canopen_host(0.1);
     Cia402Parameters parameters = cia402_pair(6).drive;
-    auto& first = rig_.add_drive(std::make_unique<Cia402Drive>(parameters, DeviceRig::kHost, rig_.period()));
-    parameters.axis = 1;
-    auto& second = rig_.add_drive(std::make_unique<Cia402Drive>(parameters, DeviceRig::kHost, rig_.period()));
-    Cia402Drive::join(first, second);
-    std::vector<DeviceMotor*> motors{&rig_.add_motor()};
-    motors.push_back(&rig_.add_motor());
+    for (const unsigned axis : {1U, 0U}) {  // The order of the joints does not matter.
+      parameters.axis = axis;
+      rig_.add_drive(parameters);
+    }
+    DeviceMotor* const second = &rig_.add_motor();
+    const std::vector<DeviceMotor*> motors{&rig_.add_motor(), second};
     device_ = &rig_.add_device(std::make_unique<Cia402Device>(cia402_pair(6).device, rig_.bus(), motors));
   }
 
@@ -200,7 +199,8 @@ TEST_F(TwoAxes, FailTogetherAndAreResetTogether) {
   device_->inject(DeviceFault::kEncoder);
   rig_.run(0.1);
   EXPECT_TRUE(rig_.all_are(DriveState::kFault));
-  EXPECT_THAT(rig_.drive(1).words(), HasSubstr("has another axis in fault"));
+  EXPECT_THAT(rig_.drive(0).words(), HasSubstr("has another axis in fault"));
+  EXPECT_THAT(rig_.drive(1).words(), HasSubstr("reports an error: 0x7305"));
   device_->inject(DeviceFault::kNone);
   rig_.command_all({.enabled = true, .reset = true});
   rig_.cycle();

@@ -5,11 +5,12 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "drivers/can/cia402/canopen_host.h"
 #include "drivers/can/cia402/cia402_drive.h"
+#include "drivers/can/drive_set.h"
 #include "drivers/can/odrive/odrive_drive.h"
 #include "simulation/devices/cia402_device.h"
 #include "simulation/devices/odrive_device.h"
@@ -19,7 +20,6 @@ namespace robot_control {
 class DeviceRig {
  public:
   static constexpr std::int64_t kStepNs = 125'000;
-  static constexpr std::uint8_t kHost = 127;
 
   explicit DeviceRig(double rate = 500, double bit_rate = 1.0e6, std::uint64_t seed = 1)
       : period_(1 / rate), bus_(bit_rate, seed), host_(bus_.join([this](const can_frame& frame, std::int64_t now_ns) {
@@ -31,7 +31,7 @@ class DeviceRig {
   std::size_t host() const { return host_; }
   std::int64_t now_ns() const { return now_ns_; }
   DeviceMotor& motor(std::size_t i = 0) { return *motors_.at(i); }
-  Drive& drive(std::size_t i = 0) { return *drives_.at(i); }
+  Drive& drive(std::size_t i = 0) { return drives()[i]; }
   Device& device(std::size_t i = 0) { return *devices_.at(i); }
 
   DeviceMotor& add_motor() { return *motors_.emplace_back(std::make_unique<DeviceMotor>()); }
@@ -41,13 +41,16 @@ class DeviceRig {
     devices_.push_back(std::move(device));
     return added;
   }
-  template <class DriveType>
-  DriveType& add_drive(std::unique_ptr<DriveType> drive) {
-    DriveType& added = *drive;
-    drives_.push_back(std::move(drive));
-    return added;
+  template <class Parameters>
+  void add_drive(const Parameters& parameters) {
+    if (!std::holds_alternative<std::vector<Parameters>>(can_.joints)) can_.joints = std::vector<Parameters>{};
+    std::get<std::vector<Parameters>>(can_.joints).push_back(parameters);
   }
-  void add_canopen_host(double timeout) { canopen_.emplace(kHost, timeout); }
+  /// No drive may be added after the first call.
+  DriveSet& drives() {
+    if (!drives_) drives_.emplace(can_, period_);
+    return *drives_;
+  }
 
   /// One command per drive.
   std::vector<DriveCommand> commands;
@@ -68,32 +71,27 @@ class DeviceRig {
     for (long i = 0; i < std::lround(seconds / period_) && !condition(); ++i) cycle();
     return condition();
   }
-  bool all_are(DriveState state) const {
-    for (const auto& drive : drives_) {
-      if (drive->status().state != state) return false;
+  bool all_are(DriveState state) {
+    for (std::size_t i = 0; i < drives().size(); ++i) {
+      if (drive(i).status().state != state) return false;
     }
     return true;
   }
-  void command_all(const DriveCommand& command) { commands.assign(drives_.size(), command); }
+  void command_all(const DriveCommand& command) { commands.assign(drives().size(), command); }
   ::testing::AssertionResult runs(double seconds = 5) {
     command_all({.enabled = true});
     if (run_until([this] { return all_are(DriveState::kRunning); }, seconds)) return ::testing::AssertionSuccess();
     auto failure = ::testing::AssertionFailure();
-    for (const auto& drive : drives_) failure << drive->words() << '\n';
+    for (std::size_t i = 0; i < drives().size(); ++i) failure << drive(i).words() << '\n';
     return failure;
   }
 
  private:
   void run_host() {
     send_.clear();
-    for (const Received& each : received_) {
-      for (const auto& drive : drives_) drive->receive(each.frame, each.stamp_ns);
-    }
+    for (const Received& each : received_) drives().receive(each.frame, each.stamp_ns);
     received_.clear();
-    for (std::size_t i = 0; i < drives_.size(); ++i) {
-      drives_[i]->step(i < commands.size() ? commands[i] : DriveCommand{}, now_ns_, send_);
-    }
-    if (canopen_) canopen_->step(now_ns_, send_);
+    drives().step(commands, now_ns_, send_);
     for (const can_frame& frame : send_.frames()) bus_.send(host_, frame);
   }
   void advance() {
@@ -117,8 +115,8 @@ class DeviceRig {
   std::int64_t now_ns_ = 0;
   std::vector<std::unique_ptr<DeviceMotor>> motors_;
   std::vector<std::unique_ptr<Device>> devices_;
-  std::vector<std::unique_ptr<Drive>> drives_;
-  std::optional<canopen::CanopenHost> canopen_;
+  CanParameters can_{};
+  std::optional<DriveSet> drives_;
   FrameBatch send_;
 };
 
@@ -149,7 +147,7 @@ inline OdrivePair odrive_pair(std::uint8_t node, odrive::Firmware firmware = odr
 }
 
 inline OdriveDevice& add(DeviceRig& rig, const OdrivePair& pair) {
-  rig.add_drive(std::make_unique<odrive::OdriveDrive>(pair.drive, rig.period()));
+  rig.add_drive(pair.drive);
   return rig.add_device(std::make_unique<OdriveDevice>(pair.device, rig.bus(), rig.add_motor()));
 }
 
@@ -166,8 +164,7 @@ inline Cia402Pair cia402_pair(std::uint8_t node) {
 }
 
 inline Cia402Device& add(DeviceRig& rig, const Cia402Pair& pair) {
-  rig.add_canopen_host(pair.drive.host_timeout);
-  rig.add_drive(std::make_unique<cia402::Cia402Drive>(pair.drive, DeviceRig::kHost, rig.period()));
+  rig.add_drive(pair.drive);
   return rig.add_device(
       std::make_unique<Cia402Device>(pair.device, rig.bus(), std::vector<DeviceMotor*>{&rig.add_motor()}));
 }

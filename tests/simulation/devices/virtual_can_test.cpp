@@ -56,15 +56,8 @@ TEST_F(VirtualCanBus, AFrameThatNobodyAcknowledgesStaysInItsQueue) {
 template <class Pair>
 void expect_planned_load(const std::vector<Pair>& pairs, double rate) {
   DeviceRig rig(rate);
-  std::vector<PlannedFrames> plan;
   for (const Pair& pair : pairs) add(rig, pair);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    for (const PlannedFrames& frames : rig.drive(i).plan()) plan.push_back(frames);
-  }
-  if constexpr (std::is_same_v<Pair, Cia402Pair>) {
-    plan.push_back(canopen::CanopenHost::planned_sync());
-    plan.push_back(canopen::CanopenHost(1, pairs[0].drive.host_timeout).planned_heartbeat());
-  }
+  const std::vector<PlannedFrames> plan = rig.drives().plan();
   ASSERT_TRUE(rig.runs());
   const auto before = rig.bus().counts();
   const std::int64_t busy_before = rig.bus().busy_ns();
