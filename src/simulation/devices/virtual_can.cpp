@@ -19,6 +19,7 @@ VirtualCan::VirtualCan(double bit_rate, std::uint64_t seed) : bit_ns_(1.0e9 / bi
 
 std::size_t VirtualCan::join(Receiver receiver) {
   parties_.push_back({.receiver = std::move(receiver), .queue = {}});
+  parties_.back().queue.reserve(kMaxQueue);
   return parties_.size() - 1;
 }
 
@@ -59,10 +60,10 @@ void VirtualCan::advance(std::int64_t until_ns) {
     const can_frame frame = sender->queue.front().frame;
     const std::int64_t end_ns = start_ns + std::llround(bit_ns_ * frame_bits(frame));
     if (end_ns > until_ns) break;
-    sender->queue.pop_front();
+    sender->queue.erase(sender->queue.begin());
     busy_ns_ += end_ns - start_ns;
     now_ns_ = free_ns_ = end_ns;
-    ++counts_[frame.can_id];
+    ++frames_;
     deliver(*sender, frame);
   }
   now_ns_ = until_ns;

@@ -7,9 +7,7 @@
 /// drawn from a seeded generator; real CAN repeats corrupted frames, so a loss stands for a full queue.
 
 #include <cstdint>
-#include <deque>
 #include <functional>
-#include <map>
 #include <random>
 #include <vector>
 
@@ -44,8 +42,8 @@ class VirtualCan {
   std::int64_t now_ns() const { return now_ns_; }
   /// Time in which the bus was busy.
   std::int64_t busy_ns() const { return busy_ns_; }
-  /// Numbers of frames by identifier, with CAN_RTR_FLAG.
-  const std::map<canid_t, std::uint64_t>& counts() const { return counts_; }
+  /// Number of frames that were carried.
+  std::uint64_t frames() const { return frames_; }
 
  private:
   struct Pending {
@@ -54,7 +52,7 @@ class VirtualCan {
   };
   struct Party {
     Receiver receiver;
-    std::deque<Pending> queue;
+    std::vector<Pending> queue;  // has room for kMaxQueue
     bool connected = true;
   };
 
@@ -68,7 +66,7 @@ class VirtualCan {
   std::int64_t now_ns_ = 0;
   std::int64_t free_ns_ = 0;  // the bus is free from then on
   std::int64_t busy_ns_ = 0;
-  std::map<canid_t, std::uint64_t> counts_;
+  std::uint64_t frames_ = 0;
 };
 
 }  // namespace robot_control

@@ -18,18 +18,11 @@
 
 #include <string>
 
+#include "drivers/joint_law.h"
 #include "drivers/mujoco/mujoco_plant_parameters.h"
 #include "machine/robot_model.h"
 
 namespace robot_control {
-
-struct Brake {
-  double effort = 0;       ///< N·m, while slowing
-  double hold_effort = 0;  ///< N·m, while holding
-  double damping = 0;      ///< N·m·s/rad
-  double stiffness = 0;    ///< N·m/rad
-  double hold_speed = 0;   ///< rad/s
-};
 
 /// Returns the brake of a wheel of the true robot; `step` is h in s. Throws DriverError, with value and bound, for a
 /// given value that is not stable.

@@ -1,5 +1,6 @@
 #pragma once
-/// JointLaw is the law of a simulated drive: it computes the torque from command and measured motion.
+/// JointLaw computes the torque of a joint from its command and the measured motion, where the drive has no law of its
+/// own: in a simulated drive, and for a drive that is given its torque.
 ///
 ///   kEffort     τ = effort
 ///   kVelocity   τ = effort + damping · (velocity − q̇)
@@ -7,7 +8,7 @@
 ///
 /// The torque is clamped to the joint's effort limit.
 ///
-/// kBrake is bounded by B, the effort or hold effort of a Brake (brake_limits.h):
+/// kBrake is bounded by B, the effort or hold effort of a Brake:
 ///
 ///   slowing   τ = −d q̇
 ///   holding   τ = k (q* − q) − d q̇,   where the bound is reached, q* follows so that τ = ±B
@@ -24,12 +25,20 @@
 /// An unknown mode or a number that is not finite causes braking.
 ///
 /// With a wheel's inertia J and the time step h, the law is stable for 2a + b < 4, where a = d h / J and b = k h² / J
-/// (docs/simulation.md). `check_brake` requires a ≤ 0.5 and b ≤ 0.5; the defaults are a = 0.4 and b = 0.06.
+/// (docs/simulation.md). The simulated machine takes a = 0.4 and b = 0.06 (mujoco/motors/brake_limits.h).
 
-#include "drivers/mujoco/motors/brake_limits.h"
 #include "signals/joint.h"
 
 namespace robot_control {
+
+/// How hard a joint brakes.
+struct Brake {
+  double effort = 0;       ///< N·m, while slowing
+  double hold_effort = 0;  ///< N·m, while holding
+  double damping = 0;      ///< N·m·s/rad
+  double stiffness = 0;    ///< N·m/rad
+  double hold_speed = 0;   ///< rad/s
+};
 
 class JointLaw {
  public:
