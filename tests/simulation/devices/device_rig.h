@@ -23,7 +23,7 @@ class DeviceRig {
 
   explicit DeviceRig(double rate = 500, double bit_rate = 1.0e6, std::uint64_t seed = 1)
       : period_(1 / rate), bus_(bit_rate, seed), host_(bus_.join([this](const can_frame& frame, std::int64_t now_ns) {
-          received_.push_back({frame, now_ns});
+          if (host_lives) received_.push_back({frame, now_ns});
         })) {}
 
   double period() const { return period_; }
