@@ -19,7 +19,10 @@ TEST(ODrive, ATorqueIsFourBytesUnderTheNodesIdentifier) {
   EXPECT_EQ(node_of(frame), 3);
 }
 
-TEST(ODrive, WhatAnAxisSendsHasEightBytes) {
+TEST(ODrive, MessagesOfMoreThanOneByteHaveEight) {
+  EXPECT_EQ(encode(0, SetAxisState{}).len, 8);
+  EXPECT_EQ(encode(0, v06::ClearErrors{}).len, 1);
+  EXPECT_EQ(encode(0, Estop{}).len, 0);
   EXPECT_EQ(encode(0, v05::EncoderError{}).len, 8);
   EXPECT_EQ(encode(0, v06::Heartbeat{}).len, 8);
 }

@@ -2,9 +2,9 @@
 /// ODrive CANSimple: the frames of one axis.
 ///
 /// The 11-bit identifier is node (6 bits) << 5 | command (5 bits). Data are little-endian. A remote request under the
-/// identifier of a message makes the axis send it now. A message that an axis sends always has 8 bytes. One to an axis
-/// has the bytes that its layout uses; both firmwares accept that. Numbers are not checked: NaN in a frame is NaN in
-/// the message. Sources: tests/data/odrive-cansimple-*.dbc; ODrive firmware 0.5.6, communication/can/can_simple.cpp;
+/// identifier of a message makes the axis send it now. A message has 8 bytes, as in the DBC files, or what its layout
+/// uses if that is at most one byte. The torque of each cycle has the 4 bytes that it uses, which both firmwares accept.
+/// Numbers are not checked: NaN in a frame is NaN in the message. Sources: tests/data/odrive-cansimple-*.dbc; ODrive firmware 0.5.6, communication/can/can_simple.cpp;
 /// ros_odrive, can_simple_messages.hpp (0.6).
 
 #include <cstdint>
@@ -33,6 +33,7 @@ constexpr canid_t identifier(std::uint8_t node, std::uint8_t command) noexcept {
 struct Command {
   std::uint8_t number = 0;  ///< 5 bits
   bool from_axis = false;
+  bool cyclic = false;  ///< sent in each cycle, without the bytes that its layout does not use
 };
 
 constexpr Command from_axis(std::uint8_t number) noexcept {
@@ -43,9 +44,15 @@ constexpr Command to_axis(std::uint8_t number) noexcept {
   return {.number = number, .from_axis = false};
 }
 
+constexpr Command cyclic_to_axis(std::uint8_t number) noexcept {
+  return {.number = number, .cyclic = true};
+}
+
 template <class Message>
 can_frame encode(std::uint8_t node, const Message& message) noexcept {
-  constexpr std::uint8_t kBytes = Message::kCommand.from_axis ? 8 : used_bytes<Message>();
+  constexpr Command kCommand = Message::kCommand;
+  constexpr bool kWhole = kCommand.from_axis || (!kCommand.cyclic && used_bytes<Message>() > 1);
+  constexpr std::uint8_t kBytes = kWhole ? 8 : used_bytes<Message>();
   return word_frame(identifier(node, Message::kCommand.number), packed(message), kBytes);
 }
 

@@ -222,19 +222,22 @@ void OdriveDrive::advance(const DriveCommand& command, std::int64_t now_ns, Fram
 void OdriveDrive::advance_identity(std::int64_t now_ns, FrameBatch& send) noexcept {
   set(DriveState::kStarting, DriveCause::kIdentity);
   if (phase_ == Phase::kWatchdog) return ask_watchdog(now_ns, send);
+  const Phase next = parameters_.watchdog_timeout_endpoint != 0 ? Phase::kWatchdog : Phase::kPosition;
   if (phase_ == Phase::kAddress && serial_number_ != 0 && now_ns >= next_request_ns_ - kRetryNs + kAddressNs) {
     if (parameters_.serial_number != 0 && serial_number_ != parameters_.serial_number) {
       return fail(DriveCause::kDiffers, "serial number", serial_number_);
     }
-    return enter(parameters_.watchdog_timeout_endpoint != 0 ? Phase::kWatchdog : Phase::kPosition);
+    return enter(next);
   }
   if (!due(next_request_ns_, kRetryNs, now_ns)) return;
   if (tries_++ < kTries) {
     send.add(phase_ == Phase::kVersion ? request<v06::Version>(node()) : request<v06::Address>(node()));
   } else if (phase_ == Phase::kVersion) {
     know_firmware(Firmware::k05);
+  } else if (parameters_.serial_number != 0) {
+    fail(DriveCause::kNoAnswer, "its serial number (Address)");
   } else {
-    fail(DriveCause::kNoAnswer, "Address");
+    enter(next);  // Early versions of 0.6 have no such message.
   }
 }
 

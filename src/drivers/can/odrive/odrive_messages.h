@@ -86,7 +86,7 @@ struct SetInputVelocity {
 
 /// The axis keeps the last value and applies it when it enters closed loop the next time.
 struct SetInputTorque {
-  static constexpr Command kCommand = to_axis(0x0E);
+  static constexpr Command kCommand = cyclic_to_axis(0x0E);
   double torque = 0;  ///< N·m
 
   static constexpr auto layout() { return std::tuple{wire_float(&SetInputTorque::torque, 0)}; }
