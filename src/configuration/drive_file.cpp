@@ -15,8 +15,8 @@ constexpr const char* kBus = "bus";
 constexpr const char* kEveryJoint = "every_joint";
 constexpr double kMinRate = 100;  // Hz, of robot.rate
 
-using odrive::OdriveParameters;
 using cia402::Cia402Parameters;
+using odrive::OdriveParameters;
 
 std::string block_of(const std::string& path) {
   return path.substr(0, path.find('.'));
@@ -72,9 +72,9 @@ class DriveFileReader {
 
  private:
   static Schema schema_of(std::vector<Block> blocks, std::function<void(const Schema&, GivenValues&)> check) {
-    return {.blocks = std::move(blocks),
-            .check = std::move(check),
-            .other_package_remedy = [](std::string_view) { return std::string(); }};
+    return {.blocks = std::move(blocks), .check = std::move(check), .other_package_remedy = [](std::string_view) {
+              return std::string();
+            }};
   }
 
   template <class Parameters>
@@ -117,7 +117,8 @@ class DriveFileReader {
     check_dialect(joints[i], can, given);
     for (std::size_t j = 0; j < i; ++j) {
       if (same_axis(joints[i], joints[j]) && given.accepted(drive.joint + ".node")) {
-        refuse(given, drive.joint, "node", "is the drive of " + joints[j].drive.joint + ", too", "each joint has its own");
+        refuse(given, drive.joint, "node", "is the drive of " + joints[j].drive.joint + ", too",
+               "each joint has its own");
       }
     }
   }

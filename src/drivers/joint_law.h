@@ -1,6 +1,6 @@
 #pragma once
-/// JointLaw computes the torque of a joint from its command and the measured motion, where the drive has no law of its
-/// own: in a simulated drive, and for a drive that is given its torque.
+/// JointLaw computes the torque of a joint from its command and the measured motion. Drivers use it for drives that
+/// follow a torque, and for simulated drives.
 ///
 ///   kEffort     τ = effort
 ///   kVelocity   τ = effort + damping · (velocity − q̇)

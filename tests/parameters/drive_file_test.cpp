@@ -94,10 +94,11 @@ left_wheel_joint: {node: 99, direction: 0}
 third_wheel_joint: {node: 1}
 )",
                                       "99", "99");
-  EXPECT_THAT(message, AllOf(HasSubstr("6 problems"), HasSubstr("bus.bit_rat = 1000000: unknown key"),
-                             HasSubstr("every_joint.torque_limit = -3: must be"), HasSubstr("third_wheel_joint: unknown block"),
-                             HasSubstr("right_wheel_joint.node: missing"), HasSubstr("left_wheel_joint.node = 99: must be 0"),
-                             HasSubstr("left_wheel_joint.direction = 0: must be 1 or -1")));
+  EXPECT_THAT(message,
+              AllOf(HasSubstr("6 problems"), HasSubstr("bus.bit_rat = 1000000: unknown key"),
+                    HasSubstr("every_joint.torque_limit = -3: must be"), HasSubstr("third_wheel_joint: unknown block"),
+                    HasSubstr("right_wheel_joint.node: missing"), HasSubstr("left_wheel_joint.node = 99: must be 0"),
+                    HasSubstr("left_wheel_joint.direction = 0: must be 1 or -1")));
 }
 
 /// Each line of the examples, its commented defaults included, is spoilt in turn.

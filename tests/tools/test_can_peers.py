@@ -90,11 +90,12 @@ class Wire:
         pass
 
 
+POWER_STEPS = {(0x40, 0x06): 0x21, (0x21, 0x07): 0x23, (0x23, 0x0F): 0x27}
+"""statusword and controlword → next statusword"""
+
+
 class TorqueDrive:
     """canopen's LocalNode with a power state machine on top, which every SYNC runs."""
-
-    STEPS = {(0x40, 0x06): 0x21, (0x21, 0x07): 0x23, (0x23, 0x0F): 0x27}
-    """statusword and controlword → next statusword"""
 
     def __init__(self, canopen, eds):
         self.network, self.wire = canopen.Network(), Wire()
@@ -122,7 +123,7 @@ class TorqueDrive:
             self.mapped = True
             return
         control, self.torque = (each.raw for each in received.map)
-        self.status = self.STEPS.get((self.status, control), self.status)
+        self.status = POWER_STEPS.get((self.status, control), self.status)
         self.position += 10
         for each, value in zip(sent.map, (self.status, self.position, self.torque), strict=True):
             each.raw = value

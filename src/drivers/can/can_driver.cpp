@@ -92,8 +92,7 @@ double CanDriver::wanted_torque(std::size_t joint, const JointCommand& command) 
 void CanDriver::write(std::span<const JointCommand> commands) noexcept {
   const bool obeys = !stopped_ && state_ == DriverState::kRunning && commands.size() == drives_.size();
   for (std::size_t i = 0; i < drives_.size(); ++i) {
-    commands_[i] = {
-        .enabled = true, .reset = reset_, .torque = wanted_torque(i, obeys ? commands[i] : JointCommand{})};
+    commands_[i] = {.enabled = true, .reset = reset_, .torque = wanted_torque(i, obeys ? commands[i] : JointCommand{})};
   }
   reset_ = false;
   send_.clear();

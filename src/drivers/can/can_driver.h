@@ -5,9 +5,9 @@
 /// holds from kRunning on. A fault of a drive stays until the next `start`, with which the operator's reset reaches the
 /// drives. Meanwhile the other joints brake.
 ///
-/// The torque of every mode, the brake included, is computed here from the newest sample (drivers/joint_law.h), which
-/// is brought to the time of the call by its velocity. It is one or two cycles old: with an inertia J at the joint and
-/// the period h, the brake's damping d is stable below d h / J = 0.6, its half is recommended.
+/// The torque of every mode, the brake included, is computed here from the newest sample (drivers/joint_law.h). The
+/// sample is one or two cycles old, and is brought to the time of the call by its velocity. With an inertia J at the
+/// joint and the period h, the brake's damping d is stable below d h / J = 0.6. Half of that is recommended.
 
 #include <functional>
 #include <span>

@@ -1,5 +1,5 @@
 #pragma once
-/// What the drive file states about a bus and all drives on it.
+/// CanParameters are the statements of the drive file about a bus and all drives on it.
 
 #include <string>
 #include <variant>

@@ -25,7 +25,8 @@ constexpr CauseWords kCauseWords[] = {
     {"reports an error:", "remove the cause, then reset"},
     {"released the motor without an error:", "look at its supply and its own limits, then reset"},
     {"was switched on again", "look at its supply, then reset"},
-    {"reports a position that jumps", "the drive has another zero or was switched on again; reset where it stands still"},
+    {"reports a position that jumps",
+     "the drive has another zero or was switched on again; reset where it stands still"},
     {"sent a number that is not finite", "look at the encoder, then reset"},
     {"is too hot", "let it cool, then reset"},
     {"has a low voltage", "charge the battery, then reset"},
@@ -110,7 +111,8 @@ void Drive::set(DriveState state, DriveCause cause, const char* subject, std::ui
 }
 
 void Drive::fail(DriveCause cause, const char* subject, std::uint64_t code, double found, double expected) noexcept {
-  const bool brakes = cause == DriveCause::kHot || cause == DriveCause::kUnderVoltage || cause == DriveCause::kForeignCommander;
+  const bool brakes =
+      cause == DriveCause::kHot || cause == DriveCause::kUnderVoltage || cause == DriveCause::kForeignCommander;
   if (status_.state == DriveState::kFault && (brakes || !may_brake_)) return;
   may_brake_ = brakes && status_.state == DriveState::kRunning;
   status_ = {.state = DriveState::kFault,
@@ -127,8 +129,8 @@ void Drive::accept_position(double position, double velocity, std::int64_t now_n
   const double moved = to_joint_ * position - joint.position;
   // A frame may be late by a period; a joint that is pushed may be twice as fast as its limit.
   const double elapsed = 1.0e-9 * static_cast<double>(now_ns - sample_.stamp_ns + 2 * period_ns_);
-  const double most = 2 * drive_.velocity_limit * std::fmax(elapsed, 2 * drive_.sample_period);
-  if (sample_.valid && std::abs(moved) > most) fail(DriveCause::kPositionJump, "position", 0, moved, most);
+  const double maximum = 2 * drive_.velocity_limit * std::fmax(elapsed, 2 * drive_.sample_period);
+  if (sample_.valid && std::abs(moved) > maximum) fail(DriveCause::kPositionJump, "position", 0, moved, maximum);
   joint.position = to_joint_ * position;
   joint.velocity = to_joint_ * velocity;
   sample_.stamp_ns = now_ns;

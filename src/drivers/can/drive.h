@@ -7,7 +7,7 @@
 /// reads a clock. After construction nothing allocates or throws, except `words`.
 ///
 /// In `starting` a drive may be absent for any time. In `ready` the motor has no torque. A fault is left by the
-/// operator's reset alone, with which the start-up begins anew. Position, velocity and torque belong to the joint:
+/// operator's reset alone, with which the start-up begins again. Position, velocity and torque belong to the joint:
 /// motor angle = direction · gear · joint angle, motor torque = direction · joint torque / gear.
 
 #include <array>
@@ -29,12 +29,12 @@ enum class DriveState : std::uint8_t { kStarting, kReady, kRunning, kFault };
 enum class DriveCause : std::uint8_t {
   kNone,
   // The drive waits:
-  kFirstFrame,    ///< for any sign of life of the drive
-  kIdentity,      ///< for version, serial number and configuration
-  kSetup,         ///< for an object to be written or read; code: index << 8 | sub-index
-  kFirstSample,   ///< for the first position
-  kEnable,        ///< for the command that enables the motor
-  kPower,         ///< for the state in which the motor has torque; code: the present state
+  kFirstFrame,   ///< for any sign of life of the drive
+  kIdentity,     ///< for version, serial number and configuration
+  kSetup,        ///< for an object to be written or read; code: index << 8 | sub-index
+  kFirstSample,  ///< for the first position
+  kEnable,       ///< for the command that enables the motor
+  kPower,        ///< for the state in which the motor has torque; code: the present state
   // The drive is in fault:
   kSilent,            ///< no frame of `subject` in time
   kDriveError,        ///< The drive reports an error; code: its code.
@@ -52,7 +52,7 @@ enum class DriveCause : std::uint8_t {
   kStaysOff,          ///< The motor was requested, and has no torque; code: the present state.
   kTwoDrives,         ///< Two drives have this node number.
   kOtherAxis,         ///< The other axis of the drive is in fault.
-  kUnknownWatchdog,   ///< What the drive does on silence is unknown, and that is not accepted.
+  kUnknownWatchdog,   ///< The reaction of the drive on silence is unknown, and that is not accepted.
 };
 
 /// A copy of it is printed by Drive::words.
@@ -85,16 +85,16 @@ struct DriveCommand {
 
 struct DriveSample {
   JointSample joint{};
-  bool valid = false;             ///< position and velocity
-  bool effort_valid = false;      ///< `effort` is measured and not older than 100 samples.
-  std::int64_t stamp_ns = 0;      ///< when the position was received
-  double voltage = 0;             ///< V, of the drive's supply; 0: unknown
+  bool valid = false;         ///< position and velocity
+  bool effort_valid = false;  ///< `effort` is measured and not older than 100 samples.
+  std::int64_t stamp_ns = 0;  ///< when the position was received
+  double voltage = 0;         ///< V, of the drive's supply; 0: unknown
 };
 
 /// Returns the sample at another time: the position moves on with the velocity.
 JointSample at_time(const DriveSample& sample, std::int64_t now_ns) noexcept;
 
-/// The frames of one cycle. What exceeds it is counted, and sent again because nothing answers it.
+/// The frames of one cycle. Frames beyond its size are counted and dropped.
 class FrameBatch {
  public:
   void add(const can_frame& frame) noexcept;

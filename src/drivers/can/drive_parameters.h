@@ -1,6 +1,6 @@
 #pragma once
-/// What every drive on CAN needs, whatever it speaks: its node, its place at the joint, its limits, and what it does
-/// when the host is silent.
+/// DriveParameters are common to all dialects: the node of a drive, its place at the joint, its limits, and its
+/// reaction on silence.
 
 #include <cstdint>
 #include <limits>
@@ -10,7 +10,7 @@
 
 namespace robot_control {
 
-/// What a drive does when it receives no frame any more.
+/// The reaction of a drive that receives no frame any more.
 enum class SilenceReaction : std::uint8_t {
   kUnknown,  ///< It may keep its last torque for ever.
   kCoasts,   ///< The motor is released; on a slope the joint moves.
@@ -26,15 +26,15 @@ inline std::vector<Word> words_of(SilenceReaction) {
 }
 
 struct DriveParameters {
-  std::string joint;             ///< name in the robot's model; the name of the block
-  std::uint64_t node = 0;        ///< of the drive on the bus
-  std::int64_t direction = 1;    ///< 1 or −1: the joint turns with the motor, or against it
-  double gear = 1;               ///< turns of the motor per turn of the joint, or per metre
-  double torque_limit = 0;       ///< N·m or N, of the joint
-  double velocity_limit = 0;     ///< rad/s or m/s, of the joint
-  double max_temperature = 90;   ///< °C
-  double min_voltage = 0;        ///< V; 0: not judged
-  double sample_period = 0;      ///< s between positions that the drive sends by itself; 0: one in each cycle
+  std::string joint;               ///< name in the robot's model; the name of the block
+  std::uint64_t node = 0;          ///< of the drive on the bus
+  std::int64_t direction = 1;      ///< 1 or −1: the joint turns with the motor, or against it
+  double gear = 1;                 ///< turns of the motor per turn of the joint, or per metre
+  double torque_limit = 0;         ///< N·m or N, of the joint
+  double velocity_limit = 0;       ///< rad/s or m/s, of the joint
+  double max_temperature = 90;     ///< °C
+  double min_voltage = 0;          ///< V; 0: not judged
+  double sample_period = 0;        ///< s between positions that the drive sends by itself; 0: one in each cycle
   std::uint64_t max_silence = 20;  ///< samples in a row that may be missing
 
   /// The reaction that the user found by experiment, where the drive cannot be asked.

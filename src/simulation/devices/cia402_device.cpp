@@ -79,12 +79,15 @@ void Cia402Device::add_pdos() {
     for (std::uint8_t number = 1; number <= kPdos; ++number) {
       const Pdo pdo{.kind = kind, .number = number, .mapping = {}};
       const bool writable = !parameters_.fixed_mapping;
-      const std::uint32_t off = parameters_.fixed_mapping && (number - 1) / 2 < static_cast<int>(axes_.size()) ? 0 : canopen::kPdoDisabled;
+      const std::uint32_t off =
+          parameters_.fixed_mapping && (number - 1) / 2 < static_cast<int>(axes_.size()) ? 0 : canopen::kPdoDisabled;
       objects_.add({pdo.parameters(), 0}, 2, 1, false);
       objects_.add({pdo.parameters(), 1}, pdo.cob_id(parameters_.node) | off | canopen::kPdoWithoutRtr, 4, writable);
-      objects_.add({pdo.parameters(), 2}, kind == PdoKind::kTransmit ? canopen::kEverySync : canopen::kOnEvent, 1, writable);
+      objects_.add({pdo.parameters(), 2}, kind == PdoKind::kTransmit ? canopen::kEverySync : canopen::kOnEvent, 1,
+                   writable);
       objects_.add({pdo.mapping_index(), 0}, 0, 1, writable);
-      for (std::uint8_t i = 1; i <= canopen::kMaxPdoEntries; ++i) objects_.add({pdo.mapping_index(), i}, 0, 4, writable);
+      for (std::uint8_t i = 1; i <= canopen::kMaxPdoEntries; ++i)
+        objects_.add({pdo.mapping_index(), i}, 0, 4, writable);
     }
   }
   if (!parameters_.fixed_mapping) return;
@@ -132,7 +135,8 @@ void Cia402Device::step(std::int64_t now_ns) {
   const auto own = [this](double ns) { return static_cast<std::int64_t>(ns / (1 + 1.0e-6 * parameters_.clock_ppm)); };
   const std::int64_t heartbeat = own(1.0e6 * objects_.value(kHeartbeatProducer));
   if (!announced_ || (heartbeat > 0 && now_ns - heartbeat_ns_ >= heartbeat)) {
-    bus_.send(party_, canopen::encode_heartbeat({.node = parameters_.node, .state = announced_ ? nmt_ : NmtState::kBootUp}));
+    bus_.send(party_,
+              canopen::encode_heartbeat({.node = parameters_.node, .state = announced_ ? nmt_ : NmtState::kBootUp}));
     announced_ = true;
     heartbeat_ns_ = now_ns;
   }
@@ -233,7 +237,8 @@ void Cia402Device::obey(unsigned axis, std::uint16_t controlword) {
   own.controlword = controlword;
   using enum PowerState;
   if (own.power == kFault) {
-    if (rising && fault_ != DeviceFault::kEncoder && fault_ != DeviceFault::kUnderVoltage) own.power = kSwitchOnDisabled;
+    if (rising && fault_ != DeviceFault::kEncoder && fault_ != DeviceFault::kUnderVoltage)
+      own.power = kSwitchOnDisabled;
     return;
   }
   if (own.power == kFaultReactionActive || own.power == kNotReadyToSwitchOn) return;

@@ -1,6 +1,6 @@
 #pragma once
-/// A CiA 402 drive as a device, with one or two axes: NMT, heartbeat of both sides, SDO server, PDOs with a mapping
-/// that may be written, SYNC, EMCY, the power state machine, and the torque modes CST and TQ.
+/// A CiA 402 drive as a device, with one or two axes. It has NMT, both heartbeats, an SDO server, PDOs whose mapping
+/// may be written, SYNC, EMCY, the power state machine, and the torque modes CST and TQ.
 ///
 /// Source: CiA 301 and CiA 402-2. On the loss of the host's heartbeat (1016) it sends EMCY 8130, becomes
 /// pre-operational, and each axis follows 6007. A quick stop follows 605A and a fault 605E: the axis is damped down to
@@ -27,7 +27,7 @@ struct Cia402DeviceParameters {
   double rated_torque = 2;                ///< N·m
   double counts_per_turn = 4096;
   double velocity_unit = 2 * 3.14159265358979323846 / 60;  ///< rad/s
-  double inertia = 0.01;  ///< kg·m² at the motor, for its own brake
+  double inertia = 0.01;                                   ///< kg·m² at the motor, for its own brake
   std::uint32_t vendor = 0x1A5;
   std::uint32_t product = 0x402;
   double clock_ppm = 0;
@@ -53,9 +53,9 @@ class Cia402Device final : public Device {
     DeviceMotor* motor = nullptr;
     cia402::PowerState power = cia402::PowerState::kSwitchOnDisabled;
     std::uint16_t controlword = 0;
-    double zero = 0;         // rad, true position of its zero
-    double torque = 0;       // N·m, of TQ with its slope
-    double held = 0;         // rad, true position that a quick stop holds
+    double zero = 0;    // rad, true position of its zero
+    double torque = 0;  // N·m, of TQ with its slope
+    double held = 0;    // rad, true position that a quick stop holds
     bool holding = false;
   };
 

@@ -86,8 +86,8 @@ double OdriveDevice::limited_torque() const {
   if (mode_.control != ControlMode::kTorque || mode_.input != InputMode::kPassthrough) return 0;
   const double fast = kVelocityGain * (velocity_limit_ - motor_.velocity);
   const double slow = kVelocityGain * (-velocity_limit_ - motor_.velocity);
-  const double most = current_limit_ * parameters_.torque_constant;
-  return std::clamp(std::clamp(input_torque_, std::min(slow, fast), std::max(slow, fast)), -most, most);
+  const double maximum = current_limit_ * parameters_.torque_constant;
+  return std::clamp(std::clamp(input_torque_, std::min(slow, fast), std::max(slow, fast)), -maximum, maximum);
 }
 
 double OdriveDevice::measured_position() const {
@@ -97,10 +97,8 @@ double OdriveDevice::measured_position() const {
 
 void OdriveDevice::send_heartbeat() {
   if (is_06()) return send(v06::Heartbeat{.error = error_, .state = state_});
-  send(v05::Heartbeat{.error = error_,
-                      .state = state_,
-                      .motor_error = motor_error_ != 0,
-                      .encoder_error = encoder_error_ != 0});
+  send(v05::Heartbeat{
+      .error = error_, .state = state_, .motor_error = motor_error_ != 0, .encoder_error = encoder_error_ != 0});
 }
 
 void OdriveDevice::send_estimates() {
@@ -110,7 +108,8 @@ void OdriveDevice::send_estimates() {
 }
 
 void OdriveDevice::receive(const can_frame& frame, std::int64_t now_ns) {
-  if (fault_ == DeviceFault::kOff || now_ns < boot_ns_ || is_extended(frame) || node_of(frame) != parameters_.node) return;
+  if (fault_ == DeviceFault::kOff || now_ns < boot_ns_ || is_extended(frame) || node_of(frame) != parameters_.node)
+    return;
   if (state_ == AxisState::kClosedLoopControl || !is_06()) watchdog_timer_.restart(now_ns);
   is_remote_request(frame) ? receive_request(frame) : receive_command(frame);
 }
@@ -130,7 +129,8 @@ void OdriveDevice::receive_request(const can_frame& frame) {
     return;
   }
   if (requests<v06::Version>(frame)) {
-    send(v06::Version{.protocol = 2, .hardware_major = 4, .hardware_minor = 4, .firmware_minor = 6, .firmware_revision = 10});
+    send(v06::Version{
+        .protocol = 2, .hardware_major = 4, .hardware_minor = 4, .firmware_minor = 6, .firmware_revision = 10});
   }
   if (requests<v06::Address>(frame)) {
     send(v06::Address{.node = parameters_.node, .serial_number = parameters_.serial_number});

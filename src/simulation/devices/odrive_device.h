@@ -19,11 +19,11 @@ struct OdriveDeviceParameters {
   std::uint8_t node = 0;
   odrive::Firmware firmware = odrive::Firmware::k06;
   std::uint64_t serial_number = 0x1234;
-  double torque_constant = 0.1;     ///< N·m/A
-  double counts_per_turn = 8192;    ///< of the encoder
-  double heartbeat_period = 0.1;    ///< s
-  double estimates_period = 0;      ///< s; 0: on request alone
-  double watchdog_timeout = 0;      ///< s; 0: off
+  double torque_constant = 0.1;   ///< N·m/A
+  double counts_per_turn = 8192;  ///< of the encoder
+  double heartbeat_period = 0.1;  ///< s
+  double estimates_period = 0;    ///< s; 0: on request alone
+  double watchdog_timeout = 0;    ///< s; 0: off
   std::uint16_t enable_watchdog_endpoint = 0;
   std::uint16_t watchdog_timeout_endpoint = 0;
   double clock_ppm = 0;

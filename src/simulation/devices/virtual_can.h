@@ -1,7 +1,7 @@
 #pragma once
 /// A CAN bus in virtual time: each frame takes the time of its bits at the bit rate, and the lowest identifier wins.
 ///
-/// Each party sends its frames in their order; the first frames of all parties take part in the arbitration as soon as
+/// Each party sends its frames in their order. The first frames of all parties take part in the arbitration as soon as
 /// the bus is free. A data frame wins over a remote request of the same identifier. All other parties that are
 /// connected receive a frame at its end. A frame that no other party could acknowledge stays in its queue. Losses are
 /// drawn from a seeded generator; real CAN repeats corrupted frames, so a loss stands for a full queue.

@@ -36,9 +36,8 @@ class CanMachine final : public Driver {
     }
     // At the joint 0.0625 kg·m²: d h/J = 0.16.
     const Brake brake{.effort = 3, .hold_effort = 3, .damping = 10, .stiffness = 400, .hold_speed = 0.3};
-    driver_.emplace(parameters, std::vector{brake, brake}, kPeriod, CanSocket(ends[0]), [this] {
-      return CanTime{.time_ns = rig_.now_ns(), .utc_ns = rig_.now_ns()};
-    });
+    driver_.emplace(parameters, std::vector{brake, brake}, kPeriod, CanSocket(ends[0]),
+                    [this] { return CanTime{.time_ns = rig_.now_ns(), .utc_ns = rig_.now_ns()}; });
   }
   ~CanMachine() override { close(wire_); }
   CanMachine(const CanMachine&) = delete;
@@ -95,7 +94,8 @@ MachineUnderTest machine(const std::string& name, CanDialect dialect) {
 }
 
 INSTANTIATE_TEST_SUITE_P(CanMachines, DriverContract,
-                         testing::Values(machine("Odrive", CanDialect::kOdrive), machine("Cia402", CanDialect::kCia402)),
+                         testing::Values(machine("Odrive", CanDialect::kOdrive),
+                                         machine("Cia402", CanDialect::kCia402)),
                          machine_name);
 
 class CanDriverOn : public ::testing::TestWithParam<CanDialect> {

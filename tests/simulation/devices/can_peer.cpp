@@ -4,7 +4,7 @@
 ///       TIME ENABLED RESET TORQUE FRAME…    → FRAME… | position velocity effort of the first joint | words; of each
 ///   can_peer odrive NODE FIRMWARE           a simulated axis with a free motor
 ///   can_peer cia402 NODE                    a simulated drive with a free motor
-///       TIME FRAME…                         → FRAME… | motor's position velocity torque | 
+///       TIME FRAME…                         → FRAME… | motor's position velocity torque |
 ///
 /// TIME is in ns and does not fall. A FRAME is ID#DATA, or ID#R for a remote request; ID is decimal, DATA hexadecimal.
 

@@ -11,7 +11,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::string words_after(const Cia402Pair& pair, const std::function<void(Cia402Device&)>& change = [](auto&) {}) {
+std::string words_after(
+    const Cia402Pair& pair, const std::function<void(Cia402Device&)>& change = [](auto&) {}) {
   DeviceRig rig;
   Cia402Device& device = add(rig, pair);
   change(device);
@@ -60,7 +61,10 @@ TEST(Cia402Drive, SaysWhatIsMissingAndWhatWasRefusedWithTheAbortInWords) {
   const Cia402Pair pair = cia402_pair(5);
   EXPECT_THAT(words_after(pair, [](auto& device) { device.objects().remove(kRatedTorque); }),
               HasSubstr("lacks rated torque (6076); state rated_torque"));
-  EXPECT_THAT(words_after(pair, [](auto& device) { device.objects().remove({0x6077, 0}); }),
+  EXPECT_THAT(words_after(pair,
+                          [](auto& device) {
+                            device.objects().remove({0x6077, 0});
+                          }),
               HasSubstr("refused to set TPDO of statusword, position and torque (0x6040041: object cannot be mapped"));
   Cia402Pair fixed = pair;
   fixed.device.fixed_mapping = true;
@@ -107,7 +111,8 @@ TEST(Cia402Drive, ResetsNoFaultByItself) {
   device.inject(DeviceFault::kEncoder);
   device.inject(DeviceFault::kNone);
   bool reset = false;
-  rig.bus().join([&](const can_frame& frame, std::int64_t) { reset |= frame.can_id == 0x205 && frame.data[0] == 0x80; });
+  rig.bus().join(
+      [&](const can_frame& frame, std::int64_t) { reset |= frame.can_id == 0x205 && frame.data[0] == 0x80; });
   rig.command_all({.enabled = true});
   rig.run(5);
   EXPECT_FALSE(reset);

@@ -31,7 +31,8 @@ TEST(OdriveDrive, SilenceOnGetVersionMeansFirmware05) {
 TEST(OdriveDrive, ComparesTheFirmwareWithTheFile) {
   OdrivePair pair = odrive_pair(3, Firmware::k05);
   pair.drive.firmware = Firmware::k06;
-  EXPECT_THAT(words_after(pair), HasSubstr("fault; the drive differs from the drive file: firmware, 0.5 instead of 0.6"));
+  EXPECT_THAT(words_after(pair),
+              HasSubstr("fault; the drive differs from the drive file: firmware, 0.5 instead of 0.6"));
 }
 
 TEST(OdriveDrive, ComparesTheSerialNumberWithTheFile) {

@@ -13,9 +13,8 @@ class VirtualCanBus : public ::testing::Test {
   std::vector<std::pair<canid_t, std::int64_t>> received_;
   std::size_t first_ = bus_.join([](const can_frame&, std::int64_t) {});
   std::size_t second_ = bus_.join([](const can_frame&, std::int64_t) {});
-  std::size_t listener_ = bus_.join([this](const can_frame& frame, std::int64_t now_ns) {
-    received_.emplace_back(frame.can_id, now_ns);
-  });
+  std::size_t listener_ =
+      bus_.join([this](const can_frame& frame, std::int64_t now_ns) { received_.emplace_back(frame.can_id, now_ns); });
 };
 
 TEST_F(VirtualCanBus, AFrameTakesTheTimeOfItsBits) {

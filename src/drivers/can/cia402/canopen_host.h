@@ -1,5 +1,5 @@
 #pragma once
-/// What the host sends to all CANopen nodes of a bus: SYNC in each cycle, after the torques, and its heartbeat.
+/// The CanopenHost sends to all CANopen nodes of a bus: SYNC in each cycle, after the torques, and its heartbeat.
 
 #include <cstdint>
 

@@ -65,7 +65,8 @@ void Cia402Drive::restart(bool reset, std::int64_t now_ns) noexcept {
 void Cia402Drive::receive(const can_frame& frame, std::int64_t now_ns) noexcept {
   if (!is_standard_data(frame)) return;
   const auto nmt = canopen::decode_nmt(frame);
-  if ((nmt && (nmt->node == 0 || nmt->node == node())) || (set_up() && frame.can_id == setup_.pdos().command.cob_id(node()))) {
+  if ((nmt && (nmt->node == 0 || nmt->node == node())) ||
+      (set_up() && frame.can_id == setup_.pdos().command.cob_id(node()))) {
     return fail(DriveCause::kForeignCommander, "", frame.can_id);
   }
   setup_.receive(frame);
@@ -135,7 +136,8 @@ void Cia402Drive::advance(const DriveCommand& command, std::int64_t now_ns, Fram
     set(DriveState::kStarting, DriveCause::kFirstSample);
     if (second_axis_ == nullptr) send_nmt(NmtCommand::kStart, now_ns, send);
     if (!sample().valid) return;
-    know_reaction(setup_.on_silence(), setup_.on_silence() == SilenceReaction::kUnknown ? Evidence::kNone : Evidence::kRead);
+    know_reaction(setup_.on_silence(),
+                  setup_.on_silence() == SilenceReaction::kUnknown ? Evidence::kNone : Evidence::kRead);
     settle_reaction();
     phase_ = Phase::kReady;
   }
@@ -223,7 +225,8 @@ std::string Cia402Drive::code_words(const DriveStatus& status) const {
     case DriveCause::kLacks:
     case DriveCause::kRefused:
       if (status.code == 0) return "";
-      return "(" + hexadecimal(status.code) + ": " + canopen::abort_words(static_cast<std::uint32_t>(status.code)) + ")";
+      return "(" + hexadecimal(status.code) + ": " + canopen::abort_words(static_cast<std::uint32_t>(status.code)) +
+             ")";
     case DriveCause::kSetup: {
       char text[32];
       std::snprintf(text, sizeof text, "%04llX:%02llX", static_cast<unsigned long long>(status.code >> 8U),

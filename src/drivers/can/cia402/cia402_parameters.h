@@ -1,5 +1,5 @@
 #pragma once
-/// What the drive file states about one axis of a CiA 402 drive.
+/// Cia402Parameters are the statements of the drive file about one axis of a CiA 402 drive.
 
 #include <cstdint>
 #include <numbers>
@@ -30,20 +30,20 @@ inline std::vector<Word> words_of(PdoSource) {
 
 struct Cia402Parameters {
   DriveParameters drive{};
-  std::uint64_t axis = 0;  ///< of a drive with two axes: 1 has its objects at 6800 and its PDOs 3 and 4
+  std::uint64_t axis = 0;              ///< of a drive with two axes: 1 has its objects at 6800 and its PDOs 3 and 4
   TorqueMode mode = TorqueMode::kAny;  ///< cst and tq outweigh 6502.
   PdoSource pdos = PdoSource::kWritten;
-  bool velocity_pdo = false;  ///< 606C in a second TPDO; otherwise the velocity is the difference of positions.
+  bool velocity_pdo = false;   ///< 606C in a second TPDO; otherwise the velocity is the difference of positions.
   double rated_torque = 0;     ///< N·m, of the motor; 0: 6076
   double counts_per_turn = 0;  ///< of 6064 and the motor; 0: 608F
   double velocity_unit = 2 * std::numbers::pi / 60;  ///< rad/s of one unit of 606C
-  double torque_slope = 0;       ///< N·m/s, of the motor, in tq; 0: the drive's own
-  std::uint64_t vendor = 0;      ///< 1018:1; 0: not compared
-  std::uint64_t product = 0;     ///< 1018:2; 0: not compared
-  double host_timeout = 0.1;     ///< s without the host's heartbeat, after which the drive reacts (1016)
-  std::int64_t quick_stop_option = 6;     ///< 605A
-  std::int64_t abort_option = 3;          ///< 6007
-  std::int64_t fault_reaction = 2;        ///< 605E
+  double torque_slope = 0;                           ///< N·m/s, of the motor, in tq; 0: the drive's own
+  std::uint64_t vendor = 0;                          ///< 1018:1; 0: not compared
+  std::uint64_t product = 0;                         ///< 1018:2; 0: not compared
+  double host_timeout = 0.1;           ///< s without the host's heartbeat, after which the drive reacts (1016)
+  std::int64_t quick_stop_option = 6;  ///< 605A
+  std::int64_t abort_option = 3;       ///< 6007
+  std::int64_t fault_reaction = 2;     ///< 605E
 };
 
 inline Keys keys(Cia402Parameters& p) {

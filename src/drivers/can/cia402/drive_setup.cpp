@@ -30,7 +30,8 @@ Period period_of(double seconds) {
 
 PdoEntry entry_of(std::uint32_t mapped) noexcept {
   const auto bits = static_cast<std::uint8_t>(mapped & 0xFFU);
-  const ObjectAddress object{static_cast<std::uint16_t>(mapped >> 16U), static_cast<std::uint8_t>(mapped >> 8U & 0xFFU)};
+  const ObjectAddress object{static_cast<std::uint16_t>(mapped >> 16U),
+                             static_cast<std::uint8_t>(mapped >> 8U & 0xFFU)};
   return {.object = object, .bits = bits};
 }
 
@@ -195,7 +196,7 @@ DriveSetup::Result DriveSetup::step(std::int64_t now_ns, FrameBatch& send) noexc
     if (!present && !step.optional) {
       refuse(step.kind == Kind::kRead ? DriveCause::kLacks : DriveCause::kRefused, step.subject, client_.abort_code());
     } else if (step.kind == Kind::kRead) {
-      judge(step, present, client_.value());
+      evaluate(step, present, client_.value());
     }
   }
   if (problem_.cause != DriveCause::kNone) return Result::kRefused;
@@ -214,7 +215,7 @@ void DriveSetup::begin(const Step& step) noexcept {
   client_.write(write);
 }
 
-void DriveSetup::judge(const Step& step, bool present, std::uint32_t value) noexcept {
+void DriveSetup::evaluate(const Step& step, bool present, std::uint32_t value) noexcept {
   switch (step.use) {
     case Use::kEqual:
       if (present && value != step.write.value) refuse(DriveCause::kDiffers, step.subject, 0, value, step.write.value);
@@ -274,8 +275,8 @@ void DriveSetup::judge_torque(const Step& step, bool present, std::uint32_t valu
   }
   constexpr double kMaxRaw = 32767;  // ‰ in 6071
   const double needed = parameters_.drive.torque_limit / parameters_.drive.gear;
-  const double most = std::fmin(present ? value & 0xFFFFU : kMaxRaw, kMaxRaw) * units_.rated_torque / 1000;
-  if (most < (1 - kSameTorque) * needed) refuse(DriveCause::kDiffers, step.subject, 0, most, needed);
+  const double maximum = std::fmin(present ? value & 0xFFFFU : kMaxRaw, kMaxRaw) * units_.rated_torque / 1000;
+  if (maximum < (1 - kSameTorque) * needed) refuse(DriveCause::kDiffers, step.subject, 0, maximum, needed);
 }
 
 void DriveSetup::judge_silence(const Step& step, bool present, std::uint32_t value) noexcept {

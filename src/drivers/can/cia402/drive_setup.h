@@ -2,9 +2,16 @@
 /// A DriveSetup reads and writes the objects of one axis, one after the other, by SDO. It compares what it reads with
 /// the drive file, and learns from it what the file leaves to the drive.
 ///
-/// Order: no torque (6040, 6071) · identity (1018) · mode (6502, 6060, 6061) · torque (6076, 6072, 6087) · position
-/// (608F) · period (60C2) · heartbeat of both sides (1017, 1016, 1029) · reactions (6007, 605A, 605E) · PDOs (1400,
-/// 1600, 1800, 1A00), each written and read back, or read alone. Objects that are optional in CiA 402 may be absent.
+///   1018                      identity
+///   6040, 6071                no torque
+///   6502, 6060, 6061          mode
+///   6076, 6072, 6087          torque
+///   608F, 60C2                position, period of the loop
+///   1017, 1016, 1029          heartbeats of the drive and of the host
+///   6007, 605A, 605E          reactions on a loss and on a fault
+///   1400, 1600, 1800, 1A00    PDOs, written and read back, or read alone
+///
+/// Objects that are optional in CiA 402 may be absent.
 
 #include <array>
 #include <cstdint>
@@ -48,8 +55,23 @@ class DriveSetup {
 
  private:
   enum class Use : std::uint8_t {
-    kNone, kEqual, kModes, kMode, kRated, kMaximum, kSlope, kIncrements, kRevolutions, kConsumer, kAbortOption,
-    kQuickStop, kFaultReaction, kPresentCobId, kCobId, kMappingCount, kMappingEntry,
+    kNone,
+    kEqual,
+    kModes,
+    kMode,
+    kRated,
+    kMaximum,
+    kSlope,
+    kIncrements,
+    kRevolutions,
+    kConsumer,
+    kAbortOption,
+    kQuickStop,
+    kFaultReaction,
+    kPresentCobId,
+    kCobId,
+    kMappingCount,
+    kMappingEntry,
   };
   enum class Kind : std::uint8_t { kRead, kWrite };
   struct Step {
@@ -69,7 +91,7 @@ class DriveSetup {
   void add_pdo_steps(std::uint8_t index, const char* subject);
 
   void begin(const Step& step) noexcept;
-  void judge(const Step& step, bool present, std::uint32_t value) noexcept;
+  void evaluate(const Step& step, bool present, std::uint32_t value) noexcept;
   void judge_modes(bool present, std::uint32_t modes) noexcept;
   void judge_torque(const Step& step, bool present, std::uint32_t value) noexcept;
   void judge_silence(const Step& step, bool present, std::uint32_t value) noexcept;

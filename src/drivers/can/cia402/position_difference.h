@@ -34,7 +34,8 @@ class PositionDifference {
     const Sample& newest = ring_[(count_ - 1) % (kSamples + 1)];
     const Sample& oldest = ring_[count_ <= kSamples ? 0 : count_ % (kSamples + 1)];
     const std::int64_t span_ns = newest.time_ns - oldest.time_ns;
-    return span_ns <= 0 ? 0 : 1.0e9 * static_cast<double>(newest.position - oldest.position) / static_cast<double>(span_ns);
+    return span_ns <= 0 ? 0
+                        : 1.0e9 * static_cast<double>(newest.position - oldest.position) / static_cast<double>(span_ns);
   }
 
  private:

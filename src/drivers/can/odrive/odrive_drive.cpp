@@ -12,11 +12,11 @@
 namespace robot_control::odrive {
 namespace {
 
-constexpr std::int64_t kSlowNs = 100'000'000;        // of temperature and voltage
-constexpr std::int64_t kAddressNs = 20'000'000;      // in which a second drive would have answered
-constexpr std::int64_t kEnterNs = 3'000'000'000;     // more than any axis needs to enter closed loop
-constexpr double kMaxHeartbeats = 6.5;               // Five lost ones in a row happen once in 10⁶ at a loss of 5 %.
-constexpr double kVelocityMargin = 1.5;              // Torque mode reduces the torque before the limit.
+constexpr std::int64_t kSlowNs = 100'000'000;     // of temperature and voltage
+constexpr std::int64_t kAddressNs = 20'000'000;   // in which a second drive would have answered
+constexpr std::int64_t kEnterNs = 3'000'000'000;  // more than any axis needs to enter closed loop
+constexpr double kMaxHeartbeats = 6.5;            // Five lost ones in a row happen once in 10⁶ at a loss of 5 %.
+constexpr double kVelocityMargin = 1.5;           // Torque mode reduces the torque before the limit.
 
 /// Messages to an axis that move it or change how it moves.
 constexpr bool commands_motion(std::uint8_t command) noexcept {
@@ -71,7 +71,8 @@ std::vector<PlannedFrames> OdriveDrive::plan() const {
   }
   constexpr double kSlowRate = 2 * 1.0e9 / kSlowNs;
   plan.push_back({.data_bytes = 0, .per_second = parameters_.effort_rate + kSlowRate});
-  plan.push_back({.data_bytes = 8, .per_second = parameters_.effort_rate + kSlowRate + 1 / parameters_.heartbeat_period});
+  plan.push_back(
+      {.data_bytes = 8, .per_second = parameters_.effort_rate + kSlowRate + 1 / parameters_.heartbeat_period});
   return plan;
 }
 
@@ -99,7 +100,8 @@ void OdriveDrive::know_firmware(Firmware firmware) noexcept {
   firmware_ = firmware;
   enter(firmware == Firmware::k06 ? Phase::kAddress : Phase::kPosition);
   if (parameters_.firmware == Firmware::kAny || parameters_.firmware == firmware) return;
-  fail(DriveCause::kDiffers, "firmware", 0, firmware == Firmware::k05 ? 0.5 : 0.6, firmware == Firmware::k05 ? 0.6 : 0.5);
+  fail(DriveCause::kDiffers, "firmware", 0, firmware == Firmware::k05 ? 0.5 : 0.6,
+       firmware == Firmware::k05 ? 0.6 : 0.5);
 }
 
 /// An axis with a watchdog reports at each start that it expired: no host was there.

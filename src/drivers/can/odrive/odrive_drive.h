@@ -4,13 +4,13 @@
 ///   heartbeat → version (no answer: 0.5) → address (0.6: serial number, a second drive) → watchdog, if its endpoints
 ///   are known → first position → ready → mode, zero torque and limits in kZeroCycles cycles → closed loop → running
 ///
-/// The zero torque is sent in every cycle before closed loop, because the axis executes the last set-point that it
-/// received, also one of an earlier program. In closed loop the state of each heartbeat is judged: an axis may become
-/// idle without an error. An ODrive whose watchdog expires becomes idle: the joint coasts.
+/// The zero torque is sent in every cycle before closed loop, because the axis executes the last set-point that it has
+/// received. That may be one of an earlier program. In closed loop the state of each heartbeat is judged: an axis may
+/// become idle without an error. An ODrive whose watchdog expires becomes idle: the joint coasts.
 ///
-/// The position is a float of turns, whose step grows with the number of turns. Where the step exceeds
-/// max_position_step, the position of the drive is set back by whole turns when the axis has rested for kRestNs. The
-/// joint's position continues without a jump.
+/// The position is a float of turns, whose step grows with the number of turns. If the step exceeds max_position_step,
+/// the position of the drive is set back by whole turns as soon as the axis has rested for kRestNs. The position of the
+/// joint continues without a jump.
 
 #include <cstdint>
 #include <optional>

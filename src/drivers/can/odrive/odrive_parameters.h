@@ -1,5 +1,5 @@
 #pragma once
-/// What the drive file states about one ODrive axis.
+/// OdriveParameters are the statements of the drive file about one ODrive axis.
 
 #include <cstdint>
 #include <string>
@@ -22,13 +22,13 @@ inline std::vector<Word> words_of(Firmware) {
 struct OdriveParameters {
   DriveParameters drive{};
   Firmware firmware = Firmware::kAny;
-  std::uint64_t serial_number = 0;   ///< 0.6 alone; 0: not compared
-  double torque_constant = 0;        ///< N·m/A, of the motor
-  double motor_velocity_limit = 0;   ///< rad/s, at which the drive reduces its torque; 0: 1.5 · that of the joint
-  double heartbeat_period = 0.1;     ///< s, as set in the drive
-  double estimates_period = 0;       ///< s, as set in the drive; 0: requested in each cycle
-  double effort_rate = 100;          ///< Hz of requests for the torque; 0: the drive sends it by itself
-  double counts_per_turn = 8192;     ///< of the encoder; with 0.5, to set the position
+  std::uint64_t serial_number = 0;    ///< 0.6 alone; 0: not compared
+  double torque_constant = 0;         ///< N·m/A, of the motor
+  double motor_velocity_limit = 0;    ///< rad/s, at which the drive reduces its torque; 0: 1.5 · that of the joint
+  double heartbeat_period = 0.1;      ///< s, as set in the drive
+  double estimates_period = 0;        ///< s, as set in the drive; 0: requested in each cycle
+  double effort_rate = 100;           ///< Hz of requests for the torque; 0: the drive sends it by itself
+  double counts_per_turn = 8192;      ///< of the encoder; with 0.5, to set the position
   double max_position_step = 1.0e-3;  ///< rad of the motor; above it the zero moves at the next rest
 
   /// Numbers in the endpoint list of exactly this firmware (0.6); 0: the watchdog cannot be read.
