@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "drivers/mujoco/contact/rest.h"
+#include "drivers/mujoco/motors/brake_limits.h"
 #include "drivers/mujoco/mujoco_errors.h"
 #include "machine/description/wording.h"
 #include "machine/suspicions.h"
