@@ -135,6 +135,19 @@ TEST(Cia402Drive, ReadsTheCodeOfAnErrorWhoseEmergencyWasLost) {
   EXPECT_THAT(rig.drive().words(), HasSubstr("0x7305 (incremental sensor 1 fault)"));
 }
 
+TEST(Cia402Drive, JudgesTheVoltageWhereTheDriveHasIt) {
+  DeviceRig rig;
+  Cia402Device& device = add(rig, cia402_pair(5));
+  ASSERT_TRUE(rig.runs());
+  rig.run(0.3);
+  EXPECT_EQ(rig.drive().sample().voltage, 48);
+  device.objects().set(kDcLinkVoltage, 12000);
+  rig.run(0.3);
+  EXPECT_THAT(rig.drive().words(), HasSubstr("has a low supply: voltage, 12 instead of 18"));
+  EXPECT_THAT(words_after(cia402_pair(5), [](auto& each) { each.objects().remove(kDcLinkVoltage); }),
+              HasSubstr("running"));
+}
+
 struct ReactionCase {
   std::int64_t abort_option, quick_stop, fault_reaction;
   SilenceReaction reaction;

@@ -12,6 +12,7 @@ using canopen::SdoClient;
 
 constexpr std::int64_t kNmtNs = 100'000'000;      // between repetitions of a command that was not followed
 constexpr std::int64_t kPowerNs = 3'000'000'000;  // more than a drive needs to release its brake
+constexpr std::int64_t kVoltageNs = 100'000'000;  // between two readings
 constexpr unsigned kResetCycles = 8;              // of one level of the bit that resets a fault
 
 /// Returns the value of this object in a PDO that was decoded.
@@ -35,7 +36,7 @@ Cia402Drive::Cia402Drive(const Cia402Parameters& parameters, std::uint8_t host, 
     : Drive(parameters.drive, period),
       parameters_(parameters),
       setup_(parameters, host, period),
-      error_client_(static_cast<std::uint8_t>(parameters.drive.node)) {}
+      reader_(static_cast<std::uint8_t>(parameters.drive.node)) {}
 
 void Cia402Drive::join(Cia402Drive& first, Cia402Drive& second) noexcept {
   first.second_axis_ = &second;
@@ -46,13 +47,14 @@ std::vector<PlannedFrames> Cia402Drive::plan() const {
   std::vector<PlannedFrames> plan{{.data_bytes = 4, .per_cycle = 1}, {.data_bytes = 8, .per_cycle = 1}};
   if (parameters_.velocity_pdo) plan.push_back({.data_bytes = 4, .per_cycle = 1});
   plan.push_back({.data_bytes = 1, .per_second = 10});
+  plan.push_back({.data_bytes = 8, .per_second = 2 * 1.0e9 / kVoltageNs});
   return plan;
 }
 
 void Cia402Drive::restart(bool reset, std::int64_t now_ns) noexcept {
   phase_ = Phase::kSetup;
   setup_.restart();
-  error_client_.cancel();
+  reader_.cancel();
   reset_ = reset;
   power_ = PowerState::kUnknown;
   emergency_ = 0;
@@ -60,6 +62,7 @@ void Cia402Drive::restart(bool reset, std::int64_t now_ns) noexcept {
   velocity_ = 0;
   next_nmt_ns_ = now_ns;
   reset_cycles_ = 0;
+  has_voltage_ = true;
 }
 
 void Cia402Drive::receive(const can_frame& frame, std::int64_t now_ns) noexcept {
@@ -70,7 +73,7 @@ void Cia402Drive::receive(const can_frame& frame, std::int64_t now_ns) noexcept 
     return fail(DriveCause::kForeignCommander, "", frame.can_id);
   }
   setup_.receive(frame);
-  error_client_.receive(frame);
+  reader_.receive(frame);
   receive_network(frame, now_ns);
   if (phase_ > Phase::kSetup) receive_state(frame, now_ns);
 }
@@ -173,6 +176,7 @@ void Cia402Drive::advance_power(const DriveCommand& command, std::int64_t now_ns
   }
   if (phase_ == Phase::kRunning) {
     set(DriveState::kRunning, DriveCause::kNone);
+    read_voltage(now_ns, send);
     return send_command(Controlword::kEnableOperation, command.torque, send);
   }
   set(DriveState::kReady, DriveCause::kPower, power_state_words(power_));
@@ -188,15 +192,37 @@ void Cia402Drive::advance_power(const DriveCommand& command, std::int64_t now_ns
   send_command(resets ? Controlword::kFaultReset : step_to_operation(power_), 0, send);
 }
 
+std::optional<std::uint32_t> Cia402Drive::read_object(const ObjectAddress& object, std::int64_t now_ns,
+                                                      FrameBatch& send) noexcept {
+  const ObjectAddress own = on_axis(object, static_cast<unsigned>(parameters_.axis));
+  const bool done = reader_.result() == SdoClient::Result::kDone && read_ == own;
+  const bool pending = reader_.result() == SdoClient::Result::kPending && read_ == own;
+  const bool aborted = reader_.result() == SdoClient::Result::kAborted && read_ == own;
+  if (done) {
+    reader_.cancel();
+    return reader_.value();
+  }
+  if (!pending && !aborted) {
+    read_ = own;
+    reader_.read(own);
+  }
+  reader_.step(now_ns, send);
+  return std::nullopt;
+}
+
 void Cia402Drive::read_error(std::int64_t now_ns, FrameBatch& send) noexcept {
   if (status().cause != DriveCause::kDriveError || emergency_ != 0) return;
-  if (error_client_.result() == SdoClient::Result::kIdle) {
-    error_client_.read(on_axis(kErrorCode, static_cast<unsigned>(parameters_.axis)));
-  }
-  if (error_client_.result() == SdoClient::Result::kDone) {
-    emergency_ = static_cast<std::uint16_t>(error_client_.value());
-  }
-  error_client_.step(now_ns, send);
+  const auto code = read_object(kErrorCode, now_ns, send);
+  if (code) emergency_ = static_cast<std::uint16_t>(*code);
+}
+
+void Cia402Drive::read_voltage(std::int64_t now_ns, FrameBatch& send) noexcept {
+  if (!has_voltage_ || now_ns < next_voltage_ns_) return;
+  const auto voltage = read_object(kDcLinkVoltage, now_ns, send);
+  if (reader_.result() == SdoClient::Result::kAborted) has_voltage_ = false;
+  if (!voltage) return;
+  next_voltage_ns_ = now_ns + kVoltageNs;
+  accept_voltage(dc_link_voltage(*voltage));
 }
 
 void Cia402Drive::send_command(std::uint16_t controlword, double torque, FrameBatch& send) const noexcept {

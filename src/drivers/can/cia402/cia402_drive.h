@@ -9,6 +9,7 @@
 /// a quick stop. The error of a drive is reset with the operator's reset alone.
 
 #include <cstdint>
+#include <optional>
 
 #include "drivers/can/cia402/cia402_parameters.h"
 #include "drivers/can/cia402/drive_setup.h"
@@ -43,7 +44,10 @@ class Cia402Drive final : public Drive {
   void judge_power() noexcept;
   void advance_setup(std::int64_t now_ns, FrameBatch& send) noexcept;
   void advance_power(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept;
+  /// Returns the value in the cycle in which its answer has arrived, and requests it before.
+  std::optional<std::uint32_t> read_object(const ObjectAddress& object, std::int64_t now_ns, FrameBatch& send) noexcept;
   void read_error(std::int64_t now_ns, FrameBatch& send) noexcept;
+  void read_voltage(std::int64_t now_ns, FrameBatch& send) noexcept;
   void send_command(std::uint16_t controlword, double torque, FrameBatch& send) const noexcept;
   void send_nmt(canopen::NmtCommand command, std::int64_t now_ns, FrameBatch& send) noexcept;
   bool set_up() const noexcept { return phase_ > Phase::kSetup; }
@@ -53,7 +57,7 @@ class Cia402Drive final : public Drive {
   const Cia402Drive* first_axis_ = nullptr;
   const Cia402Drive* second_axis_ = nullptr;
   DriveSetup setup_;
-  canopen::SdoClient error_client_;
+  canopen::SdoClient reader_;  // of the error code and of the voltage
   Phase phase_ = Phase::kSetup;
   bool reset_ = false;
   std::uint16_t statusword_ = 0;
@@ -64,6 +68,9 @@ class Cia402Drive final : public Drive {
   std::int64_t next_nmt_ns_ = 0;
   std::int64_t deadline_ns_ = 0;
   unsigned reset_cycles_ = 0;
+  ObjectAddress read_{};  // requested of the reader
+  bool has_voltage_ = true;
+  std::int64_t next_voltage_ns_ = 0;
 };
 
 }  // namespace robot_control::cia402

@@ -25,12 +25,6 @@ struct DriveUnits {
   std::int16_t raw_torque(double torque) const noexcept {
     return static_cast<std::int16_t>(saturated(1000 * torque / rated_torque, 16));
   }
-  std::int32_t raw_position(double position) const noexcept {
-    return static_cast<std::int32_t>(saturated(position * counts_per_turn / (2 * std::numbers::pi), 32));
-  }
-  std::int32_t raw_velocity(double velocity) const noexcept {
-    return static_cast<std::int32_t>(saturated(velocity / velocity_unit, 32));
-  }
 };
 
 inline double rated_torque(std::uint32_t raw_6076) noexcept {
@@ -39,11 +33,6 @@ inline double rated_torque(std::uint32_t raw_6076) noexcept {
 
 inline double dc_link_voltage(std::uint32_t raw_6079) noexcept {
   return raw_6079 / 1000.0;  // mV
-}
-
-/// Returns the period of the cyclic modes in s: value · 10^index.
-inline double cyclic_period(std::uint8_t value, std::int8_t index) noexcept {
-  return value * std::pow(10.0, index);
 }
 
 }  // namespace robot_control::cia402

@@ -31,28 +31,6 @@ const StateRow& row_of(PowerState state) noexcept {
   return found == std::end(kStates) ? *std::prev(std::end(kStates)) : *found;
 }
 
-struct Transition {
-  PowerState from, to;
-  std::uint16_t controlword;
-};
-
-// Transitions 2 … 12, 15 and 16; the drive makes 0, 1, 13 and 14 by itself.
-constexpr Transition kTransitions[] = {
-    {kSwitchOnDisabled, kReadyToSwitchOn, Controlword::kShutdown},
-    {kReadyToSwitchOn, kSwitchedOn, Controlword::kSwitchOn},
-    {kSwitchedOn, kOperationEnabled, Controlword::kEnableOperation},
-    {kOperationEnabled, kSwitchedOn, Controlword::kSwitchOn},
-    {kSwitchedOn, kReadyToSwitchOn, Controlword::kShutdown},
-    {kReadyToSwitchOn, kSwitchOnDisabled, Controlword::kDisableVoltage},
-    {kOperationEnabled, kReadyToSwitchOn, Controlword::kShutdown},
-    {kOperationEnabled, kSwitchOnDisabled, Controlword::kDisableVoltage},
-    {kSwitchedOn, kSwitchOnDisabled, Controlword::kDisableVoltage},
-    {kOperationEnabled, kQuickStopActive, Controlword::kQuickStop},
-    {kQuickStopActive, kSwitchOnDisabled, Controlword::kDisableVoltage},
-    {kFault, kSwitchOnDisabled, Controlword::kFaultReset},
-    {kQuickStopActive, kOperationEnabled, Controlword::kEnableOperation},
-};
-
 }  // namespace
 
 PowerState power_state(std::uint16_t statusword) noexcept {
@@ -67,13 +45,6 @@ std::uint16_t statusword_of(PowerState state) noexcept {
 
 const char* power_state_words(PowerState state) noexcept {
   return row_of(state).words;
-}
-
-std::optional<std::uint16_t> transition(PowerState from, PowerState to) noexcept {
-  for (const Transition& each : kTransitions) {
-    if (each.from == from && each.to == to) return each.controlword;
-  }
-  return std::nullopt;
 }
 
 std::uint16_t step_to_operation(PowerState state) noexcept {

@@ -10,7 +10,6 @@
 /// Source: CiA 402-2 (IEC 61800-7-201), state machine and tables of statusword and controlword.
 
 #include <cstdint>
-#include <optional>
 
 namespace robot_control::cia402 {
 
@@ -50,10 +49,6 @@ struct Controlword {
   static constexpr std::uint16_t kEnableOperation = 0x0F;
   static constexpr std::uint16_t kFaultReset = 0x80;  ///< The rising edge of this bit counts.
 };
-
-/// Returns the controlword that requests this transition. Returns nothing if the state machine has no such transition,
-/// or the drive makes it by itself. For fault → switch on disabled a controlword without kFaultReset must precede.
-std::optional<std::uint16_t> transition(PowerState from, PowerState to) noexcept;
 
 /// Returns the controlword of the next step towards operation enabled, which holds in that state. It never resets a
 /// fault: that needs the operator. In a state that only the drive leaves it is kDisableVoltage.
