@@ -195,14 +195,12 @@ void Cia402Drive::advance_power(const DriveCommand& command, std::int64_t now_ns
 std::optional<std::uint32_t> Cia402Drive::read_object(const ObjectAddress& object, std::int64_t now_ns,
                                                       FrameBatch& send) noexcept {
   const ObjectAddress own = on_axis(object, static_cast<unsigned>(parameters_.axis));
-  const bool done = reader_.result() == SdoClient::Result::kDone && read_ == own;
-  const bool pending = reader_.result() == SdoClient::Result::kPending && read_ == own;
-  const bool aborted = reader_.result() == SdoClient::Result::kAborted && read_ == own;
-  if (done) {
+  const SdoClient::Result result = read_ == own ? reader_.result() : SdoClient::Result::kIdle;
+  if (result == SdoClient::Result::kDone) {
     reader_.cancel();
     return reader_.value();
   }
-  if (!pending && !aborted) {
+  if (result == SdoClient::Result::kIdle || result == SdoClient::Result::kNoAnswer) {
     read_ = own;
     reader_.read(own);
   }
