@@ -86,7 +86,7 @@ struct DriveCommand {
 struct DriveSample {
   JointSample joint{};
   bool valid = false;         ///< position and velocity
-  bool effort_valid = false;  ///< `effort` is measured and not older than 100 samples.
+  bool effort_valid = false;  ///< `effort` is measured and not older than 5 · max_silence.
   std::int64_t stamp_ns = 0;  ///< when the position was received
   double voltage = 0;         ///< V, of the drive's supply; 0: unknown
 };
