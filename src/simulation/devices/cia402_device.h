@@ -1,6 +1,6 @@
 #pragma once
-/// A CiA 402 drive as a device, with one or two axes. It has NMT, both heartbeats, an SDO server, PDOs whose mapping
-/// may be written, SYNC, EMCY, the power state machine, and the torque modes CST and TQ.
+/// A CiA 402 drive as a device, with one or two axes and the torque modes CST and TQ. It has NMT, both heartbeats, an
+/// SDO server, SYNC, EMCY and the power state machine. The mapping of its PDOs may be written.
 ///
 /// Source: CiA 301 and CiA 402-2. On the loss of the host's heartbeat (1016) it sends EMCY 8130, becomes
 /// pre-operational, and each axis follows 6007. A quick stop follows 605A and a fault 605E: the axis is damped down to
