@@ -33,6 +33,9 @@ MAY_INCLUDE = {
     "drivers": {"signals", "gate"},
     # This holds simulated faults: of the machine in drivers/mujoco, of nodes in simulation.
     "simulation/faults": {"signals", "rt", "bus"},
+    "drivers/can": {"signals", "drivers", "files", "parameters"},
+    # Motor drives on a CAN bus, as devices in virtual time.
+    "simulation/devices": {"signals", "drivers/can"},
     "drivers/mujoco": {
         "signals",
         "simulation/faults",
@@ -50,7 +53,7 @@ MAY_INCLUDE = {
     # The log as a ROS bag; it knows the format, not ROS.
     "log": {"signals", "log/bag", "parameters"},
     # All blocks together, and the other files that a user writes.
-    "configuration": LAWS | {"rt", "files", "parameters", "log", "drivers/mujoco"},
+    "configuration": LAWS | {"rt", "files", "parameters", "log", "drivers/can", "drivers/mujoco"},
     # The step of each node in one cycle, and the process around it.
     "loop": LOOP - {"loop"} | {"files"},
     # The laws of a log, run again from its rows.
@@ -214,7 +217,7 @@ def test_only_its_driver_sees_mujoco():
     assert violations(rule) == []
 
 
-SIMULATED = {"drivers/mujoco", "simulation/faults"}
+SIMULATED = {"drivers/mujoco", "simulation/faults", "simulation/devices"}
 SIMULATORS = {"main/mujoco_plant.cpp", "configuration/parameters.h"}  # the latter: its parameters
 
 

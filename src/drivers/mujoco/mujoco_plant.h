@@ -41,9 +41,9 @@
 #include <vector>
 
 #include "drivers/driver.h"
+#include "drivers/joint_law.h"
 #include "drivers/mujoco/contact/wheel_contacts.h"
 #include "drivers/mujoco/model/mujoco_model.h"
-#include "drivers/mujoco/motors/joint_law.h"
 #include "drivers/mujoco/motors/motor.h"
 #include "drivers/mujoco/motors/motor_faults.h"
 #include "drivers/mujoco/mujoco_plant_parameters.h"

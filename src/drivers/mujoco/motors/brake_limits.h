@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "drivers/joint_law.h"
 #include "drivers/mujoco/mujoco_plant_parameters.h"
 #include "gate/brake_law.h"
 #include "machine/wheeled/drive_train.h"

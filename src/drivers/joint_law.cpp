@@ -1,4 +1,4 @@
-#include "drivers/mujoco/motors/joint_law.h"
+#include "drivers/joint_law.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #pragma once
-/// JointLaw is the law of a simulated drive: it computes the torque from command and measured motion.
+/// JointLaw is the law of a drive that is given torques: it computes the torque from command and measured motion.
 ///
 ///   kEffort     τ = effort
 ///   kVelocity   τ = effort + damping · (velocity − q̇)
