@@ -177,9 +177,7 @@ class Terminal:
         try:
             output, _ = process.communicate(timeout=LIMIT)
         except subprocess.TimeoutExpired:
-            os.killpg(process.pid, signal.SIGKILL)
-            output, _ = process.communicate()
-            output += f"\nnot ended after {LIMIT:.0f} s"
+            output = f"{ended(process)}\nnot ended after {LIMIT:.0f} s"
         if process.returncode != 0 or re.search(
             r"Traceback|^usage: |ERROR: ", without_cut_thread(output), re.MULTILINE
         ):
@@ -199,6 +197,17 @@ class Terminal:
     def close(self):
         self.end_programs()
         self.core.end()
+
+
+def ended(process):
+    """The output of a program that is interrupted, so that a launch ends its nodes, which hold the pipe; then killed."""
+    os.killpg(process.pid, signal.SIGINT)
+    try:
+        return process.communicate(timeout=20)[0]
+    except subprocess.TimeoutExpired as error:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        return str(error.output)
 
 
 def without_cut_thread(output):
