@@ -200,7 +200,9 @@ class Terminal:
 
 
 def ended(process):
-    """The output of a program that is interrupted, so that a launch ends its nodes, which hold the pipe; then killed."""
+    """The output of a program that is interrupted, and then killed; an interrupted launch ends its nodes, which hold
+    the pipe.
+    """
     os.killpg(process.pid, signal.SIGINT)
     try:
         return process.communicate(timeout=20)[0]

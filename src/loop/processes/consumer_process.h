@@ -95,8 +95,8 @@ class ConsumerProcess : public Process {
     return sensors_.reader.newest(first) != Lookup::kFrame || !current(sensors_.reader, first.head, robot_.hash);
   }
 
-  /// Throws BusError at the second poll that finds one other robot: a driver that has just locked the channel has not
-  /// cleared yet what an earlier driver announced there.
+  /// Throws BusError at the second poll that finds the same other robot. The first one may find the robot of an earlier
+  /// driver, which the one that has just locked the channel clears right afterwards.
   bool same_robot_as_driver() {
     const ChannelHead& head = sensors_.reader.memory()->head;
     const std::uint64_t announced = announced_robot(head).hash;
