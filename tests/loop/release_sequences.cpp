@@ -167,10 +167,11 @@ class Sequence {
     has_looked_ = false;
   }
 
+  /// A zero since the last cycle counts after what happens before the next one: the loop cannot tell their order.
   void take_release_back() {
     started_at_ = now_;
     start_cycle_ = cycles_;
-    released_ = false;
+    released_ = released_ && released_cycle_ == cycles_;
     withdraw();
   }
 
@@ -261,14 +262,11 @@ class Sequence {
     if (chance(20)) reset();
   }
 
-  /// A zero that is sent in the pause, or since the last cycle before it, counts after it, because nothing older may
-  /// move then.
+  /// A zero that is sent in the pause counts after it, because nothing older may move then.
   void pause() {
     if (driver_ && !away(kDriverNode) && now_ > pause_until_ && chance(700)) {
       pause_until_ = now_ + 1 + below(chance(2) ? 4 : 80);
-      const bool since_last_cycle = released_ && released_cycle_ == cycles_;
       take_release_back();
-      released_ = since_last_cycle;
     }
     if (driver_ && now_ == pause_until_) {
       driver_->count_resume();

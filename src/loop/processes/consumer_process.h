@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "loop/cycles/cycle_clock.h"
@@ -64,8 +65,7 @@ class ConsumerProcess : public Process {
   void poll_channels() override {
     sensors_.poll();
     trace_.poll();
-    robot_agrees_ = sensors_.reader.memory() != nullptr && sensors_.channel.locked() &&
-                    same_robot(sensors_.reader.memory()->head, robot_.hash, robot_.source);
+    robot_agrees_ = sensors_.reader.memory() != nullptr && sensors_.channel.locked() && same_robot_as_driver();
   }
 
   bool ready() override { return robot_agrees_ && !waits_for_telemetry(); }
@@ -95,6 +95,15 @@ class ConsumerProcess : public Process {
     return sensors_.reader.newest(first) != Lookup::kFrame || !current(sensors_.reader, first.head, robot_.hash);
   }
 
+  /// Throws BusError at the second poll that finds the same other robot. The first one may find the robot of an earlier
+  /// driver, which the one that has just locked the channel clears right afterwards.
+  bool same_robot_as_driver() {
+    const ChannelHead& head = sensors_.reader.memory()->head;
+    const std::uint64_t announced = announced_robot(head).hash;
+    if (announced != robot_.hash && std::exchange(announced_, announced) != announced) return false;
+    return same_robot(head, robot_.hash, robot_.source);
+  }
+
   /// Publishes for the driver that this node waits on the sensors of its current run.
   void attach() noexcept {
     const auto* memory = sensors_.reader.memory();
@@ -102,6 +111,7 @@ class ConsumerProcess : public Process {
   }
 
   TraceSink<Row> trace_;
+  std::uint64_t announced_ = 0;            ///< hash of another robot that the last poll found
   std::atomic<bool> robot_agrees_{false};  ///< the driver lives, on this robot
 };
 
