@@ -66,4 +66,9 @@ struct CommandFrame {
   std::uint64_t silence_needed = 0;  ///< cycles without a message after which no sender counts as requesting motion
 };
 
+/// Returns whether the last message before this command was no accepted zero velocity.
+inline bool requests_motion(const CommandFrame& command) noexcept {
+  return command.requests_received != 0 && command.zero_requested == 0;
+}
+
 }  // namespace robot_control
