@@ -144,9 +144,11 @@ class FrameReader {
     return Lookup::kMissing;
   }
 
-  /// Reads the complete frame with the latest stamp that an ended writer left, also if a torn frame follows it. Returns
-  /// kCorrupt if frames were published but none is complete. It reads every slot and is not meant for the loop.
+  /// Reads the last frame that an ended writer left. If that frame is torn or a token, reads the complete one with the
+  /// latest stamp. Returns kCorrupt if frames were published but none is complete. It reads every slot and is not meant
+  /// for the loop.
   Lookup last_whole(Frame& out) const noexcept {
+    if (newest(out) == Lookup::kFrame) return Lookup::kFrame;
     const auto* memory = memory_.load(std::memory_order_acquire);
     if (memory == nullptr) return Lookup::kMissing;
     bool found = false;

@@ -89,7 +89,6 @@ void SafetyMonitor::evaluate_frame(const MonitorInput& input) noexcept {
   const bool driver_restarted = !first && *driver_ != sensors.driver_instance;
   driver_ = sensors.driver_instance;
   if (run_ != sensors.head.run) enter_run(input);
-  if (first) release_.begin(sensors.head.cycle);
   evaluate_conditions(input);
   if (monitor_restarted) active_.add(kCauseMonitorRestarted, Reaction::kBrake, {.beyond = true});
   if (driver_restarted) active_.add(kCauseDriverLost, Reaction::kBrake, {.beyond = true});

@@ -78,4 +78,9 @@ inline std::uint64_t reasons_of(const CommandFrame& command) noexcept {
   return command.reasons | command.wheeled.reasons;
 }
 
+/// Returns whether the last message before this command was no accepted zero velocity.
+inline bool requests_motion(const CommandFrame& command) noexcept {
+  return command.requests_received != 0 && command.zero_requested == 0;
+}
+
 }  // namespace robot_control

@@ -154,7 +154,7 @@ class Sequence {
     CommandFrame command;
     if (command_.reader.newest(command) == Lookup::kFrame) {
       earlier.run = command.head.run;
-      earlier.requested = command.requests_received != 0 && command.zero_requested == 0;
+      earlier.requested = requests_motion(command);
     }
     for (Sender& sender : senders_) {
       earlier.present.push_back({sender.name, nullptr, sender.uri});
