@@ -7,7 +7,7 @@
 
 namespace robot_control {
 
-/// What follows if the master does not answer.
+/// It names what follows if the master does not answer.
 enum class Unanswered { kNone, kRepeat };
 
 /// Returns the nodes that publish any of these topics (resolved names). If the master does not answer, returns none, or
