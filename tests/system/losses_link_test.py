@@ -21,7 +21,7 @@ RAMP = 1.0
 """s from 1 m/s at max_linear_acceleration."""
 
 
-def end(program: subprocess.Popen[bytes]) -> None:
+def await_end(program: subprocess.Popen[bytes]) -> None:
     """Waits for the end of an interrupted program; rospy may hang at its end while TCP repairs the link."""
     try:
         program.wait(LIMIT / 3)
@@ -65,7 +65,7 @@ class LossesLinkTest(unittest.TestCase):
             program.send_signal(signal.SIGCONT)
             program.send_signal(signal.SIGINT)
         for program in self.teleop:
-            end(program)
+            await_end(program)
         self.robot.end()
 
     def drive_remotely(self, heartbeat_timeout: float) -> None:
@@ -102,7 +102,7 @@ class LossesLinkTest(unittest.TestCase):
     def restart_commands(self) -> None:
         commands = self.teleop.pop()
         commands.send_signal(signal.SIGINT)
-        end(commands)
+        await_end(commands)
         self.publish_commands()
 
     def cut(self) -> float:
