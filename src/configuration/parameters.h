@@ -27,6 +27,7 @@ struct Parameters {
   std::string urdf;  ///< path, relative to the folder of the file that names it
   DriveTrainParameters robot;
   LoopParameters loop;
+  std::string drives;  ///< path, see drive_file.h; empty: the simulated motors are given their torques directly
   MujocoPlantParameters plant;
   EstimatorParameters estimator;
   std::string calibration_file;  ///< path, see calibration_file.h; empty: none

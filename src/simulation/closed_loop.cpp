@@ -4,7 +4,6 @@
 #include <string>
 #include <utility>
 
-#include "drivers/mujoco/mujoco_plant.h"
 #include "log/log_error.h"
 #include "loop/cycles/controller_cycle.h"
 #include "loop/cycles/driver_cycle.h"
@@ -15,6 +14,7 @@
 #include "loop/start_check.h"
 #include "loop/wheeled_gate.h"
 #include "signals/names.h"
+#include "simulation/devices/simulated_machine.h"
 #include "simulation/faults/node_faults.h"
 
 namespace robot_control {
@@ -50,8 +50,8 @@ struct ClosedLoop::Parts {
   explicit Parts(const Parameters& given)
       : parameters(given),
         robot(load_robot(given)),
-        plant(robot, given.plant, given.loop.period()),
-        driver(plant, robot, {sensors.writer, FrameWriter<TruthFrame>(), &command.reader, &permit.reader},
+        machine(make_simulated_machine(given, robot)),
+        driver(*machine, robot, {sensors.writer, FrameWriter<TruthFrame>(), &command.reader, &permit.reader},
                given.loop.period_ns(), nullptr, gate_parameters(given, robot)),
         estimator(given.estimator, robot, given.loop.period(), sensors.reader, state.writer, nullptr),
         controller(given.controller, robot, given.loop.period(),
@@ -60,7 +60,7 @@ struct ClosedLoop::Parts {
                 {&sensors.reader, &state.reader, &command.reader, permit.writer},
                 load_script(given.loop.command_script), nullptr),
         retuning(given, robot, controller.tunings()) {
-    plant.start();
+    machine->start();
     driver.set_driver_instance(kDriverInstance);
     driver.begin_run(1);
   }
@@ -72,7 +72,7 @@ struct ClosedLoop::Parts {
 
   Parameters parameters;
   DriveTrain robot;
-  MujocoPlant plant;
+  std::unique_ptr<Driver> machine;
   Channel<SensorFrame> sensors;
   Channel<StateFrame> state;
   Channel<CommandFrame> command;
@@ -156,7 +156,7 @@ void ClosedLoop::reset() {
   parts.hand_over();
   parts.faults = {};
   parts.driver.inject(parts.faults);
-  parts.plant.start();
+  parts.machine->start();
   parts.driver.set_start(parts.driver.next_stamp_ns());
   parts.driver.begin_run(parts.driver.run() + 1);
 }

@@ -81,6 +81,39 @@ void CanDriver::read(SensorFrame& sensors) noexcept {
     if (sample.voltage > 0) sensors.battery_voltage = sample.voltage;
   }
   if (sensors.battery_voltage > 0) sensors.valid |= kValidBattery;
+  sensors.link_count = 1;
+  sensors.links[0] = link();
+  publish_statuses();
+}
+
+LinkStatus CanDriver::link() const noexcept {
+  const CanCounts& counts = bus_.counts();
+  LinkStatus link{.state = LinkState::kUp,
+                  .sent = counts.sent,
+                  .lost = counts.refused + counts.lost,
+                  .late = 0,
+                  .errors = counts.errors + counts.error_frames + counts.malformed};
+  if (bus_.state() == CanState::kBusOff) link.state = LinkState::kDown;
+  if (bus_.state() == CanState::kWarning || bus_.state() == CanState::kPassive) link.state = LinkState::kDegraded;
+  if (counts.received == 0) link.state = LinkState::kStarting;
+  return link;
+}
+
+void CanDriver::publish_statuses() noexcept {
+  for (std::size_t i = 0; i < drives_.size(); ++i) statuses_[i] = drives_[i].full_status();
+  published_statuses_.store(statuses_);
+}
+
+std::string CanDriver::warning() const {
+  Statuses statuses;
+  std::string text;
+  if (!published_statuses_.load(statuses)) return text;
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    if (statuses[i].state == DriveState::kRunning) continue;
+    if (!text.empty()) text += "; ";
+    text += drives_[i].words(statuses[i]);
+  }
+  return text;
 }
 
 double CanDriver::wanted_torque(std::size_t joint, const JointCommand& command) noexcept {

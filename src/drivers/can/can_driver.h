@@ -9,11 +9,13 @@
 /// sample is one or two cycles old, and is brought to the time of the call by its velocity. With an inertia J at the
 /// joint and the period h, the brake's damping d is stable below d h / J = 0.6. Half of that is recommended.
 
+#include <array>
 #include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "bus/latest_value.h"
 #include "drivers/can/can_bus.h"
 #include "drivers/can/can_parameters.h"
 #include "drivers/can/drive_set.h"
@@ -33,6 +35,12 @@ class CanDriver final : public Driver {
   void write(std::span<const JointCommand> commands) noexcept override;
   void stop() noexcept override { stopped_ = true; }
 
+  /// The drives take torques, so they follow every order.
+  bool implements(StopKind) const noexcept override { return true; }
+
+  /// Returns the words of every drive that is not running; any thread may call it.
+  std::string warning() const override;
+
   /// Returns one line per drive: its state, its cause and the remedy.
   std::vector<std::string> words() const;
   const DriveSet& drives() const noexcept { return drives_; }
@@ -41,7 +49,11 @@ class CanDriver final : public Driver {
  private:
   static constexpr int kMaxBatches = 8;  // of frames in one cycle, so that a flooded bus does not stop the loop
 
+  using Statuses = std::array<DriveStatus, kMaxJoints>;
+
   bool all_are(DriveState state) const noexcept;
+  LinkStatus link() const noexcept;
+  void publish_statuses() noexcept;
   void judge_faults() noexcept;
   double wanted_torque(std::size_t joint, const JointCommand& command) noexcept;
 
@@ -51,6 +63,8 @@ class CanDriver final : public Driver {
   std::vector<JointLaw> laws_;
   std::vector<DriveCommand> commands_;
   FrameBatch send_;
+  Statuses statuses_{};
+  LatestValue<Statuses> published_statuses_;
   DriverState state_ = DriverState::kStarting;
   std::uint64_t faults_ = 0;  // bits of DriverFault; kept until the next start
   std::int64_t now_ns_ = 0;

@@ -164,16 +164,22 @@ void Drive::settle_reaction() noexcept {
   }
 }
 
-std::string Drive::words() const {
-  const CauseWords& cause = kCauseWords[static_cast<std::size_t>(status_.cause)];
+DriveStatus Drive::full_status() const noexcept {
+  DriveStatus status = status_;
+  add_details(status);
+  return status;
+}
+
+std::string Drive::words(const DriveStatus& status) const {
+  const CauseWords& cause = kCauseWords[static_cast<std::size_t>(status.cause)];
   std::string text = drive_.joint + " (node " + std::to_string(drive_.node) +
-                     "): " + kStateWords[static_cast<std::size_t>(status_.state)];
-  if (status_.cause == DriveCause::kNone) return text;
+                     "): " + kStateWords[static_cast<std::size_t>(status.state)];
+  if (status.cause == DriveCause::kNone) return text;
   text += std::string("; the drive ") + cause.words;
-  if (*status_.subject != '\0') text += std::string(" ") + status_.subject;
-  if (const std::string code = code_words(status_); !code.empty()) text += " " + code;
-  if (status_.found != status_.expected) {
-    text += ", " + number_words(status_.found) + " instead of " + number_words(status_.expected);
+  if (*status.subject != '\0') text += std::string(" ") + status.subject;
+  if (const std::string code = code_words(status); !code.empty()) text += " " + code;
+  if (status.found != status.expected) {
+    text += ", " + number_words(status.found) + " instead of " + number_words(status.expected);
   }
   return *cause.remedy == '\0' ? text : text + "; " + cause.remedy;
 }

@@ -55,7 +55,7 @@ enum class DriveCause : std::uint8_t {
   kUnknownWatchdog,   ///< The reaction of the drive on silence is unknown, and that is not accepted.
 };
 
-/// A copy of it is printed by Drive::words.
+/// A copy of it may be put into words by another thread.
 struct DriveStatus {
   DriveState state = DriveState::kStarting;
   DriveCause cause = DriveCause::kFirstFrame;
@@ -63,6 +63,7 @@ struct DriveStatus {
   std::uint64_t code = 0;
   double found = 0;
   double expected = 0;
+  std::array<std::uint64_t, 5> details{};  ///< of an error, as the dialect counts them
 };
 
 /// How the reaction on silence is known.
@@ -123,14 +124,18 @@ class Drive {
   void step(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept;
 
   const DriveStatus& status() const noexcept { return status_; }
+
+  /// Returns the status with its details.
+  DriveStatus full_status() const noexcept;
   const DriveSample& sample() const noexcept { return sample_; }
   const DriveParameters& drive_parameters() const noexcept { return drive_; }
 
   /// Known from `ready` on.
   const KnownReaction& on_silence() const noexcept { return on_silence_; }
 
-  /// Returns joint, state, cause with its code in words, and the remedy.
-  std::string words() const;
+  /// Returns joint, state, cause with its code in words, and the remedy. Any thread may put a full status into words.
+  std::string words(const DriveStatus& status) const;
+  std::string words() const { return words(full_status()); }
 
   /// Returns the frames that are on the bus in `running`, with those of the drive, to compute the load.
   virtual std::vector<PlannedFrames> plan() const = 0;
@@ -140,6 +145,8 @@ class Drive {
   virtual void restart(bool reset, std::int64_t now_ns) noexcept = 0;
   /// Runs one cycle. The torque is finite and within the limit.
   virtual void advance(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept = 0;
+  virtual void add_details(DriveStatus& status) const noexcept = 0;
+  /// Uses nothing but the status and the parameters.
   virtual std::string code_words(const DriveStatus& status) const = 0;
 
   /// Returns whether the motor is to have no torque because of a fault. A running drive that is hot, has a low voltage

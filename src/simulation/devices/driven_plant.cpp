@@ -1,0 +1,88 @@
+#include "simulation/devices/driven_plant.h"
+
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+
+#include "gate/wheeled/wheel_stop.h"
+
+namespace robot_control {
+
+DrivenPlant::DrivenPlant(const DriveTrain& robot, const MujocoPlantParameters& plant, const CanParameters& can,
+                         double period, const DeviceErrors& errors)
+    : plant_(robot, plant, period),
+      drives_(can, errors),
+      period_ns_(std::llround(1.0e9 * period)),
+      torques_(robot.joints.size()) {
+  int ends[2];
+  if (socketpair(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends) != 0)
+    throw DriverError(std::string("no socket for the simulated bus: ") + std::strerror(errno));
+  wire_ = ends[1];
+  driver_ = std::make_unique<CanDriver>(can, brakes_of_slow_drives(robot, period), period, CanSocket(ends[0]), [this] {
+    return CanTime{.time_ns = drives_.bus().now_ns(), .utc_ns = drives_.bus().now_ns()};
+  });
+  party_ = drives_.bus().join([this](const can_frame& frame, std::int64_t) { ::send(wire_, &frame, sizeof frame, 0); });
+}
+
+DrivenPlant::~DrivenPlant() {
+  close(wire_);
+}
+
+void DrivenPlant::start() {
+  plant_.start();
+  plant_.truth(truth_);
+  driver_->start();
+  const std::vector<JointCommand> brakes(drives_.size());
+  const std::int64_t end_ns = drives_.bus().now_ns() + kMaxStart;
+  do {
+    driver_->read(wheels_);
+    driver_->write(brakes);
+    run_drives();
+  } while (wheels_.driver_state != DriverState::kRunning && drives_.bus().now_ns() < end_ns);
+}
+
+/// Carries the driver's frames to the bus, and runs bus and devices for one period.
+void DrivenPlant::run_drives() noexcept {
+  can_frame frame;
+  while (recv(wire_, &frame, sizeof frame, 0) == sizeof frame) drives_.bus().send(party_, frame);
+  drives_.run(truth_.joints, drives_.bus().now_ns() + period_ns_);
+}
+
+void DrivenPlant::read(SensorFrame& sensors) noexcept {
+  plant_.read(sensors);
+  driver_->read(wheels_);
+  if (sensors.driver_state == DriverState::kRunning) sensors.driver_state = wheels_.driver_state;
+  sensors.faults |= wheels_.faults;
+  std::copy_n(wheels_.joints.begin(), drives_.size(), sensors.joints.begin());
+  sensors.link_count = wheels_.link_count;
+  sensors.links = wheels_.links;
+  if ((sensors.valid & kValidBattery) != 0 || (wheels_.valid & kValidBattery) == 0) return;
+  sensors.valid |= kValidBattery;
+  sensors.battery_voltage = wheels_.battery_voltage;
+}
+
+void DrivenPlant::write(std::span<const JointCommand> commands) noexcept {
+  driver_->write(commands.first(std::min(drives_.size(), commands.size())));
+  plant_.truth(truth_);
+  run_drives();
+  std::ranges::copy(commands.first(std::min(torques_.size(), commands.size())), torques_.begin());
+  for (std::size_t i = 0; i < drives_.size(); ++i) torques_[i] = {.mode = JointMode::kEffort, .effort = drives_.torque(i)};
+  plant_.write(torques_);
+}
+
+void DrivenPlant::stop() noexcept {
+  driver_->stop();
+  plant_.stop();
+}
+
+std::string DrivenPlant::warning() const {
+  const std::string drives = driver_->warning();
+  const std::string robot = plant_.warning();
+  return drives.empty() || robot.empty() ? drives + robot : drives + "; " + robot;
+}
+
+}  // namespace robot_control

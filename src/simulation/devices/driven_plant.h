@@ -1,0 +1,59 @@
+#pragma once
+/// A DrivenPlant is the simulated robot behind motor drives on CAN, in virtual time. The driver of the drives computes
+/// torques and frames, the bus carries them, the devices turn the motors of the MuJoCo plant. The driver does not know
+/// that they are simulated.
+///
+/// In each period the devices see the wheels move on with the velocity of its beginning. The plant applies the mean
+/// torque of a device over the period. IMU, contacts, battery and the other joints are those of the plant.
+///
+/// `start` runs the drives until they are ready, at most kMaxStart, while the robot stands.
+
+#include <memory>
+
+#include "drivers/can/can_driver.h"
+#include "drivers/mujoco/mujoco_plant.h"
+#include "simulation/devices/simulated_drives.h"
+
+namespace robot_control {
+
+class DrivenPlant final : public Driver {
+ public:
+  static constexpr std::int64_t kMaxStart = 10'000'000'000;  ///< ns
+
+  /// `period` is in s. Throws DriverError as MujocoPlant does.
+  DrivenPlant(const DriveTrain& robot, const MujocoPlantParameters& plant, const CanParameters& can, double period,
+              const DeviceErrors& errors = {});
+  ~DrivenPlant() override;
+  DrivenPlant(const DrivenPlant&) = delete;
+  DrivenPlant& operator=(const DrivenPlant&) = delete;
+
+  void start() override;
+  void read(SensorFrame& sensors) noexcept override;
+  void write(std::span<const JointCommand> commands) noexcept override;
+  void stop() noexcept override;
+  bool implements(StopKind kind) const noexcept override { return driver_->implements(kind); }
+  bool simulated() const noexcept override { return true; }
+  bool truth(TruthFrame& truth) noexcept override { return plant_.truth(truth); }
+  bool inject(const InjectedFaults& faults) noexcept override { return plant_.inject(faults); }
+  std::string_view fault_message() const noexcept override { return plant_.fault_message(); }
+  std::string warning() const override;
+
+  SimulatedDrives& drives() noexcept { return drives_; }
+  const CanDriver& driver() const noexcept { return *driver_; }
+
+ private:
+  void connect_wire();
+  void run_drives() noexcept;
+
+  MujocoPlant plant_;
+  SimulatedDrives drives_;
+  std::unique_ptr<CanDriver> driver_;
+  std::int64_t period_ns_;
+  std::size_t party_ = 0;  // of the driver on the bus
+  int wire_ = -1;          // the end of the socket that is not the driver's
+  TruthFrame truth_;
+  SensorFrame wheels_;  // as the driver reports them
+  std::vector<JointCommand> torques_;
+};
+
+}  // namespace robot_control
