@@ -1,0 +1,16 @@
+#pragma once
+/// The drivers of real machines by name. A new driver is one row of the table in factory.cpp and one word of
+/// DriverChoice.
+
+#include <memory>
+
+#include "configuration/parameters.h"
+#include "drivers/driver.h"
+#include "machine/wheeled/drive_train.h"
+
+namespace robot_control {
+
+/// Throws DriverError, and ParameterError with all problems of the driver's own file.
+std::unique_ptr<Driver> make_driver(const Parameters& parameters, const DriveTrain& robot);
+
+}  // namespace robot_control
