@@ -223,7 +223,7 @@ def _starting(facts: Facts) -> Answer | None:
     if facts.value(facts.driver, "driver_state") != "starting" or safety is None or safety.causes:
         return None
     waits = facts.value(facts.driver, "suspicious")
-    actions = tuple(("technician", line) for line in waits.split("; ") if line)
+    actions = tuple(("technician", line) for line in waits.split(". ") if line)
     return Answer(Verdict.STOPPED, "Not ready: the machine is starting.", actions)
 
 

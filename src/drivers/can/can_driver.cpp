@@ -110,7 +110,7 @@ std::string CanDriver::warning() const {
   if (!published_statuses_.load(statuses)) return text;
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     if (statuses[i].state == DriveState::kRunning) continue;
-    if (!text.empty()) text += "; ";
+    if (!text.empty()) text += ". ";
     text += drives_[i].words(statuses[i]);
   }
   return text;
