@@ -5,9 +5,7 @@
 
 #include <ros/ros.h>
 
-#include <algorithm>
 #include <atomic>
-#include <functional>
 #include <mutex>
 #include <thread>
 
@@ -89,28 +87,10 @@ class DeviceSimulatorNode final : public Node {
   }
 
   bool inject_fault(msg::InjectFaultRequest& request, msg::InjectFaultResponse& response) {
-    const std::vector<Word> words = words_of(DeviceFault());
-    const auto kind = std::ranges::find(words, request.kind, &Word::text);
-    const auto joint = std::ranges::find(joints_, request.component);
-    response.success = 0;
-    if (request.component == "bus" && (request.kind == "ok" || request.kind == "off")) {
-      const std::lock_guard lock(mutex_);
-      simulator_.unplug(request.kind == "off");
-      response.success = 1;
-    } else if (joint != joints_.end() && kind != words.end()) {
-      const std::lock_guard lock(mutex_);
-      simulator_.drives().inject(static_cast<std::size_t>(joint - joints_.begin()),
-                                 static_cast<DeviceFault>(kind->value));
-      response.success = 1;
-    }
-    if (response.success != 0) {
-      response.message = ascii(request.component + " " + request.kind);
-      return true;
-    }
-    response.message = "component must be bus (with ok or off)";
-    for (const std::string& name : joints_) response.message += ", " + ascii(name);
-    response.message += "; kind";
-    for (const Word& word : words) response.message += " " + std::string(word.text);
+    const std::lock_guard lock(mutex_);
+    const std::string problem = simulator_.inject(request.component, request.kind);
+    response.success = problem.empty() ? 1 : 0;
+    response.message = ascii(problem.empty() ? request.component + " " + request.kind : problem);
     return true;
   }
 

@@ -65,6 +65,12 @@ struct ClosedLoop::Parts {
     driver.begin_run(1);
   }
 
+  /// Returns false if there is no such device or kind.
+  bool inject_device(const std::string& component, const std::string& kind) {
+    Simulator* const simulator = simulator_of(*machine);
+    return simulator != nullptr && simulator->inject_device(component, kind).empty();
+  }
+
   void hand_over() noexcept {
     controller.inbox().store(request);
     monitor.inbox().store(operator_input);
@@ -168,6 +174,7 @@ void ClosedLoop::set_parameters(const std::string& request) {
 
 void ClosedLoop::inject_fault(const std::string& component, const std::string& kind) {
   const std::string problem = set_fault(parts_->faults, component, kind);
+  if (!problem.empty() && parts_->inject_device(component, kind)) return;
   if (!problem.empty()) throw std::invalid_argument(problem);
   parts_->driver.inject(parts_->faults);
 }

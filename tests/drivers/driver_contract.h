@@ -244,10 +244,4 @@ TEST_P(DriverContract, ReadAndWriteDoNotAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-TEST_P(DriverContract, OnlyASimulatorKnowsTheTruthAndTakesFaults) {
-  TruthFrame truth;
-  EXPECT_EQ(driver_->truth(truth), driver_->simulated());
-  EXPECT_EQ(driver_->inject(InjectedFaults{}), driver_->simulated());
-}
-
 }  // namespace robot_control

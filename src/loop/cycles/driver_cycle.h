@@ -84,6 +84,7 @@ class DriverCycle {
   void publish_last_as(DriverState state) noexcept;
 
   Driver& driver_;
+  Simulator* simulator_;  ///< null before hardware
   Channels channels_;
   Gate gate_;
   std::int64_t period_ns_;

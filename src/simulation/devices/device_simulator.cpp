@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "simulation/devices/device_faults.h"
+
 namespace robot_control {
 
 DeviceSimulator::DeviceSimulator(const DriveTrain& robot, const MujocoPlantParameters& plant, const CanParameters& can,
@@ -12,8 +14,13 @@ DeviceSimulator::DeviceSimulator(const DriveTrain& robot, const MujocoPlantParam
       period_ns_(std::llround(1.0e9 * period)),
       party_(drives_.bus().join([this](const can_frame& frame, std::int64_t) { to_host_.push_back(frame); })),
       torques_(robot.joints.size()) {
+  for (std::size_t i = 0; i < drives_.size(); ++i) joints_.push_back(robot.joints[i].name);
   plant_.start();
   plant_.truth(truth_);
+}
+
+std::string DeviceSimulator::inject(std::string_view component, std::string_view kind) {
+  return inject_device_fault(drives_, joints_, party_, component, kind);
 }
 
 void DeviceSimulator::step() noexcept {

@@ -26,15 +26,16 @@ class DeviceSimulator {
   /// Returns the true state at the end of the last step.
   const TruthFrame& truth() const noexcept { return truth_; }
 
-  SimulatedDrives& drives() noexcept { return drives_; }
-  void unplug(bool unplugged) { drives_.bus().connect(party_, !unplugged); }
+  /// As inject_device_fault.
+  std::string inject(std::string_view component, std::string_view kind);
 
  private:
   MujocoPlant plant_;
   SimulatedDrives drives_;
   CanBus bus_;
   std::int64_t period_ns_;
-  std::size_t party_;              // of the other program on the simulated bus
+  std::vector<std::string> joints_;
+  std::size_t party_;               // of the other program on the simulated bus
   std::vector<can_frame> to_host_;  // since the last step
   TruthFrame truth_;
   std::vector<JointCommand> torques_;

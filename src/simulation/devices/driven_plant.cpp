@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "gate/wheeled/wheel_stop.h"
+#include "simulation/devices/device_faults.h"
 
 namespace robot_control {
 
@@ -18,6 +19,7 @@ DrivenPlant::DrivenPlant(const DriveTrain& robot, const MujocoPlantParameters& p
       drives_(can, errors),
       period_ns_(std::llround(1.0e9 * period)),
       torques_(robot.joints.size()) {
+  for (std::size_t i = 0; i < drives_.size(); ++i) joints_.push_back(robot.joints[i].name);
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends) != 0)
     throw DriverError(std::string("no socket for the simulated bus: ") + std::strerror(errno));
@@ -77,6 +79,10 @@ void DrivenPlant::write(std::span<const JointCommand> commands) noexcept {
 void DrivenPlant::stop() noexcept {
   driver_->stop();
   plant_.stop();
+}
+
+std::string DrivenPlant::inject_device(std::string_view component, std::string_view kind) {
+  return inject_device_fault(drives_, joints_, party_, component, kind);
 }
 
 std::string DrivenPlant::warning() const {

@@ -16,7 +16,7 @@
 
 namespace robot_control {
 
-class DrivenPlant final : public Driver {
+class DrivenPlant final : public Simulator {
  public:
   static constexpr std::int64_t kMaxStart = 10'000'000'000;  ///< ns
 
@@ -32,17 +32,15 @@ class DrivenPlant final : public Driver {
   void write(std::span<const JointCommand> commands) noexcept override;
   void stop() noexcept override;
   bool implements(StopKind kind) const noexcept override { return driver_->implements(kind); }
-  bool simulated() const noexcept override { return true; }
-  bool truth(TruthFrame& truth) noexcept override { return plant_.truth(truth); }
-  bool inject(const InjectedFaults& faults) noexcept override { return plant_.inject(faults); }
+  void truth(TruthFrame& truth) noexcept override { plant_.truth(truth); }
+  void inject(const InjectedFaults& faults) noexcept override { plant_.inject(faults); }
+  std::string inject_device(std::string_view component, std::string_view kind) override;
   std::string_view fault_message() const noexcept override { return plant_.fault_message(); }
   std::string warning() const override;
 
-  SimulatedDrives& drives() noexcept { return drives_; }
   const CanDriver& driver() const noexcept { return *driver_; }
 
  private:
-  void connect_wire();
   void run_drives() noexcept;
 
   MujocoPlant plant_;
@@ -52,6 +50,7 @@ class DrivenPlant final : public Driver {
   std::size_t party_ = 0;  // of the driver on the bus
   int wire_ = -1;          // the end of the socket that is not the driver's
   TruthFrame truth_;
+  std::vector<std::string> joints_;  // of the drives
   SensorFrame wheels_;  // as the driver reports them
   std::vector<JointCommand> torques_;
 };
