@@ -475,7 +475,7 @@ class Sequence {
       return sender.left_requesting || (sender.has_requested() && !sender.owes_zero);
     });
     CommandFrame command;  // the request in force; a ramp to zero may outlast it
-    const bool in_force = command_.reader.newest(command) == Lookup::kFrame && !zero(command.twist_requested);
+    const bool in_force = command_.reader.newest(command) == Lookup::kFrame && !zero(command.requested.twist);
     if (requested || !in_force) requested_cycle_ = cycles_;
     if (cycles_ - std::max(requested_cycle_, withdrawn_cycle_) > kBrakesWithin)
       return "motion that was requested before a withdrawal";
@@ -484,7 +484,7 @@ class Sequence {
 
   std::mt19937_64 random_;
   ReleaseFigures& figures_;
-  RobotModel robot_ = two_wheels();
+  DriveTrain robot_ = two_wheels();
   DriveControllerParameters parameters_;
   StandingMachine machine_;
   TestChannel<SensorFrame> sensors_;

@@ -32,19 +32,19 @@ class MotionReleaseTest : public testing::Test {
     for (std::uint64_t i = 0; i < count; ++i) step();
   }
   void request_motion() {
-    command_.twist_requested.linear[0] = 1;
+    command_.requested.twist.linear[0] = 1;
     command_.zero_requested = 0;
     command_.silent_cycles = 0;
   }
   void request_zero() {
-    command_.twist_requested = {};
+    command_.requested.twist = {};
     command_.zero_requested = 1;
     ++command_.zero_requests;
     command_.silent_cycles = 0;
   }
   /// A message was refused; the command in force ramps to zero.
   void refuse() {
-    command_.twist_requested = {};
+    command_.requested.twist = {};
     command_.zero_requested = 0;
     command_.silent_cycles = 0;
   }
@@ -233,7 +233,7 @@ TEST_F(MotionReleaseTest, SilenceBeforeAPauseDoesNotCountAfterIt) {
 
 TEST_F(MotionReleaseTest, SilenceBeforeTheFirstCycleThatTheMonitorSeesDoesNotCount) {
   release_.enter_run();
-  command_.twist_requested = {};
+  command_.requested.twist = {};
   command_.silent_cycles = 10 * kSilence;
   ++sensors_.resumes;
   steps(kSilence);

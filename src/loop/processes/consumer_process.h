@@ -12,8 +12,8 @@
 
 #include "loop/cycles/cycle_clock.h"
 #include "loop/cycles/trace_sink.h"
+#include "loop/machine_identity.h"
 #include "loop/processes/process.h"
-#include "loop/start_check.h"
 #include "signals/roles.h"
 
 namespace robot_control {
@@ -46,7 +46,7 @@ class ConsumerProcess : public Process {
   /// Longest wait before the end of the loop is noticed, ns.
   static constexpr std::int64_t kStopCheck = 100'000'000;
 
-  ConsumerProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus,
+  ConsumerProcess(const Parameters& parameters, const MachineModel& robot, const std::string& bus,
                   const ConsumerNames& names)
       : Process(parameters.loop, names.priority, names.thread),
         output_(bus, names.channel),
@@ -86,7 +86,7 @@ class ConsumerProcess : public Process {
 
   Output<Frame> output_;
   Input<SensorFrame> sensors_;
-  RobotModel robot_;  ///< identified
+  MachineModel robot_;  ///< identified
 
  private:
   bool waits_for_telemetry() const {
