@@ -143,7 +143,7 @@ void SafetyMonitor::evaluate_motion(const MonitorInput& input, std::uint64_t ela
 }
 
 std::uint64_t SafetyMonitor::missing() const noexcept {
-  return presence_.missing() | (machine_conditions_.starting() ? kMissingMachine : 0U);
+  return presence_.missing() | (machine_conditions_.starting() ? std::uint64_t{kMissingMachine} : 0);
 }
 
 void SafetyMonitor::supervise(const MonitorInput& input) noexcept {
