@@ -447,8 +447,8 @@ class Sequence {
     last_permit_ = permit;
   }
 
-  /// The monitor learns of a start from the first frame that is published in its own cycle, for it uses no older one
-  /// (safety/latch/motion_release.h). A node whose frames come later than that is lost within loss_cycles.
+  /// The monitor uses frames of the newest cycle alone (safety/latch/motion_release.h) and learns of a start from the
+  /// first one. A node whose frames all come later is lost within loss_cycles.
   template <class Frame>
   void note_frame(Node node, TestChannel<Frame>& channel) {
     Frame published;
