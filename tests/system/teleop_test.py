@@ -37,7 +37,7 @@ class TeleopTest(RobotTestCase):
         return terminal
 
     def drive(self) -> None:
-        """Holds w until the robot drives, and anew after each stop of a stalling machine."""
+        """Holds w until the robot drives, and again after each stop of a stalling machine."""
         end = time.monotonic() + 60.0
         while not self.robot.driving():
             self.assertLess(time.monotonic(), end, self.terminal.screen)
