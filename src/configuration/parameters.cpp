@@ -49,8 +49,11 @@ Schema schema(Parameters& p) {
   };
   const Key no_effect{"standstill_acceleration", &p.no_effect, "m/s²", 0.001, 10, kOptional | kObsolete};
   return {
-      .blocks = {{"robot", joined({file("urdf", p.urdf, 0), keys(p.robot), keys(p.loop),
-                            {{"driver", &p.driver, {}, 0, 0, kOptional}}, file("drives", p.drives, kMayBeEmpty | kOptional)})},
+      .blocks = {{"robot", joined({file("urdf", p.urdf, 0),
+                                   keys(p.robot),
+                                   keys(p.loop),
+                                   {{"driver", &p.driver, {}, 0, 0, kOptional}},
+                                   file("drives", p.drives, kMayBeEmpty | kOptional)})},
                  {program_of(Role::kDriver), joined({keys(p.plant), plant_keys(p.report)})},
                  {program_of(Role::kEstimator), joined({keys(p.estimator),
                                                         {no_effect},

@@ -49,8 +49,8 @@ class Driver {
   virtual bool implements(StopKind kind) const noexcept { return kind == StopKind::kBrake; }
 };
 
-/// The driver of a simulated machine. It waits when its node is late: time slips, cycles stay consecutive. Hardware does
-/// not: the cycle number jumps by the periods missed.
+/// The driver of a simulated machine. It waits when its node is late: time slips, cycles stay consecutive. Hardware
+/// does not: the cycle number jumps by the periods missed.
 class Simulator : public Driver {
  public:
   /// Returns the true state at t_k.

@@ -52,7 +52,9 @@ class DeviceSimulatorNode final : public Node {
   void stop() override { end(); }
   std::vector<std::string> missing() const override { return {}; }
   std::vector<std::string> realtime_messages() const override { return {}; }
-  void diagnose(DiagnosticReport& report) override { report.value("slipped_s", 1.0e-9 * static_cast<double>(slipped_ns_.load())); }
+  void diagnose(DiagnosticReport& report) override {
+    report.value("slipped_s", 1.0e-9 * static_cast<double>(slipped_ns_.load()));
+  }
 
   void publish() override {
     TruthFrame truth;

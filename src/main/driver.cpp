@@ -4,12 +4,12 @@
 
 int main(int argc, char** argv) {
   using namespace robot_control;
-  return run_node(argc, argv,
-                  {.name = "driver",
-                   .purpose = "Connects the loop with a real machine (robot.driver). The last check of every command is "
-                              "here.",
-                   .make = [](const Setup& setup) {
-                     return make_driver_node(
-                         setup, [](const Setup& read) { return make_driver(read.parameters, read.robot); });
-                   }});
+  return run_node(
+      argc, argv,
+      {.name = "driver",
+       .purpose = "Connects the loop with a real machine (robot.driver). The last check of every command is "
+                  "here.",
+       .make = [](const Setup& setup) {
+         return make_driver_node(setup, [](const Setup& read) { return make_driver(read.parameters, read.robot); });
+       }});
 }

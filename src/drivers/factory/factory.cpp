@@ -14,13 +14,15 @@ namespace {
 
 std::unique_ptr<Driver> make_can(const Parameters& parameters, const DriveTrain& robot) {
   if (parameters.drives.empty())
-    throw DriverError("robot.driver is can, but robot.drives names no drive file: set it, for instance to "
-                      "config/drives/odrive.yaml");
+    throw DriverError(
+        "robot.driver is can, but robot.drives names no drive file: set it, for instance to "
+        "config/drives/odrive.yaml");
   std::vector<std::string> joints;
   for (const WheelModel& wheel : robot.wheels) joints.push_back(robot.joints[wheel.joint].name);
   for (const JointModel& joint : robot.joints) {
     if (joint.role == JointRole::kHeld)
-      throw DriverError("joint '" + joint.name + "' is to be held, and the driver can drives the wheels alone: give "
+      throw DriverError("joint '" + joint.name +
+                        "' is to be held, and the driver can drives the wheels alone: give "
                         "the joint no actuator in the description, or hold it by another controller");
   }
   const CanParameters can = read_drive_file(parameters.drives, joints, parameters.loop.rate);
@@ -43,8 +45,9 @@ std::unique_ptr<Driver> make_driver(const Parameters& parameters, const DriveTra
   for (const DriverRow& row : kDrivers) {
     if (row.choice == parameters.driver) return row.make(parameters, robot);
   }
-  throw DriverError("robot.driver is mujoco, which is the program mujoco_plant: start that one, or set robot.driver "
-                    "(_driver:=can)");
+  throw DriverError(
+      "robot.driver is mujoco, which is the program mujoco_plant: start that one, or set robot.driver "
+      "(_driver:=can)");
 }
 
 }  // namespace robot_control

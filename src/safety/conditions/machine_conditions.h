@@ -36,9 +36,9 @@ class MachineConditions {
   void evaluate_start(bool starting, std::uint64_t elapsed, ActiveCauses& out) noexcept;
 
   double period_;
-  double start_timeout_;          ///< s
-  std::uint64_t starting_ = 0;    ///< cycles without a break
-  bool was_ready_ = false;        ///< in this run
+  double start_timeout_;        ///< s
+  std::uint64_t starting_ = 0;  ///< cycles without a break
+  bool was_ready_ = false;      ///< in this run
   ConditionWatch overruns_;
   ConditionWatch battery_low_;
   ConditionWatch battery_empty_;

@@ -33,8 +33,14 @@ enum class DeviceFault : std::uint8_t {
 /// The words of `~inject_fault`.
 inline std::vector<Word> words_of(DeviceFault) {
   using enum DeviceFault;
-  return {{"ok", kNone},           {"off", kOff},           {"reset", kReset}, {"other_zero", kOtherZero},
-          {"encoder", kEncoder},   {"released", kReleased}, {"hot", kHot},     {"under_voltage", kUnderVoltage},
+  return {{"ok", kNone},
+          {"off", kOff},
+          {"reset", kReset},
+          {"other_zero", kOtherZero},
+          {"encoder", kEncoder},
+          {"released", kReleased},
+          {"hot", kHot},
+          {"under_voltage", kUnderVoltage},
           {"not_finite", kNotFinite}};
 }
 

@@ -31,7 +31,8 @@ void DeviceSimulator::step() noexcept {
     more = received.more;
   }
   drives_.run(truth_.joints, now_ns + period_ns_);
-  for (std::size_t i = 0; i < drives_.size(); ++i) torques_[i] = {.mode = JointMode::kEffort, .effort = drives_.torque(i)};
+  for (std::size_t i = 0; i < drives_.size(); ++i)
+    torques_[i] = {.mode = JointMode::kEffort, .effort = drives_.torque(i)};
   plant_.write(torques_);
   plant_.truth(truth_);
   bus_.send(to_host_);

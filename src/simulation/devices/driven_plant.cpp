@@ -72,7 +72,8 @@ void DrivenPlant::write(std::span<const JointCommand> commands) noexcept {
   plant_.truth(truth_);
   run_drives();
   std::ranges::copy(commands.first(std::min(torques_.size(), commands.size())), torques_.begin());
-  for (std::size_t i = 0; i < drives_.size(); ++i) torques_[i] = {.mode = JointMode::kEffort, .effort = drives_.torque(i)};
+  for (std::size_t i = 0; i < drives_.size(); ++i)
+    torques_[i] = {.mode = JointMode::kEffort, .effort = drives_.torque(i)};
   plant_.write(torques_);
 }
 

@@ -51,7 +51,7 @@ class DrivenPlant final : public Simulator {
   int wire_ = -1;          // the end of the socket that is not the driver's
   TruthFrame truth_;
   std::vector<std::string> joints_;  // of the drives
-  SensorFrame wheels_;  // as the driver reports them
+  SensorFrame wheels_;               // as the driver reports them
   std::vector<JointCommand> torques_;
 };
 
