@@ -38,6 +38,9 @@ class Driver {
   /// Brakes, at once and until the next `start`.
   virtual void stop() noexcept = 0;
 
+  /// The operator requests a reset: a machine with a fault clears it and starts again. Never blocks.
+  virtual void reset() noexcept {}
+
   /// Returns what is suspicious about the machine, known after `start`; "" if nothing is.
   virtual std::string warning() const { return {}; }
 

@@ -1,26 +1,30 @@
 /// The simulated robot whose drives the program `driver` commands over the bus of the drive file (`address:
 /// unix:FOLDER`). It publishes ground_truth/odom and has the service ~inject_fault: component is a joint or `bus`.
 
-#include "simulation/devices/device_simulator.h"
+#include "simulation/machines/device_simulator.h"
 
 #include <ros/ros.h>
 
 #include <atomic>
+#include <memory>
 #include <mutex>
-#include <thread>
 
 #include "configuration/drive_file.h"
 #include "files/ascii.h"
 #include "ros/messages/motion_messages.h"
 #include "ros/messages/simulation_messages.h"
+#include "ros/messages/time_map.h"
 #include "ros/nodes/node.h"
 #include "ros/reports/diagnostics.h"
 #include "ros/reports/pacer.h"
 #include "rt/clock.h"
 #include "rt/periodic.h"
+#include "rt/realtime_thread.h"
 
 namespace robot_control {
 namespace {
+
+constexpr int kPriority = 84;  // above the loop, as its frames would be on a real bus
 
 std::vector<std::string> wheel_names(const DriveTrain& robot) {
   std::vector<std::string> names;
@@ -42,7 +46,9 @@ class DeviceSimulatorNode final : public Node {
   void connect(ros::NodeHandle& handle) override {
     truth_ = handle.advertise<msg::Odometry>("ground_truth/odom", 10);
     inject_fault_ = ros::NodeHandle("~").advertiseService("inject_fault", &DeviceSimulatorNode::inject_fault, this);
-    thread_ = std::thread([this] { run(); });
+    thread_ = std::make_unique<RealtimeThread>(
+        RealtimeParameters{.name = "devices", .policy = setup_.parameters.loop.realtime, .priority = kPriority},
+        [this] { run(); });
   }
   void poll() override {}
   std::int64_t tick_ns() const override {
@@ -62,10 +68,12 @@ class DeviceSimulatorNode final : public Node {
       const std::lock_guard lock(mutex_);
       truth = simulator_.truth();
     }
-    truth.head.stamp_ns = monotonic_ns();
-    if (!pace_.due(1, truth.head.stamp_ns)) return;
+    SensorFrame now;
+    now.head.stamp_ns = monotonic_ns();
+    time_.follow(now);
+    if (!pace_.due(1, now.head.stamp_ns)) return;
     const ReportParameters& report = setup_.parameters.report;
-    truth_.publish(ground_truth(truth, report.odom_frame, report.base_frame, ros::Time::now()));
+    truth_.publish(ground_truth(truth, report.odom_frame, report.base_frame, time_.at(now.head.stamp_ns)));
   }
 
  private:
@@ -85,7 +93,7 @@ class DeviceSimulatorNode final : public Node {
 
   void end() {
     ending_.store(true);
-    if (thread_.joinable()) thread_.join();
+    if (thread_) thread_->join();
   }
 
   bool inject_fault(msg::InjectFaultRequest& request, msg::InjectFaultResponse& response) {
@@ -102,11 +110,12 @@ class DeviceSimulatorNode final : public Node {
   std::mutex mutex_;
   DeviceSimulator simulator_;
   Pacer pace_;
+  TimeMap time_{ClockMode::kWall};
   ros::Publisher truth_;
   ros::ServiceServer inject_fault_;
   std::atomic<bool> ending_{false};
   std::atomic<std::int64_t> slipped_ns_{0};
-  std::thread thread_;
+  std::unique_ptr<RealtimeThread> thread_;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "drivers/factory/factory.h"
 #include "ros/nodes/driver_node.h"
 #include "ros/nodes/node.h"
+#include "rt/clock.h"
 
 int main(int argc, char** argv) {
   using namespace robot_control;
@@ -10,6 +11,8 @@ int main(int argc, char** argv) {
        .purpose = "Connects the loop with a real machine (robot.driver). The last check of every command is "
                   "here.",
        .make = [](const Setup& setup) {
-         return make_driver_node(setup, [](const Setup& read) { return make_driver(read.parameters, read.robot); });
+         return make_driver_node(setup, [](const Setup& read) {
+           return make_driver(read.parameters, read.robot, [] { return CanTime{monotonic_ns(), utc_ns()}; });
+         });
        }});
 }

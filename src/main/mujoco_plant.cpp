@@ -1,6 +1,6 @@
 #include "ros/nodes/driver_node.h"
 #include "ros/nodes/node.h"
-#include "simulation/devices/simulated_machine.h"
+#include "simulation/machines/simulated_machine.h"
 
 int main(int argc, char** argv) {
   using namespace robot_control;

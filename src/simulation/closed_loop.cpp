@@ -14,8 +14,8 @@
 #include "loop/start_check.h"
 #include "loop/wheeled_gate.h"
 #include "signals/names.h"
-#include "simulation/devices/simulated_machine.h"
 #include "simulation/faults/node_faults.h"
+#include "simulation/machines/simulated_machine.h"
 
 namespace robot_control {
 namespace {

@@ -49,12 +49,14 @@ class StandingMachine final : public Simulator {
   }
   void write(std::span<const JointCommand> commands) noexcept override { mode = commands[0].mode; }
   void stop() noexcept override {}
+  void reset() noexcept override { ++resets; }
   void truth(TruthFrame&) noexcept override {}
   void inject(const InjectedFaults& wanted) noexcept override { faults = wanted; }
 
   InjectedFaults faults{};
   DriverState state = DriverState::kRunning;
   JointMode mode = JointMode::kBrake;
+  int resets = 0;
 };
 
 template <class Frame>

@@ -21,8 +21,12 @@ def drive_file(dialect):
 
 def driven(loop, seconds=10.0):
     log = loop.run(seconds, COMMAND)
-    assert not np.isin(log["permit_state"], (STOPPED, FAULT)).any()
+    assert not np.isin(log["supervisor_state"], (STOPPED, FAULT)).any()
     return log
+
+
+def odometry_error(log):
+    return math.hypot(*(log[f"estimate_{name}"][-1] - log[f"truth_{name}"][-1] for name in ("x", "y")))
 
 
 @pytest.fixture(scope="module")
@@ -34,9 +38,8 @@ def direct():
 def test_the_robot_ends_where_it_ends_without_a_bus(dialect, direct):
     log = driven(ClosedLoop(seed=3, drives=drive_file(dialect)))
     end = {name: [run[f"truth_{name}"][-1] for run in (log, direct)] for name in ("x", "y")}
-    assert math.hypot(*(there - here for there, here in end.values())) < 0.01
-    error = math.hypot(*(log[f"estimate_{name}"][-1] - log[f"truth_{name}"][-1] for name in ("x", "y")))
-    assert error < 0.01 * 5.0
+    assert math.hypot(*(there - here for there, here in end.values())) < 0.002
+    assert odometry_error(log) < 1.2 * odometry_error(direct)
 
 
 @pytest.mark.parametrize("dialect", DIALECTS)
@@ -62,7 +65,7 @@ def test_a_drive_file_of_another_robot_is_refused(tmp_path):
     assert "left_wheel_joint" in str(refused.value)
 
 
-def test_is_at_least_half_as_fast_as_without_a_bus():
+def test_is_at_least_a_third_as_fast_as_without_a_bus():
     def seconds(**given):
         loop = ClosedLoop(seed=3, **given)
         began = time.process_time()
@@ -70,4 +73,4 @@ def test_is_at_least_half_as_fast_as_without_a_bus():
         return time.process_time() - began
 
     direct, through = (min(seconds(**given) for _ in range(3)) for given in ({}, {"drives": drive_file("odrive")}))
-    assert through < 2 * direct
+    assert through < 3 * direct

@@ -28,8 +28,16 @@ CanDriver::CanDriver(const CanParameters& parameters, std::span<const Brake> bra
 }
 
 void CanDriver::start() {
-  reset_ = true;
   stopped_ = false;
+  begin();
+}
+
+void CanDriver::reset() noexcept {
+  if (state_ == DriverState::kFault) begin();
+}
+
+void CanDriver::begin() noexcept {
+  reset_ = true;
   state_ = DriverState::kStarting;
   faults_ = 0;
   for (JointLaw& law : laws_) law.reset();

@@ -31,6 +31,7 @@ class CanDriver final : public Driver {
             std::function<CanTime()> clock);
 
   void start() override;
+  void reset() noexcept override;
   void read(SensorFrame& sensors) noexcept override;
   void write(std::span<const JointCommand> commands) noexcept override;
   void stop() noexcept override { stopped_ = true; }
@@ -51,6 +52,7 @@ class CanDriver final : public Driver {
 
   using Statuses = std::array<DriveStatus, kMaxJoints>;
 
+  void begin() noexcept;
   bool all_are(DriveState state) const noexcept;
   LinkStatus link() const noexcept;
   void publish_statuses() noexcept;

@@ -2,17 +2,17 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "configuration/drive_file.h"
 #include "drivers/can/can_driver.h"
 #include "gate/wheeled/wheel_stop.h"
-#include "rt/clock.h"
 
 namespace robot_control {
 namespace {
 
-std::unique_ptr<Driver> make_can(const Parameters& parameters, const DriveTrain& robot) {
+std::unique_ptr<Driver> make_can(const Parameters& parameters, const DriveTrain& robot, DriverClock clock) {
   if (parameters.drives.empty())
     throw DriverError(
         "robot.driver is can, but robot.drives names no drive file: set it, for instance to "
@@ -28,22 +28,21 @@ std::unique_ptr<Driver> make_can(const Parameters& parameters, const DriveTrain&
   const CanParameters can = read_drive_file(parameters.drives, joints, parameters.loop.rate);
   const double period = parameters.loop.period();
   return std::make_unique<CanDriver>(can, brakes_of_slow_drives(robot, period), period,
-                                     CanSocket::open(can.bus.address),
-                                     [] { return CanTime{.time_ns = monotonic_ns(), .utc_ns = utc_ns()}; });
+                                     CanSocket::open(can.bus.address), std::move(clock));
 }
 
 struct DriverRow {
   DriverChoice choice;
-  std::unique_ptr<Driver> (*make)(const Parameters&, const DriveTrain&);
+  std::unique_ptr<Driver> (*make)(const Parameters&, const DriveTrain&, DriverClock);
 };
 
 constexpr std::array kDrivers{DriverRow{DriverChoice::kCan, &make_can}};
 
 }  // namespace
 
-std::unique_ptr<Driver> make_driver(const Parameters& parameters, const DriveTrain& robot) {
+std::unique_ptr<Driver> make_driver(const Parameters& parameters, const DriveTrain& robot, DriverClock clock) {
   for (const DriverRow& row : kDrivers) {
-    if (row.choice == parameters.driver) return row.make(parameters, robot);
+    if (row.choice == parameters.driver) return row.make(parameters, robot, std::move(clock));
   }
   throw DriverError(
       "robot.driver is mujoco, which is the program mujoco_plant: start that one, or set robot.driver "

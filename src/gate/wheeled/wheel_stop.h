@@ -32,8 +32,8 @@ inline constexpr double kDampTime = 0.5;
 /// Returns the brake of a wheel; `motor_friction` is that of its motor at the wheel in N·m, `step` is h in s.
 Brake wheel_brake(const DriveTrain& robot, std::size_t wheel, double motor_friction, double step);
 
-/// Returns the brakes of all wheels for drives that are given torques once in a period of `period` s, and whose samples
-/// are up to two periods old. The damping is 0.3 J/period, half of what is stable then.
+/// Returns the brakes of all wheels for drives that are given a torque once in each `period`, s. Their samples are up
+/// to two periods old. The damping is 0.3 J/period, half of what is stable then.
 std::vector<Brake> brakes_of_slow_drives(const DriveTrain& robot, double period);
 
 /// Returns the stop action of a wheel. Its damping is m r²/(n kDampTime).

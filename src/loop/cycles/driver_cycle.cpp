@@ -73,12 +73,20 @@ GateInput DriverCycle::latch() noexcept {
   return input;
 }
 
+/// A restarted monitor counts from 0.
+void DriverCycle::follow_resets(const GateInput& input) noexcept {
+  if (input.permit_found != Lookup::kFrame) return;
+  if (resets_ && permit_.resets_handled > *resets_) driver_.reset();
+  resets_ = permit_.resets_handled;
+}
+
 void DriverCycle::step() noexcept {
   const std::int64_t stamp_ns = next_stamp_ns();
   const std::int64_t woke_ns = now_ == nullptr ? 0 : now_();
   const GateInput input = latch();
 
   SensorFrame& sensors = trace_.sensors;
+  follow_resets(input);
   driver_.read(sensors);
   sensors.head = {.run = run_, .cycle = cycle_, .stamp_ns = stamp_ns};
   sensors.driver_instance = driver_instance_;

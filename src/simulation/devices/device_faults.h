@@ -1,6 +1,6 @@
 #pragma once
-/// The faults of simulated drives by words, as `~inject_fault` and ClosedLoop take them: component is a joint, or `bus`
-/// with the kinds ok and off (the cable of the driver is out).
+/// The faults of simulated drives by words, as `~inject_fault` and ClosedLoop take them. The component is a joint, or
+/// `bus` with the kinds ok and off: off takes the driver's cable out.
 
 #include <span>
 #include <string>

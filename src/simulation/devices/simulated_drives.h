@@ -13,7 +13,7 @@
 
 namespace robot_control {
 
-/// What is wrong with bus and devices all the time.
+/// Errors that bus and devices have all the time.
 struct DeviceErrors {
   double frame_loss = 0;  ///< probability with which a frame is lost
   double clock_ppm = 0;   ///< by which the clocks of the devices run fast and slow in turn
@@ -23,7 +23,7 @@ struct DeviceErrors {
 class SimulatedDrives {
  public:
   /// ns between two steps of a device; frames arrive at their own times.
-  static constexpr std::int64_t kStepNs = 125'000;
+  static constexpr std::int64_t kStepNs = 250'000;
 
   explicit SimulatedDrives(const CanParameters& parameters, const DeviceErrors& errors = {});
   SimulatedDrives(const SimulatedDrives&) = delete;

@@ -3,7 +3,7 @@
 /// that program it is a robot: plant, devices and bus take part only through the frames.
 ///
 /// One call of `step` runs one period. Frames that came since the last call are on the simulated bus from the beginning
-/// of the period on; what the devices send goes out at its end.
+/// of the period on. The frames of the devices go out at its end.
 
 #include <span>
 #include <string>

@@ -1,6 +1,6 @@
 #pragma once
-/// The simulated machine that the parameters describe: a MuJoCo plant, whose motors are given their torques directly or
-/// stand behind simulated drives on CAN (Parameters::drives).
+/// The simulated machine that the parameters describe is a MuJoCo plant. Its motors are given their torques directly,
+/// or they stand behind simulated drives on CAN (Parameters::drives).
 
 #include <memory>
 

@@ -1,4 +1,4 @@
-#include "simulation/devices/device_simulator.h"
+#include "simulation/machines/device_simulator.h"
 
 #include <cmath>
 

@@ -28,6 +28,7 @@ class DrivenPlant final : public Simulator {
   DrivenPlant& operator=(const DrivenPlant&) = delete;
 
   void start() override;
+  void reset() noexcept override { driver_->reset(); }
   void read(SensorFrame& sensors) noexcept override;
   void write(std::span<const JointCommand> commands) noexcept override;
   void stop() noexcept override;
@@ -42,13 +43,15 @@ class DrivenPlant final : public Simulator {
 
  private:
   void run_drives() noexcept;
+  void deliver() noexcept;
 
   MujocoPlant plant_;
   SimulatedDrives drives_;
   std::unique_ptr<CanDriver> driver_;
   std::int64_t period_ns_;
-  std::size_t party_ = 0;  // of the driver on the bus
-  int wire_ = -1;          // the end of the socket that is not the driver's
+  std::size_t party_ = 0;             // of the driver on the bus
+  std::vector<can_frame> to_driver_;  // of the present period
+  int wire_ = -1;                     // the end of the socket that is not the driver's
   TruthFrame truth_;
   std::vector<std::string> joints_;  // of the drives
   SensorFrame wheels_;               // as the driver reports them

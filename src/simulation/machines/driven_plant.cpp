@@ -1,9 +1,10 @@
-#include "simulation/devices/driven_plant.h"
+#include "simulation/machines/driven_plant.h"
 
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -27,7 +28,11 @@ DrivenPlant::DrivenPlant(const DriveTrain& robot, const MujocoPlantParameters& p
   driver_ = std::make_unique<CanDriver>(can, brakes_of_slow_drives(robot, period), period, CanSocket(ends[0]), [this] {
     return CanTime{.time_ns = drives_.bus().now_ns(), .utc_ns = drives_.bus().now_ns()};
   });
-  party_ = drives_.bus().join([this](const can_frame& frame, std::int64_t) { ::send(wire_, &frame, sizeof frame, 0); });
+  to_driver_.reserve(kMaxFramesPerDatagram);
+  party_ = drives_.bus().join([this](const can_frame& frame, std::int64_t) {
+    to_driver_.push_back(frame);
+    if (to_driver_.size() == kMaxFramesPerDatagram) deliver();
+  });
 }
 
 DrivenPlant::~DrivenPlant() {
@@ -49,9 +54,27 @@ void DrivenPlant::start() {
 
 /// Carries the driver's frames to the bus, and runs bus and devices for one period.
 void DrivenPlant::run_drives() noexcept {
-  can_frame frame;
-  while (recv(wire_, &frame, sizeof frame, 0) == sizeof frame) drives_.bus().send(party_, frame);
+  std::array<can_frame, kMaxFramesPerDatagram> frames;
+  std::array<iovec, kMaxFramesPerDatagram> parts;
+  std::array<mmsghdr, kMaxFramesPerDatagram> messages{};
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    parts[i] = {.iov_base = &frames[i], .iov_len = sizeof(can_frame)};
+    messages[i].msg_hdr.msg_iov = &parts[i];
+    messages[i].msg_hdr.msg_iovlen = 1;
+  }
+  int received = 0;
+  do {
+    received = recvmmsg(wire_, messages.data(), kMaxFramesPerDatagram, 0, nullptr);
+    for (int i = 0; i < received; ++i) drives_.bus().send(party_, frames[static_cast<std::size_t>(i)]);
+  } while (received == static_cast<int>(kMaxFramesPerDatagram));
   drives_.run(truth_.joints, drives_.bus().now_ns() + period_ns_);
+  deliver();
+}
+
+/// A datagram holds several frames.
+void DrivenPlant::deliver() noexcept {
+  if (!to_driver_.empty()) ::send(wire_, to_driver_.data(), to_driver_.size() * sizeof(can_frame), 0);
+  to_driver_.clear();
 }
 
 void DrivenPlant::read(SensorFrame& sensors) noexcept {

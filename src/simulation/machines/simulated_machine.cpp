@@ -1,11 +1,11 @@
-#include "simulation/devices/simulated_machine.h"
+#include "simulation/machines/simulated_machine.h"
 
 #include <string>
 #include <vector>
 
 #include "configuration/drive_file.h"
 #include "drivers/mujoco/mujoco_plant.h"
-#include "simulation/devices/driven_plant.h"
+#include "simulation/machines/driven_plant.h"
 
 namespace robot_control {
 
