@@ -87,7 +87,7 @@ struct DriveCommand {
 struct DriveSample {
   JointSample joint{};
   bool valid = false;         ///< position and velocity
-  bool effort_valid = false;  ///< `effort` is measured and not older than 5 · max_silence.
+  bool effort_valid = false;  ///< The last measurement of the torque is not older than 5 · max_silence.
   std::int64_t stamp_ns = 0;  ///< when the position was received
   double voltage = 0;         ///< V, of the drive's supply; 0: unknown
 };
@@ -109,8 +109,14 @@ class FrameBatch {
   std::uint64_t dropped_ = 0;
 };
 
+/// Where the torque is measured more rarely than the position (`effort_is_rare`), the effort of a sample is the torque
+/// that was ordered in the last cycle. This holds while the last measurement lay among the orders of kOrders cycles,
+/// with a tolerance of kFollows times the limit. Otherwise the effort is that measurement.
 class Drive {
  public:
+  static constexpr std::size_t kOrders = 8;
+  static constexpr double kFollows = 0.1;
+
   /// `period` is that of the loop in s.
   Drive(DriveParameters parameters, double period);
   virtual ~Drive() = default;
@@ -174,6 +180,7 @@ class Drive {
 
  private:
   void judge_silence(std::int64_t now_ns) noexcept;
+  void note_order(double torque) noexcept;
 
   DriveParameters drive_;
   double to_joint_;  // joint angle = to_joint_ · motor angle, motor torque = to_joint_ · joint torque
@@ -181,6 +188,8 @@ class Drive {
   DriveSample sample_;
   KnownReaction on_silence_;
   std::int64_t effort_ns_ = 0;
+  std::array<double, kOrders> ordered_{};  // N·m, of the joint, in the last cycles; the newest one first
+  bool follows_ = false;                   // the last measurement was among them
   bool reset_before_ = false;
   bool may_brake_ = false;
 };

@@ -53,6 +53,7 @@ std::uint32_t parts_in_error(const can_frame& frame) noexcept {
 
 DriveParameters with_sample_period(DriveParameters drive, double period) {
   drive.sample_period = period;
+  drive.effort_is_rare = true;
   return drive;
 }
 
