@@ -2,8 +2,8 @@
 /// Motor drives on one CAN bus as a Driver.
 ///
 /// `start` returns at once; `read` reports kStarting until all drives are running, so that the brake of the driver
-/// holds from kRunning on. A fault of a drive stays until the next `start`, with which the operator's reset reaches the
-/// drives. Meanwhile the other joints brake.
+/// holds from kRunning on. A fault of a drive stays until the operator's reset, or the next `start`. Meanwhile the other
+/// joints brake.
 ///
 /// The torque of every mode, the brake included, is computed here from the newest sample (drivers/joint_law.h). The
 /// sample is one or two cycles old, and is brought to the time of the call by its velocity. With an inertia J at the

@@ -90,8 +90,7 @@ MachineUnderTest machine(const std::string& name, CanDialect dialect) {
           .effort_limit = 4,
           .effort = 0.5,
           .damping = 2,
-          .stiffness = 20,
-          .effort_age = dialect == CanDialect::kOdrive ? 1 / odrive::OdriveParameters().effort_rate : 0};
+          .stiffness = 20};
 }
 
 INSTANTIATE_TEST_SUITE_P(CanMachines, DriverContract,
