@@ -69,7 +69,8 @@ class FollowPathTest(RobotTestCase):
         super().tearDownClass()
 
     def setUp(self) -> None:
-        self.cancel.publish(GoalID())  # all goals: an attempt that a stall ended leaves its own
+        # All goals until now, which an attempt leaves that a stall ended. A later one is not meant, if this is late.
+        self.cancel.publish(GoalID(stamp=rospy.Time.now()))
         self.robot.await_ready()
         self.robot.await_rest()
 
