@@ -91,8 +91,9 @@ class ClosedLoop:
 
         Args:
             component: left_encoder right_encoder gyro accelerometer left_motor right_motor controller estimator
-                monitor battery e_stop_button
-            kind: ok (ends the fault) off stuck garbage wrong slow delayed intermittent
+                monitor battery e_stop_button; with `drives` also bus, and the joints by name
+            kind: ok (ends the fault) off stuck garbage wrong slow delayed intermittent; bus: ok off lossy disturbed; a
+                joint's drive: ok off reset other_zero encoder released hot under_voltage not_finite
 
         Raises:
             ValueError: an unknown word, with the list of those there are.

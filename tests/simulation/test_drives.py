@@ -2,6 +2,7 @@
 
 import math
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -59,7 +60,7 @@ def test_it_stands_after_a_stop(dialect):
 
 def test_a_drive_file_of_another_robot_is_refused(tmp_path):
     file = tmp_path / "drives.yaml"
-    file.write_text(open(drive_file("odrive")).read().replace("left_wheel_joint", "front_wheel_joint"))
+    file.write_text(Path(drive_file("odrive")).read_text().replace("left_wheel_joint", "front_wheel_joint"))
     with pytest.raises(ParameterError, match="front_wheel_joint") as refused:
         ClosedLoop(drives=file)
     assert "left_wheel_joint" in str(refused.value)

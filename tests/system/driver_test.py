@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""The program `driver` before simulated ODrives of another process, on a bus between them: the frames are all it has."""
+"""The program `driver` before simulated ODrives of another process. It knows them by their frames alone."""
 
 import math
+import signal
 import tempfile
 import time
 import unittest
@@ -21,6 +22,7 @@ from system_support import (
     Robot,
     again_after_a_stall,
     init_test_node,
+    nightly,
     repository,
     wait_for,
 )
@@ -28,6 +30,8 @@ from system_support import (
 LEFT = "left_wheel_joint"
 STANDING = 0.01
 """m/s"""
+LOSSES = (("bus", "off"), (LEFT, "off"), (LEFT, "reset"), (LEFT, "encoder"), (LEFT, "released"))
+STOPPED = (SafetyStatus.STOPPED, SafetyStatus.FAULT)
 
 
 class DriverTest(unittest.TestCase):
@@ -63,9 +67,9 @@ class DriverTest(unittest.TestCase):
         self.addCleanup(devices.end)
         return devices
 
-    def inject(self, kind: str) -> None:
+    def inject(self, kind: str, component: str = LEFT) -> None:
         rospy.wait_for_service("device_simulator/inject_fault")
-        answer = rospy.ServiceProxy("device_simulator/inject_fault", InjectFault)(LEFT, kind)
+        answer = rospy.ServiceProxy("device_simulator/inject_fault", InjectFault)(component, kind)
         self.assertTrue(answer.success, answer.message)
 
     def drive(self) -> None:
@@ -105,6 +109,29 @@ class DriverTest(unittest.TestCase):
             every=lambda: self.robot.send(0.0, 0.0),
         )
 
+    @nightly
+    @again_after_a_stall
+    def test_each_loss_stops_the_robot_ten_times(self) -> None:
+        self.start_devices()
+        self.robot.await_ready()
+        for _ in range(10):
+            for component, kind in LOSSES:
+                with self.subTest(component=component, kind=kind):
+                    self.drive()
+                    self.inject(kind, component)
+                    self.await_stop()
+                    self.inject("ok", component)
+                    self.release()
+            for number in (signal.SIGKILL, signal.SIGSTOP, signal.SIGSEGV):
+                with self.subTest(signal=number):
+                    self.drive()
+                    driver = self.robot.nodes["driver"]
+                    driver.send_signal(number)
+                    wait_for("the stop", lambda: self.robot.state in STOPPED, every=lambda: self.robot.send(0.5, 0.2))
+                    driver.kill()
+                    self.robot.start("driver")
+                    self.release()
+
     @again_after_a_stall
     def test_after_the_death_of_the_driver_the_drives_coast_until_a_new_one_brakes_and_is_released(self) -> None:
         self.start_devices()
@@ -112,6 +139,7 @@ class DriverTest(unittest.TestCase):
         self.drive()
         self.robot.nodes["driver"].kill()
         wait_for("the loss", lambda: "driver_lost" in self.robot.causes, every=lambda: self.robot.send(0.5, 0.2))
+        time.sleep(0.5)  # until the watchdogs of the drives expire, they keep their last torque
         speed = self.true_speed
         time.sleep(1.0)
         self.assertTrue(0.1 < self.true_speed < speed + 0.05, f"{self.true_speed} m/s, {speed} m/s before")

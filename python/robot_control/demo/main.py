@@ -242,7 +242,7 @@ def main() -> int:
     given = parse()
     signal.signal(signal.SIGTERM, _interrupt)
     try:
-        drives = share_file(f"config/drives/{given.drives}.yaml") if given.drives else None
+        drives = Path(share_file(f"config/drives/{given.drives}.yaml")) if given.drives else None
         return run_demo(given.seconds, given.out, drives)
     except (DemoError, OSError) as error:
         print(f"scripts/demo: {in_words(error)}", file=sys.stderr)

@@ -81,7 +81,7 @@ void CanDriver::read(SensorFrame& sensors) noexcept {
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const DriveSample& sample = drives_[i].sample();
     JointSample& joint = sensors.joints[i];
-    joint = sample.joint;
+    joint = sample.valid ? at_time(sample, now_ns_) : sample.joint;
     joint.age_ns = now_ns_ - sample.stamp_ns;
     joint.valid = (sample.valid ? kValidPosition | kValidVelocity : 0U) | (sample.effort_valid ? kValidEffort : 0U);
     const DriveStatus& status = drives_[i].status();

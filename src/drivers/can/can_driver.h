@@ -2,8 +2,11 @@
 /// Motor drives on one CAN bus as a Driver.
 ///
 /// `start` returns at once; `read` reports kStarting until all drives are running, so that the brake of the driver
-/// holds from kRunning on. A fault of a drive stays until the operator's reset, or the next `start`. Meanwhile the other
-/// joints brake.
+/// holds from kRunning on. A fault of a drive stays until the operator's reset, or the next `start`. Meanwhile the
+/// other joints brake.
+///
+/// The samples of all drives are brought to the time of `read` by their velocities. A sample that is missing therefore
+/// moves on, and its age grows.
 ///
 /// The torque of every mode, the brake included, is computed here from the newest sample (drivers/joint_law.h). The
 /// sample is one or two cycles old, and is brought to the time of the call by its velocity. With an inertia J at the

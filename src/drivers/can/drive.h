@@ -109,9 +109,9 @@ class FrameBatch {
   std::uint64_t dropped_ = 0;
 };
 
-/// Where the torque is measured more rarely than the position (`effort_is_rare`), the effort of a sample is the torque
-/// that was ordered in the last cycle. This holds while the last measurement lay among the orders of kOrders cycles,
-/// with a tolerance of kFollows times the limit. Otherwise the effort is that measurement.
+/// Some drives measure the torque more rarely than the position (`effort_is_rare`). The effort of their samples is the
+/// torque that was ordered in the last cycle. This holds while the last measurement lay among the orders of kOrders
+/// cycles, with a tolerance of kFollows times the limit. Otherwise the effort is that measurement.
 class Drive {
  public:
   static constexpr std::size_t kOrders = 8;

@@ -1,6 +1,7 @@
 #pragma once
 /// The faults of simulated drives by words, as `~inject_fault` and ClosedLoop take them. The component is a joint, or
-/// `bus` with the kinds ok and off: off takes the driver's cable out.
+/// `bus` with the kinds ok, off (the driver's cable is out), lossy (5 % of the frames are lost) and disturbed (the
+/// others are late, too, by up to one period).
 
 #include <span>
 #include <string>

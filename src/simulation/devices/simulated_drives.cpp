@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kOdriveWatchdog = 0.1;  // s, where the drive file says that it coasts on silence
 
-double clock_of(std::size_t device, const DeviceErrors& errors) {
-  return device % 2 == 0 ? errors.clock_ppm : -errors.clock_ppm;
+double clock_of(std::size_t device) {
+  return device % 2 == 0 ? SimulatedDrives::kClockPpm : -SimulatedDrives::kClockPpm;
 }
 
 OdriveDeviceParameters device_of(const odrive::OdriveParameters& drive, double clock_ppm) {
@@ -30,7 +30,7 @@ OdriveDeviceParameters device_of(const odrive::OdriveParameters& drive, double c
           .clock_ppm = clock_ppm};
 }
 
-Cia402DeviceParameters device_of(const cia402::Cia402Parameters& drive, double clock_ppm) {
+Cia402DeviceParameters device_of(const cia402::Cia402Parameters& drive, const Brake& brake, double clock_ppm) {
   Cia402DeviceParameters device;
   device.node = static_cast<std::uint8_t>(drive.drive.node);
   device.fixed_mapping = drive.pdos == cia402::PdoSource::kFixed;
@@ -39,30 +39,38 @@ Cia402DeviceParameters device_of(const cia402::Cia402Parameters& drive, double c
   device.velocity_unit = drive.velocity_unit;
   if (drive.vendor != 0) device.vendor = static_cast<std::uint32_t>(drive.vendor);
   if (drive.product != 0) device.product = static_cast<std::uint32_t>(drive.product);
+  device.brake_damping = brake.damping / (drive.drive.gear * drive.drive.gear);
+  device.brake_stiffness = brake.stiffness / (drive.drive.gear * drive.drive.gear);
+  device.brake_hold_speed = brake.hold_speed * drive.drive.gear;
   device.clock_ppm = clock_ppm;
   return device;
 }
 
 }  // namespace
 
-SimulatedDrives::SimulatedDrives(const CanParameters& parameters, const DeviceErrors& errors)
-    : bus_(parameters.bus.bit_rate, errors.seed) {
-  std::visit([&](const auto& joints) { add(joints, errors); }, parameters.joints);
+SimulatedDrives::SimulatedDrives(const CanParameters& parameters, std::span<const Brake> brakes, double period,
+                                 std::uint64_t seed)
+    : bus_(parameters.bus.bit_rate, seed), period_ns_(std::llround(1.0e9 * period)) {
+  std::visit([&](const auto& joints) { add(joints, brakes); }, parameters.joints);
   torques_.resize(motors_.size());
-  bus_.lose(errors.frame_loss);
 }
 
-void SimulatedDrives::add(const std::vector<odrive::OdriveParameters>& joints, const DeviceErrors& errors) {
+void SimulatedDrives::disturb(bool lossy, bool late) {
+  bus_.lose(lossy ? kFrameLoss : 0);
+  bus_.delay(late ? period_ns_ : 0);
+}
+
+void SimulatedDrives::add(const std::vector<odrive::OdriveParameters>& joints, std::span<const Brake> /*they coast*/) {
   for (const odrive::OdriveParameters& joint : joints) {
     to_motor_.push_back(static_cast<double>(joint.drive.direction) * joint.drive.gear);
     device_of_.push_back(devices_.size());
     DeviceMotor& motor = *motors_.emplace_back(std::make_unique<DeviceMotor>());
-    const OdriveDeviceParameters device = device_of(joint, clock_of(devices_.size(), errors));
+    const OdriveDeviceParameters device = device_of(joint, clock_of(devices_.size()));
     devices_.push_back(std::make_unique<OdriveDevice>(device, bus_, motor));
   }
 }
 
-void SimulatedDrives::add(const std::vector<cia402::Cia402Parameters>& joints, const DeviceErrors& errors) {
+void SimulatedDrives::add(const std::vector<cia402::Cia402Parameters>& joints, std::span<const Brake> brakes) {
   std::map<std::uint64_t, std::map<std::uint64_t, std::size_t>> joints_by_axis_by_node;
   for (std::size_t i = 0; i < joints.size(); ++i) {
     to_motor_.push_back(static_cast<double>(joints[i].drive.direction) * joints[i].drive.gear);
@@ -76,7 +84,8 @@ void SimulatedDrives::add(const std::vector<cia402::Cia402Parameters>& joints, c
       motors.push_back(motors_[joint].get());
       device_of_[joint] = devices_.size();
     }
-    const auto device = device_of(joints[joint_of_axis.begin()->second], clock_of(devices_.size(), errors));
+    const std::size_t first = joint_of_axis.begin()->second;
+    const Cia402DeviceParameters device = device_of(joints[first], brakes[first], clock_of(devices_.size()));
     devices_.push_back(std::make_unique<Cia402Device>(device, bus_, std::move(motors)));
   }
 }

@@ -1,6 +1,7 @@
 #pragma once
 /// SimulatedDrives are the devices that a drive file describes, on a CAN bus in virtual time. Each is set up as its
-/// drive file expects it. The joints are given; the torques of the motors come back.
+/// drive file expects it. Their clocks run fast and slow by kClockPpm in turn. The joints are given; the torques of the
+/// motors come back.
 
 #include <cstdint>
 #include <memory>
@@ -8,24 +9,22 @@
 #include <vector>
 
 #include "drivers/can/can_parameters.h"
+#include "gate/brake_law.h"
 #include "signals/joint.h"
 #include "simulation/devices/device.h"
 
 namespace robot_control {
-
-/// Errors that bus and devices have all the time.
-struct DeviceErrors {
-  double frame_loss = 0;  ///< probability with which a frame is lost
-  double clock_ppm = 0;   ///< by which the clocks of the devices run fast and slow in turn
-  std::uint64_t seed = 1;
-};
 
 class SimulatedDrives {
  public:
   /// ns between two steps of a device; frames arrive at their own times.
   static constexpr std::int64_t kStepNs = 250'000;
 
-  explicit SimulatedDrives(const CanParameters& parameters, const DeviceErrors& errors = {});
+  static constexpr double kClockPpm = 200;
+  static constexpr double kFrameLoss = 0.05;  ///< of a lossy bus
+
+  /// `brakes`: one per joint, that of a drive which brakes by itself. `period` is the loop's in s.
+  SimulatedDrives(const CanParameters& parameters, std::span<const Brake> brakes, double period, std::uint64_t seed);
   SimulatedDrives(const SimulatedDrives&) = delete;
   SimulatedDrives& operator=(const SimulatedDrives&) = delete;
 
@@ -39,15 +38,20 @@ class SimulatedDrives {
   /// Returns the mean torque of a joint over the last call of `run`, N·m.
   double torque(std::size_t joint) const { return torques_.at(joint); }
 
+  /// From now on frames are lost with the probability kFrameLoss (`lossy`), and each is late by up to one period
+  /// (`late`).
+  void disturb(bool lossy, bool late);
+
   /// A fault of a drive with two axes belongs to both.
   void inject(std::size_t joint, DeviceFault fault) { devices_.at(device_of_.at(joint))->inject(fault); }
 
  private:
-  void add(const std::vector<odrive::OdriveParameters>& joints, const DeviceErrors& errors);
-  void add(const std::vector<cia402::Cia402Parameters>& joints, const DeviceErrors& errors);
+  void add(const std::vector<odrive::OdriveParameters>& joints, std::span<const Brake> brakes);
+  void add(const std::vector<cia402::Cia402Parameters>& joints, std::span<const Brake> brakes);
   void move_motors(std::span<const JointSample> joints, double seconds);
 
   VirtualCan bus_;
+  std::int64_t period_ns_;
   std::vector<double> to_motor_;  // motor angle / joint angle
   std::vector<std::unique_ptr<DeviceMotor>> motors_;
   std::vector<std::unique_ptr<Device>> devices_;

@@ -2,14 +2,15 @@
 
 #include <cmath>
 
+#include "gate/wheeled/wheel_stop.h"
 #include "simulation/devices/device_faults.h"
 
 namespace robot_control {
 
 DeviceSimulator::DeviceSimulator(const DriveTrain& robot, const MujocoPlantParameters& plant, const CanParameters& can,
-                                 double period, const DeviceErrors& errors)
+                                 double period)
     : plant_(robot, plant, period),
-      drives_(can, errors),
+      drives_(can, brakes_of_slow_drives(robot, period), period, plant.seed),
       bus_(CanSocket::open(can.bus.address)),
       period_ns_(std::llround(1.0e9 * period)),
       party_(drives_.bus().join([this](const can_frame& frame, std::int64_t) { to_host_.push_back(frame); })),

@@ -18,8 +18,7 @@ namespace robot_control {
 class DeviceSimulator {
  public:
   /// `period` is in s. The bus is that of the drive file. Throws DriverError.
-  DeviceSimulator(const DriveTrain& robot, const MujocoPlantParameters& plant, const CanParameters& can, double period,
-                  const DeviceErrors& errors = {});
+  DeviceSimulator(const DriveTrain& robot, const MujocoPlantParameters& plant, const CanParameters& can, double period);
 
   void step() noexcept;
 

@@ -15,9 +15,9 @@
 namespace robot_control {
 
 DrivenPlant::DrivenPlant(const DriveTrain& robot, const MujocoPlantParameters& plant, const CanParameters& can,
-                         double period, const DeviceErrors& errors)
+                         double period)
     : plant_(robot, plant, period),
-      drives_(can, errors),
+      drives_(can, brakes_of_slow_drives(robot, period), period, plant.seed),
       period_ns_(std::llround(1.0e9 * period)),
       torques_(robot.joints.size()) {
   for (std::size_t i = 0; i < drives_.size(); ++i) joints_.push_back(robot.joints[i].name);

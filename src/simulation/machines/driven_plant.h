@@ -21,8 +21,7 @@ class DrivenPlant final : public Simulator {
   static constexpr std::int64_t kMaxStart = 10'000'000'000;  ///< ns
 
   /// `period` is in s. Throws DriverError as MujocoPlant does.
-  DrivenPlant(const DriveTrain& robot, const MujocoPlantParameters& plant, const CanParameters& can, double period,
-              const DeviceErrors& errors = {});
+  DrivenPlant(const DriveTrain& robot, const MujocoPlantParameters& plant, const CanParameters& can, double period);
   ~DrivenPlant() override;
   DrivenPlant(const DrivenPlant&) = delete;
   DrivenPlant& operator=(const DrivenPlant&) = delete;

@@ -147,6 +147,16 @@ TEST_P(CanDriverOn, TheOtherJointBrakesWhenADriveIsLost) {
   EXPECT_LT(joint_speed(1), 0.05);
 }
 
+TEST_P(CanDriverOn, ASampleThatIsMissingMovesOnWithItsVelocity) {
+  cycles(3000, drive_);
+  const JointSample last = cycle(drive_).joints[0];
+  machine_.rig().bus().lose(1);
+  cycle(drive_);
+  const JointSample missing = cycle(drive_).joints[0];
+  EXPECT_EQ(missing.age_ns, 1'000'000);
+  EXPECT_NEAR(missing.position, last.position + 0.002 * last.velocity, 1.0e-4);
+}
+
 TEST_P(CanDriverOn, NothingMovesAfterAFaultUntilTheNextStart) {
   machine_.start();
   machine_.rig().device(0).inject(DeviceFault::kReset);

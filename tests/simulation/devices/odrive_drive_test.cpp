@@ -102,7 +102,7 @@ TEST(OdriveDrive, ReportsTheMeasuredEffortWhereItDoesNotFollow) {
   add(rig, odrive_pair(2));
   ASSERT_TRUE(rig.runs());
   rig.inertia = 100;
-  rig.motor().velocity = 2.5 * 40;  // the device reduces the torque at this speed
+  rig.motor().velocity = 2.5 * 59;  // the device reduces the torque at this speed
   rig.command_all({.enabled = true, .torque = 3});
   rig.run(0.1);
   EXPECT_NEAR(rig.drive().sample().joint.effort, 2.5 * rig.motor().torque, 1.0e-3);
