@@ -1,7 +1,7 @@
 #pragma once
-/// The faults of simulated drives by words, as `~inject_fault` and ClosedLoop take them. The component is a joint, or
-/// `bus` with the kinds ok, off (the driver's cable is out), lossy (5 % of the frames are lost) and disturbed (the
-/// others are late, too, by up to one period).
+/// The faults of simulated drives by words, as `~inject_fault` and ClosedLoop take them. The component is a joint or
+/// `bus`. The kinds of the bus are ok, off, lossy and disturbed. Off means that the driver's cable is out, lossy that 5
+/// % of the frames are lost. On a disturbed bus the others are late as well, by up to one period.
 
 #include <span>
 #include <string>
