@@ -35,7 +35,7 @@ MAY_INCLUDE = {
     "simulation/faults": {"signals", "rt", "bus"},
     "drivers/can": {"signals", "bus", "drivers", "files", "parameters"},
     # Motor drives on a CAN bus, as devices in virtual time.
-    "simulation/devices": {"signals", "bus", "parameters", "drivers", "drivers/can"},
+    "simulation/devices": {"gate", "signals", "bus", "parameters", "drivers", "drivers/can"},
     # The simulated robot as one machine: the plant, and before its motors the drives, where there are some.
     "simulation/machines": {
         "signals",
@@ -173,6 +173,7 @@ NOT_YET_COMMON = {
     "src/ros/reports/robot_report.h",
     "src/ros/startup/setup.h",
     "src/simulation/closed_loop.h",
+    "src/simulation/machines/device_simulator.cpp",
     "src/simulation/machines/driven_plant.cpp",
     "src/simulation/machines/simulated_machine.h",
     "python/bindings/describe.h",
