@@ -44,10 +44,11 @@ JUDGED = (
     "record",
     "blackbox",
     "processes",
+    "devices",
 )
 NAMES = MEASURED + JUDGED
 SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores
-ON_CLUSTERS = ("campaign", "driving", "odometry", "tuning", *SEED_PROGRAMS)
+ON_CLUSTERS = ("campaign", "devices", "driving", "odometry", "tuning", *SEED_PROGRAMS)
 
 
 def run_program(program: Path, *arguments: str | Path) -> dict[str, Any]:
@@ -86,6 +87,10 @@ def run_many(name: str, given: argparse.Namespace, runner: Runner) -> tuple[dict
         from bench.faults import campaign
 
         return campaign.bench(given.first, given.runs or ALL_RUNS, say, runner)
+    if name == "devices":
+        from bench.devices import bench as devices
+
+        return devices.bench(given.first, given.runs or devices.ALL_RUNS, say, runner)
     if name == "driving":
         from bench.drives import normal_driving
 
@@ -222,7 +227,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="scripts/bench", description="Measures this machine.")
     which = f"of {', '.join(NAMES)} (default: {', '.join(MEASURED)})"
     parser.add_argument("names", nargs="*", metavar="NAME", help=which)
-    seeds = "campaign, replay, limiter, release, bags, odometry, hostile, tuning, blackbox, processes"
+    seeds = "campaign, devices, replay, limiter, release, bags, odometry, hostile, tuning, blackbox, processes"
     parser.add_argument("--first", type=_whole(0), default=0, help=f"{seeds}: first seed")
     parser.add_argument("--runs", type=_whole(1), help=f"{seeds}: number of seeds")
     parser.add_argument(

@@ -34,6 +34,8 @@ class ClosedLoop:
         seed: of every random number in the plant.
         urdf: path of the robot description; overrides `robot.urdf`.
         scene: path of the MJCF world; overrides `mujoco_plant.scene`.
+        drives: path of a drive file (docs/drivers.md): the motors stand behind its drives on a simulated CAN bus;
+            overrides `robot.drives`.
 
     Raises:
         ParameterError: every missing, unknown, mistyped or out-of-range value at once.
@@ -50,11 +52,14 @@ class ClosedLoop:
         seed: int = 0,
         urdf: str | PathLike[str] | None = None,
         scene: str | PathLike[str] | None = None,
+        drives: str | PathLike[str] | None = None,
     ) -> None:
         self._running = False
         self._path, self._values = layered(params, urdf)
         if scene is not None:
             self._values.append((f"{DRIVER}.scene", utf8(scene)))
+        if drives is not None:
+            self._values.append(("robot.drives", utf8(drives)))
         self._paused = False
         self._loop = self._new_loop(seed)
 
@@ -86,8 +91,9 @@ class ClosedLoop:
 
         Args:
             component: left_encoder right_encoder gyro accelerometer left_motor right_motor controller estimator
-                monitor battery e_stop_button
-            kind: ok (ends the fault) off stuck garbage wrong slow delayed intermittent
+                monitor battery e_stop_button; with `drives` also bus, and the joints by name
+            kind: ok (ends the fault) off stuck garbage wrong slow delayed intermittent; bus: ok off lossy disturbed; a
+                joint's drive: ok off reset other_zero encoder released hot under_voltage not_finite
 
         Raises:
             ValueError: an unknown word, with the list of those there are.

@@ -39,13 +39,21 @@ void check_stop_delay(const Parameters& parameters, GivenValues& given) {
 
 }  // namespace
 
+std::string_view driver_program(const Parameters& parameters) noexcept {
+  return parameters.driver == DriverChoice::kMujoco ? program_of(Role::kDriver) : "driver";
+}
+
 Schema schema(Parameters& p) {
   const auto file = [](std::string_view name, std::string& path, unsigned traits) {
     return Keys{{name, &path, {}, 0, 0, kPath | traits}};
   };
   const Key no_effect{"standstill_acceleration", &p.no_effect, "m/s²", 0.001, 10, kOptional | kObsolete};
   return {
-      .blocks = {{"robot", joined({file("urdf", p.urdf, 0), keys(p.robot), keys(p.loop)})},
+      .blocks = {{"robot", joined({file("urdf", p.urdf, 0),
+                                   keys(p.robot),
+                                   keys(p.loop),
+                                   {{"driver", &p.driver, {}, 0, 0, kOptional}},
+                                   file("drives", p.drives, kMayBeEmpty | kOptional)})},
                  {program_of(Role::kDriver), joined({keys(p.plant), plant_keys(p.report)})},
                  {program_of(Role::kEstimator), joined({keys(p.estimator),
                                                         {no_effect},

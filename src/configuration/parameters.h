@@ -7,6 +7,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "configuration/loop_parameters.h"
@@ -23,10 +24,22 @@
 
 namespace robot_control {
 
+/// The driver that stands before the machine.
+enum class DriverChoice {
+  kMujoco,  ///< the simulated machine
+  kCan,     ///< motor drives on CAN, as the drive file says
+};
+
+inline std::vector<Word> words_of(DriverChoice) {
+  return {{"mujoco", DriverChoice::kMujoco}, {"can", DriverChoice::kCan}};
+}
+
 struct Parameters {
   std::string urdf;  ///< path, relative to the folder of the file that names it
   DriveTrainParameters robot;
   LoopParameters loop;
+  DriverChoice driver = DriverChoice::kMujoco;
+  std::string drives;  ///< path, see drive_file.h; empty: the simulated motors are given their torques directly
   MujocoPlantParameters plant;
   EstimatorParameters estimator;
   std::string calibration_file;  ///< path, see calibration_file.h; empty: none
@@ -39,6 +52,9 @@ struct Parameters {
   std::optional<double> no_effect;    ///< value of a key of an earlier version
   std::vector<std::string> warnings;  ///< about accepted values in an old form
 };
+
+/// Returns the program of the driver: that of the simulator (signals/roles.h), or `driver` for all others.
+std::string_view driver_program(const Parameters& parameters) noexcept;
 
 /// Returns the blocks of the file with their places in `parameters`, which must outlive it: `robot`, and one per role
 /// (signals/roles.h).

@@ -38,6 +38,9 @@ class Driver {
   /// Brakes, at once and until the next `start`.
   virtual void stop() noexcept = 0;
 
+  /// The operator requests a reset: a machine with a fault clears it and starts again. Never blocks.
+  virtual void reset() noexcept {}
+
   /// Returns what is suspicious about the machine, known after `start`; "" if nothing is.
   virtual std::string warning() const { return {}; }
 
@@ -47,16 +50,27 @@ class Driver {
   /// Returns true if the drives carry out the order of this stop action (order_of). The loop does not start with a
   /// joint that is to be stopped by another one.
   virtual bool implements(StopKind kind) const noexcept { return kind == StopKind::kBrake; }
-
-  /// A simulated machine waits when its node is late: time slips, cycles stay consecutive. Hardware does not:
-  /// the cycle number jumps by the periods missed.
-  virtual bool simulated() const noexcept { return false; }
-
-  /// The true state at t_k, of a simulator. False: this driver has none.
-  virtual bool truth(TruthFrame& /*truth*/) noexcept { return false; }
-
-  /// From the next `read` on the machine has these faults. False: it is no simulator.
-  virtual bool inject(const InjectedFaults& /*faults*/) noexcept { return false; }
 };
+
+/// The driver of a simulated machine. It waits when its node is late: time slips, cycles stay consecutive. Hardware
+/// does not: the cycle number jumps by the periods missed.
+class Simulator : public Driver {
+ public:
+  /// Returns the true state at t_k.
+  virtual void truth(TruthFrame& truth) noexcept = 0;
+
+  /// From the next `read` on the machine has these faults.
+  virtual void inject(const InjectedFaults& faults) noexcept = 0;
+
+  /// From now on a device of the machine has a fault. Returns the problem with the list of words; "" if there is none.
+  virtual std::string inject_device(std::string_view /*component*/, std::string_view /*kind*/) {
+    return "this machine has no simulated devices (robot.drives)";
+  }
+};
+
+/// Returns the driver as a simulator; null for hardware.
+inline Simulator* simulator_of(Driver& driver) noexcept {
+  return dynamic_cast<Simulator*>(&driver);
+}
 
 }  // namespace robot_control

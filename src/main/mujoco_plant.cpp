@@ -1,7 +1,6 @@
-#include "drivers/mujoco/mujoco_plant.h"
-
 #include "ros/nodes/driver_node.h"
 #include "ros/nodes/node.h"
+#include "simulation/machines/simulated_machine.h"
 
 int main(int argc, char** argv) {
   using namespace robot_control;
@@ -10,9 +9,7 @@ int main(int argc, char** argv) {
                    .purpose = "Simulates the robot: motors, sensors and the world around it, in MuJoCo. The last check "
                               "of every command is here.",
                    .make = [](const Setup& setup) {
-                     return make_driver_node(setup, [](const Setup& read) -> std::unique_ptr<Driver> {
-                       return std::make_unique<MujocoPlant>(read.robot, read.parameters.plant,
-                                                            read.parameters.loop.period());
-                     });
+                     return make_driver_node(
+                         setup, [](const Setup& read) { return make_simulated_machine(read.parameters, read.robot); });
                    }});
 }

@@ -120,12 +120,12 @@ void SafetyMonitor::evaluate_conditions(const MonitorInput& input) noexcept {
   cycle_ = cycle;
   presence_.step(input, elapsed, active_);
   release_.step(input, elapsed);
-  sensor_presence_.step(sensors, elapsed, active_);
+  machine_conditions_.step(sensors, elapsed, active_);
+  if (!machine_conditions_.starting()) sensor_presence_.step(sensors, elapsed, active_);
   frame_conditions_.step(input, active_);
   operator_conditions_.step(input, supervisor_.state() == SupervisorState::kDrive, active_);
-  machine_conditions_.step(sensors, elapsed, active_);
   gate_conditions_.step(sensors, elapsed, active_);
-  evaluate_motion(input, elapsed);
+  if (!machine_conditions_.starting()) evaluate_motion(input, elapsed);
   warnings_.step(active_, cycle, elapsed);
 }
 
@@ -142,6 +142,10 @@ void SafetyMonitor::evaluate_motion(const MonitorInput& input, std::uint64_t ela
   body_conditions_.step(sensors, elapsed, rim_speed_.value(sensors), standstill_.moving(), active_);
 }
 
+std::uint64_t SafetyMonitor::missing() const noexcept {
+  return presence_.missing() | (machine_conditions_.starting() ? std::uint64_t{kMissingMachine} : 0);
+}
+
 void SafetyMonitor::supervise(const MonitorInput& input) noexcept {
   const bool has_frame = input.sensors != nullptr;
   const bool reset_requested = input.operator_input.resets != resets_handled_;
@@ -151,7 +155,7 @@ void SafetyMonitor::supervise(const MonitorInput& input) noexcept {
   supervised.fault = leading_to_fault(brake);
   supervised.brake = brake & ~supervised.fault;
   supervised.ramp = active_.with(Reaction::kRamp);
-  supervised.missing = presence_.missing();
+  supervised.missing = missing();
   supervised.released = release_.released();
   supervised.requested = motion_requested_;
   supervised.no_motion_requested = release_.no_motion_requested();
@@ -184,7 +188,7 @@ void SafetyMonitor::write(Permit& out) const noexcept {
   out.first_cause = supervisor_.first_cause();
   out.warnings = warnings_.bits();
   out.since_cycle = supervisor_.since_cycle();
-  out.missing = presence_.missing();
+  out.missing = missing();
   out.unreleased = release_.released() ? 0 : 1;
   out.withdrawals = earlier_withdrawals_ + release_.starts() + supervisor_.stops();
   out.driver_instance = driver_ ? *driver_ : earlier_driver_instance_.value_or(0);

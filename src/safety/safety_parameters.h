@@ -46,6 +46,7 @@ inline Keys keys(std::string_view name, Condition& condition) {
 struct SafetyParameters {
   std::uint64_t loss_cycles = 20;  ///< cycles without a command or a state after which the stop latches
   double heartbeat_timeout = 0;    ///< s; 0 = no operator heartbeat is required
+  double start_timeout = 30;       ///< s for which the machine may be starting (DriverState::kStarting)
   double ramp_time = 2.0;          ///< s, longest category-1 ramp before the brake
   double standstill_speed = 0.05;  ///< rad/s, wheels slower than this are standing
 
@@ -75,6 +76,7 @@ inline Keys keys(SafetyParameters& safety) {
         // The limit is above the four cycles for which the gate uses a command: a held command does not mean a lost node.
         {"loss_cycles", &safety.loss_cycles, "cycles", 5, 10000},
         {"heartbeat_timeout", &safety.heartbeat_timeout, "s", 0, 60, kLoopTimeout | kZeroIsOff},
+        {"start_timeout", &safety.start_timeout, "s", 1, 3600},
         {"ramp_time", &safety.ramp_time, "s", 0.01, 60},
         // A reset must not release a moving robot.
         {"standstill_speed", &safety.standstill_speed, "rad/s", 1.0e-6, 0.5},

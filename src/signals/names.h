@@ -47,9 +47,10 @@ inline constexpr auto kResetRefusalNames = std::to_array<BitName>({
 });
 
 inline constexpr auto kMissingNodeNames = std::to_array<BitName>({
-    {kMissingSensors, "sensors", "no sensors of this run were seen", "start {driver}"},
+    {kMissingSensors, "sensors", "no sensors of this run were seen", "start the driver"},
     {kMissingState, "state", "no state of this run was seen", "start {estimator}"},
     {kMissingCommand, "command", "no command of this run was seen", "start {controller}"},
+    {kMissingMachine, "machine", "the machine is starting", "read in /diagnostics what its driver waits for"},
 });
 
 inline constexpr auto kGateReasonNames = std::to_array<BitName>({

@@ -69,7 +69,12 @@ enum ResetRefusal : std::uint64_t {
 };
 
 /// Bits of Permit::missing, in state kInit.
-enum MissingNode : std::uint64_t { kMissingSensors = 1, kMissingState = 2, kMissingCommand = 4 };
+enum MissingNode : std::uint64_t {
+  kMissingSensors = 1,
+  kMissingState = 2,
+  kMissingCommand = 4,
+  kMissingMachine = 8,  ///< The driver reports DriverState::kStarting.
+};
 
 struct Permit {
   FrameHead head;

@@ -4,7 +4,6 @@
 #include <string>
 #include <utility>
 
-#include "drivers/mujoco/mujoco_plant.h"
 #include "log/log_error.h"
 #include "loop/cycles/controller_cycle.h"
 #include "loop/cycles/driver_cycle.h"
@@ -16,6 +15,7 @@
 #include "loop/wheeled_gate.h"
 #include "signals/names.h"
 #include "simulation/faults/node_faults.h"
+#include "simulation/machines/simulated_machine.h"
 
 namespace robot_control {
 namespace {
@@ -50,8 +50,8 @@ struct ClosedLoop::Parts {
   explicit Parts(const Parameters& given)
       : parameters(given),
         robot(load_robot(given)),
-        plant(robot, given.plant, given.loop.period()),
-        driver(plant, robot, {sensors.writer, FrameWriter<TruthFrame>(), &command.reader, &permit.reader},
+        machine(make_simulated_machine(given, robot)),
+        driver(*machine, robot, {sensors.writer, FrameWriter<TruthFrame>(), &command.reader, &permit.reader},
                given.loop.period_ns(), nullptr, gate_parameters(given, robot)),
         estimator(given.estimator, robot, given.loop.period(), sensors.reader, state.writer, nullptr),
         controller(given.controller, robot, given.loop.period(),
@@ -60,9 +60,15 @@ struct ClosedLoop::Parts {
                 {&sensors.reader, &state.reader, &command.reader, permit.writer},
                 load_script(given.loop.command_script), nullptr),
         retuning(given, robot, controller.tunings()) {
-    plant.start();
+    machine->start();
     driver.set_driver_instance(kDriverInstance);
     driver.begin_run(1);
+  }
+
+  /// Returns false if there is no such device or kind.
+  bool inject_device(const std::string& component, const std::string& kind) {
+    Simulator* const simulator = simulator_of(*machine);
+    return simulator != nullptr && simulator->inject_device(component, kind).empty();
   }
 
   void hand_over() noexcept {
@@ -72,7 +78,7 @@ struct ClosedLoop::Parts {
 
   Parameters parameters;
   DriveTrain robot;
-  MujocoPlant plant;
+  std::unique_ptr<Driver> machine;
   Channel<SensorFrame> sensors;
   Channel<StateFrame> state;
   Channel<CommandFrame> command;
@@ -156,7 +162,7 @@ void ClosedLoop::reset() {
   parts.hand_over();
   parts.faults = {};
   parts.driver.inject(parts.faults);
-  parts.plant.start();
+  parts.machine->start();
   parts.driver.set_start(parts.driver.next_stamp_ns());
   parts.driver.begin_run(parts.driver.run() + 1);
 }
@@ -168,6 +174,7 @@ void ClosedLoop::set_parameters(const std::string& request) {
 
 void ClosedLoop::inject_fault(const std::string& component, const std::string& kind) {
   const std::string problem = set_fault(parts_->faults, component, kind);
+  if (!problem.empty() && parts_->inject_device(component, kind)) return;
   if (!problem.empty()) throw std::invalid_argument(problem);
   parts_->driver.inject(parts_->faults);
 }

@@ -50,8 +50,8 @@ class ClosedLoop {
   void set_parameters(const std::string& request);
 
   /// Injects a fault from the next step on, into the machine as by `~inject_fault`, or into a node
-  /// (simulation/faults/node_faults.h). The file names.h has the words. Throws std::invalid_argument with the list of
-  /// words if one is unknown.
+  /// (simulation/faults/node_faults.h). Simulated drives have faults of their own (simulation/devices/device_faults.h).
+  /// Throws std::invalid_argument with the list of words if one is unknown.
   void inject_fault(const std::string& component, const std::string& kind);
 
   /// Return cycle and time [s] of the sample in the next step.

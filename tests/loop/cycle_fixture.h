@@ -36,7 +36,7 @@ inline DriveTrain two_wheels() {
 }
 
 /// A machine that stands still for any report.
-class StandingMachine final : public Driver {
+class StandingMachine final : public Simulator {
  public:
   void start() override {}
   void read(SensorFrame& sensors) noexcept override {
@@ -49,14 +49,14 @@ class StandingMachine final : public Driver {
   }
   void write(std::span<const JointCommand> commands) noexcept override { mode = commands[0].mode; }
   void stop() noexcept override {}
-  bool inject(const InjectedFaults& wanted) noexcept override {
-    faults = wanted;
-    return true;
-  }
+  void reset() noexcept override { ++resets; }
+  void truth(TruthFrame&) noexcept override {}
+  void inject(const InjectedFaults& wanted) noexcept override { faults = wanted; }
 
   InjectedFaults faults{};
   DriverState state = DriverState::kRunning;
   JointMode mode = JointMode::kBrake;
+  int resets = 0;
 };
 
 template <class Frame>

@@ -210,6 +210,18 @@ TEST_F(RunningLoop, AResetAskedForDuringSilenceReleasesNothingLater) {
   EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped);
 }
 
+TEST_F(RunningLoop, HandsEachResetOfTheOperatorToTheDriverButNoRestartOfTheMonitor) {
+  loop.monitor->inbox().store({.resets = 1});
+  loop.steps(3);
+  EXPECT_EQ(loop.machine.resets, 1);
+  loop.restart_monitor();
+  loop.steps(3);
+  EXPECT_EQ(loop.machine.resets, 1);
+  loop.monitor->inbox().store({.resets = 1});
+  loop.steps(3);
+  EXPECT_EQ(loop.machine.resets, 2);
+}
+
 TEST_F(RunningLoop, AnswersAResetWhileTimeStandsStill) {
   loop.monitor->idle();
   loop.monitor->inbox().store({.resets = 1});

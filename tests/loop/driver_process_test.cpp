@@ -18,7 +18,7 @@ namespace {
 constexpr std::int64_t kMoment = 1'000'000;  // ns
 
 /// A machine that resets slowly, and notes in a plain number that it is in use.
-class SlowMachine final : public Driver {
+class SlowMachine final : public Simulator {
  public:
   /// `again` becomes true once the machine is being reset.
   explicit SlowMachine(std::atomic<bool>& again) : again_(again) {}
@@ -37,7 +37,8 @@ class SlowMachine final : public Driver {
   }
   void write(std::span<const JointCommand> /*commands*/) noexcept override {}
   void stop() noexcept override {}
-  bool simulated() const noexcept override { return true; }
+  void truth(TruthFrame&) noexcept override {}
+  void inject(const InjectedFaults&) noexcept override {}
 
   int touched = 0;  // not atomic: a race is the thread sanitizer's to find
 

@@ -80,6 +80,7 @@ class FixedCauses : public MonitorTest, public testing::WithParamInterface<Fixed
 };
 
 TEST_P(FixedCauses, LatchInTheirCycleAndReachTheMotors) {
+  if (cause() == kCauseMachineNotReady) GTEST_SKIP() << "motion is never permitted before it: machine_start_test.cpp";
   ASSERT_FALSE(braked());
   const std::uint64_t persistence = break_it();
   ASSERT_GT(persistence, 0u) << "a rule without a test";

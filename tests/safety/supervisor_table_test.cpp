@@ -94,7 +94,7 @@ TEST(FixedReactions, NoCauseHasTwo) {
 
 TEST(FixedReactions, OnlyTheHeartbeatRampsAndOnlyTheDriversFaultsLeadToFault) {
   EXPECT_EQ(causes_of(FixedReaction::kRamp), std::uint64_t{kCauseHeartbeatLost});
-  EXPECT_EQ(causes_of(FixedReaction::kFault), kCauseDriverFault | kCauseGateDisobeys);
+  EXPECT_EQ(causes_of(FixedReaction::kFault), kCauseDriverFault | kCauseGateDisobeys | kCauseMachineNotReady);
 }
 
 TEST(Names, SpeakOfEveryBitThatIsSet) {

@@ -19,9 +19,9 @@ struct SpoilRequest {
   std::atomic<Spoiled> how{Spoiled::kNot};
 };
 
-class SpoiledJoint final : public Driver {
+class SpoiledJoint final : public Simulator {
  public:
-  SpoiledJoint(std::unique_ptr<Driver> driver, const SpoilRequest& request, std::int64_t period_ns)
+  SpoiledJoint(std::unique_ptr<Simulator> driver, const SpoilRequest& request, std::int64_t period_ns)
       : driver_(std::move(driver)), request_(request), period_ns_(period_ns) {}
 
   void start() override { driver_->start(); }
@@ -42,12 +42,11 @@ class SpoiledJoint final : public Driver {
   }
   void write(std::span<const JointCommand> commands) noexcept override { driver_->write(commands); }
   void stop() noexcept override { driver_->stop(); }
-  bool simulated() const noexcept override { return driver_->simulated(); }
-  bool truth(TruthFrame& truth) noexcept override { return driver_->truth(truth); }
-  bool inject(const InjectedFaults& faults) noexcept override { return driver_->inject(faults); }
+  void truth(TruthFrame& truth) noexcept override { driver_->truth(truth); }
+  void inject(const InjectedFaults& faults) noexcept override { driver_->inject(faults); }
 
  private:
-  std::unique_ptr<Driver> driver_;
+  std::unique_ptr<Simulator> driver_;
   const SpoilRequest& request_;
   std::int64_t period_ns_;
   JointSample good_;  ///< the last sample that was not spoiled

@@ -33,9 +33,22 @@ MAY_INCLUDE = {
     "drivers": {"signals", "gate"},
     # This holds simulated faults: of the machine in drivers/mujoco, of nodes in simulation.
     "simulation/faults": {"signals", "rt", "bus"},
-    "drivers/can": {"signals", "drivers", "files", "parameters"},
+    "drivers/can": {"signals", "bus", "drivers", "files", "parameters"},
     # Motor drives on a CAN bus, as devices in virtual time.
-    "simulation/devices": {"signals", "drivers/can"},
+    "simulation/devices": {"gate", "signals", "bus", "parameters", "drivers", "drivers/can"},
+    # The simulated robot as one machine: the plant, and before its motors the drives, where there are some.
+    "simulation/machines": {
+        "signals",
+        "configuration",
+        "drivers",
+        "drivers/can",
+        "drivers/mujoco",
+        "gate/wheeled",
+        "machine/wheeled",
+        "simulation/devices",
+    },
+    # One row per driver of a real machine.
+    "drivers/factory": {"configuration", "drivers", "drivers/can", "gate/wheeled", "machine", "machine/wheeled"},
     "drivers/mujoco": {
         "signals",
         "simulation/faults",
@@ -58,10 +71,10 @@ MAY_INCLUDE = {
     "loop": LOOP - {"loop"} | {"files"},
     # The laws of a log, run again from its rows.
     "log/replay": LOOP,
-    "simulation": ALL - {"simulation"},
+    "simulation": ALL - {"simulation"} | {"simulation/machines"},
     "bindings": ALL | {"log/replay"},
     "ros": LOOP | {"files", "machine/description"},
-    "main": {"ros", "drivers/mujoco"},
+    "main": {"ros", "configuration", "files", "rt", "drivers/factory", "simulation/machines"},
 }
 ROS = re.compile(r"^(ros|tf2?|tf2_\w+|\w+_msgs|std_srvs|rosgraph_msgs|robot_control)/")
 """of headers that are included in angle brackets; those of src/ros are included in quotes"""
@@ -143,6 +156,8 @@ NOT_YET_COMMON = {
     # A robot kind that is composed in one file takes these away.
     "src/configuration/calibration_file.h",
     "src/configuration/parameters.h",
+    "src/drivers/factory/factory.cpp",
+    "src/drivers/factory/factory.h",
     "src/log/replay/replay.h",
     "src/log/replay/replicas.h",
     "src/log/replay/variant.h",
@@ -158,6 +173,9 @@ NOT_YET_COMMON = {
     "src/ros/reports/robot_report.h",
     "src/ros/startup/setup.h",
     "src/simulation/closed_loop.h",
+    "src/simulation/machines/device_simulator.cpp",
+    "src/simulation/machines/driven_plant.cpp",
+    "src/simulation/machines/simulated_machine.h",
     "python/bindings/describe.h",
     "python/bindings/offline_estimator.h",
     "python/bindings/wheel_loops.cpp",
@@ -217,8 +235,9 @@ def test_only_its_driver_sees_mujoco():
     assert violations(rule) == []
 
 
-SIMULATED = {"drivers/mujoco", "simulation/faults", "simulation/devices"}
-SIMULATORS = {"main/mujoco_plant.cpp", "configuration/parameters.h"}  # the latter: its parameters
+SIMULATED = {"drivers/mujoco", "simulation/faults", "simulation/devices", "simulation/machines"}
+SIMULATORS = {"main/mujoco_plant.cpp", "main/device_simulator.cpp", "configuration/parameters.h"}
+"""The last one: parameters of the plant."""
 
 
 def test_nothing_simulated_is_in_the_product():

@@ -449,3 +449,11 @@ def test_a_lock_is_what_stands_against_motion(driving):
 
 def test_a_lock_that_lets_the_commander_pass_stands_against_nothing(driving):
     assert judge(with_sources(driving, "key_vel: commands, cmd_vel: locked by no_programs")).verdict is Verdict.MOVING
+
+
+def test_a_machine_that_is_starting_is_named_with_what_it_waits_for():
+    words = "left (node 0): starting; the drive waits for a first frame. right (node 1): starting; the drive waits"
+    reports = {"driver": Report("", {"driver_state": "starting", "suspicious": words})}
+    answer = judge(Facts("uri", safety=Safety("INIT", "brake", missing=("the machine is starting",)), reports=reports))
+    assert answer.headline == "Not ready: the machine is starting."
+    assert [text.split(";")[0] for _, text in answer.actions] == ["left (node 0): starting", "right (node 1): starting"]

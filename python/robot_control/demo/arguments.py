@@ -9,10 +9,13 @@ from pathlib import Path
 
 
 def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
-    """The command line of scripts/demo: `seconds` and `out`; ends the program on a wrong one."""
+    """The command line of scripts/demo: `seconds`, `out` and `drives`; ends the program on a wrong one."""
     parser = argparse.ArgumentParser(prog="scripts/demo", description="Drives the simulated robot and judges the run.")
     parser.add_argument("--seconds", type=_seconds, default=10.0, help="of driving (default %(default)g)")
     parser.add_argument("--out", type=_folder, default="demo_out", help="folder (default ./demo_out)")
+    parser.add_argument(
+        "--drives", choices=("odrive", "cia402"), help="the motors stand behind such drives on a simulated CAN bus"
+    )
     return parser.parse_args(arguments)
 
 

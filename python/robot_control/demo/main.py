@@ -26,6 +26,7 @@ from robot_control.demo.loop_timing import processor_time, stolen_share
 from robot_control.demo.run_picture import draw_run
 from robot_control.demo.run_summary import summarize, to_json, to_table
 from robot_control.export.csv_table import write_csv
+from robot_control.installed_files import share_file
 from robot_control.msg import Trace
 
 LINEAR, ANGULAR = 0.5, 0.2
@@ -89,8 +90,8 @@ class Child:
         return True
 
 
-def run_demo(seconds: float, out: Path) -> int:
-    """Drives for `seconds` and writes everything to `out`; the exit code."""
+def run_demo(seconds: float, out: Path, drives: Path | None = None) -> int:
+    """Drives for `seconds` and writes everything to `out`; `drives`: a drive file. Returns the exit code."""
     out.mkdir(parents=True, exist_ok=True)
     for name in OUTPUTS:
         (out / name).unlink(missing_ok=True)
@@ -98,7 +99,7 @@ def run_demo(seconds: float, out: Path) -> int:
     shutil.rmtree(out / "ros", ignore_errors=True)
 
     before = processor_time()
-    driven = _drive(seconds, out)
+    driven = _drive(seconds, out, drives)
     stolen = stolen_share(before, processor_time())
 
     _print_refusals((out / "launch.log").read_text(errors="replace"))
@@ -125,7 +126,7 @@ def refusals(launch_log: str) -> list[str]:
     return list(found.values())
 
 
-def _drive(seconds: float, out: Path) -> float:
+def _drive(seconds: float, out: Path, drives: Path | None) -> float:
     """Starts everything, drives, ends everything. Returns the seconds from the command's arrival to its end."""
     log = out / "run.bag"
     parameters = out / "ros" / "every_cycle.yaml"
@@ -138,6 +139,7 @@ def _drive(seconds: float, out: Path) -> float:
             [
                 *("roslaunch", "-p", port, "robot_control", "sim.launch"),
                 *("telemetry:=true", "black_box:=false", f"out:={out}", f"bus:={BUS}", f"params:={parameters}"),
+                *([f"drives:={drives}"] if drives else []),
             ],
             out / "launch.log",
         )
@@ -240,7 +242,8 @@ def main() -> int:
     given = parse()
     signal.signal(signal.SIGTERM, _interrupt)
     try:
-        return run_demo(given.seconds, given.out)
+        drives = Path(share_file(f"config/drives/{given.drives}.yaml")) if given.drives else None
+        return run_demo(given.seconds, given.out, drives)
     except (DemoError, OSError) as error:
         print(f"scripts/demo: {in_words(error)}", file=sys.stderr)
         return 2

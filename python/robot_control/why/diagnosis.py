@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 
-from robot_control.common.roles import CONTROLLER, DRIVER, ESTIMATOR, LOOP, MONITOR
+from robot_control.common.roles import CONTROLLER, DRIVER, ESTIMATOR, HARDWARE_DRIVER, MONITOR
 from robot_control.safety.states import DRIVABLE
 from robot_control.safety.zero_request import silent_long_enough
 
@@ -75,6 +75,16 @@ class Facts:
     measured: tuple[float, float] | None = None  # m/s, rad/s: by odometry
     command_timeout: float = 0.0  # s, cmd_vel_timeout of the running controller; 0: off, or not known
 
+    @property
+    def driver(self) -> str:
+        """The node of the driver: that of real machines if it is known, else the simulator's."""
+        return HARDWARE_DRIVER if HARDWARE_DRIVER in self.registered or self.there(HARDWARE_DRIVER) else DRIVER
+
+    @property
+    def loop(self) -> tuple[str, ...]:
+        """The nodes of the loop."""
+        return (self.driver, ESTIMATOR, CONTROLLER, MONITOR)
+
     def there(self, node: str) -> bool:
         """True if the last report of the node is recent."""
         report = self.reports.get(node)
@@ -132,7 +142,7 @@ class Answer:
 
 def judge(facts: Facts) -> Answer:
     """Chooses from all that prevents motion what has to be repaired first."""
-    for look in (_no_nodes, _paused, _stopped, _gate, _no_path, _locked, _controller):
+    for look in (_no_nodes, _paused, _starting, _stopped, _gate, _no_path, _locked, _controller):
         answer = look(facts)
         if answer is not None:
             return answer
@@ -143,8 +153,8 @@ def missing_nodes(facts: Facts) -> tuple[str, ...]:
     """Missing nodes of the loop; the monitor, which checks their locks, detects them earlier than reports do."""
     safety = facts.received()
     if safety is None:
-        return tuple(node for node in LOOP if not facts.there(node))
-    return tuple(node for node in LOOP if node in safety.missing)
+        return tuple(node for node in facts.loop if not facts.there(node))
+    return tuple(node for node in facts.loop if node in safety.missing)
 
 
 def senders_in_words(facts: Facts) -> str:
@@ -179,7 +189,7 @@ def _no_nodes(facts: Facts) -> Answer | None:
             (_launch(facts),),
         )
     absent = missing_nodes(facts)
-    if safety is None and len(absent) == len(LOOP):
+    if safety is None and len(absent) == len(facts.loop):
         where = "" if facts.namespace == "/" else f" in {facts.namespace}"
         commands = [_launch(facts)]
         commands += [f"rosrun robot_control why.py __ns:={other}" for other in facts.elsewhere]
@@ -198,14 +208,23 @@ def _no_nodes(facts: Facts) -> Answer | None:
 
 
 def _paused(facts: Facts) -> Answer | None:
-    if facts.value(DRIVER, "driver_state") != "paused":
+    if facts.value(facts.driver, "driver_state") != "paused":
         return None
     return Answer(
         Verdict.STOPPED,
         "The simulation is paused.",
         (("", "let it run"),),
-        (f"rosservice call {facts.path(DRIVER)}/set_pause false",),
+        (f"rosservice call {facts.path(facts.driver)}/set_pause false",),
     )
+
+
+def _starting(facts: Facts) -> Answer | None:
+    safety = facts.received()
+    if facts.value(facts.driver, "driver_state") != "starting" or safety is None or safety.causes:
+        return None
+    waits = facts.value(facts.driver, "suspicious")
+    actions = tuple(("technician", line) for line in waits.split(". ") if line)
+    return Answer(Verdict.STOPPED, "Not ready: the machine is starting.", actions)
 
 
 def _stopped(facts: Facts) -> Answer | None:
@@ -264,13 +283,13 @@ def _commands(facts: Facts, causes: list[Cause], absent: tuple[str, ...]) -> Ite
 def _gate(facts: Facts) -> Answer | None:
     # These reasons of permit and command only follow from others; a report is a second old, a permit is not.
     theirs = {"permit_brake", "controller_brake", "first_tick", "command_held"}
-    reasons = {name: text for name, text in facts.reasons(DRIVER, "gate").items() if name not in theirs}
-    if facts.value(DRIVER, "gate_verdict") != "brake" or not reasons:
+    reasons = {name: text for name, text in facts.reasons(facts.driver, "gate").items() if name not in theirs}
+    if facts.value(facts.driver, "gate_verdict") != "brake" or not reasons:
         return None
     return Answer(
         Verdict.STOPPED,
         f"The gate brakes: {next(iter(reasons.values()))}.",
-        tuple(("integrator", text) for name, text in facts.remedies(DRIVER, "gate").items() if name in reasons),
+        tuple(("integrator", text) for name, text in facts.remedies(facts.driver, "gate").items() if name in reasons),
     )
 
 
@@ -368,7 +387,7 @@ def speeds(pair: tuple[float, float]) -> str:
 def _moving(facts: Facts) -> Answer:
     safety = facts.received()
     slow = f", no faster than {safety.speed_limit:.2g} m/s" if safety and safety.speed_limit < float("inf") else ""
-    unloaded = facts.value(DRIVER, "suspicious")
+    unloaded = facts.value(facts.driver, "suspicious")
     if unloaded and _motion_commanded(facts):
         return Answer(
             Verdict.MOVING,

@@ -10,7 +10,6 @@ from geometry_msgs.msg import TwistStamped
 from nav_msgs.msg import Odometry
 
 from robot_control.common.live_parameters import LiveParameters
-from robot_control.common.roles import LOOP
 from robot_control.common.ros_master import COMMAND_TOPICS, Master, senders_of
 from robot_control.msg import SafetyStatus
 from robot_control.why.diagnosis import SILENCE, Facts, Report, Safety
@@ -68,7 +67,7 @@ class Listener:
     def complete(self) -> bool:
         """True if every node of the loop has reported."""
         facts = self.facts()
-        return facts.safety is not None and all(facts.there(node) for node in LOOP)
+        return facts.safety is not None and all(facts.there(node) for node in facts.loop)
 
     def facts(self) -> Facts:
         """The present facts."""

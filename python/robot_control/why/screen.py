@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from robot_control.common.files import escaped
-from robot_control.common.roles import CONTROLLER, DRIVER, ESTIMATOR, LOOP
+from robot_control.common.roles import CONTROLLER, ESTIMATOR
 from robot_control.why.diagnosis import Answer, Facts, Safety, Verdict, judge, missing_nodes, senders_in_words, speeds
 
 LABEL = 11
@@ -66,7 +66,7 @@ def _rows(facts: Facts, answer: Answer, look: Look) -> Rows:
     if safety is not None:
         yield from _safety(safety, look)
     yield from _nodes(facts)
-    if any(facts.there(node) for node in LOOP):
+    if any(facts.there(node) for node in facts.loop):
         yield from _command(facts, look)
         yield from _gate(facts)
     yield from _circumstances(facts)
@@ -101,7 +101,7 @@ def _safety(safety: Safety, look: Look) -> Rows:
 def _nodes(facts: Facts) -> Rows:
     absent = missing_nodes(facts)
     words = []
-    for node in LOOP:
+    for node in facts.loop:
         if node in absent or (not facts.there(node) and facts.received() is None):
             words.append(f"{node} MISSING")
         elif not facts.there(node):
@@ -132,18 +132,18 @@ def _command(facts: Facts, look: Look) -> Rows:
 
 
 def _gate(facts: Facts) -> Rows:
-    verdict = facts.value(DRIVER, "gate_verdict")
+    verdict = facts.value(facts.driver, "gate_verdict")
     if not verdict:
         return
-    reasons = "; ".join(facts.reasons(DRIVER, "gate").values())
+    reasons = "; ".join(facts.reasons(facts.driver, "gate").values())
     yield "gate", f"{verdict}: {reasons}" if reasons else verdict, ""
 
 
 def _circumstances(facts: Facts) -> Rows:
-    faults = facts.value(DRIVER, "injected")
+    faults = facts.value(facts.driver, "injected")
     if faults not in {"", "none"}:
         yield "injected", faults, "33"
-    unloaded = facts.value(DRIVER, "suspicious")
+    unloaded = facts.value(facts.driver, "suspicious")
     if unloaded:
         yield "wheels", unloaded, "33"
     slip = facts.reasons(ESTIMATOR, "slip").values()

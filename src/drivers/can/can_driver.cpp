@@ -28,8 +28,16 @@ CanDriver::CanDriver(const CanParameters& parameters, std::span<const Brake> bra
 }
 
 void CanDriver::start() {
-  reset_ = true;
   stopped_ = false;
+  begin();
+}
+
+void CanDriver::reset() noexcept {
+  if (state_ == DriverState::kFault) begin();
+}
+
+void CanDriver::begin() noexcept {
+  reset_ = true;
   state_ = DriverState::kStarting;
   faults_ = 0;
   for (JointLaw& law : laws_) law.reset();
@@ -73,7 +81,7 @@ void CanDriver::read(SensorFrame& sensors) noexcept {
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const DriveSample& sample = drives_[i].sample();
     JointSample& joint = sensors.joints[i];
-    joint = sample.joint;
+    joint = sample.valid ? at_time(sample, now_ns_) : sample.joint;
     joint.age_ns = now_ns_ - sample.stamp_ns;
     joint.valid = (sample.valid ? kValidPosition | kValidVelocity : 0U) | (sample.effort_valid ? kValidEffort : 0U);
     const DriveStatus& status = drives_[i].status();
@@ -81,6 +89,39 @@ void CanDriver::read(SensorFrame& sensors) noexcept {
     if (sample.voltage > 0) sensors.battery_voltage = sample.voltage;
   }
   if (sensors.battery_voltage > 0) sensors.valid |= kValidBattery;
+  sensors.link_count = 1;
+  sensors.links[0] = link();
+  publish_statuses();
+}
+
+LinkStatus CanDriver::link() const noexcept {
+  const CanCounts& counts = bus_.counts();
+  LinkStatus link{.state = LinkState::kUp,
+                  .sent = counts.sent,
+                  .lost = counts.refused + counts.lost,
+                  .late = 0,
+                  .errors = counts.errors + counts.error_frames + counts.malformed};
+  if (bus_.state() == CanState::kBusOff) link.state = LinkState::kDown;
+  if (bus_.state() == CanState::kWarning || bus_.state() == CanState::kPassive) link.state = LinkState::kDegraded;
+  if (counts.received == 0) link.state = LinkState::kStarting;
+  return link;
+}
+
+void CanDriver::publish_statuses() noexcept {
+  for (std::size_t i = 0; i < drives_.size(); ++i) statuses_[i] = drives_[i].full_status();
+  published_statuses_.store(statuses_);
+}
+
+std::string CanDriver::warning() const {
+  Statuses statuses;
+  std::string text;
+  if (!published_statuses_.load(statuses)) return text;
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    if (statuses[i].state == DriveState::kRunning) continue;
+    if (!text.empty()) text += ". ";
+    text += drives_[i].words(statuses[i]);
+  }
+  return text;
 }
 
 double CanDriver::wanted_torque(std::size_t joint, const JointCommand& command) noexcept {

@@ -2,18 +2,23 @@
 /// Motor drives on one CAN bus as a Driver.
 ///
 /// `start` returns at once; `read` reports kStarting until all drives are running, so that the brake of the driver
-/// holds from kRunning on. A fault of a drive stays until the next `start`, with which the operator's reset reaches the
-/// drives. Meanwhile the other joints brake.
+/// holds from kRunning on. A fault of a drive stays until the operator's reset, or the next `start`. Meanwhile the
+/// other joints brake.
+///
+/// The samples of all drives are brought to the time of `read` by their velocities. A sample that is missing therefore
+/// moves on, and its age grows.
 ///
 /// The torque of every mode, the brake included, is computed here from the newest sample (drivers/joint_law.h). The
 /// sample is one or two cycles old, and is brought to the time of the call by its velocity. With an inertia J at the
 /// joint and the period h, the brake's damping d is stable below d h / J = 0.6. Half of that is recommended.
 
+#include <array>
 #include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "bus/latest_value.h"
 #include "drivers/can/can_bus.h"
 #include "drivers/can/can_parameters.h"
 #include "drivers/can/drive_set.h"
@@ -29,9 +34,16 @@ class CanDriver final : public Driver {
             std::function<CanTime()> clock);
 
   void start() override;
+  void reset() noexcept override;
   void read(SensorFrame& sensors) noexcept override;
   void write(std::span<const JointCommand> commands) noexcept override;
   void stop() noexcept override { stopped_ = true; }
+
+  /// The drives take torques, so they follow every order.
+  bool implements(StopKind) const noexcept override { return true; }
+
+  /// Returns the words of every drive that is not running; any thread may call it.
+  std::string warning() const override;
 
   /// Returns one line per drive: its state, its cause and the remedy.
   std::vector<std::string> words() const;
@@ -41,7 +53,12 @@ class CanDriver final : public Driver {
  private:
   static constexpr int kMaxBatches = 8;  // of frames in one cycle, so that a flooded bus does not stop the loop
 
+  using Statuses = std::array<DriveStatus, kMaxJoints>;
+
+  void begin() noexcept;
   bool all_are(DriveState state) const noexcept;
+  LinkStatus link() const noexcept;
+  void publish_statuses() noexcept;
   void judge_faults() noexcept;
   double wanted_torque(std::size_t joint, const JointCommand& command) noexcept;
 
@@ -51,6 +68,8 @@ class CanDriver final : public Driver {
   std::vector<JointLaw> laws_;
   std::vector<DriveCommand> commands_;
   FrameBatch send_;
+  Statuses statuses_{};
+  LatestValue<Statuses> published_statuses_;
   DriverState state_ = DriverState::kStarting;
   std::uint64_t faults_ = 0;  // bits of DriverFault; kept until the next start
   std::int64_t now_ns_ = 0;

@@ -84,6 +84,7 @@ void Drive::step(const DriveCommand& command, std::int64_t now_ns, FrameBatch& s
   limited.torque =
       std::isfinite(command.torque) ? std::clamp(command.torque, -drive_.torque_limit, drive_.torque_limit) : 0;
   advance(limited, now_ns, send);
+  note_order(status_.state == DriveState::kRunning ? limited.torque : 0);
 }
 
 void Drive::judge_silence(std::int64_t now_ns) noexcept {
@@ -136,9 +137,19 @@ void Drive::accept_position(double position, double velocity, std::int64_t now_n
   sample_.valid = true;
 }
 
+void Drive::note_order(double torque) noexcept {
+  std::shift_right(ordered_.begin(), ordered_.end(), 1);
+  ordered_.front() = torque;
+  if (follows_) sample_.joint.effort = torque;
+}
+
 void Drive::accept_motor_torque(double torque, std::int64_t now_ns) noexcept {
   if (!std::isfinite(torque)) return fail(DriveCause::kNotFinite);
-  sample_.joint.effort = torque / to_joint_;
+  const double measured = torque / to_joint_;
+  const auto [lowest, highest] = std::ranges::minmax(ordered_);
+  const double tolerance = kFollows * drive_.torque_limit;
+  follows_ = drive_.effort_is_rare && lowest - tolerance <= measured && measured <= highest + tolerance;
+  if (!follows_) sample_.joint.effort = measured;
   sample_.effort_valid = true;
   effort_ns_ = now_ns;
 }
@@ -164,16 +175,22 @@ void Drive::settle_reaction() noexcept {
   }
 }
 
-std::string Drive::words() const {
-  const CauseWords& cause = kCauseWords[static_cast<std::size_t>(status_.cause)];
+DriveStatus Drive::full_status() const noexcept {
+  DriveStatus status = status_;
+  add_details(status);
+  return status;
+}
+
+std::string Drive::words(const DriveStatus& status) const {
+  const CauseWords& cause = kCauseWords[static_cast<std::size_t>(status.cause)];
   std::string text = drive_.joint + " (node " + std::to_string(drive_.node) +
-                     "): " + kStateWords[static_cast<std::size_t>(status_.state)];
-  if (status_.cause == DriveCause::kNone) return text;
+                     "): " + kStateWords[static_cast<std::size_t>(status.state)];
+  if (status.cause == DriveCause::kNone) return text;
   text += std::string("; the drive ") + cause.words;
-  if (*status_.subject != '\0') text += std::string(" ") + status_.subject;
-  if (const std::string code = code_words(status_); !code.empty()) text += " " + code;
-  if (status_.found != status_.expected) {
-    text += ", " + number_words(status_.found) + " instead of " + number_words(status_.expected);
+  if (*status.subject != '\0') text += std::string(" ") + status.subject;
+  if (const std::string code = code_words(status); !code.empty()) text += " " + code;
+  if (status.found != status.expected) {
+    text += ", " + number_words(status.found) + " instead of " + number_words(status.expected);
   }
   return *cause.remedy == '\0' ? text : text + "; " + cause.remedy;
 }

@@ -55,7 +55,7 @@ enum class DriveCause : std::uint8_t {
   kUnknownWatchdog,   ///< The reaction of the drive on silence is unknown, and that is not accepted.
 };
 
-/// A copy of it is printed by Drive::words.
+/// A copy of it may be put into words by another thread.
 struct DriveStatus {
   DriveState state = DriveState::kStarting;
   DriveCause cause = DriveCause::kFirstFrame;
@@ -63,6 +63,7 @@ struct DriveStatus {
   std::uint64_t code = 0;
   double found = 0;
   double expected = 0;
+  std::array<std::uint64_t, 5> details{};  ///< of an error, as the dialect counts them
 };
 
 /// How the reaction on silence is known.
@@ -86,7 +87,7 @@ struct DriveCommand {
 struct DriveSample {
   JointSample joint{};
   bool valid = false;         ///< position and velocity
-  bool effort_valid = false;  ///< `effort` is measured and not older than 5 · max_silence.
+  bool effort_valid = false;  ///< The last measurement of the torque is not older than 5 · max_silence.
   std::int64_t stamp_ns = 0;  ///< when the position was received
   double voltage = 0;         ///< V, of the drive's supply; 0: unknown
 };
@@ -108,8 +109,14 @@ class FrameBatch {
   std::uint64_t dropped_ = 0;
 };
 
+/// Some drives measure the torque more rarely than the position (`effort_is_rare`). The effort of their samples is the
+/// torque that was ordered in the last cycle. This holds while the last measurement lay among the orders of kOrders
+/// cycles, with a tolerance of kFollows times the limit. Otherwise the effort is that measurement.
 class Drive {
  public:
+  static constexpr std::size_t kOrders = 8;
+  static constexpr double kFollows = 0.1;
+
   /// `period` is that of the loop in s.
   Drive(DriveParameters parameters, double period);
   virtual ~Drive() = default;
@@ -123,14 +130,18 @@ class Drive {
   void step(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept;
 
   const DriveStatus& status() const noexcept { return status_; }
+
+  /// Returns the status with its details.
+  DriveStatus full_status() const noexcept;
   const DriveSample& sample() const noexcept { return sample_; }
   const DriveParameters& drive_parameters() const noexcept { return drive_; }
 
   /// Known from `ready` on.
   const KnownReaction& on_silence() const noexcept { return on_silence_; }
 
-  /// Returns joint, state, cause with its code in words, and the remedy.
-  std::string words() const;
+  /// Returns joint, state, cause with its code in words, and the remedy. Any thread may put a full status into words.
+  std::string words(const DriveStatus& status) const;
+  std::string words() const { return words(full_status()); }
 
   /// Returns the frames that are on the bus in `running`, with those of the drive, to compute the load.
   virtual std::vector<PlannedFrames> plan() const = 0;
@@ -140,6 +151,8 @@ class Drive {
   virtual void restart(bool reset, std::int64_t now_ns) noexcept = 0;
   /// Runs one cycle. The torque is finite and within the limit.
   virtual void advance(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept = 0;
+  virtual void add_details(DriveStatus& status) const noexcept = 0;
+  /// Uses nothing but the status and the parameters.
   virtual std::string code_words(const DriveStatus& status) const = 0;
 
   /// Returns whether the motor is to have no torque because of a fault. A running drive that is hot, has a low voltage
@@ -167,6 +180,7 @@ class Drive {
 
  private:
   void judge_silence(std::int64_t now_ns) noexcept;
+  void note_order(double torque) noexcept;
 
   DriveParameters drive_;
   double to_joint_;  // joint angle = to_joint_ · motor angle, motor torque = to_joint_ · joint torque
@@ -174,6 +188,8 @@ class Drive {
   DriveSample sample_;
   KnownReaction on_silence_;
   std::int64_t effort_ns_ = 0;
+  std::array<double, kOrders> ordered_{};  // N·m, of the joint, in the last cycles; the newest one first
+  bool follows_ = false;                   // the last measurement was among them
   bool reset_before_ = false;
   bool may_brake_ = false;
 };

@@ -215,16 +215,14 @@ void MujocoPlant::stop() noexcept {
   stopped_ = true;
 }
 
-bool MujocoPlant::truth(TruthFrame& truth) noexcept {
+void MujocoPlant::truth(TruthFrame& truth) noexcept {
   const FrameHead head = truth.head;
   truth = truth_;
   truth.head = head;
-  return true;
 }
 
-bool MujocoPlant::inject(const InjectedFaults& faults) noexcept {
+void MujocoPlant::inject(const InjectedFaults& faults) noexcept {
   injected_ = faults;
-  return true;
 }
 
 void MujocoPlant::substep(void* plant) {

@@ -54,7 +54,7 @@
 
 namespace robot_control {
 
-class MujocoPlant final : public Driver {
+class MujocoPlant final : public Simulator {
  public:
   /// `period` is in s. Throws DriverError as compile_model, WheelContacts and brake_of do.
   MujocoPlant(const DriveTrain& robot, const MujocoPlantParameters& parameters, double period);
@@ -64,9 +64,8 @@ class MujocoPlant final : public Driver {
   void write(std::span<const JointCommand> commands) noexcept override;
   void stop() noexcept override;
   bool implements(StopKind) const noexcept override { return true; }
-  bool simulated() const noexcept override { return true; }
-  bool truth(TruthFrame& truth) noexcept override;
-  bool inject(const InjectedFaults& faults) noexcept override;
+  void truth(TruthFrame& truth) noexcept override;
+  void inject(const InjectedFaults& faults) noexcept override;
 
   /// Returns MuJoCo's message about the fault.
   std::string_view fault_message() const noexcept override { return fault_message_.data(); }

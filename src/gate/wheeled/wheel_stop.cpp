@@ -40,6 +40,13 @@ Brake wheel_brake(const DriveTrain& robot, std::size_t index, double motor_frict
           .hold_speed = kHoldSpeed / wheel.radius};
 }
 
+std::vector<Brake> brakes_of_slow_drives(const DriveTrain& robot, double period) {
+  constexpr double kLonger = 4.0 / 3;  // 0.4 J/h of wheel_brake becomes 0.3 J/period
+  std::vector<Brake> brakes;
+  for (std::size_t i = 0; i < robot.wheels.size(); ++i) brakes.push_back(wheel_brake(robot, i, 0, kLonger * period));
+  return brakes;
+}
+
 StopAction wheel_stop(const DriveTrain& robot, std::size_t index, StopKind kind) {
   const double radius = robot.wheels[index].radius;
   const double share = robot.mass / static_cast<double>(robot.wheels.size());

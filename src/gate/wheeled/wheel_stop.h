@@ -18,6 +18,8 @@
 ///
 /// d and k are four times below the stability limits of brake_law.h.
 
+#include <vector>
+
 #include "gate/brake_law.h"
 #include "gate/stop_action.h"
 #include "machine/wheeled/drive_train.h"
@@ -29,6 +31,10 @@ inline constexpr double kDampTime = 0.5;
 
 /// Returns the brake of a wheel; `motor_friction` is that of its motor at the wheel in N·m, `step` is h in s.
 Brake wheel_brake(const DriveTrain& robot, std::size_t wheel, double motor_friction, double step);
+
+/// Returns the brakes of all wheels for drives that are given a torque once in each `period`, s. Their samples are up
+/// to two periods old. The damping is 0.3 J/period, half of what is stable then.
+std::vector<Brake> brakes_of_slow_drives(const DriveTrain& robot, double period);
 
 /// Returns the stop action of a wheel. Its damping is m r²/(n kDampTime).
 StopAction wheel_stop(const DriveTrain& robot, std::size_t wheel, StopKind kind);

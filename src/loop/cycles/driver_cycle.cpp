@@ -11,6 +11,7 @@ namespace robot_control {
 DriverCycle::DriverCycle(Driver& driver, const MachineModel& robot, const Channels& channels, std::int64_t period_ns,
                          Now now, const GateParameters& gate)
     : driver_(driver),
+      simulator_(simulator_of(driver)),
       channels_(channels),
       gate_(joint_limits(robot), gate, static_cast<double>(period_ns) * 1e-9),
       period_ns_(period_ns),
@@ -44,7 +45,7 @@ void DriverCycle::publish_last_as(DriverState state) noexcept {
 void DriverCycle::inject(const InjectedFaults& faults) noexcept {
   if (faults == injected_) return;
   injected_ = faults;
-  driver_.inject(faults);
+  if (simulator_ != nullptr) simulator_->inject(faults);
 }
 
 void DriverCycle::set_due(std::int64_t deadline_ns) noexcept {
@@ -72,12 +73,20 @@ GateInput DriverCycle::latch() noexcept {
   return input;
 }
 
+/// A restarted monitor counts from 0.
+void DriverCycle::follow_resets(const GateInput& input) noexcept {
+  if (input.permit_found != Lookup::kFrame) return;
+  if (resets_ && permit_.resets_handled > *resets_) driver_.reset();
+  resets_ = permit_.resets_handled;
+}
+
 void DriverCycle::step() noexcept {
   const std::int64_t stamp_ns = next_stamp_ns();
   const std::int64_t woke_ns = now_ == nullptr ? 0 : now_();
   const GateInput input = latch();
 
   SensorFrame& sensors = trace_.sensors;
+  follow_resets(input);
   driver_.read(sensors);
   sensors.head = {.run = run_, .cycle = cycle_, .stamp_ns = stamp_ns};
   sensors.driver_instance = driver_instance_;
@@ -89,7 +98,8 @@ void DriverCycle::step() noexcept {
   channels_.sensors.publish(sensors);
   if (now_ != nullptr) trace_.timing = {woke_ns - due_ns(sensors), now_() - due_ns(sensors)};
 
-  if (driver_.truth(trace_.truth)) {
+  if (simulator_ != nullptr) {
+    simulator_->truth(trace_.truth);
     trace_.truth.head = {.run = run_, .cycle = cycle_, .stamp_ns = stamp_ns};
     if (channels_.truth.memory() != nullptr) channels_.truth.publish(trace_.truth);
   }

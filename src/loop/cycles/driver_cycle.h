@@ -4,9 +4,11 @@
 ///   → apply torque over [t_k, t_k+1).
 /// Latched are the newest command of cycles k-4 … k-1 and the newest permit of cycles k-7 … k-1. The longer range lets
 /// the gate distinguish an expired permit from a missing one.
+/// A reset that the monitor answered, accepted or refused, is handed to the driver.
 /// Sensor-to-torque delay is exactly one period. No clock is read here; `now` stamps the trace only.
 
 #include <cstdint>
+#include <optional>
 
 #include "bus/latest_frames.h"
 #include "drivers/driver.h"
@@ -81,9 +83,11 @@ class DriverCycle {
 
  private:
   GateInput latch() noexcept;
+  void follow_resets(const GateInput& input) noexcept;
   void publish_last_as(DriverState state) noexcept;
 
   Driver& driver_;
+  Simulator* simulator_;  ///< null before hardware
   Channels channels_;
   Gate gate_;
   std::int64_t period_ns_;
@@ -97,6 +101,7 @@ class DriverCycle {
   std::uint64_t resumes_ = 0;
   std::uint64_t held_ns_ = 0;
   InjectedFaults injected_{};
+  std::optional<std::uint64_t> resets_;  ///< Permit::resets_handled of the last permit
   SensorFrame paused_;
   CommandFrame command_;
   Permit permit_;

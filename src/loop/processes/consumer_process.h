@@ -52,12 +52,13 @@ class ConsumerProcess : public Process {
         output_(bus, names.channel),
         sensors_(bus, ChannelNames::kSensors),
         robot_(identified(robot, parameters.loop)),
+        driver_program_(driver_program(parameters)),
         trace_(bus, names.ring, lockstep()) {}
 
   /// The driver, and before cycle 0 the telemetry that was asked for. Later the loop goes on without one.
   std::vector<std::string> missing_anywhere() const {
     std::vector<std::string> names;
-    if (!sensors_.channel.locked()) names.emplace_back(program_of(Role::kDriver));
+    if (!sensors_.channel.locked()) names.push_back(driver_program_);
     if (waits_for_telemetry()) names.emplace_back(program_of(Role::kTelemetry));
     return names;
   }
@@ -110,6 +111,7 @@ class ConsumerProcess : public Process {
     if (memory != nullptr) attach_to_run(output_.writer.memory()->head, attached_run(memory->head));
   }
 
+  std::string driver_program_;
   TraceSink<Row> trace_;
   std::uint64_t announced_ = 0;            ///< hash of another robot that the last poll found
   std::atomic<bool> robot_agrees_{false};  ///< the driver lives, on this robot

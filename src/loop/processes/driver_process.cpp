@@ -60,7 +60,7 @@ void DriverProcess::open_driver(std::unique_ptr<Driver> driver, const GateParame
   }
   cycle_->set_driver_instance(mint_number());
   cycle_->begin_run(mint_number());
-  if (!driver_->simulated()) return;
+  if (simulator_of(*driver_) == nullptr) return;
   services_ = std::make_unique<SimulationServices>(hold_, *driver_, *cycle_, [this] { return last_missing(); });
 }
 
@@ -126,7 +126,7 @@ bool DriverProcess::await_turn() noexcept {
 
 void DriverProcess::loop_wall() noexcept {
   const std::int64_t period_ns = loop_parameters().period_ns();
-  const WhenLate when_late = driver_->simulated() ? WhenLate::kSlip : WhenLate::kSkip;
+  const WhenLate when_late = simulator_of(*driver_) != nullptr ? WhenLate::kSlip : WhenLate::kSkip;
   Periodic schedule(monotonic_ns() + period_ns, period_ns, when_late);
   cycle_->set_start(schedule.deadline_ns());
   while (more()) {

@@ -33,6 +33,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
     imu_ = handle.advertise<msg::Imu>("imu/data_raw", 10);
     truth_ = handle.advertise<msg::Odometry>("ground_truth/odom", 10);
     if (parameters().loop.clock == ClockMode::kLockstep) clock_ = handle.advertise<msg::Clock>("/clock", 1);
+    if (process().services() == nullptr) return;  // a real machine is neither paused nor reset
     ros::NodeHandle own("~");
     set_pause_ = own.advertiseService("set_pause", &DriverNode::set_pause, this);
     step_ = own.advertiseService("step", &DriverNode::step, this);

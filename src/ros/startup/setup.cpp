@@ -50,8 +50,10 @@ void append(std::vector<Overlay>& overlays, const std::string& name, const std::
 std::vector<Overlay> server_overlays(const std::string& node) {
   std::vector<Overlay> overlays;
   append(overlays, "robot", "robot");
-  append(overlays, ros::this_node::getName(), node, {"config", "urdf"});
+  append(overlays, ros::this_node::getName(), node, {"config", "urdf", "driver", "drives"});
   append(overlays, "~urdf", "robot.urdf");
+  append(overlays, "~driver", "robot.driver");
+  append(overlays, "~drives", "robot.drives");
   return overlays;
 }
 
@@ -140,7 +142,7 @@ Parameters parameters_of(Role role) {
   const std::string node(program_of(role));
   std::vector<Overlay> overlays;
   append(overlays, "robot", "robot");
-  append(overlays, node, node, {"config", "urdf"});
+  append(overlays, node, node, {"config", "urdf", "driver", "drives"});
   std::string path = server_text(ros::names::resolve(node + "/config"), kYamlPath);
   if (path.empty()) path = config_path();
   return read_parameters(path, overlays, installed_config());

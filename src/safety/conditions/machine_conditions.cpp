@@ -6,12 +6,16 @@
 namespace robot_control {
 
 MachineConditions::MachineConditions(const SafetyParameters& parameters, double period) noexcept
-    : overruns_(kCauseOverruns, parameters.overruns, period),
+    : period_(period),
+      start_timeout_(parameters.start_timeout),
+      overruns_(kCauseOverruns, parameters.overruns, period),
       battery_low_(kCauseBatteryLow, parameters.battery_low, period),
       battery_empty_(kCauseBatteryEmpty, parameters.battery_empty, period),
       mark_cycles_(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(1.0 / (kMarks * period))))) {}
 
 void MachineConditions::enter_run() noexcept {
+  starting_ = 0;
+  was_ready_ = false;
   overruns_.reset();
   battery_low_.reset();
   battery_empty_.reset();
@@ -33,9 +37,20 @@ std::uint64_t MachineConditions::overruns_of_the_last_second(std::uint64_t overr
   return growth;
 }
 
+void MachineConditions::evaluate_start(bool starting, std::uint64_t elapsed, ActiveCauses& out) noexcept {
+  starting_ = starting ? starting_ + elapsed : 0;
+  was_ready_ |= !starting;
+  const double seconds = static_cast<double>(starting_) * period_;
+  if (seconds >= start_timeout_)
+    out.add(kCauseMachineNotReady, Reaction::kBrake, {.beyond = true, .value = seconds, .limit = start_timeout_});
+}
+
 void MachineConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept {
   const std::size_t faulty = first_faulty_joint(sensors);
-  if (sensors.driver_state == DriverState::kFault || sensors.faults != 0 || faulty < kMaxJoints) {
+  const bool is_starting = sensors.driver_state == DriverState::kStarting;
+  evaluate_start(is_starting, elapsed, out);
+  const bool fell_back = is_starting && was_ready_;
+  if (sensors.driver_state == DriverState::kFault || sensors.faults != 0 || faulty < kMaxJoints || fell_back) {
     out.add(kCauseDriverFault, Reaction::kBrake, {.joint = faulty});
   }
 

@@ -177,11 +177,9 @@ double Cia402Device::driven_torque(unsigned axis, double seconds) {
 }
 
 double Cia402Device::brake_torque(unsigned axis) {
-  constexpr double kTime = 0.01;  // s, of the damping
   Axis& own = axes_[axis];
-  const double damping = parameters_.inertia / kTime;
-  double torque = -damping * own.motor->velocity;
-  if (!own.holding && std::abs(own.motor->velocity) < kSlow) {
+  double torque = -parameters_.brake_damping * own.motor->velocity;
+  if (!own.holding && std::abs(own.motor->velocity) < parameters_.brake_hold_speed) {
     own.holding = true;
     own.held = own.motor->position;
     const bool stops = own.power == PowerState::kQuickStopActive;
@@ -189,16 +187,17 @@ double Cia402Device::brake_torque(unsigned axis) {
     if (stops && at(kQuickStopOption, axis) < 5) own.power = PowerState::kSwitchOnDisabled;
     if (own.power != PowerState::kQuickStopActive) return 0;
   }
-  if (own.holding) torque += damping / (4 * kTime) * (own.held - own.motor->position);
+  if (own.holding) torque += parameters_.brake_stiffness * (own.held - own.motor->position);
   return std::clamp(torque, -max_torque(axis), max_torque(axis));
 }
 
 void Cia402Device::update_axis(unsigned axis) {
   Axis& own = axes_[axis];
-  constexpr double kStep = 125.0e-6;  // s between the steps of the motor's control
+  const double seconds = 1.0e-9 * static_cast<double>(bus_.now_ns() - own.updated_ns);
+  own.updated_ns = bus_.now_ns();
   const bool brakes = own.power == PowerState::kQuickStopActive || own.power == PowerState::kFaultReactionActive;
   if (own.power == PowerState::kOperationEnabled) {
-    own.motor->torque = driven_torque(axis, kStep);
+    own.motor->torque = driven_torque(axis, seconds);
   } else {
     own.torque = 0;
     own.motor->torque = brakes ? brake_torque(axis) : 0;

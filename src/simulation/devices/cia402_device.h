@@ -4,7 +4,7 @@
 ///
 /// Source: CiA 301 and CiA 402-2. On the loss of the host's heartbeat (1016) it sends EMCY 8130, becomes
 /// pre-operational, and each axis follows 6007. A quick stop follows 605A and a fault 605E: the axis is damped down to
-/// kSlow, and then released or, with 605A of 5 … 8, held.
+/// brake_hold_speed, and then released or, with 605A of 5 … 8, held.
 
 #include <array>
 #include <cstdint>
@@ -27,7 +27,9 @@ struct Cia402DeviceParameters {
   double rated_torque = 2;                ///< N·m
   double counts_per_turn = 4096;
   double velocity_unit = 2 * 3.14159265358979323846 / 60;  ///< rad/s
-  double inertia = 0.01;                                   ///< kg·m² at the motor, for its own brake
+  double brake_damping = 1;                                ///< N·m·s/rad, of its own brake
+  double brake_stiffness = 25;                             ///< N·m/rad
+  double brake_hold_speed = 0.2;                           ///< rad/s
   std::uint32_t vendor = 0x1A5;
   std::uint32_t product = 0x402;
   double clock_ppm = 0;
@@ -35,8 +37,6 @@ struct Cia402DeviceParameters {
 
 class Cia402Device final : public Device {
  public:
-  static constexpr double kSlow = 0.2;  ///< rad/s
-
   /// One axis per motor.
   Cia402Device(const Cia402DeviceParameters& parameters, VirtualCan& bus, std::vector<DeviceMotor*> motors);
 
@@ -56,6 +56,7 @@ class Cia402Device final : public Device {
     double zero = 0;    // rad, true position of its zero
     double torque = 0;  // N·m, of TQ with its slope
     double held = 0;    // rad, true position that a quick stop holds
+    std::int64_t updated_ns = 0;
     bool holding = false;
   };
 

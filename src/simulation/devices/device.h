@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
+#include "parameters/block.h"
 #include "simulation/devices/virtual_can.h"
 
 namespace robot_control {
@@ -27,6 +29,20 @@ enum class DeviceFault : std::uint8_t {
   kUnderVoltage,  ///< The device reports that its supply is too low, and releases the motor.
   kNotFinite,     ///< The measured velocity is NaN, where the protocol has floats.
 };
+
+/// The words of `~inject_fault`.
+inline std::vector<Word> words_of(DeviceFault) {
+  using enum DeviceFault;
+  return {{"ok", kNone},
+          {"off", kOff},
+          {"reset", kReset},
+          {"other_zero", kOtherZero},
+          {"encoder", kEncoder},
+          {"released", kReleased},
+          {"hot", kHot},
+          {"under_voltage", kUnderVoltage},
+          {"not_finite", kNotFinite}};
+}
 
 class Device {
  public:

@@ -26,8 +26,14 @@ std::size_t VirtualCan::join(Receiver receiver) {
 bool VirtualCan::send(std::size_t party, const can_frame& frame) {
   Party& sender = parties_.at(party);
   if (!sender.connected || sender.queue.size() == kMaxQueue) return false;
-  sender.queue.push_back({frame, now_ns_});
+  sender.queue.push_back({frame, ready_ns(sender)});
   return true;
+}
+
+std::int64_t VirtualCan::ready_ns(const Party& sender) {
+  if (longest_delay_ns_ == 0) return now_ns_;
+  const std::int64_t delay_ns = std::uniform_int_distribution<std::int64_t>(0, longest_delay_ns_)(generator_);
+  return std::max(now_ns_ + delay_ns, sender.queue.empty() ? 0 : sender.queue.back().ready_ns);
 }
 
 void VirtualCan::connect(std::size_t party, bool connected) {

@@ -39,6 +39,9 @@ class VirtualCan {
   /// From now on each frame is lost with this probability.
   void lose(double probability) { loss_ = probability; }
 
+  /// From now on each frame is late by a random time up to this one. The frames of a party keep their order.
+  void delay(std::int64_t longest_ns) { longest_delay_ns_ = longest_ns; }
+
   std::int64_t now_ns() const { return now_ns_; }
   /// Time in which the bus was busy.
   std::int64_t busy_ns() const { return busy_ns_; }
@@ -56,12 +59,14 @@ class VirtualCan {
     bool connected = true;
   };
 
+  std::int64_t ready_ns(const Party& sender);
   Party* next_sender(std::int64_t start_ns);
   void deliver(const Party& sender, const can_frame& frame);
 
   double bit_ns_;
   std::mt19937_64 generator_;
   double loss_ = 0;
+  std::int64_t longest_delay_ns_ = 0;
   std::vector<Party> parties_;
   std::int64_t now_ns_ = 0;
   std::int64_t free_ns_ = 0;  // the bus is free from then on

@@ -90,8 +90,7 @@ MachineUnderTest machine(const std::string& name, CanDialect dialect) {
           .effort_limit = 4,
           .effort = 0.5,
           .damping = 2,
-          .stiffness = 20,
-          .effort_age = dialect == CanDialect::kOdrive ? 1 / odrive::OdriveParameters().effort_rate : 0};
+          .stiffness = 20};
 }
 
 INSTANTIATE_TEST_SUITE_P(CanMachines, DriverContract,
@@ -146,6 +145,16 @@ TEST_P(CanDriverOn, TheOtherJointBrakesWhenADriveIsLost) {
   const SensorFrame frame = cycles(1000, drive_);
   EXPECT_EQ(frame.faults, std::uint64_t{kFaultLink});
   EXPECT_LT(joint_speed(1), 0.05);
+}
+
+TEST_P(CanDriverOn, ASampleThatIsMissingMovesOnWithItsVelocity) {
+  cycles(3000, drive_);
+  const JointSample last = cycle(drive_).joints[0];
+  machine_.rig().bus().lose(1);
+  cycle(drive_);
+  const JointSample missing = cycle(drive_).joints[0];
+  EXPECT_EQ(missing.age_ns, 1'000'000);
+  EXPECT_NEAR(missing.position, last.position + 0.002 * last.velocity, 1.0e-4);
 }
 
 TEST_P(CanDriverOn, NothingMovesAfterAFaultUntilTheNextStart) {

@@ -82,6 +82,34 @@ TEST(OdriveDrive, RaisesTheVelocityLimitThatWouldReduceTheTorque) {
   EXPECT_NEAR(rig.motor().torque, 0.2, 1.0e-6);
 }
 
+TEST(OdriveDrive, ReportsTheLastOrderAsEffortWhileItFollows) {
+  DeviceRig rig;
+  add(rig, odrive_pair(2));
+  ASSERT_TRUE(rig.runs());
+  rig.inertia = 100;
+  for (int i = 0; i < 200; ++i) {
+    const double torque = 2 * std::sin(0.05 * i);
+    rig.command_all({.enabled = true, .torque = torque});
+    rig.cycle();
+    if (i > 20) {
+      ASSERT_EQ(rig.drive().sample().joint.effort, torque) << i;
+    }
+  }
+}
+
+TEST(OdriveDrive, ReportsTheMeasuredEffortWhereItDoesNotFollow) {
+  DeviceRig rig;
+  add(rig, odrive_pair(2));
+  ASSERT_TRUE(rig.runs());
+  rig.inertia = 100;
+  rig.motor().velocity = 2.5 * 59;  // the device reduces the torque at this speed
+  rig.command_all({.enabled = true, .torque = 3});
+  rig.run(0.1);
+  EXPECT_NEAR(rig.drive().sample().joint.effort, 2.5 * rig.motor().torque, 1.0e-3);
+  EXPECT_LT(rig.motor().torque, 0.5);
+  EXPECT_TRUE(rig.drive().sample().effort_valid);
+}
+
 TEST(OdriveDrive, ReadsItsWatchdogWhereTheEndpointsAreKnown) {
   OdrivePair pair = odrive_pair(3);
   pair.drive.drive.on_silence = SilenceReaction::kUnknown;

@@ -242,10 +242,15 @@ void Cia402Drive::send_nmt(NmtCommand command, std::int64_t now_ns, FrameBatch& 
   send.add(canopen::encode_nmt({.command = command, .node = node()}));
 }
 
+void Cia402Drive::add_details(DriveStatus& status) const noexcept {
+  status.details[0] = emergency_;
+}
+
 std::string Cia402Drive::code_words(const DriveStatus& status) const {
   switch (status.cause) {
     case DriveCause::kDriveError:
-      return hexadecimal(emergency_) + " (" + canopen::error_code_words(emergency_) + ")";
+      return hexadecimal(status.details[0]) + " (" +
+             canopen::error_code_words(static_cast<std::uint16_t>(status.details[0])) + ")";
     case DriveCause::kLacks:
     case DriveCause::kRefused:
       if (status.code == 0) return "";

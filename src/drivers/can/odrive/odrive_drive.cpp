@@ -53,6 +53,7 @@ std::uint32_t parts_in_error(const can_frame& frame) noexcept {
 
 DriveParameters with_sample_period(DriveParameters drive, double period) {
   drive.sample_period = period;
+  drive.effort_is_rare = true;
   return drive;
 }
 
@@ -330,6 +331,11 @@ void OdriveDrive::set_position(double position, FrameBatch& send) const noexcept
   send.add(encode(node(), v05::SetLinearCount{.position = static_cast<std::int32_t>(counts)}));
 }
 
+void OdriveDrive::add_details(DriveStatus& status) const noexcept {
+  std::copy(details_.begin(), details_.end(), status.details.begin());
+  status.details.back() = firmware_ == Firmware::k06 ? 1 : 0;
+}
+
 std::string OdriveDrive::code_words(const DriveStatus& status) const {
   switch (status.cause) {
     case DriveCause::kDriveError:
@@ -343,15 +349,16 @@ std::string OdriveDrive::code_words(const DriveStatus& status) const {
     default:
       return "";
   }
-  if (firmware_ == Firmware::k06) {
+  const auto& details = status.details;
+  if (details.back() == 1) {
     std::string text = error_names(ErrorKind::kAny06, status.code);
-    if (details_[3] != 0) text += " (disarmed by " + error_names(ErrorKind::kAny06, details_[3]) + ")";
+    if (details[3] != 0) text += " (disarmed by " + error_names(ErrorKind::kAny06, details[3]) + ")";
     return text;
   }
   std::string text = error_names(ErrorKind::kAxis05, status.code);
   constexpr ErrorKind kKinds[] = {ErrorKind::kMotor05, ErrorKind::kEncoder05, ErrorKind::kController05};
   for (std::size_t i = 0; i < std::size(kKinds); ++i) {
-    if (details_[i] != 0) text += " " + error_names(kKinds[i], details_[i]);
+    if (details[i] != 0) text += " " + error_names(kKinds[i], details[i]);
   }
   return text;
 }

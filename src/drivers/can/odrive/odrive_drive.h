@@ -41,6 +41,7 @@ class OdriveDrive final : public Drive {
 
   void restart(bool reset, std::int64_t now_ns) noexcept override;
   void advance(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept override;
+  void add_details(DriveStatus& status) const noexcept override;
   std::string code_words(const DriveStatus& status) const override;
 
   void receive_heartbeat(const can_frame& frame, std::int64_t now_ns) noexcept;

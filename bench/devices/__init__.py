@@ -1,0 +1,1 @@
+"""Losses behind motor drives on CAN: of a drive, of the bus, of the driver."""

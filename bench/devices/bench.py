@@ -1,0 +1,92 @@
+"""The table of `scripts/bench devices`: losses, silence on a slope, and disturbed buses, by dialect.
+
+scripts/bench devices --first 40 --runs 1
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from bench.devices.disturbed_drive import BUSES, DisturbedDrive, DriveFigures, run_drive
+from bench.devices.loss_trial import BRAKE_CYCLES, DIALECTS, KINDS, LATEST, LossTrial, Outcome, run_trial
+from bench.devices.slope_trial import as_stated
+from bench.runs.runner import Runner
+
+ALL_RUNS = 100
+DRIVE_TIME = 1800.0  # s
+ODOMETRY, RIPPLE = 1.2, 2.0
+"""Bounds of a disturbed drive, by the undisturbed one."""
+ALLOWED = "what is allowed"
+UNDISTURBED = "the undisturbed drive"
+
+Row = dict[str, Any]
+
+
+def bench(first: int, runs: int, say: Callable[[str], None], runner: Runner) -> tuple[dict[str, Any], bool]:
+    """The table, and whether every figure keeps its bound.
+
+    Args:
+        first: the first seed.
+        runs: seeds of each kind of loss; the drives last `runs`/`ALL_RUNS` of `DRIVE_TIME`.
+        say: receives progress and every broken rule.
+        runner: where the trials run.
+    """
+    rows = loss_rows(first, runs, say, runner)
+    rows += slope_rows(first, runs, say, runner)
+    rows += drive_rows(max(60.0, DRIVE_TIME * min(runs, ALL_RUNS) / ALL_RUNS), say, runner)
+    return {"bench": "devices", "rows": rows}, all(row["value"] <= row["reference"] for row in rows)
+
+
+def row(name: str, value: float, unit: str, allowed: float) -> Row:
+    """One figure with its bound."""
+    ratio = value / allowed if allowed else float(value)
+    return {"name": name, "value": value, "unit": unit, "reference": allowed, "reference_name": ALLOWED, "ratio": ratio}
+
+
+def loss_rows(first: int, runs: int, say: Callable[[str], None], runner: Runner) -> list[Row]:
+    """Per dialect and kind of loss: broken rules, and the latest times until it is seen and until the brake."""
+    trials = [
+        LossTrial(dialect, kind, seed) for dialect in DIALECTS for kind in KINDS for seed in range(first, first + runs)
+    ]
+    outcomes: dict[tuple[str, str], list[Outcome]] = {}
+    for trial, outcome in zip(trials, runner.outcomes(run_trial, trials, say, chunk=10), strict=True):
+        outcomes.setdefault((trial.dialect, trial.kind), []).append(outcome)
+        if outcome.broken:
+            say(f"{trial}: {', '.join(outcome.broken)}")
+    rows = []
+    for (dialect, kind), found in outcomes.items():
+        rows += [
+            row(f"{dialect} {kind}: losses that broke a rule", sum(bool(each.broken) for each in found), "", 0),
+            row(f"{dialect} {kind}: until it is seen", max(each.seen for each in found), "ms", 1e3 * LATEST[kind]),
+            row(f"{dialect} {kind}: from there to the brake", max(e.brake for e in found), "cycles", BRAKE_CYCLES),
+        ]
+    return rows
+
+
+def slope_rows(first: int, runs: int, say: Callable[[str], None], runner: Runner) -> list[Row]:
+    """Silence on a slope: a tenth of `runs`."""
+    seeds = range(first, first + max(1, runs // 10))
+    items = [(dialect, seed) for dialect in DIALECTS for seed in seeds]
+    stated = list(runner.outcomes(as_stated, items, say))
+    other = dict.fromkeys(DIALECTS, 0)
+    for (dialect, _), good in zip(items, stated, strict=True):
+        other[dialect] += not good
+    return [row(f"{name} silence on 5°: not as docs/drivers.md states", count, "", 0) for name, count in other.items()]
+
+
+def drive_rows(seconds: float, say: Callable[[str], None], runner: Runner) -> list[Row]:
+    """False stops, and the ratios of odometry's error and of the ripple."""
+    drives = [DisturbedDrive(dialect, bus, seconds) for dialect in DIALECTS for bus in BUSES]
+    figures = dict(zip(drives, runner.outcomes(run_drive, drives, say), strict=True))
+    rows = []
+    for drive, found in figures.items():
+        reference: DriveFigures = figures[DisturbedDrive(drive.dialect, BUSES[0], seconds)]
+        name = f"{drive.dialect} {drive.bus} bus:"
+        rows.append(row(f"{name} false stops", found.stops, "", 0))
+        if drive.bus != BUSES[0]:
+            rows += [
+                row(f"{name} error of the odometry", found.odometry / reference.odometry, UNDISTURBED, ODOMETRY),
+                row(f"{name} ripple of the turn", found.ripple / reference.ripple, UNDISTURBED, RIPPLE),
+            ]
+    return rows

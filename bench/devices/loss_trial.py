@@ -1,0 +1,127 @@
+"""One loss behind simulated drives at full speed, in virtual time, and what it may do.
+
+The robot drives at `SPEED`. At a random time a drive or the cable fails, while the request for motion goes on. After
+`LOSS_TIME` the fault ends, then the request. The operator resets until the drives are ready. A new request follows.
+
+    seen     the driver reports the loss within `LATEST` of its kind
+    brake    the gate brakes within `BRAKE_CYCLES` after that
+    latch    the stop is latched with the cause driver_fault
+    torque   from `STEADY_TIME` after the brake on, the robot does not become faster
+    release  it stands between the reset and the new request
+    drives   after the new request it reaches its speed
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from robot_control import ClosedLoop
+from robot_control.closed_loop import Log
+from robot_control.common.signal_names import mask_of, number_of
+from robot_control.installed_files import share_file
+
+DIALECTS = ("odrive", "cia402")
+CABLE = "cable"
+LATEST = {  # s, by the driver's own promises: 20 missing samples, or a heartbeat of 0.1 s with what follows it
+    CABLE: 0.025,
+    "off": 0.025,
+    "reset": 0.025,
+    "other_zero": 0.005,
+    "released": 0.15,
+    "encoder": 0.15,
+    "under_voltage": 0.15,
+}
+KINDS = tuple(LATEST)
+SPEED = 1.0  # m/s, the default limit
+BRAKE_CYCLES = 5
+LOSS_TIME = 3.0  # s
+STEADY_TIME = 1.0  # s, in which a light robot has fallen back on its casters
+FASTER = 0.02  # m/s, tolerance
+STANDING = 0.01  # m/s
+RESETS = 20
+
+BRAKE = number_of("GateVerdict", "brake")
+DRIVER_FAULT = mask_of("StopCause", "driver_fault")
+LATCHED = [number_of("SupervisorState", name) for name in ("STOPPED", "FAULT")]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LossTrial:
+    """A loss of this kind at one seed."""
+
+    dialect: str
+    kind: str
+    seed: int
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The cycles until the loss was seen, those from there to the brake, and the rules that were broken."""
+
+    seen: int
+    brake: int
+    broken: tuple[str, ...]
+
+
+def first(condition: NDArray[np.bool_]) -> int:
+    """The first cycle in which it holds; the number of cycles if there is none."""
+    return int(np.argmax(condition)) if condition.any() else len(condition)
+
+
+def speed_of(log: Log, wheel_base: float) -> Array:
+    """m/s, of the faster side; `wheel_base` is in m."""
+    speed: Array = np.abs(log["truth_linear"]) + np.abs(log["truth_angular"]) * wheel_base / 2
+    return speed
+
+
+def seen_in(log: Log) -> NDArray[np.bool_]:
+    """Cycles in which the driver reports a fault."""
+    drives = [log[name] for name in log if name.endswith("_joint_fault")]
+    seen: NDArray[np.bool_] = np.any([log["faults"], *drives], axis=0)
+    return seen
+
+
+def run_trial(trial: LossTrial) -> Outcome:
+    """Runs one trial."""
+    random = np.random.default_rng(trial.seed)
+    loop = ClosedLoop(seed=trial.seed, drives=share_file(f"config/drives/{trial.dialect}.yaml"))
+    request = (random.choice((SPEED, -SPEED)), 0.0)
+    loop.run(random.uniform(2.5, 3.5), request)
+    joint = random.choice([wheel["joint"] for wheel in loop.robot["wheels"]])
+    component, kind = ("bus", "off") if trial.kind == CABLE else (joint, trial.kind)
+    loop.inject_fault(component, kind)
+    log = loop.run(LOSS_TIME, request)
+    loop.inject_fault(component, "ok")
+    seen = first(seen_in(log))
+    brake = first(log["gate_verdict"] == BRAKE)
+    return Outcome(seen, brake - seen, tuple(broken_rules(trial, loop, log, request)))
+
+
+def broken_rules(trial: LossTrial, loop: ClosedLoop, log: Log, request: tuple[float, float]) -> Iterator[str]:
+    """Yields the rules that the loss and the way back break."""
+    period, base = loop.period, loop.robot["wheel_base"]
+    seen = first(seen_in(log))
+    brake = first(log["gate_verdict"] == BRAKE)
+    if seen * period > LATEST[trial.kind]:
+        yield "seen"
+    if brake > seen + BRAKE_CYCLES:
+        yield "brake"
+    if log["supervisor_state"][-1] not in LATCHED or not int(log["permit_causes"][-1]) & DRIVER_FAULT:
+        yield "latch"
+    after = loop.run(1.0, request)
+    steady = np.concatenate([speed_of(log, base)[brake + round(STEADY_TIME / period) :], speed_of(after, base)])
+    if np.any(steady > np.minimum.accumulate(steady) + FASTER):
+        yield "torque"
+    for _ in range(RESETS):
+        if loop.run(0.5, (0.0, 0.0))["supervisor_state"][-1] not in LATCHED:
+            break
+        loop.e_stop_reset()
+    if speed_of(loop.run(1.0), base).max() > STANDING:
+        yield "release"
+    if abs(loop.run(3.0, request)["truth_linear"][-1]) < 0.98 * SPEED:
+        yield "drives"

@@ -1,0 +1,21 @@
+#pragma once
+/// The drivers of real machines by name. A new driver is one row of the table in factory.cpp and one word of
+/// DriverChoice.
+
+#include <functional>
+#include <memory>
+
+#include "configuration/parameters.h"
+#include "drivers/can/can_bus.h"
+#include "drivers/driver.h"
+#include "machine/wheeled/drive_train.h"
+
+namespace robot_control {
+
+using DriverClock = std::function<CanTime()>;
+
+/// `clock` states the present time and is called in each cycle. Throws DriverError, and ParameterError with all
+/// problems of the driver's own file.
+std::unique_ptr<Driver> make_driver(const Parameters& parameters, const DriveTrain& robot, DriverClock clock);
+
+}  // namespace robot_control

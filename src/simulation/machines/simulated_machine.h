@@ -1,0 +1,16 @@
+#pragma once
+/// The simulated machine that the parameters describe is a MuJoCo plant. Its motors are given their torques directly,
+/// or they stand behind simulated drives on CAN (Parameters::drives).
+
+#include <memory>
+
+#include "configuration/parameters.h"
+#include "drivers/driver.h"
+#include "machine/wheeled/drive_train.h"
+
+namespace robot_control {
+
+/// Throws DriverError, and ParameterError with all problems of the drive file.
+std::unique_ptr<Driver> make_simulated_machine(const Parameters& parameters, const DriveTrain& robot);
+
+}  // namespace robot_control

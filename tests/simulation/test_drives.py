@@ -1,0 +1,77 @@
+"""The closed loop through motor drives on a simulated CAN bus: drivers, frames, devices, in virtual time."""
+
+import math
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from robot_control import ClosedLoop, ParameterError
+from robot_control.common.signal_names import number_of
+from robot_control.installed_files import share_file
+
+DIALECTS = ("odrive", "cia402")
+COMMAND = (0.5, 0.2)
+"""m/s, rad/s"""
+STOPPED, FAULT = (number_of("SupervisorState", name) for name in ("STOPPED", "FAULT"))
+
+
+def drive_file(dialect):
+    return share_file(f"config/drives/{dialect}.yaml")
+
+
+def driven(loop, seconds=10.0):
+    log = loop.run(seconds, COMMAND)
+    assert not np.isin(log["supervisor_state"], (STOPPED, FAULT)).any()
+    return log
+
+
+def odometry_error(log):
+    return math.hypot(*(log[f"estimate_{name}"][-1] - log[f"truth_{name}"][-1] for name in ("x", "y")))
+
+
+@pytest.fixture(scope="module")
+def direct():
+    return driven(ClosedLoop(seed=3))
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
+def test_the_robot_ends_where_it_ends_without_a_bus(dialect, direct):
+    log = driven(ClosedLoop(seed=3, drives=drive_file(dialect)))
+    end = {name: [run[f"truth_{name}"][-1] for run in (log, direct)] for name in ("x", "y")}
+    assert math.hypot(*(there - here for there, here in end.values())) < 0.002
+    assert odometry_error(log) < 1.2 * odometry_error(direct)
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
+def test_the_same_seed_gives_the_same_bytes(dialect):
+    first, second = (driven(ClosedLoop(seed=3, drives=drive_file(dialect)), 2.0) for _ in range(2))
+    assert all(first[name].tobytes() == second[name].tobytes() for name in first)
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
+def test_it_stands_after_a_stop(dialect):
+    loop = ClosedLoop(seed=3, drives=drive_file(dialect))
+    driven(loop, 3.0)
+    loop.e_stop()
+    log = loop.run(3.0, COMMAND)
+    assert abs(log["truth_linear"][-1]) < 1e-3
+
+
+def test_a_drive_file_of_another_robot_is_refused(tmp_path):
+    file = tmp_path / "drives.yaml"
+    file.write_text(Path(drive_file("odrive")).read_text().replace("left_wheel_joint", "front_wheel_joint"))
+    with pytest.raises(ParameterError, match="front_wheel_joint") as refused:
+        ClosedLoop(drives=file)
+    assert "left_wheel_joint" in str(refused.value)
+
+
+def test_is_at_least_a_third_as_fast_as_without_a_bus():
+    def seconds(**given):
+        loop = ClosedLoop(seed=3, **given)
+        began = time.process_time()
+        driven(loop, 3.0)
+        return time.process_time() - began
+
+    direct, through = (min(seconds(**given) for _ in range(3)) for given in ({}, {"drives": drive_file("odrive")}))
+    assert through < 3 * direct
