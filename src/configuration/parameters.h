@@ -26,12 +26,13 @@ namespace robot_control {
 
 /// The driver that stands before the machine.
 enum class DriverChoice {
-  kMujoco,  ///< the simulated machine
-  kCan,     ///< motor drives on CAN, as the drive file says
+  kMujoco,   ///< the simulated machine
+  kCan,      ///< motor drives on CAN, as the drive file says
+  kExample,  ///< drivers/example: a motor board
 };
 
 inline std::vector<Word> words_of(DriverChoice) {
-  return {{"mujoco", DriverChoice::kMujoco}, {"can", DriverChoice::kCan}};
+  return {{"mujoco", DriverChoice::kMujoco}, {"can", DriverChoice::kCan}, {"example", DriverChoice::kExample}};
 }
 
 struct Parameters {
