@@ -35,12 +35,24 @@ inline std::vector<Word> words_of(DriverChoice) {
   return {{"mujoco", DriverChoice::kMujoco}, {"can", DriverChoice::kCan}, {"example", DriverChoice::kExample}};
 }
 
+/// The IMU of a real machine.
+enum class ImuChoice {
+  kDriver,  ///< what the driver measures, if anything
+  kTopic,   ///< sensor_msgs/Imu of another node
+  kNone,    ///< not used
+};
+
+inline std::vector<Word> words_of(ImuChoice) {
+  return {{"driver", ImuChoice::kDriver}, {"topic", ImuChoice::kTopic}, {"none", ImuChoice::kNone}};
+}
+
 struct Parameters {
   std::string urdf;  ///< path, relative to the folder of the file that names it
   DriveTrainParameters robot;
   LoopParameters loop;
   DriverChoice driver = DriverChoice::kMujoco;
   std::string drives;  ///< path, see drive_file.h; empty: the simulated motors are given their torques directly
+  ImuChoice imu = ImuChoice::kDriver;
   MujocoPlantParameters plant;
   EstimatorParameters estimator;
   std::string calibration_file;  ///< path, see calibration_file.h; empty: none

@@ -14,6 +14,8 @@ import yaml
 from nav_msgs.msg import Odometry
 from robot_control.msg import SafetyStatus
 from robot_control.srv import InjectFault
+from sensor_msgs.msg import Imu
+from std_msgs.msg import Header
 from system_support import (
     CONTROLLER,
     ESTIMATOR,
@@ -87,6 +89,23 @@ class DriverTest(unittest.TestCase):
         self.start_devices()
         self.robot.await_ready()
         self.drive()
+
+    @again_after_a_stall
+    def test_it_awaits_the_imu_of_another_node_and_drives_with_it(self) -> None:
+        self.robot.nodes["driver"].end()
+        rospy.set_param("robot/imu", "topic")
+        self.addCleanup(rospy.delete_param, "robot/imu")
+        self.start_devices()
+        self.robot.start("driver")
+        wait_for("what it awaits", lambda: "imu/input" in self.robot.nodes["driver"].output)
+        publisher = rospy.Publisher("imu/input", Imu, queue_size=1)
+        sample = Imu(header=Header(frame_id="imu_link"))
+        sample.linear_acceleration.z = 9.81
+        timer = rospy.Timer(rospy.Duration(0.01), lambda _: publisher.publish(sample))
+        self.addCleanup(timer.shutdown)
+        self.robot.await_ready()
+        timer.shutdown()
+        wait_for("its loss", lambda: "imu_lost" in self.robot.status.warnings)
 
     @again_after_a_stall
     def test_a_drive_that_goes_off_stops_the_robot_until_it_is_back_and_reset(self) -> None:
