@@ -23,7 +23,7 @@ int bind_board(const std::string& path);
 class ExampleBoard final : public DeviceFront {
  public:
   /// `brakes` and `effort_limits` (N·m): one per joint. `period` is in s. `descriptor` is a datagram socket, which the
-  /// board closes; it answers to whoever sent the last order.
+  /// board closes; it answers to the sender of the last order.
   ExampleBoard(std::span<const Brake> brakes, std::span<const double> effort_limits, double period, int descriptor);
   ~ExampleBoard() override;
   ExampleBoard(const ExampleBoard&) = delete;
