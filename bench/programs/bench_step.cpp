@@ -2,14 +2,18 @@
 ///
 /// Inputs are the frames of a real drive (the closed loop at 0.5 m/s, 0.2 rad/s), replayed in blocks. The estimator's
 /// are those of its steady part, in which both encoders and both contacts correct it in every cycle. The reference is a
-/// fixed arithmetic kernel (a chain of dependent multiply-adds), interleaved block by block.
+/// fixed arithmetic kernel (a chain of dependent multiply-adds), interleaved block by block. The cycle of motor drives
+/// on CAN is compared with bare system calls (can_cycle.h).
 
+#include <filesystem>
 #include <iostream>
 #include <string>
 #include <vector>
 
+#include "bench/programs/can_cycle.h"
 #include "bench/programs/kernel.h"
 #include "bench/programs/rows.h"
+#include "configuration/drive_file.h"
 #include "control/drive_controller.h"
 #include "estimation/estimator.h"
 #include "gate/gate.h"
@@ -140,6 +144,13 @@ int run(const std::string& path) {
                              permit);
               }));
 
+  const std::filesystem::path drives = std::filesystem::path(path).parent_path() / "drives";
+  std::vector<std::string> joints;
+  for (const WheelModel& wheel : robot.wheels) joints.push_back(robot.joints[wheel.joint].name);
+  for (const char* dialect : {"odrive", "cia402"}) {
+    const std::string file = drives / (std::string(dialect) + ".yaml");
+    add_can_cycle(rows, dialect, read_drive_file(file, joints, parameters.loop.rate), robot, period);
+  }
   print("step", rows);
   return 0;
 }

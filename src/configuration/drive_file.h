@@ -12,11 +12,16 @@
 #include <string>
 
 #include "drivers/can/can_parameters.h"
+#include "parameters/block.h"
 
 namespace robot_control {
 
 /// `joints` are the names of the robot's joints that have a motor, `rate` is the loop's in Hz. Throws ParameterError
 /// with all problems of the file, also if the planned frames overload the bus.
 CanParameters read_drive_file(const std::string& path, std::span<const std::string> joints, double rate);
+
+/// Reads a driver's file of one block with these keys into the members of the keys. Throws ParameterError with all
+/// problems of the file.
+void read_driver_file(const std::string& path, const std::string& block, Keys keys);
 
 }  // namespace robot_control

@@ -26,12 +26,24 @@ namespace robot_control {
 
 /// The driver that stands before the machine.
 enum class DriverChoice {
-  kMujoco,  ///< the simulated machine
-  kCan,     ///< motor drives on CAN, as the drive file says
+  kMujoco,   ///< the simulated machine
+  kCan,      ///< motor drives on CAN, as the drive file says
+  kExample,  ///< drivers/example: a motor board
 };
 
 inline std::vector<Word> words_of(DriverChoice) {
-  return {{"mujoco", DriverChoice::kMujoco}, {"can", DriverChoice::kCan}};
+  return {{"mujoco", DriverChoice::kMujoco}, {"can", DriverChoice::kCan}, {"example", DriverChoice::kExample}};
+}
+
+/// The IMU of a real machine.
+enum class ImuChoice {
+  kDriver,  ///< what the driver measures, if anything
+  kTopic,   ///< sensor_msgs/Imu of another node
+  kNone,    ///< not used
+};
+
+inline std::vector<Word> words_of(ImuChoice) {
+  return {{"driver", ImuChoice::kDriver}, {"topic", ImuChoice::kTopic}, {"none", ImuChoice::kNone}};
 }
 
 struct Parameters {
@@ -40,6 +52,7 @@ struct Parameters {
   LoopParameters loop;
   DriverChoice driver = DriverChoice::kMujoco;
   std::string drives;  ///< path, see drive_file.h; empty: the simulated motors are given their torques directly
+  ImuChoice imu = ImuChoice::kDriver;
   MujocoPlantParameters plant;
   EstimatorParameters estimator;
   std::string calibration_file;  ///< path, see calibration_file.h; empty: none

@@ -1,15 +1,12 @@
 /// The simulated robot whose drives the program `driver` commands over the bus of the drive file (`address:
 /// unix:FOLDER`). It publishes ground_truth/odom and has the service ~inject_fault: component is a joint or `bus`.
 
-#include "simulation/machines/device_simulator.h"
-
 #include <ros/ros.h>
 
 #include <atomic>
 #include <memory>
 #include <mutex>
 
-#include "configuration/drive_file.h"
 #include "files/ascii.h"
 #include "ros/messages/motion_messages.h"
 #include "ros/messages/simulation_messages.h"
@@ -20,26 +17,18 @@
 #include "rt/clock.h"
 #include "rt/periodic.h"
 #include "rt/realtime_thread.h"
+#include "simulation/machines/simulated_machine.h"
 
 namespace robot_control {
 namespace {
 
 constexpr int kPriority = 84;  // above the loop, as its frames would be on a real bus
 
-std::vector<std::string> wheel_names(const DriveTrain& robot) {
-  std::vector<std::string> names;
-  for (const WheelModel& wheel : robot.wheels) names.push_back(robot.joints[wheel.joint].name);
-  return names;
-}
-
 class DeviceSimulatorNode final : public Node {
  public:
   explicit DeviceSimulatorNode(const Setup& setup)
       : setup_(setup),
-        joints_(wheel_names(setup.robot)),
-        period_(setup.parameters.loop.period()),
-        simulator_(setup.robot, setup.parameters.plant,
-                   read_drive_file(setup.parameters.drives, joints_, setup.parameters.loop.rate), period_),
+        simulator_(make_device_simulator(setup.parameters, setup.robot)),
         pace_(setup.parameters.report.truth_rate) {}
   ~DeviceSimulatorNode() override { end(); }
 
@@ -66,7 +55,7 @@ class DeviceSimulatorNode final : public Node {
     TruthFrame truth;
     {
       const std::lock_guard lock(mutex_);
-      truth = simulator_.truth();
+      truth = simulator_->truth();
     }
     SensorFrame now;
     now.head.stamp_ns = monotonic_ns();
@@ -84,7 +73,7 @@ class DeviceSimulatorNode final : public Node {
       schedule.begin(monotonic_ns());
       {
         const std::lock_guard lock(mutex_);
-        simulator_.step();
+        simulator_->step();
       }
       schedule.end(monotonic_ns());
       slipped_ns_.store(schedule.slipped_ns());
@@ -98,17 +87,15 @@ class DeviceSimulatorNode final : public Node {
 
   bool inject_fault(msg::InjectFaultRequest& request, msg::InjectFaultResponse& response) {
     const std::lock_guard lock(mutex_);
-    const std::string problem = simulator_.inject(request.component, request.kind);
+    const std::string problem = simulator_->inject(request.component, request.kind);
     response.success = problem.empty() ? 1 : 0;
     response.message = ascii(problem.empty() ? request.component + " " + request.kind : problem);
     return true;
   }
 
   Setup setup_;
-  std::vector<std::string> joints_;
-  double period_;
   std::mutex mutex_;
-  DeviceSimulator simulator_;
+  std::unique_ptr<DeviceSimulator> simulator_;
   Pacer pace_;
   TimeMap time_{ClockMode::kWall};
   ros::Publisher truth_;

@@ -1,6 +1,6 @@
 #include "drivers/driver_contract.h"
 
-#include "drivers/ideal_drive.h"
+#include "drivers/example_machine.h"
 #include "drivers/mujoco/mujoco_plant.h"
 #include "support/diffbot_urdf.h"
 
@@ -25,7 +25,7 @@ const MachineUnderTest kSimulatedMachine{.name = "MujocoPlant",
                                          .stiffness = 20};
 
 const MachineUnderTest kExample{.name = "ExampleDriver",
-                                .make = [] { return example_machine().driver; },
+                                .make = [] { return std::make_unique<ExampleMachine>(); },
                                 .effort_limit = kEffortLimit,
                                 .effort = 0.1,
                                 .damping = 0.5,

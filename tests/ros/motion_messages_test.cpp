@@ -264,5 +264,19 @@ TEST_F(MotionMessagesTest, TwistKeepsAllSixAxes) {
   EXPECT_THAT(twist.angular, ElementsAre(4, 5, 6));
 }
 
+TEST_F(MotionMessagesTest, AnImuOfAnotherNodeIsTakenWithItsAgeAndItsGaps) {
+  msg::Imu message;
+  message.angular_velocity.z = 0.5;
+  message.linear_acceleration.z = 9.81;
+  const ExternalImuSample sample = imu_sample(message, 1'000'000'000, 3'000'000);
+  EXPECT_EQ(sample.time_ns, 997'000'000);
+  EXPECT_EQ(sample.valid, kValidGyro | kValidAccelerometer);
+  EXPECT_THAT(sample.imu.angular_velocity, ElementsAre(0, 0, 0.5));
+  EXPECT_THAT(sample.imu.linear_acceleration, ElementsAre(0, 0, 9.81));
+  message.linear_acceleration_covariance[0] = -1;
+  EXPECT_EQ(imu_sample(message, 1'000'000'000, -5).valid, kValidGyro);
+  EXPECT_EQ(imu_sample(message, 1'000'000'000, -5).time_ns, 1'000'000'000);
+}
+
 }  // namespace
 }  // namespace robot_control

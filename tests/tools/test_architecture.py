@@ -30,25 +30,35 @@ MAY_INCLUDE = {
     "gate": {"signals", "bus", "parameters"},
     # The stop actions of one robot kind.
     "gate/wheeled": {"signals", "gate", "machine", "machine/wheeled"},
-    "drivers": {"signals", "gate"},
+    "drivers": {"signals", "bus", "gate"},
     # This holds simulated faults: of the machine in drivers/mujoco, of nodes in simulation.
     "simulation/faults": {"signals", "rt", "bus"},
     "drivers/can": {"signals", "bus", "drivers", "files", "parameters"},
+    "drivers/example": {"signals", "drivers", "parameters"},
     # Motor drives on a CAN bus, as devices in virtual time.
-    "simulation/devices": {"gate", "signals", "bus", "parameters", "drivers", "drivers/can"},
+    "simulation/devices": {"gate", "signals", "bus", "parameters", "drivers", "drivers/can", "drivers/example"},
     # The simulated robot as one machine: the plant, and before its motors the drives, where there are some.
     "simulation/machines": {
         "signals",
         "configuration",
         "drivers",
         "drivers/can",
+        "drivers/example",
         "drivers/mujoco",
         "gate/wheeled",
         "machine/wheeled",
         "simulation/devices",
     },
     # One row per driver of a real machine.
-    "drivers/factory": {"configuration", "drivers", "drivers/can", "gate/wheeled", "machine", "machine/wheeled"},
+    "drivers/factory": {
+        "configuration",
+        "drivers",
+        "drivers/can",
+        "drivers/example",
+        "gate/wheeled",
+        "machine",
+        "machine/wheeled",
+    },
     "drivers/mujoco": {
         "signals",
         "simulation/faults",
@@ -173,8 +183,7 @@ NOT_YET_COMMON = {
     "src/ros/reports/robot_report.h",
     "src/ros/startup/setup.h",
     "src/simulation/closed_loop.h",
-    "src/simulation/machines/device_simulator.cpp",
-    "src/simulation/machines/driven_plant.cpp",
+    "src/simulation/machines/simulated_machine.cpp",
     "src/simulation/machines/simulated_machine.h",
     "python/bindings/describe.h",
     "python/bindings/offline_estimator.h",

@@ -14,7 +14,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--seconds", type=_seconds, default=10.0, help="of driving (default %(default)g)")
     parser.add_argument("--out", type=_folder, default="demo_out", help="folder (default ./demo_out)")
     parser.add_argument(
-        "--drives", choices=("odrive", "cia402"), help="the motors stand behind such drives on a simulated CAN bus"
+        "--drives", choices=("odrive", "cia402", "example"), help="the motors stand behind such simulated drives"
     )
     return parser.parse_args(arguments)
 

@@ -167,8 +167,8 @@ void Drive::accept_voltage(double voltage) noexcept {
 }
 
 void Drive::settle_reaction() noexcept {
-  if (on_silence_.evidence == Evidence::kNone && drive_.on_silence != SilenceReaction::kUnknown) {
-    on_silence_ = {drive_.on_silence, Evidence::kConfirmed};
+  if (on_silence_.evidence == ReactionEvidence::kNone && drive_.on_silence != SilenceReaction::kUnknown) {
+    on_silence_ = {drive_.on_silence, ReactionEvidence::kConfirmed};
   }
   if (on_silence_.reaction == SilenceReaction::kUnknown && !drive_.accept_unknown_watchdog) {
     fail(DriveCause::kUnknownWatchdog);

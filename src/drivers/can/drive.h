@@ -67,7 +67,7 @@ struct DriveStatus {
 };
 
 /// How the reaction on silence is known.
-enum class Evidence : std::uint8_t {
+enum class ReactionEvidence : std::uint8_t {
   kNone,
   kRead,       ///< read from the drive, or written and read back
   kConfirmed,  ///< stated by the user in the drive file
@@ -75,7 +75,7 @@ enum class Evidence : std::uint8_t {
 
 struct KnownReaction {
   SilenceReaction reaction = SilenceReaction::kUnknown;
-  Evidence evidence = Evidence::kNone;
+  ReactionEvidence evidence = ReactionEvidence::kNone;
 };
 
 struct DriveCommand {
@@ -172,7 +172,9 @@ class Drive {
   double motor_torque(double joint_torque) const noexcept { return to_joint_ * joint_torque; }
   std::int64_t max_silence_ns() const noexcept;
 
-  void know_reaction(SilenceReaction reaction, Evidence evidence) noexcept { on_silence_ = {reaction, evidence}; }
+  void know_reaction(SilenceReaction reaction, ReactionEvidence evidence) noexcept {
+    on_silence_ = {reaction, evidence};
+  }
   /// Takes the user's word where nothing was read. Fails if nothing is known and that is not accepted.
   void settle_reaction() noexcept;
 

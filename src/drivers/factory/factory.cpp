@@ -7,6 +7,7 @@
 
 #include "configuration/drive_file.h"
 #include "drivers/can/can_driver.h"
+#include "drivers/example/example_driver.h"
 #include "gate/wheeled/wheel_stop.h"
 
 namespace robot_control {
@@ -31,12 +32,23 @@ std::unique_ptr<Driver> make_can(const Parameters& parameters, const DriveTrain&
                                      CanSocket::open(can.bus.address), std::move(clock));
 }
 
+std::unique_ptr<Driver> make_example(const Parameters& parameters, const DriveTrain& robot, DriverClock /*clock*/) {
+  ExampleParameters board;
+  read_driver_file(parameters.drives, "board", keys(board));
+  std::vector<double> effort_limits;
+  for (const WheelModel& wheel : robot.wheels) effort_limits.push_back(robot.joints[wheel.joint].effort_limit);
+  const double period = parameters.loop.period();
+  return std::make_unique<ExampleDriver>(board, brakes_of_slow_drives(robot, period), effort_limits, period,
+                                         connect_to_board(board.address));
+}
+
 struct DriverRow {
   DriverChoice choice;
   std::unique_ptr<Driver> (*make)(const Parameters&, const DriveTrain&, DriverClock);
 };
 
-constexpr std::array kDrivers{DriverRow{DriverChoice::kCan, &make_can}};
+constexpr std::array kDrivers{DriverRow{DriverChoice::kCan, &make_can},
+                              DriverRow{DriverChoice::kExample, &make_example}};
 
 }  // namespace
 

@@ -120,10 +120,25 @@ msg::Odometry ground_truth(const TruthFrame& truth, const std::string& odom_fram
   return odometry_of(truth.pose_world, truth.twist_base, odom_frame, base_frame, stamp);
 }
 
+const std::string& imu_frame(const MachineModel& robot) {
+  return robot.imu_link.empty() ? robot.base_link : robot.imu_link;
+}
+
+ExternalImuSample imu_sample(const msg::Imu& message, std::int64_t now_ns, std::int64_t age_ns) {
+  const auto vector = [](const auto& from) { return Vector3{from.x, from.y, from.z}; };
+  ExternalImuSample sample{.imu = {.angular_velocity = vector(message.angular_velocity),
+                                   .linear_acceleration = vector(message.linear_acceleration)},
+                           .valid = 0,
+                           .time_ns = now_ns - std::clamp<std::int64_t>(age_ns, 0, ExternalImu::kImuLife)};
+  if (message.angular_velocity_covariance[0] >= 0) sample.valid |= kValidGyro;
+  if (message.linear_acceleration_covariance[0] >= 0) sample.valid |= kValidAccelerometer;
+  return sample;
+}
+
 msg::Imu imu(const SensorFrame& sensors, const MachineModel& robot, ros::Time stamp) {
   msg::Imu message;
   message.header.stamp = stamp;
-  message.header.frame_id = robot.imu_link.empty() ? robot.base_link : robot.imu_link;
+  message.header.frame_id = imu_frame(robot);
   message.angular_velocity = vector_message(sensors.imu.angular_velocity);
   message.linear_acceleration = vector_message(sensors.imu.linear_acceleration);
   message.orientation = quaternion_message(sensors.imu.orientation);

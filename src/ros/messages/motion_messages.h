@@ -7,6 +7,7 @@
 #include <string>
 
 #include "configuration/parameters.h"
+#include "drivers/external_imu.h"
 #include "estimation/estimator_parameters.h"
 #include "machine/wheeled/drive_train.h"
 #include "ros/messages/messages.h"
@@ -52,6 +53,13 @@ msg::Odometry ground_truth(const TruthFrame& truth, const std::string& odom_fram
 /// Returns the measured rates and accelerations in the axes of the IMU's link (REP 145). A covariance that begins with
 /// −1 means "not measured", one that is all zero "unknown".
 msg::Imu imu(const SensorFrame& sensors, const MachineModel& robot, ros::Time stamp);
+
+/// Returns the sample of a message that is received at `now_ns`; `age_ns` is that of the message. Parts whose
+/// covariance begins with -1 are not measured.
+ExternalImuSample imu_sample(const msg::Imu& message, std::int64_t now_ns, std::int64_t age_ns);
+
+/// Returns the frame in whose axes an IMU of this robot measures.
+const std::string& imu_frame(const MachineModel& robot);
 
 /// Returns `imu` with orientation and covariances (REP 145 "imu/data"). The orientation is that of the IMU's axes in
 /// odom, whose z axis points against gravity,

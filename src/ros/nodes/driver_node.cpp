@@ -2,6 +2,7 @@
 
 #include <ros/ros.h>
 
+#include "drivers/external_imu.h"
 #include "files/ascii.h"
 #include "loop/processes/driver_process.h"
 #include "loop/wheeled_gate.h"
@@ -12,6 +13,7 @@
 #include "ros/reports/pacer.h"
 #include "ros/reports/robot_report.h"
 #include "ros/startup/description.h"
+#include "rt/clock.h"
 
 namespace robot_control {
 namespace {
@@ -22,7 +24,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
  public:
   DriverNode(const Setup& setup, MakeDriver make)
       : ProcessNode(setup), imu_pace_(report().imu_rate), truth_pace_(report().truth_rate), clock_pace_(kClockRate) {
-    auto driver = make(setup);
+    auto driver = with_imu(make(setup));
     driver_ = driver.get();
     description_ = std::make_unique<PublishedDescription>(robot(), parameters().urdf);
     process().open_driver(std::move(driver), gate_parameters(parameters(), robot()));
@@ -33,6 +35,10 @@ class DriverNode final : public ProcessNode<DriverProcess> {
     imu_ = handle.advertise<msg::Imu>("imu/data_raw", 10);
     truth_ = handle.advertise<msg::Odometry>("ground_truth/odom", 10);
     if (parameters().loop.clock == ClockMode::kLockstep) clock_ = handle.advertise<msg::Clock>("/clock", 1);
+    if (imu_inbox_) {
+      imu_input_ =
+          handle.subscribe("imu/input", 10, &DriverNode::receive_imu, this, ros::TransportHints().tcpNoDelay());
+    }
     if (process().services() == nullptr) return;  // a real machine is neither paused nor reset
     ros::NodeHandle own("~");
     set_pause_ = own.advertiseService("set_pause", &DriverNode::set_pause, this);
@@ -49,6 +55,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
     if (process().sensors().newest(sensors_) != Lookup::kFrame || !process().is_current(sensors_.head)) return;
     const FrameHead& head = sensors_.head;
     time().follow(sensors_);
+    name_blind_conditions();
     if (clock_ && clock_pace_.due(head.run, head.stamp_ns)) publish_clock();
     if (imu_pace_.due(head.run, head.stamp_ns)) imu_.publish(imu(sensors_, robot(), time().at(head.stamp_ns)));
     if (!truth_pace_.due(head.run, head.stamp_ns) || process().truth().newest(truth_frame_) != Lookup::kFrame) return;
@@ -73,6 +80,44 @@ class DriverNode final : public ProcessNode<DriverProcess> {
   }
 
  private:
+  /// An IMU of another node, or none, instead of the driver's.
+  std::unique_ptr<Driver> with_imu(std::unique_ptr<Driver> driver) {
+    if (parameters().imu == ImuChoice::kDriver) return driver;
+    if (simulator_of(*driver) != nullptr)
+      throw DriverError(
+          "robot.imu is for real machines, and the simulated one measures with its own IMU: remove robot.imu");
+    auto inbox = std::make_shared<ImuInbox>();
+    if (parameters().imu == ImuChoice::kTopic) {
+      imu_inbox_ = inbox;
+    } else {
+      inbox->store({.imu = {}, .valid = 0, .time_ns = 0});
+    }
+    return std::make_unique<ExternalImu>(std::move(driver), std::move(inbox), &monotonic_ns);
+  }
+
+  void receive_imu(const msg::Imu& message) {
+    if (message.header.frame_id != imu_frame(robot())) {
+      ROS_WARN_THROTTLE(10,
+                        "imu/input is refused: it measures in the frame '%s', and the IMU of this robot in '%s' "
+                        "(robot.imu_link)",
+                        ascii(message.header.frame_id).c_str(), imu_frame(robot()).c_str());
+      return;
+    }
+    const bool stamped = !message.header.stamp.isZero();
+    const std::int64_t age_ns = stamped ? (ros::Time::now() - message.header.stamp).toNSec() : 0;
+    imu_inbox_->store(imu_sample(message, monotonic_ns(), age_ns));
+  }
+
+  /// Says once which conditions a robot without an IMU does not see.
+  void name_blind_conditions() {
+    if (imu_judged_ || sensors_.driver_state != DriverState::kRunning) return;
+    imu_judged_ = true;
+    if ((sensors_.valid & (kValidGyro | kValidAccelerometer)) != 0) return;
+    ROS_WARN(
+        "there is no IMU: the odometry turns by the wheels alone, and these conditions see nothing: imu_lost, "
+        "imu_stuck, yaw_rate, tilt, tip_over, free_fall, impact");
+  }
+
   void log_robot() {
     ROS_INFO("%s", summary(robot()).c_str());
     for (const RobotNote& note : robot().notes) {
@@ -131,6 +176,9 @@ class DriverNode final : public ProcessNode<DriverProcess> {
 
   const Driver* driver_ = nullptr;
   std::unique_ptr<PublishedDescription> description_;
+  std::shared_ptr<ImuInbox> imu_inbox_;  // null: the driver's own IMU, or none
+  bool imu_judged_ = false;
+  ros::Subscriber imu_input_;
   ros::Publisher imu_;
   ros::Publisher truth_;
   ros::Publisher clock_;

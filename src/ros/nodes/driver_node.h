@@ -1,6 +1,6 @@
 #pragma once
 /// The driver publishes imu/data_raw, ground_truth/odom and, in lockstep, /clock, and sets robot_description. It has
-/// the services ~set_pause, ~step, ~reset and ~inject_fault.
+/// the services ~set_pause, ~step, ~reset and ~inject_fault. With `robot.imu: topic` it takes the IMU from imu/input.
 
 #include <memory>
 

@@ -29,6 +29,7 @@ class SimulatedDrives {
   SimulatedDrives& operator=(const SimulatedDrives&) = delete;
 
   VirtualCan& bus() noexcept { return bus_; }
+  const VirtualCan& bus() const noexcept { return bus_; }
   std::size_t size() const noexcept { return motors_.size(); }
 
   /// Runs until `until_ns`. `joints` hold the true position and velocity of each joint now; meanwhile they move on with

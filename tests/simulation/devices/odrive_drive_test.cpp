@@ -123,14 +123,14 @@ TEST(OdriveDrive, ReadsItsWatchdogWhereTheEndpointsAreKnown) {
   add(rig, pair);
   ASSERT_TRUE(rig.runs());
   EXPECT_EQ(rig.drive().on_silence().reaction, SilenceReaction::kCoasts);
-  EXPECT_EQ(rig.drive().on_silence().evidence, Evidence::kRead);
+  EXPECT_EQ(rig.drive().on_silence().evidence, ReactionEvidence::kRead);
 }
 
 TEST(OdriveDrive, TakesTheUsersWordForAWatchdogThatCannotBeRead) {
   DeviceRig rig;
   add(rig, odrive_pair(3, Firmware::k05));
   ASSERT_TRUE(rig.runs());
-  EXPECT_EQ(rig.drive().on_silence().evidence, Evidence::kConfirmed);
+  EXPECT_EQ(rig.drive().on_silence().evidence, ReactionEvidence::kConfirmed);
 }
 
 /// A float of 10⁵ turns has a step of 0.05 rad.

@@ -140,7 +140,7 @@ void Cia402Drive::advance(const DriveCommand& command, std::int64_t now_ns, Fram
     if (second_axis_ == nullptr) send_nmt(NmtCommand::kStart, now_ns, send);
     if (!sample().valid) return;
     know_reaction(setup_.on_silence(),
-                  setup_.on_silence() == SilenceReaction::kUnknown ? Evidence::kNone : Evidence::kRead);
+                  setup_.on_silence() == SilenceReaction::kUnknown ? ReactionEvidence::kNone : ReactionEvidence::kRead);
     settle_reaction();
     phase_ = Phase::kReady;
   }

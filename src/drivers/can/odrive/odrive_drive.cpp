@@ -250,9 +250,9 @@ void OdriveDrive::ask_watchdog(std::int64_t now_ns, FrameBatch& send) noexcept {
       if (!(*watchdog_timeout_ <= parameters_.max_watchdog_timeout)) {
         return fail(DriveCause::kDiffers, "watchdog_timeout", 0, *watchdog_timeout_, parameters_.max_watchdog_timeout);
       }
-      know_reaction(SilenceReaction::kCoasts, Evidence::kRead);
+      know_reaction(SilenceReaction::kCoasts, ReactionEvidence::kRead);
     } else {
-      know_reaction(SilenceReaction::kUnknown, Evidence::kRead);
+      know_reaction(SilenceReaction::kUnknown, ReactionEvidence::kRead);
     }
     return enter(Phase::kPosition);
   }

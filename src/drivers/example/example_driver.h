@@ -1,0 +1,56 @@
+#pragma once
+/// A driver to start from: wheels on a motor board that takes torques. It keeps the contract of drivers/driver.h
+/// (tests/drivers/driver_contract.h). Replace the messages by those of your board, and add the sensors of your machine.
+///
+/// `start` returns at once; `read` reports kStarting until the board has sent a report. Its faults are a motor's fault
+/// word, a number that is not finite, and silence for more than `max_silence` cycles. They stay until the operator's
+/// reset, and the driver orders no torque meanwhile.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "drivers/driver.h"
+#include "drivers/example/board_messages.h"
+#include "drivers/example/example_parameters.h"
+#include "drivers/joint_law.h"
+
+namespace robot_control {
+
+/// Returns a socket that is connected with the board at this path. Throws DriverError.
+int connect_to_board(const std::string& path);
+
+class ExampleDriver final : public Driver {
+ public:
+  /// `brakes` and `effort_limits` (N·m): one per joint. `descriptor` is a datagram socket, which the driver closes.
+  ExampleDriver(const ExampleParameters& parameters, std::span<const Brake> brakes,
+                std::span<const double> effort_limits, double period, int descriptor);
+  ~ExampleDriver() override;
+  ExampleDriver(const ExampleDriver&) = delete;
+  ExampleDriver& operator=(const ExampleDriver&) = delete;
+
+  void start() override;
+  void reset() noexcept override;
+  void read(SensorFrame& sensors) noexcept override;
+  void write(std::span<const JointCommand> commands) noexcept override;
+  void stop() noexcept override { stopped_ = true; }
+  std::string warning() const override;
+  /// The motors take torques, so they follow every order.
+  bool implements(StopKind) const noexcept override { return true; }
+
+ private:
+  bool receive() noexcept;
+  void evaluate_faults() noexcept;
+
+  ExampleParameters parameters_;
+  std::vector<JointLaw> laws_;
+  std::int64_t period_ns_;
+  int descriptor_;
+  BoardReport report_;            // the last good one
+  std::uint64_t silent_for_ = 0;  // cycles since then
+  DriverState state_ = DriverState::kStarting;
+  std::uint64_t faults_ = 0;  // bits of DriverFault
+  bool stopped_ = false;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,72 @@
+"""A robot whose drives are simulated by another process: `driver` knows them by their frames alone."""
+
+import math
+import tempfile
+import unittest
+from pathlib import Path
+
+import rospy
+import yaml
+from nav_msgs.msg import Odometry
+from robot_control.srv import InjectFault
+from system_support import CONTROLLER, ESTIMATOR, MONITOR, Program, Robot, init_test_node, repository, wait_for
+
+LEFT = "left_wheel_joint"
+STANDING = 0.01
+"""m/s"""
+
+
+class DriverTestCase(unittest.TestCase):
+    """A test on three nodes of the loop and `driver`, with the drive file `drives`."""
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        init_test_node(cls.__name__)
+        folder = tempfile.TemporaryDirectory(prefix="driver-test-")
+        cls.addClassCleanup(folder.cleanup)
+        drives = yaml.safe_load((repository() / "config" / "drives" / "odrive.yaml").read_text())
+        drives["bus"]["address"] = f"unix:{folder.name}"
+        cls.drives = Path(folder.name, "drives.yaml")
+        cls.drives.write_text(yaml.safe_dump(drives))
+        for name, value in {"driver": "can", "drives": str(cls.drives)}.items():
+            rospy.set_param(f"robot/{name}", value)
+            cls.addClassCleanup(rospy.delete_param, f"robot/{name}")
+
+    def setUp(self) -> None:
+        self.true_speed = math.nan
+        subscriber = rospy.Subscriber("ground_truth/odom", Odometry, self.receive_truth)
+        self.addCleanup(subscriber.unregister)
+        self.robot = Robot()
+        self.addCleanup(self.robot.end)
+        self.robot.start("driver", ESTIMATOR, CONTROLLER, MONITOR)
+
+    def missing(self) -> list[str]:
+        return [] if self.robot.status is None else self.robot.status.missing
+
+    def receive_truth(self, message: Odometry) -> None:
+        self.true_speed = message.twist.twist.linear.x
+
+    def start_devices(self) -> Program:
+        devices = Program("device_simulator")
+        self.addCleanup(devices.end)
+        return devices
+
+    def inject(self, kind: str, component: str = LEFT) -> None:
+        rospy.wait_for_service("device_simulator/inject_fault")
+        answer = rospy.ServiceProxy("device_simulator/inject_fault", InjectFault)(component, kind)
+        self.assertTrue(answer.success, answer.message)
+
+    def drive(self) -> None:
+        self.robot.drive_until("0.5 m/s", self.robot.driving)
+        wait_for("the true speed", lambda: self.true_speed > 0.4, every=lambda: self.robot.send(0.5, 0.2))
+
+    def await_stop(self) -> None:
+        wait_for("the stop", lambda: "driver_fault" in self.robot.causes, every=lambda: self.robot.send(0.5, 0.2))
+
+    def release(self) -> None:
+        """The first reset clears the drives; one after they are ready is accepted."""
+        wait_for(
+            "an accepted reset",
+            lambda: bool(self.robot.call("e_stop_reset").success),
+            every=lambda: self.robot.send(0.0, 0.0),
+        )
