@@ -41,6 +41,10 @@ class Driver {
   /// The operator requests a reset: a machine with a fault clears it and starts again. Never blocks.
   virtual void reset() noexcept {}
 
+  /// Returns the machine in one line as far as it is known now, with what it does when this program is silent. Returns
+  /// "" if there is nothing to say. Any thread may call it.
+  virtual std::string description() const { return {}; }
+
   /// Returns what is suspicious about the machine, known after `start`; "" if nothing is.
   virtual std::string warning() const { return {}; }
 

@@ -34,6 +34,7 @@ class ExternalImu final : public Driver {
   void read(SensorFrame& sensors) noexcept override;
   void write(std::span<const JointCommand> commands) noexcept override { machine_->write(commands); }
   void stop() noexcept override { machine_->stop(); }
+  std::string description() const override { return machine_->description(); }
   std::string warning() const override;
   std::string_view fault_message() const noexcept override { return machine_->fault_message(); }
   bool implements(StopKind kind) const noexcept override { return machine_->implements(kind); }

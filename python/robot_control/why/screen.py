@@ -143,6 +143,9 @@ def _circumstances(facts: Facts) -> Rows:
     faults = facts.value(facts.driver, "injected")
     if faults not in {"", "none"}:
         yield "injected", faults, "33"
+    machine = facts.value(facts.driver, "machine")
+    if machine:
+        yield "machine", machine, ""
     unloaded = facts.value(facts.driver, "suspicious")
     if unloaded:
         yield "wheels", unloaded, "33"

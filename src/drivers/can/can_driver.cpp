@@ -1,9 +1,21 @@
 #include "drivers/can/can_driver.h"
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "drivers/can/can_load.h"
 
 namespace robot_control {
 namespace {
+
+template <class Enum>
+std::string word_of(Enum value) {
+  for (const Word& word : words_of(value)) {
+    if (word.value == static_cast<int>(value)) return std::string(word.text);
+  }
+  return "";
+}
 
 DriverFault fault_of(DriveCause cause) noexcept {
   switch (cause) {
@@ -21,7 +33,12 @@ DriverFault fault_of(DriveCause cause) noexcept {
 
 CanDriver::CanDriver(const CanParameters& parameters, std::span<const Brake> brakes, double period, CanSocket socket,
                      std::function<CanTime()> clock)
-    : bus_(std::move(socket)), drives_(parameters, period), clock_(std::move(clock)), commands_(drives_.size()) {
+    : bus_(std::move(socket)),
+      parameters_(parameters.bus),
+      drives_(parameters, period),
+      load_(bus_load(drives_.plan(), 1 / period, parameters.bus.bit_rate)),
+      clock_(std::move(clock)),
+      commands_(drives_.size()) {
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     laws_.emplace_back(brakes[i], drives_[i].drive_parameters().torque_limit);
   }
@@ -110,6 +127,22 @@ LinkStatus CanDriver::link() const noexcept {
 void CanDriver::publish_statuses() noexcept {
   for (std::size_t i = 0; i < drives_.size(); ++i) statuses_[i] = drives_[i].full_status();
   published_statuses_.store(statuses_);
+}
+
+std::string CanDriver::description() const {
+  std::ostringstream text;
+  text << word_of(parameters_.dialect) << " on " << parameters_.address << " at " << parameters_.bit_rate / 1000
+       << " kbit/s, load at most " << std::lround(100 * load_) << " %";
+  Statuses statuses;
+  if (!published_statuses_.load(statuses)) return text.str();
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const KnownReaction& known = statuses[i].on_silence;
+    text << (i == 0 ? "; on silence " : ", ") << drives_[i].drive_parameters().joint << ' '
+         << (known.reaction == SilenceReaction::kUnknown ? "does what is unknown" : word_of(known.reaction));
+    if (known.evidence == ReactionEvidence::kRead) text << " (read from the drive)";
+    if (known.evidence == ReactionEvidence::kConfirmed) text << " (stated in the drive file)";
+  }
+  return text.str();
 }
 
 std::string CanDriver::warning() const {

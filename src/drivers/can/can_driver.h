@@ -42,6 +42,9 @@ class CanDriver final : public Driver {
   /// The drives take torques, so they follow every order.
   bool implements(StopKind) const noexcept override { return true; }
 
+  /// Returns the bus with its load, and what each joint does on silence.
+  std::string description() const override;
+
   /// Returns the words of every drive that is not running; any thread may call it.
   std::string warning() const override;
 
@@ -63,7 +66,9 @@ class CanDriver final : public Driver {
   double wanted_torque(std::size_t joint, const JointCommand& command) noexcept;
 
   CanBus bus_;
+  CanBusParameters parameters_;
   DriveSet drives_;
+  double load_;  // of the bus, planned
   std::function<CanTime()> clock_;
   std::vector<JointLaw> laws_;
   std::vector<DriveCommand> commands_;

@@ -177,6 +177,7 @@ void Drive::settle_reaction() noexcept {
 
 DriveStatus Drive::full_status() const noexcept {
   DriveStatus status = status_;
+  status.on_silence = on_silence_;
   add_details(status);
   return status;
 }

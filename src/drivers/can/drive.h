@@ -55,17 +55,6 @@ enum class DriveCause : std::uint8_t {
   kUnknownWatchdog,   ///< The reaction of the drive on silence is unknown, and that is not accepted.
 };
 
-/// A copy of it may be put into words by another thread.
-struct DriveStatus {
-  DriveState state = DriveState::kStarting;
-  DriveCause cause = DriveCause::kFirstFrame;
-  const char* subject = "";  ///< a literal
-  std::uint64_t code = 0;
-  double found = 0;
-  double expected = 0;
-  std::array<std::uint64_t, 5> details{};  ///< of an error, as the dialect counts them
-};
-
 /// How the reaction on silence is known.
 enum class ReactionEvidence : std::uint8_t {
   kNone,
@@ -76,6 +65,18 @@ enum class ReactionEvidence : std::uint8_t {
 struct KnownReaction {
   SilenceReaction reaction = SilenceReaction::kUnknown;
   ReactionEvidence evidence = ReactionEvidence::kNone;
+};
+
+/// A copy of it may be put into words by another thread.
+struct DriveStatus {
+  DriveState state = DriveState::kStarting;
+  DriveCause cause = DriveCause::kFirstFrame;
+  const char* subject = "";  ///< a literal
+  std::uint64_t code = 0;
+  double found = 0;
+  double expected = 0;
+  std::array<std::uint64_t, 5> details{};  ///< of an error, as the dialect counts them
+  KnownReaction on_silence{};
 };
 
 struct DriveCommand {

@@ -34,6 +34,7 @@ class ExampleDriver final : public Driver {
   void read(SensorFrame& sensors) noexcept override;
   void write(std::span<const JointCommand> commands) noexcept override;
   void stop() noexcept override { stopped_ = true; }
+  std::string description() const override { return "a motor board that brakes by itself when it hears nothing"; }
   std::string warning() const override;
   /// The motors take torques, so they follow every order.
   bool implements(StopKind) const noexcept override { return true; }

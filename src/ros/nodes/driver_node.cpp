@@ -55,7 +55,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
     if (process().sensors().newest(sensors_) != Lookup::kFrame || !process().is_current(sensors_.head)) return;
     const FrameHead& head = sensors_.head;
     time().follow(sensors_);
-    name_blind_conditions();
+    describe_machine();
     if (clock_ && clock_pace_.due(head.run, head.stamp_ns)) publish_clock();
     if (imu_pace_.due(head.run, head.stamp_ns)) imu_.publish(imu(sensors_, robot(), time().at(head.stamp_ns)));
     if (!truth_pace_.due(head.run, head.stamp_ns) || process().truth().newest(truth_frame_) != Lookup::kFrame) return;
@@ -73,6 +73,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
     double slip = 0;
     for (const double wheel : truth_frame_.slip) slip = std::max(slip, wheel);
     report.value("wheel_slip_m_s", slip);
+    if (const std::string text = driver_->description(); !text.empty()) report.value("machine", text);
     if (const std::string warning = driver_->warning(); !warning.empty()) report.value("suspicious", warning);
     if (sensors_.driver_state == DriverState::kFault) {
       report.value("fault_message", std::string(driver_->fault_message()));
@@ -108,10 +109,11 @@ class DriverNode final : public ProcessNode<DriverProcess> {
     imu_inbox_->store(imu_sample(message, monotonic_ns(), age_ns));
   }
 
-  /// Says once which conditions a robot without an IMU does not see.
-  void name_blind_conditions() {
-    if (imu_judged_ || sensors_.driver_state != DriverState::kRunning) return;
-    imu_judged_ = true;
+  /// Says once what the machine is, and which conditions a robot without an IMU does not see.
+  void describe_machine() {
+    if (described_ || sensors_.driver_state != DriverState::kRunning) return;
+    described_ = true;
+    if (const std::string text = driver_->description(); !text.empty()) ROS_INFO("%s", text.c_str());
     if ((sensors_.valid & (kValidGyro | kValidAccelerometer)) != 0) return;
     ROS_WARN(
         "there is no IMU: the odometry turns by the wheels alone, and these conditions see nothing: imu_lost, "
@@ -177,7 +179,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
   const Driver* driver_ = nullptr;
   std::unique_ptr<PublishedDescription> description_;
   std::shared_ptr<ImuInbox> imu_inbox_;  // null: the driver's own IMU, or none
-  bool imu_judged_ = false;
+  bool described_ = false;
   ros::Subscriber imu_input_;
   ros::Publisher imu_;
   ros::Publisher truth_;

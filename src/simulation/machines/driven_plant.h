@@ -36,6 +36,7 @@ class DrivenPlant final : public Simulator {
     return devices_->inject(component, kind);
   }
   std::string_view fault_message() const noexcept override { return plant_.fault_message(); }
+  std::string description() const override { return driver_->description(); }
   std::string warning() const override;
 
  private:

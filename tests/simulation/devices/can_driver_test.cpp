@@ -147,6 +147,14 @@ TEST_P(CanDriverOn, TheOtherJointBrakesWhenADriveIsLost) {
   EXPECT_LT(joint_speed(1), 0.05);
 }
 
+TEST_P(CanDriverOn, SaysWhatEachJointDoesOnSilence) {
+  cycles(3000);
+  const std::string text = machine_.driver().description();
+  EXPECT_THAT(text, HasSubstr("load at most"));
+  EXPECT_THAT(text, HasSubstr(GetParam() == CanDialect::kOdrive ? "coasts (stated in the drive file)"
+                                                                : "holds (read from the drive)"));
+}
+
 TEST_P(CanDriverOn, ASampleThatIsMissingMovesOnWithItsVelocity) {
   cycles(3000, drive_);
   const JointSample last = cycle(drive_).joints[0];
