@@ -1,0 +1,151 @@
+"""One desk, many pages: who commands, and what. It reads no clock: time is an argument, s.
+
+At most one page commands. It takes the command where it is free, and gives it back, hands it over, or loses it: by its
+end, or by a page of the role `maintain` that takes it away. Every change ends the motion, for both pages.
+
+    v = share · chosen speed · min(1, speed cap of the link / chosen linear speed)
+
+The same factor holds for both axes, so the curve stays.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from enum import IntEnum
+
+from robot_control.common.command import Command
+from robot_control.console.hold import Drive, Hold
+from robot_control.console.settings import Settings
+from robot_control.teleop.operator import ZEROS, Limits
+
+
+class Role(IntEnum):
+    """A higher role may all that a lower one may."""
+
+    WATCH = 0
+    OPERATE = 1
+    MAINTAIN = 2
+
+
+class RefusedError(Exception):
+    """The page may not do that; the message says why."""
+
+
+@dataclass
+class Page:
+    """One connected page."""
+
+    number: int
+    name: str  # of the user
+    role: Role
+    hold: Hold
+    chosen: Command
+    heartbeat: bool = False
+    cap: float = field(default=0.0)  # m/s, of its link
+
+
+class Desk:
+    """All pages."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self.pages: dict[int, Page] = {}
+        self._commander: int | None = None
+        self._last_number = 0
+        self._zeros_until = -math.inf
+
+    def join(self, name: str, role: Role) -> Page:
+        """A page comes."""
+        self._last_number += 1
+        chosen = Command(self._settings.linear, self._settings.angular)
+        page = Page(self._last_number, name, role, Hold(self._settings), chosen)
+        self.pages[page.number] = page
+        return page
+
+    def leave(self, page: Page, now: float) -> None:
+        """A page ends, in whatever way."""
+        if self._commander == page.number:
+            self._give(None, now, "the page has ended")
+        self.pages.pop(page.number, None)
+
+    @property
+    def commander(self) -> Page | None:
+        """The page that commands."""
+        return None if self._commander is None else self.pages.get(self._commander)
+
+    def take(self, page: Page, now: float, *, force: bool = False) -> None:
+        """Takes the command; `force`: from another page. Raises RefusedError."""
+        holder = self.commander
+        if page.role < Role.OPERATE:
+            raise RefusedError("the role watch does not drive")
+        if holder is page:
+            return
+        if holder is not None and not (force and page.role >= Role.MAINTAIN):
+            raise RefusedError(f"{holder.name} (page {holder.number}) commands; only the role maintain takes it away")
+        self._give(page, now, f"{page.name} (page {page.number}) has taken the command")
+
+    def hand_over(self, page: Page, to: int, now: float) -> None:
+        """Hands the command over. Raises RefusedError."""
+        self.require(page)
+        other = self.pages.get(to)
+        if other is None or other.role < Role.OPERATE:
+            raise RefusedError(f"there is no page {to} that may drive")
+        self._give(other, now, f"the command was handed over to {other.name} (page {to})")
+
+    def give_back(self, page: Page, now: float) -> None:
+        """Ends the command. Raises RefusedError."""
+        self.require(page)
+        self._give(None, now, "the command was given back")
+
+    def require(self, page: Page) -> None:
+        """Raises RefusedError unless the page commands."""
+        if self.commander is not page:
+            holder = self.commander
+            who = "no page commands" if holder is None else f"{holder.name} (page {holder.number}) commands"
+            raise RefusedError(f"{who}: take the command first")
+
+    def receive(self, page: Page, drive: Drive, now: float) -> None:
+        """Takes what a page holds; of one that does not command it moves nothing."""
+        if self.commander is page:
+            page.hold.receive(drive, now)
+        elif drive.held:
+            raise RefusedError("this page does not command: take the command first")
+
+    def interrupt(self, now: float, why: str) -> None:
+        """A stop, or a pause of this program, lies between (interruptions.py)."""
+        for page in self.pages.values():
+            page.hold.interrupt(now, why)
+
+    def permit(self, drivable: bool | None) -> None:  # noqa: FBT001 (a three-valued state)
+        """Sets whether the robot may drive by its safety monitor; None if there is no message of it."""
+        for page in self.pages.values():
+            page.hold.permit(drivable)
+
+    def refuse(self, now: float) -> None:
+        """Notes that the controller refuses motion until it has received a zero."""
+        for page in self.pages.values():
+            page.hold.refuse(now)
+        self._zeros_until = now + ZEROS
+
+    def command(self, limits: Limits, now: float) -> tuple[Command | None, float]:
+        """The command to send now, None: nothing; and its age, s."""
+        for each in self.pages.values():
+            each.cap = each.hold.cap.step(each.hold.round_trips.percentile95(now), now)
+        page = self.commander
+        share = None if page is None else page.hold.share(now)
+        if page is None or share is None or share == Command():
+            nothing = share is None and now >= self._zeros_until
+            return None if nothing else Command(), 0.0
+        self._zeros_until = now + ZEROS
+        linear, angular = min(page.chosen.linear, limits.linear), min(page.chosen.angular, limits.angular)
+        factor = min(1.0, page.cap / linear) if linear > 0 else 0.0
+        forward = max(share.linear * linear * factor, -limits.reverse)
+        return Command(forward, share.angular * angular * factor), max(0.0, now - page.hold.stamp)
+
+    def _give(self, page: Page | None, now: float, why: str) -> None:
+        for each in (self.commander, page):
+            if each is not None:
+                each.hold.interrupt(now, why)
+        self._commander = None if page is None else page.number
+        self._zeros_until = now + ZEROS

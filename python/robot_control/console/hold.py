@@ -1,0 +1,115 @@
+"""What one page holds: its keys, stick or pad. The dead-man law of a link. It reads no clock: time is an argument, s.
+
+The page sends its state every 50 ms while it commands, held or not. The law of pad.py decides what that state moves:
+motion counts while it is held, was seen released before, and no stop or pause lies between (pad/law.py).
+
+    number     rises by each message; one that does not rise is a replay and does not count
+    excess     above late_after: the message is dropped
+    stamp      receipt − excess, of the newest message that counts
+    gap        stamp older than link_gap: all ends, until a release that comes SETTLING after the gap
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from robot_control.common.command import Command
+from robot_control.console.link import Excess, RoundTrips, SpeedCap
+from robot_control.console.settings import Settings
+from robot_control.pad.law import Pad, PadParameters
+
+
+@dataclass(frozen=True)
+class Drive:
+    """One message of a page."""
+
+    number: int
+    sent: float  # s, by the page's clock
+    held: bool
+    linear: float = 0.0  # share of the chosen speed, −1 … 1, forward
+    angular: float = 0.0  # the same, to the left
+
+
+class Hold:
+    """The state of one page."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        parameters = PadParameters(
+            axis_linear=0,
+            axis_angular=1,
+            scale_linear=1.0,
+            scale_angular=1.0,
+            enable_button=0,
+            enable_turbo_button=-1,
+            deadzone=0.0,
+            max_hold=settings.max_hold,
+            joy_timeout=settings.link_gap,
+        )
+        self._pad = Pad(parameters)
+        self._excess = Excess()
+        self.round_trips = RoundTrips()
+        self.cap = SpeedCap(settings.distance, settings.reaction)
+        self._number, self._held = -1, False
+        self.stamp = -math.inf  # s
+        self._gap = True  # a gap has been noticed, and no message has come since
+        self.gaps = self.late = self.replayed = 0
+        self.ended = ""  # why the last motion ended without its release
+
+    def receive(self, drive: Drive, now: float) -> None:
+        """Takes a message."""
+        if drive.number <= self._number:
+            self.replayed += 1
+            return
+        self._number = drive.number
+        self.look(now)
+        excess = self._excess.of(drive.sent, now)
+        if excess > self._settings.late_after:
+            self.late += 1
+            return
+        self.stamp, self._gap = now - excess, False
+        self._held = drive.held
+        if not drive.held:
+            self.ended = ""
+        self._pad.receive((drive.linear, drive.angular), (int(drive.held),), now)
+
+    def look(self, now: float) -> None:
+        """Notices a gap."""
+        if self._gap or self.alive(now):
+            return
+        self._gap = True
+        self.gaps += 1
+        self.interrupt(now, f"nothing came over the link for {1000 * self._settings.link_gap:.0f} ms")
+
+    def alive(self, now: float) -> bool:
+        """True while messages come."""
+        return now - self.stamp <= self._settings.link_gap
+
+    def interrupt(self, now: float, why: str) -> None:
+        """Ends the motion; a release has to come SETTLING later."""
+        if self._held:
+            self.ended = why
+        self._pad.interrupt(now)
+
+    def refuse(self, now: float) -> None:
+        """Notes that the controller refuses motion until it has received a zero."""
+        self._pad.refuse(now)
+
+    def permit(self, drivable: bool | None) -> None:  # noqa: FBT001 (a three-valued state)
+        """Sets whether the robot may drive by its safety monitor; None if there is no message of it."""
+        self._pad.permit(drivable)
+
+    def share(self, now: float) -> Command | None:
+        """Shares of the chosen speeds to command now; None: nothing is sent."""
+        self.look(now)
+        return self._pad.command(now)
+
+    def state(self, now: float) -> str:
+        """The state as text; empty where the page may simply drive."""
+        if self._gap:
+            return "nothing comes over the link"
+        words = self._pad.state(now)
+        if words == "release the enable button once":
+            return f"release everything once{f': {self.ended}' if self.ended else ''}"
+        return "drives" if words == "drives" else ""

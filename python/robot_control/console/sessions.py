@@ -1,0 +1,105 @@
+"""Who is logged in, and how often somebody may try. It reads no clock: time is an argument, s of the time of day."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import secrets
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+
+from robot_control.console.desk import Role
+
+LIFE, IDLE = 12 * 3600.0, 3600.0
+"""s from the login, and from the last request, until a session ends"""
+TRIES_OF_USER, TRIES_OF_ADDRESS, PERIOD = 5, 20, 300.0
+"""failed logins within PERIOD s, after which further ones are refused"""
+MAX_SESSIONS = 200
+
+
+@dataclass
+class Session:
+    """One login."""
+
+    key: str  # digest of the cookie
+    user: str
+    role: Role
+    ends: float
+    idle_ends: float
+
+
+class Sessions:
+    """All logins, by the digests of their cookies."""
+
+    def __init__(self) -> None:
+        self._sessions: dict[str, Session] = {}
+
+    def begin(self, user: str, role: Role, now: float) -> str:
+        """Text of a cookie."""
+        cookie = secrets.token_urlsafe(32)
+        self._expire(now)
+        if len(self._sessions) >= MAX_SESSIONS:
+            self._sessions.pop(next(iter(self._sessions)))
+        session = Session(digest(cookie), user, role, now + LIFE, now + IDLE)
+        self._sessions[session.key] = session
+        return cookie
+
+    def of(self, cookie: str | None, now: float) -> Session | None:
+        """The session of a cookie; None if it has ended, or is none."""
+        session = self._sessions.get(digest(cookie)) if cookie else None
+        if session is None or not self.lives(session, now):
+            return None
+        session.idle_ends = now + IDLE
+        return session
+
+    def lives(self, session: Session, now: float) -> bool:
+        """False after a logout, and after its time."""
+        return self._sessions.get(session.key) is session and now < min(session.ends, session.idle_ends)
+
+    def end(self, session: Session) -> None:
+        """Logout."""
+        self._sessions.pop(session.key, None)
+
+    def check_roles(self, roles: Mapping[str, Role]) -> None:
+        """Ends the sessions of users that are gone or have another role now."""
+        kept = {key: each for key, each in self._sessions.items() if roles.get(each.user) is each.role}
+        self._sessions = kept
+
+    def save(self) -> str:
+        """The sessions for a process that replaces this one; no cookie is in it."""
+        return json.dumps([asdict(session) for session in self._sessions.values()])
+
+    def restore(self, text: str) -> None:
+        """Takes what `save` has given."""
+        rows = [Session(**{**row, "role": Role(row["role"])}) for row in json.loads(text)]
+        self._sessions = {row.key: row for row in rows}
+
+    def _expire(self, now: float) -> None:
+        self._sessions = {key: each for key, each in self._sessions.items() if now < min(each.ends, each.idle_ends)}
+
+
+class Tries:
+    """Failed logins, by user and by address."""
+
+    def __init__(self) -> None:
+        self._failed: dict[tuple[str, str], list[float]] = {}
+
+    def wait(self, user: str, address: str, now: float) -> float:
+        """s until the next try is admitted; zero: now."""
+        bounds = ((("user", user), TRIES_OF_USER), (("address", address), TRIES_OF_ADDRESS))
+        return max((self._wait(key, bound, now) for key, bound in bounds), default=0.0)
+
+    def fail(self, user: str, address: str, now: float) -> None:
+        """Notes a failed try."""
+        self._failed = {key: times for key, times in self._failed.items() if now - times[-1] < PERIOD}
+        for key in (("user", user), ("address", address)):
+            self._failed[key] = [*self._failed.get(key, [])[-TRIES_OF_ADDRESS:], now]
+
+    def _wait(self, key: tuple[str, str], bound: int, now: float) -> float:
+        lately = [at for at in self._failed.get(key, []) if now - at < PERIOD]
+        return lately[-bound] + PERIOD - now if len(lately) >= bound else 0.0
+
+
+def digest(cookie: str) -> str:
+    """What of a cookie is kept."""
+    return hashlib.sha256(cookie.encode(errors="replace")).hexdigest()
