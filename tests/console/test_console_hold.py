@@ -88,7 +88,7 @@ def test_a_gap_is_zero_within_link_gap_and_a_pass_and_needs_a_release(page, sile
     page.press()
     page.run(1.0)
     commands = page.run(silence, send=False)
-    assert len(moves(commands)) * PERIOD <= SETTINGS.link_gap + 1e-9
+    assert len(moves(commands)) * PERIOD <= SETTINGS.hold + 1e-9
     assert page.page.hold.gaps == 1
     assert not moves(page.run(5.0)), "it is still held"
     assert "release" in page.page.hold.state(page.now)
@@ -101,7 +101,7 @@ def test_a_gap_is_zero_within_link_gap_and_a_pass_and_needs_a_release(page, sile
 def test_a_shorter_gap_is_none(page):
     page.press()
     page.run(1.0)
-    page.run(0.25, send=False)
+    assert len(moves(page.run(0.25, send=False))) * PERIOD <= SETTINGS.hold
     assert len(moves(page.run(1.0))) == 20
 
 
@@ -127,11 +127,11 @@ def test_the_stamp_is_the_receipt_less_what_the_message_took_longer(page):
     assert age == pytest.approx(0.12)
 
 
-def test_a_hold_ends_link_gap_after_its_sending_not_after_its_receipt(page):
+def test_a_message_moves_the_robot_for_a_time_since_its_sending_not_since_its_receipt(page):
     page.press()
     page.run(1.0)
-    page.send(delay=0.2)
-    page.now += 0.15
+    page.send(delay=0.15)
+    page.now += 0.1
     assert not moves([page.desk.command(LIMITS, page.now)[0]])
 
 
@@ -252,7 +252,7 @@ def test_the_way_after_the_last_good_command_stays_within_the_distance(round_tri
     while (command := page.desk.command(limits, page.now)[0]) != Command():
         way += command.linear * tick
         page.now += tick
-    assert 0.5 * 0.3 < way <= 0.3
+    assert 0.4 * 0.3 < way <= 0.3
 
 
 def test_without_a_measured_link_no_speed_is_allowed():

@@ -6,6 +6,7 @@ motion counts while it is held, was seen released before, and no stop or pause l
     number     rises by each message; one that does not rise is a replay and does not count
     excess     above late_after: the message is dropped
     stamp      receipt − excess, of the newest message that counts
+    hold       stamp older than that: zero, until the next message
     gap        stamp older than link_gap: all ends, until a release that comes SETTLING after the gap
 """
 
@@ -103,7 +104,8 @@ class Hold:
     def share(self, now: float) -> Command | None:
         """Shares of the chosen speeds to command now; None: nothing is sent."""
         self.look(now)
-        return self._pad.command(now)
+        share = self._pad.command(now)
+        return share if share is None or now - self.stamp <= self._settings.hold else Command()
 
     def state(self, now: float) -> str:
         """The state as text; empty where the page may simply drive."""

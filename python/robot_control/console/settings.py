@@ -21,6 +21,7 @@ class SettingsError(ValueError):
 class Settings:
     """Units and meaning stand in config/console.yaml."""
 
+    hold: float = 0.2  # s
     link_gap: float = 0.3  # s
     late_after: float = 0.3  # s
     distance: float = 0.3  # m
@@ -54,6 +55,8 @@ def read_settings(*paths: Path) -> Settings:
             f"reaction = {settings.reaction:g} s: must be at least link_gap + {MARGIN:g} s = "
             f"{settings.link_gap + MARGIN:g} s, because a broken link is noticed only after link_gap"
         )
+    if not problems and settings.hold > settings.link_gap:
+        problems.append(f"hold = {settings.hold:g} s: must be at most link_gap = {settings.link_gap:g} s")
     if problems:
         raise SettingsError("; ".join(problems))
     return settings

@@ -1,4 +1,8 @@
-"""The last message of each topic that the page shows, and its age; deserialized when it is looked at."""
+"""The last message of each topic that the page shows, and its age.
+
+A message is deserialized when it is looked at, unless another part of this process subscribes to the topic with its
+type: rospy has one type for each topic of a process, that of its first subscriber.
+"""
 
 from __future__ import annotations
 
@@ -13,15 +17,14 @@ class Latest:
     """One topic."""
 
     def __init__(self, topic: str, kind: type) -> None:
-        self._kind, self._raw, self._read = kind, b"", b""
-        self._message: Any = None
+        self._kind, self._newest = kind, None
         self.received_at = -math.inf  # s, monotonic
         rospy.Subscriber(topic, rospy.AnyMsg, self._receive, queue_size=1, tcp_nodelay=True)
 
-    def _receive(self, message: rospy.AnyMsg) -> None:
-        if message._connection_header.get("type") != self._kind._type:  # type: ignore[attr-defined]  # noqa: SLF001
-            return
-        self._raw, self.received_at = message._buff, time.monotonic()  # noqa: SLF001 (all that AnyMsg has)
+    def _receive(self, message: Any) -> None:  # noqa: ANN401 (AnyMsg, or the topic's type)
+        other = isinstance(message, rospy.AnyMsg) and message._connection_header["type"] != self._kind._type  # type: ignore[attr-defined]  # noqa: SLF001
+        if not other:
+            self._newest, self.received_at = message, time.monotonic()
 
     def age(self, now: float) -> float | None:
         """s since it was received; None if none was."""
@@ -30,7 +33,8 @@ class Latest:
     @property
     def message(self) -> Any:  # noqa: ANN401 (of the topic's type)
         """The newest message, or None."""
-        if self._raw is not self._read:
-            self._read = self._raw
-            self._message = self._kind().deserialize(self._read)
-        return self._message
+        newest = self._newest
+        if isinstance(newest, rospy.AnyMsg):
+            newest = self._kind().deserialize(newest._buff)  # noqa: SLF001 (all that AnyMsg has)
+            self._newest = newest
+        return newest

@@ -105,6 +105,6 @@ setInterval(() => {
   const now = performance.now(), still = now - passed;
   passed = now;
   if (document.hidden) return;
-  if (still > FROZEN) { release(); reconnect(); return; }  // what waits in the connection is old
+  if (commands && still > FROZEN) { release(); reconnect(); return; }  // what waits in the connection is old
   report();
 }, PERIOD);

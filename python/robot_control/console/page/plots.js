@@ -50,7 +50,8 @@ class Plot {
 const speed = new Plot("plot-speed", "speed, m/s"), torque = new Plot("plot-torque", "torque, N·m");
 const error = new Plot("plot-error", "wheel speed error, rad/s"), latency = new Plot("plot-latency", "link, ms");
 const all = [speed, torque, error, latency];
-let last = -Infinity, drawn = -Infinity, link = {}, slowest = 0, turn = 0;
+const times = [];  // ms of the last redraws
+let last = -Infinity, drawn = -Infinity, link = {}, turn = 0;
 
 on("desk", (desk) => { link = desk.link; });
 on("fast", (frame) => {
@@ -66,6 +67,6 @@ on("fast", (frame) => {
   drawn = now;
   const plot = all[turn++ % all.length], began = performance.now();
   plot.draw();
-  slowest = Math.max(slowest * 0.99, performance.now() - began);
-  document.body.dataset.redraw = slowest.toFixed(1);
+  if (times.push(performance.now() - began) > 100) times.shift();
+  document.body.dataset.redraw = [...times].sort((a, b) => a - b)[times.length >> 1].toFixed(1);
 });

@@ -12,7 +12,7 @@ const view = document.getElementById("view"), note = document.getElementById("sc
 const canvas = document.getElementById("scene");
 const joints = new Map();
 const scene = new THREE.Scene(), robot = new THREE.Group(), camera = new THREE.PerspectiveCamera(50, 1, 0.05, 500);
-let renderer = null, controls = null, dirty = true, placed = false;
+let renderer = null, controls = null, dirty = true, placed = false, lift = 0;
 const notes = new Set();
 
 function say(text) {
@@ -142,6 +142,9 @@ async function load() {
   }
   for (const [name, group] of links) if (!children.has(name)) robot.add(group);
   await Promise.all(pending);
+  robot.position.z = 0;
+  robot.updateMatrixWorld(true);
+  lift = Math.max(0, -new THREE.Box3().setFromObject(robot).min.z) || 0;  // odom is at the height of the root link
   document.body.dataset.model = tree.name;
   dirty = true;
 }
@@ -153,8 +156,8 @@ on("trail", ({ points }) => { trail = points; fill(driven, trail, 0.004); });
 on("wanted", ({ points, frame }) => fill(wanted, frame === "odom" ? points : [], 0.006));
 on("fast", (frame) => {
   if (frame.pose) {
-    const [x, y, yaw] = frame.pose, moved = new THREE.Vector3(x, y, 0).sub(robot.position);
-    robot.position.set(x, y, 0);
+    const [x, y, yaw] = frame.pose, moved = new THREE.Vector3(x, y, robot.position.z).sub(robot.position);
+    robot.position.set(x, y, Number.isFinite(lift) ? lift : 0);
     robot.rotation.set(0, 0, yaw);
     if (controls) { controls.target.add(moved); camera.position.add(moved); }
     if (!placed && controls) { camera.position.set(x - 1.6, y - 1.6, 1.5); controls.target.set(x, y, 0.1); placed = true; }
@@ -232,10 +235,16 @@ try {
   say("this browser has no WebGL: no 3-D view");
 }
 camera.up.set(0, 0, 1);
-const grid = new THREE.GridHelper(40, 80, 0x808890, 0x808890);
-grid.rotation.x = Math.PI / 2;
-grid.material.opacity = 0.35;
-grid.material.transparent = true;
+const HALF = 20, SQUARE = 0.5, PIECE = 1, lines = [];  // m; a software renderer loses long lines that begin behind the camera
+for (let at = -HALF; at <= HALF; at += SQUARE) {
+  for (let from = -HALF; from < HALF; from += PIECE) {
+    lines.push(from, at, 0, from + PIECE, at, 0, at, from, 0, at, from + PIECE, 0);
+  }
+}
+const squares = new THREE.BufferGeometry();
+squares.setAttribute("position", new THREE.Float32BufferAttribute(lines, 3));
+const grid = new THREE.LineSegments(squares, new THREE.LineBasicMaterial({ color: 0x8d99a6, transparent: true, opacity: 0.6 }));
+grid.frustumCulled = false;
 const sun = new THREE.DirectionalLight(0xffffff, 0.7);
 sun.position.set(-2, -3, 5);
 scene.add(grid, robot, new THREE.HemisphereLight(0xffffff, 0x777777, 0.7), sun);

@@ -1,0 +1,137 @@
+"""Chromium without a screen, with software rendering, driven by Selenium; all of them Debian's."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib.util
+import os
+import re
+import signal
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from bench.console.process import wait_for
+
+SWITCHES = (
+    "--headless=new",
+    "--no-sandbox",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-dev-shm-usage",
+    "--no-first-run",
+)
+
+
+def missing() -> str:
+    """What of the browser is not installed, and the remedy; empty if all is there."""
+    there = importlib.util.find_spec("selenium") and Path("/usr/bin/chromedriver").exists()
+    return "" if there else "no browser: scripts/setup --browser"
+
+
+class Browser:
+    """One browser with one page."""
+
+    def __init__(self, width: int = 1300, height: int = 900, *, dark: bool = False) -> None:
+        from selenium import webdriver
+        from selenium.webdriver.chrome.service import Service
+
+        self._profile = tempfile.TemporaryDirectory(prefix="console-browser-", ignore_cleanup_errors=True)
+        options = webdriver.ChromeOptions()
+        options.binary_location = "/usr/bin/chromium"
+        for switch in (*SWITCHES, f"--user-data-dir={self._profile.name}", f"--window-size={width},{height}"):
+            options.add_argument(switch)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+        self._service = Service("/usr/bin/chromedriver")
+        self.driver = webdriver.Chrome(service=self._service, options=options)
+        self.driver.set_script_timeout(20)
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 700}
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+        scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [scheme]})
+
+    def open(self, address: str) -> None:
+        """Opens the console and waits until its first frames have come."""
+        self.driver.get(address)
+        wait_for("frames of the robot", lambda: int(self.data("frames") or 0) > 3)
+
+    def run(self, script: str, *arguments: object) -> Any:  # noqa: ANN401 (JSON)
+        """What a script of the test returns."""
+        return self.driver.execute_script(script, *arguments)
+
+    def data(self, name: str) -> str:
+        """A value that the page states about itself."""
+        value = self.run("return document.body?.dataset[arguments[0]]", name)
+        return "" if value is None else str(value)
+
+    def text(self, element: str) -> str:
+        """The text of an element, by id."""
+        return str(self.run("return document.getElementById(arguments[0])?.textContent ?? ''", element))
+
+    def click(self, element: str) -> None:
+        """Clicks on an element, by id."""
+        self.run("document.getElementById(arguments[0]).click()", element)
+
+    def key(self, code: str, kind: str = "keyDown") -> None:
+        """A real key of the browser: keyDown or keyUp."""
+        self.driver.execute_cdp_cmd("Input.dispatchKeyEvent", {"type": kind, "code": code, "key": code[-1].lower()})
+
+    def touch(self, kind: str) -> None:
+        """A finger on the upper edge of the stick: touchStart, touchEnd or touchCancel."""
+        points = []
+        if kind == "touchStart":
+            self.run("document.getElementById('pad').scrollIntoView({block: 'center'})")
+            x, y = self.run("const b = document.getElementById('pad').getBoundingClientRect(); return [b.x + b.width / 2, b.y + 8]")
+            points = [{"x": x, "y": y}]
+        self.driver.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    def command(self, speed: float = 0.5) -> None:
+        """Takes the command, and waits until the link allows the speed."""
+        wait_for("a page that knows its state", lambda: self.data("state"))
+        self.click("take")
+        wait_for("the command", lambda: self.data("commands") == "true")
+        wait_for("a link that is fast enough", lambda: self.allowed() >= speed)
+
+    def allowed(self) -> float:
+        """m/s that the link allows."""
+        found = re.search(r"allows ([0-9.]+) m/s", self.text("link"))
+        return float(found[1]) if found else 0.0
+
+    def problems(self) -> list[str]:
+        """Errors and violations of the policy in the browser's console since the last call."""
+        log = self.driver.get_log("browser")
+        return [each["message"] for each in log if each["level"] == "SEVERE" or "Content Security" in each["message"]]
+
+    def picture(self, path: Path) -> None:
+        """A picture of the window."""
+        self.driver.save_screenshot(str(path))
+
+    def processes(self) -> list[int]:
+        """Chromium's, without its driver."""
+        parents = {int(path.name): _parent(path) for path in Path("/proc").iterdir() if path.name.isdecimal()}
+        found = {pid for pid, parent in parents.items() if parent == self._service.process.pid}
+        while more := {pid for pid, parent in parents.items() if parent in found} - found:
+            found |= more
+        return sorted(found)
+
+    def signal(self, number: signal.Signals) -> None:
+        """Sends a signal to all of them."""
+        for pid in self.processes():
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, number)
+
+    def end(self) -> None:
+        """Ends the browser, dead or alive."""
+        with contextlib.suppress(Exception):
+            self.signal(signal.SIGCONT)
+        with contextlib.suppress(Exception):
+            self.driver.quit()
+        self._profile.cleanup()
+
+
+def _parent(process: Path) -> int:
+    try:
+        return int((process / "stat").read_text().rpartition(")")[2].split()[1])
+    except (OSError, IndexError, ValueError):
+        return 0

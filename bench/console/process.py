@@ -1,0 +1,99 @@
+"""console.py as a process, with a home of its own."""
+
+from __future__ import annotations
+
+import http.cookiejar
+import os
+import re
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+import urllib.request
+from collections.abc import Callable
+from pathlib import Path
+
+LIMIT = 30.0
+"""s for what takes a second on an idle machine"""
+
+
+def wait_for(what: str, condition: Callable[[], object], limit: float = LIMIT) -> None:
+    """Polls until the condition holds; AssertionError names `what`."""
+    end = time.monotonic() + limit
+    while not condition():
+        if time.monotonic() > end:
+            raise AssertionError(f"not within {limit:g} s: {what}")
+        time.sleep(0.02)
+
+
+def free_port() -> int:
+    """A port of the loopback that is free now."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+class Console:
+    """The program; `proxied`: a port of a proxy through which its pages come."""
+
+    def __init__(self, *arguments: str, proxied: int = 0) -> None:
+        self._folder = tempfile.TemporaryDirectory(prefix="console-home-")
+        self.home = Path(self._folder.name)
+        self.port = free_port()
+        self._arguments = [*arguments, *(["--origin", f"http://127.0.0.1:{proxied}"] if proxied else [])]
+        self.start()
+
+    def start(self) -> None:
+        """Starts the program, again after its end, and waits for its address."""
+        environment = {**os.environ, "ROS_HOME": str(self.home), "PYTHONUNBUFFERED": "1"}
+        command = ["rosrun", "robot_control", "console.py", "--port", str(self.port), *self._arguments]
+        output = self.home / "output"
+        with output.open("w") as file:
+            self.process = subprocess.Popen(
+                ["/bin/sh", "-c", 'exec "$@"', "sh", *command], stdout=file, stderr=subprocess.STDOUT, env=environment
+            )
+        ended = lambda: self.process.poll() is not None  # noqa: E731
+        wait_for("the address", lambda: "open http" in output.read_text() or ended())
+        found = re.search(r"open (\S+)", output.read_text())
+        if not found:
+            raise AssertionError(output.read_text())
+        self.address = found[1]
+        self.origin = self.address.split("/?")[0].rstrip("/")
+
+    @property
+    def output(self) -> str:
+        """What it has printed."""
+        return (self.home / "output").read_text()
+
+    @property
+    def journal(self) -> str:
+        """Who did what."""
+        return (self.home / "robot_control" / "console.log").read_text()
+
+    def through(self, port: int) -> str:
+        """The address through a proxy."""
+        return self.address.replace(f":{self.port}", f":{port}")
+
+    def log_in(self) -> tuple[urllib.request.OpenerDirector, str]:
+        """A client that has logged in with the token, and its cookie."""
+        cookies = http.cookiejar.CookieJar()
+        opener = urllib.request.build_opener(urllib.request.HTTPCookieProcessor(cookies))
+        opener.open(self.address, timeout=10).read()
+        return opener, "; ".join(f"{each.name}={each.value}" for each in cookies)
+
+    def kill(self) -> None:
+        """SIGKILL."""
+        self.process.kill()
+        self.process.wait()
+
+    def end(self) -> None:
+        """SIGINT, then SIGKILL."""
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGCONT)
+            self.process.send_signal(signal.SIGINT)
+            try:
+                self.process.wait(10)
+            except subprocess.TimeoutExpired:
+                self.kill()
+        self._folder.cleanup()
