@@ -115,16 +115,16 @@ class Browser:
             found |= more
         return sorted(found)
 
-    def signal(self, number: signal.Signals) -> None:
-        """Sends a signal to all of them."""
-        for pid in self.processes():
+    def signal(self, number: signal.Signals, pids: list[int]) -> None:
+        """Sends a signal to these of its processes."""
+        for pid in pids:
             with contextlib.suppress(ProcessLookupError):
                 os.kill(pid, number)
 
     def end(self) -> None:
         """Ends the browser, dead or alive."""
         with contextlib.suppress(Exception):
-            self.signal(signal.SIGCONT)
+            self.signal(signal.SIGCONT, self.processes())
         with contextlib.suppress(Exception):
             self.driver.quit()
         self._profile.cleanup()

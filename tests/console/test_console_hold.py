@@ -130,7 +130,7 @@ def test_the_stamp_is_the_receipt_less_what_the_message_took_longer(page):
 def test_a_message_moves_the_robot_for_a_time_since_its_sending_not_since_its_receipt(page):
     page.press()
     page.run(1.0)
-    page.send(delay=0.15)
+    page.send(delay=0.1)
     page.now += 0.1
     assert not moves([page.desk.command(LIMITS, page.now)[0]])
 

@@ -192,8 +192,10 @@ class ConsoleTest(RobotTestCase):
         browser.command(SPEED)
         for _ in range(TRIALS):
             self.drive(browser)
-            self.lets_go("stopped browser", lambda: browser.signal(signal.SIGSTOP),
-                         still_held=lambda: browser.signal(signal.SIGCONT))
+            pids = browser.processes()
+            stop, go = (lambda number=number: browser.signal(number, pids)  # noqa: E731
+                        for number in (signal.SIGSTOP, signal.SIGCONT))
+            self.lets_go("stopped browser", stop, go)
             browser.key("KeyW", "keyUp")
             self.await_link(browser)
             self.drive(browser)
@@ -207,8 +209,8 @@ class ConsoleTest(RobotTestCase):
             self.drive(browser)
             frozen = {"state": "frozen"}
             self.lets_go("frozen page", lambda: browser.driver.execute_cdp_cmd("Page.setWebLifecycleState", frozen))
-            browser.driver.execute_cdp_cmd("Page.setWebLifecycleState", {"state": "active"})
-            browser.driver.refresh()
+            browser.driver.switch_to.new_window("tab")  # one that was frozen stays hidden in a browser without a screen
+            browser.open(self.console.through(self.proxy.port))
             self.await_link(browser)
             self.drive(browser)
             self.lets_go("reloaded page", browser.driver.refresh)
@@ -237,7 +239,8 @@ class ConsoleTest(RobotTestCase):
             browser = self.browser()
             browser.command(SPEED)
             self.drive(browser)
-            self.lets_go("killed browser", lambda: browser.signal(signal.SIGKILL))
+            pids = browser.processes()
+            self.lets_go("killed browser", lambda: browser.signal(signal.SIGKILL, pids))
             browser.end()
             browser = self.browser()
             browser.command(SPEED)

@@ -21,7 +21,7 @@ class SettingsError(ValueError):
 class Settings:
     """Units and meaning stand in config/console.yaml."""
 
-    hold: float = 0.2  # s
+    hold: float = 0.15  # s
     link_gap: float = 0.3  # s
     late_after: float = 0.3  # s
     distance: float = 0.3  # m

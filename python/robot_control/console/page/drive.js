@@ -2,7 +2,8 @@
 import { on, send, reconnect } from "/link.js";
 
 const PERIOD = 50;       // ms between two messages while this page commands
-const FROZEN = 1000;     // ms between two passes, after which this page stood still
+const FROZEN = 300;      // ms between two passes, after which this page stood still
+const ASLEEP = 1000;     // ms that the time of day went on while the page's clock, which the server compares, stood
 const DEAD_ZONE = 0.1;   // share of a pad's axis
 const ENABLE = [4, 5];   // shoulder buttons of the standard mapping
 const MOTIONS = {        // forward, to the left
@@ -11,7 +12,8 @@ const MOTIONS = {        // forward, to the left
 };
 const keys = new Set();
 const stick = { pointer: null, x: 0, y: 0 };
-let padBlocked = true, commands = false, number = 0, passed = performance.now(), wasHeld = false;
+const offset = () => Date.now() - performance.now();
+let padBlocked = true, commands = false, number = 0, passed = performance.now(), wasHeld = false, awake = offset();
 const area = document.getElementById("pad"), knob = document.getElementById("stick");
 
 const clamp = (value) => Math.max(-1, Math.min(1, value));
@@ -105,6 +107,8 @@ setInterval(() => {
   const now = performance.now(), still = now - passed;
   passed = now;
   if (document.hidden) return;
-  if (commands && still > FROZEN) { release(); reconnect(); return; }  // what waits in the connection is old
-  report();
+  if (Math.abs(offset() - awake) > ASLEEP) reconnect();
+  awake = offset();
+  if (still > FROZEN) release();
+  else report();
 }, PERIOD);
