@@ -28,8 +28,8 @@ PING_PERIOD, WATCHER_PERIOD = 0.1, 0.5
 """s between two pings of the page that commands, and of others"""
 SKIP, LOST = 2.0, 15.0
 """s without the answer to a ping, after which frames are skipped, and the page counts as lost"""
-LOGIN_ENDED = 4401
-"""code with which the page is closed"""
+GOING_AWAY, LOGIN_ENDED = 1001, 4401
+"""codes with which the page is closed (RFC 6455, 7.4)"""
 MAX_MISTAKES, MAX_ANSWERS = 20, 64
 MAX_CALLS = 3
 """calls of one page at the same time"""
@@ -61,6 +61,7 @@ class Client:
         self._socket = web.WebSocketResponse(max_msg_size=MAX_SIZE, timeout=1.0, compress=False)
         self._outbox: deque[dict[str, Any]] = deque()
         self._calls: set[asyncio.Task[None]] = set()
+        self._endings: list[asyncio.Task[None]] = []
         self._pinged_at = self._answered_at = self._wanted_at = float("-inf")
         self._seen = self._seen_slow = 0  # numbers of the last frame and state that were sent
         self._unanswered: float | None = None  # s, when the first ping without an answer was sent
@@ -77,6 +78,7 @@ class Client:
             writer.cancel()
             for call in self._calls:
                 call.cancel()
+            await asyncio.gather(*self._endings, return_exceptions=True)  # else aiohttp closes with a code of its own
             journal.info("%s: page %d ended", self._who, self.page.number)
         return self._socket
 
@@ -84,12 +86,12 @@ class Client:
         """A line for the person."""
         self._post({"type": "said", "text": text})
 
-    def close(self) -> None:
+    def close(self, code: int = GOING_AWAY) -> None:
         """Ends the page."""
-        self._calls.add(asyncio.create_task(self._end()))
+        self._endings.append(asyncio.create_task(self._end(code)))
 
-    async def _end(self) -> None:
-        await self._socket.close(code=1001)
+    async def _end(self, code: int) -> None:
+        await self._socket.close(code=code)
 
     def _post(self, message: dict[str, Any]) -> None:
         if len(self._outbox) < MAX_ANSWERS:
@@ -171,8 +173,10 @@ class Client:
             while not self._socket.closed:
                 now = time.monotonic()
                 if not self._lives():
-                    await self._socket.close(code=LOGIN_ENDED)
-                if now - max(self._answered_at, begin) > LOST:
+                    self.close(LOGIN_ENDED)
+                    break
+                if now - max(self._answered_at, begin) > LOST and request.transport is not None:
+                    request.transport.abort()
                     break
                 await self._ping(now)
                 while self._outbox:
@@ -183,9 +187,6 @@ class Client:
                 await asyncio.sleep(FRAME / 2)
         except (ConnectionError, RuntimeError):
             pass  # the page has ended
-        finally:
-            if request.transport is not None:
-                request.transport.abort()
 
     async def _ping(self, now: float) -> None:
         commands = self._backend.desk.commander is self.page

@@ -12,11 +12,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
+from xml.parsers import expat
 
 from robot_control.common.files import InputFileError, check_input
 
 MAX_DESCRIPTION, MAX_LINKS, MAX_MESH = 4 << 20, 2000, 64 << 20
 """bytes, links, bytes"""
+PIECE = 1 << 16
+"""bytes"""
 FORMATS = {".stl": "stl", ".dae": "dae", ".obj": "obj"}
 
 Tree = dict[str, Any]
@@ -62,7 +65,10 @@ class Model:
             check_input(path, MAX_MESH)
         except InputFileError as error:
             raise ModelError(str(error)) from None
-        return path.read_bytes()
+        content = path.read_bytes()
+        if path.suffix.lower() == ".dae":
+            _check_xml(content)
+        return content
 
     def _path(self, name: str) -> Path:
         if name.startswith("package://"):
@@ -95,6 +101,20 @@ class Model:
             tree |= {"mesh": key, "file": Path(name).name, "format": kind, "scale": scale}
         tree |= {"size": _numbers(shape.get("size"), 3, 0.1)} if shape.tag == "box" else {}
         return tree | {key: _numbers(shape.get(key), 1, 0.05)[0] for key in ("radius", "length") if key in shape.attrib}
+
+
+def _check_xml(content: bytes) -> None:
+    """Raises ModelError for what is no XML: a browser reports that with a style that the page's policy forbids.
+
+    It is read in pieces, so that the server's other thread goes on.
+    """
+    parser = expat.ParserCreate()
+    try:
+        for at in range(0, len(content), PIECE):
+            parser.Parse(content[at : at + PIECE], False)  # noqa: FBT003 (positional in expat)
+        parser.Parse(b"", True)  # noqa: FBT003
+    except expat.ExpatError as error:
+        raise ModelError(f"is no XML: {error}") from None
 
 
 def _joint(joint: ET.Element) -> Tree:

@@ -144,7 +144,8 @@ async function load() {
   await Promise.all(pending);
   robot.position.z = 0;
   robot.updateMatrixWorld(true);
-  lift = Math.max(0, -new THREE.Box3().setFromObject(robot).min.z) || 0;  // odom is at the height of the root link
+  const bottom = new THREE.Box3().setFromObject(robot).min.z;
+  robot.position.z = lift = Number.isFinite(bottom) ? -bottom : 0;  // odom is at the height of the root link
   document.body.dataset.model = tree.name;
   dirty = true;
 }
@@ -157,7 +158,7 @@ on("wanted", ({ points, frame }) => fill(wanted, frame === "odom" ? points : [],
 on("fast", (frame) => {
   if (frame.pose) {
     const [x, y, yaw] = frame.pose, moved = new THREE.Vector3(x, y, robot.position.z).sub(robot.position);
-    robot.position.set(x, y, Number.isFinite(lift) ? lift : 0);
+    robot.position.set(x, y, lift);
     robot.rotation.set(0, 0, yaw);
     if (controls) { controls.target.add(moved); camera.position.add(moved); }
     if (!placed && controls) { camera.position.set(x - 1.6, y - 1.6, 1.5); controls.target.set(x, y, 0.1); placed = true; }
@@ -235,6 +236,8 @@ try {
   say("this browser has no WebGL: no 3-D view");
 }
 camera.up.set(0, 0, 1);
+camera.position.set(-1.6, -1.6, 1.5);
+camera.lookAt(0, 0, 0.1);
 const HALF = 20, SQUARE = 0.5, PIECE = 1, lines = [];  // m; a software renderer loses long lines that begin behind the camera
 for (let at = -HALF; at <= HALF; at += SQUARE) {
   for (let from = -HALF; from < HALF; from += PIECE) {
