@@ -58,15 +58,17 @@ class ConsoleRobotsTest(unittest.TestCase):
             self.skipTest(missing())
         self.addCleanup(lambda: rospy.delete_param("robot_description"))
 
-    def browser(self, description: str) -> Browser:
-        rospy.set_param("robot_description", description)
-        console = Console()
-        self.addCleanup(console.end)
+    def browser(self) -> Browser:
+        self.console = Console()
+        self.addCleanup(self.console.end)
         browser = Browser()
         self.addCleanup(browser.end)
-        browser.driver.get(console.address)
-        wait_for("the model", lambda: browser.run("return 'model' in document.body.dataset"))
         return browser
+
+    def show(self, browser: Browser, description: str) -> None:
+        rospy.set_param("robot_description", description)
+        browser.driver.get(self.console.address)
+        wait_for("the model", lambda: browser.run("return 'model' in document.body.dataset"))
 
     def picture(self, browser: Browser, name: str) -> None:
         folder = os.environ.get("CONSOLE_PICTURES")
@@ -83,7 +85,8 @@ class ConsoleRobotsTest(unittest.TestCase):
         visuals = "".join(
             f'<visual><geometry><mesh filename="file://{folder.name}/{name}"/></geometry></visual>' for name in names
         )
-        browser = self.browser(f'<robot name="{SPOKEN}"><link name="{SPOKEN}">{visuals}</link></robot>')
+        browser = self.browser()
+        self.show(browser, f'<robot name="{SPOKEN}"><link name="{SPOKEN}">{visuals}</link></robot>')
         note = browser.text("scene-note")
         for name in ("cut.stl", "cut.dae", "missing.stl", "secret.txt"):
             self.assertIn(name, note)
@@ -101,14 +104,13 @@ class ConsoleRobotsTest(unittest.TestCase):
         os.environ["ROS_PACKAGE_PATH"] = f"{robots}:{os.environ.get('ROS_PACKAGE_PATH', '')}"
         files = {name: robots / name / "robot.urdf" for name in ("jackal", "boxer", "kobuki")}
         files["diffbot"] = repository() / "urdf" / "diffbot.urdf"
+        browser = self.browser()
         for name, path in files.items():
             with self.subTest(robot=name):
-                browser = self.browser(path.read_text())
+                self.show(browser, path.read_text())
                 self.assertEqual(browser.text("scene-note"), "")
                 self.assertEqual(browser.problems(), [])
                 self.picture(browser, name)
-                self.doCleanups()
-                rospy.set_param("robot_description", "")
 
 
 if __name__ == "__main__":

@@ -75,5 +75,5 @@ setInterval(() => {
     element.classList.toggle("stale", dead || typeof age !== "number" || age > AGES[element.dataset.topic]);
   }
   const old = dead || performance.now() - slowAt > 3000;
-  for (const id of ["verdict", "why", "commanders"]) by(id).classList.toggle("stale", old);
+  for (const id of ["verdict", "why", "commanders", "who", "hold", "link", "asked"]) by(id).classList.toggle("stale", old);
 }, 200);

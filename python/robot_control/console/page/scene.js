@@ -66,7 +66,11 @@ function placeAt(object, { xyz, rpy }) {
 }
 
 const LOADERS = {
-  stl: (data) => new THREE.Mesh(new STLLoader().parse(data)),
+  stl: (data) => {
+    const geometry = new STLLoader().parse(data);
+    geometry.computeVertexNormals();  // those of the file are often zero
+    return new THREE.Mesh(geometry);
+  },
   obj: (data) => new OBJLoader().parse(new TextDecoder().decode(data)),
   dae: (data) => {
     const text = new TextDecoder().decode(data).replace(/<texture\b[^>]*?(\/>|>[\s\S]*?<\/texture>)/g, "");  // no pictures are served
@@ -94,7 +98,9 @@ async function mesh(visual, material) {
 
 function shape(visual) {
   const colour = visual.colour ?? [0.6, 0.65, 0.7, 1];
-  const material = new THREE.MeshPhongMaterial({ color: new THREE.Color(...colour.slice(0, 3)), transparent: colour[3] < 1, opacity: colour[3] });
+  const material = new THREE.MeshPhongMaterial({
+    color: new THREE.Color(...colour.slice(0, 3)), transparent: colour[3] < 1, opacity: colour[3], side: THREE.DoubleSide,
+  });
   const group = new THREE.Group();
   placeAt(group, visual);
   if (visual.shape === "box") group.add(new THREE.Mesh(new THREE.BoxBufferGeometry(...visual.size), material));

@@ -1,0 +1,192 @@
+"""`scripts/bench console`: latency of a key, speed and ways on a bad link, cost of the server."""
+
+from __future__ import annotations
+
+import os
+import statistics
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from robot_control import ClosedLoop
+from robot_control.common.run_log import read_log
+
+from bench.console.browser import Browser
+from bench.console.page import Page
+from bench.console.process import Console, wait_for
+from bench.console.proxy import Proxy
+from bench.console.robot import Robot
+
+PRESSES = 50
+DISTANCE, REACTION = 0.3, 0.4
+"""m, s: of config/console.yaml"""
+DELAYS = ((0.0, 0.0), (0.01, 0.0), (0.05, 0.02), (0.1, 0.05), (0.2, 0.0), (0.4, 0.0), (0.1, 0.2))
+"""s each way, and jitter"""
+LOSSES = 7
+"""of each kind and delay: 7 · 7 cuts and as many stalls of up to 5 s"""
+COST_SECONDS = 60.0
+BOUNDS = {
+    "key to torque, median": 60.0,
+    "key to torque, worst": 120.0,
+    "speed cap beside its law, worst": 10.0,
+    "way beyond the promise, worst": 0.0,
+    "server, three pages": 10.0,
+    "server, memory": 120.0,
+    "server, memory, growth": 5.0,
+    "p99 of the chain": 1.2,
+}
+
+
+def bench(share: float, say: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
+    """All figures; `share` of the presses, losses and seconds."""
+    robot = Robot()
+    proxy = Proxy()
+    console = Console(proxied=proxy.port)
+    proxy.target = console.port
+    try:
+        found: dict[str, tuple[float, str]] = {}
+        say("key presses in the browser")
+        presses = _presses(console, robot, max(3, round(PRESSES * share)))
+        say("bad links")
+        found |= _links(console, proxy, robot, max(1, round(LOSSES * share)), say)
+        say("cost")
+        window, figures = _cost(console, COST_SECONDS * share)
+        found |= figures
+    finally:
+        console.end()
+        proxy.end()
+        bag = robot.end()
+    log = read_log(bag)
+    found |= _latency(log, presses) | _chain(log, window)
+    robot.remove()
+    rows = [_row(name, value, unit) for name, (value, unit) in found.items()]
+    return {"bench": "console", "rows": rows}, all(row["value"] <= row["reference"] for row in rows if row["name"] in BOUNDS)
+
+
+def _row(name: str, value: float, unit: str) -> dict[str, Any]:
+    bound = BOUNDS.get(name, 0.0)
+    ratio = value / bound if bound else 0.0
+    return {"name": name, "value": value, "unit": unit, "reference": bound, "reference_name": "what is promised", "ratio": ratio}
+
+
+def _presses(console: Console, robot: Robot, count: int) -> list[int]:
+    """ns on the clock of the log, of each press by the browser's own event."""
+    browser = Browser()
+    try:
+        browser.open(console.address)
+        browser.command()
+        browser.run("addEventListener('keydown', (e) => { window.at = performance.timeOrigin + e.timeStamp; }, true)")
+        times = []
+        while len(times) < count:
+            wait_for("a free stick", lambda: browser.text("hold") == "")
+            robot.await_rest()
+            browser.key("KeyW")
+            time.sleep(0.25)
+            browser.key("KeyW", "keyUp")
+            offset = time.monotonic_ns() - time.time_ns()
+            times.append(int(1e6 * browser.run("return window.at")) + offset)
+        return times
+    finally:
+        browser.end()
+
+
+def _latency(log: Any, presses: list[int]) -> dict[str, tuple[float, str]]:  # noqa: ANN401 (of run_log)
+    torque = (log["requested_linear"] > 0) & (np.abs(log["left_wheel_joint_effort_command"]) > 0.01)
+    stamps = log["stamp_ns"][torque]
+    delays = sorted(1e-6 * float(stamps[stamps > at][0] - at) for at in presses)
+    return {
+        "key to torque, median": (statistics.median(delays), "ms"),
+        "key to torque, worst": (delays[-1], f"ms of {len(delays)}"),
+    }
+
+
+def _links(
+    console: Console, proxy: Proxy, robot: Robot, losses: int, say: Callable[[str], None]
+) -> dict[str, tuple[float, str]]:
+    loop, beside, beyond, count, refused = ClosedLoop(), [], [], 0, 0
+    _, cookie = console.log_in()
+    for delay, jitter in DELAYS:
+        proxy.delay, proxy.jitter, page = delay, jitter, None
+        for number in range(2 * losses):
+            if page is None:
+                page = Page(f"http://127.0.0.1:{proxy.port}", f"http://127.0.0.1:{proxy.port}", cookie)
+                page.send({"type": "take", "force": True})
+                page.send({"type": "speeds", "linear": 2.0, "angular": 1.0})
+                time.sleep(14.0 if number == 0 else 6.0)  # 100 pings take 10 s
+            if number == 0:
+                law = DISTANCE / (page.link["p95"] + REACTION)
+                beside.append(100 * abs(page.link["cap"] / law - 1))
+            page.held, page.linear = True, 1.0
+            time.sleep(2.5)
+            if robot.speed < 0.05:
+                refused += 1  # the link is so bad that gaps end every motion
+            if number % 2:
+                page.sends = False
+                proxy.stalled = True
+                lost = page.sent_at
+                time.sleep(min(5.0, 0.4 * (number + 1)))
+                proxy.stalled = False
+            else:
+                lost = page.sent_at
+                proxy.cut()
+            robot.await_rest()
+            way, speed = robot.at(lost)
+            beyond.append(robot.moves[-1][1] - way - DISTANCE - loop.stop_distance(max(speed, 0.0)))
+            count += 1
+            page.held, page.sends = False, True
+            if not number % 2:
+                page.end()
+                page = None
+            else:
+                time.sleep(1.0)
+        if page is not None:
+            page.end()
+        say(f"  {1000 * delay:.0f} ms each way, jitter {1000 * jitter:.0f} ms: cap {beside[-1]:.1f} % beside its law")
+    proxy.delay = proxy.jitter = 0.0
+    return {
+        "speed cap beside its law, worst": (max(beside), "%"),
+        "way beyond the promise, worst": (max(beyond), f"m of {count} cuts and stalls; below zero: kept"),
+        "drives that a bad link refused": (float(refused), f"of {count}"),
+    }
+
+
+def _cost(console: Console, seconds: float) -> tuple[tuple[int, int, int], dict[str, tuple[float, str]]]:
+    """Times on the clock of the log: without pages from, with pages from, until."""
+    _, cookie = console.log_in()
+    quiet = time.monotonic_ns()
+    time.sleep(seconds / 2)
+    pages = [Page(console.origin, console.origin, cookie) for _ in range(3)]
+    pages[0].send({"type": "take", "force": True})
+    time.sleep(3.0)
+    pid, busy, before = console.process.pid, time.monotonic_ns(), _processor(console.process.pid)
+    memory = _memory(pid)
+    time.sleep(seconds)
+    used = (_processor(pid) - before) / (1e-9 * (time.monotonic_ns() - busy))
+    window = (quiet, busy, time.monotonic_ns())
+    grown = _memory(pid) - memory
+    for page in pages:
+        page.end()
+    return window, {
+        "server, three pages": (100 * used, "% of a core"),
+        "server, memory": (memory + grown, "MiB"),
+        "server, memory, growth": (grown, f"MiB in {seconds:.0f} s"),
+    }
+
+
+def _chain(log: Any, window: tuple[int, int, int]) -> dict[str, tuple[float, str]]:  # noqa: ANN401 (of run_log)
+    chain, stamps = log["command_published_ns"], log["stamp_ns"]
+    parts = [chain[(stamps > a) & (stamps < b) & ~np.isnan(chain)] for a, b in zip(window, window[1:], strict=False)]
+    without, with_pages = (float(np.percentile(part, 99)) for part in parts)
+    return {"p99 of the chain": (with_pages / without, f"times the {1e-3 * without:.0f} us without pages")}
+
+
+def _processor(pid: int) -> float:
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def _memory(pid: int) -> float:
+    pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE") / 2**20
