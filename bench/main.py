@@ -234,7 +234,10 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--first", type=_whole(0), default=0, help=f"{seeds}: first seed")
     parser.add_argument("--runs", type=_whole(1), help=f"{seeds}: number of seeds")
     parser.add_argument(
-        "--share", type=_share, default=1.0, help="driving: of the two hours; record: of the ten minutes; console: of presses, losses and seconds"
+        "--share",
+        type=_share,
+        default=1.0,
+        help="driving: of the two hours; record: of the ten minutes; console: of presses, losses and seconds",
     )
     parser.add_argument("--errors", choices=LEVELS, default=LEVELS[0], help="driving, odometry: of the sensors")
     parser.add_argument("--plots", type=Path, help="odometry: folder for pictures")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import statistics
 import time
@@ -62,13 +63,22 @@ def bench(share: float, say: Callable[[str], None]) -> tuple[dict[str, Any], boo
     found |= _latency(log, presses) | _chain(log, window)
     robot.remove()
     rows = [_row(name, value, unit) for name, (value, unit) in found.items()]
-    return {"bench": "console", "rows": rows}, all(row["value"] <= row["reference"] for row in rows if row["name"] in BOUNDS)
+    return {"bench": "console", "rows": rows}, all(
+        row["value"] <= row["reference"] for row in rows if row["name"] in BOUNDS
+    )
 
 
 def _row(name: str, value: float, unit: str) -> dict[str, Any]:
     bound = BOUNDS.get(name, 0.0)
     ratio = value / bound if bound else 0.0
-    return {"name": name, "value": value, "unit": unit, "reference": bound, "reference_name": "what is promised", "ratio": ratio}
+    return {
+        "name": name,
+        "value": value,
+        "unit": unit,
+        "reference": bound,
+        "reference_name": "what is promised",
+        "ratio": ratio,
+    }
 
 
 def _presses(console: Console, robot: Robot, count: int) -> list[int]:
@@ -78,7 +88,7 @@ def _presses(console: Console, robot: Robot, count: int) -> list[int]:
         browser.open(console.address)
         browser.command()
         browser.run("addEventListener('keydown', (e) => { window.at = performance.timeOrigin + e.timeStamp; }, true)")
-        times = []
+        times: list[int] = []
         while len(times) < count:
             wait_for("a free stick", lambda: browser.text("hold") == "")
             robot.await_rest()
@@ -177,7 +187,7 @@ def _cost(console: Console, seconds: float) -> tuple[tuple[int, int, int], dict[
 
 def _chain(log: Any, window: tuple[int, int, int]) -> dict[str, tuple[float, str]]:  # noqa: ANN401 (of run_log)
     chain, stamps = log["command_published_ns"], log["stamp_ns"]
-    parts = [chain[(stamps > a) & (stamps < b) & ~np.isnan(chain)] for a, b in zip(window, window[1:], strict=False)]
+    parts = [chain[(stamps > a) & (stamps < b) & ~np.isnan(chain)] for a, b in itertools.pairwise(window)]
     without, with_pages = (float(np.percentile(part, 99)) for part in parts)
     return {"p99 of the chain": (with_pages / without, f"times the {1e-3 * without:.0f} us without pages")}
 

@@ -8,6 +8,7 @@ import os
 import re
 import signal
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +26,7 @@ SWITCHES = (
 
 
 def missing() -> str:
-    """What of the browser is not installed, and the remedy; empty if all is there."""
+    """A sentence about what is not installed, with the remedy; empty if all is there."""
     there = importlib.util.find_spec("selenium") and Path("/usr/bin/chromedriver").exists()
     return "" if there else "no browser: scripts/setup --browser"
 
@@ -57,7 +58,7 @@ class Browser:
         wait_for("frames of the robot", lambda: int(self.data("frames") or 0) > 3)
 
     def run(self, script: str, *arguments: object) -> Any:  # noqa: ANN401 (JSON)
-        """What a script of the test returns."""
+        """The result of a script of the test."""
         return self.driver.execute_script(script, *arguments)
 
     def data(self, name: str) -> str:
@@ -82,7 +83,9 @@ class Browser:
         points = []
         if kind == "touchStart":
             self.run("document.getElementById('pad').scrollIntoView({block: 'center'})")
-            x, y = self.run("const b = document.getElementById('pad').getBoundingClientRect(); return [b.x + b.width / 2, b.y + 8]")
+            x, y = self.run(
+                "const b = document.getElementById('pad').getBoundingClientRect(); return [b.x + b.width / 2, b.y + 8]"
+            )
             points = [{"x": x, "y": y}]
         self.driver.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
 
@@ -115,16 +118,25 @@ class Browser:
             found |= more
         return sorted(found)
 
-    def signal(self, number: signal.Signals, pids: list[int]) -> None:
-        """Sends a signal to these of its processes."""
-        for pid in pids:
-            with contextlib.suppress(ProcessLookupError):
-                os.kill(pid, number)
+    def freeze(self) -> None:
+        """The page stands still, as a browser does with one in the background."""
+        self.driver.execute_cdp_cmd("Page.setWebLifecycleState", {"state": "frozen"})
+
+    def signals(self) -> Callable[[signal.Signals], None]:
+        """Sends a signal to all of its present processes."""
+        pids = self.processes()
+
+        def send(number: signal.Signals) -> None:
+            for pid in pids:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(pid, number)
+
+        return send
 
     def end(self) -> None:
         """Ends the browser, dead or alive."""
         with contextlib.suppress(Exception):
-            self.signal(signal.SIGCONT, self.processes())
+            self.signals()(signal.SIGCONT)
         with contextlib.suppress(Exception):
             self.driver.quit()
         self._profile.cleanup()

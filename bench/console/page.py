@@ -35,7 +35,7 @@ class Page:
 
     @property
     def link(self) -> dict[str, Any]:
-        """What the server says of the link."""
+        """The server's figures of the link."""
         found: dict[str, Any] = self.last.get("desk", {}).get("link", {})
         return found
 
@@ -69,7 +69,13 @@ class Page:
             if self.sends and desk.get("commander") == desk.get("you") and desk:
                 number += 1
                 now, held = time.monotonic(), self.held
-                drive = {"number": number, "sent": now, "held": held, "linear": self.linear if held else 0.0, "angular": 0.0}
+                drive = {
+                    "number": number,
+                    "sent": now,
+                    "held": held,
+                    "linear": self.linear if held else 0.0,
+                    "angular": 0.0,
+                }
                 self.sent_at = now if held else self.sent_at
                 await page.send_json({"type": "drive", **drive})
             await asyncio.sleep(PERIOD)

@@ -53,8 +53,7 @@ class Console:
             self.process = subprocess.Popen(
                 ["/bin/sh", "-c", 'exec "$@"', "sh", *command], stdout=file, stderr=subprocess.STDOUT, env=environment
             )
-        ended = lambda: self.process.poll() is not None  # noqa: E731
-        wait_for("the address", lambda: "open http" in output.read_text() or ended())
+        wait_for("the address", lambda: "open http" in output.read_text() or self.process.poll() is not None)
         found = re.search(r"open (\S+)", output.read_text())
         if not found:
             raise AssertionError(output.read_text())
@@ -63,7 +62,7 @@ class Console:
 
     @property
     def output(self) -> str:
-        """What it has printed."""
+        """Its printed lines."""
         return (self.home / "output").read_text()
 
     @property

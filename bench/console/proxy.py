@@ -20,7 +20,7 @@ class Proxy:
         self.target = target
         self.delay = self.jitter = 0.0  # s, each way
         self.stalled = False  # nothing passes until it ends
-        self._random = random.Random(seed)
+        self._random = random.Random(seed)  # noqa: S311 (of a link, not of a key)
         self._listening = socket.create_server(("127.0.0.1", 0))
         self.port = int(self._listening.getsockname()[1])
         self._sockets: list[socket.socket] = []

@@ -24,15 +24,29 @@ class Robot:
     def __init__(self) -> None:
         self._folder = tempfile.TemporaryDirectory(prefix="console-bench-")
         port = free_port()
-        os.environ |= {"ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_IP": "127.0.0.1", "ROS_LOG_DIR": self._folder.name}
+        os.environ |= {
+            "ROS_MASTER_URI": f"http://127.0.0.1:{port}",
+            "ROS_IP": "127.0.0.1",
+            "ROS_LOG_DIR": self._folder.name,
+        }
         own = Path(self._folder.name, "own.yaml")
         own.write_text("telemetry: {record: always}\n")
-        command = ["roslaunch", "-p", str(port), "robot_control", *LAUNCH, f"out:={self._folder.name}", f"params:={own}"]
+        command = [
+            "roslaunch",
+            "-p",
+            str(port),
+            "robot_control",
+            *LAUNCH,
+            f"out:={self._folder.name}",
+            f"params:={own}",
+        ]
         with Path(self._folder.name, "output").open("w") as output:
             self._process = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT, start_new_session=True)
         self.moves: deque[tuple[float, float, float]] = deque(maxlen=6000)  # s monotonic, m, m/s: true
         self._way, self._x, self._y = 0.0, 0.0, 0.0
-        wait_for("the master", lambda: subprocess.run(["rosnode", "list"], capture_output=True, check=False).returncode == 0)
+        wait_for(
+            "the master", lambda: subprocess.run(["rosnode", "list"], capture_output=True, check=False).returncode == 0
+        )
         rospy.init_node("console_bench", anonymous=True, disable_signals=True)
         rospy.Subscriber("ground_truth/odom", Odometry, self._receive, tcp_nodelay=True)
         wait_for("the robot", lambda: len(self.moves) > 10)

@@ -1,5 +1,6 @@
 """Messages, users, sessions and origins: what a hostile page or a stranger can send, without a server."""
 
+import contextlib
 import json
 import random
 import stat
@@ -70,10 +71,8 @@ def test_random_bytes_raise_nothing_else():
     for _ in range(5000):
         cut = numbers.randrange(len(whole))
         text = whole[:cut] + chr(numbers.randrange(1, 0x2FF)) + whole[cut + numbers.randrange(3) :]
-        try:
+        with contextlib.suppress(MessageError):
             assert parse(text)["type"] == "drive", text
-        except MessageError:
-            pass
 
 
 def test_a_flood_is_bounded_and_the_usual_pace_is_not():
@@ -186,7 +185,7 @@ def test_only_own_names_and_origins_count():
 
 @pytest.mark.parametrize("address", ["0.0.0.0", "192.0.2.1", "::", "robot.local"])
 def test_an_address_that_others_reach_needs_users_and_tls(address):
-    with pytest.raises(AddressError, match="users .* and TLS"):
+    with pytest.raises(AddressError, match=r"users .* and TLS"):
         require_protection(address, users=False, tls=False)
     with pytest.raises(AddressError, match="needs TLS"):
         require_protection(address, users=True, tls=False)

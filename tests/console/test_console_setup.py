@@ -80,7 +80,7 @@ def test_without_a_master_it_ends_with_a_message(tmp_path):
 
 
 def test_every_library_of_the_page_is_one_of_the_list():
-    """What a page imports is a file of its own, or one of the list; nothing comes from elsewhere."""
+    """A page imports its own files and those of the list; nothing comes from elsewhere."""
     import re
 
     files = pytest.importorskip("aiohttp") and importlib.import_module("robot_control.console.files")

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What strangers, watchers and hostile pages send to a console: none of it moves the robot, and none ends the server."""
+"""Strangers, watchers and hostile pages: nothing that they send moves the robot, or ends the server."""
 
 from __future__ import annotations
 
@@ -83,11 +83,13 @@ class ConsoleAttackTest(RobotTestCase):
 
         console = console or self.console
         given = {"Origin": console.origin, "Cookie": cookie or self.cookie, **headers}
-        async with ClientSession() as session:
-            async with session.ws_connect(f"{console.origin}/ws", headers=given, max_msg_size=0) as socket_:
-                yield socket_
+        address = f"{console.origin}/ws"
+        async with ClientSession() as session, session.ws_connect(address, headers=given, max_msg_size=0) as page:
+            yield page
 
-    def run_page(self, play: Callable[[Any], Awaitable[None]], cookie: str = "", console: Console | None = None) -> None:
+    def run_page(
+        self, play: Callable[[Any], Awaitable[None]], cookie: str = "", console: Console | None = None
+    ) -> None:
         async def whole() -> None:
             async with self.page(cookie, console) as page:
                 await asyncio.wait_for(play(page), 30)
@@ -107,7 +109,15 @@ class ConsoleAttackTest(RobotTestCase):
 
     def test_without_a_login_nothing_but_the_login_is_served(self) -> None:
         origin = self.console.origin
-        for path in ("/ws", "/api/model", "/api/runs", "/api/mesh/0", "/index.html", "/main.js", "/lib/chart.js/chart.mjs"):
+        for path in (
+            "/ws",
+            "/api/model",
+            "/api/runs",
+            "/api/mesh/0",
+            "/index.html",
+            "/main.js",
+            "/lib/chart.js/chart.mjs",
+        ):
             self.assertIn(status(origin + path), (401, 403), path)
             self.assertEqual(status(origin + path, Cookie="console=guess", Origin=origin), 401, path)
         self.assertEqual(status(f"{origin}/api/e_stop", b"", Origin=origin), 401)
@@ -143,7 +153,9 @@ class ConsoleAttackTest(RobotTestCase):
         with urllib.request.build_opener(NoRedirect).open(f"{self.console.origin}/login") as answer:
             policy = answer.headers["Content-Security-Policy"]
         self.assertIn("default-src 'none'; script-src 'self'; style-src 'self'", policy)
-        raw = subprocess.run(["curl", "-s", "-i", self.console.address], capture_output=True, text=True, check=True).stdout
+        raw = subprocess.run(
+            ["curl", "-s", "-i", self.console.address], capture_output=True, text=True, check=True
+        ).stdout
         self.assertIn("HttpOnly; Path=/; SameSite=Strict", raw)
 
     # messages
@@ -158,6 +170,7 @@ class ConsoleAttackTest(RobotTestCase):
 
         self.run_page(play)
         for data in ("x" * 70_000, b"\0" * 100):
+
             async def send(page: Any, data: Any = data) -> None:
                 await (page.send_str(data) if isinstance(data, str) else page.send_bytes(data))
                 while not page.closed:
@@ -266,7 +279,17 @@ class ConsoleAttackTest(RobotTestCase):
         users = Path(folder.name, "users.json")
 
         def add(name: str, role: str) -> str:
-            command = ["rosrun", "robot_control", "console_users.py", "--users", str(users), "add", name, "--role", role]
+            command = [
+                "rosrun",
+                "robot_control",
+                "console_users.py",
+                "--users",
+                str(users),
+                "add",
+                name,
+                "--role",
+                role,
+            ]
             return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip().rpartition("#")[2]
 
         link = add("wanda", "watch")
@@ -298,7 +321,9 @@ class ConsoleAttackTest(RobotTestCase):
             await self.until(page, "said", "does not command")
             await page.send_json({"type": "call", "number": 1, "name": "step", "arguments": {"cycles": 1}})
             self.assertIn("needs the role maintain", (await self.until(page, "answer"))["text"])
-            self.assertEqual(await asyncio.to_thread(status, f"{origin}/api/logout", b"{}", Cookie=cookie, Origin=origin), 200)
+            self.assertEqual(
+                await asyncio.to_thread(status, f"{origin}/api/logout", b"{}", Cookie=cookie, Origin=origin), 200
+            )
             last = await page.receive()
             while last.type.name != "CLOSE":
                 last = await page.receive()

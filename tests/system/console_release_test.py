@@ -5,6 +5,7 @@ import os
 import signal
 import time
 from collections.abc import Callable
+from functools import partial
 
 import rospy
 import rostest
@@ -64,7 +65,9 @@ class ConsoleReleaseTest(RobotTestCase):
 
     def drive(self, browser: Browser, press: Event | None = None) -> None:
         """Drives at SPEED, and checks that the robot moves."""
-        browser.run(f"const f = document.getElementById('linear'); f.value = {SPEED}; f.dispatchEvent(new Event('change'))")
+        browser.run(
+            f"const f = document.getElementById('linear'); f.value = {SPEED}; f.dispatchEvent(new Event('change'))"
+        )
         try:
             wait_for("a free stick", lambda: browser.text("hold") == "")
             (press or (lambda: browser.key("KeyW")))()
@@ -111,15 +114,18 @@ class ConsoleReleaseTest(RobotTestCase):
             browser.run(PAD)
             time.sleep(0.2)
             self.drive(browser, lambda: browser.run("fake.axes[1] = -1; fake.buttons[4].pressed = true"))
-            self.lets_go("unplugged pad (a stub)", lambda: browser.run("window.was = fake; window.fake = null"),
-                         still_held=lambda: browser.run("window.fake = was"))
+            self.lets_go(
+                "unplugged pad (a stub)",
+                lambda: browser.run("window.was = fake; window.fake = null"),
+                still_held=lambda: browser.run("window.fake = was"),
+            )
             browser.run("delete navigator.getGamepads; window.fake = null")
 
     def hide(self, browser: Browser) -> None:
         """Another tab hides the page."""
         driver = browser.driver
         first = driver.current_window_handle
-        
+
         def hide() -> None:
             driver.switch_to.new_window("tab")
             driver.switch_to.window(first)
@@ -136,10 +142,8 @@ class ConsoleReleaseTest(RobotTestCase):
         browser.command(SPEED)
         for _ in range(TRIALS):
             self.drive(browser)
-            pids = browser.processes()
-            stop, go = (lambda number=number: browser.signal(number, pids)  # noqa: E731
-                        for number in (signal.SIGSTOP, signal.SIGCONT))
-            self.lets_go("stopped browser", stop, go)
+            signals = browser.signals()
+            self.lets_go("stopped browser", partial(signals, signal.SIGSTOP), partial(signals, signal.SIGCONT))
             browser.key("KeyW", "keyUp")
             self.await_link(browser)
             self.drive(browser)
@@ -151,8 +155,7 @@ class ConsoleReleaseTest(RobotTestCase):
             browser.key("KeyW", "keyUp")
             self.await_link(browser)
             self.drive(browser)
-            frozen = {"state": "frozen"}
-            self.lets_go("frozen page", lambda: browser.driver.execute_cdp_cmd("Page.setWebLifecycleState", frozen))
+            self.lets_go("frozen page", browser.freeze)
             browser.driver.switch_to.new_window("tab")  # one that was frozen stays hidden in a browser without a screen
             browser.open(self.console.through(self.proxy.port))
             self.await_link(browser)
@@ -183,19 +186,19 @@ class ConsoleReleaseTest(RobotTestCase):
             browser = self.browser()
             browser.command(SPEED)
             self.drive(browser)
-            pids = browser.processes()
-            self.lets_go("killed browser", lambda: browser.signal(signal.SIGKILL, pids))
+            self.lets_go("killed browser", partial(browser.signals(), signal.SIGKILL))
             browser.end()
             browser = self.browser()
             browser.command(SPEED)
             self.drive(browser)
-            stop, go = (lambda number=number: self.console.process.send_signal(number)  # noqa: E731
-                        for number in (signal.SIGSTOP, signal.SIGCONT))
-            self.lets_go("stopped server", stop, still_held=go)
+            server = self.console.process.send_signal
+            self.lets_go("stopped server", partial(server, signal.SIGSTOP), partial(server, signal.SIGCONT))
             browser.key("KeyW", "keyUp")
             self.await_link(browser)
             self.drive(browser)
-            self.lets_go("killed server, started again with the key held", self.console.kill, still_held=self.console.start)
+            self.lets_go(
+                "killed server, started again with the key held", self.console.kill, still_held=self.console.start
+            )
             browser.end()
 
 

@@ -30,8 +30,9 @@ DAE = f"""<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/CO
 <library_effects><effect id="e"><profile_COMMON><newparam sid="s"><surface type="2D"><init_from>i</init_from></surface>
 </newparam><technique sid="c"><phong><diffuse><texture texture="s" texcoord="u"/></diffuse></phong></technique>
 </profile_COMMON></effect></library_effects><library_materials><material id="m"><instance_effect url="#e"/></material>
-</library_materials><library_geometries><geometry id="g"><mesh><source id="p"><float_array id="a" count="12">
-{" ".join(str(x) for c in CORNERS for x in c)}</float_array><technique_common><accessor source="#a" count="4" stride="3">
+</library_materials><library_geometries><geometry id="g"><mesh><source id="p"><float_array id="a"
+count="12">{" ".join(str(x) for c in CORNERS for x in c)}</float_array><technique_common>
+<accessor source="#a" count="4" stride="3">
 <param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common>
 </source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices><triangles count="4" material="m">
 <input semantic="VERTEX" source="#v" offset="0"/><p>{" ".join(str(c) for face in FACES for c in face)}</p></triangles>
@@ -78,7 +79,13 @@ class ConsoleRobotsTest(unittest.TestCase):
     def test_meshes_are_shown_and_what_is_missing_or_broken_is_a_box_with_a_note(self) -> None:
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
-        contents = {"a.stl": STL, "a.dae": DAE.encode(), "a.obj": OBJ.encode(), "cut.stl": STL[:100], "cut.dae": b"<COLLADA>"}
+        contents = {
+            "a.stl": STL,
+            "a.dae": DAE.encode(),
+            "a.obj": OBJ.encode(),
+            "cut.stl": STL[:100],
+            "cut.dae": b"<COLLADA>",
+        }
         for name, content in contents.items():
             Path(folder.name, name).write_bytes(content)
         names = [*contents, "missing.stl", "secret.txt", "onerror=x.stl"]

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What the console shows in a real browser, on a screen and on a phone, without an error or a violation of its policy.
+"""The console in a real browser, on a screen and on a phone: no error, and no violation of its policy.
 
 CONSOLE_PICTURES=FOLDER keeps the pictures of docs/console.md, to be looked at.
 """

@@ -1,4 +1,4 @@
-"""Where the console listens, and from which origins it takes requests. Pure."""
+"""The address on which the console listens, and the origins from which it takes requests. Pure."""
 
 from __future__ import annotations
 

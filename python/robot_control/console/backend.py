@@ -73,15 +73,15 @@ class Backend:
         self._services.reset()
 
     def fast(self) -> dict[str, Any]:
-        """What every page shows in each frame."""
+        """The values that every page shows in each frame."""
         return self.view.fast(self._pace.last)
 
     def slow(self) -> dict[str, Any]:
-        """What every page shows of the robot's state."""
+        """The robot's state for every page."""
         return self.view.slow(self.listener.facts()) | {"topic": self._topic.name}
 
     def desk_of(self, page: Page) -> dict[str, Any]:
-        """What this page shows of itself and of the others."""
+        """The values that this page shows of itself and of the others."""
         now, holder, hold = time.monotonic(), self.desk.commander, page.hold
         limits = self._limits.newest()
         values: dict[str, Any] = finite(

@@ -1,4 +1,4 @@
-"""What a page may call: services, paths and the simulation, each with the role that it needs."""
+"""The calls of a page: services, paths and the simulation, each with the role that it needs."""
 
 from __future__ import annotations
 

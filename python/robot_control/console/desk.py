@@ -1,7 +1,7 @@
 """One desk, many pages: who commands, and what. It reads no clock: time is an argument, s.
 
-At most one page commands. It takes the command where it is free, and gives it back, hands it over, or loses it: by its
-end, or by a page of the role `maintain` that takes it away. Every change ends the motion, for both pages.
+At most one page commands. It takes the command where it is free. It gives it back, hands it over, or loses it by its
+end. A page of the role `maintain` may take it away. Every change ends the motion, for both pages.
 
     v = share · chosen speed · min(1, speed cap of the link / chosen linear speed)
 

@@ -1,7 +1,7 @@
 """The listening sockets' first line: connections that have not shown a login yet are few, and live briefly.
 
-A connection is a stranger until the application admits it. Of more than MAX_STRANGERS the oldest is closed, so that
-strangers who send slowly, or nothing, keep nobody out.
+A connection is a stranger until the application admits it. If there are MAX_STRANGERS already, the oldest is closed. So
+strangers that send slowly, or nothing, keep no user out.
 """
 
 from __future__ import annotations

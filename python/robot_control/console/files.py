@@ -46,7 +46,7 @@ TYPES = {
 
 
 def content_type(name: str) -> str:
-    """Of a file by its name."""
+    """The type of a file, by its name."""
     return TYPES.get(Path(name).suffix, "application/octet-stream")
 
 

@@ -1,7 +1,7 @@
-"""What one page holds: its keys, stick or pad. The dead-man law of a link. It reads no clock: time is an argument, s.
+"""The dead-man law of a link: what one page holds, by keys, stick or pad. It reads no clock: time is an argument, s.
 
-The page sends its state every 50 ms while it commands, held or not. The law of pad.py decides what that state moves:
-motion counts while it is held, was seen released before, and no stop or pause lies between (pad/law.py).
+The page sends its state every 50 ms while it commands, held or not. The law of pad.py decides what that state moves.
+Motion counts while it is held, was seen released before, and no stop or pause lies between (pad/law.py).
 
     number     rises by each message; one that does not rise is a replay and does not count
     excess     above late_after: the message is dropped

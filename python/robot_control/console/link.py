@@ -83,7 +83,9 @@ class SpeedCap:
         """m/s; `round_trip`: RTT95, infinite if it is not known."""
         elapsed, self._at = 0.0 if self._at is None else now - self._at, now
         target = self._distance / (round_trip + self._reaction)
-        self.value = max(target, self.value - FALL * elapsed) if target < self.value else (
-            min(target, self.value + RISE * elapsed)
+        self.value = (
+            max(target, self.value - FALL * elapsed)
+            if target < self.value
+            else (min(target, self.value + RISE * elapsed))
         )
         return self.value

@@ -50,7 +50,7 @@ TOKEN = "ROBOT_CONTROL_CONSOLE_TOKEN"  # noqa: S105 (a name)
 
 @dataclass(frozen=True)
 class Setup:
-    """What the command line means."""
+    """The meaning of the command line."""
 
     settings: Settings
     users: Users | None
@@ -66,13 +66,20 @@ def arguments(given: list[str]) -> argparse.Namespace:
         "has a list of command sources, else to cmd_vel_stamped.",
         epilog="Another robot's: __ns:=robot2 and a --port of its own. docs/console.md explains it.",
     )
-    parser.add_argument("--address", default="127.0.0.1", help="to listen on; another one than the loopback needs users and TLS")
+    parser.add_argument(
+        "--address", default="127.0.0.1", help="to listen on; another one than the loopback needs users and TLS"
+    )
     parser.add_argument("--port", type=int, default=8080)
     parser.add_argument("--users", type=Path, help="file of console_users.py; default: its own, where it exists")
     parser.add_argument("--tls", action="store_true", help="HTTPS, with a certificate of its own where none is given")
     parser.add_argument("--cert", type=Path, help="certificate, PEM; implies --tls")
     parser.add_argument("--key", type=Path, help="its key, PEM")
-    parser.add_argument("--origin", action="append", default=[], help="further address under which pages come, for instance of a reverse proxy: https://console.example")
+    parser.add_argument(
+        "--origin",
+        action="append",
+        default=[],
+        help="further address under which pages come, for instance of a reverse proxy: https://console.example",
+    )
     parser.add_argument("--config", type=Path, help="YAML laid over config/console.yaml")
     parser.add_argument("--runs", type=Path, default=LOGS, help="folder of recorded runs (default %(default)s)")
     parser.add_argument("--log", type=Path, default=LOGS / "console.log", help="who did what (default %(default)s)")

@@ -1,7 +1,7 @@
 """The messages of a page: a fixed schema, and nothing beside it. Pure.
 
 A message is a JSON object of at most MAX_SIZE bytes with exactly the fields of its type. Every number is finite, every
-text bounded. What is not in these tables is refused, and the refusal names the field.
+text bounded. All else is refused, and the refusal names the field.
 """
 
 from __future__ import annotations

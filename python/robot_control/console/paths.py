@@ -1,4 +1,4 @@
-"""Where the console's own files lie."""
+"""The folder of the console's own files."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Recorded runs and incidents: their list, files and reports. A file is named by an id of this list, never by a path."""
+"""Recorded runs and incidents: their list, files and reports. A file is named by an id of the list, never by a path."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ class Runs:
 
     def list(self) -> list[dict[str, Any]]:
         """The newest first: id, name, bytes, time of day."""
-        rows = []
+        rows: list[dict[str, Any]] = []
         for key, path in self._files().items():
             status = path.stat()
             name = str(path.relative_to(self._folder))
             rows.append({"id": key, "name": name, "bytes": status.st_size, "time": status.st_mtime})
-        return sorted(rows, key=lambda row: -float(row["time"]))[:MAX_RUNS]
+        return sorted(rows, key=lambda row: -row["time"])[:MAX_RUNS]
 
     def file(self, key: str) -> Path:
         """The log with this id. Raises RunsError."""

@@ -1,4 +1,4 @@
-"""The HTTP side: who may ask for what, and the answers. Policy, origins, logins and limits of all requests stand here."""
+"""The HTTP side: who may ask for what, and the answers. Origins, logins and limits of all requests stand here."""
 
 from __future__ import annotations
 
@@ -148,7 +148,7 @@ class Server:
             raise web.HTTPUnsupportedMediaType(text="application/json is needed")
         try:
             body = await asyncio.wait_for(request.json(), BODY_TIME)
-        except (ValueError, RecursionError, asyncio.TimeoutError):
+        except (TimeoutError, ValueError, RecursionError):
             raise web.HTTPBadRequest(text="no JSON") from None
         if not isinstance(body, dict) or not all(isinstance(body.get(name), str) for name in names):
             raise web.HTTPBadRequest(text=f"an object with {', '.join(names)} is needed")
@@ -213,9 +213,7 @@ class Server:
         page = self._backend.desk.join(session.user, role)
         who = f"{request.remote}: {session.user}"
         journal.info("%s: page %d begins as %s", who, page.number, role.name.lower())
-        client = Client(
-            self._backend, self.frames, page, who, lambda: self.sessions.lives(session, time.time())
-        )
+        client = Client(self._backend, self.frames, page, who, lambda: self.sessions.lives(session, time.time()))
         self._clients.append(client)
         try:
             return await client.serve(request)
@@ -237,7 +235,9 @@ class Server:
         path = LIBRARIES.get(request.match_info["path"])
         if path is None or not path.is_file():
             raise web.HTTPNotFound(text="there is no such library: scripts/setup --console")
-        return web.FileResponse(path, headers={"Content-Type": content_type(path.name), "Cache-Control": "max-age=3600"})
+        return web.FileResponse(
+            path, headers={"Content-Type": content_type(path.name), "Cache-Control": "max-age=3600"}
+        )
 
     async def _model(self, _: web.Request) -> web.StreamResponse:
         try:

@@ -101,5 +101,5 @@ class Tries:
 
 
 def digest(cookie: str) -> str:
-    """What of a cookie is kept."""
+    """The part of a cookie that is kept."""
     return hashlib.sha256(cookie.encode(errors="replace")).hexdigest()

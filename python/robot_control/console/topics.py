@@ -1,7 +1,7 @@
 """The last message of each topic that the page shows, and its age.
 
-A message is deserialized when it is looked at, unless another part of this process subscribes to the topic with its
-type: rospy has one type for each topic of a process, that of its first subscriber.
+A message is deserialized when it is looked at, or at its receipt if another part of this process subscribes with the
+topic's type. The reason: rospy has one type for each topic of a process, that of its first subscriber.
 """
 
 from __future__ import annotations

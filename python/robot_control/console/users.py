@@ -61,7 +61,9 @@ class Users:
             users = [User(**each) for each in json.loads(self.path.read_text(encoding="utf-8"))]
             known = {user.name: user for user in users if Role[user.role.upper()] is not None}
         except (ValueError, TypeError, KeyError, AttributeError):
-            raise UsersError(f"{self.path}: is no file of console_users.py; remove it and add the users again") from None
+            raise UsersError(
+                f"{self.path}: is no file of console_users.py; remove it and add the users again"
+            ) from None
         return known
 
     def add(self, name: str, role: str, now: float) -> str:

@@ -64,7 +64,7 @@ class View:
         return self._wanted.received_at, {"type": "wanted", "frame": frame, "points": finite(points[::step])}
 
     def fast(self, asked: Command | None) -> Values:
-        """What changes in every frame; `asked` by this console."""
+        """The values of every frame; `asked` by this console."""
         now = time.monotonic()
         odometry, truth, joints, limited = (self._topics[n].message for n in ("odom", "truth", "joints", "limited"))
         values: Values = {
@@ -85,11 +85,13 @@ class View:
         drive = self.drive_state
         if drive is not None:
             rows = zip(drive.name, drive.wanted, drive.actual, drive.error, drive.effort, strict=False)
-            values["wheels"] = [dict(zip(("name", "wanted", "actual", "error", "effort"), r, strict=True)) for r in rows]
+            values["wheels"] = [
+                dict(zip(("name", "wanted", "actual", "error", "effort"), r, strict=True)) for r in rows
+            ]
         return _finite_map(values)
 
     def slow(self, facts: Facts) -> Values:
-        """What changes now and then: state, causes, remedies, who commands."""
+        """The values that change now and then: state, causes, remedies, who commands."""
         answer, safety, now = judge(facts), facts.received(), time.monotonic()
         drive, feedback = self.drive_state, self._topics["feedback"].message
         values: Values = {
