@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Every way to let go of the robot, really done in a browser; once each, with --nightly 20 times."""
 
+import contextlib
 import os
 import signal
 import time
@@ -63,17 +64,20 @@ class ConsoleReleaseTest(RobotTestCase):
         browser.open(self.console.address if direct else self.console.through(self.proxy.port))
         return browser
 
-    def drive(self, browser: Browser, press: Event | None = None) -> None:
-        """Drives at SPEED, and checks that the robot moves."""
+    def drive(self, browser: Browser, press: Event | None = None, release: Event | None = None) -> None:
+        """Drives at SPEED. A page that stood still for 300 ms on a busy machine has let go, and presses again."""
         browser.run(
             f"const f = document.getElementById('linear'); f.value = {SPEED}; f.dispatchEvent(new Event('change'))"
         )
-        try:
+        for _ in range(5):
             wait_for("a free stick", lambda: browser.text("hold") == "")
-            (press or (lambda: browser.key("KeyW")))()
-            wait_for("motion", lambda: self.robot.speed > 0.8 * SPEED)
-        except AssertionError as error:
-            raise AssertionError(f"{error}: {browser.text('hold')}; {browser.text('messages')}") from None
+            (press or partial(browser.key, "KeyW"))()
+            with contextlib.suppress(AssertionError):
+                wait_for("motion", lambda: self.robot.speed > 0.8 * SPEED, limit=4.0)
+                return
+            (release or partial(browser.key, "KeyW", "keyUp"))()
+            time.sleep(0.5)
+        raise AssertionError(f"it does not drive: {browser.text('hold')}; {browser.text('messages')}")
 
     def lets_go(self, what: str, event: Event, still_held: Event | None = None, noticed: Browser | None = None) -> None:
         """Within LET_GO of the event the command is zero, and nothing moves again while something is held. `noticed`:
@@ -106,14 +110,15 @@ class ConsoleReleaseTest(RobotTestCase):
             self.drive(browser)
             self.lets_go("lost focus", lambda: browser.run("dispatchEvent(new Event('blur'))"), repeat, noticed=browser)
             up()
-            self.drive(browser, lambda: browser.touch("touchStart"))
+            self.drive(browser, partial(browser.touch, "touchStart"), partial(browser.touch, "touchEnd"))
             self.lets_go("lost finger", lambda: browser.touch("touchCancel"), noticed=browser)
             self.drive(browser)
             self.hide(browser)
             up()
             browser.run(PAD)
             time.sleep(0.2)
-            self.drive(browser, lambda: browser.run("fake.axes[1] = -1; fake.buttons[4].pressed = true"))
+            pressed = "fake.axes[1] = -1; fake.buttons[4].pressed = "
+            self.drive(browser, partial(browser.run, pressed + "true"), partial(browser.run, pressed + "false"))
             self.lets_go(
                 "unplugged pad (a stub)",
                 lambda: browser.run("window.was = fake; window.fake = null"),
