@@ -14,6 +14,8 @@ import urllib.request
 from collections.abc import Callable
 from pathlib import Path
 
+import roslib.packages
+
 LIMIT = 30.0
 """s for what takes a second on an idle machine"""
 
@@ -34,6 +36,14 @@ def free_port() -> int:
         return int(probe.getsockname()[1])
 
 
+def program(name: str) -> str:
+    """The path of a program of the package."""
+    found = roslib.packages.find_node("robot_control", name)
+    if not found:
+        raise AssertionError(f"robot_control has no program {name}")
+    return str(found[0])
+
+
 class Console:
     """The program; `proxied`: a port of a proxy through which its pages come."""
 
@@ -47,12 +57,10 @@ class Console:
     def start(self) -> None:
         """Starts the program, again after its end, and waits for its address."""
         environment = {**os.environ, "ROS_HOME": str(self.home), "PYTHONUNBUFFERED": "1"}
-        command = ["rosrun", "robot_control", "console.py", "--port", str(self.port), *self._arguments]
+        command = [program("console.py"), "--port", str(self.port), *self._arguments]
         output = self.home / "output"
         with output.open("w") as file:
-            self.process = subprocess.Popen(
-                ["/bin/sh", "-c", 'exec "$@"', "sh", *command], stdout=file, stderr=subprocess.STDOUT, env=environment
-            )
+            self.process = subprocess.Popen(command, stdout=file, stderr=subprocess.STDOUT, env=environment)
         wait_for("the address", lambda: "open http" in output.read_text() or self.process.poll() is not None)
         found = re.search(r"open (\S+)", output.read_text())
         if not found:

@@ -22,7 +22,7 @@ import rostest
 from geometry_msgs.msg import TwistStamped
 from system_support import RobotTestCase, wait_for
 
-from bench.console.process import Console
+from bench.console.process import Console, program
 
 DRIVE = {"type": "drive", "number": 1, "sent": 1.0, "held": True, "linear": 1.0, "angular": 0.0}
 TAKE = {"type": "take", "force": False}

@@ -57,7 +57,8 @@ class ConsoleRobotsTest(unittest.TestCase):
     def setUp(self) -> None:
         if missing():
             self.skipTest(missing())
-        self.addCleanup(lambda: rospy.delete_param("robot_description"))
+        rospy.set_param("robot_description", "")
+        self.addCleanup(rospy.set_param, "robot_description", "")
 
     def browser(self) -> Browser:
         self.console = Console()
