@@ -86,6 +86,7 @@ def _presses(console: Console, robot: Robot, count: int) -> list[int]:
     browser = Browser()
     try:
         browser.open(console.address)
+        browser.rest()
         browser.command()
         browser.run("addEventListener('keydown', (e) => { window.at = performance.timeOrigin + e.timeStamp; }, true)")
         times: list[int] = []

@@ -50,9 +50,13 @@ class ConsoleAttackTest(RobotTestCase):
     def setUpClass(cls) -> None:
         super().setUpClass()
         cls.here = importlib.util.find_spec("aiohttp") is not None
-        if cls.here:
-            cls.console = Console()
-            _, cls.cookie = cls.console.log_in()
+        try:
+            if cls.here:
+                cls.console = Console()
+                _, cls.cookie = cls.console.log_in()
+        except AssertionError:
+            cls.robot.end()
+            raise
 
     @classmethod
     def tearDownClass(cls) -> None:
@@ -279,17 +283,7 @@ class ConsoleAttackTest(RobotTestCase):
         users = Path(folder.name, "users.json")
 
         def add(name: str, role: str) -> str:
-            command = [
-                "rosrun",
-                "robot_control",
-                "console_users.py",
-                "--users",
-                str(users),
-                "add",
-                name,
-                "--role",
-                role,
-            ]
+            command = [program("console_users.py"), "--users", str(users), "add", name, "--role", role]
             return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip().rpartition("#")[2]
 
         link = add("wanda", "watch")

@@ -62,6 +62,7 @@ class ConsoleReleaseTest(RobotTestCase):
         browser = Browser(900, 700)
         self.addCleanup(browser.end)
         browser.open(self.console.address if direct else self.console.through(self.proxy.port))
+        browser.rest()
         return browser
 
     def drive(self, browser: Browser, press: Event | None = None, release: Event | None = None) -> None:
@@ -163,6 +164,7 @@ class ConsoleReleaseTest(RobotTestCase):
             self.lets_go("frozen page", browser.freeze)
             browser.driver.switch_to.new_window("tab")  # one that was frozen stays hidden in a browser without a screen
             browser.open(self.console.through(self.proxy.port))
+            browser.rest()
             self.await_link(browser)
             self.drive(browser)
             self.lets_go("reloaded page", browser.driver.refresh)

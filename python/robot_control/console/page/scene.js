@@ -12,6 +12,8 @@ const view = document.getElementById("view"), note = document.getElementById("sc
 const canvas = document.getElementById("scene");
 const joints = new Map();
 const scene = new THREE.Scene(), robot = new THREE.Group(), camera = new THREE.PerspectiveCamera(50, 1, 0.05, 500);
+const FRAME = 50, LATE = 40, RESTING = 250;  // ms between two pictures; a browser that is late gets a rest, for driving comes first
+let called = 0, due = 0;
 let renderer = null, controls = null, dirty = true, placed = false, lift = 0;
 const notes = new Set();
 
@@ -197,10 +199,13 @@ function render() {
     camera.updateProjectionMatrix();
     dirty = true;
   }
-  if (!dirty || document.hidden) return;
+  const now = performance.now(), late = now - called;
+  called = now;
+  if (!dirty || !width || document.hidden || now < due) return;
   dirty = false;
   controls.update();
   renderer.render(scene, camera);
+  due = now + (late > LATE ? RESTING : FRAME);
 }
 
 // a path, drawn with the pointer
