@@ -20,7 +20,7 @@ from typing import Any
 import rospy
 import rostest
 from geometry_msgs.msg import TwistStamped
-from system_support import RobotTestCase, wait_for
+from system_support import Program, RobotTestCase, wait_for
 
 from bench.console.process import Console, program
 
@@ -96,7 +96,7 @@ class ConsoleAttackTest(RobotTestCase):
     ) -> None:
         async def whole() -> None:
             async with self.page(cookie, console) as page:
-                await asyncio.wait_for(play(page), 30)
+                await asyncio.wait_for(play(page), 60)
 
         asyncio.run(whole())
 
@@ -225,6 +225,50 @@ class ConsoleAttackTest(RobotTestCase):
 
         asyncio.run(whole())
         self.alive()
+
+    # what an operator may do
+
+    def test_calls_reach_the_robot_and_a_refusal_says_why(self) -> None:
+        async def call(page: Any, name: str, **arguments: Any) -> tuple[bool, str]:
+            await page.send_json({"type": "call", "number": 7, "name": name, "arguments": arguments})
+            answer = await self.until(page, "answer")
+            return answer["accepted"], answer["text"]
+
+        async def play(page: Any) -> None:
+            self.assertEqual(await call(page, "reset_odometry"), (False, "take the command first"))
+            await page.send_json(TAKE)
+            while (desk := await self.until(page, "desk"))["commander"] != desk["you"] or desk["against"]["step"]:
+                pass
+            self.assertTrue((await call(page, "set_odometry", x=1.0, y=2.0, yaw=0.5))[0])
+            while abs((await self.until(page, "fast"))["pose"][1] - 2.0) > 0.1:
+                pass
+            self.assertTrue((await call(page, "reset_odometry"))[0])
+            self.assertTrue((await call(page, "set_parameters", parameters="{max_linear_speed: 0.8}"))[0])
+            accepted, why = await call(page, "set_parameters", parameters="{max_linear_speed: -1}")
+            self.assertEqual((accepted, "max_linear_speed" in why), (False, True))
+            self.assertTrue((await call(page, "pause", on=True))[0])
+            self.assertTrue((await call(page, "step", cycles=5))[0])
+            self.assertTrue((await call(page, "pause", on=False))[0])
+            accepted, why = await call(page, "inject_fault", component="gyro", kind="none such")
+            self.assertEqual((accepted, "none such" in why), (False, True))
+            self.assertEqual(
+                await call(page, "path_shape", shape="square", size=1.0, speed=0.3),
+                (False, "follow_path.py does not run"),
+            )
+            follow = Program("follow_path.py")
+            self.addCleanup(follow.end)
+            while (await self.until(page, "desk"))["against"]["path_shape"]:
+                pass
+            accepted, why = await call(page, "path_csv", text="x,z\n0,0\n", speed=0.3)
+            self.assertEqual((accepted, "the first line must be x,y" in why), (False, True))
+            self.robot.await_ready()
+            self.assertTrue((await call(page, "path_shape", shape="circle", size=1.0, speed=0.3))[0])
+            await self.until(page, "slow", '"state": "driving"')
+            self.assertTrue((await call(page, "path_cancel"))[0])
+            await asyncio.to_thread(wait_for, "standstill", lambda: abs(self.robot.speed) < 0.01)
+
+        self.run_page(play)
+        self.assertEqual(status(f"{self.console.origin}/login"), 200)
 
     # connections
 
