@@ -34,7 +34,7 @@ def missing() -> str:
 class Browser:
     """One browser with one page."""
 
-    def __init__(self, width: int = 1300, height: int = 900, *, dark: bool = False) -> None:
+    def __init__(self, width: int = 1300, height: int = 900) -> None:
         from selenium import webdriver
         from selenium.webdriver.chrome.service import Service
 
@@ -47,6 +47,10 @@ class Browser:
         self._service = Service("/usr/bin/chromedriver")
         self.driver = webdriver.Chrome(service=self._service, options=options)
         self.driver.set_script_timeout(20)
+        self.screen(width, height)
+
+    def screen(self, width: int, height: int, *, dark: bool = False) -> None:
+        """Sets the size [px] and the colours of the screen; a narrow one is a phone's."""
         size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 700}
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}

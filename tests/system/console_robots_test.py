@@ -10,7 +10,7 @@ from pathlib import Path
 import rospy
 import rostest
 import rosunit_skips
-from system_support import init_test_node, repository, wait_for
+from system_support import init_test_node, nightly, repository, wait_for
 
 from bench.console.browser import Browser, missing
 from bench.console.process import Console
@@ -105,6 +105,7 @@ class ConsoleRobotsTest(unittest.TestCase):
         self.assertIsNone(browser.run("return window.hacked ?? null"))
         self.assertEqual([each for each in browser.problems() if "404" not in each], [], "404 are the missing meshes")
 
+    @nightly
     def test_real_robots_are_shown(self) -> None:
         robots = corpus()
         if robots is None:

@@ -31,7 +31,7 @@ class ConsoleTest(RobotTestCase):
             browser.picture(Path(folder, f"console_{name}.png"))
 
     @again_after_a_stall
-    def test_the_page_shows_the_robot_stop_and_reset_and_breaks_no_policy(self) -> None:
+    def test_page_and_phone_show_the_robot_stop_and_reset_and_break_no_policy(self) -> None:
         browser = Browser()
         self.addCleanup(browser.end)
         began = time.monotonic()
@@ -57,21 +57,16 @@ class ConsoleTest(RobotTestCase):
         browser.run("document.querySelectorAll('details').forEach((each) => { each.open = true; })")
         browser.run("document.getElementById('plots').scrollIntoView()")
         self.picture(browser, "plots")
+        browser.screen(400, 850, dark=True)
+        browser.run("document.querySelectorAll('details').forEach((each) => { each.open = false; }); scrollTo(0, 0)")
+        self.picture(browser, "phone")
+        self.assertLessEqual(browser.run("return document.documentElement.scrollWidth"), 400)
         self.assertEqual(browser.problems(), [])
+        browser.screen(1300, 900)
         self.console.kill()
         wait_for("the banner", lambda: "No connection" in browser.text("banner"))
         browser.run("scrollTo(0, 0)")
         self.picture(browser, "disconnected")
-
-    def test_a_phone_in_the_dark_shows_everything_within_its_width(self) -> None:
-        browser = Browser(400, 850, dark=True)
-        self.addCleanup(browser.end)
-        browser.open(self.console.address)
-        wait_for("a state", lambda: browser.data("state"))
-        self.assertLessEqual(browser.run("return document.documentElement.scrollWidth"), 400)
-        self.assertEqual(browser.problems(), [])
-        browser.command()
-        self.picture(browser, "phone")
 
 
 if __name__ == "__main__":
