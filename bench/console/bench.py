@@ -20,6 +20,10 @@ from bench.console.process import Console, wait_for
 from bench.console.proxy import Proxy
 from bench.console.robot import Robot
 
+PRESSED = """
+addEventListener("keydown", (event) => { window.at = Date.now() - (performance.now() - event.timeStamp); }, true);
+"""
+"""Notes the time of day, ms, at which the browser made the event; performance.timeOrigin may have drifted from it."""
 PRESSES = 50
 DISTANCE, REACTION = 0.3, 0.4
 """m, s: of config/console.yaml"""
@@ -88,7 +92,7 @@ def _presses(console: Console, robot: Robot, count: int) -> list[int]:
         browser.open(console.address)
         browser.rest()
         browser.command()
-        browser.run("addEventListener('keydown', (e) => { window.at = performance.timeOrigin + e.timeStamp; }, true)")
+        browser.run(PRESSED)
         times: list[int] = []
         while len(times) < count:
             wait_for("a free stick", lambda: browser.text("hold") == "")
