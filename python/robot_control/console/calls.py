@@ -14,13 +14,13 @@ from actionlib_msgs.msg import GoalID
 from geometry_msgs.msg import PoseStamped
 from std_srvs.srv import SetBool, Trigger
 
+from robot_control.common.roles import CONTROLLER, DRIVER
 from robot_control.console.desk import Desk, Page, RefusedError, Role
 from robot_control.console.messages import CALLS
 from robot_control.msg import FollowPathActionGoal
 from robot_control.path.shapes import SHAPES
 from robot_control.path.waypoints import PathError, Waypoint, checked, placed, read_csv_text
 from robot_control.srv import InjectFault, SetOdometry, SetParameters, Step
-from robot_control.why.diagnosis import CONTROLLER, PLANT
 
 CALL_NAMES = tuple(CALLS)
 RESET_PAUSE, RESET_WINDOW = 0.5, 10.0
@@ -48,10 +48,10 @@ SERVICES: Mapping[str, str] = {
     "path_shape": f"{PATH_SERVER}/pause",
     "path_csv": f"{PATH_SERVER}/pause",
     "path_cancel": f"{PATH_SERVER}/pause",
-    "pause": f"{PLANT}/set_pause",
-    "step": f"{PLANT}/step",
-    "simulation_reset": f"{PLANT}/reset",
-    "inject_fault": f"{PLANT}/inject_fault",
+    "pause": f"{DRIVER}/set_pause",
+    "step": f"{DRIVER}/step",
+    "simulation_reset": f"{DRIVER}/reset",
+    "inject_fault": f"{DRIVER}/inject_fault",
 }
 """The service without which the call cannot work"""
 
@@ -88,10 +88,10 @@ class Calls:
             "set_parameters": lambda: _call(f"{CONTROLLER}/set_parameter_map", SetParameters, given["parameters"]),
             "path_pause": lambda: _call(f"{PATH_SERVER}/pause", Trigger),
             "path_resume": lambda: _call(f"{PATH_SERVER}/resume", Trigger),
-            "pause": lambda: _call(f"{PLANT}/set_pause", SetBool, given["on"]),
-            "step": lambda: _call(f"{PLANT}/step", Step, given["cycles"]),
-            "simulation_reset": lambda: _call(f"{PLANT}/reset", Trigger),
-            "inject_fault": lambda: _call(f"{PLANT}/inject_fault", InjectFault, given["component"], given["kind"]),
+            "pause": lambda: _call(f"{DRIVER}/set_pause", SetBool, given["on"]),
+            "step": lambda: _call(f"{DRIVER}/step", Step, given["cycles"]),
+            "simulation_reset": lambda: _call(f"{DRIVER}/reset", Trigger),
+            "inject_fault": lambda: _call(f"{DRIVER}/inject_fault", InjectFault, given["component"], given["kind"]),
             "path_cancel": lambda: self._cancel.publish(GoalID()) or "the path was cancelled",
             "path_points": lambda: self._start([Waypoint(x, y) for x, y in given["points"]], given["speed"]),
             "path_shape": lambda: self._start(self._shape(given["shape"], given["size"]), given["speed"]),

@@ -12,11 +12,12 @@ from nav_msgs.msg import Odometry, Path
 from sensor_msgs.msg import JointState
 
 from robot_control.common.command import Command
+from robot_control.common.roles import CONTROLLER, DRIVER, ESTIMATOR, LOOP
 from robot_control.console.topics import Latest
 from robot_control.msg import DriveState, FollowPathActionFeedback
 from robot_control.path.robot import pose_of
 from robot_control.view.scene import Trail
-from robot_control.why.diagnosis import CONTROLLER, ESTIMATOR, LOOP, PLANT, Facts, judge, missing_nodes
+from robot_control.why.diagnosis import Facts, judge, missing_nodes
 
 MAX_PATH = 2000
 """points of a wanted path that are sent; of a longer one every n-th"""
@@ -107,9 +108,9 @@ class View:
             "senders": facts.commanders(),
             "reasons": list(facts.reasons(CONTROLLER, "command").values()),
             "estimate": [*facts.reasons(ESTIMATOR, "slip").values(), *facts.reasons(ESTIMATOR, "estimate").values()],
-            "faults": facts.value(PLANT, "injected"),
-            "simulated": facts.there(PLANT),
-            "paused": facts.value(PLANT, "driver_state") == "paused",
+            "faults": facts.value(DRIVER, "injected"),
+            "simulated": facts.there(DRIVER),
+            "paused": facts.value(DRIVER, "driver_state") == "paused",
             "safety": None if safety is None else _safety(safety),
             "sources": [] if drive is None else list(drive.sources),
             "revoked": [] if drive is None else list(drive.revoked),
