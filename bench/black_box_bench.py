@@ -18,10 +18,11 @@ from typing import Any
 
 import numpy as np
 from robot_control._robot_control import RunLogError, save_black_box
+from robot_control.common.roles import LOOP, TELEMETRY
 from robot_control.common.run_log import read_log
 
 from bench.log_bench import row
-from bench.participants import LOOP, START_LIMIT, TELEMETRY, command, remove_shared_memory, script
+from bench.participants import START_LIMIT, command, remove_shared_memory, script
 
 ALL_TRIALS = 100
 MAX_MISSING = 10.0  # ms

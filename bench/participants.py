@@ -8,8 +8,6 @@ from pathlib import Path
 
 from robot_control.installed_files import share_file
 
-DRIVER, TELEMETRY = "mujoco_plant", "telemetry"
-LOOP = (DRIVER, "state_estimator", "diff_drive_controller", "safety_monitor")
 START_LIMIT = 30.0  # s until all nodes run
 RECORDING = {
     "robot.wait_for_nodes": "true",

@@ -17,10 +17,11 @@ from typing import Any
 
 import numpy as np
 from robot_control._robot_control import replay_log
+from robot_control.common.roles import CONTROLLER, LOOP, TELEMETRY
 from robot_control.replay.recorded_setup import recorded_setup
 
 from bench.log_bench import row
-from bench.participants import LOOP, START_LIMIT, TELEMETRY, command, remove_shared_memory
+from bench.participants import START_LIMIT, command, remove_shared_memory
 
 ALL_RUNS = 20
 EVENTS = 12  # of each run
@@ -43,7 +44,7 @@ class Nodes:
     def act(self, what: str, node: str, seconds: float) -> None:
         """Acts on a node; a stopped node stays so for `seconds`."""
         if what == "tune":
-            self._running["diff_drive_controller"].send_signal(signal.SIGUSR1)
+            self._running[CONTROLLER].send_signal(signal.SIGUSR1)
         elif what == "stop":
             self._running[node].send_signal(signal.SIGSTOP)
             time.sleep(seconds)

@@ -64,10 +64,10 @@ def stop_deceleration_of(name: str, friction: float = ICE) -> float:
     """Lower bound of the deceleration of a braking robot's faster side, m/s²; at most the parameter's default.
 
     Wheels on half the base b from the middle carry the part c of the mass m, which has the yaw inertia I. Brakes hold a
-    robot on a slope of 5°, and may do no more (brake_limits.h). Sliding straight slows down with a = g·min(μ·c, sin5°),
+    robot on a slope of 5°, and may do no more (wheel_stop.h). Sliding straight slows down with a = g·min(μ·c, sin5°),
     a spin with a·m·(b/2)²/I; on ice a long robot on a short base takes seconds. The result is a fifth less, because
     casters take weight off the wheels while the robot slows down.
-    robot on a slope of 5°, and may do no more (brake_limits.h). Sliding straight slows down with a = g·min(μ·c, sin5°),
+    robot on a slope of 5°, and may do no more (wheel_stop.h). Sliding straight slows down with a = g·min(μ·c, sin5°),
     a spin with a·m·(b/2)²/I: seconds on ice, of a long robot on a short base. A fifth less, because casters take weight
     off the wheels while it slows down.
     """

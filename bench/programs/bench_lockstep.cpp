@@ -19,7 +19,7 @@ constexpr std::uint64_t kCycles = 40'000;
 
 int run(const std::string& path) {
   const Parameters parameters = read_parameters(path);
-  const RobotModel robot = read_robot(load_description(parameters.urdf), parameters.robot);
+  const DriveTrain robot = read_drive_train(load_description(parameters.urdf), parameters.robot);
   std::vector<double> bare;
   std::vector<double> closed;
   std::vector<double> four;

@@ -22,7 +22,7 @@ constexpr int kSteps = 5000;
 constexpr double kForward = 0.5;  // m/s
 constexpr double kTurn = 0.4;     // rad/s
 
-double wheel_speed(const RobotModel& robot, const WheelModel& wheel) {
+double wheel_speed(const DriveTrain& robot, const WheelModel& wheel) {
   const double sideways = (wheel.side == Side::kLeft ? -1 : 1) * robot.effective_wheel_base() / 2;
   return wheel.sign * (kForward + kTurn * sideways) / wheel.radius;
 }
@@ -42,14 +42,14 @@ double rate(Step step) {
 /// The model alone, with the functions that a loop needs to drive it.
 class Bare {
  public:
-  Bare(const RobotModel& robot, const MujocoPlantParameters& parameters, double period)
+  Bare(const DriveTrain& robot, const MujocoPlantParameters& parameters, double period)
       : model_(compile_model(robot, parameters, period)), wheels_(model_, parameters), data_(set_down(model_)) {
     mj_step1(model_.model.get(), data_.get());
     wheels_.observe(*data_);
   }
 
   void drive() {
-    const RobotModel& robot = model_.robot;
+    const DriveTrain& robot = model_.robot;
     mju_zero(data_->qfrc_applied, model_.model->nv);
     for (const WheelModel& wheel : robot.wheels) {
       const int dof = model_.joint_velocity[wheel.joint];
@@ -83,7 +83,7 @@ class Bare {
 int run(const std::string& path) {
   const Parameters parameters = read_parameters(path);
   const double period = parameters.loop.period();
-  const RobotModel robot = read_robot(load_description(parameters.urdf), parameters.robot);
+  const DriveTrain robot = read_drive_train(load_description(parameters.urdf), parameters.robot);
 
   MujocoPlantParameters brush = parameters.plant, native = parameters.plant;
   brush.tyre = TyreModel::kBrush;

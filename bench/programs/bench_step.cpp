@@ -14,6 +14,7 @@
 #include "estimation/estimator.h"
 #include "gate/gate.h"
 #include "loop/gate_setup.h"
+#include "loop/wheeled_gate.h"
 #include "rt/clock.h"
 #include "safety/safety_monitor.h"
 #include "simulation/closed_loop.h"
@@ -87,7 +88,7 @@ void add(std::vector<Row>& rows, const std::string& name, const Timing& timing) 
 int run(const std::string& path) {
   const Parameters parameters = read_parameters(path);
   ClosedLoop loop(parameters);
-  const RobotModel& robot = loop.robot();
+  const DriveTrain& robot = loop.robot();
   const double period = parameters.loop.period();
   const Drive drive = record(loop);
   std::vector<Row> rows;
@@ -105,7 +106,7 @@ int run(const std::string& path) {
   add(rows, "controller",
       measure([&] { controller.enter_run(); },
               [&](std::size_t k) {
-                const VelocityCommand request{.twist = drive.commands[k].twist_requested, .count = k};
+                const VelocityCommand request{.content = drive.commands[k].requested, .count = k};
                 controller.step({.sensors = &drive.sensors[k],
                                  .state = &drive.states[k],
                                  .permit = &drive.permits[k - 1],
@@ -113,7 +114,7 @@ int run(const std::string& path) {
                                 command);
               }));
 
-  Gate gate(joint_limits(robot), gate_parameters(parameters), period);
+  Gate gate(joint_limits(robot), gate_parameters(parameters, robot), period);
   add(rows, "gate",
       measure([&] { gate.enter_run(); },
               [&](std::size_t k) {

@@ -42,14 +42,14 @@ std::vector<std::vector<double>> plain(const Eigen::Isometry3d& pose) {
   return rows;
 }
 
-py::dict wheel_dict(const RobotModel& robot, const WheelModel& wheel) {
+py::dict wheel_dict(const DriveTrain& robot, const WheelModel& wheel) {
   using namespace py::literals;
   return py::dict("joint"_a = robot.joints.at(wheel.joint).name, "centre"_a = wheel.centre_base,
                   "radius"_a = wheel.radius, "width"_a = wheel.width, "inertia"_a = wheel.inertia,
                   "rotor_inertia"_a = wheel.rotor_inertia);
 }
 
-py::dict joint_dict(const RobotModel& robot, const JointModel& joint) {
+py::dict joint_dict(const DriveTrain& robot, const JointModel& joint) {
   using namespace py::literals;
   const BodyJoint& moved = robot.bodies->moved_by(joint.name)->joint;
   return py::dict("name"_a = joint.name, "link"_a = joint.child_link, "role"_a = name_of(joint.role),
@@ -70,7 +70,7 @@ py::dict shape_dict(const RigidBody& body, const Shape& shape) {
 
 }  // namespace
 
-py::dict describe(const RobotModel& robot) {
+py::dict describe(const DriveTrain& robot) {
   using namespace py::literals;
   py::list wheels, casters, joints, shapes, notes;
   for (const WheelModel& wheel : robot.wheels) {

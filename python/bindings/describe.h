@@ -1,9 +1,9 @@
 #pragma once
-/// describe returns a RobotModel as plain Python values, for reports and pictures.
+/// describe returns a DriveTrain as plain Python values, for reports and pictures.
 
 #include <pybind11/pybind11.h>
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -18,6 +18,6 @@ namespace robot_control {
 ///   shapes    [{link, joint (that moves it; "" for the base), type "sphere" | "cylinder" | "box" | "mesh", in_base
 ///             (4 × 4), radius, length, size, points, triangles}], points and triangles in the shape's own axes
 ///   notes     [{kind "assumed" | "repaired" | "ignored" | "overridden" | "suspicious", element, text}]
-pybind11::dict describe(const RobotModel& robot);
+pybind11::dict describe(const DriveTrain& robot);
 
 }  // namespace robot_control

@@ -12,6 +12,7 @@
 
 #include "bindings/loop_replay.h"
 #include "configuration/live_parameters.h"
+#include "log/messages/message_types.h"
 #include "log/replay/replay_error.h"
 #include "log/trace_reader.h"
 #include "loop/log_header.h"
@@ -32,14 +33,14 @@ Parameters parameters_in(const Layers& layers, const std::string& base) {
   return read_parameters(layers.first, overlays, base);
 }
 
-RobotModel robot_in(const Parameters& parameters) {
-  return read_robot(load_description(parameters.urdf), parameters.robot);
+DriveTrain robot_in(const Parameters& parameters) {
+  return read_drive_train(load_description(parameters.urdf), parameters.robot);
 }
 
 /// VariedColumns holds the outputs of the laws, logged and with other parameters, by column of a log.
 class VariedColumns {
  public:
-  explicit VariedColumns(const RobotModel& robot) {
+  explicit VariedColumns(const DriveTrain& robot) {
     for (const WheelModel& wheel : robot.wheels) {
       efforts_.emplace_back(wheel.joint, "command_effort_" + robot.joints[wheel.joint].name);
     }
@@ -49,10 +50,10 @@ class VariedColumns {
     if (row.state != nullptr) {
       const StateFrame& was = *row.state;
       const StateFrame& would = *row.varied_state;
-      add("estimate_x", was.pose_odom.position[0], would.pose_odom.position[0]);
-      add("estimate_y", was.pose_odom.position[1], would.pose_odom.position[1]);
-      add("estimate_linear", was.twist_base.linear[0], would.twist_base.linear[0]);
-      add("estimate_angular", was.twist_base.angular[2], would.twist_base.angular[2]);
+      add("estimate_x", was.base.pose_odom.position[0], would.base.pose_odom.position[0]);
+      add("estimate_y", was.base.pose_odom.position[1], would.base.pose_odom.position[1]);
+      add("estimate_linear", was.base.twist_base.linear[0], would.base.twist_base.linear[0]);
+      add("estimate_angular", was.base.twist_base.angular[2], would.base.twist_base.angular[2]);
     }
     if (row.command != nullptr) {
       const CommandFrame& was = *row.command;
@@ -118,7 +119,7 @@ std::vector<std::string> header_differences(const LogHeader& logged, const LogHe
 /// `logged` are the parameters of the log, `varied` are other parameters or None.
 py::dict replay_log(const std::string& path, const Layers& logged, const std::optional<Layers>& varied) {
   const Parameters parameters = parameters_in(logged, logged.first);
-  const RobotModel robot = robot_in(parameters);
+  const DriveTrain robot = robot_in(parameters);
   Replay replay(parameters, robot);
   VariedColumns columns(robot);
   std::vector<std::string> live;  // values that the log leaves out but `varied` sets are included
@@ -142,9 +143,9 @@ py::dict replay_log(const std::string& path, const Layers& logged, const std::op
     // latter late.
     TraceReader reader(path, {.snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});
     if (!reader.of_this_version()) {
-      throw ReplayError(
-          "its messages Trace have other fields than those of this version: replay with the build that "
-          "made the log");
+      const LogHeader other = reader.header();
+      throw ReplayError("its messages Trace have other fields than those of this version (" + package_version() +
+                        "): version " + other.version + ", build " + other.build + " wrote it; replay with that build");
     }
     header = reader.header();
     cut = reader.cut();

@@ -31,7 +31,7 @@
 #include "log/fields/trace_fields.h"
 #include "loop/start_check.h"
 #include "signals/names.h"
-#include "signals/slip_detection.h"
+#include "signals/wheeled/slip_detection.h"
 #include "simulation/closed_loop.h"
 
 namespace py = pybind11;
@@ -97,8 +97,8 @@ py::dict run(ClosedLoop& loop, std::int64_t cycles, const py::object& command, L
   return log;
 }
 
-RobotModel robot_of(const Parameters& parameters) {
-  return read_robot(load_description(parameters.urdf), parameters.robot);
+DriveTrain robot_of(const Parameters& parameters) {
+  return read_drive_train(load_description(parameters.urdf), parameters.robot);
 }
 
 /// Returns the machine as described: without the errors of the field, which add a load beside its centre of gravity.
@@ -110,7 +110,7 @@ MujocoPlantParameters without_errors(MujocoPlantParameters parameters) {
 /// Places the robot in the scene and waits for rest. Returns how far it leans in rad and the share of its weight on the
 /// drive wheels. `unloaded` names the drive wheels that carry nothing, and the bodies that touch the ground instead.
 py::dict stand(const Parameters& parameters) {
-  const RobotModel robot = robot_of(parameters);
+  const DriveTrain robot = robot_of(parameters);
   MujocoPlant plant(robot, without_errors(parameters.plant), parameters.loop.period());
   plant.start();
   TruthFrame truth;

@@ -30,8 +30,8 @@ Parameters parameters_of(const std::string& path, const OfflineEstimator::Values
 }
 
 /// Returns a robot with two wheels on one axle, whose middle is base_link.
-RobotModel two_wheels(const RobotParameters& given) {
-  RobotModel robot;
+DriveTrain two_wheels(const DriveTrainParameters& given) {
+  DriveTrain robot;
   robot.name = robot.source = "wheel_radius and wheel_base";
   robot.base_link = "base_link";
   robot.wheel_base = given.wheel_base.value();
@@ -47,7 +47,7 @@ RobotModel two_wheels(const RobotParameters& given) {
     robot.joints.push_back({.name = left ? "left_wheel_joint" : "right_wheel_joint",
                             .child_link = left ? "left_wheel" : "right_wheel",
                             .velocity_limit = given.wheel_velocity_limit.value_or(0),
-                            .role = JointRole::kWheel});
+                            .role = JointRole::kDriven});
   }
   const auto [roll, pitch, yaw] = given.imu_orientation.value_or(Vector3{});
   const Eigen::Quaterniond turn = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
@@ -103,22 +103,22 @@ void add_motion(Numbers& to, py::ssize_t rows) {
   const auto add = [&](const char* name, std::vector<py::ssize_t> shape, Output<double>::Fill fill) {
     to.emplace_back(name, std::move(shape), rows, fill);
   };
-  add("x", {}, [](const S& s, double* cell) { *cell = s.pose_odom.position[0]; });
-  add("y", {}, [](const S& s, double* cell) { *cell = s.pose_odom.position[1]; });
-  add("z", {}, [](const S& s, double* cell) { *cell = s.pose_odom.position[2]; });
-  add("roll", {}, [](const S& s, double* cell) { *cell = roll_pitch_yaw(s.pose_odom.orientation)[0]; });
-  add("pitch", {}, [](const S& s, double* cell) { *cell = roll_pitch_yaw(s.pose_odom.orientation)[1]; });
-  add("yaw", {}, [](const S& s, double* cell) { *cell = roll_pitch_yaw(s.pose_odom.orientation)[2]; });
-  add("quaternion", {4}, [](const S& s, double* cell) { copy(s.pose_odom.orientation, 4, cell); });
-  add("attitude", {4}, [](const S& s, double* cell) { copy(s.attitude, 4, cell); });
-  add("linear", {3}, [](const S& s, double* cell) { copy(s.twist_base.linear, 3, cell); });
-  add("angular", {3}, [](const S& s, double* cell) { copy(s.twist_base.angular, 3, cell); });
-  add("distance", {}, [](const S& s, double* cell) { *cell = s.distance; });
-  add("wheel_x", {}, [](const S& s, double* cell) { *cell = s.wheels.x; });
-  add("wheel_y", {}, [](const S& s, double* cell) { *cell = s.wheels.y; });
-  add("wheel_yaw", {}, [](const S& s, double* cell) { *cell = s.wheels.yaw; });
-  add("wheel_linear", {}, [](const S& s, double* cell) { *cell = s.wheels.linear; });
-  add("wheel_angular", {}, [](const S& s, double* cell) { *cell = s.wheels.angular; });
+  add("x", {}, [](const S& s, double* cell) { *cell = s.base.pose_odom.position[0]; });
+  add("y", {}, [](const S& s, double* cell) { *cell = s.base.pose_odom.position[1]; });
+  add("z", {}, [](const S& s, double* cell) { *cell = s.base.pose_odom.position[2]; });
+  add("roll", {}, [](const S& s, double* cell) { *cell = roll_pitch_yaw(s.base.pose_odom.orientation)[0]; });
+  add("pitch", {}, [](const S& s, double* cell) { *cell = roll_pitch_yaw(s.base.pose_odom.orientation)[1]; });
+  add("yaw", {}, [](const S& s, double* cell) { *cell = roll_pitch_yaw(s.base.pose_odom.orientation)[2]; });
+  add("quaternion", {4}, [](const S& s, double* cell) { copy(s.base.pose_odom.orientation, 4, cell); });
+  add("attitude", {4}, [](const S& s, double* cell) { copy(s.base.attitude, 4, cell); });
+  add("linear", {3}, [](const S& s, double* cell) { copy(s.base.twist_base.linear, 3, cell); });
+  add("angular", {3}, [](const S& s, double* cell) { copy(s.base.twist_base.angular, 3, cell); });
+  add("distance", {}, [](const S& s, double* cell) { *cell = s.base.distance; });
+  add("wheel_x", {}, [](const S& s, double* cell) { *cell = s.wheeled.odometry.x; });
+  add("wheel_y", {}, [](const S& s, double* cell) { *cell = s.wheeled.odometry.y; });
+  add("wheel_yaw", {}, [](const S& s, double* cell) { *cell = s.wheeled.odometry.yaw; });
+  add("wheel_linear", {}, [](const S& s, double* cell) { *cell = s.wheeled.odometry.linear; });
+  add("wheel_angular", {}, [](const S& s, double* cell) { *cell = s.wheeled.odometry.angular; });
 }
 
 void add_knowledge(Numbers& to, py::ssize_t rows, bool covariance) {
@@ -127,20 +127,21 @@ void add_knowledge(Numbers& to, py::ssize_t rows, bool covariance) {
   };
   constexpr auto kCount = static_cast<py::ssize_t>(kSensors);
   if (covariance) {
-    add("pose_covariance", {6, 6}, [](const S& s, double* cell) { copy(s.pose_covariance, 36, cell); });
-    add("twist_covariance", {6, 6}, [](const S& s, double* cell) { copy(s.twist_covariance, 36, cell); });
-    add("attitude_covariance", {3, 3}, [](const S& s, double* cell) { copy(s.attitude_covariance, 9, cell); });
+    add("pose_covariance", {6, 6}, [](const S& s, double* cell) { copy(s.base.pose_covariance, 36, cell); });
+    add("twist_covariance", {6, 6}, [](const S& s, double* cell) { copy(s.base.twist_covariance, 36, cell); });
+    add("attitude_covariance", {3, 3}, [](const S& s, double* cell) { copy(s.base.attitude_covariance, 9, cell); });
   }
-  add("gyro_bias", {3}, [](const S& s, double* cell) { copy(s.gyro_bias, 3, cell); });
-  add("gyro_bias_deviation", {3}, [](const S& s, double* cell) { copy(s.gyro_bias_deviation, 3, cell); });
-  add("accelerometer_bias", {3}, [](const S& s, double* cell) { copy(s.accelerometer_bias, 3, cell); });
-  add("radius_ratio", {}, [](const S& s, double* cell) { *cell = s.calibration.radius_ratio; });
-  add("radius_ratio_deviation", {}, [](const S& s, double* cell) { *cell = s.calibration.radius_ratio_deviation; });
-  add("wheel_base_factor", {}, [](const S& s, double* cell) { *cell = s.calibration.wheel_base_factor; });
-  add("wheel_base_deviation", {}, [](const S& s, double* cell) { *cell = s.calibration.wheel_base_deviation; });
-  add("residual_level", {}, [](const S& s, double* cell) { *cell = s.residual_level; });
-  add("confidence", {kCount}, [](const S& s, double* cell) { copy(s.confidence, kSensors, cell); });
-  add("nis", {kCount}, [](const S& s, double* cell) { copy(s.nis, kSensors, cell); });
+  add("gyro_bias", {3}, [](const S& s, double* cell) { copy(s.base.gyro_bias, 3, cell); });
+  add("gyro_bias_deviation", {3}, [](const S& s, double* cell) { copy(s.base.gyro_bias_deviation, 3, cell); });
+  add("accelerometer_bias", {3}, [](const S& s, double* cell) { copy(s.base.accelerometer_bias, 3, cell); });
+  add("radius_ratio", {}, [](const S& s, double* cell) { *cell = s.wheeled.calibration.radius_ratio; });
+  add("radius_ratio_deviation", {},
+      [](const S& s, double* cell) { *cell = s.wheeled.calibration.radius_ratio_deviation; });
+  add("wheel_base_factor", {}, [](const S& s, double* cell) { *cell = s.wheeled.calibration.wheel_base_factor; });
+  add("wheel_base_deviation", {}, [](const S& s, double* cell) { *cell = s.wheeled.calibration.wheel_base_deviation; });
+  add("residual_level", {}, [](const S& s, double* cell) { *cell = s.wheeled.residual_level; });
+  add("confidence", {kCount}, [](const S& s, double* cell) { copy(s.wheeled.confidence, kSensors, cell); });
+  add("nis", {kCount}, [](const S& s, double* cell) { copy(s.wheeled.nis, kSensors, cell); });
 }
 
 void add_counts(Counts& to, py::ssize_t rows) {
@@ -148,10 +149,10 @@ void add_counts(Counts& to, py::ssize_t rows) {
     to.emplace_back(name, std::move(shape), rows, fill);
   };
   constexpr auto kCount = static_cast<py::ssize_t>(kSensors);
-  add("rejected", {kCount}, [](const S& s, std::int64_t* cell) { copy(s.rejected, kSensors, cell); });
-  add("flags", {}, [](const S& s, std::int64_t* cell) { *cell = static_cast<std::int64_t>(s.flags); });
-  add("slip", {}, [](const S& s, std::int64_t* cell) { *cell = static_cast<std::int64_t>(s.slip); });
-  add("degraded", {}, [](const S& s, std::int64_t* cell) { *cell = static_cast<std::int64_t>(s.degraded); });
+  add("rejected", {kCount}, [](const S& s, std::int64_t* cell) { copy(s.wheeled.rejected, kSensors, cell); });
+  add("flags", {}, [](const S& s, std::int64_t* cell) { *cell = static_cast<std::int64_t>(s.base.flags); });
+  add("slip", {}, [](const S& s, std::int64_t* cell) { *cell = static_cast<std::int64_t>(s.wheeled.slip); });
+  add("degraded", {}, [](const S& s, std::int64_t* cell) { *cell = static_cast<std::int64_t>(s.base.degraded); });
 }
 
 /// A Mark keeps its flag true while it lives.
@@ -182,8 +183,8 @@ struct OfflineEstimator::Rows {
 
 OfflineEstimator::OfflineEstimator(const std::string& path, const Values& values, bool use_two_wheels) {
   const Parameters parameters = parameters_of(path, values);
-  robot_ =
-      use_two_wheels ? two_wheels(parameters.robot) : read_robot(load_description(parameters.urdf), parameters.robot);
+  robot_ = use_two_wheels ? two_wheels(parameters.robot)
+                          : read_drive_train(load_description(parameters.urdf), parameters.robot);
   given_ = parameters_ = parameters.estimator;
   if (!parameters.calibration_file.empty()) {
     const auto kept = read_calibration(parameters.calibration_file, robot_, given_);
@@ -196,7 +197,7 @@ OfflineEstimator::OfflineEstimator(const std::string& path, const Values& values
 void OfflineEstimator::save_calibration(const std::string& path) const {
   if (busy_) throw std::runtime_error("another thread is inside process() of this Estimator");
   const LearnedCalibration now = learned(state_);
-  if (!began_ || (state_.flags & kStateValid) == 0)
+  if (!began_ || (state_.base.flags & kStateValid) == 0)
     throw std::runtime_error("no calibration: nothing was estimated yet");
   if (!may_be_kept(now)) {
     throw std::runtime_error(
@@ -228,7 +229,7 @@ void OfflineEstimator::sense(const Rows& rows, py::ssize_t row) noexcept {
       if (wheel.side != side) continue;
       if (sign == 0 || angles.columns > 1) sign = wheel.sign;
       sensors_.joints[wheel.joint].position = *angle * sign * wheel.sign;
-      if (!std::isnan(*angle)) sensors_.valid |= kValidJoints;
+      sensors_.joints[wheel.joint].valid = std::isnan(*angle) ? 0U : std::uint32_t{kValidPosition};
       if (angles.columns > 1) ++angle;
     }
   }

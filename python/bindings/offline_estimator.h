@@ -2,7 +2,7 @@
 /// robot_control.Estimator runs the node's law (estimation/estimator.h) over recorded samples, row by row.
 ///
 /// A row is a time and the samples taken at that time. These samples are absent:
-///   a wheel              if its angle is NaN; a row without any angle has kValidJoints off
+///   a wheel              if its angle is NaN
 ///   gyro, accelerometer  if all three axes are NaN, or if it is not given at all: its validity bit is off
 /// A sample that is partly NaN, or infinite, is passed to the law unchanged, which refuses it as a bad sample.
 ///
@@ -21,7 +21,7 @@
 
 #include "configuration/parameters.h"
 #include "estimation/estimator.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -64,7 +64,7 @@ class OfflineEstimator {
 
   EstimatorParameters given_;       ///< the parameters without the calibration of the file
   EstimatorParameters parameters_;  ///< the parameters with which the run begins
-  RobotModel robot_;
+  DriveTrain robot_;
   double loop_period_ = 0;
   double period_ = 0;
   std::unique_ptr<Estimator> estimator_;

@@ -42,6 +42,7 @@ py::dict signal_names() {
   all["Role"] = roles;
   all["StopCause"] = bits(kStopCauseNames);
   all["CommandReason"] = bits(kCommandReasonNames);
+  all["RequestPart"] = bits(kRequestPartNames);
   all["GateReason"] = bits(kGateReasonNames);
   all["StateFlag"] = bits(kStateFlagNames);
   all["SlipReason"] = bits(kSlipReasonNames);

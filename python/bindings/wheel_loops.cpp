@@ -5,16 +5,16 @@
 #include "control/measured_robot.h"
 #include "control/wheel_loops/feed_forward.h"
 #include "control/wheel_loops/wheel_loop_gains.h"
-#include "machine/wheels/scrub.h"
+#include "machine/wheeled/scrub.h"
 
 namespace py = pybind11;
 
 namespace robot_control {
 
-py::list wheel_loops(const Parameters& parameters, const RobotModel& robot) {
+py::list wheel_loops(const Parameters& parameters, const DriveTrain& robot) {
   using namespace py::literals;
   const double period = parameters.loop.period();
-  const RobotModel measured = measured_robot(robot, parameters.controller.feed_forward);
+  const DriveTrain measured = measured_robot(robot, parameters.controller.feed_forward);
   const Scrub scrub(measured);
   py::list loops;
   for (std::size_t i = 0; i < measured.wheels.size(); ++i) {

@@ -5,7 +5,7 @@
 #include <pybind11/pybind11.h>
 
 #include "configuration/parameters.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -14,6 +14,6 @@ namespace robot_control {
 ///   effort_limit N·m  velocity_limit rad/s, 0: none
 ///   damping N·m·s/rad  friction N·m  lifted turning straight kg·m²      as the controller assumes them
 ///   kp ki kd model_inertia  bandwidth Hz  period s                      of its loop
-pybind11::list wheel_loops(const Parameters& parameters, const RobotModel& robot);
+pybind11::list wheel_loops(const Parameters& parameters, const DriveTrain& robot);
 
 }  // namespace robot_control

@@ -4,7 +4,7 @@
 
 # What still passes: the user, the terminal, how the network is reached, where PyPI is, the folders of recorded data,
 # and a compiler's launcher.
-KEPT='HOME|USER|LOGNAME|TERM|CI|(https?|ftp|no|HTTPS?|FTP|NO)_(proxy|PROXY)|PIP_.*|(SSL_CERT|REQUESTS_CA|CURL_CA)_[A-Z]+|ROBOT_(RECORDINGS|CORPUS)|CMAKE_C(XX)?_COMPILER_LAUNCHER|CCACHE_.*'
+KEPT='HOME|USER|LOGNAME|TERM|CI|(https?|ftp|no|HTTPS?|FTP|NO)_(proxy|PROXY)|PIP_.*|(SSL_CERT|REQUESTS_CA|CURL_CA)_[A-Z]+|ROBOT_(RECORDINGS|CORPUS|QUADRUPEDS)|CMAKE_C(XX)?_COMPILER_LAUNCHER|CCACHE_.*'
 
 # The process id is that of the script which was started again already: a script that it calls has another one.
 if [ "${CLEAN_ENVIRONMENT-}" != $$ ]; then

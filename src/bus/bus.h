@@ -119,7 +119,7 @@ inline std::uint64_t attached_run(const ChannelHead& head) noexcept {
   return head.attached_run.load(std::memory_order_acquire);
 }
 
-/// The driver publishes in the sensors channel which robot it drives: RobotModel::hash and ::source (cut at 255
+/// The driver publishes in the sensors channel which robot it drives: MachineModel::hash and ::source (cut at 255
 /// bytes). Ordinary thread, before the first frame.
 void announce_robot(ChannelHead& own, std::uint64_t hash, const std::string& source) noexcept;
 

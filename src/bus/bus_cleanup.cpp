@@ -13,6 +13,7 @@
 #include "bus/bus_object.h"
 #include "bus/latest_frames.h"
 #include "rt/shared_memory.h"
+#include "signals/command_frame.h"
 #include "signals/permit.h"
 
 namespace robot_control {
@@ -51,32 +52,43 @@ std::vector<LockedObject> locked(const std::string& bus, const std::vector<std::
   return objects;
 }
 
+/// Returns kCorrupt if the last frame was torn by a death, and nothing if the object is no channel of such frames.
+template <class Frame>
+std::optional<Lookup> last_frame(const SharedMemory& object, Frame& out) {
+  constexpr BusLayout kLayout = BusLayoutOf<LatestFrames<Frame>>::value;
+  const BusContent content = content_of(object, kLayout);
+  if (content == BusContent::kUnreadable) return std::nullopt;
+  if (content != BusContent::kUsable) return Lookup::kMissing;
+  const MemoryMapping mapping = object.map(kLayout.object_bytes);
+  const auto* frames = static_cast<const LatestFrames<Frame>*>(mapping.data());
+  const Lookup found = FrameReader<Frame>(frames).newest(out);
+  return found == Lookup::kMissing && frames->newest.load() != 0 ? Lookup::kCorrupt : found;
+}
+
 bool latched(const SharedMemory& permits) {
-  constexpr BusLayout kLayout = BusLayoutOf<LatestFrames<Permit>>::value;
-  const BusContent content = content_of(permits, kLayout);
-  if (content != BusContent::kUsable) return content == BusContent::kUnreadable;
-  const MemoryMapping mapping = permits.map(kLayout.object_bytes);
   Permit last;
-  switch (FrameReader<Permit>(static_cast<const LatestFrames<Permit>*>(mapping.data())).newest(last)) {
-    case Lookup::kMissing:
-      return static_cast<const LatestFrames<Permit>*>(mapping.data())->newest.load() != 0;  // torn by a death
-    case Lookup::kFrame:
-      return last.causes != 0;
-    case Lookup::kToken:
-    case Lookup::kCorrupt:
-      break;
-  }
-  return true;
+  const auto found = last_frame(permits, last);
+  return found == Lookup::kFrame ? last.causes != 0 : found != Lookup::kMissing;
+}
+
+/// The start of another layout does not read such a channel, so that one counts as empty.
+bool requests_motion(const SharedMemory& commands) {
+  CommandFrame last;
+  const auto found = last_frame(commands, last);
+  return found == Lookup::kFrame ? requests_motion(last) : found && found != Lookup::kMissing;
 }
 
 bool remove_bus(const std::string& bus, const std::vector<std::string>& channels) {
   const std::vector<LockedObject> objects = locked(bus, channels);
-  if (objects.empty()) return false;
   for (const LockedObject& each : objects) {
     if (each.channel == ChannelNames::kPermit && latched(each.object)) return false;
   }
-  for (const LockedObject& each : objects) shm_unlink(each.name.c_str());
-  return true;
+  bool removed = false;
+  for (const LockedObject& each : objects) {
+    if (each.channel == ChannelNames::kCommand && requests_motion(each.object)) continue;
+    removed |= shm_unlink(each.name.c_str()) == 0;
+  }
+  return removed;
 }
 
 }  // namespace

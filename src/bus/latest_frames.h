@@ -31,7 +31,7 @@ inline constexpr std::size_t kFrameSlots = 8;
 inline constexpr int kReadTries = 4;
 
 inline constexpr std::uint64_t kChannelMagic = 0x6c74635f746f6272ULL;  // "rbot_ctl"
-inline constexpr std::uint64_t kLayoutVersion = 4;
+inline constexpr std::uint64_t kLayoutVersion = 5;
 
 /// The first bytes of every shared object, LatestFrames or Ring. `magic` to `retired` have the same place in every
 /// layout version, so that a process can check and retire an object that it cannot read.
@@ -42,7 +42,7 @@ struct ChannelHead {
   std::uint64_t slots;                              ///< number of slots for frames
   std::atomic<std::uint64_t> retired;               ///< 1: the name belongs to another object now, which must be mapped
   std::atomic<std::uint64_t> attached_run;          ///< run whose sensors the writer of this channel waits on
-  std::atomic<std::uint64_t> robot_hash;            ///< RobotModel::hash of the writer's robot; sensors channel only
+  std::atomic<std::uint64_t> robot_hash;            ///< MachineModel::hash of the writer's robot; sensors channel only
   std::array<std::atomic<char>, 256> robot_source;  ///< file of that robot, zero-terminated
 };
 
@@ -144,9 +144,11 @@ class FrameReader {
     return Lookup::kMissing;
   }
 
-  /// Reads the complete frame with the latest stamp that an ended writer left, also if a torn frame follows it. Returns
-  /// kCorrupt if frames were published but none is complete. It reads every slot and is not meant for the loop.
+  /// Reads the last frame that an ended writer left. If that frame is torn or a token, reads the complete one with the
+  /// latest stamp. Returns kCorrupt if frames were published but none is complete. It reads every slot and is not meant
+  /// for the loop.
   Lookup last_whole(Frame& out) const noexcept {
+    if (newest(out) == Lookup::kFrame) return Lookup::kFrame;
     const auto* memory = memory_.load(std::memory_order_acquire);
     if (memory == nullptr) return Lookup::kMissing;
     bool found = false;

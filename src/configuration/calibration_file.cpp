@@ -33,7 +33,7 @@ struct Content {
   LearnedCalibration learned;
 };
 
-Content content_of(const LearnedCalibration& calibration, const RobotModel& robot,
+Content content_of(const LearnedCalibration& calibration, const DriveTrain& robot,
                    const EstimatorParameters& parameters) {
   double radius = 0;
   for (const WheelModel& wheel : robot.wheels) radius += wheel.radius / static_cast<double>(robot.wheels.size());
@@ -148,7 +148,7 @@ bool take_over(double& kept, double& kept_deviation, double now, double deviatio
 }  // namespace
 
 LearnedCalibration learned(const StateFrame& state) {
-  return {state.calibration, state.gyro_bias, state.gyro_bias_deviation};
+  return {state.wheeled.calibration, state.base.gyro_bias, state.base.gyro_bias_deviation};
 }
 
 bool may_be_kept(const LearnedCalibration& calibration) {
@@ -178,7 +178,7 @@ bool improve(LearnedCalibration& kept, const LearnedCalibration& now) {
   return any;
 }
 
-std::optional<LearnedCalibration> read_calibration(const std::string& path, const RobotModel& robot,
+std::optional<LearnedCalibration> read_calibration(const std::string& path, const DriveTrain& robot,
                                                    const EstimatorParameters& parameters) {
   const std::string subject = std::string(program_of(Role::kEstimator)) + ".calibration_file refused (" + path + ")";
   ProblemList problems;
@@ -201,7 +201,7 @@ std::optional<LearnedCalibration> read_calibration(const std::string& path, cons
   return found.learned;
 }
 
-void write_calibration(const std::string& path, const LearnedCalibration& calibration, const RobotModel& robot,
+void write_calibration(const std::string& path, const LearnedCalibration& calibration, const DriveTrain& robot,
                        const EstimatorParameters& parameters) {
   write_output_file(path, text_of(content_of(calibration, robot, parameters)));
 }

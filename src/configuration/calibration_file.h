@@ -19,7 +19,7 @@
 #include <string>
 
 #include "estimation/estimator_parameters.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "signals/state_frame.h"
 
 namespace robot_control {
@@ -45,12 +45,12 @@ bool improve(LearnedCalibration& kept, const LearnedCalibration& now);
 
 /// Returns nothing if there is no file yet. Throws ParameterError for a refused file, and if the file could never be
 /// written.
-std::optional<LearnedCalibration> read_calibration(const std::string& path, const RobotModel& robot,
+std::optional<LearnedCalibration> read_calibration(const std::string& path, const DriveTrain& robot,
                                                    const EstimatorParameters& parameters);
 
 /// Writes the file completely or not at all, also if the machine loses power: a new file takes its name. Throws
 /// std::system_error.
-void write_calibration(const std::string& path, const LearnedCalibration& calibration, const RobotModel& robot,
+void write_calibration(const std::string& path, const LearnedCalibration& calibration, const DriveTrain& robot,
                        const EstimatorParameters& parameters);
 
 /// Standard deviations of the changes between two runs. The radius ratio changes by 0.05 %: another load compresses a

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "gate/gate_parameters.h"
+#include "gate/stop_action.h"
 #include "parameters/block.h"
 #include "rt/realtime_thread.h"
 
@@ -21,10 +21,10 @@ struct LoopParameters {
   double rate = 1000;  ///< Hz, 100 … 2000
   ClockMode clock = ClockMode::kWall;
   RealtimePolicy realtime = RealtimePolicy::kPreferred;
-  std::int64_t core = 0;  ///< core to which the real-time threads are pinned; -1: not pinned
-  FailAction fail_action = FailAction::kBrake;
-  std::string bus;                  ///< empty: derived from master and namespace
-  std::string command_script;       ///< CSV path; empty: none
+  std::int64_t core = 0;                    ///< core to which the real-time threads are pinned; -1: not pinned
+  StopKind fail_action = StopKind::kBrake;  ///< of every wheel while the gate passes no command
+  std::string bus;                          ///< empty: derived from master and namespace
+  std::string command_script;               ///< CSV path; empty: none
   bool wait_for_nodes = false;      ///< cycle 0 begins when all four nodes hold their channels; always in lockstep
   bool wait_for_telemetry = false;  ///< … and when telemetry reads
 

@@ -15,7 +15,7 @@
 #include "drivers/mujoco/mujoco_plant_parameters.h"
 #include "estimation/estimator_parameters.h"
 #include "log/log_parameters.h"
-#include "machine/robot_parameters.h"
+#include "machine/wheeled/drive_train_parameters.h"
 #include "parameters/parameter_tree.h"
 #include "parameters/problem_list.h"
 #include "parameters/schema.h"
@@ -25,7 +25,7 @@ namespace robot_control {
 
 struct Parameters {
   std::string urdf;  ///< path, relative to the folder of the file that names it
-  RobotParameters robot;
+  DriveTrainParameters robot;
   LoopParameters loop;
   MujocoPlantParameters plant;
   EstimatorParameters estimator;

@@ -27,8 +27,8 @@ std::uint64_t cycles_of_silence(double timeout, double period) noexcept {
 
 }  // namespace
 
-CommandWatch::CommandWatch(double timeout, double period)
-    : timeout_(timeout), period_(period), silence_needed_(cycles_of_silence(timeout, period)) {
+CommandWatch::CommandWatch(double timeout, double period, std::uint64_t executable)
+    : timeout_(timeout), period_(period), executable_(executable), silence_needed_(cycles_of_silence(timeout, period)) {
   enter_run();
 }
 
@@ -40,7 +40,8 @@ void CommandWatch::enter_run(const VelocityCommand& inbox, bool with_zero) noexc
   zero_requested_ = with_zero;
   life_ = request_cycle_ = not_finite_ = timeouts_ = without_effect_ = 0;
   reason_ = kReasonNoCommand;
-  requested_twist_ = {};
+  requested_ = {};
+  ignored_ = partial_ = 0;
 }
 
 void CommandWatch::set_timeout(double timeout) noexcept {
@@ -52,9 +53,11 @@ void CommandWatch::set_timeout(double timeout) noexcept {
 void CommandWatch::accept(const VelocityCommand& request, std::uint64_t cycle) noexcept {
   request_cycle_ = cycle;
   life_ = cycles_left(timeout_, request.age_ns, period_);
-  const bool good = finite(request.twist);
+  const bool good = finite(request.content);
   reason_ = good ? 0u : std::uint64_t{kReasonRefused};
-  requested_twist_ = good ? request.twist : Twist{};
+  requested_ = good ? request.content : Request{};
+  ignored_ = parts_of(requested_) & ~executable_;
+  if (ignored_ != 0) ++partial_;
   if (!good) ++not_finite_;
 }
 
@@ -66,11 +69,12 @@ void CommandWatch::note_messages(const VelocityCommand& request, std::uint64_t c
   const bool accepted = request.count != last_.count && request.contested != kNoMessage;
   if (!refused && !accepted) return;
   message_cycle_ = cycle;
-  zero_requested_ = !first && !refused && zero(request.twist) && request.contested == 0 && request.many_senders == 0;
+  zero_requested_ =
+      !first && !refused && zero(request.content.twist) && request.contested == 0 && request.many_senders == 0;
   if (zero_requested_) ++zero_requests_;
 }
 
-const Twist& CommandWatch::step(const VelocityCommand& request, std::uint64_t cycle) noexcept {
+const Request& CommandWatch::step(const VelocityCommand& request, std::uint64_t cycle) noexcept {
   note_messages(request, cycle);
   if (request.stale != last_.stale) without_effect_ |= kReasonStale;
   if (request.revoked != last_.revoked) without_effect_ |= kReasonRevoked;
@@ -80,14 +84,16 @@ const Twist& CommandWatch::step(const VelocityCommand& request, std::uint64_t cy
   }
   if (request.many_senders != 0) {
     reason_ = kReasonManySenders;
-    requested_twist_ = {};
+    requested_ = {};
+    ignored_ = 0;
   } else if (reason_ == 0 && cycle - request_cycle_ > life_) {
     ++timeouts_;
     reason_ = kReasonTimedOut;
-    requested_twist_ = {};
+    requested_ = {};
+    ignored_ = 0;
   }
   last_ = request;
-  return requested_twist_;
+  return requested_;
 }
 
 }  // namespace robot_control

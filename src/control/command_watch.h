@@ -1,15 +1,18 @@
 #pragma once
-/// Determines the requested twist of a cycle from the inbox of velocity commands.
+/// Determines the request of a cycle from the inbox of velocity commands.
 ///
 /// A command is new if its count differs from the last one. It stays in force until `timeout` after its stamp; age_ns
 /// is its age on arrival. Without a stamp, the cycle in which it was first read counts. It has timed out in cycle k if
 ///
 ///   (k − request_cycle)·period + age > timeout
 ///
-/// Then the requested twist is zero, and `timeouts` grows by one, once per command. A command with a NaN or infinite
-/// component is refused. The requested twist is then zero until the next valid command, without a timeout, and the
+/// Then the request is zero, and `timeouts` grows by one, once per command. A command with a NaN or infinite
+/// component is refused. The request is then zero until the next valid command, without a timeout, and the
 /// command before it is not resumed. The same holds while too many nodes send commands (VelocityCommand::many_senders),
 /// and until the next command after that.
+///
+/// A command is accepted as a whole even if the machine cannot execute all of its parts. Parts that are not zero and
+/// not executable are named (`ignored`), and such commands are counted (`partial`).
 ///
 /// A message that is refused for its stamp or its sender (VelocityCommand::stale, revoked) has no effect. The command
 /// before it stays in force until its own timeout. Commands that are overwritten in the inbox between two cycles count
@@ -28,14 +31,15 @@
 #include <cstdint>
 #include <optional>
 
+#include "signals/command_frame.h"
 #include "signals/velocity_command.h"
 
 namespace robot_control {
 
 class CommandWatch {
  public:
-  /// `timeout` is in s, 0 = never; `period` is in s, > 0.
-  CommandWatch(double timeout, double period);
+  /// `timeout` is in s, 0 = never; `period` is in s, > 0. `executable`: RequestPart bits that the machine can execute.
+  CommandWatch(double timeout, double period, std::uint64_t executable);
 
   /// Begins a new run. The inbox and everything before counts as not received. With `with_zero` the run begins with a
   /// zero request, because no older command can be pending (a command script, ClosedLoop).
@@ -44,12 +48,17 @@ class CommandWatch {
   /// Sets another timeout, s, from the next step on; it also applies to the command in force.
   void set_timeout(double timeout) noexcept;
 
-  /// Returns the requested twist, of which a differential drive uses linear x and angular z.
-  const Twist& step(const VelocityCommand& request, std::uint64_t cycle) noexcept;
+  /// Returns the request of this cycle, with the parts that the machine ignores.
+  const Request& step(const VelocityCommand& request, std::uint64_t cycle) noexcept;
 
   /// Returns the CommandReason bits of the last step. They contain at most one of kReasonNoCommand, kReasonRefused,
-  /// kReasonManySenders and kReasonTimedOut, and in addition kReasonStale and kReasonRevoked.
-  std::uint64_t reasons() const noexcept { return reason_ | without_effect_; }
+  /// kReasonManySenders and kReasonTimedOut, and in addition kReasonStale, kReasonRevoked and kReasonPartIgnored.
+  std::uint64_t reasons() const noexcept {
+    return reason_ | without_effect_ | (ignored() != 0 ? std::uint64_t{kReasonPartIgnored} : 0);
+  }
+  /// Returns the RequestPart bits of the request that the machine cannot execute.
+  std::uint64_t ignored() const noexcept { return ignored_; }
+  std::uint64_t partial() const noexcept { return partial_; }  ///< accepted commands with an ignored part
   std::uint64_t request_cycle() const noexcept { return request_cycle_; }
   std::uint64_t received() const noexcept { return last_.count - first_.count + stale() + crowded() + revoked(); }
   std::uint64_t refused() const noexcept { return not_finite_ + stale() + crowded() + revoked(); }
@@ -78,7 +87,10 @@ class CommandWatch {
   std::uint64_t timeouts_ = 0;
   std::uint64_t reason_ = 0;
   std::uint64_t without_effect_ = 0;  ///< kReasonStale and kReasonRevoked since the last accepted command
-  Twist requested_twist_;
+  Request requested_;
+  std::uint64_t executable_;
+  std::uint64_t ignored_ = 0;
+  std::uint64_t partial_ = 0;
   std::optional<std::uint64_t> first_cycle_;  ///< cycle of the first step since `enter_run`
   std::uint64_t message_cycle_ = 0;
   std::uint64_t silence_needed_ = 0;

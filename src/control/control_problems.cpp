@@ -29,10 +29,10 @@ struct Load {
 using Loads = std::array<Load, 8>;
 
 /// Returns the loads of a wheel, first as the set has it and then as the robot's description has it.
-Loads loads(const RobotModel& set, const RobotModel& described, std::size_t wheel) {
+Loads loads(const DriveTrain& set, const DriveTrain& described, std::size_t wheel) {
   Loads loads{};
   auto next = loads.begin();
-  for (const RobotModel* robot : {&set, &described}) {
+  for (const DriveTrain* robot : {&set, &described}) {
     const WheelModel& model = robot->wheels[wheel];
     const double damping = robot->joints[model.joint].damping;
     const double straight = straight_inertia(*robot, model);
@@ -225,7 +225,7 @@ std::string weak_message(const std::string& key, double value, double derived, c
   return text.str();
 }
 
-std::string powerless_message(const JointModel& joint, const RobotModel& robot) {
+std::string powerless_message(const JointModel& joint, const DriveTrain& robot) {
   std::ostringstream text;
   text << "joint '" << joint.name << "': effort limit " << joint.effort_limit
        << " N·m, must be > 0: the wheel could not be driven. Set <limit effort=…> in " << robot.source
@@ -240,7 +240,7 @@ bool only_limits(const DriveControllerParameters& parameters) noexcept {
          !given.mass && !given.yaw_inertia && !given.wheel_inertia && !given.wheel_damping && !given.wheel_friction;
 }
 
-void check_loops(const DriveControllerParameters& parameters, const RobotModel& described, const RobotModel& set,
+void check_loops(const DriveControllerParameters& parameters, const DriveTrain& described, const DriveTrain& set,
                  double period, std::vector<std::string>& problems) {
   std::vector<Loop> judged;
   const bool gains_are_set = !only_limits(parameters);
@@ -276,9 +276,9 @@ void check_loops(const DriveControllerParameters& parameters, const RobotModel& 
 
 }  // namespace
 
-std::vector<std::string> control_problems(const DriveControllerParameters& parameters, const RobotModel& described,
+std::vector<std::string> control_problems(const DriveControllerParameters& parameters, const DriveTrain& described,
                                           double period) {
-  const RobotModel robot = measured_robot(described, parameters.feed_forward);
+  const DriveTrain robot = measured_robot(described, parameters.feed_forward);
   std::vector<std::string> problems = feed_forward_problems(parameters, described);
   const double bandwidth = tracking_bandwidth(parameters, period);
   const double limit = std::max(kMaxTracking / period, tracking_bandwidth({}, period));

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "control/drive_controller_parameters.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -22,7 +22,7 @@ namespace robot_control {
 ///                        (quantisation_ripple.h), or 1.2 times that of derived gains
 ///
 /// `parameters` are within their ranges, and `period` (s) is > 0.
-std::vector<std::string> control_problems(const DriveControllerParameters& parameters, const RobotModel& described,
+std::vector<std::string> control_problems(const DriveControllerParameters& parameters, const DriveTrain& described,
                                           double period);
 
 }  // namespace robot_control

@@ -9,8 +9,6 @@
 namespace robot_control {
 namespace {
 
-static_assert(kTunedWheels == kMaxWheels);
-
 AxisTuning axis_tuning(const MotionLimits& limits) noexcept {
   return {.speed = limits.speed,
           .acceleration = limits.acceleration,
@@ -35,8 +33,8 @@ MotionLimits motion_limits(const AxisTuning& tuning) noexcept {
 
 }  // namespace
 
-DriveTuning drive_tuning(const DriveControllerParameters& parameters, const RobotModel& robot, double period) {
-  const RobotModel measured = measured_robot(robot, parameters.feed_forward);
+DriveTuning drive_tuning(const DriveControllerParameters& parameters, const DriveTrain& robot, double period) {
+  const DriveTrain measured = measured_robot(robot, parameters.feed_forward);
   const SpeedLimits limits = speed_limits(parameters);
   DriveTuning tuning{.linear = axis_tuning(limits.linear),
                      .angular = axis_tuning(limits.angular),

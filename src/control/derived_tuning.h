@@ -8,14 +8,14 @@
 #include "control/drive_controller_parameters.h"
 #include "control/limits/speed_limiter.h"
 #include "control/wheel_loops/wheel_loop.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "signals/drive_tuning.h"
 
 namespace robot_control {
 
 /// `robot` is the described one, with at most kMaxWheels wheels, and `period` (s) is > 0. The count is 0. It allocates
 /// and is not for the real-time thread.
-DriveTuning drive_tuning(const DriveControllerParameters& parameters, const RobotModel& robot, double period);
+DriveTuning drive_tuning(const DriveControllerParameters& parameters, const DriveTrain& robot, double period);
 
 SpeedLimits speed_limits(const DriveTuning& tuning) noexcept;
 

@@ -13,8 +13,8 @@ namespace robot_control {
 
 namespace {
 
-WheelLoops make_loops(const DriveControllerParameters& parameters, const RobotModel& described, double period) {
-  const RobotModel robot = measured_robot(described, parameters.feed_forward);
+WheelLoops make_loops(const DriveControllerParameters& parameters, const DriveTrain& described, double period) {
+  const DriveTrain robot = measured_robot(described, parameters.feed_forward);
   WheelLoops loops;
   for (const WheelModel& wheel : robot.wheels) {
     loops.emplace_back(wheel_loop_gains(parameters, robot, wheel, period), tracking_bandwidth(parameters, period),
@@ -53,14 +53,14 @@ constexpr std::uint64_t kBrakeReasons = kReasonNoPermit | kReasonPermitBrake | k
 
 }  // namespace
 
-DriveController::DriveController(const DriveControllerParameters& parameters, const RobotModel& robot, double period)
+DriveController::DriveController(const DriveControllerParameters& parameters, const DriveTrain& robot, double period)
     : tuning_(drive_tuning(parameters, robot, period)),
       period_(period),
       joint_count_(robot.joints.size()),
       kinematics_(robot),
       feed_forward_(measured_robot(robot, parameters.feed_forward)),
       ground_friction_(robot),
-      watch_(parameters.cmd_vel_timeout, period),
+      watch_(parameters.cmd_vel_timeout, period, kPartLinearX | kPartAngularZ),
       limiter_(speed_limits(parameters)),
       standstill_(period),
       loops_(make_loops(parameters, robot, period)) {}
@@ -100,7 +100,7 @@ void DriveController::tune(const DriveTuning& tuning) noexcept {
 }
 
 bool DriveController::usable(const SensorFrame& sensors) const noexcept {
-  if (!(sensors.valid & kValidJoints) || sensors.joint_count != joint_count_) return false;
+  if (sensors.joint_count != joint_count_ || !joints_have(sensors, loops_.size(), kValidMotion)) return false;
   if (last_cycle_ && sensors.head.cycle <= *last_cycle_) return false;
   return std::all_of(sensors.joints.begin(), sensors.joints.begin() + static_cast<std::ptrdiff_t>(loops_.size()),
                      [](const JointSample& sample) {
@@ -153,13 +153,13 @@ std::uint64_t DriveController::permit_reasons(const Permit* permit, std::uint64_
 std::uint64_t DriveController::state_reasons(const StateFrame* state, std::uint64_t cycle) noexcept {
   if (state == nullptr) return kReasonNoState;
   state_cycle_ = state->head.cycle;
-  const bool usable_now = state_cycle_ == cycle && (state->flags & kStateValid);
+  const bool usable_now = state_cycle_ == cycle && (state->base.flags & kStateValid);
   return usable_now ? 0u : std::uint64_t{kReasonNoState};
 }
 
 /// Returns the requested twist, limited by the permit.
 PlanarTwist DriveController::permitted_twist(const Permit* permit, CommandFrame& out) const noexcept {
-  const PlanarTwist requested{out.twist_requested.linear[0], out.twist_requested.angular[2]};
+  const PlanarTwist requested{out.requested.twist.linear[0], out.requested.twist.angular[2]};
   if ((out.reasons & kReasonPermitRamp) != 0) return {};
   if ((out.reasons & (kReasonNoPermit | kReasonPermitBrake)) != 0)
     return requested;  // The joints are braked in any case.
@@ -267,24 +267,25 @@ void DriveController::drive(const PlanarTwist& requested, const SensorFrame& sen
   if (in_control_) {
     const PlanarTwist goal = scaled(requested, kinematics_.wheel_speed_scale(requested));
     if (goal.linear != requested.linear || goal.angular != requested.angular || acceleration_scale_ < 1)
-      out.reasons |= kReasonSaturated;
+      out.wheeled.reasons |= kReasonSaturated;
     limiter_.step(goal, periods_ * period_, (out.reasons & kEmergencies) != 0, acceleration_scale_);
-    out.reasons |= limiter_.reasons();
+    out.reasons |= limiter_.reasons() & ~kWheeledReasons;
+    out.wheeled.reasons |= limiter_.reasons() & kWheeledReasons;
   }
   // A target that changed during a ramp may lead past the wheels' limits.
   const double scale = kinematics_.wheel_speed_scale(limiter_.value());
-  if (scale < 1) out.reasons |= kReasonSaturated;
+  if (scale < 1) out.wheeled.reasons |= kReasonSaturated;
   const PlanarTwist limited = scaled(limiter_.value(), scale);
   const PlanarTwist rate = scaled(limiter_.acceleration(), scale);
   const WheelValues velocity = kinematics_.joint_speeds(limited);
   const WheelValues acceleration = kinematics_.joint_speeds(rate);
   const WheelValues feed_forward = planned_efforts(limited, rate);
   const bool clamped = in_control_ && (sensors.gate.reasons & kGateClamps) != 0;
-  if (clamped) out.reasons |= kReasonSaturated;
+  if (clamped) out.wheeled.reasons |= kReasonSaturated;
   for (std::size_t i = 0; i < loops_.size(); ++i) {
     const double effort = loops_[i].step({velocity[i], acceleration[i], feed_forward[i]}, periods_, clamped);
     out.joints[i] = effort_command(velocity[i], effort);
-    if (loops_[i].saturated()) out.reasons |= kReasonSaturated;
+    if (loops_[i].saturated()) out.wheeled.reasons |= kReasonSaturated;
   }
   acceleration_scale_ = in_control_ ? affordable_acceleration_scale(limited, feed_forward) : 1.0;
   out.twist_limited = spatial(limited);
@@ -295,16 +296,16 @@ void DriveController::step(const ControlInput& input, CommandFrame& out) noexcep
   const std::uint64_t cycle = sensors.head.cycle;
   out.joint_count = joint_count_;
   out.joints.fill({});
-  out.velocity_measured.fill(0);
+  out.wheeled = {};
   out.twist_limited = {};
 
-  out.twist_requested = watch_.step(input.request, cycle);
+  out.requested = watch_.step(input.request, cycle);
   out.reasons = watch_.reasons() | permit_reasons(input.permit, cycle) | state_reasons(input.state, cycle);
   if (input.permit != nullptr) permit_cycle_ = input.permit->head.cycle;
 
   if (measure(sensors)) {
     drive(permitted_twist(input.permit, out), sensors, out);
-    for (std::size_t i = 0; i < loops_.size(); ++i) out.velocity_measured[i] = loops_[i].velocity();
+    for (std::size_t i = 0; i < loops_.size(); ++i) out.wheeled.velocity[i] = loops_[i].velocity();
   } else {
     out.reasons |= kReasonBadSensors;
     driving_ = false;
@@ -318,6 +319,8 @@ void DriveController::step(const ControlInput& input, CommandFrame& out) noexcep
   out.requests_stale = watch_.stale();
   out.requests_crowded = watch_.crowded();
   out.requests_revoked = watch_.revoked();
+  out.requests_partial = watch_.partial();
+  out.ignored = watch_.ignored();
   out.timeouts = watch_.timeouts();
   out.first_cycle = watch_.first_cycle();
   out.zero_requests = watch_.zero_requests();

@@ -58,7 +58,7 @@
 #include "control/wheel_loops/feed_forward.h"
 #include "control/wheel_loops/ground_friction.h"
 #include "control/wheel_loops/wheel_loop.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "signals/command_frame.h"
 #include "signals/drive_tuning.h"
 #include "signals/fixed_vector.h"
@@ -84,8 +84,9 @@ using WheelLoops = FixedVector<WheelLoop, kMaxWheels>;
 
 class DriveController {
  public:
-  /// `robot` is a model from read_robot: at least one wheel on either side, and wheels[i].joint == i. `period` is in s.
-  DriveController(const DriveControllerParameters& parameters, const RobotModel& robot, double period);
+  /// `robot` is a model from read_drive_train: at least one wheel on either side, and wheels[i].joint == i. `period` is
+  /// in s.
+  DriveController(const DriveControllerParameters& parameters, const DriveTrain& robot, double period);
 
   /// Begins a new run: all state is as at the start, and requests in the inbox do not count. With `with_zero` the run
   /// begins with a zero request (command_watch.h).

@@ -37,7 +37,7 @@ void check_plausible(const MeasuredValue& value, std::vector<std::string>& probl
 }
 
 /// Checks the torque that the joints take at full speed against the motors' torque and the description.
-void check_joint_losses(const DriveControllerParameters& parameters, const RobotModel& robot,
+void check_joint_losses(const DriveControllerParameters& parameters, const DriveTrain& robot,
                         std::vector<std::string>& problems) {
   constexpr double kPart = 0.25;  // of the effort limit: half of what a worm gear loses at full load
   constexpr double kTimes = 2;    // of the described value
@@ -73,7 +73,7 @@ void check_joint_losses(const DriveControllerParameters& parameters, const Robot
 
 }  // namespace
 
-std::vector<std::string> feed_forward_problems(const DriveControllerParameters& parameters, const RobotModel& robot) {
+std::vector<std::string> feed_forward_problems(const DriveControllerParameters& parameters, const DriveTrain& robot) {
   std::vector<std::string> problems;
   const FeedForwardParameters& given = parameters.feed_forward;
   check_plausible({"mass", "kg", given.mass, robot.mass, 3}, problems);

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "control/drive_controller_parameters.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
 /// Returns one message per problem, with value, rule and remedy; empty: none.
-std::vector<std::string> feed_forward_problems(const DriveControllerParameters& parameters, const RobotModel& robot);
+std::vector<std::string> feed_forward_problems(const DriveControllerParameters& parameters, const DriveTrain& robot);
 
 }  // namespace robot_control

@@ -12,14 +12,14 @@ double& of_side(SidePair& pair, Side side) noexcept {
   return side == Side::kLeft ? pair.left : pair.right;
 }
 
-double rim_limit(const RobotModel& robot, const WheelModel& wheel) {
+double rim_limit(const DriveTrain& robot, const WheelModel& wheel) {
   const double limit = robot.joints[wheel.joint].velocity_limit;
   return limit > 0 ? kUsableWheelSpeed * limit * wheel.radius : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
 
-DriveKinematics::DriveKinematics(const RobotModel& robot)
+DriveKinematics::DriveKinematics(const DriveTrain& robot)
     : wheels_(robot.wheels.size()),
       half_base_(0.5 * robot.effective_wheel_base()),
       rim_limit_{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()} {

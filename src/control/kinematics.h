@@ -4,13 +4,13 @@
 ///   v_left = v − ω·b/2      v = (v_left + v_right)/2      q̇ᵢ = signᵢ·v_side/radiusᵢ
 ///   v_right = v + ω·b/2     ω = (v_right − v_left)/b
 ///
-/// The speeds v and ω are those of the point between the wheels. The length b is the effective wheel base (RobotModel);
+/// The speeds v and ω are those of the point between the wheels. The length b is the effective wheel base (DriveTrain);
 /// with one wheel a side, which rolls without slip, it is the geometric one. A measured v_side is the mean over the
 /// rims of a side. With v = 0.5 m/s, ω = 0.2 rad/s and b = 0.5 m the rims run at 0.45 and 0.55 m/s. Each wheel has its
 /// own radius and sign.
 
 #include "control/planar_twist.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -21,7 +21,7 @@ inline constexpr double kUsableWheelSpeed = 0.9;
 class DriveKinematics {
  public:
   /// The robot has at least one wheel on either side and at most kMaxWheels.
-  explicit DriveKinematics(const RobotModel& robot);
+  explicit DriveKinematics(const DriveTrain& robot);
 
   /// Returns the speeds of the rims over the ground in m/s, forward positive.
   SidePair rim_speeds(const PlanarTwist& twist) const noexcept;

@@ -2,7 +2,7 @@
 
 namespace robot_control {
 
-RobotModel measured_robot(RobotModel robot, const FeedForwardParameters& measured) {
+DriveTrain measured_robot(DriveTrain robot, const FeedForwardParameters& measured) {
   robot.mass = measured.mass.value_or(robot.mass);
   robot.yaw_inertia = measured.yaw_inertia.value_or(robot.yaw_inertia);
   for (WheelModel& wheel : robot.wheels) {

@@ -5,12 +5,12 @@
 /// mass with which the controller drives better is not necessarily the true mass. Geometry, limits and hash stay.
 
 #include "control/drive_controller_parameters.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
 /// Values that are absent in `measured` stay as described. Wheel inertia, damping and friction apply to every drive
 /// wheel.
-RobotModel measured_robot(RobotModel robot, const FeedForwardParameters& measured);
+DriveTrain measured_robot(DriveTrain robot, const FeedForwardParameters& measured);
 
 }  // namespace robot_control

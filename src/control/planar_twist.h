@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -17,7 +17,7 @@ struct SidePair {
   double right = 0;
 };
 
-/// Holds values in the order of RobotModel::wheels, which is that of the joints; 0 beyond the last wheel.
+/// Holds values in the order of DriveTrain::wheels, which is that of the joints; 0 beyond the last wheel.
 using WheelValues = std::array<double, kMaxWheels>;
 
 }  // namespace robot_control

@@ -10,9 +10,9 @@
 
 namespace robot_control {
 
-double smooth_speed(const DriveControllerParameters& parameters, const RobotModel& robot, double quantum,
+double smooth_speed(const DriveControllerParameters& parameters, const DriveTrain& robot, double quantum,
                     double period) {
-  const RobotModel measured = measured_robot(robot, parameters.feed_forward);
+  const DriveTrain measured = measured_robot(robot, parameters.feed_forward);
   const double hidden = quantum + (GroundFriction(measured).scrubs() ? kTread : 0);
   double fastest = 0;
   for (const WheelModel& wheel : measured.wheels) {

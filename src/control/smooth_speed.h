@@ -16,7 +16,7 @@
 /// as late. Measured values are in docs/evidence/drive.md.
 
 #include "control/drive_controller_parameters.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -25,7 +25,7 @@ inline constexpr double kTread = 0.005;
 
 /// Returns v of the wheel with the largest one, in m/s of a rim; 0 without an integrator. `quantum` is q in rad, and
 /// `period` (s) is > 0.
-double smooth_speed(const DriveControllerParameters& parameters, const RobotModel& robot, double quantum,
+double smooth_speed(const DriveControllerParameters& parameters, const DriveTrain& robot, double quantum,
                     double period);
 
 }  // namespace robot_control

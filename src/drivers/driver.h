@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "gate/stop_action.h"
 #include "signals/injected_fault.h"
 #include "signals/joint.h"
 #include "signals/sensor_frame.h"
@@ -42,6 +43,10 @@ class Driver {
 
   /// Returns the fault of the last `read` in words; "" without one.
   virtual std::string_view fault_message() const noexcept { return {}; }
+
+  /// Returns true if the drives carry out the order of this stop action (order_of). The loop does not start with a
+  /// joint that is to be stopped by another one.
+  virtual bool implements(StopKind kind) const noexcept { return kind == StopKind::kBrake; }
 
   /// A simulated machine waits when its node is late: time slips, cycles stay consecutive. Hardware does not:
   /// the cycle number jumps by the periods missed.

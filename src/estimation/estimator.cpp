@@ -12,7 +12,7 @@
 #include "signals/rotation.h"
 
 namespace robot_control {
-Estimator::State::State(const EstimatorParameters& parameters, const RobotModel& robot, double period)
+Estimator::State::State(const EstimatorParameters& parameters, const DriveTrain& robot, double period)
     : wheel_sides(robot, parameters.speed_bandwidth, period, std::sqrt(12.0) * encoder_deviation(parameters, robot)),
       core(core_params(parameters, robot)),
       tilt(tilt_params(parameters)),
@@ -21,10 +21,11 @@ Estimator::State::State(const EstimatorParameters& parameters, const RobotModel&
       rate(parameters.rate_bandwidth, period),
       wheel_velocities(robot, parameters.speed_bandwidth, period) {}
 
-Estimator::Estimator(const EstimatorParameters& parameters, const RobotModel& robot, double period)
+Estimator::Estimator(const EstimatorParameters& parameters, const DriveTrain& robot, double period)
     : parameters_(checked(parameters, robot, period)),
       period_(period),
       geometry_(robot),
+      wheel_slip_(robot),
       base_from_imu_(rotation_of(robot.imu_in_base.orientation)),
       encoder_(encoder_deviation(parameters, robot)),
       gyro_noise_(core_params(parameters, robot).gyro_noise),
@@ -51,7 +52,7 @@ void Estimator::place(const Vector3& pose) noexcept {
 void Estimator::step(const SensorFrame& sensors, StateFrame& out) noexcept {
   State& s = state_;
   const std::uint64_t cycle = sensors.head.cycle;
-  if (s.began && cycle <= s.cycle && !s.restart_pending) return fill(out);
+  if (s.began && cycle <= s.cycle && !s.restart_pending) return fill(sensors, out);
   const std::uint64_t cycles = s.began && cycle > s.cycle ? cycle - s.cycle : 0;
   s.flags = cycles > 1 ? std::uint64_t{kStateSkipped} : 0;
   if (!s.began) s.skipped = cycle;  // The run began before the first frame.
@@ -59,13 +60,13 @@ void Estimator::step(const SensorFrame& sensors, StateFrame& out) noexcept {
   s.began = true;
   s.cycle = cycle;
   advance(sensors, static_cast<double>(cycles) * period_);
-  fill(out);
+  fill(sensors, out);
 }
 
 void Estimator::step(const SensorFrame& sensors, double dt, StateFrame& out) noexcept {
   state_.flags = 0;
   advance(sensors, std::exchange(state_.began, true) ? dt : 0);
-  fill(out);
+  fill(sensors, out);
 }
 
 void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {

@@ -55,7 +55,8 @@
 #include "estimation/wheels/wheel_geometry.h"
 #include "estimation/wheels/wheel_sides.h"
 #include "estimation/wheels/wheel_velocities.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
+#include "machine/wheeled/wheels/wheel_slip.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
 
@@ -66,7 +67,7 @@ class Estimator {
   /// Holds all that changes from cycle to cycle. Each part has its own state and one step; Estimator::advance hands the
   /// values on from part to part. It is trivially copyable.
   struct State {
-    State(const EstimatorParameters& parameters, const RobotModel& robot, double period);
+    State(const EstimatorParameters& parameters, const DriveTrain& robot, double period);
 
     // These parts read the samples. Beside them are the readings of this step.
     ImuSamples imu_samples;
@@ -91,8 +92,8 @@ class Estimator {
     RateTracker rate;
     WheelVelocities wheel_velocities;
     WheelOdometry wheel_odometry;
-    std::array<double, kMaxConfidences> nis{};
-    std::array<std::uint64_t, kMaxConfidences> rejected{};
+    std::array<double, kWheeledSensors> nis{};
+    std::array<std::uint64_t, kWheeledSensors> rejected{};
 
     // These members describe the run.
     bool began = false;                   ///< A cycle was seen.
@@ -107,7 +108,7 @@ class Estimator {
 
   /// `period` is in s and > 0. Throws std::invalid_argument if a parameter or a measure of the robot is out of range or
   /// a side has no wheel.
-  Estimator(const EstimatorParameters& parameters, const RobotModel& robot, double period);
+  Estimator(const EstimatorParameters& parameters, const DriveTrain& robot, double period);
 
   /// Give and replace the state, for snapshots (signals/law_snapshot.h).
   const State& state() const noexcept { return state_; }
@@ -163,12 +164,12 @@ class Estimator {
   Eigen::Vector3d gyro_bias_variance() const noexcept;
 
   // These functions are in estimator_output.cpp.
-  void fill(StateFrame& out) const noexcept;
-  void fill_pose(StateFrame& out) const noexcept;
-  void fill_pose_covariance(double yaw, const Planar& lever, StateFrame& out) const noexcept;
-  void fill_attitude_covariance(double yaw, double yaw_variance, StateFrame& out) const noexcept;
-  void fill_twist(StateFrame& out) const noexcept;
-  void fill_twist_covariance(double yaw_rate, StateFrame& out) const noexcept;
+  void fill(const SensorFrame& sensors, StateFrame& out) const noexcept;
+  void fill_pose(BaseState& base) const noexcept;
+  void fill_pose_covariance(double yaw, const Planar& lever, BaseState& base) const noexcept;
+  void fill_attitude_covariance(double yaw, double yaw_variance, BaseState& base) const noexcept;
+  void fill_twist(BaseState& base) const noexcept;
+  void fill_twist_covariance(double yaw_rate, BaseState& base) const noexcept;
   void fill_learned(StateFrame& out) const noexcept;
   void fill_health(StateFrame& out) const noexcept;
   Planar axle(double yaw) const noexcept;
@@ -176,6 +177,7 @@ class Estimator {
   EstimatorParameters parameters_;
   double period_;
   WheelGeometry geometry_;
+  WheelSlip wheel_slip_;
   Eigen::Matrix3d base_from_imu_;
   double encoder_;          ///< m, deviation of one side's reading
   double gyro_noise_;       ///< rad/s/√Hz, of the mounted gyro

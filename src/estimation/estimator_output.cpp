@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "estimation/estimator.h"
 #include "estimation/values.h"
@@ -17,14 +16,18 @@ using PoseMatrix = Eigen::Matrix<double, 6, 6>;
 
 }  // namespace
 
-void Estimator::fill(StateFrame& out) const noexcept {
-  fill_pose(out);
-  fill_twist(out);
+void Estimator::fill(const SensorFrame& sensors, StateFrame& out) const noexcept {
+  fill_pose(out.base);
+  fill_twist(out.base);
   fill_learned(out);
   fill_health(out);
+  const auto joints = static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(sensors.joint_count, kMaxJoints));
+  std::transform(sensors.joints.begin(), sensors.joints.begin() + joints, out.joint_velocity.begin(), valid_velocity);
+  state_.wheel_velocities.write(out.joint_velocity);
+  wheel_slip_.write(out);
 }
 
-void Estimator::fill_pose(StateFrame& out) const noexcept {
+void Estimator::fill_pose(BaseState& base) const noexcept {
   const Prediction ahead = prediction();
   PlanarPose middle = state_.core.pose();
   middle.yaw += ahead.turn;
@@ -34,18 +37,18 @@ void Estimator::fill_pose(StateFrame& out) const noexcept {
   const Eigen::Quaterniond attitude = Eigen::AngleAxisd(middle.yaw, Eigen::Vector3d::UnitZ()) *
                                       Eigen::AngleAxisd(state_.tilt.pitch(), Eigen::Vector3d::UnitY()) *
                                       Eigen::AngleAxisd(state_.tilt.roll(), Eigen::Vector3d::UnitX());
-  out.attitude = {attitude.x(), attitude.y(), attitude.z(), attitude.w()};
-  out.pose_odom.position = {middle.x - lever.x, middle.y - lever.y, parameters_.planar ? 0 : state_.height};
-  if (state_.pose_set) std::copy_n(state_.pose_set->begin(), 2, out.pose_odom.position.begin());
-  out.pose_odom.orientation =
-      parameters_.planar ? Quaternion{0, 0, std::sin(middle.yaw / 2), std::cos(middle.yaw / 2)} : out.attitude;
-  fill_pose_covariance(middle.yaw, lever, out);
+  base.attitude = {attitude.x(), attitude.y(), attitude.z(), attitude.w()};
+  base.pose_odom.position = {middle.x - lever.x, middle.y - lever.y, parameters_.planar ? 0 : state_.height};
+  if (state_.pose_set) std::copy_n(state_.pose_set->begin(), 2, base.pose_odom.position.begin());
+  base.pose_odom.orientation =
+      parameters_.planar ? Quaternion{0, 0, std::sin(middle.yaw / 2), std::cos(middle.yaw / 2)} : base.attitude;
+  fill_pose_covariance(middle.yaw, lever, base);
 }
 
 ///   P = J P_core Jᵀ + m mᵀ gap²/8 + a aᵀ σ_encoder²
 /// J is the Jacobian by clock offset, x, y and yaw, a the direction of travel and m the velocity of base_link. The
 /// present is evenly distributed over the gap between two samples of the gyro.
-void Estimator::fill_pose_covariance(double yaw, const Planar& lever, StateFrame& out) const noexcept {
+void Estimator::fill_pose_covariance(double yaw, const Planar& lever, BaseState& base) const noexcept {
   const double late = state_.core.offset() >= 0 ? 1 : 0;
   const double yaw_rate = state_.rest.resting() ? 0 : state_.yaw_rate;
   const Eigen::Vector3d along(std::cos(yaw), std::sin(yaw), 0);
@@ -59,36 +62,36 @@ void Estimator::fill_pose_covariance(double yaw, const Planar& lever, StateFrame
   covariance += square(state_.imu.gyro_gap) / 8 * motion * motion.transpose();
   covariance += square(encoder_) * along * along.transpose();
   if (state_.pose_set) covariance.setZero();
-  Eigen::Map<PoseMatrix> published(out.pose_covariance.data());
+  Eigen::Map<PoseMatrix> published(base.pose_covariance.data());
   published = Tuning::kPlanarVariance * PoseMatrix::Identity();
   published(kPlane, kPlane) = covariance;
-  fill_attitude_covariance(yaw, covariance(2, 2), out);
+  fill_attitude_covariance(yaw, covariance(2, 2), base);
 }
 
 /// An error of u across is an error of roll, and an error of u along is one of −pitch. Both are turned to odom axes.
-void Estimator::fill_attitude_covariance(double yaw, double yaw_variance, StateFrame& out) const noexcept {
+void Estimator::fill_attitude_covariance(double yaw, double yaw_variance, BaseState& base) const noexcept {
   Eigen::Matrix2d tilt;
   tilt << state_.tilt.covariance(1, 1), -state_.tilt.covariance(1, 0), -state_.tilt.covariance(0, 1),
       state_.tilt.covariance(0, 0);
   tilt = (Eigen::Rotation2Dd(yaw) * tilt * Eigen::Rotation2Dd(-yaw)).eval();
-  out.attitude_covariance = {tilt(0, 0), tilt(0, 1), 0, tilt(1, 0), tilt(1, 1), 0, 0, 0, yaw_variance};
+  base.attitude_covariance = {tilt(0, 0), tilt(0, 1), 0, tilt(1, 0), tilt(1, 1), 0, 0, 0, yaw_variance};
   if (parameters_.planar) return;
-  out.pose_covariance[14] += state_.tilt.covariance(0, 0) * square(state_.distance);
+  base.pose_covariance[14] += state_.tilt.covariance(0, 0) * square(state_.distance);
   for (const std::size_t i : {0U, 1U}) {
-    for (const std::size_t j : {0U, 1U}) out.pose_covariance[6 * (i + 3) + j + 3] = out.attitude_covariance[3 * i + j];
+    for (const std::size_t j : {0U, 1U}) base.pose_covariance[6 * i + j + 21] = base.attitude_covariance[3 * i + j];
   }
 }
 
-void Estimator::fill_twist(StateFrame& out) const noexcept {
+void Estimator::fill_twist(BaseState& base) const noexcept {
   const Eigen::Vector3d rate = state_.rest.resting() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : state_.rate.rate();
   const Motion velocity = geometry_.base_motion(forward_speed(), rate.z());
   const Planar creep = state_.rest.resting() ? Planar{} : tyres_creep(velocity.forward);
-  out.twist_base = {{velocity.forward - creep.x, velocity.left - creep.y, 0}, {0, 0, rate.z()}};
-  if (!parameters_.planar) out.twist_base.angular = array(rate);
-  fill_twist_covariance(rate.z(), out);
+  base.twist_base = {{velocity.forward - creep.x, velocity.left - creep.y, 0}, {0, 0, rate.z()}};
+  if (!parameters_.planar) base.twist_base.angular = array(rate);
+  fill_twist_covariance(rate.z(), base);
 }
 
-void Estimator::fill_twist_covariance(double yaw_rate, StateFrame& out) const noexcept {
+void Estimator::fill_twist_covariance(double yaw_rate, BaseState& base) const noexcept {
   const double quantum = std::sqrt(12.0) * encoder_ / period_;
   const double speed = std::abs(state_.wheels.mean_speed()) + geometry_.wheel_base / 2 * std::abs(wheel_rate());
   double wheel =
@@ -98,57 +101,53 @@ void Estimator::fill_twist_covariance(double yaw_rate, StateFrame& out) const no
   if (!state_.imu.gyro) turn = 4 * wheel / square(geometry_.wheel_base);
   if (state_.rest.resting()) wheel = turn = 0;
   const double slides = state_.slip.slide().active() ? square(state_.slip.slide().speed_deviation()) : 0;
-  out.twist_covariance = {};
-  out.twist_covariance[0] = wheel / 2 + slides + square(parameters_.wheel_radius_deviation * forward_speed()) +
-                            square(geometry_.axle_y) * turn;
-  out.twist_covariance[7] =
+  base.twist_covariance = {};
+  base.twist_covariance[0] = wheel / 2 + slides + square(parameters_.wheel_radius_deviation * forward_speed()) +
+                             square(geometry_.axle_y) * turn;
+  base.twist_covariance[7] =
       wheel / 2 + slides + square(geometry_.axle_x) * turn + square(yaw_rate * state_.core.deviation(PlanarCore::kIcr));
-  out.twist_covariance[35] = turn;
-  for (const std::size_t i : {14U, 21U, 28U}) out.twist_covariance[i] = Tuning::kPlanarVariance;
+  base.twist_covariance[35] = turn;
+  for (const std::size_t i : {14U, 21U, 28U}) base.twist_covariance[i] = Tuning::kPlanarVariance;
 }
 
 void Estimator::fill_learned(StateFrame& out) const noexcept {
   const Eigen::Matrix3d imu_from_base = base_from_imu_.transpose();
   const Eigen::Vector3d force(state_.tilt.bias(0), state_.tilt.bias(1), state_.tilt.vertical_bias());
   const Eigen::Matrix3d bias_covariance = imu_from_base * gyro_bias_variance().asDiagonal() * base_from_imu_;
-  out.gyro_bias = array(imu_from_base * gyro_bias());
-  out.gyro_bias_deviation = array(bias_covariance.diagonal().cwiseMax(0).cwiseSqrt());
-  out.accelerometer_bias = array(imu_from_base * force);
-  out.calibration = state_.core.calibration();
+  out.base.gyro_bias = array(imu_from_base * gyro_bias());
+  out.base.gyro_bias_deviation = array(bias_covariance.diagonal().cwiseMax(0).cwiseSqrt());
+  out.base.accelerometer_bias = array(imu_from_base * force);
+  out.wheeled.calibration = state_.core.calibration();
 }
 
 void Estimator::fill_health(StateFrame& out) const noexcept {
-  out.wheels = state_.wheel_odometry;
-  state_.wheel_velocities.write(out.wheel_velocity);
-  out.nis = state_.nis;
-  out.rejected = state_.rejected;
-  out.slip = state_.rest.resting() ? 0 : state_.slip.slide().reasons();
-  out.residual_level = state_.slip.level();
-  out.distance = state_.distance;
+  out.wheeled.odometry = state_.wheel_odometry;
+  out.wheeled.nis = state_.nis;
+  out.wheeled.rejected = state_.rejected;
+  out.wheeled.slip = state_.rest.resting() ? 0 : state_.slip.slide().reasons();
+  out.wheeled.residual_level = state_.slip.level();
+  out.base.distance = state_.distance;
   out.skipped = state_.skipped;
-
   const auto confidence = [&](SensorIndex sensor, bool used) {
-    out.confidence[sensor] = used ? 1 / std::max(1.0, out.nis[sensor]) : 0;
+    out.wheeled.confidence[sensor] = used ? 1 / std::max(1.0, out.wheeled.nis[sensor]) : 0;
   };
-  out.confidence = {};
   confidence(kLeftEncoder, state_.wheels.received[kLeft] && !state_.slip.slide().slips(kLeft));
   confidence(kRightEncoder, state_.wheels.received[kRight] && !state_.slip.slide().slips(kRight));
   confidence(kGyro, state_.imu.gyro.has_value());
   confidence(kAccelerometer, state_.imu.accelerometer.has_value());
   confidence(kLateralContact, !state_.slip.slide().sideways());
   confidence(kVerticalContact, true);
-
-  out.flags = state_.flags;
-  if (!state_.wheels.any_lost() || (!state_.wheels.both_lost() && state_.imu.gyro)) out.flags |= kStateValid;
-  if (state_.rest.standing()) out.flags |= kStateStandstill;
-  if (state_.restarted) out.flags |= kStateRestarted;
-  if (out.slip != 0) out.flags |= kStateSlip;
-  out.degraded = 0;
-  if (state_.slip.slide().active()) out.degraded |= kDegradedPosition;
-  if (state_.core.contradicted()) out.degraded |= kDegradedHeading;
+  out.base.flags = state_.flags;
+  if (!state_.wheels.any_lost() || (!state_.wheels.both_lost() && state_.imu.gyro)) out.base.flags |= kStateValid;
+  if (state_.rest.standing()) out.base.flags |= kStateStandstill;
+  if (state_.restarted) out.base.flags |= kStateRestarted;
+  if (out.wheeled.slip != 0) out.base.flags |= kStateSlip;
+  out.base.degraded = 0;
+  if (state_.slip.slide().active()) out.base.degraded |= kDegradedPosition;
+  if (state_.core.contradicted()) out.base.degraded |= kDegradedHeading;
   const bool unknown_bias = state_.core.bias_variance() > square(Tuning::kUnknownBias);
-  if (!state_.rest.resting() && state_.imu.gyro && unknown_bias) out.degraded |= kDegradedHeading;
-  if (out.degraded != 0) out.flags |= kStateDegraded;
+  if (!state_.rest.resting() && state_.imu.gyro && unknown_bias) out.base.degraded |= kDegradedHeading;
+  if (out.base.degraded != 0) out.base.flags |= kStateDegraded;
 }
 
 }  // namespace robot_control

@@ -7,7 +7,7 @@
 
 namespace robot_control {
 
-const EstimatorParameters& checked(const EstimatorParameters& parameters, const RobotModel& robot, double period) {
+const EstimatorParameters& checked(const EstimatorParameters& parameters, const DriveTrain& robot, double period) {
   const auto require = [](bool holds, const char* what, double value) {
     if (!holds) throw std::invalid_argument("estimator: " + std::string(what) + ", is " + std::to_string(value));
   };
@@ -47,11 +47,11 @@ const EstimatorParameters& checked(const EstimatorParameters& parameters, const 
   return parameters;
 }
 
-double encoder_deviation(const EstimatorParameters& parameters, const RobotModel& robot) {
+double encoder_deviation(const EstimatorParameters& parameters, const DriveTrain& robot) {
   return parameters.encoder_noise * std::ranges::max(robot.wheels, {}, &WheelModel::radius).radius;
 }
 
-double icr_deviation(const RobotModel& robot) {
+double icr_deviation(const DriveTrain& robot) {
   const auto along = [](const WheelModel& wheel) { return wheel.centre_base[0]; };
   const auto [last, first] = std::ranges::minmax(robot.wheels, {}, along);
   const double scrubs = std::sqrt(std::max(0.0, robot.wheel_base_multiplier - 1)) * robot.wheel_base;
@@ -59,11 +59,11 @@ double icr_deviation(const RobotModel& robot) {
   return (length > 0 ? length : scrubs) / std::sqrt(12.0);
 }
 
-bool drags_wheels(const RobotModel& robot) {
+bool drags_wheels(const DriveTrain& robot) {
   return !robot.bodies || robot.wheels.size() != 2 || robot.wheel_base_multiplier != 1;
 }
 
-PlanarCoreParams core_params(const EstimatorParameters& parameters, const RobotModel& robot) {
+PlanarCoreParams core_params(const EstimatorParameters& parameters, const DriveTrain& robot) {
   const double learns = parameters.self_calibration ? 1.0 : 0.0;
   return {.wheel_base = robot.effective_wheel_base(),
           .gyro_noise = Tuning::kMountedGyro * parameters.gyro_noise,
@@ -85,7 +85,7 @@ TiltParams tilt_params(const EstimatorParameters& parameters) {
           .bias_walk = parameters.accelerometer_bias_walk};
 }
 
-RestWatchParams rest_params(const EstimatorParameters& parameters, const RobotModel& robot) {
+RestWatchParams rest_params(const EstimatorParameters& parameters, const DriveTrain& robot) {
   return {.window = parameters.standstill_time,
           .tolerance = parameters.standstill_speed * parameters.standstill_time *
                        std::ranges::min(robot.wheels, {}, &WheelModel::radius).radius,
@@ -93,7 +93,7 @@ RestWatchParams rest_params(const EstimatorParameters& parameters, const RobotMo
           .turn_per_metre = 1 / robot.effective_wheel_base()};
 }
 
-SlipParams slip_params(const EstimatorParameters& parameters, const RobotModel& robot) {
+SlipParams slip_params(const EstimatorParameters& parameters, const DriveTrain& robot) {
   const WheelGeometry wheels(robot);
   return {.encoder = encoder_deviation(parameters, robot),
           .accelerometer = parameters.accelerometer_noise,

@@ -16,16 +16,22 @@ bool is_brake(const JointCommand& joint) noexcept {
   return joint.mode == JointMode::kBrake;
 }
 
+[[noreturn]] void refuse(const std::string& what, std::size_t joint, double value, const std::string& rule) {
+  throw std::invalid_argument("gate: " + what + " of joint " + std::to_string(joint) + " is " + std::to_string(value) +
+                              ", must be a number " + rule);
+}
+
 void check(const JointLimits& limits, std::size_t joint) {
-  const auto refuse = [&](const std::string& what, double value, const std::string& rule) {
-    throw std::invalid_argument("gate: " + what + " of joint " + std::to_string(joint) + " is " +
-                                std::to_string(value) + ", must be a number " + rule);
-  };
-  if (!(limits.effort >= 0) || std::isinf(limits.effort)) refuse("effort limit", limits.effort, ">= 0");
-  if (!(limits.effort_rate > 0)) refuse("effort rate", limits.effort_rate, "> 0");
-  if (!(limits.velocity > 0)) refuse("velocity limit", limits.velocity, "> 0");
-  if (!(limits.lower < limits.upper)) refuse("lower end stop", limits.lower, "< the upper one");
-  if (!(limits.soft_zone >= 0) || std::isinf(limits.soft_zone)) refuse("soft zone", limits.soft_zone, ">= 0");
+  if (!(limits.effort >= 0) || std::isinf(limits.effort)) refuse("effort limit", joint, limits.effort, ">= 0");
+  if (!(limits.effort_rate > 0)) refuse("effort rate", joint, limits.effort_rate, "> 0");
+  if (!(limits.velocity > 0)) refuse("velocity limit", joint, limits.velocity, "> 0");
+  if (!(limits.lower < limits.upper)) refuse("lower end stop", joint, limits.lower, "< the upper one");
+  if (!(limits.soft_zone >= 0) || std::isinf(limits.soft_zone)) refuse("soft zone", joint, limits.soft_zone, ">= 0");
+}
+
+const StopAction& checked(const StopAction& action, std::size_t joint) {
+  if (!(action.damping >= 0) || std::isinf(action.damping)) refuse("stop damping", joint, action.damping, ">= 0");
+  return action;
 }
 
 bool needs_sample(const JointLimits& limits) noexcept {
@@ -35,15 +41,20 @@ bool needs_sample(const JointLimits& limits) noexcept {
 }  // namespace
 
 Gate::Gate(const std::vector<JointLimits>& limits, const GateParameters& parameters, double period)
-    : parameters_(parameters), period_(period) {
+    : longest_ramp_(parameters.longest_ramp), period_(period) {
   if (limits.size() > kMaxJoints) {
     throw std::invalid_argument("gate: " + std::to_string(limits.size()) + " joints, at most " +
                                 std::to_string(kMaxJoints) + " are possible");
   }
   if (!(period > 0)) throw std::invalid_argument("gate: period " + std::to_string(period) + " s, must be > 0");
+  if (!parameters.stops.empty() && parameters.stops.size() != limits.size()) {
+    throw std::invalid_argument("gate: " + std::to_string(parameters.stops.size()) + " stop actions for " +
+                                std::to_string(limits.size()) + " joints, must be one for each");
+  }
   for (std::size_t i = 0; i < limits.size(); ++i) {
     check(limits[i], i);
     limits_.emplace_back(limits[i]);
+    stops_.emplace_back(parameters.stops.empty() ? StopAction{} : checked(parameters.stops[i], i));
     memory_.emplace_back(JointMemory{.speed = JointSpeed(period)});
   }
 }
@@ -60,7 +71,7 @@ std::span<const JointCommand> Gate::step(const GateInput& input) noexcept {
   report_.verdict = GateVerdict::kBrake;
   report_.reasons = 0;
   read_samples(input);
-  if (!check_and_clamp(input)) brake(parameters_.fail_action);
+  if (!check_and_clamp(input)) stop();
   remember();
   samples_ = {};
   last_cycle_ = input.cycle;
@@ -69,10 +80,9 @@ std::span<const JointCommand> Gate::step(const GateInput& input) noexcept {
 
 void Gate::read_samples(const GateInput& input) noexcept {
   const SensorFrame& sensors = *input.sensors;
-  const bool sampled = (sensors.valid & kValidJoints) != 0 && sensors.joint_count == limits_.size();
-  samples_ = std::span(sensors.joints).first(sampled ? limits_.size() : 0);
+  samples_ = std::span(sensors.joints).first(sensors.joint_count == limits_.size() ? limits_.size() : 0);
   for (std::size_t i = 0; i < samples_.size(); ++i) {
-    if (std::isfinite(samples_[i].position)) memory_[i].speed.step(samples_[i].position, input.cycle);
+    if (has_position(i)) memory_[i].speed.step(samples_[i].position, input.cycle);
   }
 }
 
@@ -90,7 +100,7 @@ bool Gate::check_and_clamp(const GateInput& input) noexcept {
   const bool held = (report_.reasons & kGateCommandHeld) != 0;
   if (held) ++report_.held;
   if (std::all_of(commands_.begin(), commands_.begin() + static_cast<std::ptrdiff_t>(limits_.size()), is_brake)) {
-    brake(FailAction::kBrake);
+    std::fill_n(commands_.begin(), limits_.size(), JointCommand{});
     report_.reasons |= kGateControllerBrake;
     return true;
   }
@@ -144,7 +154,7 @@ bool Gate::permit_allows_motion(const Permit& permit, std::uint64_t cycle) noexc
       if (!ramping_) ramp_began_ = cycle;
       ramping_ = true;
       if (cycle > permit.ramp_until) report_.reasons |= kGateRampOver;
-      if (cycle - ramp_began_ >= parameters_.longest_ramp) report_.reasons |= kGateRampTooLong;
+      if (cycle - ramp_began_ >= longest_ramp_) report_.reasons |= kGateRampTooLong;
       return report_.reasons == 0;
     case PermitAction::kBrake:
       ramping_ = false;
@@ -212,7 +222,7 @@ void Gate::clamp(double elapsed) noexcept {
     if (is_brake(command)) continue;
     report_.reasons |= clamp_gains(command);
     const JointMemory& memory = memory_[i];
-    const bool measured = has_position(i) && std::isfinite(samples_[i].effort);
+    const bool measured = has_position(i) && has(samples_[i], kValidEffort) && std::isfinite(samples_[i].effort);
     const double from = memory.driven ? memory.effort : 0.0;
     const double to = memory.driven || !measured ? from : std::clamp(samples_[i].effort, -limits.effort, limits.effort);
     const double step = limits.effort_rate * elapsed;
@@ -223,11 +233,8 @@ void Gate::clamp(double elapsed) noexcept {
   }
 }
 
-void Gate::brake(FailAction wheels) noexcept {
-  for (std::size_t i = 0; i < limits_.size(); ++i) {
-    const bool coasts = wheels == FailAction::kCoast && limits_[i].wheel;
-    commands_[i] = {.mode = coasts ? JointMode::kEffort : JointMode::kBrake};
-  }
+void Gate::stop() noexcept {
+  for (std::size_t i = 0; i < limits_.size(); ++i) commands_[i] = order_of(stops_[i]);
 }
 
 void Gate::remember() noexcept {

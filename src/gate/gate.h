@@ -21,9 +21,10 @@
 /// The torque of a brake is the driver's and may be large. When a brake ends, its torque is removed at once. The first
 /// effort command after it may therefore lie between the torque measured last and zero, ± effort_rate·Δt.
 ///
-/// Tick 0 brakes. A brake is JointCommand{} on every joint. Under FailAction::kCoast, wheels get no torque (kEffort 0)
-/// instead, unless the command itself requests the brake on every joint. GateReport counts: `refused` frames (checksum,
-/// future cycle, joint count, finiteness, mode), `missed` ticks in which the permit was good and the command missing.
+/// Tick 0 brakes. A brake orders the stop action of every joint (stop_action.h). A command that itself requests the
+/// brake on every joint is applied as JointCommand{}, whatever their stop actions are. GateReport counts: `refused`
+/// frames (checksum, future cycle, joint count, finiteness, mode), `missed` ticks in which the permit was good and the
+/// command missing.
 
 #include <array>
 #include <cmath>
@@ -56,8 +57,9 @@ struct GateInput {
 
 class Gate {
  public:
-  /// One entry per joint; `period` > 0, s. Throws std::invalid_argument: a limit outside the range that
-  /// JointLimits names, a period that is not, or more than kMaxJoints joints.
+  /// One entry per joint; `period` > 0, s. Throws std::invalid_argument for a limit outside the range that JointLimits
+  /// names, a damping or a period out of range, and more than kMaxJoints joints. Stop actions that are not one for each
+  /// joint are refused, too.
   Gate(const std::vector<JointLimits>& limits, const GateParameters& parameters, double period);
 
   /// A new run: counters restart.
@@ -85,15 +87,16 @@ class Gate {
   bool command_is_valid(const CommandFrame& command) noexcept;
   bool samples_suffice(const CommandFrame& command) noexcept;
   bool has_position(std::size_t joint) const noexcept {
-    return joint < samples_.size() && std::isfinite(samples_[joint].position);
+    return joint < samples_.size() && has(samples_[joint], kValidPosition) && std::isfinite(samples_[joint].position);
   }
   void clamp(double elapsed) noexcept;
-  void brake(FailAction wheels) noexcept;
+  void stop() noexcept;
   void remember() noexcept;
 
   FixedVector<JointLimits, kMaxJoints> limits_;
-  GateParameters parameters_;
+  std::uint64_t longest_ramp_;
   double period_;
+  FixedVector<StopAction, kMaxJoints> stops_;
   FixedVector<JointMemory, kMaxJoints> memory_;
   std::span<const JointSample> samples_;     ///< of this tick; empty: missing, or between two ticks
   std::optional<std::uint64_t> last_cycle_;  ///< of the last tick

@@ -7,7 +7,7 @@ bool moves(const JoinedRow& row) noexcept {
   if (row.driver == nullptr || row.estimator == nullptr || row.controller == nullptr || row.monitor == nullptr) {
     return true;
   }
-  return (row.estimator->state.flags & kStateStandstill) == 0 || !zero(row.controller->command.twist_requested);
+  return (row.estimator->state.base.flags & kStateStandstill) == 0 || !zero(row.controller->command.requested.twist);
 }
 
 }  // namespace

@@ -1,15 +1,14 @@
 #pragma once
-/// The set-up of the gate: limits from the robot, the rest from the parameters.
+/// The set-up of the gate before any machine:
 ///
 ///   velocity, end stops   the joint's own, as its URDF says or the `robot:` block
 ///   soft zone             kSoftPart of the range, at most kSoftAngle or kSoftLength
-///   longest ramp          ⌈ramp_time/period⌉ + loss_cycles: the monitor's own deadline, and as long as a loss may last
 
 #include <vector>
 
-#include "configuration/parameters.h"
+#include "drivers/driver.h"
 #include "gate/gate_parameters.h"
-#include "machine/robot_model.h"
+#include "machine/machine_model.h"
 
 namespace robot_control {
 
@@ -19,8 +18,9 @@ inline constexpr double kSoftAngle =
 inline constexpr double kSoftLength = 0.02;  ///< m
 
 /// One entry per joint of the robot.
-std::vector<JointLimits> joint_limits(const RobotModel& robot);
+std::vector<JointLimits> joint_limits(const MachineModel& robot);
 
-GateParameters gate_parameters(const Parameters& parameters);
+/// Throws DriverError with the first joint whose stop action the driver does not implement.
+void require_stop_actions(const Driver& driver, const GateParameters& gate, const MachineModel& robot);
 
 }  // namespace robot_control

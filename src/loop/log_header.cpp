@@ -31,7 +31,7 @@ std::string text_of(const std::string& path, std::size_t max_size) {
 
 }  // namespace
 
-LogHeader log_header(const Parameters& parameters, const RobotModel& robot) {
+LogHeader log_header(const Parameters& parameters, const DriveTrain& robot) {
   LogHeader header{.robot = robot.name,
                    .wheels = static_cast<std::uint32_t>(robot.wheels.size()),
                    .period = parameters.loop.period(),

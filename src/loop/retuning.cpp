@@ -20,7 +20,7 @@ bool stops(const Condition& condition) {
   return condition.limit && (condition.reaction == Reaction::kRamp || condition.reaction == Reaction::kBrake);
 }
 
-double smallest_radius(const RobotModel& robot) {
+double smallest_radius(const DriveTrain& robot) {
   return std::ranges::min_element(robot.wheels, {}, &WheelModel::radius)->radius;
 }
 
@@ -55,7 +55,7 @@ std::string sentence(const Retuned& retuned) {
   return text;
 }
 
-Retuning::Retuning(const Parameters& parameters, const RobotModel& robot, LatestValue<DriveTuning>& inbox)
+Retuning::Retuning(const Parameters& parameters, const DriveTrain& robot, LatestValue<DriveTuning>& inbox)
     : parameters_(parameters),
       robot_(robot),
       commanded_at_start_(commanded_wheel_speed(parameters.controller, robot)),

@@ -18,7 +18,7 @@
 #include "bus/latest_value.h"
 #include "configuration/live_parameters.h"
 #include "configuration/parameters.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "safety/safety_parameters.h"
 #include "signals/drive_tuning.h"
 
@@ -37,7 +37,7 @@ class Retuning {
  public:
   /// `parameters` with which the controller starts; the cycle takes `inbox` over. The monitor is assumed to run with
   /// the same parameters.
-  Retuning(const Parameters& parameters, const RobotModel& robot, LatestValue<DriveTuning>& inbox);
+  Retuning(const Parameters& parameters, const DriveTrain& robot, LatestValue<DriveTuning>& inbox);
 
   /// With which the monitor runs where it read others (an override of its own); its limits are derived from them.
   void expect_monitor(const Parameters& monitor);
@@ -57,7 +57,7 @@ class Retuning {
 
   mutable std::mutex mutex_;
   Parameters parameters_;  ///< in force
-  RobotModel robot_;
+  DriveTrain robot_;
   double commanded_at_start_;  ///< rad/s of a wheel
   Condition wheel_speed_;      ///< the monitor's
   LatestValue<DriveTuning>& inbox_;

@@ -8,7 +8,7 @@
 
 namespace robot_control {
 
-double commanded_wheel_speed(const DriveControllerParameters& controller, const RobotModel& robot) {
+double commanded_wheel_speed(const DriveControllerParameters& controller, const DriveTrain& robot) {
   const double rim = controller.max_linear_speed + controller.max_angular_speed * robot.effective_wheel_base() / 2;
   double fastest = 0;
   for (const WheelModel& wheel : robot.wheels) fastest = std::max(fastest, rim / wheel.radius);
@@ -19,14 +19,14 @@ double commanded_wheel_speed(const DriveControllerParameters& controller, const 
   return fastest;
 }
 
-double count_ripple(const RobotModel& robot, const WheelModel& wheel, double period) {
+double count_ripple(const DriveTrain& robot, const WheelModel& wheel, double period) {
   constexpr double kRipple = 0.5;
   const DriveControllerParameters derived;
   const double kp = wheel_loop_gains(derived, robot, wheel, period).kp;
   return kRipple * kp * 2 * std::numbers::pi * tracking_bandwidth(derived, period);
 }
 
-SafetyParameters safety_limits(const Parameters& parameters, const RobotModel& robot) {
+SafetyParameters safety_limits(const Parameters& parameters, const DriveTrain& robot) {
   const double period = parameters.loop.period();
   SafetyParameters limits =
       derived_limits(parameters.safety, robot, commanded_wheel_speed(parameters.controller, robot), period);

@@ -3,7 +3,7 @@
 /// the speed limits of its controller.
 
 #include "configuration/parameters.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "safety/safety_parameters.h"
 
 namespace robot_control {
@@ -14,14 +14,14 @@ namespace robot_control {
 ///
 /// and no more than the slowest wheel's velocity limit; the controller scales its command to kUsableWheelSpeed of that
 /// (control/kinematics.h).
-double commanded_wheel_speed(const DriveControllerParameters& controller, const RobotModel& robot);
+double commanded_wheel_speed(const DriveControllerParameters& controller, const DriveTrain& robot);
 
 /// N·m/rad: RMS of the torque that the derived gains of control/wheel_loops/wheel_loop_gains.h make of encoder counts,
 /// by the size q of a count. A step by q moves the tracked speed by up to 0.8·w·q, w = 2π·bandwidth (the critically
 /// damped third-order loop of machine/encoders/tracking_loop.h); over a turn that is an RMS of at most 0.5·w·q,
 /// times kp.
-double count_ripple(const RobotModel& robot, const WheelModel& wheel, double period);
+double count_ripple(const DriveTrain& robot, const WheelModel& wheel, double period);
 
-SafetyParameters safety_limits(const Parameters& parameters, const RobotModel& robot);
+SafetyParameters safety_limits(const Parameters& parameters, const DriveTrain& robot);
 
 }  // namespace robot_control

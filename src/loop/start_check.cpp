@@ -8,12 +8,11 @@
 
 #include "control/control_problems.h"
 #include "control/smooth_speed.h"
-#include "signals/checksum.h"
 #include "signals/roles.h"
 
 namespace robot_control {
 
-void require_drivable(const Parameters& parameters, const RobotModel& robot) {
+void require_drivable(const Parameters& parameters, const DriveTrain& robot) {
   std::string message;
   for (const std::string& problem : control_problems(parameters.controller, robot, parameters.loop.period())) {
     message += (message.empty() ? "" : "\n") + problem;
@@ -25,7 +24,7 @@ double encoder_count(const EstimatorParameters& estimator) noexcept {
   return std::sqrt(12.0) * estimator.encoder_noise;
 }
 
-std::string note_on_slow_driving(const Parameters& parameters, const RobotModel& robot) {
+std::string note_on_slow_driving(const Parameters& parameters, const DriveTrain& robot) {
   const double count = encoder_count(parameters.estimator);
   const double speed = smooth_speed(parameters.controller, robot, count, parameters.loop.period());
   if (speed <= kSlowRim) return {};
@@ -35,18 +34,6 @@ std::string note_on_slow_driving(const Parameters& parameters, const RobotModel&
                 "may start and creep in jerks where friction, ground or load is not as described",
                 2 * std::numbers::pi / count, std::string(program_of(Role::kEstimator)).c_str(), speed);
   return text.data();
-}
-
-RobotModel identified(const RobotModel& robot, const LoopParameters& loop) {
-  const bool lockstep = loop.clock == ClockMode::kLockstep;
-  Checksum sum;
-  sum.mix(robot.hash);
-  sum.mix(static_cast<std::uint64_t>(loop.period_ns()));
-  sum.mix(lockstep ? 1 : 2);
-  RobotModel result = robot;
-  result.hash = sum.sum();
-  result.source += " at " + std::to_string(std::lround(loop.rate)) + " Hz, clock " + (lockstep ? "lockstep" : "wall");
-  return result;
 }
 
 }  // namespace robot_control

@@ -4,23 +4,19 @@
 #include <string>
 
 #include "configuration/parameters.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
 /// Throws ParameterError with every problem: whatever control_problems.h refuses.
-void require_drivable(const Parameters& parameters, const RobotModel& robot);
+void require_drivable(const Parameters& parameters, const DriveTrain& robot);
 
 /// rad, the count of a wheel's encoder that `encoder_noise` stands for, uniform over it.
 double encoder_count(const EstimatorParameters& estimator) noexcept;
 
 /// One sentence on the speed of smooth_speed.h behind these encoders, below which the robot does not drive smoothly.
 /// Empty if that speed is at most kSlowRim.
-std::string note_on_slow_driving(const Parameters& parameters, const RobotModel& robot);
+std::string note_on_slow_driving(const Parameters& parameters, const DriveTrain& robot);
 inline constexpr double kSlowRim = 0.05;  ///< m/s, hardly ever commanded
-
-/// The robot with rate and clock in its hash and source: what the driver announces and every other node compares
-/// with its own. A node of another rate or clock refuses as one of another robot does.
-RobotModel identified(const RobotModel& robot, const LoopParameters& loop);
 
 }  // namespace robot_control

@@ -79,13 +79,13 @@ std::string imu_link_of(const RigidBodies& robot, const std::string& requested_l
   return "";
 }
 
-Pose imu_pose(const RigidBodies& robot, const std::string& link, const RobotParameters& parameters, double wheel_base,
+Pose imu_pose(const RigidBodies& robot, const std::string& link, const MachineParameters& parameters, double length,
               std::vector<RobotNote>& notes) {
   Eigen::Isometry3d place = link.empty() ? Eigen::Isometry3d::Identity() : robot.links.at(link).in_body;
   Eigen::Quaterniond rotation(place.linear());
   if (parameters.imu_position) {
     const Eigen::Vector3d given = finite(robot, "robot/imu_position", "m", *parameters.imu_position);
-    if ((given - place.translation()).norm() > kWorthNoting * wheel_base) {
+    if ((given - place.translation()).norm() > kWorthNoting * length) {
       notes.push_back({RobotNote::Kind::kOverridden, "robot/imu_position",
                        words(given) + " m holds, the URDF says " + words(place.translation()) + " m"});
     }

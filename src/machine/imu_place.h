@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "machine/bodies/rigid_bodies.h"
-#include "machine/robot_model.h"
+#include "machine/machine_model.h"
 
 namespace robot_control {
 
@@ -15,9 +15,9 @@ namespace robot_control {
 std::string imu_link_of(const RigidBodies& robot, const std::string& requested_link, std::vector<RobotNote>& notes);
 
 /// Returns the pose of the IMU in the base's axes: at `link` (empty: in the base), unless imu_position and
-/// imu_orientation say otherwise. A difference of more than 1 % of `wheel_base`, or 0.01 rad, is noted. Throws
+/// imu_orientation say otherwise. A difference of more than 1 % of `length` (m), or 0.01 rad, is noted. Throws
 /// RobotError if a number is not finite.
-Pose imu_pose(const RigidBodies& robot, const std::string& link, const RobotParameters& parameters, double wheel_base,
+Pose imu_pose(const RigidBodies& robot, const std::string& link, const MachineParameters& parameters, double length,
               std::vector<RobotNote>& notes);
 
 }  // namespace robot_control

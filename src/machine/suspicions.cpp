@@ -1,41 +1,17 @@
 #include "machine/suspicions.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/bodies/shape_support.h"
-#include "machine/bodies/tipping.h"
 #include "machine/description/wording.h"
-#include "machine/gravity.h"
 
 namespace robot_control {
 namespace {
 
-void note(RobotModel& robot, const std::string& element, const std::string& text) {
+void note(MachineModel& robot, const std::string& element, const std::string& text) {
   robot.notes.push_back({RobotNote::Kind::kSuspicious, element, text});
 }
 
-Eigen::AlignedBox3d box_of(const RigidBody& body, const Shape& shape) {
-  Eigen::AlignedBox3d box;
-  Eigen::Vector3d low, high;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Eigen::Vector3d u = body.in_root.linear().transpose() * Eigen::Vector3d::Unit(axis);
-    low[axis] = body.in_root.translation()[axis] - support(shape, -u);
-    high[axis] = body.in_root.translation()[axis] + support(shape, u);
-  }
-  box.extend(low);
-  box.extend(high);
-  return box;
-}
-
-void note_lengths(RobotModel& robot) {
-  for (const WheelModel& wheel : robot.wheels) {
-    if (wheel.radius < kMaxWheelRadius) continue;
-    note(robot, joint_element(robot.joints[wheel.joint].name),
-         "a wheel radius of " + number(wheel.radius) + " m: are lengths in millimetres? A URDF's are metres");
-  }
+void note_shapes(MachineModel& robot) {
   for (const RigidBody& body : robot.bodies->bodies) {
     for (const Shape& shape : body.shapes) {
       const double size = box_of(body, shape).sizes().maxCoeff();
@@ -48,7 +24,7 @@ void note_lengths(RobotModel& robot) {
   }
 }
 
-void note_masses(RobotModel& robot) {
+void note_masses(MachineModel& robot) {
   Eigen::AlignedBox3d box;
   double mass = 0;
   for (const RigidBody& body : robot.bodies->bodies) {
@@ -68,102 +44,9 @@ void note_masses(RobotModel& robot) {
   }
 }
 
-/// Returns the deceleration in m/s²; empty if a wheel's torque limit is neither the user's nor the file's.
-std::optional<double> given_deceleration(const RobotModel& robot) {
-  double force = 0;
-  for (const WheelModel& wheel : robot.wheels) {
-    const JointModel& joint = robot.joints[wheel.joint];
-    if (joint.effort_limit != robot.bodies->moved_by(joint.name)->joint.effort_limit) return {};
-    force += joint.effort_limit / wheel.radius;
-  }
-  return std::min(kGravity, force / robot.mass);
-}
-
-void note_tipping(RobotModel& robot) {
-  const double limit = given_deceleration(robot).value_or(kUsualRamp);
-  const double lifting = lifting_deceleration(robot);
-  if (!(lifting > 0)) {
-    // Springs give way until other parts stand on the ground than at the zero pose.
-    if (std::ranges::any_of(robot.joints, [](const JointModel& joint) {
-          return joint.prismatic && joint.role == JointRole::kPassive;
-        })) {
-      return;
-    }
-    note(robot, "<robot>",
-         "nothing within 3° of the ground carries it on one side of its centre of gravity (x " +
-             number(robot.centre_of_gravity_base[0]) +
-             " m): it falls over, or leans on what should not touch the ground. Look at where its wheels and casters "
-             "stand, and how low they reach");
-    return;
-  }
-  if (lifting >= limit) return;
-  note(robot, "<robot>",
-       "its centre of gravity lies so high, or so near to where it stands, that it tips from " + number(lifting) +
-           " m/s² on; its own limit is " + number(limit) + " m/s²");
-}
-
-void note_weak_wheels(RobotModel& robot) {
-  double force = 0, effort = 0, friction = 0;
-  for (const WheelModel& wheel : robot.wheels) {
-    const JointModel& joint = robot.joints[wheel.joint];
-    force += std::max(0.0, joint.effort_limit - joint.friction) / wheel.radius;
-    effort = joint.effort_limit;
-    friction = joint.friction;
-  }
-  const double acceleration = force / robot.mass;
-  if (acceleration >= kWeak) return;
-  note(robot, joint_element(robot.joints[robot.wheels.back().joint].name),
-       "an effort limit of " + number(effort) + " N·m and a friction of " + number(friction) +
-           " N·m: the wheels accelerate the robot by no more than " + number(acceleration) +
-           " m/s². A URDF's efforts are those of the joint, behind its gear");
-}
-
-std::string limits_of(const JointModel& joint) {
-  return number(joint.effort_limit) + " N·m and " +
-         (joint.velocity_limit > 0 ? number(joint.velocity_limit) + " rad/s" : "no known speed");
-}
-
-bool differ(double a, double b) {
-  return std::abs(a - b) > kSameLimit * std::max(a, b);
-}
-
-void note_limits(RobotModel& robot) {
-  const JointModel& first = robot.joints[robot.wheels.front().joint];
-  for (const WheelModel& wheel : robot.wheels) {
-    const JointModel& joint = robot.joints[wheel.joint];
-    const double rim = joint.velocity_limit * wheel.radius;
-    if (rim >= kFastRim) {
-      note(robot, joint_element(joint.name),
-           "a velocity limit of " + number(joint.velocity_limit) + " rad/s is " + number(rim) +
-               " m/s at its rim: is it in degrees per second or turns per minute? A URDF's are rad/s");
-    }
-    if (differ(joint.effort_limit, first.effort_limit) || differ(joint.velocity_limit, first.velocity_limit)) {
-      note(robot, joint_element(joint.name),
-           "its limits are " + limits_of(joint) + ", those of " + first.name + " " + limits_of(first) +
-               ": is that meant? The weaker side limits both");
-    }
-  }
-}
-
-void note_far_root(RobotModel& robot) {
-  double nearest = std::numeric_limits<double>::infinity();
-  Eigen::AlignedBox3d box;
-  for (const WheelModel& wheel : robot.wheels) {
-    nearest = std::min(nearest, Eigen::Vector3d(wheel.centre_base.data()).norm());
-  }
-  for (const RigidBody& body : robot.bodies->bodies) {
-    for (const Shape& shape : body.shapes) box.extend(box_of(body, shape));
-  }
-  if (box.isEmpty() || nearest <= kFar * box.sizes().norm()) return;
-  note(robot, link_element(robot.base_link),
-       "it lies " + number(nearest) +
-           " m from the next wheel, farther than the robot is large: odom and cmd_vel are "
-           "those of this frame. Where it is the world, leave it and its joint out");
-}
-
 }  // namespace
 
-std::string suspicions_of(const RobotModel& robot) {
+std::string suspicions_of(const MachineModel& robot) {
   std::string text;
   for (const RobotNote& note : robot.notes) {
     if (note.kind == RobotNote::Kind::kSuspicious) text += "; " + note.element + ": " + note.text;
@@ -171,13 +54,9 @@ std::string suspicions_of(const RobotModel& robot) {
   return text.empty() ? text : "Suspicious" + text.replace(0, 1, ":");
 }
 
-void note_suspicions(RobotModel& robot) {
-  note_lengths(robot);
-  note_masses(robot);
-  note_tipping(robot);
-  note_weak_wheels(robot);
-  note_limits(robot);
-  note_far_root(robot);
+void note_suspicious_bodies(MachineModel& machine) {
+  note_shapes(machine);
+  note_masses(machine);
 }
 
 }  // namespace robot_control

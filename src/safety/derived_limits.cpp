@@ -11,7 +11,7 @@ void fill(Condition& condition, double limit) {
 
 constexpr double kSpeedFactor = 1.1;
 
-double wheel_speed_limit(const RobotModel& robot, double commanded) {
+double wheel_speed_limit(const DriveTrain& robot, double commanded) {
   double bearable = 1.25 * commanded;
   for (const WheelModel& wheel : robot.wheels) {
     const double limit = robot.joints[wheel.joint].velocity_limit;
@@ -32,7 +32,7 @@ double fastest_within(double wheel_speed_limit) noexcept {
   return std::min(wheel_speed_limit / kSpeedFactor, wheel_speed_limit - kSpeedMargin);
 }
 
-SafetyParameters derived_limits(const SafetyParameters& given, const RobotModel& robot, double commanded_wheel_speed,
+SafetyParameters derived_limits(const SafetyParameters& given, const DriveTrain& robot, double commanded_wheel_speed,
                                 double period) {
   SafetyParameters limits = given;
   fill(limits.wheel_speed, wheel_speed_limit(robot, commanded_wheel_speed));

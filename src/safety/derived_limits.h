@@ -28,7 +28,7 @@
 /// Battery limits are never derived: a URDF does not describe the battery. Measured values:
 /// docs/evidence/derivations.md.
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "safety/safety_parameters.h"
 
 namespace robot_control {
@@ -47,7 +47,7 @@ double least_wheel_speed_limit(double commanded) noexcept;
 double fastest_within(double wheel_speed_limit) noexcept;
 
 /// `commanded_wheel_speed` rad/s, > 0; `period` s.
-SafetyParameters derived_limits(const SafetyParameters& given, const RobotModel& robot, double commanded_wheel_speed,
+SafetyParameters derived_limits(const SafetyParameters& given, const DriveTrain& robot, double commanded_wheel_speed,
                                 double period = 0.001);
 
 }  // namespace robot_control

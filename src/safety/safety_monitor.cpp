@@ -8,7 +8,7 @@
 
 namespace robot_control {
 
-SafetyMonitor::SafetyMonitor(const SafetyParameters& parameters, const RobotModel& robot, double period)
+SafetyMonitor::SafetyMonitor(const SafetyParameters& parameters, const DriveTrain& robot, double period)
     : slow_speed_(checked(parameters, period).slow_speed),
       presence_(parameters.loss_cycles),
       sensor_presence_(parameters, robot.wheels.size(), period),
@@ -24,7 +24,8 @@ SafetyMonitor::SafetyMonitor(const SafetyParameters& parameters, const RobotMode
       yaw_agreement_(parameters.yaw_rate, robot, period),
       gate_conditions_(parameters.loss_cycles, period),
       machine_conditions_(parameters, period),
-      body_conditions_(parameters, robot, period),
+      rim_speed_(robot),
+      body_conditions_(parameters, robot, middle_of_axles(robot), period),
       warnings_(period),
       supervisor_(static_cast<std::uint64_t>(std::llround(parameters.ramp_time / period))) {}
 
@@ -88,11 +89,10 @@ void SafetyMonitor::evaluate_frame(const MonitorInput& input) noexcept {
   const bool driver_restarted = !first && *driver_ != sensors.driver_instance;
   driver_ = sensors.driver_instance;
   if (run_ != sensors.head.run) enter_run(input);
-  if (first) release_.begin(sensors.head.cycle);
   evaluate_conditions(input);
   if (monitor_restarted) active_.add(kCauseMonitorRestarted, Reaction::kBrake, {.beyond = true});
   if (driver_restarted) active_.add(kCauseDriverLost, Reaction::kBrake, {.beyond = true});
-  motion_requested_ = input.command != nullptr && !zero(input.command->twist_requested);
+  motion_requested_ = input.command != nullptr && !zero(input.command->requested.twist);
   end_run(sensors.driver_state == DriverState::kEnded);
 }
 
@@ -139,7 +139,7 @@ void SafetyMonitor::evaluate_motion(const MonitorInput& input, std::uint64_t ela
   wheel_following_.step(sensors, targets_, motion_, standstill_, elapsed, active_);
   torque_oscillation_.step(input, targets_, motion_, elapsed, active_);
   yaw_agreement_.step(sensors, motion_, elapsed, active_);
-  body_conditions_.step(sensors, elapsed, standstill_.moving(), active_);
+  body_conditions_.step(sensors, elapsed, rim_speed_.value(sensors), standstill_.moving(), active_);
 }
 
 void SafetyMonitor::supervise(const MonitorInput& input) noexcept {

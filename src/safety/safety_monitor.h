@@ -8,7 +8,7 @@
 ///   motion_release.h                                     was a zero velocity requested since the last start
 ///   operator_conditions.h, clearance.h                   what the operator commands
 ///   wheel_motion.h ─► wheel_limits.h, wheel_following.h, torque_oscillation.h, yaw_agreement.h, joint_standstill.h,
-///                     slide.h                            how the wheels move, compared with limits and targets
+///                     slide.h, rim_speed.h               how the wheels move, compared with limits and targets
 ///   gate_conditions.h, machine_conditions.h,
 ///   body_conditions.h                                    does the gate obey, does the driver report a fault, does the
 ///                                                        body tilt, fall or collide
@@ -44,7 +44,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "safety/conditions/body_conditions.h"
 #include "safety/conditions/frame_conditions.h"
 #include "safety/conditions/gate_conditions.h"
@@ -63,6 +63,7 @@
 #include "safety/latch/warnings.h"
 #include "safety/measurements/clearance.h"
 #include "safety/measurements/joint_standstill.h"
+#include "safety/measurements/rim_speed.h"
 #include "safety/measurements/slide.h"
 #include "safety/measurements/wheel_motion.h"
 #include "safety/measurements/wheel_targets.h"
@@ -78,7 +79,7 @@ class SafetyMonitor {
  public:
   /// `period` s. A condition without a limit is not evaluated: call derived_limits (derived_limits.h) first.
   /// Throws std::invalid_argument for parameters that parameter_check.h refuses.
-  SafetyMonitor(const SafetyParameters& parameters, const RobotModel& robot, double period);
+  SafetyMonitor(const SafetyParameters& parameters, const DriveTrain& robot, double period);
 
   /// Fills everything but `out.head`. The first frame of another run restarts all counters and conditions. Heartbeats
   /// and resets received before that frame have no effect (kRefusalInit); emergency stops do.
@@ -112,6 +113,7 @@ class SafetyMonitor {
   YawAgreement yaw_agreement_;
   GateConditions gate_conditions_;
   MachineConditions machine_conditions_;
+  RimSpeed rim_speed_;
   BodyConditions body_conditions_;
   ActiveCauses active_;  ///< of the last step
   Warnings warnings_;

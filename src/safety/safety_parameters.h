@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "parameters/block.h"
 
 namespace robot_control {

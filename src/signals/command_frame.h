@@ -8,10 +8,13 @@
 #include "signals/frame_head.h"
 #include "signals/geometry.h"
 #include "signals/joint.h"
+#include "signals/velocity_command.h"
+#include "signals/wheeled/wheeled_command.h"
 
 namespace robot_control {
 
-/// Why the commanded motion differs from the requested one; bits of CommandFrame::reasons.
+/// Why the commanded motion differs from the requested one; bits of CommandFrame::reasons. The reasons of one kind of
+/// machine have the bits that follow.
 enum CommandReason : std::uint64_t {
   kReasonNoCommand = 1u << 0,     ///< Nothing received in this run yet.
   kReasonTimedOut = 1u << 1,      ///< The last command is older than cmd_vel_timeout.
@@ -19,21 +22,22 @@ enum CommandReason : std::uint64_t {
   kReasonSpeedLimited = 1u << 3,  ///< max_linear_speed or max_angular_speed.
   kReasonAccelerationLimited = 1u << 4,
   kReasonJerkLimited = 1u << 5,
-  kReasonCurvatureKept = 1u << 6,  ///< One axis was scaled to keep the commanded curvature.
-  kReasonSaturated = 1u << 7,      ///< A wheel's torque or speed is at its limit.
-  kReasonNoPermit = 1u << 8,       ///< No live permit: brake.
-  kReasonPermitBrake = 1u << 9,    ///< The permit orders the brake.
-  kReasonPermitRamp = 1u << 10,    ///< The permit orders a ramp to standstill.
-  kReasonNoState = 1u << 11,       ///< The state of this cycle was missing, held or invalid.
-  kReasonBadSensors = 1u << 12,    ///< Joint samples missing or not finite: brake.
-  kReasonHolding = 1u << 13,       ///< The robot stands with a zero command: the brake law holds the position.
-  kReasonPermitSlow = 1u << 14,    ///< The permit's speed limit applies.
+  kReasonNoPermit = 1u << 6,     ///< No live permit: brake.
+  kReasonPermitBrake = 1u << 7,  ///< The permit orders the brake.
+  kReasonPermitRamp = 1u << 8,   ///< The permit orders a ramp to standstill.
+  kReasonNoState = 1u << 9,      ///< The state of this cycle was missing, held or invalid.
+  kReasonBadSensors = 1u << 10,  ///< Joint samples missing or not finite: brake.
+  kReasonHolding = 1u << 11,     ///< The robot stands with a zero command: the brake law holds the position.
+  kReasonPermitSlow = 1u << 12,  ///< The permit's speed limit applies.
   kReasonJerkYielded =
-      1u << 15,             ///< The jerk limit was exceeded, so that the speed stops at zero instead of overshooting.
-  kReasonStale = 1u << 16,  ///< The last message was refused for its stamp; the command before it stays in force.
-  kReasonManySenders = 1u << 17,  ///< More than one node sends, and one_sender forbids it.
-  kReasonRevoked = 1u << 18,      ///< A sender requested motion before a withdrawal and has not sent zero since.
+      1u << 13,             ///< The jerk limit was exceeded, so that the speed stops at zero instead of overshooting.
+  kReasonStale = 1u << 14,  ///< The last message was refused for its stamp; the command before it stays in force.
+  kReasonManySenders = 1u << 15,  ///< More than one node sends, and one_sender forbids it.
+  kReasonRevoked = 1u << 16,      ///< A sender requested motion before a withdrawal and has not sent zero since.
+  kReasonPartIgnored = 1u << 17,  ///< The request has a part that this machine cannot execute (CommandFrame::ignored).
 };
+
+static_assert(kReasonPartIgnored == 1u << (kFirstWheeledReason - 1));
 
 /// The gate uses a command in at most this many ticks: at tick k one of cycles k-kCommandLife … k-1.
 inline constexpr std::uint64_t kCommandLife = 4;
@@ -41,10 +45,9 @@ inline constexpr std::uint64_t kCommandLife = 4;
 struct CommandFrame {
   FrameHead head;
   std::uint64_t joint_count = 0;
-  std::array<JointCommand, kMaxJoints> joints{};       ///< in the order of RobotModel::joints
-  std::array<double, kMaxJoints> velocity_measured{};  ///< rad/s, output of the tracking loop
-  Twist twist_requested;                               ///< as last received; zero once timed out or refused
-  Twist twist_limited;                                 ///< after limits: the target of the wheels
+  std::array<JointCommand, kMaxJoints> joints{};  ///< in the order of MachineModel::joints
+  Request requested;                              ///< as last received; zero once timed out or refused
+  Twist twist_limited;                            ///< after limits: the target of the base
   std::uint64_t reasons = 0;
   std::uint64_t state_cycle = 0;        ///< cycle of the state that was used
   std::uint64_t permit_cycle = 0;       ///< cycle of the permit that was used
@@ -54,6 +57,8 @@ struct CommandFrame {
   std::uint64_t requests_stale = 0;     ///< those of requests_refused with a wrong stamp
   std::uint64_t requests_crowded = 0;   ///< those of requests_refused while more than one node sent
   std::uint64_t requests_revoked = 0;   ///< those of requests_refused from revoked senders (Permit::withdrawals)
+  std::uint64_t requests_partial = 0;   ///< accepted in this run with a part that this machine ignores
+  std::uint64_t ignored = 0;            ///< RequestPart bits of `requested` that this machine cannot execute
   std::uint64_t timeouts = 0;           ///< in this run, one per event
 
   // The monitor reads the following members before it permits motion (safety/latch/motion_release.h).
@@ -64,6 +69,18 @@ struct CommandFrame {
   std::uint64_t silent_cycles =
       0;  ///< cycles since the last message of any sender, accepted or refused, or since first_cycle
   std::uint64_t silence_needed = 0;  ///< cycles without a message after which no sender counts as requesting motion
+
+  WheeledCommand wheeled;  ///< only wheeled machines fill it
 };
+
+/// Returns CommandReason and WheeledReason bits together.
+inline std::uint64_t reasons_of(const CommandFrame& command) noexcept {
+  return command.reasons | command.wheeled.reasons;
+}
+
+/// Returns whether the last message before this command was no accepted zero velocity.
+inline bool requests_motion(const CommandFrame& command) noexcept {
+  return command.requests_received != 0 && command.zero_requested == 0;
+}
 
 }  // namespace robot_control

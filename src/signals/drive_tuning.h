@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace robot_control {
+#include "signals/wheeled/wheel_count.h"
 
-inline constexpr std::size_t kTunedWheels = 8;  ///< equals kMaxWheels of robot/, which this folder does not include
+namespace robot_control {
 
 /// The limits of one axis in m/s or rad/s and their derivatives; the parameters are named max_linear_speed, …
 struct AxisTuning {
@@ -38,12 +38,12 @@ struct DriveTuning {
   std::uint64_t count = 0;  ///< number of sets accepted since the process began; each set has another count
   AxisTuning linear;
   AxisTuning angular;
-  std::uint64_t keep_curvature = 0;                ///< 1: the curvature is kept
-  double cmd_vel_timeout = 0;                      ///< s; 0: never
-  double tracking_bandwidth = 0;                   ///< Hz
-  double mass = 0;                                 ///< kg, for feed-forward
-  double yaw_inertia = 0;                          ///< kg·m²
-  std::array<WheelTuning, kTunedWheels> wheels{};  ///< in the order of RobotModel::wheels, which is that of the joints
+  std::uint64_t keep_curvature = 0;              ///< 1: the curvature is kept
+  double cmd_vel_timeout = 0;                    ///< s; 0: never
+  double tracking_bandwidth = 0;                 ///< Hz
+  double mass = 0;                               ///< kg, for feed-forward
+  double yaw_inertia = 0;                        ///< kg·m²
+  std::array<WheelTuning, kMaxWheels> wheels{};  ///< in the order of DriveTrain::wheels, which is that of the joints
 };
 
 }  // namespace robot_control

@@ -9,12 +9,42 @@ namespace robot_control {
 
 inline constexpr std::size_t kMaxJoints = 32;
 
-struct JointSample {
-  double position = 0;     ///< rad or m, at t_k
-  double velocity = 0;     ///< rad/s or m/s, at t_k
-  double effort = 0;       ///< N·m or N, the mean actually applied over [t_k-1, t_k)
-  double temperature = 0;  ///< °C; 0 where the drive has no sensor
+/// Bits of JointSample::valid: the numbers that the drive measured and that may be used.
+enum JointValidity : std::uint32_t {
+  kValidPosition = 1u << 0,
+  kValidVelocity = 1u << 1,
+  kValidEffort = 1u << 2,
+  kValidTemperature = 1u << 3,
 };
+
+/// The bits of a drive with an encoder and a measurement of its torque.
+inline constexpr std::uint32_t kValidMotion = kValidPosition | kValidVelocity | kValidEffort;
+
+/// A drive that sends no sample in a cycle leaves the last one in force, and its age grows.
+struct JointSample {
+  double position = 0;      ///< rad or m, at t_k − age
+  double velocity = 0;      ///< rad/s or m/s, at t_k − age
+  double effort = 0;        ///< N·m or N, the mean actually applied over one period before t_k − age
+  double temperature = 0;   ///< °C
+  std::int64_t age_ns = 0;  ///< time from the drive's sample to t_k
+  std::uint32_t valid = 0;  ///< JointValidity bits
+  std::uint32_t fault = 0;  ///< the drive's own fault word; 0: no fault
+};
+
+/// Returns whether all numbers that `bits` names may be used.
+inline bool has(const JointSample& sample, std::uint32_t bits) noexcept {
+  return (sample.valid & bits) == bits;
+}
+
+/// Returns whether the position may be used and is finite.
+inline bool has_position(const JointSample& sample) noexcept {
+  return has(sample, kValidPosition) && std::isfinite(sample.position);
+}
+
+/// Returns the velocity; 0 if it may not be used or is not finite.
+inline double valid_velocity(const JointSample& sample) noexcept {
+  return has(sample, kValidVelocity) && std::isfinite(sample.velocity) ? sample.velocity : 0;
+}
 
 enum class JointMode : std::uint64_t {
   kBrake = 0,      ///< The driver's own law damps the velocity and, below a small speed, holds the position.

@@ -88,8 +88,6 @@ inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
     {kReasonSpeedLimited, "speed_limited", "cmd_vel is above max_linear_speed or max_angular_speed", ""},
     {kReasonAccelerationLimited, "acceleration_limited", "the acceleration limit shapes the motion", ""},
     {kReasonJerkLimited, "jerk_limited", "the jerk limit shapes the motion", ""},
-    {kReasonCurvatureKept, "curvature_kept", "one axis was scaled to keep the commanded curvature", ""},
-    {kReasonSaturated, "saturated", "a wheel's torque or speed is at its limit", ""},
     {kReasonNoPermit, "no_permit", "there is no live permit", "start {monitor}"},
     {kReasonPermitBrake, "permit_brake", "the permit orders the brake", "read the cause in safety_status"},
     {kReasonPermitRamp, "permit_ramp", "the permit orders a ramp to standstill", "read the cause in safety_status"},
@@ -105,6 +103,23 @@ inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
     {kReasonRevoked, "revoked",
      "a sender goes on requesting motion that was requested before a stop, a restart or a pause, or meanwhile",
      "let it send a zero velocity, or restart it"},
+    {kReasonPartIgnored, "part_ignored", "a part of the request is ignored, because this robot cannot execute it",
+     "request only what this robot can do; a differential drive takes linear.x and angular.z"},
+    {kReasonCurvatureKept, "curvature_kept", "one axis was scaled to keep the commanded curvature", ""},
+    {kReasonSaturated, "saturated", "a wheel's torque or speed is at its limit", ""},
+});
+
+inline constexpr auto kRequestPartNames = std::to_array<BitName>({
+    {kPartLinearX, "linear.x", "", ""},
+    {kPartLinearY, "linear.y", "", ""},
+    {kPartLinearZ, "linear.z", "", ""},
+    {kPartAngularX, "angular.x", "", ""},
+    {kPartAngularY, "angular.y", "", ""},
+    {kPartAngularZ, "angular.z", "", ""},
+    {kPartHeight, "posture.height", "", ""},
+    {kPartRoll, "posture.roll", "", ""},
+    {kPartPitch, "posture.pitch", "", ""},
+    {kPartMode, "mode", "", ""},
 });
 
 inline constexpr auto kDriverFaultNames = std::to_array<BitName>({
@@ -151,7 +166,7 @@ inline constexpr auto kSlipReasonNames = std::to_array<BitName>({
 });
 
 /// The names are in the order of SensorIndex.
-inline constexpr std::array<std::string_view, 6> kStateSensorNames{"left_encoder",  "right_encoder",   "gyro",
+inline constexpr std::array<std::string_view, kWheeledSensors> kStateSensorNames{"left_encoder",  "right_encoder",   "gyro",
                                                                    "accelerometer", "lateral_contact", "vertical_contact"};
 
 inline constexpr auto kDigitalInputNames = std::to_array<BitName>({
@@ -179,6 +194,12 @@ constexpr std::string_view name_of(GateVerdict verdict) noexcept {
 
 constexpr std::string_view name_of(DriverState state) noexcept {
   constexpr std::array<std::string_view, 5> kNames{"starting", "running", "paused", "fault", "ended"};
+  const auto index = static_cast<std::size_t>(state);
+  return index < kNames.size() ? kNames[index] : "unknown";
+}
+
+constexpr std::string_view name_of(LinkState state) noexcept {
+  constexpr std::array<std::string_view, 4> kNames{"starting", "up", "degraded", "down"};
   const auto index = static_cast<std::size_t>(state);
   return index < kNames.size() ? kNames[index] : "unknown";
 }
@@ -293,7 +314,7 @@ constexpr bool in_bit_order(std::span<const BitName> table) noexcept {
 }
 static_assert(in_bit_order(kStopCauseNames) && kStopCauseNames.size() == kStopCauses);
 static_assert(in_bit_order(kResetRefusalNames) && in_bit_order(kMissingNodeNames));
-static_assert(in_bit_order(kGateReasonNames) && in_bit_order(kCommandReasonNames));
+static_assert(in_bit_order(kGateReasonNames) && in_bit_order(kCommandReasonNames) && in_bit_order(kRequestPartNames));
 static_assert(in_bit_order(kDriverFaultNames) && in_bit_order(kStateFlagNames) && in_bit_order(kSlipReasonNames) &&
               in_bit_order(kDegradedReasonNames) && in_bit_order(kDigitalInputNames));
 

@@ -51,7 +51,7 @@ inline constexpr auto kStopCauses = static_cast<std::size_t>(StopCauseBit::kCoun
 struct CauseEvidence {
   std::uint64_t cause = 0;           ///< one bit; 0: unused
   std::uint64_t cycle = 0;           ///< cycle in which it became active
-  std::uint64_t joint = kMaxJoints;  ///< index into RobotModel::joints; kMaxJoints: no single joint
+  std::uint64_t joint = kMaxJoints;  ///< index into MachineModel::joints; kMaxJoints: no single joint
   double value = 0;
   double limit = 0;
 };
@@ -88,7 +88,8 @@ struct Permit {
   std::uint64_t driver_instance = 0;  ///< SensorFrame::driver_instance of the driver for which it was issued
   std::uint64_t resets_handled = 0;   ///< counter of the last reset request that was answered
   std::uint64_t reset_refusal = 0;    ///< why that reset was refused; 0 = accepted
-  double speed_limit = 0;             ///< m/s, for every wheel's rim over the ground; kNoSpeedLimit: none
+  double speed_limit =
+      0;  ///< m/s, of the base; a wheeled machine keeps every wheel's rim below it; kNoSpeedLimit: none
   std::array<CauseEvidence, kMaxEvidence> evidence{};  ///< latched causes in the order of their time, then warnings
 };
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "signals/contact.h"
 #include "signals/frame_head.h"
 #include "signals/gate_report.h"
 #include "signals/geometry.h"
@@ -13,8 +14,6 @@
 
 namespace robot_control {
 
-inline constexpr std::size_t kMaxContacts = 8;
-
 /// The sample is in the axes of the IMU's link. The angular velocity belongs to t_k. The linear acceleration is the
 /// specific force (+g upwards at rest), averaged over [t_k-1, t_k). In world axes, plus gravity, times the period, it
 /// is the change of the IMU's velocity.
@@ -22,6 +21,24 @@ struct ImuSample {
   Vector3 angular_velocity{};     ///< rad/s
   Vector3 linear_acceleration{};  ///< m/s²
   Quaternion orientation{};       ///< all zero if the device has none
+};
+
+inline constexpr std::size_t kMaxLinks = 4;
+
+enum class LinkState : std::uint64_t {
+  kStarting = 0,
+  kUp = 1,
+  kDegraded = 2,  ///< It still carries messages, but reports errors, as a CAN controller that is error-passive.
+  kDown = 3,      ///< It carries nothing: unplugged, or a CAN controller that is bus-off.
+};
+
+/// Counts what a link between the driver and its drives and sensors carried in this run: a bus, or a serial line.
+struct LinkStatus {
+  LinkState state = LinkState::kStarting;
+  std::uint64_t sent = 0;    ///< messages
+  std::uint64_t lost = 0;    ///< expected answers that never came
+  std::uint64_t late = 0;    ///< answers that came after the cycle in which they were due
+  std::uint64_t errors = 0;  ///< errors that the link itself reported
 };
 
 enum class DriverState : std::uint64_t {
@@ -41,14 +58,12 @@ enum DriverFault : std::uint64_t {
   kFaultDrive = 1u << 4,               ///< A motor drive reports a fault.
 };
 
-/// Bits of SensorFrame::valid.
+/// Bits of SensorFrame::valid; joints and contacts have their own.
 enum SensorValidity : std::uint64_t {
-  kValidJoints = 1u << 0,
-  kValidGyro = 1u << 1,
-  kValidAccelerometer = 1u << 2,
-  kValidOrientation = 1u << 3,
-  kValidContacts = 1u << 4,
-  kValidBattery = 1u << 5,
+  kValidGyro = 1u << 0,
+  kValidAccelerometer = 1u << 1,
+  kValidOrientation = 1u << 2,
+  kValidBattery = 1u << 3,
 };
 
 /// Bits of SensorFrame::digital_inputs.
@@ -61,12 +76,14 @@ struct SensorFrame {
   std::uint64_t faults = 0;
   std::uint64_t valid = 0;
   std::uint64_t joint_count = 0;
-  std::array<JointSample, kMaxJoints> joints{};  ///< in the order of RobotModel::joints
+  std::array<JointSample, kMaxJoints> joints{};  ///< in the order of MachineModel::joints
   ImuSample imu;
+  std::uint64_t contact_count = 0;  ///< contacts with a sensor
 
-  /// Forces on the wheels in N, base axes, mean over [t_k-1, t_k): first those on RobotModel::wheels, then casters, as
-  /// many as fit.
-  std::array<Vector3, kMaxContacts> contact_forces{};
+  /// Contacts of the model, as many as fit: the wheels in the order of DriveTrain::wheels, then the casters.
+  std::array<ContactSample, kMaxContacts> contacts{};
+  std::uint64_t link_count = 0;
+  std::array<LinkStatus, kMaxLinks> links{};  ///< the links from the driver to its drives and sensors
   std::uint64_t digital_inputs = 0;
   double battery_voltage = 0;    ///< V, at the terminals
   double battery_current = 0;    ///< A, positive when discharging
@@ -78,5 +95,27 @@ struct SensorFrame {
   std::uint64_t held_ns =
       0;  ///< Total time in which a simulated plant was paused or being reset; not cleared by a reset.
 };
+
+/// Sets JointSample::valid of every joint.
+inline void set_joints_valid(SensorFrame& sensors, std::uint32_t bits) noexcept {
+  for (JointSample& sample : sensors.joints) sample.valid = bits;
+}
+
+/// Returns whether the first `count` joints of the frame have all numbers that `bits` names.
+inline bool joints_have(const SensorFrame& sensors, std::size_t count, std::uint32_t bits) noexcept {
+  if (sensors.joint_count < count || count > kMaxJoints) return false;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!has(sensors.joints[i], bits)) return false;
+  }
+  return true;
+}
+
+/// Returns the first joint whose drive reports a fault; kMaxJoints: none.
+inline std::size_t first_faulty_joint(const SensorFrame& sensors) noexcept {
+  for (std::size_t i = 0; i < kMaxJoints && i < sensors.joint_count; ++i) {
+    if (sensors.joints[i].fault != 0) return i;
+  }
+  return kMaxJoints;
+}
 
 }  // namespace robot_control

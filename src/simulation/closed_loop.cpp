@@ -10,10 +10,10 @@
 #include "loop/cycles/driver_cycle.h"
 #include "loop/cycles/estimator_cycle.h"
 #include "loop/cycles/monitor_cycle.h"
-#include "loop/gate_setup.h"
 #include "loop/retuning.h"
 #include "loop/safety_limits.h"
 #include "loop/start_check.h"
+#include "loop/wheeled_gate.h"
 #include "signals/names.h"
 #include "simulation/faults/node_faults.h"
 
@@ -30,8 +30,8 @@ CommandScript script_of(const Parameters& parameters) {
   return script;
 }
 
-RobotModel load_robot(const Parameters& parameters) {
-  RobotModel robot = read_robot(load_description(parameters.urdf), parameters.robot);
+DriveTrain load_robot(const Parameters& parameters) {
+  DriveTrain robot = read_drive_train(load_description(parameters.urdf), parameters.robot);
   require_drivable(parameters, robot);
   return robot;
 }
@@ -52,7 +52,7 @@ struct ClosedLoop::Parts {
         robot(load_robot(given)),
         plant(robot, given.plant, given.loop.period()),
         driver(plant, robot, {sensors.writer, FrameWriter<TruthFrame>(), &command.reader, &permit.reader},
-               given.loop.period_ns(), nullptr, gate_parameters(given)),
+               given.loop.period_ns(), nullptr, gate_parameters(given, robot)),
         estimator(given.estimator, robot, given.loop.period(), sensors.reader, state.writer, nullptr),
         controller(given.controller, robot, given.loop.period(),
                    {&sensors.reader, &state.reader, &permit.reader, command.writer}, script_of(given), nullptr),
@@ -71,7 +71,7 @@ struct ClosedLoop::Parts {
   }
 
   Parameters parameters;
-  RobotModel robot;
+  DriveTrain robot;
   MujocoPlant plant;
   Channel<SensorFrame> sensors;
   Channel<StateFrame> state;
@@ -99,7 +99,7 @@ ClosedLoop::ClosedLoop(ClosedLoop&&) noexcept = default;
 ClosedLoop& ClosedLoop::operator=(ClosedLoop&&) noexcept = default;
 
 void ClosedLoop::command(const Twist& twist) noexcept {
-  parts_->request = {.twist = twist, .count = parts_->request.count + 1};
+  parts_->request = {.content = {.twist = twist}, .count = parts_->request.count + 1};
 }
 
 void ClosedLoop::e_stop() noexcept {
@@ -187,7 +187,7 @@ std::array<const LawSnapshot*, kLaws> ClosedLoop::snapshots() const noexcept {
           laws.controller != nullptr ? parts_->controller.snapshot() : nullptr,
           laws.monitor != nullptr ? parts_->monitor.snapshot() : nullptr};
 }
-const RobotModel& ClosedLoop::robot() const noexcept {
+const DriveTrain& ClosedLoop::robot() const noexcept {
   return parts_->robot;
 }
 const Parameters& ClosedLoop::parameters() const noexcept {

@@ -13,7 +13,7 @@
 #include "configuration/parameters.h"
 #include "log/rows/joined_row.h"
 #include "log/rows/row_log.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "signals/geometry.h"
 #include "signals/law_snapshot.h"
 
@@ -71,7 +71,7 @@ class ClosedLoop {
   /// Returns the reason why the log has ended; "" if it has not.
   const std::string& log_problem() const noexcept;
 
-  const RobotModel& robot() const noexcept;
+  const DriveTrain& robot() const noexcept;
   const Parameters& parameters() const noexcept;
 
  private:

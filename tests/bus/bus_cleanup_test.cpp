@@ -12,6 +12,7 @@
 
 #include "bus/bus.h"
 #include "rt/clock.h"
+#include "signals/command_frame.h"
 #include "signals/permit.h"
 #include "support/child_process.h"
 #include "support/scoped_bus.h"
@@ -40,6 +41,16 @@ void publish_permit(const std::string& bus, std::uint64_t causes) {
   permit.head.cycle = 3;
   permit.causes = causes;
   FrameWriter<Permit>(channel.memory()).publish(permit);
+}
+
+void publish_command(const std::string& bus, std::uint64_t zero_requested) {
+  const OwnedChannel<LatestFrames<CommandFrame>> channel(bus, ChannelNames::kCommand);
+  CommandFrame command;
+  command.head.run = 7;
+  command.head.cycle = 3;
+  command.requests_received = 2;
+  command.zero_requested = zero_requested;
+  FrameWriter<CommandFrame>(channel.memory()).publish(command);
 }
 
 /// Leaves the bus as its nodes do when they end.
@@ -91,6 +102,18 @@ TEST_F(BusCleanup, LeavesABusWhoseLastPermitIsLatched) {
   EXPECT_TRUE(is_there(other_.name(), ChannelNames::kSensors));
   publish_permit(other_.name(), 0);
   EXPECT_THAT(removed(), Contains(other_.name())) << "reset by its own next run";
+}
+
+TEST_F(BusCleanup, LeavesTheCommandsIfMotionWasRequestedAtTheLastOne) {
+  publish_permit(other_.name(), 0);
+  publish_command(other_.name(), 0);
+  EXPECT_THAT(removed(), Contains(other_.name()));
+  EXPECT_TRUE(is_there(other_.name(), ChannelNames::kCommand));
+  EXPECT_FALSE(is_there(other_.name(), ChannelNames::kPermit));
+  EXPECT_THAT(removed(), Not(Contains(other_.name())));
+  publish_command(other_.name(), 1);
+  EXPECT_THAT(removed(), Contains(other_.name()));
+  EXPECT_FALSE(is_there(other_.name(), ChannelNames::kCommand));
 }
 
 TEST_F(BusCleanup, TakesAPermitThatCannotBeReadForALatchedOne) {

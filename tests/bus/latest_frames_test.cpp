@@ -119,6 +119,14 @@ TEST_F(LatestFramesTest, AWriterKilledHalfWayLeavesItsSlotUnreadableAndTheOthers
   EXPECT_EQ(found_.head.cycle, 9u);
 }
 
+TEST_F(LatestFramesTest, WhatAnEndedWriterLeftIsItsLastFrameAndNotTheOneWithTheLatestStamp) {
+  TestFrame frame = test_frame(kRun + 1, 0);
+  frame.head.stamp_ns = 0;  // of a driver that was started again in lockstep, or of none
+  writer_.publish(frame);
+  ASSERT_EQ(reader_.last_whole(found_), Lookup::kFrame);
+  EXPECT_EQ(found_.head.run, kRun + 1);
+}
+
 TEST_F(LatestFramesTest, TheNextPublicationHealsASlotLeftHalfWritten) {
   auto& slot = memory_->slots[10 % kFrameSlots];
   slot.version.fetch_or(1);

@@ -23,21 +23,21 @@ inline DriveControllerParameters straight_ramps() {
 
 class ControlBench {
  public:
-  explicit ControlBench(const RobotModel& model = make_test_robot(), const DriveControllerParameters& parameters = {},
-                        double period_s = 1e-3, const std::optional<RobotModel>& truth = {})
+  explicit ControlBench(const DriveTrain& model = make_test_robot(), const DriveControllerParameters& parameters = {},
+                        double period_s = 1e-3, const std::optional<DriveTrain>& truth = {})
       : period(period_s), controller(parameters, model, period_s), plant(truth.value_or(model)), robot(model) {
     controller.enter_run();
     permit.action = PermitAction::kDrive;
     permit.speed_limit = kNoSpeedLimit;
-    state.flags = kStateValid;
-    sensors.valid = kValidJoints;
+    state.base.flags = kStateValid;
+    set_joints_valid(sensors, kValidMotion);
     sensors.joint_count = model.joints.size();
   }
 
   double period;
   DriveController controller;
   TwoWheelPlant plant;
-  RobotModel robot;
+  DriveTrain robot;
   SensorFrame sensors;
   StateFrame state;
   Permit permit;
@@ -49,7 +49,7 @@ class ControlBench {
   std::function<void(SensorFrame&)> spoil = [](SensorFrame&) {};
 
   void send(double linear, double angular) {
-    request.twist = {.linear = {linear, 0, 0}, .angular = {0, 0, angular}};
+    request.content.twist = {.linear = {linear, 0, 0}, .angular = {0, 0, angular}};
     ++request.count;
   }
 
@@ -79,8 +79,10 @@ class ControlBench {
   void sample() {
     const SidePair angle = plant.measured_angle();
     sensors.head.cycle = state.head.cycle = permit.head.cycle = cycle;
-    sensors.joints[0] = {.position = angle.left, .velocity = plant.speed.left, .effort = plant.effort.left};
-    sensors.joints[1] = {.position = angle.right, .velocity = plant.speed.right, .effort = plant.effort.right};
+    sensors.joints[0] = {
+        .position = angle.left, .velocity = plant.speed.left, .effort = plant.effort.left, .valid = kValidMotion};
+    sensors.joints[1] = {
+        .position = angle.right, .velocity = plant.speed.right, .effort = plant.effort.right, .valid = kValidMotion};
     spoil(sensors);
   }
 };

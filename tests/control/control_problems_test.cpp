@@ -65,7 +65,7 @@ TEST(ControlProblems, RefusesALoopThatOscillatesAndItsRemedyIsAccepted) {
 
 // Every mode of these loops is damped by 0.3; the counts of an encoder keep the mode of 80 Hz oscillating.
 TEST(ControlProblems, RefusesALoopThatTheCountsOfAnEncoderMakeOscillate) {
-  RobotModel robot = make_test_robot();
+  DriveTrain robot = make_test_robot();
   for (JointModel& joint : robot.joints) joint.effort_limit = 3.5;
   DriveControllerParameters parameters;
   parameters.tracking_bandwidth = 80;
@@ -76,7 +76,7 @@ TEST(ControlProblems, RefusesALoopThatTheCountsOfAnEncoderMakeOscillate) {
 }
 
 TEST(ControlProblems, RefusesAWheelWithoutTorque) {
-  RobotModel robot = make_test_robot();
+  DriveTrain robot = make_test_robot();
   robot.joints[1].effort_limit = 0;
   EXPECT_THAT(
       control_problems({}, robot, 1e-3),
@@ -84,7 +84,7 @@ TEST(ControlProblems, RefusesAWheelWithoutTorque) {
 }
 
 TEST(ControlProblems, RefuseAMassThatIsASlipOfThePen) {
-  const RobotModel robot = make_test_robot();  // 12 kg
+  const DriveTrain robot = make_test_robot();  // 12 kg
   DriveControllerParameters parameters;
   for (const double mass : {9.0, 24.0}) {
     parameters.feed_forward.mass = mass;
@@ -127,7 +127,7 @@ TEST(ControlProblems, RefuseLossesInTheJointsThatTheMotorsCouldHardlyBear) {
 }
 
 TEST(ControlProblems, LeaveARobotItsOwnLossesHoweverLargeTheyAre) {
-  RobotModel robot = make_test_robot();
+  DriveTrain robot = make_test_robot();
   for (JointModel& joint : robot.joints) joint.friction = 2;
   DriveControllerParameters parameters;
   parameters.feed_forward.wheel_friction = 2.05;
@@ -135,7 +135,7 @@ TEST(ControlProblems, LeaveARobotItsOwnLossesHoweverLargeTheyAre) {
 }
 
 TEST(ControlProblems, NameWhatIsSuspiciousOfARobotThatNoGainsFit) {
-  RobotModel robot = make_test_robot();
+  DriveTrain robot = make_test_robot();
   robot.notes.push_back({RobotNote::Kind::kSuspicious, "<robot>", "are lengths in millimetres?"});
   DriveControllerParameters parameters;
   parameters.pid_kp = 20;

@@ -40,9 +40,9 @@ TEST_F(DriveControllerTest, DrivesTheArticlesExample) {
   EXPECT_EQ(bench.command.joints[0].mode, JointMode::kEffort);
   EXPECT_NEAR(bench.command.joints[0].velocity, 4.5, 1e-12);  // rad/s: 0.45 m/s
   EXPECT_NEAR(bench.command.joints[1].velocity, 5.5, 1e-12);
-  EXPECT_NEAR(bench.command.velocity_measured[0], 4.5, 1e-5);
-  EXPECT_NEAR(bench.command.velocity_measured[1], 5.5, 1e-5);
-  EXPECT_EQ(bench.command.reasons, 0u);
+  EXPECT_NEAR(bench.command.wheeled.velocity[0], 4.5, 1e-5);
+  EXPECT_NEAR(bench.command.wheeled.velocity[1], 5.5, 1e-5);
+  EXPECT_EQ(reasons_of(bench.command), 0u);
   EXPECT_EQ(bench.command.joint_count, 2u);
   EXPECT_EQ(bench.command.requests_received, 1u);
   EXPECT_EQ(bench.command.request_cycle, 300u);
@@ -54,14 +54,14 @@ TEST_F(DriveControllerTest, BrakesWithoutAPermit) {
   bench.with_permit = false;
   bench.step();
   EXPECT_TRUE(braked());
-  EXPECT_EQ(bench.command.reasons, kReasonNoPermit);
+  EXPECT_EQ(reasons_of(bench.command), kReasonNoPermit);
 }
 
 TEST_F(DriveControllerTest, BrakesWhenThePermitSaysSo) {
   bench.permit.action = PermitAction::kBrake;
   bench.step();
   EXPECT_TRUE(braked());
-  EXPECT_EQ(bench.command.reasons, kReasonPermitBrake);
+  EXPECT_EQ(reasons_of(bench.command), kReasonPermitBrake);
 }
 
 TEST_F(DriveControllerTest, BrakesOnAPermitItDoesNotUnderstand) {
@@ -77,7 +77,7 @@ TEST_F(DriveControllerTest, RampsWithinTheLimitsUnderARampPermit) {
   for (int k = 0; k < 499; ++k) {
     bench.step();
     ASSERT_NEAR(last - limited(), 1e-3, 1e-12);
-    ASSERT_TRUE(bench.command.reasons & kReasonPermitRamp);
+    ASSERT_TRUE(reasons_of(bench.command) & kReasonPermitRamp);
     last = limited();
   }
   EXPECT_NEAR(bench.plant.twist.linear, 0, 5e-3);
@@ -90,7 +90,7 @@ TEST_F(DriveControllerTest, BrakesAfterTheLastCycleOfARamp) {
   EXPECT_FALSE(braked());
   bench.step();
   EXPECT_TRUE(braked());
-  EXPECT_TRUE(bench.command.reasons & kReasonPermitBrake);
+  EXPECT_TRUE(reasons_of(bench.command) & kReasonPermitBrake);
 }
 
 TEST_F(DriveControllerTest, RampsDownFromTheExactCycleOfTheTimeout) {
@@ -101,19 +101,19 @@ TEST_F(DriveControllerTest, RampsDownFromTheExactCycleOfTheTimeout) {
   }
   bench.step();
   EXPECT_NEAR(limited(), 0.499, 1e-12);
-  EXPECT_TRUE(bench.command.reasons & kReasonTimedOut);
+  EXPECT_TRUE(reasons_of(bench.command) & kReasonTimedOut);
   EXPECT_EQ(bench.command.timeouts, 1u);
-  EXPECT_EQ(bench.command.twist_requested.linear[0], 0);
+  EXPECT_EQ(bench.command.requested.twist.linear[0], 0);
   bench.run(2);
   EXPECT_EQ(bench.command.timeouts, 1u);
-  EXPECT_TRUE(bench.command.reasons & kReasonHolding);
+  EXPECT_TRUE(reasons_of(bench.command) & kReasonHolding);
 }
 
 TEST_F(DriveControllerTest, RefusesNaNCountsItAndRampsDownUntilAGoodCommandArrives) {
   bench.send(std::nan(""), 0);
   bench.step();
   EXPECT_NEAR(limited(), 0.499, 1e-12);
-  EXPECT_TRUE(bench.command.reasons & kReasonRefused);
+  EXPECT_TRUE(reasons_of(bench.command) & kReasonRefused);
   EXPECT_EQ(bench.command.requests_refused, 1u);
   bench.run(0.1);
   EXPECT_NEAR(limited(), 0.399, 1e-12);
@@ -129,7 +129,7 @@ TEST_F(DriveControllerTest, BrakesOnJointSamplesThatAreNotFinite) {
     bench.spoil = [=](SensorFrame& sensors) { sensors.joints[1].*member = std::nan(""); };
     bench.step();
     EXPECT_TRUE(braked());
-    EXPECT_TRUE(bench.command.reasons & kReasonBadSensors);
+    EXPECT_TRUE(reasons_of(bench.command) & kReasonBadSensors);
     bench.spoil = [](SensorFrame&) {};
     bench.run(0.5);
     ASSERT_NEAR(bench.plant.twist.linear, 0.5, 1e-3) << "does not recover";
@@ -142,7 +142,7 @@ TEST_F(DriveControllerTest, BrakesForOneCycleOnAnAngleThatJumpsAndDrivesOn) {
     bench.spoil = [=](SensorFrame& sensors) { sensors.joints[0].position += jump; };
     bench.step();
     EXPECT_TRUE(braked());
-    EXPECT_TRUE(bench.command.reasons & kReasonBadSensors);
+    EXPECT_TRUE(reasons_of(bench.command) & kReasonBadSensors);
     bench.spoil = [](SensorFrame&) {};
     for (int k = 0; k < 500; ++k) {
       bench.step();
@@ -165,7 +165,7 @@ TEST_F(DriveControllerTest, RecoversFromAnAbsurdEffort) {
 }
 
 TEST_F(DriveControllerTest, BrakesOnJointSamplesThatAreNotValid) {
-  bench.spoil = [](SensorFrame& sensors) { sensors.valid = 0; };
+  bench.spoil = [](SensorFrame& sensors) { set_joints_valid(sensors, 0); };
   bench.step();
   EXPECT_TRUE(braked());
 }
@@ -187,15 +187,15 @@ TEST_F(DriveControllerTest, DrivesOnWithoutAStateAndSaysSo) {
   bench.with_state = false;
   const std::uint64_t known = bench.command.state_cycle;
   bench.run(0.1);
-  EXPECT_EQ(bench.command.reasons, kReasonNoState);
+  EXPECT_EQ(reasons_of(bench.command), kReasonNoState);
   EXPECT_EQ(bench.command.state_cycle, known);
   EXPECT_NEAR(bench.plant.twist.linear, 0.5, 1e-6);
 }
 
 TEST_F(DriveControllerTest, SaysThatTheStateIsInvalid) {
-  bench.state.flags = 0;
+  bench.state.base.flags = 0;
   bench.step();
-  EXPECT_EQ(bench.command.reasons, kReasonNoState);
+  EXPECT_EQ(reasons_of(bench.command), kReasonNoState);
 }
 
 TEST_F(DriveControllerTest, RestartsItsRampFromTheMeasuredSpeedWhileTheGateBrakes) {
@@ -220,30 +220,30 @@ TEST_F(DriveControllerTest, ReseedsAfterMoreSkippedCyclesThanTheGateHolds) {
   bench.step();
 
   const double measured =
-      0.05 * (bench.command.velocity_measured[0] + bench.command.velocity_measured[1]);  // r/2 of both
+      0.05 * (bench.command.wheeled.velocity[0] + bench.command.wheeled.velocity[1]);  // r/2 of both
   EXPECT_NEAR(limited(), measured, 1e-12);
-  EXPECT_EQ(bench.command.reasons, 0u);
+  EXPECT_EQ(reasons_of(bench.command), 0u);
 }
 
 TEST_F(DriveControllerTest, KeepsTheCurvatureWhenAWheelIsTooFast) {
-  RobotModel slow = make_test_robot();
+  DriveTrain slow = make_test_robot();
   for (JointModel& joint : slow.joints) joint.velocity_limit = 4;  // 0.4 m/s
   bench = ControlBench(slow);
   start();
   const double s = 0.9 * 0.4 / 0.55;
   EXPECT_NEAR(limited(), s * 0.5, 1e-12);
   EXPECT_NEAR(bench.command.twist_limited.angular[2], s * 0.2, 1e-12);
-  EXPECT_TRUE(bench.command.reasons & kReasonSaturated);
+  EXPECT_TRUE(reasons_of(bench.command) & kReasonSaturated);
 }
 
 TEST_F(DriveControllerTest, SaysThatATorqueIsAtItsLimitAndDoesNotOvershootForIt) {
-  RobotModel weak = make_test_robot();
+  DriveTrain weak = make_test_robot();
   for (JointModel& joint : weak.joints) joint.effort_limit = 0.4;  // 0.65 N·m would be needed
   bench = ControlBench(weak);
   bench.run(0.3);
   bench.send(0.5, 0);
   bench.run(0.2);
-  EXPECT_TRUE(bench.command.reasons & kReasonSaturated);
+  EXPECT_TRUE(reasons_of(bench.command) & kReasonSaturated);
   EXPECT_NEAR(bench.command.joints[0].effort, 0.4, 1e-6);
   double fastest = 0;
   for (int k = 0; k < 1000; ++k) {
@@ -264,7 +264,7 @@ TEST_F(DriveControllerTest, DrivesBackwardsAsItDrivesForwards) {
 }
 
 TEST_F(DriveControllerTest, DrivesAWheelThatIsMountedTheOtherWayRound) {
-  RobotModel mirrored = make_test_robot();
+  DriveTrain mirrored = make_test_robot();
   mirrored.wheels[1].sign = -1;
   bench = ControlBench(mirrored);
   start();
@@ -277,13 +277,13 @@ TEST(DriveControllerOfAHeldWheel, KnowsByTheCountsOfTheOtherThatItStands) {
   DriveController controller({}, make_test_robot(), 1e-3);
   controller.enter_run();
   SensorFrame sensors;
-  sensors.valid = kValidJoints;
+  set_joints_valid(sensors, kValidMotion);
   sensors.joint_count = 2;
   Permit permit;
   permit.action = PermitAction::kDrive;
   permit.speed_limit = kNoSpeedLimit;
   VelocityCommand request;
-  request.twist = {.linear = {0.05, 0, 0}};
+  request.content.twist = {.linear = {0.05, 0, 0}};
   request.count = 1;
   CommandFrame out;
   double angle = 0;
@@ -298,23 +298,23 @@ TEST(DriveControllerOfAHeldWheel, KnowsByTheCountsOfTheOtherThatItStands) {
     last = {out, last[0]};
   }
   EXPECT_NEAR(out.joints[1].velocity, 0.5, 1e-9);
-  EXPECT_NEAR(out.velocity_measured[0], 0.5, 0.1);
-  EXPECT_LT(std::abs(out.velocity_measured[1]), 0.25);
+  EXPECT_NEAR(out.wheeled.velocity[0], 0.5, 0.1);
+  EXPECT_LT(std::abs(out.wheeled.velocity[1]), 0.25);
 }
 
 // Sensors that do as commanded: the plans of 0.5 m/s, 0.2 rad/s on all four wheels, load shared.
 TEST(DriveControllerOfFourWheels, DrivesEveryWheelOfASideAlikeAndBrakesForAnyThatFails) {
-  const RobotModel robot = make_skid_steer();
+  const DriveTrain robot = make_skid_steer();
   DriveController controller({}, robot, 1e-3);
   controller.enter_run();
   SensorFrame sensors;
-  sensors.valid = kValidJoints;
+  set_joints_valid(sensors, kValidMotion);
   sensors.joint_count = 4;
   Permit permit;
   permit.action = PermitAction::kDrive;
   permit.speed_limit = kNoSpeedLimit;
   VelocityCommand request;
-  request.twist = {.linear = {0.5, 0, 0}, .angular = {0, 0, 0.2}};
+  request.content.twist = {.linear = {0.5, 0, 0}, .angular = {0, 0, 0.2}};
   CommandFrame out;
   WheelValues plan{};
   WheelValues last{};
@@ -323,7 +323,9 @@ TEST(DriveControllerOfFourWheels, DrivesEveryWheelOfASideAlikeAndBrakesForAnyTha
     sensors.head.cycle = permit.head.cycle = k;
     sensors.gate.verdict = k == 0 ? GateVerdict::kBrake : GateVerdict::kPassed;
     for (std::size_t i = 0; i < 4; ++i) {
-      sensors.joints[i] = {.position = sensors.joints[i].position + 0.5e-3 * (last[i] + plan[i]), .velocity = plan[i]};
+      sensors.joints[i] = {.position = sensors.joints[i].position + 0.5e-3 * (last[i] + plan[i]),
+                           .velocity = plan[i],
+                           .valid = kValidMotion};
     }
     controller.step({&sensors, nullptr, &permit, request}, out);
     last = plan;
@@ -342,7 +344,7 @@ TEST(DriveControllerOfFourWheels, DrivesEveryWheelOfASideAlikeAndBrakesForAnyTha
 }
 
 TEST_F(DriveControllerTest, BrakesTheJointsThatAreNotWheels) {
-  RobotModel arm = make_test_robot();
+  DriveTrain arm = make_test_robot();
   arm.joints.push_back({.name = "arm", .child_link = "arm", .effort_limit = 1, .velocity_limit = 1});
   bench = ControlBench(arm);
   start();
@@ -357,7 +359,7 @@ TEST_F(DriveControllerTest, StartsANewRunFromNothing) {
   bench.plant = TwoWheelPlant(make_test_robot());
   bench.plant.angle = {123, -456};
   bench.run(0.3);
-  EXPECT_TRUE(bench.command.reasons & kReasonNoCommand);
+  EXPECT_TRUE(reasons_of(bench.command) & kReasonNoCommand);
   EXPECT_EQ(bench.command.requests_received, 0u);
   EXPECT_EQ(bench.plant.distance, 0);
   bench.send(0.5, 0.2);
@@ -388,7 +390,7 @@ TEST_F(DriveControllerTest, NeverExceedsLimitsUnderRandomCommandsPermitsAndFault
       }
       // Compares plan with plan; a seed is the measured speed and no plan.
       const std::uint64_t own = kReasonAccelerationLimited;
-      if ((before.reasons & own) && (bench.command.reasons & own)) {
+      if ((reasons_of(before) & own) && (reasons_of(bench.command) & own)) {
         ASSERT_LE(std::abs(limited() - before.twist_limited.linear[0]), 1e-3 + 1e-12) << "seed " << seed;
         ASSERT_LE(std::abs(bench.command.twist_limited.angular[2] - before.twist_limited.angular[2]), 4e-3 + 1e-12)
             << "seed " << seed;
@@ -410,7 +412,7 @@ class Emergency : public DriveControllerTest {
     for (int k = 0; k < 700; ++k) {
       const double before = limited();
       bench.step();
-      reasons |= bench.command.reasons;
+      reasons |= reasons_of(bench.command);
       strongest = std::fmax(strongest, (before - limited()) / bench.period);
     }
     EXPECT_NEAR(strongest, deceleration, 1e-9);

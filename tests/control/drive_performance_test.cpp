@@ -42,8 +42,8 @@ Figures drive_and_stop(ControlBench& bench, double direction = 1) {
   return figures;
 }
 
-RobotModel with_payload(double kilograms) {
-  RobotModel robot = make_test_robot();
+DriveTrain with_payload(double kilograms) {
+  DriveTrain robot = make_test_robot();
   robot.mass += kilograms;
   robot.yaw_inertia *= robot.mass / 12;
   return robot;

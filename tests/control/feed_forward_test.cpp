@@ -11,7 +11,7 @@ namespace robot_control {
 namespace {
 
 TEST(FeedForward, GivesTheTwelveKilogramRobotItsMeasuredInertias) {
-  const RobotModel robot = make_test_robot();
+  const DriveTrain robot = make_test_robot();
   EXPECT_NEAR(straight_inertia(robot, robot.wheels[0]), 0.065, 1e-15);
   EXPECT_NEAR(turning_inertia(robot, robot.wheels[0]), 0.045, 1e-15);
 }
@@ -28,7 +28,7 @@ TEST(FeedForward, IsThatInertiaTimesTheWheelsAcceleration) {
 // 24 kg · 1 m/s² on four wheels give 6 N · 0.1 m + 0.005 · 10 rad/s². Yaw at 4 rad/s² needs a moment of 2 N·m over the
 // lever of 0.5 m, so 4 N a side and 2 N a wheel. Its rim gains 4 · 0.41 m/s², 16.4 rad/s².
 TEST(FeedForward, SharesTheLoadOverAllWheels) {
-  const RobotModel robot = make_skid_steer();
+  const DriveTrain robot = make_skid_steer();
   EXPECT_NEAR(straight_inertia(robot, robot.wheels[0]), 0.065, 1e-15);
   EXPECT_NEAR(turning_inertia(robot, robot.wheels[0]), 0.005 + 0.2 / 16.4, 1e-15);
   const FeedForward law(robot);
@@ -42,7 +42,7 @@ TEST(FeedForward, SharesTheLoadOverAllWheels) {
 
 // 0.5 m/s and 0.2 rad/s turn the wheels with 4.5 and 5.5 rad/s; far above 0.1 rad/s dry friction counts in full.
 TEST(FeedForward, OvercomesWhatTheJointItselfTakes) {
-  RobotModel robot = make_test_robot();
+  DriveTrain robot = make_test_robot();
   robot.wheels[1].sign = -1;
   for (JointModel& joint : robot.joints) {
     joint.damping = 0.02;
@@ -55,7 +55,7 @@ TEST(FeedForward, OvercomesWhatTheJointItselfTakes) {
 }
 
 TEST(FeedForward, AcceleratesARigidRobotExactlyAsPlanned) {
-  RobotModel robot = make_test_robot();
+  DriveTrain robot = make_test_robot();
   robot.centre_of_gravity_base[0] = 0.05;
   robot.wheels[1].sign = -1;
   const FeedForward law(robot);

@@ -99,7 +99,7 @@ TEST_F(GroundFrictionTest, SearchesNoMoreThanDryConcreteAndNotWithoutATurn) {
 
 TEST_F(GroundFrictionTest, LeavesASlopeToTheIntegrators) {
   turn(1);
-  const RobotModel robot = make_skid_steer();
+  const DriveTrain robot = make_skid_steer();
   for (std::size_t i = 0; i < 4; ++i) integral_[i] = robot.wheels[i].sign * 2.0;
   EXPECT_NEAR(learn(), 0, 1e-12);
 }
@@ -145,7 +145,7 @@ TEST_F(GroundFrictionTest, TakesWhatStandingWheelsHoldAgainstATurnForStrain) {
   for (double& effort : held) effort *= 100;
   law_.rest([&](std::size_t wheel) { return held[wheel]; });
   EXPECT_NEAR(law_.effort(1), -torque, 0.01 * torque) << "no more than scrub can be";
-  const RobotModel robot = make_skid_steer();
+  const DriveTrain robot = make_skid_steer();
   for (std::size_t i = 0; i < 4; ++i) held[i] = robot.wheels[i].sign * 2.0;
   law_.rest([&](std::size_t wheel) { return held[wheel]; });
   EXPECT_NEAR(law_.effort(1), 0, 1e-12) << "a slope";

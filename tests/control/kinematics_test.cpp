@@ -19,7 +19,7 @@ TEST(DriveKinematics, TurnsTheArticlesTwistIntoItsWheelSpeeds) {
 }
 
 TEST(DriveKinematics, DividesByTheRadiusOfEachWheelAndHonoursItsSign) {
-  RobotModel robot = make_test_robot();
+  DriveTrain robot = make_test_robot();
   robot.wheels[0].radius = 0.09;
   robot.wheels[1].sign = -1;
   const WheelValues joint = DriveKinematics(robot).joint_speeds({0.5, 0.2});
@@ -28,10 +28,10 @@ TEST(DriveKinematics, DividesByTheRadiusOfEachWheelAndHonoursItsSign) {
 }
 
 TEST(DriveKinematics, GivesBackTheTwistItWasGiven) {
-  RobotModel robot = make_test_robot();
+  DriveTrain robot = make_test_robot();
   robot.wheels[0].radius = 0.09;
   robot.wheels[0].sign = -1;
-  for (const RobotModel& model : {robot, make_skid_steer()}) {
+  for (const DriveTrain& model : {robot, make_skid_steer()}) {
     const DriveKinematics kinematics(model);
     for (unsigned seed = 0; seed < 100; ++seed) {
       std::mt19937 random(seed);
@@ -63,13 +63,13 @@ TEST(DriveKinematics, MeasuresTheMeanOfTheRimsOfASide) {
 }
 
 TEST(DriveKinematics, IsLimitedByTheSlowestWheelOfASide) {
-  RobotModel robot = make_skid_steer();
+  DriveTrain robot = make_skid_steer();
   robot.joints[3].velocity_limit = 4;  // 0.4 m/s
   EXPECT_NEAR(DriveKinematics(robot).wheel_speed_scale({0.8, 0}), 0.9 * 0.5, kRounding);
 }
 
 TEST(DriveKinematics, ScalesBothAxesUntilTheFastestWheelIsAtNineTenthsOfItsLimit) {
-  const RobotModel robot = make_test_robot();  // 30 rad/s · 0.1 m = 3 m/s
+  const DriveTrain robot = make_test_robot();  // 30 rad/s · 0.1 m = 3 m/s
   const DriveKinematics kinematics(robot);
   for (unsigned seed = 0; seed < 100; ++seed) {
     std::mt19937 random(seed);
@@ -83,7 +83,7 @@ TEST(DriveKinematics, ScalesBothAxesUntilTheFastestWheelIsAtNineTenthsOfItsLimit
 }
 
 TEST(DriveKinematics, HasNoWheelLimitWhereTheRobotNamesNone) {
-  RobotModel robot = make_test_robot();
+  DriveTrain robot = make_test_robot();
   for (JointModel& joint : robot.joints) joint.velocity_limit = 0;
   EXPECT_EQ(DriveKinematics(robot).wheel_speed_scale({1000, 0}), 1);
 }

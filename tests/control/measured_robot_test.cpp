@@ -9,11 +9,11 @@ namespace robot_control {
 namespace {
 
 TEST(MeasuredRobot, IsTheUrdfsWhereNothingWasMeasured) {
-  RobotModel robot = make_test_robot();
+  DriveTrain robot = make_test_robot();
   robot.hash = 7;
   robot.joints[0].damping = 0.1;
   robot.joints[1].friction = 0.2;
-  const RobotModel same = measured_robot(robot, {});
+  const DriveTrain same = measured_robot(robot, {});
   EXPECT_EQ(same.mass, robot.mass);
   EXPECT_EQ(same.yaw_inertia, robot.yaw_inertia);
   EXPECT_EQ(same.wheels[1].inertia, robot.wheels[1].inertia);
@@ -23,7 +23,7 @@ TEST(MeasuredRobot, IsTheUrdfsWhereNothingWasMeasured) {
 }
 
 TEST(MeasuredRobot, TakesWhatWasMeasuredForEveryWheelAlike) {
-  const RobotModel measured = measured_robot(
+  const DriveTrain measured = measured_robot(
       make_skid_steer(),
       {.mass = 30, .yaw_inertia = 0.8, .wheel_inertia = 0.01, .wheel_damping = 0.03, .wheel_friction = 0.4});
   EXPECT_EQ(measured.mass, 30);

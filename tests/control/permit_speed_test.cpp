@@ -47,7 +47,7 @@ TEST(RimSpeedScale, ALimitThatIsNoSpeedLetsNothingMove) {
 }
 
 TEST(RimSpeedScale, NoRimOfAnyRobotExceedsIt) {
-  for (const RobotModel& robot : {make_test_robot(), make_skid_steer()}) {
+  for (const DriveTrain& robot : {make_test_robot(), make_skid_steer()}) {
     const DriveKinematics kinematics(robot);
     for (unsigned seed = 0; seed < 1000; ++seed) {
       std::mt19937 random(seed);
@@ -80,7 +80,7 @@ class PermitSpeed : public testing::Test {
     return {bench.command.twist_limited.linear[0], bench.command.twist_limited.angular[2]};
   }
   double rim() const { return fastest_rim(DriveKinematics(bench.robot), limited()); }
-  bool slowed() const { return (bench.command.reasons & kReasonPermitSlow) != 0; }
+  bool slowed() const { return (reasons_of(bench.command) & kReasonPermitSlow) != 0; }
 
   ControlBench bench{make_test_robot(), patient()};
 };
@@ -105,7 +105,7 @@ TEST_F(PermitSpeed, EndsAtTheLimitOnTheSameCurve) {
   EXPECT_NEAR(limited().linear, 0.2, kPermitRounding);
   EXPECT_NEAR(limited().angular / limited().linear, 1, kPermitRounding);
   EXPECT_TRUE(slowed());
-  EXPECT_EQ(bench.command.twist_requested.linear[0], 0.8);
+  EXPECT_EQ(bench.command.requested.twist.linear[0], 0.8);
 }
 
 // 1 m/s² is the stricter of the two: 4 rad/s² on the curve would be 4 m/s².
@@ -137,7 +137,7 @@ TEST_F(PermitSpeed, ZeroRampsToAStandAndHolds) {
     bench.run(2.0);
     EXPECT_EQ(limited().linear, 0) << nothing;
     EXPECT_TRUE(slowed()) << nothing;
-    EXPECT_NE(bench.command.reasons & kReasonHolding, 0u) << nothing;
+    EXPECT_NE(reasons_of(bench.command) & kReasonHolding, 0u) << nothing;
     EXPECT_NEAR(bench.plant.twist.linear, 0, 1e-3) << nothing;
   }
 }

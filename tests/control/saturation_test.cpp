@@ -22,8 +22,8 @@ DriveControllerParameters patient() {
   return parameters;
 }
 
-RobotModel with_effort_limit(double limit) {
-  RobotModel robot = make_test_robot();
+DriveTrain with_effort_limit(double limit) {
+  DriveTrain robot = make_test_robot();
   for (JointModel& joint : robot.joints) joint.effort_limit = limit;
   return robot;
 }
@@ -55,7 +55,7 @@ TEST(TorqueSaturation, KeepsTheCurveDuringTheRamp) {
 }
 
 TEST(TorqueSaturation, KeepsTheCurveWithAPayloadThatFeedForwardDoesNotKnow) {
-  RobotModel loaded = with_effort_limit(kWeak);
+  DriveTrain loaded = with_effort_limit(kWeak);
   loaded.mass *= 2;
   loaded.yaw_inertia *= 2;
   ControlBench bench(with_effort_limit(kWeak), patient(), 1e-3, loaded);
@@ -72,11 +72,11 @@ TEST(TorqueSaturation, UsesWhatTorqueThereIs) {
   bench.run(1.2);
   // 0.4 of 0.65 N·m from where the jerk limit reached them, after 0.06 s, on.
   EXPECT_NEAR(bench.plant.twist.linear, kWeak / 0.65 * (1.2 - 0.5 * 0.06), 0.02);
-  EXPECT_TRUE(bench.command.reasons & kReasonSaturated);
+  EXPECT_TRUE(reasons_of(bench.command) & kReasonSaturated);
 }
 
 TEST(TorqueSaturation, NeverLetsThePlanRunAway) {
-  RobotModel loaded = with_effort_limit(kWeak);
+  DriveTrain loaded = with_effort_limit(kWeak);
   loaded.mass *= 2;
   ControlBench bench(with_effort_limit(kWeak), patient(), 1e-3, loaded);
   bench.run(0.3);
@@ -119,7 +119,7 @@ TEST(TorqueSaturation, TheTargetGoesOnWhereTheWheelsCannot) {
 
 TEST(SpeedSaturation, NothingBeyondAWheelsLimitIsOrderedWhateverTheTargetsDo) {
   constexpr double kLimit = kUsableWheelSpeed * 8;  // rad/s, 0.72 m/s
-  RobotModel robot = make_test_robot();
+  DriveTrain robot = make_test_robot();
   for (JointModel& joint : robot.joints) joint.velocity_limit = 8;
   DriveControllerParameters parameters = patient();
   parameters.max_linear_jerk = 2;  // slow to turn back: that is what leads past a limit
@@ -143,7 +143,7 @@ TEST(SpeedSaturation, NothingBeyondAWheelsLimitIsOrderedWhateverTheTargetsDo) {
                               std::abs(bench.command.joints[1].velocity) > kLimit * (1 - 1e-12);
         if (at_limit && kinematics.wheel_speed_scale(target) == 1) {
           ++led_past;
-          ASSERT_TRUE(bench.command.reasons & kReasonSaturated) << "seed " << seed;
+          ASSERT_TRUE(reasons_of(bench.command) & kReasonSaturated) << "seed " << seed;
         }
       }
     }
@@ -155,7 +155,7 @@ TEST(SpeedSaturation, NothingBeyondAWheelsLimitIsOrderedWhateverTheTargetsDo) {
 /// brake the described robot with 0.8 m/s² at most.
 double swings_back(double heavier, double rate) {
   constexpr double kSpeed = 1, kNeeded = 0.65;  // N·m at 1 m/s²
-  RobotModel loaded = with_effort_limit(0.8 * kNeeded);
+  DriveTrain loaded = with_effort_limit(0.8 * kNeeded);
   loaded.mass *= heavier;
   ControlBench bench(with_effort_limit(0.8 * kNeeded), patient(), 1 / rate, loaded);
   bench.run(0.3);
@@ -163,11 +163,11 @@ double swings_back(double heavier, double rate) {
   bench.run(10);
   bench.send(0, 0);
   double smallest = kSpeed;
-  for (double t = 0; t < 20 && !(bench.command.reasons & kReasonHolding); t += bench.period) {
+  for (double t = 0; t < 20 && !(reasons_of(bench.command) & kReasonHolding); t += bench.period) {
     bench.step();
     smallest = std::min(smallest, bench.plant.twist.linear);
   }
-  EXPECT_TRUE(bench.command.reasons & kReasonHolding) << heavier << " at " << rate << " Hz";
+  EXPECT_TRUE(reasons_of(bench.command) & kReasonHolding) << heavier << " at " << rate << " Hz";
   return smallest;
 }
 
@@ -183,7 +183,7 @@ TEST(TorqueSaturation, LeavesNothingToUnwindAfterAStop) {
 // The robot is three times as heavy as assumed, and its wheels of 0.4 N·m brake with 0.2 m/s² at most. The plan reaches
 // zero in time.
 TEST(TorqueSaturation, NeverStretchesARampTowardsZero) {
-  RobotModel loaded = with_effort_limit(kWeak);
+  DriveTrain loaded = with_effort_limit(kWeak);
   loaded.mass *= 3;
   ControlBench bench(with_effort_limit(kWeak), patient(), 1e-3, loaded);
   bench.run(0.3);

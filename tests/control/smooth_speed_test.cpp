@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kCoarseCount = 2 * std::numbers::pi / 90;
 
-double smooth_from(const DriveControllerParameters& parameters, const RobotModel& robot = make_test_robot()) {
+double smooth_from(const DriveControllerParameters& parameters, const DriveTrain& robot = make_test_robot()) {
   return smooth_speed(parameters, robot, kCoarseCount, 1e-3);
 }
 

@@ -98,7 +98,7 @@ TEST(SpeedLimiter, KeepsTheCurvatureOfATooFastCommandAndSaysSo) {
   for (int k = 0; k < 2000; ++k) limiter.step({2, 1}, kDt);
   EXPECT_EQ(limiter.value().linear, 1.0);
   EXPECT_EQ(limiter.value().angular, 0.5);
-  EXPECT_EQ(limiter.reasons(), kReasonSpeedLimited | kReasonCurvatureKept);
+  EXPECT_EQ(limiter.reasons(), std::uint64_t{kReasonSpeedLimited} | kReasonCurvatureKept);
 }
 
 TEST(SpeedLimiter, ContinuesFromTheSeedAndReturnsFromAboveTheLimit) {

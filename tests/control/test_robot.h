@@ -3,13 +3,13 @@
 
 #include <string>
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
 /// 12 kg on two wheels: a wheel sees 0.065 kg·m² straight, 0.045 turning, 0.005 lifted.
-inline RobotModel make_test_robot() {
-  RobotModel robot;
+inline DriveTrain make_test_robot() {
+  DriveTrain robot;
   robot.name = "test_robot";
   robot.source = "tests/control/test_robot.h";
   robot.joints = {{.name = "left_wheel_joint", .child_link = "left_wheel", .effort_limit = 5, .velocity_limit = 30},
@@ -30,8 +30,8 @@ inline RobotModel make_test_robot() {
 
 /// 24 kg on four such wheels, axles 0.4 m apart; positive joint velocity drives the left ones backward, as on AgileX's
 /// robots. With an effective wheel base of 0.5·(1 + (0.4/0.5)²) = 0.82 m.
-inline RobotModel make_skid_steer() {
-  RobotModel robot = make_test_robot();
+inline DriveTrain make_skid_steer() {
+  DriveTrain robot = make_test_robot();
   const JointModel joint = robot.joints[0];
   robot.joints.assign(4, joint);
   robot.wheels.assign(4, robot.wheels[0]);

@@ -32,7 +32,7 @@ class Tune : public testing::Test {
 
   /// rad/s: the speed planned two cycles ago, minus the measured one.
   static double error(const CommandFrame& planned, const CommandFrame& now, std::size_t wheel) {
-    return planned.joints[wheel].velocity - now.velocity_measured[wheel];
+    return planned.joints[wheel].velocity - now.wheeled.velocity[wheel];
   }
 
   static void expect_same_bits(const CommandFrame& a, const CommandFrame& b) {
@@ -42,7 +42,7 @@ class Tune : public testing::Test {
     for (std::size_t i = 0; i < 2; ++i) {
       EXPECT_EQ(a.joints[i].mode, b.joints[i].mode);
       EXPECT_EQ(a.joints[i].effort, b.joints[i].effort);
-      EXPECT_EQ(a.velocity_measured[i], b.velocity_measured[i]);
+      EXPECT_EQ(a.wheeled.velocity[i], b.wheeled.velocity[i]);
     }
   }
 
@@ -90,7 +90,7 @@ TEST_F(Tune, LeavesTheControllerThatAStartWithTheseValuesMakes) {
     expect_same_bits(tuned.command, started.command);
     if (HasFailure()) FAIL() << "cycle " << k;
   }
-  EXPECT_NE(tuned.command.reasons & kReasonTimedOut, 0u);
+  EXPECT_NE(reasons_of(tuned.command) & kReasonTimedOut, 0u);
 }
 
 TEST_F(Tune, OfGainsLetsTheTorqueGoOn) {
@@ -131,7 +131,7 @@ TEST_F(Tune, OfGainsUnderALargeErrorLetsTrackingGoOn) {
   double worst = 0;
   for (int k = 0; k < 100; ++k) {
     bench.step();
-    worst = std::max(worst, std::abs(bench.command.velocity_measured[0] - bench.plant.speed.left));
+    worst = std::max(worst, std::abs(bench.command.wheeled.velocity[0] - bench.plant.speed.left));
   }
   EXPECT_LT(worst, 0.3) << "rad/s of 5; taken for a planned torque, the hand-over makes 1.5 of them";
 }
@@ -174,7 +174,7 @@ TEST_F(Tune, OfTheMassLetsTorqueAndTrackingGoOn) {
   for (std::size_t i = 0; i < 2; ++i) {
     // One step of the decay with 0.1 s.
     EXPECT_NEAR(tuned.command.joints[i].effort, left.command.joints[i].effort + 0.01 * planned_more, kTuneRounding);
-    EXPECT_NEAR(tuned.command.velocity_measured[i], left.command.velocity_measured[i], kTuneRounding);
+    EXPECT_NEAR(tuned.command.wheeled.velocity[i], left.command.wheeled.velocity[i], kTuneRounding);
   }
 }
 
@@ -223,7 +223,7 @@ TEST_F(Tune, OfTheBandwidthKeepsWhatIsTracked) {
   bench.plant.viscous_friction = 1.05;  // an unknown torque of 0.1 N·m at 2 rad/s
   bench.send(0.2, 0);
   bench.run(4.0);
-  const double before = bench.command.velocity_measured[0];
+  const double before = bench.command.wheeled.velocity[0];
   const DriveTuning old = drive_tuning(given, bench.robot, bench.period);
   given.tracking_bandwidth = 8;
   ASSERT_NE(drive_tuning(given, bench.robot, bench.period).wheels[0].model_inertia, old.wheels[0].model_inertia);
@@ -231,7 +231,7 @@ TEST_F(Tune, OfTheBandwidthKeepsWhatIsTracked) {
   for (int k = 0; k < 20; ++k) {
     bench.step();
     // Without the residual's share it would assume 0.1·(63 − 25) = 3.8 rad/s² too much: 4e-3 rad/s a cycle.
-    ASSERT_NEAR(bench.command.velocity_measured[0], before, 1e-5) << k;
+    ASSERT_NEAR(bench.command.wheeled.velocity[0], before, 1e-5) << k;
   }
 }
 
@@ -255,11 +255,11 @@ TEST_F(Tune, BringsNoCommandBackThatTimedOut) {
   given.cmd_vel_timeout = 0.2;
   ControlBench bench = driving(given);
   bench.run(1.0);
-  ASSERT_NE(bench.command.reasons & kReasonTimedOut, 0u);
+  ASSERT_NE(reasons_of(bench.command) & kReasonTimedOut, 0u);
   given.cmd_vel_timeout = 0;  // never
   tune(bench, given);
   bench.run(0.1);
-  EXPECT_NE(bench.command.reasons & kReasonTimedOut, 0u);
+  EXPECT_NE(reasons_of(bench.command) & kReasonTimedOut, 0u);
   EXPECT_EQ(bench.command.twist_limited.linear[0], 0.0);
 }
 
@@ -267,7 +267,7 @@ TEST_F(Tune, WhileBrakedSpoilsNoHandOver) {
   ControlBench bench;
   bench.plant.slope = 0.05;
   bench.run(0.4);
-  ASSERT_NE(bench.command.reasons & kReasonHolding, 0u);
+  ASSERT_NE(reasons_of(bench.command) & kReasonHolding, 0u);
   given.pid_kp = 4;
   given.pid_kd = 0.01;
   given.feed_forward.mass = 20;
@@ -356,7 +356,7 @@ TEST_F(Tune, AtRandomWhileDrivingNeverExceedsTheOldOrTheNewLimits) {
       bench.step();
       linear.check(bench.command.twist_limited.linear[0], tuning.linear, bench.period);
       angular.check(bench.command.twist_limited.angular[2], tuning.angular, bench.period);
-      ASSERT_EQ(bench.command.reasons & kReasonBadSensors, 0u);
+      ASSERT_EQ(reasons_of(bench.command) & kReasonBadSensors, 0u);
       if (HasFailure()) FAIL() << "seed " << seed << ", cycle " << k;
     }
   }

@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "control/planar_twist.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -21,7 +21,7 @@ class TwoWheelPlant {
   static constexpr double kBrakeDamping = 2.0;  ///< N·m·s/rad
   static constexpr double kBrakeHolds = 0.05;   ///< rad/s, below it the brake stands
 
-  explicit TwoWheelPlant(const RobotModel& robot) : robot_(robot) {}
+  explicit TwoWheelPlant(const DriveTrain& robot) : robot_(robot) {}
 
   double slope = 0;             ///< rad
   double viscous_friction = 0;  ///< N·m·s/rad per wheel
@@ -94,7 +94,7 @@ class TwoWheelPlant {
     twist = {twist.linear + acceleration.linear * dt, twist.angular + acceleration.angular * dt};
   }
 
-  RobotModel robot_;
+  DriveTrain robot_;
 };
 
 }  // namespace robot_control

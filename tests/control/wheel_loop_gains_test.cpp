@@ -16,7 +16,7 @@ namespace robot_control {
 namespace {
 
 WheelLoopGains derived(double rate) {
-  const RobotModel robot = make_test_robot();
+  const DriveTrain robot = make_test_robot();
   return wheel_loop_gains({}, robot, robot.wheels[0], 1 / rate);
 }
 
@@ -32,7 +32,7 @@ TEST(WheelLoopGains, AreThoseOfTheHeader) {
 }
 
 TEST(WheelLoopGains, GivenByTheUserStay) {
-  const RobotModel robot = make_test_robot();
+  const DriveTrain robot = make_test_robot();
   DriveControllerParameters parameters;
   parameters.pid_kp = 1;
   parameters.pid_kd = 0.01;
@@ -57,7 +57,7 @@ TEST(TrackingBandwidth, ShrinksBelow500HzUnlessTheUserSaysOtherwise) {
 TEST(WheelLoopGains, AreStableWithAMarginOfFourWhateverTheWheelDrives) {
   for (const double rate : {100.0, 150.0, 250.0, 333.0, 500.0, 1000.0, 2000.0}) {
     for (const double ratio : {0.01, 0.05, 0.2, 0.5, 1.0}) {
-      RobotModel robot = make_test_robot();
+      DriveTrain robot = make_test_robot();
       WheelModel& wheel = robot.wheels[0];
       wheel.inertia = ratio * 0.065;
       robot.mass = 2 * (0.065 - wheel.inertia) / (wheel.radius * wheel.radius);
@@ -81,7 +81,7 @@ TEST(WheelLoopGains, AreStableWithAMarginOfThreeInADampedJoint) {
   for (const double rate : {100.0, 150.0, 250.0, 500.0, 1000.0, 2000.0}) {
     for (const double ratio : {0.01, 0.1, 0.5, 0.7, 1.0}) {
       for (double pace = 1; pace < 1.1e4; pace *= 2.15) {  // d/J, 1/s
-        RobotModel robot = make_test_robot();
+        DriveTrain robot = make_test_robot();
         WheelModel& wheel = robot.wheels[0];
         wheel.inertia = ratio * 0.065;
         robot.mass = 2 * (0.065 - wheel.inertia) / (wheel.radius * wheel.radius);
@@ -103,7 +103,7 @@ TEST(WheelLoopGains, AreStableWithAMarginOfThreeInADampedJoint) {
 // speed.
 TEST(WheelLoopGains, SeeNoSpeedThatADampedWheelDoesNotHave) {
   constexpr double kDamping = 0.2;
-  RobotModel robot = make_test_robot();
+  DriveTrain robot = make_test_robot();
   WheelModel& wheel = robot.wheels[0];
   wheel.inertia = 3.4e-5;
   robot.joints[wheel.joint].damping = kDamping;
@@ -125,7 +125,7 @@ TEST(WheelLoopGains, AreAcceptedForRobotsOfEverySize) {
     const auto between = [&](double low, double high) {
       return std::exp(std::uniform_real_distribution<double>(std::log(low), std::log(high))(random));
     };
-    RobotModel robot = seed % 2 == 0 ? make_test_robot() : make_skid_steer();
+    DriveTrain robot = seed % 2 == 0 ? make_test_robot() : make_skid_steer();
     const double radius = between(0.015, 0.3);
     robot.mass = between(0.5, 500);
     robot.wheel_base = between(2, 8) * radius;

@@ -32,14 +32,15 @@ class FailedError(AssertionError):
 
 
 class Program:
-    """A program in a process group of its own, its output in a file."""
+    """A program in a process group of its own, its output in a file, which no child that outlives it can block."""
 
-    def __init__(self, command, folder, environment):
+    def __init__(self, command, folder, environment, arguments=None):
+        """`arguments`: what is executed; left out: the command, by a shell that it replaces."""
         self.command = command
         self.output = folder / f"output_{time.monotonic_ns()}"
         with self.output.open("wb") as file:
             self.process = subprocess.Popen(
-                ["env", "--default-signal=INT", "bash", "-c", f"exec {command}"],
+                ["env", "--default-signal=INT", *(arguments or ["bash", "-c", f"exec {command}"])],
                 cwd=folder,
                 env=environment,
                 stdin=subprocess.DEVNULL,
@@ -163,29 +164,16 @@ class Terminal:
     def run_python(self, text):
         self.judge(text, [sys.executable, "-c", text])
 
-    def judge(self, what, command):
+    def judge(self, what, arguments):
         """The command must end by itself within LIMIT, with exit code 0 and without an error message."""
-        process = subprocess.Popen(
-            command,
-            cwd=self.folder,
-            env=self.environment,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            errors="replace",
-            start_new_session=True,
-        )
-        try:
-            output, _ = process.communicate(timeout=LIMIT)
-        except subprocess.TimeoutExpired:
-            os.killpg(process.pid, signal.SIGKILL)
-            output, _ = process.communicate()
-            output += f"\nnot ended after {LIMIT:.0f} s"
-        if process.returncode != 0 or re.search(
-            r"Traceback|^usage: |ERROR: ", without_cut_thread(output), re.MULTILINE
-        ):
-            raise FailedError(f"{what}\nexit code {process.returncode}\n{output}")
+        program = Program(what, self.folder, self.environment, arguments)
+        with suppress(subprocess.TimeoutExpired):
+            program.process.wait(LIMIT)
+        late = f"\nnot ended after {LIMIT:.0f} s" if program.running else ""
+        program.end()
+        code, output = program.process.returncode, program.text()
+        if late or code != 0 or re.search(r"Traceback|^usage: |ERROR: ", without_cut_thread(output), re.MULTILINE):
+            raise FailedError(f"{what}\nexit code {code}\n{output}{late}")
 
     def end_senders(self):
         for program in reversed(self.others):

@@ -103,7 +103,7 @@ TEST_P(DriverContract, StandsWithValidJointsAfterStart) {
   EXPECT_EQ(frame.driver_state, DriverState::kRunning);
   EXPECT_EQ(frame.faults, 0u);
   EXPECT_EQ(frame.joint_count, GetParam().joints);
-  EXPECT_TRUE(frame.valid & kValidJoints);
+  EXPECT_TRUE(joints_have(frame, GetParam().joints, kValidPosition | kValidVelocity));
   expect_standing_under(all(brake_));
 }
 
@@ -184,6 +184,26 @@ TEST_P(DriverContract, AnEffortBeyondTheLimitIsClamped) {
     EXPECT_LE(std::abs(joint(0).effort), GetParam().effort_limit * 1.01);
   }
   EXPECT_GT(joint(0).effort, GetParam().effort_limit * 0.9);
+}
+
+TEST_P(DriverContract, ImplementsTheBrake) {
+  EXPECT_TRUE(driver_->implements(StopKind::kBrake));
+}
+
+TEST_P(DriverContract, AStopActionThatItImplementsActsAtOnce) {
+  for (const StopKind kind : {StopKind::kBrake, StopKind::kCoast, StopKind::kDamp}) {
+    if (!driver_->implements(kind)) continue;
+    hold(all(velocity(3.0)), 1.0);
+    hold(all(order_of({.kind = kind, .damping = GetParam().damping})), 2 * GetParam().period);
+    for (std::size_t i = 0; i < GetParam().joints; ++i) {
+      const double effort = joint(i).effort;
+      if (kind == StopKind::kCoast) {
+        EXPECT_NEAR(effort, 0, 0.05 * GetParam().effort_limit) << i;
+      } else {
+        EXPECT_LT(effort, 0) << i << ", action " << static_cast<int>(kind);
+      }
+    }
+  }
 }
 
 TEST_P(DriverContract, ABrakeStopsAMovingJoint) {

@@ -12,7 +12,7 @@ constexpr double kEffortLimit = 3.5;  // N·m, of diffbot's wheels
 std::unique_ptr<Driver> mujoco_plant() {
   MujocoPlantParameters parameters;
   parameters.scene = PROJECT_DIRECTORY "/urdf/scenes/flat.xml";
-  return std::make_unique<MujocoPlant>(read_robot(diffbot_urdf(), {}), parameters, 0.001);
+  return std::make_unique<MujocoPlant>(read_drive_train(diffbot_urdf(), {}), parameters, 0.001);
 }
 
 // One wheel moves half of the robot's 12 kg at 0.1 m: 0.06 kg·m² with its own inertia. 1 N·m turns it by 0.7 rad in

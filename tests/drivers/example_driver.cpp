@@ -27,7 +27,9 @@ double torque_of(const JointCommand& command, const JointSample& at) {
 
 }  // namespace
 
-ExampleDriver::ExampleDriver(const RobotModel& robot, std::vector<std::unique_ptr<DriveLink>> links) {
+ExampleDriver::ExampleDriver(const MachineModel& robot, std::vector<std::unique_ptr<DriveLink>> links,
+                             std::int64_t period_ns)
+    : period_ns_(period_ns) {
   for (std::size_t i = 0; i < links.size(); ++i) {
     joints_.push_back({.link = std::move(links[i]), .effort_limit = robot.joints.at(i).effort_limit});
   }
@@ -57,10 +59,13 @@ void ExampleDriver::read(SensorFrame& sensors) noexcept {
   if (faults_ != 0) state_ = DriverState::kFault;
   sensors.driver_state = state_;
   sensors.faults = faults_;
-  sensors.valid = 0;
-  if (faults_ == 0) sensors.valid |= kValidJoints;  // and kValidGyro …, where there is an IMU
+  sensors.valid = 0;  // kValidGyro …, where there is an IMU
   sensors.joint_count = joints_.size();
-  for (std::size_t i = 0; i < joints_.size(); ++i) sensors.joints[i] = joints_[i].sample;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    sensors.joints[i] = joints_[i].sample;
+    sensors.joints[i].valid = faults_ == 0 ? kValidMotion : 0;
+    sensors.joints[i].age_ns = static_cast<std::int64_t>(joints_[i].silent_for) * period_ns_;
+  }
 }
 
 void ExampleDriver::receive(Joint& joint) noexcept {
@@ -68,7 +73,8 @@ void ExampleDriver::receive(Joint& joint) noexcept {
   joint.silent_for = joint.link->receive(status) ? 0 : joint.silent_for + 1;
   if (joint.silent_for > kMaxSilence) faults_ |= kFaultLink;
   if (joint.silent_for > 0) return;
-  if (status.fault) faults_ |= kFaultDrive;
+  joint.sample.fault = status.joint.fault;
+  if (status.joint.fault != 0) faults_ |= kFaultDrive;
   if (!std::isfinite(status.joint.position + status.joint.velocity + status.joint.effort)) {
     faults_ |= kFaultNotFinite;
     return;

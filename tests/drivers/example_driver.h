@@ -8,14 +8,13 @@
 #include <vector>
 
 #include "drivers/driver.h"
-#include "machine/robot_model.h"
+#include "machine/machine_model.h"
 
 namespace robot_control {
 
-/// The report of a motor drive on its joint; SI, the joint's own sign.
+/// The report of a motor drive on its joint, with its fault word; SI, the joint's own sign.
 struct DriveStatus {
   JointSample joint;
-  bool fault = false;
 };
 
 /// The link to one motor drive. Neither call blocks; both exchange what the bus has buffered.
@@ -35,13 +34,15 @@ class DriveLink {
 
 class ExampleDriver final : public Driver {
  public:
-  /// `links`: one per joint, in the order of RobotModel::joints.
-  ExampleDriver(const RobotModel& robot, std::vector<std::unique_ptr<DriveLink>> links);
+  /// `links`: one per joint, in the order of MachineModel::joints. `period_ns`: of the loop.
+  ExampleDriver(const MachineModel& robot, std::vector<std::unique_ptr<DriveLink>> links, std::int64_t period_ns);
 
   void start() override;
   void read(SensorFrame& sensors) noexcept override;
   void write(std::span<const JointCommand> commands) noexcept override;
   void stop() noexcept override;
+  /// Its drives take torques, so they follow every order.
+  bool implements(StopKind) const noexcept override { return true; }
 
  private:
   struct Joint {
@@ -55,6 +56,7 @@ class ExampleDriver final : public Driver {
   void brake() noexcept;
 
   std::vector<Joint> joints_;
+  std::int64_t period_ns_;
   DriverState state_ = DriverState::kStarting;
   std::uint64_t faults_ = 0;  ///< DriverFault bits; kept until the next start
   bool stopped_ = false;

@@ -34,17 +34,23 @@ class ExampleDriverTest : public testing::Test {
 
 TEST_F(ExampleDriverTest, ThreeLateStatusesAreBorneTheFourthIsAFault) {
   machine_.drives[1]->silent = true;
-  EXPECT_EQ(cycles(3).faults, 0u);
+  const SensorFrame late = cycles(3);
+  EXPECT_EQ(late.faults, 0u);
+  EXPECT_EQ(late.joints[0].age_ns, 0);
+  EXPECT_EQ(late.joints[1].age_ns, 3'000'000);
   const SensorFrame frame = cycles(1);
   EXPECT_EQ(frame.faults, kFaultLink);
   EXPECT_EQ(frame.driver_state, DriverState::kFault);
-  EXPECT_FALSE(frame.valid & kValidJoints);
+  EXPECT_EQ(frame.joints[0].valid, 0u);
 }
 
 TEST_F(ExampleDriverTest, AFaultBrakesEveryJointUntilTheNextStart) {
-  machine_.drives[0]->fault = true;
-  EXPECT_EQ(cycles(1).faults, kFaultDrive);
-  machine_.drives[0]->fault = false;
+  machine_.drives[0]->joint.fault = 0x40;
+  const SensorFrame frame = cycles(1);
+  EXPECT_EQ(frame.faults, kFaultDrive);
+  EXPECT_EQ(frame.joints[0].fault, 0x40u);
+  EXPECT_EQ(frame.joints[1].fault, 0u);
+  machine_.drives[0]->joint.fault = 0;
   cycles(1000);
   EXPECT_LT(std::abs(machine_.drives[1]->joint.velocity), 0.05);
   machine_.driver->start();

@@ -16,7 +16,7 @@ class IdealDrive final : public DriveLink {
   static constexpr double kPeriod = 0.001;  ///< s
 
   bool receive(DriveStatus& status) noexcept override {
-    status = {.joint = joint, .fault = fault};
+    status = {.joint = joint};
     return !silent;
   }
   void send_torque(double torque) noexcept override {
@@ -32,7 +32,6 @@ class IdealDrive final : public DriveLink {
   }
 
   JointSample joint;
-  bool fault = false;
   bool silent = false;
 
  private:
@@ -64,7 +63,8 @@ inline ExampleMachine example_machine() {
     machine.drives.push_back(drive.get());
     links.push_back(std::move(drive));
   }
-  machine.driver = std::make_unique<ExampleDriver>(read_robot(diffbot_urdf(), {}), std::move(links));
+  machine.driver = std::make_unique<ExampleDriver>(read_drive_train(diffbot_urdf(), {}), std::move(links),
+                                                   static_cast<std::int64_t>(IdealDrive::kPeriod * 1e9));
   return machine;
 }
 

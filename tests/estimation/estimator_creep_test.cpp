@@ -12,7 +12,7 @@ namespace {
 class CreepingTyres : public EstimatorFixture {
  protected:
   static constexpr double kCreep = 0.01;  // s²/m
-  explicit CreepingTyres(double known = kCreep, const RobotModel& model = two_wheeler())
+  explicit CreepingTyres(double known = kCreep, const DriveTrain& model = two_wheeler())
       : EstimatorFixture(model, {.tyre_creep = known}) {
     robot_.creep = kCreep;
     stand();
@@ -43,8 +43,8 @@ class CreepingTyresTakenForRigid : public CreepingTyres {
 class CreepingTyresUnderAFarImu : public CreepingTyres {
  protected:
   CreepingTyresUnderAFarImu() : CreepingTyres(kCreep, far()) {}
-  static RobotModel far() {
-    RobotModel model = two_wheeler();
+  static DriveTrain far() {
+    DriveTrain model = two_wheeler();
     model.imu_in_base.position = {0.5, 0.2, 0.2};
     return model;
   }
@@ -62,7 +62,7 @@ TEST_F(CreepingTyres, TheSpeedIsThatOfTheGround) {
 
 TEST_F(CreepingTyres, CurvesDriftOutwards) {
   drive(0.8, 0.5, 3000);
-  EXPECT_NEAR(state_.twist_base.linear[1], -kCreep * 0.8 * 0.8 * 0.5, 3e-4);
+  EXPECT_NEAR(state_.base.twist_base.linear[1], -kCreep * 0.8 * 0.8 * 0.5, 3e-4);
 }
 
 TEST_F(CreepingTyresUnderAFarImu, SpeedIsThatOfTheGround) {
@@ -92,9 +92,9 @@ TEST(EstimatorCreep, TheWayUphillIsThatOfTheGround) {
     drive(0, 0, 3000);
     drive(0.5, 0, 1000);
     for (int i = 0; i < 1000; ++i) drive(0.5, -kSlope * (i < 500 ? i : 1000 - i) / 250, 1);
-    const double began = robot.x() - state.pose_odom.position[0];
+    const double began = robot.x() - state.base.pose_odom.position[0];
     drive(0.5, 0, 6000);
-    return robot.x() - state.pose_odom.position[0] - began;
+    return robot.x() - state.base.pose_odom.position[0] - began;
   };
   const double crept = kCreep * RollingRobot::kGravity * kSlope * 3.0;
   EXPECT_NEAR(error(0), -crept, 0.1 * crept);
@@ -117,7 +117,7 @@ TEST(EstimatorCreep, ATiltInDoubtMakesNoCreep) {
   drive(0, 3000);
   drive(0.5, 4000);
   // As a slope it would be 0.005 of the way; the tilt of 0.05 rad shortens its projection by 0.00125.
-  EXPECT_NEAR(state.pose_odom.position[0], robot.x(), 0.002 * robot.x());
+  EXPECT_NEAR(state.base.pose_odom.position[0], robot.x(), 0.002 * robot.x());
 }
 
 }  // namespace

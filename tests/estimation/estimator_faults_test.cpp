@@ -21,7 +21,7 @@ class EstimatorFaultsTest : public EstimatorFixture {
 };
 
 TEST_F(EstimatorFaultsTest, HealthySensorsRaiseNoFlag) {
-  EXPECT_EQ(state_.flags, std::uint64_t{kStateValid});
+  EXPECT_EQ(state_.base.flags, std::uint64_t{kStateValid});
 }
 
 TEST_F(EstimatorFaultsTest, AMissingReadingOfOneEncoderDoesNotHoldThePoseBack) {
@@ -31,16 +31,16 @@ TEST_F(EstimatorFaultsTest, AMissingReadingOfOneEncoderDoesNotHoldThePoseBack) {
     EXPECT_TRUE(has(kStateNoRightEncoder)) << value;
     EXPECT_FALSE(has(kStateNoLeftEncoder)) << value;
     EXPECT_TRUE(has(kStateValid)) << value;
-    EXPECT_EQ(state_.confidence[kRightEncoder], 0) << value;
+    EXPECT_EQ(state_.wheeled.confidence[kRightEncoder], 0) << value;
     EXPECT_LT(position_error(), kExact) << value;
   }
   drive(0.5, 0, 1);
-  EXPECT_EQ(state_.flags, std::uint64_t{kStateValid});
+  EXPECT_EQ(state_.base.flags, std::uint64_t{kStateValid});
   EXPECT_LT(position_error(), kExact);
 }
 
 TEST_F(EstimatorFaultsTest, EncodersMissingForLongAreNoValidState) {
-  const auto silence = [](SensorFrame& frame) { frame.valid &= ~std::uint64_t{kValidJoints}; };
+  const auto silence = [](SensorFrame& frame) { set_joints_valid(frame, 0); };
   for (std::uint64_t i = 0; i < Tuning::kMaxHeld; ++i) {
     broken(silence);
     EXPECT_TRUE(has(kStateValid)) << i;
@@ -53,11 +53,11 @@ TEST_F(EstimatorFaultsTest, EncodersMissingForLongAreNoValidState) {
 
 // Both are missing for two seconds: the next good reading brings the whole travel.
 TEST_F(EstimatorFaultsTest, EncodersThatComeBackBringTheWholeTravel) {
-  lose(kValidJoints);
+  set_joints_valid(robot_.frame(), 0);
   drive(0.5, 0, 2000);
   EXPECT_FALSE(has(kStateValid));
   EXPECT_TRUE(all_finite(state_));
-  robot_.frame().valid |= kValidJoints;
+  set_joints_valid(robot_.frame(), kValidMotion);
   drive(0.5, 0, 500);
   EXPECT_TRUE(has(kStateValid));
   EXPECT_LT(position_error(), 0.01);
@@ -78,7 +78,7 @@ TEST_F(EstimatorFaultsTest, NoEncoderEverIsNoValidState) {
 }
 
 TEST_F(EstimatorFaultsTest, EncodersThatBeganAnewCostCovarianceNotAJump) {
-  const double variance = state_.pose_covariance[0];
+  const double variance = state_.base.pose_covariance[0];
   for (std::uint64_t i = 0; i <= Tuning::kMaxHeld; ++i) {
     broken([](SensorFrame& frame) {
       frame.joints[0].position -= 500;
@@ -86,14 +86,14 @@ TEST_F(EstimatorFaultsTest, EncodersThatBeganAnewCostCovarianceNotAJump) {
     });
     EXPECT_LT(position_error(), Tuning::kRestart) << i;  // a jump would be 50 m
   }
-  EXPECT_GT(state_.pose_covariance[0], variance);
+  EXPECT_GT(state_.base.pose_covariance[0], variance);
   for (int i = 0; i < 500; ++i) {
     broken([](SensorFrame& frame) {
       frame.joints[0].position -= 500;
       frame.joints[1].position -= 500;
     });
   }
-  EXPECT_EQ(state_.flags, std::uint64_t{kStateValid});
+  EXPECT_EQ(state_.base.flags, std::uint64_t{kStateValid});
   EXPECT_LT(position_error(), Tuning::kRestart);
 }
 
@@ -110,8 +110,8 @@ TEST_F(EstimatorFaultsTest, OneEncoderAndTheGyroCarryOn) {
   }
   EXPECT_LT(yaw_error(), 1e-3);
   EXPECT_LT(position_error(), 0.005);  // 0.1 % of 5 m
-  EXPECT_EQ(state_.confidence[kRightEncoder], 0);
-  EXPECT_EQ(state_.slip, 0u);
+  EXPECT_EQ(state_.wheeled.confidence[kRightEncoder], 0);
+  EXPECT_EQ(state_.wheeled.slip, 0u);
 }
 
 TEST_F(EstimatorFaultsTest, OneEncoderWithoutGyroIsNoValidState) {
@@ -147,12 +147,12 @@ TEST_F(EstimatorFaultsTest, WithoutGyroTheWheelsTurnAlone) {
   }
   EXPECT_TRUE(has(kStateNoGyro));
   EXPECT_TRUE(has(kStateValid));
-  EXPECT_LT(yaw_error(), std::sqrt(state_.pose_covariance[35]));
-  EXPECT_LT(position_error(), std::sqrt(state_.pose_covariance[0] + state_.pose_covariance[7]));
-  EXPECT_EQ(state_.confidence[kGyro], 0);
-  EXPECT_GT(state_.confidence[kLeftEncoder], 0.9);
-  EXPECT_NEAR(state_.twist_base.angular[2], 0.2, 1e-3);
-  EXPECT_EQ(state_.slip, 0u);
+  EXPECT_LT(yaw_error(), std::sqrt(state_.base.pose_covariance[35]));
+  EXPECT_LT(position_error(), std::sqrt(state_.base.pose_covariance[0] + state_.base.pose_covariance[7]));
+  EXPECT_EQ(state_.wheeled.confidence[kGyro], 0);
+  EXPECT_GT(state_.wheeled.confidence[kLeftEncoder], 0.9);
+  EXPECT_NEAR(state_.base.twist_base.angular[2], 0.2, 1e-3);
+  EXPECT_EQ(state_.wheeled.slip, 0u);
 }
 
 TEST_F(EstimatorFaultsTest, ABadGyroSampleIsHeldOver) {
@@ -161,7 +161,7 @@ TEST_F(EstimatorFaultsTest, ABadGyroSampleIsHeldOver) {
     EXPECT_TRUE(has(kStateBadSample));
     EXPECT_FALSE(has(kStateNoGyro));
     drive(0.5, 0, 1);
-    EXPECT_EQ(state_.flags, std::uint64_t{kStateValid});
+    EXPECT_EQ(state_.base.flags, std::uint64_t{kStateValid});
   }
   EXPECT_LT(yaw_error(), 1e-9);
 }
@@ -172,7 +172,7 @@ TEST_F(EstimatorFaultsTest, ABadAccelerometerSampleIsHeldOver) {
   EXPECT_FALSE(has(kStateNoAccelerometer));
   EXPECT_TRUE(has(kStateValid));
   drive(0.5, 0, 1);
-  EXPECT_EQ(state_.flags, std::uint64_t{kStateValid});
+  EXPECT_EQ(state_.base.flags, std::uint64_t{kStateValid});
   EXPECT_LT(position_error(), kExact);
 }
 
@@ -181,7 +181,7 @@ TEST_F(EstimatorFaultsTest, WithoutAccelerometerWheelsAndGyroCarryOn) {
   drive(0.5, 0.2, 5000);
   EXPECT_TRUE(has(kStateNoAccelerometer));
   EXPECT_TRUE(has(kStateValid));
-  EXPECT_EQ(state_.confidence[kAccelerometer], 0);
+  EXPECT_EQ(state_.wheeled.confidence[kAccelerometer], 0);
   EXPECT_LT(position_error(), 1e-3);
   EXPECT_LT(yaw_error(), 1e-3);
 }
@@ -190,15 +190,16 @@ TEST_F(EstimatorFaultsTest, WithWheelsAloneItIsTheirOdometry) {
   lose(kValidAccelerometer | kValidGyro);
   drive(0.5, 0.2, 5000);
   EXPECT_TRUE(has(kStateValid));
-  EXPECT_LT(yaw_error(), std::sqrt(state_.pose_covariance[35]));
-  EXPECT_LT(position_error(), std::sqrt(state_.pose_covariance[0] + state_.pose_covariance[7]));
+  EXPECT_LT(yaw_error(), std::sqrt(state_.base.pose_covariance[35]));
+  EXPECT_LT(position_error(), std::sqrt(state_.base.pose_covariance[0] + state_.base.pose_covariance[7]));
   // The bound holds 3 % of an uncertain wheel base, and turn slip of 0.05 rad/√rad over 1 rad, which a straight way
   // does not teach.
-  EXPECT_LT(std::sqrt(state_.pose_covariance[35]), 0.08);
+  EXPECT_LT(std::sqrt(state_.base.pose_covariance[35]), 0.08);
 }
 
 TEST_F(EstimatorFaultsTest, NothingAtAllIsFlagged) {
-  lose(kValidAccelerometer | kValidGyro | kValidJoints);
+  lose(kValidAccelerometer | kValidGyro);
+  set_joints_valid(robot_.frame(), 0);
   drive(0.5, 0.2, 60000);
   EXPECT_FALSE(has(kStateValid));
   for (const StateFlag flag :
@@ -206,7 +207,8 @@ TEST_F(EstimatorFaultsTest, NothingAtAllIsFlagged) {
     EXPECT_TRUE(has(flag));
   }
   EXPECT_TRUE(all_finite(state_));
-  robot_.frame().valid |= kValidAccelerometer | kValidGyro | kValidJoints;
+  robot_.frame().valid |= kValidAccelerometer | kValidGyro;
+  set_joints_valid(robot_.frame(), kValidMotion);
   drive(0, 0, 3000);
   EXPECT_TRUE(has(kStateValid));
   EXPECT_NEAR(speed(), 0, 0.01);
@@ -229,7 +231,7 @@ TEST_P(EstimatorGarbageTest, NeverPoisonsTheState) {
   std::mt19937 random(GetParam());
   const auto pick = [&] { return garbage[random() % std::size(garbage)]; };
   stand();
-  double distance = state_.distance;
+  double distance = state_.base.distance;
   for (int i = 0; i < 10000; ++i) {
     const double linear = i % 2000 < 1000 ? 0.5 : 0;
     robot_.drive(linear, 0.2);
@@ -238,7 +240,11 @@ TEST_P(EstimatorGarbageTest, NeverPoisonsTheState) {
       if (random() % 2 == 0) frame.valid = random();
       if (random() % 4 == 0) frame.joint_count = random() % 40;
       if (random() % 8 == 0) frame.head.cycle += random() % 3;
-      if (random() % 2 == 0) frame.joints[0] = {pick(), pick(), pick(), pick()};
+      if (random() % 2 == 0) {
+        frame.joints[0] = {.position = pick(), .velocity = pick(), .effort = pick(), .temperature = pick()};
+        frame.joints[0].age_ns = static_cast<std::int64_t>(random());
+        frame.joints[0].valid = static_cast<std::uint32_t>(random());
+      }
       if (random() % 2 == 0) frame.joints[1].position = pick();
       if (random() % 2 == 0) frame.imu.angular_velocity = {pick(), pick(), pick()};
       if (random() % 2 == 0) frame.imu.linear_acceleration = {pick(), pick(), pick()};
@@ -250,9 +256,9 @@ TEST_P(EstimatorGarbageTest, NeverPoisonsTheState) {
       estimator_.step(frame, state_);
     }
     ASSERT_TRUE(all_finite(state_)) << "cycle " << i;
-    ASSERT_GE(state_.distance, distance) << "cycle " << i;
-    distance = state_.distance;
-    for (const Matrix6& published : {state_.pose_covariance, state_.twist_covariance}) {
+    ASSERT_GE(state_.base.distance, distance) << "cycle " << i;
+    distance = state_.base.distance;
+    for (const Matrix6& published : {state_.base.pose_covariance, state_.base.twist_covariance}) {
       for (std::size_t k = 0; k < 6; ++k) ASSERT_GE(published[7 * k], 0) << "cycle " << i;
       // 2000 steps of 10⁻¹⁶, and gains of 10⁵ from garbage
       if (i % 100 == 0) {
@@ -265,7 +271,7 @@ TEST_P(EstimatorGarbageTest, NeverPoisonsTheState) {
   drive(0, 0, static_cast<int>(2 * Tuning::kConstantRate / kPeriod));
   EXPECT_TRUE(has(kStateValid));
   EXPECT_TRUE(has(kStateStandstill));
-  EXPECT_EQ(state_.slip, 0u);
+  EXPECT_EQ(state_.wheeled.slip, 0u);
   EXPECT_EQ(speed(), 0);
   estimator_.set_pose({0, 0, 0});  // the pose of before is worth nothing
   drive(0.5, 0, 2000);
@@ -292,7 +298,7 @@ TEST_P(ALyingGyro, WidensTheHeading) {
   stand(3000);
   const double off = yaw_error();
   EXPECT_GT(off, 0.2);
-  EXPECT_LT(off, 4 * std::sqrt(state_.pose_covariance[35]));
+  EXPECT_LT(off, 4 * std::sqrt(state_.base.pose_covariance[35]));
   EXPECT_LT(off, 1.1 * 2 * 0.3 * GetParam());
 }
 

@@ -12,26 +12,27 @@
 namespace robot_control {
 
 inline bool all_finite(const StateFrame& state) {
-  bool good = std::isfinite(state.distance);
+  bool good = std::isfinite(state.base.distance);
   const auto check = [&](const auto& values) {
     for (const double value : values) good = good && std::isfinite(value);
   };
-  check(state.pose_odom.position);
-  check(state.pose_odom.orientation);
-  check(state.twist_base.linear);
-  check(state.twist_base.angular);
-  check(state.pose_covariance);
-  check(state.twist_covariance);
-  check(state.gyro_bias);
-  check(state.gyro_bias_deviation);
-  check(state.accelerometer_bias);
-  check(state.attitude);
-  check(state.attitude_covariance);
-  check(state.nis);
-  check(std::array{state.calibration.radius_ratio, state.calibration.wheel_base_factor,
-                   state.calibration.radius_ratio_deviation, state.calibration.wheel_base_deviation});
-  check(std::array{state.wheels.x, state.wheels.y, state.wheels.yaw, state.wheels.linear, state.wheels.angular});
-  for (const double value : state.confidence) good = good && value >= 0 && value <= 1;
+  check(state.base.pose_odom.position);
+  check(state.base.pose_odom.orientation);
+  check(state.base.twist_base.linear);
+  check(state.base.twist_base.angular);
+  check(state.base.pose_covariance);
+  check(state.base.twist_covariance);
+  check(state.base.gyro_bias);
+  check(state.base.gyro_bias_deviation);
+  check(state.base.accelerometer_bias);
+  check(state.base.attitude);
+  check(state.base.attitude_covariance);
+  check(state.wheeled.nis);
+  check(std::array{state.wheeled.calibration.radius_ratio, state.wheeled.calibration.wheel_base_factor,
+                   state.wheeled.calibration.radius_ratio_deviation, state.wheeled.calibration.wheel_base_deviation});
+  check(std::array{state.wheeled.odometry.x, state.wheeled.odometry.y, state.wheeled.odometry.yaw,
+                   state.wheeled.odometry.linear, state.wheeled.odometry.angular});
+  for (const double value : state.wheeled.confidence) good = good && value >= 0 && value <= 1;
   return good;
 }
 
@@ -42,7 +43,7 @@ inline bool is_covariance(const Matrix6& published, double slack) {
 
 class EstimatorFixture : public testing::Test {
  protected:
-  explicit EstimatorFixture(const RobotModel& model = two_wheeler(),
+  explicit EstimatorFixture(const DriveTrain& model = two_wheeler(),
                             const EstimatorParameters& parameters = rigid_tyres(),
                             double period = RollingRobot::kPeriod)
       : robot_(model, period), estimator_(parameters, model, period) {}
@@ -67,11 +68,11 @@ class EstimatorFixture : public testing::Test {
     fault(frame);
     estimator_.step(frame, state_);
   }
-  bool has(StateFlag flag) const { return (state_.flags & flag) != 0; }
-  double x() const { return state_.pose_odom.position[0]; }
-  double y() const { return state_.pose_odom.position[1]; }
-  double yaw() const { return yaw_of(state_.pose_odom); }
-  double speed() const { return state_.twist_base.linear[0]; }
+  bool has(StateFlag flag) const { return (state_.base.flags & flag) != 0; }
+  double x() const { return state_.base.pose_odom.position[0]; }
+  double y() const { return state_.base.pose_odom.position[1]; }
+  double yaw() const { return yaw_of(state_.base.pose_odom); }
+  double speed() const { return state_.base.twist_base.linear[0]; }
   double position_error() const { return std::hypot(x() - robot_.x(), y() - robot_.y()); }
   double yaw_error() const { return std::abs(std::remainder(yaw() - robot_.yaw(), 2 * std::numbers::pi)); }
 

@@ -9,7 +9,7 @@ namespace robot_control {
 namespace {
 
 /// Stands and drives for ten seconds. `biased`: constant errors in base axes, wherever the IMU is.
-StateFrame drive_with(const RobotModel& model, RollingRobot& robot) {
+StateFrame drive_with(const DriveTrain& model, RollingRobot& robot) {
   Estimator estimator(rigid_tyres(), model, kPeriod);
   StateFrame state;
   for (int i = 0; i < 10000; ++i) {
@@ -19,8 +19,8 @@ StateFrame drive_with(const RobotModel& model, RollingRobot& robot) {
   return state;
 }
 
-RobotModel mounted(const Eigen::Quaterniond& q, const Vector3& position) {
-  RobotModel model = two_wheeler();
+DriveTrain mounted(const Eigen::Quaterniond& q, const Vector3& position) {
+  DriveTrain model = two_wheeler();
   model.imu_in_base.orientation = {q.x(), q.y(), q.z(), q.w()};
   model.imu_in_base.position = position;
   return model;
@@ -47,14 +47,14 @@ TEST_P(EstimatorMountingTest, AnyOrientationGivesTheSameState) {
   const StateFrame state = drive_with(mounted(q, {0.1, -0.05, 0.2}), turned);
   constexpr double kRounding = 1e-8;  // of 10⁴ cycles
   for (const std::size_t i : {0U, 1U}) {
-    EXPECT_NEAR(state.pose_odom.position[i], expected.pose_odom.position[i], kRounding);
-    EXPECT_NEAR(state.twist_base.linear[i], expected.twist_base.linear[i], kRounding);
+    EXPECT_NEAR(state.base.pose_odom.position[i], expected.base.pose_odom.position[i], kRounding);
+    EXPECT_NEAR(state.base.twist_base.linear[i], expected.base.twist_base.linear[i], kRounding);
   }
-  EXPECT_NEAR(yaw_of(state.pose_odom), yaw_of(expected.pose_odom), kRounding);
-  EXPECT_NEAR(state.pose_covariance[0], expected.pose_covariance[0], 1e-5 * expected.pose_covariance[0]);
-  EXPECT_EQ(state.slip, 0u);
-  const Eigen::Vector3d in_imu(state.gyro_bias.data());
-  const Eigen::Vector3d in_base(expected.gyro_bias.data());
+  EXPECT_NEAR(yaw_of(state.base.pose_odom), yaw_of(expected.base.pose_odom), kRounding);
+  EXPECT_NEAR(state.base.pose_covariance[0], expected.base.pose_covariance[0], 1e-5 * expected.base.pose_covariance[0]);
+  EXPECT_EQ(state.wheeled.slip, 0u);
+  const Eigen::Vector3d in_imu(state.base.gyro_bias.data());
+  const Eigen::Vector3d in_base(expected.base.gyro_bias.data());
   EXPECT_LT((q * in_imu - in_base).norm(), kRounding);
 }
 
@@ -63,14 +63,15 @@ INSTANTIATE_TEST_SUITE_P(Seeds, EstimatorMountingTest, testing::Range(0U, 10U));
 // The effect of the lever on the accelerometer is known at any place.
 TEST(EstimatorMounting, AnyPlaceFindsTheTruth) {
   for (const Vector3& place : {Vector3{0.3, 0.2, 0.5}, Vector3{-0.4, -0.3, 0.05}, Vector3{0, 0, 1}}) {
-    const RobotModel model = mounted(Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5), place);
+    const DriveTrain model = mounted(Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5), place);
     RollingRobot robot(model);
     const StateFrame state = drive_with(model, robot);
-    const double deviation = std::sqrt(state.pose_covariance[0] + state.pose_covariance[7]);
-    EXPECT_LT(std::hypot(state.pose_odom.position[0] - robot.x(), state.pose_odom.position[1] - robot.y()), deviation);
-    EXPECT_LT(std::abs(std::remainder(yaw_of(state.pose_odom) - robot.yaw(), 2 * std::numbers::pi)),
-              std::sqrt(state.pose_covariance[35]));
-    EXPECT_EQ(state.slip, 0u);
+    const double deviation = std::sqrt(state.base.pose_covariance[0] + state.base.pose_covariance[7]);
+    EXPECT_LT(std::hypot(state.base.pose_odom.position[0] - robot.x(), state.base.pose_odom.position[1] - robot.y()),
+              deviation);
+    EXPECT_LT(std::abs(std::remainder(yaw_of(state.base.pose_odom) - robot.yaw(), 2 * std::numbers::pi)),
+              std::sqrt(state.base.pose_covariance[35]));
+    EXPECT_EQ(state.wheeled.slip, 0u);
   }
 }
 
@@ -116,7 +117,8 @@ TEST_P(EstimatorRatesTest, FindTheTruth) {
     SensorFrame frame = robot.frame();
     frame.valid = 0;
     if (i % (1000 / GetParam().gyro) == 0) frame.valid |= kValidGyro;
-    if (i % (1000 / GetParam().wheels) == 0) frame.valid |= kValidJoints;
+    const bool sampled = i % (1000 / GetParam().wheels) == 0;
+    set_joints_valid(frame, sampled ? kValidMotion : 0);
     if (i % (1000 / GetParam().accelerometer) == 0) {  // a mean over the time before it
       frame.valid |= kValidAccelerometer;
       const Eigen::Vector3d mean = force / samples;
@@ -124,18 +126,18 @@ TEST_P(EstimatorRatesTest, FindTheTruth) {
       force.setZero();
       samples = 0;
     }
-    if (frame.valid == 0) continue;
+    if (frame.valid == 0 && !sampled) continue;
     estimator.step(frame, since, state);
     since = 0;
     if (i < 3000) continue;
-    flagged += (state.flags & kStateSlip) != 0 ? 1 : 0;
+    flagged += (state.base.flags & kStateSlip) != 0 ? 1 : 0;
     ASSERT_TRUE(all_finite(state)) << i;
-    ASSERT_NE(state.flags & kStateValid, 0u) << i;
+    ASSERT_NE(state.base.flags & kStateValid, 0u) << i;
   }
   EXPECT_EQ(flagged, 0);
   const double gap = 1.0 / GetParam().gyro;
-  EXPECT_LT(std::abs(yaw_of(state.pose_odom) - robot.yaw()), 0.6 * gap + 1e-3);
-  EXPECT_LT(std::hypot(state.pose_odom.position[0] - robot.x(), state.pose_odom.position[1] - robot.y()),
+  EXPECT_LT(std::abs(yaw_of(state.base.pose_odom) - robot.yaw()), 0.6 * gap + 1e-3);
+  EXPECT_LT(std::hypot(state.base.pose_odom.position[0] - robot.x(), state.base.pose_odom.position[1] - robot.y()),
             0.002 * robot.distance);
 }
 

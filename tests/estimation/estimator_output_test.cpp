@@ -17,8 +17,8 @@ class EstimatorLeverTest : public testing::Test {
     for (Estimator* estimator : {&middle_, &ahead_}) estimator->set_pose({0, 0, 0});
     for (int i = 0; i < 3000; ++i) step(0.4, 0.6 * std::sin(i * 1e-3));
   }
-  static RobotModel model(double axle) {
-    RobotModel model = two_wheeler();
+  static DriveTrain model(double axle) {
+    DriveTrain model = two_wheeler();
     for (WheelModel& wheel : model.wheels) wheel.centre_base[0] = axle;
     return model;
   }
@@ -40,22 +40,24 @@ class EstimatorLeverTest : public testing::Test {
 };
 
 TEST_F(EstimatorLeverTest, ThePoseIsThatOfBaseLink) {
-  const double yaw = yaw_of(of_middle_.pose_odom);
-  EXPECT_NEAR(yaw_of(of_ahead_.pose_odom), yaw, 1e-12);
-  EXPECT_NEAR(of_ahead_.pose_odom.position[0], of_middle_.pose_odom.position[0] + kAhead * (std::cos(yaw) - 1), 1e-9);
-  EXPECT_NEAR(of_ahead_.pose_odom.position[1], of_middle_.pose_odom.position[1] + kAhead * std::sin(yaw), 1e-9);
+  const double yaw = yaw_of(of_middle_.base.pose_odom);
+  EXPECT_NEAR(yaw_of(of_ahead_.base.pose_odom), yaw, 1e-12);
+  EXPECT_NEAR(of_ahead_.base.pose_odom.position[0],
+              of_middle_.base.pose_odom.position[0] + kAhead * (std::cos(yaw) - 1), 1e-9);
+  EXPECT_NEAR(of_ahead_.base.pose_odom.position[1], of_middle_.base.pose_odom.position[1] + kAhead * std::sin(yaw),
+              1e-9);
 }
 
 // An error of the yaw swings base_link about the axle: P = J P J'.
 TEST_F(EstimatorLeverTest, ThePosesCovarianceIsThatOfBaseLink) {
-  const double yaw = yaw_of(of_middle_.pose_odom);
+  const double yaw = yaw_of(of_middle_.base.pose_odom);
   Eigen::Matrix<double, 6, 6> by = Eigen::Matrix<double, 6, 6>::Identity();
   by(0, 5) = -kAhead * std::sin(yaw);
   by(1, 5) = kAhead * std::cos(yaw);
   const Eigen::Matrix<double, 6, 6> p =
-      Eigen::Map<const Eigen::Matrix<double, 6, 6>>(of_middle_.pose_covariance.data());
+      Eigen::Map<const Eigen::Matrix<double, 6, 6>>(of_middle_.base.pose_covariance.data());
   const Eigen::Matrix<double, 6, 6> expected = by * p * by.transpose();
-  const Eigen::Map<const Eigen::Matrix<double, 6, 6>> known(of_ahead_.pose_covariance.data());
+  const Eigen::Map<const Eigen::Matrix<double, 6, 6>> known(of_ahead_.base.pose_covariance.data());
   for (const int i : {0, 1, 5}) {
     for (const int k : {0, 1, 5}) {
       EXPECT_NEAR(known(i, k), expected(i, k), 1e-9 * std::sqrt(expected(i, i) * expected(k, k))) << i << ", " << k;
@@ -64,10 +66,10 @@ TEST_F(EstimatorLeverTest, ThePosesCovarianceIsThatOfBaseLink) {
 }
 
 TEST_F(EstimatorLeverTest, TheTwistIsThatOfBaseLink) {
-  EXPECT_NEAR(of_ahead_.twist_base.linear[0], of_middle_.twist_base.linear[0], 1e-12);
-  EXPECT_NEAR(of_ahead_.twist_base.linear[1], kAhead * of_middle_.twist_base.angular[2], 1e-12);
-  EXPECT_NEAR(of_ahead_.twist_covariance[7],
-              of_middle_.twist_covariance[7] + kAhead * kAhead * of_middle_.twist_covariance[35], 1e-12);
+  EXPECT_NEAR(of_ahead_.base.twist_base.linear[0], of_middle_.base.twist_base.linear[0], 1e-12);
+  EXPECT_NEAR(of_ahead_.base.twist_base.linear[1], kAhead * of_middle_.base.twist_base.angular[2], 1e-12);
+  EXPECT_NEAR(of_ahead_.base.twist_covariance[7],
+              of_middle_.base.twist_covariance[7] + kAhead * kAhead * of_middle_.base.twist_covariance[35], 1e-12);
 }
 
 // The covariance grows by the restart's constants; that of the yaw moves base_link, too. The clock offset is unknown
@@ -85,10 +87,10 @@ TEST_F(EstimatorLeverTest, ARestartKeepsTheCovariance) {
     const double position = Tuning::kRestart * Tuning::kRestart;
     const double late = 0.4 * PlanarCoreParams{}.clock_offset;
     const double reading = EstimatorParameters{}.encoder_noise * two_wheeler().wheels[0].radius;
-    EXPECT_NEAR(state.pose_covariance[35], before.pose_covariance[35] + yaw, 1e-9) << axle;
-    EXPECT_NEAR(state.pose_covariance[0] + state.pose_covariance[7],
-                before.pose_covariance[0] + before.pose_covariance[7] + 2 * position + axle * axle * yaw + late * late +
-                    reading * reading,
+    EXPECT_NEAR(state.base.pose_covariance[35], before.base.pose_covariance[35] + yaw, 1e-9) << axle;
+    EXPECT_NEAR(state.base.pose_covariance[0] + state.base.pose_covariance[7],
+                before.base.pose_covariance[0] + before.base.pose_covariance[7] + 2 * position + axle * axle * yaw +
+                    late * late + reading * reading,
                 1e-9)
         << axle;
   };
@@ -99,7 +101,7 @@ TEST_F(EstimatorLeverTest, ARestartKeepsTheCovariance) {
 // Deviations of the bias are published in the IMU's axes, and continued from these. After a drive without a rest that
 // about the vertical differs from those of tilting.
 TEST(EstimatorOutput, ARestartKeepsTheDeviationsOfTheBias) {
-  RobotModel model = two_wheeler();
+  DriveTrain model = two_wheeler();
   model.imu_in_base.orientation = {std::sqrt(0.5), 0, 0, std::sqrt(0.5)};  // its y axis upwards
   RollingRobot robot(model);
   Estimator estimator(rigid_tyres(), model, kPeriod);
@@ -113,9 +115,12 @@ TEST(EstimatorOutput, ARestartKeepsTheDeviationsOfTheBias) {
   Estimator restarted(rigid_tyres(), model, kPeriod);
   restarted.resume(last);
   restarted.step(robot.frame(), state);
-  ASSERT_GT(std::abs(last.gyro_bias_deviation[1] - last.gyro_bias_deviation[2]), 0.005 * last.gyro_bias_deviation[1]);
+  ASSERT_GT(std::abs(last.base.gyro_bias_deviation[1] - last.base.gyro_bias_deviation[2]),
+            0.005 * last.base.gyro_bias_deviation[1]);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_NEAR(state.gyro_bias_deviation[i], last.gyro_bias_deviation[i], 1e-3 * last.gyro_bias_deviation[i]) << i;
+    EXPECT_NEAR(state.base.gyro_bias_deviation[i], last.base.gyro_bias_deviation[i],
+                1e-3 * last.base.gyro_bias_deviation[i])
+        << i;
   }
 }
 
@@ -132,15 +137,15 @@ TEST_P(EstimatorPlaneTest, ThePitchRateIsPublishedOutsideOfThePlaneAlone) {
     robot.drive(i < 1000 ? 0 : 0.5, 0, i < 2500 ? 0 : -0.05);
     estimator.step(robot.frame(), state);
   }
-  EXPECT_NEAR(state.twist_base.angular[1], GetParam() ? 0 : -0.05, 1e-4);
-  EXPECT_EQ(state.twist_base.linear[2], 0);
-  EXPECT_NEAR(2 * std::asin(state.attitude[1]), -0.05 * 1.5, 2e-3);
+  EXPECT_NEAR(state.base.twist_base.angular[1], GetParam() ? 0 : -0.05, 1e-4);
+  EXPECT_EQ(state.base.twist_base.linear[2], 0);
+  EXPECT_NEAR(2 * std::asin(state.base.attitude[1]), -0.05 * 1.5, 2e-3);
   if (GetParam()) {
-    EXPECT_EQ(state.pose_odom.orientation[1], 0);
-    EXPECT_EQ(state.pose_covariance[28], Tuning::kPlanarVariance);
+    EXPECT_EQ(state.base.pose_odom.orientation[1], 0);
+    EXPECT_EQ(state.base.pose_covariance[28], Tuning::kPlanarVariance);
   } else {
-    EXPECT_EQ(state.pose_odom.orientation, state.attitude);
-    EXPECT_NEAR(state.pose_covariance[28], state.attitude_covariance[4], 1e-15);
+    EXPECT_EQ(state.base.pose_odom.orientation, state.base.attitude);
+    EXPECT_NEAR(state.base.pose_covariance[28], state.base.attitude_covariance[4], 1e-15);
   }
 }
 

@@ -34,12 +34,12 @@ TEST_P(SteadyMotion, PoseAndTwistAreTheTruth) {
   const auto [linear, angular] = GetParam();
   drive(linear, angular, 10000);
   expect_truth();
-  EXPECT_NEAR(speed(), linear, std::sqrt(state_.twist_covariance[0]));
-  EXPECT_NEAR(state_.twist_base.angular[2], angular, std::sqrt(state_.twist_covariance[35]));
-  EXPECT_NEAR(state_.distance, robot_.distance, 0.001 * robot_.distance + reading());
-  EXPECT_EQ(state_.flags, std::uint64_t{kStateValid});
-  EXPECT_EQ(state_.slip, 0u);
-  for (const std::uint64_t rejected : state_.rejected) EXPECT_EQ(rejected, 0u);
+  EXPECT_NEAR(speed(), linear, std::sqrt(state_.base.twist_covariance[0]));
+  EXPECT_NEAR(state_.base.twist_base.angular[2], angular, std::sqrt(state_.base.twist_covariance[35]));
+  EXPECT_NEAR(state_.base.distance, robot_.distance, 0.001 * robot_.distance + reading());
+  EXPECT_EQ(state_.base.flags, std::uint64_t{kStateValid});
+  EXPECT_EQ(state_.wheeled.slip, 0u);
+  for (const std::uint64_t rejected : state_.wheeled.rejected) EXPECT_EQ(rejected, 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(EstimatorPose, SteadyMotion,
@@ -72,8 +72,8 @@ TEST_F(EstimatorPoseTest, FirstEncoderReadingIsTheOffset) {
   frame.joints[0].position = 1234.5;
   frame.joints[1].position = -77;
   estimator_.step(frame, state_);
-  EXPECT_EQ(state_.pose_odom.position, (Vector3{0, 0, 0}));
-  EXPECT_EQ(state_.distance, 0);
+  EXPECT_EQ(state_.base.pose_odom.position, (Vector3{0, 0, 0}));
+  EXPECT_EQ(state_.base.distance, 0);
 }
 
 // Rest is held until a wheel has left its tolerance; the motion in that window is then added at once.
@@ -90,7 +90,7 @@ TEST_F(EstimatorPoseTest, NothingOfAnEndedRestIsLost) {
 
 // An axle 0.2 m behind base_link: spinning moves base_link on a circle of that radius.
 TEST(EstimatorPoseOfOtherRobots, ABaseBesideTheAxleMovesOnItsOwnCircle) {
-  RobotModel model = two_wheeler();
+  DriveTrain model = two_wheeler();
   model.wheels[0].centre_base[0] = model.wheels[1].centre_base[0] = -0.2;
   Estimator estimator(rigid_tyres(), model, kPeriod);
   RollingRobot robot(model);
@@ -99,15 +99,15 @@ TEST(EstimatorPoseOfOtherRobots, ABaseBesideTheAxleMovesOnItsOwnCircle) {
     robot.drive(0, i < 500 ? 0 : 0.5);
     estimator.step(robot.frame(), state);
   }
-  const double yaw = yaw_of(state.pose_odom);
+  const double yaw = yaw_of(state.base.pose_odom);
   EXPECT_NEAR(yaw, 0.5 * 2.5 - 0.5 * 0.5 / RollingRobot::kTurnAcceleration / 2, reading_of_yaw());
-  EXPECT_NEAR(state.pose_odom.position[0], -0.2 + 0.2 * std::cos(yaw), reading());
-  EXPECT_NEAR(state.pose_odom.position[1], 0.2 * std::sin(yaw), reading());
-  EXPECT_NEAR(state.twist_base.linear[1], 0.5 * 0.2, 1e-3);
+  EXPECT_NEAR(state.base.pose_odom.position[0], -0.2 + 0.2 * std::cos(yaw), reading());
+  EXPECT_NEAR(state.base.pose_odom.position[1], 0.2 * std::sin(yaw), reading());
+  EXPECT_NEAR(state.base.twist_base.linear[1], 0.5 * 0.2, 1e-3);
 }
 
 TEST(EstimatorPoseOfOtherRobots, FourWheelsTurnAboutTheirMiddleByTheEffectiveWheelBase) {
-  const RobotModel model = four_wheeler();
+  const DriveTrain model = four_wheeler();
   Estimator estimator(rigid_tyres(), model, kPeriod);
   RollingRobot robot(model);
   StateFrame state;
@@ -115,11 +115,11 @@ TEST(EstimatorPoseOfOtherRobots, FourWheelsTurnAboutTheirMiddleByTheEffectiveWhe
     robot.drive(i < 500 ? 0 : 0.2, i < 500 ? 0 : 0.5);
     estimator.step(robot.frame(), state);
   }
-  EXPECT_NEAR(yaw_of(state.pose_odom), robot.yaw(), reading_of_yaw());
-  EXPECT_NEAR(state.pose_odom.position[0], robot.x(), reading());
-  EXPECT_NEAR(state.pose_odom.position[1], robot.y(), reading());
+  EXPECT_NEAR(yaw_of(state.base.pose_odom), robot.yaw(), reading_of_yaw());
+  EXPECT_NEAR(state.base.pose_odom.position[0], robot.x(), reading());
+  EXPECT_NEAR(state.base.pose_odom.position[1], robot.y(), reading());
   // Turning by the geometric wheel base would be 1.64 times as fast.
-  EXPECT_NEAR(state.wheels.yaw, robot.yaw(), 1e-9);
+  EXPECT_NEAR(state.wheeled.odometry.yaw, robot.yaw(), 1e-9);
 }
 
 // The velocity is constant through a gap of eight cycles.
@@ -147,21 +147,21 @@ TEST_F(EstimatorPoseTest, AFrameSeenBeforeChangesNothing) {
 
 TEST_F(EstimatorPoseTest, ResetPoseIsZeroInTheNextFrameAndKeepsTheTwist) {
   drive(0.5, 0.2, 1000);
-  const double distance = state_.distance;
+  const double distance = state_.base.distance;
   estimator_.set_pose({0, 0, 0});
   drive(0.5, 0.2, 1);
-  EXPECT_EQ(state_.pose_odom.position, (Vector3{0, 0, 0}));
+  EXPECT_EQ(state_.base.pose_odom.position, (Vector3{0, 0, 0}));
   EXPECT_NEAR(yaw(), 0, 1e-15);
   for (const std::size_t i : {0U, 1U, 5U, 6U, 7U, 11U, 30U, 31U, 35U}) {
-    EXPECT_NEAR(state_.pose_covariance[i], 0, kExactVariance) << i;
+    EXPECT_NEAR(state_.base.pose_covariance[i], 0, kExactVariance) << i;
   }
   EXPECT_NEAR(speed(), 0.5, 1e-3);
-  EXPECT_GT(state_.distance, distance);
+  EXPECT_GT(state_.base.distance, distance);
 }
 
 // The IMU is high on a robot that may be tilted: its own place is uncertain, that of base_link is not.
 TEST(EstimatorPoseOfOtherRobots, ResetPoseIsExactForBaseLinkUnderAnyImu) {
-  RobotModel model = two_wheeler();
+  DriveTrain model = two_wheeler();
   model.imu_in_base.position = {0.2, -0.1, 0.8};
   Estimator estimator(rigid_tyres(), model, kPeriod);
   RollingRobot robot(model);
@@ -171,11 +171,11 @@ TEST(EstimatorPoseOfOtherRobots, ResetPoseIsExactForBaseLinkUnderAnyImu) {
     if (i == 2999) estimator.set_pose({3, -4, 1});
     estimator.step(robot.frame(), state);
   }
-  EXPECT_NEAR(state.pose_odom.position[0], 3, 1e-15);
-  EXPECT_NEAR(state.pose_odom.position[1], -4, 1e-15);
-  EXPECT_NEAR(yaw_of(state.pose_odom), 1, 1e-15);
+  EXPECT_NEAR(state.base.pose_odom.position[0], 3, 1e-15);
+  EXPECT_NEAR(state.base.pose_odom.position[1], -4, 1e-15);
+  EXPECT_NEAR(yaw_of(state.base.pose_odom), 1, 1e-15);
   for (const std::size_t i : {0U, 1U, 5U, 6U, 7U, 11U, 30U, 31U, 35U}) {
-    EXPECT_NEAR(state.pose_covariance[i], 0, kExactVariance) << i;
+    EXPECT_NEAR(state.base.pose_covariance[i], 0, kExactVariance) << i;
   }
 }
 
@@ -191,7 +191,7 @@ TEST_F(EstimatorPoseTest, SetPoseContinuesFromThere) {
   drive(0.5, 0, 1000);
   EXPECT_NEAR(x(), 1, 2 * reading());
   EXPECT_NEAR(y(), 2.5, 2 * reading());
-  EXPECT_GT(state_.pose_covariance[7], 0);
+  EXPECT_GT(state_.base.pose_covariance[7], 0);
 }
 
 // The covariance of the calibration turns with the pose: from then on both drives give the same numbers.
@@ -209,12 +209,14 @@ TEST_F(EstimatorPoseTest, SetPoseIsTheSameDriveInOtherAxes) {
   }
   constexpr double kRounding = 1e-9;            // of 15 000 updates of numbers of order 1
   constexpr double kCovarianceRounding = 1e-6;  // relative
-  EXPECT_NEAR(std::cos(angle) * x() - std::sin(angle) * y(), other.pose_odom.position[0], kRounding);
-  EXPECT_NEAR(std::sin(angle) * x() + std::cos(angle) * y(), other.pose_odom.position[1], kRounding);
-  EXPECT_NEAR(std::remainder(yaw() + angle - yaw_of(other.pose_odom), 2 * std::numbers::pi), 0, kRounding);
-  EXPECT_NEAR(state_.pose_covariance[0] + state_.pose_covariance[7],
-              other.pose_covariance[0] + other.pose_covariance[7], kCovarianceRounding * state_.pose_covariance[0]);
-  EXPECT_NEAR(state_.pose_covariance[35], other.pose_covariance[35], kCovarianceRounding * state_.pose_covariance[35]);
+  EXPECT_NEAR(std::cos(angle) * x() - std::sin(angle) * y(), other.base.pose_odom.position[0], kRounding);
+  EXPECT_NEAR(std::sin(angle) * x() + std::cos(angle) * y(), other.base.pose_odom.position[1], kRounding);
+  EXPECT_NEAR(std::remainder(yaw() + angle - yaw_of(other.base.pose_odom), 2 * std::numbers::pi), 0, kRounding);
+  EXPECT_NEAR(state_.base.pose_covariance[0] + state_.base.pose_covariance[7],
+              other.base.pose_covariance[0] + other.base.pose_covariance[7],
+              kCovarianceRounding * state_.base.pose_covariance[0]);
+  EXPECT_NEAR(state_.base.pose_covariance[35], other.base.pose_covariance[35],
+              kCovarianceRounding * state_.base.pose_covariance[35]);
 }
 
 TEST_F(EstimatorPoseTest, ANewRunStartsAtZero) {
@@ -223,10 +225,10 @@ TEST_F(EstimatorPoseTest, ANewRunStartsAtZero) {
   RollingRobot robot;
   robot.frame().joints[0].position = 3;
   estimator_.step(robot.frame(), state_);
-  EXPECT_EQ(state_.pose_odom.position, (Vector3{0, 0, 0}));
-  EXPECT_EQ(state_.distance, 0);
+  EXPECT_EQ(state_.base.pose_odom.position, (Vector3{0, 0, 0}));
+  EXPECT_EQ(state_.base.distance, 0);
   EXPECT_EQ(state_.skipped, 0u);
-  EXPECT_EQ(state_.wheels.x, 0);
+  EXPECT_EQ(state_.wheeled.odometry.x, 0);
 }
 
 TEST_F(EstimatorPoseTest, ARestartContinuesWithoutAJumpAndWithGrownCovariance) {
@@ -238,19 +240,19 @@ TEST_F(EstimatorPoseTest, ARestartContinuesWithoutAJumpAndWithGrownCovariance) {
   for (int i = 0; i < 300; ++i) robot_.drive(0.5, 0.2);
   restarted.step(robot_.frame(), state_);
   for (const std::size_t i : {0U, 1U, 2U}) {
-    EXPECT_NEAR(state_.pose_odom.position[i], last.pose_odom.position[i], 1e-15);
+    EXPECT_NEAR(state_.base.pose_odom.position[i], last.base.pose_odom.position[i], 1e-15);
   }
-  EXPECT_NEAR(yaw(), yaw_of(last.pose_odom), 1e-15);
-  EXPECT_EQ(state_.distance, last.distance);
+  EXPECT_NEAR(yaw(), yaw_of(last.base.pose_odom), 1e-15);
+  EXPECT_EQ(state_.base.distance, last.base.distance);
   EXPECT_EQ(state_.skipped, last.skipped + 299);
   EXPECT_TRUE(has(kStateRestarted));
   EXPECT_TRUE(has(kStateValid));
-  EXPECT_EQ(state_.gyro_bias, last.gyro_bias);
-  EXPECT_NEAR(state_.calibration.radius_ratio, last.calibration.radius_ratio, 1e-15);
+  EXPECT_EQ(state_.base.gyro_bias, last.base.gyro_bias);
+  EXPECT_NEAR(state_.wheeled.calibration.radius_ratio, last.wheeled.calibration.radius_ratio, 1e-15);
   // The unknown travel is about 0.5 m/s · 0.3 s.
-  EXPECT_GT(state_.pose_covariance[0], last.pose_covariance[0] + 0.14 * 0.14);
-  EXPECT_GT(state_.pose_covariance[35], last.pose_covariance[35] + 0.05 * 0.05);
-  EXPECT_NEAR(speed(), last.twist_base.linear[0], 1e-12);
+  EXPECT_GT(state_.base.pose_covariance[0], last.base.pose_covariance[0] + 0.14 * 0.14);
+  EXPECT_GT(state_.base.pose_covariance[35], last.base.pose_covariance[35] + 0.05 * 0.05);
+  EXPECT_NEAR(speed(), last.base.twist_base.linear[0], 1e-12);
   const double x0 = x();
   const double y0 = y();
   for (int i = 0; i < 1000; ++i) {
@@ -269,7 +271,7 @@ TEST_F(EstimatorPoseTest, ARestartInTheCycleAlreadyPublishedHoldsThePose) {
   Estimator restarted(rigid_tyres(), two_wheeler(), kPeriod);
   restarted.resume(last);
   restarted.step(robot_.frame(), state_);
-  EXPECT_NEAR(x(), last.pose_odom.position[0], 1e-15);
+  EXPECT_NEAR(x(), last.base.pose_odom.position[0], 1e-15);
   EXPECT_EQ(state_.skipped, last.skipped);
 }
 
@@ -283,29 +285,29 @@ TEST_F(EstimatorPoseTest, ALastFrameThatIsNotFiniteIsNotContinuedFrom) {
     restarted.resume(last);
     StateFrame state;
     restarted.step(robot_.frame(), state);
-    EXPECT_EQ(state.pose_odom.position, (Vector3{0, 0, 0}));
-    EXPECT_EQ(state.flags & kStateRestarted, 0u);
+    EXPECT_EQ(state.base.pose_odom.position, (Vector3{0, 0, 0}));
+    EXPECT_EQ(state.base.flags & kStateRestarted, 0u);
     EXPECT_TRUE(all_finite(state));
   };
-  spoil([](StateFrame& last) { last.pose_odom.position[0] = std::nan(""); });
-  spoil([](StateFrame& last) { last.pose_covariance[7] = HUGE_VAL; });
-  spoil([](StateFrame& last) { last.calibration.radius_ratio = std::nan(""); });
-  spoil([](StateFrame& last) { last.attitude = {0, 0, 0, 0}; });
-  spoil([](StateFrame& last) { last.flags = 0; });
+  spoil([](StateFrame& last) { last.base.pose_odom.position[0] = std::nan(""); });
+  spoil([](StateFrame& last) { last.base.pose_covariance[7] = HUGE_VAL; });
+  spoil([](StateFrame& last) { last.wheeled.calibration.radius_ratio = std::nan(""); });
+  spoil([](StateFrame& last) { last.base.attitude = {0, 0, 0, 0}; });
+  spoil([](StateFrame& last) { last.base.flags = 0; });
 }
 
 TEST_F(EstimatorPoseTest, CovarianceGrowsWithDistanceAndWithTurn) {
   drive(0.5, 0, 2000);
-  const double position = state_.pose_covariance[0];
-  const double yaw = state_.pose_covariance[35];
+  const double position = state_.base.pose_covariance[0];
+  const double yaw = state_.base.pose_covariance[35];
   EXPECT_GT(position, 0);
   drive(0.5, 0, 2000);
   const double noise = EstimatorParameters{}.wheel_slip_noise;
-  EXPECT_GT(state_.pose_covariance[0], position + 0.9 * noise * noise / 2 * 1.0);  // m: two wheels' mean
-  const double yaw_straight = state_.pose_covariance[35];
+  EXPECT_GT(state_.base.pose_covariance[0], position + 0.9 * noise * noise / 2 * 1.0);  // m: two wheels' mean
+  const double yaw_straight = state_.base.pose_covariance[35];
   EXPECT_GT(yaw_straight, yaw);
   drive(0, 1.0, 1000);
-  EXPECT_GT(state_.pose_covariance[35], yaw_straight);
+  EXPECT_GT(state_.base.pose_covariance[35], yaw_straight);
 }
 
 // The mean of two independent wheels has σ² after d metres of wheel_slip_noise² · d / 2. It holds once the residuals of
@@ -314,7 +316,7 @@ TEST_F(EstimatorPoseTest, CovarianceGrowsWithDistanceAndWithTurn) {
 TEST_F(EstimatorPoseTest, DistanceVarianceIsThatOfTwoIndependentWheels) {
   drive(0.5, 0, 200000);
   drive(0, 0, 3000);
-  const double before = state_.pose_covariance[0];
+  const double before = state_.base.pose_covariance[0];
   const double distance = robot_.distance;
   drive(0.5, 0, 20000);
   drive(0, 0, 3000);
@@ -323,13 +325,13 @@ TEST_F(EstimatorPoseTest, DistanceVarianceIsThatOfTwoIndependentWheels) {
   const double radius = EstimatorParameters{}.wheel_radius_deviation;
   const double scaled = radius * radius * (robot_.distance * robot_.distance - distance * distance);
   const double expected = noise * noise / 2 * distance_driven;
-  EXPECT_NEAR(state_.pose_covariance[0] - before - scaled, expected, 0.02 * expected + 1e-6 * scaled);
+  EXPECT_NEAR(state_.base.pose_covariance[0] - before - scaled, expected, 0.02 * expected + 1e-6 * scaled);
 }
 
 TEST_F(EstimatorPoseTest, CovariancesAreSymmetricAndPositive) {
   for (int leg = 0; leg < 20; ++leg) {
     drive(0.5 - 0.05 * leg, 0.3 * std::sin(leg), 500);
-    for (const Matrix6& published : {state_.pose_covariance, state_.twist_covariance}) {
+    for (const Matrix6& published : {state_.base.pose_covariance, state_.base.twist_covariance}) {
       const Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>> matrix(published.data());
       const Eigen::Matrix<double, 6, 1> scale = matrix.diagonal().cwiseSqrt();
       const Eigen::Matrix<double, 6, 6> skew = matrix - matrix.transpose();
@@ -376,18 +378,18 @@ static_assert(noexcept(std::declval<Estimator>().step(SensorFrame{}, std::declva
 static_assert(noexcept(std::declval<Estimator>().step(SensorFrame{}, 1e-3, std::declval<StateFrame&>())));
 
 TEST(EstimatorConstruction, RefusesWhatCannotBe) {
-  const RobotModel robot = two_wheeler();
+  const DriveTrain robot = two_wheeler();
   EXPECT_THROW(Estimator(EstimatorParameters{}, robot, 0), std::invalid_argument);
   EXPECT_THROW(Estimator(EstimatorParameters{}, robot, std::nan("")), std::invalid_argument);
   const auto refuses_robot = [&](auto fault) {
-    RobotModel broken = robot;
+    DriveTrain broken = robot;
     fault(broken);
     EXPECT_THROW(Estimator(EstimatorParameters{}, broken, kPeriod), std::invalid_argument);
   };
-  refuses_robot([](RobotModel& broken) { broken.wheel_base = 0; });
-  refuses_robot([](RobotModel& broken) { broken.wheels.pop_back(); });
-  refuses_robot([](RobotModel& broken) { broken.wheels[0].radius = -0.1; });
-  refuses_robot([](RobotModel& broken) { broken.imu_in_base.orientation = {0, 0, 0, 0}; });
+  refuses_robot([](DriveTrain& broken) { broken.wheel_base = 0; });
+  refuses_robot([](DriveTrain& broken) { broken.wheels.pop_back(); });
+  refuses_robot([](DriveTrain& broken) { broken.wheels[0].radius = -0.1; });
+  refuses_robot([](DriveTrain& broken) { broken.imu_in_base.orientation = {0, 0, 0, 0}; });
   using Parameters = EstimatorParameters;
   for (double Parameters::*const positive :
        {&Parameters::gyro_noise, &Parameters::accelerometer_noise, &Parameters::encoder_noise,

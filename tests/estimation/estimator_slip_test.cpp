@@ -17,9 +17,9 @@ class EstimatorSlipTest : public EstimatorFixture {
     stand(2000);
     for (int i = 0; i < curves; ++i) drive(0.5, 0.6 * std::sin(i * 2e-3), 1);
     drive(0.5, 0, 6000);  // in which the level of the residuals is learned
-    EXPECT_EQ(state_.slip, 0u);
+    EXPECT_EQ(state_.wheeled.slip, 0u);
   }
-  bool names(std::uint64_t reasons) const { return (state_.slip & reasons) == reasons; }
+  bool names(std::uint64_t reasons) const { return (state_.wheeled.slip & reasons) == reasons; }
   /// Cycles, of `cycles` with the present motion, until slip is flagged; counts the flagged ones.
   int flagged(int cycles) {
     int count = 0;
@@ -37,7 +37,9 @@ class EstimatorSlipTest : public EstimatorFixture {
       observe();
     }
   }
-  double raw_error() const { return std::hypot(state_.wheels.x - robot_.x(), state_.wheels.y - robot_.y()); }
+  double raw_error() const {
+    return std::hypot(state_.wheeled.odometry.x - robot_.x(), state_.wheeled.odometry.y - robot_.y());
+  }
 };
 
 TEST_F(EstimatorSlipTest, AWheelThatSpinsIsNamed) {
@@ -45,11 +47,11 @@ TEST_F(EstimatorSlipTest, AWheelThatSpinsIsNamed) {
   EXPECT_GT(flagged(1000), 900);
   EXPECT_TRUE(names(kSlipRight | kSlipSpinning | kSlipTurn));
   EXPECT_FALSE(names(kSlipLeft));
-  EXPECT_EQ(state_.confidence[kRightEncoder], 0);
+  EXPECT_EQ(state_.wheeled.confidence[kRightEncoder], 0);
   EXPECT_LT(position_error(), raw_error() / 5);
   EXPECT_LT(yaw_error(), 0.01);
   recover();
-  EXPECT_EQ(state_.slip, 0u);
+  EXPECT_EQ(state_.wheeled.slip, 0u);
   EXPECT_LT(position_error(), raw_error() / 5);
 }
 
@@ -69,7 +71,7 @@ TEST_F(EstimatorFixture, ASlideBeforeTheFirstRestIsNotCorrected) {
     return count;
   };
   EXPECT_EQ(slipping(), 0);
-  EXPECT_NEAR(x(), state_.wheels.x, 0.02);
+  EXPECT_NEAR(x(), state_.wheeled.odometry.x, 0.02);
   drive(0.5, 0, 1000);
   stand(3000);
   EXPECT_GT(slipping(), 500);
@@ -82,7 +84,7 @@ TEST_F(EstimatorSlipTest, AWheelThatIsStuckIsNamed) {
   EXPECT_FALSE(names(kSlipRight));
   EXPECT_LT(position_error(), raw_error() / 5);
   recover();
-  EXPECT_EQ(state_.slip, 0u);
+  EXPECT_EQ(state_.wheeled.slip, 0u);
 }
 
 TEST_F(EstimatorSlipTest, BothWheelsSpinningUnderABodyThatRollsOn) {
@@ -92,7 +94,7 @@ TEST_F(EstimatorSlipTest, BothWheelsSpinningUnderABodyThatRollsOn) {
   EXPECT_FALSE(names(kSlipTurn));
   EXPECT_LT(position_error(), raw_error() / 5);
   recover();
-  EXPECT_EQ(state_.slip, 0u);
+  EXPECT_EQ(state_.wheeled.slip, 0u);
   EXPECT_LT(position_error(), raw_error() / 5);
 }
 
@@ -110,10 +112,10 @@ TEST_F(EstimatorSlipTest, LockedWheelsOfARobotThatSlidesOn) {
   EXPECT_GT(flagged, 150) << "until wheels and gyro stand";
   drive(0, 0, 3000);
   EXPECT_TRUE(has(kStateStandstill));
-  EXPECT_EQ(state_.slip, 0u);
+  EXPECT_EQ(state_.wheeled.slip, 0u);
   EXPECT_GT(raw_error(), 0.1);
   EXPECT_LT(position_error(), raw_error());
-  EXPECT_LT(position_error(), 3 * std::sqrt(state_.pose_covariance[0] + state_.pose_covariance[7]));
+  EXPECT_LT(position_error(), 3 * std::sqrt(state_.base.pose_covariance[0] + state_.base.pose_covariance[7]));
 }
 
 /// The robot has not turned yet: wheels and accelerometer may be a tenth of a second apart.
@@ -138,10 +140,10 @@ TEST_F(EstimatorSlipTest, SlidingSidewaysIsNamed) {
   }
   EXPECT_GT(flagged(500), 450);
   EXPECT_TRUE(names(kSlipSideways));
-  EXPECT_EQ(state_.confidence[kLateralContact], 0);
+  EXPECT_EQ(state_.wheeled.confidence[kLateralContact], 0);
   const double across = 0.25 * (0.5 / 2 + 0.5);  // m: pushed for 0.5 s, then at 0.25 m/s
   EXPECT_LT(position_error(), 1.2 * across) << "sideways nothing moves the path";
-  EXPECT_LT(position_error(), 3 * std::sqrt(state_.pose_covariance[0] + state_.pose_covariance[7]));
+  EXPECT_LT(position_error(), 3 * std::sqrt(state_.base.pose_covariance[0] + state_.base.pose_covariance[7]));
 }
 
 // The body leans by 2°: the accelerometer shows an endless slide. The path does not move.
@@ -177,7 +179,7 @@ TEST_F(EstimatorSlipTest, TheVelocityOfASlideIsAsUncertainAsItIsWrong) {
   robot_.tread = {1.5, 1.5};
   while (flagged(1) == 0) ASSERT_LT(robot_.distance, 20);
   for (int i = 0; i < 300; ++i) {
-    ASSERT_NEAR(speed(), 0.5, 4 * std::sqrt(state_.twist_covariance[0])) << "cycle " << i;
+    ASSERT_NEAR(speed(), 0.5, 4 * std::sqrt(state_.base.twist_covariance[0])) << "cycle " << i;
     flagged(1);
   }
 }
@@ -203,7 +205,7 @@ TEST_F(EstimatorSlipTest, EndsWhenTheWheelRollsAgain) {
   flagged(cycles / 2);
   ASSERT_TRUE(all_finite(state_));
   recover();
-  EXPECT_EQ(state_.slip, 0u);
+  EXPECT_EQ(state_.wheeled.slip, 0u);
   EXPECT_NEAR(speed(), 0.5, 0.02);
 }
 
@@ -217,8 +219,8 @@ TEST_F(EstimatorSlipTest, CanBeSwitchedOff) {
     robot.drive(i < 500 ? 0 : 0.5, 0);
     if (i == 2500) robot.tread[1] = 0.8;
     trusting.step(robot.frame(), state);
-    ASSERT_EQ(state.slip, 0u);
-    ASSERT_EQ(state.flags & kStateSlip, 0u);
+    ASSERT_EQ(state.wheeled.slip, 0u);
+    ASSERT_EQ(state.base.flags & kStateSlip, 0u);
   }
 }
 
@@ -233,13 +235,13 @@ class EstimatorRollingTest : public testing::Test {
   static constexpr unsigned kSeeds = 4;
 
   template <class Shake, class PitchRate>
-  double flagged(const RobotModel& model, Shake shake, PitchRate pitch_rate) {
+  double flagged(const DriveTrain& model, Shake shake, PitchRate pitch_rate) {
     double sum = 0;
     for (unsigned seed = 1; seed <= kSeeds; ++seed) sum += flagged(seed, model, shake, pitch_rate);
     return sum / kSeeds;
   }
   template <class Shake, class PitchRate>
-  double flagged(unsigned seed, const RobotModel& model, Shake shake, PitchRate pitch_rate) {
+  double flagged(unsigned seed, const DriveTrain& model, Shake shake, PitchRate pitch_rate) {
     RollingRobot robot(model, kPeriod, seed);
     robot.noise = {.gyro = 2.44e-4, .accelerometer = 2e-3, .counts = 4096};
     robot.radius_ratio = 0.003;
@@ -262,7 +264,7 @@ class EstimatorRollingTest : public testing::Test {
       shake(robot, i);
       robot.drive(linear, angular, i > 2000 ? pitch_rate(i * kPeriod) : 0);
       estimator.step(robot.frame(), state);
-      count += (state.flags & kStateSlip) != 0 ? 1 : 0;
+      count += (state.base.flags & kStateSlip) != 0 ? 1 : 0;
     }
     return count / static_cast<double>(kCycles);
   }
@@ -275,7 +277,7 @@ TEST_F(EstimatorRollingTest, RollingIsNotCalledSlip) {
 
 // 1° RMS at 1.5 Hz, about the contact; the IMU is 0.3 m above it.
 TEST_F(EstimatorRollingTest, GroundThatPitchesTheBodyIsNotCalledSlip) {
-  RobotModel model = two_wheeler();
+  DriveTrain model = two_wheeler();
   model.imu_in_base.position = {0.1, 0, 0.3};
   const double amplitude = std::numbers::sqrt2 * std::numbers::pi / 180;
   const double frequency = 2 * std::numbers::pi * 1.5;

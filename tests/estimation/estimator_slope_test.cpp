@@ -31,7 +31,7 @@ class EstimatorSlopeTest : public testing::TestWithParam<bool> {
     robot.drive(speed, 0, pitch_rate);
     estimator.step(robot.frame(), state_);
   }
-  RobotModel model_ = two_wheeler();
+  DriveTrain model_ = two_wheeler();
   EstimatorParameters parameters_ = rigid_tyres();
   StateFrame state_;
 };
@@ -41,28 +41,28 @@ TEST_P(EstimatorSlopeTest, TheWayOnARampIsThatOfItsClosedForm) {
   Estimator estimator(parameters_, model_, kPeriod);
   climb(robot, estimator);
   const Eigen::Vector3d at_foot = robot.position;
-  const double x = state_.pose_odom.position[0];
-  const double z = state_.pose_odom.position[2];
+  const double x = state_.base.pose_odom.position[0];
+  const double z = state_.base.pose_odom.position[2];
   for (int i = 0; i < 6000; ++i) step(robot, estimator, kSpeed);
   const double travel = kSpeed * 6000 * kPeriod;
   ASSERT_NEAR(robot.position.z() - at_foot.z(), travel * std::sin(kSlope), 1e-4) << "the truth itself";
-  EXPECT_NEAR(state_.pose_odom.position[0] - x, travel * std::cos(kSlope), 0.002 * travel);
-  EXPECT_EQ(state_.slip, 0u);
-  EXPECT_TRUE(state_.flags & kStateValid);
+  EXPECT_NEAR(state_.base.pose_odom.position[0] - x, travel * std::cos(kSlope), 0.002 * travel);
+  EXPECT_EQ(state_.wheeled.slip, 0u);
+  EXPECT_TRUE(state_.base.flags & kStateValid);
   // Attitude is always published; nose up is a negative pitch.
-  const double pitch = 2 * std::asin(state_.attitude[1]);
-  EXPECT_NEAR(pitch, -kSlope, 3 * std::sqrt(state_.attitude_covariance[4]) + 1e-3);
-  EXPECT_NEAR(state_.attitude[0], 0, 1e-3);
+  const double pitch = 2 * std::asin(state_.base.attitude[1]);
+  EXPECT_NEAR(pitch, -kSlope, 3 * std::sqrt(state_.base.attitude_covariance[4]) + 1e-3);
+  EXPECT_NEAR(state_.base.attitude[0], 0, 1e-3);
   if (GetParam()) {
-    EXPECT_EQ(state_.pose_odom.position[2], 0);
-    EXPECT_EQ(state_.pose_odom.orientation[0], 0);
-    EXPECT_EQ(state_.pose_odom.orientation[1], 0);
-    EXPECT_EQ(state_.twist_base.linear[2], 0);
-    EXPECT_EQ(state_.pose_covariance[14], Tuning::kPlanarVariance);
+    EXPECT_EQ(state_.base.pose_odom.position[2], 0);
+    EXPECT_EQ(state_.base.pose_odom.orientation[0], 0);
+    EXPECT_EQ(state_.base.pose_odom.orientation[1], 0);
+    EXPECT_EQ(state_.base.twist_base.linear[2], 0);
+    EXPECT_EQ(state_.base.pose_covariance[14], Tuning::kPlanarVariance);
   } else {
-    EXPECT_NEAR(state_.pose_odom.position[2] - z, travel * std::sin(kSlope), 0.01 * travel);
-    EXPECT_EQ(state_.pose_odom.orientation, state_.attitude);
-    EXPECT_TRUE(is_covariance(state_.pose_covariance, 1e-12));
+    EXPECT_NEAR(state_.base.pose_odom.position[2] - z, travel * std::sin(kSlope), 0.01 * travel);
+    EXPECT_EQ(state_.base.pose_odom.orientation, state_.base.attitude);
+    EXPECT_TRUE(is_covariance(state_.base.pose_covariance, 1e-12));
   }
 }
 
@@ -73,11 +73,11 @@ TEST_P(EstimatorSlopeTest, ARestartKeepsTheHeight) {
   for (int i = 0; i < 2000; ++i) step(robot, estimator, kSpeed);
   StateFrame last = state_;
   last.head.cycle = robot.frame().head.cycle;
-  ASSERT_TRUE(GetParam() || last.pose_odom.position[2] > 0.05);
+  ASSERT_TRUE(GetParam() || last.base.pose_odom.position[2] > 0.05);
   Estimator restarted(parameters_, model_, kPeriod);
   restarted.resume(last);
   step(robot, restarted, kSpeed);
-  EXPECT_NEAR(state_.pose_odom.position[2], last.pose_odom.position[2], 1e-3);
+  EXPECT_NEAR(state_.base.pose_odom.position[2], last.base.pose_odom.position[2], 1e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Planar, EstimatorSlopeTest, testing::Bool(), [](const testing::TestParamInfo<bool>& planar) {
@@ -96,10 +96,10 @@ TEST(EstimatorOnARamp, StartsWithTheTiltThatItStandsAt) {
     robot.drive(0, 0);
     estimator.step(robot.frame(), state);
   }
-  EXPECT_NE(state.flags & kStateStandstill, 0u);
+  EXPECT_NE(state.base.flags & kStateStandstill, 0u);
   // The prior of 0.1 rad against a bias of 0.2 m/s²: the share of the bias is 0.2²/(0.2² + 0.98²) = 4 %.
-  EXPECT_NEAR(2 * std::asin(state.attitude[1]), -kSlope, 0.06 * kSlope);
-  EXPECT_EQ(state.pose_odom.position, (Vector3{0, 0, 0}));
+  EXPECT_NEAR(2 * std::asin(state.base.attitude[1]), -kSlope, 0.06 * kSlope);
+  EXPECT_EQ(state.base.pose_odom.position, (Vector3{0, 0, 0}));
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ TEST_F(EstimatorStandstillTest, LearnsAConstantBiasExactlyInTheLimit) {
   const double noise = Tuning::kMountedGyro * parameters.gyro_noise;
   const double r = noise * noise / parameters.standstill_time;
   const double p = parameters.gyro_bias_initial * parameters.gyro_bias_initial;
-  EXPECT_NEAR(state_.gyro_bias[2], 0.03, 0.03 * r / (80 * p) * 1.1);
+  EXPECT_NEAR(state_.base.gyro_bias[2], 0.03, 0.03 * r / (80 * p) * 1.1);
   EXPECT_EQ(yaw(), 0);
 }
 
@@ -56,7 +56,8 @@ TEST_F(EstimatorStandstillTest, LearnsTheBiasUnderNoise) {
   drive(0, 0, 20000);
   EXPECT_TRUE(standing());
   for (const int axis : {0, 1, 2}) {
-    EXPECT_NEAR(state_.gyro_bias[static_cast<std::size_t>(axis)], robot_.gyro_bias[axis], 4 * 1e-3 / std::sqrt(20.0));
+    EXPECT_NEAR(state_.base.gyro_bias[static_cast<std::size_t>(axis)], robot_.gyro_bias[axis],
+                4 * 1e-3 / std::sqrt(20.0));
   }
 }
 
@@ -68,8 +69,8 @@ TEST_F(EstimatorStandstillTest, KnowsHowWellItKnowsTheBias) {
   robot_.noise = {.gyro = parameters.gyro_noise, .accelerometer = 1e-3, .counts = 0};
   drive(0, 0, 20 * kWindow);
   const double expected = parameters.gyro_noise / std::sqrt(20 * parameters.standstill_time);
-  EXPECT_NEAR(state_.gyro_bias_deviation[2], Tuning::kMountedGyro * expected, 0.1 * expected);
-  EXPECT_NEAR(state_.gyro_bias[2], 0.01, 4 * expected);
+  EXPECT_NEAR(state_.base.gyro_bias_deviation[2], Tuning::kMountedGyro * expected, 0.1 * expected);
+  EXPECT_NEAR(state_.base.gyro_bias[2], 0.01, 4 * expected);
 }
 
 TEST_F(EstimatorStandstillTest, NeitherPoseNorItsCovarianceMovesUnderNoise) {
@@ -77,14 +78,14 @@ TEST_F(EstimatorStandstillTest, NeitherPoseNorItsCovarianceMovesUnderNoise) {
   drive(0, 0, 2000);
   const StateFrame before = state_;
   drive(0, 0, 20000);
-  EXPECT_EQ(x(), before.pose_odom.position[0]);
-  EXPECT_EQ(y(), before.pose_odom.position[1]);
+  EXPECT_EQ(x(), before.base.pose_odom.position[0]);
+  EXPECT_EQ(y(), before.base.pose_odom.position[1]);
   // The yaw is the part of the turn that the tilt leaves; it is learned, and does not turn about the vertical.
-  EXPECT_NEAR(yaw(), yaw_of(before.pose_odom), 1e-6);
-  EXPECT_LE(state_.pose_covariance[0], before.pose_covariance[0] * (1 + 1e-12));
-  EXPECT_LE(state_.pose_covariance[7], before.pose_covariance[7] * (1 + 1e-12));
-  EXPECT_LE(state_.pose_covariance[35], before.pose_covariance[35] + 1e-9);  // 3·10⁻⁵ rad
-  EXPECT_EQ(state_.distance, 0);
+  EXPECT_NEAR(yaw(), yaw_of(before.base.pose_odom), 1e-6);
+  EXPECT_LE(state_.base.pose_covariance[0], before.base.pose_covariance[0] * (1 + 1e-12));
+  EXPECT_LE(state_.base.pose_covariance[7], before.base.pose_covariance[7] * (1 + 1e-12));
+  EXPECT_LE(state_.base.pose_covariance[35], before.base.pose_covariance[35] + 1e-9);  // 3·10⁻⁵ rad
+  EXPECT_EQ(state_.base.distance, 0);
   EXPECT_EQ(speed(), 0);
 }
 
@@ -106,9 +107,9 @@ TEST_F(EstimatorStandstillTest, TenMinutesAtRestKeepThePose) {
     drive(0, 0, 1000);
     ASSERT_TRUE(standing()) << second;
   }
-  EXPECT_NEAR(yaw(), yaw_of(before.pose_odom), 0.01 * std::numbers::pi / 180);
-  EXPECT_NEAR(x(), before.pose_odom.position[0], 1e-4);
-  EXPECT_NEAR(y(), before.pose_odom.position[1], 1e-4);
+  EXPECT_NEAR(yaw(), yaw_of(before.base.pose_odom), 0.01 * std::numbers::pi / 180);
+  EXPECT_NEAR(x(), before.base.pose_odom.position[0], 1e-4);
+  EXPECT_NEAR(y(), before.base.pose_odom.position[1], 1e-4);
 }
 
 TEST_F(EstimatorStandstillTest, CovarianceStopsGrowingAfterADrive) {
@@ -118,28 +119,29 @@ TEST_F(EstimatorStandstillTest, CovarianceStopsGrowingAfterADrive) {
   ASSERT_TRUE(standing());
   const StateFrame before = state_;
   drive(0, 0, 5000);
-  for (const std::size_t i : {0U, 7U, 35U}) EXPECT_LE(state_.pose_covariance[i], before.pose_covariance[i] + 1e-15);
+  for (const std::size_t i : {0U, 7U, 35U})
+    EXPECT_LE(state_.base.pose_covariance[i], before.base.pose_covariance[i] + 1e-15);
 }
 
 // The bias is learned at rest and changes while driving at most by its random walk: three of its deviations.
 TEST_F(EstimatorStandstillTest, ALearnedBiasIsKeptWhileDriving) {
   robot_.gyro_bias.z() = 0.01;
   drive(0, 0, 2000);
-  const double learned = state_.gyro_bias[2];
-  const double deviation = state_.gyro_bias_deviation[2];
+  const double learned = state_.base.gyro_bias[2];
+  const double deviation = state_.base.gyro_bias_deviation[2];
   drive(0.5, 0.2, 5000);
-  EXPECT_NEAR(state_.gyro_bias[2], learned, 3 * deviation);
+  EXPECT_NEAR(state_.base.gyro_bias[2], learned, 3 * deviation);
 }
 
 TEST_F(EstimatorStandstillTest, DoesNotLearnFromAGyroThatTurnsWithHeldWheels) {
   drive(0, 0, 2000);
-  const double learned = state_.gyro_bias[2];
+  const double learned = state_.base.gyro_bias[2];
   robot_.tread = {0.0, 0.0};
   const double before = robot_.yaw();
   drive(0, 0.5, 3000);  // the robot turns on ice, which the gyro measures
   EXPECT_FALSE(standing());
   // The window in which the turn begins may hold standstill_speed, and no gain is above 1/8 by then.
-  EXPECT_NEAR(state_.gyro_bias[2], learned, EstimatorParameters{}.standstill_speed / 8);
+  EXPECT_NEAR(state_.base.gyro_bias[2], learned, EstimatorParameters{}.standstill_speed / 8);
   EXPECT_NEAR(std::remainder(yaw() - robot_.yaw(), 2 * std::numbers::pi), 0, 0.02 * (robot_.yaw() - before));
 }
 
@@ -152,15 +154,16 @@ TEST_F(EstimatorStandstillTest, LearnsTheBiasWhileTheAccelerometerShakes) {
     observe();
   }
   EXPECT_TRUE(standing());
-  EXPECT_NEAR(state_.gyro_bias[2], 0.02, 1e-4);
+  EXPECT_NEAR(state_.base.gyro_bias[2], 0.02, 1e-4);
 }
 
 TEST_F(EstimatorStandstillTest, LearnsWithoutAnAccelerometer) {
-  robot_.frame().valid = kValidJoints | kValidGyro;
+  set_joints_valid(robot_.frame(), kValidMotion);
+  robot_.frame().valid = kValidGyro;
   robot_.gyro_bias.z() = 0.02;
   drive(0, 0, 5000);
-  EXPECT_NEAR(state_.gyro_bias[2], 0.02, 1e-4);
-  EXPECT_EQ(state_.confidence[kAccelerometer], 0);
+  EXPECT_NEAR(state_.base.gyro_bias[2], 0.02, 1e-4);
+  EXPECT_EQ(state_.wheeled.confidence[kAccelerometer], 0);
   EXPECT_TRUE(has(kStateNoAccelerometer));
 }
 
@@ -179,7 +182,7 @@ TEST_F(EstimatorStandstillTest, ARestLearnsTheBiasAnew) {
   robot_.gyro_bias.z() = 0.0205;
   drive(0, 0, 5000);
   ASSERT_TRUE(standing());
-  EXPECT_NEAR(state_.gyro_bias[2], 0.0205, 0.0002);
+  EXPECT_NEAR(state_.base.gyro_bias[2], 0.0205, 0.0002);
 }
 
 // The bias jumps as between temperatures: its stated deviation is a thousandth of its error. Nothing turns a robot so
@@ -191,7 +194,7 @@ TEST_F(EstimatorStandstillTest, ABiasThatChangedAtOnceIsLearnedAnew) {
   EXPECT_FALSE(standing());
   drive(0, 0, 5000);
   EXPECT_TRUE(standing());
-  EXPECT_NEAR(state_.gyro_bias[2], 0.1, 1e-4);
+  EXPECT_NEAR(state_.base.gyro_bias[2], 0.1, 1e-4);
 }
 
 TEST_F(EstimatorStandstillTest, AnEncoderThatFlickersByOneCountStillStands) {

@@ -21,18 +21,18 @@ TEST_F(EstimatorStartTest, ARunThatBeginsInMotionFindsItsSpeed) {
   observe();
   drive(0.5, 0.1, 12000);
   EXPECT_NEAR(speed(), 0.5, 0.005);
-  EXPECT_NEAR(state_.distance, 6.0, 0.06);
-  EXPECT_EQ(state_.slip, 0u);
+  EXPECT_NEAR(state_.base.distance, 6.0, 0.06);
+  EXPECT_EQ(state_.wheeled.slip, 0u);
   EXPECT_TRUE(has(kStateValid));
 }
 
 // Tilt and bias are learned at rest, and do not move the robot.
 TEST_F(EstimatorStartTest, AFreshRunStandsAtZero) {
   stand();
-  EXPECT_LT(std::hypot(state_.pose_odom.position[0], state_.pose_odom.position[1]), 1e-6);
+  EXPECT_LT(std::hypot(state_.base.pose_odom.position[0], state_.base.pose_odom.position[1]), 1e-6);
   const double reading = EstimatorParameters{}.encoder_noise * two_wheeler().wheels[0].radius;  // m
-  EXPECT_LT(std::sqrt(state_.pose_covariance[0]), 1.01 * reading);
-  EXPECT_LT(std::sqrt(state_.pose_covariance[7]), 1.01 * reading);
+  EXPECT_LT(std::sqrt(state_.base.pose_covariance[0]), 1.01 * reading);
+  EXPECT_LT(std::sqrt(state_.base.pose_covariance[7]), 1.01 * reading);
 }
 
 TEST_F(EstimatorStartTest, ARestartTakesTheSpeedOfTheWheelsNotThatOfBefore) {
@@ -45,7 +45,7 @@ TEST_F(EstimatorStartTest, ARestartTakesTheSpeedOfTheWheelsNotThatOfBefore) {
   observe();
   drive(0.2, 0, 5000);
   EXPECT_NEAR(speed(), 0.2, 0.005);
-  EXPECT_EQ(state_.slip, 0u);
+  EXPECT_EQ(state_.wheeled.slip, 0u);
 }
 
 // 0.3 s at 0.6 rad/s without a sample, in which the turn begins and ends: only the wheels measure it.
@@ -55,25 +55,25 @@ TEST_F(EstimatorStartTest, AHoleInAllSamplesIsTurnedByTheWheels) {
   drive_unseen(0.3, 0.6, 150);
   drive_unseen(0.3, 0, 150);
   drive(0.3, 0, 1000);
-  EXPECT_LT(yaw_error(), 5 * std::sqrt(state_.pose_covariance[35]));
+  EXPECT_LT(yaw_error(), 5 * std::sqrt(state_.base.pose_covariance[35]));
   EXPECT_LT(yaw_error(), 0.01);
   EXPECT_NEAR(speed(), 0.3, 0.005);
 }
 
 TEST_F(EstimatorStartTest, WithoutEncodersItIsNotAtRest) {
   stand();
-  const Vector3 learned = state_.gyro_bias;
+  const Vector3 learned = state_.base.gyro_bias;
   for (int i = 0; i < 3000; ++i) {
     robot_.drive(0, 0.1);
     SensorFrame frame = robot_.frame();
-    frame.valid &= ~std::uint64_t{kValidJoints};
+    set_joints_valid(frame, 0);
     estimator_.step(frame, state_);
   }
   EXPECT_FALSE(has(kStateStandstill));
   EXPECT_FALSE(has(kStateValid));
-  EXPECT_NEAR(state_.gyro_bias[2], learned[2], 1e-3);
+  EXPECT_NEAR(state_.base.gyro_bias[2], learned[2], 1e-3);
   drive(0, 0.1, 2000);
-  EXPECT_NEAR(state_.twist_base.angular[2], 0.1, 0.005);
+  EXPECT_NEAR(state_.base.twist_base.angular[2], 0.1, 0.005);
   EXPECT_TRUE(has(kStateValid));
 }
 

@@ -60,8 +60,8 @@ TEST_F(PublishedRate, IsQuietOnAStraightDriveAndSaysHowQuiet) {
   constexpr int kCycles = 5000;
   for (int i = 0; i < kCycles; ++i) {
     drive(0.5, 0, 1);
-    square += state_.twist_base.angular[2] * state_.twist_base.angular[2];
-    stated += state_.twist_covariance[35];
+    square += state_.base.twist_base.angular[2] * state_.base.twist_base.angular[2];
+    stated += state_.base.twist_covariance[35];
   }
   const double deviation = std::sqrt(square / kCycles);
   EXPECT_LT(deviation, 3.3e-3);
@@ -73,9 +73,9 @@ TEST_F(PublishedRate, FollowsATurnFromItsFirstCycleOn) {
   drive(0, 0, 1000);
   for (int i = 0; i < 1500; ++i) {
     drive(0.3, 1.0, 1);
-    ASSERT_NEAR(state_.twist_base.angular[2], robot_.motion.rate.z(), 0.08) << "cycle " << i;
+    ASSERT_NEAR(state_.base.twist_base.angular[2], robot_.motion.rate.z(), 0.08) << "cycle " << i;
   }
-  EXPECT_NEAR(state_.twist_base.angular[2], 1.0, 1e-3);
+  EXPECT_NEAR(state_.base.twist_base.angular[2], 1.0, 1e-3);
 }
 
 // With 4096 counts at 1 kHz the encoder's own speed jumps by 1.53 rad/s. Half a per cent of that is the loop's noise,
@@ -86,11 +86,11 @@ TEST_F(PublishedRate, OfEachWheelDoesNotJumpWithItsCounts) {
   drive(0.5, 0.2, 3000);
   for (int i = 0; i < 2000; ++i) {
     drive(0.5, 0.2, 1);
-    ASSERT_NEAR(state_.wheel_velocity[0], 4.5, 0.03);
-    ASSERT_NEAR(state_.wheel_velocity[1], 5.5, 0.03);
+    ASSERT_NEAR(state_.joint_velocity[0], 4.5, 0.03);
+    ASSERT_NEAR(state_.joint_velocity[1], 5.5, 0.03);
   }
   drive(0, 0, 3000);
-  EXPECT_NEAR(state_.wheel_velocity[0], 0, 1e-6);
+  EXPECT_NEAR(state_.joint_velocity[0], 0, 1e-6);
 }
 
 TEST_F(PublishedRate, OfAWheelSurvivesSamplesThatAreMissing) {
@@ -102,11 +102,11 @@ TEST_F(PublishedRate, OfAWheelSurvivesSamplesThatAreMissing) {
     missing.joints[0].position = std::nan("");
     missing.joints[1].position = 1e9;
     estimator_.step(missing, state_);
-    ASSERT_NEAR(state_.wheel_velocity[0], 5, 1e-3);
-    ASSERT_NEAR(state_.wheel_velocity[1], 5, 1e-3);
+    ASSERT_NEAR(state_.joint_velocity[0], 5, 1e-3);
+    ASSERT_NEAR(state_.joint_velocity[1], 5, 1e-3);
   }
   drive(0.5, 0, 1);
-  EXPECT_NEAR(state_.wheel_velocity[0], 5, 0.05);
+  EXPECT_NEAR(state_.joint_velocity[0], 5, 0.05);
 }
 
 }  // namespace

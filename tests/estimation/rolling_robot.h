@@ -20,13 +20,13 @@
 
 #include "estimation/estimator_parameters.h"
 #include "estimation/wheels/wheel_geometry.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "signals/sensor_frame.h"
 
 namespace robot_control {
 
-inline RobotModel two_wheeler() {
-  RobotModel robot;
+inline DriveTrain two_wheeler() {
+  DriveTrain robot;
   robot.name = "two_wheeler";
   robot.joints = {{"left", "left_link", 5.0, 30.0}, {"right", "right_link", 5.0, 30.0}};
   robot.wheels = {WheelModel{.joint = 0, .centre_base = {0, 0.25, 0.1}, .radius = 0.1, .width = 0.03, .inertia = 0.005},
@@ -41,8 +41,8 @@ inline RobotModel two_wheeler() {
 }
 
 /// Axles 0.4 m apart, the front one 0.3 m ahead of base_link; left joints are mirrored; effective wheel base 0.82 m.
-inline RobotModel four_wheeler() {
-  RobotModel robot = two_wheeler();
+inline DriveTrain four_wheeler() {
+  DriveTrain robot = two_wheeler();
   robot.joints.assign(4, {.name = "wheel", .child_link = "link"});  // no limits known
   robot.wheels = {robot.wheels[0], robot.wheels[0], robot.wheels[1], robot.wheels[1]};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -79,13 +79,14 @@ class RollingRobot {
   static constexpr double kAcceleration = 1.0;      ///< m/s², of `drive`
   static constexpr double kTurnAcceleration = 4.0;  ///< rad/s², of `drive`
 
-  explicit RollingRobot(const RobotModel& model = two_wheeler(), double period = kPeriod, unsigned seed = 1)
+  explicit RollingRobot(const DriveTrain& model = two_wheeler(), double period = kPeriod, unsigned seed = 1)
       : model_(model), wheels_(model), period_(period), random_(seed) {
     const Quaternion& q = model.imu_in_base.orientation;
     base_from_imu_ = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).toRotationMatrix();
     imu_ = Eigen::Vector3d(model.imu_in_base.position.data());
     frame_.head.run = 7;
-    frame_.valid = kValidJoints | kValidGyro | kValidAccelerometer;
+    set_joints_valid(frame_, kValidMotion);
+    frame_.valid = kValidGyro | kValidAccelerometer;
     frame_.joint_count = model.joints.size();
     read_imu({0, 0, kGravity});
   }
@@ -191,7 +192,7 @@ class RollingRobot {
     return deviation * Eigen::Vector3d(a, b, c);
   }
 
-  RobotModel model_;
+  DriveTrain model_;
   WheelGeometry wheels_;
   double period_;
   Eigen::Matrix3d base_from_imu_;

@@ -12,7 +12,7 @@ namespace {
 class SideEncoderTest : public testing::Test {
  protected:
   SideEncoderTest() {
-    sensors_.valid = kValidJoints;
+    set_joints_valid(sensors_, kValidMotion);
     sensors_.joint_count = 2;
     EXPECT_EQ(read(12.5, 0), EncoderReading::kOffset);
   }
@@ -20,7 +20,7 @@ class SideEncoderTest : public testing::Test {
     sensors_.joints[0].position = angle;
     return encoder_.step(sensors_, dt);
   }
-  RobotModel robot_ = two_wheeler();
+  DriveTrain robot_ = two_wheeler();
   SideEncoder encoder_{robot_, Side::kLeft};
   SensorFrame sensors_;
 };
@@ -55,7 +55,7 @@ TEST_F(SideEncoderTest, DoesNotLookAtTheOtherSide) {
 class SideEncoderOfFourWheels : public testing::Test {
  protected:
   SideEncoderOfFourWheels() {
-    sensors_.valid = kValidJoints;
+    set_joints_valid(sensors_, kValidMotion);
     sensors_.joint_count = 4;
     EXPECT_EQ(left_.step(sensors_, 0), EncoderReading::kOffset);
     EXPECT_EQ(right_.step(sensors_, 0), EncoderReading::kOffset);
@@ -108,7 +108,7 @@ TEST_F(SideEncoderTest, RemembersNoGapBeyondItsBound) {
 }
 
 TEST_F(SideEncoderTest, RejectsSamplesThatAreNotValid) {
-  sensors_.valid = 0;
+  set_joints_valid(sensors_, 0);
   EXPECT_EQ(read(12.51), EncoderReading::kRejected);
 }
 

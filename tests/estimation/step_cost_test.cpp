@@ -21,7 +21,7 @@ class EstimatorCost : public EstimatorFixture {
     robot_.noise = {.gyro = 2.44e-4, .accelerometer = 2e-3, .counts = 4096};
     stand();
     drive(0.5, 0.2, 2000);
-    EXPECT_EQ(state_.flags, std::uint64_t{kStateValid}) << "all corrections";
+    EXPECT_EQ(state_.base.flags, std::uint64_t{kStateValid}) << "all corrections";
     for (std::size_t k = 0; k < kCycles; ++k) {
       robot_.drive(0.5, 0.2);
       recorded_.push_back(robot_.frame());
@@ -40,7 +40,7 @@ class EstimatorCost : public EstimatorFixture {
       for (const SensorFrame& frame : recorded_) estimator.step(frame, state_);
       const std::int64_t end = monotonic_ns();
       EXPECT_EQ(guard.count(), 0u);
-      EXPECT_EQ(state_.flags, std::uint64_t{kStateValid});
+      EXPECT_EQ(state_.base.flags, std::uint64_t{kStateValid});
       steps.push_back(static_cast<double>(end - start) / kCycles);
     }
     return bench::median_ratio(steps, kernels);

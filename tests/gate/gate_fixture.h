@@ -25,7 +25,7 @@ class GateFixture : public testing::Test {
     permit_.head.run = command_.head.run = input_.run = kRun;
     permit_.action = PermitAction::kDrive;
     command_.joint_count = sensors_.joint_count = 2;
-    sensors_.valid = kValidJoints;
+    set_joints_valid(sensors_, kValidMotion);
     command_.joints[0] = {.mode = JointMode::kEffort, .velocity = 4.5, .effort = 1.5};
     command_.joints[1] = {.mode = JointMode::kVelocity, .velocity = 5.5, .damping = 2.0, .effort = -0.5};
     input_.permit = &permit_;

@@ -13,7 +13,7 @@ namespace {
 // Gains.
 
 TEST_F(GateFixture, AJointWithoutLimitsAndWithoutAPositionGetsNoDampingBelowZero) {
-  sensors_.valid = 0;
+  set_joints_valid(sensors_, 0);
   command_.joints[1].damping = -2.0;
   step();
   EXPECT_EQ(verdict(), GateVerdict::kClamped);
@@ -234,9 +234,9 @@ TEST_F(GateSpeed, ANewRunBeginsAtRest) {
 // Samples.
 
 TEST_F(GateSpeed, BrakesWhereTheSamplesAreMissing) {
-  sensors_.valid = 0;
+  set_joints_valid(sensors_, 0);
   expect_brake(kGateBadSensors);
-  sensors_.valid = kValidJoints;
+  set_joints_valid(sensors_, kValidMotion);
   sensors_.joint_count = 1;
   expect_brake(kGateBadSensors);
 }
@@ -261,7 +261,7 @@ TEST_F(GateSpeed, AJointThatBrakesNeedsNoSample) {
 class GateWithoutLimits : public GateFixture {};
 
 TEST_F(GateWithoutLimits, NeedsNoSamplesWhereNothingIsKnown) {
-  sensors_.valid = 0;
+  set_joints_valid(sensors_, 0);
   step();
   EXPECT_EQ(verdict(), GateVerdict::kPassed);
 }
@@ -283,49 +283,50 @@ TEST_F(GateRange, BrakesTheJointAloneAtItsEndStop) {
 }
 
 TEST_F(GateRange, BrakesWithoutAPosition) {
-  sensors_.valid = 0;
+  set_joints_valid(sensors_, 0);
   expect_brake(kGateBadSensors);
 }
 
-// Failing: coast.
+// Stop actions of the joints.
 
-class GateThatCoasts : public GateFixture {
+class GateWithStopActions : public GateFixture {
  protected:
-  GateThatCoasts() : GateFixture({.effort = kLimit}, {.fail_action = FailAction::kCoast}) {
-    gate_ = Gate({{.effort = kLimit, .wheel = true}, {.effort = kLimit}}, {.fail_action = FailAction::kCoast}, kPeriod);
-  }
-  void expect_coast() {
+  GateWithStopActions()
+      : GateFixture({.effort = kLimit},
+                    {.stops = {{.kind = StopKind::kCoast}, {.kind = StopKind::kDamp, .damping = 3}}}) {}
+
+  void expect_stop() {
     step();
     EXPECT_EQ(verdict(), GateVerdict::kBrake);
     const JointCommand coast{.mode = JointMode::kEffort};
-    const JointCommand brake;
+    const JointCommand damp{.mode = JointMode::kVelocity, .damping = 3};
     EXPECT_EQ(std::memcmp(&joints_[0], &coast, sizeof coast), 0);
-    EXPECT_EQ(std::memcmp(&joints_[1], &brake, sizeof brake), 0);
+    EXPECT_EQ(std::memcmp(&joints_[1], &damp, sizeof damp), 0);
   }
 };
 
-TEST_F(GateThatCoasts, GivesWheelsNoTorqueAndBrakesTheOthersWhateverIsMissing) {
+TEST_F(GateWithStopActions, OrdersThatOfEachJointWhateverIsMissing) {
   permit_.action = PermitAction::kBrake;
-  expect_coast();
+  expect_stop();
   permit_.action = PermitAction::kDrive;
   input_.permit_found = Lookup::kMissing;
-  expect_coast();
+  expect_stop();
   input_.permit_found = Lookup::kFrame;
   input_.command_found = Lookup::kMissing;
-  expect_coast();
+  expect_stop();
   input_.command_found = Lookup::kFrame;
   command_.joints[0].effort = kNaN;
-  expect_coast();
+  expect_stop();
   input_.cycle = 0;
-  expect_coast();
+  expect_stop();
 }
 
-TEST_F(GateThatCoasts, ACommandThatBrakesEveryJointIsApplied) {
+TEST_F(GateWithStopActions, ACommandThatBrakesEveryJointIsApplied) {
   command_.joints[0].mode = command_.joints[1].mode = JointMode::kBrake;
   expect_brake(kGateControllerBrake);
 }
 
-TEST_F(GateThatCoasts, DrivesAsEver) {
+TEST_F(GateWithStopActions, DrivesAsEver) {
   step();
   EXPECT_EQ(verdict(), GateVerdict::kPassed);
   EXPECT_EQ(joints_[0].effort, 1.5);
@@ -354,6 +355,15 @@ TEST(GateConstruction, RefusesLimitsThatAreNone) {
   EXPECT_TRUE(refused({.upper = kNaN}));
   EXPECT_TRUE(refused({.soft_zone = -0.1}));
   EXPECT_TRUE(refused({.soft_zone = kInfinity}));
+}
+
+TEST(GateConstruction, RefusesStopActionsThatAreNone) {
+  const std::vector<JointLimits> limits(2);
+  EXPECT_NO_THROW(Gate(limits, {.stops = {{}, {.kind = StopKind::kDamp, .damping = 1}}}, kPeriod));
+  EXPECT_THROW(Gate(limits, {.stops = {{}}}, kPeriod), std::invalid_argument);
+  for (const double damping : {-1.0, kNaN, kInfinity}) {
+    EXPECT_THROW(Gate(limits, {.stops = {{}, {.damping = damping}}}, kPeriod), std::invalid_argument) << damping;
+  }
 }
 
 TEST(GateConstruction, RefusesMoreJointsThanAFrameHoldsAndNoPeriod) {

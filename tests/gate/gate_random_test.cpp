@@ -58,9 +58,11 @@ TEST_F(GateGarbage, NeverMovesAJointBeyondItsLimitsOrWithoutAPermit) {
     command_.head.run = word(random, kRun);
     command_.head.cycle = word(random, 99);
     command_.joint_count = word(random, 2);
-    sensors_.valid = word(random, kValidJoints);
     sensors_.joint_count = word(random, 2);
-    for (JointSample& sample : sensors_.joints) sample = {number(random), number(random), number(random), 0};
+    for (JointSample& sample : sensors_.joints) {
+      sample = {.position = number(random), .velocity = number(random), .effort = number(random)};
+      sample.valid = static_cast<std::uint32_t>(word(random, kValidMotion));
+    }
     for (JointCommand& joint : command_.joints) {
       joint = {static_cast<JointMode>(word(random, 2)),
                number(random),
@@ -113,7 +115,8 @@ class GateRandomDrive : public GateFixture {
       if (random_() % 50 == 0) velocity_[i] = within(-30, 30);
       position_[i] += velocity_[i] * kPeriod;
       if (position_[i] > 3.2 || position_[i] < -1.2) velocity_[i] = -velocity_[i];
-      sensors_.joints[i] = {.position = position_[i], .velocity = velocity_[i], .effort = within(-8, 8)};
+      sensors_.joints[i] = {
+          .position = position_[i], .velocity = velocity_[i], .effort = within(-8, 8), .valid = kValidMotion};
     }
   }
   void request() {

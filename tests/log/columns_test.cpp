@@ -184,7 +184,7 @@ TEST_F(Columns, KeepTheJointsApart) {
   driver.sensors.joints[0].effort = 1.5;
   driver.sensors.joints[1].effort = -2.5;
   controller.command.joints[1].velocity = 3;
-  controller.command.velocity_measured[0] = 4;
+  controller.command.wheeled.velocity[0] = 4;
   EXPECT_EQ(value("left_wheel_joint_effort"), 1.5);
   EXPECT_EQ(value("right_wheel_joint_effort"), -2.5);
   EXPECT_EQ(value("right_wheel_joint_velocity_command"), 3);
@@ -236,19 +236,19 @@ TEST_F(Columns, OfGainsAreThoseOfWheels) {
   for (std::size_t i = 0; i < kMaxJoints; ++i) many.push_back("joint_" + std::to_string(i));
   const std::vector<std::string> names = names_of(log_columns(many, false));
   EXPECT_EQ(std::ranges::count_if(names, [](const std::string& name) { return name.ends_with("_pid_kp"); }),
-            static_cast<std::ptrdiff_t>(kTunedWheels));
+            static_cast<std::ptrdiff_t>(kMaxWheels));
 }
 
 // A turn by −2 rad about z: q = (0, 0, sin(−1), cos(−1)). Tolerance: a few roundings of numbers about 1.
 TEST_F(Columns, TakeYawFromTheQuaternion) {
-  estimator.state.pose_odom.orientation = {0, 0, std::sin(-1.0), std::cos(-1.0)};
+  estimator.state.base.pose_odom.orientation = {0, 0, std::sin(-1.0), std::cos(-1.0)};
   EXPECT_NEAR(value("estimate_yaw"), -2.0, 1e-15);
 }
 
 TEST_F(Columns, TakeVariancesFromTheDiagonal) {
-  estimator.state.pose_covariance[0] = 1;
-  estimator.state.pose_covariance[7] = 2;
-  estimator.state.pose_covariance[35] = 3;
+  estimator.state.base.pose_covariance[0] = 1;
+  estimator.state.base.pose_covariance[7] = 2;
+  estimator.state.base.pose_covariance[35] = 3;
   EXPECT_EQ(value("estimate_x_variance"), 1);
   EXPECT_EQ(value("estimate_y_variance"), 2);
   EXPECT_EQ(value("estimate_yaw_variance"), 3);
@@ -257,8 +257,8 @@ TEST_F(Columns, TakeVariancesFromTheDiagonal) {
 // Row-major over x, y, z, roll, pitch, yaw.
 TEST_F(Columns, TakeThePlanarBlocksOfTheCovariances) {
   for (std::size_t i = 0; i < 36; ++i) {
-    estimator.state.pose_covariance[i] = static_cast<double>(i);
-    estimator.state.twist_covariance[i] = 100 + static_cast<double>(i);
+    estimator.state.base.pose_covariance[i] = static_cast<double>(i);
+    estimator.state.base.twist_covariance[i] = 100 + static_cast<double>(i);
   }
   EXPECT_EQ(value("estimate_xy_covariance"), 1);
   EXPECT_EQ(value("estimate_x_yaw_covariance"), 5);
@@ -273,8 +273,8 @@ TEST_F(Columns, TakeThePlanarBlocksOfTheCovariances) {
 TEST_F(Columns, TakeRollAndPitchFromTheAttitude) {
   const double cr = std::cos(-0.15), sr = std::sin(-0.15), cp = std::cos(0.1), sp = std::sin(0.1);
   const double cy = std::cos(0.35), sy = std::sin(0.35);
-  estimator.state.attitude = {sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy,
-                              cr * cp * cy + sr * sp * sy};
+  estimator.state.base.attitude = {sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy,
+                                   cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy};
   EXPECT_NEAR(value("estimate_roll"), -0.3, 1e-15);
   EXPECT_NEAR(value("estimate_pitch"), 0.2, 1e-15);
   EXPECT_EQ(value("estimate_yaw"), 0);  // of the pose, which is planar
@@ -282,9 +282,9 @@ TEST_F(Columns, TakeRollAndPitchFromTheAttitude) {
 
 TEST_F(Columns, KeepTheSensorsApart) {
   for (std::size_t i = 0; i < 6; ++i) {
-    estimator.state.confidence[i] = 10 + static_cast<double>(i);
-    estimator.state.nis[i] = 20 + static_cast<double>(i);
-    estimator.state.rejected[i] = 30 + i;
+    estimator.state.wheeled.confidence[i] = 10 + static_cast<double>(i);
+    estimator.state.wheeled.nis[i] = 20 + static_cast<double>(i);
+    estimator.state.wheeled.rejected[i] = 30 + i;
   }
   EXPECT_EQ(value("confidence_left_encoder"), 10);
   EXPECT_EQ(value("confidence_accelerometer"), 13);
@@ -295,12 +295,12 @@ TEST_F(Columns, KeepTheSensorsApart) {
 }
 
 TEST_F(Columns, TellWhatTheEstimatorLearned) {
-  estimator.state.calibration = {
+  estimator.state.wheeled.calibration = {
       .radius_ratio = 1, .wheel_base_factor = 2, .radius_ratio_deviation = 3, .wheel_base_deviation = 4};
-  estimator.state.gyro_bias = {5, 6, 7};
-  estimator.state.gyro_bias_deviation = {8, 9, 10};
-  estimator.state.wheels = {.x = 11, .y = 12, .yaw = 13, .linear = 14, .angular = 15};
-  estimator.state.slip = kSlipLeft | kSlipSideways;
+  estimator.state.base.gyro_bias = {5, 6, 7};
+  estimator.state.base.gyro_bias_deviation = {8, 9, 10};
+  estimator.state.wheeled.odometry = {.x = 11, .y = 12, .yaw = 13, .linear = 14, .angular = 15};
+  estimator.state.wheeled.slip = kSlipLeft | kSlipSideways;
   EXPECT_EQ(value("radius_ratio"), 1);
   EXPECT_EQ(value("wheel_base_factor"), 2);
   EXPECT_EQ(value("radius_ratio_deviation"), 3);

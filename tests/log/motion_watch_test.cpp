@@ -12,7 +12,7 @@ constexpr std::int64_t kSecond = 1'000'000'000;
 /// A robot that stands, and nothing is requested.
 struct AMotionWatch : testing::Test {
   AMotionWatch() {
-    estimator.state.flags = kStateValid | kStateStandstill;
+    estimator.state.base.flags = kStateValid | kStateStandstill;
     row.driver = &driver;
     row.set({.estimator = &estimator, .controller = &controller, .monitor = &monitor});
     while (watch.step(row, now)) now += kSecond / 10;  // the first row is a start
@@ -34,12 +34,12 @@ TEST_F(AMotionWatch, SeesNothingWhereNothingMoves) {
 }
 
 TEST_F(AMotionWatch, SeesARequestBeforeTheRobotMoves) {
-  controller.command.twist_requested.linear[0] = 0.1;
+  controller.command.requested.twist.linear[0] = 0.1;
   EXPECT_TRUE(step());
 }
 
 TEST_F(AMotionWatch, SeesARobotThatIsPushed) {
-  estimator.state.flags = kStateValid;
+  estimator.state.base.flags = kStateValid;
   EXPECT_TRUE(step());
 }
 
@@ -54,10 +54,10 @@ TEST_F(AMotionWatch, SeesAStopAtStandstill) {
 }
 
 TEST_F(AMotionWatch, EndsAWhileAfterTheMotion) {
-  estimator.state.flags = kStateValid;
+  estimator.state.base.flags = kStateValid;
   const std::int64_t begin = now;
   EXPECT_TRUE(step());
-  estimator.state.flags |= kStateStandstill;
+  estimator.state.base.flags |= kStateStandstill;
   while (step()) {
   }
   EXPECT_NEAR(static_cast<double>(now - begin), static_cast<double>(MotionWatch::kAfter), 2e6);

@@ -18,8 +18,8 @@ inline constexpr double kPeriod = 0.001;
 inline constexpr std::int64_t kPeriodNs = 1'000'000;
 inline constexpr Twist kForward{.linear = {0.5, 0, 0}, .angular = {0, 0, 0}};
 
-inline RobotModel two_wheels() {
-  RobotModel robot;
+inline DriveTrain two_wheels() {
+  DriveTrain robot;
   robot.name = "two_wheels";
   robot.source = "test";
   robot.hash = 7;
@@ -42,7 +42,8 @@ class StandingMachine final : public Driver {
   void read(SensorFrame& sensors) noexcept override {
     sensors.injected = faults;
     sensors.driver_state = state;
-    sensors.valid = kValidJoints | kValidGyro | kValidAccelerometer;
+    for (std::size_t i = 0; i < 2; ++i) sensors.joints[i].valid = kValidMotion;
+    sensors.valid = kValidGyro | kValidAccelerometer;
     sensors.joint_count = 2;
     sensors.imu.linear_acceleration = {0, 0, 9.81};
   }
@@ -138,7 +139,7 @@ struct Loop {
   }
   const GateReport& gate() const { return driver.trace().gate; }
 
-  RobotModel robot = two_wheels();
+  DriveTrain robot = two_wheels();
   StandingMachine machine;
   TestChannel<SensorFrame> sensors;
   TestChannel<TruthFrame> truth;

@@ -11,7 +11,7 @@ class RunningLoop : public ::testing::Test {
  protected:
   RunningLoop() {
     loop.step();  // a command from before the run would be dropped
-    loop.controller->inbox().store({.twist = kForward, .count = 1});
+    loop.controller->inbox().store({.content = {.twist = kForward}, .count = 1});
     loop.steps(20);
   }
 
@@ -71,9 +71,9 @@ TEST_F(RunningLoop, ResumesTheEstimateAfterARestart) {
   loop.restart_estimator();
   loop.step();
   const StateFrame after = loop.newest_state();
-  EXPECT_EQ(after.pose_odom.position, before.pose_odom.position);
-  EXPECT_NE(after.flags & kStateRestarted, 0u);
-  EXPECT_GT(after.pose_covariance[0], before.pose_covariance[0]);
+  EXPECT_EQ(after.base.pose_odom.position, before.base.pose_odom.position);
+  EXPECT_NE(after.base.flags & kStateRestarted, 0u);
+  EXPECT_GT(after.base.pose_covariance[0], before.base.pose_covariance[0]);
 }
 
 TEST_F(RunningLoop, StopsWhenTheMonitorIsRestarted) {
@@ -101,7 +101,7 @@ TEST_F(RunningLoop, ForgetsTheCommandInANewRun) {
 }
 
 TEST_F(RunningLoop, TakesAgeAndRefusalsFromTheInbox) {
-  VelocityCommand command{.twist = kForward, .count = 2};
+  VelocityCommand command{.content = {.twist = kForward}, .count = 2};
   command.age_ns = 1'249 * kPeriodNs;  // of the default timeout's 1250
   loop.controller->inbox().store(command);
   loop.steps(2);
@@ -199,7 +199,7 @@ TEST_F(RunningLoop, LatchesTheLossOfADriverThatIsBackBeforeItsSilenceIsNoticed) 
 }
 
 TEST_F(RunningLoop, AResetAskedForDuringSilenceReleasesNothingLater) {
-  loop.controller->inbox().store({.twist = {}, .count = 2});
+  loop.controller->inbox().store({.content = {}, .count = 2});
   loop.steps(20);
   loop.monitor->time_out();
   loop.monitor->inbox().store({.resets = 1});

@@ -5,7 +5,9 @@
 #include <functional>
 #include <limits>
 
+#include "gate/wheeled/wheel_stop.h"
 #include "loop/cycle_fixture.h"
+#include "loop/wheeled_gate.h"
 
 namespace robot_control {
 namespace {
@@ -14,7 +16,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// One joint of a robot: a wheel of 3 N·m, 20 rad/s, 500 N·m/s.
 JointLimits limits_of(const std::function<void(JointModel&)>& change) {
-  RobotModel robot = two_wheels();
+  DriveTrain robot = two_wheels();
   robot.joints[1].effort_rate = 500;
   change(robot.joints[1]);
   return joint_limits(robot).at(1);
@@ -27,7 +29,6 @@ TEST(GateSetup, AWheelsLimitsAreThoseOfItsModel) {
   EXPECT_EQ(limits.effort_rate, 500);
   EXPECT_EQ(limits.lower, -kInfinity);
   EXPECT_EQ(limits.upper, kInfinity);
-  EXPECT_TRUE(limits.wheel);
 }
 
 TEST(GateSetup, WhatIsUnknownIsNoLimit) {
@@ -37,10 +38,6 @@ TEST(GateSetup, WhatIsUnknownIsNoLimit) {
   });
   EXPECT_EQ(limits.velocity, kInfinity);
   EXPECT_EQ(limits.effort_rate, kInfinity);
-}
-
-TEST(GateSetup, AnArmDoesNotCoast) {
-  EXPECT_FALSE(limits_of([](JointModel& joint) { joint.role = JointRole::kHeld; }).wheel);
 }
 
 TEST(GateSetup, TheSoftZoneIsATwentiethOfTheRangeAndNeverMuch) {
@@ -68,17 +65,40 @@ TEST(GateSetup, TheLongestRampIsTheMonitorsAndALossLonger) {
   parameters.loop.rate = 1000;
   parameters.safety.ramp_time = 2;
   parameters.safety.loss_cycles = 20;
-  EXPECT_EQ(gate_parameters(parameters).longest_ramp, 2020u);
+  EXPECT_EQ(gate_parameters(parameters, two_wheels()).longest_ramp, 2020u);
   parameters.loop.rate = 300;
   parameters.safety.ramp_time = 0.011;  // 3.3 periods
-  EXPECT_EQ(gate_parameters(parameters).longest_ramp, 24u);
+  EXPECT_EQ(gate_parameters(parameters, two_wheels()).longest_ramp, 24u);
 }
 
-TEST(GateSetup, TheFailActionIsTheUsers) {
+/// Two wheels and an arm.
+DriveTrain with_an_arm() {
+  DriveTrain robot = two_wheels();
+  robot.joints.push_back({.name = "arm", .child_link = "arm", .effort_limit = 5, .role = JointRole::kHeld});
+  return robot;
+}
+
+TEST(GateSetup, WheelsStopByTheUsersActionAndAnArmBrakes) {
   Parameters parameters;
-  EXPECT_EQ(gate_parameters(parameters).fail_action, FailAction::kBrake);
-  parameters.loop.fail_action = FailAction::kCoast;
-  EXPECT_EQ(gate_parameters(parameters).fail_action, FailAction::kCoast);
+  for (const StopKind kind : {StopKind::kBrake, StopKind::kCoast, StopKind::kDamp}) {
+    parameters.loop.fail_action = kind;
+    const std::vector<StopAction> stops = gate_parameters(parameters, with_an_arm()).stops;
+    ASSERT_EQ(stops.size(), 3u);
+    EXPECT_EQ(stops[0].kind, kind);
+    EXPECT_EQ(stops[1].kind, kind);
+    EXPECT_EQ(stops[2].kind, StopKind::kBrake);
+  }
+}
+
+// A robot of mass m at v has the wheels' force Σ d v/r² against it: m v/T.
+TEST(GateSetup, WheelsThatDampTakeTheSpeedInTheTimeOfTheHeader) {
+  const DriveTrain robot = two_wheels();
+  double force = 0;  // N per m/s
+  for (std::size_t i = 0; i < robot.wheels.size(); ++i) {
+    const double radius = robot.wheels[i].radius;
+    force += wheel_stop(robot, i, StopKind::kDamp).damping / (radius * radius);
+  }
+  EXPECT_NEAR(force, robot.mass / kDampTime, 1e-9);
 }
 
 /// A machine whose wheel runs away, or whose encoder is lost.
@@ -87,7 +107,7 @@ class RunawayMachine final : public Driver {
   void start() override {}
   void read(SensorFrame& sensors) noexcept override {
     position += speed * kPeriod;
-    sensors.valid = valid;
+    set_joints_valid(sensors, valid);
     sensors.joint_count = 2;
     sensors.joints[0].position = position;
   }
@@ -96,12 +116,34 @@ class RunawayMachine final : public Driver {
 
   double speed = 0;
   double position = 0;
-  std::uint64_t valid = kValidJoints;
+  std::uint32_t valid = kValidMotion;
   JointCommand command;
 };
 
+TEST(DriverCycleAndGate, AStopActionThatTheDriverDoesNotImplementIsRefusedAtStart) {
+  RunawayMachine machine;
+  TestChannel<SensorFrame> sensors;
+  TestChannel<TruthFrame> truth;
+  TestChannel<CommandFrame> command;
+  TestChannel<Permit> permit;
+  const auto refusal_of = [&](StopKind kind) {
+    try {
+      DriverCycle(machine, two_wheels(), {sensors.writer, truth.writer, &command.reader, &permit.reader}, kPeriodNs,
+                  nullptr, {.stops = {{}, {.kind = kind}}});
+    } catch (const DriverError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(refusal_of(StopKind::kBrake), "accepted");
+  EXPECT_EQ(refusal_of(StopKind::kCoast), "joint " + two_wheels().joints[1].name +
+                                              " is to be stopped by the action \"coast\", which this driver does not "
+                                              "implement. Set robot.fail_action to brake.");
+  EXPECT_NE(refusal_of(StopKind::kDamp).find("\"damp\""), std::string::npos);
+}
+
 TEST(DriverCycleAndGate, TheGateSeesTheSamplesOfItsOwnTick) {
-  RobotModel robot = two_wheels();
+  DriveTrain robot = two_wheels();
   RunawayMachine machine;
   TestChannel<SensorFrame> sensors;
   TestChannel<TruthFrame> truth;
@@ -130,7 +172,7 @@ TEST(DriverCycleAndGate, TheGateSeesTheSamplesOfItsOwnTick) {
   tick();
   EXPECT_EQ(driver.trace().gate.reasons, std::uint64_t{kGateBadSensors});
   EXPECT_EQ(machine.command.mode, JointMode::kBrake);
-  machine.valid = kValidJoints;
+  machine.valid = kValidMotion;
   machine.speed = 25;  // of 20 rad/s
   for (int i = 0; i < 30; ++i) tick();
   EXPECT_EQ(driver.trace().gate.reasons, std::uint64_t{kGateSpeedClamped});

@@ -25,7 +25,7 @@ class NodeFaults : public ::testing::Test {
 
   static void start(Loop& any) {
     any.step();
-    any.controller->inbox().store({.twist = kForward, .count = 1});
+    any.controller->inbox().store({.content = {.twist = kForward}, .count = 1});
     any.steps(20);
   }
 
@@ -72,7 +72,7 @@ TEST(NodesOfTheRobot, PublishTheSameFramesWhateverIsInjected) {
       any->estimator->step();
       any->controller->step();
       any->monitor->step();
-      if (i == 0) any->controller->inbox().store({.twist = kForward, .count = 1});
+      if (i == 0) any->controller->inbox().store({.content = {.twist = kForward}, .count = 1});
     }
     EXPECT_EQ(healthy.newest_state().head.checksum, injected.newest_state().head.checksum) << i;
     EXPECT_EQ(healthy.newest_command().head.checksum, injected.newest_command().head.checksum) << i;
@@ -151,13 +151,13 @@ TEST_F(NodeFaults, AWrongControllerTurnsEveryEffortRound) {
 }
 
 TEST_F(NodeFaults, AWrongEstimatorMirrorsTheMotion) {
-  state_.pose_odom.position = {1, 2, 0};
-  state_.twist_base = {.linear = {0.5, 0, 0}, .angular = {0, 0, 0.2}};
+  state_.base.pose_odom.position = {1, 2, 0};
+  state_.base.twist_base = {.linear = {0.5, 0, 0}, .angular = {0, 0, 0.2}};
   FaultRandom random;
   distort(FaultKind::kWrong, state_, random);
-  EXPECT_EQ(state_.pose_odom.position, (Vector3{-1, -2, 0}));
-  EXPECT_EQ(state_.twist_base.linear, (Vector3{-0.5, 0, 0}));
-  EXPECT_EQ(state_.twist_base.angular, (Vector3{0, 0, -0.2}));
+  EXPECT_EQ(state_.base.pose_odom.position, (Vector3{-1, -2, 0}));
+  EXPECT_EQ(state_.base.twist_base.linear, (Vector3{-0.5, 0, 0}));
+  EXPECT_EQ(state_.base.twist_base.angular, (Vector3{0, 0, -0.2}));
 }
 
 TEST_F(NodeFaults, AWrongMonitorBrakesARobotThatMayDrive) {

@@ -13,7 +13,7 @@ class PausedLoop : public ::testing::Test {
  protected:
   PausedLoop() {
     loop.step();
-    loop.controller->inbox().store({.twist = kForward, .count = 1});
+    loop.controller->inbox().store({.content = {.twist = kForward}, .count = 1});
     loop.steps(20);
   }
 
@@ -173,7 +173,7 @@ TEST_F(PausedLoop, ANewRunAfterAPauseIsFollowedAndReleasesNothing) {
   loop.steps(10);
   EXPECT_EQ(loop.newest_state().head.run, 2u);
   EXPECT_EQ(loop.newest_state().head.cycle, 9u);
-  EXPECT_EQ(loop.newest_command().twist_requested.linear, Vector3{}) << "what was asked for before is dropped";
+  EXPECT_EQ(loop.newest_command().requested.twist.linear, Vector3{}) << "what was asked for before is dropped";
   EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped);
   EXPECT_EQ(loop.newest_permit().causes, std::uint64_t{kCauseEmergencyStopService});
 }

@@ -10,14 +10,14 @@ TEST(PoseRequest, HoldsExactlyFromTheNextCycleOn) {
   Loop loop;
   loop.steps(400);  // longer than the window in which the robot comes to stand
   loop.estimator->request_pose({1.5, -2.5, 0});
-  EXPECT_EQ(loop.newest_state().pose_odom.position[0], 0);
+  EXPECT_EQ(loop.newest_state().base.pose_odom.position[0], 0);
   loop.step();
   const StateFrame state = loop.newest_state();
-  EXPECT_EQ(state.pose_odom.position[0], 1.5);
-  EXPECT_EQ(state.pose_odom.position[1], -2.5);
-  EXPECT_EQ(state.pose_covariance[0], 0);
-  EXPECT_EQ(state.pose_covariance[7], 0);
-  EXPECT_EQ(state.pose_covariance[35], 0);
+  EXPECT_EQ(state.base.pose_odom.position[0], 1.5);
+  EXPECT_EQ(state.base.pose_odom.position[1], -2.5);
+  EXPECT_EQ(state.base.pose_covariance[0], 0);
+  EXPECT_EQ(state.base.pose_covariance[7], 0);
+  EXPECT_EQ(state.base.pose_covariance[35], 0);
 }
 
 TEST(PoseRequest, OfTwoInOneCycleTheLastHolds) {
@@ -26,8 +26,8 @@ TEST(PoseRequest, OfTwoInOneCycleTheLastHolds) {
   loop.estimator->request_pose({1, 1, 1});
   loop.estimator->request_pose({2, 3, 0});
   loop.step();
-  EXPECT_EQ(loop.newest_state().pose_odom.position[0], 2);
-  EXPECT_EQ(loop.newest_state().pose_odom.position[1], 3);
+  EXPECT_EQ(loop.newest_state().base.pose_odom.position[0], 2);
+  EXPECT_EQ(loop.newest_state().base.pose_odom.position[1], 3);
 }
 
 }  // namespace

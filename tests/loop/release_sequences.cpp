@@ -154,7 +154,7 @@ class Sequence {
     CommandFrame command;
     if (command_.reader.newest(command) == Lookup::kFrame) {
       earlier.run = command.head.run;
-      earlier.requested = command.requests_received != 0 && command.zero_requested == 0;
+      earlier.requested = requests_motion(command);
     }
     for (Sender& sender : senders_) {
       earlier.present.push_back({sender.name, nullptr, sender.uri});
@@ -167,10 +167,11 @@ class Sequence {
     has_looked_ = false;
   }
 
+  /// A zero since the last cycle counts after what happens before the next one: the loop cannot tell their order.
   void take_release_back() {
     started_at_ = now_;
     start_cycle_ = cycles_;
-    released_ = false;
+    released_ = released_ && released_cycle_ == cycles_;
     withdraw();
   }
 
@@ -261,14 +262,11 @@ class Sequence {
     if (chance(20)) reset();
   }
 
-  /// A zero that is sent in the pause, or since the last cycle before it, counts after it, because nothing older may
-  /// move then.
+  /// A zero that is sent in the pause counts after it, because nothing older may move then.
   void pause() {
     if (driver_ && !away(kDriverNode) && now_ > pause_until_ && chance(700)) {
       pause_until_ = now_ + 1 + below(chance(2) ? 4 : 80);
-      const bool since_last_cycle = released_ && released_cycle_ == cycles_;
       take_release_back();
-      released_ = since_last_cycle;
     }
     if (driver_ && now_ == pause_until_) {
       driver_->count_resume();
@@ -477,7 +475,7 @@ class Sequence {
       return sender.left_requesting || (sender.has_requested() && !sender.owes_zero);
     });
     CommandFrame command;  // the request in force; a ramp to zero may outlast it
-    const bool in_force = command_.reader.newest(command) == Lookup::kFrame && !zero(command.twist_requested);
+    const bool in_force = command_.reader.newest(command) == Lookup::kFrame && !zero(command.requested.twist);
     if (requested || !in_force) requested_cycle_ = cycles_;
     if (cycles_ - std::max(requested_cycle_, withdrawn_cycle_) > kBrakesWithin)
       return "motion that was requested before a withdrawal";
@@ -486,7 +484,7 @@ class Sequence {
 
   std::mt19937_64 random_;
   ReleaseFigures& figures_;
-  RobotModel robot_ = two_wheels();
+  DriveTrain robot_ = two_wheels();
   DriveControllerParameters parameters_;
   StandingMachine machine_;
   TestChannel<SensorFrame> sensors_;

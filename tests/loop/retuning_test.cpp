@@ -39,7 +39,7 @@ class RetuningTest : public ::testing::Test {
   }
 
   Parameters parameters;
-  RobotModel robot = two_wheels();
+  DriveTrain robot = two_wheels();
   LatestValue<DriveTuning> inbox;
   Retuning retuning{parameters, robot, inbox};
 };
@@ -157,7 +157,7 @@ class RetunedLoop : public ::testing::Test {
  protected:
   RetunedLoop() {
     loop.step();  // a command from before the run would be dropped
-    loop.controller->inbox().store({.twist = {.linear = {0.5, 0, 0}}, .count = 1});
+    loop.controller->inbox().store({.content = {.twist = {.linear = {0.5, 0, 0}}}, .count = 1});
     loop.steps(20);
     tuning = loop.controller->trace().tuning;
   }

@@ -24,13 +24,13 @@ TEST(CommandedWheelSpeed, IsTheOuterWheelsAtBothLimits) {
 }
 
 TEST(CommandedWheelSpeed, IsTheSmallestWheels) {
-  RobotModel robot = two_wheels();
+  DriveTrain robot = two_wheels();
   robot.wheels[1].radius = 0.0875;
   EXPECT_NEAR(commanded_wheel_speed(limits(1, 2), robot), 1.5 / 0.0875, kRounding);
 }
 
 TEST(CommandedWheelSpeed, IsNoFasterThanTheSlowestWheelCan) {
-  RobotModel robot = two_wheels();
+  DriveTrain robot = two_wheels();
   robot.joints[1].velocity_limit = 9;
   EXPECT_EQ(commanded_wheel_speed(limits(1, 2), robot), 9);
 }
@@ -46,7 +46,7 @@ TEST(SafetyLimits, KeepWhatIsGivenAndDeriveTheRest) {
 
 // 20 Hz, and the gain of control/wheel_loops/wheel_loop_gains.h: 0.5·2·2π·20 Hz per N·m·s/rad.
 TEST(SafetyLimits, KnowWhatTheDerivedGainsMakeOfACount) {
-  const RobotModel robot = two_wheels();
+  const DriveTrain robot = two_wheels();
   const double kp = wheel_loop_gains(DriveControllerParameters{}, robot, robot.wheels[0], 1e-3).kp;
   Parameters parameters;
   parameters.controller.pid_kp = 0.1;

@@ -9,6 +9,7 @@
 
 #include "control/smooth_speed.h"
 #include "cycle_fixture.h"
+#include "loop/machine_identity.h"
 
 namespace robot_control {
 namespace {
@@ -19,7 +20,7 @@ TEST(Identity, DiffersByRateAndClock) {
   slower.rate = 500;
   LoopParameters lockstep = loop;
   lockstep.clock = ClockMode::kLockstep;
-  const RobotModel robot = two_wheels();
+  const DriveTrain robot = two_wheels();
   EXPECT_EQ(identified(robot, loop).hash, identified(robot, loop).hash);
   EXPECT_NE(identified(robot, loop).hash, identified(robot, slower).hash);
   EXPECT_NE(identified(robot, loop).hash, identified(robot, lockstep).hash);

@@ -95,7 +95,7 @@ TEST(BearingJoints, ThatAreFixedOrMoveLittleOrRubHardAreAccepted) {
 
 /// The user's own names of the wheels do not change the physics.
 TEST(BearingJoints, AreRefusedForNamedWheels) {
-  RobotParameters named;
+  DriveTrainParameters named;
   named.left_wheel_joints = {"FL_foot_joint", "RL_foot_joint"};
   named.right_wheel_joints = {"FR_foot_joint", "RR_foot_joint"};
   EXPECT_THAT(refusal_of(robot_of(quadruped({})), named), HasSubstr("nothing holds"));

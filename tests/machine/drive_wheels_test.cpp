@@ -12,12 +12,12 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-std::string joint_name(const RobotModel& robot, std::size_t wheel) {
+std::string joint_name(const DriveTrain& robot, std::size_t wheel) {
   return robot.joints[robot.wheels[wheel].joint].name;
 }
 
 TEST(DriveWheels, ArePlacedLeftThenRight) {
-  const RobotModel robot = read_robot(robot_of(two_wheels()), {});
+  const DriveTrain robot = read_drive_train(robot_of(two_wheels()), {});
   ASSERT_EQ(robot.wheels.size(), 2u);
   EXPECT_EQ(joint_name(robot, 0), "left");
   EXPECT_EQ(robot.wheels[0].side, Side::kLeft);
@@ -27,7 +27,8 @@ TEST(DriveWheels, ArePlacedLeftThenRight) {
 }
 
 TEST(DriveWheels, NamesLiePositionsDoNot) {
-  const RobotModel robot = read_robot(robot_of(base() + wheel("left", "0 -0.25 0") + wheel("right", "0 0.25 0")), {});
+  const DriveTrain robot =
+      read_drive_train(robot_of(base() + wheel("left", "0 -0.25 0") + wheel("right", "0 0.25 0")), {});
   EXPECT_EQ(joint_name(robot, 0), "right");
   EXPECT_THAT(notes_of(robot, RobotNote::Kind::kSuspicious),
               AllOf(HasSubstr("its name says right, but it is the left wheel"), HasSubstr("says left")));
@@ -42,12 +43,13 @@ TEST(DriveWheels, SignComesFromTheAxisInTheRootFrame) {
                                     .rpy = "1.5707963267948966 0 0"});
   const std::string upright =
       link("right_link", inertial("1") + collision("<cylinder radius=\"0.1\" length=\"0.04\"/>"));
-  EXPECT_EQ(read_robot(robot_of(base() + wheel("left", "0 0.25 0") + upright + turned), {}).wheels[1].sign, 1);
+  EXPECT_EQ(read_drive_train(robot_of(base() + wheel("left", "0 0.25 0") + upright + turned), {}).wheels[1].sign, 1);
 
   const std::string negated = joint(
       {.name = "right", .child = "right_link", .xyz = "0 -0.25 0", .axis = "<axis xyz=\"0 -1 0\"/>", .rpy = "0 0 0"});
   const std::string link_text = link("right_link", inertial("1") + tyre("0.1"));
-  EXPECT_EQ(read_robot(robot_of(base() + wheel("left", "0 0.25 0") + link_text + negated), {}).wheels[1].sign, -1);
+  EXPECT_EQ(read_drive_train(robot_of(base() + wheel("left", "0 0.25 0") + link_text + negated), {}).wheels[1].sign,
+            -1);
 }
 
 // 1.57 for π/2: 0.0008 rad, within 0.2° = 0.0035 rad.
@@ -67,8 +69,8 @@ TEST(DriveWheels, SeparationIsThatOfTheTyresNotOfTheJoints) {
     return link(name + "_link", inertial("1") + tyre("0.1", y)) +
            joint({.name = name, .child = name + "_link", .xyz = xyz});
   };
-  const RobotModel robot =
-      read_robot(robot_of(base() + offset("a", "0 0.2 0", "0.03") + offset("b", "0 -0.2 0", "-0.03")), {});
+  const DriveTrain robot =
+      read_drive_train(robot_of(base() + offset("a", "0 0.2 0", "0.03") + offset("b", "0 -0.2 0", "-0.03")), {});
   EXPECT_NEAR(robot.wheel_base, 2 * (0.2 + 0.03), kRounding);
 }
 
@@ -78,33 +80,34 @@ TEST(DriveWheels, RadiusIsThatOfTheShapeThatReachesTheFloor) {
     return link(name + "_link", inertial("1") + motor + tyre("0.1")) +
            joint({.name = name, .child = name + "_link", .xyz = xyz});
   };
-  const RobotModel robot =
-      read_robot(robot_of(base() + with_motor("left", "0 0.25 0") + with_motor("right", "0 -0.25 0")), {});
+  const DriveTrain robot =
+      read_drive_train(robot_of(base() + with_motor("left", "0 0.25 0") + with_motor("right", "0 -0.25 0")), {});
   EXPECT_EQ(robot.wheels[0].radius, 0.1);
   EXPECT_NEAR(robot.wheels[0].width, 0.04, kRounding);
 }
 
 // Two axles L apart: mean xᵢ² = L²/4, so 1 + (L/b)² = 1 + (0.3/0.5)².
 TEST(DriveWheels, TwoPairsSteerBySkidding) {
-  const RobotModel robot =
-      read_robot(robot_of(two_wheels() + wheel("rear_left", "-0.3 0.25 0") + wheel("rear_right", "-0.3 -0.25 0")), {});
+  const DriveTrain robot = read_drive_train(
+      robot_of(two_wheels() + wheel("rear_left", "-0.3 0.25 0") + wheel("rear_right", "-0.3 -0.25 0")), {});
   ASSERT_EQ(robot.wheels.size(), 4u);
   EXPECT_EQ(joint_name(robot, 0), "left");
   EXPECT_EQ(joint_name(robot, 1), "rear_left");
   EXPECT_EQ(joint_name(robot, 3), "rear_right");
   EXPECT_NEAR(robot.wheel_base_multiplier, 1 + 0.6 * 0.6, kRounding);
   EXPECT_THAT(notes_of(robot, RobotNote::Kind::kAssumed), HasSubstr("wheel_base_multiplier: 1.36"));
-  RobotParameters parameters;
+  DriveTrainParameters parameters;
   parameters.wheel_base_multiplier = 1.5;
-  EXPECT_EQ(read_robot(robot_of(robot.urdf.substr(16, robot.urdf.size() - 24)), parameters).wheel_base_multiplier, 1.5);
+  EXPECT_EQ(read_drive_train(robot_of(robot.urdf.substr(16, robot.urdf.size() - 24)), parameters).wheel_base_multiplier,
+            1.5);
 }
 
 // Like TwoPairsSteerBySkidding, but the URDF says which two are driven: the others roll along.
 TEST(DriveWheels, DrivenOnesDriveTheOthersRollAlong) {
-  const RobotModel robot =
-      read_robot(robot_of(two_wheels() + wheel("rear_left", "-0.3 0.25 0") + wheel("rear_right", "-0.3 -0.25 0") +
-                          transmission("left") + transmission("right")),
-                 {});
+  const DriveTrain robot =
+      read_drive_train(robot_of(two_wheels() + wheel("rear_left", "-0.3 0.25 0") + wheel("rear_right", "-0.3 -0.25 0") +
+                                transmission("left") + transmission("right")),
+                       {});
   ASSERT_EQ(robot.wheels.size(), 2u);
   ASSERT_EQ(robot.casters.size(), 2u);
   EXPECT_EQ(robot.joints[2].role, JointRole::kPassive);
@@ -119,8 +122,8 @@ TEST(DriveWheels, ADrivePluginOrRos2ControlNamesThemAsWell) {
   const auto command = [](const std::string& name) {
     return "<ros2_control><joint name=\"" + name + "\"><command_interface name=\"velocity\"/></joint></ros2_control>";
   };
-  EXPECT_EQ(read_robot(robot_of(four + plugin), {}).wheels.size(), 2u);
-  EXPECT_EQ(read_robot(robot_of(four + command("left") + command("right")), {}).wheels.size(), 2u);
+  EXPECT_EQ(read_drive_train(robot_of(four + plugin), {}).wheels.size(), 2u);
+  EXPECT_EQ(read_drive_train(robot_of(four + command("left") + command("right")), {}).wheels.size(), 2u);
 }
 
 TEST(DriveWheels, ASwivellingCasterIsNone) {
@@ -129,7 +132,7 @@ TEST(DriveWheels, ASwivellingCasterIsNone) {
       joint({.name = "swivel", .child = "fork", .xyz = "-0.3 0.1 0", .axis = "<axis xyz=\"0 0 1\"/>"}) +
       link("roller", inertial("0.2") + tyre("0.1")) +
       joint({.name = "caster_wheel", .child = "roller", .xyz = "-0.03 0 0", .parent = "fork"});
-  const RobotModel robot = read_robot(robot_of(two_wheels() + swivel + transmission("caster_wheel")), {});
+  const DriveTrain robot = read_drive_train(robot_of(two_wheels() + swivel + transmission("caster_wheel")), {});
   EXPECT_EQ(robot.wheels.size(), 2u);
   ASSERT_EQ(robot.casters.size(), 1u);
   for (const JointModel& each : robot.joints) {
@@ -140,25 +143,25 @@ TEST(DriveWheels, ASwivellingCasterIsNone) {
 }
 
 TEST(DriveWheels, AWheelOnTheMiddleLineIsACaster) {
-  const RobotModel robot = read_robot(robot_of(two_wheels() + wheel("rear", "-0.3 0 0")), {});
+  const DriveTrain robot = read_drive_train(robot_of(two_wheels() + wheel("rear", "-0.3 0 0")), {});
   EXPECT_EQ(robot.wheels.size(), 2u);
   EXPECT_EQ(robot.casters.size(), 1u);
 }
 
 TEST(DriveWheels, WhatTurnsHighAboveTheFloorIsNone) {
-  const RobotModel robot =
-      read_robot(robot_of(two_wheels() + wheel("pulley_left", "0 0.2 0.3") + wheel("pulley_right", "0 -0.2 0.3")), {});
+  const DriveTrain robot = read_drive_train(
+      robot_of(two_wheels() + wheel("pulley_left", "0 0.2 0.3") + wheel("pulley_right", "0 -0.2 0.3")), {});
   EXPECT_EQ(robot.wheels.size(), 2u);
   EXPECT_TRUE(robot.casters.empty());
 }
 
 TEST(DriveWheels, NamedOnesHoldWhateverElseRolls) {
-  RobotParameters parameters;
+  DriveTrainParameters parameters;
   parameters.left_wheel_joints = {"rear_left"};
   parameters.right_wheel_joints = {"rear_right"};
-  const RobotModel robot = read_robot(robot_of(two_wheels() + wheel("rear_left", "-0.3 0.25 -0.02", "0.08") +
-                                               wheel("rear_right", "-0.3 -0.25 -0.02", "0.08")),
-                                      parameters);
+  const DriveTrain robot = read_drive_train(robot_of(two_wheels() + wheel("rear_left", "-0.3 0.25 -0.02", "0.08") +
+                                                     wheel("rear_right", "-0.3 -0.25 -0.02", "0.08")),
+                                            parameters);
   ASSERT_EQ(robot.wheels.size(), 2u);
   EXPECT_EQ(joint_name(robot, 0), "rear_left");
   EXPECT_EQ(robot.wheels[0].radius, 0.08);
@@ -166,7 +169,8 @@ TEST(DriveWheels, NamedOnesHoldWhateverElseRolls) {
 }
 
 TEST(DriveWheels, ARobotWhoseMiddleIsBesideItsRootIsTakenAsItStands) {
-  const RobotModel robot = read_robot(robot_of(base() + wheel("left", "0 0.35 0") + wheel("right", "0 -0.15 0")), {});
+  const DriveTrain robot =
+      read_drive_train(robot_of(base() + wheel("left", "0 0.35 0") + wheel("right", "0 -0.15 0")), {});
   EXPECT_NEAR(robot.wheel_base, 0.5, kRounding);
 }
 
@@ -215,13 +219,13 @@ TEST(DriveWheels, TracksAreRefused) {
 }
 
 TEST(DriveWheels, NamesOnOneSideOnlyAreRefused) {
-  RobotParameters parameters;
+  DriveTrainParameters parameters;
   parameters.left_wheel_joints = {"left"};
   EXPECT_THAT(refusal_of(robot_of(two_wheels()), parameters), HasSubstr("not as many"));
 }
 
 TEST(DriveWheels, NamedRadiiThatDifferByMoreThanOnePercentAreRefused) {
-  RobotParameters parameters;
+  DriveTrainParameters parameters;
   parameters.left_wheel_joints = {"left", "rear_left"};
   parameters.right_wheel_joints = {"right", "rear_right"};
   const auto with_rear = [&](const std::string& radius) {

@@ -29,7 +29,7 @@ std::string ball(const std::string& name, double x, double y, double radius, dou
 }
 
 /// m: lowest point of the shapes of `link`.
-double end_of(const RobotModel& robot, const std::string& link) {
+double end_of(const DriveTrain& robot, const std::string& link) {
   double end = std::numeric_limits<double>::infinity();
   for (const RigidBody& body : robot.bodies->bodies) {
     for (const Shape& shape : body.shapes) {
@@ -45,7 +45,7 @@ TEST(Feet, WithinAMillimetreAreLevelledWithANote) {
     Random random(seed);
     const double gap = (toss(random) ? 1 : -1) * between(random, 2e-6, 0.00098);
     const double radius = between(random, 0.01, 0.05), x = between(random, 0.1, 0.3);
-    const RobotModel robot = read_robot(
+    const DriveTrain robot = read_drive_train(
         robot_of(two_wheels() + ball("front", x, 0, radius, gap) + ball("back", -x, 0.05, radius, -gap / 2)), {});
     EXPECT_NEAR(end_of(robot, "front"), kFloor, 1e-9);
     EXPECT_NEAR(end_of(robot, "back"), kFloor, 1e-9);
@@ -56,7 +56,7 @@ TEST(Feet, WithinAMillimetreAreLevelledWithANote) {
 
 TEST(Feet, FartherOffStandAsDrawn) {
   for (const double gap : {-0.002, -0.0011, 0.0011, 0.002}) {
-    const RobotModel robot = read_robot(robot_of(two_wheels() + ball("front", 0.2, 0, 0.03, gap)), {});
+    const DriveTrain robot = read_drive_train(robot_of(two_wheels() + ball("front", 0.2, 0, 0.03, gap)), {});
     EXPECT_NEAR(end_of(robot, "front"), kFloor + gap, 1e-9) << gap;
     EXPECT_THAT(notes_of(robot, RobotNote::Kind::kAssumed), Not(HasSubstr("level with"))) << gap;
   }
@@ -72,7 +72,7 @@ TEST(Feet, CastersThatRollAreLevelledToo) {
         joint({.name = "swivel", .child = "fork", .xyz = "-0.3 0 0", .axis = "<axis xyz=\"0 0 1\"/>"}) +
         link("roller", inertial("0.2") + tyre("0.04")) +
         joint({.name = "caster", .child = "roller", .xyz = xyz(-0.02, 0, kFloor + 0.04 + gap), .parent = "fork"});
-    const RobotModel robot = read_robot(robot_of(two_wheels() + swivel), {});
+    const DriveTrain robot = read_drive_train(robot_of(two_wheels() + swivel), {});
     ASSERT_EQ(robot.casters.size(), 1u);
     EXPECT_NEAR(robot.casters[0].centre_base[2] - robot.casters[0].radius, kFloor, 1e-9);
     EXPECT_NEAR(robot.bodies->moved_by("caster")->in_root.translation().z() - 0.04, kFloor, 1e-9);
@@ -100,7 +100,7 @@ TEST(Feet, AThinBoxOnTheFootprintAtFloorHeightIsNoPart) {
         is_root
             ? joint({.name = "up", .child = "base_link", .xyz = "0 0 0.1", .type = "fixed", .axis = "", .parent = name})
             : joint({.name = "down", .child = name, .xyz = "0 0 -0.1", .type = "fixed", .axis = ""});
-    const RobotModel robot = read_robot(robot_of(text), {});
+    const DriveTrain robot = read_drive_train(robot_of(text), {});
     EXPECT_TRUE(std::isinf(end_of(robot, name)));
     EXPECT_THAT(notes_of(robot, RobotNote::Kind::kIgnored), AllOf(HasSubstr(name), HasSubstr("footprint")));
   }
@@ -116,7 +116,7 @@ TEST(Feet, OfAFootprintThatCarriesTheRobotStay) {
                                   .type = "fixed",
                                   .axis = "",
                                   .parent = "base_footprint"});
-  EXPECT_NEAR(end_of(read_robot(robot_of(text), {}), "base_footprint"), 0, 1e-9);
+  EXPECT_NEAR(end_of(read_drive_train(robot_of(text), {}), "base_footprint"), 0, 1e-9);
 }
 
 }  // namespace

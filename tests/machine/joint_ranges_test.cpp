@@ -8,7 +8,7 @@ namespace {
 
 /// The healthy robot with one more joint, with these limits.
 JointModel with_joint(const std::string& type, const std::string& limit) {
-  const RobotModel robot = read_robot(
+  const DriveTrain robot = read_drive_train(
       robot_of(two_wheels() + link("part", inertial("1")) +
                joint({.name = "more", .child = "part", .type = type, .axis = "<axis xyz=\"0 0 1\"/>", .rest = limit})),
       {});
@@ -53,25 +53,25 @@ TEST(JointRanges, WheelsHaveNoneWhateverTheirJointsSay) {
                      .type = "revolute",
                      .rest = "<limit " + limit + " effort=\"5\" velocity=\"9\"/>"});
     }
-    for (const JointModel& joint : read_robot(robot_of(text), {}).joints) EXPECT_FALSE(joint.range) << limit;
+    for (const JointModel& joint : read_drive_train(robot_of(text), {}).joints) EXPECT_FALSE(joint.range) << limit;
   }
 }
 
 TEST(JointRanges, AWheelsTorqueRisesWithinKEffortRise) {
-  const RobotModel robot = read_robot(robot_of(two_wheels()), {});
+  const DriveTrain robot = read_drive_train(robot_of(two_wheels()), {});
   for (const JointModel& joint : robot.joints) EXPECT_DOUBLE_EQ(joint.effort_rate, joint.effort_limit / kEffortRise);
 }
 
 TEST(JointRanges, TheUsersEffortRateHoldsForEveryWheel) {
-  RobotParameters parameters;
+  DriveTrainParameters parameters;
   parameters.wheel_effort_rate = 12;
-  for (const JointModel& joint : read_robot(robot_of(two_wheels()), parameters).joints) {
+  for (const JointModel& joint : read_drive_train(robot_of(two_wheels()), parameters).joints) {
     EXPECT_EQ(joint.effort_rate, 12);
   }
 }
 
 TEST(JointRanges, AnEffortRateOfZeroIsRefused) {
-  RobotParameters parameters;
+  DriveTrainParameters parameters;
   parameters.wheel_effort_rate = 0;
   EXPECT_THAT(refusal_of(robot_of(two_wheels()), parameters), testing::HasSubstr("robot/wheel_effort_rate"));
 }

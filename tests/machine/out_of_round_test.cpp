@@ -60,7 +60,7 @@ RobotDescription with_meshes(const TemporaryFolder& folder, double radius) {
 }
 
 TEST(OutOfRound, ByAMillimetreAWheelIsAWheelFoundOrNamed) {
-  RobotParameters named;
+  DriveTrainParameters named;
   named.left_wheel_joints = {"left"};
   named.right_wheel_joints = {"right"};
   for (unsigned seed = 0; seed < 60; ++seed) {
@@ -72,9 +72,9 @@ TEST(OutOfRound, ByAMillimetreAWheelIsAWheelFoundOrNamed) {
                  toss(random) ? out_of_round(random, radius, off) : prism_of(40, [&](double) { return radius; }));
     folder.write("right.obj", out_of_round(random, radius, off));
     folder.write("r" + metres(radius) + ".urdf", with_meshes(folder, radius).text);
-    for (const RobotParameters& parameters : {RobotParameters{}, named}) {
+    for (const DriveTrainParameters& parameters : {DriveTrainParameters{}, named}) {
       ASSERT_EQ(refusal_of(with_meshes(folder, radius), parameters), "accepted");
-      const RobotModel robot = read_robot(with_meshes(folder, radius), parameters);
+      const DriveTrain robot = read_drive_train(with_meshes(folder, radius), parameters);
       // The bounds are the polygon's own sagitta for a corner, and that of the mean for an oval.
       EXPECT_NEAR(robot.wheels[0].radius, radius, 0.01 * radius);
       EXPECT_NEAR(robot.wheels[1].radius, radius, std::max(0.01 * radius, 0.0005));
@@ -87,7 +87,7 @@ TEST(OutOfRound, IsNotedWhereTheRadiusIsAMean) {
   folder.write("left.obj", prism_of(40, [&](double) { return 0.04; }));
   folder.write("right.obj", prism_of(40, [&](double phi) { return 0.04 + 0.001 * std::cos(phi); }));
   folder.write("r0.040000000.urdf", "");
-  const RobotModel robot = read_robot(with_meshes(folder, 0.04), {});
+  const DriveTrain robot = read_drive_train(with_meshes(folder, 0.04), {});
   EXPECT_THAT(notes_of(robot, RobotNote::Kind::kSuspicious), HasSubstr("right_link\">: out of round"));
   EXPECT_THAT(notes_of(robot, RobotNote::Kind::kSuspicious), Not(HasSubstr("left_link\">: out of round")));
 }

@@ -17,19 +17,19 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-const JointModel& joint_of(const RobotModel& robot, const std::string& name) {
+const JointModel& joint_of(const DriveTrain& robot, const std::string& name) {
   for (const JointModel& each : robot.joints) {
     if (each.name == name) return each;
   }
   throw std::logic_error(name);
 }
 
-std::string assumed(const RobotModel& robot) {
+std::string assumed(const DriveTrain& robot) {
   return notes_of(robot, RobotNote::Kind::kAssumed);
 }
 
-RobotModel with_limit(const std::string& limit) {
-  return read_robot(
+DriveTrain with_limit(const std::string& limit) {
+  return read_drive_train(
       robot_of(base() + wheel("left", "0 0.25 0", "0.1", limit) + wheel("right", "0 -0.25 0", "0.1", limit)), {});
 }
 
@@ -38,14 +38,14 @@ constexpr double kGrip = (10 + 1 + 1) * 9.81 / 2 * 0.1;  // μ m g / n · r with
 TEST(RobotAssumptions, ALinkWithoutInertialHasNoMass) {
   const std::string plate = link("plate", collision("<box size=\"1 1 1\"/>")) +
                             joint({.name = "plate_joint", .child = "plate", .type = "fixed"});
-  EXPECT_NEAR(read_robot(robot_of(two_wheels() + plate), {}).mass, 12, kRounding);
+  EXPECT_NEAR(read_drive_train(robot_of(two_wheels() + plate), {}).mass, 12, kRounding);
 }
 
 TEST(RobotAssumptions, AnUnknownEffortIsWhatTheTyreTransmits) {
   for (const std::string limit :
        {"", "<limit effort=\"0\" velocity=\"0\"/>", "<limit effort=\"100\" velocity=\"100\"/>",
         "<limit effort=\"1000\" velocity=\"1000\"/>"}) {
-    const RobotModel robot = with_limit(limit);
+    const DriveTrain robot = with_limit(limit);
     EXPECT_NEAR(robot.joints[0].effort_limit, kGrip, kRounding) << limit;
     EXPECT_EQ(robot.joints[0].velocity_limit, 0) << limit;
     EXPECT_THAT(assumed(robot), HasSubstr("5.886 N·m")) << limit;
@@ -58,17 +58,17 @@ TEST(RobotAssumptions, ALimitWithOneOfTheTwoNumbersIsRead) {
 }
 
 TEST(RobotAssumptions, CredibleLimitsHold) {
-  const RobotModel robot = with_limit("<limit effort=\"3\" velocity=\"1.0\"/>");
+  const DriveTrain robot = with_limit("<limit effort=\"3\" velocity=\"1.0\"/>");
   EXPECT_EQ(robot.joints[0].effort_limit, 3);
   EXPECT_EQ(robot.joints[0].velocity_limit, 1);
   EXPECT_THAT(assumed(robot), Not(HasSubstr("limit")));
 }
 
 TEST(RobotAssumptions, OverridesOfTheLimitsHold) {
-  RobotParameters parameters;
+  DriveTrainParameters parameters;
   parameters.wheel_effort_limit = 2;
   parameters.wheel_velocity_limit = 7;
-  const RobotModel robot = read_robot(robot_of(two_wheels()), parameters);
+  const DriveTrain robot = read_drive_train(robot_of(two_wheels()), parameters);
   EXPECT_EQ(robot.joints[1].effort_limit, 2);
   EXPECT_EQ(robot.joints[1].velocity_limit, 7);
   EXPECT_THAT(assumed(robot), Not(HasSubstr("effort")));
@@ -81,12 +81,12 @@ TEST(RobotAssumptions, AWheelWithoutARotorGetsOne) {
     return link(name + "_link", inertial("1", light) + tyre("0.1")) +
            joint({.name = name, .child = name + "_link", .xyz = xyz});
   };
-  const RobotModel robot =
-      read_robot(robot_of(base() + printed("left", "0 0.25 0") + printed("right", "0 -0.25 0")), {});
+  const DriveTrain robot =
+      read_drive_train(robot_of(base() + printed("left", "0 0.25 0") + printed("right", "0 -0.25 0")), {});
   EXPECT_NEAR(robot.wheels[0].inertia, 0.003, kRounding);
   EXPECT_NEAR(robot.wheels[0].rotor_inertia, 0.003 - 1e-6, kRounding);
   EXPECT_THAT(assumed(robot), HasSubstr("rotor inertia"));
-  EXPECT_EQ(read_robot(robot_of(two_wheels()), {}).wheels[0].rotor_inertia, 0);
+  EXPECT_EQ(read_drive_train(robot_of(two_wheels()), {}).wheels[0].rotor_inertia, 0);
 }
 
 // 0.01, 0.01, 0.5 (create_2): A and B grow by ((1 + ε) 0.5 − 0.02)/2.
@@ -122,7 +122,7 @@ TEST(RobotAssumptions, ARepairKeepsTheMassAndNamesTheNumbers) {
   const std::string flat = "ixx=\"0.01\" iyy=\"0.01\" izz=\"0.5\" ixy=\"0\" ixz=\"0\" iyz=\"0\"";
   const std::string disc =
       link("disc", inertial("2", flat)) + joint({.name = "disc_joint", .child = "disc", .type = "fixed"});
-  const RobotModel robot = read_robot(robot_of(two_wheels() + disc), {});
+  const DriveTrain robot = read_drive_train(robot_of(two_wheels() + disc), {});
   EXPECT_NEAR(robot.mass, 14, kRounding);
   EXPECT_THAT(notes_of(robot, RobotNote::Kind::kRepaired),
               AllOf(HasSubstr("<link name=\"disc\">"), HasSubstr("0.01, 0.01, 0.5"), HasSubstr("0.25, 0.25, 0.5")));
@@ -133,7 +133,7 @@ TEST(RobotAssumptions, AnInertiaLargerThanThePartIsNotedAndKept) {
   const std::string huge = "ixx=\"0.001\" iyy=\"0.001\" izz=\"0.001\" ixy=\"0\" ixz=\"0\" iyz=\"0\"";
   const std::string ball = link("ball", inertial("0.01", huge) + collision("<sphere radius=\"0.018\"/>")) +
                            joint({.name = "ball_joint", .child = "ball", .type = "fixed"});
-  EXPECT_THAT(notes_of(read_robot(robot_of(two_wheels() + ball), {}), RobotNote::Kind::kSuspicious),
+  EXPECT_THAT(notes_of(read_drive_train(robot_of(two_wheels() + ball), {}), RobotNote::Kind::kSuspicious),
               HasSubstr("radius of gyration is 0.316228 m"));
 }
 
@@ -144,7 +144,7 @@ TEST(RobotAssumptions, AMovingBodyWithoutInertialOnWhichNothingRollsIsWelded) {
                                 .type = "prismatic",
                                 .axis = "<axis xyz=\"0 0 1\"/>",
                                 .rest = "<limit lower=\"0\" upper=\"1\" effort=\"10\" velocity=\"1\"/>"});
-  const RobotModel robot = read_robot(robot_of(two_wheels() + lift), {});
+  const DriveTrain robot = read_drive_train(robot_of(two_wheels() + lift), {});
   EXPECT_EQ(robot.joints.size(), 2u);
   EXPECT_EQ(robot.bodies->joints.at("lift_joint"), JointType::kFixed);
   EXPECT_EQ(robot.bodies->links.at("lift").body, 0u);
@@ -156,7 +156,8 @@ TEST(RobotAssumptions, AWheelWithoutInertialTakesItsMassFromTheBase) {
   const auto hollow = [](const std::string& name, const std::string& xyz) {
     return link(name + "_link", tyre("0.1")) + joint({.name = name, .child = name + "_link", .xyz = xyz});
   };
-  const RobotModel robot = read_robot(robot_of(base() + hollow("left", "0 0.25 0") + hollow("right", "0 -0.25 0")), {});
+  const DriveTrain robot =
+      read_drive_train(robot_of(base() + hollow("left", "0 0.25 0") + hollow("right", "0 -0.25 0")), {});
   EXPECT_NEAR(robot.mass, 10, kRounding);
   const RigidBody& left = *robot.bodies->moved_by("left");
   EXPECT_NEAR(left.mass, 0.1, kRounding);
@@ -169,7 +170,7 @@ TEST(RobotAssumptions, WithoutAnyCollisionTheVisualShapesCount) {
   for (std::size_t at = text.find("collision"); at != std::string::npos; at = text.find("collision")) {
     text.replace(at, 9, "visual");
   }
-  const RobotModel robot = read_robot({text, "r.urdf"}, {});
+  const DriveTrain robot = read_drive_train({text, "r.urdf"}, {});
   EXPECT_EQ(robot.wheels[0].radius, 0.1);
   EXPECT_EQ(robot.bodies->bodies[0].shapes.size(), 1u);
   EXPECT_THAT(assumed(robot), HasSubstr("<visual> shapes are used"));
@@ -181,7 +182,7 @@ TEST(RobotAssumptions, AWheelWithoutCollisionHasItsVisualShape) {
     const std::size_t at = text.find(tag, text.find("left_link"));
     text.replace(at + tag.find("collision"), 9, "visual");
   }
-  const RobotModel robot = read_robot({text, "r.urdf"}, {});
+  const DriveTrain robot = read_drive_train({text, "r.urdf"}, {});
   EXPECT_EQ(robot.wheels[0].radius, 0.1);
   EXPECT_THAT(assumed(robot), HasSubstr("<link name=\"left_link\">: no <collision>"));
 }
@@ -200,8 +201,8 @@ TEST(RobotAssumptions, ASuspendedWheelGetsASpring) {
            link(name + "_link", inertial("1") + tyre("0.1")) +
            joint({.name = name, .child = name + "_link", .parent = name + "_slider"});
   };
-  const RobotModel robot =
-      read_robot(robot_of(base() + suspended("left", "0 0.25 0") + suspended("right", "0 -0.25 0")), {});
+  const DriveTrain robot =
+      read_drive_train(robot_of(base() + suspended("left", "0 0.25 0") + suspended("right", "0 -0.25 0")), {});
   const BodyJoint& spring = robot.bodies->moved_by("left_slide")->joint;
   const double omega = 2 * M_PI * 5;
   EXPECT_NEAR(spring.spring_load, -5 * 9.81, 1e-9);
@@ -219,7 +220,7 @@ TEST(RobotAssumptions, AnArmIsHeldAFollowerAndAJointWithoutEffortAreNot) {
                                                         .axis = "<axis xyz=\"0 0 1\"/>",
                                                         .rest = rest});
   };
-  const RobotModel robot = read_robot(
+  const DriveTrain robot = read_drive_train(
       robot_of(two_wheels() + arm("shoulder", "<limit lower=\"-1\" upper=\"1\" effort=\"9\" velocity=\"1\"/>") +
                arm("twin",
                    "<limit lower=\"-1\" upper=\"1\" effort=\"9\" velocity=\"1\"/><mimic joint=\"shoulder\" "
@@ -240,12 +241,12 @@ TEST(RobotAssumptions, TheImuIsFoundByAWordOfItsName) {
   const auto fixed = [](const std::string& name) {
     return link(name, "") + joint({.name = name + "_joint", .child = name, .type = "fixed"});
   };
-  EXPECT_EQ(read_robot(robot_of(two_wheels() + fixed("base_imu_link")), {}).imu_link, "base_imu_link");
-  EXPECT_EQ(read_robot(robot_of(two_wheels() + fixed("gyro_link")), {}).imu_link, "gyro_link");
-  EXPECT_EQ(read_robot(robot_of(two_wheels() + fixed("simulated_part")), {}).imu_link, "");
-  RobotParameters parameters;
+  EXPECT_EQ(read_drive_train(robot_of(two_wheels() + fixed("base_imu_link")), {}).imu_link, "base_imu_link");
+  EXPECT_EQ(read_drive_train(robot_of(two_wheels() + fixed("gyro_link")), {}).imu_link, "gyro_link");
+  EXPECT_EQ(read_drive_train(robot_of(two_wheels() + fixed("simulated_part")), {}).imu_link, "");
+  DriveTrainParameters parameters;
   parameters.imu_link = "box";
-  EXPECT_EQ(read_robot(robot_of(two_wheels() + fixed("gyro_link") + fixed("box")), parameters).imu_link, "box");
+  EXPECT_EQ(read_drive_train(robot_of(two_wheels() + fixed("gyro_link") + fixed("box")), parameters).imu_link, "box");
   parameters.imu_link = "nowhere";
   EXPECT_THAT(refusal_of(robot_of(two_wheels()), parameters), HasSubstr("no link \"nowhere\""));
 }
@@ -254,7 +255,7 @@ TEST(NegativeNumbers, OfAJointAreTakenAsNotGivenAndNoted) {
   for (const std::string rest : {"<limit effort=\"-5\" velocity=\"9\"/>", "<limit effort=\"5\" velocity=\"-9\"/>",
                                  "<dynamics damping=\"-5\"/>", "<dynamics friction=\"-5\"/>"}) {
     const std::string text = base() + wheel("left", "0 0.25 0", "0.1", rest) + wheel("right", "0 -0.25 0");
-    EXPECT_THAT(notes_of(read_robot(robot_of(text), {}), RobotNote::Kind::kSuspicious), HasSubstr("is negative"))
+    EXPECT_THAT(notes_of(read_drive_train(robot_of(text), {}), RobotNote::Kind::kSuspicious), HasSubstr("is negative"))
         << rest;
   }
 }

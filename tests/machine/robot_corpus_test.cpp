@@ -6,7 +6,7 @@
 #include <chrono>
 #include <filesystem>
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "support/corpus.h"
 
 namespace robot_control {
@@ -31,7 +31,7 @@ class RobotCorpus : public testing::TestWithParam<std::string> {
     if (corpus().empty()) GTEST_SKIP() << kNoCorpus;
     truth_ = YAML::LoadFile((corpus() / "TRUTH.json").string())[GetParam()];
     const auto start = std::chrono::steady_clock::now();
-    robot_ = read_robot(load_description((corpus() / GetParam() / "robot.urdf").string()), {});
+    robot_ = read_drive_train(load_description((corpus() / GetParam() / "robot.urdf").string()), {});
     seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
 
@@ -52,7 +52,7 @@ class RobotCorpus : public testing::TestWithParam<std::string> {
   }
 
   YAML::Node truth_;
-  RobotModel robot_;
+  DriveTrain robot_;
   double seconds_ = 0;
 };
 
@@ -85,7 +85,7 @@ TEST_P(RobotCorpus, IsReadInLessThanTwoSeconds) {
 }
 
 TEST_P(RobotCorpus, TwoReadingsAreEqual) {
-  const RobotModel again = read_robot(load_description((corpus() / GetParam() / "robot.urdf").string()), {});
+  const DriveTrain again = read_drive_train(load_description((corpus() / GetParam() / "robot.urdf").string()), {});
   EXPECT_EQ(again.hash, robot_.hash);
   EXPECT_EQ(again.yaw_inertia, robot_.yaw_inertia);
   EXPECT_EQ(again.notes.size(), robot_.notes.size());
@@ -96,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(Robots, RobotCorpus, testing::ValuesIn(robots()),
 
 std::string refusal_of_robot(const std::string& name) {
   try {
-    read_robot(load_description((corpus() / name / "robot.urdf").string()), {});
+    read_drive_train(load_description((corpus() / name / "robot.urdf").string()), {});
   } catch (const RobotError& error) {
     return error.what();
   }

@@ -68,7 +68,7 @@ std::string mutated(std::string text, Random& random) {
   }
 }
 
-void expect_sound(const RobotModel& robot) {
+void expect_sound(const DriveTrain& robot) {
   ASSERT_NE(robot.bodies, nullptr);
   ASSERT_GE(robot.wheels.size(), 2u);
   EXPECT_EQ(robot.wheels.size() % 2, 0u);
@@ -124,7 +124,7 @@ TEST(RobotFuzz, AMutatedUrdfIsARobotOrAMessage) {
     const std::size_t mutations = 1 + below(random, 3);
     for (std::size_t i = 0; i < mutations; ++i) description.text = mutated(description.text, random);
     try {
-      expect_sound(read_robot(description, {}));
+      expect_sound(read_drive_train(description, {}));
       ++accepted;
     } catch (const RobotError& error) {
       EXPECT_NE(std::string(error.what()).find(description.source), std::string::npos) << error.what();

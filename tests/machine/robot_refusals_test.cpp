@@ -5,8 +5,8 @@
 
 #include <limits>
 
-#include "machine/robot_model.h"
 #include "machine/urdf_text.h"
+#include "machine/wheeled/drive_train.h"
 #include "support/diffbot_urdf.h"
 #include "support/quiet_refusal.h"
 
@@ -20,12 +20,12 @@ using testing::Not;
 const std::string kFirstJoint = "<joint name=\"left_wheel_joint\"";
 const std::string kLeftLink = "<link name=\"left_wheel_link\">";
 
-std::string refusal(const RobotDescription& description, const RobotParameters& parameters = {}) {
-  return quiet_refusal<RobotError>([&] { read_robot(description, parameters); });
+std::string refusal(const RobotDescription& description, const DriveTrainParameters& parameters = {}) {
+  return quiet_refusal<RobotError>([&] { read_drive_train(description, parameters); });
 }
 
-RobotParameters named() {
-  RobotParameters parameters;
+DriveTrainParameters named() {
+  DriveTrainParameters parameters;
   parameters.left_wheel_joints = {"left_wheel_joint"};
   parameters.right_wheel_joints = {"right_wheel_joint"};
   return parameters;
@@ -63,7 +63,7 @@ TEST(RobotRefusals, WhatUrdfdomRefusesInItsOwnWords) {
 }
 
 TEST(RobotRefusals, AMissingWheelJointAndNamesThoseThereAre) {
-  RobotParameters parameters = named();
+  DriveTrainParameters parameters = named();
   parameters.left_wheel_joints = {"wheel_l"};
   EXPECT_THAT(refusal(diffbot_urdf(), parameters),
               AllOf(names("wheel_l", "no such joint"), HasSubstr("left_wheel_joint, right_wheel_joint")));
@@ -77,13 +77,13 @@ TEST(RobotRefusals, ARobotWithoutWheels) {
 }
 
 TEST(RobotRefusals, OneJointForBothWheels) {
-  RobotParameters parameters = named();
+  DriveTrainParameters parameters = named();
   parameters.right_wheel_joints = {"left_wheel_joint"};
   EXPECT_THAT(refusal(diffbot_urdf(), parameters), names("left_wheel_joint", "named twice"));
 }
 
 TEST(RobotRefusals, LeftAndRightExchanged) {
-  RobotParameters parameters = named();
+  DriveTrainParameters parameters = named();
   std::swap(parameters.left_wheel_joints, parameters.right_wheel_joints);
   EXPECT_THAT(refusal(diffbot_urdf(), parameters), names("left_wheel_joint", "is not left of"));
 }
@@ -155,7 +155,7 @@ TEST(RobotRefusals, ABaseWithoutMass) {
 }
 
 TEST(RobotRefusals, AnImuOnAWheel) {
-  RobotParameters parameters;
+  DriveTrainParameters parameters;
   parameters.imu_link = "imu_link";
   const RobotDescription description =
       diffbot_with("<joint name=\"imu_joint\"", "<parent link=\"base_link\"/>", "<parent link=\"left_wheel_link\"/>");
@@ -164,7 +164,7 @@ TEST(RobotRefusals, AnImuOnAWheel) {
 }
 
 TEST(RobotRefusals, AnImuNowhere) {
-  RobotParameters parameters;
+  DriveTrainParameters parameters;
   parameters.imu_position = Vector3{0, std::numeric_limits<double>::quiet_NaN(), 0};
   EXPECT_THAT(refusal(diffbot_urdf(), parameters), names("robot/imu_position", "three finite numbers"));
   parameters.imu_position.reset();
@@ -267,10 +267,10 @@ TEST(RobotRefusals, MoreJointsThanAFrameHolds) {
 class AnOverrideThatIsNotAboveZero : public testing::TestWithParam<double> {};
 
 TEST_P(AnOverrideThatIsNotAboveZero, IsRefused) {
-  RobotParameters base;
+  DriveTrainParameters base;
   base.wheel_base = GetParam();
   EXPECT_THAT(refusal(diffbot_urdf(), base), names("robot/wheel_base", "above zero"));
-  RobotParameters radius;
+  DriveTrainParameters radius;
   radius.wheel_radius = GetParam();
   EXPECT_THAT(refusal(diffbot_urdf(), radius), names("robot/wheel_radius", "above zero"));
 }

@@ -24,7 +24,7 @@ std::string swivel(const std::string& trail) {
 }
 
 TEST(Caster, ThatFollowsItsSwivelRollsWhereItIsTurned) {
-  const RobotModel robot = read_robot(robot_of(two_wheels() + swivel("-0.03 0 0")), {});
+  const DriveTrain robot = read_drive_train(robot_of(two_wheels() + swivel("-0.03 0 0")), {});
   ASSERT_EQ(robot.casters.size(), 1u);
   EXPECT_FALSE(robot.casters[0].omni);
 }
@@ -32,14 +32,14 @@ TEST(Caster, ThatFollowsItsSwivelRollsWhereItIsTurned) {
 // An offset along the axle is no trail.
 TEST(Caster, BelowItsSwivelSlides) {
   for (const char* trail : {"0 0 0", "0 0.03 0"}) {
-    const RobotModel robot = read_robot(robot_of(two_wheels() + swivel(trail)), {});
+    const DriveTrain robot = read_drive_train(robot_of(two_wheels() + swivel(trail)), {});
     EXPECT_TRUE(robot.casters.empty()) << trail;
     EXPECT_THAT(notes_of(robot, RobotNote::Kind::kAssumed), HasSubstr("below its swivel, which cannot turn it"));
   }
 }
 
 TEST(Caster, WithoutASwivelIsAnOmniWheel) {
-  const RobotModel robot = read_robot(robot_of(two_wheels() + wheel("rear", "-0.3 0 0")), {});
+  const DriveTrain robot = read_drive_train(robot_of(two_wheels() + wheel("rear", "-0.3 0 0")), {});
   ASSERT_EQ(robot.casters.size(), 1u);
   EXPECT_TRUE(robot.casters[0].omni);
   EXPECT_THAT(notes_of(robot, RobotNote::Kind::kAssumed), HasSubstr("no swivel turns it"));
@@ -65,27 +65,27 @@ std::string rocker(const std::string& name, const std::string& y, const std::str
   return text;
 }
 
-const BodyJoint& right_rocker(const RobotModel& robot) {
+const BodyJoint& right_rocker(const DriveTrain& robot) {
   return robot.bodies->moved_by("right")->joint;
 }
 
 TEST(Rockers, AreJoinedByADifferential) {
-  const RobotModel robot = read_robot(robot_of(base() + rocker("left", "0.25") + rocker("right", "-0.25")), {});
+  const DriveTrain robot = read_drive_train(robot_of(base() + rocker("left", "0.25") + rocker("right", "-0.25")), {});
   EXPECT_EQ(right_rocker(robot).mimicked, "left");
   EXPECT_EQ(right_rocker(robot).mimic_multiplier, -1);
   EXPECT_THAT(notes_of(robot, RobotNote::Kind::kAssumed), HasSubstr("a differential"));
 }
 
 TEST(Rockers, WithOppositeAxesTurnTheSameWay) {
-  const RobotModel robot =
-      read_robot(robot_of(base() + rocker("left", "0.25", "0 -1 0") + rocker("right", "-0.25")), {});
+  const DriveTrain robot =
+      read_drive_train(robot_of(base() + rocker("left", "0.25", "0 -1 0") + rocker("right", "-0.25")), {});
   EXPECT_EQ(right_rocker(robot).mimic_multiplier, 1);
 }
 
 TEST(Rockers, ThatTheUrdfTiesItselfAreLeftAlone) {
   const std::string mimic = "<mimic joint=\"left\" multiplier=\"-0.5\"/>";
-  const RobotModel robot =
-      read_robot(robot_of(base() + rocker("left", "0.25") + rocker("right", "-0.25", "0 1 0", mimic)), {});
+  const DriveTrain robot =
+      read_drive_train(robot_of(base() + rocker("left", "0.25") + rocker("right", "-0.25", "0 1 0", mimic)), {});
   EXPECT_EQ(right_rocker(robot).mimic_multiplier, -0.5);
   EXPECT_THAT(notes_of(robot, RobotNote::Kind::kAssumed), Not(HasSubstr("differential")));
 }
@@ -95,8 +95,8 @@ TEST(Inertia, BeyondTheRobotsOwnSizeIsScaledDownToIt) {
   const std::string tensor = "ixx=\"1\" iyy=\"0.01\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"";
   const std::string sensor = link("sensor", inertial("0.01", tensor)) +
                              joint({.name = "mount", .child = "sensor", .type = "fixed", .axis = ""});
-  const double without = read_robot(robot_of(two_wheels()), {}).yaw_inertia;
-  const RobotModel robot = read_robot(robot_of(two_wheels() + sensor), {});
+  const double without = read_drive_train(robot_of(two_wheels()), {}).yaw_inertia;
+  const DriveTrain robot = read_drive_train(robot_of(two_wheels() + sensor), {});
   EXPECT_THAT(notes_of(robot, RobotNote::Kind::kRepaired),
               HasSubstr("<link name=\"sensor\">: a radius of gyration of 10 m"));
   EXPECT_GT(robot.yaw_inertia, without);
@@ -111,7 +111,7 @@ std::string axles(const std::vector<std::string>& positions) {
 
 // b = 0.5, x = 0.3, 0, −0.3: with s the slip, b/2 (1 + 2 s/√(s² + x²)) = 2 x²/√(s² + x²).
 TEST(ScrubMultiplier, OfThreeAxlesBalancesTheirMoments) {
-  const RobotModel robot = read_robot(robot_of(axles({"0.3", "0", "-0.3"})), {});
+  const DriveTrain robot = read_drive_train(robot_of(axles({"0.3", "0", "-0.3"})), {});
   const double slip = (robot.wheel_base_multiplier - 1) * 0.5 / 2;
   const double speed = std::hypot(slip, 0.3);
   EXPECT_NEAR(0.25 * (1 + 2 * slip / speed), 2 * 0.09 / speed, 1e-9);
@@ -120,7 +120,7 @@ TEST(ScrubMultiplier, OfThreeAxlesBalancesTheirMoments) {
 
 // The middle axle alone outweighs the outer two, 1 cm away: b/2 > 2 · 0.01.
 TEST(ScrubMultiplier, OfAxlesThatStandCloseIsOne) {
-  EXPECT_NEAR(read_robot(robot_of(axles({"0.01", "0", "-0.01"})), {}).wheel_base_multiplier, 1, kRounding);
+  EXPECT_NEAR(read_drive_train(robot_of(axles({"0.01", "0", "-0.01"})), {}).wheel_base_multiplier, 1, kRounding);
 }
 
 TEST(ScrubMultiplier, OfUnequalLoadsIsDoubtful) {
@@ -129,8 +129,9 @@ TEST(ScrubMultiplier, OfUnequalLoadsIsDoubtful) {
   const std::string text = axles({"0.2", "-0.2"}) + link("cargo", load) +
                            joint({.name = "bed", .child = "cargo", .type = "fixed", .axis = ""});
   // 10 of 24 kg
-  EXPECT_THAT(notes_of(read_robot(robot_of(text), {}), RobotNote::Kind::kSuspicious), HasSubstr("-0.0416667 m left"));
-  EXPECT_THAT(notes_of(read_robot(robot_of(axles({"0.2", "-0.2"})), {}), RobotNote::Kind::kSuspicious),
+  EXPECT_THAT(notes_of(read_drive_train(robot_of(text), {}), RobotNote::Kind::kSuspicious),
+              HasSubstr("-0.0416667 m left"));
+  EXPECT_THAT(notes_of(read_drive_train(robot_of(axles({"0.2", "-0.2"})), {}), RobotNote::Kind::kSuspicious),
               Not(HasSubstr("equal loads")));
 }
 

@@ -1,6 +1,6 @@
 /// The torque of treads that slide in a turn, compared with Coulomb's law.
 
-#include "machine/wheels/scrub.h"
+#include "machine/wheeled/scrub.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@ namespace robot_control {
 namespace {
 
 /// 20 kg on four wheels of 0.1 m, axles 0.4 m apart, 0.5 m wide; left joints mirrored.
-RobotModel skid_steer() {
-  RobotModel robot;
+DriveTrain skid_steer() {
+  DriveTrain robot;
   robot.wheel_base = 0.5;
   robot.wheel_base_multiplier = 1.64;
   robot.mass = 20;
@@ -113,7 +113,7 @@ TEST_F(Strain, RollsOutOfTheContact) {
 }
 
 TEST(Scrub, FollowsTheLoadOfEachAxle) {
-  RobotModel robot = skid_steer();
+  DriveTrain robot = skid_steer();
   robot.centre_of_gravity_base[0] = 0.1;  // three quarters on the front axle
   const Scrub scrub(robot);
   EXPECT_NEAR(scrub.max_effort(0), 1.5 * kTorque, 2e-3 * kTorque);
@@ -121,7 +121,7 @@ TEST(Scrub, FollowsTheLoadOfEachAxle) {
 }
 
 TEST(Scrub, IsNoneOfOneWheelASide) {
-  RobotModel robot = skid_steer();
+  DriveTrain robot = skid_steer();
   robot.wheels = {robot.wheels[0], robot.wheels[2]};
   robot.wheel_base_multiplier = 1.05;  // by calibration: broad tyres
   const Scrub scrub(robot);

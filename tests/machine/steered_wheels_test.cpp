@@ -30,11 +30,11 @@ TEST(HolonomicDrive, PluginsThatMoveARobotSidewaysAreNoted) {
   for (const std::string file : {"libgazebo_ros_planar_move.so", "libgazebo_ros_mecanum_drive.so", "libomni_drive.so",
                                  "libgazebo_ros_force_based_move.so", "libholonomic_move.so", "libswerve_drive.so"}) {
     for (const std::string& wheels : {two_wheels(), four_wheels()}) {
-      const RobotModel robot = read_robot(robot_of(wheels + plugin(file)), {});
+      const DriveTrain robot = read_drive_train(robot_of(wheels + plugin(file)), {});
       EXPECT_THAT(notes_of(robot, RobotNote::Kind::kSuspicious), AllOf(HasSubstr(file), HasSubstr("sideways"))) << file;
     }
   }
-  const RobotModel plain = read_robot(robot_of(two_wheels() + plugin("libgazebo_ros_diff_drive.so")), {});
+  const DriveTrain plain = read_drive_train(robot_of(two_wheels() + plugin("libgazebo_ros_diff_drive.so")), {});
   EXPECT_THAT(notes_of(plain, RobotNote::Kind::kSuspicious), Not(HasSubstr("sideways")));
 }
 
@@ -86,10 +86,10 @@ TEST(HolonomicDrive, RollersOnTheWheelsAreRefusedWithTheReason) {
 TEST(DriveWheel, ThatHangsOnAnotherOneIsRefused) {
   const std::string text = base() + wheel("left", "0 0.25 0") + link("right_link", inertial("1") + tyre("0.1")) +
                            joint({.name = "right", .child = "right_link", .xyz = "0 -0.5 0", .parent = "left_link"});
-  RobotParameters named;
+  DriveTrainParameters named;
   named.left_wheel_joints = {"left"};
   named.right_wheel_joints = {"right"};
-  for (const RobotParameters& parameters : {RobotParameters(), named}) {
+  for (const DriveTrainParameters& parameters : {DriveTrainParameters(), named}) {
     EXPECT_THAT(refusal_of(robot_of(text), parameters),
                 AllOf(HasSubstr("<joint name=\"right\">"), HasSubstr("hangs on left")));
   }
@@ -125,14 +125,14 @@ TEST(HolonomicDrive, RollersBesideADriveAreRefusedWhereTheyMayDriveAndCastersWhe
   for (const bool joints : {true, false}) {
     const std::string alike = with_roller_wheels_behind(0, joints);
     EXPECT_THAT(refusal_of(robot_of(alike)), AllOf(HasSubstr("rl"), HasSubstr("rollers"), HasSubstr("as high as")));
-    EXPECT_NO_THROW(read_robot(robot_of(alike + transmission("fl") + transmission("fr")), {}));
-    EXPECT_NO_THROW(read_robot(robot_of(with_roller_wheels_behind(0.02, joints)), {}));
+    EXPECT_NO_THROW(read_drive_train(robot_of(alike + transmission("fl") + transmission("fr")), {}));
+    EXPECT_NO_THROW(read_drive_train(robot_of(with_roller_wheels_behind(0.02, joints)), {}));
     const std::string all = alike + transmission("fl") + transmission("fr") + transmission("rl") + transmission("rr");
     EXPECT_THAT(refusal_of(robot_of(all)), HasSubstr("rollers"));
-    RobotParameters named;
+    DriveTrainParameters named;
     named.left_wheel_joints = {"fl"};
     named.right_wheel_joints = {"fr"};
-    EXPECT_THAT(notes_of(read_robot(robot_of(alike), named), RobotNote::Kind::kSuspicious), HasSubstr("rollers"));
+    EXPECT_THAT(notes_of(read_drive_train(robot_of(alike), named), RobotNote::Kind::kSuspicious), HasSubstr("rollers"));
   }
 }
 
@@ -144,11 +144,11 @@ TEST(HolonomicDrive, ADriveWheelThatIsCalledMecanumOrOmniIsRefusedEvenIfItIsTheO
                                                     HasSubstr("name the wheels by robot/left_wheel_joints")));
     }
   }
-  RobotParameters named;
+  DriveTrainParameters named;
   named.left_wheel_joints = {"omni_left"};
   named.right_wheel_joints = {"fr"};
-  const RobotModel robot =
-      read_robot(robot_of(base() + wheel("omni_left", kPlaces[0]) + wheel("fr", kPlaces[1])), named);
+  const DriveTrain robot =
+      read_drive_train(robot_of(base() + wheel("omni_left", kPlaces[0]) + wheel("fr", kPlaces[1])), named);
   EXPECT_THAT(notes_of(robot, RobotNote::Kind::kSuspicious), HasSubstr("its name says omni"));
 }
 
@@ -167,7 +167,7 @@ std::string base_with_names(const std::string& robot, const std::string& root, c
 }
 
 std::string suspicions(const std::string& text) {
-  return notes_of(read_robot({text, "r.urdf"}, {}), RobotNote::Kind::kSuspicious);
+  return notes_of(read_drive_train({text, "r.urdf"}, {}), RobotNote::Kind::kSuspicious);
 }
 
 TEST(HolonomicDrive, NamesOfABaseThatSayItAreNotedOnceInPlainWords) {
@@ -255,12 +255,12 @@ TEST(SteeredWheels, AreRefusedWithTheReason) {
 }
 
 TEST(SteeredWheels, BesideWheelsThatAreNamedAreNoted) {
-  RobotParameters named;
+  DriveTrainParameters named;
   named.left_wheel_joints = {"left"};
   named.right_wheel_joints = {"right"};
   const std::string text = two_wheels() + steered("sl", 0.4, 0.25, 0, "revolute", kSteering) +
                            steered("sr", 0.4, -0.25, 0, "revolute", kSteering);
-  EXPECT_THAT(notes_of(read_robot(robot_of(text), named), RobotNote::Kind::kSuspicious),
+  EXPECT_THAT(notes_of(read_drive_train(robot_of(text), named), RobotNote::Kind::kSuspicious),
               AllOf(HasSubstr("sl"), HasSubstr("steered")));
 }
 
@@ -277,9 +277,9 @@ TEST(SteeredWheels, ADrivenCasterIsNoted) {
       joint({.name = "swivel", .child = "fork", .xyz = "-0.3 0.1 0", .axis = "<axis xyz=\"0 0 1\"/>"}) +
       link("roller", inertial("0.2") + tyre("0.1")) +
       joint({.name = "caster", .child = "roller", .xyz = "-0.03 0 0", .parent = "fork"});
-  EXPECT_THAT(
-      notes_of(read_robot(robot_of(two_wheels() + caster + transmission("caster")), {}), RobotNote::Kind::kSuspicious),
-      AllOf(HasSubstr("caster"), HasSubstr("driven")));
+  EXPECT_THAT(notes_of(read_drive_train(robot_of(two_wheels() + caster + transmission("caster")), {}),
+                       RobotNote::Kind::kSuspicious),
+              AllOf(HasSubstr("caster"), HasSubstr("driven")));
 }
 
 // The front wheel of a tricycle is driven.
@@ -302,7 +302,7 @@ TEST(NamedDrive, TransmissionsBind) {
     const bool pairs = count == 0 || count == 4 || seed == 3 || seed == 12;
     if (pairs) {
       EXPECT_EQ(refusal, "accepted") << seed;
-      EXPECT_EQ(read_robot(robot_of(text), {}).wheels.size(), count == 0 ? 4 : count) << seed;
+      EXPECT_EQ(read_drive_train(robot_of(text), {}).wheels.size(), count == 0 ? 4 : count) << seed;
     } else {
       EXPECT_THAT(refusal, AllOf(HasSubstr("the file says"), HasSubstr("driven"))) << seed;
     }
@@ -315,7 +315,7 @@ TEST(NamedDrive, WheelsThatFollowOthersByMimicAreDrivenWithANote) {
       std::string text = two_wheels() + wheel("rear_left", "-0.3 0.25 0", "0.1", "<mimic joint=\"left\"/>") +
                          wheel("rear_right", "-0.3 -0.25 0", "0.1", "<mimic joint=\"" + leader + "\"/>");
       if (said) text += transmission("left") + transmission("right");
-      const RobotModel robot = read_robot(robot_of(text), {});
+      const DriveTrain robot = read_drive_train(robot_of(text), {});
       EXPECT_EQ(robot.wheels.size(), 4u);
       EXPECT_THAT(notes_of(robot, RobotNote::Kind::kSuspicious),
                   AllOf(HasSubstr("rear_left"), HasSubstr("<mimic joint")));
@@ -324,7 +324,7 @@ TEST(NamedDrive, WheelsThatFollowOthersByMimicAreDrivenWithANote) {
   }
   const std::string pair =
       base() + wheel("left", "0 0.25 0") + wheel("right", "0 -0.25 0", "0.1", "<mimic joint=\"left\"/>");
-  EXPECT_THAT(notes_of(read_robot(robot_of(pair), {}), RobotNote::Kind::kSuspicious), HasSubstr("<mimic joint"));
+  EXPECT_THAT(notes_of(read_drive_train(robot_of(pair), {}), RobotNote::Kind::kSuspicious), HasSubstr("<mimic joint"));
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ std::string made(const Made& m) {
 }
 
 std::string suspicion(const std::string& text) {
-  return notes_of(read_robot(robot_of(text), {}), RobotNote::Kind::kSuspicious);
+  return notes_of(read_drive_train(robot_of(text), {}), RobotNote::Kind::kSuspicious);
 }
 
 std::string driven_by(const std::string& left, const std::string& right) {
@@ -267,7 +267,7 @@ TEST_F(Files, PointsOfAMeshThatAreNotANumberAreNoted) {
       " facet normal 0 0 1\n outer loop\n vertex 0 0 0.1\n vertex nan 0 0\n vertex 0 inf 0\n endloop\n "
       "endfacet\nendsolid s\n";
   folder_.write("part.stl", solid);
-  const RobotModel robot = read_robot(with(two_wheels() + casters() + part("top", shell("part.stl"))), {});
+  const DriveTrain robot = read_drive_train(with(two_wheels() + casters() + part("top", shell("part.stl"))), {});
   EXPECT_THAT(notes_of(robot, RobotNote::Kind::kSuspicious),
               AllOf(HasSubstr("<link name=\"top\">"), HasSubstr("part.stl"), HasSubstr("2 points")));
 }
@@ -276,13 +276,13 @@ TEST_F(Files, MissingVisualMeshesAreNotedAndNothingElse) {
   folder_.write("there.obj", std::string(kTetrahedron) + kItsFaces);
   const std::string text = two_wheels() + casters() + part("top", shell("nowhere.dae", "visual")) +
                            part("lid", shell("there.obj", "visual"));
-  const std::string notes = notes_of(read_robot(with(text), {}), RobotNote::Kind::kSuspicious);
+  const std::string notes = notes_of(read_drive_train(with(text), {}), RobotNote::Kind::kSuspicious);
   EXPECT_THAT(notes, AllOf(HasSubstr("<link name=\"top\">"), HasSubstr("nowhere.dae"), Not(HasSubstr("there.obj"))));
 }
 
 TEST_F(Files, AMissingCollisionMeshOfWhatTouchesNothingIsNoted) {
-  const RobotModel robot =
-      read_robot(with(two_wheels() + casters() + part("top", shell("package://nowhere/top.stl"))), {});
+  const DriveTrain robot =
+      read_drive_train(with(two_wheels() + casters() + part("top", shell("package://nowhere/top.stl"))), {});
   EXPECT_THAT(notes_of(robot, RobotNote::Kind::kSuspicious),
               AllOf(HasSubstr("<link name=\"top\">"), HasSubstr("top.stl"), HasSubstr("left out")));
 }

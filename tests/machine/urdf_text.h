@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -69,9 +69,9 @@ inline std::string two_wheels() {
 }
 
 /// The message of the refusal, or "accepted".
-inline std::string refusal_of(const RobotDescription& description, const RobotParameters& parameters = {}) {
+inline std::string refusal_of(const RobotDescription& description, const DriveTrainParameters& parameters = {}) {
   try {
-    read_robot(description, parameters);
+    read_drive_train(description, parameters);
   } catch (const RobotError& error) {
     return error.what();
   }
@@ -79,7 +79,7 @@ inline std::string refusal_of(const RobotDescription& description, const RobotPa
 }
 
 /// All notes of one kind, one per line: "element: text".
-inline std::string notes_of(const RobotModel& robot, RobotNote::Kind kind) {
+inline std::string notes_of(const DriveTrain& robot, RobotNote::Kind kind) {
   std::string text;
   for (const RobotNote& note : robot.notes) {
     if (note.kind == kind) text += note.element + ": " + note.text + "\n";

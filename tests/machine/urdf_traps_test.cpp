@@ -17,7 +17,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 std::string refusal(const std::string& content) {
-  return quiet_refusal<RobotError>([&] { read_robot(robot_of(content), {}); });
+  return quiet_refusal<RobotError>([&] { read_drive_train(robot_of(content), {}); });
 }
 
 std::string decorated(const std::string& visual) {
@@ -53,10 +53,10 @@ TEST(UrdfTraps, CommentsSayNothing) {
 }
 
 TEST(UrdfTraps, AContinuousJointHasNoLimits) {
-  const RobotModel robot =
-      read_robot(robot_of(base() + wheel("left", "0 0.25 0", "0.1", "<limit lower=\"-1\" upper=\"1\" effort=\"1\"/>") +
-                          wheel("right", "0 -0.25 0")),
-                 {});
+  const DriveTrain robot = read_drive_train(
+      robot_of(base() + wheel("left", "0 0.25 0", "0.1", "<limit lower=\"-1\" upper=\"1\" effort=\"1\"/>") +
+               wheel("right", "0 -0.25 0")),
+      {});
   const BodyJoint& left = robot.bodies->moved_by("left")->joint;
   EXPECT_EQ(left.lower, 0);
   EXPECT_EQ(left.upper, 0);
@@ -75,12 +75,12 @@ std::string revolute_wheels(const std::string& limit) {
 }
 
 TEST(UrdfTraps, ARevoluteWheelWithoutAnEndIsContinuous) {
-  const RobotModel robot = read_robot(robot_of(revolute_wheels("<limit lower=\"-1e16\" upper=\"1e16\"/>")), {});
+  const DriveTrain robot = read_drive_train(robot_of(revolute_wheels("<limit lower=\"-1e16\" upper=\"1e16\"/>")), {});
   EXPECT_EQ(robot.bodies->moved_by("left")->joint.type, JointType::kContinuous);
 }
 
 TEST(UrdfTraps, DegreesInTheLimitsAreNoted) {
-  const RobotModel robot = read_robot(robot_of(revolute_wheels("<limit lower=\"-180\" upper=\"180\"/>")), {});
+  const DriveTrain robot = read_drive_train(robot_of(revolute_wheels("<limit lower=\"-180\" upper=\"180\"/>")), {});
   EXPECT_THAT(notes_of(robot, RobotNote::Kind::kSuspicious), HasSubstr("degrees"));
 }
 
@@ -94,7 +94,7 @@ TEST(UrdfTraps, AMimicOfNoJointIsIgnored) {
                                                                  .child = "f",
                                                                  .axis = "<axis xyz=\"0 0 1\"/>",
                                                                  .rest = "<mimic joint=\"absent_joint\"/>"});
-  const RobotModel robot = read_robot(robot_of(two_wheels() + follower), {});
+  const DriveTrain robot = read_drive_train(robot_of(two_wheels() + follower), {});
   EXPECT_EQ(robot.bodies->moved_by("follower")->joint.mimicked, "");
   EXPECT_THAT(notes_of(robot, RobotNote::Kind::kIgnored), HasSubstr("absent_joint"));
 }
@@ -132,7 +132,7 @@ class MeshShapes : public testing::Test {
 
 // R_x(π/2)·z = −y: the prism, which begins at z = 0, lies from y = 0 to −0.04, its middle at −0.02.
 TEST_F(MeshShapes, AScaledRoundMeshIsAWheel) {
-  const RobotModel robot = read_robot(with_wheel_mesh("wheel.obj\" scale=\"0.1 0.1 0.04\""), {});
+  const DriveTrain robot = read_drive_train(with_wheel_mesh("wheel.obj\" scale=\"0.1 0.1 0.04\""), {});
   const double digits = 1e-6;  // those of std::to_string
   EXPECT_NEAR(robot.wheels[0].radius, 0.1, digits);
   EXPECT_NEAR(robot.wheels[0].width, 0.04, digits);
@@ -140,7 +140,7 @@ TEST_F(MeshShapes, AScaledRoundMeshIsAWheel) {
 }
 
 TEST_F(MeshShapes, ANegativeScaleMirrors) {
-  const RobotModel robot = read_robot(with_wheel_mesh("wheel.obj\" scale=\"0.1 0.1 -0.04\""), {});
+  const DriveTrain robot = read_drive_train(with_wheel_mesh("wheel.obj\" scale=\"0.1 0.1 -0.04\""), {});
   EXPECT_NEAR(robot.wheels[0].centre_base[1], 0.25 + 0.02, 1e-6);
 }
 

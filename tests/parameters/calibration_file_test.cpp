@@ -55,7 +55,7 @@ class CalibrationFile : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
-  RobotModel robot_;
+  DriveTrain robot_;
   EstimatorParameters parameters_;
   LearnedCalibration learned_{.wheels = {.radius_ratio = 1.00612345678901,
                                          .wheel_base_factor = 0.987,

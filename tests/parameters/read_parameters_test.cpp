@@ -551,7 +551,7 @@ TEST(Schema, EveryMemberOfALawsParametersHasAKey) {
     }
     return 8 * words.size();
   };
-  EXPECT_EQ(bytes_in(parameters.robot), sizeof(RobotParameters));
+  EXPECT_EQ(bytes_in(parameters.robot), sizeof(DriveTrainParameters));
   EXPECT_EQ(bytes_in(parameters.plant), sizeof(MujocoPlantParameters));
   EXPECT_EQ(bytes_in(parameters.estimator), sizeof(EstimatorParameters));
   EXPECT_EQ(bytes_in(parameters.controller), sizeof(DriveControllerParameters));

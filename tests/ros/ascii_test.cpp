@@ -30,7 +30,7 @@ TEST(Ascii, EscapesWhatItDoesNotKnowByteByByte) {
 
 // Names of joints are a user's; units of causes have powers.
 TEST(Ascii, IsAllThatSafetyStatusAndDiagnosticsHold) {
-  RobotModel robot;
+  DriveTrain robot;
   robot.joints.resize(1);
   robot.joints[0].name = "räder_links";
   for (const BitName& row : kStopCauseNames) {

@@ -17,8 +17,8 @@ class CalibrationKeeperTest : public testing::Test {
     robot_.wheels[0].radius = robot_.wheels[1].radius = 0.1;
     robot_.wheel_base = 0.5;
     parameters_.calibration_file = folder_.path() / "learned.yaml";
-    state_.flags = kStateValid;
-    state_.calibration = {.radius_ratio = 1.01, .radius_ratio_deviation = 0.001};
+    state_.base.flags = kStateValid;
+    state_.wheeled.calibration = {.radius_ratio = 1.01, .radius_ratio_deviation = 0.001};
   }
 
   std::optional<LearnedCalibration> kept() const {
@@ -26,7 +26,7 @@ class CalibrationKeeperTest : public testing::Test {
   }
 
   TemporaryFolder folder_;
-  RobotModel robot_;
+  DriveTrain robot_;
   Parameters parameters_;
   StateFrame state_;
 };
@@ -41,7 +41,7 @@ TEST_F(CalibrationKeeperTest, WritesAfterThirtySecondsAndNotBefore) {
   keeper.wait();
   ASSERT_TRUE(kept());
   EXPECT_EQ(kept()->wheels.radius_ratio, 1.01);
-  state_.calibration = {.radius_ratio = 1.02, .radius_ratio_deviation = 0.0005};
+  state_.wheeled.calibration = {.radius_ratio = 1.02, .radius_ratio_deviation = 0.0005};
   keeper.write_if_due(state_, 159 * kSecond);
   keeper.wait();
   EXPECT_EQ(kept()->wheels.radius_ratio, 1.01);
@@ -58,7 +58,7 @@ TEST_F(CalibrationKeeperTest, WritesAtTheEnd) {
 
 TEST_F(CalibrationKeeperTest, WritesNothingOfAStateThatIsNotValid) {
   CalibrationKeeper keeper(parameters_, robot_);
-  state_.flags = 0;
+  state_.base.flags = 0;
   keeper.finish(state_);
   EXPECT_FALSE(kept());
 }

@@ -62,12 +62,12 @@ class CommandInputTest : public testing::Test {
 TEST_F(CommandInputTest, PassesOnWhatOneNodeSends) {
   receive("/teleop", 0.5);
   EXPECT_EQ(value().count, 1u);
-  EXPECT_EQ(value().twist.linear[0], 0.5);
+  EXPECT_EQ(value().content.twist.linear[0], 0.5);
   EXPECT_EQ(value().age_ns, 0);
   pass(kSecond / 10);
   receive_stamped("/teleop", 0.3, kSecond / 50);
   EXPECT_EQ(value().count, 2u);
-  EXPECT_EQ(value().twist.linear[0], 0.3);
+  EXPECT_EQ(value().content.twist.linear[0], 0.3);
   EXPECT_EQ(value().age_ns, kSecond / 50);
   EXPECT_EQ(reported(), "");
 }
@@ -78,7 +78,7 @@ TEST_F(CommandInputTest, AStampTooOldOrOfTheFutureIsRefusedAndTheCommandBeforeSt
   receive_stamped("/teleop", 0.9, -kHour);
   EXPECT_EQ(value().count, 1u);
   EXPECT_EQ(value().stale, 2u);
-  EXPECT_EQ(value().twist.linear[0], 0.5);
+  EXPECT_EQ(value().content.twist.linear[0], 0.5);
 }
 
 TEST_F(CommandInputTest, AClockThatIsAnHourOffIsReportedOnce) {
@@ -302,7 +302,7 @@ TEST_F(RevokedSenderTest, WhatAStopInterruptedIsRefusedUntilItsSendersOwnZero) {
   receive("/teleop", 0.5);
   pass(kSecond / 10);  // the controller reads it
   stop();
-  EXPECT_EQ(value().twist.linear[0], 0);
+  EXPECT_EQ(value().content.twist.linear[0], 0);
   EXPECT_EQ(value().contested, kNoMessage);
   pass(3 * kSecond);  // suspended meanwhile
   grant();
@@ -317,7 +317,7 @@ TEST_F(RevokedSenderTest, WhatAStopInterruptedIsRefusedUntilItsSendersOwnZero) {
   EXPECT_EQ(value().revoked, 2u) << "the zero of another sender";
   receive("/teleop", 0);
   receive("/teleop", 0.5);
-  EXPECT_EQ(value().twist.linear[0], 0.5);
+  EXPECT_EQ(value().content.twist.linear[0], 0.5);
   EXPECT_THAT(input_.revoked(), IsEmpty());
 }
 
@@ -334,10 +334,10 @@ TEST_F(RevokedSenderTest, MotionThatItsStampDatesBeforeTheReleaseIsRefusedWhatev
     receive("/relay", 0.5, before_ns);
     receive_stamped("/relay", 0.5);
     EXPECT_EQ(value().revoked, refused + 2) << timeout;
-    EXPECT_EQ(value().twist.linear[0], 0) << timeout;
+    EXPECT_EQ(value().content.twist.linear[0], 0) << timeout;
     receive_stamped("/relay", 0);
     receive_stamped("/relay", 0.5);
-    EXPECT_EQ(value().twist.linear[0], 0.5) << timeout;
+    EXPECT_EQ(value().content.twist.linear[0], 0.5) << timeout;
     receive_stamped("/relay", 0);
   }
 }
@@ -359,7 +359,7 @@ TEST_F(RevokedSenderTest, MotionThatEndedLongBeforeAStopDoesNot) {
   stop();
   grant();
   receive("/teleop", 0.5);
-  EXPECT_EQ(value().twist.linear[0], 0.5);
+  EXPECT_EQ(value().content.twist.linear[0], 0.5);
 }
 
 TEST_F(RevokedSenderTest, MotionThatNoZeroEndedCountsHoweverLongAgoItCame) {
@@ -384,9 +384,9 @@ TEST_F(RevokedSenderTest, MotionOfANewSenderDuringAStopIsVoidAfterIt) {
 TEST_F(RevokedSenderTest, ItsCommandDoesNotTakeEffectWithTheReleaseEither) {
   stop();
   receive("/teleop", 0.5);
-  EXPECT_EQ(value().twist.linear[0], 0.5) << "in force, and braked";
+  EXPECT_EQ(value().content.twist.linear[0], 0.5) << "in force, and braked";
   grant();
-  EXPECT_EQ(value().twist.linear[0], 0);
+  EXPECT_EQ(value().content.twist.linear[0], 0);
 }
 
 TEST_F(RevokedSenderTest, NorDoesWhatWasRequestedDuringTheStopAfterAZero) {
@@ -409,7 +409,7 @@ TEST_F(RevokedSenderTest, ACommandOfADeadSenderEndsInAStopWhateverItsTimeout) {
   restart("/teleop");
   pass(kSecond);
   EXPECT_TRUE(input_.update(now_.loop_ns));
-  EXPECT_EQ(value().twist.linear[0], 0);
+  EXPECT_EQ(value().content.twist.linear[0], 0);
   EXPECT_EQ(value().contested, kNoMessage);
 }
 
@@ -417,7 +417,7 @@ TEST_F(RevokedSenderTest, ACommandThatEndsBeforeTheControllerReadItStillContests
   receive("/teleop", 0);
   receive("/teleop", 0.5);
   stop();
-  EXPECT_EQ(value().twist.linear[0], 0);
+  EXPECT_EQ(value().content.twist.linear[0], 0);
   EXPECT_EQ(value().contested, 1u);
   receive("/other", 0.5);
   pass(kSecond);
@@ -433,7 +433,7 @@ TEST_F(RevokedSenderTest, AZeroDuringTheStopIsEnough) {
   grant();
   receive("/teleop", 0.5);
   EXPECT_EQ(value().revoked, 0u);
-  EXPECT_EQ(value().twist.linear[0], 0.5);
+  EXPECT_EQ(value().content.twist.linear[0], 0.5);
 }
 
 TEST_F(RevokedSenderTest, ASenderThatIsStartedAnewOwesNothing) {
@@ -442,7 +442,7 @@ TEST_F(RevokedSenderTest, ASenderThatIsStartedAnewOwesNothing) {
   grant();
   restart("/teleop");
   receive("/teleop", 0.5);
-  EXPECT_EQ(value().twist.linear[0], 0.5);
+  EXPECT_EQ(value().content.twist.linear[0], 0.5);
 }
 
 TEST_F(RevokedSenderTest, AConnectionThatTheSameProcessOpensAgainOwesWhatTheFirstOneDid) {
@@ -454,7 +454,7 @@ TEST_F(RevokedSenderTest, AConnectionThatTheSameProcessOpensAgainOwesWhatTheFirs
   reopen("/teleop");
   receive("/teleop", 0.5);  // a latched message, delivered again
   EXPECT_EQ(value().revoked, 1u);
-  EXPECT_EQ(value().twist.linear[0], 0);
+  EXPECT_EQ(value().content.twist.linear[0], 0);
 }
 
 TEST_F(RevokedSenderTest, AControllerThatIsRestartedRevokesThosePublishingAlready) {
@@ -467,13 +467,13 @@ TEST_F(RevokedSenderTest, AControllerThatIsRestartedRevokesThosePublishingAlread
   receive("/teleop", 0.5);
   EXPECT_EQ(value().revoked, 1u);
   receive("/planner", 0.3);
-  EXPECT_EQ(value().twist.linear[0], 0.3) << "started since then";
+  EXPECT_EQ(value().content.twist.linear[0], 0.3) << "started since then";
 }
 
 TEST_F(RevokedSenderTest, AnotherRunIsAWithdrawalToo) {
   receive("/teleop", 0.5);
   input_.follow({.run = 8, .withdrawals = 0, .granted = true}, now_.loop_ns);
-  EXPECT_EQ(value().twist.linear[0], 0);
+  EXPECT_EQ(value().content.twist.linear[0], 0);
   receive("/teleop", 0.5);
   EXPECT_EQ(value().revoked, 1u);
 }
@@ -504,7 +504,7 @@ TEST_F(RevokedSenderTest, TheSameCommandIsReportedEveryTenSecondsAtMost) {
 TEST_F(CommandInputTest, NaNIsPassedOnForTheControllerToRefuse) {
   receive("/teleop", std::numeric_limits<double>::quiet_NaN());
   EXPECT_EQ(value().count, 1u);
-  EXPECT_TRUE(std::isnan(value().twist.linear[0]));
+  EXPECT_TRUE(std::isnan(value().content.twist.linear[0]));
 }
 
 }  // namespace

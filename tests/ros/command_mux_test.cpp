@@ -44,7 +44,7 @@ class CommandMuxTest : public testing::Test {
     mux_.update(now_.loop_ns);
   }
 
-  double result() const { return mux_.value().twist.linear[0]; }
+  double result() const { return mux_.value().content.twist.linear[0]; }
 
   ArrivalTime now_{.ros_ns = 1'700'000'000 * kSecond, .loop_ns = 5000 * kSecond};
   CommandMux mux_{shipped(), 1.25, false};
@@ -83,7 +83,7 @@ TEST_F(CommandMuxTest, WhereNoneIsLiveTheResultIsZeroAndNeverSilence) {
   pass(kSecond);
   EXPECT_EQ(result(), 0);
   EXPECT_EQ(mux_.winner(), "");
-  CommandWatch watch(1.25, 0.001);
+  CommandWatch watch(1.25, 0.001, kPartLinearX | kPartAngularZ);
   watch.enter_run();
   for (std::uint64_t cycle = 0; cycle < 5000; ++cycle) {
     if (cycle % 20 == 0) pass(kSecond / 50);
@@ -180,7 +180,7 @@ TEST_F(CommandMuxTest, AMessageIsNotReplacedBeforeTheControllerHasReadIt) {
 
 TEST_F(CommandMuxTest, AMaskedSenderEndsTheSilence) {
   mux_.receive_lock(kPause, true, now_.loop_ns);
-  CommandWatch watch(1.25, 0.001);
+  CommandWatch watch(1.25, 0.001, kPartLinearX | kPartAngularZ);
   watch.enter_run();
   for (std::uint64_t cycle = 0; cycle < 3000; ++cycle) {
     if (cycle % 20 == 0) pass(kSecond / 50);
@@ -209,9 +209,9 @@ TEST_F(CommandMuxTest, ASourceAt5KilohertzMovesNothingThatItMayNot) {
 TEST_F(CommandMuxTest, NaNOfTheWinnerReachesTheControllerWhichRefusesIt) {
   receive(kCmd, 0.2);
   receive(kKey, std::numeric_limits<double>::quiet_NaN());
-  CommandWatch watch(1.25, 0.001);
+  CommandWatch watch(1.25, 0.001, kPartLinearX | kPartAngularZ);
   watch.enter_run();
-  EXPECT_EQ(watch.step(mux_.value(), 0).linear[0], 0);
+  EXPECT_EQ(watch.step(mux_.value(), 0).twist.linear[0], 0);
   EXPECT_EQ(watch.refused(), 1u);
 }
 

@@ -24,8 +24,8 @@ class CommandReportTest : public testing::Test {
     frame_.head.stamp_ns += later_ns;
     ++frame_.requests_received;
     frame_.reasons = reasons;
-    frame_.twist_requested.linear[0] = linear;
-    frame_.twist_requested.angular[2] = angular;
+    frame_.requested.twist.linear[0] = linear;
+    frame_.requested.twist.angular[2] = angular;
     return report().update(frame_);
   }
 
@@ -45,7 +45,7 @@ class CommandReportTest : public testing::Test {
     ++frame_.requests_received;
     ++frame_.requests_refused;
     frame_.reasons = kReasonRefused;
-    frame_.twist_requested = {};
+    frame_.requested.twist = {};
     return report().update(frame_);
   }
 
@@ -53,7 +53,7 @@ class CommandReportTest : public testing::Test {
     frame_.head.stamp_ns += kLookSecond;
     ++frame_.timeouts;
     frame_.reasons = kReasonTimedOut;
-    frame_.twist_requested = {};
+    frame_.requested.twist = {};
     return report().update(frame_);
   }
 
@@ -62,8 +62,8 @@ class CommandReportTest : public testing::Test {
   CommandFrame frame_;
 
  private:
-  static RobotModel robot() {
-    RobotModel robot;
+  static DriveTrain robot() {
+    DriveTrain robot;
     robot.wheel_base = 0.5;
     robot.wheels = {WheelModel{.joint = 0, .radius = 0.1}, WheelModel{.joint = 1, .radius = 0.1, .side = Side::kRight}};
     robot.joints.resize(2);
@@ -159,7 +159,7 @@ TEST_F(CommandReportTest, LeavesStampsAndSendersToTheirOwnWarnings) {
   ++frame_.requests_refused;
   ++frame_.requests_crowded;
   frame_.reasons = kReasonManySenders;
-  frame_.twist_requested = {};
+  frame_.requested.twist = {};
   EXPECT_THAT(report().update(frame_), IsEmpty()) << "no zero was commanded";
 }
 
@@ -242,6 +242,14 @@ TEST_F(CommandReportTest, RestartsWithARun) {
   frame_ = {};
   frame_.head.run = 2;
   EXPECT_EQ(receive(0.5, 0.2).size(), 1u);
+}
+
+TEST_F(CommandReportTest, NamesThePartsThatTheRobotIgnores) {
+  frame_.ignored = kPartLinearY;
+  const std::vector<ReportLine> lines = receive(0, 0, kReasonPartIgnored);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_TRUE(lines[0].warning);
+  EXPECT_THAT(lines[0].text, HasSubstr("linear.y, but a part of the request is ignored"));
 }
 
 }  // namespace

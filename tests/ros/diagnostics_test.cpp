@@ -58,7 +58,7 @@ TEST_F(PermitReport, ACauseOutweighsAWarning) {
 
 class StateReport : public testing::Test {
  protected:
-  StateReport() { state_.flags = kStateValid; }
+  StateReport() { state_.base.flags = kStateValid; }
 
   DiagnosticReport report(std::uint64_t slip_lately = 0) const {
     DiagnosticReport report("state_estimator", "diffbot");
@@ -76,7 +76,7 @@ TEST_F(StateReport, IsContentWithAHealthyState) {
 
 TEST_F(StateReport, WarnsOfASensorThatIsLost) {
   for (const std::uint64_t flag : {kStateNoGyro, kStateNoAccelerometer, kStateNoLeftEncoder, kStateNoRightEncoder}) {
-    state_.flags = kStateValid | flag;
+    state_.base.flags = kStateValid | flag;
     EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
     EXPECT_THAT(report().message().message, HasSubstr(sentences_of(kStateFlagNames, flag)));
     const BitName& row = *row_of(kStateFlagNames, flag);
@@ -86,20 +86,20 @@ TEST_F(StateReport, WarnsOfASensorThatIsLost) {
 }
 
 TEST_F(StateReport, WarnsOfAStateThatIsNotValid) {
-  state_.flags = 0;
+  state_.base.flags = 0;
   EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
   EXPECT_THAT(report().message().message, HasSubstr("not valid"));
 }
 
 TEST_F(StateReport, WarnsOfSlipInWordsAlsoOfAMoment) {
-  state_.slip = kSlipLeft | kSlipSpinning;
+  state_.wheeled.slip = kSlipLeft | kSlipSpinning;
   EXPECT_THAT(report().message().message, HasSubstr("the left wheels do not roll; a wheel turns faster than the ground "
                                                     "passes (accelerate less)"));
   EXPECT_EQ(value_of(report(), "slip"), "left spinning");
   EXPECT_EQ(value_of(report(), "slip: spinning"), "a wheel turns faster than the ground passes");
   EXPECT_EQ(value_of(report(), "slip remedy: spinning"), "accelerate less");
   EXPECT_EQ(value_of(report(), "slip remedy: left"), "(none)");
-  state_.slip = 0;
+  state_.wheeled.slip = 0;
   EXPECT_EQ(report(kSlipSideways).message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
   EXPECT_THAT(report(kSlipSideways).message().message, HasSubstr("the robot slides sideways"));
   EXPECT_EQ(value_of(report(kSlipSideways), "slip"), "");
@@ -107,8 +107,8 @@ TEST_F(StateReport, WarnsOfSlipInWordsAlsoOfAMoment) {
 }
 
 TEST_F(StateReport, WarnsOfAPoseWhoseWheelsSlip) {
-  state_.flags = kStateValid | kStateDegraded;
-  state_.degraded = kDegradedPosition;
+  state_.base.flags = kStateValid | kStateDegraded;
+  state_.base.degraded = kDegradedPosition;
   EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
   EXPECT_THAT(report().message().message, HasSubstr("wheels slip: the path takes the speed"));
   EXPECT_EQ(value_of(report(), "degraded"), "position");
@@ -120,16 +120,16 @@ TEST_F(StateReport, ReportsHowWellSlipIsNoticed) {
                                      {1.2, "on"},
                                      {12.0, "slow: residuals 12 x the sensors' noise"},
                                      {60.0, "off: residuals 60 x the sensors' noise"}}) {
-    state_.residual_level = level;
+    state_.wheeled.residual_level = level;
     EXPECT_EQ(value_of(report(), "slip_detection"), words);
     EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::OK)) << "the floor is as it is";
   }
 }
 
 TEST_F(StateReport, ReportsHowFarEachSensorAgrees) {
-  state_.confidence[kGyro] = 0.5;
-  state_.nis[kLateralContact] = 1.25;
-  state_.rejected[kVerticalContact] = 17;
+  state_.wheeled.confidence[kGyro] = 0.5;
+  state_.wheeled.nis[kLateralContact] = 1.25;
+  state_.wheeled.rejected[kVerticalContact] = 17;
   EXPECT_EQ(value_of(report(), "confidence_gyro"), "0.5");
   EXPECT_EQ(value_of(report(), "nis_lateral_contact"), "1.25");
   EXPECT_EQ(value_of(report(), "rejected_vertical_contact"), "17");
@@ -140,10 +140,10 @@ TEST_F(StateReport, ReportsHowFarEachSensorAgrees) {
 
 // 1 rad/s is 57.2958 °/s.
 TEST_F(StateReport, ReportsTheSelfCalibration) {
-  state_.calibration = {
+  state_.wheeled.calibration = {
       .radius_ratio = 1.01, .wheel_base_factor = 0.98, .radius_ratio_deviation = 0.001, .wheel_base_deviation = 0.002};
-  state_.gyro_bias = {0, 0, 1};
-  state_.gyro_bias_deviation = {0, 1, 0};
+  state_.base.gyro_bias = {0, 0, 1};
+  state_.base.gyro_bias_deviation = {0, 1, 0};
   EXPECT_EQ(value_of(report(), "radius_ratio"), "1.01");
   EXPECT_EQ(value_of(report(), "radius_ratio_deviation"), "0.001");
   EXPECT_EQ(value_of(report(), "wheel_base_factor"), "0.98");
@@ -155,7 +155,7 @@ TEST_F(StateReport, ReportsTheSelfCalibration) {
 TEST(CommandReasons, AreEachAValueInWords) {
   CommandFrame command;
   command.reasons = kReasonTimedOut | kReasonHolding;
-  command.twist_requested.linear[0] = 0.5;
+  command.requested.twist.linear[0] = 0.5;
   DiagnosticReport report("diff_drive_controller", "diffbot");
   report_command(report, command, command.reasons, {});
   EXPECT_EQ(value_of(report, "reasons"), "timed_out holding");
@@ -166,16 +166,29 @@ TEST(CommandReasons, AreEachAValueInWords) {
   EXPECT_EQ(value_of(report, "requested_m_s"), "0.5");
 }
 
+TEST(CommandReasons, OfIgnoredPartsNameThem) {
+  CommandFrame command;
+  command.reasons = kReasonPartIgnored;
+  command.ignored = kPartLinearY | kPartMode;
+  command.requests_partial = 3;
+  DiagnosticReport report("diff_drive_controller", "diffbot");
+  report_command(report, command, 0, {});
+  EXPECT_EQ(value_of(report, "ignored"), "linear.y mode");
+  EXPECT_EQ(value_of(report, "commands_partly_ignored"), "3");
+  EXPECT_EQ(value_of(report, "reasons"), "part_ignored");
+}
+
 TEST(CommandReasons, OfAMomentAreReported) {
   DiagnosticReport report("diff_drive_controller", "diffbot");
-  report_command(report, {}, kReasonJerkYielded | kReasonSaturated, {});
+  report_command(report, {}, std::uint64_t{kReasonJerkYielded} | kReasonSaturated, {});
   EXPECT_EQ(value_of(report, "reasons"), "");
-  EXPECT_EQ(value_of(report, "reasons_lately"), "saturated jerk_yielded");
+  EXPECT_EQ(value_of(report, "reasons_lately"), "jerk_yielded saturated");
   EXPECT_EQ(report.message().level, static_cast<int>(msg::DiagnosticStatus::OK));
 }
 
 TEST(CommandReasons, ThatRefuseCommandsWarn) {
-  for (const std::uint64_t bit : {kReasonRefused, kReasonStale, kReasonManySenders, kReasonRevoked}) {
+  for (const std::uint64_t bit :
+       {kReasonRefused, kReasonStale, kReasonManySenders, kReasonRevoked, kReasonPartIgnored}) {
     DiagnosticReport report("diff_drive_controller", "diffbot");
     report_command(report, {}, bit, {});
     EXPECT_EQ(report.message().level, static_cast<int>(msg::DiagnosticStatus::WARN));

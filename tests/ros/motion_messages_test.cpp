@@ -25,11 +25,12 @@ class MotionMessagesTest : public testing::Test {
     robot_.joints[2].name = "mast";
     robot_.wheels = {WheelModel{.joint = 0}, WheelModel{.joint = 1, .side = Side::kRight}};
     sensors_.joint_count = 3;
-    sensors_.valid = kValidJoints | kValidGyro | kValidAccelerometer;
+    set_joints_valid(sensors_, kValidMotion);
+    sensors_.valid = kValidGyro | kValidAccelerometer;
   }
 
   const ros::Time stamp_{12, 34};
-  RobotModel robot_;
+  DriveTrain robot_;
   SensorFrame sensors_;
   StateFrame state_;
   CommandFrame command_;
@@ -51,8 +52,8 @@ TEST_F(MotionMessagesTest, JointStatesCarryEveryJointInFrameOrder) {
 // The speed that an encoder reports jumps by a count per period.
 TEST_F(MotionMessagesTest, JointStatesCarryTheWheelsTrackedVelocities) {
   for (std::size_t i = 0; i < 3; ++i) sensors_.joints[i].velocity = 4.60;
-  state_.wheel_velocity = {4.5, 5.5, 7};
-  EXPECT_THAT(joint_states(sensors_, &state_, robot_, stamp_).velocity, ElementsAre(4.5, 5.5, 4.60));
+  state_.joint_velocity = {4.5, 5.5, 7};
+  EXPECT_THAT(joint_states(sensors_, &state_, robot_, stamp_).velocity, ElementsAre(4.5, 5.5, 7));
 }
 
 TEST_F(MotionMessagesTest, ABatteryThatGivesCurrentDischargesAndWhatIsNotMeasuredIsUnknown) {
@@ -70,11 +71,11 @@ TEST_F(MotionMessagesTest, ABatteryThatGivesCurrentDischargesAndWhatIsNotMeasure
 }
 
 TEST_F(MotionMessagesTest, OdometryCarriesBothCovariancesAndBothFrames) {
-  state_.pose_odom = {.position = {1, 2, 3}, .orientation = {0, 0, 0.6, 0.8}};
-  state_.twist_base = {.linear = {4, 5, 6}, .angular = {7, 8, 9}};
+  state_.base.pose_odom = {.position = {1, 2, 3}, .orientation = {0, 0, 0.6, 0.8}};
+  state_.base.twist_base = {.linear = {4, 5, 6}, .angular = {7, 8, 9}};
   for (std::size_t i = 0; i < 36; ++i) {
-    state_.pose_covariance[i] = static_cast<double>(i);
-    state_.twist_covariance[i] = -static_cast<double>(i);
+    state_.base.pose_covariance[i] = static_cast<double>(i);
+    state_.base.twist_covariance[i] = -static_cast<double>(i);
   }
   const msg::Odometry message = odometry(state_, "odom", "base_link", stamp_);
   EXPECT_EQ(message.header.frame_id, "odom");
@@ -91,8 +92,8 @@ TEST_F(MotionMessagesTest, OdometryCarriesBothCovariancesAndBothFrames) {
 }
 
 TEST_F(MotionMessagesTest, GivenDiagonalsReplaceTheCovariancesOfOdometryAndAreNamedAtStart) {
-  state_.pose_covariance.fill(7);
-  state_.twist_covariance.fill(8);
+  state_.base.pose_covariance.fill(7);
+  state_.base.twist_covariance.fill(8);
   msg::Odometry message = odometry(state_, "odom", "base_link", stamp_);
   ReportParameters given;
   EXPECT_EQ(covariance_note(given), "");
@@ -109,7 +110,7 @@ TEST_F(MotionMessagesTest, GivenDiagonalsReplaceTheCovariancesOfOdometryAndAreNa
 }
 
 TEST_F(MotionMessagesTest, TransformIsTheOdometrysPose) {
-  state_.pose_odom = {.position = {1, 2, 3}, .orientation = {0, 0, 0.6, 0.8}};
+  state_.base.pose_odom = {.position = {1, 2, 3}, .orientation = {0, 0, 0.6, 0.8}};
   const msg::TransformStamped message = transform(odometry(state_, "odom", "base_link", stamp_));
   EXPECT_EQ(message.header.frame_id, "odom");
   EXPECT_EQ(message.child_frame_id, "base_link");
@@ -130,9 +131,9 @@ TEST_F(MotionMessagesTest, ImuSaysWhatItDoesNotMeasure) {
 }
 
 TEST_F(MotionMessagesTest, WheelOdometryIsTheWheelsAloneWithUnknownCovariance) {
-  state_.pose_odom.position = {9, 9, 9};
-  state_.pose_covariance.fill(9);
-  state_.wheels = {.x = 1, .y = 2, .yaw = 1, .linear = 3, .angular = 4};
+  state_.base.pose_odom.position = {9, 9, 9};
+  state_.base.pose_covariance.fill(9);
+  state_.wheeled.odometry = {.x = 1, .y = 2, .yaw = 1, .linear = 3, .angular = 4};
   const msg::Odometry message = wheel_odometry(state_, "odom", "base_link", stamp_);
   EXPECT_EQ(message.header.frame_id, "odom");
   EXPECT_EQ(message.child_frame_id, "base_link");
@@ -151,7 +152,7 @@ TEST_F(MotionMessagesTest, WheelOdometryIsTheWheelsAloneWithUnknownCovariance) {
 // y of the base, and stays y of odom. The half angles are 45°, which is exact but for the rounding of √½.
 TEST_F(MotionMessagesTest, ImuDataHasTheOrientationOfTheImuNotOfTheBase) {
   const double half = std::sqrt(0.5);
-  state_.attitude = {0, -half, 0, half};
+  state_.base.attitude = {0, -half, 0, half};
   robot_.imu_in_base.orientation = {0, 0, half, half};
   const msg::Imu message = imu_data(sensors_, state_, robot_, EstimatorParameters{}, 0.001, stamp_);
   EXPECT_EQ(message.header.frame_id, "imu_link");
@@ -167,7 +168,7 @@ TEST_F(MotionMessagesTest, ImuDataHasTheOrientationOfTheImuNotOfTheBase) {
 TEST_F(MotionMessagesTest, ImuDataCarriesTheSamplesAndEveryCovariance) {
   sensors_.imu.angular_velocity = {1, 2, 3};
   sensors_.imu.linear_acceleration = {4, 5, 6};
-  state_.attitude_covariance = {1, 2, 3, 4, 5, 6, 7, 8, 9};
+  state_.base.attitude_covariance = {1, 2, 3, 4, 5, 6, 7, 8, 9};
   EstimatorParameters parameters;
   parameters.gyro_noise = 2;
   parameters.accelerometer_noise = 3;
@@ -180,16 +181,16 @@ TEST_F(MotionMessagesTest, ImuDataCarriesTheSamplesAndEveryCovariance) {
 }
 
 TEST_F(MotionMessagesTest, ThereIsImuDataOnlyWhereBothSensorsAreValid) {
-  state_.flags = kStateValid;
+  state_.base.flags = kStateValid;
   EXPECT_TRUE(has_imu_data(sensors_, state_));
   for (const std::uint64_t flags :
        {kStateValid | kStateNoGyro, kStateValid | kStateNoAccelerometer, std::uint64_t{0}}) {
-    state_.flags = flags;
+    state_.base.flags = flags;
     EXPECT_FALSE(has_imu_data(sensors_, state_)) << flags;
   }
-  state_.flags = kStateValid;
+  state_.base.flags = kStateValid;
   for (const std::uint64_t one : {std::uint64_t{kValidGyro}, std::uint64_t{kValidAccelerometer}}) {
-    sensors_.valid = kValidJoints | one;
+    sensors_.valid = one;
     EXPECT_FALSE(has_imu_data(sensors_, state_)) << one;
   }
 }
@@ -217,7 +218,7 @@ TEST_F(MotionMessagesTest, JointCommandsAreOfAllWheelsInTheOrderOfTheModel) {
 }
 
 TEST_F(MotionMessagesTest, VelocityOutIsWhatTheLimitsLeft) {
-  command_.twist_requested.linear[0] = 9;
+  command_.requested.twist.linear[0] = 9;
   command_.twist_limited.linear[0] = 0.5;
   command_.twist_limited.angular[2] = 0.2;
   const msg::TwistStamped message = velocity_out(command_, "base_link", stamp_);
@@ -232,7 +233,7 @@ TEST_F(MotionMessagesTest, DriveStateComparesTheWheelsWithThePlanOfTwoCyclesBefo
   plan.joints[1] = {.mode = JointMode::kEffort, .velocity = 5.5};
   command_.joints[0] = {.mode = JointMode::kEffort, .velocity = 9, .effort = 0.25};
   command_.joints[1] = {.mode = JointMode::kEffort, .velocity = 9, .effort = -0.5};
-  command_.velocity_measured = {4.25, 5.75, 99};
+  command_.wheeled.velocity = {4.25, 5.75, 99};
   const msg::DriveState message = drive_state(command_, plan, 0, robot_, stamp_);
   EXPECT_EQ(message.header.stamp, stamp_);
   EXPECT_THAT(message.name, ElementsAre("left", "right"));

@@ -32,7 +32,7 @@ TEST_F(ReasonHistoryTest, FindsAReasonOfOneCycleBetweenTwoLooks) {
   publish(kReasonJerkYielded);
   publish(0);
   publish(kReasonSaturated);
-  EXPECT_EQ(poll(), kReasonJerkYielded | kReasonSaturated);
+  EXPECT_EQ(poll(), std::uint64_t{kReasonJerkYielded} | kReasonSaturated);
   publish(0);
   EXPECT_EQ(poll(), 0u) << "reported once";
 }

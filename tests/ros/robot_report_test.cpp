@@ -5,8 +5,8 @@
 namespace robot_control {
 namespace {
 
-RobotModel two_wheels() {
-  RobotModel robot;
+DriveTrain two_wheels() {
+  DriveTrain robot;
   robot.name = "small";
   robot.source = "small.urdf";
   robot.joints.resize(2);
@@ -23,7 +23,7 @@ TEST(RobotReport, SaysWhatWasUnderstood) {
   EXPECT_EQ(
       summary(two_wheels()),
       "robot 'small' of small.urdf: left wheels port, right wheels starboard, radius 0.033 m, wheel base 0.16 m, 1 kg");
-  RobotModel skid = two_wheels();
+  DriveTrain skid = two_wheels();
   skid.wheel_base_multiplier = 1.5;
   EXPECT_NE(summary(skid).find("wheel base 0.16 m (effective 0.24 m)"), std::string::npos);
 }

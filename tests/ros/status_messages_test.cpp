@@ -41,7 +41,7 @@ class SafetyStatusTest : public testing::Test {
   std::vector<std::string> absent_;
   TimeMap time_{ClockMode::kLockstep};  // stamps are ROS time
   Permit permit_;
-  RobotModel robot_;
+  DriveTrain robot_;
 };
 
 TEST_F(SafetyStatusTest, SaysThatAHealthyRobotMayDrive) {

@@ -67,7 +67,7 @@ class StopLogTest : public testing::Test {
   Permit permit_;
 
  private:
-  RobotModel robot_;
+  DriveTrain robot_;
   TimeMap time_{ClockMode::kLockstep};
 };
 

@@ -11,8 +11,10 @@
 #include <numbers>
 
 #include "machine/gravity.h"
+#include "safety/measurements/rim_speed.h"
 #include "support/allocation_guard.h"
 #include "support/constants.h"
+#include "support/measured_contacts.h"
 
 namespace robot_control {
 namespace {
@@ -29,12 +31,14 @@ class BodyConditionsTest : public testing::Test {
     robot_.mass = 10;
     robot_.joints.resize(2);
     robot_.wheels.resize(2);
+    robot_.contacts = {"left_wheel", "right_wheel"};
     for (std::size_t i = 0; i < 2; ++i) {
       robot_.wheels[i].joint = i;
       robot_.wheels[i].radius = 0.1;
       robot_.wheels[i].centre_base = {0, i == 0 ? 0.2 : -0.2, 0};
     }
-    sensors_.valid = kValidJoints | kValidGyro | kValidAccelerometer;
+    set_joints_valid(sensors_, kValidMotion);
+    sensors_.valid = kValidGyro | kValidAccelerometer;
     sensors_.joint_count = 2;
     for (std::size_t i = 0; i < 2; ++i) sensors_.joints[i].velocity = 5;
     begin();
@@ -42,9 +46,11 @@ class BodyConditionsTest : public testing::Test {
 
   /// Restarts with the present parameters and robot; it is healthy for 10 cycles.
   void begin() {
-    facts_ = BodyConditions(parameters_, robot_, kPeriod);
+    facts_ = made();
     steps(10);
   }
+
+  BodyConditions made() const { return {parameters_, robot_, middle_of_axles(robot_), kPeriod}; }
 
   void step() {
     jitter_ = -jitter_;
@@ -55,7 +61,7 @@ class BodyConditionsTest : public testing::Test {
   /// Checks the present frame.
   void check(std::uint64_t elapsed = 1) {
     out_.clear();
-    facts_.step(sensors_, elapsed, wheels_turn_, out_);
+    facts_.step(sensors_, elapsed, RimSpeed(robot_).value(sensors_), wheels_turn_, out_);
   }
   void steps(int count) {
     for (int i = 0; i < count; ++i) step();
@@ -80,9 +86,9 @@ class BodyConditionsTest : public testing::Test {
   void lean(double angle) { force_ = kGravity * Vector3d(0, std::sin(angle), std::cos(angle)); }
 
   SafetyParameters parameters_;
-  RobotModel robot_;
+  DriveTrain robot_;
   SensorFrame sensors_;
-  BodyConditions facts_{parameters_, robot_, kPeriod};
+  BodyConditions facts_ = made();
   ActiveCauses out_;
   Vector3d rate_ = Vector3d::Zero();
   Vector3d force_{0, 0, kGravity};
@@ -220,10 +226,10 @@ TEST_F(BodyConditionsTest, GravityOnARampIsNoPartOfAnImpact) {
 }
 
 TEST_F(BodyConditionsTest, LiftIsFoundWhereContactsAreFelt) {
-  sensors_.valid |= kValidContacts;
-  sensors_.contact_forces[0] = sensors_.contact_forces[1] = {3, 0, 0.15 * 10 * kGravity};
+  measure_contacts(sensors_);
+  sensors_.contacts[0].force = sensors_.contacts[1].force = {3, 0, 0.15 * 10 * kGravity};
   EXPECT_EQ(cycles_until(kCauseLift, 200), -1);
-  sensors_.contact_forces[0] = {3, 0, 0};
+  sensors_.contacts[0].force = {3, 0, 0};
   EXPECT_EQ(cycles_until(kCauseLift), cycles(parameters_.lift));
   EXPECT_NEAR(out_.measurements()[0].value, 0.15, 1e-9);
 }
@@ -234,9 +240,9 @@ TEST_F(BodyConditionsTest, WithoutContactSensorsThereIsNoLift) {
 }
 
 TEST_F(BodyConditionsTest, CastersCarryToo) {
-  robot_.casters.resize(1);
-  sensors_.valid |= kValidContacts;
-  sensors_.contact_forces[2] = {0, 0, 0.9 * 10 * kGravity};
+  robot_.contacts.push_back("caster");
+  measure_contacts(sensors_);
+  sensors_.contacts[2].force = {0, 0, 0.9 * 10 * kGravity};
   begin();
   EXPECT_EQ(cycles_until(kCauseLift, 200), -1);
 }
@@ -245,8 +251,8 @@ TEST_F(BodyConditionsTest, CastersCarryToo) {
 TEST_F(BodyConditionsTest, WeightIsVertical) {
   lean(0.3);
   facts_.enter_run();
-  sensors_.valid |= kValidContacts;
-  sensors_.contact_forces[0] = plain(10 * force_);
+  measure_contacts(sensors_);
+  sensors_.contacts[0].force = plain(10 * force_);
   step();
   EXPECT_NEAR(facts_.carried(), 1, 1e-9);
 }
@@ -304,7 +310,7 @@ TEST_F(BodyConditionsTest, ASampleThatIsNotFiniteIsIgnored) {
 }
 
 TEST_F(BodyConditionsTest, ASampleThatIsNotValidIsIgnored) {
-  sensors_.valid = kValidJoints;
+  sensors_.valid = 0;
   force_ = {100, 0, 0};
   rate_ = {30, 0, 0};
   steps(100);
@@ -313,8 +319,8 @@ TEST_F(BodyConditionsTest, ASampleThatIsNotValidIsIgnored) {
 }
 
 TEST_F(BodyConditionsTest, ContactForcesThatAreNotFiniteTellNothing) {
-  sensors_.valid |= kValidContacts;
-  sensors_.contact_forces[0] = {kNaN, 0, 0};
+  measure_contacts(sensors_);
+  sensors_.contacts[0].force = {kNaN, 0, 0};
   EXPECT_EQ(cycles_until(kCauseLift, 500), -1);
 }
 
@@ -362,7 +368,7 @@ TEST_F(BodyConditionsTest, TheMountingOfTheImuCounts) {
       Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitX()) * Eigen::AngleAxisd(0.5, Vector3d::UnitZ());
   robot_.imu_in_base.orientation = {mounting.x(), mounting.y(), mounting.z(), mounting.w()};
   force_ = mounting.inverse() * Vector3d(0, 0, kGravity);
-  facts_ = BodyConditions(parameters_, robot_, kPeriod);
+  facts_ = made();
   steps(100);
   EXPECT_NEAR(facts_.attitude().tilt(), 0, 1e-9);
   double angle = 0;
@@ -396,7 +402,7 @@ TEST_F(BodyConditionsTest, WhatIsOffIsNotFound) {
     condition->reaction = Reaction::kOff;
   }
   begin();
-  sensors_.valid |= kValidContacts;
+  measure_contacts(sensors_);
   for (const Vector3d& force : {Vector3d(100, 0, 0), Vector3d(0, 0, 0), Vector3d(kGravity, 0, 0)}) {
     force_ = force;
     rate_ = {0, 3, 0};

@@ -8,6 +8,7 @@
 #include "safety/monitor_fixture.h"
 #include "support/allocation_guard.h"
 #include "support/constants.h"
+#include "support/measured_contacts.h"
 
 namespace robot_control {
 namespace {
@@ -124,13 +125,14 @@ TEST_F(CausesTest, SensorsThatAreNotFiniteStopInTheThirdCycleInARow) {
 }
 
 TEST_F(CausesTest, WhateverIsSaidToBeValidMustBeFinite) {
-  sensors_.valid |= kValidContacts | kValidBattery;
+  sensors_.valid |= kValidBattery;
+  measure_contacts(sensors_);
   sensors_.battery_voltage = 24;
-  sensors_.contact_forces[0][2] = sensors_.contact_forces[1][2] = 6 * 9.81;
+  sensors_.contacts[0].force[2] = sensors_.contacts[1].force[2] = 6 * 9.81;
   const SensorFrame healthy = sensors_;
   double* const numbers[] = {&sensors_.joints[1].position,   &sensors_.joints[1].velocity,
                              &sensors_.joints[1].effort,     &sensors_.imu.angular_velocity[2],
-                             &sensors_.contact_forces[1][0], &sensors_.battery_voltage,
+                             &sensors_.contacts[1].force[0], &sensors_.battery_voltage,
                              &sensors_.battery_current,      &sensors_.imu.linear_acceleration[0]};
   EXPECT_TRUE(finite(sensors_));
   for (double* const number : numbers) {
@@ -141,10 +143,10 @@ TEST_F(CausesTest, WhateverIsSaidToBeValidMustBeFinite) {
 }
 
 TEST_F(CausesTest, ASensorThatIsNotValidMayHoldAnything) {
-  sensors_.valid = kValidJoints;
+  sensors_.valid = 0;
   sensors_.imu.angular_velocity[1] = sensors_.imu.linear_acceleration[2] = kNaN;
   sensors_.joints[2].position = kNaN;  // the robot has two
-  sensors_.contact_forces[0][1] = sensors_.battery_voltage = sensors_.battery_current = kNaN;
+  sensors_.contacts[0].force[1] = sensors_.battery_voltage = sensors_.battery_current = kNaN;
   steps(10);
   expect_driving();
 }
@@ -402,7 +404,7 @@ TEST(SafetyMonitorConstruction, RefusesParametersOutOfRange) {
   const auto refused = [](auto change, double period) {
     SafetyParameters parameters;
     change(parameters);
-    EXPECT_THROW(SafetyMonitor(parameters, RobotModel(), period), std::invalid_argument);
+    EXPECT_THROW(SafetyMonitor(parameters, DriveTrain(), period), std::invalid_argument);
   };
   refused([](SafetyParameters&) {}, 0);
   refused([](SafetyParameters& p) { p.loss_cycles = 0; }, 1e-3);

@@ -13,6 +13,7 @@
 #include "safety/latch/fixed_reactions.h"
 #include "safety/monitor_fixture.h"
 #include "signals/names.h"
+#include "support/measured_contacts.h"
 
 namespace robot_control {
 namespace {
@@ -80,14 +81,17 @@ const std::vector<Row>& rows() {
          r.sensors.imu.linear_acceleration = {0, 0, 0};
          r.noisy = false;
        }},
-      {kCauseLift, &P::lift, 0.2, 0.1, 0, [](Robot& r) { r.sensors.contact_forces = {}; }},
+      {kCauseLift, &P::lift, 0.2, 0.1, 0,
+       [](Robot& r) {
+         for (ContactSample& contact : r.sensors.contacts) contact.force = {};
+       }},
       // An impact may have a window of its own.
       {kCauseImpact, &P::impact, 60, 0, kWindow,
        [](Robot& r) {
          r.sensors.imu.linear_acceleration[0] = -200;
          r.noisy = false;
        }},
-      {kCauseEncodersLost, &P::encoders_lost, 0, 0.01, 0, [](Robot& r) { r.sensors.valid &= ~kValidJoints; }},
+      {kCauseEncodersLost, &P::encoders_lost, 0, 0.01, 0, [](Robot& r) { set_joints_valid(r.sensors, 0); }},
       {kCauseImuLost, &P::imu_lost, 0, 0.1, 0, [](Robot& r) { r.sensors.valid &= ~kValidGyro; }},
       {kCauseImuStuck, &P::imu_stuck, 0, 0.25, 1, [](Robot& r) { r.noisy = false; }},
       // 51 come at once, then 100 a second.
@@ -115,9 +119,10 @@ class Conditions : public MonitorTest, public testing::WithParamInterface<std::t
     const SafetyParameters chosen = only(parameters(), row_, reaction_);
     persistence_ = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::lround(row_.persistence / kPeriod)));
     monitor_ = SafetyMonitor(chosen, robot(), kPeriod);
-    sensors_.valid |= kValidBattery | kValidContacts;
+    sensors_.valid |= kValidBattery;
+    measure_contacts(sensors_);
     sensors_.battery_voltage = 24;
-    sensors_.contact_forces[0][2] = sensors_.contact_forces[1][2] = 6 * 9.81;
+    sensors_.contacts[0].force[2] = sensors_.contacts[1].force[2] = 6 * 9.81;
     new_run();
     steps(kStart);
     drive();

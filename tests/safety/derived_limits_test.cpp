@@ -27,7 +27,7 @@ class DerivedLimits : public testing::Test {
   SafetyParameters limits(double commanded = kCommanded) const { return derived_limits(given_, robot_, commanded); }
   double wheel_speed(double commanded = kCommanded) const { return limits(commanded).wheel_speed.limit.value(); }
 
-  RobotModel robot_;
+  DriveTrain robot_;
   SafetyParameters given_;
 };
 

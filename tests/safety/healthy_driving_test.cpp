@@ -70,7 +70,8 @@ class HealthyDriving : public testing::TestWithParam<Machine> {
   void fill(const std::array<double, 2>& target) {
     sensors_.head.cycle = cycle_;
     sensors_.driver_state = DriverState::kRunning;
-    sensors_.valid = kValidJoints | kValidGyro | kValidAccelerometer;
+    set_joints_valid(sensors_, kValidMotion);
+    sensors_.valid = kValidGyro | kValidAccelerometer;
     sensors_.joint_count = command_.joint_count = 2;
     const double quantum = GetParam().counts > 0 ? 2 * std::numbers::pi / GetParam().counts : 0;
     const bool rests = target[0] == 0 && target[1] == 0 && speed_[0] == 0 && speed_[1] == 0;
@@ -88,12 +89,12 @@ class HealthyDriving : public testing::TestWithParam<Machine> {
                      .permit_cycle = newest_ + 1 < cycle_ ? newest_ : older_};
     if (cycle_ < 3) sensors_.gate = {};
     command_.head.cycle = command_.state_cycle = cycle_ == 0 ? 0 : cycle_ - 1;
-    command_.twist_requested.linear[0] = request(static_cast<double>(cycle_) / GetParam().rate);
+    command_.requested.twist.linear[0] = request(static_cast<double>(cycle_) / GetParam().rate);
     command_.zero_requests = 1;  // the run begins with a zero request
     input_ = {.sensors = &sensors_, .command = &command_, .state_seen = true, .operator_input = {}};
   }
 
-  const RobotModel robot_ = two_wheels();
+  const DriveTrain robot_ = two_wheels();
   std::optional<SafetyMonitor> monitor_;
   SensorFrame sensors_;
   CommandFrame command_;

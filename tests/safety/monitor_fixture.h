@@ -20,12 +20,13 @@ namespace robot_control {
 inline constexpr std::uint64_t kToMotors = 3;  ///< cycles from a cause to the gate's action
 
 /// Two wheels of 0.1 m radius, 0.5 m apart.
-inline RobotModel two_wheels() {
-  RobotModel robot;
+inline DriveTrain two_wheels() {
+  DriveTrain robot;
   robot.joints.assign(2, {.name = "wheel", .child_link = "wheel", .effort_limit = 3, .velocity_limit = 20});
   robot.wheels = {{.joint = 0, .centre_base = {0, 0.25, 0}, .radius = 0.1, .width = 0.04, .inertia = 0.005},
                   {.joint = 1, .centre_base = {0, -0.25, 0}, .radius = 0.1, .width = 0.04, .inertia = 0.005}};
   robot.wheels[1].side = Side::kRight;
+  robot.contacts = {"left_wheel", "right_wheel"};
   robot.wheel_base = 0.5;
   robot.mass = 12;
   return robot;
@@ -52,7 +53,8 @@ class MonitorTest : public testing::Test {
     sensors_.head.run = 1;
     sensors_.driver_instance = 77;
     sensors_.driver_state = DriverState::kRunning;
-    sensors_.valid = kValidJoints | kValidGyro | kValidAccelerometer;
+    set_joints_valid(sensors_, kValidMotion);
+    sensors_.valid = kValidGyro | kValidAccelerometer;
     sensors_.imu.linear_acceleration = {0, 0, 9.81};
     sensors_.joint_count = command_.joint_count = kWheels;
     input_.sensors = &sensors_;
@@ -76,7 +78,7 @@ class MonitorTest : public testing::Test {
     return chosen;
   }
 
-  static RobotModel robot() { return two_wheels(); }
+  static DriveTrain robot() { return two_wheels(); }
 
   /// Begins the healthy case with another monitor.
   void begin_with(const SafetyParameters& chosen) {
@@ -101,8 +103,8 @@ class MonitorTest : public testing::Test {
     if (noisy_gyro_) sensors_.imu.linear_acceleration[0] = cycle % 2 == 0 ? 1e-3 : -1e-3;
     command_.head.cycle = cycle == 0 ? 0 : cycle - 1;
     if (fresh_state_) command_.state_cycle = command_.head.cycle;
-    if (zero(command_.twist_requested)) ++command_.zero_requests;  // a sender that repeats its request every cycle
-    command_.zero_requested = zero(command_.twist_requested) ? 1 : 0;
+    if (zero(command_.requested.twist)) ++command_.zero_requests;  // a sender that repeats its request every cycle
+    command_.zero_requested = zero(command_.requested.twist) ? 1 : 0;
     command_.silent_cycles = 0;
     command_.silence_needed = kSilence;
     Permit given = permit_;
@@ -145,7 +147,7 @@ class MonitorTest : public testing::Test {
   }
   /// Requests `linear` m/s, with the wheels' targets; 0: the brake holds.
   void ask_for(double linear) {
-    command_.twist_requested.linear[0] = linear;
+    command_.requested.twist.linear[0] = linear;
     target(linear == 0 ? 0 : kSpeed);
   }
   void target(double speed) {
@@ -231,7 +233,7 @@ class MonitorTest : public testing::Test {
   std::uint64_t skip_ = 0;
   std::array<double, kWheels> angle_{};
   // Only the joints' efforts are limited: the gate then needs no samples, and stays well when sensors are not.
-  Gate gate_{std::vector<JointLimits>(kWheels, {.effort = 3, .wheel = true}), {.longest_ramp = kRamp + kLoss}, kPeriod};
+  Gate gate_{std::vector<JointLimits>(kWheels, {.effort = 3}), {.longest_ramp = kRamp + kLoss}, kPeriod};
   std::uint64_t next_tick_ = 0;
   FrameHead given_head_;  ///< of the last permit
   CommandFrame heard_;    ///< by the gate

@@ -32,19 +32,19 @@ class MotionReleaseTest : public testing::Test {
     for (std::uint64_t i = 0; i < count; ++i) step();
   }
   void request_motion() {
-    command_.twist_requested.linear[0] = 1;
+    command_.requested.twist.linear[0] = 1;
     command_.zero_requested = 0;
     command_.silent_cycles = 0;
   }
   void request_zero() {
-    command_.twist_requested = {};
+    command_.requested.twist = {};
     command_.zero_requested = 1;
     ++command_.zero_requests;
     command_.silent_cycles = 0;
   }
   /// A message was refused; the command in force ramps to zero.
   void refuse() {
-    command_.twist_requested = {};
+    command_.requested.twist = {};
     command_.zero_requested = 0;
     command_.silent_cycles = 0;
   }
@@ -206,7 +206,6 @@ TEST_F(MotionReleaseTest, AMonitorThatStartsInAGoingRunDoesNotCountOlderZeros) {
   step();
   request_motion();
   release_.enter_run();
-  release_.begin(cycle_);
   expect_release_by_a_new_zero_only();
 }
 
@@ -225,6 +224,17 @@ TEST_F(MotionReleaseTest, SilenceBeforeAPauseDoesNotCountAfterIt) {
   request_zero();
   steps(10 * kSilence);
   command_.zero_requested = 0;
+  ++sensors_.resumes;
+  steps(kSilence);
+  EXPECT_FALSE(release_.released());
+  steps(2);
+  EXPECT_TRUE(release_.released());
+}
+
+TEST_F(MotionReleaseTest, SilenceBeforeTheFirstCycleThatTheMonitorSeesDoesNotCount) {
+  release_.enter_run();
+  command_.twist_requested = {};
+  command_.silent_cycles = 10 * kSilence;
   ++sensors_.resumes;
   steps(kSilence);
   EXPECT_FALSE(release_.released());

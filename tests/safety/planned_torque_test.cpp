@@ -7,8 +7,8 @@
 namespace robot_control {
 namespace {
 
-RobotModel heavy() {
-  RobotModel robot = two_wheels();
+DriveTrain heavy() {
+  DriveTrain robot = two_wheels();
   robot.yaw_inertia = 10;
   return robot;
 }

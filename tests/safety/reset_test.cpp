@@ -42,7 +42,7 @@ TEST_F(ResetTest, IsRefusedWhileAMotionIsAskedFor) {
 }
 
 TEST_F(ResetTest, IsRefusedWhileATurnIsAskedFor) {
-  command_.twist_requested.angular[2] = -0.1;
+  command_.requested.twist.angular[2] = -0.1;
   EXPECT_EQ(reset(), std::uint64_t{kRefusalCommand});
 }
 
@@ -53,7 +53,7 @@ TEST_F(ResetTest, IsRefusedWhileAWheelTurns) {
 }
 
 TEST_F(ResetTest, IsRefusedWhileItIsUnknownWhetherAWheelTurns) {
-  sensors_.valid &= ~std::uint64_t{kValidJoints};
+  set_joints_valid(sensors_, 0);
   EXPECT_EQ(reset(), std::uint64_t{kRefusalMoving});
 }
 

@@ -81,12 +81,12 @@ TEST(Slide, GrowsNoFasterThanTyresCarryAndNotBeyondTheLimit) {
   SafetyParameters parameters;
   parameters.stop_deceleration = 0.5;
   parameters.wheel_speed.limit = 20;  // 2 m/s
-  RobotModel robot;
+  DriveTrain robot;
   robot.wheels = {{.joint = 0, .radius = 0.1}};
   WheelMotion motion(1, 1e-3);
   Slide slide(parameters, robot, 1e-3);
   SensorFrame sensors;
-  sensors.valid = kValidJoints;
+  set_joints_valid(sensors, kValidMotion);
   sensors.joint_count = 1;
   double before = 0;
   for (int k = 0; k < 1000; ++k) {
@@ -98,7 +98,7 @@ TEST(Slide, GrowsNoFasterThanTyresCarryAndNotBeyondTheLimit) {
     before = slide.speed();
   }
   EXPECT_DOUBLE_EQ(slide.speed(), 2.0);
-  sensors.valid = 0;
+  set_joints_valid(sensors, 0);
   for (int k = 1000; k < 2000; ++k) {
     sensors.head.cycle = static_cast<std::uint64_t>(k);
     motion.step(sensors);

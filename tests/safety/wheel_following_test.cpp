@@ -115,7 +115,7 @@ TEST_F(CoarseEncoderTest, AWheelThatStandsIsStalledOnceItsCountIsOverdue) {
 
 // At 30 rad/s the 0.3 rad of kStall take 10 cycles; corrupt_frame, the true cause, takes 3.
 TEST_F(WheelFollowingTest, AnAbsurdTargetDoesNotMakeAStallOfOneCycle) {
-  RobotModel limited = robot();
+  DriveTrain limited = robot();
   for (std::size_t i = 0; i < kWheels; ++i) limited.joints[i].velocity_limit = 30;
   monitor_ = SafetyMonitor(parameters(), limited, kPeriod);
   new_run();
@@ -158,7 +158,7 @@ TEST_F(WheelFollowingTest, ARobotThatSwingsAboutItsRestDoesNotStop) {
 TEST_F(WheelFollowingTest, ARobotWithoutEncodersIsNotSaidToMove) {
   target(0);
   turn_wheels(0);
-  sensors_.valid &= ~static_cast<std::uint64_t>(kValidJoints);
+  set_joints_valid(sensors_, 0);
   steps(5000);
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseEncodersLost});
 }
@@ -184,7 +184,7 @@ class ScrubbingTest : public WheelFollowingTest {
   static constexpr double kScrub = 0.1 * 6 * 9.81 * 0.6247;  ///< N·m: 12 kg, friction 1 (scrub_test.cpp)
 
   ScrubbingTest() {
-    RobotModel scrubbing = robot();
+    DriveTrain scrubbing = robot();
     scrubbing.wheels[0].centre_base[0] = 0.2;
     scrubbing.wheels[1].centre_base[0] = -0.2;
     scrubbing.wheel_base_multiplier = 1.64;

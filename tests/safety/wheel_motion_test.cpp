@@ -19,7 +19,7 @@ constexpr double kAngleRounding = 1e-9;     // of angles of some rad, over 20 ms
 class WheelMotionTest : public testing::Test {
  protected:
   WheelMotionTest() {
-    sensors_.valid = kValidJoints;
+    set_joints_valid(sensors_, kValidMotion);
     sensors_.joint_count = 1;
   }
   void step(double angle, std::uint64_t elapsed = 1) {
@@ -108,10 +108,10 @@ TEST_F(WheelMotionTest, ASampleThatIsMissingOrNotFiniteIsNone) {
   EXPECT_FALSE(motion_.sampled());
   EXPECT_FALSE(motion_.speed_known());
   angle_ += 3 * kPeriod;
-  sensors_.valid = 0;
+  set_joints_valid(sensors_, 0);
   turn(3, 1);
   EXPECT_FALSE(motion_.sampled());
-  sensors_.valid = kValidJoints;
+  set_joints_valid(sensors_, kValidMotion);
   turn(3, 1);
   EXPECT_NEAR(motion_.speed(0), 3, kAngleRounding);
 }

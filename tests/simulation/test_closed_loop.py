@@ -97,6 +97,15 @@ def test_an_e_stop_brakes_in_the_next_cycle_and_latches(loop):
     assert abs(log["truth_linear"][-1]) < 1e-3
 
 
+@pytest.mark.parametrize(("action", "part"), [("coast", 1), ("damp", math.exp(-1))])
+def test_a_stop_action_without_a_brake_leaves_this_part_of_the_speed_after_half_a_second(action, part):
+    """The wheels' own inertia and friction change it by some percent."""
+    loop = ClosedLoop({"robot": {"fail_action": action}})
+    before = drive(loop, 3, (0.5, 0))["truth_linear"][-1]
+    loop.e_stop()
+    assert drive(loop, 0.5, (0.5, 0))["truth_linear"][-1] == pytest.approx(part * before, rel=0.1)
+
+
 def test_a_reset_is_refused_while_a_motion_is_asked_for(loop):
     drive(loop, 2.0)
     loop.e_stop()

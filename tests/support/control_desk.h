@@ -10,6 +10,7 @@
 
 #include "bus/latest_value.h"
 #include "signals/velocity_command.h"
+#include "support/spoiled_joint.h"
 
 namespace robot_control {
 
@@ -38,6 +39,7 @@ struct ControlDesk {
   /// The count by telemetry itself.
   std::atomic<std::uint64_t> lost_rows{0};
   std::atomic<std::uint64_t> unwritten_rows{0};
+  SpoilRequest spoil;  ///< to the driver
 };
 
 inline std::uint64_t missing_bits(const std::vector<std::string>& names) {

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 

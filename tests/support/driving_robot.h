@@ -94,7 +94,7 @@ class DrivingRobot {
     const std::int64_t now_ns = monotonic_ns();
     if (asked_ && now_ns >= next_send_ns_) {
       next_send_ns_ = now_ns + kSendNs;
-      command_.twist.linear[0] = *asked_;
+      command_.content.twist.linear[0] = *asked_;
       ++command_.count;
       nodes_.desk().command.store(command_);
     }

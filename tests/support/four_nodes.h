@@ -19,6 +19,7 @@
 #include "loop/processes/estimator_process.h"
 #include "loop/processes/monitor_process.h"
 #include "loop/processes/telemetry_process.h"
+#include "loop/wheeled_gate.h"
 #include "rt/clock.h"
 #include "rt/futex.h"
 #include "support/child_process.h"
@@ -30,7 +31,7 @@ class FourNodes {
  public:
   /// The run ends by itself after `parameters.plant.cycles`. `record`: telemetry writes into
   /// parameters.telemetry.directory.
-  FourNodes(const Parameters& parameters, const RobotModel& robot, bool record)
+  FourNodes(const Parameters& parameters, const DriveTrain& robot, bool record)
       : parameters_(parameters),
         robot_(robot),
         record_(record),
@@ -47,7 +48,8 @@ class FourNodes {
     std::unique_ptr<TelemetryProcess> telemetry;
     if (record_) telemetry = std::make_unique<TelemetryProcess>(parameters_, robot_, bus_.name());
     DriverProcess driver(parameters_, robot_, bus_.name());
-    driver.open_driver(std::make_unique<MujocoPlant>(robot_, parameters_.plant, parameters_.loop.period()));
+    driver.open_driver(std::make_unique<MujocoPlant>(robot_, parameters_.plant, parameters_.loop.period()),
+                       gate_parameters(parameters_, robot_));
     const std::int64_t give_up_ns = monotonic_ns() + static_cast<std::int64_t>(timeout_s * 1e9);
     std::atomic<bool> operated{false};
     std::jthread operator_thread([&] {
@@ -91,7 +93,7 @@ class FourNodes {
 
   ScopedBus bus_;
   Parameters parameters_;
-  RobotModel robot_;
+  DriveTrain robot_;
   bool record_;
   ChildProcess estimator_;
   ChildProcess controller_;

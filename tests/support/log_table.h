@@ -10,7 +10,7 @@
 
 #include "log/messages/trace_message.h"
 #include "log/trace_reader.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -83,7 +83,7 @@ class LogTable {
   TraceRow read_;
 };
 
-inline std::vector<std::string> joint_names(const RobotModel& robot) {
+inline std::vector<std::string> joint_names(const DriveTrain& robot) {
   std::vector<std::string> names;
   for (const JointModel& joint : robot.joints) names.push_back(joint.name);
   return names;

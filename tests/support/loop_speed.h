@@ -17,7 +17,7 @@ inline double simulated_per_second(const Parameters& parameters, std::uint64_t c
 }
 
 /// `mj_step` of the same model with native friction, wheels driven by a constant torque.
-inline double bare_loop_speed(const Parameters& parameters, const RobotModel& robot, std::uint64_t cycles) {
+inline double bare_loop_speed(const Parameters& parameters, const DriveTrain& robot, std::uint64_t cycles) {
   constexpr double kTorque = 0.05;  // N·m
   MujocoPlantParameters native = parameters.plant;
   native.tyre = TyreModel::kNative;
@@ -41,7 +41,7 @@ inline double closed_loop_speed(const Parameters& parameters, std::uint64_t cycl
   return simulated_per_second(parameters, cycles, start_ns);
 }
 
-inline double four_nodes_speed(Parameters parameters, const RobotModel& robot, std::uint64_t cycles) {
+inline double four_nodes_speed(Parameters parameters, const DriveTrain& robot, std::uint64_t cycles) {
   constexpr double kTimeout = 120;  // s
   parameters.loop.clock = ClockMode::kLockstep;
   parameters.loop.wait_for_telemetry = false;

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <functional>
@@ -21,6 +22,7 @@
 #include "loop/processes/estimator_process.h"
 #include "loop/processes/monitor_process.h"
 #include "loop/processes/telemetry_process.h"
+#include "loop/wheeled_gate.h"
 #include "rt/crash_report.h"
 #include "rt/futex.h"
 #include "rt/realtime_thread.h"
@@ -35,7 +37,7 @@ namespace robot_control {
 class NodeProcesses {
  public:
   explicit NodeProcesses(const Parameters& parameters)
-      : parameters_(parameters), robot_(read_robot(load_description(parameters.urdf), parameters.robot)) {
+      : parameters_(parameters), robot_(read_drive_train(load_description(parameters.urdf), parameters.robot)) {
     new (desk_.get()) ControlDesk();
     parameters_.telemetry.black_box = 0;     // see give_black_box
     parameters_.loop.wait_for_nodes = true;  // a run begins with all nodes there
@@ -82,7 +84,7 @@ class NodeProcesses {
   ControlDesk& desk() const noexcept { return *desk_.get(); }
   const std::string& bus() const noexcept { return bus_.name(); }
   const Parameters& parameters() const noexcept { return parameters_; }
-  const RobotModel& robot() const noexcept { return robot_; }
+  const DriveTrain& robot() const noexcept { return robot_; }
   const std::filesystem::path& folder() const { return folder_.path(); }
 
   /// Telemetry writes there from its next start on.
@@ -149,7 +151,10 @@ class NodeProcesses {
 
   [[noreturn]] void run_plant() {
     DriverProcess driver(parameters_, robot_, bus_.name());
-    driver.open_driver(std::make_unique<MujocoPlant>(robot_, parameters_.plant, parameters_.loop.period()));
+    const double period = parameters_.loop.period();
+    auto plant = std::make_unique<MujocoPlant>(robot_, parameters_.plant, period);
+    driver.open_driver(std::make_unique<SpoiledJoint>(std::move(plant), desk_->spoil, std::llround(1e9 * period)),
+                       gate_parameters(parameters_, robot_));
     for (;;) {
       driver.poll();
       desk_->missing[index_of(LoopNode::kPlant)].store(missing_bits(driver.missing()));
@@ -177,7 +182,7 @@ class NodeProcesses {
   TemporaryFolder folder_;
   AnonymousMemory<ControlDesk> desk_;
   Parameters parameters_;
-  RobotModel robot_;
+  DriveTrain robot_;
   std::array<std::function<void()>, kLoopNodeNames.size()> preparations_;
   std::array<std::unique_ptr<ChildProcess>, kLoopNodeNames.size()> processes_;
 };

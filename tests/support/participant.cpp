@@ -22,6 +22,7 @@
 #include "loop/processes/estimator_process.h"
 #include "loop/processes/monitor_process.h"
 #include "loop/processes/telemetry_process.h"
+#include "loop/wheeled_gate.h"
 #include "rt/clock.h"
 #include "rt/crash_report.h"
 #include "rt/futex.h"
@@ -105,13 +106,14 @@ void run_telemetry(TelemetryProcess& telemetry, double seconds) {
 
 void participate(const Arguments& arguments) {
   const Parameters parameters = read_parameters(arguments.params, arguments.overlays);
-  const RobotModel robot = read_robot(load_description(parameters.urdf), parameters.robot);
+  const DriveTrain robot = read_drive_train(load_description(parameters.urdf), parameters.robot);
   const LoopParameters& loop = parameters.loop;
   install_crash_report(arguments.node, "the motors brake without it");
   prepare_process(loop.clock == ClockMode::kWall ? loop.realtime : RealtimePolicy::kOff);
   if (arguments.node == "mujoco_plant") {
     DriverProcess driver(parameters, robot, arguments.bus);
-    driver.open_driver(std::make_unique<MujocoPlant>(robot, parameters.plant, loop.period()));
+    driver.open_driver(std::make_unique<MujocoPlant>(robot, parameters.plant, loop.period()),
+                       gate_parameters(parameters, robot));
     run_process(driver, arguments.seconds);
   } else if (arguments.node == "state_estimator") {
     EstimatorProcess estimator(parameters, robot, arguments.bus);

@@ -10,7 +10,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 SRC = ROOT / "src"
 
-LAWS = {"signals", "machine", "estimation", "control", "safety", "gate"}
+LAWS = {"signals", "machine", "machine/wheeled", "estimation", "control", "safety", "gate", "gate/wheeled"}
 LOOP = LAWS | {"rt", "bus", "drivers", "parameters", "configuration", "loop", "log"}
 ALL = LOOP | {"files", "machine/description", "log/bag", "simulation", "simulation/faults", "drivers/mujoco"}
 MAY_INCLUDE = {
@@ -22,20 +22,29 @@ MAY_INCLUDE = {
     "bus": {"signals", "rt"},
     "machine/description": {"files"},
     "machine": {"signals", "machine/description", "files", "parameters"},
-    "estimation": {"signals", "machine", "parameters"},
-    "control": {"signals", "machine", "parameters"},
-    "safety": {"signals", "machine", "parameters"},
+    # One robot kind on top of it; test_only_the_wheeled_kind_sees_the_drive_train says who may see it.
+    "machine/wheeled": {"signals", "machine", "machine/description", "parameters"},
+    "estimation": {"signals", "machine", "machine/wheeled", "parameters"},
+    "control": {"signals", "machine", "machine/wheeled", "parameters"},
+    "safety": {"signals", "machine", "machine/wheeled", "parameters"},
     "gate": {"signals", "bus", "parameters"},
-    "drivers": {"signals"},
+    # The stop actions of one robot kind.
+    "gate/wheeled": {"signals", "gate", "machine", "machine/wheeled"},
+    "drivers": {"signals", "gate"},
     # This holds simulated faults: of the machine in drivers/mujoco, of nodes in simulation.
     "simulation/faults": {"signals", "rt", "bus"},
+    "drivers/can": {"signals", "drivers", "files", "parameters"},
+    # Motor drives on a CAN bus, as devices in virtual time.
+    "simulation/devices": {"signals", "drivers/can"},
     "drivers/mujoco": {
         "signals",
         "simulation/faults",
         "drivers",
         "gate",
+        "gate/wheeled",
         "machine/description",
         "machine",
+        "machine/wheeled",
         "rt",
         "files",
         "parameters",
@@ -44,7 +53,7 @@ MAY_INCLUDE = {
     # The log as a ROS bag; it knows the format, not ROS.
     "log": {"signals", "log/bag", "parameters"},
     # All blocks together, and the other files that a user writes.
-    "configuration": LAWS | {"rt", "files", "parameters", "log", "drivers/mujoco"},
+    "configuration": LAWS | {"rt", "files", "parameters", "log", "drivers/can", "drivers/mujoco"},
     # The step of each node in one cycle, and the process around it.
     "loop": LOOP - {"loop"} | {"files"},
     # The laws of a log, run again from its rows.
@@ -128,6 +137,61 @@ def test_what_is_configured_sees_only_the_declaration_of_a_block():
     assert violations(rule) == []
 
 
+WHEELED = {"machine/wheeled", "gate/wheeled", "estimation", "control", "safety"}
+"""The rooms of the wheeled kind's laws."""
+NOT_YET_COMMON = {
+    # A robot kind that is composed in one file takes these away.
+    "src/configuration/calibration_file.h",
+    "src/configuration/parameters.h",
+    "src/log/replay/replay.h",
+    "src/log/replay/replicas.h",
+    "src/log/replay/variant.h",
+    "src/loop/log_header.h",
+    "src/loop/processes/telemetry_process.h",
+    "src/loop/retuning.h",
+    "src/loop/safety_limits.h",
+    "src/loop/start_check.h",
+    "src/loop/wheeled_gate.cpp",
+    "src/loop/wheeled_gate.h",
+    "src/ros/messages/motion_messages.h",
+    "src/ros/reports/command_report.h",
+    "src/ros/reports/robot_report.h",
+    "src/ros/startup/setup.h",
+    "src/simulation/closed_loop.h",
+    "python/bindings/describe.h",
+    "python/bindings/offline_estimator.h",
+    "python/bindings/wheel_loops.cpp",
+    "python/bindings/wheel_loops.h",
+    # A plant per joint takes these away.
+    "src/drivers/mujoco/model/mjcf.cpp",
+    "src/drivers/mujoco/model/mjcf.h",
+    "src/drivers/mujoco/model/mujoco_model.cpp",
+    "src/drivers/mujoco/model/mujoco_model.h",
+    "src/drivers/mujoco/model/true_robot.h",
+    "src/drivers/mujoco/motors/brake_limits.cpp",
+    "src/drivers/mujoco/motors/brake_limits.h",
+    "src/drivers/mujoco/motors/motor_faults.h",
+    "src/drivers/mujoco/motors/wheel_joints.h",
+    "src/drivers/mujoco/mujoco_plant.h",
+    "src/drivers/mujoco/sensors/sensor_errors.h",
+    "src/drivers/mujoco/sensors/sensor_faults.h",
+    "src/drivers/mujoco/sensors/vibration.h",
+}
+"""Files that see the drive train and should see the machine alone. This list only becomes shorter."""
+
+
+def test_only_the_wheeled_kind_sees_the_drive_train():
+    """Gate, drivers, the driver's cycle, the monitor's common conditions and the joint limits take a MachineModel."""
+    own = ROOT / "src/drivers/mujoco/contact"
+    seen = {
+        str(path.relative_to(ROOT))
+        for path in FILES
+        if folder(path) not in WHEELED and own not in path.parents
+        if any(room(name) in ("machine/wheeled", "gate/wheeled") for name in includes(path))
+    }
+    assert seen == NOT_YET_COMMON
+
+
 def test_project_headers_are_named_from_the_root():
     def rule(path):
         for name in includes(path):
@@ -153,7 +217,7 @@ def test_only_its_driver_sees_mujoco():
     assert violations(rule) == []
 
 
-SIMULATED = {"drivers/mujoco", "simulation/faults"}
+SIMULATED = {"drivers/mujoco", "simulation/faults", "simulation/devices"}
 SIMULATORS = {"main/mujoco_plant.cpp", "configuration/parameters.h"}  # the latter: its parameters
 
 

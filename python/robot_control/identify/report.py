@@ -55,7 +55,7 @@ def to_table(
 
 
 def ground_friction(found: Identification, now: Sequence[Mapping[str, Any]]) -> Estimate | None:
-    """Friction of the ground from the torque of scrubbing treads at friction 1 (machine/wheels/scrub.h); None if none
+    """Friction of the ground from the torque of scrubbing treads at friction 1 (machine/wheeled/scrub.h); None if none
     scrub.
     """
     at_friction_one = sum(float(wheel["scrub"]) for wheel in now) / len(now)

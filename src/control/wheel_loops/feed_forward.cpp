@@ -10,11 +10,11 @@ namespace {
 constexpr double kFrictionSpeed = 0.1;  // rad/s, ε of the header
 
 /// Returns h of the header.
-double wheels_beside(const RobotModel& robot, const WheelModel& wheel) noexcept {
+double wheels_beside(const DriveTrain& robot, const WheelModel& wheel) noexcept {
   return static_cast<double>(std::ranges::count(robot.wheels, wheel.side, &WheelModel::side));
 }
 
-double middle_of_wheels(const RobotModel& robot) noexcept {
+double middle_of_wheels(const DriveTrain& robot) noexcept {
   double sum = 0;
   for (const WheelModel& wheel : robot.wheels) sum += wheel.centre_base[0];
   return sum / static_cast<double>(robot.wheels.size());
@@ -22,16 +22,16 @@ double middle_of_wheels(const RobotModel& robot) noexcept {
 
 }  // namespace
 
-double straight_inertia(const RobotModel& robot, const WheelModel& wheel) noexcept {
+double straight_inertia(const DriveTrain& robot, const WheelModel& wheel) noexcept {
   return wheel.inertia + 0.5 * robot.mass * wheel.radius * wheel.radius / wheels_beside(robot, wheel);
 }
 
-double turning_inertia(const RobotModel& robot, const WheelModel& wheel) noexcept {
+double turning_inertia(const DriveTrain& robot, const WheelModel& wheel) noexcept {
   const double levers = wheel.radius * wheel.radius / (robot.wheel_base * robot.effective_wheel_base());
   return wheel.inertia + 2 * robot.yaw_inertia * levers / wheels_beside(robot, wheel);
 }
 
-FeedForward::FeedForward(const RobotModel& robot)
+FeedForward::FeedForward(const DriveTrain& robot)
     : mass_(robot.mass),
       yaw_inertia_(robot.yaw_inertia),
       centre_ahead_(robot.centre_of_gravity_base[0] - middle_of_wheels(robot)),

@@ -24,18 +24,18 @@
 /// (ground_friction.h). The integrator compensates slopes.
 
 #include "control/planar_twist.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "signals/drive_tuning.h"
 
 namespace robot_control {
 
 /// Returns the inertia about the axle of one wheel, in kg·m².
-double straight_inertia(const RobotModel& robot, const WheelModel& wheel) noexcept;
-double turning_inertia(const RobotModel& robot, const WheelModel& wheel) noexcept;
+double straight_inertia(const DriveTrain& robot, const WheelModel& wheel) noexcept;
+double turning_inertia(const DriveTrain& robot, const WheelModel& wheel) noexcept;
 
 class FeedForward {
  public:
-  explicit FeedForward(const RobotModel& robot);
+  explicit FeedForward(const DriveTrain& robot);
 
   /// Sets another mass and yaw inertia, and other inertia, damping and friction per wheel.
   void tune(const DriveTuning& tuning) noexcept;

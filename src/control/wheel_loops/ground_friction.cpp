@@ -5,7 +5,7 @@
 
 namespace robot_control {
 
-GroundFriction::GroundFriction(const RobotModel& robot) noexcept
+GroundFriction::GroundFriction(const DriveTrain& robot) noexcept
     : scrub_(robot), wheels_(std::min(robot.wheels.size(), kMaxWheels)) {
   for (std::size_t i = 0; i < wheels_; ++i) max_square_ += scrub_.max_effort(i) * scrub_.max_effort(i);
 }

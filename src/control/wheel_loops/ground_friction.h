@@ -32,8 +32,8 @@
 #include <cstddef>
 
 #include "control/planar_twist.h"
-#include "machine/robot_model.h"
-#include "machine/wheels/scrub.h"
+#include "machine/wheeled/drive_train.h"
+#include "machine/wheeled/scrub.h"
 
 namespace robot_control {
 
@@ -65,7 +65,7 @@ class GroundFriction {
     double taken = 0;                          ///< r
   };
 
-  explicit GroundFriction(const RobotModel& robot) noexcept;
+  explicit GroundFriction(const DriveTrain& robot) noexcept;
 
   /// Begins a new run.
   void reset() noexcept { state_ = {}; }

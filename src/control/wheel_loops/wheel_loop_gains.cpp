@@ -7,7 +7,7 @@
 
 namespace robot_control {
 
-WheelLoopGains wheel_loop_gains(const DriveControllerParameters& parameters, const RobotModel& robot,
+WheelLoopGains wheel_loop_gains(const DriveControllerParameters& parameters, const DriveTrain& robot,
                                 const WheelModel& wheel, double period) noexcept {
   constexpr double kStabilityNumber = 0.2;
   constexpr double kPace = 31;          // 1/s

@@ -22,12 +22,12 @@
 
 #include "control/drive_controller_parameters.h"
 #include "control/wheel_loops/wheel_loop.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
 /// `wheel` is one of the robot's wheels; `period` is in s, > 0.
-WheelLoopGains wheel_loop_gains(const DriveControllerParameters& parameters, const RobotModel& robot,
+WheelLoopGains wheel_loop_gains(const DriveControllerParameters& parameters, const DriveTrain& robot,
                                 const WheelModel& wheel, double period) noexcept;
 
 /// Returns the bandwidth of the tracking loops in Hz.

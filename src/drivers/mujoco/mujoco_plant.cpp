@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "drivers/mujoco/contact/rest.h"
+#include "drivers/mujoco/motors/brake_limits.h"
 #include "drivers/mujoco/mujoco_errors.h"
 #include "machine/description/wording.h"
 #include "machine/suspicions.h"
@@ -32,7 +33,7 @@ void check_battery(double voltage, double resistance) {
 
 }  // namespace
 
-MujocoPlant::MujocoPlant(const RobotModel& robot, const MujocoPlantParameters& parameters, double period)
+MujocoPlant::MujocoPlant(const DriveTrain& robot, const MujocoPlantParameters& parameters, double period)
     : model_(compile_model(robot, parameters, period)),
       wheels_(model_, parameters),
       parameters_(parameters),
@@ -159,7 +160,12 @@ void MujocoPlant::read(SensorFrame& sensors) noexcept {
   sensors.joint_count = brakes_.size();
   sensors.joints = handed_out_.joints;
   sensors.imu = handed_out_.imu;
-  sensors.contact_forces = handed_out_.contact_forces;
+  sensors.contact_count = parameters_.contact_sensors ? std::min(wheels_.count(), kMaxContacts) : 0;
+  sensors.contacts = handed_out_.contacts;
+  if (!good) {
+    set_joints_valid(sensors, 0);
+    for (ContactSample& contact : sensors.contacts) contact.valid = 0;
+  }
   sensors.digital_inputs = handed_out_.digital_inputs;
   sensors.battery_voltage = handed_out_.battery.voltage;
   sensors.battery_current = handed_out_.battery.current;
@@ -167,8 +173,7 @@ void MujocoPlant::read(SensorFrame& sensors) noexcept {
 }
 
 std::uint64_t MujocoPlant::equipped() const noexcept {
-  std::uint64_t devices = kValidJoints | kValidGyro | kValidAccelerometer;
-  if (parameters_.contact_sensors) devices |= kValidContacts;
+  std::uint64_t devices = kValidGyro | kValidAccelerometer;
   if (parameters_.battery_voltage > 0) devices |= kValidBattery;
   return devices;
 }
@@ -279,12 +284,14 @@ void MujocoPlant::collect() noexcept {
     sample.position = data_->qpos[model_.joint_position[joint]];
     sample.velocity = data_->qvel[model_.joint_velocity[joint]];
     sample.effort = effort_sum_[joint] / model_.substeps;
+    sample.valid = kValidMotion;
   }
   std::copy_n(data_->sensordata + model_.gyro, 3, exact_.imu.angular_velocity.begin());
   Eigen::Map<Eigen::Vector3d>(exact_.imu.linear_acceleration.data()) = specific_force_sum_ / model_.substeps;
   if (parameters_.contact_sensors) {
-    for (std::size_t i = 0; i < kMaxContacts; ++i) {
-      Eigen::Map<Eigen::Vector3d>(exact_.contact_forces[i].data()) = force_sum_[i] / model_.substeps;
+    for (std::size_t i = 0; i < std::min(wheels_.count(), kMaxContacts); ++i) {
+      Eigen::Map<Eigen::Vector3d>(exact_.contacts[i].force.data()) = force_sum_[i] / model_.substeps;
+      exact_.contacts[i].valid = 1;
     }
   }
   if (parameters_.battery_voltage > 0) {

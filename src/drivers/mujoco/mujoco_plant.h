@@ -41,28 +41,29 @@
 #include <vector>
 
 #include "drivers/driver.h"
+#include "drivers/joint_law.h"
 #include "drivers/mujoco/contact/wheel_contacts.h"
 #include "drivers/mujoco/model/mujoco_model.h"
-#include "drivers/mujoco/motors/joint_law.h"
 #include "drivers/mujoco/motors/motor.h"
 #include "drivers/mujoco/motors/motor_faults.h"
 #include "drivers/mujoco/mujoco_plant_parameters.h"
 #include "drivers/mujoco/sensors/sensor_errors.h"
 #include "drivers/mujoco/sensors/sensor_faults.h"
 #include "drivers/mujoco/sensors/specific_force.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
 class MujocoPlant final : public Driver {
  public:
   /// `period` is in s. Throws DriverError as compile_model, WheelContacts and brake_of do.
-  MujocoPlant(const RobotModel& robot, const MujocoPlantParameters& parameters, double period);
+  MujocoPlant(const DriveTrain& robot, const MujocoPlantParameters& parameters, double period);
 
   void start() override;
   void read(SensorFrame& sensors) noexcept override;
   void write(std::span<const JointCommand> commands) noexcept override;
   void stop() noexcept override;
+  bool implements(StopKind) const noexcept override { return true; }
   bool simulated() const noexcept override { return true; }
   bool truth(TruthFrame& truth) noexcept override;
   bool inject(const InjectedFaults& faults) noexcept override;

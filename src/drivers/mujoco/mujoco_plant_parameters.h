@@ -31,7 +31,8 @@ struct MujocoPlantParameters : Errors {
       ground_friction;  ///< friction of all the ground; without it each shape of the scene has its own
   double slope = 0;     ///< rad by which the whole world is tilted: uphill along x of the start pose
 
-  // These members describe the brake of each wheel. Missing values are derived from robot and ground (brake_limits.h).
+  // These members describe the brake of each wheel. Missing values are derived from the robot
+  // (gate/wheeled/wheel_stop.h).
   std::optional<double> brake_effort;      ///< N·m
   std::optional<double> brake_damping;     ///< N·m·s/rad
   std::optional<double> brake_stiffness;   ///< N·m/rad, position hold below brake_hold_speed
@@ -55,7 +56,7 @@ struct MujocoPlantParameters : Errors {
   std::uint64_t actuator_delay = 0;  ///< cycles in addition to the one of the bus
 
   // This member describes the sensors.
-  bool contact_sensors = false;  ///< true: forces at wheels and casters (SensorFrame::contact_forces)
+  bool contact_sensors = false;  ///< true: forces at wheels and casters (SensorFrame::contacts)
 
   // These members describe the battery (battery.h), which does not discharge.
   double battery_voltage = 0;       ///< V without load; 0: no battery is reported

@@ -2,20 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "estimation/tuning.h"
 
 namespace robot_control {
 
-SideEncoder::Wheel::Wheel(const WheelModel& wheel, const RobotModel& robot) noexcept
+SideEncoder::Wheel::Wheel(const WheelModel& wheel, const DriveTrain& robot) noexcept
     : joint(wheel.joint), metres_per_radian(wheel.sign * wheel.radius), velocity_bound(Tuning::kFastestWheel) {
   const double limit = joint < robot.joints.size() ? robot.joints[joint].velocity_limit : 0;
   if (limit > 0 && std::isfinite(limit)) velocity_bound = 2 * limit;
 }
 
 bool SideEncoder::Wheel::measured(const SensorFrame& sensors) const noexcept {
-  return (sensors.valid & kValidJoints) != 0 && joint < sensors.joint_count && joint < kMaxJoints &&
-         std::isfinite(sensors.joints[joint].position);
+  return joint < sensors.joint_count && joint < kMaxJoints && has_position(sensors.joints[joint]) &&
+         taken.precedes(sensors, sensors.joints[joint]);
 }
 
 bool SideEncoder::Wheel::plausible(const SensorFrame& sensors, double time) const noexcept {
@@ -24,12 +25,11 @@ bool SideEncoder::Wheel::plausible(const SensorFrame& sensors, double time) cons
 
 double SideEncoder::Wheel::accept(const SensorFrame& sensors) noexcept {
   const double position = sensors.joints[joint].position;
-  const double travel = metres_per_radian * (position - angle);
-  angle = position;
-  return travel;
+  taken.accept(sensors, sensors.joints[joint]);
+  return metres_per_radian * (position - std::exchange(angle, position));
 }
 
-SideEncoder::SideEncoder(const RobotModel& robot, Side side) {
+SideEncoder::SideEncoder(const DriveTrain& robot, Side side) {
   for (const WheelModel& wheel : robot.wheels) {
     if (wheel.side == side) wheels_.emplace_back(wheel, robot);
   }

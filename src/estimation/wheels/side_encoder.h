@@ -4,14 +4,15 @@
 ///   travel = mean over the side's wheels of signᵢ · radiusᵢ · (qᵢ − qᵢ,last)    [m]
 ///
 /// The side's wheels are read together: one unused sample rejects the reading. The first reading is the offset, without
-/// travel. A sample that is missing, not finite or impossible is not used; the next good one brings the travel of the
-/// gap. A difference is impossible above 2 · velocity_limit times the time passed, plus kEncoderSlack. Without a limit,
-/// kFastestWheel replaces 2 · velocity_limit. If angles stay impossible for more than kMaxHeld readings, the encoder
-/// was reset. Then the present angles become the offset, and the travel in between is lost.
+/// travel. A sample that is missing, not finite, impossible or old is not used; the next good one brings the travel of
+/// the gap. A difference is impossible above 2 · velocity_limit times the time passed, plus kEncoderSlack; without a
+/// limit, kFastestWheel replaces 2 · velocity_limit. If angles stay impossible for more than kMaxHeld readings, the
+/// encoder was reset. Then the present angles become the offset, and the travel in between is lost.
 
 #include <cstdint>
 
-#include "machine/robot_model.h"
+#include "machine/encoders/sample_time.h"
+#include "machine/wheeled/drive_train.h"
 #include "signals/fixed_vector.h"
 #include "signals/sensor_frame.h"
 
@@ -27,7 +28,7 @@ enum class EncoderReading : std::uint8_t {
 class SideEncoder {
  public:
   /// There must be at least one wheel on that side.
-  SideEncoder(const RobotModel& robot, Side side);
+  SideEncoder(const DriveTrain& robot, Side side);
 
   /// `dt` is the time in s since the last call.
   EncoderReading step(const SensorFrame& sensors, double dt) noexcept;
@@ -50,8 +51,9 @@ class SideEncoder {
     double metres_per_radian;
     double velocity_bound;  ///< rad/s
     double angle = 0;       ///< rad, as last accepted
+    SampleTime taken{};     ///< of that angle
 
-    Wheel(const WheelModel& wheel, const RobotModel& robot) noexcept;
+    Wheel(const WheelModel& wheel, const DriveTrain& robot) noexcept;
     bool measured(const SensorFrame& sensors) const noexcept;
     bool plausible(const SensorFrame& sensors, double time) const noexcept;
     double accept(const SensorFrame& sensors) noexcept;  ///< m, travel

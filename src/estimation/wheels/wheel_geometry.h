@@ -4,11 +4,11 @@
 ///   distance = (right + left) / 2        turn = (right − left) / wheel_base
 ///   forward  = distance + turn · axle_y  left = −turn · axle_x
 ///
-/// wheel_base is the effective one (RobotModel), and left and right are the means of a side. The point (axle_x, axle_y)
+/// wheel_base is the effective one (DriveTrain), and left and right are the means of a side. The point (axle_x, axle_y)
 /// is the middle of the wheels in base axes. `ground` is the height of the contacts.
 
 #include "estimation/wheels/arc.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -18,7 +18,7 @@ struct WheelGeometry {
   double axle_y = 0;      ///< m
   double ground = 0;      ///< m
 
-  explicit WheelGeometry(const RobotModel& robot) noexcept : wheel_base(robot.effective_wheel_base()) {
+  explicit WheelGeometry(const DriveTrain& robot) noexcept : wheel_base(robot.effective_wheel_base()) {
     const auto count = static_cast<double>(robot.wheels.size());
     for (const WheelModel& wheel : robot.wheels) {
       axle_x += wheel.centre_base[0] / count;

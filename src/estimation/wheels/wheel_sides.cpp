@@ -7,7 +7,7 @@
 
 namespace robot_control {
 
-WheelSides::WheelSides(const RobotModel& robot, double bandwidth, double period, double count)
+WheelSides::WheelSides(const DriveTrain& robot, double bandwidth, double period, double count)
     : longest_held_(static_cast<double>(Tuning::kMaxHeld) * period),
       sides_{SideState{SideEncoder(robot, Side::kLeft), SpeedTracker(bandwidth, period)},
              SideState{SideEncoder(robot, Side::kRight), SpeedTracker(bandwidth, period)}},

@@ -9,7 +9,7 @@
 #include "estimation/wheels/side_encoder.h"
 #include "estimation/wheels/speed_quantum.h"
 #include "estimation/wheels/speed_tracker.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "signals/sensor_frame.h"
 
 namespace robot_control {
@@ -41,7 +41,7 @@ struct WheelReading {
 class WheelSides {
  public:
   /// `bandwidth` (Hz) is that of the speeds, `period` is in s, `count` (m) is one count of an encoder.
-  WheelSides(const RobotModel& robot, double bandwidth, double period, double count);
+  WheelSides(const DriveTrain& robot, double bandwidth, double period, double count);
 
   /// `dt` is the time in s since the last call.
   WheelReading step(const SensorFrame& sensors, double dt) noexcept;

@@ -42,8 +42,12 @@ void add_velocity(TraceFields& to, const std::string& name, Get) {
   [](auto& part) -> auto& {    \
     return Get{}(part).member; \
   }
-  to.push_back(field<C, f64>(name + "_linear", "m/s", OF(twist.linear)));
-  to.push_back(field<C, f64>(name + "_angular", "rad/s", OF(twist.angular)));
+  to.push_back(field<C, f64>(name + "_linear", "m/s", OF(content.twist.linear)));
+  to.push_back(field<C, f64>(name + "_angular", "rad/s", OF(content.twist.angular)));
+  to.push_back(field<C, f64>(name + "_height", "m, above the nominal posture", OF(content.posture.height)));
+  to.push_back(field<C, f64>(name + "_roll", "rad", OF(content.posture.roll)));
+  to.push_back(field<C, f64>(name + "_pitch", "rad", OF(content.posture.pitch)));
+  number("mode", "0: the default of the machine", OF(content.mode));
   number("count", "usable commands so far", OF(count));
   to.push_back(field<C, std::int64_t>(name + "_age_ns", "ns, when it arrived, by its stamp", OF(age_ns)));
   number("stale", "refused for their stamp", OF(stale));

@@ -13,11 +13,17 @@ void add_command(TraceFields& to) {
     to.push_back(field<C, u64>(name, comment, get).shown());
   };
   to.push_back(
-      field<C, f64>("requested_linear", "m/s, base axes, as last received", MEMBER(command.twist_requested.linear))
+      field<C, f64>("requested_linear", "m/s, base axes, as last received", MEMBER(command.requested.twist.linear))
           .shown({"requested_linear"}));
-  to.push_back(field<C, f64>("requested_angular", "rad/s, base axes", MEMBER(command.twist_requested.angular))
+  to.push_back(field<C, f64>("requested_angular", "rad/s, base axes", MEMBER(command.requested.twist.angular))
                    .shown_as(column<C>("requested_angular", "rad/s",
-                                       [](const C& c, std::size_t) { return c.command.twist_requested.angular[2]; })));
+                                       [](const C& c, std::size_t) { return c.command.requested.twist.angular[2]; })));
+  to.push_back(
+      field<C, f64>("requested_height", "m, above the nominal posture", MEMBER(command.requested.posture.height)));
+  to.push_back(field<C, f64>("requested_roll", "rad", MEMBER(command.requested.posture.roll)));
+  to.push_back(field<C, f64>("requested_pitch", "rad", MEMBER(command.requested.posture.pitch)));
+  number("requested_mode", "0: the default of the machine", MEMBER(command.requested.mode));
+  shown("request_ignored", "RequestPart bits that the machine cannot execute", MEMBER(command.ignored));
   to.push_back(field<C, f32>("limited_linear", "m/s, after limits", MEMBER(command.twist_limited.linear))
                    .shown({"limited_linear"}));
   to.push_back(field<C, f32>("limited_angular", "rad/s, after limits", MEMBER(command.twist_limited.angular))
@@ -27,21 +33,30 @@ void add_command(TraceFields& to) {
                    .shown_per_joint("effort_command"));
   to.push_back(per_joint<C, f32>("velocity_command", "rad/s or m/s", ELEMENT(command.joints[i].velocity))
                    .shown_per_joint("velocity_command"));
+  TraceColumn measured = column<C>(
+      "velocity_measured", "rad/s, of the tracking loop; 0: no wheel",
+      [](const C& c, std::size_t joint) { return joint < kMaxWheels ? c.command.wheeled.velocity[joint] : 0; });
+  measured.per_joint = true;
   to.push_back(
-      per_joint<C, f32>("velocity_measured", "rad/s, of the tracking loop", ELEMENT(command.velocity_measured[i]))
-          .shown_per_joint("velocity_measured"));
+      per_wheel<C, f32>("velocity_measured", "rad/s, of the tracking loop", ELEMENT(command.wheeled.velocity[i]))
+          .shown_as(measured));
+  to.back().max_joints = kMaxJoints;
   to.push_back(per_joint<C, u8>("mode_command", "JointMode", ELEMENT(command.joints[i].mode)).shown_per_joint("mode"));
   number("command_state_cycle", "of the state used", MEMBER(command.state_cycle));
   number("command_permit_cycle", "of the permit used", MEMBER(command.permit_cycle));
   number("silent_cycles", "since the last message of any sender", MEMBER(command.silent_cycles));
   number("command_joint_count", "", MEMBER(command.joint_count));
-  shown("command_reasons", "CommandReason bits", MEMBER(command.reasons));
+  to.push_back(field<C, u64>("command_reasons", "CommandReason bits", MEMBER(command.reasons))
+                   .shown_as(column<C>("command_reasons", "CommandReason and WheeledReason bits",
+                                       [](const C& c, std::size_t) { return reasons_of(c.command); })));
+  number("wheeled_reasons", "WheeledReason bits", MEMBER(command.wheeled.reasons));
   number("request_cycle", "in which the last command was received", MEMBER(command.request_cycle));
   shown("requests_received", "in this run", MEMBER(command.requests_received));
   shown("requests_refused", "in this run", MEMBER(command.requests_refused));
   shown("requests_stale", "of these, for their stamp", MEMBER(command.requests_stale));
   shown("requests_crowded", "of these, while more than one node sent", MEMBER(command.requests_crowded));
   number("requests_revoked", "of these, of senders that owe a zero velocity", MEMBER(command.requests_revoked));
+  shown("requests_partial", "accepted with a part that the machine ignores", MEMBER(command.requests_partial));
   shown("timeouts", "in this run", MEMBER(command.timeouts));
   number("command_first_cycle", "of this process in this run", MEMBER(command.first_cycle));
   number("zero_requests", "zero velocities accepted since then", MEMBER(command.zero_requests));

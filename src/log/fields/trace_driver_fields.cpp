@@ -15,6 +15,8 @@ double tilt_of(const Quaternion& q) {
   return 2 * std::asin(std::min(1.0, std::hypot(q[0], q[1])));
 }
 
+constexpr auto kContacts = [](const D*, std::size_t) { return kMaxContacts; };
+
 }  // namespace
 
 void add_sensors(TraceFields& to) {
@@ -38,19 +40,43 @@ void add_sensors(TraceFields& to) {
   to.push_back(
       field<D, f64>("imu_orientation", "x, y, z, w; zero where the device has none", MEMBER(sensors.imu.orientation)));
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    static constexpr auto kSize = [](const D*, std::size_t) { return kMaxContacts; };
     const std::string name = std::string("contact_force_") + "xyz"[axis];
-    const std::string comment = "N, on the wheels, base axes, mean over [t_k-1, t_k): wheels, then casters";
+    const std::string comment = "N, on the machine, base axes, mean over [t_k-1, t_k): wheels, then casters";
     if (axis == 0) {
-      to.push_back(list<D, f64, kMaxContacts>(name, comment, kSize, ELEMENT(sensors.contact_forces[i][0])));
+      to.push_back(list<D, f64, kMaxContacts>(name, comment, kContacts, ELEMENT(sensors.contacts[i].force[0])));
     } else if (axis == 1) {
-      to.push_back(list<D, f64, kMaxContacts>(name, comment, kSize, ELEMENT(sensors.contact_forces[i][1])));
+      to.push_back(list<D, f64, kMaxContacts>(name, comment, kContacts, ELEMENT(sensors.contacts[i].force[1])));
     } else {
-      to.push_back(list<D, f64, kMaxContacts>(name, comment, kSize, ELEMENT(sensors.contact_forces[i][2])));
+      to.push_back(list<D, f64, kMaxContacts>(name, comment, kContacts, ELEMENT(sensors.contacts[i].force[2])));
     }
   }
-  to.push_back(per_joint<D, f64>("joint_temperature", "degrees Celsius; 0 where there is no sensor",
-                                 ELEMENT(sensors.joints[i].temperature)));
+  to.push_back(list<D, u8, kMaxContacts>("contact_valid", "1: the force was measured", kContacts,
+                                         ELEMENT(sensors.contacts[i].valid)));
+  to.push_back(field<D, u64>("contact_count", "contacts with a sensor", MEMBER(sensors.contact_count)));
+  to.push_back(per_joint<D, f64>("joint_temperature", "degrees Celsius", ELEMENT(sensors.joints[i].temperature)));
+  to.push_back(
+      per_joint<D, u8>("joint_valid", "JointValidity bits", ELEMENT(sensors.joints[i].valid)).shown_per_joint("valid"));
+  TraceColumn age = column<D>("age", "s, from the sample of the drive to t_k", [](const D& d, std::size_t joint) {
+    return 1e-9 * static_cast<double>(d.sensors.joints[joint].age_ns);
+  });
+  age.per_joint = true;
+  to.push_back(
+      per_joint<D, i64>("joint_age_ns", "ns, from the sample of the drive to t_k", ELEMENT(sensors.joints[i].age_ns))
+          .shown_as(age));
+  to.push_back(per_joint<D, u32>("joint_fault", "fault word of the drive", ELEMENT(sensors.joints[i].fault))
+                   .shown_per_joint("fault"));
+}
+
+void add_links(TraceFields& to) {
+  static constexpr auto kSize = [](const D*, std::size_t) { return kMaxLinks; };
+  to.push_back(field<D, u64>("link_count", "links of the driver to its devices", MEMBER(sensors.link_count)));
+  to.push_back(list<D, u8, kMaxLinks>("link_state", "LinkState", kSize, ELEMENT(sensors.links[i].state)));
+  to.push_back(list<D, u64, kMaxLinks>("link_sent", "messages of this run", kSize, ELEMENT(sensors.links[i].sent)));
+  to.push_back(list<D, u64, kMaxLinks>("link_lost", "answers that never came", kSize, ELEMENT(sensors.links[i].lost)));
+  to.push_back(list<D, u64, kMaxLinks>("link_late", "answers after the cycle in which they were due", kSize,
+                                       ELEMENT(sensors.links[i].late)));
+  to.push_back(
+      list<D, u64, kMaxLinks>("link_errors", "that the link reported", kSize, ELEMENT(sensors.links[i].errors)));
 }
 
 void add_driver(TraceFields& to) {

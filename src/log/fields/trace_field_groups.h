@@ -6,6 +6,7 @@
 namespace robot_control {
 
 void add_sensors(TraceFields& to);
+void add_links(TraceFields& to);
 void add_timing(TraceFields& to);
 void add_truth(TraceFields& to);
 void add_estimate(TraceFields& to);

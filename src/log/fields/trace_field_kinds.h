@@ -189,13 +189,13 @@ TraceField per_joint(std::string name, std::string comment, Get get) {
       std::move(name), std::move(comment), [](const Part*, std::size_t joints) { return joints; }, get);
 }
 
-/// The list holds a value for each joint that a wheel loop may drive.
+/// The list holds a value for each joint that may be that of a wheel.
 template <class Part, class Wire, class Get>
 TraceField per_wheel(std::string name, std::string comment, Get get) {
-  TraceField result = list<Part, Wire, kTunedWheels>(
-      std::move(name), std::move(comment),
-      [](const Part*, std::size_t joints) { return std::min(joints, kTunedWheels); }, get);
-  result.max_joints = kTunedWheels;
+  TraceField result = list<Part, Wire, kMaxWheels>(
+      std::move(name), std::move(comment), [](const Part*, std::size_t joints) { return std::min(joints, kMaxWheels); },
+      get);
+  result.max_joints = kMaxWheels;
   return result;
 }
 

@@ -114,6 +114,7 @@ TraceFields all_fields() {
   };
   group("The row.", add_row);
   group("Sensors: what estimator, controller and monitor took in; joints in the order of the header.", add_sensors);
+  group("Links of the driver to its devices.", add_links);
   group("When each node woke and published, relative to when the cycle was due.", add_timing);
   group("Truth, of a simulator.", add_truth);
   group("Estimate.", add_estimate);

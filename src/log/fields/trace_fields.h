@@ -95,7 +95,7 @@ using TraceFields = std::vector<TraceField>;
 const TraceFields& trace_fields();
 
 /// The columns of a table, with their meaning, in the order of the fields. `joints`: names in the order of
-/// RobotModel::joints. `timing`: with the columns of that kind.
+/// MachineModel::joints. `timing`: with the columns of that kind.
 std::vector<TraceColumn> log_columns(const std::vector<std::string>& joints, bool timing);
 
 /// The text of msg/Trace.msg, which names the columns, too.

@@ -43,11 +43,12 @@ void add_permit(TraceFields& to) {
   number("permit_driver_instance", "of the driver it was issued for", MEMBER(permit.driver_instance));
   number("resets_handled", "counter of the last reset request answered", MEMBER(permit.resets_handled));
   shown("reset_refusal", "ResetRefusal bits, of that request", MEMBER(permit.reset_refusal));
-  to.push_back(
-      field<M, f64>("speed_limit", "m/s, of every wheel's rim; 1e9: none", MEMBER(permit.speed_limit))
-          .shown_as(column<M>("speed_limit", "m/s, of every wheel's rim; NaN: none", [](const M& m, std::size_t) {
-            return where(m.permit.speed_limit < kNoSpeedLimit, m.permit.speed_limit);
-          })));
+  to.push_back(field<M, f64>("speed_limit", "m/s, of the base, and so of every wheel's rim; 1e9: none",
+                             MEMBER(permit.speed_limit))
+                   .shown_as(column<M>("speed_limit", "m/s, of the base, and so of every wheel's rim; NaN: none",
+                                       [](const M& m, std::size_t) {
+                                         return where(m.permit.speed_limit < kNoSpeedLimit, m.permit.speed_limit);
+                                       })));
   static constexpr auto kSize = [](const M* monitor, std::size_t) {
     if (monitor == nullptr) return std::size_t{0};
     const auto& evidence = monitor->permit.evidence;

@@ -75,6 +75,7 @@ Member whole(const char* name, std::size_t words = 1) {
 std::vector<FieldDifference> differences(const StateFrame& logged, const StateFrame& replayed) {
   static const std::vector<Member> kMembers{
       whole("first_cycle"),
+      whole("skipped"),
       {"pose_odom", 7, kPose},
       {"twist_base", 6, kTwist},
       {"pose_covariance", 36},
@@ -84,18 +85,19 @@ std::vector<FieldDifference> differences(const StateFrame& logged, const StateFr
       {"attitude", 4, {"x", "y", "z", "w"}},
       {"attitude_covariance", 9},
       {"gyro_bias_deviation", 3, kAxes},
-      {"calibration", 4, {"radius_ratio", "wheel_base_factor", "radius_ratio_deviation", "wheel_base_deviation"}},
-      {"wheels", 5, {"x", "y", "yaw", "linear", "angular"}},
-      {"wheel_velocity", kMaxWheelVelocities},
-      {"confidence", kMaxConfidences},
-      {"nis", kMaxConfidences},
-      whole("rejected", kMaxConfidences),
-      whole("slip"),
       whole("degraded"),
-      {"residual_level", 1},
       whole("flags"),
       {"distance", 1},
-      whole("skipped")};
+      {"joint_velocity", kMaxJoints},
+      whole("contact_count"),
+      {"contacts", 2 * kMaxContacts, {"probability", "slip"}},
+      {"calibration", 4, {"radius_ratio", "wheel_base_factor", "radius_ratio_deviation", "wheel_base_deviation"}},
+      {"odometry", 5, {"x", "y", "yaw", "linear", "angular"}},
+      {"confidence", kWheeledSensors},
+      {"nis", kWheeledSensors},
+      whole("rejected", kWheeledSensors),
+      whole("slip"),
+      {"residual_level", 1}};
   return compare(logged, replayed, kHead, kMembers);
 }
 
@@ -103,8 +105,9 @@ std::vector<FieldDifference> differences(const CommandFrame& logged, const Comma
   static const std::vector<Member> kMembers{
       whole("joint_count"),
       {"joints", kMaxJoints * 6, {"#mode", "position", "velocity", "stiffness", "damping", "effort"}},
-      {"velocity_measured", kMaxJoints},
-      {"twist_requested", 6, kTwist},
+      {"requested", 6, kTwist},
+      {"requested", 3, {"height", "roll", "pitch"}},
+      whole("requested.mode"),
       {"twist_limited", 6, kTwist},
       whole("reasons"),
       whole("state_cycle"),
@@ -115,12 +118,16 @@ std::vector<FieldDifference> differences(const CommandFrame& logged, const Comma
       whole("requests_stale"),
       whole("requests_crowded"),
       whole("requests_revoked"),
+      whole("requests_partial"),
+      whole("ignored"),
       whole("timeouts"),
       whole("first_cycle"),
       whole("zero_requests"),
       whole("zero_requested"),
       whole("silent_cycles"),
-      whole("silence_needed")};
+      whole("silence_needed"),
+      whole("wheeled_reasons"),
+      {"velocity_measured", kMaxWheels}};
   return compare(logged, replayed, kHead, kMembers);
 }
 

@@ -12,6 +12,7 @@
 #include "log/replay/row_check.h"
 #include "loop/gate_setup.h"
 #include "loop/safety_limits.h"
+#include "loop/wheeled_gate.h"
 #include "signals/gate_digest.h"
 
 namespace robot_control {
@@ -40,9 +41,9 @@ FrameHead own_head(const FrameHead& head) {
 }  // namespace
 
 struct Replay::Parts {
-  Parts(const Parameters& parameters, const RobotModel& robot)
+  Parts(const Parameters& parameters, const DriveTrain& robot)
       : row_check(robot.joints.size(), report),
-        gate{Gate(joint_limits(robot), gate_parameters(parameters), parameters.loop.period()),
+        gate{Gate(joint_limits(robot), gate_parameters(parameters, robot), parameters.loop.period()),
              Continuity(LawName::kGate, report)},
         estimator{Estimator(parameters.estimator, robot, parameters.loop.period()),
                   Continuity(LawName::kEstimator, report),
@@ -90,11 +91,11 @@ struct Replay::Parts {
   std::function<void(const VariedRow&)> watch;
 };
 
-Replay::Replay(const Parameters& parameters, const RobotModel& robot)
+Replay::Replay(const Parameters& parameters, const DriveTrain& robot)
     : parts_(std::make_unique<Parts>(parameters, robot)) {}
 Replay::~Replay() = default;
 
-void Replay::vary(const Parameters& parameters, const RobotModel& robot, std::function<void(const VariedRow&)> watch) {
+void Replay::vary(const Parameters& parameters, const DriveTrain& robot, std::function<void(const VariedRow&)> watch) {
   parts_->variant = std::make_unique<Variant>(parameters, robot);
   parts_->watch = std::move(watch);
 }

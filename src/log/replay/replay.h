@@ -24,7 +24,7 @@
 #include "log/replay/variant.h"
 #include "log/rows/joined_row.h"
 #include "log/rows/trace_row.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "signals/law_snapshot.h"
 
 namespace robot_control {
@@ -32,11 +32,11 @@ namespace robot_control {
 class Replay {
  public:
   /// `parameters` and `robot` of the log. Throws as the laws do.
-  Replay(const Parameters& parameters, const RobotModel& robot);
+  Replay(const Parameters& parameters, const DriveTrain& robot);
   ~Replay();
 
   /// The laws with other parameters beside those of the log, before the first row; `watch` gets each cycle of each.
-  void vary(const Parameters& parameters, const RobotModel& robot, std::function<void(const VariedRow&)> watch);
+  void vary(const Parameters& parameters, const DriveTrain& robot, std::function<void(const VariedRow&)> watch);
 
   /// In any order, before the row that it belongs to. Throws ReplayError: it is of another build.
   void add(const LawSnapshot& snapshot);

@@ -7,7 +7,7 @@
 #include "gate/gate.h"
 #include "log/replay/continuity.h"
 #include "log/replay/frame_history.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "safety/safety_monitor.h"
 #include "signals/trace.h"
 

@@ -5,7 +5,7 @@
 
 namespace robot_control {
 
-Variant::Variant(const Parameters& parameters, const RobotModel& robot)
+Variant::Variant(const Parameters& parameters, const DriveTrain& robot)
     : estimator_(parameters.estimator, robot, parameters.loop.period()),
       tuning_(drive_tuning(parameters.controller, robot, parameters.loop.period())),
       monitor_(safety_limits(parameters, robot), robot, parameters.loop.period()) {}

@@ -11,7 +11,7 @@
 #include "configuration/parameters.h"
 #include "control/drive_controller.h"
 #include "estimation/estimator.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "safety/safety_monitor.h"
 #include "signals/law_calls.h"
 
@@ -31,7 +31,7 @@ struct VariedRow {
 
 class Variant {
  public:
-  Variant(const Parameters& parameters, const RobotModel& robot);
+  Variant(const Parameters& parameters, const DriveTrain& robot);
 
   /// The output of one cycle. Null: the law has not begun.
   const StateFrame* step(const EstimatorCalls& calls, const SensorFrame& sensors) noexcept;

@@ -5,7 +5,7 @@
 
 namespace robot_control {
 
-ControllerCycle::ControllerCycle(const DriveControllerParameters& parameters, const RobotModel& robot, double period,
+ControllerCycle::ControllerCycle(const DriveControllerParameters& parameters, const DriveTrain& robot, double period,
                                  const Channels& channels, CommandScript script, Now now)
     : controller_(parameters, robot, period),
       clock_(now),
@@ -42,14 +42,14 @@ void ControllerCycle::receive(std::uint64_t cycle) noexcept {
   VelocityCommand arrived = received_;
   inbox_.load(arrived);
   if (arrived.count != received_.count) {
-    request_.twist = arrived.twist;
+    request_.content = arrived.content;
     request_.age_ns = arrived.age_ns;
     request_.count += arrived.count - received_.count;
   }
   take_over(arrived);
   const ScriptEvents events = script_.advance(cycle);
   if (events.has_twist) {
-    request_.twist = events.twist;
+    request_.content = {.twist = events.twist};
     request_.age_ns = 0;
     request_.count += events.twists;
   }

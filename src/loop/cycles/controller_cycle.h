@@ -24,7 +24,7 @@ class ControllerCycle {
     FrameWriter<CommandFrame> command;
   };
 
-  ControllerCycle(const DriveControllerParameters& parameters, const RobotModel& robot, double period,
+  ControllerCycle(const DriveControllerParameters& parameters, const DriveTrain& robot, double period,
                   const Channels& channels, CommandScript script, Now now);
 
   /// In from the outside: one ordinary thread stores, this cycle loads.

@@ -8,7 +8,7 @@
 
 namespace robot_control {
 
-DriverCycle::DriverCycle(Driver& driver, const RobotModel& robot, const Channels& channels, std::int64_t period_ns,
+DriverCycle::DriverCycle(Driver& driver, const MachineModel& robot, const Channels& channels, std::int64_t period_ns,
                          Now now, const GateParameters& gate)
     : driver_(driver),
       channels_(channels),
@@ -16,6 +16,7 @@ DriverCycle::DriverCycle(Driver& driver, const RobotModel& robot, const Channels
       period_ns_(period_ns),
       now_(now),
       snapshots_(LawName::kGate) {
+  require_stop_actions(driver, gate, robot);
   announce_robot(channels_.sensors.memory()->head, robot.hash, robot.source);
 }
 

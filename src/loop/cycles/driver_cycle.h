@@ -14,7 +14,7 @@
 #include "loop/cycles/close_row.h"
 #include "loop/cycles/cycle_clock.h"
 #include "loop/cycles/snapshots.h"
-#include "machine/robot_model.h"
+#include "machine/machine_model.h"
 #include "signals/trace.h"
 
 namespace robot_control {
@@ -28,7 +28,8 @@ class DriverCycle {
     const FrameReader<Permit>* permit;
   };
 
-  DriverCycle(Driver& driver, const RobotModel& robot, const Channels& channels, std::int64_t period_ns, Now now,
+  /// Throws DriverError as require_stop_actions does.
+  DriverCycle(Driver& driver, const MachineModel& robot, const Channels& channels, std::int64_t period_ns, Now now,
               const GateParameters& gate = {});
 
   /// The number of this process; see SensorFrame::driver_instance.

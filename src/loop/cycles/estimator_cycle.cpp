@@ -2,7 +2,7 @@
 
 namespace robot_control {
 
-EstimatorCycle::EstimatorCycle(const EstimatorParameters& parameters, const RobotModel& robot, double period,
+EstimatorCycle::EstimatorCycle(const EstimatorParameters& parameters, const DriveTrain& robot, double period,
                                const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now)
     : estimator_(parameters, robot, period),
       clock_(now),

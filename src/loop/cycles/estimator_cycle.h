@@ -20,7 +20,7 @@ class EstimatorCycle {
   };
 
  public:
-  EstimatorCycle(const EstimatorParameters& parameters, const RobotModel& robot, double period,
+  EstimatorCycle(const EstimatorParameters& parameters, const DriveTrain& robot, double period,
                  const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now);
 
   /// True when there was a new sensor frame of the driver's current run, and a state was computed from it and

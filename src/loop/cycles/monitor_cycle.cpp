@@ -6,7 +6,7 @@
 
 namespace robot_control {
 
-MonitorCycle::MonitorCycle(const SafetyParameters& parameters, const RobotModel& robot, double period,
+MonitorCycle::MonitorCycle(const SafetyParameters& parameters, const DriveTrain& robot, double period,
                            const Channels& channels, CommandScript script, Now now, InheritedLatch latch)
     : monitor_(parameters, robot, period),
       clock_(now),

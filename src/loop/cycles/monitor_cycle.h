@@ -16,7 +16,6 @@
 #include "loop/cycles/close_row.h"
 #include "loop/cycles/cycle_clock.h"
 #include "loop/cycles/snapshots.h"
-#include "machine/robot_model.h"
 #include "safety/safety_monitor.h"
 #include "signals/trace.h"
 
@@ -32,7 +31,7 @@ class MonitorCycle {
   };
 
   /// Inherits the latch of the permit in the channel and of `latch`, another record of an earlier stop.
-  MonitorCycle(const SafetyParameters& parameters, const RobotModel& robot, double period, const Channels& channels,
+  MonitorCycle(const SafetyParameters& parameters, const DriveTrain& robot, double period, const Channels& channels,
                CommandScript script, Now now, InheritedLatch latch = {});
 
   /// In from the outside: one ordinary thread stores, this cycle loads.

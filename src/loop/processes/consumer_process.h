@@ -7,12 +7,13 @@
 #include <atomic>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "loop/cycles/cycle_clock.h"
 #include "loop/cycles/trace_sink.h"
+#include "loop/machine_identity.h"
 #include "loop/processes/process.h"
-#include "loop/start_check.h"
 #include "signals/roles.h"
 
 namespace robot_control {
@@ -45,7 +46,7 @@ class ConsumerProcess : public Process {
   /// Longest wait before the end of the loop is noticed, ns.
   static constexpr std::int64_t kStopCheck = 100'000'000;
 
-  ConsumerProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus,
+  ConsumerProcess(const Parameters& parameters, const MachineModel& robot, const std::string& bus,
                   const ConsumerNames& names)
       : Process(parameters.loop, names.priority, names.thread),
         output_(bus, names.channel),
@@ -64,8 +65,7 @@ class ConsumerProcess : public Process {
   void poll_channels() override {
     sensors_.poll();
     trace_.poll();
-    robot_agrees_ = sensors_.reader.memory() != nullptr && sensors_.channel.locked() &&
-                    same_robot(sensors_.reader.memory()->head, robot_.hash, robot_.source);
+    robot_agrees_ = sensors_.reader.memory() != nullptr && sensors_.channel.locked() && same_robot_as_driver();
   }
 
   bool ready() override { return robot_agrees_ && !waits_for_telemetry(); }
@@ -86,13 +86,22 @@ class ConsumerProcess : public Process {
 
   Output<Frame> output_;
   Input<SensorFrame> sensors_;
-  RobotModel robot_;  ///< identified
+  MachineModel robot_;  ///< identified
 
  private:
   bool waits_for_telemetry() const {
     if (!loop_parameters().wait_for_telemetry || trace_.reader_present()) return false;
     SensorFrame first;
     return sensors_.reader.newest(first) != Lookup::kFrame || !current(sensors_.reader, first.head, robot_.hash);
+  }
+
+  /// Throws BusError at the second poll that finds the same other robot. The first one may find the robot of an earlier
+  /// driver, which the one that has just locked the channel clears right afterwards.
+  bool same_robot_as_driver() {
+    const ChannelHead& head = sensors_.reader.memory()->head;
+    const std::uint64_t announced = announced_robot(head).hash;
+    if (announced != robot_.hash && std::exchange(announced_, announced) != announced) return false;
+    return same_robot(head, robot_.hash, robot_.source);
   }
 
   /// Publishes for the driver that this node waits on the sensors of its current run.
@@ -102,6 +111,7 @@ class ConsumerProcess : public Process {
   }
 
   TraceSink<Row> trace_;
+  std::uint64_t announced_ = 0;            ///< hash of another robot that the last poll found
   std::atomic<bool> robot_agrees_{false};  ///< the driver lives, on this robot
 };
 

@@ -1,19 +1,20 @@
 #include "loop/processes/controller_process.h"
 
 #include "loop/mint_number.h"
+#include "loop/start_check.h"
 #include "signals/roles.h"
 
 namespace robot_control {
 
-ControllerProcess::ControllerProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
+ControllerProcess::ControllerProcess(const Parameters& parameters, const DriveTrain& robot, const std::string& bus)
     : ConsumerProcess(parameters, robot, bus,
                       {LoopPriority::kController, "controller", ChannelNames::kCommand, TraceRing::kController}),
       state_(bus, ChannelNames::kState),
       permit_(bus, ChannelNames::kPermit),
-      cycle_(parameters.controller, robot_, parameters.loop.period(),
+      cycle_(parameters.controller, identified(robot, parameters.loop), parameters.loop.period(),
              {&sensors_.reader, &state_.reader, &permit_.reader, output_.writer},
              load_script(parameters.loop.command_script), clock_of(parameters.loop)),
-      retuning_(parameters, robot_, cycle_.tunings()) {
+      retuning_(parameters, robot, cycle_.tunings()) {
   require_drivable(parameters, robot);
   cycle_.set_process(mint_number());
 }

@@ -14,7 +14,7 @@ class ControllerProcess final : public ConsumerProcess<CommandFrame, ControllerT
  public:
   /// Throws BusError; ParameterError for a script that cannot be read, or limits and gains that control_problems.h
   /// refuses.
-  ControllerProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus);
+  ControllerProcess(const Parameters& parameters, const DriveTrain& robot, const std::string& bus);
   ~ControllerProcess() override { stop(); }
 
   std::vector<std::string> missing() const override;

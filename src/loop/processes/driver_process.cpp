@@ -2,9 +2,8 @@
 
 #include <algorithm>
 
-#include "loop/gate_setup.h"
+#include "loop/machine_identity.h"
 #include "loop/mint_number.h"
-#include "loop/start_check.h"
 #include "rt/clock.h"
 #include "rt/periodic.h"
 #include "signals/roles.h"
@@ -33,11 +32,10 @@ bool published(const FrameReader<Frame>& reader, std::uint64_t run, std::uint64_
 
 }  // namespace
 
-DriverProcess::DriverProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
+DriverProcess::DriverProcess(const Parameters& parameters, const MachineModel& robot, const std::string& bus)
     : Process(parameters.loop, LoopPriority::kDriver, "driver"),
       robot_(identified(robot, parameters.loop)),
       cycles_(parameters.plant.cycles),
-      gate_(gate_parameters(parameters)),
       sensors_(bus, ChannelNames::kSensors),
       truth_(bus, ChannelNames::kTruth),
       state_(bus, ChannelNames::kState),
@@ -50,12 +48,12 @@ DriverProcess::~DriverProcess() {
   if (driver_ != nullptr) driver_->stop();
 }
 
-void DriverProcess::open_driver(std::unique_ptr<Driver> driver) {
+void DriverProcess::open_driver(std::unique_ptr<Driver> driver, const GateParameters& gate) {
   driver->start();
   driver_ = std::move(driver);
   cycle_ = std::make_unique<DriverCycle>(
       *driver_, robot_, DriverCycle::Channels{sensors_.writer, truth_.writer, &command_.reader, &permit_.reader},
-      loop_parameters().period_ns(), lockstep() ? nullptr : &monotonic_ns, gate_);
+      loop_parameters().period_ns(), lockstep() ? nullptr : &monotonic_ns, gate);
   SensorFrame last;  // of an earlier process; time never goes back
   if (lockstep() && sensors_.reader.newest(last) == Lookup::kFrame) {
     cycle_->set_start(last.head.stamp_ns + loop_parameters().period_ns());

@@ -25,11 +25,11 @@ namespace robot_control {
 class DriverProcess final : public Process {
  public:
   /// Takes the locks; `open_driver` then (or never).
-  DriverProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus);
+  DriverProcess(const Parameters& parameters, const MachineModel& robot, const std::string& bus);
   ~DriverProcess() override;
 
   /// Starts the machine and announces the first run. Throws DriverError.
-  void open_driver(std::unique_ptr<Driver> driver);
+  void open_driver(std::unique_ptr<Driver> driver, const GateParameters& gate);
 
   std::vector<std::string> missing() const override;
   const FrameReader<SensorFrame>& sensors() const noexcept { return sensors_.reader; }
@@ -57,9 +57,8 @@ class DriverProcess final : public Process {
   void tick() noexcept;
   bool more() const noexcept { return cycles_ == 0 || cycle_->next_cycle() < cycles_; }
 
-  RobotModel robot_;
+  MachineModel robot_;
   std::uint64_t cycles_;
-  GateParameters gate_;
   Output<SensorFrame> sensors_;
   Output<TruthFrame> truth_;
   Input<StateFrame> state_;

@@ -4,11 +4,11 @@
 
 namespace robot_control {
 
-EstimatorProcess::EstimatorProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
+EstimatorProcess::EstimatorProcess(const Parameters& parameters, const DriveTrain& robot, const std::string& bus)
     : ConsumerProcess(parameters, robot, bus,
                       {LoopPriority::kEstimator, "estimator", ChannelNames::kState, TraceRing::kEstimator}),
-      cycle_(parameters.estimator, robot_, parameters.loop.period(), sensors_.reader, output_.writer,
-             clock_of(parameters.loop)) {
+      cycle_(parameters.estimator, identified(robot, parameters.loop), parameters.loop.period(), sensors_.reader,
+             output_.writer, clock_of(parameters.loop)) {
   cycle_.set_process(mint_number());
 }
 

@@ -11,7 +11,7 @@ namespace robot_control {
 
 class EstimatorProcess final : public ConsumerProcess<StateFrame, EstimatorTrace> {
  public:
-  EstimatorProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus);
+  EstimatorProcess(const Parameters& parameters, const DriveTrain& robot, const std::string& bus);
   ~EstimatorProcess() override { stop(); }
 
   std::vector<std::string> missing() const override;

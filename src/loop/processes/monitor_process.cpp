@@ -6,13 +6,13 @@
 
 namespace robot_control {
 
-MonitorProcess::MonitorProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
+MonitorProcess::MonitorProcess(const Parameters& parameters, const DriveTrain& robot, const std::string& bus)
     : ConsumerProcess(parameters, robot, bus,
                       {LoopPriority::kMonitor, "monitor", ChannelNames::kPermit, TraceRing::kMonitor}),
       state_(bus, ChannelNames::kState),
       command_(bus, ChannelNames::kCommand),
       latch_file_(parameters.latch_file),
-      cycle_(safety_limits(parameters, robot_), robot_, parameters.loop.period(),
+      cycle_(safety_limits(parameters, robot), identified(robot, parameters.loop), parameters.loop.period(),
              {&sensors_.reader, &state_.reader, &command_.reader, output_.writer},
              load_script(parameters.loop.command_script), clock_of(parameters.loop),
              {.causes = latch_file_.found().causes, .first_cause = latch_file_.found().first_cause}),

@@ -13,7 +13,7 @@ namespace robot_control {
 class MonitorProcess final : public ConsumerProcess<Permit, MonitorTrace> {
  public:
   /// Throws BusError; ParameterError for a script that cannot be read.
-  MonitorProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus);
+  MonitorProcess(const Parameters& parameters, const DriveTrain& robot, const std::string& bus);
   ~MonitorProcess() override;
 
   std::vector<std::string> missing() const override;

@@ -15,7 +15,6 @@
 #include "bus/bus.h"
 #include "bus/latest_frames.h"
 #include "configuration/parameters.h"
-#include "machine/robot_model.h"
 #include "rt/realtime_thread.h"
 
 namespace robot_control {

@@ -19,7 +19,7 @@ void note_negative(const char* attribute, double value, const std::string& eleme
                    std::string(attribute) + "=\"" + number(value) + "\"> is negative: taken as not given"});
 }
 
-void read_limits(const urdf::JointLimits& limits, const std::string& source, BodyJoint& joint,
+void read_limits(const urdf::JointLimits& limits, const std::string& source, double endless, BodyJoint& joint,
                  std::vector<RobotNote>& notes) {
   const std::string element = joint_element(joint.name);
   joint.effort_limit = limits.effort > 0 ? limits.effort : 0;
@@ -37,7 +37,7 @@ void read_limits(const urdf::JointLimits& limits, const std::string& source, Bod
     notes.push_back({RobotNote::Kind::kSuspicious, element,
                      "upper=\"" + number(limits.upper) + "\" is in radians, were degrees meant?"});
   }
-  if (joint.type == JointType::kRevolute && range > kEndless) {
+  if (joint.type == JointType::kRevolute && range > endless) {
     joint.type = JointType::kContinuous;
     notes.push_back(
         {RobotNote::Kind::kAssumed, element, "a range of " + number(range) + " rad has no end: taken as continuous"});
@@ -59,7 +59,8 @@ bool finite(const BodyJoint& joint) {
 
 }  // namespace
 
-BodyJoint read_joint(const urdf::Joint& joint, const std::string& source, std::vector<RobotNote>& notes) {
+BodyJoint read_joint(const urdf::Joint& joint, const std::string& source, double endless,
+                     std::vector<RobotNote>& notes) {
   BodyJoint result;
   result.name = joint.name;
   result.type = type_of(joint);
@@ -68,7 +69,7 @@ BodyJoint read_joint(const urdf::Joint& joint, const std::string& source, std::v
     refuse(source, joint_element(joint.name), "its <axis> has no direction", "Give a direction, such as xyz=\"0 1 0\"");
   }
   result.axis = axis.normalized();
-  if (joint.limits) read_limits(*joint.limits, source, result, notes);
+  if (joint.limits) read_limits(*joint.limits, source, endless, result, notes);
   if (joint.dynamics) {
     result.damping = std::max(0.0, joint.dynamics->damping);
     result.friction = std::max(0.0, joint.dynamics->friction);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "machine/robot_model.h"
+#include "machine/machine_model.h"
 
 namespace robot_control {
 

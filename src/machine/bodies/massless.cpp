@@ -1,17 +1,17 @@
 #include "machine/bodies/massless.h"
 
 #include "machine/bodies/link_inertia.h"
+#include "machine/bodies/rolling.h"
 #include "machine/description/urdf_document.h"
 #include "machine/description/wording.h"
-#include "machine/wheels/wheel.h"
 
 namespace robot_control {
 namespace {
 
 Eigen::Matrix3d solid_inertia(const RigidBody& body, const RollingMeasure& measure, double mass) {
   if (!measure.objection.empty()) return 0.4 * mass * kBallRadius * kBallRadius * Eigen::Matrix3d::Identity();
-  const double radius = measure.wheel.radius;
-  const double across = mass * (3 * radius * radius + measure.wheel.width * measure.wheel.width) / 12;
+  const double radius = measure.radius;
+  const double across = mass * (3 * radius * radius + measure.width * measure.width) / 12;
   const Eigen::Matrix3d along = body.joint.axis * body.joint.axis.transpose();
   return across * (Eigen::Matrix3d::Identity() - along) + mass * radius * radius / 2 * along;
 }

@@ -14,9 +14,9 @@
 #include "machine/bodies/link_inertia.h"
 #include "machine/bodies/link_shapes.h"
 #include "machine/bodies/massless.h"
+#include "machine/bodies/rolling.h"
 #include "machine/description/urdf_document.h"
 #include "machine/description/wording.h"
-#include "machine/wheels/wheel.h"
 
 namespace robot_control {
 namespace {
@@ -27,10 +27,11 @@ constexpr std::size_t kMaxChain = 3;  // number of followers in a chain
 class Lumper {
  public:
   /// `largest` (m) bounds the radius of gyration of a link.
-  Lumper(const UrdfDocument& document, const RobotDescription& description, const std::set<std::string>& welded,
-         double largest)
+  Lumper(const UrdfDocument& document, const RobotDescription& description, double endless,
+         const std::set<std::string>& welded, double largest)
       : document_(document),
         description_(description),
+        endless_(endless),
         welded_(welded),
         largest_(largest),
         frames_(links_at_zero(kdl_tree(document))) {
@@ -91,7 +92,7 @@ class Lumper {
       if (joint.type == urdf::Joint::FIXED || welded_.contains(name)) {
         add_link(child, body);
       } else {
-        BodyJoint moving = read_joint(joint, document_.source, result_.notes);
+        BodyJoint moving = read_joint(joint, document_.source, endless_, result_.notes);
         moving.driven = document_.driven.contains(name);
         add_body(child, body, moving);
       }
@@ -197,6 +198,7 @@ class Lumper {
 
   const UrdfDocument& document_;
   const RobotDescription& description_;
+  double endless_;
   const std::set<std::string>& welded_;
   double largest_;
   std::map<std::string, Eigen::Isometry3d> frames_;
@@ -237,15 +239,15 @@ double total_mass(const RigidBodies& robot) {
   return mass;
 }
 
-RigidBodies read_rigid_bodies(const RobotDescription& description) {
+RigidBodies read_rigid_bodies(const RobotDescription& description, double endless) {
   const UrdfDocument document = parse_urdf(description);
-  LumpedBodies lumped = Lumper(document, description, {}, std::numeric_limits<double>::infinity()).lump();
+  LumpedBodies lumped = Lumper(document, description, endless, {}, std::numeric_limits<double>::infinity()).lump();
   const std::set<std::string> idle = idle_massless_joints(lumped);
   const double size = robot_size(lumped.robot);
   const auto& links = document.model->links_;
   const auto too_large = [size](const auto& link) { return gyration_radius(*link.second) > size; };
   if (!idle.empty() || std::any_of(links.begin(), links.end(), too_large)) {
-    lumped = Lumper(document, description, idle, size).lump();
+    lumped = Lumper(document, description, endless, idle, size).lump();
   }
   for (const std::string& joint : idle) {
     lumped.robot.notes.push_back({RobotNote::Kind::kAssumed, joint_element(joint),

@@ -15,13 +15,14 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "machine/description/markup/sideways_names.h"
-#include "machine/robot_model.h"
+#include "machine/machine_model.h"
 
 namespace robot_control {
 
@@ -98,8 +99,10 @@ inline constexpr double kMasslessShare = 0.01;
 inline constexpr double kBeyondRobots = 1e9;  ///< kg, m, kg·m²: larger numbers are refused
 
 /// Throws RobotError for a moving body or a base with a stated mass of zero and for numbers beyond kBeyondRobots. It
-/// also throws what parse_urdf, inertia_of, shapes_of and read_joint refuse.
-RigidBodies read_rigid_bodies(const RobotDescription& description);
+/// also throws what parse_urdf, inertia_of, shapes_of and read_joint refuse. A revolute joint that may turn by more
+/// than `endless` rad is taken as continuous.
+RigidBodies read_rigid_bodies(const RobotDescription& description,
+                              double endless = std::numeric_limits<double>::infinity());
 
 /// Returns the mass of all bodies in kg.
 double total_mass(const RigidBodies& robot);

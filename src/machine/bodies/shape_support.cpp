@@ -24,4 +24,17 @@ double support(const Shape& shape, const Eigen::Vector3d& u) {
   return centre + farthest;
 }
 
+Eigen::AlignedBox3d box_of(const RigidBody& body, const Shape& shape) {
+  Eigen::AlignedBox3d box;
+  Eigen::Vector3d low, high;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d u = body.in_root.linear().transpose() * Eigen::Vector3d::Unit(axis);
+    low[axis] = body.in_root.translation()[axis] - support(shape, -u);
+    high[axis] = body.in_root.translation()[axis] + support(shape, u);
+  }
+  box.extend(low);
+  box.extend(high);
+  return box;
+}
+
 }  // namespace robot_control

@@ -9,4 +9,7 @@ namespace robot_control {
 /// points.
 double support(const Shape& shape, const Eigen::Vector3d& u);
 
+/// Returns the box about a shape in the root's axes, at the zero pose.
+Eigen::AlignedBox3d box_of(const RigidBody& body, const Shape& shape);
+
 }  // namespace robot_control

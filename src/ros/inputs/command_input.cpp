@@ -68,7 +68,7 @@ void CommandInput::receive(const ArrivedCommand& arrived, const ArrivalTime& tim
     return;
   }
   value_.contested = zero(arrived.twist) && motion_requested(time.loop_ns) ? 1 : 0;
-  value_.twist = arrived.twist;
+  value_.content = {.twist = arrived.twist};
   value_.age_ns = stamp.age_ns;
   command_ns_ = time.loop_ns;
   ++value_.count;
@@ -76,7 +76,7 @@ void CommandInput::receive(const ArrivedCommand& arrived, const ArrivalTime& tim
 
 bool CommandInput::update(std::int64_t loop_ns) {
   report_senders(loop_ns);
-  const bool over = !requests_.granted() && !zero(value_.twist) && !motion_requested(loop_ns);
+  const bool over = !requests_.granted() && !zero(value_.content.twist) && !motion_requested(loop_ns);
   if (over) end_command(loop_ns);
   const std::uint64_t many = one_sender_ && senders_.count(loop_ns) > 1 ? 1 : 0;
   return std::exchange(value_.many_senders, many) != many || over;
@@ -84,12 +84,12 @@ bool CommandInput::update(std::int64_t loop_ns) {
 
 bool CommandInput::follow(const MotionPermission& permission, std::int64_t loop_ns) {
   if (!requests_.follow(permission, loop_ns)) return false;
-  if (!zero(value_.twist)) end_command(loop_ns);
+  if (!zero(value_.content.twist)) end_command(loop_ns);
   return true;
 }
 
 void CommandInput::end_command(std::int64_t loop_ns) {
-  value_.twist = {};
+  value_.content = {};
   value_.contested = std::abs(loop_ns - command_ns_) < kUnread ? 1 : kNoMessage;
   ++value_.count;
 }

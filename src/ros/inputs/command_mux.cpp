@@ -104,22 +104,22 @@ bool CommandMux::select(std::int64_t loop_ns) {
 }
 
 void CommandMux::take_result(std::int64_t loop_ns, bool message) {
-  value_.twist = {};
+  value_.content = {};
   value_.age_ns = 0;
   value_.many_senders = 0;
   if (winner_) {
     const Source& source = sources_[*winner_];
     const VelocityCommand& command = source.input.value();
-    value_.twist = command.twist;
+    value_.content = command.content;
     value_.age_ns = command.age_ns + std::max<std::int64_t>(0, loop_ns - source.last_ns.value_or(loop_ns));
     value_.many_senders = command.many_senders;
   }
   const bool pending = std::ranges::any_of(
-      sources_, [](const Source& source) { return source.live && !zero(source.input.value().twist); });
+      sources_, [](const Source& source) { return source.live && !zero(source.input.value().content.twist); });
   const bool requested =
       pending || std::ranges::any_of(sources_, [&](Source& source) { return source.input.motion_requested(loop_ns); });
-  value_.contested = zero(value_.twist) && requested ? 1 : 0;
-  if (zero(value_.twist) && !message && !pending) value_.contested = unread(loop_ns) ? 1 : kNoMessage;
+  value_.contested = zero(value_.content.twist) && requested ? 1 : 0;
+  if (zero(value_.content.twist) && !message && !pending) value_.contested = unread(loop_ns) ? 1 : kNoMessage;
   ++value_.count;
   add_refusals();
 }

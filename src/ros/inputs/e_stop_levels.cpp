@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "signals/roles.h"
+
 namespace robot_control {
 namespace {
 
@@ -9,8 +11,8 @@ namespace {
 // false message ends.
 constexpr std::size_t kMaxPublishers = 1000;
 const char* const kFurther = "(further publishers)";
-const char* const kSilent = " (has sent nothing since the monitor was restarted)";
-const char* const kUnknown = "an unknown publisher, from before the monitor was restarted";
+const std::string kSilent = with_programs(" (has sent nothing since {monitor} was restarted)");
+const std::string kUnknown = with_programs("an unknown publisher, from before {monitor} was restarted");
 
 }  // namespace
 

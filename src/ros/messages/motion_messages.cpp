@@ -55,15 +55,14 @@ Twist twist_of(const msg::Twist& message) {
           .angular = {message.angular.x, message.angular.y, message.angular.z}};
 }
 
-msg::JointState joint_states(const SensorFrame& sensors, const StateFrame* state, const RobotModel& robot,
+msg::JointState joint_states(const SensorFrame& sensors, const StateFrame* state, const DriveTrain& robot,
                              ros::Time stamp) {
   msg::JointState message;
   message.header.stamp = stamp;
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     message.name.push_back(robot.joints[i].name);
     message.position.push_back(sensors.joints[i].position);
-    const bool tracked = state != nullptr && i < robot.wheels.size();
-    message.velocity.push_back(tracked ? state->wheel_velocity[i] : sensors.joints[i].velocity);
+    message.velocity.push_back(state != nullptr ? state->joint_velocity[i] : sensors.joints[i].velocity);
     message.effort.push_back(sensors.joints[i].effort);
   }
   return message;
@@ -71,9 +70,9 @@ msg::JointState joint_states(const SensorFrame& sensors, const StateFrame* state
 
 msg::Odometry odometry(const StateFrame& state, const std::string& odom_frame, const std::string& base_frame,
                        ros::Time stamp) {
-  msg::Odometry message = odometry_of(state.pose_odom, state.twist_base, odom_frame, base_frame, stamp);
-  std::ranges::copy(state.pose_covariance, message.pose.covariance.begin());
-  std::ranges::copy(state.twist_covariance, message.twist.covariance.begin());
+  msg::Odometry message = odometry_of(state.base.pose_odom, state.base.twist_base, odom_frame, base_frame, stamp);
+  std::ranges::copy(state.base.pose_covariance, message.pose.covariance.begin());
+  std::ranges::copy(state.base.twist_covariance, message.twist.covariance.begin());
   return message;
 }
 
@@ -109,7 +108,7 @@ msg::TransformStamped transform(const msg::Odometry& odometry) {
 
 msg::Odometry wheel_odometry(const StateFrame& state, const std::string& odom_frame, const std::string& base_frame,
                              ros::Time stamp) {
-  const WheelOdometry& wheels = state.wheels;
+  const WheelOdometry& wheels = state.wheeled.odometry;
   const Pose pose{.position = {wheels.x, wheels.y, 0},
                   .orientation = {0, 0, std::sin(wheels.yaw / 2), std::cos(wheels.yaw / 2)}};
   return odometry_of(pose, {.linear = {wheels.linear, 0, 0}, .angular = {0, 0, wheels.angular}}, odom_frame, base_frame,
@@ -121,7 +120,7 @@ msg::Odometry ground_truth(const TruthFrame& truth, const std::string& odom_fram
   return odometry_of(truth.pose_world, truth.twist_base, odom_frame, base_frame, stamp);
 }
 
-msg::Imu imu(const SensorFrame& sensors, const RobotModel& robot, ros::Time stamp) {
+msg::Imu imu(const SensorFrame& sensors, const MachineModel& robot, ros::Time stamp) {
   msg::Imu message;
   message.header.stamp = stamp;
   message.header.frame_id = robot.imu_link.empty() ? robot.base_link : robot.imu_link;
@@ -135,13 +134,13 @@ msg::Imu imu(const SensorFrame& sensors, const RobotModel& robot, ros::Time stam
   return message;
 }
 
-msg::Imu imu_data(const SensorFrame& sensors, const StateFrame& state, const RobotModel& robot,
+msg::Imu imu_data(const SensorFrame& sensors, const StateFrame& state, const MachineModel& robot,
                   const EstimatorParameters& parameters, double period, ros::Time stamp) {
   msg::Imu message = imu(sensors, robot, stamp);
   const auto rotation = [](const Quaternion& q) { return Eigen::Quaterniond(q[3], q[0], q[1], q[2]); };
-  const Eigen::Quaterniond q = rotation(state.attitude) * rotation(robot.imu_in_base.orientation);
+  const Eigen::Quaterniond q = rotation(state.base.attitude) * rotation(robot.imu_in_base.orientation);
   message.orientation = quaternion_message({q.x(), q.y(), q.z(), q.w()});
-  std::ranges::copy(state.attitude_covariance, message.orientation_covariance.begin());
+  std::ranges::copy(state.base.attitude_covariance, message.orientation_covariance.begin());
   const double gyro = parameters.gyro_noise * parameters.gyro_noise / period;
   const double accelerometer = parameters.accelerometer_noise * parameters.accelerometer_noise / period;
   for (const std::size_t diagonal : {0, 4, 8}) {
@@ -154,11 +153,11 @@ msg::Imu imu_data(const SensorFrame& sensors, const StateFrame& state, const Rob
 bool has_imu_data(const SensorFrame& sensors, const StateFrame& state) {
   constexpr std::uint64_t kMeasured = kValidGyro | kValidAccelerometer;
   constexpr std::uint64_t kNotBelieved = kStateNoGyro | kStateNoAccelerometer;
-  return (sensors.valid & kMeasured) == kMeasured && (state.flags & kNotBelieved) == 0 &&
-         (state.flags & kStateValid) != 0;
+  return (sensors.valid & kMeasured) == kMeasured && (state.base.flags & kNotBelieved) == 0 &&
+         (state.base.flags & kStateValid) != 0;
 }
 
-msg::Float64MultiArray joint_commands(const CommandFrame& command, const RobotModel& robot) {
+msg::Float64MultiArray joint_commands(const CommandFrame& command, const DriveTrain& robot) {
   msg::Float64MultiArray message;
   for (const WheelModel& wheel : robot.wheels) message.data.push_back(command.joints[wheel.joint].velocity);
   msg::MultiArrayDimension dimension;
@@ -168,7 +167,7 @@ msg::Float64MultiArray joint_commands(const CommandFrame& command, const RobotMo
   return message;
 }
 
-msg::JointState joint_targets(const CommandFrame& command, const RobotModel& robot, ros::Time stamp) {
+msg::JointState joint_targets(const CommandFrame& command, const DriveTrain& robot, ros::Time stamp) {
   msg::JointState message;
   message.header.stamp = stamp;
   for (const WheelModel& wheel : robot.wheels) {
@@ -179,7 +178,7 @@ msg::JointState joint_targets(const CommandFrame& command, const RobotModel& rob
 }
 
 msg::DriveState drive_state(const CommandFrame& command, const CommandFrame& plan, std::uint64_t reasons,
-                            const RobotModel& robot, ros::Time stamp) {
+                            const DriveTrain& robot, ros::Time stamp) {
   msg::DriveState message;
   message.header.stamp = stamp;
   for (const BitName& row : kCommandReasonNames) {
@@ -189,7 +188,7 @@ msg::DriveState drive_state(const CommandFrame& command, const CommandFrame& pla
   }
   for (const WheelModel& wheel : robot.wheels) {
     const double wanted = plan.joints[wheel.joint].velocity;
-    const double actual = command.velocity_measured[wheel.joint];
+    const double actual = command.wheeled.velocity[wheel.joint];
     message.name.push_back(robot.joints[wheel.joint].name);
     message.wanted.push_back(wanted);
     message.actual.push_back(actual);

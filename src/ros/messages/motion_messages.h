@@ -8,7 +8,7 @@
 
 #include "configuration/parameters.h"
 #include "estimation/estimator_parameters.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "ros/messages/messages.h"
 #include "signals/command_frame.h"
 #include "signals/sensor_frame.h"
@@ -21,10 +21,9 @@ namespace robot_control {
 Twist twist_of(const msg::Twist& message);
 
 /// Returns all joints in the order of the frames: wheels first, left before right, then casters and other joints. The
-/// wheels' velocities are those that the estimator tracks (StateFrame::wheel_velocity), because those of the encoder
-/// jump by a count per period. Other joints have the reported velocities, and so have wheels if `state` is null because
-/// this run has no state yet.
-msg::JointState joint_states(const SensorFrame& sensors, const StateFrame* state, const RobotModel& robot,
+/// velocities are those of the state (StateFrame::joint_velocity), because those of an encoder jump by a count per
+/// period. If `state` is null because this run has no state yet, they are those of the sensors.
+msg::JointState joint_states(const SensorFrame& sensors, const StateFrame* state, const DriveTrain& robot,
                              ros::Time stamp);
 
 /// Returns the pose in `odom_frame` and the twist in `base_frame`, both with complete covariances (REP 105,
@@ -52,14 +51,14 @@ msg::Odometry ground_truth(const TruthFrame& truth, const std::string& odom_fram
 
 /// Returns the measured rates and accelerations in the axes of the IMU's link (REP 145). A covariance that begins with
 /// −1 means "not measured", one that is all zero "unknown".
-msg::Imu imu(const SensorFrame& sensors, const RobotModel& robot, ros::Time stamp);
+msg::Imu imu(const SensorFrame& sensors, const MachineModel& robot, ros::Time stamp);
 
 /// Returns `imu` with orientation and covariances (REP 145 "imu/data"). The orientation is that of the IMU's axes in
 /// odom, whose z axis points against gravity,
 ///   q = attitude ⊗ imu_in_base,   covariance StateFrame::attitude_covariance, about odom axes;
 /// Rates and accelerations are as measured, with their biases. Their covariance is that of white noise sampled at the
 /// loop's rate, density² / period. `sensors` and `state` are of the same cycle.
-msg::Imu imu_data(const SensorFrame& sensors, const StateFrame& state, const RobotModel& robot,
+msg::Imu imu_data(const SensorFrame& sensors, const StateFrame& state, const MachineModel& robot,
                   const EstimatorParameters& parameters, double period, ros::Time stamp);
 
 /// Returns whether imu_data is complete: gyro and accelerometer were measured in this cycle and are trusted, and the
@@ -70,11 +69,11 @@ bool has_imu_data(const SensorFrame& sensors, const StateFrame& state);
 /// are NaN or unknown.
 msg::BatteryState battery_state(const SensorFrame& sensors, ros::Time stamp);
 
-/// Returns the velocity targets of the wheels [rad/s] in the order of RobotModel::wheels; dim[0].label is "wheel".
-msg::Float64MultiArray joint_commands(const CommandFrame& command, const RobotModel& robot);
+/// Returns the velocity targets of the wheels [rad/s] in the order of DriveTrain::wheels; dim[0].label is "wheel".
+msg::Float64MultiArray joint_commands(const CommandFrame& command, const DriveTrain& robot);
 
 /// Returns the velocity targets of the wheels with the names of their joints.
-msg::JointState joint_targets(const CommandFrame& command, const RobotModel& robot, ros::Time stamp);
+msg::JointState joint_targets(const CommandFrame& command, const DriveTrain& robot, ros::Time stamp);
 
 /// Returns the limited twist.
 msg::TwistStamped velocity_out(const CommandFrame& command, const std::string& base_frame, ros::Time stamp);
@@ -82,6 +81,6 @@ msg::TwistStamped velocity_out(const CommandFrame& command, const std::string& b
 /// `plan` is the command two cycles before `command`; an ideal wheel now has its targets (wheel_loop.h). `reasons` are
 /// CommandReason bits. While the brake acts, the reported target is standstill.
 msg::DriveState drive_state(const CommandFrame& command, const CommandFrame& plan, std::uint64_t reasons,
-                            const RobotModel& robot, ros::Time stamp);
+                            const DriveTrain& robot, ros::Time stamp);
 
 }  // namespace robot_control

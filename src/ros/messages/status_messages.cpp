@@ -51,7 +51,7 @@ std::string warning_sentence(const BitName& row, const std::string& measured) {
 
 }  // namespace
 
-std::string detail(const Permit& permit, std::uint64_t cause, const RobotModel& robot) {
+std::string detail(const Permit& permit, std::uint64_t cause, const MachineModel& robot) {
   const auto* evidence = std::ranges::find(permit.evidence, cause, &CauseEvidence::cause);
   const BitName* row = row_of(kStopCauseNames, cause);
   if (evidence == permit.evidence.end() || row == nullptr) return {};
@@ -65,7 +65,7 @@ std::string detail(const Permit& permit, std::uint64_t cause, const RobotModel& 
   return ascii(text);
 }
 
-msg::SafetyStatus safety_status(const Permit& permit, const RobotModel& robot, const std::vector<std::string>& absent,
+msg::SafetyStatus safety_status(const Permit& permit, const MachineModel& robot, const std::vector<std::string>& absent,
                                 const TimeMap& time, std::int64_t period_ns) {
   msg::SafetyStatus message;
   message.header.stamp = time.at(permit.head.stamp_ns);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "machine/robot_model.h"
+#include "machine/machine_model.h"
 #include "ros/messages/messages.h"
 #include "ros/messages/time_map.h"
 #include "signals/permit.h"
@@ -14,11 +14,11 @@ namespace robot_control {
 
 /// `absent` are the nodes that do not run now, `period_ns` is the loop's period for the field `since`, and `robot`
 /// names the joints.
-msg::SafetyStatus safety_status(const Permit& permit, const RobotModel& robot, const std::vector<std::string>& absent,
+msg::SafetyStatus safety_status(const Permit& permit, const MachineModel& robot, const std::vector<std::string>& absent,
                                 const TimeMap& time, std::int64_t period_ns);
 
 /// Returns the evidence of a cause, "17.3 rad/s, limit 15 rad/s, left_wheel_joint"; "" if nothing was measured.
-std::string detail(const Permit& permit, std::uint64_t cause, const RobotModel& robot);
+std::string detail(const Permit& permit, std::uint64_t cause, const MachineModel& robot);
 
 /// Returns the status before the first permit: the state is INIT, and the monitor waits for these nodes.
 msg::SafetyStatus waiting_status(const std::vector<std::string>& missing);

@@ -10,12 +10,13 @@ namespace robot_control {
 namespace {
 
 /// Returns the master's lists [[topic, [node, …]], …], first that of publishers, then that of subscribers.
-std::optional<XmlRpc::XmlRpcValue> system_state() {
+std::optional<XmlRpc::XmlRpcValue> system_state(Unanswered then) {
   XmlRpc::XmlRpcValue request;
   XmlRpc::XmlRpcValue response;
   XmlRpc::XmlRpcValue state;
   request[0] = ros::this_node::getName();
-  if (!ros::master::execute("getSystemState", request, response, state, false)) return std::nullopt;
+  const bool repeat = then == Unanswered::kRepeat;
+  if (!ros::master::execute("getSystemState", request, response, state, repeat)) return std::nullopt;
   return state;
 }
 
@@ -30,8 +31,8 @@ std::vector<std::string> nodes_of(XmlRpc::XmlRpcValue& list, const std::vector<s
 
 }  // namespace
 
-std::vector<std::string> publishers_of(const std::vector<std::string>& topics) {
-  auto state = system_state();
+std::vector<std::string> publishers_of(const std::vector<std::string>& topics, Unanswered then) {
+  auto state = system_state(then);
   return state ? nodes_of((*state)[0], topics) : std::vector<std::string>();
 }
 
@@ -46,7 +47,7 @@ std::string uri_of(const std::string& node) {
 }
 
 std::optional<std::vector<std::string>> publishers_known_to_reach(const std::string& topic) {
-  auto state = system_state();
+  auto state = system_state(Unanswered::kNone);
   if (!state) return std::nullopt;
   const std::vector<std::string> subscribers = nodes_of((*state)[1], {topic});
   if (std::ranges::find(subscribers, ros::this_node::getName()) == subscribers.end()) return std::nullopt;

@@ -7,8 +7,12 @@
 
 namespace robot_control {
 
-/// Returns the nodes that publish any of these topics (resolved names), or none if the master does not answer.
-std::vector<std::string> publishers_of(const std::vector<std::string>& topics);
+/// It names what follows if the master does not answer.
+enum class Unanswered { kNone, kRepeat };
+
+/// Returns the nodes that publish any of these topics (resolved names). If the master does not answer, returns none, or
+/// asks again until it does (kRepeat).
+std::vector<std::string> publishers_of(const std::vector<std::string>& topics, Unanswered then = Unanswered::kNone);
 
 /// Returns the address of a node's XML-RPC server; "" if the master does not answer or does not know the node.
 std::string uri_of(const std::string& node);

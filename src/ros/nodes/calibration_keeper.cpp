@@ -27,7 +27,7 @@ void CalibrationKeeper::finish(const StateFrame& state) {
 
 void CalibrationKeeper::save(const StateFrame& state) {
   const LearnedCalibration now = learned(state);
-  if (path_.empty() || (state.flags & kStateValid) == 0 || !may_be_kept(now) || !improve(saved_, now)) return;
+  if (path_.empty() || (state.base.flags & kStateValid) == 0 || !may_be_kept(now) || !improve(saved_, now)) return;
   writing_ =
       std::async(std::launch::async, [this, next = saved_] { write_calibration(path_, next, robot_, parameters_); });
 }
@@ -44,7 +44,7 @@ void CalibrationKeeper::wait() {
   }
 }
 
-Parameters with_calibration(const Parameters& parameters, const RobotModel& robot) {
+Parameters with_calibration(const Parameters& parameters, const DriveTrain& robot) {
   if (parameters.calibration_file.empty()) return parameters;
   Parameters result = parameters;
   const auto kept = read_calibration(parameters.calibration_file, robot, parameters.estimator);

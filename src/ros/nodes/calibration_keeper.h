@@ -17,7 +17,7 @@ class CalibrationKeeper {
   static constexpr std::int64_t kPeriod = 30'000'000'000;  ///< ns; a crash loses at most what was learned in this time
 
   /// `parameters` are as the user gave them, without the calibration of the file.
-  CalibrationKeeper(const Parameters& parameters, const RobotModel& robot)
+  CalibrationKeeper(const Parameters& parameters, const DriveTrain& robot)
       : path_(parameters.estimator.self_calibration ? parameters.calibration_file : ""),
         robot_(robot),
         parameters_(parameters.estimator) {}
@@ -36,7 +36,7 @@ class CalibrationKeeper {
   bool busy() const;
 
   std::string path_;
-  RobotModel robot_;
+  DriveTrain robot_;
   EstimatorParameters parameters_;
   LearnedCalibration saved_;  ///< content of the file, or of the write that is running
   std::int64_t next_ns_ = 0;
@@ -45,6 +45,6 @@ class CalibrationKeeper {
 };
 
 /// Returns `parameters` with the calibration of its calibration_file, if there is one. Throws ParameterError.
-Parameters with_calibration(const Parameters& parameters, const RobotModel& robot);
+Parameters with_calibration(const Parameters& parameters, const DriveTrain& robot);
 
 }  // namespace robot_control

@@ -143,11 +143,11 @@ class ControllerNode final : public ProcessNode<ControllerProcess> {
     for (const CommandSource& source : list_.sources) topics.push_back(handle.resolveName(source.topic));
     if (!mux_) topics = {handle.resolveName("cmd_vel"), handle.resolveName("cmd_vel_stamped")};
     EarlierController earlier;
-    if (process().output().newest(command_) == Lookup::kFrame) {
-      earlier.run = command_.head.run;
-      earlier.requested = command_.requests_received != 0 && command_.zero_requested == 0;
-    }
-    for (const std::string& node : publishers_of(topics)) earlier.present.push_back({node, nullptr, uri_of(node)});
+    const Lookup found = process().output().last_whole(command_);
+    if (found == Lookup::kFrame) earlier.run = command_.head.run;
+    earlier.requested = found == Lookup::kFrame ? requests_motion(command_) : found == Lookup::kCorrupt;
+    for (const std::string& node : publishers_of(topics, Unanswered::kRepeat))
+      earlier.present.push_back({node, nullptr, uri_of(node)});
     return earlier;
   }
 

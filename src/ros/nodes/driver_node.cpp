@@ -4,6 +4,7 @@
 
 #include "files/ascii.h"
 #include "loop/processes/driver_process.h"
+#include "loop/wheeled_gate.h"
 #include "ros/messages/motion_messages.h"
 #include "ros/messages/simulation_messages.h"
 #include "ros/nodes/process_node.h"
@@ -24,7 +25,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
     auto driver = make(setup);
     driver_ = driver.get();
     description_ = std::make_unique<PublishedDescription>(robot(), parameters().urdf);
-    process().open_driver(std::move(driver));
+    process().open_driver(std::move(driver), gate_parameters(parameters(), robot()));
   }
 
   void connect(ros::NodeHandle& handle) override {

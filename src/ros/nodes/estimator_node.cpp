@@ -62,7 +62,7 @@ class EstimatorNode final : public ProcessNode<EstimatorProcess> {
       battery_.publish(battery_state(sensors_, time().at(sensors_.head.stamp_ns)));
     }
     if (!estimated) return;
-    slip_lately_ |= state_.slip;
+    slip_lately_ |= state_.wheeled.slip;
     if (odom_pace_.due(state_.head.run, state_.head.stamp_ns)) publish_odometry();
     if (imu_pace_.due(state_.head.run, state_.head.stamp_ns)) publish_imu();
     keeper_.write_if_due(state_, monotonic_ns());

@@ -33,7 +33,7 @@ class ProcessNode : public Node {
  protected:
   const Parameters& parameters() const { return setup_.parameters; }
   const ReportParameters& report() const { return setup_.parameters.report; }
-  const RobotModel& robot() const { return setup_.robot; }
+  const DriveTrain& robot() const { return setup_.robot; }
   Work& process() { return process_; }
   TimeMap& time() { return time_; }
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t kNoWish = kReasonNoCommand | kReasonTimedOut | kReasonRefused | kReasonManySenders;
 constexpr std::uint64_t kNoEffect = kReasonNoPermit | kReasonPermitBrake | kReasonPermitRamp | kReasonBadSensors;
-constexpr std::uint64_t kHindrances = kNoEffect | kReasonPermitSlow;
+constexpr std::uint64_t kHindrances = kNoEffect | kReasonPermitSlow | kReasonPartIgnored;
 
 template <class... Values>
 std::string format(const char* pattern, Values... values) {
@@ -29,12 +29,12 @@ std::string requested_text_of(const PlanarTwist& requested) {
 }
 
 PlanarTwist requested_twist(const CommandFrame& command) {
-  return {command.twist_requested.linear[0], command.twist_requested.angular[2]};
+  return {command.requested.twist.linear[0], command.requested.twist.angular[2]};
 }
 
 }  // namespace
 
-CommandReport::CommandReport(const RobotModel& robot, const DriveControllerParameters& parameters)
+CommandReport::CommandReport(const DriveTrain& robot, const DriveControllerParameters& parameters)
     : kinematics_(robot), limits_(speed_limits(parameters)), timeout_(parameters.cmd_vel_timeout) {}
 
 void CommandReport::limit(const DriveControllerParameters& parameters) {
@@ -55,9 +55,9 @@ CommandReport::Report CommandReport::made_of(const CommandFrame& command) const 
   const double scale = kinematics_.wheel_speed_scale(requested);
   const PlanarTwist twist = within_speed({scale * requested.linear, scale * requested.angular}, limits_);
   return {.rims = kinematics_.rim_speeds(twist),
-          .zero = requested.linear == 0 && requested.angular == 0,
+          .zero = requested.linear == 0 && requested.angular == 0 && command.ignored == 0,
           .limited = twist.linear != requested.linear || twist.angular != requested.angular,
-          .hindrance = command.reasons & kHindrances};
+          .hindrance = reasons_of(command) & kHindrances};
 }
 
 bool CommandReport::same(const Report& one, const Report& other) {
@@ -73,6 +73,7 @@ std::string CommandReport::text(const Report& report, const CommandFrame& comman
     const std::uint64_t why = report.hindrance & kNoEffect;
     return requested_text + " has no effect: " + sentences_of(kCommandReasonNames, why & (~why + 1));
   }
+  if (command.ignored != 0) requested_text += ", " + names_of(kRequestPartNames, command.ignored);
   if (report.hindrance != 0) return requested_text + ", but " + sentences_of(kCommandReasonNames, report.hindrance);
   if (report.limited) {
     const double scale = kinematics_.wheel_speed_scale(requested);

@@ -19,7 +19,7 @@
 #include "control/drive_controller.h"
 #include "control/kinematics.h"
 #include "control/limits/speed_limiter.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "ros/reports/report_line.h"
 #include "signals/command_frame.h"
 
@@ -31,7 +31,7 @@ class CommandReport {
   static constexpr std::int64_t kSettle = 100'000'000;  ///< ns
   static constexpr double kSpeedStep = 0.01;            ///< m/s
 
-  CommandReport(const RobotModel& robot, const DriveControllerParameters& parameters);
+  CommandReport(const DriveTrain& robot, const DriveControllerParameters& parameters);
 
   /// Applies other limits and another timeout from now on.
   void limit(const DriveControllerParameters& parameters);

@@ -1,5 +1,6 @@
 #include "ros/reports/diagnostics.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <numbers>
@@ -7,7 +8,7 @@
 #include "files/ascii.h"
 #include "ros/reports/name_list.h"
 #include "signals/names.h"
-#include "signals/slip_detection.h"
+#include "signals/wheeled/slip_detection.h"
 
 namespace robot_control {
 namespace {
@@ -61,6 +62,17 @@ void report_driver(DiagnosticReport& report, const SensorFrame& sensors, double 
   if (sensors.driver_state == DriverState::kFault) report.error(sentences_of(kDriverFaultNames, sensors.faults));
   if (sensors.driver_state == DriverState::kPaused) report.ok("paused");
   if (sensors.injected != InjectedFaults{}) report.warn("injected faults: " + names_of(sensors.injected));
+  for (std::size_t i = 0; i < std::min<std::size_t>(sensors.link_count, kMaxLinks); ++i) {
+    const LinkStatus& link = sensors.links[i];
+    const std::string name = "link_" + std::to_string(i);
+    const std::string state(name_of(link.state));
+    if (link.state != LinkState::kUp) report.warn(name + " is " + state);
+    report.value(name, state);
+    report.value(name + "_sent", link.sent);
+    report.value(name + "_lost", link.lost);
+    report.value(name + "_late", link.late);
+    report.value(name + "_errors", link.errors);
+  }
   report.value("driver_state", std::string(name_of(sensors.driver_state)));
   report.value("faults", names_of(kDriverFaultNames, sensors.faults));
   report.value("cycle", sensors.head.cycle);
@@ -80,53 +92,54 @@ void report_driver(DiagnosticReport& report, const SensorFrame& sensors, double 
 
 void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64_t slip_lately) {
   constexpr std::uint64_t kLost = kStateNoGyro | kStateNoAccelerometer | kStateNoLeftEncoder | kStateNoRightEncoder;
-  if ((state.flags & kStateValid) == 0) report.warn("pose and twist are not valid");
-  if ((state.flags & kLost) != 0) report.warn(sentences_of(kStateFlagNames, state.flags & kLost));
-  if ((slip_lately | state.slip) != 0) {
-    report.warn("slip: " + sentences_of(kSlipReasonNames, slip_lately | state.slip));
-  } else if ((state.flags & kStateSlip) != 0) {
+  if ((state.base.flags & kStateValid) == 0) report.warn("pose and twist are not valid");
+  if ((state.base.flags & kLost) != 0) report.warn(sentences_of(kStateFlagNames, state.base.flags & kLost));
+  if ((slip_lately | state.wheeled.slip) != 0) {
+    report.warn("slip: " + sentences_of(kSlipReasonNames, slip_lately | state.wheeled.slip));
+  } else if ((state.base.flags & kStateSlip) != 0) {
     report.warn("slip: wheels and inertial sensors disagree");
   }
-  if ((state.flags & kStateDegraded) != 0) {
-    report.warn("odometry is degraded: " + sentences_of(kDegradedReasonNames, state.degraded));
+  if ((state.base.flags & kStateDegraded) != 0) {
+    report.warn("odometry is degraded: " + sentences_of(kDegradedReasonNames, state.base.degraded));
   }
   report.value("cycle", state.head.cycle);
-  report.value("flags", names_of(kStateFlagNames, state.flags));
-  report.value("degraded", names_of(kDegradedReasonNames, state.degraded));
-  report.value("residual_level", state.residual_level);
-  report.value("slip_detection", slip_detection(state.residual_level));
-  report.value("distance_m", state.distance);
+  report.value("flags", names_of(kStateFlagNames, state.base.flags));
+  report.value("degraded", names_of(kDegradedReasonNames, state.base.degraded));
+  report.value("residual_level", state.wheeled.residual_level);
+  report.value("slip_detection", slip_detection(state.wheeled.residual_level));
+  report.value("distance_m", state.base.distance);
   report.value("skipped", state.skipped);
-  report.value("slip", names_of(kSlipReasonNames, state.slip));
+  report.value("slip", names_of(kSlipReasonNames, state.wheeled.slip));
   report.value("slip_lately", names_of(kSlipReasonNames, slip_lately));
-  report.reasons("slip", kSlipReasonNames, slip_lately | state.slip);
-  report.reasons("estimate", kStateFlagNames, state.flags & kLost);
-  report.reasons("degraded", kDegradedReasonNames, state.degraded);
+  report.reasons("slip", kSlipReasonNames, slip_lately | state.wheeled.slip);
+  report.reasons("estimate", kStateFlagNames, state.base.flags & kLost);
+  report.reasons("degraded", kDegradedReasonNames, state.base.degraded);
   for (std::size_t i = 0; i < kStateSensorNames.size(); ++i) {
     const std::string sensor(kStateSensorNames[i]);
-    report.value("confidence_" + sensor, state.confidence[i]);
-    report.value("nis_" + sensor, state.nis[i]);
-    report.value("rejected_" + sensor, state.rejected[i]);
+    report.value("confidence_" + sensor, state.wheeled.confidence[i]);
+    report.value("nis_" + sensor, state.wheeled.nis[i]);
+    report.value("rejected_" + sensor, state.wheeled.rejected[i]);
   }
-  report.value("radius_ratio", state.calibration.radius_ratio);
-  report.value("radius_ratio_deviation", state.calibration.radius_ratio_deviation);
-  report.value("wheel_base_factor", state.calibration.wheel_base_factor);
-  report.value("wheel_base_deviation", state.calibration.wheel_base_deviation);
+  report.value("radius_ratio", state.wheeled.calibration.radius_ratio);
+  report.value("radius_ratio_deviation", state.wheeled.calibration.radius_ratio_deviation);
+  report.value("wheel_base_factor", state.wheeled.calibration.wheel_base_factor);
+  report.value("wheel_base_deviation", state.wheeled.calibration.wheel_base_deviation);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string name = std::string("gyro_bias_") + "xyz"[axis];
-    report.value(name + "_deg_s", state.gyro_bias[axis] * kDegrees);
-    report.value(name + "_deviation_deg_s", state.gyro_bias_deviation[axis] * kDegrees);
+    report.value(name + "_deg_s", state.base.gyro_bias[axis] * kDegrees);
+    report.value(name + "_deviation_deg_s", state.base.gyro_bias_deviation[axis] * kDegrees);
   }
 }
 
 void report_command(DiagnosticReport& report, const CommandFrame& command, std::uint64_t lately,
                     const std::vector<std::string>& senders, const std::vector<std::string>& sources,
                     const std::vector<std::string>& revoked) {
-  constexpr std::uint64_t kRefusals = kReasonRefused | kReasonStale | kReasonManySenders | kReasonRevoked;
+  constexpr std::uint64_t kRefusals =
+      kReasonRefused | kReasonStale | kReasonManySenders | kReasonRevoked | kReasonPartIgnored;
   if ((lately & kRefusals) != 0) report.warn(sentences_of(kCommandReasonNames, lately & kRefusals));
   if (senders.size() > 1 && sources.empty()) report.warn("commands come from more than one node: " + joined(senders));
   report.value("cycle", command.head.cycle);
-  report.value("reasons", names_of(kCommandReasonNames, command.reasons));
+  report.value("reasons", names_of(kCommandReasonNames, reasons_of(command)));
   report.value("reasons_lately", names_of(kCommandReasonNames, lately));
   report.value("senders", joined(senders));
   if (!sources.empty()) report.value("sources", joined(sources));
@@ -136,10 +149,12 @@ void report_command(DiagnosticReport& report, const CommandFrame& command, std::
   report.value("commands_stale", command.requests_stale);
   report.value("commands_of_too_many_senders", command.requests_crowded);
   report.value("commands_of_revoked_senders", command.requests_revoked);
+  report.value("commands_partly_ignored", command.requests_partial);
+  report.value("ignored", names_of(kRequestPartNames, command.ignored));
   report.value("timeouts", command.timeouts);
-  report.value("requested_m_s", command.twist_requested.linear[0]);
-  report.value("requested_rad_s", command.twist_requested.angular[2]);
-  report.reasons("command", kCommandReasonNames, command.reasons);
+  report.value("requested_m_s", command.requested.twist.linear[0]);
+  report.value("requested_rad_s", command.requested.twist.angular[2]);
+  report.reasons("command", kCommandReasonNames, reasons_of(command));
 }
 
 void report_permit(DiagnosticReport& report, const Permit& permit) {

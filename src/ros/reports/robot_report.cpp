@@ -7,7 +7,7 @@
 namespace robot_control {
 namespace {
 
-std::string names_of_side(const RobotModel& robot, Side side) {
+std::string names_of_side(const DriveTrain& robot, Side side) {
   std::string names;
   for (const WheelModel& wheel : robot.wheels) {
     if (wheel.side == side) names.append(names.empty() ? "" : ", ").append(robot.joints[wheel.joint].name);
@@ -17,7 +17,7 @@ std::string names_of_side(const RobotModel& robot, Side side) {
 
 }  // namespace
 
-std::string summary(const RobotModel& robot) {
+std::string summary(const DriveTrain& robot) {
   std::ostringstream text;
   text.precision(4);
   text << "robot '" << robot.name << "' of " << robot.source << ": left wheels " << names_of_side(robot, Side::kLeft)

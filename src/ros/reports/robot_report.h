@@ -3,13 +3,13 @@
 
 #include <string>
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
 /// Returns "robot 'jackal' of jackal.urdf: left wheels a, b, right wheels c, d, radius 0.098 m, wheel base 0.376 m
 /// (effective 0.56 m), 18.43 kg".
-std::string summary(const RobotModel& robot);
+std::string summary(const DriveTrain& robot);
 
 /// Returns "assumed: <link name="base">: text".
 std::string sentence(const RobotNote& note);

@@ -41,7 +41,7 @@ std::string unread_description(const RobotDescription& chosen, const std::string
          " goes before it, perhaps left over from an earlier launch: then `rosparam delete " + asked_for + "`";
 }
 
-PublishedDescription::PublishedDescription(const RobotModel& robot, const std::string& urdf) {
+PublishedDescription::PublishedDescription(const MachineModel& robot, const std::string& urdf) {
   ros::param::get(kDescription, description_before_);
   changed_description_ = description_before_ != robot.urdf;
   if (changed_description_) ros::param::set(kDescription, robot.urdf);

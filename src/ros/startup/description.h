@@ -14,7 +14,7 @@
 #include <string>
 
 #include "configuration/parameters.h"
-#include "machine/robot_model.h"
+#include "machine/machine_model.h"
 
 namespace robot_control {
 
@@ -37,7 +37,7 @@ void forget_argument();
 class PublishedDescription {
  public:
   /// `urdf` is the path of the file from which the robot was read, or empty.
-  PublishedDescription(const RobotModel& robot, const std::string& urdf);
+  PublishedDescription(const MachineModel& robot, const std::string& urdf);
   ~PublishedDescription();
   PublishedDescription(const PublishedDescription&) = delete;
   PublishedDescription& operator=(const PublishedDescription&) = delete;

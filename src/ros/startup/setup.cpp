@@ -116,7 +116,8 @@ void fill_setup(const std::string& node, Setup& setup) {
   }
   add(problems, clock_problem(setup.parameters.loop.clock, use_sim_time));
   try {
-    setup.robot = read_robot(description(setup.parameters, overlays, setup.unread_description), setup.parameters.robot);
+    setup.robot =
+        read_drive_train(description(setup.parameters, overlays, setup.unread_description), setup.parameters.robot);
     std::string& base_frame = setup.parameters.report.base_frame;
     if (base_frame.empty()) base_frame = setup.robot.base_link;
   } catch (const RobotError& error) {

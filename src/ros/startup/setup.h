@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "configuration/parameters.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "signals/roles.h"
 
 namespace robot_control {
@@ -22,7 +22,7 @@ class SetupError : public std::runtime_error {
 
 struct Setup {
   Parameters parameters;
-  RobotModel robot;
+  DriveTrain robot;
   std::string bus;
   std::vector<std::string> overrides;  ///< "/robot/rate = 500 overrides robot.rate of config/robot_params.yaml"
   std::vector<std::string> unexpected_overrides;  ///< those of `overrides` that the launch file does not cause itself

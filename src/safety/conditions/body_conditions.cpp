@@ -12,24 +12,17 @@ namespace {
 
 using Vector = Eigen::Map<const Eigen::Vector3d>;
 
-Eigen::Vector3d imu_from_axles(const RobotModel& robot) {
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const WheelModel& wheel : robot.wheels) middle += Vector(wheel.centre_base.data());
-  if (!robot.wheels.empty()) middle /= static_cast<double>(robot.wheels.size());
-  return Vector(robot.imu_in_base.position.data()) - middle;
-}
-
 }  // namespace
 
-BodyConditions::BodyConditions(const SafetyParameters& parameters, const RobotModel& robot, double period)
+BodyConditions::BodyConditions(const SafetyParameters& parameters, const MachineModel& machine, const Vector3& point,
+                               double period)
     : period_(period),
-      weight_(robot.mass * kGravity),
+      weight_(machine.mass * kGravity),
       persistence_(parameters.imu_stuck.persistence),
       tip_tilt_(parameters.tilt.limit.value_or(0) / 2),
-      contacts_(std::min(robot.wheels.size() + robot.casters.size(), kMaxContacts)),
-      to_base_(rotation_of(robot.imu_in_base.orientation)),
-      imu_(imu_from_axles(robot)),
-      wheel_count_(std::min(robot.wheels.size(), kMaxWheels)),
+      contacts_(std::min(machine.contacts.size(), kMaxContacts)),
+      to_base_(rotation_of(machine.imu_in_base.orientation)),
+      imu_(Vector(machine.imu_in_base.position.data()) - Vector(point.data())),
       tilt_(kCauseTilt, parameters.tilt, period),
       tip_over_(kCauseTipOver, parameters.tip_over, period),
       free_fall_(kCauseFreeFall, parameters.free_fall, period),
@@ -37,12 +30,7 @@ BodyConditions::BodyConditions(const SafetyParameters& parameters, const RobotMo
       impact_(kCauseImpact, parameters.impact, period),
       gyro_{.watch{kCauseImuStuck, parameters.imu_stuck, period}},
       accelerometer_{.watch{kCauseImuStuck, parameters.imu_stuck, period}},
-      window_(std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(kImpactWindow / period)), 1, kMaxSamples)) {
-  for (std::size_t i = 0; i < wheel_count_; ++i) {
-    const WheelModel& wheel = robot.wheels[i];
-    wheels_[i] = {.joint = wheel.joint, .rim_per_joint = wheel.sign * wheel.radius};
-  }
-}
+      window_(std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(kImpactWindow / period)), 1, kMaxSamples)) {}
 
 void BodyConditions::enter_run() noexcept {
   for (ConditionWatch* watch : {&tilt_, &tip_over_, &free_fall_, &lift_, &impact_}) watch->reset();
@@ -65,10 +53,10 @@ bool BodyConditions::sample(const SensorFrame& sensors, SensorValidity validity,
   return true;
 }
 
-void BodyConditions::repeat(Repetition& device, bool good, const Vector3& axes, std::uint64_t elapsed, bool wheels_turn,
+void BodyConditions::repeat(Repetition& device, bool good, const Vector3& axes, std::uint64_t elapsed, bool moving,
                             ActiveCauses& out) const noexcept {
   const auto bits = std::bit_cast<std::array<std::uint64_t, 3>>(axes);
-  const bool same = good && device.seen && device.bits == bits && wheels_turn;
+  const bool same = good && device.seen && device.bits == bits && moving;
   device.cycles = same ? device.cycles + elapsed : 0;
   device.bits = bits;
   device.seen = good;
@@ -77,20 +65,16 @@ void BodyConditions::repeat(Repetition& device, bool good, const Vector3& axes, 
   out.add(device.watch);
 }
 
-double BodyConditions::forward_speed(const SensorFrame& sensors) const noexcept {
-  if ((sensors.valid & kValidJoints) == 0 || wheel_count_ == 0) return 0;
-  double sum = 0;
-  for (std::size_t i = 0; i < wheel_count_; ++i) {
-    sum += wheels_[i].rim_per_joint * sensors.joints[wheels_[i].joint].velocity;
-  }
-  return std::isfinite(sum) ? sum / static_cast<double>(wheel_count_) : 0;
-}
-
 void BodyConditions::weigh(const SensorFrame& sensors) noexcept {
   carried_ = 1;
-  if ((sensors.valid & kValidContacts) == 0) return;
+  const std::size_t sensed = std::min<std::size_t>(contacts_, sensors.contact_count);
+  if (sensed == 0) return;
   double sum = 0;
-  for (std::size_t i = 0; i < contacts_; ++i) sum += attitude_.up().dot(Vector(sensors.contact_forces[i].data()));
+  for (std::size_t i = 0; i < sensed; ++i) {
+    const ContactSample& contact = sensors.contacts[i];
+    if (contact.valid == 0) return;
+    sum += attitude_.up().dot(Vector(contact.force.data()));
+  }
   if (std::isfinite(sum)) carried_ = sum / weight_;
 }
 
@@ -104,13 +88,13 @@ void BodyConditions::shake(bool felt) noexcept {
   shock_ = sum.norm() / static_cast<double>(window_);
 }
 
-void BodyConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, bool wheels_turn,
+void BodyConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, double forward_speed, bool moving,
                           ActiveCauses& out) noexcept {
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();
   const bool turned = sample(sensors, kValidGyro, sensors.imu.angular_velocity, rate);
   const bool felt = sample(sensors, kValidAccelerometer, sensors.imu.linear_acceleration, *force_);
 
-  const Eigen::Vector3d velocity = forward_speed(sensors) * Eigen::Vector3d::UnitX() + rate.cross(*imu_);
+  const Eigen::Vector3d velocity = forward_speed * Eigen::Vector3d::UnitX() + rate.cross(*imu_);
   const Eigen::Vector3d gravity = *force_ - rate.cross(velocity);
   attitude_.step(turned ? &rate : nullptr, felt ? &gravity : nullptr, static_cast<double>(elapsed) * period_);
   const double tilt = attitude_.tilt();
@@ -127,8 +111,8 @@ void BodyConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, boo
   update(free_fall_, felt && force() < free_fall_.limit(), force());
   update(lift_, carried_ < lift_.limit(), carried_);
   update(impact_, shock_ > impact_.limit(), shock_);
-  repeat(gyro_, turned, sensors.imu.angular_velocity, elapsed, wheels_turn, out);
-  repeat(accelerometer_, felt, sensors.imu.linear_acceleration, elapsed, wheels_turn, out);
+  repeat(gyro_, turned, sensors.imu.angular_velocity, elapsed, moving, out);
+  repeat(accelerometer_, felt, sensors.imu.linear_acceleration, elapsed, moving, out);
 }
 
 }  // namespace robot_control

@@ -7,8 +7,8 @@
 ///   impact     component of a perpendicular to u, mean over kImpactWindow, > limit; that is a speed change of
 ///              limit · kImpactWindow. The mean, because stiff bodies stop within milliseconds; the perpendicular
 ///              component, because bumps and landings accelerate upwards
-///   lift       Σ F·u < limit · m g, if the robot has contact sensors; m = RobotModel::mass
-///   IMU stuck  all axes of gyro or of accelerometer are bit for bit equal to the last sample while the wheels turn.
+///   lift       Σ F·u < limit · m g, if the robot has contact sensors; m = MachineModel::mass
+///   IMU stuck  all axes of gyro or of accelerometer are bit for bit equal to the last sample while the machine moves.
 ///              Noise changes the last bits of every new sample; an IMU that is slower than the loop repeats a sample
 ///              for less than any allowed persistence. At standstill even correct sensors may repeat a value
 ///
@@ -16,9 +16,9 @@
 /// point up at the zero pose is measured as tilted.
 ///
 /// In a curve the accelerometer measures the centripetal acceleration for as long as the curve lasts; attitude.h is
-/// given its expected value c = ω × (v x̂ + ω × r), v the mean rim speed of the wheels, r the IMU's position relative
-/// to the middle of the axles. Remaining tilt errors: Δv ω/g while wheels slip by Δv; Δω r/(g T) at the beginning of a
-/// turn.
+/// given its expected value c = ω × (v x̂ + ω × r), v the forward speed of a point of the base, as far as the caller
+/// measures it, and r the IMU's position relative to that point. Remaining tilt errors: Δv ω/g for an error Δv of the
+/// speed; Δω r/(g T) at the beginning of a turn.
 ///
 /// The default limits are 1.5 times what normal driving reaches; the measured values stand in
 /// docs/evidence/derivations.md.
@@ -29,7 +29,8 @@
 #include <array>
 #include <cstdint>
 
-#include "machine/robot_model.h"
+#include "machine/machine_model.h"
+#include "machine/stored.h"
 #include "safety/conditions/condition_watch.h"
 #include "safety/latch/active_causes.h"
 #include "safety/measurements/attitude.h"
@@ -42,43 +43,42 @@ class BodyConditions {
  public:
   static constexpr double kImpactWindow = 0.01;  ///< s
 
-  /// `period` s.
-  BodyConditions(const SafetyParameters& parameters, const RobotModel& robot, double period);
+  /// `point` is the one to which the forward speed belongs, m, base axes. `period` s.
+  BodyConditions(const SafetyParameters& parameters, const MachineModel& machine, const Vector3& point, double period);
 
   /// A new run: all state restarts.
   void enter_run() noexcept;
 
-  /// Once per cycle; `elapsed` cycles since the last one, ≥ 1. Adds the active causes to `out`.
-  void step(const SensorFrame& sensors, std::uint64_t elapsed, bool wheels_turn, ActiveCauses& out) noexcept;
+  /// Once per cycle; `elapsed` cycles since the last one, ≥ 1. `forward_speed` in m/s is 0 where it is not known. Adds
+  /// the active causes to `out`.
+  void step(const SensorFrame& sensors, std::uint64_t elapsed, double forward_speed, bool moving,
+            ActiveCauses& out) noexcept;
 
   // Intermediates of the last step.
   const Attitude& attitude() const noexcept { return attitude_; }
-  double shock() const noexcept { return shock_; }      ///< m/s², the mean that is compared with the limit of impact
-  double carried() const noexcept { return carried_; }  ///< part of the weight on the wheels; 1 without contact sensors
+  double shock() const noexcept { return shock_; }  ///< m/s², the mean that is compared with the limit of impact
+  double carried() const noexcept {
+    return carried_;
+  }  ///< part of the weight on the contacts; 1 without contact sensors
   double force() const noexcept { return (*force_).norm(); }  ///< m/s², |a|, of the last good sample
 
  private:
   static constexpr std::size_t kMaxSamples = 20;  ///< kImpactWindow at 2 kHz
 
-  struct Wheel {
-    std::size_t joint = 0;
-    double rim_per_joint = 0;  ///< m/s per rad/s, forwards
-  };
   /// One device's samples, compared bit for bit.
   struct Repetition {
     ConditionWatch watch;
     std::array<std::uint64_t, 3> bits{};
     bool seen = false;
-    std::uint64_t cycles = 0;  ///< for which the sample stayed the same while the wheels turned
+    std::uint64_t cycles = 0;  ///< for which the sample stayed the same while the machine moved
   };
 
   bool sample(const SensorFrame& sensors, SensorValidity validity, const Vector3& axes,
               Eigen::Ref<Eigen::Vector3d> base) const noexcept;
-  void repeat(Repetition& device, bool good, const Vector3& axes, std::uint64_t elapsed, bool wheels_turn,
+  void repeat(Repetition& device, bool good, const Vector3& axes, std::uint64_t elapsed, bool moving,
               ActiveCauses& out) const noexcept;
   void weigh(const SensorFrame& sensors) noexcept;
   void shake(bool felt) noexcept;
-  double forward_speed(const SensorFrame& sensors) const noexcept;
 
   double period_;
   double weight_;       ///< N
@@ -86,9 +86,7 @@ class BodyConditions {
   double tip_tilt_;     ///< rad
   std::size_t contacts_;
   Stored<Eigen::Matrix3d> to_base_;  ///< from IMU axes
-  Stored<Eigen::Vector3d> imu_;      ///< m, from the middle of the axles, base axes
-  std::size_t wheel_count_ = 0;
-  std::array<Wheel, kMaxWheels> wheels_{};
+  Stored<Eigen::Vector3d> imu_;      ///< m, from the point, base axes
 
   ConditionWatch tilt_, tip_over_, free_fall_, lift_, impact_;
   Attitude attitude_;

@@ -20,7 +20,7 @@ struct ConditionMeasurement {
   bool beyond = false;
   double value = 0;  ///< in the unit of the cause
   double limit = 0;
-  std::uint64_t joint = kMaxJoints;  ///< index into RobotModel::joints; kMaxJoints: no single joint
+  std::uint64_t joint = kMaxJoints;  ///< index into MachineModel::joints; kMaxJoints: no single joint
 };
 
 inline ConditionMeasurement beyond(std::size_t joint, double value, double limit) noexcept {

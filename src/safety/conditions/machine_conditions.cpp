@@ -34,7 +34,10 @@ std::uint64_t MachineConditions::overruns_of_the_last_second(std::uint64_t overr
 }
 
 void MachineConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept {
-  if (sensors.driver_state == DriverState::kFault || sensors.faults != 0) out.add(kCauseDriverFault, Reaction::kBrake);
+  const std::size_t faulty = first_faulty_joint(sensors);
+  if (sensors.driver_state == DriverState::kFault || sensors.faults != 0 || faulty < kMaxJoints) {
+    out.add(kCauseDriverFault, Reaction::kBrake, {.joint = faulty});
+  }
 
   const auto overruns = static_cast<double>(overruns_of_the_last_second(sensors.overruns, elapsed));
   const double limit = overruns_.limit();

@@ -1,7 +1,8 @@
 #pragma once
 /// Conditions that the driver reports about the machine.
 ///
-///   driver fault   driver_state kFault or faults ≠ 0; leads to FAULT
+///   driver fault   driver_state kFault, faults ≠ 0, or the fault word of a drive ≠ 0, whose joint is named; leads to
+///                  FAULT
 ///   overruns       growth of SensorFrame::overruns over the last second, in steps of a tenth; overruns before the
 ///                  first step do not count
 ///   battery        voltage below its limit, if a battery is reported

@@ -1,36 +1,58 @@
 #include "safety/conditions/sensor_presence.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace robot_control {
+namespace {
 
-SensorPresence::Silence::Silence(StopCause cause, const Condition& condition, double period) noexcept
-    : watch_(cause, condition, period), period_(period), persistence_(condition.persistence) {}
-
-void SensorPresence::Silence::reset() noexcept {
-  watch_.reset();
-  cycles_ = 0;
+Condition at_once(Condition condition) noexcept {
+  condition.persistence = 0;
+  return condition;
 }
 
-void SensorPresence::Silence::step(bool silent, std::uint64_t elapsed, ActiveCauses& out) noexcept {
-  cycles_ = silent ? cycles_ + elapsed : 0;
-  out.update(watch_, {.beyond = silent, .value = static_cast<double>(cycles_) * period_, .limit = persistence_},
-             elapsed);
+}  // namespace
+
+SensorPresence::Silence::Silence(StopCause cause, const Condition& condition, double period) noexcept
+    : watch_(cause, at_once(condition), period),
+      period_(period),
+      persistence_(condition.persistence),
+      limit_(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::ceil(persistence_ / period - 1e-9)))) {}
+
+void SensorPresence::Silence::step(std::uint64_t cycles, std::uint64_t joint, ActiveCauses& out) noexcept {
+  const bool beyond = cycles >= limit_;
+  const double silent = static_cast<double>(cycles) * period_;
+  out.update(watch_, {.beyond = beyond, .value = silent, .limit = persistence_, .joint = joint}, 1);
 }
 
 SensorPresence::SensorPresence(const SafetyParameters& parameters, std::size_t wheels, double period) noexcept
-    : wheels_(wheels),
+    : wheels_(std::min(wheels, kMaxWheels)),
+      period_ns_(static_cast<std::uint64_t>(std::max(1LL, std::llround(period * 1e9)))),
       encoders_(kCauseEncodersLost, parameters.encoders_lost, period),
       imu_(kCauseImuLost, parameters.imu_lost, period) {}
 
 void SensorPresence::enter_run() noexcept {
-  encoders_.reset();
-  imu_.reset();
-  imu_seen_ = 0;
+  wheel_silent_ = {};
+  imu_silent_ = imu_seen_ = 0;
+}
+
+void SensorPresence::step_encoders(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept {
+  std::size_t worst = 0;
+  for (std::size_t i = 0; i < wheels_; ++i) {
+    const JointSample& sample = sensors.joints[i];
+    const bool sampled = i < sensors.joint_count && has(sample, kValidPosition);
+    const auto age = static_cast<std::uint64_t>(std::max<std::int64_t>(0, sample.age_ns));
+    wheel_silent_[i] = sampled ? age / period_ns_ : wheel_silent_[i] + elapsed;
+    if (wheel_silent_[i] > wheel_silent_[worst]) worst = i;
+  }
+  encoders_.step(wheel_silent_[worst], worst, out);
 }
 
 void SensorPresence::step(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept {
-  encoders_.step((sensors.valid & kValidJoints) == 0 || sensors.joint_count < wheels_, elapsed, out);
+  step_encoders(sensors, elapsed, out);
   imu_seen_ |= sensors.valid & (kValidGyro | kValidAccelerometer);
-  imu_.step((imu_seen_ & ~sensors.valid) != 0, elapsed, out);
+  imu_silent_ = (imu_seen_ & ~sensors.valid) != 0 ? imu_silent_ + elapsed : 0;
+  imu_.step(imu_silent_, kMaxJoints, out);
 }
 
 }  // namespace robot_control

@@ -1,46 +1,56 @@
 #pragma once
 /// Do the sensors report?
 ///
-///   encoders lost  the joint samples are not valid, or fewer than the robot has wheels
+///   encoders lost  a wheel's joint gave no new valid position for the persistence. The time is the age of a valid
+///                  sample, and grows by the elapsed time while there is none. The wheel with the longest time is
+///                  named.
 ///   IMU lost       gyro or accelerometer is not valid, but was valid earlier in this run: a robot without an IMU may
 ///                  drive
 ///
 /// Value and limit of both: s without a valid sample, and the persistence.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
 #include "safety/latch/active_causes.h"
 #include "signals/sensor_frame.h"
+#include "signals/wheeled/wheel_count.h"
 
 namespace robot_control {
 
 class SensorPresence {
  public:
-  /// `period` s.
+  /// The first `wheels` joints. `period` s.
   SensorPresence(const SafetyParameters& parameters, std::size_t wheels, double period) noexcept;
 
   void enter_run() noexcept;
   void step(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept;
 
  private:
+  /// The time for which a device has been silent is known, so the condition acts in the cycle that reaches its
+  /// persistence.
   class Silence {
    public:
     Silence(StopCause cause, const Condition& condition, double period) noexcept;
-    void reset() noexcept;
-    void step(bool silent, std::uint64_t elapsed, ActiveCauses& out) noexcept;
+    void step(std::uint64_t cycles, std::uint64_t joint, ActiveCauses& out) noexcept;
 
    private:
     ConditionWatch watch_;
     double period_;
     double persistence_;
-    std::uint64_t cycles_ = 0;
+    std::uint64_t limit_;  ///< cycles, ≥ 1
   };
 
+  void step_encoders(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept;
+
   std::size_t wheels_;
+  std::uint64_t period_ns_;
   Silence encoders_;
   Silence imu_;
-  std::uint64_t imu_seen_ = 0;  ///< kValidGyro, kValidAccelerometer
+  std::array<std::uint64_t, kMaxWheels> wheel_silent_{};  ///< cycles since the sample of each wheel
+  std::uint64_t imu_silent_ = 0;                          ///< cycles
+  std::uint64_t imu_seen_ = 0;                            ///< kValidGyro, kValidAccelerometer
 };
 
 }  // namespace robot_control

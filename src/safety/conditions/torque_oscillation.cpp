@@ -17,7 +17,7 @@ Condition announced(const Condition& condition) noexcept {
           .reaction = latches(condition) ? Reaction::kWarn : Reaction::kOff};
 }
 
-double loaded_inertia(const RobotModel& robot, const WheelModel& wheel) noexcept {
+double loaded_inertia(const DriveTrain& robot, const WheelModel& wheel) noexcept {
   const auto beside = static_cast<double>(std::ranges::count(robot.wheels, wheel.side, &WheelModel::side));
   const double square = wheel.radius * wheel.radius / beside;
   const double straight = 0.5 * robot.mass * square;
@@ -37,7 +37,7 @@ double TorqueOscillation::Ripple::rms() const noexcept {
   return std::sqrt(square);
 }
 
-TorqueOscillation::TorqueOscillation(const SafetyParameters& parameters, const RobotModel& robot,
+TorqueOscillation::TorqueOscillation(const SafetyParameters& parameters, const DriveTrain& robot,
                                      double period) noexcept
     : period_(period),
       one_cycle_(weights_of(period)),

@@ -20,7 +20,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "safety/latch/active_causes.h"
 #include "safety/measurements/wheel_motion.h"
 #include "safety/measurements/wheel_targets.h"
@@ -35,7 +35,7 @@ class TorqueOscillation {
   static constexpr double kWarned = 0.5;
 
   /// `period` s.
-  TorqueOscillation(const SafetyParameters& parameters, const RobotModel& robot, double period) noexcept;
+  TorqueOscillation(const SafetyParameters& parameters, const DriveTrain& robot, double period) noexcept;
 
   void enter_run() noexcept;
   void step(const MonitorInput& input, const WheelTargets& targets, const WheelMotion& motion, std::uint64_t elapsed,

@@ -13,7 +13,7 @@ double along(double target, double speed) noexcept {
 
 }  // namespace
 
-WheelFollowing::WheelFollowing(const SafetyParameters& parameters, const RobotModel& robot, double period)
+WheelFollowing::WheelFollowing(const SafetyParameters& parameters, const DriveTrain& robot, double period)
     : period_(period),
       stall_(kCauseStall, parameters.stall, period),
       not_stopping_(kCauseNotStopping, parameters.not_stopping, period),

@@ -36,8 +36,8 @@
 #include <cstdint>
 #include <limits>
 
-#include "machine/robot_model.h"
-#include "machine/wheels/scrub.h"
+#include "machine/wheeled/drive_train.h"
+#include "machine/wheeled/scrub.h"
 #include "safety/latch/active_causes.h"
 #include "safety/measurements/joint_standstill.h"
 #include "safety/measurements/planned_torque.h"
@@ -63,7 +63,7 @@ class WheelFollowing {
   static constexpr double kExcused = 0.5;
 
   /// `period` s.
-  WheelFollowing(const SafetyParameters& parameters, const RobotModel& robot, double period);
+  WheelFollowing(const SafetyParameters& parameters, const DriveTrain& robot, double period);
 
   void enter_run() noexcept;
   void step(const SensorFrame& sensors, const WheelTargets& targets, const WheelMotion& motion,

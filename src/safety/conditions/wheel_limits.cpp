@@ -23,7 +23,7 @@ double SpeedLimitInForce::step(double speed_limit, std::uint64_t elapsed) noexce
   return std::max(last_, now_);
 }
 
-WheelLimits::WheelLimits(const SafetyParameters& parameters, const RobotModel& robot, double period) noexcept
+WheelLimits::WheelLimits(const SafetyParameters& parameters, const DriveTrain& robot, double period) noexcept
     : speed_(kCauseWheelSpeed, parameters.wheel_speed, period),
       acceleration_(kCauseWheelAcceleration, parameters.wheel_acceleration, period),
       effort_(kCauseWheelEffort, parameters.wheel_effort, period),

@@ -14,7 +14,7 @@
 #include <array>
 #include <cstdint>
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "safety/latch/active_causes.h"
 #include "safety/measurements/wheel_motion.h"
 #include "signals/sensor_frame.h"
@@ -43,7 +43,7 @@ class WheelLimits {
   static constexpr double kSlackSpeed = 0.05;  ///< m/s
 
   /// `period` s.
-  WheelLimits(const SafetyParameters& parameters, const RobotModel& robot, double period) noexcept;
+  WheelLimits(const SafetyParameters& parameters, const DriveTrain& robot, double period) noexcept;
 
   void enter_run() noexcept;
 

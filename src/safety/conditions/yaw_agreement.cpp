@@ -14,7 +14,7 @@ Vector3 up_in_imu(const Quaternion& q) noexcept {
 
 }  // namespace
 
-YawAgreement::YawAgreement(const Condition& condition, const RobotModel& robot, double period) noexcept
+YawAgreement::YawAgreement(const Condition& condition, const DriveTrain& robot, double period) noexcept
     : watch_(kCauseYawRate, condition, period), up_imu_(up_in_imu(robot.imu_in_base.orientation)) {
   std::array<double, 2> count{};
   for (const WheelModel& wheel : robot.wheels) count[wheel.side == Side::kRight ? 1 : 0] += 1;

@@ -3,7 +3,7 @@
 ///
 ///   |ω_gyro·z − ω| > limit + kScrub·|ω| + δ,   ω = (v_right − v_left)/b
 ///
-/// z the base's z axis in the IMU's axes (RobotModel::imu_in_base), v the mean rim speed of a side, b the effective
+/// z the base's z axis in the IMU's axes (MachineModel::imu_in_base), v the mean rim speed of a side, b the effective
 /// wheel base, δ = 2·(quantum/T)·radius/b the encoders' tolerance (wheel_motion.h), summed over the wheels.
 /// kScrub applies with several wheels a side: in a turn they scrub by up to half of ω, depending on the ground. With
 /// one wheel a side it is 0.
@@ -11,7 +11,7 @@
 #include <array>
 #include <cstdint>
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "safety/latch/active_causes.h"
 #include "safety/measurements/wheel_motion.h"
 #include "signals/sensor_frame.h"
@@ -23,7 +23,7 @@ class YawAgreement {
   static constexpr double kScrub = 0.5;
 
   /// `period` s.
-  YawAgreement(const Condition& condition, const RobotModel& robot, double period) noexcept;
+  YawAgreement(const Condition& condition, const DriveTrain& robot, double period) noexcept;
 
   void enter_run() noexcept { watch_.reset(); }
   void step(const SensorFrame& sensors, const WheelMotion& motion, std::uint64_t elapsed, ActiveCauses& out) noexcept;

@@ -18,6 +18,10 @@ void MotionRelease::enter_run() noexcept {
 void MotionRelease::start(std::uint64_t cycle) noexcept {
   ++starts_;
   released_ = false;
+  begin(cycle);
+}
+
+void MotionRelease::begin(std::uint64_t cycle) noexcept {
   since_start_.restart(std::max(since_start_.after, cycle));
   since_gap_.restart(std::max(since_gap_.after, since_start_.after));
 }
@@ -32,6 +36,7 @@ void MotionRelease::step(const MonitorInput& input, std::uint64_t elapsed) noexc
   const std::uint64_t cycle = input.sensors->head.cycle;
   const CommandFrame* command = input.command;
   const std::uint64_t resumes = input.sensors->resumes;
+  if (!resumes_) begin(cycle);
   if (resumes_ && *resumes_ != resumes) start(cycle);
   resumes_ = resumes;
   if (input.state_seen) update_start(state_first_, input.state_first_cycle);
@@ -48,7 +53,7 @@ void MotionRelease::step(const MonitorInput& input, std::uint64_t elapsed) noexc
 void MotionRelease::evaluate(const CommandFrame& command) noexcept {
   const bool zero_after_start = since_start_.grown(command);
   const bool zero_after_gap = since_gap_.grown(command);
-  const bool in_force = !zero(command.twist_requested);
+  const bool in_force = !zero(command.requested.twist);
   const std::uint64_t current_cycles = command.head.cycle - std::min(command.head.cycle, since_gap_.after);
   const bool silent = !in_force && std::min(command.silent_cycles, current_cycles) >=
                                        std::max<std::uint64_t>(command.silence_needed, 1);

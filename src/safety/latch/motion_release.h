@@ -5,10 +5,9 @@
 /// of requests (control/command_watch.h) began in its first_cycle.
 ///
 /// **Zero first.** A start is one of
-///   the first cycle of a run: the driver was started or reset
+///   the first cycle of a run that this monitor sees: the driver was started or reset, or the monitor was
 ///   the first_cycle of an estimator or of a controller
 ///   the first cycle after a pause (SensorFrame::resumes)
-///   the first cycle of this monitor
 /// After the latest start motion is released as soon as a current command frame reports one of
 ///   zero     a zero request was received after that start
 ///   silence  no message of any sender, accepted or refused, for silence_needed cycles after that start, and no command
@@ -37,9 +36,6 @@ class MotionRelease {
   /// A new run.
   void enter_run() noexcept;
 
-  /// This monitor was started in this cycle of a run that was already going on.
-  void begin(std::uint64_t cycle) noexcept { start(cycle); }
-
   /// `elapsed`: cycles since the last step, ≥ 1.
   void step(const MonitorInput& input, std::uint64_t elapsed) noexcept;
 
@@ -62,6 +58,7 @@ class MotionRelease {
     bool grown(const CommandFrame& command) noexcept;
   };
 
+  void begin(std::uint64_t cycle) noexcept;
   void start(std::uint64_t cycle) noexcept;
   void update_start(std::optional<std::uint64_t>& known, std::uint64_t first_cycle) noexcept;
   void evaluate(const CommandFrame& command) noexcept;

@@ -7,13 +7,14 @@ namespace robot_control {
 namespace {
 
 bool finite(const JointSample& joint) noexcept {
-  return std::isfinite(joint.position) && std::isfinite(joint.velocity) && std::isfinite(joint.effort);
+  return (!has(joint, kValidPosition) || std::isfinite(joint.position)) &&
+         (!has(joint, kValidVelocity) || std::isfinite(joint.velocity)) &&
+         (!has(joint, kValidEffort) || std::isfinite(joint.effort));
 }
 
 }  // namespace
 
 std::uint64_t not_finite_joint(const SensorFrame& sensors) noexcept {
-  if ((sensors.valid & kValidJoints) == 0) return kMaxJoints;
   const std::uint64_t count = std::min<std::uint64_t>(sensors.joint_count, kMaxJoints);
   for (std::uint64_t i = 0; i < count; ++i) {
     if (!finite(sensors.joints[i])) return i;
@@ -25,10 +26,8 @@ bool finite(const SensorFrame& sensors) noexcept {
   if (not_finite_joint(sensors) < kMaxJoints) return false;
   if ((sensors.valid & kValidGyro) != 0 && !finite(sensors.imu.angular_velocity)) return false;
   if ((sensors.valid & kValidAccelerometer) != 0 && !finite(sensors.imu.linear_acceleration)) return false;
-  if ((sensors.valid & kValidContacts) != 0) {
-    for (const Vector3& force : sensors.contact_forces) {
-      if (!finite(force)) return false;
-    }
+  for (std::size_t i = 0; i < kMaxContacts && i < sensors.contact_count; ++i) {
+    if (sensors.contacts[i].valid != 0 && !finite(sensors.contacts[i].force)) return false;
   }
   return (sensors.valid & kValidBattery) == 0 ||
          (std::isfinite(sensors.battery_voltage) && std::isfinite(sensors.battery_current));
@@ -39,7 +38,7 @@ bool finite(const CommandFrame& command) noexcept {
   for (std::size_t i = 0; i < count; ++i) {
     if (!finite(command.joints[i])) return false;
   }
-  return finite(command.twist_requested) && finite(command.twist_limited);
+  return finite(command.requested) && finite(command.twist_limited);
 }
 
 }  // namespace robot_control

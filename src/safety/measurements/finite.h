@@ -8,13 +8,13 @@
 
 namespace robot_control {
 
-/// The first joint with a sample that is not finite, if joints are valid; kMaxJoints: none.
+/// The first joint with a valid number that is not finite; kMaxJoints: none.
 std::uint64_t not_finite_joint(const SensorFrame& sensors) noexcept;
 
-/// Joints, gyro, accelerometer, contact forces and battery, as far as `valid` marks them.
+/// Joints, gyro, accelerometer, contact forces and battery, as far as they are marked as valid.
 bool finite(const SensorFrame& sensors) noexcept;
 
-/// Used joints and both twists.
+/// Used joints, the request and the limited twist.
 bool finite(const CommandFrame& command) noexcept;
 
 }  // namespace robot_control

@@ -15,7 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "safety/measurements/wheel_motion.h"
 
 namespace robot_control {

@@ -4,7 +4,7 @@
 
 namespace robot_control {
 
-PlannedTorque::PlannedTorque(const RobotModel& robot) noexcept
+PlannedTorque::PlannedTorque(const DriveTrain& robot) noexcept
     : count_(std::min(robot.wheels.size(), kMaxWheels)),
       mass_(robot.mass),
       yaw_inertia_(robot.yaw_inertia),

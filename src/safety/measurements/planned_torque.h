@@ -12,14 +12,14 @@
 #include <array>
 #include <cstddef>
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "safety/measurements/wheel_targets.h"
 
 namespace robot_control {
 
 class PlannedTorque {
  public:
-  explicit PlannedTorque(const RobotModel& robot) noexcept;
+  explicit PlannedTorque(const DriveTrain& robot) noexcept;
 
   void enter_run() noexcept;
 

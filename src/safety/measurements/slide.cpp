@@ -6,7 +6,7 @@
 
 namespace robot_control {
 
-Slide::Slide(const SafetyParameters& parameters, const RobotModel& robot, double period) noexcept
+Slide::Slide(const SafetyParameters& parameters, const DriveTrain& robot, double period) noexcept
     : period_(period),
       deceleration_(parameters.stop_deceleration),
       limit_(parameters.wheel_speed.limit.value_or(std::numeric_limits<double>::infinity())) {

@@ -14,7 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "safety/measurements/wheel_motion.h"
 #include "safety/safety_parameters.h"
 
@@ -25,7 +25,7 @@ class Slide {
   static constexpr double kGrip = 10.0;  ///< m/s², friction of 1
 
   /// `period` s.
-  Slide(const SafetyParameters& parameters, const RobotModel& robot, double period) noexcept;
+  Slide(const SafetyParameters& parameters, const DriveTrain& robot, double period) noexcept;
 
   /// A new run: the machine begins at rest.
   void enter_run() noexcept { speed_ = 0; }

@@ -38,7 +38,7 @@ void WheelMotion::step(const SensorFrame& sensors) noexcept {
 }
 
 bool WheelMotion::read_angles(const SensorFrame& sensors) noexcept {
-  if ((sensors.valid & kValidJoints) == 0 || sensors.joint_count < wheels_) return false;
+  if (!joints_have(sensors, wheels_, kValidPosition)) return false;
   Values angle{};
   bool all_finite = true;
   for (std::size_t i = 0; i < wheels_; ++i) {

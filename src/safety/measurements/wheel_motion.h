@@ -20,7 +20,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "safety/derived_limits.h"
 #include "signals/sensor_frame.h"
 

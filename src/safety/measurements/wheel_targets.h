@@ -8,7 +8,7 @@
 #include <array>
 #include <cstddef>
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "safety/monitor_input.h"
 
 namespace robot_control {

@@ -26,16 +26,16 @@ void negate(Vector3& vector) noexcept {
 
 void distort(FaultKind kind, StateFrame& state, FaultRandom& random) noexcept {
   if (kind == FaultKind::kWrong) {
-    negate(state.pose_odom.position);
-    negate(state.twist_base.linear);
-    negate(state.twist_base.angular);
+    negate(state.base.pose_odom.position);
+    negate(state.base.twist_base.linear);
+    negate(state.base.twist_base.angular);
     return;
   }
-  for (double& entry : state.pose_odom.position) entry = garbage(random);
-  for (double& entry : state.pose_odom.orientation) entry = garbage(random);
-  for (double& entry : state.twist_base.linear) entry = garbage(random);
-  for (double& entry : state.twist_base.angular) entry = garbage(random);
-  for (double& entry : state.gyro_bias) entry = garbage(random);
+  for (double& entry : state.base.pose_odom.position) entry = garbage(random);
+  for (double& entry : state.base.pose_odom.orientation) entry = garbage(random);
+  for (double& entry : state.base.twist_base.linear) entry = garbage(random);
+  for (double& entry : state.base.twist_base.angular) entry = garbage(random);
+  for (double& entry : state.base.gyro_bias) entry = garbage(random);
 }
 
 void distort(FaultKind kind, CommandFrame& command, FaultRandom& random) noexcept {

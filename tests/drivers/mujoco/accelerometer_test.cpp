@@ -10,21 +10,21 @@ namespace {
 
 struct Case {
   const char* name;
-  RobotModel robot;
+  DriveTrain robot;
 };
 
-RobotModel diffbot() {
-  return read_robot(diffbot_urdf(), {});
+DriveTrain diffbot() {
+  return read_drive_train(diffbot_urdf(), {});
 }
 
 /// diffbot with its IMU turned about two axes and far from the wheels' middle.
-RobotModel diffbot_with_a_remote_imu() {
-  return read_robot(
+DriveTrain diffbot_with_a_remote_imu() {
+  return read_drive_train(
       diffbot_with("<joint name=\"imu_joint\"", "xyz=\"0.05 0.02 0.06\"", "xyz=\"0.4 -0.3 0.5\" rpy=\"1.2 0.3 -2\""),
       {});
 }
 
-RobotModel skid_steer() {
+DriveTrain skid_steer() {
   MadeRobot made;
   made.axles = {0.2, -0.2};
   made.effort = 20;
@@ -34,7 +34,7 @@ RobotModel skid_steer() {
 class Accelerometer : public testing::TestWithParam<std::tuple<double, double>> {
  protected:
   /// m/s, the largest error over a second of a drive.
-  static double worst(const RobotModel& robot, double damping, double period) {
+  static double worst(const DriveTrain& robot, double damping, double period) {
     MujocoPlantParameters parameters;
     parameters.scene = kFlat;
     parameters.sensor_errors = ErrorLevel::kIdeal;

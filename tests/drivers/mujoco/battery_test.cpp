@@ -50,7 +50,7 @@ class BatteryOfThePlant : public PlantTest {
     parameters_.battery_resistance = kResistance;
   }
   std::unique_ptr<MujocoPlant> fed() const {
-    auto plant = std::make_unique<MujocoPlant>(read_robot(diffbot_urdf(), {}), parameters_, period_);
+    auto plant = std::make_unique<MujocoPlant>(read_drive_train(diffbot_urdf(), {}), parameters_, period_);
     plant->start();
     return plant;
   }

@@ -7,7 +7,7 @@
 
 #include "drivers/driver.h"
 #include "drivers/mujoco/constants.h"
-#include "machine/bodies/tipping.h"
+#include "machine/wheeled/tipping.h"
 #include "made_robot.h"
 #include "support/diffbot_urdf.h"
 
@@ -68,7 +68,7 @@ TEST(BrakeOf, LeavesToTheMotorsFrictionWhatThatBrakes) {
   MujocoPlantParameters parameters;
   parameters.gear_ratio = 10;
   parameters.motor_friction = 0.02;
-  const RobotModel robot = four_wheels().model();
+  const DriveTrain robot = four_wheels().model();
   EXPECT_NEAR(brake_of(robot, 0, parameters, kStep).effort, brake_of(robot, 0, {}, kStep).effort - 0.2, 1e-9);
 }
 
@@ -94,7 +94,7 @@ TEST(BrakeOf, TakesWhatTheUserSays) {
 
 // 0.4 · 0.005 / 0.001, 0.06 · 0.005 / 0.001², 0.03 / 0.1
 TEST(BrakeOf, FitsTheWheelOfDiffbot) {
-  const Brake brake = brake_of(read_robot(diffbot_urdf(), {}), 0, {}, kStep);
+  const Brake brake = brake_of(read_drive_train(diffbot_urdf(), {}), 0, {}, kStep);
   EXPECT_NEAR(brake.damping, 2.0, 1e-9);
   EXPECT_NEAR(brake.stiffness, 300, 1e-6);
   EXPECT_NEAR(brake.hold_speed, 0.3, 1e-12);

@@ -68,7 +68,7 @@ class VibrationTest : public testing::Test {
     return result;
   }
 
-  RobotModel robot_ = two_wheels();
+  DriveTrain robot_ = two_wheels();
   MujocoPlantParameters errors_;
 };
 

@@ -53,7 +53,7 @@ TEST(FlatInertias, AreValidInEveryOrientation) {
     }
     MujocoPlantParameters parameters;
     parameters.scene = kFlat;
-    EXPECT_NO_THROW(compile_model(read_robot(robot.description(), robot.names()), parameters, 0.001))
+    EXPECT_NO_THROW(compile_model(read_drive_train(robot.description(), robot.names()), parameters, 0.001))
         << "seed " << seed;
   }
 }

@@ -1,6 +1,6 @@
 /// The law alone, on a wheel of inertia J: q̇' = q̇ + (τ + load)/J h, q' = q + h q̇'.
 
-#include "drivers/mujoco/motors/joint_law.h"
+#include "drivers/joint_law.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -43,8 +43,8 @@ struct MadeRobot {
     return {urdf.str(), "made"};
   }
 
-  RobotParameters names() const {
-    RobotParameters parameters;
+  DriveTrainParameters names() const {
+    DriveTrainParameters parameters;
     for (std::size_t axle = 0; axle < axles.size(); ++axle) {
       parameters.left_wheel_joints.push_back("left_" + std::to_string(axle));
       parameters.right_wheel_joints.push_back("right_" + std::to_string(axle));
@@ -52,7 +52,7 @@ struct MadeRobot {
     return parameters;
   }
 
-  RobotModel model() const { return read_robot(description(), names()); }
+  DriveTrain model() const { return read_drive_train(description(), names()); }
 
   /// kg·m², of a wheel about its axle: a homogeneous disc.
   double wheel_inertia() const { return wheel_mass * radius * radius / 2; }

@@ -55,7 +55,7 @@ class MjcfTest : public testing::Test {
   }
 
   MadeRobot robot_;
-  RobotModel model_ = robot_.model();
+  DriveTrain model_ = robot_.model();
   std::shared_ptr<RigidBodies> bodies_ = std::make_shared<RigidBodies>(*model_.bodies);
   MujocoPlantParameters parameters_;
   ModelPointer compiled_;

@@ -20,7 +20,7 @@ class MujocoFaultTest : public PlantTest {
 
   // A drive without bounds: 10¹² N·m cause accelerations that MuJoCo calls bad.
   std::unique_ptr<MujocoPlant> unbounded() {
-    RobotParameters robot;
+    DriveTrainParameters robot;
     robot.wheel_effort_limit = 1e12;
     return started(diffbot_urdf(), kFlat, 0.001, robot);
   }
@@ -37,7 +37,7 @@ class MujocoFaultTest : public PlantTest {
     MujocoPlantParameters parameters;
     parameters.scene = scene_file(name, "<mujoco><size " + size + "/><worldbody><geom type=\"plane\" size=\"1 1 1\"/>" +
                                             "<site name=\"start\"/>" + balls + "</worldbody></mujoco>");
-    auto plant = std::make_unique<MujocoPlant>(read_robot(diffbot_urdf(), {}), parameters, 0.001);
+    auto plant = std::make_unique<MujocoPlant>(read_drive_train(diffbot_urdf(), {}), parameters, 0.001);
     plant->start();
     return plant;
   }

@@ -31,7 +31,7 @@ class MujocoModelTest : public testing::Test {
     return "accepted";
   }
 
-  RobotModel robot_ = read_robot(diffbot_urdf(), {});
+  DriveTrain robot_ = read_drive_train(diffbot_urdf(), {});
   TyreModel tyre_ = TyreModel::kBrush;
 };
 
@@ -52,7 +52,7 @@ TEST_F(MujocoModelTest, ALinkMayHaveAnyName) {
       for (std::size_t at; (at = description.text.find('"' + link + '"')) != std::string::npos;) {
         description.text.replace(at + 1, link.size(), name);
       }
-      robot_ = read_robot(description, {});
+      robot_ = read_drive_train(description, {});
       EXPECT_NEAR(compiled(kFlat).model->body_subtreemass[1], 12.0, 1e-9) << link << ' ' << name;
     }
   }
@@ -75,10 +75,10 @@ TEST_F(MujocoModelTest, ABenchmarkCanStepItBareWithNativeFriction) {
 }
 
 TEST_F(MujocoModelTest, OverridesDoNotChangeThePhysics) {
-  RobotParameters parameters;
+  DriveTrainParameters parameters;
   parameters.wheel_radius = 0.2;
   parameters.wheel_base = 0.9;
-  robot_ = read_robot(diffbot_urdf(), parameters);
+  robot_ = read_drive_train(diffbot_urdf(), parameters);
   const MujocoModel model = compiled(kFlat);
   EXPECT_EQ(model.model->geom_size[3 * model.wheel_shape[0]], 0.1);
   EXPECT_NEAR(model.model->qpos0[model.base_position + 2], 0.1, 1e-12);

@@ -28,7 +28,7 @@ class RealRobot : public testing::TestWithParam<const char*> {
     parameters.scene = kFlat;
     parameters.sensor_errors = ErrorLevel::kIdeal;
     parameters.ground_friction = ground_friction;
-    robot_ = read_robot(load_description((folder / "robot.urdf").string()), {});
+    robot_ = read_drive_train(load_description((folder / "robot.urdf").string()), {});
     plant_ = std::make_unique<MujocoPlant>(robot_, parameters, 0.001);
     plant_->start();
   }
@@ -80,7 +80,7 @@ class RealRobot : public testing::TestWithParam<const char*> {
     return std::acos(std::min(1.0, turned[2]));
   }
 
-  RobotModel robot_;
+  DriveTrain robot_;
   std::unique_ptr<MujocoPlant> plant_;
   std::vector<double> integral_;
 };

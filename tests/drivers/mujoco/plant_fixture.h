@@ -47,13 +47,13 @@ inline JointCommand velocity_command(double velocity) {
 class PlantTest : public testing::Test {
  protected:
   std::unique_ptr<MujocoPlant> started(const RobotDescription& description, const std::string& scene,
-                                       double period = 0.001, const RobotParameters& robot = {}) {
+                                       double period = 0.001, const DriveTrainParameters& robot = {}) {
     MujocoPlantParameters parameters;
     parameters.scene = scene;
     parameters.sensor_errors = ErrorLevel::kIdeal;
     parameters.tyre = tyre_;
     period_ = period;
-    auto plant = std::make_unique<MujocoPlant>(read_robot(description, robot), parameters, period);
+    auto plant = std::make_unique<MujocoPlant>(read_drive_train(description, robot), parameters, period);
     plant->start();
     return plant;
   }

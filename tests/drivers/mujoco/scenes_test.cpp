@@ -28,7 +28,7 @@ class SceneTest : public PlantTest {
     return "accepted";
   }
 
-  RobotModel robot_ = read_robot(diffbot_urdf(), {});
+  DriveTrain robot_ = read_drive_train(diffbot_urdf(), {});
   MujocoPlantParameters parameters_;
 };
 

@@ -88,7 +88,7 @@ class SensorErrorsTest : public testing::Test {
     parameters_.accelerometer_bias = parameters_.accelerometer_bias_walk = 0;
   }
 
-  const RobotModel robot_ = two_wheels();
+  const DriveTrain robot_ = two_wheels();
   MujocoPlantParameters parameters_;
   double period_ = 0.001;
 };

@@ -172,7 +172,7 @@ TEST_F(SensorFaultsTest, IsHealthyAgainAfterOk) {
 }
 
 TEST_F(SensorFaultsTest, AllWheelsOfASideFailTogether) {
-  RobotModel robot = two_wheels();
+  DriveTrain robot = two_wheels();
   robot.joints.resize(4);
   robot.wheels.push_back(robot.wheels[0]);
   robot.wheels.back().joint = 3;

@@ -12,28 +12,28 @@ class TrueRobotTest : public testing::Test {
  protected:
   TrueRobotTest() { parameters_.sensor_errors = ErrorLevel::kDataSheet; }
 
-  RobotModel real() const { return true_robot(believed_, parameters_); }
+  DriveTrain real() const { return true_robot(believed_, parameters_); }
 
-  RobotModel believed_ = read_robot(diffbot_urdf(), {});
+  DriveTrain believed_ = read_drive_train(diffbot_urdf(), {});
   MujocoPlantParameters parameters_;
 };
 
 TEST_F(TrueRobotTest, IsTheUrdfWhereNothingErrs) {
-  const RobotModel robot = real();
+  const DriveTrain robot = real();
   EXPECT_EQ(robot.wheels[0].radius, 0.1);
   EXPECT_EQ(robot.wheel_base, 0.5);
   EXPECT_NEAR(robot.mass, 12, 1e-12);
 }
 
 TEST_F(TrueRobotTest, IgnoresTheNominalValues) {
-  RobotParameters parameters;
+  DriveTrainParameters parameters;
   parameters.wheel_radius = 0.2;
   parameters.wheel_base = 0.9;
   parameters.mass = 40;
   parameters.imu_position = Vector3{1, 2, 3};
   parameters.imu_orientation = Vector3{0, 0, 1};
-  believed_ = read_robot(diffbot_urdf(), parameters);
-  const RobotModel robot = real();
+  believed_ = read_drive_train(diffbot_urdf(), parameters);
+  const DriveTrain robot = real();
   EXPECT_EQ(robot.imu_in_base.position, (Vector3{0.05, 0.02, 0.06}));
   EXPECT_EQ(robot.imu_in_base.orientation, (Quaternion{0, 0, 0, 1}));
   EXPECT_EQ(robot.wheels[0].radius, 0.1);
@@ -42,9 +42,9 @@ TEST_F(TrueRobotTest, IgnoresTheNominalValues) {
 }
 
 TEST_F(TrueRobotTest, HasTheDrivesOfTheUser) {
-  RobotParameters parameters;
+  DriveTrainParameters parameters;
   parameters.wheel_effort_limit = 1.25;
-  believed_ = read_robot(diffbot_urdf(), parameters);
+  believed_ = read_drive_train(diffbot_urdf(), parameters);
   EXPECT_EQ(real().joints[0].effort_limit, 1.25);
 }
 
@@ -57,7 +57,7 @@ TEST_F(TrueRobotTest, RadiiErrBySide) {
 
 TEST_F(TrueRobotTest, AWiderWheelBaseMovesTheWheelsOutwards) {
   parameters_.wheel_base_error = 0.02;
-  const RobotModel robot = real();
+  const DriveTrain robot = real();
   EXPECT_NEAR(robot.wheels[0].centre_base[1], 0.255, 1e-12);
   EXPECT_NEAR(robot.wheels[1].centre_base[1], -0.255, 1e-12);
   EXPECT_NEAR(robot.bodies->moved_by("left_wheel_joint")->in_root.translation().y(), 0.255, 1e-12);
@@ -69,7 +69,7 @@ TEST_F(TrueRobotTest, TheJointsFrictionErrs) {
   for (std::size_t at = text.find(end); at != std::string::npos; at = text.find(end, at + end.size())) {
     text.insert(at + end.size(), "<dynamics friction=\"0.4\"/>");
   }
-  believed_ = read_robot({text, source}, MadeRobot{}.names());
+  believed_ = read_drive_train({text, source}, MadeRobot{}.names());
   parameters_.wheel_friction_error = 2;
   EXPECT_NEAR(real().joints[0].friction, 1.2, 1e-12);
   EXPECT_NEAR(real().bodies->moved_by("right_0")->joint.friction, 1.2, 1e-12);
@@ -87,7 +87,7 @@ TEST_F(TrueRobotTest, APayloadIsAPointMassOnTheBase) {
   believed_ = MadeRobot{}.model();
   parameters_.payload = 5;
   parameters_.payload_z = 0.3;
-  const RobotModel robot = real();
+  const DriveTrain robot = real();
   EXPECT_NEAR(robot.mass, believed_.mass + 5, 1e-12);
   const RigidBody& loaded = robot.bodies->bodies[0];
   const RigidBody& empty = believed_.bodies->bodies[0];

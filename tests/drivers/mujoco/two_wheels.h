@@ -1,7 +1,7 @@
 #pragma once
 /// Two wheels and a caster's swivel, which is enough of a robot for sensors and motors.
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -9,8 +9,8 @@ inline constexpr std::size_t kLeftWheel = 0;
 inline constexpr std::size_t kRightWheel = 1;
 inline constexpr std::size_t kSwivel = 2;
 
-inline RobotModel two_wheels() {
-  RobotModel robot;
+inline DriveTrain two_wheels() {
+  DriveTrain robot;
   robot.joints.resize(3);
   robot.joints[kLeftWheel].effort_limit = robot.joints[kRightWheel].effort_limit = 3.5;
   robot.joints[kSwivel].role = JointRole::kPassive;

@@ -137,7 +137,7 @@ TEST_F(ReplayedDrive, NamesTheFieldThatDiffers) {
 
 TEST_F(ReplayedDrive, FindsAnInputThatIsNotTheOneThatWasUsed) {
   drive(kSecond);
-  row(500).controller.calls.request.twist.linear[0] = 0.1;
+  row(500).controller.calls.request.content.twist.linear[0] = 0.1;
   const ReplayReport report = replay();
   ASSERT_FALSE(report.exact());
   EXPECT_EQ(report.differences[0].law, LawName::kController);

@@ -47,7 +47,7 @@ class RandomNodes {
     Replay again(parameters(), loop_.robot);
     again.vary(parameters(), loop_.robot, [&](const VariedRow& row) {
       if (row.state == nullptr) return;
-      otherwise += row.varied_state->pose_odom.position != row.state->pose_odom.position ? 1 : 0;
+      otherwise += row.varied_state->base.pose_odom.position != row.state->base.pose_odom.position ? 1 : 0;
     });
     for (const LawSnapshot& snapshot : recording.snapshots) again.add(snapshot);
     for (const RecordedRow& row : recording.rows) again.add(row.joined());
@@ -79,7 +79,7 @@ class RandomNodes {
   void act() {
     switch (std::uniform_int_distribution<>(0, 11)(random_)) {
       case 0:
-        loop_.controller->inbox().store({.twist = chance(0.5) ? kForward : Twist{}, .count = ++count_});
+        loop_.controller->inbox().store({.content = {.twist = chance(0.5) ? kForward : Twist{}}, .count = ++count_});
         return;
       case 1:
         loop_.estimator->request_pose({1, -2, 0.5 * static_cast<double>(++count_)});

@@ -74,7 +74,7 @@ struct Recording {
     rows.emplace_back(loop.row());
   }
 
-  ReplayReport replay(const Parameters& parameters, const RobotModel& robot) const {
+  ReplayReport replay(const Parameters& parameters, const DriveTrain& robot) const {
     Replay again(parameters, robot);
     for (const LawSnapshot& snapshot : snapshots) again.add(snapshot);
     for (const RecordedRow& row : rows) again.add(row.joined());
@@ -96,7 +96,7 @@ inline void log(const JoinedRow& row, std::size_t joints, std::vector<LoggedMess
 
 /// Replays them as from a file. Throws TraceError: a message cannot be read.
 inline ReplayReport replay(const std::vector<LoggedMessage>& messages, const std::vector<LawSnapshot>& snapshots,
-                           const Parameters& parameters, const RobotModel& robot) {
+                           const Parameters& parameters, const DriveTrain& robot) {
   static const TraceDecoder kDecoder(trace_definition());
   Replay again(parameters, robot);
   for (const LawSnapshot& snapshot : snapshots) again.add(snapshot);

@@ -38,8 +38,8 @@ TEST_F(VariedDrive, IsTheSameWithTheSameParameters) {
   const ReplayReport report = replay(parameters, [&](const VariedRow& row) {
     if (row.state != nullptr) {
       ++states;
-      ASSERT_EQ(row.varied_state->pose_odom.position, row.state->pose_odom.position) << row.cycle;
-      ASSERT_EQ(row.varied_state->pose_covariance, row.state->pose_covariance) << row.cycle;
+      ASSERT_EQ(row.varied_state->base.pose_odom.position, row.state->base.pose_odom.position) << row.cycle;
+      ASSERT_EQ(row.varied_state->base.pose_covariance, row.state->base.pose_covariance) << row.cycle;
     }
     if (row.command != nullptr) {
       ++commands;
@@ -78,7 +78,8 @@ TEST_F(VariedDrive, WithANoisierGyroIsLessSureOfItsPath) {
   other.estimator.gyro_noise *= 3;
   bool differs = false;
   const ReplayReport report = replay(other, [&](const VariedRow& row) {
-    if (row.state != nullptr) differs = differs || row.varied_state->pose_covariance != row.state->pose_covariance;
+    if (row.state != nullptr)
+      differs = differs || row.varied_state->base.pose_covariance != row.state->base.pose_covariance;
   });
   EXPECT_TRUE(report.exact()) << text_of(report);
   EXPECT_TRUE(differs);

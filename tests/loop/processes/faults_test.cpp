@@ -60,13 +60,13 @@ class Faults : public ::testing::Test {
     parameters_.loop.wait_for_telemetry = true;
     parameters_.telemetry.record = RecordMode::kAlways;
     parameters_.telemetry.directory = (folder_.path() / "log").string();
-    robot_ = read_robot(load_description(parameters_.urdf), parameters_.robot);
+    robot_ = read_drive_train(load_description(parameters_.urdf), parameters_.robot);
   }
 
   const std::vector<Fault> faults_ = all_faults();
   TemporaryFolder folder_;
   Parameters parameters_;
-  RobotModel robot_;
+  DriveTrain robot_;
 };
 
 TEST_F(Faults, OfFourProcessesGiveTheNumbersOfTheClosedLoop) {

@@ -37,7 +37,7 @@ class Lockstep : public ::testing::Test {
     parameters_.loop.wait_for_telemetry = true;
     parameters_.telemetry.record = RecordMode::kAlways;
     parameters_.plant.cycles = kCycles;
-    robot_ = read_robot(load_description(parameters_.urdf), parameters_.robot);
+    robot_ = read_drive_train(load_description(parameters_.urdf), parameters_.robot);
   }
   ~Lockstep() override { std::filesystem::remove_all(folder_); }
 
@@ -63,7 +63,7 @@ class Lockstep : public ::testing::Test {
 
   std::filesystem::path folder_;
   Parameters parameters_;
-  RobotModel robot_;
+  DriveTrain robot_;
 };
 
 TEST_F(Lockstep, FourProcessesGiveTheNumbersOfTheClosedLoop) {

@@ -34,7 +34,7 @@ class Services : public ::testing::Test {
     parameters_.loop.wait_for_telemetry = true;
     parameters_.telemetry.record = RecordMode::kAlways;
     parameters_.telemetry.directory = (folder_ / "log").string();
-    robot_ = read_robot(load_description(parameters_.urdf), parameters_.robot);
+    robot_ = read_drive_train(load_description(parameters_.urdf), parameters_.robot);
   }
   ~Services() override { std::filesystem::remove_all(folder_); }
 
@@ -56,7 +56,7 @@ class Services : public ::testing::Test {
 
   std::filesystem::path folder_;
   Parameters parameters_;
-  RobotModel robot_;
+  DriveTrain robot_;
 };
 
 /// Pauses before cycle 0, so that every event happens in a known cycle.

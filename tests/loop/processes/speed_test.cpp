@@ -29,7 +29,7 @@ class Speed : public ::testing::Test {
   }
 
   Parameters parameters_ = read_parameters(std::string(PROJECT_DIRECTORY) + "/config/robot_params.yaml");
-  RobotModel robot_ = read_robot(load_description(parameters_.urdf), parameters_.robot);
+  DriveTrain robot_ = read_drive_train(load_description(parameters_.urdf), parameters_.robot);
 };
 
 TEST_F(Speed, TheLoopInOneProcessKeepsItsShareOfTheBareEngine) {

@@ -5,9 +5,9 @@
 #include <set>
 
 #include "drivers/mujoco/model/mjcf.h"
-#include "machine/bodies/ground_points.h"
 #include "machine/description/wording.h"
 #include "machine/gravity.h"
+#include "machine/wheeled/ground_points.h"
 
 namespace robot_control {
 namespace {

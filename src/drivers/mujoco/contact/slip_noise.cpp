@@ -4,7 +4,7 @@
 
 namespace robot_control {
 
-SlipNoise::SlipNoise(const RobotModel& robot, const MujocoPlantParameters& parameters)
+SlipNoise::SlipNoise(const DriveTrain& robot, const MujocoPlantParameters& parameters)
     : seed_(parameters.seed),
       deviation_(parameters.sensor_errors == ErrorLevel::kField && robot.wheels.size() > 2
                      ? parameters.wheel_slip_noise / std::sqrt(2 * kLength)

@@ -14,7 +14,7 @@
 
 #include "drivers/mujoco/mujoco_plant_parameters.h"
 #include "drivers/mujoco/sensors/normal_stream.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -22,7 +22,7 @@ class SlipNoise {
  public:
   static constexpr double kLength = 0.1;  ///< m; in the recordings, slip is not correlated after half a second
 
-  SlipNoise(const RobotModel& robot, const MujocoPlantParameters& parameters);
+  SlipNoise(const DriveTrain& robot, const MujocoPlantParameters& parameters);
 
   void reset();
 

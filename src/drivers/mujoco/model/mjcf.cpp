@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "drivers/mujoco/model/mjcf_shapes.h"
-#include "machine/bodies/ground_points.h"
 #include "machine/gravity.h"
+#include "machine/wheeled/ground_points.h"
 
 namespace robot_control {
 namespace {
@@ -58,7 +58,7 @@ Eigen::Quaterniond from_z(const Eigen::Vector3d& axis) {
 
 class Writer {
  public:
-  Writer(const RobotModel& model, const MujocoPlantParameters& parameters)
+  Writer(const DriveTrain& model, const MujocoPlantParameters& parameters)
       : model_(model), robot_(*model.bodies), parameters_(parameters) {}
 
   std::string write(const MjcfPlace& place) {
@@ -101,7 +101,7 @@ class Writer {
     const WheelModel* rolling = rolling_body(model_, body);
     const JointModel& model = *std::find_if(model_.joints.begin(), model_.joints.end(),
                                             [&](const JointModel& other) { return other.name == joint.name; });
-    const bool wheel = model.role == JointRole::kWheel;
+    const bool wheel = model.role == JointRole::kDriven;
     const bool slides = joint.type == JointType::kPrismatic;
     const bool limited = !wheel && joint.type != JointType::kContinuous && joint.lower < joint.upper;
     const double gear = parameters_.gear_ratio;
@@ -176,11 +176,11 @@ class Writer {
   }
 
   std::size_t number_of(const WheelModel& wheel) const {
-    if (model_.joints[wheel.joint].role == JointRole::kWheel) return wheel.joint;
+    if (model_.joints[wheel.joint].role == JointRole::kDriven) return wheel.joint;
     return model_.wheels.size() + static_cast<std::size_t>(&wheel - model_.casters.data());
   }
 
-  const RobotModel& model_;
+  const DriveTrain& model_;
   const RigidBodies& robot_;
   const MujocoPlantParameters& parameters_;
   std::size_t meshes_ = 0;
@@ -197,11 +197,11 @@ std::string mjcf_wheel_name(std::size_t wheel) {
   return "robot_control/wheel/" + std::to_string(wheel);
 }
 
-std::string robot_mjcf(const RobotModel& robot, const MujocoPlantParameters& parameters, const MjcfPlace& place) {
+std::string robot_mjcf(const DriveTrain& robot, const MujocoPlantParameters& parameters, const MjcfPlace& place) {
   return Writer(robot, parameters).write(place);
 }
 
-void apply_angles(const RobotModel& robot, mjModel& model) {
+void apply_angles(const DriveTrain& robot, mjModel& model) {
   for (std::size_t index = 1; index < robot.bodies->bodies.size(); ++index) {
     const BodyJoint& joint = robot.bodies->bodies[index].joint;
     const int id = mj_name2id(&model, mjOBJ_JOINT, joint.name.c_str());

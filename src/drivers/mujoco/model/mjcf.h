@@ -34,7 +34,7 @@
 
 #include "drivers/mujoco/mujoco_plant_parameters.h"
 #include "machine/bodies/rigid_bodies.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -47,7 +47,7 @@ inline constexpr const char* kMjcfStart = "start";
 /// Returns the name of the body that the joint of this link moves.
 std::string mjcf_body_name(const std::string& link);
 
-/// Returns the name of a rolling shape: "robot_control/wheel/0" … in the order of RobotModel::wheels, then the
+/// Returns the name of a rolling shape: "robot_control/wheel/0" … in the order of DriveTrain::wheels, then the
 /// casters'.
 std::string mjcf_wheel_name(std::size_t wheel);
 
@@ -58,10 +58,10 @@ struct MjcfPlace {
 
 /// Returns the MJCF text of `robot`, the true one (true_robot.h). The scene's name is relative to the directory from
 /// which the text is loaded.
-std::string robot_mjcf(const RobotModel& robot, const MujocoPlantParameters& parameters, const MjcfPlace& place);
+std::string robot_mjcf(const DriveTrain& robot, const MujocoPlantParameters& parameters, const MjcfPlace& place);
 
 /// Sets ranges and spring angles of rotating joints, which the text leaves out because it does not know the scene's
 /// unit of angles.
-void apply_angles(const RobotModel& robot, mjModel& model);
+void apply_angles(const DriveTrain& robot, mjModel& model);
 
 }  // namespace robot_control

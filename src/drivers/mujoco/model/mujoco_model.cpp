@@ -17,8 +17,8 @@
 #include "drivers/mujoco/model/true_robot.h"
 #include "drivers/mujoco/mujoco_errors.h"
 #include "files/message_text.h"
-#include "machine/bodies/ground_points.h"
 #include "machine/description/wording.h"
+#include "machine/wheeled/ground_points.h"
 
 namespace robot_control {
 namespace {
@@ -103,7 +103,7 @@ void set_options(mjModel& model, double timestep, double slope, const std::array
 
 void find_addresses(MujocoModel& result) {
   const mjModel& model = *result.model;
-  const RobotModel& robot = result.robot;
+  const DriveTrain& robot = result.robot;
   result.base_body = find(model, mjOBJ_BODY, mjcf_body_name(robot.base_link));
   const int base_joint = model.body_jntadr[result.base_body];
   result.base_position = model.jnt_qposadr[base_joint];
@@ -140,7 +140,7 @@ std::string read_file(const std::filesystem::path& path) {
 
 }  // namespace
 
-MujocoModel compile_model(const RobotModel& robot, const MujocoPlantParameters& parameters, double period) {
+MujocoModel compile_model(const DriveTrain& robot, const MujocoPlantParameters& parameters, double period) {
   install_mujoco_handlers();
   const std::filesystem::path scene = parameters.scene;
   if (std::error_code error; !std::filesystem::exists(scene, error)) {
@@ -173,7 +173,7 @@ MujocoData set_down(const MujocoModel& robot) {
   return MujocoData(mj_makeData(robot.model.get()));
 }
 
-std::string exported_mjcf(const RobotModel& robot, const MujocoPlantParameters& parameters, double period) {
+std::string exported_mjcf(const DriveTrain& robot, const MujocoPlantParameters& parameters, double period) {
   MujocoPlantParameters native = parameters;
   native.tyre = TyreModel::kNative;
   const MujocoModel compiled = compile_model(robot, native, period);

@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "drivers/mujoco/mujoco_plant_parameters.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -36,14 +36,14 @@ using MujocoData = std::unique_ptr<mjData, DeleteMujoco>;
 
 struct MujocoModel {
   std::unique_ptr<mjModel, DeleteMujoco> model;
-  RobotModel robot;  ///< the true one (true_robot.h)
+  DriveTrain robot;  ///< the true one (true_robot.h)
   int substeps = 1;  ///< steps per period: ⌈period / 1 ms⌉
   int base_body = 0;
   int base_position = 0;            ///< index into qpos: x y z, quaternion w x y z
   int base_velocity = 0;            ///< index into qvel: linear in world axes, angular in base axes
-  std::vector<int> joint_position;  ///< indices into qpos, per joint of RobotModel
+  std::vector<int> joint_position;  ///< indices into qpos, per joint of DriveTrain
   std::vector<int> joint_velocity;  ///< indices into qvel and qfrc_applied
-  std::vector<int> wheel_shape;     ///< geoms of the drive wheels of RobotModel, then of its casters
+  std::vector<int> wheel_shape;     ///< geoms of the drive wheels of DriveTrain, then of its casters
   std::size_t drive_wheels = 0;
   std::array<double, 3> up{0, 0, 1};  ///< z axis of the site `start`, world axes
   int gyro = 0;                       ///< index into sensordata
@@ -52,13 +52,13 @@ struct MujocoModel {
 
 /// Compiles the model; `period` is in s. Throws DriverError if the scene does not compile (with MuJoCo's message), has
 /// no site `start` or changes the robot's mass. Throws RobotError as true_robot does.
-MujocoModel compile_model(const RobotModel& robot, const MujocoPlantParameters& parameters, double period);
+MujocoModel compile_model(const DriveTrain& robot, const MujocoPlantParameters& parameters, double period);
 
 /// Returns new data with the robot at its start pose and speed zero, before it settles.
 MujocoData set_down(const MujocoModel& robot);
 
 /// Returns robot and scene as one self-contained MJCF text for `mujoco-simulate`, with native friction, because that
 /// program has no other. Files that the scene loads (textures, meshes) keep their names. Throws as compile_model does.
-std::string exported_mjcf(const RobotModel& robot, const MujocoPlantParameters& parameters, double period);
+std::string exported_mjcf(const DriveTrain& robot, const MujocoPlantParameters& parameters, double period);
 
 }  // namespace robot_control

@@ -7,14 +7,14 @@
 namespace robot_control {
 namespace {
 
-RobotModel as_described(const RobotModel& described) {
-  RobotParameters names;
+DriveTrain as_described(const DriveTrain& described) {
+  DriveTrainParameters names;
   for (const WheelModel& wheel : described.wheels) {
     auto& side = wheel.side == Side::kLeft ? names.left_wheel_joints : names.right_wheel_joints;
     side.push_back(described.joints[wheel.joint].name);
   }
   names.imu_link = described.imu_link;
-  RobotModel robot = read_robot({described.urdf, described.source}, names);
+  DriveTrain robot = read_drive_train({described.urdf, described.source}, names);
   for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
     robot.joints[joint].effort_limit = described.joints[joint].effort_limit;
     robot.joints[joint].velocity_limit = described.joints[joint].velocity_limit;
@@ -34,7 +34,7 @@ void load(RigidBody& base, double mass, const Eigen::Vector3d& place) {
   base.inertia = both.inertia;
 }
 
-void load(RobotModel& robot, double mass, const Vector3& place) {
+void load(DriveTrain& robot, double mass, const Vector3& place) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     double& centre = robot.centre_of_gravity_base[axis];
     centre = (robot.mass * centre + mass * place[axis]) / (robot.mass + mass);
@@ -44,8 +44,8 @@ void load(RobotModel& robot, double mass, const Vector3& place) {
 
 }  // namespace
 
-RobotModel true_robot(const RobotModel& described, const MujocoPlantParameters& parameters) {
-  RobotModel robot = as_described(described);
+DriveTrain true_robot(const DriveTrain& described, const MujocoPlantParameters& parameters) {
+  DriveTrain robot = as_described(described);
   auto bodies = std::make_shared<RigidBodies>(*robot.bodies);
   const double widening = parameters.wheel_base_error * robot.wheel_base / 2;
   for (WheelModel& wheel : robot.wheels) {

@@ -14,11 +14,11 @@
 
 #include "drivers/mujoco/mujoco_plant_parameters.h"
 #include "machine/bodies/rigid_bodies.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
-/// Throws RobotError as read_robot does.
-RobotModel true_robot(const RobotModel& described, const MujocoPlantParameters& parameters);
+/// Throws RobotError as read_drive_train does.
+DriveTrain true_robot(const DriveTrain& described, const MujocoPlantParameters& parameters);
 
 }  // namespace robot_control

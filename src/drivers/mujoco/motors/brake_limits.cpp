@@ -1,47 +1,23 @@
 #include "drivers/mujoco/motors/brake_limits.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "drivers/driver.h"
-#include "machine/bodies/tipping.h"
+#include "gate/wheeled/wheel_stop.h"
 #include "machine/description/wording.h"
-#include "machine/gravity.h"
 
 namespace robot_control {
-namespace {
 
-constexpr double kPartOfLifting = 0.5;
-constexpr double kAlmostLifting = 0.9;
-constexpr double kMinPart = 0.1;
-constexpr double kSlopeHeld = 10 * M_PI / 180;
-constexpr double kSlopeBraked = 5 * M_PI / 180;
-constexpr double kHoldSpeed = 0.03;  // m/s at the rim
-
-}  // namespace
-
-Brake brake_of(const RobotModel& robot, std::size_t index, const MujocoPlantParameters& parameters, double step) {
+Brake brake_of(const DriveTrain& robot, std::size_t index, const MujocoPlantParameters& parameters, double step) {
   const WheelModel& wheel = robot.wheels[index];
   const JointModel& joint = robot.joints[wheel.joint];
-  double moved = robot.mass;
-  for (const WheelModel& other : robot.wheels) moved += other.inertia / (other.radius * other.radius);
-  const double lifting = lifting_deceleration(robot);
-  const double half = moved * kPartOfLifting * lifting;
-  const double weight = robot.mass * kGravity;
-  const double slope = weight * std::sin(kSlopeHeld);
-  const double almost = std::min(slope, kAlmostLifting * moved * lifting);
-  const double friction = joint.friction + parameters.gear_ratio * parameters.motor_friction;
-  const auto effort = [&](double force) {
-    const double share = force * wheel.radius / static_cast<double>(robot.wheels.size());
-    return std::min(parameters.brake_effort.value_or(std::max(share - friction, kMinPart * share)), joint.effort_limit);
-  };
-
-  Brake brake;
-  brake.effort = effort(std::max({half, weight * std::sin(kSlopeBraked), almost}));
-  brake.hold_effort = effort(std::max(half, slope));
-  brake.damping = parameters.brake_damping.value_or(0.4 * wheel.inertia / step);
-  brake.stiffness = parameters.brake_stiffness.value_or(0.06 * wheel.inertia / (step * step));
-  brake.hold_speed = parameters.brake_hold_speed.value_or(kHoldSpeed / wheel.radius);
+  Brake brake = wheel_brake(robot, index, parameters.gear_ratio * parameters.motor_friction, step);
+  if (parameters.brake_effort) {
+    brake.effort = brake.hold_effort = std::min(*parameters.brake_effort, joint.effort_limit);
+  }
+  brake.damping = parameters.brake_damping.value_or(brake.damping);
+  brake.stiffness = parameters.brake_stiffness.value_or(brake.stiffness);
+  brake.hold_speed = parameters.brake_hold_speed.value_or(brake.hold_speed);
   check_brake(brake, joint.name, wheel.inertia, step);
   return brake;
 }

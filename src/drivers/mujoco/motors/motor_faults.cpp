@@ -6,7 +6,7 @@
 
 namespace robot_control {
 
-MotorFaults::MotorFaults(const RobotModel& robot, std::uint64_t seed, double step)
+MotorFaults::MotorFaults(const DriveTrain& robot, std::uint64_t seed, double step)
     : left_{wheel_joints(robot, Side::kLeft),
             FaultyOutput<WheelCommands>(fault_seed(seed, FaultComponent::kLeftMotor))},
       right_{wheel_joints(robot, Side::kRight),

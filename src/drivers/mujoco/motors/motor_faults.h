@@ -17,7 +17,7 @@
 ///
 ///   τ = k·(q* − q) − d·q̇      k = J/(4 h²)      d = J/(2 h)
 ///
-/// J is the wheel's inertia and h the simulation's step. In the stability condition of joint_law.h a = d h/J is 1/2 and
+/// J is the wheel's inertia and h the simulation's step. In the stability condition of brake_law.h a = d h/J is 1/2 and
 /// b = k h²/J is 1/4, so 2a + b = 1.25 of 4. For J = 0.005 kg·m² and h = 1 ms a torque of 5 N·m turns the wheel by
 /// 4 mrad.
 
@@ -27,7 +27,7 @@
 #include <span>
 #include <vector>
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "signals/joint.h"
 #include "simulation/faults/faulty_output.h"
 
@@ -36,7 +36,7 @@ namespace robot_control {
 class MotorFaults {
  public:
   /// `step` is the simulation's time step h in s.
-  MotorFaults(const RobotModel& robot, std::uint64_t seed, double step);
+  MotorFaults(const DriveTrain& robot, std::uint64_t seed, double step);
 
   /// Removes all faults.
   void reset() noexcept;

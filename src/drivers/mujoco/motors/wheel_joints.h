@@ -4,11 +4,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
-inline std::vector<std::size_t> wheel_joints(const RobotModel& robot, Side side) {
+inline std::vector<std::size_t> wheel_joints(const DriveTrain& robot, Side side) {
   std::vector<std::size_t> joints;
   for (const WheelModel& wheel : robot.wheels) {
     if (wheel.side == side) joints.push_back(wheel.joint);

@@ -14,7 +14,7 @@ namespace robot_control {
 struct Measurement {
   std::array<JointSample, kMaxJoints> joints{};
   ImuSample imu;
-  std::array<Vector3, kMaxContacts> contact_forces{};
+  std::array<ContactSample, kMaxContacts> contacts{};
   BatterySample battery;
   std::uint64_t digital_inputs = 0;  ///< DigitalInput bits
 };

@@ -42,7 +42,7 @@ void InertialError::step(Vector3& value) noexcept {
   }
 }
 
-SensorErrors::SensorErrors(const RobotModel& robot, const MujocoPlantParameters& parameters, double period)
+SensorErrors::SensorErrors(const DriveTrain& robot, const MujocoPlantParameters& parameters, double period)
     : level_(parameters.sensor_errors),
       seed_(parameters.seed),
       period_(period),

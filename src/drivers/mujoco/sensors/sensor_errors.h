@@ -41,7 +41,7 @@
 #include "drivers/mujoco/sensors/measurement.h"
 #include "drivers/mujoco/sensors/normal_stream.h"
 #include "drivers/mujoco/sensors/vibration.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "simulation/faults/delay_line.h"
 
 namespace robot_control {
@@ -74,7 +74,7 @@ class InertialError {
 class SensorErrors {
  public:
   /// Throws DriverError for a delay of more than kMaxDelay cycles. At kIdeal no step changes anything.
-  SensorErrors(const RobotModel& robot, const MujocoPlantParameters& parameters, double period);
+  SensorErrors(const DriveTrain& robot, const MujocoPlantParameters& parameters, double period);
 
   /// Restarts all errors; an ordinary thread calls it.
   void reset();

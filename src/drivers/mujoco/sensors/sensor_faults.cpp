@@ -47,7 +47,7 @@ bool pressed(FaultyOutput<bool>& button, FaultKind kind, std::uint64_t cycle) no
 
 }  // namespace
 
-SensorFaults::SensorFaults(const RobotModel& robot, std::uint64_t seed)
+SensorFaults::SensorFaults(const DriveTrain& robot, std::uint64_t seed)
     : left_{wheel_joints(robot, Side::kLeft), FaultyOutput<Readings>(fault_seed(seed, FaultComponent::kLeftEncoder))},
       right_{wheel_joints(robot, Side::kRight),
              FaultyOutput<Readings>(fault_seed(seed, FaultComponent::kRightEncoder))},

@@ -34,7 +34,7 @@
 #include <vector>
 
 #include "drivers/mujoco/sensors/sensor_errors.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 #include "signals/sensor_frame.h"
 #include "simulation/faults/faulty_output.h"
 
@@ -48,7 +48,7 @@ class SensorFaults {
   static constexpr double kGarbageCurrent = 100;        ///< A
   static constexpr double kWrongVoltage = 0.6;  ///< factor; the result is below the voltage of any charged battery
 
-  SensorFaults(const RobotModel& robot, std::uint64_t seed);
+  SensorFaults(const DriveTrain& robot, std::uint64_t seed);
 
   /// Removes all faults.
   void reset() noexcept;

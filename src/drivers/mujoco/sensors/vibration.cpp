@@ -5,7 +5,7 @@
 
 namespace robot_control {
 
-Vibration::Vibration(const RobotModel& robot, const Errors& errors, double period)
+Vibration::Vibration(const DriveTrain& robot, const Errors& errors, double period)
     : period_(period),
       follow_(1 - std::exp(-2 * std::numbers::pi * kBandwidth * period)),
       gyro_(errors.roughness * errors.gyro_vibration / std::sqrt(period)),

@@ -17,7 +17,7 @@
 #include "drivers/mujoco/mujoco_plant_parameters.h"
 #include "drivers/mujoco/sensors/measurement.h"
 #include "drivers/mujoco/sensors/normal_stream.h"
-#include "machine/robot_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -28,7 +28,7 @@ class Vibration {
   static constexpr double kLength = 0.5;  ///< m; in the recordings, slow errors fall to half in 0.5 … 2 s
 
   /// `period` is in s.
-  Vibration(const RobotModel& robot, const Errors& errors, double period);
+  Vibration(const DriveTrain& robot, const Errors& errors, double period);
 
   void reset(std::uint64_t seed);
 

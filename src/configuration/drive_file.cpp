@@ -1,0 +1,167 @@
+#include "configuration/drive_file.h"
+
+#include <algorithm>
+
+#include "configuration/peer_file.h"
+#include "drivers/can/can_load.h"
+#include "drivers/can/drive_set.h"
+#include "drivers/can/odrive/odrive_codec.h"
+#include "parameters/tree_reader.h"
+
+namespace robot_control {
+namespace {
+
+constexpr const char* kBus = "bus";
+constexpr const char* kEveryJoint = "every_joint";
+constexpr double kMinRate = 100;  // Hz, of robot.rate
+
+using cia402::Cia402Parameters;
+using odrive::OdriveParameters;
+
+std::string block_of(const std::string& path) {
+  return path.substr(0, path.find('.'));
+}
+
+/// Moves the block out of the tree.
+ParameterTree extracted(ParameterTree& tree, const std::string& block) {
+  ParameterTree part;
+  std::erase_if(tree.entries, [&](const auto& entry) {
+    if (block_of(entry.first) != block) return false;
+    part.entries.insert(entry);
+    return true;
+  });
+  std::erase_if(tree.blocks, [&](const BlockEntry& entry) {
+    if (entry.name != block) return false;
+    part.blocks.push_back(entry);
+    return true;
+  });
+  return part;
+}
+
+/// A DriveFileReader collects the problems of one file.
+class DriveFileReader {
+ public:
+  DriveFileReader(const std::string& path, std::span<const std::string> joints, double rate)
+      : path_(path), joints_(joints), rate_(rate), tree_(read_tree(path, {}, problems_, &peer_problem)) {}
+
+  CanParameters read() {
+    const std::string subject = "drive file refused (" + path_ + ")";
+    if (tree_.blocks.empty() && problems_.empty()) problems_.add({path_, "", "holds no blocks", "", ""});
+    if (tree_.blocks.empty()) problems_.throw_if_any(subject);
+    CanParameters can;
+    ParameterTree bus = extracted(tree_, kBus);
+    bool known_dialect = false;
+    const Schema schema = schema_of({{kBus, keys(can.bus)}}, [&](const Schema&, GivenValues& given) {
+      known_dialect = given.accepted("bus.dialect");
+    });
+    read_blocks(std::move(bus), schema, schema.blocks, path_, problems_);
+    if (!known_dialect) problems_.throw_if_any(subject);
+    if (can.bus.dialect == CanDialect::kOdrive) {
+      can.joints = read_joints<OdriveParameters>(can);
+    } else {
+      can.joints = read_joints<Cia402Parameters>(can);
+    }
+    problems_.throw_if_any(subject);
+    const std::vector<PlannedFrames> plan = DriveSet(can, 1 / rate_).plan();
+    if (const auto problem = bus_load_problem(plan, rate_, can.bus.bit_rate, kMinRate)) {
+      problems_.add({"bus.bit_rate", shortest(can.bus.bit_rate), *problem, path_, ""});
+    }
+    problems_.throw_if_any(subject);
+    return can;
+  }
+
+ private:
+  static Schema schema_of(std::vector<Block> blocks, std::function<void(const Schema&, GivenValues&)> check) {
+    return {.blocks = std::move(blocks), .check = std::move(check), .other_package_remedy = [](std::string_view) {
+              return std::string();
+            }};
+  }
+
+  template <class Parameters>
+  std::vector<Parameters> read_joints(const CanParameters& can) {
+    Parameters all;
+    Block every{kEveryJoint, keys(all)};
+    for (Key& key : every.keys) key.traits |= kOptional;
+    const Schema every_schema = schema_of({every}, [](const Schema&, GivenValues&) {});
+    const ParameterTree common = extracted(tree_, kEveryJoint);
+    read_blocks(common, every_schema, every_schema.blocks, path_, problems_);
+
+    std::vector<Parameters> joints(joints_.size(), all);
+    std::vector<Block> blocks;
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      joints[i].drive.joint = joints_[i];
+      blocks.push_back({joints_[i], keys(joints[i])});
+      for (Key& key : blocks.back().keys) {
+        if (common.entries.contains(path_of(every, key))) key.traits |= kOptional;
+      }
+    }
+    const Schema schema = schema_of(std::move(blocks), [&](const Schema&, GivenValues& given) {
+      for (std::size_t i = 0; i < joints.size(); ++i) check_joint(joints, i, can, given);
+    });
+    read_blocks(std::move(tree_), schema, schema.blocks, path_, problems_);
+    return joints;
+  }
+
+  /// Refuses the value of a joint, or that of every_joint.
+  void refuse(GivenValues& given, const std::string& joint, const std::string& key, const std::string& rule,
+              const std::string& remedy = "") {
+    const std::string path = joint + "." + key;
+    if (given.accepted(path)) return given.refuse(path, rule, remedy);
+    if (!given.refused(path)) problems_.add({path, "", rule, path_, remedy});
+  }
+
+  template <class Parameters>
+  void check_joint(const std::vector<Parameters>& joints, std::size_t i, const CanParameters& can, GivenValues& given) {
+    const DriveParameters& drive = joints[i].drive;
+    if (drive.direction == 0) refuse(given, drive.joint, "direction", "must be 1 or -1");
+    check_dialect(joints[i], can, given);
+    for (std::size_t j = 0; j < i; ++j) {
+      if (same_axis(joints[i], joints[j]) && given.accepted(drive.joint + ".node")) {
+        refuse(given, drive.joint, "node", "is the drive of " + joints[j].drive.joint + ", too",
+               "each joint has its own");
+      }
+    }
+  }
+
+  static bool same_axis(const OdriveParameters& one, const OdriveParameters& other) {
+    return one.drive.node == other.drive.node;
+  }
+  static bool same_axis(const Cia402Parameters& one, const Cia402Parameters& other) {
+    return one.drive.node == other.drive.node && one.axis == other.axis;
+  }
+
+  void check_dialect(const OdriveParameters& p, const CanParameters& /*can*/, GivenValues& given) {
+    const DriveParameters& drive = p.drive;
+    if (drive.node > odrive::kMaxNode) refuse(given, drive.joint, "node", "must be 0 … 63 on an ODrive");
+    if (drive.on_silence == SilenceReaction::kBrakes || drive.on_silence == SilenceReaction::kHolds) {
+      refuse(given, drive.joint, "on_silence", "must be coasts or unknown: an ODrive releases the motor");
+    }
+    if ((p.enable_watchdog_endpoint == 0) != (p.watchdog_timeout_endpoint == 0)) {
+      const char* missing = p.enable_watchdog_endpoint == 0 ? "enable_watchdog_endpoint" : "watchdog_timeout_endpoint";
+      refuse(given, drive.joint, missing, "is missing: both endpoints of the watchdog are needed, or none");
+    }
+    if (p.enable_watchdog_endpoint != 0 && p.firmware == odrive::Firmware::k05) {
+      refuse(given, drive.joint, "firmware", "must not be 0.5, which has no endpoints on CAN");
+    }
+  }
+
+  void check_dialect(const Cia402Parameters& p, const CanParameters& can, GivenValues& given) {
+    if (p.drive.node == 0 || p.drive.node == can.bus.host_node) {
+      refuse(given, p.drive.joint, "node", "must be 1 … 127 and not bus.host_node");
+    }
+  }
+
+  const std::string& path_;
+  std::span<const std::string> joints_;
+  double rate_;
+  ProblemList problems_;
+  ParameterTree tree_;
+};
+
+}  // namespace
+
+CanParameters read_drive_file(const std::string& path, std::span<const std::string> joints, double rate) {
+  return DriveFileReader(path, joints, rate).read();
+}
+
+}  // namespace robot_control

@@ -1,0 +1,181 @@
+#include "drivers/can/drive.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace robot_control {
+namespace {
+
+struct CauseWords {
+  const char* words;
+  const char* remedy;
+};
+
+// In the order of DriveCause.
+constexpr CauseWords kCauseWords[] = {
+    {"", ""},
+    {"waits for a first frame of the drive", "look at its power, the cable, the node number and the bit rate"},
+    {"waits for version and identity", ""},
+    {"waits for object", ""},
+    {"waits for the first position", "let the drive send its positions, or request them by the drive file"},
+    {"waits to be enabled", ""},
+    {"waits for torque", ""},
+    {"is silent: no", "look at its power and the cable"},
+    {"reports an error:", "remove the cause, then reset"},
+    {"released the motor without an error:", "look at its supply and its own limits, then reset"},
+    {"was switched on again", "look at its supply, then reset"},
+    {"reports a jump of its", "the drive has another zero or was switched on again; reset where it stands still"},
+    {"sent a number that is not finite", "look at the encoder, then reset"},
+    {"is too hot:", "let it cool, then reset"},
+    {"has a low supply:", "charge the battery, then reset"},
+    {"is commanded by another program, with frame", "stop that program, then reset"},
+    {"differs from the drive file:", "correct the drive or the file, then reset"},
+    {"lacks", "use a drive that has it, or state it in the drive file"},
+    {"refused to set", "set it with the maker's tool, or leave it out of the drive file"},
+    {"did not answer a request for", "look at the cable, then reset"},
+    {"stays without torque:", "look at its supply, its calibration and its enable input, then reset"},
+    {"shares its node number with a second drive", "give one of them another number"},
+    {"has another axis in fault", ""},
+    {"has an unknown reaction on silence",
+     "set its watchdog and state on_silence, or accept_unknown_watchdog: true in the drive file"},
+};
+static_assert(std::size(kCauseWords) == static_cast<std::size_t>(DriveCause::kUnknownWatchdog) + 1);
+
+constexpr const char* kStateWords[] = {"starting", "ready", "running", "fault"};
+
+std::string number_words(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+}  // namespace
+
+JointSample at_time(const DriveSample& sample, std::int64_t now_ns) noexcept {
+  JointSample joint = sample.joint;
+  joint.position += joint.velocity * 1.0e-9 * static_cast<double>(now_ns - sample.stamp_ns);
+  return joint;
+}
+
+void FrameBatch::add(const can_frame& frame) noexcept {
+  if (count_ == frames_.size()) {
+    ++dropped_;
+  } else {
+    frames_[count_++] = frame;
+  }
+}
+
+Drive::Drive(DriveParameters parameters, double period)
+    : period_ns_(std::llround(1.0e9 * period)),
+      drive_(std::move(parameters)),
+      to_joint_(static_cast<double>(drive_.direction) / drive_.gear) {}
+
+void Drive::step(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept {
+  if (command.reset && !reset_before_ && status_.state == DriveState::kFault) {
+    status_ = {};
+    sample_ = {};
+    on_silence_ = {};
+    restart(true, now_ns);
+  }
+  reset_before_ = command.reset;
+  judge_silence(now_ns);
+  DriveCommand limited = command;
+  limited.torque =
+      std::isfinite(command.torque) ? std::clamp(command.torque, -drive_.torque_limit, drive_.torque_limit) : 0;
+  advance(limited, now_ns, send);
+}
+
+void Drive::judge_silence(std::int64_t now_ns) noexcept {
+  if (sample_.valid && now_ns - sample_.stamp_ns > max_silence_ns()) {
+    if (status_.state == DriveState::kReady) {
+      status_ = {};
+      restart(false, now_ns);
+    } else if (status_.state == DriveState::kRunning) {
+      fail(DriveCause::kSilent, "position");
+    }
+    sample_.valid = false;
+  }
+  if (now_ns - effort_ns_ > 5 * max_silence_ns()) sample_.effort_valid = false;
+}
+
+std::int64_t Drive::max_silence_ns() const noexcept {
+  const auto sample = std::max<std::int64_t>(period_ns_, std::llround(1.0e9 * drive_.sample_period));
+  return static_cast<std::int64_t>(drive_.max_silence) * sample;
+}
+
+void Drive::set(DriveState state, DriveCause cause, const char* subject, std::uint64_t code) noexcept {
+  if (status_.state == DriveState::kFault) return;
+  status_ = {.state = state, .cause = cause, .subject = subject, .code = code};
+}
+
+void Drive::fail(DriveCause cause, const char* subject, std::uint64_t code, double found, double expected) noexcept {
+  const bool brakes =
+      cause == DriveCause::kHot || cause == DriveCause::kUnderVoltage || cause == DriveCause::kForeignCommander;
+  if (status_.state == DriveState::kFault && (brakes || !may_brake_)) return;
+  may_brake_ = brakes && status_.state == DriveState::kRunning;
+  status_ = {.state = DriveState::kFault,
+             .cause = cause,
+             .subject = subject,
+             .code = code,
+             .found = found,
+             .expected = expected};
+}
+
+void Drive::accept_position(double position, double velocity, std::int64_t now_ns) noexcept {
+  if (!std::isfinite(position) || !std::isfinite(velocity)) return fail(DriveCause::kNotFinite);
+  JointSample& joint = sample_.joint;
+  const double moved = to_joint_ * position - joint.position;
+  // A frame may be late by a period; a joint that is pushed may be twice as fast as its limit.
+  const double elapsed = 1.0e-9 * static_cast<double>(now_ns - sample_.stamp_ns + 2 * period_ns_);
+  const double maximum = 2 * drive_.velocity_limit * std::fmax(elapsed, 2 * drive_.sample_period);
+  if (sample_.valid && std::abs(moved) > maximum) fail(DriveCause::kPositionJump, "position", 0, moved, maximum);
+  joint.position = to_joint_ * position;
+  joint.velocity = to_joint_ * velocity;
+  sample_.stamp_ns = now_ns;
+  sample_.valid = true;
+}
+
+void Drive::accept_motor_torque(double torque, std::int64_t now_ns) noexcept {
+  if (!std::isfinite(torque)) return fail(DriveCause::kNotFinite);
+  sample_.joint.effort = torque / to_joint_;
+  sample_.effort_valid = true;
+  effort_ns_ = now_ns;
+}
+
+void Drive::accept_temperature(double celsius) noexcept {
+  if (!std::isfinite(celsius)) return;
+  sample_.joint.temperature = celsius;
+  if (celsius > drive_.max_temperature) fail(DriveCause::kHot, "temperature", 0, celsius, drive_.max_temperature);
+}
+
+void Drive::accept_voltage(double voltage) noexcept {
+  if (!std::isfinite(voltage)) return;
+  sample_.voltage = voltage;
+  if (voltage < drive_.min_voltage) fail(DriveCause::kUnderVoltage, "voltage", 0, voltage, drive_.min_voltage);
+}
+
+void Drive::settle_reaction() noexcept {
+  if (on_silence_.evidence == Evidence::kNone && drive_.on_silence != SilenceReaction::kUnknown) {
+    on_silence_ = {drive_.on_silence, Evidence::kConfirmed};
+  }
+  if (on_silence_.reaction == SilenceReaction::kUnknown && !drive_.accept_unknown_watchdog) {
+    fail(DriveCause::kUnknownWatchdog);
+  }
+}
+
+std::string Drive::words() const {
+  const CauseWords& cause = kCauseWords[static_cast<std::size_t>(status_.cause)];
+  std::string text = drive_.joint + " (node " + std::to_string(drive_.node) +
+                     "): " + kStateWords[static_cast<std::size_t>(status_.state)];
+  if (status_.cause == DriveCause::kNone) return text;
+  text += std::string("; the drive ") + cause.words;
+  if (*status_.subject != '\0') text += std::string(" ") + status_.subject;
+  if (const std::string code = code_words(status_); !code.empty()) text += " " + code;
+  if (status_.found != status_.expected) {
+    text += ", " + number_words(status_.found) + " instead of " + number_words(status_.expected);
+  }
+  return *cause.remedy == '\0' ? text : text + "; " + cause.remedy;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,181 @@
+#pragma once
+/// A Drive is the state machine of one motor drive on CAN. Each dialect (odrive, cia402) derives from it.
+///
+///   starting ──set up and compared──▶ ready ──enabled──▶ running ──error, silence, jump …──▶ fault
+///
+/// Frames that were received, the time and the command go in; frames to send, a status and a sample come out. Nothing
+/// reads a clock. After construction nothing allocates or throws, except `words`.
+///
+/// In `starting` a drive may be absent for any time. In `ready` the motor has no torque. A fault is left by the
+/// operator's reset alone, with which the start-up begins again. Position, velocity and torque belong to the joint:
+/// motor angle = direction · gear · joint angle, motor torque = direction · joint torque / gear.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "drivers/can/can_frame.h"
+#include "drivers/can/can_load.h"
+#include "drivers/can/drive_parameters.h"
+#include "signals/joint.h"
+
+namespace robot_control {
+
+enum class DriveState : std::uint8_t { kStarting, kReady, kRunning, kFault };
+
+/// Why a drive is not running.
+enum class DriveCause : std::uint8_t {
+  kNone,
+  // The drive waits:
+  kFirstFrame,   ///< for any sign of life of the drive
+  kIdentity,     ///< for version, serial number and configuration
+  kSetup,        ///< for an object to be written or read; code: index << 8 | sub-index
+  kFirstSample,  ///< for the first position
+  kEnable,       ///< for the command that enables the motor
+  kPower,        ///< for the state in which the motor has torque; code: the present state
+  // The drive is in fault:
+  kSilent,            ///< no frame of `subject` in time
+  kDriveError,        ///< The drive reports an error; code: its code.
+  kReleased,          ///< The drive left the state with torque without an error; code: its state.
+  kRestarted,         ///< The drive was switched on again.
+  kPositionJump,      ///< The position moved faster than the joint can, as after another zero.
+  kNotFinite,         ///< The drive sent NaN or infinity.
+  kHot,               ///< found: °C, expected: the limit
+  kUnderVoltage,      ///< found: V, expected: the limit
+  kForeignCommander,  ///< Another program commands this drive; code: identifier of the frame.
+  kDiffers,           ///< `subject` is `found` in the drive and `expected` in the drive file.
+  kLacks,             ///< The drive has no `subject`, which is needed; code: abort code or 0.
+  kRefused,           ///< The drive refused to set `subject`; code: abort code.
+  kNoAnswer,          ///< The drive did not answer a request for `subject`.
+  kStaysOff,          ///< The motor was requested, and has no torque; code: the present state.
+  kTwoDrives,         ///< Two drives have this node number.
+  kOtherAxis,         ///< The other axis of the drive is in fault.
+  kUnknownWatchdog,   ///< The reaction of the drive on silence is unknown, and that is not accepted.
+};
+
+/// A copy of it is printed by Drive::words.
+struct DriveStatus {
+  DriveState state = DriveState::kStarting;
+  DriveCause cause = DriveCause::kFirstFrame;
+  const char* subject = "";  ///< a literal
+  std::uint64_t code = 0;
+  double found = 0;
+  double expected = 0;
+};
+
+/// How the reaction on silence is known.
+enum class Evidence : std::uint8_t {
+  kNone,
+  kRead,       ///< read from the drive, or written and read back
+  kConfirmed,  ///< stated by the user in the drive file
+};
+
+struct KnownReaction {
+  SilenceReaction reaction = SilenceReaction::kUnknown;
+  Evidence evidence = Evidence::kNone;
+};
+
+struct DriveCommand {
+  bool enabled = false;  ///< The motor shall have torque.
+  bool reset = false;    ///< The operator resets; its rising edge counts.
+  double torque = 0;     ///< N·m or N, of the joint; applied in `running` alone
+};
+
+struct DriveSample {
+  JointSample joint{};
+  bool valid = false;         ///< position and velocity
+  bool effort_valid = false;  ///< `effort` is measured and not older than 5 · max_silence.
+  std::int64_t stamp_ns = 0;  ///< when the position was received
+  double voltage = 0;         ///< V, of the drive's supply; 0: unknown
+};
+
+/// Returns the sample at another time: the position moves on with the velocity.
+JointSample at_time(const DriveSample& sample, std::int64_t now_ns) noexcept;
+
+/// The frames of one cycle. Frames beyond its size are counted and dropped.
+class FrameBatch {
+ public:
+  void add(const can_frame& frame) noexcept;
+  void clear() noexcept { count_ = 0; }
+  std::span<const can_frame> frames() const noexcept { return {frames_.data(), count_}; }
+  std::uint64_t dropped() const noexcept { return dropped_; }
+
+ private:
+  std::array<can_frame, 512> frames_{};
+  std::size_t count_ = 0;
+  std::uint64_t dropped_ = 0;
+};
+
+class Drive {
+ public:
+  /// `period` is that of the loop in s.
+  Drive(DriveParameters parameters, double period);
+  virtual ~Drive() = default;
+  Drive(const Drive&) = delete;
+  Drive& operator=(const Drive&) = delete;
+
+  /// Takes a frame that was received from any party of the bus; `now_ns` is the time of its reception.
+  virtual void receive(const can_frame& frame, std::int64_t now_ns) noexcept = 0;
+
+  /// Runs one cycle after all frames were received, and adds the frames to send.
+  void step(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept;
+
+  const DriveStatus& status() const noexcept { return status_; }
+  const DriveSample& sample() const noexcept { return sample_; }
+  const DriveParameters& drive_parameters() const noexcept { return drive_; }
+
+  /// Known from `ready` on.
+  const KnownReaction& on_silence() const noexcept { return on_silence_; }
+
+  /// Returns joint, state, cause with its code in words, and the remedy.
+  std::string words() const;
+
+  /// Returns the frames that are on the bus in `running`, with those of the drive, to compute the load.
+  virtual std::vector<PlannedFrames> plan() const = 0;
+
+ protected:
+  /// Forgets what was learned of the drive. `reset`: the operator asks to clear its errors.
+  virtual void restart(bool reset, std::int64_t now_ns) noexcept = 0;
+  /// Runs one cycle. The torque is finite and within the limit.
+  virtual void advance(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept = 0;
+  virtual std::string code_words(const DriveStatus& status) const = 0;
+
+  /// Returns whether the motor is to have no torque because of a fault. A running drive that is hot, has a low voltage
+  /// or a second commander obeys further, because it can brake the joint.
+  bool disabled() const noexcept { return status_.state == DriveState::kFault && !may_brake_; }
+
+  void set(DriveState state, DriveCause cause, const char* subject = "", std::uint64_t code = 0) noexcept;
+  /// The first fault stays until the reset.
+  void fail(DriveCause cause, const char* subject = "", std::uint64_t code = 0, double found = 0,
+            double expected = 0) noexcept;
+
+  /// Motor position in rad, velocity in rad/s.
+  void accept_position(double position, double velocity, std::int64_t now_ns) noexcept;
+  void accept_motor_torque(double torque, std::int64_t now_ns) noexcept;
+  void accept_temperature(double celsius) noexcept;
+  void accept_voltage(double voltage) noexcept;
+  double motor_torque(double joint_torque) const noexcept { return to_joint_ * joint_torque; }
+  std::int64_t max_silence_ns() const noexcept;
+
+  void know_reaction(SilenceReaction reaction, Evidence evidence) noexcept { on_silence_ = {reaction, evidence}; }
+  /// Takes the user's word where nothing was read. Fails if nothing is known and that is not accepted.
+  void settle_reaction() noexcept;
+
+  const std::int64_t period_ns_;
+
+ private:
+  void judge_silence(std::int64_t now_ns) noexcept;
+
+  DriveParameters drive_;
+  double to_joint_;  // joint angle = to_joint_ · motor angle, motor torque = to_joint_ · joint torque
+  DriveStatus status_;
+  DriveSample sample_;
+  KnownReaction on_silence_;
+  std::int64_t effort_ns_ = 0;
+  bool reset_before_ = false;
+  bool may_brake_ = false;
+};
+
+}  // namespace robot_control

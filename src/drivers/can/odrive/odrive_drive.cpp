@@ -1,0 +1,359 @@
+#include "drivers/can/odrive/odrive_drive.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "drivers/can/odrive/odrive_errors.h"
+#include "drivers/can/odrive/odrive_messages_05.h"
+#include "drivers/can/odrive/odrive_messages_06.h"
+
+namespace robot_control::odrive {
+namespace {
+
+constexpr std::int64_t kSlowNs = 100'000'000;     // of temperature and voltage
+constexpr std::int64_t kAddressNs = 20'000'000;   // in which a second drive would have answered
+constexpr std::int64_t kEnterNs = 3'000'000'000;  // more than any axis needs to enter closed loop
+constexpr double kMaxHeartbeats = 6.5;            // Five lost ones in a row happen once in 10⁶ at a loss of 5 %.
+constexpr double kVelocityMargin = 1.5;           // Torque mode reduces the torque before the limit.
+
+/// Messages to an axis that move it or change how it moves.
+constexpr bool commands_motion(std::uint8_t command) noexcept {
+  switch (command) {
+    case Estop::kCommand.number:
+    case SetAxisState::kCommand.number:
+    case SetControllerMode::kCommand.number:
+    case SetInputPosition::kCommand.number:
+    case SetInputVelocity::kCommand.number:
+    case SetInputTorque::kCommand.number:
+    case SetLimits::kCommand.number:
+    case v06::Reboot::kCommand.number:
+    case v06::ClearErrors::kCommand.number:
+    case v06::SetAbsolutePosition::kCommand.number:
+    case SetVelocityGains::kCommand.number:
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// Returns the distance to the next float of this many turns, in rad.
+double float_step(double position) noexcept {
+  const auto turns = static_cast<float>(std::abs(position) / kTurn);
+  return kTurn * (std::nextafter(turns, std::numeric_limits<float>::max()) - turns);
+}
+
+/// Returns the axis errors MOTOR_FAILED, ENCODER_FAILED, CONTROLLER_FAILED of a heartbeat of 0.5 with these flags.
+std::uint32_t parts_in_error(const can_frame& frame) noexcept {
+  const auto heartbeat = decode<v05::Heartbeat>(frame).value_or(v05::Heartbeat{});
+  return (heartbeat.motor_error ? 0x40U : 0U) | (heartbeat.encoder_error ? 0x100U : 0U) |
+         (heartbeat.controller_error ? 0x200U : 0U);
+}
+
+DriveParameters with_sample_period(DriveParameters drive, double period) {
+  drive.sample_period = period;
+  return drive;
+}
+
+}  // namespace
+
+OdriveDrive::OdriveDrive(const OdriveParameters& parameters, double period)
+    : Drive(with_sample_period(parameters.drive, parameters.estimates_period), period), parameters_(parameters) {}
+
+std::vector<PlannedFrames> OdriveDrive::plan() const {
+  std::vector<PlannedFrames> plan{{.data_bytes = 4, .per_cycle = 1}};
+  if (parameters_.estimates_period > 0) {
+    plan.push_back({.data_bytes = 8, .per_second = 1 / parameters_.estimates_period});
+  } else {
+    plan.push_back({.data_bytes = 0, .per_cycle = 1});
+    plan.push_back({.data_bytes = 8, .per_cycle = 1});
+  }
+  constexpr double kSlowRate = 2 * 1.0e9 / kSlowNs;
+  plan.push_back({.data_bytes = 0, .per_second = parameters_.effort_rate + kSlowRate});
+  plan.push_back(
+      {.data_bytes = 8, .per_second = parameters_.effort_rate + kSlowRate + 1 / parameters_.heartbeat_period});
+  return plan;
+}
+
+void OdriveDrive::restart(bool reset, std::int64_t now_ns) noexcept {
+  enter(Phase::kHeartbeat);
+  reset_ = reset;
+  firmware_ = Firmware::kAny;
+  axis_state_ = AxisState::kUndefined;
+  axis_error_ = 0;
+  details_ = {};
+  serial_number_ = 0;
+  watchdog_enabled_.reset();
+  watchdog_timeout_.reset();
+  pending_shift_ = 0;
+  heartbeat_ns_ = moving_ns_ = now_ns;
+}
+
+void OdriveDrive::enter(Phase phase) noexcept {
+  phase_ = phase;
+  tries_ = 0;
+  next_request_ns_ = 0;
+}
+
+void OdriveDrive::know_firmware(Firmware firmware) noexcept {
+  firmware_ = firmware;
+  enter(firmware == Firmware::k06 ? Phase::kAddress : Phase::kPosition);
+  if (parameters_.firmware == Firmware::kAny || parameters_.firmware == firmware) return;
+  fail(DriveCause::kDiffers, "firmware", 0, firmware == Firmware::k05 ? 0.5 : 0.6,
+       firmware == Firmware::k05 ? 0.6 : 0.5);
+}
+
+/// An axis with a watchdog reports at each start that it expired: no host was there.
+bool OdriveDrive::clears(std::uint32_t error) const noexcept {
+  const std::uint32_t expired = firmware_ == Firmware::k06 ? kWatchdogExpired06 : kWatchdogExpired05;
+  return phase_ != Phase::kRunning && (reset_ || error == expired);
+}
+
+bool OdriveDrive::due(std::int64_t& next_ns, std::int64_t interval_ns, std::int64_t now_ns) const noexcept {
+  if (now_ns < next_ns) return false;
+  next_ns = now_ns + interval_ns;
+  return true;
+}
+
+void OdriveDrive::receive(const can_frame& frame, std::int64_t now_ns) noexcept {
+  if (!is_standard_data(frame) || node_of(frame) != node()) return;
+  if (commands_motion(command_of(frame))) {
+    return fail(DriveCause::kForeignCommander, "", frame.can_id);
+  }
+  receive_heartbeat(frame, now_ns);
+  receive_identity(frame);
+  if (const auto estimates = decode<EncoderEstimates>(frame)) receive_estimates(*estimates, now_ns);
+  receive_measurements(frame, now_ns);
+  receive_error_details(frame);
+}
+
+void OdriveDrive::receive_heartbeat(const can_frame& frame, std::int64_t now_ns) noexcept {
+  const auto heartbeat = decode<v06::Heartbeat>(frame);  // Error and state are at the same place in 0.5.
+  if (!heartbeat) return;
+  heartbeat_ns_ = now_ns;
+  axis_state_ = heartbeat->state;
+  axis_error_ = heartbeat->error;
+  if (phase_ == Phase::kHeartbeat) enter(Phase::kVersion);
+  if (firmware_ == Firmware::k05) axis_error_ |= parts_in_error(frame);
+}
+
+void OdriveDrive::receive_identity(const can_frame& frame) noexcept {
+  if (const auto version = decode<v06::Version>(frame); version && phase_ == Phase::kVersion) {
+    know_firmware(Firmware::k06);
+  }
+  if (firmware_ != Firmware::k06) return;
+  if (const auto address = decode<v06::Address>(frame)) {
+    if (serial_number_ != 0 && address->serial_number != serial_number_) return fail(DriveCause::kTwoDrives);
+    serial_number_ = address->serial_number;
+  }
+  if (const auto answer = decode<v06::TxSdo>(frame)) {
+    if (answer->endpoint == parameters_.enable_watchdog_endpoint) watchdog_enabled_ = (answer->value & 0xFFU) != 0;
+    if (answer->endpoint == parameters_.watchdog_timeout_endpoint) {
+      watchdog_timeout_ = double{std::bit_cast<float>(answer->value)};
+    }
+  }
+}
+
+void OdriveDrive::receive_estimates(const EncoderEstimates& estimates, std::int64_t now_ns) noexcept {
+  const double position = estimates.position;
+  if (pending_shift_ != 0 &&
+      std::abs(position + pending_shift_ - motor_position_) < std::abs(position - motor_position_)) {
+    shift_ += pending_shift_;
+    pending_shift_ = 0;
+  }
+  motor_position_ = position;
+  if (!(std::abs(estimates.velocity) < kRestSpeed)) moving_ns_ = now_ns;
+  accept_position(position + shift_, estimates.velocity, now_ns);
+}
+
+void OdriveDrive::receive_measurements(const can_frame& frame, std::int64_t now_ns) noexcept {
+  if (const auto iq = decode<Iq>(frame); iq && firmware_ == Firmware::k05) {
+    accept_motor_torque(iq->measured * parameters_.torque_constant, now_ns);
+  }
+  if (const auto bus = decode<BusVoltageCurrent>(frame)) accept_voltage(bus->voltage);
+  if (firmware_ != Firmware::k06) return;
+  if (const auto torques = decode<v06::Torques>(frame)) accept_motor_torque(torques->estimate, now_ns);
+  if (const auto temperature = decode<v06::Temperature>(frame)) {
+    const double motor = std::isfinite(temperature->motor) ? temperature->motor : temperature->transistors;
+    accept_temperature(std::fmax(temperature->transistors, motor));
+  }
+}
+
+void OdriveDrive::receive_error_details(const can_frame& frame) noexcept {
+  if (firmware_ == Firmware::k06) {
+    if (const auto error = decode<v06::Error>(frame)) details_[3] = error->disarm_reason;
+    return;
+  }
+  if (const auto error = decode<v05::MotorError>(frame)) details_[0] = error->error;
+  if (const auto error = decode<v05::EncoderError>(frame)) details_[1] = error->error;
+  if (const auto error = decode<v05::ControllerError>(frame)) details_[2] = error->error;
+}
+
+void OdriveDrive::advance(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept {
+  if (disabled()) {
+    send.add(encode(node(), SetInputTorque{}));
+    send_idle(now_ns, send);
+    if (due(next_details_ns_, kSlowNs, now_ns)) {
+      send.add(request<v06::Error>(node()));
+      if (firmware_ == Firmware::k05) {
+        send.add(request<v05::EncoderError>(node()));
+        send.add(request<v05::ControllerError>(node()));
+      }
+    }
+    return;
+  }
+  if (phase_ == Phase::kHeartbeat) return set(DriveState::kStarting, DriveCause::kFirstFrame);
+  const auto max_silence = static_cast<std::int64_t>(1.0e9 * kMaxHeartbeats * parameters_.heartbeat_period);
+  if (now_ns - heartbeat_ns_ > max_silence) {
+    if (phase_ == Phase::kRunning) return fail(DriveCause::kSilent, "heartbeat");
+    return restart(reset_, now_ns);
+  }
+  if (axis_error_ != 0 && phase_ > Phase::kVersion && !clears(axis_error_)) {
+    return fail(DriveCause::kDriveError, "", axis_error_);
+  }
+  if (phase_ == Phase::kRunning && axis_state_ != AxisState::kClosedLoopControl) {
+    return fail(DriveCause::kReleased, "axis state", static_cast<std::uint32_t>(axis_state_));
+  }
+  if (phase_ < Phase::kPosition) return advance_identity(now_ns, send);
+  request_measurements(now_ns, send);
+  keep_resolution(now_ns, send);
+  advance_power(command, now_ns, send);
+}
+
+void OdriveDrive::advance_identity(std::int64_t now_ns, FrameBatch& send) noexcept {
+  set(DriveState::kStarting, DriveCause::kIdentity);
+  if (phase_ == Phase::kWatchdog) return ask_watchdog(now_ns, send);
+  const Phase next = parameters_.watchdog_timeout_endpoint != 0 ? Phase::kWatchdog : Phase::kPosition;
+  if (phase_ == Phase::kAddress && serial_number_ != 0 && now_ns >= next_request_ns_ - kRetryNs + kAddressNs) {
+    if (parameters_.serial_number != 0 && serial_number_ != parameters_.serial_number) {
+      return fail(DriveCause::kDiffers, "serial number", serial_number_);
+    }
+    return enter(next);
+  }
+  if (!due(next_request_ns_, kRetryNs, now_ns)) return;
+  if (tries_++ < kTries) {
+    send.add(phase_ == Phase::kVersion ? request<v06::Version>(node()) : request<v06::Address>(node()));
+  } else if (phase_ == Phase::kVersion) {
+    know_firmware(Firmware::k05);
+  } else if (parameters_.serial_number != 0) {
+    fail(DriveCause::kNoAnswer, "its serial number (Address)");
+  } else {
+    enter(next);  // Early versions of 0.6 have no such message.
+  }
+}
+
+void OdriveDrive::ask_watchdog(std::int64_t now_ns, FrameBatch& send) noexcept {
+  if (watchdog_enabled_ && watchdog_timeout_) {
+    if (*watchdog_enabled_) {
+      if (!(*watchdog_timeout_ <= parameters_.max_watchdog_timeout)) {
+        return fail(DriveCause::kDiffers, "watchdog_timeout", 0, *watchdog_timeout_, parameters_.max_watchdog_timeout);
+      }
+      know_reaction(SilenceReaction::kCoasts, Evidence::kRead);
+    } else {
+      know_reaction(SilenceReaction::kUnknown, Evidence::kRead);
+    }
+    return enter(Phase::kPosition);
+  }
+  if (!due(next_request_ns_, kRetryNs, now_ns)) return;
+  if (tries_++ == kTries) return fail(DriveCause::kNoAnswer, "the watchdog's endpoints");
+  for (const std::uint64_t endpoint : {parameters_.enable_watchdog_endpoint, parameters_.watchdog_timeout_endpoint}) {
+    send.add(encode(node(), v06::RxSdo{.endpoint = static_cast<std::uint16_t>(endpoint)}));
+  }
+}
+
+void OdriveDrive::advance_power(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept {
+  const bool running = phase_ == Phase::kRunning && command.enabled;
+  send.add(encode(node(), SetInputTorque{.torque = running ? motor_torque(command.torque) : 0}));
+  if (phase_ == Phase::kPosition) {
+    set(DriveState::kStarting, DriveCause::kFirstSample);
+    if (!sample().valid) return;
+    settle_reaction();
+    return enter(Phase::kReady);
+  }
+  if (!command.enabled) {
+    if (axis_state_ == AxisState::kClosedLoopControl || phase_ != Phase::kReady) send_idle(now_ns, send);
+    if (phase_ != Phase::kReady) enter(Phase::kReady);
+    return set(DriveState::kReady, DriveCause::kEnable);
+  }
+  if (phase_ == Phase::kReady) {
+    enter(Phase::kEnter);
+    deadline_ns_ = now_ns + kEnterNs;
+  }
+  if (phase_ == Phase::kRunning) return set(DriveState::kRunning, DriveCause::kNone);
+  set(DriveState::kReady, DriveCause::kPower, "in closed loop; axis state", static_cast<std::uint32_t>(axis_state_));
+  if (tries_ < kZeroCycles) {
+    ++tries_;
+    send.add(encode(node(), SetControllerMode{}));
+    const DriveParameters& drive = drive_parameters();
+    const double velocity = parameters_.motor_velocity_limit > 0 ? parameters_.motor_velocity_limit
+                                                                 : kVelocityMargin * drive.velocity_limit * drive.gear;
+    const double current = drive.torque_limit / drive.gear / parameters_.torque_constant;
+    send.add(encode(node(), SetLimits{.velocity = velocity, .current = current}));
+  } else if (axis_state_ == AxisState::kClosedLoopControl && axis_error_ == 0) {
+    reset_ = false;
+    enter(Phase::kRunning);
+  } else if (now_ns > deadline_ns_) {
+    axis_error_ != 0 ? fail(DriveCause::kDriveError, "", axis_error_)
+                     : fail(DriveCause::kStaysOff, "axis state", static_cast<std::uint32_t>(axis_state_));
+  } else if (due(next_request_ns_, kRetryNs, now_ns)) {
+    if (axis_error_ != 0) send.add(encode(node(), v06::ClearErrors{}));
+    send.add(encode(node(), SetAxisState{.state = AxisState::kClosedLoopControl}));
+  }
+}
+
+void OdriveDrive::send_idle(std::int64_t now_ns, FrameBatch& send) noexcept {
+  if (due(next_request_ns_, kRetryNs, now_ns)) send.add(encode(node(), SetAxisState{}));
+}
+
+void OdriveDrive::request_measurements(std::int64_t now_ns, FrameBatch& send) noexcept {
+  if (parameters_.estimates_period == 0) send.add(request<EncoderEstimates>(node()));
+  if (parameters_.effort_rate > 0 &&
+      due(next_effort_ns_, std::llround(1.0e9 / parameters_.effort_rate), now_ns + period_ns_ / 2)) {
+    send.add(firmware_ == Firmware::k06 ? request<v06::Torques>(node()) : request<Iq>(node()));
+  }
+  if (!due(next_slow_ns_, kSlowNs, now_ns)) return;
+  send.add(request<BusVoltageCurrent>(node()));
+  if (firmware_ == Firmware::k06) send.add(request<v06::Temperature>(node()));
+}
+
+void OdriveDrive::keep_resolution(std::int64_t now_ns, FrameBatch& send) noexcept {
+  if (float_step(motor_position_) <= parameters_.max_position_step || now_ns - moving_ns_ < kRestNs) return;
+  pending_shift_ = kTurn * std::round(motor_position_ / kTurn);
+  moving_ns_ = now_ns;  // The next attempt, if this one is lost, follows after another rest.
+  set_position(motor_position_ - pending_shift_, send);
+}
+
+void OdriveDrive::set_position(double position, FrameBatch& send) const noexcept {
+  if (firmware_ == Firmware::k06) return send.add(encode(node(), v06::SetAbsolutePosition{.position = position}));
+  const double counts = std::round(position / kTurn * parameters_.counts_per_turn);
+  send.add(encode(node(), v05::SetLinearCount{.position = static_cast<std::int32_t>(counts)}));
+}
+
+std::string OdriveDrive::code_words(const DriveStatus& status) const {
+  switch (status.cause) {
+    case DriveCause::kDriveError:
+      break;
+    case DriveCause::kPower:
+    case DriveCause::kReleased:
+    case DriveCause::kStaysOff:
+    case DriveCause::kForeignCommander:
+    case DriveCause::kDiffers:
+      return status.code == 0 && status.cause == DriveCause::kDiffers ? "" : std::to_string(status.code);
+    default:
+      return "";
+  }
+  if (firmware_ == Firmware::k06) {
+    std::string text = error_names(ErrorKind::kAny06, status.code);
+    if (details_[3] != 0) text += " (disarmed by " + error_names(ErrorKind::kAny06, details_[3]) + ")";
+    return text;
+  }
+  std::string text = error_names(ErrorKind::kAxis05, status.code);
+  constexpr ErrorKind kKinds[] = {ErrorKind::kMotor05, ErrorKind::kEncoder05, ErrorKind::kController05};
+  for (std::size_t i = 0; i < std::size(kKinds); ++i) {
+    if (details_[i] != 0) text += " " + error_names(kKinds[i], details_[i]);
+  }
+  return text;
+}
+
+}  // namespace robot_control::odrive

@@ -1,0 +1,167 @@
+#pragma once
+/// Messages that both firmwares, 0.5 and 0.6, have. Positions, velocities and torques are of the motor's shaft.
+
+#include <numbers>
+
+#include "drivers/can/odrive/odrive_codec.h"
+
+namespace robot_control::odrive {
+
+inline constexpr double kTurn = 2 * std::numbers::pi;  ///< rad
+
+enum class AxisState : std::uint32_t {
+  kUndefined = 0,
+  kIdle = 1,  ///< The motor is released: the axis coasts.
+  kStartupSequence = 2,
+  kFullCalibrationSequence = 3,
+  kMotorCalibration = 4,
+  kEncoderIndexSearch = 6,
+  kEncoderOffsetCalibration = 7,
+  kClosedLoopControl = 8,
+};
+
+enum class ControlMode : std::uint32_t { kVoltage = 0, kTorque = 1, kVelocity = 2, kPosition = 3 };
+
+enum class InputMode : std::uint32_t { kInactive = 0, kPassthrough = 1, kVelocityRamp = 2, kTorqueRamp = 6 };
+
+/// The axis stops with the error ESTOP_REQUESTED.
+struct Estop {
+  static constexpr Command kCommand = to_axis(0x02);
+
+  static constexpr auto layout() { return std::tuple{}; }
+};
+
+struct SetAxisState {
+  static constexpr Command kCommand = to_axis(0x07);
+  AxisState state = AxisState::kIdle;
+
+  static constexpr auto layout() { return std::tuple{wire_unsigned(&SetAxisState::state, 0, 32)}; }
+};
+
+struct EncoderEstimates {
+  static constexpr Command kCommand = from_axis(0x09);
+  double position = 0;  ///< rad
+  double velocity = 0;  ///< rad/s
+
+  static constexpr auto layout() {
+    return std::tuple{wire_float(&EncoderEstimates::position, 0, kTurn),
+                      wire_float(&EncoderEstimates::velocity, 32, kTurn)};
+  }
+};
+
+struct SetControllerMode {
+  static constexpr Command kCommand = to_axis(0x0B);
+  ControlMode control = ControlMode::kTorque;
+  InputMode input = InputMode::kPassthrough;
+
+  static constexpr auto layout() {
+    return std::tuple{wire_unsigned(&SetControllerMode::control, 0, 32),
+                      wire_unsigned(&SetControllerMode::input, 32, 32)};
+  }
+};
+
+/// The feed-forward values saturate at ± 32.768 turns/s and ± 32.768 N·m, in the firmware's default scale.
+struct SetInputPosition {
+  static constexpr Command kCommand = to_axis(0x0C);
+  double position = 0;  ///< rad
+  double velocity = 0;  ///< feed-forward, rad/s
+  double torque = 0;    ///< feed-forward, N·m
+
+  static constexpr auto layout() {
+    return std::tuple{wire_float(&SetInputPosition::position, 0, kTurn),
+                      wire_signed(&SetInputPosition::velocity, 32, 16, 0.001 * kTurn),
+                      wire_signed(&SetInputPosition::torque, 48, 16, 0.001)};
+  }
+};
+
+struct SetInputVelocity {
+  static constexpr Command kCommand = to_axis(0x0D);
+  double velocity = 0;  ///< rad/s
+  double torque = 0;    ///< feed-forward, N·m
+
+  static constexpr auto layout() {
+    return std::tuple{wire_float(&SetInputVelocity::velocity, 0, kTurn), wire_float(&SetInputVelocity::torque, 32)};
+  }
+};
+
+/// The axis keeps the last value and applies it when it enters closed loop the next time.
+struct SetInputTorque {
+  static constexpr Command kCommand = cyclic_to_axis(0x0E);
+  double torque = 0;  ///< N·m
+
+  static constexpr auto layout() { return std::tuple{wire_float(&SetInputTorque::torque, 0)}; }
+};
+
+struct SetLimits {
+  static constexpr Command kCommand = to_axis(0x0F);
+  double velocity = 0;  ///< rad/s
+  double current = 0;   ///< A
+
+  static constexpr auto layout() {
+    return std::tuple{wire_float(&SetLimits::velocity, 0, kTurn), wire_float(&SetLimits::current, 32)};
+  }
+};
+
+struct SetTrajectoryVelocity {
+  static constexpr Command kCommand = to_axis(0x11);
+  double velocity = 0;  ///< limit, rad/s
+
+  static constexpr auto layout() { return std::tuple{wire_float(&SetTrajectoryVelocity::velocity, 0, kTurn)}; }
+};
+
+struct SetTrajectoryAcceleration {
+  static constexpr Command kCommand = to_axis(0x12);
+  double acceleration = 0;  ///< limit, rad/s²
+  double deceleration = 0;  ///< limit, rad/s²
+
+  static constexpr auto layout() {
+    return std::tuple{wire_float(&SetTrajectoryAcceleration::acceleration, 0, kTurn),
+                      wire_float(&SetTrajectoryAcceleration::deceleration, 32, kTurn)};
+  }
+};
+
+struct SetTrajectoryInertia {
+  static constexpr Command kCommand = to_axis(0x13);
+  double inertia = 0;  ///< N·m/(rad/s²)
+
+  static constexpr auto layout() { return std::tuple{wire_float(&SetTrajectoryInertia::inertia, 0, 1 / kTurn)}; }
+};
+
+/// Torque = current · torque constant of the motor.
+struct Iq {
+  static constexpr Command kCommand = from_axis(0x14);
+  double setpoint = 0;  ///< A
+  double measured = 0;  ///< A
+
+  static constexpr auto layout() { return std::tuple{wire_float(&Iq::setpoint, 0), wire_float(&Iq::measured, 32)}; }
+};
+
+struct BusVoltageCurrent {
+  static constexpr Command kCommand = from_axis(0x17);
+  double voltage = 0;  ///< V
+  double current = 0;  ///< A
+
+  static constexpr auto layout() {
+    return std::tuple{wire_float(&BusVoltageCurrent::voltage, 0), wire_float(&BusVoltageCurrent::current, 32)};
+  }
+};
+
+struct SetPositionGain {
+  static constexpr Command kCommand = to_axis(0x1A);
+  double gain = 0;  ///< (rad/s)/rad
+
+  static constexpr auto layout() { return std::tuple{wire_float(&SetPositionGain::gain, 0)}; }
+};
+
+struct SetVelocityGains {
+  static constexpr Command kCommand = to_axis(0x1B);
+  double gain = 0;        ///< N·m/(rad/s)
+  double integrator = 0;  ///< N·m/rad
+
+  static constexpr auto layout() {
+    return std::tuple{wire_float(&SetVelocityGains::gain, 0, 1 / kTurn),
+                      wire_float(&SetVelocityGains::integrator, 32, 1 / kTurn)};
+  }
+};
+
+}  // namespace robot_control::odrive

@@ -1,0 +1,124 @@
+#pragma once
+/// Messages that the firmware 0.5 alone has, or has in another layout than 0.6.
+
+#include "drivers/can/odrive/odrive_messages.h"
+
+namespace robot_control::odrive::v05 {
+
+struct Heartbeat {
+  static constexpr Command kCommand = from_axis(0x01);
+  std::uint32_t error = 0;  ///< bits of odrive_errors.h
+  AxisState state = AxisState::kUndefined;
+  bool motor_error = false;
+  bool encoder_error = false;
+  bool controller_error = false;
+  bool trajectory_done = false;
+
+  static constexpr auto layout() {
+    return std::tuple{wire_unsigned(&Heartbeat::error, 0, 32),
+                      wire_unsigned(&Heartbeat::state, 32, 8),
+                      wire_unsigned(&Heartbeat::motor_error, 40, 1),
+                      wire_unsigned(&Heartbeat::encoder_error, 48, 1),
+                      wire_unsigned(&Heartbeat::controller_error, 56, 1),
+                      wire_unsigned(&Heartbeat::trajectory_done, 63, 1)};
+  }
+};
+
+/// The firmware sends 64 bits; the DBC file describes the lower 32 of them.
+struct MotorError {
+  static constexpr Command kCommand = from_axis(0x03);
+  std::uint64_t error = 0;
+
+  static constexpr auto layout() { return std::tuple{wire_unsigned(&MotorError::error, 0, 64)}; }
+};
+
+struct EncoderError {
+  static constexpr Command kCommand = from_axis(0x04);
+  std::uint32_t error = 0;
+
+  static constexpr auto layout() { return std::tuple{wire_unsigned(&EncoderError::error, 0, 32)}; }
+};
+
+struct SensorlessError {
+  static constexpr Command kCommand = from_axis(0x05);
+  std::uint32_t error = 0;
+
+  static constexpr auto layout() { return std::tuple{wire_unsigned(&SensorlessError::error, 0, 32)}; }
+};
+
+struct SetAxisNodeId {
+  static constexpr Command kCommand = to_axis(0x06);
+  std::uint32_t node = 0;
+
+  static constexpr auto layout() { return std::tuple{wire_unsigned(&SetAxisNodeId::node, 0, 32)}; }
+};
+
+struct EncoderCount {
+  static constexpr Command kCommand = from_axis(0x0A);
+  std::int32_t shadow = 0;  ///< counts since the start of the drive
+  std::int32_t in_cpr = 0;  ///< counts within one turn
+
+  static constexpr auto layout() {
+    return std::tuple{wire_signed(&EncoderCount::shadow, 0, 32), wire_signed(&EncoderCount::in_cpr, 32, 32)};
+  }
+};
+
+struct StartAnticogging {
+  static constexpr Command kCommand = to_axis(0x10);
+
+  static constexpr auto layout() { return std::tuple{}; }
+};
+
+struct SensorlessEstimates {
+  static constexpr Command kCommand = from_axis(0x15);
+  double position = 0;  ///< rad
+  double velocity = 0;  ///< rad/s
+
+  static constexpr auto layout() {
+    return std::tuple{wire_float(&SensorlessEstimates::position, 0, kTurn),
+                      wire_float(&SensorlessEstimates::velocity, 32, kTurn)};
+  }
+};
+
+struct Reboot {
+  static constexpr Command kCommand = to_axis(0x16);
+
+  static constexpr auto layout() { return std::tuple{}; }
+};
+
+struct ClearErrors {
+  static constexpr Command kCommand = to_axis(0x18);
+
+  static constexpr auto layout() { return std::tuple{}; }
+};
+
+struct SetLinearCount {
+  static constexpr Command kCommand = to_axis(0x19);
+  std::int32_t position = 0;  ///< counts
+
+  static constexpr auto layout() { return std::tuple{wire_signed(&SetLinearCount::position, 0, 32)}; }
+};
+
+struct AdcVoltage {
+  static constexpr Command kCommand = from_axis(0x1C);
+  double voltage = 0;  ///< V
+
+  static constexpr auto layout() { return std::tuple{wire_float(&AdcVoltage::voltage, 0)}; }
+};
+
+/// Requests AdcVoltage, under the same identifier. A remote request has no place for the number of the input.
+struct GetAdcVoltage {
+  static constexpr Command kCommand = to_axis(0x1C);
+  std::uint8_t gpio = 0;
+
+  static constexpr auto layout() { return std::tuple{wire_unsigned(&GetAdcVoltage::gpio, 0, 8)}; }
+};
+
+struct ControllerError {
+  static constexpr Command kCommand = from_axis(0x1D);
+  std::uint32_t error = 0;
+
+  static constexpr auto layout() { return std::tuple{wire_unsigned(&ControllerError::error, 0, 32)}; }
+};
+
+}  // namespace robot_control::odrive::v05

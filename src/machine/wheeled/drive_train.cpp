@@ -1,0 +1,180 @@
+#include "machine/wheeled/drive_train.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "machine/description/wording.h"
+#include "machine/machine_reading.h"
+#include "machine/model_hash.h"
+#include "machine/overrides.h"
+#include "machine/wheeled/bearing_joints.h"
+#include "machine/wheeled/feet.h"
+#include "machine/wheeled/joint_roles.h"
+#include "machine/wheeled/tipping.h"
+#include "machine/wheeled/wheel_suspicions.h"
+#include "machine/wheeled/wheels/drive_wheels.h"
+#include "machine/wheeled/wheels/rockers.h"
+#include "machine/wheeled/wheels/suspension.h"
+#include "machine/wheeled/wheels/wheel_drive.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kCentral = 0.05;  // share of the wheel base
+
+/// A joint that may turn by more than this, in rad, has no end: "±1e16" and similar limits of wheels mean continuous.
+constexpr double kEndless = 4 * 3.14159265358979323846;
+
+std::uint64_t hash_of(const std::string& urdf, const DriveTrainParameters& parameters) {
+  ModelHash hash;
+  hash.add(urdf);
+  hash.add(parameters.left_wheel_joints);
+  hash.add(parameters.right_wheel_joints);
+  hash.add(parameters.wheel_base);
+  hash.add(parameters.wheel_base_multiplier);
+  hash.add(parameters.wheel_radius);
+  hash.add(parameters.left_wheel_radius_multiplier);
+  hash.add(parameters.right_wheel_radius_multiplier);
+  hash.add(parameters.wheel_effort_limit);
+  hash.add(parameters.wheel_velocity_limit);
+  hash.add(parameters.wheel_effort_rate);
+  hash.add(static_cast<const MachineParameters&>(parameters));
+  return hash.value();
+}
+
+void read_geometry(const RigidBodies& robot, const DriveTrainParameters& parameters, RunningGear& gear,
+                   DriveTrain& model) {
+  for (RollingBody& wheel : gear.wheels) {
+    wheel.wheel.radius =
+        overridden("wheel_radius", "m", parameters.wheel_radius, wheel.wheel.radius, robot, model.notes);
+    const bool left = wheel.wheel.side == Side::kLeft;
+    wheel.wheel.radius *=
+        overridden(left ? "left_wheel_radius_multiplier" : "right_wheel_radius_multiplier", "",
+                   left ? parameters.left_wheel_radius_multiplier : parameters.right_wheel_radius_multiplier, 1, robot,
+                   model.notes);
+  }
+  model.wheel_base =
+      overridden("wheel_base", "m", parameters.wheel_base, wheel_base_of(gear.wheels), robot, model.notes);
+  const double scrub = scrub_multiplier(gear.wheels);
+  model.wheel_base_multiplier =
+      overridden("wheel_base_multiplier", "", parameters.wheel_base_multiplier, scrub, robot, model.notes);
+  if (gear.wheels.size() > 2 && !parameters.wheel_base_multiplier) {
+    model.notes.push_back({RobotNote::Kind::kAssumed, "robot/wheel_base_multiplier",
+                           number(scrub) + ", from where the axles stand; measure it, and set it"});
+  }
+}
+
+/// Wheels turn without end, regardless of their joints' limits.
+void free_wheels(DriveTrain& model) {
+  for (const WheelModel& wheel : model.wheels) model.joints[wheel.joint].range.reset();
+  for (const WheelModel& caster : model.casters) model.joints[caster.joint].range.reset();
+}
+
+void read_joints(const RigidBodies& robot, const DriveTrainParameters& parameters, RunningGear& gear,
+                 DriveTrain& model) {
+  refuse_too_many_joints(robot);
+  const std::vector<JointRole> roles = joint_roles(robot, gear);
+  for (RollingBody& wheel : gear.wheels) {
+    wheel.wheel.joint = model.joints.size();
+    model.joints.push_back(joint_model(robot.bodies[wheel.body], JointRole::kDriven));
+    const DriveLimits limits = drive_limits(robot, gear, wheel, parameters, model.notes);
+    model.joints.back().effort_limit = limits.effort;
+    model.joints.back().velocity_limit = limits.velocity;
+    const double given = overridden("wheel_effort_rate", "N·m/s", parameters.wheel_effort_rate, 0, robot, model.notes);
+    model.joints.back().effort_rate = given > 0 ? given : limits.effort / kEffortRise;
+    model.wheels.push_back(wheel.wheel);
+  }
+  for (const std::string& name : robot.moving_joints) {
+    const auto body = static_cast<std::size_t>(robot.moved_by(name) - robot.bodies.data());
+    if (roles[body] == JointRole::kDriven) continue;
+    for (RollingBody& caster : gear.casters) {
+      if (caster.body != body) continue;
+      caster.wheel.joint = model.joints.size();
+      model.casters.push_back(caster.wheel);
+    }
+    model.joints.push_back(joint_model(robot.bodies[body], roles[body]));
+  }
+  free_wheels(model);
+  for (const auto* rolling : {&model.wheels, &model.casters}) {
+    for (const WheelModel& wheel : *rolling) model.contacts.push_back(model.joints[wheel.joint].child_link);
+  }
+}
+
+Eigen::Vector2d middle_of_axles(const DriveTrain& model) {
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (const WheelModel& wheel : model.wheels) {
+    middle += Eigen::Vector2d(wheel.centre_base[0], wheel.centre_base[1]) / static_cast<double>(model.wheels.size());
+  }
+  return middle;
+}
+
+void read_yaw_inertia(const RigidBodies& robot, DriveTrain& model) {
+  const MassSum sum = sum_of_masses(robot);
+  const Eigen::Vector2d centre(model.centre_of_gravity_base[0], model.centre_of_gravity_base[1]);
+  model.yaw_inertia =
+      model.mass / sum.mass * sum.yaw_inertia + model.mass * (centre - middle_of_axles(model)).squaredNorm();
+}
+
+/// The multiplier is that of equal loads.
+void note_unequal_loads(const DriveTrainParameters& parameters, DriveTrain& model) {
+  if (model.wheels.size() == 2 || parameters.wheel_base_multiplier) return;
+  Eigen::Vector2d offset(model.centre_of_gravity_base[0], model.centre_of_gravity_base[1]);
+  for (const WheelModel& wheel : model.wheels) {
+    offset -= Eigen::Vector2d(wheel.centre_base[0], wheel.centre_base[1]) / static_cast<double>(model.wheels.size());
+  }
+  if (offset.norm() <= kCentral * model.wheel_base) return;
+  model.notes.push_back({RobotNote::Kind::kSuspicious, "robot/wheel_base_multiplier",
+                         "the centre of gravity lies " + number(offset.x()) + " m before and " + number(offset.y()) +
+                             " m left of the middle of the wheels, the multiplier is that of equal loads"});
+}
+
+/// Without a missing mesh the robot may have nothing to stand on.
+void check_missing_meshes(const DriveTrain& model) {
+  const std::vector<std::string>& missing = model.bodies->missing_meshes;
+  if (!missing.empty() && !(lifting_deceleration(model) > 0)) throw RobotError(missing.front());
+}
+
+void check_finite(const DriveTrain& model) {
+  const auto all_finite = [](const WheelModel& w) {
+    return std::isfinite(w.radius) && std::isfinite(w.width) && std::isfinite(w.inertia) && w.inertia > 0;
+  };
+  const bool finite = std::isfinite(model.wheel_base) && std::isfinite(model.wheel_base_multiplier) &&
+                      std::isfinite(model.mass) && std::isfinite(model.yaw_inertia) &&
+                      std::all_of(model.wheels.begin(), model.wheels.end(), all_finite) &&
+                      std::all_of(model.casters.begin(), model.casters.end(), all_finite);
+  if (!finite) {
+    refuse(model.source, "<robot>", "masses, lengths or inertias that are beyond all numbers",
+           "Give numbers of a robot that fits on this earth, in kg and m");
+  }
+}
+
+}  // namespace
+
+DriveTrain read_drive_train(const RobotDescription& description, const DriveTrainParameters& parameters) {
+  const auto bodies = std::make_shared<RigidBodies>(read_rigid_bodies(description, kEndless));
+  DriveTrain model;
+  static_cast<MachineModel&>(model) = named_machine(description, *bodies);
+  model.hash = hash_of(description.text, parameters);
+
+  RunningGear gear = find_running_gear(*bodies, parameters, model.notes);
+  release_followers(*bodies, gear, model.notes);
+  set_feet(*bodies, gear, model.notes);
+  assume_rotors(*bodies, gear, model.notes);
+  assume_springs(*bodies, gear, model.notes);
+  assume_differential(*bodies, gear, model.notes);
+  read_geometry(*bodies, parameters, gear, model);
+  read_joints(*bodies, parameters, gear, model);
+  read_masses(*bodies, parameters, model.wheel_base, model);
+  read_yaw_inertia(*bodies, model);
+  note_unequal_loads(parameters, model);
+  read_imu(*bodies, parameters, model.wheel_base, model);
+  model.bodies = bodies;
+  check_finite(model);
+  check_missing_meshes(model);
+  refuse_unheld_joints(model);
+  note_suspicions(model);
+  model.notes = merged(model.notes);
+  return model;
+}
+
+}  // namespace robot_control

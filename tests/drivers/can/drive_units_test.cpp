@@ -1,0 +1,36 @@
+#include "drivers/can/cia402/drive_units.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace robot_control::cia402 {
+namespace {
+
+constexpr DriveUnits kUnits{.rated_torque = 2.5, .counts_per_turn = 4096};
+
+TEST(DriveUnits, TorqueIsInThousandthsOfTheRated) {
+  EXPECT_DOUBLE_EQ(kUnits.torque(-200), -0.5);
+  EXPECT_EQ(kUnits.raw_torque(0.5), 200);
+  EXPECT_EQ(kUnits.raw_torque(0.00124), 0);
+  EXPECT_EQ(kUnits.raw_torque(0.00126), 1);
+}
+
+TEST(DriveUnits, ATorqueBeyondTheRangeSaturatesAndNaNIsNone) {
+  EXPECT_EQ(kUnits.raw_torque(1e9), 32767);
+  EXPECT_EQ(kUnits.raw_torque(-std::numeric_limits<double>::infinity()), -32768);
+  EXPECT_EQ(kUnits.raw_torque(std::numeric_limits<double>::quiet_NaN()), 0);
+}
+
+TEST(DriveUnits, PositionsAndVelocitiesAreSi) {
+  EXPECT_DOUBLE_EQ(kUnits.position(1024), std::numbers::pi / 2);
+  EXPECT_DOUBLE_EQ(kUnits.velocity(60), 2 * std::numbers::pi);
+}
+
+TEST(DriveUnits, ObjectsInThousandthsAreSi) {
+  EXPECT_DOUBLE_EQ(rated_torque(1270), 1.27);
+  EXPECT_DOUBLE_EQ(dc_link_voltage(48'000), 48);
+}
+
+}  // namespace
+}  // namespace robot_control::cia402

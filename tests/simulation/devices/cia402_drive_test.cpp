@@ -1,0 +1,247 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "simulation/devices/device_rig.h"
+
+namespace robot_control::cia402 {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string words_after(
+    const Cia402Pair& pair, const std::function<void(Cia402Device&)>& change = [](auto&) {}) {
+  DeviceRig rig;
+  Cia402Device& device = add(rig, pair);
+  change(device);
+  rig.command_all({.enabled = true});
+  rig.run(3);
+  return rig.drive().words();
+}
+
+TEST(Cia402Drive, PrefersTheCyclicTorqueModeAndTakesTheProfileMode) {
+  for (const auto& [modes, mode] : {std::pair{0x208U, Mode::kCyclicTorque}, {0x8U, Mode::kTorque}}) {
+    Cia402Pair pair = cia402_pair(5);
+    pair.device.supported_modes = modes;
+    DeviceRig rig;
+    add(rig, pair);
+    ASSERT_TRUE(rig.runs());
+    EXPECT_EQ(dynamic_cast<Cia402Drive&>(rig.drive()).mode(), mode);
+  }
+}
+
+TEST(Cia402Drive, RefusesADriveWithoutATorqueModeByItsName) {
+  Cia402Pair pair = cia402_pair(5);
+  pair.device.supported_modes = 0x85;
+  EXPECT_THAT(words_after(pair), HasSubstr("lacks torque mode in its supported modes (6502)"));
+}
+
+TEST(Cia402Drive, AModeOfTheFileOutweighsAnEmpty6502) {
+  Cia402Pair pair = cia402_pair(5);
+  pair.device.supported_modes = 0;
+  pair.drive.mode = TorqueMode::kProfile;
+  EXPECT_THAT(words_after(pair), HasSubstr("running"));
+}
+
+TEST(Cia402Drive, ComparesWhatItReadsWithTheFile) {
+  Cia402Pair pair = cia402_pair(5);
+  pair.drive.vendor = 7;
+  EXPECT_THAT(words_after(pair), HasSubstr("differs from the drive file: vendor (1018:1), 421 instead of 7"));
+  pair = cia402_pair(5);
+  pair.drive.rated_torque = 3;
+  EXPECT_THAT(words_after(pair), HasSubstr("rated torque (6076), 2 instead of 3"));
+  pair = cia402_pair(5);
+  EXPECT_THAT(words_after(pair, [](Cia402Device& device) { device.objects().set(kMaxTorque, 500); }),
+              HasSubstr("maximum torque (6072), 1 instead of 1.6"));
+}
+
+TEST(Cia402Drive, SaysWhatIsMissingAndWhatWasRefusedWithTheAbortInWords) {
+  const Cia402Pair pair = cia402_pair(5);
+  EXPECT_THAT(words_after(pair, [](auto& device) { device.objects().remove(kRatedTorque); }),
+              HasSubstr("lacks rated torque (6076); state rated_torque"));
+  EXPECT_THAT(words_after(pair,
+                          [](auto& device) {
+                            device.objects().remove({0x6077, 0});
+                          }),
+              HasSubstr("refused to set TPDO of statusword, position and torque (0x6040041: object cannot be mapped"));
+  Cia402Pair fixed = pair;
+  fixed.device.fixed_mapping = true;
+  EXPECT_THAT(words_after(fixed), HasSubstr("attempt to write a read-only object"));
+}
+
+TEST(Cia402Drive, TakesAFixedMappingThatHoldsWhatItNeeds) {
+  Cia402Pair pair = cia402_pair(5);
+  pair.device.fixed_mapping = true;
+  pair.drive.pdos = PdoSource::kFixed;
+  EXPECT_THAT(words_after(pair), HasSubstr("running"));
+  const auto with_mode = [](Cia402Device& device) {
+    device.objects().set({0x1600, 0}, 3);
+    device.objects().set({0x1600, 3}, 0x60600008);
+  };
+  EXPECT_THAT(words_after(pair, with_mode), HasSubstr("running"));
+  const auto with_position = [](Cia402Device& device) {
+    device.objects().set({0x1600, 0}, 3);
+    device.objects().set({0x1600, 3}, 0x607A0020);
+  };
+  EXPECT_THAT(words_after(pair, with_position), HasSubstr("its RPDO, which holds another object: 0x607A0020"));
+  const auto without_position = [](Cia402Device& device) { device.objects().set({0x1A00, 0}, 1); };
+  EXPECT_THAT(words_after(pair, without_position), HasSubstr("lacks an entry of its PDO: (0x60640020"));
+}
+
+TEST(Cia402Drive, StepsThroughThePowerStates) {
+  DeviceRig rig;
+  add(rig, cia402_pair(5));
+  std::vector<unsigned> controlwords;
+  rig.bus().join([&](const can_frame& frame, std::int64_t) {
+    if (frame.can_id == 0x205 && (controlwords.empty() || controlwords.back() != frame.data[0])) {
+      controlwords.push_back(frame.data[0]);
+    }
+  });
+  ASSERT_TRUE(rig.runs());
+  rig.run(0.1);
+  EXPECT_THAT(controlwords, ::testing::ElementsAre(0x06, 0x07, 0x0F));
+}
+
+TEST(Cia402Drive, ResetsNoFaultByItself) {
+  DeviceRig rig;
+  Cia402Device& device = add(rig, cia402_pair(5));
+  rig.run(0.5);
+  device.inject(DeviceFault::kEncoder);
+  device.inject(DeviceFault::kNone);
+  bool reset = false;
+  rig.bus().join(
+      [&](const can_frame& frame, std::int64_t) { reset |= frame.can_id == 0x205 && frame.data[0] == 0x80; });
+  rig.command_all({.enabled = true});
+  rig.run(5);
+  EXPECT_FALSE(reset);
+  EXPECT_THAT(rig.drive().words(), HasSubstr("fault; the drive reports an error: 0x7305"));
+  rig.command_all({.enabled = true, .reset = true});
+  rig.cycle();
+  EXPECT_TRUE(rig.runs());
+  EXPECT_TRUE(reset);
+}
+
+TEST(Cia402Drive, ReadsTheCodeOfAnErrorWhoseEmergencyWasLost) {
+  DeviceRig rig;
+  Cia402Device& device = add(rig, cia402_pair(5));
+  ASSERT_TRUE(rig.runs());
+  rig.bus().lose(1);
+  device.inject(DeviceFault::kEncoder);
+  rig.cycle();
+  rig.bus().lose(0);
+  rig.run(0.5);
+  EXPECT_THAT(rig.drive().words(), HasSubstr("0x7305 (incremental sensor 1 fault)"));
+}
+
+TEST(Cia402Drive, JudgesTheVoltageWhereTheDriveHasIt) {
+  DeviceRig rig;
+  Cia402Device& device = add(rig, cia402_pair(5));
+  ASSERT_TRUE(rig.runs());
+  rig.run(0.3);
+  EXPECT_EQ(rig.drive().sample().voltage, 48);
+  device.objects().set(kDcLinkVoltage, 12000);
+  rig.run(0.3);
+  EXPECT_THAT(rig.drive().words(), HasSubstr("has a low supply: voltage, 12 instead of 18"));
+  EXPECT_THAT(words_after(cia402_pair(5), [](auto& each) { each.objects().remove(kDcLinkVoltage); }),
+              HasSubstr("running"));
+}
+
+struct ReactionCase {
+  std::int64_t abort_option, quick_stop, fault_reaction;
+  SilenceReaction reaction;
+};
+
+TEST(Cia402Drive, StatesWhatTheDriveDoesOnSilenceAndTheDeviceDoesIt) {
+  for (const ReactionCase& each : {ReactionCase{3, 6, 2, SilenceReaction::kHolds},
+                                   {3, 2, 2, SilenceReaction::kBrakes},
+                                   {3, 0, 2, SilenceReaction::kCoasts},
+                                   {2, 6, 2, SilenceReaction::kCoasts},
+                                   {1, 6, 2, SilenceReaction::kBrakes},
+                                   {1, 6, 0, SilenceReaction::kCoasts},
+                                   {0, 6, 2, SilenceReaction::kUnknown}}) {
+    Cia402Pair pair = cia402_pair(4);
+    pair.drive.abort_option = each.abort_option;
+    pair.drive.quick_stop_option = each.quick_stop;
+    pair.drive.fault_reaction = each.fault_reaction;
+    pair.drive.drive.accept_unknown_watchdog = true;
+    DeviceRig rig;
+    add(rig, pair);
+    ASSERT_TRUE(rig.runs());
+    EXPECT_EQ(rig.drive().on_silence().reaction, each.reaction);
+    rig.command_all({.enabled = true, .torque = 1});
+    rig.run(0.3);
+    const double speed = rig.motor().velocity;
+    ASSERT_GT(speed, 5);
+    rig.host_lives = false;
+    rig.run(0.15);
+    rig.slope = 0.1;
+    rig.run(2);
+    const double at = rig.motor().position;
+    rig.run(0.5);
+    const double moved = std::abs(rig.motor().position - at);
+    EXPECT_EQ(moved < 0.01, each.reaction == SilenceReaction::kHolds) << each.abort_option << each.quick_stop;
+    const bool slowed = rig.motor().velocity < speed + 0.1 / rig.inertia * 2.6 - 5;
+    EXPECT_EQ(slowed, each.reaction == SilenceReaction::kHolds || each.reaction == SilenceReaction::kBrakes);
+  }
+}
+
+class TwoAxes : public ::testing::Test {
+ protected:
+  TwoAxes() {
+    Cia402Parameters parameters = cia402_pair(6).drive;
+    for (const unsigned axis : {1U, 0U}) {  // The order of the joints does not matter.
+      parameters.axis = axis;
+      rig_.add_drive(parameters);
+    }
+    DeviceMotor* const second = &rig_.add_motor();
+    const std::vector<DeviceMotor*> motors{&rig_.add_motor(), second};
+    device_ = &rig_.add_device(std::make_unique<Cia402Device>(cia402_pair(6).device, rig_.bus(), motors));
+  }
+
+  DeviceRig rig_;
+  Cia402Device* device_ = nullptr;
+};
+
+TEST_F(TwoAxes, OfOneNodeAreDrivenApart) {
+  ASSERT_TRUE(rig_.runs());
+  rig_.commands = {{.enabled = true, .torque = 1}, {.enabled = true, .torque = -2}};
+  rig_.cycle();
+  EXPECT_NEAR(rig_.motor(0).torque, 0.4, 0.001);
+  EXPECT_NEAR(rig_.motor(1).torque, -0.8, 0.001);
+}
+
+TEST_F(TwoAxes, FailTogetherAndAreResetTogether) {
+  ASSERT_TRUE(rig_.runs());
+  device_->inject(DeviceFault::kEncoder);
+  rig_.run(0.1);
+  EXPECT_TRUE(rig_.all_are(DriveState::kFault));
+  EXPECT_THAT(rig_.drive(0).words(), HasSubstr("has another axis in fault"));
+  EXPECT_THAT(rig_.drive(1).words(), HasSubstr("reports an error: 0x7305"));
+  device_->inject(DeviceFault::kNone);
+  rig_.command_all({.enabled = true, .reset = true});
+  rig_.cycle();
+  EXPECT_TRUE(rig_.runs());
+  device_->inject(DeviceFault::kOff);
+  rig_.run(0.5);
+  device_->inject(DeviceFault::kNone);
+  rig_.command_all({.enabled = true, .reset = true});
+  rig_.cycle();
+  EXPECT_TRUE(rig_.runs());
+}
+
+TEST(PositionDifference, ContinuesOverTheOverflowOf32Bits) {
+  PositionDifference difference;
+  constexpr std::int64_t kMax = std::numeric_limits<std::int32_t>::max();
+  for (std::int64_t i = 0; i < 20; ++i) {
+    const std::int64_t position = kMax - 100 + 20 * i;
+    EXPECT_EQ(difference.add(static_cast<std::int32_t>(position), 1'000'000 * i), position);
+    if (i > 0) {
+      EXPECT_NEAR(difference.velocity(), 20'000, 1.0e-6);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace robot_control::cia402

@@ -1,0 +1,163 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "drivers/can/odrive/odrive_messages_06.h"
+#include "simulation/devices/device_rig.h"
+
+namespace robot_control::odrive {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string words_after(const OdrivePair& pair, double seconds = 3) {
+  DeviceRig rig;
+  add(rig, pair);
+  rig.command_all({.enabled = true});
+  rig.run(seconds);
+  return rig.drive().words();
+}
+
+TEST(OdriveDrive, SilenceOnGetVersionMeansFirmware05) {
+  for (const Firmware firmware : {Firmware::k05, Firmware::k06}) {
+    DeviceRig rig;
+    add(rig, odrive_pair(3, firmware));
+    ASSERT_TRUE(rig.runs());
+    EXPECT_EQ(dynamic_cast<OdriveDrive&>(rig.drive()).firmware(), firmware);
+  }
+}
+
+TEST(OdriveDrive, ComparesTheFirmwareWithTheFile) {
+  OdrivePair pair = odrive_pair(3, Firmware::k05);
+  pair.drive.firmware = Firmware::k06;
+  EXPECT_THAT(words_after(pair),
+              HasSubstr("fault; the drive differs from the drive file: firmware, 0.5 instead of 0.6"));
+}
+
+TEST(OdriveDrive, ComparesTheSerialNumberWithTheFile) {
+  OdrivePair pair = odrive_pair(3);
+  pair.drive.serial_number = 77;
+  EXPECT_THAT(words_after(pair), HasSubstr("differs from the drive file: serial number 4660"));
+}
+
+TEST(OdriveDrive, NoticesASecondDriveOfTheSameNode) {
+  DeviceRig rig;
+  add(rig, odrive_pair(3));
+  OdriveDeviceParameters second = odrive_pair(3).device;
+  second.serial_number = 99;
+  rig.add_device(std::make_unique<OdriveDevice>(second, rig.bus(), rig.add_motor()));
+  EXPECT_FALSE(rig.runs(3));
+  EXPECT_THAT(rig.drive().words(), HasSubstr("shares its node number with a second drive"));
+}
+
+TEST(OdriveDrive, DoesNotExecuteTheSetPointOfAnEarlierProgram) {
+  for (const Firmware firmware : {Firmware::k05, Firmware::k06}) {
+    DeviceRig rig;
+    OdriveDevice& device = add(rig, odrive_pair(3, firmware));
+    const std::size_t earlier = rig.bus().join([](const can_frame&, std::int64_t) {});
+    rig.bus().connect(rig.host(), false);
+    rig.bus().send(earlier, encode(3, SetControllerMode{}));
+    rig.bus().send(earlier, encode(3, SetInputTorque{.torque = 0.5}));
+    rig.bus().advance(1'000'000);
+    ASSERT_EQ(device.set_point(), 0.5);
+    rig.bus().connect(rig.host(), true);
+    rig.bus().lose(0.1);
+    rig.command_all({.enabled = true});
+    ASSERT_TRUE(rig.run_until(
+        [&] { return rig.motor().torque != 0 || rig.drive().status().state == DriveState::kRunning; }, 20))
+        << rig.drive().words();
+    EXPECT_EQ(rig.motor().torque, 0);
+    EXPECT_EQ(device.set_point(), 0);
+  }
+}
+
+TEST(OdriveDrive, RaisesTheVelocityLimitThatWouldReduceTheTorque) {
+  DeviceRig rig;
+  add(rig, odrive_pair(2));
+  ASSERT_TRUE(rig.runs());
+  rig.motor().velocity = 2.5 * 40;  // the joint at its limit
+  rig.command_all({.enabled = true, .torque = 0.5});
+  rig.cycle();
+  EXPECT_NEAR(rig.motor().torque, 0.2, 1.0e-6);
+}
+
+TEST(OdriveDrive, ReadsItsWatchdogWhereTheEndpointsAreKnown) {
+  OdrivePair pair = odrive_pair(3);
+  pair.drive.drive.on_silence = SilenceReaction::kUnknown;
+  pair.drive.enable_watchdog_endpoint = pair.device.enable_watchdog_endpoint = 200;
+  pair.drive.watchdog_timeout_endpoint = pair.device.watchdog_timeout_endpoint = 201;
+  EXPECT_THAT(words_after(pair), HasSubstr("unknown reaction on silence"));
+  pair.device.watchdog_timeout = 1;
+  EXPECT_THAT(words_after(pair), HasSubstr("watchdog_timeout, 1 instead of 0.2"));
+  pair.device.watchdog_timeout = 0.1;
+  DeviceRig rig;
+  add(rig, pair);
+  ASSERT_TRUE(rig.runs());
+  EXPECT_EQ(rig.drive().on_silence().reaction, SilenceReaction::kCoasts);
+  EXPECT_EQ(rig.drive().on_silence().evidence, Evidence::kRead);
+}
+
+TEST(OdriveDrive, TakesTheUsersWordForAWatchdogThatCannotBeRead) {
+  DeviceRig rig;
+  add(rig, odrive_pair(3, Firmware::k05));
+  ASSERT_TRUE(rig.runs());
+  EXPECT_EQ(rig.drive().on_silence().evidence, Evidence::kConfirmed);
+}
+
+/// A float of 10⁵ turns has a step of 0.05 rad.
+TEST(OdriveDrive, KeepsItsResolutionAfterManyTurnsWithoutAJump) {
+  for (const Firmware firmware : {Firmware::k05, Firmware::k06}) {
+    DeviceRig rig;
+    add(rig, odrive_pair(2, firmware));
+    rig.motor().position = 1.0e5 * kTurn + 1;
+    ASSERT_TRUE(rig.runs());
+    rig.run(2);
+    const double joint = rig.motor().position / 2.5;
+    EXPECT_NEAR(rig.drive().sample().joint.position, joint, 0.03);
+    const double offset = rig.drive().sample().joint.position - joint;
+    for (int i = 0; i < 20; ++i) {
+      rig.motor().position += 0.01;
+      rig.run(0.01);
+      ASSERT_NEAR(rig.drive().sample().joint.position, rig.motor().position / 2.5 + offset, 0.0008);
+    }
+  }
+}
+
+TEST(OdriveDrive, IsIdleAgainWhenItIsNotEnabled) {
+  DeviceRig rig;
+  OdriveDevice& device = add(rig, odrive_pair(2));
+  ASSERT_TRUE(rig.runs());
+  rig.command_all({.torque = 1});
+  rig.run(0.3);
+  EXPECT_EQ(device.state(), AxisState::kIdle);
+  EXPECT_EQ(rig.drive().status().state, DriveState::kReady);
+  EXPECT_TRUE(rig.runs());
+}
+
+TEST(OdriveDrive, AnErrorAtTheStartWaitsForTheReset) {
+  DeviceRig rig;
+  OdriveDevice& device = add(rig, odrive_pair(2));
+  device.inject(DeviceFault::kEncoder);
+  device.inject(DeviceFault::kReleased);  // The cause is gone, its error bits remain.
+  EXPECT_FALSE(rig.runs(3));
+  EXPECT_THAT(rig.drive().words(), HasSubstr("reports an error: MISSING_ESTIMATE"));
+  rig.command_all({.enabled = true, .reset = true});
+  rig.cycle();
+  EXPECT_TRUE(rig.runs());
+}
+
+TEST(OdriveDrive, AnAxisThatCannotCloseItsLoopIsAFault) {
+  OdrivePair pair = odrive_pair(2);
+  DeviceRig rig;
+  OdriveDevice& device = add(rig, pair);
+  rig.command_all({.enabled = true});
+  for (int i = 0; i < 5000; ++i) {
+    device.inject(DeviceFault::kReleased);
+    rig.cycle();
+  }
+  EXPECT_THAT(rig.drive().words(), HasSubstr("stays without torque: axis state 1"));
+}
+
+}  // namespace
+}  // namespace robot_control::odrive
