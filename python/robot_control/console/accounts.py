@@ -5,14 +5,11 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from pathlib import Path
 
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message
-from robot_control.console.paths import users_file
+from robot_control.console.desk import Role
 from robot_control.console.users import Users, UsersError
-
-ROLES = ("watch", "operate", "maintain")
 
 
 def main() -> int:
@@ -22,19 +19,18 @@ def main() -> int:
         description="Users of console.py. `add` prints the end of an address; who opens it within a day sets the "
         "password. `add` of a user who is there gives a new address, and the role.",
     )
-    parser.add_argument("--users", type=Path, default=users_file(), help="file, mode 0600 (default %(default)s)")
     commands = parser.add_subparsers(dest="command", required=True)
     add = commands.add_parser("add", help="a user, or a new address for one")
     add.add_argument("name")
-    add.add_argument("--role", choices=ROLES, default="watch", help="watch sees, operate drives, maintain also tunes")
+    add.add_argument("--role", choices=[str(role) for role in Role], default="watch", help="watch sees, operate drives, maintain also tunes")
     remove = commands.add_parser("remove", help="a user; pages of theirs are closed")
     remove.add_argument("name")
     commands.add_parser("list", help="names and roles")
     given = parser.parse_args()
-    users = Users(given.users)
+    users = Users()
     try:
         if given.command == "add":
-            link = users.add(given.name, given.role, time.time())
+            link = users.add(given.name, Role[given.role.upper()], time.time())
             print(f"open once, within a day, after the address of the console: /login#{link}")
         elif given.command == "remove":
             users.remove(given.name)

@@ -1,4 +1,4 @@
-"""The calls of a page: services, paths and the simulation, each with the role that it needs."""
+"""The calls of a page: services, paths and the simulation. One table says what each needs."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import math
 import secrets
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import rospy
@@ -14,59 +15,78 @@ from actionlib_msgs.msg import GoalID
 from geometry_msgs.msg import PoseStamped
 from std_srvs.srv import SetBool, Trigger
 
+from robot_control.common.files import printable
 from robot_control.common.roles import CONTROLLER, DRIVER
 from robot_control.console.desk import Desk, Page, RefusedError, Role
-from robot_control.console.messages import CALLS
+from robot_control.console.messages import SPEED, Fields, MessageError, check_fields, flag, number, text
 from robot_control.msg import FollowPathActionGoal
 from robot_control.path.shapes import SHAPES
 from robot_control.path.waypoints import PathError, Waypoint, checked, placed, read_csv_text
 from robot_control.srv import InjectFault, SetOdometry, SetParameters, Step
 
-CALL_NAMES = tuple(CALLS)
 RESET_PAUSE, RESET_WINDOW = 0.5, 10.0
 """s between the two steps of a reset"""
-PATH_SERVER = "follow_path"
+FOLLOW = "follow_path"
 
-Arguments = Mapping[str, Any]
+METRES = number(-1e6, 1e6)
 
-ROLES: Mapping[str, Role] = {
-    "set_parameters": Role.MAINTAIN,
-    "pause": Role.MAINTAIN,
-    "step": Role.MAINTAIN,
-    "simulation_reset": Role.MAINTAIN,
-    "inject_fault": Role.MAINTAIN,
+
+def _points(value: Any) -> bool:  # noqa: ANN401 (JSON)
+    if not isinstance(value, list) or not 2 <= len(value) <= 1000:
+        return False
+    return all(isinstance(point, list) and len(point) == 2 and all(map(METRES, point)) for point in value)
+
+
+@dataclass(frozen=True)
+class Call:
+    """One thing that a page may ask for."""
+
+    service: str = ""  # without which it cannot work, by its relative name; empty: it needs none
+    kind: type | None = None  # type of the service if the call is nothing else; the fields are its arguments
+    fields: Fields = field(default_factory=dict)
+    role: Role = Role.OPERATE
+
+
+CALLS: Mapping[str, Call] = {
+    "reset_asked": Call(),
+    "reset": Call("e_stop_reset", fields={"key": text(32)}),
+    "reset_odometry": Call("reset_odometry", Trigger),
+    "set_odometry": Call("set_odometry", SetOdometry, {"x": METRES, "y": METRES, "yaw": number(-7.0, 7.0)}),
+    "set_parameters": Call(
+        f"{CONTROLLER}/set_parameter_map", SetParameters, {"parameters": text(8192)}, Role.MAINTAIN
+    ),
+    "path_points": Call(f"{FOLLOW}/pause", fields={"points": _points, "speed": SPEED}),
+    "path_shape": Call(f"{FOLLOW}/pause", fields={"shape": text(16), "size": number(0.1, 100.0), "speed": SPEED}),
+    "path_csv": Call(f"{FOLLOW}/pause", fields={"text": text(60_000), "speed": SPEED}),
+    "path_pause": Call(f"{FOLLOW}/pause", Trigger),
+    "path_resume": Call(f"{FOLLOW}/resume", Trigger),
+    "path_cancel": Call(f"{FOLLOW}/pause"),
+    "pause": Call(f"{DRIVER}/set_pause", SetBool, {"on": flag}, Role.MAINTAIN),
+    "step": Call(f"{DRIVER}/step", Step, {"cycles": number(1, 10_000, int)}, Role.MAINTAIN),
+    "simulation_reset": Call(f"{DRIVER}/reset", Trigger, role=Role.MAINTAIN),
+    "inject_fault": Call(
+        f"{DRIVER}/inject_fault", InjectFault, {"component": text(32), "kind": text(32)}, Role.MAINTAIN
+    ),
 }
-"""Others need OPERATE"""
-SERVICES: Mapping[str, str] = {
-    "reset": "e_stop_reset",
-    "reset_odometry": "reset_odometry",
-    "set_odometry": "set_odometry",
-    "set_parameters": f"{CONTROLLER}/set_parameter_map",
-    "path_pause": f"{PATH_SERVER}/pause",
-    "path_resume": f"{PATH_SERVER}/resume",
-    "path_points": f"{PATH_SERVER}/pause",
-    "path_shape": f"{PATH_SERVER}/pause",
-    "path_csv": f"{PATH_SERVER}/pause",
-    "path_cancel": f"{PATH_SERVER}/pause",
-    "pause": f"{DRIVER}/set_pause",
-    "step": f"{DRIVER}/step",
-    "simulation_reset": f"{DRIVER}/reset",
-    "inject_fault": f"{DRIVER}/inject_fault",
-}
-"""The service without which the call cannot work"""
+
+
+def check_call(name: str, arguments: Mapping[str, Any]) -> None:
+    """Raises MessageError unless it is a call with its arguments."""
+    if name not in CALLS:
+        raise MessageError(f"call: {printable(name)} is unknown")
+    check_fields(name, arguments, CALLS[name].fields)
 
 
 def against(name: str, page: Page, desk: Desk, services: set[str]) -> str:
     """Why this page cannot make the call now; empty if it can. `services`: those of the robot, by relative name."""
-    role = ROLES.get(name, Role.OPERATE)
-    if page.role < role:
-        return f"needs the role {role.name.lower()}"
+    call = CALLS[name]
+    if page.role < call.role:
+        return f"needs the role {call.role}"
     if desk.commander is not page:
         return "take the command first"
-    service = SERVICES.get(name, "")
-    if service and service not in services:
-        program = "follow_path.py" if service.startswith(PATH_SERVER) else service.rpartition("/")[0] or "the robot"
-        return f"{program} does not run"
+    if call.service and call.service not in services:
+        node, _, _ = call.service.rpartition("/")
+        return f"{'follow_path.py' if node == FOLLOW else node or 'the robot'} does not run"
     return ""
 
 
@@ -76,33 +96,28 @@ class Calls:
     def __init__(self, pose: Callable[[], tuple[float, float, float] | None]) -> None:
         """`pose`: of the robot in odom."""
         self._pose = pose
-        self._goals = rospy.Publisher(f"{PATH_SERVER}/goal", FollowPathActionGoal, queue_size=1)
-        self._cancel = rospy.Publisher(f"{PATH_SERVER}/cancel", GoalID, queue_size=1)
+        self._goals = rospy.Publisher(f"{FOLLOW}/goal", FollowPathActionGoal, queue_size=1)
+        self._cancel = rospy.Publisher(f"{FOLLOW}/cancel", GoalID, queue_size=1)
         self._keys: dict[int, tuple[str, float]] = {}  # page → key of its first step of a reset, and when
 
-    def make(self, page: Page, name: str, given: Arguments) -> str:
+    def make(self, page: Page, name: str, given: Mapping[str, Any]) -> str:
         """The answer. Raises RefusedError with the reason of a refusal."""
-        plain: Mapping[str, Callable[[], Any]] = {
-            "reset_odometry": lambda: _call("reset_odometry", Trigger),
-            "set_odometry": lambda: _call("set_odometry", SetOdometry, given["x"], given["y"], given["yaw"]),
-            "set_parameters": lambda: _call(f"{CONTROLLER}/set_parameter_map", SetParameters, given["parameters"]),
-            "path_pause": lambda: _call(f"{PATH_SERVER}/pause", Trigger),
-            "path_resume": lambda: _call(f"{PATH_SERVER}/resume", Trigger),
-            "pause": lambda: _call(f"{DRIVER}/set_pause", SetBool, given["on"]),
-            "step": lambda: _call(f"{DRIVER}/step", Step, given["cycles"]),
-            "simulation_reset": lambda: _call(f"{DRIVER}/reset", Trigger),
-            "inject_fault": lambda: _call(f"{DRIVER}/inject_fault", InjectFault, given["component"], given["kind"]),
-            "path_cancel": lambda: self._cancel.publish(GoalID()) or "the path was cancelled",
-            "path_points": lambda: self._start([Waypoint(x, y) for x, y in given["points"]], given["speed"]),
-            "path_shape": lambda: self._start(self._shape(given["shape"], given["size"]), given["speed"]),
-            "path_csv": lambda: self._start(_from_csv(given["text"]), given["speed"]),
-            "reset_asked": lambda: self._reset_asked(page),
-        }
+        call = CALLS[name]
         try:
-            return str(plain[name]())
-        except PathError as error:
-            raise RefusedError(str(error)) from None
-        except (rospy.ServiceException, rospy.ROSException, OSError) as error:
+            if call.kind is not None:
+                answer = rospy.ServiceProxy(call.service, call.kind)(*(given[field] for field in call.fields))
+                if not answer.success:
+                    raise RefusedError(answer.message or "refused")
+                return answer.message or "done"
+            if name == "reset_asked":
+                key = secrets.token_hex(8)
+                self._keys[page.number] = key, time.monotonic()
+                return key
+            if name == "path_cancel":
+                self._cancel.publish(GoalID())
+                return "the path was cancelled"
+            return self._start(self._path(name, given), given["speed"])
+        except (PathError, rospy.ServiceException, rospy.ROSException, OSError) as error:
             raise RefusedError(f"{name}: {error}") from None
 
     def confirm_reset(self, page: Page, key: str) -> None:
@@ -116,20 +131,17 @@ class Calls:
         """The page has ended."""
         self._keys.pop(page.number, None)
 
-    def _reset_asked(self, page: Page) -> str:
-        key = secrets.token_hex(8)
-        self._keys[page.number] = key, time.monotonic()
-        return key
-
-    def _shape(self, shape: str, size: float) -> list[Waypoint]:
+    def _path(self, name: str, given: Mapping[str, Any]) -> list[Waypoint]:
+        if name == "path_points":
+            return [Waypoint(x, y) for x, y in given["points"]]
+        if name == "path_csv":
+            return read_csv_text("the file", io.StringIO(given["text"], newline=""))
         pose = self._pose()
-        if shape not in SHAPES or pose is None:
-            raise RefusedError("no odometry" if pose is None else f"a shape is one of {', '.join(SHAPES)}")
-        return placed(SHAPES[shape](size), *pose)
+        if given["shape"] not in SHAPES or pose is None:
+            raise PathError("no odometry" if pose is None else f"a shape is one of {', '.join(SHAPES)}")
+        return placed(SHAPES[given["shape"]](given["size"]), *pose)
 
     def _start(self, points: list[Waypoint], speed: float) -> str:
-        if not math.isfinite(speed) or speed < 0:
-            raise RefusedError("speed must be a number from zero on")
         message = FollowPathActionGoal()
         message.goal_id.stamp = message.header.stamp = rospy.Time.now()
         message.goal_id.id = f"console {secrets.token_hex(4)}"
@@ -143,14 +155,3 @@ class Calls:
             message.goal.path.poses.append(pose)
         self._goals.publish(message)
         return f"sent: {len(message.goal.path.poses)} points"
-
-
-def _from_csv(text: str) -> list[Waypoint]:
-    return read_csv_text("the file", io.StringIO(text, newline=""))
-
-
-def _call(name: str, kind: type, *arguments: Any) -> str:  # noqa: ANN401 (of the service)
-    answer = rospy.ServiceProxy(name, kind)(*arguments)
-    if not answer.success:
-        raise RefusedError(answer.message or "refused")
-    return str(answer.message) or "done"

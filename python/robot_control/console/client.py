@@ -16,7 +16,7 @@ from aiohttp import WSMsgType, web
 from robot_control.common.command import Command
 from robot_control.common.files import escaped
 from robot_control.console.backend import Backend
-from robot_control.console.calls import against
+from robot_control.console.calls import against, check_call
 from robot_control.console.desk import Page, RefusedError
 from robot_control.console.hold import Drive
 from robot_control.console.messages import MAX_SIZE, MessageError, Rate, parse
@@ -28,7 +28,9 @@ PING_PERIOD, WATCHER_PERIOD = 0.1, 0.5
 """s between two pings of the page that commands, and of others"""
 SKIP, LOST = 2.0, 15.0
 """s without the answer to a ping, after which frames are skipped, and the page counts as lost"""
-GOING_AWAY, LOGIN_ENDED = 1001, 4401
+CLOSING = 2.0
+"""s in which a page is told why it is closed"""
+POLICY_VIOLATION, LOGIN_ENDED = 1008, 4401
 """codes with which the page is closed (RFC 6455, 7.4)"""
 MAX_MISTAKES, MAX_ANSWERS = 20, 64
 MAX_CALLS = 3
@@ -57,12 +59,12 @@ class Client:
 
     def __init__(self, backend: Backend, frames: Frames, page: Page, who: str, lives: Callable[[], bool]) -> None:
         """`lives`: False once the login has ended."""
-        self._backend, self._frames, self.page, self._who, self._lives = backend, frames, page, who, lives
+        self._backend, self._frames, self._page, self._who, self._lives = backend, frames, page, who, lives
         self._socket = web.WebSocketResponse(max_msg_size=MAX_SIZE, timeout=1.0, compress=False)
         self._outbox: deque[dict[str, Any]] = deque()
         self._calls: set[asyncio.Task[None]] = set()
-        self._endings: list[asyncio.Task[None]] = []
-        self._pinged_at = self._answered_at = self._wanted_at = float("-inf")
+        self.closing = 0  # code with which the page is to be closed
+        self._pinged_at = self._wanted_at = float("-inf")
         self._seen = self._seen_slow = 0  # numbers of the last frame and state that were sent
         self._unanswered: float | None = None  # s, when the first ping without an answer was sent
 
@@ -73,25 +75,18 @@ class Client:
         try:
             await self._read()
         finally:
-            self._backend.desk.leave(self.page, time.monotonic())
-            self._backend.calls.forget(self.page)
-            writer.cancel()
+            self._backend.desk.leave(self._page, time.monotonic())
+            self._backend.calls.forget(self._page)
             for call in self._calls:
                 call.cancel()
-            await asyncio.gather(*self._endings, return_exceptions=True)  # else aiohttp closes with a code of its own
-            journal.info("%s: page %d ended", self._who, self.page.number)
+            await asyncio.wait({writer}, timeout=CLOSING)
+            writer.cancel()
+            journal.info("%s: page %d ended", self._who, self._page.number)
         return self._socket
 
     def say(self, text: str) -> None:
         """A line for the person."""
         self._post({"type": "said", "text": text})
-
-    def close(self, code: int = GOING_AWAY) -> None:
-        """Ends the page."""
-        self._endings.append(asyncio.create_task(self._end(code)))
-
-    async def _end(self, code: int) -> None:
-        await self._socket.close(code=code)
 
     def _post(self, message: dict[str, Any]) -> None:
         if len(self._outbox) < MAX_ANSWERS:
@@ -102,31 +97,26 @@ class Client:
         async for message in self._socket:
             now = time.monotonic()
             if message.type != WSMsgType.TEXT or not rate.admits(now) or mistakes >= MAX_MISTAKES:
-                journal.warning("%s: page %d sends what no page sends: closed", self._who, self.page.number)
-                await self._socket.close(code=1008)
+                journal.warning("%s: page %d sends what no page sends: closed", self._who, self._page.number)
+                self.closing = POLICY_VIOLATION
                 return
             try:
-                self._take(parse(message.data), now)
-            except MessageError as error:
-                mistakes += 1
-                self._refuse(str(error))
-            except RefusedError as error:
-                self._refuse(str(error))
+                self._receive(parse(message.data), now)
+            except (MessageError, RefusedError) as error:
+                mistakes += isinstance(error, MessageError)
+                journal.info("%s: refused: %s", self._who, escaped(str(error)))
+                self.say(str(error))
 
-    def _refuse(self, why: str) -> None:
-        journal.info("%s: refused: %s", self._who, escaped(why))
-        self.say(why)
-
-    def _take(self, message: dict[str, Any], now: float) -> None:
+    def _receive(self, message: dict[str, Any], now: float) -> None:
         kind = message.pop("type")
-        desk, page = self._backend.desk, self.page
+        desk, page = self._backend.desk, self._page
         if kind in LOGGED:
             journal.info("%s: %s %s", self._who, kind, json.dumps(message))
         if kind == "drive":
             desk.receive(page, Drive(**message), now)
         elif kind == "pong":
             page.hold.round_trips.pong(message["name"], now)
-            self._unanswered, self._answered_at = None, now
+            self._unanswered = None
         elif kind == "take":
             desk.take(page, now, force=message["force"])
         elif kind == "hand_over":
@@ -139,25 +129,26 @@ class Client:
         elif kind == "heartbeat":
             desk.require(page)
             page.heartbeat = message["on"]
-        elif len(self._calls) < MAX_CALLS:
+        else:
+            check_call(message["name"], message["arguments"])
+            if len(self._calls) >= MAX_CALLS:
+                raise RefusedError("wait for the answers to your other requests")
             task = asyncio.create_task(self._call(**message))
             self._calls.add(task)
             task.add_done_callback(self._calls.discard)
-        else:
-            raise RefusedError("wait for the answers to your other requests")
 
     async def _call(self, number: int, name: str, arguments: dict[str, Any]) -> None:
         backend, accepted = self._backend, False
         try:
-            why = against(name, self.page, backend.desk, backend.available)
+            why = against(name, self._page, backend.desk, backend.available)
             if why:
                 raise RefusedError(why)
             if name == "reset":
-                backend.calls.confirm_reset(self.page, arguments["key"])
+                backend.calls.confirm_reset(self._page, arguments["key"])
                 backend.reset()
                 text = "the reset was requested"
             else:
-                text = await asyncio.to_thread(backend.calls.make, self.page, name, arguments)
+                text = await asyncio.to_thread(backend.calls.make, self._page, name, arguments)
             accepted = True
         except RefusedError as error:
             text = str(error)
@@ -166,36 +157,34 @@ class Client:
         self._post({"type": "answer", "number": number, "accepted": accepted, "text": text})
 
     async def _write(self, request: web.Request) -> None:
-        """Sends until the page reads no more, or its login has ended."""
-        begin = time.monotonic()
+        """Sends until the page is closed, or reads no more, or its login has ended."""
         self._post({"type": "trail", "points": [point[:2] for point in self._backend.view.trail.points]})
         try:
             while not self._socket.closed:
                 now = time.monotonic()
-                if not self._lives():
-                    self.close(LOGIN_ENDED)
-                    break
-                if now - max(self._answered_at, begin) > LOST and request.transport is not None:
+                silent = 0.0 if self._unanswered is None else now - self._unanswered
+                if self.closing or not self._lives():
+                    await self._socket.close(code=self.closing or LOGIN_ENDED)
+                elif silent > LOST and request.transport is not None:
                     request.transport.abort()
-                    break
-                await self._ping(now)
-                while self._outbox:
-                    await self._socket.send_str(json.dumps(self._outbox.popleft()))
-                slow = self._unanswered is not None and now - self._unanswered > SKIP
-                if not slow:
-                    await self._frame()
+                else:
+                    await self._ping(now)
+                    while self._outbox:
+                        await self._socket.send_str(json.dumps(self._outbox.popleft()))
+                    if silent <= SKIP:
+                        await self._frame()
                 await asyncio.sleep(FRAME / 2)
         except (ConnectionError, RuntimeError):
             pass  # the page has ended
 
     async def _ping(self, now: float) -> None:
-        commands = self._backend.desk.commander is self.page
+        commands = self._backend.desk.commander is self._page
         if now - self._pinged_at < (PING_PERIOD if commands else WATCHER_PERIOD):
             return
         name = secrets.token_hex(8)
         self._pinged_at = now
         self._unanswered = self._unanswered or now
-        self.page.hold.round_trips.ping(name, now)
+        self._page.hold.round_trips.ping(name, now)
         await self._socket.send_str(json.dumps({"type": "ping", "name": name}))
 
     async def _frame(self) -> None:
@@ -206,7 +195,7 @@ class Client:
         if frames.slow_number != self._seen_slow:
             self._seen_slow = frames.slow_number
             await self._socket.send_str(frames.slow)
-            await self._socket.send_str(json.dumps(self._backend.desk_of(self.page)))
+            await self._socket.send_str(json.dumps(self._backend.desk_of(self._page)))
             at, wanted = self._backend.view.wanted()
             if at != self._wanted_at:
                 self._wanted_at = at

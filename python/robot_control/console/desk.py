@@ -11,13 +11,17 @@ The same factor holds for both axes, so the curve stays.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import IntEnum
 
 from robot_control.common.command import Command
 from robot_control.console.hold import Drive, Hold
 from robot_control.console.settings import Settings
+from robot_control.pad.law import PadParameters
 from robot_control.teleop.operator import ZEROS, Limits
+
+CHOSEN = Command(PadParameters.scale_linear, PadParameters.scale_angular)
+"""speeds of a new page, m/s and rad/s"""
 
 
 class Role(IntEnum):
@@ -27,12 +31,15 @@ class Role(IntEnum):
     OPERATE = 1
     MAINTAIN = 2
 
+    def __str__(self) -> str:
+        return self.name.lower()
+
 
 class RefusedError(Exception):
     """The page may not do that; the message says why."""
 
 
-@dataclass
+@dataclass(eq=False)
 class Page:
     """One connected page."""
 
@@ -40,9 +47,12 @@ class Page:
     name: str  # of the user
     role: Role
     hold: Hold
-    chosen: Command
+    chosen: Command = CHOSEN
     heartbeat: bool = False
-    cap: float = field(default=0.0)  # m/s, of its link
+    cap: float = 0.0  # m/s, of its link
+
+    def __str__(self) -> str:
+        return f"{self.name} (page {self.number})"
 
 
 class Desk:
@@ -51,39 +61,32 @@ class Desk:
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
         self.pages: dict[int, Page] = {}
-        self._commander: int | None = None
+        self.commander: Page | None = None
         self._last_number = 0
         self._zeros_until = -math.inf
 
     def join(self, name: str, role: Role) -> Page:
         """A page comes."""
         self._last_number += 1
-        chosen = Command(self._settings.linear, self._settings.angular)
-        page = Page(self._last_number, name, role, Hold(self._settings), chosen)
+        page = Page(self._last_number, name, role, Hold(self._settings))
         self.pages[page.number] = page
         return page
 
     def leave(self, page: Page, now: float) -> None:
         """A page ends, in whatever way."""
-        if self._commander == page.number:
+        if self.commander is page:
             self._give(None, now, "the page has ended")
         self.pages.pop(page.number, None)
 
-    @property
-    def commander(self) -> Page | None:
-        """The page that commands."""
-        return None if self._commander is None else self.pages.get(self._commander)
-
     def take(self, page: Page, now: float, *, force: bool = False) -> None:
         """Takes the command; `force`: from another page. Raises RefusedError."""
-        holder = self.commander
         if page.role < Role.OPERATE:
             raise RefusedError("the role watch does not drive")
-        if holder is page:
+        if self.commander is page:
             return
-        if holder is not None and not (force and page.role >= Role.MAINTAIN):
-            raise RefusedError(f"{holder.name} (page {holder.number}) commands; only the role maintain takes it away")
-        self._give(page, now, f"{page.name} (page {page.number}) has taken the command")
+        if self.commander is not None and not (force and page.role >= Role.MAINTAIN):
+            raise RefusedError(f"{self.commander} commands; only the role maintain takes it away")
+        self._give(page, now, f"{page} has taken the command")
 
     def hand_over(self, page: Page, to: int, now: float) -> None:
         """Hands the command over. Raises RefusedError."""
@@ -91,7 +94,7 @@ class Desk:
         other = self.pages.get(to)
         if other is None or other.role < Role.OPERATE:
             raise RefusedError(f"there is no page {to} that may drive")
-        self._give(other, now, f"the command was handed over to {other.name} (page {to})")
+        self._give(other, now, f"the command was handed over to {other}")
 
     def give_back(self, page: Page, now: float) -> None:
         """Ends the command. Raises RefusedError."""
@@ -101,12 +104,10 @@ class Desk:
     def require(self, page: Page) -> None:
         """Raises RefusedError unless the page commands."""
         if self.commander is not page:
-            holder = self.commander
-            who = "no page commands" if holder is None else f"{holder.name} (page {holder.number}) commands"
-            raise RefusedError(f"{who}: take the command first")
+            raise RefusedError(f"{self.commander or 'no page'} commands: take the command first")
 
     def receive(self, page: Page, drive: Drive, now: float) -> None:
-        """Takes what a page holds; of one that does not command it moves nothing."""
+        """Receives what a page holds; without the command it moves nothing. Raises RefusedError."""
         if self.commander is page:
             page.hold.receive(drive, now)
         elif drive.held:
@@ -147,5 +148,5 @@ class Desk:
         for each in (self.commander, page):
             if each is not None:
                 each.hold.interrupt(now, why)
-        self._commander = None if page is None else page.number
+        self.commander = page
         self._zeros_until = now + ZEROS

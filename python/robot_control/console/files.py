@@ -1,4 +1,4 @@
-"""The files that make the page, and the headers with which everything is served. Pure but for listing a folder."""
+"""The files that make the page, by the path of their address, and the headers with which everything is served."""
 
 from __future__ import annotations
 
@@ -6,26 +6,21 @@ from pathlib import Path
 
 from aiohttp import web
 
-FOLDER = Path(__file__).parent / "page"
-PAGE = {path.name: path for path in sorted(FOLDER.glob("*.*"))}
-"""Name → file of our own"""
-
-SHARED = Path("/usr/share/javascript")
-LIBRARIES = {
-    name: SHARED / name
-    for name in (
-        "three/build/three.module.js",
-        "three/examples/jsm/controls/OrbitControls.js",
-        "three/examples/jsm/loaders/STLLoader.js",
-        "three/examples/jsm/loaders/ColladaLoader.js",
-        "three/examples/jsm/loaders/TGALoader.js",
-        "three/examples/jsm/loaders/OBJLoader.js",
-        "chart.js/chart.mjs",
-        "chart.js/chunks/helpers.segment.mjs",
-    )
-}
-"""Name → file of Debian's packages libjs-three and libjs-chart.js"""
-
+OWN, SHARED = Path(__file__).parent / "page", Path("/usr/share/javascript")
+LIBRARIES = (
+    "three/build/three.module.js",
+    "three/examples/jsm/controls/OrbitControls.js",
+    "three/examples/jsm/loaders/STLLoader.js",
+    "three/examples/jsm/loaders/ColladaLoader.js",
+    "three/examples/jsm/loaders/TGALoader.js",
+    "chart.js/chart.mjs",
+    "chart.js/chunks/helpers.segment.mjs",
+)
+"""of Debian's packages libjs-three and libjs-chart.js"""
+FILES = {path.name: path for path in OWN.glob("*.*")} | {f"lib/{name}": SHARED / name for name in LIBRARIES}
+"""Path of the address → file; nothing else is served as a file"""
+TYPES = {".html": "text/html", ".css": "text/css", ".svg": "image/svg+xml"}
+"""others are scripts"""
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
     "frame-ancestors 'none'; base-uri 'none'; form-action 'self'"
@@ -35,21 +30,6 @@ REPORT_POLICY = (
     "img-src data: blob:; font-src data:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
 )
 """A report holds scripts of its own; in the sandbox they belong to no origin, and reach neither page nor cookie."""
-
-TYPES = {
-    ".html": "text/html; charset=utf-8",
-    ".css": "text/css; charset=utf-8",
-    ".js": "text/javascript; charset=utf-8",
-    ".mjs": "text/javascript; charset=utf-8",
-    ".svg": "image/svg+xml",
-}
-
-
-def content_type(name: str) -> str:
-    """The type of a file, by its name."""
-    return TYPES.get(Path(name).suffix, "application/octet-stream")
-
-
 HEADERS = {
     "Content-Security-Policy": POLICY,
     "X-Content-Type-Options": "nosniff",
@@ -60,6 +40,15 @@ HEADERS = {
     "Cache-Control": "no-store",
 }
 """of every answer that has no other value"""
+
+
+def page_file(name: str) -> web.StreamResponse:
+    """The file with this path, or 404."""
+    path = FILES.get(name)
+    if path is None or not path.is_file():
+        raise web.HTTPNotFound(text="there is no such file; scripts/setup --console installs the libraries")
+    headers = {"Content-Type": f"{TYPES.get(path.suffix, 'text/javascript')}; charset=utf-8"}
+    return web.FileResponse(path, headers=headers | ({"Cache-Control": "max-age=3600"} if "/" in name else {}))
 
 
 def protect(response: web.StreamResponse) -> None:

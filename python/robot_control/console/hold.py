@@ -4,16 +4,16 @@ The page sends its state every 50 ms while it commands, held or not. The law of 
 Motion counts while it is held, was seen released before, and no stop or pause lies between (pad/law.py).
 
     number     rises by each message; one that does not rise is a replay and does not count
-    excess     above late_after: the message is dropped
+    excess     above link_gap: the message is late and is dropped
     stamp      receipt − excess, of the newest message that counts
     hold       stamp older than that: zero, until the next message
-    gap        stamp older than link_gap: all ends, until a release that comes SETTLING after the gap
+    link_gap   stamp older than that: all ends, until a release that comes SETTLING after the gap
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from robot_control.common.command import Command
 from robot_control.console.link import Excess, RoundTrips, SpeedCap
@@ -37,18 +37,8 @@ class Hold:
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
-        parameters = PadParameters(
-            axis_linear=0,
-            axis_angular=1,
-            scale_linear=1.0,
-            scale_angular=1.0,
-            enable_button=0,
-            enable_turbo_button=-1,
-            deadzone=0.0,
-            max_hold=settings.max_hold,
-            joy_timeout=settings.link_gap,
-        )
-        self._pad = Pad(parameters)
+        axes = PadParameters(axis_linear=0, axis_angular=1, scale_linear=1.0, scale_angular=1.0, enable_button=0)
+        self._pad = Pad(replace(axes, enable_turbo_button=-1, joy_timeout=settings.link_gap))
         self._excess = Excess()
         self.round_trips = RoundTrips()
         self.cap = SpeedCap(settings.distance, settings.reaction)
@@ -56,32 +46,22 @@ class Hold:
         self.stamp = -math.inf  # s
         self._gap = True  # a gap has been noticed, and no message has come since
         self.gaps = self.late = self.replayed = 0
-        self.ended = ""  # why the last motion ended without its release
+        self._ended = ""  # why the last motion ended without its release
 
     def receive(self, drive: Drive, now: float) -> None:
-        """Takes a message."""
+        """Receives a message."""
         if drive.number <= self._number:
             self.replayed += 1
             return
         self._number = drive.number
-        self.look(now)
+        self._notice_gap(now)
         excess = self._excess.of(drive.sent, now)
-        if excess > self._settings.late_after:
+        if excess > self._settings.link_gap:
             self.late += 1
             return
-        self.stamp, self._gap = now - excess, False
-        self._held = drive.held
-        if not drive.held:
-            self.ended = ""
+        self.stamp, self._gap, self._held = now - excess, False, drive.held
+        self._ended = self._ended if drive.held else ""
         self._pad.receive((drive.linear, drive.angular), (int(drive.held),), now)
-
-    def look(self, now: float) -> None:
-        """Notices a gap."""
-        if self._gap or self.alive(now):
-            return
-        self._gap = True
-        self.gaps += 1
-        self.interrupt(now, f"nothing came over the link for {1000 * self._settings.link_gap:.0f} ms")
 
     def alive(self, now: float) -> bool:
         """True while messages come."""
@@ -89,8 +69,7 @@ class Hold:
 
     def interrupt(self, now: float, why: str) -> None:
         """Ends the motion; a release has to come SETTLING later."""
-        if self._held:
-            self.ended = why
+        self._ended = why if self._held else self._ended
         self._pad.interrupt(now)
 
     def refuse(self, now: float) -> None:
@@ -103,15 +82,19 @@ class Hold:
 
     def share(self, now: float) -> Command | None:
         """Shares of the chosen speeds to command now; None: nothing is sent."""
-        self.look(now)
+        self._notice_gap(now)
         share = self._pad.command(now)
         return share if share is None or now - self.stamp <= self._settings.hold else Command()
 
     def state(self, now: float) -> str:
         """The state as text; empty where the page may simply drive."""
-        if self._gap:
-            return "nothing comes over the link"
-        words = self._pad.state(now)
+        words = "" if self._gap else self._pad.state(now)
         if words == "release the enable button once":
-            return f"release everything once{f': {self.ended}' if self.ended else ''}"
-        return "drives" if words == "drives" else ""
+            return f"release everything once{f': {self._ended}' if self._ended else ''}"
+        return "nothing comes over the link" if self._gap else words if words == "drives" else ""
+
+    def _notice_gap(self, now: float) -> None:
+        if not self._gap and not self.alive(now):
+            self._gap = True
+            self.gaps += 1
+            self.interrupt(now, f"nothing came over the link for {1000 * self._settings.link_gap:.0f} ms")

@@ -19,107 +19,61 @@ RATE, BURST = 100.0, 200.0
 
 Check = Callable[[Any], bool]
 """True for a value that may be used."""
+Fields = Mapping[str, Check]
 
 
 class MessageError(ValueError):
     """The message is not used; the text names the reason."""
 
 
-def _number(lowest: float, highest: float) -> Check:
-    def check(value: Any) -> bool:  # noqa: ANN401 (JSON)
-        known = isinstance(value, int | float) and not isinstance(value, bool)
-        return known and lowest <= value <= highest  # false for NaN and infinity
-
-    return check
+def number(lowest: float, highest: float, kind: type = float) -> Check:
+    """A finite number of this range; `kind` int: a whole one."""
+    kinds = (int,) if kind is int else (int, float)
+    return lambda value: isinstance(value, kinds) and not isinstance(value, bool) and lowest <= value <= highest
 
 
-def _whole(lowest: int, highest: int) -> Check:
-    return lambda value: isinstance(value, int) and not isinstance(value, bool) and lowest <= value <= highest
-
-
-def _text(longest: int) -> Check:
+def text(longest: int) -> Check:
+    """A text of at most so many characters."""
     return lambda value: isinstance(value, str) and len(value) <= longest
 
 
-def _flag(value: Any) -> bool:  # noqa: ANN401 (JSON)
+def flag(value: Any) -> bool:  # noqa: ANN401 (JSON)
+    """True or false."""
     return isinstance(value, bool)
 
 
-def _points(value: Any) -> bool:  # noqa: ANN401 (JSON)
-    coordinate = _number(-1e6, 1e6)
-    return (
-        isinstance(value, list)
-        and 2 <= len(value) <= 1000
-        and all(isinstance(point, list) and len(point) == 2 and all(map(coordinate, point)) for point in value)
-    )
-
-
-COUNT = _whole(0, 1 << 53)
-SHARE = _number(-1.0, 1.0)
-METRES = _number(-1e6, 1e6)
-SPEED = _number(0.0, 100.0)
-
-TYPES: Mapping[str, Mapping[str, Check]] = {
-    "drive": {"number": COUNT, "sent": _number(0.0, 1e12), "held": _flag, "linear": SHARE, "angular": SHARE},
-    "pong": {"name": _text(32)},
-    "take": {"force": _flag},
+COUNT, SHARE, SPEED = number(0, 1 << 53, int), number(-1.0, 1.0), number(0.0, 100.0)
+TYPES: Mapping[str, Fields] = {
+    "drive": {"number": COUNT, "sent": number(0.0, 1e12), "held": flag, "linear": SHARE, "angular": SHARE},
+    "pong": {"name": text(32)},
+    "take": {"force": flag},
     "hand_over": {"to": COUNT},
     "give_back": {},
     "speeds": {"linear": SPEED, "angular": SPEED},
-    "heartbeat": {"on": _flag},
-    "call": {"number": COUNT, "name": _text(32), "arguments": lambda value: isinstance(value, dict)},
+    "heartbeat": {"on": flag},
+    "call": {"number": COUNT, "name": text(32), "arguments": lambda value: isinstance(value, dict)},
 }
-"""Type → its fields."""
-
-CALLS: Mapping[str, Mapping[str, Check]] = {
-    "reset_asked": {},
-    "reset": {"key": _text(32)},
-    "reset_odometry": {},
-    "set_odometry": {"x": METRES, "y": METRES, "yaw": _number(-7.0, 7.0)},
-    "set_parameters": {"parameters": _text(8192)},
-    "path_points": {"points": _points, "speed": SPEED},
-    "path_shape": {"shape": _text(16), "size": _number(0.1, 100.0), "speed": SPEED},
-    "path_csv": {"text": _text(60_000), "speed": SPEED},
-    "path_pause": {},
-    "path_resume": {},
-    "path_cancel": {},
-    "pause": {"on": _flag},
-    "step": {"cycles": _whole(1, 10_000)},
-    "simulation_reset": {},
-    "inject_fault": {"component": _text(32), "kind": _text(32)},
-}
-"""Name of a call → its arguments."""
+"""Type → its fields; those of `arguments` stand in calls.py"""
 
 
-def parse(text: str) -> dict[str, Any]:
-    """The message, a call's arguments checked, too.
-
-    Raises:
-        MessageError: it is none.
-    """
+def parse(data: str) -> dict[str, Any]:
+    """The message. Raises MessageError."""
     try:
-        message = json.loads(text, parse_constant=_no_constant)
+        message = json.loads(data, parse_constant=_no_constant)
     except (ValueError, RecursionError):
         raise MessageError("no JSON") from None
-    if not isinstance(message, dict) or not isinstance(message.get("type"), str):
-        raise MessageError("no object with a type")
-    kind = message.pop("type")
-    if kind not in TYPES:
-        raise MessageError(f"type: {printable(kind)} is unknown")
-    _check(kind, message, TYPES[kind])
-    if kind == "call":
-        if message["name"] not in CALLS:
-            raise MessageError(f"call: {printable(message['name'])} is unknown")
-        _check(message["name"], message["arguments"], CALLS[message["name"]])
-    return {"type": kind, **message}
+    kind = message.get("type") if isinstance(message, dict) else None
+    if not isinstance(kind, str) or kind not in TYPES:
+        raise MessageError(f"type: {printable(str(kind))} is unknown")
+    check_fields(kind, {name: value for name, value in message.items() if name != "type"}, TYPES[kind])
+    return dict(message)
 
 
-def _check(name: str, given: Mapping[str, Any], fields: Mapping[str, Check]) -> None:
-    for field in given.keys() - fields.keys():
-        raise MessageError(f"{name}: the field {printable(field)} is unknown")
+def check_fields(name: str, given: Mapping[str, Any], fields: Fields) -> None:
+    """Raises MessageError unless exactly these fields are there, each with a value that may be used."""
+    for field in given.keys() ^ fields.keys():
+        raise MessageError(f"{name}: the field {printable(field)} is {'unknown' if field in given else 'missing'}")
     for field, check in fields.items():
-        if field not in given:
-            raise MessageError(f"{name}: the field {field} is missing")
         if not check(given[field]):
             raise MessageError(f"{name}: the value of {field} is none that may be used")
 
@@ -135,9 +89,6 @@ class Rate:
         self._left, self._at = BURST, now
 
     def admits(self, now: float) -> bool:
-        """Takes one message; False if it is one too many."""
-        self._left, self._at = min(BURST, self._left + RATE * (now - self._at)), now
-        if self._left < 1.0:
-            return False
-        self._left -= 1.0
-        return True
+        """Counts one message; False if it is one too many."""
+        self._left, self._at = min(BURST, self._left + RATE * (now - self._at)) - 1.0, now
+        return self._left >= 0.0

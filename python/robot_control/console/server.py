@@ -8,6 +8,7 @@ import logging
 import time
 from collections.abc import Awaitable, Callable
 from pathlib import Path
+from typing import Any
 
 from aiohttp import hdrs, web
 
@@ -17,10 +18,9 @@ from robot_control.console.backend import Backend
 from robot_control.console.client import Client, Frames
 from robot_control.console.desk import Role
 from robot_control.console.door import Strangers
-from robot_control.console.files import LIBRARIES, PAGE, REPORT_POLICY, content_type, protect
+from robot_control.console.files import REPORT_POLICY, page_file, protect
 from robot_control.console.messages import MAX_SIZE
-from robot_control.console.model import ModelError
-from robot_control.console.models import Models
+from robot_control.console.model import Model, ModelError
 from robot_control.console.runs import Runs, RunsError
 from robot_control.console.sessions import Session, Sessions, Tries
 from robot_control.console.users import Users, UsersError
@@ -28,10 +28,12 @@ from robot_control.console.users import Users, UsersError
 MAX_PAGES = 20
 BODY_TIME = 10.0
 """s in which the body of a request has to come"""
-PUBLIC = frozenset({"/login", "/api/login", "/api/first", "/style.css", "/login.js", "/icon.svg"})
+PUBLIC = frozenset({"/login", "/api/login", "/style.css", "/login.js", "/icon.svg"})
 """what is served without a login"""
 LOCAL_USER = "local"
 """who came with the token"""
+GOING_AWAY = 1001
+"""code with which a page is closed (RFC 6455, 7.4)"""
 journal = logging.getLogger("console")
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
@@ -40,35 +42,39 @@ class Server:
     """All routes."""
 
     def __init__(
-        self, backend: Backend, doors: Doors, users: Users | None, token: str, runs: Path, *, read_only: bool
+        self,
+        backend: Backend,
+        doors: Doors,
+        users: Users | None,
+        token: str,
+        sessions: Sessions,
+        runs: Path,
+        *,
+        port: int,
+        read_only: bool,
     ) -> None:
         """`users`: None where the token alone opens."""
         self._backend, self._doors, self._users, self._token = backend, doors, users, token
-        self._read_only = read_only
-        self.sessions, self._tries = Sessions(), Tries()
-        self._runs, self._models = Runs(runs), Models()
+        self._read_only, self.sessions, self._tries = read_only, sessions, Tries()
+        self._runs, self._model = Runs(runs), Model()
         self.strangers, self.frames = Strangers(), Frames()
         self._clients: list[Client] = []
         self._hashing = asyncio.Semaphore(1)
-        self.cookie = "console"
+        self._cookie = f"console_{port}"  # cookies of one host count for all its ports
         self.app = web.Application(middlewares=[self._guard], client_max_size=MAX_SIZE)
         get, post = self.app.router.add_get, self.app.router.add_post
-        get("/", self._index)
-        get("/login", self._login_page)
         get("/ws", self._socket)
-        get("/api/model", self._model)
+        get("/api/model", self._urdf)
         get("/api/mesh/{id}", self._mesh)
         get("/api/runs", self._run_list)
         get("/api/runs/{id}/file", self._run_file)
         get("/api/runs/{id}/report", self._report)
-        get("/lib/{path:.+}", self._library)
-        get("/{file}", self._page_file)
+        get("/{path:.*}", self._file)
         post("/api/login", self._login)
-        post("/api/first", self._first)
         post("/api/logout", self._logout)
         post("/api/e_stop", self._e_stop)
 
-    def look(self) -> None:
+    def pass_on(self) -> None:
         """Hands what the robot answered to all pages."""
         for text in self._backend.said:
             journal.info("robot: %s", printable(text, 500))
@@ -80,7 +86,7 @@ class Server:
         """Ends the logins of users that were removed or have another role."""
         if self._users is not None:
             try:
-                self.sessions.check_roles({name: _role(user.role) for name, user in self._users.all().items()})
+                self.sessions.check_roles({name: user.role for name, user in self._users.all().items()})
             except (UsersError, OSError) as error:
                 journal.warning("%s", error)
                 self.sessions.check_roles({})
@@ -88,7 +94,7 @@ class Server:
     def close(self) -> None:
         """Ends all pages."""
         for client in self._clients:
-            client.close()
+            client.closing = GOING_AWAY
 
     # every request
 
@@ -109,10 +115,10 @@ class Server:
             raise self._refusal(request, web.HTTPMisdirectedRequest, "this host is not the console's")
         if (request.method != hdrs.METH_GET or request.path == "/ws") and not self._doors.origin_is_own(origin, host):
             raise self._refusal(request, web.HTTPForbidden, "this origin is not the console's")
-        session = self.sessions.of(request.cookies.get(self.cookie), time.time())
+        session = self.sessions.of(request.cookies.get(self._cookie), time.time())
         request["session"] = session
         if session is not None:
-            self.strangers.admit(request.transport)
+            self.strangers.admit(request.protocol)
         elif request.path == "/" and self._users is None and "token" in request.query:
             return self._with_token(request)
         elif request.path == "/":
@@ -130,72 +136,45 @@ class Server:
     def _with_token(self, request: web.Request) -> web.StreamResponse:
         if not hmac.compare_digest(request.query["token"].encode(), self._token.encode()):
             raise self._refusal(request, web.HTTPForbidden, "this token is wrong: open the address that was printed")
-        response = web.Response(status=303, headers={"Location": "/"})
-        self._begin(request, response, LOCAL_USER, Role.MAINTAIN)
+        return self._begin(request, web.Response(status=303, headers={"Location": "/"}), LOCAL_USER, Role.MAINTAIN)
+
+    def _begin(self, request: web.Request, response: web.Response, user: str, role: Role) -> web.Response:
+        secure = request.secure or f"https://{request.headers[hdrs.HOST]}" in self._doors.origins
+        cookie = self.sessions.begin(user, role, time.time())
+        response.set_cookie(self._cookie, cookie, httponly=True, samesite="Strict", secure=secure, path="/")
+        journal.info("%s: %s has logged in as %s", request.remote, user, role)
         return response
 
-    def _begin(self, request: web.Request, response: web.StreamResponse, user: str, role: Role) -> None:
-        cookie = self.sessions.begin(user, role, time.time())
-        secure = request.secure or any(
-            origin == f"https://{request.headers.get(hdrs.HOST)}" for origin in self._doors.origins
-        )
-        response.set_cookie(self.cookie, cookie, httponly=True, samesite="Strict", secure=secure, path="/")
-        journal.info("%s: %s has logged in as %s", request.remote, user, role.name.lower())
-
-    async def _body(self, request: web.Request, *names: str) -> list[str]:
-        """Texts of a JSON object: no form of another page can send one."""
+    async def _login(self, request: web.Request) -> web.StreamResponse:
+        """With `name` and `password`, or with `link` and a new password. No form of another page can send JSON."""
         if request.content_type != "application/json":
             raise web.HTTPUnsupportedMediaType(text="application/json is needed")
         try:
             body = await asyncio.wait_for(request.json(), BODY_TIME)
-        except (TimeoutError, ValueError, RecursionError):
-            raise web.HTTPBadRequest(text="no JSON") from None
-        if not isinstance(body, dict) or not all(isinstance(body.get(name), str) for name in names):
-            raise web.HTTPBadRequest(text=f"an object with {', '.join(names)} is needed")
-        return [body[name][:1000] for name in names]
-
-    async def _login(self, request: web.Request) -> web.StreamResponse:
-        name, password = await self._body(request, "name", "password")
-        users, remote = self._known_users(), request.remote or ""
+            name, link, password = (str(body.get(key, ""))[:1000] for key in ("name", "link", "password"))
+        except (TimeoutError, ValueError, RecursionError, AttributeError):
+            raise web.HTTPBadRequest(text="an object of JSON is needed") from None
+        users, remote = self._users, request.remote or ""
+        if users is None:
+            raise web.HTTPForbidden(text="this console has no users: open the address that console.py printed")
         wait = self._tries.wait(name, remote, time.time())
-        if wait > 0:
-            raise self._refusal(request, web.HTTPTooManyRequests, f"too many tries: wait {wait:.0f} s")
-        async with self._hashing:
-            user = await asyncio.to_thread(users.check, name, password)
-        if user is None:
-            self._tries.fail(name, remote, time.time())
-            raise self._refusal(request, web.HTTPForbidden, f"name or password is wrong ({printable(name, 32)})")
-        response = web.json_response({})
-        self._begin(request, response, user.name, _role(user.role))
-        return response
-
-    async def _first(self, request: web.Request) -> web.StreamResponse:
-        link, password = await self._body(request, "link", "password")
-        users, remote = self._known_users(), request.remote or ""
-        wait = self._tries.wait("", remote, time.time())
         if wait > 0:
             raise self._refusal(request, web.HTTPTooManyRequests, f"too many tries: wait {wait:.0f} s")
         try:
             async with self._hashing:
-                user = await asyncio.to_thread(users.set_password, link, password, time.time())
+                check = (users.set_password, link, password, time.time()) if link else (users.check, name, password)
+                user = await asyncio.to_thread(*check)
         except UsersError as error:
-            self._tries.fail("", remote, time.time())
-            raise self._refusal(request, web.HTTPForbidden, str(error)) from None
-        response = web.json_response({})
-        self._begin(request, response, user.name, _role(user.role))
-        return response
-
-    def _known_users(self) -> Users:
-        if self._users is None:
-            raise web.HTTPForbidden(text="this console has no users: open the address that console.py printed")
-        return self._users
+            self._tries.fail(name, remote, time.time())
+            raise self._refusal(request, web.HTTPForbidden, f"{printable(name, 32)}: {error}".lstrip(": ")) from None
+        return self._begin(request, web.json_response({}), user.name, user.role)
 
     async def _logout(self, request: web.Request) -> web.StreamResponse:
         session: Session = request["session"]
         self.sessions.end(session)
         journal.info("%s: %s has logged out", request.remote, session.user)
         response = web.json_response({})
-        response.del_cookie(self.cookie, path="/")
+        response.del_cookie(self._cookie, path="/")
         return response
 
     # what a page does
@@ -209,10 +188,9 @@ class Server:
         if len(self._clients) >= MAX_PAGES:
             raise self._refusal(request, web.HTTPServiceUnavailable, f"{MAX_PAGES} pages are open already")
         session: Session = request["session"]
-        role = Role.WATCH if self._read_only else session.role
-        page = self._backend.desk.join(session.user, role)
+        page = self._backend.desk.join(session.user, Role.WATCH if self._read_only else session.role)
         who = f"{request.remote}: {session.user}"
-        journal.info("%s: page %d begins as %s", who, page.number, role.name.lower())
+        journal.info("%s: page %d begins as %s", who, page.number, page.role)
         client = Client(self._backend, self.frames, page, who, lambda: self.sessions.lives(session, time.time()))
         self._clients.append(client)
         try:
@@ -222,61 +200,33 @@ class Server:
 
     # files
 
-    async def _index(self, _: web.Request) -> web.StreamResponse:
-        return _file("index.html")
+    async def _file(self, request: web.Request) -> web.StreamResponse:
+        return page_file({"": "index.html", "login": "login.html"}.get(path := request.match_info["path"], path))
 
-    async def _login_page(self, _: web.Request) -> web.StreamResponse:
-        return _file("login.html")
-
-    async def _page_file(self, request: web.Request) -> web.StreamResponse:
-        return _file(request.match_info["file"])
-
-    async def _library(self, request: web.Request) -> web.StreamResponse:
-        path = LIBRARIES.get(request.match_info["path"])
-        if path is None or not path.is_file():
-            raise web.HTTPNotFound(text="there is no such library: scripts/setup --console")
-        return web.FileResponse(
-            path, headers={"Content-Type": content_type(path.name), "Cache-Control": "max-age=3600"}
-        )
-
-    async def _model(self, _: web.Request) -> web.StreamResponse:
-        try:
-            return web.json_response(await asyncio.to_thread(self._models.tree))
-        except ModelError as error:
-            raise web.HTTPNotFound(text=str(error)) from None
+    async def _urdf(self, _: web.Request) -> web.StreamResponse:
+        return web.json_response(await _found(self._model.read))
 
     async def _mesh(self, request: web.Request) -> web.StreamResponse:
-        try:
-            return web.Response(body=await asyncio.to_thread(self._models.mesh, request.match_info["id"]))
-        except (KeyError, ModelError, OSError) as error:
-            raise web.HTTPNotFound(text=printable(str(error), 500)) from None
+        return web.Response(body=await _found(self._model.mesh, request.match_info["id"]))
 
     async def _run_list(self, _: web.Request) -> web.StreamResponse:
-        return web.json_response(await asyncio.to_thread(self._runs.list))
+        return web.json_response(await _found(self._runs.list))
 
     async def _run_file(self, request: web.Request) -> web.StreamResponse:
-        try:
-            path = await asyncio.to_thread(self._runs.file, request.match_info["id"])
-        except RunsError as error:
-            raise web.HTTPNotFound(text=str(error)) from None
+        path = await _found(self._runs.file, request.match_info["id"])
         name = "".join(sign if sign.isascii() and (sign.isalnum() or sign in ".-_") else "_" for sign in path.name)
         headers = {"Content-Disposition": f'attachment; filename="{name}"', "Content-Type": "application/octet-stream"}
         return web.FileResponse(path, headers=headers)
 
     async def _report(self, request: web.Request) -> web.StreamResponse:
-        try:
-            path = await asyncio.to_thread(self._runs.report, request.match_info["id"])
-        except (RunsError, OSError) as error:
-            raise web.HTTPNotFound(text=printable(str(error), 1000)) from None
+        path = await _found(self._runs.report, request.match_info["id"])
         headers = {"Content-Security-Policy": REPORT_POLICY, "Content-Type": "text/html; charset=utf-8"}
-        return web.Response(body=await asyncio.to_thread(path.read_bytes), headers=headers)
+        return web.FileResponse(path, headers=headers)
 
 
-def _file(name: str) -> web.StreamResponse:
-    if name not in PAGE:
-        raise web.HTTPNotFound(text="there is no such file")
-    return web.Response(body=PAGE[name].read_bytes(), headers={"Content-Type": content_type(name)})
-
-
-def _role(name: str) -> Role:
-    return Role[name.upper()]
+async def _found(find: Callable[..., Any], *arguments: str) -> Any:  # noqa: ANN401 (of the function)
+    """The result of a function that may take long; 404 where it finds nothing."""
+    try:
+        return await asyncio.to_thread(find, *arguments)
+    except (ModelError, RunsError, OSError) as error:
+        raise web.HTTPNotFound(text=printable(str(error), 1000)) from None

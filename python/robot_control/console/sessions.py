@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import secrets
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from typing import Any
 
 from robot_control.console.desk import Role
 
-LIFE, IDLE = 12 * 3600.0, 3600.0
-"""s from the login, and from the last request, until a session ends"""
+LIFE = 12 * 3600.0
+"""s from a login until it ends"""
 TRIES_OF_USER, TRIES_OF_ADDRESS, PERIOD = 5, 20, 300.0
 """failed logins within PERIOD s, after which further ones are refused"""
 MAX_SESSIONS = 200
@@ -25,36 +25,33 @@ class Session:
     user: str
     role: Role
     ends: float
-    idle_ends: float
 
 
 class Sessions:
     """All logins, by the digests of their cookies."""
 
-    def __init__(self) -> None:
-        self._sessions: dict[str, Session] = {}
+    def __init__(self, saved: list[dict[str, Any]]) -> None:
+        """`saved`: what the process before this one has saved."""
+        rows = [Session(**{**row, "role": Role(row["role"])}) for row in saved]
+        self._sessions = {row.key: row for row in rows}
 
     def begin(self, user: str, role: Role, now: float) -> str:
         """Text of a cookie."""
         cookie = secrets.token_urlsafe(32)
-        self._expire(now)
-        if len(self._sessions) >= MAX_SESSIONS:
+        while len(self._sessions) >= MAX_SESSIONS:
             self._sessions.pop(next(iter(self._sessions)))
-        session = Session(digest(cookie), user, role, now + LIFE, now + IDLE)
+        session = Session(digest(cookie), user, role, now + LIFE)
         self._sessions[session.key] = session
         return cookie
 
     def of(self, cookie: str | None, now: float) -> Session | None:
         """The session of a cookie; None if it has ended, or is none."""
         session = self._sessions.get(digest(cookie)) if cookie else None
-        if session is None or not self.lives(session, now):
-            return None
-        session.idle_ends = now + IDLE
-        return session
+        return session if session is not None and self.lives(session, now) else None
 
     def lives(self, session: Session, now: float) -> bool:
         """False after a logout, and after its time."""
-        return self._sessions.get(session.key) is session and now < min(session.ends, session.idle_ends)
+        return self._sessions.get(session.key) is session and now < session.ends
 
     def end(self, session: Session) -> None:
         """Logout."""
@@ -65,17 +62,9 @@ class Sessions:
         kept = {key: each for key, each in self._sessions.items() if roles.get(each.user) is each.role}
         self._sessions = kept
 
-    def save(self) -> str:
+    def save(self) -> list[dict[str, Any]]:
         """The sessions for a process that replaces this one; no cookie is in it."""
-        return json.dumps([asdict(session) for session in self._sessions.values()])
-
-    def restore(self, text: str) -> None:
-        """Takes what `save` has given."""
-        rows = [Session(**{**row, "role": Role(row["role"])}) for row in json.loads(text)]
-        self._sessions = {row.key: row for row in rows}
-
-    def _expire(self, now: float) -> None:
-        self._sessions = {key: each for key, each in self._sessions.items() if now < min(each.ends, each.idle_ends)}
+        return [asdict(session) for session in self._sessions.values()]
 
 
 class Tries:
@@ -86,8 +75,7 @@ class Tries:
 
     def wait(self, user: str, address: str, now: float) -> float:
         """s until the next try is admitted; zero: now."""
-        bounds = ((("user", user), TRIES_OF_USER), (("address", address), TRIES_OF_ADDRESS))
-        return max((self._wait(key, bound, now) for key, bound in bounds), default=0.0)
+        return max(self._wait("user", user, TRIES_OF_USER, now), self._wait("address", address, TRIES_OF_ADDRESS, now))
 
     def fail(self, user: str, address: str, now: float) -> None:
         """Notes a failed try."""
@@ -95,11 +83,11 @@ class Tries:
         for key in (("user", user), ("address", address)):
             self._failed[key] = [*self._failed.get(key, [])[-TRIES_OF_ADDRESS:], now]
 
-    def _wait(self, key: tuple[str, str], bound: int, now: float) -> float:
-        lately = [at for at in self._failed.get(key, []) if now - at < PERIOD]
+    def _wait(self, kind: str, name: str, bound: int, now: float) -> float:
+        lately = [at for at in self._failed.get((kind, name), []) if now - at < PERIOD]
         return lately[-bound] + PERIOD - now if len(lately) >= bound else 0.0
 
 
-def digest(cookie: str) -> str:
-    """The part of a cookie that is kept."""
-    return hashlib.sha256(cookie.encode(errors="replace")).hexdigest()
+def digest(secret: str) -> str:
+    """The part of a cookie or a link that is kept."""
+    return hashlib.sha256(secret.encode(errors="replace")).hexdigest()
