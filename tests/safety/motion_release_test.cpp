@@ -233,7 +233,7 @@ TEST_F(MotionReleaseTest, SilenceBeforeAPauseDoesNotCountAfterIt) {
 
 TEST_F(MotionReleaseTest, SilenceBeforeTheFirstCycleThatTheMonitorSeesDoesNotCount) {
   release_.enter_run();
-  command_.twist_requested = {};
+  command_.requested.twist = {};
   command_.silent_cycles = 10 * kSilence;
   ++sensors_.resumes;
   steps(kSilence);
