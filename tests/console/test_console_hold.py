@@ -5,11 +5,11 @@ from robot_control.common.command import Command
 from robot_control.console.desk import Desk, RefusedError, Role
 from robot_control.console.hold import Drive
 from robot_control.console.settings import Settings
-from robot_control.pad.law import SETTLING
+from robot_control.pad.law import SETTLING, PadParameters
 from robot_control.teleop.operator import ZEROS, Limits
 
 PERIOD = 0.05  # s between two messages of a page
-SETTINGS = Settings(linear=0.5, angular=1.0)
+SETTINGS = Settings()
 LIMITS = Limits(linear=1.0, angular=2.0, reverse=0.3)
 
 
@@ -64,8 +64,8 @@ def moves(commands):
 
 
 def test_a_held_key_drives_at_the_chosen_speed_and_its_release_is_zero_at_once(page):
-    page.press(1.0, -0.5)
-    assert page.run(1.0)[-1] == Command(0.5, -0.5)
+    page.press(1.0, -1.0)
+    assert page.run(1.0)[-1] == Command(0.5, -1.0)
     page.release()
     commands = page.run(ZEROS - PERIOD)
     assert set(commands) == {Command()}
@@ -184,8 +184,8 @@ def test_a_page_that_ends_is_zero_at_once(page):
 
 def test_a_hold_of_max_hold_ends(page):
     page.press()
-    commands = page.run(SETTINGS.max_hold + 2.0)
-    assert len(moves(commands)) * PERIOD == pytest.approx(SETTINGS.max_hold, abs=0.2)
+    commands = page.run(PadParameters.max_hold + 2.0)
+    assert len(moves(commands)) * PERIOD == pytest.approx(PadParameters.max_hold, abs=0.2)
 
 
 def test_one_page_commands_and_another_moves_nothing(page):
@@ -236,7 +236,8 @@ def test_a_change_of_command_ends_the_motion_of_both(page, how):
 @pytest.mark.parametrize("round_trip", [0.02, 0.1, 0.2, 0.4, 0.8])
 def test_the_way_after_the_last_good_command_stays_within_the_distance(round_trip):
     """From its sending: half a round trip at full speed, then until the command of zero."""
-    page = Page(Desk(Settings(linear=5.0)))
+    page = Page(Desk(SETTINGS))
+    page.page.chosen = Command(5.0, 1.0)
     page.desk.take(page.page, 0.0)
     page.answer_pings(round_trip)
     page.run(6.0)

@@ -7,9 +7,10 @@ import stat
 
 import pytest
 from robot_control.console.addresses import AddressError, doors_of, require_protection
+from robot_control.console.calls import check_call
 from robot_control.console.desk import Role
 from robot_control.console.messages import BURST, MAX_SIZE, RATE, MessageError, Rate, parse
-from robot_control.console.sessions import IDLE, LIFE, PERIOD, TRIES_OF_USER, Sessions, Tries
+from robot_control.console.sessions import LIFE, PERIOD, TRIES_OF_USER, Sessions, Tries
 from robot_control.console.users import LINK_LIFE, Users, UsersError
 
 DRIVE = {"type": "drive", "number": 1, "sent": 2.5, "held": True, "linear": 1.0, "angular": -0.5}
@@ -55,14 +56,27 @@ def test_what_the_schema_does_not_name_is_refused(change):
         json.dumps(DRIVE).replace("2.5", "NaN"),
         json.dumps(DRIVE).replace("2.5", "1e999"),
         json.dumps(DRIVE).replace("2.5", "9" * 5000),
-        '{"type":"call","number":1,"name":"__class__","arguments":{}}',
-        '{"type":"call","number":1,"name":"step","arguments":{"cycles":1,"more":2}}',
-        '{"type":"call","number":1,"name":"path_points","arguments":{"speed":1,"points":[[0,0],[0,1e400]]}}',
     ],
 )
 def test_what_is_no_message_is_refused(text):
     with pytest.raises(MessageError):
         parse(text)
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments"),
+    [
+        ("__class__", {}),
+        ("step", {}),
+        ("step", {"cycles": 1, "more": 2}),
+        ("step", {"cycles": True}),
+        ("path_points", {"speed": 1, "points": [[0, 0], [0, 1e400]]}),
+        ("path_points", {"speed": 1, "points": [[0, 0]]}),
+    ],
+)
+def test_a_call_that_is_none_is_refused(name, arguments):
+    with pytest.raises(MessageError):
+        check_call(name, arguments)
 
 
 def test_random_bytes_raise_nothing_else():
@@ -87,20 +101,26 @@ def users(tmp_path):
     return Users(tmp_path / "new" / "users.json")
 
 
+def refused(users, name, password):
+    with pytest.raises(UsersError, match="name or password is wrong"):
+        users.check(name, password)
+    return True
+
+
 def test_a_user_sets_a_password_with_a_link_that_is_good_once(users):
-    link = users.add("anna", "operate", now=0.0)
+    link = users.add("anna", Role.OPERATE, now=0.0)
     assert link not in users.path.read_text()
-    assert users.check("anna", "") is None
+    assert refused(users, "anna", "")
     assert users.set_password(link, "long enough", 1.0).name == "anna"
-    assert users.check("anna", "long enough").role == "operate"
-    assert users.check("anna", "long enougH") is None
-    assert users.check("berta", "long enough") is None
+    assert users.check("anna", "long enough").role is Role.OPERATE
+    assert refused(users, "anna", "long enougH")
+    assert refused(users, "berta", "long enough")
     with pytest.raises(UsersError, match="wrong, used"):
         users.set_password(link, "another password", 2.0)
 
 
 def test_an_expired_link_and_a_wrong_one_set_nothing(users):
-    link = users.add("anna", "operate", now=0.0)
+    link = users.add("anna", Role.OPERATE, now=0.0)
     for text, now in ((link, LINK_LIFE), (link + "x", 1.0), ("", 1.0)):
         with pytest.raises(UsersError, match="older than a day"):
             users.set_password(text, "long enough", now)
@@ -109,7 +129,7 @@ def test_an_expired_link_and_a_wrong_one_set_nothing(users):
 
 
 def test_only_this_account_reads_the_file(users):
-    users.add("anna", "watch", 0.0)
+    users.add("anna", Role.WATCH, 0.0)
     assert stat.S_IMODE(users.path.stat().st_mode) == 0o600
     users.path.chmod(0o640)
     with pytest.raises(UsersError, match="chmod 600"):
@@ -119,7 +139,7 @@ def test_only_this_account_reads_the_file(users):
 @pytest.mark.parametrize("name", ["", "a b", "<script>", "../x", "a" * 33, "a\n", ".x"])
 def test_names_are_plain(users, name):
     with pytest.raises(UsersError, match="letters"):
-        users.add(name, "watch", 0.0)
+        users.add(name, Role.WATCH, 0.0)
 
 
 @pytest.mark.parametrize("text", ["", "{}", '[{"name":"a"}]', '[{"name":"a","role":"root"}]', "[1]"])
@@ -134,25 +154,28 @@ def test_a_broken_file_is_refused(users, text):
         users.all()
 
 
-def test_a_session_ends_by_time_by_idleness_and_by_logout():
-    sessions = Sessions()
+def test_a_session_ends_by_time_and_by_logout():
+    sessions = Sessions([])
     cookie = sessions.begin("anna", Role.OPERATE, 0.0)
     assert sessions.of(cookie + "x", 1.0) is None
     assert sessions.of(None, 1.0) is None
-    assert sessions.of(cookie, IDLE - 1) is not None
-    assert sessions.of(cookie, 2 * IDLE - 2) is not None
-    assert sessions.of(cookie, 3 * IDLE) is None
-    busy = sessions.begin("anna", Role.OPERATE, 0.0)
-    assert all(sessions.of(busy, now) for now in range(0, int(LIFE), 600))
-    assert sessions.of(busy, LIFE) is None
-    other = sessions.begin("anna", Role.OPERATE, 0.0)
-    session = sessions.of(other, 1.0)
+    assert sessions.of(cookie, LIFE - 1.0) is not None
+    assert sessions.of(cookie, LIFE) is None
+    session = sessions.of(cookie, 1.0)
     sessions.end(session)
     assert not sessions.lives(session, 1.0)
 
 
+def test_a_session_outlives_the_process_and_its_cookie_is_not_written():
+    sessions = Sessions([])
+    cookie = sessions.begin("anna", Role.OPERATE, 0.0)
+    saved = json.dumps(sessions.save())
+    assert cookie not in saved
+    assert Sessions(json.loads(saved)).of(cookie, 1.0).role is Role.OPERATE
+
+
 def test_a_changed_role_ends_the_session():
-    sessions = Sessions()
+    sessions = Sessions([])
     anna, berta = (sessions.begin(name, Role.MAINTAIN, 0.0) for name in ("anna", "berta"))
     sessions.check_roles({"anna": Role.MAINTAIN, "berta": Role.WATCH})
     assert sessions.of(anna, 1.0)

@@ -27,25 +27,23 @@ def refusal(*arguments, home):
 
 
 @AIOHTTP
-@pytest.mark.parametrize("address", ["0.0.0.0"])
-def test_an_address_that_others_reach_is_refused_without_users_or_tls(address, tmp_path):
-    assert "users (console_users.py add) and TLS (--tls)" in refusal("--address", address, home=tmp_path)
-    users = tmp_path / "users.json"
-    run("console_users.py", "--users", users, "add", "anna", home=tmp_path)
-    assert "needs TLS" in refusal("--address", address, "--users", users, home=tmp_path)
-    assert "needs users" in refusal("--address", address, "--tls", home=tmp_path)
+def test_an_address_that_others_reach_is_refused_without_users_or_tls(tmp_path):
+    assert "users (console_users.py add) and TLS (--tls)" in refusal("--address", "0.0.0.0", home=tmp_path)
+    assert "needs users" in refusal("--address", "0.0.0.0", "--tls", home=tmp_path)
+    run("console_users.py", "add", "anna", home=tmp_path)
+    assert "needs TLS" in refusal("--address", "0.0.0.0", home=tmp_path)
 
 
 @AIOHTTP
 def test_wrong_files_are_refused_with_their_name(tmp_path):
-    config = tmp_path / "own.yaml"
+    config, users = tmp_path / "own.yaml", tmp_path / "robot_control/console_users.json"
     config.write_text("distance: -1")
     assert f"{config}: distance = -1: must be a number above zero" in refusal("--config", config, home=tmp_path)
-    assert "holds no users" in refusal("--users", tmp_path / "none.json", home=tmp_path)
-    config.chmod(0o644)
-    assert "chmod 600" in refusal("--users", config, home=tmp_path)
     assert "--cert" in refusal("--cert", tmp_path / "none.pem", home=tmp_path)
     assert "--origin console.example" in refusal("--origin", "console.example", home=tmp_path)
+    users.parent.mkdir(exist_ok=True)
+    users.touch(mode=0o644)
+    assert f"chmod 600 {users}" in refusal(home=tmp_path)
 
 
 @AIOHTTP
@@ -60,15 +58,13 @@ def test_a_certificate_is_made_once_and_its_key_is_for_this_account_alone(tmp_pa
 
 
 def test_users_are_added_listed_and_removed(tmp_path):
-    users = tmp_path / "new" / "users.json"
-    added = run("console_users.py", "--users", users, "add", "anna", "--role", "operate", home=tmp_path)
+    added = run("console_users.py", "add", "anna", "--role", "operate", home=tmp_path)
     assert "/login#" in added.stdout
-    listed = run("console_users.py", "--users", users, "list", home=tmp_path)
-    assert listed.stdout == "anna\toperate\thas set no password yet\n"
-    assert run("console_users.py", "--users", users, "remove", "anna", home=tmp_path).returncode == 0
-    again = run("console_users.py", "--users", users, "remove", "anna", home=tmp_path)
+    assert run("console_users.py", "list", home=tmp_path).stdout == "anna\toperate\thas set no password yet\n"
+    assert run("console_users.py", "remove", "anna", home=tmp_path).returncode == 0
+    again = run("console_users.py", "remove", "anna", home=tmp_path)
     assert (again.returncode, again.stderr.count("\n")) == (2, 1)
-    bad = run("console_users.py", "--users", users, "add", "<b>", home=tmp_path)
+    bad = run("console_users.py", "add", "<b>", home=tmp_path)
     assert (bad.returncode, "letters" in bad.stderr) == (2, True)
 
 
@@ -84,12 +80,11 @@ def test_every_library_of_the_page_is_one_of_the_list():
     import re
 
     files = pytest.importorskip("aiohttp") and importlib.import_module("robot_control.console.files")
-    own = {f"/{name}" for name in files.PAGE}
-    listed = {f"/lib/{name}" for name in files.LIBRARIES}
-    for name, path in files.PAGE.items():
+    own = {f"/{name}" for name in files.FILES}
+    for path in files.OWN.glob("*.*"):
         text = path.read_text()
-        for target in re.findall(r'(?:from|import|src=|href=)\s*"([^"]+)"', text):
-            assert target in own | listed, (name, target)
-        assert not re.search(r"innerHTML|outerHTML|insertAdjacent|document\.write|\beval\(|style=|onclick=", text), name
-    missing = [name for name, path in files.LIBRARIES.items() if not path.is_file()]
+        for target in re.findall(r'(?:from|import|import\(|src=|href=)\s*"([^"]+)"', text):
+            assert target in own, (path, target)
+        assert not re.search(r"innerHTML|outerHTML|insertAdjacent|document\.write|\beval\(|style=|onclick=", text), path
+    missing = [name for name, path in files.FILES.items() if not path.is_file()]
     assert not missing or pytest.skip("scripts/setup --console")

@@ -13,22 +13,17 @@ class AddressError(ValueError):
 
 @dataclass(frozen=True)
 class Doors:
-    """Origins (scheme://host:port) and Hosts that are this console's own."""
+    """Origins (scheme://host:port) that are this console's own."""
 
     origins: frozenset[str]
 
-    @property
-    def hosts(self) -> frozenset[str]:
-        """Values of the header Host."""
-        return frozenset(urlsplit(origin).netloc for origin in self.origins)
-
     def host_is_own(self, host: str | None) -> bool:
         """False for another name that a foreign DNS server lets point here."""
-        return host is not None and host.lower() in self.hosts
+        return host is not None and any(urlsplit(origin).netloc == host.lower() for origin in self.origins)
 
     def origin_is_own(self, origin: str | None, host: str | None) -> bool:
         """True for a request that a page of this console has sent, to the name from which it came."""
-        return origin is not None and origin in self.origins and urlsplit(origin).netloc == (host or "").lower()
+        return origin in self.origins and urlsplit(origin).netloc == (host or "").lower()
 
 
 def is_loopback(address: str) -> bool:
@@ -37,6 +32,11 @@ def is_loopback(address: str) -> bool:
         return ipaddress.ip_address(address).is_loopback
     except ValueError:
         return address == "localhost"
+
+
+def bracketed(address: str) -> str:
+    """The address as a URL holds it."""
+    return f"[{address}]" if ":" in address else address
 
 
 def require_protection(address: str, *, users: bool, tls: bool) -> None:
@@ -51,17 +51,11 @@ def require_protection(address: str, *, users: bool, tls: bool) -> None:
 
 def doors_of(address: str, port: int, names: list[str], *, tls: bool, further: list[str]) -> Doors:
     """`names`: of this machine; `further`: whole origins, for instance of a reverse proxy. Raises AddressError."""
-    scheme = "https" if tls else "http"
-    standard = ":443" if tls else ":80"
-    hosts = ["127.0.0.1", "localhost", "[::1]"] if is_loopback(address) else [_bracketed(address), *names]
-    origins = {f"{scheme}://{host.lower()}:{port}".removesuffix(standard) for host in hosts}
+    scheme, standard = ("https", ":443") if tls else ("http", ":80")
+    hosts = ["127.0.0.1", "localhost", "[::1]"] if is_loopback(address) else [bracketed(address), *names]
     for origin in further:
         parts = urlsplit(origin)
         if parts.scheme not in {"http", "https"} or not parts.netloc or f"{parts.scheme}://{parts.netloc}" != origin:
             raise AddressError(f"--origin {origin}: must be as https://console.example or http://robot:8080")
-        origins.add(origin.lower())
-    return Doors(frozenset(origins))
-
-
-def _bracketed(address: str) -> str:
-    return f"[{address}]" if ":" in address else address
+    own = [f"{scheme}://{host}:{port}".removesuffix(standard) for host in hosts]
+    return Doors(frozenset(origin.lower() for origin in [*own, *further]))

@@ -48,7 +48,7 @@ class Call:
 
 
 CALLS: Mapping[str, Call] = {
-    "reset_asked": Call(),
+    "reset_asked": Call("e_stop_reset"),
     "reset": Call("e_stop_reset", fields={"key": text(32)}),
     "reset_odometry": Call("reset_odometry", Trigger),
     "set_odometry": Call("set_odometry", SetOdometry, {"x": METRES, "y": METRES, "yaw": number(-7.0, 7.0)}),

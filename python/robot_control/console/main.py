@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import asyncio
 import contextlib
+import json
 import logging
 import logging.handlers
 import os
@@ -13,6 +14,7 @@ import secrets
 import socket
 import ssl
 import sys
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,29 +25,26 @@ from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message
 from robot_control.common.ros_node import running_node
 from robot_control.common.topic_sender import Signals
-from robot_control.console.addresses import AddressError, Doors, doors_of, require_protection
+from robot_control.console.addresses import AddressError, Doors, bracketed, doors_of, require_protection
 from robot_control.console.backend import Backend
-from robot_control.console.door import Door
-from robot_control.console.paths import LOGS, users_file
+from robot_control.console.client import FRAME
 from robot_control.console.server import Server
+from robot_control.console.sessions import Sessions
 from robot_control.console.settings import Settings, SettingsError, read_settings
 from robot_control.console.tls import TlsError, context_of, fingerprint, self_made
-from robot_control.console.users import Users, UsersError
+from robot_control.console.users import FOLDER, Users, UsersError
 from robot_control.installed_files import share_file
 
 PASS = 0.02
-"""s between two looks at robot and pages"""
-FRAME = 0.05
-"""s between two frames of the page"""
+"""s between two passes over robot and pages"""
 CHECK = 100
 """frames between two looks at the file of users"""
 HANDSHAKE, KEPT = 10.0, 15.0
 """s for a TLS handshake; for which an idle connection stays open"""
-LOG_SIZE, LOGS_KEPT = 1_000_000, 5
-"""bytes of one log file, and how many older ones stay"""
-LOGINS = "ROBOT_CONTROL_CONSOLE_LOGINS"
+JOURNAL, JOURNAL_SIZE, JOURNALS_KEPT = "console.log", 1_000_000, 5
+"""file, bytes of it, and how many older ones stay"""
+STATE = "ROBOT_CONTROL_CONSOLE_STATE"
 """Environment variable in which a console that replaces itself passes token and logins on."""
-TOKEN = "ROBOT_CONTROL_CONSOLE_TOKEN"  # noqa: S105 (a name)
 
 
 @dataclass(frozen=True)
@@ -63,27 +62,19 @@ def arguments(given: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="console.py",
         description="A page in the browser that shows and drives the robot. Commands go to console_vel where the robot "
-        "has a list of command sources, else to cmd_vel_stamped.",
+        "has a list of command sources, else to cmd_vel_stamped. Users: console_users.py.",
         epilog="Another robot's: __ns:=robot2 and a --port of its own. docs/console.md explains it.",
     )
-    parser.add_argument(
-        "--address", default="127.0.0.1", help="to listen on; another one than the loopback needs users and TLS"
-    )
-    parser.add_argument("--port", type=int, default=8080)
-    parser.add_argument("--users", type=Path, help="file of console_users.py; default: its own, where it exists")
-    parser.add_argument("--tls", action="store_true", help="HTTPS, with a certificate of its own where none is given")
-    parser.add_argument("--cert", type=Path, help="certificate, PEM; implies --tls")
-    parser.add_argument("--key", type=Path, help="its key, PEM")
-    parser.add_argument(
-        "--origin",
-        action="append",
-        default=[],
-        help="further address under which pages come, for instance of a reverse proxy: https://console.example",
-    )
-    parser.add_argument("--config", type=Path, help="YAML laid over config/console.yaml")
-    parser.add_argument("--runs", type=Path, default=LOGS, help="folder of recorded runs (default %(default)s)")
-    parser.add_argument("--log", type=Path, default=LOGS / "console.log", help="who did what (default %(default)s)")
-    parser.add_argument("--read-only", action="store_true", help="nothing but the emergency stop works")
+    add = parser.add_argument
+    add("--address", default="127.0.0.1", help="to listen on; another one than the loopback needs users and TLS")
+    add("--port", type=int, default=8080)
+    add("--tls", action="store_true", help="HTTPS, with a certificate of its own where none is given")
+    add("--cert", type=Path, help="certificate, PEM; implies --tls")
+    add("--key", type=Path, help="its key, PEM; left out: it stands in the same file")
+    add("--origin", action="append", default=[], help="further address of the page, as https://console.example")
+    add("--config", type=Path, help="YAML laid over config/console.yaml")
+    add("--runs", type=Path, default=FOLDER, help="folder of recorded runs (default %(default)s)")
+    add("--read-only", action="store_true", help="nothing but the emergency stop works")
     return parser.parse_args(given)
 
 
@@ -91,15 +82,12 @@ def setup_of(given: argparse.Namespace) -> Setup:
     """Raises AddressError, SettingsError, TlsError, UsersError, OSError: it must not start like this."""
     overlay = [given.config] if given.config else []
     settings = read_settings(Path(share_file("config/console.yaml")), *overlay)
-    users = Users(given.users or users_file())
+    users, context = Users(), None
     has_users, tls = bool(users.all()), bool(given.tls or given.cert)
-    if given.users and not has_users:
-        raise UsersError(f"{given.users}: holds no users: console_users.py --users {given.users} add NAME")
     require_protection(given.address, users=has_users, tls=tls)
-    context = None
     if tls:
         names = ["localhost", "127.0.0.1", socket.gethostname(), given.address]
-        certificate, key = (given.cert, given.key or given.cert) if given.cert else self_made(given.log.parent, names)
+        certificate, key = (given.cert, given.key or given.cert) if given.cert else self_made(FOLDER, names)
         context = context_of(certificate, key)
         print(f"fingerprint of the certificate (SHA-256): {fingerprint(certificate)}")
     doors = doors_of(given.address, given.port, [socket.gethostname()], tls=tls, further=given.origin)
@@ -110,7 +98,9 @@ def open_journal(path: Path) -> None:
     """Who did what, in a file of this account alone that is rotated by size."""
     path.parent.mkdir(parents=True, exist_ok=True)
     path.touch(mode=0o600, exist_ok=True)
-    handler = logging.handlers.RotatingFileHandler(path, maxBytes=LOG_SIZE, backupCount=LOGS_KEPT, encoding="utf-8")
+    handler = logging.handlers.RotatingFileHandler(
+        path, maxBytes=JOURNAL_SIZE, backupCount=JOURNALS_KEPT, encoding="utf-8"
+    )
     handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
     journal = logging.getLogger("console")
     journal.addHandler(handler)
@@ -121,34 +111,39 @@ def open_journal(path: Path) -> None:
 async def serve(given: argparse.Namespace, setup: Setup, signals: Signals) -> bool:
     """Until a signal comes; True if this program has to begin again, because another master was started."""
     backend = Backend(setup.settings)
-    token = os.environ.pop(TOKEN, "") or secrets.token_urlsafe(24)
-    server = Server(backend, setup.doors, setup.users, token, given.runs.expanduser(), read_only=given.read_only)
-    server.cookie = f"console_{given.port}"  # cookies of one host count for all its ports
-    server.sessions.restore(os.environ.pop(LOGINS, "[]"))
+    token, saved = json.loads(os.environ.pop(STATE, "null")) or (secrets.token_urlsafe(24), [])
+    runs, sessions = given.runs.expanduser(), Sessions(saved)
+    server = Server(
+        backend, setup.doors, setup.users, token, sessions, runs, port=given.port, read_only=given.read_only
+    )
     runner = web.AppRunner(server.app, access_log=None, keepalive_timeout=KEPT, handle_signals=False)
     await runner.setup()
-    loop, handshake = asyncio.get_running_loop(), HANDSHAKE if setup.context else None
-    listening = await loop.create_server(
-        lambda: Door(server.strangers, runner.server),  # type: ignore[arg-type]
+    handler = runner.server
+    assert handler is not None  # noqa: S101 (after setup)
+    listening = await asyncio.get_running_loop().create_server(
+        handler,
         given.address,
         given.port,
         ssl=setup.context,
-        ssl_handshake_timeout=handshake,
+        ssl_handshake_timeout=HANDSHAKE if setup.context else None,
         reuse_address=True,
     )
-    print(_address(given, setup, token))
+    secret = "" if setup.users else f"?token={token}"
+    print(f"open {'https' if setup.context else 'http'}://{bracketed(given.address)}:{given.port}/{secret}")
     frames = asyncio.create_task(_frames(server, backend))
     replace = False
     while signals.going_on() and not replace and not frames.done():
-        backend.look()
-        server.look()
+        backend.step()
+        server.pass_on()
+        server.strangers.check(handler.connections, time.monotonic())
         await asyncio.sleep(PASS)
         replace = backend.listener.unknown_to_master > 1
     if replace:
-        os.environ[LOGINS], os.environ[TOKEN] = server.sessions.save(), token
+        os.environ[STATE] = json.dumps([token, sessions.save()])
     frames.cancel()
     server.close()
     listening.close()
+    await asyncio.sleep(2 * FRAME)  # the pages are told
     with contextlib.suppress(asyncio.TimeoutError):
         await asyncio.wait_for(runner.cleanup(), 2.0)
     return replace
@@ -162,19 +157,12 @@ async def _frames(server: Server, backend: Backend) -> None:
         await asyncio.sleep(FRAME)
 
 
-def _address(given: argparse.Namespace, setup: Setup, token: str) -> str:
-    scheme = "https" if setup.context else "http"
-    host = f"[{given.address}]" if ":" in given.address else given.address
-    secret = "" if setup.users else f"?token={token}"
-    return f"open {scheme}://{host}:{given.port}/{secret}"
-
-
 def main() -> int:
     """Entry point of scripts/console.py."""
     given = arguments(rospy.myargv(sys.argv)[1:])
     try:
         setup = setup_of(given)
-        open_journal(given.log.expanduser())
+        open_journal(FOLDER / JOURNAL)
     except (AddressError, SettingsError, TlsError, UsersError, OSError) as error:
         print(f"console.py: {fit_for_message(in_words(error))}", file=sys.stderr)
         return 2

@@ -32,11 +32,10 @@ class Runs:
 
     def list(self) -> list[dict[str, Any]]:
         """The newest first: id, name, bytes, time of day."""
-        rows: list[dict[str, Any]] = []
-        for key, path in self._files().items():
-            status = path.stat()
-            name = str(path.relative_to(self._folder))
-            rows.append({"id": key, "name": name, "bytes": status.st_size, "time": status.st_mtime})
+        rows = [
+            {"id": key, "name": str(path.relative_to(self._folder)), "bytes": status.st_size, "time": status.st_mtime}
+            for key, path, status in ((key, path, path.stat()) for key, path in self._files().items())
+        ]
         return sorted(rows, key=lambda row: -row["time"])[:MAX_RUNS]
 
     def file(self, key: str) -> Path:

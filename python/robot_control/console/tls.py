@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
 import ssl
 import subprocess
 from pathlib import Path
@@ -36,15 +35,12 @@ def self_made(folder: Path, names: list[str]) -> tuple[Path, Path]:
     listed = ",".join(f"{'IP' if name.replace('.', '').isdigit() or ':' in name else 'DNS'}:{name}" for name in names)
     command = ["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes"]
     command += ["-days", DAYS, "-subj", "/CN=robot_control console", "-addext", f"subjectAltName={listed}"]
-    mask = os.umask(0o077)
+    command += ["-keyout", str(key), "-out", str(certificate)]
     try:
-        made = [*command, "-keyout", str(key), "-out", str(certificate)]
-        subprocess.run(made, check=True, capture_output=True, text=True)
+        subprocess.run(command, check=True, capture_output=True, text=True, umask=0o077)
     except (OSError, subprocess.CalledProcessError) as error:
         reason = error.stderr.strip()[-300:] if isinstance(error, subprocess.CalledProcessError) else str(error)
         raise TlsError(f"openssl made no certificate (scripts/setup --console installs it): {reason}") from None
-    finally:
-        os.umask(mask)
     return certificate, key
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import time
 from collections.abc import Iterable
@@ -21,6 +22,8 @@ from robot_control.why.diagnosis import Facts, judge, missing_nodes
 
 MAX_PATH = 2000
 """points of a wanted path that are sent; of a longer one every n-th"""
+DRIVE_SILENCE = 1.0
+"""s after which a drive_state counts no more"""
 
 Values = dict[str, Any]
 
@@ -40,16 +43,11 @@ class View:
         }
         self._wanted = Latest("path_wanted", Path)
 
-    @property
-    def drive_state(self) -> DriveState | None:
-        """The newest one."""
-        message: DriveState | None = self._topics["drive"].message
-        return message
-
-    @property
-    def drive_is_fresh(self) -> bool:
-        """True if the newest drive_state is no older than a second."""
-        return time.monotonic() - self._topics["drive"].received_at < 1.0
+    def revoked(self, node: str) -> bool:
+        """True if the controller refuses what the node requested before a stop."""
+        drive = self._topics["drive"]
+        fresh = time.monotonic() - drive.received_at < DRIVE_SILENCE
+        return fresh and node in drive.message.revoked
 
     def pose(self) -> tuple[float, float, float] | None:
         """x, y [m], yaw [rad] in odom."""
@@ -60,82 +58,64 @@ class View:
         """When the wanted path was received, and the path."""
         message = self._wanted.message
         points = [] if message is None else [(each.pose.position.x, each.pose.position.y) for each in message.poses]
-        step = max(1, math.ceil(len(points) / MAX_PATH))
         frame = "" if message is None else message.header.frame_id
-        return self._wanted.received_at, {"type": "wanted", "frame": frame, "points": finite(points[::step])}
+        step = max(1, math.ceil(len(points) / MAX_PATH))
+        return self._wanted.received_at, finite({"type": "wanted", "frame": frame, "points": points[::step]})
 
     def fast(self, asked: Command | None) -> Values:
         """The values of every frame; `asked` by this console."""
         now = time.monotonic()
-        odometry, truth, joints, limited = (self._topics[n].message for n in ("odom", "truth", "joints", "limited"))
+        newest = {name: topic.message for name, topic in self._topics.items()}
+        odometry, truth, joints, drive = (newest[name] for name in ("odom", "truth", "joints", "drive"))
         values: Values = {
             "type": "fast",
             "ages": {name: topic.age(now) for name, topic in self._topics.items()},
             "asked": None if asked is None else [asked.linear, asked.angular],
-            "limited": None if limited is None else [limited.twist.linear.x, limited.twist.angular.z],
+            "limited": None if newest["limited"] is None else _speeds(newest["limited"].twist),
             "joints": {} if joints is None else dict(zip(joints.name, joints.position, strict=False)),
         }
         if odometry is not None:
-            pose, covariance, twist = _pose(odometry), odometry.pose.covariance, odometry.twist.twist
+            pose, covariance = _pose(odometry), odometry.pose.covariance
             self.trail.add(pose[0], pose[1])
-            values |= {"pose": pose, "measured": (twist.linear.x, twist.angular.z)}
+            values |= {"pose": pose, "measured": _speeds(odometry.twist.twist)}
             values["covariance"] = (covariance[0], covariance[1], covariance[7])
-            values["attitude"] = _quaternion(odometry)
         if truth is not None:
-            values |= {"truth": _pose(truth), "true": (truth.twist.twist.linear.x, truth.twist.twist.angular.z)}
-        drive = self.drive_state
+            values |= {"truth": _pose(truth), "true": _speeds(truth.twist.twist)}
         if drive is not None:
-            rows = zip(drive.name, drive.wanted, drive.actual, drive.error, drive.effort, strict=False)
-            values["wheels"] = [
-                dict(zip(("name", "wanted", "actual", "error", "effort"), r, strict=True)) for r in rows
-            ]
-        return _finite_map(values)
+            rows = zip(drive.name, drive.error, drive.effort, strict=False)
+            values["wheels"] = [{"name": name, "error": error, "effort": effort} for name, error, effort in rows]
+        return finite(values)
 
     def slow(self, facts: Facts) -> Values:
         """The values that change now and then: state, causes, remedies, who commands."""
-        answer, safety, now = judge(facts), facts.received(), time.monotonic()
-        drive, feedback = self.drive_state, self._topics["feedback"].message
-        values: Values = {
-            "type": "slow",
-            "namespace": facts.namespace,
-            "master": facts.master if facts.master_answers else "",
-            "verdict": answer.verdict.value,
-            "headline": answer.headline,
-            "actions": answer.actions,
-            "commands": answer.commands,
-            "missing": missing_nodes(facts),
-            "nodes": {node: facts.there(node) for node in LOOP},
-            "senders": facts.commanders(),
-            "reasons": list(facts.reasons(CONTROLLER, "command").values()),
-            "estimate": [*facts.reasons(ESTIMATOR, "slip").values(), *facts.reasons(ESTIMATOR, "estimate").values()],
-            "faults": facts.value(DRIVER, "injected"),
-            "simulated": facts.there(DRIVER),
-            "paused": facts.value(DRIVER, "driver_state") == "paused",
-            "safety": None if safety is None else _safety(safety),
-            "sources": [] if drive is None else list(drive.sources),
-            "revoked": [] if drive is None else list(drive.revoked),
-            "path": None if feedback is None else _progress(feedback, self._topics["feedback"].age(now)),
+        answer, safety = judge(facts), facts.received()
+        drive, feedback = self._topics["drive"].message, self._topics["feedback"]
+        progress = {} if feedback.message is None else {
+            name: getattr(feedback.message.feedback, name)
+            for name in ("state", "reason", "progress", "remaining_distance", "cross_track_error")
         }
-        return _finite_map(values)
-
-
-def _safety(safety: Any) -> Values:  # noqa: ANN401 (diagnosis.Safety)
-    names = ("sentence", "detail", "remedy", "actor", "first", "active")
-    return {
-        "state": safety.state,
-        "permit": safety.permit,
-        "held": safety.held,
-        "age": safety.age,
-        "causes": [{name: getattr(cause, name) for name in names} for cause in safety.causes],
-        "warnings": safety.warnings,
-        "speed_limit": safety.speed_limit,
-        "refusal": safety.refusal,
-    }
-
-
-def _progress(message: FollowPathActionFeedback, age: float | None) -> Values:
-    names = ("state", "reason", "progress", "distance", "remaining_distance", "cross_track_error")
-    return {"age": age, **{name: getattr(message.feedback, name) for name in names}}
+        return finite(
+            {
+                "type": "slow",
+                "master": facts.master_answers,
+                "verdict": answer.verdict.value,
+                "headline": answer.headline,
+                "actions": answer.actions,
+                "commands": answer.commands,
+                "missing": missing_nodes(facts),
+                "nodes": {node: facts.there(node) for node in LOOP},
+                "senders": facts.commanders(),
+                "limits": list(facts.reasons(CONTROLLER, "command").values()),
+                "odometry": [text for of in ("slip", "estimate") for text in facts.reasons(ESTIMATOR, of).values()],
+                "faults": facts.value(DRIVER, "injected"),
+                "simulated": facts.there(DRIVER),
+                "paused": facts.value(DRIVER, "driver_state") == "paused",
+                "safety": None if safety is None else dataclasses.asdict(safety),
+                "sources": [] if drive is None else drive.sources,
+                "revoked": [] if drive is None else drive.revoked,
+                "path": {"age": feedback.age(time.monotonic()), **progress},
+            }
+        )
 
 
 def _pose(odometry: Odometry) -> tuple[float, float, float]:
@@ -143,9 +123,8 @@ def _pose(odometry: Odometry) -> tuple[float, float, float]:
     return pose.x, pose.y, pose.yaw
 
 
-def _quaternion(odometry: Odometry) -> tuple[float, float, float, float]:
-    orientation = odometry.pose.pose.orientation
-    return orientation.x, orientation.y, orientation.z, orientation.w
+def _speeds(twist: Any) -> tuple[float, float]:  # noqa: ANN401 (geometry_msgs)
+    return twist.linear.x, twist.angular.z
 
 
 def finite(value: Any) -> Any:  # noqa: ANN401 (any value of JSON)
@@ -157,8 +136,3 @@ def finite(value: Any) -> Any:  # noqa: ANN401 (any value of JSON)
     if isinstance(value, str) or not isinstance(value, Iterable):
         return value
     return [finite(each) for each in value]
-
-
-def _finite_map(values: Values) -> Values:
-    checked: Values = finite(values)
-    return checked

@@ -1,17 +1,16 @@
 // The WebSocket: one connection that comes back by itself, and what is known of its age.
-const SILENT = 1000;  // ms without a message, after which nothing on the page is new
-const handlers = {};
-let socket = null, heard = -Infinity, wait = 250;
+const SILENT = 1000, FIRST_WAIT = 250, MAX_WAIT = 2000;  // ms without a message, after which nothing on the page is new; between two tries
+const handlers = {}, waiting = new Map();
+let socket = null, heard = -Infinity, wait = FIRST_WAIT, calls = 0;
 
 export const on = (type, handler) => (handlers[type] ??= []).push(handler);
 export const silent = () => performance.now() - heard > SILENT;
+export const reconnect = () => socket?.close();
 
 export function send(message) {
   if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
 }
 
-let calls = 0;
-const waiting = new Map();
 /** Resolves with {accepted, text}. */
 export function call(name, args = {}) {
   const number = ++calls;
@@ -19,29 +18,26 @@ export function call(name, args = {}) {
   return new Promise((resolve) => waiting.set(number, resolve));
 }
 
-export function reconnect() { socket?.close(); }
-
 export function connect() {
   socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/ws`);
-  const own = socket;
-  own.onopen = () => { wait = 250; emit("open", {}); };
-  own.onmessage = ({ data }) => {
+  socket.onopen = () => { wait = FIRST_WAIT; emit("open", {}); };
+  socket.onmessage = ({ data }) => {
     heard = performance.now();
     const message = JSON.parse(data);
     if (message.type === "ping") send({ type: "pong", name: message.name });
     else emit(message.type, message);
   };
-  own.onclose = async (event) => {
+  socket.onclose = async ({ code }) => {
     for (const resolve of waiting.values()) resolve({ accepted: false, text: "the connection was lost" });
     waiting.clear();
-    emit("closed", { code: event.code });
-    if (event.code === 4401 || (await loggedOut())) location.assign("/login");
-    else setTimeout(connect, wait = Math.min(2 * wait, 2000));
+    emit("closed", {});
+    if (code === 4401 || (await loggedOut())) location.assign("/login");
+    else setTimeout(connect, wait = Math.min(2 * wait, MAX_WAIT));
   };
 }
 
 async function loggedOut() {
-  try { return (await fetch("/api/model")).status === 401; } catch { return false; }
+  try { return (await fetch("/work.js")).status === 401; } catch { return false; }
 }
 
 function emit(type, message) {

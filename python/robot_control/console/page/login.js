@@ -15,7 +15,7 @@ by("login").addEventListener("submit", async (event) => {
   const body = link ? { link, password } : { name: by("name").value, password };
   by("message").textContent = "…";
   try {
-    const answer = await fetch(link ? "/api/first" : "/api/login", {
+    const answer = await fetch("/api/login", {
       method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body),
     });
     if (answer.ok) location.assign("/");

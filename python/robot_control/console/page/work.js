@@ -1,21 +1,17 @@
-// Everything that is not driving: command, reset, paths, odometry, parameters, simulation, runs.
-import { on, send, call } from "/link.js";
+// The whole page but its pictures, of which neither driving nor the emergency stop depends: command, reset, and work.
+import { on, send, call, connect } from "/link.js";
 import { release } from "/drive.js";
-import { draw } from "/scene.js";
-import { list, number } from "/panels.js";
+import { by, list, number } from "/panels.js";
 
-const by = (id) => document.getElementById(id);
 const messages = [];
-let desk = null, robot = null;
+let desk = null, robot = null, key = "";
 
-export function say(text) {
+function say(text) {
   messages.unshift(`${new Date().toLocaleTimeString()} ${text}`);
   messages.length = Math.min(messages.length, 8);
   list("messages", messages);
 }
-
 on("said", ({ text }) => say(text));
-document.addEventListener("hint", () => { by("hold").textContent = "Take the command first."; });
 
 const COMPONENTS = "left_encoder right_encoder gyro accelerometer left_motor right_motor battery e_stop_button";
 const KINDS = "ok off stuck garbage wrong slow delayed intermittent";
@@ -24,6 +20,7 @@ for (const [id, words] of [["component", COMPONENTS], ["kind", KINDS]]) words.sp
 const value = (id) => Number(by(id).value);
 const ARGUMENTS = {
   path_points: async () => {
+    const { draw } = await import("/scene.js");
     say("draw a stroke on the grid");
     const points = await draw();
     return points.length > 1 ? { points, speed: value("path-speed") } : null;
@@ -44,6 +41,7 @@ for (const button of document.querySelectorAll("[data-call]")) {
     const args = ARGUMENTS[name] ? await ARGUMENTS[name]() : {};
     if (args === null) return say(`${button.textContent}: nothing was chosen`);
     const { accepted, text } = await call(name, args);
+    if (name === "reset_asked" && accepted) return confirmReset(text);
     say(`${button.textContent}: ${accepted ? "" : "refused: "}${text}`);
   });
 }
@@ -55,23 +53,21 @@ on("slow", (slow) => {
 });
 
 on("desk", (next) => {
-  const first = !desk;
+  const first = !desk, mine = next.commander === next.you, taken = next.commander !== null && !mine;
   desk = next;
   for (const button of document.querySelectorAll("[data-call]")) {
-    const why = desk.against[button.dataset.call];
-    button.setAttribute("aria-disabled", String(Boolean(why)));
-    button.title = why;
+    button.title = desk.against[button.dataset.call];
+    button.setAttribute("aria-disabled", String(Boolean(button.title)));
   }
-  const mine = desk.commander === desk.you, taken = desk.commander !== null && !mine;
+  by("take").hidden = mine;
   by("take").textContent = taken ? "Take it away" : "Take the command";
-  by("take").setAttribute("aria-disabled", String(mine || desk.role === "watch" || (taken && desk.role !== "maintain")));
-  by("give").setAttribute("aria-disabled", String(!mine));
-  by("hand").setAttribute("aria-disabled", String(!mine));
-  by("reset").setAttribute("aria-disabled", String(Boolean(desk.against.reset)));
-  by("reset").title = desk.against.reset;
+  by("take").setAttribute("aria-disabled", String(desk.role === "watch" || (taken && desk.role !== "maintain")));
+  by("give").hidden = !mine;
   const others = desk.pages.filter((page) => page.number !== desk.you && page.role !== "watch").map((page) => `${page.number} ${page.name}`);
-  const shown = [...by("other").options].map((option) => option.text);
-  if (others.join() !== shown.join()) by("other").replaceChildren(...others.map((text) => new Option(text, text.split(" ")[0])));
+  by("hand-over").hidden = !mine || !others.length;
+  if (others.join() !== [...by("other").options].map((option) => option.text).join()) {
+    by("other").replaceChildren(...others.map((text) => new Option(text, text.split(" ")[0])));
+  }
   for (const [id, at] of [["linear", 0], ["angular", 1]]) {
     if (first || (document.activeElement !== by(id) && value(id) !== desk.chosen[at])) by(id).value = number(desk.chosen[at]);
     by(id).max = desk.limits[at];
@@ -81,7 +77,7 @@ on("desk", (next) => {
 
 by("take").addEventListener("click", () => send({ type: "take", force: desk.commander !== null }));
 by("give").addEventListener("click", () => send({ type: "give_back" }));
-by("hand").addEventListener("click", () => by("other").value ? send({ type: "hand_over", to: Number(by("other").value) }) : say("there is no other page that may drive"));
+by("hand").addEventListener("click", () => send({ type: "hand_over", to: Number(by("other").value) }));
 by("heartbeat").addEventListener("change", () => send({ type: "heartbeat", on: by("heartbeat").checked }));
 for (const id of ["linear", "angular"]) {
   by(id).addEventListener("change", () => send({ type: "speeds", linear: value("linear"), angular: value("angular") }));
@@ -97,41 +93,31 @@ by("e-stop").addEventListener("click", async () => {
   }
 });
 
-let key = "";
-by("reset").addEventListener("click", async () => {
-  if (desk?.against.reset) return say(`Reset: ${desk.against.reset}`);
-  const { accepted, text } = await call("reset_asked");
-  if (!accepted) return say(`Reset: ${text}`);
-  key = text;
+function confirmReset(text) {
   const active = (robot?.safety?.causes ?? []).filter((cause) => cause.active).map((cause) => `${cause.sentence}: ${cause.remedy}`);
-  const refused = robot?.safety?.refusal ?? [];
-  by("against").textContent = active.length || refused.length ? `Against it stands: ${[...active, ...refused].join("; ")}` : "Nothing stands against it. Look at the robot first.";
+  const reasons = [...active, ...(robot?.safety?.refusal ?? [])];
+  key = text;
+  by("against").textContent = reasons.length ? `Against it stands: ${reasons.join("; ")}` : "Nothing stands against it. Look at the robot first.";
   by("confirm").hidden = false;
-});
+}
 by("confirm-reset").addEventListener("click", async () => {
   by("confirm").hidden = true;
-  const { text } = await call("reset", { key });
-  say(text);
+  say((await call("reset", { key })).text);
 });
 by("cancel-reset").addEventListener("click", () => { by("confirm").hidden = true; });
 
 by("runs").addEventListener("toggle", async () => {
   if (!by("runs").open) return;
   const answer = await fetch("/api/runs").catch(() => null);
-  if (!answer?.ok) return say("the list of runs cannot be read");
-  by("run-list").replaceChildren(...(await answer.json()).map(row));
+  if (answer?.ok) by("run-list").replaceChildren(...(await answer.json()).map(row));
+  else say("the list of runs cannot be read");
 });
 function row(run) {
-  const line = document.createElement("tr");
-  const name = line.insertCell(), size = line.insertCell(), links = line.insertCell();
-  name.textContent = `${run.name}, ${new Date(1000 * run.time).toLocaleString()}`;
-  size.textContent = `${number(run.bytes / 1e6, 1)} MB`;
-  for (const [text, path] of [["report", "report"], ["download", "file"]]) {
-    const link = document.createElement("a");
-    link.textContent = text;
-    link.href = `/api/runs/${run.id}/${path}`;
-    link.target = path === "report" ? "_blank" : "";
-    link.rel = "noopener";
+  const line = document.createElement("tr"), texts = [`${run.name}, ${new Date(1000 * run.time).toLocaleString()}`, `${number(run.bytes / 1e6, 1)} MB`];
+  for (const text of texts) line.insertCell().textContent = text;
+  const links = line.insertCell();
+  for (const [text, path, target] of [["report", "report", "_blank"], ["download", "file", ""]]) {
+    const link = Object.assign(document.createElement("a"), { textContent: text, href: `/api/runs/${run.id}/${path}`, target, rel: "noopener" });
     links.append(link, " ");
   }
   return line;
@@ -142,3 +128,4 @@ by("logout").addEventListener("click", async () => {
   await fetch("/api/logout", { method: "POST" }).catch(() => null);
   location.assign("/login");
 });
+connect();
