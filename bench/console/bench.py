@@ -13,10 +13,11 @@ from typing import Any
 import numpy as np
 from robot_control import ClosedLoop
 from robot_control.common.run_log import read_log
+from robot_control.console.settings import Settings
 
 from bench.console.browser import Browser
 from bench.console.page import Page
-from bench.console.process import Console, wait_for
+from bench.console.process import Console, memory_of, wait_for
 from bench.console.proxy import Proxy
 from bench.console.robot import Robot
 
@@ -25,8 +26,6 @@ addEventListener("keydown", (event) => { window.at = Date.now() - (performance.n
 """
 """Notes the time of day, ms, at which the browser made the event; performance.timeOrigin may have drifted from it."""
 PRESSES = 50
-DISTANCE, REACTION = 0.3, 0.4
-"""m, s: of config/console.yaml"""
 DELAYS = ((0.0, 0.0), (0.01, 0.0), (0.05, 0.02), (0.1, 0.05), (0.2, 0.0), (0.4, 0.0), (0.1, 0.2))
 """s each way, and jitter"""
 LOSSES = 7
@@ -131,7 +130,7 @@ def _links(
                 page.send({"type": "speeds", "linear": 2.0, "angular": 1.0})
                 time.sleep(14.0 if number == 0 else 6.0)  # 100 pings take 10 s
             if number == 0:
-                law = DISTANCE / (page.link["p95"] + REACTION)
+                law = Settings().distance / (page.link["p95"] + Settings().reaction)
                 beside.append(100 * abs(page.link["cap"] / law - 1))
             page.held, page.linear = True, 1.0
             time.sleep(2.5)
@@ -148,7 +147,7 @@ def _links(
                 proxy.cut()
             robot.await_rest()
             way, speed = robot.at(lost)
-            beyond.append(robot.moves[-1][1] - way - DISTANCE - loop.stop_distance(max(speed, 0.0)))
+            beyond.append(robot.moves[-1][1] - way - Settings().distance - loop.stop_distance(max(speed, 0.0)))
             count += 1
             page.held, page.sends = False, True
             if not number % 2:
@@ -176,11 +175,11 @@ def _cost(console: Console, seconds: float) -> tuple[tuple[int, int, int], dict[
     pages[0].send({"type": "take", "force": True})
     time.sleep(3.0)
     pid, busy, before = console.process.pid, time.monotonic_ns(), _processor(console.process.pid)
-    memory = _memory(pid)
+    memory = memory_of(pid)
     time.sleep(seconds)
     used = (_processor(pid) - before) / (1e-9 * (time.monotonic_ns() - busy))
     window = (quiet, busy, time.monotonic_ns())
-    grown = _memory(pid) - memory
+    grown = memory_of(pid) - memory
     for page in pages:
         page.end()
     return window, {
@@ -200,8 +199,3 @@ def _chain(log: Any, window: tuple[int, int, int]) -> dict[str, tuple[float, str
 def _processor(pid: int) -> float:
     fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
-def _memory(pid: int) -> float:
-    pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
-    return pages * os.sysconf("SC_PAGE_SIZE") / 2**20

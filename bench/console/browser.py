@@ -61,6 +61,36 @@ class Browser:
         self.driver.get(address)
         wait_for("frames of the robot", lambda: int(self.data("frames") or 0) > 3)
 
+    def new_tab(self, *, show: bool = True) -> None:
+        """Opens another tab, which hides this one. `show`: what follows is asked of the new one."""
+        first = self.driver.current_window_handle
+        self.driver.switch_to.new_window("tab")
+        if not show:
+            self.driver.switch_to.window(first)
+
+    def first_tab(self) -> None:
+        """Ends all tabs but the first."""
+        first, *others = self.driver.window_handles
+        for other in others:
+            self.driver.switch_to.window(other)
+            self.driver.close()
+        self.driver.switch_to.window(first)
+
+    def pad(self, *, plugged: bool = True, pressed: bool = False) -> None:
+        """A stub of a game pad, forward with all its buttons pressed."""
+        self.run(
+            "const [plugged, pressed] = arguments, buttons = Array.from({length: 8}, () => ({pressed}));"
+            "const pad = {connected: true, axes: [0, pressed ? -1 : 0, 0, 0], buttons};"
+            "navigator.getGamepads = () => plugged ? [pad] : [];",
+            plugged,
+            pressed,
+        )
+
+    def heap(self) -> float:
+        """MiB that scripts use, after a collection."""
+        self.driver.execute_cdp_cmd("HeapProfiler.collectGarbage", {})
+        return float(self.driver.execute_cdp_cmd("Runtime.getHeapUsage", {})["usedSize"]) / 2**20
+
     def rest(self) -> None:
         """Hides the 3-D view, whose software rendering takes the processors from everything else."""
         self.run("document.getElementById('view').hidden = true")

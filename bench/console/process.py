@@ -11,7 +11,7 @@ import subprocess
 import tempfile
 import time
 import urllib.request
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import roslib.packages
@@ -45,22 +45,28 @@ def program(name: str) -> str:
 
 
 class Console:
-    """The program; `proxied`: a port of a proxy through which its pages come."""
+    """The program. `proxied`: a port of a proxy through which its pages come; `users`: name → role."""
 
-    def __init__(self, *arguments: str, proxied: int = 0) -> None:
+    def __init__(self, *arguments: str, proxied: int = 0, users: Mapping[str, str] | None = None) -> None:
         self._folder = tempfile.TemporaryDirectory(prefix="console-home-")
         self.home = Path(self._folder.name)
         self.port = free_port()
+        self._environment = {**os.environ, "ROS_HOME": str(self.home), "PYTHONUNBUFFERED": "1"}
         self._arguments = [*arguments, *(["--origin", f"http://127.0.0.1:{proxied}"] if proxied else [])]
+        self.links = {name: self._add(name, role) for name, role in (users or {}).items()}
         self.start()
+
+    def _add(self, name: str, role: str) -> str:
+        command = [program("console_users.py"), "add", name, "--role", role]
+        done = subprocess.run(command, capture_output=True, text=True, check=True, env=self._environment)
+        return done.stdout.strip().rpartition("#")[2]
 
     def start(self) -> None:
         """Starts the program, again after its end, and waits for its address."""
-        environment = {**os.environ, "ROS_HOME": str(self.home), "PYTHONUNBUFFERED": "1"}
         command = [program("console.py"), "--port", str(self.port), *self._arguments]
         output = self.home / "output"
         with output.open("w") as file:
-            self.process = subprocess.Popen(command, stdout=file, stderr=subprocess.STDOUT, env=environment)
+            self.process = subprocess.Popen(command, stdout=file, stderr=subprocess.STDOUT, env=self._environment)
         wait_for("the address", lambda: "open http" in output.read_text() or self.process.poll() is not None)
         found = re.search(r"open (\S+)", output.read_text())
         if not found:
@@ -104,3 +110,9 @@ class Console:
             except subprocess.TimeoutExpired:
                 self.kill()
         self._folder.cleanup()
+
+
+def memory_of(pid: int) -> float:
+    """MiB of a process in memory."""
+    pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE") / 2**20

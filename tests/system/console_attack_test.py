@@ -9,12 +9,10 @@ import importlib.util
 import json
 import socket
 import subprocess
-import tempfile
 import time
 import urllib.error
 import urllib.request
 from collections.abc import AsyncIterator, Awaitable, Callable
-from pathlib import Path
 from typing import Any
 
 import rospy
@@ -22,7 +20,7 @@ import rostest
 from geometry_msgs.msg import TwistStamped
 from system_support import Program, RobotTestCase, wait_for
 
-from bench.console.process import Console, program
+from bench.console.process import Console
 
 DRIVE = {"type": "drive", "number": 1, "sent": 1.0, "held": True, "linear": 1.0, "angular": 0.0}
 TAKE = {"type": "take", "force": False}
@@ -322,16 +320,8 @@ class ConsoleAttackTest(RobotTestCase):
     # users
 
     def test_watchers_watch_and_links_and_logouts_end(self) -> None:
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        users = Path(folder.name, "users.json")
-
-        def add(name: str, role: str) -> str:
-            command = [program("console_users.py"), "--users", str(users), "add", name, "--role", role]
-            return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip().rpartition("#")[2]
-
-        link = add("wanda", "watch")
-        console = Console("--users", str(users), "__name:=console_with_users")
+        console = Console("__name:=console_with_users", users={"wanda": "watch"})
+        link = console.links["wanda"]
         self.addCleanup(console.end)
         origin = console.origin
         own = {"Origin": origin, "Content_Type": "application/json"}
@@ -340,16 +330,16 @@ class ConsoleAttackTest(RobotTestCase):
             return status(f"{origin}/api/{path}", json.dumps(body).encode(), **own, **headers)
 
         self.assertEqual(status(f"{origin}/?token=guess"), 302)
-        self.assertEqual(post("first", {"link": "wrong", "password": "long enough"}), 403)
-        self.assertEqual(post("first", {"link": link, "password": "short"}), 403)
+        self.assertEqual(post("login", {"link": "wrong", "password": "long enough"}), 403)
+        self.assertEqual(post("login", {"link": link, "password": "short"}), 403)
         request = urllib.request.Request(
-            f"{origin}/api/first",
+            f"{origin}/api/login",
             json.dumps({"link": link, "password": "long enough"}).encode(),
             {"Origin": origin, "Content-Type": "application/json"},
         )
         with urllib.request.urlopen(request) as answer:
             cookie = answer.headers["Set-Cookie"].split(";")[0]
-        self.assertEqual(post("first", {"link": link, "password": "another one"}), 403, "a link is good once")
+        self.assertEqual(post("login", {"link": link, "password": "another one"}), 403, "a link is good once")
 
         async def watch(page: Any) -> None:
             await page.send_json({"type": "take", "force": True})

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Robots in the browser: shapes, meshes of STL, DAE and OBJ, what is missing or broken, and names that are scripts."""
+"""Robots in the browser: shapes, meshes of STL and DAE, what is missing or broken, and names that are scripts."""
 
 import os
 import struct
@@ -10,7 +10,7 @@ from pathlib import Path
 import rospy
 import rostest
 import rosunit_skips
-from system_support import init_test_node, nightly, repository, wait_for
+from system_support import init_test_node, repository, wait_for
 
 from bench.console.browser import Browser, missing
 from bench.console.process import Console
@@ -23,7 +23,6 @@ CORNERS = ((0.0, 0.0, 0.0), (0.3, 0.0, 0.0), (0.0, 0.3, 0.0), (0.0, 0.0, 0.3))
 FACES = ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3))
 STL = b"\0" * 80 + struct.pack("<I", 4)
 STL += b"".join(struct.pack("<12fH", 0, 0, 0, *(x for c in face for x in CORNERS[c]), 0) for face in FACES)
-OBJ = "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS) + "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in FACES)
 DAE = f"""<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
 <asset><unit meter="1"/><up_axis>Z_UP</up_axis></asset>
 <library_images><image id="i"><init_from>https://evil.example/i.png</init_from></image></library_images>
@@ -83,7 +82,6 @@ class ConsoleRobotsTest(unittest.TestCase):
         contents = {
             "a.stl": STL,
             "a.dae": DAE.encode(),
-            "a.obj": OBJ.encode(),
             "cut.stl": STL[:100],
             "cut.dae": b"<COLLADA>",
         }
@@ -98,14 +96,13 @@ class ConsoleRobotsTest(unittest.TestCase):
         note = browser.text("scene-note")
         for name in ("cut.stl", "cut.dae", "missing.stl", "secret.txt"):
             self.assertIn(name, note)
-        for name in ("a.stl", "a.dae", "a.obj"):
+        for name in ("a.stl", "a.dae"):
             self.assertNotIn(name, note)
         self.assertEqual(browser.data("model"), SCRIPT)
         self.assertIn("<script>", browser.driver.title)
         self.assertIsNone(browser.run("return window.hacked ?? null"))
         self.assertEqual([each for each in browser.problems() if "404" not in each], [], "404 are the missing meshes")
 
-    @nightly
     def test_real_robots_are_shown(self) -> None:
         robots = corpus()
         if robots is None:

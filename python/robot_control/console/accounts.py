@@ -22,7 +22,12 @@ def main() -> int:
     commands = parser.add_subparsers(dest="command", required=True)
     add = commands.add_parser("add", help="a user, or a new address for one")
     add.add_argument("name")
-    add.add_argument("--role", choices=[str(role) for role in Role], default="watch", help="watch sees, operate drives, maintain also tunes")
+    add.add_argument(
+        "--role",
+        choices=[str(role) for role in Role],
+        default="watch",
+        help="watch sees, operate drives, maintain also tunes",
+    )
     remove = commands.add_parser("remove", help="a user; pages of theirs are closed")
     remove.add_argument("name")
     commands.add_parser("list", help="names and roles")

@@ -80,7 +80,7 @@ class Backend:
     def desk_of(self, page: Page) -> dict[str, Any]:
         """The values that this page shows of itself and of the others."""
         now, holder, hold, limits = time.monotonic(), self.desk.commander, page.hold, self._limits.newest()
-        values: dict[str, Any] = finite(
+        return finite(
             {
                 "type": "desk",
                 "you": page.number,
@@ -102,7 +102,6 @@ class Backend:
                 "heartbeat": page.heartbeat,
             }
         )
-        return values
 
     def _query_master(self) -> None:
         while True:

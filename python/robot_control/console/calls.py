@@ -52,9 +52,7 @@ CALLS: Mapping[str, Call] = {
     "reset": Call("e_stop_reset", fields={"key": text(32)}),
     "reset_odometry": Call("reset_odometry", Trigger),
     "set_odometry": Call("set_odometry", SetOdometry, {"x": METRES, "y": METRES, "yaw": number(-7.0, 7.0)}),
-    "set_parameters": Call(
-        f"{CONTROLLER}/set_parameter_map", SetParameters, {"parameters": text(8192)}, Role.MAINTAIN
-    ),
+    "set_parameters": Call(f"{CONTROLLER}/set_parameter_map", SetParameters, {"parameters": text(8192)}, Role.MAINTAIN),
     "path_points": Call(f"{FOLLOW}/pause", fields={"points": _points, "speed": SPEED}),
     "path_shape": Call(f"{FOLLOW}/pause", fields={"shape": text(16), "size": number(0.1, 100.0), "speed": SPEED}),
     "path_csv": Call(f"{FOLLOW}/pause", fields={"text": text(60_000), "speed": SPEED}),

@@ -5,12 +5,10 @@ from __future__ import annotations
 import argparse
 import asyncio
 import contextlib
-import json
 import logging
 import logging.handlers
 import os
 import resource
-import secrets
 import socket
 import ssl
 import sys
@@ -29,7 +27,6 @@ from robot_control.console.addresses import AddressError, Doors, bracketed, door
 from robot_control.console.backend import Backend
 from robot_control.console.client import FRAME
 from robot_control.console.server import Server
-from robot_control.console.sessions import Sessions
 from robot_control.console.settings import Settings, SettingsError, read_settings
 from robot_control.console.tls import TlsError, context_of, fingerprint, self_made
 from robot_control.console.users import FOLDER, Users, UsersError
@@ -111,11 +108,8 @@ def open_journal(path: Path) -> None:
 async def serve(given: argparse.Namespace, setup: Setup, signals: Signals) -> bool:
     """Until a signal comes; True if this program has to begin again, because another master was started."""
     backend = Backend(setup.settings)
-    token, saved = json.loads(os.environ.pop(STATE, "null")) or (secrets.token_urlsafe(24), [])
-    runs, sessions = given.runs.expanduser(), Sessions(saved)
-    server = Server(
-        backend, setup.doors, setup.users, token, sessions, runs, port=given.port, read_only=given.read_only
-    )
+    runs, saved = given.runs.expanduser(), os.environ.pop(STATE, "")
+    server = Server(backend, setup.doors, setup.users, runs, saved, port=given.port, read_only=given.read_only)
     runner = web.AppRunner(server.app, access_log=None, keepalive_timeout=KEPT, handle_signals=False)
     await runner.setup()
     handler = runner.server
@@ -128,7 +122,7 @@ async def serve(given: argparse.Namespace, setup: Setup, signals: Signals) -> bo
         ssl_handshake_timeout=HANDSHAKE if setup.context else None,
         reuse_address=True,
     )
-    secret = "" if setup.users else f"?token={token}"
+    secret = "" if setup.users else f"?token={server.sessions.token}"
     print(f"open {'https' if setup.context else 'http'}://{bracketed(given.address)}:{given.port}/{secret}")
     frames = asyncio.create_task(_frames(server, backend))
     replace = False
@@ -139,7 +133,7 @@ async def serve(given: argparse.Namespace, setup: Setup, signals: Signals) -> bo
         await asyncio.sleep(PASS)
         replace = backend.listener.unknown_to_master > 1
     if replace:
-        os.environ[STATE] = json.dumps([token, sessions.save()])
+        os.environ[STATE] = server.sessions.save()
     frames.cancel()
     server.close()
     listening.close()

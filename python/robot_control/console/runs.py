@@ -32,7 +32,7 @@ class Runs:
 
     def list(self) -> list[dict[str, Any]]:
         """The newest first: id, name, bytes, time of day."""
-        rows = [
+        rows: list[dict[str, Any]] = [
             {"id": key, "name": str(path.relative_to(self._folder)), "bytes": status.st_size, "time": status.st_mtime}
             for key, path, status in ((key, path, path.stat()) for key, path in self._files().items())
         ]

@@ -42,20 +42,11 @@ class Server:
     """All routes."""
 
     def __init__(
-        self,
-        backend: Backend,
-        doors: Doors,
-        users: Users | None,
-        token: str,
-        sessions: Sessions,
-        runs: Path,
-        *,
-        port: int,
-        read_only: bool,
+        self, backend: Backend, doors: Doors, users: Users | None, runs: Path, saved: str, *, port: int, read_only: bool
     ) -> None:
-        """`users`: None where the token alone opens."""
-        self._backend, self._doors, self._users, self._token = backend, doors, users, token
-        self._read_only, self.sessions, self._tries = read_only, sessions, Tries()
+        """`users`: None where the token alone opens; `saved`: logins of the process before this one."""
+        self._backend, self._doors, self._users, self._read_only = backend, doors, users, read_only
+        self.sessions, self._tries = Sessions(saved), Tries()
         self._runs, self._model = Runs(runs), Model()
         self.strangers, self.frames = Strangers(), Frames()
         self._clients: list[Client] = []
@@ -134,7 +125,7 @@ class Server:
     # logins
 
     def _with_token(self, request: web.Request) -> web.StreamResponse:
-        if not hmac.compare_digest(request.query["token"].encode(), self._token.encode()):
+        if not hmac.compare_digest(request.query["token"].encode(), self.sessions.token.encode()):
             raise self._refusal(request, web.HTTPForbidden, "this token is wrong: open the address that was printed")
         return self._begin(request, web.Response(status=303, headers={"Location": "/"}), LOCAL_USER, Role.MAINTAIN)
 

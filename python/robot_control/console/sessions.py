@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import secrets
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import Any
 
 from robot_control.console.desk import Role
 
@@ -28,12 +28,12 @@ class Session:
 
 
 class Sessions:
-    """All logins, by the digests of their cookies."""
+    """All logins, by the digests of their cookies, and the token of a console without users."""
 
-    def __init__(self, saved: list[dict[str, Any]]) -> None:
+    def __init__(self, saved: str = "") -> None:
         """`saved`: what the process before this one has saved."""
-        rows = [Session(**{**row, "role": Role(row["role"])}) for row in saved]
-        self._sessions = {row.key: row for row in rows}
+        self.token, rows = json.loads(saved) if saved else (secrets.token_urlsafe(24), [])
+        self._sessions = {row["key"]: Session(**{**row, "role": Role(row["role"])}) for row in rows}
 
     def begin(self, user: str, role: Role, now: float) -> str:
         """Text of a cookie."""
@@ -62,9 +62,9 @@ class Sessions:
         kept = {key: each for key, each in self._sessions.items() if roles.get(each.user) is each.role}
         self._sessions = kept
 
-    def save(self) -> list[dict[str, Any]]:
-        """The sessions for a process that replaces this one; no cookie is in it."""
-        return [asdict(session) for session in self._sessions.values()]
+    def save(self) -> str:
+        """All of it for a process that replaces this one; no cookie is in it."""
+        return json.dumps([self.token, [asdict(session) for session in self._sessions.values()]])
 
 
 class Tries:

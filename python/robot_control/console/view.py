@@ -90,10 +90,14 @@ class View:
         """The values that change now and then: state, causes, remedies, who commands."""
         answer, safety = judge(facts), facts.received()
         drive, feedback = self._topics["drive"].message, self._topics["feedback"]
-        progress = {} if feedback.message is None else {
-            name: getattr(feedback.message.feedback, name)
-            for name in ("state", "reason", "progress", "remaining_distance", "cross_track_error")
-        }
+        progress = (
+            {}
+            if feedback.message is None
+            else {
+                name: getattr(feedback.message.feedback, name)
+                for name in ("state", "reason", "progress", "remaining_distance", "cross_track_error")
+            }
+        )
         return finite(
             {
                 "type": "slow",
@@ -127,12 +131,16 @@ def _speeds(twist: Any) -> tuple[float, float]:  # noqa: ANN401 (geometry_msgs)
     return twist.linear.x, twist.angular.z
 
 
-def finite(value: Any) -> Any:  # noqa: ANN401 (any value of JSON)
+def finite(values: Values) -> Values:
     """The same with null for numbers that are not finite, and five decimals."""
+    return {key: _finite(value) for key, value in values.items()}
+
+
+def _finite(value: Any) -> Any:  # noqa: ANN401 (any value of JSON)
     if isinstance(value, float):
         return round(value, 5) if math.isfinite(value) else None
     if isinstance(value, dict):
-        return {key: finite(each) for key, each in value.items()}
+        return finite(value)
     if isinstance(value, str) or not isinstance(value, Iterable):
         return value
-    return [finite(each) for each in value]
+    return [_finite(each) for each in value]
