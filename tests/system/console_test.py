@@ -17,8 +17,8 @@ class ConsoleTest(ConsoleTestCase):
     def test_1_page_and_phone_show_the_robot_stop_and_reset_and_break_no_policy(self) -> None:
         browser = self.browser()
         browser.screen(1300, 900)
-        browser.driver.get(self.address)
         began = time.monotonic()
+        browser.driver.get(self.address)
         wait_for("a state", lambda: browser.data("state") == "READY")
         wait_for("the model", lambda: browser.data("model") == "diffbot")
         print(f"usable after {time.monotonic() - began:.2f} s, wanted: {USABLE} s")

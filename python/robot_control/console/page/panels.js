@@ -64,13 +64,13 @@ on("desk", (desk) => {
   put("link", `${ms(link.last)}, 95 % within ${ms(link.p95)}; gaps: ${link.gaps}, late: ${link.late}; allows ${number(link.cap)} m/s`);
   put("role", `role: ${desk.role}`);
 });
-on("closed", () => { put("who", "Nothing is commanded."); put("hold", ""); });
 
 setInterval(() => {
   const dead = silent(), old = dead || performance.now() - slowAt > STATE_SILENCE;
   const text = dead ? "No connection to the console: everything below is old, and nothing is commanded." : robotBanner.trim();
   document.body.dataset.link = dead ? "silent" : "open";
   put("banner", text);
+  if (dead) { put("who", "No connection."); put("hold", ""); }
   by("banner").hidden = !text;
   for (const element of document.querySelectorAll("[data-topic]")) {
     const age = ages[element.dataset.topic];
