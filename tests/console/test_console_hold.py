@@ -18,7 +18,7 @@ class Page:
 
     def __init__(self, desk, role=Role.OPERATE, name="anna"):
         self.desk, self.page, self.now, self.number = desk, desk.join(name, role), 0.0, 0
-        self.page.hold.permit(True)
+        self.page.hold.pad.permit(True)
         self.held, self.linear, self.angular = False, 0.0, 0.0
 
     def send(self, delay=0.0):

@@ -49,9 +49,21 @@ def corpus() -> Path | None:
 
 
 class ConsoleRobotsTest(unittest.TestCase):
+    console: Console
+    browser: Browser
+
     @classmethod
     def setUpClass(cls) -> None:
         init_test_node("console_robots")
+        if not missing():
+            os.environ["ROS_PACKAGE_PATH"] = f"{corpus() or ''}:{os.environ.get('ROS_PACKAGE_PATH', '')}"
+            cls.console, cls.browser = Console(), Browser()
+
+    @classmethod
+    def tearDownClass(cls) -> None:
+        if not missing():
+            cls.browser.end()
+            cls.console.end()
 
     def setUp(self) -> None:
         if missing():
@@ -59,17 +71,11 @@ class ConsoleRobotsTest(unittest.TestCase):
         rospy.set_param("robot_description", "")
         self.addCleanup(rospy.set_param, "robot_description", "")
 
-    def browser(self) -> Browser:
-        self.console = Console()
-        self.addCleanup(self.console.end)
-        browser = Browser()
-        self.addCleanup(browser.end)
-        return browser
-
-    def show(self, browser: Browser, description: str) -> None:
+    def show(self, description: str) -> Browser:
         rospy.set_param("robot_description", description)
-        browser.driver.get(self.console.address)
-        wait_for("the model", lambda: browser.run("return 'model' in document.body.dataset"))
+        self.browser.driver.get(self.console.address)
+        wait_for("the model", lambda: self.browser.run("return 'model' in document.body.dataset"))
+        return self.browser
 
     def picture(self, browser: Browser, name: str) -> None:
         folder = os.environ.get("CONSOLE_PICTURES")
@@ -91,8 +97,7 @@ class ConsoleRobotsTest(unittest.TestCase):
         visuals = "".join(
             f'<visual><geometry><mesh filename="file://{folder.name}/{name}"/></geometry></visual>' for name in names
         )
-        browser = self.browser()
-        self.show(browser, f'<robot name="{SPOKEN}"><link name="{SPOKEN}">{visuals}</link></robot>')
+        browser = self.show(f'<robot name="{SPOKEN}"><link name="{SPOKEN}">{visuals}</link></robot>')
         note = browser.text("scene-note")
         for name in ("cut.stl", "cut.dae", "missing.stl", "secret.txt"):
             self.assertIn(name, note)
@@ -107,13 +112,11 @@ class ConsoleRobotsTest(unittest.TestCase):
         robots = corpus()
         if robots is None:
             self.skipTest("no folder of real robots: set ROBOT_CORPUS")
-        os.environ["ROS_PACKAGE_PATH"] = f"{robots}:{os.environ.get('ROS_PACKAGE_PATH', '')}"
         files = {name: robots / name / "robot.urdf" for name in ("jackal", "boxer", "kobuki")}
         files["diffbot"] = repository() / "urdf" / "diffbot.urdf"
-        browser = self.browser()
         for name, path in files.items():
             with self.subTest(robot=name):
-                self.show(browser, path.read_text())
+                browser = self.show(path.read_text())
                 self.assertEqual(browser.text("scene-note"), "")
                 self.assertEqual(browser.problems(), [])
                 self.picture(browser, name)

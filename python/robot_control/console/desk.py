@@ -121,12 +121,12 @@ class Desk:
     def permit(self, drivable: bool | None) -> None:  # noqa: FBT001 (a three-valued state)
         """Sets whether the robot may drive by its safety monitor; None if there is no message of it."""
         for page in self.pages.values():
-            page.hold.permit(drivable)
+            page.hold.pad.permit(drivable)
 
     def refuse(self, now: float) -> None:
         """Notes that the controller refuses motion until it has received a zero."""
         for page in self.pages.values():
-            page.hold.refuse(now)
+            page.hold.pad.refuse(now)
         self._zeros_until = now + ZEROS
 
     def command(self, limits: Limits, now: float) -> tuple[Command | None, float]:

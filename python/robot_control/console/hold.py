@@ -38,7 +38,7 @@ class Hold:
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
         axes = PadParameters(axis_linear=0, axis_angular=1, scale_linear=1.0, scale_angular=1.0, enable_button=0)
-        self._pad = Pad(replace(axes, enable_turbo_button=-1, joy_timeout=settings.link_gap))
+        self.pad = Pad(replace(axes, enable_turbo_button=-1, joy_timeout=settings.link_gap))
         self._excess = Excess()
         self.round_trips = RoundTrips()
         self.cap = SpeedCap(settings.distance, settings.reaction)
@@ -61,7 +61,7 @@ class Hold:
             return
         self.stamp, self._gap, self._held = now - excess, False, drive.held
         self._ended = self._ended if drive.held else ""
-        self._pad.receive((drive.linear, drive.angular), (int(drive.held),), now)
+        self.pad.receive((drive.linear, drive.angular), (int(drive.held),), now)
 
     def alive(self, now: float) -> bool:
         """True while messages come."""
@@ -70,25 +70,17 @@ class Hold:
     def interrupt(self, now: float, why: str) -> None:
         """Ends the motion; a release has to come SETTLING later."""
         self._ended = why if self._held else self._ended
-        self._pad.interrupt(now)
-
-    def refuse(self, now: float) -> None:
-        """Notes that the controller refuses motion until it has received a zero."""
-        self._pad.refuse(now)
-
-    def permit(self, drivable: bool | None) -> None:  # noqa: FBT001 (a three-valued state)
-        """Sets whether the robot may drive by its safety monitor; None if there is no message of it."""
-        self._pad.permit(drivable)
+        self.pad.interrupt(now)
 
     def share(self, now: float) -> Command | None:
         """Shares of the chosen speeds to command now; None: nothing is sent."""
         self._notice_gap(now)
-        share = self._pad.command(now)
+        share = self.pad.command(now)
         return share if share is None or now - self.stamp <= self._settings.hold else Command()
 
     def state(self, now: float) -> str:
         """The state as text; empty where the page may simply drive."""
-        words = "" if self._gap else self._pad.state(now)
+        words = "" if self._gap else self.pad.state(now)
         if words == "release the enable button once":
             return f"release everything once{f': {self._ended}' if self._ended else ''}"
         return "nothing comes over the link" if self._gap else words if words == "drives" else ""
