@@ -58,6 +58,9 @@ def bench(share: float, say: Callable[[str], None]) -> tuple[dict[str, Any], boo
         say("cost")
         window, figures = _cost(console, COST_SECONDS * share)
         found |= figures
+    except AssertionError:
+        say(console.output + console.journal[-2000:])
+        raise
     finally:
         console.end()
         proxy.end()
@@ -128,6 +131,7 @@ def _links(
                 page = Page(f"http://127.0.0.1:{proxy.port}", f"http://127.0.0.1:{proxy.port}", cookie)
                 page.send({"type": "take", "force": True})
                 page.send({"type": "speeds", "linear": 2.0, "angular": 1.0})
+                wait_for("a page with a link", lambda made=page: made.link)
                 time.sleep(14.0 if number == 0 else 6.0)  # 100 pings take 10 s
             if number == 0:
                 law = Settings().distance / (page.link["p95"] + Settings().reaction)

@@ -29,7 +29,7 @@ PING_PERIOD, WATCHER_PERIOD = 0.1, 0.5
 SKIP, LOST = 2.0, 15.0
 """s without the answer to a ping, after which frames are skipped, and the page counts as lost"""
 CLOSING = 2.0
-"""s in which a page is told why it is closed"""
+"""s in which a page receives why it is closed"""
 POLICY_VIOLATION, LOGIN_ENDED = 1008, 4401
 """codes with which the page is closed (RFC 6455, 7.4)"""
 MAX_MISTAKES, MAX_ANSWERS = 20, 64

@@ -132,12 +132,14 @@ async def serve(given: argparse.Namespace, setup: Setup, signals: Signals) -> bo
         server.strangers.check(handler.connections, time.monotonic())
         await asyncio.sleep(PASS)
         replace = backend.listener.unknown_to_master > 1
+    if frames.done():
+        frames.result()  # an error of ours ends the program with its words
     if replace:
         os.environ[STATE] = server.sessions.save()
     frames.cancel()
     server.close()
     listening.close()
-    await asyncio.sleep(2 * FRAME)  # the pages are told
+    await asyncio.sleep(2 * FRAME)  # the pages receive why
     with contextlib.suppress(asyncio.TimeoutError):
         await asyncio.wait_for(runner.cleanup(), 2.0)
     return replace
