@@ -134,7 +134,8 @@ def _links(
                 wait_for("a page with a link", lambda made=page: made.link)
                 time.sleep(14.0 if number == 0 else 6.0)  # 100 pings take 10 s
             if number == 0:
-                law = Settings().distance / (page.link["p95"] + Settings().reaction)
+                round_trip = page.link["p95"] if jitter else 2 * delay  # what the proxy makes, not what the server says
+                law = Settings().distance / (round_trip + Settings().reaction)
                 beside.append(100 * abs(page.link["cap"] / law - 1))
             page.held, page.linear = True, 1.0
             time.sleep(2.5)

@@ -17,6 +17,9 @@ class ConsoleTest(ConsoleTestCase):
     def test_1_page_and_phone_show_the_robot_stop_and_reset_and_break_no_policy(self) -> None:
         browser = self.browser()
         browser.screen(1300, 900)
+        browser.driver.get(f"{self.console.origin}/login")
+        self.assertIn("Log in", browser.text("login"))
+        self.picture(browser, "login")
         began = time.monotonic()
         browser.driver.get(self.address)
         wait_for("a state", lambda: browser.data("state") == "READY")
