@@ -56,8 +56,8 @@ struct StateFrame {
   std::uint64_t first_cycle = 0;  ///< cycle of this run in which this process computed its first state
   std::uint64_t skipped = 0;      ///< missed sensor cycles of this run
   BaseState base;
-  std::array<double, kMaxJoints>
-      joint_velocity{};  ///< rad/s or m/s, in the order of MachineModel::joints; of wheels tracked, of others as measured
+  /// rad/s or m/s, in the order of MachineModel::joints; of wheels tracked, of others as measured
+  std::array<double, kMaxJoints> joint_velocity{};
   std::uint64_t contact_count = 0;                    ///< estimated contacts
   std::array<ContactState, kMaxContacts> contacts{};  ///< in the order of SensorFrame::contacts
   WheeledState wheeled;                               ///< only wheeled machines fill it
