@@ -22,6 +22,7 @@ class Proxy:
         self.stalled = False  # nothing passes until it ends
         self._random = random.Random(seed)  # noqa: S311 (of a link, not of a key)
         self._listening = socket.create_server(("127.0.0.1", 0))
+        self._listening.settimeout(None)  # rospy sets a default of 60 s
         self.port = int(self._listening.getsockname()[1])
         self._sockets: list[socket.socket] = []
         threading.Thread(target=self._accept, daemon=True).start()
@@ -49,6 +50,7 @@ class Proxy:
                     continue
                 self._sockets += [inner, outer]
                 for source, sink in ((inner, outer), (outer, inner)):
+                    source.settimeout(None)
                     source.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
                     self._pass(source, sink)
 
