@@ -131,7 +131,7 @@ def _links(
                 page = Page(f"http://127.0.0.1:{proxy.port}", f"http://127.0.0.1:{proxy.port}", cookie)
                 page.send({"type": "take", "force": True})
                 page.send({"type": "speeds", "linear": 2.0, "angular": 1.0})
-                wait_for("a page with a link", lambda made=page: made.link)
+                page.await_link()
                 time.sleep(14.0 if number == 0 else 6.0)  # 100 pings take 10 s
             if number == 0:
                 round_trip = page.link["p95"] if jitter else 2 * delay  # what the proxy makes, not what the server says

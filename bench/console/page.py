@@ -11,6 +11,8 @@ from typing import Any
 
 from aiohttp import ClientError, ClientSession
 
+from bench.console.process import wait_for
+
 PERIOD = 0.05
 """s between two messages while it commands"""
 
@@ -38,6 +40,10 @@ class Page:
         """The server's figures of the link."""
         found: dict[str, Any] = self.last.get("desk", {}).get("link", {})
         return found
+
+    def await_link(self) -> None:
+        """Waits until the server knows its link."""
+        wait_for("a page with a link", lambda: self.link)
 
     def end(self) -> None:
         """Closes it."""
