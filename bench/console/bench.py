@@ -134,7 +134,7 @@ def _links(
                 page.await_link()
                 time.sleep(14.0 if number == 0 else 6.0)  # 100 pings take 10 s
             if number == 0:
-                round_trip = page.link["p95"] if jitter else 2 * delay  # what the proxy makes, not what the server says
+                round_trip = max(page.link["p95"], 2 * delay)  # the second one is the proxy's own
                 law = Settings().distance / (round_trip + Settings().reaction)
                 beside.append(100 * abs(page.link["cap"] / law - 1))
             page.held, page.linear = True, 1.0
