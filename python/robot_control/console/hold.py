@@ -80,10 +80,12 @@ class Hold:
 
     def state(self, now: float) -> str:
         """The state as text; empty where the page may simply drive."""
-        words = "" if self._gap else self.pad.state(now)
+        if self._gap:
+            return "nothing comes over the link"
+        words = self.pad.state(now)
         if words == "release the enable button once":
             return f"release everything once{f': {self._ended}' if self._ended else ''}"
-        return "nothing comes over the link" if self._gap else words if words == "drives" else ""
+        return words if words == "drives" else ""
 
     def _notice_gap(self, now: float) -> None:
         if not self._gap and not self.alive(now):
