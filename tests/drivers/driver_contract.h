@@ -194,12 +194,12 @@ TEST_P(DriverContract, AStopActionThatItImplementsActsAtOnce) {
   for (const StopKind kind : {StopKind::kBrake, StopKind::kCoast, StopKind::kDamp}) {
     if (!driver_->implements(kind)) continue;
     hold(all(velocity(3.0)), 1.0);
-    hold(all(order_of({.kind = kind, .damping = GetParam().damping})), 0.05);  // a drive may report its effort rarely
+    const std::vector<double> speeds = speeds_under(all(order_of({.kind = kind, .damping = GetParam().damping})));
     for (std::size_t i = 0; i < GetParam().joints; ++i) {
       if (kind == StopKind::kCoast) {
         EXPECT_NEAR(joint(i).effort, 0, 0.05 * GetParam().effort_limit) << i;
       } else {
-        EXPECT_LT(joint(i).velocity, 2.7) << i << ", action " << static_cast<int>(kind);
+        EXPECT_LT(speeds[i], 2.9) << i << ", action " << static_cast<int>(kind);
       }
     }
   }
