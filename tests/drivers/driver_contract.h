@@ -29,6 +29,7 @@ struct MachineUnderTest {
   double effort = 0;                          ///< N·m, turns a single joint
   double damping = 0;                         ///< N·m·s/rad, lets a joint follow a velocity
   double stiffness = 0;                       ///< N·m/rad, with that damping
+  double effort_age = 0;                      ///< s, of a reported effort; a drive may report it rarely
   std::function<void()> next_period = [] {};  ///< waits for the period, on hardware
 };
 
@@ -194,12 +195,13 @@ TEST_P(DriverContract, AStopActionThatItImplementsActsAtOnce) {
   for (const StopKind kind : {StopKind::kBrake, StopKind::kCoast, StopKind::kDamp}) {
     if (!driver_->implements(kind)) continue;
     hold(all(velocity(3.0)), 1.0);
-    const std::vector<double> speeds = speeds_under(all(order_of({.kind = kind, .damping = GetParam().damping})));
+    hold(all(order_of({.kind = kind, .damping = GetParam().damping})), 2 * GetParam().period + GetParam().effort_age);
     for (std::size_t i = 0; i < GetParam().joints; ++i) {
+      const double effort = joint(i).effort;
       if (kind == StopKind::kCoast) {
-        EXPECT_NEAR(joint(i).effort, 0, 0.05 * GetParam().effort_limit) << i;
+        EXPECT_NEAR(effort, 0, 0.05 * GetParam().effort_limit) << i;
       } else {
-        EXPECT_LT(speeds[i], 2.9) << i << ", action " << static_cast<int>(kind);
+        EXPECT_LT(effort, 0) << i << ", action " << static_cast<int>(kind);
       }
     }
   }

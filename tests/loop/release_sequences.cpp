@@ -435,8 +435,8 @@ class Sequence {
       driver_->step();
       ++cycles_;
     }
-    if (estimator_ && !away(kEstimatorNode) && estimator_->step()) note_frame(kEstimatorNode);
-    if (controller_ && !away(kControllerNode) && controller_->step()) note_frame(kControllerNode);
+    if (estimator_ && !away(kEstimatorNode) && estimator_->step()) note_frame(kEstimatorNode, state_);
+    if (controller_ && !away(kControllerNode) && controller_->step()) note_frame(kControllerNode, command_);
     if (!monitor_ || away(kMonitorNode)) return;
     monitor_->inbox().store(operator_input_);
     if (!monitor_->step() && !ticked_) monitor_->idle();  // as its waits end, or its ordinary thread polls
@@ -447,8 +447,14 @@ class Sequence {
     last_permit_ = permit;
   }
 
-  /// The monitor learns of a start from the first frame (safety/latch/motion_release.h), which may come late.
-  void note_frame(Node node) {
+  /// The monitor uses frames of the newest cycle alone (safety/latch/motion_release.h) and learns of a start from the
+  /// first one. A node whose frames all come later is lost within loss_cycles.
+  template <class Frame>
+  void note_frame(Node node, TestChannel<Frame>& channel) {
+    Frame published;
+    SensorFrame sensors;
+    if (channel.reader.newest(published) != Lookup::kFrame || sensors_.reader.newest(sensors) != Lookup::kFrame) return;
+    if (published.head.cycle != sensors.head.cycle) return;
     if (std::exchange(unseen_[node], false)) start_cycle_ = withdrawn_cycle_ = cycles_;
   }
 
@@ -515,7 +521,7 @@ class Sequence {
   std::array<Sender, 2> senders_{Sender{.name = "/a"}, Sender{.name = "/b"}};
   std::array<bool, 2> waiting_{};
   std::array<bool, kNodes> dead_{};
-  std::array<bool, kNodes> unseen_{};  ///< no frame since its start
+  std::array<bool, kNodes> unseen_{};  ///< no frame that the monitor can use since its start
   std::array<std::int64_t, kNodes> away_until_{};
   std::int64_t now_ = 0;
   std::int64_t started_at_ = 0;

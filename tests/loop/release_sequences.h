@@ -8,7 +8,8 @@
 /// The judge knows only what was sent, which stamps were refused, and what was started. With T = the shorter of
 /// cmd_vel_timeout and the one before it, in cycles:
 ///   motion      the machine is commanded anything but the brake only if, since the last start of a node (or reset of
-///               the run), a zero velocity was sent while no other sender requested motion, or nothing was sent for T
+///               the run), a zero velocity was sent while no other sender requested motion, or nothing was sent for T.
+///               The start of an estimator or a controller counts from its first frame of the newest cycle
 ///   stop        … and only if no emergency stop was requested since the last accepted reset
 ///   requested   … and only while some sender requests motion that owes no zero velocity: a sender owes one from a
 ///               start, a pause or a stop that finds it requesting motion, or having done so within T of when the

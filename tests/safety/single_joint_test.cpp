@@ -66,6 +66,18 @@ TEST_F(SingleJointTest, AMissingSampleIsNamedAfterThePersistence) {
   }
 }
 
+// Without one of them the controller brakes. It drives on when the number returns, so its absence must latch.
+TEST_F(SingleJointTest, ASampleWithoutOneOfTheNumbersThatTheControllerNeedsIsMissing) {
+  for (const std::uint32_t number : {kValidPosition, kValidVelocity, kValidEffort}) {
+    set_joints_valid(sensors_, kValidMotion);
+    step();
+    EXPECT_EQ(
+        cycles_until(kCauseEncodersLost, [&](std::uint64_t) { sensors_.joints[1].valid = kValidMotion & ~number; }),
+        kPersistence);
+    EXPECT_EQ(named_joint(), 1u);
+  }
+}
+
 TEST_F(SingleJointTest, ASampleThatGrowsOldIsNamedInTheSameCycle) {
   const auto freeze = [&](std::uint64_t cycle) {
     sensors_.joints[2].age_ns = static_cast<std::int64_t>(cycle) * 1000000;

@@ -13,11 +13,19 @@ import rostest
 import yaml
 from geometry_msgs.msg import Twist
 from robot_control.msg import SafetyStatus
-from system_support import DRIVER, ESTIMATOR, Program, RobotTestCase, init_test_node, nightly, wait_for
+from system_support import (
+    DRIVER,
+    ESTIMATOR,
+    Program,
+    RobotTestCase,
+    again_after_a_stall,
+    init_test_node,
+    nightly,
+    wait_for,
+)
 
 HIDDEN = {"left_radius_error": 0.012, "right_radius_error": 0.004, "wheel_base_error": 0.02}
 SHORT = ("--truth", "--yes", "--distance=1", "--repeats=1", "--side=1", "--runs=1", "--speed=0.5", "--turn-speed=1.2")
-ATTEMPTS = 3  # a stalling machine may stop the robot during the minute of this test
 
 
 class CalibrateTest(RobotTestCase):
@@ -62,14 +70,12 @@ class CalibrateTest(RobotTestCase):
             return program.output
 
     def measured(self) -> str:
-        for _ in range(ATTEMPTS):
-            with self.started(*SHORT) as program:
-                if program.wait(150.0) == 0:
-                    return program.output
-            self.assertTrue(self.robot.release_after_a_stall(), program.output)
-        raise AssertionError(f"stopped by a stalling machine {ATTEMPTS} times: {program.output}")
+        with self.started(*SHORT) as program:
+            self.assertEqual(program.wait(150.0), 0, program.output)
+            return program.output
 
     @nightly
+    @again_after_a_stall
     def test_measures_the_hidden_wheels_and_writes_what_the_nodes_take(self) -> None:
         words = self.measured()
         for part in ("It needs 1.625 m ahead", "square 1 of 1, clockwise", "largest mean return error", "wrote"):

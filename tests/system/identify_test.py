@@ -14,12 +14,20 @@ import rostest
 import yaml
 from geometry_msgs.msg import Twist
 from robot_control.msg import SafetyStatus
-from system_support import CONTROLLER, DRIVER, Program, RobotTestCase, init_test_node, nightly, wait_for
+from system_support import (
+    CONTROLLER,
+    DRIVER,
+    Program,
+    RobotTestCase,
+    again_after_a_stall,
+    init_test_node,
+    nightly,
+    wait_for,
+)
 
 FRICTION = 0.1  # N·m, hidden in the plant
 BEGINNING = 60.0
 """s; before it drives, identify.py loads numpy, reads all parameters and starts a telemetry of its own."""
-ATTEMPTS = 3  # a stalling machine may stop the robot during the half minute of this test
 
 
 class IdentifyTest(RobotTestCase):
@@ -66,14 +74,11 @@ class IdentifyTest(RobotTestCase):
 
     def measured(self) -> str:
         """Runs it to its end; returns what it printed."""
-        for _ in range(ATTEMPTS):
-            with self.started("--repeats=1") as program:
-                code = program.wait(120.0)
-                if code == 0:
-                    return program.output
-            self.assertTrue(self.robot.release_after_a_stall(), program.output)
-        raise AssertionError(f"stopped by a stalling machine {ATTEMPTS} times: {program.output}")
+        with self.started("--repeats=1") as program:
+            self.assertEqual(program.wait(120.0), 0, program.output)
+            return program.output
 
+    @again_after_a_stall
     def test_measures_the_robot_and_writes_what_its_controller_takes(self) -> None:
         start = self.robot.distance
         words = self.measured()
@@ -94,6 +99,7 @@ class IdentifyTest(RobotTestCase):
         self.robot.drive_until("0.5 m/s", self.robot.driving)
 
     @nightly
+    @again_after_a_stall
     def test_reads_the_log_of_a_telemetry_that_runs_already(self) -> None:
         telemetry = Program("telemetry", f"_directory:={self.output.parent}", "_record:=request")
         self.addCleanup(rospy.delete_param, "telemetry")
@@ -106,21 +112,15 @@ class IdentifyTest(RobotTestCase):
 
     @contextlib.contextmanager
     def in_motion(self) -> Iterator[Program]:
-        """A block in which it drives. If a stalling machine stops the robot before, the program is started again."""
-        for _ in range(ATTEMPTS):
-            with self.started() as program:
-                wait_for(
-                    "motion or the end", lambda: abs(self.robot.speed) > 0.1 or not program.running, limit=BEGINNING
-                )
-                if program.running:
-                    yield program
-                    return
-            self.assertTrue(self.robot.stalled, program.output)
-            self.robot.release()
-        raise AssertionError(f"stopped by a stalling machine {ATTEMPTS} times")
+        """A block in which it drives."""
+        with self.started() as program:
+            wait_for("motion", lambda: abs(self.robot.speed) > 0.1, limit=BEGINNING)
+            yield program
 
+    @again_after_a_stall
     def test_an_e_stop_ends_it_with_its_cause(self) -> None:
         with self.in_motion() as program:
+            self.addCleanup(self.robot.send_e_stop, False)
             self.robot.send_e_stop(True)
             self.assertEqual(program.wait(), 1, program.output)
             self.assertIn("the robot is STOP", program.output)
@@ -130,6 +130,7 @@ class IdentifyTest(RobotTestCase):
         wait_for("the release of the topic", lambda: not self.robot.status.active)
         self.robot.release()
 
+    @again_after_a_stall
     def test_ctrl_c_stops_the_robot(self) -> None:
         with self.in_motion() as program:
             program.send_signal(signal.SIGINT)

@@ -11,7 +11,7 @@ import subprocess
 import termios
 import threading
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 LIMIT = 30.0
@@ -72,12 +72,19 @@ class PseudoTerminal:
     def type(self, keys: str) -> None:
         os.write(self._master, keys.encode())
 
-    def hold(self, key: str, seconds: float, delay: float = 0.3, period: float = 0.03) -> None:
-        """Types as a keyboard does."""
+    def hold(
+        self,
+        key: str,
+        seconds: float,
+        delay: float = 0.3,
+        period: float = 0.03,
+        until: Callable[[], bool] = lambda: False,
+    ) -> None:
+        """Types as a keyboard does, for that time, or `until` that holds."""
         end = time.monotonic() + seconds
         self.type(key)
         time.sleep(delay)
-        while time.monotonic() < end:
+        while time.monotonic() < end and not until():
             self.type(key)
             time.sleep(period)
 

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """A process that measures its own gaps, as an independent witness that this machine stood still.
 
-As a program, `stall_witness.py CORE PRIORITY`, it wakes up again and again on that core (-1: any). It runs under
-SCHED_FIFO if the priority is above 0 and granted. It prints the end and the length of each gap, until its parent ends.
+As a program, `stall_witness.py SHORTEST PRIORITY CORE…`, it wakes up again and again on each of these cores.
+A program on another core does not notice that one is taken away. It runs under SCHED_FIFO if the priority is above 0.
+It prints the end and the length (s) of each gap of at least SHORTEST, until its parent ends.
 """
 
 import contextlib
@@ -10,48 +11,55 @@ import os
 import subprocess
 import sys
 import tempfile
+import threading
 import time
+from collections.abc import Collection
 from pathlib import Path
-
-PERIOD = 0.002
-"""s"""
-MIN_GAP = 0.01
-"""s; shorter gaps are not reported"""
 
 
 class StallWitness:
     """Runs the program. Above the loop's priority on the loop's core, no thread of the loop can delay it."""
 
-    def __init__(self, core: int, priority: int) -> None:
+    def __init__(self, shortest: float, priority: int = 0, cores: Collection[int] | None = None) -> None:
+        """`shortest`: s, of the gaps that count; `cores`: all on which this process may run if None."""
         self._output = tempfile.NamedTemporaryFile(prefix="stall_witness-", suffix=".log")
-        command = [sys.executable, __file__, str(core), str(priority)]
+        cores = os.sched_getaffinity(0) if cores is None else cores
+        command = [sys.executable, __file__, str(shortest), str(priority), *map(str, cores)]
         self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=self._output)
 
-    def saw(self, length: float, begin: float, end: float) -> bool:
-        """True if a gap of at least `length` s overlaps that time (s, monotonic)."""
+    def saw(self, begin: float, end: float) -> bool:
+        """True if a gap overlaps that time (s, monotonic)."""
         for line in Path(self._output.name).read_text().splitlines():
             ended, gap = map(float, line.split())
-            if gap >= length and ended >= begin and ended - gap <= end:
+            if ended >= begin and ended - gap <= end:
                 return True
         return False
 
 
-def main() -> None:
-    """Entry point of the program."""
-    core, priority = map(int, sys.argv[1:])
-    parent = os.getppid()
+def watch(core: int, priority: int, shortest: float) -> None:
+    """Prints the gaps of one core until this process ends."""
     with contextlib.suppress(OSError):
-        if core >= 0:
-            os.sched_setaffinity(0, {core})
+        os.sched_setaffinity(0, {core})
+    with contextlib.suppress(OSError):
         if priority > 0:
             os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
     last = time.monotonic()
-    while os.getppid() == parent:
-        time.sleep(PERIOD)
+    while True:
+        time.sleep(shortest / 8)
         now = time.monotonic()
-        if now - last >= MIN_GAP:
-            print(f"{now:.6f} {now - last:.6f}", flush=True)
+        if now - last >= shortest:
+            print(f"{now:.6f} {now - last:.6f}\n", end="", flush=True)
         last = now
+
+
+def main() -> None:
+    """Entry point of the program."""
+    shortest, priority, *cores = map(float, sys.argv[1:])
+    parent = os.getppid()
+    for core in cores:
+        threading.Thread(target=watch, args=(int(core), int(priority), shortest), daemon=True).start()
+    while os.getppid() == parent:
+        time.sleep(0.1)
 
 
 if __name__ == "__main__":

@@ -37,18 +37,14 @@ class TeleopTest(RobotTestCase):
         return terminal
 
     def drive(self) -> None:
-        """Holds w until the robot drives."""
-        pressed = time.monotonic()
-        end = pressed + 30.0
-        self.terminal.type("w")
+        """Holds w until the robot drives, and again after each stop of a stalling machine."""
+        end = time.monotonic() + 60.0
         while not self.robot.driving():
-            # A key that was held during a stop counts after its release; this test may not have noticed the stop.
-            if self.robot.release_after_a_stall() or time.monotonic() > pressed + 5.0:
-                time.sleep(1.0)
-                pressed = time.monotonic()
-            time.sleep(0.03)
-            self.terminal.type("w")
             self.assertLess(time.monotonic(), end, self.terminal.screen)
+            self.robot.release_after_a_stall()
+            self.terminal.hold("w", 5.0, until=lambda: self.robot.driving() or bool(self.robot.causes))
+            if not self.robot.driving():
+                time.sleep(1.0)  # a key that was held during a stop counts after its release
 
     def await_rest(self) -> None:
         """Waits for rest without sending anything."""

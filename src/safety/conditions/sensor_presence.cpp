@@ -40,7 +40,7 @@ void SensorPresence::step_encoders(const SensorFrame& sensors, std::uint64_t ela
   std::size_t worst = 0;
   for (std::size_t i = 0; i < wheels_; ++i) {
     const JointSample& sample = sensors.joints[i];
-    const bool sampled = i < sensors.joint_count && has(sample, kValidPosition);
+    const bool sampled = i < sensors.joint_count && has(sample, kValidMotion);
     const auto age = static_cast<std::uint64_t>(std::max<std::int64_t>(0, sample.age_ns));
     wheel_silent_[i] = sampled ? age / period_ns_ : wheel_silent_[i] + elapsed;
     if (wheel_silent_[i] > wheel_silent_[worst]) worst = i;

@@ -1,9 +1,9 @@
 #pragma once
 /// Do the sensors report?
 ///
-///   encoders lost  a wheel's joint gave no new valid position for the persistence. The time is the age of a valid
-///                  sample, and grows by the elapsed time while there is none. The wheel with the longest time is
-///                  named.
+///   encoders lost  a wheel's joint gave no new sample with kValidMotion, which the controller needs, for the
+///                  persistence. The time is the age of a valid sample, and grows by the elapsed time while there is
+///                  none. The wheel with the longest time is named.
 ///   IMU lost       gyro or accelerometer is not valid, but was valid earlier in this run: a robot without an IMU may
 ///                  drive
 ///

@@ -36,8 +36,11 @@ void MotionRelease::step(const MonitorInput& input, std::uint64_t elapsed) noexc
   const std::uint64_t cycle = input.sensors->head.cycle;
   const CommandFrame* command = input.command;
   const std::uint64_t resumes = input.sensors->resumes;
-  if (!resumes_) begin(cycle);
-  if (resumes_ && *resumes_ != resumes) start(cycle);
+  if (!resumes_) {
+    begin(cycle);
+  } else if (*resumes_ != resumes) {
+    start(cycle);
+  }
   resumes_ = resumes;
   if (input.state_seen) update_start(state_first_, input.state_first_cycle);
   if (command != nullptr) update_start(command_first_, command->first_cycle);

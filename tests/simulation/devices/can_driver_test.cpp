@@ -90,7 +90,8 @@ MachineUnderTest machine(const std::string& name, CanDialect dialect) {
           .effort_limit = 4,
           .effort = 0.5,
           .damping = 2,
-          .stiffness = 20};
+          .stiffness = 20,
+          .effort_age = dialect == CanDialect::kOdrive ? 1 / odrive::OdriveParameters().effort_rate : 0};
 }
 
 INSTANTIATE_TEST_SUITE_P(CanMachines, DriverContract,
