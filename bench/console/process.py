@@ -95,6 +95,13 @@ class Console:
         opener.open(self.address, timeout=10).read()
         return opener, "; ".join(f"{each.name}={each.value}" for each in cookies)
 
+    def revive(self) -> None:
+        """Ends a SIGSTOP, and starts the program again if it has ended."""
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGCONT)
+        else:
+            self.start()
+
     def kill(self) -> None:
         """SIGKILL."""
         self.process.kill()

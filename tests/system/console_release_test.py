@@ -3,7 +3,6 @@
 
 import rostest
 from console_support import ConsoleTestCase
-from system_support import again_after_a_stall
 
 TRIALS = 20
 
@@ -12,13 +11,9 @@ class ConsoleReleaseTest(ConsoleTestCase):
     def test_every_way_to_let_go_is_zero_in_time_20_times(self) -> None:
         for trial in range(TRIALS):
             print(f"trial {trial + 1} of {TRIALS}")
-            self.once()
-
-    @again_after_a_stall
-    def once(self) -> None:
-        browser = self.browser()
-        self.open(browser)
-        self.each_way(browser)
+            self.lets_go_of_what_the_page_notices()
+            self.lets_go_when_something_falls_silent()
+            self.lets_go_when_something_ends()
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""A robot, a console behind a proxy, and one browser that all cases of a class share."""
+"""A robot and a console behind a proxy that all cases of a class share, and a browser for each case."""
 
 import contextlib
 import os
@@ -10,7 +10,7 @@ from pathlib import Path
 
 import rospy
 from geometry_msgs.msg import TwistStamped
-from system_support import RobotTestCase, wait_for
+from system_support import RobotTestCase, again_after_a_stall, wait_for
 
 from bench.console.browser import Browser, missing
 from bench.console.process import Console
@@ -67,6 +67,9 @@ class ConsoleTestCase(RobotTestCase):
     def setUp(self) -> None:
         if missing():
             self.skipTest(missing())
+        self.addCleanup(self.end_browser)
+        self.flow()
+        self.console.revive()
         self.robot.await_ready()
         self.robot.await_rest()
         self.moved_at = 0.0
@@ -82,7 +85,7 @@ class ConsoleTestCase(RobotTestCase):
         return self.console.through(self.proxy.port)
 
     def browser(self) -> Browser:
-        """The browser of this class, which is started again after its end."""
+        """The browser of this case, which is started again after its end."""
         if self._browser is None:
             type(self)._browser = Browser()
         browser = type(self)._browser
@@ -108,20 +111,17 @@ class ConsoleTestCase(RobotTestCase):
             browser.command(SPEED)
         wait_for("a link that is fast enough", lambda: browser.allowed() >= SPEED)
 
-    def drive(self, browser: Browser, press: Event | None = None, release: Event | None = None) -> None:
-        """Drives at SPEED. A page that stood still for 300 ms on a busy machine has let go, and presses again."""
+    def drive(self, browser: Browser, press: Event | None = None) -> None:
+        """Drives at SPEED."""
         browser.run(
             f"const f = document.getElementById('linear'); f.value = {SPEED}; f.dispatchEvent(new Event('change'))"
         )
-        for _ in range(5):
-            wait_for("a free stick", lambda: browser.text("hold") == "")
-            (press or partial(browser.key, "KeyW"))()
-            with contextlib.suppress(AssertionError):
-                wait_for("motion", lambda: self.robot.speed > 0.8 * SPEED and self.commanded(), limit=4.0)
-                return
-            (release or partial(browser.key, "KeyW", "keyUp"))()
-            time.sleep(0.5)
-        raise AssertionError(f"it does not drive: {browser.text('hold')}; {browser.text('messages')}")
+        wait_for("a free stick", lambda: browser.text("hold") == "")
+        (press or partial(browser.key, "KeyW"))()
+        try:
+            wait_for("motion", lambda: self.robot.speed > 0.8 * SPEED and self.commanded())
+        except AssertionError as error:
+            raise AssertionError(f"{error}: {browser.text('hold')}; {browser.text('messages')}") from None
 
     def commanded(self) -> bool:
         """True if motion is commanded now."""
@@ -144,13 +144,10 @@ class ConsoleTestCase(RobotTestCase):
         time.sleep(QUIET)
         self.assertLessEqual(self.moved_at - began, LET_GO, f"{what}: it moved again")
 
-    def each_way(self, browser: Browser) -> None:
-        """Every way to let go, once; ends the browser."""
-        self.what_the_page_notices(browser)
-        self.what_falls_silent(browser)
-        self.what_ends(browser)
-
-    def what_the_page_notices(self, browser: Browser) -> None:
+    @again_after_a_stall
+    def lets_go_of_what_the_page_notices(self) -> None:
+        browser = self.browser()
+        self.open(browser)
         up = partial(browser.key, "KeyW", "keyUp")
         repeat = partial(
             browser.driver.execute_cdp_cmd,
@@ -162,7 +159,7 @@ class ConsoleTestCase(RobotTestCase):
         self.drive(browser)
         self.lets_go("lost focus", lambda: browser.run("dispatchEvent(new Event('blur'))"), repeat, noticed=browser)
         up()
-        self.drive(browser, partial(browser.touch, "touchStart"), partial(browser.touch, "touchEnd"))
+        self.drive(browser, partial(browser.touch, "touchStart"))
         self.lets_go("lost finger", lambda: browser.touch("touchCancel"), noticed=browser)
         self.drive(browser)
         self.lets_go("hidden tab", partial(browser.new_tab, show=False), noticed=browser)
@@ -170,12 +167,14 @@ class ConsoleTestCase(RobotTestCase):
         up()
         browser.pad()
         time.sleep(0.2)
-        self.drive(browser, partial(browser.pad, pressed=True), partial(browser.pad, pressed=False))
+        self.drive(browser, partial(browser.pad, pressed=True))
         unplug = partial(browser.pad, plugged=False)
         self.lets_go("unplugged pad (a stub)", unplug, still_held=partial(browser.pad, pressed=True))
-        unplug()
 
-    def what_falls_silent(self, browser: Browser) -> None:
+    @again_after_a_stall
+    def lets_go_when_something_falls_silent(self) -> None:
+        browser = self.browser()
+        self.open(browser)
         up, signals = partial(browser.key, "KeyW", "keyUp"), browser.signals()
         ways: list[tuple[str, Event, Event | None]] = [
             ("cut link", self.proxy.cut, None),
@@ -197,7 +196,10 @@ class ConsoleTestCase(RobotTestCase):
     def flow(self) -> None:
         self.proxy.stalled = False
 
-    def what_ends(self, browser: Browser) -> None:
+    @again_after_a_stall
+    def lets_go_when_something_ends(self) -> None:
+        browser = self.browser()
+        self.open(browser)
         up = partial(browser.key, "KeyW", "keyUp")
         self.drive(browser)
         self.lets_go("server killed, and started again with the key held", self.console.kill, self.console.start)

@@ -56,11 +56,14 @@ class ConsoleTest(ConsoleTestCase):
         wait_for("frames again", lambda: browser.data("link") == "open")
         browser.screen(1300, 900)
 
-    @again_after_a_stall
-    def test_2_every_way_to_let_go_is_zero_in_time(self) -> None:
-        browser = self.browser()
-        self.open(browser)
-        self.each_way(browser)
+    def test_2_what_the_page_notices_is_zero_in_time(self) -> None:
+        self.lets_go_of_what_the_page_notices()
+
+    def test_3_what_falls_silent_is_zero_in_time(self) -> None:
+        self.lets_go_when_something_falls_silent()
+
+    def test_4_what_ends_is_zero_in_time(self) -> None:
+        self.lets_go_when_something_ends()
 
 
 if __name__ == "__main__":

@@ -33,7 +33,8 @@ function report() {
   const motion = held(), [linear, angular] = (motion ?? [0, 0]).map(clamp);
   isHeld = motion !== null;
   document.body.dataset.held = String(isHeld && commands);
-  if (commands) send({ type: "drive", number: ++number, sent: performance.now() / 1000, held: isHeld, linear, angular });
+  const sent = performance.now() / 1000;
+  if (commands) send({ type: "drive", number: ++number, sent, held: isHeld, linear, angular });
 }
 
 /** Releases everything; what is still held has to be released and pressed again. */

@@ -1,5 +1,6 @@
 // The WebSocket: one connection that comes back by itself, and what is known of its age.
-const SILENT = 1000, FIRST_WAIT = 250, MAX_WAIT = 2000;  // ms without a message, after which nothing on the page is new; between two tries
+const SILENT = 1000;                       // ms without a message, after which nothing on the page is new
+const FIRST_WAIT = 250, MAX_WAIT = 2000;   // ms between two tries to connect
 const handlers = {}, waiting = new Map();
 let socket = null, heard = -Infinity, wait = FIRST_WAIT, calls = 0;
 

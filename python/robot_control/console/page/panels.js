@@ -42,15 +42,20 @@ on("slow", (slow) => {
   put("sign", SIGNS[slow.verdict]);
   put("state", safety?.state ?? "no safety_status");
   put("headline", slow.headline);
-  list("causes", causes.map((cause) => `${cause.first ? "first: " : ""}${cause.sentence}${cause.detail ? ` (${cause.detail})` : ""}${cause.active ? ", still true" : ""}`));
-  list("actions", [...slow.actions.map(([actor, text]) => actor ? `${actor}: ${text}` : text), ...slow.commands.map((text) => `$ ${text}`)]);
+  list("causes", causes.map(({ first, sentence, detail, active }) =>
+    `${first ? "first: " : ""}${sentence}${detail ? ` (${detail})` : ""}${active ? ", still true" : ""}`));
+  const actions = slow.actions.map(([actor, text]) => actor ? `${actor}: ${text}` : text);
+  list("actions", [...actions, ...slow.commands.map((text) => `$ ${text}`)]);
   const notes = { limited: slow.limits, warning: safety?.warnings ?? [], odometry: slow.odometry };
   list("reasons", Object.entries(notes).flatMap(([kind, texts]) => texts.map((text) => `${kind}: ${text}`)));
   put("senders", slow.senders.join(", ") || "no node");
   list("sources", [...slow.sources, ...slow.revoked.map((name) => `${name}: revoked, has to send zero`)]);
-  list("nodes", Object.entries(slow.nodes).map(([name, there]) => `${there ? "●" : "○"} ${name}${there ? "" : " (silent)"}`));
+  list("nodes", Object.entries(slow.nodes).map(([name, there]) => there ? `● ${name}` : `○ ${name} (silent)`));
   put("faults", slow.faults && slow.faults !== "none" ? `injected: ${slow.faults}` : "");
-  put("progress", path.age !== null && path.age < TALKS ? `${path.state}${path.reason ? `: ${path.reason}` : ""}, ${number(100 * path.progress, 0)} %, ${number(path.remaining_distance)} m left, ${number(1000 * path.cross_track_error, 0)} mm beside` : "no path");
+  put("progress", path.age === null || path.age >= TALKS ? "no path" : [
+    path.reason ? `${path.state}: ${path.reason}` : path.state, `${number(100 * path.progress, 0)} %`,
+    `${number(path.remaining_distance)} m left`, `${number(1000 * path.cross_track_error, 0)} mm beside`,
+  ].join(", "));
   const master = slow.master ? "" : "The ROS master does not answer: nothing new connects. ";
   robotBanner = master + (slow.missing.length ? `Not running: ${slow.missing.join(", ")}.` : "");
 });
@@ -58,16 +63,21 @@ on("slow", (slow) => {
 on("desk", (desk) => {
   const holder = desk.pages.find((page) => page.number === desk.commander), { link } = desk;
   const ms = (value) => value === null ? "–" : `${number(1000 * value, 0)} ms`;
-  put("who", desk.commander === desk.you ? "This page commands." : holder ? `${holder.name} (page ${holder.number}) commands.` : "No page commands.");
+  const other = holder ? `${holder.name} (page ${holder.number}) commands.` : "No page commands.";
+  put("who", desk.commander === desk.you ? "This page commands." : other);
   put("hold", desk.hold);
-  list("pages", desk.pages.map((page) => `${page.name}, page ${page.number}, ${page.role}${page.number === desk.you ? ", this one" : ""}${page.number === desk.commander ? ", commands" : ""}`));
-  put("link", `${ms(link.last)}, 95 % within ${ms(link.p95)}; gaps: ${link.gaps}, late: ${link.late}; allows ${number(link.cap)} m/s`);
+  list("pages", desk.pages.map(({ name, number: page, role }) =>
+    [name, `page ${page}`, role, page === desk.you && "this one", page === desk.commander && "commands"]
+      .filter(Boolean).join(", ")));
+  const counts = `gaps: ${link.gaps}, late: ${link.late}`;
+  put("link", `${ms(link.last)}, 95 % within ${ms(link.p95)}; ${counts}; allows ${number(link.cap)} m/s`);
   put("role", `role: ${desk.role}`);
 });
 
 setInterval(() => {
   const dead = silent(), old = dead || performance.now() - slowAt > STATE_SILENCE;
-  const text = dead ? "No connection to the console: everything below is old, and nothing is commanded." : robotBanner.trim();
+  const lost = "No connection to the console: everything below is old, and nothing is commanded.";
+  const text = dead ? lost : robotBanner.trim();
   document.body.dataset.link = dead ? "silent" : "open";
   put("banner", text);
   if (dead) { put("who", "No connection."); put("hold", ""); }

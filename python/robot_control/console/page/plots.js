@@ -15,16 +15,23 @@ class Plot {
       options: {
         animation: false, parsing: false, normalized: true, responsive: true, maintainAspectRatio: false, events: [],
         elements: { point: { radius: 0 }, line: { borderWidth: 1.5 } },
-        plugins: { legend: { position: "bottom", labels: { boxWidth: 18, font: { size: 10 } } }, title: { display: true, text: title } },
-        scales: { x: { type: "linear", min: -SPAN, max: 0, ticks: { maxTicksLimit: 7 } }, y: { ticks: { maxTicksLimit: 5 } } },
+        plugins: {
+          legend: { position: "bottom", labels: { boxWidth: 18, font: { size: 10 } } },
+          title: { display: true, text: title },
+        },
+        scales: {
+          x: { type: "linear", min: -SPAN, max: 0, ticks: { maxTicksLimit: 7 } },
+          y: { ticks: { maxTicksLimit: 5 } },
+        },
       },
     });
   }
   add(values) {
     for (const label of Object.keys(values).slice(0, MAX_LINES)) {
       if (this.sets.length >= MAX_LINES || this.sets.some((set) => set.label === label)) continue;
-      const nth = this.sets.length, data = Array.from({ length: POINTS }, (_, i) => ({ x: (i + 1 - POINTS) * STEP, y: NaN }));
-      this.sets.push({ label, data, borderColor: COLOURS[nth % COLOURS.length], borderDash: DASHES[nth % DASHES.length] });
+      const data = Array.from({ length: POINTS }, (_, i) => ({ x: (i + 1 - POINTS) * STEP, y: NaN }));
+      const nth = this.sets.length, borderDash = DASHES[nth % DASHES.length];
+      this.sets.push({ label, data, borderColor: COLOURS[nth % COLOURS.length], borderDash });
     }
     for (const { label, data } of this.sets) {
       for (let i = 1; i < POINTS; ++i) data[i - 1].y = data[i].y;
@@ -32,8 +39,8 @@ class Plot {
     }
   }
   draw() {
-    const { options } = this.chart;
-    Chart.defaults.color = options.color = options.plugins.title.color = options.plugins.legend.labels.color = getComputedStyle(document.body).color;
+    const { options } = this.chart, { title, legend } = options.plugins, { color } = getComputedStyle(document.body);
+    Chart.defaults.color = options.color = title.color = legend.labels.color = color;
     this.chart.update("none");
   }
 }
@@ -49,7 +56,7 @@ on("fast", (frame) => {
   const wheels = (of) => Object.fromEntries((frame.wheels ?? []).map((wheel) => [wheel.name, wheel[of]]));
   if (now - last >= 1000 * STEP * 0.9) {
     last = now;
-    speed.add({ asked: frame.asked?.[0], limited: frame.limited?.[0], measured: frame.measured?.[0], true: frame.true?.[0] });
+    speed.add(Object.fromEntries(["asked", "limited", "measured", "true"].map((name) => [name, frame[name]?.[0]])));
     torque.add(wheels("effort"));
     error.add(wheels("error"));
     latency.add({ "round trip": ms(link.last), "95 %": ms(link.p95) });

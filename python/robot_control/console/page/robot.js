@@ -10,8 +10,8 @@ const LOADERS = {
     return new THREE.Mesh(geometry);
   },
   dae: (data) => {
-    const text = new TextDecoder().decode(data).replace(/<texture\b[^>]*?(\/>|>[\s\S]*?<\/texture>)/g, "");  // no pictures are served
-    const model = new ColladaLoader().parse(text, "/").scene;
+    const textures = /<texture\b[^>]*?(\/>|>[\s\S]*?<\/texture>)/g;  // their pictures are not served
+    const model = new ColladaLoader().parse(new TextDecoder().decode(data).replace(textures, ""), "/").scene;
     model.quaternion.set(0, 0, 0, 1);  // as RViz: the axes of the file are those of the link
     return model;
   },
@@ -27,6 +27,16 @@ function numbers(words, otherwise) {
   return found.length === otherwise.length && found.every(Number.isFinite) ? found : otherwise;
 }
 
+const size = (shape, name) => numbers(shape.getAttribute(name) ?? "", [0.05])[0];
+const SHAPES = {
+  box: (shape) => new THREE.BoxBufferGeometry(...numbers(shape.getAttribute("size") ?? "", [0.1, 0.1, 0.1])),
+  sphere: (shape) => new THREE.SphereBufferGeometry(size(shape, "radius"), 24, 16),
+  cylinder: (shape) => {
+    const radius = size(shape, "radius");
+    return new THREE.CylinderBufferGeometry(radius, radius, size(shape, "length"), 32).rotateX(Math.PI / 2);
+  },
+};
+
 function placeAt(object, element) {
   const [roll, pitch, yaw] = numbers(text(element, "origin", "rpy"), [0, 0, 0]);
   object.position.set(...numbers(text(element, "origin", "xyz"), [0, 0, 0]));
@@ -35,10 +45,12 @@ function placeAt(object, element) {
 }
 
 function materialOf(visual, root) {
-  const own = all(visual, "material")[0], named = all(root, "material").find((each) => own && each.getAttribute("name") === own.getAttribute("name"));
-  const given = text(own, "color", "rgba") || text(named, "color", "rgba"), [r, g, b, a] = numbers(given, [0.6, 0.65, 0.7, 1]);
-  const material = new THREE.MeshPhongMaterial({ color: new THREE.Color(r, g, b), transparent: a < 1, opacity: a, side: THREE.DoubleSide });
-  return { material, given: Boolean(given) };
+  const own = all(visual, "material")[0], name = own?.getAttribute("name");
+  const named = all(root, "material").find((each) => own && each.getAttribute("name") === name);
+  const given = text(own, "color", "rgba") || text(named, "color", "rgba");
+  const [r, g, b, opacity] = numbers(given, [0.6, 0.65, 0.7, 1]), color = new THREE.Color(r, g, b);
+  const transparent = opacity < 1, side = THREE.DoubleSide;
+  return { material: new THREE.MeshPhongMaterial({ color, transparent, opacity, side }), given: Boolean(given) };
 }
 
 async function mesh(file, id, scale, { material, given }) {
@@ -60,20 +72,16 @@ async function mesh(file, id, scale, { material, given }) {
 /** Resolves with {name, group, joints} once every mesh is there; `say` takes a note. */
 export async function build({ urdf, meshes }, say) {
   const root = new DOMParser().parseFromString(urdf, "application/xml").documentElement, pending = [];
-  const size = (shape, name) => numbers(shape.getAttribute(name) ?? "", [0.05])[0];
-  const SHAPES = {
-    box: (shape) => new THREE.BoxBufferGeometry(...numbers(shape.getAttribute("size") ?? "", [0.1, 0.1, 0.1])),
-    sphere: (shape) => new THREE.SphereBufferGeometry(size(shape, "radius"), 24, 16),
-    cylinder: (shape) => new THREE.CylinderBufferGeometry(size(shape, "radius"), size(shape, "radius"), size(shape, "length"), 32).rotateX(Math.PI / 2),
-  };
   function visualOf(visual) {
-    const group = placeAt(new THREE.Group(), visual), shape = all(visual, "geometry")[0]?.firstElementChild, made = materialOf(visual, root);
+    const group = placeAt(new THREE.Group(), visual), made = materialOf(visual, root);
+    const shape = all(visual, "geometry")[0]?.firstElementChild;
     if (Object.hasOwn(SHAPES, shape?.tagName)) group.add(new THREE.Mesh(SHAPES[shape.tagName](shape), made.material));
     else if (shape?.tagName === "mesh") {
       const file = shape.getAttribute("filename") ?? "", scale = numbers(shape.getAttribute("scale") ?? "", [1, 1, 1]);
       const fail = (error) => {
         say(`${file.split("/").pop()}: ${error.message}`);
-        group.add(new THREE.Mesh(new THREE.BoxBufferGeometry(0.1, 0.1, 0.1), new THREE.MeshBasicMaterial({ color: 0xd97706, wireframe: true })));
+        const frame = new THREE.MeshBasicMaterial({ color: 0xd97706, wireframe: true });
+        group.add(new THREE.Mesh(new THREE.BoxBufferGeometry(0.1, 0.1, 0.1), frame));
       };
       pending.push(mesh(file, meshes[file], scale, made).then((object) => group.add(object), fail));
     }
@@ -86,7 +94,8 @@ export async function build({ urdf, meshes }, say) {
   }));
   const children = new Set(), joints = new Map(), group = new THREE.Group();
   for (const joint of all(root, "joint")) {
-    const name = text(joint, "child", "link"), parent = links.get(text(joint, "parent", "link")), child = links.get(name);
+    const name = text(joint, "child", "link"), child = links.get(name);
+    const parent = links.get(text(joint, "parent", "link"));
     if (!parent || !child || children.has(name) || parent === child) continue;
     children.add(name);
     const moving = new THREE.Group().add(child);

@@ -6,7 +6,8 @@ import { build, pose } from "/robot.js";
 
 const MAX_POINTS = 5000, STEP = 0.05;   // of the path driven; m between two of them
 const SIGMAS = 2.448;                   // 95 % of a normal distribution in the plane
-const FRAME = 50, LATE = 40, RESTING = 250;  // ms between two pictures; a browser that is late gets a rest, for driving comes first
+const FRAME = 50;                       // ms between two pictures
+const LATE = 40, RESTING = 250;         // ms; a browser that is so late rests so long, because driving comes first
 const HALF = 20, SQUARE = 0.5, PIECE = 1;    // m; a software renderer loses long lines that begin behind the camera
 const view = document.getElementById("view"), note = document.getElementById("scene-note");
 const canvas = document.getElementById("scene"), notes = new Set();
@@ -23,9 +24,9 @@ function polyline(colour, size, dashed) {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * size), 3));
   geometry.setDrawRange(0, 0);
-  const material = dashed ? new THREE.LineDashedMaterial({ dashSize: 0.08, gapSize: 0.05 }) : new THREE.LineBasicMaterial();
-  material.color.set(colour);
-  const line = new THREE.Line(geometry, material);
+  const style = { color: colour, dashSize: 0.08, gapSize: 0.05 };
+  const Material = dashed ? THREE.LineDashedMaterial : THREE.LineBasicMaterial;
+  const line = new THREE.Line(geometry, new Material(dashed ? style : { color: colour }));
   line.frustumCulled = false;
   scene.add(line);
   return line;
@@ -41,7 +42,7 @@ function fill(line, points, z) {
 }
 
 const driven = polyline(0x3b82f6, MAX_POINTS), wanted = polyline(0xd97706, 2000, true);
-const ellipse = polyline(0x8894a2, 65), truth = polyline(0x10a35a, 35), drawn = polyline(0xd97706, 1000);
+const ellipse = polyline(0x8894a2, 65), truth = polyline(0x10a35a, 66), drawn = polyline(0xd97706, 1000);
 
 function ring([x, y], a, b, angle) {
   return Array.from({ length: 65 }, (_, i) => {
@@ -97,7 +98,7 @@ on("fast", (frame) => {
     }
     fill(ellipse, ellipseOf(frame.pose, frame.covariance), 0.008);
   }
-  fill(truth, frame.truth ? [...ring(frame.truth, 0.25, 0.25, frame.truth[2]).filter((_, i) => i % 2 === 0), frame.truth] : [], 0.01);
+  fill(truth, frame.truth ? [...ring(frame.truth, 0.25, 0.25, frame.truth[2]), frame.truth] : [], 0.01);
   pose(joints, frame.joints ?? {});
   dirty = true;
 });
@@ -130,7 +131,8 @@ export function draw() {
 }
 function ground(event) {
   const box = canvas.getBoundingClientRect(), ray = new THREE.Raycaster();
-  ray.setFromCamera({ x: 2 * (event.clientX - box.left) / box.width - 1, y: 1 - 2 * (event.clientY - box.top) / box.height }, camera);
+  const x = 2 * (event.clientX - box.left) / box.width - 1, y = 1 - 2 * (event.clientY - box.top) / box.height;
+  ray.setFromCamera({ x, y }, camera);
   return ray.ray.intersectPlane(new THREE.Plane(new THREE.Vector3(0, 0, 1), 0), new THREE.Vector3());
 }
 canvas.addEventListener("pointermove", (event) => {
@@ -166,7 +168,8 @@ for (let at = -HALF; at <= HALF; at += SQUARE) {
   }
 }
 squares.setAttribute("position", new THREE.Float32BufferAttribute(lines, 3));
-const grid = new THREE.LineSegments(squares, new THREE.LineBasicMaterial({ color: 0x8d99a6, transparent: true, opacity: 0.6 }));
+const faint = new THREE.LineBasicMaterial({ color: 0x8d99a6, transparent: true, opacity: 0.6 });
+const grid = new THREE.LineSegments(squares, faint);
 grid.frustumCulled = false;
 const sun = new THREE.DirectionalLight(0xffffff, 0.7);
 sun.position.set(-2, -3, 5);

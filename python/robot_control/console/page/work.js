@@ -15,18 +15,22 @@ on("said", ({ text }) => say(text));
 
 const COMPONENTS = "left_encoder right_encoder gyro accelerometer left_motor right_motor battery e_stop_button";
 const KINDS = "ok off stuck garbage wrong slow delayed intermittent";
-for (const [id, words] of [["component", COMPONENTS], ["kind", KINDS]]) words.split(" ").forEach((word) => by(id).add(new Option(word)));
+COMPONENTS.split(" ").forEach((word) => by("component").add(new Option(word)));
+KINDS.split(" ").forEach((word) => by("kind").add(new Option(word)));
 
-const value = (id) => Number(by(id).value);
+const value = (id) => Number(by(id).value), speed = () => value("path-speed");
 const ARGUMENTS = {
   path_points: async () => {
     const { draw } = await import("/scene.js");
     say("draw a stroke on the grid");
     const points = await draw();
-    return points.length > 1 ? { points, speed: value("path-speed") } : null;
+    return points.length > 1 ? { points, speed: speed() } : null;
   },
-  path_shape: () => ({ shape: by("shape").value, size: value("size"), speed: value("path-speed") }),
-  path_csv: async () => by("csv").files[0] ? { text: await by("csv").files[0].text(), speed: value("path-speed") } : null,
+  path_shape: () => ({ shape: by("shape").value, size: value("size"), speed: speed() }),
+  path_csv: async () => {
+    const [file] = by("csv").files;
+    return file ? { text: await file.text(), speed: speed() } : null;
+  },
   set_odometry: () => ({ x: value("x"), y: value("y"), yaw: value("yaw") }),
   set_parameters: () => ({ parameters: by("parameters").value }),
   pause: () => ({ on: !robot?.paused }),
@@ -63,13 +67,15 @@ on("desk", (next) => {
   by("take").textContent = taken ? "Take it away" : "Take the command";
   by("take").setAttribute("aria-disabled", String(desk.role === "watch" || (taken && desk.role !== "maintain")));
   by("give").hidden = !mine;
-  const others = desk.pages.filter((page) => page.number !== desk.you && page.role !== "watch").map((page) => `${page.number} ${page.name}`);
+  const drivers = desk.pages.filter((page) => page.number !== desk.you && page.role !== "watch");
+  const others = drivers.map((page) => `${page.number} ${page.name}`);
   by("hand-over").hidden = !mine || !others.length;
-  if (others.join() !== [...by("other").options].map((option) => option.text).join()) {
+  if (others.join() !== Array.from(by("other").options, (option) => option.text).join()) {
     by("other").replaceChildren(...others.map((text) => new Option(text, text.split(" ")[0])));
   }
   for (const [id, at] of [["linear", 0], ["angular", 1]]) {
-    if (first || (document.activeElement !== by(id) && value(id) !== desk.chosen[at])) by(id).value = number(desk.chosen[at]);
+    const edited = document.activeElement === by(id);
+    if (first || (!edited && value(id) !== desk.chosen[at])) by(id).value = number(desk.chosen[at]);
     by(id).max = desk.limits[at];
   }
   by("heartbeat").checked = desk.heartbeat;
@@ -94,10 +100,11 @@ by("e-stop").addEventListener("click", async () => {
 });
 
 function confirmReset(text) {
-  const active = (robot?.safety?.causes ?? []).filter((cause) => cause.active).map((cause) => `${cause.sentence}: ${cause.remedy}`);
-  const reasons = [...active, ...(robot?.safety?.refusal ?? [])];
+  const { causes = [], refusal = [] } = robot?.safety ?? {}, active = causes.filter((cause) => cause.active);
+  const reasons = [...active.map((cause) => `${cause.sentence}: ${cause.remedy}`), ...refusal];
   key = text;
-  by("against").textContent = reasons.length ? `Against it stands: ${reasons.join("; ")}` : "Nothing stands against it. Look at the robot first.";
+  const none = "Nothing stands against it. Look at the robot first.";
+  by("against").textContent = reasons.length ? `Against it stands: ${reasons.join("; ")}` : none;
   by("confirm").hidden = false;
 }
 by("confirm-reset").addEventListener("click", async () => {
@@ -113,12 +120,12 @@ by("runs").addEventListener("toggle", async () => {
   else say("the list of runs cannot be read");
 });
 function row(run) {
-  const line = document.createElement("tr"), texts = [`${run.name}, ${new Date(1000 * run.time).toLocaleString()}`, `${number(run.bytes / 1e6, 1)} MB`];
-  for (const text of texts) line.insertCell().textContent = text;
+  const line = document.createElement("tr"), time = new Date(1000 * run.time).toLocaleString();
+  for (const text of [`${run.name}, ${time}`, `${number(run.bytes / 1e6, 1)} MB`]) line.insertCell().textContent = text;
   const links = line.insertCell();
   for (const [text, path, target] of [["report", "report", "_blank"], ["download", "file", ""]]) {
-    const link = Object.assign(document.createElement("a"), { textContent: text, href: `/api/runs/${run.id}/${path}`, target, rel: "noopener" });
-    links.append(link, " ");
+    const href = `/api/runs/${run.id}/${path}`, rel = "noopener";
+    links.append(Object.assign(document.createElement("a"), { textContent: text, href, target, rel }), " ");
   }
   return line;
 }
