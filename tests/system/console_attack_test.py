@@ -107,6 +107,18 @@ class ConsoleAttackTest(RobotTestCase):
             elif message["type"] == kind and text in json.dumps(message):
                 return message
 
+    def is_closed_after(self, messages: list[str] | list[bytes]) -> None:
+        """The server closes a page that sends these."""
+
+        async def play(page: Any) -> None:
+            with contextlib.suppress(ConnectionError):
+                for message in messages:
+                    await (page.send_str(message) if isinstance(message, str) else page.send_bytes(message))
+            while not page.closed:
+                await page.receive()
+
+        self.run_page(play)
+
     # requests
 
     def test_without_a_login_nothing_but_the_login_is_served(self) -> None:
@@ -163,33 +175,13 @@ class ConsoleAttackTest(RobotTestCase):
     # messages
 
     def test_malformed_messages_close_the_page_and_nothing_else(self) -> None:
-        async def play(page: Any) -> None:
-            for text in ["{", "[" * 60000, '{"type": 1}', "null", '{"type":"drive"}'] * 5:
-                with contextlib.suppress(ConnectionError):
-                    await page.send_str(text)
-            while not page.closed:
-                await page.receive()
-
-        self.run_page(play)
-        for data in ("x" * 70_000, b"\0" * 100):
-
-            async def send(page: Any, data: Any = data) -> None:
-                await (page.send_str(data) if isinstance(data, str) else page.send_bytes(data))
-                while not page.closed:
-                    await page.receive()
-
-            self.run_page(send)
+        malformed = ["{", "[" * 60000, '{"type": 1}', "null", '{"type":"drive"}'] * 5
+        for data in (malformed, ["x" * 70_000], [b"\0" * 100]):
+            self.is_closed_after(data)
         self.alive()
 
     def test_a_flood_closes_its_page(self) -> None:
-        async def play(page: Any) -> None:
-            with contextlib.suppress(ConnectionError):
-                for number in range(5000):
-                    await page.send_json({**DRIVE, "number": number})
-            while not page.closed:
-                await page.receive()
-
-        self.run_page(play)
+        self.is_closed_after([json.dumps({**DRIVE, "number": number}) for number in range(5000)])
         self.alive()
 
     def test_motion_without_a_release_replayed_or_out_of_order_moves_nothing(self) -> None:

@@ -1,6 +1,5 @@
 """A robot and a console behind a proxy that all cases of a class share, and a browser for each case."""
 
-import contextlib
 import os
 import signal
 import time

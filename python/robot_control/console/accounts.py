@@ -16,21 +16,21 @@ def main() -> int:
     """Entry point of scripts/console_users.py."""
     parser = argparse.ArgumentParser(
         prog="console_users.py",
-        description="Users of console.py. `add` prints the end of an address; who opens it within a day sets the "
-        "password. `add` of a user who is there gives a new address, and the role.",
+        description="Users of console.py. `add` prints the end of an address, with which the user sets a password "
+        "within a day. `add` of a known user prints a new one and sets the role.",
     )
     commands = parser.add_subparsers(dest="command", required=True)
-    add = commands.add_parser("add", help="a user, or a new address for one")
+    add = commands.add_parser("add", help="adds a user, or renews the address of one")
     add.add_argument("name")
     add.add_argument(
         "--role",
         choices=[str(role) for role in Role],
         default="watch",
-        help="watch sees, operate drives, maintain also tunes",
+        help="watch: sees; operate: drives too; maintain: tunes too",
     )
-    remove = commands.add_parser("remove", help="a user; pages of theirs are closed")
+    remove = commands.add_parser("remove", help="removes a user and closes the user's pages")
     remove.add_argument("name")
-    commands.add_parser("list", help="names and roles")
+    commands.add_parser("list", help="lists names and roles")
     given = parser.parse_args()
     users = Users()
     try:

@@ -8,12 +8,12 @@ from urllib.parse import urlsplit
 
 
 class AddressError(ValueError):
-    """The console would be reachable without protection; the message says what is missing."""
+    """The console would be reachable without protection. The message says what is missing."""
 
 
 @dataclass(frozen=True)
 class Doors:
-    """Origins (scheme://host:port) that are this console's own."""
+    """The console's own origins (scheme://host:port)."""
 
     origins: frozenset[str]
 

@@ -1,4 +1,4 @@
-"""The calls of a page: services, paths and the simulation. One table says what each needs."""
+"""The calls of a page: services, paths and the simulation. CALLS lists what each call needs."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from robot_control.path.waypoints import PathError, Waypoint, checked, placed, r
 from robot_control.srv import InjectFault, SetOdometry, SetParameters, Step
 
 RESET_PAUSE, RESET_WINDOW = 0.5, 10.0
-"""s between the two steps of a reset"""
+"""s; the second step of a reset follows the first one no sooner and no later"""
 FOLLOW = "follow_path"
 
 METRES = number(-1e6, 1e6)
@@ -39,10 +39,10 @@ def _points(value: Any) -> bool:  # noqa: ANN401 (JSON)
 
 @dataclass(frozen=True)
 class Call:
-    """One thing that a page may ask for."""
+    """One request that a page may make."""
 
-    service: str = ""  # without which it cannot work, by its relative name; empty: it needs none
-    kind: type | None = None  # type of the service if the call is nothing else; the fields are its arguments
+    service: str = ""  # relative name of the service without which the call cannot work; empty: none
+    kind: type | None = None  # type of that service if the call is a plain call of it, with the fields as arguments
     fields: Fields = field(default_factory=dict)
     role: Role = Role.OPERATE
 
@@ -89,7 +89,7 @@ def against(name: str, page: Page, desk: Desk, services: set[str]) -> str:
 
 
 class Calls:
-    """Makes the calls; each may take seconds, so it is made in a thread of its own."""
+    """Makes the calls. A call may take seconds, so each is made in a thread of its own."""
 
     def __init__(self, pose: Callable[[], tuple[float, float, float] | None]) -> None:
         """`pose`: of the robot in odom."""
@@ -119,14 +119,14 @@ class Calls:
             raise RefusedError(f"{name}: {error}") from None
 
     def confirm_reset(self, page: Page, key: str) -> None:
-        """The second step of a reset: it names the key of the first one, and comes neither at once nor late."""
+        """Checks the second step of a reset, which names the key of the first one. Raises RefusedError."""
         known, at = self._keys.pop(page.number, ("", 0.0))
         elapsed = time.monotonic() - at
         if not (known and secrets.compare_digest(known, key) and RESET_PAUSE <= elapsed <= RESET_WINDOW):
             raise RefusedError("ask for the reset again, read what stands against it, and confirm within 10 s")
 
     def forget(self, page: Page) -> None:
-        """The page has ended."""
+        """Forgets a page that has ended."""
         self._keys.pop(page.number, None)
 
     def _path(self, name: str, given: Mapping[str, Any]) -> list[Waypoint]:

@@ -21,17 +21,16 @@ from robot_control.console.desk import Page, RefusedError
 from robot_control.console.hold import Drive
 from robot_control.console.messages import MAX_SIZE, MessageError, Rate, parse
 
-FRAME = 0.05
-"""s between two frames; with SLOW of them between two states"""
-SLOW = 5
+FRAME, SLOW = 0.05, 5
+"""s between two frames; number of frames between two states"""
 PING_PERIOD, WATCHER_PERIOD = 0.1, 0.5
 """s between two pings of the page that commands, and of others"""
 SKIP, LOST = 2.0, 15.0
-"""s without the answer to a ping, after which frames are skipped, and the page counts as lost"""
+"""s without the answer to a ping, after which frames are skipped; after which the connection is ended"""
 CLOSING = 2.0
-"""s in which a page receives why it is closed"""
+"""s within which a page receives the reason why it is closed"""
 POLICY_VIOLATION, LOGIN_ENDED = 1008, 4401
-"""codes with which the page is closed (RFC 6455, 7.4)"""
+"""Codes with which a page is closed (RFC 6455, 7.4)"""
 MAX_MISTAKES, MAX_ANSWERS = 20, 64
 MAX_CALLS = 3
 """calls of one page at the same time"""
@@ -47,7 +46,7 @@ class Frames:
         self.number = self.slow_number = 0
 
     def make(self, backend: Backend) -> None:
-        """Makes the next one."""
+        """Makes the next frame."""
         self.fast = json.dumps(backend.fast())
         if self.number % SLOW == 0:
             self.slow, self.slow_number = json.dumps(backend.slow()), self.slow_number + 1
@@ -69,7 +68,7 @@ class Client:
         self._unanswered: float | None = None  # s, when the first ping without an answer was sent
 
     async def serve(self, request: web.Request) -> web.WebSocketResponse:
-        """Until the page ends."""
+        """Serves the page until it ends."""
         await self._socket.prepare(request)
         writer = asyncio.create_task(self._write(request))
         try:
@@ -85,7 +84,7 @@ class Client:
         return self._socket
 
     def say(self, text: str) -> None:
-        """A line for the person."""
+        """Sends a line for the operator."""
         self._post({"type": "said", "text": text})
 
     def _post(self, message: dict[str, Any]) -> None:

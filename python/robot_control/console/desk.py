@@ -21,11 +21,11 @@ from robot_control.pad.law import PadParameters
 from robot_control.teleop.operator import ZEROS, Limits
 
 CHOSEN = Command(PadParameters.scale_linear, PadParameters.scale_angular)
-"""speeds of a new page, m/s and rad/s"""
+"""Chosen speeds of a new page, m/s and rad/s"""
 
 
 class Role(IntEnum):
-    """A higher role may all that a lower one may."""
+    """The rights of a user; each role includes the lower ones."""
 
     WATCH = 0
     OPERATE = 1
@@ -56,7 +56,7 @@ class Page:
 
 
 class Desk:
-    """All pages."""
+    """All pages, and the one that commands."""
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
@@ -66,14 +66,14 @@ class Desk:
         self._zeros_until = -math.inf
 
     def join(self, name: str, role: Role) -> Page:
-        """A page comes."""
+        """Adds a page."""
         self._last_number += 1
         page = Page(self._last_number, name, role, Hold(self._settings))
         self.pages[page.number] = page
         return page
 
     def leave(self, page: Page, now: float) -> None:
-        """A page ends, in whatever way."""
+        """Removes a page that has ended, in whatever way."""
         if self.commander is page:
             self._give(None, now, "the page has ended")
         self.pages.pop(page.number, None)
@@ -114,7 +114,7 @@ class Desk:
             raise RefusedError("this page does not command: take the command first")
 
     def interrupt(self, now: float, why: str) -> None:
-        """A stop, or a pause of this program, lies between (interruptions.py)."""
+        """Ends the motion after a stop, or after a pause of this program (interruptions.py)."""
         for page in self.pages.values():
             page.hold.interrupt(now, why)
 
@@ -130,7 +130,7 @@ class Desk:
         self._zeros_until = now + ZEROS
 
     def command(self, limits: Limits, now: float) -> tuple[Command | None, float]:
-        """The command to send now, None: nothing; and its age, s."""
+        """The command to send now, or None if nothing is sent; and its age, s."""
         for each in self.pages.values():
             each.cap = each.hold.cap.step(each.hold.round_trips.percentile95(now), now)
         page = self.commander

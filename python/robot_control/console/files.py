@@ -16,11 +16,11 @@ LIBRARIES = (
     "chart.js/chart.mjs",
     "chart.js/chunks/helpers.segment.mjs",
 )
-"""of Debian's packages libjs-three and libjs-chart.js"""
+"""Files of Debian's packages libjs-three and libjs-chart.js"""
 FILES = {path.name: path for path in OWN.glob("*.*")} | {f"lib/{name}": SHARED / name for name in LIBRARIES}
 """Path of the address → file; nothing else is served as a file"""
 TYPES = {".html": "text/html", ".css": "text/css", ".svg": "image/svg+xml"}
-"""others are scripts"""
+"""Type by suffix; every other file is a script."""
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
     "frame-ancestors 'none'; base-uri 'none'; form-action 'self'"
@@ -39,7 +39,7 @@ HEADERS = {
     "Permissions-Policy": "camera=(), microphone=(), geolocation=()",
     "Cache-Control": "no-store",
 }
-"""of every answer that has no other value"""
+"""Headers of every answer that does not set them itself"""
 
 
 def page_file(name: str) -> web.StreamResponse:

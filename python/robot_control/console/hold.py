@@ -64,7 +64,7 @@ class Hold:
         self.pad.receive((drive.linear, drive.angular), (int(drive.held),), now)
 
     def alive(self, now: float) -> bool:
-        """True while messages come."""
+        """True while messages arrive."""
         return now - self.stamp <= self._settings.link_gap
 
     def interrupt(self, now: float, why: str) -> None:
@@ -73,13 +73,13 @@ class Hold:
         self.pad.interrupt(now)
 
     def share(self, now: float) -> Command | None:
-        """Shares of the chosen speeds to command now; None: nothing is sent."""
+        """Shares of the chosen speeds to command now; None if nothing is sent."""
         self._notice_gap(now)
         share = self.pad.command(now)
         return share if share is None or now - self.stamp <= self._settings.hold else Command()
 
     def state(self, now: float) -> str:
-        """The state as text; empty where the page may simply drive."""
+        """The state as text; empty if the page may drive."""
         if self._gap:
             return "nothing comes over the link"
         words = self.pad.state(now)

@@ -33,13 +33,13 @@ from robot_control.console.users import FOLDER, Users, UsersError
 from robot_control.installed_files import share_file
 
 PASS = 0.02
-"""s between two passes over robot and pages"""
+"""s between two passes"""
 CHECK = 100
-"""frames between two looks at the file of users"""
+"""Frames between two checks of the file of users"""
 HANDSHAKE, KEPT = 10.0, 15.0
-"""s for a TLS handshake; for which an idle connection stays open"""
+"""s that a TLS handshake may take; s for which an idle connection stays open"""
 JOURNAL, JOURNAL_SIZE, JOURNALS_KEPT = "console.log", 1_000_000, 5
-"""file, bytes of it, and how many older ones stay"""
+"""Name of the file, its size in bytes, and the number of older ones that are kept"""
 STATE = "ROBOT_CONTROL_CONSOLE_STATE"
 """Environment variable in which a console that replaces itself passes token and logins on."""
 
@@ -76,7 +76,7 @@ def arguments(given: list[str]) -> argparse.Namespace:
 
 
 def setup_of(given: argparse.Namespace) -> Setup:
-    """Raises AddressError, SettingsError, TlsError, UsersError, OSError: it must not start like this."""
+    """Raises AddressError, SettingsError, TlsError, UsersError or OSError if the console must not start."""
     overlay = [given.config] if given.config else []
     settings = read_settings(Path(share_file("config/console.yaml")), *overlay)
     users, context = Users(), None
@@ -92,7 +92,7 @@ def setup_of(given: argparse.Namespace) -> Setup:
 
 
 def open_journal(path: Path) -> None:
-    """Who did what, in a file of this account alone that is rotated by size."""
+    """Opens the record of logins and commands, which this account alone may read and which is rotated by size."""
     path.parent.mkdir(parents=True, exist_ok=True)
     path.touch(mode=0o600, exist_ok=True)
     handler = logging.handlers.RotatingFileHandler(
@@ -106,7 +106,7 @@ def open_journal(path: Path) -> None:
 
 
 async def serve(given: argparse.Namespace, setup: Setup, signals: Signals) -> bool:
-    """Until a signal comes; True if this program has to begin again, because another master was started."""
+    """Serves until a signal arrives. True if this program has to begin again because another master was started."""
     backend = Backend(setup.settings)
     runs, saved = given.runs.expanduser(), os.environ.pop(STATE, "")
     server = Server(backend, setup.doors, setup.users, runs, saved, port=given.port, read_only=given.read_only)
@@ -139,7 +139,7 @@ async def serve(given: argparse.Namespace, setup: Setup, signals: Signals) -> bo
     frames.cancel()
     server.close()
     listening.close()
-    await asyncio.sleep(2 * FRAME)  # the pages receive why
+    await asyncio.sleep(2 * FRAME)  # the pages receive the reason
     with contextlib.suppress(asyncio.TimeoutError):
         await asyncio.wait_for(runner.cleanup(), 2.0)
     return replace

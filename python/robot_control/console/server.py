@@ -1,4 +1,4 @@
-"""The HTTP side: who may ask for what, and the answers. Origins, logins and limits of all requests stand here."""
+"""The HTTP side: origins, logins and limits of all requests, and their answers."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ from robot_control.console.users import Users, UsersError
 
 MAX_PAGES = 20
 BODY_TIME = 10.0
-"""s in which the body of a request has to come"""
+"""s within which the body of a request has to arrive"""
 PUBLIC = frozenset({"/login", "/api/login", "/style.css", "/login.js", "/icon.svg"})
-"""what is served without a login"""
+"""Paths that are served without a login"""
 LOCAL_USER = "local"
-"""who came with the token"""
+"""Name of the user who has opened the page with the token"""
 GOING_AWAY = 1001
-"""code with which a page is closed (RFC 6455, 7.4)"""
+"""Code with which a page is closed (RFC 6455, 7.4)"""
 journal = logging.getLogger("console")
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
@@ -66,7 +66,7 @@ class Server:
         post("/api/e_stop", self._e_stop)
 
     def pass_on(self) -> None:
-        """Hands what the robot answered to all pages."""
+        """Sends the robot's answers to all pages."""
         for text in self._backend.said:
             journal.info("robot: %s", printable(text, 500))
             for client in self._clients:
@@ -137,7 +137,7 @@ class Server:
         return response
 
     async def _login(self, request: web.Request) -> web.StreamResponse:
-        """With `name` and `password`, or with `link` and a new password. No form of another page can send JSON."""
+        """Logs in with `name` and `password`, or with `link` and a new password. No form of another site sends JSON."""
         if request.content_type != "application/json":
             raise web.HTTPUnsupportedMediaType(text="application/json is needed")
         try:

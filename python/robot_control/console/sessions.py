@@ -1,4 +1,4 @@
-"""Who is logged in, and how often somebody may try. It reads no clock: time is an argument, s of the time of day."""
+"""Logins, and the limits of failed ones. It reads no clock: time is an argument, s of the time of day."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Sessions:
         self._sessions = {row["key"]: Session(**{**row, "role": Role(row["role"])}) for row in rows}
 
     def begin(self, user: str, role: Role, now: float) -> str:
-        """Text of a cookie."""
+        """Begins a session; the text of its cookie."""
         cookie = secrets.token_urlsafe(32)
         while len(self._sessions) >= MAX_SESSIONS:
             self._sessions.pop(next(iter(self._sessions)))
@@ -54,7 +54,7 @@ class Sessions:
         return self._sessions.get(session.key) is session and now < session.ends
 
     def end(self, session: Session) -> None:
-        """Logout."""
+        """Ends a session."""
         self._sessions.pop(session.key, None)
 
     def check_roles(self, roles: Mapping[str, Role]) -> None:
@@ -63,7 +63,7 @@ class Sessions:
         self._sessions = kept
 
     def save(self) -> str:
-        """All of it for a process that replaces this one; no cookie is in it."""
+        """The token and the logins, for a process that replaces this one. No cookie is in it."""
         return json.dumps([self.token, [asdict(session) for session in self._sessions.values()]])
 
 
@@ -74,7 +74,7 @@ class Tries:
         self._failed: dict[tuple[str, str], list[float]] = {}
 
     def wait(self, user: str, address: str, now: float) -> float:
-        """s until the next try is admitted; zero: now."""
+        """s until the next try is admitted; zero if it is admitted now."""
         return max(self._wait("user", user, TRIES_OF_USER, now), self._wait("address", address, TRIES_OF_ADDRESS, now))
 
     def fail(self, user: str, address: str, now: float) -> None:

@@ -1,4 +1,4 @@
-"""Values of config/console.yaml, and what follows from them."""
+"""The values of config/console.yaml, and those that follow from them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class SettingsError(ValueError):
 
 @dataclass(frozen=True)
 class Settings:
-    """Meaning of the values: config/console.yaml."""
+    """The values; config/console.yaml explains them."""
 
     distance: float = 0.3  # m
     link_gap: float = 0.3  # s

@@ -1,7 +1,7 @@
 """The last message of each topic that the page shows, and its age.
 
-A message is deserialized when it is looked at, or at its receipt if another part of this process subscribes with the
-topic's type. The reason: rospy has one type for each topic of a process, that of its first subscriber.
+A message is deserialized when it is read, or at its receipt if another part of this process subscribes with the topic's
+type. rospy has one type for each topic of a process, that of its first subscriber.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ class Latest:
         rospy.Subscriber(topic, rospy.AnyMsg, self._receive, queue_size=1, tcp_nodelay=True)
 
     def _receive(self, message: Any) -> None:  # noqa: ANN401 (AnyMsg, or the topic's type)
-        other = isinstance(message, rospy.AnyMsg) and message._connection_header["type"] != self._kind._type  # type: ignore[attr-defined]  # noqa: SLF001
-        if not other:
+        raw = isinstance(message, rospy.AnyMsg)
+        if not raw or message._connection_header["type"] == self._kind._type:  # type: ignore[attr-defined]  # noqa: SLF001
             self._newest, self.received_at = message, time.monotonic()
 
     def age(self, now: float) -> float | None:

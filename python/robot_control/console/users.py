@@ -1,7 +1,7 @@
 """The file of users: names, roles, and scrypt hashes of passwords and of links for the first login.
 
-The file has mode 0600; one that others may read, or that belongs to another account, is refused. A link is good once
-and for a day. The text of a link or a password is in no file.
+The file has mode 0600. A file that others may read, or that belongs to another account, is refused. A link works once,
+within a day. No file holds the text of a link or a password.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ LINK_LIFE = 24 * 3600.0
 MIN_PASSWORD, MAX_PASSWORD = 10, 256
 """characters"""
 SCRYPT = {"n": 1 << 14, "r": 8, "p": 1, "maxmem": 64 << 20}
-"""RFC 7914; 16 MiB and some 50 ms for each try"""
+"""RFC 7914; each try takes 16 MiB and about 50 ms"""
 
 
 class UsersError(ValueError):
@@ -50,7 +50,7 @@ class User:
 
 
 class Users:
-    """The users of a file, which is read at every look and written as a whole."""
+    """The users of a file, which is read anew for each call and written as a whole."""
 
     def __init__(self, path: Path = FILE) -> None:
         self.path = path

@@ -21,15 +21,15 @@ from robot_control.view.scene import Trail
 from robot_control.why.diagnosis import Facts, judge, missing_nodes
 
 MAX_PATH = 2000
-"""points of a wanted path that are sent; of a longer one every n-th"""
+"""Points of a wanted path that are sent; a longer path is thinned evenly."""
 DRIVE_SILENCE = 1.0
-"""s after which a drive_state counts no more"""
+"""s after which a drive_state is too old to count"""
 
 Values = dict[str, Any]
 
 
 class View:
-    """All that is known of the robot."""
+    """The newest messages of the robot."""
 
     def __init__(self) -> None:
         self.trail = Trail()
@@ -63,7 +63,7 @@ class View:
         return self._wanted.received_at, finite({"type": "wanted", "frame": frame, "points": points[::step]})
 
     def fast(self, asked: Command | None) -> Values:
-        """The values of every frame; `asked` by this console."""
+        """The values of a frame; `asked` is the last command of this console."""
         now = time.monotonic()
         newest = {name: topic.message for name, topic in self._topics.items()}
         odometry, truth, joints, drive = (newest[name] for name in ("odom", "truth", "joints", "drive"))
@@ -87,7 +87,7 @@ class View:
         return finite(values)
 
     def slow(self, facts: Facts) -> Values:
-        """The values that change now and then: state, causes, remedies, who commands."""
+        """The values that change rarely: state, causes, remedies, senders."""
         answer, safety = judge(facts), facts.received()
         drive, feedback = self._topics["drive"].message, self._topics["feedback"]
         progress = (

@@ -1,4 +1,4 @@
-// The whole page but its pictures, of which neither driving nor the emergency stop depends: command, reset, and work.
+// Command, reset and work: all of the page except its pictures, so that driving and the stop do not depend on those.
 import { on, send, call, connect } from "/link.js";
 import { release } from "/drive.js";
 import { by, list, number } from "/panels.js";
