@@ -1,7 +1,7 @@
 """The last message of each topic that the page shows, and its age.
 
-A message is deserialized when it is read, or at its receipt if another part of this process subscribes with the topic's
-type. rospy has one type for each topic of a process, that of its first subscriber.
+rospy has one type for each topic of a process, that of its first subscriber. So a message arrives as bytes, which are
+deserialized when it is read, unless another part of this process subscribes with the topic's type.
 """
 
 from __future__ import annotations
