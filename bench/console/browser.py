@@ -8,6 +8,7 @@ import os
 import re
 import signal
 import tempfile
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -75,6 +76,13 @@ class Browser:
         """Opens the console and waits until its first frames have come."""
         self.driver.get(address)
         wait_for("frames of the robot", lambda: int(self.data("frames") or 0) > 3)
+
+    def load(self, address: str) -> float:
+        """Opens the console; s until it shows the state and the model of the robot."""
+        began = time.monotonic()
+        self.driver.get(address)
+        wait_for("a state and a model", lambda: self.data("state") and self.data("model"))
+        return time.monotonic() - began
 
     def new_tab(self, *, show: bool = True) -> None:
         """Opens another tab, which hides this one. `show`: what follows is asked of the new one."""

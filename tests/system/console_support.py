@@ -118,7 +118,7 @@ class ConsoleTestCase(RobotTestCase):
         wait_for("a free stick", lambda: browser.text("hold") == "")
         (press or partial(browser.key, "KeyW"))()
         try:
-            wait_for("motion", lambda: self.robot.speed > 0.8 * SPEED and self.commanded())
+            wait_for("motion", lambda: self.robot.speed > 0.8 * SPEED and self.commanded(), limit=10.0)
         except AssertionError as error:
             raise AssertionError(f"{error}: {browser.text('hold')}; {browser.text('messages')}") from None
 

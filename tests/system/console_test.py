@@ -8,8 +8,8 @@ import rostest
 from console_support import SPEED, ConsoleTestCase
 from system_support import again_after_a_stall, wait_for
 
-USABLE = 3.0
-"""s from the start of the page on an idle machine"""
+USABLE = 6.0
+"""s from the start of the page; twice what is promised (scripts/bench console), and the machine is busy"""
 
 
 class ConsoleTest(ConsoleTestCase):
@@ -20,14 +20,13 @@ class ConsoleTest(ConsoleTestCase):
         browser.driver.get(f"{self.console.origin}/login")
         self.assertIn("Log in", browser.text("login"))
         self.picture(browser, "login")
-        began = time.monotonic()
-        browser.driver.get(self.address)
-        wait_for("a state", lambda: browser.data("state") == "READY")
-        wait_for("the model", lambda: browser.data("model") == "diffbot")
-        print(f"usable after {time.monotonic() - began:.2f} s, wanted: {USABLE} s")
+        usable = browser.load(self.address)
+        self.assertEqual((browser.data("state"), browser.data("model")), ("READY", "diffbot"))
+        print(f"usable after {usable:.2f} s")
+        self.assertLessEqual(usable, USABLE)
         browser.command(SPEED)
-        browser.key("KeyW")
-        wait_for("motion", lambda: browser.data("verdict") == "moving" and self.robot.speed > 0.8 * SPEED)
+        self.drive(browser)
+        wait_for("the verdict", lambda: browser.data("verdict") == "moving")
         self.picture(browser, "desktop")
         browser.click("e-stop")
         wait_for("the stop", lambda: browser.data("state") == "STOPPED")
