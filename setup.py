@@ -6,6 +6,7 @@ from setuptools import setup
 PROGRAMS = (
     "blackbox",
     "calibrate",
+    "console",
     "demo",
     "drive",
     "estimate",
@@ -25,4 +26,5 @@ PROGRAMS = (
 )
 packages = ["robot_control", *(f"robot_control.{name}" for name in ("common", "safety", *PROGRAMS))]
 
-setup(**generate_distutils_setup(packages=packages, package_dir={"": "python"}))
+data = {"robot_control.console": ["page/*"]}
+setup(**generate_distutils_setup(packages=packages, package_dir={"": "python"}, package_data=data))

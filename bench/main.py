@@ -45,6 +45,7 @@ JUDGED = (
     "blackbox",
     "processes",
     "devices",
+    "console",
 )
 NAMES = MEASURED + JUDGED
 SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores
@@ -149,6 +150,12 @@ def _processes(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     return process_bench.bench(given.first, given.runs or process_bench.ALL_RUNS, given.programs, say)
 
 
+def _console(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    from bench.console import bench as console
+
+    return console.bench(given.share, say)
+
+
 def _drive(_given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     from bench.drives import drive_promises
 
@@ -162,6 +169,7 @@ TRIALS = {
     "blackbox": _blackbox,
     "processes": _processes,
     "drive": _drive,
+    "console": _console,
 }
 
 
@@ -231,7 +239,10 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--first", type=_whole(0), default=0, help=f"{seeds}: first seed")
     parser.add_argument("--runs", type=_whole(1), help=f"{seeds}: number of seeds")
     parser.add_argument(
-        "--share", type=_share, default=1.0, help="driving: of the two hours; record: of the ten minutes"
+        "--share",
+        type=_share,
+        default=1.0,
+        help="driving: of the two hours; record: of the ten minutes; console: of presses, losses and seconds",
     )
     parser.add_argument("--errors", choices=LEVELS, default=LEVELS[0], help="driving, odometry: of the sensors")
     parser.add_argument("--plots", type=Path, help="odometry: folder for pictures")

@@ -86,7 +86,7 @@ def launch_arguments() -> Iterator[str]:
 
 def programs() -> Iterator[str]:
     """The files in scripts/, and the nodes."""
-    for path in ROOT.glob("scripts/*"):
+    for path in ROOT.glob("scripts/**/*"):
         if path.is_file() and path.stat().st_mode & 0o111:
             yield f"scripts/{path.name}"
     for path in ROOT.glob("src/main/*.cpp"):

@@ -85,7 +85,9 @@ def never_ends(command):
     if words[:2] == ["rosrun", "robot_control"]:
         if words[2] in NODES:
             return "node"
-        return {"send_cmd.py": "sender", "follow_path.py": "sender", "why.py": "observer"}.get(words[2], "")
+        return {"send_cmd.py": "sender", "follow_path.py": "sender", "console.py": "sender", "why.py": "observer"}.get(
+            words[2], ""
+        )
     return "observer" if words[:2] == ["rostopic", "hz"] else ""
 
 

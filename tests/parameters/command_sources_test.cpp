@@ -40,7 +40,7 @@ TEST_F(CommandSources, TheShippedListIsTakenHighestPriorityFirst) {
   const CommandSourceList list = read_command_sources(std::string(PROJECT_DIRECTORY) + "/config/command_sources.yaml");
   std::vector<std::string> names;
   for (const CommandSource& source : list.sources) names.push_back(source.name);
-  EXPECT_THAT(names, ::testing::ElementsAre("joy_vel", "key_vel", "cmd_vel", "path_vel"));
+  EXPECT_THAT(names, ::testing::ElementsAre("joy_vel", "key_vel", "console_vel", "cmd_vel", "path_vel"));
   EXPECT_EQ(list.sources[0].priority, 40);
   EXPECT_TRUE(list.sources[0].stamped);
   EXPECT_FALSE(list.sources[2].stamped);

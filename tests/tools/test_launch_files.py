@@ -88,7 +88,7 @@ def programs_of(*arguments):
     return {node.name: node.type for node in config_of("sim.launch", *arguments).nodes}
 
 
-@pytest.mark.parametrize("launch", ["sim.launch", "backend.launch", "view.launch"])
+@pytest.mark.parametrize("launch", ["sim.launch", "backend.launch", "view.launch", "console.launch"])
 def test_the_argument_ns_moves_every_node_and_parameter_and_changes_nothing_else(launch):
     here, moved_config = config_of(launch), config_of(launch, "ns:=robot2")
     assert [(node.namespace, node.name, node.type) for node in moved_config.nodes] == [

@@ -170,7 +170,8 @@ def test_packages_of_a_section_are_installed_only_where_they_are_asked_for():
     assert listed_packages(" [linters]") - plain == {"clang-format", "clang-tidy"}
     assert "rviz" in listed_packages(" [view]") - plain
     assert listed_packages(" [operator]") - plain == {"python3-evdev"}
-    assert listed_packages(" [browser]") - plain == {"chromium"}
+    assert listed_packages(" [browser]") - plain == {"chromium", "chromium-driver", "python3-selenium"}
+    assert "python3-aiohttp" in listed_packages(" [console]") - plain
     assert listed_packages(" [report]") == listed_packages(" [export]") == plain  # from PyPI
     assert listed_packages(" [cluster]") - plain == {"python3-distributed"}
     assert listed_packages(" [linters] [cluster]") - plain == {"clang-format", "clang-tidy", "python3-distributed"}

@@ -109,7 +109,7 @@ def test_a_refused_reset_names_the_command_that_takes_back_the_topic_of_an_ended
     answer = Answer("e_stop_reset", accepted=False, text="refused: a cause of the stop persists")
     level = Cause("e_stop_topic", "the topic e_stop said true", active=True)
     text = in_words(answer, stopped_by(level, namespace="/robot2"))
-    assert "rostopic pub -1 /robot2/e_stop std_msgs/Bool false, then r, y" in text
+    assert "rostopic pub -1 /robot2/e_stop std_msgs/Bool false, then the reset again" in text
     assert len(text) <= 3 * 70
 
 

@@ -30,10 +30,10 @@ class CommandTopic:
         name: str = self._publishers[self._chosen()].resolved_name
         return name
 
-    def send(self, linear: float, angular: float) -> None:
-        """Sends m/s and rad/s, stamped now."""
+    def send(self, linear: float, angular: float, age: float = 0.0) -> None:
+        """Sends m/s and rad/s, stamped with the time of the request, `age` s ago."""
         message = TwistStamped()
-        message.header.stamp = rospy.Time.now()
+        message.header.stamp = rospy.Time.now() - rospy.Duration(age)
         message.twist.linear.x, message.twist.angular.z = linear, angular
         self._senders[self._chosen()].send(message)
 

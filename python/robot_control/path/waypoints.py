@@ -3,7 +3,7 @@
 import csv
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -131,14 +131,23 @@ def read_csv(path: Path) -> list[Waypoint]:
         check_input(path, MAX_FILE)
     except InputFileError as error:
         raise PathError(str(error)) from None
+    with path.open(newline="", encoding="utf-8", errors="replace") as file:
+        return read_csv_text(str(path), file)
+
+
+def read_csv_text(path: str, lines: Iterable[str]) -> list[Waypoint]:
+    """The same of lines; `path` is their name in a message.
+
+    Raises:
+        PathError: naming the line.
+    """
     try:
-        with path.open(newline="", encoding="utf-8", errors="replace") as file:
-            return _points_of(path, csv.DictReader(file))
+        return _points_of(path, csv.DictReader(lines))
     except csv.Error as error:
         raise PathError(f"{path}: is no CSV: {error}") from None
 
 
-def _points_of(path: Path, rows: "csv.DictReader[str]") -> list[Waypoint]:
+def _points_of(path: str, rows: "csv.DictReader[str]") -> list[Waypoint]:
     names = [name.strip() for name in rows.fieldnames or []]
     if not {"x", "y"} <= set(names) <= set(COLUMNS) or len(set(names)) < len(names):
         raise PathError(f"{path}: the first line must be x,y or x,y,yaw or x,y,yaw,speed; it is '{listed(names)}'")

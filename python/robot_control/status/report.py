@@ -14,8 +14,8 @@ from robot_control.safety.states import DRIVABLE
 
 REQUIRED = (ESTIMATOR, CONTROLLER, MONITOR)
 """Nodes of every robot; the driver's has its own name"""
-MANUAL_SOURCES = frozenset({"joy_vel", "key_vel"})
-MANUAL_NODES = ("teleop", "pad")
+MANUAL_SOURCES = frozenset({"joy_vel", "key_vel", "console_vel"})
+MANUAL_NODES = ("teleop", "pad", "console")
 """Begins of the names of nodes with which a person drives"""
 ODOMETRY_SENSORS = ("left_encoder", "right_encoder", "gyro")
 

@@ -46,7 +46,7 @@ def in_words(answer: Answer, facts: Facts) -> str:
         command = f"rostopic pub -1 {facts.path('e_stop')} std_msgs/Bool false"
         return (
             f"reset REFUSED: the topic e_stop still says true; once its reason is gone, by its publisher's false, or "
-            f"if that has ended: {command}, then r, y again"
+            f"if that has ended: {command}, then the reset again"
         )
     return f"reset {VERDICTS[answer.accepted]}: {answer.text}"
 

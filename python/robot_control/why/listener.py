@@ -69,6 +69,12 @@ class Listener:
         facts = self.facts()
         return facts.safety is not None and all(facts.there(node) for node in facts.loop)
 
+    def services(self) -> set[str]:
+        """Services of this namespace that the master lists, by their relative names."""
+        start = self.namespace.rstrip("/") + "/"
+        listed = self._state[2] if self._state else []
+        return {name.removeprefix(start) for name, _ in listed if name.startswith(start)}
+
     def facts(self) -> Facts:
         """The present facts."""
         now = time.monotonic()

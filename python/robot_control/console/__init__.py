@@ -1,0 +1,1 @@
+"""console.py: the robot in a browser: see, drive and understand it."""

@@ -1,0 +1,61 @@
+"""The address on which the console listens, and the origins from which it takes requests. Pure."""
+
+from __future__ import annotations
+
+import ipaddress
+from dataclasses import dataclass
+from urllib.parse import urlsplit
+
+
+class AddressError(ValueError):
+    """The console would be reachable without protection. The message says what is missing."""
+
+
+@dataclass(frozen=True)
+class Doors:
+    """The console's own origins (scheme://host:port)."""
+
+    origins: frozenset[str]
+
+    def host_is_own(self, host: str | None) -> bool:
+        """False for another name that a foreign DNS server lets point here."""
+        return host is not None and any(urlsplit(origin).netloc == host.lower() for origin in self.origins)
+
+    def origin_is_own(self, origin: str | None, host: str | None) -> bool:
+        """True for a request that a page of this console has sent, to the name from which it came."""
+        return origin in self.origins and urlsplit(origin).netloc == (host or "").lower()
+
+
+def is_loopback(address: str) -> bool:
+    """True for 127.0.0.0/8, ::1 and localhost."""
+    try:
+        return ipaddress.ip_address(address).is_loopback
+    except ValueError:
+        return address == "localhost"
+
+
+def bracketed(address: str) -> str:
+    """The address as a URL holds it."""
+    return f"[{address}]" if ":" in address else address
+
+
+def require_protection(address: str, *, users: bool, tls: bool) -> None:
+    """Raises AddressError for an address that others reach, without users or TLS."""
+    missing = [word for word, there in (("users (console_users.py add)", users), ("TLS (--tls)", tls)) if not there]
+    if missing and not is_loopback(address):
+        raise AddressError(
+            f"--address {address}: others reach it, so it needs {' and '.join(missing)}; "
+            "or leave --address out, and use ssh -L"
+        )
+
+
+def doors_of(address: str, port: int, names: list[str], *, tls: bool, further: list[str]) -> Doors:
+    """`names`: of this machine; `further`: whole origins, for instance of a reverse proxy. Raises AddressError."""
+    scheme, standard = ("https", ":443") if tls else ("http", ":80")
+    hosts = ["127.0.0.1", "localhost", "[::1]"] if is_loopback(address) else [bracketed(address), *names]
+    for origin in further:
+        parts = urlsplit(origin)
+        if parts.scheme not in {"http", "https"} or not parts.netloc or f"{parts.scheme}://{parts.netloc}" != origin:
+            raise AddressError(f"--origin {origin}: must be as https://console.example or http://robot:8080")
+    own = [f"{scheme}://{host}:{port}".removesuffix(standard) for host in hosts]
+    return Doors(frozenset(origin.lower() for origin in [*own, *further]))

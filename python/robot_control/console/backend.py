@@ -1,0 +1,110 @@
+"""The ROS side of the desk: commands out, reports in. Used by one thread; calls are made in others."""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import Any
+
+import rospy
+from std_msgs.msg import Empty
+
+from robot_control.common.command import Pace
+from robot_control.common.command_topic import CommandTopic
+from robot_control.console.calls import CALLS, Calls, against
+from robot_control.console.desk import Desk, Page
+from robot_control.console.settings import Settings
+from robot_control.console.view import View, finite
+from robot_control.safety.watch import SafetyWatch
+from robot_control.teleop.services import Services, in_words
+from robot_control.teleop.speed_limits import SpeedLimits
+from robot_control.why.diagnosis import SILENCE
+from robot_control.why.listener import MASTER_PERIOD, Listener
+
+SOURCE = "console_vel"
+HEARTBEAT_PERIOD = 0.1
+"""s"""
+
+
+class Backend:
+    """One robot, and the pages that look at it."""
+
+    def __init__(self, settings: Settings) -> None:
+        self.desk = Desk(settings)
+        self.listener, self.view = Listener(), View()
+        self.calls = Calls(self.view.pose)
+        self.said: list[str] = []  # for all pages, and taken by the server
+        self.available: set[str] = set()  # services of the robot
+        self._watch, self._services, self._limits = SafetyWatch(), Services(), SpeedLimits()
+        self._topic, self._age = CommandTopic(SOURCE), 0.0
+        self._heartbeat = rospy.Publisher("heartbeat", Empty, queue_size=1, tcp_nodelay=True)
+        self._pace = Pace(lambda linear, angular: self._topic.send(linear, angular, self._age))
+        self._interruptions, self._beat_at = 0, float("-inf")
+        threading.Thread(target=self._query_master, daemon=True).start()
+
+    def step(self) -> None:
+        """One pass: receives what the robot reports, and sends the command."""
+        now = time.monotonic()
+        count, why = self._watch.interruptions()
+        if count != self._interruptions:
+            self._interruptions = count
+            self.desk.interrupt(now, why)
+        if self.view.revoked(rospy.get_name()):
+            self.desk.refuse(now)
+        self.desk.permit(self._watch.drivable(SILENCE))
+        command, self._age = self.desk.command(self._limits.newest(), now)
+        self._pace.look(command, now)
+        commander = self.desk.commander
+        beats = commander is not None and commander.heartbeat and commander.hold.alive(now)
+        if beats and now - self._beat_at >= HEARTBEAT_PERIOD:
+            self._beat_at = now
+            self._heartbeat.publish(Empty())
+        self.said += [in_words(answer, self.listener.facts()) for answer in self._services.look()]
+
+    def e_stop(self) -> None:
+        """Requests the emergency stop."""
+        self._services.e_stop()
+
+    def reset(self) -> None:
+        """Requests the reset; the answer comes in `said`."""
+        self._services.reset()
+
+    def fast(self) -> dict[str, Any]:
+        """The values that every page shows in each frame."""
+        return self.view.fast(self._pace.last)
+
+    def slow(self) -> dict[str, Any]:
+        """The robot's state for every page."""
+        return self.view.slow(self.listener.facts())
+
+    def desk_of(self, page: Page) -> dict[str, Any]:
+        """The values that this page shows of itself and of the others."""
+        now, holder, hold, limits = time.monotonic(), self.desk.commander, page.hold, self._limits.newest()
+        return finite(
+            {
+                "type": "desk",
+                "you": page.number,
+                "role": str(page.role),
+                "commander": None if holder is None else holder.number,
+                "pages": [{"number": p.number, "name": p.name, "role": str(p.role)} for p in self.desk.pages.values()],
+                "against": {name: against(name, page, self.desk, self.available) for name in CALLS},
+                "hold": hold.state(now) if holder is page else "",
+                "link": {
+                    "last": hold.round_trips.last(),
+                    "p95": hold.round_trips.percentile95(now),
+                    "gaps": hold.gaps,
+                    "late": hold.late,
+                    "replayed": hold.replayed,
+                    "cap": page.cap,
+                },
+                "chosen": (page.chosen.linear, page.chosen.angular),
+                "limits": (limits.linear, limits.angular),
+                "heartbeat": page.heartbeat,
+            }
+        )
+
+    def _query_master(self) -> None:
+        while True:
+            self.listener.query_master()
+            self.available = self.listener.services()
+            time.sleep(MASTER_PERIOD)

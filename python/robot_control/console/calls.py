@@ -1,0 +1,155 @@
+"""The calls of a page: services, paths and the simulation. CALLS lists what each call needs."""
+
+from __future__ import annotations
+
+import io
+import math
+import secrets
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import rospy
+from actionlib_msgs.msg import GoalID
+from geometry_msgs.msg import PoseStamped
+from std_srvs.srv import SetBool, Trigger
+
+from robot_control.common.files import printable
+from robot_control.common.roles import CONTROLLER, DRIVER
+from robot_control.console.desk import Desk, Page, RefusedError, Role
+from robot_control.console.messages import SPEED, Fields, MessageError, check_fields, flag, number, text
+from robot_control.msg import FollowPathActionGoal
+from robot_control.path.shapes import SHAPES
+from robot_control.path.waypoints import PathError, Waypoint, checked, placed, read_csv_text
+from robot_control.srv import InjectFault, SetOdometry, SetParameters, Step
+
+RESET_PAUSE, RESET_WINDOW = 0.5, 10.0
+"""s; the second step of a reset follows the first one no sooner and no later"""
+FOLLOW = "follow_path"
+
+METRES = number(-1e6, 1e6)
+
+
+def _points(value: Any) -> bool:  # noqa: ANN401 (JSON)
+    if not isinstance(value, list) or not 2 <= len(value) <= 1000:
+        return False
+    return all(isinstance(point, list) and len(point) == 2 and all(map(METRES, point)) for point in value)
+
+
+@dataclass(frozen=True)
+class Call:
+    """One request that a page may make."""
+
+    service: str = ""  # relative name of the service without which the call cannot work; empty: none
+    kind: type | None = None  # type of that service if the call is a plain call of it, with the fields as arguments
+    fields: Fields = field(default_factory=dict)
+    role: Role = Role.OPERATE
+
+
+CALLS: Mapping[str, Call] = {
+    "reset_asked": Call("e_stop_reset"),
+    "reset": Call("e_stop_reset", fields={"key": text(32)}),
+    "reset_odometry": Call("reset_odometry", Trigger),
+    "set_odometry": Call("set_odometry", SetOdometry, {"x": METRES, "y": METRES, "yaw": number(-7.0, 7.0)}),
+    "set_parameters": Call(f"{CONTROLLER}/set_parameter_map", SetParameters, {"parameters": text(8192)}, Role.MAINTAIN),
+    "path_points": Call(f"{FOLLOW}/pause", fields={"points": _points, "speed": SPEED}),
+    "path_shape": Call(f"{FOLLOW}/pause", fields={"shape": text(16), "size": number(0.1, 100.0), "speed": SPEED}),
+    "path_csv": Call(f"{FOLLOW}/pause", fields={"text": text(60_000), "speed": SPEED}),
+    "path_pause": Call(f"{FOLLOW}/pause", Trigger),
+    "path_resume": Call(f"{FOLLOW}/resume", Trigger),
+    "path_cancel": Call(f"{FOLLOW}/pause"),
+    "pause": Call(f"{DRIVER}/set_pause", SetBool, {"on": flag}, Role.MAINTAIN),
+    "step": Call(f"{DRIVER}/step", Step, {"cycles": number(1, 10_000, int)}, Role.MAINTAIN),
+    "simulation_reset": Call(f"{DRIVER}/reset", Trigger, role=Role.MAINTAIN),
+    "inject_fault": Call(
+        f"{DRIVER}/inject_fault", InjectFault, {"component": text(32), "kind": text(32)}, Role.MAINTAIN
+    ),
+}
+
+
+def check_call(name: str, arguments: Mapping[str, Any]) -> None:
+    """Raises MessageError unless it is a call with its arguments."""
+    if name not in CALLS:
+        raise MessageError(f"call: {printable(name)} is unknown")
+    check_fields(name, arguments, CALLS[name].fields)
+
+
+def against(name: str, page: Page, desk: Desk, services: set[str]) -> str:
+    """Why this page cannot make the call now; empty if it can. `services`: those of the robot, by relative name."""
+    call = CALLS[name]
+    if page.role < call.role:
+        return f"needs the role {call.role}"
+    if desk.commander is not page:
+        return "take the command first"
+    if call.service and call.service not in services:
+        node, _, _ = call.service.rpartition("/")
+        return f"{'follow_path.py' if node == FOLLOW else node or 'the robot'} does not run"
+    return ""
+
+
+class Calls:
+    """Makes the calls. A call may take seconds, so each is made in a thread of its own."""
+
+    def __init__(self, pose: Callable[[], tuple[float, float, float] | None]) -> None:
+        """`pose`: of the robot in odom."""
+        self._pose = pose
+        self._goals = rospy.Publisher(f"{FOLLOW}/goal", FollowPathActionGoal, queue_size=1)
+        self._cancel = rospy.Publisher(f"{FOLLOW}/cancel", GoalID, queue_size=1)
+        self._keys: dict[int, tuple[str, float]] = {}  # page → key of its first step of a reset, and when
+
+    def make(self, page: Page, name: str, given: Mapping[str, Any]) -> str:
+        """The answer. Raises RefusedError with the reason of a refusal."""
+        call = CALLS[name]
+        try:
+            if call.kind is not None:
+                answer = rospy.ServiceProxy(call.service, call.kind)(*(given[field] for field in call.fields))
+                if not answer.success:
+                    raise RefusedError(answer.message or "refused")
+                return answer.message or "done"
+            if name == "reset_asked":
+                key = secrets.token_hex(8)
+                self._keys[page.number] = key, time.monotonic()
+                return key
+            if name == "path_cancel":
+                self._cancel.publish(GoalID())
+                return "the path was cancelled"
+            return self._start(self._path(name, given), given["speed"])
+        except (PathError, rospy.ServiceException, rospy.ROSException, OSError) as error:
+            raise RefusedError(f"{name}: {error}") from None
+
+    def confirm_reset(self, page: Page, key: str) -> None:
+        """Checks the second step of a reset, which names the key of the first one. Raises RefusedError."""
+        known, at = self._keys.pop(page.number, ("", 0.0))
+        elapsed = time.monotonic() - at
+        if not (known and secrets.compare_digest(known, key) and RESET_PAUSE <= elapsed <= RESET_WINDOW):
+            raise RefusedError("ask for the reset again, read what stands against it, and confirm within 10 s")
+
+    def forget(self, page: Page) -> None:
+        """Forgets a page that has ended."""
+        self._keys.pop(page.number, None)
+
+    def _path(self, name: str, given: Mapping[str, Any]) -> list[Waypoint]:
+        if name == "path_points":
+            return [Waypoint(x, y) for x, y in given["points"]]
+        if name == "path_csv":
+            return read_csv_text("the file", io.StringIO(given["text"], newline=""))
+        pose = self._pose()
+        if given["shape"] not in SHAPES or pose is None:
+            raise PathError("no odometry" if pose is None else f"a shape is one of {', '.join(SHAPES)}")
+        return placed(SHAPES[given["shape"]](given["size"]), *pose)
+
+    def _start(self, points: list[Waypoint], speed: float) -> str:
+        message = FollowPathActionGoal()
+        message.goal_id.stamp = message.header.stamp = rospy.Time.now()
+        message.goal_id.id = f"console {secrets.token_hex(4)}"
+        message.goal.speed = speed
+        message.goal.path.header.frame_id = "odom"
+        for point in checked(points):
+            pose = PoseStamped()
+            pose.pose.position.x, pose.pose.position.y = point.x, point.y
+            if point.yaw is not None:
+                pose.pose.orientation.z, pose.pose.orientation.w = math.sin(point.yaw / 2), math.cos(point.yaw / 2)
+            message.goal.path.poses.append(pose)
+        self._goals.publish(message)
+        return f"sent: {len(message.goal.path.poses)} points"

@@ -1,0 +1,201 @@
+"""One page's WebSocket: what it sends, and what it is sent. A page that reads slowly is skipped, not buffered."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+import secrets
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+from aiohttp import WSMsgType, web
+
+from robot_control.common.command import Command
+from robot_control.common.files import escaped
+from robot_control.console.backend import Backend
+from robot_control.console.calls import against, check_call
+from robot_control.console.desk import Page, RefusedError
+from robot_control.console.hold import Drive
+from robot_control.console.messages import MAX_SIZE, MessageError, Rate, parse
+
+FRAME, SLOW = 0.05, 5
+"""s between two frames; number of frames between two states"""
+PING_PERIOD, WATCHER_PERIOD = 0.1, 0.5
+"""s between two pings of the page that commands, and of others"""
+SKIP, LOST = 2.0, 15.0
+"""s without the answer to a ping, after which frames are skipped; after which the connection is ended"""
+CLOSING = 2.0
+"""s within which a page receives the reason why it is closed"""
+POLICY_VIOLATION, LOGIN_ENDED = 1008, 4401
+"""Codes with which a page is closed (RFC 6455, 7.4)"""
+MAX_MISTAKES, MAX_ANSWERS = 20, 64
+MAX_CALLS = 3
+"""calls of one page at the same time"""
+LOGGED = {"take", "hand_over", "give_back", "heartbeat"}
+journal = logging.getLogger("console")
+
+
+class Frames:
+    """The newest frame and state as text, made once for all pages."""
+
+    def __init__(self) -> None:
+        self.fast = self.slow = ""
+        self.number = self.slow_number = 0
+
+    def make(self, backend: Backend) -> None:
+        """Makes the next frame."""
+        self.fast = json.dumps(backend.fast())
+        if self.number % SLOW == 0:
+            self.slow, self.slow_number = json.dumps(backend.slow()), self.slow_number + 1
+        self.number += 1
+
+
+class Client:
+    """One page."""
+
+    def __init__(self, backend: Backend, frames: Frames, page: Page, who: str, lives: Callable[[], bool]) -> None:
+        """`lives`: False once the login has ended."""
+        self._backend, self._frames, self._page, self._who, self._lives = backend, frames, page, who, lives
+        self._socket = web.WebSocketResponse(max_msg_size=MAX_SIZE, timeout=1.0, compress=False)
+        self._outbox: deque[dict[str, Any]] = deque()
+        self._calls: set[asyncio.Task[None]] = set()
+        self.closing = 0  # code with which the page is to be closed
+        self._pinged_at = self._wanted_at = float("-inf")
+        self._seen = self._seen_slow = 0  # numbers of the last frame and state that were sent
+        self._unanswered: float | None = None  # s, when the first ping without an answer was sent
+
+    async def serve(self, request: web.Request) -> web.WebSocketResponse:
+        """Serves the page until it ends."""
+        await self._socket.prepare(request)
+        writer = asyncio.create_task(self._write(request))
+        try:
+            await self._read()
+        finally:
+            self._backend.desk.leave(self._page, time.monotonic())
+            self._backend.calls.forget(self._page)
+            for call in self._calls:
+                call.cancel()
+            await asyncio.wait({writer}, timeout=CLOSING)
+            writer.cancel()
+            journal.info("%s: page %d ended", self._who, self._page.number)
+        return self._socket
+
+    def say(self, text: str) -> None:
+        """Sends a line for the operator."""
+        self._post({"type": "said", "text": text})
+
+    def _post(self, message: dict[str, Any]) -> None:
+        if len(self._outbox) < MAX_ANSWERS:
+            self._outbox.append(message)
+
+    async def _read(self) -> None:
+        rate, mistakes = Rate(time.monotonic()), 0
+        async for message in self._socket:
+            now = time.monotonic()
+            if message.type != WSMsgType.TEXT or not rate.admits(now) or mistakes >= MAX_MISTAKES:
+                journal.warning("%s: page %d sends what no page sends: closed", self._who, self._page.number)
+                self.closing = POLICY_VIOLATION
+                return
+            try:
+                self._receive(parse(message.data), now)
+            except (MessageError, RefusedError) as error:
+                mistakes += isinstance(error, MessageError)
+                journal.info("%s: refused: %s", self._who, escaped(str(error)))
+                self.say(str(error))
+
+    def _receive(self, message: dict[str, Any], now: float) -> None:
+        kind = message.pop("type")
+        desk, page = self._backend.desk, self._page
+        if kind in LOGGED:
+            journal.info("%s: %s %s", self._who, kind, json.dumps(message))
+        if kind == "drive":
+            desk.receive(page, Drive(**message), now)
+        elif kind == "pong":
+            page.hold.round_trips.pong(message["name"], now)
+            self._unanswered = None
+        elif kind == "take":
+            desk.take(page, now, force=message["force"])
+        elif kind == "hand_over":
+            desk.hand_over(page, message["to"], now)
+        elif kind == "give_back":
+            desk.give_back(page, now)
+        elif kind == "speeds":
+            desk.require(page)
+            page.chosen = Command(message["linear"], message["angular"])
+        elif kind == "heartbeat":
+            desk.require(page)
+            page.heartbeat = message["on"]
+        else:
+            check_call(message["name"], message["arguments"])
+            if len(self._calls) >= MAX_CALLS:
+                raise RefusedError("wait for the answers to your other requests")
+            task = asyncio.create_task(self._call(**message))
+            self._calls.add(task)
+            task.add_done_callback(self._calls.discard)
+
+    async def _call(self, number: int, name: str, arguments: dict[str, Any]) -> None:
+        backend, accepted = self._backend, False
+        try:
+            why = against(name, self._page, backend.desk, backend.available)
+            if why:
+                raise RefusedError(why)
+            if name == "reset":
+                backend.calls.confirm_reset(self._page, arguments["key"])
+                backend.reset()
+                text = "the reset was requested"
+            else:
+                text = await asyncio.to_thread(backend.calls.make, self._page, name, arguments)
+            accepted = True
+        except RefusedError as error:
+            text = str(error)
+        done = "done" if accepted else "refused"
+        journal.info("%s: %s %s: %s: %s", self._who, name, json.dumps(arguments)[:500], done, escaped(text)[:500])
+        self._post({"type": "answer", "number": number, "accepted": accepted, "text": text})
+
+    async def _write(self, request: web.Request) -> None:
+        """Sends until the page is closed, or reads no more, or its login has ended."""
+        self._post({"type": "trail", "points": [point[:2] for point in self._backend.view.trail.points]})
+        try:
+            while not self._socket.closed:
+                now = time.monotonic()
+                silent = 0.0 if self._unanswered is None else now - self._unanswered
+                if self.closing or not self._lives():
+                    await self._socket.close(code=self.closing or LOGIN_ENDED)
+                elif silent > LOST and request.transport is not None:
+                    request.transport.abort()
+                else:
+                    await self._ping(now)
+                    while self._outbox:
+                        await self._socket.send_str(json.dumps(self._outbox.popleft()))
+                    if silent <= SKIP:
+                        await self._frame()
+                await asyncio.sleep(FRAME / 2)
+        except (ConnectionError, RuntimeError):
+            pass  # the page has ended
+
+    async def _ping(self, now: float) -> None:
+        commands = self._backend.desk.commander is self._page
+        if now - self._pinged_at < (PING_PERIOD if commands else WATCHER_PERIOD):
+            return
+        name = secrets.token_hex(8)
+        self._pinged_at = now
+        self._unanswered = self._unanswered or now
+        self._page.hold.round_trips.ping(name, now)
+        await self._socket.send_str(json.dumps({"type": "ping", "name": name}))
+
+    async def _frame(self) -> None:
+        frames = self._frames
+        if frames.number != self._seen:
+            self._seen = frames.number
+            await self._socket.send_str(frames.fast)
+        if frames.slow_number != self._seen_slow:
+            self._seen_slow = frames.slow_number
+            await self._socket.send_str(frames.slow)
+            await self._socket.send_str(json.dumps(self._backend.desk_of(self._page)))
+            at, wanted = self._backend.view.wanted()
+            if at != self._wanted_at:
+                self._wanted_at = at
+                await self._socket.send_str(json.dumps(wanted))

@@ -1,0 +1,152 @@
+"""One desk, many pages: who commands, and what. It reads no clock: time is an argument, s.
+
+At most one page commands. It takes the command where it is free. It gives it back, hands it over, or loses it by its
+end. A page of the role `maintain` may take it away. Every change ends the motion, for both pages.
+
+    v = share · chosen speed · min(1, speed cap of the link / chosen linear speed)
+
+The same factor holds for both axes, so the curve stays.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import IntEnum
+
+from robot_control.common.command import Command
+from robot_control.console.hold import Drive, Hold
+from robot_control.console.settings import Settings
+from robot_control.pad.law import PadParameters
+from robot_control.teleop.operator import ZEROS, Limits
+
+CHOSEN = Command(PadParameters.scale_linear, PadParameters.scale_angular)
+"""Chosen speeds of a new page, m/s and rad/s"""
+
+
+class Role(IntEnum):
+    """The rights of a user; each role includes the lower ones."""
+
+    WATCH = 0
+    OPERATE = 1
+    MAINTAIN = 2
+
+    def __str__(self) -> str:
+        return self.name.lower()
+
+
+class RefusedError(Exception):
+    """The page may not do that; the message says why."""
+
+
+@dataclass(eq=False)
+class Page:
+    """One connected page."""
+
+    number: int
+    name: str  # of the user
+    role: Role
+    hold: Hold
+    chosen: Command = CHOSEN
+    heartbeat: bool = False
+    cap: float = 0.0  # m/s, of its link
+
+    def __str__(self) -> str:
+        return f"{self.name} (page {self.number})"
+
+
+class Desk:
+    """All pages, and the one that commands."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self.pages: dict[int, Page] = {}
+        self.commander: Page | None = None
+        self._last_number = 0
+        self._zeros_until = -math.inf
+
+    def join(self, name: str, role: Role) -> Page:
+        """Adds a page."""
+        self._last_number += 1
+        page = Page(self._last_number, name, role, Hold(self._settings))
+        self.pages[page.number] = page
+        return page
+
+    def leave(self, page: Page, now: float) -> None:
+        """Removes a page that has ended, in whatever way."""
+        if self.commander is page:
+            self._give(None, now, "the page has ended")
+        self.pages.pop(page.number, None)
+
+    def take(self, page: Page, now: float, *, force: bool = False) -> None:
+        """Takes the command; `force`: from another page. Raises RefusedError."""
+        if page.role < Role.OPERATE:
+            raise RefusedError("the role watch does not drive")
+        if self.commander is page:
+            return
+        if self.commander is not None and not (force and page.role >= Role.MAINTAIN):
+            raise RefusedError(f"{self.commander} commands; only the role maintain takes it away")
+        self._give(page, now, f"{page} has taken the command")
+
+    def hand_over(self, page: Page, to: int, now: float) -> None:
+        """Hands the command over. Raises RefusedError."""
+        self.require(page)
+        other = self.pages.get(to)
+        if other is None or other.role < Role.OPERATE:
+            raise RefusedError(f"there is no page {to} that may drive")
+        self._give(other, now, f"the command was handed over to {other}")
+
+    def give_back(self, page: Page, now: float) -> None:
+        """Ends the command. Raises RefusedError."""
+        self.require(page)
+        self._give(None, now, "the command was given back")
+
+    def require(self, page: Page) -> None:
+        """Raises RefusedError unless the page commands."""
+        if self.commander is not page:
+            raise RefusedError(f"{self.commander or 'no page'} commands: take the command first")
+
+    def receive(self, page: Page, drive: Drive, now: float) -> None:
+        """Receives what a page holds; without the command it moves nothing. Raises RefusedError."""
+        if self.commander is page:
+            page.hold.receive(drive, now)
+        elif drive.held:
+            raise RefusedError("this page does not command: take the command first")
+
+    def interrupt(self, now: float, why: str) -> None:
+        """Ends the motion after a stop, or after a pause of this program (interruptions.py)."""
+        for page in self.pages.values():
+            page.hold.interrupt(now, why)
+
+    def permit(self, drivable: bool | None) -> None:  # noqa: FBT001 (a three-valued state)
+        """Sets whether the robot may drive by its safety monitor; None if there is no message of it."""
+        for page in self.pages.values():
+            page.hold.pad.permit(drivable)
+
+    def refuse(self, now: float) -> None:
+        """Notes that the controller refuses motion until it has received a zero."""
+        for page in self.pages.values():
+            page.hold.pad.refuse(now)
+        self._zeros_until = now + ZEROS
+
+    def command(self, limits: Limits, now: float) -> tuple[Command | None, float]:
+        """The command to send now, or None if nothing is sent; and its age, s."""
+        for each in self.pages.values():
+            each.cap = each.hold.cap.step(each.hold.round_trips.percentile95(now), now)
+        page = self.commander
+        share = None if page is None else page.hold.share(now)
+        if page is None or share is None or share == Command():
+            nothing = share is None and now >= self._zeros_until
+            return None if nothing else Command(), 0.0
+        self._zeros_until = now + ZEROS
+        linear, angular = min(page.chosen.linear, limits.linear), min(page.chosen.angular, limits.angular)
+        factor = min(1.0, page.cap / linear) if linear > 0 else 0.0
+        forward = max(share.linear * linear * factor, -limits.reverse)
+        return Command(forward, share.angular * angular * factor), max(0.0, now - page.hold.stamp)
+
+    def _give(self, page: Page | None, now: float, why: str) -> None:
+        for each in (self.commander, page):
+            if each is not None:
+                each.hold.interrupt(now, why)
+        self.commander = page
+        self._zeros_until = now + ZEROS

@@ -1,0 +1,105 @@
+// Keys, stick and pad → what is held. Whatever takes this page's attention away releases all of it at once.
+import { on, send, reconnect } from "/link.js";
+
+const PERIOD = 50;       // ms between two messages while this page commands
+const FROZEN = 300;      // ms between two passes, after which this page stood still
+const ASLEEP = 1000;     // ms that the time of day went on while the page's clock, which the server compares, stood
+const ENABLE = [4, 5];   // shoulder buttons of the standard mapping
+const MOTIONS = {        // forward, to the left
+  KeyW: [1, 0], ArrowUp: [1, 0], KeyS: [-1, 0], ArrowDown: [-1, 0], KeyA: [0, 1], ArrowLeft: [0, 1],
+  KeyD: [0, -1], ArrowRight: [0, -1], KeyQ: [1, 1], KeyE: [1, -1], KeyZ: [-1, -1], KeyC: [-1, 1],
+};
+const keys = new Set(), stick = { pointer: null, x: 0, y: 0 };
+const offset = () => Date.now() - performance.now();
+let padBlocked = true, commands = false, number = 0, passed = performance.now(), awake = offset(), isHeld = false;
+const area = document.getElementById("pad"), knob = document.getElementById("stick");
+const clamp = (value) => Math.max(-1, Math.min(1, value || 0));
+
+function pad() {
+  const found = [...(navigator.getGamepads?.() ?? [])].find((each) => each?.connected);
+  const pressed = found && ENABLE.some((button) => found.buttons[button]?.pressed);
+  if (!found) padBlocked = true;        // it may come back with the button held
+  else if (!pressed) padBlocked = false;
+  return pressed && !padBlocked ? [-found.axes[1], -found.axes[0]] : null;
+}
+
+function held() {
+  if (stick.pointer !== null) return [-stick.y, -stick.x];
+  if (keys.size) return [...keys].reduce(([a, b], key) => [a + MOTIONS[key][0], b + MOTIONS[key][1]], [0, 0]);
+  return pad();
+}
+
+function report() {
+  const motion = held(), [linear, angular] = (motion ?? [0, 0]).map(clamp);
+  isHeld = motion !== null;
+  document.body.dataset.held = String(isHeld && commands);
+  const sent = performance.now() / 1000;
+  if (commands) send({ type: "drive", number: ++number, sent, held: isHeld, linear, angular });
+}
+
+/** Releases everything; what is still held has to be released and pressed again. */
+export function release() {
+  keys.clear();
+  stick.pointer = null;
+  stick.x = stick.y = 0;
+  knob.style.transform = "";
+  padBlocked = true;
+  report();
+}
+
+/** True if this page commands; else the page says what is missing. */
+function mayDrive() {
+  if (!commands) document.getElementById("hold").textContent = "Take the command first.";
+  return commands;
+}
+
+addEventListener("keydown", (event) => {
+  if (event.code === "Escape") document.getElementById("e-stop").click();
+  const typing = event.ctrlKey || event.altKey || event.metaKey || event.target.closest?.("input, textarea, select");
+  if (typing || event.repeat) return;
+  if (event.code === "Space" && event.target.tagName !== "BUTTON") { event.preventDefault(); release(); }
+  if (!(event.code in MOTIONS)) return;
+  event.preventDefault();
+  if (mayDrive()) { keys.add(event.code); report(); }
+});
+addEventListener("keyup", (event) => { if (keys.delete(event.code)) report(); });
+
+area.addEventListener("pointerdown", (event) => {
+  if (stick.pointer !== null || !mayDrive()) return;
+  area.setPointerCapture(event.pointerId);
+  stick.pointer = event.pointerId;
+  move(event);
+  report();
+});
+area.addEventListener("pointermove", move);
+for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
+  area.addEventListener(end, (event) => { if (event.pointerId === stick.pointer) release(); });
+}
+function move(event) {
+  if (event.pointerId !== stick.pointer) return;
+  const box = area.getBoundingClientRect(), radius = box.width / 2;
+  const x = (event.clientX - box.left) / radius - 1, y = (event.clientY - box.top) / radius - 1;
+  const length = Math.max(1, Math.hypot(x, y));
+  Object.assign(stick, { x: x / length, y: y / length });
+  knob.style.transform = `translate(${stick.x * radius}px, ${stick.y * radius}px)`;
+}
+
+for (const lost of ["blur", "pagehide", "freeze", "gamepaddisconnected"]) addEventListener(lost, release);
+for (const lost of ["freeze", "visibilitychange"]) document.addEventListener(lost, release);
+addEventListener("contextmenu", (event) => { if (isHeld) { event.preventDefault(); release(); } });
+on("closed", () => { commands = false; release(); });
+on("desk", (desk) => {
+  const mine = desk.commander === desk.you;
+  if (mine !== commands) { commands = mine; release(); }
+  document.body.dataset.commands = String(mine);
+});
+
+setInterval(() => {
+  const now = performance.now(), still = now - passed;
+  passed = now;
+  if (document.hidden) return;
+  if (Math.abs(offset() - awake) > ASLEEP) reconnect();
+  awake = offset();
+  if (still > FROZEN) release();
+  else report();
+}, PERIOD);

@@ -1,0 +1,119 @@
+// A URDF → a group of three.js that moves with its joints. A mesh that is missing or broken is a box with a note.
+import * as THREE from "/lib/three/build/three.module.js";
+import { STLLoader } from "/lib/three/examples/jsm/loaders/STLLoader.js";
+import { ColladaLoader } from "/lib/three/examples/jsm/loaders/ColladaLoader.js";
+
+const LOADERS = {
+  stl: (data) => {
+    const geometry = new STLLoader().parse(data);
+    geometry.computeVertexNormals();  // those of the file are often zero
+    return new THREE.Mesh(geometry);
+  },
+  dae: (data) => {
+    const textures = /<texture\b[^>]*?(\/>|>[\s\S]*?<\/texture>)/g;  // their pictures are not served
+    const model = new ColladaLoader().parse(new TextDecoder().decode(data).replace(textures, ""), "/").scene;
+    model.quaternion.set(0, 0, 0, 1);  // as RViz: the axes of the file are those of the link
+    return model;
+  },
+};
+
+/** The child elements with this name. */
+const all = (element, name) => [...(element?.children ?? [])].filter((each) => each.tagName === name);
+const text = (element, name, attribute) => all(element, name)[0]?.getAttribute(attribute) ?? "";
+
+/** As many finite numbers as the default has; else the default. */
+function numbers(words, otherwise) {
+  const found = words.trim().split(/\s+/).map(parseFloat);
+  return found.length === otherwise.length && found.every(Number.isFinite) ? found : otherwise;
+}
+
+const size = (shape, name) => numbers(shape.getAttribute(name) ?? "", [0.05])[0];
+const SHAPES = {
+  box: (shape) => new THREE.BoxBufferGeometry(...numbers(shape.getAttribute("size") ?? "", [0.1, 0.1, 0.1])),
+  sphere: (shape) => new THREE.SphereBufferGeometry(size(shape, "radius"), 24, 16),
+  cylinder: (shape) => {
+    const radius = size(shape, "radius");
+    return new THREE.CylinderBufferGeometry(radius, radius, size(shape, "length"), 32).rotateX(Math.PI / 2);
+  },
+};
+
+function placeAt(object, element) {
+  const [roll, pitch, yaw] = numbers(text(element, "origin", "rpy"), [0, 0, 0]);
+  object.position.set(...numbers(text(element, "origin", "xyz"), [0, 0, 0]));
+  object.rotation.set(roll, pitch, yaw, "ZYX");
+  return object;
+}
+
+function materialOf(visual, root) {
+  const own = all(visual, "material")[0], name = own?.getAttribute("name");
+  const named = all(root, "material").find((each) => own && each.getAttribute("name") === name);
+  const given = text(own, "color", "rgba") || text(named, "color", "rgba");
+  const [r, g, b, opacity] = numbers(given, [0.6, 0.65, 0.7, 1]), color = new THREE.Color(r, g, b);
+  const transparent = opacity < 1, side = THREE.DoubleSide;
+  return { material: new THREE.MeshPhongMaterial({ color, transparent, opacity, side }), given: Boolean(given) };
+}
+
+async function mesh(file, id, scale, { material, given }) {
+  const format = file.split(".").pop().toLowerCase(), answer = await fetch(`/api/mesh/${id}`);
+  if (!answer.ok) throw new Error(await answer.text());
+  const object = LOADERS[format](await answer.arrayBuffer());
+  let corners = 0;
+  object.traverse((part) => {
+    if (!part.isMesh) return;
+    corners += part.geometry.attributes.position?.count ?? 0;
+    if (format !== "dae" || given) part.material = material;
+  });
+  const { min, max } = new THREE.Box3().setFromObject(object);
+  if (!corners || !Number.isFinite(min.x + max.x)) throw new Error("holds no triangle");
+  object.scale.multiply(new THREE.Vector3(...scale));
+  return object;
+}
+
+/** Resolves with {name, group, joints} once every mesh is there; `say` takes a note. */
+export async function build({ urdf, meshes }, say) {
+  const root = new DOMParser().parseFromString(urdf, "application/xml").documentElement, pending = [];
+  function visualOf(visual) {
+    const group = placeAt(new THREE.Group(), visual), made = materialOf(visual, root);
+    const shape = all(visual, "geometry")[0]?.firstElementChild;
+    if (Object.hasOwn(SHAPES, shape?.tagName)) group.add(new THREE.Mesh(SHAPES[shape.tagName](shape), made.material));
+    else if (shape?.tagName === "mesh") {
+      const file = shape.getAttribute("filename") ?? "", scale = numbers(shape.getAttribute("scale") ?? "", [1, 1, 1]);
+      const fail = (error) => {
+        say(`${file.split("/").pop()}: ${error.message}`);
+        const frame = new THREE.MeshBasicMaterial({ color: 0xd97706, wireframe: true });
+        group.add(new THREE.Mesh(new THREE.BoxBufferGeometry(0.1, 0.1, 0.1), frame));
+      };
+      pending.push(mesh(file, meshes[file], scale, made).then((object) => group.add(object), fail));
+    }
+    return group;
+  }
+  const links = new Map(all(root, "link").map((link) => {
+    const seen = all(link, "visual"), group = new THREE.Group();
+    (seen.length ? seen : all(link, "collision")).forEach((visual) => group.add(visualOf(visual)));
+    return [link.getAttribute("name"), group];
+  }));
+  const children = new Set(), joints = new Map(), group = new THREE.Group();
+  for (const joint of all(root, "joint")) {
+    const name = text(joint, "child", "link"), child = links.get(name);
+    const parent = links.get(text(joint, "parent", "link"));
+    if (!parent || !child || children.has(name) || parent === child) continue;
+    children.add(name);
+    const moving = new THREE.Group().add(child);
+    parent.add(placeAt(new THREE.Group(), joint).add(moving));
+    const axis = new THREE.Vector3(...numbers(text(joint, "axis", "xyz"), [1, 0, 0])).normalize();
+    joints.set(joint.getAttribute("name"), { moving, axis, slides: joint.getAttribute("type") === "prismatic" });
+  }
+  for (const [name, link] of links) if (!children.has(name)) group.add(link);
+  await Promise.all(pending);
+  return { name: root.getAttribute("name") ?? "", group, joints };
+}
+
+/** Moves the joints to these positions. */
+export function pose(joints, positions) {
+  for (const [name, position] of Object.entries(positions)) {
+    const joint = joints.get(name);
+    if (!joint || position === null) continue;
+    if (joint.slides) joint.moving.position.copy(joint.axis).multiplyScalar(position);
+    else joint.moving.quaternion.setFromAxisAngle(joint.axis, position);
+  }
+}

@@ -1,0 +1,138 @@
+// Command, reset and work: all of the page except its pictures, so that driving and the stop do not depend on those.
+import { on, send, call, connect } from "/link.js";
+import { release } from "/drive.js";
+import { by, list, number } from "/panels.js";
+
+const messages = [];
+let desk = null, robot = null, key = "";
+
+function say(text) {
+  messages.unshift(`${new Date().toLocaleTimeString()} ${text}`);
+  messages.length = Math.min(messages.length, 8);
+  list("messages", messages);
+}
+on("said", ({ text }) => say(text));
+
+const COMPONENTS = "left_encoder right_encoder gyro accelerometer left_motor right_motor battery e_stop_button";
+const KINDS = "ok off stuck garbage wrong slow delayed intermittent";
+COMPONENTS.split(" ").forEach((word) => by("component").add(new Option(word)));
+KINDS.split(" ").forEach((word) => by("kind").add(new Option(word)));
+
+const value = (id) => Number(by(id).value), speed = () => value("path-speed");
+const ARGUMENTS = {
+  path_points: async () => {
+    const { draw } = await import("/scene.js");
+    say("draw a stroke on the grid");
+    const points = await draw();
+    return points.length > 1 ? { points, speed: speed() } : null;
+  },
+  path_shape: () => ({ shape: by("shape").value, size: value("size"), speed: speed() }),
+  path_csv: async () => {
+    const [file] = by("csv").files;
+    return file ? { text: await file.text(), speed: speed() } : null;
+  },
+  set_odometry: () => ({ x: value("x"), y: value("y"), yaw: value("yaw") }),
+  set_parameters: () => ({ parameters: by("parameters").value }),
+  pause: () => ({ on: !robot?.paused }),
+  step: () => ({ cycles: 100 }),
+  inject_fault: () => ({ component: by("component").value, kind: by("kind").value }),
+};
+
+for (const button of document.querySelectorAll("[data-call]")) {
+  button.addEventListener("click", async () => {
+    const name = button.dataset.call, why = desk?.against[name];
+    if (why) return say(`${button.textContent}: ${why}`);
+    const args = ARGUMENTS[name] ? await ARGUMENTS[name]() : {};
+    if (args === null) return say(`${button.textContent}: nothing was chosen`);
+    const { accepted, text } = await call(name, args);
+    if (name === "reset_asked" && accepted) return confirmReset(text);
+    say(`${button.textContent}: ${accepted ? "" : "refused: "}${text}`);
+  });
+}
+
+on("slow", (slow) => {
+  robot = slow;
+  by("simulation").hidden = !slow.simulated;
+  by("pause").textContent = slow.paused ? "Go on" : "Pause";
+});
+
+on("desk", (next) => {
+  const first = !desk, mine = next.commander === next.you, taken = next.commander !== null && !mine;
+  desk = next;
+  for (const button of document.querySelectorAll("[data-call]")) {
+    button.title = desk.against[button.dataset.call];
+    button.setAttribute("aria-disabled", String(Boolean(button.title)));
+  }
+  by("take").hidden = mine;
+  by("take").textContent = taken ? "Take it away" : "Take the command";
+  by("take").setAttribute("aria-disabled", String(desk.role === "watch" || (taken && desk.role !== "maintain")));
+  by("give").hidden = !mine;
+  const drivers = desk.pages.filter((page) => page.number !== desk.you && page.role !== "watch");
+  const others = drivers.map((page) => `${page.number} ${page.name}`);
+  by("hand-over").hidden = !mine || !others.length;
+  if (others.join() !== Array.from(by("other").options, (option) => option.text).join()) {
+    by("other").replaceChildren(...others.map((text) => new Option(text, text.split(" ")[0])));
+  }
+  for (const [id, at] of [["linear", 0], ["angular", 1]]) {
+    const edited = document.activeElement === by(id);
+    if (first || (!edited && value(id) !== desk.chosen[at])) by(id).value = number(desk.chosen[at]);
+    by(id).max = desk.limits[at];
+  }
+  by("heartbeat").checked = desk.heartbeat;
+});
+
+by("take").addEventListener("click", () => send({ type: "take", force: desk.commander !== null }));
+by("give").addEventListener("click", () => send({ type: "give_back" }));
+by("hand").addEventListener("click", () => send({ type: "hand_over", to: Number(by("other").value) }));
+by("heartbeat").addEventListener("change", () => send({ type: "heartbeat", on: by("heartbeat").checked }));
+for (const id of ["linear", "angular"]) {
+  by(id).addEventListener("change", () => send({ type: "speeds", linear: value("linear"), angular: value("angular") }));
+}
+
+by("e-stop").addEventListener("click", async () => {
+  release();
+  try {
+    const answer = await fetch("/api/e_stop", { method: "POST", keepalive: true });
+    say(answer.ok ? "the emergency stop was requested" : `EMERGENCY STOP NOT SENT: ${await answer.text()}`);
+  } catch {
+    say("EMERGENCY STOP NOT SENT: the console does not answer; use the button on the robot");
+  }
+});
+
+function confirmReset(text) {
+  const { causes = [], refusal = [] } = robot?.safety ?? {}, active = causes.filter((cause) => cause.active);
+  const reasons = [...active.map((cause) => `${cause.sentence}: ${cause.remedy}`), ...refusal];
+  key = text;
+  const none = "Nothing stands against it. Look at the robot first.";
+  by("against").textContent = reasons.length ? `Against it stands: ${reasons.join("; ")}` : none;
+  by("confirm").hidden = false;
+}
+by("confirm-reset").addEventListener("click", async () => {
+  by("confirm").hidden = true;
+  say((await call("reset", { key })).text);
+});
+by("cancel-reset").addEventListener("click", () => { by("confirm").hidden = true; });
+
+by("runs").addEventListener("toggle", async () => {
+  if (!by("runs").open) return;
+  const answer = await fetch("/api/runs").catch(() => null);
+  if (answer?.ok) by("run-list").replaceChildren(...(await answer.json()).map(row));
+  else say("the list of runs cannot be read");
+});
+function row(run) {
+  const line = document.createElement("tr"), time = new Date(1000 * run.time).toLocaleString();
+  for (const text of [`${run.name}, ${time}`, `${number(run.bytes / 1e6, 1)} MB`]) line.insertCell().textContent = text;
+  const links = line.insertCell();
+  for (const [text, path, target] of [["report", "report", "_blank"], ["download", "file", ""]]) {
+    const href = `/api/runs/${run.id}/${path}`, rel = "noopener";
+    links.append(Object.assign(document.createElement("a"), { textContent: text, href, target, rel }), " ");
+  }
+  return line;
+}
+
+by("logout").addEventListener("click", async () => {
+  release();
+  await fetch("/api/logout", { method: "POST" }).catch(() => null);
+  location.assign("/login");
+});
+connect();

@@ -1,0 +1,223 @@
+"""The HTTP side: origins, logins and limits of all requests, and their answers."""
+
+from __future__ import annotations
+
+import asyncio
+import hmac
+import logging
+import time
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any
+
+from aiohttp import hdrs, web
+
+from robot_control.common.files import printable
+from robot_control.console.addresses import Doors
+from robot_control.console.backend import Backend
+from robot_control.console.client import Client, Frames
+from robot_control.console.desk import Role
+from robot_control.console.door import Strangers
+from robot_control.console.files import REPORT_POLICY, page_file, protect
+from robot_control.console.messages import MAX_SIZE
+from robot_control.console.model import Model, ModelError
+from robot_control.console.runs import Runs, RunsError
+from robot_control.console.sessions import Session, Sessions, Tries
+from robot_control.console.users import Users, UsersError
+
+MAX_PAGES = 20
+BODY_TIME = 10.0
+"""s within which the body of a request has to arrive"""
+PUBLIC = frozenset({"/login", "/api/login", "/style.css", "/login.js", "/icon.svg"})
+"""Paths that are served without a login"""
+LOCAL_USER = "local"
+"""Name of the user who has opened the page with the token"""
+GOING_AWAY = 1001
+"""Code with which a page is closed (RFC 6455, 7.4)"""
+journal = logging.getLogger("console")
+Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
+
+
+class Server:
+    """All routes."""
+
+    def __init__(
+        self, backend: Backend, doors: Doors, users: Users | None, runs: Path, saved: str, *, port: int, read_only: bool
+    ) -> None:
+        """`users`: None where the token alone opens; `saved`: logins of the process before this one."""
+        self._backend, self._doors, self._users, self._read_only = backend, doors, users, read_only
+        self.sessions, self._tries = Sessions(saved), Tries()
+        self._runs, self._model = Runs(runs), Model()
+        self.strangers, self.frames = Strangers(), Frames()
+        self._clients: list[Client] = []
+        self._hashing = asyncio.Semaphore(1)
+        self._cookie = f"console_{port}"  # cookies of one host count for all its ports
+        self.app = web.Application(middlewares=[self._guard], client_max_size=MAX_SIZE)
+        get, post = self.app.router.add_get, self.app.router.add_post
+        get("/ws", self._socket)
+        get("/api/model", self._urdf)
+        get("/api/mesh/{id}", self._mesh)
+        get("/api/runs", self._run_list)
+        get("/api/runs/{id}/file", self._run_file)
+        get("/api/runs/{id}/report", self._report)
+        get("/{path:.*}", self._file)
+        post("/api/login", self._login)
+        post("/api/logout", self._logout)
+        post("/api/e_stop", self._e_stop)
+
+    def pass_on(self) -> None:
+        """Sends the robot's answers to all pages."""
+        for text in self._backend.said:
+            journal.info("robot: %s", printable(text, 500))
+            for client in self._clients:
+                client.say(text)
+        self._backend.said.clear()
+
+    def check_users(self) -> None:
+        """Ends the logins of users that were removed or have another role."""
+        if self._users is not None:
+            try:
+                self.sessions.check_roles({name: user.role for name, user in self._users.all().items()})
+            except (UsersError, OSError) as error:
+                journal.warning("%s", error)
+                self.sessions.check_roles({})
+
+    def close(self) -> None:
+        """Ends all pages."""
+        for client in self._clients:
+            client.closing = GOING_AWAY
+
+    # every request
+
+    @web.middleware
+    async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
+        try:
+            response = await self._guarded(request, handler)
+        except web.HTTPException as error:
+            protect(error)
+            raise
+        if not response.prepared:
+            protect(response)
+        return response
+
+    async def _guarded(self, request: web.Request, handler: Handler) -> web.StreamResponse:
+        host, origin = request.headers.get(hdrs.HOST), request.headers.get(hdrs.ORIGIN)
+        if not self._doors.host_is_own(host):
+            raise self._refusal(request, web.HTTPMisdirectedRequest, "this host is not the console's")
+        if (request.method != hdrs.METH_GET or request.path == "/ws") and not self._doors.origin_is_own(origin, host):
+            raise self._refusal(request, web.HTTPForbidden, "this origin is not the console's")
+        session = self.sessions.of(request.cookies.get(self._cookie), time.time())
+        request["session"] = session
+        if session is not None:
+            self.strangers.admit(request.protocol)
+        elif request.path == "/" and self._users is None and "token" in request.query:
+            return self._with_token(request)
+        elif request.path == "/":
+            raise web.HTTPFound("/login")
+        elif request.path not in PUBLIC:
+            raise web.HTTPUnauthorized(text="log in first")
+        return await handler(request)
+
+    def _refusal(self, request: web.Request, kind: type[web.HTTPException], why: str) -> web.HTTPException:
+        journal.warning("%s: refused: %s %s: %s", request.remote, request.method, printable(request.path), why)
+        return kind(text=why)
+
+    # logins
+
+    def _with_token(self, request: web.Request) -> web.StreamResponse:
+        if not hmac.compare_digest(request.query["token"].encode(), self.sessions.token.encode()):
+            raise self._refusal(request, web.HTTPForbidden, "this token is wrong: open the address that was printed")
+        return self._begin(request, web.Response(status=303, headers={"Location": "/"}), LOCAL_USER, Role.MAINTAIN)
+
+    def _begin(self, request: web.Request, response: web.Response, user: str, role: Role) -> web.Response:
+        secure = request.secure or f"https://{request.headers[hdrs.HOST]}" in self._doors.origins
+        cookie = self.sessions.begin(user, role, time.time())
+        response.set_cookie(self._cookie, cookie, httponly=True, samesite="Strict", secure=secure, path="/")
+        journal.info("%s: %s has logged in as %s", request.remote, user, role)
+        return response
+
+    async def _login(self, request: web.Request) -> web.StreamResponse:
+        """Logs in with `name` and `password`, or with `link` and a new password. No form of another site sends JSON."""
+        if request.content_type != "application/json":
+            raise web.HTTPUnsupportedMediaType(text="application/json is needed")
+        try:
+            body = await asyncio.wait_for(request.json(), BODY_TIME)
+            name, link, password = (str(body.get(key, ""))[:1000] for key in ("name", "link", "password"))
+        except (TimeoutError, ValueError, RecursionError, AttributeError):
+            raise web.HTTPBadRequest(text="an object of JSON is needed") from None
+        users, remote = self._users, request.remote or ""
+        if users is None:
+            raise web.HTTPForbidden(text="this console has no users: open the address that console.py printed")
+        wait = self._tries.wait(name, remote, time.time())
+        if wait > 0:
+            raise self._refusal(request, web.HTTPTooManyRequests, f"too many tries: wait {wait:.0f} s")
+        try:
+            async with self._hashing:
+                check = (users.set_password, link, password, time.time()) if link else (users.check, name, password)
+                user = await asyncio.to_thread(*check)
+        except UsersError as error:
+            self._tries.fail(name, remote, time.time())
+            raise self._refusal(request, web.HTTPForbidden, f"{printable(name, 32)}: {error}".lstrip(": ")) from None
+        return self._begin(request, web.json_response({}), user.name, user.role)
+
+    async def _logout(self, request: web.Request) -> web.StreamResponse:
+        session: Session = request["session"]
+        self.sessions.end(session)
+        journal.info("%s: %s has logged out", request.remote, session.user)
+        response = web.json_response({})
+        response.del_cookie(self._cookie, path="/")
+        return response
+
+    # what a page does
+
+    async def _e_stop(self, request: web.Request) -> web.StreamResponse:
+        journal.warning("%s: %s: EMERGENCY STOP", request.remote, request["session"].user)
+        self._backend.e_stop()
+        return web.json_response({})
+
+    async def _socket(self, request: web.Request) -> web.StreamResponse:
+        if len(self._clients) >= MAX_PAGES:
+            raise self._refusal(request, web.HTTPServiceUnavailable, f"{MAX_PAGES} pages are open already")
+        session: Session = request["session"]
+        page = self._backend.desk.join(session.user, Role.WATCH if self._read_only else session.role)
+        who = f"{request.remote}: {session.user}"
+        journal.info("%s: page %d begins as %s", who, page.number, page.role)
+        client = Client(self._backend, self.frames, page, who, lambda: self.sessions.lives(session, time.time()))
+        self._clients.append(client)
+        try:
+            return await client.serve(request)
+        finally:
+            self._clients.remove(client)
+
+    # files
+
+    async def _file(self, request: web.Request) -> web.StreamResponse:
+        return page_file({"": "index.html", "login": "login.html"}.get(path := request.match_info["path"], path))
+
+    async def _urdf(self, _: web.Request) -> web.StreamResponse:
+        return web.json_response(await _found(self._model.read))
+
+    async def _mesh(self, request: web.Request) -> web.StreamResponse:
+        return web.Response(body=await _found(self._model.mesh, request.match_info["id"]))
+
+    async def _run_list(self, _: web.Request) -> web.StreamResponse:
+        return web.json_response(await _found(self._runs.list))
+
+    async def _run_file(self, request: web.Request) -> web.StreamResponse:
+        path = await _found(self._runs.file, request.match_info["id"])
+        name = "".join(sign if sign.isascii() and (sign.isalnum() or sign in ".-_") else "_" for sign in path.name)
+        headers = {"Content-Disposition": f'attachment; filename="{name}"', "Content-Type": "application/octet-stream"}
+        return web.FileResponse(path, headers=headers)
+
+    async def _report(self, request: web.Request) -> web.StreamResponse:
+        path = await _found(self._runs.report, request.match_info["id"])
+        headers = {"Content-Security-Policy": REPORT_POLICY, "Content-Type": "text/html; charset=utf-8"}
+        return web.FileResponse(path, headers=headers)
+
+
+async def _found(find: Callable[..., Any], *arguments: str) -> Any:  # noqa: ANN401 (of the function)
+    """The result of a function that may take long; 404 where it finds nothing."""
+    try:
+        return await asyncio.to_thread(find, *arguments)
+    except (ModelError, RunsError, OSError) as error:
+        raise web.HTTPNotFound(text=printable(str(error), 1000)) from None

@@ -1,0 +1,146 @@
+"""Messages of the robot → what the page shows; plain values for JSON, in which a number that is not finite is null."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import time
+from collections.abc import Iterable
+from typing import Any
+
+from geometry_msgs.msg import TwistStamped
+from nav_msgs.msg import Odometry, Path
+from sensor_msgs.msg import JointState
+
+from robot_control.common.command import Command
+from robot_control.common.roles import CONTROLLER, DRIVER, ESTIMATOR, LOOP
+from robot_control.console.topics import Latest
+from robot_control.msg import DriveState, FollowPathActionFeedback
+from robot_control.path.robot import pose_of
+from robot_control.view.scene import Trail
+from robot_control.why.diagnosis import Facts, judge, missing_nodes
+
+MAX_PATH = 2000
+"""Points of a wanted path that are sent; a longer path is thinned evenly."""
+DRIVE_SILENCE = 1.0
+"""s after which a drive_state is too old to count"""
+
+Values = dict[str, Any]
+
+
+class View:
+    """The newest messages of the robot."""
+
+    def __init__(self) -> None:
+        self.trail = Trail()
+        self._topics = {
+            "odom": Latest("odom", Odometry),
+            "limited": Latest("cmd_vel_out", TwistStamped),
+            "truth": Latest("ground_truth/odom", Odometry),
+            "joints": Latest("joint_states", JointState),
+            "drive": Latest("drive_state", DriveState),
+            "feedback": Latest("follow_path/feedback", FollowPathActionFeedback),
+        }
+        self._wanted = Latest("path_wanted", Path)
+
+    def revoked(self, node: str) -> bool:
+        """True if the controller refuses what the node requested before a stop."""
+        drive = self._topics["drive"]
+        fresh = time.monotonic() - drive.received_at < DRIVE_SILENCE
+        return fresh and node in drive.message.revoked
+
+    def pose(self) -> tuple[float, float, float] | None:
+        """x, y [m], yaw [rad] in odom."""
+        odometry = self._topics["odom"].message
+        return None if odometry is None else _pose(odometry)
+
+    def wanted(self) -> tuple[float, Values]:
+        """When the wanted path was received, and the path."""
+        message = self._wanted.message
+        points = [] if message is None else [(each.pose.position.x, each.pose.position.y) for each in message.poses]
+        frame = "" if message is None else message.header.frame_id
+        step = max(1, math.ceil(len(points) / MAX_PATH))
+        return self._wanted.received_at, finite({"type": "wanted", "frame": frame, "points": points[::step]})
+
+    def fast(self, asked: Command | None) -> Values:
+        """The values of a frame; `asked` is the last command of this console."""
+        now = time.monotonic()
+        newest = {name: topic.message for name, topic in self._topics.items()}
+        odometry, truth, joints, drive = (newest[name] for name in ("odom", "truth", "joints", "drive"))
+        values: Values = {
+            "type": "fast",
+            "ages": {name: topic.age(now) for name, topic in self._topics.items()},
+            "asked": None if asked is None else [asked.linear, asked.angular],
+            "limited": None if newest["limited"] is None else _speeds(newest["limited"].twist),
+            "joints": {} if joints is None else dict(zip(joints.name, joints.position, strict=False)),
+        }
+        if odometry is not None:
+            pose, covariance = _pose(odometry), odometry.pose.covariance
+            self.trail.add(pose[0], pose[1])
+            values |= {"pose": pose, "measured": _speeds(odometry.twist.twist)}
+            values["covariance"] = (covariance[0], covariance[1], covariance[7])
+        if truth is not None:
+            values |= {"truth": _pose(truth), "true": _speeds(truth.twist.twist)}
+        if drive is not None:
+            rows = zip(drive.name, drive.error, drive.effort, strict=False)
+            values["wheels"] = [{"name": name, "error": error, "effort": effort} for name, error, effort in rows]
+        return finite(values)
+
+    def slow(self, facts: Facts) -> Values:
+        """The values that change rarely: state, causes, remedies, senders."""
+        answer, safety = judge(facts), facts.received()
+        drive, feedback = self._topics["drive"].message, self._topics["feedback"]
+        progress = (
+            {}
+            if feedback.message is None
+            else {
+                name: getattr(feedback.message.feedback, name)
+                for name in ("state", "reason", "progress", "remaining_distance", "cross_track_error")
+            }
+        )
+        return finite(
+            {
+                "type": "slow",
+                "master": facts.master_answers,
+                "verdict": answer.verdict.value,
+                "headline": answer.headline,
+                "actions": answer.actions,
+                "commands": answer.commands,
+                "missing": missing_nodes(facts),
+                "nodes": {node: facts.there(node) for node in LOOP},
+                "senders": facts.commanders(),
+                "limits": list(facts.reasons(CONTROLLER, "command").values()),
+                "odometry": [text for of in ("slip", "estimate") for text in facts.reasons(ESTIMATOR, of).values()],
+                "faults": facts.value(DRIVER, "injected"),
+                "simulated": facts.there(DRIVER),
+                "paused": facts.value(DRIVER, "driver_state") == "paused",
+                "safety": None if safety is None else dataclasses.asdict(safety),
+                "sources": [] if drive is None else drive.sources,
+                "revoked": [] if drive is None else drive.revoked,
+                "path": {"age": feedback.age(time.monotonic()), **progress},
+            }
+        )
+
+
+def _pose(odometry: Odometry) -> tuple[float, float, float]:
+    pose = pose_of(odometry)
+    return pose.x, pose.y, pose.yaw
+
+
+def _speeds(twist: Any) -> tuple[float, float]:  # noqa: ANN401 (geometry_msgs)
+    return twist.linear.x, twist.angular.z
+
+
+def finite(values: Values) -> Values:
+    """The same with null for numbers that are not finite, and five decimals."""
+    return {key: _finite(value) for key, value in values.items()}
+
+
+def _finite(value: Any) -> Any:  # noqa: ANN401 (any value of JSON)
+    if isinstance(value, float):
+        return round(value, 5) if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return finite(value)
+    if isinstance(value, str) or not isinstance(value, Iterable):
+        return value
+    return [_finite(each) for each in value]
