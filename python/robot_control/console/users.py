@@ -50,7 +50,7 @@ class User:
 
 
 class Users:
-    """The users of a file, which is read anew for each call and written as a whole."""
+    """The users of a file, which is read again for each call and written as a whole."""
 
     def __init__(self, path: Path = FILE) -> None:
         self.path = path
