@@ -43,7 +43,7 @@ TEST_F(CommandSources, TheShippedListIsTakenHighestPriorityFirst) {
   EXPECT_THAT(names, ::testing::ElementsAre("joy_vel", "key_vel", "console_vel", "cmd_vel", "path_vel"));
   EXPECT_EQ(list.sources[0].priority, 40);
   EXPECT_TRUE(list.sources[0].stamped);
-  EXPECT_FALSE(list.sources[2].stamped);
+  EXPECT_FALSE(list.sources[3].stamped);
   ASSERT_EQ(list.locks.size(), 1u);
 }
 

@@ -8,7 +8,6 @@ import contextlib
 import importlib.util
 import json
 import socket
-import subprocess
 import time
 import urllib.error
 import urllib.request
@@ -167,10 +166,9 @@ class ConsoleAttackTest(RobotTestCase):
         with urllib.request.build_opener(NoRedirect).open(f"{self.console.origin}/login") as answer:
             policy = answer.headers["Content-Security-Policy"]
         self.assertIn("default-src 'none'; script-src 'self'; style-src 'self'", policy)
-        raw = subprocess.run(
-            ["curl", "-s", "-i", self.console.address], capture_output=True, text=True, check=True
-        ).stdout
-        self.assertIn("HttpOnly; Path=/; SameSite=Strict", raw)
+        with self.assertRaises(urllib.error.HTTPError) as redirect:
+            urllib.request.build_opener(NoRedirect).open(self.console.address)
+        self.assertIn("HttpOnly; Path=/; SameSite=Strict", redirect.exception.headers["Set-Cookie"])
 
     # messages
 

@@ -67,8 +67,9 @@ def begins_with(path, call):
 
 def test_every_program_writes_its_lines_at_once():
     """`run` does this for Python's programs, `run_node` for nodes; expand_xacro writes a document for its caller."""
-    modules = [path for path in (SCRIPTS / "robot_control").rglob("*.py") if "__main__" in path.read_text()]
-    python = {*SCRIPTS.glob("*.py"), *modules} - {SCRIPTS / "robot_control/expand_xacro.py"}
+    package = SCRIPTS.parent / "python/robot_control"
+    modules = [path for path in package.rglob("*.py") if "__main__" in path.read_text()]
+    python = {*SCRIPTS.rglob("*.py"), *modules} - {package / "expand_xacro.py"}
     assert [str(path) for path in sorted(python) if not begins_with(path, "run(main)")] == []
     nodes = set((SCRIPTS.parent / "src/main").glob("*.cpp"))
     assert [str(path) for path in sorted(nodes) if "return run_node(" not in path.read_text()] == []
