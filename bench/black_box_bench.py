@@ -22,7 +22,7 @@ from robot_control.common.roles import LOOP, TELEMETRY
 from robot_control.common.run_log import read_log
 
 from bench.log_bench import row
-from bench.participants import START_LIMIT, command, remove_shared_memory, script
+from bench.participants import START_LIMIT, command, remove_shared_memory, script, support_program
 
 ALL_TRIALS = 100
 MAX_MISSING = 10.0  # ms
@@ -112,6 +112,6 @@ def trial(nodes: list[subprocess.Popen[bytes]], folder: Path, programs: Path, se
 
 def newest_stamps(programs: Path) -> list[int]:
     """Stamps of the newest frame that each node has published, ns."""
-    program = programs.parent / "support" / "rc_newest_stamps"
+    program = support_program(programs, "rc_newest_stamps")
     answer = subprocess.run([program, "--bus", bus()], capture_output=True, text=True, check=True)
     return [int(line) for line in answer.stdout.split()]

@@ -20,9 +20,14 @@ def command(programs: Path, node: str, bus: str, folder: Path, settings: Mapping
     """Command line of one node, which reads commands from script.csv in `folder`; the log goes there, too."""
     script_and_log = {"robot.command_script": folder / "script.csv", "telemetry.directory": folder}
     pairs = [f"{key}={value}" for key, value in {**RECORDING, **script_and_log, **settings}.items()]
-    program = programs.parent / "support" / "rc_participant"
+    program = support_program(programs, "rc_participant")
     parameters = share_file("config/robot_params.yaml")
     return [str(program), node, "--bus", bus, "--params", str(parameters), *(w for p in pairs for w in ("--set", p))]
+
+
+def support_program(programs: Path, name: str) -> Path:
+    """A program of tests/support; `programs` is the folder of the benchmarks."""
+    return programs.parent / "tests" / "support" / name
 
 
 def remove_shared_memory(bus: str) -> None:

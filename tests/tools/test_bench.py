@@ -1,8 +1,10 @@
 import sys
+from pathlib import Path
 
 import pytest
 
 from bench import main as bench
+from bench.participants import support_program
 from bench.runs import seed_programs
 from bench.runs.runner import Processes
 
@@ -45,6 +47,11 @@ def program(folder, text, name="bench_step"):
     path = folder / name
     path.write_text(f"#!{sys.executable}\n{text}\n")
     path.chmod(0o755)
+
+
+@pytest.mark.parametrize("name", ["rc_participant", "rc_newest_stamps"])
+def test_programs_of_the_tests_are_where_the_benchmarks_start_them(name):
+    assert support_program(Path(__file__).parents[2] / "build/robot_control/bench", name).exists()
 
 
 def test_what_the_programs_print_is_written_to_the_file(tmp_path, monkeypatch):
