@@ -61,7 +61,7 @@ inline void add_can_cycle(std::vector<Row>& rows, const std::string& name, const
   const Line line, bare_line;
   const std::vector<Brake> brakes = brakes_of_slow_drives(robot, period);
   CanFront devices(can, brakes, period, 1, CanSocket(line.end(1)));
-  CanDriver driver(can, brakes, period, CanSocket(line.end(0)),
+  CanDriver driver(can, brakes, devices.size(), period, CanSocket(line.end(0)),
                    [&devices] { return CanTime{.time_ns = devices.now_ns(), .utc_ns = devices.now_ns()}; });
   BareFrames bare;
   SensorFrame sensors;

@@ -35,7 +35,8 @@ class Driver {
   /// finite, brakes its joint. Never blocks. A simulated machine advances.
   virtual void write(std::span<const JointCommand> commands) noexcept = 0;
 
-  /// Brakes, at once and until the next `start`.
+  /// Brakes until the next `start`: at once where the drives brake by themselves, else from the next `write` on.
+  /// Without one, no torque of an earlier command remains.
   virtual void stop() noexcept = 0;
 
   /// The operator requests a reset: a machine with a fault clears it and starts again. Never blocks.

@@ -25,7 +25,7 @@ class ExampleMachine final : public Driver {
     const std::vector<Brake> brakes{brake, brake};
     const std::vector<double> limits{kEffortLimit, kEffortLimit};
     board_ = std::make_unique<ExampleBoard>(brakes, limits, kPeriod, ends[1]);
-    driver_ = std::make_unique<ExampleDriver>(ExampleParameters{}, brakes, limits, kPeriod, ends[0]);
+    driver_ = std::make_unique<ExampleDriver>(ExampleParameters{}, brakes, limits, 2, kPeriod, ends[0]);
   }
 
   /// The contract begins with a machine that is ready.

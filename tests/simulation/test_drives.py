@@ -58,6 +58,15 @@ def test_it_stands_after_a_stop(dialect):
     assert abs(log["truth_linear"][-1]) < 1e-3
 
 
+@pytest.mark.parametrize("dialect", DIALECTS)
+def test_a_reset_of_the_simulation_is_no_fault(dialect):
+    loop = ClosedLoop(seed=3, drives=drive_file(dialect))
+    driven(loop, 3.0)
+    loop.reset()
+    loop.run(0.5, (0.0, 0.0))
+    assert driven(loop, 3.0)["truth_linear"][-1] == pytest.approx(0.5, abs=0.01)
+
+
 def test_a_drive_file_of_another_robot_is_refused(tmp_path):
     file = tmp_path / "drives.yaml"
     file.write_text(Path(drive_file("odrive")).read_text().replace("left_wheel_joint", "front_wheel_joint"))

@@ -78,7 +78,8 @@ class Client:
             self._backend.calls.forget(self._page)
             for call in self._calls:
                 call.cancel()
-            await asyncio.wait({writer}, timeout=CLOSING)
+            if self.closing:
+                await asyncio.wait({writer}, timeout=CLOSING)
             writer.cancel()
             journal.info("%s: page %d ended", self._who, self._page.number)
         return self._socket
@@ -162,8 +163,10 @@ class Client:
             while not self._socket.closed:
                 now = time.monotonic()
                 silent = 0.0 if self._unanswered is None else now - self._unanswered
-                if self.closing or not self._lives():
-                    await self._socket.close(code=self.closing or LOGIN_ENDED)
+                if not self._lives():
+                    self.closing = self.closing or LOGIN_ENDED
+                if self.closing:
+                    await self._socket.close(code=self.closing)
                 elif silent > LOST and request.transport is not None:
                     request.transport.abort()
                 else:

@@ -31,9 +31,10 @@ DriverFault fault_of(DriveCause cause) noexcept {
 
 }  // namespace
 
-CanDriver::CanDriver(const CanParameters& parameters, std::span<const Brake> brakes, double period, CanSocket socket,
-                     std::function<CanTime()> clock)
-    : bus_(std::move(socket)),
+CanDriver::CanDriver(const CanParameters& parameters, std::span<const Brake> brakes, std::size_t joint_count,
+                     double period, CanSocket socket, std::function<CanTime()> clock)
+    : joint_count_(joint_count),
+      bus_(std::move(socket)),
       parameters_(parameters.bus),
       drives_(parameters, period),
       load_(bus_load(drives_.plan(), 1 / period, parameters.bus.bit_rate)),
@@ -42,6 +43,15 @@ CanDriver::CanDriver(const CanParameters& parameters, std::span<const Brake> bra
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     laws_.emplace_back(brakes[i], drives_[i].drive_parameters().torque_limit);
   }
+}
+
+void CanDriver::stop() noexcept {
+  stopped_ = true;
+  if (state_ != DriverState::kRunning) return;
+  std::ranges::fill(commands_, DriveCommand{.enabled = true, .reset = false, .torque = 0});
+  send_.clear();
+  drives_.step(commands_, clock_().time_ns, send_);
+  bus_.send(send_.frames());
 }
 
 void CanDriver::start() {
@@ -93,7 +103,8 @@ void CanDriver::read(SensorFrame& sensors) noexcept {
   sensors.driver_state = state_;
   sensors.faults = faults_;
   sensors.valid = 0;
-  sensors.joint_count = drives_.size();
+  sensors.joint_count = joint_count_;
+  for (std::size_t i = drives_.size(); i < joint_count_; ++i) sensors.joints[i] = {};
   sensors.battery_voltage = 0;
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const DriveSample& sample = drives_[i].sample();
@@ -168,7 +179,7 @@ double CanDriver::wanted_torque(std::size_t joint, const JointCommand& command) 
 }
 
 void CanDriver::write(std::span<const JointCommand> commands) noexcept {
-  const bool obeys = !stopped_ && state_ == DriverState::kRunning && commands.size() == drives_.size();
+  const bool obeys = !stopped_ && state_ == DriverState::kRunning && commands.size() == joint_count_;
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     commands_[i] = {.enabled = true, .reset = reset_, .torque = wanted_torque(i, obeys ? commands[i] : JointCommand{})};
   }

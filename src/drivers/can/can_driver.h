@@ -29,15 +29,17 @@ namespace robot_control {
 
 class CanDriver final : public Driver {
  public:
-  /// `brakes`: one per joint. `clock` states the present time and is called in each cycle.
-  CanDriver(const CanParameters& parameters, std::span<const Brake> brakes, double period, CanSocket socket,
-            std::function<CanTime()> clock);
+  /// The drives move the first joints of a robot that has `joint_count`; the others have no sample. `brakes`: one per
+  /// drive. `clock` states the present time and is called in each cycle.
+  CanDriver(const CanParameters& parameters, std::span<const Brake> brakes, std::size_t joint_count, double period,
+            CanSocket socket, std::function<CanTime()> clock);
 
   void start() override;
   void reset() noexcept override;
   void read(SensorFrame& sensors) noexcept override;
   void write(std::span<const JointCommand> commands) noexcept override;
-  void stop() noexcept override { stopped_ = true; }
+  /// The next `write` brakes. Until then the drives have no torque: a drive keeps the last one that it was sent.
+  void stop() noexcept override;
 
   /// The drives take torques, so they follow every order.
   bool implements(StopKind) const noexcept override { return true; }
@@ -65,6 +67,7 @@ class CanDriver final : public Driver {
   void judge_faults() noexcept;
   double wanted_torque(std::size_t joint, const JointCommand& command) noexcept;
 
+  std::size_t joint_count_;
   CanBus bus_;
   CanBusParameters parameters_;
   DriveSet drives_;

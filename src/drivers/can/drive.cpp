@@ -123,6 +123,12 @@ void Drive::fail(DriveCause cause, const char* subject, std::uint64_t code, doub
              .expected = expected};
 }
 
+namespace {
+
+constexpr double kImpossibleSpeed = 10;  // times the limit: a number that no joint has
+
+}  // namespace
+
 void Drive::accept_position(double position, double velocity, std::int64_t now_ns) noexcept {
   if (!std::isfinite(position) || !std::isfinite(velocity)) return fail(DriveCause::kNotFinite);
   JointSample& joint = sample_.joint;
@@ -131,6 +137,9 @@ void Drive::accept_position(double position, double velocity, std::int64_t now_n
   const double elapsed = 1.0e-9 * static_cast<double>(now_ns - sample_.stamp_ns + 2 * period_ns_);
   const double maximum = 2 * drive_.velocity_limit * std::fmax(elapsed, 2 * drive_.sample_period);
   if (sample_.valid && std::abs(moved) > maximum) fail(DriveCause::kPositionJump, "position", 0, moved, maximum);
+  const double fastest = kImpossibleSpeed * drive_.velocity_limit;
+  if (std::abs(to_joint_ * velocity) > fastest)
+    return fail(DriveCause::kPositionJump, "velocity", 0, to_joint_ * velocity, fastest);
   joint.position = to_joint_ * position;
   joint.velocity = to_joint_ * velocity;
   sample_.stamp_ns = now_ns;

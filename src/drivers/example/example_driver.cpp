@@ -30,8 +30,12 @@ int connect_to_board(const std::string& path) {
 }
 
 ExampleDriver::ExampleDriver(const ExampleParameters& parameters, std::span<const Brake> brakes,
-                             std::span<const double> effort_limits, double period, int descriptor)
-    : parameters_(parameters), period_ns_(std::llround(1.0e9 * period)), descriptor_(descriptor) {
+                             std::span<const double> effort_limits, std::size_t joint_count, double period,
+                             int descriptor)
+    : parameters_(parameters),
+      joint_count_(joint_count),
+      period_ns_(std::llround(1.0e9 * period)),
+      descriptor_(descriptor) {
   for (std::size_t i = 0; i < brakes.size(); ++i) laws_.emplace_back(brakes[i], effort_limits[i]);
 }
 
@@ -58,8 +62,8 @@ void ExampleDriver::reset() noexcept {
 bool ExampleDriver::receive() noexcept {
   bool received = false;
   BoardReport report;
-  while (recv(descriptor_, &report, sizeof report, MSG_DONTWAIT) > 0) {
-    if (report.head != kBoardReportHead || report.count != laws_.size()) continue;
+  for (ssize_t got = 0; (got = recv(descriptor_, &report, sizeof report, MSG_DONTWAIT | MSG_TRUNC)) > 0;) {
+    if (got != sizeof report || report.head != kBoardReportHead || report.count != laws_.size()) continue;
     report_ = report;
     received = true;
   }
@@ -84,7 +88,8 @@ void ExampleDriver::read(SensorFrame& sensors) noexcept {
   sensors.driver_state = state_;
   sensors.faults = faults_;
   sensors.valid = 0;  // kValidGyro …, where there is an IMU
-  sensors.joint_count = laws_.size();
+  sensors.joint_count = joint_count_;
+  for (std::size_t i = laws_.size(); i < joint_count_; ++i) sensors.joints[i] = {};
   for (std::size_t i = 0; i < laws_.size(); ++i) {
     const BoardReport::Motor& motor = report_.motors[i];
     sensors.joints[i] = {.position = motor.position, .velocity = motor.velocity, .effort = motor.torque};
@@ -95,7 +100,7 @@ void ExampleDriver::read(SensorFrame& sensors) noexcept {
 }
 
 void ExampleDriver::write(std::span<const JointCommand> commands) noexcept {
-  const bool obeys = !stopped_ && commands.size() == laws_.size();
+  const bool obeys = !stopped_ && commands.size() == joint_count_;
   BoardOrder order{.count = static_cast<std::uint32_t>(laws_.size())};
   for (std::size_t i = 0; i < laws_.size(); ++i) {
     const BoardReport::Motor& motor = report_.motors[i];
@@ -105,9 +110,20 @@ void ExampleDriver::write(std::span<const JointCommand> commands) noexcept {
   send(descriptor_, &order, sizeof order, MSG_DONTWAIT | MSG_NOSIGNAL);
 }
 
+void ExampleDriver::stop() noexcept {
+  stopped_ = true;
+  const BoardOrder order{.count = static_cast<std::uint32_t>(laws_.size())};
+  send(descriptor_, &order, sizeof order, MSG_DONTWAIT | MSG_NOSIGNAL);
+}
+
 std::string ExampleDriver::warning() const {
-  return state_ == DriverState::kStarting ? "the motor board has sent no report yet: look at its power and its cable"
-                                          : "";
+  const std::uint64_t faults = faults_;
+  if ((faults & kFaultLink) != 0) return "the motor board is silent: look at its power and its cable, then reset";
+  if ((faults & kFaultDrive) != 0) return "a motor reports a fault: repair it, then reset";
+  if ((faults & kFaultNotFinite) != 0) return "the motor board sent NaN or infinity: look at its encoders, then reset";
+  if (state_ == DriverState::kStarting)
+    return "the motor board has sent no report yet: look at its power and its cable";
+  return "";
 }
 
 }  // namespace robot_control

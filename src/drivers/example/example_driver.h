@@ -6,6 +6,7 @@
 /// word, a number that is not finite, and silence for more than `max_silence` cycles. They stay until the operator's
 /// reset, and the driver orders no torque meanwhile.
 
+#include <atomic>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,9 +23,10 @@ int connect_to_board(const std::string& path);
 
 class ExampleDriver final : public Driver {
  public:
-  /// `brakes` and `effort_limits` (N·m): one per joint. `descriptor` is a datagram socket, which the driver closes.
+  /// The motors move the first joints of a robot that has `joint_count`; the others have no sample. `brakes` and
+  /// `effort_limits` (N·m): one per motor. `descriptor` is a datagram socket, which the driver closes.
   ExampleDriver(const ExampleParameters& parameters, std::span<const Brake> brakes,
-                std::span<const double> effort_limits, double period, int descriptor);
+                std::span<const double> effort_limits, std::size_t joint_count, double period, int descriptor);
   ~ExampleDriver() override;
   ExampleDriver(const ExampleDriver&) = delete;
   ExampleDriver& operator=(const ExampleDriver&) = delete;
@@ -33,7 +35,8 @@ class ExampleDriver final : public Driver {
   void reset() noexcept override;
   void read(SensorFrame& sensors) noexcept override;
   void write(std::span<const JointCommand> commands) noexcept override;
-  void stop() noexcept override { stopped_ = true; }
+  /// The next `write` brakes. Until then the motors have no torque.
+  void stop() noexcept override;
   std::string description() const override { return "a motor board that brakes by itself when it hears nothing"; }
   std::string warning() const override;
   /// The motors take torques, so they follow every order.
@@ -45,12 +48,13 @@ class ExampleDriver final : public Driver {
 
   ExampleParameters parameters_;
   std::vector<JointLaw> laws_;
+  std::size_t joint_count_;
   std::int64_t period_ns_;
   int descriptor_;
   BoardReport report_;            // the last good one
   std::uint64_t silent_for_ = 0;  // cycles since then
-  DriverState state_ = DriverState::kStarting;
-  std::uint64_t faults_ = 0;  // bits of DriverFault
+  std::atomic<DriverState> state_ = DriverState::kStarting;
+  std::atomic<std::uint64_t> faults_ = 0;  // bits of DriverFault
   bool stopped_ = false;
 };
 

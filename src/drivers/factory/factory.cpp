@@ -13,6 +13,16 @@
 namespace robot_control {
 namespace {
 
+/// Both drivers move the wheels alone.
+void refuse_held_joints(const DriveTrain& robot, const std::string& driver) {
+  for (const JointModel& joint : robot.joints) {
+    if (joint.role == JointRole::kHeld)
+      throw DriverError("joint '" + joint.name + "' is to be held, and the driver " + driver +
+                        " drives the wheels alone: give the joint no actuator in the description, or hold it by "
+                        "another controller");
+  }
+}
+
 std::unique_ptr<Driver> make_can(const Parameters& parameters, const DriveTrain& robot, DriverClock clock) {
   if (parameters.drives.empty())
     throw DriverError(
@@ -20,15 +30,10 @@ std::unique_ptr<Driver> make_can(const Parameters& parameters, const DriveTrain&
         "config/drives/odrive.yaml");
   std::vector<std::string> joints;
   for (const WheelModel& wheel : robot.wheels) joints.push_back(robot.joints[wheel.joint].name);
-  for (const JointModel& joint : robot.joints) {
-    if (joint.role == JointRole::kHeld)
-      throw DriverError("joint '" + joint.name +
-                        "' is to be held, and the driver can drives the wheels alone: give "
-                        "the joint no actuator in the description, or hold it by another controller");
-  }
+  refuse_held_joints(robot, "can");
   const CanParameters can = read_drive_file(parameters.drives, joints, parameters.loop.rate);
   const double period = parameters.loop.period();
-  return std::make_unique<CanDriver>(can, brakes_of_slow_drives(robot, period), period,
+  return std::make_unique<CanDriver>(can, brakes_of_slow_drives(robot, period), robot.joints.size(), period,
                                      CanSocket::open(can.bus.address), std::move(clock));
 }
 
@@ -38,8 +43,9 @@ std::unique_ptr<Driver> make_example(const Parameters& parameters, const DriveTr
   std::vector<double> effort_limits;
   for (const WheelModel& wheel : robot.wheels) effort_limits.push_back(robot.joints[wheel.joint].effort_limit);
   const double period = parameters.loop.period();
-  return std::make_unique<ExampleDriver>(board, brakes_of_slow_drives(robot, period), effort_limits, period,
-                                         connect_to_board(board.address));
+  refuse_held_joints(robot, "example");
+  return std::make_unique<ExampleDriver>(board, brakes_of_slow_drives(robot, period), effort_limits,
+                                         robot.joints.size(), period, connect_to_board(board.address));
 }
 
 struct DriverRow {

@@ -26,7 +26,17 @@ int bind_board(const std::string& path) {
   path.copy(own.sun_path, path.size());
   const int descriptor = socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (descriptor >= 0) fchmod(descriptor, S_IRUSR | S_IWUSR);  // the socket file gets this mode
-  unlink(path.c_str());
+  struct stat left {};
+  if (lstat(path.c_str(), &left) == 0) {
+    const bool is_socket = S_ISSOCK(left.st_mode);
+    const bool answers = is_socket && connect(descriptor, reinterpret_cast<const sockaddr*>(&own), sizeof own) == 0;
+    if (!is_socket || answers) {
+      close(descriptor);
+      throw DriverError(path + (answers ? " is the address of another board" : " is a file and no socket") +
+                        ". Choose another address (board.address)");
+    }
+    unlink(path.c_str());
+  }
   if (descriptor < 0 || bind(descriptor, reinterpret_cast<const sockaddr*>(&own), sizeof own) != 0) {
     const std::string why = std::strerror(errno);
     if (descriptor >= 0) close(descriptor);
@@ -51,8 +61,9 @@ void ExampleBoard::receive() {
   BoardOrder order;
   sockaddr_un sender{};
   socklen_t size = sizeof sender;
-  while (recvfrom(descriptor_, &order, sizeof order, 0, reinterpret_cast<sockaddr*>(&sender), &size) > 0) {
-    if (order.head == kBoardOrderHead && order.count == brakes_.size()) {
+  for (ssize_t got = 0; (got = recvfrom(descriptor_, &order, sizeof order, MSG_TRUNC,
+                                        reinterpret_cast<sockaddr*>(&sender), &size)) > 0;) {
+    if (got == sizeof order && order.head == kBoardOrderHead && order.count == brakes_.size()) {
       order_ = order;
       order_ns_ = now_ns_;
       driver_ = sender;

@@ -9,18 +9,28 @@ DrivenPlant::DrivenPlant(const DriveTrain& robot, const MujocoPlantParameters& p
     : plant_(robot, plant, period),
       devices_(std::move(devices)),
       driver_(std::move(driver)),
+      seen_(devices_->size()),
+      turned_(devices_->size()),
       torques_(robot.joints.size()) {}
+
+void DrivenPlant::run_devices() noexcept {
+  std::copy_n(truth_.joints.begin(), seen_.size(), seen_.begin());
+  for (std::size_t i = 0; i < seen_.size(); ++i) seen_[i].position += turned_[i];
+  devices_->run(seen_);
+}
 
 void DrivenPlant::start() {
   plant_.start();
   plant_.truth(truth_);
+  // The motors go on from where they are, whatever the joints of the new run are.
+  for (std::size_t i = 0; i < turned_.size(); ++i) turned_[i] = seen_[i].position - truth_.joints[i].position;
   driver_->start();
-  const std::vector<JointCommand> brakes(devices_->size());
+  const std::vector<JointCommand> brakes(torques_.size());
   const std::int64_t end_ns = devices_->now_ns() + kMaxStart;
   do {
     driver_->read(wheels_);
     driver_->write(brakes);
-    devices_->run(truth_.joints);
+    run_devices();
   } while (wheels_.driver_state != DriverState::kRunning && devices_->now_ns() < end_ns);
 }
 
@@ -38,9 +48,9 @@ void DrivenPlant::read(SensorFrame& sensors) noexcept {
 }
 
 void DrivenPlant::write(std::span<const JointCommand> commands) noexcept {
-  driver_->write(commands.first(std::min(devices_->size(), commands.size())));
+  driver_->write(commands);
   plant_.truth(truth_);
-  devices_->run(truth_.joints);
+  run_devices();
   std::ranges::copy(commands.first(std::min(torques_.size(), commands.size())), torques_.begin());
   for (std::size_t i = 0; i < devices_->size(); ++i)
     torques_[i] = {.mode = JointMode::kEffort, .effort = devices_->torque(i)};

@@ -40,11 +40,15 @@ class DrivenPlant final : public Simulator {
   std::string warning() const override;
 
  private:
+  void run_devices() noexcept;
+
   MujocoPlant plant_;
   std::unique_ptr<DeviceFront> devices_;
   std::unique_ptr<Driver> driver_;
   TruthFrame truth_;
-  SensorFrame wheels_;  // as the driver reports them
+  SensorFrame wheels_;             // as the driver reports them
+  std::vector<JointSample> seen_;  // joints as the devices see them
+  std::vector<double> turned_;     // rad, by which a motor is ahead of its joint since a reset
   std::vector<JointCommand> torques_;
 };
 

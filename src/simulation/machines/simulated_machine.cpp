@@ -61,7 +61,8 @@ std::unique_ptr<Driver> make_plant_behind_board(const Parameters& parameters, co
   const ExampleMotors motors = example_motors(parameters, robot);
   const auto [driver_end, board_end] = line_ends();
   auto board = std::make_unique<ExampleBoard>(motors.brakes, motors.effort_limits, period, board_end);
-  auto driver = std::make_unique<ExampleDriver>(motors.board, motors.brakes, motors.effort_limits, period, driver_end);
+  auto driver = std::make_unique<ExampleDriver>(motors.board, motors.brakes, motors.effort_limits, robot.joints.size(),
+                                                period, driver_end);
   return std::make_unique<DrivenPlant>(robot, parameters.plant, period, std::move(board), std::move(driver));
 }
 
@@ -75,8 +76,8 @@ std::unique_ptr<Driver> make_simulated_machine(const Parameters& parameters, con
   const auto [driver_end, device_end] = line_ends();
   std::unique_ptr<DeviceFront> devices = can_devices(can, parameters, robot, CanSocket(device_end));
   const auto clock = [front = devices.get()] { return CanTime{.time_ns = front->now_ns(), .utc_ns = front->now_ns()}; };
-  auto driver =
-      std::make_unique<CanDriver>(can, brakes_of_slow_drives(robot, period), period, CanSocket(driver_end), clock);
+  auto driver = std::make_unique<CanDriver>(can, brakes_of_slow_drives(robot, period), robot.joints.size(), period,
+                                            CanSocket(driver_end), clock);
   return std::make_unique<DrivenPlant>(robot, parameters.plant, period, std::move(devices), std::move(driver));
 }
 

@@ -20,7 +20,7 @@ class CanMachine final : public Driver {
  public:
   static constexpr double kPeriod = 0.001;
 
-  explicit CanMachine(CanDialect dialect) : rig_(1 / kPeriod) {
+  explicit CanMachine(CanDialect dialect, std::size_t joints = 2) : rig_(1 / kPeriod) {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0, ends) != 0) throw DriverError("no socket");
     wire_ = ends[1];
@@ -36,7 +36,7 @@ class CanMachine final : public Driver {
     }
     // At the joint 0.0625 kg·m²: d h/J = 0.16.
     const Brake brake{.effort = 3, .hold_effort = 3, .damping = 10, .stiffness = 400, .hold_speed = 0.3};
-    driver_.emplace(parameters, std::vector{brake, brake}, kPeriod, CanSocket(ends[0]),
+    driver_.emplace(parameters, std::vector{brake, brake}, joints, kPeriod, CanSocket(ends[0]),
                     [this] { return CanTime{.time_ns = rig_.now_ns(), .utc_ns = rig_.now_ns()}; });
   }
   ~CanMachine() override { close(wire_); }
@@ -55,11 +55,16 @@ class CanMachine final : public Driver {
   void read(SensorFrame& sensors) noexcept override { driver_->read(sensors); }
   void write(std::span<const JointCommand> commands) noexcept override {
     driver_->write(commands);
-    can_frame frame;
-    while (recv(wire_, &frame, sizeof frame, 0) == sizeof frame) rig_.bus().send(party_, frame);
-    rig_.cycle();
+    run_bus(1);
   }
   void stop() noexcept override { driver_->stop(); }
+
+  /// Carries the frames of the driver and runs the devices.
+  void run_bus(int cycles) {
+    can_frame frame;
+    while (recv(wire_, &frame, sizeof frame, 0) == sizeof frame) rig_.bus().send(party_, frame);
+    for (int i = 0; i < cycles; ++i) rig_.cycle();
+  }
 
   DeviceRig& rig() { return rig_; }
   CanDriver& driver() { return *driver_; }
@@ -145,6 +150,27 @@ TEST_P(CanDriverOn, TheOtherJointBrakesWhenADriveIsLost) {
   const SensorFrame frame = cycles(1000, drive_);
   EXPECT_EQ(frame.faults, std::uint64_t{kFaultLink});
   EXPECT_LT(joint_speed(1), 0.05);
+}
+
+TEST_P(CanDriverOn, TheMotorsHaveNoTorqueAfterAStopWithoutAWrite) {
+  cycles(3000, drive_);
+  machine_.driver().stop();
+  machine_.run_bus(2);
+  EXPECT_EQ(machine_.rig().motor(0).torque, 0);
+  EXPECT_EQ(machine_.rig().motor(1).torque, 0);
+}
+
+TEST_P(CanDriverOn, AJointWithoutADriveHasNoSampleAndHindersNothing) {
+  CanMachine machine(GetParam(), 4);
+  machine.start();
+  SensorFrame frame;
+  for (int i = 0; i < 3000; ++i) {
+    machine.read(frame);
+    machine.write(std::vector<JointCommand>(4, drive_));
+  }
+  EXPECT_EQ(frame.joint_count, 4u);
+  EXPECT_EQ(frame.joints[2].valid, 0u);
+  EXPECT_NEAR(std::abs(machine.rig().motor(0).velocity) / 2.5, 5, 0.5);
 }
 
 TEST_P(CanDriverOn, SaysWhatEachJointDoesOnSilence) {

@@ -5,6 +5,7 @@ import { on } from "/link.js";
 import { build, pose } from "/robot.js";
 
 const MAX_POINTS = 5000, STEP = 0.05;   // of the path driven; m between two of them
+const MAX_NOTES = 6;                    // of meshes that cannot be shown
 const SIGMAS = 2.448;                   // 95 % of a normal distribution in the plane
 const FRAME = 50;                       // ms between two pictures
 const LATE = 40, RESTING = 250;         // ms; a browser that is so late rests so long, because driving comes first
@@ -17,7 +18,7 @@ let renderer = null, controls = null, dirty = true, placed = false, called = 0, 
 
 function say(text) {
   notes.add(text);
-  note.textContent = [...notes].slice(0, 4).join("; ");
+  note.textContent = [...notes].slice(0, MAX_NOTES).join("; ");
 }
 
 function polyline(colour, size, dashed) {

@@ -314,6 +314,8 @@ void DriveSetup::judge_pdo(Pdo& found, const Pdo& needed, bool complete) noexcep
   }
   for (std::size_t i = 0; i < found.mapping.count; ++i) {
     PdoEntry& entry = found.mapping.entries[i];
+    if (entry.bits == 0 || entry.bits > 32 || entry.bits % 8 != 0)
+      refuse(DriveCause::kDiffers, "bits of an entry of its PDO", 0, entry.bits, 32);
     if (const PdoEntry* const known = mapped(needed, entry)) {
       entry = *known;
     } else if (complete && entry.object != own(kModeOfOperation)) {

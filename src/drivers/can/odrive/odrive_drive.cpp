@@ -204,6 +204,8 @@ void OdriveDrive::advance(const DriveCommand& command, std::int64_t now_ns, Fram
     }
     return;
   }
+  // An axis in closed loop has the torque of an earlier program, whose watchdog these frames feed.
+  if (phase_ < Phase::kPosition) send.add(encode(node(), SetInputTorque{}));
   if (phase_ == Phase::kHeartbeat) return set(DriveState::kStarting, DriveCause::kFirstFrame);
   const auto max_silence = static_cast<std::int64_t>(1.0e9 * kMaxHeartbeats * parameters_.heartbeat_period);
   if (now_ns - heartbeat_ns_ > max_silence) {
