@@ -11,6 +11,7 @@ from typing import Any
 from bench.devices.disturbed_drive import BUSES, DisturbedDrive, DriveFigures, run_drive
 from bench.devices.loss_trial import BRAKE_CYCLES, DIALECTS, KINDS, LATEST, LossTrial, Outcome, run_trial
 from bench.devices.slope_trial import as_stated
+from bench.markdown import ALLOWED
 from bench.runs.runner import Runner
 
 ALL_RUNS = 100
@@ -18,7 +19,6 @@ DRIVE_TIME = 1800.0  # s
 ODOMETRY, RIPPLE = 1.2, 2.0
 """Bounds of a drive with lost frames, by the undisturbed one. With late frames as well no bound is kept: the time of a
 sample is then unknown by up to a period."""
-ALLOWED = "what is allowed"
 UNDISTURBED = "the undisturbed drive"
 
 Row = dict[str, Any]

@@ -13,14 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 from robot_control import ClosedLoop
 from robot_control.closed_loop import Log
-from robot_control.common.signal_names import number_of
 from robot_control.installed_files import share_file
+
+from bench.faults.sequence_judge import STOPPED_STATES
 
 SEGMENT = 10.0  # s
 SETTLED = 4.0  # s of a segment after which speed and turn are steady
 RIPPLE_TIME = 0.5  # s over which the speed is averaged
 BUSES = ("ok", "lossy", "disturbed")
-LATCHED = [number_of("SupervisorState", name) for name in ("STOPPED", "FAULT")]
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ def run_drive(drive: DisturbedDrive) -> DriveFigures:
     stops, odometry, ripple = 0, [], []
     for request in requests(drive.seed, round(drive.seconds / SEGMENT)):
         log = loop.run(SEGMENT, request)
-        stops += int(np.isin(log["supervisor_state"], LATCHED).any())
+        stops += int(np.isin(log["supervisor_state"], STOPPED_STATES).any())
         odometry.append(float(np.linalg.norm(travel(log, "estimate") - travel(log, "truth"))))
         steady = log["truth_angular"][round(SETTLED / loop.period) :]
         width = round(RIPPLE_TIME / loop.period)

@@ -20,8 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 from robot_control import ClosedLoop
 from robot_control.closed_loop import Log
-from robot_control.common.signal_names import mask_of, number_of
+from robot_control.common.signal_names import mask_of
 from robot_control.installed_files import share_file
+
+from bench.faults.sequence_judge import BRAKE, STOPPED_STATES
 
 DIALECTS = ("odrive", "cia402")
 CABLE = "cable"
@@ -43,9 +45,7 @@ FASTER = 0.02  # m/s, tolerance
 STANDING = 0.01  # m/s
 RESETS = 20
 
-BRAKE = number_of("GateVerdict", "brake")
 DRIVER_FAULT = mask_of("StopCause", "driver_fault")
-LATCHED = [number_of("SupervisorState", name) for name in ("STOPPED", "FAULT")]
 
 Array = NDArray[np.float64]
 
@@ -111,14 +111,14 @@ def broken_rules(trial: LossTrial, loop: ClosedLoop, log: Log, request: tuple[fl
         yield "seen"
     if brake > seen + BRAKE_CYCLES:
         yield "brake"
-    if log["supervisor_state"][-1] not in LATCHED or not int(log["permit_causes"][-1]) & DRIVER_FAULT:
+    if log["supervisor_state"][-1] not in STOPPED_STATES or not int(log["permit_causes"][-1]) & DRIVER_FAULT:
         yield "latch"
     after = loop.run(1.0, request)
     steady = np.concatenate([speed_of(log, base)[brake + round(STEADY_TIME / period) :], speed_of(after, base)])
     if np.any(steady > np.minimum.accumulate(steady) + FASTER):
         yield "torque"
     for _ in range(RESETS):
-        if loop.run(0.5, (0.0, 0.0))["supervisor_state"][-1] not in LATCHED:
+        if loop.run(0.5, (0.0, 0.0))["supervisor_state"][-1] not in STOPPED_STATES:
             break
         loop.e_stop_reset()
     if speed_of(loop.run(1.0), base).max() > STANDING:

@@ -35,8 +35,6 @@ START_LIMIT = 60.0
 """s for master, nodes and first rows, and again for the sender; 3 s and 1 s on an idle machine."""
 REST_TIME = 2.0
 """s of the robot's clock before it drives: at rest it learns the bias of its gyro, to 0.35 mrad/s in that time."""
-DRIVERS = {"example": "example"}
-"""The driver of a drive file; of all others can."""
 PERIOD = 1e-3
 """s, of the package's parameters"""
 RAMP_TIME = 1.5
@@ -141,7 +139,11 @@ def _drive(seconds: float, out: Path, drives: Path | None) -> float:
             [
                 *("roslaunch", "-p", port, "robot_control", "sim.launch"),
                 *("telemetry:=true", "black_box:=false", f"out:={out}", f"bus:={BUS}", f"params:={parameters}"),
-                *([] if drives is None else [f"drives:={drives}", f"driver:={DRIVERS.get(drives.stem, 'can')}"]),
+                *(
+                    []
+                    if drives is None
+                    else [f"drives:={drives}", f"driver:={'example' if drives.stem == 'example' else 'can'}"]
+                ),
             ],
             out / "launch.log",
         )

@@ -49,8 +49,12 @@ void CanDriver::stop() noexcept {
   stopped_ = true;
   if (state_ != DriverState::kRunning) return;
   std::ranges::fill(commands_, DriveCommand{.enabled = true, .reset = false, .torque = 0});
+  send_commands(clock_().time_ns);
+}
+
+void CanDriver::send_commands(std::int64_t now_ns) noexcept {
   send_.clear();
-  drives_.step(commands_, clock_().time_ns, send_);
+  drives_.step(commands_, now_ns, send_);
   bus_.send(send_.frames());
 }
 
@@ -184,9 +188,7 @@ void CanDriver::write(std::span<const JointCommand> commands) noexcept {
     commands_[i] = {.enabled = true, .reset = reset_, .torque = wanted_torque(i, obeys ? commands[i] : JointCommand{})};
   }
   reset_ = false;
-  send_.clear();
-  drives_.step(commands_, now_ns_, send_);
-  bus_.send(send_.frames());
+  send_commands(now_ns_);
 }
 
 std::vector<std::string> CanDriver::words() const {

@@ -61,6 +61,7 @@ class CanDriver final : public Driver {
   using Statuses = std::array<DriveStatus, kMaxJoints>;
 
   void begin() noexcept;
+  void send_commands(std::int64_t now_ns) noexcept;
   bool all_are(DriveState state) const noexcept;
   LinkStatus link() const noexcept;
   void publish_statuses() noexcept;

@@ -1,7 +1,6 @@
 #include "drivers/example/example_driver.h"
 
 #include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,12 +10,17 @@
 
 namespace robot_control {
 
-int connect_to_board(const std::string& path) {
+sockaddr_un board_address(const std::string& path) {
   sockaddr_un board{};
   board.sun_family = AF_UNIX;
   if (path.empty() || path.size() >= sizeof board.sun_path)
     throw DriverError("the address of the board, '" + path + "', is no path of a socket");
   path.copy(board.sun_path, path.size());
+  return board;
+}
+
+int connect_to_board(const std::string& path) {
+  const sockaddr_un board = board_address(path);
   const int descriptor = socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   const sockaddr_un own{.sun_family = AF_UNIX, .sun_path = {}};  // the kernel finds a name, to which the board answers
   if (descriptor < 0 || bind(descriptor, reinterpret_cast<const sockaddr*>(&own), sizeof own.sun_family) != 0 ||
@@ -45,14 +49,15 @@ ExampleDriver::~ExampleDriver() {
 
 void ExampleDriver::start() {
   stopped_ = false;
-  state_ = DriverState::kStarting;
-  faults_ = 0;
   silent_for_ = 0;
-  for (JointLaw& law : laws_) law.reset();
+  begin();
 }
 
 void ExampleDriver::reset() noexcept {
-  if (state_ != DriverState::kFault) return;
+  if (state_ == DriverState::kFault) begin();
+}
+
+void ExampleDriver::begin() noexcept {
   state_ = DriverState::kStarting;
   faults_ = 0;
   for (JointLaw& law : laws_) law.reset();
@@ -107,13 +112,16 @@ void ExampleDriver::write(std::span<const JointCommand> commands) noexcept {
     if (state_ != DriverState::kRunning) continue;  // without a report there is no law
     order.torque[i] = laws_[i].step(obeys ? commands[i] : JointCommand{}, motor.position, motor.velocity);
   }
-  send(descriptor_, &order, sizeof order, MSG_DONTWAIT | MSG_NOSIGNAL);
+  send(order);
+}
+
+void ExampleDriver::send(const BoardOrder& order) const noexcept {
+  ::send(descriptor_, &order, sizeof order, MSG_DONTWAIT | MSG_NOSIGNAL);
 }
 
 void ExampleDriver::stop() noexcept {
   stopped_ = true;
-  const BoardOrder order{.count = static_cast<std::uint32_t>(laws_.size())};
-  send(descriptor_, &order, sizeof order, MSG_DONTWAIT | MSG_NOSIGNAL);
+  send({.count = static_cast<std::uint32_t>(laws_.size())});
 }
 
 std::string ExampleDriver::warning() const {

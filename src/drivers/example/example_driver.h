@@ -6,6 +6,8 @@
 /// word, a number that is not finite, and silence for more than `max_silence` cycles. They stay until the operator's
 /// reset, and the driver orders no torque meanwhile.
 
+#include <sys/un.h>
+
 #include <atomic>
 #include <span>
 #include <string>
@@ -17,6 +19,9 @@
 #include "drivers/joint_law.h"
 
 namespace robot_control {
+
+/// Returns the address of the board at this path. Throws DriverError.
+sockaddr_un board_address(const std::string& path);
 
 /// Returns a socket that is connected with the board at this path. Throws DriverError.
 int connect_to_board(const std::string& path);
@@ -43,6 +48,8 @@ class ExampleDriver final : public Driver {
   bool implements(StopKind) const noexcept override { return true; }
 
  private:
+  void begin() noexcept;
+  void send(const BoardOrder& order) const noexcept;
   bool receive() noexcept;
   void evaluate_faults() noexcept;
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "drivers/driver.h"
+#include "drivers/example/example_driver.h"
 
 namespace robot_control {
 namespace {
@@ -19,11 +19,7 @@ constexpr std::uint64_t kInjectedFault = 1;
 }  // namespace
 
 int bind_board(const std::string& path) {
-  sockaddr_un own{};
-  own.sun_family = AF_UNIX;
-  if (path.empty() || path.size() >= sizeof own.sun_path)
-    throw DriverError("the address of the board, '" + path + "', is no path of a socket");
-  path.copy(own.sun_path, path.size());
+  const sockaddr_un own = board_address(path);
   const int descriptor = socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (descriptor >= 0) fchmod(descriptor, S_IRUSR | S_IWUSR);  // the socket file gets this mode
   struct stat left {};
