@@ -18,7 +18,6 @@
 #include "estimation/estimator.h"
 #include "gate/gate.h"
 #include "loop/gate_setup.h"
-#include "loop/wheeled_gate.h"
 #include "rt/clock.h"
 #include "safety/safety_monitor.h"
 #include "simulation/closed_loop.h"
@@ -92,7 +91,7 @@ void add(std::vector<Row>& rows, const std::string& name, const Timing& timing) 
 int run(const std::string& path) {
   const Parameters parameters = read_parameters(path);
   ClosedLoop loop(parameters);
-  const DriveTrain& robot = loop.robot();
+  const DriveTrain& robot = drive_train_of(loop.robot().machine());
   const double period = parameters.loop.period();
   const Drive drive = record(loop);
   std::vector<Row> rows;
@@ -118,7 +117,7 @@ int run(const std::string& path) {
                                 command);
               }));
 
-  Gate gate(joint_limits(robot), gate_parameters(parameters, robot), period);
+  Gate gate(joint_limits(robot), loop.robot().gate(), period);
   add(rows, "gate",
       measure([&] { gate.enter_run(); },
               [&](std::size_t k) {

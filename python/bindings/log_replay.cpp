@@ -16,6 +16,7 @@
 #include "log/replay/replay_error.h"
 #include "log/trace_reader.h"
 #include "loop/log_header.h"
+#include "robots/differential_drive.h"
 #include "signals/roles.h"
 
 namespace py = pybind11;
@@ -120,7 +121,7 @@ std::vector<std::string> header_differences(const LogHeader& logged, const LogHe
 py::dict replay_log(const std::string& path, const Layers& logged, const std::optional<Layers>& varied) {
   const Parameters parameters = parameters_in(logged, logged.first);
   const DriveTrain robot = robot_in(parameters);
-  Replay replay(parameters, robot);
+  Replay replay(DifferentialDrive(parameters, robot), parameters.loop.period());
   VariedColumns columns(robot);
   std::vector<std::string> live;  // values that the log leaves out but `varied` sets are included
   if (varied) {
@@ -131,7 +132,7 @@ py::dict replay_log(const std::string& path, const Layers& logged, const std::op
            << " Hz: its rows cannot be made more or fewer; leave robot.rate out";
       throw ReplayError(text.str());
     }
-    replay.vary(others, robot_in(others), [&](const VariedRow& row) { columns.add(row); });
+    replay.vary(DifferentialDrive(others, robot_in(others)), [&](const VariedRow& row) { columns.add(row); });
     for (const LiveParameter& each : live_parameters(others, std::string(program_of(Role::kController))))
       live.push_back(each.key);
   }

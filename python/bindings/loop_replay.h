@@ -16,7 +16,7 @@ class LoopReplay {
  public:
   /// Is constructed before the first step of `loop`.
   explicit LoopReplay(const ClosedLoop& loop)
-      : replay_(loop.parameters(), loop.robot()), joints_(loop.robot().joints.size()) {}
+      : replay_(loop.robot(), loop.parameters().loop.period()), joints_(loop.robot().machine().joints.size()) {}
 
   /// Stores the rows of the last step; is called after each step.
   void store(const ClosedLoop& loop);

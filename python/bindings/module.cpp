@@ -29,7 +29,7 @@
 #include "drivers/mujoco/model/mujoco_model.h"
 #include "drivers/mujoco/mujoco_plant.h"
 #include "log/fields/trace_fields.h"
-#include "loop/start_check.h"
+#include "robots/wheeled/start_check.h"
 #include "signals/names.h"
 #include "signals/wheeled/slip_detection.h"
 #include "simulation/closed_loop.h"
@@ -45,7 +45,7 @@ Twist planar(double linear, double angular) {
 
 std::vector<TraceColumn> columns_of(const ClosedLoop& loop) {
   std::vector<std::string> names;
-  for (const JointModel& joint : loop.robot().joints) names.push_back(joint.name);
+  for (const JointModel& joint : loop.robot().machine().joints) names.push_back(joint.name);
   return log_columns(names, false);
 }
 
@@ -167,8 +167,8 @@ double distance_to_stop(const ClosedLoop& loop, double speed, bool emergency) {
 
 double smooth_speed_of(const ClosedLoop& loop) {
   const Parameters& parameters = loop.parameters();
-  return smooth_speed(parameters.controller, loop.robot(), encoder_count(parameters.estimator),
-                      parameters.loop.period());
+  return smooth_speed(parameters.controller, drive_train_of(loop.robot().machine()),
+                      encoder_count(parameters.estimator), parameters.loop.period());
 }
 
 std::vector<std::pair<std::string, std::string>> column_meanings(const ClosedLoop& loop) {
@@ -224,7 +224,8 @@ void bind_closed_loop(py::module_& module) {
       .def("stop_distance", &distance_to_stop, py::arg("speed"), py::arg("emergency"))
       .def_property_readonly("smooth_speed", &smooth_speed_of)
       .def_property_readonly("period", [](const ClosedLoop& loop) { return loop.parameters().loop.period(); })
-      .def_property_readonly("robot", [](const ClosedLoop& loop) { return describe(loop.robot()); })
+      .def_property_readonly("robot",
+                             [](const ClosedLoop& loop) { return describe(drive_train_of(loop.robot().machine())); })
       .def_property_readonly("cycle", &ClosedLoop::cycle)
       .def_property_readonly("time", &ClosedLoop::time)
       .def_property_readonly("columns", &column_meanings);

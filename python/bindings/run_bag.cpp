@@ -167,7 +167,7 @@ void each_part_of_run_bag(const std::string& path, const py::function& use) {
 class FolderLog final : public RowLog {
  public:
   FolderLog(const std::string& directory, const ClosedLoop& loop)
-      : folder_(directory, 0), log_(folder_, log_header(loop.parameters(), loop.robot()), all_of(loop)) {}
+      : folder_(directory, 0), log_(folder_, log_header(loop.parameters(), loop.robot().machine()), all_of(loop)) {}
 
   void write(const JoinedRow& row) override { log_.write(row); }
   void write(const LawSnapshot& snapshot) override { log_.write(snapshot); }

@@ -96,4 +96,21 @@ const Request& CommandWatch::step(const VelocityCommand& request, std::uint64_t 
   return requested_;
 }
 
+void CommandWatch::report(std::uint64_t cycle, CommandFrame& out) const noexcept {
+  out.request_cycle = request_cycle();
+  out.requests_received = received();
+  out.requests_refused = refused();
+  out.requests_stale = stale();
+  out.requests_crowded = crowded();
+  out.requests_revoked = revoked();
+  out.requests_partial = partial();
+  out.ignored = ignored();
+  out.timeouts = timeouts();
+  out.first_cycle = first_cycle();
+  out.zero_requests = zero_requests();
+  out.zero_requested = zero_requested() ? 1 : 0;
+  out.silent_cycles = silent_cycles(cycle);
+  out.silence_needed = silence_needed();
+}
+
 }  // namespace robot_control

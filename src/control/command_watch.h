@@ -51,6 +51,9 @@ class CommandWatch {
   /// Returns the request of this cycle, with the parts that the machine ignores.
   const Request& step(const VelocityCommand& request, std::uint64_t cycle) noexcept;
 
+  /// Fills the counters of the frame and the evidence that the safety monitor reads.
+  void report(std::uint64_t cycle, CommandFrame& out) const noexcept;
+
   /// Returns the CommandReason bits of the last step. They contain at most one of kReasonNoCommand, kReasonRefused,
   /// kReasonManySenders and kReasonTimedOut, and in addition kReasonStale, kReasonRevoked and kReasonPartIgnored.
   std::uint64_t reasons() const noexcept {

@@ -313,20 +313,7 @@ void DriveController::step(const ControlInput& input, CommandFrame& out) noexcep
 
   out.state_cycle = state_cycle_;
   out.permit_cycle = permit_cycle_;
-  out.request_cycle = watch_.request_cycle();
-  out.requests_received = watch_.received();
-  out.requests_refused = watch_.refused();
-  out.requests_stale = watch_.stale();
-  out.requests_crowded = watch_.crowded();
-  out.requests_revoked = watch_.revoked();
-  out.requests_partial = watch_.partial();
-  out.ignored = watch_.ignored();
-  out.timeouts = watch_.timeouts();
-  out.first_cycle = watch_.first_cycle();
-  out.zero_requests = watch_.zero_requests();
-  out.zero_requested = watch_.zero_requested() ? 1 : 0;
-  out.silent_cycles = watch_.silent_cycles(cycle);
-  out.silence_needed = watch_.silence_needed();
+  watch_.report(cycle, out);
 }
 
 }  // namespace robot_control

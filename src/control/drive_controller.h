@@ -51,6 +51,7 @@
 #include <optional>
 
 #include "control/command_watch.h"
+#include "control/control_input.h"
 #include "control/drive_controller_parameters.h"
 #include "control/kinematics.h"
 #include "control/limits/speed_limiter.h"
@@ -68,14 +69,6 @@
 #include "signals/velocity_command.h"
 
 namespace robot_control {
-
-/// Holds the inputs of one cycle. A null pointer is an input that is not available in this cycle.
-struct ControlInput {
-  const SensorFrame* sensors = nullptr;  ///< never null
-  const StateFrame* state = nullptr;
-  const Permit* permit = nullptr;  ///< the newest unexpired one ≤ k-1
-  VelocityCommand request;         ///< the inbox; a new message is one with a new count
-};
 
 /// No wheel reaches this speed, in rad/s (10⁴ rpm): a faster change of angle is an encoder error.
 inline constexpr double kFastestWheel = 1000;

@@ -52,7 +52,7 @@ class Driver {
   /// Returns the fault of the last `read` in words; "" without one.
   virtual std::string_view fault_message() const noexcept { return {}; }
 
-  /// Returns true if the drives carry out the order of this stop action (order_of). The loop does not start with a
+  /// Returns true if the drives carry out the orders of this stop action (JointStop). The loop does not start with a
   /// joint that is to be stopped by another one.
   virtual bool implements(StopKind kind) const noexcept { return kind == StopKind::kBrake; }
 };

@@ -30,7 +30,13 @@ void check(const JointLimits& limits, std::size_t joint) {
 }
 
 const StopAction& checked(const StopAction& action, std::size_t joint) {
-  if (!(action.damping >= 0) || std::isinf(action.damping)) refuse("stop damping", joint, action.damping, ">= 0");
+  const auto check = [&](const char* what, double value) {
+    if (!(value >= 0) || std::isinf(value)) refuse(what, joint, value, ">= 0");
+  };
+  check("stop damping", action.damping);
+  check("stop stiffness", action.stiffness);
+  check("stop time", action.time);
+  if (!std::isfinite(action.posture)) refuse("stop posture", joint, action.posture, "that is finite");
   return action;
 }
 
@@ -54,13 +60,14 @@ Gate::Gate(const std::vector<JointLimits>& limits, const GateParameters& paramet
   for (std::size_t i = 0; i < limits.size(); ++i) {
     check(limits[i], i);
     limits_.emplace_back(limits[i]);
-    stops_.emplace_back(parameters.stops.empty() ? StopAction{} : checked(parameters.stops[i], i));
+    stops_.emplace_back(JointStop(parameters.stops.empty() ? StopAction{} : checked(parameters.stops[i], i)));
     memory_.emplace_back(JointMemory{.speed = JointSpeed(period)});
   }
 }
 
 void Gate::enter_run() noexcept {
   for (JointMemory& memory : memory_) memory = {.speed = JointSpeed(period_)};
+  for (JointStop& stop : stops_) stop.release();
   last_cycle_.reset();
   newest_permit_ = ramp_began_ = 0;
   ramping_ = false;
@@ -71,7 +78,7 @@ std::span<const JointCommand> Gate::step(const GateInput& input) noexcept {
   report_.verdict = GateVerdict::kBrake;
   report_.reasons = 0;
   read_samples(input);
-  if (!check_and_clamp(input)) stop();
+  if (!check_and_clamp(input)) stop(elapsed_at(input.cycle));
   remember();
   samples_ = {};
   last_cycle_ = input.cycle;
@@ -104,9 +111,7 @@ bool Gate::check_and_clamp(const GateInput& input) noexcept {
     report_.reasons |= kGateControllerBrake;
     return true;
   }
-  const bool later = last_cycle_ && input.cycle > *last_cycle_;
-  const std::uint64_t elapsed = later ? input.cycle - *last_cycle_ : 1;
-  clamp(static_cast<double>(elapsed) * period_);
+  clamp(static_cast<double>(elapsed_at(input.cycle)) * period_);
   if (input.permit->action == PermitAction::kRamp) {
     report_.verdict = GateVerdict::kRamp;
   } else if ((report_.reasons & kClamps) != 0) {
@@ -233,13 +238,17 @@ void Gate::clamp(double elapsed) noexcept {
   }
 }
 
-void Gate::stop() noexcept {
-  for (std::size_t i = 0; i < limits_.size(); ++i) commands_[i] = order_of(stops_[i]);
+void Gate::stop(std::uint64_t elapsed) noexcept {
+  for (std::size_t i = 0; i < limits_.size(); ++i) {
+    const auto position = has_position(i) ? std::optional(samples_[i].position) : std::nullopt;
+    commands_[i] = stops_[i].step(position, static_cast<double>(elapsed) * period_);
+  }
 }
 
 void Gate::remember() noexcept {
   const bool braked = report_.verdict == GateVerdict::kBrake;
   for (std::size_t i = 0; i < limits_.size(); ++i) {
+    if (!braked) stops_[i].release();
     memory_[i].driven = !braked && !is_brake(commands_[i]);
     memory_[i].effort = commands_[i].effort;
   }

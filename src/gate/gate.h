@@ -79,6 +79,10 @@ class Gate {
   };
 
   void read_samples(const GateInput& input) noexcept;
+  /// Returns the cycles since the last tick, 1 at the first one.
+  std::uint64_t elapsed_at(std::uint64_t cycle) const noexcept {
+    return last_cycle_ && cycle > *last_cycle_ ? cycle - *last_cycle_ : 1;
+  }
   /// All checks; false: brake. Else `commands_` is the clamped command and the verdict is set.
   bool check_and_clamp(const GateInput& input) noexcept;
   bool permit_is_alive(const GateInput& input) noexcept;
@@ -90,13 +94,13 @@ class Gate {
     return joint < samples_.size() && has(samples_[joint], kValidPosition) && std::isfinite(samples_[joint].position);
   }
   void clamp(double elapsed) noexcept;
-  void stop() noexcept;
+  void stop(std::uint64_t elapsed) noexcept;
   void remember() noexcept;
 
   FixedVector<JointLimits, kMaxJoints> limits_;
   std::uint64_t longest_ramp_;
   double period_;
-  FixedVector<StopAction, kMaxJoints> stops_;
+  FixedVector<JointStop, kMaxJoints> stops_;
   FixedVector<JointMemory, kMaxJoints> memory_;
   std::span<const JointSample> samples_;     ///< of this tick; empty: missing, or between two ticks
   std::optional<std::uint64_t> last_cycle_;  ///< of the last tick

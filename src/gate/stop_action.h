@@ -6,9 +6,12 @@
 ///           (brake_law.h)
 ///   kCoast  τ = 0: friction alone stops the joint, and a load moves it
 ///   kDamp   τ = −damping · q̇: a load moves the joint slowly
+///   kFold   τ = stiffness · (q* − q) + damping · (q̇* − q̇): q* moves at constant speed from the joint's position at the
+///           first order to `posture`, within `time`. After that, and without a position, as kDamp
 ///
 /// A driver that cannot carry out an action says so (Driver::implements), and the loop does not start.
 
+#include <optional>
 #include <vector>
 
 #include "parameters/block.h"
@@ -16,28 +19,60 @@
 
 namespace robot_control {
 
-enum class StopKind { kBrake, kCoast, kDamp };
+enum class StopKind { kBrake, kCoast, kDamp, kFold };
 
+/// Returns the actions that a user may choose for drive wheels. Others belong to the robot's kind.
 inline std::vector<Word> words_of(StopKind) {
   return {{"brake", StopKind::kBrake}, {"coast", StopKind::kCoast}, {"damp", StopKind::kDamp}};
 }
 
 struct StopAction {
   StopKind kind = StopKind::kBrake;
-  double damping = 0;  ///< N·m·s/rad or N·s/m, ≥ 0; kDamp
+  double damping = 0;    ///< N·m·s/rad or N·s/m, ≥ 0; kDamp, kFold
+  double stiffness = 0;  ///< N·m/rad or N/m, ≥ 0; kFold
+  double posture = 0;    ///< rad or m; kFold
+  double time = 0;       ///< s, ≥ 0; kFold
 };
 
-/// Returns the command by which the gate orders the action.
-inline JointCommand order_of(const StopAction& action) noexcept {
-  switch (action.kind) {
-    case StopKind::kCoast:
-      return {.mode = JointMode::kEffort};
-    case StopKind::kDamp:
-      return {.mode = JointMode::kVelocity, .damping = action.damping};
-    case StopKind::kBrake:
-      break;
+/// The stop of one joint as a law. Its state is empty while a command moves the joint.
+class JointStop {
+ public:
+  explicit JointStop(const StopAction& action) noexcept : action_(action) {}
+
+  /// A command moves the joint.
+  void release() noexcept {
+    begin_.reset();
+    elapsed_ = 0;
   }
-  return {.mode = JointMode::kBrake};
-}
+
+  /// Returns the order of one cycle, `dt` s after the last one. `position`: measured, rad or m; none: not known.
+  JointCommand step(std::optional<double> position, double dt) noexcept {
+    const JointCommand damped{.mode = JointMode::kVelocity, .damping = action_.damping};
+    switch (action_.kind) {
+      case StopKind::kCoast:
+        return {.mode = JointMode::kEffort};
+      case StopKind::kDamp:
+        return damped;
+      case StopKind::kFold:
+        break;
+      case StopKind::kBrake:
+        return {};
+    }
+    if (!begin_) begin_ = position;
+    elapsed_ += dt;
+    if (!begin_ || elapsed_ > action_.time) return damped;
+    const double difference = action_.posture - *begin_;
+    return {.mode = JointMode::kImpedance,
+            .position = *begin_ + difference * (elapsed_ / action_.time),
+            .velocity = difference / action_.time,
+            .stiffness = action_.stiffness,
+            .damping = action_.damping};
+  }
+
+ private:
+  StopAction action_;
+  std::optional<double> begin_;  ///< rad or m, at the first order
+  double elapsed_ = 0;           ///< s, since then
+};
 
 }  // namespace robot_control

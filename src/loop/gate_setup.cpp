@@ -25,7 +25,7 @@ std::vector<JointLimits> joint_limits(const MachineModel& robot) {
 void require_stop_actions(const Driver& driver, const GateParameters& gate, const MachineModel& robot) {
   for (std::size_t i = 0; i < gate.stops.size(); ++i) {
     if (driver.implements(gate.stops[i].kind)) continue;
-    std::string wanted, possible;
+    std::string wanted = "fold", possible;
     for (const Word& word : words_of(StopKind{})) {
       const auto kind = static_cast<StopKind>(word.value);
       if (kind == gate.stops[i].kind) wanted = word.text;

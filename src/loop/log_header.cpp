@@ -3,6 +3,7 @@
 #include <gnu/libc-version.h>
 #include <sys/utsname.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "files/input_file.h"
@@ -31,9 +32,10 @@ std::string text_of(const std::string& path, std::size_t max_size) {
 
 }  // namespace
 
-LogHeader log_header(const Parameters& parameters, const DriveTrain& robot) {
+LogHeader log_header(const Parameters& parameters, const MachineModel& robot) {
+  const auto driven = std::ranges::count(robot.joints, JointRole::kDriven, &JointModel::role);
   LogHeader header{.robot = robot.name,
-                   .wheels = static_cast<std::uint32_t>(robot.wheels.size()),
+                   .wheels = static_cast<std::uint32_t>(driven),
                    .period = parameters.loop.period(),
                    .clock = parameters.loop.clock == ClockMode::kWall ? "wall" : "lockstep",
                    .parameters = parameters_text(parameters),

@@ -62,7 +62,15 @@ const char* name_of(RobotNote::Kind kind);
 
 struct RigidBodies;
 
+/// The model of one kind is derived from it.
 struct MachineModel {
+  MachineModel() = default;
+  MachineModel(const MachineModel&) = default;
+  MachineModel(MachineModel&&) = default;
+  MachineModel& operator=(const MachineModel&) = default;
+  MachineModel& operator=(MachineModel&&) = default;
+  virtual ~MachineModel() = default;
+
   std::string name;
   std::string source;
   std::string urdf;        ///< the text itself

@@ -65,7 +65,7 @@ struct SafetyParameters {
   // clang-format on
 
   /// N·m/rad, of each wheel: RMS of the torque that the derived gains produce from encoder quantisation, divided by the
-  /// size of a count. Not a user parameter: it follows from robot and rate (loop/safety_limits.h).
+  /// size of a count. Not a user parameter: it follows from robot and rate (robots/wheeled/safety_limits.h).
   std::array<double, kMaxWheels> count_ripple{};
 };
 

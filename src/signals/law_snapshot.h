@@ -37,7 +37,8 @@ struct LawSnapshot {
 };
 
 /// The state of a law is its member `State`, which `state` and `set_state` give and replace; without such a member it
-/// is the whole object. Parameters and what the law allocated are not part of `State`.
+/// is the whole object. Parameters and what the law allocated are not part of `State`. A law with members `save` and
+/// `restore` (robots/laws.h) copies its state itself.
 template <class Law>
 struct StateOf {
   using Type = Law;
@@ -52,30 +53,38 @@ struct StateOf<Law> {
 
 template <class Law>
 void save_state(const Law& law, LawSnapshot& snapshot) noexcept {
-  using State = typename StateOf<Law>::Type;
-  static_assert(std::is_trivially_copyable_v<State> && sizeof(State) <= kSnapshotBytes);
-  snapshot.bytes = sizeof(State);
-  if constexpr (std::is_same_v<State, Law>) {
-    std::memcpy(snapshot.state.data(), &law, sizeof(State));
+  if constexpr (requires { law.save(snapshot); }) {
+    law.save(snapshot);
   } else {
-    std::memcpy(snapshot.state.data(), &law.state(), sizeof(State));
+    using State = typename StateOf<Law>::Type;
+    static_assert(std::is_trivially_copyable_v<State> && sizeof(State) <= kSnapshotBytes);
+    snapshot.bytes = sizeof(State);
+    if constexpr (std::is_same_v<State, Law>) {
+      std::memcpy(snapshot.state.data(), &law, sizeof(State));
+    } else {
+      std::memcpy(snapshot.state.data(), &law.state(), sizeof(State));
+    }
   }
 }
 
 /// Returns false if the snapshot has another size.
 template <class Law>
 bool restore_state(const LawSnapshot& snapshot, Law& law) noexcept {
-  using State = typename StateOf<Law>::Type;
-  static_assert(std::is_trivially_copyable_v<State> && sizeof(State) <= kSnapshotBytes);
-  if (snapshot.bytes != sizeof(State)) return false;
-  if constexpr (std::is_same_v<State, Law>) {
-    std::memcpy(&law, snapshot.state.data(), sizeof(State));
+  if constexpr (requires { law.restore(snapshot); }) {
+    return law.restore(snapshot);
   } else {
-    State state = law.state();
-    std::memcpy(&state, snapshot.state.data(), sizeof(State));
-    law.set_state(state);
+    using State = typename StateOf<Law>::Type;
+    static_assert(std::is_trivially_copyable_v<State> && sizeof(State) <= kSnapshotBytes);
+    if (snapshot.bytes != sizeof(State)) return false;
+    if constexpr (std::is_same_v<State, Law>) {
+      std::memcpy(&law, snapshot.state.data(), sizeof(State));
+    } else {
+      State state = law.state();
+      std::memcpy(&state, snapshot.state.data(), sizeof(State));
+      law.set_state(state);
+    }
+    return true;
   }
-  return true;
 }
 
 /// The log keeps complete frames in this many cycles before and after a snapshot of all laws. The restored laws need

@@ -9,10 +9,7 @@
 #include "loop/cycles/driver_cycle.h"
 #include "loop/cycles/estimator_cycle.h"
 #include "loop/cycles/monitor_cycle.h"
-#include "loop/retuning.h"
-#include "loop/safety_limits.h"
-#include "loop/start_check.h"
-#include "loop/wheeled_gate.h"
+#include "robots/differential_drive.h"
 #include "signals/names.h"
 #include "simulation/faults/node_faults.h"
 #include "simulation/machines/simulated_machine.h"
@@ -30,9 +27,13 @@ CommandScript script_of(const Parameters& parameters) {
   return script;
 }
 
-DriveTrain load_robot(const Parameters& parameters) {
-  DriveTrain robot = read_drive_train(load_description(parameters.urdf), parameters.robot);
-  require_drivable(parameters, robot);
+std::shared_ptr<const Robot> load_robot(const Parameters& parameters) {
+  return std::make_shared<DifferentialDrive>(parameters,
+                                             read_drive_train(load_description(parameters.urdf), parameters.robot));
+}
+
+const Robot& drivable(const Robot& robot) {
+  robot.require_drivable();
   return robot;
 }
 
@@ -47,19 +48,20 @@ struct ClosedLoop::Parts {
     FrameReader<Frame> reader{memory.get()};
   };
 
-  explicit Parts(const Parameters& given)
+  Parts(const Parameters& given, std::shared_ptr<const Robot> composed)
       : parameters(given),
-        robot(load_robot(given)),
-        machine(make_simulated_machine(given, robot)),
-        driver(*machine, robot, {sensors.writer, FrameWriter<TruthFrame>(), &command.reader, &permit.reader},
-               given.loop.period_ns(), nullptr, gate_parameters(given, robot)),
-        estimator(given.estimator, robot, given.loop.period(), sensors.reader, state.writer, nullptr),
-        controller(given.controller, robot, given.loop.period(),
+        owner(std::move(composed)),
+        robot(drivable(*owner)),
+        machine(make_simulated_machine(given, robot.machine())),
+        driver(*machine, robot.machine(), {sensors.writer, FrameWriter<TruthFrame>(), &command.reader, &permit.reader},
+               given.loop.period_ns(), nullptr, robot.gate()),
+        estimator(robot.make_estimator(), robot.machine().hash, sensors.reader, state.writer, nullptr),
+        controller(robot.make_controller(), robot.machine().hash,
                    {&sensors.reader, &state.reader, &permit.reader, command.writer}, script_of(given), nullptr),
-        monitor(safety_limits(given, robot), robot, given.loop.period(),
+        monitor(robot.make_monitor(), robot.machine().hash, 0,
                 {&sensors.reader, &state.reader, &command.reader, permit.writer},
                 load_script(given.loop.command_script), nullptr),
-        retuning(given, robot, controller.tunings()) {
+        retuner(robot.make_retuner(controller.tunings())) {
     machine->start();
     driver.set_driver_instance(kDriverInstance);
     driver.begin_run(1);
@@ -77,7 +79,8 @@ struct ClosedLoop::Parts {
   }
 
   Parameters parameters;
-  DriveTrain robot;
+  std::shared_ptr<const Robot> owner;
+  const Robot& robot;
   std::unique_ptr<Driver> machine;
   Channel<SensorFrame> sensors;
   Channel<StateFrame> state;
@@ -90,7 +93,7 @@ struct ClosedLoop::Parts {
   EstimatorFaults estimator_faults{FaultComponent::kEstimator, state.writer};
   ControllerFaults controller_faults{FaultComponent::kController, command.writer};
   MonitorFaults monitor_faults{FaultComponent::kMonitor, permit.writer};
-  Retuning retuning;
+  std::unique_ptr<Retuner> retuner;
   VelocityCommand request;
   OperatorInput operator_input;
   InjectedFaults faults{};
@@ -99,7 +102,9 @@ struct ClosedLoop::Parts {
   std::string log_problem;
 };
 
-ClosedLoop::ClosedLoop(const Parameters& parameters) : parts_(std::make_unique<Parts>(parameters)) {}
+ClosedLoop::ClosedLoop(const Parameters& parameters) : ClosedLoop(parameters, load_robot(parameters)) {}
+ClosedLoop::ClosedLoop(const Parameters& parameters, std::shared_ptr<const Robot> robot)
+    : parts_(std::make_unique<Parts>(parameters, std::move(robot))) {}
 ClosedLoop::~ClosedLoop() = default;
 ClosedLoop::ClosedLoop(ClosedLoop&&) noexcept = default;
 ClosedLoop& ClosedLoop::operator=(ClosedLoop&&) noexcept = default;
@@ -168,8 +173,9 @@ void ClosedLoop::reset() {
 }
 
 void ClosedLoop::set_parameters(const std::string& request) {
-  parts_->retuning.set(request);
-  parts_->parameters.controller = parts_->retuning.in_force();
+  if (parts_->retuner == nullptr) throw ParameterError("this robot has no parameters that change while it runs");
+  parts_->retuner->set(request);
+  parts_->parameters = parts_->retuner->in_force();
 }
 
 void ClosedLoop::inject_fault(const std::string& component, const std::string& kind) {
@@ -194,7 +200,7 @@ std::array<const LawSnapshot*, kLaws> ClosedLoop::snapshots() const noexcept {
           laws.controller != nullptr ? parts_->controller.snapshot() : nullptr,
           laws.monitor != nullptr ? parts_->monitor.snapshot() : nullptr};
 }
-const DriveTrain& ClosedLoop::robot() const noexcept {
+const Robot& ClosedLoop::robot() const noexcept {
   return parts_->robot;
 }
 const Parameters& ClosedLoop::parameters() const noexcept {

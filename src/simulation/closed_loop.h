@@ -13,7 +13,7 @@
 #include "configuration/parameters.h"
 #include "log/rows/joined_row.h"
 #include "log/rows/row_log.h"
-#include "machine/wheeled/drive_train.h"
+#include "robots/robot.h"
 #include "signals/geometry.h"
 #include "signals/law_snapshot.h"
 
@@ -24,6 +24,9 @@ class ClosedLoop {
   /// Reads the robot that the parameters name and places a MuJoCo plant in the scene. Throws RobotError, DriverError,
   /// ParameterError. Telemetry, clock and real-time parameters have no effect.
   explicit ClosedLoop(const Parameters& parameters);
+
+  /// Does the same with a robot of any kind, which was composed with these parameters.
+  ClosedLoop(const Parameters& parameters, std::shared_ptr<const Robot> robot);
   ~ClosedLoop();
   ClosedLoop(ClosedLoop&&) noexcept;
   ClosedLoop& operator=(ClosedLoop&&) noexcept;
@@ -71,7 +74,7 @@ class ClosedLoop {
   /// Returns the reason why the log has ended; "" if it has not.
   const std::string& log_problem() const noexcept;
 
-  const DriveTrain& robot() const noexcept;
+  const Robot& robot() const noexcept;
   const Parameters& parameters() const noexcept;
 
  private:

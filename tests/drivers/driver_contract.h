@@ -194,7 +194,8 @@ TEST_P(DriverContract, AStopActionThatItImplementsActsAtOnce) {
   for (const StopKind kind : {StopKind::kBrake, StopKind::kCoast, StopKind::kDamp}) {
     if (!driver_->implements(kind)) continue;
     hold(all(velocity(3.0)), 1.0);
-    hold(all(order_of({.kind = kind, .damping = GetParam().damping})), 2 * GetParam().period);
+    hold(all(JointStop({.kind = kind, .damping = GetParam().damping}).step(std::nullopt, GetParam().period)),
+         2 * GetParam().period);
     for (std::size_t i = 0; i < GetParam().joints; ++i) {
       const double effort = joint(i).effort;
       if (kind == StopKind::kCoast) {

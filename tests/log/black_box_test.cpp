@@ -44,7 +44,7 @@ TEST_F(ABlackBox, HoldsTheNewestRowsOnceItIsFullAndTheyAreReplayedFromTheirFirst
   EXPECT_EQ(cycles.back(), 11999u);
   EXPECT_EQ(cycles.size(), cycles.back() - cycles.front() + 1) << "no gap";
 
-  Replay replay(drive_parameters(), loop.robot());
+  Replay replay(loop.robot(), drive_parameters().loop.period());
   TraceReader reader(path("saved/run.bag"));
   reader.read({.message =
                    [&](const TraceRow& row, const BagMessage& message) {

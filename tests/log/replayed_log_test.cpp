@@ -16,7 +16,7 @@ struct AReplayedLog : testing::Test {
   AReplayedLog() {
     TelemetryParameters all;
     all.record = RecordMode::kAlways;
-    log = std::make_unique<BagLog>(logs, log_header(parameters, loop.robot()), all);
+    log = std::make_unique<BagLog>(logs, log_header(parameters, loop.robot().machine()), all);
   }
 
   void drive_on(std::uint64_t cycles) {
@@ -30,7 +30,7 @@ struct AReplayedLog : testing::Test {
 
   void expect_replayed_whole() {
     log->close();
-    Replay replay(parameters, loop.robot());
+    Replay replay(loop.robot(), parameters.loop.period());
     TraceReader reader(folder.path() / "run.bag");
     EXPECT_TRUE(intact(reader.header()));
     reader.read({.message =

@@ -25,7 +25,7 @@ struct TraceMessages : testing::Test {
   template <class Visit>
   void each(std::uint64_t cycles, Visit visit) {
     drive(loop, cycles, [&](const JoinedRow& row) {
-      encode_trace({.row = row, .joints = loop.robot().joints.size()}, message);
+      encode_trace({.row = row, .joints = loop.robot().machine().joints.size()}, message);
       decoder.decode(message, read);
       visit(row, read.joined(loop.parameters().loop.period()));
     });
@@ -62,7 +62,7 @@ TEST_F(TraceMessages, HoldWhatEachLawWasGivenBitForBit) {
 
 TEST_F(TraceMessages, HoldEveryColumnOfTheTable) {
   constexpr double kFloat = 1.2e-7;  // relative error of a float32, 2^-23
-  const std::vector<TraceColumn> columns = log_columns(joint_names(loop.robot()), true);
+  const std::vector<TraceColumn> columns = log_columns(joint_names(loop.robot().machine()), true);
   each(3000, [&](const JoinedRow& row, const JoinedRow& again) {
     for (const TraceColumn& column : columns) {
       const double expected = column.value(row, column.element);

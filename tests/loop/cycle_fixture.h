@@ -10,12 +10,14 @@
 #include "loop/cycles/driver_cycle.h"
 #include "loop/cycles/estimator_cycle.h"
 #include "loop/cycles/monitor_cycle.h"
+#include "robots/differential_drive.h"
 #include "simulation/faults/node_faults.h"
 
 namespace robot_control {
 
 inline constexpr double kPeriod = 0.001;
 inline constexpr std::int64_t kPeriodNs = 1'000'000;
+inline constexpr std::int64_t kLossNs = 20 * kPeriodNs;
 inline constexpr Twist kForward{.linear = {0.5, 0, 0}, .angular = {0, 0, 0}};
 
 inline DriveTrain two_wheels() {
@@ -84,18 +86,18 @@ struct Loop {
 
   /// A killed and restarted node is a new object on the channels that its predecessor left.
   void restart_estimator() {
-    estimator =
-        std::make_unique<EstimatorCycle>(EstimatorParameters{}, robot, kPeriod, sensors.reader, state.writer, nullptr);
+    estimator = std::make_unique<EstimatorCycle>(wheeled_estimator({}, robot, kPeriod), robot.hash, sensors.reader,
+                                                 state.writer, nullptr);
   }
   void restart_controller() {
     controller = std::make_unique<ControllerCycle>(
-        DriveControllerParameters{}, robot, kPeriod,
+        wheeled_controller({}, robot, kPeriod), robot.hash,
         ControllerCycle::Channels{&sensors.reader, &state.reader, &permit.reader, command.writer}, script_with_zero(),
         nullptr);
   }
   void restart_monitor() {
     monitor = std::make_unique<MonitorCycle>(
-        SafetyParameters{}, robot, kPeriod,
+        wheeled_monitor({}, robot, kPeriod), robot.hash, kLossNs,
         MonitorCycle::Channels{&sensors.reader, &state.reader, &command.reader, permit.writer}, CommandScript(),
         nullptr);
   }

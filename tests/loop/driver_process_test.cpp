@@ -51,8 +51,8 @@ class DriverProcessTest : public testing::Test {
   DriverProcessTest() { parameters_.loop.realtime = RealtimePolicy::kOff; }
 
   DriverProcess& opened() {
-    process_ = std::make_unique<DriverProcess>(parameters_, two_wheels(), bus_.name());
-    process_->open_driver(std::make_unique<SlowMachine>(reset_under_way_), {});
+    process_ = std::make_unique<DriverProcess>(parameters_, DifferentialDrive(parameters_, two_wheels()), bus_.name());
+    process_->open_driver(std::make_unique<SlowMachine>(reset_under_way_));
     return *process_;
   }
   /// The loop ticks.

@@ -7,7 +7,7 @@
 
 #include "gate/wheeled/wheel_stop.h"
 #include "loop/cycle_fixture.h"
-#include "loop/wheeled_gate.h"
+#include "robots/differential_drive.h"
 
 namespace robot_control {
 namespace {
@@ -65,10 +65,10 @@ TEST(GateSetup, TheLongestRampIsTheMonitorsAndALossLonger) {
   parameters.loop.rate = 1000;
   parameters.safety.ramp_time = 2;
   parameters.safety.loss_cycles = 20;
-  EXPECT_EQ(gate_parameters(parameters, two_wheels()).longest_ramp, 2020u);
+  EXPECT_EQ(DifferentialDrive(parameters, two_wheels()).gate().longest_ramp, 2020u);
   parameters.loop.rate = 300;
   parameters.safety.ramp_time = 0.011;  // 3.3 periods
-  EXPECT_EQ(gate_parameters(parameters, two_wheels()).longest_ramp, 24u);
+  EXPECT_EQ(DifferentialDrive(parameters, two_wheels()).gate().longest_ramp, 24u);
 }
 
 /// Two wheels and an arm.
@@ -82,7 +82,7 @@ TEST(GateSetup, WheelsStopByTheUsersActionAndAnArmBrakes) {
   Parameters parameters;
   for (const StopKind kind : {StopKind::kBrake, StopKind::kCoast, StopKind::kDamp}) {
     parameters.loop.fail_action = kind;
-    const std::vector<StopAction> stops = gate_parameters(parameters, with_an_arm()).stops;
+    const std::vector<StopAction> stops = DifferentialDrive(parameters, with_an_arm()).gate().stops;
     ASSERT_EQ(stops.size(), 3u);
     EXPECT_EQ(stops[0].kind, kind);
     EXPECT_EQ(stops[1].kind, kind);

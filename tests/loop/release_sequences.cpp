@@ -116,12 +116,12 @@ class Sequence {
         driver_->begin_run(random_() | 1);
         break;
       case kEstimatorNode:
-        estimator_ = std::make_unique<EstimatorCycle>(EstimatorParameters{}, robot_, kPeriod, sensors_.reader,
-                                                      state_.writer, nullptr);
+        estimator_ = std::make_unique<EstimatorCycle>(wheeled_estimator({}, robot_, kPeriod), robot_.hash,
+                                                      sensors_.reader, state_.writer, nullptr);
         break;
       case kControllerNode:
         controller_ = std::make_unique<ControllerCycle>(
-            parameters_, robot_, kPeriod,
+            wheeled_controller(parameters_, robot_, kPeriod), robot_.hash,
             ControllerCycle::Channels{&sensors_.reader, &state_.reader, &permit_.reader, command_.writer},
             CommandScript(), nullptr);
         inbox_.emplace(parameters_.cmd_vel_timeout, parameters_.one_sender);
@@ -131,7 +131,7 @@ class Sequence {
         break;
       case kMonitorNode:
         monitor_ = std::make_unique<MonitorCycle>(
-            SafetyParameters{}, robot_, kPeriod,
+            wheeled_monitor({}, robot_, kPeriod), robot_.hash, kLossNs,
             MonitorCycle::Channels{&sensors_.reader, &state_.reader, &command_.reader, permit_.writer}, CommandScript(),
             nullptr);
         operator_input_ = {};

@@ -1,7 +1,7 @@
 /// Tests conditions of the body at 1 kHz. The healthy case is a robot of 10 kg on two wheels of 0.1 m, 0.4 m apart,
 /// with its IMU in the middle. It is upright and rolls straight at 0.5 m/s; the last bits of every sample differ.
 
-#include "safety/conditions/body_conditions.h"
+#include "safety/conditions/common/body_conditions.h"
 
 #include <gtest/gtest.h>
 

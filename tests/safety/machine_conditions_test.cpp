@@ -1,6 +1,6 @@
 // The machine reports its overruns of the last second.
 
-#include "safety/conditions/machine_conditions.h"
+#include "safety/conditions/common/machine_conditions.h"
 
 #include <gtest/gtest.h>
 

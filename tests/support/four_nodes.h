@@ -19,7 +19,7 @@
 #include "loop/processes/estimator_process.h"
 #include "loop/processes/monitor_process.h"
 #include "loop/processes/telemetry_process.h"
-#include "loop/wheeled_gate.h"
+#include "robots/differential_drive.h"
 #include "rt/clock.h"
 #include "rt/futex.h"
 #include "support/child_process.h"
@@ -32,8 +32,12 @@ class FourNodes {
   /// The run ends by itself after `parameters.plant.cycles`. `record`: telemetry writes into
   /// parameters.telemetry.directory.
   FourNodes(const Parameters& parameters, const DriveTrain& robot, bool record)
+      : FourNodes(parameters, std::make_shared<DifferentialDrive>(parameters, robot), record) {}
+
+  /// A robot of any kind, composed with these parameters.
+  FourNodes(const Parameters& parameters, std::shared_ptr<const Robot> robot, bool record)
       : parameters_(parameters),
-        robot_(robot),
+        robot_(std::move(robot)),
         record_(record),
         estimator_([this] { return consume<EstimatorProcess>(); }),
         controller_([this] { return consume<ControllerProcess>(); }),
@@ -46,10 +50,9 @@ class FourNodes {
   /// `timeout_s`.
   double run(double timeout_s, const Operator& operate = {}) {
     std::unique_ptr<TelemetryProcess> telemetry;
-    if (record_) telemetry = std::make_unique<TelemetryProcess>(parameters_, robot_, bus_.name());
-    DriverProcess driver(parameters_, robot_, bus_.name());
-    driver.open_driver(std::make_unique<MujocoPlant>(robot_, parameters_.plant, parameters_.loop.period()),
-                       gate_parameters(parameters_, robot_));
+    if (record_) telemetry = std::make_unique<TelemetryProcess>(parameters_, robot_->machine(), bus_.name());
+    DriverProcess driver(parameters_, *robot_, bus_.name());
+    driver.open_driver(std::make_unique<MujocoPlant>(robot_->machine(), parameters_.plant, parameters_.loop.period()));
     const std::int64_t give_up_ns = monotonic_ns() + static_cast<std::int64_t>(timeout_s * 1e9);
     std::atomic<bool> operated{false};
     std::jthread operator_thread([&] {
@@ -84,7 +87,7 @@ class FourNodes {
   template <class Node>
   int consume() {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    Node node(parameters_, robot_, bus_.name());
+    Node node(parameters_, *robot_, bus_.name());
     for (;;) {
       node.poll();
       sleep_ns(kPollNs);
@@ -93,7 +96,7 @@ class FourNodes {
 
   ScopedBus bus_;
   Parameters parameters_;
-  DriveTrain robot_;
+  std::shared_ptr<const Robot> robot_;
   bool record_;
   ChildProcess estimator_;
   ChildProcess controller_;

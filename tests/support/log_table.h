@@ -83,7 +83,7 @@ class LogTable {
   TraceRow read_;
 };
 
-inline std::vector<std::string> joint_names(const DriveTrain& robot) {
+inline std::vector<std::string> joint_names(const MachineModel& robot) {
   std::vector<std::string> names;
   for (const JointModel& joint : robot.joints) names.push_back(joint.name);
   return names;

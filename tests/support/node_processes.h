@@ -22,7 +22,7 @@
 #include "loop/processes/estimator_process.h"
 #include "loop/processes/monitor_process.h"
 #include "loop/processes/telemetry_process.h"
-#include "loop/wheeled_gate.h"
+#include "robots/differential_drive.h"
 #include "rt/crash_report.h"
 #include "rt/futex.h"
 #include "rt/realtime_thread.h"
@@ -37,7 +37,13 @@ namespace robot_control {
 class NodeProcesses {
  public:
   explicit NodeProcesses(const Parameters& parameters)
-      : parameters_(parameters), robot_(read_drive_train(load_description(parameters.urdf), parameters.robot)) {
+      : NodeProcesses(parameters,
+                      std::make_shared<DifferentialDrive>(
+                          parameters, read_drive_train(load_description(parameters.urdf), parameters.robot))) {}
+
+  /// A robot of any kind, composed with these parameters.
+  NodeProcesses(const Parameters& parameters, std::shared_ptr<const Robot> robot)
+      : parameters_(parameters), robot_(std::move(robot)) {
     new (desk_.get()) ControlDesk();
     parameters_.telemetry.black_box = 0;     // see give_black_box
     parameters_.loop.wait_for_nodes = true;  // a run begins with all nodes there
@@ -84,7 +90,8 @@ class NodeProcesses {
   ControlDesk& desk() const noexcept { return *desk_.get(); }
   const std::string& bus() const noexcept { return bus_.name(); }
   const Parameters& parameters() const noexcept { return parameters_; }
-  const DriveTrain& robot() const noexcept { return robot_; }
+  const DriveTrain& robot() const { return drive_train_of(robot_->machine()); }
+  const Robot& composed() const noexcept { return *robot_; }
   const std::filesystem::path& folder() const { return folder_.path(); }
 
   /// Telemetry writes there from its next start on.
@@ -140,7 +147,7 @@ class NodeProcesses {
 
   template <class Node, class Receive>
   [[noreturn]] void run_consumer(LoopNode name, Receive receive) {
-    Node node(parameters_, robot_, bus_.name());
+    Node node(parameters_, *robot_, bus_.name());
     for (;;) {
       receive(node);
       node.poll();
@@ -150,11 +157,10 @@ class NodeProcesses {
   }
 
   [[noreturn]] void run_plant() {
-    DriverProcess driver(parameters_, robot_, bus_.name());
+    DriverProcess driver(parameters_, *robot_, bus_.name());
     const double period = parameters_.loop.period();
-    auto plant = std::make_unique<MujocoPlant>(robot_, parameters_.plant, period);
-    driver.open_driver(std::make_unique<SpoiledJoint>(std::move(plant), desk_->spoil, std::llround(1e9 * period)),
-                       gate_parameters(parameters_, robot_));
+    auto plant = std::make_unique<MujocoPlant>(robot_->machine(), parameters_.plant, period);
+    driver.open_driver(std::make_unique<SpoiledJoint>(std::move(plant), desk_->spoil, std::llround(1e9 * period)));
     for (;;) {
       driver.poll();
       desk_->missing[index_of(LoopNode::kPlant)].store(missing_bits(driver.missing()));
@@ -163,7 +169,7 @@ class NodeProcesses {
   }
 
   [[noreturn]] void run_telemetry() {
-    TelemetryProcess telemetry(parameters_, robot_, bus_.name());
+    TelemetryProcess telemetry(parameters_, robot_->machine(), bus_.name());
     for (;;) {
       telemetry.poll();
       telemetry.drain();
@@ -182,7 +188,7 @@ class NodeProcesses {
   TemporaryFolder folder_;
   AnonymousMemory<ControlDesk> desk_;
   Parameters parameters_;
-  DriveTrain robot_;
+  std::shared_ptr<const Robot> robot_;
   std::array<std::function<void()>, kLoopNodeNames.size()> preparations_;
   std::array<std::unique_ptr<ChildProcess>, kLoopNodeNames.size()> processes_;
 };

@@ -22,7 +22,7 @@
 #include "loop/processes/estimator_process.h"
 #include "loop/processes/monitor_process.h"
 #include "loop/processes/telemetry_process.h"
-#include "loop/wheeled_gate.h"
+#include "robots/differential_drive.h"
 #include "rt/clock.h"
 #include "rt/crash_report.h"
 #include "rt/futex.h"
@@ -106,14 +106,13 @@ void run_telemetry(TelemetryProcess& telemetry, double seconds) {
 
 void participate(const Arguments& arguments) {
   const Parameters parameters = read_parameters(arguments.params, arguments.overlays);
-  const DriveTrain robot = read_drive_train(load_description(parameters.urdf), parameters.robot);
+  const DifferentialDrive robot(parameters, read_drive_train(load_description(parameters.urdf), parameters.robot));
   const LoopParameters& loop = parameters.loop;
   install_crash_report(arguments.node, "the motors brake without it");
   prepare_process(loop.clock == ClockMode::kWall ? loop.realtime : RealtimePolicy::kOff);
   if (arguments.node == "mujoco_plant") {
     DriverProcess driver(parameters, robot, arguments.bus);
-    driver.open_driver(std::make_unique<MujocoPlant>(robot, parameters.plant, loop.period()),
-                       gate_parameters(parameters, robot));
+    driver.open_driver(std::make_unique<MujocoPlant>(robot.machine(), parameters.plant, loop.period()));
     run_process(driver, arguments.seconds);
   } else if (arguments.node == "state_estimator") {
     EstimatorProcess estimator(parameters, robot, arguments.bus);
@@ -123,14 +122,14 @@ void participate(const Arguments& arguments) {
     run_process(controller, arguments.seconds, [&controller, taken = 0]() mutable {
       constexpr std::array kLimits = {"0.5", "0.7", "1.0"};  // m/s
       for (; taken < tunings.load(); ++taken) {
-        controller.retuning().set(std::string("{max_linear_speed: ") + kLimits[taken % kLimits.size()] + "}");
+        controller.retuner()->set(std::string("{max_linear_speed: ") + kLimits[taken % kLimits.size()] + "}");
       }
     });
   } else if (arguments.node == "safety_monitor") {
     MonitorProcess monitor(parameters, robot, arguments.bus);
     run_process(monitor, arguments.seconds);
   } else if (arguments.node == "telemetry") {
-    TelemetryProcess telemetry(parameters, robot, arguments.bus);
+    TelemetryProcess telemetry(parameters, robot.machine(), arguments.bus);
     if (loop.clock == ClockMode::kWall && loop.realtime != RealtimePolicy::kOff) precede_ordinary_threads();
     run_telemetry(telemetry, arguments.seconds);
   } else {

@@ -42,6 +42,7 @@ class SpoiledJoint final : public Simulator {
   }
   void write(std::span<const JointCommand> commands) noexcept override { driver_->write(commands); }
   void stop() noexcept override { driver_->stop(); }
+  bool implements(StopKind kind) const noexcept override { return driver_->implements(kind); }
   void truth(TruthFrame& truth) noexcept override { driver_->truth(truth); }
   void inject(const InjectedFaults& faults) noexcept override { driver_->inject(faults); }
 

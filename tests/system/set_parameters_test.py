@@ -181,7 +181,7 @@ class SetParametersTest(RobotTestCase):
             self.refuse(text)
         service = rospy.ServiceProxy(SERVICE, SetParameters, persistent=True)
         self.addCleanup(service.close)
-        for seed in range(20):  # 2000 in tests/loop/retuning_test.cpp: each that is accepted calls the master
+        for seed in range(20):  # 2000 in tests/robots/retuning_test.cpp: each that is accepted calls the master
             chance = random.Random(seed)
             letters = list(good)
             for _ in range(chance.randint(1, 6)):

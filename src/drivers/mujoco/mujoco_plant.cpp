@@ -33,7 +33,7 @@ void check_battery(double voltage, double resistance) {
 
 }  // namespace
 
-MujocoPlant::MujocoPlant(const DriveTrain& robot, const MujocoPlantParameters& parameters, double period)
+MujocoPlant::MujocoPlant(const MachineModel& robot, const MujocoPlantParameters& parameters, double period)
     : model_(compile_model(robot, parameters, period)),
       wheels_(model_, parameters),
       parameters_(parameters),
@@ -42,10 +42,10 @@ MujocoPlant::MujocoPlant(const DriveTrain& robot, const MujocoPlantParameters& p
       sensor_errors_(model_.robot, parameters, period),
       sensor_faults_(model_.robot, parameters.seed),
       actuator_delay_(checked_delay("actuator_delay", parameters.actuator_delay)) {
-  for (std::size_t wheel = 0; wheel < model_.robot.wheels.size(); ++wheel) {
-    laws_.emplace_back(brake_of(model_.robot, wheel, parameters, model_.model->opt.timestep),
-                       model_.robot.joints[wheel].effort_limit);
-    motors_.emplace_back(model_.robot.joints[wheel].effort_limit, parameters.no_load_speed, parameters.gear_ratio);
+  for (const std::size_t joint : model_.driven) {
+    laws_.emplace_back(brake_of(model_.robot, joint, parameters, model_.model->opt.timestep),
+                       model_.robot.joints[joint].effort_limit);
+    motors_.emplace_back(model_.robot.joints[joint].effort_limit, parameters.no_load_speed, parameters.gear_ratio);
   }
   brakes_.resize(robot.joints.size());
   check_battery(parameters.battery_voltage, parameters.battery_resistance);
@@ -234,14 +234,15 @@ void MujocoPlant::substep(void* plant) {
 
 bool MujocoPlant::advance(std::span<const JointCommand> commands) noexcept {
   std::fill_n(data_->qfrc_applied, model_.model->nv, 0.0);
-  for (std::size_t wheel = 0; wheel < laws_.size(); ++wheel) {
-    const int dof = model_.joint_velocity[wheel];
-    const double position = data_->qpos[model_.joint_position[wheel]];
+  for (std::size_t drive = 0; drive < laws_.size(); ++drive) {
+    const std::size_t joint = model_.driven[drive];
+    const int dof = model_.joint_velocity[joint];
+    const double position = data_->qpos[model_.joint_position[joint]];
     const double velocity = data_->qvel[dof];
-    const double wanted = motors_[wheel].limited(laws_[wheel].step(commands[wheel], position, velocity), velocity);
-    const double effort = motor_faults_.effort(wheel, commands[wheel].mode, wanted, position, velocity);
+    const double wanted = motors_[drive].limited(laws_[drive].step(commands[joint], position, velocity), velocity);
+    const double effort = motor_faults_.effort(joint, commands[joint].mode, wanted, position, velocity);
     data_->qfrc_applied[dof] = effort;
-    effort_sum_[wheel] += effort;
+    effort_sum_[joint] += effort;
     power_sum_ += effort * velocity;
   }
   wheels_.apply(*data_);
@@ -257,7 +258,8 @@ bool MujocoPlant::advance(std::span<const JointCommand> commands) noexcept {
   }
   wheels_.observe(*data_);
   specific_force_sum_ += specific_force_.step(*data_);
-  for (std::size_t wheel = 0; wheel < laws_.size(); ++wheel) normal_force_sum_[wheel] += wheels_.normal_force(wheel);
+  for (std::size_t wheel = 0; wheel < model_.drive_wheels; ++wheel)
+    normal_force_sum_[wheel] += wheels_.normal_force(wheel);
   if (parameters_.contact_sensors) {
     for (std::size_t i = 0; i < std::min(wheels_.count(), kMaxContacts); ++i) force_sum_[i] += wheels_.force(i);
   }
@@ -323,7 +325,7 @@ void MujocoPlant::collect_truth() noexcept {
   std::copy_n(velocity + 3, 3, truth_.twist_base.angular.begin());
 
   truth_.joints = exact_.joints;
-  for (std::size_t wheel = 0; wheel < laws_.size(); ++wheel) {
+  for (std::size_t wheel = 0; wheel < model_.drive_wheels; ++wheel) {
     truth_.normal_force[wheel] = normal_force_sum_[wheel] / model_.substeps;
     truth_.slip[wheel] = wheels_.slip(wheel);
   }

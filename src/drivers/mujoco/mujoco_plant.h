@@ -3,12 +3,12 @@
 ///
 /// A period consists of n = ⌈period / 1 ms⌉ MuJoCo steps of period/n. For each of them `write` runs
 ///
-///   wheels: joint law (q, q̇ → τ), motor, tyre friction  →  mj_step2 (accelerations, integration)
+///   driven joints: joint law (q, q̇ → τ), motor; wheels: tyre friction  →  mj_step2 (accelerations, integration)
 ///   →  mj_step1 (kinematics of the new state)
 ///
 /// and collects the values for `read` and `truth`. After `write` k they describe t_k+1, as SensorFrame requires:
 /// positions, velocities and gyro at that time. Accelerometer (specific_force.h), contact forces and efforts are means
-/// over [t_k, t_k+1). Joints that are no wheels take no commands (JointRole): passive ones move freely, held ones stay
+/// over [t_k, t_k+1). Joints that are not driven take no commands (JointRole): passive ones move freely, held ones stay
 /// by friction.
 ///
 /// `start` places the robot on the site `start` of the scene and lets it settle with the brakes on, for at most 20 s.
@@ -50,14 +50,14 @@
 #include "drivers/mujoco/sensors/sensor_errors.h"
 #include "drivers/mujoco/sensors/sensor_faults.h"
 #include "drivers/mujoco/sensors/specific_force.h"
-#include "machine/wheeled/drive_train.h"
+#include "machine/machine_model.h"
 
 namespace robot_control {
 
 class MujocoPlant final : public Simulator {
  public:
   /// `period` is in s. Throws DriverError as compile_model, WheelContacts and brake_of do.
-  MujocoPlant(const DriveTrain& robot, const MujocoPlantParameters& parameters, double period);
+  MujocoPlant(const MachineModel& robot, const MujocoPlantParameters& parameters, double period);
 
   void start() override;
   void read(SensorFrame& sensors) noexcept override;
@@ -96,8 +96,8 @@ class MujocoPlant final : public Simulator {
   MujocoData data_;
   WheelContacts wheels_;
   MujocoPlantParameters parameters_;
-  std::vector<JointLaw> laws_;  ///< per drive wheel
-  std::vector<Motor> motors_;   ///< per drive wheel
+  std::vector<JointLaw> laws_;  ///< per driven joint (MujocoModel::driven)
+  std::vector<Motor> motors_;   ///< per driven joint
   MotorFaults motor_faults_;
   SpecificForce specific_force_;
   SensorErrors sensor_errors_;

@@ -11,8 +11,6 @@
 #include "log/replay/replicas.h"
 #include "log/replay/row_check.h"
 #include "loop/gate_setup.h"
-#include "loop/safety_limits.h"
-#include "loop/wheeled_gate.h"
 #include "signals/gate_digest.h"
 
 namespace robot_control {
@@ -33,6 +31,14 @@ std::string unknown(std::initializer_list<Needed> frames) {
   return {};
 }
 
+template <class LawType>
+LawType& law_of(std::unique_ptr<LawType>& law) {
+  return *law;
+}
+Gate& law_of(Gate& law) {
+  return law;
+}
+
 /// The head of the frame that a law computes in the cycle of `head`.
 FrameHead own_head(const FrameHead& head) {
   return {.run = head.run, .cycle = head.cycle, .stamp_ns = head.stamp_ns};
@@ -41,19 +47,12 @@ FrameHead own_head(const FrameHead& head) {
 }  // namespace
 
 struct Replay::Parts {
-  Parts(const Parameters& parameters, const DriveTrain& robot)
-      : row_check(robot.joints.size(), report),
-        gate{Gate(joint_limits(robot), gate_parameters(parameters, robot), parameters.loop.period()),
-             Continuity(LawName::kGate, report)},
-        estimator{Estimator(parameters.estimator, robot, parameters.loop.period()),
-                  Continuity(LawName::kEstimator, report),
-                  {}},
-        controller{DriveController(parameters.controller, robot, parameters.loop.period()),
-                   Continuity(LawName::kController, report),
-                   {}},
-        monitor{SafetyMonitor(safety_limits(parameters, robot), robot, parameters.loop.period()),
-                Continuity(LawName::kMonitor, report),
-                {}} {}
+  Parts(const Robot& robot, double period)
+      : row_check(robot.machine().joints.size(), report),
+        gate{Gate(joint_limits(robot.machine()), robot.gate(), period), Continuity(LawName::kGate, report)},
+        estimator{robot.make_estimator(), Continuity(LawName::kEstimator, report), {}},
+        controller{robot.make_controller(), Continuity(LawName::kController, report), {}},
+        monitor{robot.make_monitor(), Continuity(LawName::kMonitor, report), {}} {}
 
   void add(OwnedRow row);
   void run(const OwnedRow& row, DriverTrace& driver);
@@ -64,8 +63,8 @@ struct Replay::Parts {
 
   template <class Replica>
   StateBefore before(Replica& replica, const LawRow& row) {
-    return replica.continuity.before(row, snapshots,
-                                     [&](const LawSnapshot& snapshot) { return restore_state(snapshot, replica.law); });
+    return replica.continuity.before(
+        row, snapshots, [&](const LawSnapshot& snapshot) { return restore_state(snapshot, law_of(replica.law)); });
   }
 
   template <class Frame, class Replica>
@@ -91,12 +90,11 @@ struct Replay::Parts {
   std::function<void(const VariedRow&)> watch;
 };
 
-Replay::Replay(const Parameters& parameters, const DriveTrain& robot)
-    : parts_(std::make_unique<Parts>(parameters, robot)) {}
+Replay::Replay(const Robot& robot, double period) : parts_(std::make_unique<Parts>(robot, period)) {}
 Replay::~Replay() = default;
 
-void Replay::vary(const Parameters& parameters, const DriveTrain& robot, std::function<void(const VariedRow&)> watch) {
-  parts_->variant = std::make_unique<Variant>(parameters, robot);
+void Replay::vary(const Robot& robot, std::function<void(const VariedRow&)> watch) {
+  parts_->variant = std::make_unique<Variant>(robot);
   parts_->watch = std::move(watch);
 }
 
@@ -223,10 +221,10 @@ void Replay::Parts::run(const OwnedRow& row, EstimatorTrace& trace) {
     publish<StateFrame>(calls.law, trace.state, nullptr, frames.state);
     return pass_over(row, estimator);
   }
-  if (state == StateBefore::kContinued && calls.law.new_run != 0) estimator.law.enter_run();
-  if (calls.pose_set != 0) estimator.law.set_pose(calls.pose);
+  if (state == StateBefore::kContinued && calls.law.new_run != 0) estimator.law->enter_run();
+  if (calls.pose_set != 0) estimator.law->set_pose(calls.pose);
   const StateFrame* varied = variant == nullptr ? nullptr : variant->step(calls, sensors);
-  estimator.law.step(sensors, estimator.output);
+  estimator.law->step(sensors, estimator.output);
   estimator.output.first_cycle = calls.first_cycle;
   compare(row, estimator, calls.law, trace.state, fault_of(sensors.injected, FaultComponent::kEstimator), frames.state);
   if (varied == nullptr) return;
@@ -252,14 +250,14 @@ void Replay::Parts::run(const OwnedRow& row, ControllerTrace& trace) {
     return pass_over(row, controller);
   }
   if (state == StateBefore::kContinued && calls.law.new_run != 0) {
-    controller.law.enter_run(calls.inbox, calls.with_zero != 0);
+    controller.law->enter_run(calls.inbox, calls.with_zero != 0);
   }
-  if (calls.tuned != 0) controller.law.tune(trace.tuning);
-  const CommandFrame* varied = variant == nullptr ? nullptr : variant->step(calls, input, controller.law);
-  controller.law.step(input, controller.output);
+  if (calls.tuned != 0) controller.law->tune(trace.tuning);
+  const CommandFrame* varied = variant == nullptr ? nullptr : variant->step(calls, input, *controller.law);
+  controller.law->step(input, controller.output);
   compare(row, controller, calls.law, trace.command, fault_of(sensors.injected, FaultComponent::kController),
           frames.command);
-  trace.tuning = controller.law.tuning();
+  trace.tuning = controller.law->tuning();
   calls.permit = permitted ? used(Lookup::kFrame, *input.permit) : UsedFrame{};
   if (varied == nullptr) return;
   watch({.run = row.run(), .cycle = row.cycle(), .command = &controller.output, .varied_command = varied});
@@ -287,7 +285,7 @@ void Replay::Parts::run(const OwnedRow& row, MonitorTrace& trace) {
     return pass_over(row, monitor);
   }
   const Permit* varied = variant == nullptr ? nullptr : variant->step(calls, input);
-  monitor.law.step(input, monitor.output);
+  monitor.law->step(input, monitor.output);
   compare(row, monitor, calls.law, trace.permit, fault_of(sensors.injected, FaultComponent::kMonitor), frames.permit);
   if (framed) calls.silence = SensorSilence::kNone;
   calls.command = commanded ? used(Lookup::kFrame, *input.command) : UsedFrame{.found = calls.command.found};

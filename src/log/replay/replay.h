@@ -19,24 +19,23 @@
 #include <memory>
 #include <string_view>
 
-#include "configuration/parameters.h"
 #include "log/replay/report.h"
 #include "log/replay/variant.h"
 #include "log/rows/joined_row.h"
 #include "log/rows/trace_row.h"
-#include "machine/wheeled/drive_train.h"
+#include "robots/robot.h"
 #include "signals/law_snapshot.h"
 
 namespace robot_control {
 
 class Replay {
  public:
-  /// `parameters` and `robot` of the log. Throws as the laws do.
-  Replay(const Parameters& parameters, const DriveTrain& robot);
+  /// `robot` is that of the log, composed with the log's parameters; `period` is in s. Throws as the laws do.
+  Replay(const Robot& robot, double period);
   ~Replay();
 
   /// The laws with other parameters beside those of the log, before the first row; `watch` gets each cycle of each.
-  void vary(const Parameters& parameters, const DriveTrain& robot, std::function<void(const VariedRow&)> watch);
+  void vary(const Robot& robot, std::function<void(const VariedRow&)> watch);
 
   /// In any order, before the row that it belongs to. Throws ReplayError: it is of another build.
   void add(const LawSnapshot& snapshot);

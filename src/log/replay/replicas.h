@@ -1,14 +1,12 @@
 #pragma once
 /// The four laws of a log, each with the state it has reached in its replay.
 
-#include "configuration/parameters.h"
-#include "control/drive_controller.h"
-#include "estimation/estimator.h"
+#include <memory>
+
 #include "gate/gate.h"
 #include "log/replay/continuity.h"
 #include "log/replay/frame_history.h"
-#include "machine/wheeled/drive_train.h"
-#include "safety/safety_monitor.h"
+#include "robots/laws.h"
 #include "signals/trace.h"
 
 namespace robot_control {
@@ -45,19 +43,19 @@ struct GateReplica {
 };
 
 struct EstimatorReplica {
-  Estimator law;
+  std::unique_ptr<EstimatorLaw> law;
   Continuity continuity;
   StateFrame output;
 };
 
 struct ControllerReplica {
-  DriveController law;
+  std::unique_ptr<ControllerLaw> law;
   Continuity continuity;
   CommandFrame output;
 };
 
 struct MonitorReplica {
-  SafetyMonitor law;
+  std::unique_ptr<MonitorLaw> law;
   Continuity continuity;
   Permit output;
 };

@@ -1,39 +1,39 @@
 #include "log/replay/variant.h"
 
-#include "control/derived_tuning.h"
-#include "loop/safety_limits.h"
-
 namespace robot_control {
 
-Variant::Variant(const Parameters& parameters, const DriveTrain& robot)
-    : estimator_(parameters.estimator, robot, parameters.loop.period()),
-      tuning_(drive_tuning(parameters.controller, robot, parameters.loop.period())),
-      monitor_(safety_limits(parameters, robot), robot, parameters.loop.period()) {}
+Variant::Variant(const Robot& robot)
+    : estimator_(robot.make_estimator()),
+      controller_(robot.make_controller()),
+      monitor_(robot.make_monitor()),
+      tuning_(controller_->tuning()) {}
 
 const StateFrame* Variant::step(const EstimatorCalls& calls, const SensorFrame& sensors) noexcept {
   if (calls.law.new_run != 0) {
     const bool restarted = estimates_ && calls.law.process != process_ && state_.head.run == sensors.head.run;
     if (restarted) {
-      estimator_.resume(state_);  // the node, too, continues from the last state of its predecessor
+      estimator_->resume(state_);  // the node, too, continues from the last state of its predecessor
     } else {
-      estimator_.enter_run();
+      estimator_->enter_run();
     }
     process_ = calls.law.process;
     estimates_ = true;
   }
   if (!estimates_) return nullptr;
-  if (calls.pose_set != 0) estimator_.set_pose(calls.pose);
-  estimator_.step(sensors, state_);
+  if (calls.pose_set != 0) estimator_->set_pose(calls.pose);
+  estimator_->step(sensors, state_);
   state_.head.run = sensors.head.run;
   state_.head.cycle = sensors.head.cycle;
   return &state_;
 }
 
 const CommandFrame* Variant::step(const ControllerCalls& calls, const ControlInput& input,
-                                  const DriveController& law) noexcept {
-  if (!controller_) {
-    controller_ = law;
+                                  const ControllerLaw& law) noexcept {
+  if (!controls_) {
+    law.save(snapshot_);
+    controller_->restore(snapshot_);
     controller_->tune(tuning_);
+    controls_ = true;
   } else if (calls.law.new_run != 0) {
     controller_->enter_run(calls.inbox, calls.with_zero != 0);
   }
@@ -44,7 +44,7 @@ const CommandFrame* Variant::step(const ControllerCalls& calls, const ControlInp
 const Permit* Variant::step(const MonitorCalls& calls, const MonitorInput& input) noexcept {
   monitors_ = monitors_ || calls.law.new_run != 0;
   if (!monitors_) return nullptr;
-  monitor_.step(input, permit_);
+  monitor_->step(input, permit_);
   return &permit_;
 }
 

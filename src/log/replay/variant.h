@@ -6,13 +6,9 @@
 /// monitor begin at the first beginning of a run in the log.
 
 #include <cstdint>
-#include <optional>
+#include <memory>
 
-#include "configuration/parameters.h"
-#include "control/drive_controller.h"
-#include "estimation/estimator.h"
-#include "machine/wheeled/drive_train.h"
-#include "safety/safety_monitor.h"
+#include "robots/robot.h"
 #include "signals/law_calls.h"
 
 namespace robot_control {
@@ -31,22 +27,24 @@ struct VariedRow {
 
 class Variant {
  public:
-  Variant(const Parameters& parameters, const DriveTrain& robot);
+  /// `robot` is that of the log, composed with the other parameters.
+  explicit Variant(const Robot& robot);
 
   /// The output of one cycle. Null: the law has not begun.
   const StateFrame* step(const EstimatorCalls& calls, const SensorFrame& sensors) noexcept;
 
   /// `law` has the state of the log before this step.
-  const CommandFrame* step(const ControllerCalls& calls, const ControlInput& input,
-                           const DriveController& law) noexcept;
+  const CommandFrame* step(const ControllerCalls& calls, const ControlInput& input, const ControllerLaw& law) noexcept;
 
   const Permit* step(const MonitorCalls& calls, const MonitorInput& input) noexcept;
 
  private:
-  Estimator estimator_;
+  std::unique_ptr<EstimatorLaw> estimator_;
+  std::unique_ptr<ControllerLaw> controller_;
+  std::unique_ptr<MonitorLaw> monitor_;
   DriveTuning tuning_;
-  std::optional<DriveController> controller_;  ///< empty: it has not begun
-  SafetyMonitor monitor_;
+  LawSnapshot snapshot_;
+  bool controls_ = false;
   bool estimates_ = false;
   std::uint64_t process_ = 0;  ///< whose estimates they are
   bool monitors_ = false;

@@ -5,15 +5,15 @@
 
 namespace robot_control {
 
-ControllerCycle::ControllerCycle(const DriveControllerParameters& parameters, const DriveTrain& robot, double period,
+ControllerCycle::ControllerCycle(std::unique_ptr<ControllerLaw> controller, std::uint64_t robot_hash,
                                  const Channels& channels, CommandScript script, Now now)
-    : controller_(parameters, robot, period),
+    : controller_(std::move(controller)),
       clock_(now),
       channels_(channels),
       script_(std::move(script)),
-      robot_hash_(robot.hash),
+      robot_hash_(robot_hash),
       snapshots_(LawName::kController) {
-  trace_.tuning = controller_.tuning();
+  trace_.tuning = controller_->tuning();
 }
 
 /// Takes over every member but the command itself, which script and inbox share.
@@ -35,7 +35,7 @@ void ControllerCycle::enter_run() noexcept {
   calls_.law.new_run = 1;
   calls_.inbox = request_;
   calls_.with_zero = script_.begins_with_zero() && !last ? 1 : 0;
-  controller_.enter_run(request_, calls_.with_zero != 0);
+  controller_->enter_run(request_, calls_.with_zero != 0);
 }
 
 void ControllerCycle::receive(std::uint64_t cycle) noexcept {
@@ -62,7 +62,7 @@ void ControllerCycle::tune() noexcept {
   if (!tunings_.load(tuning)) return;
   tunings_seen_ = version;
   if (tuning.count == trace_.tuning.count) return;
-  controller_.tune(tuning);
+  controller_->tune(tuning);
   trace_.tuning = tuning;
   calls_.tuned = 1;
 }
@@ -88,7 +88,7 @@ bool ControllerCycle::step() noexcept {
   }
   if (sensors_found != Lookup::kFrame) return false;
 
-  snapshots_.copy_if_due(controller_, calls_.law, state_.head);
+  snapshots_.copy_if_due(*controller_, calls_.law, state_.head);
   receive(cycle);
   tune();
   ControlInput input{.sensors = &sensors_, .state = &state_, .request = request_};
@@ -99,7 +99,7 @@ bool ControllerCycle::step() noexcept {
     input.permit = &permit_;
     calls_.permit = used(Lookup::kFrame, permit_);
   }
-  controller_.step(input, trace_.command);
+  controller_->step(input, trace_.command);
   trace_.command.head = {.run = run, .cycle = cycle, .stamp_ns = state_.head.stamp_ns};
   channels_.command.publish(trace_.command);
   trace_.timing = clock_.timing(woke_ns, sensors_);

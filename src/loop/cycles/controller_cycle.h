@@ -3,14 +3,15 @@
 /// → command k. A state that is a token or corrupt makes the command a token.
 
 #include <cstdint>
+#include <memory>
 
 #include "bus/latest_frames.h"
 #include "bus/latest_value.h"
-#include "control/drive_controller.h"
 #include "loop/command_script.h"
 #include "loop/cycles/close_row.h"
 #include "loop/cycles/cycle_clock.h"
 #include "loop/cycles/snapshots.h"
+#include "robots/laws.h"
 #include "signals/trace.h"
 
 namespace robot_control {
@@ -24,8 +25,9 @@ class ControllerCycle {
     FrameWriter<CommandFrame> command;
   };
 
-  ControllerCycle(const DriveControllerParameters& parameters, const DriveTrain& robot, double period,
-                  const Channels& channels, CommandScript script, Now now);
+  /// `robot_hash` is that of the machine (machine_identity.h).
+  ControllerCycle(std::unique_ptr<ControllerLaw> controller, std::uint64_t robot_hash, const Channels& channels,
+                  CommandScript script, Now now);
 
   /// In from the outside: one ordinary thread stores, this cycle loads.
   LatestValue<VelocityCommand>& inbox() noexcept { return inbox_; }
@@ -52,7 +54,7 @@ class ControllerCycle {
   void receive(std::uint64_t cycle) noexcept;
   void tune() noexcept;
 
-  DriveController controller_;
+  std::unique_ptr<ControllerLaw> controller_;
   CycleClock clock_;
   Channels channels_;
   CommandScript script_;

@@ -1,14 +1,16 @@
 #include "loop/cycles/estimator_cycle.h"
 
+#include <utility>
+
 namespace robot_control {
 
-EstimatorCycle::EstimatorCycle(const EstimatorParameters& parameters, const DriveTrain& robot, double period,
+EstimatorCycle::EstimatorCycle(std::unique_ptr<EstimatorLaw> estimator, std::uint64_t robot_hash,
                                const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now)
-    : estimator_(parameters, robot, period),
+    : estimator_(std::move(estimator)),
       clock_(now),
       sensors_channel_(sensors),
       state_channel_(state),
-      robot_hash_(robot.hash),
+      robot_hash_(robot_hash),
       snapshots_(LawName::kEstimator) {}
 
 void EstimatorCycle::enter_run() noexcept {
@@ -16,8 +18,8 @@ void EstimatorCycle::enter_run() noexcept {
   const FrameReader<StateFrame> own(state_channel_.memory());
   first_cycle_ = sensors_.head.cycle;
   calls_.law.new_run = 1;
-  estimator_.enter_run();
-  if (own.newest(last) == Lookup::kFrame && last.head.run == sensors_.head.run) estimator_.resume(last);
+  estimator_->enter_run();
+  if (own.newest(last) == Lookup::kFrame && last.head.run == sensors_.head.run) estimator_->resume(last);
 }
 
 bool EstimatorCycle::step() noexcept {
@@ -30,15 +32,15 @@ bool EstimatorCycle::step() noexcept {
   if (arrival == Arrival::kNewRun) enter_run();
   clock_.accept(sensors_.head);
 
-  snapshots_.copy_if_due(estimator_, calls_.law, sensors_.head);
+  snapshots_.copy_if_due(*estimator_, calls_.law, sensors_.head);
   PoseRequest request;
   if (inbox_.load(request) && request.count != received_) {
     received_ = request.count;
     calls_.pose_set = 1;
     calls_.pose = request.pose;
-    estimator_.set_pose(request.pose);
+    estimator_->set_pose(request.pose);
   }
-  estimator_.step(sensors_, trace_.state);
+  estimator_->step(sensors_, trace_.state);
   trace_.state.first_cycle = first_cycle_;
   trace_.state.head = {.run = sensors_.head.run, .cycle = sensors_.head.cycle, .stamp_ns = sensors_.head.stamp_ns};
   state_channel_.publish(trace_.state);

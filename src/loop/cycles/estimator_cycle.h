@@ -2,13 +2,14 @@
 /// The estimator's duty in one cycle: newest sensors k → state k.
 
 #include <cstdint>
+#include <memory>
 
 #include "bus/latest_frames.h"
 #include "bus/latest_value.h"
-#include "estimation/estimator.h"
 #include "loop/cycles/close_row.h"
 #include "loop/cycles/cycle_clock.h"
 #include "loop/cycles/snapshots.h"
+#include "robots/laws.h"
 #include "signals/trace.h"
 
 namespace robot_control {
@@ -20,7 +21,8 @@ class EstimatorCycle {
   };
 
  public:
-  EstimatorCycle(const EstimatorParameters& parameters, const DriveTrain& robot, double period,
+  /// `robot_hash` is that of the machine (machine_identity.h).
+  EstimatorCycle(std::unique_ptr<EstimatorLaw> estimator, std::uint64_t robot_hash,
                  const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now);
 
   /// True when there was a new sensor frame of the driver's current run, and a state was computed from it and
@@ -46,7 +48,7 @@ class EstimatorCycle {
  private:
   void enter_run() noexcept;
 
-  Estimator estimator_;
+  std::unique_ptr<EstimatorLaw> estimator_;
   CycleClock clock_;
   const FrameReader<SensorFrame>& sensors_channel_;
   FrameWriter<StateFrame> state_channel_;

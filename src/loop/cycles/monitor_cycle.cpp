@@ -1,19 +1,20 @@
 #include "loop/cycles/monitor_cycle.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
+
+#include "safety/conditions/common/frame_conditions.h"
 
 namespace robot_control {
 
-MonitorCycle::MonitorCycle(const SafetyParameters& parameters, const DriveTrain& robot, double period,
+MonitorCycle::MonitorCycle(std::unique_ptr<MonitorLaw> monitor, std::uint64_t robot_hash, std::int64_t loss_ns,
                            const Channels& channels, CommandScript script, Now now, InheritedLatch latch)
-    : monitor_(parameters, robot, period),
+    : monitor_(std::move(monitor)),
       clock_(now),
       channels_(channels),
       script_(std::move(script)),
-      robot_hash_(robot.hash),
-      loss_ns_(std::llround(static_cast<double>(parameters.loss_cycles) * period * 1e9)),
+      robot_hash_(robot_hash),
+      loss_ns_(loss_ns),
       snapshots_(LawName::kMonitor) {
   inherit(latch);
 }
@@ -26,7 +27,7 @@ void MonitorCycle::inherit(InheritedLatch latch) noexcept {
     latch.causes |= kCauseLatchUnreadable;
     latch.first_cause = kCauseLatchUnreadable;
   }
-  monitor_.step({.inherited = &latch}, trace_.permit);
+  monitor_->step({.inherited = &latch}, trace_.permit);
 }
 
 void MonitorCycle::receive_messages() noexcept {
@@ -137,14 +138,14 @@ bool MonitorCycle::step_without_frame(bool timed_out) noexcept {
     step_law(clock_.now());
     return true;
   }
-  monitor_.step(input_, trace_.permit);
+  monitor_->step(input_, trace_.permit);
   publish(kRunBeforeDriver);
   return false;
 }
 
 void MonitorCycle::step_law(std::int64_t woke_ns) noexcept {
-  snapshots_.copy_if_due(monitor_, calls_.law, sensors_.head);
-  monitor_.step(input_, trace_.permit);
+  snapshots_.copy_if_due(*monitor_, calls_.law, sensors_.head);
+  monitor_->step(input_, trace_.permit);
   publish(clock_.run());
   trace_.timing = clock_.timing(woke_ns, sensors_);
   calls_.silence = input_.silence;

@@ -9,6 +9,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 
 #include "bus/latest_frames.h"
 #include "bus/latest_value.h"
@@ -16,7 +17,7 @@
 #include "loop/cycles/close_row.h"
 #include "loop/cycles/cycle_clock.h"
 #include "loop/cycles/snapshots.h"
-#include "safety/safety_monitor.h"
+#include "robots/laws.h"
 #include "signals/trace.h"
 
 namespace robot_control {
@@ -30,9 +31,10 @@ class MonitorCycle {
     FrameWriter<Permit> permit;
   };
 
-  /// Inherits the latch of the permit in the channel and of `latch`, another record of an earlier stop.
-  MonitorCycle(const SafetyParameters& parameters, const DriveTrain& robot, double period, const Channels& channels,
-               CommandScript script, Now now, InheritedLatch latch = {});
+  /// Inherits the latch of the permit in the channel and of `latch`, another record of an earlier stop. `robot_hash` is
+  /// that of the machine (machine_identity.h), `loss_ns` the length of loss_cycles periods.
+  MonitorCycle(std::unique_ptr<MonitorLaw> monitor, std::uint64_t robot_hash, std::int64_t loss_ns,
+               const Channels& channels, CommandScript script, Now now, InheritedLatch latch = {});
 
   /// In from the outside: one ordinary thread stores, this cycle loads.
   LatestValue<OperatorInput>& inbox() noexcept { return inbox_; }
@@ -78,7 +80,7 @@ class MonitorCycle {
   void step_law(std::int64_t woke_ns) noexcept;
   void publish(std::uint64_t run) noexcept;
 
-  SafetyMonitor monitor_;
+  std::unique_ptr<MonitorLaw> monitor_;
   CycleClock clock_;
   Channels channels_;
   CommandScript script_;

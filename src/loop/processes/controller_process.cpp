@@ -1,21 +1,19 @@
 #include "loop/processes/controller_process.h"
 
 #include "loop/mint_number.h"
-#include "loop/start_check.h"
 #include "signals/roles.h"
 
 namespace robot_control {
 
-ControllerProcess::ControllerProcess(const Parameters& parameters, const DriveTrain& robot, const std::string& bus)
-    : ConsumerProcess(parameters, robot, bus,
+ControllerProcess::ControllerProcess(const Parameters& parameters, const Robot& robot, const std::string& bus)
+    : ConsumerProcess(parameters, robot.machine(), bus,
                       {LoopPriority::kController, "controller", ChannelNames::kCommand, TraceRing::kController}),
       state_(bus, ChannelNames::kState),
       permit_(bus, ChannelNames::kPermit),
-      cycle_(parameters.controller, identified(robot, parameters.loop), parameters.loop.period(),
-             {&sensors_.reader, &state_.reader, &permit_.reader, output_.writer},
+      cycle_(robot.make_controller(), robot_.hash, {&sensors_.reader, &state_.reader, &permit_.reader, output_.writer},
              load_script(parameters.loop.command_script), clock_of(parameters.loop)),
-      retuning_(parameters, robot, cycle_.tunings()) {
-  require_drivable(parameters, robot);
+      retuner_(robot.make_retuner(cycle_.tunings())) {
+  robot.require_drivable();
   cycle_.set_process(mint_number());
 }
 

@@ -1,26 +1,27 @@
 #pragma once
 /// The controller without ROS: woken by state, writes command.
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "loop/cycles/controller_cycle.h"
 #include "loop/processes/consumer_process.h"
-#include "loop/retuning.h"
+#include "robots/robot.h"
 
 namespace robot_control {
 
 class ControllerProcess final : public ConsumerProcess<CommandFrame, ControllerTrace> {
  public:
-  /// Throws BusError; ParameterError for a script that cannot be read, or limits and gains that control_problems.h
-  /// refuses.
-  ControllerProcess(const Parameters& parameters, const DriveTrain& robot, const std::string& bus);
+  /// Throws BusError; ParameterError for a script that cannot be read, and as Robot::require_drivable.
+  ControllerProcess(const Parameters& parameters, const Robot& robot, const std::string& bus);
   ~ControllerProcess() override { stop(); }
 
   std::vector<std::string> missing() const override;
   const FrameReader<Permit>& permits() const noexcept { return permit_.reader; }
   ControllerCycle& cycle() noexcept { return cycle_; }
-  Retuning& retuning() noexcept { return retuning_; }
+  /// Null: nothing of this kind's controller changes while it runs.
+  Retuner* retuner() noexcept { return retuner_.get(); }
 
  private:
   void poll_channels() override;
@@ -30,7 +31,7 @@ class ControllerProcess final : public ConsumerProcess<CommandFrame, ControllerT
   Input<StateFrame> state_;
   Input<Permit> permit_;
   ControllerCycle cycle_;
-  Retuning retuning_;
+  std::unique_ptr<Retuner> retuner_;
 };
 
 }  // namespace robot_control

@@ -32,9 +32,10 @@ bool published(const FrameReader<Frame>& reader, std::uint64_t run, std::uint64_
 
 }  // namespace
 
-DriverProcess::DriverProcess(const Parameters& parameters, const MachineModel& robot, const std::string& bus)
+DriverProcess::DriverProcess(const Parameters& parameters, const Robot& robot, const std::string& bus)
     : Process(parameters.loop, LoopPriority::kDriver, "driver"),
-      robot_(identified(robot, parameters.loop)),
+      robot_(identified(robot.machine(), parameters.loop)),
+      gate_(robot.gate()),
       cycles_(parameters.plant.cycles),
       sensors_(bus, ChannelNames::kSensors),
       truth_(bus, ChannelNames::kTruth),
@@ -48,12 +49,12 @@ DriverProcess::~DriverProcess() {
   if (driver_ != nullptr) driver_->stop();
 }
 
-void DriverProcess::open_driver(std::unique_ptr<Driver> driver, const GateParameters& gate) {
+void DriverProcess::open_driver(std::unique_ptr<Driver> driver) {
   driver->start();
   driver_ = std::move(driver);
   cycle_ = std::make_unique<DriverCycle>(
       *driver_, robot_, DriverCycle::Channels{sensors_.writer, truth_.writer, &command_.reader, &permit_.reader},
-      loop_parameters().period_ns(), lockstep() ? nullptr : &monotonic_ns, gate);
+      loop_parameters().period_ns(), lockstep() ? nullptr : &monotonic_ns, gate_);
   SensorFrame last;  // of an earlier process; time never goes back
   if (lockstep() && sensors_.reader.newest(last) == Lookup::kFrame) {
     cycle_->set_start(last.head.stamp_ns + loop_parameters().period_ns());

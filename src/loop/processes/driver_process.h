@@ -19,17 +19,18 @@
 #include "loop/processes/loop_hold.h"
 #include "loop/processes/process.h"
 #include "loop/simulation_services.h"
+#include "robots/robot.h"
 
 namespace robot_control {
 
 class DriverProcess final : public Process {
  public:
   /// Takes the locks; `open_driver` then (or never).
-  DriverProcess(const Parameters& parameters, const MachineModel& robot, const std::string& bus);
+  DriverProcess(const Parameters& parameters, const Robot& robot, const std::string& bus);
   ~DriverProcess() override;
 
   /// Starts the machine and announces the first run. Throws DriverError.
-  void open_driver(std::unique_ptr<Driver> driver, const GateParameters& gate);
+  void open_driver(std::unique_ptr<Driver> driver);
 
   std::vector<std::string> missing() const override;
   const FrameReader<SensorFrame>& sensors() const noexcept { return sensors_.reader; }
@@ -58,6 +59,7 @@ class DriverProcess final : public Process {
   bool more() const noexcept { return cycles_ == 0 || cycle_->next_cycle() < cycles_; }
 
   MachineModel robot_;
+  GateParameters gate_;
   std::uint64_t cycles_;
   Output<SensorFrame> sensors_;
   Output<TruthFrame> truth_;

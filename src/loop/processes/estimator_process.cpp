@@ -4,11 +4,10 @@
 
 namespace robot_control {
 
-EstimatorProcess::EstimatorProcess(const Parameters& parameters, const DriveTrain& robot, const std::string& bus)
-    : ConsumerProcess(parameters, robot, bus,
+EstimatorProcess::EstimatorProcess(const Parameters& parameters, const Robot& robot, const std::string& bus)
+    : ConsumerProcess(parameters, robot.machine(), bus,
                       {LoopPriority::kEstimator, "estimator", ChannelNames::kState, TraceRing::kEstimator}),
-      cycle_(parameters.estimator, identified(robot, parameters.loop), parameters.loop.period(), sensors_.reader,
-             output_.writer, clock_of(parameters.loop)) {
+      cycle_(robot.make_estimator(), robot_.hash, sensors_.reader, output_.writer, clock_of(parameters.loop)) {
   cycle_.set_process(mint_number());
 }
 

@@ -6,12 +6,13 @@
 
 #include "loop/cycles/estimator_cycle.h"
 #include "loop/processes/consumer_process.h"
+#include "robots/robot.h"
 
 namespace robot_control {
 
 class EstimatorProcess final : public ConsumerProcess<StateFrame, EstimatorTrace> {
  public:
-  EstimatorProcess(const Parameters& parameters, const DriveTrain& robot, const std::string& bus);
+  EstimatorProcess(const Parameters& parameters, const Robot& robot, const std::string& bus);
   ~EstimatorProcess() override { stop(); }
 
   std::vector<std::string> missing() const override;

@@ -1,23 +1,22 @@
 #include "loop/processes/monitor_process.h"
 
 #include "loop/mint_number.h"
-#include "loop/safety_limits.h"
 #include "signals/names.h"
 
 namespace robot_control {
 
-MonitorProcess::MonitorProcess(const Parameters& parameters, const DriveTrain& robot, const std::string& bus)
-    : ConsumerProcess(parameters, robot, bus,
+MonitorProcess::MonitorProcess(const Parameters& parameters, const Robot& robot, const std::string& bus)
+    : ConsumerProcess(parameters, robot.machine(), bus,
                       {LoopPriority::kMonitor, "monitor", ChannelNames::kPermit, TraceRing::kMonitor}),
       state_(bus, ChannelNames::kState),
       command_(bus, ChannelNames::kCommand),
       latch_file_(parameters.latch_file),
-      cycle_(safety_limits(parameters, robot), identified(robot, parameters.loop), parameters.loop.period(),
+      loss_ns_(static_cast<std::int64_t>(parameters.safety.loss_cycles) * parameters.loop.period_ns()),
+      cycle_(robot.make_monitor(), robot_.hash, loss_ns_,
              {&sensors_.reader, &state_.reader, &command_.reader, output_.writer},
              load_script(parameters.loop.command_script), clock_of(parameters.loop),
              {.causes = latch_file_.found().causes, .first_cause = latch_file_.found().first_cause}),
-      inherited_(cycle_.permit()),
-      loss_ns_(static_cast<std::int64_t>(parameters.safety.loss_cycles) * parameters.loop.period_ns()) {
+      inherited_(cycle_.permit()) {
   cycle_.set_process(mint_number());
   if (inherited_.causes == 0) return;
   const std::string& since = latch_file_.found().since;

@@ -7,13 +7,14 @@
 #include "loop/cycles/monitor_cycle.h"
 #include "loop/latch_file.h"
 #include "loop/processes/consumer_process.h"
+#include "robots/robot.h"
 
 namespace robot_control {
 
 class MonitorProcess final : public ConsumerProcess<Permit, MonitorTrace> {
  public:
   /// Throws BusError; ParameterError for a script that cannot be read.
-  MonitorProcess(const Parameters& parameters, const DriveTrain& robot, const std::string& bus);
+  MonitorProcess(const Parameters& parameters, const Robot& robot, const std::string& bus);
   ~MonitorProcess() override;
 
   std::vector<std::string> missing() const override;
@@ -38,10 +39,10 @@ class MonitorProcess final : public ConsumerProcess<Permit, MonitorTrace> {
   Input<StateFrame> state_;
   Input<CommandFrame> command_;
   LatchFile latch_file_;
+  std::int64_t loss_ns_;
   MonitorCycle cycle_;
   Permit inherited_;  ///< the latch when this process started
   std::string restored_;
-  std::int64_t loss_ns_;
 };
 
 }  // namespace robot_control

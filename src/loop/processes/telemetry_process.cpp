@@ -125,7 +125,7 @@ struct TelemetryProcess::Sources {
   Source<MonitorTrace> monitor;
 };
 
-TelemetryProcess::TelemetryProcess(const Parameters& parameters, const DriveTrain& robot, const std::string& bus)
+TelemetryProcess::TelemetryProcess(const Parameters& parameters, const MachineModel& robot, const std::string& bus)
     : positions_(bus, ChannelNames::kTraceRead),
       folder_(parameters.telemetry.directory, bytes_of(parameters.telemetry.quota)),
       lockstep_(parameters.loop.clock == ClockMode::kLockstep),

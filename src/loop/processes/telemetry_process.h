@@ -23,7 +23,7 @@
 #include "log/log_folder.h"
 #include "log/rows/join.h"
 #include "loop/processes/process.h"
-#include "machine/wheeled/drive_train.h"
+#include "machine/machine_model.h"
 
 namespace robot_control {
 
@@ -40,7 +40,7 @@ class TelemetryProcess {
  public:
   /// Writes into the parameters' directory; earlier logs are kept as run.N.bag. Throws BusError (another
   /// telemetry reads), LogError (also: no room for the black box).
-  TelemetryProcess(const Parameters& parameters, const DriveTrain& robot, const std::string& bus);
+  TelemetryProcess(const Parameters& parameters, const MachineModel& robot, const std::string& bus);
   ~TelemetryProcess();
   TelemetryProcess(const TelemetryProcess&) = delete;
   TelemetryProcess& operator=(const TelemetryProcess&) = delete;

@@ -150,6 +150,12 @@ void check_finite(const DriveTrain& model) {
 
 }  // namespace
 
+const DriveTrain& drive_train_of(const MachineModel& machine) {
+  const auto* const wheeled = dynamic_cast<const DriveTrain*>(&machine);
+  if (wheeled == nullptr) throw RobotError(machine.source + ": this machine has no drive wheels");
+  return *wheeled;
+}
+
 DriveTrain read_drive_train(const RobotDescription& description, const DriveTrainParameters& parameters) {
   const auto bodies = std::make_shared<RigidBodies>(read_rigid_bodies(description, kEndless));
   DriveTrain model;

@@ -47,6 +47,9 @@ struct DriveTrain : MachineModel {
   double effective_wheel_base() const noexcept { return wheel_base * wheel_base_multiplier; }
 };
 
+/// Returns the drive train that a machine is. Throws RobotError for a machine without drive wheels.
+const DriveTrain& drive_train_of(const MachineModel& machine);
+
 /// Throws RobotError for overrides that are not above zero, and for numbers beyond all bounds. It also throws what
 /// read_rigid_bodies, find_running_gear, refuse_too_many_joints, refuse_unheld_joints and imu_link_of refuse.
 DriveTrain read_drive_train(const RobotDescription& description, const DriveTrainParameters& parameters);

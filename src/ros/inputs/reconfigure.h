@@ -13,7 +13,7 @@
 
 namespace robot_control {
 
-/// `parameters` are the ones in force, with derived values filled in (loop/retuning.h).
+/// `parameters` are the ones in force, with derived values filled in (robots/wheeled/retuning.h).
 msg::Config config_of(const std::vector<LiveParameter>& parameters);
 
 /// Returns a description with one group, "Default"; `parameters` are those of the start.

@@ -10,7 +10,7 @@
 
 #include "files/ascii.h"
 #include "loop/processes/controller_process.h"
-#include "loop/start_check.h"
+#include "robots/wheeled/start_check.h"
 #include "ros/inputs/command_input.h"
 #include "ros/inputs/command_mux.h"
 #include "ros/inputs/input_topic.h"
@@ -52,8 +52,8 @@ class ControllerNode final : public ProcessNode<ControllerProcess> {
     set_parameter_map_ = own.advertiseService("set_parameter_map", &ControllerNode::set_parameter_map, this);
     descriptions_ = own.advertise<msg::ConfigDescription>("parameter_descriptions", 1, true);
     updates_ = own.advertise<msg::Config>("parameter_updates", 1, true);
-    descriptions_.publish(description_of(process().retuning().live()));
-    updates_.publish(config_of(process().retuning().live()));
+    descriptions_.publish(description_of(process().retuner()->live()));
+    updates_.publish(config_of(process().retuner()->live()));
     joint_commands_ = handle.advertise<msg::Float64MultiArray>("joint_commands", 10);
     joint_targets_ = handle.advertise<msg::JointState>("joint_targets", 10);
     velocity_out_ = handle.advertise<msg::TwistStamped>("cmd_vel_out", 10);
@@ -92,7 +92,7 @@ class ControllerNode final : public ProcessNode<ControllerProcess> {
     msg::DriveState state = drive_state(command_, plan(), std::exchange(since_message_, 0), robot(), stamp);
     add_senders(state);
     drive_state_.publish(state);
-    if (report_outdated_.exchange(false)) command_report_.limit(process().retuning().in_force());
+    if (report_outdated_.exchange(false)) command_report_.limit(process().retuner()->in_force().controller);
     write_log(command_report_.update(command_));
   }
 
@@ -218,7 +218,7 @@ class ControllerNode final : public ProcessNode<ControllerProcess> {
   /// need no check here.
   void expect_monitor() {
     try {
-      process().retuning().expect_monitor(parameters_of(Role::kMonitor));
+      process().retuner()->expect_monitor(parameters_of(Role::kMonitor));
     } catch (const ParameterError&) {
     }
   }
@@ -232,9 +232,9 @@ class ControllerNode final : public ProcessNode<ControllerProcess> {
 
   /// As dynamic_reconfigure requires, the response holds the values in force, whether the request was accepted or not.
   bool set_parameters(msg::ReconfigureRequest& request, msg::ReconfigureResponse& response) {
-    const std::string text = request_text(request.config, process().retuning().live());
+    const std::string text = request_text(request.config, process().retuner()->live());
     if (!text.empty()) retune(text);
-    response.config = config_of(process().retuning().live());
+    response.config = config_of(process().retuner()->live());
     return true;
   }
 
@@ -257,9 +257,9 @@ class ControllerNode final : public ProcessNode<ControllerProcess> {
       return answer;
     }
     try {
-      const Retuned retuned = process().retuning().set(request);
-      follow(process().retuning().in_force());
-      updates_.publish(config_of(process().retuning().live()));
+      const Retuned retuned = process().retuner()->set(request);
+      follow(process().retuner()->in_force().controller);
+      updates_.publish(config_of(process().retuner()->live()));
       const std::string unwritten = write_overrides(retuned.values);
       answer = {.accepted = true, .text = sentence(retuned) + (unwritten.empty() ? "" : "; " + unwritten)};
       ROS_INFO("set_parameters: %s", answer.text.c_str());

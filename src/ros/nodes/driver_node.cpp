@@ -5,7 +5,6 @@
 #include "drivers/external_imu.h"
 #include "files/ascii.h"
 #include "loop/processes/driver_process.h"
-#include "loop/wheeled_gate.h"
 #include "ros/messages/motion_messages.h"
 #include "ros/messages/simulation_messages.h"
 #include "ros/nodes/process_node.h"
@@ -27,7 +26,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
     auto driver = with_imu(make(setup));
     driver_ = driver.get();
     description_ = std::make_unique<PublishedDescription>(robot(), parameters().urdf);
-    process().open_driver(std::move(driver), gate_parameters(parameters(), robot()));
+    process().open_driver(std::move(driver));
   }
 
   void connect(ros::NodeHandle& handle) override {

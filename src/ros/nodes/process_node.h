@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "loop/processes/process.h"
+#include "robots/differential_drive.h"
 #include "ros/messages/time_map.h"
 #include "ros/nodes/node.h"
 
@@ -19,7 +20,8 @@ class ProcessNode : public Node {
   explicit ProcessNode(const Setup& setup, More&&... more)
       : setup_(setup),
         time_(setup.parameters.loop.clock),
-        process_(setup.parameters, setup.robot, setup.bus, std::forward<More>(more)...) {}
+        composed_(setup.parameters, setup.robot),
+        process_(setup.parameters, composed_, setup.bus, std::forward<More>(more)...) {}
 
   void poll() override { process_.poll(); }
   bool finished() const override { return process_.finished(); }
@@ -40,6 +42,7 @@ class ProcessNode : public Node {
  private:
   Setup setup_;
   TimeMap time_;
+  DifferentialDrive composed_;
   Work process_;
 };
 

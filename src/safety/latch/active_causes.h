@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "safety/conditions/condition_watch.h"
+#include "safety/conditions/common/condition_watch.h"
 #include "signals/permit.h"
 
 namespace robot_control {

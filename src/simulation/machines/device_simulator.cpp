@@ -2,7 +2,7 @@
 
 namespace robot_control {
 
-DeviceSimulator::DeviceSimulator(const DriveTrain& robot, const MujocoPlantParameters& plant, double period,
+DeviceSimulator::DeviceSimulator(const MachineModel& robot, const MujocoPlantParameters& plant, double period,
                                  std::unique_ptr<DeviceFront> devices)
     : plant_(robot, plant, period), devices_(std::move(devices)), torques_(robot.joints.size()) {
   plant_.start();

@@ -17,7 +17,7 @@ namespace robot_control {
 class DeviceSimulator {
  public:
   /// `period` is in s. Throws DriverError.
-  DeviceSimulator(const DriveTrain& robot, const MujocoPlantParameters& plant, double period,
+  DeviceSimulator(const MachineModel& robot, const MujocoPlantParameters& plant, double period,
                   std::unique_ptr<DeviceFront> devices);
 
   void step() noexcept;

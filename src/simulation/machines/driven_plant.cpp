@@ -4,7 +4,7 @@
 
 namespace robot_control {
 
-DrivenPlant::DrivenPlant(const DriveTrain& robot, const MujocoPlantParameters& plant, double period,
+DrivenPlant::DrivenPlant(const MachineModel& robot, const MujocoPlantParameters& plant, double period,
                          std::unique_ptr<DeviceFront> devices, std::unique_ptr<Driver> driver)
     : plant_(robot, plant, period),
       devices_(std::move(devices)),

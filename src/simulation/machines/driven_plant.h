@@ -21,7 +21,7 @@ class DrivenPlant final : public Simulator {
   static constexpr std::int64_t kMaxStart = 10'000'000'000;  ///< ns
 
   /// `period` is in s. `devices` are at the other end of the driver's line. Throws DriverError as MujocoPlant does.
-  DrivenPlant(const DriveTrain& robot, const MujocoPlantParameters& plant, double period,
+  DrivenPlant(const MachineModel& robot, const MujocoPlantParameters& plant, double period,
               std::unique_ptr<DeviceFront> devices, std::unique_ptr<Driver> driver);
 
   void start() override;

@@ -68,10 +68,12 @@ std::unique_ptr<Driver> make_plant_behind_board(const Parameters& parameters, co
 
 }  // namespace
 
-std::unique_ptr<Driver> make_simulated_machine(const Parameters& parameters, const DriveTrain& robot) {
+std::unique_ptr<Driver> make_simulated_machine(const Parameters& parameters, const MachineModel& machine) {
   const double period = parameters.loop.period();
+  if (parameters.driver == DriverChoice::kMujoco && parameters.drives.empty())
+    return std::make_unique<MujocoPlant>(machine, parameters.plant, period);
+  const DriveTrain& robot = drive_train_of(machine);
   if (parameters.driver == DriverChoice::kExample) return make_plant_behind_board(parameters, robot);
-  if (parameters.drives.empty()) return std::make_unique<MujocoPlant>(robot, parameters.plant, period);
   const CanParameters can = can_of(parameters, robot);
   const auto [driver_end, device_end] = line_ends();
   std::unique_ptr<DeviceFront> devices = can_devices(can, parameters, robot, CanSocket(device_end));
@@ -81,7 +83,8 @@ std::unique_ptr<Driver> make_simulated_machine(const Parameters& parameters, con
   return std::make_unique<DrivenPlant>(robot, parameters.plant, period, std::move(devices), std::move(driver));
 }
 
-std::unique_ptr<DeviceSimulator> make_device_simulator(const Parameters& parameters, const DriveTrain& robot) {
+std::unique_ptr<DeviceSimulator> make_device_simulator(const Parameters& parameters, const MachineModel& machine) {
+  const DriveTrain& robot = drive_train_of(machine);
   if (parameters.driver == DriverChoice::kExample) {
     const ExampleMotors motors = example_motors(parameters, robot);
     auto board = std::make_unique<ExampleBoard>(motors.brakes, motors.effort_limits, parameters.loop.period(),

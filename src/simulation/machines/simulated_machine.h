@@ -6,16 +6,16 @@
 
 #include "configuration/parameters.h"
 #include "drivers/driver.h"
-#include "machine/wheeled/drive_train.h"
+#include "machine/machine_model.h"
 #include "simulation/machines/device_simulator.h"
 
 namespace robot_control {
 
 /// Throws DriverError, and ParameterError with all problems of the drive file.
-std::unique_ptr<Driver> make_simulated_machine(const Parameters& parameters, const DriveTrain& robot);
+std::unique_ptr<Driver> make_simulated_machine(const Parameters& parameters, const MachineModel& machine);
 
 /// Returns the simulated robot for a driver in another program, which finds it at the address of the drive file. Throws
 /// as make_simulated_machine.
-std::unique_ptr<DeviceSimulator> make_device_simulator(const Parameters& parameters, const DriveTrain& robot);
+std::unique_ptr<DeviceSimulator> make_device_simulator(const Parameters& parameters, const MachineModel& machine);
 
 }  // namespace robot_control

@@ -27,7 +27,7 @@ class ReplayedDrive : public testing::Test {
     }
   }
 
-  ReplayReport replay() const { return recording.replay(parameters, loop.robot()); }
+  ReplayReport replay() const { return recording.replay(loop.robot(), parameters.loop.period()); }
 
   void expect_all_compared() const {
     const ReplayReport report = replay();

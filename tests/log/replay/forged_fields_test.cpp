@@ -39,12 +39,12 @@ struct LoggedDrive {
         snapshots.push_back(*snapshot);
         seal(snapshots.back());
       }
-      log(loop.row(), loop.robot().joints.size(), messages);
+      log(loop.row(), loop.robot().machine().joints.size(), messages);
     }
   }
 
   ReplayReport replay(const std::vector<LoggedMessage>& edited) const {
-    return robot_control::replay(edited, snapshots, parameters, loop.robot());
+    return robot_control::replay(edited, snapshots, loop.robot(), parameters.loop.period());
   }
 
   /// True if something differs, was not compared, or cannot be read.

@@ -33,19 +33,17 @@ class RandomNodes {
 
   ReplayReport replay() {
     join_.finish();
-    return recording.replay(parameters(), loop_.robot);
+    return recording.replay(composed(), kPeriod);
   }
 
-  ReplayReport replay_messages() {
-    return robot_control::replay(messages_, recording.snapshots, parameters(), loop_.robot);
-  }
+  ReplayReport replay_messages() { return robot_control::replay(messages_, recording.snapshots, composed(), kPeriod); }
 
   /// Number of states that an estimator with the same parameters would compute differently from the log.
   int varied_otherwise() {
     join_.finish();
     int otherwise = 0;
-    Replay again(parameters(), loop_.robot);
-    again.vary(parameters(), loop_.robot, [&](const VariedRow& row) {
+    Replay again(composed(), kPeriod);
+    again.vary(composed(), [&](const VariedRow& row) {
       if (row.state == nullptr) return;
       otherwise += row.varied_state->base.pose_odom.position != row.state->base.pose_odom.position ? 1 : 0;
     });
@@ -57,6 +55,8 @@ class RandomNodes {
   Recording recording;
 
  private:
+  DifferentialDrive composed() const { return {parameters(), loop_.robot}; }
+
   static Parameters parameters() {
     Parameters found;
     found.loop.rate = 1 / kPeriod;

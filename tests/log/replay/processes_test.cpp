@@ -16,7 +16,7 @@ class ReplayedProcesses : public testing::Test {
   /// Rows may be lost if this machine stands still; then they are named, and most are still compared.
   void expect_exact() {
     const Recording recording = file_.end();
-    const ReplayReport report = recording.replay(robot_.nodes().parameters(), robot_.nodes().robot());
+    const ReplayReport report = recording.replay(robot_.nodes().composed(), robot_.nodes().parameters().loop.period());
     EXPECT_TRUE(report.exact()) << text_of(report);
     for (const LawReport& law : report.laws) {
       EXPECT_GT(law.compared, 9 * law.not_compared) << text_of(report);
@@ -63,7 +63,7 @@ TEST_F(ReplayedProcesses, FromTheLogOfATelemetryThatWasKilled) {
   robot_.nodes().end(LoopNode::kTelemetry);
   file_.end();
   TraceReader log((folder / "run.bag").string());
-  Replay replay(robot_.nodes().parameters(), robot_.nodes().robot());
+  Replay replay(robot_.nodes().composed(), robot_.nodes().parameters().loop.period());
   log.read({.snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});
   log.read({.message = [&](const TraceRow& row, const BagMessage& message) {
     replay.add(row, message.data, static_cast<std::int64_t>(message.time_ns));

@@ -74,8 +74,8 @@ struct Recording {
     rows.emplace_back(loop.row());
   }
 
-  ReplayReport replay(const Parameters& parameters, const DriveTrain& robot) const {
-    Replay again(parameters, robot);
+  ReplayReport replay(const Robot& robot, double period) const {
+    Replay again(robot, period);
     for (const LawSnapshot& snapshot : snapshots) again.add(snapshot);
     for (const RecordedRow& row : rows) again.add(row.joined());
     return again.report();
@@ -96,9 +96,9 @@ inline void log(const JoinedRow& row, std::size_t joints, std::vector<LoggedMess
 
 /// Replays them as from a file. Throws TraceError: a message cannot be read.
 inline ReplayReport replay(const std::vector<LoggedMessage>& messages, const std::vector<LawSnapshot>& snapshots,
-                           const Parameters& parameters, const DriveTrain& robot) {
+                           const Robot& robot, double period) {
   static const TraceDecoder kDecoder(trace_definition());
-  Replay again(parameters, robot);
+  Replay again(robot, period);
   for (const LawSnapshot& snapshot : snapshots) again.add(snapshot);
   TraceRow row;
   for (const LoggedMessage& message : messages) {

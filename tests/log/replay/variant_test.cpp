@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "log/replay/recorded.h"
+#include "robots/differential_drive.h"
 
 namespace robot_control {
 namespace {
@@ -20,8 +21,8 @@ struct VariedDrive : testing::Test {
 
   /// `watch` gets the results that the laws of `varied` would have given.
   ReplayReport replay(const Parameters& varied, const std::function<void(const VariedRow&)>& watch) const {
-    Replay again(parameters, loop.robot());
-    again.vary(varied, loop.robot(), watch);
+    Replay again(loop.robot(), parameters.loop.period());
+    again.vary(DifferentialDrive(varied, drive_train_of(loop.robot().machine())), watch);
     for (const LawSnapshot& snapshot : recording.snapshots) again.add(snapshot);
     for (const RecordedRow& row : recording.rows) again.add(row.joined());
     return again.report();

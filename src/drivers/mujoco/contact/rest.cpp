@@ -39,6 +39,7 @@ bool at_rest(const MujocoModel& model, const mjData& data, double base_speed, do
 }
 
 std::string unloaded_side(const MujocoModel& model, const WheelContacts& wheels) {
+  if (model.drive_wheels == 0) return "";
   for (const Side side : {Side::kLeft, Side::kRight}) {
     double load = 0;
     for (std::size_t i = 0; i < model.drive_wheels; ++i) {

@@ -101,17 +101,19 @@ class Writer {
     const WheelModel* rolling = rolling_body(model_, body);
     const JointModel& model = *std::find_if(model_.joints.begin(), model_.joints.end(),
                                             [&](const JointModel& other) { return other.name == joint.name; });
-    const bool wheel = model.role == JointRole::kDriven;
+    const bool driven = model.role == JointRole::kDriven;
     const bool slides = joint.type == JointType::kPrismatic;
-    const bool limited = !wheel && joint.type != JointType::kContinuous && joint.lower < joint.upper;
+    const bool limited =
+        !(driven && rolling != nullptr) && joint.type != JointType::kContinuous && joint.lower < joint.upper;
     const double gear = parameters_.gear_ratio;
-    const double damping = joint.damping + (wheel ? gear * gear * parameters_.motor_damping : 0);
-    double friction = joint.friction + (wheel ? gear * parameters_.motor_friction : 0);
+    const double damping = joint.damping + (driven ? gear * gear * parameters_.motor_damping : 0);
+    double friction = joint.friction + (driven ? gear * parameters_.motor_friction : 0);
     if (model.role == JointRole::kHeld) {
       friction =
           std::max(friction, joint.effort_limit > 0 ? joint.effort_limit : model_.mass * kGravity * kUnknownReach);
     }
-    const double armature = rolling != nullptr ? rolling->rotor_inertia : swivel_inertia(body);
+    const double rotor = driven ? gear * gear * parameters_.rotor_inertia : swivel_inertia(body);
+    const double armature = rolling != nullptr ? rolling->rotor_inertia : rotor;
     bodies_ +=
         "<joint" + attribute("name", escaped(joint.name)) + attribute("type", slides ? "slide" : "hinge") +
         " pos=\"0 0 0\"" + attribute("axis", mjcf_numbers(joint.axis)) +
@@ -171,7 +173,7 @@ class Writer {
         mesh = "robot_control/mesh/" + std::to_string(meshes_++);
         assets_ += mjcf_mesh(mesh, shape.points);
       }
-      bodies_ += mjcf_sliding_shape(shape, mesh);
+      bodies_ += mjcf_shape(shape, mesh, model_.wheels.empty() ? Grip::kOfGround : Grip::kNone);
     }
   }
 

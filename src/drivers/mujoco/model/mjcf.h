@@ -9,18 +9,20 @@
 /// are kept; a mesh becomes the hull of its corners. A hull flatter than 1 mm is thickened to 1 mm, because MuJoCo
 /// refuses its volume. The robot's shapes do not collide with each other, as in URDF.
 ///
-/// Contacts are hard; these values were measured not to creep: `solref .004 1`, `solimp .99 .999 .001`. All shapes
-/// except wheels are frictionless (condim 1, enforced by `priority 1`), so that casters and chassis slide. Wheels on
+/// Contacts are hard; these values were measured not to creep: `solref .004 1`, `solimp .99 .999 .001`. On a robot with
+/// drive wheels all other shapes are frictionless (condim 1, enforced by `priority 1`), so that casters and chassis
+/// slide. The shapes of a machine without wheels have the friction of the ground (condim 3). Wheels on
 /// brush tyres are also frictionless for MuJoCo; wheel_contacts.h adds their friction. With native friction a wheel has
 /// condim 3. Its friction is that of the ground, because MuJoCo uses the larger of two values and the robot's is zero.
 /// The robot's `solmix` outweighs the ground's solver settings.
 ///
-/// Joints: limits, damping and friction are those of the URDF; a wheel has no end stops. A wheel's rotor is its
-/// `armature`, and motor_damping · gear_ratio² and motor_friction · gear_ratio add to its losses. A suspension's spring
-/// pulls towards q₀ = load / stiffness. An equality ties a mimic joint to the joint that it follows. A joint driven by
-/// another device (JointRole::kHeld) is held by dry friction, which is stable under any load. The friction is its
-/// effort limit or, if that is unknown, the robot's weight times 1 m. A caster's swivel gets an armature of 2 % of a
-/// quarter of the robot's mass times r². The inertia behind a tyre bounds the tyre's stiffness (tyre.h).
+/// Joints: limits, damping and friction are those of the URDF; a wheel has no end stops. A drive's rotor is the
+/// `armature` of its joint, and motor_damping · gear_ratio² and motor_friction · gear_ratio add to its losses. A
+/// suspension's spring pulls towards q₀ = load / stiffness. An equality ties a mimic joint to the joint that it
+/// follows. A joint driven by another device (JointRole::kHeld) is held by dry friction, which is stable under any
+/// load. The friction is its effort limit or, if that is unknown, the robot's weight times 1 m. A caster's swivel gets
+/// an armature of 2 % of a quarter of the robot's mass times r². The inertia behind a tyre bounds the tyre's stiffness
+/// (tyre.h).
 ///
 /// Every attribute that a scene's `<default>` could change is written explicitly. All directions are quaternions,
 /// because the scene's `<compiler>` sets the unit of angles. `apply_angles` sets ranges and spring angles of rotating

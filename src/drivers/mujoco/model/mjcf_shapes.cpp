@@ -13,6 +13,7 @@ const char* const kContact =
     R"( contype="2" conaffinity="1" solmix="1e6" solref=".004 1" solimp=".99 .999 .001 .5 2" margin="0" gap="0" mass="0")";
 
 const char* const kSliding = R"( condim="1" priority="1" friction="0 0 0")";
+const char* const kStanding = R"( condim="3" priority="0" friction="0 0 0")";
 
 std::string rolling(const WheelModel& wheel, const MujocoPlantParameters& parameters) {
   if (wheel.omni || parameters.tyre == TyreModel::kBrush) return kSliding;
@@ -65,8 +66,8 @@ std::string mjcf_pose(const Eigen::Isometry3d& frame) {
          mjcf_numbers(q.vec()) + '"';
 }
 
-std::string mjcf_sliding_shape(const Shape& shape, const std::string& mesh) {
-  std::string geom = "<geom" + mjcf_pose(shape.in_body) + kContact + kSliding;
+std::string mjcf_shape(const Shape& shape, const std::string& mesh, Grip grip) {
+  std::string geom = "<geom" + mjcf_pose(shape.in_body) + kContact + (grip == Grip::kNone ? kSliding : kStanding);
   switch (shape.type) {
     case ShapeType::kSphere:
       geom += " type=\"sphere\" size=\"" + mjcf_number(shape.radius);

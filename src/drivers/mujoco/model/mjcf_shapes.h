@@ -16,8 +16,10 @@ std::string mjcf_numbers(const Eigen::Vector3d& values);
 /// Returns ` pos="…" quat="…"`.
 std::string mjcf_pose(const Eigen::Isometry3d& frame);
 
-/// Returns `<geom …/>` of a shape that slides; `mesh` names its asset.
-std::string mjcf_sliding_shape(const Shape& shape, const std::string& mesh);
+/// Returns `<geom …/>` of a shape that is no wheel; `mesh` names its asset. It slides without friction, or has the
+/// ground's.
+enum class Grip { kNone, kOfGround };
+std::string mjcf_shape(const Shape& shape, const std::string& mesh, Grip grip);
 
 /// Returns `<geom …/>` of a drive wheel or caster; the z axis of `frame` is the axle.
 std::string mjcf_rolling_shape(const std::string& name, const Eigen::Isometry3d& frame, const WheelModel& wheel,

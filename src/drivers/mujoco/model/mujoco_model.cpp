@@ -113,6 +113,9 @@ void find_addresses(MujocoModel& result) {
     result.joint_position.push_back(model.jnt_qposadr[id]);
     result.joint_velocity.push_back(model.jnt_dofadr[id]);
   }
+  for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
+    if (robot.joints[joint].role == JointRole::kDriven) result.driven.push_back(joint);
+  }
   result.drive_wheels = robot.wheels.size();
   for (std::size_t wheel = 0; wheel < robot.wheels.size() + robot.casters.size(); ++wheel) {
     result.wheel_shape.push_back(find(model, mjOBJ_GEOM, mjcf_wheel_name(wheel)));
@@ -140,7 +143,7 @@ std::string read_file(const std::filesystem::path& path) {
 
 }  // namespace
 
-MujocoModel compile_model(const DriveTrain& robot, const MujocoPlantParameters& parameters, double period) {
+MujocoModel compile_model(const MachineModel& robot, const MujocoPlantParameters& parameters, double period) {
   install_mujoco_handlers();
   const std::filesystem::path scene = parameters.scene;
   if (std::error_code error; !std::filesystem::exists(scene, error)) {
@@ -173,7 +176,7 @@ MujocoData set_down(const MujocoModel& robot) {
   return MujocoData(mj_makeData(robot.model.get()));
 }
 
-std::string exported_mjcf(const DriveTrain& robot, const MujocoPlantParameters& parameters, double period) {
+std::string exported_mjcf(const MachineModel& robot, const MujocoPlantParameters& parameters, double period) {
   MujocoPlantParameters native = parameters;
   native.tyre = TyreModel::kNative;
   const MujocoModel compiled = compile_model(robot, native, period);

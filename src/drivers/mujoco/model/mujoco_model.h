@@ -45,6 +45,7 @@ struct MujocoModel {
   std::vector<int> joint_velocity;  ///< indices into qvel and qfrc_applied
   std::vector<int> wheel_shape;     ///< geoms of the drive wheels of DriveTrain, then of its casters
   std::size_t drive_wheels = 0;
+  std::vector<std::size_t> driven;    ///< joints of DriveTrain with a motor: the drive wheels, or those of another kind
   std::array<double, 3> up{0, 0, 1};  ///< z axis of the site `start`, world axes
   int gyro = 0;                       ///< index into sensordata
   int imu = 0;                        ///< site
@@ -52,13 +53,13 @@ struct MujocoModel {
 
 /// Compiles the model; `period` is in s. Throws DriverError if the scene does not compile (with MuJoCo's message), has
 /// no site `start` or changes the robot's mass. Throws RobotError as true_robot does.
-MujocoModel compile_model(const DriveTrain& robot, const MujocoPlantParameters& parameters, double period);
+MujocoModel compile_model(const MachineModel& robot, const MujocoPlantParameters& parameters, double period);
 
 /// Returns new data with the robot at its start pose and speed zero, before it settles.
 MujocoData set_down(const MujocoModel& robot);
 
 /// Returns robot and scene as one self-contained MJCF text for `mujoco-simulate`, with native friction, because that
 /// program has no other. Files that the scene loads (textures, meshes) keep their names. Throws as compile_model does.
-std::string exported_mjcf(const DriveTrain& robot, const MujocoPlantParameters& parameters, double period);
+std::string exported_mjcf(const MachineModel& robot, const MujocoPlantParameters& parameters, double period);
 
 }  // namespace robot_control

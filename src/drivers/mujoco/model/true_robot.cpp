@@ -7,6 +7,13 @@
 namespace robot_control {
 namespace {
 
+/// Returns the machine itself: its model holds no override that the plant must not have.
+DriveTrain without_wheels(const MachineModel& described) {
+  DriveTrain robot;
+  static_cast<MachineModel&>(robot) = described;
+  return robot;
+}
+
 DriveTrain as_described(const DriveTrain& described) {
   DriveTrainParameters names;
   for (const WheelModel& wheel : described.wheels) {
@@ -44,8 +51,9 @@ void load(DriveTrain& robot, double mass, const Vector3& place) {
 
 }  // namespace
 
-DriveTrain true_robot(const DriveTrain& described, const MujocoPlantParameters& parameters) {
-  DriveTrain robot = as_described(described);
+DriveTrain true_robot(const MachineModel& described, const MujocoPlantParameters& parameters) {
+  const auto* const wheeled = dynamic_cast<const DriveTrain*>(&described);
+  DriveTrain robot = wheeled != nullptr ? as_described(*wheeled) : without_wheels(described);
   auto bodies = std::make_shared<RigidBodies>(*robot.bodies);
   const double widening = parameters.wheel_base_error * robot.wheel_base / 2;
   for (WheelModel& wheel : robot.wheels) {

@@ -18,7 +18,7 @@
 
 namespace robot_control {
 
-/// Throws RobotError as read_drive_train does.
-DriveTrain true_robot(const DriveTrain& described, const MujocoPlantParameters& parameters);
+/// A machine without drive wheels becomes a drive train without wheels. Throws RobotError as read_drive_train does.
+DriveTrain true_robot(const MachineModel& described, const MujocoPlantParameters& parameters);
 
 }  // namespace robot_control

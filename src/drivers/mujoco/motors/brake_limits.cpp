@@ -4,21 +4,43 @@
 
 #include "drivers/driver.h"
 #include "gate/wheeled/wheel_stop.h"
+#include "machine/bodies/rigid_bodies.h"
 #include "machine/description/wording.h"
 
 namespace robot_control {
+namespace {
+
+constexpr double kHoldSpeed = 0.03;  // rad/s or m/s
+
+}  // namespace
+
+double inertia_of(const DriveTrain& robot, std::size_t index, const MujocoPlantParameters& parameters) {
+  if (index < robot.wheels.size()) return robot.wheels[index].inertia;
+  const RigidBody& body = *robot.bodies->moved_by(robot.joints[index].name);
+  const double rotor = parameters.gear_ratio * parameters.gear_ratio * parameters.rotor_inertia;
+  if (robot.joints[index].prismatic) return body.mass + rotor;
+  const Eigen::Vector3d& axis = body.joint.axis;
+  const double lever = body.centre_of_gravity.cross(axis).squaredNorm();
+  return axis.dot(body.inertia * axis) + body.mass * lever + rotor;
+}
 
 Brake brake_of(const DriveTrain& robot, std::size_t index, const MujocoPlantParameters& parameters, double step) {
-  const WheelModel& wheel = robot.wheels[index];
-  const JointModel& joint = robot.joints[wheel.joint];
-  Brake brake = wheel_brake(robot, index, parameters.gear_ratio * parameters.motor_friction, step);
+  const JointModel& joint = robot.joints[index];
+  const double inertia = inertia_of(robot, index, parameters);
+  Brake brake = {.effort = joint.effort_limit,
+                 .hold_effort = joint.effort_limit,
+                 .damping = 0.4 * inertia / step,
+                 .stiffness = 0.06 * inertia / (step * step),
+                 .hold_speed = kHoldSpeed};
+  if (index < robot.wheels.size())
+    brake = wheel_brake(robot, index, parameters.gear_ratio * parameters.motor_friction, step);
   if (parameters.brake_effort) {
     brake.effort = brake.hold_effort = std::min(*parameters.brake_effort, joint.effort_limit);
   }
   brake.damping = parameters.brake_damping.value_or(brake.damping);
   brake.stiffness = parameters.brake_stiffness.value_or(brake.stiffness);
   brake.hold_speed = parameters.brake_hold_speed.value_or(brake.hold_speed);
-  check_brake(brake, joint.name, wheel.inertia, step);
+  check_brake(brake, joint.name, inertia, step);
   return brake;
 }
 

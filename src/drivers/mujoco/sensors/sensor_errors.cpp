@@ -55,7 +55,9 @@ SensorErrors::SensorErrors(const DriveTrain& robot, const MujocoPlantParameters&
       late_imu_(parameters.imu_delay, parameters.imu_jitter, period, kImuLateStream),
       late_encoders_(0, parameters.encoder_jitter, period, kEncodersLateStream),
       delay_(checked_delay("sensor_delay", parameters.sensor_delay)) {
-  for (const WheelModel& wheel : robot.wheels) wheels_.push_back(wheel.joint);
+  for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
+    if (robot.joints[joint].role == JointRole::kDriven) driven_.push_back(joint);
+  }
   reset();
 }
 
@@ -69,8 +71,8 @@ void SensorErrors::reset() {
 }
 
 void SensorErrors::encode(Measurement& measurement) noexcept {
-  for (std::size_t i = 0; i < wheels_.size(); ++i) {
-    JointSample& joint = measurement.joints[wheels_[i]];
+  for (std::size_t i = 0; i < driven_.size(); ++i) {
+    JointSample& joint = measurement.joints[driven_[i]];
     const double counted = std::round(joint.position / count_);
     joint.position = counted * count_;
     joint.velocity = first_ ? 0 : (counted - counted_[i]) * count_ / period_;
@@ -82,10 +84,10 @@ void SensorErrors::encode(Measurement& measurement) noexcept {
 void SensorErrors::make_late(Measurement& measurement) noexcept {
   late_imu_.step(measurement.imu);
   Encoders encoders{};
-  for (std::size_t i = 0; i < wheels_.size(); ++i) encoders[i] = measurement.joints[wheels_[i]];
+  for (std::size_t i = 0; i < driven_.size(); ++i) encoders[i] = measurement.joints[driven_[i]];
   late_encoders_.step(encoders);
-  for (std::size_t i = 0; i < wheels_.size(); ++i) {
-    JointSample& joint = measurement.joints[wheels_[i]];
+  for (std::size_t i = 0; i < driven_.size(); ++i) {
+    JointSample& joint = measurement.joints[driven_[i]];
     joint.position = encoders[i].position;
     joint.velocity = encoders[i].velocity;
   }

@@ -94,15 +94,15 @@ class SensorErrors {
   ErrorLevel level_;
   std::uint64_t seed_;
   double period_;
-  double count_;  ///< rad, δ; 0: exact
-  std::vector<std::size_t> wheels_;
-  std::array<double, kMaxWheels> counted_{};  ///< n in the last sample
+  double count_;                              ///< rad, δ; 0: exact
+  std::vector<std::size_t> driven_;           ///< joints with a drive, whose encoder errs
+  std::array<double, kMaxJoints> counted_{};  ///< n in the last sample
   bool first_ = true;
   double gyro_scale_;  ///< 1 + e
   InertialError gyro_, accelerometer_;
   Vibration vibration_;
   LateSamples<ImuSample> late_imu_;
-  using Encoders = std::array<JointSample, kMaxWheels>;
+  using Encoders = std::array<JointSample, kMaxJoints>;
   LateSamples<Encoders> late_encoders_;
   DelayLine<Measurement, kMaxDelay> delay_;
 };

@@ -22,6 +22,7 @@ void Vibration::reset(std::uint64_t seed) {
 }
 
 void Vibration::step(Measurement& measurement) noexcept {
+  if (rims_.empty()) return;  // a machine without wheels does not roll over a floor
   double speed = 0;
   for (const Rim& rim : rims_) speed += std::abs(measurement.joints[rim.joint].velocity) * rim.radius;
   speed /= static_cast<double>(rims_.size());

@@ -1,4 +1,4 @@
-#include "loop/retuning.h"
+#include "robots/wheeled/retuning.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <string_view>
 #include <thread>
 
-#include "cycle_fixture.h"
+#include "loop/cycle_fixture.h"
 #include "support/allocation_guard.h"
 
 namespace robot_control {
@@ -52,7 +52,7 @@ TEST_F(RetuningTest, HandsOverTheWholeSet) {
   EXPECT_EQ(tuning.linear.speed, 0.5);
   EXPECT_EQ(tuning.wheels[0].kp, 1.5);
   EXPECT_EQ(tuning.wheels[1].kp, 1.5);
-  EXPECT_EQ(retuning.in_force().max_linear_speed, 0.5);
+  EXPECT_EQ(retuning.in_force().controller.max_linear_speed, 0.5);
 }
 
 TEST_F(RetuningTest, LaysEachSetOverTheLast) {
@@ -82,7 +82,7 @@ TEST_F(RetuningTest, RefusesTheWholeSetWithEveryReason) {
   for (const char* reason : {"safety_monitor", "unstable", "must be finite", "read at start alone", "unknown key"}) {
     EXPECT_THAT(text, HasSubstr(reason));
   }
-  EXPECT_EQ(retuning.in_force().max_linear_speed, 1.0);
+  EXPECT_EQ(retuning.in_force().controller.max_linear_speed, 1.0);
   EXPECT_EQ(sentence(retuning.set("{max_linear_speed: 0.9}")), "set 1: max_linear_speed from 1 to 0.9");
 }
 

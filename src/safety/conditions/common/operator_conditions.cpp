@@ -1,4 +1,4 @@
-#include "safety/conditions/operator_conditions.h"
+#include "safety/conditions/common/operator_conditions.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "loop/safety_limits.h"
+#include "robots/wheeled/safety_limits.h"
 
 #include <algorithm>
 #include <numbers>

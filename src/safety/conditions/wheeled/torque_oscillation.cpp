@@ -1,4 +1,4 @@
-#include "safety/conditions/torque_oscillation.h"
+#include "safety/conditions/wheeled/torque_oscillation.h"
 
 #include <algorithm>
 #include <cmath>

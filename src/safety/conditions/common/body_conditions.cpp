@@ -1,4 +1,4 @@
-#include "safety/conditions/body_conditions.h"
+#include "safety/conditions/common/body_conditions.h"
 
 #include <algorithm>
 #include <bit>

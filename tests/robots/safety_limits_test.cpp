@@ -1,9 +1,9 @@
-#include "loop/safety_limits.h"
+#include "robots/wheeled/safety_limits.h"
 
 #include <gtest/gtest.h>
 
 #include "control/wheel_loops/wheel_loop_gains.h"
-#include "cycle_fixture.h"
+#include "loop/cycle_fixture.h"
 #include "safety/derived_limits.h"
 
 namespace robot_control {

@@ -1,4 +1,4 @@
-#include "loop/start_check.h"
+#include "robots/wheeled/start_check.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "control/smooth_speed.h"
-#include "cycle_fixture.h"
+#include "loop/cycle_fixture.h"
 #include "loop/machine_identity.h"
 
 namespace robot_control {

@@ -1,4 +1,4 @@
-#include "loop/retuning.h"
+#include "robots/wheeled/retuning.h"
 
 #include <algorithm>
 #include <limits>
@@ -6,8 +6,8 @@
 
 #include "control/control_problems.h"
 #include "control/derived_tuning.h"
-#include "loop/safety_limits.h"
 #include "parameters/problem_list.h"
+#include "robots/wheeled/safety_limits.h"
 #include "safety/derived_limits.h"
 #include "signals/roles.h"
 
@@ -45,15 +45,6 @@ DriveControllerParameters spelled_out(DriveControllerParameters given, const Dri
 }
 
 }  // namespace
-
-std::string sentence(const Retuned& retuned) {
-  std::string text = "set " + std::to_string(retuned.count) + ": ";
-  for (const LiveValue& value : retuned.values) {
-    text +=
-        (&value == &retuned.values.front() ? "" : ", ") + value.key + " from " + value.before + " to " + value.after;
-  }
-  return text;
-}
 
 Retuning::Retuning(const Parameters& parameters, const DriveTrain& robot, LatestValue<DriveTuning>& inbox)
     : parameters_(parameters),
@@ -108,9 +99,9 @@ std::vector<LiveParameter> Retuning::live() const {
   return live_parameters(parameters, kBlock);
 }
 
-DriveControllerParameters Retuning::in_force() const {
+Parameters Retuning::in_force() const {
   const std::lock_guard lock(mutex_);
-  return parameters_.controller;
+  return parameters_;
 }
 
 }  // namespace robot_control

@@ -1,4 +1,4 @@
-#include "safety/conditions/machine_conditions.h"
+#include "safety/conditions/common/machine_conditions.h"
 
 #include <algorithm>
 #include <cmath>

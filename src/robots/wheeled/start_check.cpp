@@ -1,4 +1,4 @@
-#include "loop/start_check.h"
+#include "robots/wheeled/start_check.h"
 
 #include <array>
 #include <cmath>

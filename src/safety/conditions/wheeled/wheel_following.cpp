@@ -1,4 +1,4 @@
-#include "safety/conditions/wheel_following.h"
+#include "safety/conditions/wheeled/wheel_following.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "safety/conditions/wheel_limits.h"
+#include "safety/conditions/wheeled/wheel_limits.h"
 
 #include <algorithm>
 #include <cmath>

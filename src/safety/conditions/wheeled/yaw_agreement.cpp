@@ -1,4 +1,4 @@
-#include "safety/conditions/yaw_agreement.h"
+#include "safety/conditions/wheeled/yaw_agreement.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 #pragma once
 /// Do the sensors report?
 ///
-///   encoders lost  a wheel's joint gave no new sample with kValidMotion, which the controller needs, for the
+///   encoders lost  a driven joint gave no new sample with kValidMotion, which the controller needs, for the
 ///                  persistence. The time is the age of a valid sample, and grows by the elapsed time while there is
-///                  none. The wheel with the longest time is named.
+///                  none. The joint with the longest time is named.
 ///   IMU lost       gyro or accelerometer is not valid, but was valid earlier in this run: a robot without an IMU may
 ///                  drive
 ///
@@ -14,15 +14,15 @@
 #include <cstdint>
 
 #include "safety/latch/active_causes.h"
+#include "signals/joint.h"
 #include "signals/sensor_frame.h"
-#include "signals/wheeled/wheel_count.h"
 
 namespace robot_control {
 
 class SensorPresence {
  public:
-  /// The first `wheels` joints. `period` s.
-  SensorPresence(const SafetyParameters& parameters, std::size_t wheels, double period) noexcept;
+  /// The first `joints` of the machine report. `period` s.
+  SensorPresence(const SafetyParameters& parameters, std::size_t joints, double period) noexcept;
 
   void enter_run() noexcept;
   void step(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept;
@@ -44,11 +44,11 @@ class SensorPresence {
 
   void step_encoders(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept;
 
-  std::size_t wheels_;
+  std::size_t joints_;
   std::uint64_t period_ns_;
   Silence encoders_;
   Silence imu_;
-  std::array<std::uint64_t, kMaxWheels> wheel_silent_{};  ///< cycles since the sample of each wheel
+  std::array<std::uint64_t, kMaxJoints> joint_silent_{};  ///< cycles since the sample of each joint
   std::uint64_t imu_silent_ = 0;                          ///< cycles
   std::uint64_t imu_seen_ = 0;                            ///< kValidGyro, kValidAccelerometer
 };

@@ -31,7 +31,7 @@
 
 #include "machine/machine_model.h"
 #include "machine/stored.h"
-#include "safety/conditions/condition_watch.h"
+#include "safety/conditions/common/condition_watch.h"
 #include "safety/latch/active_causes.h"
 #include "safety/measurements/attitude.h"
 #include "safety/safety_parameters.h"

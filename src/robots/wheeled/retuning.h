@@ -19,38 +19,24 @@
 #include "configuration/live_parameters.h"
 #include "configuration/parameters.h"
 #include "machine/wheeled/drive_train.h"
+#include "robots/robot.h"
 #include "safety/safety_parameters.h"
 #include "signals/drive_tuning.h"
 
 namespace robot_control {
 
-/// An accepted request.
-struct Retuned {
-  std::uint64_t count = 0;  ///< DriveTuning::count, column `tuning` of the log
-  std::vector<LiveValue> values;
-};
-
-/// "set 2: max_linear_speed from 1 to 0.5, pid_kp from derived to 1.5"
-std::string sentence(const Retuned& retuned);
-
-class Retuning {
+class Retuning final : public Retuner {
  public:
   /// `parameters` with which the controller starts; the cycle takes `inbox` over. The monitor is assumed to run with
   /// the same parameters.
   Retuning(const Parameters& parameters, const DriveTrain& robot, LatestValue<DriveTuning>& inbox);
 
-  /// With which the monitor runs where it read others (an override of its own); its limits are derived from them.
-  void expect_monitor(const Parameters& monitor);
-
-  /// Throws ParameterError with every reason; then nothing changes. Any ordinary thread.
-  Retuned set(const std::string& request);
-
-  /// The values in force, as the user would have to set them. Any ordinary thread.
-  DriveControllerParameters in_force() const;
-
-  /// The same, each value with its range; those that are derived as the numbers that hold (of the first wheel). Any
-  /// ordinary thread.
-  std::vector<LiveParameter> live() const;
+  /// The monitor's limits are derived from these parameters.
+  void expect_monitor(const Parameters& monitor) override;
+  Retuned set(const std::string& request) override;
+  Parameters in_force() const override;
+  /// Derived values are those of the first wheel.
+  std::vector<LiveParameter> live() const override;
 
  private:
   std::string monitor_problem(const DriveControllerParameters& wanted) const;

@@ -1,4 +1,4 @@
-#include "safety/conditions/frame_conditions.h"
+#include "safety/conditions/common/frame_conditions.h"
 
 #include "safety/measurements/finite.h"
 

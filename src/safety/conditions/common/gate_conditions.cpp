@@ -1,4 +1,4 @@
-#include "safety/conditions/gate_conditions.h"
+#include "safety/conditions/common/gate_conditions.h"
 
 #include <algorithm>
 #include <cmath>

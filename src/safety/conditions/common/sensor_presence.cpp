@@ -1,4 +1,4 @@
-#include "safety/conditions/sensor_presence.h"
+#include "safety/conditions/common/sensor_presence.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,27 +25,27 @@ void SensorPresence::Silence::step(std::uint64_t cycles, std::uint64_t joint, Ac
   out.update(watch_, {.beyond = beyond, .value = silent, .limit = persistence_, .joint = joint}, 1);
 }
 
-SensorPresence::SensorPresence(const SafetyParameters& parameters, std::size_t wheels, double period) noexcept
-    : wheels_(std::min(wheels, kMaxWheels)),
+SensorPresence::SensorPresence(const SafetyParameters& parameters, std::size_t joints, double period) noexcept
+    : joints_(std::min(joints, kMaxJoints)),
       period_ns_(static_cast<std::uint64_t>(std::max(1LL, std::llround(period * 1e9)))),
       encoders_(kCauseEncodersLost, parameters.encoders_lost, period),
       imu_(kCauseImuLost, parameters.imu_lost, period) {}
 
 void SensorPresence::enter_run() noexcept {
-  wheel_silent_ = {};
+  joint_silent_ = {};
   imu_silent_ = imu_seen_ = 0;
 }
 
 void SensorPresence::step_encoders(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept {
   std::size_t worst = 0;
-  for (std::size_t i = 0; i < wheels_; ++i) {
+  for (std::size_t i = 0; i < joints_; ++i) {
     const JointSample& sample = sensors.joints[i];
     const bool sampled = i < sensors.joint_count && has(sample, kValidMotion);
     const auto age = static_cast<std::uint64_t>(std::max<std::int64_t>(0, sample.age_ns));
-    wheel_silent_[i] = sampled ? age / period_ns_ : wheel_silent_[i] + elapsed;
-    if (wheel_silent_[i] > wheel_silent_[worst]) worst = i;
+    joint_silent_[i] = sampled ? age / period_ns_ : joint_silent_[i] + elapsed;
+    if (joint_silent_[i] > joint_silent_[worst]) worst = i;
   }
-  encoders_.step(wheel_silent_[worst], worst, out);
+  encoders_.step(joint_silent_[worst], worst, out);
 }
 
 void SensorPresence::step(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept {

@@ -1,4 +1,4 @@
-#include "safety/conditions/presence.h"
+#include "safety/conditions/common/presence.h"
 
 namespace robot_control {
 

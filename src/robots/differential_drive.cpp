@@ -1,0 +1,90 @@
+#include "robots/differential_drive.h"
+
+#include <cmath>
+
+#include "control/drive_controller.h"
+#include "estimation/estimator.h"
+#include "gate/wheeled/wheel_stop.h"
+#include "robots/wheeled/retuning.h"
+#include "robots/wheeled/safety_limits.h"
+#include "robots/wheeled/start_check.h"
+#include "safety/safety_monitor.h"
+
+namespace robot_control {
+namespace {
+
+class WheeledEstimator final : public SavedLaw<EstimatorLaw, Estimator> {
+ public:
+  using SavedLaw::SavedLaw;
+  void enter_run() noexcept override { law_.enter_run(); }
+  void resume(const StateFrame& last) noexcept override { law_.resume(last); }
+  void set_pose(const Vector3& pose) noexcept override { law_.set_pose(pose); }
+  void step(const SensorFrame& sensors, StateFrame& out) noexcept override { law_.step(sensors, out); }
+};
+
+class WheeledController final : public SavedLaw<ControllerLaw, DriveController> {
+ public:
+  using SavedLaw::SavedLaw;
+  void enter_run(const VelocityCommand& inbox, bool with_zero) noexcept override { law_.enter_run(inbox, with_zero); }
+  void tune(const DriveTuning& tuning) noexcept override { law_.tune(tuning); }
+  const DriveTuning& tuning() const noexcept override { return law_.tuning(); }
+  void step(const ControlInput& input, CommandFrame& out) noexcept override { law_.step(input, out); }
+};
+
+class WheeledMonitor final : public SavedLaw<MonitorLaw, SafetyMonitor> {
+ public:
+  using SavedLaw::SavedLaw;
+  void step(const MonitorInput& input, Permit& out) noexcept override { law_.step(input, out); }
+};
+
+}  // namespace
+
+std::unique_ptr<EstimatorLaw> wheeled_estimator(const EstimatorParameters& parameters, const DriveTrain& machine,
+                                                double period) {
+  return std::make_unique<WheeledEstimator>(parameters, machine, period);
+}
+
+std::unique_ptr<ControllerLaw> wheeled_controller(const DriveControllerParameters& parameters,
+                                                  const DriveTrain& machine, double period) {
+  return std::make_unique<WheeledController>(parameters, machine, period);
+}
+
+std::unique_ptr<MonitorLaw> wheeled_monitor(const SafetyParameters& parameters, const DriveTrain& machine,
+                                            double period) {
+  return std::make_unique<WheeledMonitor>(parameters, machine, period);
+}
+
+DifferentialDrive::DifferentialDrive(const Parameters& parameters, const DriveTrain& machine)
+    : parameters_(parameters), machine_(machine) {}
+
+void DifferentialDrive::require_drivable() const {
+  robot_control::require_drivable(parameters_, machine_);
+}
+
+std::unique_ptr<EstimatorLaw> DifferentialDrive::make_estimator() const {
+  return wheeled_estimator(parameters_.estimator, machine_, parameters_.loop.period());
+}
+
+std::unique_ptr<ControllerLaw> DifferentialDrive::make_controller() const {
+  return wheeled_controller(parameters_.controller, machine_, parameters_.loop.period());
+}
+
+std::unique_ptr<MonitorLaw> DifferentialDrive::make_monitor() const {
+  return wheeled_monitor(safety_limits(parameters_, machine_), machine_, parameters_.loop.period());
+}
+
+GateParameters DifferentialDrive::gate() const {
+  const double ramp = std::ceil(parameters_.safety.ramp_time / parameters_.loop.period() - 1e-9);
+  GateParameters gate{.stops = std::vector<StopAction>(machine_.joints.size()),
+                      .longest_ramp = static_cast<std::uint64_t>(ramp) + parameters_.safety.loss_cycles};
+  for (std::size_t i = 0; i < machine_.wheels.size(); ++i) {
+    gate.stops[machine_.wheels[i].joint] = wheel_stop(machine_, i, parameters_.loop.fail_action);
+  }
+  return gate;
+}
+
+std::unique_ptr<Retuner> DifferentialDrive::make_retuner(LatestValue<DriveTuning>& inbox) const {
+  return std::make_unique<Retuning>(parameters_, machine_, inbox);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,40 @@
+#pragma once
+/// The differential drive: a robot on wheels, skid steers among them, composed of the wheeled laws.
+///
+///   recognised by   drive wheels on both sides (machine/wheeled/drive_train.h)
+///   laws            estimation/estimator.h, control/drive_controller.h, safety/monitor.h
+///   stop actions    of its drive wheels robot.fail_action; every other joint brakes
+///   longest ramp    ⌈ramp_time/period⌉ + loss_cycles: the monitor's own deadline, and as long as a loss may last
+
+#include "configuration/parameters.h"
+#include "machine/wheeled/drive_train.h"
+#include "robots/robot.h"
+
+namespace robot_control {
+
+/// Return the laws alone; `period` is in s.
+std::unique_ptr<EstimatorLaw> wheeled_estimator(const EstimatorParameters& parameters, const DriveTrain& machine,
+                                                double period);
+std::unique_ptr<ControllerLaw> wheeled_controller(const DriveControllerParameters& parameters,
+                                                  const DriveTrain& machine, double period);
+std::unique_ptr<MonitorLaw> wheeled_monitor(const SafetyParameters& parameters, const DriveTrain& machine,
+                                            double period);
+
+class DifferentialDrive final : public Robot {
+ public:
+  DifferentialDrive(const Parameters& parameters, const DriveTrain& machine);
+
+  const DriveTrain& machine() const noexcept override { return machine_; }
+  void require_drivable() const override;
+  std::unique_ptr<EstimatorLaw> make_estimator() const override;
+  std::unique_ptr<ControllerLaw> make_controller() const override;
+  std::unique_ptr<MonitorLaw> make_monitor() const override;
+  GateParameters gate() const override;
+  std::unique_ptr<Retuner> make_retuner(LatestValue<DriveTuning>& inbox) const override;
+
+ private:
+  Parameters parameters_;
+  DriveTrain machine_;
+};
+
+}  // namespace robot_control

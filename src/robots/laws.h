@@ -1,0 +1,74 @@
+#pragma once
+/// The roles of the loop as interfaces. A robot kind implements them by its laws; cycles, processes and the replay of a
+/// log know no others. `step` is called once per cycle. No function allocates, locks or throws.
+///
+/// `save` and `restore` copy the complete state of a law (signals/law_snapshot.h). A snapshot restores a law that was
+/// made with the same parameters for the same robot, by the same build.
+
+#include <utility>
+
+#include "control/control_input.h"
+#include "safety/monitor_input.h"
+#include "signals/command_frame.h"
+#include "signals/drive_tuning.h"
+#include "signals/law_snapshot.h"
+#include "signals/permit.h"
+#include "signals/sensor_frame.h"
+#include "signals/state_frame.h"
+
+namespace robot_control {
+
+class Law {
+ public:
+  virtual ~Law() = default;
+  virtual void save(LawSnapshot& snapshot) const noexcept = 0;
+  /// Returns false if the snapshot has another size.
+  virtual bool restore(const LawSnapshot& snapshot) noexcept = 0;
+};
+
+/// Sensors of a cycle → state of that cycle.
+class EstimatorLaw : public Law {
+ public:
+  /// Begins a new run: the pose is zero.
+  virtual void enter_run() noexcept = 0;
+  /// Continues from the last published frame after a restart within a run.
+  virtual void resume(const StateFrame& last) noexcept = 0;
+  /// The next frame has this pose (x [m], y [m], yaw [rad]).
+  virtual void set_pose(const Vector3& pose) noexcept = 0;
+  /// Fills everything but `out.head`.
+  virtual void step(const SensorFrame& sensors, StateFrame& out) noexcept = 0;
+};
+
+/// Sensors, state, permit and request of a cycle → joint commands of that cycle.
+class ControllerLaw : public Law {
+ public:
+  /// Begins a new run. Requests in the inbox do not count; with `with_zero` the run begins with a zero request.
+  virtual void enter_run(const VelocityCommand& inbox, bool with_zero) noexcept = 0;
+  /// Sets limits and gains between two cycles. They stay after `enter_run`.
+  virtual void tune(const DriveTuning& tuning) noexcept = 0;
+  virtual const DriveTuning& tuning() const noexcept = 0;
+  /// Fills everything but `out.head`.
+  virtual void step(const ControlInput& input, CommandFrame& out) noexcept = 0;
+};
+
+/// Sensors of a cycle, and command and state of the cycle before → permit of that cycle.
+class MonitorLaw : public Law {
+ public:
+  /// Fills everything but `out.head`.
+  virtual void step(const MonitorInput& input, Permit& out) noexcept = 0;
+};
+
+/// A law in one of these roles, whose state is saved as law_snapshot.h says.
+template <class Role, class Implementation>
+class SavedLaw : public Role {
+ public:
+  template <class... Arguments>
+  explicit SavedLaw(Arguments&&... arguments) : law_(std::forward<Arguments>(arguments)...) {}
+  void save(LawSnapshot& snapshot) const noexcept final { save_state(law_, snapshot); }
+  bool restore(const LawSnapshot& snapshot) noexcept final { return restore_state(snapshot, law_); }
+
+ protected:
+  Implementation law_;
+};
+
+}  // namespace robot_control

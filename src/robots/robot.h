@@ -1,0 +1,66 @@
+#pragma once
+/// A Robot is one machine of one kind with its laws, composed. Loop, log, replay and simulation know a robot by this
+/// interface alone. Each kind is composed in one file of this folder.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bus/latest_value.h"
+#include "configuration/live_parameters.h"
+#include "gate/gate_parameters.h"
+#include "machine/machine_model.h"
+#include "robots/laws.h"
+
+namespace robot_control {
+
+/// An accepted request to change limits and gains.
+struct Retuned {
+  std::uint64_t count = 0;  ///< DriveTuning::count, column `tuning` of the log
+  std::vector<LiveValue> values;
+};
+
+/// Returns for instance "set 2: max_linear_speed from 1 to 0.5, pid_kp from derived to 1.5".
+std::string sentence(const Retuned& retuned);
+
+/// Changes limits and gains of a controller while it runs: the services ~set_parameters and ~set_parameter_map, without
+/// ROS. Any ordinary thread may call it.
+class Retuner {
+ public:
+  virtual ~Retuner() = default;
+
+  /// Names the parameters with which the monitor runs where it read others (an override of its own).
+  virtual void expect_monitor(const Parameters& monitor) = 0;
+
+  /// Throws ParameterError with every reason; then nothing changes.
+  virtual Retuned set(const std::string& request) = 0;
+
+  /// Returns the parameters in force, as the user would have to set them.
+  virtual Parameters in_force() const = 0;
+
+  /// Returns each value with its range; those that are derived as the numbers that hold.
+  virtual std::vector<LiveParameter> live() const = 0;
+};
+
+class Robot {
+ public:
+  virtual ~Robot() = default;
+
+  virtual const MachineModel& machine() const noexcept = 0;
+
+  /// Throws ParameterError with every reason why these parameters do not fit this machine.
+  virtual void require_drivable() const = 0;
+
+  virtual std::unique_ptr<EstimatorLaw> make_estimator() const = 0;
+  virtual std::unique_ptr<ControllerLaw> make_controller() const = 0;
+  virtual std::unique_ptr<MonitorLaw> make_monitor() const = 0;
+
+  /// Returns the stop action of each joint, and how long a ramp may last.
+  virtual GateParameters gate() const = 0;
+
+  /// `inbox` is that of the controller's cycle. Returns null if nothing of this kind's controller changes while it
+  /// runs.
+  virtual std::unique_ptr<Retuner> make_retuner(LatestValue<DriveTuning>& inbox) const = 0;
+};
+
+}  // namespace robot_control
