@@ -37,6 +37,7 @@ JUDGED = (
     "limiter",
     "release",
     "drive",
+    "legs",
     "odometry",
     "hostile",
     "tuning",
@@ -162,8 +163,16 @@ def _drive(_given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     return drive_promises.bench(say)
 
 
+def _legs(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    from bench import legs
+
+    result = run_program(given.programs / "bench_legs", *legs.urdfs())
+    return result, legs.met(result["rows"])
+
+
 TRIALS = {
     "replay": _replay,
+    "legs": _legs,
     "hostile": _hostile,
     "record": _record,
     "blackbox": _blackbox,

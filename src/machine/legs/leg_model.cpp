@@ -1,0 +1,214 @@
+#include "machine/legs/leg_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "machine/bodies/gyration.h"
+#include "machine/description/wording.h"
+#include "machine/legs/leg_search.h"
+#include "machine/legs/lying_posture.h"
+#include "machine/machine_reading.h"
+#include "machine/model_hash.h"
+#include "machine/suspicions.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kBothWays = 0.5;   // rad by which a knee must bend to either side to bend both ways
+constexpr double kShortest = 1e-4;  // m, of thigh and shank
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+using Chain = std::array<std::size_t, kLegJoints>;
+
+std::string ends_of(const RigidBodies& robot, const std::vector<BodyChain>& chains) {
+  std::vector<std::string> names;
+  for (const BodyChain& chain : chains) names.push_back(robot.bodies[chain.bodies.back()].name);
+  return list(names);
+}
+
+void refuse_other_chains(const RigidBodies& robot, const std::vector<BodyChain>& chains) {
+  for (const BodyChain& chain : chains) {
+    if (chain.bodies.size() == kLegJoints) continue;
+    refuse(robot.source, joint_element(robot.bodies[chain.bodies[kLegJoints]].joint.name),
+           "it moves on a leg, behind the leg's three joints: wheels or feet on legs are not supported",
+           "Make this joint type=\"fixed\", or describe a robot whose legs end in feet");
+  }
+  if (chains.size() != kLegs) {
+    refuse(robot.source, "<robot>",
+           std::to_string(chains.size()) + (chains.size() == 1 ? " leg found" : " legs found") + " (to " +
+               ends_of(robot, chains) + "), a quadruped has four",
+           "A leg is three joints in a row on the root link that turn about x, y and y at the zero pose");
+  }
+  std::set<std::size_t> of_legs{0};
+  for (const BodyChain& chain : chains) of_legs.insert(chain.bodies.begin(), chain.bodies.end());
+  for (std::size_t i = 0; i < robot.bodies.size(); ++i) {
+    if (of_legs.contains(i)) continue;
+    refuse(robot.source, joint_element(robot.bodies[i].joint.name), "it moves, but belongs to no leg",
+           "Make it type=\"fixed\": besides its twelve leg joints nothing on a quadruped may move");
+  }
+}
+
+/// Returns the chains by LegPlace.
+std::array<Chain, kLegs> placed(const RigidBodies& robot, const std::vector<BodyChain>& chains,
+                                const std::vector<Foot>& feet) {
+  double middle = 0;
+  for (const BodyChain& chain : chains) middle += robot.bodies[chain.bodies[0]].in_root.translation().x() / kLegs;
+  std::array<Chain, kLegs> result{};
+  std::array<std::string, kLegs> ends;
+  for (std::size_t i = 0; i < kLegs; ++i) {
+    const BodyChain& chain = chains[i];
+    const bool front = robot.bodies[chain.bodies[0]].in_root.translation().x() > middle;
+    const bool left = feet[i].centre.y() > 0;
+    const std::size_t place = (front ? 0u : 2u) + (left ? 0u : 1u);
+    const std::string& end = robot.bodies[chain.bodies[2]].name;
+    if (!ends[place].empty()) {
+      refuse(robot.source, link_element(end),
+             std::string("this leg and that to ") + ends[place] + " are both " + name_of(static_cast<LegPlace>(place)),
+             "Each corner has one leg: hips before and behind their mean x, feet left (y > 0) and right of the middle");
+    }
+    ends[place] = end;
+    std::copy_n(chain.bodies.begin(), kLegJoints, result[place].begin());
+  }
+  return result;
+}
+
+JointRange range_of(const BodyJoint& joint) {
+  if (!(joint.lower < joint.upper)) return {-kInfinite, kInfinite};
+  return {joint.lower, joint.upper};
+}
+
+LegGeometry geometry_of(const RigidBodies& robot, const Chain& chain, const Eigen::Vector3d& foot) {
+  LegGeometry geometry;
+  const auto origin = [&](std::size_t i) -> Eigen::Vector3d { return robot.bodies[chain[i]].in_root.translation(); };
+  geometry.hip = origin(0);
+  geometry.upper = origin(1) - origin(0);
+  geometry.lower = origin(2) - origin(1);
+  geometry.foot = foot - origin(2);
+  for (std::size_t i = 0; i < kLegJoints; ++i) {
+    const RigidBody& body = robot.bodies[chain[i]];
+    geometry.sign[i] = axis_in_base(body)[i == 0 ? 0 : 1] > 0 ? 1 : -1;
+    geometry.range[i] = range_of(body.joint);
+  }
+  for (const auto& [part, body] : {std::pair{geometry.lower, chain[1]}, std::pair{geometry.foot, chain[2]}}) {
+    if (std::hypot(part.x(), part.z()) >= kShortest) continue;
+    refuse(robot.source, link_element(robot.bodies[body].name),
+           "this part of the leg has no length between its axis and the next, or the foot",
+           "Give the origins of the joints and the place of the foot in m");
+  }
+  return geometry;
+}
+
+/// Returns the part of the knee's range that bends it to the side of `bend`, in rad.
+double room(const LegGeometry& geometry, double bend) {
+  LegGeometry one_way = geometry;
+  one_way.bend = bend;
+  const JointRange range = LegKinematics(one_way).range(2);
+  return range.upper - range.lower;
+}
+
+double bend_of(const RigidBodies& robot, const LegGeometry& geometry, const Chain& chain, bool front, KneeBend wish) {
+  const double middle = front ? -1 : 1;
+  const bool forward = room(geometry, 1) >= kBothWays, backward = room(geometry, -1) >= kBothWays;
+  double bend = middle;
+  switch (wish) {
+    case KneeBend::kDerived:
+      if (forward != backward) bend = forward ? 1 : -1;
+      if (!forward && !backward) bend = room(geometry, 1) >= room(geometry, -1) ? 1 : -1;
+      return bend;
+    case KneeBend::kMiddle:
+      break;
+    case KneeBend::kOutwards:
+      bend = -middle;
+      break;
+    case KneeBend::kForward:
+      bend = 1;
+      break;
+    case KneeBend::kBackward:
+      bend = -1;
+      break;
+  }
+  if (bend > 0 ? forward : backward) return bend;
+  refuse(robot.source, joint_element(robot.bodies[chain[2]].joint.name),
+         std::string("robot/knee_bend lets this knee point ") + (bend > 0 ? "forward" : "backward") +
+             ", which its range does not allow",
+         "Leave robot/knee_bend out, or set the other side");
+}
+
+void require_limits(const RigidBodies& robot, const BodyJoint& joint) {
+  if (joint.effort_limit > 0 && joint.velocity_limit > 0) return;
+  refuse(robot.source, joint_element(joint.name),
+         std::string("a joint of a leg without ") + (joint.effort_limit > 0 ? "velocity" : "effort") + " limit",
+         "Give <limit effort=\"…\" velocity=\"…\"/> in N·m and rad/s, as the drive's data sheet states them");
+}
+
+}  // namespace
+
+const char* name_of(LegPlace place) noexcept {
+  constexpr std::array<const char*, kLegs> kNames{"front_left", "front_right", "rear_left", "rear_right"};
+  return kNames[static_cast<std::size_t>(place)];
+}
+
+double LegModel::leg_length() const noexcept {
+  double length = kInfinite;
+  for (const Leg& leg : legs) length = std::min(length, leg.kinematics.length());
+  return length;
+}
+
+const LegModel& leg_model_of(const MachineModel& machine) {
+  const auto* const legged = dynamic_cast<const LegModel*>(&machine);
+  if (legged == nullptr) throw RobotError(machine.source + ": this machine has no legs");
+  return *legged;
+}
+
+bool has_legs(const RigidBodies& bodies) {
+  const std::vector<BodyChain> chains = leg_chains(bodies);
+  const auto fits = [](const BodyChain& chain) { return chain.bodies.size() <= kLegJoints + 1; };
+  return std::ranges::count_if(chains, fits) >= 2;
+}
+
+LegModel read_legs(const RobotDescription& description, const MachineParameters& parameters,
+                   const LegParameters& legs) {
+  const auto bodies = std::make_shared<const RigidBodies>(read_rigid_bodies(description));
+  refuse_too_many_joints(*bodies);
+  const std::vector<BodyChain> chains = leg_chains(*bodies);
+  refuse_other_chains(*bodies, chains);
+  std::vector<Foot> feet;
+  for (const BodyChain& chain : chains) feet.push_back(foot_of(*bodies, bodies->bodies[chain.bodies.back()]));
+  const std::array<Chain, kLegs> places = placed(*bodies, chains, feet);
+
+  LegModel model;
+  static_cast<MachineModel&>(model) = named_machine(description, *bodies);
+  ModelHash hash;
+  hash.add(description.text);
+  hash.add(parameters);
+  hash.add(std::optional<double>(static_cast<double>(legs.knee_bend)));
+  hash.add(std::optional<double>(legs.leg_rotor_inertia));
+  model.hash = hash.value();
+  model.rotor_inertia = legs.leg_rotor_inertia;
+  model.belly = belly_height(*bodies, places);
+  for (std::size_t i = 0; i < kLegs; ++i) {
+    for (const std::size_t index : places[i]) {
+      const RigidBody& body = bodies->bodies[index];
+      require_limits(*bodies, body.joint);
+      model.joints.push_back(joint_model(body, JointRole::kDriven));
+    }
+    const RigidBody& last = bodies->bodies[places[i][2]];
+    const Foot foot = foot_of(*bodies, last);
+    LegGeometry geometry = geometry_of(*bodies, places[i], foot.centre);
+    geometry.bend = bend_of(*bodies, geometry, places[i], i < 2, legs.knee_bend);
+    model.legs[i].kinematics = LegKinematics(geometry);
+    model.legs[i].foot_radius = foot.radius;
+    model.legs[i].lying = lying_posture(*bodies, model.legs[i].kinematics, places[i], model.belly);
+    model.contacts.push_back(last.name);
+  }
+  read_masses(*bodies, parameters, model.leg_length(), model);
+  read_imu(*bodies, parameters, model.leg_length(), model);
+  model.bodies = bodies;
+  note_suspicious_bodies(model);
+  model.notes = merged(model.notes);
+  return model;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,227 @@
+/// Real quadrupeds against their facts, FACTS.json read as the YAML that it is; and what is refused.
+
+#include "machine/legs/leg_model.h"
+
+#include <gmock/gmock.h>
+
+#include "machine/bodies/rigid_bodies.h"
+#include "machine/legs/leg_dynamics.h"
+#include "machine/legs/legs_corpus.h"
+#include "machine/quadruped_urdf.h"
+
+namespace robot_control {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kDigits = 1.5e-9;      // m, of the feet in FACTS.json, which has nine decimals
+constexpr double kEffortDigits = 1e-5;  // N·m
+constexpr double kMassDigits = 1e-5;    // kg
+
+class LegFacts : public testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    if (quadrupeds().empty()) GTEST_SKIP() << kNoQuadrupeds;
+    facts_ = quadruped_facts()[GetParam()];
+    robot_ = legged_robot(GetParam());
+  }
+  static std::array<double, kLegsJoints> angles(const YAML::Node& check) {
+    std::array<double, kLegsJoints> q{};
+    for (std::size_t i = 0; i < kLegsJoints; ++i) q[i] = check["q"][i].as<double>();
+    return q;
+  }
+
+  YAML::Node facts_;
+  LegModel robot_;
+};
+
+TEST_P(LegFacts, FindsItsLegsByPlace) {
+  EXPECT_NEAR(robot_.mass, facts_["total_mass"].as<double>(), kMassDigits);
+  for (const YAML::Node& leg : facts_["legs"]) {
+    const auto place = leg["place"].as<std::string>();
+    std::size_t i = 0;
+    while (i < kLegs && place != name_of(static_cast<LegPlace>(i))) ++i;
+    ASSERT_LT(i, kLegs) << place;
+    for (std::size_t j = 0; j < kLegJoints; ++j)
+      EXPECT_EQ(robot_.joints[3 * i + j].name, leg["joints"][j].as<std::string>()) << place;
+    EXPECT_NEAR(robot_.legs[i].foot_radius, leg["foot_radius"].as<double>(), kDigits) << place;
+  }
+}
+
+TEST_P(LegFacts, PutsItsFeetAndItsCentreOfGravityWhereTheFactsAre) {
+  const LegDynamics dynamics(robot_);
+  for (const YAML::Node& check : facts_["checks"]) {
+    LeggedMotion motion{.angles = angles(check)};
+    LeggedEquations equations;
+    dynamics.step(motion, equations);
+    for (std::size_t leg = 0; leg < kLegs; ++leg) {
+      const Eigen::Vector3d foot = robot_.legs[leg].kinematics.position(LegModel::angles_of(motion.angles, leg));
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        EXPECT_NEAR(foot[static_cast<Eigen::Index>(axis)], check["feet"][leg][axis].as<double>(), kDigits) << leg;
+      }
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(equations.centre_of_gravity[static_cast<Eigen::Index>(axis)], check["com"][axis].as<double>(), 2e-8);
+    }
+  }
+}
+
+TEST_P(LegFacts, HoldsItsLegsWithTheEffortsOfTheFacts) {
+  const LegDynamics dynamics(robot_);
+  for (const YAML::Node& check : facts_["checks"]) {
+    LeggedEquations equations;
+    dynamics.step({.angles = angles(check)}, equations);
+    for (std::size_t i = 0; i < kLegsJoints; ++i) {
+      EXPECT_NEAR(equations.bias[static_cast<Eigen::Index>(6 + i)], check["gravity_effort"][i].as<double>(),
+                  kEffortDigits)
+          << robot_.joints[i].name;
+    }
+  }
+}
+
+std::vector<std::string> real_ones() {
+  std::vector<std::string> names = legged_robots();
+  names.erase(names.begin());
+  return names.empty() ? std::vector<std::string>{"absent"} : names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Robots, LegFacts, testing::ValuesIn(real_ones()), robot_name);
+
+TEST(LegModel, OfAnymalBendsItsKneesTowardsTheMiddleWhereTheRangesLeaveBothSides) {
+  if (quadrupeds().empty()) GTEST_SKIP() << kNoQuadrupeds;
+  const LegModel derived = legged_robot("anymal_c");
+  const LegModel outwards = legged_robot("anymal_c", {.knee_bend = KneeBend::kOutwards});
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const double middle = leg < 2 ? -1 : 1;
+    EXPECT_EQ(derived.legs[leg].kinematics.geometry().bend, middle) << leg;
+    EXPECT_EQ(outwards.legs[leg].kinematics.geometry().bend, -middle) << leg;
+  }
+}
+
+TEST(LegModel, OfOneSidedKneesBendsThemAsTheirRangesDo) {
+  const LegModel robot = legged_robot("quadbot");
+  for (const Leg& leg : robot.legs) EXPECT_EQ(leg.kinematics.geometry().bend, -1);
+}
+
+TEST(LegModel, LiesWithItsLegsAtTheHeightOfTheBelly) {
+  for (const std::string& name : legged_robots()) {
+    const LegModel robot = legged_robot(name);
+    for (const Leg& leg : robot.legs) {
+      // The foot's lowest point is on the ground or above it, and the angles are inside of the ranges.
+      EXPECT_GE(leg.kinematics.position(leg.lying).z() - leg.foot_radius, robot.belly - 1e-5) << name;
+      for (std::size_t i = 0; i < kLegJoints; ++i) {
+        const JointRange& range = leg.kinematics.geometry().range[i];
+        EXPECT_GE(leg.lying[static_cast<Eigen::Index>(i)], range.lower) << name;
+        EXPECT_LE(leg.lying[static_cast<Eigen::Index>(i)], range.upper) << name;
+      }
+    }
+  }
+}
+
+class LegRefusals : public testing::Test {
+ protected:
+  std::string refusal(const std::string& content, const LegParameters& legs = {}) {
+    try {
+      read_legs(robot_of(content), {}, legs);
+    } catch (const RobotError& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+  static std::string without(std::string text, const std::string& part) { return replaced(std::move(text), part, ""); }
+  static std::string replaced(std::string text, const std::string& part, const std::string& by) {
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + by.size()))
+      text.replace(at, part.size(), by);
+    return text;
+  }
+  std::string body_ = link("trunk", inertial("6") + collision("<box size=\"0.4 0.2 0.1\"/>"));
+  std::string legs_ = leg("a", 0.19, -0.05) + leg("b", 0.19, 0.05) + leg("c", -0.19, -0.05) + leg("d", -0.19, 0.05);
+};
+
+TEST_F(LegRefusals, AcceptTheHealthyRobotUnderAnyNames) {
+  EXPECT_EQ(refusal(body_ + legs_), "accepted");
+}
+
+TEST_F(LegRefusals, NameTheNumberOfLegs) {
+  const std::string two = refusal(body_ + leg("a", 0.19, -0.05) + leg("b", 0.19, 0.05));
+  EXPECT_THAT(two, HasSubstr("2 legs found (to a_calf, b_calf), a quadruped has four"));
+  EXPECT_THAT(refusal(body_ + legs_ + leg("e", 0, 0.05) + leg("f", 0, -0.05)), HasSubstr("6 legs found"));
+}
+
+TEST_F(LegRefusals, NameTwoLegsAtOneCorner) {
+  const std::string text =
+      refusal(body_ + leg("a", 0.19, -0.05) + leg("b", 0.19, -0.15) + leg("c", -0.19, -0.05) + leg("d", -0.19, 0.05));
+  EXPECT_THAT(text, HasSubstr("<link name=\"b_calf\">: this leg and that to a_calf are both front_right"));
+}
+
+TEST_F(LegRefusals, NameAJointWithoutLimits) {
+  EXPECT_THAT(refusal(body_ + replaced(legs_, "effort=\"35\"", "effort=\"0\"")),
+              HasSubstr("_calf_joint\">: a joint of a leg without effort limit"));
+  EXPECT_THAT(refusal(body_ + replaced(legs_, "velocity=\"20\"", "velocity=\"0\"")),
+              HasSubstr("_calf_joint\">: a joint of a leg without velocity limit"));
+}
+
+TEST_F(LegRefusals, NameAFootWithoutAShape) {
+  EXPECT_THAT(refusal(body_ + without(legs_, collision("<sphere radius=\"0.02\"/>"))),
+              HasSubstr("_calf\">: the leg that ends here has no shape"));
+}
+
+TEST_F(LegRefusals, NameAWheelOnALeg) {
+  std::string wheels;
+  for (const char* name : {"a", "b", "c", "d"}) {
+    const std::string wheel = std::string(name) + "_wheel";
+    wheels += link(wheel, inertial("0.5") + collision("<sphere radius=\"0.05\"/>")) +
+              joint({.name = wheel + "_joint",
+                     .child = wheel,
+                     .xyz = "0 0 -0.21",
+                     .type = "continuous",
+                     .axis = "<axis xyz=\"0 1 0\"/>",
+                     .rest = "<limit effort=\"5\" velocity=\"20\"/>",
+                     .parent = std::string(name) + "_calf"});
+  }
+  EXPECT_THAT(refusal(body_ + legs_ + wheels), HasSubstr("a_wheel_joint\">: it moves on a leg"));
+}
+
+TEST_F(LegRefusals, NameAnotherJointThatMoves) {
+  const std::string arm =
+      link("arm", inertial("1")) + joint({.name = "arm_joint",
+                                          .child = "arm",
+                                          .xyz = "0 0 0.1",
+                                          .type = "revolute",
+                                          .axis = "<axis xyz=\"0 0 1\"/>",
+                                          .rest = "<limit lower=\"-1\" upper=\"1\" effort=\"5\" velocity=\"2\"/>",
+                                          .parent = "trunk"});
+  EXPECT_THAT(refusal(body_ + legs_ + arm), HasSubstr("<joint name=\"arm_joint\">: it moves, but belongs to no leg"));
+}
+
+TEST_F(LegRefusals, NameAKneeThatCannotBendAsAsked) {
+  EXPECT_THAT(refusal(body_ + legs_, {.knee_bend = KneeBend::kForward}),
+              HasSubstr("robot/knee_bend lets this knee point forward, which its range does not allow"));
+}
+
+TEST_F(LegRefusals, FindMirroredLegsWithFlippedAxes) {
+  std::string flipped = replaced(legs_, "<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 -1 0\"/>");
+  flipped = replaced(flipped, "lower=\"-2.7\" upper=\"-0.9\"", "lower=\"0.9\" upper=\"2.7\"");
+  const LegModel robot = read_legs(robot_of(body_ + flipped), {}, {});
+  const LegModel straight = read_legs(robot_of(body_ + legs_), {}, {});
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const LegAngles angles(0.2, 0.7, -1.4);
+    EXPECT_LE(
+        (robot.legs[leg].kinematics.position({0.2, -0.7, 1.4}) - straight.legs[leg].kinematics.position(angles)).norm(),
+        1e-15);
+  }
+}
+
+TEST(HasLegs, IsTrueForQuadrupedsAndFalseForRobotsOnWheels) {
+  for (const std::string& name : legged_robots())
+    EXPECT_TRUE(has_legs(read_rigid_bodies(legged_description(name)))) << name;
+  if (corpus().empty()) return;
+  for (const auto& folder : std::filesystem::directory_iterator(corpus())) {
+    const std::filesystem::path file = folder.path() / "robot.urdf";
+    if (!std::filesystem::exists(file)) continue;
+    EXPECT_FALSE(has_legs(read_rigid_bodies(load_description(file.string())))) << file;
+  }
+}
+
+}  // namespace
+}  // namespace robot_control
