@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "gate/stop_action.h"
@@ -22,6 +23,7 @@ struct LoopParameters {
   ClockMode clock = ClockMode::kWall;
   RealtimePolicy realtime = RealtimePolicy::kPreferred;
   std::int64_t core = 0;                    ///< core to which the real-time threads are pinned; -1: not pinned
+  std::optional<double> cpu_dma_latency;    ///< µs, of idle states of the processors; none: not requested
   StopKind fail_action = StopKind::kBrake;  ///< of every wheel while the gate passes no command
   std::string bus;                          ///< empty: derived from master and namespace
   std::string command_script;               ///< CSV path; empty: none
@@ -39,6 +41,7 @@ inline Keys keys(LoopParameters& loop) {
       {"clock", &loop.clock},
       {"realtime", &loop.realtime},
       {"core", &loop.core, {}, -1, 1023},
+      {"cpu_dma_latency", &loop.cpu_dma_latency, "µs", 0, 10000, kOptional},
       {"bus", &loop.bus, {}, 0, 0, kMayBeEmpty},
       {"command_script", &loop.command_script, {}, 0, 0, kPath | kMayBeEmpty},
       {"wait_for_nodes", &loop.wait_for_nodes},

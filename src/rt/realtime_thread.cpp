@@ -105,6 +105,14 @@ void take_priority(int priority, RealtimeReport& report) {
                             std::to_string(limit) + "; remedy: '" + user_name() + " - rtprio 99' or CAP_SYS_NICE)");
 }
 
+std::unique_ptr<LatencyRequest> limit_idle_states(const RealtimeParameters& parameters, RealtimeReport& report) {
+  if (parameters.policy == RealtimePolicy::kOff || !parameters.cpu_latency_us) return nullptr;
+  auto request = std::make_unique<LatencyRequest>(*parameters.cpu_latency_us);
+  report.cpu_latency = request->refusal().empty() ? Grant::kGranted : Grant::kRefused;
+  if (!request->refusal().empty()) report.refusals.push_back(request->refusal());
+  return request;
+}
+
 bool refused(const RealtimeParameters& parameters, const RealtimeReport& report) {
   return parameters.policy == RealtimePolicy::kRequired && !report.refusals.empty();
 }
@@ -162,7 +170,9 @@ struct RealtimeThread::Thread {
 };
 
 RealtimeThread::RealtimeThread(const RealtimeParameters& parameters, std::function<void()> body)
-    : report_(prepare_process(parameters.policy)), thread_(std::make_unique<Thread>()) {
+    : report_(prepare_process(parameters.policy)),
+      latency_(limit_idle_states(parameters, report_)),
+      thread_(std::make_unique<Thread>()) {
   thread_->parameters = parameters;
   thread_->body = std::move(body);
   thread_->report = report_;
@@ -178,7 +188,7 @@ RealtimeThread::RealtimeThread(const RealtimeParameters& parameters, std::functi
   join();
   std::string message = "realtime: required, but";
   for (const std::string& refusal : report_.refusals) message += "\n  " + refusal;
-  throw RealtimeError(message + "\n  how to grant it: docs/troubleshooting.md");
+  throw RealtimeError(message + "\n  how to grant it: docs/realtime.md");
 }
 
 RealtimeThread::~RealtimeThread() {

@@ -5,27 +5,31 @@
 /// First, `prepare_process` is called before the process has threads (with ROS, before the first NodeHandle). It makes
 /// the stacks of later threads small and locks the memory. Then the ordinary threads are started, at last the
 /// RealtimeThread. That thread sets its core and SCHED_FIFO itself immediately before the body runs, so that no other
-/// thread inherits them.
+/// thread inherits them. While it exists, the idle states of the processors are limited, if that is requested
+/// (latency_request.h).
 ///
 /// Each refused request is reported with its remedy: "<what> (<why>; remedy: <line of /etc/security/limits.d or
 /// capability>)". Under kRequired a refusal is an error at start-up. The core needs no privilege and is set under every
 /// policy.
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "parameters/block.h"
+#include "rt/latency_request.h"
 
 namespace robot_control {
 
 enum class RealtimePolicy {
   kRequired,   ///< the node starts only if everything is granted
   kPreferred,  ///< the node uses what is granted
-  kOff,        ///< only the core is set; neither priority nor locked memory is requested
+  kOff,        ///< only the core is set; no priority, locked memory or limit of idle states is requested
 };
 
 inline std::vector<Word> words_of(RealtimePolicy) {
@@ -39,6 +43,7 @@ struct RealtimeReport {
   Grant memory_lock = Grant::kNotRequested;
   Grant priority = Grant::kNotRequested;
   Grant core = Grant::kNotRequested;
+  Grant cpu_latency = Grant::kNotRequested;
   std::vector<std::string> refusals;  ///< one per Grant::kRefused
 };
 
@@ -60,6 +65,8 @@ struct RealtimeParameters {
   RealtimePolicy policy = RealtimePolicy::kPreferred;
   int priority = 0;  ///< SCHED_FIFO 1 … 99; 0: ordinary scheduling
   int core = -1;     ///< -1: any
+  /// The longest exit latency of an idle state, µs; none: not requested.
+  std::optional<std::int32_t> cpu_latency_us = std::nullopt;
 };
 
 class RealtimeThread {
@@ -86,6 +93,7 @@ class RealtimeThread {
  private:
   struct Thread;
   RealtimeReport report_;
+  std::unique_ptr<LatencyRequest> latency_;
   std::unique_ptr<Thread> thread_;
 };
 

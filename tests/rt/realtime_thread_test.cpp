@@ -2,6 +2,7 @@
 
 #include "rt/realtime_thread.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <pthread.h>
 #include <sched.h>
@@ -14,6 +15,8 @@
 
 #include "rt/thread_priority.h"
 #include "support/child_process.h"
+#include "support/file_content.h"
+#include "support/temporary_folder.h"
 
 namespace robot_control {
 namespace {
@@ -199,6 +202,62 @@ TEST(RealtimeThread, AloneHasThePriorityWhereItIsGranted) {
     if (inside.policy != SCHED_FIFO || inside.priority != 80) return 1;
     return self().policy == SCHED_OTHER ? 0 : 2;
   });
+}
+
+/// The number of µs that holds for the machine; -1 if it cannot be read.
+std::int32_t cpu_latency() {
+  std::int32_t latency = -1;
+  const int device = open(kLatencyDevice, O_RDONLY);
+  if (device < 0) return -1;
+  if (read(device, &latency, sizeof latency) != sizeof latency) latency = -1;
+  close(device);
+  return latency;
+}
+
+TEST(RealtimeThread, LimitsIdleStatesWhileItExists) {
+  expect_in_child([] {
+    if (cpu_latency() < 0) return kSkip;
+    std::int32_t inside = -1;
+    {
+      RealtimeThread thread({.policy = RealtimePolicy::kPreferred, .cpu_latency_us = 7},
+                            [&] { inside = cpu_latency(); });
+      thread.join();
+      if (thread.report().cpu_latency != Grant::kGranted) return kSkip;
+    }
+    if (inside < 0 || inside > 7) return 1;  // a program beside the test may request less
+    return inside < 7 || cpu_latency() != 7 ? 0 : 2;
+  });
+}
+
+TEST(RealtimeThread, RequestsNoIdleStatesWhenOff) {
+  expect_in_child([] {
+    RealtimeThread thread({.policy = RealtimePolicy::kOff, .cpu_latency_us = 7}, [] {});
+    thread.join();
+    return thread.report().cpu_latency == Grant::kNotRequested && thread.report().refusals.empty() ? 0 : 1;
+  });
+}
+
+TEST(RealtimeThread, SaysTheRemedyWhereIdleStatesAreRefused) {
+  expect_in_child([] {
+    if (!drop_privileges() || access(kLatencyDevice, F_OK) != 0 || access(kLatencyDevice, W_OK) == 0) return kSkip;
+    RealtimeThread thread({.policy = RealtimePolicy::kPreferred, .cpu_latency_us = 7}, [] {});
+    thread.join();
+    if (thread.report().cpu_latency != Grant::kRefused) return 1;
+    const std::string said = thread.report().refusals.at(1);
+    return contains(said, "cpu_dma_latency 7 us") && contains(said, "scripts/privileges install") ? 0 : 2;
+  });
+}
+
+TEST(LatencyRequest, WritesThirtyTwoBitsToTheDevice) {
+  const TemporaryFolder folder;
+  const std::filesystem::path device = folder.write("cpu_dma_latency", "");
+  EXPECT_EQ(LatencyRequest(258, device.c_str()).refusal(), "");
+  EXPECT_EQ(content(device), std::string("\x02\x01\0\0", 4));
+}
+
+TEST(LatencyRequest, SaysThatTheKernelHasNoDevice) {
+  const LatencyRequest request(0, "/nonexistent");
+  EXPECT_TRUE(contains(request.refusal(), "/nonexistent: No such file or directory; remedy: leave"));
 }
 
 TEST(AnOrdinaryThreadThatPrecedesOthers, HasTheLowestRealTimePriorityAndItsThreadsHaveNone) {

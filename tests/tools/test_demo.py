@@ -15,7 +15,7 @@ WAIT = "import time\nprint('ready')\nfor _ in range(6000): time.sleep(0.01)"
 def test_each_kind_of_refusal_is_said_once_with_its_remedy():
     line = (
         "\x1b[33m[ WARN] [123.4]: memory is not locked (limit 8192 KiB; remedy: X), "
-        "SCHED_FIFO priority 81 is not granted (limit 0; remedy: Y): see docs/troubleshooting.md\x1b[0m"
+        "SCHED_FIFO priority 81 is not granted (limit 0; remedy: Y): see docs/realtime.md\x1b[0m"
     )
     assert demo.refusals("\n".join([line, line.replace("81", "80"), "noise"])) == [
         "memory is not locked (limit 8192 KiB; remedy: X)",

@@ -121,7 +121,7 @@ def refusals(launch_log: str) -> list[str]:
     reports it.
     """
     found: dict[str, str] = {}
-    for match in re.finditer(r"(memory is|SCHED_FIFO priority|core) [^(\n]*\([^)\n]*remedy: [^)\n]*\)", launch_log):
+    for match in re.finditer(r"(memory is|SCHED_FIFO priority|core|cpu_dma_latency) [^(\n]*\([^)\n]*remedy: [^)\n]*\)", launch_log):
         found.setdefault(match[1], match[0])
     return list(found.values())
 
@@ -230,7 +230,7 @@ def _print_refusals(launch_log: str) -> None:
     for refusal in said:
         print(f"real time: {refusal}")
     if said:
-        print("real time: see docs/troubleshooting.md")
+        print("real time: see docs/realtime.md")
 
 
 def _tail(path: Path, lines: int = 25) -> str:

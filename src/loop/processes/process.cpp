@@ -15,10 +15,13 @@ Process::~Process() {
 
 RealtimeParameters Process::thread_parameters() const {
   const bool paced = loop_.clock == ClockMode::kWall;  // lockstep under SCHED_FIFO would starve the rest
+  std::optional<std::int32_t> cpu_latency_us;
+  if (paced && loop_.cpu_dma_latency) cpu_latency_us = static_cast<std::int32_t>(*loop_.cpu_dma_latency);
   return {.name = thread_name_,
           .policy = paced ? loop_.realtime : RealtimePolicy::kOff,
           .priority = paced ? static_cast<int>(priority_) : 0,
-          .core = static_cast<int>(loop_.core)};
+          .core = static_cast<int>(loop_.core),
+          .cpu_latency_us = cpu_latency_us};
 }
 
 void Process::poll() {

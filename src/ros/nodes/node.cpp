@@ -154,7 +154,7 @@ class NodeLoop {
     refusals_reported_ = true;
     std::string text;
     for (const std::string& refusal : refusals) text += (text.empty() ? "" : ", ") + refusal;
-    ROS_WARN("%s: see docs/troubleshooting.md", text.c_str());
+    ROS_WARN("%s: see docs/realtime.md", text.c_str());
   }
 
   void diagnose(std::int64_t now_ns) {
