@@ -8,6 +8,7 @@ PROGRAMS = (
     "calibrate",
     "console",
     "demo",
+    "doctor",
     "drive",
     "estimate",
     "export",

@@ -126,6 +126,7 @@ class ConsoleAttackTest(RobotTestCase):
             "/ws",
             "/api/model",
             "/api/runs",
+            "/api/doctor",
             "/api/mesh/0",
             "/index.html",
             "/main.js",
@@ -347,6 +348,7 @@ class ConsoleAttackTest(RobotTestCase):
                 last = await page.receive()
             self.assertEqual(last.data, 4401)
 
+        self.assertEqual(status(f"{origin}/api/doctor", Cookie=cookie), 403, "watch")
         self.run_page(watch, cookie, console)
         self.assertEqual(status(f"{origin}/api/runs", Cookie=cookie), 401)
         tries = [post("login", {"name": "wanda", "password": f"guess number {n}"}) for n in range(6)]

@@ -15,7 +15,7 @@ from robot_control.common import ros_node
 from robot_control.common.ros_master import living
 
 SCRIPTS = Path(__file__).parents[2] / "scripts"
-PROGRAMS = sorted({path.name for path in SCRIPTS.glob("*.py")} - {"state_publisher.py"})  # that takes no options
+PROGRAMS = sorted(path.name for path in SCRIPTS.glob("*.py"))
 
 
 def helped(program, output):

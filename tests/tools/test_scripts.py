@@ -14,7 +14,7 @@ def shell(*command):
     return subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL, check=False, timeout=60)
 
 
-@pytest.mark.parametrize("script", ["demo", "test", "setup", "lint", "bench", "behaviour"])
+@pytest.mark.parametrize("script", ["demo", "test", "setup", "lint", "bench", "behaviour", "privileges"])
 def test_help_says_how_to_call_it_and_does_nothing(script):
     done = shell(str(SCRIPTS / script), "--help")
     assert done.returncode == 0
@@ -22,7 +22,7 @@ def test_help_says_how_to_call_it_and_does_nothing(script):
     assert "building" not in done.stdout
 
 
-@pytest.mark.parametrize("script", ["demo", "test", "lint", "bench", "behaviour"])
+@pytest.mark.parametrize("script", ["demo", "test", "lint", "bench", "behaviour", "privileges"])
 def test_help_needs_nothing_that_is_not_installed_yet(script, tmp_path):
     """It is called from another folder, by a relative path, with other arguments before it: scripts/setup is not
     called.

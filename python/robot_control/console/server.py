@@ -18,6 +18,7 @@ from robot_control.console.backend import Backend
 from robot_control.console.client import Client, Frames
 from robot_control.console.desk import Role
 from robot_control.console.door import Strangers
+from robot_control.console.examination import Examination
 from robot_control.console.files import REPORT_POLICY, page_file, protect
 from robot_control.console.messages import MAX_SIZE
 from robot_control.console.model import Model, ModelError
@@ -47,7 +48,7 @@ class Server:
         """`users`: None where the token alone opens; `saved`: logins of the process before this one."""
         self._backend, self._doors, self._users, self._read_only = backend, doors, users, read_only
         self.sessions, self._tries = Sessions(saved), Tries()
-        self._runs, self._model = Runs(runs), Model()
+        self._runs, self._model, self._examination = Runs(runs), Model(), Examination()
         self.strangers, self.frames = Strangers(), Frames()
         self._clients: list[Client] = []
         self._hashing = asyncio.Semaphore(1)
@@ -60,6 +61,7 @@ class Server:
         get("/api/runs", self._run_list)
         get("/api/runs/{id}/file", self._run_file)
         get("/api/runs/{id}/report", self._report)
+        get("/api/doctor", self._doctor)
         get("/{path:.*}", self._file)
         post("/api/login", self._login)
         post("/api/logout", self._logout)
@@ -213,6 +215,11 @@ class Server:
         path = await _found(self._runs.report, request.match_info["id"])
         headers = {"Content-Security-Policy": REPORT_POLICY, "Content-Type": "text/html; charset=utf-8"}
         return web.FileResponse(path, headers=headers)
+
+    async def _doctor(self, request: web.Request) -> web.StreamResponse:
+        if request["session"].role < Role.MAINTAIN:
+            raise web.HTTPForbidden(text=f"needs the role {Role.MAINTAIN}: it names programs and users of the machine")
+        return web.json_response(await _found(self._examination.result))
 
 
 async def _found(find: Callable[..., Any], *arguments: str) -> Any:  # noqa: ANN401 (of the function)

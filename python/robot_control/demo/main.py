@@ -121,7 +121,8 @@ def refusals(launch_log: str) -> list[str]:
     reports it.
     """
     found: dict[str, str] = {}
-    for match in re.finditer(r"(memory is|SCHED_FIFO priority|core|cpu_dma_latency) [^(\n]*\([^)\n]*remedy: [^)\n]*\)", launch_log):
+    kinds = "memory is|SCHED_FIFO priority|core|cpu_dma_latency"
+    for match in re.finditer(rf"({kinds}) [^(\n]*\([^)\n]*remedy: [^)\n]*\)", launch_log):
         found.setdefault(match[1], match[0])
     return list(found.values())
 

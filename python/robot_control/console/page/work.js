@@ -130,6 +130,18 @@ function row(run) {
   return line;
 }
 
+by("doctor").addEventListener("toggle", async () => {
+  if (!by("doctor").open) return;
+  const answer = await fetch("/api/doctor").catch(() => null);
+  if (!answer?.ok) return say(`the machine was not examined: ${answer ? await answer.text() : "no answer"}`);
+  by("finding-list").replaceChildren(...(await answer.json()).map((finding) => {
+    const line = document.createElement("tr"), { verdict, name, value, why, remedy } = finding;
+    line.title = why;
+    for (const text of [verdict, name, remedy ? `${value}; remedy: ${remedy}` : value]) line.insertCell().textContent = text;
+    return line;
+  }));
+});
+
 by("logout").addEventListener("click", async () => {
   release();
   await fetch("/api/logout", { method: "POST" }).catch(() => null);
