@@ -40,6 +40,7 @@ class ConsoleTest(ConsoleTestCase):
         browser.click("confirm-reset")
         wait_for("the end of the stop", lambda: browser.data("state") in ("READY", "DRIVE"))
         browser.run("document.querySelectorAll('details').forEach((each) => { each.open = true; })")
+        wait_for("the findings of doctor.py", lambda: "preemption" in browser.text("finding-list"))
         browser.run("document.getElementById('plots').scrollIntoView()")
         self.picture(browser, "plots")
         browser.screen(400, 850, dark=True)

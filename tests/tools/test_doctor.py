@@ -577,6 +577,7 @@ def test_a_percentile_of_a_histogram():
     [
         ([Pair(60.0, 55.0)] * 10, Verdict.OK),
         ([Pair(80.0, 55.0)] * 10, Verdict.WARNING),
+        ([Pair(80.0, 55.0)] * 5, Verdict.NOTE),
         ([Pair(900.0, 800.0)] * 10, Verdict.WARNING),
         ([Pair(55.0, 55.0)] * 5 + [Pair(90.0, 55.0)] * 5, Verdict.OK),
         ([], Verdict.UNSEEN),

@@ -15,6 +15,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,6 +29,10 @@ from robot_control.doctor.system import CAP_SYS_NICE, System
 
 SECONDS = 5
 """s of one run"""
+START = 3
+"""s at the beginning of a run of the nodes in which other programs of the launch are loaded; not measured"""
+MIN_PAIRS = 6
+"""Pairs from which the interval of a median has a confidence of 95 %; fewer judge nothing"""
 PROGRAMS = {"cyclictest": "rt-tests", "stress-ng": "stress-ng", "roslaunch": "python3-roslaunch"}
 """Program → its package of Debian"""
 MAX_RATIO = 1.3
@@ -37,7 +42,7 @@ MAX_SHARE = 0.2
 LONGEST = 20_000
 """µs, of the histogram"""
 START_LIMIT = 90.0
-"""s for the start and end of the nodes around a run"""
+"""s for the start of the nodes, and for their end"""
 
 
 class MeasureError(RuntimeError):
@@ -68,11 +73,10 @@ def measure(system: System, pairs: int) -> list[Row]:
     require_programs()
     rows = []
     for load, why in (("idle", "what the machine can do at best"), ("load", "what other programs cost")):
-        with _stressed(system) if load == "load" else contextlib.nullcontext():
-            measured = []
-            for number in range(pairs):
-                print(f"doctor.py: {load}, pair {number + 1} of {pairs}", file=sys.stderr)
-                measured.append(_pair(system, nodes_first=number % 2 == 0))
+        measured = []
+        for number in range(pairs):
+            print(f"doctor.py: {load}, pair {number + 1} of {pairs}", file=sys.stderr)
+            measured.append(_pair(system, loaded=load == "load", nodes_first=number % 2 == 0))
         finding = judge(measured, 1e6 / float(system.robot.get("rate", 1000)))
         rows.append(Row("measured", f"wake_up_{load}", why, finding))
     return rows
@@ -91,8 +95,13 @@ def judge(pairs: Sequence[Pair], period: float) -> Finding:
     )
     if reference > MAX_SHARE * period:
         return warning(value, "the machine itself is late: see the other findings; docs/realtime.md has the steps")
+    if lowest > MAX_RATIO and len(pairs) < MIN_PAIRS:
+        return note(value, f"measure {MIN_PAIRS} pairs or more, which can judge the nodes")
     if lowest > MAX_RATIO:
-        return warning(value, "the nodes are later than the machine: grant privileges, and see docs/realtime.md")
+        return warning(
+            value,
+            "the nodes are later than the machine: see realtime_priority and memory_lock above, and docs/realtime.md",
+        )
     if own > MAX_SHARE * period:
         return note(value, "lower robot.rate, or follow docs/realtime.md")
     return ok(value)
@@ -108,7 +117,7 @@ def interval(ordered: Sequence[float]) -> tuple[float, float]:
     """Bounds of the median with at least 95 % confidence by order statistics; the range of fewer than six values."""
     count, tail, below = len(ordered), 0.0, 0
     weight = 0.5**count
-    while count >= 6 and tail + weight <= 0.025:
+    while count >= MIN_PAIRS and tail + weight <= 0.025:
         tail += weight
         weight *= (count - below) / (below + 1)
         below += 1
@@ -116,15 +125,15 @@ def interval(ordered: Sequence[float]) -> tuple[float, float]:
     return ordered[low], ordered[count - 1 - low]
 
 
-def _pair(system: System, *, nodes_first: bool) -> Pair:
+def _pair(system: System, *, loaded: bool, nodes_first: bool) -> Pair:
     if nodes_first:
-        nodes = _nodes(system)
-        return Pair(nodes, _cyclictest(system))
-    reference = _cyclictest(system)
-    return Pair(_nodes(system), reference)
+        nodes = _nodes(system, loaded=loaded)
+        return Pair(nodes, _cyclictest(system, loaded=loaded))
+    reference = _cyclictest(system, loaded=loaded)
+    return Pair(_nodes(system, loaded=loaded), reference)
 
 
-def _cyclictest(system: System) -> float:
+def _cyclictest(system: System, *, loaded: bool) -> float:
     granted = system.may(CAP_SYS_NICE) or (system.limit("Max realtime priority") or 0) >= MAX_PRIORITY
     wanted = system.robot.get("cpu_dma_latency")
     command = [
@@ -134,7 +143,8 @@ def _cyclictest(system: System) -> float:
         f"-i{1e6 / float(system.robot.get('rate', 1000)):.0f}",
         *(["--default-system"] if wanted is None else [f"--latency={wanted:.0f}"]),
     ]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS + 30, check=False)
+    with _stressed(system, loaded=loaded):
+        done = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS + 30, check=False)
     latency = percentile99(done.stdout)
     if done.returncode or latency is None:
         raise MeasureError(f"cyclictest failed: {(done.stderr or done.stdout).strip()[-300:]}")
@@ -152,38 +162,53 @@ def percentile99(histogram: str) -> float | None:
     return None
 
 
-def _nodes(system: System) -> float:
+def _nodes(system: System, *, loaded: bool) -> float:
     """The p99 of the driver's wake-up in one run of the simulated robot, on a master of its own."""
     rate = float(system.robot.get("rate", 1000))
     settings = {
         key: system.robot[key] for key in ("core", "realtime", "rate", "cpu_dma_latency") if key in system.robot
     }
     lines = "".join(f"  {key}: {value}\n" for key, value in settings.items() if value is not None)
-    with tempfile.TemporaryDirectory(prefix="doctor-") as folder, socket.create_server(("127.0.0.1", 0)) as probe:
+    with socket.create_server(("127.0.0.1", 0)) as probe:
         port = str(probe.getsockname()[1])
-        probe.close()
-        parameters = Path(folder, "measure.yaml")
-        parameters.write_text(f"robot:\n{lines}telemetry: {{record: always}}\n")
+    with tempfile.TemporaryDirectory(prefix="doctor-") as name:
+        folder = Path(name)
+        (folder / "measure.yaml").write_text(f"robot:\n{lines}telemetry: {{record: always}}\n")
         command = ["roslaunch", "-p", port, "robot_control", "sim.launch", "telemetry:=true", "black_box:=false"]
-        command += [f"params:={parameters}", f"out:={folder}", f"cycles:={SECONDS * rate:.0f}"]
-        values = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_HOME": folder}
-        with subprocess.Popen(
-            command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=values, start_new_session=True
-        ) as launch:
-            try:
-                said, _ = launch.communicate(timeout=SECONDS + START_LIMIT)
-            except subprocess.TimeoutExpired:
-                os.killpg(launch.pid, signal.SIGINT)
-                said, _ = launch.communicate()
+        command += [f"params:={folder}/measure.yaml", f"out:={folder}", f"cycles:={(START + SECONDS) * rate:.0f}"]
+        values = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_HOME": name}
+        with (folder / "launch.log").open("w") as output:
+            launch = subprocess.Popen(command, stdout=output, stderr=output, env=values, start_new_session=True)
         try:
-            return loop_timing(read_log(Path(folder, "run.bag"))).wake_up.p99
-        except (OSError, LogError) as error:
-            raise MeasureError(f"the nodes left no log: {error}; they said: {said[-500:]}") from None
+            _run_out(system, launch, folder, loaded=loaded)
+            log = read_log(folder / "run.bag")
+        except (OSError, LogError, subprocess.TimeoutExpired) as error:
+            said = (folder / "launch.log").read_text(errors="replace")[-500:]
+            raise MeasureError(f"the nodes left no log: {error}; they said: {said}") from None
+        finally:
+            if launch.poll() is None:
+                os.killpg(launch.pid, signal.SIGKILL)
+                launch.wait()
+        return loop_timing({name: values[log["cycle"] >= START * rate] for name, values in log.items()}).wake_up.p99
+
+
+def _run_out(system: System, launch: subprocess.Popen[bytes], folder: Path, *, loaded: bool) -> None:
+    """Waits for the end of the nodes; the load begins with their log, so that it does not delay their start."""
+    end = time.monotonic() + START_LIMIT
+    while not any(folder.glob("run*.bag*")) and launch.poll() is None:
+        if time.monotonic() > end:
+            raise subprocess.TimeoutExpired("roslaunch", START_LIMIT)
+        time.sleep(0.1)
+    with _stressed(system, loaded=loaded):
+        launch.wait(timeout=START + SECONDS + START_LIMIT)
 
 
 @contextlib.contextmanager
-def _stressed(system: System) -> Iterator[None]:
-    """Work on every core, memory and disk while the block runs."""
+def _stressed(system: System, *, loaded: bool) -> Iterator[None]:
+    """Work on every core, memory and disk while the block runs, if it is `loaded`."""
+    if not loaded:
+        yield
+        return
     workers = str(len(os.sched_getaffinity(0)) if system.live else 1)
     command = ["stress-ng", "--quiet", "--cpu", workers, "--vm", "1", "--vm-bytes", "64M", "--hdd", "1"]
     with tempfile.TemporaryDirectory(prefix="doctor-") as folder:
