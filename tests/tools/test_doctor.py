@@ -5,6 +5,7 @@ import json
 import math
 import os
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -36,7 +37,7 @@ from robot_control.doctor.finding import Verdict
 from robot_control.doctor.measure import MeasureError, Pair, interval, judge, measure, percentile99, require_programs
 from robot_control.doctor.report import as_json, commands, exit_code, lines
 from robot_control.doctor.system import System
-from robot_control.doctor.tasks import first_sample, load
+from robot_control.doctor.tasks import SPAN, first_sample, load
 
 PROGRAM = Path(__file__).parents[2] / "scripts" / "doctor.py"
 ALARMS = (Verdict.WARNING, Verdict.FAULT)
@@ -217,6 +218,20 @@ FAULTS = {
         HARDWARE,
         "ip link set can0 up",
     ),
+    "another CAN interface": (
+        "can",
+        preempt_rt,
+        {},
+        HARDWARE | {"drive_bus": {"address": "can1"}},
+        "connect the adapter",
+    ),
+    "another bit rate than that of the drives": (
+        "can",
+        preempt_rt,
+        {},
+        HARDWARE | {"drive_bus": {"address": "can0", "bit_rate": 500_000}},
+        "bitrate 500000",
+    ),
     "a bus that is off": (
         "can",
         preempt_rt,
@@ -333,6 +348,14 @@ FAULTS = {
 def test_an_adapter_that_the_simulation_does_not_use_is_no_alarm(tmp_path):
     write(tmp_path, bare_debian() | {"sys/bus/usb-serial/devices/ttyUSB0/latency_timer": "16"})
     assert rows(tmp_path)["serial_latency"].finding.verdict is Verdict.NOTE
+
+
+def test_a_bus_of_simulated_drives_needs_no_interface(tmp_path):
+    (tmp_path / "drives.yaml").write_text("bus: {dialect: odrive, address: 'unix:/tmp/drives'}\n")
+    (tmp_path / "my.yaml").write_text("robot: {driver: can, drives: drives.yaml}\n")
+    write(tmp_path / "root", bare_debian())
+    done = run("--root", tmp_path / "root", "--params", tmp_path / "my.yaml")
+    assert "unix:/tmp/drives: simulated drives" in done.stdout
 
 
 def test_an_ordinary_program_on_the_core_of_a_loop_with_privileges_is_no_alarm(tmp_path):
@@ -501,18 +524,18 @@ def run(*arguments):
     return subprocess.run(call, capture_output=True, text=True, check=False, env={"PATH": "/usr/bin:/bin"}, cwd="/")
 
 
-def test_it_runs_without_ros_on_this_machine_within_three_seconds():
-    spent = []
-    for _ in range(3):  # other programs may delay one call
-        began = time.monotonic()
-        done = run("--json")
-        spent.append(time.monotonic() - began)
-        report = json.loads(done.stdout)
-        assert done.returncode == report["exit_code"], done.stderr
-        assert {row["name"]: row["verdict"] for row in report["checks"]}["package"] == "warning"
-        if spent[-1] <= 3.0:
-            return
-    pytest.fail(f"{spent} s")
+def test_it_runs_without_ros_on_this_machine_in_time():
+    """It takes 3 s at most. Other programs may delay it tenfold, but not its own processor time."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    began = time.monotonic()
+    done = run("--json")
+    spent = time.monotonic() - began
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    report = json.loads(done.stdout)
+    assert done.returncode == report["exit_code"], done.stderr
+    assert {row["name"]: row["verdict"] for row in report["checks"]}["package"] == "warning"
+    assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < 3.0 - SPAN
+    assert spent < 30.0
 
 
 def test_a_line_holds_verdict_value_reason_and_remedy(tmp_path):

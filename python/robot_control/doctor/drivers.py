@@ -69,25 +69,40 @@ def _can_problem(system: System, interface: str) -> Finding | None:
     return None
 
 
+def _bus(system: System) -> tuple[str, int]:
+    """Address and bit rate of the drive file; empty and 0 if they are unknown or the driver does not use CAN."""
+    bus = system.robot.get("drive_bus")
+    if system.robot.get("driver") != "can" or not isinstance(bus, dict):
+        return "", 0
+    rate = bus.get("bit_rate")
+    return str(bus.get("address") or ""), rate if isinstance(rate, int) else 0
+
+
 def can(system: System) -> Finding:
-    """Every CAN interface, if the driver uses CAN or one is there."""
-    interfaces = _can_interfaces(system)
+    """The CAN interface of the drive file; without one, every interface that is there."""
+    interfaces, (address, wanted) = _can_interfaces(system), _bus(system)
+    used = system.robot.get("driver") == "can"
+    if address.startswith("unix:"):
+        return ok(f"{address}: simulated drives")
+    if used and (not interfaces or (address and address not in interfaces)):
+        value = f"{address or 'a CAN interface'} is absent, and robot.driver is can"
+        return fault(value, "connect the adapter, or load its module")
     if not interfaces:
-        if system.robot.get("driver") == "can":
-            return fault("no CAN interface, and robot.driver is can", "connect the adapter, or load its module")
         return ok("none, and none is used")
-    problems = [found for interface in interfaces if (found := _can_problem(system, interface))]
+    shown = [address] if address else interfaces
+    problems = [found for interface in shown if (found := _can_problem(system, interface))]
+    rates = {
+        interface: _link(system, interface).get("linkinfo", {}).get("info_data", {}).get("bittiming", {}).get("bitrate")
+        for interface in shown
+    }
+    if address and wanted and rates[address] not in (None, wanted):
+        again = f"sudo ip link set {address} down && {_start(address).replace('1000000', str(wanted))}"
+        value = f"{address} has {rates[address]} bit/s, the drive file {wanted}"
+        problems.append(fault(value, "start it with the bit rate of the drives", again))
     if not problems:
-        rates = []
-        for interface in interfaces:
-            data = _link(system, interface).get("linkinfo", {}).get("info_data", {})
-            rate = data.get("bittiming", {}).get("bitrate")
-            rates.append(f"{interface} {rate} bit/s" if rate else interface)
-        return ok(", ".join(rates))
+        return ok(", ".join(f"{interface} {rate} bit/s" if rate else interface for interface, rate in rates.items()))
     worst = next((each for each in problems if each.verdict is Verdict.FAULT), problems[0])
-    if system.robot.get("driver") != "can" and worst.value.endswith("is down"):
-        return ok(f"{worst.value}; not used (robot.driver: {system.robot.get('driver')})")
-    return worst
+    return worst if used else ok(f"{worst.value}; not used (robot.driver: {system.robot.get('driver')})")
 
 
 def _if_used(system: System, finding: Finding) -> Finding:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -54,6 +55,11 @@ def _robot_block(given: str | None) -> dict[str, Any]:
             sys.exit(f"doctor.py: {name} cannot be read: {error}")
         part = tree.get("robot") if isinstance(tree, dict) else None
         block |= part if isinstance(part, dict) else {}
+        if isinstance(part, dict) and isinstance(drives := part.get("drives"), str) and drives:
+            with contextlib.suppress(
+                OSError, UnicodeDecodeError, yaml.YAMLError, AttributeError
+            ):  # the driver refuses it
+                block["drive_bus"] = yaml.safe_load((Path(name).parent / drives).read_text()).get("bus")
     return block
 
 

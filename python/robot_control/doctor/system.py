@@ -30,7 +30,7 @@ class System:
 
     root: Path = Path("/")
     robot: Mapping[str, Any] = field(default_factory=lambda: DEFAULTS)
-    """The block `robot:` of the parameters."""
+    """The block `robot:` of the parameters; `drive_bus` in it is the block `bus:` of the drive file."""
 
     @property
     def live(self) -> bool:
