@@ -32,4 +32,6 @@ function(robot_control_node name)
 endfunction()
 
 install(DIRECTORY config urdf launch DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
-catkin_install_python(PROGRAMS scripts/blackbox.py scripts/calibrate.py scripts/console/console.py scripts/console/console_users.py scripts/doctor.py scripts/drive_path.py scripts/estimate.py scripts/export.py scripts/follow_path.py scripts/identify.py scripts/inspect_robot.py scripts/pad.py scripts/record.py scripts/replay.py scripts/report.py scripts/robot_status.py scripts/send_cmd.py scripts/teleop.py scripts/view/state_publisher.py scripts/view/view_markers.py scripts/why.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+file(GLOB tools RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS scripts/*.py scripts/console/*.py
+  scripts/view/*.py)
+catkin_install_python(PROGRAMS ${tools} DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})

@@ -18,7 +18,20 @@ from robot_control.common.signal_names import states
 from bench.faults.random_drive import Leg, draw_drive
 from bench.robot_corpus import DIFFBOT, SCENES
 
-COMPONENTS = states("FaultComponent")
+COMPONENTS = (
+    "left_encoder",
+    "right_encoder",
+    "gyro",
+    "accelerometer",
+    "left_motor",
+    "right_motor",
+    "controller",
+    "estimator",
+    "monitor",
+    "battery",
+    "e_stop_button",
+)
+"""The order is part of what a seed means."""
 KINDS = states("FaultKind")[1:]  # without "ok"
 
 ALL_RUNS = 10_000

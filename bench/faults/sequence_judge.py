@@ -72,9 +72,10 @@ class Violation:
 
 
 def failing(log: Log, component: str, *kinds: str) -> Mask:
-    """Cycles in which `component` fails in one of these ways; shape (cycles,)."""
+    """Cycles in which `component` fails in one of these ways; shape (cycles,). A "motor" is that of any joint."""
     digit = (log["injected"].astype(np.int64) >> (3 * number_of("FaultComponent", component))) & 7
-    return np.isin(digit, [number_of("FaultKind", kind) for kind in kinds])
+    failures = [digit, *(log[name] for name in log if name.endswith(f"_injected_{component}"))]
+    return np.isin(failures, [number_of("FaultKind", kind) for kind in kinds]).any(axis=0)
 
 
 def judge(sequence: FaultSequence, log: Log, wheel_base: float, period: float, fastest: float) -> list[Violation]:
@@ -115,10 +116,10 @@ class _Court:
         rocks = np.abs(tilt - tilt[np.maximum(np.arange(len(tilt)) - window, 0)]) > ROCKING
         self._standing = (linear + angular * wheel_base / 2 <= STANDING_SPEED) | rocks
         dead = ("off", "garbage", "intermittent")
-        self._unbraked = failing(log, "left_motor", *dead) | failing(log, "right_motor", *dead)
+        self._unbraked = failing(log, "motor", *dead)
         jolts = ("stuck", "wrong", "garbage")
-        self._jolted = failing(log, "left_motor", *jolts) | failing(log, "right_motor", *jolts)
-        self._late = failing(log, "left_motor", "slow", "delayed") | failing(log, "right_motor", "slow", "delayed")
+        self._jolted = failing(log, "motor", *jolts)
+        self._late = failing(log, "motor", "slow", "delayed")
         self._monitor_errs = failing(log, "monitor", "garbage", "wrong")
         self._new_run = np.concatenate([[True], np.diff(log["run"]) != 0])
 

@@ -30,6 +30,8 @@ COLUMNS = (
     "driver_state",
     "injected",
 )
+JOINT_COLUMN = "_injected_motor"
+"""ends the name of a column for each joint"""
 
 
 def loop_arguments(sequence: FaultSequence) -> dict[str, Any]:
@@ -51,7 +53,7 @@ def make_loop(sequence: FaultSequence) -> ClosedLoop:
 
 
 def run_sequence(sequence: FaultSequence, loop: ClosedLoop) -> Log:
-    """The log's `COLUMNS`, one value per cycle from the first to the last."""
+    """The log's `COLUMNS` and those of each joint, one value per cycle from the first to the last."""
     player = _Player(sequence, loop)
     for event in sequence.events:
         player.run_until(event.time)
@@ -62,7 +64,8 @@ def run_sequence(sequence: FaultSequence, loop: ClosedLoop) -> Log:
             loop.inject_fault(component, "ok")
     loop.e_stop_reset()
     player.run_until(sequence.released)
-    return {name: np.concatenate([part[name] for part in player.parts]) for name in COLUMNS}
+    names = [*COLUMNS, *(name for name in player.parts[0] if name.endswith(JOINT_COLUMN))]
+    return {name: np.concatenate([part[name] for part in player.parts]) for name in names}
 
 
 class _Player:

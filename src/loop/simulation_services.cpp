@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "loop/mint_number.h"
+#include "machine/fault_names.h"
 #include "rt/clock.h"
 #include "rt/futex.h"
-#include "signals/names.h"
 
 namespace robot_control {
 namespace {
@@ -30,9 +30,9 @@ ServiceAnswer ended() {
 
 }  // namespace
 
-SimulationServices::SimulationServices(LoopHold& hold, Driver& driver, DriverCycle& cycle,
+SimulationServices::SimulationServices(const MachineModel& machine, LoopHold& hold, Driver& driver, DriverCycle& cycle,
                                        std::function<std::vector<std::string>()> missing)
-    : hold_(hold), driver_(driver), cycle_(cycle), missing_(std::move(missing)) {}
+    : machine_(machine), hold_(hold), driver_(driver), cycle_(cycle), missing_(std::move(missing)) {}
 
 /// Its caller holds `request_mutex_`.
 std::uint64_t SimulationServices::send_request() {
@@ -138,16 +138,16 @@ ServiceAnswer SimulationServices::reset() {
 
 ServiceAnswer SimulationServices::inject_fault(const std::string& component, const std::string& kind) {
   const std::lock_guard lock(request_mutex_);
-  const auto found = fault_component(component);
-  if (found && is_node(*found)) {
+  const std::vector<InjectedFault> found = components_of(machine_, component);
+  if (!found.empty() && is_node(found.front().component)) {
     return {false, component +
                        ": a node that runs takes no simulated fault; stop or kill its process (kill -STOP, "
                        "kill -KILL), or call inject_fault of ClosedLoop in Python"};
   }
-  std::string problem = set_fault(request_.faults, component, kind);
+  std::string problem = set_fault(request_.faults, machine_, component, kind);
   if (!problem.empty()) return {false, std::move(problem)};
   send_request();
-  return {true, "injected: " + names_of(request_.faults)};
+  return {true, "injected: " + names_of(request_.faults, machine_)};
 }
 
 }  // namespace robot_control

@@ -13,6 +13,7 @@
 #include "drivers/driver.h"
 #include "loop/cycles/driver_cycle.h"
 #include "loop/processes/loop_hold.h"
+#include "machine/machine_model.h"
 
 namespace robot_control {
 
@@ -24,7 +25,7 @@ struct ServiceAnswer {
 class SimulationServices {
  public:
   /// `missing` is called by any thread and returns the nodes that the loop waits for.
-  SimulationServices(LoopHold& hold, Driver& driver, DriverCycle& cycle,
+  SimulationServices(const MachineModel& machine, LoopHold& hold, Driver& driver, DriverCycle& cycle,
                      std::function<std::vector<std::string>()> missing);
 
   /// Paused, the machine does not move and stamps do not advance; the others see the last frame again, as paused.
@@ -39,7 +40,7 @@ class SimulationServices {
   /// machine does not start, the reset fails, and the old run goes on with the driver's fault.
   ServiceAnswer reset();
 
-  /// From the next cycle on; words of names.h, "ok" ends a fault. Unknown ones are answered with the list. A fault of a
+  /// From the next cycle on; words of machine/fault_names.h, "ok" ends a fault. Unknown ones are answered with the list. A fault of a
   /// node is refused: the processes contain no simulated faults, and ClosedLoop injects them.
   ServiceAnswer inject_fault(const std::string& component, const std::string& kind);
 
@@ -55,6 +56,7 @@ class SimulationServices {
   ServiceAnswer await_steps(const Steps& steps);
   std::string waiting_for() const;
 
+  const MachineModel& machine_;
   LoopHold& hold_;
   Driver& driver_;
   DriverCycle& cycle_;

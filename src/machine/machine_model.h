@@ -43,6 +43,12 @@ struct JointModel {
   double effort_rate = 0;                          ///< N·m/s or N/s; 0: unlimited
 };
 
+/// Joints that have a name together, as the wheels of one side or the joints of one leg.
+struct JointGroup {
+  std::string name;                 ///< "left"
+  std::vector<std::size_t> joints;  ///< indices into MachineModel::joints
+};
+
 /// Informs the user about a value that was not simply taken from the URDF.
 struct RobotNote {
   enum class Kind {
@@ -78,6 +84,8 @@ struct MachineModel {
 
   /// These joints are in the order of the frames' joint arrays: that of the file, unless the robot's kind sorts them.
   std::vector<JointModel> joints;
+
+  std::vector<JointGroup> groups;  ///< set by the robot's kind; of joints that it drives
 
   double mass = 0;                   ///< kg, all links
   Vector3 centre_of_gravity_base{};  ///< m

@@ -1,30 +1,29 @@
 #pragma once
-/// A fault of a simulated machine consists of a component and a kind, in the terms of PX4 (PX4 user guide, "System
-/// Failure Injection").
+/// A fault of a simulated machine consists of a component, its index and a kind, in the terms of PX4 (PX4 user guide,
+/// "System Failure Injection"). Encoders and motors are those of one joint, and their index is that of the joint. All
+/// other components exist once and have the index 0.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
 namespace robot_control {
 
-/// The values are indices of InjectedFaults. Left and right mean every wheel of that side.
-enum class FaultComponent : std::size_t {
-  kLeftEncoder,
-  kRightEncoder,
+enum class FaultComponent : std::uint8_t {
+  kEncoder,
+  kMotor,
   kGyro,
   kAccelerometer,
-  kLeftMotor,
-  kRightMotor,
+  kBattery,
+  kEStopButton,
   kController,
   kEstimator,
   kMonitor,
-  kBattery,
-  kEStopButton,
 };
-inline constexpr std::size_t kFaultComponents = 11;
+inline constexpr std::size_t kFaultComponents = 9;
 
-enum class FaultKind : std::uint64_t {
+enum class FaultKind : std::uint8_t {
   kOk,            ///< healthy again
   kOff,           ///< no output
   kStuck,         ///< the last output again and again
@@ -43,19 +42,52 @@ constexpr bool is_node(FaultComponent component) noexcept {
          component == FaultComponent::kMonitor;
 }
 
-using InjectedFaults = std::array<FaultKind, kFaultComponents>;  ///< all zero: everything is healthy
-
-inline FaultKind fault_of(const InjectedFaults& faults, FaultComponent component) noexcept {
-  return faults[static_cast<std::size_t>(component)];
+/// Returns whether each joint has such a component.
+constexpr bool is_of_joint(FaultComponent component) noexcept {
+  return component == FaultComponent::kEncoder || component == FaultComponent::kMotor;
 }
 
-/// Returns all faults in one number for the log, Σ kind · 8^component, with one octal digit per component. 0 means
-/// healthy.
-static_assert(3 * kFaultComponents <= 53, "the log's numbers are doubles");
-constexpr std::uint64_t fault_code(const InjectedFaults& faults) noexcept {
-  std::uint64_t code = 0;
-  for (std::size_t i = 0; i < kFaultComponents; ++i) code |= (static_cast<std::uint64_t>(faults[i]) & 7u) << (3 * i);
-  return code;
+struct InjectedFault {
+  FaultComponent component{};
+  std::uint8_t index = 0;
+  FaultKind kind = FaultKind::kOk;
+
+  bool operator==(const InjectedFault&) const = default;
+};
+
+/// This is enough for every encoder and motor of a robot with twelve joints.
+inline constexpr std::size_t kMaxInjectedFaults = 24;
+
+/// The faults stand first; the entries behind them are kOk. All zero means that everything is healthy.
+using InjectedFaults = std::array<InjectedFault, kMaxInjectedFaults>;
+
+constexpr bool any_fault(const InjectedFaults& faults) noexcept {
+  return faults.front().kind != FaultKind::kOk;
+}
+
+constexpr FaultKind fault_of(const InjectedFaults& faults, FaultComponent component, std::size_t index = 0) noexcept {
+  for (const InjectedFault& fault : faults) {
+    if (fault.kind == FaultKind::kOk) break;
+    if (fault.component == component && fault.index == index) return fault.kind;
+  }
+  return FaultKind::kOk;
+}
+
+/// Begins, changes or, with kOk, ends a fault. Returns false, and changes nothing, if there are kMaxInjectedFaults
+/// others.
+constexpr bool set_fault(InjectedFaults& faults, const InjectedFault& fault) noexcept {
+  const auto same = [&](const InjectedFault& other) {
+    return other.kind == FaultKind::kOk || (other.component == fault.component && other.index == fault.index);
+  };
+  const auto entry = std::find_if(faults.begin(), faults.end(), same);
+  if (entry == faults.end()) return fault.kind == FaultKind::kOk;
+  if (fault.kind != FaultKind::kOk) {
+    *entry = fault;
+  } else {
+    std::move(entry + 1, faults.end(), entry);
+    faults.back() = {};
+  }
+  return true;
 }
 
 }  // namespace robot_control

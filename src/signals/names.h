@@ -211,10 +211,10 @@ constexpr std::string_view name_of(JointMode mode) noexcept {
   return index < kNames.size() ? kNames[index] : "unknown";
 }
 
-/// The words of the service inject_fault, in the order of FaultComponent and of FaultKind.
+/// The words of the service inject_fault (machine/fault_names.h), in the order of FaultComponent and of FaultKind.
 inline constexpr std::array<std::string_view, kFaultComponents> kFaultComponentNames{
-    "left_encoder", "right_encoder", "gyro",    "accelerometer", "left_motor",   "right_motor",
-    "controller",   "estimator",     "monitor", "battery",       "e_stop_button"};
+    "encoder",       "motor",      "gyro",      "accelerometer", "battery",
+    "e_stop_button", "controller", "estimator", "monitor"};
 inline constexpr std::array<std::string_view, kFaultKinds> kFaultKindNames{"ok",    "off",  "stuck",   "garbage",
                                                                            "wrong", "slow", "delayed", "intermittent"};
 
@@ -234,44 +234,6 @@ constexpr std::optional<std::size_t> index_of(std::span<const std::string_view> 
     if (words[i] == word) return i;
   }
   return std::nullopt;
-}
-
-constexpr std::optional<FaultComponent> fault_component(std::string_view name) noexcept {
-  const auto index = index_of(kFaultComponentNames, name);
-  return index ? std::optional(static_cast<FaultComponent>(*index)) : std::nullopt;
-}
-
-constexpr std::optional<FaultKind> fault_kind(std::string_view name) noexcept {
-  const auto index = index_of(kFaultKindNames, name);
-  return index ? std::optional(static_cast<FaultKind>(*index)) : std::nullopt;
-}
-
-/// Sets the fault that two words name and returns "". If a word is unknown, changes nothing and returns the problem
-/// with the list of words. Allocates.
-inline std::string set_fault(InjectedFaults& faults, std::string_view component, std::string_view kind) {
-  const auto unknown = [](std::string_view what, std::string_view word, std::span<const std::string_view> words) {
-    std::string text = "unknown ";
-    text.append(what).append(" \"").append(word).append("\"; there are");
-    for (const std::string_view known : words) text.append(" ").append(known);
-    return text;
-  };
-  const auto component_found = fault_component(component);
-  if (!component_found) return unknown("component", component, kFaultComponentNames);
-  const auto kind_found = fault_kind(kind);
-  if (!kind_found) return unknown("kind of fault", kind, kFaultKindNames);
-  faults[static_cast<std::size_t>(*component_found)] = *kind_found;
-  return {};
-}
-
-/// Returns "gyro off, monitor slow", or "none". Allocates.
-inline std::string names_of(const InjectedFaults& faults) {
-  std::string text;
-  for (std::size_t i = 0; i < faults.size(); ++i) {
-    if (faults[i] == FaultKind::kOk) continue;
-    if (!text.empty()) text += ", ";
-    text.append(kFaultComponentNames[i]).append(" ").append(name_of(faults[i]));
-  }
-  return text.empty() ? "none" : text;
 }
 
 /// Returns the row of one bit; null if it is not in the table.

@@ -9,6 +9,7 @@
 #include "loop/cycles/driver_cycle.h"
 #include "loop/cycles/estimator_cycle.h"
 #include "loop/cycles/monitor_cycle.h"
+#include "machine/fault_names.h"
 #include "robots/differential_drive.h"
 #include "signals/names.h"
 #include "simulation/faults/node_faults.h"
@@ -179,7 +180,7 @@ void ClosedLoop::set_parameters(const std::string& request) {
 }
 
 void ClosedLoop::inject_fault(const std::string& component, const std::string& kind) {
-  const std::string problem = set_fault(parts_->faults, component, kind);
+  const std::string problem = set_fault(parts_->faults, parts_->robot.machine(), component, kind);
   if (!problem.empty() && parts_->inject_device(component, kind)) return;
   if (!problem.empty()) throw std::invalid_argument(problem);
   parts_->driver.inject(parts_->faults);

@@ -353,8 +353,11 @@ TEST_F(Columns, ShowTheBatteryWhereItIsMeasured) {
 
 TEST_F(Columns, ShowTheInjectedFaultsAsOneOctalDigitPerComponent) {
   EXPECT_EQ(value("injected"), 0);
-  driver.sensors.injected[static_cast<std::size_t>(FaultComponent::kGyro)] = FaultKind::kStuck;
+  InjectedFaults& injected = driver.sensors.injected;
+  set_fault(injected, {.component = FaultComponent::kGyro, .kind = FaultKind::kStuck});
   EXPECT_EQ(value("injected"), 0200);
+  set_fault(injected, {.component = FaultComponent::kMotor, .index = 1, .kind = FaultKind::kOff});
+  EXPECT_EQ(value("injected"), 0210);
 }
 
 }  // namespace

@@ -189,7 +189,7 @@ TEST_F(LatchedLoop, StaysLatchedWhenTheMonitorDiedWhileItWrote) {
 }
 
 TEST_F(LatchedLoop, StaysLatchedBehindATokenOfAFaultyMonitor) {
-  loop.machine.faults[static_cast<std::size_t>(FaultComponent::kMonitor)] = FaultKind::kOff;
+  set_fault(loop.machine.faults, {.component = FaultComponent::kMonitor, .kind = FaultKind::kOff});
   cycles(3);
   loop.machine.faults = {};
   restart_driver_and_monitor();

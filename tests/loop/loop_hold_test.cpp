@@ -60,7 +60,7 @@ TEST(LoopHold, AwaitsNothingWhereNoLoopRuns) {
 TEST(LoopHold, HandsTheFaultsOver) {
   LoopHold hold;
   InjectedFaults faults{};
-  faults[2] = FaultKind::kStuck;
+  faults[0] = {FaultComponent::kEncoder, 1, FaultKind::kStuck};
   hold.request({.faults = faults});
   ASSERT_TRUE(hold.may_tick(0));
   EXPECT_EQ(hold.faults(), faults);

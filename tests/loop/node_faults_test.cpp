@@ -31,7 +31,7 @@ class NodeFaults : public ::testing::Test {
 
   static void inject(Loop& any, FaultComponent component, FaultKind kind) {
     InjectedFaults faults = any.machine.faults;
-    faults[static_cast<std::size_t>(component)] = kind;
+    set_fault(faults, {.component = component, .kind = kind});
     any.machine.inject(faults);
   }
   void inject(FaultComponent component, FaultKind kind) { inject(loop, component, kind); }
@@ -65,7 +65,9 @@ class NodeFaults : public ::testing::Test {
 TEST(NodesOfTheRobot, PublishTheSameFramesWhateverIsInjected) {
   Loop healthy;
   Loop injected;
-  injected.machine.faults.fill(FaultKind::kGarbage);
+  for (std::size_t i = 0; i < kFaultComponents; ++i) {
+    set_fault(injected.machine.faults, {.component = static_cast<FaultComponent>(i), .kind = FaultKind::kGarbage});
+  }
   for (int i = 0; i < 100; ++i) {
     for (Loop* any : {&healthy, &injected}) {
       any->driver.step();

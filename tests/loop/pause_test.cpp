@@ -180,7 +180,7 @@ TEST_F(PausedLoop, ANewRunAfterAPauseIsFollowedAndReleasesNothing) {
 
 TEST_F(PausedLoop, FaultsReachTheMachineAndEveryFrame) {
   InjectedFaults faults{};
-  faults[static_cast<std::size_t>(FaultComponent::kGyro)] = FaultKind::kOff;
+  set_fault(faults, {.component = FaultComponent::kGyro, .kind = FaultKind::kOff});
   loop.driver.inject(faults);
   loop.step();
   EXPECT_EQ(loop.machine.faults, faults);

@@ -212,7 +212,7 @@ TEST(GateReasons, AreEachAValueInWords) {
   SensorFrame sensors;
   sensors.gate.reasons = kGatePermitBrake;
   DiagnosticReport report("mujoco_plant", "diffbot");
-  report_driver(report, sensors, 1.0);
+  report_driver(report, sensors, {}, 1.0);
   EXPECT_EQ(value_of(report, "gate: permit_brake"), "the permit orders the brake");
   EXPECT_EQ(value_of(report, "gate remedy: permit_brake"), "read the cause in safety_status");
 }

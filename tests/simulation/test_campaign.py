@@ -145,7 +145,7 @@ def test_a_diverged_simulation_is_noticed(sequence, log):
 
 
 def test_a_robot_without_brakes_need_not_stand(sequence, log):
-    log["injected"][:] = number_of("FaultKind", "off") << (3 * number_of("FaultComponent", "left_motor"))
+    log["left_wheel_joint_injected_motor"] = np.full_like(log["injected"], number_of("FaultKind", "off"))
     log["truth_linear"][rows(2.0, 7.0)] = 0.5
     assert rules_broken(sequence, log) == set()
 

@@ -88,7 +88,7 @@ def test_a_copy_is_as_good_as_its_log(replayed):
         given(estimate_yaw=1.0),
         given(max_linear_speed=9.0),
         given(controller_woke_ns=0, command_published_ns=77),
-        given(injected=bytes([1] * 11)),
+        given(injected=bytes([1] * 24)),
         given(faults=1),
         given(truth_position=[0.0, 0.0, 0.0]),
         given(lost=5),

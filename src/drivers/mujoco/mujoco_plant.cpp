@@ -31,21 +31,28 @@ void check_battery(double voltage, double resistance) {
                     " ohm cannot feed the robot's electronics. Set less.");
 }
 
+std::vector<Rim> rims_of(const DriveTrain& robot) {
+  std::vector<Rim> rims;
+  for (const WheelModel& wheel : robot.wheels) rims.push_back({wheel.joint, wheel.radius});
+  return rims;
+}
+
 }  // namespace
 
 MujocoPlant::MujocoPlant(const MachineModel& robot, const MujocoPlantParameters& parameters, double period)
     : model_(compile_model(robot, parameters, period)),
       wheels_(model_, parameters),
       parameters_(parameters),
-      motor_faults_(model_.robot, parameters.seed, model_.model->opt.timestep),
       specific_force_(model_),
-      sensor_errors_(model_.robot, parameters, period),
+      sensor_errors_(model_.robot, rims_of(model_.robot), parameters, period),
       sensor_faults_(model_.robot, parameters.seed),
       actuator_delay_(checked_delay("actuator_delay", parameters.actuator_delay)) {
   for (const std::size_t joint : model_.driven) {
     laws_.emplace_back(brake_of(model_.robot, joint, parameters, model_.model->opt.timestep),
                        model_.robot.joints[joint].effort_limit);
     motors_.emplace_back(model_.robot.joints[joint].effort_limit, parameters.no_load_speed, parameters.gear_ratio);
+    motor_faults_.add(joint, inertia_of(model_.robot, joint, parameters), model_.robot.joints[joint].effort_limit,
+                      parameters.seed, model_.model->opt.timestep);
   }
   brakes_.resize(robot.joints.size());
   check_battery(parameters.battery_voltage, parameters.battery_resistance);

@@ -79,6 +79,46 @@ void add_links(TraceFields& to) {
       list<D, u64, kMaxLinks>("link_errors", "that the link reported", kSize, ELEMENT(sensors.links[i].errors)));
 }
 
+namespace {
+
+/// Returns the column that shows the FaultKind of a component of each joint.
+template <FaultComponent component>
+TraceColumn joint_fault(std::string name) {
+  TraceColumn result = column<D>(std::move(name), "FaultKind, of a simulator", [](const D& d, std::size_t joint) {
+    return as_number(fault_of(d.sensors.injected, component, joint));
+  });
+  result.per_joint = true;
+  return result;
+}
+
+/// Returns one octal digit per FaultComponent: its FaultKind, or that of the first joint whose component fails.
+std::uint64_t fault_code(const InjectedFaults& faults) {
+  std::uint64_t code = 0;
+  for (auto fault = faults.rbegin(); fault != faults.rend(); ++fault) {
+    const auto shift = 3 * static_cast<std::size_t>(fault->component);
+    if (fault->kind == FaultKind::kOk || shift >= 3 * kFaultComponents) continue;
+    code = (code & ~(std::uint64_t{7} << shift)) | ((static_cast<std::uint64_t>(fault->kind) & 7u) << shift);
+  }
+  return code;
+}
+
+void add_injected(TraceFields& to) {
+  static constexpr auto kSize = [](const D*, std::size_t) { return kMaxInjectedFaults; };
+  to.push_back(
+      list<D, u8, kMaxInjectedFaults>("injected", "FaultKind of each injected fault, of a simulator; 0: none", kSize,
+                                      ELEMENT(sensors.injected[i].kind))
+          .shown_as(column<D>("injected", "one octal digit per FaultComponent: its FaultKind, of the first joint",
+                              [](const D& d, std::size_t) { return fault_code(d.sensors.injected); })));
+  to.push_back(list<D, u8, kMaxInjectedFaults>("injected_component", "FaultComponent of each", kSize,
+                                               ELEMENT(sensors.injected[i].component))
+                   .shown_as(joint_fault<FaultComponent::kEncoder>("injected_encoder")));
+  to.push_back(list<D, u8, kMaxInjectedFaults>("injected_index", "joint of each", kSize,
+                                               ELEMENT(sensors.injected[i].index))
+                   .shown_as(joint_fault<FaultComponent::kMotor>("injected_motor")));
+}
+
+}  // namespace
+
 void add_driver(TraceFields& to) {
   to.push_back(field<D, u64>("driver_instance", "number of the driver's process", MEMBER(sensors.driver_instance)));
   to.push_back(field<D, u8>("driver_state", "DriverState", MEMBER(sensors.driver_state)).shown());
@@ -109,9 +149,7 @@ void add_driver(TraceFields& to) {
       field<D, u64>("overruns", "ticks of this run that ended after the next deadline", MEMBER(sensors.overruns))
           .shown()
           .as_timing());
-  to.push_back(field<D, u8>("injected", "FaultKind of each FaultComponent, of a simulator", MEMBER(sensors.injected))
-                   .shown_as(column<D>("injected", "one octal digit per FaultComponent: its FaultKind",
-                                       [](const D& d, std::size_t) { return fault_code(d.sensors.injected); })));
+  add_injected(to);
   to.push_back(
       field<D, u64>("slipped_ns", "ns by which a simulated plant fell behind in this run", MEMBER(sensors.slipped_ns))
           .shown()

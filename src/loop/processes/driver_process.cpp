@@ -62,7 +62,7 @@ void DriverProcess::open_driver(std::unique_ptr<Driver> driver) {
   cycle_->set_driver_instance(mint_number());
   cycle_->begin_run(mint_number());
   if (simulator_of(*driver_) == nullptr) return;
-  services_ = std::make_unique<SimulationServices>(hold_, *driver_, *cycle_, [this] { return last_missing(); });
+  services_ = std::make_unique<SimulationServices>(robot_, hold_, *driver_, *cycle_, [this] { return last_missing(); });
 }
 
 std::vector<std::string> DriverProcess::missing() const {

@@ -64,6 +64,14 @@ void read_geometry(const RigidBodies& robot, const DriveTrainParameters& paramet
   }
 }
 
+void group_sides(DriveTrain& model) {
+  JointGroup left{"left", {}}, right{"right", {}};
+  for (const WheelModel& wheel : model.wheels) {
+    (wheel.side == Side::kLeft ? left : right).joints.push_back(wheel.joint);
+  }
+  model.groups = {left, right};
+}
+
 /// Wheels turn without end, regardless of their joints' limits.
 void free_wheels(DriveTrain& model) {
   for (const WheelModel& wheel : model.wheels) model.joints[wheel.joint].range.reset();
@@ -95,6 +103,7 @@ void read_joints(const RigidBodies& robot, const DriveTrainParameters& parameter
     model.joints.push_back(joint_model(robot.bodies[body], roles[body]));
   }
   free_wheels(model);
+  group_sides(model);
   for (const auto* rolling : {&model.wheels, &model.casters}) {
     for (const WheelModel& wheel : *rolling) model.contacts.push_back(model.joints[wheel.joint].child_link);
   }

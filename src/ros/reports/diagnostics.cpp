@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "files/ascii.h"
+#include "machine/fault_names.h"
 #include "ros/reports/name_list.h"
 #include "signals/names.h"
 #include "signals/wheeled/slip_detection.h"
@@ -58,10 +59,12 @@ void report_missing(DiagnosticReport& report, const std::vector<std::string>& mi
   report.value("waiting_for", names);
 }
 
-void report_driver(DiagnosticReport& report, const SensorFrame& sensors, double real_time_factor) {
+void report_driver(DiagnosticReport& report, const SensorFrame& sensors, const MachineModel& machine,
+                   double real_time_factor) {
   if (sensors.driver_state == DriverState::kFault) report.error(sentences_of(kDriverFaultNames, sensors.faults));
   if (sensors.driver_state == DriverState::kPaused) report.ok("paused");
-  if (sensors.injected != InjectedFaults{}) report.warn("injected faults: " + names_of(sensors.injected));
+  const std::string injected = names_of(sensors.injected, machine);
+  if (any_fault(sensors.injected)) report.warn("injected faults: " + injected);
   for (std::size_t i = 0; i < std::min<std::size_t>(sensors.link_count, kMaxLinks); ++i) {
     const LinkStatus& link = sensors.links[i];
     const std::string name = "link_" + std::to_string(i);
@@ -80,7 +83,7 @@ void report_driver(DiagnosticReport& report, const SensorFrame& sensors, double 
   report.value("overruns", sensors.overruns);
   report.value("slipped_s", static_cast<double>(sensors.slipped_ns) * 1.0e-9);
   report.value("held_s", static_cast<double>(sensors.held_ns) * 1.0e-9);
-  report.value("injected", names_of(sensors.injected));
+  report.value("injected", injected);
   report.value("gate_verdict", std::string(name_of(sensors.gate.verdict)));
   report.value("gate_reasons", names_of(kGateReasonNames, sensors.gate.reasons));
   report.value("commands_held", sensors.gate.held);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "machine/machine_model.h"
 #include "ros/messages/messages.h"
 #include "signals/bit_name.h"
 #include "signals/command_frame.h"
@@ -40,7 +41,8 @@ class DiagnosticReport {
 /// Adds a warning with the names of missing nodes.
 void report_missing(DiagnosticReport& report, const std::vector<std::string>& missing);
 
-void report_driver(DiagnosticReport& report, const SensorFrame& sensors, double real_time_factor);
+void report_driver(DiagnosticReport& report, const SensorFrame& sensors, const MachineModel& machine,
+                   double real_time_factor);
 /// `slip_lately` has the SlipReason bits of all cycles since the last report.
 void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64_t slip_lately);
 /// `lately` has the CommandReason bits of all cycles since the last report; `senders` names the senders of commands.

@@ -21,6 +21,7 @@
 #include <random>
 
 #include "signals/injected_fault.h"
+#include "signals/joint.h"
 #include "simulation/faults/delay_line.h"
 
 namespace robot_control {
@@ -29,8 +30,8 @@ inline constexpr std::uint64_t kFaultCycles = 10;
 inline constexpr double kChangeProbability = 0.1;
 
 /// Returns a different seed for each component of a machine.
-constexpr std::uint64_t fault_seed(std::uint64_t seed, FaultComponent component) noexcept {
-  return seed * kFaultComponents + static_cast<std::uint64_t>(component);
+constexpr std::uint64_t fault_seed(std::uint64_t seed, FaultComponent component, std::size_t index = 0) noexcept {
+  return (seed * kFaultComponents + static_cast<std::uint64_t>(component)) * kMaxJoints + index;
 }
 
 /// The source of random numbers of a fault.

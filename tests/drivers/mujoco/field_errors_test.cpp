@@ -36,11 +36,10 @@ class VibrationTest : public testing::Test {
  protected:
   VibrationTest() {
     errors_.accelerometer_slow_error = 0;
-    for (WheelModel& wheel : robot_.wheels) wheel.radius = 0.1;
   }
 
   Vibration made() const {
-    Vibration vibration(robot_, errors_, kStep);
+    Vibration vibration({{kLeftWheel, 0.1}, {kRightWheel, 0.1}}, errors_, kStep);
     vibration.reset(3);
     return vibration;
   }
@@ -68,7 +67,6 @@ class VibrationTest : public testing::Test {
     return result;
   }
 
-  DriveTrain robot_ = two_wheels();
   MujocoPlantParameters errors_;
 };
 
@@ -310,7 +308,7 @@ TEST(FieldErrors, BeginWithWhatTheImuMeasuredBefore) {
   parameters.sensor_errors = ErrorLevel::kField;
   parameters.imu_delay = 0.05;
   parameters.imu_jitter = 0;
-  SensorErrors errors(two_wheels(), parameters, kStep);
+  SensorErrors errors(two_wheels(), {}, parameters, kStep);
   std::set<double> rates;
   for (int i = 0; i < 50; ++i) {
     Measurement standing;
@@ -325,7 +323,7 @@ TEST(FieldErrors, NeverAllocate) {
   MujocoPlantParameters parameters;
   parameters.sensor_errors = ErrorLevel::kField;
   parameters.encoder_jitter = 0.002;
-  SensorErrors all(two_wheels(), parameters, kStep);
+  SensorErrors all(two_wheels(), {{kLeftWheel, 0.1}, {kRightWheel, 0.1}}, parameters, kStep);
   Measurement measurement;
   const AllocationGuard guard;
   for (int i = 0; i < 1000; ++i) all.step(measurement);

@@ -22,8 +22,8 @@ class MotorFaultsTest : public testing::Test {
   /// Runs one cycle in which each wheel is asked for `effort`, all joints at rest.
   void step(FaultKind left, FaultKind right, double effort, JointMode mode = JointMode::kEffort) {
     InjectedFaults faults{};
-    faults[static_cast<std::size_t>(FaultComponent::kLeftMotor)] = left;
-    faults[static_cast<std::size_t>(FaultComponent::kRightMotor)] = right;
+    set_fault(faults, {FaultComponent::kMotor, kLeftWheel, left});
+    set_fault(faults, {FaultComponent::kMotor, kRightWheel, right});
     std::vector<JointCommand> commands(3);
     for (JointCommand& command : commands) command = {.mode = mode, .effort = effort};
     const auto received = faults_.receive(faults, cycle_++, commands);
@@ -38,7 +38,13 @@ class MotorFaultsTest : public testing::Test {
     EXPECT_EQ(swivel_, effort);
   }
 
-  MotorFaults faults_{two_wheels(), 5, kStep};
+  static MotorFaults both_motors() {
+    MotorFaults faults;
+    for (const std::uint8_t wheel : {kLeftWheel, kRightWheel}) faults.add(wheel, 0.005, kLimit, 5, kStep);
+    return faults;
+  }
+
+  MotorFaults faults_ = both_motors();
   std::uint64_t cycle_ = 0;
   double left_ = 0, right_ = 0, swivel_ = 0;
 };
@@ -117,7 +123,7 @@ TEST_F(MotorFaultsTest, ABlockedRotorHoldsAFreeWheelAgainstTwiceTheMotorsTorque)
   double position = 1, velocity = 10, farthest = 0;
   for (int i = 0; i < 1000; ++i) {
     InjectedFaults faults{};
-    faults[static_cast<std::size_t>(FaultComponent::kLeftMotor)] = FaultKind::kStuck;
+    faults[0] = {FaultComponent::kMotor, kLeftWheel, FaultKind::kStuck};
     const std::vector<JointCommand> commands(3);
     faults_.receive(faults, cycle_++, commands);
     const double effort = faults_.effort(kLeftWheel, JointMode::kBrake, 0, position, velocity);
@@ -138,7 +144,7 @@ TEST_F(MotorFaultsTest, NeverAllocate) {
   const AllocationGuard guard;
   for (std::size_t kind = 0; kind < kFaultKinds; ++kind) {
     InjectedFaults faults{};
-    faults[static_cast<std::size_t>(FaultComponent::kLeftMotor)] = static_cast<FaultKind>(kind);
+    faults[0] = {FaultComponent::kMotor, kLeftWheel, static_cast<FaultKind>(kind)};
     for (int i = 0; i < 50; ++i) faults_.receive(faults, cycle_++, commands);
   }
   EXPECT_EQ(guard.count(), 0u);

@@ -24,9 +24,7 @@ class PlantErrors : public PlantTest {
   }
 
   static void inject(MujocoPlant& plant, FaultComponent component, FaultKind kind) {
-    InjectedFaults faults{};
-    faults[static_cast<std::size_t>(component)] = kind;
-    plant.inject(faults);
+    plant.inject({{{.component = component, .kind = kind}}});
   }
 
   /// Runs one cycle; returns the frame read before it.
@@ -146,7 +144,7 @@ TEST_F(PlantErrors, AStartTakesFaultsBack) {
 
 TEST_F(PlantErrors, AnEncoderFaultIsNoFaultOfTheSimulation) {
   auto plant = erring();
-  inject(*plant, FaultComponent::kLeftEncoder, FaultKind::kOff);
+  inject(*plant, FaultComponent::kEncoder, FaultKind::kOff);
   for (int i = 0; i < 10; ++i) cycle(*plant, brakes_);
   const SensorFrame frame = sensors(*plant);
   EXPECT_TRUE(std::isnan(frame.joints[0].position));
@@ -156,7 +154,7 @@ TEST_F(PlantErrors, AnEncoderFaultIsNoFaultOfTheSimulation) {
 
 TEST_F(PlantErrors, AMotorThatIsOffPullsTheRobotRound) {
   auto plant = erring();
-  inject(*plant, FaultComponent::kLeftMotor, FaultKind::kOff);
+  inject(*plant, FaultComponent::kMotor, FaultKind::kOff);
   hold(*plant, both(effort_command(0.5), effort_command(0.5)), 1);
   EXPECT_EQ(truth(*plant).joints[0].effort, 0);
   EXPECT_EQ(truth(*plant).joints[1].effort, 0.5);
@@ -166,7 +164,7 @@ TEST_F(PlantErrors, AMotorThatIsOffPullsTheRobotRound) {
 TEST_F(PlantErrors, ABlockedMotorStopsItsWheelWhateverTheCommand) {
   auto plant = erring();
   speed_up(*plant, 5, 5);
-  inject(*plant, FaultComponent::kLeftMotor, FaultKind::kStuck);
+  inject(*plant, FaultComponent::kMotor, FaultKind::kStuck);
   hold(*plant, both(velocity_command(5), velocity_command(5)), 0.1);
   const double angle = truth(*plant).joints[0].position;
   hold(*plant, both(velocity_command(5), velocity_command(5)), 1);
@@ -177,9 +175,9 @@ TEST_F(PlantErrors, ABlockedMotorStopsItsWheelWhateverTheCommand) {
 
 TEST_F(PlantErrors, AMotorIsHealthyAgainAfterOk) {
   auto plant = erring();
-  inject(*plant, FaultComponent::kLeftMotor, FaultKind::kStuck);
+  inject(*plant, FaultComponent::kMotor, FaultKind::kStuck);
   hold(*plant, both(effort_command(0.5), effort_command(0.5)), 0.2);
-  inject(*plant, FaultComponent::kLeftMotor, FaultKind::kOk);
+  inject(*plant, FaultComponent::kMotor, FaultKind::kOk);
   plant->write(both(effort_command(0.5), effort_command(0.5)));
   EXPECT_EQ(truth(*plant).joints[0].effort, 0.5);
 }

@@ -58,7 +58,7 @@ class SensorErrorsTest : public testing::Test {
     parameters_.sensor_errors = ErrorLevel::kDataSheet;
   }
 
-  SensorErrors errors() const { return {robot_, parameters_, period_}; }
+  SensorErrors errors() const { return {robot_, {}, parameters_, period_}; }
 
   /// The measurements of a robot at rest, one vector per axis.
   using Axes = std::array<std::vector<double>, 3>;

@@ -5,9 +5,9 @@
 
 namespace robot_control {
 
-inline constexpr std::size_t kLeftWheel = 0;
-inline constexpr std::size_t kRightWheel = 1;
-inline constexpr std::size_t kSwivel = 2;
+inline constexpr std::uint8_t kLeftWheel = 0;
+inline constexpr std::uint8_t kRightWheel = 1;
+inline constexpr std::uint8_t kSwivel = 2;
 
 inline DriveTrain two_wheels() {
   DriveTrain robot;

@@ -33,10 +33,10 @@ struct Fault {
 
 std::vector<Fault> all_faults() {
   std::vector<Fault> faults;
-  for (const std::string_view component : kFaultComponentNames) {
-    if (is_node(*fault_component(component))) continue;
+  for (const char* component : {"left_encoder", "right_encoder", "left_motor", "right_motor", "gyro", "accelerometer",
+                                "battery", "e_stop_button"}) {
     for (const std::string_view kind : kFaultKindNames) {
-      if (kind != "ok") faults.push_back({std::string(component), std::string(kind)});
+      if (kind != "ok") faults.push_back({component, std::string(kind)});
     }
   }
   return faults;

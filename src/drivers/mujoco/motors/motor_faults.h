@@ -1,8 +1,7 @@
 #pragma once
-/// MotorFaults injects faults into the motors of one side's wheels together. Each kind has this effect on a command's
-/// torque τ:
+/// MotorFaults injects faults into the motors of joints. Each kind has this effect on a command's torque τ:
 ///
-///   off           0, also for the brake: a drive without power, the wheel runs free
+///   off           0, also for the brake: a drive without power, the joint moves freely
 ///   stuck         the rotor is blocked at its angle when the fault began
 ///   garbage       uniform within ±limit, new in every cycle, also for the brake: a drive out of control
 ///   wrong         −τ: a motor with reversed wires. The brake works: shorted windings have no polarity
@@ -13,12 +12,12 @@
 /// simulation/faults/faulty_output.h defines when a fault acts. Friction, damping and inertia of the joint do not
 /// change.
 ///
-/// A blocked rotor is a stiff spring and damper between wheel and body, where q* is the angle at the beginning:
+/// A blocked rotor is a stiff spring and damper between the joint's two bodies, where q* is the angle at the beginning:
 ///
 ///   τ = k·(q* − q) − d·q̇      k = J/(4 h²)      d = J/(2 h)
 ///
-/// J is the wheel's inertia and h the simulation's step. In the stability condition of brake_law.h a = d h/J is 1/2 and
-/// b = k h²/J is 1/4, so 2a + b = 1.25 of 4. For J = 0.005 kg·m² and h = 1 ms a torque of 5 N·m turns the wheel by
+/// J is the joint's inertia (brake_limits.h) and h the simulation's step. In the stability condition of brake_law.h a = d h/J is 1/2 and
+/// b = k h²/J is 1/4, so 2a + b = 1.25 of 4. For J = 0.005 kg·m² and h = 1 ms a torque of 5 N·m turns the joint by
 /// 4 mrad.
 
 #include <array>
@@ -27,7 +26,6 @@
 #include <span>
 #include <vector>
 
-#include "machine/wheeled/drive_train.h"
 #include "signals/joint.h"
 #include "simulation/faults/faulty_output.h"
 
@@ -35,8 +33,9 @@ namespace robot_control {
 
 class MotorFaults {
  public:
-  /// `step` is the simulation's time step h in s.
-  MotorFaults(const DriveTrain& robot, std::uint64_t seed, double step);
+  /// Adds the motor of a joint: its inertia J in kg·m² (or kg), its effort limit in N·m (or N). `step` is the
+  /// simulation's time step h in s.
+  void add(std::size_t joint, double inertia, double effort_limit, std::uint64_t seed, double step);
 
   /// Removes all faults.
   void reset() noexcept;
@@ -51,29 +50,24 @@ class MotorFaults {
   double effort(std::size_t joint, JointMode mode, double effort, double position, double velocity) noexcept;
 
  private:
-  using WheelCommands = std::array<JointCommand, kMaxWheels>;
-
-  /// The motors of one side.
-  struct Motors {
-    std::vector<std::size_t> joints;
-    FaultyOutput<WheelCommands> output;
-    FaultKind kind = FaultKind::kOk;
-  };
-  /// The state of a joint's motor in this cycle.
+  /// The state of a motor in this cycle.
   enum class State : std::uint8_t { kHealthy, kDead, kBlocked, kRandom, kReversed };
-  struct Drive {
+  struct Motor {
+    std::size_t joint = 0;
+    double limit = 0;  ///< N·m
+    double stiffness = 0, damping = 0;
+    FaultyOutput<JointCommand> output;
     State state = State::kHealthy;
     double random_effort = 0;  ///< N·m, for kRandom
     bool anchored = false;
     double anchor = 0;  ///< rad, q*
-    double limit = 0;   ///< N·m
-    double stiffness = 0, damping = 0;
   };
 
-  void step(Motors& side, FaultKind kind, std::uint64_t cycle) noexcept;
+  void step(Motor& motor, FaultKind kind, std::uint64_t cycle) noexcept;
 
-  Motors left_, right_;
-  std::array<Drive, kMaxJoints> drives_{};
+  std::vector<Motor> motors_;
+  std::array<std::size_t, kMaxJoints> motor_of_{};  ///< index into motors_, per joint
+  bool failing_ = false;                            ///< any component failed in the last cycle
   std::array<JointCommand, kMaxJoints> received_{};
 };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "drivers/driver.h"
 
@@ -42,7 +43,8 @@ void InertialError::step(Vector3& value) noexcept {
   }
 }
 
-SensorErrors::SensorErrors(const DriveTrain& robot, const MujocoPlantParameters& parameters, double period)
+SensorErrors::SensorErrors(const MachineModel& machine, std::vector<Rim> rims, const MujocoPlantParameters& parameters,
+                           double period)
     : level_(parameters.sensor_errors),
       seed_(parameters.seed),
       period_(period),
@@ -51,12 +53,12 @@ SensorErrors::SensorErrors(const DriveTrain& robot, const MujocoPlantParameters&
       gyro_(parameters.gyro_noise, parameters.gyro_bias, parameters.gyro_bias_walk, period, kGyroDevice),
       accelerometer_(parameters.accelerometer_noise, parameters.accelerometer_bias, parameters.accelerometer_bias_walk,
                      period, kAccelerometerDevice),
-      vibration_(robot, parameters, period),
+      vibration_(std::move(rims), parameters, period),
       late_imu_(parameters.imu_delay, parameters.imu_jitter, period, kImuLateStream),
       late_encoders_(0, parameters.encoder_jitter, period, kEncodersLateStream),
       delay_(checked_delay("sensor_delay", parameters.sensor_delay)) {
-  for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
-    if (robot.joints[joint].role == JointRole::kDriven) driven_.push_back(joint);
+  for (std::size_t joint = 0; joint < machine.joints.size(); ++joint) {
+    if (machine.joints[joint].role == JointRole::kDriven) driven_.push_back(joint);
   }
   reset();
 }

@@ -41,7 +41,7 @@
 #include "drivers/mujoco/sensors/measurement.h"
 #include "drivers/mujoco/sensors/normal_stream.h"
 #include "drivers/mujoco/sensors/vibration.h"
-#include "machine/wheeled/drive_train.h"
+#include "machine/machine_model.h"
 #include "simulation/faults/delay_line.h"
 
 namespace robot_control {
@@ -73,8 +73,10 @@ class InertialError {
 
 class SensorErrors {
  public:
-  /// Throws DriverError for a delay of more than kMaxDelay cycles. At kIdeal no step changes anything.
-  SensorErrors(const DriveTrain& robot, const MujocoPlantParameters& parameters, double period);
+  /// `rims` are those on which the machine rolls. Throws DriverError for a delay of more than kMaxDelay cycles. At
+  /// kIdeal no step changes anything.
+  SensorErrors(const MachineModel& machine, std::vector<Rim> rims, const MujocoPlantParameters& parameters,
+               double period);
 
   /// Restarts all errors; an ordinary thread calls it.
   void reset();

@@ -3,8 +3,6 @@
 #include <limits>
 #include <numbers>
 
-#include "drivers/mujoco/motors/wheel_joints.h"
-
 namespace robot_control {
 
 namespace {
@@ -47,18 +45,19 @@ bool pressed(FaultyOutput<bool>& button, FaultKind kind, std::uint64_t cycle) no
 
 }  // namespace
 
-SensorFaults::SensorFaults(const DriveTrain& robot, std::uint64_t seed)
-    : left_{wheel_joints(robot, Side::kLeft), FaultyOutput<Readings>(fault_seed(seed, FaultComponent::kLeftEncoder))},
-      right_{wheel_joints(robot, Side::kRight),
-             FaultyOutput<Readings>(fault_seed(seed, FaultComponent::kRightEncoder))},
-      gyro_(fault_seed(seed, FaultComponent::kGyro)),
+SensorFaults::SensorFaults(const MachineModel& machine, std::uint64_t seed)
+    : gyro_(fault_seed(seed, FaultComponent::kGyro)),
       accelerometer_(fault_seed(seed, FaultComponent::kAccelerometer)),
       battery_(fault_seed(seed, FaultComponent::kBattery)),
-      button_(fault_seed(seed, FaultComponent::kEStopButton)) {}
+      button_(fault_seed(seed, FaultComponent::kEStopButton)) {
+  for (std::size_t joint = 0; joint < machine.joints.size(); ++joint) {
+    if (machine.joints[joint].role != JointRole::kDriven) continue;
+    encoders_.push_back({joint, FaultyOutput<Reading>(fault_seed(seed, FaultComponent::kEncoder, joint))});
+  }
+}
 
 void SensorFaults::reset() noexcept {
-  left_.output.reset();
-  right_.output.reset();
+  for (Encoder& encoder : encoders_) encoder.output.reset();
   gyro_.reset();
   accelerometer_.reset();
   battery_.reset();
@@ -66,39 +65,31 @@ void SensorFaults::reset() noexcept {
   failing_ = false;
 }
 
-void SensorFaults::step_encoders(Encoders& encoders, FaultKind kind, std::uint64_t cycle,
-                                 Measurement& measurement) noexcept {
-  Readings readings{};
-  for (std::size_t i = 0; i < encoders.joints.size(); ++i) {
-    const JointSample& joint = measurement.joints[encoders.joints[i]];
-    readings[i] = {joint.position, joint.velocity};
-  }
-  const Readings& began = encoders.output.held();
-  const auto distort = [&began](FaultKind how, Readings& distorted, FaultRandom& random) {
-    for (std::size_t i = 0; i < distorted.size(); ++i) {
-      if (how == FaultKind::kWrong) {
-        distorted[i] = {2 * began[i].position - distorted[i].position, -distorted[i].velocity};
-      } else {
-        distorted[i] = {began[i].position + random.within(2 * std::numbers::pi), random.within(kGarbageSpeed)};
-      }
+void SensorFaults::step_encoder(Encoder& encoder, FaultKind kind, std::uint64_t cycle, JointSample& joint) noexcept {
+  const Reading& began = encoder.output.held();
+  const auto distort = [&began](FaultKind how, Reading& distorted, FaultRandom& random) {
+    if (how == FaultKind::kWrong) {
+      distorted = {2 * began.position - distorted.position, -distorted.velocity};
+    } else {
+      distorted = {began.position + random.within(2 * std::numbers::pi), random.within(kGarbageSpeed)};
     }
   };
+  Reading reading{joint.position, joint.velocity};
   const bool sampled =
-      encoders.output.step(kind, cycle, readings, distort) == Emission::kValue || kind == FaultKind::kSlow;
-  for (std::size_t i = 0; i < encoders.joints.size(); ++i) {
-    JointSample& joint = measurement.joints[encoders.joints[i]];
-    joint.position = sampled ? readings[i].position : kNaN;
-    joint.velocity = sampled ? readings[i].velocity : kNaN;
-    if (kind == FaultKind::kStuck) joint.velocity = 0;
-  }
+      encoder.output.step(kind, cycle, reading, distort) == Emission::kValue || kind == FaultKind::kSlow;
+  joint.position = sampled ? reading.position : kNaN;
+  joint.velocity = sampled ? reading.velocity : kNaN;
+  if (kind == FaultKind::kStuck) joint.velocity = 0;
 }
 
 std::uint64_t SensorFaults::step(const InjectedFaults& faults, std::uint64_t cycle, Measurement& measurement) noexcept {
-  const bool failing = faults != InjectedFaults{};
+  const bool failing = any_fault(faults);
   if (!failing && !failing_) return 0;
   failing_ = failing;
-  step_encoders(left_, fault_of(faults, FaultComponent::kLeftEncoder), cycle, measurement);
-  step_encoders(right_, fault_of(faults, FaultComponent::kRightEncoder), cycle, measurement);
+  for (Encoder& encoder : encoders_) {
+    step_encoder(encoder, fault_of(faults, FaultComponent::kEncoder, encoder.joint), cycle,
+                 measurement.joints[encoder.joint]);
+  }
   std::uint64_t lost = 0;
   ImuSample& imu = measurement.imu;
   if (!step_axes(gyro_, fault_of(faults, FaultComponent::kGyro), cycle, kGyroRange, imu.angular_velocity)) {

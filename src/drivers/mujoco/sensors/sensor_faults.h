@@ -2,7 +2,7 @@
 /// SensorFaults injects faults into encoders, gyro, accelerometer, battery gauge and e-stop button. Each component
 /// reports with each kind of fault:
 ///
-///                 encoders of a side (all its wheels)           gyro, accelerometer
+///                 encoder of a joint                            gyro, accelerometer
 ///   off           position and velocity NaN: the drive          not valid (SensorFrame::valid), NaN
 ///                 works, but has no angle to report
 ///   stuck         the angle stays, velocity 0                   the sample stays
@@ -34,7 +34,7 @@
 #include <vector>
 
 #include "drivers/mujoco/sensors/sensor_errors.h"
-#include "machine/wheeled/drive_train.h"
+#include "machine/machine_model.h"
 #include "signals/sensor_frame.h"
 #include "simulation/faults/faulty_output.h"
 
@@ -48,7 +48,8 @@ class SensorFaults {
   static constexpr double kGarbageCurrent = 100;        ///< A
   static constexpr double kWrongVoltage = 0.6;  ///< factor; the result is below the voltage of any charged battery
 
-  SensorFaults(const DriveTrain& robot, std::uint64_t seed);
+  /// The driven joints of the machine have encoders that fail.
+  SensorFaults(const MachineModel& machine, std::uint64_t seed);
 
   /// Removes all faults.
   void reset() noexcept;
@@ -62,17 +63,15 @@ class SensorFaults {
     double position = 0;
     double velocity = 0;
   };
-  using Readings = std::array<Reading, kMaxWheels>;
-
-  struct Encoders {
-    std::vector<std::size_t> joints;
-    FaultyOutput<Readings> output;
+  struct Encoder {
+    std::size_t joint = 0;
+    FaultyOutput<Reading> output;
   };
 
-  static void step_encoders(Encoders& encoders, FaultKind kind, std::uint64_t cycle, Measurement& measurement) noexcept;
+  static void step_encoder(Encoder& encoder, FaultKind kind, std::uint64_t cycle, JointSample& joint) noexcept;
 
   bool failing_ = false;  ///< any component failed in the last step
-  Encoders left_, right_;
+  std::vector<Encoder> encoders_;
   FaultyOutput<Vector3> gyro_, accelerometer_;
   FaultyOutput<BatterySample> battery_;
   FaultyOutput<bool> button_;

@@ -2,17 +2,17 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace robot_control {
 
-Vibration::Vibration(const DriveTrain& robot, const Errors& errors, double period)
-    : period_(period),
+Vibration::Vibration(std::vector<Rim> rims, const Errors& errors, double period)
+    : rims_(std::move(rims)),
+      period_(period),
       follow_(1 - std::exp(-2 * std::numbers::pi * kBandwidth * period)),
       gyro_(errors.roughness * errors.gyro_vibration / std::sqrt(period)),
       accelerometer_(errors.roughness * errors.accelerometer_vibration / std::sqrt(period)),
-      slow_(errors.roughness * errors.accelerometer_slow_error) {
-  for (const WheelModel& wheel : robot.wheels) rims_.push_back({wheel.joint, wheel.radius});
-}
+      slow_(errors.roughness * errors.accelerometer_slow_error) {}
 
 void Vibration::reset(std::uint64_t seed) {
   vibration_stream_.seed(seed, kVibrationStream);

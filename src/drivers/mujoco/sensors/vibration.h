@@ -17,9 +17,14 @@
 #include "drivers/mujoco/mujoco_plant_parameters.h"
 #include "drivers/mujoco/sensors/measurement.h"
 #include "drivers/mujoco/sensors/normal_stream.h"
-#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
+
+/// A wheel that rolls on the floor.
+struct Rim {
+  std::size_t joint = 0;
+  double radius = 0;  ///< m
+};
 
 class Vibration {
  public:
@@ -27,8 +32,8 @@ class Vibration {
       50;                                 ///< Hz; the recordings' IMUs sample at 100 Hz and show no higher frequencies
   static constexpr double kLength = 0.5;  ///< m; in the recordings, slow errors fall to half in 0.5 … 2 s
 
-  /// `period` is in s.
-  Vibration(const DriveTrain& robot, const Errors& errors, double period);
+  /// `period` is in s. Without a rim nothing vibrates.
+  Vibration(std::vector<Rim> rims, const Errors& errors, double period);
 
   void reset(std::uint64_t seed);
 
@@ -36,11 +41,6 @@ class Vibration {
   void step(Measurement& measurement) noexcept;
 
  private:
-  struct Rim {
-    std::size_t joint;
-    double radius;
-  };
-
   std::vector<Rim> rims_;
   double period_;
   double follow_;                ///< gain of the low pass per period
