@@ -75,7 +75,7 @@ def failing(log: Log, component: str, *kinds: str) -> Mask:
     """Cycles in which `component` fails in one of these ways; shape (cycles,). A "motor" is that of any joint."""
     digit = (log["injected"].astype(np.int64) >> (3 * number_of("FaultComponent", component))) & 7
     failures = [digit, *(log[name] for name in log if name.endswith(f"_injected_{component}"))]
-    return np.isin(failures, [number_of("FaultKind", kind) for kind in kinds]).any(axis=0)
+    return np.asarray(np.isin(failures, [number_of("FaultKind", kind) for kind in kinds]).any(axis=0))
 
 
 def judge(sequence: FaultSequence, log: Log, wheel_base: float, period: float, fastest: float) -> list[Violation]:

@@ -40,8 +40,8 @@ class SimulationServices {
   /// machine does not start, the reset fails, and the old run goes on with the driver's fault.
   ServiceAnswer reset();
 
-  /// From the next cycle on; words of machine/fault_names.h, "ok" ends a fault. Unknown ones are answered with the list. A fault of a
-  /// node is refused: the processes contain no simulated faults, and ClosedLoop injects them.
+  /// From the next cycle on; words of machine/fault_names.h, "ok" ends a fault. Unknown ones are answered with the
+  /// list. A fault of a node is refused: the processes contain no simulated faults, and ClosedLoop injects them.
   ServiceAnswer inject_fault(const std::string& component, const std::string& kind);
 
  private:

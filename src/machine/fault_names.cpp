@@ -75,8 +75,8 @@ std::string set_fault(InjectedFaults& faults, const MachineModel& machine, std::
   for (InjectedFault fault : components) {
     fault.kind = static_cast<FaultKind>(*found);
     if (set_fault(changed, fault)) continue;
-    return "at most " + std::to_string(kMaxInjectedFaults) + " components fail at one time; now: " +
-           names_of(faults, machine) + ". End one with the kind ok first.";
+    return "at most " + std::to_string(kMaxInjectedFaults) +
+           " components fail at one time; now: " + names_of(faults, machine) + ". End one with the kind ok first.";
   }
   faults = changed;
   return {};

@@ -1,7 +1,7 @@
 #pragma once
 /// These functions translate the words of the service inject_fault. A component's word is one of kFaultComponentNames.
 /// Before "encoder" and "motor" stands the name of a driven joint, or of a group of joints (MachineModel::groups):
-/// "left_encoder", "left_wheel_joint_motor". Of two equal names the group counts. All functions allocate.
+/// "left_encoder", "left_wheel_joint_motor". A group goes before a joint of the same name. All functions allocate.
 
 #include <string>
 #include <string_view>

@@ -1,7 +1,7 @@
 #pragma once
-/// A fault of a simulated machine consists of a component, its index and a kind, in the terms of PX4 (PX4 user guide,
-/// "System Failure Injection"). Encoders and motors are those of one joint, and their index is that of the joint. All
-/// other components exist once and have the index 0.
+/// A fault of a simulated machine consists of a component, its index and a kind. The terms are those of the PX4 user
+/// guide, "System Failure Injection". Encoders and motors are those of one joint, and their index is that of the joint.
+/// All other components exist once and have the index 0.
 
 #include <algorithm>
 #include <array>

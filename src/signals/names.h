@@ -213,8 +213,7 @@ constexpr std::string_view name_of(JointMode mode) noexcept {
 
 /// The words of the service inject_fault (machine/fault_names.h), in the order of FaultComponent and of FaultKind.
 inline constexpr std::array<std::string_view, kFaultComponents> kFaultComponentNames{
-    "encoder",       "motor",      "gyro",      "accelerometer", "battery",
-    "e_stop_button", "controller", "estimator", "monitor"};
+    "encoder", "motor", "gyro", "accelerometer", "battery", "e_stop_button", "controller", "estimator", "monitor"};
 inline constexpr std::array<std::string_view, kFaultKinds> kFaultKindNames{"ok",    "off",  "stuck",   "garbage",
                                                                            "wrong", "slow", "delayed", "intermittent"};
 

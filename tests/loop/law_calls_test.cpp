@@ -52,13 +52,13 @@ TEST_F(LawCalls, GiveTheOutputOfAHealthyNode) {
 
 TEST_F(LawCalls, GiveTheOutputBeforeAFaultChangesIt) {
   loop.machine.faults = {};
-  ASSERT_EQ(set_fault(loop.machine.faults, "controller", "wrong"), "");
+  set_fault(loop.machine.faults, {.component = FaultComponent::kController, .kind = FaultKind::kWrong});
   loop.step();
   EXPECT_NE(controller().law.output, loop.newest_command().head.checksum);
 }
 
 TEST_F(LawCalls, HaveARowWhereAFaultSuppressesTheFrame) {
-  ASSERT_EQ(set_fault(loop.machine.faults, "estimator", "off"), "");
+  set_fault(loop.machine.faults, {.component = FaultComponent::kEstimator, .kind = FaultKind::kOff});
   loop.driver.step();
   const EstimatorTrace* row = loop.step_estimator();
   ASSERT_NE(row, nullptr);

@@ -12,10 +12,15 @@
 namespace robot_control {
 namespace {
 
+void add_joint(MachineModel& machine, const std::string& name) {
+  machine.joints.emplace_back();
+  machine.joints.back().name = name;
+}
+
 /// A robot with two wheels on the left, one on the right, and a joint that is not driven.
 MachineModel three_wheels() {
   MachineModel machine;
-  for (const char* name : {"front", "rear", "lonely", "swivel"}) machine.joints.push_back({.name = name});
+  for (const char* name : {"front", "rear", "lonely", "swivel"}) add_joint(machine, name);
   machine.joints[3].role = JointRole::kPassive;
   machine.groups = {{"left", {0, 1}}, {"right", {2}}};
   return machine;
@@ -100,7 +105,7 @@ TEST_F(FaultNames, RefuseMoreThanTheListHolds) {
   MachineModel centipede;
   JointGroup all{"all", {}};
   for (std::size_t joint = 0; joint < kMaxInjectedFaults; ++joint) {
-    centipede.joints.push_back({.name = "leg" + std::to_string(joint)});
+    add_joint(centipede, "leg" + std::to_string(joint));
     all.joints.push_back(joint);
   }
   centipede.groups = {all};

@@ -112,9 +112,9 @@ void add_injected(TraceFields& to) {
   to.push_back(list<D, u8, kMaxInjectedFaults>("injected_component", "FaultComponent of each", kSize,
                                                ELEMENT(sensors.injected[i].component))
                    .shown_as(joint_fault<FaultComponent::kEncoder>("injected_encoder")));
-  to.push_back(list<D, u8, kMaxInjectedFaults>("injected_index", "joint of each", kSize,
-                                               ELEMENT(sensors.injected[i].index))
-                   .shown_as(joint_fault<FaultComponent::kMotor>("injected_motor")));
+  to.push_back(
+      list<D, u8, kMaxInjectedFaults>("injected_index", "joint of each", kSize, ELEMENT(sensors.injected[i].index))
+          .shown_as(joint_fault<FaultComponent::kMotor>("injected_motor")));
 }
 
 }  // namespace

@@ -34,9 +34,7 @@ double mean_square(const std::vector<double>& values) {
 
 class VibrationTest : public testing::Test {
  protected:
-  VibrationTest() {
-    errors_.accelerometer_slow_error = 0;
-  }
+  VibrationTest() { errors_.accelerometer_slow_error = 0; }
 
   Vibration made() const {
     Vibration vibration({{kLeftWheel, 0.1}, {kRightWheel, 0.1}}, errors_, kStep);

@@ -111,7 +111,8 @@ class RandomNodes {
         loop_.machine.faults = {};
         return;
       case 10:
-        set_fault(loop_.machine.faults, "monitor", chance(0.5) ? "intermittent" : "garbage");
+        set_fault(loop_.machine.faults, {.component = FaultComponent::kMonitor,
+                                         .kind = chance(0.5) ? FaultKind::kIntermittent : FaultKind::kGarbage});
         return;
       default:
         return request_stop_or_reset();

@@ -16,9 +16,9 @@
 ///
 ///   τ = k·(q* − q) − d·q̇      k = J/(4 h²)      d = J/(2 h)
 ///
-/// J is the joint's inertia (brake_limits.h) and h the simulation's step. In the stability condition of brake_law.h a = d h/J is 1/2 and
-/// b = k h²/J is 1/4, so 2a + b = 1.25 of 4. For J = 0.005 kg·m² and h = 1 ms a torque of 5 N·m turns the joint by
-/// 4 mrad.
+/// J is the joint's inertia (brake_limits.h) and h the simulation's step. In the stability condition of brake_law.h a =
+/// d h/J is 1/2 and b = k h²/J is 1/4, so 2a + b = 1.25 of 4. For J = 0.005 kg·m² and h = 1 ms a torque of 5 N·m turns
+/// the joint by 4 mrad.
 
 #include <array>
 #include <cstddef>
