@@ -32,6 +32,5 @@ function(robot_control_node name)
 endfunction()
 
 install(DIRECTORY config urdf launch DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
-file(GLOB tools RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS scripts/*.py scripts/console/*.py
-  scripts/view/*.py)
+file(GLOB tools RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS scripts/*.py scripts/*/*.py)
 catkin_install_python(PROGRAMS ${tools} DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})

@@ -201,11 +201,6 @@ NOT_YET_COMMON = {
     "src/drivers/mujoco/model/true_robot.h",
     "src/drivers/mujoco/motors/brake_limits.cpp",
     "src/drivers/mujoco/motors/brake_limits.h",
-    "src/drivers/mujoco/motors/motor_faults.h",
-    "src/drivers/mujoco/motors/wheel_joints.h",
-    "src/drivers/mujoco/sensors/sensor_errors.h",
-    "src/drivers/mujoco/sensors/sensor_faults.h",
-    "src/drivers/mujoco/sensors/vibration.h",
 }
 """Files that see the drive train and should see the machine alone. This list only becomes shorter."""
 
