@@ -99,11 +99,23 @@ TEST_F(SecondKind, ItsOwnConditionStopsItAndNamesTheJoint) {
   EXPECT_EQ(loop.row().monitor->permit.evidence[0].joint, 0u);
 }
 
-TEST_F(SecondKind, FaultsOfWheelsDoNotTouchIt) {
+TEST_F(SecondKind, ItsMotorFailsByTheNameOfItsJoint) {
+  drive(1.0, 1000);
+  const double lifted = angle();
+  loop.inject_fault("pole_joint_motor", "off");
+  wait(400);
+  EXPECT_LT(angle(), 0.5 * lifted) << "nothing holds the pole";
+}
+
+TEST_F(SecondKind, ItsEncoderFailsByTheNameOfItsJoint) {
   drive(1.0, 500);
-  loop.inject_fault("left_motor", "off");
+  loop.inject_fault("pole_joint_encoder", "off");
   wait(10);
-  EXPECT_EQ(loop.row().monitor->permit.causes, 0u) << causes();
+  EXPECT_NE(loop.row().monitor->permit.causes & kCauseNotFinite, 0u) << causes();
+}
+
+TEST_F(SecondKind, HasNoSidesThatFail) {
+  EXPECT_THROW(loop.inject_fault("left_motor", "off"), std::invalid_argument);
 }
 
 TEST_F(SecondKind, IsReplayedBitForBit) {
