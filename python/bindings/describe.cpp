@@ -3,20 +3,26 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <map>
+#include <string>
 #include <vector>
 
+#include "machine/bodies/posed_bodies.h"
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/description/mesh.h"
 #include "machine/description/wording.h"
+#include "machine/legs/leg_model.h"
+#include "machine/wheeled/drive_train.h"
 
 namespace py = pybind11;
 
 namespace robot_control {
 namespace {
 
-const char* name_of(JointRole role) {
-  constexpr std::array<const char*, 3> kNames{"wheel", "passive", "held"};
-  return kNames.at(static_cast<std::size_t>(role));
+/// `driven` is the word for a joint that the controller drives.
+const char* name_of(JointRole role, const char* driven) {
+  const std::array<const char*, 3> names{driven, "passive", "held"};
+  return names.at(static_cast<std::size_t>(role));
 }
 
 const char* name_of(JointType type) {
@@ -49,10 +55,10 @@ py::dict wheel_dict(const DriveTrain& robot, const WheelModel& wheel) {
                   "rotor_inertia"_a = wheel.rotor_inertia);
 }
 
-py::dict joint_dict(const DriveTrain& robot, const JointModel& joint) {
+py::dict joint_dict(const MachineModel& robot, const JointModel& joint, const char* driven) {
   using namespace py::literals;
   const BodyJoint& moved = robot.bodies->moved_by(joint.name)->joint;
-  return py::dict("name"_a = joint.name, "link"_a = joint.child_link, "role"_a = name_of(joint.role),
+  return py::dict("name"_a = joint.name, "link"_a = joint.child_link, "role"_a = name_of(joint.role, driven),
                   "type"_a = name_of(moved.type), "driven"_a = moved.driven, "effort_limit"_a = joint.effort_limit,
                   "velocity_limit"_a = joint.velocity_limit, "lower"_a = moved.lower, "upper"_a = moved.upper,
                   "mimicked"_a = moved.mimicked);
@@ -68,20 +74,13 @@ py::dict shape_dict(const RigidBody& body, const Shape& shape) {
                   "triangles"_a = hull_triangles(shape.points));
 }
 
-}  // namespace
-
-py::dict describe(const DriveTrain& robot) {
+/// Adds what every robot has; `bodies` are those to be shown.
+void add_machine(const MachineModel& robot, const RigidBodies& bodies, const char* kind, const char* driven,
+                 py::dict& to) {
   using namespace py::literals;
-  py::list wheels, casters, joints, shapes, notes;
-  for (const WheelModel& wheel : robot.wheels) {
-    py::dict entry = wheel_dict(robot, wheel);
-    entry["side"] = wheel.side == Side::kLeft ? "left" : "right";
-    entry["sign"] = wheel.sign;
-    wheels.append(entry);
-  }
-  for (const WheelModel& caster : robot.casters) casters.append(wheel_dict(robot, caster));
-  for (const JointModel& joint : robot.joints) joints.append(joint_dict(robot, joint));
-  for (const RigidBody& body : robot.bodies->bodies) {
+  py::list joints, shapes, notes;
+  for (const JointModel& joint : robot.joints) joints.append(joint_dict(robot, joint, driven));
+  for (const RigidBody& body : bodies.bodies) {
     for (const Shape& shape : body.shapes) shapes.append(shape_dict(body, shape));
   }
   for (const RobotNote& note : robot.notes) {
@@ -89,12 +88,71 @@ py::dict describe(const DriveTrain& robot) {
   }
   const py::dict imu("link"_a = robot.imu_link, "position"_a = robot.imu_in_base.position,
                      "orientation"_a = robot.imu_in_base.orientation);
-  return py::dict("name"_a = robot.name, "source"_a = robot.source, "base_link"_a = robot.base_link,
-                  "mass"_a = robot.mass, "yaw_inertia"_a = robot.yaw_inertia,
-                  "centre_of_gravity"_a = robot.centre_of_gravity_base, "wheel_base"_a = robot.wheel_base,
-                  "wheel_base_multiplier"_a = robot.wheel_base_multiplier,
-                  "effective_wheel_base"_a = robot.effective_wheel_base(), "imu"_a = imu, "wheels"_a = wheels,
-                  "casters"_a = casters, "joints"_a = joints, "shapes"_a = shapes, "notes"_a = notes);
+  to["kind"] = kind;
+  to["name"] = robot.name;
+  to["source"] = robot.source;
+  to["base_link"] = robot.base_link;
+  to["mass"] = robot.mass;
+  to["centre_of_gravity"] = robot.centre_of_gravity_base;
+  to["imu"] = imu;
+  to["joints"] = joints;
+  to["shapes"] = shapes;
+  to["notes"] = notes;
+}
+
+py::dict describe_wheels(const DriveTrain& robot) {
+  py::dict result;
+  add_machine(robot, *robot.bodies, "wheels", "wheel", result);
+  py::list wheels, casters;
+  for (const WheelModel& wheel : robot.wheels) {
+    py::dict entry = wheel_dict(robot, wheel);
+    entry["side"] = wheel.side == Side::kLeft ? "left" : "right";
+    entry["sign"] = wheel.sign;
+    wheels.append(entry);
+  }
+  for (const WheelModel& caster : robot.casters) casters.append(wheel_dict(robot, caster));
+  result["yaw_inertia"] = robot.yaw_inertia;
+  result["wheel_base"] = robot.wheel_base;
+  result["wheel_base_multiplier"] = robot.wheel_base_multiplier;
+  result["effective_wheel_base"] = robot.effective_wheel_base();
+  result["wheels"] = wheels;
+  result["casters"] = casters;
+  return result;
+}
+
+py::dict leg_dict(const LegModel& robot, std::size_t leg) {
+  using namespace py::literals;
+  const LegKinematics& kinematics = robot.legs[leg].kinematics;
+  const LegGeometry& geometry = kinematics.geometry();
+  std::vector<std::string> joints;
+  for (std::size_t i = 0; i < kLegJoints; ++i) joints.push_back(robot.joints[kLegJoints * leg + i].name);
+  const LegAngles& lying = robot.legs[leg].lying;
+  return py::dict(
+      "place"_a = robot_control::name_of(static_cast<LegPlace>(leg)), "joints"_a = joints,
+      "hip"_a = plain(geometry.hip), "knee"_a = plain(Eigen::Vector3d(geometry.hip + geometry.upper + geometry.lower)),
+      "foot"_a = plain(kinematics.position(LegAngles::Zero())), "foot_radius"_a = robot.legs[leg].foot_radius,
+      "length"_a = kinematics.length(), "bends"_a = geometry.bend > 0 ? "forward" : "backward",
+      "lying"_a = plain(lying), "lying_foot"_a = plain(kinematics.position(lying)));
+}
+
+py::dict describe_legs(const LegModel& robot) {
+  std::map<std::string, double> lying;
+  for (const JointModel& joint : robot.joints) lying[joint.name] = joint.rest_position;
+  py::dict result;
+  add_machine(robot, posed(*robot.bodies, lying), "legs", "leg", result);
+  py::list legs;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) legs.append(leg_dict(robot, leg));
+  result["belly"] = robot.belly;
+  result["rotor_inertia"] = robot.rotor_inertia;
+  result["legs"] = legs;
+  return result;
+}
+
+}  // namespace
+
+py::dict describe(const MachineModel& robot) {
+  const auto* const legged = dynamic_cast<const LegModel*>(&robot);
+  return legged != nullptr ? describe_legs(*legged) : describe_wheels(drive_train_of(robot));
 }
 
 }  // namespace robot_control

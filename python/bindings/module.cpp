@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "bindings/bag.h"
 #include "bindings/describe.h"
 #include "bindings/installed_file.h"
+#include "bindings/legs.h"
 #include "bindings/log_replay.h"
 #include "bindings/loop_replay.h"
 #include "bindings/offline_estimator.h"
@@ -29,6 +31,8 @@
 #include "drivers/mujoco/model/mujoco_model.h"
 #include "drivers/mujoco/mujoco_plant.h"
 #include "log/fields/trace_fields.h"
+#include "machine/legs/leg_model.h"
+#include "robots/robot_kind.h"
 #include "robots/wheeled/start_check.h"
 #include "signals/names.h"
 #include "signals/wheeled/slip_detection.h"
@@ -101,6 +105,10 @@ DriveTrain robot_of(const Parameters& parameters) {
   return read_drive_train(load_description(parameters.urdf), parameters.robot);
 }
 
+std::unique_ptr<MachineModel> machine_of(const Parameters& parameters) {
+  return read_robot(load_description(parameters.urdf), parameters);
+}
+
 /// Returns the machine as described: without the errors of the field, which add a load beside its centre of gravity.
 MujocoPlantParameters without_errors(MujocoPlantParameters parameters) {
   parameters.sensor_errors = ErrorLevel::kIdeal;
@@ -108,15 +116,16 @@ MujocoPlantParameters without_errors(MujocoPlantParameters parameters) {
 }
 
 /// Places the robot in the scene and waits for rest. Returns how far it leans in rad and the share of its weight on the
-/// drive wheels. `unloaded` names the drive wheels that carry nothing, and the bodies that touch the ground instead.
+/// drive wheels, or on the legs. `unloaded` names the drive wheels that carry nothing, and the bodies that touch the
+/// ground instead.
 py::dict stand(const Parameters& parameters) {
-  const DriveTrain robot = robot_of(parameters);
-  MujocoPlant plant(robot, without_errors(parameters.plant), parameters.loop.period());
+  const std::unique_ptr<MachineModel> robot = machine_of(parameters);
+  MujocoPlant plant(*robot, without_errors(parameters.plant), parameters.loop.period());
   plant.start();
   TruthFrame truth;
   plant.truth(truth);
   double load = 0;
-  for (std::size_t wheel = 0; wheel < robot.wheels.size(); ++wheel) load += truth.normal_force[wheel];
+  for (const double force : truth.normal_force) load += force;
   const Quaternion& q = truth.pose_world.orientation;
   const mjModel& model = *plant.model().model;
   py::dict result;
@@ -185,11 +194,14 @@ void bind_parameters(py::module_& module) {
         [function](const std::string& path, const Values& values) { return function(parameters_from(path, values)); },
         py::arg("path"), py::arg("values"));
   };
-  define("describe", [](const Parameters& parameters) { return describe(robot_of(parameters)); });
+  define("describe", [](const Parameters& parameters) { return describe(*machine_of(parameters)); });
   define("mjcf", [](const Parameters& parameters) {
-    return exported_mjcf(robot_of(parameters), without_errors(parameters.plant), parameters.loop.period());
+    return exported_mjcf(*machine_of(parameters), without_errors(parameters.plant), parameters.loop.period());
   });
   define("stand", stand);
+  define("legs", [](const Parameters& parameters) {
+    return read_legs(load_description(parameters.urdf), parameters.robot, parameters.legs);
+  });
   define("wheel_loops", [](const Parameters& parameters) { return wheel_loops(parameters, robot_of(parameters)); });
   define("derived_wheel_loops", derived_wheel_loops);
   define("controller_parameters", controller_parameters);
@@ -224,8 +236,7 @@ void bind_closed_loop(py::module_& module) {
       .def("stop_distance", &distance_to_stop, py::arg("speed"), py::arg("emergency"))
       .def_property_readonly("smooth_speed", &smooth_speed_of)
       .def_property_readonly("period", [](const ClosedLoop& loop) { return loop.parameters().loop.period(); })
-      .def_property_readonly("robot",
-                             [](const ClosedLoop& loop) { return describe(drive_train_of(loop.robot().machine())); })
+      .def_property_readonly("robot", [](const ClosedLoop& loop) { return describe(loop.robot().machine()); })
       .def_property_readonly("cycle", &ClosedLoop::cycle)
       .def_property_readonly("time", &ClosedLoop::time)
       .def_property_readonly("columns", &column_meanings);
@@ -242,6 +253,7 @@ PYBIND11_MODULE(_robot_control, module) {
   module.attr("signal_names") = signal_names();
   module.def("slip_detection", &slip_detection, py::arg("residual_level"));
   module.attr("project_folder") = ROBOT_CONTROL_PROJECT;  // folder of the checkout, where PyPI's packages are installed
+  bind_legs(module);
   bind_parameters(module);
   bind_spectral_radius(module);
   bind_offline_estimator(module);

@@ -16,6 +16,7 @@
 #include "drivers/mujoco/mujoco_plant_parameters.h"
 #include "estimation/estimator_parameters.h"
 #include "log/log_parameters.h"
+#include "machine/legs/leg_parameters.h"
 #include "machine/wheeled/drive_train_parameters.h"
 #include "parameters/parameter_tree.h"
 #include "parameters/problem_list.h"
@@ -49,6 +50,7 @@ inline std::vector<Word> words_of(ImuChoice) {
 struct Parameters {
   std::string urdf;  ///< path, relative to the folder of the file that names it
   DriveTrainParameters robot;
+  LegParameters legs;  ///< in the block `robot`, too
   LoopParameters loop;
   DriverChoice driver = DriverChoice::kMujoco;
   std::string drives;  ///< path, see drive_file.h; empty: the simulated motors are given their torques directly

@@ -41,6 +41,8 @@ struct JointModel {
   std::optional<JointRange> range = std::nullopt;  ///< end stops; none: it turns without end
   bool prismatic = false;                          ///< true: m, m/s, N; false: rad, rad/s, N·m
   double effort_rate = 0;                          ///< N·m/s or N/s; 0: unlimited
+  double rotor_inertia = 0;  ///< kg·m², of a rotor times its gear ratio squared, which the URDF leaves out
+  double rest_position = 0;  ///< rad or m, in which a simulator sets the machine down
 };
 
 /// Joints that have a name together, as the wheels of one side or the joints of one leg.

@@ -53,6 +53,8 @@ def draw_robot(robot: dict[str, Any], path: Path) -> None:
 
 
 def _subtitle(robot: dict[str, Any]) -> str:
+    if robot["kind"] == "legs":
+        return f"{robot['mass']:.4g} kg · 4 legs of {_length(min(leg['length'] for leg in robot['legs']))} · lying"
     count = len(robot["wheels"])
     base = f"wheel base {_length(robot['wheel_base'])}"
     if robot["wheel_base_multiplier"] != 1:
@@ -65,11 +67,21 @@ def _length(metres: float) -> str:
 
 
 def _parts(robot: dict[str, Any]) -> list[Part]:
-    colours = {wheel["joint"]: LEFT if wheel["side"] == "left" else RIGHT for wheel in robot["wheels"]}
-    colours |= {caster["joint"]: CASTER for caster in robot["casters"]}
+    colours = {wheel["joint"]: LEFT if wheel["side"] == "left" else RIGHT for wheel in _wheels(robot)}
+    colours |= {caster["joint"]: CASTER for caster in _casters(robot)}
+    for leg in robot.get("legs", ()):
+        colours |= dict.fromkeys(leg["joints"], LEFT if leg["place"].endswith("left") else RIGHT)
     colours |= {joint["name"]: OTHER for joint in robot["joints"] if joint["name"] not in colours}
     parts = [Part(triangles_in_base(shape), to_rgb(colours.get(shape["joint"], BODY))) for shape in robot["shapes"]]
     return [part for part in parts if part.triangles.size]
+
+
+def _wheels(robot: dict[str, Any]) -> list[dict[str, Any]]:
+    return list(robot.get("wheels", ()))
+
+
+def _casters(robot: dict[str, Any]) -> list[dict[str, Any]]:
+    return list(robot.get("casters", ()))
 
 
 def _extent(points: Array, margin: float) -> tuple[float, float, float, float]:
@@ -82,10 +94,10 @@ def _extent(points: Array, margin: float) -> tuple[float, float, float, float]:
 def _all_points(robot: dict[str, Any], parts: list[Part]) -> Array:
     wheels = [
         np.asarray(wheel["centre"]) + sign * wheel["radius"]
-        for wheel in (*robot["wheels"], *robot["casters"])
+        for wheel in (*_wheels(robot), *_casters(robot))
         for sign in (-1, 1)
     ]
-    return np.concatenate([part.triangles.reshape(-1, 3) for part in parts] + [np.array(wheels)])
+    return np.concatenate([part.triangles.reshape(-1, 3) for part in parts] + [np.array(wheels).reshape(-1, 3)])
 
 
 def _show(axes: Axes, parts: list[Part], view: View, extent: tuple[float, float, float, float]) -> None:
@@ -161,27 +173,44 @@ def _draw_side(axes: Axes, robot: dict[str, Any], parts: list[Part], ground: flo
     size = max(right - left, top - bottom)
     _show(axes, parts, FROM_THE_RIGHT, (left, right, bottom, top))
     axes.axhline(ground, color=FLOOR, linewidth=1.4, zorder=2)
-    for wheel in robot["wheels"]:
+    for wheel in _wheels(robot):
         if wheel["side"] == "right":
             axes.add_patch(_circle((wheel["centre"][0], wheel["centre"][2]), wheel["radius"], RIGHT))
-    for caster in robot["casters"]:
+    for caster in _casters(robot):
         axes.add_patch(_circle((caster["centre"][0], caster["centre"][2]), caster["radius"], CASTER))
     x, _, z = robot["centre_of_gravity"]
     _centre_of_gravity(axes, x, z, 0.022 * size)
     position = robot["imu"]["position"]
     _triad(axes, FROM_THE_RIGHT, np.asarray(position), robot["imu"]["orientation"], 0.07 * size)
-    rear = min((wheel for wheel in robot["wheels"] if wheel["side"] == "right"), key=lambda wheel: wheel["centre"][0])
-    at = left - 0.06 * size
-    _dimension(axes, (at, ground), (at, rear["centre"][2]), f"radius {_length(rear['radius'])}", rear["centre"][0])
+    _draw_height(axes, robot, ground, left - 0.06 * size)
     at = right + 0.09 * size
     _dimension(axes, (at, ground), (at, z), f"centre of gravity\n{_length(z - ground)} high", x, before=False)
-    axles = sorted({round(float(wheel["centre"][0]), 4) for wheel in robot["wheels"]})
+    axles = sorted({round(float(each[0]), 4) for each in _bearings(robot)})
     if axles[-1] - axles[0] > 0.02 * size:
         below = ground - 0.08 * size
-        _dimension_across(axes, (axles[0], below), (axles[-1], below), f"axles {_length(axles[-1] - axles[0])}")
+        _dimension_across(
+            axes,
+            (axles[0], below),
+            (axles[-1], below),
+            f"{'hips' if robot['kind'] == 'legs' else 'axles'} {_length(axles[-1] - axles[0])}",
+        )
     _arrow(axes, (right - 0.14 * size, top + 0.05 * size), (right + 0.02 * size, top + 0.05 * size), "forward")
     axes.set_title("From its right")
     _frame(axes, left - 0.36 * size, right + 0.44 * size, min(bottom, ground) - 0.16 * size, top + 0.12 * size)
+
+
+def _draw_height(axes: Axes, robot: dict[str, Any], ground: float, at: float) -> None:
+    """Dimensions the radius of the rear right wheel, or the height of the base's origin."""
+    if robot["kind"] == "legs":
+        _dimension(axes, (at, ground), (at, 0.0), f"base\n{_length(-ground)} high", 0.0)
+        return
+    rear = min((wheel for wheel in _wheels(robot) if wheel["side"] == "right"), key=lambda wheel: wheel["centre"][0])
+    _dimension(axes, (at, ground), (at, rear["centre"][2]), f"radius {_length(rear['radius'])}", rear["centre"][0])
+
+
+def _bearings(robot: dict[str, Any]) -> list[list[float]]:
+    """Centres of the wheels, or of the hips."""
+    return [wheel["centre"] for wheel in _wheels(robot)] or [leg["hip"] for leg in robot["legs"]]
 
 
 def _draw_above(axes: Axes, robot: dict[str, Any], parts: list[Part]) -> None:
@@ -189,23 +218,28 @@ def _draw_above(axes: Axes, robot: dict[str, Any], parts: list[Part]) -> None:
     left, right, bottom, top = _extent(FROM_ABOVE.project(points), 0.02)
     size = max(right - left, top - bottom)
     _show(axes, parts, FROM_ABOVE, (left, right, bottom, top))
-    for wheel in robot["wheels"]:
+    for wheel in _wheels(robot):
         colour = LEFT if wheel["side"] == "left" else RIGHT
         (x, y, _), radius, half = wheel["centre"], wheel["radius"], wheel["width"] / 2
         axes.add_patch(
             plt.Rectangle((x - radius, y - half), 2 * radius, 2 * half, fill=False, ec=colour, linewidth=1.8, zorder=5)
         )
-    for caster in robot["casters"]:
+    for caster in _casters(robot):
         axes.add_patch(_circle(caster["centre"][:2], caster["radius"], CASTER))
     x, y, _ = robot["centre_of_gravity"]
     _centre_of_gravity(axes, x, y, 0.022 * size)
     _triad(axes, FROM_ABOVE, np.asarray(robot["imu"]["position"]), robot["imu"]["orientation"], 0.07 * size)
-    lefts = [wheel["centre"] for wheel in robot["wheels"] if wheel["side"] == "left"]
-    rights = [wheel["centre"] for wheel in robot["wheels"] if wheel["side"] == "right"]
+    ys = [each[1] for each in _bearings(robot)]
+    lefts, rights = [y for y in ys if y > np.mean(ys)], [y for y in ys if y <= np.mean(ys)]
+    named = (
+        f"hips\n{_length(max(ys) - min(ys))}"
+        if robot["kind"] == "legs"
+        else f"wheel base\n{_length(robot['wheel_base'])}"
+    )
     at = left - 0.06 * size
     _dimension(
-        axes, (at, float(np.mean([c[1] for c in rights]))), (at, float(np.mean([c[1] for c in lefts]))),
-        f"wheel base\n{_length(robot['wheel_base'])}", min(c[0] for c in (*lefts, *rights)),
+        axes, (at, float(np.mean(rights))), (at, float(np.mean(lefts))), named,
+        min(each[0] for each in _bearings(robot)),
     )  # fmt: skip
     _arrow(axes, (right + 0.05 * size, 0), (right + 0.2 * size, 0), "forward")
     axes.set_title("From above")
@@ -265,10 +299,12 @@ def _dimension_across(axes: Axes, left: tuple[float, float], right: tuple[float,
 
 
 def _legend(figure: Figure, robot: dict[str, Any]) -> None:
-    entries: list[Any] = [Patch(color=LEFT, label="left wheels"), Patch(color=RIGHT, label="right wheels")]
-    if robot["casters"]:
+    what = robot["kind"]
+    entries: list[Any] = [Patch(color=LEFT, label=f"left {what}"), Patch(color=RIGHT, label=f"right {what}")]
+    if _casters(robot):
         entries.append(Patch(color=CASTER, label="caster wheels"))
-    rolling = {"", *(wheel["joint"] for wheel in (*robot["wheels"], *robot["casters"]))}
+    rolling = {"", *(wheel["joint"] for wheel in (*_wheels(robot), *_casters(robot)))}
+    rolling.update(joint for leg in robot.get("legs", ()) for joint in leg["joints"])
     if any(shape["joint"] not in rolling for shape in robot["shapes"]):
         entries.append(Patch(color=OTHER, label="other moving parts"))
     entries.append(Patch(color=BODY, label="base, as it collides"))

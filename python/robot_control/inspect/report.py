@@ -21,8 +21,8 @@ HEADINGS = {
 
 def report(robot: dict[str, Any]) -> str:
     """The text names what was understood, assumed, repaired, ignored and overridden, and what looks suspicious."""
-    lines = [f"{robot['name'] or 'robot'}: {robot['source']}", "", *_body(robot), "", *_wheels(robot)]
-    lines += ["", *_base(robot)]
+    lines = [f"{robot['name'] or 'robot'}: {robot['source']}", "", *_body(robot), ""]
+    lines += _legs(robot) if robot["kind"] == "legs" else [*_wheels(robot), "", *_base(robot)]
     for section in (_casters(robot), _joints(robot), *(_notes(robot, kind) for kind in HEADINGS)):
         if section:
             lines += ["", *section]
@@ -35,17 +35,23 @@ def _body(robot: dict[str, Any]) -> list[str]:
     place = f"{imu['link']} at {_vector(imu['position'])}" if imu["link"] else f"none: taken as in {robot['base_link']}"
     return [
         f"base               {robot['base_link']}, floor at z {ground_height(robot):.4g} m",
-        f"mass               {robot['mass']:.5g} kg, yaw inertia {robot['yaw_inertia']:.4g} kg·m²",
+        f"mass               {robot['mass']:.5g} kg" + _yaw_inertia(robot),
         f"centre of gravity  {_vector((x, y, z))}, {z - ground_height(robot):.4g} m above the floor",
         f"IMU                {place}",
         *_standing(robot),
     ]
 
 
+def _yaw_inertia(robot: dict[str, Any]) -> str:
+    return f", yaw inertia {robot['yaw_inertia']:.4g} kg·m²" if "yaw_inertia" in robot else ""
+
+
 def _standing(robot: dict[str, Any]) -> list[str]:
     if "standing" not in robot:
         return []
     lean, carried = robot["standing"]["lean"], robot["standing"]["carried"]
+    if robot["kind"] == "legs":
+        return [f"lies               leaning {math.degrees(lean):.2f}°, {100 * carried:.0f} % on the legs"]
     lines = [f"stands             leaning {math.degrees(lean):.2f}°, {100 * carried:.0f} % on the drive wheels"]
     if robot["standing"].get("unloaded"):
         lines.append(f"NO LOAD            {robot['standing']['unloaded']}")
@@ -75,6 +81,29 @@ def _wheels(robot: dict[str, Any]) -> list[str]:
     return _table(rows, left=2)
 
 
+def _legs(robot: dict[str, Any]) -> list[str]:
+    limits = {joint["name"]: joint for joint in robot["joints"]}
+    head = ("leg", "joints", "hip x", "y", "z [m]", "length", "foot", "knee", "N·m", "rad/s", "lies at [rad]")
+    rows: list[tuple[str, ...]] = [head]
+    for leg in robot["legs"]:
+        joints = [limits[name] for name in leg["joints"]]
+        rows.append(
+            (
+                leg["place"].replace("_", " "),
+                ", ".join(leg["joints"]),
+                *(f"{value:.4f}" for value in leg["hip"]),
+                f"{leg['length']:.4f}",
+                f"{leg['foot_radius']:.4f}" if leg["foot_radius"] else "no ball",
+                leg["bends"],
+                " ".join(f"{joint['effort_limit']:.4g}" for joint in joints),
+                " ".join(f"{joint['velocity_limit']:.4g}" for joint in joints),
+                " ".join(f"{angle:.2f}" for angle in leg["lying"]),
+            )
+        )
+    rotor = f"rotors             {robot['rotor_inertia']:.3g} kg·m² at each joint (robot.leg_rotor_inertia)"
+    return [*_table(rows, left=2), "", rotor]
+
+
 def _base(robot: dict[str, Any]) -> list[str]:
     line = f"wheel base         {robot['wheel_base']:.5g} m"
     if robot["wheel_base_multiplier"] != 1:
@@ -91,13 +120,13 @@ def _casters(robot: dict[str, Any]) -> list[str]:
             f"{caster['radius']:.4f}",
             f"{caster['width']:.4f}",
         )
-        for caster in robot["casters"]
+        for caster in robot.get("casters", ())
     ]
-    return _table(rows, left=1) if robot["casters"] else []
+    return _table(rows, left=1) if robot.get("casters") else []
 
 
 def _joints(robot: dict[str, Any]) -> list[str]:
-    others = [joint for joint in robot["joints"] if joint["role"] != "wheel"]
+    others = [joint for joint in robot["joints"] if joint["role"] not in ("wheel", "leg")]
     rows: list[tuple[str, ...]] = [("other joint", "role", "type", "moves", "range")]
     rows += [(joint["name"], joint["role"], joint["type"], joint["link"], _range(joint)) for joint in others]
     return _table(rows, left=5) if others else []

@@ -15,7 +15,9 @@ RINGS = 24  # of a sphere, pole to pole
 
 
 def ground_height(robot: dict[str, Any]) -> float:
-    """z of the floor that the drive wheels touch, m."""
+    """z of the floor that the drive wheels touch, or on which a robot with legs lies, m."""
+    if robot["kind"] == "legs":
+        return float(robot["belly"])
     return min(float(wheel["centre"][2]) - float(wheel["radius"]) for wheel in robot["wheels"])
 
 

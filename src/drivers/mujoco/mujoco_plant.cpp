@@ -42,6 +42,7 @@ std::vector<Rim> rims_of(const DriveTrain& robot) {
 MujocoPlant::MujocoPlant(const MachineModel& robot, const MujocoPlantParameters& parameters, double period)
     : model_(compile_model(robot, parameters, period)),
       wheels_(model_, parameters),
+      bodies_(model_),
       parameters_(parameters),
       specific_force_(model_),
       sensor_errors_(model_.robot, rims_of(model_.robot), parameters, period),
@@ -65,6 +66,7 @@ void MujocoPlant::start() {
   }
   data_ = set_down(model_);
   wheels_.reset();
+  bodies_.reset();
   for (JointLaw& law : laws_) law.reset();
   state_ = DriverState::kStarting;
   faults_ = 0;
@@ -167,7 +169,7 @@ void MujocoPlant::read(SensorFrame& sensors) noexcept {
   sensors.joint_count = brakes_.size();
   sensors.joints = handed_out_.joints;
   sensors.imu = handed_out_.imu;
-  sensors.contact_count = parameters_.contact_sensors ? std::min(wheels_.count(), kMaxContacts) : 0;
+  sensors.contact_count = parameters_.contact_sensors ? contacts() : 0;
   sensors.contacts = handed_out_.contacts;
   if (!good) {
     set_joints_valid(sensors, 0);
@@ -177,6 +179,15 @@ void MujocoPlant::read(SensorFrame& sensors) noexcept {
   sensors.battery_voltage = handed_out_.battery.voltage;
   sensors.battery_current = handed_out_.battery.current;
   sensors.injected = injected_;
+}
+
+/// Returns the number of bodies whose contact forces can be measured.
+std::size_t MujocoPlant::contacts() const noexcept {
+  return std::min(model_.drive_wheels > 0 ? wheels_.count() : bodies_.count(), kMaxContacts);
+}
+
+const Eigen::Vector3d& MujocoPlant::contact_force(std::size_t contact) const noexcept {
+  return model_.drive_wheels > 0 ? wheels_.force(contact) : bodies_.force(contact);
 }
 
 std::uint64_t MujocoPlant::equipped() const noexcept {
@@ -235,7 +246,8 @@ void MujocoPlant::inject(const InjectedFaults& faults) noexcept {
 void MujocoPlant::substep(void* plant) {
   auto& self = *static_cast<MujocoPlant*>(plant);
   mj_step2(self.model_.model.get(), self.data_.get());
-  self.wheels_.weigh(*self.data_);  // before mj_step1, which finds the new contacts without their forces
+  self.wheels_.weigh(*self.data_);
+  self.bodies_.weigh(*self.data_);  // before mj_step1, which finds the new contacts without their forces
   mj_step1(self.model_.model.get(), self.data_.get());
 }
 
@@ -267,8 +279,9 @@ bool MujocoPlant::advance(std::span<const JointCommand> commands) noexcept {
   specific_force_sum_ += specific_force_.step(*data_);
   for (std::size_t wheel = 0; wheel < model_.drive_wheels; ++wheel)
     normal_force_sum_[wheel] += wheels_.normal_force(wheel);
+  for (std::size_t i = 0; i < bodies_.count(); ++i) normal_force_sum_[i] += bodies_.normal_force(i);
   if (parameters_.contact_sensors) {
-    for (std::size_t i = 0; i < std::min(wheels_.count(), kMaxContacts); ++i) force_sum_[i] += wheels_.force(i);
+    for (std::size_t i = 0; i < contacts(); ++i) force_sum_[i] += contact_force(i);
   }
   return true;
 }
@@ -296,7 +309,7 @@ void MujocoPlant::collect() noexcept {
   std::copy_n(data_->sensordata + model_.gyro, 3, exact_.imu.angular_velocity.begin());
   Eigen::Map<Eigen::Vector3d>(exact_.imu.linear_acceleration.data()) = specific_force_sum_ / model_.substeps;
   if (parameters_.contact_sensors) {
-    for (std::size_t i = 0; i < std::min(wheels_.count(), kMaxContacts); ++i) {
+    for (std::size_t i = 0; i < contacts(); ++i) {
       Eigen::Map<Eigen::Vector3d>(exact_.contacts[i].force.data()) = force_sum_[i] / model_.substeps;
       exact_.contacts[i].valid = 1;
     }
@@ -335,6 +348,10 @@ void MujocoPlant::collect_truth() noexcept {
   for (std::size_t wheel = 0; wheel < model_.drive_wheels; ++wheel) {
     truth_.normal_force[wheel] = normal_force_sum_[wheel] / model_.substeps;
     truth_.slip[wheel] = wheels_.slip(wheel);
+  }
+  for (std::size_t i = 0; i < bodies_.count(); ++i) {
+    truth_.normal_force[i] = normal_force_sum_[i] / model_.substeps;
+    truth_.slip[i] = bodies_.slip(i);
   }
 }
 

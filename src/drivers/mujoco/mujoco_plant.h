@@ -11,12 +11,12 @@
 /// over [t_k, t_k+1). Joints that are not driven take no commands (JointRole): passive ones move freely, held ones stay
 /// by friction.
 ///
-/// `start` places the robot on the site `start` of the scene and lets it settle with the brakes on, for at most 20 s.
-/// Its place at rest is the origin of truth, and its time is zero. It is at rest when for 0.1 s its base has been
-/// slower than 1 µm/s and 1 µrad/s and its joints than 1 mrad/s. After 20 s a base slower than 30 µm/s and 30 µrad/s
-/// also counts, because an unloaded swivel moves for long without effect. A robot that tilts by more than 30° falls
-/// over and is refused; the driver then stays in state kStarting. The same model and commands give the same bits, also
-/// after another `start`.
+/// `start` places the robot on the site `start` of the scene, with its joints at JointModel::rest_position. It lets it
+/// settle with the brakes on, for at most 20 s. Its place at rest is the origin of truth, and its time is zero. It is
+/// at rest when for 0.1 s its base has been slower than 1 µm/s and 1 µrad/s and its joints than 1 mrad/s. After 20 s a
+/// base slower than 30 µm/s and 30 µrad/s also counts, because an unloaded swivel moves for long without effect. A
+/// robot that tilts by more than 30° falls over and is refused; the driver then stays in state kStarting. The same
+/// model and commands give the same bits, also after another `start`.
 ///
 /// A push acts on the base's origin from push_start for push_duration after time zero.
 ///
@@ -33,8 +33,8 @@
 /// the state itself. `start` removes all injected faults.
 ///
 /// The sensors are encoders at all joints, gyro and accelerometer at the IMU, and an e-stop button, which only an
-/// injected fault presses. The parameters can add the ground's forces on wheels and casters (wheel_contacts.h) and a
-/// battery (battery.h) that feeds all wheels.
+/// injected fault presses. The parameters can add a battery (battery.h) that feeds all motors, and the ground's forces
+/// (wheel_contacts.h; body_contacts.h for a machine without wheels).
 
 #include <array>
 #include <string>
@@ -42,6 +42,7 @@
 
 #include "drivers/driver.h"
 #include "drivers/joint_law.h"
+#include "drivers/mujoco/contact/body_contacts.h"
 #include "drivers/mujoco/contact/wheel_contacts.h"
 #include "drivers/mujoco/model/mujoco_model.h"
 #include "drivers/mujoco/motors/motor.h"
@@ -89,12 +90,15 @@ class MujocoPlant final : public Simulator {
   void collect_truth() noexcept;
   void measure() noexcept;
   bool finite() const noexcept;
+  std::size_t contacts() const noexcept;
+  const Eigen::Vector3d& contact_force(std::size_t contact) const noexcept;
   std::uint64_t equipped() const noexcept;
   void fail(std::uint64_t fault, const char* message) noexcept;
 
   MujocoModel model_;
   MujocoData data_;
   WheelContacts wheels_;
+  BodyContacts bodies_;  ///< of a machine without wheels
   MujocoPlantParameters parameters_;
   std::vector<JointLaw> laws_;  ///< per driven joint (MujocoModel::driven)
   std::vector<Motor> motors_;   ///< per driven joint
@@ -116,7 +120,7 @@ class MujocoPlant final : public Simulator {
 
   // These are sums over the steps of a period.
   std::array<double, kMaxJoints> effort_sum_{};
-  std::array<double, kMaxWheels> normal_force_sum_{};
+  std::array<double, kMaxContacts> normal_force_sum_{};  ///< of drive wheels, or of contact bodies
   Eigen::Vector3d specific_force_sum_ = Eigen::Vector3d::Zero();
   std::array<Eigen::Vector3d, kMaxContacts> force_sum_{};
   double power_sum_ = 0;

@@ -201,6 +201,11 @@ LegModel read_legs(const RobotDescription& description, const MachineParameters&
     model.legs[i].kinematics = LegKinematics(geometry);
     model.legs[i].foot_radius = foot.radius;
     model.legs[i].lying = lying_posture(*bodies, model.legs[i].kinematics, places[i], model.belly);
+    for (std::size_t j = 0; j < kLegJoints; ++j) {
+      JointModel& joint = model.joints[kLegJoints * i + j];
+      joint.rotor_inertia = legs.leg_rotor_inertia;
+      joint.rest_position = model.legs[i].lying[static_cast<Eigen::Index>(j)];
+    }
     model.contacts.push_back(last.name);
   }
   read_masses(*bodies, parameters, model.leg_length(), model);

@@ -112,7 +112,7 @@ class Writer {
       friction =
           std::max(friction, joint.effort_limit > 0 ? joint.effort_limit : model_.mass * kGravity * kUnknownReach);
     }
-    const double rotor = driven ? gear * gear * parameters_.rotor_inertia : swivel_inertia(body);
+    const double rotor = driven ? gear * gear * parameters_.rotor_inertia + model.rotor_inertia : swivel_inertia(body);
     const double armature = rolling != nullptr ? rolling->rotor_inertia : rotor;
     bodies_ +=
         "<joint" + attribute("name", escaped(joint.name)) + attribute("type", slides ? "slide" : "hinge") +
@@ -173,7 +173,7 @@ class Writer {
         mesh = "robot_control/mesh/" + std::to_string(meshes_++);
         assets_ += mjcf_mesh(mesh, shape.points);
       }
-      bodies_ += mjcf_shape(shape, mesh, model_.wheels.empty() ? Grip::kOfGround : Grip::kNone);
+      bodies_ += mjcf_shape(shape, mesh, model_.wheels.empty() ? Grip::kOfGround : Grip::kNone, parameters_);
     }
   }
 

@@ -4,6 +4,8 @@
 #include <locale>
 #include <sstream>
 
+#include "drivers/mujoco/model/mjcf.h"
+
 namespace robot_control {
 namespace {
 
@@ -13,12 +15,16 @@ const char* const kContact =
     R"( contype="2" conaffinity="1" solmix="1e6" solref=".004 1" solimp=".99 .999 .001 .5 2" margin="0" gap="0" mass="0")";
 
 const char* const kSliding = R"( condim="1" priority="1" friction="0 0 0")";
-const char* const kStanding = R"( condim="3" priority="0" friction="0 0 0")";
+
+/// Returns the friction of a shape that stands on the ground: that of the ground, which is the larger of both.
+std::string standing(const MujocoPlantParameters& parameters) {
+  if (!parameters.ground_friction) return R"( condim="3" priority="0" friction="0 0 0")";
+  return R"( condim="3" priority="1" friction=")" + mjcf_number(*parameters.ground_friction) + R"( 0 0")";
+}
 
 std::string rolling(const WheelModel& wheel, const MujocoPlantParameters& parameters) {
   if (wheel.omni || parameters.tyre == TyreModel::kBrush) return kSliding;
-  if (!parameters.ground_friction) return R"( condim="3" priority="0" friction="0 0 0")";
-  return R"( condim="3" priority="1" friction=")" + mjcf_number(*parameters.ground_friction) + R"( 0 0")";
+  return standing(parameters);
 }
 
 // Returns the corners of a mesh that is at least kThinnest thick along each principal direction.
@@ -66,8 +72,10 @@ std::string mjcf_pose(const Eigen::Isometry3d& frame) {
          mjcf_numbers(q.vec()) + '"';
 }
 
-std::string mjcf_shape(const Shape& shape, const std::string& mesh, Grip grip) {
-  std::string geom = "<geom" + mjcf_pose(shape.in_body) + kContact + (grip == Grip::kNone ? kSliding : kStanding);
+std::string mjcf_shape(const Shape& shape, const std::string& mesh, Grip grip,
+                       const MujocoPlantParameters& parameters) {
+  std::string geom =
+      "<geom" + mjcf_pose(shape.in_body) + kContact + (grip == Grip::kNone ? kSliding : standing(parameters));
   switch (shape.type) {
     case ShapeType::kSphere:
       geom += " type=\"sphere\" size=\"" + mjcf_number(shape.radius);

@@ -9,6 +9,8 @@
 
 namespace robot_control {
 
+struct WheelModel;
+
 /// Return numbers with 17 digits and the decimal point ".", which are read back without a change.
 std::string mjcf_number(double value);
 std::string mjcf_numbers(const Eigen::Vector3d& values);
@@ -19,7 +21,8 @@ std::string mjcf_pose(const Eigen::Isometry3d& frame);
 /// Returns `<geom …/>` of a shape that is no wheel; `mesh` names its asset. It slides without friction, or has the
 /// ground's.
 enum class Grip { kNone, kOfGround };
-std::string mjcf_shape(const Shape& shape, const std::string& mesh, Grip grip);
+std::string mjcf_shape(const Shape& shape, const std::string& mesh, Grip grip,
+                       const MujocoPlantParameters& parameters);
 
 /// Returns `<geom …/>` of a drive wheel or caster; the z axis of `frame` is the axle.
 std::string mjcf_rolling_shape(const std::string& name, const Eigen::Isometry3d& frame, const WheelModel& wheel,

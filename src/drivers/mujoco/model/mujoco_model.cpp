@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 
 #include "drivers/driver.h"
 #include "drivers/mujoco/model/mjcf.h"
@@ -17,6 +18,7 @@
 #include "drivers/mujoco/model/true_robot.h"
 #include "drivers/mujoco/mujoco_errors.h"
 #include "files/message_text.h"
+#include "machine/bodies/posed_bodies.h"
 #include "machine/description/wording.h"
 #include "machine/wheeled/ground_points.h"
 
@@ -124,6 +126,16 @@ void find_addresses(MujocoModel& result) {
   result.imu = find(model, mjOBJ_SITE, kMjcfImu);
 }
 
+/// Returns the robot with its bodies where they are while every joint is at its rest position.
+DriveTrain resting(const DriveTrain& robot) {
+  if (std::ranges::all_of(robot.joints, [](const JointModel& joint) { return joint.rest_position == 0; })) return robot;
+  std::map<std::string, double> positions;
+  for (const JointModel& joint : robot.joints) positions[joint.name] = joint.rest_position;
+  DriveTrain result = robot;
+  result.bodies = std::make_shared<const RigidBodies>(posed(*robot.bodies, positions));
+  return result;
+}
+
 /// Returns ", such as flat, kerb in its folder"; "" if there is no other scene.
 std::string scenes_beside(const std::filesystem::path& scene) {
   std::vector<std::string> names;
@@ -155,7 +167,7 @@ MujocoModel compile_model(const MachineModel& robot, const MujocoPlantParameters
   MujocoModel result;
   result.robot = true_robot(robot, parameters);
   const MjcfPlace place =
-      place_of(*load(scene.string(), nullptr, scene.string()), scene, standing_height(result.robot));
+      place_of(*load(scene.string(), nullptr, scene.string()), scene, standing_height(resting(result.robot)));
 
   const std::string name = scene.stem().string() + "+robot.xml";
   VirtualFiles files;
@@ -173,7 +185,10 @@ MujocoModel compile_model(const MachineModel& robot, const MujocoPlantParameters
 }
 
 MujocoData set_down(const MujocoModel& robot) {
-  return MujocoData(mj_makeData(robot.model.get()));
+  MujocoData data(mj_makeData(robot.model.get()));
+  for (std::size_t joint = 0; joint < robot.robot.joints.size(); ++joint)
+    data->qpos[robot.joint_position[joint]] = robot.robot.joints[joint].rest_position;
+  return data;
 }
 
 std::string exported_mjcf(const MachineModel& robot, const MujocoPlantParameters& parameters, double period) {

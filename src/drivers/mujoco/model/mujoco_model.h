@@ -4,7 +4,8 @@
 ///
 /// The plant sets solver, cone, integrator and time step (Newton, elliptic, impratio 100, Euler). Gravity and the rest
 /// of `<option>` are those of the scene. `slope` rotates gravity about the y axis of the site `start`, so that the
-/// world rises along its x. The robot's lowest collision point is on the site's x-y plane.
+/// world rises along its x. The robot's lowest collision point, with the joints at
+/// JointModel::rest_position, is on the site's x-y plane.
 ///
 /// A benchmark runs a minimal loop as follows; with native friction, mj_step alone is enough:
 ///

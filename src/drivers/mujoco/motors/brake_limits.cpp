@@ -17,7 +17,8 @@ constexpr double kHoldSpeed = 0.03;  // rad/s or m/s
 double inertia_of(const DriveTrain& robot, std::size_t index, const MujocoPlantParameters& parameters) {
   if (index < robot.wheels.size()) return robot.wheels[index].inertia;
   const RigidBody& body = *robot.bodies->moved_by(robot.joints[index].name);
-  const double rotor = parameters.gear_ratio * parameters.gear_ratio * parameters.rotor_inertia;
+  const double rotor =
+      parameters.gear_ratio * parameters.gear_ratio * parameters.rotor_inertia + robot.joints[index].rotor_inertia;
   if (robot.joints[index].prismatic) return body.mass + rotor;
   const Eigen::Vector3d& axis = body.joint.axis;
   const double lever = body.centre_of_gravity.cross(axis).squaredNorm();

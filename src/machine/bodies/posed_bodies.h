@@ -1,0 +1,15 @@
+#pragma once
+/// Moves the joints of lumped bodies.
+
+#include <map>
+#include <string>
+
+#include "machine/bodies/rigid_bodies.h"
+
+namespace robot_control {
+
+/// Returns the bodies with `in_root` for joints at these positions (rad or m, by name) instead of at the zero pose.
+/// Joints that are not named stay at zero. Notes and names stay.
+RigidBodies posed(const RigidBodies& bodies, const std::map<std::string, double>& positions);
+
+}  // namespace robot_control
