@@ -1,10 +1,10 @@
 #include "bindings/legs.h"
 
-#include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "machine/legs/leg_model.h"
@@ -14,43 +14,42 @@ namespace py = pybind11;
 namespace robot_control {
 namespace {
 
-using AllAngles = Eigen::Matrix<double, kLegsJoints, 1>;
+using Angles = std::array<double, kLegsJoints>;
+using Feet = std::array<std::array<double, 3>, kLegs>;
+using Jacobians = std::array<std::array<std::array<double, 3>, 3>, kLegs>;
 
-/// One row per leg.
-using Feet = Eigen::Matrix<double, kLegs, 3, Eigen::RowMajor>;
-
-LegAngles of_leg(const AllAngles& angles, std::size_t leg) {
-  return angles.segment<3>(static_cast<Eigen::Index>(kLegJoints * leg));
+std::array<double, 3> plain_row(const Eigen::Vector3d& vector) {
+  return {vector.x(), vector.y(), vector.z()};
 }
 
-Feet feet(const LegModel& robot, const AllAngles& angles) {
-  Feet result;
+Feet feet(const LegModel& robot, const Angles& angles) {
+  Feet result{};
+  for (std::size_t leg = 0; leg < kLegs; ++leg)
+    result[leg] = plain_row(robot.legs[leg].kinematics.position(LegModel::angles_of(angles, leg)));
+  return result;
+}
+
+Jacobians jacobians(const LegModel& robot, const Angles& angles) {
+  Jacobians result{};
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    result.row(static_cast<Eigen::Index>(leg)) = robot.legs[leg].kinematics.position(of_leg(angles, leg));
+    Eigen::Vector3d foot = Eigen::Vector3d::Zero();
+    const Eigen::Matrix3d columns = robot.legs[leg].kinematics.jacobian(LegModel::angles_of(angles, leg), foot);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      result[leg][axis] = plain_row(columns.row(static_cast<Eigen::Index>(axis)).transpose());
   }
   return result;
 }
 
-std::vector<Eigen::Matrix3d> jacobians(const LegModel& robot, const AllAngles& angles) {
-  std::vector<Eigen::Matrix3d> result;
-  for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    Eigen::Vector3d foot;
-    result.push_back(robot.legs[leg].kinematics.jacobian(of_leg(angles, leg), foot));
-  }
-  return result;
-}
-
-py::tuple angles_of(const LegModel& robot, const Feet& wanted) {
-  AllAngles angles;
-  std::vector<std::string> reach;
+std::pair<Angles, std::vector<std::string>> angles_of(const LegModel& robot, const Feet& wanted) {
   constexpr std::array<const char*, 3> kNames{"reached", "beyond reach", "beyond range"};
+  std::pair<Angles, std::vector<std::string>> result;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const LegSolution solution =
-        robot.legs[leg].kinematics.inverse(wanted.row(static_cast<Eigen::Index>(leg)).transpose());
-    angles.segment<3>(static_cast<Eigen::Index>(kLegJoints * leg)) = solution.angles;
-    reach.emplace_back(kNames[static_cast<std::size_t>(solution.reach)]);
+    const LegSolution solution = robot.legs[leg].kinematics.inverse({wanted[leg][0], wanted[leg][1], wanted[leg][2]});
+    for (std::size_t i = 0; i < kLegJoints; ++i)
+      result.first[kLegJoints * leg + i] = solution.angles[static_cast<Eigen::Index>(i)];
+    result.second.emplace_back(kNames[static_cast<std::size_t>(solution.reach)]);
   }
-  return py::make_tuple(angles, reach);
+  return result;
 }
 
 }  // namespace
@@ -59,12 +58,7 @@ void bind_legs(py::module_& module) {
   py::class_<LegModel>(module, "LegModel")
       .def("forward", &feet, py::arg("angles"))
       .def("inverse", &angles_of, py::arg("feet"))
-      .def("jacobian", &jacobians, py::arg("angles"))
-      .def_property_readonly("joints", [](const LegModel& robot) {
-        std::vector<std::string> names;
-        for (const JointModel& joint : robot.joints) names.push_back(joint.name);
-        return names;
-      });
+      .def("jacobian", &jacobians, py::arg("angles"));
 }
 
 }  // namespace robot_control

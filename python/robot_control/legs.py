@@ -27,8 +27,7 @@ def forward(robot: Robot, angles: ArrayLike) -> Array:
         RobotError: the robot does not stand on four legs, and why.
         ValueError: the angles have another shape, or are not finite.
     """
-    feet: Array = _model(str(robot)).forward(_checked(angles, (12,), "angles"))
-    return feet
+    return np.asarray(_model(str(robot)).forward(_checked(angles, (12,), "angles")), dtype=float)
 
 
 def inverse(robot: Robot, feet: ArrayLike) -> tuple[Array, list[str]]:

@@ -70,7 +70,7 @@ void CommandWatch::note_messages(const VelocityCommand& request, std::uint64_t c
   if (!refused && !accepted) return;
   message_cycle_ = cycle;
   zero_requested_ =
-      !first && !refused && zero(request.content.twist) && request.contested == 0 && request.many_senders == 0;
+      !first && !refused && parts_of(request.content) == 0 && request.contested == 0 && request.many_senders == 0;
   if (zero_requested_) ++zero_requests_;
 }
 

@@ -8,15 +8,19 @@
 
 #include "configuration/parameters.h"
 #include "machine/machine_model.h"
+#include "robots/robot.h"
 
 namespace robot_control {
 
-enum class RobotKind { kWheels, kLegs };
+enum class RobotKind { kOnWheels, kOnLegs };
 
 /// Throws RobotError as read_rigid_bodies.
 RobotKind kind_of(const RobotDescription& description);
 
 /// Returns the machine of its kind: a DriveTrain or a LegModel. Throws RobotError as read_drive_train or read_legs.
 std::unique_ptr<MachineModel> read_robot(const RobotDescription& description, const Parameters& parameters);
+
+/// Returns the robot of Parameters::urdf, composed of the laws of its kind. Throws RobotError as read_robot.
+std::unique_ptr<Robot> make_robot(const Parameters& parameters);
 
 }  // namespace robot_control

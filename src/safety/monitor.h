@@ -195,7 +195,7 @@ void Monitor<KindConditions>::evaluate_frame(const MonitorInput& input) noexcept
   evaluate_conditions(input);
   if (monitor_restarted) active_.add(kCauseMonitorRestarted, Reaction::kBrake, {.beyond = true});
   if (driver_restarted) active_.add(kCauseDriverLost, Reaction::kBrake, {.beyond = true});
-  motion_requested_ = input.command != nullptr && !zero(input.command->requested.twist);
+  motion_requested_ = input.command != nullptr && parts_of(input.command->requested) != 0;
   end_run(sensors.driver_state == DriverState::kEnded);
 }
 

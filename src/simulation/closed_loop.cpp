@@ -10,7 +10,7 @@
 #include "loop/cycles/estimator_cycle.h"
 #include "loop/cycles/monitor_cycle.h"
 #include "machine/fault_names.h"
-#include "robots/differential_drive.h"
+#include "robots/robot_kind.h"
 #include "signals/names.h"
 #include "simulation/faults/node_faults.h"
 #include "simulation/machines/simulated_machine.h"
@@ -26,11 +26,6 @@ CommandScript script_of(const Parameters& parameters) {
   CommandScript script = load_script(parameters.loop.command_script);
   script.begin_with_zero();
   return script;
-}
-
-std::shared_ptr<const Robot> load_robot(const Parameters& parameters) {
-  return std::make_shared<DifferentialDrive>(parameters,
-                                             read_drive_train(load_description(parameters.urdf), parameters.robot));
 }
 
 const Robot& drivable(const Robot& robot) {
@@ -103,7 +98,7 @@ struct ClosedLoop::Parts {
   std::string log_problem;
 };
 
-ClosedLoop::ClosedLoop(const Parameters& parameters) : ClosedLoop(parameters, load_robot(parameters)) {}
+ClosedLoop::ClosedLoop(const Parameters& parameters) : ClosedLoop(parameters, make_robot(parameters)) {}
 ClosedLoop::ClosedLoop(const Parameters& parameters, std::shared_ptr<const Robot> robot)
     : parts_(std::make_unique<Parts>(parameters, std::move(robot))) {}
 ClosedLoop::~ClosedLoop() = default;
@@ -111,7 +106,10 @@ ClosedLoop::ClosedLoop(ClosedLoop&&) noexcept = default;
 ClosedLoop& ClosedLoop::operator=(ClosedLoop&&) noexcept = default;
 
 void ClosedLoop::command(const Twist& twist) noexcept {
-  parts_->request = {.content = {.twist = twist}, .count = parts_->request.count + 1};
+  request({.twist = twist});
+}
+void ClosedLoop::request(const Request& content) noexcept {
+  parts_->request = {.content = content, .count = parts_->request.count + 1};
 }
 
 void ClosedLoop::e_stop() noexcept {

@@ -34,6 +34,8 @@ class ClosedLoop {
   /// Acts like a message received now on cmd_vel: it takes effect in the next step and times out like cmd_vel. The
   /// earliest cycle is 1, because the nodes enter the run in cycle 0.
   void command(const Twist& twist) noexcept;
+  /// The same with every part of a request.
+  void request(const Request& request) noexcept;
 
   /// These act like calls of e_stop_trigger and e_stop_reset, and like a message on heartbeat.
   void e_stop() noexcept;

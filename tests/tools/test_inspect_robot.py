@@ -37,6 +37,7 @@ def joint(name, **given):
 @pytest.fixture
 def robot():
     return {
+        "kind": "wheels",
         "name": "bot",
         "source": "bot.urdf",
         "base_link": "base_link",

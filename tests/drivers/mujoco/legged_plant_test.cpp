@@ -108,7 +108,7 @@ TEST_P(LeggedPlant, StandsUpWithinItsEffortsAndStandsStill) {
     effort = std::max(effort, largest_effort_share());
     tilt = std::max(tilt, tilt_);
   }
-  for (double t = 0; t < 2; t += kPeriod) step(standing(1));
+  for (double t = 0; t < 5; t += kPeriod) step(standing(1));
   const Vector3 before = truth_.pose_world.position;
   double load = 0;
   for (double t = 0; t < 1; t += kPeriod) step(standing(1));

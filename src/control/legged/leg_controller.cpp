@@ -1,0 +1,371 @@
+#include "control/legged/leg_controller.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "machine/gravity.h"
+#include "signals/rotation.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kLoadTime = 0.2;       // s, in which a foot's share of the weight comes and goes
+constexpr double kSetDown = 0.1;        // m/s, of a foot that lies above the ground
+constexpr double kShift = 0.6;          // of the way from the middle to the centroid of three feet
+constexpr double kArrived = 0.0005;     // m
+constexpr double kArrivedSpeed = 0.02;  // m/s and rad/s
+constexpr double kMinTime = 0.1;        // s, of gathering
+constexpr std::size_t kX = 0, kY = 1, kZ = 2, kRoll = 3, kPitch = 4, kYaw = 5;
+
+using Map = Eigen::Map<const Eigen::Vector3d>;
+
+double smooth(double part) noexcept {
+  const double s = std::clamp(part, 0.0, 1.0);
+  return s * s * (3 - 2 * s);
+}
+
+/// Returns `value` within ± `range`, and notes if it was beyond.
+double within(double value, double range, std::uint64_t& reasons) noexcept {
+  if (std::abs(value) > range) reasons |= kReasonOutOfReach;
+  return std::clamp(value, -range, range);
+}
+
+void approach(double& value, double target, double step) noexcept {
+  value += std::clamp(target - value, -step, step);
+}
+
+bool arrived(const TrackedAxis& axis, double target) noexcept {
+  return std::abs(axis.value - target) < kArrived && std::abs(axis.speed) < kArrivedSpeed;
+}
+
+}  // namespace
+
+LegController::LegController(const LegModel& robot, double timeout, double period)
+    : period_(period),
+      legs_(robot.legs),
+      dynamics_(robot),
+      tuning_(leg_tuning(robot)),
+      ground_(robot.belly),
+      state_(CommandWatch(timeout, period,
+                          kPartLinearX | kPartLinearY | kPartLinearZ | kPartAngularZ | kPartHeight | kPartRoll |
+                              kPartPitch | kPartMode)) {
+  const LegGeometry& first = legs_[0].kinematics.geometry();
+  nominal_ = tuning_.height - first.hip.z() - first.upper.z() + robot.belly + legs_[0].foot_radius;
+}
+
+void LegController::enter_run(const VelocityCommand& inbox, bool with_zero) noexcept {
+  CommandWatch watch = state_.watch;
+  watch.enter_run(inbox, with_zero);
+  state_ = State(watch);
+}
+
+void LegController::step(const ControlInput& input, CommandFrame& out) noexcept {
+  const SensorFrame& sensors = *input.sensors;
+  const std::uint64_t cycle = sensors.head.cycle;
+  out = {};
+  out.joint_count = kLegsJoints;
+  out.requested = state_.watch.step(input.request, cycle);
+  out.reasons = state_.watch.reasons();
+  state_.watch.report(cycle, out);
+  if (input.state != nullptr) out.state_cycle = input.state->head.cycle;
+  if (input.permit != nullptr) out.permit_cycle = input.permit->head.cycle;
+  const bool measured = joints_have(sensors, kLegsJoints, kValidPosition) &&
+                        std::all_of(sensors.joints.begin(), sensors.joints.begin() + kLegsJoints,
+                                    [](const JointSample& joint) { return std::isfinite(joint.position); });
+  const bool braked = input.permit == nullptr || input.permit->action == PermitAction::kBrake;
+  if (input.permit == nullptr) out.reasons |= kReasonNoPermit;
+  if (input.permit != nullptr && braked) out.reasons |= kReasonPermitBrake;
+  if (!measured) out.reasons |= kReasonBadSensors;
+  if (braked || !measured) {
+    state_ = State(state_.watch);
+    return;  // all joints brake
+  }
+  Request request = out.requested;
+  if (input.permit->action == PermitAction::kRamp) {
+    out.reasons |= kReasonPermitRamp;
+    request = {.twist = {}, .posture = {}, .mode = kStanceLie};
+  }
+  const std::array<double, kLegsJoints> before = state_.angles;
+  const bool began = advance(request, sensors, out.reasons);
+  if (state_.phase == LegPhase::kLying) {
+    out.reasons |= kReasonHolding;
+    return;
+  }
+  std::array<double, kLegsJoints> rates{};
+  for (std::size_t i = 0; i < kLegsJoints && !began; ++i) rates[i] = (state_.angles[i] - before[i]) / period_;
+  if (state_.phase != LegPhase::kGathering) roll_feet(rates);
+  write(rates, out);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    out.twist_limited.linear[axis] = state_.body[axis].speed;
+    out.twist_limited.angular[axis] = state_.body[kRoll + axis].speed;
+  }
+}
+
+/// Returns true if the joints begin to move in this cycle.
+bool LegController::advance(const Request& request, const SensorFrame& sensors, std::uint64_t& reasons) noexcept {
+  state_.elapsed += period_;
+  const bool down = request.mode == kStanceLie;
+  switch (state_.phase) {
+    case LegPhase::kLying:
+      if (request.mode != kStanceStand) return false;
+      state_.phase = LegPhase::kGathering;
+      state_.elapsed = 0;
+      for (std::size_t i = 0; i < kLegsJoints; ++i) state_.from[i] = state_.angles[i] = sensors.joints[i].position;
+      return true;
+    case LegPhase::kGathering:
+      gather();
+      if (down) state_.phase = LegPhase::kLying;
+      return false;
+    case LegPhase::kRising:
+      rise(state_.elapsed, reasons);
+      if (state_.elapsed >= tuning_.rise_time) enter(LegPhase::kStanding, 0);
+      if (down) {
+        const double left = tuning_.rise_time - state_.elapsed;
+        enter(LegPhase::kLowering, left);
+        state_.sinks = 1;
+      }
+      return false;
+    case LegPhase::kStanding:
+      stand(request, reasons);
+      if (down) enter(LegPhase::kLowering, 0);
+      return false;
+    case LegPhase::kLowering:
+      lower(reasons);
+      if (request.mode == kStanceStand && state_.phase == LegPhase::kLowering)
+        enter(state_.sinks != 0 ? LegPhase::kRising : LegPhase::kStanding, tuning_.rise_time - state_.elapsed);
+      return false;
+  }
+  return false;
+}
+
+void LegController::enter(LegPhase phase, double elapsed) noexcept {
+  state_.phase = phase;
+  state_.elapsed = std::max(0.0, elapsed);
+  state_.sinks = 0;
+}
+
+void LegController::gather() noexcept {
+  double farthest = 0;
+  for (std::size_t i = 0; i < kLegsJoints; ++i) farthest = std::max(farthest, std::abs(lying(i) - state_.from[i]));
+  // The smooth way is 1.5 times as fast in its middle.
+  const double time = std::max(kMinTime, 1.5 * farthest / tuning_.gather_speed);
+  const double part = smooth(state_.elapsed / time);
+  for (std::size_t i = 0; i < kLegsJoints; ++i) state_.angles[i] = state_.from[i] + part * (lying(i) - state_.from[i]);
+  if (state_.elapsed < time) return;
+  enter(LegPhase::kRising, 0);
+  state_.body = {};
+  state_.moved = {};
+  state_.share = {};
+  state_.lifted = kLegs;
+  for (std::size_t leg = 0; leg < kLegs; ++leg)
+    Eigen::Map<Eigen::Vector3d>(state_.places[leg].data()) = legs_[leg].kinematics.position(legs_[leg].lying);
+}
+
+/// Puts the body where it is `elapsed` seconds after it began to rise.
+void LegController::rise(double elapsed, std::uint64_t& reasons) noexcept {
+  const double before = state_.body[kZ].value;
+  state_.body[kZ].value = nominal_ * smooth(elapsed / tuning_.rise_time);
+  state_.body[kZ].speed = (state_.body[kZ].value - before) / period_;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    approach(state_.places[leg][2], ground_ + legs_[leg].foot_radius, kSetDown * period_);
+    state_.share[leg] = std::clamp(elapsed / kLoadTime, 0.0, 1.0);
+  }
+  if (!set_angles()) reasons |= kReasonOutOfReach;
+}
+
+void LegController::stand(const Request& request, std::uint64_t& reasons) noexcept {
+  const bool lifts = request.mode >= kStanceLift && request.mode < kStanceLift + kLegs;
+  const std::uint64_t wanted = lifts ? request.mode - kStanceLift : kLegs;
+  if (state_.lifted == kLegs && lifts) {
+    state_.lifted = wanted;
+    state_.foot = {};
+    state_.foot_target = {};
+  }
+  if (!lifts) {  // the twist moves the body
+    const double range[3] = {tuning_.sway, tuning_.sway, tuning_.lean};
+    const double speed[3] = {request.twist.linear[0], request.twist.linear[1], request.twist.angular[2]};
+    for (std::size_t i = 0; i < 3; ++i)
+      state_.moved[i] = within(state_.moved[i] + speed[i] * period_, range[i], reasons);
+  }
+  const Eigen::Vector2d shift = towards_support();
+  const bool reached = move({state_.moved[0] + shift.x(), state_.moved[1] + shift.y(),
+                             nominal_ + within(request.posture.height, tuning_.bob, reasons),
+                             within(request.posture.roll, tuning_.lean, reasons),
+                             within(request.posture.pitch, tuning_.lean, reasons), state_.moved[2]},
+                            reasons);
+  if (state_.lifted != kLegs) move_foot(request, state_.lifted == wanted, reached, reasons);
+}
+
+/// Returns the shift of the body that brings its centre of gravity above the other feet while one is in the air, m.
+Eigen::Vector2d LegController::towards_support() const noexcept {
+  if (state_.lifted == kLegs) return Eigen::Vector2d::Zero();
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero(), three = Eigen::Vector2d::Zero();
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const Eigen::Vector2d place = Map(state_.places[leg].data()).head<2>();
+    middle += place / kLegs;
+    if (leg != state_.lifted) three += place / (kLegs - 1);
+  }
+  return middle + kShift * (three - middle) - Eigen::Vector2d(state_.centre[0], state_.centre[1]);
+}
+
+/// Moves the body towards a pose, as far as the legs reach. Returns true where it has arrived.
+bool LegController::move(const std::array<double, 6>& target, std::uint64_t& reasons) noexcept {
+  const std::array<TrackedAxis, 6> before = state_.body;
+  bool arrived_all = true;
+  for (std::size_t i = 0; i < target.size(); ++i) {
+    state_.body[i].step(target[i], i < kRoll ? tuning_.linear : tuning_.angular, period_);
+    arrived_all = arrived_all && arrived(state_.body[i], target[i]);
+  }
+  if (set_angles()) return arrived_all;
+  reasons |= kReasonOutOfReach;
+  state_.body = before;
+  for (TrackedAxis& axis : state_.body) axis.speed = 0;
+  set_angles();
+  return false;
+}
+
+/// The foot goes up after its share of the weight went to zero, and takes it again after it came down.
+void LegController::move_foot(const Request& request, bool wanted, bool supported, std::uint64_t& reasons) noexcept {
+  double& share = state_.share[state_.lifted];
+  Vector3& target = state_.foot_target;
+  const bool in_air = state_.foot[kZ].value > 1e-3;
+  if (wanted && !in_air && target[2] == 0) {
+    if (supported || share < 1) approach(share, 0, period_ / kLoadTime);
+    if (share == 0) target = {0, 0, tuning_.lift};
+  } else if (wanted) {
+    for (std::size_t i = 0; i < 3; ++i) target[i] += request.twist.linear[i] * period_;
+    for (const std::size_t i : {kX, kY}) target[i] = within(target[i], tuning_.foot_range, reasons);
+    target[2] = std::clamp(target[2], tuning_.lift / 4, tuning_.lift + tuning_.foot_range);
+  } else {
+    const bool above = std::hypot(state_.foot[kX].value, state_.foot[kY].value) < kArrived;
+    target = {0, 0, above ? 0.0 : std::max(target[2], tuning_.lift / 4)};
+    if (above && !in_air) approach(share, 1, period_ / kLoadTime);
+  }
+  for (std::size_t i = 0; i < 3; ++i) state_.foot[i].step(target[i], tuning_.foot, period_);
+  if (!set_angles()) reasons |= kReasonOutOfReach;
+  if (!wanted && share == 1) state_.lifted = kLegs;
+}
+
+void LegController::lower(std::uint64_t& reasons) noexcept {
+  if (state_.sinks == 0) {
+    state_.moved = {};
+    const Eigen::Vector2d shift = towards_support();
+    const bool arrived_all = move({shift.x(), shift.y(), nominal_, 0, 0, 0}, reasons);
+    if (state_.lifted != kLegs) move_foot({}, false, arrived_all, reasons);
+    state_.elapsed = 0;
+    state_.sinks = arrived_all && state_.lifted == kLegs ? 1 : 0;
+    return;
+  }
+  rise(tuning_.rise_time - state_.elapsed, reasons);
+  if (state_.elapsed >= tuning_.rise_time) enter(LegPhase::kLying, 0);
+}
+
+double LegController::lying(std::size_t joint) const noexcept {
+  return legs_[joint / kLegJoints].lying[static_cast<Eigen::Index>(joint % kLegJoints)];
+}
+
+Eigen::Matrix3d LegController::rotation() const noexcept {
+  using Axis = Eigen::AngleAxisd;
+  return (Axis(state_.body[kYaw].value, Eigen::Vector3d::UnitZ()) *
+          Axis(state_.body[kPitch].value, Eigen::Vector3d::UnitY()) *
+          Axis(state_.body[kRoll].value, Eigen::Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+Eigen::Vector3d LegController::foot_in_base(std::size_t leg, const Eigen::Matrix3d& turned) const noexcept {
+  Eigen::Vector3d place = Map(state_.places[leg].data());
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    if (leg == state_.lifted) place[axis] += state_.foot[i].value;
+    place[axis] -= state_.body[i].value;
+  }
+  return turned.transpose() * place;
+}
+
+/// Sets the joint angles of the present pose. Returns false if a leg does not reach its foot.
+bool LegController::set_angles() noexcept {
+  const Eigen::Matrix3d turned = rotation();
+  bool reached = true;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const LegSolution solution = legs_[leg].kinematics.inverse(foot_in_base(leg, turned));
+    reached = reached && solution.reach == FootReach::kReached;
+    for (std::size_t i = 0; i < kLegJoints; ++i)
+      state_.angles[kLegJoints * leg + i] = solution.angles[static_cast<Eigen::Index>(i)];
+  }
+  return reached;
+}
+
+void LegController::roll_feet(const std::array<double, kLegsJoints>& rates) noexcept {
+  const Eigen::Matrix3d turned = rotation();
+  const Eigen::Vector3d body(state_.body[kRoll].speed, state_.body[kPitch].speed, state_.body[kYaw].speed);
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    if (state_.share[leg] == 0) continue;
+    const LegGeometry& geometry = legs_[leg].kinematics.geometry();
+    const double* rate = &rates[kLegJoints * leg];
+    const double first = geometry.sign[0] * state_.angles[kLegJoints * leg];
+    const double pitching = geometry.sign[1] * rate[1] + geometry.sign[2] * rate[2];
+    const Eigen::Vector3d shank =
+        turned * Eigen::Vector3d(geometry.sign[0] * rate[0], pitching * std::cos(first), pitching * std::sin(first)) +
+        body;
+    state_.places[leg][0] += shank.y() * legs_[leg].foot_radius * period_;
+    state_.places[leg][1] -= shank.x() * legs_[leg].foot_radius * period_;
+  }
+}
+
+/// Returns the forces on the feet in N, stance axes, that accelerate the body along x, y and z and about the vertical.
+std::array<Eigen::Vector3d, kLegs> LegController::pushing(const LoadInput& load,
+                                                          const LeggedEquations& equations) const noexcept {
+  std::array<Eigen::Vector3d, kLegs> result;
+  result.fill(Eigen::Vector3d::Zero());
+  double carried = 0, levers = 0;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    carried += load.share[leg];
+    levers += load.share[leg] * load.feet[leg].squaredNorm();
+  }
+  if (state_.phase != LegPhase::kStanding || carried < 1) return result;
+  const Eigen::Vector3d force =
+      dynamics_.mass() / carried *
+      Eigen::Vector3d(state_.body[kX].acceleration, state_.body[kY].acceleration, state_.body[kZ].acceleration);
+  const double turning = equations.mass(5, 5) * state_.body[kYaw].acceleration / levers;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const Eigen::Vector2d& lever = load.feet[leg];
+    result[leg] = load.share[leg] * (force + turning * Eigen::Vector3d(-lever.y(), lever.x(), 0));
+  }
+  return result;
+}
+
+void LegController::write(const std::array<double, kLegsJoints>& rates, CommandFrame& out) noexcept {
+  const Eigen::Matrix3d turned = rotation();
+  const Eigen::Vector3d up = turned.row(2);
+  LeggedMotion motion{.angles = state_.angles, .gravity = -kGravity * up};
+  LeggedEquations equations;
+  dynamics_.step(motion, equations);
+  state_.centre = {equations.centre_of_gravity.x(), equations.centre_of_gravity.y()};
+  LoadInput load{.share = state_.share};
+  double carried = 0;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    load.feet[leg] = (turned * (foot_in_base(leg, turned) - equations.centre_of_gravity)).head<2>();
+    carried += state_.share[leg] / (kLegs - 1);
+  }
+  load.weight = dynamics_.mass() * kGravity * std::min(1.0, carried);
+  const std::array<double, kLegs> forces = carried > 0 ? shared_loads(load) : std::array<double, kLegs>{};
+  const std::array<Eigen::Vector3d, kLegs> pushes = pushing(load, equations);
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const std::size_t first = kLegJoints * leg;
+    Eigen::Vector3d foot;
+    const Eigen::Matrix3d jacobian = legs_[leg].kinematics.jacobian(LegModel::angles_of(state_.angles, leg), foot);
+    const Eigen::Vector3d effort = equations.bias.segment<3>(static_cast<Eigen::Index>(6 + first)) -
+                                   jacobian.transpose() * (forces[leg] * up + turned.transpose() * pushes[leg]);
+    for (std::size_t i = 0; i < kLegJoints; ++i) {
+      out.joints[first + i] = {.mode = JointMode::kImpedance,
+                               .position = state_.angles[first + i],
+                               .velocity = rates[first + i],
+                               .stiffness = tuning_.stiffness,
+                               .damping = tuning_.damping,
+                               .effort = effort[static_cast<Eigen::Index>(i)]};
+    }
+  }
+}
+
+}  // namespace robot_control

@@ -1,0 +1,140 @@
+#pragma once
+/// The controller of a robot on four legs: it lies, stands up, moves its body while it stands, lifts one foot, and lies
+/// down.
+///
+///   lying ─► gathering ─► rising ─► standing ─► lowering ─► lying
+///
+///   lying      every joint brakes
+///   gathering  the joints move from where they are to the lying posture
+///   rising     the feet stay where they lie, the body rises to the nominal height within rise_time
+///   standing   the body follows the request, and one foot may be in the air
+///   lowering   body and foot return to the nominal pose, then the body sinks
+///
+/// Request::mode is a StanceMode. A mode that the present posture does not allow has no effect. A request that times
+/// out leaves the robot as it stands, with all feet on the ground. While it stands,
+///
+///   posture         height above the nominal one, roll and pitch of the body
+///   twist           linear x and y move the body over its feet, angular z turns it; while a foot is in the air, the
+///                   linear twist moves this foot
+///
+/// The stance frame has its axes and origin where those of the base were when it began to rise. Let aᵢ be the feet, p
+/// the body's position and R its rotation in it. The feet in the base's axes are Rᵀ(aᵢ − p), and the joint angles are
+/// those of LegKinematics::inverse. A ball as a foot rolls: aᵢ moves with ωᵢ × (0, 0, r), ωᵢ the rate of the shank.
+///
+/// Each joint gets an impedance about its angle. The feed-forward carries the legs' own weight and the foot's share of
+/// the robot's (load_sharing.h). To lift a foot, the body first moves its centre of gravity above the other feet. Then
+/// this foot's share goes to zero, and it goes up. It carries again after it was set down.
+///
+/// Every axis of the body and of the foot is limited in speed, acceleration and range. A pose that a leg does not reach
+/// is not entered: the body stays at the last one (kReasonOutOfReach).
+///
+/// Gains and times follow from mass m and leg length l: stiffness ∝ m l, damping ∝ m l^1.5, times ∝ √l.
+
+#include <array>
+#include <cstdint>
+
+#include "control/command_watch.h"
+#include "control/control_input.h"
+#include "control/legged/load_sharing.h"
+#include "control/legged/tracked_axis.h"
+#include "machine/legs/leg_dynamics.h"
+#include "machine/legs/leg_model.h"
+#include "signals/command_frame.h"
+
+namespace robot_control {
+
+/// The modes of Request::mode.
+enum StanceMode : std::uint64_t {
+  kStanceStay = 0,  ///< Stand with all feet, or lie, as before.
+  kStanceLie = 1,
+  kStanceStand = 2,
+  kStanceLift = 3,  ///< kStanceLift + i lifts the foot of LegPlace i.
+};
+
+enum class LegPhase : std::uint64_t { kLying = 0, kGathering = 1, kRising = 2, kStanding = 3, kLowering = 4 };
+
+/// A bit of CommandFrame::reasons: the pose is beyond what the legs reach, and is not entered.
+inline constexpr std::uint64_t kReasonOutOfReach = std::uint64_t{1} << kFirstWheeledReason;
+
+/// The values that follow from the robot.
+struct LegTuning {
+  double stiffness = 0;     ///< N·m/rad, of each joint
+  double damping = 0;       ///< N·m·s/rad
+  double gather_speed = 0;  ///< rad/s
+  double rise_time = 0;     ///< s, also of lowering
+  double height = 0;        ///< m, from the feet to the second joints, while standing
+  double lift = 0;          ///< m, of a foot in the air
+  double sway = 0;          ///< m, range of the body in x and y
+  double bob = 0;           ///< m, range of its height
+  double lean = 0;          ///< rad, range of roll, pitch and yaw
+  double foot_range = 0;    ///< m, of a foot in the air, from above its place
+  AxisBounds linear;        ///< of the body, m
+  AxisBounds angular;       ///< of the body, rad
+  AxisBounds foot;          ///< m
+};
+
+LegTuning leg_tuning(const LegModel& robot) noexcept;
+
+class LegController {
+ public:
+  /// `timeout` of a request and `period` are in s.
+  LegController(const LegModel& robot, double timeout, double period);
+
+  void enter_run(const VelocityCommand& inbox, bool with_zero) noexcept;
+
+  /// Fills everything but `out.head`. It is real-time safe.
+  void step(const ControlInput& input, CommandFrame& out) noexcept;
+
+  LegPhase phase() const noexcept { return state_.phase; }
+  const LegTuning& tuning() const noexcept { return tuning_; }
+
+  /// Pose of the body in the stance frame: x, y, height above the lying one, roll, pitch, yaw.
+  struct State {
+    explicit State(const CommandWatch& empty) : watch(empty) {}
+
+    CommandWatch watch;
+    LegPhase phase = LegPhase::kLying;
+    double elapsed = 0;                        ///< s, in this phase
+    std::uint64_t sinks = 0;                   ///< 1: lowering, and the body has begun to sink
+    std::array<double, kLegsJoints> from{};    ///< rad, joint angles at the beginning of gathering
+    std::array<double, kLegsJoints> angles{};  ///< rad, of the last command
+    std::array<Vector3, kLegs> places{};       ///< m, aᵢ
+    std::array<TrackedAxis, 6> body{};
+    std::array<double, 3> moved{};      ///< m, m, rad: x, y and yaw that the twist has asked for
+    std::uint64_t lifted = kLegs;       ///< the leg in the air, or on its way; kLegs: none
+    std::array<TrackedAxis, 3> foot{};  ///< m, of the lifted foot from its place
+    Vector3 foot_target{};              ///< m
+    std::array<double, kLegs> share{};  ///< of load_sharing.h
+    std::array<double, 2> centre{};     ///< m, x and y of the centre of gravity in the base's axes
+  };
+  const State& state() const noexcept { return state_; }
+  void set_state(const State& state) noexcept { state_ = state; }
+
+ private:
+  bool advance(const Request& request, const SensorFrame& sensors, std::uint64_t& reasons) noexcept;
+  void enter(LegPhase phase, double elapsed) noexcept;
+  void gather() noexcept;
+  void rise(double elapsed, std::uint64_t& reasons) noexcept;
+  void stand(const Request& request, std::uint64_t& reasons) noexcept;
+  void lower(std::uint64_t& reasons) noexcept;
+  bool move(const std::array<double, 6>& target, std::uint64_t& reasons) noexcept;
+  void move_foot(const Request& request, bool wanted, bool supported, std::uint64_t& reasons) noexcept;
+  Eigen::Vector2d towards_support() const noexcept;
+  bool set_angles() noexcept;
+  void roll_feet(const std::array<double, kLegsJoints>& rates) noexcept;
+  void write(const std::array<double, kLegsJoints>& rates, CommandFrame& out) noexcept;
+  std::array<Eigen::Vector3d, kLegs> pushing(const LoadInput& load, const LeggedEquations& equations) const noexcept;
+  Eigen::Vector3d foot_in_base(std::size_t leg, const Eigen::Matrix3d& turned) const noexcept;
+  Eigen::Matrix3d rotation() const noexcept;
+  double lying(std::size_t joint) const noexcept;
+
+  double period_;
+  std::array<Leg, kLegs> legs_;
+  LegDynamics dynamics_;
+  LegTuning tuning_;
+  double ground_ = 0;   ///< m, height of the ground in the axes of the lying base
+  double nominal_ = 0;  ///< m, height of the standing body above the lying one
+  State state_;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,28 @@
+#include <cmath>
+
+#include "control/legged/leg_controller.h"
+
+namespace robot_control {
+
+// These are the values of a robot of 12.7 kg with legs of 0.426 m.
+LegTuning leg_tuning(const LegModel& robot) noexcept {
+  const double length = robot.leg_length() / 0.426, mass = robot.mass / 12.7;
+  const double time = std::sqrt(length);
+  LegTuning tuning;
+  tuning.stiffness = 60 * mass * length;
+  tuning.damping = 2 * mass * length * time;
+  tuning.gather_speed = 3 / time;
+  tuning.rise_time = 1.3 * time;
+  tuning.height = 0.7 * robot.leg_length();
+  tuning.lift = 0.08 * length;
+  tuning.sway = 0.12 * robot.leg_length();
+  tuning.bob = 0.16 * robot.leg_length();
+  tuning.lean = 0.3;
+  tuning.foot_range = 0.15 * length;
+  tuning.linear = {.speed = 0.4 * time, .acceleration = 3};
+  tuning.angular = {.speed = 1.5 / time, .acceleration = 40 / length};
+  tuning.foot = {.speed = 0.5 * time, .acceleration = 5};
+  return tuning;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,97 @@
+#include "robots/quadruped.h"
+
+#include <cmath>
+
+#include "control/legged/leg_controller.h"
+#include "estimation/legged/legged_estimator.h"
+#include "parameters/problem_list.h"
+#include "safety/conditions/legged/legged_conditions.h"
+#include "safety/monitor.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kReturn = 0.3;  // s, in which the body is back above its feet before it sinks
+
+class LegsEstimator final : public SavedLaw<EstimatorLaw, LeggedEstimator> {
+ public:
+  using SavedLaw::SavedLaw;
+  void enter_run() noexcept override { law_.enter_run(); }
+  void resume(const StateFrame& last) noexcept override { law_.resume(last); }
+  void set_pose(const Vector3& pose) noexcept override { law_.set_pose(pose); }
+  void step(const SensorFrame& sensors, StateFrame& out) noexcept override { law_.step(sensors, out); }
+};
+
+class LegsController final : public SavedLaw<ControllerLaw, LegController> {
+ public:
+  using SavedLaw::SavedLaw;
+  void enter_run(const VelocityCommand& inbox, bool with_zero) noexcept override { law_.enter_run(inbox, with_zero); }
+  void tune(const DriveTuning& tuning) noexcept override { tuning_ = tuning; }
+  const DriveTuning& tuning() const noexcept override { return tuning_; }
+  void step(const ControlInput& input, CommandFrame& out) noexcept override { law_.step(input, out); }
+
+ private:
+  DriveTuning tuning_;  ///< has no effect on legs
+};
+
+class LegsMonitor final : public SavedLaw<MonitorLaw, Monitor<LeggedConditions>> {
+ public:
+  using SavedLaw::SavedLaw;
+  void step(const MonitorInput& input, Permit& out) noexcept override { law_.step(input, out); }
+};
+
+}  // namespace
+
+Quadruped::Quadruped(const Parameters& parameters, const LegModel& machine)
+    : parameters_(parameters), machine_(machine) {}
+
+void Quadruped::require_drivable() const {
+  if (parameters_.loop.fail_action == StopKind::kCoast) {
+    throw ParameterError(
+        "robot.fail_action = coast: without torque a robot on legs falls. Leave it out: it folds its legs");
+  }
+  if (parameters_.driver != DriverChoice::kMujoco || !parameters_.drives.empty()) {
+    throw ParameterError(
+        "robot.driver: motor drives move robots on wheels alone. Leave robot.driver and robot.drives out");
+  }
+  const LegTuning tuning = leg_tuning(machine_);
+  const double needed = tuning.rise_time + kReturn;
+  if (parameters_.safety.ramp_time >= needed) return;
+  throw ParameterError("ramp_time = " + shortest(parameters_.safety.ramp_time) + " s: this robot needs " +
+                       shortest(needed) + " s to lie down. Set at least so much");
+}
+
+std::unique_ptr<EstimatorLaw> Quadruped::make_estimator() const {
+  return std::make_unique<LegsEstimator>(machine_, parameters_.loop.period());
+}
+
+std::unique_ptr<ControllerLaw> Quadruped::make_controller() const {
+  return std::make_unique<LegsController>(machine_, parameters_.controller.cmd_vel_timeout, parameters_.loop.period());
+}
+
+std::unique_ptr<MonitorLaw> Quadruped::make_monitor() const {
+  SafetyParameters safety = parameters_.safety;
+  safety.imu_lost.reaction = Reaction::kBrake;
+  safety.lift.reaction = Reaction::kOff;  // a robot that lies stands on no foot
+  return std::make_unique<LegsMonitor>(safety, machine_, parameters_.loop.period());
+}
+
+GateParameters Quadruped::gate() const {
+  const LegTuning tuning = leg_tuning(machine_);
+  const double ramp = std::ceil(parameters_.safety.ramp_time / parameters_.loop.period() - 1e-9);
+  GateParameters gate{.stops = {}, .longest_ramp = static_cast<std::uint64_t>(ramp) + parameters_.safety.loss_cycles};
+  for (const JointModel& joint : machine_.joints) {
+    gate.stops.push_back({.kind = StopKind::kFold,
+                          .damping = tuning.damping,
+                          .stiffness = tuning.stiffness,
+                          .posture = joint.rest_position,
+                          .time = kFoldTime * std::sqrt(machine_.leg_length() / 0.426)});
+  }
+  return gate;
+}
+
+std::unique_ptr<Retuner> Quadruped::make_retuner(LatestValue<DriveTuning>&) const {
+  return nullptr;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,38 @@
+#pragma once
+/// The quadruped: a robot on four legs, composed of the legged laws.
+///
+///   recognised by   four legs (machine/legs/leg_model.h)
+///   laws            estimation/legged, control/legged, safety/conditions/legged
+///   stop action     fold: every joint moves to the lying posture within kFoldTime, stiff as while it stands; then it
+///   damps longest ramp    ⌈ramp_time/period⌉ + loss_cycles, in which the robot lies down
+///
+/// The time of the fold is that of legs of 0.426 m. Time and gains follow leg length and mass as in
+/// control/legged/leg_controller.h. Without its IMU a robot on legs is stopped (imu_lost brakes instead of slowing).
+/// Its feet need not carry it, because it may lie (lift is off).
+
+#include "configuration/parameters.h"
+#include "machine/legs/leg_model.h"
+#include "robots/robot.h"
+
+namespace robot_control {
+
+class Quadruped final : public Robot {
+ public:
+  static constexpr double kFoldTime = 1.0;  ///< s
+
+  Quadruped(const Parameters& parameters, const LegModel& machine);
+
+  const LegModel& machine() const noexcept override { return machine_; }
+  void require_drivable() const override;
+  std::unique_ptr<EstimatorLaw> make_estimator() const override;
+  std::unique_ptr<ControllerLaw> make_controller() const override;
+  std::unique_ptr<MonitorLaw> make_monitor() const override;
+  GateParameters gate() const override;
+  std::unique_ptr<Retuner> make_retuner(LatestValue<DriveTuning>& inbox) const override;
+
+ private:
+  Parameters parameters_;
+  LegModel machine_;
+};
+
+}  // namespace robot_control

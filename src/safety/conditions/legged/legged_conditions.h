@@ -1,0 +1,74 @@
+#pragma once
+/// The conditions of a robot on legs: how its body moves, compared with the limits of body_conditions.h, and whether its
+/// joints stand. Joints stand while every one stays within kWindow of its angle for kStandingTime.
+///
+///   moving    a joint left its window, or its angle is not known; until the robot stands again
+///   standing  all joints are inside for kStandingTime
+///
+/// In the first kStandingTime of a run the robot is neither.
+
+#include <array>
+#include <cmath>
+
+#include "machine/legs/leg_model.h"
+#include "safety/conditions/common/body_conditions.h"
+#include "safety/latch/active_causes.h"
+#include "safety/monitor_input.h"
+#include "safety/safety_parameters.h"
+
+namespace robot_control {
+
+class LeggedConditions {
+ public:
+  static constexpr double kWindow = 0.01;       ///< rad
+  static constexpr double kStandingTime = 0.1;  ///< s
+
+  /// `period` s.
+  LeggedConditions(const SafetyParameters& parameters, const LegModel& robot, double period)
+      : period_(period), body_conditions_(parameters, robot, {}, period) {}
+
+  static std::size_t driven_joints(const LegModel&) noexcept { return kLegsJoints; }
+
+  void enter_run() noexcept {
+    body_conditions_.enter_run();
+    moving_ = anchored_ = false;
+    inside_ = 0;
+  }
+
+  void step(const MonitorInput& input, std::uint64_t elapsed, double /*speed_limit*/, ActiveCauses& out) noexcept {
+    const SensorFrame& sensors = *input.sensors;
+    if (stays(sensors)) {
+      inside_ += static_cast<double>(elapsed) * period_;
+    } else {
+      moving_ = moving_ || anchored_;
+      inside_ = 0;
+      for (std::size_t i = 0; i < kLegsJoints; ++i) anchor_[i] = sensors.joints[i].position;
+      anchored_ = true;
+    }
+    if (standing()) moving_ = false;
+    body_conditions_.step(sensors, elapsed, 0, moving_, out);
+  }
+
+  bool moving() const noexcept { return moving_; }
+  bool standing() const noexcept { return inside_ > kStandingTime; }
+  bool sliding() const noexcept { return false; }
+
+ private:
+  bool stays(const SensorFrame& sensors) const noexcept {
+    bool inside = anchored_;
+    for (std::size_t i = 0; i < kLegsJoints; ++i) {
+      const JointSample& joint = sensors.joints[i];
+      inside = inside && has_position(joint) && std::abs(joint.position - anchor_[i]) <= kWindow;
+    }
+    return inside;
+  }
+
+  double period_;
+  BodyConditions body_conditions_;
+  std::array<double, kLegsJoints> anchor_{};  ///< rad
+  bool anchored_ = false;
+  bool moving_ = false;
+  double inside_ = 0;  ///< s
+};
+
+}  // namespace robot_control

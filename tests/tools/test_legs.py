@@ -1,0 +1,59 @@
+"""Robots on legs in Python: kinematics, and what inspect_robot.py says of them."""
+
+import numpy as np
+import pytest
+from robot_control import RobotError
+from robot_control.inspect.description import describe, mjcf, stand
+from robot_control.inspect.report import report
+from robot_control.installed_files import share_file
+from robot_control.legs import forward, inverse, jacobian
+
+QUADBOT = share_file("urdf/quadbot.urdf")
+ANGLES = np.array([0.1, 0.8, -1.6, -0.1, 0.7, -1.5, 0.2, 0.9, -1.4, 0.0, 0.6, -1.2])
+
+
+def test_inverse_leads_back_to_the_angles():
+    angles, reach = inverse(QUADBOT, forward(QUADBOT, ANGLES))
+    assert reach == ["reached"] * 4
+    np.testing.assert_allclose(angles, ANGLES, atol=1e-12)
+
+
+def test_jacobian_is_the_derivative_of_forward():
+    columns = jacobian(QUADBOT, ANGLES)
+    step = 1e-6
+    for joint in range(12):
+        moved = ANGLES + step * (np.arange(12) == joint)
+        difference = (forward(QUADBOT, moved) - forward(QUADBOT, ANGLES)) / step
+        expected = np.zeros((4, 3))
+        expected[joint // 3] = columns[joint // 3][:, joint % 3]
+        np.testing.assert_allclose(difference, expected, atol=1e-6)
+
+
+def test_a_foot_out_of_reach_is_named():
+    feet = forward(QUADBOT, ANGLES)
+    feet[2] += [0, 0, -1]
+    assert inverse(QUADBOT, feet)[1] == ["reached", "reached", "beyond reach", "reached"]
+
+
+@pytest.mark.parametrize("angles", [np.zeros(11), np.full(12, np.nan)])
+def test_angles_of_another_shape_and_not_finite_ones_are_refused(angles):
+    with pytest.raises(ValueError, match="angles must"):
+        forward(QUADBOT, angles)
+
+
+def test_a_robot_on_wheels_has_no_legs():
+    with pytest.raises(RobotError, match="legs found"):
+        forward(share_file("urdf/diffbot.urdf"), ANGLES)
+
+
+def test_a_quadruped_is_reported_with_its_legs():
+    robot = describe(QUADBOT)
+    robot["standing"] = stand(QUADBOT)
+    text = report(robot)
+    assert "front left   front_left_hip_joint, front_left_thigh_joint, front_left_knee_joint" in text
+    assert "lies               leaning 0.00°" in text
+    assert [leg["place"] for leg in robot["legs"]] == ["front_left", "front_right", "rear_left", "rear_right"]
+
+
+def test_its_simulated_model_keeps_its_joints():
+    assert mjcf(QUADBOT).count("_joint") >= 12
