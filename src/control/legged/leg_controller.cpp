@@ -164,9 +164,17 @@ void LegController::gather() noexcept {
 
 /// Puts the body where it is `elapsed` seconds after it began to rise.
 void LegController::rise(double elapsed, std::uint64_t& reasons) noexcept {
-  const double before = state_.body[kZ].value;
-  state_.body[kZ].value = nominal_ * smooth(elapsed / tuning_.rise_time);
-  state_.body[kZ].speed = (state_.body[kZ].value - before) / period_;
+  if (state_.phase == LegPhase::kRising) {
+    const Eigen::Vector2d middle = above_support();
+    state_.home = {middle.x(), middle.y()};
+  }
+  const double part = smooth(elapsed / tuning_.rise_time);
+  const double standing[3] = {state_.home[0], state_.home[1], nominal_};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double before = state_.body[i].value;
+    state_.body[i].value = part * standing[i];
+    state_.body[i].speed = (state_.body[i].value - before) / period_;
+  }
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     approach(state_.places[leg][2], ground_ + legs_[leg].foot_radius, kSetDown * period_);
     state_.share[leg] = std::clamp(elapsed / kLoadTime, 0.0, 1.0);
@@ -188,8 +196,8 @@ void LegController::stand(const Request& request, std::uint64_t& reasons) noexce
     for (std::size_t i = 0; i < 3; ++i)
       state_.moved[i] = within(state_.moved[i] + speed[i] * period_, range[i], reasons);
   }
-  const Eigen::Vector2d shift = towards_support();
-  const bool reached = move({state_.moved[0] + shift.x(), state_.moved[1] + shift.y(),
+  const Eigen::Vector2d place = standing_place();
+  const bool reached = move({state_.moved[0] + place.x(), state_.moved[1] + place.y(),
                              nominal_ + within(request.posture.height, tuning_.bob, reasons),
                              within(request.posture.roll, tuning_.lean, reasons),
                              within(request.posture.pitch, tuning_.lean, reasons), state_.moved[2]},
@@ -197,16 +205,21 @@ void LegController::stand(const Request& request, std::uint64_t& reasons) noexce
   if (state_.lifted != kLegs) move_foot(request, state_.lifted == wanted, reached, reasons);
 }
 
-/// Returns the shift of the body that brings its centre of gravity above the other feet while one is in the air, m.
-Eigen::Vector2d LegController::towards_support() const noexcept {
-  if (state_.lifted == kLegs) return Eigen::Vector2d::Zero();
+/// Returns x and y of the body in m at which its centre of gravity is amid the feet, or above three of them.
+Eigen::Vector2d LegController::above_support() const noexcept {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero(), three = Eigen::Vector2d::Zero();
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const Eigen::Vector2d place = Map(state_.places[leg].data()).head<2>();
     middle += place / kLegs;
     if (leg != state_.lifted) three += place / (kLegs - 1);
   }
-  return middle + kShift * (three - middle) - Eigen::Vector2d(state_.centre[0], state_.centre[1]);
+  if (state_.lifted != kLegs) middle += kShift * (three - middle);
+  return middle - Eigen::Vector2d(state_.centre[0], state_.centre[1]);
+}
+
+/// Returns x and y of the body in m to which the request adds.
+Eigen::Vector2d LegController::standing_place() const noexcept {
+  return state_.lifted != kLegs ? above_support() : Eigen::Vector2d(state_.home[0], state_.home[1]);
 }
 
 /// Moves the body towards a pose, as far as the legs reach. Returns true where it has arrived.
@@ -250,8 +263,8 @@ void LegController::move_foot(const Request& request, bool wanted, bool supporte
 void LegController::lower(std::uint64_t& reasons) noexcept {
   if (state_.sinks == 0) {
     state_.moved = {};
-    const Eigen::Vector2d shift = towards_support();
-    const bool arrived_all = move({shift.x(), shift.y(), nominal_, 0, 0, 0}, reasons);
+    const Eigen::Vector2d place = standing_place();
+    const bool arrived_all = move({place.x(), place.y(), nominal_, 0, 0, 0}, reasons);
     if (state_.lifted != kLegs) move_foot({}, false, arrived_all, reasons);
     state_.elapsed = 0;
     state_.sinks = arrived_all && state_.lifted == kLegs ? 1 : 0;
@@ -344,8 +357,13 @@ void LegController::write(const std::array<double, kLegsJoints>& rates, CommandF
   state_.centre = {equations.centre_of_gravity.x(), equations.centre_of_gravity.y()};
   LoadInput load{.share = state_.share};
   double carried = 0;
+  // While the body accelerates, the forces balance about the point on which it leans.
+  Eigen::Vector2d lean = Eigen::Vector2d::Zero();
+  if (state_.phase == LegPhase::kStanding)
+    lean = Eigen::Vector2d(state_.body[kX].acceleration, state_.body[kY].acceleration) / kGravity;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    load.feet[leg] = (turned * (foot_in_base(leg, turned) - equations.centre_of_gravity)).head<2>();
+    const Eigen::Vector3d lever = turned * (foot_in_base(leg, turned) - equations.centre_of_gravity);
+    load.feet[leg] = lever.head<2>() - lever.z() * lean;
     carried += state_.share[leg] / (kLegs - 1);
   }
   load.weight = dynamics_.mass() * kGravity * std::min(1.0, carried);

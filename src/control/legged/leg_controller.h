@@ -6,7 +6,8 @@
 ///
 ///   lying      every joint brakes
 ///   gathering  the joints move from where they are to the lying posture
-///   rising     the feet stay where they lie, the body rises to the nominal height within rise_time
+///   rising     the feet stay where they lie, the body rises within rise_time to the nominal height, with its centre of
+///              gravity amid the feet
 ///   standing   the body follows the request, and one foot may be in the air
 ///   lowering   body and foot return to the nominal pose, then the body sinks
 ///
@@ -106,6 +107,7 @@ class LegController {
     Vector3 foot_target{};              ///< m
     std::array<double, kLegs> share{};  ///< of load_sharing.h
     std::array<double, 2> centre{};     ///< m, x and y of the centre of gravity in the base's axes
+    std::array<double, 2> home{};       ///< m, x and y of the standing body: its centre of gravity is amid its feet
   };
   const State& state() const noexcept { return state_; }
   void set_state(const State& state) noexcept { state_ = state; }
@@ -119,7 +121,8 @@ class LegController {
   void lower(std::uint64_t& reasons) noexcept;
   bool move(const std::array<double, 6>& target, std::uint64_t& reasons) noexcept;
   void move_foot(const Request& request, bool wanted, bool supported, std::uint64_t& reasons) noexcept;
-  Eigen::Vector2d towards_support() const noexcept;
+  Eigen::Vector2d above_support() const noexcept;
+  Eigen::Vector2d standing_place() const noexcept;
   bool set_angles() noexcept;
   void roll_feet(const std::array<double, kLegsJoints>& rates) noexcept;
   void write(const std::array<double, kLegsJoints>& rates, CommandFrame& out) noexcept;
