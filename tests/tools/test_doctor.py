@@ -506,16 +506,20 @@ def test_a_master_that_does_not_run_is_no_alarm(tmp_path):
 
 
 def test_the_load_of_this_machine_names_a_busy_thread():
-    system = System()
+    """The share is what other programs leave to the thread, so only its order is claimed."""
     child = subprocess.Popen([sys.executable, "-c", "while True: pass"])
     try:
-        assert first_sample(system) is not None
-        time.sleep(1.0)
-        shares = {task.process: share for task, share in load(system).busy()}
+        end = time.monotonic() + 60.0
+        share = 0.0
+        while share < 0.02 and time.monotonic() < end:
+            system = System()
+            assert first_sample(system) is not None
+            time.sleep(1.0)
+            share = {task.process: each for task, each in load(system).busy()}.get(child.pid, 0.0)
     finally:
         child.kill()
         child.wait()
-    assert shares[child.pid] > 0.02  # other programs may leave it little
+    assert 0.02 <= share <= 1.1
 
 
 def run(*arguments):
