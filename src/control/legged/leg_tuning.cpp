@@ -21,7 +21,7 @@ LegTuning leg_tuning(const LegModel& robot) noexcept {
   tuning.foot_range = 0.15 * length;
   tuning.linear = {.speed = 0.4 * time, .acceleration = 3};
   tuning.angular = {.speed = 1.5 / time, .acceleration = 40 / length};
-  tuning.foot = {.speed = 0.5 * time, .acceleration = 5};
+  tuning.foot = {.speed = 0.5 * time, .acceleration = 15};
   return tuning;
 }
 
