@@ -6,6 +6,8 @@ The robot drives at `SPEED`. At a random time a drive or the cable fails, while 
     seen     the driver reports the loss within `LATEST` of its kind
     brake    the gate brakes within `BRAKE_CYCLES` after that
     latch    the stop is latched with the cause driver_fault
+    pose     while the drives come back, the estimate moves by no more than `JUMP` beyond the truth, which stays within
+             `DEVIATIONS` of it
     torque   from `STEADY_TIME` after the brake on, the robot does not become faster
     release  it stands between the reset and the new request
     drives   after the new request it reaches its speed
@@ -44,6 +46,8 @@ STEADY_TIME = 1.0  # s, in which a light robot has fallen back on its casters
 FASTER = 0.02  # m/s, tolerance
 STANDING = 0.01  # m/s
 RESETS = 20
+JUMP = {True: 0.05, False: 0.01}  # m, where both drives were lost, and one
+DEVIATIONS = 5  # of a proof: one error in 1.7 million
 
 DRIVER_FAULT = mask_of("StopCause", "driver_fault")
 
@@ -77,6 +81,21 @@ def speed_of(log: Log, wheel_base: float) -> Array:
     """m/s, of the faster side; `wheel_base` is in m."""
     speed: Array = np.abs(log["truth_linear"]) + np.abs(log["truth_angular"]) * wheel_base / 2
     return speed
+
+
+def distance(before: Log, after: Log, source: str) -> float:
+    """m from the beginning of one log to the end of another one; `source` is estimate or truth."""
+    return float(np.hypot(*(after[f"{source}_{axis}"][-1] - before[f"{source}_{axis}"][0] for axis in "xy")))
+
+
+def error(log: Log) -> float:
+    """m, of the estimated position at the end."""
+    return float(np.hypot(*(log[f"estimate_{axis}"][-1] - log[f"truth_{axis}"][-1] for axis in "xy")))
+
+
+def deviation(log: Log) -> float:
+    """m, of the estimated position at the end."""
+    return float(np.sqrt(sum(log[f"estimate_{axis}_variance"][-1] for axis in "xy")))
 
 
 def seen_in(log: Log) -> NDArray[np.bool_]:
@@ -117,10 +136,15 @@ def broken_rules(trial: LossTrial, loop: ClosedLoop, log: Log, request: tuple[fl
     steady = np.concatenate([speed_of(log, base)[brake + round(STEADY_TIME / period) :], speed_of(after, base)])
     if np.any(steady > np.minimum.accumulate(steady) + FASTER):
         yield "torque"
+    back = [after]
     for _ in range(RESETS):
-        if loop.run(0.5, (0.0, 0.0))["supervisor_state"][-1] not in STOPPED_STATES:
+        back.append(loop.run(0.5, (0.0, 0.0)))
+        if back[-1]["supervisor_state"][-1] not in STOPPED_STATES:
             break
         loop.e_stop_reset()
+    moved = [distance(after, back[-1], source) for source in ("estimate", "truth")]
+    if moved[0] - moved[1] > JUMP[trial.kind == CABLE] or error(back[-1]) > DEVIATIONS * deviation(back[-1]):
+        yield "pose"
     if speed_of(loop.run(1.0), base).max() > STANDING:
         yield "release"
     if abs(loop.run(3.0, request)["truth_linear"][-1]) < 0.98 * SPEED:

@@ -104,9 +104,11 @@ void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
   if (!s.wheels.received[kRight]) s.flags |= kStateNoRightEncoder;
   if (s.wheels.restarted) s.comparison.interrupt();
   for (const std::size_t side : {kLeft, kRight}) {
-    if (!s.wheels.lost_travel[side]) continue;
-    s.middle_travel.forget_credit(side);
-    s.core.shift(0, 0, square(Tuning::kRestart));
+    const double time = s.wheels.unknown_time[side];
+    if (time == 0) continue;
+    const bool replaced = !s.wheels.lost[1 - side] && s.wheels.unknown_time[1 - side] == 0;
+    s.middle_travel.forget(side);
+    s.core.shift(0, 0, square(Tuning::kRestart) + (replaced ? 0 : square(s.wheels.mean_speed() * time)));
     s.slip.restart();
   }
 }

@@ -103,6 +103,7 @@ void CanDriver::read(SensorFrame& sensors) noexcept {
     for (const ReceivedFrame& each : received.frames) drives_.receive(each.frame, each.stamp_ns);
     if (!received.more) break;
   }
+  watch_.step(bus_, now_ns_);
   judge_faults();
   sensors.driver_state = state_;
   sensors.faults = faults_;
@@ -128,19 +129,16 @@ void CanDriver::read(SensorFrame& sensors) noexcept {
 
 LinkStatus CanDriver::link() const noexcept {
   const CanCounts& counts = bus_.counts();
-  LinkStatus link{.state = LinkState::kUp,
-                  .sent = counts.sent,
-                  .lost = counts.refused + counts.lost,
-                  .late = 0,
-                  .errors = counts.errors + counts.error_frames + counts.malformed};
-  if (bus_.state() == CanState::kBusOff) link.state = LinkState::kDown;
-  if (bus_.state() == CanState::kWarning || bus_.state() == CanState::kPassive) link.state = LinkState::kDegraded;
-  if (counts.received == 0) link.state = LinkState::kStarting;
-  return link;
+  return {.state = watch_.status().state,
+          .sent = counts.sent,
+          .lost = counts.refused + counts.lost,
+          .late = 0,
+          .errors = counts.errors + counts.error_frames + counts.malformed};
 }
 
 void CanDriver::publish_statuses() noexcept {
-  for (std::size_t i = 0; i < drives_.size(); ++i) statuses_[i] = drives_[i].full_status();
+  for (std::size_t i = 0; i < drives_.size(); ++i) statuses_.drives[i] = drives_[i].full_status();
+  statuses_.bus = watch_.status();
   published_statuses_.store(statuses_);
 }
 
@@ -151,7 +149,7 @@ std::string CanDriver::description() const {
   Statuses statuses;
   if (!published_statuses_.load(statuses)) return text.str();
   for (std::size_t i = 0; i < drives_.size(); ++i) {
-    const KnownReaction& known = statuses[i].on_silence;
+    const KnownReaction& known = statuses.drives[i].on_silence;
     text << (i == 0 ? "; on silence " : ", ") << drives_[i].drive_parameters().joint << ' '
          << (known.reaction == SilenceReaction::kUnknown ? "does what is unknown" : word_of(known.reaction));
     if (known.evidence == ReactionEvidence::kRead) text << " (read from the drive)";
@@ -162,12 +160,13 @@ std::string CanDriver::description() const {
 
 std::string CanDriver::warning() const {
   Statuses statuses;
-  std::string text;
-  if (!published_statuses_.load(statuses)) return text;
+  if (!published_statuses_.load(statuses)) return "";
+  std::string text = robot_control::words(statuses.bus);
   for (std::size_t i = 0; i < drives_.size(); ++i) {
-    if (statuses[i].state == DriveState::kRunning) continue;
+    const DriveStatus& status = statuses.drives[i];
+    if (status.state == DriveState::kRunning) continue;
     if (!text.empty()) text += ". ";
-    text += drives_[i].words(statuses[i]);
+    text += drives_[i].words(status);
   }
   return text;
 }

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "bus/latest_value.h"
+#include "drivers/can/bus_watch.h"
 #include "drivers/can/can_bus.h"
 #include "drivers/can/can_parameters.h"
 #include "drivers/can/drive_set.h"
@@ -47,7 +48,7 @@ class CanDriver final : public Driver {
   /// Returns the bus with its load, and what each joint does on silence.
   std::string description() const override;
 
-  /// Returns the words of every drive that is not running; any thread may call it.
+  /// Returns what is wrong with the bus, and the words of every drive that is not running; any thread may call it.
   std::string warning() const override;
 
   /// Returns one line per drive: its state, its cause and the remedy.
@@ -58,7 +59,10 @@ class CanDriver final : public Driver {
  private:
   static constexpr int kMaxBatches = 8;  // of frames in one cycle, so that a flooded bus does not stop the loop
 
-  using Statuses = std::array<DriveStatus, kMaxJoints>;
+  struct Statuses {
+    std::array<DriveStatus, kMaxJoints> drives{};
+    BusStatus bus;
+  };
 
   void begin() noexcept;
   void send_commands(std::int64_t now_ns) noexcept;
@@ -70,6 +74,7 @@ class CanDriver final : public Driver {
 
   std::size_t joint_count_;
   CanBus bus_;
+  BusWatch watch_;
   CanBusParameters parameters_;
   DriveSet drives_;
   double load_;  // of the bus, planned

@@ -23,6 +23,13 @@ bool SideEncoder::Wheel::plausible(const SensorFrame& sensors, double time) cons
   return std::abs(sensors.joints[joint].position - angle) <= velocity_bound * time + Tuning::kEncoderSlack;
 }
 
+bool SideEncoder::Wheel::has_no_zero(const SensorFrame& sensors) const noexcept {
+  if (joint >= sensors.joint_count || joint >= kMaxJoints) return false;
+  const JointSample& sample = sensors.joints[joint];
+  const bool restarts = sample.fault != 0 || sensors.driver_state == DriverState::kStarting;
+  return restarts && !has(sample, kValidPosition);
+}
+
 double SideEncoder::Wheel::accept(const SensorFrame& sensors) noexcept {
   const double position = sensors.joints[joint].position;
   taken.accept(sensors, sensors.joints[joint]);
@@ -40,10 +47,14 @@ EncoderReading SideEncoder::step(const SensorFrame& sensors, double dt) noexcept
   waiting_ += dt;
   const auto measured = [&](const Wheel& wheel) { return wheel.measured(sensors); };
   const auto plausible = [&](const Wheel& wheel) { return wheel.plausible(sensors, waiting_); };
+  const auto has_no_zero = [&](const Wheel& wheel) { return wheel.has_no_zero(sensors); };
+  zero_lost_ = zero_lost_ || std::ranges::any_of(wheels_, has_no_zero);
   if (!std::ranges::all_of(wheels_, measured)) return EncoderReading::kRejected;
   EncoderReading reading = EncoderReading::kTravel;
   if (!known_) {
     reading = EncoderReading::kOffset;
+  } else if (zero_lost_) {
+    reading = EncoderReading::kLost;
   } else if (!std::ranges::all_of(wheels_, plausible)) {
     if (++rejected_ <= Tuning::kMaxHeld) return EncoderReading::kRejected;
     reading = EncoderReading::kLost;
@@ -55,6 +66,7 @@ EncoderReading SideEncoder::step(const SensorFrame& sensors, double dt) noexcept
   gap_ = std::min(std::max(waiting_, (1 - Tuning::kForgetting) * gap_), Tuning::kMaxGap);
   waiting_ = 0;
   known_ = true;
+  zero_lost_ = false;
   rejected_ = 0;
   return reading;
 }

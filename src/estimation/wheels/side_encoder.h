@@ -7,7 +7,8 @@
 /// travel. A sample that is missing, not finite, impossible or old is not used; the next good one brings the travel of
 /// the gap. A difference is impossible above 2 · velocity_limit times the time passed, plus kEncoderSlack; without a
 /// limit, kFastestWheel replaces 2 · velocity_limit. If angles stay impossible for more than kMaxHeld readings, the
-/// encoder was reset. Then the present angles become the offset, and the travel in between is lost.
+/// encoder was reset. Then the present angles become the offset, and the travel in between is lost. The same holds for
+/// the first angles after a drive without a position was in fault or starting, because its zero may be another one.
 
 #include <cstdint>
 
@@ -56,6 +57,7 @@ class SideEncoder {
     Wheel(const WheelModel& wheel, const DriveTrain& robot) noexcept;
     bool measured(const SensorFrame& sensors) const noexcept;
     bool plausible(const SensorFrame& sensors, double time) const noexcept;
+    bool has_no_zero(const SensorFrame& sensors) const noexcept;  ///< The drive may come back with another zero.
     double accept(const SensorFrame& sensors) noexcept;  ///< m, travel
   };
 
@@ -65,6 +67,7 @@ class SideEncoder {
   double waiting_ = 0;
   double gap_ = 0;
   bool known_ = false;
+  bool zero_lost_ = false;      ///< A wheel may have another zero than at its last reading.
   std::uint64_t rejected_ = 0;  ///< impossible readings in a row
 };
 

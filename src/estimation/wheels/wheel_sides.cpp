@@ -23,8 +23,8 @@ WheelReading WheelSides::step(const SensorFrame& sensors, double dt) noexcept {
       if (i == 0) follow_stamps(encoder);
     }
     reading.refused = reading.refused || result == EncoderReading::kRejected;
-    reading.lost_travel[i] = result == EncoderReading::kLost;
-    reading.restarted = reading.restarted || result == EncoderReading::kOffset || reading.lost_travel[i];
+    if (result == EncoderReading::kLost) reading.unknown_time[i] = encoder.time();
+    reading.restarted = reading.restarted || result == EncoderReading::kOffset || result == EncoderReading::kLost;
     reading.travel[i] = encoder.travel();
     reading.speed[i] = sides_[i].speed.speed();
     reading.received[i] = encoder.received();

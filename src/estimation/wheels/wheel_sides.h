@@ -27,7 +27,7 @@ struct WheelReading {
   bool restarted = false;             ///< A side began from a new offset; its travel does not continue the earlier one.
   bool fell_silent = false;           ///< Both are lost and had brought readings.
   bool batch = false;                 ///< The readings were held up; their stamps give no speed.
-  std::array<bool, 2> lost_travel{};  ///< An unknown travel of the side was lost.
+  std::array<double, 2> unknown_time{};  ///< s, in which a travel that is now lost was made; 0: none was lost
 
   double left() const noexcept { return travel[0]; }
   double right() const noexcept { return travel[1]; }

@@ -181,6 +181,17 @@ TEST_P(CanDriverOn, SaysWhatEachJointDoesOnSilence) {
                                                                 : "holds (read from the drive)"));
 }
 
+TEST_P(CanDriverOn, SaysThatTheBusIsSilent) {
+  machine_.start();
+  EXPECT_EQ(cycle().links[0].state, LinkState::kUp);
+  EXPECT_EQ(machine_.driver().warning(), "");
+  machine_.rig().bus().lose(1);
+  EXPECT_EQ(cycles(1600).links[0].state, LinkState::kDown);
+  EXPECT_THAT(machine_.driver().warning(), HasSubstr("the bus: no frame was received"));
+  machine_.rig().bus().lose(0);
+  EXPECT_EQ(cycles(200).links[0].state, LinkState::kUp);
+}
+
 TEST_P(CanDriverOn, ASampleThatIsMissingMovesOnWithItsVelocity) {
   cycles(3000, drive_);
   const JointSample last = cycle(drive_).joints[0];
