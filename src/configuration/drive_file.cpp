@@ -13,7 +13,8 @@ namespace {
 
 constexpr const char* kBus = "bus";
 constexpr const char* kEveryJoint = "every_joint";
-constexpr double kMinRate = 100;  // Hz, of robot.rate
+constexpr double kMinRate = 100;           // Hz, of robot.rate
+constexpr double kMinTimeoutPeriods = 10;  // in which a drive waits for its host
 
 using cia402::Cia402Parameters;
 using odrive::OdriveParameters;
@@ -148,6 +149,14 @@ class DriveFileReader {
   void check_dialect(const Cia402Parameters& p, const CanParameters& can, GivenValues& given) {
     if (p.drive.node == 0 || p.drive.node == can.bus.host_node) {
       refuse(given, p.drive.joint, "node", "must be 1 … 127 and not bus.host_node");
+    }
+    if (p.host_timeout < kMinTimeoutPeriods / rate_ * (1 - 1.0e-9)) {
+      refuse(given, p.drive.joint, "host_timeout", "must be at least ten periods of the loop (robot.rate)",
+             "a host that is late for a few cycles would stop the drive");
+    }
+    if (p.abort_option == 0 && p.drive.on_silence != SilenceReaction::kUnknown) {
+      refuse(given, p.drive.joint, "on_silence", "contradicts abort_option: 0, with which the drive does nothing",
+             "leave one of them out");
     }
   }
 

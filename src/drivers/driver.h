@@ -7,9 +7,9 @@
 #include <string>
 #include <string_view>
 
-#include "gate/stop_action.h"
 #include "signals/injected_fault.h"
 #include "signals/joint.h"
+#include "signals/machine_needs.h"
 #include "signals/sensor_frame.h"
 #include "signals/truth_frame.h"
 
@@ -52,9 +52,13 @@ class Driver {
   /// Returns the fault of the last `read` in words; "" without one.
   virtual std::string_view fault_message() const noexcept { return {}; }
 
-  /// Returns true if the drives carry out the orders of this stop action (JointStop). The loop does not start with a
-  /// joint that is to be stopped by another one.
-  virtual bool implements(StopKind kind) const noexcept { return kind == StopKind::kBrake; }
+  /// Returns true if the drives carry out commands of this mode. The loop does not start with a robot kind or a stop
+  /// action (carries_out) that needs another one.
+  virtual bool accepts(JointMode mode) const noexcept { return mode == JointMode::kBrake; }
+
+  /// Returns true if the frames of `read` hold this input. The loop does not start with a robot kind that needs
+  /// another one.
+  virtual bool measures(MachineInput input) const noexcept { return input == MachineInput::kJointMotion; }
 };
 
 /// The driver of a simulated machine. It waits when its node is late: time slips, cycles stay consecutive. Hardware

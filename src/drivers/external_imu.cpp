@@ -14,8 +14,8 @@ bool all_finite(const Vector3& vector) noexcept {
 }  // namespace
 
 ExternalImu::ExternalImu(std::unique_ptr<Driver> machine, std::shared_ptr<const ImuInbox> inbox,
-                         std::function<std::int64_t()> clock)
-    : machine_(std::move(machine)), inbox_(std::move(inbox)), clock_(std::move(clock)) {}
+                         std::function<std::int64_t()> clock, bool exists)
+    : machine_(std::move(machine)), inbox_(std::move(inbox)), clock_(std::move(clock)), exists_(exists) {}
 
 void ExternalImu::read(SensorFrame& sensors) noexcept {
   machine_->read(sensors);

@@ -25,9 +25,9 @@ class ExternalImu final : public Driver {
  public:
   static constexpr std::int64_t kImuLife = 50'000'000;  ///< ns
 
-  /// `clock` states the present time in ns and is called in each cycle.
+  /// `clock` states the present time in ns and is called in each cycle. `exists`: there is an IMU behind the inbox.
   ExternalImu(std::unique_ptr<Driver> machine, std::shared_ptr<const ImuInbox> inbox,
-              std::function<std::int64_t()> clock);
+              std::function<std::int64_t()> clock, bool exists = true);
 
   void start() override { machine_->start(); }
   void reset() noexcept override { machine_->reset(); }
@@ -37,12 +37,16 @@ class ExternalImu final : public Driver {
   std::string description() const override { return machine_->description(); }
   std::string warning() const override;
   std::string_view fault_message() const noexcept override { return machine_->fault_message(); }
-  bool implements(StopKind kind) const noexcept override { return machine_->implements(kind); }
+  bool accepts(JointMode mode) const noexcept override { return machine_->accepts(mode); }
+  bool measures(MachineInput input) const noexcept override {
+    return input == MachineInput::kImu ? exists_ : machine_->measures(input);
+  }
 
  private:
   std::unique_ptr<Driver> machine_;
   std::shared_ptr<const ImuInbox> inbox_;
   std::function<std::int64_t()> clock_;
+  bool exists_;
   ExternalImuSample sample_;
 };
 

@@ -24,9 +24,9 @@
 ///   accelerometer   tilt and slip of all wheels together are not noticed
 ///   one encoder     gyro and the other side continue
 ///   both encoders, or one and the gyro: kStateValid is cleared. The next good reading brings the whole travel.
-/// A drive that was in fault or starting without a position may have another zero, so its travel meanwhile is unknown.
-/// If the other side did not replace it, the deviation of the position grows by the last speed times that time.
-/// If the cycle of a frame is not newer than the last one, the last state is published again.
+/// A drive that had a fault and then no position may have another zero, so its travel meanwhile is unknown. If the
+/// other side did not replace it, the deviation of the position grows by the last speed times that time. If the cycle
+/// of a frame is not newer than the last one, the last state is published again.
 ///
 /// The angular velocity of the twist is the gyro's minus its bias, smoothed by a tracking loop (rate_tracker.h). Pose
 /// and biases use every sample.

@@ -22,18 +22,60 @@ std::vector<JointLimits> joint_limits(const MachineModel& robot) {
   return all;
 }
 
+bool carries_out(const Driver& driver, StopKind kind) noexcept {
+  const StopAction action{.kind = kind, .time = 1};
+  return driver.accepts(JointStop(action).step(std::nullopt, 0).mode) &&
+         driver.accepts(JointStop(action).step(0.0, 0).mode);
+}
+
 void require_stop_actions(const Driver& driver, const GateParameters& gate, const MachineModel& robot) {
   for (std::size_t i = 0; i < gate.stops.size(); ++i) {
-    if (driver.implements(gate.stops[i].kind)) continue;
+    if (carries_out(driver, gate.stops[i].kind)) continue;
     std::string wanted = "fold", possible;
     for (const Word& word : words_of(StopKind{})) {
       const auto kind = static_cast<StopKind>(word.value);
       if (kind == gate.stops[i].kind) wanted = word.text;
-      if (driver.implements(kind)) possible.append(possible.empty() ? "" : " or ").append(word.text);
+      if (carries_out(driver, kind)) possible.append(possible.empty() ? "" : " or ").append(word.text);
     }
     throw DriverError("joint " + robot.joints.at(i).name + " is to be stopped by the action \"" + wanted +
                       "\", which this driver does not implement. Set robot.fail_action to " + possible + ".");
   }
+}
+
+namespace {
+
+struct NeedWords {
+  const char* need;
+  const char* remedy;
+};
+
+// In the order of JointMode and of MachineInput.
+constexpr NeedWords kModeWords[] = {
+    {"to brake", "let the driver brake by a law of its own (gate/brake_law.h)"},
+    {"commands of torques", "use drives that take torques"},
+    {"commands of velocities", "let the driver compute their torques (drivers/joint_law.h)"},
+    {"commands of impedances", "let the driver compute their torques (drivers/joint_law.h)"},
+};
+constexpr NeedWords kInputWords[] = {
+    {"position, velocity and effort of each joint", "use drives that measure them"},
+    {"an IMU", "set robot.imu to topic and start the IMU's node, or use a driver with an IMU"},
+    {"forces of contacts", "use a driver with contact sensors"},
+};
+
+}  // namespace
+
+void require_needs(const Driver& driver, const MachineNeeds& needs) {
+  std::string lacking;
+  const auto add = [&lacking](const NeedWords& words) {
+    lacking += std::string(lacking.empty() ? "" : "; ") + words.need + ": " + words.remedy;
+  };
+  for (const JointMode mode : needs.modes) {
+    if (!driver.accepts(mode)) add(kModeWords[static_cast<std::size_t>(mode)]);
+  }
+  for (const MachineInput input : needs.inputs) {
+    if (!driver.measures(input)) add(kInputWords[static_cast<std::size_t>(input)]);
+  }
+  if (!lacking.empty()) throw DriverError("this kind of robot needs what its driver lacks: " + lacking);
 }
 
 }  // namespace robot_control

@@ -1,5 +1,5 @@
 #pragma once
-/// The set-up of the gate before any machine:
+/// The set-up of the gate before any machine, and what its driver must be able to do:
 ///
 ///   velocity, end stops   the joint's own, as its URDF says or the `robot:` block
 ///   soft zone             kSoftPart of the range, at most kSoftAngle or kSoftLength
@@ -20,7 +20,13 @@ inline constexpr double kSoftLength = 0.02;  ///< m
 /// One entry per joint of the robot.
 std::vector<JointLimits> joint_limits(const MachineModel& robot);
 
-/// Throws DriverError with the first joint whose stop action the driver does not implement.
+/// Returns true if the driver accepts the modes of this stop action.
+bool carries_out(const Driver& driver, StopKind kind) noexcept;
+
+/// Throws DriverError with the first joint whose stop action the driver cannot carry out.
 void require_stop_actions(const Driver& driver, const GateParameters& gate, const MachineModel& robot);
+
+/// Throws DriverError with everything that the robot kind needs and the driver lacks, and the remedies.
+void require_needs(const Driver& driver, const MachineNeeds& needs);
 
 }  // namespace robot_control

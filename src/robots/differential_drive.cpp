@@ -73,6 +73,10 @@ std::unique_ptr<MonitorLaw> DifferentialDrive::make_monitor() const {
   return wheeled_monitor(safety_limits(parameters_, machine_), machine_, parameters_.loop.period());
 }
 
+MachineNeeds DifferentialDrive::needs() const {
+  return {.modes = {JointMode::kBrake, JointMode::kEffort}, .inputs = {MachineInput::kJointMotion}};
+}
+
 GateParameters DifferentialDrive::gate() const {
   const double ramp = std::ceil(parameters_.safety.ramp_time / parameters_.loop.period() - 1e-9);
   GateParameters gate{.stops = std::vector<StopAction>(machine_.joints.size()),

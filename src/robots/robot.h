@@ -11,6 +11,7 @@
 #include "gate/gate_parameters.h"
 #include "machine/machine_model.h"
 #include "robots/laws.h"
+#include "signals/machine_needs.h"
 
 namespace robot_control {
 
@@ -54,6 +55,9 @@ class Robot {
   virtual std::unique_ptr<EstimatorLaw> make_estimator() const = 0;
   virtual std::unique_ptr<ControllerLaw> make_controller() const = 0;
   virtual std::unique_ptr<MonitorLaw> make_monitor() const = 0;
+
+  /// Returns the modes and inputs without which the laws of this kind do not work on any machine.
+  virtual MachineNeeds needs() const = 0;
 
   /// Returns the stop action of each joint, and how long a ramp may last.
   virtual GateParameters gate() const = 0;

@@ -9,6 +9,7 @@
 #include "loop/cycles/driver_cycle.h"
 #include "loop/cycles/estimator_cycle.h"
 #include "loop/cycles/monitor_cycle.h"
+#include "loop/gate_setup.h"
 #include "machine/fault_names.h"
 #include "robots/robot_kind.h"
 #include "signals/names.h"
@@ -58,6 +59,7 @@ struct ClosedLoop::Parts {
                 {&sensors.reader, &state.reader, &command.reader, permit.writer},
                 load_script(given.loop.command_script), nullptr),
         retuner(robot.make_retuner(controller.tunings())) {
+    require_needs(*machine, robot.needs());
     machine->start();
     driver.set_driver_instance(kDriverInstance);
     driver.begin_run(1);

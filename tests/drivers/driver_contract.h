@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "drivers/driver.h"
+#include "gate/stop_action.h"
 #include "support/allocation_guard.h"
 
 namespace robot_control {
@@ -186,16 +187,17 @@ TEST_P(DriverContract, AnEffortBeyondTheLimitIsClamped) {
   EXPECT_GT(joint(0).effort, GetParam().effort_limit * 0.9);
 }
 
-TEST_P(DriverContract, ImplementsTheBrake) {
-  EXPECT_TRUE(driver_->implements(StopKind::kBrake));
+TEST_P(DriverContract, AcceptsTheBrake) {
+  EXPECT_TRUE(driver_->accepts(JointMode::kBrake));
 }
 
-TEST_P(DriverContract, AStopActionThatItImplementsActsAtOnce) {
+TEST_P(DriverContract, AStopActionWhoseModeItAcceptsActsAtOnce) {
   for (const StopKind kind : {StopKind::kBrake, StopKind::kCoast, StopKind::kDamp}) {
-    if (!driver_->implements(kind)) continue;
+    const JointCommand order =
+        JointStop({.kind = kind, .damping = GetParam().damping}).step(std::nullopt, GetParam().period);
+    if (!driver_->accepts(order.mode)) continue;
     hold(all(velocity(3.0)), 1.0);
-    hold(all(JointStop({.kind = kind, .damping = GetParam().damping}).step(std::nullopt, GetParam().period)),
-         2 * GetParam().period);
+    hold(all(order), 2 * GetParam().period);
     for (std::size_t i = 0; i < GetParam().joints; ++i) {
       const double effort = joint(i).effort;
       if (kind == StopKind::kCoast) {

@@ -44,7 +44,8 @@ class ExampleMachine final : public Driver {
     run_board();
   }
   void stop() noexcept override { driver_->stop(); }
-  bool implements(StopKind kind) const noexcept override { return driver_->implements(kind); }
+  bool accepts(JointMode mode) const noexcept override { return driver_->accepts(mode); }
+  bool measures(MachineInput input) const noexcept override { return driver_->measures(input); }
   std::string warning() const override { return driver_->warning(); }
 
   /// Runs the board without its driver.

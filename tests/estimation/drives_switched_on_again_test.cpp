@@ -18,8 +18,9 @@ class DrivesSwitchedOnAgain : public EstimatorFixture {
   void observe_drives() {
     SensorFrame frame = robot_.frame();
     for (const std::size_t i : {0U, 1U}) {
-      if (off_[i]) frame.joints[i] = {.fault = frame.driver_state == DriverState::kStarting ? 0U : 1U};
       frame.joints[i].position += zero_[i];
+      if (off_[i]) frame.joints[i] = {};
+      frame.joints[i].fault = fault_[i];
     }
     estimator_.step(frame, state_);
   }
@@ -29,9 +30,13 @@ class DrivesSwitchedOnAgain : public EstimatorFixture {
       observe_drives();
     }
   }
-  void switch_off(std::size_t joint) { off_[joint] = true; }
+  void switch_off(std::size_t joint) {
+    off_[joint] = true;
+    fault_[joint] = 1;
+  }
   void switch_on(std::size_t joint) {
     off_[joint] = false;
+    fault_[joint] = 0;
     zero_[joint] = kOtherZero - robot_.frame().joints[joint].position;
   }
   /// Returns how far the position moves in the next cycles, m.
@@ -43,6 +48,7 @@ class DrivesSwitchedOnAgain : public EstimatorFixture {
   double deviation() const { return std::sqrt(state_.base.pose_covariance[0]); }
 
   std::array<bool, 2> off_{};
+  std::array<std::uint32_t, 2> fault_{};
   std::array<double, 2> zero_{};  // rad
 };
 
@@ -57,16 +63,18 @@ TEST_F(DrivesSwitchedOnAgain, TheTravelMeanwhileIsUnknown) {
   EXPECT_TRUE(has(kStateValid));
 }
 
-// In `starting` the drive has no fault word any more.
-TEST_F(DrivesSwitchedOnAgain, TheResetComesBeforeThePosition) {
-  switch_off(0);
-  switch_off(1);
+// The drive reports its fault with its position, until the reset takes both from it.
+TEST_F(DrivesSwitchedOnAgain, AResetMayChangeTheZeroOfADriveThatHadAPosition) {
+  fault_ = {1, 1};
   run(0, 0, 3000);
-  robot_.frame().driver_state = DriverState::kStarting;
-  run(0, 0, 1000);
+  const double before = position_error();
+  fault_ = {};
+  off_ = {true, true};
+  run(0, 0, 500);
   switch_on(0);
   switch_on(1);
   EXPECT_LT(jump(), 0.05);
+  EXPECT_NEAR(position_error(), before, 0.05);
 }
 
 TEST_F(DrivesSwitchedOnAgain, ATurnMeanwhileIsNoTravel) {

@@ -143,6 +143,9 @@ class Pendulum final : public Robot {
     };
     return std::make_unique<Composed>(parameters_.safety, machine_, parameters_.loop.period());
   }
+  MachineNeeds needs() const override {
+    return {.modes = {JointMode::kBrake, JointMode::kVelocity}, .inputs = {MachineInput::kJointMotion}};
+  }
   GateParameters gate() const override {
     return {
         .stops = {

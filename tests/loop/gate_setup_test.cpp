@@ -120,6 +120,20 @@ class RunawayMachine final : public Driver {
   JointCommand command;
 };
 
+TEST(RequireNeeds, NamesEverythingThatTheDriverLacksWithTheRemedy) {
+  const RunawayMachine machine;  // It brakes, and measures its joints.
+  EXPECT_NO_THROW(require_needs(machine, {.modes = {JointMode::kBrake}, .inputs = {MachineInput::kJointMotion}}));
+  try {
+    require_needs(machine, {.modes = {JointMode::kImpedance}, .inputs = {MachineInput::kImu, MachineInput::kContacts}});
+    ADD_FAILURE() << "accepted";
+  } catch (const DriverError& error) {
+    EXPECT_STREQ(error.what(),
+                 "this kind of robot needs what its driver lacks: commands of impedances: let the driver compute their "
+                 "torques (drivers/joint_law.h); an IMU: set robot.imu to topic and start the IMU's node, or use a "
+                 "driver with an IMU; forces of contacts: use a driver with contact sensors");
+  }
+}
+
 TEST(DriverCycleAndGate, AStopActionThatTheDriverDoesNotImplementIsRefusedAtStart) {
   RunawayMachine machine;
   TestChannel<SensorFrame> sensors;

@@ -148,6 +148,25 @@ TEST_F(DriveFile, WhatADialectCannotDoIsRefused) {
   EXPECT_THAT(refusal(kCia402, "node: 2", "node: 127"), HasSubstr("must be 1 … 127 and not bus.host_node"));
 }
 
+TEST_F(DriveFile, ATimeoutOfLessThanTenPeriodsIsRefused) {
+  EXPECT_THAT(refusal(kCia402, "node: 2", "node: 2, host_timeout: 0.019"),
+              HasSubstr("right_wheel_joint.host_timeout = 0.019: must be at least ten periods of the loop"));
+  EXPECT_EQ(refusal(kCia402, "node: 2", "node: 2, host_timeout: 0.02"), "");
+}
+
+TEST_F(DriveFile, AReactionOnSilenceWithoutAnActionIsRefused) {
+  EXPECT_THAT(refusal(kCia402, "node: 2", "node: 2, abort_option: 0, on_silence: holds"),
+              HasSubstr("right_wheel_joint.on_silence = holds: contradicts abort_option: 0"));
+  EXPECT_EQ(refusal(kCia402, "node: 2", "node: 2, abort_option: 0, accept_unknown_watchdog: true"), "");
+}
+
+TEST_F(DriveFile, TorquesThatTheDriveSendsByItselfCountForTheLoad) {
+  EXPECT_THAT(refusal(kOdrive, "node: 0", "node: 0, effort_rate: 0"), HasSubstr("left_wheel_joint.effort_rate = 0: "));
+  EXPECT_EQ(refusal(kOdrive, "node: 0", "node: 0, effort_period: 0.01"), "");
+  EXPECT_EQ(refusal(kOdrive, "coasts", "coasts", 1000), "");
+  EXPECT_THAT(refusal(kOdrive, "coasts", "coasts, effort_period: 0.001", 1000), HasSubstr("load the bus with"));
+}
+
 TEST_F(DriveFile, AnOverloadedBusIsRefusedWithTheRateThatFits) {
   EXPECT_THAT(refusal(kOdrive, "dialect: odrive", "dialect: odrive, bit_rate: 500000", 1000),
               HasSubstr("set robot.rate to at most 5"));

@@ -42,7 +42,8 @@ class SpoiledJoint final : public Simulator {
   }
   void write(std::span<const JointCommand> commands) noexcept override { driver_->write(commands); }
   void stop() noexcept override { driver_->stop(); }
-  bool implements(StopKind kind) const noexcept override { return driver_->implements(kind); }
+  bool accepts(JointMode mode) const noexcept override { return driver_->accepts(mode); }
+  bool measures(MachineInput input) const noexcept override { return driver_->measures(input); }
   void truth(TruthFrame& truth) noexcept override { driver_->truth(truth); }
   void inject(const InjectedFaults& faults) noexcept override { driver_->inject(faults); }
 

@@ -85,6 +85,12 @@ def test_the_confidence_is_that_of_the_worst_sensor_and_zero_without_a_valid_pos
     assert status_of(reports(state_estimator=report(**ESTIMATOR | {"degraded": "slip"}))).odometry_degraded
 
 
+def test_what_the_drives_do_on_silence_is_repeated():
+    words = "odrive on can0; on silence left_wheel_joint coasts (stated in the drive file)"
+    assert status_of(reports(mujoco_plant=None, driver=report(machine=words))).machine == words
+    assert status_of(reports()).machine == ""
+
+
 def test_numbers_that_always_change_are_no_change_and_a_cause_is_one():
     before, after = status_of(reports()), status_of(reports())
     after.uptime, after.odometry_confidence = 3.0, 0.9

@@ -47,6 +47,7 @@ def status_of(reports: Reports) -> RobotStatus:
         status.remedies, status.warnings = reports.safety.remedies, reports.safety.warning_sentences
     status.mode = _mode(status)
     status.odometry_confidence = _confidence(reports)
+    status.machine = _machine(reports)
     status.odometry_degraded = bool(reports.value(ESTIMATOR, "degraded"))
     return status
 
@@ -77,6 +78,11 @@ def _health(reports: Reports) -> tuple[int, list[str]]:
             levels.append(RobotStatus.WARN if report.level == DiagnosticStatus.WARN else RobotStatus.ERROR)
             problems.append(f"{node}: {report.message}")
     return max(levels), problems
+
+
+def _machine(reports: Reports) -> str:
+    """The description by the driver, whichever node that is."""
+    return next((text for node in sorted(reports.diagnostics) if (text := reports.value(node, "machine"))), "")
 
 
 def _confidence(reports: Reports) -> float:

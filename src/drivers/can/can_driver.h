@@ -42,8 +42,8 @@ class CanDriver final : public Driver {
   /// The next `write` brakes. Until then the drives have no torque: a drive keeps the last one that it was sent.
   void stop() noexcept override;
 
-  /// The drives take torques, so they follow every order.
-  bool implements(StopKind) const noexcept override { return true; }
+  /// The drives take torques, so they follow every mode.
+  bool accepts(JointMode) const noexcept override { return true; }
 
   /// Returns the bus with its load, and what each joint does on silence.
   std::string description() const override;

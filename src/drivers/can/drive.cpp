@@ -72,11 +72,9 @@ Drive::Drive(DriveParameters parameters, double period)
       to_joint_(static_cast<double>(drive_.direction) / drive_.gear) {}
 
 void Drive::step(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept {
-  if (command.reset && !reset_before_ && status_.state == DriveState::kFault) {
-    status_ = {};
-    sample_ = {};
-    on_silence_ = {};
-    restart(true, now_ns);
+  if (command.reset && !reset_before_) {
+    clears_ = 0;
+    if (status_.state == DriveState::kFault) begin(true, now_ns);
   }
   reset_before_ = command.reset;
   judge_silence(now_ns);
@@ -85,6 +83,13 @@ void Drive::step(const DriveCommand& command, std::int64_t now_ns, FrameBatch& s
       std::isfinite(command.torque) ? std::clamp(command.torque, -drive_.torque_limit, drive_.torque_limit) : 0;
   advance(limited, now_ns, send);
   note_order(status_.state == DriveState::kRunning ? limited.torque : 0);
+}
+
+void Drive::begin(bool reset, std::int64_t now_ns) noexcept {
+  status_ = {};
+  sample_ = {};
+  on_silence_ = {};
+  restart(reset, now_ns);
 }
 
 void Drive::judge_silence(std::int64_t now_ns) noexcept {
@@ -137,13 +142,22 @@ void Drive::accept_position(double position, double velocity, std::int64_t now_n
   const double elapsed = 1.0e-9 * static_cast<double>(now_ns - sample_.stamp_ns + 2 * period_ns_);
   const double maximum = 2 * drive_.velocity_limit * std::fmax(elapsed, 2 * drive_.sample_period);
   if (sample_.valid && std::abs(moved) > maximum) fail(DriveCause::kPositionJump, "position", 0, moved, maximum);
-  const double fastest = kImpossibleSpeed * drive_.velocity_limit;
-  if (std::abs(to_joint_ * velocity) > fastest)
-    return fail(DriveCause::kPositionJump, "velocity", 0, to_joint_ * velocity, fastest);
+  if (!is_possible(velocity)) return;
   joint.position = to_joint_ * position;
   joint.velocity = to_joint_ * velocity;
   sample_.stamp_ns = now_ns;
   sample_.valid = true;
+}
+
+bool Drive::is_possible(double velocity) noexcept {
+  const double fastest = kImpossibleSpeed * drive_.velocity_limit;
+  if (std::abs(to_joint_ * velocity) <= fastest) return true;
+  fail(DriveCause::kPositionJump, "velocity", 0, to_joint_ * velocity, fastest);
+  return false;
+}
+
+void Drive::accept_velocity(double velocity) noexcept {
+  if (std::isfinite(velocity) && is_possible(velocity)) sample_.joint.velocity = to_joint_ * velocity;
 }
 
 void Drive::note_order(double torque) noexcept {

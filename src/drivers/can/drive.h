@@ -7,8 +7,9 @@
 /// reads a clock. After construction nothing allocates or throws, except `words`.
 ///
 /// In `starting` a drive may be absent for any time. In `ready` the motor has no torque. A fault is left by the
-/// operator's reset alone, with which the start-up begins again. Position, velocity and torque belong to the joint:
-/// motor angle = direction · gear · joint angle, motor torque = direction · joint torque / gear.
+/// operator's reset alone, with which the start-up begins again. One reset is one attempt: the drive is asked at most
+/// kMaxClears times to clear its errors. A fault that remains waits for the next reset. Position, velocity and torque
+/// belong to the joint: motor angle = direction · gear · joint angle, motor torque = direction · joint torque / gear.
 
 #include <array>
 #include <cstdint>
@@ -117,6 +118,7 @@ class Drive {
  public:
   static constexpr std::size_t kOrders = 8;
   static constexpr double kFollows = 0.1;
+  static constexpr unsigned kMaxClears = 3;  ///< requests; all are lost once in 10⁴ at a loss of 5 %
 
   /// `period` is that of the loop in s.
   Drive(DriveParameters parameters, double period);
@@ -161,12 +163,18 @@ class Drive {
   bool disabled() const noexcept { return status_.state == DriveState::kFault && !may_brake_; }
 
   void set(DriveState state, DriveCause cause, const char* subject = "", std::uint64_t code = 0) noexcept;
+  /// Begins again, as after a reset of the operator if `reset` is true.
+  void begin(bool reset, std::int64_t now_ns) noexcept;
+  /// Counts a request to clear errors. Returns false if none is left since the operator's reset.
+  bool may_clear() noexcept { return clears_ < kMaxClears && ++clears_ > 0; }
   /// The first fault stays until the reset.
   void fail(DriveCause cause, const char* subject = "", std::uint64_t code = 0, double found = 0,
             double expected = 0) noexcept;
 
   /// Motor position in rad, velocity in rad/s.
   void accept_position(double position, double velocity, std::int64_t now_ns) noexcept;
+  /// A velocity that comes after the position of its cycle, rad/s.
+  void accept_velocity(double velocity) noexcept;
   void accept_motor_torque(double torque, std::int64_t now_ns) noexcept;
   void accept_temperature(double celsius) noexcept;
   void accept_voltage(double voltage) noexcept;
@@ -183,6 +191,7 @@ class Drive {
 
  private:
   void judge_silence(std::int64_t now_ns) noexcept;
+  bool is_possible(double velocity) noexcept;  ///< Fails if it is not.
   void note_order(double torque) noexcept;
 
   DriveParameters drive_;
@@ -194,6 +203,7 @@ class Drive {
   std::array<double, kOrders> ordered_{};  // N·m, of the joint, in the last cycles; the newest one first
   bool follows_ = false;                   // the last measurement was among them
   bool reset_before_ = false;
+  unsigned clears_ = 0;  // requests since the operator's reset
   bool may_brake_ = false;
 };
 

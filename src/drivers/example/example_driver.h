@@ -44,8 +44,8 @@ class ExampleDriver final : public Driver {
   void stop() noexcept override;
   std::string description() const override { return "a motor board that brakes by itself when it hears nothing"; }
   std::string warning() const override;
-  /// The motors take torques, so they follow every order.
-  bool implements(StopKind) const noexcept override { return true; }
+  /// The motors take torques, so they follow every mode.
+  bool accepts(JointMode) const noexcept override { return true; }
 
  private:
   void begin() noexcept;

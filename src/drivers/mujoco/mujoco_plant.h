@@ -64,7 +64,8 @@ class MujocoPlant final : public Simulator {
   void read(SensorFrame& sensors) noexcept override;
   void write(std::span<const JointCommand> commands) noexcept override;
   void stop() noexcept override;
-  bool implements(StopKind) const noexcept override { return true; }
+  bool accepts(JointMode) const noexcept override { return true; }
+  bool measures(MachineInput) const noexcept override { return true; }
   void truth(TruthFrame& truth) noexcept override;
   void inject(const InjectedFaults& faults) noexcept override;
 

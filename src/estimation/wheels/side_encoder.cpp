@@ -23,11 +23,11 @@ bool SideEncoder::Wheel::plausible(const SensorFrame& sensors, double time) cons
   return std::abs(sensors.joints[joint].position - angle) <= velocity_bound * time + Tuning::kEncoderSlack;
 }
 
-bool SideEncoder::Wheel::has_no_zero(const SensorFrame& sensors) const noexcept {
+bool SideEncoder::Wheel::lost_zero(const SensorFrame& sensors) noexcept {
   if (joint >= sensors.joint_count || joint >= kMaxJoints) return false;
   const JointSample& sample = sensors.joints[joint];
-  const bool restarts = sample.fault != 0 || sensors.driver_state == DriverState::kStarting;
-  return restarts && !has(sample, kValidPosition);
+  const bool faulty_before = std::exchange(faulty, sample.fault != 0);
+  return (faulty || faulty_before) && !has(sample, kValidPosition);
 }
 
 double SideEncoder::Wheel::accept(const SensorFrame& sensors) noexcept {
@@ -47,8 +47,7 @@ EncoderReading SideEncoder::step(const SensorFrame& sensors, double dt) noexcept
   waiting_ += dt;
   const auto measured = [&](const Wheel& wheel) { return wheel.measured(sensors); };
   const auto plausible = [&](const Wheel& wheel) { return wheel.plausible(sensors, waiting_); };
-  const auto has_no_zero = [&](const Wheel& wheel) { return wheel.has_no_zero(sensors); };
-  zero_lost_ = zero_lost_ || std::ranges::any_of(wheels_, has_no_zero);
+  for (Wheel& wheel : wheels_) zero_lost_ = wheel.lost_zero(sensors) || zero_lost_;
   if (!std::ranges::all_of(wheels_, measured)) return EncoderReading::kRejected;
   EncoderReading reading = EncoderReading::kTravel;
   if (!known_) {

@@ -8,7 +8,7 @@
 /// the gap. A difference is impossible above 2 · velocity_limit times the time passed, plus kEncoderSlack; without a
 /// limit, kFastestWheel replaces 2 · velocity_limit. If angles stay impossible for more than kMaxHeld readings, the
 /// encoder was reset. Then the present angles become the offset, and the travel in between is lost. The same holds for
-/// the first angles after a drive without a position was in fault or starting, because its zero may be another one.
+/// the first angles after a drive had a fault and then no position, because its zero may be another one.
 
 #include <cstdint>
 
@@ -53,12 +53,13 @@ class SideEncoder {
     double velocity_bound;  ///< rad/s
     double angle = 0;       ///< rad, as last accepted
     SampleTime taken{};     ///< of that angle
+    bool faulty = false;    ///< The drive had a fault in the last step.
 
     Wheel(const WheelModel& wheel, const DriveTrain& robot) noexcept;
     bool measured(const SensorFrame& sensors) const noexcept;
     bool plausible(const SensorFrame& sensors, double time) const noexcept;
-    bool has_no_zero(const SensorFrame& sensors) const noexcept;  ///< The drive may come back with another zero.
-    double accept(const SensorFrame& sensors) noexcept;  ///< m, travel
+    bool lost_zero(const SensorFrame& sensors) noexcept;  ///< The drive may come back with another zero.
+    double accept(const SensorFrame& sensors) noexcept;   ///< m, travel
   };
 
   FixedVector<Wheel, kMaxWheels> wheels_;

@@ -16,17 +16,17 @@ namespace robot_control {
 
 /// Holds what the wheels show in one step; the arrays hold left and right.
 struct WheelReading {
-  std::array<double, 2> travel{};     ///< m, since the last readings; 0 without a reading in this step
-  std::array<double, 2> speed{};      ///< m/s, tracked
-  std::array<bool, 2> received{};     ///< A reading was accepted in this step.
-  std::array<bool, 2> lost{};         ///< The side is lost.
-  double unread = 0;                  ///< m, travel of the middle by sides without a reading, at their last speeds
-  double speed_step = 0;              ///< m/s, in which speeds are reported; 0: none
-  double travel_variance = 0;         ///< m², of each side's travel, by that step
-  bool refused = false;               ///< A reading was not used.
-  bool restarted = false;             ///< A side began from a new offset; its travel does not continue the earlier one.
-  bool fell_silent = false;           ///< Both are lost and had brought readings.
-  bool batch = false;                 ///< The readings were held up; their stamps give no speed.
+  std::array<double, 2> travel{};  ///< m, since the last readings; 0 without a reading in this step
+  std::array<double, 2> speed{};   ///< m/s, tracked
+  std::array<bool, 2> received{};  ///< A reading was accepted in this step.
+  std::array<bool, 2> lost{};      ///< The side is lost.
+  double unread = 0;               ///< m, travel of the middle by sides without a reading, at their last speeds
+  double speed_step = 0;           ///< m/s, in which speeds are reported; 0: none
+  double travel_variance = 0;      ///< m², of each side's travel, by that step
+  bool refused = false;            ///< A reading was not used.
+  bool restarted = false;          ///< A side began from a new offset; its travel does not continue the earlier one.
+  bool fell_silent = false;        ///< Both are lost and had brought readings.
+  bool batch = false;              ///< The readings were held up; their stamps give no speed.
   std::array<double, 2> unknown_time{};  ///< s, in which a travel that is now lost was made; 0: none was lost
 
   double left() const noexcept { return travel[0]; }

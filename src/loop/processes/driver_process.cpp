@@ -36,6 +36,7 @@ DriverProcess::DriverProcess(const Parameters& parameters, const Robot& robot, c
     : Process(parameters.loop, LoopPriority::kDriver, "driver"),
       robot_(identified(robot.machine(), parameters.loop)),
       gate_(robot.gate()),
+      needs_(robot.needs()),
       cycles_(parameters.plant.cycles),
       sensors_(bus, ChannelNames::kSensors),
       truth_(bus, ChannelNames::kTruth),
@@ -50,6 +51,7 @@ DriverProcess::~DriverProcess() {
 }
 
 void DriverProcess::open_driver(std::unique_ptr<Driver> driver) {
+  require_needs(*driver, needs_);
   driver->start();
   driver_ = std::move(driver);
   cycle_ = std::make_unique<DriverCycle>(

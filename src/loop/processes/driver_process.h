@@ -60,6 +60,7 @@ class DriverProcess final : public Process {
 
   MachineModel robot_;
   GateParameters gate_;
+  MachineNeeds needs_;
   std::uint64_t cycles_;
   Output<SensorFrame> sensors_;
   Output<TruthFrame> truth_;

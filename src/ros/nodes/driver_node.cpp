@@ -92,7 +92,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
     } else {
       inbox->store({.imu = {}, .valid = 0, .time_ns = 0});
     }
-    return std::make_unique<ExternalImu>(std::move(driver), std::move(inbox), &monotonic_ns);
+    return std::make_unique<ExternalImu>(std::move(driver), std::move(inbox), &monotonic_ns, imu_inbox_ != nullptr);
   }
 
   void receive_imu(const msg::Imu& message) {

@@ -31,6 +31,7 @@ OdriveDevice::OdriveDevice(const OdriveDeviceParameters& parameters, VirtualCan&
       party_(bus.join([this](const can_frame& frame, std::int64_t now_ns) { receive(frame, now_ns); })),
       heartbeat_timer_(parameters.heartbeat_period, parameters.clock_ppm, 0.1 + 0.07 * parameters.node),
       estimates_timer_(parameters.estimates_period, parameters.clock_ppm, 0.3 + 0.09 * parameters.node),
+      effort_timer_(parameters.effort_period, parameters.clock_ppm, 0.5 + 0.03 * parameters.node),
       watchdog_timer_(parameters.watchdog_timeout, parameters.clock_ppm, 1) {}
 
 void OdriveDevice::boot(std::int64_t now_ns) {
@@ -50,11 +51,15 @@ void OdriveDevice::inject(DeviceFault fault) {
   if (fault == DeviceFault::kOtherZero) zero_ += kOtherZero;
   if (fault == DeviceFault::kReleased) state_ = AxisState::kIdle;
   if (fault == DeviceFault::kOff) motor_.torque = 0;
-  if (fault == DeviceFault::kEncoder) {
+  report_fault();
+}
+
+void OdriveDevice::report_fault() {
+  if (fault_ == DeviceFault::kEncoder) {
     encoder_error_ = kNoResponse05;
     fail(is_06() ? kMissingEstimate06 : kEncoderFailed05);
   }
-  if (fault == DeviceFault::kUnderVoltage) {
+  if (fault_ == DeviceFault::kUnderVoltage) {
     motor_error_ = kUnknownSupply05;
     fail(is_06() ? kUnderVoltage06 : kMotorFailed05);
   }
@@ -80,6 +85,7 @@ void OdriveDevice::step(std::int64_t now_ns) {
   motor_.torque = state_ == AxisState::kClosedLoopControl ? limited_torque() : 0;
   if (heartbeat_timer_.expired(now_ns)) send_heartbeat();
   if (estimates_timer_.expired(now_ns)) send_estimates();
+  if (effort_timer_.expired(now_ns)) is_06() ? send_torques() : send_current();
 }
 
 double OdriveDevice::limited_torque() const {
@@ -107,6 +113,15 @@ void OdriveDevice::send_estimates() {
   send(EncoderEstimates{.position = measured_position(), .velocity = velocity});
 }
 
+void OdriveDevice::send_current() {
+  const double current = motor_.torque / parameters_.torque_constant;
+  send(Iq{.setpoint = current, .measured = current});
+}
+
+void OdriveDevice::send_torques() {
+  send(v06::Torques{.target = input_torque_, .estimate = motor_.torque});
+}
+
 void OdriveDevice::receive(const can_frame& frame, std::int64_t now_ns) {
   if (fault_ == DeviceFault::kOff || now_ns < boot_ns_ || is_extended(frame) || node_of(frame) != parameters_.node)
     return;
@@ -117,10 +132,7 @@ void OdriveDevice::receive(const can_frame& frame, std::int64_t now_ns) {
 void OdriveDevice::receive_request(const can_frame& frame) {
   const bool low = fault_ == DeviceFault::kUnderVoltage;
   if (requests<EncoderEstimates>(frame)) send_estimates();
-  if (requests<Iq>(frame)) {
-    const double current = motor_.torque / parameters_.torque_constant;
-    send(Iq{.setpoint = current, .measured = current});
-  }
+  if (requests<Iq>(frame)) send_current();
   if (requests<BusVoltageCurrent>(frame)) send(BusVoltageCurrent{.voltage = low ? kLowSupply : kSupply, .current = 1});
   if (!is_06()) {
     if (requests<v05::MotorError>(frame)) send(v05::MotorError{.error = motor_error_});
@@ -136,7 +148,7 @@ void OdriveDevice::receive_request(const can_frame& frame) {
     send(v06::Address{.node = parameters_.node, .serial_number = parameters_.serial_number});
   }
   if (requests<v06::Error>(frame)) send(v06::Error{.active = error_, .disarm_reason = disarm_reason_});
-  if (requests<v06::Torques>(frame)) send(v06::Torques{.target = input_torque_, .estimate = motor_.torque});
+  if (requests<v06::Torques>(frame)) send_torques();
   if (requests<v06::Temperature>(frame)) {
     send(v06::Temperature{.transistors = kCool, .motor = fault_ == DeviceFault::kHot ? kHotMotor : kCool});
   }
@@ -147,6 +159,7 @@ void OdriveDevice::receive_command(const can_frame& frame) {
     const bool closes = wanted->state == AxisState::kClosedLoopControl && error_ == 0;
     if (closes && state_ != AxisState::kClosedLoopControl) watchdog_timer_.restart(now_ns_);
     state_ = closes ? AxisState::kClosedLoopControl : AxisState::kIdle;
+    if (closes) report_fault();
   }
   if (const auto mode = decode<SetControllerMode>(frame)) mode_ = *mode;
   if (const auto input = decode<SetInputTorque>(frame)) input_torque_ = input->torque;

@@ -23,6 +23,7 @@ struct OdriveDeviceParameters {
   double counts_per_turn = 8192;  ///< of the encoder
   double heartbeat_period = 0.1;  ///< s
   double estimates_period = 0;    ///< s; 0: on request alone
+  double effort_period = 0;       ///< s; 0: on request alone
   double watchdog_timeout = 0;    ///< s; 0: off
   std::uint16_t enable_watchdog_endpoint = 0;
   std::uint16_t watchdog_timeout_endpoint = 0;
@@ -46,11 +47,14 @@ class OdriveDevice final : public Device {
   void receive_sdo(const can_frame& frame);
   void boot(std::int64_t now_ns);
   void fail(std::uint32_t error);
+  void report_fault();  ///< An error that is still there comes again when the axis closes its loop.
   void clear_errors();
   double measured_position() const;
   double limited_torque() const;
   void send_heartbeat();
   void send_estimates();
+  void send_current();
+  void send_torques();
   template <class Message>
   void send(const Message& message) {
     bus_.send(party_, odrive::encode(parameters_.node, message));
@@ -66,7 +70,7 @@ class OdriveDevice final : public Device {
   DeviceMotor& motor_;
   std::size_t party_;
   DeviceFault fault_ = DeviceFault::kNone;
-  DeviceTimer heartbeat_timer_, estimates_timer_, watchdog_timer_;
+  DeviceTimer heartbeat_timer_, estimates_timer_, effort_timer_, watchdog_timer_;
   std::int64_t now_ns_ = 0;
   std::int64_t boot_ns_ = 0;  // The device is silent until then.
 

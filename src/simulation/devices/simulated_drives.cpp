@@ -24,6 +24,7 @@ OdriveDeviceParameters device_of(const odrive::OdriveParameters& drive, double c
           .counts_per_turn = drive.counts_per_turn,
           .heartbeat_period = drive.heartbeat_period,
           .estimates_period = drive.estimates_period,
+          .effort_period = drive.effort_period,
           .watchdog_timeout = drive.drive.on_silence == SilenceReaction::kCoasts ? kOdriveWatchdog : 0,
           .enable_watchdog_endpoint = static_cast<std::uint16_t>(drive.enable_watchdog_endpoint),
           .watchdog_timeout_endpoint = static_cast<std::uint16_t>(drive.watchdog_timeout_endpoint),

@@ -29,7 +29,10 @@ class DrivenPlant final : public Simulator {
   void read(SensorFrame& sensors) noexcept override;
   void write(std::span<const JointCommand> commands) noexcept override;
   void stop() noexcept override;
-  bool implements(StopKind kind) const noexcept override { return driver_->implements(kind); }
+  bool accepts(JointMode mode) const noexcept override { return driver_->accepts(mode); }
+  bool measures(MachineInput input) const noexcept override {
+    return input == MachineInput::kJointMotion ? driver_->measures(input) : plant_.measures(input);
+  }
   void truth(TruthFrame& truth) noexcept override { plant_.truth(truth); }
   void inject(const InjectedFaults& faults) noexcept override { plant_.inject(faults); }
   std::string inject_device(std::string_view component, std::string_view kind) override {

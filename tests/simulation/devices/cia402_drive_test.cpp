@@ -90,6 +90,92 @@ TEST(Cia402Drive, TakesAFixedMappingThatHoldsWhatItNeeds) {
   EXPECT_THAT(words_after(pair, without_position), HasSubstr("lacks an entry of its PDO: (0x60640020"));
 }
 
+/// Returns the words of a drive that runs with these objects, after its motor has turned by about 5 rad. Writes by how
+/// much the angle of the drive differs from the motor's, rad of the motor.
+std::string words_after_turning(const Cia402Pair& pair, const std::function<void(Cia402Device&)>& change,
+                                double& difference) {
+  DeviceRig rig;
+  Cia402Device& device = add(rig, pair);
+  change(device);
+  rig.command_all({.enabled = true});
+  rig.run(3);
+  rig.motor().velocity = 10;
+  rig.run(0.5);
+  difference = rig.drive().sample().joint.position * -2.5 - rig.motor().position;  // direction and gear of node 5
+  return rig.drive().words();
+}
+
+TEST(Cia402Drive, ReadsItsCountsPerTurnOfTheMotor) {
+  struct Case {
+    std::uint32_t motor_turns, feed;
+    double counts;  // per turn of the motor, those of the device
+  };
+  for (const Case& each : {Case{.motor_turns = 5, .feed = 5000, .counts = 1000},
+                           {.motor_turns = 1, .feed = 3600, .counts = 3600},
+                           {.motor_turns = 1, .feed = 1, .counts = 4096}}) {
+    Cia402Pair pair = cia402_pair(5);
+    pair.device.counts_per_turn = each.counts;
+    double difference = 0;
+    const std::string words = words_after_turning(
+        pair,
+        [&](Cia402Device& device) {
+          device.objects().set({0x608F, 1}, 4096);
+          device.objects().add({0x6091, 1}, each.motor_turns, 4, false);
+          device.objects().add({0x6091, 2}, 1, 4, false);
+          device.objects().add({0x6092, 1}, each.feed, 4, false);
+          device.objects().add({0x6092, 2}, 1, 4, false);
+        },
+        difference);
+    EXPECT_THAT(words, HasSubstr("running")) << each.feed;
+    EXPECT_NEAR(difference, 0, 0.05) << each.feed;  // The sample is up to two cycles of 2 ms old.
+  }
+}
+
+TEST(Cia402Drive, RefusesAGearWithoutAFeedConstant) {
+  Cia402Pair pair = cia402_pair(5);
+  const auto with_gear = [](Cia402Device& device) {
+    device.objects().add({0x6091, 1}, 5, 4, false);
+    device.objects().add({0x6091, 2}, 1, 4, false);
+  };
+  EXPECT_THAT(words_after(pair, with_gear),
+              HasSubstr("lacks feed constant (6092) beside its gear (6091); state counts_per_turn"));
+  pair.drive.counts_per_turn = 4096;
+  EXPECT_THAT(words_after(pair, with_gear), HasSubstr("running"));
+}
+
+TEST(Cia402Drive, TakesAVelocityAtAnyPlaceOfAFixedPdo) {
+  Cia402Pair pair = cia402_pair(5);
+  pair.device.fixed_mapping = true;
+  pair.drive.pdos = PdoSource::kFixed;
+  pair.drive.velocity_pdo = true;
+  EXPECT_THAT(words_after(pair), HasSubstr("running"));
+  EXPECT_THAT(words_after(pair,
+                          [](auto& device) {
+                            device.objects().set({0x1A01, 0}, 0);
+                          }),
+              HasSubstr("lacks an entry of its PDO: (0x606C0020"));
+  DeviceRig rig;
+  Cia402Device& device = add(rig, pair);
+  device.objects().set({0x1A01, 0}, 2);
+  device.objects().set({0x1A01, 1}, kStatuswordEntry.mapped());
+  device.objects().set({0x1A01, 2}, kVelocityEntry.mapped());
+  ASSERT_TRUE(rig.runs());
+  rig.motor().velocity = 10;
+  rig.run(0.05);
+  EXPECT_NEAR(rig.drive().sample().joint.velocity * -2.5, 10, 0.06);  // half a unit of 1 rpm
+}
+
+TEST(Cia402Drive, AVelocityThatIsNotSentAnyMoreIsNamed) {
+  Cia402Pair pair = cia402_pair(5);
+  pair.drive.velocity_pdo = true;
+  DeviceRig rig;
+  Cia402Device& device = add(rig, pair);
+  ASSERT_TRUE(rig.runs());
+  device.objects().set({0x1801, 1}, canopen::kPdoDisabled);
+  rig.run(0.1);
+  EXPECT_THAT(rig.drive().words(), HasSubstr("is silent: no velocity"));
+}
+
 TEST(Cia402Drive, StepsThroughThePowerStates) {
   DeviceRig rig;
   add(rig, cia402_pair(5));
@@ -229,6 +315,20 @@ TEST_F(TwoAxes, FailTogetherAndAreResetTogether) {
   rig_.command_all({.enabled = true, .reset = true});
   rig_.cycle();
   EXPECT_TRUE(rig_.runs());
+}
+
+TEST_F(TwoAxes, StartAgainTogetherWhereOneFailedAndCouldStillBrake) {
+  ASSERT_TRUE(rig_.runs());
+  for (const unsigned axis : {0U, 1U}) {
+    device_->objects().set(on_axis(kDcLinkVoltage, axis), 10'000);
+    rig_.run(0.5);
+    EXPECT_EQ(rig_.drive(1 - axis).status().state, DriveState::kFault) << axis;
+    EXPECT_EQ(rig_.drive(axis).status().state, DriveState::kRunning) << axis;
+    device_->objects().set(on_axis(kDcLinkVoltage, axis), 48'000);
+    rig_.command_all({.enabled = true, .reset = true});
+    rig_.cycle();
+    EXPECT_TRUE(rig_.runs()) << axis;
+  }
 }
 
 TEST(PositionDifference, ContinuesOverTheOverflowOf32Bits) {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "drivers/can/odrive/odrive_messages_06.h"
 #include "simulation/devices/device_rig.h"
 #include "support/allocation_guard.h"
 
@@ -216,6 +217,37 @@ TEST_P(DriveAndDevice, AFaultThatRemainsIsReportedAgainAfterTheReset) {
   rig_.cycle();
   rig_.command_all({.enabled = true});
   EXPECT_TRUE(fails(8));
+}
+
+TEST_P(DriveAndDevice, OneResetIsOneAttempt) {
+  const bool is_odrive = !GetParam().brakes_by_itself;
+  ASSERT_TRUE(rig_.runs());
+  device_->inject(DeviceFault::kEncoder);
+  ASSERT_TRUE(fails());
+  unsigned clears = 0;
+  bool bit_before = false;
+  rig_.bus().join([&](const can_frame& frame, std::int64_t) {
+    if (is_odrive) {
+      if (odrive::decode<odrive::v06::ClearErrors>(frame)) ++clears;
+    } else if (frame.can_id == 0x201) {
+      const bool bit = (frame.data[0] & 0x80U) != 0;
+      if (bit && !bit_before) ++clears;
+      bit_before = bit;
+    }
+  });
+  rig_.command_all({.enabled = true, .reset = true});
+  rig_.cycle();
+  rig_.command_all({.enabled = true, .torque = 2});
+  rig_.run(8);
+  EXPECT_EQ(state(), DriveState::kFault);
+  EXPECT_THAT(rig_.drive().words(), HasSubstr("reports an error"));
+  EXPECT_GE(clears, 1U);
+  EXPECT_LE(clears, Drive::kMaxClears);
+  EXPECT_EQ(rig_.motor().torque, 0);
+  device_->inject(DeviceFault::kNone);
+  rig_.command_all({.enabled = true, .reset = true});
+  rig_.cycle();
+  EXPECT_TRUE(rig_.runs());
 }
 
 TEST_P(DriveAndDevice, AForeignCommanderIsNamedAndTheJointCanStillBrake) {

@@ -14,6 +14,7 @@ constexpr std::int64_t kNmtNs = 100'000'000;      // between repetitions of a co
 constexpr std::int64_t kPowerNs = 3'000'000'000;  // more than a drive needs to release its brake
 constexpr std::int64_t kVoltageNs = 100'000'000;  // between two readings
 constexpr unsigned kResetCycles = 8;              // of one level of the bit that resets a fault
+constexpr std::int64_t kResetNs = 200'000'000;    // between two resets of a fault, which needs time to be left
 
 /// Returns the value of this object in a PDO that was decoded.
 std::int64_t value_of(const Pdo& pdo, const std::array<std::int64_t, canopen::kMaxPdoEntries>& values,
@@ -52,6 +53,9 @@ std::vector<PlannedFrames> Cia402Drive::plan() const {
 }
 
 void Cia402Drive::restart(bool reset, std::int64_t now_ns) noexcept {
+  const bool first_runs =
+      first_axis_ != nullptr && first_axis_->set_up() && first_axis_->status().state != DriveState::kFault;
+  if (first_runs) first_axis_->begin(reset, now_ns);
   phase_ = Phase::kSetup;
   setup_.restart();
   reader_.cancel();
@@ -60,6 +64,7 @@ void Cia402Drive::restart(bool reset, std::int64_t now_ns) noexcept {
   emergency_ = 0;
   position_.clear();
   velocity_ = 0;
+  velocity_ns_ = 0;
   next_nmt_ns_ = now_ns;
   reset_cycles_ = 0;
   has_voltage_ = true;
@@ -101,8 +106,10 @@ void Cia402Drive::receive_state(const can_frame& frame, std::int64_t now_ns) noe
     return on_axis(entry.object, static_cast<unsigned>(parameters_.axis));
   };
   if (parameters_.velocity_pdo && decode_pdo(pdos.velocity, node(), frame, values)) {
-    velocity_ = setup_.units().velocity(static_cast<std::int32_t>(values[0]));
-    return;
+    velocity_ =
+        setup_.units().velocity(static_cast<std::int32_t>(value_of(pdos.velocity, values, own(kVelocityEntry))));
+    velocity_ns_ = now_ns;
+    return accept_velocity(velocity_);
   }
   if (!decode_pdo(pdos.state, node(), frame, values)) return;
   statusword_ = static_cast<std::uint16_t>(value_of(pdos.state, values, own(kStatuswordEntry)));
@@ -110,6 +117,7 @@ void Cia402Drive::receive_state(const can_frame& frame, std::int64_t now_ns) noe
   const auto raw = static_cast<std::int32_t>(value_of(pdos.state, values, own(kPositionEntry)));
   const double count = 2 * std::numbers::pi / setup_.units().counts_per_turn;
   const double position = count * static_cast<double>(position_.add(raw, now_ns));
+  if (parameters_.velocity_pdo && velocity_ns_ == 0) return judge_power();
   accept_position(position, parameters_.velocity_pdo ? velocity_ : count * position_.velocity(), now_ns);
   const auto torque = static_cast<std::int16_t>(value_of(pdos.state, values, own(kTorqueEntry)));
   accept_motor_torque(setup_.units().torque(torque), now_ns);
@@ -173,8 +181,12 @@ void Cia402Drive::advance_power(const DriveCommand& command, std::int64_t now_ns
   if (phase_ == Phase::kReady) {
     phase_ = Phase::kPower;
     deadline_ns_ = now_ns + kPowerNs;
+    next_reset_ns_ = now_ns + kResetCycles * period_ns_;
   }
   if (phase_ == Phase::kRunning) {
+    if (parameters_.velocity_pdo && now_ns - velocity_ns_ > max_silence_ns()) {
+      return fail(DriveCause::kSilent, "velocity");
+    }
     set(DriveState::kRunning, DriveCause::kNone);
     read_voltage(now_ns, send);
     return send_command(Controlword::kEnableOperation, command.torque, send);
@@ -185,11 +197,21 @@ void Cia402Drive::advance_power(const DriveCommand& command, std::int64_t now_ns
     reset_ = false;
     emergency_ = 0;
   } else if (now_ns > deadline_ns_) {
-    return fail(power_ == PowerState::kFault ? DriveCause::kDriveError : DriveCause::kStaysOff,
-                power_state_words(power_), emergency_);
+    return fail(DriveCause::kStaysOff, power_state_words(power_));
   }
-  const bool resets = power_ == PowerState::kFault && reset_ && reset_cycles_++ / kResetCycles % 2 == 1;
+  const bool resets = power_ == PowerState::kFault && resets_fault(now_ns);
   send_command(resets ? Controlword::kFaultReset : step_to_operation(power_), 0, send);
+}
+
+bool Cia402Drive::resets_fault(std::int64_t now_ns) noexcept {
+  if (now_ns >= next_reset_ns_) {
+    next_reset_ns_ = now_ns + kResetNs;
+    reset_cycles_ = kResetCycles;
+    if (!may_clear()) fail(DriveCause::kDriveError, power_state_words(power_), emergency_);
+  }
+  if (disabled() || reset_cycles_ == 0) return false;
+  --reset_cycles_;
+  return true;
 }
 
 std::optional<std::uint32_t> Cia402Drive::read_object(const ObjectAddress& object, std::int64_t now_ns,

@@ -6,7 +6,8 @@
 ///
 /// Each step of the power state machine waits for the statusword of the one before. In `running` the axis receives
 /// controlword and torque in each cycle, and answers each SYNC (canopen_host.h). In a fault the controlword requests
-/// a quick stop. The error of a drive is reset with the operator's reset alone.
+/// a quick stop. A velocity with a PDO of its own replaces that of the position's PDO before it, and is judged for
+/// silence by itself. The error of a drive is reset with the operator's reset alone.
 
 #include <cstdint>
 #include <optional>
@@ -24,7 +25,7 @@ class Cia402Drive final : public Drive {
   Cia402Drive(const Cia402Parameters& parameters, std::uint8_t host, double period);
 
   /// Joins the two axes of one node, before the first step: the first one is set up first, and the second one starts
-  /// the node. A fault of one is a fault of both.
+  /// the node. A fault of one is a fault of both, and a reset of one starts both again.
   static void join(Cia402Drive& first, Cia402Drive& second) noexcept;
 
   void receive(const can_frame& frame, std::int64_t now_ns) noexcept override;
@@ -45,6 +46,8 @@ class Cia402Drive final : public Drive {
   void judge_power() noexcept;
   void advance_setup(std::int64_t now_ns, FrameBatch& send) noexcept;
   void advance_power(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept;
+  /// Returns whether the bit that resets a fault is to be set. Fails if no request to clear it is left.
+  bool resets_fault(std::int64_t now_ns) noexcept;
   /// Returns the value in the cycle in which its answer has arrived, and requests it before.
   std::optional<std::uint32_t> read_object(const ObjectAddress& object, std::int64_t now_ns, FrameBatch& send) noexcept;
   void read_error(std::int64_t now_ns, FrameBatch& send) noexcept;
@@ -55,8 +58,8 @@ class Cia402Drive final : public Drive {
   std::uint8_t node() const noexcept { return static_cast<std::uint8_t>(drive_parameters().node); }
 
   Cia402Parameters parameters_;
-  const Cia402Drive* first_axis_ = nullptr;
-  const Cia402Drive* second_axis_ = nullptr;
+  Cia402Drive* first_axis_ = nullptr;
+  Cia402Drive* second_axis_ = nullptr;
   DriveSetup setup_;
   canopen::SdoClient reader_;  // of the error code and of the voltage
   Phase phase_ = Phase::kSetup;
@@ -65,10 +68,12 @@ class Cia402Drive final : public Drive {
   PowerState power_ = PowerState::kUnknown;
   std::uint16_t emergency_ = 0;
   PositionDifference position_;
-  double velocity_ = 0;  // rad/s of the motor, from its PDO
+  double velocity_ = 0;           // rad/s of the motor, from its PDO
+  std::int64_t velocity_ns_ = 0;  // when it was received; 0: not yet
   std::int64_t next_nmt_ns_ = 0;
   std::int64_t deadline_ns_ = 0;
-  unsigned reset_cycles_ = 0;
+  unsigned reset_cycles_ = 0;  // for which the bit that resets a fault stays set
+  std::int64_t next_reset_ns_ = 0;
   ObjectAddress read_{};  // requested of the reader
   bool has_voltage_ = true;
   std::int64_t next_voltage_ns_ = 0;

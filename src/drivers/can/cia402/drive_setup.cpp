@@ -68,7 +68,7 @@ DriveSetup::DriveSetup(const Cia402Parameters& parameters, std::uint8_t host, do
   add_silence_steps(host);
   add_pdo_steps(0, "RPDO of controlword and torque");
   add_pdo_steps(1, "TPDO of statusword, position and torque");
-  if (parameters_.velocity_pdo && parameters_.pdos == PdoSource::kWritten) add_pdo_steps(2, "TPDO of the velocity");
+  if (parameters_.velocity_pdo) add_pdo_steps(2, "TPDO of the velocity");
   restart();
 }
 
@@ -99,6 +99,10 @@ void DriveSetup::add_motor_steps(double period) {
   if (parameters_.torque_slope > 0) write(kTorqueSlope, 0, 4, Use::kSlope, false, "torque slope (6087)");
   read({0x608F, 1}, Use::kIncrements, true, "increments (608F:1)");
   read({0x608F, 2}, Use::kRevolutions, true, "revolutions (608F:2)");
+  read({0x6091, 1}, Use::kMotorTurns, true, "motor revolutions (6091:1)");
+  read({0x6091, 2}, Use::kShaftTurns, true, "shaft revolutions (6091:2)");
+  read({0x6092, 1}, Use::kFeed, true, "feed (6092:1)");
+  read({0x6092, 2}, Use::kFeedTurns, true, "shaft revolutions (6092:2)");
   if (const Period cycle = period_of(period); cycle.value != 0) {
     write(kPeriodValue, cycle.value, 1, Use::kNone, true, "period (60C2:1)");
     write(kPeriodIndex, static_cast<std::uint8_t>(cycle.index), 1, Use::kNone, true, "period (60C2:2)");
@@ -164,7 +168,7 @@ void DriveSetup::restart() noexcept {
   units_ = {.rated_torque = parameters_.rated_torque,
             .counts_per_turn = parameters_.counts_per_turn,
             .velocity_unit = parameters_.velocity_unit};
-  increments_ = 0;
+  numerator_ = encoder_ = gear_ = feed_ = 0;
   repeats_ = 0;
   expects_host_ = false;
   abort_option_ = quick_stop_ = fault_reaction_ = -1;
@@ -233,11 +237,19 @@ void DriveSetup::evaluate(const Step& step, bool present, std::uint32_t value) n
       judge_torque(step, present, value);
       break;
     case Use::kIncrements:
-      increments_ = present ? value : 0;
+    case Use::kMotorTurns:
+    case Use::kFeed:
+      numerator_ = present ? value : 0;
       break;
     case Use::kRevolutions:
-      if (units_.counts_per_turn == 0 && present && value != 0) units_.counts_per_turn = increments_ / value;
-      if (units_.counts_per_turn == 0) refuse(DriveCause::kLacks, "increments per turn (608F); state counts_per_turn");
+      encoder_ = quotient(present, value);
+      break;
+    case Use::kShaftTurns:
+      gear_ = quotient(present, value);
+      break;
+    case Use::kFeedTurns:
+      feed_ = quotient(present, value);
+      judge_counts();
       break;
     case Use::kConsumer:
     case Use::kAbortOption:
@@ -260,6 +272,18 @@ void DriveSetup::judge_modes(bool present, std::uint32_t modes) noexcept {
   } else {
     refuse(DriveCause::kLacks, "torque mode in its supported modes (6502)");
   }
+}
+
+double DriveSetup::quotient(bool present, std::uint32_t denominator) const noexcept {
+  return present && denominator != 0 ? numerator_ / denominator : 0;
+}
+
+void DriveSetup::judge_counts() noexcept {
+  if (units_.counts_per_turn != 0) return;  // stated in the drive file
+  const std::optional<double> counts = counts_per_turn({.encoder = encoder_, .gear = gear_, .feed = feed_});
+  if (!counts) return refuse(DriveCause::kLacks, "feed constant (6092) beside its gear (6091); state counts_per_turn");
+  if (*counts == 0) return refuse(DriveCause::kLacks, "increments per turn (608F); state counts_per_turn");
+  units_.counts_per_turn = *counts;
 }
 
 void DriveSetup::judge_torque(const Step& step, bool present, std::uint32_t value) noexcept {
@@ -305,6 +329,7 @@ void DriveSetup::judge_pdos() noexcept {
   const TorquePdos needed = pdos_of(static_cast<unsigned>(parameters_.axis));
   judge_pdo(pdos_.command, needed.command, true);
   judge_pdo(pdos_.state, needed.state, false);
+  if (parameters_.velocity_pdo) judge_pdo(pdos_.velocity, needed.velocity, false);
 }
 
 void DriveSetup::judge_pdo(Pdo& found, const Pdo& needed, bool complete) noexcept {

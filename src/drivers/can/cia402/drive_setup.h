@@ -6,7 +6,7 @@
 ///   6040, 6071                no torque
 ///   6502, 6060, 6061          mode
 ///   6076, 6072, 6087          torque
-///   608F, 60C2                position, period of the loop
+///   608F, 6091, 6092, 60C2    position, period of the loop
 ///   1017, 1016, 1029          heartbeats of the drive and of the host
 ///   6007, 605A, 605E          reactions on a loss and on a fault
 ///   1400, 1600, 1800, 1A00    PDOs, written and read back, or read alone
@@ -64,6 +64,10 @@ class DriveSetup {
     kSlope,
     kIncrements,
     kRevolutions,
+    kMotorTurns,
+    kShaftTurns,
+    kFeed,
+    kFeedTurns,
     kConsumer,
     kAbortOption,
     kQuickStop,
@@ -93,6 +97,9 @@ class DriveSetup {
   void begin(const Step& step) noexcept;
   void evaluate(const Step& step, bool present, std::uint32_t value) noexcept;
   void judge_modes(bool present, std::uint32_t modes) noexcept;
+  /// Returns the ratio of the last numerator to this number; 0: the drive has no such objects.
+  double quotient(bool present, std::uint32_t denominator) const noexcept;
+  void judge_counts() noexcept;
   void judge_torque(const Step& step, bool present, std::uint32_t value) noexcept;
   void judge_silence(const Step& step, bool present, std::uint32_t value) noexcept;
   void judge_mapping(const Step& step, std::uint32_t value) noexcept;
@@ -112,7 +119,8 @@ class DriveSetup {
   TorquePdos pdos_;
   DriveUnits units_;
   Mode mode_ = Mode::kCyclicTorque;
-  double increments_ = 0;
+  double numerator_ = 0;                      // of the ratio that is being read
+  double encoder_ = 0, gear_ = 0, feed_ = 0;  // ScalingObjects
   std::uint32_t present_cob_id_ = 0;
   std::uint8_t mapped_ = 0;
   unsigned repeats_ = 0;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <optional>
 
 #include "drivers/can/wire_layout.h"
 
@@ -26,6 +27,23 @@ struct DriveUnits {
     return static_cast<std::int16_t>(saturated(1000 * torque / rated_torque, 16));
   }
 };
+
+/// The objects from which the unit of 6064 follows, each as its ratio; 0: the drive has none.
+struct ScalingObjects {
+  double encoder = 0;  ///< 608F, increments per turn of the motor
+  double gear = 0;     ///< 6091, turns of the motor per turn of the shaft
+  double feed = 0;     ///< 6092, units of 6064 per turn of the shaft
+};
+
+/// Returns the units of 6064 per turn of the motor, feed / gear. Makers leave what they do not use at 1: a feed of 1 or
+/// none means increments of the encoder. Returns 0 if nothing is known, and nothing if a gear without a feed makes it
+/// ambiguous. Source: CiA 402-2: 608F, 6091, 6092.
+inline std::optional<double> counts_per_turn(const ScalingObjects& objects) noexcept {
+  const double gear = objects.gear == 0 ? 1 : objects.gear;
+  if (objects.feed != 0 && objects.feed != 1) return objects.feed / gear;
+  if (gear != 1) return std::nullopt;
+  return objects.encoder;
+}
 
 inline double rated_torque(std::uint32_t raw_6076) noexcept {
   return raw_6076 / 1000.0;  // mN·m

@@ -71,9 +71,10 @@ std::vector<PlannedFrames> OdriveDrive::plan() const {
     plan.push_back({.data_bytes = 8, .per_cycle = 1});
   }
   constexpr double kSlowRate = 2 * 1.0e9 / kSlowNs;
-  plan.push_back({.data_bytes = 0, .per_second = parameters_.effort_rate + kSlowRate});
-  plan.push_back(
-      {.data_bytes = 8, .per_second = parameters_.effort_rate + kSlowRate + 1 / parameters_.heartbeat_period});
+  const bool requests = parameters_.effort_period == 0;
+  const double efforts = requests ? parameters_.effort_rate : 1 / parameters_.effort_period;
+  plan.push_back({.data_bytes = 0, .per_second = kSlowRate + (requests ? efforts : 0)});
+  plan.push_back({.data_bytes = 8, .per_second = efforts + kSlowRate + 1 / parameters_.heartbeat_period});
   return plan;
 }
 
@@ -89,6 +90,7 @@ void OdriveDrive::restart(bool reset, std::int64_t now_ns) noexcept {
   watchdog_timeout_.reset();
   pending_shift_ = 0;
   heartbeat_ns_ = moving_ns_ = now_ns;
+  cleared_ns_ = 0;
 }
 
 void OdriveDrive::enter(Phase phase) noexcept {
@@ -297,12 +299,20 @@ void OdriveDrive::advance_power(const DriveCommand& command, std::int64_t now_ns
     reset_ = false;
     enter(Phase::kRunning);
   } else if (now_ns > deadline_ns_) {
-    axis_error_ != 0 ? fail(DriveCause::kDriveError, "", axis_error_)
-                     : fail(DriveCause::kStaysOff, "axis state", static_cast<std::uint32_t>(axis_state_));
+    fail(DriveCause::kStaysOff, "axis state", static_cast<std::uint32_t>(axis_state_));
+  } else if (axis_error_ != 0) {
+    clear_errors(now_ns, send);
   } else if (due(next_request_ns_, kRetryNs, now_ns)) {
-    if (axis_error_ != 0) send.add(encode(node(), v06::ClearErrors{}));
     send.add(encode(node(), SetAxisState{.state = AxisState::kClosedLoopControl}));
   }
+}
+
+/// A heartbeat that came before the last request does not show whether it was followed.
+void OdriveDrive::clear_errors(std::int64_t now_ns, FrameBatch& send) noexcept {
+  if (heartbeat_ns_ <= cleared_ns_) return;
+  if (!may_clear()) return fail(DriveCause::kDriveError, "", axis_error_);
+  cleared_ns_ = now_ns;
+  send.add(encode(node(), v06::ClearErrors{}));
 }
 
 void OdriveDrive::send_idle(std::int64_t now_ns, FrameBatch& send) noexcept {
@@ -311,7 +321,7 @@ void OdriveDrive::send_idle(std::int64_t now_ns, FrameBatch& send) noexcept {
 
 void OdriveDrive::request_measurements(std::int64_t now_ns, FrameBatch& send) noexcept {
   if (parameters_.estimates_period == 0) send.add(request<EncoderEstimates>(node()));
-  if (parameters_.effort_rate > 0 &&
+  if (parameters_.effort_period == 0 &&
       due(next_effort_ns_, std::llround(1.0e9 / parameters_.effort_rate), now_ns + period_ns_ / 2)) {
     send.add(firmware_ == Firmware::k06 ? request<v06::Torques>(node()) : request<Iq>(node()));
   }

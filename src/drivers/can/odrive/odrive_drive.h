@@ -6,7 +6,8 @@
 ///
 /// The zero torque is sent in every cycle before closed loop, because the axis executes the last set-point that it has
 /// received. That may be one of an earlier program. In closed loop the state of each heartbeat is judged: an axis may
-/// become idle without an error. An ODrive whose watchdog expires becomes idle: the joint coasts.
+/// become idle without an error. Errors are cleared before closed loop is requested. An ODrive whose watchdog expires
+/// becomes idle: the joint coasts.
 ///
 /// The position is a float of turns, whose step grows with the number of turns. If the step exceeds max_position_step,
 /// the position of the drive is set back by whole turns as soon as the axis has rested for kRestNs. The position of the
@@ -59,6 +60,7 @@ class OdriveDrive final : public Drive {
   void request_measurements(std::int64_t now_ns, FrameBatch& send) noexcept;
   void keep_resolution(std::int64_t now_ns, FrameBatch& send) noexcept;
   void set_position(double position, FrameBatch& send) const noexcept;
+  void clear_errors(std::int64_t now_ns, FrameBatch& send) noexcept;
   void send_idle(std::int64_t now_ns, FrameBatch& send) noexcept;
   bool due(std::int64_t& next_ns, std::int64_t interval_ns, std::int64_t now_ns) const noexcept;
   std::uint8_t node() const noexcept { return static_cast<std::uint8_t>(drive_parameters().node); }
@@ -75,6 +77,7 @@ class OdriveDrive final : public Drive {
   std::int64_t deadline_ns_ = 0;
 
   std::int64_t heartbeat_ns_ = 0;
+  std::int64_t cleared_ns_ = 0;  // when the drive was last asked to clear its errors
   AxisState axis_state_ = AxisState::kUndefined;
   std::uint32_t axis_error_ = 0;
   std::array<std::uint64_t, 4> details_{};  // motor, encoder and controller of 0.5; disarm reason of 0.6

@@ -27,7 +27,8 @@ struct OdriveParameters {
   double motor_velocity_limit = 0;    ///< rad/s, at which the drive reduces its torque; 0: 1.5 · that of the joint
   double heartbeat_period = 0.1;      ///< s, as set in the drive
   double estimates_period = 0;        ///< s, as set in the drive; 0: requested in each cycle
-  double effort_rate = 100;           ///< Hz of requests for the torque; 0: the drive sends it by itself
+  double effort_period = 0;           ///< s between torques, as set in the drive; 0: requested
+  double effort_rate = 100;           ///< Hz of requests for the torque, where the drive does not send it by itself
   double counts_per_turn = 8192;      ///< of the encoder; with 0.5, to set the position
   double max_position_step = 1.0e-3;  ///< rad of the motor; above it the zero moves at the next rest
 
@@ -46,7 +47,8 @@ inline Keys keys(OdriveParameters& p) {
                      {"motor_velocity_limit", &p.motor_velocity_limit, "rad/s", 0.01, 1.0e5, kOptional | kZeroIsOff},
                      {"heartbeat_period", &p.heartbeat_period, "s", 0.001, 1, kOptional},
                      {"estimates_period", &p.estimates_period, "s", 0.001, 1, kOptional | kZeroIsOff},
-                     {"effort_rate", &p.effort_rate, "Hz", 1, 2000, kOptional | kZeroIsOff},
+                     {"effort_period", &p.effort_period, "s", 0.001, 1, kOptional | kZeroIsOff},
+                     {"effort_rate", &p.effort_rate, "Hz", 1, 2000, kOptional},
                      {"counts_per_turn", &p.counts_per_turn, {}, 1, 1.0e8, kOptional},
                      {"max_position_step", &p.max_position_step, "rad", 1.0e-6, 1, kOptional},
                      {"enable_watchdog_endpoint", &p.enable_watchdog_endpoint, {}, 0, 65535, kOptional},

@@ -1,0 +1,22 @@
+#pragma once
+/// A robot kind needs modes of commands and inputs of its machine. A driver declares those that it has.
+
+#include <cstdint>
+#include <vector>
+
+#include "signals/joint.h"
+
+namespace robot_control {
+
+enum class MachineInput : std::uint8_t {
+  kJointMotion,  ///< position, velocity and effort of each joint (kValidMotion)
+  kImu,          ///< angular velocity and linear acceleration
+  kContacts,     ///< forces of contacts
+};
+
+struct MachineNeeds {
+  std::vector<JointMode> modes{};  ///< of the commands of its controller; stop actions have their own
+  std::vector<MachineInput> inputs{};
+};
+
+}  // namespace robot_control
