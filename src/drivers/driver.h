@@ -7,9 +7,9 @@
 #include <string>
 #include <string_view>
 
+#include "gate/machine_needs.h"
 #include "signals/injected_fault.h"
 #include "signals/joint.h"
-#include "signals/machine_needs.h"
 #include "signals/sensor_frame.h"
 #include "signals/truth_frame.h"
 

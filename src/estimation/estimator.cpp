@@ -108,9 +108,19 @@ void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
     if (time == 0) continue;
     const bool replaced = !s.wheels.lost[1 - side] && s.wheels.unknown_time[1 - side] == 0;
     s.middle_travel.forget(side);
-    s.core.shift(0, 0, square(Tuning::kRestart) + (replaced ? 0 : square(s.wheels.mean_speed() * time)));
+    s.core.shift(0, 0, square(Tuning::kRestart));
     s.slip.restart();
+    if (!replaced && time > Tuning::kMaxHoldTime) lose_travel(time);
   }
+}
+
+/// The position stays where the last speed has predicted it, and the speed is taken to be zero.
+void Estimator::lose_travel(double time) noexcept {
+  State& s = state_;
+  const Planar predicted = rotated({prediction().distance - s.wheels.unread, 0}, s.core.pose().yaw);
+  s.core.shift(predicted.x, predicted.y, square(s.wheels.mean_speed() * time));
+  s.wheel_sides.set_speed(0, 0);
+  s.wheels.speed = {};
 }
 
 /// Raw odometry integrates the travel of either side since its last reading.

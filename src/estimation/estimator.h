@@ -145,6 +145,7 @@ class Estimator {
 
   void advance(const SensorFrame& sensors, double dt) noexcept;
   void read(const SensorFrame& sensors, double dt) noexcept;
+  void lose_travel(double time) noexcept;  ///< s
   void integrate_wheels() noexcept;
   void move(double dt) noexcept;
   void turn_tilt(const Vector3& gyro, double dt) noexcept;

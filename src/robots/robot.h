@@ -9,9 +9,9 @@
 #include "bus/latest_value.h"
 #include "configuration/live_parameters.h"
 #include "gate/gate_parameters.h"
+#include "gate/machine_needs.h"
 #include "machine/machine_model.h"
 #include "robots/laws.h"
-#include "signals/machine_needs.h"
 
 namespace robot_control {
 

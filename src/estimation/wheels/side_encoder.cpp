@@ -25,9 +25,8 @@ bool SideEncoder::Wheel::plausible(const SensorFrame& sensors, double time) cons
 
 bool SideEncoder::Wheel::lost_zero(const SensorFrame& sensors) noexcept {
   if (joint >= sensors.joint_count || joint >= kMaxJoints) return false;
-  const JointSample& sample = sensors.joints[joint];
-  const bool faulty_before = std::exchange(faulty, sample.fault != 0);
-  return (faulty || faulty_before) && !has(sample, kValidPosition);
+  const bool faulty_before = std::exchange(faulty, sensors.joints[joint].fault != 0);
+  return (faulty || faulty_before) && !has(sensors.joints[joint], kValidPosition);
 }
 
 double SideEncoder::Wheel::accept(const SensorFrame& sensors) noexcept {
