@@ -107,10 +107,12 @@ void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
     const double time = s.wheels.unknown_time[side];
     if (time == 0) continue;
     const bool replaced = !s.wheels.lost[1 - side] && s.wheels.unknown_time[1 - side] == 0;
-    s.middle_travel.forget(side);
+    s.middle_travel.forget_credit(side);
     s.core.shift(0, 0, square(Tuning::kRestart));
     s.slip.restart();
-    if (!replaced && time > Tuning::kMaxHoldTime) lose_travel(time);
+    if (time <= Tuning::kMaxHoldTime) continue;
+    s.middle_travel.forget_turn();
+    if (!replaced) lose_travel(time);
   }
 }
 

@@ -76,6 +76,11 @@ std::unique_ptr<MonitorLaw> Quadruped::make_monitor() const {
   return std::make_unique<LegsMonitor>(safety, machine_, parameters_.loop.period());
 }
 
+MachineNeeds Quadruped::needs() const {
+  return {.modes = {JointMode::kBrake, JointMode::kImpedance},
+          .inputs = {MachineInput::kJointMotion, MachineInput::kImu}};
+}
+
 GateParameters Quadruped::gate() const {
   const LegTuning tuning = leg_tuning(machine_);
   const double ramp = std::ceil(parameters_.safety.ramp_time / parameters_.loop.period() - 1e-9);

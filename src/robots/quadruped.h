@@ -27,6 +27,7 @@ class Quadruped final : public Robot {
   std::unique_ptr<EstimatorLaw> make_estimator() const override;
   std::unique_ptr<ControllerLaw> make_controller() const override;
   std::unique_ptr<MonitorLaw> make_monitor() const override;
+  MachineNeeds needs() const override;
   GateParameters gate() const override;
   std::unique_ptr<Retuner> make_retuner(LatestValue<DriveTuning>& inbox) const override;
 

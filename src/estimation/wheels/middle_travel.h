@@ -42,8 +42,8 @@ class MiddleTravel {
     return travels;
   }
 
-  void forget_turn() noexcept { sides_[0].turned = sides_[1].turned = 0; }  ///< forgets the turn since the readings
-  void forget(std::size_t side) noexcept { sides_[side] = {}; }             ///< The travel of this side was lost.
+  void forget_turn() noexcept { sides_[0].turned = sides_[1].turned = 0; }      ///< forgets the turn since the readings
+  void forget_credit(std::size_t side) noexcept { sides_[side].credited = 0; }  ///< The side lost its travel.
 
  private:
   struct Side {
