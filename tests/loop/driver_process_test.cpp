@@ -37,6 +37,7 @@ class SlowMachine final : public Simulator {
   }
   void write(std::span<const JointCommand> /*commands*/) noexcept override {}
   void stop() noexcept override {}
+  bool accepts(JointMode) const noexcept override { return true; }
   void truth(TruthFrame&) noexcept override {}
   void inject(const InjectedFaults&) noexcept override {}
 
