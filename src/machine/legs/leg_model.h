@@ -5,8 +5,8 @@
 /// about the lengthwise axis x, the others about the lateral axis y, within kAxleTolerance at the zero pose. Its foot
 /// is the shape of the last body that reaches farthest from the third joint.
 ///
-/// The joints rest in the lying posture. They are those of front left, front right, rear left and rear right leg, each from the body outwards. The
-/// contacts are the last bodies of the legs, in the same order.
+/// The joints rest in the lying posture. They are those of front left, front right, rear left and rear right leg, each
+/// from the body outwards. The contacts are the last bodies of the legs, in the same order.
 
 #include <array>
 

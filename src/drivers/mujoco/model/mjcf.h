@@ -11,10 +11,10 @@
 ///
 /// Contacts are hard; these values were measured not to creep: `solref .004 1`, `solimp .99 .999 .001`. On a robot with
 /// drive wheels all other shapes are frictionless (condim 1, enforced by `priority 1`), so that casters and chassis
-/// slide. The shapes of a machine without wheels have the friction of the ground (condim 3), or ground_friction. Wheels on
-/// brush tyres are also frictionless for MuJoCo; wheel_contacts.h adds their friction. With native friction a wheel has
-/// condim 3. Its friction is that of the ground, because MuJoCo uses the larger of two values and the robot's is zero.
-/// The robot's `solmix` outweighs the ground's solver settings.
+/// slide. The shapes of a machine without wheels have the friction of the ground (condim 3), or ground_friction. Wheels
+/// on brush tyres are also frictionless for MuJoCo; wheel_contacts.h adds their friction. With native friction a wheel
+/// has condim 3. Its friction is that of the ground, because MuJoCo uses the larger of two values and the robot's is
+/// zero. The robot's `solmix` outweighs the ground's solver settings.
 ///
 /// Joints: limits, damping and friction are those of the URDF; a wheel has no end stops. A drive's rotor is the
 /// `armature` of its joint, and motor_damping · gear_ratio² and motor_friction · gear_ratio add to its losses. A
