@@ -14,6 +14,7 @@ PROGRAMS = (
     "export",
     "identify",
     "inspect",
+    "latency",
     "pad",
     "path",
     "record",

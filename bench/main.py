@@ -47,7 +47,9 @@ JUDGED = (
     "processes",
     "devices",
     "console",
+    "realtime",
 )
+REALTIME_PARTS = ("jitter", "chain", "cost", "scale")
 NAMES = MEASURED + JUDGED
 SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores
 ON_CLUSTERS = ("campaign", "devices", "driving", "odometry", "tuning", *SEED_PROGRAMS)
@@ -157,6 +159,12 @@ def _console(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     return console.bench(given.share, say)
 
 
+def _realtime(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    from bench.realtime import bench as realtime
+
+    return realtime.bench(given.parts, given.runs or 0, given.programs, say)
+
+
 def _drive(_given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     from bench.drives import drive_promises
 
@@ -179,6 +187,7 @@ TRIALS = {
     "processes": _processes,
     "drive": _drive,
     "console": _console,
+    "realtime": _realtime,
 }
 
 
@@ -242,7 +251,8 @@ def _share(text: str) -> float:
 def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     """The command line of scripts/bench; ends the program on a wrong one."""
     parser = argparse.ArgumentParser(prog="scripts/bench", description="Measures this machine.")
-    which = f"of {', '.join(NAMES)} (default: {', '.join(MEASURED)})"
+    parts = f"; after realtime also its parts {', '.join(REALTIME_PARTS)}"
+    which = f"of {', '.join(NAMES)} (default: {', '.join(MEASURED)}){parts}"
     parser.add_argument("names", nargs="*", metavar="NAME", help=which)
     seeds = "campaign, devices, replay, limiter, release, bags, odometry, hostile, tuning, blackbox, processes"
     parser.add_argument("--first", type=_whole(0), default=0, help=f"{seeds}: first seed")
@@ -265,6 +275,8 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--programs", type=Path, default=Path(), help=argparse.SUPPRESS)
     parser.add_argument("--params", type=Path, default=Path(), help=argparse.SUPPRESS)
     given = parser.parse_args(arguments)
+    given.parts = [name for name in given.names if name in REALTIME_PARTS] or list(REALTIME_PARTS)
+    given.names = [name for name in given.names if name not in REALTIME_PARTS or "realtime" not in given.names]
     unknown = [name for name in given.names if name not in NAMES]
     if unknown:
         parser.error(f"no benchmark {', '.join(unknown)}; there are {', '.join(NAMES)}")

@@ -44,6 +44,10 @@ struct ChannelNames {
   // rings: "trace_" and "snapshot_" "plant", "estimator", "controller", "monitor"
 };
 
+/// Channel of each ring, by TraceRing.
+inline constexpr const char* kTraceChannels[kTraceRings] = {"trace_plant", "trace_estimator", "trace_controller",
+                                                            "trace_monitor"};
+
 /// The layout of LatestFrames<Frame>, Ring<Row>, RingPositions.
 template <class Object>
 struct BusLayoutOf;

@@ -45,6 +45,7 @@ struct Ring {
   alignas(64) Atomic<std::uint64_t> written;  ///< rows appended by all writers
   Atomic<std::uint64_t> dropped;              ///< rows dropped by all writers
   Atomic<std::uint64_t> began;                ///< rows appended before the present writer began
+  Atomic<std::uint64_t> thread;               ///< id of the thread that appends (gettid(2)); 0: not known
   alignas(64) std::array<Slot, SlotCount> slots;
 };
 

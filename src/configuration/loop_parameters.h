@@ -17,11 +17,19 @@ inline std::vector<Word> words_of(ClockMode) {
   return {{"wall", ClockMode::kWall}, {"lockstep", ClockMode::kLockstep}};
 }
 
+/// An ordinary thread of each node counts what its real-time thread must not do (timing/realtime_check.h).
+enum class RealtimeChecks { kOff, kCount };
+
+inline std::vector<Word> words_of(RealtimeChecks) {
+  return {{"off", RealtimeChecks::kOff}, {"count", RealtimeChecks::kCount}};
+}
+
 /// Values on which all nodes must agree; they are in the block `robot:`, beside those of the robot itself.
 struct LoopParameters {
   double rate = 1000;  ///< Hz, 100 … 2000
   ClockMode clock = ClockMode::kWall;
   RealtimePolicy realtime = RealtimePolicy::kPreferred;
+  RealtimeChecks realtime_checks = RealtimeChecks::kCount;
   std::int64_t core = 0;                    ///< core to which the real-time threads are pinned; -1: not pinned
   std::optional<double> cpu_dma_latency;    ///< µs, of idle states of the processors; none: not requested
   StopKind fail_action = StopKind::kBrake;  ///< of every wheel while the gate passes no command
@@ -40,6 +48,7 @@ inline Keys keys(LoopParameters& loop) {
       {"rate", &loop.rate, "Hz", 100, 2000},
       {"clock", &loop.clock},
       {"realtime", &loop.realtime},
+      {"realtime_checks", &loop.realtime_checks},
       {"core", &loop.core, {}, -1, 1023},
       {"cpu_dma_latency", &loop.cpu_dma_latency, "µs", 0, 10000, kOptional},
       {"bus", &loop.bus, {}, 0, 0, kMayBeEmpty},

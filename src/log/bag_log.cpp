@@ -16,11 +16,13 @@ namespace {
 constexpr std::uint32_t kHeader = 0;  // these are the numbers of the connections
 constexpr std::uint32_t kTrace = 1;
 constexpr std::uint32_t kSnapshot = 2;
+constexpr std::uint32_t kSummary = 3;
 
 std::vector<WrittenConnection> connections() {
   return {{.topic = "trace_header", .type = trace_header_type(), .latching = true},
           {.topic = "trace", .type = trace_type()},
-          {.topic = "trace_snapshot", .type = snapshot_type()}};
+          {.topic = "trace_snapshot", .type = snapshot_type()},
+          {.topic = "trace_summary", .type = trace_summary_type()}};
 }
 
 std::int64_t stamp_of(const JoinedRow& row) {
@@ -86,6 +88,18 @@ void BagLog::write(const LawSnapshot& snapshot) {
   seal(sealed);
   chunk_.add(kSnapshot, ros_time(sealed.head.stamp_ns), encode(sealed));
   chunk_snapshot_ = true;
+}
+
+void BagLog::write(const TraceSummary& summary) {
+  chunk_.add(kSummary, ros_time(summary.stamp_ns), encode(summary));
+}
+
+void BagLog::write_last(const TraceSummary& summary) {
+  end_chunk();
+  held_.clear();
+  if (bag_begin_ns_ == 0) return;
+  write(summary);
+  chunk_wanted_ = true;
 }
 
 void BagLog::end_chunk() {

@@ -1,6 +1,6 @@
 #pragma once
-/// The log of every cycle is a ROS bag, run.bag, with the topics `trace_header` (latched, first), `trace` and
-/// `trace_snapshot`.
+/// The log of every cycle is a ROS bag, run.bag, with the topics `trace_header` (latched, first), `trace`,
+/// `trace_snapshot` and, on the wall clock, `trace_summary`.
 ///
 /// Rows are collected in chunks of a second. If only motion is recorded (motion_watch.h), the chunks of the last
 /// `kBeforeNs` are held in memory and written when motion begins. A bag of the permitted size or length is closed and
@@ -53,6 +53,13 @@ class BagLog final : public RowLog {
 
   /// A snapshot comes before the row to which it belongs.
   void write(const LawSnapshot& snapshot) override;
+
+  /// Writes the figures of the timing beside the rows.
+  void write(const TraceSummary& summary);
+
+  /// Writes the figures of the whole log, after its last row; `close` follows. Without a row in the bag it does
+  /// nothing.
+  void write_last(const TraceSummary& summary);
 
   /// The caller calls this at 10 Hz; `now_ns` is on any clock that runs. A chunk of a second goes to the disk, also if
   /// no row follows. After an error another bag is tried. Throws LogError.

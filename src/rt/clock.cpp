@@ -3,6 +3,8 @@
 #include <cerrno>
 #include <ctime>
 
+#include "rt/wait_count.h"
+
 namespace robot_control {
 
 std::int64_t monotonic_ns() noexcept {
@@ -23,8 +25,9 @@ std::int64_t utc_ns() noexcept {
 
 void sleep_until(std::int64_t deadline_ns) noexcept {
   const timespec deadline{deadline_ns / 1'000'000'000, deadline_ns % 1'000'000'000};
-  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, nullptr) == EINTR) {
-  }
+  do {
+    count_wait();
+  } while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, nullptr) == EINTR);
 }
 
 }  // namespace robot_control

@@ -8,6 +8,7 @@
 #include <ctime>
 
 #include "rt/clock.h"
+#include "rt/wait_count.h"
 
 namespace robot_control {
 namespace {
@@ -23,6 +24,7 @@ bool futex_wait(const std::atomic<std::uint32_t>& word, std::uint32_t expected, 
   const std::int64_t deadline_ns = timeout_ns < 0 ? 0 : monotonic_ns() + timeout_ns;
   const timespec deadline = to_timespec(deadline_ns);
   do {
+    count_wait();
     // FUTEX_WAIT_BITSET takes an absolute CLOCK_MONOTONIC time. The futex is not private, because the word is in shared
     // memory.
     const long result = syscall(SYS_futex, reinterpret_cast<const std::uint32_t*>(&word), FUTEX_WAIT_BITSET, expected,

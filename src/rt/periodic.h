@@ -16,6 +16,14 @@
 ///          lateness, which is counted: slipped = now − deadline.
 ///   kSkip  hardware: time has passed. The grid stays, k jumps over the missed periods:
 ///          missed = ⌊(now − deadline) / period⌋.
+///
+///               begin: late < period
+///   waiting ─────────────────────────────▶ running k ─── end: deadline += period ──▶ waiting
+///      │                                       ▲               (late: overruns += 1, and the next begin is at once)
+///      │  begin: late ≥ period, kSkip          │
+///      ├──── k += missed, grid stays ──────────┤
+///      │  begin: late ≥ period, kSlip          │
+///      └──── grid += late, k consecutive ──────┘
 
 #include <cstdint>
 

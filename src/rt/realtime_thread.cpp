@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "rt/crash_report.h"
+#include "rt/wait_count.h"
 
 namespace robot_control {
 namespace {
@@ -150,6 +151,8 @@ struct RealtimeThread::Thread {
   std::function<void()> body;
   RealtimeReport report;
   std::promise<void> ready;
+  int id = 0;
+  std::atomic<std::uint64_t> waits{0};
   Stack stack;
   pthread_t handle{};
   bool joined = false;
@@ -162,6 +165,8 @@ struct RealtimeThread::Thread {
     take_core(requested.core, self.report);
     if (requested.policy != RealtimePolicy::kOff && requested.priority > 0)
       take_priority(requested.priority, self.report);
+    self.id = gettid();
+    count_waits_in(&self.waits);
     const bool go = !refused(requested, self.report);
     self.ready.set_value();
     if (go) self.body();
@@ -193,6 +198,14 @@ RealtimeThread::RealtimeThread(const RealtimeParameters& parameters, std::functi
 
 RealtimeThread::~RealtimeThread() {
   join();
+}
+
+int RealtimeThread::id() const noexcept {
+  return thread_->id;
+}
+
+std::uint64_t RealtimeThread::waits() const noexcept {
+  return thread_->waits.load(std::memory_order_relaxed);
 }
 
 void RealtimeThread::join() {

@@ -12,6 +12,7 @@
 /// capability>)". Under kRequired a refusal is an error at start-up. The core needs no privilege and is set under every
 /// policy.
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -83,6 +84,12 @@ class RealtimeThread {
   void join();
 
   const RealtimeReport& report() const noexcept { return report_; }
+
+  /// The id of the thread in /proc (gettid(2)).
+  int id() const noexcept;
+
+  /// The number of system calls with which the thread has waited (rt/wait_count.h).
+  std::uint64_t waits() const noexcept;
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   static constexpr std::size_t kStackBytes = 4096 * 1024;  ///< a sanitizer uses 0.9 MB of the stack

@@ -24,7 +24,7 @@ LAWS = {
     "gate",
     "gate/wheeled",
 }
-LOOP = LAWS | {"rt", "bus", "drivers", "parameters", "configuration", "robots", "loop", "log"}
+LOOP = LAWS | {"rt", "bus", "timing", "drivers", "parameters", "configuration", "robots", "loop", "log"}
 ALL = LOOP | {"files", "machine/description", "log/bag", "simulation", "simulation/faults", "drivers/mujoco"}
 MAY_INCLUDE = {
     "signals": set(),
@@ -33,6 +33,8 @@ MAY_INCLUDE = {
     "parameters": {"files"},
     "rt": {"parameters"},
     "bus": {"signals", "rt"},
+    # How punctual the loop is, from the rows of the trace.
+    "timing": {"signals", "rt", "bus"},
     "machine/description": {"files"},
     "machine": {"signals", "machine/description", "files", "parameters"},
     # One robot kind on top of it; test_only_the_wheeled_kind_sees_the_drive_train says who may see it.

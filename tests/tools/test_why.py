@@ -51,6 +51,13 @@ def test_text_of_other_programs_is_shown_without_control_characters(driving: Fac
     assert "It moves." not in lines[1:]
 
 
+def test_a_real_time_thread_that_blocked_is_named(driving: Facts) -> None:
+    blocked = Report("not real-time in the last 10 s: 2 waits outside of its loop (docs/timing.md)")
+    lines = render(replace(driving, reports={**driving.reports, ESTIMATOR: blocked}), Look(width=200))
+    assert f"real time  {ESTIMATOR}: {blocked.message}" in lines
+    assert not any("real time" in line for line in render(driving))
+
+
 def without(facts: Facts, *nodes: str) -> Facts:
     """Removes these nodes; the monitor, if it is there, reports that."""
     reports = {name: report for name, report in facts.reports.items() if name not in nodes}

@@ -143,6 +143,9 @@ def _circumstances(facts: Facts) -> Rows:
     faults = facts.value(facts.driver, "injected")
     if faults not in {"", "none"}:
         yield "injected", faults, "33"
+    late = [f"{node}: {facts.reports[node].message}" for node in facts.loop if facts.not_real_time(node)]
+    for number, text in enumerate(late):
+        yield "real time" if number == 0 else "", text, "33"
     machine = facts.value(facts.driver, "machine")
     if machine:
         yield "machine", machine, ""

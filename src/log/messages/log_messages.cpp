@@ -22,6 +22,11 @@ class Writer {
     for (const std::string& value : values) sink_.text(value);
   }
   template <class Number>
+  void operator()(const std::vector<Number>& values) {
+    sink_.number(static_cast<std::uint32_t>(values.size()));
+    for (const Number value : values) sink_.number(value);
+  }
+  template <class Number>
   void operator()(const Number& value) {
     sink_.number(value);
   }
@@ -126,6 +131,21 @@ std::string encode(const LogHeader& header) {
   each_header_field(header, [&](std::string_view name, const auto& member) {
     name == "checksum" ? write(checksum_text(write.bytes)) : write(member);
   });
+  return write.bytes;
+}
+
+std::string encode(const TraceSummary& summary) {
+  Writer write;
+  write(summary.stamp_ns);
+  write(summary.names);
+  write(summary.samples);
+  write(summary.min);
+  write(summary.p50);
+  write(summary.p99);
+  write(summary.p999);
+  write(summary.max);
+  write(summary.counters);
+  write(summary.counts);
   return write.bytes;
 }
 

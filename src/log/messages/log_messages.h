@@ -33,11 +33,29 @@ struct LogHeader {
   std::string checksum = {};   ///< checksum of all fields before it, 8 hexadecimal digits; `encode` computes it again
 };
 
+/// The figures of the loop's timing at one moment.
+struct TraceSummary {
+  std::int64_t stamp_ns = 0;  ///< on the clock of the rows' stamps
+
+  /// Durations, ns. `names` says "driver.wake_up" for those since the log began, and "driver.wake_up.10s".
+  std::vector<std::string> names = {};
+  std::vector<std::uint64_t> samples = {};
+  std::vector<std::int64_t> min = {};
+  std::vector<std::int64_t> p50 = {};
+  std::vector<std::int64_t> p99 = {};
+  std::vector<std::int64_t> p999 = {};
+  std::vector<std::int64_t> max = {};
+
+  std::vector<std::string> counters = {};  ///< "driver.page_faults"
+  std::vector<std::uint64_t> counts = {};
+};
+
 /// True: the checksum of the header is that of its fields.
 bool intact(const LogHeader& header);
 
 std::string encode(const LogHeader& header);      ///< sealed
 std::string encode(const LawSnapshot& snapshot);  ///< sealed
+std::string encode(const TraceSummary& summary);
 
 /// `definition` is the text of the .msg with which the header was recorded; it names the fields. A field that it lacks
 /// keeps its default. Throws TraceError.

@@ -15,6 +15,7 @@ struct MessageType {
 const MessageType& trace_type();
 const MessageType& trace_header_type();
 const MessageType& snapshot_type();
+const MessageType& trace_summary_type();
 
 std::string package_version();
 std::string package_build();  ///< compiler, build type, flags

@@ -15,10 +15,6 @@
 
 namespace robot_control {
 
-/// Channel of each ring, by TraceRing.
-inline constexpr const char* kTraceChannels[kTraceRings] = {"trace_plant", "trace_estimator", "trace_controller",
-                                                            "trace_monitor"};
-
 /// Channel of each ring of snapshots; one that was not read is overwritten by the eighth after it.
 inline constexpr const char* kSnapshotChannels[kTraceRings] = {"snapshot_plant", "snapshot_estimator",
                                                                "snapshot_controller", "snapshot_monitor"};
@@ -46,6 +42,11 @@ class TraceSink {
     const RingPositions* memory = positions_.memory();
     const bool reads = memory != nullptr && positions_.locked() && memory->head.attached_run.load() != 0;
     read_.store(reads ? &memory->read[ring_] : nullptr, std::memory_order_release);
+  }
+
+  /// Ordinary thread: this thread appends, and may be watched by others.
+  void announce_thread(int id) noexcept {
+    channel_.memory()->thread.store(static_cast<std::uint64_t>(id), std::memory_order_release);
   }
 
   bool reader_present() const noexcept { return read_.load(std::memory_order_acquire) != nullptr; }

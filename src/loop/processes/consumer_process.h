@@ -69,6 +69,7 @@ class ConsumerProcess : public Process {
     robot_agrees_ = sensors_.reader.memory() != nullptr && sensors_.channel.locked() && same_robot_as_driver();
   }
 
+  void announce_thread(int id) override { trace_.announce_thread(id); }
   bool ready() override { return robot_agrees_ && !waits_for_telemetry(); }
 
   /// The loop: the frame that is there first, then one step per wake-up. `silence` is called when nothing woke it for

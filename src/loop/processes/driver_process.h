@@ -50,6 +50,7 @@ class DriverProcess final : public Process {
  private:
   void poll_channels() override;
   bool ready() override;
+  void announce_thread(int id) override { trace_.announce_thread(id); }
   void loop() noexcept override;
   void loop_wall() noexcept;
   void loop_lockstep() noexcept;

@@ -28,6 +28,7 @@ void Process::poll() {
   poll_channels();
   if (thread_ == nullptr && ready()) {
     thread_ = std::make_unique<RealtimeThread>(thread_parameters(), [this] { loop(); });
+    announce_thread(thread_->id());
   }
   std::vector<std::string> names = missing();
   const std::lock_guard lock(missing_mutex_);

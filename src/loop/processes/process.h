@@ -46,13 +46,17 @@ class Process {
   /// The same as of the last `poll`; any thread.
   std::vector<std::string> last_missing() const;
 
+  /// The real-time thread; null before it started. Only for the thread that polls.
+  const RealtimeThread* realtime_thread() const noexcept { return thread_.get(); }
+
   /// The privileges that the real-time thread was granted or refused, in words; empty before it started.
   std::vector<std::string> realtime_messages() const;
 
  protected:
-  virtual void poll_channels() = 0;  ///< maps what appeared
-  virtual bool ready() = 0;          ///< may the real-time thread start?
-  virtual void loop() noexcept = 0;  ///< its body; ends when `stopping()`
+  virtual void poll_channels() = 0;            ///< maps what appeared
+  virtual bool ready() = 0;                    ///< may the real-time thread start?
+  virtual void loop() noexcept = 0;            ///< its body; ends when `stopping()`
+  virtual void announce_thread(int /*id*/) {}  ///< the real-time thread with this id (gettid(2)) has started
 
   /// The real-time thread was started. Only for the thread that polls.
   bool started() const noexcept { return thread_ != nullptr; }

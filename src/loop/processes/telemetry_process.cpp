@@ -62,6 +62,11 @@ class TelemetryProcess::Source {
     return rows;
   }
 
+  /// Returns the id of the thread that writes the ring; 0: it is not known.
+  int thread() const {
+    return alive() ? static_cast<int>(channel_.memory()->thread.load(std::memory_order_acquire)) : 0;
+  }
+
   bool mapped() const { return reader_.has_value(); }
   bool alive() const { return mapped() && channel_.locked(); }
 
@@ -130,8 +135,10 @@ TelemetryProcess::TelemetryProcess(const Parameters& parameters, const MachineMo
       folder_(parameters.telemetry.directory, bytes_of(parameters.telemetry.quota)),
       lockstep_(parameters.loop.clock == ClockMode::kLockstep),
       permit_(bus, ChannelNames::kPermit),
+      timing_(lockstep_ ? nullptr : std::make_unique<TimingSummary>()),
       join_(parameters.loop.period(),
             [this](const JoinedRow& row) {
+              if (timing_ != nullptr) timing_->add(row);
               if (bag_ != nullptr) write_to_bag([&] { bag_->write(row); });
             }),
       sources_(std::make_unique<Sources>(bus)) {
@@ -172,8 +179,15 @@ void TelemetryProcess::poll() {
   if (bag_ == nullptr) return;
   bag_->set_lost(lost);
   if (!lockstep_) bag_->set_time_offset(utc_ns() - now_ns);
+  if (timing_ != nullptr && timing_->due(now_ns)) bag_->write(summary(now_ns));
   write_to_bag([&] { bag_->poll(now_ns); });
   if (!bag_->broken()) problem_.clear();
+}
+
+TraceSummary TelemetryProcess::summary(std::int64_t now_ns) const {
+  std::array<int, kLoopRoles> threads{};
+  sources_->each([&](const auto& source, std::size_t ring) { threads[ring] = source.thread(); });
+  return timing_->summary(now_ns, threads);
 }
 
 /// A row before it is joined.
@@ -228,7 +242,12 @@ void TelemetryProcess::finish() {
   positions_.memory()->head.attached_run.store(0);
   drain();
   join_.finish();
-  if (bag_ != nullptr) write_to_bag([this] { bag_->close(); });
+  if (bag_ != nullptr) {
+    write_to_bag([this] {
+      if (timing_ != nullptr) bag_->write_last(summary(monotonic_ns()));
+      bag_->close();
+    });
+  }
   // Last: a stop that is to be saved takes seconds, and roslaunch kills a node that takes 15 s to end.
   constexpr std::int64_t kSavingNs = 5'000'000'000;
   const std::int64_t end_ns = monotonic_ns() + kSavingNs;

@@ -1,7 +1,7 @@
 #pragma once
 /// The reader of the trace: takes the rows of the four rings, joins them by cycle and writes run.bag.
 /// The black box (recording/black_box) gets them first, as they are. The causes that latched a stop are read from the
-/// newest permit.
+/// newest permit. On the wall clock it adds the figures of the timing to run.bag (timing_summary.h).
 ///
 /// It owns the read positions. It announces itself only once all four rings are mapped and the positions stored
 /// (head.attached_run = 1): from then on, in lockstep, a full ring makes its writer wait, so no row is lost.
@@ -23,6 +23,7 @@
 #include "log/log_folder.h"
 #include "log/rows/join.h"
 #include "loop/processes/process.h"
+#include "loop/processes/timing_summary.h"
 #include "machine/machine_model.h"
 
 namespace robot_control {
@@ -95,6 +96,7 @@ class TelemetryProcess {
   template <class Row>
   void receive(const Row& row, std::size_t ring);
   void check_permit();
+  TraceSummary summary(std::int64_t now_ns) const;
 
   OwnedChannel<RingPositions> positions_;
   LogFolder folder_;
@@ -109,6 +111,7 @@ class TelemetryProcess {
   std::array<std::uint64_t, kLaws> law_processes_{};  ///< LawRow::process of the newest rows
   std::uint64_t tuning_ = 0;                          ///< DriveTuning::count of the newest
   std::uint64_t parameter_changes_ = 0;
+  std::unique_ptr<TimingSummary> timing_;  ///< null in lockstep, where no time passes within a cycle
   Join join_;
   std::unique_ptr<Sources> sources_;
 };

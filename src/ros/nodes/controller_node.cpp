@@ -33,7 +33,7 @@ namespace {
 class ControllerNode final : public ProcessNode<ControllerProcess> {
  public:
   explicit ControllerNode(const Setup& setup)
-      : ProcessNode(setup),
+      : ProcessNode(setup, Role::kController),
         input_(parameters().controller.cmd_vel_timeout, parameters().controller.one_sender),
         pace_(report().command_rate),
         command_report_(robot(), parameters().controller) {

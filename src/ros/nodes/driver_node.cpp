@@ -22,7 +22,10 @@ constexpr double kClockRate = 100;  // Hz of simulated time
 class DriverNode final : public ProcessNode<DriverProcess> {
  public:
   DriverNode(const Setup& setup, MakeDriver make)
-      : ProcessNode(setup), imu_pace_(report().imu_rate), truth_pace_(report().truth_rate), clock_pace_(kClockRate) {
+      : ProcessNode(setup, Role::kDriver),
+        imu_pace_(report().imu_rate),
+        truth_pace_(report().truth_rate),
+        clock_pace_(kClockRate) {
     auto driver = with_imu(make(setup));
     driver_ = driver.get();
     description_ = std::make_unique<PublishedDescription>(robot(), parameters().urdf);

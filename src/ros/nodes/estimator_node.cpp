@@ -26,7 +26,7 @@ Setup calibrated(Setup setup) {
 class EstimatorNode final : public ProcessNode<EstimatorProcess> {
  public:
   explicit EstimatorNode(const Setup& setup)
-      : ProcessNode(calibrated(setup)),
+      : ProcessNode(calibrated(setup), Role::kEstimator),
         keeper_(setup.parameters, setup.robot),
         joint_pace_(report().joint_states_rate),
         odom_pace_(report().odom_rate),

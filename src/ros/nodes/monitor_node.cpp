@@ -31,7 +31,7 @@ constexpr std::int64_t kResetLook = 2'000'000;         // ns
 
 class MonitorNode final : public ProcessNode<MonitorProcess> {
  public:
-  using ProcessNode::ProcessNode;
+  explicit MonitorNode(const Setup& setup) : ProcessNode(setup, Role::kMonitor) {}
 
   void connect(ros::NodeHandle& handle) override {
     for (const std::string& topic : command_topics()) command_topics_.push_back(handle.resolveName(topic));

@@ -162,6 +162,7 @@ class NodeLoop {
     DiagnosticReport report(ros::this_node::getName().substr(1), setup_.robot.name);
     report_missing(report, node_.missing());
     node_.diagnose(report);
+    node_.diagnose_timing(report);
     msg::DiagnosticArray array;
     array.header.stamp = ros::Time::now();
     array.status.push_back(report.message());

@@ -47,6 +47,9 @@ class Node {
 
   /// Fills the node's entry on /diagnostics, at 1 Hz.
   virtual void diagnose(DiagnosticReport& report) = 0;
+
+  /// Adds how punctual the real-time thread of the loop is, if the node has one.
+  virtual void diagnose_timing(DiagnosticReport& /*report*/) {}
 };
 
 /// Takes the locks. Throws BusError, or another exception that refuses the start.

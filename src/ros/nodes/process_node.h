@@ -1,6 +1,7 @@
 #pragma once
 /// A ProcessNode is a Node that runs a Process; it is the common part of the four nodes of the loop.
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +10,8 @@
 #include "robots/differential_drive.h"
 #include "ros/messages/time_map.h"
 #include "ros/nodes/node.h"
+#include "ros/reports/timing_report.h"
+#include "rt/clock.h"
 
 namespace robot_control {
 
@@ -17,13 +20,22 @@ class ProcessNode : public Node {
  public:
   /// `more` are the arguments of Work's constructor behind parameters, robot and bus.
   template <class... More>
-  explicit ProcessNode(const Setup& setup, More&&... more)
+  ProcessNode(const Setup& setup, Role role, More&&... more)
       : setup_(setup),
         time_(setup.parameters.loop.clock),
         composed_(setup.parameters, setup.robot),
-        process_(setup.parameters, composed_, setup.bus, std::forward<More>(more)...) {}
+        process_(setup.parameters, composed_, setup.bus, std::forward<More>(more)...) {
+    if (setup.parameters.loop.clock == ClockMode::kLockstep) return;  // no time passes within a cycle
+    timing_ = std::make_unique<TimingReport>(setup.parameters.loop, setup.bus, role);
+  }
 
-  void poll() override { process_.poll(); }
+  void poll() override {
+    process_.poll();
+    if (timing_ != nullptr) timing_->poll(process_.realtime_thread(), monotonic_ns());
+  }
+  void diagnose_timing(DiagnosticReport& report) override {
+    if (timing_ != nullptr) timing_->report(report, monotonic_ns());
+  }
   bool finished() const override { return process_.finished(); }
   void stop() override { process_.stop(); }
 
@@ -44,6 +56,7 @@ class ProcessNode : public Node {
   TimeMap time_;
   DifferentialDrive composed_;
   Work process_;
+  std::unique_ptr<TimingReport> timing_;  ///< null in lockstep
 };
 
 }  // namespace robot_control

@@ -1,0 +1,75 @@
+"""Runs loops as processes without ROS for some seconds, and reads their logs."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import tempfile
+import time
+from collections.abc import Mapping
+from pathlib import Path
+
+from robot_control.common.roles import LOOP, TELEMETRY
+from robot_control.common.run_log import Log, read_log
+
+from bench.participants import START_LIMIT, command, remove_shared_memory, script
+
+FIRST = 1000
+"""cycles that are not judged: the nodes start one after the other"""
+LAST = 200
+"""likewise at the end"""
+SOME_ROWS = 100_000
+"""bytes of run.bag"""
+
+
+class Loop:
+    """Four nodes and a telemetry on the bus `name`, until `end`."""
+
+    def __init__(self, programs: Path, name: str, settings: Mapping[str, object] | None = None) -> None:
+        self._name = name
+        self._folder = tempfile.TemporaryDirectory(prefix=f"{name}-")
+        folder = Path(self._folder.name)
+        (folder / "script.csv").write_text(script(600_000))
+        given = {"telemetry.black_box": 0, **(settings or {})}
+        words = [command(programs, node, name, folder, given) for node in (TELEMETRY, *LOOP)]
+        self.processes = [
+            subprocess.Popen(each, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
+            for each in words
+        ]
+        self._bag = folder / "run.bag"
+
+    def await_start(self) -> None:
+        """Waits until all nodes write."""
+        end = time.monotonic() + START_LIMIT
+        while not self._bag.exists() or self._bag.stat().st_size < SOME_ROWS:
+            if time.monotonic() > end or any(process.poll() is not None for process in self.processes):
+                raise RuntimeError(f"the nodes have not begun to write {self._bag.name}")
+            time.sleep(0.05)
+
+    def end(self) -> Log:
+        """Ends the nodes, telemetry last; returns the rows without their start and their end."""
+        for process in reversed(self.processes):
+            process.terminate()
+            process.wait(START_LIMIT)
+        rows = read_log(self._bag)
+        self.close()
+        return {name: values[FIRST:-LAST] for name, values in rows.items()}
+
+    def close(self) -> None:
+        """Removes everything; kills what still runs."""
+        for process in self.processes:
+            process.kill()
+            process.wait()
+        remove_shared_memory(self._name)
+        self._folder.cleanup()
+
+
+def loop_for(seconds: float, programs: Path, settings: Mapping[str, object] | None = None) -> Log:
+    """The rows of one loop of so many seconds."""
+    loop = Loop(programs, f"realtime-{os.getpid()}", settings)
+    try:
+        loop.await_start()
+        time.sleep(seconds + (FIRST + LAST) / 1000)
+        return loop.end()
+    finally:
+        loop.close()

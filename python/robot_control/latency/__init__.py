@@ -1,0 +1,1 @@
+"""latency.py: how punctual the real-time threads are, live."""

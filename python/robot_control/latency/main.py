@@ -1,0 +1,88 @@
+"""latency.py's ROS side: receives /diagnostics, prints a table once per second, saves a plot at the end."""
+
+import argparse
+import contextlib
+import sys
+import threading
+import time
+from pathlib import Path
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray
+
+from robot_control.common.picture_file import check_picture
+from robot_control.common.ros_master import require_master
+from robot_control.common.ros_node import begin_node
+from robot_control.latency.figures import Figures, figures_of, table
+
+FRAME = 1.0
+"""s between two tables; nodes report once per second"""
+SILENCE = 3.0
+"""s; the values of a node that reports no longer are not shown"""
+
+
+class Listener:
+    """Keeps the newest values of each node with figures, and all figures for the plot."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._nodes: dict[str, tuple[float, dict[str, str]]] = {}
+        self._start = time.monotonic()
+        self.samples: list[tuple[float, str, dict[str, Figures]]] = []
+        rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive, queue_size=100)
+
+    def _receive(self, message: DiagnosticArray) -> None:
+        now = time.monotonic()
+        for status in message.status:
+            values = {pair.key: pair.value for pair in status.values}
+            if "period_10s_us" not in values:
+                continue
+            with self._lock:
+                self._nodes[status.name] = (now, values)
+                self.samples.append((now - self._start, status.name, figures_of(values)))
+
+    def nodes(self) -> dict[str, dict[str, str]]:
+        """Node → values, of those that report."""
+        oldest = time.monotonic() - SILENCE
+        with self._lock:
+            return {node: values for node, (at, values) in sorted(self._nodes.items()) if at > oldest}
+
+
+def show(listener: Listener, seconds: float) -> None:
+    """Prints until `seconds` have passed (0: until it is interrupted). On a terminal each table replaces the last."""
+    end = time.monotonic() + seconds if seconds else float("inf")
+    terminal = sys.stdout.isatty()
+    while not rospy.is_shutdown() and time.monotonic() < end:
+        time.sleep(FRAME)
+        nodes = listener.nodes()
+        lines = table(nodes) if nodes else ["no node of the loop reports; does it run on the wall clock?"]
+        print(("\x1b[2J\x1b[H" if terminal else "") + "\n".join(lines), flush=True)
+
+
+def main() -> None:
+    """Entry point of scripts/timing/latency.py."""
+    parser = argparse.ArgumentParser(
+        prog="latency.py",
+        description="How punctual are the real-time threads? Period, wake-up latency, execution time, sensor to "
+        "command and sensor to torque of each node, live from /diagnostics.",
+    )
+    parser.add_argument("--seconds", type=float, default=0.0, help="end after so many seconds (0: at Ctrl-C)")
+    parser.add_argument("--plot", type=Path, metavar="FILE", help="at the end, draw the figures over time")
+    given = parser.parse_args(rospy.myargv(sys.argv)[1:])
+    if given.plot:
+        try:
+            check_picture(given.plot)
+        except ValueError as error:
+            parser.error(str(error))
+    require_master()
+    begin_node("latency", anonymous=True)
+    listener = Listener()
+    with contextlib.suppress(KeyboardInterrupt):
+        show(listener, given.seconds)
+    if not listener.samples:
+        sys.exit("latency.py: no node has reported; the loop must run on the wall clock (robot.clock: wall)")
+    if given.plot:
+        from robot_control.latency.picture import draw  # noqa: PLC0415 (matplotlib takes a second)
+
+        draw(listener.samples, given.plot)
+        print(f"written: {given.plot}")
