@@ -60,8 +60,30 @@ struct LatestFrames {
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
+/// The frames of a channel that one thread writes and reads: they are neither copied for a reader nor checked, because
+/// nothing can tear them. A frame that was stored without being sealed is checked.
+template <class Frame, std::size_t SlotCount = kFrameSlots>
+struct OwnFrames {
+  struct Slot {
+    Frame frame{};
+    bool whole = false;  ///< its writer has sealed it
+  };
+  std::array<Slot, SlotCount> slots;
+};
+
+/// The result of a lookup without a copy. The frame is in the buffer of the caller, or where its writer has put it;
+/// there it stays for the next seven cycles.
+template <class Frame>
+struct Found {
+  Lookup lookup = Lookup::kMissing;
+  const Frame* frame = nullptr;  ///< never null; without meaning after kMissing
+};
+
 /// The waiting threads that a publication wakes. A loop in one thread on private memory avoids the system call.
 enum class Wake { kReaders, kNone };
+
+template <class Frame, template <class> class Atomic = std::atomic, std::size_t SlotCount = kFrameSlots>
+class FrameReader;
 
 template <class Frame, template <class> class Atomic = std::atomic, std::size_t SlotCount = kFrameSlots>
 class FrameWriter {
@@ -71,10 +93,14 @@ class FrameWriter {
   /// `memory` is zeroed or was left by an earlier writer of the same layout. It is not owned.
   explicit FrameWriter(Frames* memory = nullptr, Wake wake = Wake::kReaders) noexcept : memory_(memory), wake_(wake) {}
 
+  /// Writes for readers in the same thread.
+  FrameWriter(Frames* memory, OwnFrames<Frame, SlotCount>* own) noexcept : memory_(memory), own_(own) {}
+
   /// Seals the frame, stores it and wakes all readers with one futex call.
   void publish(Frame& frame) noexcept {
     seal(frame);
     publish_sealed(frame);
+    if (own_ != nullptr) own_->slots[frame.head.cycle % SlotCount].whole = true;
   }
 
   /// Publishes a frame that is already sealed.
@@ -93,6 +119,12 @@ class FrameWriter {
   /// Stores a frame without sealing it or waking readers, for tests with a broken frame.
   void store(const Frame& frame) noexcept {
     const std::size_t index = frame.head.cycle % SlotCount;
+    if (own_ != nullptr) {
+      own_->slots[index].frame = frame;
+      own_->slots[index].whole = false;
+      memory_->newest.store(index + 1, std::memory_order_relaxed);
+      return;
+    }
     auto& slot = memory_->slots[index];
     const std::uint64_t version = slot.version.load(std::memory_order_relaxed) | 1;  // odd also after a crash
     slot.version.store(version, std::memory_order_release);
@@ -104,33 +136,65 @@ class FrameWriter {
 
   Frames* memory() const noexcept { return memory_; }
 
+  /// Returns a reader of this channel.
+  auto reader() const noexcept { return FrameReader<Frame, Atomic, SlotCount>(memory_, own_); }
+
  private:
   void wake() noexcept {
+    if (own_ != nullptr) return;
     memory_->sequence.fetch_add(1, std::memory_order_release);
     if (wake_ == Wake::kReaders) futex_wake_all(memory_->sequence);
   }
 
   Frames* memory_;
-  Wake wake_;
+  Wake wake_ = Wake::kNone;
+  OwnFrames<Frame, SlotCount>* own_ = nullptr;
 };
 
-template <class Frame, template <class> class Atomic = std::atomic, std::size_t SlotCount = kFrameSlots>
+template <class Frame, template <class> class Atomic, std::size_t SlotCount>
 class FrameReader {
  public:
   using Frames = LatestFrames<Frame, Atomic, SlotCount>;
 
   explicit FrameReader(const Frames* memory = nullptr) noexcept : memory_(memory) {}
-  FrameReader(const FrameReader& other) noexcept : memory_(other.memory_.load()) {}
+
+  /// Reads what a writer in the same thread puts into `own`.
+  FrameReader(const Frames* memory, const OwnFrames<Frame, SlotCount>* own) noexcept : memory_(memory), own_(own) {}
+  FrameReader(const FrameReader& other) noexcept : memory_(other.memory_.load()), own_(other.own_) {}
   FrameReader& operator=(const FrameReader& other) noexcept {
     memory_.store(other.memory_.load());
+    own_ = other.own_;
     return *this;
   }
 
   /// Maps the object that replaced the channel's; an ordinary thread calls it. The old mapping must stay valid.
   void remap(const Frames* memory) noexcept { memory_.store(memory, std::memory_order_release); }
 
+  /// These three are `newest`, `at` and `newest_within` without a copy, if the channel is that of one thread.
+  Found<Frame> find_newest(Frame& buffer) const noexcept {
+    if (own_ == nullptr) return {newest(buffer), &buffer};
+    const std::uint64_t newest = memory_.load(std::memory_order_relaxed)->newest.load(std::memory_order_relaxed);
+    return newest == 0 ? Found<Frame>{Lookup::kMissing, &buffer} : found_in(own_->slots[newest - 1]);
+  }
+  Found<Frame> find_at(std::uint64_t run, std::uint64_t cycle, Frame& buffer) const noexcept {
+    if (own_ == nullptr) return {at(run, cycle, buffer), &buffer};
+    const Found<Frame> found = found_in(own_->slots[cycle % SlotCount]);
+    const FrameHead& head = found.frame->head;
+    if (found.lookup == Lookup::kCorrupt || (head.run == run && head.cycle == cycle)) return found;
+    return {Lookup::kMissing, found.frame};
+  }
+  Found<Frame> find_within(std::uint64_t run, std::uint64_t first, std::uint64_t last, Frame& buffer) const noexcept {
+    std::uint64_t cycle = last;
+    for (std::size_t looks = 0; looks < SlotCount && cycle >= first && cycle <= last; ++looks, --cycle) {
+      const Found<Frame> found = find_at(run, cycle, buffer);
+      if (found.lookup == Lookup::kFrame || found.lookup == Lookup::kCorrupt) return found;
+    }
+    return {Lookup::kMissing, &buffer};
+  }
+
   /// Reads the last published frame.
   Lookup newest(Frame& out) const noexcept {
+    if (own_ != nullptr) return copied(find_newest(out), out);
     const auto* memory = memory_.load(std::memory_order_acquire);
     if (memory == nullptr) return Lookup::kMissing;
     for (int tries = 0; tries < kReadTries; ++tries) {
@@ -167,6 +231,7 @@ class FrameReader {
 
   /// Reads the frame of this run and cycle.
   Lookup at(std::uint64_t run, std::uint64_t cycle, Frame& out) const noexcept {
+    if (own_ != nullptr) return copied(find_at(run, cycle, out), out);
     const auto* memory = memory_.load(std::memory_order_acquire);
     if (memory == nullptr) return Lookup::kMissing;
     for (int tries = 0; tries < kReadTries; ++tries) {
@@ -181,12 +246,7 @@ class FrameReader {
   /// Reads the newest frame of cycles first … last of this run (both included). It searches downwards as far as frames
   /// are kept. A corrupt frame ends the search. A token counts as missing.
   Lookup newest_within(std::uint64_t run, std::uint64_t first, std::uint64_t last, Frame& out) const noexcept {
-    std::uint64_t cycle = last;
-    for (std::size_t looks = 0; looks < SlotCount && cycle >= first && cycle <= last; ++looks, --cycle) {
-      const Lookup found = at(run, cycle, out);
-      if (found == Lookup::kFrame || found == Lookup::kCorrupt) return found;
-    }
-    return Lookup::kMissing;
+    return copied(find_within(run, first, last, out), out);
   }
 
   std::uint32_t sequence() const noexcept {
@@ -217,6 +277,15 @@ class FrameReader {
   const Frames* memory() const noexcept { return memory_.load(std::memory_order_acquire); }
 
  private:
+  static Found<Frame> found_in(const typename OwnFrames<Frame, SlotCount>::Slot& slot) noexcept {
+    return {slot.whole ? kind_of(slot.frame) : classify(slot.frame), &slot.frame};
+  }
+
+  static Lookup copied(const Found<Frame>& found, Frame& out) noexcept {
+    if (found.frame != &out) out = *found.frame;
+    return found.lookup;
+  }
+
   /// Returns false if `out` is not one complete publication.
   static bool copy(const typename Frames::Slot& slot, Frame& out) noexcept {
     const std::uint64_t before = slot.version.load(std::memory_order_acquire);
@@ -231,12 +300,16 @@ class FrameReader {
 
   static Lookup classify(const Frame& frame) noexcept {
     if (frame.head.run == 0) return Lookup::kMissing;  // the slot was never written
-    if (!intact(frame)) return Lookup::kCorrupt;
+    return intact(frame) ? kind_of(frame) : Lookup::kCorrupt;
+  }
+
+  static Lookup kind_of(const Frame& frame) noexcept {
     if (frame.head.kind == FrameKind::kToken) return Lookup::kToken;
     return frame.head.kind == FrameKind::kFrame ? Lookup::kFrame : Lookup::kCorrupt;
   }
 
   std::atomic<const Frames*> memory_;
+  const OwnFrames<Frame, SlotCount>* own_ = nullptr;
 };
 
 }  // namespace robot_control

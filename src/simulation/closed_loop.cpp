@@ -37,12 +37,13 @@ const Robot& drivable(const Robot& robot) {
 }  // namespace
 
 struct ClosedLoop::Parts {
-  /// A channel in private memory with its writer and its reader.
+  /// A channel of this thread with its writer and its reader.
   template <class Frame>
   struct Channel {
     std::unique_ptr<LatestFrames<Frame>> memory = std::make_unique<LatestFrames<Frame>>();
-    FrameWriter<Frame> writer{memory.get(), Wake::kNone};
-    FrameReader<Frame> reader{memory.get()};
+    std::unique_ptr<OwnFrames<Frame>> frames = std::make_unique<OwnFrames<Frame>>();
+    FrameWriter<Frame> writer{memory.get(), frames.get()};
+    FrameReader<Frame> reader{memory.get(), frames.get()};
   };
 
   Parts(const Parameters& given, std::shared_ptr<const Robot> composed)

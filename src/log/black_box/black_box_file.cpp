@@ -33,8 +33,10 @@ BlackBoxFile::BlackBoxFile(const std::string& path, std::size_t bytes, std::stri
                    " the black box of " + std::to_string(size_ / 1'000'000) + " MB: " + std::strerror(problem) +
                    "; make room, or set telemetry.black_box to 0 or telemetry.directory");
   }
-  munlock(memory, size_);  // a process that locks its memory (rt/realtime_thread.h) must not lock the ring
+  // A process that locks its memory (rt/realtime_thread.h) has made the whole ring present and must not keep it so.
+  munlock(memory, size_);
   memory_ = static_cast<char*>(memory);
+  give_back(0, size_);
   Head head{.magic = {},
             .head_bytes = head_bytes_,
             .segments = segments_,
@@ -50,6 +52,10 @@ BlackBoxFile::BlackBoxFile(const std::string& path, std::size_t bytes, std::stri
 BlackBoxFile::~BlackBoxFile() {
   munmap(memory_, size_);
   close(descriptor_);
+}
+
+void BlackBoxFile::give_back(std::size_t begin, std::size_t bytes) noexcept {
+  madvise(memory_ + begin, bytes, MADV_DONTNEED);
 }
 
 bool BlackBoxFile::at_its_path() const noexcept {
@@ -68,6 +74,7 @@ bool BlackBoxFile::append(std::uint32_t kind, std::int64_t time_ns, std::string_
   const std::size_t size = sizeof(RecordHead) + padded(data.size());
   if (size > kSegmentBytes) return false;
   if (at_ + size > kSegmentBytes) {
+    give_back(head_bytes_ + (sequence_ % segments_) * kSegmentBytes, kSegmentBytes);
     ++sequence_;
     at_ = 0;
   }

@@ -3,8 +3,9 @@
 ///
 /// The kernel owns the mapping: its contents survive the end of the process by any signal. They reach the disk with the
 /// next writeback; a kernel panic loses those of the last 30 s. The space is reserved at the start, so that no store
-/// meets a full disk (SIGBUS). File systems that copy on write (btrfs, ZFS) may need more. Only one ordinary thread may
-/// write, because a store may fault a page in.
+/// meets a full disk (SIGBUS). Of the mapping only the segment that is written is present in the memory of the process;
+/// the others are in the page cache of the kernel, which gives them up when memory is short. File systems that copy on
+/// write (btrfs, ZFS) may need more. Only one ordinary thread may write, because a store may fault a page in.
 ///
 ///   file     = head (magic, sizes, `description`; whole MiB) + segments of equal size
 ///   segment  = records, one behind the other; each lap of the ring gives it the next sequence number
@@ -47,6 +48,9 @@ class BlackBoxFile {
   std::uint64_t kept_bytes() const noexcept { return (segments_ - 1) * kSegmentBytes; }
 
  private:
+  /// Takes this part out of the memory of the process; its contents stay in the file.
+  void give_back(std::size_t begin, std::size_t bytes) noexcept;
+
   std::string path_;
   int descriptor_;  ///< holds the lock
   char* memory_ = nullptr;

@@ -26,11 +26,11 @@ void ControllerCycle::take_over(const VelocityCommand& arrived) noexcept {
   request_.contested = arrived.contested;
 }
 
-void ControllerCycle::enter_run() noexcept {
+void ControllerCycle::enter_run(std::uint64_t run) noexcept {
   inbox_.load(received_);
   take_over(received_);
   script_.rewind();
-  const auto last = published_before(channels_.command, state_.head.run);
+  const auto last = published_before(channels_.command, run);
   if (last) script_.advance(*last);
   calls_.law.new_run = 1;
   calls_.inbox = request_;
@@ -69,43 +69,45 @@ void ControllerCycle::tune() noexcept {
 
 bool ControllerCycle::step() noexcept {
   const std::int64_t woke_ns = clock_.now();
-  const Lookup found = channels_.state->newest(state_);
+  const auto [found, newest] = channels_.state->find_newest(state_);
+  const StateFrame& state = *newest;
   if (found == Lookup::kMissing) return false;
-  if (!current(*channels_.sensors, state_.head, robot_hash_)) return false;
-  const Arrival arrival = clock_.compare(state_.head);
+  if (!current(*channels_.sensors, state.head, robot_hash_)) return false;
+  const Arrival arrival = clock_.compare(state.head);
   if (arrival == Arrival::kOld) return false;
-  const std::uint64_t run = state_.head.run;
-  const std::uint64_t cycle = state_.head.cycle;
-  const Lookup sensors_found = channels_.sensors->at(run, cycle, sensors_);
+  const std::uint64_t run = state.head.run;
+  const std::uint64_t cycle = state.head.cycle;
+  const auto [sensors_found, sample] = channels_.sensors->find_at(run, cycle, sensors_);
+  const SensorFrame& sensors = *sample;
   // The head of a corrupt frame is used only if sensors of that cycle exist.
   if (found == Lookup::kCorrupt && sensors_found != Lookup::kFrame) return false;
-  if (arrival == Arrival::kNewRun) enter_run();
-  clock_.accept(state_.head);
-  if (found == Lookup::kCorrupt) state_.head = sensors_.head;
+  if (arrival == Arrival::kNewRun) enter_run(run);
+  clock_.accept(state.head);
   if (found != Lookup::kFrame) {
-    channels_.command.publish_token(state_.head);
+    channels_.command.publish_token(found == Lookup::kCorrupt ? sensors.head : state.head);
     return false;
   }
   if (sensors_found != Lookup::kFrame) return false;
 
-  snapshots_.copy_if_due(*controller_, calls_.law, state_.head);
+  snapshots_.copy_if_due(*controller_, calls_.law, state.head);
   receive(cycle);
   tune();
-  ControlInput input{.sensors = &sensors_, .state = &state_, .request = request_};
-  if (cycle > 0 &&
-      channels_.permit->newest_within(run, cycle - std::min(cycle, kPermitLife), cycle - 1, permit_) ==
-          Lookup::kFrame &&
-      permit_.expiry >= cycle) {
-    input.permit = &permit_;
-    calls_.permit = used(Lookup::kFrame, permit_);
+  ControlInput input{.sensors = &sensors, .state = &state, .request = request_};
+  if (cycle > 0) {
+    const auto [permit_found, permit] =
+        channels_.permit->find_within(run, cycle - std::min(cycle, kPermitLife), cycle - 1, permit_);
+    if (permit_found == Lookup::kFrame && permit->expiry >= cycle) {
+      input.permit = permit;
+      calls_.permit = used(Lookup::kFrame, *permit);
+    }
   }
   controller_->step(input, trace_.command);
-  trace_.command.head = {.run = run, .cycle = cycle, .stamp_ns = state_.head.stamp_ns};
+  trace_.command.head = {.run = run, .cycle = cycle, .stamp_ns = state.head.stamp_ns};
   channels_.command.publish(trace_.command);
-  trace_.timing = clock_.timing(woke_ns, sensors_);
+  trace_.timing = clock_.timing(woke_ns, sensors);
   calls_.request = request_;
-  calls_.state = state_.head.checksum;
-  close_row(calls_, sensors_.head.checksum, trace_.command.head.checksum, trace_.calls);
+  calls_.state = state.head.checksum;
+  close_row(calls_, sensors.head.checksum, trace_.command.head.checksum, trace_.calls);
   return true;
 }
 

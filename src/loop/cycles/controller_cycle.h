@@ -50,7 +50,7 @@ class ControllerCycle {
 
  private:
   void take_over(const VelocityCommand& arrived) noexcept;
-  void enter_run() noexcept;
+  void enter_run(std::uint64_t run) noexcept;
   void receive(std::uint64_t cycle) noexcept;
   void tune() noexcept;
 
@@ -64,7 +64,7 @@ class ControllerCycle {
   std::uint64_t tunings_seen_ = 0;  ///< version of the one that was looked at
   VelocityCommand received_;        ///< what the inbox held when last looked at
   VelocityCommand request_;         ///< inbox and script merged in the order of arrival
-  SensorFrame sensors_;
+  SensorFrame sensors_;             ///< buffers of the inputs from other threads
   StateFrame state_;
   Permit permit_;
   ControllerCalls calls_ = first_row<ControllerCalls>();  ///< since the last row

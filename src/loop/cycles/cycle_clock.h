@@ -37,9 +37,12 @@ class CycleClock {
 
   std::int64_t now() const noexcept { return now_ == nullptr ? 0 : now_(); }
 
-  CycleTiming timing(std::int64_t woke_ns, const SensorFrame& sensors) const noexcept {
+  CycleTiming timing(std::int64_t woke_ns, std::int64_t due_at_ns) const noexcept {
     if (now_ == nullptr) return {};
-    return {.woke_ns = woke_ns - due_ns(sensors), .published_ns = now_() - due_ns(sensors)};
+    return {.woke_ns = woke_ns - due_at_ns, .published_ns = now_() - due_at_ns};
+  }
+  CycleTiming timing(std::int64_t woke_ns, const SensorFrame& sensors) const noexcept {
+    return timing(woke_ns, due_ns(sensors));
   }
 
   std::uint64_t run() const noexcept { return run_; }
@@ -62,7 +65,7 @@ inline bool current(const FrameReader<SensorFrame>& sensors, const FrameHead& he
 template <class Frame>
 std::optional<std::uint64_t> published_before(const FrameWriter<Frame>& own, std::uint64_t run) noexcept {
   Frame last;
-  const Lookup found = FrameReader<Frame>(own.memory()).newest(last);
+  const Lookup found = own.reader().newest(last);
   if ((found != Lookup::kFrame && found != Lookup::kToken) || last.head.run != run) return std::nullopt;
   return last.head.cycle;
 }

@@ -66,18 +66,22 @@ GateInput DriverCycle::latch() noexcept {
   input.sensors = &trace_.sensors;
   if (cycle_ == 0) return input;
   const std::uint64_t last = cycle_ - 1;
-  input.command_found = channels_.command->newest_within(run_, cycle_ - std::min(cycle_, kCommandLife), last, command_);
+  const auto command = channels_.command->find_within(run_, cycle_ - std::min(cycle_, kCommandLife), last, command_);
+  input.command_found = command.lookup;
+  input.command = command.frame;
   // Further back than a permit lives, to distinguish an expired permit from a missing one.
   constexpr std::uint64_t kSearched = kFrameSlots - 1;
-  input.permit_found = channels_.permit->newest_within(run_, cycle_ - std::min(cycle_, kSearched), last, permit_);
+  const auto permit = channels_.permit->find_within(run_, cycle_ - std::min(cycle_, kSearched), last, permit_);
+  input.permit_found = permit.lookup;
+  input.permit = permit.frame;
   return input;
 }
 
 /// A restarted monitor counts from 0.
 void DriverCycle::follow_resets(const GateInput& input) noexcept {
   if (input.permit_found != Lookup::kFrame) return;
-  if (resets_ && permit_.resets_handled > *resets_) driver_.reset();
-  resets_ = permit_.resets_handled;
+  if (resets_ && input.permit->resets_handled > *resets_) driver_.reset();
+  resets_ = input.permit->resets_handled;
 }
 
 void DriverCycle::step() noexcept {
@@ -108,8 +112,8 @@ void DriverCycle::step() noexcept {
   const std::span<const JointCommand> commands = gate_.step(input);
   driver_.write(commands);
   trace_.gate = gate_.report();
-  calls_.command = used(input.command_found, command_);
-  calls_.permit = used(input.permit_found, permit_);
+  calls_.command = used(input.command_found, *input.command);
+  calls_.permit = used(input.permit_found, *input.permit);
   close_row(calls_, sensors.head.checksum, digest_of(commands, trace_.gate), trace_.calls);
   ++cycle_;
 }

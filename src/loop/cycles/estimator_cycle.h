@@ -46,7 +46,7 @@ class EstimatorCycle {
   const LawSnapshot* snapshot() const noexcept { return snapshots_.taken(); }
 
  private:
-  void enter_run() noexcept;
+  void enter_run(const FrameHead& head) noexcept;
 
   std::unique_ptr<EstimatorLaw> estimator_;
   CycleClock clock_;
@@ -57,7 +57,7 @@ class EstimatorCycle {
   LatestValue<PoseRequest> inbox_;
   std::uint64_t received_ = 0;     ///< requests that were carried out
   std::uint64_t first_cycle_ = 0;  ///< StateFrame::first_cycle
-  SensorFrame sensors_;
+  SensorFrame buffer_;
   EstimatorCalls calls_ = first_row<EstimatorCalls>();  ///< since the last row
   Snapshots snapshots_;
   EstimatorTrace trace_;

@@ -21,7 +21,7 @@ MonitorCycle::MonitorCycle(std::unique_ptr<MonitorLaw> monitor, std::uint64_t ro
 
 void MonitorCycle::inherit(InheritedLatch latch) noexcept {
   Permit last;
-  const Lookup found = FrameReader<Permit>(channels_.permit.memory()).last_whole(last);
+  const Lookup found = channels_.permit.reader().last_whole(last);
   if (found == Lookup::kFrame) latch.permit = &last;
   if (found == Lookup::kCorrupt) {
     latch.causes |= kCauseLatchUnreadable;
@@ -47,55 +47,58 @@ void MonitorCycle::receive_messages() noexcept {
 void MonitorCycle::advance_script() noexcept {
   if (calls_.law.new_run != 0) {
     script_.rewind();
-    if (const auto last = published_before(channels_.permit, sensors_.head.run)) script_.advance(*last);
+    if (const auto last = published_before(channels_.permit, head_.run)) script_.advance(*last);
   }
-  const ScriptEvents events = script_.advance(sensors_.head.cycle);
+  const ScriptEvents events = script_.advance(head_.cycle);
   operator_input_.e_stop_services += events.e_stops;
   operator_input_.resets += events.resets;
 }
 
 bool MonitorCycle::step() noexcept {
   const std::int64_t woke_ns = clock_.now();
-  const Lookup found = channels_.sensors->newest(arrived_);
+  const auto [found, newest] = channels_.sensors->find_newest(buffer_);
+  const SensorFrame& arrived = *newest;
   if (found == Lookup::kCorrupt) ++corrupt_sensors_;
-  if (found != Lookup::kFrame || !current(*channels_.sensors, arrived_.head, robot_hash_)) {
+  if (found != Lookup::kFrame || !current(*channels_.sensors, arrived.head, robot_hash_)) {
     const bool timed_out = woke_ns != 0 && current_ns_ != 0 && woke_ns - current_ns_ >= loss_ns_;
     return (timed_out || corrupt_sensors_ == FrameConditions::kPersistence) && step_without_frame(timed_out);
   }
-  const Arrival arrival = clock_.compare(arrived_.head);
+  const Arrival arrival = clock_.compare(arrived.head);
   current_ns_ = woke_ns;
-  if (arrival == Arrival::kOld) return republished() && step_without_frame(false);
-  sensors_ = arrived_;
-  clock_.accept(sensors_.head);
+  if (arrival == Arrival::kOld) return republished(arrived) && step_without_frame(false);
+  head_ = arrived.head;
+  due_ns_ = due_ns(arrived);
+  driver_state_ = arrived.driver_state;
+  clock_.accept(head_);
   calls_.law.new_run = arrival == Arrival::kNewRun ? 1 : 0;
   receive_messages();
   advance_script();
-  read_inputs();
+  read_inputs(arrived);
   step_law(woke_ns);
   return true;
 }
 
-void MonitorCycle::read_inputs() noexcept {
-  input_ = {.sensors = &sensors_, .corrupt = corrupt_sensors_ > 0 ? 1U : 0U, .operator_input = operator_input_};
+void MonitorCycle::read_inputs(const SensorFrame& sensors) noexcept {
+  input_ = {.sensors = &sensors, .corrupt = corrupt_sensors_ > 0 ? 1U : 0U, .operator_input = operator_input_};
   corrupt_sensors_ = 0;
-  const std::uint64_t run = sensors_.head.run;
-  const std::uint64_t cycle = sensors_.head.cycle;
+  const std::uint64_t run = head_.run;
+  const std::uint64_t cycle = head_.cycle;
   if (cycle == 0) return;
-  const Lookup command_found = channels_.command->at(run, cycle - 1, command_);
-  const Lookup state_found = channels_.state->at(run, cycle - 1, state_);
-  input_.command = command_found == Lookup::kFrame ? &command_ : nullptr;
-  calls_.command = used(command_found, command_);
+  const auto [command_found, command] = channels_.command->find_at(run, cycle - 1, command_);
+  const auto [state_found, state] = channels_.state->find_at(run, cycle - 1, state_);
+  input_.command = command_found == Lookup::kFrame ? command : nullptr;
+  calls_.command = used(command_found, *command);
   input_.state_seen = state_found == Lookup::kFrame;
-  input_.state_first_cycle = input_.state_seen ? state_.first_cycle : 0;
+  input_.state_first_cycle = input_.state_seen ? state->first_cycle : 0;
   if (command_found == Lookup::kCorrupt || state_found == Lookup::kCorrupt) input_.corrupt = 1;
 }
 
 /// A driver that pauses or ends publishes its last frame again, a paused one ten times a second. No other frame will
 /// come, so an operator's request is answered then.
-bool MonitorCycle::republished() noexcept {
-  const bool ends = arrived_.driver_state == DriverState::kPaused || arrived_.driver_state == DriverState::kEnded;
-  if (!ends || arrived_.head.cycle != clock_.cycle()) return false;
-  sensors_.driver_state = arrived_.driver_state;
+bool MonitorCycle::republished(const SensorFrame& arrived) noexcept {
+  const bool ends = arrived.driver_state == DriverState::kPaused || arrived.driver_state == DriverState::kEnded;
+  if (!ends || arrived.head.cycle != clock_.cycle()) return false;
+  driver_state_ = arrived.driver_state;
   return true;
 }
 
@@ -109,8 +112,8 @@ bool MonitorCycle::idle() noexcept {
 
 SensorSilence MonitorCycle::silence(bool timed_out) const noexcept {
   if (clock_.run() == 0) return SensorSilence::kNone;
-  if (sensors_.driver_state == DriverState::kPaused) return SensorSilence::kPaused;
-  if (sensors_.driver_state == DriverState::kEnded) return SensorSilence::kEnded;
+  if (driver_state_ == DriverState::kPaused) return SensorSilence::kPaused;
+  if (driver_state_ == DriverState::kEnded) return SensorSilence::kEnded;
   return timed_out ? SensorSilence::kTimedOut : SensorSilence::kNone;
 }
 
@@ -144,21 +147,21 @@ bool MonitorCycle::step_without_frame(bool timed_out) noexcept {
 }
 
 void MonitorCycle::step_law(std::int64_t woke_ns) noexcept {
-  snapshots_.copy_if_due(*monitor_, calls_.law, sensors_.head);
+  snapshots_.copy_if_due(*monitor_, calls_.law, head_);
   monitor_->step(input_, trace_.permit);
   publish(clock_.run());
-  trace_.timing = clock_.timing(woke_ns, sensors_);
+  trace_.timing = clock_.timing(woke_ns, due_ns_);
   calls_.silence = input_.silence;
   calls_.state_seen = input_.state_seen ? 1 : 0;
   calls_.state_first_cycle = input_.state_first_cycle;
   calls_.corrupt = input_.corrupt;
   calls_.operator_input = input_.operator_input;
-  const std::uint64_t sensors = input_.sensors != nullptr ? sensors_.head.checksum : 0;
+  const std::uint64_t sensors = input_.sensors != nullptr ? head_.checksum : 0;
   close_row(calls_, sensors, trace_.permit.head.checksum, trace_.calls);
 }
 
 void MonitorCycle::publish(std::uint64_t run) noexcept {
-  trace_.permit.head = {.run = run, .cycle = clock_.cycle(), .stamp_ns = sensors_.head.stamp_ns};
+  trace_.permit.head = {.run = run, .cycle = clock_.cycle(), .stamp_ns = head_.stamp_ns};
   published_run_.store(run, std::memory_order_release);
   channels_.permit.publish(trace_.permit);
 }

@@ -72,9 +72,9 @@ class MonitorCycle {
   void inherit(InheritedLatch latch) noexcept;
   void receive_messages() noexcept;
   void advance_script() noexcept;
-  void read_inputs() noexcept;
+  void read_inputs(const SensorFrame& sensors) noexcept;
   bool step_without_frame(bool timed_out) noexcept;
-  bool republished() noexcept;
+  bool republished(const SensorFrame& arrived) noexcept;
   SensorSilence silence(bool timed_out) const noexcept;
   bool happened(const MonitorInput& input) const noexcept;
   void step_law(std::int64_t woke_ns) noexcept;
@@ -92,8 +92,10 @@ class MonitorCycle {
   OperatorInput received_;             ///< content of the inbox when it was last read
   OperatorInput operator_input_;       ///< sum of inbox and script
   std::uint64_t corrupt_sensors_ = 0;  ///< attempts in a row that read a corrupt frame
-  SensorFrame arrived_;                ///< as read, not yet checked
-  SensorFrame sensors_;                ///< of the last step with a frame, with the newest driver state
+  FrameHead head_;                     ///< of the sensors in the last step with a frame
+  std::int64_t due_ns_ = 0;            ///< of that cycle
+  DriverState driver_state_ = DriverState::kStarting;
+  SensorFrame buffer_;  ///< buffers of the inputs from other threads
   StateFrame state_;
   CommandFrame command_;
   MonitorInput input_;                              ///< of the last step
