@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "loop/gate_setup.h"
 #include "loop/machine_identity.h"
 #include "loop/mint_number.h"
 #include "rt/clock.h"
