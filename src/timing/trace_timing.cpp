@@ -20,7 +20,7 @@ struct TraceTiming::Rings {
    public:
     RingSource(const std::string& bus, Role role) : channel_(bus, kTraceChannels[static_cast<std::size_t>(role)]) {}
 
-    /// Calls `use(row)` with each row since the last call. A ring that was mapped anew begins with the next row.
+    /// Calls `use(row)` with each row since the last call. After a ring was mapped again, the next row is its first.
     template <class Use>
     void read(Use use) {
       if (channel_.poll()) reader_.emplace(channel_.memory());

@@ -153,6 +153,7 @@ TEST_F(ReadParameters, OverlaysAloneAreEnough) {
                                                   {"robot.rate", "200"},
                                                   {"robot.clock", "lockstep"},
                                                   {"robot.realtime", "false"},
+                                                  {"robot.realtime_checks", "off"},
                                                   {"robot.core", "-1"},
                                                   {"robot.wait_for_nodes", "True"},
                                                   {"robot.wait_for_telemetry", "False"},

@@ -65,7 +65,7 @@ void LeggedEstimator::set_pose(const Vector3& pose) noexcept {
   store(Quaterniond(Eigen::AngleAxisd(pose[2] - yaw, Vector3d::UnitZ())) * now, state_.attitude);
   state_.position[0] = pose[0];
   state_.position[1] = pose[1];
-  state_.bears = {};  // the feet are anchored anew
+  state_.bears = {};  // each foot gets a new anchor
 }
 
 void LeggedEstimator::step(const SensorFrame& sensors, StateFrame& out) noexcept {

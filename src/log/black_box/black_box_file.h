@@ -3,8 +3,8 @@
 ///
 /// The kernel owns the mapping: its contents survive the end of the process by any signal. They reach the disk with the
 /// next writeback; a kernel panic loses those of the last 30 s. The space is reserved at the start, so that no store
-/// meets a full disk (SIGBUS). Of the mapping only the segment that is written is present in the memory of the process;
-/// the others are in the page cache of the kernel, which gives them up when memory is short. File systems that copy on
+/// meets a full disk (SIGBUS). The process keeps only the segment in memory to which it writes.
+/// The kernel has the others in its page cache, and gives them up when memory is short. File systems that copy on
 /// write (btrfs, ZFS) may need more. Only one ordinary thread may write, because a store may fault a page in.
 ///
 ///   file     = head (magic, sizes, `description`; whole MiB) + segments of equal size

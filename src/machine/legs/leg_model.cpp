@@ -108,11 +108,11 @@ double room(const LegGeometry& geometry, double bend) {
   return range.upper - range.lower;
 }
 
-double bend_of(const RigidBodies& robot, const LegGeometry& geometry, const Chain& chain, bool front, KneeBend wish) {
+double bend_of(const RigidBodies& robot, const LegGeometry& geometry, const Chain& chain, bool front, KneeBend wanted) {
   const double middle = front ? -1 : 1;
   const bool forward = room(geometry, 1) >= kBothWays, backward = room(geometry, -1) >= kBothWays;
   double bend = middle;
-  switch (wish) {
+  switch (wanted) {
     case KneeBend::kDerived:
       if (forward != backward) bend = forward ? 1 : -1;
       if (!forward && !backward) bend = room(geometry, 1) >= room(geometry, -1) ? 1 : -1;

@@ -1,6 +1,6 @@
 #pragma once
-/// The conditions of a robot on legs: how its body moves, compared with the limits of body_conditions.h, and whether its
-/// joints stand. Joints stand while every one stays within kWindow of its angle for kStandingTime.
+/// The conditions of a robot on legs: how its body moves, compared with the limits of body_conditions.h, and whether
+/// its joints stand. Joints stand while every one stays within kWindow of its angle for kStandingTime.
 ///
 ///   moving    a joint left its window, or its angle is not known; until the robot stands again
 ///   standing  all joints are inside for kStandingTime
