@@ -27,6 +27,7 @@ from robot_control.report.main import main as report_main
 
 from bench.participants import START_LIMIT, command, script
 from bench.robot_corpus import DIFFBOT, robot_names, urdf_of
+from bench.rows import compared
 
 SECONDS = 600.0
 FOUR_WHEELS = "jackal"
@@ -114,14 +115,7 @@ def figures(found: Recorded, share: float, most_bytes: float) -> dict[str, tuple
 
 def row(name: str, value: float, unit: str, reference: float) -> dict[str, Any]:
     """A row of the table: a value beside its bound, 0 without one."""
-    return {
-        "name": name,
-        "value": value,
-        "unit": unit,
-        "reference": reference,
-        "reference_name": "what is promised",
-        "ratio": value / reference if reference > 0 else 0,
-    }
+    return compared(name, value, unit, reference, "what is promised")
 
 
 def record(urdf: str, seconds: float, programs: Path, folder: Path) -> Recorded:

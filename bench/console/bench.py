@@ -20,6 +20,7 @@ from bench.console.page import Page
 from bench.console.process import Console, memory_of, wait_for
 from bench.console.proxy import Proxy
 from bench.console.robot import Robot
+from bench.rows import compared
 
 PRESSED = """
 addEventListener("keydown", (event) => { window.at = Date.now() - (performance.now() - event.timeStamp); }, true);
@@ -70,23 +71,12 @@ def bench(share: float, say: Callable[[str], None]) -> tuple[dict[str, Any], boo
     log = read_log(bag)
     found |= _latency(log, presses) | _chain(log, window)
     robot.remove()
-    rows = [_row(name, value, unit) for name, (value, unit) in found.items()]
+    rows = [
+        compared(name, value, unit, BOUNDS.get(name, 0.0), "what is promised") for name, (value, unit) in found.items()
+    ]
     return {"bench": "console", "rows": rows}, all(
         row["value"] <= row["reference"] for row in rows if row["name"] in BOUNDS
     )
-
-
-def _row(name: str, value: float, unit: str) -> dict[str, Any]:
-    bound = BOUNDS.get(name, 0.0)
-    ratio = value / bound if bound else 0.0
-    return {
-        "name": name,
-        "value": value,
-        "unit": unit,
-        "reference": bound,
-        "reference_name": "what is promised",
-        "ratio": ratio,
-    }
 
 
 def _presses(console: Console, robot: Robot, count: int) -> tuple[float, list[int]]:

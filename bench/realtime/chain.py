@@ -17,7 +17,7 @@ from robot_control.common.run_log import FloatArray
 from bench.realtime.cost import free_port
 from bench.realtime.jitter import median_interval
 from bench.realtime.loops import loop_for
-from bench.realtime.rows import bounded, compared
+from bench.rows import bounded, compared
 
 HOPS = 2  # driver → estimator → controller
 SECONDS = 4.0

@@ -14,7 +14,7 @@ from typing import Any
 
 from robot_control.common.roles import LOOP, TELEMETRY
 
-from bench.realtime.rows import bounded, compared
+from bench.rows import bounded, compared
 
 SECONDS = 30.0
 START = 8.0  # s until everything has settled

@@ -11,7 +11,7 @@ from robot_control.common.run_log import FloatArray, Log
 
 from bench.realtime.loops import loop_for
 from bench.realtime.machine import latencies, load, shallow_sleep, start_cyclictest
-from bench.realtime.rows import bounded, compared
+from bench.rows import bounded, compared
 
 MAX_RATIO = 1.3
 BLOCKS = 10

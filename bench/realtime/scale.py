@@ -13,7 +13,7 @@ from robot_control.common.run_log import Log
 
 from bench.realtime.loops import FIRST, LAST, Loop
 from bench.realtime.machine import latencies, start_cyclictest
-from bench.realtime.rows import bounded, compared
+from bench.rows import bounded, compared
 
 NUMBERS = (1, 2, 4, 6, 8)
 MIN_ROBOTS = 4

@@ -27,6 +27,14 @@ const char* name_of(RobotNote::Kind kind) {
   return kNames.at(static_cast<std::size_t>(kind));
 }
 
+std::vector<std::size_t> driven_joint_indices(const MachineModel& machine) {
+  std::vector<std::size_t> driven;
+  for (std::size_t joint = 0; joint < machine.joints.size(); ++joint) {
+    if (machine.joints[joint].role == JointRole::kDriven) driven.push_back(joint);
+  }
+  return driven;
+}
+
 MachineModel read_machine(const RobotDescription& description, const MachineParameters& parameters) {
   const auto bodies = std::make_shared<const RigidBodies>(read_rigid_bodies(description));
   if (bodies->moving_joints.empty()) {

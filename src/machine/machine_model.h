@@ -103,6 +103,9 @@ struct MachineModel {
   std::vector<RobotNote> notes;
 };
 
+/// Returns the joints with role kDriven, as indices into MachineModel::joints.
+std::vector<std::size_t> driven_joint_indices(const MachineModel& machine);
+
 /// Reads any machine whose joints move. A joint with an effort limit is kHeld until the robot's kind drives it.
 ///
 /// Throws RobotError for a machine without moving joints, for overrides that are not finite or not above zero, and what

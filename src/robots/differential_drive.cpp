@@ -1,7 +1,5 @@
 #include "robots/differential_drive.h"
 
-#include <cmath>
-
 #include "control/drive_controller.h"
 #include "estimation/estimator.h"
 #include "gate/wheeled/wheel_stop.h"
@@ -13,15 +11,6 @@
 namespace robot_control {
 namespace {
 
-class WheeledEstimator final : public SavedLaw<EstimatorLaw, Estimator> {
- public:
-  using SavedLaw::SavedLaw;
-  void enter_run() noexcept override { law_.enter_run(); }
-  void resume(const StateFrame& last) noexcept override { law_.resume(last); }
-  void set_pose(const Vector3& pose) noexcept override { law_.set_pose(pose); }
-  void step(const SensorFrame& sensors, StateFrame& out) noexcept override { law_.step(sensors, out); }
-};
-
 class WheeledController final : public SavedLaw<ControllerLaw, DriveController> {
  public:
   using SavedLaw::SavedLaw;
@@ -31,17 +20,11 @@ class WheeledController final : public SavedLaw<ControllerLaw, DriveController> 
   void step(const ControlInput& input, CommandFrame& out) noexcept override { law_.step(input, out); }
 };
 
-class WheeledMonitor final : public SavedLaw<MonitorLaw, SafetyMonitor> {
- public:
-  using SavedLaw::SavedLaw;
-  void step(const MonitorInput& input, Permit& out) noexcept override { law_.step(input, out); }
-};
-
 }  // namespace
 
 std::unique_ptr<EstimatorLaw> wheeled_estimator(const EstimatorParameters& parameters, const DriveTrain& machine,
                                                 double period) {
-  return std::make_unique<WheeledEstimator>(parameters, machine, period);
+  return std::make_unique<EstimatorOf<Estimator>>(parameters, machine, period);
 }
 
 std::unique_ptr<ControllerLaw> wheeled_controller(const DriveControllerParameters& parameters,
@@ -51,7 +34,7 @@ std::unique_ptr<ControllerLaw> wheeled_controller(const DriveControllerParameter
 
 std::unique_ptr<MonitorLaw> wheeled_monitor(const SafetyParameters& parameters, const DriveTrain& machine,
                                             double period) {
-  return std::make_unique<WheeledMonitor>(parameters, machine, period);
+  return std::make_unique<MonitorOf<SafetyMonitor>>(parameters, machine, period);
 }
 
 DifferentialDrive::DifferentialDrive(const Parameters& parameters, const DriveTrain& machine)
@@ -78,9 +61,8 @@ MachineNeeds DifferentialDrive::needs() const {
 }
 
 GateParameters DifferentialDrive::gate() const {
-  const double ramp = std::ceil(parameters_.safety.ramp_time / parameters_.loop.period() - 1e-9);
   GateParameters gate{.stops = std::vector<StopAction>(machine_.joints.size()),
-                      .longest_ramp = static_cast<std::uint64_t>(ramp) + parameters_.safety.loss_cycles};
+                      .longest_ramp = longest_ramp(parameters_.safety, parameters_.loop.period())};
   for (std::size_t i = 0; i < machine_.wheels.size(); ++i) {
     gate.stops[machine_.wheels[i].joint] = wheel_stop(machine_, i, parameters_.loop.fail_action);
   }

@@ -4,7 +4,6 @@
 ///   recognised by   drive wheels on both sides (machine/wheeled/drive_train.h)
 ///   laws            estimation/estimator.h, control/drive_controller.h, safety/monitor.h
 ///   stop actions    of its drive wheels robot.fail_action; every other joint brakes
-///   longest ramp    ⌈ramp_time/period⌉ + loss_cycles: the monitor's own deadline, and as long as a loss may last
 
 #include "configuration/parameters.h"
 #include "machine/wheeled/drive_train.h"

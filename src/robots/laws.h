@@ -71,4 +71,23 @@ class SavedLaw : public Role {
   Implementation law_;
 };
 
+/// An estimator whose law has the functions of the role.
+template <class Implementation>
+class EstimatorOf final : public SavedLaw<EstimatorLaw, Implementation> {
+ public:
+  using SavedLaw<EstimatorLaw, Implementation>::SavedLaw;
+  void enter_run() noexcept override { this->law_.enter_run(); }
+  void resume(const StateFrame& last) noexcept override { this->law_.resume(last); }
+  void set_pose(const Vector3& pose) noexcept override { this->law_.set_pose(pose); }
+  void step(const SensorFrame& sensors, StateFrame& out) noexcept override { this->law_.step(sensors, out); }
+};
+
+/// A monitor whose law has the function of the role.
+template <class Implementation>
+class MonitorOf final : public SavedLaw<MonitorLaw, Implementation> {
+ public:
+  using SavedLaw<MonitorLaw, Implementation>::SavedLaw;
+  void step(const MonitorInput& input, Permit& out) noexcept override { this->law_.step(input, out); }
+};
+
 }  // namespace robot_control

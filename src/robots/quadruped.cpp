@@ -13,15 +13,6 @@ namespace {
 
 constexpr double kReturn = 0.3;  // s, in which the body is back above its feet before it sinks
 
-class LegsEstimator final : public SavedLaw<EstimatorLaw, LeggedEstimator> {
- public:
-  using SavedLaw::SavedLaw;
-  void enter_run() noexcept override { law_.enter_run(); }
-  void resume(const StateFrame& last) noexcept override { law_.resume(last); }
-  void set_pose(const Vector3& pose) noexcept override { law_.set_pose(pose); }
-  void step(const SensorFrame& sensors, StateFrame& out) noexcept override { law_.step(sensors, out); }
-};
-
 class LegsController final : public SavedLaw<ControllerLaw, LegController> {
  public:
   using SavedLaw::SavedLaw;
@@ -32,12 +23,6 @@ class LegsController final : public SavedLaw<ControllerLaw, LegController> {
 
  private:
   DriveTuning tuning_;  ///< has no effect on legs
-};
-
-class LegsMonitor final : public SavedLaw<MonitorLaw, Monitor<LeggedConditions>> {
- public:
-  using SavedLaw::SavedLaw;
-  void step(const MonitorInput& input, Permit& out) noexcept override { law_.step(input, out); }
 };
 
 }  // namespace
@@ -62,7 +47,7 @@ void Quadruped::require_drivable() const {
 }
 
 std::unique_ptr<EstimatorLaw> Quadruped::make_estimator() const {
-  return std::make_unique<LegsEstimator>(machine_, parameters_.loop.period());
+  return std::make_unique<EstimatorOf<LeggedEstimator>>(machine_, parameters_.loop.period());
 }
 
 std::unique_ptr<ControllerLaw> Quadruped::make_controller() const {
@@ -73,7 +58,7 @@ std::unique_ptr<MonitorLaw> Quadruped::make_monitor() const {
   SafetyParameters safety = parameters_.safety;
   safety.imu_lost.reaction = Reaction::kBrake;
   safety.lift.reaction = Reaction::kOff;  // a robot that lies stands on no foot
-  return std::make_unique<LegsMonitor>(safety, machine_, parameters_.loop.period());
+  return std::make_unique<MonitorOf<Monitor<LeggedConditions>>>(safety, machine_, parameters_.loop.period());
 }
 
 MachineNeeds Quadruped::needs() const {
@@ -83,8 +68,7 @@ MachineNeeds Quadruped::needs() const {
 
 GateParameters Quadruped::gate() const {
   const LegTuning tuning = leg_tuning(machine_);
-  const double ramp = std::ceil(parameters_.safety.ramp_time / parameters_.loop.period() - 1e-9);
-  GateParameters gate{.stops = {}, .longest_ramp = static_cast<std::uint64_t>(ramp) + parameters_.safety.loss_cycles};
+  GateParameters gate{.stops = {}, .longest_ramp = longest_ramp(parameters_.safety, parameters_.loop.period())};
   for (const JointModel& joint : machine_.joints) {
     gate.stops.push_back({.kind = StopKind::kFold,
                           .damping = tuning.damping,

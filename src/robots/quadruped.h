@@ -3,8 +3,9 @@
 ///
 ///   recognised by   four legs (machine/legs/leg_model.h)
 ///   laws            estimation/legged, control/legged, safety/conditions/legged
-///   stop action     fold: every joint moves to the lying posture within kFoldTime, stiff as while it stands; then it
-///   damps longest ramp    ⌈ramp_time/period⌉ + loss_cycles, in which the robot lies down
+///   stop action     fold: every joint moves to the lying posture within kFoldTime, stiff as while it stands, then
+///                   damps
+///   ramp            the robot lies down
 ///
 /// The time of the fold is that of legs of 0.426 m. Time and gains follow leg length and mass as in
 /// control/legged/leg_controller.h. Without its IMU a robot on legs is stopped (imu_lost brakes instead of slowing).

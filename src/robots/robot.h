@@ -12,6 +12,7 @@
 #include "gate/machine_needs.h"
 #include "machine/machine_model.h"
 #include "robots/laws.h"
+#include "safety/safety_parameters.h"
 
 namespace robot_control {
 
@@ -42,6 +43,10 @@ class Retuner {
   /// Returns each value with its range; those that are derived as the numbers that hold.
   virtual std::vector<LiveParameter> live() const = 0;
 };
+
+/// Returns the cycles for which the gate lets a ramp last. They are ⌈ramp_time/period⌉, the monitor's own deadline,
+/// plus loss_cycles, for as long a loss may last. `period` is in s.
+std::uint64_t longest_ramp(const SafetyParameters& safety, double period);
 
 class Robot {
  public:

@@ -137,11 +137,8 @@ class Pendulum final : public Robot {
     return std::make_unique<Composed>(parameters_.loop.period());
   }
   std::unique_ptr<MonitorLaw> make_monitor() const override {
-    struct Composed final : SavedLaw<MonitorLaw, Monitor<PendulumConditions>> {
-      using SavedLaw::SavedLaw;
-      void step(const MonitorInput& input, Permit& out) noexcept override { law_.step(input, out); }
-    };
-    return std::make_unique<Composed>(parameters_.safety, machine_, parameters_.loop.period());
+    return std::make_unique<MonitorOf<Monitor<PendulumConditions>>>(parameters_.safety, machine_,
+                                                                    parameters_.loop.period());
   }
   MachineNeeds needs() const override {
     return {.modes = {JointMode::kBrake, JointMode::kVelocity}, .inputs = {MachineInput::kJointMotion}};

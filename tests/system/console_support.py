@@ -117,8 +117,13 @@ class ConsoleTestCase(RobotTestCase):
         )
         wait_for("a free stick", lambda: browser.text("hold") == "")
         (press or partial(browser.key, "KeyW"))()
+        self.waits_for(browser, "motion", lambda: self.robot.speed > 0.8 * SPEED and self.commanded())
+
+    @staticmethod
+    def waits_for(browser: Browser, what: str, condition: Callable[[], bool]) -> None:
+        """As wait_for; a failure tells what the page says."""
         try:
-            wait_for("motion", lambda: self.robot.speed > 0.8 * SPEED and self.commanded(), limit=10.0)
+            wait_for(what, condition)
         except AssertionError as error:
             raise AssertionError(f"{error}: {browser.text('hold')}; {browser.text('messages')}") from None
 

@@ -38,7 +38,7 @@ class ConsoleTest(ConsoleTestCase):
         wait_for("the second step", lambda: not browser.run("return document.getElementById('confirm').hidden"))
         time.sleep(0.6)
         browser.click("confirm-reset")
-        wait_for("the end of the stop", lambda: browser.data("state") in ("READY", "DRIVE"))
+        self.waits_for(browser, "the end of the stop", lambda: browser.data("state") in ("READY", "DRIVE"))
         browser.run("document.querySelectorAll('details').forEach((each) => { each.open = true; })")
         wait_for("the findings of doctor.py", lambda: "preemption" in browser.text("finding-list"))
         browser.run("document.getElementById('plots').scrollIntoView()")

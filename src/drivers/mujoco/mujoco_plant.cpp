@@ -259,7 +259,7 @@ bool MujocoPlant::advance(std::span<const JointCommand> commands) noexcept {
     const double position = data_->qpos[model_.joint_position[joint]];
     const double velocity = data_->qvel[dof];
     const double wanted = motors_[drive].limited(laws_[drive].step(commands[joint], position, velocity), velocity);
-    const double effort = motor_faults_.effort(joint, commands[joint].mode, wanted, position, velocity);
+    const double effort = motor_faults_.effort(drive, commands[joint].mode, wanted, position, velocity);
     data_->qfrc_applied[dof] = effort;
     effort_sum_[joint] += effort;
     power_sum_ += effort * velocity;

@@ -115,9 +115,7 @@ void find_addresses(MujocoModel& result) {
     result.joint_position.push_back(model.jnt_qposadr[id]);
     result.joint_velocity.push_back(model.jnt_dofadr[id]);
   }
-  for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
-    if (robot.joints[joint].role == JointRole::kDriven) result.driven.push_back(joint);
-  }
+  result.driven = driven_joint_indices(robot);
   result.drive_wheels = robot.wheels.size();
   for (std::size_t wheel = 0; wheel < robot.wheels.size() + robot.casters.size(); ++wheel) {
     result.wheel_shape.push_back(find(model, mjOBJ_GEOM, mjcf_wheel_name(wheel)));

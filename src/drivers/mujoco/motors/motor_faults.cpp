@@ -5,7 +5,6 @@
 namespace robot_control {
 
 void MotorFaults::add(std::size_t joint, double inertia, double effort_limit, std::uint64_t seed, double step) {
-  motor_of_[joint] = motors_.size();
   motors_.push_back({.joint = joint,
                      .limit = effort_limit,
                      .stiffness = inertia / (4 * step * step),
@@ -46,9 +45,9 @@ std::span<const JointCommand> MotorFaults::receive(const InjectedFaults& faults,
   return {received_.data(), commands.size()};
 }
 
-double MotorFaults::effort(std::size_t joint, JointMode mode, double effort, double position,
+double MotorFaults::effort(std::size_t index, JointMode mode, double effort, double position,
                            double velocity) noexcept {
-  Motor& motor = motors_[motor_of_[joint]];
+  Motor& motor = motors_[index];
   switch (motor.state) {
     case State::kHealthy:
       return effort;

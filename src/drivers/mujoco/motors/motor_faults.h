@@ -45,9 +45,9 @@ class MotorFaults {
   std::span<const JointCommand> receive(const InjectedFaults& faults, std::uint64_t cycle,
                                         std::span<const JointCommand> commands) noexcept;
 
-  /// Returns the torque of this joint's motor instead of `effort`, which the drive's law computed at this position and
-  /// velocity. It is called in every step of the simulation.
-  double effort(std::size_t joint, JointMode mode, double effort, double position, double velocity) noexcept;
+  /// Returns the torque of a motor, by the order of `add`, instead of `effort`, which the drive's law computed at this
+  /// position and velocity. It is called in every step of the simulation.
+  double effort(std::size_t index, JointMode mode, double effort, double position, double velocity) noexcept;
 
  private:
   /// The state of a motor in this cycle.
@@ -66,8 +66,7 @@ class MotorFaults {
   void step(Motor& motor, FaultKind kind, std::uint64_t cycle) noexcept;
 
   std::vector<Motor> motors_;
-  std::array<std::size_t, kMaxJoints> motor_of_{};  ///< index into motors_, per joint
-  bool failing_ = false;                            ///< any component failed in the last cycle
+  bool failing_ = false;  ///< any component failed in the last cycle
   std::array<JointCommand, kMaxJoints> received_{};
 };
 

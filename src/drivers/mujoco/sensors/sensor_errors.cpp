@@ -49,6 +49,7 @@ SensorErrors::SensorErrors(const MachineModel& machine, std::vector<Rim> rims, c
       seed_(parameters.seed),
       period_(period),
       count_(parameters.encoder_resolution > 0 ? 2 * std::numbers::pi / parameters.encoder_resolution : 0),
+      driven_(driven_joint_indices(machine)),
       gyro_scale_(1 + parameters.gyro_scale_error),
       gyro_(parameters.gyro_noise, parameters.gyro_bias, parameters.gyro_bias_walk, period, kGyroDevice),
       accelerometer_(parameters.accelerometer_noise, parameters.accelerometer_bias, parameters.accelerometer_bias_walk,
@@ -57,9 +58,6 @@ SensorErrors::SensorErrors(const MachineModel& machine, std::vector<Rim> rims, c
       late_imu_(parameters.imu_delay, parameters.imu_jitter, period, kImuLateStream),
       late_encoders_(0, parameters.encoder_jitter, period, kEncodersLateStream),
       delay_(checked_delay("sensor_delay", parameters.sensor_delay)) {
-  for (std::size_t joint = 0; joint < machine.joints.size(); ++joint) {
-    if (machine.joints[joint].role == JointRole::kDriven) driven_.push_back(joint);
-  }
   reset();
 }
 

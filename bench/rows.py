@@ -1,4 +1,4 @@
-"""Rows of the table of scripts/bench realtime."""
+"""Rows of the table that scripts/bench prints."""
 
 from __future__ import annotations
 
