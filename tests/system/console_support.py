@@ -9,7 +9,7 @@ from pathlib import Path
 
 import rospy
 from geometry_msgs.msg import TwistStamped
-from system_support import RobotTestCase, again_after_a_stall, wait_for
+from system_support import LIMIT, RobotTestCase, again_after_a_stall, wait_for
 
 from bench.console.browser import Browser, missing
 from bench.console.process import Console
@@ -120,10 +120,10 @@ class ConsoleTestCase(RobotTestCase):
         self.waits_for(browser, "motion", lambda: self.robot.speed > 0.8 * SPEED and self.commanded())
 
     @staticmethod
-    def waits_for(browser: Browser, what: str, condition: Callable[[], bool]) -> None:
+    def waits_for(browser: Browser, what: str, condition: Callable[[], bool], limit: float = LIMIT) -> None:
         """As wait_for; a failure tells what the page says."""
         try:
-            wait_for(what, condition)
+            wait_for(what, condition, limit)
         except AssertionError as error:
             raise AssertionError(f"{error}: {browser.text('hold')}; {browser.text('messages')}") from None
 

@@ -16,6 +16,7 @@ class Robot:
     def __init__(self):
         self.calls, self.levels = [], []
         self.answers, self.refuses = True, False
+        self.ignored = 0  # calls of each service that it refuses at first
 
     def publish(self, message):
         self.levels.append(message.data)
@@ -26,7 +27,7 @@ class Robot:
             time.sleep(0.01)
         if self.refuses:
             raise rospy.ServiceException("no master")
-        return TriggerResponse(success=True)
+        return TriggerResponse(success=self.calls.count(name) > self.ignored)
 
 
 @pytest.fixture
@@ -85,6 +86,20 @@ def test_after_a_reset_that_is_refused_it_says_on_the_topic_that_it_stops_nothin
     services.reset()
     wait_for(services.look)
     assert robot.levels == [False]
+
+
+@pytest.mark.parametrize(("raised", "calls"), [(True, 2), (False, 1)])
+def test_a_reset_that_overtook_its_own_level_of_the_topic_is_called_once_more(robot, raised, calls):
+    robot.ignored = 1
+    services = Services()
+    if raised:
+        services.e_stop()
+        wait_for(services.look)
+    services.reset()
+    answers = []
+    wait_for(lambda: answers.extend(services.look()) or answers)
+    assert [answer.accepted for answer in answers] == [raised]
+    assert robot.calls.count("e_stop_reset") == calls
 
 
 def test_a_reset_that_waited_too_long_behind_a_silent_service_is_dropped(robot, monkeypatch):

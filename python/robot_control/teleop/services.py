@@ -57,7 +57,7 @@ class Services:
     def __init__(self) -> None:
         self._topic = rospy.Publisher("e_stop", Bool, queue_size=1, tcp_nodelay=True)
         self._topic_said_true = False
-        self._wanted: queue.Queue[tuple[str, float]] = queue.Queue()  # service, when it was requested
+        self._wanted: queue.Queue[tuple[str, float, int]] = queue.Queue()  # service, when it was requested, attempts
         self._answers: queue.Queue[Answer] = queue.Queue()
         self._e_stop_at: float | None = None  # when it was requested, until it is answered
         self._last_e_stop = float("-inf")
@@ -70,15 +70,19 @@ class Services:
             return
         self._last_e_stop = now
         self._e_stop_at = now
-        self._wanted.put(("e_stop_trigger", now))
+        self._wanted.put(("e_stop_trigger", now, 1))
 
     def reset(self) -> None:
-        """Takes back the topic's level if it was raised here."""
+        """Takes back the topic's level if it was raised here. The service may overtake the topic: a reset that is then
+        refused is called once more.
+        """
+        attempts = 1
         if self._topic_said_true:
             self._topic.publish(Bool(data=False))
             self._topic_said_true = False
+            attempts = 2
         self._last_e_stop = float("-inf")  # the next one is another request
-        self._wanted.put(("e_stop_reset", time.monotonic()))
+        self._wanted.put(("e_stop_reset", time.monotonic(), attempts))
 
     def look(self) -> list[Answer]:
         """The answers that have arrived."""
@@ -105,12 +109,15 @@ class Services:
 
     def _work(self) -> None:
         while True:
-            name, requested = self._wanted.get()
+            name, requested, attempts = self._wanted.get()
             if name == "e_stop_reset" and time.monotonic() - requested > LATEST:
                 self._answers.put(Answer(name, accepted=False, text="it could not be called in time; request it again"))
                 continue
             try:
                 response = rospy.ServiceProxy(name, Trigger)()
+                if not response.success and attempts > 1:
+                    time.sleep(PATIENCE)
+                    response = rospy.ServiceProxy(name, Trigger)()
                 self._answers.put(Answer(name, accepted=bool(response.success), text=response.message))
             except (rospy.ServiceException, OSError) as error:
                 self._answers.put(Answer(name, accepted=False, text=str(error)))
