@@ -76,6 +76,30 @@ TEST_F(WheelFollowingTest, AWheelThatStandsThoughItsMotorPushesIsStalledHoweverS
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
 }
 
+// The left encoder is stuck, and its target passes 0: the gyro alone shows that the wheel turns.
+TEST_F(WheelFollowingTest, AWheelThatStandsThoughTheGyroShowsThatItTurnsIsStalledHoweverSlowItsTarget) {
+  constexpr double kUnseen = 4;  // rad/s of yaw, beyond limit and tolerance
+  target(0.01);
+  turn_wheels(0);
+  steps(100);
+  EXPECT_EQ(permit_.causes, 0u);
+  const double tolerance = 2 * kQuantum / kSpeedWindow * robot().wheels[0].radius / robot().effective_wheel_base();
+  sensors_.imu.angular_velocity[2] = kUnseen + *parameters().yaw_rate.limit + tolerance;
+  const double speed = kUnseen * robot().effective_wheel_base() / robot().wheels[0].radius;
+  const auto cycles = static_cast<std::uint64_t>((kStall + kQuantum) / speed / kPeriod);
+  steps(cycles - 2);
+  EXPECT_EQ(permit_.causes, 0u);
+  steps(4);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
+}
+
+// On ice the robot turns on while its wheels follow their targets.
+TEST_F(WheelFollowingTest, AWheelThatFollowsIsNotStalledWhateverTheGyroShows) {
+  sensors_.imu.angular_velocity[2] = 5;
+  steps(2000);
+  EXPECT_EQ(permit_.causes, 0u);
+}
+
 /// 64 counts a turn give one in 0.49 s at 0.2 rad/s. The motors push all the time, as inside a skid steer's curve.
 class CoarseEncoderTest : public WheelFollowingTest {
  protected:

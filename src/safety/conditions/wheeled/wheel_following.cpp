@@ -28,6 +28,7 @@ WheelFollowing::WheelFollowing(const SafetyParameters& parameters, const DriveTr
     const double friction = kFrictions * (joint.friction + scrub_.max_effort(i));
     pushed_[i] = std::max(kPushedPart * joint.effort_limit, std::min(kLargePart * joint.effort_limit, friction));
     friction_[i] = joint.friction;
+    per_yaw_[i] = robot.effective_wheel_base() / robot.wheels[i].radius;
     if (joint.velocity_limit > 0) fastest_[i] = joint.velocity_limit;
   }
 }
@@ -43,7 +44,8 @@ void WheelFollowing::enter_run() noexcept {
 }
 
 void WheelFollowing::step(const SensorFrame& sensors, const WheelTargets& targets, const WheelMotion& motion,
-                          const JointStandstill& standstill, std::uint64_t elapsed, ActiveCauses& out) noexcept {
+                          const JointStandstill& standstill, double yaw_excess, std::uint64_t elapsed,
+                          ActiveCauses& out) noexcept {
   const bool known = motion.speed_known();
   for (std::size_t i = 0; i < runaway_.size(); ++i) {
     if (!known || !targets.has(i)) {
@@ -56,7 +58,7 @@ void WheelFollowing::step(const SensorFrame& sensors, const WheelTargets& target
   }
   const double dt = static_cast<double>(elapsed) * period_;
   planned_.step(targets, dt);
-  out.update(stall_, known ? stalled(sensors, targets, motion, dt) : kNothingMeasured, elapsed);
+  out.update(stall_, known ? stalled(sensors, targets, motion, yaw_excess, dt) : kNothingMeasured, elapsed);
   out.update(not_stopping_, known ? not_stopped(targets, standstill, elapsed) : kNothingMeasured, elapsed);
 }
 
@@ -110,7 +112,7 @@ double WheelFollowing::held(std::size_t wheel, double scrubbing) const noexcept 
 }
 
 ConditionMeasurement WheelFollowing::stalled(const SensorFrame& sensors, const WheelTargets& targets,
-                                             const WheelMotion& motion, double dt) noexcept {
+                                             const WheelMotion& motion, double yaw_excess, double dt) noexcept {
   ConditionMeasurement measurement = kNothingMeasured;
   std::array<double, kMaxWheels> scrubbing{};
   if (scrubs_) {
@@ -133,7 +135,7 @@ ConditionMeasurement WheelFollowing::stalled(const SensorFrame& sensors, const W
       const double pushed = pushes ? kPushed : 0;
       const bool excused = stall.excused < kExcused * stall_.limit() &&
                            stall.builds_up(along(targets[i], torque), held(i, scrubbing[i]), dt);
-      (excused ? stall.excused : stall.missed) += std::max(wanted, pushed) * dt;
+      (excused ? stall.excused : stall.missed) += std::max({wanted, pushed, yaw_excess * per_yaw_[i]}) * dt;
     }
     measurement = worse(measurement, beyond(i, stall.missed, stall_.limit() + motion.quantum(i)));
   }

@@ -4,7 +4,8 @@
 /// s: sign of the target q̇*; ω: measured speed (wheel_motion.h); δ: its tolerance; all in the joint's sign. Evaluated
 /// only while a target reaches the wheel (wheel_targets.h).
 ///
-///   stall            the angle ∫max(|q̇*|, w)dt that the wheel should have turned since it last turned, that is, since
+///   stall            the angle ∫max(|q̇*|, w, u)dt that the wheel should have turned since it last turned, that is,
+///   since
 ///                    |ω| ≥ kTurns·|q̇*|, or since it gained kProgress + δ towards its target. Limit: rad + 1 quantum,
 ///                    because a slowly turning wheel shows a count per quantum. w = kPushed while the motor torque τ,
 ///                    and τ less that of the planned acceleration (planned_torque.h), are above `pushed`, else 0: a
@@ -66,8 +67,9 @@ class WheelFollowing {
   WheelFollowing(const SafetyParameters& parameters, const DriveTrain& robot, double period);
 
   void enter_run() noexcept;
+  /// `yaw_excess` rad/s, x.
   void step(const SensorFrame& sensors, const WheelTargets& targets, const WheelMotion& motion,
-            const JointStandstill& standstill, std::uint64_t elapsed, ActiveCauses& out) noexcept;
+            const JointStandstill& standstill, double yaw_excess, std::uint64_t elapsed, ActiveCauses& out) noexcept;
 
  private:
   /// The stall measurement of one wheel.
@@ -98,7 +100,7 @@ class WheelFollowing {
   void update_direction(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel,
                         std::uint64_t elapsed, ActiveCauses& out) noexcept;
   ConditionMeasurement stalled(const SensorFrame& sensors, const WheelTargets& targets, const WheelMotion& motion,
-                               double dt) noexcept;
+                               double yaw_excess, double dt) noexcept;
   double held(std::size_t wheel, double scrubbing) const noexcept;
   ConditionMeasurement not_stopped(const WheelTargets& targets, const JointStandstill& standstill,
                                    std::uint64_t elapsed) noexcept;
@@ -118,6 +120,7 @@ class WheelFollowing {
   std::array<Stall, kMaxWheels> stalls_{};
   std::array<double, kMaxWheels> pushed_{};    ///< N·m
   std::array<double, kMaxWheels> friction_{};  ///< N·m, f
+  std::array<double, kMaxWheels> per_yaw_{};   ///< b/radius
   PlannedTorque planned_;
   Scrub scrub_;
   bool scrubs_;

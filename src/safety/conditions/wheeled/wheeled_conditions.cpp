@@ -34,9 +34,9 @@ void WheeledConditions::step(const MonitorInput& input, std::uint64_t elapsed, d
   slide_.step(motion_, standstill_.standing(), elapsed);
   targets_.step(input);
   wheel_limits_.step(sensors, motion_, targets_.passed(), speed_limit, elapsed, out);
-  wheel_following_.step(sensors, targets_, motion_, standstill_, elapsed, out);
-  torque_oscillation_.step(input, targets_, motion_, elapsed, out);
   yaw_agreement_.step(sensors, motion_, elapsed, out);
+  wheel_following_.step(sensors, targets_, motion_, standstill_, yaw_agreement_.excess(), elapsed, out);
+  torque_oscillation_.step(input, targets_, motion_, elapsed, out);
   body_conditions_.step(sensors, elapsed, rim_speed_.value(sensors), standstill_.moving(), out);
 }
 

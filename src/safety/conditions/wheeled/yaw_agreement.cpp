@@ -30,7 +30,9 @@ YawAgreement::YawAgreement(const Condition& condition, const DriveTrain& robot, 
 void YawAgreement::step(const SensorFrame& sensors, const WheelMotion& motion, std::uint64_t elapsed,
                         ActiveCauses& out) noexcept {
   const bool known = motion.speed_known() && (sensors.valid & kValidGyro) != 0;
-  out.update(watch_, known ? compare(sensors.imu.angular_velocity, motion) : kNothingMeasured, elapsed);
+  const ConditionMeasurement measurement = known ? compare(sensors.imu.angular_velocity, motion) : kNothingMeasured;
+  excess_ = measurement.beyond ? measurement.value - measurement.limit : 0;
+  out.update(watch_, measurement, elapsed);
 }
 
 ConditionMeasurement YawAgreement::compare(const Vector3& gyro, const WheelMotion& motion) const noexcept {
