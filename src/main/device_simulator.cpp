@@ -40,9 +40,7 @@ class DeviceSimulatorNode final : public Node {
         [this] { run(); });
   }
   void poll() override {}
-  std::int64_t tick_ns() const override {
-    return publish_tick_ns(setup_.parameters, {setup_.parameters.report.truth_rate});
-  }
+  std::int64_t tick_ns() const override { return publish_tick_ns(setup_.parameters, monotonic_ns(), {&pace_}); }
   bool finished() const override { return false; }
   void stop() override { end(); }
   std::vector<std::string> missing() const override { return {}; }

@@ -20,13 +20,17 @@ TEST(ClockProblem, NamesTheRemedyForALeftover) {
   EXPECT_THAT(clock_problem(ClockMode::kLockstep, false), HasSubstr("rosparam set /use_sim_time true"));
 }
 
-TEST(PublishTick, IsAQuarterOfTheShortestIntervalWithinItsBounds) {
+TEST(PublishTick, EndsWhenTheFirstTopicIsDueWithinItsBounds) {
+  constexpr std::int64_t kMs = 1'000'000;
   Parameters parameters;
-  EXPECT_EQ(publish_tick_ns(parameters, {50, 250}), 1'000'000);
-  EXPECT_EQ(publish_tick_ns(parameters, {1}), 2'000'000);
-  EXPECT_EQ(publish_tick_ns(parameters, {2000}), 250'000);
+  Pacer slow(1), medium(200), fast(500);
+  for (Pacer* topic : {&slow, &medium, &fast}) topic->due(1, 0);
+  EXPECT_EQ(publish_tick_ns(parameters, 2 * kMs, {&slow, &medium}), 3 * kMs);
+  EXPECT_EQ(publish_tick_ns(parameters, 0, {&slow}), 5 * kMs);
+  EXPECT_EQ(publish_tick_ns(parameters, 9 * kMs, {&medium}), 250'000) << "overdue";
+  EXPECT_EQ(publish_tick_ns(parameters, 0, {&medium, &fast}), 250'000) << "a quarter of a cycle";
   parameters.loop.clock = ClockMode::kLockstep;
-  EXPECT_EQ(publish_tick_ns(parameters, {1}), 250'000);
+  EXPECT_EQ(publish_tick_ns(parameters, 0, {&slow}), 250'000);
 }
 
 }  // namespace

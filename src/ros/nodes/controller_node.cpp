@@ -72,7 +72,11 @@ class ControllerNode final : public ProcessNode<ControllerProcess> {
     });
   }
 
-  std::int64_t tick_ns() const override { return publish_tick_ns(parameters(), {report().command_rate}); }
+  /// It ends before the channel has overwritten a frame with its reasons.
+  std::int64_t tick_ns() const override {
+    const std::int64_t kept_ns = static_cast<std::int64_t>(kFrameSlots) / 2 * parameters().loop.period_ns();
+    return std::min(kept_ns, publish_tick_ns(parameters(), command_.head.stamp_ns, {&pace_}));
+  }
 
   void publish() override {
     SensorFrame sensors;

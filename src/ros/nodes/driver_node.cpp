@@ -50,7 +50,8 @@ class DriverNode final : public ProcessNode<DriverProcess> {
   }
 
   std::int64_t tick_ns() const override {
-    return publish_tick_ns(parameters(), {report().imu_rate, report().truth_rate, kClockRate});
+    return publish_tick_ns(parameters(), sensors_.head.stamp_ns,
+                           {&imu_pace_, &truth_pace_, clock_ ? &clock_pace_ : &truth_pace_});
   }
 
   void publish() override {

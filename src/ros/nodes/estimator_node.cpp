@@ -46,7 +46,7 @@ class EstimatorNode final : public ProcessNode<EstimatorProcess> {
   }
 
   std::int64_t tick_ns() const override {
-    return publish_tick_ns(parameters(), {report().joint_states_rate, report().odom_rate, report().imu_data_rate});
+    return publish_tick_ns(parameters(), sensors_.head.stamp_ns, {&joint_pace_, &odom_pace_, &imu_pace_});
   }
 
   void publish() override {

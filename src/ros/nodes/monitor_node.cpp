@@ -50,7 +50,7 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
     if (!process().restored().empty()) ROS_WARN("%s", process().restored().c_str());
   }
 
-  std::int64_t tick_ns() const override { return publish_tick_ns(parameters(), {1.0e9 / kStatusGap}); }
+  std::int64_t tick_ns() const override { return publish_tick_ns(parameters(), 0, {}); }
 
   void publish() override {
     const std::int64_t now_ns = monotonic_ns();

@@ -128,14 +128,12 @@ class NodeLoop {
       : node_(node), setup_(setup), diagnostics_(handle.advertise<msg::DiagnosticArray>("/diagnostics", 2)) {}
 
   void run() {
-    std::int64_t next_ns = monotonic_ns();
     while (ros::ok() && !interrupted.load() && !node_.finished()) {
       const std::int64_t now_ns = monotonic_ns();
       if (now_ns >= next_poll_ns_) poll(now_ns);
       if (now_ns >= next_diagnostic_ns_) diagnose(now_ns);
       node_.publish();
-      next_ns = std::max(next_ns + node_.tick_ns(), now_ns);
-      sleep_until(next_ns);
+      sleep_until(now_ns + node_.tick_ns());
     }
   }
 
@@ -231,11 +229,16 @@ int run_node(int argc, char** argv, const NodeProgram& program) {
   }
 }
 
-std::int64_t publish_tick_ns(const Parameters& parameters, std::initializer_list<double> rates) {
-  constexpr double kMinTick = 250'000;  // ns
-  constexpr double kMaxTick = 2'000'000;
-  if (parameters.loop.clock == ClockMode::kLockstep) return static_cast<std::int64_t>(kMinTick);
-  return static_cast<std::int64_t>(std::clamp(1.0e9 / std::max(rates) / 4, kMinTick, kMaxTick));
+std::int64_t publish_tick_ns(const Parameters& parameters, std::int64_t stamp_ns,
+                             std::initializer_list<const Pacer*> topics) {
+  constexpr std::int64_t kMinTick = 250'000;  // ns
+  constexpr std::int64_t kMaxTick = 5'000'000;
+  if (parameters.loop.clock == ClockMode::kLockstep) return kMinTick;
+  const std::int64_t cycle_ns = parameters.loop.period_ns();
+  std::int64_t tick = kMaxTick;
+  for (const Pacer* topic : topics)
+    tick = std::min(tick, topic->period_ns() < 4 * cycle_ns ? cycle_ns / 4 : topic->until_due_ns(stamp_ns));
+  return std::clamp(tick, kMinTick, kMaxTick);
 }
 
 }  // namespace robot_control

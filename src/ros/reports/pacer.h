@@ -26,6 +26,9 @@ class Pacer {
 
   std::int64_t period_ns() const noexcept { return period_ns_; }
 
+  /// Returns the time from a frame with this stamp to the next one that is due.
+  std::int64_t until_due_ns(std::int64_t stamp_ns) const noexcept { return next_ns_ - stamp_ns; }
+
  private:
   std::int64_t period_ns_;
   std::uint64_t run_ = 0;
