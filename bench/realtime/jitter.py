@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from robot_control.common.run_log import FloatArray, Log
+from robot_control.doctor.measure import interval
 
 from bench.realtime.loops import loop_for
 from bench.realtime.machine import latencies, load, shallow_sleep, start_cyclictest
@@ -26,17 +27,9 @@ def wake_up(rows: Log) -> FloatArray:
 
 
 def median_interval(values: Sequence[float]) -> tuple[float, float, float]:
-    """Lower end, median and upper end: order statistics that hold the median with at least 95 % (binomial)."""
-    ordered = sorted(values)
-    count = len(ordered)
-    tail, rank = 0.0, 0
-    probability = 0.5**count
-    while rank < count // 2 and tail + probability <= 0.025:
-        tail += probability
-        rank += 1
-        probability *= (count - rank + 1) / rank
-    low = max(rank - 1, 0)
-    return ordered[low], float(np.median(ordered)), ordered[count - 1 - low]
+    """The median between the ends of its interval (doctor.py --measure judges by the same)."""
+    low, high = interval(sorted(values))
+    return low, float(np.median(values)), high
 
 
 def bench(blocks: int, programs: Path, say: Callable[[str], None]) -> tuple[list[dict[str, Any]], bool]:

@@ -53,9 +53,18 @@ def jacobian(robot: Robot, angles: ArrayLike) -> Array:
     return np.asarray(_model(str(robot)).jacobian(_checked(angles, (12,), "angles")), dtype=float)
 
 
+def _model(robot: str) -> _robot_control.LegModel:
+    path = Path(robot).absolute()
+    try:
+        state = path.stat()
+    except OSError:  # reading it says why
+        return _robot_control.legs(*layered(None, path))
+    return _model_of(path, state.st_mtime_ns, state.st_size)
+
+
 @lru_cache(maxsize=8)
-def _model(path: str) -> _robot_control.LegModel:
-    return _robot_control.legs(*layered(None, Path(path).absolute()))
+def _model_of(path: Path, _changed_ns: int, _size: int) -> _robot_control.LegModel:
+    return _robot_control.legs(*layered(None, path))
 
 
 def _checked(values: ArrayLike, shape: tuple[int, ...], name: str) -> Array:

@@ -9,7 +9,7 @@
 ///   kFold   τ = stiffness · (q* − q) + damping · (q̇* − q̇): q* moves at constant speed from the joint's position at the
 ///           first order to `posture`, within `time`. After that, and without a position, as kDamp
 ///
-/// A driver that cannot carry out an action says so (Driver::implements), and the loop does not start.
+/// A driver that cannot carry out an action says so (Driver::accepts), and the loop does not start.
 
 #include <optional>
 #include <vector>

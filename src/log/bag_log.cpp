@@ -91,7 +91,9 @@ void BagLog::write(const LawSnapshot& snapshot) {
 }
 
 void BagLog::write(const TraceSummary& summary) {
-  chunk_.add(kSummary, ros_time(summary.stamp_ns), encode(summary));
+  if (last_ns_ == 0) return;  // there is no row yet
+  // A later time would push the times of the rows that are still to come.
+  chunk_.add(kSummary, last_ns_, encode(summary));
 }
 
 void BagLog::write_last(const TraceSummary& summary) {

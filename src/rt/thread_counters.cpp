@@ -34,8 +34,11 @@ std::optional<ThreadCounters> read_thread_counters(int thread, const std::string
   counters.page_faults = minor + major;
 
   std::ifstream status(folder + "status");
-  counters.voluntary_switches = value_of(status, "voluntary_ctxt_switches:").value_or(0);
-  counters.forced_switches = value_of(status, "nonvoluntary_ctxt_switches:").value_or(0);
+  const auto voluntary = value_of(status, "voluntary_ctxt_switches:");
+  const auto forced = value_of(status, "nonvoluntary_ctxt_switches:");
+  if (!voluntary || !forced) return std::nullopt;  // the thread has ended
+  counters.voluntary_switches = *voluntary;
+  counters.forced_switches = *forced;
 
   std::ifstream schedule(folder + "schedstat");
   std::uint64_t ran_ns = 0, waited_ns = 0;

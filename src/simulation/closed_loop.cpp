@@ -66,10 +66,10 @@ struct ClosedLoop::Parts {
     driver.begin_run(1);
   }
 
-  /// Returns false if there is no such device or kind.
-  bool inject_device(const std::string& component, const std::string& kind) {
+  /// Returns "" if done, else what is wrong with device or kind.
+  std::string inject_device(const std::string& component, const std::string& kind) {
     Simulator* const simulator = simulator_of(*machine);
-    return simulator != nullptr && simulator->inject_device(component, kind).empty();
+    return simulator == nullptr ? "no device is simulated" : simulator->inject_device(component, kind);
   }
 
   void hand_over() noexcept {
@@ -182,9 +182,9 @@ void ClosedLoop::set_parameters(const std::string& request) {
 
 void ClosedLoop::inject_fault(const std::string& component, const std::string& kind) {
   const std::string problem = set_fault(parts_->faults, parts_->robot.machine(), component, kind);
-  if (!problem.empty() && parts_->inject_device(component, kind)) return;
-  if (!problem.empty()) throw std::invalid_argument(problem);
-  parts_->driver.inject(parts_->faults);
+  if (problem.empty()) return parts_->driver.inject(parts_->faults);
+  const std::string device_problem = parts_->inject_device(component, kind);
+  if (!device_problem.empty()) throw std::invalid_argument(problem + "; of a device: " + device_problem);
 }
 
 std::uint64_t ClosedLoop::cycle() const noexcept {

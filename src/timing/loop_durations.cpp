@@ -44,7 +44,7 @@ std::optional<std::int64_t> LoopDurations::measure(Role role, Quantity quantity,
       return driver.due_ns + own.woke_ns - last.woke_ns;
     case Quantity::kWakeUp:
       if (role == Role::kDriver) return own.woke_ns + (next ? driver.slipped_ns - driver_.slipped_ns : 0);
-      if (!waker) return std::nullopt;
+      if (!waker || own.woke_ns < waker->published_ns) return std::nullopt;
       return own.woke_ns - waker->published_ns;
     case Quantity::kExecution:
       return own.published_ns - own.woke_ns;

@@ -4,12 +4,14 @@
 ///   period            from one wake-up to that of the next cycle
 ///   wake_up           driver: from its deadline to its wake-up; other roles: from the publication of the frame that
 ///                     wakes them to their wake-up
-///   execution         from the wake-up to the publication of the own frame. What a thread does afterwards (the gate
-///   and
-///                     the physics of a simulator in the driver, the row of the trace) lies outside
+///   execution         from the wake-up to the publication of the own frame. What a thread does afterwards lies
+///   outside:
+///                     the gate and a simulator's physics in the driver, the row of the trace
 ///   sensor_to_command from the driver's wake-up, at which it samples the sensors, to the published command
 ///   sensor_to_torque  from the wake-up of the driver's cycle from which the command descends to the publication of the
 ///                     cycle in which the gate passed it; the gate and the motors follow
+///
+/// A frame that was published after the wake-up has not caused it: such a cycle has no wake-up latency.
 ///
 /// A tick that slips (Periodic) begins a new grid: its lateness counts as wake-up latency. A period over a pause, over
 /// a skipped cycle or between runs is no period.

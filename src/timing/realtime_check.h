@@ -35,8 +35,6 @@ struct RealtimeCounts {
   std::uint64_t forced_switches = 0;
   std::optional<std::uint64_t> run_queue_ns = {};
   double stolen = 0;  ///< share of the processors' time, 0 … 1
-
-  std::uint64_t violations() const noexcept { return page_faults + blocks; }
 };
 
 class RealtimeCheck {

@@ -186,7 +186,8 @@ def durations(rows: Log) -> dict[str, FloatArray]:
     found = {}
     for name in LOOP:
         begin = woke[name] + slipped if waker[name] is None else woke[name] - published[waker[name]]
-        found[f"{name}.wake_up"] = known(begin)
+        # A frame that was published later has not caused the wake-up.
+        found[f"{name}.wake_up"] = known(begin) if waker[name] is None else known(begin[~(begin < 0)])
         found[f"{name}.execution"] = known(published[name] - woke[name])
         due = rows["stamp_ns"] + rows["slipped_ns"]
         follows = np.diff(rows["cycle"]) == 1

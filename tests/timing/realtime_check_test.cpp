@@ -29,7 +29,7 @@ class RealtimeCheckTest : public testing::Test {
 
 TEST_F(RealtimeCheckTest, AThreadThatOnlyWaitsHasNoViolation) {
   run(30);
-  EXPECT_EQ(check.total().violations(), 0u);
+  EXPECT_EQ(check.total().page_faults + check.total().blocks, 0u);
   EXPECT_EQ(check.recent().voluntary_switches, 10'000u);
   EXPECT_EQ(check.recent().run_queue_ns, 500'000u);
   EXPECT_DOUBLE_EQ(check.recent().stolen, 1.0 / 200);
@@ -67,7 +67,7 @@ TEST_F(RealtimeCheckTest, TheFirstTwoSecondsDoNotCount) {
   check.add(reading);
   reading.time_ns += kInterval;
   run(5);
-  EXPECT_EQ(check.total().violations(), 0u);
+  EXPECT_EQ(check.total().page_faults + check.total().blocks, 0u);
 }
 
 TEST_F(RealtimeCheckTest, AWaitBetweenTheTwoReadsOfOneReadingIsNoViolation) {

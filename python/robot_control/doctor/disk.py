@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 from pathlib import Path
 
 from robot_control.doctor.finding import Check, Finding, fault, note, ok, unseen, warning
@@ -55,7 +56,9 @@ def log_rights(system: System) -> Finding:
         return unseen("not visible in a recorded folder")
     if Path(folder).exists() and not os.access(folder, os.W_OK | os.X_OK):
         return fault(
-            f"{folder} is not writable", "correct its owner, or set ROS_HOME", f'sudo chown -R "$USER" {folder}'
+            f"{folder} is not writable",
+            "correct its owner, or set ROS_HOME",
+            f'sudo chown -R "$USER" {shlex.quote(folder)}',
         )
     return ok(folder)
 
@@ -71,14 +74,20 @@ def quota(system: System) -> Finding:
     return ok("not exceeded")
 
 
+def _size(path: Path) -> int:
+    try:
+        return path.stat().st_size
+    except OSError:  # its robot has just ended
+        return 0
+
+
 def shared_memory(system: System) -> Finding:
     """Shared memory of robots, and the space that is left for it."""
     if not system.path("dev/shm").is_dir():
         return fault(
             "/dev/shm is absent", "mount a tmpfs there: without it no node starts", "sudo mount -t tmpfs tmpfs /dev/shm"
         )
-    objects = system.names("dev/shm/robot_control.*")
-    size = sum(system.path(name).stat().st_size for name in objects)
+    size = sum(map(_size, map(system.path, system.names("dev/shm/robot_control.*"))))
     running = any(Path(arguments[0]).name in NODES for _, arguments in system.processes())
     free = _free(system, "/dev/shm")
     value = f"{size / 1e6:.0f} MB of robots" + ("" if free is None else f", {free / 1e6:.0f} MB free")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import ipaddress
 import re
 import sys
 from pathlib import Path
@@ -66,7 +67,10 @@ def host_name(system: System) -> Finding:
     if not announced:
         return unseen(system.hidden("proc/sys/kernel/hostname"))
     if not re.fullmatch(r"[A-Za-z0-9._:-]+", announced):
-        return fault(f"{announced!r} is no name of a host", "unset ROS_HOSTNAME", "unset ROS_HOSTNAME")
+        value = f"{announced!r} is no name of a host"
+        if system.environment.get("ROS_HOSTNAME"):
+            return fault(value, "unset ROS_HOSTNAME", "unset ROS_HOSTNAME")
+        return fault(value, "rename the machine, or set ROS_IP", "sudo hostnamectl set-hostname robot")
     if _resolves(system, announced):
         return ok(announced)
     # Launch files of this package use the loopback, unless the network is configured.
@@ -78,9 +82,11 @@ def host_name(system: System) -> Finding:
 
 
 def _own_addresses(system: System) -> set[str]:
-    """IPv4 addresses of this machine, from the routing table."""
-    text = system.text("proc/net/fib_trie") or ""
-    return set(re.findall(r"\|-- ([\d.]+)\s+/32 host LOCAL", text))
+    """Addresses of this machine, from the routing tables of the kernel."""
+    found = set(re.findall(r"\|-- ([\d.]+)\s+/32 host LOCAL", system.text("proc/net/fib_trie") or ""))
+    for digits in re.findall(r"^[0-9a-f]{32}", system.text("proc/net/if_inet6") or "", re.MULTILINE):
+        found.add(str(ipaddress.IPv6Address(int(digits, 16))))
+    return found
 
 
 def ros_ip(system: System) -> Finding:

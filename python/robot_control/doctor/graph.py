@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import http.client
+import shlex
 import socket
 import xmlrpc.client
 from collections import Counter
@@ -63,10 +64,11 @@ def graph(system: System) -> Graph | None:
         return None
     master = f"http://{found[0]}:{found[1]}"
     state: Sequence[Any] | None = _call(master, "getSystemState", "/doctor")
-    if state is None:
+    try:
+        published = {str(topic): [str(node) for node in nodes] for topic, nodes in (state or [])[0]}
+        names = {str(name) for part in state or [] for _, nodes in part for name in nodes}
+    except (IndexError, TypeError, ValueError):  # no answer, or not that of a master
         return None
-    published = {topic: list(nodes) for topic, nodes in state[0]}
-    names = {name for part in state for _, nodes in part for name in nodes}
     with ThreadPoolExecutor(max_workers=THREADS) as pool:
         addresses = pool.map(lambda name: _call(master, "lookupNode", "/doctor", name), sorted(names))
         nodes = dict(zip(sorted(names), addresses, strict=True))
@@ -156,7 +158,9 @@ def left_over(known: Graph) -> Finding:
         return ok("none")
     shown = ", ".join(left[:4]) + (f" and {len(left) - 4} more" if len(left) > 4 else "")
     return warning(
-        shown, "remove what you did not set for the next start", *(f"rosparam delete {name}" for name in left)
+        shown,
+        "remove what you did not set for the next start",
+        *(f"rosparam delete {shlex.quote(name)}" for name in left),
     )
 
 
@@ -207,7 +211,7 @@ def other_master(system: System) -> Finding:
         return warning(
             f"the robot runs at {', '.join(masters)}, this terminal asks port {found[1]}",
             "use the robot's master in this terminal",
-            f"export ROS_MASTER_URI={masters[0]}",
+            f"export ROS_MASTER_URI={shlex.quote(masters[0])}",
         )
     return ok(", ".join(masters))
 

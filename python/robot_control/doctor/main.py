@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from robot_control.doctor import clocks, disk, drivers, environment, graph, interrupts, kernel, load, memory, processor
-from robot_control.doctor.finding import Check
+from robot_control.doctor.finding import Check, Finding, unseen
 from robot_control.doctor.report import Row, as_json, commands, exit_code, lines
 from robot_control.doctor.system import DEFAULTS, System
 from robot_control.doctor.tasks import first_sample
@@ -30,13 +30,26 @@ GROUPS: dict[str, Sequence[Check]] = {
 }
 
 
+UNREADABLE = (ValueError, IndexError, KeyError, TypeError, AttributeError, OSError)
+"""Raised where a foreign file is read, or one that has just vanished."""
+
+
+def _finding(check: Check, system: System) -> Finding:
+    """The finding of one check; what cannot be read costs this check alone."""
+    try:
+        return check.examine(system)
+    except UNREADABLE as error:
+        return unseen(f"cannot be read: {type(error).__name__}: {error}")
+
+
 def examine(system: System) -> list[Row]:
     """All findings; the load is measured over the time of the other checks."""
-    first_sample(system)
+    with contextlib.suppress(*UNREADABLE):
+        first_sample(system)
     late = "load"
     order = [*(name for name in GROUPS if name != late), late]
     found = {
-        name: [Row(name, check.name, check.why, check.examine(system)) for check in GROUPS[name]] for name in order
+        name: [Row(name, check.name, check.why, _finding(check, system)) for check in GROUPS[name]] for name in order
     }
     return [row for name in GROUPS for row in found[name]]
 
@@ -51,14 +64,13 @@ def _robot_block(given: str | None) -> dict[str, Any]:
     for name in (share_file("config/robot_params.yaml"), *([given] if given else [])):
         try:
             tree = yaml.safe_load(Path(name).read_text())
-        except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        except (OSError, ValueError, RecursionError, yaml.YAMLError) as error:
             sys.exit(f"doctor.py: {name} cannot be read: {error}")
         part = tree.get("robot") if isinstance(tree, dict) else None
         block |= part if isinstance(part, dict) else {}
         if isinstance(part, dict) and isinstance(drives := part.get("drives"), str) and drives:
-            with contextlib.suppress(
-                OSError, UnicodeDecodeError, yaml.YAMLError, AttributeError
-            ):  # the driver refuses it
+            # The driver refuses a file that cannot be read.
+            with contextlib.suppress(OSError, ValueError, RecursionError, yaml.YAMLError, AttributeError):
                 block["drive_bus"] = yaml.safe_load((Path(name).parent / drives).read_text()).get("bus")
     return block
 
@@ -78,7 +90,7 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
         "--measure",
         metavar="N",
         type=int,
-        help="also N pairs of the nodes beside cyclictest, idle and under load (stress-ng): about N × 25 s",
+        help="also N pairs of the nodes beside cyclictest, idle and under load (stress-ng): about N × 30 s",
     )
     parser.add_argument("--root", metavar="DIR", default="/", help="read /proc, /sys, /etc and /dev from this folder")
     return parser.parse_args([each for each in arguments if ":=" not in each])

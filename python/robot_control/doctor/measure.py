@@ -154,6 +154,7 @@ def _cyclictest(system: System, *, loaded: bool) -> float:
 def percentile99(histogram: str) -> float | None:
     """The 99th percentile of a histogram of cyclictest, µs; None if it is empty."""
     bins = [(int(late), int(count)) for late, count in re.findall(r"^(\d+)\s+(\d+)\s*$", histogram, re.MULTILINE)]
+    bins += [(LONGEST, int(count)) for count in re.findall(r"^# Histogram Overflows: *(\d+)", histogram, re.MULTILINE)]
     total, passed = sum(count for _, count in bins), 0
     for late, count in bins:
         passed += count

@@ -12,11 +12,12 @@ MAX_PRIORITY = 83
 MIN_FILES, ENOUGH_FILES = 64, 1024
 """A node refuses to start below the first one (rt/process_limits.h)."""
 MIN_MEMORY = 400e6
-"""bytes: the four nodes take 138 MiB in all, telemetry with its black box 246 MiB"""
+"""bytes: nodes, telemetry and its black box take less than 200 MiB in all; as much again for the rest"""
 GRANT = (
-    "scripts/privileges install, then log in again; in a container: docker run --cap-add=SYS_NICE --cap-add=IPC_LOCK"
+    "in the checkout: scripts/privileges install, then log in again; "
+    "in a container: docker run --cap-add=SYS_NICE --cap-add=IPC_LOCK"
 )
-INSTALL = "sudo scripts/privileges install"
+INSTALL = "sudo scripts/privileges install  # in the checkout of robot_control"
 
 
 def _user_has_line(system: System, item: str) -> str:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from robot_control.doctor.finding import Check, Finding, fault, note, ok, unseen, warning
+from robot_control.doctor.memory import GRANT, INSTALL
 from robot_control.doctor.system import System, cores_of
 
 CPU = "sys/devices/system/cpu"
+NO_DEVICE = "remove robot.cpu_dma_latency from your parameters"
 DEEP_STATE = 50
 """µs, exit latency of an idle state that a 1 kHz loop notices"""
 THROTTLED_SHARE = 0.01
@@ -72,12 +74,12 @@ def idle_states(system: System) -> Finding:
     wanted = system.robot.get("cpu_dma_latency")
     device = system.path("dev/cpu_dma_latency")
     if wanted is not None and not device.exists():
-        return warning(f"robot.cpu_dma_latency is {wanted}, and /dev/cpu_dma_latency is absent", "leave it out")
+        return warning(f"robot.cpu_dma_latency is {wanted}, and /dev/cpu_dma_latency is absent", NO_DEVICE)
     if wanted is not None and not writable(system, "dev/cpu_dma_latency"):
         return warning(
             f"robot.cpu_dma_latency is {wanted}, and this user may not open /dev/cpu_dma_latency",
-            "scripts/privileges install",
-            "sudo scripts/privileges install",
+            GRANT,
+            INSTALL,
         )
     states = [name.rsplit("/", 1)[0] for name in system.names(f"{CPU}/cpu{_core(system)}/cpuidle/state*/latency")]
     if not states:
@@ -141,7 +143,8 @@ def isolation(system: System) -> Finding:
         return note("no core is isolated", "isolcpus=N nohz_full=N rcu_nocbs=N and robot.core: N (docs/realtime.md)")
     if system.core not in isolated:
         listed = system.text(f"{CPU}/isolated")
-        return warning(f"isolated are {listed}, robot.core is {system.core}", f"robot.core: {min(isolated)}")
+        core = -1 if system.core is None else system.core
+        return warning(f"isolated are {listed}, robot.core is {core}", f"robot.core: {min(isolated)}")
     return ok(f"core {system.core} is isolated")
 
 

@@ -32,7 +32,7 @@ def lines(rows: Sequence[Row]) -> list[str]:
     for row in rows:
         remedy = f"; remedy: {row.finding.remedy}" if row.finding.remedy else ""
         head = f"{row.finding.verdict.value:<8} {row.name:<21}"
-        shown.append(f"{head} {row.finding.value} [{row.why}]{remedy}")
+        shown.append(one_line(f"{head} {row.finding.value} [{row.why}]{remedy}"))
     counts = [(sum(row.finding.verdict is verdict for row in rows), verdict) for verdict in reversed(Verdict)]
     return [*shown, ", ".join(f"{count} {verdict.value}" for count, verdict in counts)]
 
@@ -61,6 +61,11 @@ def commands(rows: Sequence[Row]) -> list[str]:
     for row in sorted(
         (row for row in rows if row.finding.verdict in order), key=lambda row: order.index(row.finding.verdict)
     ):
-        listed.append(f"# {row.finding.verdict.value} {row.name}: {row.finding.value}")
-        listed += row.finding.commands or [f"#   {row.finding.remedy}"]
+        listed.append(f"# {row.finding.verdict.value} {row.name}: {one_line(row.finding.value)}")
+        listed += map(one_line, row.finding.commands or [f"#   {row.finding.remedy}"])
     return listed or ["# nothing to repair"]
+
+
+def one_line(text: str) -> str:
+    """The text with `?` for each control character: names of threads and files are foreign."""
+    return "".join(sign if sign.isprintable() else "?" for sign in text)

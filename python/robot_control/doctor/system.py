@@ -20,6 +20,7 @@ PROGRAM_TIMEOUT = 1.0
 """s, for the answer of a program; the whole report may take 3 s"""
 DEFAULTS: Mapping[str, Any] = {"core": 0, "realtime": "preferred", "driver": "mujoco", "rate": 1000}
 """Keys of the block `robot:` that are not in the file, or if it cannot be read."""
+MAX_CORES = 4096
 CAP_IPC_LOCK, CAP_SYS_NICE = 14, 23
 """Bits of CapEff, capabilities(7)"""
 
@@ -52,6 +53,8 @@ class System:
     def text(self, name: str) -> str | None:
         """The text of a file without blanks at its ends; None if it cannot be read."""
         try:
+            if not self.path(name).is_file():  # reading a FIFO would wait
+                return None
             return self.path(name).read_text(errors="replace").strip()
         except (OSError, ValueError):
             return None
@@ -105,7 +108,9 @@ class System:
     def core(self) -> int | None:
         """The core on which the loop runs; None: any."""
         core = self.robot.get("core", 0)
-        return core if isinstance(core, int) and core >= 0 else None
+        if isinstance(core, bool) or not isinstance(core, int):
+            raise ValueError(f"robot.core is {core!r}, no number of a core: the nodes refuse it")
+        return core if core >= 0 else None
 
     def status(self, key: str) -> str:
         """A line of /proc/self/status, such as CapEff; "" if it is absent."""
@@ -140,8 +145,8 @@ class System:
 
 def cores_of(text: str | None) -> set[int]:
     """The cores of a list of the kernel, such as 0-3,8."""
-    cores: set[int] = set()
+    cores: set[int] = set()  # at most MAX_CORES
     for part in (text or "").split(","):
         if found := re.fullmatch(r"\s*(\d+)(?:-(\d+))?\s*", part):
-            cores |= set(range(int(found[1]), int(found[2] or found[1]) + 1))
+            cores |= set(range(int(found[1]), min(int(found[2] or found[1]) + 1, MAX_CORES)))
     return cores

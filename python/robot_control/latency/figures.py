@@ -7,8 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 QUANTITIES = ("period", "wake_up", "execution", "sensor_to_command", "sensor_to_torque")
+NUMBER = r"-?\d+(?:\.\d+)?(?:e[-+]\d+)?"
 FIGURE = re.compile(
-    r"min (?P<min>\S+) p50 (?P<p50>\S+) p99 (?P<p99>\S+) p99\.9 (?P<p999>\S+) max (?P<max>\S+) n (?P<samples>\d+)"
+    rf"min (?P<min>{NUMBER}) p50 (?P<p50>{NUMBER}) p99 (?P<p99>{NUMBER}) "
+    rf"p99\.9 (?P<p999>{NUMBER}) max (?P<max>{NUMBER}) n (?P<samples>\d{{1,18}})"
 )
 COUNTERS = ("skipped_cycles", "page_faults", "waits_outside_loop", "forced_switches", "run_queue_10s_us")
 
@@ -47,7 +49,8 @@ def table(nodes: Mapping[str, Mapping[str, str]]) -> list[str]:
         for quantity, figures in recent.items():
             shown = (figures.p50, figures.p99, figures.p999, figures.max)
             numbers = "".join(f"{number:9.1f}" for number in shown)
-            lines.append(f"{node + ' ' + quantity:42}{numbers}{ever[quantity].max:10.1f}")
+            longest = max(figures.max, ever[quantity].max) if quantity in ever else figures.max
+            lines.append(f"{node + ' ' + quantity:42}{numbers}{longest:10.1f}")
         counts = [f"{key} {values[key]}" for key in COUNTERS if key in values]
         if counts:
             lines.append(f"  {', '.join(counts)}")

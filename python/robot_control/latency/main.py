@@ -69,6 +69,8 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=0.0, help="end after so many seconds (0: at Ctrl-C)")
     parser.add_argument("--plot", type=Path, metavar="FILE", help="at the end, draw the figures over time")
     given = parser.parse_args(rospy.myargv(sys.argv)[1:])
+    if not 0 <= given.seconds < float("inf"):
+        parser.error(f"--seconds {given.seconds:g} must be 0 (until Ctrl-C) or more")
     if given.plot:
         try:
             check_picture(given.plot)
@@ -80,7 +82,11 @@ def main() -> None:
     with contextlib.suppress(KeyboardInterrupt):
         show(listener, given.seconds)
     if not listener.samples:
-        sys.exit("latency.py: no node has reported; the loop must run on the wall clock (robot.clock: wall)")
+        listened = f" in {given.seconds:g} s" if given.seconds else ""
+        sys.exit(
+            f"latency.py: no node has reported{listened}; nodes report once per second, and only on the wall clock "
+            "(robot.clock: wall)"
+        )
     if given.plot:
         from robot_control.latency.picture import draw  # noqa: PLC0415 (matplotlib takes a second)
 

@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "rt/thread_counters.h"
 #include "signals/roles.h"
 
 namespace robot_control {
@@ -38,7 +37,7 @@ bool TimingSummary::due(std::int64_t now_ns) noexcept {
   return true;
 }
 
-TraceSummary TimingSummary::summary(std::int64_t now_ns, const std::array<int, kLoopRoles>& threads) const {
+TraceSummary TimingSummary::summary(std::int64_t now_ns, const std::array<int, kLoopRoles>& threads) {
   TraceSummary summary{.stamp_ns = now_ns};
   for (const auto& [role, quantity, durations] : durations_.entries()) {
     const std::string name = std::string(program_of(role)) + "." + std::string(name_of(quantity));
@@ -57,7 +56,8 @@ TraceSummary TimingSummary::summary(std::int64_t now_ns, const std::array<int, k
     const Role role = static_cast<Role>(i);
     const std::string program(program_of(role));
     count(program + ".skipped", durations_.skipped(role));
-    const auto counters = threads[i] == 0 ? std::nullopt : read_thread_counters(threads[i]);
+    if (const auto read = threads[i] == 0 ? std::nullopt : read_thread_counters(threads[i])) counters_[i] = read;
+    const std::optional<ThreadCounters>& counters = counters_[i];
     if (!counters) continue;
     count(program + ".page_faults", counters->page_faults);
     count(program + ".voluntary_switches", counters->voluntary_switches);

@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "log/messages/log_messages.h"
 #include "log/rows/joined_row.h"
+#include "rt/thread_counters.h"
 #include "timing/loop_durations.h"
 
 namespace robot_control {
@@ -21,11 +23,13 @@ class TimingSummary {
   /// Returns whether a summary is due; the next one is due `kPeriodNs` later.
   bool due(std::int64_t now_ns) noexcept;
 
-  /// `threads` are the ids of the real-time threads, by Role; 0: not known.
-  TraceSummary summary(std::int64_t now_ns, const std::array<int, kLoopRoles>& threads) const;
+  /// `threads` are the ids of the real-time threads, by Role; 0: not known. The counts of a thread that has ended are
+  /// those of the last call.
+  TraceSummary summary(std::int64_t now_ns, const std::array<int, kLoopRoles>& threads);
 
  private:
   LoopDurations durations_;
+  std::array<std::optional<ThreadCounters>, kLoopRoles> counters_;
   std::int64_t due_ns_ = 0;
 };
 

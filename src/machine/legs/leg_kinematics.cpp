@@ -131,7 +131,7 @@ LegSolution LegKinematics::inverse(const Eigen::Vector3d& foot) const noexcept {
   if (below.reached && below.in_range) return {below.angles, FootReach::kReached};
   const Branch above = branch(from_hip, 1);
   if (above.reached && above.in_range) return {above.angles, FootReach::kReached};
-  LegSolution result;
+  LegSolution result{.angles = below.angles};  // stays where the distance is not finite
   result.reach = below.reached || above.reached ? FootReach::kBeyondRange : FootReach::kBeyondReach;
   double best = std::numeric_limits<double>::infinity();
   const auto try_from = [&](const LegAngles& start) {

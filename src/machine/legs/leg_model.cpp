@@ -37,8 +37,8 @@ void refuse_other_chains(const RigidBodies& robot, const std::vector<BodyChain>&
   }
   if (chains.size() != kLegs) {
     refuse(robot.source, "<robot>",
-           std::to_string(chains.size()) + (chains.size() == 1 ? " leg found" : " legs found") + " (to " +
-               ends_of(robot, chains) + "), a quadruped has four",
+           std::to_string(chains.size()) + (chains.size() == 1 ? " leg found" : " legs found") +
+               (chains.empty() ? "" : " (to " + ends_of(robot, chains) + ")") + ", a quadruped has four",
            "A leg is three joints in a row on the root link that turn about x, y and y at the zero pose");
   }
   std::set<std::size_t> of_legs{0};

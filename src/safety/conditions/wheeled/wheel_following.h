@@ -4,14 +4,13 @@
 /// s: sign of the target q̇*; ω: measured speed (wheel_motion.h); δ: its tolerance; all in the joint's sign. Evaluated
 /// only while a target reaches the wheel (wheel_targets.h).
 ///
-///   stall            the angle ∫max(|q̇*|, w, u)dt that the wheel should have turned since it last turned, that is,
-///   since
-///                    |ω| ≥ kTurns·|q̇*|, or since it gained kProgress + δ towards its target. Limit: rad + 1 quantum,
-///                    because a slowly turning wheel shows a count per quantum. w = kPushed while the motor torque τ,
-///                    and τ less that of the planned acceleration (planned_torque.h), are above `pushed`, else 0: a
-///                    loop with a stuck encoder increases its torque however slow the target is. Not before the target
-///                    itself has moved by a quantum, though: until then a wheel that turns need not have shown a
-///                    count, and inside a curve of a skid steer it takes most of its torque. A target above the
+///   stall            the angle ∫max(|q̇*|, w, u)dt that the wheel should have turned since it last turned. It turns
+///                    while |ω| ≥ kTurns·|q̇*|, or where it gained kProgress + δ towards its target. Limit: rad + 1
+///                    quantum, because a slowly turning wheel shows a count per quantum. w = kPushed while the motor
+///                    torque τ, and τ less that of the planned acceleration (planned_torque.h), are above `pushed`,
+///                    else 0: a loop with a stuck encoder increases its torque however slow the target is. Not before
+///                    the target itself has moved by a quantum, though: until then a wheel that turns need not have
+///                    shown a count, and inside a curve of a skid steer it takes most of its torque. A target above the
 ///                    wheel's velocity limit counts as that limit. In a turn nothing counts while s·τ ≤ `held` and
 ///                    still grows, by kRise of it within kBuildUp: the loop is about to overcome the friction of treads
 ///                    that scrub, for instance after a reversal. So kExcused of the limit is excused at most.
