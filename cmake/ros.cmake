@@ -9,7 +9,7 @@ find_package(catkin REQUIRED COMPONENTS
 
 catkin_python_setup()
 add_action_files(FILES FollowPath.action)
-add_message_files(FILES DriveState.msg RobotStatus.msg SafetyStatus.msg Snapshot.msg Trace.msg TraceHeader.msg TraceSummary.msg)
+add_message_files(FILES DriveState.msg RobotKind.msg RobotStatus.msg SafetyStatus.msg Snapshot.msg Trace.msg TraceHeader.msg TraceSummary.msg)
 add_service_files(FILES InjectFault.srv SetOdometry.srv SetParameters.srv Step.srv)
 generate_messages(DEPENDENCIES actionlib_msgs nav_msgs std_msgs)
 catkin_package(CATKIN_DEPENDS actionlib_msgs message_runtime nav_msgs std_msgs)

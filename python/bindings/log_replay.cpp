@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -16,7 +17,7 @@
 #include "log/replay/replay_error.h"
 #include "log/trace_reader.h"
 #include "loop/log_header.h"
-#include "robots/differential_drive.h"
+#include "robots/robot_kind.h"
 #include "signals/roles.h"
 
 namespace py = pybind11;
@@ -34,16 +35,12 @@ Parameters parameters_in(const Layers& layers, const std::string& base) {
   return read_parameters(layers.first, overlays, base);
 }
 
-DriveTrain robot_in(const Parameters& parameters) {
-  return read_drive_train(load_description(parameters.urdf), parameters.robot);
-}
-
 /// VariedColumns holds the outputs of the laws, logged and with other parameters, by column of a log.
 class VariedColumns {
  public:
-  explicit VariedColumns(const DriveTrain& robot) {
-    for (const WheelModel& wheel : robot.wheels) {
-      efforts_.emplace_back(wheel.joint, "command_effort_" + robot.joints[wheel.joint].name);
+  explicit VariedColumns(const MachineModel& robot) {
+    for (const std::size_t joint : driven_joint_indices(robot)) {
+      efforts_.emplace_back(joint, "command_effort_" + robot.joints[joint].name);
     }
   }
 
@@ -86,7 +83,7 @@ class VariedColumns {
     column.second.push_back(would);
   }
 
-  std::vector<std::pair<std::size_t, std::string>> efforts_;  ///< joint of a wheel, column
+  std::vector<std::pair<std::size_t, std::string>> efforts_;  ///< driven joint, column
   std::map<std::string, std::pair<std::vector<double>, std::vector<double>>> columns_;
 };
 
@@ -110,6 +107,10 @@ std::vector<std::string> header_differences(const LogHeader& logged, const LogHe
     if (was != is) found.push_back(std::string("header: ") + field + " is not that of its parameters and its URDF");
   };
   compare("robot", logged.robot, computed.robot);
+  if (!logged.kind.empty()) {  // earlier versions had only one kind
+    compare("kind", logged.kind, computed.kind);
+    compare("roles", logged.roles, computed.roles);
+  }
   compare("joints", logged.joints, computed.joints);
   compare("wheels", logged.wheels, computed.wheels);
   compare("period", logged.period, computed.period);
@@ -120,9 +121,11 @@ std::vector<std::string> header_differences(const LogHeader& logged, const LogHe
 /// `logged` are the parameters of the log, `varied` are other parameters or None.
 py::dict replay_log(const std::string& path, const Layers& logged, const std::optional<Layers>& varied) {
   const Parameters parameters = parameters_in(logged, logged.first);
-  const DriveTrain robot = robot_in(parameters);
-  Replay replay(DifferentialDrive(parameters, robot), parameters.loop.period());
+  const std::unique_ptr<Robot> composed = make_robot(parameters);
+  const MachineModel& robot = composed->machine();
+  Replay replay(*composed, parameters.loop.period());
   VariedColumns columns(robot);
+  std::unique_ptr<Robot> varied_robot;
   std::vector<std::string> live;  // values that the log leaves out but `varied` sets are included
   if (varied) {
     const Parameters others = parameters_in(*varied, logged.first);
@@ -132,7 +135,8 @@ py::dict replay_log(const std::string& path, const Layers& logged, const std::op
            << " Hz: its rows cannot be made more or fewer; leave robot.rate out";
       throw ReplayError(text.str());
     }
-    replay.vary(DifferentialDrive(others, robot_in(others)), [&](const VariedRow& row) { columns.add(row); });
+    varied_robot = make_robot(others);
+    replay.vary(*varied_robot, [&](const VariedRow& row) { columns.add(row); });
     for (const LiveParameter& each : live_parameters(others, std::string(program_of(Role::kController))))
       live.push_back(each.key);
   }
@@ -156,7 +160,7 @@ py::dict replay_log(const std::string& path, const Layers& logged, const std::op
   }
   py::dict result = described(replay.report());
   result["varied"] = columns.arrays();
-  const LogHeader here = log_header(parameters, robot);
+  const LogHeader here = log_header(parameters, *composed);
   result["doubts"] = doubts(header, here);
   result["header"] = header_differences(header, here);
   result["cut"] = cut;

@@ -33,9 +33,13 @@ py::str text_of(const std::string& bytes) {
 
 py::dict header_of(const LogHeader& header) {
   using namespace py::literals;
-  py::list joints;
-  for (const std::string& joint : header.joints) joints.append(text_of(joint));
-  return py::dict("robot"_a = text_of(header.robot), "joints"_a = joints, "wheels"_a = header.wheels,
+  const auto texts_of = [](const std::vector<std::string>& all) {
+    py::list texts;
+    for (const std::string& each : all) texts.append(text_of(each));
+    return texts;
+  };
+  return py::dict("robot"_a = text_of(header.robot), "kind"_a = text_of(header.kind),
+                  "joints"_a = texts_of(header.joints), "roles"_a = texts_of(header.roles), "wheels"_a = header.wheels,
                   "period"_a = header.period, "clock"_a = text_of(header.clock), "record"_a = text_of(header.record),
                   "part"_a = header.part, "parameters"_a = text_of(header.parameters), "urdf"_a = text_of(header.urdf),
                   "scene"_a = text_of(header.scene), "calibration"_a = text_of(header.calibration),
@@ -167,7 +171,7 @@ void each_part_of_run_bag(const std::string& path, const py::function& use) {
 class FolderLog final : public RowLog {
  public:
   FolderLog(const std::string& directory, const ClosedLoop& loop)
-      : folder_(directory, 0), log_(folder_, log_header(loop.parameters(), loop.robot().machine()), all_of(loop)) {}
+      : folder_(directory, 0), log_(folder_, log_header(loop.parameters(), loop.robot()), all_of(loop)) {}
 
   void write(const JoinedRow& row) override { log_.write(row); }
   void write(const LawSnapshot& snapshot) override { log_.write(snapshot); }

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "signals/names.h"
+#include "signals/robot_kinds.h"
 
 namespace py = pybind11;
 
@@ -40,6 +41,9 @@ py::dict signal_names() {
   py::list roles;
   for (const RoleNames& row : kRoles) roles.append(py::make_tuple(std::string(row.role), std::string(row.program)));
   all["Role"] = roles;
+  py::list kinds;
+  for (const KindNames& row : kKinds) kinds.append(py::make_tuple(std::string(row.kind), std::string(row.controller)));
+  all["RobotKind"] = kinds;
   all["StopCause"] = bits(kStopCauseNames);
   all["CommandReason"] = bits(kCommandReasonNames);
   all["RequestPart"] = bits(kRequestPartNames);

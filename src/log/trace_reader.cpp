@@ -34,7 +34,9 @@ void TraceReader::find_connections(const BagReader& bag, const Use& use) {
     }
     if (!use.snapshot || connection.type != snapshot_type().name || !snapshots_.insert(number).second) continue;
     if (connection.md5sum != snapshot_type().md5) {
-      throw TraceError(path_ + ": its " + connection.type + " is that of another version of robot_control");
+      throw TraceError(path_ + ": its " + connection.type + " has another layout than that of this version (" +
+                       package_version() + "): version " + header_->version + ", build " + header_->build +
+                       " wrote it; replay with that build");
     }
   }
 }

@@ -8,6 +8,7 @@
 
 #include "files/input_file.h"
 #include "log/messages/message_types.h"
+#include "machine/joint_role.h"
 #include "parameters/parameters_text.h"
 
 namespace robot_control {
@@ -32,9 +33,11 @@ std::string text_of(const std::string& path, std::size_t max_size) {
 
 }  // namespace
 
-LogHeader log_header(const Parameters& parameters, const MachineModel& robot) {
+LogHeader log_header(const Parameters& parameters, const Robot& composed) {
+  const MachineModel& robot = composed.machine();
   const auto driven = std::ranges::count(robot.joints, JointRole::kDriven, &JointModel::role);
   LogHeader header{.robot = robot.name,
+                   .kind = std::string(composed.kind()),
                    .wheels = static_cast<std::uint32_t>(driven),
                    .period = parameters.loop.period(),
                    .clock = parameters.loop.clock == ClockMode::kWall ? "wall" : "lockstep",
@@ -46,7 +49,10 @@ LogHeader log_header(const Parameters& parameters, const MachineModel& robot) {
                    .build = package_build(),
                    .processor = processor(),
                    .libraries = std::string("glibc ") + gnu_get_libc_version()};
-  for (const JointModel& joint : robot.joints) header.joints.push_back(joint.name);
+  for (const JointModel& joint : robot.joints) {
+    header.joints.push_back(joint.name);
+    header.roles.emplace_back(name_of(joint.role));
+  }
   const RecordMode record = parameters.telemetry.record;
   header.record = record == RecordMode::kMotion ? "motion" : record == RecordMode::kAlways ? "always" : "request";
   utsname system{};

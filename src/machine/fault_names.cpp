@@ -41,6 +41,27 @@ std::string known_components(const MachineModel& machine) {
 
 }  // namespace
 
+std::vector<std::string> fault_words(const MachineModel& machine) {
+  std::vector<std::string> words;
+  const auto add = [&](std::string word) {
+    if (std::ranges::count(words, word) == 0) words.push_back(std::move(word));
+  };
+  for (std::size_t i = 0; i < kFaultComponents; ++i) {
+    const auto component = static_cast<FaultComponent>(i);
+    if (!is_of_joint(component))
+      add(std::string(name_of(component)));
+    else
+      for (const JointGroup& group : machine.groups) add(word_of(group.name, component));
+  }
+  for (const std::size_t joint : driven_joint_indices(machine)) {
+    for (std::size_t i = 0; i < kFaultComponents; ++i) {
+      const auto component = static_cast<FaultComponent>(i);
+      if (is_of_joint(component)) add(word_of(machine.joints[joint].name, component));
+    }
+  }
+  return words;
+}
+
 std::vector<InjectedFault> components_of(const MachineModel& machine, std::string_view word) {
   for (std::size_t i = 0; i < kFaultComponents; ++i) {
     const auto component = static_cast<FaultComponent>(i);

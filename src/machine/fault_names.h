@@ -12,6 +12,10 @@
 
 namespace robot_control {
 
+/// Returns all words of components: those that exist once, those of groups, and those of each driven joint. A word that
+/// two of them share is there once.
+std::vector<std::string> fault_words(const MachineModel& machine);
+
 /// Returns the components that a word names, each of them healthy; empty for an unknown word.
 std::vector<InjectedFault> components_of(const MachineModel& machine, std::string_view word);
 

@@ -8,6 +8,7 @@
 #include "configuration/parameters.h"
 #include "machine/wheeled/drive_train.h"
 #include "robots/robot.h"
+#include "signals/robot_kinds.h"
 
 namespace robot_control {
 
@@ -24,6 +25,7 @@ class DifferentialDrive final : public Robot {
   DifferentialDrive(const Parameters& parameters, const DriveTrain& machine);
 
   const DriveTrain& machine() const noexcept override { return machine_; }
+  std::string_view kind() const noexcept override { return kWheeledKind; }
   void require_drivable() const override;
   std::unique_ptr<EstimatorLaw> make_estimator() const override;
   std::unique_ptr<ControllerLaw> make_controller() const override;

@@ -14,6 +14,7 @@
 #include "configuration/parameters.h"
 #include "machine/legs/leg_model.h"
 #include "robots/robot.h"
+#include "signals/robot_kinds.h"
 
 namespace robot_control {
 
@@ -24,6 +25,7 @@ class Quadruped final : public Robot {
   Quadruped(const Parameters& parameters, const LegModel& machine);
 
   const LegModel& machine() const noexcept override { return machine_; }
+  std::string_view kind() const noexcept override { return kLeggedKind; }
   void require_drivable() const override;
   std::unique_ptr<EstimatorLaw> make_estimator() const override;
   std::unique_ptr<ControllerLaw> make_controller() const override;

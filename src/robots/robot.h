@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bus/latest_value.h"
@@ -53,6 +54,9 @@ class Robot {
   virtual ~Robot() = default;
 
   virtual const MachineModel& machine() const noexcept = 0;
+
+  /// Returns the name of the kind, which selects the program of its controller (signals/robot_kinds.h).
+  virtual std::string_view kind() const noexcept = 0;
 
   /// Throws ParameterError with every reason why these parameters do not fit this machine.
   virtual void require_drivable() const = 0;

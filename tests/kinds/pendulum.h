@@ -112,6 +112,7 @@ class Pendulum final : public Robot {
   }
 
   const MachineModel& machine() const noexcept override { return machine_; }
+  std::string_view kind() const noexcept override { return "pendulum"; }
   void require_drivable() const override {}
   std::unique_ptr<EstimatorLaw> make_estimator() const override {
     struct Composed final : SavedLaw<EstimatorLaw, PendulumEstimator> {

@@ -52,6 +52,8 @@ TEST(SecondKindProcesses, LockstepGivesTheNumbersOfTheClosedLoopAndALogThatIsRep
 
   TraceReader log(bag);
   EXPECT_EQ(log.header().robot, "pendulum");
+  EXPECT_EQ(log.header().kind, "pendulum");
+  EXPECT_EQ(log.header().roles, std::vector<std::string>{"driven"});
   EXPECT_EQ(log.header().joints, std::vector<std::string>{"pole_joint"});
   Replay replay(*robot, parameters.loop.period());
   log.read({.snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});

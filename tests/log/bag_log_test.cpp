@@ -55,7 +55,7 @@ struct ABagLog : testing::Test {
   BagLog& open(const TelemetryParameters& telemetry) {
     log.reset();  // it refers to its folder
     logs = std::make_unique<LogFolder>(folder.path() / "log", static_cast<std::int64_t>(telemetry.quota * 1e9));
-    log = std::make_unique<BagLog>(*logs, log_header(parameters, loop.robot().machine()), telemetry);
+    log = std::make_unique<BagLog>(*logs, log_header(parameters, loop.robot()), telemetry);
     return *log;
   }
   BagLog& open() { return open(parameters.telemetry); }
@@ -188,14 +188,13 @@ TEST_F(ABagLog, BeginsEachPartWithTheHeaderOfThatTime) {
   parameters.telemetry.split_time = 2;
   open();
   drive_on(1500);
-  LogHeader later = log_header(parameters, loop.robot().machine());
+  LogHeader later = log_header(parameters, loop.robot());
   later.parameters = "other: 1\n";
   log->set_header(later);
   drive_on(2500);
   log->close();
   ASSERT_THAT(names(), ElementsAre("run.1.bag", "run.bag"));
-  EXPECT_EQ(TraceReader(path("run.1.bag")).header().parameters,
-            log_header(parameters, loop.robot().machine()).parameters);
+  EXPECT_EQ(TraceReader(path("run.1.bag")).header().parameters, log_header(parameters, loop.robot()).parameters);
   EXPECT_EQ(TraceReader(path()).header().parameters, later.parameters);
   EXPECT_EQ(TraceReader(path()).header().part, 1u);
 }

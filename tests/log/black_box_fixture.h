@@ -28,7 +28,7 @@ struct ABlackBox : testing::Test {
     log = std::make_unique<BagLog>(logs, header(), all);
   }
 
-  LogHeader header() const { return log_header(drive_parameters(), loop.robot().machine()); }
+  LogHeader header() const { return log_header(drive_parameters(), loop.robot()); }
   std::string path(const std::string& name) const { return folder.path() / name; }
 
   void drive_on(BlackBox& box, std::uint64_t cycles) {

@@ -32,7 +32,7 @@ struct ABlackBoxKeeper : testing::Test {
 
   std::unique_ptr<BlackBoxKeeper> start(std::uint64_t build = build_id(), std::size_t keep = kKeep) {
     auto keeper = std::make_unique<BlackBoxKeeper>(folder.path() / "box", 12 << 20, keep, build,
-                                                   log_header(drive_parameters(), loop.robot().machine()));
+                                                   log_header(drive_parameters(), loop.robot()));
     keeper->watch(0, now_ns);
     return keeper;
   }
@@ -180,7 +180,7 @@ TEST_F(ABlackBoxKeeper, SavesWhatWasBeforeAStopAndFiveSecondsAfterItAndKeepsTheN
 
 TEST_F(ABlackBoxKeeper, SavesWithTheHeaderThatHeldWhereTheRingBegins) {
   const auto keeper = start();
-  LogHeader later = log_header(drive_parameters(), loop.robot().machine());
+  LogHeader later = log_header(drive_parameters(), loop.robot());
   later.parameters = "other: 1\n";
   drive_on(*keeper, 500);
   keeper->poll(now_ns);

@@ -16,7 +16,7 @@ struct AReplayedLog : testing::Test {
   AReplayedLog() {
     TelemetryParameters all;
     all.record = RecordMode::kAlways;
-    log = std::make_unique<BagLog>(logs, log_header(parameters, loop.robot().machine()), all);
+    log = std::make_unique<BagLog>(logs, log_header(parameters, loop.robot()), all);
   }
 
   void drive_on(std::uint64_t cycles) {

@@ -28,7 +28,7 @@ void expect_every_change_is_noticed(const std::string& message, std::size_t step
 TEST(SealedMessages, OfAHeaderShowEveryChange) {
   const Parameters parameters = drive_parameters();
   const ClosedLoop loop(parameters);
-  LogHeader header = log_header(parameters, loop.robot().machine());
+  LogHeader header = log_header(parameters, loop.robot());
   header.parameters.resize(100);  // for speed; so are the other two
   header.urdf.resize(100);
   header.scene.resize(100);

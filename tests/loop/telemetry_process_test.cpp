@@ -4,6 +4,7 @@
 
 #include "cycle_fixture.h"
 #include "loop/cycles/trace_sink.h"
+#include "robots/differential_drive.h"
 #include "support/scoped_bus.h"
 #include "support/temporary_folder.h"
 
@@ -34,7 +35,7 @@ class TelemetryProcessTest : public testing::Test {
     parameters.telemetry.directory = folder_.path();
     parameters.telemetry.record = RecordMode::kOff;
     parameters.telemetry.black_box = 0;
-    return {parameters, two_wheels(), bus_.name()};
+    return {parameters, DifferentialDrive(parameters, two_wheels()), bus_.name()};
   }
 
  private:

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 
@@ -81,6 +82,18 @@ TEST_F(FaultNames, OfEveryComponentAndKindReadBack) {
       EXPECT_EQ(names(), kind == "ok" ? "none" : word + " " + std::string(kind));
     }
   }
+}
+
+TEST_F(FaultNames, AreListedOnceEachAndAllTaken) {
+  const std::vector<std::string> words = fault_words(machine_);
+  for (const std::string& word : words) {
+    EXPECT_FALSE(components_of(machine_, word).empty()) << word;
+    EXPECT_EQ(std::ranges::count(words, word), 1) << word;
+  }
+  for (const std::string known : {"left_encoder", "right_motor", "gyro", "rear_encoder", "lonely_motor"}) {
+    EXPECT_EQ(std::ranges::count(words, known), 1) << known;
+  }
+  EXPECT_EQ(std::ranges::count(words, "swivel_motor"), 0);
 }
 
 TEST_F(FaultNames, RefuseAnUnknownComponentWithTheList) {

@@ -168,5 +168,32 @@ TEST_F(SafetyStatusTest, AnswersARefusedResetWithTheCauseThatPersists) {
               HasSubstr("true on e_stop: /panel, /gate"));
 }
 
+TEST(RobotKindMessage, NamesTheNodesOfTheRobotsKindAndItsJoints) {
+  MachineModel robot;
+  robot.name = "quadbot";
+  robot.joints.resize(2);
+  robot.joints[0].name = "knee";
+  robot.joints[1].name = "camera";
+  robot.joints[1].role = JointRole::kHeld;
+  const msg::RobotKind message = robot_kind(robot, kLeggedKind, "driver", false);
+  EXPECT_EQ(message.robot, "quadbot");
+  EXPECT_EQ(message.kind, "quadruped");
+  EXPECT_THAT(message.roles, ElementsAre("driver", "estimator", "controller", "monitor"));
+  EXPECT_THAT(message.nodes, ElementsAre("driver", "state_estimator", "leg_controller", "safety_monitor"));
+  EXPECT_THAT(message.joints, ElementsAre("knee", "camera"));
+  EXPECT_THAT(message.joint_roles, ElementsAre("driven", "held"));
+  EXPECT_THAT(message.fault_components, IsEmpty());
+  const msg::RobotKind simulated = robot_kind(robot, kLeggedKind, "mujoco_plant", true);
+  EXPECT_THAT(simulated.fault_components, testing::Contains("knee_motor"));
+  EXPECT_THAT(simulated.fault_components, Not(testing::Contains("camera_motor")));
+  EXPECT_THAT(simulated.fault_kinds, testing::Contains("stuck"));
+}
+
+TEST_F(SafetyStatusTest, ARemedyNamesTheControllerOfTheRobotsKind) {
+  permit_.causes = permit_.first_cause = kCauseControllerLost;
+  const msg::SafetyStatus status = safety_status(permit_, robot_, absent_, time_, kPeriod, kLeggedKind);
+  EXPECT_THAT(status.remedies_before_reset, ElementsAre(HasSubstr("leg_controller")));
+}
+
 }  // namespace
 }  // namespace robot_control

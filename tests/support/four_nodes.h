@@ -50,7 +50,7 @@ class FourNodes {
   /// `timeout_s`.
   double run(double timeout_s, const Operator& operate = {}) {
     std::unique_ptr<TelemetryProcess> telemetry;
-    if (record_) telemetry = std::make_unique<TelemetryProcess>(parameters_, robot_->machine(), bus_.name());
+    if (record_) telemetry = std::make_unique<TelemetryProcess>(parameters_, *robot_, bus_.name());
     DriverProcess driver(parameters_, *robot_, bus_.name());
     driver.open_driver(std::make_unique<MujocoPlant>(robot_->machine(), parameters_.plant, parameters_.loop.period()));
     const std::int64_t give_up_ns = monotonic_ns() + static_cast<std::int64_t>(timeout_s * 1e9);

@@ -169,7 +169,7 @@ class NodeProcesses {
   }
 
   [[noreturn]] void run_telemetry() {
-    TelemetryProcess telemetry(parameters_, robot_->machine(), bus_.name());
+    TelemetryProcess telemetry(parameters_, *robot_, bus_.name());
     for (;;) {
       telemetry.poll();
       telemetry.drain();

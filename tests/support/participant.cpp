@@ -129,7 +129,7 @@ void participate(const Arguments& arguments) {
     MonitorProcess monitor(parameters, robot, arguments.bus);
     run_process(monitor, arguments.seconds);
   } else if (arguments.node == "telemetry") {
-    TelemetryProcess telemetry(parameters, robot.machine(), arguments.bus);
+    TelemetryProcess telemetry(parameters, robot, arguments.bus);
     if (loop.clock == ClockMode::kWall && loop.realtime != RealtimePolicy::kOff) precede_ordinary_threads();
     run_telemetry(telemetry, arguments.seconds);
   } else {

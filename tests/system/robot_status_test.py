@@ -6,8 +6,10 @@ import unittest
 
 import rospy
 import rostest
-from robot_control.msg import RobotStatus, SafetyStatus
-from system_support import ESTIMATOR, STALL_CAUSES, Program, Robot, init_test_node, wait_for
+from robot_control.msg import RobotKind, RobotStatus, SafetyStatus
+from system_support import CONTROLLER, ESTIMATOR, STALL_CAUSES, Program, Robot, init_test_node, wait_for
+
+WHEELED = ("differential_drive", CONTROLLER)
 
 
 class RobotStatusTest(unittest.TestCase):
@@ -37,6 +39,12 @@ class RobotStatusTest(unittest.TestCase):
         began, count = time.monotonic(), len(self.reports)
         wait_for("five messages of an unchanged robot", lambda: len(self.reports) >= count + 5)
         self.assertGreater(time.monotonic() - began, 3.0)
+
+        kinds: list[RobotKind] = []
+        rospy.Subscriber("robot_kind", RobotKind, kinds.append)
+        wait_for("the kind of the robot", lambda: bool(kinds))
+        self.assertEqual((kinds[0].kind, dict(zip(kinds[0].roles, kinds[0].nodes, strict=True))["controller"]), WHEELED)
+        self.assertIn("left_encoder", kinds[0].fault_components)
 
         self.robot.drive_until("0.5 m/s", self.robot.driving)
         self.robot.drive_until("who commands", lambda: self.reports[-1].mode == "automatic")

@@ -183,3 +183,23 @@ def test_text_of_a_log_reaches_no_terminal_as_control_characters(hostile_log, ca
     lines = (printed.out + printed.err + said).splitlines()
     assert all(line.isprintable() for line in lines), lines
     assert not any(line.startswith("exact") for line in lines)
+
+
+def test_a_log_of_another_layout_is_refused_with_the_version_that_wrote_it_and_the_remedy(log, tmp_path, capsys):
+    other = tmp_path / "other.bag"
+    with rosbag.Bag(str(log)) as source, rosbag.Bag(str(other), "w") as target:
+        version = ""
+        for topic, message, time in source.read_messages(raw=True):
+            name, data, md5sum, _, kind = message
+            if topic == "trace_header":
+                version = kind().deserialize(data).version
+            if topic == "trace":
+                text = "uint64 of_another_version\n" + kind._full_text
+                kind = type("Trace", (), {"_full_text": text, "_type": name, "_md5sum": md5sum})
+            target.write(topic, (name, data, md5sum, None, kind), time, raw=True)
+    with pytest.raises(SystemExit) as end:
+        main([str(other)])
+    printed = capsys.readouterr()
+    assert end.value.code == REFUSED
+    assert f"version {version}, build " in printed.err
+    assert "replay with that build" in printed.err

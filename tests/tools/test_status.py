@@ -2,11 +2,13 @@
 
 import math
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 
 import pytest
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from robot_control.common.roles import Kind
 from robot_control.msg import RobotStatus, SafetyStatus
-from robot_control.status.report import REQUIRED, Reports, changed, status_of
+from robot_control.status.report import Reports, changed, status_of
 from robot_control.view.state_publisher import without_root_inertia
 
 
@@ -14,8 +16,8 @@ def report(level=DiagnosticStatus.OK, message="", **values):
     return DiagnosticStatus(level=level, message=message, values=[KeyValue(k, v) for k, v in values.items()])
 
 
-ESTIMATOR = {"flags": "valid standstill", "degraded": ""}
-ESTIMATOR |= {f"confidence_{name}": "1" for name in ("left_encoder", "right_encoder", "gyro", "lateral_contact")}
+REQUIRED = Kind().loop[1:]
+ESTIMATOR = {"flags": "valid standstill", "degraded": "", "odometry_confidence": "1"}
 
 
 def reports(state="READY", commander="", senders="", **changes):
@@ -25,7 +27,7 @@ def reports(state="READY", commander="", senders="", **changes):
     diagnostics["diff_drive_controller"] = report(senders=senders)
     diagnostics = {name: value for name, value in (diagnostics | changes).items() if value is not None}
     safety = SafetyStatus(state_name=state) if state else None
-    return Reports(safety, diagnostics, commander)
+    return Reports(safety, diagnostics, commander=commander)
 
 
 def test_a_healthy_robot_without_commands_is_idle_and_ok():
@@ -39,6 +41,11 @@ def test_no_report_is_offline_with_the_names_of_the_silent_nodes():
     assert (status.mode, status.health) == ("offline", RobotStatus.ERROR)
     assert status.problems == [f"{name} is silent" for name in REQUIRED]
     assert math.isnan(status.odometry_confidence)
+
+
+def test_the_controller_of_another_kind_is_the_one_that_is_missed():
+    status = status_of(replace(Reports(), kind=Kind("quadruped", controller="leg_controller")))
+    assert status.problems == ["state_estimator is silent", "leg_controller is silent", "safety_monitor is silent"]
 
 
 @pytest.mark.parametrize(
@@ -77,10 +84,9 @@ def test_health_is_the_worst_report_and_every_bad_one_is_named():
     assert status_of(reports(state_estimator=None)).health == RobotStatus.ERROR
 
 
-def test_the_confidence_is_that_of_the_worst_sensor_and_zero_without_a_valid_pose():
-    assert (
-        status_of(reports(state_estimator=report(**ESTIMATOR | {"confidence_gyro": "0.4"}))).odometry_confidence == 0.4
-    )
+def test_the_confidence_is_that_of_the_estimator_and_zero_without_a_valid_pose():
+    doubted = report(**ESTIMATOR | {"odometry_confidence": "0.4"})
+    assert status_of(reports(state_estimator=doubted)).odometry_confidence == 0.4
     assert status_of(reports(state_estimator=report(**ESTIMATOR | {"flags": ""}))).odometry_confidence == 0.0
     assert status_of(reports(state_estimator=report(**ESTIMATOR | {"degraded": "slip"}))).odometry_degraded
 

@@ -4,7 +4,7 @@ import re
 from dataclasses import replace
 
 import pytest
-from robot_control.common.roles import CONTROLLER, DRIVER, ESTIMATOR, LOOP, MONITOR
+from robot_control.common.roles import CONTROLLER, DRIVER, ESTIMATOR, LOOP, MONITOR, Kind
 from robot_control.why.diagnosis import Cause, Facts, Report, Safety, Verdict, judge
 from robot_control.why.screen import Look, render
 
@@ -111,7 +111,7 @@ def test_a_moving_robot_moves(driving):
     assert not answer.actions
 
 
-def test_wheels_without_load_are_named_while_they_turn(driving):
+def test_what_the_driver_suspects_is_named_while_the_robot_is_to_move(driving):
     said = "left bears no load at rest, on the ground stand skid"
     for measured in ((0.5, 0.2), (0.0, 0.0)):
         answer = judge(replace(saying(driving, DRIVER, suspicious=said), measured=measured))
@@ -204,6 +204,17 @@ def test_a_lost_node_is_started_first(driving):
     facts = stopped(without(driving, CONTROLLER), cause)
     facts = replace(facts, safety=replace(facts.safety, missing=(CONTROLLER,)))
     assert judge(facts).commands[0] == "rosrun robot_control diff_drive_controller"
+
+
+def test_the_lost_controller_of_another_kind_is_named_and_started(driving):
+    legs = Kind("quadruped", controller="leg_controller")
+    facts = replace(without(driving, CONTROLLER), kind=legs)
+    facts = replace(facts, safety=replace(facts.safety, missing=("leg_controller",)))
+    assert judge(facts).headline == "leg_controller does not run."
+    assert judge(facts).commands == ("rosrun robot_control leg_controller",)
+    walking = replace(facts, reports={**facts.reports, "leg_controller": driving.reports[CONTROLLER]})
+    walking = saying(walking, "leg_controller", command__out_of_reach="the pose is beyond what the legs reach")
+    assert "controller the pose is beyond what the legs reach" in " ".join(text(walking).split())
 
 
 def test_commands_are_for_the_robots_own_namespace(driving):

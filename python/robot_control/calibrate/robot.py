@@ -7,7 +7,7 @@ import rospy
 from nav_msgs.msg import Odometry
 
 from robot_control.calibrate.law import FloatArray
-from robot_control.common.orientation import yaw_of
+from robot_control.common.rotation import yaw_of
 from robot_control.identify.excitation_watch import Pose
 from robot_control.identify.robot import RunningRobot
 

@@ -8,7 +8,7 @@ silent.
 import rospy
 from geometry_msgs.msg import TwistStamped
 
-from robot_control.common.roles import CONTROLLER
+from robot_control.common.robot_kind import running_kind
 from robot_control.common.topic_sender import Sender
 
 PLAIN = "cmd_vel_stamped"
@@ -22,7 +22,7 @@ class CommandTopic:
             rospy.Publisher(name, TwistStamped, queue_size=1, tcp_nodelay=True) for name in (source, PLAIN)
         ]
         self._senders = [Sender(publisher, TwistStamped()) for publisher in self._publishers]
-        self._controller = rospy.resolve_name(CONTROLLER)
+        running_kind()
 
     @property
     def name(self) -> str:
@@ -46,5 +46,6 @@ class CommandTopic:
         return 0 if self._reaches(0) else 1
 
     def _reaches(self, number: int) -> bool:
+        controller = rospy.resolve_name(running_kind().controller)
         connections = list(self._publishers[number].impl.connections)
-        return any(connection.endpoint_id == self._controller for connection in connections)
+        return any(connection.endpoint_id == controller for connection in connections)

@@ -1,11 +1,11 @@
-"""Parameters of the running diff_drive_controller that set_parameters changes, as it publishes them."""
+"""Parameters of the running controller that set_parameters changes, as it publishes them."""
 
 from __future__ import annotations
 
 import rospy
 from dynamic_reconfigure.msg import Config
 
-from robot_control.common.roles import CONTROLLER
+from robot_control.common.robot_kind import running_kind
 
 
 class LiveParameters:
@@ -13,16 +13,35 @@ class LiveParameters:
 
     def __init__(self) -> None:
         self._values: dict[str, float] = {}
-        rospy.Subscriber(f"{CONTROLLER}/parameter_updates", Config, self._receive, queue_size=1)
+        self._subscriber: rospy.Subscriber | None = None
+        self._of = ""
+        self._follow()
+
+    @property
+    def controller(self) -> str:
+        """The node whose parameters they are."""
+        self._follow()
+        return self._of
 
     def value(self, name: str, default: float) -> float:
         """The value in force, or `default` if it is not known."""
+        self._follow()
         return self._values.get(name, default)
 
     @property
     def command_timeout(self) -> float:
         """s of silence after which a command has ended; 0: never, or not known."""
         return self.value("cmd_vel_timeout", 0.0)
+
+    def _follow(self) -> None:
+        """Turns to the controller of the robot's kind once that is known."""
+        controller = running_kind().controller
+        if controller == self._of:
+            return
+        if self._subscriber is not None:
+            self._subscriber.unregister()
+        self._of, self._values = controller, {}
+        self._subscriber = rospy.Subscriber(f"{controller}/parameter_updates", Config, self._receive, queue_size=1)
 
     def _receive(self, message: Config) -> None:
         self._values = self._values | {parameter.name: float(parameter.value) for parameter in message.doubles}

@@ -1,4 +1,12 @@
-"""The programs of the loop, by role (signals/roles.h). A program names its node and its block of parameters alike."""
+"""The programs of the loop, by role (signals/roles.h). A program names its node and its block of parameters alike.
+
+The controller is a program of the robot's kind. Tools that work with any robot take it from a `Kind`; CONTROLLER is the
+one of robots on wheels.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
 
 from robot_control._robot_control import signal_names
 
@@ -6,3 +14,26 @@ DRIVER, ESTIMATOR, CONTROLLER, MONITOR, TELEMETRY = (program for _, program in s
 LOOP = (DRIVER, ESTIMATOR, CONTROLLER, MONITOR)
 HARDWARE_DRIVER = "driver"
 """The program of every driver but the simulator's."""
+
+
+@dataclass(frozen=True)
+class Kind:
+    """The nodes, joints and components of a robot; before they are known, the nodes of a simulated robot on wheels."""
+
+    name: str = ""  # differential_drive, quadruped; empty: not known yet
+    driver: str = DRIVER
+    estimator: str = ESTIMATOR
+    controller: str = CONTROLLER
+    monitor: str = MONITOR
+    fault_components: tuple[str, ...] = ()
+    fault_kinds: tuple[str, ...] = ()
+
+    @property
+    def loop(self) -> tuple[str, ...]:
+        """The nodes of the loop."""
+        return (self.driver, self.estimator, self.controller, self.monitor)
+
+    def node(self, role: str) -> str:
+        """The node of a role: driver, estimator, controller or monitor."""
+        name: str = getattr(self, role)
+        return name

@@ -1,6 +1,8 @@
-"""Orientations as matrices."""
+"""Orientations as matrices and as headings."""
 
+import math
 from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,3 +18,15 @@ def rotation(quaternion: Sequence[float]) -> NDArray[np.float64]:
             [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
         ]
     )
+
+
+class _Quaternion(Protocol):
+    x: float
+    y: float
+    z: float
+    w: float
+
+
+def yaw_of(q: _Quaternion) -> float:
+    """rad, of a unit quaternion, for instance of geometry_msgs."""
+    return math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))

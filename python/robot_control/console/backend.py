@@ -11,6 +11,7 @@ from std_msgs.msg import Empty
 
 from robot_control.common.command import Pace
 from robot_control.common.command_topic import CommandTopic
+from robot_control.common.robot_kind import running_kind
 from robot_control.console.calls import CALLS, Calls, against
 from robot_control.console.desk import Desk, Page
 from robot_control.console.settings import Settings
@@ -87,7 +88,7 @@ class Backend:
                 "role": str(page.role),
                 "commander": None if holder is None else holder.number,
                 "pages": [{"number": p.number, "name": p.name, "role": str(p.role)} for p in self.desk.pages.values()],
-                "against": {name: against(name, page, self.desk, self.available) for name in CALLS},
+                "against": {name: against(name, page, self.desk, self.available, running_kind()) for name in CALLS},
                 "hold": hold.state(now) if holder is page else "",
                 "link": {
                     "last": hold.round_trips.last(),

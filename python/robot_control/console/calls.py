@@ -16,7 +16,8 @@ from geometry_msgs.msg import PoseStamped
 from std_srvs.srv import SetBool, Trigger
 
 from robot_control.common.files import printable
-from robot_control.common.roles import CONTROLLER, DRIVER
+from robot_control.common.robot_kind import ROLES, running_kind
+from robot_control.common.roles import Kind
 from robot_control.console.desk import Desk, Page, RefusedError, Role
 from robot_control.console.messages import SPEED, Fields, MessageError, check_fields, flag, number, text
 from robot_control.msg import FollowPathActionGoal
@@ -41,7 +42,7 @@ def _points(value: Any) -> bool:  # noqa: ANN401 (JSON)
 class Call:
     """One request that a page may make."""
 
-    service: str = ""  # relative name of the service without which the call cannot work; empty: none
+    service: str = ""  # service without which the call cannot work, below a node or a role; empty: none
     kind: type | None = None  # type of that service if the call is a plain call of it, with the fields as arguments
     fields: Fields = field(default_factory=dict)
     role: Role = Role.OPERATE
@@ -52,20 +53,24 @@ CALLS: Mapping[str, Call] = {
     "reset": Call("e_stop_reset", fields={"key": text(32)}),
     "reset_odometry": Call("reset_odometry", Trigger),
     "set_odometry": Call("set_odometry", SetOdometry, {"x": METRES, "y": METRES, "yaw": number(-7.0, 7.0)}),
-    "set_parameters": Call(f"{CONTROLLER}/set_parameter_map", SetParameters, {"parameters": text(8192)}, Role.MAINTAIN),
+    "set_parameters": Call("controller/set_parameter_map", SetParameters, {"parameters": text(8192)}, Role.MAINTAIN),
     "path_points": Call(f"{FOLLOW}/pause", fields={"points": _points, "speed": SPEED}),
     "path_shape": Call(f"{FOLLOW}/pause", fields={"shape": text(16), "size": number(0.1, 100.0), "speed": SPEED}),
     "path_csv": Call(f"{FOLLOW}/pause", fields={"text": text(60_000), "speed": SPEED}),
     "path_pause": Call(f"{FOLLOW}/pause", Trigger),
     "path_resume": Call(f"{FOLLOW}/resume", Trigger),
     "path_cancel": Call(f"{FOLLOW}/pause"),
-    "pause": Call(f"{DRIVER}/set_pause", SetBool, {"on": flag}, Role.MAINTAIN),
-    "step": Call(f"{DRIVER}/step", Step, {"cycles": number(1, 10_000, int)}, Role.MAINTAIN),
-    "simulation_reset": Call(f"{DRIVER}/reset", Trigger, role=Role.MAINTAIN),
-    "inject_fault": Call(
-        f"{DRIVER}/inject_fault", InjectFault, {"component": text(32), "kind": text(32)}, Role.MAINTAIN
-    ),
+    "pause": Call("driver/set_pause", SetBool, {"on": flag}, Role.MAINTAIN),
+    "step": Call("driver/step", Step, {"cycles": number(1, 10_000, int)}, Role.MAINTAIN),
+    "simulation_reset": Call("driver/reset", Trigger, role=Role.MAINTAIN),
+    "inject_fault": Call("driver/inject_fault", InjectFault, {"component": text(64), "kind": text(32)}, Role.MAINTAIN),
 }
+
+
+def service_of(call: Call, kind: Kind) -> str:
+    """The relative name of the call's service on a robot of this kind."""
+    node, slash, name = call.service.partition("/")
+    return f"{kind.node(node) if node in ROLES else node}{slash}{name}"
 
 
 def check_call(name: str, arguments: Mapping[str, Any]) -> None:
@@ -75,15 +80,16 @@ def check_call(name: str, arguments: Mapping[str, Any]) -> None:
     check_fields(name, arguments, CALLS[name].fields)
 
 
-def against(name: str, page: Page, desk: Desk, services: set[str]) -> str:
+def against(name: str, page: Page, desk: Desk, services: set[str], kind: Kind) -> str:
     """Why this page cannot make the call now; empty if it can. `services`: those of the robot, by relative name."""
     call = CALLS[name]
+    service = service_of(call, kind)
     if page.role < call.role:
         return f"needs the role {call.role}"
     if desk.commander is not page:
         return "take the command first"
-    if call.service and call.service not in services:
-        node, _, _ = call.service.rpartition("/")
+    if service and service not in services:
+        node, _, _ = service.rpartition("/")
         return f"{'follow_path.py' if node == FOLLOW else node or 'the robot'} does not run"
     return ""
 
@@ -103,7 +109,8 @@ class Calls:
         call = CALLS[name]
         try:
             if call.kind is not None:
-                answer = rospy.ServiceProxy(call.service, call.kind)(*(given[field] for field in call.fields))
+                service = rospy.ServiceProxy(service_of(call, running_kind()), call.kind)
+                answer = service(*(given[field] for field in call.fields))
                 if not answer.success:
                     raise RefusedError(answer.message or "refused")
                 return answer.message or "done"

@@ -15,6 +15,7 @@ from aiohttp import WSMsgType, web
 
 from robot_control.common.command import Command
 from robot_control.common.files import escaped
+from robot_control.common.robot_kind import running_kind
 from robot_control.console.backend import Backend
 from robot_control.console.calls import against, check_call
 from robot_control.console.desk import Page, RefusedError
@@ -140,7 +141,7 @@ class Client:
     async def _call(self, number: int, name: str, arguments: dict[str, Any]) -> None:
         backend, accepted = self._backend, False
         try:
-            why = against(name, self._page, backend.desk, backend.available)
+            why = against(name, self._page, backend.desk, backend.available, running_kind())
             if why:
                 raise RefusedError(why)
             if name == "reset":

@@ -13,7 +13,6 @@ from nav_msgs.msg import Odometry, Path
 from sensor_msgs.msg import JointState
 
 from robot_control.common.command import Command
-from robot_control.common.roles import CONTROLLER, DRIVER, ESTIMATOR, LOOP
 from robot_control.console.topics import Latest
 from robot_control.msg import DriveState, FollowPathActionFeedback
 from robot_control.path.robot import pose_of
@@ -88,7 +87,7 @@ class View:
 
     def slow(self, facts: Facts) -> Values:
         """The values that change rarely: state, causes, remedies, senders."""
-        answer, safety = judge(facts), facts.received()
+        answer, safety, estimator = judge(facts), facts.received(), facts.kind.estimator
         drive, feedback = self._topics["drive"].message, self._topics["feedback"]
         progress = (
             {}
@@ -107,13 +106,15 @@ class View:
                 "actions": answer.actions,
                 "commands": answer.commands,
                 "missing": missing_nodes(facts),
-                "nodes": {node: facts.there(node) for node in LOOP},
+                "nodes": {node: facts.there(node) for node in facts.loop},
                 "senders": facts.commanders(),
-                "limits": list(facts.reasons(CONTROLLER, "command").values()),
-                "odometry": [text for of in ("slip", "estimate") for text in facts.reasons(ESTIMATOR, of).values()],
-                "faults": facts.value(DRIVER, "injected"),
-                "simulated": facts.there(DRIVER),
-                "paused": facts.value(DRIVER, "driver_state") == "paused",
+                "limits": list(facts.reasons(facts.controller, "command").values()),
+                "odometry": [text for of in ("slip", "estimate") for text in facts.reasons(estimator, of).values()],
+                "faults": facts.value(facts.driver, "injected"),
+                "components": facts.kind.fault_components,
+                "kinds": facts.kind.fault_kinds,
+                "simulated": bool(facts.kind.fault_components) and facts.there(facts.driver),
+                "paused": facts.value(facts.driver, "driver_state") == "paused",
                 "safety": None if safety is None else dataclasses.asdict(safety),
                 "sources": [] if drive is None else drive.sources,
                 "revoked": [] if drive is None else drive.revoked,

@@ -15,7 +15,6 @@ from sensor_msgs.msg import Joy
 from robot_control.common.command import SEND_PERIOD, Pace
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.files import printable
-from robot_control.common.roles import CONTROLLER
 from robot_control.common.ros_node import running_node
 from robot_control.common.server_values import ServerValueError, server_tree
 from robot_control.common.topic_sender import Signals
@@ -34,7 +33,7 @@ MESSAGES = 100
 SILENCE = 3.0
 """s without safety_status, which comes once per second, after which its last message no longer counts"""
 
-REFUSED = f"{CONTROLLER} refuses what was requested before a stop: zero; release the enable button once"
+REFUSED = "the controller refuses what was requested before a stop: zero; release the enable button once"
 
 
 class ParameterError(ValueError):

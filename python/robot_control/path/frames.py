@@ -12,7 +12,7 @@ import rospy
 import tf2_py
 from tf2_msgs.msg import TFMessage
 
-from robot_control.common.orientation import yaw_of
+from robot_control.common.rotation import yaw_of
 from robot_control.path.follower import Pose
 from robot_control.path.waypoints import PathError, Waypoint, placed
 

@@ -10,8 +10,8 @@ import rospy
 from nav_msgs.msg import Odometry
 
 from robot_control.common.command_topic import CommandTopic
-from robot_control.common.orientation import yaw_of
-from robot_control.common.roles import CONTROLLER, ESTIMATOR, MONITOR
+from robot_control.common.roles import ESTIMATOR, MONITOR
+from robot_control.common.rotation import yaw_of
 from robot_control.msg import DriveState, SafetyStatus
 from robot_control.path.follower import Pose
 from robot_control.safety.states import DRIVABLE, STOPPED
@@ -90,7 +90,7 @@ class Robot:
         if not self.drivable:
             return self.stop_in_words()
         refused = now - self.refused_at > CAUSE_DELAY
-        return f"{CONTROLLER} refuses what was requested before a stop" if refused else ""
+        return "the controller refuses what was requested before a stop" if refused else ""
 
     def stop_in_words(self) -> str:
         """Why the robot may not drive."""
@@ -119,7 +119,7 @@ class Robot:
             return f"no odom: {ESTIMATOR} does not run"
         if not self.drivable:
             return self.stop_in_words()
-        return f"{SOURCE} is {self.masked_by}" if self.masked_by else f"{CONTROLLER} does not take commands"
+        return f"{SOURCE} is {self.masked_by}" if self.masked_by else "the controller does not take commands"
 
     def _receive_odometry(self, message: Odometry) -> None:
         self.odometry, self.odometry_at = message, time.monotonic()

@@ -23,6 +23,7 @@ TOPICS = (
     "imu/data_raw",
     "imu/data",
     "cmd_vel_out",
+    "robot_kind",
     "safety_status",
     "robot_status",
     "ground_truth/odom",

@@ -60,6 +60,10 @@ class Drive:
         """True if all of these columns have at least one value."""
         return all(name in self.log and not np.all(np.isnan(self.log[name])) for name in names)
 
+    def uses(self, sensor: str) -> bool:
+        """True if the estimator judged this sensor in any cycle; that of another robot kind has other sensors."""
+        return any(np.nan_to_num(self.column(f"{of}_{sensor}")).any() for of in ("confidence", "nis"))
+
     def count(self, name: str) -> float:
         """Sum of a counter that restarts at 0 with its node; NaN if it is not in the log."""
         values = self.column(name)

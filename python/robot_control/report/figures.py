@@ -99,7 +99,7 @@ def _estimate(drive: Drive) -> Iterator[Figure]:
     yield Figure("slip", "share", "of the time while driving: wheels and inertial sensors disagree", share)
     share = float(np.mean(flags[driving] & DEGRADED != 0)) if driving.any() else NAN
     yield Figure("degraded", "share", "of the time while driving: a correction undone, or no gyro bias yet", share)
-    for sensor in ("left_encoder", "right_encoder", "gyro", "accelerometer"):
+    for sensor in filter(drive.uses, ("left_encoder", "right_encoder", "gyro", "accelerometer")):
         name = f"confidence_{sensor}"
         low = _percentile(drive.column(name)[driving], 1)
         yield Figure(name, "share", f"confidence in the {sensor.replace('_', ' ')}, 99 % of the time above", low)
@@ -149,7 +149,7 @@ def _torque(drive: Drive) -> Iterator[Figure]:
     driving = drive.driving()
     saturated = drive.bits("command_reasons") & SATURATED != 0
     share = float(np.mean(saturated[driving])) if driving.any() else NAN
-    yield Figure("saturated", "share", "of the time while driving: a wheel's torque or speed is at its limit", share)
+    yield Figure("saturated", "share", "of the time while driving: a joint's torque or speed is at its limit", share)
     battery = drive.column("battery_voltage")
     yield Figure("battery_least", "V", "lowest voltage", _percentile(battery, 0))
 

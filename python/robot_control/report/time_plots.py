@@ -159,14 +159,15 @@ def position_plot(axis: TimeAxis, drives: list[Drive]) -> Any:  # noqa: ANN401 (
 
 
 def innovations(axis: TimeAxis, drive: Drive) -> list[Any]:
-    """Normalised innovation squared and confidence of each sensor."""
+    """Normalised innovation squared and confidence of each sensor that the estimator uses."""
+    sensors = [(sensor, colour) for sensor, colour in zip(SENSORS, OF_SENSORS, strict=True) if drive.uses(sensor)]
     nis = [
         (Line(sensor.replace("_", " "), colour, 1.0), drive.time, np.maximum(drive.column(f"nis_{sensor}"), 1e-3))
-        for sensor, colour in zip(SENSORS, OF_SENSORS, strict=True)
+        for sensor, colour in sensors
     ]
     confidence = [
         (Line(sensor.replace("_", " "), colour, 1.2), drive.time, drive.column(f"confidence_{sensor}"))
-        for sensor, colour in zip(SENSORS, OF_SENSORS, strict=True)
+        for sensor, colour in sensors
     ]
     plots = [
         line_plot(axis, "NIS", nis, height=220, y_axis_type="log"),

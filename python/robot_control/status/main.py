@@ -11,6 +11,7 @@ import xml.etree.ElementTree as ET
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
+from robot_control.common.robot_kind import running_kind
 from robot_control.common.ros_node import running_node
 from robot_control.installed_files import share_file
 from robot_control.msg import DriveState, RobotStatus, SafetyStatus
@@ -56,6 +57,7 @@ class Status:
         return Reports(
             safety=self._safety if now - self._safety_at < SILENCE else None,
             diagnostics={name: report for name, (at, report) in dict(self._reports).items() if now - at < SILENCE},
+            kind=running_kind(),
             commander=self._commander() if now - self._drive_at < SILENCE else "",
         )
 

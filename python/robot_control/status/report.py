@@ -8,16 +8,13 @@ from dataclasses import dataclass, field
 
 from diagnostic_msgs.msg import DiagnosticStatus
 
-from robot_control.common.roles import CONTROLLER, ESTIMATOR, MONITOR
+from robot_control.common.roles import Kind
 from robot_control.msg import RobotStatus, SafetyStatus
 from robot_control.safety.states import DRIVABLE
 
-REQUIRED = (ESTIMATOR, CONTROLLER, MONITOR)
-"""Nodes of every robot; the driver's has its own name"""
 MANUAL_SOURCES = frozenset({"joy_vel", "key_vel", "console_vel"})
 MANUAL_NODES = ("teleop", "pad", "console")
 """Begins of the names of nodes with which a person drives"""
-ODOMETRY_SENSORS = ("left_encoder", "right_encoder", "gyro")
 
 
 @dataclass(frozen=True)
@@ -26,6 +23,7 @@ class Reports:
 
     safety: SafetyStatus | None = None
     diagnostics: Mapping[str, DiagnosticStatus] = field(default_factory=dict)  # by node, below the namespace
+    kind: Kind = field(default_factory=Kind)
     commander: str = ""  # from drive_state, if there is a list of command sources
 
     def value(self, node: str, key: str) -> str:
@@ -37,7 +35,7 @@ class Reports:
 def status_of(reports: Reports) -> RobotStatus:
     """All but stamp, version and uptime."""
     status = RobotStatus()
-    senders = reports.value(CONTROLLER, "senders")
+    senders = reports.value(reports.kind.controller, "senders")
     status.senders = senders.split(", ") if senders else []
     status.commander = reports.commander
     status.health, status.problems = _health(reports)
@@ -48,7 +46,7 @@ def status_of(reports: Reports) -> RobotStatus:
     status.mode = _mode(status)
     status.odometry_confidence = _confidence(reports)
     status.machine = _machine(reports)
-    status.odometry_degraded = bool(reports.value(ESTIMATOR, "degraded"))
+    status.odometry_degraded = bool(reports.value(reports.kind.estimator, "degraded"))
     return status
 
 
@@ -69,7 +67,7 @@ def _mode(status: RobotStatus) -> str:
 
 def _health(reports: Reports) -> tuple[int, list[str]]:
     levels, problems = [RobotStatus.OK], []
-    for node in REQUIRED:
+    for node in reports.kind.loop[1:]:  # a driver of another name takes its place
         if node not in reports.diagnostics:
             levels.append(RobotStatus.ERROR)
             problems.append(f"{node} is silent")
@@ -86,12 +84,12 @@ def _machine(reports: Reports) -> str:
 
 
 def _confidence(reports: Reports) -> float:
-    flags = reports.value(ESTIMATOR, "flags")
-    if ESTIMATOR not in reports.diagnostics:
+    flags = reports.value(reports.kind.estimator, "flags")
+    if reports.kind.estimator not in reports.diagnostics:
         return math.nan
     if "valid" not in flags.split():
         return 0.0
-    return min(float(reports.value(ESTIMATOR, f"confidence_{sensor}") or "nan") for sensor in ODOMETRY_SENSORS)
+    return float(reports.value(reports.kind.estimator, "odometry_confidence") or "nan")
 
 
 def changed(new: RobotStatus, old: RobotStatus) -> bool:

@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from robot_control.common.command import Command
-from robot_control.common.roles import CONTROLLER
 from robot_control.teleop.key_map import KeyMap
 from robot_control.why.diagnosis import Facts, Verdict, judge
 
@@ -86,7 +85,7 @@ def _rows(facts: Facts, view: View) -> Iterator[tuple[str, str]]:
     if safety is not None and safety.causes:
         first = sorted(safety.causes, key=lambda cause: not cause.first)
         yield "causes", "; ".join(f"{c.sentence} ({c.detail})" if c.detail else c.sentence for c in first)
-    reasons = facts.reasons(CONTROLLER, "command").values()
+    reasons = facts.reasons(facts.controller, "command").values()
     if reasons and not idle:
         yield "limits", "; ".join(reasons)
     if safety is not None and safety.warnings:

@@ -1,4 +1,4 @@
-"""The robot's max_linear_speed, max_angular_speed and min_linear_speed, which diff_drive_controller publishes latched.
+"""The robot's max_linear_speed, max_angular_speed and min_linear_speed, which the controller publishes latched.
 Until they are received, those of the installed parameter file are used.
 """
 
@@ -7,7 +7,6 @@ from pathlib import Path
 import yaml  # type: ignore[import-untyped]
 
 from robot_control.common.live_parameters import LiveParameters
-from robot_control.common.roles import CONTROLLER
 from robot_control.installed_files import share_file
 from robot_control.parameter_layers import DEFAULTS
 from robot_control.teleop.operator import Limits
@@ -17,7 +16,7 @@ class SpeedLimits:
     """The newest limits."""
 
     def __init__(self) -> None:
-        self._defaults = yaml.safe_load(Path(share_file(DEFAULTS)).read_text())[CONTROLLER]
+        self._defaults = yaml.safe_load(Path(share_file(DEFAULTS)).read_text())
         self._live = LiveParameters()
 
     def newest(self) -> Limits:
@@ -26,4 +25,5 @@ class SpeedLimits:
         return Limits(linear, angular, reverse=min(linear, -self._value("min_linear_speed", -linear)))
 
     def _value(self, name: str, default: float = 0.0) -> float:
-        return self._live.value(name, float(self._defaults.get(name, default)))
+        known = self._defaults.get(self._live.controller, {})
+        return self._live.value(name, float(known.get(name, default)))

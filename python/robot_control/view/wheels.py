@@ -12,8 +12,8 @@ from robot_control.view.scene import Wheel
 
 
 def wheels_of(robot: Description) -> dict[str, Wheel]:
-    """The drive wheels, by joint."""
-    return {wheel["joint"]: _wheel(wheel) for wheel in robot["wheels"]}
+    """The drive wheels, by joint; a robot on legs has none."""
+    return {wheel["joint"]: _wheel(wheel) for wheel in robot.get("wheels", ())}
 
 
 def _wheel(wheel: dict[str, Any]) -> Wheel:

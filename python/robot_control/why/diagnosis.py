@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 
-from robot_control.common.roles import CONTROLLER, DRIVER, ESTIMATOR, HARDWARE_DRIVER, MONITOR
+from robot_control.common.roles import HARDWARE_DRIVER, Kind
 from robot_control.safety.states import DRIVABLE
 from robot_control.safety.zero_request import silent_long_enough
 
@@ -65,6 +65,7 @@ class Facts:
     master: str  # URI
     master_answers: bool = True
     namespace: str = "/"
+    kind: Kind = field(default_factory=Kind)
     safety: Safety | None = None
     reports: Mapping[str, Report] = field(default_factory=dict)  # by node, below the namespace
     registered: frozenset[str] = frozenset()  # nodes that the master knows, below the namespace
@@ -77,13 +78,19 @@ class Facts:
 
     @property
     def driver(self) -> str:
-        """The node of the driver: that of real machines if it is known, else the simulator's."""
-        return HARDWARE_DRIVER if HARDWARE_DRIVER in self.registered or self.there(HARDWARE_DRIVER) else DRIVER
+        """The node of the driver: that of real machines if it is there, else the one that the robot's kind names."""
+        here = HARDWARE_DRIVER in self.registered or self.there(HARDWARE_DRIVER)
+        return HARDWARE_DRIVER if here else self.kind.driver
+
+    @property
+    def controller(self) -> str:
+        """The node of the controller."""
+        return self.kind.controller
 
     @property
     def loop(self) -> tuple[str, ...]:
         """The nodes of the loop."""
-        return (self.driver, ESTIMATOR, CONTROLLER, MONITOR)
+        return (self.driver, *self.kind.loop[1:])
 
     def there(self, node: str) -> bool:
         """True if the last report of the node is recent."""
@@ -113,12 +120,12 @@ class Facts:
 
     def commanders(self) -> tuple[str, ...]:
         """Nodes that send commands, as the controller reports; without it, those that are registered."""
-        reported = self.value(CONTROLLER, "senders")
+        reported = self.value(self.controller, "senders")
         return tuple(reported.split(", ")) if reported else self.senders
 
     def sources(self) -> dict[str, str]:
         """The state of each command source, by priority; empty if the robot has no list of them."""
-        text = self.value(CONTROLLER, "sources")
+        text = self.value(self.controller, "sources")
         return dict(part.split(": ", 1) for part in text.split(", ")) if text else {}
 
     def path(self, name: str) -> str:
@@ -168,7 +175,7 @@ def senders_in_words(facts: Facts) -> str:
         return "no node"
     if len(senders) == 1 or facts.sources():
         return ", ".join(senders)
-    refused = "many_senders" in facts.reasons(CONTROLLER, "command")
+    refused = "many_senders" in facts.reasons(facts.controller, "command")
     consequence = "all are refused" if refused else "each message overrides the one before"
     return f"{', '.join(senders)} ({len(senders)} senders: {consequence})"
 
@@ -201,12 +208,13 @@ def _no_nodes(facts: Facts) -> Answer | None:
         actions = (("", f"{others}start one"),)
         return Answer(Verdict.STOPPED, f"No node of the robot runs{where}.", actions, tuple(commands))
     if safety is None:
-        state = "hangs" if MONITOR in facts.registered and facts.there(MONITOR) else "does not run"
+        monitor = facts.kind.monitor
+        state = "hangs" if monitor in facts.registered and facts.there(monitor) else "does not run"
         return Answer(
             Verdict.STOPPED,
-            f"{MONITOR} {state}: without its permit the gate brakes.",
-            (("integrator", f"start {MONITOR}"),),
-            (_run(facts, MONITOR),),
+            f"{monitor} {state}: without its permit the gate brakes.",
+            (("integrator", f"start {monitor}"),),
+            (_run(facts, monitor),),
         )
     return None
 
@@ -324,7 +332,7 @@ def _locked(facts: Facts) -> Answer | None:
 
 
 def _controller(facts: Facts) -> Answer | None:
-    absent = [node for node in (ESTIMATOR, CONTROLLER) if node in missing_nodes(facts)]
+    absent = [node for node in (facts.kind.estimator, facts.controller) if node in missing_nodes(facts)]
     if absent:
         return Answer(
             Verdict.STOPPED,
@@ -332,11 +340,11 @@ def _controller(facts: Facts) -> Answer | None:
             tuple(("integrator", f"start {node}") for node in absent),
             tuple(_run(facts, node) for node in absent),
         )
-    reasons, remedies = facts.reasons(CONTROLLER, "command"), facts.remedies(CONTROLLER, "command")
+    reasons, remedies = facts.reasons(facts.controller, "command"), facts.remedies(facts.controller, "command")
     for name in ("bad_sensors", "no_state", "no_permit"):
         if name in reasons:
             return Answer(Verdict.STOPPED, f"The controller brakes: {reasons[name]}.", (("", remedies.get(name, "")),))
-    revoked = facts.value(CONTROLLER, "revoked_senders")
+    revoked = facts.value(facts.controller, "revoked_senders")
     whose = {
         "many_senders": f"{remedies.get('many_senders', '')} of {', '.join(facts.commanders())}",
         "revoked": f"{revoked}: {remedies.get('revoked', '')}",
@@ -349,7 +357,7 @@ def _controller(facts: Facts) -> Answer | None:
         if name not in reasons:
             continue
         text = reasons[name]
-        if name == "timed_out" and facts.value(CONTROLLER, "requested_m_s"):
+        if name == "timed_out" and facts.value(facts.controller, "requested_m_s"):
             text += " and so is taken for zero"
         remedy = remedies.get(name, "")
         if facts.senders:
@@ -376,7 +384,7 @@ def _namespace(facts: Facts) -> str:
 
 
 def _requested(facts: Facts) -> bool:
-    return any(facts.value(CONTROLLER, key) not in {"", "0"} for key in ("requested_m_s", "requested_rad_s"))
+    return any(facts.value(facts.controller, key) not in {"", "0"} for key in ("requested_m_s", "requested_rad_s"))
 
 
 def _motion_commanded(facts: Facts) -> bool:
@@ -391,12 +399,12 @@ def speeds(pair: tuple[float, float]) -> str:
 def _moving(facts: Facts) -> Answer:
     safety = facts.received()
     slow = f", no faster than {safety.speed_limit:.2g} m/s" if safety and safety.speed_limit < float("inf") else ""
-    unloaded = facts.value(facts.driver, "suspicious")
-    if unloaded and _motion_commanded(facts):
+    suspicious = facts.value(facts.driver, "suspicious")
+    if suspicious and _motion_commanded(facts):
         return Answer(
             Verdict.MOVING,
-            f"Its wheels turn and may not move it: {unloaded}.",
-            (("integrator", "look at how low the wheels reach, and at the <collision> shapes of the links named"),),
+            f"It may not move as commanded: {suspicious}.",
+            (("integrator", "look at what touches the ground, and at the <collision> shapes of the links named"),),
             ("rosrun robot_control inspect_robot.py FILE",),
         )
     if facts.measured is not None and max(map(abs, facts.measured)) > MOVING:

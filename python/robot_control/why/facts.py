@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
-from robot_control.common.roles import HARDWARE_DRIVER, LOOP
+from robot_control.common.roles import DRIVER, ESTIMATOR, HARDWARE_DRIVER, MONITOR
 from robot_control.msg import SafetyStatus
 from robot_control.why.diagnosis import Cause, Safety
 
@@ -37,7 +37,8 @@ def below(namespace: str, name: str) -> str:
 
 def other_robots(namespace: str, names: Iterable[str]) -> tuple[str, ...]:
     """Other namespaces in which a node of the loop reports; `names` are absolute."""
-    found = {name.rpartition("/")[0] or "/" for name in names if name.rpartition("/")[2] in {*LOOP, HARDWARE_DRIVER}}
+    loop = {DRIVER, HARDWARE_DRIVER, ESTIMATOR, MONITOR}  # on robots of every kind
+    found = {name.rpartition("/")[0] or "/" for name in names if name.rpartition("/")[2] in loop}
     return tuple(sorted(found - {namespace.rstrip("/") or "/"}))
 
 

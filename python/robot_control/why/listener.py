@@ -10,6 +10,7 @@ from geometry_msgs.msg import TwistStamped
 from nav_msgs.msg import Odometry
 
 from robot_control.common.live_parameters import LiveParameters
+from robot_control.common.robot_kind import running_kind
 from robot_control.common.ros_master import COMMAND_TOPICS, Master, senders_of
 from robot_control.msg import SafetyStatus
 from robot_control.why.diagnosis import SILENCE, Facts, Report, Safety
@@ -61,7 +62,6 @@ class Listener:
         self._queried_at = now
         self._state = self.master.state()
         known = self._state is None or rospy.get_name() in nodes_of(self._state)
-        self._parameters = LiveParameters()
         self.unknown_to_master = 0 if known else self.unknown_to_master + 1
 
     def complete(self) -> bool:
@@ -84,6 +84,7 @@ class Listener:
             master=self.master.uri,
             master_answers=self._state is not None,
             namespace=self.namespace,
+            kind=running_kind(),
             safety=self.safety(now),
             reports={below(self.namespace, name): report for name, report in reports.items()},
             registered=frozenset(below(self.namespace, name) for name in nodes_of(state)),

@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from robot_control.common.files import escaped
-from robot_control.common.roles import CONTROLLER, ESTIMATOR
 from robot_control.why.diagnosis import Answer, Facts, Safety, Verdict, judge, missing_nodes, senders_in_words, speeds
 
 LABEL = 11
@@ -116,7 +115,7 @@ def _command(facts: Facts, look: Look) -> Rows:
     sources = facts.sources()
     if sources:
         yield "sources", ", ".join(f"{name}: {state}" for name, state in sources.items()), ""
-    requested = [facts.value(CONTROLLER, key) for key in ("requested_m_s", "requested_rad_s")]
+    requested = [facts.value(facts.controller, key) for key in ("requested_m_s", "requested_rad_s")]
     parts = []
     if look.times and all(requested):
         parts.append(f"requested {speeds((float(requested[0]), float(requested[1])))}")
@@ -126,7 +125,7 @@ def _command(facts: Facts, look: Look) -> Rows:
         parts.append(f"measured {speeds(facts.measured)}")
     if parts:
         yield "", "; ".join(parts), ""
-    reasons = "; ".join(facts.reasons(CONTROLLER, "command").values())
+    reasons = "; ".join(facts.reasons(facts.controller, "command").values())
     if reasons:
         yield "controller", reasons, ""
 
@@ -149,19 +148,19 @@ def _circumstances(facts: Facts) -> Rows:
     machine = facts.value(facts.driver, "machine")
     if machine:
         yield "machine", machine, ""
-    unloaded = facts.value(facts.driver, "suspicious")
-    if unloaded:
-        yield "wheels", unloaded, "33"
-    slip = facts.reasons(ESTIMATOR, "slip").values()
-    if slip or "slip" in facts.value(ESTIMATOR, "flags").split():
+    suspicious = facts.value(facts.driver, "suspicious")
+    if suspicious:
+        yield "suspicious", suspicious, "33"
+    slip = facts.reasons(facts.kind.estimator, "slip").values()
+    if slip or "slip" in facts.value(facts.kind.estimator, "flags").split():
         yield "slip", "; ".join(slip) or "wheels and inertial sensors disagree", "33"
-    lost = facts.reasons(ESTIMATOR, "estimate").values()
+    lost = facts.reasons(facts.kind.estimator, "estimate").values()
     if lost:
         yield "odometry", "; ".join(lost), "33"
-    degraded = facts.reasons(ESTIMATOR, "degraded").values()
+    degraded = facts.reasons(facts.kind.estimator, "degraded").values()
     if degraded:
         yield "odometry", f"degraded: {'; '.join(degraded)}", "33"
-    detection = facts.value(ESTIMATOR, "slip_detection")
+    detection = facts.value(facts.kind.estimator, "slip_detection")
     if detection.startswith(("slow", "off")):
         yield "odometry", f"slip detection is {detection}", ""
     if not facts.master_answers and facts.received() is not None:

@@ -61,7 +61,9 @@ class Reader {
 template <class Header, class Visit>
 void each_header_field(Header& header, Visit visit) {
   visit("robot", header.robot);
+  visit("kind", header.kind);
   visit("joints", header.joints);
+  visit("roles", header.roles);
   visit("wheels", header.wheels);
   visit("period", header.period);
   visit("clock", header.clock);

@@ -13,13 +13,15 @@ namespace robot_control {
 /// A log begins with its header, which holds everything that its rows need to be understood and replayed.
 struct LogHeader {
   std::string robot = {};
+  std::string kind = {};  ///< MachineModel::kind
   std::vector<std::string> joints = {};
-  std::uint32_t wheels = 0;     ///< the first joints are those of the wheels
-  double period = 0;            ///< s
-  std::string clock = {};       ///< "wall" or "lockstep"
-  std::string record = {};      ///< "motion", "always" or "request", as telemetry.record
-  std::uint32_t part = 0;       ///< number of the file among those of one process: 0, 1, …
-  std::string parameters = {};  ///< YAML: every value in force when the log began
+  std::vector<std::string> roles = {};  ///< of each joint: "driven", "passive" or "held"
+  std::uint32_t wheels = 0;             ///< the first joints are those of the wheels
+  double period = 0;                    ///< s
+  std::string clock = {};               ///< "wall" or "lockstep"
+  std::string record = {};              ///< "motion", "always" or "request", as telemetry.record
+  std::uint32_t part = 0;               ///< number of the file among those of one process: 0, 1, …
+  std::string parameters = {};          ///< YAML: every value in force when the log began
   std::string urdf = {};
   std::string scene = {};        ///< text of the simulated world; empty: none
   std::string calibration = {};  ///< text of the calibration file; empty: none

@@ -7,6 +7,7 @@
 #include "loop/mint_number.h"
 #include "rt/clock.h"
 #include "rt/periodic.h"
+#include "signals/robot_kinds.h"
 #include "signals/roles.h"
 
 namespace robot_control {
@@ -35,6 +36,7 @@ bool published(const FrameReader<Frame>& reader, std::uint64_t run, std::uint64_
 
 DriverProcess::DriverProcess(const Parameters& parameters, const Robot& robot, const std::string& bus)
     : Process(parameters.loop, LoopPriority::kDriver, "driver"),
+      kind_(robot.kind()),
       robot_(identified(robot.machine(), parameters.loop)),
       gate_(robot.gate()),
       needs_(robot.needs()),
@@ -73,7 +75,7 @@ std::vector<std::string> DriverProcess::missing() const {
   const std::uint64_t run = attached_run(sensors_.writer.memory()->head);
   if (loop_parameters().wait_for_nodes || lockstep()) {
     if (!attached(state_, run)) names.emplace_back(program_of(Role::kEstimator));
-    if (!attached(command_, run)) names.emplace_back(program_of(Role::kController));
+    if (!attached(command_, run)) names.emplace_back(program_of(Role::kController, kind_));
     if (!attached(permit_, run)) names.emplace_back(program_of(Role::kMonitor));
   }
   if (loop_parameters().wait_for_telemetry && !trace_.reader_present())
@@ -81,7 +83,7 @@ std::vector<std::string> DriverProcess::missing() const {
   if (!names.empty() || !lockstep()) return names;
   if (const std::uint64_t awaited = awaited_.load(); awaited != 0) {
     if (!published(state_.reader, run, awaited - 1)) names.emplace_back(program_of(Role::kEstimator));
-    if (!published(command_.reader, run, awaited - 1)) names.emplace_back(program_of(Role::kController));
+    if (!published(command_.reader, run, awaited - 1)) names.emplace_back(program_of(Role::kController, kind_));
     if (!published(permit_.reader, run, awaited - 1)) names.emplace_back(program_of(Role::kMonitor));
   }
   return names;

@@ -10,6 +10,7 @@
 #include "loop/cycles/trace_sink.h"
 #include "loop/log_header.h"
 #include "rt/clock.h"
+#include "signals/robot_kinds.h"
 #include "signals/roles.h"
 
 namespace robot_control {
@@ -130,8 +131,9 @@ struct TelemetryProcess::Sources {
   Source<MonitorTrace> monitor;
 };
 
-TelemetryProcess::TelemetryProcess(const Parameters& parameters, const MachineModel& robot, const std::string& bus)
-    : positions_(bus, ChannelNames::kTraceRead),
+TelemetryProcess::TelemetryProcess(const Parameters& parameters, const Robot& robot, const std::string& bus)
+    : kind_(robot.kind()),
+      positions_(bus, ChannelNames::kTraceRead),
       folder_(parameters.telemetry.directory, bytes_of(parameters.telemetry.quota)),
       lockstep_(parameters.loop.clock == ClockMode::kLockstep),
       permit_(bus, ChannelNames::kPermit),
@@ -269,7 +271,7 @@ void TelemetryProcess::write_to_bag(Act act) {
 std::vector<std::string> TelemetryProcess::missing() const {
   std::vector<std::string> names;
   sources_->each([&](const auto& source, std::size_t ring) {
-    if (!source.alive()) names.emplace_back(kRoles[ring].program);
+    if (!source.alive()) names.emplace_back(program_of(static_cast<Role>(ring), kind_));
   });
   return names;
 }

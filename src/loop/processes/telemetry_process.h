@@ -24,7 +24,7 @@
 #include "log/rows/join.h"
 #include "loop/processes/process.h"
 #include "loop/processes/timing_summary.h"
-#include "machine/machine_model.h"
+#include "robots/robot.h"
 
 namespace robot_control {
 
@@ -41,7 +41,7 @@ class TelemetryProcess {
  public:
   /// Writes into the parameters' directory; earlier logs are kept as run.N.bag. Throws BusError (another
   /// telemetry reads), LogError (also: no room for the black box).
-  TelemetryProcess(const Parameters& parameters, const MachineModel& robot, const std::string& bus);
+  TelemetryProcess(const Parameters& parameters, const Robot& robot, const std::string& bus);
   ~TelemetryProcess();
   TelemetryProcess(const TelemetryProcess&) = delete;
   TelemetryProcess& operator=(const TelemetryProcess&) = delete;
@@ -98,6 +98,7 @@ class TelemetryProcess {
   void check_permit();
   TraceSummary summary(std::int64_t now_ns) const;
 
+  std::string kind_;
   OwnedChannel<RingPositions> positions_;
   LogFolder folder_;
   bool lockstep_;

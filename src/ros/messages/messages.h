@@ -13,6 +13,7 @@
 #include <geometry_msgs/TwistStamped.h>
 #include <nav_msgs/Odometry.h>
 #include <robot_control/DriveState.h>
+#include <robot_control/RobotKind.h>
 #include <robot_control/SafetyStatus.h>
 #include <rosgraph_msgs/Clock.h>
 #include <sensor_msgs/BatteryState.h>
@@ -74,6 +75,7 @@ using KeyValue = diagnostic_msgs::KeyValue_<Allocator>;
 using MultiArrayDimension = std_msgs::MultiArrayDimension_<Allocator>;
 using Odometry = nav_msgs::Odometry_<Allocator>;
 using Quaternion = geometry_msgs::Quaternion_<Allocator>;
+using RobotKind = robot_control::RobotKind_<Allocator>;
 using SafetyStatus = robot_control::SafetyStatus_<Allocator>;
 using TFMessage = tf2_msgs::TFMessage_<Allocator>;
 using TransformStamped = geometry_msgs::TransformStamped_<Allocator>;

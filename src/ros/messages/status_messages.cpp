@@ -8,8 +8,11 @@
 #include <string_view>
 
 #include "files/ascii.h"
+#include "machine/fault_names.h"
+#include "machine/joint_role.h"
 #include "ros/reports/name_list.h"
 #include "signals/names.h"
+#include "signals/robot_kinds.h"
 
 namespace robot_control {
 namespace {
@@ -37,15 +40,15 @@ std::string quantity(double value, std::string_view unit) {
 }
 
 /// Returns "free the wheel, then call e_stop_reset".
-std::string with_reset(std::string_view remedy) {
-  return with_programs(remedy).append(remedy.empty() ? "" : ", then ").append("call e_stop_reset");
+std::string with_reset(std::string_view remedy, std::string_view kind) {
+  return with_programs(remedy, kind).append(remedy.empty() ? "" : ", then ").append("call e_stop_reset");
 }
 
 /// Returns "the battery is low: 20.9 V, limit 21 V (charge it soon)".
-std::string warning_sentence(const BitName& row, const std::string& measured) {
+std::string warning_sentence(const BitName& row, const std::string& measured, std::string_view kind) {
   std::string text(row.sentence);
   if (!measured.empty()) text.append(": ").append(measured);
-  if (!row.remedy.empty()) text.append(" (").append(with_programs(row.remedy)).append(")");
+  if (!row.remedy.empty()) text.append(" (").append(with_programs(row.remedy, kind)).append(")");
   return text;
 }
 
@@ -65,8 +68,26 @@ std::string detail(const Permit& permit, std::uint64_t cause, const MachineModel
   return ascii(text);
 }
 
+msg::RobotKind robot_kind(const MachineModel& robot, std::string_view kind, const std::string& driver, bool injects) {
+  msg::RobotKind message;
+  message.robot = ascii(robot.name);
+  message.kind = kind;
+  for (const Role role : {Role::kDriver, Role::kEstimator, Role::kController, Role::kMonitor}) {
+    message.roles.emplace_back(kRoles[static_cast<std::size_t>(role)].role);
+    message.nodes.emplace_back(role == Role::kDriver ? driver : program_of(role, kind));
+  }
+  for (const JointModel& joint : robot.joints) {
+    message.joints.push_back(ascii(joint.name));
+    message.joint_roles.emplace_back(name_of(joint.role));
+  }
+  if (!injects) return message;
+  for (const std::string& word : fault_words(robot)) message.fault_components.push_back(ascii(word));
+  for (const std::string_view fault : kFaultKindNames) message.fault_kinds.emplace_back(fault);
+  return message;
+}
+
 msg::SafetyStatus safety_status(const Permit& permit, const MachineModel& robot, const std::vector<std::string>& absent,
-                                const TimeMap& time, std::int64_t period_ns) {
+                                const TimeMap& time, std::int64_t period_ns, std::string_view kind) {
   msg::SafetyStatus message;
   message.header.stamp = time.at(permit.head.stamp_ns);
   message.state = static_cast<std::uint8_t>(permit.state);
@@ -79,13 +100,13 @@ msg::SafetyStatus safety_status(const Permit& permit, const MachineModel& robot,
     if ((permit.active & row.bit) != 0) message.active.emplace_back(row.name);
     if ((permit.warnings & row.bit) != 0) {
       message.warnings.emplace_back(row.name);
-      message.warning_sentences.push_back(warning_sentence(row, detail(permit, row.bit, robot)));
+      message.warning_sentences.push_back(warning_sentence(row, detail(permit, row.bit, robot), kind));
     }
     if ((permit.causes & row.bit) == 0) continue;
     message.causes.emplace_back(row.name);
     message.sentences.emplace_back(row.sentence);
-    message.remedies.push_back(with_reset(row.remedy));
-    message.remedies_before_reset.push_back(with_programs(row.remedy));
+    message.remedies.push_back(with_reset(row.remedy, kind));
+    message.remedies_before_reset.push_back(with_programs(row.remedy, kind));
     message.actors.emplace_back(row.actor);
     message.details.push_back(detail(permit, row.bit, robot));
   }

@@ -3,19 +3,25 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "machine/machine_model.h"
 #include "ros/messages/messages.h"
 #include "ros/messages/time_map.h"
 #include "signals/permit.h"
+#include "signals/robot_kinds.h"
 
 namespace robot_control {
 
-/// `absent` are the nodes that do not run now, `period_ns` is the loop's period for the field `since`, and `robot`
-/// names the joints.
+/// `absent` are the nodes that do not run now. `period_ns` is the loop's period for the field `since`. `robot` names the
+/// joints, and `kind` the programs of remedies.
 msg::SafetyStatus safety_status(const Permit& permit, const MachineModel& robot, const std::vector<std::string>& absent,
-                                const TimeMap& time, std::int64_t period_ns);
+                                const TimeMap& time, std::int64_t period_ns, std::string_view kind = kWheeledKind);
+
+/// Returns what tools need to know of a robot of this kind. `driver` is the name of the driver's node; `injects` says
+/// that its machine is simulated and takes faults.
+msg::RobotKind robot_kind(const MachineModel& robot, std::string_view kind, const std::string& driver, bool injects);
 
 /// Returns the evidence of a cause, "17.3 rad/s, limit 15 rad/s, left_wheel_joint"; "" if nothing was measured.
 std::string detail(const Permit& permit, std::uint64_t cause, const MachineModel& robot);

@@ -7,6 +7,7 @@
 #include "loop/processes/driver_process.h"
 #include "ros/messages/motion_messages.h"
 #include "ros/messages/simulation_messages.h"
+#include "ros/messages/status_messages.h"
 #include "ros/nodes/process_node.h"
 #include "ros/reports/diagnostics.h"
 #include "ros/reports/pacer.h"
@@ -34,6 +35,9 @@ class DriverNode final : public ProcessNode<DriverProcess> {
 
   void connect(ros::NodeHandle& handle) override {
     log_robot();
+    kind_ = handle.advertise<msg::RobotKind>("robot_kind", 1, true);
+    kind_.publish(robot_kind(robot(), composed().kind(), std::string(driver_program(parameters())),
+                             process().services() != nullptr));
     imu_ = handle.advertise<msg::Imu>("imu/data_raw", 10);
     truth_ = handle.advertise<msg::Odometry>("ground_truth/odom", 10);
     if (parameters().loop.clock == ClockMode::kLockstep) clock_ = handle.advertise<msg::Clock>("/clock", 1);
@@ -184,6 +188,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
   std::shared_ptr<ImuInbox> imu_inbox_;  // null: the driver's own IMU, or none
   bool described_ = false;
   ros::Subscriber imu_input_;
+  ros::Publisher kind_;
   ros::Publisher imu_;
   ros::Publisher truth_;
   ros::Publisher clock_;

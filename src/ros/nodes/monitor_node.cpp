@@ -64,7 +64,8 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
     if (reported_ns_ != 0 && silence_ns < (changed ? kStatusGap : kStatusPeriod)) return;
     if (SensorFrame sensors; live(sensors)) time().follow(sensors);
     msg::SafetyStatus status =
-        found ? safety_status(permit, robot(), absent, time(), parameters().loop.period_ns()) : waiting_status(absent);
+        found ? safety_status(permit, robot(), absent, time(), parameters().loop.period_ns(), composed().kind())
+              : waiting_status(absent);
     if (const auto last_ns = withdrawal_.last_ns()) {
       status.withdrawn =
           ros::Time().fromNSec(ros::WallTime::now().toNSec() - static_cast<std::uint64_t>(now_ns - *last_ns));

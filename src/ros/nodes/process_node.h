@@ -48,6 +48,7 @@ class ProcessNode : public Node {
   const Parameters& parameters() const { return setup_.parameters; }
   const ReportParameters& report() const { return setup_.parameters.report; }
   const DriveTrain& robot() const { return setup_.robot; }
+  const Robot& composed() const { return composed_; }
   Work& process() { return process_; }
   TimeMap& time() { return time_; }
 

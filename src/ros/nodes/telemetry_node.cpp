@@ -13,6 +13,7 @@
 #include "files/ascii.h"
 #include "loop/log_header.h"
 #include "loop/processes/telemetry_process.h"
+#include "robots/differential_drive.h"
 #include "ros/messages/simulation_messages.h"
 #include "ros/reports/diagnostics.h"
 #include "ros/startup/setup.h"
@@ -54,7 +55,8 @@ class TelemetryNode final : public Node {
         lockstep_(setup.parameters.loop.clock == ClockMode::kLockstep),
         precedes_(!lockstep_ && setup.parameters.loop.realtime != RealtimePolicy::kOff),
         quota_(setup.parameters.telemetry.quota),
-        process_(with_blocks_of_other_nodes(setup.parameters), setup.robot, setup.bus) {}
+        composed_(setup.parameters, setup.robot),
+        process_(with_blocks_of_other_nodes(setup.parameters), composed_, setup.bus) {}
 
   void connect(ros::NodeHandle& /*handle*/) override {
     if (const std::string& path = process_.bag_path(); !path.empty()) {
@@ -137,7 +139,7 @@ class TelemetryNode final : public Node {
   void read_parameters_again() {
     const std::uint64_t changes = parameter_changes_.load();
     if (changes == changes_followed_ || !ros::master::check()) return;
-    LogHeader header = log_header(with_blocks_of_other_nodes(setup_.parameters), setup_.robot);
+    LogHeader header = log_header(with_blocks_of_other_nodes(setup_.parameters), composed_);
     if (std::exchange(changes_read_, changes) == changes) changes_followed_ = changes;
     const std::lock_guard lock(header_mutex_);
     header_ = std::move(header);
@@ -161,6 +163,7 @@ class TelemetryNode final : public Node {
   double quota_;          ///< GB
   std::string reported_;  ///< problem that was reported last
   std::atomic<bool> requested_{false};
+  DifferentialDrive composed_;
   TelemetryProcess process_;
   std::atomic<std::uint64_t> parameter_changes_{0};
   std::uint64_t changes_read_ = 0;      ///< number of changes after which the parameters were read once

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 #include <numbers>
+#include <span>
 
 #include "files/ascii.h"
 #include "machine/fault_names.h"
@@ -123,6 +124,8 @@ void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64
     report.value("nis_" + sensor, state.wheeled.nis[i]);
     report.value("rejected_" + sensor, state.wheeled.rejected[i]);
   }
+  // The pose is made of the encoders of both sides and of the gyro; the accelerometer only serves to notice slip.
+  report.value("odometry_confidence", std::ranges::min(std::span(state.wheeled.confidence).first<kAccelerometer>()));
   report.value("radius_ratio", state.wheeled.calibration.radius_ratio);
   report.value("radius_ratio_deviation", state.wheeled.calibration.radius_ratio_deviation);
   report.value("wheel_base_factor", state.wheeled.calibration.wheel_base_factor);

@@ -13,10 +13,11 @@ function say(text) {
 }
 on("said", ({ text }) => say(text));
 
-const COMPONENTS = "left_encoder right_encoder gyro accelerometer left_motor right_motor battery e_stop_button";
-const KINDS = "ok off stuck garbage wrong slow delayed intermittent";
-COMPONENTS.split(" ").forEach((word) => by("component").add(new Option(word)));
-KINDS.split(" ").forEach((word) => by("kind").add(new Option(word)));
+// What can fail is the robot's own list.
+function fill(id, words) {
+  if (words.join() === Array.from(by(id).options, (option) => option.text).join()) return;
+  by(id).replaceChildren(...words.map((word) => new Option(word)));
+}
 
 const value = (id) => Number(by(id).value), speed = () => value("path-speed");
 const ARGUMENTS = {
@@ -52,6 +53,8 @@ for (const button of document.querySelectorAll("[data-call]")) {
 
 on("slow", (slow) => {
   robot = slow;
+  fill("component", slow.components);
+  fill("kind", slow.kinds);
   by("simulation").hidden = !slow.simulated;
   by("pause").textContent = slow.paused ? "Go on" : "Pause";
 });

@@ -1,0 +1,81 @@
+"""The kind of a robot, as tools take it from the topic robot_kind, and what they do with another kind's nodes."""
+
+from types import SimpleNamespace
+
+import pytest
+import rospy
+from robot_control.common import robot_kind
+from robot_control.common.live_parameters import LiveParameters
+from robot_control.common.roles import LOOP
+from robot_control.console.calls import CALLS, service_of
+from robot_control.msg import RobotKind
+from robot_control.teleop.speed_limits import SpeedLimits
+
+LEGS = RobotKind(
+    robot="quadbot",
+    kind="quadruped",
+    roles=["driver", "estimator", "controller", "monitor"],
+    nodes=["mujoco_plant", "state_estimator", "leg_controller", "safety_monitor"],
+    joints=["hip"],
+    joint_roles=["driven"],
+    fault_components=["gyro", "hip_motor"],
+    fault_kinds=["ok", "off"],
+)
+
+
+@pytest.fixture
+def subscribed(monkeypatch):
+    """Callbacks by topic of what subscribes during the test."""
+    callbacks = {}
+
+    def subscribe(topic, _, callback, **__):
+        callbacks[topic] = callback
+        return SimpleNamespace(unregister=lambda: callbacks.pop(topic))
+
+    monkeypatch.setattr(rospy, "Subscriber", subscribe)
+    robot_kind.forget()
+    yield callbacks
+    robot_kind.forget()
+
+
+def test_the_message_names_the_nodes_and_what_can_fail():
+    kind = robot_kind.kind_of(LEGS)
+    assert kind.name == "quadruped"
+    assert kind.loop == ("mujoco_plant", "state_estimator", "leg_controller", "safety_monitor")
+    assert (kind.fault_components, kind.fault_kinds) == (("gyro", "hip_motor"), ("ok", "off"))
+
+
+def test_a_role_that_is_not_known_or_without_a_node_changes_nothing():
+    other = RobotKind(kind="boat", roles=["captain", "controller", "estimator"], nodes=["anna", ""])
+    assert robot_kind.kind_of(other).loop == LOOP
+
+
+def test_live_parameters_follow_the_controller_of_the_kind(subscribed):
+    parameters = LiveParameters()
+    assert "diff_drive_controller/parameter_updates" in subscribed
+    subscribed["robot_kind"](LEGS)
+    assert parameters.command_timeout == 0.0
+    assert "diff_drive_controller/parameter_updates" not in subscribed
+    subscribed["leg_controller/parameter_updates"](
+        SimpleNamespace(doubles=[SimpleNamespace(name="cmd_vel_timeout", value=0.25)])
+    )
+    assert parameters.command_timeout == 0.25
+
+
+def test_a_kind_whose_block_is_not_in_the_file_has_the_limits_that_it_reports(subscribed):
+    limits = SpeedLimits()
+    subscribed["robot_kind"](RobotKind(kind="boat", roles=["controller"], nodes=["rudder"]))
+    assert limits.newest().linear == 0.0
+    subscribed["rudder/parameter_updates"](
+        SimpleNamespace(doubles=[SimpleNamespace(name="max_linear_speed", value=0.2)])
+    )
+    assert limits.newest().linear == 0.2
+
+
+def test_the_calls_of_the_console_go_to_the_nodes_of_the_kind():
+    kind = robot_kind.kind_of(LEGS)
+    assert service_of(CALLS["set_parameters"], kind) == "leg_controller/set_parameter_map"
+    assert service_of(CALLS["inject_fault"], kind) == "mujoco_plant/inject_fault"
+    assert service_of(CALLS["reset_odometry"], kind) == "reset_odometry"
+    assert service_of(CALLS["path_pause"], kind) == "follow_path/pause"
+    assert service_of(CALLS["reset_asked"], kind) == "e_stop_reset"
