@@ -566,6 +566,31 @@ def test_commands_are_printed_and_not_run(tmp_path):
     assert before == sorted((path, path.stat().st_mtime_ns) for path in tmp_path.rglob("*"))
 
 
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("proc/self/status", "CapEff:\tzzzz\n"),
+        ("proc/self/limits", "Max realtime priority     abc                  abc\n"),
+        ("proc/uptime", "1.2.3"),
+        ("proc/1abc/cmdline", "mujoco_plant"),
+        ("proc/interrupts", "x"),
+        ("proc/stat", "cpu0 a b c d\n"),
+        ("sys/devices/system/cpu/online", "0-99999999"),
+        ("commands/ip_-details_-statistics_-json_link_show_type_can", '{"a": [null]}'),
+    ],
+)
+def test_a_file_of_another_form_costs_its_checks_alone(tmp_path, name, text):
+    write(tmp_path, bare_debian() | {name: text})
+    assert len(rows(tmp_path)) == len(rows(tmp_path / "empty"))
+
+
+def test_foreign_names_are_no_commands(tmp_path):
+    write(tmp_path, bare_debian() | task(800, "x\nrm -rf ~", ticks=900_000, core=0))
+    done = run("--root", tmp_path, "--fix")
+    assert "x?rm -rf ~" in done.stdout
+    assert "\nrm" not in done.stdout
+
+
 def test_the_reports_hold_every_check(tmp_path):
     write(tmp_path, bare_debian())
     found = list(rows(tmp_path).values())
@@ -597,6 +622,7 @@ def test_a_percentile_of_a_histogram():
         percentile99("# Histogram\n000000 000000\n000003 000980\n000009 000015\n000020 000005\n# Total: 1000\n") == 9.0
     )
     assert percentile99("# nothing\n") is None
+    assert percentile99("# Histogram\n000010 000090\n# Histogram Overflows: 00010\n") > 10_000
 
 
 @pytest.mark.parametrize(

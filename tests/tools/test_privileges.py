@@ -143,7 +143,10 @@ def test_a_folder_that_others_use_by_now_stays(root):
         (["--user", "ro bot"], "is no name of a user"),
         (["--user"], "--user needs a value"),
         (["--", "drives:=/a b"], "NAME:=VALUE without blanks"),
-        (["--setup", "/nonexistent/setup.bash", "--", "driver:=can"], "is absent, which the service needs"),
+        (["--", "driver:=can", "drives:=a.yaml"], "a service needs an absolute path"),
+        (["--", "driver:=can"], "needs drives:=FILE"),
+        (["--", "foo:=1"], "robot.launch has no such argument"),
+        (["--setup", "/nonexistent/setup.bash", "--", "driver:=can", "drives:=/d.yaml"], "is absent, which the service needs"),
         (["--fast"], "unknown argument"),
     ],
 )
@@ -158,7 +161,7 @@ def test_a_wrong_argument_is_one_message_and_writes_nothing(root, arguments, sai
 def test_the_unit_passes_systemds_own_check(root):
     if shutil.which("systemd-analyze") is None:
         pytest.skip("systemd-analyze is not installed: scripts/setup --realtime")
-    install(root, "--user", "root", "--", "driver:=can")
+    install(root, "--user", "root", "--", "driver:=can", "drives:=/d.yaml")
     done = subprocess.run(
         ["systemd-analyze", "verify", "--man=no", root / UNIT], capture_output=True, text=True, check=False
     )
