@@ -65,7 +65,7 @@ void TimingReport::report_check(DiagnosticReport& report) const {
   report.value("voluntary_switches", total.voluntary_switches);
   report.value("forced_switches", total.forced_switches);
   if (recent.run_queue_ns) {
-    report.value("run_queue_10s_us", static_cast<double>(*recent.run_queue_ns) * 1e-3);
+    report.value("run_queue_10s_us", *recent.run_queue_ns / 1000);
   } else {
     report.value("run_queue_10s_us", "this kernel does not count it (CONFIG_SCHED_INFO)");
   }
