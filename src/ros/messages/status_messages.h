@@ -14,8 +14,8 @@
 
 namespace robot_control {
 
-/// `absent` are the nodes that do not run now. `period_ns` is the loop's period for the field `since`. `robot` names the
-/// joints, and `kind` the programs of remedies.
+/// `absent` are the nodes that do not run now. `period_ns` is the loop's period for the field `since`. `robot` names
+/// the joints, and `kind` the programs of remedies.
 msg::SafetyStatus safety_status(const Permit& permit, const MachineModel& robot, const std::vector<std::string>& absent,
                                 const TimeMap& time, std::int64_t period_ns, std::string_view kind = kWheeledKind);
 
