@@ -146,7 +146,10 @@ def test_a_folder_that_others_use_by_now_stays(root):
         (["--", "driver:=can", "drives:=a.yaml"], "a service needs an absolute path"),
         (["--", "driver:=can"], "needs drives:=FILE"),
         (["--", "foo:=1"], "robot.launch has no such argument"),
-        (["--setup", "/nonexistent/setup.bash", "--", "driver:=can", "drives:=/d.yaml"], "is absent, which the service needs"),
+        (
+            ["--setup", "/nonexistent/setup.bash", "--", "driver:=can", "drives:=/d.yaml"],
+            "is absent, which the service needs",
+        ),
         (["--fast"], "unknown argument"),
     ],
 )
