@@ -107,6 +107,7 @@ void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
     const double time = s.wheels.unknown_time[side];
     if (time == 0) continue;
     const bool replaced = !s.wheels.lost[1 - side] && s.wheels.unknown_time[1 - side] == 0;
+    s.comparison.suspend();
     s.middle_travel.forget_credit(side);
     s.core.shift(0, 0, square(Tuning::kRestart));
     s.slip.restart();
@@ -177,10 +178,11 @@ Planar Estimator::roll(const MiddleTravel::Travel& travel) noexcept {
   const double sine = s.tilt.up()[0];
   const double level = travel.distance * std::sqrt(std::max(0.0, 1 - sine * sine));
   const Planar creep = tyres_creep(travel.distance);
-  const double turned = travel.turn_since + s.yaw_rate * s.core.offset();
+  const double late_rate = s.yaw_rate * travel.late;
+  const double turned = travel.turn_since + late_rate * s.core.offset();
   const Planar path = rotated({level - creep.x, -creep.y}, -turned);
   const Planar odom = rotated(path, s.core.pose().yaw);
-  s.core.roll(odom.x, odom.y, s.yaw_rate);
+  s.core.roll(odom.x, odom.y, late_rate);
   s.height += travel.distance * sine;
   s.distance += std::abs(travel.distance);
   return path;
@@ -309,6 +311,7 @@ void Estimator::integrate(const HeldMotion& held, bool stood) noexcept {
   } else {
     s.slip.restart();
   }
+  s.comparison.resume();
   if (!s.wheels.both_received()) return;
   s.core.begin_block(s.rate.rate().z());
   s.comparison.begin();

@@ -1,6 +1,8 @@
 #pragma once
 /// Divides a drive into blocks of at least kBlock, over which the planar core compares the turn of the wheels with that
 /// of the gyro. A block begins and ends where both sides have been read.
+/// After a fault of a drive no block begins before the next rest. One wheel brakes while the other coasts, so wheels
+/// and gyro differ by slip.
 
 #include <optional>
 
@@ -32,7 +34,7 @@ class TurnComparison {
     block_.right += input.right;
     block_.stuck = block_.stuck || input.gyro_unchanged > Tuning::kMaxHoldTime;
     open_ = open_ && !input.slide;
-    if (!input.border || (open_ && block_.time < Tuning::kBlock)) return {};
+    if (!input.border || suspended_ || (open_ && block_.time < Tuning::kBlock)) return {};
     const Output output{.begins = true, .ended = open_ ? std::optional(block_) : std::nullopt};
     begin();
     return output;
@@ -42,10 +44,16 @@ class TurnComparison {
     open_ = true;
   }
   void interrupt() noexcept { open_ = false; }  ///< The open block is not compared.
+  void suspend() noexcept {                     ///< No block begins before `resume`.
+    open_ = false;
+    suspended_ = true;
+  }
+  void resume() noexcept { suspended_ = false; }
 
  private:
   Block block_;
   bool open_ = false;
+  bool suspended_ = false;
 };
 
 }  // namespace robot_control

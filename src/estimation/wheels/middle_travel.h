@@ -7,7 +7,8 @@
 ///
 ///   distance = travel of the side ± turn · wheel_base / 2        + for the left side
 ///
-/// The travel that was replaced is deducted from the first reading after the gap.
+/// The gyro measures that turn, so the second part has no clock offset. The travel that was replaced is deducted from
+/// the first reading after the gap.
 
 #include <array>
 #include <cstddef>
@@ -23,6 +24,7 @@ class MiddleTravel {
   struct Travel {
     double distance = 0;    ///< m
     double turn_since = 0;  ///< rad, turned since half of that travel
+    double late = 1;        ///< share of the distance that wheels measured; that alone is late by the clock offset
   };
   using Travels = FixedVector<Travel, 2>;
 
@@ -54,13 +56,12 @@ class MiddleTravel {
   Travel travel(const WheelReading& wheels, std::size_t i, double wheel_base) noexcept {
     const double turned = std::exchange(sides_[i].turned, 0);
     const double own = wheels.travel[i];
-    double distance = (own - std::exchange(sides_[i].credited, 0)) / 2;
-    if (wheels.lost[1 - i]) {
-      const double across = (i == 0 ? 1 : -1) * turned * wheel_base;
-      distance = own + across / 2;
-      sides_[1 - i].credited += own + across;
-    }
-    return {distance, turned / 2};
+    const double credited = std::exchange(sides_[i].credited, 0);
+    if (!wheels.lost[1 - i]) return {.distance = (own - credited) / 2, .turn_since = turned / 2};
+    const double across = (i == 0 ? 1 : -1) * turned * wheel_base;
+    const double distance = own + across / 2;
+    sides_[1 - i].credited += own + across;
+    return {.distance = distance, .turn_since = turned / 2, .late = distance == 0 ? 0 : own / distance};
   }
 
   std::array<Side, 2> sides_;
