@@ -75,12 +75,15 @@ def test_a_drive_file_of_another_robot_is_refused(tmp_path):
     assert "left_wheel_joint" in str(refused.value)
 
 
-def test_is_at_least_a_quarter_as_fast_as_without_a_bus():
+@pytest.mark.parametrize("dialect", DIALECTS)
+def test_is_at_least_two_fifths_as_fast_as_without_a_bus(dialect):
+    """By the median of pairs that run one after the other, so that both have the same load of the machine."""
+
     def seconds(**given):
         loop = ClosedLoop(seed=3, **given)
         began = time.process_time()
-        driven(loop, 3.0)
+        driven(loop, 2.0)
         return time.process_time() - began
 
-    direct, through = (min(seconds(**given) for _ in range(3)) for given in ({}, {"drives": drive_file("odrive")}))
-    assert through < 4 * direct
+    pairs = [(seconds(), seconds(drives=drive_file(dialect))) for _ in range(5)]
+    assert np.median([direct / through for direct, through in pairs]) >= 0.4

@@ -8,6 +8,7 @@
 ///
 /// A cable that is out and a wrong bit rate show themselves as silence, most often with error frames or a full queue.
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 
@@ -23,6 +24,12 @@ struct BusStatus {
   bool silent = false;      ///< No frame was received.
   bool queue_full = false;  ///< A frame was not sent.
   can_frame error{};        ///< the last error frame; one without an identifier: there was none
+
+  bool operator==(const BusStatus& other) const noexcept {
+    return state == other.state && bus_off == other.bus_off && silent == other.silent &&
+           queue_full == other.queue_full && error.can_id == other.error.can_id &&
+           std::ranges::equal(error.data, other.error.data);
+  }
 };
 
 class BusWatch {

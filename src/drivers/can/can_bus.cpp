@@ -45,7 +45,7 @@ std::size_t CanBus::send(std::span<const can_frame> frames) noexcept {
   int error = 0;
   while (sent < frames.size() && error == 0) {
     const auto batch = frames.subspan(sent, std::min<std::size_t>(frames.size() - sent, kMaxFramesPerDatagram));
-    const Sent part = socket_.parties().empty() ? send_singly(batch) : send_to_parties(batch);
+    const Sent part = send_part(batch);
     sent += part.frames;
     error = part.error;
   }
@@ -53,6 +53,18 @@ std::size_t CanBus::send(std::span<const can_frame> frames) noexcept {
   counts_.sent += sent;
   counts_.refused += frames.size() - sent;
   return sent;
+}
+
+CanBus::Sent CanBus::send_part(std::span<const can_frame> frames) noexcept {
+  if (socket_.is_line()) return send_together(frames);
+  return socket_.parties().empty() ? send_singly(frames) : send_to_parties(frames);
+}
+
+CanBus::Sent CanBus::send_together(std::span<const can_frame> frames) noexcept {
+  while (::send(socket_.descriptor(), frames.data(), frames.size_bytes(), MSG_DONTWAIT | MSG_NOSIGNAL) < 0) {
+    if (errno != EINTR) return {.frames = 0, .error = errno};
+  }
+  return {.frames = frames.size(), .error = 0};
 }
 
 CanBus::Sent CanBus::send_singly(std::span<const can_frame> frames) noexcept {

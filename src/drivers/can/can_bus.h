@@ -88,6 +88,8 @@ class CanBus {
     int error = 0;  // why not all were sent
   };
 
+  Sent send_part(std::span<const can_frame> frames) noexcept;
+  Sent send_together(std::span<const can_frame> frames) noexcept;
   Sent send_singly(std::span<const can_frame> frames) noexcept;
   Sent send_to_parties(std::span<const can_frame> frames) noexcept;
   void accept(const Frames& frames, std::size_t bytes, std::int64_t stamp_ns) noexcept;

@@ -137,9 +137,15 @@ LinkStatus CanDriver::link() const noexcept {
 }
 
 void CanDriver::publish_statuses() noexcept {
-  for (std::size_t i = 0; i < drives_.size(); ++i) statuses_.drives[i] = drives_[i].full_status();
-  statuses_.bus = watch_.status();
-  published_statuses_.store(statuses_);
+  bool changed = false;
+  const auto update = [&changed](auto& last, const auto& now) {
+    if (last == now) return;
+    last = now;
+    changed = true;
+  };
+  for (std::size_t i = 0; i < drives_.size(); ++i) update(statuses_.drives[i], drives_[i].full_status());
+  update(statuses_.bus, watch_.status());
+  if (changed) published_statuses_.store(statuses_);
 }
 
 std::string CanDriver::description() const {

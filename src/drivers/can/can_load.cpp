@@ -1,5 +1,7 @@
 #include "drivers/can/can_load.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -9,15 +11,62 @@ namespace {
 constexpr unsigned kMaxEqualBits = 5;          // after which a stuff bit follows
 constexpr std::uint32_t kPolynomial = 0x4599;  // CRC-15 of CAN, without its highest bit
 
+constexpr std::uint32_t next_crc(std::uint32_t crc, bool bit) noexcept {
+  const bool divide = bit != ((crc & 0x4000U) != 0);
+  return (crc << 1U & 0x7FFFU) ^ (divide ? kPolynomial : 0);
+}
+
+/// The last bit on the bus, and how many bits were equal to it.
+struct Run {
+  bool bit = true;  // the idle bus is recessive
+  unsigned equal = 0;
+
+  /// Returns the number of bits on the bus, of which one may be stuffed.
+  constexpr unsigned add(bool next) noexcept {
+    equal = next == bit ? equal + 1 : 1;
+    bit = next;
+    if (equal < kMaxEqualBits) return 1;
+    bit = !bit;
+    equal = 1;
+    return 2;
+  }
+};
+
+/// The tables hold the effect of one byte on the checksum, on the run, and on the number of bits.
+struct ByteTables {
+  std::array<std::uint32_t, 256> crc{};
+  std::array<std::array<Run, 256>, 2 * kMaxEqualBits> run{};
+  std::array<std::array<unsigned, 256>, 2 * kMaxEqualBits> bits{};
+
+  static constexpr std::size_t row(const Run& run) noexcept { return std::size_t{2} * run.equal + (run.bit ? 1U : 0U); }
+  constexpr ByteTables() noexcept {
+    for (unsigned byte = 0; byte < 256; ++byte) {
+      for (unsigned bit = 8; bit-- > 0;) crc[byte] = next_crc(crc[byte], (byte >> bit & 1U) != 0);
+      for (unsigned equal = 0; equal < kMaxEqualBits; ++equal) {
+        for (const bool last : {false, true}) {
+          Run now{.bit = last, .equal = equal};
+          const std::size_t from = row(now);
+          for (unsigned bit = 8; bit-- > 0;) bits[from][byte] += now.add((byte >> bit & 1U) != 0);
+          run[from][byte] = now;
+        }
+      }
+    }
+  }
+};
+constexpr ByteTables kBytes;
+
 /// Counts the bits of a frame as they pass, with those that are stuffed, and computes the checksum.
 class BitCounter {
  public:
   void add(std::uint32_t value, unsigned bits) noexcept {
+    while (bits >= 8) {
+      bits -= 8;
+      add_byte(value >> bits & 0xFFU);
+    }
     while (bits-- > 0) {
       const bool bit = (value >> bits & 1U) != 0;
-      const bool divide = bit != ((crc_ & 0x4000U) != 0);
-      crc_ = (crc_ << 1U & 0x7FFFU) ^ (divide ? kPolynomial : 0);
-      stuff(bit);
+      crc_ = next_crc(crc_, bit);
+      count_ += run_.add(bit);
     }
   }
 
@@ -29,19 +78,16 @@ class BitCounter {
   }
 
  private:
-  void stuff(bool bit) noexcept {
-    equal_ = bit == last_ ? equal_ + 1 : 1;
-    last_ = bit;
-    ++count_;
-    if (equal_ < kMaxEqualBits) return;
-    ++count_;
-    last_ = !bit;
-    equal_ = 1;
+  void add_byte(std::uint32_t byte) noexcept {
+    crc_ = (crc_ << 8U & 0x7FFFU) ^ kBytes.crc[(crc_ >> 7U ^ byte) & 0xFFU];
+    const std::size_t from = ByteTables::row(run_);
+    count_ += kBytes.bits[from][byte];
+    run_ = kBytes.run[from][byte];
   }
 
   std::uint32_t crc_ = 0;
-  unsigned count_ = 0, equal_ = 0;
-  bool last_ = true;  // the idle bus is recessive
+  unsigned count_ = 0;
+  Run run_;
 };
 
 struct Bits {

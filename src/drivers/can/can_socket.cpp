@@ -103,11 +103,19 @@ CanSocket::CanSocket(int descriptor, std::span<const can_filter> filters)
   if (descriptor >= 0) request_time_stamps();
 }
 
+CanSocket CanSocket::line_end(int descriptor) {
+  CanSocket end(-1);
+  end.descriptor_ = descriptor;
+  end.is_line_ = true;
+  return end;
+}
+
 CanSocket::CanSocket(CanSocket&& other) noexcept
     : descriptor_(std::exchange(other.descriptor_, -1)),
       filters_(std::move(other.filters_)),
       parties_(std::move(other.parties_)),
-      own_party_(other.own_party_) {}
+      own_party_(other.own_party_),
+      is_line_(other.is_line_) {}
 
 CanSocket::~CanSocket() {
   if (descriptor_ < 0) return;

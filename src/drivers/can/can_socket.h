@@ -32,6 +32,10 @@ class CanSocket {
   /// Takes over a datagram socket each of whose messages is one frame.
   explicit CanSocket(int descriptor, std::span<const can_filter> filters = {});
 
+  /// Takes over one end of a line within this process: a socket pair whose datagrams hold 1 … kMaxFramesPerDatagram
+  /// frames, without time stamps.
+  static CanSocket line_end(int descriptor);
+
   CanSocket(CanSocket&& other) noexcept;
   CanSocket& operator=(CanSocket&&) = delete;
   ~CanSocket();
@@ -43,6 +47,9 @@ class CanSocket {
 
   /// Returns the number of this party in its folder.
   unsigned own_party() const noexcept { return own_party_; }
+
+  /// Returns whether one datagram for the other end may hold several frames.
+  bool is_line() const noexcept { return is_line_; }
 
   /// Returns whether a filter passes the identifier.
   bool passes(canid_t id) const noexcept;
@@ -57,6 +64,7 @@ class CanSocket {
   std::vector<can_filter> filters_;
   std::vector<sockaddr_un> parties_;
   unsigned own_party_ = 0;
+  bool is_line_ = false;
 };
 
 }  // namespace robot_control

@@ -66,6 +66,8 @@ enum class ReactionEvidence : std::uint8_t {
 struct KnownReaction {
   SilenceReaction reaction = SilenceReaction::kUnknown;
   ReactionEvidence evidence = ReactionEvidence::kNone;
+
+  bool operator==(const KnownReaction&) const = default;
 };
 
 /// A copy of it may be put into words by another thread.
@@ -78,6 +80,8 @@ struct DriveStatus {
   double expected = 0;
   std::array<std::uint64_t, 5> details{};  ///< of an error, as the dialect counts them
   KnownReaction on_silence{};
+
+  bool operator==(const DriveStatus&) const = default;
 };
 
 struct DriveCommand {

@@ -202,6 +202,10 @@ void Cia402Device::update_axis(unsigned axis) {
     own.torque = 0;
     own.motor->torque = brakes ? brake_torque(axis) : 0;
   }
+}
+
+void Cia402Device::refresh_objects(unsigned axis) {
+  const Axis& own = axes_[axis];
   const auto set = [&](const ObjectAddress& object, double value) {
     objects_.set(on_axis(object, axis), static_cast<std::uint32_t>(static_cast<std::int64_t>(std::llround(value))));
   };
@@ -302,6 +306,7 @@ std::uint32_t Cia402Device::refusal(const canopen::SdoMessage& request) const {
 
 void Cia402Device::receive_sdo(const canopen::SdoMessage& request) {
   const std::uint32_t refused = request.command == canopen::SdoCommand::kDownload ? refusal(request) : 0;
+  for (unsigned axis = 0; axis < axes_.size(); ++axis) refresh_objects(axis);
   const canopen::SdoMessage answer = objects_.answer(request, refused);
   for (unsigned axis = 0; axis < axes_.size(); ++axis) {
     const bool written = answer.command == canopen::SdoCommand::kDownload;
@@ -324,15 +329,19 @@ canopen::Pdo Cia402Device::mapped_pdo(PdoKind kind, std::uint8_t number) const {
   return pdo;
 }
 
-bool Cia402Device::enabled(const Pdo& pdo) const {
-  return (objects_.value({pdo.parameters(), 1}) & canopen::kPdoDisabled) == 0 && pdo.mapping.count > 0;
+bool Cia402Device::enabled(PdoKind kind, std::uint8_t number) const {
+  const Pdo pdo{.kind = kind, .number = number, .mapping = {}};
+  return (objects_.value({pdo.parameters(), 1}) & canopen::kPdoDisabled) == 0 &&
+         objects_.value({pdo.mapping_index(), 0}) > 0;
 }
 
 void Cia402Device::receive_command(const can_frame& frame) {
   for (std::uint8_t number = 1; number <= kPdos; ++number) {
+    const Pdo unmapped{.kind = PdoKind::kReceive, .number = number, .mapping = {}};
+    if (frame.can_id != unmapped.cob_id(parameters_.node) || !enabled(PdoKind::kReceive, number)) continue;
     const Pdo pdo = mapped_pdo(PdoKind::kReceive, number);
     std::array<std::int64_t, canopen::kMaxPdoEntries> values{};
-    if (!enabled(pdo) || !decode_pdo(pdo, parameters_.node, frame, values)) continue;
+    if (!decode_pdo(pdo, parameters_.node, frame, values)) continue;
     for (std::size_t i = 0; i < pdo.mapping.count; ++i) {
       objects_.set(pdo.mapping.entries[i].object, static_cast<std::uint32_t>(values[i]));
     }
@@ -345,10 +354,13 @@ void Cia402Device::receive_command(const can_frame& frame) {
 }
 
 void Cia402Device::send_states() {
-  for (unsigned axis = 0; axis < axes_.size(); ++axis) update_axis(axis);
+  for (unsigned axis = 0; axis < axes_.size(); ++axis) {
+    update_axis(axis);
+    refresh_objects(axis);
+  }
   for (std::uint8_t number = 1; number <= kPdos; ++number) {
+    if (!enabled(PdoKind::kTransmit, number)) continue;
     const Pdo pdo = mapped_pdo(PdoKind::kTransmit, number);
-    if (!enabled(pdo)) continue;
     std::array<std::int64_t, canopen::kMaxPdoEntries> values{};
     for (std::size_t i = 0; i < pdo.mapping.count; ++i) values[i] = objects_.value(pdo.mapping.entries[i].object);
     bus_.send(party_, encode_pdo(pdo, parameters_.node, values));

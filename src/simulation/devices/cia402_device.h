@@ -70,10 +70,11 @@ class Cia402Device final : public Device {
   void receive_command(const can_frame& frame);
   std::uint32_t refusal(const canopen::SdoMessage& request) const;
   canopen::Pdo mapped_pdo(canopen::PdoKind kind, std::uint8_t number) const;
-  bool enabled(const canopen::Pdo& pdo) const;
+  bool enabled(canopen::PdoKind kind, std::uint8_t number) const;
   void send_states();
   void lose_host();
   void update_axis(unsigned axis);
+  void refresh_objects(unsigned axis);
   void obey(unsigned axis, std::uint16_t controlword);
   void quick_stop(unsigned axis);
   void fail(unsigned axis, std::uint16_t code);

@@ -2,8 +2,8 @@
 /// The entries of a CANopen device, each a number of 1, 2 or 4 bytes, and the SDO server for them (expedited alone).
 
 #include <cstdint>
-#include <map>
 #include <optional>
+#include <unordered_map>
 
 #include "drivers/can/cia402/pdo.h"
 #include "drivers/can/cia402/sdo.h"
@@ -36,7 +36,7 @@ class ObjectDictionary {
   static std::uint32_t key(const canopen::ObjectAddress& object) {
     return static_cast<std::uint32_t>(object.index) << 8U | object.sub;
   }
-  std::map<std::uint32_t, Entry> entries_;
+  std::unordered_map<std::uint32_t, Entry> entries_;
 };
 
 }  // namespace robot_control

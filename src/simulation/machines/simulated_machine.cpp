@@ -76,10 +76,10 @@ std::unique_ptr<Driver> make_simulated_machine(const Parameters& parameters, con
   if (parameters.driver == DriverChoice::kExample) return make_plant_behind_board(parameters, robot);
   const CanParameters can = can_of(parameters, robot);
   const auto [driver_end, device_end] = line_ends();
-  std::unique_ptr<DeviceFront> devices = can_devices(can, parameters, robot, CanSocket(device_end));
+  std::unique_ptr<DeviceFront> devices = can_devices(can, parameters, robot, CanSocket::line_end(device_end));
   const auto clock = [front = devices.get()] { return CanTime{.time_ns = front->now_ns(), .utc_ns = front->now_ns()}; };
   auto driver = std::make_unique<CanDriver>(can, brakes_of_slow_drives(robot, period), robot.joints.size(), period,
-                                            CanSocket(driver_end), clock);
+                                            CanSocket::line_end(driver_end), clock);
   return std::make_unique<DrivenPlant>(robot, parameters.plant, period, std::move(devices), std::move(driver));
 }
 

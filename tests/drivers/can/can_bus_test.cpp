@@ -134,6 +134,36 @@ TEST_F(CanBusTest, ReceivesInBatchesUntilNothingIsLeft) {
   EXPECT_EQ(bus_->counts().received, 100u);
 }
 
+TEST(CanLine, ADatagramHoldsTheFramesOfACycle) {
+  int ends[2];
+  ASSERT_EQ(socketpair(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends), 0);
+  CanBus near(CanSocket::line_end(ends[0])), far(CanSocket::line_end(ends[1]));
+  const auto frames = numbered_up_to(kMaxFramesPerDatagram + 4);
+  EXPECT_EQ(near.send(frames), frames.size());
+  std::array<char, sizeof(can_frame)> start{};
+  EXPECT_EQ(::recv(ends[1], start.data(), start.size(), MSG_PEEK | MSG_TRUNC),
+            static_cast<ssize_t>(kMaxFramesPerDatagram * sizeof(can_frame)));
+  const ReceivedFrames received = far.receive(at(7));
+  ASSERT_EQ(received.frames.size(), frames.size());
+  for (unsigned i = 0; i < frames.size(); ++i) EXPECT_EQ(data_word(received.frames[i].frame), i);
+  EXPECT_EQ(received.frames[0].stamp_ns, 7);
+}
+
+TEST(CanLine, WhatAFullLineRefusesIsCounted) {
+  int ends[2];
+  ASSERT_EQ(socketpair(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends), 0);
+  CanBus near(CanSocket::line_end(ends[0]));
+  std::size_t sent = 0, offered = 0;
+  while (near.counts().refused == 0 && offered < 1'000'000) {
+    offered += 4;
+    sent += near.send(numbered_up_to(4));
+  }
+  EXPECT_EQ(near.counts().refused, 4u);
+  EXPECT_EQ(sent + 4, offered);
+  EXPECT_EQ(near.counts().errors, 0u);
+  close(ends[1]);
+}
+
 TEST_F(CanBusTest, DoesNotWaitWhereNothingArrived) {
   const ReceivedFrames batch = bus_->receive(at(1));
   EXPECT_TRUE(batch.frames.empty());
