@@ -50,6 +50,8 @@ JUDGED = (
     "realtime",
 )
 REALTIME_PARTS = ("jitter", "chain", "cost", "scale")
+LEG_PARTS = ("kinematics", "postures", "pose", "circle", "stop", "rest", "silent")
+PARTS = {"realtime": REALTIME_PARTS, "legs": LEG_PARTS}
 NAMES = MEASURED + JUDGED
 SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores
 ON_CLUSTERS = ("campaign", "devices", "driving", "odometry", "tuning", *SEED_PROGRAMS)
@@ -159,10 +161,15 @@ def _console(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     return console.bench(given.share, say)
 
 
+def _parts_of(name: str, given: argparse.Namespace) -> list[str]:
+    """The parts of this benchmark that are named, or all."""
+    return [part for part in given.parts if part in PARTS[name]] or list(PARTS[name])
+
+
 def _realtime(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     from bench.realtime import bench as realtime
 
-    return realtime.bench(given.parts, given.runs or 0, given.programs, say)
+    return realtime.bench(_parts_of("realtime", given), given.runs or 0, given.programs, say)
 
 
 def _drive(_given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
@@ -174,8 +181,16 @@ def _drive(_given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
 def _legs(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     from bench import legs
 
-    result = run_program(given.programs / "bench_legs", *legs.urdfs())
-    return result, legs.met(result["rows"])
+    result: dict[str, Any] = {"bench": "legs", "rows": []}
+    for part in _parts_of("legs", given):
+        seeds = str(given.runs or 8) if part == "postures" else "1"
+        program = ("bench_legs",) if part == "kinematics" else ("bench_legs_loop", part, seeds)
+        robots = legs.urdfs()[:1] if part in legs.OWN_ROBOT else legs.urdfs()
+        measured = run_program(given.programs / program[0], *program[1:], *robots)
+        result["rows"] += measured["rows"]
+    for row in legs.missed(result["rows"]):
+        say(f"missed: {row}")
+    return result, not legs.missed(result["rows"])
 
 
 TRIALS = {
@@ -251,7 +266,7 @@ def _share(text: str) -> float:
 def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     """The command line of scripts/bench; ends the program on a wrong one."""
     parser = argparse.ArgumentParser(prog="scripts/bench", description="Measures this machine.")
-    parts = f"; after realtime also its parts {', '.join(REALTIME_PARTS)}"
+    parts = "".join(f"; after {name} also its parts {', '.join(own)}" for name, own in PARTS.items())
     which = f"of {', '.join(NAMES)} (default: {', '.join(MEASURED)}){parts}"
     parser.add_argument("names", nargs="*", metavar="NAME", help=which)
     seeds = "campaign, devices, replay, limiter, release, bags, odometry, hostile, tuning, blackbox, processes"
@@ -275,8 +290,9 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--programs", type=Path, default=Path(), help=argparse.SUPPRESS)
     parser.add_argument("--params", type=Path, default=Path(), help=argparse.SUPPRESS)
     given = parser.parse_args(arguments)
-    given.parts = [name for name in given.names if name in REALTIME_PARTS] or list(REALTIME_PARTS)
-    given.names = [name for name in given.names if name not in REALTIME_PARTS or "realtime" not in given.names]
+    possible = {part for name, own in PARTS.items() if name in given.names for part in own}
+    given.parts = [name for name in given.names if name in possible]
+    given.names = [name for name in given.names if name not in possible]
     unknown = [name for name in given.names if name not in NAMES]
     if unknown:
         parser.error(f"no benchmark {', '.join(unknown)}; there are {', '.join(NAMES)}")

@@ -3,7 +3,7 @@
 #include "configuration/peer_file.h"
 #include "parameters/parameters_text.h"
 #include "parameters/tree_reader.h"
-#include "signals/roles.h"
+#include "signals/robot_kinds.h"
 
 namespace robot_control {
 namespace {
@@ -64,6 +64,8 @@ Schema schema(Parameters& p) {
                  {program_of(Role::kController),
                   joined({keys(p.controller), file("command_sources", p.command_sources, kMayBeEmpty | kOptional),
                           controller_keys(p.report)})},
+                 {program_of(Role::kController, kLeggedKind),
+                  joined({keys(p.leg_controller), leg_controller_keys(p.report)})},
                  {program_of(Role::kMonitor),
                   joined({keys(p.safety), file("latch_file", p.latch_file, kMayBeEmpty | kOptional)})},
                  {program_of(Role::kTelemetry), keys(p.telemetry)}},

@@ -13,6 +13,7 @@
 #include "configuration/loop_parameters.h"
 #include "configuration/report_parameters.h"
 #include "control/drive_controller_parameters.h"
+#include "control/legged/leg_controller_parameters.h"
 #include "drivers/mujoco/mujoco_plant_parameters.h"
 #include "estimation/estimator_parameters.h"
 #include "log/log_parameters.h"
@@ -59,6 +60,7 @@ struct Parameters {
   EstimatorParameters estimator;
   std::string calibration_file;  ///< path, see calibration_file.h; empty: none
   DriveControllerParameters controller;
+  LegControllerParameters leg_controller;
   std::string command_sources;  ///< path, see command_sources.h; empty: none, cmd_vel and cmd_vel_stamped command
   SafetyParameters safety;
   std::string latch_file;  ///< path, see loop/latch_file.h; empty: none

@@ -21,6 +21,7 @@ struct ReportParameters {
   std::optional<CovarianceDiagonal> pose_covariance_diagonal;   ///< for odom; none: as estimated
   std::optional<CovarianceDiagonal> twist_covariance_diagonal;  ///< for odom; none: as estimated
   double command_rate = 50;    ///< Hz, joint_commands, joint_targets, cmd_vel_out and drive_state
+  double leg_state_rate = 50;  ///< Hz, leg_state
   double imu_rate = 100;       ///< Hz, imu/data_raw
   double imu_data_rate = 100;  ///< Hz, imu/data
   double truth_rate = 50;      ///< Hz
@@ -44,6 +45,10 @@ inline Keys estimator_keys(ReportParameters& report) {
       {"pose_covariance_diagonal", &report.pose_covariance_diagonal, {}, 0, 1e9, kOptional},
       {"twist_covariance_diagonal", &report.twist_covariance_diagonal, {}, 0, 1e9, kOptional},
   };
+}
+
+inline Keys leg_controller_keys(ReportParameters& report) {
+  return {{"state_rate", &report.leg_state_rate, "Hz", 0.1, 2000, kPublishRate}};
 }
 
 inline Keys controller_keys(ReportParameters& report) {

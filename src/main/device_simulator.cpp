@@ -28,7 +28,7 @@ class DeviceSimulatorNode final : public Node {
  public:
   explicit DeviceSimulatorNode(const Setup& setup)
       : setup_(setup),
-        simulator_(make_device_simulator(setup.parameters, setup.robot)),
+        simulator_(make_device_simulator(setup.parameters, *setup.machine)),
         pace_(setup.parameters.report.truth_rate) {}
   ~DeviceSimulatorNode() override { end(); }
 

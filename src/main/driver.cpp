@@ -12,7 +12,9 @@ int main(int argc, char** argv) {
                   "here.",
        .make = [](const Setup& setup) {
          return make_driver_node(setup, [](const Setup& read) {
-           return make_driver(read.parameters, read.robot, [] { return CanTime{monotonic_ns(), utc_ns()}; });
+           return make_driver(read.parameters, drive_train_of(*read.machine), [] {
+             return CanTime{monotonic_ns(), utc_ns()};
+           });
          });
        }});
 }

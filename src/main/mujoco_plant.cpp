@@ -9,7 +9,8 @@ int main(int argc, char** argv) {
                    .purpose = "Simulates the robot: motors, sensors and the world around it, in MuJoCo. The last check "
                               "of every command is here.",
                    .make = [](const Setup& setup) {
-                     return make_driver_node(
-                         setup, [](const Setup& read) { return make_simulated_machine(read.parameters, read.robot); });
+                     return make_driver_node(setup, [](const Setup& read) {
+                       return make_simulated_machine(read.parameters, *read.machine);
+                     });
                    }});
 }

@@ -5,24 +5,35 @@
 #include "machine/wheeled/drive_train.h"
 #include "robots/differential_drive.h"
 #include "robots/quadruped.h"
+#include "signals/robot_kinds.h"
 
 namespace robot_control {
 
-RobotKind kind_of(const RobotDescription& description) {
-  return has_legs(read_rigid_bodies(description)) ? RobotKind::kOnLegs : RobotKind::kOnWheels;
+MachineKind kind_of(const RobotDescription& description) {
+  return has_legs(read_rigid_bodies(description)) ? MachineKind::kOnLegs : MachineKind::kOnWheels;
 }
 
 std::unique_ptr<MachineModel> read_robot(const RobotDescription& description, const Parameters& parameters) {
-  if (kind_of(description) == RobotKind::kOnLegs)
+  if (kind_of(description) == MachineKind::kOnLegs)
     return std::make_unique<LegModel>(read_legs(description, parameters.robot, parameters.legs));
   return std::make_unique<DriveTrain>(read_drive_train(description, parameters.robot));
 }
 
+MachineKind kind_of(const MachineModel& machine) noexcept {
+  return dynamic_cast<const LegModel*>(&machine) != nullptr ? MachineKind::kOnLegs : MachineKind::kOnWheels;
+}
+
+std::string_view name_of(MachineKind kind) noexcept {
+  return kind == MachineKind::kOnLegs ? kLeggedKind : kWheeledKind;
+}
+
+std::unique_ptr<Robot> compose(const Parameters& parameters, const MachineModel& machine) {
+  if (kind_of(machine) == MachineKind::kOnLegs) return std::make_unique<Quadruped>(parameters, leg_model_of(machine));
+  return std::make_unique<DifferentialDrive>(parameters, drive_train_of(machine));
+}
+
 std::unique_ptr<Robot> make_robot(const Parameters& parameters) {
-  const RobotDescription description = load_description(parameters.urdf);
-  if (kind_of(description) == RobotKind::kOnLegs)
-    return std::make_unique<Quadruped>(parameters, read_legs(description, parameters.robot, parameters.legs));
-  return std::make_unique<DifferentialDrive>(parameters, read_drive_train(description, parameters.robot));
+  return compose(parameters, *read_robot(load_description(parameters.urdf), parameters));
 }
 
 }  // namespace robot_control

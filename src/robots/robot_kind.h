@@ -5,6 +5,7 @@
 ///   wheels   every other robot
 
 #include <memory>
+#include <string_view>
 
 #include "configuration/parameters.h"
 #include "machine/machine_model.h"
@@ -12,13 +13,21 @@
 
 namespace robot_control {
 
-enum class RobotKind { kOnWheels, kOnLegs };
+enum class MachineKind { kOnWheels, kOnLegs };
 
 /// Throws RobotError as read_rigid_bodies.
-RobotKind kind_of(const RobotDescription& description);
+MachineKind kind_of(const RobotDescription& description);
 
 /// Returns the machine of its kind: a DriveTrain or a LegModel. Throws RobotError as read_drive_train or read_legs.
 std::unique_ptr<MachineModel> read_robot(const RobotDescription& description, const Parameters& parameters);
+
+MachineKind kind_of(const MachineModel& machine) noexcept;
+
+/// Returns the name of the kind (signals/robot_kinds.h).
+std::string_view name_of(MachineKind kind) noexcept;
+
+/// Returns the robot of a machine of `read_robot`, composed of the laws of its kind.
+std::unique_ptr<Robot> compose(const Parameters& parameters, const MachineModel& machine);
 
 /// Returns the robot of Parameters::urdf, composed of the laws of its kind. Throws RobotError as read_robot.
 std::unique_ptr<Robot> make_robot(const Parameters& parameters);

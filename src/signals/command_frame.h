@@ -8,6 +8,7 @@
 #include "signals/frame_head.h"
 #include "signals/geometry.h"
 #include "signals/joint.h"
+#include "signals/legged/legged_command.h"
 #include "signals/velocity_command.h"
 #include "signals/wheeled/wheeled_command.h"
 
@@ -71,6 +72,7 @@ struct CommandFrame {
   std::uint64_t silence_needed = 0;  ///< cycles without a message after which no sender counts as requesting motion
 
   WheeledCommand wheeled;  ///< only wheeled machines fill it
+  LeggedCommand legged;    ///< only machines on legs fill it
 };
 
 /// Returns CommandReason and WheeledReason bits together.

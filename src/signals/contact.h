@@ -18,6 +18,7 @@ struct ContactSample {
 struct ContactState {
   double probability = 0;  ///< 0 (no trusted contact) … 1 (trusted fully)
   double slip = 0;         ///< m/s, speed of the contact point over the ground, along the wheel
+  double load = 0;         ///< N, its force upwards
 };
 
 }  // namespace robot_control

@@ -108,6 +108,10 @@ inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
      "request only what this robot can do; a differential drive takes linear.x and angular.z"},
     {kReasonCurvatureKept, "curvature_kept", "one axis was scaled to keep the commanded curvature", ""},
     {kReasonSaturated, "saturated", "a wheel's torque or speed is at its limit", ""},
+    {kReasonOutOfReach, "out_of_reach", "the requested pose is beyond the ranges of the legs: the nearest one is kept",
+     "request a pose within the ranges of docs/legs.md"},
+    {kReasonNotStanding, "not_standing", "a pose or a foot is requested, and the robot does not stand",
+     "call set_posture with 'standing'"},
 });
 
 inline constexpr auto kRequestPartNames = std::to_array<BitName>({
@@ -121,6 +125,9 @@ inline constexpr auto kRequestPartNames = std::to_array<BitName>({
     {kPartRoll, "posture.roll", "", ""},
     {kPartPitch, "posture.pitch", "", ""},
     {kPartMode, "mode", "", ""},
+    {kPartX, "posture.x", "", ""},
+    {kPartY, "posture.y", "", ""},
+    {kPartYaw, "posture.yaw", "", ""},
 });
 
 inline constexpr auto kDriverFaultNames = std::to_array<BitName>({
@@ -202,6 +209,12 @@ constexpr std::string_view name_of(DriverState state) noexcept {
 constexpr std::string_view name_of(LinkState state) noexcept {
   constexpr std::array<std::string_view, 4> kNames{"starting", "up", "degraded", "down"};
   const auto index = static_cast<std::size_t>(state);
+  return index < kNames.size() ? kNames[index] : "unknown";
+}
+
+constexpr std::string_view name_of(LegPhase phase) noexcept {
+  constexpr std::array<std::string_view, 5> kNames{"lying", "gathering", "rising", "standing", "lowering"};
+  const auto index = static_cast<std::size_t>(phase);
   return index < kNames.size() ? kNames[index] : "unknown";
 }
 

@@ -8,11 +8,15 @@
 
 namespace robot_control {
 
-/// The posture of the base relative to the nominal one, which is all zero.
+/// The posture of the base relative to the nominal one, which is all zero. A mode may give it to another part of the
+/// machine, such as a foot.
 struct Posture {
   double height = 0;  ///< m
   double roll = 0;    ///< rad
   double pitch = 0;   ///< rad
+  double x = 0;       ///< m, to the front
+  double y = 0;       ///< m, to the left
+  double yaw = 0;     ///< rad
 };
 
 /// A request states what a machine shall do. The machine executes the parts that it can execute; the controller names
@@ -35,6 +39,9 @@ enum RequestPart : std::uint64_t {
   kPartRoll = 1u << 7,
   kPartPitch = 1u << 8,
   kPartMode = 1u << 9,
+  kPartX = 1u << 10,
+  kPartY = 1u << 11,
+  kPartYaw = 1u << 12,
 };
 
 /// Returns the RequestPart bits of the parts that are not zero.
@@ -55,12 +62,17 @@ inline std::uint64_t parts_of(const Request& request) noexcept {
     if (value != 0) parts |= part;
     part <<= 1;
   }
+  if (request.posture.x != 0) parts |= kPartX;
+  if (request.posture.y != 0) parts |= kPartY;
+  if (request.posture.yaw != 0) parts |= kPartYaw;
   return parts;
 }
 
 inline bool finite(const Request& request) noexcept {
-  return finite(request.twist) && std::isfinite(request.posture.height) && std::isfinite(request.posture.roll) &&
-         std::isfinite(request.posture.pitch);
+  const Posture& posture = request.posture;
+  return finite(request.twist) && std::isfinite(posture.height) && std::isfinite(posture.roll) &&
+         std::isfinite(posture.pitch) && std::isfinite(posture.x) && std::isfinite(posture.y) &&
+         std::isfinite(posture.yaw);
 }
 
 /// The value of VelocityCommand::contested for a command without sender, which is neither a request nor the end of a

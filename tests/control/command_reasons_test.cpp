@@ -81,6 +81,7 @@ TEST(CommandReasons, AreNoneOnAHealthyRobot) {
 
 TEST(CommandReasons, AreEachRaisedByWhatTheySay) {
   for (const BitName& row : kCommandReasonNames) {
+    if (row.bit >= kReasonOutOfReach) continue;  // tests/robots/quadruped_test.cpp raises those of legs
     SCOPED_TRACE(row.name);
     const auto found = kBreaks.find(row.bit);
     ASSERT_NE(found, kBreaks.end()) << "no test raises it";

@@ -10,7 +10,7 @@ constexpr double kPi = 3.14159265358979323846;
 class QuadrupedOf : public testing::TestWithParam<std::string> {};
 
 TEST_P(QuadrupedOf, StandsUpWithinTwoSecondsAndLiesDownAgain) {
-  QuadrupedLoop robot(GetParam());
+  QuadrupedLoop robot = loop_of(GetParam());
   robot.wait(0.3);
   robot.clear();
   robot.run(2.0, stance(kStanceStand));
@@ -35,7 +35,7 @@ TEST_P(QuadrupedOf, StandsUpWithinTwoSecondsAndLiesDownAgain) {
 }
 
 TEST_P(QuadrupedOf, IsFoldedByAnEmergencyStopAndLiesUpright) {
-  QuadrupedLoop robot(GetParam());
+  QuadrupedLoop robot = loop_of(GetParam());
   robot.wait(0.3);
   robot.run(2.5, stance(kStanceStand));
   robot.clear();
@@ -68,7 +68,7 @@ class Quadbot : public testing::Test {
     return {p.position[0],          p.position[1],           p.position[2],
             roll_of(p.orientation), pitch_of(p.orientation), yaw_of(p.orientation)};
   }
-  QuadrupedLoop robot{"quadbot"};
+  QuadrupedLoop robot = loop_of("quadbot");
 };
 
 TEST_F(Quadbot, MovesItsBodyAsRequested) {
@@ -83,10 +83,9 @@ TEST_F(Quadbot, MovesItsBodyAsRequested) {
     for (int k = 0; k < 4000; ++k) {
       const double t = k * 0.001, size = sizes[axis];
       Request request;
-      double* const values[6] = {&request.twist.linear[0], &request.twist.linear[1], &request.posture.height,
-                                 &request.posture.roll,    &request.posture.pitch,   &request.twist.angular[2]};
-      const bool is_speed = axis < 2 || axis == 5;
-      *values[axis] = is_speed ? size * omega * std::cos(omega * t) : size * std::sin(omega * t);
+      double* const values[6] = {&request.posture.x,    &request.posture.y,     &request.posture.height,
+                                 &request.posture.roll, &request.posture.pitch, &request.posture.yaw};
+      *values[axis] = size * std::sin(omega * t);
       robot.loop.request(request);
       robot.step();
       const double error = pose()[axis] - begin[axis] - size * std::sin(omega * t);
@@ -101,7 +100,8 @@ TEST_F(Quadbot, MovesItsBodyAsRequested) {
 TEST_F(Quadbot, DrawsACircleWithEachFoot) {
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     robot.clear();
-    const Request up = stance(kStanceLift + leg);
+    Request up = stance(kStanceLift + leg);
+    up.posture.height = 0.08;
     robot.run(2.0, up);
     const LegKinematics& kinematics = robot.robot().legs[leg].kinematics;
     const auto foot = [&]() -> Eigen::Vector3d {
@@ -116,7 +116,8 @@ TEST_F(Quadbot, DrawsACircleWithEachFoot) {
     for (int k = 0; k < 2000; ++k) {
       const double t = k * 0.001;
       Request request = up;
-      request.twist.linear = {kRadius * kOmega * std::cos(kOmega * t), 0, kRadius * kOmega * std::sin(kOmega * t)};
+      request.posture.x = kRadius * std::sin(kOmega * t);
+      request.posture.height += kRadius * (1 - std::cos(kOmega * t));
       robot.loop.request(request);
       robot.step();
       const Eigen::Vector3d wanted =
@@ -138,6 +139,26 @@ TEST_F(Quadbot, StaysAsItStandsWhenItsSenderIsSilent) {
   EXPECT_NE(robot.command().reasons & kReasonTimedOut, 0u);
 }
 
+TEST_F(Quadbot, StopsItsBodyWhereItIsWhenItsSenderIsSilent) {
+  robot.run(1.0, {.twist = {}, .posture = {.height = -0.03, .roll = 0.1}});
+  const std::array<double, 6> asked = pose();
+  robot.wait(2.0);
+  EXPECT_NE(robot.command().reasons & kReasonTimedOut, 0u);
+  for (std::size_t axis = 0; axis < 6; ++axis) EXPECT_NEAR(pose()[axis], asked[axis], 0.002) << axis;
+}
+
+TEST_F(Quadbot, NamesWhatItCannotDo) {
+  robot.run(0.1, {.twist = {.linear = {0.5, 0, 0}, .angular = {}}});
+  EXPECT_NE(robot.command().reasons & kReasonPartIgnored, 0u);
+  EXPECT_EQ(robot.command().ignored, kPartLinearX);
+  robot.run(0.1, {.twist = {}, .posture = {.height = 1}});
+  EXPECT_NE(robot.command().reasons & kReasonOutOfReach, 0u);
+  robot.run(3.0, stance(kStanceLie));
+  robot.run(0.1, {.twist = {}, .posture = {.roll = 0.1}});
+  EXPECT_NE(robot.command().reasons & kReasonNotStanding, 0u);
+  EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying);
+}
+
 TEST_F(Quadbot, StandsUpOnlyAfterAResetThatFollowsZero) {
   robot.loop.e_stop();
   robot.run(1.0, stance(kStanceStand));
@@ -153,11 +174,11 @@ TEST_F(Quadbot, StandsUpOnlyAfterAResetThatFollowsZero) {
 }
 
 TEST(QuadrupedReplay, IsExactOverStandingAStopAndAReset) {
-  QuadrupedLoop robot("quadbot", 1, ErrorLevel::kField);
+  QuadrupedLoop robot = loop_of("quadbot", 1, ErrorLevel::kField);
   robot.record = true;
   robot.wait(0.3);
   robot.run(2.5, stance(kStanceStand));
-  robot.run(0.5, {.twist = {.linear = {0.05, 0.02, 0}, .angular = {}}, .posture = {.height = 0.02, .roll = 0.1}});
+  robot.run(0.5, {.twist = {}, .posture = {.height = 0.02, .roll = 0.1, .x = 0.02, .y = 0.01}});
   robot.loop.e_stop();
   robot.run(2.0, {});
   robot.loop.e_stop_reset();

@@ -62,7 +62,7 @@ class StateReport : public testing::Test {
 
   DiagnosticReport report(std::uint64_t slip_lately = 0) const {
     DiagnosticReport report("state_estimator", "diffbot");
-    report_state(report, state_, slip_lately);
+    report_state(report, state_, slip_lately, true);
     return report;
   }
 

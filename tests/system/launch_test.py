@@ -3,7 +3,6 @@
 
 import os
 import signal
-import subprocess
 import tempfile
 import time
 import unittest
@@ -14,49 +13,16 @@ import rosbag
 import rosgraph
 import rospy
 import rostest
+from launch_support import LAUNCH_LIMIT, Launch
 from robot_control.common.run_log import read_log
 from robot_control.msg import SafetyStatus
 from robot_control.record.main import TOPICS
-from system_support import ESTIMATOR, LIMIT, MONITOR, Robot, init_test_node, refusal, repository, wait_for
+from system_support import ESTIMATOR, MONITOR, Robot, init_test_node, refusal, repository, wait_for
 from tf2_msgs.msg import TFMessage
 
 SILENT = {"cmd_vel", "cmd_vel_stamped", "e_stop", "heartbeat", "clearance", "tf_static", "/clock", "/rosout"}
 """Topics on which there may be no messages. No node commands, no transform is static, and /clock belongs to lockstep.
 The nodes may have logged all messages before the recorder came."""
-LAUNCH_LIMIT = 3 * LIMIT
-"""s; a launch is a dozen programs, and roslaunch gives each 15 s to end."""
-
-
-class Launch:
-    """sim.launch with its output in a file."""
-
-    def __init__(self, *arguments: str, folder: Path | None = None) -> None:
-        self._output = tempfile.NamedTemporaryFile(prefix="sim-launch-", suffix=".log")
-        self._process = subprocess.Popen(
-            ["roslaunch", str(repository() / "launch" / "sim.launch"), *arguments],
-            stdin=subprocess.DEVNULL,
-            stdout=self._output,
-            stderr=subprocess.STDOUT,
-            cwd=folder,
-            env=os.environ | ({} if folder is None else {"PWD": str(folder)}),
-        )
-
-    @property
-    def output(self) -> str:
-        return Path(self._output.name).read_text(errors="replace")
-
-    @property
-    def running(self) -> bool:
-        return self._process.poll() is None
-
-    def wait(self) -> int:
-        return self._process.wait(LAUNCH_LIMIT)
-
-    def end(self) -> None:
-        """Sends SIGINT; roslaunch ends its nodes in any case."""
-        if self.running:
-            self._process.send_signal(signal.SIGINT)
-        self.wait()
 
 
 def received_by_recorder(namespace: str) -> set[str]:

@@ -43,6 +43,10 @@ def test_no_report_is_offline_with_the_names_of_the_silent_nodes():
     assert math.isnan(status.odometry_confidence)
 
 
+def test_a_robot_on_legs_has_a_posture():
+    assert status_of(replace(reports(), posture="standing")).posture == "standing"
+
+
 def test_the_controller_of_another_kind_is_the_one_that_is_missed():
     status = status_of(replace(Reports(), kind=Kind("quadruped", controller="leg_controller")))
     assert status.problems == ["state_estimator is silent", "leg_controller is silent", "safety_monitor is silent"]

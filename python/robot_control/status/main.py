@@ -14,7 +14,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from robot_control.common.robot_kind import running_kind
 from robot_control.common.ros_node import running_node
 from robot_control.installed_files import share_file
-from robot_control.msg import DriveState, RobotStatus, SafetyStatus
+from robot_control.msg import DriveState, LegState, RobotStatus, SafetyStatus
 from robot_control.status.report import Reports, changed, status_of
 from robot_control.why.diagnosis import SILENCE
 from robot_control.why.facts import below
@@ -33,13 +33,16 @@ class Status:
         self._began = time.monotonic()
         self._version = ET.parse(share_file("package.xml")).findtext("version", "")
         self._safety: SafetyStatus | None = None
-        self._safety_at = self._drive_at = self._published_at = -math.inf
-        self._drive: rospy.AnyMsg | None = None  # parsed once per look: 50 of them come per second
+        self._safety_at = self._drive_at = self._legs_at = self._published_at = -math.inf
+        # Parsed once per look: 50 of them come per second.
+        self._drive: rospy.AnyMsg | None = None
+        self._legs: rospy.AnyMsg | None = None
         self._reports: dict[str, tuple[float, DiagnosticStatus]] = {}
         self._published = RobotStatus()
         self._publisher = rospy.Publisher("robot_status", RobotStatus, queue_size=1, latch=True)
         rospy.Subscriber("safety_status", SafetyStatus, self._receive_safety, queue_size=1)
         rospy.Subscriber("drive_state", rospy.AnyMsg, self._receive_drive, queue_size=1)
+        rospy.Subscriber("leg_state", rospy.AnyMsg, self._receive_legs, queue_size=1)
         rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive_diagnostics)
 
     def look(self, now: float) -> None:
@@ -59,6 +62,7 @@ class Status:
             diagnostics={name: report for name, (at, report) in dict(self._reports).items() if now - at < SILENCE},
             kind=running_kind(),
             commander=self._commander() if now - self._drive_at < SILENCE else "",
+            posture=self._posture() if now - self._legs_at < SILENCE else "",
         )
 
     def _commander(self) -> str:
@@ -67,11 +71,20 @@ class Status:
         commander: str = DriveState().deserialize(self._drive._buff).commander  # noqa: SLF001 (all that AnyMsg has)
         return commander
 
+    def _posture(self) -> str:
+        if self._legs is None:
+            return ""
+        posture: str = LegState().deserialize(self._legs._buff).posture  # noqa: SLF001 (all that AnyMsg has)
+        return posture
+
     def _receive_safety(self, message: SafetyStatus) -> None:
         self._safety, self._safety_at = message, time.monotonic()
 
     def _receive_drive(self, message: rospy.AnyMsg) -> None:
         self._drive, self._drive_at = message, time.monotonic()
+
+    def _receive_legs(self, message: rospy.AnyMsg) -> None:
+        self._legs, self._legs_at = message, time.monotonic()
 
     def _receive_diagnostics(self, message: DiagnosticArray) -> None:
         for report in message.status:

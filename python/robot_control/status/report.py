@@ -25,6 +25,7 @@ class Reports:
     diagnostics: Mapping[str, DiagnosticStatus] = field(default_factory=dict)  # by node, below the namespace
     kind: Kind = field(default_factory=Kind)
     commander: str = ""  # from drive_state, if there is a list of command sources
+    posture: str = ""  # from leg_state
 
     def value(self, node: str, key: str) -> str:
         """A value in a node's report; empty if it is not there."""
@@ -38,6 +39,7 @@ def status_of(reports: Reports) -> RobotStatus:
     senders = reports.value(reports.kind.controller, "senders")
     status.senders = senders.split(", ") if senders else []
     status.commander = reports.commander
+    status.posture = reports.posture
     status.health, status.problems = _health(reports)
     if reports.safety is not None:
         status.safety_state = reports.safety.state_name

@@ -4,18 +4,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "machine/gravity.h"
 #include "signals/rotation.h"
 
 namespace robot_control {
 namespace {
 
 constexpr double kLoadTime = 0.2;       // s, in which a foot's share of the weight comes and goes
+constexpr double kLeastLift = 0.25;     // of the lift, the lowest height of a foot in the air
 constexpr double kSetDown = 0.1;        // m/s, of a foot that lies above the ground
 constexpr double kShift = 0.6;          // of the way from the middle to the centroid of three feet
 constexpr double kArrived = 0.0005;     // m
 constexpr double kArrivedSpeed = 0.02;  // m/s and rad/s
 constexpr double kMinTime = 0.1;        // s, of gathering
+constexpr std::uint64_t kNoWish = kReasonNoCommand | kReasonTimedOut | kReasonRefused | kReasonManySenders;
+constexpr std::uint64_t kPose = kPartHeight | kPartRoll | kPartPitch | kPartX | kPartY | kPartYaw;
 constexpr std::size_t kX = 0, kY = 1, kZ = 2, kRoll = 3, kPitch = 4, kYaw = 5;
 
 using Map = Eigen::Map<const Eigen::Vector3d>;
@@ -47,9 +49,7 @@ LegController::LegController(const LegModel& robot, double timeout, double perio
       dynamics_(robot),
       tuning_(leg_tuning(robot)),
       ground_(robot.belly),
-      state_(CommandWatch(timeout, period,
-                          kPartLinearX | kPartLinearY | kPartLinearZ | kPartAngularZ | kPartHeight | kPartRoll |
-                              kPartPitch | kPartMode)) {
+      state_(CommandWatch(timeout, period, kPose | kPartMode)) {
   const LegGeometry& first = legs_[0].kinematics.geometry();
   nominal_ = tuning_.height - first.hip.z() - first.upper.z() + robot.belly + legs_[0].foot_radius;
 }
@@ -86,8 +86,11 @@ void LegController::step(const ControlInput& input, CommandFrame& out) noexcept 
     out.reasons |= kReasonPermitRamp;
     request = {.twist = {}, .posture = {}, .mode = kStanceLie};
   }
+  const bool of_standing = (parts_of(request) & kPose) != 0 || request.mode >= kStanceLift;
+  if (of_standing && state_.phase != LegPhase::kStanding) out.reasons |= kReasonNotStanding;
   const std::array<double, kLegsJoints> before = state_.angles;
   const bool began = advance(request, sensors, out.reasons);
+  report(out);
   if (state_.phase == LegPhase::kLying) {
     out.reasons |= kReasonHolding;
     return;
@@ -139,6 +142,15 @@ bool LegController::advance(const Request& request, const SensorFrame& sensors, 
   return false;
 }
 
+void LegController::report(CommandFrame& out) const noexcept {
+  out.legged.phase = state_.phase;
+  out.legged.lifted = state_.phase >= LegPhase::kStanding && state_.lifted != kLegs ? state_.lifted + 1 : 0;
+  if (state_.phase != LegPhase::kStanding) return;
+  const std::array<double, 3> nominal{state_.home[0], state_.home[1], nominal_};
+  for (std::size_t i = 0; i < state_.body.size(); ++i)
+    out.legged.body[i] = state_.body[i].value - (i < kRoll ? nominal[i] : 0);
+}
+
 void LegController::enter(LegPhase phase, double elapsed) noexcept {
   state_.phase = phase;
   state_.elapsed = std::max(0.0, elapsed);
@@ -155,7 +167,8 @@ void LegController::gather() noexcept {
   if (state_.elapsed < time) return;
   enter(LegPhase::kRising, 0);
   state_.body = {};
-  state_.moved = {};
+  state_.held = {};
+  state_.follows = 0;
   state_.share = {};
   state_.lifted = kLegs;
   for (std::size_t leg = 0; leg < kLegs; ++leg)
@@ -184,25 +197,45 @@ void LegController::rise(double elapsed, std::uint64_t& reasons) noexcept {
 
 void LegController::stand(const Request& request, std::uint64_t& reasons) noexcept {
   const bool lifts = request.mode >= kStanceLift && request.mode < kStanceLift + kLegs;
+  if (request.mode >= kStanceLift + kLegs) reasons |= kReasonPartIgnored;
   const std::uint64_t wanted = lifts ? request.mode - kStanceLift : kLegs;
   if (state_.lifted == kLegs && lifts) {
     state_.lifted = wanted;
     state_.foot = {};
     state_.foot_target = {};
   }
-  if (!lifts) {  // the twist moves the body
-    const double range[3] = {tuning_.sway, tuning_.sway, tuning_.lean};
-    const double speed[3] = {request.twist.linear[0], request.twist.linear[1], request.twist.angular[2]};
-    for (std::size_t i = 0; i < 3; ++i)
-      state_.moved[i] = within(state_.moved[i] + speed[i] * period_, range[i], reasons);
+  if (state_.lifted == kLegs) {
+    choose_pose(request, reasons);
+  } else {
+    state_.held = {};
+    state_.follows = 0;
   }
   const Eigen::Vector2d place = standing_place();
-  const bool reached = move({state_.moved[0] + place.x(), state_.moved[1] + place.y(),
-                             nominal_ + within(request.posture.height, tuning_.bob, reasons),
-                             within(request.posture.roll, tuning_.lean, reasons),
-                             within(request.posture.pitch, tuning_.lean, reasons), state_.moved[2]},
-                            reasons);
+  std::array<double, 6> target = state_.held;
+  target[kX] += place.x();
+  target[kY] += place.y();
+  target[kZ] += nominal_;
+  const bool reached = move(target, reasons);
   if (state_.lifted != kLegs) move_foot(request, state_.lifted == wanted, reached, reasons);
+}
+
+void LegController::choose_pose(const Request& request, std::uint64_t& reasons) noexcept {
+  const bool wished = (reasons & kNoWish) == 0;
+  if (wished) {
+    const Posture& to = request.posture;
+    state_.held = {within(to.x, tuning_.sway, reasons),     within(to.y, tuning_.sway, reasons),
+                   within(to.height, tuning_.bob, reasons), within(to.roll, tuning_.lean, reasons),
+                   within(to.pitch, tuning_.lean, reasons), within(to.yaw, tuning_.lean, reasons)};
+  } else if (state_.follows != 0) {
+    const std::array<double, 3> nominal{state_.home[0], state_.home[1], nominal_};
+    for (std::size_t i = 0; i < state_.held.size(); ++i) {
+      const TrackedAxis& axis = state_.body[i];
+      const AxisBounds& bounds = i < kRoll ? tuning_.linear : tuning_.angular;
+      const double way = axis.speed * std::abs(axis.speed) / (2 * bounds.acceleration);
+      state_.held[i] = axis.value + way - (i < kRoll ? nominal[i] : 0);
+    }
+  }
+  state_.follows = wished ? 1 : 0;
 }
 
 /// Returns x and y of the body in m at which its centre of gravity is amid the feet, or above three of them.
@@ -245,14 +278,17 @@ void LegController::move_foot(const Request& request, bool wanted, bool supporte
   const bool in_air = state_.foot[kZ].value > 1e-3;
   if (wanted && !in_air && target[2] == 0) {
     if (supported || share < 1) approach(share, 0, period_ / kLoadTime);
-    if (share == 0) target = {0, 0, tuning_.lift};
+    if (share == 0) target = {0, 0, kLeastLift * tuning_.lift};
   } else if (wanted) {
-    for (std::size_t i = 0; i < 3; ++i) target[i] += request.twist.linear[i] * period_;
-    for (const std::size_t i : {kX, kY}) target[i] = within(target[i], tuning_.foot_range, reasons);
-    target[2] = std::clamp(target[2], tuning_.lift / 4, tuning_.lift + tuning_.foot_range);
+    const bool clear = state_.foot[kZ].value > 0.8 * kLeastLift * tuning_.lift;
+    const double highest = tuning_.lift + tuning_.foot_range;
+    target = {clear ? within(request.posture.x, tuning_.foot_range, reasons) : 0,
+              clear ? within(request.posture.y, tuning_.foot_range, reasons) : 0,
+              std::clamp(request.posture.height, kLeastLift * tuning_.lift, highest)};
+    if (target[2] != request.posture.height) reasons |= kReasonOutOfReach;
   } else {
     const bool above = std::hypot(state_.foot[kX].value, state_.foot[kY].value) < kArrived;
-    target = {0, 0, above ? 0.0 : std::max(target[2], tuning_.lift / 4)};
+    target = {0, 0, above ? 0.0 : std::max(target[2], kLeastLift * tuning_.lift)};
     if (above && !in_air) approach(share, 1, period_ / kLoadTime);
   }
   for (std::size_t i = 0; i < 3; ++i) state_.foot[i].step(target[i], tuning_.foot, period_);
@@ -262,7 +298,7 @@ void LegController::move_foot(const Request& request, bool wanted, bool supporte
 
 void LegController::lower(std::uint64_t& reasons) noexcept {
   if (state_.sinks == 0) {
-    state_.moved = {};
+    state_.held = {};
     const Eigen::Vector2d place = standing_place();
     const bool arrived_all = move({place.x(), place.y(), nominal_, 0, 0, 0}, reasons);
     if (state_.lifted != kLegs) move_foot({}, false, arrived_all, reasons);
@@ -323,66 +359,6 @@ void LegController::roll_feet(const std::array<double, kLegsJoints>& rates) noex
         body;
     state_.places[leg][0] += shank.y() * legs_[leg].foot_radius * period_;
     state_.places[leg][1] -= shank.x() * legs_[leg].foot_radius * period_;
-  }
-}
-
-/// Returns the forces on the feet in N, stance axes, that accelerate the body along x, y and z and about the vertical.
-std::array<Eigen::Vector3d, kLegs> LegController::pushing(const LoadInput& load,
-                                                          const LeggedEquations& equations) const noexcept {
-  std::array<Eigen::Vector3d, kLegs> result;
-  result.fill(Eigen::Vector3d::Zero());
-  double carried = 0, levers = 0;
-  for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    carried += load.share[leg];
-    levers += load.share[leg] * load.feet[leg].squaredNorm();
-  }
-  if (state_.phase != LegPhase::kStanding || carried < 1) return result;
-  const Eigen::Vector3d force =
-      dynamics_.mass() / carried *
-      Eigen::Vector3d(state_.body[kX].acceleration, state_.body[kY].acceleration, state_.body[kZ].acceleration);
-  const double turning = equations.mass(5, 5) * state_.body[kYaw].acceleration / levers;
-  for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const Eigen::Vector2d& lever = load.feet[leg];
-    result[leg] = load.share[leg] * (force + turning * Eigen::Vector3d(-lever.y(), lever.x(), 0));
-  }
-  return result;
-}
-
-void LegController::write(const std::array<double, kLegsJoints>& rates, CommandFrame& out) noexcept {
-  const Eigen::Matrix3d turned = rotation();
-  const Eigen::Vector3d up = turned.row(2);
-  LeggedMotion motion{.angles = state_.angles, .gravity = -kGravity * up};
-  LeggedEquations equations;
-  dynamics_.step(motion, equations);
-  state_.centre = {equations.centre_of_gravity.x(), equations.centre_of_gravity.y()};
-  LoadInput load{.share = state_.share};
-  double carried = 0;
-  // While the body accelerates, the forces balance about the point on which it leans.
-  Eigen::Vector2d lean = Eigen::Vector2d::Zero();
-  if (state_.phase == LegPhase::kStanding)
-    lean = Eigen::Vector2d(state_.body[kX].acceleration, state_.body[kY].acceleration) / kGravity;
-  for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const Eigen::Vector3d lever = turned * (foot_in_base(leg, turned) - equations.centre_of_gravity);
-    load.feet[leg] = lever.head<2>() - lever.z() * lean;
-    carried += state_.share[leg] / (kLegs - 1);
-  }
-  load.weight = dynamics_.mass() * kGravity * std::min(1.0, carried);
-  const std::array<double, kLegs> forces = carried > 0 ? shared_loads(load) : std::array<double, kLegs>{};
-  const std::array<Eigen::Vector3d, kLegs> pushes = pushing(load, equations);
-  for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const std::size_t first = kLegJoints * leg;
-    Eigen::Vector3d foot;
-    const Eigen::Matrix3d jacobian = legs_[leg].kinematics.jacobian(LegModel::angles_of(state_.angles, leg), foot);
-    const Eigen::Vector3d effort = equations.bias.segment<3>(static_cast<Eigen::Index>(6 + first)) -
-                                   jacobian.transpose() * (forces[leg] * up + turned.transpose() * pushes[leg]);
-    for (std::size_t i = 0; i < kLegJoints; ++i) {
-      out.joints[first + i] = {.mode = JointMode::kImpedance,
-                               .position = state_.angles[first + i],
-                               .velocity = rates[first + i],
-                               .stiffness = tuning_.stiffness,
-                               .damping = tuning_.damping,
-                               .effort = effort[static_cast<Eigen::Index>(i)]};
-    }
   }
 }
 

@@ -11,12 +11,15 @@
 ///   standing   the body follows the request, and one foot may be in the air
 ///   lowering   body and foot return to the nominal pose, then the body sinks
 ///
-/// Request::mode is a StanceMode. A mode that the present posture does not allow has no effect. A request that times
-/// out leaves the robot as it stands, with all feet on the ground. While it stands,
+/// Request::mode is a StanceMode. A mode that the present posture does not allow has no effect. The posture of the
+/// request is
 ///
-///   posture         height above the nominal one, roll and pitch of the body
-///   twist           linear x and y move the body over its feet, angular z turns it; while a foot is in the air, the
-///                   linear twist moves this foot
+///   while it stands           the pose of the body from the nominal one. Where no request is in force any more
+///                             (kNoWish), the body stops where it is
+///   while a foot is lifted    the place of this foot from where it stood: x, y, and height above the ground. The body
+///                             has its nominal attitude. Without a request the foot is set down again
+///
+/// A twist has no effect, because this robot does not walk yet (kReasonPartIgnored).
 ///
 /// The stance frame has its axes and origin where those of the base were when it began to rise. Let aᵢ be the feet, p
 /// the body's position and R its rotation in it. The feet in the base's axes are Rᵀ(aᵢ − p), and the joint angles are
@@ -41,21 +44,9 @@
 #include "machine/legs/leg_dynamics.h"
 #include "machine/legs/leg_model.h"
 #include "signals/command_frame.h"
+#include "signals/legged/legged_command.h"
 
 namespace robot_control {
-
-/// The modes of Request::mode.
-enum StanceMode : std::uint64_t {
-  kStanceStay = 0,  ///< Stand with all feet, or lie, as before.
-  kStanceLie = 1,
-  kStanceStand = 2,
-  kStanceLift = 3,  ///< kStanceLift + i lifts the foot of LegPlace i.
-};
-
-enum class LegPhase : std::uint64_t { kLying = 0, kGathering = 1, kRising = 2, kStanding = 3, kLowering = 4 };
-
-/// A bit of CommandFrame::reasons: the pose is beyond what the legs reach, and is not entered.
-inline constexpr std::uint64_t kReasonOutOfReach = std::uint64_t{1} << kFirstWheeledReason;
 
 /// The values that follow from the robot.
 struct LegTuning {
@@ -101,7 +92,8 @@ class LegController {
     std::array<double, kLegsJoints> angles{};  ///< rad, of the last command
     std::array<Vector3, kLegs> places{};       ///< m, aᵢ
     std::array<TrackedAxis, 6> body{};
-    std::array<double, 3> moved{};      ///< m, m, rad: x, y and yaw that the twist has asked for
+    std::array<double, 6> held{};       ///< m and rad, pose from the nominal one that the body moves to
+    std::uint64_t follows = 0;          ///< 1: `held` is that of a request in force
     std::uint64_t lifted = kLegs;       ///< the leg in the air, or on its way; kLegs: none
     std::array<TrackedAxis, 3> foot{};  ///< m, of the lifted foot from its place
     Vector3 foot_target{};              ///< m
@@ -114,10 +106,12 @@ class LegController {
 
  private:
   bool advance(const Request& request, const SensorFrame& sensors, std::uint64_t& reasons) noexcept;
+  void report(CommandFrame& out) const noexcept;
   void enter(LegPhase phase, double elapsed) noexcept;
   void gather() noexcept;
   void rise(double elapsed, std::uint64_t& reasons) noexcept;
   void stand(const Request& request, std::uint64_t& reasons) noexcept;
+  void choose_pose(const Request& request, std::uint64_t& reasons) noexcept;
   void lower(std::uint64_t& reasons) noexcept;
   bool move(const std::array<double, 6>& target, std::uint64_t& reasons) noexcept;
   void move_foot(const Request& request, bool wanted, bool supported, std::uint64_t& reasons) noexcept;

@@ -195,6 +195,7 @@ void LeggedEstimator::write(const SensorFrame& sensors, const Feet& feet, bool g
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const bool bears = state_.bears[leg] != 0;
     out.contacts[leg].probability = bears ? 1 : 0;
+    out.contacts[leg].load = state_.loads[leg];
     out.contacts[leg].slip = bears ? (feet.body_velocity[leg] - ConstMap(state_.velocity.data())).norm() : 0;
   }
   for (std::size_t i = 0; i < kLegsJoints; ++i) out.joint_velocity[i] = valid_velocity(sensors.joints[i]);

@@ -47,6 +47,9 @@ void add_velocity(TraceFields& to, const std::string& name, Get) {
   to.push_back(field<C, f64>(name + "_height", "m, above the nominal posture", OF(content.posture.height)));
   to.push_back(field<C, f64>(name + "_roll", "rad", OF(content.posture.roll)));
   to.push_back(field<C, f64>(name + "_pitch", "rad", OF(content.posture.pitch)));
+  to.push_back(field<C, f64>(name + "_x", "m, to the front", OF(content.posture.x)));
+  to.push_back(field<C, f64>(name + "_y", "m, to the left", OF(content.posture.y)));
+  to.push_back(field<C, f64>(name + "_yaw", "rad", OF(content.posture.yaw)));
   number("mode", "0: the default of the machine", OF(content.mode));
   number("count", "usable commands so far", OF(count));
   to.push_back(field<C, std::int64_t>(name + "_age_ns", "ns, when it arrived, by its stamp", OF(age_ns)));

@@ -5,6 +5,28 @@ namespace robot_control {
 
 using namespace trace_words;
 
+namespace {
+
+void add_requested_posture(TraceFields& to) {
+  to.push_back(
+      field<C, f64>("requested_height", "m, above the nominal posture", MEMBER(command.requested.posture.height)));
+  to.push_back(field<C, f64>("requested_roll", "rad", MEMBER(command.requested.posture.roll)));
+  to.push_back(field<C, f64>("requested_pitch", "rad", MEMBER(command.requested.posture.pitch)));
+  to.push_back(field<C, f64>("requested_x", "m, to the front", MEMBER(command.requested.posture.x)));
+  to.push_back(field<C, f64>("requested_y", "m, to the left", MEMBER(command.requested.posture.y)));
+  to.push_back(field<C, f64>("requested_yaw", "rad", MEMBER(command.requested.posture.yaw)));
+}
+
+void add_legs(TraceFields& to) {
+  to.push_back(field<C, u64>("legged_phase", "LegPhase", MEMBER(command.legged.phase)));
+  to.push_back(
+      field<C, u64>("legged_lifted", "1 + leg of the foot in the air; 0: none", MEMBER(command.legged.lifted)));
+  to.push_back(field<C, f32>("legged_body", "m, rad: x y height roll pitch yaw from the nominal pose, after limits",
+                             MEMBER(command.legged.body)));
+}
+
+}  // namespace
+
 void add_command(TraceFields& to) {
   const auto number = [&](const char* name, const char* comment, auto get) {
     to.push_back(field<C, u64>(name, comment, get));
@@ -18,10 +40,7 @@ void add_command(TraceFields& to) {
   to.push_back(field<C, f64>("requested_angular", "rad/s, base axes", MEMBER(command.requested.twist.angular))
                    .shown_as(column<C>("requested_angular", "rad/s",
                                        [](const C& c, std::size_t) { return c.command.requested.twist.angular[2]; })));
-  to.push_back(
-      field<C, f64>("requested_height", "m, above the nominal posture", MEMBER(command.requested.posture.height)));
-  to.push_back(field<C, f64>("requested_roll", "rad", MEMBER(command.requested.posture.roll)));
-  to.push_back(field<C, f64>("requested_pitch", "rad", MEMBER(command.requested.posture.pitch)));
+  add_requested_posture(to);
   number("requested_mode", "0: the default of the machine", MEMBER(command.requested.mode));
   shown("request_ignored", "RequestPart bits that the machine cannot execute", MEMBER(command.ignored));
   to.push_back(field<C, f32>("limited_linear", "m/s, after limits", MEMBER(command.twist_limited.linear))
@@ -50,6 +69,7 @@ void add_command(TraceFields& to) {
                    .shown_as(column<C>("command_reasons", "CommandReason and WheeledReason bits",
                                        [](const C& c, std::size_t) { return reasons_of(c.command); })));
   number("wheeled_reasons", "WheeledReason bits", MEMBER(command.wheeled.reasons));
+  add_legs(to);
   number("request_cycle", "in which the last command was received", MEMBER(command.request_cycle));
   shown("requests_received", "in this run", MEMBER(command.requests_received));
   shown("requests_refused", "in this run", MEMBER(command.requests_refused));

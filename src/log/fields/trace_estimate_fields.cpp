@@ -47,6 +47,8 @@ void add_estimate(TraceFields& to) {
                                           ELEMENT(state.contacts[i].probability)));
   to.push_back(list<E, f32, kMaxContacts>("estimate_contact_slip", "m/s, over the ground, along the wheel", kContacts,
                                           ELEMENT(state.contacts[i].slip)));
+  to.push_back(
+      list<E, f32, kMaxContacts>("estimate_contact_load", "N, upwards", kContacts, ELEMENT(state.contacts[i].load)));
   to.push_back(field<E, f64>("estimate_distance", "m travelled in this run", MEMBER(state.base.distance)).shown());
   to.push_back(
       field<E, f64>("wheel_odom_x", "m, the wheels alone by the model's numbers", MEMBER(state.wheeled.odometry.x))

@@ -19,6 +19,7 @@ class ControllerProcess final : public ConsumerProcess<CommandFrame, ControllerT
 
   std::vector<std::string> missing() const override;
   const FrameReader<Permit>& permits() const noexcept { return permit_.reader; }
+  const FrameReader<StateFrame>& states() const noexcept { return state_.reader; }
   ControllerCycle& cycle() noexcept { return cycle_; }
   /// Null: nothing of this kind's controller changes while it runs.
   Retuner* retuner() noexcept { return retuner_.get(); }

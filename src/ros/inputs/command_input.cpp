@@ -57,7 +57,9 @@ void CommandInput::receive(const ArrivedCommand& arrived, const ArrivalTime& tim
     requests_.request(arrived.sender, time.loop_ns);
     return;
   }
-  if (zero(arrived.twist)) {
+  const Request content{.twist = arrived.twist, .posture = arrived.posture, .mode = arrived.mode};
+  const bool zero = parts_of(content) == 0;
+  if (zero) {
     requests_.end(arrived.sender);
   } else {
     requests_.request(arrived.sender, time.loop_ns, arrived.stamp_ns == 0 ? 0 : time.ros_ns - arrived.stamp_ns);
@@ -67,16 +69,24 @@ void CommandInput::receive(const ArrivedCommand& arrived, const ArrivalTime& tim
     refuse_revoked(arrived.sender.name, time.loop_ns);
     return;
   }
-  value_.contested = zero(arrived.twist) && motion_requested(time.loop_ns) ? 1 : 0;
-  value_.content = {.twist = arrived.twist};
+  value_.contested = zero && motion_requested(time.loop_ns) ? 1 : 0;
+  value_.content = content;
   value_.age_ns = stamp.age_ns;
+  command_ns_ = time.loop_ns;
+  ++value_.count;
+}
+
+void CommandInput::receive_once(const Request& request, const ArrivalTime& time) {
+  value_.content = request;
+  value_.contested = 0;
+  value_.age_ns = 0;
   command_ns_ = time.loop_ns;
   ++value_.count;
 }
 
 bool CommandInput::update(std::int64_t loop_ns) {
   report_senders(loop_ns);
-  const bool over = !requests_.granted() && !zero(value_.content.twist) && !motion_requested(loop_ns);
+  const bool over = !requests_.granted() && parts_of(value_.content) != 0 && !motion_requested(loop_ns);
   if (over) end_command(loop_ns);
   const std::uint64_t many = one_sender_ && senders_.count(loop_ns) > 1 ? 1 : 0;
   return std::exchange(value_.many_senders, many) != many || over;
@@ -84,7 +94,7 @@ bool CommandInput::update(std::int64_t loop_ns) {
 
 bool CommandInput::follow(const MotionPermission& permission, std::int64_t loop_ns) {
   if (!requests_.follow(permission, loop_ns)) return false;
-  if (!zero(value_.content.twist)) end_command(loop_ns);
+  if (parts_of(value_.content) != 0) end_command(loop_ns);
   return true;
 }
 

@@ -42,6 +42,8 @@ struct ArrivedCommand {
   Publisher sender;
   Twist twist;
   std::int64_t stamp_ns = 0;  ///< 0 if the message has none
+  Posture posture{};          ///< of robots on legs
+  std::uint64_t mode = 0;     ///< likewise
 };
 
 /// The time at which a message arrived, on two clocks.
@@ -62,6 +64,9 @@ class CommandInput final : public CommandIntake {
   void set_silence(double silence);
 
   void receive(const ArrivedCommand& arrived, const ArrivalTime& time);
+
+  /// Receives a request of no sender, which ends by itself or with the permission to move: a service was called.
+  void receive_once(const Request& request, const ArrivalTime& time);
 
   void start(const EarlierController& earlier) override { requests_.start(earlier); }
 

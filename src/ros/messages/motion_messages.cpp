@@ -55,7 +55,7 @@ Twist twist_of(const msg::Twist& message) {
           .angular = {message.angular.x, message.angular.y, message.angular.z}};
 }
 
-msg::JointState joint_states(const SensorFrame& sensors, const StateFrame* state, const DriveTrain& robot,
+msg::JointState joint_states(const SensorFrame& sensors, const StateFrame* state, const MachineModel& robot,
                              ros::Time stamp) {
   msg::JointState message;
   message.header.stamp = stamp;

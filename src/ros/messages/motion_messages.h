@@ -24,7 +24,7 @@ Twist twist_of(const msg::Twist& message);
 /// Returns all joints in the order of the frames: wheels first, left before right, then casters and other joints. The
 /// velocities are those of the state (StateFrame::joint_velocity), because those of an encoder jump by a count per
 /// period. If `state` is null because this run has no state yet, they are those of the sensors.
-msg::JointState joint_states(const SensorFrame& sensors, const StateFrame* state, const DriveTrain& robot,
+msg::JointState joint_states(const SensorFrame& sensors, const StateFrame* state, const MachineModel& robot,
                              ros::Time stamp);
 
 /// Returns the pose in `odom_frame` and the twist in `base_frame`, both with complete covariances (REP 105,

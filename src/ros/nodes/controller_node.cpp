@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "files/ascii.h"
-#include "loop/processes/controller_process.h"
 #include "robots/wheeled/start_check.h"
 #include "ros/inputs/command_input.h"
 #include "ros/inputs/command_mux.h"
@@ -18,34 +17,32 @@
 #include "ros/inputs/reconfigure.h"
 #include "ros/messages/motion_messages.h"
 #include "ros/messages/tuning_messages.h"
-#include "ros/network/graph.h"
-#include "ros/nodes/process_node.h"
+#include "ros/nodes/commanded_node.h"
 #include "ros/reports/command_report.h"
 #include "ros/reports/diagnostics.h"
 #include "ros/reports/pacer.h"
-#include "ros/reports/reason_history.h"
 #include "ros/reports/report_line.h"
 #include "signals/roles.h"
 
 namespace robot_control {
 namespace {
 
-class ControllerNode final : public ProcessNode<ControllerProcess> {
+class ControllerNode final : public CommandedNode {
  public:
   explicit ControllerNode(const Setup& setup)
-      : ProcessNode(setup, Role::kController),
+      : CommandedNode(setup, input_),
         input_(parameters().controller.cmd_vel_timeout, parameters().controller.one_sender),
         pace_(report().command_rate),
-        command_report_(robot(), parameters().controller) {
+        command_report_(drive_train_of(robot()), parameters().controller) {
     if (parameters().command_sources.empty()) return;
     list_ = read_command_sources(parameters().command_sources);
     mux_.emplace(list_, parameters().controller.cmd_vel_timeout, parameters().controller.one_sender);
-    intake_ = &*mux_;
+    use(*mux_);
   }
 
   void connect(ros::NodeHandle& handle) override {
     expect_monitor();
-    if (const std::string note = note_on_slow_driving(parameters(), robot()); !note.empty())
+    if (const std::string note = note_on_slow_driving(parameters(), wheels()); !note.empty())
       ROS_INFO("%s", note.c_str());
     ros::NodeHandle own("~");
     set_parameters_ = own.advertiseService("set_parameters", &ControllerNode::set_parameters, this);
@@ -58,7 +55,7 @@ class ControllerNode final : public ProcessNode<ControllerProcess> {
     joint_targets_ = handle.advertise<msg::JointState>("joint_targets", 10);
     velocity_out_ = handle.advertise<msg::TwistStamped>("cmd_vel_out", 10);
     drive_state_ = handle.advertise<msg::DriveState>("drive_state", 10);
-    intake_->start(earlier_controller(handle));
+    intake().start(earlier_controller(handle, command_topics()));
     if (mux_) {
       connect_sources(handle);
       return;
@@ -79,21 +76,13 @@ class ControllerNode final : public ProcessNode<ControllerProcess> {
   }
 
   void publish() override {
-    SensorFrame sensors;
-    if (process().sensors().newest(sensors) != Lookup::kFrame || !process().is_current(sensors.head)) return;
-    look_at_senders();
-    if (process().output().newest(command_) != Lookup::kFrame || command_.head.run != sensors.head.run) return;
+    if (!follow_command() || !pace_.due(command_.head.run, command_.head.stamp_ns)) return;
     const FrameHead& head = command_.head;
-    const std::uint64_t reasons = history_.collect(process().output(), command_);
-    since_message_ |= reasons;
-    since_report_ |= reasons;
-    time().follow(sensors);
-    if (!pace_.due(head.run, head.stamp_ns)) return;
     const ros::Time stamp = time().at(head.stamp_ns);
-    joint_commands_.publish(joint_commands(command_, robot()));
-    joint_targets_.publish(joint_targets(command_, robot(), stamp));
+    joint_commands_.publish(joint_commands(command_, wheels()));
+    joint_targets_.publish(joint_targets(command_, wheels(), stamp));
     velocity_out_.publish(velocity_out(command_, report().base_frame, stamp));
-    msg::DriveState state = drive_state(command_, plan(), std::exchange(since_message_, 0), robot(), stamp);
+    msg::DriveState state = drive_state(command_, plan(), std::exchange(since_message_, 0), wheels(), stamp);
     add_senders(state);
     drive_state_.publish(state);
     if (report_outdated_.exchange(false)) command_report_.limit(process().retuner()->in_force().controller);
@@ -102,57 +91,32 @@ class ControllerNode final : public ProcessNode<ControllerProcess> {
 
   void diagnose(DiagnosticReport& report) override {
     const std::lock_guard lock(input_mutex_);
-    const std::uint64_t lately = std::exchange(since_report_, 0);
-    report_command(report, command_, lately, intake_->senders(loop_ns()), intake_->states(), intake_->revoked());
+    report_command(report, command_, std::exchange(since_report_, 0), intake().senders(loop_ns()), intake().states(),
+                   intake().revoked());
   }
 
  private:
+  const DriveTrain& wheels() const { return drive_train_of(robot()); }
+
+  std::vector<std::string> command_topics() const {
+    if (!mux_) return {"cmd_vel", "cmd_vel_stamped"};
+    std::vector<std::string> topics;
+    for (const CommandSource& source : list_.sources) topics.push_back(source.topic);
+    return topics;
+  }
+
   /// Two topics call this from two threads; the mutex protects their common inbox.
   void receive(const ArrivedCommand& arrived) {
     const std::lock_guard lock(input_mutex_);
-    log_dropped(arrived.sender.name);
-    follow_permission();
-    input_.receive(arrived, arrival_time());
-    process().cycle().inbox().store(input_.value());
+    input_.receive(arrived, arrival_of(arrived.sender.name));
+    store();
   }
 
   /// Receives a command of the source with index `source` of the list.
   void receive_from(std::size_t source, const ArrivedCommand& arrived) {
     const std::lock_guard lock(input_mutex_);
-    log_dropped(arrived.sender.name);
-    follow_permission();
-    mux_->receive(source, arrived, arrival_time());
-    process().cycle().inbox().store(mux_->value());
-  }
-
-  /// Returns true if the command in force ended. The caller holds input_mutex_.
-  bool follow_permission() {
-    Permit permit;
-    if (process().permits().newest(permit) != Lookup::kFrame || !process().is_current(permit.head)) return false;
-    return intake_->follow(motion_permission(permit), loop_ns());
-  }
-
-  /// Returns the present time on both clocks. The caller holds input_mutex_.
-  ArrivalTime arrival_time() {
-    const bool lockstep = parameters().loop.clock == ClockMode::kLockstep;
-    ArrivalTime time{.ros_ns = 0, .loop_ns = loop_ns()};
-    time.ros_ns = lockstep ? time.loop_ns : static_cast<std::int64_t>(ros::WallTime::now().toNSec());
-    return time;
-  }
-
-  /// Returns the situation at the start. It is called before this node subscribes to a command topic and before its
-  /// loop runs.
-  EarlierController earlier_controller(ros::NodeHandle& handle) {
-    std::vector<std::string> topics;
-    for (const CommandSource& source : list_.sources) topics.push_back(handle.resolveName(source.topic));
-    if (!mux_) topics = {handle.resolveName("cmd_vel"), handle.resolveName("cmd_vel_stamped")};
-    EarlierController earlier;
-    const Lookup found = process().output().last_whole(command_);
-    if (found == Lookup::kFrame) earlier.run = command_.head.run;
-    earlier.requested = found == Lookup::kFrame ? requests_motion(command_) : found == Lookup::kCorrupt;
-    for (const std::string& node : publishers_of(topics, Unanswered::kRepeat))
-      earlier.present.push_back({node, nullptr, uri_of(node)});
-    return earlier;
+    mux_->receive(source, arrived, arrival_of(arrived.sender.name));
+    store();
   }
 
   void connect_sources(ros::NodeHandle& handle) {
@@ -183,39 +147,16 @@ class ControllerNode final : public ProcessNode<ControllerProcess> {
   void receive_lock(std::size_t index, bool set) {
     const std::lock_guard lock(input_mutex_);
     mux_->receive_lock(index, set, loop_ns());
-    process().cycle().inbox().store(mux_->value());
+    store();
   }
 
   void add_senders(msg::DriveState& message) {
     const std::lock_guard lock(input_mutex_);
-    message.commander = intake_->winner();
-    const std::vector<std::string> states = intake_->states();
+    message.commander = intake().winner();
+    const std::vector<std::string> states = intake().states();
     message.sources.assign(states.begin(), states.end());
-    const std::vector<std::string> revoked = intake_->revoked();
+    const std::vector<std::string> revoked = intake().revoked();
     message.revoked.assign(revoked.begin(), revoked.end());
-  }
-
-  /// A command that arrives before the loop runs has no effect later. This is reported once until the loop has run.
-  void log_dropped(const std::string& sender) {
-    SensorFrame sensors;
-    CommandFrame command;
-    const bool runs = process().sensors().newest(sensors) == Lookup::kFrame && process().is_current(sensors.head) &&
-                      process().output().newest(command) == Lookup::kFrame && command.head.run == sensors.head.run;
-    if (!runs && !dropped_reported_) {
-      ROS_WARN(
-          "a command of %s arrived before the loop runs and is dropped, as are all until it does; send it again "
-          "when safety_status says READY",
-          sender.c_str());
-    }
-    dropped_reported_ = !runs;
-  }
-
-  /// Returns the stamp of the newest sensor frame. The caller holds input_mutex_.
-  std::int64_t loop_ns() {
-    SensorFrame sensors;
-    const bool found = process().sensors().newest(sensors) == Lookup::kFrame && process().is_current(sensors.head);
-    if (found) loop_ns_ = sensors.head.stamp_ns;
-    return loop_ns_;
   }
 
   /// Checks retuning against the monitor's parameters. A monitor whose parameters are refused does not start, so they
@@ -277,19 +218,8 @@ class ControllerNode final : public ProcessNode<ControllerProcess> {
   /// Gives the new limits to the parts of this node that use them beside the controller.
   void follow(const DriveControllerParameters& parameters) {
     const std::lock_guard lock(input_mutex_);
-    intake_->set_timeout(parameters.cmd_vel_timeout);
+    intake().set_timeout(parameters.cmd_vel_timeout);
     report_outdated_.store(true);
-  }
-
-  void look_at_senders() {
-    std::vector<ReportLine> lines;
-    {
-      const std::lock_guard lock(input_mutex_);
-      const bool ended = follow_permission();
-      if (intake_->update(loop_ns()) || ended) process().cycle().inbox().store(intake_->value());
-      lines = intake_->lines();
-    }
-    write_log(lines);
   }
 
   /// Returns the command of two cycles ago, which planned the present motion of the wheels. Returns an empty command if
@@ -317,18 +247,10 @@ class ControllerNode final : public ProcessNode<ControllerProcess> {
   ros::Publisher updates_;
   std::mutex tuning_mutex_;                   ///< protects the application of one set; locked only by try_lock
   std::atomic<bool> report_outdated_{false};  ///< `command_report_` still holds earlier limits
-  std::mutex input_mutex_;
   CommandInput input_;
-  std::optional<CommandMux> mux_;    ///< present if there is a list of sources; then `input_` receives nothing
-  CommandIntake* intake_ = &input_;  ///< `mux_` if it is present, else `input_`
-  std::int64_t loop_ns_ = 0;
-  bool dropped_reported_ = false;
+  std::optional<CommandMux> mux_;  ///< present if there is a list of sources; then `input_` receives nothing
   Pacer pace_;
   CommandReport command_report_;
-  CommandFrame command_;
-  ReasonHistory history_;
-  std::uint64_t since_message_ = 0;  ///< CommandReason bits since the last drive_state
-  std::uint64_t since_report_ = 0;   ///< CommandReason bits since the last /diagnostics
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <ros/ros.h>
 
 #include <mutex>
+#include <optional>
 
 #include "files/ascii.h"
 #include "loop/processes/estimator_process.h"
@@ -19,7 +20,8 @@ namespace robot_control {
 namespace {
 
 Setup calibrated(Setup setup) {
-  setup.parameters = with_calibration(setup.parameters, setup.robot);
+  if (kind_of(*setup.machine) == MachineKind::kOnWheels)
+    setup.parameters = with_calibration(setup.parameters, drive_train_of(*setup.machine));
   return setup;
 }
 
@@ -27,15 +29,16 @@ class EstimatorNode final : public ProcessNode<EstimatorProcess> {
  public:
   explicit EstimatorNode(const Setup& setup)
       : ProcessNode(calibrated(setup), Role::kEstimator),
-        keeper_(setup.parameters, setup.robot),
         joint_pace_(report().joint_states_rate),
         odom_pace_(report().odom_rate),
-        imu_pace_(report().imu_data_rate) {}
+        imu_pace_(report().imu_data_rate) {
+    if (kind_of(robot()) == MachineKind::kOnWheels) keeper_.emplace(setup.parameters, drive_train_of(robot()));
+  }
 
   void connect(ros::NodeHandle& handle) override {
     joint_states_ = handle.advertise<msg::JointState>("joint_states", 10);
     odom_ = handle.advertise<msg::Odometry>("odom", 10);
-    wheel_odom_ = handle.advertise<msg::Odometry>("wheel_odom", 10);
+    if (keeper_) wheel_odom_ = handle.advertise<msg::Odometry>("wheel_odom", 10);
     imu_ = handle.advertise<msg::Imu>("imu/data", 10);
     battery_ = handle.advertise<msg::BatteryState>("battery_state", 1);
     // The name is relative, so that the frames of two robots in two namespaces do not mix.
@@ -65,17 +68,17 @@ class EstimatorNode final : public ProcessNode<EstimatorProcess> {
     slip_lately_ |= state_.wheeled.slip;
     if (odom_pace_.due(state_.head.run, state_.head.stamp_ns)) publish_odometry();
     if (imu_pace_.due(state_.head.run, state_.head.stamp_ns)) publish_imu();
-    keeper_.write_if_due(state_, monotonic_ns());
+    if (keeper_) keeper_->write_if_due(state_, monotonic_ns());
   }
 
   void diagnose(DiagnosticReport& report) override {
-    report_state(report, state_, slip_lately_);
+    report_state(report, state_, slip_lately_, kind_of(robot()) == MachineKind::kOnWheels);
     slip_lately_ = 0;
   }
 
   void stop() override {
     ProcessNode::stop();
-    keeper_.finish(state_);
+    if (keeper_) keeper_->finish(state_);
   }
 
  private:
@@ -84,7 +87,7 @@ class EstimatorNode final : public ProcessNode<EstimatorProcess> {
     msg::Odometry message = odometry(state_, report().odom_frame, report().base_frame, stamp);
     state_covariances(report(), message);
     odom_.publish(message);
-    wheel_odom_.publish(wheel_odometry(state_, report().odom_frame, report().base_frame, stamp));
+    if (keeper_) wheel_odom_.publish(wheel_odometry(state_, report().odom_frame, report().base_frame, stamp));
     if (!tf_) return;
     msg::TFMessage transforms;
     transforms.transforms.push_back(transform(message));
@@ -125,7 +128,7 @@ class EstimatorNode final : public ProcessNode<EstimatorProcess> {
     return true;
   }
 
-  CalibrationKeeper keeper_;
+  std::optional<CalibrationKeeper> keeper_;  ///< of a robot on wheels
   std::mutex requesting_;
   ros::Publisher joint_states_;
   ros::Publisher odom_;

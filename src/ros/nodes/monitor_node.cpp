@@ -95,6 +95,7 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
 
   /// Returns the topics to which the controller subscribes. With a list that is refused the controller does not start.
   std::vector<std::string> command_topics() {
+    if (kind_of(robot()) == MachineKind::kOnLegs) return {"body_pose", "foot_target"};
     std::vector<std::string> topics;
     try {
       const std::string path = parameters_of(Role::kController).command_sources;
@@ -218,7 +219,9 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
   std::mutex reset_mutex_;
   EStopLevels levels_;
   OperatorInput input_;
-  StopLog stop_log_{static_cast<double>(parameters().loop.period_ns()) * 1e-9, parameters().controller.cmd_vel_timeout};
+  StopLog stop_log_{static_cast<double>(parameters().loop.period_ns()) * 1e-9,
+                    kind_of(robot()) == MachineKind::kOnLegs ? parameters().leg_controller.request_timeout
+                                                           : parameters().controller.cmd_vel_timeout};
   WithdrawalTime withdrawal_;
   Permit reported_;
   bool reported_permit_ = false;

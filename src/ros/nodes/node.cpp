@@ -157,7 +157,7 @@ class NodeLoop {
 
   void diagnose(std::int64_t now_ns) {
     next_diagnostic_ns_ = now_ns + kDiagnosticPeriod;
-    DiagnosticReport report(ros::this_node::getName().substr(1), setup_.robot.name);
+    DiagnosticReport report(ros::this_node::getName().substr(1), setup_.machine->name);
     report_missing(report, node_.missing());
     node_.diagnose(report);
     node_.diagnose_timing(report);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "loop/processes/process.h"
-#include "robots/differential_drive.h"
+#include "robots/robot_kind.h"
 #include "ros/messages/time_map.h"
 #include "ros/nodes/node.h"
 #include "ros/reports/timing_report.h"
@@ -23,8 +23,8 @@ class ProcessNode : public Node {
   ProcessNode(const Setup& setup, Role role, More&&... more)
       : setup_(setup),
         time_(setup.parameters.loop.clock),
-        composed_(setup.parameters, setup.robot),
-        process_(setup.parameters, composed_, setup.bus, std::forward<More>(more)...) {
+        composed_(compose(setup.parameters, *setup.machine)),
+        process_(setup.parameters, *composed_, setup.bus, std::forward<More>(more)...) {
     if (setup.parameters.loop.clock == ClockMode::kLockstep) return;  // no time passes within a cycle
     timing_ = std::make_unique<TimingReport>(setup.parameters.loop, setup.bus, role);
   }
@@ -47,15 +47,15 @@ class ProcessNode : public Node {
  protected:
   const Parameters& parameters() const { return setup_.parameters; }
   const ReportParameters& report() const { return setup_.parameters.report; }
-  const DriveTrain& robot() const { return setup_.robot; }
-  const Robot& composed() const { return composed_; }
+  const MachineModel& robot() const { return *setup_.machine; }
+  const Robot& composed() const { return *composed_; }
   Work& process() { return process_; }
   TimeMap& time() { return time_; }
 
  private:
   Setup setup_;
   TimeMap time_;
-  DifferentialDrive composed_;
+  std::unique_ptr<Robot> composed_;
   Work process_;
   std::unique_ptr<TimingReport> timing_;  ///< null in lockstep
 };

@@ -13,7 +13,7 @@
 #include "files/ascii.h"
 #include "loop/log_header.h"
 #include "loop/processes/telemetry_process.h"
-#include "robots/differential_drive.h"
+#include "robots/robot_kind.h"
 #include "ros/messages/simulation_messages.h"
 #include "ros/reports/diagnostics.h"
 #include "ros/startup/setup.h"
@@ -42,6 +42,7 @@ Parameters with_blocks_of_other_nodes(Parameters parameters) {
   take(Role::kEstimator, [&](const Parameters& read) { parameters.estimator = read.estimator; });
   take(Role::kController, [&](const Parameters& read) {
     parameters.controller = read.controller;
+    parameters.leg_controller = read.leg_controller;
     parameters.command_sources = read.command_sources;
   });
   take(Role::kMonitor, [&](const Parameters& read) { parameters.safety = read.safety; });
@@ -55,8 +56,8 @@ class TelemetryNode final : public Node {
         lockstep_(setup.parameters.loop.clock == ClockMode::kLockstep),
         precedes_(!lockstep_ && setup.parameters.loop.realtime != RealtimePolicy::kOff),
         quota_(setup.parameters.telemetry.quota),
-        composed_(setup.parameters, setup.robot),
-        process_(with_blocks_of_other_nodes(setup.parameters), composed_, setup.bus) {}
+        composed_(compose(setup.parameters, *setup.machine)),
+        process_(with_blocks_of_other_nodes(setup.parameters), *composed_, setup.bus) {}
 
   void connect(ros::NodeHandle& /*handle*/) override {
     if (const std::string& path = process_.bag_path(); !path.empty()) {
@@ -139,7 +140,7 @@ class TelemetryNode final : public Node {
   void read_parameters_again() {
     const std::uint64_t changes = parameter_changes_.load();
     if (changes == changes_followed_ || !ros::master::check()) return;
-    LogHeader header = log_header(with_blocks_of_other_nodes(setup_.parameters), composed_);
+    LogHeader header = log_header(with_blocks_of_other_nodes(setup_.parameters), *composed_);
     if (std::exchange(changes_read_, changes) == changes) changes_followed_ = changes;
     const std::lock_guard lock(header_mutex_);
     header_ = std::move(header);
@@ -163,7 +164,7 @@ class TelemetryNode final : public Node {
   double quota_;          ///< GB
   std::string reported_;  ///< problem that was reported last
   std::atomic<bool> requested_{false};
-  DifferentialDrive composed_;
+  std::unique_ptr<Robot> composed_;
   TelemetryProcess process_;
   std::atomic<std::uint64_t> parameter_changes_{0};
   std::uint64_t changes_read_ = 0;      ///< number of changes after which the parameters were read once

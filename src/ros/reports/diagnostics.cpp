@@ -94,7 +94,7 @@ void report_driver(DiagnosticReport& report, const SensorFrame& sensors, const M
   report.reasons("gate", kGateReasonNames, sensors.gate.reasons);
 }
 
-void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64_t slip_lately) {
+void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64_t slip_lately, bool on_wheels) {
   constexpr std::uint64_t kLost = kStateNoGyro | kStateNoAccelerometer | kStateNoLeftEncoder | kStateNoRightEncoder;
   if ((state.base.flags & kStateValid) == 0) report.warn("pose and twist are not valid");
   if ((state.base.flags & kLost) != 0) report.warn(sentences_of(kStateFlagNames, state.base.flags & kLost));
@@ -109,8 +109,6 @@ void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64
   report.value("cycle", state.head.cycle);
   report.value("flags", names_of(kStateFlagNames, state.base.flags));
   report.value("degraded", names_of(kDegradedReasonNames, state.base.degraded));
-  report.value("residual_level", state.wheeled.residual_level);
-  report.value("slip_detection", slip_detection(state.wheeled.residual_level));
   report.value("distance_m", state.base.distance);
   report.value("skipped", state.skipped);
   report.value("slip", names_of(kSlipReasonNames, state.wheeled.slip));
@@ -118,6 +116,14 @@ void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64
   report.reasons("slip", kSlipReasonNames, slip_lately | state.wheeled.slip);
   report.reasons("estimate", kStateFlagNames, state.base.flags & kLost);
   report.reasons("degraded", kDegradedReasonNames, state.base.degraded);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string name = std::string("gyro_bias_") + "xyz"[axis];
+    report.value(name + "_deg_s", state.base.gyro_bias[axis] * kDegrees);
+    report.value(name + "_deviation_deg_s", state.base.gyro_bias_deviation[axis] * kDegrees);
+  }
+  if (!on_wheels) return;
+  report.value("residual_level", state.wheeled.residual_level);
+  report.value("slip_detection", slip_detection(state.wheeled.residual_level));
   for (std::size_t i = 0; i < kStateSensorNames.size(); ++i) {
     const std::string sensor(kStateSensorNames[i]);
     report.value("confidence_" + sensor, state.wheeled.confidence[i]);
@@ -130,11 +136,6 @@ void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64
   report.value("radius_ratio_deviation", state.wheeled.calibration.radius_ratio_deviation);
   report.value("wheel_base_factor", state.wheeled.calibration.wheel_base_factor);
   report.value("wheel_base_deviation", state.wheeled.calibration.wheel_base_deviation);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::string name = std::string("gyro_bias_") + "xyz"[axis];
-    report.value(name + "_deg_s", state.base.gyro_bias[axis] * kDegrees);
-    report.value(name + "_deviation_deg_s", state.base.gyro_bias_deviation[axis] * kDegrees);
-  }
 }
 
 void report_command(DiagnosticReport& report, const CommandFrame& command, std::uint64_t lately,

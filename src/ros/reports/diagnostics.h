@@ -44,7 +44,8 @@ void report_missing(DiagnosticReport& report, const std::vector<std::string>& mi
 void report_driver(DiagnosticReport& report, const SensorFrame& sensors, const MachineModel& machine,
                    double real_time_factor);
 /// `slip_lately` has the SlipReason bits of all cycles since the last report.
-void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64_t slip_lately);
+/// Calibration, confidences and wheel slip are those of a robot on wheels.
+void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64_t slip_lately, bool on_wheels);
 /// `lately` has the CommandReason bits of all cycles since the last report; `senders` names the senders of commands.
 /// Several senders are a fault unless they send to different `sources` (CommandMux::states; empty: there is no list).
 /// `revoked` is CommandIntake::revoked.

@@ -28,6 +28,16 @@ std::string summary(const DriveTrain& robot) {
   return text.str();
 }
 
+std::string summary(const MachineModel& robot) {
+  const auto* const legged = dynamic_cast<const LegModel*>(&robot);
+  if (legged == nullptr) return summary(drive_train_of(robot));
+  std::ostringstream text;
+  text.precision(4);
+  text << "robot '" << robot.name << "' of " << robot.source << ": four legs of " << legged->leg_length() << " m, "
+       << robot.mass << " kg";
+  return text.str();
+}
+
 std::string sentence(const RobotNote& note) {
   return std::string(name_of(note.kind)).append(": ").append(note.element).append(": ").append(note.text);
 }

@@ -12,8 +12,10 @@
 
 #include "bus/bus.h"
 #include "loop/latch_file.h"
+#include "robots/robot_kind.h"
 #include "ros/startup/description.h"
 #include "ros/startup/overlays.h"
+#include "signals/robot_kinds.h"
 
 namespace robot_control {
 namespace {
@@ -97,6 +99,18 @@ std::string host_name() {
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
 }
 
+/// Returns the problem if `node` is the controller of another kind of robot.
+std::string other_controller(const std::string& node, const MachineModel& machine) {
+  const MachineKind kind = kind_of(machine);
+  const std::string own(program_of(Role::kController, name_of(kind)));
+  const bool controls = std::ranges::count(kKinds, node, &KindNames::controller) != 0;
+  if (!controls || node == own) return "";
+  const bool legs = kind == MachineKind::kOnLegs;
+  return "robot '" + machine.name + "' of " + machine.source + " is on " + (legs ? "legs" : "wheels") + ", and " +
+         node + " controls robots on " + (legs ? "wheels" : "legs") + ": start " + own +
+         " instead (sim.launch, backend.launch: " + "kind:=" + (legs ? "legs" : "wheels") + ")";
+}
+
 void fill_setup(const std::string& node, Setup& setup) {
   std::string path;
   std::vector<Overlay> overlays;
@@ -118,10 +132,10 @@ void fill_setup(const std::string& node, Setup& setup) {
   }
   add(problems, clock_problem(setup.parameters.loop.clock, use_sim_time));
   try {
-    setup.robot =
-        read_drive_train(description(setup.parameters, overlays, setup.unread_description), setup.parameters.robot);
+    setup.machine = read_robot(description(setup.parameters, overlays, setup.unread_description), setup.parameters);
     std::string& base_frame = setup.parameters.report.base_frame;
-    if (base_frame.empty()) base_frame = setup.robot.base_link;
+    if (base_frame.empty()) base_frame = setup.machine->base_link;
+    add(problems, other_controller(node, *setup.machine));
   } catch (const RobotError& error) {
     add(problems, error.what());
   } catch (const ParameterError& error) {

@@ -4,12 +4,13 @@
 /// It is read after ros::init and before the first NodeHandle. A NodeHandle registers this node's name, and ROS would
 /// then shut down a running node of that name.
 
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "configuration/parameters.h"
-#include "machine/wheeled/drive_train.h"
+#include "machine/machine_model.h"
 #include "signals/roles.h"
 
 namespace robot_control {
@@ -22,7 +23,7 @@ class SetupError : public std::runtime_error {
 
 struct Setup {
   Parameters parameters;
-  DriveTrain robot;
+  std::shared_ptr<const MachineModel> machine;  ///< a DriveTrain or a LegModel (robots/robot_kind.h)
   std::string bus;
   std::vector<std::string> overrides;  ///< "/robot/rate = 500 overrides robot.rate of config/robot_params.yaml"
   std::vector<std::string> unexpected_overrides;  ///< those of `overrides` that the launch file does not cause itself
@@ -37,6 +38,8 @@ std::string clock_problem(ClockMode clock, bool use_sim_time);
 /// Throws ParameterError.
 Parameters parameters_of(Role role);
 
+/// Refuses the controller of another kind of robot.
+///
 /// `node` names the program and its block of the YAML file (signals/roles.h). The robot is selected as in
 /// description.h. Throws SetupError with all problems at once.
 Setup read_setup(const std::string& node);

@@ -1,0 +1,96 @@
+#include "ros/messages/leg_messages.h"
+
+#include <cmath>
+#include <limits>
+
+#include "ros/messages/status_messages.h"
+#include "signals/names.h"
+#include "signals/roles.h"
+
+namespace robot_control {
+
+Posture posture_of(const msg::BodyPose& message) {
+  return {.height = message.height,
+          .roll = message.roll,
+          .pitch = message.pitch,
+          .x = message.x,
+          .y = message.y,
+          .yaw = message.yaw};
+}
+
+std::optional<Request> request_of(const msg::FootTarget& message) {
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    if (message.foot != name_of(static_cast<LegPlace>(leg))) continue;
+    return Request{
+        .twist = {}, .posture = {.height = message.z, .x = message.x, .y = message.y}, .mode = kStanceLift + leg};
+  }
+  return std::nullopt;
+}
+
+std::string foot_names() {
+  std::string names;
+  for (std::size_t leg = 0; leg < kLegs; ++leg)
+    names.append(names.empty() ? "" : ", ").append(name_of(static_cast<LegPlace>(leg)));
+  return names;
+}
+
+StanceMode mode_of(const std::string& posture) {
+  if (posture == name_of(LegPhase::kStanding)) return kStanceStand;
+  return posture == name_of(LegPhase::kLying) ? kStanceLie : kStanceStay;
+}
+
+msg::LegState leg_state(const LegReport& report, const LegModel& robot, ros::Time stamp) {
+  const CommandFrame& command = report.command;
+  msg::LegState message;
+  message.header.stamp = stamp;
+  message.posture = name_of(command.legged.phase);
+  if (command.legged.lifted != 0) message.lifted = name_of(static_cast<LegPlace>(command.legged.lifted - 1));
+  const auto& [x, y, height, roll, pitch, yaw] = command.legged.body;
+  message.body.x = x;
+  message.body.y = y;
+  message.body.height = height;
+  message.body.roll = roll;
+  message.body.pitch = pitch;
+  message.body.yaw = yaw;
+  for (const BitName& row : kCommandReasonNames) {
+    if ((report.reasons & row.bit) == 0) continue;
+    message.reasons.emplace_back(row.name);
+    message.sentences.push_back(sentences_of({&row, 1}, row.bit));
+  }
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const ContactState& contact = report.state.contacts[leg];
+    message.foot.emplace_back(name_of(static_cast<LegPlace>(leg)));
+    message.bears.push_back(contact.probability > 0.5 ? 1 : 0);
+    message.load.push_back(contact.load);
+    message.slip.push_back(contact.slip);
+  }
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const JointCommand& plan = report.plan.joints[i];
+    const bool brakes = plan.mode == JointMode::kBrake;
+    message.name.push_back(robot.joints[i].name);
+    message.wanted.push_back(brakes ? std::numeric_limits<double>::quiet_NaN() : plan.position);
+    message.actual.push_back(report.sensors.joints[i].position);
+    message.effort.push_back(command.joints[i].effort);
+  }
+  return message;
+}
+
+std::string no_permission(bool found, const Permit& permit, const MachineModel& robot) {
+  if (!found) return "the safety monitor gives no permit: start " + std::string(program_of(Role::kMonitor));
+  if (permit.action == PermitAction::kDrive) return "";
+  if (permit.causes != 0) {
+    const std::uint64_t cause = permit.first_cause != 0 ? permit.first_cause : permit.causes & (~permit.causes + 1);
+    const std::string measured = detail(permit, cause, robot);
+    return "the robot is stopped: " + sentences_of(kStopCauseNames, cause) +
+           (measured.empty() ? "" : " (" + measured + ")") + "; then call e_stop_reset";
+  }
+  if (permit.missing != 0) return "the safety monitor waits: " + sentences_of(kMissingNodeNames, permit.missing);
+  if (permit.unreleased != 0) {
+    return "a node was started or the simulation was reset: request nothing for request_timeout, or send a body_pose "
+           "of "
+           "zero, then call again";
+  }
+  return "the safety monitor permits no motion: look at safety_status";
+}
+
+}  // namespace robot_control

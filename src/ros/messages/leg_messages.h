@@ -1,0 +1,69 @@
+#pragma once
+/// These functions convert requests and commands of robots on legs to and from messages. They are pure.
+
+#include <robot_control/BodyPose.h>
+#include <robot_control/FootTarget.h>
+#include <robot_control/LegState.h>
+#include <robot_control/SetPostureRequest.h>
+#include <robot_control/SetPostureResponse.h>
+#include <ros/time.h>
+
+#include <optional>
+#include <string>
+
+#include "machine/legs/leg_model.h"
+#include "ros/messages/bounded_message.h"
+#include "ros/messages/messages.h"
+#include "signals/command_frame.h"
+#include "signals/permit.h"
+#include "signals/sensor_frame.h"
+#include "signals/state_frame.h"
+
+namespace robot_control {
+namespace msg {
+
+using BodyPose = robot_control::BodyPose_<Allocator>;
+using FootTarget = robot_control::FootTarget_<Allocator>;
+using LegState = robot_control::LegState_<Allocator>;
+using SetPostureRequest = robot_control::SetPostureRequest_<Allocator>;
+using SetPostureResponse = robot_control::SetPostureResponse_<Allocator>;
+
+}  // namespace msg
+
+inline constexpr Service kSetPostureService{"robot_control/SetPosture", "aa0018bcd263d983e3738fe36e845d94"};
+template <>
+inline constexpr Service kServiceOf<msg::SetPostureRequest> = kSetPostureService;
+template <>
+inline constexpr Service kServiceOf<msg::SetPostureResponse> = kSetPostureService;
+
+inline constexpr std::uint32_t kMaxFootName = 64;  ///< bytes
+using BoundedBodyPose = Bounded<msg::BodyPose, 48>;
+using BoundedFootTarget = Bounded<msg::FootTarget, 28, 28 + kMaxFootName>;
+
+Posture posture_of(const msg::BodyPose& message);
+
+/// Returns the request that lifts this foot. Returns none for an unknown foot.
+std::optional<Request> request_of(const msg::FootTarget& message);
+
+/// Returns "front_left, front_right, rear_left, rear_right".
+std::string foot_names();
+
+/// Returns the mode of a posture of set_posture; kStanceStay for an unknown one.
+StanceMode mode_of(const std::string& posture);
+
+/// The inputs of a LegState. `plan` is the command two cycles before `command`; an ideal joint now has its angles.
+struct LegReport {
+  const CommandFrame& command;
+  const CommandFrame& plan;
+  const SensorFrame& sensors;
+  const StateFrame& state;
+  std::uint64_t reasons;  ///< CommandReason bits
+};
+
+/// Fills everything but the senders.
+msg::LegState leg_state(const LegReport& report, const LegModel& robot, ros::Time stamp);
+
+/// Returns why no motion is permitted, and what to do, or "" if it is. `found` says whether there is a live permit.
+std::string no_permission(bool found, const Permit& permit, const MachineModel& robot);
+
+}  // namespace robot_control

@@ -1,0 +1,56 @@
+#pragma once
+/// A CommandedNode is the controller's node of any kind of robot: it gives the requests of its senders to the loop, by
+/// the safety monitor's permission (ros/inputs/command_intake.h), and follows the commands of the loop.
+
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "loop/processes/controller_process.h"
+#include "ros/inputs/command_input.h"
+#include "ros/nodes/process_node.h"
+#include "ros/reports/reason_history.h"
+
+namespace robot_control {
+
+class CommandedNode : public ProcessNode<ControllerProcess> {
+ protected:
+  /// `intake` is used after the constructor only.
+  CommandedNode(const Setup& setup, CommandIntake& intake) : ProcessNode(setup, Role::kController), intake_(&intake) {}
+
+  void use(CommandIntake& intake) { intake_ = &intake; }
+  CommandIntake& intake() { return *intake_; }
+
+  /// Returns the situation at the start. It is called before this node subscribes to a topic of requests, and before
+  /// its loop runs.
+  EarlierController earlier_controller(ros::NodeHandle& handle, const std::vector<std::string>& topics);
+
+  /// Returns the time of a message of `sender` that arrives now. The caller holds input_mutex_, gives the message to
+  /// the intake, and calls `store`.
+  ArrivalTime arrival_of(const std::string& sender);
+  void store() { process().cycle().inbox().store(intake_->value()); }
+
+  /// Returns the stamp of the newest sensor frame. The caller holds input_mutex_.
+  std::int64_t loop_ns();
+
+  /// Applies permission and silences to the intake, logs what it reports, and reads the newest command into command_.
+  /// Returns false if there is none of this run.
+  bool follow_command();
+
+  std::mutex input_mutex_;  ///< protects the intake
+  CommandFrame command_;
+  std::uint64_t since_message_ = 0;  ///< CommandReason bits since the last message about them
+  std::uint64_t since_report_ = 0;   ///< CommandReason bits since the last /diagnostics
+
+ private:
+  bool follow_permission();
+  void log_dropped(const std::string& sender);
+  void look_at_senders();
+
+  CommandIntake* intake_;
+  std::int64_t loop_ns_ = 0;
+  bool dropped_reported_ = false;
+  ReasonHistory history_;
+};
+
+}  // namespace robot_control

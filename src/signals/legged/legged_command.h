@@ -1,0 +1,36 @@
+#pragma once
+/// A LeggedCommand is the part of the command that only machines on legs have.
+
+#include <array>
+#include <cstdint>
+
+#include "signals/wheeled/wheeled_command.h"
+
+namespace robot_control {
+
+/// The modes of Request::mode.
+enum StanceMode : std::uint64_t {
+  kStanceStay = 0,  ///< Stand with all feet, or lie, as before.
+  kStanceLie = 1,
+  kStanceStand = 2,
+  kStanceLift = 3,  ///< kStanceLift + i lifts the foot of LegPlace i.
+};
+
+enum class LegPhase : std::uint64_t { kLying = 0, kGathering = 1, kRising = 2, kStanding = 3, kLowering = 4 };
+
+/// The bits below belong to CommandReason, so that one number holds both.
+inline constexpr unsigned kFirstLeggedReason = kFirstWheeledReason + 2;
+
+/// Bits of CommandFrame::reasons.
+enum LeggedReason : std::uint64_t {
+  kReasonOutOfReach = 1u << kFirstLeggedReason,         ///< The pose is beyond the ranges of the legs.
+  kReasonNotStanding = 1u << (kFirstLeggedReason + 1),  ///< A pose or a foot is requested, and it does not stand.
+};
+
+struct LeggedCommand {
+  LegPhase phase = LegPhase::kLying;
+  std::uint64_t lifted = 0;      ///< 1 + i: the foot of LegPlace i is in the air, or on its way; 0: none
+  std::array<double, 6> body{};  ///< m and rad: x y height roll pitch yaw from the nominal pose, after limits
+};
+
+}  // namespace robot_control

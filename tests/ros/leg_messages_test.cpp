@@ -1,0 +1,72 @@
+#include "ros/messages/leg_messages.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace robot_control {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+TEST(LegMessages, AFootTargetLiftsTheFootOfItsName) {
+  msg::FootTarget message;
+  message.foot = "rear_left";
+  message.x = 0.01;
+  message.y = -0.02;
+  message.z = 0.08;
+  const auto request = request_of(message);
+  ASSERT_TRUE(request.has_value());
+  EXPECT_EQ(request->mode, kStanceLift + 2);
+  EXPECT_EQ(request->posture.x, 0.01);
+  EXPECT_EQ(request->posture.y, -0.02);
+  EXPECT_EQ(request->posture.height, 0.08);
+  message.foot = "tail";
+  EXPECT_FALSE(request_of(message).has_value());
+}
+
+TEST(LegMessages, OnlyTwoPosturesCanBeSet) {
+  EXPECT_EQ(mode_of("standing"), kStanceStand);
+  EXPECT_EQ(mode_of("lying"), kStanceLie);
+  for (const char* other : {"", "sitting", "Standing", "rising"}) EXPECT_EQ(mode_of(other), kStanceStay) << other;
+}
+
+TEST(LegMessages, TheStateNamesPostureFootAndReasons) {
+  CommandFrame command;
+  command.legged = {.phase = LegPhase::kStanding, .lifted = 4, .body = {0.01, 0.02, 0.03, 0.1, 0.2, 0.3}};
+  CommandFrame plan;
+  plan.joints[1] = {.mode = JointMode::kImpedance, .position = 0.7};
+  StateFrame state;
+  state.contacts[1] = {.probability = 1, .slip = 0.002, .load = 31};
+  LegModel robot;
+  robot.joints.resize(2);
+  robot.joints[1].name = "knee";
+  const msg::LegState message = leg_state({command, plan, {}, state, kReasonOutOfReach}, robot, ros::Time(1, 2));
+  EXPECT_EQ(message.posture, "standing");
+  EXPECT_EQ(message.lifted, "rear_right");
+  EXPECT_EQ(message.body.yaw, 0.3);
+  EXPECT_THAT(message.reasons, ElementsAre("out_of_reach"));
+  EXPECT_THAT(message.bears, ElementsAre(0, 1, 0, 0));
+  EXPECT_EQ(message.load[1], 31);
+  EXPECT_TRUE(std::isnan(message.wanted[0]));
+  EXPECT_EQ(message.wanted[1], 0.7);
+}
+
+TEST(LegMessages, ARefusalSaysWhoHoldsThePermission) {
+  LegModel robot;
+  Permit permit;
+  EXPECT_THAT(no_permission(false, permit, robot), HasSubstr("start safety_monitor"));
+  permit.unreleased = 1;
+  EXPECT_THAT(no_permission(true, permit, robot), HasSubstr("body_pose of zero"));
+  permit.causes = permit.first_cause = kCauseEmergencyStopService;
+  EXPECT_THAT(no_permission(true, permit, robot), StartsWith("the robot is stopped: "));
+  EXPECT_THAT(no_permission(true, permit, robot), HasSubstr("e_stop_reset"));
+  permit.action = PermitAction::kDrive;
+  EXPECT_EQ(no_permission(true, permit, robot), "");
+}
+
+}  // namespace
+}  // namespace robot_control

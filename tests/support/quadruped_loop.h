@@ -1,0 +1,90 @@
+#pragma once
+/// A robot on legs in the closed loop, on the simulated machine, with the largest values that tests judge.
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "control/legged/leg_controller.h"
+#include "log/replay/recorded.h"
+#include "machine/legs/leg_model.h"
+#include "robots/quadruped.h"
+#include "signals/names.h"
+#include "signals/rotation.h"
+#include "simulation/closed_loop.h"
+
+namespace robot_control {
+
+class QuadrupedLoop {
+ public:
+  explicit QuadrupedLoop(const LegModel& robot, std::uint64_t seed = 0, ErrorLevel errors = ErrorLevel::kIdeal)
+      : parameters_(parameters(seed, errors)), loop(parameters_, std::make_shared<Quadruped>(parameters_, robot)) {}
+
+  static Parameters parameters(std::uint64_t seed, ErrorLevel errors) {
+    Parameters result = default_parameters();
+    result.robot = {};
+    result.leg_controller.request_timeout = 0.5;
+    result.plant.seed = seed;
+    result.plant.sensor_errors = errors;
+    result.plant.contact_sensors = true;
+    return result;
+  }
+
+  /// Requests this every 20 cycles.
+  void run(double seconds, const Request& request) {
+    for (std::uint64_t k = 0; k < cycles(seconds); ++k) {
+      if (k % 20 == 0) loop.request(request);
+      step();
+    }
+  }
+  void wait(double seconds) {
+    for (std::uint64_t k = 0; k < cycles(seconds); ++k) step();
+  }
+  void step() {
+    loop.step();
+    if (record) recording.add(loop);
+    const TruthFrame& now = truth();
+    for (std::size_t i = 0; i < kLegsJoints; ++i) {
+      effort = std::max(effort, std::abs(now.joints[i].effort) / robot().joints[i].effort_limit);
+    }
+    tilt = std::max(tilt, tilt_now());
+    const Vector3& force = loop.row().driver->sensors.imu.linear_acceleration;
+    shock = std::max(shock, std::hypot(force[0], force[1], force[2]) - 9.81);
+    for (std::size_t i = 0; i < kLegs; ++i) slipped[i] += now.slip[i] * 0.001;
+  }
+  void clear() { effort = tilt = shock = 0, slipped = {}; }
+  static std::uint64_t cycles(double seconds) { return static_cast<std::uint64_t>(std::llround(seconds / 0.001)); }
+
+  const LegModel& robot() const { return leg_model_of(loop.robot().machine()); }
+  const TruthFrame& truth() const { return loop.row().driver->truth; }
+  const StateFrame& state() const { return loop.row().estimator->state; }
+  const CommandFrame& command() const { return loop.row().controller->command; }
+  const GateReport& gate() const { return loop.row().driver->gate; }
+  const Permit& permit() const { return loop.row().monitor->permit; }
+  std::string causes() const { return names_of(kStopCauseNames, permit().causes); }
+  double tilt_now() const {
+    const Quaternion& q = truth().pose_world.orientation;
+    return 2 * std::asin(std::min(1.0, std::hypot(q[0], q[1])));
+  }
+  double speed() const {
+    const Vector3& v = truth().twist_base.linear;
+    return std::hypot(v[0], v[1], v[2]);
+  }
+
+  Parameters parameters_;
+  ClosedLoop loop;
+  Recording recording;
+  bool record = false;
+  // Largest values since `clear`.
+  double effort = 0;                    // of the limits
+  double tilt = 0;                      // rad
+  double shock = 0;                     // m/s²
+  std::array<double, kLegs> slipped{};  // m
+};
+
+inline Request stance(std::uint64_t mode) {
+  return {.twist = {}, .posture = {}, .mode = mode};
+}
+
+}  // namespace robot_control

@@ -1,0 +1,150 @@
+#!/usr/bin/python3
+"""sim.launch robot:=quadbot: a robot on legs stands up, sways, lifts a foot, is stopped, reset and lies down."""
+
+import math
+import os
+import time
+import unittest
+from collections.abc import Callable
+from pathlib import Path
+
+import rospy
+import rostest
+from geometry_msgs.msg import Twist
+from launch_support import Launch
+from nav_msgs.msg import Odometry
+from robot_control.msg import BodyPose, FootTarget, LegState, RobotStatus, SafetyStatus
+from robot_control.srv import SetPosture
+from std_srvs.srv import Trigger
+from system_support import CONTROLLER, LIMIT, init_test_node, refusal, repository, wait_for
+
+SEND_PERIOD = 0.1
+"""s; a twelfth of request_timeout."""
+QUADBOT = repository() / "urdf" / "quadbot.urdf"
+
+
+class LegsTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        init_test_node("legs_test")
+        cls.bus = f"legs{os.getpid()}.{time.monotonic_ns()}"
+        cls.launch = Launch("robot:=quadbot", "black_box:=false", f"bus:={cls.bus}")
+        cls.addClassCleanup(cls.remove_what_stays)
+        cls.addClassCleanup(cls.launch.end)
+        cls.legs: LegState | None = None
+        cls.safety: SafetyStatus | None = None
+        cls.truth: Odometry | None = None
+        cls.status: RobotStatus | None = None
+        for topic, kind, name in (
+            ("leg_state", LegState, "legs"),
+            ("safety_status", SafetyStatus, "safety"),
+            ("ground_truth/odom", Odometry, "truth"),
+            ("robot_status", RobotStatus, "status"),
+        ):
+            rospy.Subscriber(topic, kind, lambda message, name=name: setattr(cls, name, message))
+        cls.body_pose = rospy.Publisher("body_pose", BodyPose, queue_size=1, tcp_nodelay=True)
+        cls.foot_target = rospy.Publisher("foot_target", FootTarget, queue_size=1, tcp_nodelay=True)
+        cls.cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True)
+        wait_for("all topics", lambda: None not in (cls.legs, cls.safety, cls.truth), cls.startup_limit())
+        rospy.wait_for_service("set_posture", LIMIT)
+
+    @staticmethod
+    def startup_limit() -> float:
+        return 2 * LIMIT
+
+    @classmethod
+    def remove_what_stays(cls) -> None:
+        for path in Path("/dev/shm").glob(f"robot_control.*.{cls.bus}.*"):
+            path.unlink(missing_ok=True)
+
+    def set_posture(self, posture: str) -> tuple[bool, str]:
+        answer = rospy.ServiceProxy("set_posture", SetPosture)(posture)
+        return answer.success, answer.message
+
+    def stand(self) -> None:
+        wait_for("permission", lambda: self.safety is not None and self.safety.permit_name == "drive")
+        wait_for("standing up", lambda: self.set_posture("standing")[0])
+        wait_for("standing", lambda: self.legs is not None and self.legs.posture == "standing")
+
+    def send_until(self, what: str, message: BodyPose | FootTarget, condition: Callable[[], bool]) -> None:
+        publisher = self.body_pose if isinstance(message, BodyPose) else self.foot_target
+        last = [0.0]
+
+        def send() -> None:
+            if time.monotonic() - last[0] >= SEND_PERIOD:
+                last[0] = time.monotonic()
+                publisher.publish(message)
+
+        wait_for(what, condition, every=send)
+
+    def height(self) -> float:
+        assert self.truth is not None
+        return float(self.truth.pose.pose.position.z)
+
+    def test_it_stands_sways_lifts_a_foot_is_stopped_reset_and_lies_down(self) -> None:
+        wait_for("the monitor", lambda: self.safety is not None and self.safety.state_name == "READY")
+        self.assertEqual(
+            self.set_posture("sitting"), (False, "refused: there is no posture 'sitting'; name standing or lying")
+        )
+        lying = self.height()
+        self.stand()
+        self.assertGreater(self.height() - lying, 0.15)
+        wait_for("robot_status", lambda: self.status is not None and self.status.posture == "standing")
+
+        assert self.legs is not None
+        wait_for("feet that bear", lambda: all(self.legs.bears))
+        tall = self.height()
+        self.send_until("a lower body", BodyPose(height=-0.03, x=0.02), lambda: self.legs.body.height < -0.029)
+        self.assertAlmostEqual(self.height(), tall - 0.03, delta=0.01)
+        self.send_until("out of reach", BodyPose(roll=1.0), lambda: "out_of_reach" in self.legs.reasons)
+        self.assertLess(abs(self.legs.body.roll), 0.35)
+        self.send_until("the nominal pose", BodyPose(), lambda: abs(self.legs.body.roll) < 0.001)
+
+        lifted = FootTarget(foot="rear_left", z=0.08)
+        self.send_until("a foot in the air", lifted, lambda: self.legs.lifted == "rear_left" and not self.legs.bears[2])
+        wait_for("the foot that was set down without its sender", lambda: not self.legs.lifted and self.legs.bears[2])
+
+        # An e-stop folds the legs; a request from before it, or during it, moves nothing after the reset.
+        self.assertTrue(rospy.ServiceProxy("e_stop_trigger", Trigger)().success)
+        wait_for("a lying robot", lambda: abs(self.height() - lying) < 0.03 and self.legs.posture == "lying")
+        accepted, text = self.set_posture("standing")
+        self.assertFalse(accepted)
+        self.assertIn("e_stop_reset", text)
+
+        def reset() -> bool:
+            return bool(rospy.ServiceProxy("e_stop_reset", Trigger)().success)
+
+        wait_for("an accepted reset", reset, every=lambda: time.sleep(0.2))
+        time.sleep(0.5)
+        self.assertEqual(self.legs.posture, "lying")
+        self.stand()
+        self.assertTrue(self.set_posture("lying")[0])
+        wait_for("lying", lambda: self.legs.posture == "lying" and abs(self.height() - lying) < 0.03)
+        self.send_until("a refused pose", BodyPose(roll=0.1), lambda: "not_standing" in self.legs.reasons)
+        self.assertFalse(math.isnan(self.legs.actual[0]))
+
+    def test_a_walk_and_an_unknown_foot_are_refused_in_words(self) -> None:
+        walk = Twist()
+        walk.linear.x = 0.5
+        wait_for("a subscriber", lambda: self.cmd_vel.get_num_connections() > 0)
+        wait_for(
+            "the refusal of a walk",
+            lambda: "this robot does not walk yet; body_pose moves its body" in self.launch.output,
+            every=lambda: self.cmd_vel.publish(walk),
+        )
+        wait_for(
+            "the refusal of a foot",
+            lambda: "there is no foot 'tail'; name one of front_left, front_right" in self.launch.output,
+            every=lambda: self.foot_target.publish(FootTarget(foot="tail")),
+        )
+
+    def test_the_controller_of_wheels_refuses_it_and_names_its_own(self) -> None:
+        text = refusal(CONTROLLER, f"_urdf:={QUADBOT}")
+        self.assertIn("is on legs, and diff_drive_controller controls robots on wheels: start leg_controller", text)
+        self.assertIn("kind:=legs", text)
+        wheels = refusal("leg_controller", f"_urdf:={repository() / 'urdf' / 'diffbot.urdf'}")
+        self.assertIn("start diff_drive_controller instead", wheels)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("robot_control", "legs_test", LegsTest)
