@@ -28,7 +28,7 @@ constexpr double kSway = 0.5;  // Hz
 /// The worst values of one robot, by name.
 class Worst {
  public:
-  void note(const std::string& name, double value, const std::string& unit) {
+  void add(const std::string& name, double value, const std::string& unit) {
     auto& [worst, its_unit] = values_[name];
     worst = std::max(worst, std::isfinite(value) ? value : std::numeric_limits<double>::max());
     its_unit = unit;
@@ -70,17 +70,17 @@ void postures(const LegModel& model, std::uint64_t seed, Worst& worst) {
   const double lying = height(robot);
   robot.clear();
   robot.run(2.0, stance(kStanceStand));
-  worst.note("effort of the limit", robot.effort, "");
-  worst.note("height after 2 s", std::abs(height(robot) - lying - nominal_rise(model)), "m");
-  worst.note("tilt after 2 s", robot.tilt_now(), "rad");
+  worst.add("effort of the limit", robot.effort, "");
+  worst.add("height after 2 s", std::abs(height(robot) - lying - nominal_rise(model)), "m");
+  worst.add("tilt after 2 s", robot.tilt_now(), "rad");
   robot.run(3.0, {});
   const Vector3 before = robot.truth().pose_world.position;
   robot.run(6.0, {});
   const Vector3& after = robot.truth().pose_world.position;
-  worst.note("creep", 10 * std::hypot(after[0] - before[0], after[1] - before[1]), "m/min");
+  worst.add("creep", 10 * std::hypot(after[0] - before[0], after[1] - before[1]), "m/min");
   robot.run(4.0, stance(kStanceLie));
-  worst.note("not lying", (robot.command().reasons & kReasonHolding) != 0 ? 0 : 1, "");
-  worst.note("stops", robot.permit().causes == 0 ? 0 : 1, "");
+  worst.add("not lying", (robot.command().reasons & kReasonHolding) != 0 ? 0 : 1, "");
+  worst.add("stops", robot.permit().causes == 0 ? 0 : 1, "");
 }
 
 std::array<double, 6> pose(const QuadrupedLoop& robot) {
@@ -108,10 +108,10 @@ void body_pose(const LegModel& model, std::uint64_t seed, Worst& worst) {
       robot.step();
       sum += std::pow(pose(robot)[axis] - begin[axis] - *values[axis], 2);
     }
-    worst.note(axis < 3 ? "RMS of the place" : "RMS of the angle", std::sqrt(sum / 4000), axis < 3 ? "m" : "rad");
-    worst.note("slip of a foot", *std::max_element(robot.slipped.begin(), robot.slipped.end()), "m");
+    worst.add(axis < 3 ? "RMS of the place" : "RMS of the angle", std::sqrt(sum / 4000), axis < 3 ? "m" : "rad");
+    worst.add("slip of a foot", *std::max_element(robot.slipped.begin(), robot.slipped.end()), "m");
   }
-  worst.note("stops", robot.permit().causes == 0 ? 0 : 1, "");
+  worst.add("stops", robot.permit().causes == 0 ? 0 : 1, "");
 }
 
 void circle(const LegModel& model, std::uint64_t seed, Worst& worst) {
@@ -141,11 +141,11 @@ void circle(const LegModel& model, std::uint64_t seed, Worst& worst) {
       sum += (foot() - begin - kRadius * Eigen::Vector3d(std::sin(turn), 0, 1 - std::cos(turn))).squaredNorm();
     }
     const std::string name = name_of(static_cast<LegPlace>(leg));
-    worst.note("RMS of foot " + name, std::sqrt(sum / 2000), "m");
-    worst.note("tilt with foot " + name, robot.tilt, "rad");
+    worst.add("RMS of foot " + name, std::sqrt(sum / 2000), "m");
+    worst.add("tilt with foot " + name, robot.tilt, "rad");
     robot.run(2.5, {});
   }
-  worst.note("stops", robot.permit().causes == 0 ? 0 : 1, "");
+  worst.add("stops", robot.permit().causes == 0 ? 0 : 1, "");
 }
 
 void stop(const LegModel& model, std::uint64_t seed, Worst& worst) {
@@ -178,10 +178,10 @@ void stop(const LegModel& model, std::uint64_t seed, Worst& worst) {
       rested = robot.speed() < 0.01 ? rested + 0.001 : 0;
       if (rested < 0.001) rest_at = t;
     }
-    worst.note("rest, " + situation, rest_at, "s");
-    worst.note("acceleration, " + situation, robot.shock, "m/s^2");
-    worst.note("tilt, " + situation, std::max(robot.tilt, tilted), "rad");
-    worst.note("cycles to the brake, " + situation, braked, "");
+    worst.add("rest, " + situation, rest_at, "s");
+    worst.add("acceleration, " + situation, robot.shock, "m/s^2");
+    worst.add("tilt, " + situation, std::max(robot.tilt, tilted), "rad");
+    worst.add("cycles to the brake, " + situation, braked, "");
   }
 }
 
@@ -195,7 +195,7 @@ void rest(const LegModel& model, std::uint64_t seed, Worst& worst) {
   double moved = 0;
   for (std::size_t i = 0; i < kLegsJoints; ++i)
     moved = std::max(moved, std::abs(robot.truth().joints[i].position - joints[i].position));
-  worst.note("way of a joint in 10 min", moved, "rad");
+  worst.add("way of a joint in 10 min", moved, "rad");
 }
 
 void silent(const LegModel& model, std::uint64_t seed, Worst& worst) {
@@ -219,8 +219,8 @@ void silent(const LegModel& model, std::uint64_t seed, Worst& worst) {
       sway(k);
       moved = std::max(moved, std::abs(robot.truth().pose_world.position[2] - before[2]));
     }
-    worst.note("way of the body", moved, "m");
-    worst.note("stops", robot.permit().causes == 0 ? 0 : 1, "");
+    worst.add("way of the body", moved, "m");
+    worst.add("stops", robot.permit().causes == 0 ? 0 : 1, "");
   }
 }
 

@@ -51,7 +51,7 @@ Schema schema(Parameters& p) {
   return {
       .blocks = {{"robot", joined({file("urdf", p.urdf, 0),
                                    keys(p.robot),
-                                   keys(p.legs),
+                                   keys(p.leg_control),
                                    keys(p.loop),
                                    {{"driver", &p.driver, {}, 0, 0, kOptional}},
                                    file("drives", p.drives, kMayBeEmpty | kOptional),
@@ -65,7 +65,7 @@ Schema schema(Parameters& p) {
                   joined({keys(p.controller), file("command_sources", p.command_sources, kMayBeEmpty | kOptional),
                           controller_keys(p.report)})},
                  {program_of(Role::kController, kLeggedKind),
-                  joined({keys(p.leg_controller), leg_controller_keys(p.report)})},
+                  joined({keys(p.leg_control), leg_control_keys(p.report)})},
                  {program_of(Role::kMonitor),
                   joined({keys(p.safety), file("latch_file", p.latch_file, kMayBeEmpty | kOptional)})},
                  {program_of(Role::kTelemetry), keys(p.telemetry)}},

@@ -60,7 +60,7 @@ struct Parameters {
   EstimatorParameters estimator;
   std::string calibration_file;  ///< path, see calibration_file.h; empty: none
   DriveControllerParameters controller;
-  LegControllerParameters leg_controller;
+  LegControllerParameters leg_control;
   std::string command_sources;  ///< path, see command_sources.h; empty: none, cmd_vel and cmd_vel_stamped command
   SafetyParameters safety;
   std::string latch_file;  ///< path, see loop/latch_file.h; empty: none

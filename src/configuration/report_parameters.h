@@ -47,7 +47,7 @@ inline Keys estimator_keys(ReportParameters& report) {
   };
 }
 
-inline Keys leg_controller_keys(ReportParameters& report) {
+inline Keys leg_control_keys(ReportParameters& report) {
   return {{"state_rate", &report.leg_state_rate, "Hz", 0.1, 2000, kPublishRate}};
 }
 

@@ -51,8 +51,7 @@ std::unique_ptr<EstimatorLaw> Quadruped::make_estimator() const {
 }
 
 std::unique_ptr<ControllerLaw> Quadruped::make_controller() const {
-  return std::make_unique<LegsController>(machine_, parameters_.leg_controller.request_timeout,
-                                          parameters_.loop.period());
+  return std::make_unique<LegsController>(machine_, parameters_.leg_control.request_timeout, parameters_.loop.period());
 }
 
 std::unique_ptr<MonitorLaw> Quadruped::make_monitor() const {

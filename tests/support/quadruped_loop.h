@@ -24,7 +24,7 @@ class QuadrupedLoop {
   static Parameters parameters(std::uint64_t seed, ErrorLevel errors) {
     Parameters result = default_parameters();
     result.robot = {};
-    result.leg_controller.request_timeout = 0.5;
+    result.leg_control.request_timeout = 0.5;
     result.plant.seed = seed;
     result.plant.sensor_errors = errors;
     result.plant.contact_sensors = true;

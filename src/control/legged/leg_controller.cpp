@@ -10,7 +10,7 @@ namespace robot_control {
 namespace {
 
 constexpr double kLoadTime = 0.2;       // s, in which a foot's share of the weight comes and goes
-constexpr double kLeastLift = 0.25;     // of the lift, the lowest height of a foot in the air
+constexpr double kMinLift = 0.25;       // of the lift, the lowest height of a foot in the air
 constexpr double kSetDown = 0.1;        // m/s, of a foot that lies above the ground
 constexpr double kShift = 0.6;          // of the way from the middle to the centroid of three feet
 constexpr double kArrived = 0.0005;     // m
@@ -231,8 +231,8 @@ void LegController::choose_pose(const Request& request, std::uint64_t& reasons) 
     for (std::size_t i = 0; i < state_.held.size(); ++i) {
       const TrackedAxis& axis = state_.body[i];
       const AxisBounds& bounds = i < kRoll ? tuning_.linear : tuning_.angular;
-      const double way = axis.speed * std::abs(axis.speed) / (2 * bounds.acceleration);
-      state_.held[i] = axis.value + way - (i < kRoll ? nominal[i] : 0);
+      const double braking = axis.speed * std::abs(axis.speed) / (2 * bounds.acceleration);
+      state_.held[i] = axis.value + braking - (i < kRoll ? nominal[i] : 0);
     }
   }
   state_.follows = wished ? 1 : 0;
@@ -278,17 +278,17 @@ void LegController::move_foot(const Request& request, bool wanted, bool supporte
   const bool in_air = state_.foot[kZ].value > 1e-3;
   if (wanted && !in_air && target[2] == 0) {
     if (supported || share < 1) approach(share, 0, period_ / kLoadTime);
-    if (share == 0) target = {0, 0, kLeastLift * tuning_.lift};
+    if (share == 0) target = {0, 0, kMinLift * tuning_.lift};
   } else if (wanted) {
-    const bool clear = state_.foot[kZ].value > 0.8 * kLeastLift * tuning_.lift;
+    const bool clear = state_.foot[kZ].value > 0.8 * kMinLift * tuning_.lift;
     const double highest = tuning_.lift + tuning_.foot_range;
     target = {clear ? within(request.posture.x, tuning_.foot_range, reasons) : 0,
               clear ? within(request.posture.y, tuning_.foot_range, reasons) : 0,
-              std::clamp(request.posture.height, kLeastLift * tuning_.lift, highest)};
+              std::clamp(request.posture.height, kMinLift * tuning_.lift, highest)};
     if (target[2] != request.posture.height) reasons |= kReasonOutOfReach;
   } else {
     const bool above = std::hypot(state_.foot[kX].value, state_.foot[kY].value) < kArrived;
-    target = {0, 0, above ? 0.0 : std::max(target[2], kLeastLift * tuning_.lift)};
+    target = {0, 0, above ? 0.0 : std::max(target[2], kMinLift * tuning_.lift)};
     if (above && !in_air) approach(share, 1, period_ / kLoadTime);
   }
   for (std::size_t i = 0; i < 3; ++i) state_.foot[i].step(target[i], tuning_.foot, period_);

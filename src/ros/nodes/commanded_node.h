@@ -1,6 +1,6 @@
 #pragma once
-/// A CommandedNode is the controller's node of any kind of robot: it gives the requests of its senders to the loop, by
-/// the safety monitor's permission (ros/inputs/command_intake.h), and follows the commands of the loop.
+/// A CommandedNode is the controller's node of any kind of robot. It gives the requests of its senders to the loop, by
+/// the safety monitor's permission (ros/inputs/command_intake.h). It follows the commands of the loop.
 
 #include <mutex>
 #include <string>

@@ -32,7 +32,7 @@ class LegControllerNode final : public CommandedNode {
  public:
   explicit LegControllerNode(const Setup& setup)
       : CommandedNode(setup, input_),
-        input_(parameters().leg_controller.request_timeout, parameters().leg_controller.one_sender),
+        input_(parameters().leg_control.request_timeout, parameters().leg_control.one_sender),
         pace_(report().leg_state_rate) {}
 
   void connect(ros::NodeHandle& handle) override {

@@ -220,8 +220,8 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
   EStopLevels levels_;
   OperatorInput input_;
   StopLog stop_log_{static_cast<double>(parameters().loop.period_ns()) * 1e-9,
-                    kind_of(robot()) == MachineKind::kOnLegs ? parameters().leg_controller.request_timeout
-                                                           : parameters().controller.cmd_vel_timeout};
+                    kind_of(robot()) == MachineKind::kOnLegs ? parameters().leg_control.request_timeout
+                                                             : parameters().controller.cmd_vel_timeout};
   WithdrawalTime withdrawal_;
   Permit reported_;
   bool reported_permit_ = false;

@@ -42,7 +42,7 @@ Parameters with_blocks_of_other_nodes(Parameters parameters) {
   take(Role::kEstimator, [&](const Parameters& read) { parameters.estimator = read.estimator; });
   take(Role::kController, [&](const Parameters& read) {
     parameters.controller = read.controller;
-    parameters.leg_controller = read.leg_controller;
+    parameters.leg_control = read.leg_control;
     parameters.command_sources = read.command_sources;
   });
   take(Role::kMonitor, [&](const Parameters& read) { parameters.safety = read.safety; });
