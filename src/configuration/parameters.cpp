@@ -51,7 +51,7 @@ Schema schema(Parameters& p) {
   return {
       .blocks = {{"robot", joined({file("urdf", p.urdf, 0),
                                    keys(p.robot),
-                                   keys(p.leg_control),
+                                   keys(p.legs),
                                    keys(p.loop),
                                    {{"driver", &p.driver, {}, 0, 0, kOptional}},
                                    file("drives", p.drives, kMayBeEmpty | kOptional),
