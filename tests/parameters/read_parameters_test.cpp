@@ -164,6 +164,7 @@ TEST_F(ReadParameters, OverlaysAloneAreEnough) {
                                                   {"mujoco_plant.contact_sensors", "true"},
                                                   {"robot.fail_action", "coast"},
                                                   {"diff_drive_controller.keep_curvature", "yes"},
+                                                  {"leg_controller.one_sender", "false"},
                                                   {"diff_drive_controller.one_sender", "yes"},
                                                   {"safety_monitor.standstill_speed", "0.5"},
                                                   {"state_estimator.slip_detection", "no"},

@@ -90,7 +90,7 @@ std::vector<FieldDifference> differences(const StateFrame& logged, const StateFr
       {"distance", 1},
       {"joint_velocity", kMaxJoints},
       whole("contact_count"),
-      {"contacts", 2 * kMaxContacts, {"probability", "slip"}},
+      {"contacts", 3 * kMaxContacts, {"probability", "slip", "load"}},
       {"calibration", 4, {"radius_ratio", "wheel_base_factor", "radius_ratio_deviation", "wheel_base_deviation"}},
       {"odometry", 5, {"x", "y", "yaw", "linear", "angular"}},
       {"confidence", kWheeledSensors},
@@ -106,7 +106,7 @@ std::vector<FieldDifference> differences(const CommandFrame& logged, const Comma
       whole("joint_count"),
       {"joints", kMaxJoints * 6, {"#mode", "position", "velocity", "stiffness", "damping", "effort"}},
       {"requested", 6, kTwist},
-      {"requested", 3, {"height", "roll", "pitch"}},
+      {"requested", 6, {"height", "roll", "pitch", "x", "y", "yaw"}},
       whole("requested.mode"),
       {"twist_limited", 6, kTwist},
       whole("reasons"),
@@ -127,7 +127,10 @@ std::vector<FieldDifference> differences(const CommandFrame& logged, const Comma
       whole("silent_cycles"),
       whole("silence_needed"),
       whole("wheeled_reasons"),
-      {"velocity_measured", kMaxWheels}};
+      {"velocity_measured", kMaxWheels},
+      whole("legged_phase"),
+      whole("legged_lifted"),
+      {"legged_body", 6, {"x", "y", "height", "roll", "pitch", "yaw"}}};
   return compare(logged, replayed, kHead, kMembers);
 }
 
