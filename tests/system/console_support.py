@@ -121,7 +121,7 @@ class ConsoleTestCase(RobotTestCase):
 
     @staticmethod
     def waits_for(browser: Browser, what: str, condition: Callable[[], bool], limit: float = LIMIT) -> None:
-        """As wait_for; a failure tells what the page says."""
+        """As wait_for; a failure names what the page says."""
         try:
             wait_for(what, condition, limit)
         except AssertionError as error:

@@ -3,8 +3,8 @@
 
 As a program, `stall_witness.py SHORTEST PRIORITY CORE…`, it wakes up again and again on each of these cores.
 A program on another core does not notice that one is taken away. It runs under SCHED_FIFO if the priority is above 0.
-It prints the end and the length (s) of each gap of at least SHORTEST, until its parent ends. Many gaps of a quarter of
-that, which take a quarter of a second out of one, are printed as a gap of that second.
+It prints the end and the length (s) of each gap of at least SHORTEST, until its parent ends. Shorter gaps of at
+least a quarter of that are printed as one of a second if they take a quarter of it.
 """
 
 import contextlib
@@ -51,7 +51,7 @@ def watch(core: int, priority: int, shortest: float) -> None:
         now = time.monotonic()
         if now - last >= shortest:
             print(f"{now:.6f} {now - last:.6f}\n", end="", flush=True)
-        if now - last >= shortest / 4:
+        elif now - last >= shortest / 4:
             lost += now - last
         last = now
         if now - second >= 1.0:

@@ -188,7 +188,7 @@ def test_without_a_terminal_it_says_so():
 WHOLE_PROGRAM = """
 import sys, types
 messages = types.ModuleType("robot_control.msg")
-messages.SafetyStatus = None
+messages.SafetyStatus = messages.RobotKind = None
 sys.modules["robot_control.msg"] = messages
 from robot_control.teleop import main
 main.require_master = lambda: None

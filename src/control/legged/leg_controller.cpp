@@ -220,8 +220,8 @@ void LegController::stand(const Request& request, std::uint64_t& reasons) noexce
 }
 
 void LegController::choose_pose(const Request& request, std::uint64_t& reasons) noexcept {
-  const bool wished = (reasons & kNoWish) == 0;
-  if (wished) {
+  const bool requested = (reasons & kNoWish) == 0;
+  if (requested) {
     const Posture& to = request.posture;
     state_.held = {within(to.x, tuning_.sway, reasons),     within(to.y, tuning_.sway, reasons),
                    within(to.height, tuning_.bob, reasons), within(to.roll, tuning_.lean, reasons),
@@ -235,7 +235,7 @@ void LegController::choose_pose(const Request& request, std::uint64_t& reasons) 
       state_.held[i] = axis.value + braking - (i < kRoll ? nominal[i] : 0);
     }
   }
-  state_.follows = wished ? 1 : 0;
+  state_.follows = requested ? 1 : 0;
 }
 
 /// Returns x and y of the body in m at which its centre of gravity is amid the feet, or above three of them.
