@@ -399,6 +399,16 @@ int pthread_mutex_trylock(pthread_mutex_t* mutex) noexcept {
   record("lock");
   return real(mutex);
 }
+int pthread_mutex_timedlock(pthread_mutex_t* mutex, const timespec* until) noexcept {
+  static auto* const real = next<int(pthread_mutex_t*, const timespec*)>("pthread_mutex_timedlock");
+  record("lock");
+  return real(mutex, until);
+}
+int pthread_mutex_clocklock(pthread_mutex_t* mutex, clockid_t clock, const timespec* until) noexcept {
+  static auto* const real = next<int(pthread_mutex_t*, clockid_t, const timespec*)>("pthread_mutex_clocklock");
+  record("lock");
+  return real(mutex, clock, until);
+}
 int pthread_rwlock_rdlock(pthread_rwlock_t* lock) noexcept {
   static auto* const real = next<int(pthread_rwlock_t*)>("pthread_rwlock_rdlock");
   record("lock");
@@ -413,6 +423,18 @@ int pthread_cond_wait(pthread_cond_t* condition, pthread_mutex_t* mutex) {
   static auto* const real = next<int(pthread_cond_t*, pthread_mutex_t*)>("pthread_cond_wait", "GLIBC_2.3.2");
   record("lock");
   return real(condition, mutex);
+}
+int pthread_cond_timedwait(pthread_cond_t* condition, pthread_mutex_t* mutex, const timespec* until) {
+  using Function = int(pthread_cond_t*, pthread_mutex_t*, const timespec*);
+  static auto* const real = next<Function>("pthread_cond_timedwait", "GLIBC_2.3.2");
+  record("lock");
+  return real(condition, mutex, until);
+}
+int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t clock, const timespec* until) {
+  using Function = int(pthread_cond_t*, pthread_mutex_t*, clockid_t, const timespec*);
+  static auto* const real = next<Function>("pthread_cond_clockwait");
+  record("lock");
+  return real(condition, mutex, clock, until);
 }
 int pthread_cond_signal(pthread_cond_t* condition) noexcept {
   static auto* const real = next<int(pthread_cond_t*)>("pthread_cond_signal", "GLIBC_2.3.2");
