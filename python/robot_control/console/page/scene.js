@@ -14,7 +14,9 @@ const view = document.getElementById("view"), note = document.getElementById("sc
 const canvas = document.getElementById("scene"), notes = new Set();
 const scene = new THREE.Scene(), camera = new THREE.PerspectiveCamera(50, 1, 0.05, 500);
 let robot = new THREE.Group(), joints = new Map(), lift = 0, trail = [];
-let renderer = null, controls = null, dirty = true, placed = false, called = 0, due = 0;
+camera.up.set(0, 0, 1);
+const controls = new OrbitControls(camera, canvas);
+let renderer = null, dirty = true, placed = false, called = 0, due = 0;
 
 function say(text) {
   notes.add(text);
@@ -58,6 +60,16 @@ function ellipseOf(centre, [xx, xy, yy]) {
   return ring(centre, a, b, Math.atan2(2 * xy, xx - yy) / 2);
 }
 
+// The renderer is made last: while it begins, which takes a second in software, the page already works.
+function begin() {
+  try {
+    renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
+    render();
+  } catch {
+    say("this browser has no WebGL: no 3-D view");
+  }
+}
+
 async function load() {
   const answer = await fetch("/api/model").catch(() => null);
   if (!answer?.ok) {
@@ -73,16 +85,17 @@ async function load() {
   lift = Number.isFinite(bottom) ? -bottom : 0;  // odom is at the height of the root link
   robot.position.set(controls.target.x, controls.target.y, lift);
   scene.add(robot);
+  dirty = true;
+  if (!renderer) begin();
   document.title = `${made.name || "Robot"} console`;
   document.body.dataset.model = made.name;
-  dirty = true;
 }
 
-on("open", () => { if (renderer) load(); });
+on("open", load);
 on("trail", ({ points }) => { trail = points; fill(driven, trail, 0.004); });
 on("wanted", ({ points, frame }) => fill(wanted, frame === "odom" ? points : [], 0.006));
 on("fast", (frame) => {
-  if (frame.pose && controls) {
+  if (frame.pose) {
     const [x, y, yaw] = frame.pose, moved = new THREE.Vector3(x - controls.target.x, y - controls.target.y, 0);
     if (placed) camera.position.add(moved);
     else camera.position.set(x - 1.3, y - 1.3, 1.2);
@@ -126,7 +139,7 @@ let finish = null, points = [];
 /** Resolves with the points in odom that the next stroke on the grid draws. */
 export function draw() {
   view.classList.add("drawing");
-  if (controls) controls.enabled = false;
+  controls.enabled = false;
   points = [];
   return new Promise((resolve) => { finish = resolve; });
 }
@@ -146,21 +159,14 @@ canvas.addEventListener("pointermove", (event) => {
 canvas.addEventListener("pointerup", () => {
   if (!finish) return;
   view.classList.remove("drawing");
-  if (controls) controls.enabled = true;
+  controls.enabled = true;
   finish(points);
   finish = null;
   fill(drawn, [], 0);
 });
 
-try {
-  renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
-  controls = new OrbitControls(camera, canvas);
-  controls.target.set(0, 0, 0.1);
-  controls.addEventListener("change", () => { dirty = true; });
-} catch {
-  say("this browser has no WebGL: no 3-D view");
-}
-camera.up.set(0, 0, 1);
+controls.target.set(0, 0, 0.1);
+controls.addEventListener("change", () => { dirty = true; });
 camera.position.set(-1.3, -1.3, 1.2);
 const squares = new THREE.BufferGeometry(), lines = [];
 for (let at = -HALF; at <= HALF; at += SQUARE) {
@@ -175,4 +181,3 @@ grid.frustumCulled = false;
 const sun = new THREE.DirectionalLight(0xffffff, 0.7);
 sun.position.set(-2, -3, 5);
 scene.add(grid, robot, new THREE.HemisphereLight(0xffffff, 0x777777, 0.7), sun);
-if (renderer) requestAnimationFrame(render);
