@@ -45,6 +45,7 @@ class Frames:
     def __init__(self) -> None:
         self.fast = self.slow = ""
         self.number = self.slow_number = 0
+        self.writers: set[asyncio.Event] = set()  # of the pages; set whenever there is something to send
 
     def make(self, backend: Backend) -> None:
         """Makes the next frame."""
@@ -52,6 +53,8 @@ class Frames:
         if self.number % SLOW == 0:
             self.slow, self.slow_number = json.dumps(backend.slow()), self.slow_number + 1
         self.number += 1
+        for writer in self.writers:
+            writer.set()
 
 
 class Client:
@@ -62,6 +65,7 @@ class Client:
         self._backend, self._frames, self._page, self._who, self._lives = backend, frames, page, who, lives
         self._socket = web.WebSocketResponse(max_msg_size=MAX_SIZE, timeout=1.0, compress=False)
         self._outbox: deque[dict[str, Any]] = deque()
+        self._to_send = asyncio.Event()
         self._calls: set[asyncio.Task[None]] = set()
         self.closing = 0  # code with which the page is to be closed
         self._pinged_at = self._wanted_at = float("-inf")
@@ -72,6 +76,7 @@ class Client:
         """Serves the page until it ends."""
         await self._socket.prepare(request)
         writer = asyncio.create_task(self._write(request))
+        self._frames.writers.add(self._to_send)
         try:
             await self._read()
         finally:
@@ -82,6 +87,7 @@ class Client:
             if self.closing:
                 await asyncio.wait({writer}, timeout=CLOSING)
             writer.cancel()
+            self._frames.writers.discard(self._to_send)
             journal.info("%s: page %d ended", self._who, self._page.number)
         return self._socket
 
@@ -92,6 +98,7 @@ class Client:
     def _post(self, message: dict[str, Any]) -> None:
         if len(self._outbox) < MAX_ANSWERS:
             self._outbox.append(message)
+            self._to_send.set()
 
     async def _read(self) -> None:
         rate, mistakes = Rate(time.monotonic()), 0
@@ -176,7 +183,8 @@ class Client:
                         await self._socket.send_str(json.dumps(self._outbox.popleft()))
                     if silent <= SKIP:
                         await self._frame()
-                await asyncio.sleep(FRAME / 2)
+                await self._to_send.wait()
+                self._to_send.clear()
         except (ConnectionError, RuntimeError):
             pass  # the page has ended
 
