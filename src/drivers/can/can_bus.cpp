@@ -163,6 +163,7 @@ void CanBus::accept(const Frames& frames, std::size_t bytes, std::int64_t stamp_
       evaluate_error_frame(frame);
     } else if (socket_.passes(frame.can_id)) {
       ++counts_.received;
+      if (state_ == CanState::kBusOff) state_ = CanState::kActive;  // in bus-off a controller receives nothing
       received_[received_count_++] = {.frame = frame, .stamp_ns = stamp_ns};
     }
   }

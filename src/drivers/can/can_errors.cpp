@@ -44,6 +44,7 @@ std::string can_error_words(const can_frame& error) {
       continue;
     text += (text.empty() ? "" : ", ") + std::string(each.words);
   }
+  if (text.empty() && error.can_id != 0) text = "the controller reports errors without a reason";
   return text;
 }
 

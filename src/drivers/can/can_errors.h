@@ -7,7 +7,7 @@
 
 namespace robot_control {
 
-/// Returns everything that the frame reports, separated by commas; "" if it reports nothing that is known.
+/// Returns everything that the frame reports, separated by commas; "" of a frame without an identifier.
 std::string can_error_words(const can_frame& error);
 
 }  // namespace robot_control

@@ -228,6 +228,13 @@ TEST_F(CanBusTest, BusOffIsCountedOnceUntilTheControllerIsRestarted) {
   EXPECT_EQ(bus_->counts().bus_off, 2u);
 }
 
+TEST_F(CanBusTest, AReceivedFrameEndsBusOff) {
+  report(CAN_ERR_BUSOFF);
+  send_from_far(numbered(1));
+  EXPECT_EQ(bus_->receive(at(1)).frames.size(), 1u);
+  EXPECT_EQ(bus_->state(), CanState::kActive);
+}
+
 TEST_F(CanBusTest, AnOverflowOfTheControllerIsALoss) {
   report(CAN_ERR_CRTL, CAN_ERR_CRTL_RX_OVERFLOW);
   EXPECT_EQ(bus_->counts().lost, 1u);

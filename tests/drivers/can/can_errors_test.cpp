@@ -21,7 +21,8 @@ TEST(CanErrors, AFrameReportsAllItsClasses) {
 TEST(CanErrors, DetailsCountInTheirClassAlone) {
   EXPECT_EQ(can_error_words(error(CAN_ERR_BUSOFF, ~std::uint64_t{0})),
             "bus-off: the controller takes no part until it is restarted");
-  EXPECT_EQ(can_error_words(error(CAN_ERR_CRTL, 0)), "");
+  EXPECT_EQ(can_error_words(error(CAN_ERR_CRTL, 0)), "the controller reports errors without a reason");
+  EXPECT_EQ(can_error_words({}), "");
 }
 
 }  // namespace
