@@ -69,7 +69,8 @@ void FrameBatch::add(const can_frame& frame) noexcept {
 Drive::Drive(DriveParameters parameters, double period)
     : period_ns_(std::llround(1.0e9 * period)),
       drive_(std::move(parameters)),
-      to_joint_(static_cast<double>(drive_.direction) / drive_.gear) {}
+      to_joint_(static_cast<double>(drive_.direction) / drive_.gear),
+      position_(sample_period_ns()) {}
 
 void Drive::step(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept {
   if (command.reset && !reset_before_) {
@@ -88,6 +89,8 @@ void Drive::step(const DriveCommand& command, std::int64_t now_ns, FrameBatch& s
 void Drive::begin(bool reset, std::int64_t now_ns) noexcept {
   status_ = {};
   sample_ = {};
+  position_.clear();
+  difference_.clear();
   on_silence_ = {};
   restart(reset, now_ns);
 }
@@ -101,13 +104,14 @@ void Drive::judge_silence(std::int64_t now_ns) noexcept {
       fail(DriveCause::kSilent, "position");
     }
     sample_.valid = false;
+    position_.clear();
+    difference_.clear();
   }
   if (now_ns - effort_ns_ > 5 * max_silence_ns()) sample_.effort_valid = false;
 }
 
-std::int64_t Drive::max_silence_ns() const noexcept {
-  const auto sample = std::max<std::int64_t>(period_ns_, std::llround(1.0e9 * drive_.sample_period));
-  return static_cast<std::int64_t>(drive_.max_silence) * sample;
+std::int64_t Drive::sample_period_ns() const noexcept {
+  return std::max<std::int64_t>(period_ns_, std::llround(1.0e9 * drive_.sample_period));
 }
 
 void Drive::set(DriveState state, DriveCause cause, const char* subject, std::uint64_t code) noexcept {
@@ -135,18 +139,34 @@ constexpr double kImpossibleSpeed = 10;  // times the limit: a number that no jo
 }  // namespace
 
 void Drive::accept_position(double position, double velocity, std::int64_t now_ns) noexcept {
-  if (!std::isfinite(position) || !std::isfinite(velocity)) return fail(DriveCause::kNotFinite);
+  if (accept_motion(position, velocity, now_ns)) {
+    sample_.joint.position = position_.step(to_joint_ * position, to_joint_ * velocity, now_ns);
+  }
+}
+
+void Drive::accept_position(double position, std::int64_t now_ns) noexcept {
+  if (!accept_motion(position, difference_.velocity(), now_ns)) return;
+  difference_.add(position, now_ns);
+  sample_.joint.velocity = to_joint_ * difference_.velocity();
+}
+
+bool Drive::accept_motion(double position, double velocity, std::int64_t now_ns) noexcept {
+  if (!std::isfinite(position) || !std::isfinite(velocity)) {
+    fail(DriveCause::kNotFinite);
+    return false;
+  }
   JointSample& joint = sample_.joint;
   const double moved = to_joint_ * position - joint.position;
   // A frame may be late by a period; a joint that is pushed may be twice as fast as its limit.
   const double elapsed = 1.0e-9 * static_cast<double>(now_ns - sample_.stamp_ns + 2 * period_ns_);
   const double maximum = 2 * drive_.velocity_limit * std::fmax(elapsed, 2 * drive_.sample_period);
   if (sample_.valid && std::abs(moved) > maximum) fail(DriveCause::kPositionJump, "position", 0, moved, maximum);
-  if (!is_possible(velocity)) return;
+  if (!is_possible(velocity)) return false;
   joint.position = to_joint_ * position;
   joint.velocity = to_joint_ * velocity;
   sample_.stamp_ns = now_ns;
   sample_.valid = true;
+  return true;
 }
 
 bool Drive::is_possible(double velocity) noexcept {

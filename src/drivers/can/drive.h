@@ -20,6 +20,8 @@
 #include "drivers/can/can_frame.h"
 #include "drivers/can/can_load.h"
 #include "drivers/can/drive_parameters.h"
+#include "drivers/can/late_position.h"
+#include "drivers/can/position_difference.h"
 #include "signals/joint.h"
 
 namespace robot_control {
@@ -177,13 +179,18 @@ class Drive {
 
   /// Motor position in rad, velocity in rad/s.
   void accept_position(double position, double velocity, std::int64_t now_ns) noexcept;
+  /// The same of a drive that sends no velocity. It follows from the positions, so late frames move the joint.
+  void accept_position(double position, std::int64_t now_ns) noexcept;
   /// A velocity that comes after the position of its cycle, rad/s.
   void accept_velocity(double velocity) noexcept;
   void accept_motor_torque(double torque, std::int64_t now_ns) noexcept;
   void accept_temperature(double celsius) noexcept;
   void accept_voltage(double voltage) noexcept;
   double motor_torque(double joint_torque) const noexcept { return to_joint_ * joint_torque; }
-  std::int64_t max_silence_ns() const noexcept;
+  std::int64_t sample_period_ns() const noexcept;
+  std::int64_t max_silence_ns() const noexcept {
+    return static_cast<std::int64_t>(drive_.max_silence) * sample_period_ns();
+  }
 
   void know_reaction(SilenceReaction reaction, ReactionEvidence evidence) noexcept {
     on_silence_ = {reaction, evidence};
@@ -195,13 +202,16 @@ class Drive {
 
  private:
   void judge_silence(std::int64_t now_ns) noexcept;
-  bool is_possible(double velocity) noexcept;  ///< Fails if it is not.
+  bool accept_motion(double position, double velocity, std::int64_t now_ns) noexcept;  ///< Returns whether it is valid.
+  bool is_possible(double velocity) noexcept;                                          ///< Fails if it is not.
   void note_order(double torque) noexcept;
 
   DriveParameters drive_;
   double to_joint_;  // joint angle = to_joint_ · motor angle, motor torque = to_joint_ · joint torque
   DriveStatus status_;
   DriveSample sample_;
+  LatePosition position_;          // of the joint
+  PositionDifference difference_;  // of the motor
   KnownReaction on_silence_;
   std::int64_t effort_ns_ = 0;
   std::array<double, kOrders> ordered_{};  // N·m, of the joint, in the last cycles; the newest one first

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
+#include <numbers>
 
 #include "simulation/devices/device_rig.h"
 
@@ -331,16 +331,19 @@ TEST_F(TwoAxes, StartAgainTogetherWhereOneFailedAndCouldStillBrake) {
   }
 }
 
-TEST(PositionDifference, ContinuesOverTheOverflowOf32Bits) {
-  PositionDifference difference;
-  constexpr std::int64_t kMax = std::numeric_limits<std::int32_t>::max();
-  for (std::int64_t i = 0; i < 20; ++i) {
-    const std::int64_t position = kMax - 100 + 20 * i;
-    EXPECT_EQ(difference.add(static_cast<std::int32_t>(position), 1'000'000 * i), position);
-    if (i > 0) {
-      EXPECT_NEAR(difference.velocity(), 20'000, 1.0e-6);
-    }
-  }
+TEST(Cia402Drive, ContinuesItsPositionOverTheOverflowOf32Bits) {
+  DeviceRig rig;
+  const Cia402Pair pair = cia402_pair(2);
+  add(rig, pair);
+  rig.command_all({});
+  rig.cycle();  // The device takes its zero.
+  rig.motor().position = std::ldexp(2 * std::numbers::pi / pair.device.counts_per_turn, 31) - 0.1;
+  ASSERT_TRUE(rig.runs());
+  const double before = rig.drive().sample().joint.position;
+  rig.motor().velocity = 10;
+  rig.run(0.1);
+  EXPECT_EQ(rig.drive().status().state, DriveState::kRunning) << rig.drive().words();
+  EXPECT_NEAR(rig.drive().sample().joint.position - before, 10 * 0.1 / pair.drive.drive.gear, 0.02);
 }
 
 }  // namespace

@@ -25,6 +25,12 @@ std::int64_t value_of(const Pdo& pdo, const std::array<std::int64_t, canopen::kM
   return 0;
 }
 
+/// Returns the counts next to `last` whose lower 32 bits are `raw`.
+std::int64_t continued(std::int64_t last, std::int32_t raw) noexcept {
+  const auto low = static_cast<std::uint32_t>(last);
+  return last + static_cast<std::int32_t>(static_cast<std::uint32_t>(raw) - low);
+}
+
 std::string hexadecimal(std::uint64_t value) {
   char text[32];
   std::snprintf(text, sizeof text, "0x%04llX", static_cast<unsigned long long>(value));
@@ -62,7 +68,7 @@ void Cia402Drive::restart(bool reset, std::int64_t now_ns) noexcept {
   reset_ = reset;
   power_ = PowerState::kUnknown;
   emergency_ = 0;
-  position_.clear();
+  counts_.reset();
   velocity_ = 0;
   velocity_ns_ = 0;
   next_nmt_ns_ = now_ns;
@@ -116,9 +122,14 @@ void Cia402Drive::receive_state(const can_frame& frame, std::int64_t now_ns) noe
   power_ = power_state(statusword_);
   const auto raw = static_cast<std::int32_t>(value_of(pdos.state, values, own(kPositionEntry)));
   const double count = 2 * std::numbers::pi / setup_.units().counts_per_turn;
-  const double position = count * static_cast<double>(position_.add(raw, now_ns));
+  counts_ = continued(counts_.value_or(raw), raw);
+  const double position = count * static_cast<double>(*counts_);
   if (parameters_.velocity_pdo && velocity_ns_ == 0) return judge_power();
-  accept_position(position, parameters_.velocity_pdo ? velocity_ : count * position_.velocity(), now_ns);
+  if (parameters_.velocity_pdo) {
+    accept_position(position, velocity_, now_ns);
+  } else {
+    accept_position(position, now_ns);
+  }
   const auto torque = static_cast<std::int16_t>(value_of(pdos.state, values, own(kTorqueEntry)));
   accept_motor_torque(setup_.units().torque(torque), now_ns);
   judge_power();

@@ -14,7 +14,6 @@
 
 #include "drivers/can/cia402/cia402_parameters.h"
 #include "drivers/can/cia402/drive_setup.h"
-#include "drivers/can/cia402/position_difference.h"
 #include "drivers/can/cia402/power_state.h"
 #include "drivers/can/drive.h"
 
@@ -67,9 +66,9 @@ class Cia402Drive final : public Drive {
   std::uint16_t statusword_ = 0;
   PowerState power_ = PowerState::kUnknown;
   std::uint16_t emergency_ = 0;
-  PositionDifference position_;
-  double velocity_ = 0;           // rad/s of the motor, from its PDO
-  std::int64_t velocity_ns_ = 0;  // when it was received; 0: not yet
+  std::optional<std::int64_t> counts_;  // position, continued over the overflow of 32 bits
+  double velocity_ = 0;                 // rad/s of the motor, from its PDO
+  std::int64_t velocity_ns_ = 0;        // when it was received; 0: not yet
   std::int64_t next_nmt_ns_ = 0;
   std::int64_t deadline_ns_ = 0;
   unsigned reset_cycles_ = 0;  // for which the bit that resets a fault stays set
