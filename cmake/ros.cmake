@@ -5,7 +5,7 @@ set(PYTHON_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "the Python that ROS was b
 
 find_package(catkin REQUIRED COMPONENTS
   actionlib_msgs diagnostic_msgs dynamic_reconfigure geometry_msgs message_generation nav_msgs roscpp rosgraph_msgs roslib sensor_msgs std_msgs std_srvs
-  tf2_msgs)
+  tf2_msgs trajectory_msgs)
 
 catkin_python_setup()
 add_action_files(FILES FollowPath.action)

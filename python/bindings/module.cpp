@@ -6,7 +6,9 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -225,6 +227,17 @@ void bind_closed_loop(py::module_& module) {
                [](const std::string& path, const Values& values) { return ClosedLoop(parameters_from(path, values)); }),
            py::arg("path"), py::arg("values"))
       .def("command", [](ClosedLoop& loop, double linear, double angular) { loop.command(planar(linear, angular)); })
+      .def(
+          "request",
+          [](ClosedLoop& loop, const std::array<double, 6>& pose, std::uint64_t mode,
+             const std::array<double, kRequestJoints>& joints) {
+            const auto& [x, y, height, roll, pitch, yaw] = pose;
+            loop.request({.twist = {},
+                          .posture = {.height = height, .roll = roll, .pitch = pitch, .x = x, .y = y, .yaw = yaw},
+                          .mode = mode,
+                          .joints = joints});
+          },
+          py::arg("pose"), py::arg("mode"), py::arg("joints"))
       .def("e_stop", &ClosedLoop::e_stop)
       .def("e_stop_reset", &ClosedLoop::e_stop_reset)
       .def("heartbeat", &ClosedLoop::heartbeat)

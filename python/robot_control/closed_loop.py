@@ -13,7 +13,7 @@ from os import PathLike
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from robot_control._robot_control import ClosedLoop as _ClosedLoop
 from robot_control._robot_control import end_log, log_into
@@ -23,6 +23,18 @@ from robot_control.parameter_layers import flow_text, layered
 
 Log = dict[str, NDArray[np.float64]]
 Command = Callable[[float], tuple[float, float]] | tuple[float, float] | None
+
+FEET = ("front_left", "front_right", "rear_left", "rear_right")
+_LIE, _LIFT, _MOVE_JOINTS = 1, 3, 7
+"""StanceMode of src/signals/legged/legged_command.h; standing up follows lying down."""
+_POSE = (0.0,) * 6
+_JOINTS = (0.0,) * 12
+
+
+def _index(word: str, words: tuple[str, ...], what: str) -> int:
+    if word not in words:
+        raise ValueError(f"there is no {what} {word!r}; name one of {', '.join(words)}")
+    return words.index(word)
 
 
 class ClosedLoop:
@@ -117,6 +129,61 @@ class ClosedLoop:
     def command(self, linear: float = 0.0, angular: float = 0.0) -> None:
         """Acts as a message on cmd_vel: linear [m/s], angular [rad/s]; it times out like cmd_vel."""
         self._loop.command(linear, angular)
+
+    def set_posture(self, posture: str) -> None:
+        """Acts as a call of `set_posture` of a robot on legs.
+
+        Args:
+            posture: "standing" or "lying"
+
+        Raises:
+            ValueError: another word.
+        """
+        self._loop.request(_POSE, _index(posture, ("lying", "standing"), "posture") + _LIE, _JOINTS)
+
+    def body_pose(
+        self,
+        *,
+        x: float = 0.0,
+        y: float = 0.0,
+        height: float = 0.0,
+        roll: float = 0.0,
+        pitch: float = 0.0,
+        yaw: float = 0.0,
+    ) -> None:
+        """Acts as a message on body_pose of a robot on legs: m and rad from the nominal pose. It times out like one."""
+        self._loop.request((x, y, height, roll, pitch, yaw), 0, _JOINTS)
+
+    def foot_target(self, foot: str, *, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> None:
+        """Acts as a message on foot_target of a robot on legs.
+
+        Args:
+            foot: front_left, front_right, rear_left or rear_right
+            x: m, to the front of where it stood
+            y: m, to the left
+            z: m, above the ground
+
+        Raises:
+            ValueError: another foot.
+        """
+        self._loop.request((x, y, z, 0.0, 0.0, 0.0), _index(foot, FEET, "foot") + _LIFT, _JOINTS)
+
+    def joint_targets(self, positions: ArrayLike) -> None:
+        """Moves the joints of a robot on legs that lies, as `joint_trajectory` does.
+
+        They are there 0.1 s later, as far as range, speed and acceleration allow. To follow a path, call it every few
+        cycles with the place 0.1 s ahead.
+
+        Args:
+            positions: rad, shape (12,), in the order of `robot["joints"]`
+
+        Raises:
+            ValueError: another shape.
+        """
+        angles = np.asarray(positions, dtype=float)
+        if angles.shape != (len(_JOINTS),):
+            raise ValueError(f"positions must have the shape ({len(_JOINTS)},), not {angles.shape}")
+        self._loop.request(_POSE, _MOVE_JOINTS, angles.tolist())
 
     def e_stop(self) -> None:
         """Acts as a call of `e_stop_trigger`: the robot brakes, and the stop is latched."""

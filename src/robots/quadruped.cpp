@@ -55,7 +55,7 @@ std::unique_ptr<ControllerLaw> Quadruped::make_controller() const {
 }
 
 std::unique_ptr<MonitorLaw> Quadruped::make_monitor() const {
-  SafetyParameters safety = parameters_.safety;
+  SafetyParameters safety = legged_limits(parameters_.safety, machine_);
   safety.imu_lost.reaction = Reaction::kBrake;
   safety.lift.reaction = Reaction::kOff;  // a robot that lies stands on no foot
   return std::make_unique<MonitorOf<Monitor<LeggedConditions>>>(safety, machine_, parameters_.loop.period());

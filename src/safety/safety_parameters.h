@@ -3,9 +3,9 @@
 ///
 /// A condition is active when a quantity measured from raw sensors and the command is beyond `limit` without
 /// interruption for `persistence`. An active condition is a cause, and `reaction` is what the monitor does. The
-/// conditions and their defaults: signals/stop_causes.def. The quantities are defined in wheel_limits.h,
-/// wheel_following.h, yaw_agreement.h, torque_oscillation.h, body_conditions.h, sensor_presence.h and
-/// machine_conditions.h.
+/// conditions and their defaults: signals/stop_causes.def. Those of wheels are defined in wheel_limits.h,
+/// wheel_following.h, yaw_agreement.h and torque_oscillation.h. Those of legs are in joint_conditions.h and
+/// foot_conditions.h, the others in body_conditions.h, sensor_presence.h and machine_conditions.h.
 
 #include <array>
 #include <cstdint>

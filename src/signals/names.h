@@ -18,6 +18,7 @@
 #include "signals/gate_report.h"
 #include "signals/injected_fault.h"
 #include "signals/permit.h"
+#include "signals/robot_kinds.h"
 #include "signals/roles.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
@@ -37,8 +38,8 @@ inline constexpr auto kStopCauseNames = std::to_array<BitName>({
 inline constexpr auto kResetRefusalNames = std::to_array<BitName>({
     {kRefusalCauseActive, "cause_active", "a cause of the stop persists", "remove the cause"},
     {kRefusalCommand, "command", "a motion is still being requested, or it is not certain yet that none is",
-     "stop the sender on cmd_vel and wait for cmd_vel_timeout, or let it send zero"},
-    {kRefusalMoving, "moving", "the robot has not come to rest", "wait until every wheel stands"},
+     "stop the sender on {request} and wait for {request_timeout}, or let it send zero"},
+    {kRefusalMoving, "moving", "the robot has not come to rest", "wait until every joint stands"},
     {kRefusalInit, "init", "the monitor still waits for a node", "start the missing node"},
     {kRefusalSilent, "silent", "no sensor frame comes", "look whether the driver node runs, then ask again"},
     {kRefusalPaused, "paused", "the simulation is paused", "let it run ({driver}/set_pause), then ask again"},
@@ -82,10 +83,10 @@ inline constexpr auto kGateReasonNames = std::to_array<BitName>({
 });
 
 inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
-    {kReasonNoCommand, "no_command", "nothing was received on cmd_vel in this run", "publish on cmd_vel"},
-    {kReasonTimedOut, "timed_out", "the last cmd_vel is older than cmd_vel_timeout",
-     "publish on cmd_vel more often than every cmd_vel_timeout"},
-    {kReasonRefused, "refused", "the last cmd_vel was NaN or infinite", "repair the sender on cmd_vel"},
+    {kReasonNoCommand, "no_command", "nothing was received on {request} in this run", "publish on {request}"},
+    {kReasonTimedOut, "timed_out", "the last {request} is older than {request_timeout}",
+     "publish on {request} more often than every {request_timeout}"},
+    {kReasonRefused, "refused", "the last {request} was NaN or infinite", "repair the sender on {request}"},
     {kReasonSpeedLimited, "speed_limited", "cmd_vel is above max_linear_speed or max_angular_speed", ""},
     {kReasonAccelerationLimited, "acceleration_limited", "the acceleration limit shapes the motion", ""},
     {kReasonJerkLimited, "jerk_limited", "the jerk limit shapes the motion", ""},
@@ -97,21 +98,23 @@ inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
     {kReasonHolding, "holding", "standing with zero command: the brake holds the position", ""},
     {kReasonPermitSlow, "permit_slow", "the safety monitor limits the speed", "read the warning in safety_status"},
     {kReasonJerkYielded, "jerk_yielded", "it stopped at zero with more jerk than the limit, rather than beyond", ""},
-    {kReasonStale, "stale", "the last cmd_vel_stamped was older than cmd_vel_timeout, or of the future",
-     "synchronise the sender's clock with the robot's, or publish on cmd_vel, whose age counts from its arrival"},
+    {kReasonStale, "stale", "the last message was older by its stamp than {request_timeout}, or of the future",
+     "synchronise the sender's clock with the robot's, or send without a stamp: the age then counts from the arrival"},
     {kReasonManySenders, "many_senders", "more than one node sends commands, which one_sender forbids",
      "stop all but one"},
     {kReasonRevoked, "revoked",
      "a sender goes on requesting motion that was requested before a stop, a restart or a pause, or meanwhile",
-     "let it send a zero velocity, or restart it"},
+     "let it send zero, or restart it"},
     {kReasonPartIgnored, "part_ignored", "a part of the request is ignored, because this robot cannot execute it",
-     "request only what this robot can do; a differential drive takes linear.x and angular.z"},
+     "request only what this robot can do; a differential drive takes linear.x and angular.z, a robot on legs no twist"},
     {kReasonCurvatureKept, "curvature_kept", "one axis was scaled to keep the commanded curvature", ""},
     {kReasonSaturated, "saturated", "a wheel's torque or speed is at its limit", ""},
     {kReasonOutOfReach, "out_of_reach", "the requested pose is beyond the ranges of the legs: the nearest one is kept",
      "request a pose within the ranges of docs/legs.md"},
     {kReasonNotStanding, "not_standing", "a pose or a foot is requested, and the robot does not stand",
      "call set_posture with 'standing'"},
+    {kReasonNotLying, "not_lying", "positions of joints are requested, and the robot does not lie",
+     "call set_posture with 'lying'"},
 });
 
 inline constexpr auto kRequestPartNames = std::to_array<BitName>({
@@ -128,6 +131,7 @@ inline constexpr auto kRequestPartNames = std::to_array<BitName>({
     {kPartX, "posture.x", "", ""},
     {kPartY, "posture.y", "", ""},
     {kPartYaw, "posture.yaw", "", ""},
+    {kPartJoints, "joints", "", ""},
 });
 
 inline constexpr auto kDriverFaultNames = std::to_array<BitName>({
@@ -213,7 +217,7 @@ constexpr std::string_view name_of(LinkState state) noexcept {
 }
 
 constexpr std::string_view name_of(LegPhase phase) noexcept {
-  constexpr std::array<std::string_view, 5> kNames{"lying", "gathering", "rising", "standing", "lowering"};
+  constexpr std::array<std::string_view, 6> kNames{"lying", "gathering", "rising", "standing", "lowering", "joints"};
   const auto index = static_cast<std::size_t>(phase);
   return index < kNames.size() ? kNames[index] : "unknown";
 }
@@ -268,14 +272,15 @@ inline std::string names_of(std::span<const BitName> table, std::uint64_t bits, 
   return text;
 }
 
-/// Returns "the emergency stop button is pressed (release the button); …". Allocates.
-inline std::string sentences_of(std::span<const BitName> table, std::uint64_t bits) {
+/// Returns "the emergency stop button is pressed (release the button); …" for a robot of this kind. Allocates.
+inline std::string sentences_of(std::span<const BitName> table, std::uint64_t bits,
+                                std::string_view kind = kWheeledKind) {
   std::string text;
   for (const BitName& row : table) {
     if ((bits & row.bit) == 0) continue;
     if (!text.empty()) text += "; ";
-    text += row.sentence;
-    if (!row.remedy.empty()) text.append(" (").append(with_programs(row.remedy)).append(")");
+    text += with_programs(row.sentence, kind);
+    if (!row.remedy.empty()) text.append(" (").append(with_programs(row.remedy, kind)).append(")");
   }
   return text;
 }

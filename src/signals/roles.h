@@ -29,15 +29,16 @@ constexpr std::string_view program_of(Role role) noexcept {
   return kRoles[static_cast<std::size_t>(role)].program;
 }
 
+/// Replaces each `place` in a text by a word that does not contain it.
+inline std::string replaced(std::string text, std::string_view place, std::string_view word) {
+  for (std::size_t at = 0; (at = text.find(place)) != std::string::npos;) text.replace(at, place.size(), word);
+  return text;
+}
+
 /// Replaces each role in braces by its program.
 inline std::string with_programs(std::string_view text) {
   std::string filled(text);
-  for (const RoleNames& row : kRoles) {
-    const std::string place = "{" + std::string(row.role) + "}";
-    for (std::size_t at = 0; (at = filled.find(place)) != std::string::npos;) {
-      filled.replace(at, place.size(), row.program);
-    }
-  }
+  for (const RoleNames& row : kRoles) filled = replaced(filled, "{" + std::string(row.role) + "}", row.program);
   return filled;
 }
 

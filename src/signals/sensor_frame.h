@@ -81,6 +81,7 @@ struct SensorFrame {
   std::uint64_t contact_count = 0;  ///< contacts with a sensor
 
   /// Contacts of the model, as many as fit: the wheels in the order of DriveTrain::wheels, then the casters.
+  /// On legs they are the feet in the order of LegModel::legs.
   std::array<ContactSample, kMaxContacts> contacts{};
   std::uint64_t link_count = 0;
   std::array<LinkStatus, kMaxLinks> links{};  ///< the links from the driver to its drives and sensors

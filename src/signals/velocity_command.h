@@ -1,7 +1,11 @@
 #pragma once
 /// The loop has two inputs: a command with what the machine shall do, and an operator's requests.
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #include "signals/geometry.h"
@@ -19,12 +23,16 @@ struct Posture {
   double yaw = 0;     ///< rad
 };
 
+/// A request names the positions of at most this many joints.
+inline constexpr std::size_t kRequestJoints = 12;
+
 /// A request states what a machine shall do. The machine executes the parts that it can execute; the controller names
 /// the others (CommandFrame::ignored).
 struct Request {
   Twist twist{};  ///< base axes
   Posture posture{};
-  std::uint64_t mode = 0;  ///< number of a way of moving, of the kind of machine; 0: its default
+  std::uint64_t mode = 0;                       ///< number of a way of moving, of the kind of machine; 0: its default
+  std::array<double, kRequestJoints> joints{};  ///< rad or m, of the driven joints; used by modes that move joints
 };
 
 /// The parts of a request; bits of CommandFrame::ignored.
@@ -42,6 +50,7 @@ enum RequestPart : std::uint64_t {
   kPartX = 1u << 10,
   kPartY = 1u << 11,
   kPartYaw = 1u << 12,
+  kPartJoints = 1u << 13,
 };
 
 /// Returns the RequestPart bits of the parts that are not zero.
@@ -65,6 +74,7 @@ inline std::uint64_t parts_of(const Request& request) noexcept {
   if (request.posture.x != 0) parts |= kPartX;
   if (request.posture.y != 0) parts |= kPartY;
   if (request.posture.yaw != 0) parts |= kPartYaw;
+  if (std::ranges::any_of(request.joints, [](double joint) { return joint != 0; })) parts |= kPartJoints;
   return parts;
 }
 
@@ -72,7 +82,15 @@ inline bool finite(const Request& request) noexcept {
   const Posture& posture = request.posture;
   return finite(request.twist) && std::isfinite(posture.height) && std::isfinite(posture.roll) &&
          std::isfinite(posture.pitch) && std::isfinite(posture.x) && std::isfinite(posture.y) &&
-         std::isfinite(posture.yaw);
+         std::isfinite(posture.yaw) &&
+         std::ranges::all_of(request.joints, [](double joint) { return std::isfinite(joint); });
+}
+
+/// Returns the number of joints that the log writes of a request: all, or none where each is zero.
+inline std::size_t logged_joints(const Request& request) noexcept {
+  const bool any =
+      std::ranges::any_of(request.joints, [](double joint) { return std::bit_cast<std::uint64_t>(joint) != 0; });
+  return any ? kRequestJoints : 0;
 }
 
 /// The value of VelocityCommand::contested for a command without sender, which is neither a request nor the end of a

@@ -56,10 +56,11 @@ TEST_F(CommandWatchTest, NamesThePartsThatTheMachineCannotExecuteAndPassesTheOth
   request.content.twist.angular[0] = -0.1;
   request.content.posture.height = 0.05;
   request.content.mode = 2;
+  request.content.joints[11] = 0.1;
   ++request.count;
   const Request& passed = watch.step(request, 1);
   EXPECT_EQ(passed.twist.linear[0], 0.5);
-  EXPECT_EQ(watch.ignored(), kPartLinearY | kPartAngularX | kPartHeight | kPartMode);
+  EXPECT_EQ(watch.ignored(), kPartLinearY | kPartAngularX | kPartHeight | kPartMode | kPartJoints);
   EXPECT_EQ(watch.reasons(), kReasonPartIgnored);
   EXPECT_EQ(watch.partial(), 1u);
   EXPECT_EQ(watch.refused(), 0u);

@@ -90,8 +90,8 @@ TEST_F(CommandInputTest, AClockThatIsAnHourOffIsReportedOnce) {
   EXPECT_EQ(value().count, 0u);
   EXPECT_EQ(reported(),
             "W cmd_vel_stamped of /teleop is 3600 s old by its stamp, more than cmd_vel_timeout (1.25 s): refused; it "
-            "was long under way, or that sender's clock is behind; synchronise it (chrony), or let it publish on "
-            "cmd_vel, whose age counts from its arrival\n");
+            "was long under way, or that sender's clock is behind; synchronise it (chrony), or let it send without "
+            "a stamp: the age then counts from the arrival\n");
   receive_stamped("/teleop", 0.5, -kHour);
   EXPECT_THAT(reported(), HasSubstr("/teleop is stamped 3600 s in the future")) << "that is another fault";
   receive_stamped("/ahead", 0.5, -kHour);

@@ -26,6 +26,9 @@ TEST(LegMessages, AFootTargetLiftsTheFootOfItsName) {
   EXPECT_EQ(request->posture.height, 0.08);
   message.foot = "tail";
   EXPECT_FALSE(request_of(message).has_value());
+  message.foot.clear();
+  ASSERT_TRUE(request_of(message).has_value());
+  EXPECT_EQ(parts_of(*request_of(message)), 0u);
 }
 
 TEST(LegMessages, OnlyTwoPosturesCanBeSet) {

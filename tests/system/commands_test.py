@@ -70,7 +70,7 @@ class CommandsTest(RobotTestCase):
             return "stale" in self.desk.reasons and "stale" in self.desk.values.get("reasons", "")
 
         wait_for("the reason", reported, every=lambda: self.desk.send_aged(0.5, age))
-        self.assertIn("the last cmd_vel_stamped was older", self.desk.message)
+        self.assertIn("the last message was older by its stamp", self.desk.message)
         self.assertGreater(int(self.desk.values["commands_stale"]), 0)
         # An earlier test may have caused the report less than 10 s ago: then it appears after they are over.
         wait_for(words, lambda: self.log.count(words) > before, every=lambda: self.desk.send_aged(0.5, age))
@@ -97,7 +97,7 @@ class CommandsTest(RobotTestCase):
             every=lambda: sleeper.publish(message),
         )
         self.assertIn(f"motion of {rospy.get_name()} is refused", self.log)
-        self.assertIn(f"{rospy.get_name()}: let it send a zero velocity", self.why())
+        self.assertIn(f"{rospy.get_name()}: let it send zero", self.why())
         sleeper.publish(TwistStamped())
         self.drive_stamped()
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""sim.launch robot:=quadbot: a robot on legs stands up, sways, lifts a foot, is stopped, reset and lies down."""
+"""sim.launch robot:=quadbot: a robot on legs stands up, sways, lifts a foot, moves its joints, is stopped and reset."""
 
 import math
 import os
@@ -17,6 +17,7 @@ from robot_control.msg import BodyPose, FootTarget, LegState, RobotStatus, Safet
 from robot_control.srv import SetPosture
 from std_srvs.srv import Trigger
 from system_support import CONTROLLER, LIMIT, init_test_node, refusal, repository, wait_for
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 SEND_PERIOD = 0.1
 """s; a twelfth of request_timeout."""
@@ -44,6 +45,7 @@ class LegsTest(unittest.TestCase):
             rospy.Subscriber(topic, kind, lambda message, name=name: setattr(cls, name, message))
         cls.body_pose = rospy.Publisher("body_pose", BodyPose, queue_size=1, tcp_nodelay=True)
         cls.foot_target = rospy.Publisher("foot_target", FootTarget, queue_size=1, tcp_nodelay=True)
+        cls.joints = rospy.Publisher("joint_trajectory", JointTrajectory, queue_size=1, tcp_nodelay=True)
         cls.cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True)
         wait_for("all topics", lambda: None not in (cls.legs, cls.safety, cls.truth), cls.startup_limit())
         rospy.wait_for_service("set_posture", LIMIT)
@@ -140,6 +142,50 @@ class LegsTest(unittest.TestCase):
             lambda: "there is no foot 'tail'; name one of front_left, front_right" in self.launch.output,
             every=lambda: self.foot_target.publish(FootTarget(foot="tail")),
         )
+
+    def move(self, joint: str, *points: tuple[float, float]) -> None:
+        """Publishes a trajectory of (time, position)."""
+        message = JointTrajectory(joint_names=[joint])
+        for time_from_start, position in points:
+            point = JointTrajectoryPoint(positions=[position], time_from_start=rospy.Duration(time_from_start))
+            message.points.append(point)
+        self.joints.publish(message)
+
+    def test_joint_trajectory_moves_a_robot_that_lies_and_is_refused_in_words(self) -> None:
+        wait_for("permission", lambda: self.safety is not None and self.safety.permit_name == "drive")
+        wait_for("lying", lambda: self.set_posture("lying")[0] and self.legs.posture == "lying")
+        wait_for("a subscriber", lambda: self.joints.get_num_connections() > 0)
+        self.joints.publish(JointTrajectory())  # a stop may have revoked this sender: its zero ends that
+        knee = self.legs.name.index("front_left_knee_joint")
+        folded = self.legs.actual[knee]
+        time.sleep(SEND_PERIOD)
+        self.move("front_left_knee_joint", (1.0, folded + 0.3))
+        wait_for("moving joints", lambda: self.legs.posture == "joints")
+        wait_for("the end of the path", lambda: abs(self.legs.actual[knee] - folded - 0.3) < 0.03)
+        wait_for("the report", lambda: "joint_trajectory of /legs_test" in self.launch.output)
+        wait_for("its end", lambda: ": done" in self.launch.output)
+
+        for send, sentence in (
+            (lambda: self.move("tail", (1, 0)), "there is no joint 'tail'"),
+            (lambda: self.move("front_left_knee_joint", (1, math.nan)), "one of its positions is nan"),
+            (lambda: self.move("front_left_knee_joint", (0.05, folded)), "give it more time"),
+            (lambda: self.move("front_left_knee_joint", (2, folded), (1, folded)), "is not after 2 s"),
+        ):
+            send()
+            wait_for(sentence, lambda sentence=sentence: sentence in self.launch.output)
+            time.sleep(0.15)  # two refusals within 0.1 s are one line
+        self.assertEqual(self.legs.posture, "joints")
+
+        # An empty trajectory stops the joints on their way.
+        self.move("front_left_knee_joint", (10.0, folded))
+        time.sleep(0.5)
+        self.joints.publish(JointTrajectory())
+        wait_for("the end by an empty one", lambda: "sent an empty one" in self.launch.output)
+        self.assertGreater(self.legs.actual[knee], folded + 0.2)
+
+        self.stand()
+        self.move("front_left_knee_joint", (2, folded))
+        wait_for("a refusal", lambda: "the robot does not lie, it is standing" in self.launch.output)
 
     def test_the_controller_of_wheels_refuses_it_and_names_its_own(self) -> None:
         text = refusal(CONTROLLER, f"_urdf:={QUADBOT}")

@@ -43,7 +43,7 @@ MAY_INCLUDE = {
     "estimation": {"signals", "machine", "machine/wheeled", "parameters"},
     "estimation/legged": {"signals", "machine", "machine/legs"},
     "control/legged": {"signals", "machine", "machine/legs", "control", "parameters"},
-    "safety/conditions/legged": {"signals", "machine/legs", "safety"},
+    "safety/conditions/legged": {"signals", "machine", "machine/legs", "safety"},
     "control": {"signals", "machine", "machine/wheeled", "parameters"},
     "safety": {"signals", "machine", "machine/wheeled", "parameters"},
     "gate": {"signals", "bus", "parameters"},

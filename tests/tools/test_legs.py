@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from robot_control import RobotError
+from robot_control import ClosedLoop, RobotError
 from robot_control.inspect.description import describe, mjcf, stand
 from robot_control.inspect.report import report
 from robot_control.installed_files import share_file
@@ -57,3 +57,38 @@ def test_a_quadruped_is_reported_with_its_legs():
 
 def test_its_simulated_model_keeps_its_joints():
     assert mjcf(QUADBOT).count("_joint") >= 12
+
+
+def test_a_closed_loop_on_legs_moves_its_joints_while_it_lies_and_stands_up():
+    loop = ClosedLoop(urdf=QUADBOT, params={"mujoco_plant": {"sensor_errors": "ideal"}})
+    knee = "front_left_knee_joint"
+    folded = loop.step(300)[f"{knee}_position"][-1]
+    names = [joint["name"] for joint in loop.robot["joints"]]
+    resting = loop.step()
+    place = [resting[f"{name}_position"][-1] for name in names]
+    for _ in range(10):
+        place[2] += 0.03
+        loop.joint_targets(place)
+        moved = loop.step(50)
+    assert moved[f"{knee}_position"][-1] == pytest.approx(folded + 0.3, abs=0.05)
+    loop.set_posture("standing")
+    loop.step(1000)
+    loop.set_posture("standing")
+    low = loop.step(2000)["truth_z"][-1]
+    for _ in range(5):
+        loop.body_pose(height=-0.03)
+        sunk = loop.step(200)
+    assert sunk["truth_z"][-1] == pytest.approx(low - 0.03, abs=0.005)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda loop: loop.set_posture("sitting"), "there is no posture 'sitting'; name one of lying, standing"),
+        (lambda loop: loop.foot_target("tail"), "there is no foot 'tail'; name one of front_left, front_right"),
+        (lambda loop: loop.joint_targets([0.0] * 11), r"positions must have the shape \(12,\)"),
+    ],
+)
+def test_an_unknown_word_and_another_number_of_joints_are_refused(call, words):
+    with pytest.raises(ValueError, match=words):
+        call(ClosedLoop(urdf=QUADBOT))

@@ -16,7 +16,8 @@ constexpr double kShift = 0.6;          // of the way from the middle to the cen
 constexpr double kArrived = 0.0005;     // m
 constexpr double kArrivedSpeed = 0.02;  // m/s and rad/s
 constexpr double kMinTime = 0.1;        // s, of gathering
-constexpr std::uint64_t kNoWish = kReasonNoCommand | kReasonTimedOut | kReasonRefused | kReasonManySenders;
+constexpr std::uint64_t kNoWish =
+    kReasonNoCommand | kReasonTimedOut | kReasonRefused | kReasonManySenders | kReasonNotLying;
 constexpr std::uint64_t kPose = kPartHeight | kPartRoll | kPartPitch | kPartX | kPartY | kPartYaw;
 constexpr std::size_t kX = 0, kY = 1, kZ = 2, kRoll = 3, kPitch = 4, kYaw = 5;
 
@@ -49,7 +50,12 @@ LegController::LegController(const LegModel& robot, double timeout, double perio
       dynamics_(robot),
       tuning_(leg_tuning(robot)),
       ground_(robot.belly),
-      state_(CommandWatch(timeout, period, kPose | kPartMode)) {
+      state_(CommandWatch(timeout, period, kPose | kPartMode | kPartJoints)) {
+  const std::array<JointBounds, kLegsJoints> bounds = joint_bounds(robot);
+  for (std::size_t i = 0; i < kLegsJoints; ++i) {
+    joint_ranges_[i] = bounds[i].range;
+    joint_motion_[i] = bounds[i].motion;
+  }
   const LegGeometry& first = legs_[0].kinematics.geometry();
   nominal_ = tuning_.height - first.hip.z() - first.upper.z() + robot.belly + legs_[0].foot_radius;
 }
@@ -86,8 +92,11 @@ void LegController::step(const ControlInput& input, CommandFrame& out) noexcept 
     out.reasons |= kReasonPermitRamp;
     request = {.twist = {}, .posture = {}, .mode = kStanceLie};
   }
-  const bool of_standing = (parts_of(request) & kPose) != 0 || request.mode >= kStanceLift;
+  const bool of_joints = request.mode == kStanceJoints;
+  const bool of_standing = !of_joints && ((parts_of(request) & kPose) != 0 || request.mode >= kStanceLift);
   if (of_standing && state_.phase != LegPhase::kStanding) out.reasons |= kReasonNotStanding;
+  const bool lies = state_.phase == LegPhase::kLying || state_.phase == LegPhase::kJoints;
+  if (of_joints && !lies) out.reasons |= kReasonNotLying;
   const std::array<double, kLegsJoints> before = state_.angles;
   const bool began = advance(request, sensors, out.reasons);
   report(out);
@@ -111,11 +120,17 @@ bool LegController::advance(const Request& request, const SensorFrame& sensors, 
   const bool down = request.mode == kStanceLie;
   switch (state_.phase) {
     case LegPhase::kLying:
-      if (request.mode != kStanceStand) return false;
-      state_.phase = LegPhase::kGathering;
-      state_.elapsed = 0;
+      if (request.mode != kStanceStand && request.mode != kStanceJoints) return false;
       for (std::size_t i = 0; i < kLegsJoints; ++i) state_.from[i] = state_.angles[i] = sensors.joints[i].position;
+      state_.joints.begin(state_.from);
+      enter(request.mode == kStanceStand ? LegPhase::kGathering : LegPhase::kJoints, 0);
       return true;
+    case LegPhase::kJoints:
+      move_joints(request, reasons);
+      state_.from = state_.angles;
+      if (request.mode == kStanceStand) enter(LegPhase::kGathering, 0);
+      if (down) enter(LegPhase::kLying, 0);
+      return false;
     case LegPhase::kGathering:
       gather();
       if (down) state_.phase = LegPhase::kLying;
@@ -155,6 +170,22 @@ void LegController::enter(LegPhase phase, double elapsed) noexcept {
   state_.phase = phase;
   state_.elapsed = std::max(0.0, elapsed);
   state_.sinks = 0;
+}
+
+void LegController::move_joints(const Request& request, std::uint64_t& reasons) noexcept {
+  if (request.mode == kStanceJoints) {
+    std::array<double, kLegsJoints> target{};
+    for (std::size_t i = 0; i < kLegsJoints; ++i) {
+      target[i] = std::clamp(request.joints[i], joint_ranges_[i].lower, joint_ranges_[i].upper);
+      if (target[i] != request.joints[i]) reasons |= kReasonOutOfReach;
+    }
+    const std::uint64_t requested = state_.watch.request_cycle();
+    state_.joints.follow(target, state_.joints_requested != requested, joint_motion_, period_);
+    state_.joints_requested = requested;
+  } else {
+    state_.joints.stop(joint_motion_, period_);
+  }
+  for (std::size_t i = 0; i < kLegsJoints; ++i) state_.angles[i] = state_.joints.axes[i].value;
 }
 
 void LegController::gather() noexcept {
@@ -197,7 +228,7 @@ void LegController::rise(double elapsed, std::uint64_t& reasons) noexcept {
 
 void LegController::stand(const Request& request, std::uint64_t& reasons) noexcept {
   const bool lifts = request.mode >= kStanceLift && request.mode < kStanceLift + kLegs;
-  if (request.mode >= kStanceLift + kLegs) reasons |= kReasonPartIgnored;
+  if (request.mode > kStanceJoints) reasons |= kReasonPartIgnored;
   const std::uint64_t wanted = lifts ? request.mode - kStanceLift : kLegs;
   if (state_.lifted == kLegs && lifts) {
     state_.lifted = wanted;

@@ -1,8 +1,9 @@
 #pragma once
 /// The controller of a robot on four legs: it lies, stands up, moves its body while it stands, lifts one foot, and lies
-/// down.
+/// down. While it lies, its joints can be moved one by one.
 ///
 ///   lying ─► gathering ─► rising ─► standing ─► lowering ─► lying
+///   lying ─► joints ─► gathering or lying
 ///
 ///   lying      every joint brakes
 ///   gathering  the joints move from where they are to the lying posture
@@ -10,6 +11,9 @@
 ///              gravity amid the feet
 ///   standing   the body follows the request, and one foot may be in the air
 ///   lowering   body and foot return to the nominal pose, then the body sinks
+///   joints     the joints follow Request::joints (joint_motion.h), within their ranges and nine tenths of their speed
+///              limits. The legs carry their own weight alone. Without a request in force the joints stay where they
+///              are
 ///
 /// Request::mode is a StanceMode. A mode that the present posture does not allow has no effect. The posture of the
 /// request is
@@ -39,6 +43,7 @@
 
 #include "control/command_watch.h"
 #include "control/control_input.h"
+#include "control/legged/joint_motion.h"
 #include "control/legged/load_sharing.h"
 #include "control/legged/tracked_axis.h"
 #include "machine/legs/leg_dynamics.h"
@@ -63,9 +68,19 @@ struct LegTuning {
   AxisBounds linear;        ///< of the body, m
   AxisBounds angular;       ///< of the body, rad
   AxisBounds foot;          ///< m
+  AxisBounds joint;         ///< rad, of a joint while the robot lies
 };
 
 LegTuning leg_tuning(const LegModel& robot) noexcept;
+
+/// The bounds of a joint while the robot lies.
+struct JointBounds {
+  JointRange range;   ///< rad; ±∞ where it turns without end
+  AxisBounds motion;  ///< rad
+};
+std::array<JointBounds, kLegsJoints> joint_bounds(const LegModel& robot) noexcept;
+
+static_assert(kLegsJoints == kRequestJoints);
 
 class LegController {
  public:
@@ -91,6 +106,8 @@ class LegController {
     std::array<double, kLegsJoints> from{};    ///< rad, joint angles at the beginning of gathering
     std::array<double, kLegsJoints> angles{};  ///< rad, of the last command
     std::array<Vector3, kLegs> places{};       ///< m, aᵢ
+    JointMotion joints;
+    std::uint64_t joints_requested = 0;  ///< cycle of the request that they follow
     std::array<TrackedAxis, 6> body{};
     std::array<double, 6> held{};       ///< m and rad, pose from the nominal one that the body moves to
     std::uint64_t follows = 0;          ///< 1: `held` is that of a request in force
@@ -108,6 +125,7 @@ class LegController {
   bool advance(const Request& request, const SensorFrame& sensors, std::uint64_t& reasons) noexcept;
   void report(CommandFrame& out) const noexcept;
   void enter(LegPhase phase, double elapsed) noexcept;
+  void move_joints(const Request& request, std::uint64_t& reasons) noexcept;
   void gather() noexcept;
   void rise(double elapsed, std::uint64_t& reasons) noexcept;
   void stand(const Request& request, std::uint64_t& reasons) noexcept;
@@ -129,6 +147,8 @@ class LegController {
   std::array<Leg, kLegs> legs_;
   LegDynamics dynamics_;
   LegTuning tuning_;
+  std::array<JointRange, kLegsJoints> joint_ranges_;
+  std::array<AxisBounds, kLegsJoints> joint_motion_;
   double ground_ = 0;   ///< m, height of the ground in the axes of the lying base
   double nominal_ = 0;  ///< m, height of the standing body above the lying one
   State state_;

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "control/legged/leg_controller.h"
 
@@ -22,7 +24,22 @@ LegTuning leg_tuning(const LegModel& robot) noexcept {
   tuning.linear = {.speed = 0.4 * time, .acceleration = 3};
   tuning.angular = {.speed = 1.5 / time, .acceleration = 40 / length};
   tuning.foot = {.speed = 0.5 * time, .acceleration = 15};
+  tuning.joint = {.speed = 3 / time, .acceleration = 15 / length};
   return tuning;
+}
+
+std::array<JointBounds, kLegsJoints> joint_bounds(const LegModel& robot) noexcept {
+  constexpr double kOfLimit = 0.9;  // the gate clamps above it
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const AxisBounds motion = leg_tuning(robot).joint;
+  std::array<JointBounds, kLegsJoints> bounds;
+  for (std::size_t i = 0; i < kLegsJoints; ++i) {
+    const JointModel& joint = robot.joints[i];
+    bounds[i].range = joint.range.value_or(JointRange{-kInfinity, kInfinity});
+    bounds[i].motion = motion;
+    bounds[i].motion.speed = std::min(motion.speed, kOfLimit * joint.velocity_limit);
+  }
+  return bounds;
 }
 
 }  // namespace robot_control

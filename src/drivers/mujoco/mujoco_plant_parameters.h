@@ -56,7 +56,7 @@ struct MujocoPlantParameters : Errors {
   std::uint64_t actuator_delay = 0;  ///< cycles in addition to the one of the bus
 
   // This member describes the sensors.
-  bool contact_sensors = false;  ///< true: forces at wheels and casters (SensorFrame::contacts)
+  bool contact_sensors = false;  ///< true: forces at wheels and casters, or feet (SensorFrame::contacts)
 
   // These members describe the battery (battery.h), which does not discharge.
   double battery_voltage = 0;       ///< V without load; 0: no battery is reported

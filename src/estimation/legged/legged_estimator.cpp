@@ -135,18 +135,37 @@ LeggedEstimator::Feet LeggedEstimator::observe(const SensorFrame& sensors) const
   return feet;
 }
 
-void LeggedEstimator::weigh(const SensorFrame& sensors, const Feet& feet) noexcept {
-  const Quaterniond attitude = quaternion(state_.attitude);
-  const Vector3d up = attitude.conjugate() * Vector3d::UnitZ();
+void LeggedEstimator::measure_loads(const SensorFrame& sensors, const Vector3d& up) noexcept {
+  for (std::size_t leg = 0; leg < kLegs; ++leg)
+    state_.loads[leg] = up.dot(ConstMap(sensors.contacts[leg].force.data()));
+}
+
+void LeggedEstimator::compute_loads(const SensorFrame& sensors, const Feet& feet, const Vector3d& up) noexcept {
   LeggedEquations equations;
   dynamics_.step({.angles = feet.angles, .gravity = -kGravity * up}, equations);
-  const std::array<std::uint64_t, kLegs> before = state_.bears;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const JointSample* const joints = &sensors.joints[kLegJoints * leg];
     const Vector3d effort = Vector3d(joints[0].effort, joints[1].effort, joints[2].effort) -
                             equations.bias.segment<3>(static_cast<Eigen::Index>(6 + kLegJoints * leg));
     const double load = -up.dot(feet.jacobian[leg].transpose().inverse() * effort);
-    state_.loads[leg] = std::isfinite(load) ? load : 0;
+    state_.loads[leg] = load;
+  }
+}
+
+void LeggedEstimator::weigh(const SensorFrame& sensors, const Feet& feet) noexcept {
+  const Quaterniond attitude = quaternion(state_.attitude);
+  const Vector3d up = attitude.conjugate() * Vector3d::UnitZ();
+  const bool sensed =
+      sensors.contact_count >= kLegs && std::all_of(sensors.contacts.begin(), sensors.contacts.begin() + kLegs,
+                                                    [](const ContactSample& contact) { return contact.valid != 0; });
+  if (sensed) {
+    measure_loads(sensors, up);
+  } else {
+    compute_loads(sensors, feet, up);
+  }
+  const std::array<std::uint64_t, kLegs> before = state_.bears;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    if (!std::isfinite(state_.loads[leg])) state_.loads[leg] = 0;
     const double bound = (state_.bears[leg] != 0 ? kFloats : kBears) * share_;
     state_.bears[leg] = state_.loads[leg] > bound ? 1 : 0;
   }

@@ -2,12 +2,11 @@
 /// Estimates the state of a robot on legs while it lies or stands, from joints and IMU.
 ///
 /// attitude   the gyro, less its bias, turns it; the accelerometer corrects roll and pitch with kTilt, or with
-/// kTiltAtRest
-///            while nothing moves. Yaw is that of the gyro alone
+///            kTiltAtRest while nothing moves. Yaw is that of the gyro alone
 /// bias       the mean of the gyro while nothing moves
-/// load       fᵢ = −u·Jᵢ⁻ᵀ (τᵢ − hᵢ) of each foot, u upwards, τ the measured efforts, h those that hold the leg alone.
-/// A
-///            foot begins to bear above kBears of an equal share of the weight, and ends below kFloats
+/// load       fᵢ = u·Fᵢ of each foot, u upwards, F the measured force, where all feet have force sensors. Else
+///            fᵢ = −u·Jᵢ⁻ᵀ (τᵢ − hᵢ), τ the measured efforts, h those that hold the leg alone. A foot begins to bear
+///            above kBears of an equal share of the weight, and ends below kFloats
 /// position   the mean over the feet that bear of aᵢ − R pᵢ. A foot that begins to bear is anchored at aᵢ = p + R pᵢ. A
 ///            ball rolls: aᵢ moves with ωᵢ × r u, ωᵢ the rate of the shank
 /// velocity   the mean over the same feet of r ωᵢ × u − (Jᵢ q̇ᵢ + ω × pᵢ), through a low pass of kSmooth
@@ -75,6 +74,8 @@ class LeggedEstimator {
   void correct(const Eigen::Vector3d& force, double dt) noexcept;
   Feet observe(const SensorFrame& sensors) const noexcept;
   void weigh(const SensorFrame& sensors, const Feet& feet) noexcept;
+  void measure_loads(const SensorFrame& sensors, const Eigen::Vector3d& up) noexcept;
+  void compute_loads(const SensorFrame& sensors, const Feet& feet, const Eigen::Vector3d& up) noexcept;
   void move(const Feet& feet, double dt) noexcept;
   void write(const SensorFrame& sensors, const Feet& feet, bool good, StateFrame& out) const noexcept;
 

@@ -50,6 +50,10 @@ void add_velocity(TraceFields& to, const std::string& name, Get) {
   to.push_back(field<C, f64>(name + "_x", "m, to the front", OF(content.posture.x)));
   to.push_back(field<C, f64>(name + "_y", "m, to the left", OF(content.posture.y)));
   to.push_back(field<C, f64>(name + "_yaw", "rad", OF(content.posture.yaw)));
+  to.push_back(list<C, f64, kRequestJoints>(
+      name + "_joints", "rad or m; empty: all zero",
+      [](const C* part, std::size_t) { return part != nullptr ? logged_joints(Get{}(*part).content) : 0; },
+      [](auto& part, std::size_t i) -> auto& { return Get{}(part).content.joints[i]; }));
   number("mode", "0: the default of the machine", OF(content.mode));
   number("count", "usable commands so far", OF(count));
   to.push_back(field<C, std::int64_t>(name + "_age_ns", "ns, when it arrived, by its stamp", OF(age_ns)));

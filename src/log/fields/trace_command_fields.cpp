@@ -15,6 +15,10 @@ void add_requested_posture(TraceFields& to) {
   to.push_back(field<C, f64>("requested_x", "m, to the front", MEMBER(command.requested.posture.x)));
   to.push_back(field<C, f64>("requested_y", "m, to the left", MEMBER(command.requested.posture.y)));
   to.push_back(field<C, f64>("requested_yaw", "rad", MEMBER(command.requested.posture.yaw)));
+  to.push_back(list<C, f64, kRequestJoints>(
+      "requested_joints", "rad or m; empty: all zero",
+      [](const C* part, std::size_t) { return part != nullptr ? logged_joints(part->command.requested) : 0; },
+      ELEMENT(command.requested.joints[i])));
 }
 
 void add_legs(TraceFields& to) {

@@ -108,6 +108,7 @@ std::vector<FieldDifference> differences(const CommandFrame& logged, const Comma
       {"requested", 6, kTwist},
       {"requested", 6, {"height", "roll", "pitch", "x", "y", "yaw"}},
       whole("requested.mode"),
+      {"requested.joints", kRequestJoints},
       {"twist_limited", 6, kTwist},
       whole("reasons"),
       whole("state_cycle"),

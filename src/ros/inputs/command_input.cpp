@@ -26,7 +26,8 @@ std::string seconds(double value) {
 
 }  // namespace
 
-CommandInput::CommandInput(double timeout, bool one_sender) : one_sender_(one_sender) {
+CommandInput::CommandInput(double timeout, bool one_sender, CommandWords words)
+    : one_sender_(one_sender), words_(std::move(words)) {
   set_timeout(timeout);
 }
 
@@ -57,7 +58,8 @@ void CommandInput::receive(const ArrivedCommand& arrived, const ArrivalTime& tim
     requests_.request(arrived.sender, time.loop_ns);
     return;
   }
-  const Request content{.twist = arrived.twist, .posture = arrived.posture, .mode = arrived.mode};
+  const Request content{
+      .twist = arrived.twist, .posture = arrived.posture, .mode = arrived.mode, .joints = arrived.joints};
   const bool zero = parts_of(content) == 0;
   if (zero) {
     requests_.end(arrived.sender);
@@ -110,10 +112,9 @@ std::vector<ReportLine> CommandInput::lines() {
 
 void CommandInput::refuse_revoked(const std::string& sender, std::int64_t loop_ns) {
   if (!may_report(sender + " revoked", loop_ns)) return;
-  lines_.push_back(
-      {true, "motion of " + sender +
-                 " is refused: it was requested before a stop, a restart or a pause ended the permission "
-                 "to move, or meanwhile, or may have been; let that sender send a zero velocity, or restart it"});
+  lines_.push_back({true, "motion of " + sender +
+                              " is refused: it was requested before a stop, a restart or a pause ended the permission "
+                              "to move, or meanwhile, or may have been; let that sender send zero, or restart it"});
 }
 
 void CommandInput::refuse_stamp(const std::string& sender, const JudgedStamp& stamp, std::int64_t loop_ns) {
@@ -125,13 +126,13 @@ void CommandInput::refuse_stamp(const std::string& sender, const JudgedStamp& st
   reported_stamps_[sender] = stamp.verdict;
   const double age = 1.0e-9 * static_cast<double>(stamp.age_ns);
   const std::string remedy =
-      "; synchronise it (chrony), or let it publish on cmd_vel, whose age counts from its arrival";
+      "; synchronise it (chrony), or let it send without a stamp: the age then counts from the arrival";
   if (too_old) {
-    lines_.push_back({true, "cmd_vel_stamped of " + sender + " is " + seconds(age) +
-                                " old by its stamp, more than cmd_vel_timeout (" + seconds(timeout_) +
+    lines_.push_back({true, words_.stamped + " of " + sender + " is " + seconds(age) + " old by its stamp, more than " +
+                                words_.timeout + " (" + seconds(timeout_) +
                                 "): refused; it was long under way, or that sender's clock is behind" + remedy});
   } else {
-    lines_.push_back({true, "cmd_vel_stamped of " + sender + " is stamped " + seconds(-age) +
+    lines_.push_back({true, words_.stamped + " of " + sender + " is stamped " + seconds(-age) +
                                 " in the future, more than clocks may differ (" + seconds(1.0e-9 * kClockSkew) +
                                 "): refused; that sender's clock is ahead, or is not the robot's /clock" + remedy});
   }

@@ -19,6 +19,7 @@
 /// One warning is reported per sender with wrong stamps, per revoked sender and per set of competing senders. A warning
 /// is repeated after kRepeatAfter at the earliest, in the loop's time.
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -41,9 +42,10 @@ inline constexpr std::int64_t kRepeatAfter = 10'000'000'000;  ///< ns
 struct ArrivedCommand {
   Publisher sender;
   Twist twist;
-  std::int64_t stamp_ns = 0;  ///< 0 if the message has none
-  Posture posture{};          ///< of robots on legs
-  std::uint64_t mode = 0;     ///< likewise
+  std::int64_t stamp_ns = 0;                    ///< 0 if the message has none
+  Posture posture{};                            ///< of robots on legs
+  std::uint64_t mode = 0;                       ///< likewise
+  std::array<double, kRequestJoints> joints{};  ///< likewise
 };
 
 /// The time at which a message arrived, on two clocks.
@@ -52,10 +54,16 @@ struct ArrivalTime {
   std::int64_t loop_ns = 0;  ///< stamp of the newest sensor frame; 0 before the first
 };
 
+/// The names in reports.
+struct CommandWords {
+  std::string stamped = "cmd_vel_stamped";  ///< topic of messages with a stamp
+  std::string timeout = "cmd_vel_timeout";  ///< parameter
+};
+
 class CommandInput final : public CommandIntake {
  public:
   /// `timeout` is cmd_vel_timeout in s; 0 means that commands never time out.
-  CommandInput(double timeout, bool one_sender);
+  CommandInput(double timeout, bool one_sender, CommandWords words = {});
 
   /// Sets the timeout in s for the next message and all later ones.
   void set_timeout(double timeout) override;
@@ -92,6 +100,7 @@ class CommandInput final : public CommandIntake {
   bool may_report(const std::string& what, std::int64_t loop_ns);
 
   bool one_sender_;
+  CommandWords words_;
   double timeout_ = 0;  ///< s
   std::int64_t timeout_ns_ = 0;
   CommandSenders senders_;

@@ -19,6 +19,7 @@ Posture posture_of(const msg::BodyPose& message) {
 }
 
 std::optional<Request> request_of(const msg::FootTarget& message) {
+  if (message.foot.empty()) return Request{};
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     if (message.foot != name_of(static_cast<LegPlace>(leg))) continue;
     return Request{
@@ -55,7 +56,7 @@ msg::LegState leg_state(const LegReport& report, const LegModel& robot, ros::Tim
   for (const BitName& row : kCommandReasonNames) {
     if ((report.reasons & row.bit) == 0) continue;
     message.reasons.emplace_back(row.name);
-    message.sentences.push_back(sentences_of({&row, 1}, row.bit));
+    message.sentences.push_back(sentences_of({&row, 1}, row.bit, kLeggedKind));
   }
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const ContactState& contact = report.state.contacts[leg];
@@ -81,10 +82,11 @@ std::string no_permission(bool found, const Permit& permit, const MachineModel& 
   if (permit.causes != 0) {
     const std::uint64_t cause = permit.first_cause != 0 ? permit.first_cause : permit.causes & (~permit.causes + 1);
     const std::string measured = detail(permit, cause, robot);
-    return "the robot is stopped: " + sentences_of(kStopCauseNames, cause) +
+    return "the robot is stopped: " + sentences_of(kStopCauseNames, cause, kLeggedKind) +
            (measured.empty() ? "" : " (" + measured + ")") + "; then call e_stop_reset";
   }
-  if (permit.missing != 0) return "the safety monitor waits: " + sentences_of(kMissingNodeNames, permit.missing);
+  if (permit.missing != 0)
+    return "the safety monitor waits: " + sentences_of(kMissingNodeNames, permit.missing, kLeggedKind);
   if (permit.unreleased != 0) {
     return "a node was started or the simulation was reset: request nothing for request_timeout, or send a body_pose "
            "of "

@@ -42,7 +42,7 @@ using BoundedFootTarget = Bounded<msg::FootTarget, 28, 28 + kMaxFootName>;
 
 Posture posture_of(const msg::BodyPose& message);
 
-/// Returns the request that lifts this foot. Returns none for an unknown foot.
+/// Returns the request that lifts this foot, and the zero request for no name. Returns none for an unknown foot.
 std::optional<Request> request_of(const msg::FootTarget& message);
 
 /// Returns "front_left, front_right, rear_left, rear_right".

@@ -18,10 +18,10 @@ namespace robot_control {
 namespace {
 
 /// Returns "sentence (remedy)" for each bit that is set.
-std::vector<std::string> sentences(std::span<const BitName> table, std::uint64_t bits) {
+std::vector<std::string> sentences(std::span<const BitName> table, std::uint64_t bits, std::string_view kind) {
   std::vector<std::string> texts;
   for (const BitName& row : table) {
-    if ((bits & row.bit) != 0) texts.push_back(sentences_of({&row, 1}, row.bit));
+    if ((bits & row.bit) != 0) texts.push_back(sentences_of({&row, 1}, row.bit, kind));
   }
   return texts;
 }
@@ -46,7 +46,7 @@ std::string with_reset(std::string_view remedy, std::string_view kind) {
 
 /// Returns "the battery is low: 20.9 V, limit 21 V (charge it soon)".
 std::string warning_sentence(const BitName& row, const std::string& measured, std::string_view kind) {
-  std::string text(row.sentence);
+  std::string text = with_programs(row.sentence, kind);
   if (!measured.empty()) text.append(": ").append(measured);
   if (!row.remedy.empty()) text.append(" (").append(with_programs(row.remedy, kind)).append(")");
   return text;
@@ -104,7 +104,7 @@ msg::SafetyStatus safety_status(const Permit& permit, const MachineModel& robot,
     }
     if ((permit.causes & row.bit) == 0) continue;
     message.causes.emplace_back(row.name);
-    message.sentences.emplace_back(row.sentence);
+    message.sentences.push_back(with_programs(row.sentence, kind));
     message.remedies.push_back(with_reset(row.remedy, kind));
     message.remedies_before_reset.push_back(with_programs(row.remedy, kind));
     message.actors.emplace_back(row.actor);
@@ -115,13 +115,13 @@ msg::SafetyStatus safety_status(const Permit& permit, const MachineModel& robot,
   message.first_cause = names_of(kStopCauseNames, permit.first_cause);
   assign(message.missing, absent);
   if (absent.empty() && permit.state == SupervisorState::kInit) {
-    assign(message.missing, sentences(kMissingNodeNames, permit.missing));
+    assign(message.missing, sentences(kMissingNodeNames, permit.missing, kind));
   }
   message.awaiting_zero_request =
       permit.state == SupervisorState::kInit && permit.missing == 0 && permit.unreleased != 0 && absent.empty();
   message.resets = permit.resets_handled;
   message.withdrawals = permit.withdrawals;
-  assign(message.reset_refusal, sentences(kResetRefusalNames, permit.reset_refusal));
+  assign(message.reset_refusal, sentences(kResetRefusalNames, permit.reset_refusal, kind));
   message.run = permit.head.run;
   message.cycle = permit.head.cycle;
   return message;
@@ -146,18 +146,19 @@ bool differs(const Permit& last, const Permit& now) {
          last.reset_refusal != now.reset_refusal || last.head.run != now.head.run;
 }
 
-std::string reset_text(const Permit& before, const Permit& permit, const Publishers& publishers) {
+std::string reset_text(const Permit& before, const Permit& permit, const Publishers& publishers,
+                       std::string_view kind) {
   if (permit.reset_refusal == 0) return before.causes == 0 ? "nothing was stopped" : "released";
-  std::string text = "refused: " + sentences_of(kResetRefusalNames, permit.reset_refusal);
+  std::string text = "refused: " + sentences_of(kResetRefusalNames, permit.reset_refusal, kind);
   if ((permit.reset_refusal & kRefusalCauseActive) != 0) {
-    text += "; persists: " + sentences_of(kStopCauseNames, permit.active);
+    text += "; persists: " + sentences_of(kStopCauseNames, permit.active, kind);
     if (!publishers.e_stop.empty()) text += "; true on e_stop: " + joined(publishers.e_stop);
   }
   if ((permit.reset_refusal & kRefusalCommand) != 0 && !publishers.commands.empty()) {
-    text += "; publishing on cmd_vel: " + joined(publishers.commands);
+    text += "; publishing on " + std::string(names_of_kind(kind).request) + ": " + joined(publishers.commands);
   }
   if ((permit.reset_refusal & kRefusalInit) != 0) {
-    text += "; waiting: " + sentences_of(kMissingNodeNames, permit.missing);
+    text += "; waiting: " + sentences_of(kMissingNodeNames, permit.missing, kind);
   }
   return text;
 }

@@ -40,6 +40,7 @@ struct Publishers {
 
 /// Returns the answer to e_stop_reset: the causes that it released, or why it was refused and the remedy. `before` is
 /// the last permit before the reset, `permit` the first one with its result.
-std::string reset_text(const Permit& before, const Permit& permit, const Publishers& publishers);
+std::string reset_text(const Permit& before, const Permit& permit, const Publishers& publishers,
+                       std::string_view kind = kWheeledKind);
 
 }  // namespace robot_control

@@ -26,8 +26,8 @@
 
 namespace robot_control {
 
-inline constexpr std::uint32_t kMaxHeader = 64U * 1024;     ///< bytes; message definitions have some kB
-inline constexpr std::uint32_t kMaxMessage = 1024U * 1024;  ///< bytes; the longest message that a node receives has 320
+inline constexpr std::uint32_t kMaxHeader = 64U * 1024;              ///< bytes; message definitions have some kB
+inline constexpr std::uint32_t kMaxMessage = 1024U * 1024;           ///< bytes; a joint_trajectory may be so long
 inline constexpr std::size_t kMaxXmlRequest = std::size_t{1} << 20;  ///< B
 inline constexpr std::size_t kMaxXmlAnswer = std::size_t{1}
                                              << 26;  ///< bytes; the parameters contain a robot description

@@ -3,11 +3,16 @@
 #include <ros/ros.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "files/ascii.h"
 #include "machine/legs/leg_model.h"
+#include "parameters/block.h"
 #include "ros/inputs/input_topic.h"
+#include "ros/inputs/joint_trajectory.h"
 #include "ros/messages/leg_messages.h"
 #include "ros/messages/motion_messages.h"
 #include "ros/nodes/commanded_node.h"
@@ -21,6 +26,13 @@ namespace {
 
 constexpr std::int64_t kBeginWait = 1'000'000'000;  // ns, in which the posture must begin to change
 constexpr std::int64_t kRepeat = 10'000'000;        // ns; another sender's message may have replaced the request
+constexpr std::int64_t kStep = 10'000'000;          // ns of the loop's time between two requests of a trajectory
+constexpr double kRefusalPause = 0.1;               // s between two lines about refused trajectories
+constexpr double kArrival = 0.3;                    // s after its last point, in which the joints arrive there
+
+double seconds_of(std::int64_t ns) {
+  return 1e-9 * static_cast<double>(ns);
+}
 
 /// Returns whether the robot already is in this posture, or on its way.
 bool begun(StanceMode mode, LegPhase phase) {
@@ -32,13 +44,14 @@ class LegControllerNode final : public CommandedNode {
  public:
   explicit LegControllerNode(const Setup& setup)
       : CommandedNode(setup, input_),
-        input_(parameters().leg_control.request_timeout, parameters().leg_control.one_sender),
+        input_(parameters().leg_control.request_timeout, parameters().leg_control.one_sender,
+               {.stamped = "joint_trajectory", .timeout = "request_timeout"}),
         pace_(report().leg_state_rate) {}
 
   void connect(ros::NodeHandle& handle) override {
     leg_state_ = handle.advertise<msg::LegState>("leg_state", 10);
     set_posture_ = handle.advertiseService("set_posture", &LegControllerNode::set_posture, this);
-    intake().start(earlier_controller(handle, {"body_pose", "foot_target"}));
+    intake().start(earlier_controller(handle, {"body_pose", "foot_target", "joint_trajectory"}));
     body_pose_.connect_with_sender(handle, [this](const msg::BodyPose& message, const Publisher& sender) {
       receive({.sender = sender, .twist = {}, .posture = posture_of(message)});
     });
@@ -48,6 +61,8 @@ class LegControllerNode final : public CommandedNode {
       ROS_WARN_THROTTLE(10, "foot_target of %s is refused: there is no foot '%s'; name one of %s", sender.name.c_str(),
                         ascii(message.foot).c_str(), foot_names().c_str());
     });
+    joint_trajectory_.connect_with_sender(
+        handle, [this](const msg::JointTrajectory& message, const Publisher& sender) { begin(message, sender); });
     cmd_vel_.connect_with_sender(handle, [](const msg::Twist& message, const Publisher& sender) {
       if (zero(twist_of(message))) return;
       ROS_WARN_THROTTLE(10,
@@ -64,7 +79,12 @@ class LegControllerNode final : public CommandedNode {
   }
 
   void publish() override {
-    if (!follow_command() || !pace_.due(command_.head.run, command_.head.stamp_ns)) return;
+    const bool follows = follow_command();
+    {
+      const std::lock_guard lock(input_mutex_);
+      if (follows) continue_trajectory();
+    }
+    if (!follows || !pace_.due(command_.head.run, command_.head.stamp_ns)) return;
     SensorFrame sensors;
     if (process().sensors().at(command_.head.run, command_.head.cycle, sensors) != Lookup::kFrame) return;
     StateFrame state;
@@ -85,7 +105,7 @@ class LegControllerNode final : public CommandedNode {
   void diagnose(DiagnosticReport& report) override {
     const std::lock_guard lock(input_mutex_);
     report_command(report, command_, std::exchange(since_report_, 0), intake().senders(loop_ns()), {},
-                   intake().revoked());
+                   intake().revoked(), kLeggedKind);
     report.value("posture", std::string(name_of(command_.legged.phase)));
   }
 
@@ -93,8 +113,125 @@ class LegControllerNode final : public CommandedNode {
   /// Two topics call this from two threads; the mutex protects their common inbox.
   void receive(const ArrivedCommand& arrived) {
     const std::lock_guard lock(input_mutex_);
+    end_trajectory("a message of " + arrived.sender.name + " on another topic came");
     input_.receive(arrived, arrival_of(arrived.sender.name));
     store();
+  }
+
+  /// A trajectory that is being executed.
+  struct Execution {
+    JointTrajectory path;
+    Publisher sender;                        ///< without its connection
+    boost::weak_ptr<const void> connection;  ///< The trajectory ends with it.
+    double time = 0;                         ///< s, on the path
+    std::int64_t requested_ns = 0;           ///< when it was requested, in the loop's time
+    bool moves = false;                      ///< The joints have begun to move.
+  };
+
+  void begin(const msg::JointTrajectory& message, const Publisher& sender) {
+    const std::lock_guard lock(input_mutex_);
+    if (message.points.empty()) {
+      end_trajectory(sender.name + " sent an empty one");
+      input_.receive({.sender = sender, .twist = {}}, arrival_of(sender.name));
+      store();
+      return;
+    }
+    Execution next{.path = {}, .sender = {sender.name, nullptr, sender.uri}, .connection = sender.connection};
+    next.requested_ns = loop_ns();
+    std::string problem = read(message, next);
+    // A request during a stop is received, so that its sender is revoked, and not executed.
+    const bool accepted =
+        problem.empty() && request_path(next, sender, static_cast<std::int64_t>(message.header.stamp.toNSec()));
+    if (problem.empty()) problem = refusal_of_permission();
+    if (!problem.empty()) {
+      ROS_WARN_THROTTLE(kRefusalPause, "joint_trajectory of %s is refused: %s", sender.name.c_str(),
+                        ascii(problem).c_str());
+    }
+    if (!problem.empty() || !accepted) return;
+    execution_ = std::move(next);
+    ROS_INFO("joint_trajectory of %s: %.3g s", sender.name.c_str(), execution_->path.duration());
+  }
+
+  /// Returns why this trajectory cannot begin, but for the permission to move, or "".
+  std::string read(const msg::JointTrajectory& message, Execution& to) {
+    for (const std::string& name : missing()) return "the loop does not run: waiting for " + name;
+    CommandFrame command;
+    SensorFrame sensors;
+    if (process().output().newest(command) != Lookup::kFrame || !process().is_current(command.head) ||
+        process().sensors().newest(sensors) != Lookup::kFrame || !process().is_current(sensors.head))
+      return "the loop does not run: send it again when safety_status says READY";
+    const LegPhase phase = command.legged.phase;
+    if (phase != LegPhase::kLying && phase != LegPhase::kJoints)
+      return "the robot does not lie, it is " + std::string(name_of(phase)) + ": call set_posture with 'lying'";
+    if (execution_ && execution_->sender.name != to.sender.name) {
+      const double left = execution_->path.duration() - execution_->time;
+      return "that of " + execution_->sender.name + " is being executed for another " +
+             shortest(std::max(0.1, std::round(10 * left) / 10)) + " s; an empty one ends it";
+    }
+    const std::array<JointBounds, kLegsJoints> bounds = joint_bounds(leg_model_of(robot()));
+    JointTrajectory::Positions start{};
+    for (std::size_t i = 0; i < kLegsJoints; ++i) {
+      const bool moves = phase == LegPhase::kJoints && command.joints[i].mode == JointMode::kImpedance;
+      if (!moves && !has_position(sensors.joints[i]))
+        return "the joint " + robot().joints[i].name + " is not measured: look at the driver's faults";
+      start[i] = std::clamp(moves ? command.joints[i].position : sensors.joints[i].position, bounds[i].range.lower,
+                            bounds[i].range.upper);
+    }
+    return to.path.read(message, leg_model_of(robot()), start);
+  }
+
+  /// Requests where the joints shall be kHorizon later. Returns false if the intake refuses that; it reports why.
+  bool request_path(const Execution& execution, const Publisher& sender, std::int64_t stamp_ns = 0) {
+    const std::uint64_t accepted = input_.value().count;
+    input_.receive({.sender = sender,
+                    .twist = {},
+                    .stamp_ns = stamp_ns,
+                    .mode = kStanceJoints,
+                    .joints = execution.path.at(execution.time + JointMotion::kHorizon)},
+                   arrival_of(sender.name));
+    store();
+    return input_.value().count != accepted;
+  }
+
+  /// Is called with every tick; the caller holds input_mutex_.
+  void continue_trajectory() {
+    if (!execution_) return;
+    const LegPhase phase = command_.legged.phase;
+    execution_->moves = execution_->moves || phase == LegPhase::kJoints;
+    const bool lies = phase == LegPhase::kJoints || (phase == LegPhase::kLying && !execution_->moves);
+    if (const std::string problem = refusal_of_permission(); !problem.empty()) return end_trajectory(problem);
+    if (!lies) return end_trajectory("the robot is " + std::string(name_of(phase)));
+    Publisher sender = execution_->sender;
+    sender.connection = execution_->connection.lock();
+    if (sender.connection == nullptr) return end_trajectory("its sender is gone");
+    const std::int64_t now_ns = loop_ns();
+    const std::int64_t elapsed_ns = now_ns - execution_->requested_ns;
+    if (elapsed_ns >= 0 && elapsed_ns < kStep) return;
+    execution_->requested_ns = now_ns;
+    // The joints wait as long as this thread had to wait.
+    execution_->time += std::clamp(seconds_of(elapsed_ns), 0.0, JointMotion::kHorizon);
+    if (execution_->time < execution_->path.duration() + kArrival) {
+      if (!request_path(*execution_, sender)) end_trajectory("its request was refused");
+      return;
+    }
+    execution_.reset();
+    input_.receive({.sender = sender, .twist = {}}, arrival_of(sender.name));
+    store();
+    ROS_INFO("joint_trajectory of %s: done", sender.name.c_str());
+  }
+
+  /// Does nothing where no trajectory is being executed.
+  void end_trajectory(const std::string& why) {
+    if (!execution_) return;
+    ROS_WARN("joint_trajectory of %s ends: %s", execution_->sender.name.c_str(), ascii(why).c_str());
+    execution_.reset();
+  }
+
+  /// Returns why no motion is permitted, or "".
+  std::string refusal_of_permission() {
+    Permit permit;
+    const bool found = process().permits().newest(permit) == Lookup::kFrame && process().is_current(permit.head);
+    return no_permission(found, permit, robot());
   }
 
   bool set_posture(msg::SetPostureRequest& request, msg::SetPostureResponse& response) {
@@ -121,26 +258,28 @@ class LegControllerNode final : public CommandedNode {
       if (process().output().newest(command) == Lookup::kFrame && process().is_current(command.head) &&
           (command.reasons & kReasonNoPermit) == 0 && begun(mode, command.legged.phase))
         return "";
-      Permit permit;
-      const bool found = process().permits().newest(permit) == Lookup::kFrame && process().is_current(permit.head);
-      if (std::string problem = no_permission(found, permit, robot()); !problem.empty()) return problem;
+      if (std::string problem = refusal_of_permission(); !problem.empty()) return problem;
       {
         const std::lock_guard lock(input_mutex_);
+        end_trajectory("set_posture was called");
         input_.receive_once({.twist = {}, .posture = {}, .mode = mode}, arrival_of("set_posture"));
         store();
       }
       sleep_ns(kRepeat);
     }
-    return "the posture has not begun to change within 1 s: " + sentences_of(kCommandReasonNames, command.reasons);
+    return "the posture has not begun to change within 1 s: " +
+           sentences_of(kCommandReasonNames, command.reasons, kLeggedKind);
   }
 
   InputTopic<BoundedBodyPose> body_pose_{"body_pose", 1};
   InputTopic<BoundedFootTarget> foot_target_{"foot_target", 1};
+  InputTopic<BoundedJointTrajectory> joint_trajectory_{"joint_trajectory", 2};
   InputTopic<BoundedTwist> cmd_vel_{"cmd_vel", 1};
   ros::Publisher leg_state_;
   ros::ServiceServer set_posture_;
   std::mutex posture_mutex_;  ///< locked only by try_lock
   CommandInput input_;
+  std::optional<Execution> execution_;  ///< protected by input_mutex_
   Pacer pace_;
 };
 

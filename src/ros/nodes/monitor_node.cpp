@@ -80,7 +80,7 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
   }
 
   void diagnose(DiagnosticReport& report) override {
-    if (Permit permit; seen(permit)) report_permit(report, permit);
+    if (Permit permit; seen(permit)) report_permit(report, permit, composed().kind());
   }
 
  private:
@@ -95,7 +95,7 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
 
   /// Returns the topics to which the controller subscribes. With a list that is refused the controller does not start.
   std::vector<std::string> command_topics() {
-    if (kind_of(robot()) == MachineKind::kOnLegs) return {"body_pose", "foot_target"};
+    if (kind_of(robot()) == MachineKind::kOnLegs) return {"body_pose", "foot_target", "joint_trajectory"};
     std::vector<std::string> topics;
     try {
       const std::string path = parameters_of(Role::kController).command_sources;
@@ -197,8 +197,9 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
         continue;
       }
       response.success = permit.reset_refusal == 0;
-      response.message = ascii(
-          reset_text(before, permit, {.commands = publishers_of(command_topics_), .e_stop = e_stop_publishers()}));
+      response.message =
+          ascii(reset_text(before, permit, {.commands = publishers_of(command_topics_), .e_stop = e_stop_publishers()},
+                           composed().kind()));
       return true;
     }
     response.success = 0;
@@ -221,7 +222,8 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
   OperatorInput input_;
   StopLog stop_log_{static_cast<double>(parameters().loop.period_ns()) * 1e-9,
                     kind_of(robot()) == MachineKind::kOnLegs ? parameters().leg_control.request_timeout
-                                                             : parameters().controller.cmd_vel_timeout};
+                                                             : parameters().controller.cmd_vel_timeout,
+                    composed().kind()};
   WithdrawalTime withdrawal_;
   Permit reported_;
   bool reported_permit_ = false;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "machine/machine_model.h"
@@ -11,6 +12,7 @@
 #include "signals/bit_name.h"
 #include "signals/command_frame.h"
 #include "signals/permit.h"
+#include "signals/robot_kinds.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
 
@@ -28,7 +30,8 @@ class DiagnosticReport {
   void value(const std::string& key, std::uint64_t number) { value(key, std::to_string(number)); }
 
   /// Adds one value per bit that is set: "gate: command_held" = "the command is older than one cycle and is held".
-  void reasons(const std::string& subject, std::span<const BitName> table, std::uint64_t bits);
+  void reasons(const std::string& subject, std::span<const BitName> table, std::uint64_t bits,
+               std::string_view kind = kWheeledKind);
 
   const msg::DiagnosticStatus& message() const noexcept { return message_; }
 
@@ -51,7 +54,7 @@ void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64
 /// `revoked` is CommandIntake::revoked.
 void report_command(DiagnosticReport& report, const CommandFrame& command, std::uint64_t lately,
                     const std::vector<std::string>& senders, const std::vector<std::string>& sources = {},
-                    const std::vector<std::string>& revoked = {});
-void report_permit(DiagnosticReport& report, const Permit& permit);
+                    const std::vector<std::string>& revoked = {}, std::string_view kind = kWheeledKind);
+void report_permit(DiagnosticReport& report, const Permit& permit, std::string_view kind = kWheeledKind);
 
 }  // namespace robot_control

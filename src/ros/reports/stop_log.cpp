@@ -63,14 +63,14 @@ void StopLog::look_at_causes(const msg::SafetyStatus& status, std::vector<Report
   if (!latched_.empty() && status.causes.empty() && may_drive(status)) {
     latched_.clear();
     starting_ = false;
-    lines.push_back({false, "released: " + status.state_name + "; send cmd_vel"});
+    lines.push_back({false, "released: " + status.state_name + "; " + begin_});
   }
 }
 
 void StopLog::look_at_start(const msg::SafetyStatus& status, std::vector<ReportLine>& lines) {
   const double now = static_cast<double>(status.cycle) * period_;
   if (may_drive(status)) {
-    if (starting_) lines.push_back({false, "ready: send cmd_vel"});
+    if (starting_) lines.push_back({false, "ready: " + begin_});
     starting_ = false;
   }
   if (status.state == msg::SafetyStatus::INIT) starting_ = true;

@@ -4,7 +4,7 @@
 ///   a cause latches            WARN  state, cause, evidence and remedy; several at once: one line
 ///   a ramp has ended           INFO
 ///   a reset releases           INFO
-///   INIT has ended             INFO  "ready: send cmd_vel"
+///   INIT has ended             INFO  "ready: send cmd_vel", or what lets this kind of robot move
 ///   INIT waits for a zero      WARN  once, after a silence on cmd_vel would have ended INIT
 ///   a warning, no speed        WARN  each at most once in kRepeat s
 ///
@@ -14,10 +14,12 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ros/messages/messages.h"
 #include "ros/reports/report_line.h"
+#include "signals/robot_kinds.h"
 #include "signals/velocity_command.h"
 
 namespace robot_control {
@@ -30,7 +32,8 @@ class StopLog {
   static constexpr double kNoSpeed = 0.01;  ///< m/s; below this speed limit the robot cannot drive
 
   /// `period` is that of the loop in s. A silence on cmd_vel of `cmd_vel_timeout` [s] counts as a zero request.
-  StopLog(double period, double cmd_vel_timeout) : period_(period), zero_silence_(silence_needed(cmd_vel_timeout)) {}
+  StopLog(double period, double cmd_vel_timeout, std::string_view kind = kWheeledKind)
+      : period_(period), zero_silence_(silence_needed(cmd_vel_timeout)), begin_(names_of_kind(kind).begin) {}
 
   /// Returns the lines that are due at this status. Every published status is passed in the order of publication.
   std::vector<ReportLine> update(const msg::SafetyStatus& status);
@@ -43,6 +46,7 @@ class StopLog {
 
   double period_;        ///< s
   double zero_silence_;  ///< s
+  std::string begin_;    ///< KindNames::begin
   std::set<std::string> latched_;
   bool stopping_ = false;
   bool starting_ = true;  ///< INIT since the last "ready"

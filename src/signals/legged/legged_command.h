@@ -13,10 +13,18 @@ enum StanceMode : std::uint64_t {
   kStanceStay = 0,  ///< Stand with all feet, or lie, as before.
   kStanceLie = 1,
   kStanceStand = 2,
-  kStanceLift = 3,  ///< kStanceLift + i lifts the foot of LegPlace i.
+  kStanceLift = 3,    ///< kStanceLift + i lifts the foot of LegPlace i.
+  kStanceJoints = 7,  ///< Move the joints to Request::joints while the robot lies.
 };
 
-enum class LegPhase : std::uint64_t { kLying = 0, kGathering = 1, kRising = 2, kStanding = 3, kLowering = 4 };
+enum class LegPhase : std::uint64_t {
+  kLying = 0,
+  kGathering = 1,
+  kRising = 2,
+  kStanding = 3,
+  kLowering = 4,
+  kJoints = 5
+};
 
 /// The bits below belong to CommandReason, so that one number holds both.
 inline constexpr unsigned kFirstLeggedReason = kFirstWheeledReason + 2;
@@ -25,6 +33,7 @@ inline constexpr unsigned kFirstLeggedReason = kFirstWheeledReason + 2;
 enum LeggedReason : std::uint64_t {
   kReasonOutOfReach = 1u << kFirstLeggedReason,         ///< The pose is beyond the ranges of the legs.
   kReasonNotStanding = 1u << (kFirstLeggedReason + 1),  ///< A pose or a foot is requested, and it does not stand.
+  kReasonNotLying = 1u << (kFirstLeggedReason + 2),     ///< Joints are requested, and it does not lie.
 };
 
 struct LeggedCommand {

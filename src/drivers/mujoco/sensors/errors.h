@@ -47,6 +47,11 @@ struct Errors {
   double accelerometer_bias_walk = 6.5e-5;  ///< m/s²/√s
   std::uint64_t sensor_delay = 0;           ///< cycles
 
+  // Force sensors at feet, of robots on legs alone: as cheap cells in a rubber foot have them.
+  double foot_offset = 3;      ///< N, standard deviation of each axis' draw
+  double foot_noise = 0.05;    ///< N/√Hz
+  double foot_threshold = 10;  ///< N; a smaller force is measured as zero
+
   // These errors act only at kField.
   double roughness = 1;                    ///< factor of the floor on both vibrations and the slow error (vibration.h)
   double accelerometer_vibration = 0.12;   ///< m/s²/√Hz at 1 m/s, proportional to the speed
@@ -80,6 +85,9 @@ inline Keys keys(Errors& errors) {
       {"accelerometer_bias", &errors.accelerometer_bias, "m/s²", 0, 10},
       {"accelerometer_bias_walk", &errors.accelerometer_bias_walk, "m/s²/√s", 0, 10},
       {"sensor_delay", &errors.sensor_delay, "cycles", 0, 100},
+      {"foot_offset", &errors.foot_offset, "N", 0, 1000},
+      {"foot_noise", &errors.foot_noise, "N/√Hz", 0, 100},
+      {"foot_threshold", &errors.foot_threshold, "N", 0, 1000},
   };
 }
 

@@ -1,9 +1,9 @@
 #include "drivers/mujoco/sensors/sensor_errors.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <utility>
 
 #include "drivers/driver.h"
 
@@ -17,6 +17,8 @@ constexpr std::uint64_t kWalkStream = 2;
 constexpr std::uint64_t kStreams = 3;
 constexpr std::uint64_t kGyroDevice = 0;
 constexpr std::uint64_t kAccelerometerDevice = 1;
+constexpr std::uint64_t kFirstFootDevice = 4;  // its streams follow ErrorStream
+static_assert(kStreams * kFirstFootDevice > kRightSlipStream);
 
 }  // namespace
 
@@ -43,8 +45,8 @@ void InertialError::step(Vector3& value) noexcept {
   }
 }
 
-SensorErrors::SensorErrors(const MachineModel& machine, std::vector<Rim> rims, const MujocoPlantParameters& parameters,
-                           double period)
+SensorErrors::SensorErrors(const MachineModel& machine, const std::vector<Rim>& rims,
+                           const MujocoPlantParameters& parameters, double period)
     : level_(parameters.sensor_errors),
       seed_(parameters.seed),
       period_(period),
@@ -54,10 +56,15 @@ SensorErrors::SensorErrors(const MachineModel& machine, std::vector<Rim> rims, c
       gyro_(parameters.gyro_noise, parameters.gyro_bias, parameters.gyro_bias_walk, period, kGyroDevice),
       accelerometer_(parameters.accelerometer_noise, parameters.accelerometer_bias, parameters.accelerometer_bias_walk,
                      period, kAccelerometerDevice),
-      vibration_(std::move(rims), parameters, period),
+      threshold_(parameters.foot_threshold),
+      vibration_(rims, parameters, period),
       late_imu_(parameters.imu_delay, parameters.imu_jitter, period, kImuLateStream),
       late_encoders_(0, parameters.encoder_jitter, period, kEncodersLateStream),
       delay_(checked_delay("sensor_delay", parameters.sensor_delay)) {
+  const bool senses = parameters.contact_sensors && rims.empty();
+  const std::size_t feet = senses ? std::min(machine.contacts.size(), kMaxContacts) : 0;
+  for (std::size_t foot = 0; foot < feet; ++foot)
+    feet_.emplace_back(parameters.foot_noise, parameters.foot_offset, 0, period, kFirstFootDevice + foot);
   reset();
 }
 
@@ -65,6 +72,7 @@ void SensorErrors::reset() {
   first_ = true;
   gyro_.reset(seed_);
   accelerometer_.reset(seed_);
+  for (InertialError& foot : feet_) foot.reset(seed_);
   vibration_.reset(seed_);
   late_imu_.reset(seed_);
   late_encoders_.reset(seed_);
@@ -100,6 +108,14 @@ void SensorErrors::disturb(Measurement& measurement) noexcept {
   accelerometer_.step(measurement.imu.linear_acceleration);
 }
 
+void SensorErrors::weigh(Measurement& measurement) noexcept {
+  for (std::size_t foot = 0; foot < feet_.size(); ++foot) {
+    Vector3& force = measurement.contacts[foot].force;
+    feet_[foot].step(force);
+    if (std::hypot(force[0], force[1], force[2]) < threshold_) force = {};
+  }
+}
+
 void SensorErrors::begin(const Measurement& standing) noexcept {
   for (std::size_t cycle = late_imu_.longest(); cycle > 0; --cycle) {
     Measurement before = standing;
@@ -112,6 +128,7 @@ void SensorErrors::step(Measurement& measurement) noexcept {
   if (level_ == ErrorLevel::kIdeal) return;
   if (first_ && level_ == ErrorLevel::kField) begin(measurement);
   disturb(measurement);
+  weigh(measurement);
   if (count_ > 0) encode(measurement);
   if (level_ == ErrorLevel::kField) make_late(measurement);
   if (first_) delay_.fill(measurement);

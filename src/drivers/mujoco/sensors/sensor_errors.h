@@ -6,8 +6,12 @@
 ///   n(k) = round(q(k)/δ)      position = n(k)·δ      velocity = (n(k) − n(k−1))·δ/T
 ///
 /// The velocity is computed as in a drive, in steps of δ/T (1.53 rad/s for 4096 counts at 1 kHz); it is 0 in the first
-/// sample. With N = 0 the encoder is exact. Exact are also joints that are no wheels, contact forces, battery and
-/// inputs, and efforts, because a drive measures its own current.
+/// sample. With N = 0 the encoder is exact. Exact are also joints that are no wheels, contact forces of wheels, battery
+/// and inputs, and efforts, because a drive measures its own current.
+///
+/// The force F on the foot of a robot on legs, base axes, with σ = foot_noise and w, u as below:
+///
+///   m = F + foot_offset·u + σ/√T·w      measured = m where |m| ≥ foot_threshold, else 0
 ///
 /// Each axis of gyro and accelerometer, with σ = noise, s = walk, and w, v, u independent standard normal numbers:
 ///
@@ -75,7 +79,7 @@ class SensorErrors {
  public:
   /// `rims` are those on which the machine rolls. Throws DriverError for a delay of more than kMaxDelay cycles. At
   /// kIdeal no step changes anything.
-  SensorErrors(const MachineModel& machine, std::vector<Rim> rims, const MujocoPlantParameters& parameters,
+  SensorErrors(const MachineModel& machine, const std::vector<Rim>& rims, const MujocoPlantParameters& parameters,
                double period);
 
   /// Restarts all errors; an ordinary thread calls it.
@@ -90,6 +94,7 @@ class SensorErrors {
  private:
   void encode(Measurement& measurement) noexcept;
   void disturb(Measurement& measurement) noexcept;   ///< gyro and accelerometer
+  void weigh(Measurement& measurement) noexcept;     ///< feet
   void begin(const Measurement& standing) noexcept;  ///< is called before the first cycle
   void make_late(Measurement& measurement) noexcept;
 
@@ -102,6 +107,8 @@ class SensorErrors {
   bool first_ = true;
   double gyro_scale_;  ///< 1 + e
   InertialError gyro_, accelerometer_;
+  std::vector<InertialError> feet_;  ///< of contacts of a machine without rims
+  double threshold_;                 ///< N
   Vibration vibration_;
   LateSamples<ImuSample> late_imu_;
   using Encoders = std::array<JointSample, kMaxJoints>;

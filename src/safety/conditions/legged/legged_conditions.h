@@ -1,6 +1,7 @@
 #pragma once
-/// The conditions of a robot on legs: how its body moves, compared with the limits of body_conditions.h, and whether
-/// its joints stand. Joints stand while every one stays within kWindow of its angle for kStandingTime.
+/// The conditions of a robot on legs compare body, joints and feet with their limits (body_conditions.h,
+/// joint_conditions.h, foot_conditions.h). They tell whether the joints stand. Joints stand while every
+/// one stays within kWindow of its angle for kStandingTime.
 ///
 ///   moving    a joint left its window, or its angle is not known; until the robot stands again
 ///   standing  all joints are inside for kStandingTime
@@ -12,6 +13,8 @@
 
 #include "machine/legs/leg_model.h"
 #include "safety/conditions/common/body_conditions.h"
+#include "safety/conditions/legged/foot_conditions.h"
+#include "safety/conditions/legged/joint_conditions.h"
 #include "safety/latch/active_causes.h"
 #include "safety/monitor_input.h"
 #include "safety/safety_parameters.h"
@@ -25,12 +28,17 @@ class LeggedConditions {
 
   /// `period` s.
   LeggedConditions(const SafetyParameters& parameters, const LegModel& robot, double period)
-      : period_(period), body_conditions_(parameters, robot, {}, period) {}
+      : period_(period),
+        body_conditions_(parameters, robot, {}, period),
+        joint_conditions_(parameters, robot, period),
+        foot_conditions_(parameters, robot, period) {}
 
   static std::size_t driven_joints(const LegModel&) noexcept { return kLegsJoints; }
 
   void enter_run() noexcept {
     body_conditions_.enter_run();
+    joint_conditions_.enter_run();
+    foot_conditions_.enter_run();
     moving_ = anchored_ = false;
     inside_ = 0;
   }
@@ -47,6 +55,8 @@ class LeggedConditions {
     }
     if (standing()) moving_ = false;
     body_conditions_.step(sensors, elapsed, 0, moving_, out);
+    joint_conditions_.step(sensors, elapsed, out);
+    foot_conditions_.step(input, body_conditions_.attitude().up(), elapsed, out);
   }
 
   bool moving() const noexcept { return moving_; }
@@ -65,6 +75,8 @@ class LeggedConditions {
 
   double period_;
   BodyConditions body_conditions_;
+  JointConditions joint_conditions_;
+  FootConditions foot_conditions_;
   std::array<double, kLegsJoints> anchor_{};  ///< rad
   bool anchored_ = false;
   bool moving_ = false;

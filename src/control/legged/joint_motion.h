@@ -1,0 +1,62 @@
+#pragma once
+/// Moves the joints of a robot that lies to requested positions. With h = kHorizon and Δt the period,
+///
+///   reference   goes straight from where it is to a new target, and is there after h
+///   joint       follows the reference within speed and acceleration (tracked_axis.h)
+///
+/// A sender that states at each time t where its path is at t + h moves the joints along this path. Without a request
+/// in force, each joint stops as its acceleration allows.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "control/legged/tracked_axis.h"
+#include "machine/legs/leg_model.h"
+
+namespace robot_control {
+
+struct JointMotion {
+  static constexpr double kHorizon = 0.1;  ///< s
+
+  std::array<TrackedAxis, kLegsJoints> axes{};  ///< rad
+  std::array<double, kLegsJoints> reference{};  ///< rad
+  double left = 0;                              ///< s, until the reference reaches the target
+  std::uint64_t follows = 0;                    ///< 1: a request was in force in the last step
+
+  /// Begins at rest at these positions in rad.
+  void begin(const std::array<double, kLegsJoints>& positions) noexcept {
+    *this = {};
+    reference = positions;
+    for (std::size_t i = 0; i < kLegsJoints; ++i) axes[i].value = positions[i];
+  }
+
+  /// Advances by `dt` s towards `target` in rad; `fresh`: it was requested now.
+  void follow(const std::array<double, kLegsJoints>& target, bool fresh,
+              const std::array<AxisBounds, kLegsJoints>& bounds, double dt) noexcept {
+    follows = 1;
+    if (fresh) left = kHorizon;
+    const double part = left > dt ? dt / left : 1;
+    left = std::max(0.0, left - dt);
+    for (std::size_t i = 0; i < kLegsJoints; ++i) reference[i] += part * (target[i] - reference[i]);
+    step(bounds, dt);
+  }
+
+  /// Advances by `dt` s without a request.
+  void stop(const std::array<AxisBounds, kLegsJoints>& bounds, double dt) noexcept {
+    for (std::size_t i = 0; i < kLegsJoints && follows != 0; ++i) {
+      const double speed = axes[i].speed;
+      reference[i] = axes[i].value + speed * std::abs(speed) / (2 * bounds[i].acceleration);
+    }
+    follows = 0;
+    step(bounds, dt);
+  }
+
+ private:
+  void step(const std::array<AxisBounds, kLegsJoints>& bounds, double dt) noexcept {
+    for (std::size_t i = 0; i < kLegsJoints; ++i) axes[i].step(reference[i], bounds[i], dt);
+  }
+};
+
+}  // namespace robot_control

@@ -1,0 +1,78 @@
+#pragma once
+/// The joints of a robot on legs are compared with their own limits. The worst joint counts and is named.
+///
+///   joint speed   |q̇| / velocity limit > limit
+///   joint effort  |τ| / effort limit > limit, for the persistence: no motor may do that for long
+///   joint range   distance beyond the nearer end stop > limit: the zero of an encoder, or a stop that broke
+///
+/// A number that is missing or not finite is not evaluated.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "machine/legs/leg_model.h"
+#include "safety/conditions/common/condition_watch.h"
+#include "safety/latch/active_causes.h"
+#include "safety/safety_parameters.h"
+#include "signals/sensor_frame.h"
+
+namespace robot_control {
+
+class JointConditions {
+ public:
+  /// `period` s.
+  JointConditions(const SafetyParameters& parameters, const LegModel& robot, double period) noexcept
+      : speed_(kCauseJointSpeed, parameters.joint_speed, period),
+        effort_(kCauseJointEffort, parameters.joint_effort, period),
+        range_(kCauseJointRange, parameters.joint_range, period) {
+    for (std::size_t i = 0; i < kLegsJoints; ++i) {
+      const JointModel& joint = robot.joints[i];
+      limits_[i] = {.speed = joint.velocity_limit,
+                    .effort = joint.effort_limit,
+                    .range = joint.range.value_or(JointRange{-kInfinity, kInfinity})};
+    }
+  }
+
+  void enter_run() noexcept {
+    for (ConditionWatch* watch : {&speed_, &effort_, &range_}) watch->reset();
+  }
+
+  void step(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept {
+    ConditionMeasurement speed = kNothingMeasured, effort = kNothingMeasured, range = kNothingMeasured;
+    for (std::size_t i = 0; i < kLegsJoints; ++i) {
+      const JointSample& joint = sensors.joints[i];
+      const Limits& limits = limits_[i];
+      speed = worse(speed, beyond(i, std::abs(valid_velocity(joint)) / limits.speed, speed_.limit()));
+      if (has(joint, kValidEffort))
+        effort = worse(effort, beyond(i, std::abs(joint.effort) / limits.effort, effort_.limit()));
+      if (has_position(joint)) {
+        const double outside = std::max(limits.range.lower - joint.position, joint.position - limits.range.upper);
+        range = worse(range, beyond(i, outside, range_.limit()));
+      }
+    }
+    const auto update = [&](ConditionWatch& watch, const ConditionMeasurement& measurement) {
+      watch.step(measurement, elapsed);
+      out.add(watch);
+    };
+    update(speed_, speed);
+    update(effort_, effort);
+    update(range_, range);
+  }
+
+ private:
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+  struct Limits {
+    double speed = 0;   ///< rad/s
+    double effort = 0;  ///< N·m
+    JointRange range;   ///< rad; ±∞ without end stops
+  };
+
+  std::array<Limits, kLegsJoints> limits_{};
+  ConditionWatch speed_, effort_, range_;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,173 @@
+/// The conditions of robots on legs: a robot that stands, one number of which is wrong.
+
+#include "safety/conditions/legged/legged_conditions.h"
+
+#include <functional>
+
+#include "robots/quadruped_fixture.h"
+
+namespace robot_control {
+namespace {
+
+/// Quadbot stands: joints, forces of its feet and its command are those of the healthy case.
+class LeggedConditionsTest : public testing::Test {
+ protected:
+  LeggedConditionsTest() {
+    for (std::size_t leg = 0; leg < kLegs; ++leg) {
+      const LegKinematics& kinematics = robot_.legs[leg].kinematics;
+      stand_[leg] = kinematics.position(robot_.legs[leg].lying);
+      stand_[leg].z() -= 0.15;
+      sensors_.contacts[leg] = {.force = {0, 0, robot_.mass * 9.81 / kLegs}, .valid = 1};
+    }
+    sensors_.joint_count = kLegsJoints;
+    sensors_.contact_count = kLegs;
+    sensors_.valid = kValidGyro | kValidAccelerometer;
+    sensors_.imu.linear_acceleration = {0, 0, 9.81};
+    set_joints_valid(sensors_, kValidMotion);
+    command_.legged.phase = LegPhase::kStanding;
+    place(stand_);
+    run(0.3);
+  }
+
+  void place(const std::array<Eigen::Vector3d, kLegs>& feet) {
+    for (std::size_t leg = 0; leg < kLegs; ++leg) {
+      const LegAngles angles = robot_.legs[leg].kinematics.inverse(feet[leg]).angles;
+      for (std::size_t i = 0; i < kLegJoints; ++i)
+        sensors_.joints[kLegJoints * leg + i].position = angles[static_cast<Eigen::Index>(i)];
+    }
+  }
+
+  /// Returns the time in s after which a cause was active, or `seconds`.
+  double run(double seconds, const std::function<void(double)>& change = {}) {
+    for (double t = 0; t < seconds; t += kPeriod) {
+      if (change) change(t);
+      sensors_.imu.angular_velocity[0] = 1e-6 * t;  // every sample is another one
+      sensors_.imu.linear_acceleration[0] = 1e-3 * t;
+      active_.clear();
+      conditions_.step({.sensors = &sensors_, .command = &command_}, 1, 0, active_);
+      if (active_.with(Reaction::kBrake) + active_.with(Reaction::kRamp) + active_.with(Reaction::kWarn) != 0) return t;
+    }
+    return seconds;
+  }
+  /// As robots/quadruped.cpp sets them.
+  static SafetyParameters limits(const LegModel& robot) {
+    SafetyParameters safety = legged_limits({}, robot);
+    safety.lift.reaction = Reaction::kOff;
+    return safety;
+  }
+  std::string causes(Reaction reaction) const { return names_of(kStopCauseNames, active_.with(reaction)); }
+  std::uint64_t joint() const { return active_.measurements()[0].joint; }
+
+  static constexpr double kPeriod = 0.001;  // s
+  LegModel robot_ = legged_robot("quadbot");
+  LeggedConditions conditions_{limits(robot_), robot_, kPeriod};
+  SensorFrame sensors_;
+  CommandFrame command_;
+  ActiveCauses active_;
+  std::array<Eigen::Vector3d, kLegs> stand_;
+};
+
+TEST_F(LeggedConditionsTest, AreNoneWhileItStandsAndMovesItsBody) {
+  // Sway, height and turn at 0.5 Hz: the feet move together in the base's axes.
+  const double seen = run(4, [&](double t) {
+    const double s = std::sin(3.14 * t);
+    const Eigen::Matrix3d turn =
+        (Eigen::AngleAxisd(0.25 * s, Eigen::Vector3d::UnitX()) * Eigen::AngleAxisd(0.2 * s, Eigen::Vector3d::UnitZ()))
+            .toRotationMatrix();
+    std::array<Eigen::Vector3d, kLegs> feet;
+    for (std::size_t leg = 0; leg < kLegs; ++leg)
+      feet[leg] = turn * stand_[leg] + Eigen::Vector3d(0.03, 0.02, 0.02) * s;
+    place(feet);
+  });
+  EXPECT_EQ(seen, 4) << causes(Reaction::kBrake) << causes(Reaction::kRamp) << causes(Reaction::kWarn);
+}
+
+TEST_F(LeggedConditionsTest, AJointThatIsTooFastBrakes) {
+  sensors_.joints[4].velocity = -1.2 * robot_.joints[4].velocity_limit;
+  EXPECT_NEAR(run(1), 0.049, 1e-6);
+  EXPECT_EQ(causes(Reaction::kBrake), "joint_speed");
+  EXPECT_EQ(joint(), 4u);
+}
+
+TEST_F(LeggedConditionsTest, AJointThatGivesItsTorqueForLongLetsItLieDown) {
+  sensors_.joints[5].effort = 0.95 * robot_.joints[5].effort_limit;
+  EXPECT_EQ(run(0.9), 0.9);
+  sensors_.joints[5].effort = 0;
+  EXPECT_EQ(run(0.1), 0.1);
+  sensors_.joints[5].effort = -0.95 * robot_.joints[5].effort_limit;
+  EXPECT_NEAR(run(2), 0.999, 1e-6);
+  EXPECT_EQ(causes(Reaction::kRamp), "joint_effort");
+  EXPECT_EQ(joint(), 5u);
+}
+
+TEST_F(LeggedConditionsTest, AJointBeyondItsEndStopBrakes) {
+  command_.legged.phase = LegPhase::kLying;
+  sensors_.joints[0].position = robot_.joints[0].range->upper + 0.09;
+  EXPECT_EQ(run(0.2), 0.2);
+  sensors_.joints[0].position = robot_.joints[0].range->upper + 0.11;
+  EXPECT_NEAR(run(1), 0.049, 1e-6);
+  EXPECT_EQ(causes(Reaction::kBrake), "joint_range");
+  EXPECT_EQ(joint(), 0u);
+}
+
+TEST_F(LeggedConditionsTest, AFootThatSlipsLetsItLieDown) {
+  const auto slide = [&](double speed) {
+    return [this, speed](double t) {
+      std::array<Eigen::Vector3d, kLegs> feet = stand_;
+      feet[3].y() -= speed * t;
+      place(feet);
+    };
+  };
+  const double limit = robot_.leg_length();
+  EXPECT_EQ(run(0.3, slide(0.9 * limit)), 0.3);
+  place(stand_);
+  conditions_.enter_run();
+  run(0.3);
+  // The window of 0.1 s has its mean beyond the limit after 0.1/1.5 s, in steps of 10 ms, then 0.05 s of persistence.
+  EXPECT_NEAR(run(0.3, slide(1.5 * limit)), 0.12, 0.012);
+  EXPECT_EQ(causes(Reaction::kRamp), "foot_slip");
+  EXPECT_EQ(joint(), 11u);
+}
+
+TEST_F(LeggedConditionsTest, AFootInTheAirMayMoveAndCarryNothing) {
+  command_.legged.lifted = 4;
+  sensors_.contacts[3].force = {};
+  for (std::size_t leg = 0; leg < 3; ++leg) sensors_.contacts[leg].force[2] = robot_.mass * 9.81 / 3;
+  EXPECT_EQ(run(0.6,
+                [&](double t) {
+                  std::array<Eigen::Vector3d, kLegs> feet = stand_;
+                  feet[3].x() += 0.5 * std::min(t, 0.1);
+                  place(feet);
+                }),
+            0.6);
+  // It counts from where it is set down.
+  command_.legged.lifted = 0;
+  for (ContactSample& contact : sensors_.contacts) contact.force[2] = robot_.mass * 9.81 / kLegs;
+  EXPECT_EQ(run(0.3), 0.3);
+}
+
+TEST_F(LeggedConditionsTest, AFootThatCarriesNothingIsAWarning) {
+  sensors_.contacts[1].force = {0, 0, 2};
+  EXPECT_NEAR(run(1), 0.499, 1e-6);
+  EXPECT_EQ(causes(Reaction::kWarn), "foot_load");
+  EXPECT_EQ(joint(), 5u);
+  for (ContactSample& contact : sensors_.contacts) contact.valid = 0;
+  EXPECT_EQ(run(1), 1) << "a load that is not measured is not judged";
+}
+
+TEST_F(LeggedConditionsTest, FeetAreJudgedOnlyWhileItStands) {
+  for (ContactSample& contact : sensors_.contacts) contact.force = {};
+  for (const LegPhase phase : {LegPhase::kLying, LegPhase::kGathering, LegPhase::kRising, LegPhase::kJoints}) {
+    command_.legged.phase = phase;
+    EXPECT_EQ(run(0.6,
+                  [&](double t) {
+                    std::array<Eigen::Vector3d, kLegs> feet = stand_;
+                    feet[0].x() += 0.1 * std::sin(10 * t);
+                    place(feet);
+                  }),
+              0.6);
+  }
+}
+
+}  // namespace
+}  // namespace robot_control
