@@ -156,20 +156,20 @@ class LegsTest(unittest.TestCase):
         wait_for("lying", lambda: self.set_posture("lying")[0] and self.legs.posture == "lying")
         wait_for("a subscriber", lambda: self.joints.get_num_connections() > 0)
         self.joints.publish(JointTrajectory())  # a stop may have revoked this sender: its zero ends that
-        knee = self.legs.name.index("front_left_knee_joint")
-        folded = self.legs.actual[knee]
+        hip = self.legs.name.index("front_left_hip_joint")
+        lying = self.legs.actual[hip]
         time.sleep(SEND_PERIOD)
-        self.move("front_left_knee_joint", (1.0, folded + 0.3))
+        self.move("front_left_hip_joint", (1.0, lying + 0.2))  # outwards, away from the ground
         wait_for("moving joints", lambda: self.legs.posture == "joints")
-        wait_for("the end of the path", lambda: abs(self.legs.actual[knee] - folded - 0.3) < 0.03)
+        wait_for("the end of the path", lambda: abs(self.legs.actual[hip] - lying - 0.2) < 0.03)
         wait_for("the report", lambda: "joint_trajectory of /legs_test" in self.launch.output)
         wait_for("its end", lambda: ": done" in self.launch.output)
 
         for send, sentence in (
             (lambda: self.move("tail", (1, 0)), "there is no joint 'tail'"),
-            (lambda: self.move("front_left_knee_joint", (1, math.nan)), "one of its positions is nan"),
-            (lambda: self.move("front_left_knee_joint", (0.05, folded)), "give it more time"),
-            (lambda: self.move("front_left_knee_joint", (2, folded), (1, folded)), "is not after 2 s"),
+            (lambda: self.move("front_left_hip_joint", (1, math.nan)), "one of its positions is nan"),
+            (lambda: self.move("front_left_hip_joint", (0.05, lying)), "give it more time"),
+            (lambda: self.move("front_left_hip_joint", (2, lying), (1, lying)), "is not after 2 s"),
         ):
             send()
             wait_for(sentence, lambda sentence=sentence: sentence in self.launch.output)
@@ -177,14 +177,14 @@ class LegsTest(unittest.TestCase):
         self.assertEqual(self.legs.posture, "joints")
 
         # An empty trajectory stops the joints on their way.
-        self.move("front_left_knee_joint", (10.0, folded))
+        self.move("front_left_hip_joint", (10.0, lying))
         time.sleep(0.5)
         self.joints.publish(JointTrajectory())
         wait_for("the end by an empty one", lambda: "sent an empty one" in self.launch.output)
-        self.assertGreater(self.legs.actual[knee], folded + 0.2)
+        self.assertGreater(self.legs.actual[hip], lying + 0.1)
 
         self.stand()
-        self.move("front_left_knee_joint", (2, folded))
+        self.move("front_left_hip_joint", (2, lying))
         wait_for("a refusal", lambda: "the robot does not lie, it is standing" in self.launch.output)
 
     def test_the_controller_of_wheels_refuses_it_and_names_its_own(self) -> None:

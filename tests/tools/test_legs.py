@@ -67,18 +67,19 @@ def test_a_closed_loop_on_legs_moves_its_joints_while_it_lies_and_stands_up():
     resting = loop.step()
     place = [resting[f"{name}_position"][-1] for name in names]
     for _ in range(10):
-        place[2] += 0.03
+        place[0] += 0.02  # swings the leg outwards, away from the ground
         loop.joint_targets(place)
-        moved = loop.step(50)
-    assert moved[f"{knee}_position"][-1] == pytest.approx(folded + 0.3, abs=0.05)
-    loop.set_posture("standing")
-    loop.step(1000)
-    loop.set_posture("standing")
-    low = loop.step(2000)["truth_z"][-1]
+        loop.step(50)
+    loop.joint_targets(place)
+    assert loop.step(200)[f"{names[0]}_position"][-1] == pytest.approx(place[0], abs=0.01)
+    for _ in range(3):
+        loop.set_posture("standing")
+        standing = loop.step(1000)[f"{knee}_position"][-1]
+    assert standing > folded + 0.5
     for _ in range(5):
         loop.body_pose(height=-0.03)
-        sunk = loop.step(200)
-    assert sunk["truth_z"][-1] == pytest.approx(low - 0.03, abs=0.005)
+        lower = loop.step(200)[f"{knee}_position"][-1]
+    assert folded + 0.5 < lower < standing - 0.1
 
 
 @pytest.mark.parametrize(
