@@ -20,7 +20,7 @@ from typing import Any
 
 from robot_control.common.files import write_text
 
-from bench import markdown
+from bench import legs, markdown
 from bench.drives.sensor_errors import LEVELS
 from bench.faults.fault_sequence import ALL_RUNS
 from bench.release.sender_sequences import sender_rows
@@ -50,8 +50,7 @@ JUDGED = (
     "realtime",
 )
 REALTIME_PARTS = ("jitter", "chain", "cost", "scale")
-LEG_PARTS = ("kinematics", "postures", "pose", "circle", "stop", "rest", "silent")
-PARTS = {"realtime": REALTIME_PARTS, "legs": LEG_PARTS}
+PARTS = {"realtime": REALTIME_PARTS, "legs": legs.PARTS}
 NAMES = MEASURED + JUDGED
 SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores
 ON_CLUSTERS = ("campaign", "devices", "driving", "odometry", "tuning", *SEED_PROGRAMS)
@@ -179,18 +178,10 @@ def _drive(_given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
 
 
 def _legs(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    from bench import legs
+    def program(name: str, *arguments: str | int) -> dict[str, Any]:
+        return run_program(given.programs / name, *map(str, arguments))
 
-    result: dict[str, Any] = {"bench": "legs", "rows": []}
-    for part in _parts_of("legs", given):
-        seeds = str(given.runs or 8) if part == "postures" else "1"
-        program = ("bench_legs",) if part == "kinematics" else ("bench_legs_loop", part, seeds)
-        robots = legs.urdfs()[:1] if part in legs.OWN_ROBOT else legs.urdfs()
-        measured = run_program(given.programs / program[0], *program[1:], *robots)
-        result["rows"] += measured["rows"]
-    for row in legs.missed(result["rows"]):
-        say(f"missed: {row}")
-    return result, not legs.missed(result["rows"])
+    return legs.bench(_parts_of("legs", given), given.first, given.runs, program, say)
 
 
 TRIALS = {
@@ -269,7 +260,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parts = "".join(f"; after {name} also its parts {', '.join(own)}" for name, own in PARTS.items())
     which = f"of {', '.join(NAMES)} (default: {', '.join(MEASURED)}){parts}"
     parser.add_argument("names", nargs="*", metavar="NAME", help=which)
-    seeds = "campaign, devices, replay, limiter, release, bags, odometry, hostile, tuning, blackbox, processes"
+    seeds = "campaign, devices, replay, limiter, release, bags, odometry, hostile, tuning, blackbox, processes, legs"
     parser.add_argument("--first", type=_whole(0), default=0, help=f"{seeds}: first seed")
     parser.add_argument("--runs", type=_whole(1), help=f"{seeds}: number of seeds")
     parser.add_argument(

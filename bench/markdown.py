@@ -10,12 +10,14 @@ from typing import Any
 EVIDENCE = Path(__file__).parents[1] / "docs" / "evidence"
 ALLOWED = "what is allowed"
 """reference_name of a figure that is judged by a bound"""
+MEASURED = "no bound"
+"""that of a figure beside such figures that has no bound"""
 
 
 def table(result: dict[str, Any]) -> str:
     """Figures with bounds side by side, robot by robot; all others one by one, with the ratio to their reference."""
     rows = result["rows"]
-    bounded = bool(rows) and all(row["reference_name"] == ALLOWED for row in rows)
+    bounded = bool(rows) and all(row["reference_name"] in (ALLOWED, MEASURED) for row in rows)
     parts = ["```text\n" + "\n".join(result["table"]) + "\n```"] if result.get("table") else []
     parts.append(_by_robot(rows) if bounded else _one_by_one(rows))
     if result.get("not_judged"):
@@ -34,8 +36,10 @@ def _by_robot(rows: Sequence[dict[str, Any]]) -> str:
         unit = next(row["unit"] for row in found if row)
         cells = ["–" if row is None else f"{row['value']:.3g}" for row in found]
         worst = max(row["ratio"] for row in found if row)
-        bounds = " … ".join(sorted({f"{row['reference']:.3g}" for row in found if row}, key=float))
-        lines.append([f"{figure} [{unit}]", bounds, *cells, f"{100 * worst:.0f} %"])
+        judged = [row for row in found if row and row["reference_name"] == ALLOWED]
+        bounds = " … ".join(sorted({f"{row['reference']:.3g}" for row in judged}, key=float))
+        share = f"{100 * worst:.0f} %" if judged else ""
+        lines.append([f"{figure} [{unit}]" if unit else figure, bounds, *cells, share])
     return _markdown(["figure", "allowed", *robots, "worst, of what is allowed"], lines)
 
 

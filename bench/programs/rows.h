@@ -18,7 +18,7 @@ struct Row {
   double value = 0;
   std::string unit;
   double reference = 0;
-  std::string reference_name;
+  std::string reference_name = {};
   double ratio = 0;
 };
 

@@ -6,8 +6,11 @@
 ///           (brake_law.h)
 ///   kCoast  τ = 0: friction alone stops the joint, and a load moves it
 ///   kDamp   τ = −damping · q̇: a load moves the joint slowly
-///   kFold   τ = stiffness · (q* − q) + damping · (q̇* − q̇): q* moves at constant speed from the joint's position at the
-///           first order to `posture`, within `time`. After that, and without a position, as kDamp
+///   kFold   τ = stiffness · (q* − q) + damping · (q̇* − q̇), q* = posture + u · (q₀ − posture), q₀ the joint's position
+///   at
+///           the first order. The part u of the way falls from 1 with u̇ = −min(1/0.64, u/0.24)/time, so that a
+///           body meets the ground slowly. In the last 0.24 of `time` the stiffness falls to 0. After that, and
+///           without a position, as kDamp
 ///
 /// A driver that cannot carry out an action says so (Driver::accepts), and the loop does not start.
 
@@ -43,36 +46,17 @@ class JointStop {
   void release() noexcept {
     begin_.reset();
     elapsed_ = 0;
+    left_ = 1;
   }
 
   /// Returns the order of one cycle, `dt` s after the last one. `position`: measured, rad or m; none: not known.
-  JointCommand step(std::optional<double> position, double dt) noexcept {
-    const JointCommand damped{.mode = JointMode::kVelocity, .damping = action_.damping};
-    switch (action_.kind) {
-      case StopKind::kCoast:
-        return {.mode = JointMode::kEffort};
-      case StopKind::kDamp:
-        return damped;
-      case StopKind::kFold:
-        break;
-      case StopKind::kBrake:
-        return {};
-    }
-    if (!begin_) begin_ = position;
-    elapsed_ += dt;
-    if (!begin_ || elapsed_ > action_.time) return damped;
-    const double difference = action_.posture - *begin_;
-    return {.mode = JointMode::kImpedance,
-            .position = *begin_ + difference * (elapsed_ / action_.time),
-            .velocity = difference / action_.time,
-            .stiffness = action_.stiffness,
-            .damping = action_.damping};
-  }
+  JointCommand step(std::optional<double> position, double dt) noexcept;
 
  private:
   StopAction action_;
   std::optional<double> begin_;  ///< rad or m, at the first order
   double elapsed_ = 0;           ///< s, since then
+  double left_ = 1;              ///< u
 };
 
 }  // namespace robot_control

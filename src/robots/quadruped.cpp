@@ -71,8 +71,8 @@ GateParameters Quadruped::gate() const {
   GateParameters gate{.stops = {}, .longest_ramp = longest_ramp(parameters_.safety, parameters_.loop.period())};
   for (const JointModel& joint : machine_.joints) {
     gate.stops.push_back({.kind = StopKind::kFold,
-                          .damping = tuning.damping,
-                          .stiffness = tuning.stiffness,
+                          .damping = std::sqrt(kFoldStiffness) * tuning.damping,
+                          .stiffness = kFoldStiffness * tuning.stiffness,
                           .posture = joint.rest_position,
                           .time = kFoldTime * std::sqrt(machine_.leg_length() / 0.426)});
   }

@@ -3,8 +3,8 @@
 ///
 ///   recognised by   four legs (machine/legs/leg_model.h)
 ///   laws            estimation/legged, control/legged, safety/conditions/legged
-///   stop action     fold: every joint moves to the lying posture within kFoldTime, stiff as while it stands, then
-///                   damps
+///   stop action     fold: every joint moves to the lying posture within kFoldTime, kFoldStiffness times as stiff as
+///                   while it stands, since no feed-forward carries the body. Then it damps
 ///   ramp            the robot lies down
 ///
 /// The time of the fold is that of legs of 0.426 m. Time and gains follow leg length and mass as in
@@ -20,7 +20,8 @@ namespace robot_control {
 
 class Quadruped final : public Robot {
  public:
-  static constexpr double kFoldTime = 1.0;  ///< s
+  static constexpr double kFoldTime = 1.25;    ///< s
+  static constexpr double kFoldStiffness = 3;  ///< as damping its root
 
   Quadruped(const Parameters& parameters, const LegModel& machine);
 

@@ -19,7 +19,9 @@ namespace robot_control {
 class QuadrupedLoop {
  public:
   explicit QuadrupedLoop(const LegModel& robot, std::uint64_t seed = 0, ErrorLevel errors = ErrorLevel::kIdeal)
-      : parameters_(parameters(seed, errors)), loop(parameters_, std::make_shared<Quadruped>(parameters_, robot)) {}
+      : QuadrupedLoop(robot, parameters(seed, errors)) {}
+  QuadrupedLoop(const LegModel& robot, const Parameters& parameters)
+      : parameters_(parameters), loop(parameters_, std::make_shared<Quadruped>(parameters_, robot)) {}
 
   static Parameters parameters(std::uint64_t seed, ErrorLevel errors) {
     Parameters result = default_parameters();

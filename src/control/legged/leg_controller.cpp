@@ -298,6 +298,7 @@ bool LegController::move(const std::array<double, 6>& target, std::uint64_t& rea
   reasons |= kReasonOutOfReach;
   state_.body = before;
   for (TrackedAxis& axis : state_.body) axis.speed = 0;
+  state_.broken = 1;
   set_angles();
   return false;
 }

@@ -29,9 +29,10 @@
 /// the body's position and R its rotation in it. The feet in the base's axes are Rᵀ(aᵢ − p), and the joint angles are
 /// those of LegKinematics::inverse. A ball as a foot rolls: aᵢ moves with ωᵢ × (0, 0, r), ωᵢ the rate of the shank.
 ///
-/// Each joint gets an impedance about its angle. The feed-forward carries the legs' own weight and the foot's share of
-/// the robot's (load_sharing.h). To lift a foot, the body first moves its centre of gravity above the other feet. Then
-/// this foot's share goes to zero, and it goes up. It carries again after it was set down.
+/// Each joint gets an impedance about its angle. The feed-forward is the effort of the whole robot's motion along its
+/// reference, M a + h − Jᵀ f (leg_dynamics.h). The feet that stand give the force and the moment that moving the body
+/// and all legs needs (foot_forces.h). To lift a foot, the body first moves its centre of gravity above the other feet.
+/// Then this foot's share goes to zero, and it goes up. It carries again after it was set down.
 ///
 /// Every axis of the body and of the foot is limited in speed, acceleration and range. A pose that a leg does not reach
 /// is not entered: the body stays at the last one (kReasonOutOfReach).
@@ -44,7 +45,6 @@
 #include "control/command_watch.h"
 #include "control/control_input.h"
 #include "control/legged/joint_motion.h"
-#include "control/legged/load_sharing.h"
 #include "control/legged/tracked_axis.h"
 #include "machine/legs/leg_dynamics.h"
 #include "machine/legs/leg_model.h"
@@ -114,9 +114,12 @@ class LegController {
     std::uint64_t lifted = kLegs;       ///< the leg in the air, or on its way; kLegs: none
     std::array<TrackedAxis, 3> foot{};  ///< m, of the lifted foot from its place
     Vector3 foot_target{};              ///< m
-    std::array<double, kLegs> share{};  ///< of load_sharing.h
+    std::array<double, kLegs> share{};  ///< of foot_forces.h
     std::array<double, 2> centre{};     ///< m, x and y of the centre of gravity in the base's axes
     std::array<double, 2> home{};       ///< m, x and y of the standing body: its centre of gravity is amid its feet
+    std::array<double, kLeggedDofs> velocity{};      ///< of the reference, in the order of leg_dynamics.h
+    std::array<double, kLeggedDofs> acceleration{};  ///< of the reference, through a low pass
+    std::uint64_t broken = 0;                        ///< 1: the reference did not move on, since a leg did not reach
   };
   const State& state() const noexcept { return state_; }
   void set_state(const State& state) noexcept { state_ = state; }
@@ -138,7 +141,9 @@ class LegController {
   bool set_angles() noexcept;
   void roll_feet(const std::array<double, kLegsJoints>& rates) noexcept;
   void write(const std::array<double, kLegsJoints>& rates, CommandFrame& out) noexcept;
-  std::array<Eigen::Vector3d, kLegs> pushing(const LoadInput& load, const LeggedEquations& equations) const noexcept;
+  LeggedMotion reference_motion(const Eigen::Matrix3d& turned,
+                                const std::array<double, kLegsJoints>& rates) const noexcept;
+  void accelerate(const LeggedMotion& motion) noexcept;
   Eigen::Vector3d foot_in_base(std::size_t leg, const Eigen::Matrix3d& turned) const noexcept;
   Eigen::Matrix3d rotation() const noexcept;
   double lying(std::size_t joint) const noexcept;

@@ -1,66 +1,58 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "control/legged/foot_forces.h"
 #include "control/legged/leg_controller.h"
 #include "machine/gravity.h"
 
 namespace robot_control {
 namespace {
 
-constexpr std::size_t kForwards = 0, kSideways = 1, kUpwards = 2, kTurning = 5;
+constexpr double kSmooth = 0.005;  // s, low pass of the accelerations
+
+using Vector = Eigen::Matrix<double, kLeggedDofs, 1>;
 
 }  // namespace
 
-/// Returns the forces on the feet in N, stance axes, that accelerate the body along x, y and z and about the vertical.
-std::array<Eigen::Vector3d, kLegs> LegController::pushing(const LoadInput& load,
-                                                          const LeggedEquations& equations) const noexcept {
-  std::array<Eigen::Vector3d, kLegs> result;
-  result.fill(Eigen::Vector3d::Zero());
-  double carried = 0, levers = 0;
-  for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    carried += load.share[leg];
-    levers += load.share[leg] * load.feet[leg].squaredNorm();
-  }
-  if (state_.phase != LegPhase::kStanding || carried < 1) return result;
-  const Eigen::Vector3d force =
-      dynamics_.mass() / carried *
-      Eigen::Vector3d(state_.body[kForwards].acceleration, state_.body[kSideways].acceleration,
-                      state_.body[kUpwards].acceleration);
-  const double turning = equations.mass(5, 5) * state_.body[kTurning].acceleration / levers;
-  for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const Eigen::Vector2d& lever = load.feet[leg];
-    result[leg] = load.share[leg] * (force + turning * Eigen::Vector3d(-lever.y(), lever.x(), 0));
-  }
-  return result;
+/// Returns the rate of the reference in the base's axes.
+LeggedMotion LegController::reference_motion(const Eigen::Matrix3d& turned,
+                                             const std::array<double, kLegsJoints>& rates) const noexcept {
+  LeggedMotion motion{.angles = state_.angles, .rates = rates};
+  const Eigen::Matrix3d yawed = Eigen::AngleAxisd(state_.body[5].value, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  motion.linear =
+      turned.transpose() * Eigen::Vector3d(state_.body[0].speed, state_.body[1].speed, state_.body[2].speed);
+  motion.angular =
+      state_.body[3].speed * Eigen::Vector3d::UnitX() +
+      turned.transpose() * (state_.body[4].speed * yawed.col(1) + state_.body[5].speed * Eigen::Vector3d::UnitZ());
+  motion.gravity = -kGravity * turned.row(2).transpose();
+  return motion;
 }
 
 void LegController::write(const std::array<double, kLegsJoints>& rates, CommandFrame& out) noexcept {
   const Eigen::Matrix3d turned = rotation();
-  const Eigen::Vector3d up = turned.row(2);
-  LeggedMotion motion{.angles = state_.angles, .gravity = -kGravity * up};
+  const LeggedMotion motion = reference_motion(turned, rates);
   LeggedEquations equations;
   dynamics_.step(motion, equations);
   state_.centre = {equations.centre_of_gravity.x(), equations.centre_of_gravity.y()};
-  LoadInput load{.share = state_.share};
+  accelerate(motion);
+  const Vector efforts = equations.mass * Eigen::Map<const Vector>(state_.acceleration.data()) + equations.bias;
+  FootForcesInput load{.share = state_.share, .up = turned.row(2)};
   double carried = 0;
-  // While the body accelerates, the forces balance about the point on which it leans.
-  Eigen::Vector2d lean = Eigen::Vector2d::Zero();
-  if (state_.phase == LegPhase::kStanding)
-    lean = Eigen::Vector2d(state_.body[kForwards].acceleration, state_.body[kSideways].acceleration) / kGravity;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const Eigen::Vector3d lever = turned * (foot_in_base(leg, turned) - equations.centre_of_gravity);
-    load.feet[leg] = lever.head<2>() - lever.z() * lean;
+    load.feet[leg] = foot_in_base(leg, turned);
     carried += state_.share[leg] / (kLegs - 1);
   }
-  load.weight = dynamics_.mass() * kGravity * std::min(1.0, carried);
-  const std::array<double, kLegs> forces = carried > 0 ? shared_loads(load) : std::array<double, kLegs>{};
-  const std::array<Eigen::Vector3d, kLegs> pushes = pushing(load, equations);
+  load.force = std::min(1.0, carried) * efforts.head<3>();
+  load.moment = std::min(1.0, carried) * efforts.segment<3>(3);
+  std::array<Eigen::Vector3d, kLegs> forces;
+  forces.fill(Eigen::Vector3d::Zero());
+  if (carried > 0) forces = foot_forces(load);
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const std::size_t first = kLegJoints * leg;
     Eigen::Vector3d foot;
     const Eigen::Matrix3d jacobian = legs_[leg].kinematics.jacobian(LegModel::angles_of(state_.angles, leg), foot);
-    const Eigen::Vector3d effort = equations.bias.segment<3>(static_cast<Eigen::Index>(6 + first)) -
-                                   jacobian.transpose() * (forces[leg] * up + turned.transpose() * pushes[leg]);
+    const Eigen::Vector3d effort =
+        efforts.segment<3>(static_cast<Eigen::Index>(6 + first)) - jacobian.transpose() * forces[leg];
     for (std::size_t i = 0; i < kLegJoints; ++i) {
       out.joints[first + i] = {.mode = JointMode::kImpedance,
                                .position = state_.angles[first + i],
@@ -70,6 +62,22 @@ void LegController::write(const std::array<double, kLegsJoints>& rates, CommandF
                                .effort = effort[static_cast<Eigen::Index>(i)]};
     }
   }
+}
+
+/// Filters the acceleration of the reference: Rᵀ p̈, ω̇, q̈.
+void LegController::accelerate(const LeggedMotion& motion) noexcept {
+  std::array<double, kLeggedDofs> velocity{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    velocity[i] = motion.linear[static_cast<Eigen::Index>(i)];
+    velocity[3 + i] = motion.angular[static_cast<Eigen::Index>(i)];
+  }
+  std::copy(motion.rates.begin(), motion.rates.end(), velocity.begin() + 6);
+  for (std::size_t i = 0; i < velocity.size(); ++i) {
+    const double change = state_.broken != 0 ? 0 : (velocity[i] - state_.velocity[i]) / period_;
+    state_.acceleration[i] += std::min(1.0, period_ / kSmooth) * (change - state_.acceleration[i]);
+  }
+  state_.velocity = velocity;
+  state_.broken = 0;
 }
 
 }  // namespace robot_control

@@ -17,12 +17,10 @@ struct AxisBounds {
 };
 
 struct TrackedAxis {
-  static constexpr double kFollow = 120;   ///< 1/s
-  static constexpr double kSmooth = 0.02;  ///< s
+  static constexpr double kFollow = 120;  ///< 1/s
 
   double value = 0;
   double speed = 0;
-  double acceleration = 0;  ///< through a low pass of kSmooth
 
   /// Advances by `dt` s. Returns true if a bound was reached.
   bool step(double target, const AxisBounds& bounds, double dt) noexcept {
@@ -32,7 +30,6 @@ struct TrackedAxis {
     const double change = bounds.acceleration * dt;
     const double next = std::clamp(wanted, speed - change, speed + change);
     const bool limited = free > bounds.speed || next != wanted;
-    acceleration += std::min(1.0, dt / kSmooth) * ((next - speed) / dt - acceleration);
     speed = next;
     value += speed * dt;
     return limited;

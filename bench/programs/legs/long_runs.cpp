@@ -1,0 +1,109 @@
+#include <random>
+
+#include "bench/programs/legs/loop_rows.h"
+
+namespace robot_control::bench {
+namespace {
+
+/// Draws what the robot does next.
+class Draw {
+ public:
+  explicit Draw(std::uint64_t seed) : random_(seed) {}
+  double within(double least, double largest) {
+    return std::uniform_real_distribution<double>(least, largest)(random_);
+  }
+  std::uint64_t below(std::uint64_t count) { return random_() % count; }
+  /// A pose of the body within what is promised.
+  Posture pose(double length) {
+    return {.height = within(-0.15, 0.15) * length,
+            .roll = within(-0.25, 0.25),
+            .pitch = within(-0.25, 0.25),
+            .x = within(-0.1, 0.1) * length,
+            .y = within(-0.1, 0.1) * length,
+            .yaw = within(-0.25, 0.25)};
+  }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+}  // namespace
+
+void hour(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
+  constexpr double kHour = 3600;  // s
+  QuadrupedLoop robot(model, seed, ErrorLevel::kField);
+  Draw draw(seed);
+  const double length = model.leg_length(), lift = leg_tuning(model).lift;
+  double warned = 0;
+  const auto run = [&](double seconds, const Request& request) {
+    for (double t = 0; t < seconds; t += 0.02) {
+      robot.run(0.02, request);
+      if (robot.permit().warnings != 0) warned += 0.02;
+    }
+  };
+  run(0.3, {});
+  while (robot.loop.time() < kHour && robot.permit().causes == 0) {
+    run(2.5, stance(kStanceStand));
+    for (int act = 0; act < 10; ++act) {
+      if (draw.below(3) == 0) {
+        Request foot = stance(kStanceLift + draw.below(kLegs));
+        foot.posture = {.height = lift, .x = draw.within(-0.1, 0.1) * length, .y = draw.within(-0.1, 0.1) * length};
+        run(draw.within(2, 5), foot);
+        run(2.5, {});
+      } else {
+        run(draw.within(1, 5), {.twist = {}, .posture = draw.pose(length)});
+      }
+    }
+    run(2, {});
+    run(5, stance(kStanceLie));
+  }
+  worst.add("stops in an hour", robot.permit().causes == 0 ? 0 : 1, "runs");
+  worst.add("time with a warning in an hour", warned, "s");
+  if (robot.permit().causes != 0)
+    std::fprintf(stderr, "%s, seed %llu: stopped after %.1f s by %s\n", model.name.c_str(),
+                 static_cast<unsigned long long>(seed), robot.loop.time(), robot.causes().c_str());
+}
+
+void replayed(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
+  constexpr double kSeconds = 8;
+  QuadrupedLoop robot(model, seed, ErrorLevel::kField);
+  robot.record = true;
+  Draw draw(seed);
+  const double length = model.leg_length();
+  const char* const nodes[] = {"estimator", "controller", "monitor"};
+  const char* const kinds[] = {"off", "stuck", "delayed", "garbage", "wrong"};
+  robot.wait(0.3);
+  robot.run(2.5, stance(kStanceStand));
+  for (double begun = robot.loop.time(); robot.loop.time() - begun < kSeconds;) {
+    switch (draw.below(5)) {
+      case 0: {
+        const char* const node = nodes[draw.below(3)];
+        robot.loop.inject_fault(node, kinds[draw.below(5)]);
+        robot.wait(draw.within(0.005, 0.1));
+        robot.loop.inject_fault(node, "ok");
+        break;
+      }
+      case 1:
+        robot.loop.e_stop();
+        break;
+      case 2:
+        robot.run(1.5, {});
+        robot.loop.e_stop_reset();
+        robot.run(0.1, {});
+        robot.run(2.0, stance(kStanceStand));
+        break;
+      case 3:
+        robot.run(0.5, {.twist = {}, .posture = draw.pose(length)});
+        break;
+      default:
+        robot.run(0.7, stance(kStanceLift + draw.below(kLegs)));
+    }
+  }
+  const ReplayReport report = robot.recording.replay(robot.loop.robot(), 0.001);
+  worst.add("replay that is not exact", report.exact() ? 0 : 1, "runs");
+  if (!report.exact())
+    std::fprintf(stderr, "%s, seed %llu: %s", model.name.c_str(), static_cast<unsigned long long>(seed),
+                 text_of(report).c_str());
+}
+
+}  // namespace robot_control::bench

@@ -1,0 +1,46 @@
+#pragma once
+/// These functions measure one robot with one seed, in the closed loop on the simulated machine.
+
+#include <cstdint>
+
+#include "bench/programs/legs/worst_values.h"
+#include "support/quadruped_loop.h"
+
+namespace robot_control::bench {
+
+/// Lying → standing → lying, with the sensor errors of the field.
+void postures(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// The body follows sines of 0.5 Hz on each axis.
+void body_pose(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// Each foot draws a circle of 5 cm radius in 2 s while the others stand.
+void circle(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+
+/// An e-stop while the robot stands, sways, and has one foot in the air.
+void stop(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// A push in 8 directions while the robot stands, and then the brake.
+void push(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// Ten minutes without power in the joints, after an e-stop.
+void rest(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// The controller is silent for 5 … 19 cycles while the robot sways.
+void silent(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+
+/// An hour of standing, swaying, lifting feet, lying down and standing up, with the sensor errors of the field.
+void hour(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// Runs with failing nodes, stops and resets, computed again from their rows.
+void replayed(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+
+/// The time of each law's step, its allocations, and the time of a cycle of ClosedLoop beside that of a bare mj_step.
+void cost(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+
+inline constexpr double kPi = 3.14159265358979323846;
+inline constexpr double kSway = 0.5;  ///< Hz
+
+/// Stands up, and stands for half a second.
+inline void stand_up(QuadrupedLoop& robot) {
+  robot.wait(0.3);
+  robot.run(2.5, stance(kStanceStand));
+  robot.run(0.5, {});
+  robot.clear();
+}
+
+}  // namespace robot_control::bench

@@ -1,0 +1,98 @@
+#include "bench/programs/legs/loop_rows.h"
+
+namespace robot_control::bench {
+namespace {
+
+/// Returns the height of the standing body above the lying one that the robot was given, in m.
+double nominal_rise(const LegModel& robot) {
+  const LegGeometry& first = robot.legs[0].kinematics.geometry();
+  return leg_tuning(robot).height - first.hip.z() - first.upper.z() + robot.belly + robot.legs[0].foot_radius;
+}
+
+std::array<double, 6> pose(const QuadrupedLoop& robot) {
+  const Pose& p = robot.truth().pose_world;
+  return {p.position[0],          p.position[1],           p.position[2],
+          roll_of(p.orientation), pitch_of(p.orientation), yaw_of(p.orientation)};
+}
+
+}  // namespace
+
+void postures(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
+  QuadrupedLoop robot(model, seed, ErrorLevel::kField);
+  robot.wait(0.3);
+  const double lying = robot.truth().pose_world.position[2];
+  robot.clear();
+  robot.run(2.0, stance(kStanceStand));
+  worst.add("effort of the limit", robot.effort, "");
+  worst.add("height after 2 s", std::abs(robot.truth().pose_world.position[2] - lying - nominal_rise(model)), "m");
+  worst.add("tilt after 2 s", robot.tilt_now(), "rad");
+  robot.run(3.0, {});
+  const Vector3 before = robot.truth().pose_world.position;
+  robot.run(6.0, {});
+  const Vector3& after = robot.truth().pose_world.position;
+  worst.add("creep", 10 * std::hypot(after[0] - before[0], after[1] - before[1]), "m/min");
+  robot.run(4.0, stance(kStanceLie));
+  worst.add("not lying at the end", (robot.command().reasons & kReasonHolding) != 0 ? 0 : 1, "runs");
+  worst.add("stops", robot.permit().causes == 0 ? 0 : 1, "runs");
+}
+
+void body_pose(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
+  QuadrupedLoop robot(model, seed);
+  stand_up(robot);
+  const double length = model.leg_length(), omega = 2 * kPi * kSway;
+  const double sizes[6] = {0.1 * length, 0.1 * length, 0.15 * length, 0.25, 0.25, 0.25};
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    robot.run(1.0, {});
+    const std::array<double, 6> begin = pose(robot);
+    robot.clear();
+    double sum = 0;
+    for (int k = 0; k < 4000; ++k) {
+      Request request;
+      double* const values[6] = {&request.posture.x,    &request.posture.y,     &request.posture.height,
+                                 &request.posture.roll, &request.posture.pitch, &request.posture.yaw};
+      *values[axis] = sizes[axis] * std::sin(omega * k * 0.001);
+      robot.loop.request(request);
+      robot.step();
+      sum += std::pow(pose(robot)[axis] - begin[axis] - *values[axis], 2);
+    }
+    worst.add(axis < 3 ? "RMS of the place" : "RMS of the angle", std::sqrt(sum / 4000), axis < 3 ? "m" : "rad");
+    worst.add("slip of a foot", *std::max_element(robot.slipped.begin(), robot.slipped.end()), "m");
+  }
+  worst.add("stops", robot.permit().causes == 0 ? 0 : 1, "runs");
+}
+
+void circle(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
+  QuadrupedLoop robot(model, seed);
+  stand_up(robot);
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    Request up = stance(kStanceLift + leg);
+    up.posture.height = leg_tuning(model).lift;
+    robot.clear();
+    robot.run(2.0, up);
+    const auto foot = [&]() -> Eigen::Vector3d {
+      std::array<double, kLegsJoints> angles{};
+      for (std::size_t i = 0; i < kLegsJoints; ++i) angles[i] = robot.truth().joints[i].position;
+      return rotation_of(robot.truth().pose_world.orientation) *
+             robot.robot().legs[leg].kinematics.position(LegModel::angles_of(angles, leg));
+    };
+    const Eigen::Vector3d begin = foot();
+    double sum = 0;
+    constexpr double kRadius = 0.05;  // m
+    for (int k = 0; k < 2000; ++k) {
+      const double turn = kPi * k * 0.001;
+      Request request = up;
+      request.posture.x = kRadius * std::sin(turn);
+      request.posture.height += kRadius * (1 - std::cos(turn));
+      robot.loop.request(request);
+      robot.step();
+      sum += (foot() - begin - kRadius * Eigen::Vector3d(std::sin(turn), 0, 1 - std::cos(turn))).squaredNorm();
+    }
+    const std::string name = name_of(static_cast<LegPlace>(leg));
+    worst.add("RMS of foot " + name, std::sqrt(sum / 2000), "m");
+    worst.add("tilt with foot " + name, robot.tilt, "rad");
+    robot.run(2.5, {});
+  }
+  worst.add("stops", robot.permit().causes == 0 ? 0 : 1, "runs");
+}
+
+}  // namespace robot_control::bench

@@ -1,0 +1,41 @@
+#include "gate/stop_action.h"
+
+#include <algorithm>
+
+namespace robot_control {
+namespace {
+
+// Parts of the time of a fold.
+constexpr double kQuick = 0.64;
+constexpr double kGentle = 0.24;
+constexpr double kFade = 0.24;
+
+}  // namespace
+
+JointCommand JointStop::step(std::optional<double> position, double dt) noexcept {
+  const JointCommand damped{.mode = JointMode::kVelocity, .damping = action_.damping};
+  switch (action_.kind) {
+    case StopKind::kCoast:
+      return {.mode = JointMode::kEffort};
+    case StopKind::kDamp:
+      return damped;
+    case StopKind::kFold:
+      break;
+    case StopKind::kBrake:
+      return {};
+  }
+  if (!begin_) begin_ = position;
+  elapsed_ += dt;
+  if (!begin_ || elapsed_ >= action_.time) return damped;
+  const double falling = std::min(1 / kQuick, left_ / kGentle) / action_.time;
+  left_ = std::max(0.0, left_ - falling * dt);
+  const double difference = action_.posture - *begin_;
+  const double held = std::min(1.0, (action_.time - elapsed_) / (kFade * action_.time));
+  return {.mode = JointMode::kImpedance,
+          .position = action_.posture - left_ * difference,
+          .velocity = falling * difference,
+          .stiffness = held * action_.stiffness,
+          .damping = action_.damping};
+}
+
+}  // namespace robot_control

@@ -1,0 +1,64 @@
+/// The stop of one joint.
+
+#include "gate/stop_action.h"
+
+#include <gtest/gtest.h>
+
+namespace robot_control {
+namespace {
+
+constexpr StopAction kFolding{.kind = StopKind::kFold, .damping = 2, .stiffness = 60, .posture = 1.5, .time = 1.25};
+constexpr double kCycle = 0.001;  // s
+constexpr double kBegin = 0.5;    // rad
+
+TEST(JointStop, FoldsQuicklyAtFirstAndGentlyAtTheEnd) {
+  JointStop stop(kFolding);
+  const JointCommand first = stop.step(kBegin, kCycle);
+  EXPECT_EQ(first.mode, JointMode::kImpedance);
+  EXPECT_NEAR(first.velocity, 1 / 0.8, 1e-9);
+  EXPECT_NEAR(first.position, kBegin + kCycle / 0.8, 1e-9);
+  EXPECT_EQ(first.stiffness, 60);
+  EXPECT_EQ(first.damping, 2);
+  JointCommand last = first;
+  for (double t = 2 * kCycle; t < 0.94; t += kCycle) {
+    const JointCommand next = stop.step(kBegin, kCycle);
+    EXPECT_GE(next.position, last.position);
+    EXPECT_LE(next.velocity, last.velocity);
+    EXPECT_EQ(next.stiffness, 60);
+    last = next;
+  }
+  EXPECT_NEAR(last.velocity, (kFolding.posture - last.position) / 0.3, 0.01);
+  EXPECT_LT(kFolding.posture - last.position, 0.1);
+}
+
+TEST(JointStop, DampsAloneAfterItsStiffnessFaded) {
+  JointStop stop(kFolding);
+  JointCommand last;
+  for (double t = 0; t < 1.2; t += kCycle) last = stop.step(kBegin, kCycle);
+  EXPECT_NEAR(last.stiffness, 60 * 0.05 / 0.3, 1);
+  for (double t = 0; t < 0.1; t += kCycle) last = stop.step(kBegin, kCycle);
+  EXPECT_EQ(last.mode, JointMode::kVelocity);
+  EXPECT_EQ(last.velocity, 0);
+  EXPECT_EQ(last.damping, 2);
+}
+
+TEST(JointStop, FoldsAgainFromWhereACommandLeftTheJoint) {
+  JointStop stop(kFolding);
+  for (double t = 0; t < 2; t += kCycle) stop.step(kBegin, kCycle);
+  stop.release();
+  EXPECT_NEAR(stop.step(1.0, kCycle).position, 1.0, 0.001);
+}
+
+TEST(JointStop, DampsAJointWithoutAPosition) {
+  JointStop stop(kFolding);
+  EXPECT_EQ(stop.step(std::nullopt, kCycle).mode, JointMode::kVelocity);
+}
+
+TEST(JointStop, DoesNotPassThePostureAfterALongGap) {
+  JointStop stop(kFolding);
+  stop.step(kBegin, kCycle);
+  EXPECT_LE(stop.step(kBegin, 1.0).position, kFolding.posture);
+}
+
+}  // namespace
+}  // namespace robot_control
