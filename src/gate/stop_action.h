@@ -6,11 +6,11 @@
 ///           (brake_law.h)
 ///   kCoast  τ = 0: friction alone stops the joint, and a load moves it
 ///   kDamp   τ = −damping · q̇: a load moves the joint slowly
-///   kFold   τ = stiffness · (q* − q) + damping · (q̇* − q̇), q* = posture + u · (q₀ − posture), q₀ the joint's position
-///   at
-///           the first order. The part u of the way falls from 1 with u̇ = −min(1/0.64, u/0.24)/time, so that a
-///           body meets the ground slowly. In the last 0.24 of `time` the stiffness falls to 0. After that, and
-///           without a position, as kDamp
+///   kFold   τ = stiffness · (q* − q) + damping · (q̇* − q̇) with q* = posture + u · (q₀ − posture). q₀ is the
+///           position at the first order. The part u of the way falls from 1 with u̇ = −min(1/0.64, u/0.24)/time, so
+///           that a body meets the ground slowly. In the last 0.24 of `time` the stiffness falls to 0.
+///           Then, and without a position, it is kDamp. The first part of the way is thus
+///           1/0.64 times as fast as the mean.
 ///
 /// A driver that cannot carry out an action says so (Driver::accepts), and the loop does not start.
 

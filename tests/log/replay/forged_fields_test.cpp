@@ -20,12 +20,13 @@
 namespace robot_control {
 namespace {
 
-/// A drive with two runs, live tuning, faults of the nodes' outputs and a stop.
+/// A drive with two runs, live tuning, faults of the nodes' outputs, a request that wheels refuse, and a stop.
 struct LoggedDrive {
   LoggedDrive() {
     constexpr std::uint64_t kCycles = 320;
     for (std::uint64_t k = 0; k < kCycles; ++k) {
       if (k % 50 == 20) loop.command({.linear = {0.4, 0, 0}, .angular = {0, 0, 0.3}});
+      if (k == 40) loop.request({.joints = {0.1, 0.2}});
       if (k == 60) loop.reset();
       if (k == 120) loop.set_parameters("{max_linear_speed: 0.3}");
       if (k == 140) loop.inject_fault("estimator", "delayed");
