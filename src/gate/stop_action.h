@@ -8,9 +8,8 @@
 ///   kDamp   τ = −damping · q̇: a load moves the joint slowly
 ///   kFold   τ = stiffness · (q* − q) + damping · (q̇* − q̇) with q* = posture + u · (q₀ − posture). q₀ is the
 ///           position at the first order. The part u of the way falls from 1 with u̇ = −min(1/0.64, u/0.24)/time, so
-///           that a body meets the ground slowly. In the last 0.24 of `time` the stiffness falls to 0.
-///           Then, and without a position, it is kDamp. The first part of the way is thus
-///           1/0.64 times as fast as the mean.
+///           that a body meets the ground slowly: the first part is 1/0.64 times as fast as the mean. In the last 0.24
+///           of `time` the stiffness falls to 0. After `time`, and without a position, it is kDamp
 ///
 /// A driver that cannot carry out an action says so (Driver::accepts), and the loop does not start.
 
