@@ -75,6 +75,7 @@ void Gate::enter_run() noexcept {
 }
 
 std::span<const JointCommand> Gate::step(const GateInput& input) noexcept {
+  report_.cycle = input.cycle;
   report_.verdict = GateVerdict::kBrake;
   report_.reasons = 0;
   read_samples(input);

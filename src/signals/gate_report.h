@@ -37,6 +37,7 @@ enum GateReason : std::uint64_t {
 };
 
 struct GateReport {
+  std::uint64_t cycle = 0;  ///< k, of the tick.
   GateVerdict verdict = GateVerdict::kBrake;
   std::uint64_t reasons = kGateFirstTick;
   std::uint64_t command_cycle = 0;  ///< Cycle of the command that was used; meaningless if none was.

@@ -88,7 +88,7 @@ struct SensorFrame {
   std::uint64_t digital_inputs = 0;
   double battery_voltage = 0;    ///< V, at the terminals
   double battery_current = 0;    ///< A, positive when discharging
-  GateReport gate;               ///< gate's report of tick k-1
+  GateReport gate;               ///< gate's report of the last tick: k-1, or before cycles that were skipped
   std::uint64_t overruns = 0;    ///< Ticks of this run that ended after the next deadline.
   InjectedFaults injected{};     ///< simulators only, for the log and ClosedLoop
   std::uint64_t slipped_ns = 0;  ///< Time by which a simulated plant fell behind the wall clock in this run.

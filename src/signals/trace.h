@@ -29,7 +29,7 @@ struct CycleTiming {
 struct DriverTrace {
   SensorFrame sensors;
   TruthFrame truth;
-  GateReport gate;  ///< report of tick k itself (SensorFrame::gate is that of k-1)
+  GateReport gate;  ///< report of tick k itself (SensorFrame::gate is that of the last one)
   CycleTiming timing;
   GateCalls calls;
 };

@@ -84,7 +84,8 @@ class HealthyDriving : public testing::TestWithParam<Machine> {
     const double flicker = cycle_ % 2 == 0 ? 1e-4 : -1e-4;
     sensors_.imu.angular_velocity = {flicker, 0, (speed_[1] - speed_[0]) * 0.1 / 0.5};
     sensors_.imu.linear_acceleration = {0, flicker, 9.81};
-    sensors_.gate = {.verdict = rests ? GateVerdict::kBrake : GateVerdict::kPassed,
+    sensors_.gate = {.cycle = cycle_ == 0 ? 0 : cycle_ - 1,
+                     .verdict = rests ? GateVerdict::kBrake : GateVerdict::kPassed,
                      .reasons = rests ? std::uint64_t{kGateControllerBrake} : 0,
                      .permit_cycle = newest_ + 1 < cycle_ ? newest_ : older_};
     if (cycle_ < 3) sensors_.gate = {};

@@ -8,7 +8,7 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from driver_support import LEFT, STANDING, DriverTestCase
 from robot_control.msg import RobotStatus, SafetyStatus
-from system_support import MONITOR, Program, again_after_a_stall, wait_for
+from system_support import MONITOR, Program, again_after_a_stall
 
 SLOW = 10.0
 """s"""
@@ -43,12 +43,9 @@ class DriverStartTest(DriverTestCase):
         status = Program("robot_status.py")
         self.addCleanup(status.end)
         began = time.monotonic()
-        try:
-            wait_for("safety_status", lambda: "machine is starting" in " ".join(self.missing()))
-        except AssertionError as error:
-            raise AssertionError(f"{error} {self.robot.status} {self.robot.nodes['driver'].output}") from None
-        wait_for("/diagnostics", lambda: LEFT in self.diagnostics)
-        wait_for("robot_status", lambda: self.robot_status is not None and self.robot_status.mode == "starting")
+        self.wait_for("safety_status", lambda: "machine is starting" in " ".join(self.missing()))
+        self.wait_for("/diagnostics", lambda: LEFT in self.diagnostics)
+        self.wait_for("robot_status", lambda: self.robot_status is not None and self.robot_status.mode == "starting")
         self.assertIn(LEFT, self.robot.nodes["driver"].output)
         self.assertIn(LEFT, self.why())
         while time.monotonic() < began + SLOW:
@@ -56,7 +53,7 @@ class DriverStartTest(DriverTestCase):
             time.sleep(0.05)
         self.assertEqual(self.robot.state, SafetyStatus.INIT)
         self.start_devices()
-        wait_for(
+        self.wait_for(
             "the end of INIT", lambda: self.robot.state != SafetyStatus.INIT, every=lambda: self.robot.send(0.5, 0.2)
         )
         time.sleep(0.5)
@@ -71,7 +68,7 @@ class DriverStartTest(DriverTestCase):
         rospy.set_param(f"{MONITOR}/start_timeout", 2.0)
         self.addCleanup(rospy.delete_param, f"{MONITOR}/start_timeout")
         self.robot.start(MONITOR)
-        wait_for("the fault", lambda: "machine_not_ready" in self.robot.causes)
+        self.wait_for("the fault", lambda: "machine_not_ready" in self.robot.causes)
         self.assertIn("machine", self.why())
         self.start_devices()
         self.release()

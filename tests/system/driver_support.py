@@ -1,19 +1,33 @@
 """A robot whose drives are simulated by another process: `driver` knows them by their frames alone."""
 
+import contextlib
 import math
 import tempfile
 import unittest
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import rospy
 import yaml
 from nav_msgs.msg import Odometry
 from robot_control.srv import InjectFault
-from system_support import CONTROLLER, ESTIMATOR, MONITOR, Program, Robot, init_test_node, repository, wait_for
+from system_support import (
+    CONTROLLER,
+    ESTIMATOR,
+    MONITOR,
+    STALL_CAUSES,
+    Program,
+    Robot,
+    init_test_node,
+    repository,
+    wait_for,
+)
 
 LEFT = "left_wheel_joint"
 STANDING = 0.01
 """m/s"""
+DEVICE_STALL_CAUSES = STALL_CAUSES | {"driver_fault", "encoders_lost", "imu_lost"}
+"""The drives are a process of this machine, too, which may stall."""
 
 
 class DriverTestCase(unittest.TestCase):
@@ -37,6 +51,7 @@ class DriverTestCase(unittest.TestCase):
         subscriber = rospy.Subscriber("ground_truth/odom", Odometry, self.receive_truth)
         self.addCleanup(subscriber.unregister)
         self.robot = Robot()
+        self.robot.stall_causes = frozenset(DEVICE_STALL_CAUSES)
         self.addCleanup(self.robot.end)
         self.robot.start("driver", ESTIMATOR, CONTROLLER, MONITOR)
 
@@ -56,16 +71,33 @@ class DriverTestCase(unittest.TestCase):
         answer = rospy.ServiceProxy("device_simulator/inject_fault", InjectFault)(component, kind)
         self.assertTrue(answer.success, answer.message)
 
+    def wait_for(self, what: str, condition: Callable[[], bool], every: Callable[[], object] | None = None) -> None:
+        """As system_support.wait_for; its failure shows the robot."""
+        with self.explained():
+            wait_for(what, condition, every=every)
+
+    @contextlib.contextmanager
+    def explained(self) -> Iterator[None]:
+        """Adds the state of the robot and the driver's output to a failed wait."""
+        try:
+            yield
+        except AssertionError as error:
+            driver = self.robot.nodes["driver"].output
+            raise AssertionError(
+                f"{error}; {self.true_speed} m/s\n{self.robot.status}\n--- driver\n{driver}"
+            ) from None
+
     def drive(self) -> None:
-        self.robot.drive_until("0.5 m/s", self.robot.driving)
-        wait_for("the true speed", lambda: self.true_speed > 0.4, every=lambda: self.robot.send(0.5, 0.2))
+        with self.explained():
+            self.robot.drive_until("0.5 m/s", self.robot.driving)
+        self.wait_for("the true speed", lambda: self.true_speed > 0.4, every=lambda: self.robot.send(0.5, 0.2))
 
     def await_stop(self) -> None:
-        wait_for("the stop", lambda: "driver_fault" in self.robot.causes, every=lambda: self.robot.send(0.5, 0.2))
+        self.wait_for("the stop", lambda: "driver_fault" in self.robot.causes, every=lambda: self.robot.send(0.5, 0.2))
 
     def release(self) -> None:
         """The first reset clears the drives; one after they are ready is accepted."""
-        wait_for(
+        self.wait_for(
             "an accepted reset",
             lambda: bool(self.robot.call("e_stop_reset").success),
             every=lambda: self.robot.send(0.0, 0.0),

@@ -10,7 +10,7 @@ from driver_support import LEFT, STANDING, DriverTestCase
 from robot_control.msg import SafetyStatus
 from sensor_msgs.msg import Imu
 from std_msgs.msg import Header
-from system_support import again_after_a_stall, nightly, wait_for
+from system_support import again_after_a_stall, nightly
 
 LOSSES = (("bus", "off"), (LEFT, "off"), (LEFT, "reset"), (LEFT, "encoder"), (LEFT, "released"))
 STOPPED = (SafetyStatus.STOPPED, SafetyStatus.FAULT)
@@ -24,7 +24,7 @@ class DriverTest(DriverTestCase):
         self.addCleanup(rospy.delete_param, "robot/imu")
         self.start_devices()
         self.robot.start("driver")
-        wait_for("what it awaits", lambda: "imu/input" in self.robot.nodes["driver"].output)
+        self.wait_for("what it awaits", lambda: "imu/input" in self.robot.nodes["driver"].output)
         publisher = rospy.Publisher("imu/input", Imu, queue_size=1)
         sample = Imu(header=Header(frame_id="imu_link"))
         sample.linear_acceleration.z = 9.81
@@ -32,7 +32,7 @@ class DriverTest(DriverTestCase):
         self.addCleanup(timer.shutdown)
         self.robot.await_ready()
         timer.shutdown()
-        wait_for("its loss", lambda: "imu_lost" in self.robot.status.warnings)
+        self.wait_for("its loss", lambda: "imu_lost" in self.robot.status.warnings)
 
     @again_after_a_stall
     def test_a_drive_that_goes_off_stops_the_robot_until_it_is_back_and_reset(self) -> None:
@@ -41,7 +41,7 @@ class DriverTest(DriverTestCase):
         self.drive()
         self.inject("off")
         self.await_stop()
-        wait_for("rest", lambda: abs(self.true_speed) < STANDING, every=lambda: self.robot.send(0.5, 0.2))
+        self.wait_for("rest", lambda: abs(self.true_speed) < STANDING, every=lambda: self.robot.send(0.5, 0.2))
         self.assertFalse(self.robot.call("e_stop_reset").success)
         self.inject("ok")
         self.release()
@@ -65,7 +65,7 @@ class DriverTest(DriverTestCase):
                     self.drive()
                     driver = self.robot.nodes["driver"]
                     driver.send_signal(number)
-                    wait_for("the stop", lambda: self.robot.state in STOPPED, every=lambda: self.robot.send(0.5, 0.2))
+                    self.wait_for("the stop", lambda: self.robot.state in STOPPED, every=lambda: self.robot.send(0.5, 0.2))
                     driver.kill()
                     self.robot.start("driver")
                     self.release()
@@ -76,13 +76,13 @@ class DriverTest(DriverTestCase):
         self.robot.await_ready()
         self.drive()
         self.robot.nodes["driver"].kill()
-        wait_for("the loss", lambda: "driver_lost" in self.robot.causes, every=lambda: self.robot.send(0.5, 0.2))
+        self.wait_for("the loss", lambda: "driver_lost" in self.robot.causes, every=lambda: self.robot.send(0.5, 0.2))
         time.sleep(0.5)  # until the watchdogs of the drives expire, they keep their last torque
         speed = self.true_speed
         time.sleep(1.0)
         self.assertTrue(0.1 < self.true_speed < speed + 0.05, f"{self.true_speed} m/s, {speed} m/s before")
         self.robot.start("driver")
-        wait_for("rest", lambda: abs(self.true_speed) < STANDING, every=lambda: self.robot.send(0.5, 0.2))
+        self.wait_for("rest", lambda: abs(self.true_speed) < STANDING, every=lambda: self.robot.send(0.5, 0.2))
         self.release()
         self.drive()
 

@@ -200,6 +200,7 @@ class Robot:
     def __init__(self, namespace: str = "", prefix: Sequence[str] = ()) -> None:
         self.namespace = namespace
         self.prefix = prefix
+        self.stall_causes = frozenset(STALL_CAUSES)
         self.nodes: dict[str, Program] = {}
         self.odom: Odometry | None = None
         self.joints: JointState | None = None
@@ -299,7 +300,7 @@ class Robot:
 
     def release_after_a_stall(self) -> bool:
         """Releases a robot that is `stalled`; returns whether it was."""
-        if self.state != SafetyStatus.STOPPED or not self.stalled:
+        if self.state not in (SafetyStatus.STOPPED, SafetyStatus.FAULT) or not self.stalled:
             return False
         self.release()
         return True
@@ -322,7 +323,7 @@ class Robot:
     def stalled(self) -> bool:
         """True if only causes of a stall stopped the robot, within a second of a stall that the witness measured."""
         near = (self._stopped_at - 1.0, self._stopped_at + 1.0)
-        return bool(self.causes) and self.causes <= STALL_CAUSES and LOOP_WITNESS.saw(*near)
+        return bool(self.causes) and self.causes <= self.stall_causes and LOOP_WITNESS.saw(*near)
 
     @property
     def speed(self) -> float:

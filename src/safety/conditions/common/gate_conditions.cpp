@@ -22,8 +22,7 @@ void GateConditions::remember(const Permit& permit, std::uint64_t cycle) noexcep
 
 void GateConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept {
   if (sensors.head.cycle == 0) return;
-  const std::uint64_t tick = sensors.head.cycle - 1;
-  count(refuses(sensors.gate, tick), elapsed);
+  count(refuses(sensors.gate), elapsed);
   refused_frames_ = sensors.gate.refused;
   if (in_a_row_ >= loss_cycles_) {
     out.add(kCauseGateRefuses, Reaction::kBrake,
@@ -32,25 +31,25 @@ void GateConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, Act
     out.add(kCauseGateRefuses, Reaction::kBrake,
             {.beyond = true, .value = static_cast<double>(in_second_), .limit = static_cast<double>(second_) / 2});
   }
-  if (disobeys(sensors.gate, tick)) out.add(kCauseGateDisobeys, Reaction::kBrake, {.beyond = true, .value = 1});
+  if (sensors.gate.cycle >= sensors.head.cycle || disobeys(sensors.gate)) out.add(kCauseGateDisobeys, Reaction::kBrake, {.beyond = true, .value = 1});
 }
 
-bool GateConditions::refuses(const GateReport& report, std::uint64_t tick) const noexcept {
+bool GateConditions::refuses(const GateReport& report) const noexcept {
   const bool braked = report.verdict == GateVerdict::kBrake && (report.reasons & kGateControllerBrake) == 0;
   if (!braked && report.refused <= refused_frames_) return false;
   for (std::uint64_t i = permits_; i > 0 && permits_ - i < kRemembered; --i) {
     const Given& due = given(i - 1);
-    if (due.cycle < tick) return due.allows(tick);
+    if (due.cycle < report.cycle) return due.allows(report.cycle);
   }
   return false;
 }
 
-bool GateConditions::disobeys(const GateReport& report, std::uint64_t tick) const noexcept {
+bool GateConditions::disobeys(const GateReport& report) const noexcept {
   if (report.verdict == GateVerdict::kBrake) return false;
-  if (report.permit_cycle >= tick || tick - report.permit_cycle > kPermitLife) return true;
+  if (report.permit_cycle >= report.cycle || report.cycle - report.permit_cycle > kPermitLife) return true;
   for (std::uint64_t i = permits_; i > 0 && permits_ - i < kRemembered; --i) {
     const Given& used = given(i - 1);
-    if (used.cycle == report.permit_cycle) return !used.allows(tick);
+    if (used.cycle == report.permit_cycle) return !used.allows(report.cycle);
     if (used.cycle < report.permit_cycle) return true;  // a cycle for which none was issued
   }
   return false;

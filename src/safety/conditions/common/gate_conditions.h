@@ -1,13 +1,14 @@
 #pragma once
-/// Does the gate obey the permits? The sensors of cycle k report what it did in tick k−1.
+/// Does the gate obey the permits? The sensors report what it did in its last tick t: k−1, or on
+/// hardware the one before cycles that the driver skipped.
 ///
-///   due         the newest permit of cycles ≤ k−2 that was alive in tick k−1: the one that the gate should have used
-///   refuses     the due permit allowed motion (drive, or ramp while k−1 ≤ ramp_until), the command did not request the
+///   due         the newest permit of cycles < t that was alive in tick t: the one that the gate should have used
+///   refuses     the due permit allowed motion (drive, or ramp while t ≤ ramp_until), the command did not request the
 ///               brake, and yet the tick braked or rejected a frame: in loss_cycles ticks in a row, or in more than
 ///               half of the ticks of the last second. Reasons are a slow or intermittent controller, or permits that
 ///               do not arrive. A robot that stops and continues by itself is not predictable
 ///   disobeys    a command passed although the permit ordered the brake, its ramp had ended, it had expired, or it was
-///               never issued: software can no longer stop this machine, so it leads to FAULT
+///               never issued, or t ≥ k: software can no longer stop this machine, so it leads to FAULT
 ///
 /// A permit from before the first step (of an earlier monitor) is judged by its age only. Ticks that the monitor
 /// skipped count as the next tick that it evaluated.
@@ -52,8 +53,8 @@ class GateConditions {
     }
   };
 
-  bool refuses(const GateReport& report, std::uint64_t tick) const noexcept;
-  bool disobeys(const GateReport& report, std::uint64_t tick) const noexcept;
+  bool refuses(const GateReport& report) const noexcept;
+  bool disobeys(const GateReport& report) const noexcept;
   void count(bool refused, std::uint64_t elapsed) noexcept;
   const Given& given(std::uint64_t i) const noexcept { return given_[i % kRemembered]; }
 
