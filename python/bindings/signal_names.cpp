@@ -15,8 +15,8 @@ namespace {
 py::list bits(std::span<const BitName> table) {
   py::list rows;
   for (const BitName& row : table) {
-    rows.append(py::make_tuple(std::string(row.name), with_programs(row.sentence, kWheeledKind),
-                               with_programs(row.remedy, kWheeledKind), std::string(row.unit)));
+    rows.append(py::make_tuple(std::string(row.name), with_programs(row.sentence, Programs{}),
+                               with_programs(row.remedy, Programs{}), std::string(row.unit)));
   }
   return rows;
 }

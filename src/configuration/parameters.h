@@ -23,6 +23,7 @@
 #include "parameters/problem_list.h"
 #include "parameters/schema.h"
 #include "safety/safety_parameters.h"
+#include "signals/robot_kinds.h"
 
 namespace robot_control {
 
@@ -72,6 +73,11 @@ struct Parameters {
 
 /// Returns the program of the driver: that of the simulator (signals/roles.h), or `driver` for all others.
 std::string_view driver_program(const Parameters& parameters) noexcept;
+
+/// Returns the programs of a robot of this kind.
+inline Programs programs_of(const Parameters& parameters, std::string_view kind) noexcept {
+  return {.kind = kind, .driver = driver_program(parameters)};
+}
 
 /// Returns the blocks of the file with their places in `parameters`, which must outlive it: `robot`, and one per role
 /// (signals/roles.h).

@@ -41,7 +41,7 @@ inline constexpr auto kResetRefusalNames = std::to_array<BitName>({
      "stop the sender on {request} and wait for {request_timeout}, or let it send zero"},
     {kRefusalMoving, "moving", "the robot has not come to rest", "wait until every joint stands"},
     {kRefusalInit, "init", "the monitor still waits for a node", "start the missing node"},
-    {kRefusalSilent, "silent", "no sensor frame comes", "look whether the driver node runs, then ask again"},
+    {kRefusalSilent, "silent", "no sensor frame comes", "look whether {driver} runs, then ask again"},
     {kRefusalPaused, "paused", "the simulation is paused", "let it run ({driver}/set_pause), then ask again"},
     {kRefusalSliding, "sliding", "the wheels stand, but the robot may still slide",
      "ask again: from speed v it is assumed to stand after v/stop_deceleration"},
@@ -272,15 +272,14 @@ inline std::string names_of(std::span<const BitName> table, std::uint64_t bits, 
   return text;
 }
 
-/// Returns "the emergency stop button is pressed (release the button); …" for a robot of this kind. Allocates.
-inline std::string sentences_of(std::span<const BitName> table, std::uint64_t bits,
-                                std::string_view kind = kWheeledKind) {
+/// Returns "the emergency stop button is pressed (release the button); …" for a robot with these programs. Allocates.
+inline std::string sentences_of(std::span<const BitName> table, std::uint64_t bits, const Programs& programs = {}) {
   std::string text;
   for (const BitName& row : table) {
     if ((bits & row.bit) == 0) continue;
     if (!text.empty()) text += "; ";
-    text += with_programs(row.sentence, kind);
-    if (!row.remedy.empty()) text.append(" (").append(with_programs(row.remedy, kind)).append(")");
+    text += with_programs(row.sentence, programs);
+    if (!row.remedy.empty()) text.append(" (").append(with_programs(row.remedy, programs)).append(")");
   }
   return text;
 }

@@ -33,20 +33,26 @@ constexpr const KindNames& names_of_kind(std::string_view kind) noexcept {
   return kKinds.front();
 }
 
-/// Returns the program of a role on a robot of this kind.
-constexpr std::string_view program_of(Role role, std::string_view kind) noexcept {
-  return role == Role::kController ? names_of_kind(kind).controller : program_of(role);
+/// The programs that play the roles on one robot. Its kind chooses the controller, robot.driver the driver.
+struct Programs {
+  std::string_view kind = kWheeledKind;
+  std::string_view driver = program_of(Role::kDriver);
+};
+
+constexpr std::string_view program_of(Role role, const Programs& programs) noexcept {
+  if (role == Role::kDriver) return programs.driver;
+  return role == Role::kController ? names_of_kind(programs.kind).controller : program_of(role);
 }
 
-/// Replaces each role in braces by its program on a robot of this kind, and so {request} and {request_timeout}.
-inline std::string with_programs(std::string_view text, std::string_view kind) {
-  const KindNames& names = names_of_kind(kind);
+/// Replaces each role in braces by its program on this robot, and so {request} and {request_timeout}.
+inline std::string with_programs(std::string_view text, const Programs& programs) {
   std::string filled(text);
-  filled = replaced(filled, "{" + std::string(kRoles[static_cast<std::size_t>(Role::kController)].role) + "}",
-                    names.controller);
+  for (std::size_t i = 0; i < kRoles.size(); ++i) {
+    filled = replaced(filled, "{" + std::string(kRoles[i].role) + "}", program_of(static_cast<Role>(i), programs));
+  }
+  const KindNames& names = names_of_kind(programs.kind);
   filled = replaced(filled, "{request}", names.request);
-  filled = replaced(filled, "{request_timeout}", names.timeout);
-  return with_programs(filled);
+  return replaced(filled, "{request_timeout}", names.timeout);
 }
 
 }  // namespace robot_control

@@ -23,8 +23,10 @@ WATCH = 2.0
 """s, for which an observer is watched."""
 
 NODES = {"mujoco_plant", "state_estimator", "diff_drive_controller", "safety_monitor"}
-SERVICES = {"/mujoco_plant/inject_fault", "/e_stop_reset", "/diff_drive_controller/set_parameter_map", "/set_odometry"}
-RECORD = "/telemetry/record"
+SERVERS = {"send_cmd.py", "follow_path.py", "console.py", "device_simulator"}
+"""They run beside a launch until the page ends."""
+CONTROLLERS = {"/diff_drive_controller/set_parameter_map", "/set_posture"}
+"""services of the controller, by kind of the robot"""
 
 
 class FailedError(AssertionError):
@@ -78,17 +80,18 @@ def until(condition, what, program=None, limit=START):
 
 
 def never_ends(command):
-    """The kind of a command that does not end by itself: a launch, a node, a sender or an observer; else ""."""
+    """The kind of a command that does not end by itself: a launch, a node, a server or an observer; else ""."""
     words = shlex.split(command)
     if words[0] == "roslaunch":
         return "" if any(word.startswith("cycles:=") for word in words) else "launch"
     if words[:2] == ["rosrun", "robot_control"]:
         if words[2] in NODES:
             return "node"
-        return {"send_cmd.py": "sender", "follow_path.py": "sender", "console.py": "sender", "why.py": "observer"}.get(
-            words[2], ""
-        )
-    return "observer" if words[:2] == ["rostopic", "hz"] else ""
+        if words[2] in SERVERS:
+            return "server"
+        return "observer" if words[2] == "why.py" and "--once" not in words else ""
+    endless = words[0] == "rostopic" and words[1] in ("echo", "hz", "pub") and not {"-1", "-n"} & set(words)
+    return "observer" if endless else ""
 
 
 class Terminal:
@@ -123,7 +126,7 @@ class Terminal:
         kind = never_ends(command)
         if kind == "launch":
             self._start_launch(command)
-        elif kind in ("node", "sender"):
+        elif kind in ("node", "server"):
             self._start(command, kind)
         elif kind == "observer":
             self._observe(command)
@@ -136,8 +139,12 @@ class Terminal:
             return
         self.end_programs()
         self.launch = Program(command, self.folder, self.environment)
-        needed = SERVICES | ({RECORD} if "telemetry:=true" in command else set())
-        until(lambda: self.registered() >= needed, command, self.launch)
+        needed = {"/e_stop_reset", "/set_odometry"}
+        if "robot.launch" not in command:
+            needed.add("/mujoco_plant/inject_fault")
+        if "telemetry:=true" in command:
+            needed.add("/telemetry/record")
+        until(lambda: self.registered() >= needed and self.registered() & CONTROLLERS, command, self.launch)
 
     def _start(self, command, kind):
         if kind == "node" and self.launch is not None:
@@ -175,16 +182,13 @@ class Terminal:
         if late or code != 0 or re.search(r"Traceback|^usage: |ERROR: ", without_cut_thread(output), re.MULTILINE):
             raise FailedError(f"{what}\nexit code {code}\n{output}{late}")
 
-    def end_senders(self):
-        for program in reversed(self.others):
-            program.end()
-        self.others = []
-
     def end_programs(self):
-        self.end_senders()
-        if self.launch is not None:
-            self.launch.end()
+        """The launch first: a robot whose drives end before it keeps that stop for its next start."""
+        for program in [self.launch, *reversed(self.others)]:
+            if program is not None:
+                program.end()
         self.launch = None
+        self.others = []
 
     def close(self):
         self.end_programs()

@@ -80,7 +80,7 @@ def pages_to_follow():
 
 @pytest.mark.parametrize("page", pages_to_follow())
 def test_a_page_can_be_followed_from_top_to_bottom(page, terminal):
-    """The terminal has sourced install/setup.bash; programs that a page starts and does not end are ended after it."""
+    """The terminal has sourced install/setup.bash; programs that a page starts are ended after it."""
     for block in RUN:
         if block.page == page:
             if block.language == "python":
@@ -88,7 +88,7 @@ def test_a_page_can_be_followed_from_top_to_bottom(page, terminal):
             else:
                 for command in block.commands():
                     terminal.run(command)
-    terminal.end_senders()
+    terminal.end_programs()
 
 
 @cache
@@ -116,6 +116,8 @@ def check(words):
     elif program == "rosrun" and words[1] == "robot_control":
         assert (ROOT / "scripts" / words[2]).is_file(), words
         assert all(option in help_of(words[2]) for option in options), words
+    elif program == "roslaunch":
+        assert (ROOT / "launch" / words[2]).is_file(), words
     elif program == "rosservice":
         assert f"`{words[2]}`" in (ROOT / "docs" / "interfaces.md").read_text(), words
     elif program == "rosparam":

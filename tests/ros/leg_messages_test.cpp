@@ -61,14 +61,14 @@ TEST(LegMessages, TheStateNamesPostureFootAndReasons) {
 TEST(LegMessages, ARefusalSaysWhoHoldsThePermission) {
   LegModel robot;
   Permit permit;
-  EXPECT_THAT(no_permission(false, permit, robot), HasSubstr("start safety_monitor"));
+  EXPECT_THAT(no_permission(false, permit, robot, {.kind = kLeggedKind}), HasSubstr("start safety_monitor"));
   permit.unreleased = 1;
-  EXPECT_THAT(no_permission(true, permit, robot), HasSubstr("body_pose of zero"));
+  EXPECT_THAT(no_permission(true, permit, robot, {.kind = kLeggedKind}), HasSubstr("body_pose of zero"));
   permit.causes = permit.first_cause = kCauseEmergencyStopService;
-  EXPECT_THAT(no_permission(true, permit, robot), StartsWith("the robot is stopped: "));
-  EXPECT_THAT(no_permission(true, permit, robot), HasSubstr("e_stop_reset"));
+  EXPECT_THAT(no_permission(true, permit, robot, {.kind = kLeggedKind}), StartsWith("the robot is stopped: "));
+  EXPECT_THAT(no_permission(true, permit, robot, {.kind = kLeggedKind}), HasSubstr("e_stop_reset"));
   permit.action = PermitAction::kDrive;
-  EXPECT_EQ(no_permission(true, permit, robot), "");
+  EXPECT_EQ(no_permission(true, permit, robot, {.kind = kLeggedKind}), "");
 }
 
 }  // namespace

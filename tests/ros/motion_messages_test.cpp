@@ -250,8 +250,8 @@ TEST_F(MotionMessagesTest, DriveStateReportsEveryReasonWithSentenceAndRemedy) {
     const msg::DriveState message = drive_state(command_, command_, row.bit, robot_, stamp_);
     EXPECT_THAT(message.reasons, ElementsAre(std::string(row.name)));
     ASSERT_EQ(message.sentences.size(), 1u);
-    EXPECT_THAT(message.sentences[0], testing::StartsWith(with_programs(row.sentence, kWheeledKind)));
-    EXPECT_THAT(message.sentences[0], testing::HasSubstr(with_programs(row.remedy, kWheeledKind)));
+    EXPECT_THAT(message.sentences[0], testing::StartsWith(with_programs(row.sentence, Programs{})));
+    EXPECT_THAT(message.sentences[0], testing::HasSubstr(with_programs(row.remedy, Programs{})));
   }
 }
 

@@ -175,7 +175,7 @@ TEST(RobotKindMessage, NamesTheNodesOfTheRobotsKindAndItsJoints) {
   robot.joints[0].name = "knee";
   robot.joints[1].name = "camera";
   robot.joints[1].role = JointRole::kHeld;
-  const msg::RobotKind message = robot_kind(robot, kLeggedKind, "driver", false);
+  const msg::RobotKind message = robot_kind(robot, {.kind = kLeggedKind, .driver = "driver"}, false);
   EXPECT_EQ(message.robot, "quadbot");
   EXPECT_EQ(message.kind, "quadruped");
   EXPECT_THAT(message.roles, ElementsAre("driver", "estimator", "controller", "monitor"));
@@ -183,16 +183,18 @@ TEST(RobotKindMessage, NamesTheNodesOfTheRobotsKindAndItsJoints) {
   EXPECT_THAT(message.joints, ElementsAre("knee", "camera"));
   EXPECT_THAT(message.joint_roles, ElementsAre("driven", "held"));
   EXPECT_THAT(message.fault_components, IsEmpty());
-  const msg::RobotKind simulated = robot_kind(robot, kLeggedKind, "mujoco_plant", true);
+  const msg::RobotKind simulated = robot_kind(robot, {.kind = kLeggedKind}, true);
   EXPECT_THAT(simulated.fault_components, testing::Contains("knee_motor"));
   EXPECT_THAT(simulated.fault_components, Not(testing::Contains("camera_motor")));
   EXPECT_THAT(simulated.fault_kinds, testing::Contains("stuck"));
 }
 
-TEST_F(SafetyStatusTest, ARemedyNamesTheControllerOfTheRobotsKind) {
-  permit_.causes = permit_.first_cause = kCauseControllerLost;
-  const msg::SafetyStatus status = safety_status(permit_, robot_, absent_, time_, kPeriod, kLeggedKind);
-  EXPECT_THAT(status.remedies_before_reset, ElementsAre(HasSubstr("leg_controller")));
+TEST_F(SafetyStatusTest, ARemedyNamesTheProgramsOfTheRobot) {
+  permit_.causes = kCauseControllerLost | kCauseDriverLost;
+  const Programs programs{.kind = kLeggedKind, .driver = "driver"};
+  const msg::SafetyStatus status = safety_status(permit_, robot_, absent_, time_, kPeriod, programs);
+  EXPECT_THAT(status.remedies_before_reset,
+              ElementsAre("look whether driver runs and gets its core", "look whether leg_controller runs"));
 }
 
 }  // namespace

@@ -83,9 +83,7 @@ class DriverTestCase(unittest.TestCase):
             yield
         except AssertionError as error:
             driver = self.robot.nodes["driver"].output
-            raise AssertionError(
-                f"{error}; {self.true_speed} m/s\n{self.robot.status}\n--- driver\n{driver}"
-            ) from None
+            raise AssertionError(f"{error}; {self.true_speed} m/s\n{self.robot.status}\n--- driver\n{driver}") from None
 
     def drive(self) -> None:
         with self.explained():

@@ -65,7 +65,9 @@ class DriverTest(DriverTestCase):
                     self.drive()
                     driver = self.robot.nodes["driver"]
                     driver.send_signal(number)
-                    self.wait_for("the stop", lambda: self.robot.state in STOPPED, every=lambda: self.robot.send(0.5, 0.2))
+                    self.wait_for(
+                        "the stop", lambda: self.robot.state in STOPPED, every=lambda: self.robot.send(0.5, 0.2)
+                    )
                     driver.kill()
                     self.robot.start("driver")
                     self.release()

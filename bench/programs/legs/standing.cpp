@@ -3,10 +3,10 @@
 namespace robot_control::bench {
 namespace {
 
-/// Returns the height of the standing body above the lying one that the robot was given, in m.
-double nominal_rise(const LegModel& robot) {
+/// Returns the height of the base above the ground while the robot stands, in m.
+double nominal_height(const LegModel& robot) {
   const LegGeometry& first = robot.legs[0].kinematics.geometry();
-  return leg_tuning(robot).height - first.hip.z() - first.upper.z() + robot.belly + robot.legs[0].foot_radius;
+  return leg_tuning(robot).height - first.hip.z() - first.upper.z() + robot.legs[0].foot_radius;
 }
 
 std::array<double, 6> pose(const QuadrupedLoop& robot) {
@@ -20,11 +20,10 @@ std::array<double, 6> pose(const QuadrupedLoop& robot) {
 void postures(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   QuadrupedLoop robot(model, seed, ErrorLevel::kField);
   robot.wait(0.3);
-  const double lying = robot.truth().pose_world.position[2];
   robot.clear();
   robot.run(2.0, stance(kStanceStand));
   worst.add("effort of the limit", robot.effort, "");
-  worst.add("height after 2 s", std::abs(robot.truth().pose_world.position[2] - lying - nominal_rise(model)), "m");
+  worst.add("height after 2 s", std::abs(robot.truth().pose_world.position[2] - nominal_height(model)), "m");
   worst.add("tilt after 2 s", robot.tilt_now(), "rad");
   robot.run(3.0, {});
   const Vector3 before = robot.truth().pose_world.position;

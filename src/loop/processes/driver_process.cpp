@@ -36,7 +36,7 @@ bool published(const FrameReader<Frame>& reader, std::uint64_t run, std::uint64_
 
 DriverProcess::DriverProcess(const Parameters& parameters, const Robot& robot, const std::string& bus)
     : Process(parameters.loop, LoopPriority::kDriver, "driver"),
-      kind_(robot.kind()),
+      programs_(programs_of(parameters, robot.kind())),
       robot_(identified(robot.machine(), parameters.loop)),
       gate_(robot.gate()),
       needs_(robot.needs()),
@@ -75,7 +75,7 @@ std::vector<std::string> DriverProcess::missing() const {
   const std::uint64_t run = attached_run(sensors_.writer.memory()->head);
   if (loop_parameters().wait_for_nodes || lockstep()) {
     if (!attached(state_, run)) names.emplace_back(program_of(Role::kEstimator));
-    if (!attached(command_, run)) names.emplace_back(program_of(Role::kController, kind_));
+    if (!attached(command_, run)) names.emplace_back(program_of(Role::kController, programs_));
     if (!attached(permit_, run)) names.emplace_back(program_of(Role::kMonitor));
   }
   if (loop_parameters().wait_for_telemetry && !trace_.reader_present())
@@ -83,7 +83,7 @@ std::vector<std::string> DriverProcess::missing() const {
   if (!names.empty() || !lockstep()) return names;
   if (const std::uint64_t awaited = awaited_.load(); awaited != 0) {
     if (!published(state_.reader, run, awaited - 1)) names.emplace_back(program_of(Role::kEstimator));
-    if (!published(command_.reader, run, awaited - 1)) names.emplace_back(program_of(Role::kController, kind_));
+    if (!published(command_.reader, run, awaited - 1)) names.emplace_back(program_of(Role::kController, programs_));
     if (!published(permit_.reader, run, awaited - 1)) names.emplace_back(program_of(Role::kMonitor));
   }
   return names;

@@ -59,7 +59,7 @@ class DriverProcess final : public Process {
   void tick() noexcept;
   bool more() const noexcept { return cycles_ == 0 || cycle_->next_cycle() < cycles_; }
 
-  std::string kind_;  ///< Robot::kind
+  Programs programs_;
   MachineModel robot_;
   GateParameters gate_;
   MachineNeeds needs_;

@@ -11,7 +11,7 @@ MonitorProcess::MonitorProcess(const Parameters& parameters, const Robot& robot,
                       {LoopPriority::kMonitor, "monitor", ChannelNames::kPermit, TraceRing::kMonitor}),
       state_(bus, ChannelNames::kState),
       command_(bus, ChannelNames::kCommand),
-      kind_(robot.kind()),
+      programs_(programs_of(parameters, robot.kind())),
       latch_file_(parameters.latch_file),
       loss_ns_(static_cast<std::int64_t>(parameters.safety.loss_cycles) * parameters.loop.period_ns()),
       cycle_(robot.make_monitor(), robot_.hash, loss_ns_,
@@ -47,7 +47,7 @@ void MonitorProcess::with_latched(Keep keep) const {
 std::vector<std::string> MonitorProcess::missing() const {
   std::vector<std::string> names = missing_anywhere();
   if (!state_.channel.locked()) names.emplace_back(program_of(Role::kEstimator));
-  if (!command_.channel.locked()) names.emplace_back(program_of(Role::kController, kind_));
+  if (!command_.channel.locked()) names.emplace_back(program_of(Role::kController, programs_));
   return names;
 }
 

@@ -132,7 +132,7 @@ struct TelemetryProcess::Sources {
 };
 
 TelemetryProcess::TelemetryProcess(const Parameters& parameters, const Robot& robot, const std::string& bus)
-    : kind_(robot.kind()),
+    : programs_(programs_of(parameters, robot.kind())),
       positions_(bus, ChannelNames::kTraceRead),
       folder_(parameters.telemetry.directory, bytes_of(parameters.telemetry.quota)),
       lockstep_(parameters.loop.clock == ClockMode::kLockstep),
@@ -271,7 +271,7 @@ void TelemetryProcess::write_to_bag(Act act) {
 std::vector<std::string> TelemetryProcess::missing() const {
   std::vector<std::string> names;
   sources_->each([&](const auto& source, std::size_t ring) {
-    if (!source.alive()) names.emplace_back(program_of(static_cast<Role>(ring), kind_));
+    if (!source.alive()) names.emplace_back(program_of(static_cast<Role>(ring), programs_));
   });
   return names;
 }

@@ -98,7 +98,7 @@ class TelemetryProcess {
   void check_permit();
   TraceSummary summary(std::int64_t now_ns) const;
 
-  std::string kind_;
+  Programs programs_;
   OwnedChannel<RingPositions> positions_;
   LogFolder folder_;
   bool lockstep_;

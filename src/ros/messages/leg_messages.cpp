@@ -56,7 +56,7 @@ msg::LegState leg_state(const LegReport& report, const LegModel& robot, ros::Tim
   for (const BitName& row : kCommandReasonNames) {
     if ((report.reasons & row.bit) == 0) continue;
     message.reasons.emplace_back(row.name);
-    message.sentences.push_back(sentences_of({&row, 1}, row.bit, kLeggedKind));
+    message.sentences.push_back(sentences_of({&row, 1}, row.bit, {.kind = kLeggedKind}));
   }
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const ContactState& contact = report.state.contacts[leg];
@@ -76,17 +76,17 @@ msg::LegState leg_state(const LegReport& report, const LegModel& robot, ros::Tim
   return message;
 }
 
-std::string no_permission(bool found, const Permit& permit, const MachineModel& robot) {
+std::string no_permission(bool found, const Permit& permit, const MachineModel& robot, const Programs& programs) {
   if (!found) return "the safety monitor gives no permit: start " + std::string(program_of(Role::kMonitor));
   if (permit.action == PermitAction::kDrive) return "";
   if (permit.causes != 0) {
     const std::uint64_t cause = permit.first_cause != 0 ? permit.first_cause : permit.causes & (~permit.causes + 1);
     const std::string measured = detail(permit, cause, robot);
-    return "the robot is stopped: " + sentences_of(kStopCauseNames, cause, kLeggedKind) +
+    return "the robot is stopped: " + sentences_of(kStopCauseNames, cause, programs) +
            (measured.empty() ? "" : " (" + measured + ")") + "; then call e_stop_reset";
   }
   if (permit.missing != 0)
-    return "the safety monitor waits: " + sentences_of(kMissingNodeNames, permit.missing, kLeggedKind);
+    return "the safety monitor waits: " + sentences_of(kMissingNodeNames, permit.missing, programs);
   if (permit.unreleased != 0) {
     return "a node was started or the simulation was reset: request nothing for request_timeout, or send a body_pose "
            "of "

@@ -64,6 +64,6 @@ struct LegReport {
 msg::LegState leg_state(const LegReport& report, const LegModel& robot, ros::Time stamp);
 
 /// Returns why no motion is permitted, and what to do, or "" if it is. `found` says whether there is a live permit.
-std::string no_permission(bool found, const Permit& permit, const MachineModel& robot);
+std::string no_permission(bool found, const Permit& permit, const MachineModel& robot, const Programs& programs);
 
 }  // namespace robot_control

@@ -18,10 +18,10 @@ namespace robot_control {
 namespace {
 
 /// Returns "sentence (remedy)" for each bit that is set.
-std::vector<std::string> sentences(std::span<const BitName> table, std::uint64_t bits, std::string_view kind) {
+std::vector<std::string> sentences(std::span<const BitName> table, std::uint64_t bits, const Programs& programs) {
   std::vector<std::string> texts;
   for (const BitName& row : table) {
-    if ((bits & row.bit) != 0) texts.push_back(sentences_of({&row, 1}, row.bit, kind));
+    if ((bits & row.bit) != 0) texts.push_back(sentences_of({&row, 1}, row.bit, programs));
   }
   return texts;
 }
@@ -40,15 +40,15 @@ std::string quantity(double value, std::string_view unit) {
 }
 
 /// Returns "free the wheel, then call e_stop_reset".
-std::string with_reset(std::string_view remedy, std::string_view kind) {
-  return with_programs(remedy, kind).append(remedy.empty() ? "" : ", then ").append("call e_stop_reset");
+std::string with_reset(std::string_view remedy, const Programs& programs) {
+  return with_programs(remedy, programs).append(remedy.empty() ? "" : ", then ").append("call e_stop_reset");
 }
 
 /// Returns "the battery is low: 20.9 V, limit 21 V (charge it soon)".
-std::string warning_sentence(const BitName& row, const std::string& measured, std::string_view kind) {
-  std::string text = with_programs(row.sentence, kind);
+std::string warning_sentence(const BitName& row, const std::string& measured, const Programs& programs) {
+  std::string text = with_programs(row.sentence, programs);
   if (!measured.empty()) text.append(": ").append(measured);
-  if (!row.remedy.empty()) text.append(" (").append(with_programs(row.remedy, kind)).append(")");
+  if (!row.remedy.empty()) text.append(" (").append(with_programs(row.remedy, programs)).append(")");
   return text;
 }
 
@@ -68,13 +68,13 @@ std::string detail(const Permit& permit, std::uint64_t cause, const MachineModel
   return ascii(text);
 }
 
-msg::RobotKind robot_kind(const MachineModel& robot, std::string_view kind, const std::string& driver, bool injects) {
+msg::RobotKind robot_kind(const MachineModel& robot, const Programs& programs, bool injects) {
   msg::RobotKind message;
   message.robot = ascii(robot.name);
-  message.kind = kind;
+  message.kind = programs.kind;
   for (const Role role : {Role::kDriver, Role::kEstimator, Role::kController, Role::kMonitor}) {
     message.roles.emplace_back(kRoles[static_cast<std::size_t>(role)].role);
-    message.nodes.emplace_back(role == Role::kDriver ? driver : program_of(role, kind));
+    message.nodes.emplace_back(program_of(role, programs));
   }
   for (const JointModel& joint : robot.joints) {
     message.joints.push_back(ascii(joint.name));
@@ -87,7 +87,7 @@ msg::RobotKind robot_kind(const MachineModel& robot, std::string_view kind, cons
 }
 
 msg::SafetyStatus safety_status(const Permit& permit, const MachineModel& robot, const std::vector<std::string>& absent,
-                                const TimeMap& time, std::int64_t period_ns, std::string_view kind) {
+                                const TimeMap& time, std::int64_t period_ns, const Programs& programs) {
   msg::SafetyStatus message;
   message.header.stamp = time.at(permit.head.stamp_ns);
   message.state = static_cast<std::uint8_t>(permit.state);
@@ -100,13 +100,13 @@ msg::SafetyStatus safety_status(const Permit& permit, const MachineModel& robot,
     if ((permit.active & row.bit) != 0) message.active.emplace_back(row.name);
     if ((permit.warnings & row.bit) != 0) {
       message.warnings.emplace_back(row.name);
-      message.warning_sentences.push_back(warning_sentence(row, detail(permit, row.bit, robot), kind));
+      message.warning_sentences.push_back(warning_sentence(row, detail(permit, row.bit, robot), programs));
     }
     if ((permit.causes & row.bit) == 0) continue;
     message.causes.emplace_back(row.name);
-    message.sentences.push_back(with_programs(row.sentence, kind));
-    message.remedies.push_back(with_reset(row.remedy, kind));
-    message.remedies_before_reset.push_back(with_programs(row.remedy, kind));
+    message.sentences.push_back(with_programs(row.sentence, programs));
+    message.remedies.push_back(with_reset(row.remedy, programs));
+    message.remedies_before_reset.push_back(with_programs(row.remedy, programs));
     message.actors.emplace_back(row.actor);
     message.details.push_back(detail(permit, row.bit, robot));
   }
@@ -115,13 +115,13 @@ msg::SafetyStatus safety_status(const Permit& permit, const MachineModel& robot,
   message.first_cause = names_of(kStopCauseNames, permit.first_cause);
   assign(message.missing, absent);
   if (absent.empty() && permit.state == SupervisorState::kInit) {
-    assign(message.missing, sentences(kMissingNodeNames, permit.missing, kind));
+    assign(message.missing, sentences(kMissingNodeNames, permit.missing, programs));
   }
   message.awaiting_zero_request =
       permit.state == SupervisorState::kInit && permit.missing == 0 && permit.unreleased != 0 && absent.empty();
   message.resets = permit.resets_handled;
   message.withdrawals = permit.withdrawals;
-  assign(message.reset_refusal, sentences(kResetRefusalNames, permit.reset_refusal, kind));
+  assign(message.reset_refusal, sentences(kResetRefusalNames, permit.reset_refusal, programs));
   message.run = permit.head.run;
   message.cycle = permit.head.cycle;
   return message;
@@ -147,18 +147,18 @@ bool differs(const Permit& last, const Permit& now) {
 }
 
 std::string reset_text(const Permit& before, const Permit& permit, const Publishers& publishers,
-                       std::string_view kind) {
+                       const Programs& programs) {
   if (permit.reset_refusal == 0) return before.causes == 0 ? "nothing was stopped" : "released";
-  std::string text = "refused: " + sentences_of(kResetRefusalNames, permit.reset_refusal, kind);
+  std::string text = "refused: " + sentences_of(kResetRefusalNames, permit.reset_refusal, programs);
   if ((permit.reset_refusal & kRefusalCauseActive) != 0) {
-    text += "; persists: " + sentences_of(kStopCauseNames, permit.active, kind);
+    text += "; persists: " + sentences_of(kStopCauseNames, permit.active, programs);
     if (!publishers.e_stop.empty()) text += "; true on e_stop: " + joined(publishers.e_stop);
   }
   if ((permit.reset_refusal & kRefusalCommand) != 0 && !publishers.commands.empty()) {
-    text += "; publishing on " + std::string(names_of_kind(kind).request) + ": " + joined(publishers.commands);
+    text += "; publishing on " + std::string(names_of_kind(programs.kind).request) + ": " + joined(publishers.commands);
   }
   if ((permit.reset_refusal & kRefusalInit) != 0) {
-    text += "; waiting: " + sentences_of(kMissingNodeNames, permit.missing, kind);
+    text += "; waiting: " + sentences_of(kMissingNodeNames, permit.missing, programs);
   }
   return text;
 }

@@ -15,13 +15,12 @@
 namespace robot_control {
 
 /// `absent` are the nodes that do not run now. `period_ns` is the loop's period for the field `since`. `robot` names
-/// the joints, and `kind` the programs of remedies.
+/// the joints, and `programs` those of remedies.
 msg::SafetyStatus safety_status(const Permit& permit, const MachineModel& robot, const std::vector<std::string>& absent,
-                                const TimeMap& time, std::int64_t period_ns, std::string_view kind = kWheeledKind);
+                                const TimeMap& time, std::int64_t period_ns, const Programs& programs = {});
 
-/// Returns what tools need to know of a robot of this kind. `driver` is the name of the driver's node; `injects` says
-/// that its machine is simulated and takes faults.
-msg::RobotKind robot_kind(const MachineModel& robot, std::string_view kind, const std::string& driver, bool injects);
+/// Returns what tools need to know of a robot. `injects` says that its machine is simulated and takes faults.
+msg::RobotKind robot_kind(const MachineModel& robot, const Programs& programs, bool injects);
 
 /// Returns the evidence of a cause, "17.3 rad/s, limit 15 rad/s, left_wheel_joint"; "" if nothing was measured.
 std::string detail(const Permit& permit, std::uint64_t cause, const MachineModel& robot);
@@ -41,6 +40,6 @@ struct Publishers {
 /// Returns the answer to e_stop_reset: the causes that it released, or why it was refused and the remedy. `before` is
 /// the last permit before the reset, `permit` the first one with its result.
 std::string reset_text(const Permit& before, const Permit& permit, const Publishers& publishers,
-                       std::string_view kind = kWheeledKind);
+                       const Programs& programs = {});
 
 }  // namespace robot_control

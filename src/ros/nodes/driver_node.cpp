@@ -36,8 +36,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
   void connect(ros::NodeHandle& handle) override {
     log_robot();
     kind_ = handle.advertise<msg::RobotKind>("robot_kind", 1, true);
-    kind_.publish(robot_kind(robot(), composed().kind(), std::string(driver_program(parameters())),
-                             process().services() != nullptr));
+    kind_.publish(robot_kind(robot(), programs(), process().services() != nullptr));
     imu_ = handle.advertise<msg::Imu>("imu/data_raw", 10);
     truth_ = handle.advertise<msg::Odometry>("ground_truth/odom", 10);
     if (parameters().loop.clock == ClockMode::kLockstep) clock_ = handle.advertise<msg::Clock>("/clock", 1);

@@ -105,7 +105,7 @@ class LegControllerNode final : public CommandedNode {
   void diagnose(DiagnosticReport& report) override {
     const std::lock_guard lock(input_mutex_);
     report_command(report, command_, std::exchange(since_report_, 0), intake().senders(loop_ns()), {},
-                   intake().revoked(), kLeggedKind);
+                   intake().revoked(), programs());
     report.value("posture", std::string(name_of(command_.legged.phase)));
   }
 
@@ -231,7 +231,7 @@ class LegControllerNode final : public CommandedNode {
   std::string refusal_of_permission() {
     Permit permit;
     const bool found = process().permits().newest(permit) == Lookup::kFrame && process().is_current(permit.head);
-    return no_permission(found, permit, robot());
+    return no_permission(found, permit, robot(), programs());
   }
 
   bool set_posture(msg::SetPostureRequest& request, msg::SetPostureResponse& response) {
@@ -268,7 +268,7 @@ class LegControllerNode final : public CommandedNode {
       sleep_ns(kRepeat);
     }
     return "the posture has not begun to change within 1 s: " +
-           sentences_of(kCommandReasonNames, command.reasons, kLeggedKind);
+           sentences_of(kCommandReasonNames, command.reasons, programs());
   }
 
   InputTopic<BoundedBodyPose> body_pose_{"body_pose", 1};

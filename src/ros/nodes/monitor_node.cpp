@@ -64,7 +64,7 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
     if (reported_ns_ != 0 && silence_ns < (changed ? kStatusGap : kStatusPeriod)) return;
     if (SensorFrame sensors; live(sensors)) time().follow(sensors);
     msg::SafetyStatus status =
-        found ? safety_status(permit, robot(), absent, time(), parameters().loop.period_ns(), composed().kind())
+        found ? safety_status(permit, robot(), absent, time(), parameters().loop.period_ns(), programs())
               : waiting_status(absent);
     if (const auto last_ns = withdrawal_.last_ns()) {
       status.withdrawn =
@@ -80,7 +80,7 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
   }
 
   void diagnose(DiagnosticReport& report) override {
-    if (Permit permit; seen(permit)) report_permit(report, permit, composed().kind());
+    if (Permit permit; seen(permit)) report_permit(report, permit, programs());
   }
 
  private:
@@ -197,9 +197,8 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
         continue;
       }
       response.success = permit.reset_refusal == 0;
-      response.message =
-          ascii(reset_text(before, permit, {.commands = publishers_of(command_topics_), .e_stop = e_stop_publishers()},
-                           composed().kind()));
+      response.message = ascii(reset_text(
+          before, permit, {.commands = publishers_of(command_topics_), .e_stop = e_stop_publishers()}, programs()));
       return true;
     }
     response.success = 0;

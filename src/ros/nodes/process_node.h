@@ -49,6 +49,7 @@ class ProcessNode : public Node {
   const ReportParameters& report() const { return setup_.parameters.report; }
   const MachineModel& robot() const { return *setup_.machine; }
   const Robot& composed() const { return *composed_; }
+  Programs programs() const noexcept { return programs_of(setup_.parameters, composed_->kind()); }
   Work& process() { return process_; }
   TimeMap& time() { return time_; }
 

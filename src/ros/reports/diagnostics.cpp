@@ -39,11 +39,11 @@ void DiagnosticReport::value(const std::string& key, double number) {
 }
 
 void DiagnosticReport::reasons(const std::string& subject, std::span<const BitName> table, std::uint64_t bits,
-                               std::string_view kind) {
+                               const Programs& programs) {
   for (const BitName& row : table) {
     if ((bits & row.bit) == 0) continue;
-    value(subject + ": " + std::string(row.name), with_programs(row.sentence, kind));
-    if (!row.remedy.empty()) value(subject + " remedy: " + std::string(row.name), with_programs(row.remedy, kind));
+    value(subject + ": " + std::string(row.name), with_programs(row.sentence, programs));
+    if (!row.remedy.empty()) value(subject + " remedy: " + std::string(row.name), with_programs(row.remedy, programs));
   }
 }
 
@@ -141,10 +141,10 @@ void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64
 
 void report_command(DiagnosticReport& report, const CommandFrame& command, std::uint64_t lately,
                     const std::vector<std::string>& senders, const std::vector<std::string>& sources,
-                    const std::vector<std::string>& revoked, std::string_view kind) {
+                    const std::vector<std::string>& revoked, const Programs& programs) {
   constexpr std::uint64_t kRefusals =
       kReasonRefused | kReasonStale | kReasonManySenders | kReasonRevoked | kReasonPartIgnored;
-  if ((lately & kRefusals) != 0) report.warn(sentences_of(kCommandReasonNames, lately & kRefusals, kind));
+  if ((lately & kRefusals) != 0) report.warn(sentences_of(kCommandReasonNames, lately & kRefusals, programs));
   if (senders.size() > 1 && sources.empty()) report.warn("commands come from more than one node: " + joined(senders));
   report.value("cycle", command.head.cycle);
   report.value("reasons", names_of(kCommandReasonNames, reasons_of(command)));
@@ -162,12 +162,13 @@ void report_command(DiagnosticReport& report, const CommandFrame& command, std::
   report.value("timeouts", command.timeouts);
   report.value("requested_m_s", command.requested.twist.linear[0]);
   report.value("requested_rad_s", command.requested.twist.angular[2]);
-  report.reasons("command", kCommandReasonNames, reasons_of(command), kind);
+  report.reasons("command", kCommandReasonNames, reasons_of(command), programs);
 }
 
-void report_permit(DiagnosticReport& report, const Permit& permit, std::string_view kind) {
-  if (permit.causes != 0) report.error(sentences_of(kStopCauseNames, permit.causes, kind) + "; then call e_stop_reset");
-  if (permit.warnings != 0) report.warn(sentences_of(kStopCauseNames, permit.warnings, kind));
+void report_permit(DiagnosticReport& report, const Permit& permit, const Programs& programs) {
+  if (permit.causes != 0)
+    report.error(sentences_of(kStopCauseNames, permit.causes, programs) + "; then call e_stop_reset");
+  if (permit.warnings != 0) report.warn(sentences_of(kStopCauseNames, permit.warnings, programs));
   report.value("cycle", permit.head.cycle);
   report.value("state", std::string(name_of(permit.state)));
   report.value("permit", std::string(name_of(permit.action)));

@@ -31,7 +31,7 @@ class DiagnosticReport {
 
   /// Adds one value per bit that is set: "gate: command_held" = "the command is older than one cycle and is held".
   void reasons(const std::string& subject, std::span<const BitName> table, std::uint64_t bits,
-               std::string_view kind = kWheeledKind);
+               const Programs& programs = {});
 
   const msg::DiagnosticStatus& message() const noexcept { return message_; }
 
@@ -54,7 +54,7 @@ void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64
 /// `revoked` is CommandIntake::revoked.
 void report_command(DiagnosticReport& report, const CommandFrame& command, std::uint64_t lately,
                     const std::vector<std::string>& senders, const std::vector<std::string>& sources = {},
-                    const std::vector<std::string>& revoked = {}, std::string_view kind = kWheeledKind);
-void report_permit(DiagnosticReport& report, const Permit& permit, std::string_view kind = kWheeledKind);
+                    const std::vector<std::string>& revoked = {}, const Programs& programs = {});
+void report_permit(DiagnosticReport& report, const Permit& permit, const Programs& programs = {});
 
 }  // namespace robot_control

@@ -102,7 +102,7 @@ std::string host_name() {
 /// Returns the problem if `node` is the controller of another kind of robot.
 std::string other_controller(const std::string& node, const MachineModel& machine) {
   const MachineKind kind = kind_of(machine);
-  const std::string own(program_of(Role::kController, name_of(kind)));
+  const std::string own(names_of_kind(name_of(kind)).controller);
   const bool controls = std::ranges::count(kKinds, node, &KindNames::controller) != 0;
   if (!controls || node == own) return "";
   const bool legs = kind == MachineKind::kOnLegs;

@@ -31,7 +31,8 @@ void GateConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, Act
     out.add(kCauseGateRefuses, Reaction::kBrake,
             {.beyond = true, .value = static_cast<double>(in_second_), .limit = static_cast<double>(second_) / 2});
   }
-  if (sensors.gate.cycle >= sensors.head.cycle || disobeys(sensors.gate)) out.add(kCauseGateDisobeys, Reaction::kBrake, {.beyond = true, .value = 1});
+  if (sensors.gate.cycle >= sensors.head.cycle || disobeys(sensors.gate))
+    out.add(kCauseGateDisobeys, Reaction::kBrake, {.beyond = true, .value = 1});
 }
 
 bool GateConditions::refuses(const GateReport& report) const noexcept {
