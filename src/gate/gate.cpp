@@ -37,6 +37,8 @@ const StopAction& checked(const StopAction& action, std::size_t joint) {
   check("stop stiffness", action.stiffness);
   check("stop time", action.time);
   if (!std::isfinite(action.posture)) refuse("stop posture", joint, action.posture, "that is finite");
+  if (action.upright && !std::isfinite(*action.upright))
+    refuse("upright position", joint, *action.upright, "that is finite");
   return action;
 }
 

@@ -1,14 +1,15 @@
 #include "gate/stop_action.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace robot_control {
 namespace {
 
 // Parts of the time of a fold.
 constexpr double kQuick = 0.64;
-constexpr double kGentle = 0.24;
-constexpr double kFade = 0.24;
+constexpr double kGentle = 0.18;
+constexpr double kFade = 0.2;
 
 }  // namespace
 
@@ -29,11 +30,14 @@ JointCommand JointStop::step(std::optional<double> position, double dt) noexcept
   if (!begin_ || elapsed_ >= action_.time) return damped;
   const double falling = std::min(1 / kQuick, left_ / kGentle) / action_.time;
   left_ = std::max(0.0, left_ - falling * dt);
-  const double difference = action_.posture - *begin_;
+  const double way = *begin_ - action_.posture, usual = action_.upright.value_or(*begin_) - action_.posture;
+  const bool ahead = way * usual > 0 && std::abs(way) < std::abs(usual);
+  const double path = ahead ? usual : way;
+  const double begun = ahead ? way / usual : 1;
   const double held = std::min(1.0, (action_.time - elapsed_) / (kFade * action_.time));
   return {.mode = JointMode::kImpedance,
-          .position = action_.posture - left_ * difference,
-          .velocity = falling * difference,
+          .position = action_.posture + std::min(left_, begun) * path,
+          .velocity = left_ < begun ? -falling * path : 0,
           .stiffness = held * action_.stiffness,
           .damping = action_.damping};
 }

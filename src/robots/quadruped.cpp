@@ -25,6 +25,14 @@ class LegsController final : public SavedLaw<ControllerLaw, LegController> {
   DriveTuning tuning_;  ///< has no effect on legs
 };
 
+/// Returns the angles of a leg while the robot stands at that height [m], its foot where it lay.
+LegAngles upright(const Leg& leg, double height) noexcept {
+  const LegGeometry& geometry = leg.kinematics.geometry();
+  Eigen::Vector3d foot = leg.kinematics.position(leg.lying);
+  foot.z() = geometry.hip.z() + geometry.upper.z() - height;
+  return leg.kinematics.inverse(foot).angles;
+}
+
 }  // namespace
 
 Quadruped::Quadruped(const Parameters& parameters, const LegModel& machine)
@@ -69,12 +77,16 @@ MachineNeeds Quadruped::needs() const {
 GateParameters Quadruped::gate() const {
   const LegTuning tuning = leg_tuning(machine_);
   GateParameters gate{.stops = {}, .longest_ramp = longest_ramp(parameters_.safety, parameters_.loop.period())};
-  for (const JointModel& joint : machine_.joints) {
-    gate.stops.push_back({.kind = StopKind::kFold,
-                          .damping = std::sqrt(kFoldStiffness) * tuning.damping,
-                          .stiffness = kFoldStiffness * tuning.stiffness,
-                          .posture = joint.rest_position,
-                          .time = kFoldTime * std::sqrt(machine_.leg_length() / 0.426)});
+  for (const Leg& leg : machine_.legs) {
+    const LegAngles standing = upright(leg, tuning.height);
+    for (Eigen::Index i = 0; i < LegAngles::SizeAtCompileTime; ++i) {
+      gate.stops.push_back({.kind = StopKind::kFold,
+                            .damping = std::sqrt(kFoldStiffness) * tuning.damping,
+                            .stiffness = kFoldStiffness * tuning.stiffness,
+                            .posture = leg.lying[i],
+                            .upright = standing[i],
+                            .time = kFoldTime * std::sqrt(machine_.leg_length() / 0.426)});
+    }
   }
   return gate;
 }

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace robot_control {
 namespace {
 
@@ -20,14 +22,14 @@ TEST(JointStop, FoldsQuicklyAtFirstAndGentlyAtTheEnd) {
   EXPECT_EQ(first.stiffness, 60);
   EXPECT_EQ(first.damping, 2);
   JointCommand last = first;
-  for (double t = 2 * kCycle; t < 0.94; t += kCycle) {
+  for (double t = 2 * kCycle; t < 0.99; t += kCycle) {
     const JointCommand next = stop.step(kBegin, kCycle);
     EXPECT_GE(next.position, last.position);
     EXPECT_LE(next.velocity, last.velocity);
     EXPECT_EQ(next.stiffness, 60);
     last = next;
   }
-  EXPECT_NEAR(last.velocity, (kFolding.posture - last.position) / 0.3, 0.01);
+  EXPECT_NEAR(last.velocity, (kFolding.posture - last.position) / 0.225, 0.01);
   EXPECT_LT(kFolding.posture - last.position, 0.1);
 }
 
@@ -35,11 +37,33 @@ TEST(JointStop, DampsAloneAfterItsStiffnessFaded) {
   JointStop stop(kFolding);
   JointCommand last;
   for (double t = 0; t < 1.2; t += kCycle) last = stop.step(kBegin, kCycle);
-  EXPECT_NEAR(last.stiffness, 60 * 0.05 / 0.3, 1);
+  EXPECT_NEAR(last.stiffness, 60 * 0.05 / 0.25, 1);
   for (double t = 0; t < 0.1; t += kCycle) last = stop.step(kBegin, kCycle);
   EXPECT_EQ(last.mode, JointMode::kVelocity);
   EXPECT_EQ(last.velocity, 0);
   EXPECT_EQ(last.damping, 2);
+}
+
+// The foot was in the air: it meets the ground when the others come as low.
+TEST(JointStop, OfAJointThatIsAheadWaitsForTheOthers) {
+  StopAction action = kFolding;
+  action.upright = kBegin;
+  JointStop ahead(action), usual(action);
+  for (double t = 0; t < 2; t += kCycle) {
+    const JointCommand waits = ahead.step(0.9, kCycle), other = usual.step(kBegin, kCycle);
+    if (waits.mode != JointMode::kImpedance) break;
+    EXPECT_NEAR(waits.position, std::max(0.9, other.position), 1e-9);
+    EXPECT_EQ(waits.velocity, other.position < 0.9 ? 0 : other.velocity);
+  }
+}
+
+TEST(JointStop, OfAJointThatIsBehindOrBeyondBeginsAtOnce) {
+  StopAction action = kFolding;
+  action.upright = kBegin;
+  for (const double position : {0.2, 1.7}) {
+    JointStop stop(action);
+    EXPECT_NEAR(stop.step(position, kCycle).velocity, (kFolding.posture - position) / 0.8, 1e-9);
+  }
 }
 
 TEST(JointStop, FoldsAgainFromWhereACommandLeftTheJoint) {

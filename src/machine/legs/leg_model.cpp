@@ -187,7 +187,8 @@ LegModel read_legs(const RobotDescription& description, const MachineParameters&
   hash.add(std::optional<double>(legs.leg_rotor_inertia));
   model.hash = hash.value();
   model.rotor_inertia = legs.leg_rotor_inertia;
-  model.belly = belly_height(*bodies, places);
+  const Belly belly = belly_of(*bodies, places);
+  model.belly = belly.height;
   for (std::size_t i = 0; i < kLegs; ++i) {
     for (const std::size_t index : places[i]) {
       const RigidBody& body = bodies->bodies[index];
@@ -200,7 +201,7 @@ LegModel read_legs(const RobotDescription& description, const MachineParameters&
     geometry.bend = bend_of(*bodies, geometry, places[i], i < 2, legs.knee_bend);
     model.legs[i].kinematics = LegKinematics(geometry);
     model.legs[i].foot_radius = foot.radius;
-    model.legs[i].lying = lying_posture(*bodies, model.legs[i].kinematics, places[i], model.belly);
+    model.legs[i].lying = lying_posture(*bodies, model.legs[i].kinematics, places[i], belly);
     for (std::size_t j = 0; j < kLegJoints; ++j) {
       JointModel& joint = model.joints[kLegJoints * i + j];
       joint.rotor_inertia = legs.leg_rotor_inertia;

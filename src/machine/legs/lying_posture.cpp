@@ -10,20 +10,32 @@
 namespace robot_control {
 namespace {
 
-constexpr double kScan = 0.01;  // rad
-constexpr double kFine = 1e-6;  // rad
+constexpr double kScan = 0.01;    // rad
+constexpr double kFine = 1e-3;    // rad
+constexpr double kMaxTilt = 0.3;  // rad
+constexpr double kHalfPi = std::numbers::pi / 2;
 
-/// Returns the lowest point of the body's shapes in m of the base's axes, if the body is at `pose`.
-double lowest(const RigidBody& body, const Eigen::Isometry3d& pose) {
-  double height = std::numeric_limits<double>::infinity();
-  const Eigen::Vector3d down = pose.linear().transpose() * Eigen::Vector3d(0, 0, -1);
-  for (const Shape& shape : body.shapes) height = std::min(height, pose.translation().z() - support(shape, down));
-  return height;
+/// Returns how far the body's shapes reach along `down`, in m from the base, if the body is at `pose`.
+double depth(const RigidBody& body, const Eigen::Isometry3d& pose, const Eigen::Vector3d& down) {
+  double deepest = -std::numeric_limits<double>::infinity();
+  const Eigen::Vector3d direction = pose.linear().transpose() * down;
+  for (const Shape& shape : body.shapes)
+    deepest = std::max(deepest, down.dot(pose.translation()) + support(shape, direction));
+  return deepest;
 }
 
-/// Returns the lowest point of thigh and shank.
-double lowest(const RigidBodies& robot, const LegGeometry& geometry, const std::array<std::size_t, kLegJoints>& chain,
-              const LegAngles& angles) {
+/// Returns the same of the root body and of those that the legs' first joints move, at the zero pose.
+double body_depth(const RigidBodies& robot, const LegChains& chains, const Eigen::Vector3d& down) {
+  double deepest = depth(robot.bodies[0], robot.bodies[0].in_root, down);
+  for (const auto& chain : chains)
+    deepest = std::max(deepest, depth(robot.bodies[chain[0]], robot.bodies[chain[0]].in_root, down));
+  return deepest;
+}
+
+/// Returns how far thigh and shank reach along `down`.
+double leg_depth(const RigidBodies& robot, const LegGeometry& geometry,
+                 const std::array<std::size_t, kLegJoints>& chain, const LegAngles& angles,
+                 const Eigen::Vector3d& down) {
   const Eigen::AngleAxisd first(geometry.sign[0] * angles[0], Eigen::Vector3d::UnitX());
   const Eigen::AngleAxisd second(geometry.sign[1] * angles[1], Eigen::Vector3d::UnitY());
   const Eigen::AngleAxisd third(geometry.sign[2] * angles[2], Eigen::Vector3d::UnitY());
@@ -33,71 +45,84 @@ double lowest(const RigidBodies& robot, const LegGeometry& geometry, const std::
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     pose.linear() = turn.toRotationMatrix() * robot.bodies[index].in_root.linear();
     pose.translation() = origin;
-    return lowest(robot.bodies[index], pose);
+    return depth(robot.bodies[index], pose, down);
   };
-  return std::min(placed(chain[1], thigh, hip), placed(chain[2], shank, hip + thigh * geometry.lower));
+  return std::max(placed(chain[1], thigh, hip), placed(chain[2], shank, hip + thigh * geometry.lower));
 }
 
-}  // namespace
-
-double belly_height(const RigidBodies& robot, const std::array<std::array<std::size_t, kLegJoints>, 4>& chains) {
-  double height = lowest(robot.bodies[0], robot.bodies[0].in_root);
-  for (const auto& chain : chains)
-    height = std::min(height, lowest(robot.bodies[chain[0]], robot.bodies[chain[0]].in_root));
-  return height;
-}
-
-LegAngles lying_posture(const RigidBodies& robot, const LegKinematics& kinematics,
-                        const std::array<std::size_t, kLegJoints>& chain, double belly) {
+/// Returns the angle of a knee that is bent by kFold, or as far as its range allows.
+double folded_knee(const LegKinematics& kinematics) {
   const LegGeometry& geometry = kinematics.geometry();
-  LegAngles angles = LegAngles::Zero();
-  angles[0] = std::clamp(0.0, geometry.range[0].lower, geometry.range[0].upper);
-  // The knee folds towards the end of its range.
   const double straight = kinematics.bend(LegAngles::Zero());  // β at q₃ = 0
   const JointRange& knee = kinematics.range(2);
   const double centre = (knee.lower + knee.upper) / 2;
   const double wanted = geometry.sign[2] * (geometry.bend * kFold - straight);
-  const double folded = centre + wrapped(wanted - centre);
+  const double folded = centre + wrapped(wanted - centre);  // towards the end of the range
   const double margin = std::min(kFromStop, (knee.upper - knee.lower) / 4);
-  angles[2] = std::clamp(folded, knee.lower + margin, knee.upper - margin);
-  // The thigh hangs down at θ₂ = hanging, and turns towards the side of the knee.
+  return std::clamp(folded, knee.lower + margin, knee.upper - margin);
+}
+
+/// Returns the angle of a thigh that has turned from hanging down towards the side of the knee.
+double thigh_at(const LegKinematics& kinematics, double turn) {
+  const LegGeometry& geometry = kinematics.geometry();
   const double hanging = wrapped(std::numbers::pi - std::atan2(geometry.lower.x(), geometry.lower.z()));
   const JointRange& thigh = kinematics.range(1);
   const double middle = std::isinf(thigh.lower) ? 0 : (thigh.lower + thigh.upper) / 2;
-  const auto at = [&](double turn) {
-    LegAngles result = angles;
-    const double angle = geometry.sign[1] * (hanging - geometry.bend * turn);
-    const double near = middle + wrapped(angle - middle);
-    result[1] = std::clamp(near, std::isinf(thigh.lower) ? near : thigh.lower + kFromStop,
-                           std::isinf(thigh.upper) ? near : thigh.upper - kFromStop);
-    return result;
+  const double angle = geometry.sign[1] * (hanging - geometry.bend * turn);
+  const double near = middle + wrapped(angle - middle);
+  return std::clamp(near, std::isinf(thigh.lower) ? near : thigh.lower + kFromStop,
+                    std::isinf(thigh.upper) ? near : thigh.upper - kFromStop);
+}
+
+}  // namespace
+
+Belly belly_of(const RigidBodies& robot, const LegChains& chains) {
+  const RigidBody& root = robot.bodies[0];
+  const Eigen::Vector3d centre = root.in_root * root.centre_of_gravity;
+  const auto tilted = [](double pitch) { return Eigen::Vector3d(-std::sin(pitch), 0, -std::cos(pitch)); };
+  const auto height = [&](double pitch) {  // of the centre of gravity
+    return body_depth(robot, chains, tilted(pitch)) - tilted(pitch).dot(centre);
   };
-  const auto height = [&](const LegAngles& folded_leg) { return lowest(robot, geometry, chain, folded_leg); };
-  LegAngles best = at(0);
-  for (double turn = kScan; turn <= std::numbers::pi / 2; turn += kScan) {
-    const LegAngles tried = at(turn);
-    if (height(tried) > height(best)) best = tried;
+  double pitch = 0;
+  for (const double step : {kFine, -kFine}) {
+    while (std::abs(pitch + step) <= kMaxTilt && height(pitch + step) < height(pitch)) pitch += step;
   }
-  // The leg swings outwards as far as needed.
+  return {.height = -body_depth(robot, chains, tilted(0)),
+          .down = tilted(pitch),
+          .depth = body_depth(robot, chains, tilted(pitch))};
+}
+
+LegAngles lying_posture(const RigidBodies& robot, const LegKinematics& kinematics,
+                        const std::array<std::size_t, kLegJoints>& chain, const Belly& belly) {
+  const LegGeometry& geometry = kinematics.geometry();
   const double outwards = geometry.sign[0] * (geometry.upper + geometry.lower + geometry.foot).y() > 0 ? 1 : -1;
   const double end = outwards > 0 ? kinematics.range(0).upper : -kinematics.range(0).lower;
-  const auto swung = [&](double swing) {
-    LegAngles result = best;
-    result[0] = outwards * swing;
-    return result;
+  const double begin = outwards * std::clamp(0.0, geometry.range[0].lower, geometry.range[0].upper);
+  const double farthest = std::max(begin, std::min(end - kFromStop, kHalfPi));
+  LegAngles angles(outwards * begin, 0, folded_knee(kinematics));
+  const auto height = [&](double turn) {
+    angles[1] = thigh_at(kinematics, turn);
+    return -leg_depth(robot, geometry, chain, angles, belly.down);
   };
-  const double begin = outwards * best[0];
-  const double farthest = std::max(begin, std::min(end - kFromStop, std::numbers::pi / 2));
-  double low = begin, high = begin;
-  while (height(swung(high)) < belly && high < farthest) {
-    low = high;
-    high = std::min(farthest, high + kScan);
+
+  double turn = 0, highest = height(0);
+  for (double tried = kScan; tried <= kHalfPi; tried += kScan) {
+    if (const double reached = height(tried); reached > highest) turn = tried, highest = reached;
   }
-  while (high - low > kFine) {
-    const double half = (low + high) / 2;
-    (height(swung(half)) < belly ? low : high) = half;
+  for (double swing = begin; swing <= farthest; swing += kScan) {
+    angles[0] = outwards * swing;
+    highest = height(turn);
+    for (const double step : {kScan, -kScan}) {  // a little further than at the last swing
+      for (double tried = turn + step; tried >= 0 && tried <= kHalfPi; tried += step) {
+        const double reached = height(tried);
+        if (reached <= highest) break;
+        turn = tried, highest = reached;
+      }
+    }
+    if (highest >= -belly.depth) break;
   }
-  return swung(high);
+  angles[1] = thigh_at(kinematics, turn);
+  return angles;
 }
 
 }  // namespace robot_control
