@@ -39,9 +39,11 @@ class DrivingRobot {
   static constexpr double kTimeout = 30.0;        ///< s; an event that takes longer has not happened
   static constexpr std::size_t kRestCycles = 20;  ///< twice as many as the monitor requires
 
-  explicit DrivingRobot(const Parameters& parameters)
+  /// `robot`: composed with these parameters; left out: a robot on wheels.
+  template <class... Composed>
+  explicit DrivingRobot(const Parameters& parameters, const Composed&... robot)
       : witness_(parameters.loop.core),
-        nodes_(parameters),
+        nodes_(parameters, robot...),
         log_(nodes_.bus()),
         sensors_(nodes_.bus(), ChannelNames::kSensors),
         permits_(nodes_.bus(), ChannelNames::kPermit),
@@ -76,15 +78,17 @@ class DrivingRobot {
   }
   std::uint64_t cycle() const { return sensors().head.cycle; }
 
-  /// m/s, by the newest frame; for tests that cannot wait for the trace.
-  double speed() const {
+  /// The newest frame; for tests that cannot wait for the trace.
+  TruthFrame truth() const {
     TruthFrame truth;
-    return truth_.reader.newest(truth) == Lookup::kFrame ? truth.twist_base.linear[0] : 0;
+    return truth_.reader.newest(truth) == Lookup::kFrame ? truth : TruthFrame{};
   }
+  double speed() const { return truth().twist_base.linear[0]; }  ///< m/s
 
-  /// From now on an operator requests this speed, 20 times a second.
-  void ask_for(double speed) {
-    asked_ = speed;
+  /// From now on an operator requests this, 20 times a second.
+  void ask_for(double speed) { ask_for({.twist = {.linear = {speed, 0, 0}}}); }
+  void ask_for(const Request& request) {
+    asked_ = request;
     next_send_ns_ = 0;
   }
   void ask_for_nothing() { asked_.reset(); }
@@ -94,7 +98,7 @@ class DrivingRobot {
     const std::int64_t now_ns = monotonic_ns();
     if (asked_ && now_ns >= next_send_ns_) {
       next_send_ns_ = now_ns + kSendNs;
-      command_.content.twist.linear[0] = *asked_;
+      command_.content = *asked_;
       ++command_.count;
       nodes_.desk().command.store(command_);
     }
@@ -178,6 +182,15 @@ class DrivingRobot {
     if (!await([&] { return ask_reset() == 0; })) throw std::runtime_error("is not released: " + situation());
   }
 
+  /// Waits for the end of INIT, and releases a stop. Throws std::runtime_error if that fails.
+  void make_ready() {
+    const auto unreleased = [&] { return permit().state == SupervisorState::kInit || log_.empty(); };
+    if (unreleased()) ask_for(0);
+    if (!await([&] { return !unreleased(); })) throw std::runtime_error("not ready: " + situation());
+    if (permit().state == SupervisorState::kStopped) release();
+    released_ns_ = monotonic_ns();
+  }
+
   /// True if only causes of a stall stopped it, after a stall that the witness measured while the robot was to drive.
   /// Command and permit may have survived the first kPermitLife of loss_cycles periods.
   bool stalled() const {
@@ -195,10 +208,7 @@ class DrivingRobot {
     const auto latched = [&] { return permit().state == SupervisorState::kStopped; };
     const auto unreleased = [&] { return permit().state == SupervisorState::kInit || log_.empty(); };
     for (int tries = 0; tries < kTries; ++tries) {
-      if (unreleased()) ask_for(0);
-      if (!await([&] { return !unreleased(); })) throw std::runtime_error("not ready: " + situation());
-      if (latched()) release();
-      released_ns_ = monotonic_ns();
+      make_ready();
       ask_for(kFullSpeed);
       if (await([&] { return fast() || latched() || unreleased(); }) && fast()) return;
       if (tries > 0 && latched() && !stalled())
@@ -256,7 +266,7 @@ class DrivingRobot {
   Input<TruthFrame> truth_;
   VelocityCommand command_;
   OperatorInput operator_input_;
-  std::optional<double> asked_;
+  std::optional<Request> asked_;
   std::int64_t next_send_ns_ = 0;
   std::int64_t next_poll_ns_ = 0;
   std::int64_t released_ns_ = 0;  // time at which it was last free to drive
