@@ -51,6 +51,7 @@ class SwayingQuadbot : public ::testing::TestWithParam<LossCell> {
     } else {
       robot_.restart(node);
     }
+    EXPECT_TRUE(robot_.await([&] { return robot_.permit().state == SupervisorState::kStopped; })) << robot_.situation();
   }
 
   DrivingRobot robot_ = robot();

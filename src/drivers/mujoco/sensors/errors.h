@@ -4,6 +4,7 @@
 /// robots, which docs/simulation.md names.
 
 #include <cstdint>
+#include <optional>
 
 #include "parameters/block.h"
 
@@ -57,12 +58,18 @@ struct Errors {
   double accelerometer_vibration = 0.12;   ///< m/s²/√Hz at 1 m/s, proportional to the speed
   double gyro_vibration = 7e-4;            ///< rad/s/√Hz at 1 m/s, proportional to the speed
   double accelerometer_slow_error = 0.08;  ///< m/s², standard deviation along the path
-  double imu_delay = 0.05;         ///< s, delay of gyro and accelerometer relative to the encoders (late_samples.h)
-  double imu_jitter = 0.002;       ///< s, standard deviation
-  double encoder_jitter = 0;       ///< s; zero because the wheels' loops use a synchronous bus
-  double wheel_slip_noise = 5e-3;  ///< m/√m, for a side with wheels behind each other (slip_noise.h)
+  /// s, of gyro and accelerometer behind the encoders (late_samples.h); none: that of the robot's kind
+  std::optional<double> imu_delay = std::nullopt;
+  double imu_jitter = 0.002;              ///< s, standard deviation
+  double encoder_jitter = 0;              ///< s; zero because the wheels' loops use a synchronous bus
+  double wheel_slip_noise = 5e-3;         ///< m/√m, for a side with wheels behind each other (slip_noise.h)
   double centre_of_gravity_error = 0.03;  ///< part of the wheel base, ahead and to the left (true_robot.h)
 };
+
+// The delay of an IMU by the kind of the robot. On wheels it is a device of its own, behind a serial line. On legs it
+// is on the bus of the joints, and two of its cycles of 1 ms are assumed.
+inline constexpr double kImuDelayOnWheels = 0.05;  // s
+inline constexpr double kImuDelayOnLegs = 0.002;   // s
 
 inline Keys keys(Errors& errors) {
   return {
@@ -71,7 +78,7 @@ inline Keys keys(Errors& errors) {
       {"accelerometer_vibration", &errors.accelerometer_vibration, "m/s²/√Hz", 0, 10},
       {"gyro_vibration", &errors.gyro_vibration, "rad/s/√Hz", 0, 1},
       {"accelerometer_slow_error", &errors.accelerometer_slow_error, "m/s²", 0, 10},
-      {"imu_delay", &errors.imu_delay, "s", 0, 0.5},
+      {"imu_delay", &errors.imu_delay, "s", 0, 0.5, kOptional},
       {"imu_jitter", &errors.imu_jitter, "s", 0, 0.1},
       {"encoder_jitter", &errors.encoder_jitter, "s", 0, 0.1},
       {"wheel_slip_noise", &errors.wheel_slip_noise, "m/√m", 0, 0.1},

@@ -58,7 +58,8 @@ SensorErrors::SensorErrors(const MachineModel& machine, const std::vector<Rim>& 
                      period, kAccelerometerDevice),
       threshold_(parameters.foot_threshold),
       vibration_(rims, parameters, period),
-      late_imu_(parameters.imu_delay, parameters.imu_jitter, period, kImuLateStream),
+      late_imu_(parameters.imu_delay.value_or(rims.empty() ? kImuDelayOnLegs : kImuDelayOnWheels),
+                parameters.imu_jitter, period, kImuLateStream),
       late_encoders_(0, parameters.encoder_jitter, period, kEncodersLateStream),
       delay_(checked_delay("sensor_delay", parameters.sensor_delay)) {
   const bool senses = parameters.contact_sensors && rims.empty();
