@@ -12,11 +12,21 @@ namespace py = pybind11;
 namespace robot_control {
 namespace {
 
+/// The text for any robot: roles stand for the programs that play them.
+std::string with_roles(std::string_view text) {
+  std::string filled(text);
+  for (const RoleNames& row : kRoles) {
+    const std::string role(row.role);
+    filled = replaced(filled, "{" + role + "}", "the " + role);
+  }
+  return with_programs(filled, Programs{});
+}
+
 py::list bits(std::span<const BitName> table) {
   py::list rows;
   for (const BitName& row : table) {
-    rows.append(py::make_tuple(std::string(row.name), with_programs(row.sentence, Programs{}),
-                               with_programs(row.remedy, Programs{}), std::string(row.unit)));
+    rows.append(
+        py::make_tuple(std::string(row.name), with_roles(row.sentence), with_roles(row.remedy), std::string(row.unit)));
   }
   return rows;
 }

@@ -30,10 +30,10 @@ JointCommand JointStop::step(std::optional<double> position, double dt) noexcept
   if (!begin_ || elapsed_ >= action_.time) return damped;
   const double falling = std::min(1 / kQuick, left_ / kGentle) / action_.time;
   left_ = std::max(0.0, left_ - falling * dt);
-  const double way = *begin_ - action_.posture, usual = action_.upright.value_or(*begin_) - action_.posture;
-  const bool ahead = way * usual > 0 && std::abs(way) < std::abs(usual);
-  const double path = ahead ? usual : way;
-  const double begun = ahead ? way / usual : 1;
+  const double own = *begin_ - action_.posture, usual = action_.upright.value_or(*begin_) - action_.posture;
+  const bool ahead = own * usual > 0 && std::abs(own) < std::abs(usual);
+  const double path = ahead ? usual : own;
+  const double begun = ahead ? own / usual : 1;
   const double held = std::min(1.0, (action_.time - elapsed_) / (kFade * action_.time));
   return {.mode = JointMode::kImpedance,
           .position = action_.posture + std::min(left_, begun) * path,

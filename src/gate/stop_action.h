@@ -9,9 +9,9 @@
 ///   kFold   τ = stiffness · (q* − q) + damping · (q̇* − q̇). q* goes from the position at the first order, Q, to
 ///           `posture`, P. The part u of the way falls from 1 with u̇ = −min(1/0.64, u/0.18)/time, so that a body meets
 ///           the ground slowly: the first part is 1/0.64 times as fast as the mean. q* = P + u (Q − P). A joint with Q
-///           between P and `upright`, U, is ahead of the others, for instance that of a foot in the air. It waits for
-///           them: q* = P + min(u, (Q − P)/(U − P)) (U − P). In the last 0.2 of `time` the stiffness falls to 0. After
-///           `time`, and without a position, it is kDamp
+///           between P and `upright`, U, is ahead of the others, for instance that of a foot in the air, or while the
+///           robot rises. It waits for them: q* = P + min(u, (Q − P)/(U − P)) (U − P). In the last 0.2 of `time` the
+///           stiffness falls to 0. After `time`, and without a position, it is kDamp
 ///
 /// A driver that cannot carry out an action says so (Driver::accepts), and the loop does not start.
 
@@ -34,8 +34,8 @@ struct StopAction {
   StopKind kind = StopKind::kBrake;
   double damping = 0;                            ///< N·m·s/rad or N·s/m, ≥ 0; kDamp, kFold
   double stiffness = 0;                          ///< N·m/rad or N/m, ≥ 0; kFold
-  double posture = 0;                            ///< rad or m; kFold
-  std::optional<double> upright = std::nullopt;  ///< rad or m; kFold
+  double posture = 0;                            ///< rad or m, P of kFold
+  std::optional<double> upright = std::nullopt;  ///< rad or m, U of kFold; none: no joint waits
   double time = 0;                               ///< s, ≥ 0; kFold
 };
 

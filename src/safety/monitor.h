@@ -230,7 +230,7 @@ void Monitor<KindConditions>::evaluate_conditions(const MonitorInput& input) noe
   if (!machine_conditions_.starting()) sensor_presence_.step(sensors, elapsed, active_);
   frame_conditions_.step(input, active_);
   operator_conditions_.step(input, supervisor_.state() == SupervisorState::kDrive, active_);
-  gate_conditions_.step(sensors, elapsed, active_);
+  gate_conditions_.step(sensors, active_);
   if (!machine_conditions_.starting()) kind_.step(input, elapsed, last_speed_limit_, active_);
   warnings_.step(active_, cycle, elapsed);
 }

@@ -23,7 +23,7 @@ WATCH = 2.0
 """s, for which an observer is watched."""
 
 NODES = {"mujoco_plant", "state_estimator", "diff_drive_controller", "safety_monitor"}
-SERVERS = {"send_cmd.py", "follow_path.py", "console.py", "device_simulator"}
+COMPANIONS = {"send_cmd.py", "follow_path.py", "console.py", "device_simulator"}
 """They run beside a launch until the page ends."""
 CONTROLLERS = {"/diff_drive_controller/set_parameter_map", "/set_posture"}
 """services of the controller, by kind of the robot"""
@@ -80,15 +80,15 @@ def until(condition, what, program=None, limit=START):
 
 
 def never_ends(command):
-    """The kind of a command that does not end by itself: a launch, a node, a server or an observer; else ""."""
+    """The kind of a command that does not end by itself: a launch, a node, a companion or an observer; else ""."""
     words = shlex.split(command)
     if words[0] == "roslaunch":
         return "" if any(word.startswith("cycles:=") for word in words) else "launch"
     if words[:2] == ["rosrun", "robot_control"]:
         if words[2] in NODES:
             return "node"
-        if words[2] in SERVERS:
-            return "server"
+        if words[2] in COMPANIONS:
+            return "companion"
         return "observer" if words[2] == "why.py" and "--once" not in words else ""
     endless = words[0] == "rostopic" and words[1] in ("echo", "hz", "pub") and not {"-1", "-n"} & set(words)
     return "observer" if endless else ""
@@ -126,7 +126,7 @@ class Terminal:
         kind = never_ends(command)
         if kind == "launch":
             self._start_launch(command)
-        elif kind in ("node", "server"):
+        elif kind in ("node", "companion"):
             self._start(command, kind)
         elif kind == "observer":
             self._observe(command)

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kTrials = 20;
 constexpr double kUpright = 0.15;            // rad
-constexpr std::uint64_t kFoldCycles = 2000;  // twice what a fold takes
+constexpr std::uint64_t kFoldCycles = 2500;  // twice what a fold takes
 
 Parameters of_quadbot() {
   Parameters parameters = read_parameters(kParams);
@@ -68,6 +68,7 @@ TEST_P(SwayingQuadbot, FoldsWithin20CyclesAndLiesUpright) {
     const MeasuredStop stop = robot_.lose(GetParam().node, GetParam().signal);
     robot_.await_cycles(kFoldCycles);
     const TruthFrame truth = robot_.truth();
+    ASSERT_GT(truth.head.cycle, kFoldCycles);
     const Quaternion& attitude = truth.pose_world.orientation;
     EXPECT_LE(2 * std::hypot(attitude[0], attitude[1]), kUpright);
     EXPECT_LT(truth.pose_world.position[2], standing - 0.1) << "it lies";

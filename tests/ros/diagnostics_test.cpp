@@ -212,9 +212,17 @@ TEST(GateReasons, AreEachAValueInWords) {
   SensorFrame sensors;
   sensors.gate.reasons = kGatePermitBrake;
   DiagnosticReport report("mujoco_plant", "diffbot");
-  report_driver(report, sensors, {}, 1.0);
+  report_driver(report, sensors, {}, {}, 1.0);
   EXPECT_EQ(value_of(report, "gate: permit_brake"), "the permit orders the brake");
   EXPECT_EQ(value_of(report, "gate remedy: permit_brake"), "read the cause in safety_status");
+}
+
+TEST(GateReasons, NameTheControllerOfTheRobot) {
+  SensorFrame sensors;
+  sensors.gate.reasons = kGateNoCommand;
+  DiagnosticReport report("mujoco_plant", "quadbot");
+  report_driver(report, sensors, {}, {.kind = kLeggedKind}, 1.0);
+  EXPECT_EQ(value_of(report, "gate remedy: no_command"), "look whether leg_controller runs and gets its core");
 }
 
 }  // namespace

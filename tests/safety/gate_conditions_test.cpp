@@ -111,5 +111,39 @@ TEST_F(GateConditionsTest, ThePermitsOfAnEarlierMonitorAreNotJudged) {
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseMonitorRestarted});
 }
 
+/// Frames of a driver whose ticks all brake for want of a command, or all pass.
+class GateReports : public ::testing::Test {
+ protected:
+  std::uint64_t causes_after(std::uint64_t frame, std::uint64_t tick, GateVerdict verdict) {
+    SensorFrame sensors;
+    sensors.head.cycle = frame;
+    sensors.gate = {.cycle = tick, .verdict = verdict, .reasons = 0, .permit_cycle = tick - 1};
+    ActiveCauses out;
+    conditions_.step(sensors, out);
+    Permit permit;
+    permit.action = PermitAction::kDrive;
+    conditions_.remember(permit, frame);
+    return out.with(Reaction::kBrake);
+  }
+
+  static constexpr std::uint64_t kLoss = 20;
+
+  GateConditions conditions_{kLoss, kPeriod};
+};
+
+TEST_F(GateReports, CyclesThatTheDriverSkippedAreNoTicks) {
+  for (std::uint64_t k = 10; k < 15; ++k) EXPECT_EQ(causes_after(k, k - 1, GateVerdict::kBrake), 0u);
+  EXPECT_EQ(causes_after(15 + kLoss, 14, GateVerdict::kBrake), 0u);
+  for (std::uint64_t k = 16 + kLoss; k < 14 + 2 * kLoss; ++k)
+    EXPECT_EQ(causes_after(k, k - 1, GateVerdict::kBrake), 0u) << k;
+}
+
+TEST_F(GateReports, OfAnotherTimeThanBetweenTwoFramesDisobey) {
+  for (std::uint64_t k = 10; k < 20; ++k) EXPECT_EQ(causes_after(k, k - 1, GateVerdict::kPassed), 0u);
+  EXPECT_EQ(causes_after(19, 18, GateVerdict::kPassed), 0u) << "published again";
+  EXPECT_EQ(causes_after(20, 18, GateVerdict::kPassed), std::uint64_t{kCauseGateDisobeys}) << "it stands still";
+  EXPECT_EQ(causes_after(21, 21, GateVerdict::kPassed), std::uint64_t{kCauseGateDisobeys}) << "to come";
+}
+
 }  // namespace
 }  // namespace robot_control

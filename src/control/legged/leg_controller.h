@@ -7,7 +7,8 @@
 ///
 ///   lying      every joint brakes
 ///   gathering  the joints move from where they are to the lying posture
-///   rising     the feet stay where they lie, the body rises within rise_time to the nominal height, with its centre of
+///   rising     the feet go down to the ground where they lie, the body rises within rise_time to the nominal height,
+///   with its centre of
 ///              gravity amid the feet
 ///   standing   the body follows the request, and one foot may be in the air
 ///   lowering   body and foot return to the nominal pose, then the body sinks
@@ -25,7 +26,8 @@
 ///
 /// A twist has no effect, because this robot does not walk yet (kReasonPartIgnored).
 ///
-/// The stance frame has its axes and origin where those of the base were when it began to rise. Let aᵢ be the feet, p
+/// The stance frame has its origin where that of the base was when it began to rise. It is level, and its x axis shows
+/// ahead. Let aᵢ be the feet, p
 /// the body's position and R its rotation in it. The feet in the base's axes are Rᵀ(aᵢ − p), and the joint angles are
 /// those of LegKinematics::inverse. A ball as a foot rolls: aᵢ moves with ωᵢ × (0, 0, r), ωᵢ the rate of the shank.
 ///
@@ -95,7 +97,7 @@ class LegController {
   LegPhase phase() const noexcept { return state_.phase; }
   const LegTuning& tuning() const noexcept { return tuning_; }
 
-  /// Pose of the body in the stance frame: x, y, height above the lying one, roll, pitch, yaw.
+  /// Pose of the body in the stance frame: x, y, height above one that lies level, roll, pitch, yaw.
   struct State {
     explicit State(const CommandWatch& empty) : watch(empty) {}
 
@@ -154,8 +156,8 @@ class LegController {
   LegTuning tuning_;
   std::array<JointRange, kLegsJoints> joint_ranges_;
   std::array<AxisBounds, kLegsJoints> joint_motion_;
-  double ground_ = 0;   ///< m, height of the ground in the axes of the lying base
-  double nominal_ = 0;  ///< m, height of the standing body above the lying one
+  double ground_ = 0;   ///< m, height of the ground below the base of a robot that lies level
+  double nominal_ = 0;  ///< m, height of the standing body above one that lies level
   State state_;
 };
 

@@ -79,7 +79,7 @@ double thigh_at(const LegKinematics& kinematics, double turn) {
 Belly belly_of(const RigidBodies& robot, const LegChains& chains) {
   const RigidBody& root = robot.bodies[0];
   const Eigen::Vector3d centre = root.in_root * root.centre_of_gravity;
-  const auto tilted = [](double pitch) { return Eigen::Vector3d(-std::sin(pitch), 0, -std::cos(pitch)); };
+  const auto tilted = [](double pitch) { return Eigen::Vector3d(std::sin(pitch), 0, -std::cos(pitch)); };
   const auto height = [&](double pitch) {  // of the centre of gravity
     return body_depth(robot, chains, tilted(pitch)) - tilted(pitch).dot(centre);
   };
@@ -112,7 +112,7 @@ LegAngles lying_posture(const RigidBodies& robot, const LegKinematics& kinematic
   for (double swing = begin; swing <= farthest; swing += kScan) {
     angles[0] = outwards * swing;
     highest = height(turn);
-    for (const double step : {kScan, -kScan}) {  // a little further than at the last swing
+    for (const double step : {kScan, -kScan}) {
       for (double tried = turn + step; tried >= 0 && tried <= kHalfPi; tried += step) {
         const double reached = height(tried);
         if (reached <= highest) break;

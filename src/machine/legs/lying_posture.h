@@ -2,7 +2,7 @@
 /// The lying posture rests on the body, and no leg bears it. So the robot lies still without any torque, wherever the
 /// limp legs sink to.
 ///
-///   body   it tilts lengthwise about its lowest point, until its centre of gravity is as low as it can be
+///   body   it tilts lengthwise, from level to where the centre of gravity of the root body is lowest
 ///   knee   bent by kFold, or as far as its range less kFromStop allows
 ///   hip    swung outwards until no part of thigh and shank is below the ground on which the body lies, or to the end
 ///   of

@@ -75,7 +75,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
   }
 
   void diagnose(DiagnosticReport& report) override {
-    report_driver(report, sensors_, robot(), process().real_time_factor());
+    report_driver(report, sensors_, robot(), programs(), process().real_time_factor());
     double slip = 0;
     for (const double wheel : truth_frame_.slip) slip = std::max(slip, wheel);
     report.value("wheel_slip_m_s", slip);

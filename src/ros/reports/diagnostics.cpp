@@ -62,7 +62,7 @@ void report_missing(DiagnosticReport& report, const std::vector<std::string>& mi
 }
 
 void report_driver(DiagnosticReport& report, const SensorFrame& sensors, const MachineModel& machine,
-                   double real_time_factor) {
+                   const Programs& programs, double real_time_factor) {
   if (sensors.driver_state == DriverState::kFault) report.error(sentences_of(kDriverFaultNames, sensors.faults));
   if (sensors.driver_state == DriverState::kPaused) report.ok("paused");
   const std::string injected = names_of(sensors.injected, machine);
@@ -92,7 +92,7 @@ void report_driver(DiagnosticReport& report, const SensorFrame& sensors, const M
   report.value("commands_missed", sensors.gate.missed);
   report.value("permits_late", sensors.gate.late_permits);
   report.value("frames_refused", sensors.gate.refused);
-  report.reasons("gate", kGateReasonNames, sensors.gate.reasons);
+  report.reasons("gate", kGateReasonNames, sensors.gate.reasons, programs);
 }
 
 void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64_t slip_lately, bool on_wheels) {

@@ -45,7 +45,7 @@ class DiagnosticReport {
 void report_missing(DiagnosticReport& report, const std::vector<std::string>& missing);
 
 void report_driver(DiagnosticReport& report, const SensorFrame& sensors, const MachineModel& machine,
-                   double real_time_factor);
+                   const Programs& programs, double real_time_factor);
 /// `slip_lately` has the SlipReason bits of all cycles since the last report.
 /// Calibration, confidences and wheel slip are those of a robot on wheels.
 void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64_t slip_lately, bool on_wheels);

@@ -4,9 +4,13 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/legs/leg_dynamics.h"
 #include "machine/legs/legs_corpus.h"
+#include "machine/legs/lying_posture.h"
 #include "machine/quadruped_urdf.h"
 
 namespace robot_control {
@@ -103,12 +107,31 @@ TEST(LegModel, OfOneSidedKneesBendsThemAsTheirRangesDo) {
   for (const Leg& leg : robot.legs) EXPECT_EQ(leg.kinematics.geometry().bend, -1);
 }
 
-TEST(LegModel, LiesWithItsLegsAtTheHeightOfTheBelly) {
+LegChains chains_of(const LegModel& robot) {
+  LegChains chains{};
+  const auto& bodies = robot.bodies->bodies;
+  for (std::size_t i = 0; i < kLegsJoints; ++i) {
+    const auto moved =
+        std::ranges::find(bodies, robot.joints[i].name, [](const RigidBody& body) { return body.joint.name; });
+    chains[i / kLegJoints][i % kLegJoints] = static_cast<std::size_t>(moved - bodies.begin());
+  }
+  return chains;
+}
+
+TEST(LegModel, LiesOnItsBodyAlone) {
   for (const std::string& name : legged_robots()) {
     const LegModel robot = legged_robot(name);
+    const Belly belly = belly_of(*robot.bodies, chains_of(robot));
+    EXPECT_EQ(belly.height, robot.belly) << name;
+    // The body of go2 has its lowest point in front of its centre of gravity.
+    EXPECT_NEAR(std::atan2(belly.down.x(), -belly.down.z()), name == "go2" ? -0.104 : 0, 0.002) << name;
     for (const Leg& leg : robot.legs) {
-      // The foot's lowest point is on the ground or above it, and the angles are inside of the ranges.
-      EXPECT_GE(leg.kinematics.position(leg.lying).z() - leg.foot_radius, robot.belly - 1e-5) << name;
+      const LegGeometry& geometry = leg.kinematics.geometry();
+      const Eigen::Quaterniond hip(Eigen::AngleAxisd(geometry.sign[0] * leg.lying[0], Eigen::Vector3d::UnitX()));
+      const Eigen::Quaterniond thigh(Eigen::AngleAxisd(geometry.sign[1] * leg.lying[1], Eigen::Vector3d::UnitY()));
+      const Eigen::Vector3d knee = geometry.hip + hip * (geometry.upper + thigh * geometry.lower);
+      EXPECT_LE(belly.down.dot(leg.kinematics.position(leg.lying)) + leg.foot_radius, belly.depth) << name;
+      EXPECT_LE(belly.down.dot(knee), belly.depth) << name;
       for (std::size_t i = 0; i < kLegJoints; ++i) {
         const JointRange& range = leg.kinematics.geometry().range[i];
         EXPECT_GE(leg.lying[static_cast<Eigen::Index>(i)], range.lower) << name;

@@ -60,16 +60,21 @@ struct Errors {
   double accelerometer_slow_error = 0.08;  ///< m/s², standard deviation along the path
   /// s, of gyro and accelerometer behind the encoders (late_samples.h); none: that of the robot's kind
   std::optional<double> imu_delay = std::nullopt;
-  double imu_jitter = 0.002;              ///< s, standard deviation
-  double encoder_jitter = 0;              ///< s; zero because the wheels' loops use a synchronous bus
-  double wheel_slip_noise = 5e-3;         ///< m/√m, for a side with wheels behind each other (slip_noise.h)
-  double centre_of_gravity_error = 0.03;  ///< part of the wheel base, ahead and to the left (true_robot.h)
+  std::optional<double> imu_jitter = std::nullopt;  ///< s, standard deviation
+  double encoder_jitter = 0;                        ///< s; zero because the wheels' loops use a synchronous bus
+  double wheel_slip_noise = 5e-3;                   ///< m/√m, for a side with wheels behind each other (slip_noise.h)
+  double centre_of_gravity_error = 0.03;            ///< part of the wheel base, ahead and to the left (true_robot.h)
 };
 
-// The delay of an IMU by the kind of the robot. On wheels it is a device of its own, behind a serial line. On legs it
-// is on the bus of the joints, and two of its cycles of 1 ms are assumed.
-inline constexpr double kImuDelayOnWheels = 0.05;  // s
-inline constexpr double kImuDelayOnLegs = 0.002;   // s
+/// The delay of an IMU and its standard deviation, s, where they are left out.
+struct ImuDelay {
+  double mean = 0;
+  double jitter = 0;
+};
+// On wheels the IMU is a device of its own, behind a serial line. On legs it is on the synchronous bus of the joints,
+// and two of its cycles of 1 ms are assumed.
+inline constexpr ImuDelay kImuOnWheels{.mean = 0.05, .jitter = 0.002};
+inline constexpr ImuDelay kImuOnLegs{.mean = 0.002};
 
 inline Keys keys(Errors& errors) {
   return {
@@ -79,7 +84,7 @@ inline Keys keys(Errors& errors) {
       {"gyro_vibration", &errors.gyro_vibration, "rad/s/√Hz", 0, 1},
       {"accelerometer_slow_error", &errors.accelerometer_slow_error, "m/s²", 0, 10},
       {"imu_delay", &errors.imu_delay, "s", 0, 0.5, kOptional},
-      {"imu_jitter", &errors.imu_jitter, "s", 0, 0.1},
+      {"imu_jitter", &errors.imu_jitter, "s", 0, 0.1, kOptional},
       {"encoder_jitter", &errors.encoder_jitter, "s", 0, 0.1},
       {"wheel_slip_noise", &errors.wheel_slip_noise, "m/√m", 0, 0.1},
       {"centre_of_gravity_error", &errors.centre_of_gravity_error, {}, -0.2, 0.2},

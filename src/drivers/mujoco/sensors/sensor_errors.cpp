@@ -45,6 +45,14 @@ void InertialError::step(Vector3& value) noexcept {
   }
 }
 
+namespace {
+
+const ImuDelay& imu_of(const std::vector<Rim>& rims) noexcept {
+  return rims.empty() ? kImuOnLegs : kImuOnWheels;
+}
+
+}  // namespace
+
 SensorErrors::SensorErrors(const MachineModel& machine, const std::vector<Rim>& rims,
                            const MujocoPlantParameters& parameters, double period)
     : level_(parameters.sensor_errors),
@@ -58,8 +66,8 @@ SensorErrors::SensorErrors(const MachineModel& machine, const std::vector<Rim>& 
                      period, kAccelerometerDevice),
       threshold_(parameters.foot_threshold),
       vibration_(rims, parameters, period),
-      late_imu_(parameters.imu_delay.value_or(rims.empty() ? kImuDelayOnLegs : kImuDelayOnWheels),
-                parameters.imu_jitter, period, kImuLateStream),
+      late_imu_(parameters.imu_delay.value_or(imu_of(rims).mean), parameters.imu_jitter.value_or(imu_of(rims).jitter),
+                period, kImuLateStream),
       late_encoders_(0, parameters.encoder_jitter, period, kEncodersLateStream),
       delay_(checked_delay("sensor_delay", parameters.sensor_delay)) {
   const bool senses = parameters.contact_sensors && rims.empty();

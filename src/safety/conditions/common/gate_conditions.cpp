@@ -12,6 +12,7 @@ GateConditions::GateConditions(std::uint64_t loss_cycles, double period) noexcep
 void GateConditions::enter_run() noexcept {
   permits_ = refused_frames_ = in_a_row_ = in_second_ = 0;
   next_tick_ = 0;
+  frame_ = tick_ = 0;
   ticks_.reset();
 }
 
@@ -20,10 +21,13 @@ void GateConditions::remember(const Permit& permit, std::uint64_t cycle) noexcep
   ++permits_;
 }
 
-void GateConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept {
-  if (sensors.head.cycle == 0) return;
-  count(refuses(sensors.gate), elapsed);
-  refused_frames_ = sensors.gate.refused;
+void GateConditions::step(const SensorFrame& sensors, ActiveCauses& out) noexcept {
+  const std::uint64_t frame = sensors.head.cycle;
+  if (frame == 0) return;
+  const GateReport& report = sensors.gate;
+  const bool out_of_place = report.cycle >= frame || (report.cycle < frame_ && frame_ < frame);
+  count(refuses(report), frame_ == 0 || out_of_place ? 1 : report.cycle - tick_);
+  refused_frames_ = report.refused;
   if (in_a_row_ >= loss_cycles_) {
     out.add(kCauseGateRefuses, Reaction::kBrake,
             {.beyond = true, .value = static_cast<double>(in_a_row_), .limit = static_cast<double>(loss_cycles_)});
@@ -31,8 +35,10 @@ void GateConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, Act
     out.add(kCauseGateRefuses, Reaction::kBrake,
             {.beyond = true, .value = static_cast<double>(in_second_), .limit = static_cast<double>(second_) / 2});
   }
-  if (sensors.gate.cycle >= sensors.head.cycle || disobeys(sensors.gate))
+  if (disobeys(report) || (out_of_place && report.verdict != GateVerdict::kBrake))
     out.add(kCauseGateDisobeys, Reaction::kBrake, {.beyond = true, .value = 1});
+  frame_ = frame;
+  tick_ = report.cycle;
 }
 
 bool GateConditions::refuses(const GateReport& report) const noexcept {

@@ -8,10 +8,11 @@
 ///               half of the ticks of the last second. Reasons are a slow or intermittent controller, or permits that
 ///               do not arrive. A robot that stops and continues by itself is not predictable
 ///   disobeys    a command passed although the permit ordered the brake, its ramp had ended, it had expired, or it was
-///               never issued, or t ≥ k: software can no longer stop this machine, so it leads to FAULT
+///               never issued, or t is not between the last frame that the monitor read and this one: software can no
+///               longer stop this machine, so it leads to FAULT
 ///
 /// A permit from before the first step (of an earlier monitor) is judged by its age only. Ticks that the monitor
-/// skipped count as the next tick that it evaluated.
+/// skipped count as the next tick that it evaluated. Cycles that the driver skipped are no ticks.
 
 #include <array>
 #include <bitset>
@@ -33,7 +34,7 @@ class GateConditions {
   /// A new run: no permit was issued yet.
   void enter_run() noexcept;
 
-  void step(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept;
+  void step(const SensorFrame& sensors, ActiveCauses& out) noexcept;
 
   /// The permit that was issued in `cycle`; call once per cycle. A permit that is published again in the same cycle
   /// (for display) is not recorded: the gate may or may not have used it.
@@ -63,6 +64,8 @@ class GateConditions {
   std::uint64_t permits_ = 0;  ///< remembered in this run
   std::array<Given, kRemembered> given_{};
   std::uint64_t refused_frames_ = 0;  ///< GateReport::refused at the last step
+  std::uint64_t frame_ = 0;           ///< k of the last step; 0: none in this run
+  std::uint64_t tick_ = 0;            ///< t of the last step
   std::uint64_t in_a_row_ = 0;
   std::uint64_t in_second_ = 0;
   std::size_t next_tick_ = 0;
