@@ -207,6 +207,7 @@ class CommandSourcesTest(RobotTestCase):
             program = Program(name, argument)
             program.send_signal(signal.SIGSTOP)
             self.addCleanup(program.end)
+            time.sleep(0.05)  # a process knows its own beginning to 10 ms
             end_permission()
             before = self.robot.distance
             program.send_signal(signal.SIGCONT)

@@ -292,7 +292,8 @@ class Robot:
         end = time.monotonic() + LIMIT
         while not condition():
             if time.monotonic() > end:
-                raise AssertionError(f"not within {LIMIT:g} s of driving: {what}; causes: {self.causes}")
+                details = "" if self.status is None else "; ".join(self.status.details)
+                raise AssertionError(f"not within {LIMIT:g} s of driving: {what}; causes: {self.causes} ({details})")
             waits = self.status is not None and self.status.awaiting_zero_request
             self.send(*((0.0, 0.0) if waits or rospy.get_name() in self.revoked else (linear, angular)))
             self.release_after_a_stall()

@@ -5,7 +5,7 @@ import time
 
 from system.stall_witness import StallWitness
 
-STOPPED = 0.5
+STOPPED = 2.0
 """s"""
 
 
