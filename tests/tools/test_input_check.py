@@ -263,5 +263,5 @@ def test_a_real_imu_on_its_side_names_its_mounting(name):
 @pytest.mark.skipif(recordings_folder() is None, reason=ABSENT)
 def test_the_vehicle_as_it_was_recorded_has_a_left_handed_imu():
     samples, robot = recorded("vehicle")
-    samples.gyro *= [-1, 1, -1]  # as it stands in the file
+    samples.gyro = samples.gyro * [-1, 1, -1]  # as it stands in the file; the recording is shared by the tests
     assert "left-handed" in " · ".join(check(samples, robot).warnings)
