@@ -104,7 +104,10 @@ def recording(name: str) -> Recording:
     file = {"outdoor": "outdoor_skid_steer", "vehicle": "vehicle"}.get(kind, name)
     with np.load(folder / f"{file}.npz") as data:
         read = {"skid_steer_": _skid_steer, "vacuum_": _vacuum, "outdoor": _outdoor, "vehicle": _vehicle}[kind]
-        return read(name, data)
+        drive = read(name, data)
+    for array in (drive.time, drive.left, drive.right, drive.gyro, drive.accel, drive.truth):
+        array.flags.writeable = False  # all callers share it
+    return drive
 
 
 def without_beginning(drive: Recording, begin: float) -> Recording:

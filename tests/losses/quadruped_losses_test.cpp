@@ -45,12 +45,7 @@ class SwayingQuadbot : public ::testing::TestWithParam<LossCell> {
   }
 
   void bring_back() {
-    const auto [node, signal] = GetParam();
-    if (signal == SIGSTOP) {
-      robot_.nodes().process(node).send(SIGCONT);
-    } else {
-      robot_.restart(node);
-    }
+    robot_.bring_back(GetParam().node, GetParam().signal);
     EXPECT_TRUE(robot_.await([&] { return robot_.permit().state == SupervisorState::kStopped; })) << robot_.situation();
   }
 

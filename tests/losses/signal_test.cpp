@@ -14,16 +14,7 @@ struct Row {
   std::uint64_t cause;  ///< latched, at the latest once the node is back
 };
 
-class ALostNode : public Losses, public ::testing::WithParamInterface<Row> {
- protected:
-  void bring_back() {
-    if (GetParam().signal == SIGSTOP) {
-      nodes().process(GetParam().node).send(SIGCONT);
-    } else {
-      robot_.restart(GetParam().node);
-    }
-  }
-};
+class ALostNode : public Losses, public ::testing::WithParamInterface<Row> {};
 
 TEST_P(ALostNode, StopsTheRobotUntilResetAndANewCommand) {
   const auto [node, signal, cause] = GetParam();
@@ -46,7 +37,7 @@ TEST_P(ALostNode, StopsTheRobotUntilResetAndANewCommand) {
   for (const LoopNode other : kLoop) {
     if (other != node) expect_lives(other);
   }
-  bring_back();
+  robot_.bring_back(node, signal);
   expect_latched_until_reset_and_new_command(cause);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// A robot of four processes drives at full speed and then loses one of them.
 
+#include <csignal>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
@@ -182,9 +183,17 @@ class DrivingRobot {
     if (!await([&] { return ask_reset() == 0; })) throw std::runtime_error("is not released: " + situation());
   }
 
+  /// Undoes what `signal` did to the node.
+  void bring_back(LoopNode node, int signal) {
+    if (signal == SIGSTOP) {
+      nodes_.process(node).send(SIGCONT);
+    } else {
+      restart(node);
+    }
+  }
+
   /// Waits for the end of INIT, and releases a stop. Throws std::runtime_error if that fails.
   void make_ready() {
-    const auto unreleased = [&] { return permit().state == SupervisorState::kInit || log_.empty(); };
     if (unreleased()) ask_for(0);
     if (!await([&] { return !unreleased(); })) throw std::runtime_error("not ready: " + situation());
     if (permit().state == SupervisorState::kStopped) release();
@@ -206,7 +215,6 @@ class DrivingRobot {
   void drive_at_full_speed() {
     const auto fast = [&] { return !log_.empty() && log_.last().speed > 0.97 * kFullSpeed; };
     const auto latched = [&] { return permit().state == SupervisorState::kStopped; };
-    const auto unreleased = [&] { return permit().state == SupervisorState::kInit || log_.empty(); };
     for (int tries = 0; tries < kTries; ++tries) {
       make_ready();
       ask_for(kFullSpeed);
@@ -253,6 +261,8 @@ class DrivingRobot {
   }
 
  private:
+  bool unreleased() const { return permit().state == SupervisorState::kInit || log_.empty(); }
+
   static constexpr int kTries = 5;
   static constexpr std::int64_t kSendNs = 50'000'000;
   static constexpr std::int64_t kPollNs = 20'000'000;

@@ -75,11 +75,7 @@ inline StopTrials run_trials(DrivingRobot& robot, const LossCell& cell, int coun
     } else if (++trials.repeated > count + kRepeatedTrials) {
       throw std::runtime_error("this machine stalls too often to measure anything");
     }
-    if (cell.signal == SIGSTOP) {
-      robot.nodes().process(cell.node).send(SIGCONT);
-    } else {
-      robot.restart(cell.node);
-    }
+    robot.bring_back(cell.node, cell.signal);
     robot.release();
   }
   return trials;

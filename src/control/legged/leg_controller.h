@@ -8,8 +8,7 @@
 ///   lying      every joint brakes
 ///   gathering  the joints move from where they are to the lying posture
 ///   rising     the feet go down to the ground where they lie, the body rises within rise_time to the nominal height,
-///   with its centre of
-///              gravity amid the feet
+///              with its centre of gravity amid the feet
 ///   standing   the body follows the request, and one foot may be in the air
 ///   lowering   body and foot return to the nominal pose, then the body sinks
 ///   joints     the joints follow Request::joints (joint_motion.h), within their ranges and nine tenths of their speed
@@ -27,9 +26,9 @@
 /// A twist has no effect, because this robot does not walk yet (kReasonPartIgnored).
 ///
 /// The stance frame has its origin where that of the base was when it began to rise. It is level, and its x axis shows
-/// ahead. Let aᵢ be the feet, p
-/// the body's position and R its rotation in it. The feet in the base's axes are Rᵀ(aᵢ − p), and the joint angles are
-/// those of LegKinematics::inverse. A ball as a foot rolls: aᵢ moves with ωᵢ × (0, 0, r), ωᵢ the rate of the shank.
+/// ahead. Let aᵢ be the feet, p the body's position and R its rotation in it. The feet in the base's axes are
+/// Rᵀ(aᵢ − p), and the joint angles are those of LegKinematics::inverse. A ball as a foot rolls: aᵢ moves with
+/// ωᵢ × (0, 0, r), ωᵢ the rate of the shank.
 ///
 /// Each joint gets an impedance about its angle. The feed-forward is the effort of the whole robot's motion along its
 /// reference, M a + h − Jᵀ f (leg_dynamics.h). The feet that stand give the force and the moment that moving the body
