@@ -13,20 +13,17 @@ namespace robot_control {
 namespace {
 
 /// The text for any robot: roles stand for the programs that play them.
-std::string with_roles(std::string_view text) {
-  std::string filled(text);
-  for (const RoleNames& row : kRoles) {
-    const std::string role(row.role);
-    filled = replaced(filled, "{" + role + "}", "the " + role);
-  }
+std::string of_any_robot(std::string_view text) {
+  const std::string filled =
+      with_roles(text, [](Role role) { return "the " + std::string(kRoles[static_cast<std::size_t>(role)].role); });
   return with_programs(filled, Programs{});
 }
 
 py::list bits(std::span<const BitName> table) {
   py::list rows;
   for (const BitName& row : table) {
-    rows.append(
-        py::make_tuple(std::string(row.name), with_roles(row.sentence), with_roles(row.remedy), std::string(row.unit)));
+    rows.append(py::make_tuple(std::string(row.name), of_any_robot(row.sentence), of_any_robot(row.remedy),
+                               std::string(row.unit)));
   }
   return rows;
 }

@@ -46,13 +46,9 @@ constexpr std::string_view program_of(Role role, const Programs& programs) noexc
 
 /// Replaces each role in braces by its program on this robot, and so {request} and {request_timeout}.
 inline std::string with_programs(std::string_view text, const Programs& programs) {
-  std::string filled(text);
-  for (std::size_t i = 0; i < kRoles.size(); ++i) {
-    filled = replaced(filled, "{" + std::string(kRoles[i].role) + "}", program_of(static_cast<Role>(i), programs));
-  }
+  const std::string filled = with_roles(text, [&](Role role) { return program_of(role, programs); });
   const KindNames& names = names_of_kind(programs.kind);
-  filled = replaced(filled, "{request}", names.request);
-  return replaced(filled, "{request_timeout}", names.timeout);
+  return replaced(replaced(filled, "{request}", names.request), "{request_timeout}", names.timeout);
 }
 
 }  // namespace robot_control

@@ -35,11 +35,18 @@ inline std::string replaced(std::string text, std::string_view place, std::strin
   return text;
 }
 
+/// Replaces each role in braces by what `name_of(Role)` returns.
+template <typename NameOf>
+std::string with_roles(std::string_view text, const NameOf& name_of) {
+  std::string filled(text);
+  for (std::size_t i = 0; i < kRoles.size(); ++i)
+    filled = replaced(filled, "{" + std::string(kRoles[i].role) + "}", name_of(static_cast<Role>(i)));
+  return filled;
+}
+
 /// Replaces each role in braces by its program.
 inline std::string with_programs(std::string_view text) {
-  std::string filled(text);
-  for (const RoleNames& row : kRoles) filled = replaced(filled, "{" + std::string(row.role) + "}", row.program);
-  return filled;
+  return with_roles(text, [](Role role) { return program_of(role); });
 }
 
 }  // namespace robot_control
