@@ -69,6 +69,30 @@ TEST_P(QuadrupedOf, IsFoldedWithARearFootInTheAir) {
   expect_fold(robot);
 }
 
+/// What legs do not reach is not entered, and the way there is given up gently.
+TEST_P(QuadrupedOf, StandsFirmWhileItsPoseStepsOnAllAxesAtOnce) {
+  QuadrupedLoop robot(legged_robot(GetParam()), 1, ErrorLevel::kField);
+  robot.wait(0.3);
+  robot.run(2.5, stance(kStanceStand));
+  robot.run(0.5, {});
+  robot.clear();
+  const double length = robot.robot().leg_length();
+  for (unsigned corner = 0; corner < 24; ++corner) {
+    const auto side = [&](unsigned axis) { return ((corner * 29) >> axis & 1u) != 0 ? 1.0 : -1.0; };
+    robot.run(1.2, {.twist = {},
+                    .posture = {.height = 0.15 * length * side(0),
+                                .roll = 0.25 * side(1),
+                                .pitch = 0.25 * side(2),
+                                .x = 0.1 * length * side(3),
+                                .y = 0.1 * length * side(4),
+                                .yaw = 0.25 * side(5)}});
+    ASSERT_EQ(robot.permit().causes | robot.permit().warnings, 0u) << corner << ": " << robot.causes();
+  }
+  EXPECT_LE(robot.effort, 0.9);
+  EXPECT_LE(*std::ranges::max_element(robot.slipped), 0.15 * length);  // in half a minute
+  EXPECT_LE(robot.tilt, 0.33);                                         // rad, roll and pitch together
+}
+
 TEST_P(QuadrupedOf, MovesItsJointsAlongAPathWhileItLies) {
   QuadrupedLoop robot = loop_of(GetParam());
   robot.wait(0.3);

@@ -45,17 +45,19 @@ struct JointMotion {
 
   /// Advances by `dt` s without a request.
   void stop(const std::array<AxisBounds, kLegsJoints>& bounds, double dt) noexcept {
-    for (std::size_t i = 0; i < kLegsJoints && follows != 0; ++i) {
-      const double speed = axes[i].speed;
-      reference[i] = axes[i].value + speed * std::abs(speed) / (2 * bounds[i].acceleration);
-    }
+    for (std::size_t i = 0; i < kLegsJoints && follows != 0; ++i)
+      reference[i] = stopping_place(std::array{axes[i]}, std::array{bounds[i]})[0];
     follows = 0;
     step(bounds, dt);
   }
 
  private:
   void step(const std::array<AxisBounds, kLegsJoints>& bounds, double dt) noexcept {
-    for (std::size_t i = 0; i < kLegsJoints; ++i) axes[i].step(reference[i], bounds[i], dt);
+    for (std::size_t i = 0; i < kLegsJoints; ++i) {
+      std::array axis{axes[i]};
+      track(axis, std::array{reference[i]}, std::array{bounds[i]}, dt);
+      axes[i] = axis[0];
+    }
   }
 };
 

@@ -3,7 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "control/legged/body_bounds.h"
 #include "signals/rotation.h"
 
 namespace robot_control {
@@ -15,6 +17,8 @@ constexpr double kSetDown = 0.1;        // m/s, of a foot that lies above the gr
 constexpr double kShift = 0.6;          // of the way from the middle to the centroid of three feet
 constexpr double kArrived = 0.0005;     // m
 constexpr double kArrivedSpeed = 0.02;  // m/s and rad/s
+constexpr double kLeastBend = 0.3;      // rad, of the knee of a standing leg: a straight one turns without bound
+constexpr double kSpare = 0.03;         // rad, to the end of a joint's range
 constexpr double kMinTime = 0.1;        // s, of gathering
 constexpr std::uint64_t kNoWish =
     kReasonNoCommand | kReasonTimedOut | kReasonRefused | kReasonManySenders | kReasonNotLying;
@@ -26,6 +30,15 @@ using Map = Eigen::Map<const Eigen::Vector3d>;
 double smooth(double part) noexcept {
   const double s = std::clamp(part, 0.0, 1.0);
   return s * s * (3 - 2 * s);
+}
+
+/// Makes the lean of roll and pitch together at most `range`, and notes if it was beyond.
+void limit_lean(double& roll, double& pitch, double range, std::uint64_t& reasons) noexcept {
+  const double lean = std::hypot(roll, pitch);
+  if (lean <= range) return;
+  reasons |= kReasonOutOfReach;
+  roll *= range / lean;
+  pitch *= range / lean;
 }
 
 /// Returns `value` within ± `range`, and notes if it was beyond.
@@ -58,6 +71,7 @@ LegController::LegController(const LegModel& robot, double timeout, double perio
   }
   const LegGeometry& first = legs_[0].kinematics.geometry();
   nominal_ = tuning_.height - first.hip.z() - first.upper.z() + robot.belly + legs_[0].foot_radius;
+  body_motion_ = body_bounds(robot, nominal_, ground_);
 }
 
 void LegController::enter_run(const VelocityCommand& inbox, bool with_zero) noexcept {
@@ -242,7 +256,7 @@ void LegController::stand(const Request& request, std::uint64_t& reasons) noexce
     state_.follows = 0;
   }
   const Eigen::Vector2d place = standing_place();
-  std::array<double, 6> target = state_.held;
+  Pose target = state_.held;
   target[kX] += place.x();
   target[kY] += place.y();
   target[kZ] += nominal_;
@@ -254,17 +268,17 @@ void LegController::choose_pose(const Request& request, std::uint64_t& reasons) 
   const bool requested = (reasons & kNoWish) == 0;
   if (requested) {
     const Posture& to = request.posture;
-    state_.held = {within(to.x, tuning_.sway, reasons),     within(to.y, tuning_.sway, reasons),
-                   within(to.height, tuning_.bob, reasons), within(to.roll, tuning_.lean, reasons),
-                   within(to.pitch, tuning_.lean, reasons), within(to.yaw, tuning_.lean, reasons)};
+    state_.held = {within(to.x, tuning_.sway, reasons),
+                   within(to.y, tuning_.sway, reasons),
+                   within(to.height, tuning_.bob, reasons),
+                   to.roll,
+                   to.pitch,
+                   within(to.yaw, tuning_.lean, reasons)};
+    limit_lean(state_.held[kRoll], state_.held[kPitch], tuning_.lean, reasons);
   } else if (state_.follows != 0) {
     const std::array<double, 3> nominal{state_.home[0], state_.home[1], nominal_};
-    for (std::size_t i = 0; i < state_.held.size(); ++i) {
-      const TrackedAxis& axis = state_.body[i];
-      const AxisBounds& bounds = i < kRoll ? tuning_.linear : tuning_.angular;
-      const double braking = axis.speed * std::abs(axis.speed) / (2 * bounds.acceleration);
-      state_.held[i] = axis.value + braking - (i < kRoll ? nominal[i] : 0);
-    }
+    state_.held = stopping_place(state_.body, body_motion_);
+    for (std::size_t i = 0; i < kRoll; ++i) state_.held[i] -= nominal[i];
   }
   state_.follows = requested ? 1 : 0;
 }
@@ -286,21 +300,26 @@ Eigen::Vector2d LegController::standing_place() const noexcept {
   return state_.lifted != kLegs ? above_support() : Eigen::Vector2d(state_.home[0], state_.home[1]);
 }
 
-/// Moves the body towards a pose, as far as the legs reach. Returns true where it has arrived.
-bool LegController::move(const std::array<double, 6>& target, std::uint64_t& reasons) noexcept {
-  const std::array<TrackedAxis, 6> before = state_.body;
-  bool arrived_all = true;
-  for (std::size_t i = 0; i < target.size(); ++i) {
-    state_.body[i].step(target[i], i < kRoll ? tuning_.linear : tuning_.angular, period_);
-    arrived_all = arrived_all && arrived(state_.body[i], target[i]);
+/// Moves the body towards a pose. It brakes where a leg would else not reach its foot, and waits for another target.
+/// Returns true where the body has arrived.
+bool LegController::move(const Pose& target, std::uint64_t& reasons) noexcept {
+  if (state_.blocked == 0 || target != state_.blocked_target) {
+    std::array<TrackedAxis, 6> next = state_.body;
+    track(next, target, body_motion_, period_);
+    const double left = spare(stopping_place(next, body_motion_));
+    const bool leaves = left < kSpare && left < spare(stopping_place(state_.body, body_motion_));
+    state_.blocked = leaves ? 1 : 0;
+    state_.blocked_target = target;
+    if (!leaves) state_.body = next;
   }
-  if (set_angles()) return arrived_all;
-  reasons |= kReasonOutOfReach;
-  state_.body = before;
-  for (TrackedAxis& axis : state_.body) axis.speed = 0;
-  state_.broken = 1;
-  set_angles();
-  return false;
+  if (state_.blocked != 0) {
+    brake(state_.body, body_motion_, period_);
+    reasons |= kReasonOutOfReach;
+  }
+  if (!set_angles()) reasons |= kReasonOutOfReach;
+  bool arrived_all = true;
+  for (std::size_t i = 0; i < target.size(); ++i) arrived_all = arrived_all && arrived(state_.body[i], target[i]);
+  return arrived_all;
 }
 
 /// The foot goes up after its share of the weight went to zero, and takes it again after it came down.
@@ -323,7 +342,7 @@ void LegController::move_foot(const Request& request, bool wanted, bool supporte
     target = {0, 0, above ? 0.0 : std::max(target[2], kMinLift * tuning_.lift)};
     if (above && !in_air) approach(share, 1, period_ / kLoadTime);
   }
-  for (std::size_t i = 0; i < 3; ++i) state_.foot[i].step(target[i], tuning_.foot, period_);
+  track(state_.foot, target, {tuning_.foot, tuning_.foot, tuning_.foot}, period_);
   if (!set_angles()) reasons |= kReasonOutOfReach;
   if (!wanted && share == 1) state_.lifted = kLegs;
 }
@@ -346,30 +365,59 @@ double LegController::lying(std::size_t joint) const noexcept {
   return legs_[joint / kLegJoints].lying[static_cast<Eigen::Index>(joint % kLegJoints)];
 }
 
-Eigen::Matrix3d LegController::rotation() const noexcept {
+LegController::Pose LegController::pose() const noexcept {
+  Pose result;
+  std::transform(state_.body.begin(), state_.body.end(), result.begin(),
+                 [](const TrackedAxis& axis) { return axis.value; });
+  return result;
+}
+
+Eigen::Matrix3d LegController::rotation(const Pose& pose) noexcept {
   using Axis = Eigen::AngleAxisd;
-  return (Axis(state_.body[kYaw].value, Eigen::Vector3d::UnitZ()) *
-          Axis(state_.body[kPitch].value, Eigen::Vector3d::UnitY()) *
-          Axis(state_.body[kRoll].value, Eigen::Vector3d::UnitX()))
+  return (Axis(pose[kYaw], Eigen::Vector3d::UnitZ()) * Axis(pose[kPitch], Eigen::Vector3d::UnitY()) *
+          Axis(pose[kRoll], Eigen::Vector3d::UnitX()))
       .toRotationMatrix();
 }
 
-Eigen::Vector3d LegController::foot_in_base(std::size_t leg, const Eigen::Matrix3d& turned) const noexcept {
+Eigen::Vector3d LegController::foot_in_base(std::size_t leg, const Pose& pose,
+                                            const Eigen::Matrix3d& turned) const noexcept {
   Eigen::Vector3d place = Map(state_.places[leg].data());
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
     if (leg == state_.lifted) place[axis] += state_.foot[i].value;
-    place[axis] -= state_.body[i].value;
+    place[axis] -= pose[i];
   }
   return turned.transpose() * place;
 }
 
+/// Returns by how many rad each joint can turn on, at least, in this pose of the body: to the end of its range, a knee
+/// to the least bend or to the ground. The result is negative if a leg does not reach its foot.
+double LegController::spare(const Pose& pose) const noexcept {
+  const Eigen::Matrix3d turned = rotation(pose);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const LegKinematics& kinematics = legs_[leg].kinematics;
+    const LegSolution solution = kinematics.inverse(foot_in_base(leg, pose, turned));
+    if (solution.reach != FootReach::kReached) return -1;
+    for (std::size_t i = 0; i < kLegJoints; ++i) {
+      const double angle = solution.angles[static_cast<Eigen::Index>(i)];
+      const JointRange& range = kinematics.range(i);
+      least = std::min({least, angle - range.lower, range.upper - angle});
+    }
+    const Eigen::Vector3d knee = turned * kinematics.knee(solution.angles);
+    const double clear = pose[kZ] + knee.z() - ground_ - legs_[leg].knee_radius;
+    least = std::min({least, std::abs(kinematics.bend(solution.angles)) - kLeastBend, clear / kinematics.length()});
+  }
+  return least;
+}
+
 /// Sets the joint angles of the present pose. Returns false if a leg does not reach its foot.
 bool LegController::set_angles() noexcept {
-  const Eigen::Matrix3d turned = rotation();
+  const Pose pose = this->pose();
+  const Eigen::Matrix3d turned = rotation(pose);
   bool reached = true;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const LegSolution solution = legs_[leg].kinematics.inverse(foot_in_base(leg, turned));
+    const LegSolution solution = legs_[leg].kinematics.inverse(foot_in_base(leg, pose, turned));
     reached = reached && solution.reach == FootReach::kReached;
     for (std::size_t i = 0; i < kLegJoints; ++i)
       state_.angles[kLegJoints * leg + i] = solution.angles[static_cast<Eigen::Index>(i)];
@@ -378,7 +426,7 @@ bool LegController::set_angles() noexcept {
 }
 
 void LegController::roll_feet(const std::array<double, kLegsJoints>& rates) noexcept {
-  const Eigen::Matrix3d turned = rotation();
+  const Eigen::Matrix3d turned = rotation(pose());
   const Eigen::Vector3d body(state_.body[kRoll].speed, state_.body[kPitch].speed, state_.body[kYaw].speed);
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     if (state_.share[leg] == 0) continue;

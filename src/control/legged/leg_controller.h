@@ -35,8 +35,10 @@
 /// and all legs needs (foot_forces.h). To lift a foot, the body first moves its centre of gravity above the other feet.
 /// Then this foot's share goes to zero, and it goes up. It carries again after it was set down.
 ///
-/// Every axis of the body and of the foot is limited in speed, acceleration and range. A pose that a leg does not reach
-/// is not entered: the body stays at the last one (kReasonOutOfReach).
+/// Every axis of the body and of the foot is limited in speed, acceleration and range. The axes of the body share their
+/// acceleration (tracked_axis.h), so that a request that steps on all of them does not unload a foot, and roll and
+/// pitch share their range. The body brakes where it would else end at a pose that a leg does not reach, or reaches
+/// with a straight knee only (kReasonOutOfReach). It stays there until another pose is requested.
 ///
 /// Gains and times follow from mass m and leg length l: stiffness ∝ m l, damping ∝ m l^1.5, times ∝ √l.
 
@@ -64,10 +66,8 @@ struct LegTuning {
   double lift = 0;          ///< m, of a foot in the air
   double sway = 0;          ///< m, range of the body in x and y
   double bob = 0;           ///< m, range of its height
-  double lean = 0;          ///< rad, range of roll, pitch and yaw
+  double lean = 0;          ///< rad, range of roll and pitch together, and of yaw
   double foot_range = 0;    ///< m, of a foot in the air, from above its place
-  AxisBounds linear;        ///< of the body, m
-  AxisBounds angular;       ///< of the body, rad
   AxisBounds foot;          ///< m
   AxisBounds joint;         ///< rad, of a joint while the robot lies
 };
@@ -96,7 +96,9 @@ class LegController {
   LegPhase phase() const noexcept { return state_.phase; }
   const LegTuning& tuning() const noexcept { return tuning_; }
 
-  /// Pose of the body in the stance frame: x, y, height above one that lies level, roll, pitch, yaw.
+  /// The body in the stance frame: x, y, height above one that lies level in m, roll, pitch, yaw in rad.
+  using Pose = std::array<double, 6>;
+
   struct State {
     explicit State(const CommandWatch& empty) : watch(empty) {}
 
@@ -110,7 +112,9 @@ class LegController {
     JointMotion joints;
     std::uint64_t joints_requested = 0;  ///< cycle of the request that they follow
     std::array<TrackedAxis, 6> body{};
-    std::array<double, 6> held{};       ///< m and rad, pose from the nominal one that the body moves to
+    Pose held{};                ///< from the nominal pose, what the body moves to
+    std::uint64_t blocked = 0;  ///< 1: the body brakes, for a leg does not reach on the way to:
+    Pose blocked_target{};
     std::uint64_t follows = 0;          ///< 1: `held` is that of a request in force
     std::uint64_t lifted = kLegs;       ///< the leg in the air, or on its way; kLegs: none
     std::array<TrackedAxis, 3> foot{};  ///< m, of the lifted foot from its place
@@ -120,7 +124,6 @@ class LegController {
     std::array<double, 2> home{};       ///< m, x and y of the standing body: its centre of gravity is amid its feet
     std::array<double, kLeggedDofs> velocity{};      ///< of the reference, in the order of leg_dynamics.h
     std::array<double, kLeggedDofs> acceleration{};  ///< of the reference, through a low pass
-    std::uint64_t broken = 0;                        ///< 1: the reference did not move on, since a leg did not reach
   };
   const State& state() const noexcept { return state_; }
   void set_state(const State& state) noexcept { state_ = state; }
@@ -135,7 +138,7 @@ class LegController {
   void stand(const Request& request, std::uint64_t& reasons) noexcept;
   void choose_pose(const Request& request, std::uint64_t& reasons) noexcept;
   void lower(std::uint64_t& reasons) noexcept;
-  bool move(const std::array<double, 6>& target, std::uint64_t& reasons) noexcept;
+  bool move(const Pose& target, std::uint64_t& reasons) noexcept;
   void move_foot(const Request& request, bool wanted, bool supported, std::uint64_t& reasons) noexcept;
   Eigen::Vector2d above_support() const noexcept;
   Eigen::Vector2d standing_place() const noexcept;
@@ -145,8 +148,10 @@ class LegController {
   LeggedMotion reference_motion(const Eigen::Matrix3d& turned,
                                 const std::array<double, kLegsJoints>& rates) const noexcept;
   void accelerate(const LeggedMotion& motion) noexcept;
-  Eigen::Vector3d foot_in_base(std::size_t leg, const Eigen::Matrix3d& turned) const noexcept;
-  Eigen::Matrix3d rotation() const noexcept;
+  double spare(const Pose& pose) const noexcept;
+  Pose pose() const noexcept;
+  static Eigen::Matrix3d rotation(const Pose& pose) noexcept;
+  Eigen::Vector3d foot_in_base(std::size_t leg, const Pose& pose, const Eigen::Matrix3d& turned) const noexcept;
   double lying(std::size_t joint) const noexcept;
 
   double period_;
@@ -155,6 +160,7 @@ class LegController {
   LegTuning tuning_;
   std::array<JointRange, kLegsJoints> joint_ranges_;
   std::array<AxisBounds, kLegsJoints> joint_motion_;
+  std::array<AxisBounds, 6> body_motion_{};
   double ground_ = 0;   ///< m, height of the ground below the base of a robot that lies level
   double nominal_ = 0;  ///< m, height of the standing body above one that lies level
   State state_;

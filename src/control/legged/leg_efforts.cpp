@@ -29,7 +29,8 @@ LeggedMotion LegController::reference_motion(const Eigen::Matrix3d& turned,
 }
 
 void LegController::write(const std::array<double, kLegsJoints>& rates, CommandFrame& out) noexcept {
-  const Eigen::Matrix3d turned = rotation();
+  const Pose pose = this->pose();
+  const Eigen::Matrix3d turned = rotation(pose);
   const LeggedMotion motion = reference_motion(turned, rates);
   LeggedEquations equations;
   dynamics_.step(motion, equations);
@@ -39,7 +40,7 @@ void LegController::write(const std::array<double, kLegsJoints>& rates, CommandF
   FootForcesInput load{.share = state_.share, .up = turned.row(2)};
   double carried = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    load.feet[leg] = foot_in_base(leg, turned);
+    load.feet[leg] = foot_in_base(leg, pose, turned);
     carried += state_.share[leg] / (kLegs - 1);
   }
   load.force = std::min(1.0, carried) * efforts.head<3>();
@@ -73,11 +74,10 @@ void LegController::accelerate(const LeggedMotion& motion) noexcept {
   }
   std::copy(motion.rates.begin(), motion.rates.end(), velocity.begin() + 6);
   for (std::size_t i = 0; i < velocity.size(); ++i) {
-    const double change = state_.broken != 0 ? 0 : (velocity[i] - state_.velocity[i]) / period_;
+    const double change = (velocity[i] - state_.velocity[i]) / period_;
     state_.acceleration[i] += std::min(1.0, period_ / kSmooth) * (change - state_.acceleration[i]);
   }
   state_.velocity = velocity;
-  state_.broken = 0;
 }
 
 }  // namespace robot_control

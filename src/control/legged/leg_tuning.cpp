@@ -21,8 +21,6 @@ LegTuning leg_tuning(const LegModel& robot) noexcept {
   tuning.bob = 0.16 * robot.leg_length();
   tuning.lean = 0.3;
   tuning.foot_range = 0.15 * length;
-  tuning.linear = {.speed = 0.4 * time, .acceleration = 3};
-  tuning.angular = {.speed = 1.5 / time, .acceleration = 40 / length};
   tuning.foot = {.speed = 0.5 * time, .acceleration = 15};
   tuning.joint = {.speed = 3 / time, .acceleration = 15 / length};
   return tuning;

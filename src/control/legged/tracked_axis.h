@@ -1,12 +1,16 @@
 #pragma once
-/// A tracked axis follows a target within a speed and an acceleration. With e the distance to the target,
+/// Axes that follow targets within a speed Vᵢ and an acceleration Aᵢ each. Axes that are stepped together share their
+/// acceleration, and go straight to their targets. With the vectors e of the distances, v of the speeds, and the norm
+/// |x| = Σ |xᵢ|/Aᵢ,
 ///
-///   wanted = clamp(sign(e) min(kFollow |e|, √(2 a |e|)), ± speed)      |Δv| ≤ a Δt
+///   wanted = e min(kFollow, √(2/|e|), minᵢ Vᵢ/|eᵢ|)      |Δv| ≤ Δt
 ///
-/// Near the target it lags by 1/kFollow seconds; farther away it brakes in time, so that it does not overshoot.
+/// Near the target the axes lag by 1/kFollow seconds; farther away they brake in time, so that they do not overshoot.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 namespace robot_control {
 
@@ -21,19 +25,57 @@ struct TrackedAxis {
 
   double value = 0;
   double speed = 0;
-
-  /// Advances by `dt` s. Returns true if a bound was reached.
-  bool step(double target, const AxisBounds& bounds, double dt) noexcept {
-    const double distance = target - value;
-    const double free = std::min(kFollow * std::abs(distance), std::sqrt(2 * bounds.acceleration * std::abs(distance)));
-    const double wanted = std::copysign(std::min(free, bounds.speed), distance);
-    const double change = bounds.acceleration * dt;
-    const double next = std::clamp(wanted, speed - change, speed + change);
-    const bool limited = free > bounds.speed || next != wanted;
-    speed = next;
-    value += speed * dt;
-    return limited;
-  }
 };
+
+/// Advances the axes by `dt` s.
+template <std::size_t N>
+void track(std::array<TrackedAxis, N>& axes, const std::array<double, N>& targets,
+           const std::array<AxisBounds, N>& bounds, double dt) noexcept {
+  std::array<double, N> wanted{};
+  double norm = 0, rate = TrackedAxis::kFollow;
+  for (std::size_t i = 0; i < N; ++i) {
+    wanted[i] = targets[i] - axes[i].value;
+    norm += std::abs(wanted[i]) / bounds[i].acceleration;
+    rate = std::min(rate, bounds[i].speed / std::abs(wanted[i]));
+  }
+  rate = std::min(rate, std::sqrt(2 / norm));
+  double change = 0;
+  for (std::size_t i = 0; i < N; ++i) {
+    wanted[i] *= rate;
+    change += std::abs(wanted[i] - axes[i].speed) / bounds[i].acceleration;
+  }
+  const double part = change > dt ? dt / change : 1;
+  for (std::size_t i = 0; i < N; ++i) {
+    axes[i].speed += part * (wanted[i] - axes[i].speed);
+    axes[i].value += axes[i].speed * dt;
+  }
+}
+
+template <std::size_t N>
+double stopping_time(const std::array<TrackedAxis, N>& axes, const std::array<AxisBounds, N>& bounds) noexcept {
+  double time = 0;
+  for (std::size_t i = 0; i < N; ++i) time += std::abs(axes[i].speed) / bounds[i].acceleration;
+  return time;
+}
+
+/// Advances the axes by `dt` s while they brake. They stop at `stopping_place`.
+template <std::size_t N>
+void brake(std::array<TrackedAxis, N>& axes, const std::array<AxisBounds, N>& bounds, double dt) noexcept {
+  const double time = stopping_time(axes, bounds);
+  for (TrackedAxis& axis : axes) {
+    axis.speed *= time > dt ? 1 - dt / time : 0;
+    axis.value += axis.speed * dt;
+  }
+}
+
+/// Returns the targets at which the axes stop, if they brake now.
+template <std::size_t N>
+std::array<double, N> stopping_place(const std::array<TrackedAxis, N>& axes,
+                                     const std::array<AxisBounds, N>& bounds) noexcept {
+  const double time = stopping_time(axes, bounds);
+  std::array<double, N> place{};
+  for (std::size_t i = 0; i < N; ++i) place[i] = axes[i].value + axes[i].speed * time / 2;
+  return place;
+}
 
 }  // namespace robot_control

@@ -74,6 +74,14 @@ Eigen::Vector3d LegKinematics::position(const LegAngles& angles) const noexcept 
   return geometry_.hip + Eigen::Vector3d(x, c * offset_ - s * z, s * offset_ + c * z);
 }
 
+Eigen::Vector3d LegKinematics::knee(const LegAngles& angles) const noexcept {
+  const double first = geometry_.sign[0] * angles[0], second = geometry_.sign[1] * angles[1];
+  const double s = std::sin(first), c = std::cos(first);
+  const Plane lower = turned(geometry_.lower.x(), geometry_.lower.z(), std::sin(second), std::cos(second));
+  const double y = geometry_.upper.y() + geometry_.lower.y(), z = geometry_.upper.z() + lower.z;
+  return geometry_.hip + Eigen::Vector3d(geometry_.upper.x() + lower.x, c * y - s * z, s * y + c * z);
+}
+
 Eigen::Matrix3d LegKinematics::jacobian(const LegAngles& angles, Eigen::Vector3d& foot) const noexcept {
   const double first = geometry_.sign[0] * angles[0];
   const double second = geometry_.sign[1] * angles[1];

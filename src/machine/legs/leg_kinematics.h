@@ -61,6 +61,9 @@ class LegKinematics {
   /// Returns the foot's centre in m, base axes.
   Eigen::Vector3d position(const LegAngles& angles) const noexcept;
 
+  /// Returns the third joint in m, base axes.
+  Eigen::Vector3d knee(const LegAngles& angles) const noexcept;
+
   /// Returns ∂p/∂q in m/rad, and sets `foot` to p.
   Eigen::Matrix3d jacobian(const LegAngles& angles, Eigen::Vector3d& foot) const noexcept;
 

@@ -201,6 +201,7 @@ LegModel read_legs(const RobotDescription& description, const MachineParameters&
     geometry.bend = bend_of(*bodies, geometry, places[i], i < 2, legs.knee_bend);
     model.legs[i].kinematics = LegKinematics(geometry);
     model.legs[i].foot_radius = foot.radius;
+    model.legs[i].knee_radius = knee_radius(*bodies, model.legs[i].kinematics, places[i]);
     model.legs[i].lying = lying_posture(*bodies, model.legs[i].kinematics, places[i], belly);
     for (std::size_t j = 0; j < kLegJoints; ++j) {
       JointModel& joint = model.joints[kLegJoints * i + j];

@@ -27,6 +27,7 @@ const char* name_of(LegPlace place) noexcept;
 struct Leg {
   LegKinematics kinematics;
   double foot_radius = 0;  ///< m; 0: the foot is no ball, its centre is the farthest point
+  double knee_radius = 0;  ///< m, how far it reaches below its third joint (lying_posture.h)
   /// These angles lie down: the body rests on the ground, and the folded leg does not bear it (lying_posture.h).
   LegAngles lying = LegAngles::Zero();
 };

@@ -62,13 +62,17 @@ double folded_knee(const LegKinematics& kinematics) {
   return std::clamp(folded, knee.lower + margin, knee.upper - margin);
 }
 
+/// Returns the angle of a thigh that hangs down.
+double hanging(const LegGeometry& geometry) {
+  return geometry.sign[1] * wrapped(std::numbers::pi - std::atan2(geometry.lower.x(), geometry.lower.z()));
+}
+
 /// Returns the angle of a thigh that has turned from hanging down towards the side of the knee.
 double thigh_at(const LegKinematics& kinematics, double turn) {
   const LegGeometry& geometry = kinematics.geometry();
-  const double hanging = wrapped(std::numbers::pi - std::atan2(geometry.lower.x(), geometry.lower.z()));
   const JointRange& thigh = kinematics.range(1);
   const double middle = std::isinf(thigh.lower) ? 0 : (thigh.lower + thigh.upper) / 2;
-  const double angle = geometry.sign[1] * (hanging - geometry.bend * turn);
+  const double angle = hanging(geometry) - geometry.sign[1] * geometry.bend * turn;
   const double near = middle + wrapped(angle - middle);
   return std::clamp(near, std::isinf(thigh.lower) ? near : thigh.lower + kFromStop,
                     std::isinf(thigh.upper) ? near : thigh.upper - kFromStop);
@@ -90,6 +94,14 @@ Belly belly_of(const RigidBodies& robot, const LegChains& chains) {
   return {.height = -body_depth(robot, chains, tilted(0)),
           .down = tilted(pitch),
           .depth = body_depth(robot, chains, tilted(pitch))};
+}
+
+double knee_radius(const RigidBodies& robot, const LegKinematics& kinematics,
+                   const std::array<std::size_t, kLegJoints>& chain) {
+  const LegGeometry& geometry = kinematics.geometry();
+  const double straight = kinematics.bend(LegAngles::Zero());  // β at q₃ = 0
+  const LegAngles angles(0, hanging(geometry), geometry.sign[2] * (geometry.bend * kHalfPi - straight));
+  return leg_depth(robot, geometry, chain, angles, -Eigen::Vector3d::UnitZ()) + kinematics.knee(angles).z();
 }
 
 LegAngles lying_posture(const RigidBodies& robot, const LegKinematics& kinematics,

@@ -29,6 +29,10 @@ struct Belly {
 
 Belly belly_of(const RigidBodies& robot, const LegChains& chains);
 
+/// Returns how far a leg reaches below its third joint, in m, while the thigh hangs down and the shank is level.
+double knee_radius(const RigidBodies& robot, const LegKinematics& kinematics,
+                   const std::array<std::size_t, kLegJoints>& chain);
+
 /// Returns the angles of the leg whose bodies are `chain`.
 LegAngles lying_posture(const RigidBodies& robot, const LegKinematics& kinematics,
                         const std::array<std::size_t, kLegJoints>& chain, const Belly& belly);
