@@ -5,7 +5,8 @@
 ///
 ///   wanted = e min(kFollow, √(2/|e|), minᵢ Vᵢ/|eᵢ|)      |Δv| ≤ Δt
 ///
-/// Near the target the axes lag by 1/kFollow seconds; farther away they brake in time, so that they do not overshoot.
+/// The axes brake in time and overshoot by less than the way of one cycle. They lag behind a target that moves by 1/kFollow seconds, or
+/// |v|/2 where that is longer.
 
 #include <algorithm>
 #include <array>
