@@ -29,6 +29,15 @@ TEST_P(BodyBoundsOf, AreThoseOfFeetThatNeitherSlipNorLift) {
   EXPECT_GT(bounds[3].acceleration, bounds[4].acceleration) << "a body that is longer than wide rolls more easily";
 }
 
+TEST_P(BodyBoundsOf, AreFiniteAndPositiveWhereTheLegsDoNotReachTheGround) {
+  for (const double height : {-1.0, 0.0, 10.0}) {
+    for (const AxisBounds& bounds : body_bounds(legged_robot(GetParam()), height, 0)) {
+      EXPECT_GE(bounds.acceleration, 0.1) << height;
+      EXPECT_LE(bounds.acceleration, 1000) << height;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Robots, BodyBoundsOf, testing::ValuesIn(legged_robots()), robot_name);
 
 }  // namespace

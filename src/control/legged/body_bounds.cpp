@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kPart = 0.5;
 constexpr double kFriction = 0.5;
+constexpr double kLeast = 0.1;   // m/s² and rad/s², of a robot whose nominal pose does not bear it
 constexpr double kSmall = 0.01;  // m/s² and rad/s², at which no foot lifts
 
 using Feet = std::array<Eigen::Vector3d, kLegs>;
@@ -79,10 +80,11 @@ std::array<AxisBounds, 6> body_bounds(const LegModel& robot, double height, doub
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
       const Eigen::Vector3d change = (moved[leg] - weight[leg]) / kSmall;
-      least =
-          std::min(least, kFriction * weight[leg].z() / (change.head<2>().norm() + kFriction * std::abs(change.z())));
+      const double carried = kFriction * weight[leg].z() / (change.head<2>().norm() + kFriction * std::abs(change.z()));
+      least = std::min(least, std::isfinite(carried) ? carried : 0);
     }
-    bounds[axis] = {.speed = axis < 3 ? 0.4 * time : 0.9 / std::max(1.0, time), .acceleration = kPart * least};
+    bounds[axis] = {.speed = axis < 3 ? 0.4 * time : 0.9 / std::max(1.0, time),
+                    .acceleration = std::max(kLeast, kPart * least)};
   }
   return bounds;
 }

@@ -8,6 +8,8 @@
 /// load and stays within its friction cone, whatever is requested. This part is left for other poses and for
 /// disturbances.
 ///
+/// It is at least 0.1 m/s² or rad/s², also where the nominal pose does not bear the robot.
+///
 /// The speeds are 0.4 m/s and 0.9 rad/s of legs of 0.426 m, and change with √l and 1/√l. No angle is faster than 0.9
 /// rad/s, so that roll and pitch together stay below the default of tip_over, 1.5 rad/s.
 
