@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "bindings/wheeled/describe_wheels.h"
 #include "machine/bodies/posed_bodies.h"
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/description/mesh.h"
 #include "machine/description/wording.h"
 #include "machine/legs/leg_model.h"
-#include "machine/wheeled/drive_train.h"
 
 namespace py = pybind11;
 
@@ -46,13 +46,6 @@ std::vector<std::vector<double>> plain(const Eigen::Isometry3d& pose) {
     for (Eigen::Index column = 0; column < 4; ++column) rows.back().push_back(pose.matrix()(row, column));
   }
   return rows;
-}
-
-py::dict wheel_dict(const DriveTrain& robot, const WheelModel& wheel) {
-  using namespace py::literals;
-  return py::dict("joint"_a = robot.joints.at(wheel.joint).name, "centre"_a = wheel.centre_base,
-                  "radius"_a = wheel.radius, "width"_a = wheel.width, "inertia"_a = wheel.inertia,
-                  "rotor_inertia"_a = wheel.rotor_inertia);
 }
 
 py::dict joint_dict(const MachineModel& robot, const JointModel& joint, const char* driven) {
@@ -100,26 +93,6 @@ void add_machine(const MachineModel& robot, const RigidBodies& bodies, const cha
   to["notes"] = notes;
 }
 
-py::dict describe_wheels(const DriveTrain& robot) {
-  py::dict result;
-  add_machine(robot, *robot.bodies, "wheels", "wheel", result);
-  py::list wheels, casters;
-  for (const WheelModel& wheel : robot.wheels) {
-    py::dict entry = wheel_dict(robot, wheel);
-    entry["side"] = wheel.side == Side::kLeft ? "left" : "right";
-    entry["sign"] = wheel.sign;
-    wheels.append(entry);
-  }
-  for (const WheelModel& caster : robot.casters) casters.append(wheel_dict(robot, caster));
-  result["yaw_inertia"] = robot.yaw_inertia;
-  result["wheel_base"] = robot.wheel_base;
-  result["wheel_base_multiplier"] = robot.wheel_base_multiplier;
-  result["effective_wheel_base"] = robot.effective_wheel_base();
-  result["wheels"] = wheels;
-  result["casters"] = casters;
-  return result;
-}
-
 py::dict leg_dict(const LegModel& robot, std::size_t leg) {
   using namespace py::literals;
   const LegKinematics& kinematics = robot.legs[leg].kinematics;
@@ -152,7 +125,11 @@ py::dict describe_legs(const LegModel& robot) {
 
 py::dict describe(const MachineModel& robot) {
   const auto* const legged = dynamic_cast<const LegModel*>(&robot);
-  return legged != nullptr ? describe_legs(*legged) : describe_wheels(drive_train_of(robot));
+  if (legged != nullptr) return describe_legs(*legged);
+  py::dict result;
+  add_machine(robot, *robot.bodies, "wheels", "wheel", result);
+  describe_wheels(robot, result);
+  return result;
 }
 
 }  // namespace robot_control

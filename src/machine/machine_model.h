@@ -79,6 +79,9 @@ struct MachineModel {
   MachineModel& operator=(MachineModel&&) = default;
   virtual ~MachineModel() = default;
 
+  /// Returns what the machine moves on, in words: "four legs of 0.426 m".
+  virtual std::string parts() const { return std::to_string(joints.size()) + " joints"; }
+
   std::string name;
   std::string source;
   std::string urdf;        ///< the text itself

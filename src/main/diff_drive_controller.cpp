@@ -1,5 +1,5 @@
-#include "ros/nodes/controller_node.h"
 #include "ros/nodes/node.h"
+#include "ros/wheeled/controller_node.h"
 
 int main(int argc, char** argv) {
   using namespace robot_control;

@@ -1,4 +1,4 @@
-#include "ros/nodes/leg_controller_node.h"
+#include "ros/legged/leg_controller_node.h"
 #include "ros/nodes/node.h"
 
 int main(int argc, char** argv) {

@@ -1,4 +1,4 @@
-#include "configuration/calibration_file.h"
+#include "configuration/wheeled/calibration_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

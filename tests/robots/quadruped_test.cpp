@@ -40,15 +40,9 @@ void expect_fold(QuadrupedLoop& robot) {
   robot.loop.e_stop();
   robot.wait(0.003);
   EXPECT_EQ(robot.gate().verdict, GateVerdict::kBrake);
-  double rested = 0, rest_at = 0;
-  for (double t = 0; t < 3; t += 0.001) {
-    robot.step();
-    rested = robot.speed() < 0.01 ? rested + 0.001 : 0;
-    if (rested < 0.001) rest_at = t;
-  }
+  EXPECT_LE(robot.settle(), 1.5);
   EXPECT_LE(robot.tilt, 0.15);
   EXPECT_LE(robot.shock, 40);
-  EXPECT_LE(rest_at, 1.5);
 }
 
 TEST_P(QuadrupedOf, IsFoldedByAnEmergencyStopAndLiesUpright) {

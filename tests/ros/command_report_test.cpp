@@ -1,4 +1,4 @@
-#include "ros/reports/command_report.h"
+#include "ros/wheeled/command_report.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "ros/messages/leg_messages.h"
+#include "ros/legged/leg_messages.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

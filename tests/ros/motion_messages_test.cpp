@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "ros/wheeled/wheel_messages.h"
 #include "signals/names.h"
 
 namespace robot_control {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "machine/wheeled/drive_train.h"
+
 namespace robot_control {
 namespace {
 

@@ -9,17 +9,6 @@ namespace {
 constexpr double kTurnedOver = kPi / 3;  // rad
 constexpr double kPush = 0.02;           // s
 
-/// Runs until 3 s after a stop began. Returns when the body came to rest, in s after its beginning.
-double settle(QuadrupedLoop& robot) {
-  double rested = 0, rest_at = 0;
-  for (double t = 0; t < 3; t += 0.001) {
-    robot.step();
-    rested = robot.speed() < 0.01 ? rested + 0.001 : 0;
-    if (rested < 0.001) rest_at = t;
-  }
-  return rest_at;
-}
-
 void sway(QuadrupedLoop& robot, double size, int cycle) {
   Request request;
   request.posture.y = size * robot.robot().leg_length() * std::sin(2 * kPi * kSway * cycle * 0.001);
@@ -42,7 +31,7 @@ void push_once(const LegModel& model, double speed, int direction, WorstValues& 
   const double reached = robot.speed();
   robot.clear();
   robot.loop.e_stop();
-  settle(robot);
+  robot.settle();
   const Vector3& end = robot.truth().pose_world.position;
   const std::string name = (speed == 0.5 ? "0.5" : speed == 1.0 ? "1.0" : "1.5") + std::string(" m/s, ");
   worst.add(name + "turned over", robot.tilt_now() > kTurnedOver ? 1 : 0, "runs");
@@ -74,7 +63,7 @@ void stop(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
       ++braked;
     }
     worst.add("cycles to the brake, " + situation, braked, "cycles");
-    worst.add("rest, " + situation, settle(robot), "s");
+    worst.add("rest, " + situation, robot.settle(), "s");
     worst.add("acceleration, " + situation, robot.shock, "m/s^2");
     worst.add("tilt, " + situation, std::max(robot.tilt, tilted), "rad");
   }

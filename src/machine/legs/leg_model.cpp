@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <sstream>
 
 #include "machine/bodies/gyration.h"
 #include "machine/description/wording.h"
@@ -148,6 +149,13 @@ void require_limits(const RigidBodies& robot, const BodyJoint& joint) {
 const char* name_of(LegPlace place) noexcept {
   constexpr std::array<const char*, kLegs> kNames{"front_left", "front_right", "rear_left", "rear_right"};
   return kNames[static_cast<std::size_t>(place)];
+}
+
+std::string LegModel::parts() const {
+  std::ostringstream text;
+  text.precision(4);
+  text << "four legs of " << leg_length() << " m";
+  return text.str();
 }
 
 double LegModel::leg_length() const noexcept {

@@ -42,6 +42,8 @@ struct LegModel : MachineModel {
     return {all[3 * leg], all[3 * leg + 1], all[3 * leg + 2]};
   }
 
+  std::string parts() const override;
+
   /// Returns the length of the shortest leg in m.
   double leg_length() const noexcept;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "machine/description/wording.h"
 #include "machine/machine_reading.h"
@@ -158,6 +159,23 @@ void check_finite(const DriveTrain& model) {
 }
 
 }  // namespace
+
+/// Returns "left wheels a, b, right wheels c, d, radius 0.098 m, wheel base 0.376 m (effective 0.56 m)".
+std::string DriveTrain::parts() const {
+  const auto names_of = [this](Side side) {
+    std::string names;
+    for (const WheelModel& wheel : wheels) {
+      if (wheel.side == side) names.append(names.empty() ? "" : ", ").append(joints[wheel.joint].name);
+    }
+    return names;
+  };
+  std::ostringstream text;
+  text.precision(4);
+  text << "left wheels " << names_of(Side::kLeft) << ", right wheels " << names_of(Side::kRight) << ", radius "
+       << wheels.front().radius << " m, wheel base " << wheel_base << " m";
+  if (wheel_base_multiplier != 1) text << " (effective " << effective_wheel_base() << " m)";
+  return text.str();
+}
 
 const DriveTrain& drive_train_of(const MachineModel& machine) {
   const auto* const wheeled = dynamic_cast<const DriveTrain*>(&machine);

@@ -43,6 +43,8 @@ struct DriveTrain : MachineModel {
   double yaw_inertia = 0;           ///< kg·m² about the vertical through the middle of the axles
   std::vector<WheelModel> casters;  ///< passive wheels that roll; `side` and `sign` have no meaning
 
+  std::string parts() const override;
+
   /// Returns the effective wheel base in m.
   double effective_wheel_base() const noexcept { return wheel_base * wheel_base_multiplier; }
 };

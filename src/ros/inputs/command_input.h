@@ -29,7 +29,7 @@
 #include "ros/inputs/command_senders.h"
 #include "ros/inputs/command_stamp.h"
 #include "ros/inputs/motion_requests.h"
-#include "ros/reports/command_report.h"
+#include "ros/reports/report_line.h"
 #include "signals/velocity_command.h"
 
 namespace robot_control {

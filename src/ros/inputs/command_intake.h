@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ros/inputs/motion_requests.h"
-#include "ros/reports/command_report.h"
+#include "ros/reports/report_line.h"
 #include "signals/velocity_command.h"
 
 namespace robot_control {

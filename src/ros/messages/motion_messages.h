@@ -9,7 +9,7 @@
 #include "configuration/parameters.h"
 #include "drivers/external_imu.h"
 #include "estimation/estimator_parameters.h"
-#include "machine/wheeled/drive_train.h"
+#include "machine/machine_model.h"
 #include "ros/messages/messages.h"
 #include "signals/command_frame.h"
 #include "signals/sensor_frame.h"
@@ -77,18 +77,7 @@ bool has_imu_data(const SensorFrame& sensors, const StateFrame& state);
 /// are NaN or unknown.
 msg::BatteryState battery_state(const SensorFrame& sensors, ros::Time stamp);
 
-/// Returns the velocity targets of the wheels [rad/s] in the order of DriveTrain::wheels; dim[0].label is "wheel".
-msg::Float64MultiArray joint_commands(const CommandFrame& command, const DriveTrain& robot);
-
-/// Returns the velocity targets of the wheels with the names of their joints.
-msg::JointState joint_targets(const CommandFrame& command, const DriveTrain& robot, ros::Time stamp);
-
 /// Returns the limited twist.
 msg::TwistStamped velocity_out(const CommandFrame& command, const std::string& base_frame, ros::Time stamp);
-
-/// `plan` is the command two cycles before `command`; an ideal wheel now has its targets (wheel_loop.h). `reasons` are
-/// CommandReason bits. While the brake acts, the reported target is standstill.
-msg::DriveState drive_state(const CommandFrame& command, const CommandFrame& plan, std::uint64_t reasons,
-                            const DriveTrain& robot, ros::Time stamp);
 
 }  // namespace robot_control

@@ -10,10 +10,10 @@
 #include "ros/inputs/odometry_request.h"
 #include "ros/messages/motion_messages.h"
 #include "ros/messages/odometry_messages.h"
-#include "ros/nodes/calibration_keeper.h"
 #include "ros/nodes/process_node.h"
 #include "ros/reports/diagnostics.h"
 #include "ros/reports/pacer.h"
+#include "ros/wheeled/calibration_keeper.h"
 #include "rt/clock.h"
 
 namespace robot_control {

@@ -5,36 +5,11 @@
 #include "machine/description/wording.h"
 
 namespace robot_control {
-namespace {
-
-std::string names_of_side(const DriveTrain& robot, Side side) {
-  std::string names;
-  for (const WheelModel& wheel : robot.wheels) {
-    if (wheel.side == side) names.append(names.empty() ? "" : ", ").append(robot.joints[wheel.joint].name);
-  }
-  return names;
-}
-
-}  // namespace
-
-std::string summary(const DriveTrain& robot) {
-  std::ostringstream text;
-  text.precision(4);
-  text << "robot '" << robot.name << "' of " << robot.source << ": left wheels " << names_of_side(robot, Side::kLeft)
-       << ", right wheels " << names_of_side(robot, Side::kRight) << ", radius " << robot.wheels.front().radius
-       << " m, wheel base " << robot.wheel_base << " m";
-  if (robot.wheel_base_multiplier != 1) text << " (effective " << robot.effective_wheel_base() << " m)";
-  text << ", " << robot.mass << " kg";
-  return text.str();
-}
 
 std::string summary(const MachineModel& robot) {
-  const auto* const legged = dynamic_cast<const LegModel*>(&robot);
-  if (legged == nullptr) return summary(drive_train_of(robot));
   std::ostringstream text;
   text.precision(4);
-  text << "robot '" << robot.name << "' of " << robot.source << ": four legs of " << legged->leg_length() << " m, "
-       << robot.mass << " kg";
+  text << "robot '" << robot.name << "' of " << robot.source << ": " << robot.parts() << ", " << robot.mass << " kg";
   return text.str();
 }
 

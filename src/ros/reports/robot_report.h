@@ -3,16 +3,11 @@
 
 #include <string>
 
-#include "machine/legs/leg_model.h"
-#include "machine/wheeled/drive_train.h"
+#include "machine/machine_model.h"
 
 namespace robot_control {
 
-/// Returns "robot 'jackal' of jackal.urdf: left wheels a, b, right wheels c, d, radius 0.098 m, wheel base 0.376 m
-/// (effective 0.56 m), 18.43 kg".
-std::string summary(const DriveTrain& robot);
-
-/// Returns "robot 'quadbot' of quadbot.urdf: four legs of 0.426 m, 12.7 kg" for a robot on legs, else as above.
+/// Returns "robot 'quadbot' of quadbot.urdf: four legs of 0.426 m, 12.7 kg".
 std::string summary(const MachineModel& robot);
 
 /// Returns "assumed: <link name="base">: text".

@@ -1,4 +1,4 @@
-#include "ros/nodes/calibration_keeper.h"
+#include "ros/wheeled/calibration_keeper.h"
 
 #include <ros/console.h>
 

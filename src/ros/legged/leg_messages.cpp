@@ -1,4 +1,4 @@
-#include "ros/messages/leg_messages.h"
+#include "ros/legged/leg_messages.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "bindings/wheel_loops.h"
+#include "bindings/wheeled/wheel_loops.h"
 
 #include <algorithm>
 

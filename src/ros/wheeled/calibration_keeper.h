@@ -7,8 +7,8 @@
 #include <future>
 #include <string>
 
-#include "configuration/calibration_file.h"
 #include "configuration/parameters.h"
+#include "configuration/wheeled/calibration_file.h"
 
 namespace robot_control {
 

@@ -1,4 +1,4 @@
-#include "ros/nodes/leg_controller_node.h"
+#include "ros/legged/leg_controller_node.h"
 
 #include <ros/ros.h>
 
@@ -12,8 +12,8 @@
 #include "machine/legs/leg_model.h"
 #include "parameters/block.h"
 #include "ros/inputs/input_topic.h"
-#include "ros/inputs/joint_trajectory.h"
-#include "ros/messages/leg_messages.h"
+#include "ros/legged/joint_trajectory.h"
+#include "ros/legged/leg_messages.h"
 #include "ros/messages/motion_messages.h"
 #include "ros/nodes/commanded_node.h"
 #include "ros/reports/diagnostics.h"

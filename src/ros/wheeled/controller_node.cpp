@@ -1,4 +1,4 @@
-#include "ros/nodes/controller_node.h"
+#include "ros/wheeled/controller_node.h"
 
 #include <ros/ros.h>
 
@@ -18,10 +18,11 @@
 #include "ros/messages/motion_messages.h"
 #include "ros/messages/tuning_messages.h"
 #include "ros/nodes/commanded_node.h"
-#include "ros/reports/command_report.h"
 #include "ros/reports/diagnostics.h"
 #include "ros/reports/pacer.h"
 #include "ros/reports/report_line.h"
+#include "ros/wheeled/command_report.h"
+#include "ros/wheeled/wheel_messages.h"
 #include "signals/roles.h"
 
 namespace robot_control {

@@ -2,7 +2,7 @@
 /// The controller of a robot on legs subscribes to body_pose, foot_target and joint_trajectory, and has the service
 /// set_posture. It publishes leg_state. Requests for a walk on cmd_vel are refused by a line of the log.
 ///
-/// A trajectory (ros/inputs/joint_trajectory.h) is executed while the robot lies. This node requests every 10 ms where
+/// A trajectory (ros/legged/joint_trajectory.h) is executed while the robot lies. This node requests every 10 ms where
 /// the joints shall be kHorizon later (control/legged/joint_motion.h), as if its sender had done so. It ends early with
 /// the permission to move and with the connection of its sender. An empty trajectory of any sender and a message on
 /// another topic end it, too. Its sender may replace it, others may not. After it the sender counts as having sent

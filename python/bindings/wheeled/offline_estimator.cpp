@@ -1,4 +1,4 @@
-#include "bindings/offline_estimator.h"
+#include "bindings/wheeled/offline_estimator.h"
 
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
@@ -11,7 +11,7 @@
 #include <stdexcept>
 
 #include "bindings/installed_file.h"
-#include "configuration/calibration_file.h"
+#include "configuration/wheeled/calibration_file.h"
 #include "signals/names.h"
 #include "signals/rotation.h"
 

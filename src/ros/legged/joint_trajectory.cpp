@@ -1,4 +1,4 @@
-#include "ros/inputs/joint_trajectory.h"
+#include "ros/legged/joint_trajectory.h"
 
 #include <algorithm>
 #include <cmath>

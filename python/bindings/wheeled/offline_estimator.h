@@ -47,8 +47,9 @@ class OfflineEstimator {
                          const Array& accel, double rounding, pybind11::ssize_t every, bool covariance,
                          const std::optional<Vector3>& pose);
 
-  /// Writes the learned calibration as the node does (configuration/calibration_file.h). Throws std::runtime_error if
-  /// nothing was learned or it is beyond its bounds; throws std::system_error if the file cannot be written.
+  /// Writes the learned calibration as the node does (configuration/wheeled/calibration_file.h). Throws
+  /// std::runtime_error if nothing was learned or it is beyond its bounds; throws std::system_error if the file cannot
+  /// be written.
   void save_calibration(const std::string& path) const;
 
   double period() const noexcept { return period_; }            ///< s
