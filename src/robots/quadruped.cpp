@@ -1,7 +1,10 @@
 #include "robots/quadruped.h"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "control/legged/body_bounds.h"
 #include "control/legged/leg_controller.h"
 #include "estimation/legged/legged_estimator.h"
 #include "parameters/problem_list.h"
@@ -10,8 +13,6 @@
 
 namespace robot_control {
 namespace {
-
-constexpr double kReturn = 0.3;  // s, in which the body is back above its feet before it sinks
 
 class LegsController final : public SavedLaw<ControllerLaw, LegController> {
  public:
@@ -47,11 +48,19 @@ void Quadruped::require_drivable() const {
     throw ParameterError(
         "robot.driver: motor drives move robots on wheels alone. Leave robot.driver and robot.drives out");
   }
-  const LegTuning tuning = leg_tuning(machine_);
-  const double needed = tuning.rise_time + kReturn;
-  if (parameters_.safety.ramp_time >= needed) return;
-  throw ParameterError("ramp_time = " + shortest(parameters_.safety.ramp_time) + " s: this robot needs " +
-                       shortest(needed) + " s to lie down. Set at least so much");
+  if (const std::optional<LegPlace> leg = short_leg(machine_)) {
+    throw RobotError(machine_.source + ": the leg " + name_of(*leg) +
+                     " does not reach the ground while the robot stands " + shortest(leg_tuning(machine_).height) +
+                     " m above it, 0.7 of the length of its legs. Give its joints ranges that allow this");
+  }
+}
+
+SafetyParameters Quadruped::limits() const {
+  SafetyParameters limits = legged_limits(parameters_.safety, machine_);
+  limits.ramp_time = std::max(limits.ramp_time, lying_down_time(machine_));
+  limits.imu_lost.reaction = Reaction::kBrake;
+  limits.lift.reaction = Reaction::kOff;  // a robot that lies stands on no foot
+  return limits;
 }
 
 std::unique_ptr<EstimatorLaw> Quadruped::make_estimator() const {
@@ -63,10 +72,7 @@ std::unique_ptr<ControllerLaw> Quadruped::make_controller() const {
 }
 
 std::unique_ptr<MonitorLaw> Quadruped::make_monitor() const {
-  SafetyParameters safety = legged_limits(parameters_.safety, machine_);
-  safety.imu_lost.reaction = Reaction::kBrake;
-  safety.lift.reaction = Reaction::kOff;  // a robot that lies stands on no foot
-  return std::make_unique<MonitorOf<Monitor<LeggedConditions>>>(safety, machine_, parameters_.loop.period());
+  return std::make_unique<MonitorOf<Monitor<LeggedConditions>>>(limits(), machine_, parameters_.loop.period());
 }
 
 MachineNeeds Quadruped::needs() const {
@@ -76,7 +82,7 @@ MachineNeeds Quadruped::needs() const {
 
 GateParameters Quadruped::gate() const {
   const LegTuning tuning = leg_tuning(machine_);
-  GateParameters gate{.stops = {}, .longest_ramp = longest_ramp(parameters_.safety, parameters_.loop.period())};
+  GateParameters gate{.stops = {}, .longest_ramp = longest_ramp(limits(), parameters_.loop.period())};
   for (const Leg& leg : machine_.legs) {
     const LegAngles standing = upright(leg, tuning.height);
     for (Eigen::Index i = 0; i < LegAngles::SizeAtCompileTime; ++i) {

@@ -36,6 +36,8 @@ class Quadruped final : public Robot {
   std::unique_ptr<Retuner> make_retuner(LatestValue<DriveTuning>& inbox) const override;
 
  private:
+  SafetyParameters limits() const;
+
   Parameters parameters_;
   LegModel machine_;
 };

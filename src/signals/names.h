@@ -109,7 +109,7 @@ inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
      "request only what this robot can do; a differential drive takes linear.x and angular.z, a robot on legs no twist"},
     {kReasonCurvatureKept, "curvature_kept", "one axis was scaled to keep the commanded curvature", ""},
     {kReasonSaturated, "saturated", "a wheel's torque or speed is at its limit", ""},
-    {kReasonOutOfReach, "out_of_reach", "the requested pose is beyond the ranges of the legs: the nearest one is kept",
+    {kReasonOutOfReach, "out_of_reach", "the requested pose is beyond the ranges of the legs: the body stops before it",
      "request a pose within the ranges of docs/legs.md"},
     {kReasonNotStanding, "not_standing", "a pose or a foot is requested, and the robot does not stand",
      "call set_posture with 'standing'"},

@@ -1,5 +1,8 @@
 /// Robots on legs in the closed loop: lie, stand, move the body, lift a foot, lie down, and be stopped.
 
+#include <random>
+
+#include "control/legged/body_bounds.h"
 #include "robots/quadruped_fixture.h"
 
 namespace robot_control {
@@ -85,6 +88,32 @@ TEST_P(QuadrupedOf, StandsFirmWhileItsPoseStepsOnAllAxesAtOnce) {
   EXPECT_LE(robot.effort, 0.9);
   EXPECT_LE(*std::ranges::max_element(robot.slipped), 0.15 * length);  // in half a minute
   EXPECT_LE(robot.tilt, 0.33);                                         // rad, roll and pitch together
+}
+
+TEST_P(QuadrupedOf, LiesDownFromAnyPoseAndMotionInTime) {
+  QuadrupedLoop robot = loop_of(GetParam());
+  const double length = robot.robot().leg_length();
+  robot.wait(0.3);
+  std::mt19937_64 random(7);
+  const auto within = [&](double size) { return std::uniform_real_distribution<double>(-size, size)(random); };
+  for (int trial = 0; trial < 12; ++trial) {
+    robot.run(2.5, stance(kStanceStand));
+    ASSERT_EQ(robot.command().legged.phase, LegPhase::kStanding) << trial;
+    for (const double seconds : {0.6 + within(0.4), 0.35 + within(0.25)}) {
+      robot.run(seconds, {.twist = {},
+                          .posture = {.height = within(0.16 * length),
+                                      .roll = within(0.3),
+                                      .pitch = within(0.3),
+                                      .x = within(0.12 * length),
+                                      .y = within(0.12 * length),
+                                      .yaw = within(0.3)}});
+    }
+    double took = 0;
+    for (; took < 5 && robot.command().legged.phase != LegPhase::kLying; took += 0.02)
+      robot.run(0.02, stance(kStanceLie));
+    EXPECT_LE(took, lying_down_time(robot.robot())) << trial;
+    ASSERT_EQ(robot.permit().causes, 0u) << trial << ": " << robot.causes();
+  }
 }
 
 TEST_P(QuadrupedOf, MovesItsJointsAlongAPathWhileItLies) {

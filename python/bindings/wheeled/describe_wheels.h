@@ -1,5 +1,5 @@
 #pragma once
-/// What Python is told of a robot on wheels beyond what every machine has.
+/// The description of a robot on wheels for Python, beyond that of every machine.
 
 #include <pybind11/pybind11.h>
 

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "control/legged/foot_forces.h"
-#include "machine/gravity.h"
+#include "control/legged/leg_controller.h"
 #include "machine/legs/leg_dynamics.h"
 
 namespace robot_control {
@@ -15,8 +15,9 @@ namespace {
 
 constexpr double kPart = 0.5;
 constexpr double kFriction = 0.5;
-constexpr double kLeast = 0.1;   // m/s² and rad/s², of a robot whose nominal pose does not bear it
-constexpr double kSmall = 0.01;  // m/s² and rad/s², at which no foot lifts
+constexpr double kMinimum = 0.1;  // m/s² and rad/s²
+constexpr double kSmall = 0.01;   // m/s² and rad/s², at which no foot lifts
+constexpr double kSettle = 0.05;  // s, of an axis that arrives
 
 using Feet = std::array<Eigen::Vector3d, kLegs>;
 using Axes = Eigen::Matrix<double, 6, 1>;
@@ -26,16 +27,18 @@ struct Stance {
   Feet feet{};  ///< m
   LeggedMotion motion;
   LeggedEquations equations;
+  std::optional<LegPlace> short_leg;
 };
 
-Stance nominal_stance(const LegModel& robot, double height, double ground) {
+Stance nominal_stance(const LegModel& robot) {
   const LegDynamics dynamics(robot);
+  const double height = nominal_height(robot);
   Stance stance;
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     Eigen::Vector3d& foot = stance.feet[leg];
     foot = robot.legs[leg].kinematics.position(robot.legs[leg].lying);
-    foot.z() = ground + robot.legs[leg].foot_radius - height;
+    foot.z() = robot.belly + robot.legs[leg].foot_radius - height;
     middle += foot / kLegs;
   }
   for (int pass = 0; pass < 2; ++pass) {  // the centre of gravity comes above the middle of the feet
@@ -43,6 +46,7 @@ Stance nominal_stance(const LegModel& robot, double height, double ground) {
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
       if (pass > 0) stance.feet[leg].head<2>() += off.head<2>();
       const LegSolution solution = robot.legs[leg].kinematics.inverse(stance.feet[leg]);
+      if (pass > 0 && solution.reach != FootReach::kReached) stance.short_leg = static_cast<LegPlace>(leg);
       for (std::size_t i = 0; i < kLegJoints; ++i)
         stance.motion.angles[kLegJoints * leg + i] = solution.angles[static_cast<Eigen::Index>(i)];
     }
@@ -70,8 +74,17 @@ Feet forces(const LegModel& robot, const Stance& stance, const Axes& acceleratio
 
 }  // namespace
 
-std::array<AxisBounds, 6> body_bounds(const LegModel& robot, double height, double ground) {
-  const Stance stance = nominal_stance(robot, height, ground);
+double nominal_height(const LegModel& robot) noexcept {
+  const LegGeometry& first = robot.legs[0].kinematics.geometry();
+  return leg_tuning(robot).height - first.hip.z() - first.upper.z() + robot.belly + robot.legs[0].foot_radius;
+}
+
+std::optional<LegPlace> short_leg(const LegModel& robot) {
+  return nominal_stance(robot).short_leg;
+}
+
+std::array<AxisBounds, 6> body_bounds(const LegModel& robot) {
+  const Stance stance = nominal_stance(robot);
   const Feet weight = forces(robot, stance, Axes::Zero());
   const double time = std::sqrt(robot.leg_length() / 0.426);
   std::array<AxisBounds, 6> bounds;
@@ -84,9 +97,22 @@ std::array<AxisBounds, 6> body_bounds(const LegModel& robot, double height, doub
       least = std::min(least, std::isfinite(carried) ? carried : 0);
     }
     bounds[axis] = {.speed = axis < 3 ? 0.4 * time : 0.9 / std::max(1.0, time),
-                    .acceleration = std::max(kLeast, kPart * least)};
+                    .acceleration = std::max(kMinimum, kPart * least)};
   }
   return bounds;
+}
+
+double lying_down_time(const LegModel& robot) {
+  const LegTuning tuning = leg_tuning(robot);
+  const std::array<AxisBounds, 6> bounds = body_bounds(robot);
+  const double ranges[6] = {tuning.sway, tuning.sway, tuning.bob, tuning.lean, tuning.lean, tuning.lean};
+  double way = 0, slowest = 0;
+  for (std::size_t axis = 0; axis < bounds.size(); ++axis) {
+    way += ranges[axis] / bounds[axis].acceleration;
+    slowest = std::max(slowest, ranges[axis] / bounds[axis].speed);
+  }
+  const double speed = std::min(std::sqrt(way), way / slowest);
+  return way / speed + 2 * speed + kSettle + tuning.rise_time;
 }
 
 }  // namespace robot_control

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "control/legged/body_bounds.h"
 #include "signals/rotation.h"
@@ -11,19 +10,14 @@
 namespace robot_control {
 namespace {
 
-constexpr double kLoadTime = 0.2;       // s, in which a foot's share of the weight comes and goes
-constexpr double kMinLift = 0.25;       // of the lift, the lowest height of a foot in the air
-constexpr double kSetDown = 0.1;        // m/s, of a foot that lies above the ground
-constexpr double kShift = 0.6;          // of the way from the middle to the centroid of three feet
-constexpr double kArrived = 0.0005;     // m
-constexpr double kArrivedSpeed = 0.02;  // m/s and rad/s
-constexpr double kLeastBend = 0.3;      // rad, of the knee of a standing leg: a straight one turns without bound
-constexpr double kSpare = 0.03;         // rad, to the end of a joint's range
-constexpr double kMinTime = 0.1;        // s, of gathering
+constexpr double kLoadTime = 0.2;  // s, in which a foot's share of the weight comes and goes
+constexpr double kMinLift = 0.25;  // of the lift, the lowest height of a foot in the air
+constexpr double kSetDown = 0.1;   // m/s, of a foot that lies above the ground
+constexpr double kShift = 0.6;     // of the way from the middle to the centroid of three feet
+constexpr double kMinTime = 0.1;   // s, of gathering
 constexpr std::uint64_t kNoWish =
     kReasonNoCommand | kReasonTimedOut | kReasonRefused | kReasonManySenders | kReasonNotLying;
 constexpr std::uint64_t kPose = kPartHeight | kPartRoll | kPartPitch | kPartX | kPartY | kPartYaw;
-constexpr std::size_t kX = 0, kY = 1, kZ = 2, kRoll = 3, kPitch = 4, kYaw = 5;
 
 using Map = Eigen::Map<const Eigen::Vector3d>;
 
@@ -51,10 +45,6 @@ void approach(double& value, double target, double step) noexcept {
   value += std::clamp(target - value, -step, step);
 }
 
-bool arrived(const TrackedAxis& axis, double target) noexcept {
-  return std::abs(axis.value - target) < kArrived && std::abs(axis.speed) < kArrivedSpeed;
-}
-
 }  // namespace
 
 LegController::LegController(const LegModel& robot, double timeout, double period)
@@ -63,15 +53,14 @@ LegController::LegController(const LegModel& robot, double timeout, double perio
       dynamics_(robot),
       tuning_(leg_tuning(robot)),
       ground_(robot.belly),
+      nominal_(nominal_height(robot)),
+      body_motion_(body_bounds(robot)),
       state_(CommandWatch(timeout, period, kPose | kPartMode | kPartJoints)) {
   const std::array<JointBounds, kLegsJoints> bounds = joint_bounds(robot);
   for (std::size_t i = 0; i < kLegsJoints; ++i) {
     joint_ranges_[i] = bounds[i].range;
     joint_motion_[i] = bounds[i].motion;
   }
-  const LegGeometry& first = legs_[0].kinematics.geometry();
-  nominal_ = tuning_.height - first.hip.z() - first.upper.z() + robot.belly + legs_[0].foot_radius;
-  body_motion_ = body_bounds(robot, nominal_, ground_);
 }
 
 void LegController::enter_run(const VelocityCommand& inbox, bool with_zero) noexcept {
@@ -151,7 +140,10 @@ bool LegController::advance(const Request& request, const SensorFrame& sensors, 
       return false;
     case LegPhase::kRising:
       rise(state_.elapsed, reasons);
-      if (state_.elapsed >= tuning_.rise_time) enter(LegPhase::kStanding, 0);
+      if (state_.elapsed >= tuning_.rise_time) {
+        enter(LegPhase::kStanding, 0);
+        state_.margin = margin();
+      }
       if (down) {
         const double left = tuning_.rise_time - state_.elapsed;
         enter(LegPhase::kLowering, left);
@@ -300,28 +292,6 @@ Eigen::Vector2d LegController::standing_place() const noexcept {
   return state_.lifted != kLegs ? above_support() : Eigen::Vector2d(state_.home[0], state_.home[1]);
 }
 
-/// Moves the body towards a pose. It brakes where a leg would else not reach its foot, and waits for another target.
-/// Returns true where the body has arrived.
-bool LegController::move(const Pose& target, std::uint64_t& reasons) noexcept {
-  if (state_.blocked == 0 || target != state_.blocked_target) {
-    std::array<TrackedAxis, 6> next = state_.body;
-    track(next, target, body_motion_, period_);
-    const double left = spare(stopping_place(next, body_motion_));
-    const bool leaves = left < kSpare && left < spare(stopping_place(state_.body, body_motion_));
-    state_.blocked = leaves ? 1 : 0;
-    state_.blocked_target = target;
-    if (!leaves) state_.body = next;
-  }
-  if (state_.blocked != 0) {
-    brake(state_.body, body_motion_, period_);
-    reasons |= kReasonOutOfReach;
-  }
-  if (!set_angles()) reasons |= kReasonOutOfReach;
-  bool arrived_all = true;
-  for (std::size_t i = 0; i < target.size(); ++i) arrived_all = arrived_all && arrived(state_.body[i], target[i]);
-  return arrived_all;
-}
-
 /// The foot goes up after its share of the weight went to zero, and takes it again after it came down.
 void LegController::move_foot(const Request& request, bool wanted, bool supported, std::uint64_t& reasons) noexcept {
   double& share = state_.share[state_.lifted];
@@ -351,7 +321,10 @@ void LegController::lower(std::uint64_t& reasons) noexcept {
   if (state_.sinks == 0) {
     state_.held = {};
     const Eigen::Vector2d place = standing_place();
-    const bool arrived_all = move({place.x(), place.y(), nominal_, 0, 0, 0}, reasons);
+    const Pose nominal{place.x(), place.y(), nominal_, 0, 0, 0};
+    track(state_.body, nominal, body_motion_, period_);
+    if (!set_angles()) reasons |= kReasonOutOfReach;
+    const bool arrived_all = body_arrived(nominal);
     if (state_.lifted != kLegs) move_foot({}, false, arrived_all, reasons);
     state_.elapsed = 0;
     state_.sinks = arrived_all && state_.lifted == kLegs ? 1 : 0;
@@ -363,83 +336,6 @@ void LegController::lower(std::uint64_t& reasons) noexcept {
 
 double LegController::lying(std::size_t joint) const noexcept {
   return legs_[joint / kLegJoints].lying[static_cast<Eigen::Index>(joint % kLegJoints)];
-}
-
-LegController::Pose LegController::pose() const noexcept {
-  Pose result;
-  std::transform(state_.body.begin(), state_.body.end(), result.begin(),
-                 [](const TrackedAxis& axis) { return axis.value; });
-  return result;
-}
-
-Eigen::Matrix3d LegController::rotation(const Pose& pose) noexcept {
-  using Axis = Eigen::AngleAxisd;
-  return (Axis(pose[kYaw], Eigen::Vector3d::UnitZ()) * Axis(pose[kPitch], Eigen::Vector3d::UnitY()) *
-          Axis(pose[kRoll], Eigen::Vector3d::UnitX()))
-      .toRotationMatrix();
-}
-
-Eigen::Vector3d LegController::foot_in_base(std::size_t leg, const Pose& pose,
-                                            const Eigen::Matrix3d& turned) const noexcept {
-  Eigen::Vector3d place = Map(state_.places[leg].data());
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto axis = static_cast<Eigen::Index>(i);
-    if (leg == state_.lifted) place[axis] += state_.foot[i].value;
-    place[axis] -= pose[i];
-  }
-  return turned.transpose() * place;
-}
-
-/// Returns by how many rad each joint can turn on, at least, in this pose of the body: to the end of its range, a knee
-/// to the least bend or to the ground. The result is negative if a leg does not reach its foot.
-double LegController::spare(const Pose& pose) const noexcept {
-  const Eigen::Matrix3d turned = rotation(pose);
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const LegKinematics& kinematics = legs_[leg].kinematics;
-    const LegSolution solution = kinematics.inverse(foot_in_base(leg, pose, turned));
-    if (solution.reach != FootReach::kReached) return -1;
-    for (std::size_t i = 0; i < kLegJoints; ++i) {
-      const double angle = solution.angles[static_cast<Eigen::Index>(i)];
-      const JointRange& range = kinematics.range(i);
-      least = std::min({least, angle - range.lower, range.upper - angle});
-    }
-    const Eigen::Vector3d knee = turned * kinematics.knee(solution.angles);
-    const double clear = pose[kZ] + knee.z() - ground_ - legs_[leg].knee_radius;
-    least = std::min({least, std::abs(kinematics.bend(solution.angles)) - kLeastBend, clear / kinematics.length()});
-  }
-  return least;
-}
-
-/// Sets the joint angles of the present pose. Returns false if a leg does not reach its foot.
-bool LegController::set_angles() noexcept {
-  const Pose pose = this->pose();
-  const Eigen::Matrix3d turned = rotation(pose);
-  bool reached = true;
-  for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const LegSolution solution = legs_[leg].kinematics.inverse(foot_in_base(leg, pose, turned));
-    reached = reached && solution.reach == FootReach::kReached;
-    for (std::size_t i = 0; i < kLegJoints; ++i)
-      state_.angles[kLegJoints * leg + i] = solution.angles[static_cast<Eigen::Index>(i)];
-  }
-  return reached;
-}
-
-void LegController::roll_feet(const std::array<double, kLegsJoints>& rates) noexcept {
-  const Eigen::Matrix3d turned = rotation(pose());
-  const Eigen::Vector3d body(state_.body[kRoll].speed, state_.body[kPitch].speed, state_.body[kYaw].speed);
-  for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    if (state_.share[leg] == 0) continue;
-    const LegGeometry& geometry = legs_[leg].kinematics.geometry();
-    const double* rate = &rates[kLegJoints * leg];
-    const double first = geometry.sign[0] * state_.angles[kLegJoints * leg];
-    const double pitching = geometry.sign[1] * rate[1] + geometry.sign[2] * rate[2];
-    const Eigen::Vector3d shank =
-        turned * Eigen::Vector3d(geometry.sign[0] * rate[0], pitching * std::cos(first), pitching * std::sin(first)) +
-        body;
-    state_.places[leg][0] += shank.y() * legs_[leg].foot_radius * period_;
-    state_.places[leg][1] -= shank.x() * legs_[leg].foot_radius * period_;
-  }
 }
 
 }  // namespace robot_control

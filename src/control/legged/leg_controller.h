@@ -37,8 +37,8 @@
 ///
 /// Every axis of the body and of the foot is limited in speed, acceleration and range. The axes of the body share their
 /// acceleration (tracked_axis.h), so that a request that steps on all of them does not unload a foot, and roll and
-/// pitch share their range. The body brakes where it would else end at a pose that a leg does not reach, or reaches
-/// with a straight knee only (kReasonOutOfReach). It stays there until another pose is requested.
+/// pitch share their range. The body stops before a pose for which a joint meets the end of its range, a knee is almost
+/// straight, or a knee is on the ground (kReasonOutOfReach). To lie down it returns from any pose.
 ///
 /// Gains and times follow from mass m and leg length l: stiffness ∝ m l, damping ∝ m l^1.5, times ∝ √l.
 
@@ -112,9 +112,10 @@ class LegController {
     JointMotion joints;
     std::uint64_t joints_requested = 0;  ///< cycle of the request that they follow
     std::array<TrackedAxis, 6> body{};
-    Pose held{};                ///< from the nominal pose, what the body moves to
-    std::uint64_t blocked = 0;  ///< 1: the body brakes, for a leg does not reach on the way to:
-    Pose blocked_target{};
+    Pose held{};                        ///< from the nominal pose, what the body moves to
+    double margin = 0;                  ///< of `spare`, which the body keeps: kMargin, or that of the nominal pose
+    std::uint64_t blocked = 0;          ///< 1: the body brakes before a pose that it does not enter
+    Pose blocked_target{};              ///< what was requested then
     std::uint64_t follows = 0;          ///< 1: `held` is that of a request in force
     std::uint64_t lifted = kLegs;       ///< the leg in the air, or on its way; kLegs: none
     std::array<TrackedAxis, 3> foot{};  ///< m, of the lifted foot from its place
@@ -129,6 +130,9 @@ class LegController {
   void set_state(const State& state) noexcept { state_ = state; }
 
  private:
+  static constexpr std::size_t kX = 0, kY = 1, kZ = 2, kRoll = 3, kPitch = 4, kYaw = 5;  ///< indices of a Pose
+  static constexpr double kArrived = 0.0005;                                             ///< m and rad
+
   bool advance(const Request& request, const SensorFrame& sensors, std::uint64_t& reasons) noexcept;
   void report(CommandFrame& out) const noexcept;
   void enter(LegPhase phase, double elapsed) noexcept;
@@ -139,6 +143,7 @@ class LegController {
   void choose_pose(const Request& request, std::uint64_t& reasons) noexcept;
   void lower(std::uint64_t& reasons) noexcept;
   bool move(const Pose& target, std::uint64_t& reasons) noexcept;
+  bool body_arrived(const Pose& target) const noexcept;
   void move_foot(const Request& request, bool wanted, bool supported, std::uint64_t& reasons) noexcept;
   Eigen::Vector2d above_support() const noexcept;
   Eigen::Vector2d standing_place() const noexcept;
@@ -149,6 +154,7 @@ class LegController {
                                 const std::array<double, kLegsJoints>& rates) const noexcept;
   void accelerate(const LeggedMotion& motion) noexcept;
   double spare(const Pose& pose) const noexcept;
+  double margin() const noexcept;
   Pose pose() const noexcept;
   static Eigen::Matrix3d rotation(const Pose& pose) noexcept;
   Eigen::Vector3d foot_in_base(std::size_t leg, const Pose& pose, const Eigen::Matrix3d& turned) const noexcept;
@@ -160,9 +166,9 @@ class LegController {
   LegTuning tuning_;
   std::array<JointRange, kLegsJoints> joint_ranges_;
   std::array<AxisBounds, kLegsJoints> joint_motion_;
-  std::array<AxisBounds, 6> body_motion_{};
-  double ground_ = 0;   ///< m, height of the ground below the base of a robot that lies level
-  double nominal_ = 0;  ///< m, height of the standing body above one that lies level
+  double ground_;   ///< m, height of the ground below the base of a robot that lies level
+  double nominal_;  ///< m, height of the standing body above one that lies level
+  std::array<AxisBounds, 6> body_motion_;
   State state_;
 };
 

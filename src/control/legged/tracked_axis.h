@@ -1,12 +1,13 @@
 #pragma once
 /// Axes that follow targets within a speed Vᵢ and an acceleration Aᵢ each. Axes that are stepped together share their
-/// acceleration, and go straight to their targets. With the vectors e of the distances, v of the speeds, and the norm
-/// |x| = Σ |xᵢ|/Aᵢ,
+/// acceleration. From rest they go straight to their targets. With the vectors e of the distances, v of the speeds, and
+/// the norm |x| = Σ |xᵢ|/Aᵢ,
 ///
 ///   wanted = e min(kFollow, √(2/|e|), minᵢ Vᵢ/|eᵢ|)      |Δv| ≤ Δt
 ///
-/// The axes brake in time and overshoot by less than the way of one cycle. They lag behind a target that moves by 1/kFollow seconds, or
-/// |v|/2 where that is longer.
+/// From rest the axes brake in time and overshoot by less than the way of one cycle. An axis that moves while another
+/// one gets a new target may pass its own, because it brakes with less. The axes lag behind a target that moves by
+/// 1/kFollow seconds, or |v|/2 where that is longer.
 
 #include <algorithm>
 #include <array>
@@ -52,6 +53,7 @@ void track(std::array<TrackedAxis, N>& axes, const std::array<double, N>& target
   }
 }
 
+/// Returns in how many s the axes stop, if they brake now.
 template <std::size_t N>
 double stopping_time(const std::array<TrackedAxis, N>& axes, const std::array<AxisBounds, N>& bounds) noexcept {
   double time = 0;

@@ -160,7 +160,6 @@ void check_finite(const DriveTrain& model) {
 
 }  // namespace
 
-/// Returns "left wheels a, b, right wheels c, d, radius 0.098 m, wheel base 0.376 m (effective 0.56 m)".
 std::string DriveTrain::parts() const {
   const auto names_of = [this](Side side) {
     std::string names;

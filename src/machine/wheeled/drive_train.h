@@ -43,6 +43,7 @@ struct DriveTrain : MachineModel {
   double yaw_inertia = 0;           ///< kg·m² about the vertical through the middle of the axles
   std::vector<WheelModel> casters;  ///< passive wheels that roll; `side` and `sign` have no meaning
 
+  /// Returns "left wheels a, b, right wheels c, d, radius 0.098 m, wheel base 0.376 m (effective 0.56 m)".
   std::string parts() const override;
 
   /// Returns the effective wheel base in m.

@@ -35,7 +35,7 @@ void GateConditions::step(const SensorFrame& sensors, ActiveCauses& out) noexcep
     out.add(kCauseGateRefuses, Reaction::kBrake,
             {.beyond = true, .value = static_cast<double>(in_second_), .limit = static_cast<double>(second_) / 2});
   }
-  if (disobeys(report) || (out_of_place && report.verdict != GateVerdict::kBrake))
+  if (report.verdict != GateVerdict::kBrake && (out_of_place || disobeys(report)))
     out.add(kCauseGateDisobeys, Reaction::kBrake, {.beyond = true, .value = 1});
   frame_ = frame;
   tick_ = report.cycle;
@@ -51,8 +51,8 @@ bool GateConditions::refuses(const GateReport& report) const noexcept {
   return false;
 }
 
+/// The gate does not brake.
 bool GateConditions::disobeys(const GateReport& report) const noexcept {
-  if (report.verdict == GateVerdict::kBrake) return false;
   if (report.permit_cycle >= report.cycle || report.cycle - report.permit_cycle > kPermitLife) return true;
   for (std::uint64_t i = permits_; i > 0 && permits_ - i < kRemembered; --i) {
     const Given& used = given(i - 1);
