@@ -10,8 +10,8 @@ namespace {
 
 class BodyBoundsOf : public testing::TestWithParam<std::string> {};
 
-/// A body that is a point at the feet's middle on the ground would reach μ g ahead and sideways, and g upwards. kPart
-/// is a half. Height, and legs that move with the body, take some of it.
+/// A body that is a point on the ground amid the feet would reach μ g ahead and sideways, and g upwards. Half of it is
+/// allowed. Height, and legs that move with the body, take some more.
 TEST_P(BodyBoundsOf, AreThoseOfFeetThatNeitherSlipNorLift) {
   const std::array<AxisBounds, 6> bounds = body_bounds(legged_robot(GetParam()));
   for (const std::size_t level : {0, 1}) {

@@ -66,7 +66,7 @@ TEST_P(QuadrupedOf, IsFoldedWithARearFootInTheAir) {
   expect_fold(robot);
 }
 
-/// What legs do not reach is not entered, and the way there is given up gently.
+/// Some of these poses are out of reach: the body stops before them.
 TEST_P(QuadrupedOf, StandsFirmWhileItsPoseStepsOnAllAxesAtOnce) {
   QuadrupedLoop robot(legged_robot(GetParam()), 1, ErrorLevel::kField);
   robot.wait(0.3);

@@ -106,13 +106,13 @@ double lying_down_time(const LegModel& robot) {
   const LegTuning tuning = leg_tuning(robot);
   const std::array<AxisBounds, 6> bounds = body_bounds(robot);
   const double ranges[6] = {tuning.sway, tuning.sway, tuning.bob, tuning.lean, tuning.lean, tuning.lean};
-  double way = 0, slowest = 0;
+  double length = 0, slowest = 0;
   for (std::size_t axis = 0; axis < bounds.size(); ++axis) {
-    way += ranges[axis] / bounds[axis].acceleration;
+    length += ranges[axis] / bounds[axis].acceleration;
     slowest = std::max(slowest, ranges[axis] / bounds[axis].speed);
   }
-  const double speed = std::min(std::sqrt(way), way / slowest);
-  return way / speed + 2 * speed + kSettle + tuning.rise_time;
+  const double speed = std::min(std::sqrt(length), length / slowest);
+  return length / speed + 2 * speed + kSettle + tuning.rise_time;
 }
 
 }  // namespace robot_control

@@ -31,8 +31,8 @@ std::array<AxisBounds, 6> body_bounds(const LegModel& robot);
 
 /// Returns after how many s at most a robot lies that stands on four feet, whatever its pose.
 ///
-/// With the way n and the speed w of the body in the norm of tracked_axis.h, it stops within w, returns within n/w + w
-/// to the nominal pose, and sinks within the rise time. n is that from the ends of all ranges.
+/// Let n be the distance from the ends of all ranges and w the speed of the body, in the norm of tracked_axis.h. The
+/// body stops within w. It returns to the nominal pose within n/w + w, and then sinks within the rise time.
 double lying_down_time(const LegModel& robot);
 
 }  // namespace robot_control

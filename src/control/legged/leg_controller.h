@@ -36,9 +36,10 @@
 /// Then this foot's share goes to zero, and it goes up. It carries again after it was set down.
 ///
 /// Every axis of the body and of the foot is limited in speed, acceleration and range. The axes of the body share their
-/// acceleration (tracked_axis.h), so that a request that steps on all of them does not unload a foot, and roll and
-/// pitch share their range. The body stops before a pose for which a joint meets the end of its range, a knee is almost
-/// straight, or a knee is on the ground (kReasonOutOfReach). To lie down it returns from any pose.
+/// acceleration (tracked_axis.h), and roll and pitch share their range. So a request that steps on all axes does not
+/// unload a foot. The body stops before a pose for which a joint meets the end of its range (kReasonOutOfReach). It
+/// also stops before a pose with an almost straight knee, or with a knee on the ground. To lie down it returns from any
+/// pose.
 ///
 /// Gains and times follow from mass m and leg length l: stiffness ∝ m l, damping ∝ m l^1.5, times ∝ √l.
 

@@ -76,9 +76,9 @@ Eigen::Vector3d LegController::foot_in_base(std::size_t leg, const Pose& pose,
   return turned.transpose() * place;
 }
 
-/// Returns what the standing legs have left in this pose of the body, as the least of these: rad between a joint and
-/// the end of its range, rad between a knee and its least bend, and the height of a knee above the ground over the
-/// length of its leg. The result is negative if a leg does not reach its foot.
+/// Returns what the standing legs have left in this pose of the body: the least of several angles in rad. They are
+/// those of joints to the ends of their ranges, of knees to kMinBend, and of shanks until their knees are on the
+/// ground. It is negative if a leg does not reach its foot.
 double LegController::spare(const Pose& pose) const noexcept {
   const Eigen::Matrix3d turned = rotation(pose);
   double result = std::numeric_limits<double>::infinity();
