@@ -99,7 +99,16 @@ TEST_P(QuadrupedOf, LiesDownFromAnyPoseAndMotionInTime) {
   for (int trial = 0; trial < 12; ++trial) {
     robot.run(2.5, stance(kStanceStand));
     ASSERT_EQ(robot.command().legged.phase, LegPhase::kStanding) << trial;
+    if (trial >= 8) {  // a foot is in the air
+      const LegTuning tuning = leg_tuning(robot.robot());
+      Request foot = stance(kStanceLift + static_cast<std::uint64_t>(trial) % kLegs);
+      foot.posture = {
+          .height = tuning.lift + tuning.foot_range, .x = within(tuning.foot_range), .y = within(tuning.foot_range)};
+      robot.run(2.2, foot);
+      ASSERT_NE(robot.command().legged.lifted, 0u) << trial;
+    }
     for (const double seconds : {0.6 + within(0.4), 0.35 + within(0.25)}) {
+      if (trial >= 8) break;
       robot.run(seconds, {.twist = {},
                           .posture = {.height = within(0.16 * length),
                                       .roll = within(0.3),

@@ -112,7 +112,9 @@ double lying_down_time(const LegModel& robot) {
     slowest = std::max(slowest, ranges[axis] / bounds[axis].speed);
   }
   const double speed = std::min(std::sqrt(length), length / slowest);
-  return length / speed + 2 * speed + kSettle + tuning.rise_time;
+  const double foot = (2 * tuning.foot_range + tuning.lift) / tuning.foot.speed +
+                      4 * tuning.foot.speed / tuning.foot.acceleration + kLoadTime;
+  return foot + length / speed + 2 * speed + kSettle + tuning.rise_time;
 }
 
 }  // namespace robot_control

@@ -29,10 +29,11 @@ std::optional<LegPlace> short_leg(const LegModel& robot);
 /// Returns the bounds of x, y and height in m, and of roll, pitch and yaw in rad.
 std::array<AxisBounds, 6> body_bounds(const LegModel& robot);
 
-/// Returns after how many s at most a robot lies that stands on four feet, whatever its pose.
+/// Returns after how many s at most a standing robot lies, whatever its pose and wherever its foot in the air is.
 ///
 /// Let n be the distance from the ends of all ranges and w the speed of the body, in the norm of tracked_axis.h. The
-/// body stops within w. It returns to the nominal pose within n/w + w, and then sinks within the rise time.
+/// body stops within w. The foot comes above its place, goes down and takes its load. Then the body returns to the
+/// nominal pose within n/w + w, and sinks within the rise time.
 double lying_down_time(const LegModel& robot);
 
 }  // namespace robot_control

@@ -10,7 +10,6 @@
 namespace robot_control {
 namespace {
 
-constexpr double kLoadTime = 0.2;  // s, in which a foot's share of the weight comes and goes
 constexpr double kMinLift = 0.25;  // of the lift, the lowest height of a foot in the air
 constexpr double kSetDown = 0.1;   // m/s, of a foot that lies above the ground
 constexpr double kShift = 0.6;     // of the way from the middle to the centroid of three feet

@@ -75,6 +75,8 @@ struct LegTuning {
 
 LegTuning leg_tuning(const LegModel& robot) noexcept;
 
+inline constexpr double kLoadTime = 0.2;  ///< s, in which a foot's share of the weight comes and goes
+
 /// The bounds of a joint while the robot lies.
 struct JointBounds {
   JointRange range;   ///< rad; ±∞ where it turns without end
