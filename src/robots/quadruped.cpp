@@ -49,9 +49,9 @@ void Quadruped::require_drivable() const {
         "robot.driver: motor drives move robots on wheels alone. Leave robot.driver and robot.drives out");
   }
   if (const std::optional<LegPlace> leg = short_leg(machine_)) {
-    throw RobotError(machine_.source + ": the leg " + name_of(*leg) +
-                     " does not reach the ground while the robot stands " + shortest(leg_tuning(machine_).height) +
-                     " m above it, 0.7 of the length of its legs. Give its joints ranges that allow this");
+    throw ParameterError(machine_.source + ": the leg " + name_of(*leg) +
+                         " does not reach the ground while the robot stands " + shortest(leg_tuning(machine_).height) +
+                         " m above it, 0.7 of the length of its legs. Give its joints ranges that allow this");
   }
 }
 

@@ -1,5 +1,6 @@
 #include "control/legged/body_bounds.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "machine/gravity.h"
@@ -35,6 +36,17 @@ TEST_P(BodyBoundsOf, AreFiniteAndPositiveForLegsThatDoNotReachTheGround) {
   for (const AxisBounds& bounds : body_bounds(robot)) {
     EXPECT_GE(bounds.acceleration, 0.1);
     EXPECT_LE(bounds.acceleration, 1000);
+  }
+}
+
+TEST(Quadruped, OfLegsThatDoNotReachTheGroundIsRefused) {
+  LegModel robot = legged_robot("quadbot");
+  robot.legs[0].foot_radius = -10;
+  try {
+    Quadruped(QuadrupedLoop::parameters(0, ErrorLevel::kIdeal), robot).require_drivable();
+    FAIL();
+  } catch (const ParameterError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("does not reach the ground while the robot stands 0.2"));
   }
 }
 

@@ -1,13 +1,8 @@
 #include "bench/programs/legs/loop_rows.h"
+#include "control/legged/body_bounds.h"
 
 namespace robot_control::bench {
 namespace {
-
-/// Returns the height of the base above the ground while the robot stands, in m.
-double nominal_height(const LegModel& robot) {
-  const LegGeometry& first = robot.legs[0].kinematics.geometry();
-  return leg_tuning(robot).height - first.hip.z() - first.upper.z() + robot.legs[0].foot_radius;
-}
 
 /// Returns the centre of a foot from the base, in m of the world's axes.
 Eigen::Vector3d foot_from_base(const QuadrupedLoop& robot, std::size_t leg) {
@@ -39,7 +34,7 @@ void postures(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   robot.clear();
   robot.run(2.0, stance(kStanceStand));
   worst.add("effort of the limit", robot.effort, "");
-  worst.add("height after 2 s", std::abs(height(robot) - nominal_height(model)), "m");
+  worst.add("height after 2 s", std::abs(height(robot) - (nominal_height(model) - model.belly)), "m");
   worst.add("tilt after 2 s", robot.tilt_now(), "rad");
   robot.run(3.0, {});
   const Vector3 before = robot.truth().pose_world.position;

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "control/legged/body_bounds.h"
-#include "signals/rotation.h"
 
 namespace robot_control {
 namespace {

@@ -29,26 +29,30 @@ struct TrackedAxis {
   double speed = 0;
 };
 
+/// Returns |x|.
+template <std::size_t N>
+double norm(const std::array<double, N>& x, const std::array<AxisBounds, N>& bounds) noexcept {
+  double sum = 0;
+  for (std::size_t i = 0; i < N; ++i) sum += std::abs(x[i]) / bounds[i].acceleration;
+  return sum;
+}
+
 /// Advances the axes by `dt` s.
 template <std::size_t N>
 void track(std::array<TrackedAxis, N>& axes, const std::array<double, N>& targets,
            const std::array<AxisBounds, N>& bounds, double dt) noexcept {
-  std::array<double, N> wanted{};
-  double norm = 0, rate = TrackedAxis::kFollow;
+  std::array<double, N> distance{}, change{};
+  double rate = TrackedAxis::kFollow;
   for (std::size_t i = 0; i < N; ++i) {
-    wanted[i] = targets[i] - axes[i].value;
-    norm += std::abs(wanted[i]) / bounds[i].acceleration;
-    rate = std::min(rate, bounds[i].speed / std::abs(wanted[i]));
+    distance[i] = targets[i] - axes[i].value;
+    rate = std::min(rate, bounds[i].speed / std::abs(distance[i]));
   }
-  rate = std::min(rate, std::sqrt(2 / norm));
-  double change = 0;
+  rate = std::min(rate, std::sqrt(2 / norm(distance, bounds)));
+  for (std::size_t i = 0; i < N; ++i) change[i] = distance[i] * rate - axes[i].speed;
+  const double time = norm(change, bounds);
+  const double part = time > dt ? dt / time : 1;
   for (std::size_t i = 0; i < N; ++i) {
-    wanted[i] *= rate;
-    change += std::abs(wanted[i] - axes[i].speed) / bounds[i].acceleration;
-  }
-  const double part = change > dt ? dt / change : 1;
-  for (std::size_t i = 0; i < N; ++i) {
-    axes[i].speed += part * (wanted[i] - axes[i].speed);
+    axes[i].speed += part * change[i];
     axes[i].value += axes[i].speed * dt;
   }
 }
@@ -56,9 +60,9 @@ void track(std::array<TrackedAxis, N>& axes, const std::array<double, N>& target
 /// Returns in how many s the axes stop, if they brake now.
 template <std::size_t N>
 double stopping_time(const std::array<TrackedAxis, N>& axes, const std::array<AxisBounds, N>& bounds) noexcept {
-  double time = 0;
-  for (std::size_t i = 0; i < N; ++i) time += std::abs(axes[i].speed) / bounds[i].acceleration;
-  return time;
+  std::array<double, N> speed{};
+  for (std::size_t i = 0; i < N; ++i) speed[i] = axes[i].speed;
+  return norm(speed, bounds);
 }
 
 /// Advances the axes by `dt` s while they brake. They stop at `stopping_place`.
