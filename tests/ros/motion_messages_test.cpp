@@ -5,9 +5,6 @@
 
 #include <cmath>
 
-#include "ros/wheeled/wheel_messages.h"
-#include "signals/names.h"
-
 namespace robot_control {
 namespace {
 
@@ -24,14 +21,13 @@ class MotionMessagesTest : public testing::Test {
     robot_.joints[0].name = "left";
     robot_.joints[1].name = "right";
     robot_.joints[2].name = "mast";
-    robot_.wheels = {WheelModel{.joint = 0}, WheelModel{.joint = 1, .side = Side::kRight}};
     sensors_.joint_count = 3;
     set_joints_valid(sensors_, kValidMotion);
     sensors_.valid = kValidGyro | kValidAccelerometer;
   }
 
   const ros::Time stamp_{12, 34};
-  DriveTrain robot_;
+  MachineModel robot_;
   SensorFrame sensors_;
   StateFrame state_;
   CommandFrame command_;
@@ -196,28 +192,6 @@ TEST_F(MotionMessagesTest, ThereIsImuDataOnlyWhereBothSensorsAreValid) {
   }
 }
 
-TEST_F(MotionMessagesTest, JointCommandsAreTheWheelsVelocityTargets) {
-  command_.joints[0].velocity = 4.5;
-  command_.joints[1].velocity = 5.5;
-  command_.joints[2].velocity = 99;
-  const msg::Float64MultiArray message = joint_commands(command_, robot_);
-  EXPECT_THAT(message.data, ElementsAre(4.5, 5.5));
-  ASSERT_EQ(message.layout.dim.size(), 1u);
-  EXPECT_EQ(message.layout.dim[0].label, "wheel");
-  EXPECT_EQ(message.layout.dim[0].size, 2u);
-  const msg::JointState targets = joint_targets(command_, robot_, stamp_);
-  EXPECT_THAT(targets.name, ElementsAre("left", "right"));
-  EXPECT_THAT(targets.velocity, ElementsAre(4.5, 5.5));
-}
-
-TEST_F(MotionMessagesTest, JointCommandsAreOfAllWheelsInTheOrderOfTheModel) {
-  robot_.wheels.push_back(WheelModel{.joint = 2, .side = Side::kRight});
-  command_.joints[2].velocity = 6.5;
-  EXPECT_THAT(joint_commands(command_, robot_).data, ElementsAre(0, 0, 6.5));
-  EXPECT_EQ(joint_commands(command_, robot_).layout.dim[0].size, 3u);
-  EXPECT_THAT(joint_targets(command_, robot_, stamp_).name, ElementsAre("left", "right", "mast"));
-}
-
 TEST_F(MotionMessagesTest, VelocityOutIsWhatTheLimitsLeft) {
   command_.requested.twist.linear[0] = 9;
   command_.twist_limited.linear[0] = 0.5;
@@ -226,34 +200,6 @@ TEST_F(MotionMessagesTest, VelocityOutIsWhatTheLimitsLeft) {
   EXPECT_EQ(message.header.frame_id, "base_link");
   EXPECT_EQ(message.twist.linear.x, 0.5);
   EXPECT_EQ(message.twist.angular.z, 0.2);
-}
-
-TEST_F(MotionMessagesTest, DriveStateComparesTheWheelsWithThePlanOfTwoCyclesBefore) {
-  CommandFrame plan;
-  plan.joints[0] = {.mode = JointMode::kEffort, .velocity = 4.5};
-  plan.joints[1] = {.mode = JointMode::kEffort, .velocity = 5.5};
-  command_.joints[0] = {.mode = JointMode::kEffort, .velocity = 9, .effort = 0.25};
-  command_.joints[1] = {.mode = JointMode::kEffort, .velocity = 9, .effort = -0.5};
-  command_.wheeled.velocity = {4.25, 5.75, 99};
-  const msg::DriveState message = drive_state(command_, plan, 0, robot_, stamp_);
-  EXPECT_EQ(message.header.stamp, stamp_);
-  EXPECT_THAT(message.name, ElementsAre("left", "right"));
-  EXPECT_THAT(message.wanted, ElementsAre(4.5, 5.5));
-  EXPECT_THAT(message.actual, ElementsAre(4.25, 5.75));
-  EXPECT_THAT(message.error, ElementsAre(0.25, -0.25));
-  EXPECT_THAT(message.effort, ElementsAre(0.25, -0.5));
-  EXPECT_THAT(message.reasons, testing::IsEmpty());
-  EXPECT_THAT(message.sentences, testing::IsEmpty());
-}
-
-TEST_F(MotionMessagesTest, DriveStateReportsEveryReasonWithSentenceAndRemedy) {
-  for (const BitName& row : kCommandReasonNames) {
-    const msg::DriveState message = drive_state(command_, command_, row.bit, robot_, stamp_);
-    EXPECT_THAT(message.reasons, ElementsAre(std::string(row.name)));
-    ASSERT_EQ(message.sentences.size(), 1u);
-    EXPECT_THAT(message.sentences[0], testing::StartsWith(with_programs(row.sentence, Programs{})));
-    EXPECT_THAT(message.sentences[0], testing::HasSubstr(with_programs(row.remedy, Programs{})));
-  }
 }
 
 TEST_F(MotionMessagesTest, TwistKeepsAllSixAxes) {
