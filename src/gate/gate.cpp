@@ -101,6 +101,7 @@ bool Gate::check_and_clamp(const GateInput& input) noexcept {
     report_.reasons = kGateFirstTick;
     return false;
   }
+  look_for_command(input);
   if (!permit_is_alive(input) || !permit_allows_motion(*input.permit, input.cycle) || !command_is_fresh(input) ||
       !command_is_valid(*input.command) || !samples_suffice(*input.command)) {
     return false;
@@ -123,6 +124,14 @@ bool Gate::check_and_clamp(const GateInput& input) noexcept {
     report_.verdict = held ? GateVerdict::kHeld : GateVerdict::kPassed;
   }
   return true;
+}
+
+void Gate::look_for_command(const GateInput& input) noexcept {
+  if (input.command_found == Lookup::kCorrupt) return;
+  const FrameHead& head = input.command->head;
+  const bool found = input.command_found == Lookup::kFrame && head.run == input.run;
+  if (!found || (head.cycle < input.cycle && input.cycle - head.cycle > kCommandLife))
+    report_.reasons |= kGateNoCommand;
 }
 
 bool Gate::permit_is_alive(const GateInput& input) noexcept {
@@ -163,7 +172,7 @@ bool Gate::permit_allows_motion(const Permit& permit, std::uint64_t cycle) noexc
       ramping_ = true;
       if (cycle > permit.ramp_until) report_.reasons |= kGateRampOver;
       if (cycle - ramp_began_ >= longest_ramp_) report_.reasons |= kGateRampTooLong;
-      return report_.reasons == 0;
+      return (report_.reasons & (kGateRampOver | kGateRampTooLong)) == 0;
     case PermitAction::kBrake:
       ramping_ = false;
       report_.reasons |= kGatePermitBrake;
@@ -180,16 +189,14 @@ bool Gate::command_is_fresh(const GateInput& input) noexcept {
     ++report_.refused;
     return false;
   }
-  const FrameHead& head = input.command->head;
-  const bool found = input.command_found == Lookup::kFrame && head.run == input.run;
-  if (found && head.cycle >= input.cycle) {
-    report_.reasons |= kGateFuture;
-    ++report_.refused;
+  if ((report_.reasons & kGateNoCommand) != 0) {
+    ++report_.missed;
     return false;
   }
-  if (!found || input.cycle - head.cycle > kCommandLife) {
-    report_.reasons |= kGateNoCommand;
-    ++report_.missed;
+  const FrameHead& head = input.command->head;
+  if (head.cycle >= input.cycle) {
+    report_.reasons |= kGateFuture;
+    ++report_.refused;
     return false;
   }
   report_.command_cycle = head.cycle;

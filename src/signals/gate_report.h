@@ -20,7 +20,7 @@ enum GateReason : std::uint64_t {
   kGatePermitExpired = 1u << 2,     ///< The newest permit expired: the monitor made no progress.
   kGatePermitBrake = 1u << 3,       ///< The permit orders the brake.
   kGateRampOver = 1u << 4,          ///< The ramp's last cycle has passed.
-  kGateNoCommand = 1u << 5,         ///< No command of cycles k-4 … k-1.
+  kGateNoCommand = 1u << 5,         ///< No command of cycles k-4 … k-1, whatever the permit says.
   kGateCommandHeld = 1u << 6,       ///< The command is older than k-1.
   kGateNotFinite = 1u << 7,         ///< NaN or infinity in the command.
   kGateChecksum = 1u << 8,          ///< The checksum of command or permit is wrong.

@@ -52,6 +52,7 @@ inline constexpr auto kMissingNodeNames = std::to_array<BitName>({
     {kMissingState, "state", "no state of this run was seen", "start {estimator}"},
     {kMissingCommand, "command", "no command of this run was seen", "start {controller}"},
     {kMissingMachine, "machine", "the machine is starting", "read in /diagnostics what its driver waits for"},
+    {kMissingGate, "gate", "the driver has not found permits and commands yet", "wait, it looks ten times a second"},
 });
 
 inline constexpr auto kGateReasonNames = std::to_array<BitName>({

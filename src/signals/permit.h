@@ -74,6 +74,7 @@ enum MissingNode : std::uint64_t {
   kMissingState = 2,
   kMissingCommand = 4,
   kMissingMachine = 8,  ///< The driver reports DriverState::kStarting.
+  kMissingGate = 16,    ///< The gate has not found the permits and commands that are there.
 };
 
 struct Permit {

@@ -48,6 +48,25 @@ TEST_F(RunTest, StateAndCommandNeedToBeSeenInOneCycle) {
   EXPECT_EQ(permit_.since_cycle, cycle());
 }
 
+/// The driver maps a new channel up to 100 ms later than the monitor.
+TEST_F(RunTest, InitWaitsForAGateThatFindsWhatTheMonitorFinds) {
+  for (const std::uint64_t missed : {kGateNoPermit, kGateNoCommand}) {
+    new_run();
+    gate_misses_ = missed;
+    steps(10 * kLoss);
+    EXPECT_EQ(permit_.state, SupervisorState::kInit);
+    EXPECT_EQ(permit_.missing, std::uint64_t{kMissingGate});
+    EXPECT_EQ(permit_.causes, 0u);
+    gate_misses_ = 0;
+    step();
+    EXPECT_EQ(permit_.state, SupervisorState::kReady);
+    gate_misses_ = missed;
+    step();
+    EXPECT_EQ(permit_.missing, 0u) << "a loss, which is a cause of a stop";
+    gate_misses_ = 0;
+  }
+}
+
 TEST_F(RunTest, AStopInInitLatches) {
   new_run();
   input_.command = nullptr;

@@ -8,6 +8,7 @@ void Presence::step(const MonitorInput& input, std::uint64_t elapsed, ActiveCaus
   missing_ &= ~static_cast<std::uint64_t>(kMissingSensors);
   if (input.state_seen) missing_ &= ~static_cast<std::uint64_t>(kMissingState);
   if (command != nullptr) missing_ &= ~static_cast<std::uint64_t>(kMissingCommand);
+  if (!gate_found_) look_at_gate(input);
 
   const bool command_awaited = (missing_ & kMissingCommand) == 0;
   const bool state_awaited = (missing_ & kMissingState) == 0;
@@ -20,6 +21,13 @@ void Presence::step(const MonitorInput& input, std::uint64_t elapsed, ActiveCaus
   add_if_lost(kCauseEstimatorLost, cycle - state_seen_, out);
   add_if_lost(kCauseCommandStale, stale_, out);
   if (elapsed > loss_cycles_) add_if_lost(kCauseMonitorLate, elapsed, out);
+}
+
+void Presence::look_at_gate(const MonitorInput& input) noexcept {
+  const std::uint64_t reasons = input.sensors->gate.reasons;
+  const bool deaf = (reasons & kGateNoPermit) != 0 || (input.command != nullptr && (reasons & kGateNoCommand) != 0);
+  missing_ = deaf ? missing_ | kMissingGate : missing_ & ~static_cast<std::uint64_t>(kMissingGate);
+  gate_found_ = (reasons & (kGateFirstTick | kGateNoPermit | kGateNoCommand)) == 0;
 }
 
 void Presence::add_if_lost(StopCause cause, std::uint64_t cycles, ActiveCauses& out) const noexcept {

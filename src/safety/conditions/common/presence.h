@@ -6,6 +6,9 @@
 ///   command stale    in each of the last loss_cycles cycles the command was computed from a state of another cycle
 ///                    than its own (CommandFrame::state_cycle ≠ head.cycle), although that state existed: a controller
 ///                    that publishes old content under a new head, or that is always late
+///   gate missing     its ticks of this run report that they find no permit, or no command although one is there. The
+///                   driver looks for new channels ten times a second, and would refuse in the meantime what READY
+///                   promises
 ///   monitor late     k − k_last > loss_cycles between two steps of one run: the other losses would have been detected
 ///                    too late
 ///
@@ -32,10 +35,12 @@ class Presence {
   std::uint64_t missing() const noexcept { return missing_; }
 
  private:
+  void look_at_gate(const MonitorInput& input) noexcept;
   void add_if_lost(StopCause cause, std::uint64_t cycles, ActiveCauses& out) const noexcept;
 
   std::uint64_t loss_cycles_;
   std::uint64_t missing_ = kMissingSensors | kMissingState | kMissingCommand;
+  bool gate_found_ = false;         ///< permit and command
   std::uint64_t command_seen_ = 0;  ///< last cycle with a command, or without a state
   std::uint64_t state_seen_ = 0;    ///< last cycle with a state
   std::uint64_t stale_ = 0;         ///< cycles in a row
