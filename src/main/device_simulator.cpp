@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "files/ascii.h"
+#include "robots/robot_kind.h"
 #include "ros/messages/motion_messages.h"
 #include "ros/messages/simulation_messages.h"
 #include "ros/messages/time_map.h"
@@ -28,7 +29,8 @@ class DeviceSimulatorNode final : public Node {
  public:
   explicit DeviceSimulatorNode(const Setup& setup)
       : setup_(setup),
-        simulator_(make_device_simulator(setup.parameters, *setup.machine)),
+        simulator_(make_device_simulator(setup.parameters, *setup.machine,
+                                         compose(setup.parameters, *setup.machine)->brakes())),
         pace_(setup.parameters.report.truth_rate) {}
   ~DeviceSimulatorNode() override { end(); }
 

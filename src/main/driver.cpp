@@ -11,8 +11,8 @@ int main(int argc, char** argv) {
        .purpose = "Connects the loop with a real machine (robot.driver). The last check of every command is "
                   "here.",
        .make = [](const Setup& setup) {
-         return make_driver_node(setup, [](const Setup& read) {
-           return make_driver(read.parameters, drive_train_of(*read.machine), [] {
+         return make_driver_node(setup, [](const Parameters& parameters, const Robot& robot) {
+           return make_driver(parameters, robot.machine(), robot.brakes(), [] {
              return CanTime{monotonic_ns(), utc_ns()};
            });
          });

@@ -9,8 +9,8 @@ int main(int argc, char** argv) {
                    .purpose = "Simulates the robot: motors, sensors and the world around it, in MuJoCo. The last check "
                               "of every command is here.",
                    .make = [](const Setup& setup) {
-                     return make_driver_node(setup, [](const Setup& read) {
-                       return make_simulated_machine(read.parameters, *read.machine);
+                     return make_driver_node(setup, [](const Parameters& parameters, const Robot& robot) {
+                       return make_simulated_machine(parameters, robot.machine(), robot.brakes());
                      });
                    }});
 }

@@ -60,6 +60,10 @@ MachineNeeds DifferentialDrive::needs() const {
   return {.modes = {JointMode::kBrake, JointMode::kEffort}, .inputs = {MachineInput::kJointMotion}};
 }
 
+std::vector<Brake> DifferentialDrive::brakes() const {
+  return brakes_of_slow_drives(machine_, parameters_.loop.period());
+}
+
 GateParameters DifferentialDrive::gate() const {
   GateParameters gate{.stops = std::vector<StopAction>(machine_.joints.size()),
                       .longest_ramp = longest_ramp(parameters_.safety, parameters_.loop.period())};

@@ -50,7 +50,7 @@ struct ClosedLoop::Parts {
       : parameters(given),
         owner(std::move(composed)),
         robot(drivable(*owner)),
-        machine(make_simulated_machine(given, robot.machine())),
+        machine(make_simulated_machine(given, robot.machine(), robot.brakes())),
         driver(*machine, robot.machine(), {sensors.writer, FrameWriter<TruthFrame>(), &command.reader, &permit.reader},
                given.loop.period_ns(), nullptr, robot.gate()),
         estimator(robot.make_estimator(), robot.machine().hash, sensors.reader, state.writer, nullptr),

@@ -4,18 +4,21 @@
 
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "configuration/parameters.h"
 #include "drivers/can/can_bus.h"
 #include "drivers/driver.h"
-#include "machine/wheeled/drive_train.h"
+#include "gate/brake_law.h"
+#include "machine/machine_model.h"
 
 namespace robot_control {
 
 using DriverClock = std::function<CanTime()>;
 
-/// `clock` states the present time and is called in each cycle. Throws DriverError, and ParameterError with all
-/// problems of the driver's own file.
-std::unique_ptr<Driver> make_driver(const Parameters& parameters, const DriveTrain& robot, DriverClock clock);
+/// `brakes` are those of the robot's kind (robots/robot.h). `clock` states the present time and is called in each
+/// cycle. Throws DriverError, and ParameterError with all problems of the driver's own file.
+std::unique_ptr<Driver> make_driver(const Parameters& parameters, const MachineModel& machine,
+                                    const std::vector<Brake>& brakes, DriverClock clock);
 
 }  // namespace robot_control

@@ -27,7 +27,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
         imu_pace_(report().imu_rate),
         truth_pace_(report().truth_rate),
         clock_pace_(kClockRate) {
-    auto driver = with_imu(make(setup));
+    auto driver = with_imu(make(parameters(), composed()));
     driver_ = driver.get();
     description_ = std::make_unique<PublishedDescription>(robot(), parameters().urdf);
     process().open_driver(std::move(driver));

@@ -10,9 +10,9 @@
 
 #include "configuration/drive_file.h"
 #include "drivers/can/can_driver.h"
+#include "drivers/drive_motors.h"
 #include "drivers/example/example_driver.h"
 #include "drivers/mujoco/mujoco_plant.h"
-#include "gate/wheeled/wheel_stop.h"
 #include "simulation/devices/can_front.h"
 #include "simulation/devices/example_board.h"
 #include "simulation/machines/driven_plant.h"
@@ -20,17 +20,16 @@
 namespace robot_control {
 namespace {
 
-CanParameters can_of(const Parameters& parameters, const DriveTrain& robot) {
-  std::vector<std::string> joints;
-  for (const WheelModel& wheel : robot.wheels) joints.push_back(robot.joints[wheel.joint].name);
-  return read_drive_file(parameters.drives, joints, parameters.loop.rate);
+std::unique_ptr<CanFront> can_devices(const CanParameters& can, const Parameters& parameters, const DriveMotors& motors,
+                                      CanSocket socket) {
+  return std::make_unique<CanFront>(can, motors.brakes, parameters.loop.period(), parameters.plant.seed,
+                                    std::move(socket));
 }
 
-std::unique_ptr<CanFront> can_devices(const CanParameters& can, const Parameters& parameters, const DriveTrain& robot,
-                                      CanSocket socket) {
-  const double period = parameters.loop.period();
-  return std::make_unique<CanFront>(can, brakes_of_slow_drives(robot, period), period, parameters.plant.seed,
-                                    std::move(socket));
+ExampleParameters board_of(const Parameters& parameters) {
+  ExampleParameters board;
+  read_driver_file(parameters.drives, "board", keys(board));
+  return board;
 }
 
 /// Returns the two ends of a line, whose messages keep their borders.
@@ -41,59 +40,47 @@ std::array<int, 2> line_ends() {
   return ends;
 }
 
-/// The motors and the board of drivers/example.
-struct ExampleMotors {
-  ExampleParameters board;
-  std::vector<Brake> brakes;
-  std::vector<double> effort_limits;
-};
-
-ExampleMotors example_motors(const Parameters& parameters, const DriveTrain& robot) {
-  ExampleMotors motors{
-      .board = {}, .brakes = brakes_of_slow_drives(robot, parameters.loop.period()), .effort_limits = {}};
-  read_driver_file(parameters.drives, "board", keys(motors.board));
-  for (const WheelModel& wheel : robot.wheels) motors.effort_limits.push_back(robot.joints[wheel.joint].effort_limit);
-  return motors;
-}
-
-std::unique_ptr<Driver> make_plant_behind_board(const Parameters& parameters, const DriveTrain& robot) {
+std::unique_ptr<Driver> make_plant_behind_board(const Parameters& parameters, const MachineModel& machine,
+                                                const DriveMotors& motors) {
   const double period = parameters.loop.period();
-  const ExampleMotors motors = example_motors(parameters, robot);
+  const ExampleParameters parameters_of_board = board_of(parameters);
   const auto [driver_end, board_end] = line_ends();
   auto board = std::make_unique<ExampleBoard>(motors.brakes, motors.effort_limits, period, board_end);
-  auto driver = std::make_unique<ExampleDriver>(motors.board, motors.brakes, motors.effort_limits, robot.joints.size(),
-                                                period, driver_end);
-  return std::make_unique<DrivenPlant>(robot, parameters.plant, period, std::move(board), std::move(driver));
+  auto driver = std::make_unique<ExampleDriver>(parameters_of_board, motors.brakes, motors.effort_limits,
+                                                motors.joint_count, period, driver_end);
+  return std::make_unique<DrivenPlant>(machine, parameters.plant, period, std::move(board), std::move(driver));
 }
 
 }  // namespace
 
-std::unique_ptr<Driver> make_simulated_machine(const Parameters& parameters, const MachineModel& machine) {
+std::unique_ptr<Driver> make_simulated_machine(const Parameters& parameters, const MachineModel& machine,
+                                               const std::vector<Brake>& brakes) {
   const double period = parameters.loop.period();
   if (parameters.driver == DriverChoice::kMujoco && parameters.drives.empty())
     return std::make_unique<MujocoPlant>(machine, parameters.plant, period);
-  const DriveTrain& robot = drive_train_of(machine);
-  if (parameters.driver == DriverChoice::kExample) return make_plant_behind_board(parameters, robot);
-  const CanParameters can = can_of(parameters, robot);
+  const DriveMotors motors = drive_motors(machine, brakes);
+  if (parameters.driver == DriverChoice::kExample) return make_plant_behind_board(parameters, machine, motors);
+  const CanParameters can = read_drive_file(parameters.drives, motors.joints, parameters.loop.rate);
   const auto [driver_end, device_end] = line_ends();
-  std::unique_ptr<DeviceFront> devices = can_devices(can, parameters, robot, CanSocket::line_end(device_end));
+  std::unique_ptr<DeviceFront> devices = can_devices(can, parameters, motors, CanSocket::line_end(device_end));
   const auto clock = [front = devices.get()] { return CanTime{.time_ns = front->now_ns(), .utc_ns = front->now_ns()}; };
-  auto driver = std::make_unique<CanDriver>(can, brakes_of_slow_drives(robot, period), robot.joints.size(), period,
+  auto driver = std::make_unique<CanDriver>(can, motors.brakes, motors.joint_count, period,
                                             CanSocket::line_end(driver_end), clock);
-  return std::make_unique<DrivenPlant>(robot, parameters.plant, period, std::move(devices), std::move(driver));
+  return std::make_unique<DrivenPlant>(machine, parameters.plant, period, std::move(devices), std::move(driver));
 }
 
-std::unique_ptr<DeviceSimulator> make_device_simulator(const Parameters& parameters, const MachineModel& machine) {
-  const DriveTrain& robot = drive_train_of(machine);
+std::unique_ptr<DeviceSimulator> make_device_simulator(const Parameters& parameters, const MachineModel& machine,
+                                                       const std::vector<Brake>& brakes) {
+  const double period = parameters.loop.period();
+  const DriveMotors motors = drive_motors(machine, brakes);
   if (parameters.driver == DriverChoice::kExample) {
-    const ExampleMotors motors = example_motors(parameters, robot);
-    auto board = std::make_unique<ExampleBoard>(motors.brakes, motors.effort_limits, parameters.loop.period(),
-                                                bind_board(motors.board.address));
-    return std::make_unique<DeviceSimulator>(robot, parameters.plant, parameters.loop.period(), std::move(board));
+    auto board = std::make_unique<ExampleBoard>(motors.brakes, motors.effort_limits, period,
+                                                bind_board(board_of(parameters).address));
+    return std::make_unique<DeviceSimulator>(machine, parameters.plant, period, std::move(board));
   }
-  const CanParameters can = can_of(parameters, robot);
-  auto devices = can_devices(can, parameters, robot, CanSocket::open(can.bus.address));
-  return std::make_unique<DeviceSimulator>(robot, parameters.plant, parameters.loop.period(), std::move(devices));
+  const CanParameters can = read_drive_file(parameters.drives, motors.joints, parameters.loop.rate);
+  auto devices = can_devices(can, parameters, motors, CanSocket::open(can.bus.address));
+  return std::make_unique<DeviceSimulator>(machine, parameters.plant, period, std::move(devices));
 }
 
 }  // namespace robot_control
