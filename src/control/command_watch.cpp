@@ -50,18 +50,18 @@ void CommandWatch::set_timeout(double timeout) noexcept {
   life_ = cycles_left(timeout_, last_.age_ns, period_);
 }
 
-void CommandWatch::accept(const VelocityCommand& request, std::uint64_t cycle) noexcept {
+void CommandWatch::accept(const VelocityCommand& request, std::uint64_t parts, std::uint64_t cycle) noexcept {
   request_cycle_ = cycle;
   life_ = cycles_left(timeout_, request.age_ns, period_);
   const bool good = finite(request.content);
   reason_ = good ? 0u : std::uint64_t{kReasonRefused};
   requested_ = good ? request.content : Request{};
-  ignored_ = parts_of(requested_) & ~executable_;
+  ignored_ = good ? parts & ~executable_ : 0;
   if (ignored_ != 0) ++partial_;
   if (!good) ++not_finite_;
 }
 
-void CommandWatch::note_messages(const VelocityCommand& request, std::uint64_t cycle) noexcept {
+void CommandWatch::note_messages(const VelocityCommand& request, std::uint64_t parts, std::uint64_t cycle) noexcept {
   const bool first = !first_cycle_.has_value();
   if (first) first_cycle_ = message_cycle_ = cycle;
   const bool refused =
@@ -69,18 +69,18 @@ void CommandWatch::note_messages(const VelocityCommand& request, std::uint64_t c
   const bool accepted = request.count != last_.count && request.contested != kNoMessage;
   if (!refused && !accepted) return;
   message_cycle_ = cycle;
-  zero_requested_ =
-      !first && !refused && parts_of(request.content) == 0 && request.contested == 0 && request.many_senders == 0;
+  zero_requested_ = !first && !refused && parts == 0 && request.contested == 0 && request.many_senders == 0;
   if (zero_requested_) ++zero_requests_;
 }
 
 const Request& CommandWatch::step(const VelocityCommand& request, std::uint64_t cycle) noexcept {
-  note_messages(request, cycle);
+  const std::uint64_t parts = request.count != last_.count ? parts_of(request.content) : 0;
+  note_messages(request, parts, cycle);
   if (request.stale != last_.stale) without_effect_ |= kReasonStale;
   if (request.revoked != last_.revoked) without_effect_ |= kReasonRevoked;
   if (request.count != last_.count) {
     without_effect_ = 0;
-    accept(request, cycle);
+    accept(request, parts, cycle);
   }
   if (request.many_senders != 0) {
     reason_ = kReasonManySenders;

@@ -78,8 +78,9 @@ class CommandWatch {
   std::uint64_t silence_needed() const noexcept { return silence_needed_; }
 
  private:
-  void accept(const VelocityCommand& request, std::uint64_t cycle) noexcept;
-  void note_messages(const VelocityCommand& request, std::uint64_t cycle) noexcept;
+  /// `parts` are those of a new command.
+  void accept(const VelocityCommand& request, std::uint64_t parts, std::uint64_t cycle) noexcept;
+  void note_messages(const VelocityCommand& request, std::uint64_t parts, std::uint64_t cycle) noexcept;
 
   double timeout_;
   double period_;
