@@ -24,7 +24,7 @@ select_cases false
 # their full name, _ctest_robot_control_rostest_tests_system_drives.test, contains the project's.
 ctest_pattern() {  # NAME …
   local IFS='|'
-  echo "^(_ctest_robot_control_rostest_tests_.*|test_.*)?($*)"
+  echo "^(_ctest_robot_control_rostest_(tests_.*)?|test_.*)?($*)"
 }
 
 pytest_expression() {  # NAME …

@@ -10,15 +10,18 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <future>
 #include <mutex>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "rt/crash_report.h"
+#include "rt/unlock_libraries.h"
 #include "rt/wait_count.h"
 
 namespace robot_control {
@@ -55,6 +58,9 @@ std::string memory_refusal(const std::string& why) {
   return "memory is not locked (" + why + "; remedy: '" + user_name() + " - memlock unlimited' or CAP_IPC_LOCK)";
 }
 
+/// These libraries come with ROS and with the readers of meshes. They are 60 MB of each node, which no loop calls.
+constexpr auto kNotOfTheLoop = std::to_array<std::string_view>({"libassimp.", "libdraco.", "libicu", "libpython"});
+
 RealtimeReport lock_memory() {
   RealtimeReport report;
   const rlim_t limit = raise_limit(RLIMIT_MEMLOCK, RLIM_INFINITY);
@@ -69,6 +75,7 @@ RealtimeReport lock_memory() {
     return report;
   }
   report.memory_lock = Grant::kGranted;
+  unlock_libraries(kNotOfTheLoop);
   mallopt(M_ARENA_MAX, 2);
   mallopt(M_TRIM_THRESHOLD, -1);
   pthread_attr_t attributes;

@@ -57,8 +57,9 @@ class RealtimeError : public std::runtime_error {
 /// Locks all present and future memory of the process with CAP_IPC_LOCK or an unlimited RLIMIT_MEMLOCK. Under a finite
 /// limit nothing is locked, because later mappings and threads would fail at that limit. Locked memory is resident
 /// memory. So, when memory is locked, the allocator keeps two arenas that it never trims, and later threads get stacks
-/// of 1 MiB. Repeated calls return the result of the first call. With kOff nothing is requested. A refusal is not
-/// thrown here, but by RealtimeThread, which has it in its report.
+/// of 1 MiB. Code of large libraries that no loop calls is not locked (unlock_libraries.h). Repeated calls return the
+/// result of the first call. With kOff nothing is requested. A refusal is not thrown here, but by RealtimeThread, which
+/// has it in its report.
 RealtimeReport prepare_process(RealtimePolicy policy);
 
 struct RealtimeParameters {

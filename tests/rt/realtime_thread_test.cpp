@@ -10,10 +10,16 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <string_view>
 #include <thread>
 
 #include "rt/thread_priority.h"
+#include "rt/unlock_libraries.h"
 #include "support/child_process.h"
 #include "support/file_content.h"
 #include "support/temporary_folder.h"
@@ -52,6 +58,16 @@ Self self() {
   pthread_getname_np(pthread_self(), name, sizeof name);
   found.name = name;
   return found;
+}
+
+/// Returns the locked memory of the process, as the kernel counts it.
+std::size_t locked_bytes() {
+  std::ifstream status("/proc/self/status");
+  for (std::string key; status >> key; status.ignore(1000, '\n')) {
+    std::size_t kilobytes = 0;
+    if (key == "VmLck:" && status >> kilobytes) return kilobytes * 1024;
+  }
+  return 0;
 }
 
 /// Drops every limit and capability that would grant anything. Returns false if that is not possible.
@@ -294,6 +310,19 @@ TEST(PrepareProcess, LaterThreadsHaveSmallStacksWhereMemoryIsLocked) {
     });
     later.join();
     return bytes <= 2u << 20 ? 0 : 1;
+  });
+}
+
+TEST(PrepareProcess, AnUnlockedLibraryIsNoLockedMemoryAndStillWorks) {
+  expect_in_child([] {
+    prepare_process(RealtimePolicy::kPreferred);
+    const std::size_t before = locked_bytes();
+    if (before == 0) return kSkip;
+    constexpr std::array<std::string_view, 1> kNames{"libm."};
+    const std::size_t unlocked = unlock_libraries(kNames);
+    if (unlocked == 0 || locked_bytes() + unlocked != before) return 1;
+    const volatile double angle = 0.5;
+    return std::abs(std::sin(angle) - 0.479425538604203) < 1e-15 && locked_bytes() < before ? 0 : 2;
   });
 }
 
