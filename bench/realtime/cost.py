@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
 import socket
 import subprocess
 import tempfile
@@ -78,7 +77,7 @@ def bench(_blocks: int, _programs: Path, say: Callable[[str], None]) -> tuple[li
             size = {name: memory(pid) for name, pid in ids.items()}
         finally:
             for process in reversed(processes.values()):
-                process.send_signal(signal.SIGINT)
+                process.terminate()  # SIGINT may be ignored: that of a shell's background job is
                 process.wait(20)
     loop = sum(percent[node] for node in LOOP)
     judged = [

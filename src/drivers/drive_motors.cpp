@@ -9,12 +9,15 @@ DriveMotors drive_motors(const MachineModel& machine, const std::vector<Brake>& 
   motors.brakes = brakes;
   motors.joint_count = machine.joints.size();
   for (const std::size_t joint : driven_joint_indices(machine)) {
+    if (joint != motors.joints.size())
+      throw DriverError("joint '" + machine.joints[motors.joints.size()].name + "' is not driven, but stands before '" +
+                        machine.joints[joint].name + "': the robot's kind has to put its driven joints first");
     motors.joints.push_back(machine.joints[joint].name);
     motors.effort_limits.push_back(machine.joints[joint].effort_limit);
   }
   if (brakes.size() != motors.joints.size())
-    throw DriverError("robot.driver: no driver of real drives moves a robot with " + machine.parts() +
-                      " yet: leave robot.driver at mujoco and robot.drives empty");
+    throw DriverError("robot.driver, robot.drives: drives that take torques do not move a robot with " +
+                      machine.parts() + " yet: set robot.driver to mujoco and leave robot.drives empty");
   return motors;
 }
 

@@ -17,8 +17,8 @@ struct DriveMotors {
   std::size_t joint_count = 0;        ///< of the machine, the joints that are not driven included
 };
 
-/// `brakes` are those of the robot's kind, one for each driven joint. Throws DriverError if there are none, because
-/// then only drives that hold a position carry this robot.
+/// `brakes` are those of the robot's kind, one for each driven joint, which are the first ones of the machine. Throws
+/// DriverError if there are none: drives that only take torques then do not stop this robot.
 DriveMotors drive_motors(const MachineModel& machine, const std::vector<Brake>& brakes);
 
 }  // namespace robot_control

@@ -101,7 +101,7 @@ bool Gate::check_and_clamp(const GateInput& input) noexcept {
     report_.reasons = kGateFirstTick;
     return false;
   }
-  look_for_command(input);
+  if (finds_command(input)) report_.command_cycle = input.command->head.cycle;
   if (!permit_is_alive(input) || !permit_allows_motion(*input.permit, input.cycle) || !command_is_fresh(input) ||
       !command_is_valid(*input.command) || !samples_suffice(*input.command)) {
     return false;
@@ -126,12 +126,10 @@ bool Gate::check_and_clamp(const GateInput& input) noexcept {
   return true;
 }
 
-void Gate::look_for_command(const GateInput& input) noexcept {
-  if (input.command_found == Lookup::kCorrupt) return;
+bool Gate::finds_command(const GateInput& input) const noexcept {
   const FrameHead& head = input.command->head;
-  const bool found = input.command_found == Lookup::kFrame && head.run == input.run;
-  if (!found || (head.cycle < input.cycle && input.cycle - head.cycle > kCommandLife))
-    report_.reasons |= kGateNoCommand;
+  return input.command_found == Lookup::kFrame && head.run == input.run && head.cycle < input.cycle &&
+         input.cycle - head.cycle <= kCommandLife;
 }
 
 bool Gate::permit_is_alive(const GateInput& input) noexcept {
@@ -172,7 +170,7 @@ bool Gate::permit_allows_motion(const Permit& permit, std::uint64_t cycle) noexc
       ramping_ = true;
       if (cycle > permit.ramp_until) report_.reasons |= kGateRampOver;
       if (cycle - ramp_began_ >= longest_ramp_) report_.reasons |= kGateRampTooLong;
-      return (report_.reasons & (kGateRampOver | kGateRampTooLong)) == 0;
+      return report_.reasons == 0;
     case PermitAction::kBrake:
       ramping_ = false;
       report_.reasons |= kGatePermitBrake;
@@ -189,17 +187,17 @@ bool Gate::command_is_fresh(const GateInput& input) noexcept {
     ++report_.refused;
     return false;
   }
-  if ((report_.reasons & kGateNoCommand) != 0) {
-    ++report_.missed;
-    return false;
-  }
   const FrameHead& head = input.command->head;
-  if (head.cycle >= input.cycle) {
+  if (input.command_found == Lookup::kFrame && head.run == input.run && head.cycle >= input.cycle) {
     report_.reasons |= kGateFuture;
     ++report_.refused;
     return false;
   }
-  report_.command_cycle = head.cycle;
+  if (!finds_command(input)) {
+    report_.reasons |= kGateNoCommand;
+    ++report_.missed;
+    return false;
+  }
   if (input.cycle - head.cycle > 1) report_.reasons |= kGateCommandHeld;
   return true;
 }

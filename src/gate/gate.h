@@ -83,10 +83,9 @@ class Gate {
   std::uint64_t elapsed_at(std::uint64_t cycle) const noexcept {
     return last_cycle_ && cycle > *last_cycle_ ? cycle - *last_cycle_ : 1;
   }
-  /// Adds kGateNoCommand, whatever the permit says: the monitor waits for the first command that the gate finds.
-  void look_for_command(const GateInput& input) noexcept;
   /// All checks; false: brake. Else `commands_` is the clamped command and the verdict is set.
   bool check_and_clamp(const GateInput& input) noexcept;
+  bool finds_command(const GateInput& input) const noexcept;
   bool permit_is_alive(const GateInput& input) noexcept;
   bool permit_allows_motion(const Permit& permit, std::uint64_t cycle) noexcept;
   bool command_is_fresh(const GateInput& input) noexcept;

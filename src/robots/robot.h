@@ -69,8 +69,8 @@ class Robot {
   /// Returns the modes and inputs without which the laws of this kind do not work on any machine.
   virtual MachineNeeds needs() const = 0;
 
-  /// Returns the brakes of the driven joints for drives that are given a torque once in each period. Returns none if
-  /// such drives do not stop a robot of this kind.
+  /// Returns the brakes of the driven joints, which come first, for drives that are given a torque once in each period.
+  /// Returns none if such drives do not stop a robot of this kind.
   virtual std::vector<Brake> brakes() const { return {}; }
 
   /// Returns the stop action of each joint, and how long a ramp may last.

@@ -58,8 +58,9 @@ std::string memory_refusal(const std::string& why) {
   return "memory is not locked (" + why + "; remedy: '" + user_name() + " - memlock unlimited' or CAP_IPC_LOCK)";
 }
 
-/// These libraries come with ROS and with the readers of meshes. They are 60 MB of each node, which no loop calls.
-constexpr auto kNotOfTheLoop = std::to_array<std::string_view>({"libassimp.", "libdraco.", "libicu", "libpython"});
+/// These libraries come with ROS and with the readers of meshes. No loop calls them.
+constexpr auto kNotOfTheLoop = std::to_array<std::string_view>(
+    {"libassimp.", "libdraco.", "libicudata.", "libicui18n.", "libicuuc.", "libpython3."});
 
 RealtimeReport lock_memory() {
   RealtimeReport report;

@@ -20,9 +20,23 @@ bool wanted(const Search& search, std::string_view path) noexcept {
   return std::ranges::any_of(search.names, [&](std::string_view name) { return file.starts_with(name); });
 }
 
+/// Is code changed when the library is loaded? Then its pages cannot be read from the file again.
+bool relocates_code(const dl_phdr_info& library) noexcept {
+  for (const ElfW(Phdr) & segment : std::span(library.dlpi_phdr, library.dlpi_phnum)) {
+    if (segment.p_type != PT_DYNAMIC) continue;
+    const auto* entry =
+        reinterpret_cast<const ElfW(Dyn)*>(library.dlpi_addr + segment.p_vaddr);  // NOLINT(performance-no-int-to-ptr)
+    for (; entry->d_tag != DT_NULL; ++entry) {
+      if (entry->d_tag == DT_TEXTREL || (entry->d_tag == DT_FLAGS && (entry->d_un.d_val & DF_TEXTREL) != 0))
+        return true;
+    }
+  }
+  return false;
+}
+
 int unlock(dl_phdr_info* library, std::size_t /*size*/, void* argument) {
   auto& search = *static_cast<Search*>(argument);
-  if (!wanted(search, library->dlpi_name)) return 0;
+  if (!wanted(search, library->dlpi_name) || relocates_code(*library)) return 0;
   const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
   for (const ElfW(Phdr) & segment : std::span(library->dlpi_phdr, library->dlpi_phnum)) {
     if (segment.p_type != PT_LOAD || (segment.p_flags & PF_W) != 0) continue;

@@ -16,12 +16,17 @@
 /// silent and something else happened (SensorSilence, a corrupt frame, a request of the operator). It evaluates no
 /// condition on sensors, refuses resets and latches emergency stops. An equal step after it latches nothing.
 ///
-/// States: INIT until sensors, state and command of this run were each received once and the gate has found permits and
-/// commands. The machine is then also ready, and motion is released (motion_release.h). While the machine is starting,
-/// no condition on joints and IMU is evaluated. READY and DRIVE permit motion until a node is restarted or a cause
-/// latches a stop (fixed_reactions.h, SafetyParameters); STOPPING permits a ramp at most, STOPPED and FAULT nothing:
-/// supervisor_table.h. The permit of cycle k expires after cycle k + kPermitLife, so a monitor that makes no progress
-/// permits no motion.
+/// INIT ends when all of these hold:
+///
+///   sensors, state and command of this run were each received once
+///   the gate has found a permit and a command
+///   the machine is ready
+///   motion is released (motion_release.h)
+///
+/// While the machine is starting, no condition on joints and IMU is evaluated. READY and DRIVE permit motion until a
+/// node is restarted or a cause latches a stop (fixed_reactions.h, SafetyParameters); STOPPING permits a ramp at most,
+/// STOPPED and FAULT nothing: supervisor_table.h. The permit of cycle k expires after cycle k + kPermitLife, so a
+/// monitor that makes no progress permits no motion.
 ///
 /// Driver lost latches in two cases.
 ///   wall clock  no current sensor frame arrives

@@ -20,7 +20,7 @@ enum GateReason : std::uint64_t {
   kGatePermitExpired = 1u << 2,     ///< The newest permit expired: the monitor made no progress.
   kGatePermitBrake = 1u << 3,       ///< The permit orders the brake.
   kGateRampOver = 1u << 4,          ///< The ramp's last cycle has passed.
-  kGateNoCommand = 1u << 5,         ///< No command of cycles k-4 … k-1, whatever the permit says.
+  kGateNoCommand = 1u << 5,         ///< No command of cycles k-4 … k-1.
   kGateCommandHeld = 1u << 6,       ///< The command is older than k-1.
   kGateNotFinite = 1u << 7,         ///< NaN or infinity in the command.
   kGateChecksum = 1u << 8,          ///< The checksum of command or permit is wrong.
@@ -40,7 +40,7 @@ struct GateReport {
   std::uint64_t cycle = 0;  ///< k, of the tick.
   GateVerdict verdict = GateVerdict::kBrake;
   std::uint64_t reasons = kGateFirstTick;
-  std::uint64_t command_cycle = 0;  ///< Cycle of the command that was used; meaningless if none was.
+  std::uint64_t command_cycle = 0;  ///< Cycle of the last command that was found in this run, used or not; 0: none.
   std::uint64_t permit_cycle = 0;   ///< Cycle of the permit that was used; meaningless if none was.
   std::uint64_t held = 0;           ///< Ticks of this run with a held command.
   std::uint64_t missed = 0;         ///< Ticks of this run that braked because no command was available, except tick 0.

@@ -40,7 +40,7 @@ inline constexpr auto kResetRefusalNames = std::to_array<BitName>({
     {kRefusalCommand, "command", "a motion is still being requested, or it is not certain yet that none is",
      "stop the sender on {request} and wait for {request_timeout}, or let it send zero"},
     {kRefusalMoving, "moving", "the robot has not come to rest", "wait until every joint stands"},
-    {kRefusalInit, "init", "the monitor still waits for a node", "start the missing node"},
+    {kRefusalInit, "init", "the monitor still waits", "read in safety_status what is missing"},
     {kRefusalSilent, "silent", "no sensor frame comes", "look whether {driver} runs, then ask again"},
     {kRefusalPaused, "paused", "the simulation is paused", "let it run ({driver}/set_pause), then ask again"},
     {kRefusalSliding, "sliding", "the wheels stand, but the robot may still slide",
@@ -52,7 +52,7 @@ inline constexpr auto kMissingNodeNames = std::to_array<BitName>({
     {kMissingState, "state", "no state of this run was seen", "start {estimator}"},
     {kMissingCommand, "command", "no command of this run was seen", "start {controller}"},
     {kMissingMachine, "machine", "the machine is starting", "read in /diagnostics what its driver waits for"},
-    {kMissingGate, "gate", "the driver has not found permits and commands yet", "wait, it looks ten times a second"},
+    {kMissingGate, "gate", "the driver does not read permits and commands yet", "wait 0.1 s; if it stays, look whether {driver} gets its core"},
 });
 
 inline constexpr auto kGateReasonNames = std::to_array<BitName>({

@@ -62,7 +62,7 @@ enum ResetRefusal : std::uint64_t {
   kRefusalCauseActive = 1u << 0,  ///< A cause in `active` persists.
   kRefusalCommand = 1u << 1,      ///< A motion is requested, or there is no evidence that none is.
   kRefusalMoving = 1u << 2,       ///< A wheel still turns.
-  kRefusalInit = 1u << 3,         ///< The monitor still waits for a node.
+  kRefusalInit = 1u << 3,         ///< The monitor still waits.
   kRefusalSilent = 1u << 4,       ///< No sensor frame arrives, so nothing can be checked.
   kRefusalPaused = 1u << 5,       ///< The simulated machine is paused, so nothing can be checked.
   kRefusalSliding = 1u << 6,      ///< The wheels stand, but the body may still slide.
@@ -74,7 +74,7 @@ enum MissingNode : std::uint64_t {
   kMissingState = 2,
   kMissingCommand = 4,
   kMissingMachine = 8,  ///< The driver reports DriverState::kStarting.
-  kMissingGate = 16,    ///< The gate has not found the permits and commands that are there.
+  kMissingGate = 16,    ///< The gate has not found a permit and a command of this run yet.
 };
 
 struct Permit {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "signals/command_frame.h"
 
@@ -116,6 +117,37 @@ TEST_F(CommandWatchTest, RefusesEveryComponentThatIsNotFiniteUntilAGoodMessageAr
     }
   }
   EXPECT_EQ(watch.timeouts(), 0u);
+}
+
+/// Each number behind the twist, by which a request may be more than a velocity command.
+std::vector<double*> numbers_behind_the_twist(Request& request) {
+  Posture& posture = request.posture;
+  std::vector<double*> numbers{&posture.height, &posture.roll, &posture.pitch, &posture.x, &posture.y, &posture.yaw};
+  for (double& joint : request.joints) numbers.push_back(&joint);
+  return numbers;
+}
+
+TEST_F(CommandWatchTest, RefusesEveryNumberBehindTheTwistThatIsNotFinite) {
+  for (const double bad : {std::nan(""), -kInfinity}) {
+    for (double* const number : numbers_behind_the_twist(request.content)) {
+      *number = bad;
+      send(0.5);
+      EXPECT_EQ(watch.step(request, 1).twist.linear[0], 0);
+      EXPECT_EQ(watch.reasons(), kReasonRefused);
+      *number = 0;
+    }
+  }
+}
+
+TEST_F(CommandWatchTest, NamesEveryNumberBehindTheTwistThatIsNotZero) {
+  constexpr std::uint64_t kParts[] = {kPartHeight, kPartRoll, kPartPitch, kPartX, kPartY, kPartYaw};
+  const auto numbers = numbers_behind_the_twist(request.content);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    *numbers[i] = -1e-300;
+    EXPECT_EQ(parts_of(request.content), i < std::size(kParts) ? kParts[i] : std::uint64_t{kPartJoints});
+    *numbers[i] = -0.0;
+    EXPECT_EQ(parts_of(request.content), 0u);
+  }
 }
 
 TEST_F(CommandWatchTest, TakesAnAgeByStampOffTheTimeout) {

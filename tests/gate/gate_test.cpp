@@ -18,13 +18,14 @@ TEST_F(GateTest, PassesTheHealthyCommandUnchanged) {
   EXPECT_EQ(std::memcmp(joints_.data(), command_.joints.data(), joints_.size_bytes()), 0);
 }
 
-TEST_F(GateTest, NamesAMissingCommandWhateverThePermitSays) {
-  input_.command_found = Lookup::kMissing;
+TEST_F(GateTest, ReportsTheCommandThatItFindsWhateverThePermitSays) {
   permit_.action = PermitAction::kBrake;
-  expect_brake(kGatePermitBrake | kGateNoCommand);
-  input_.permit_found = Lookup::kMissing;
-  expect_brake(kGateNoPermit | kGateNoCommand);
-  EXPECT_EQ(gate_.report().missed, 0u);
+  step();
+  EXPECT_EQ(gate_.report().command_cycle, 99u);
+  gate_.enter_run();
+  input_.command_found = Lookup::kMissing;
+  step();
+  EXPECT_EQ(gate_.report().command_cycle, 0u);
 }
 
 // 1. Is the permit alive?
@@ -192,6 +193,13 @@ TEST_F(GateTest, BrakesOnACommandOfThisCycleOrTheFuture) {
   command_of(1000);
   expect_brake(kGateFuture);
   EXPECT_EQ(gate_.report().refused, 2u);
+}
+
+TEST_F(GateTest, ABrakingPermitIsTheReasonNotTheMissingCommand) {
+  permit_.action = PermitAction::kBrake;
+  input_.command_found = Lookup::kMissing;
+  expect_brake(kGatePermitBrake);
+  EXPECT_EQ(gate_.report().missed, 0u);
 }
 
 TEST_F(GateTest, MovesAgainOnceTheCommandIsBack) {

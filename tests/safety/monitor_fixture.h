@@ -197,9 +197,10 @@ class MonitorTest : public testing::Test {
   double quantum_ = kQuantum;  ///< rad, of the encoders
   bool begun_ = false;
   bool noisy_gyro_ = true;
-  bool fresh_state_ = true;              ///< the command descends from the state of its own cycle
-  bool gate_obeys_ = true;               ///< false: it reports that it lets everything pass
-  std::uint64_t gate_misses_ = 0;        ///< reasons that it reports beyond its own
+  bool fresh_state_ = true;  ///< the command descends from the state of its own cycle
+  bool gate_obeys_ = true;   ///< false: it reports that it lets everything pass
+  bool gate_finds_permit_ = true;
+  bool gate_finds_command_ = true;
   bool gate_works_ = true;               ///< false: it reports that it always brakes
   std::uint64_t refused_frames_ = 0;     ///< which it counts beyond its own
   std::array<double, kWheels> speed_{};  ///< rad/s, true
@@ -226,7 +227,8 @@ class MonitorTest : public testing::Test {
     constexpr std::uint64_t kRefusal = kGateNoPermit | kGatePermitExpired | kGatePermitBrake | kGateRampOver;
     GateReport report = true_report;
     report.refused += refused_frames_;
-    report.reasons |= gate_misses_;
+    if (!gate_finds_permit_) report.reasons |= kGateNoPermit;
+    if (!gate_finds_command_) report.command_cycle = 0;
     if (!gate_works_ && report.verdict != GateVerdict::kBrake) report.verdict = GateVerdict::kBrake;
     if (!gate_obeys_ && (report.reasons & kRefusal) != 0) report.verdict = GateVerdict::kPassed;
     return report;

@@ -50,20 +50,27 @@ TEST_F(RunTest, StateAndCommandNeedToBeSeenInOneCycle) {
 
 /// The driver maps a new channel up to 100 ms later than the monitor.
 TEST_F(RunTest, InitWaitsForAGateThatFindsWhatTheMonitorFinds) {
-  for (const std::uint64_t missed : {kGateNoPermit, kGateNoCommand}) {
+  for (bool* const found : {&gate_finds_permit_, &gate_finds_command_}) {
     new_run();
-    gate_misses_ = missed;
+    input_.command = nullptr;
+    steps(3);
+    input_.command = &command_;
+    *found = false;
     steps(10 * kLoss);
     EXPECT_EQ(permit_.state, SupervisorState::kInit);
     EXPECT_EQ(permit_.missing, std::uint64_t{kMissingGate});
     EXPECT_EQ(permit_.causes, 0u);
-    gate_misses_ = 0;
+    input_.command = nullptr;
+    step();
+    EXPECT_EQ(permit_.state, SupervisorState::kInit) << "a cycle without a command shows nothing of the gate";
+    input_.command = &command_;
+    *found = true;
     step();
     EXPECT_EQ(permit_.state, SupervisorState::kReady);
-    gate_misses_ = missed;
+    *found = false;
     step();
     EXPECT_EQ(permit_.missing, 0u) << "a loss, which is a cause of a stop";
-    gate_misses_ = 0;
+    *found = true;
   }
 }
 

@@ -183,13 +183,11 @@ def test_what_is_configured_sees_only_the_declaration_of_a_block():
 WHEELED = {"machine/wheeled", "gate/wheeled", "estimation", "control", "safety"}
 """The rooms of the wheeled kind's laws."""
 COMPOSED = re.compile(
-    r"src/robots/(differential_drive\.|robot_kind\.cpp)"
-    r"|src/configuration/parameters\.h"
-    r"|python/bindings/(module|describe)\.cpp"
+    r"src/robots/(differential_drive\.|robot_kind\.cpp)"  # the kind itself, and the choice of a kind
+    r"|src/configuration/parameters\.h"  # blocks of all kinds, in one file of the user
+    r"|python/bindings/(module|describe)\.cpp"  # bindings of all kinds, in one module
 )
-"""The files that compose all kinds: their laws, the one that decides, blocks of parameters, the module of Python. The
-interfaces beside them see no kind.
-"""
+"""The files that compose. The interfaces beside them see no kind."""
 NOT_YET_COMMON = {
     # The topic and the calibration file of wheels.
     "src/ros/nodes/estimator_node.cpp",

@@ -111,7 +111,7 @@ def test_a_healthy_robot_may_be_driven():
         ({"linear": 0.2}, "the robot moves"),
         ({"speed_limit": 0.3}, "limited to 0.3 m/s"),
         ({"state": "STOPPED", "sentences": ("the e-stop is pressed",)}, "the e-stop is pressed; remove the cause"),
-        ({"state": "INIT", "missing": ("state_estimator",)}, "waiting for state_estimator; start what is missing"),
+        ({"state": "INIT", "missing": ("state_estimator",)}, "waiting: state_estimator; do what is named"),
     ],
 )
 def test_says_why_it_cannot_begin(broken, said):

@@ -160,7 +160,7 @@ def test_before_every_node_was_seen_it_names_the_missing_ones(driving):
     waiting = without(driving, DRIVER)
     waiting = replace(waiting, safety=replace(waiting.safety, state="INIT", permit="brake"))
     answer = judge(waiting)
-    assert answer.headline == "Not ready: the monitor waits for mujoco_plant."
+    assert answer.headline == "Not ready: the monitor waits: mujoco_plant."
     assert answer.commands == ("rosrun robot_control mujoco_plant",)
     assert "mujoco_plant MISSING" in text(waiting)
 

@@ -151,7 +151,7 @@ class Release:
         if status.awaiting_zero:
             silence = silent_long_enough(self.command_timeout)
             return f"waits for a zero request; stop the other sender{silence} or let it send zero"
-        return f"waits with zeros: {MONITOR} waits for {', '.join(status.missing) or 'the first cycles'}"
+        return f"waits with zeros: {MONITOR} waits: {', '.join(status.missing) or 'the first cycles'}"
 
     def _drive(self, now: float, status: Status, age: float) -> Iterator[Line]:
         if now - self._gone_since > GONE:

@@ -122,7 +122,7 @@ def _stopped(look: Look) -> str:
     if look.state in DRIVABLE:
         return look.revoked and f"{look.revoked}: start again"
     why = "; ".join(look.sentences) or (
-        f"waiting for {', '.join(look.missing)}" if look.missing else "no cause is reported"
+        f"waiting: {', '.join(look.missing)}" if look.missing else "no cause is reported"
     )
-    remedy = "start what is missing" if look.state == "INIT" else "remove the cause, then rosservice call e_stop_reset"
+    remedy = "do what is named" if look.state == "INIT" else "remove the cause, then rosservice call e_stop_reset"
     return f"the robot is {look.state}: {why}; {remedy}"

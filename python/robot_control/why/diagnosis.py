@@ -255,7 +255,7 @@ def _stopped(facts: Facts) -> Answer | None:
         awaited = ", ".join(safety.missing) or "the first cycles"
         return Answer(
             Verdict.STOPPED,
-            f"Not ready: the monitor waits for {awaited}.",
+            f"Not ready: the monitor waits: {awaited}.",
             tuple(("integrator", f"start {node}") for node in absent),
             tuple(_run(facts, node) for node in absent),
         )

@@ -12,27 +12,34 @@
 namespace robot_control {
 namespace {
 
-/// Both drivers move the driven joints alone.
+/// For a driver that moves the driven joints alone.
 void refuse_held_joints(const MachineModel& machine, const std::string& driver) {
   for (const JointModel& joint : machine.joints) {
     if (joint.role == JointRole::kHeld)
-      throw DriverError("joint '" + joint.name + "' is to be held, and the driver " + driver +
-                        " moves driven joints alone: give the joint no actuator in the description, or hold it by "
+      throw DriverError("joint '" + joint.name + "' is to be held, and robot.driver: " + driver +
+                        " moves only the joints that the controller drives: give the joint no actuator in the "
+                        "description, or hold it by "
                         "another controller");
   }
 }
 
-std::unique_ptr<Driver> make_can(const Parameters& parameters, const DriveMotors& motors, DriverClock clock) {
+std::unique_ptr<Driver> make_can(const Parameters& parameters, const MachineModel& machine,
+                                 const std::vector<Brake>& brakes, DriverClock clock) {
   if (parameters.drives.empty())
     throw DriverError(
         "robot.driver is can, but robot.drives names no drive file: set it, for instance to "
         "config/drives/odrive.yaml");
+  refuse_held_joints(machine, "can");
+  const DriveMotors motors = drive_motors(machine, brakes);
   const CanParameters can = read_drive_file(parameters.drives, motors.joints, parameters.loop.rate);
   return std::make_unique<CanDriver>(can, motors.brakes, motors.joint_count, parameters.loop.period(),
                                      CanSocket::open(can.bus.address), std::move(clock));
 }
 
-std::unique_ptr<Driver> make_example(const Parameters& parameters, const DriveMotors& motors, DriverClock /*clock*/) {
+std::unique_ptr<Driver> make_example(const Parameters& parameters, const MachineModel& machine,
+                                     const std::vector<Brake>& brakes, DriverClock /*clock*/) {
+  refuse_held_joints(machine, "example");
+  const DriveMotors motors = drive_motors(machine, brakes);
   ExampleParameters board;
   read_driver_file(parameters.drives, "board", keys(board));
   return std::make_unique<ExampleDriver>(board, motors.brakes, motors.effort_limits, motors.joint_count,
@@ -41,21 +48,18 @@ std::unique_ptr<Driver> make_example(const Parameters& parameters, const DriveMo
 
 struct DriverRow {
   DriverChoice choice;
-  const char* name;
-  std::unique_ptr<Driver> (*make)(const Parameters&, const DriveMotors&, DriverClock);
+  std::unique_ptr<Driver> (*make)(const Parameters&, const MachineModel&, const std::vector<Brake>&, DriverClock);
 };
 
-constexpr std::array kDrivers{DriverRow{DriverChoice::kCan, "can", &make_can},
-                              DriverRow{DriverChoice::kExample, "example", &make_example}};
+constexpr std::array kDrivers{DriverRow{DriverChoice::kCan, &make_can},
+                              DriverRow{DriverChoice::kExample, &make_example}};
 
 }  // namespace
 
 std::unique_ptr<Driver> make_driver(const Parameters& parameters, const MachineModel& machine,
                                     const std::vector<Brake>& brakes, DriverClock clock) {
   for (const DriverRow& row : kDrivers) {
-    if (row.choice != parameters.driver) continue;
-    refuse_held_joints(machine, row.name);
-    return row.make(parameters, drive_motors(machine, brakes), std::move(clock));
+    if (row.choice == parameters.driver) return row.make(parameters, machine, brakes, std::move(clock));
   }
   throw DriverError(
       "robot.driver is mujoco, which is the program mujoco_plant: start that one, or set robot.driver "

@@ -7,11 +7,11 @@
 ///   there is no evidence that no motion is requested (motion_release.h),
 ///   a wheel turns or the state is STOPPING,
 ///   the body may still slide, or
-///   a node is missing in INIT.
+///   something is missing in INIT (MissingNode).
 /// In READY and DRIVE, where nothing is latched, a reset is accepted without effect. The ramp of STOPPING ends at the
 /// cycle that was fixed when it began, or at standstill.
 ///
-/// INIT ends when all nodes of this run were received once and motion is released (motion_release.h). A node start
+/// INIT ends when nothing is missing in this run and motion is released (motion_release.h). A node start
 /// withdraws the release: READY and DRIVE become INIT, STOPPING becomes STOPPED. The robot brakes, and no cause is
 /// latched for it.
 

@@ -25,9 +25,9 @@ enum class Trigger : std::uint8_t {
   kRampCause,        ///< a latched cause that ramps
   kRampEnded,        ///< standing, or the ramp's last cycle is reached
   kUnreleased,       ///< a node was started, and no zero velocity was requested since then (motion_release.h)
-  kResetIncomplete,  ///< a reset was accepted, but a node is still missing or motion is not released
-  kResetComplete,    ///< a reset was accepted, all nodes were received in this run, and motion is released
-  kComplete,         ///< sensors, state and command of this run were each received, and motion is released
+  kResetIncomplete,  ///< a reset was accepted, but something is still missing (MissingNode) or motion is not released
+  kResetComplete,    ///< a reset was accepted, nothing is missing in this run, and motion is released
+  kComplete,         ///< nothing is missing in this run, and motion is released
   kMotion,           ///< motion is requested, or the robot moves
   kRest,             ///< no motion is requested, and the robot stands
 };

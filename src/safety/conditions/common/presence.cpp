@@ -8,7 +8,11 @@ void Presence::step(const MonitorInput& input, std::uint64_t elapsed, ActiveCaus
   missing_ &= ~static_cast<std::uint64_t>(kMissingSensors);
   if (input.state_seen) missing_ &= ~static_cast<std::uint64_t>(kMissingState);
   if (command != nullptr) missing_ &= ~static_cast<std::uint64_t>(kMissingCommand);
-  if (!gate_found_) look_at_gate(input);
+  if (!complete_) {
+    missing_ &= ~static_cast<std::uint64_t>(kMissingGate);
+    if (!gate_finds_both(input)) missing_ |= kMissingGate;
+    complete_ = missing_ == 0;
+  }
 
   const bool command_awaited = (missing_ & kMissingCommand) == 0;
   const bool state_awaited = (missing_ & kMissingState) == 0;
@@ -23,11 +27,10 @@ void Presence::step(const MonitorInput& input, std::uint64_t elapsed, ActiveCaus
   if (elapsed > loss_cycles_) add_if_lost(kCauseMonitorLate, elapsed, out);
 }
 
-void Presence::look_at_gate(const MonitorInput& input) noexcept {
-  const std::uint64_t reasons = input.sensors->gate.reasons;
-  const bool deaf = (reasons & kGateNoPermit) != 0 || (input.command != nullptr && (reasons & kGateNoCommand) != 0);
-  missing_ = deaf ? missing_ | kMissingGate : missing_ & ~static_cast<std::uint64_t>(kMissingGate);
-  gate_found_ = (reasons & (kGateFirstTick | kGateNoPermit | kGateNoCommand)) == 0;
+bool Presence::gate_finds_both(const MonitorInput& input) const noexcept {
+  const GateReport& gate = input.sensors->gate;
+  if ((gate.reasons & kGateFirstTick) != 0) return true;
+  return (gate.reasons & kGateNoPermit) == 0 && ((missing_ & kMissingCommand) != 0 || gate.command_cycle != 0);
 }
 
 void Presence::add_if_lost(StopCause cause, std::uint64_t cycles, ActiveCauses& out) const noexcept {

@@ -6,9 +6,9 @@
 ///   command stale    in each of the last loss_cycles cycles the command was computed from a state of another cycle
 ///                    than its own (CommandFrame::state_cycle ≠ head.cycle), although that state existed: a controller
 ///                    that publishes old content under a new head, or that is always late
-///   gate missing     its ticks of this run report that they find no permit, or no command although one is there. The
-///                   driver looks for new channels ten times a second, and would refuse in the meantime what READY
-///                   promises
+///   gate missing     the gate reports that it finds no permit, or it has found no command of this run although the
+///                    monitor has. The driver looks for new channels only ten times a second. A monitor that is READY
+///                    before would see the gate refuse. In tick 0 the gate looks at neither, and nothing is missing
 ///   monitor late     k − k_last > loss_cycles between two steps of one run: the other losses would have been detected
 ///                    too late
 ///
@@ -31,16 +31,16 @@ class Presence {
   /// `elapsed`: cycles since the last step, ≥ 1.
   void step(const MonitorInput& input, std::uint64_t elapsed, ActiveCauses& out) noexcept;
 
-  /// MissingNode bits: nothing received in this run.
+  /// MissingNode bits: what the monitor has not seen in this run, and what the gate has not.
   std::uint64_t missing() const noexcept { return missing_; }
 
  private:
-  void look_at_gate(const MonitorInput& input) noexcept;
+  bool gate_finds_both(const MonitorInput& input) const noexcept;
   void add_if_lost(StopCause cause, std::uint64_t cycles, ActiveCauses& out) const noexcept;
 
   std::uint64_t loss_cycles_;
   std::uint64_t missing_ = kMissingSensors | kMissingState | kMissingCommand;
-  bool gate_found_ = false;         ///< permit and command
+  bool complete_ = false;           ///< nothing was missing once
   std::uint64_t command_seen_ = 0;  ///< last cycle with a command, or without a state
   std::uint64_t state_seen_ = 0;    ///< last cycle with a state
   std::uint64_t stale_ = 0;         ///< cycles in a row
