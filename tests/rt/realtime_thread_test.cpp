@@ -19,6 +19,7 @@
 
 #include "rt/thread_priority.h"
 #include "rt/unlock_libraries.h"
+#include "support/allocation_guard.h"
 #include "support/child_process.h"
 #include "support/file_content.h"
 #include "support/temporary_folder.h"
@@ -319,6 +320,7 @@ TEST(PrepareProcess, LaterThreadsHaveSmallStacksWhereMemoryIsLocked) {
 }
 
 TEST(PrepareProcess, AnUnlockedLibraryIsNotResidentAndStillWorks) {
+  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer locks no memory";
   expect_in_child([] {
     constexpr std::string_view kLibrary = "libm.";
     if (prepare_process(RealtimePolicy::kPreferred).memory_lock != Grant::kGranted) return kSkip;

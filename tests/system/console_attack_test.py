@@ -186,12 +186,12 @@ class ConsoleAttackTest(RobotTestCase):
     def test_motion_without_a_release_replayed_or_out_of_order_moves_nothing(self) -> None:
         async def play(page: Any) -> None:
             await page.send_json(TAKE)
-            begin = time.monotonic()
-            while time.monotonic() - begin < 1.5:
+            replayed = 30
+            for _ in range(replayed):
                 await page.send_json({**DRIVE, "number": int(1e6 * time.monotonic()), "sent": time.monotonic()})
                 await page.send_json({**DRIVE, "number": 5, "held": False})  # an old release, replayed
                 await asyncio.sleep(0.05)
-            while (await self.until(page, "desk"))["link"]["replayed"] < 25:
+            while (await self.until(page, "desk"))["link"]["replayed"] < replayed:
                 pass
 
         self.run_page(play)

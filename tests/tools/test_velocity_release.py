@@ -103,7 +103,7 @@ def test_a_start_that_takes_a_moment_needs_no_words(release) -> None:
 
 def test_a_missing_node_is_named_when_the_wait_lasts(release) -> None:
     release.look(0.1, INIT)
-    assert "waits for state_estimator" in texts(release.look(0.2 + TIMEOUT, INIT))
+    assert "waits: state_estimator" in texts(release.look(0.2 + TIMEOUT, INIT))
 
 
 def test_without_a_monitor_the_command_is_sent_and_that_is_said_once(release) -> None:
