@@ -138,7 +138,9 @@ void add_driver(TraceFields& to) {
   to.push_back(field<D, u64>("gate_cycle", "k", MEMBER(gate.cycle)));
   to.push_back(field<D, u8>("gate_verdict", "GateVerdict, of tick k", MEMBER(gate.verdict)).shown());
   to.push_back(field<D, u64>("gate_reasons", "GateReason bits", MEMBER(gate.reasons)).shown());
-  to.push_back(field<D, u64>("gate_command_cycle", "of the command used", MEMBER(gate.command_cycle)).shown());
+  to.push_back(field<D, u64>("gate_command_cycle", "of the last command found in this run, used or not; 0: none",
+                             MEMBER(gate.command_cycle))
+                   .shown());
   to.push_back(field<D, u64>("gate_permit_cycle", "of the permit used", MEMBER(gate.permit_cycle)).shown());
   to.push_back(field<D, u64>("gate_held", "ticks of this run on a held command", MEMBER(gate.held)).shown({"held"}));
   to.push_back(field<D, u64>("gate_missed", "ticks of this run braked for want of a command", MEMBER(gate.missed))

@@ -43,10 +43,10 @@ std::array<int, 2> line_ends() {
 std::unique_ptr<Driver> make_plant_behind_board(const Parameters& parameters, const MachineModel& machine,
                                                 const DriveMotors& motors) {
   const double period = parameters.loop.period();
-  const ExampleParameters parameters_of_board = board_of(parameters);
+  const ExampleParameters board_parameters = board_of(parameters);
   const auto [driver_end, board_end] = line_ends();
   auto board = std::make_unique<ExampleBoard>(motors.brakes, motors.effort_limits, period, board_end);
-  auto driver = std::make_unique<ExampleDriver>(parameters_of_board, motors.brakes, motors.effort_limits,
+  auto driver = std::make_unique<ExampleDriver>(board_parameters, motors.brakes, motors.effort_limits,
                                                 motors.joint_count, period, driver_end);
   return std::make_unique<DrivenPlant>(machine, parameters.plant, period, std::move(board), std::move(driver));
 }
