@@ -188,21 +188,6 @@ COMPOSED = re.compile(
     r"|python/bindings/(module|describe)\.cpp"  # bindings of all kinds, in one module
 )
 """The files that compose. The interfaces beside them see no kind."""
-NOT_YET_COMMON = {
-    # The topic and the calibration file of wheels.
-    "src/ros/nodes/estimator_node.cpp",
-    # A plant per joint takes these away.
-    "src/drivers/mujoco/model/mjcf.cpp",
-    "src/drivers/mujoco/model/mjcf.h",
-    "src/drivers/mujoco/model/mujoco_model.cpp",
-    "src/drivers/mujoco/model/mujoco_model.h",
-    "src/drivers/mujoco/model/true_robot.h",
-    "src/drivers/mujoco/motors/brake_limits.cpp",
-    "src/drivers/mujoco/motors/brake_limits.h",
-}
-"""Files that see the drive train and should see the machine alone. This list only becomes shorter."""
-
-
 def test_only_the_wheeled_kind_sees_the_drive_train():
     """Gate, drivers, the driver's cycle, the monitor's common conditions and the joint limits take a MachineModel."""
     own = ROOT / "src/drivers/mujoco/contact"
@@ -214,7 +199,7 @@ def test_only_the_wheeled_kind_sees_the_drive_train():
         if path.parent.name != "main"
         if any(re.match(r"(machine|gate|configuration|ros|bindings)/wheeled/", name) for name in includes(path))
     }
-    assert seen == NOT_YET_COMMON
+    assert seen == set()
 
 
 def test_project_headers_are_named_from_the_root():

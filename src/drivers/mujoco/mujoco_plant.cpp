@@ -31,9 +31,10 @@ void check_battery(double voltage, double resistance) {
                     " ohm cannot feed the robot's electronics. Set less.");
 }
 
-std::vector<Rim> rims_of(const DriveTrain& robot) {
+std::vector<Rim> rims_of(const TrueRobot& robot) {
   std::vector<Rim> rims;
-  for (const WheelModel& wheel : robot.wheels) rims.push_back({wheel.joint, wheel.radius});
+  for (std::size_t i = 0; i < robot.drive_wheels; ++i)
+    rims.push_back({robot.wheels[i].joint, robot.wheels[i].shape.radius});
   return rims;
 }
 
@@ -183,11 +184,11 @@ void MujocoPlant::read(SensorFrame& sensors) noexcept {
 
 /// Returns the number of bodies whose contact forces can be measured.
 std::size_t MujocoPlant::contacts() const noexcept {
-  return std::min(model_.drive_wheels > 0 ? wheels_.count() : bodies_.count(), kMaxContacts);
+  return std::min(model_.robot.drive_wheels > 0 ? wheels_.count() : bodies_.count(), kMaxContacts);
 }
 
 const Eigen::Vector3d& MujocoPlant::contact_force(std::size_t contact) const noexcept {
-  return model_.drive_wheels > 0 ? wheels_.force(contact) : bodies_.force(contact);
+  return model_.robot.drive_wheels > 0 ? wheels_.force(contact) : bodies_.force(contact);
 }
 
 std::uint64_t MujocoPlant::equipped() const noexcept {
@@ -277,7 +278,7 @@ bool MujocoPlant::advance(std::span<const JointCommand> commands) noexcept {
   }
   wheels_.observe(*data_);
   specific_force_sum_ += specific_force_.step(*data_);
-  for (std::size_t wheel = 0; wheel < model_.drive_wheels; ++wheel)
+  for (std::size_t wheel = 0; wheel < model_.robot.drive_wheels; ++wheel)
     normal_force_sum_[wheel] += wheels_.normal_force(wheel);
   for (std::size_t i = 0; i < bodies_.count(); ++i) normal_force_sum_[i] += bodies_.normal_force(i);
   if (parameters_.contact_sensors) {
@@ -345,7 +346,7 @@ void MujocoPlant::collect_truth() noexcept {
   std::copy_n(velocity + 3, 3, truth_.twist_base.angular.begin());
 
   truth_.joints = exact_.joints;
-  for (std::size_t wheel = 0; wheel < model_.drive_wheels; ++wheel) {
+  for (std::size_t wheel = 0; wheel < model_.robot.drive_wheels; ++wheel) {
     truth_.normal_force[wheel] = normal_force_sum_[wheel] / model_.substeps;
     truth_.slip[wheel] = wheels_.slip(wheel);
   }

@@ -1,17 +1,15 @@
 #pragma once
-/// Returns the points where a robot may touch level ground: the corners of its collision shapes at the zero pose, in
-/// base axes. A wheel or a rolling caster counts with its lowest point alone.
+/// Returns the points where a drive train may touch level ground at the zero pose, in base axes
+/// (machine/bodies/shape_points.h). Its wheels and rolling casters roll.
 
 #include <Eigen/Core>
 #include <vector>
 
-#include "machine/bodies/rigid_bodies.h"
+#include "machine/bodies/shape_points.h"
 #include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
-/// Returns the points of all bodies. Rims of cylinders are 16 points each, with the lowest among them; a sphere is its
-/// lowest point.
 std::vector<Eigen::Vector3d> ground_points(const DriveTrain& robot);
 
 /// Returns the points of one body.
@@ -22,5 +20,7 @@ double standing_height(const DriveTrain& robot);
 
 /// Returns the wheel or caster that `body` is; null for all others.
 const WheelModel* rolling_body(const DriveTrain& robot, const RigidBody& body);
+
+RollingEllipsoid ellipsoid_of(const WheelModel& wheel);
 
 }  // namespace robot_control

@@ -3,7 +3,7 @@
 #include <ros/ros.h>
 
 #include <mutex>
-#include <optional>
+#include <utility>
 
 #include "files/ascii.h"
 #include "loop/processes/estimator_process.h"
@@ -13,38 +13,30 @@
 #include "ros/nodes/process_node.h"
 #include "ros/reports/diagnostics.h"
 #include "ros/reports/pacer.h"
-#include "ros/wheeled/calibration_keeper.h"
 #include "rt/clock.h"
 
 namespace robot_control {
 namespace {
 
-Setup calibrated(Setup setup) {
-  if (kind_of(*setup.machine) == MachineKind::kOnWheels)
-    setup.parameters = with_calibration(setup.parameters, drive_train_of(*setup.machine));
-  return setup;
-}
-
 class EstimatorNode final : public ProcessNode<EstimatorProcess> {
  public:
-  explicit EstimatorNode(const Setup& setup)
-      : ProcessNode(calibrated(setup), Role::kEstimator),
+  EstimatorNode(const Setup& setup, std::unique_ptr<EstimatorOutputs> outputs)
+      : ProcessNode(setup, Role::kEstimator),
+        outputs_(std::move(outputs)),
         joint_pace_(report().joint_states_rate),
         odom_pace_(report().odom_rate),
-        imu_pace_(report().imu_data_rate) {
-    if (kind_of(robot()) == MachineKind::kOnWheels) keeper_.emplace(setup.parameters, drive_train_of(robot()));
-  }
+        imu_pace_(report().imu_data_rate) {}
 
   void connect(ros::NodeHandle& handle) override {
     joint_states_ = handle.advertise<msg::JointState>("joint_states", 10);
     odom_ = handle.advertise<msg::Odometry>("odom", 10);
-    if (keeper_) wheel_odom_ = handle.advertise<msg::Odometry>("wheel_odom", 10);
     imu_ = handle.advertise<msg::Imu>("imu/data", 10);
     battery_ = handle.advertise<msg::BatteryState>("battery_state", 1);
     // The name is relative, so that the frames of two robots in two namespaces do not mix.
     if (report().publish_tf) tf_ = handle.advertise<msg::TFMessage>("tf", 100);
     reset_ = handle.advertiseService("reset_odometry", &EstimatorNode::reset_odometry, this);
     set_ = handle.advertiseService("set_odometry", &EstimatorNode::set_odometry, this);
+    if (outputs_) outputs_->connect(handle);
     if (const std::string note = covariance_note(report()); !note.empty()) ROS_INFO("%s", note.c_str());
   }
 
@@ -68,7 +60,7 @@ class EstimatorNode final : public ProcessNode<EstimatorProcess> {
     slip_lately_ |= state_.wheeled.slip;
     if (odom_pace_.due(state_.head.run, state_.head.stamp_ns)) publish_odometry();
     if (imu_pace_.due(state_.head.run, state_.head.stamp_ns)) publish_imu();
-    if (keeper_) keeper_->write_if_due(state_, monotonic_ns());
+    if (outputs_) outputs_->keep(state_, monotonic_ns());
   }
 
   void diagnose(DiagnosticReport& report) override {
@@ -78,7 +70,7 @@ class EstimatorNode final : public ProcessNode<EstimatorProcess> {
 
   void stop() override {
     ProcessNode::stop();
-    if (keeper_) keeper_->finish(state_);
+    if (outputs_) outputs_->finish(state_);
   }
 
  private:
@@ -87,7 +79,7 @@ class EstimatorNode final : public ProcessNode<EstimatorProcess> {
     msg::Odometry message = odometry(state_, report().odom_frame, report().base_frame, stamp);
     state_covariances(report(), message);
     odom_.publish(message);
-    if (keeper_) wheel_odom_.publish(wheel_odometry(state_, report().odom_frame, report().base_frame, stamp));
+    if (outputs_) outputs_->publish(state_, stamp);
     if (!tf_) return;
     msg::TFMessage transforms;
     transforms.transforms.push_back(transform(message));
@@ -128,11 +120,10 @@ class EstimatorNode final : public ProcessNode<EstimatorProcess> {
     return true;
   }
 
-  std::optional<CalibrationKeeper> keeper_;  ///< of a robot on wheels
+  std::unique_ptr<EstimatorOutputs> outputs_;
   std::mutex requesting_;
   ros::Publisher joint_states_;
   ros::Publisher odom_;
-  ros::Publisher wheel_odom_;
   ros::Publisher imu_;
   ros::Publisher battery_;
   ros::Publisher tf_;
@@ -149,8 +140,8 @@ class EstimatorNode final : public ProcessNode<EstimatorProcess> {
 
 }  // namespace
 
-std::unique_ptr<Node> make_estimator(const Setup& setup) {
-  return std::make_unique<EstimatorNode>(setup);
+std::unique_ptr<Node> make_estimator(const Setup& setup, std::unique_ptr<EstimatorOutputs> outputs) {
+  return std::make_unique<EstimatorNode>(setup, std::move(outputs));
 }
 
 }  // namespace robot_control

@@ -23,6 +23,12 @@ MadeRobot four_wheels() {
   return robot;
 }
 
+/// Returns the brake of the first wheel of this robot.
+Brake wheel_brake_of(const DriveTrain& robot, MujocoPlantParameters parameters = {}) {
+  parameters.sensor_errors = ErrorLevel::kIdeal;
+  return brake_of(true_robot(robot, parameters, kStep), 0, parameters, kStep);
+}
+
 TEST(LiftingDeceleration, IsTheLeverOfTheWeightOverThatOfTheInertia) {
   EXPECT_NEAR(lifting_deceleration(four_wheels().model()), kEarthGravity * 0.15 / 0.2, 1e-9);
 }
@@ -36,7 +42,7 @@ TEST(LiftingDeceleration, CountsABallBehindTheAxleAsASupport) {
 
 TEST(BrakeOf, BrakesWithHalfTheLiftingDeceleration) {
   const MadeRobot robot = four_wheels();
-  const Brake brake = brake_of(robot.model(), 0, {}, kStep);
+  const Brake brake = wheel_brake_of(robot.model());
   const double moved = 20 + 4 * robot.wheel_inertia() / std::pow(robot.radius, 2);
   EXPECT_NEAR(brake.effort, moved * 0.5 * kEarthGravity * 0.75 * robot.radius / 4, 1e-9);
 }
@@ -44,7 +50,7 @@ TEST(BrakeOf, BrakesWithHalfTheLiftingDeceleration) {
 TEST(BrakeOf, HoldsATopHeavyRobotOnASlopeOfTenDegrees) {
   MadeRobot robot = four_wheels();
   robot.body_z = 3;
-  EXPECT_NEAR(brake_of(robot.model(), 0, {}, kStep).hold_effort,
+  EXPECT_NEAR(wheel_brake_of(robot.model()).hold_effort,
               20 * kEarthGravity * std::sin(10 * M_PI / 180) * robot.radius / 4, 1e-9);
 }
 
@@ -52,7 +58,7 @@ TEST(BrakeOf, HoldsATopHeavyRobotOnASlopeOfTenDegrees) {
 TEST(BrakeOf, SlowsATopHeavyRobotAlmostUntilItTips) {
   MadeRobot robot = four_wheels();
   robot.body_z = 1.0;  // centre of gravity at (16 · 1.1 + 4 · 0.1)/20 = 0.9 m, lifts at g/6
-  const Brake brake = brake_of(robot.model(), 0, {}, kStep);
+  const Brake brake = wheel_brake_of(robot.model());
   const double moved = 20 + 4 * robot.wheel_inertia() / std::pow(robot.radius, 2);
   EXPECT_NEAR(brake.effort, moved * 0.9 * kEarthGravity * 0.15 / 0.9 * robot.radius / 4, 1e-9);
   EXPECT_GT(brake.hold_effort, brake.effort);
@@ -60,8 +66,8 @@ TEST(BrakeOf, SlowsATopHeavyRobotAlmostUntilItTips) {
 
 // The centre of gravity right above the only axle has no lever.
 TEST(BrakeOf, SlowsOnASlopeOfFiveDegreesWhateverTips) {
-  EXPECT_NEAR(brake_of(MadeRobot{}.model(), 0, {}, kStep).effort,
-              12 * kEarthGravity * std::sin(5 * M_PI / 180) * 0.1 / 2, 1e-9);
+  EXPECT_NEAR(wheel_brake_of(MadeRobot{}.model()).effort, 12 * kEarthGravity * std::sin(5 * M_PI / 180) * 0.1 / 2,
+              1e-9);
 }
 
 TEST(BrakeOf, LeavesToTheMotorsFrictionWhatThatBrakes) {
@@ -69,13 +75,13 @@ TEST(BrakeOf, LeavesToTheMotorsFrictionWhatThatBrakes) {
   parameters.gear_ratio = 10;
   parameters.motor_friction = 0.02;
   const DriveTrain robot = four_wheels().model();
-  EXPECT_NEAR(brake_of(robot, 0, parameters, kStep).effort, brake_of(robot, 0, {}, kStep).effort - 0.2, 1e-9);
+  EXPECT_NEAR(wheel_brake_of(robot, parameters).effort, wheel_brake_of(robot).effort - 0.2, 1e-9);
 }
 
 TEST(BrakeOf, IsNeverStrongerThanTheDrive) {
   MadeRobot robot = four_wheels();
   robot.effort = 0.7;
-  EXPECT_EQ(brake_of(robot.model(), 0, {}, kStep).effort, 0.7);
+  EXPECT_EQ(wheel_brake_of(robot.model()).effort, 0.7);
 }
 
 TEST(BrakeOf, TakesWhatTheUserSays) {
@@ -84,7 +90,7 @@ TEST(BrakeOf, TakesWhatTheUserSays) {
   parameters.brake_damping = 1;
   parameters.brake_stiffness = 100;
   parameters.brake_hold_speed = 0.2;
-  const Brake brake = brake_of(four_wheels().model(), 0, parameters, kStep);
+  const Brake brake = wheel_brake_of(four_wheels().model(), parameters);
   EXPECT_EQ(brake.effort, 1.5);
   EXPECT_EQ(brake.hold_effort, 1.5);
   EXPECT_EQ(brake.damping, 1);
@@ -94,7 +100,7 @@ TEST(BrakeOf, TakesWhatTheUserSays) {
 
 // 0.4 · 0.005 / 0.001, 0.06 · 0.005 / 0.001², 0.03 / 0.1
 TEST(BrakeOf, FitsTheWheelOfDiffbot) {
-  const Brake brake = brake_of(read_drive_train(diffbot_urdf(), {}), 0, {}, kStep);
+  const Brake brake = wheel_brake_of(read_drive_train(diffbot_urdf(), {}));
   EXPECT_NEAR(brake.damping, 2.0, 1e-9);
   EXPECT_NEAR(brake.stiffness, 300, 1e-6);
   EXPECT_NEAR(brake.hold_speed, 0.3, 1e-12);

@@ -160,6 +160,8 @@ class SlipNoiseTest : public testing::Test {
     parameters_.sensor_errors = ErrorLevel::kField;
   }
 
+  static constexpr std::size_t kLeft = 0, kRight = 1;
+
   MadeRobot made_;
   MujocoPlantParameters parameters_;
 };
@@ -168,17 +170,17 @@ class SlipNoiseTest : public testing::Test {
 TEST_F(SlipNoiseTest, AddsUpAsARandomWalkAlongTheWay) {
   constexpr std::size_t kValues = 2000;
   constexpr double kWay = 0.001;  // m
-  SlipNoise noise(made_.model(), parameters_);
+  SlipNoise noise(made_.model().wheels.size(), parameters_);
   std::vector<double> sums;
   for (std::size_t i = 0; i < kValues; ++i) {
     double sum = 0;
     for (int k = 0; k < 1000; ++k) {
-      noise.step(Side::kLeft, kWay);
-      sum += noise.error(Side::kLeft) * kWay;
+      noise.step(kLeft, kWay);
+      sum += noise.error(kLeft) * kWay;
     }
     sums.push_back(sum);
-    EXPECT_EQ(noise.error(Side::kRight), 0) << "the sides are independent";
-    noise.step(Side::kLeft, 100);  // forgets
+    EXPECT_EQ(noise.error(kRight), 0) << "the sides are independent";
+    noise.step(kLeft, 100);  // forgets
   }
   const double expected = std::pow(parameters_.wheel_slip_noise, 2) * (1 - (1 - std::exp(-10)) / 10);
   EXPECT_NEAR(mean_square(sums) / expected, 1, bound(kValues));
@@ -186,9 +188,9 @@ TEST_F(SlipNoiseTest, AddsUpAsARandomWalkAlongTheWay) {
 
 TEST_F(SlipNoiseTest, IsOfTheFieldAndOfWheelsBehindEachOtherAlone) {
   const auto error = [&] {
-    SlipNoise noise(made_.model(), parameters_);
-    noise.step(Side::kLeft, 1);
-    return noise.error(Side::kLeft);
+    SlipNoise noise(made_.model().wheels.size(), parameters_);
+    noise.step(kLeft, 1);
+    return noise.error(kLeft);
   };
   EXPECT_NE(error(), 0);
   parameters_.sensor_errors = ErrorLevel::kDataSheet;

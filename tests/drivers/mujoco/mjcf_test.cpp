@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "drivers/mujoco/constants.h"
 #include "drivers/mujoco/model/mujoco_model.h"
 #include "drivers/mujoco/mujoco_errors.h"
 #include "made_robot.h"
@@ -39,7 +40,7 @@ class MjcfTest : public testing::Test {
                   kind +
                   R"("><parent link="base_link"/><child link="arm"/><origin xyz="0 0 0.2"/><axis xyz="1 0 0"/>)" +
                   inside + "</joint>";
-    model_ = robot_.model();
+    model_ = as_described();
     bodies_ = std::make_shared<RigidBodies>(*model_.bodies);
     model_.bodies = bodies_;
   }
@@ -54,8 +55,14 @@ class MjcfTest : public testing::Test {
     dof_ = joint_ < 0 ? -1 : compiled_->jnt_dofadr[joint_];
   }
 
+  TrueRobot as_described() const {
+    MujocoPlantParameters parameters;
+    parameters.sensor_errors = ErrorLevel::kIdeal;
+    return true_robot(robot_.model(), parameters, kStep);
+  }
+
   MadeRobot robot_;
-  DriveTrain model_ = robot_.model();
+  TrueRobot model_ = as_described();
   std::shared_ptr<RigidBodies> bodies_ = std::make_shared<RigidBodies>(*model_.bodies);
   MujocoPlantParameters parameters_;
   ModelPointer compiled_;
@@ -201,7 +208,7 @@ TEST_F(MjcfTest, NamesMayHoldWhatXmlEscapes) {
   robot_.more = R"(<link name="a&amp;b&lt;&quot;c&quot;"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"
     ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="&lt;j&gt;" type="continuous"><parent link="base_link"/>
     <child link="a&amp;b&lt;&quot;c&quot;"/></joint>)";
-  model_ = robot_.model();
+  model_ = as_described();
   compile();
   EXPECT_GE(mj_name2id(compiled_.get(), mjOBJ_BODY, "a&b<\"c\""), 0);
   EXPECT_GE(mj_name2id(compiled_.get(), mjOBJ_JOINT, "<j>"), 0);
@@ -212,8 +219,7 @@ TEST_F(MjcfTest, TheExportedTextOpensByItselfAndStands) {
   parameters_.scene = kSlope;
   robot_.ball_x = -0.3;
   robot_.body_x = -0.1;
-  model_ = robot_.model();
-  const ModelPointer alone = load_text("exported.xml", exported_mjcf(model_, parameters_, 0.001));
+  const ModelPointer alone = load_text("exported.xml", exported_mjcf(robot_.model(), parameters_, 0.001));
   ASSERT_TRUE(alone);
   EXPECT_NEAR(mj_getTotalmass(alone.get()), robot_.mass(), 1e-6);
   EXPECT_NEAR(alone->opt.timestep, 0.001, 1e-12);

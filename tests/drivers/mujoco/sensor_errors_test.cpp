@@ -88,7 +88,7 @@ class SensorErrorsTest : public testing::Test {
     parameters_.accelerometer_bias = parameters_.accelerometer_bias_walk = 0;
   }
 
-  const DriveTrain robot_ = two_wheels();
+  DriveTrain robot_ = two_wheels();
   MujocoPlantParameters parameters_;
   double period_ = 0.001;
 };
@@ -303,7 +303,21 @@ TEST_F(SensorErrorsTest, CountTheSpeedInStepsOfACountPerPeriod) {
   EXPECT_NEAR(travelled, 0.25 * kCount * 999, kCount) << "nothing gets lost between the counts";
 }
 
-TEST_F(SensorErrorsTest, LeaveJointsThatAreNoWheelsAlone) {
+TEST_F(SensorErrorsTest, CountTheTurnsOfAJointThatIsHeld) {
+  const auto seen = [&] {
+    SensorErrors encoder = errors();
+    Measurement measurement;
+    measurement.joints[kSwivel].position = 0.1234567;
+    encoder.step(measurement);
+    return measurement.joints[kSwivel].position;
+  };
+  robot_.joints[kSwivel].role = JointRole::kHeld;
+  EXPECT_EQ(seen(), std::round(0.1234567 / kCount) * kCount);
+  robot_.joints[kSwivel].prismatic = true;
+  EXPECT_EQ(seen(), 0.1234567) << "its path has no counts per turn";
+}
+
+TEST_F(SensorErrorsTest, LeaveJointsWithoutAnActuatorAlone) {
   SensorErrors encoder = errors();
   Measurement measurement;
   measurement.joints[kSwivel] = {.position = 0.1234567, .velocity = 0.7654321};

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "drivers/mujoco/constants.h"
 #include "made_robot.h"
 #include "support/diffbot_urdf.h"
 
@@ -12,16 +13,16 @@ class TrueRobotTest : public testing::Test {
  protected:
   TrueRobotTest() { parameters_.sensor_errors = ErrorLevel::kDataSheet; }
 
-  DriveTrain real() const { return true_robot(believed_, parameters_); }
+  TrueRobot real() const { return true_robot(believed_, parameters_, kStep); }
 
   DriveTrain believed_ = read_drive_train(diffbot_urdf(), {});
   MujocoPlantParameters parameters_;
 };
 
 TEST_F(TrueRobotTest, IsTheUrdfWhereNothingErrs) {
-  const DriveTrain robot = real();
-  EXPECT_EQ(robot.wheels[0].radius, 0.1);
-  EXPECT_EQ(robot.wheel_base, 0.5);
+  const TrueRobot robot = real();
+  EXPECT_EQ(robot.wheels[0].shape.radius, 0.1);
+  EXPECT_EQ(robot.wheels[0].shape.centre_base[1] - robot.wheels[1].shape.centre_base[1], 0.5);
   EXPECT_NEAR(robot.mass, 12, 1e-12);
 }
 
@@ -33,11 +34,11 @@ TEST_F(TrueRobotTest, IgnoresTheNominalValues) {
   parameters.imu_position = Vector3{1, 2, 3};
   parameters.imu_orientation = Vector3{0, 0, 1};
   believed_ = read_drive_train(diffbot_urdf(), parameters);
-  const DriveTrain robot = real();
+  const TrueRobot robot = real();
   EXPECT_EQ(robot.imu_in_base.position, (Vector3{0.05, 0.02, 0.06}));
   EXPECT_EQ(robot.imu_in_base.orientation, (Quaternion{0, 0, 0, 1}));
-  EXPECT_EQ(robot.wheels[0].radius, 0.1);
-  EXPECT_EQ(robot.wheel_base, 0.5);
+  EXPECT_EQ(robot.wheels[0].shape.radius, 0.1);
+  EXPECT_EQ(robot.wheels[0].shape.centre_base[1] - robot.wheels[1].shape.centre_base[1], 0.5);
   EXPECT_NEAR(robot.mass, 12, 1e-12);
 }
 
@@ -51,15 +52,15 @@ TEST_F(TrueRobotTest, HasTheDrivesOfTheUser) {
 TEST_F(TrueRobotTest, RadiiErrBySide) {
   parameters_.left_radius_error = 0.01;
   parameters_.right_radius_error = -0.02;
-  EXPECT_NEAR(real().wheels[0].radius, 0.101, 1e-12);
-  EXPECT_NEAR(real().wheels[1].radius, 0.098, 1e-12);
+  EXPECT_NEAR(real().wheels[0].shape.radius, 0.101, 1e-12);
+  EXPECT_NEAR(real().wheels[1].shape.radius, 0.098, 1e-12);
 }
 
 TEST_F(TrueRobotTest, AWiderWheelBaseMovesTheWheelsOutwards) {
   parameters_.wheel_base_error = 0.02;
-  const DriveTrain robot = real();
-  EXPECT_NEAR(robot.wheels[0].centre_base[1], 0.255, 1e-12);
-  EXPECT_NEAR(robot.wheels[1].centre_base[1], -0.255, 1e-12);
+  const TrueRobot robot = real();
+  EXPECT_NEAR(robot.wheels[0].shape.centre_base[1], 0.255, 1e-12);
+  EXPECT_NEAR(robot.wheels[1].shape.centre_base[1], -0.255, 1e-12);
   EXPECT_NEAR(robot.bodies->moved_by("left_wheel_joint")->in_root.translation().y(), 0.255, 1e-12);
 }
 
@@ -87,7 +88,7 @@ TEST_F(TrueRobotTest, APayloadIsAPointMassOnTheBase) {
   believed_ = MadeRobot{}.model();
   parameters_.payload = 5;
   parameters_.payload_z = 0.3;
-  const DriveTrain robot = real();
+  const TrueRobot robot = real();
   EXPECT_NEAR(robot.mass, believed_.mass + 5, 1e-12);
   const RigidBody& loaded = robot.bodies->bodies[0];
   const RigidBody& empty = believed_.bodies->bodies[0];

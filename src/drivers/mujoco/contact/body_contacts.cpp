@@ -14,7 +14,7 @@ using Vector = Eigen::Map<const Eigen::Vector3d>;
 
 BodyContacts::BodyContacts(const MujocoModel& model)
     : model_(model.model.get()), base_body_(model.base_body), number_of_(static_cast<std::size_t>(model_->nbody), -1) {
-  if (model.drive_wheels > 0) return;
+  if (model.robot.drive_wheels > 0) return;
   for (const std::string& link : model.robot.contacts) {
     const int body = mj_name2id(model_, mjOBJ_BODY, mjcf_body_name(link).c_str());
     number_of_[static_cast<std::size_t>(body)] = static_cast<int>(bodies_.size());

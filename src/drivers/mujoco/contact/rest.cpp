@@ -7,7 +7,6 @@
 #include "drivers/mujoco/model/mjcf.h"
 #include "machine/description/wording.h"
 #include "machine/gravity.h"
-#include "machine/wheeled/ground_points.h"
 
 namespace robot_control {
 namespace {
@@ -23,7 +22,7 @@ std::string link_of(const MujocoModel& model, int geom) {
   std::string name = mj_id2name(model.model.get(), mjOBJ_BODY, body);
   const auto number = static_cast<std::size_t>(geom - model.model->body_geomadr[body]);
   for (const RigidBody& candidate : model.robot.bodies->bodies) {
-    const bool slides = rolling_body(model.robot, candidate) == nullptr && number < candidate.shapes.size();
+    const bool slides = wheel_of(model.robot, candidate) == nullptr && number < candidate.shapes.size();
     if (slides && mjcf_body_name(candidate.name) == name) return candidate.shapes[number].link;
   }
   return name;
@@ -39,21 +38,22 @@ bool at_rest(const MujocoModel& model, const mjData& data, double base_speed, do
 }
 
 std::string unloaded_side(const MujocoModel& model, const WheelContacts& wheels) {
-  if (model.drive_wheels == 0) return "";
-  for (const Side side : {Side::kLeft, Side::kRight}) {
+  const TrueRobot& robot = model.robot;
+  if (robot.drive_wheels == 0) return "";
+  for (std::size_t side = 0; side < robot.groups.size(); ++side) {
     double load = 0;
-    for (std::size_t i = 0; i < model.drive_wheels; ++i) {
-      if (model.robot.wheels[i].side == side) load += wheels.normal_force(i);
+    for (std::size_t i = 0; i < robot.drive_wheels; ++i) {
+      if (robot.wheels[i].side == side) load += wheels.normal_force(i);
     }
-    if (load < kMinLoad * model.robot.mass * kGravity) return side == Side::kLeft ? "left" : "right";
+    if (load < kMinLoad * robot.mass * kGravity) return robot.groups[side].name;
   }
   return "";
 }
 
 std::string unloaded_wheels(const MujocoModel& model, const WheelContacts& wheels) {
-  const double share = model.robot.mass * kGravity / static_cast<double>(model.drive_wheels);
+  const double share = model.robot.mass * kGravity / static_cast<double>(model.robot.drive_wheels);
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < model.drive_wheels; ++i) {
+  for (std::size_t i = 0; i < model.robot.drive_wheels; ++i) {
     if (wheels.normal_force(i) < kMinShare * share) names.push_back(model.robot.joints[i].name);
   }
   return names.empty() ? "" : list(names);
@@ -61,7 +61,7 @@ std::string unloaded_wheels(const MujocoModel& model, const WheelContacts& wheel
 
 std::string links_on_ground(const MujocoModel& model, const mjData& data) {
   std::set<std::string> names;
-  const auto drive_wheels_end = model.wheel_shape.begin() + static_cast<std::ptrdiff_t>(model.drive_wheels);
+  const auto drive_wheels_end = model.wheel_shape.begin() + static_cast<std::ptrdiff_t>(model.robot.drive_wheels);
   for (int i = 0; i < data.ncon; ++i) {
     for (const int geom : {data.contact[i].geom1, data.contact[i].geom2}) {
       const bool of_robot = model.model->body_rootid[model.model->geom_bodyid[geom]] == model.base_body;

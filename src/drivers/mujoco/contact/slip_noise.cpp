@@ -4,9 +4,9 @@
 
 namespace robot_control {
 
-SlipNoise::SlipNoise(const DriveTrain& robot, const MujocoPlantParameters& parameters)
+SlipNoise::SlipNoise(std::size_t wheels, const MujocoPlantParameters& parameters)
     : seed_(parameters.seed),
-      deviation_(parameters.sensor_errors == ErrorLevel::kField && robot.wheels.size() > 2
+      deviation_(parameters.sensor_errors == ErrorLevel::kField && wheels > 2
                      ? parameters.wheel_slip_noise / std::sqrt(2 * kLength)
                      : 0) {
   reset();
@@ -18,11 +18,11 @@ void SlipNoise::reset() {
   error_ = {};
 }
 
-void SlipNoise::step(Side side, double distance) noexcept {
+void SlipNoise::step(std::size_t side, double distance) noexcept {
   if (deviation_ == 0 || distance == 0) return;
   const double kept = std::exp(-std::abs(distance) / kLength);
-  double& error = error_[index(side)];
-  error = kept * error + deviation_ * std::sqrt(1 - kept * kept) * random_[index(side)].next();
+  double& error = error_[side];
+  error = kept * error + deviation_ * std::sqrt(1 - kept * kept) * random_[side].next();
 }
 
 }  // namespace robot_control

@@ -14,7 +14,6 @@
 
 #include "drivers/mujoco/mujoco_plant_parameters.h"
 #include "drivers/mujoco/sensors/normal_stream.h"
-#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -22,19 +21,18 @@ class SlipNoise {
  public:
   static constexpr double kLength = 0.1;  ///< m; in the recordings, slip is not correlated after half a second
 
-  SlipNoise(const DriveTrain& robot, const MujocoPlantParameters& parameters);
+  /// `wheels` is the number of drive wheels.
+  SlipNoise(std::size_t wheels, const MujocoPlantParameters& parameters);
 
   void reset();
 
-  /// Advances ε after the rims of `side` have rolled by `distance` m.
-  void step(Side side, double distance) noexcept;
+  /// Advances ε after the rims of `side` (0: left, 1: right) have rolled by `distance` m.
+  void step(std::size_t side, double distance) noexcept;
 
   /// Returns ε of `side`.
-  double error(Side side) const noexcept { return error_[index(side)]; }
+  double error(std::size_t side) const noexcept { return error_[side]; }
 
  private:
-  static std::size_t index(Side side) noexcept { return side == Side::kLeft ? 0 : 1; }
-
   std::uint64_t seed_;
   double deviation_;  ///< standard deviation of ε
   std::array<NormalStream, 2> random_;

@@ -52,18 +52,18 @@ WheelContacts::WheelContacts(const MujocoModel& model, const MujocoPlantParamete
       brush_(parameters.tyre == TyreModel::kBrush),
       sense_(parameters.contact_sensors),
       base_body_(model.base_body),
-      drive_wheels_(model.drive_wheels),
+      drive_wheels_(model.robot.drive_wheels),
       ground_friction_(parameters.ground_friction),
       wheel_of_(static_cast<std::size_t>(model_->ngeom), -1),
-      slip_noise_(model.robot, parameters) {
+      slip_noise_(model.robot.drive_wheels, parameters) {
   for (std::size_t i = 0; i < model.wheel_shape.size(); ++i) {
     Wheel wheel;
     wheel.shape = model.wheel_shape[i];
     wheel.body = model_->geom_bodyid[wheel.shape];
     wheel.dof = model_->body_dofadr[wheel.body];
     wheel.radius = model_->geom_size[3 * wheel.shape];
-    wheel.omni = i >= model.drive_wheels && model.robot.casters[i - model.drive_wheels].omni;
-    if (i < model.drive_wheels) wheel.side = model.robot.wheels[i].side;
+    wheel.omni = model.robot.wheels[i].omni;
+    if (i < drive_wheels_) wheel.side = model.robot.wheels[i].side;
     wheel_of_[static_cast<std::size_t>(wheel.shape)] = static_cast<int>(i);
     wheels_.push_back(wheel);
   }
@@ -94,7 +94,7 @@ void WheelContacts::measure_tyres(const MujocoModel& model) {
   const Vector up(model.up.data());
   const Eigen::Matrix3d tangent = Eigen::Matrix3d::Identity() - up * up.transpose();
   const double weight = model_->body_subtreemass[model.base_body] * kGravity;
-  const std::size_t driven = model.drive_wheels;
+  const std::size_t driven = drive_wheels_;
   for (Eigen::Index i = 0; i < count; ++i) {
     double sum = 0;
     for (Eigen::Index j = 0; j < count; ++j) sum += (tangent * mobility.block<3, 3>(3 * i, 3 * j) * tangent).norm();
@@ -115,7 +115,7 @@ void WheelContacts::reset() {
 
 /// Advances the random slip by the mean distance of each side's wheels.
 void WheelContacts::roll_on(const mjData& data) noexcept {
-  for (const Side side : {Side::kLeft, Side::kRight}) {
+  for (const std::size_t side : {0u, 1u}) {
     double distance = 0;
     for (const Wheel& wheel : wheels_) {
       if (wheel.side == side) distance += std::abs(data.qvel[wheel.dof]) * wheel.radius * model_->opt.timestep;

@@ -12,7 +12,7 @@
 /// shape's `friction`. A region is a box, sphere or ellipsoid of the scene named "friction/…" that collides with
 /// nothing (contype="0" conaffinity="0"). So a patch of ice can be part of a plane floor.
 ///
-/// A caster that does not swivel (WheelModel::omni) has friction only along its rolling direction.
+/// A caster that does not swivel (TrueWheel::omni) has friction only along its rolling direction.
 ///
 /// At error level kField, drive wheels with brush tyres slip at random (slip_noise.h).
 ///
@@ -76,7 +76,7 @@ class WheelContacts {
     int shape = 0, body = 0, dof = 0;
     double radius = 0;
     bool omni = false;
-    std::optional<Side> side;  ///< drive wheels only
+    std::optional<std::size_t> side;  ///< of a drive wheel: index into MachineModel::groups
     TyreParameters tyre;
     std::array<Contact, kContacts> contacts;
     double normal_force = 0;

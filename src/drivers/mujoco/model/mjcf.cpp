@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "drivers/mujoco/model/mjcf_shapes.h"
 #include "machine/gravity.h"
-#include "machine/wheeled/ground_points.h"
 
 namespace robot_control {
 namespace {
@@ -58,7 +58,7 @@ Eigen::Quaterniond from_z(const Eigen::Vector3d& axis) {
 
 class Writer {
  public:
-  Writer(const DriveTrain& model, const MujocoPlantParameters& parameters)
+  Writer(const TrueRobot& model, const MujocoPlantParameters& parameters)
       : model_(model), robot_(*model.bodies), parameters_(parameters) {}
 
   std::string write(const MjcfPlace& place) {
@@ -98,7 +98,7 @@ class Writer {
 
   void write_joint(const RigidBody& body) {
     const BodyJoint& joint = body.joint;
-    const WheelModel* rolling = rolling_body(model_, body);
+    const TrueWheel* rolling = wheel_of(model_, body);
     const JointModel& model = *std::find_if(model_.joints.begin(), model_.joints.end(),
                                             [&](const JointModel& other) { return other.name == joint.name; });
     const bool driven = model.role == JointRole::kDriven;
@@ -137,9 +137,9 @@ class Writer {
   // Returns the armature of a swivel that carries rolling casters.
   double swivel_inertia(const RigidBody& body) const {
     double radius = 0;
-    for (const WheelModel& caster : model_.casters) {
+    for (const TrueWheel& caster : std::span(model_.wheels).subspan(model_.drive_wheels)) {
       const RigidBody& wheel = *robot_.moved_by(model_.joints[caster.joint].name);
-      if (robot_.bodies[wheel.parent].name == body.name) radius = std::max(radius, caster.radius);
+      if (robot_.bodies[wheel.parent].name == body.name) radius = std::max(radius, caster.shape.radius);
     }
     return body.joint.type == JointType::kPrismatic ? 0 : kSwivelPart * model_.mass / kSupports * radius * radius;
   }
@@ -160,11 +160,12 @@ class Writer {
   }
 
   void write_shapes(const RigidBody& body) {
-    if (const WheelModel* wheel = rolling_body(model_, body)) {
+    if (const TrueWheel* wheel = wheel_of(model_, body)) {
       Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
-      frame.translation() = body.in_root.inverse() * eigen(wheel->centre_base);
+      frame.translation() = body.in_root.inverse() * eigen(wheel->shape.centre_base);
       frame.linear() = from_z(body.joint.axis).toRotationMatrix();
-      bodies_ += mjcf_rolling_shape(mjcf_wheel_name(number_of(*wheel)), frame, *wheel, parameters_);
+      bodies_ += mjcf_rolling_shape(mjcf_wheel_name(static_cast<std::size_t>(wheel - model_.wheels.data())), frame,
+                                    *wheel, parameters_);
       return;
     }
     for (const Shape& shape : body.shapes) {
@@ -177,12 +178,7 @@ class Writer {
     }
   }
 
-  std::size_t number_of(const WheelModel& wheel) const {
-    if (model_.joints[wheel.joint].role == JointRole::kDriven) return wheel.joint;
-    return model_.wheels.size() + static_cast<std::size_t>(&wheel - model_.casters.data());
-  }
-
-  const DriveTrain& model_;
+  const TrueRobot& model_;
   const RigidBodies& robot_;
   const MujocoPlantParameters& parameters_;
   std::size_t meshes_ = 0;
@@ -199,11 +195,11 @@ std::string mjcf_wheel_name(std::size_t wheel) {
   return "robot_control/wheel/" + std::to_string(wheel);
 }
 
-std::string robot_mjcf(const DriveTrain& robot, const MujocoPlantParameters& parameters, const MjcfPlace& place) {
+std::string robot_mjcf(const TrueRobot& robot, const MujocoPlantParameters& parameters, const MjcfPlace& place) {
   return Writer(robot, parameters).write(place);
 }
 
-void apply_angles(const DriveTrain& robot, mjModel& model) {
+void apply_angles(const TrueRobot& robot, mjModel& model) {
   for (std::size_t index = 1; index < robot.bodies->bodies.size(); ++index) {
     const BodyJoint& joint = robot.bodies->bodies[index].joint;
     const int id = mj_name2id(&model, mjOBJ_JOINT, joint.name.c_str());

@@ -34,9 +34,9 @@
 #include <optional>
 #include <string>
 
+#include "drivers/mujoco/model/true_robot.h"
 #include "drivers/mujoco/mujoco_plant_parameters.h"
 #include "machine/bodies/rigid_bodies.h"
-#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -49,8 +49,7 @@ inline constexpr const char* kMjcfStart = "start";
 /// Returns the name of the body that the joint of this link moves.
 std::string mjcf_body_name(const std::string& link);
 
-/// Returns the name of a rolling shape: "robot_control/wheel/0" … in the order of DriveTrain::wheels, then the
-/// casters'.
+/// Returns the name of a rolling shape: "robot_control/wheel/0" … in the order of TrueRobot::wheels.
 std::string mjcf_wheel_name(std::size_t wheel);
 
 struct MjcfPlace {
@@ -60,10 +59,10 @@ struct MjcfPlace {
 
 /// Returns the MJCF text of `robot`, the true one (true_robot.h). The scene's name is relative to the directory from
 /// which the text is loaded.
-std::string robot_mjcf(const DriveTrain& robot, const MujocoPlantParameters& parameters, const MjcfPlace& place);
+std::string robot_mjcf(const TrueRobot& robot, const MujocoPlantParameters& parameters, const MjcfPlace& place);
 
 /// Sets ranges and spring angles of rotating joints, which the text leaves out because it does not know the scene's
 /// unit of angles.
-void apply_angles(const DriveTrain& robot, mjModel& model);
+void apply_angles(const TrueRobot& robot, mjModel& model);
 
 }  // namespace robot_control

@@ -22,7 +22,7 @@ std::string standing(const MujocoPlantParameters& parameters) {
   return R"( condim="3" priority="1" friction=")" + mjcf_number(*parameters.ground_friction) + R"( 0 0")";
 }
 
-std::string rolling(const WheelModel& wheel, const MujocoPlantParameters& parameters) {
+std::string rolling(const TrueWheel& wheel, const MujocoPlantParameters& parameters) {
   if (wheel.omni || parameters.tyre == TyreModel::kBrush) return kSliding;
   return standing(parameters);
 }
@@ -93,10 +93,11 @@ std::string mjcf_shape(const Shape& shape, const std::string& mesh, Grip grip,
   return geom + "\"/>\n";
 }
 
-std::string mjcf_rolling_shape(const std::string& name, const Eigen::Isometry3d& frame, const WheelModel& wheel,
+std::string mjcf_rolling_shape(const std::string& name, const Eigen::Isometry3d& frame, const TrueWheel& wheel,
                                const MujocoPlantParameters& parameters) {
   return "<geom name=\"" + name + '"' + mjcf_pose(frame) + kContact + rolling(wheel, parameters) +
-         " type=\"ellipsoid\" size=\"" + mjcf_numbers({wheel.radius, wheel.radius, wheel.width / 2}) + "\"/>\n";
+         " type=\"ellipsoid\" size=\"" + mjcf_numbers({wheel.shape.radius, wheel.shape.radius, wheel.shape.width / 2}) +
+         "\"/>\n";
 }
 
 std::string mjcf_mesh(const std::string& name, const std::vector<Eigen::Vector3d>& corners) {

@@ -9,7 +9,7 @@
 
 namespace robot_control {
 
-struct WheelModel;
+struct TrueWheel;
 
 /// Return numbers with 17 digits and the decimal point ".", which are read back without a change.
 std::string mjcf_number(double value);
@@ -24,7 +24,7 @@ enum class Grip { kNone, kOfGround };
 std::string mjcf_shape(const Shape& shape, const std::string& mesh, Grip grip, const MujocoPlantParameters& parameters);
 
 /// Returns `<geom …/>` of a drive wheel or caster; the z axis of `frame` is the axle.
-std::string mjcf_rolling_shape(const std::string& name, const Eigen::Isometry3d& frame, const WheelModel& wheel,
+std::string mjcf_rolling_shape(const std::string& name, const Eigen::Isometry3d& frame, const TrueWheel& wheel,
                                const MujocoPlantParameters& parameters);
 
 /// Returns `<mesh …/>` with its corners; flat meshes are thickened.

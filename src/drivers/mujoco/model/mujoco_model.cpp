@@ -15,12 +15,10 @@
 #include "drivers/driver.h"
 #include "drivers/mujoco/model/mjcf.h"
 #include "drivers/mujoco/model/scene_files.h"
-#include "drivers/mujoco/model/true_robot.h"
 #include "drivers/mujoco/mujoco_errors.h"
 #include "files/message_text.h"
 #include "machine/bodies/posed_bodies.h"
 #include "machine/description/wording.h"
-#include "machine/wheeled/ground_points.h"
 
 namespace robot_control {
 namespace {
@@ -105,7 +103,7 @@ void set_options(mjModel& model, double timestep, double slope, const std::array
 
 void find_addresses(MujocoModel& result) {
   const mjModel& model = *result.model;
-  const DriveTrain& robot = result.robot;
+  const TrueRobot& robot = result.robot;
   result.base_body = find(model, mjOBJ_BODY, mjcf_body_name(robot.base_link));
   const int base_joint = model.body_jntadr[result.base_body];
   result.base_position = model.jnt_qposadr[base_joint];
@@ -116,22 +114,30 @@ void find_addresses(MujocoModel& result) {
     result.joint_velocity.push_back(model.jnt_dofadr[id]);
   }
   result.driven = driven_joint_indices(robot);
-  result.drive_wheels = robot.wheels.size();
-  for (std::size_t wheel = 0; wheel < robot.wheels.size() + robot.casters.size(); ++wheel) {
+  for (std::size_t wheel = 0; wheel < robot.wheels.size(); ++wheel) {
     result.wheel_shape.push_back(find(model, mjOBJ_GEOM, mjcf_wheel_name(wheel)));
   }
   result.gyro = model.sensor_adr[find(model, mjOBJ_SENSOR, kMjcfGyro)];
   result.imu = find(model, mjOBJ_SITE, kMjcfImu);
 }
 
-/// Returns the robot with its bodies where they are while every joint is at its rest position.
-DriveTrain resting(const DriveTrain& robot) {
-  if (std::ranges::all_of(robot.joints, [](const JointModel& joint) { return joint.rest_position == 0; })) return robot;
+/// Returns the bodies where they are while every joint is at its rest position.
+RigidBodies resting(const TrueRobot& robot) {
   std::map<std::string, double> positions;
-  for (const JointModel& joint : robot.joints) positions[joint.name] = joint.rest_position;
-  DriveTrain result = robot;
-  result.bodies = std::make_shared<const RigidBodies>(posed(*robot.bodies, positions));
-  return result;
+  for (const JointModel& joint : robot.joints) {
+    if (joint.rest_position != 0) positions[joint.name] = joint.rest_position;
+  }
+  return positions.empty() ? *robot.bodies : posed(*robot.bodies, positions);
+}
+
+/// Returns the height of the root frame above the ground, m.
+double standing_height(const TrueRobot& robot) {
+  std::vector<Eigen::Vector3d> points;
+  for (const RigidBody& body : resting(robot).bodies) {
+    const TrueWheel* const wheel = wheel_of(robot, body);
+    std::ranges::copy(shape_points(body, wheel == nullptr ? nullptr : &wheel->shape), std::back_inserter(points));
+  }
+  return height_above(points);
 }
 
 /// Returns ", such as flat, kerb in its folder"; "" if there is no other scene.
@@ -163,17 +169,18 @@ MujocoModel compile_model(const MachineModel& robot, const MujocoPlantParameters
   }
   check_scene_files(scene);
   MujocoModel result;
-  result.robot = true_robot(robot, parameters);
+  result.substeps = static_cast<int>(std::ceil(period / kMaxStep - 1e-9));
+  const double step = period / result.substeps;
+  result.robot = true_robot(robot, parameters, step);
   const MjcfPlace place =
-      place_of(*load(scene.string(), nullptr, scene.string()), scene, standing_height(resting(result.robot)));
+      place_of(*load(scene.string(), nullptr, scene.string()), scene, standing_height(result.robot));
 
   const std::string name = scene.stem().string() + "+robot.xml";
   VirtualFiles files;
   files.add(name, robot_mjcf(result.robot, parameters, place));
   // The text is loaded in the scene's directory, so that relative paths in the scene stay valid.
   result.model = load((scene.parent_path() / name).string(), files.get(), robot.source + " in scene " + scene.string());
-  result.substeps = static_cast<int>(std::ceil(period / kMaxStep - 1e-9));
-  set_options(*result.model, period / result.substeps, parameters.slope, place.pose);
+  set_options(*result.model, step, parameters.slope, place.pose);
   apply_angles(result.robot, *result.model);
   find_addresses(result);
   check_mass(result, scene.string());

@@ -21,8 +21,8 @@
 #include <string>
 #include <vector>
 
+#include "drivers/mujoco/model/true_robot.h"
 #include "drivers/mujoco/mujoco_plant_parameters.h"
-#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
@@ -37,16 +37,15 @@ using MujocoData = std::unique_ptr<mjData, DeleteMujoco>;
 
 struct MujocoModel {
   std::unique_ptr<mjModel, DeleteMujoco> model;
-  DriveTrain robot;  ///< the true one (true_robot.h)
+  TrueRobot robot;
   int substeps = 1;  ///< steps per period: ⌈period / 1 ms⌉
   int base_body = 0;
-  int base_position = 0;            ///< index into qpos: x y z, quaternion w x y z
-  int base_velocity = 0;            ///< index into qvel: linear in world axes, angular in base axes
-  std::vector<int> joint_position;  ///< indices into qpos, per joint of DriveTrain
-  std::vector<int> joint_velocity;  ///< indices into qvel and qfrc_applied
-  std::vector<int> wheel_shape;     ///< geoms of the drive wheels of DriveTrain, then of its casters
-  std::size_t drive_wheels = 0;
-  std::vector<std::size_t> driven;    ///< joints of DriveTrain with a motor: the drive wheels, or those of another kind
+  int base_position = 0;              ///< index into qpos: x y z, quaternion w x y z
+  int base_velocity = 0;              ///< index into qvel: linear in world axes, angular in base axes
+  std::vector<int> joint_position;    ///< indices into qpos, per joint of the robot
+  std::vector<int> joint_velocity;    ///< indices into qvel and qfrc_applied
+  std::vector<int> wheel_shape;       ///< geoms of TrueRobot::wheels
+  std::vector<std::size_t> driven;    ///< joints with a motor
   std::array<double, 3> up{0, 0, 1};  ///< z axis of the site `start`, world axes
   int gyro = 0;                       ///< index into sensordata
   int imu = 0;                        ///< site

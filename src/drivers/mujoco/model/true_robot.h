@@ -2,23 +2,49 @@
 /// true_robot returns the simulated robot. It is the robot of the URDF, without the overrides of the `robot:` block,
 /// with the configured errors of the plant.
 ///
-///   radius      (1 + left_radius_error) or (1 + right_radius_error) times the URDF's
-///   wheel base  every wheel moved sideways by wheel_base_error · wheel_base / 2, outwards
 ///   friction    dry, of a wheel's joint: (1 + wheel_friction_error) times the URDF's
-///   inertia     of a wheel about its axle: + gear_ratio² · rotor_inertia
 ///   payload     a point mass, fixed to the base
 ///   centre of gravity   in the field (errors.h), ahead and to the left of the described one by
-///               centre_of_gravity_error · wheel_base, by moving that of the root link
+///               centre_of_gravity_error · wheel base, by moving that of the root link
+///   wheels      contact/true_wheels.h
 ///
 /// Effort limits stay as described, because they belong to the drive.
 
+#include <vector>
+
 #include "drivers/mujoco/mujoco_plant_parameters.h"
-#include "machine/bodies/rigid_bodies.h"
-#include "machine/wheeled/drive_train.h"
+#include "gate/brake_law.h"
+#include "machine/bodies/shape_points.h"
+#include "machine/machine_model.h"
 
 namespace robot_control {
 
-/// A machine without drive wheels becomes a drive train without wheels. Throws RobotError as read_drive_train does.
-DriveTrain true_robot(const MachineModel& described, const MujocoPlantParameters& parameters);
+/// A drive wheel or the wheel of a caster.
+struct TrueWheel {
+  std::size_t joint = 0;     ///< index into MachineModel::joints
+  std::size_t side = 0;      ///< of a drive wheel: index into MachineModel::groups
+  RollingEllipsoid shape;    ///< on the ground
+  double inertia = 0;        ///< kg·m² about the axle, rotor_inertia included
+  double rotor_inertia = 0;  ///< kg·m², of the drive's rotor and gear
+  bool omni = false;         ///< slides sideways without friction
+  Brake brake;               ///< of a drive wheel, from the robot's kind
+};
+
+struct TrueRobot : MachineModel {
+  TrueRobot() = default;
+  explicit TrueRobot(const MachineModel& machine) : MachineModel(machine) {}
+
+  std::vector<TrueWheel> wheels;  ///< the drive wheels, which are the first joints; then those of casters
+  std::size_t drive_wheels = 0;
+};
+
+/// `step` is the time step of the simulated drives in s. Throws RobotError as read_drive_train does.
+TrueRobot true_robot(const MachineModel& described, const MujocoPlantParameters& parameters, double step);
+
+/// Adds the payload, and moves the centre of gravity by its error. `wheel_base` is in m, and zero without wheels.
+void load_base(MachineModel& robot, RigidBodies& bodies, const MujocoPlantParameters& parameters, double wheel_base);
+
+/// Returns the wheel that `body` is; null for all others.
+const TrueWheel* wheel_of(const TrueRobot& robot, const RigidBody& body);
 
 }  // namespace robot_control

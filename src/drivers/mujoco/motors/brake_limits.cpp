@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "drivers/driver.h"
-#include "gate/wheeled/wheel_stop.h"
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/description/wording.h"
 
@@ -14,8 +13,8 @@ constexpr double kHoldSpeed = 0.03;  // rad/s or m/s
 
 }  // namespace
 
-double inertia_of(const DriveTrain& robot, std::size_t index, const MujocoPlantParameters& parameters) {
-  if (index < robot.wheels.size()) return robot.wheels[index].inertia;
+double inertia_of(const TrueRobot& robot, std::size_t index, const MujocoPlantParameters& parameters) {
+  if (index < robot.drive_wheels) return robot.wheels[index].inertia;
   const RigidBody& body = *robot.bodies->moved_by(robot.joints[index].name);
   const double rotor =
       parameters.gear_ratio * parameters.gear_ratio * parameters.rotor_inertia + robot.joints[index].rotor_inertia;
@@ -25,7 +24,7 @@ double inertia_of(const DriveTrain& robot, std::size_t index, const MujocoPlantP
   return axis.dot(body.inertia * axis) + body.mass * lever + rotor;
 }
 
-Brake brake_of(const DriveTrain& robot, std::size_t index, const MujocoPlantParameters& parameters, double step) {
+Brake brake_of(const TrueRobot& robot, std::size_t index, const MujocoPlantParameters& parameters, double step) {
   const JointModel& joint = robot.joints[index];
   const double inertia = inertia_of(robot, index, parameters);
   Brake brake = {.effort = joint.effort_limit,
@@ -33,8 +32,7 @@ Brake brake_of(const DriveTrain& robot, std::size_t index, const MujocoPlantPara
                  .damping = 0.4 * inertia / step,
                  .stiffness = 0.06 * inertia / (step * step),
                  .hold_speed = kHoldSpeed};
-  if (index < robot.wheels.size())
-    brake = wheel_brake(robot, index, parameters.gear_ratio * parameters.motor_friction, step);
+  if (index < robot.drive_wheels) brake = robot.wheels[index].brake;
   if (parameters.brake_effort) {
     brake.effort = brake.hold_effort = std::min(*parameters.brake_effort, joint.effort_limit);
   }

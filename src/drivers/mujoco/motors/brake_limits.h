@@ -1,6 +1,6 @@
 #pragma once
 /// The brake of a simulated drive, with the values that the user sets instead. That of a wheel is the kind's own
-/// (gate/wheeled/wheel_stop.h) for the true robot. That of another joint has the effort limit of the joint and
+/// (TrueWheel::brake). That of another joint has the effort limit of the joint and
 ///
 ///   damping d = 0.4 J/h     stiffness k = 0.06 J/h²     hold speed 0.03 rad/s or m/s
 ///
@@ -10,18 +10,18 @@
 #include <string>
 
 #include "drivers/joint_law.h"
+#include "drivers/mujoco/model/true_robot.h"
 #include "drivers/mujoco/mujoco_plant_parameters.h"
 #include "gate/brake_law.h"
-#include "machine/wheeled/drive_train.h"
 
 namespace robot_control {
 
 /// Returns the brake of a driven joint of the true robot; `step` is h in s. Throws DriverError, with value and bound,
 /// for a given value that is not stable.
-Brake brake_of(const DriveTrain& robot, std::size_t joint, const MujocoPlantParameters& parameters, double step);
+Brake brake_of(const TrueRobot& robot, std::size_t joint, const MujocoPlantParameters& parameters, double step);
 
 /// Returns J of a driven joint in kg·m² or kg.
-double inertia_of(const DriveTrain& robot, std::size_t joint, const MujocoPlantParameters& parameters);
+double inertia_of(const TrueRobot& robot, std::size_t joint, const MujocoPlantParameters& parameters);
 
 /// Throws DriverError unless 0 < d h / J ≤ 0.5 and 0 < k h² / J ≤ 0.5.
 void check_brake(const Brake& brake, const std::string& joint, double inertia, double step);

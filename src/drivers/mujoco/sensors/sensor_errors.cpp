@@ -47,6 +47,15 @@ void InertialError::step(Vector3& value) noexcept {
 
 namespace {
 
+/// Returns the turning joints that have an actuator.
+std::vector<std::size_t> encoders_of(const MachineModel& machine) {
+  std::vector<std::size_t> joints;
+  for (std::size_t i = 0; i < machine.joints.size(); ++i) {
+    if (machine.joints[i].role != JointRole::kPassive && !machine.joints[i].prismatic) joints.push_back(i);
+  }
+  return joints;
+}
+
 const ImuDelay& imu_of(const std::vector<Rim>& rims) noexcept {
   return rims.empty() ? kImuOnLegs : kImuOnWheels;
 }
@@ -59,7 +68,7 @@ SensorErrors::SensorErrors(const MachineModel& machine, const std::vector<Rim>& 
       seed_(parameters.seed),
       period_(period),
       count_(parameters.encoder_resolution > 0 ? 2 * std::numbers::pi / parameters.encoder_resolution : 0),
-      driven_(driven_joint_indices(machine)),
+      encoders_(encoders_of(machine)),
       gyro_scale_(1 + parameters.gyro_scale_error),
       gyro_(parameters.gyro_noise, parameters.gyro_bias, parameters.gyro_bias_walk, period, kGyroDevice),
       accelerometer_(parameters.accelerometer_noise, parameters.accelerometer_bias, parameters.accelerometer_bias_walk,
@@ -88,8 +97,8 @@ void SensorErrors::reset() {
 }
 
 void SensorErrors::encode(Measurement& measurement) noexcept {
-  for (std::size_t i = 0; i < driven_.size(); ++i) {
-    JointSample& joint = measurement.joints[driven_[i]];
+  for (std::size_t i = 0; i < encoders_.size(); ++i) {
+    JointSample& joint = measurement.joints[encoders_[i]];
     const double counted = std::round(joint.position / count_);
     joint.position = counted * count_;
     joint.velocity = first_ ? 0 : (counted - counted_[i]) * count_ / period_;
@@ -100,13 +109,13 @@ void SensorErrors::encode(Measurement& measurement) noexcept {
 /// Delays the samples. Efforts are those of this cycle, because the encoder does not sample them.
 void SensorErrors::make_late(Measurement& measurement) noexcept {
   late_imu_.step(measurement.imu);
-  Encoders encoders{};
-  for (std::size_t i = 0; i < driven_.size(); ++i) encoders[i] = measurement.joints[driven_[i]];
-  late_encoders_.step(encoders);
-  for (std::size_t i = 0; i < driven_.size(); ++i) {
-    JointSample& joint = measurement.joints[driven_[i]];
-    joint.position = encoders[i].position;
-    joint.velocity = encoders[i].velocity;
+  Encoders samples{};
+  for (std::size_t i = 0; i < encoders_.size(); ++i) samples[i] = measurement.joints[encoders_[i]];
+  late_encoders_.step(samples);
+  for (std::size_t i = 0; i < encoders_.size(); ++i) {
+    JointSample& joint = measurement.joints[encoders_[i]];
+    joint.position = samples[i].position;
+    joint.velocity = samples[i].velocity;
   }
 }
 

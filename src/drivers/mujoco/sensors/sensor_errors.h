@@ -1,13 +1,14 @@
 #pragma once
 /// SensorErrors adds the errors of encoders, gyro and accelerometer to the true values.
 ///
-/// The encoder of a wheel with N = encoder_resolution counts per turn, δ = 2π/N, T the period:
+/// The encoder of a turning joint that has an actuator (driven or held), with N = encoder_resolution counts per turn, δ
+/// = 2π/N, T the period:
 ///
 ///   n(k) = round(q(k)/δ)      position = n(k)·δ      velocity = (n(k) − n(k−1))·δ/T
 ///
 /// The velocity is computed as in a drive, in steps of δ/T (1.53 rad/s for 4096 counts at 1 kHz); it is 0 in the first
-/// sample. With N = 0 the encoder is exact. Exact are also joints that are no wheels, contact forces of wheels, battery
-/// and inputs, and efforts, because a drive measures its own current.
+/// sample. With N = 0 the encoder is exact. Exact are also other joints, contact forces of wheels, battery and inputs,
+/// and efforts, because a drive measures its own current.
 ///
 /// The force F on the foot of a robot on legs, base axes, with σ = foot_noise and w, u as below:
 ///
@@ -102,7 +103,7 @@ class SensorErrors {
   std::uint64_t seed_;
   double period_;
   double count_;                              ///< rad, δ; 0: exact
-  std::vector<std::size_t> driven_;           ///< joints with a drive, whose encoder errs
+  std::vector<std::size_t> encoders_;         ///< joints with an encoder that errs
   std::array<double, kMaxJoints> counted_{};  ///< n in the last sample
   bool first_ = true;
   double gyro_scale_;  ///< 1 + e
