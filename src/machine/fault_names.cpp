@@ -36,7 +36,7 @@ std::string known_components(const MachineModel& machine) {
     }
     for (const JointGroup& group : machine.groups) words += word_of(group.name, component) + " ";
   }
-  return words + "and NAME_encoder, NAME_motor of each driven joint";
+  return words + "and NAME_encoder, NAME_motor of each driven or held joint";
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ std::vector<std::string> fault_words(const MachineModel& machine) {
     else
       for (const JointGroup& group : machine.groups) add(word_of(group.name, component));
   }
-  for (const std::size_t joint : driven_joint_indices(machine)) {
+  for (const std::size_t joint : actuated_joint_indices(machine)) {
     for (std::size_t i = 0; i < kFaultComponents; ++i) {
       const auto component = static_cast<FaultComponent>(i);
       if (is_of_joint(component)) add(word_of(machine.joints[joint].name, component));
@@ -74,7 +74,7 @@ std::vector<InjectedFault> components_of(const MachineModel& machine, std::strin
     }
     for (std::size_t joint = 0; joint < machine.joints.size(); ++joint) {
       const JointModel& model = machine.joints[joint];
-      if (model.role == JointRole::kDriven && word == word_of(model.name, component)) {
+      if (model.role != JointRole::kPassive && word == word_of(model.name, component)) {
         return {fault_of_joint(component, joint)};
       }
     }

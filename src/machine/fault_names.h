@@ -1,6 +1,6 @@
 #pragma once
 /// These functions translate the words of the service inject_fault. A component's word is one of kFaultComponentNames.
-/// Before "encoder" and "motor" stands the name of a driven joint, or of a group of joints (MachineModel::groups):
+/// Before "encoder" and "motor" stands the name of a driven or held joint, or of a group of joints (MachineModel::groups):
 /// "left_encoder", "left_wheel_joint_motor". A group goes before a joint of the same name. All functions allocate.
 
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace robot_control {
 
-/// Returns all words of components: those that exist once, those of groups, and those of each driven joint. A word that
+/// Returns all words of components: those that exist once, those of groups, and those of each driven or held joint. A word that
 /// two of them share is there once.
 std::vector<std::string> fault_words(const MachineModel& machine);
 

@@ -27,12 +27,25 @@ const char* name_of(RobotNote::Kind kind) {
   return kNames.at(static_cast<std::size_t>(kind));
 }
 
-std::vector<std::size_t> driven_joint_indices(const MachineModel& machine) {
-  std::vector<std::size_t> driven;
+namespace {
+
+template <class Counts>
+std::vector<std::size_t> joint_indices(const MachineModel& machine, Counts counts) {
+  std::vector<std::size_t> joints;
   for (std::size_t joint = 0; joint < machine.joints.size(); ++joint) {
-    if (machine.joints[joint].role == JointRole::kDriven) driven.push_back(joint);
+    if (counts(machine.joints[joint].role)) joints.push_back(joint);
   }
-  return driven;
+  return joints;
+}
+
+}  // namespace
+
+std::vector<std::size_t> driven_joint_indices(const MachineModel& machine) {
+  return joint_indices(machine, [](JointRole role) { return role == JointRole::kDriven; });
+}
+
+std::vector<std::size_t> actuated_joint_indices(const MachineModel& machine) {
+  return joint_indices(machine, [](JointRole role) { return role != JointRole::kPassive; });
 }
 
 MachineModel read_machine(const RobotDescription& description, const MachineParameters& parameters) {

@@ -106,8 +106,10 @@ struct MachineModel {
   std::vector<RobotNote> notes;
 };
 
-/// Returns the joints with role kDriven, as indices into MachineModel::joints.
+/// Return the joints with role kDriven, and those that have an actuator (driven and held ones), as indices into
+/// MachineModel::joints.
 std::vector<std::size_t> driven_joint_indices(const MachineModel& machine);
+std::vector<std::size_t> actuated_joint_indices(const MachineModel& machine);
 
 /// Reads any machine whose joints move. A joint with an effort limit is kHeld until the robot's kind drives it.
 ///

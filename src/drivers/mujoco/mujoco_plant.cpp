@@ -49,12 +49,13 @@ MujocoPlant::MujocoPlant(const MachineModel& robot, const MujocoPlantParameters&
       sensor_errors_(model_.robot, rims_of(model_.robot), parameters, period),
       sensor_faults_(model_.robot, parameters.seed),
       actuator_delay_(checked_delay("actuator_delay", parameters.actuator_delay)) {
-  for (const std::size_t joint : model_.driven) {
-    laws_.emplace_back(brake_of(model_.robot, joint, parameters, model_.model->opt.timestep),
-                       model_.robot.joints[joint].effort_limit);
-    motors_.emplace_back(model_.robot.joints[joint].effort_limit, parameters.no_load_speed, parameters.gear_ratio);
-    motor_faults_.add(joint, inertia_of(model_.robot, joint, parameters), model_.robot.joints[joint].effort_limit,
-                      parameters.seed, model_.model->opt.timestep);
+  const double step = model_.model->opt.timestep;
+  for (const std::size_t joint : model_.actuated) {
+    const JointModel& model = model_.robot.joints[joint];
+    laws_.emplace_back(brake_of(model_.robot, joint, parameters, step), model.effort_limit);
+    motors_.emplace_back(model.effort_limit, model.role == JointRole::kDriven ? parameters.no_load_speed : 0,
+                         parameters.gear_ratio);
+    motor_faults_.add(joint, inertia_of(model_.robot, joint, parameters), model.effort_limit, parameters.seed, step);
   }
   brakes_.resize(robot.joints.size());
   check_battery(parameters.battery_voltage, parameters.battery_resistance);
@@ -255,7 +256,7 @@ void MujocoPlant::substep(void* plant) {
 bool MujocoPlant::advance(std::span<const JointCommand> commands) noexcept {
   std::fill_n(data_->qfrc_applied, model_.model->nv, 0.0);
   for (std::size_t drive = 0; drive < laws_.size(); ++drive) {
-    const std::size_t joint = model_.driven[drive];
+    const std::size_t joint = model_.actuated[drive];
     const int dof = model_.joint_velocity[joint];
     const double position = data_->qpos[model_.joint_position[joint]];
     const double velocity = data_->qvel[dof];

@@ -3,13 +3,13 @@
 ///
 /// A period consists of n = ⌈period / 1 ms⌉ MuJoCo steps of period/n. For each of them `write` runs
 ///
-///   driven joints: joint law (q, q̇ → τ), motor; wheels: tyre friction  →  mj_step2 (accelerations, integration)
-///   →  mj_step1 (kinematics of the new state)
+///   driven and held joints: joint law (q, q̇ → τ), motor; wheels: tyre friction
+///   →  mj_step2 (accelerations, integration)  →  mj_step1 (kinematics of the new state)
 ///
 /// and collects the values for `read` and `truth`. After `write` k they describe t_k+1, as SensorFrame requires:
 /// positions, velocities and gyro at that time. Accelerometer (specific_force.h), contact forces and efforts are means
-/// over [t_k, t_k+1). Joints that are not driven take no commands (JointRole): passive ones move freely, held ones stay
-/// by friction.
+/// over [t_k, t_k+1). Passive joints move freely. Held ones have a motor, too, and brake, because no controller
+/// commands them otherwise.
 ///
 /// `start` places the robot on the site `start` of the scene, with its joints at JointModel::rest_position. It lets it
 /// settle with the brakes on, for at most 20 s. Its place at rest is the origin of truth, and its time is zero. It is
@@ -101,8 +101,8 @@ class MujocoPlant final : public Simulator {
   WheelContacts wheels_;
   BodyContacts bodies_;  ///< of a machine without wheels
   MujocoPlantParameters parameters_;
-  std::vector<JointLaw> laws_;  ///< per driven joint (MujocoModel::driven)
-  std::vector<Motor> motors_;   ///< per driven joint
+  std::vector<JointLaw> laws_;  ///< per joint of MujocoModel::actuated
+  std::vector<Motor> motors_;   ///< likewise
   MotorFaults motor_faults_;
   SpecificForce specific_force_;
   SensorErrors sensor_errors_;

@@ -164,14 +164,11 @@ TEST_F(MjcfTest, ASuspensionIsASpringAtItsLoad) {
   }
 }
 
-TEST_F(MjcfTest, AHeldJointIsHeldByItsEffortLimit) {
-  read("revolute", R"(<limit lower="-2" upper="2" effort="7" velocity="1"/>)");
-  arm().role = JointRole::kHeld;
+TEST_F(MjcfTest, AHeldJointHasTheRotorOfItsMotor) {
+  read("revolute", R"(<limit lower="-2" upper="2" effort="7" velocity="1"/><dynamics friction="0.1"/>)");
   compile();
-  EXPECT_EQ(compiled_->dof_frictionloss[dof_], 7);
-  arm_joint().effort_limit = 0;
-  compile();
-  EXPECT_NEAR(compiled_->dof_frictionloss[dof_], 9.81 * model_.mass, 1e-9) << "1 m under the robot's weight";
+  EXPECT_NEAR(compiled_->dof_armature[dof_], 7.0 / 200, 1e-12);
+  EXPECT_EQ(compiled_->dof_frictionloss[dof_], 0.1);
 }
 
 TEST_F(MjcfTest, APassiveJointIsFree) {

@@ -5,12 +5,10 @@
 #include <span>
 
 #include "drivers/mujoco/model/mjcf_shapes.h"
-#include "machine/gravity.h"
 
 namespace robot_control {
 namespace {
 
-constexpr double kUnknownReach = 1;  // m
 constexpr double kSwivelPart = 0.02;
 constexpr double kSupports = 4;
 
@@ -107,12 +105,10 @@ class Writer {
         !(driven && rolling != nullptr) && joint.type != JointType::kContinuous && joint.lower < joint.upper;
     const double gear = parameters_.gear_ratio;
     const double damping = joint.damping + (driven ? gear * gear * parameters_.motor_damping : 0);
-    double friction = joint.friction + (driven ? gear * parameters_.motor_friction : 0);
-    if (model.role == JointRole::kHeld) {
-      friction =
-          std::max(friction, joint.effort_limit > 0 ? joint.effort_limit : model_.mass * kGravity * kUnknownReach);
-    }
-    const double rotor = driven ? gear * gear * parameters_.rotor_inertia + model.rotor_inertia : swivel_inertia(body);
+    const double friction = joint.friction + (driven ? gear * parameters_.motor_friction : 0);
+    const double rotor = model.role == JointRole::kPassive
+                             ? swivel_inertia(body)
+                             : model.rotor_inertia + (driven ? gear * gear * parameters_.rotor_inertia : 0);
     const double armature = rolling != nullptr ? rolling->rotor_inertia : rotor;
     bodies_ +=
         "<joint" + attribute("name", escaped(joint.name)) + attribute("type", slides ? "slide" : "hinge") +

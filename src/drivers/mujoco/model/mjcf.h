@@ -19,8 +19,7 @@
 /// Joints: limits, damping and friction are those of the URDF; a wheel has no end stops. A drive's rotor is the
 /// `armature` of its joint, and motor_damping · gear_ratio² and motor_friction · gear_ratio add to its losses. A
 /// suspension's spring pulls towards q₀ = load / stiffness. An equality ties a mimic joint to the joint that it
-/// follows. A joint driven by another device (JointRole::kHeld) is held by dry friction, which is stable under any
-/// load. The friction is its effort limit or, if that is unknown, the robot's weight times 1 m. A caster's swivel gets
+/// follows. A caster's swivel gets
 /// an armature of 2 % of a quarter of the robot's mass times r². The inertia behind a tyre bounds the tyre's stiffness
 /// (tyre.h).
 ///

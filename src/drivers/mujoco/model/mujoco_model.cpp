@@ -113,7 +113,7 @@ void find_addresses(MujocoModel& result) {
     result.joint_position.push_back(model.jnt_qposadr[id]);
     result.joint_velocity.push_back(model.jnt_dofadr[id]);
   }
-  result.driven = driven_joint_indices(robot);
+  result.actuated = actuated_joint_indices(robot);
   for (std::size_t wheel = 0; wheel < robot.wheels.size(); ++wheel) {
     result.wheel_shape.push_back(find(model, mjOBJ_GEOM, mjcf_wheel_name(wheel)));
   }

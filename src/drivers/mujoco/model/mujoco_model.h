@@ -45,7 +45,7 @@ struct MujocoModel {
   std::vector<int> joint_position;    ///< indices into qpos, per joint of the robot
   std::vector<int> joint_velocity;    ///< indices into qvel and qfrc_applied
   std::vector<int> wheel_shape;       ///< geoms of TrueRobot::wheels
-  std::vector<std::size_t> driven;    ///< joints with a motor
+  std::vector<std::size_t> actuated;  ///< joints with a motor: driven and held ones
   std::array<double, 3> up{0, 0, 1};  ///< z axis of the site `start`, world axes
   int gyro = 0;                       ///< index into sensordata
   int imu = 0;                        ///< site

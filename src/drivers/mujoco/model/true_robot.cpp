@@ -9,6 +9,8 @@
 namespace robot_control {
 namespace {
 
+constexpr double kRotorAcceleration = 200;  // rad/s² or m/s²
+
 void load(RigidBody& base, double mass, const Eigen::Vector3d& place) {
   const PointInertia both = sum({base.mass, base.centre_of_gravity, base.inertia}, {.mass = mass, .centre = place});
   base.mass = both.mass;
@@ -51,7 +53,11 @@ void load_base(MachineModel& robot, RigidBodies& bodies, const MujocoPlantParame
 
 TrueRobot true_robot(const MachineModel& described, const MujocoPlantParameters& parameters, double step) {
   std::optional<TrueRobot> wheeled = on_true_wheels(described, parameters, step);
-  return wheeled ? *std::move(wheeled) : without_wheels(described, parameters);
+  TrueRobot robot = wheeled ? *std::move(wheeled) : without_wheels(described, parameters);
+  for (JointModel& joint : robot.joints) {
+    if (joint.role == JointRole::kHeld) joint.rotor_inertia = joint.effort_limit / kRotorAcceleration;
+  }
+  return robot;
 }
 
 const TrueWheel* wheel_of(const TrueRobot& robot, const RigidBody& body) {

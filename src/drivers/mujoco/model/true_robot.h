@@ -7,6 +7,7 @@
 ///   centre of gravity   in the field (errors.h), ahead and to the left of the described one by
 ///               centre_of_gravity_error · wheel base, by moving that of the root link
 ///   wheels      contact/true_wheels.h
+///   held joints a rotor, which no URDF states: the effort limit alone accelerates it by 200 rad/s² or m/s²
 ///
 /// Effort limits stay as described, because they belong to the drive.
 

@@ -15,6 +15,7 @@ constexpr double kHoldSpeed = 0.03;  // rad/s or m/s
 
 double inertia_of(const TrueRobot& robot, std::size_t index, const MujocoPlantParameters& parameters) {
   if (index < robot.drive_wheels) return robot.wheels[index].inertia;
+  if (robot.joints[index].role == JointRole::kHeld) return robot.joints[index].rotor_inertia;
   const RigidBody& body = *robot.bodies->moved_by(robot.joints[index].name);
   const double rotor =
       parameters.gear_ratio * parameters.gear_ratio * parameters.rotor_inertia + robot.joints[index].rotor_inertia;
@@ -32,6 +33,7 @@ Brake brake_of(const TrueRobot& robot, std::size_t index, const MujocoPlantParam
                  .damping = 0.4 * inertia / step,
                  .stiffness = 0.06 * inertia / (step * step),
                  .hold_speed = kHoldSpeed};
+  if (joint.role == JointRole::kHeld) return brake;
   if (index < robot.drive_wheels) brake = robot.wheels[index].brake;
   if (parameters.brake_effort) {
     brake.effort = brake.hold_effort = std::min(*parameters.brake_effort, joint.effort_limit);

@@ -49,10 +49,8 @@ namespace {
 
 /// Returns the turning joints that have an actuator.
 std::vector<std::size_t> encoders_of(const MachineModel& machine) {
-  std::vector<std::size_t> joints;
-  for (std::size_t i = 0; i < machine.joints.size(); ++i) {
-    if (machine.joints[i].role != JointRole::kPassive && !machine.joints[i].prismatic) joints.push_back(i);
-  }
+  std::vector<std::size_t> joints = actuated_joint_indices(machine);
+  std::erase_if(joints, [&](std::size_t joint) { return machine.joints[joint].prismatic; });
   return joints;
 }
 

@@ -50,7 +50,7 @@ SensorFaults::SensorFaults(const MachineModel& machine, std::uint64_t seed)
       accelerometer_(fault_seed(seed, FaultComponent::kAccelerometer)),
       battery_(fault_seed(seed, FaultComponent::kBattery)),
       button_(fault_seed(seed, FaultComponent::kEStopButton)) {
-  for (const std::size_t joint : driven_joint_indices(machine)) {
+  for (const std::size_t joint : actuated_joint_indices(machine)) {
     encoders_.push_back({joint, FaultyOutput<Reading>(fault_seed(seed, FaultComponent::kEncoder, joint))});
   }
 }

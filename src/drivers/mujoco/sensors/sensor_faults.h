@@ -48,7 +48,7 @@ class SensorFaults {
   static constexpr double kGarbageCurrent = 100;        ///< A
   static constexpr double kWrongVoltage = 0.6;  ///< factor; the result is below the voltage of any charged battery
 
-  /// The driven joints of the machine have encoders that fail.
+  /// The driven and the held joints of the machine have encoders that fail.
   SensorFaults(const MachineModel& machine, std::uint64_t seed);
 
   /// Removes all faults.
