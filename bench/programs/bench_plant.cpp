@@ -43,18 +43,20 @@ double rate(Step step) {
 class Bare {
  public:
   Bare(const DriveTrain& robot, const MujocoPlantParameters& parameters, double period)
-      : model_(compile_model(robot, parameters, period)), wheels_(model_, parameters), data_(set_down(model_)) {
+      : robot_(robot),
+        model_(compile_model(robot, parameters, period)),
+        wheels_(model_, parameters),
+        data_(set_down(model_)) {
     mj_step1(model_.model.get(), data_.get());
     wheels_.observe(*data_);
   }
 
   void drive() {
-    const DriveTrain& robot = model_.robot;
     mju_zero(data_->qfrc_applied, model_.model->nv);
-    for (const WheelModel& wheel : robot.wheels) {
+    for (const WheelModel& wheel : robot_.wheels) {
       const int dof = model_.joint_velocity[wheel.joint];
       data_->qfrc_applied[dof] =
-          wheel_damping(wheel, model_.model->opt.timestep) * (wheel_speed(robot, wheel) - data_->qvel[dof]);
+          wheel_damping(wheel, model_.model->opt.timestep) * (wheel_speed(robot_, wheel) - data_->qvel[dof]);
     }
   }
   void step_with_tyres() {
@@ -75,6 +77,7 @@ class Bare {
   }
 
  private:
+  DriveTrain robot_;
   MujocoModel model_;
   WheelContacts wheels_;
   MujocoData data_;
