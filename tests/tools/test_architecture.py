@@ -188,6 +188,8 @@ COMPOSED = re.compile(
     r"|python/bindings/(module|describe)\.cpp"  # bindings of all kinds, in one module
 )
 """The files that compose. The interfaces beside them see no kind."""
+
+
 def test_only_the_wheeled_kind_sees_the_drive_train():
     """Gate, drivers, the driver's cycle, the monitor's common conditions and the joint limits take a MachineModel."""
     own = ROOT / "src/drivers/mujoco/contact"
