@@ -33,7 +33,7 @@ struct JointRange {
 struct JointModel {
   std::string name;
   std::string child_link;
-  double effort_limit = 0;    ///< N·m or N; 0 for passive joints, above 0 for driven ones
+  double effort_limit = 0;    ///< N·m or N; 0 for passive joints, above 0 for others
   double velocity_limit = 0;  ///< rad/s or m/s; 0: unknown
   JointRole role = JointRole::kDriven;
   double damping = 0;                              ///< N·m·s/rad or N·s/m, bearing and gear
@@ -41,7 +41,7 @@ struct JointModel {
   std::optional<JointRange> range = std::nullopt;  ///< end stops; none: it turns without end
   bool prismatic = false;                          ///< true: m, m/s, N; false: rad, rad/s, N·m
   double effort_rate = 0;                          ///< N·m/s or N/s; 0: unlimited
-  double rotor_inertia = 0;  ///< kg·m², of a rotor times its gear ratio squared, which the URDF leaves out
+  double rotor_inertia = 0;  ///< kg·m² or kg, of a rotor times its gear ratio squared, which the URDF leaves out
   double rest_position = 0;  ///< rad or m, in which a simulator sets the machine down
 };
 

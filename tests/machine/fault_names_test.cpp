@@ -18,11 +18,12 @@ void add_joint(MachineModel& machine, const std::string& name) {
   machine.joints.back().name = name;
 }
 
-/// A robot with two wheels on the left, one on the right, and a joint that is not driven.
+/// A robot with two wheels on the left, one on the right, a passive joint and a held one.
 MachineModel three_wheels() {
   MachineModel machine;
-  for (const char* name : {"front", "rear", "lonely", "swivel"}) add_joint(machine, name);
+  for (const char* name : {"front", "rear", "lonely", "swivel", "arm"}) add_joint(machine, name);
   machine.joints[3].role = JointRole::kPassive;
+  machine.joints[4].role = JointRole::kHeld;
   machine.groups = {{"left", {0, 1}}, {"right", {2}}};
   return machine;
 }
@@ -38,6 +39,12 @@ class FaultNames : public testing::Test {
   const MachineModel machine_ = three_wheels();
   InjectedFaults faults_{};
 };
+
+TEST_F(FaultNames, AHeldJointHasAMotorAndAnEncoderAPassiveOneNone) {
+  EXPECT_EQ(set("arm_motor", "off"), "");
+  EXPECT_EQ(names(), "arm_motor off");
+  EXPECT_NE(set("swivel_motor", "off"), "");
+}
 
 TEST_F(FaultNames, SetTheFaultThatTheyNameAndReadBack) {
   EXPECT_EQ(set("gyro", "off"), "");

@@ -171,21 +171,24 @@ TEST_F(SafetyStatusTest, AnswersARefusedResetWithTheCauseThatPersists) {
 TEST(RobotKindMessage, NamesTheNodesOfTheRobotsKindAndItsJoints) {
   MachineModel robot;
   robot.name = "quadbot";
-  robot.joints.resize(2);
+  robot.joints.resize(3);
   robot.joints[0].name = "knee";
   robot.joints[1].name = "camera";
   robot.joints[1].role = JointRole::kHeld;
+  robot.joints[2].name = "swivel";
+  robot.joints[2].role = JointRole::kPassive;
   const msg::RobotKind message = robot_kind(robot, {.kind = kLeggedKind, .driver = "driver"}, false);
   EXPECT_EQ(message.robot, "quadbot");
   EXPECT_EQ(message.kind, "quadruped");
   EXPECT_THAT(message.roles, ElementsAre("driver", "estimator", "controller", "monitor"));
   EXPECT_THAT(message.nodes, ElementsAre("driver", "state_estimator", "leg_controller", "safety_monitor"));
-  EXPECT_THAT(message.joints, ElementsAre("knee", "camera"));
-  EXPECT_THAT(message.joint_roles, ElementsAre("driven", "held"));
+  EXPECT_THAT(message.joints, ElementsAre("knee", "camera", "swivel"));
+  EXPECT_THAT(message.joint_roles, ElementsAre("driven", "held", "passive"));
   EXPECT_THAT(message.fault_components, IsEmpty());
   const msg::RobotKind simulated = robot_kind(robot, {.kind = kLeggedKind}, true);
   EXPECT_THAT(simulated.fault_components, testing::Contains("knee_motor"));
-  EXPECT_THAT(simulated.fault_components, Not(testing::Contains("camera_motor")));
+  EXPECT_THAT(simulated.fault_components, testing::Contains("camera_motor"));
+  EXPECT_THAT(simulated.fault_components, Not(testing::Contains("swivel_motor")));
   EXPECT_THAT(simulated.fault_kinds, testing::Contains("stuck"));
 }
 

@@ -184,6 +184,7 @@ WHEELED = {"machine/wheeled", "gate/wheeled", "estimation", "control", "safety"}
 """The rooms of the wheeled kind's laws."""
 COMPOSED = re.compile(
     r"src/robots/(differential_drive\.|robot_kind\.cpp)"  # the kind itself, and the choice of a kind
+    r"|src/drivers/mujoco/contact/true_wheels\.cpp"  # from the drive train to what rolls in the simulator
     r"|src/configuration/parameters\.h"  # blocks of all kinds, in one file of the user
     r"|python/bindings/(module|describe)\.cpp"  # bindings of all kinds, in one module
 )
@@ -192,11 +193,10 @@ COMPOSED = re.compile(
 
 def test_only_the_wheeled_kind_sees_the_drive_train():
     """Gate, drivers, the driver's cycle, the monitor's common conditions and the joint limits take a MachineModel."""
-    own = ROOT / "src/drivers/mujoco/contact"
     seen = {
         str(path.relative_to(ROOT))
         for path in FILES
-        if folder(path) not in WHEELED and own not in path.parents
+        if folder(path) not in WHEELED
         if "wheeled" not in path.parts and not COMPOSED.match(str(path.relative_to(ROOT)))
         if path.parent.name != "main"
         if any(re.match(r"(machine|gate|configuration|ros|bindings)/wheeled/", name) for name in includes(path))

@@ -1,5 +1,6 @@
 #include "ros/wheeled/wheel_outputs.h"
 
+#include "machine/wheeled/drive_train.h"
 #include "ros/messages/motion_messages.h"
 
 namespace robot_control {

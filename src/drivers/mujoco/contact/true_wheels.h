@@ -5,6 +5,7 @@
 ///   wheel base  every wheel moved sideways by wheel_base_error · wheel_base / 2, outwards
 ///   friction    dry, of a wheel's joint: (1 + wheel_friction_error) times the URDF's
 ///   inertia     of a wheel about its axle: + gear_ratio² · rotor_inertia
+///   brake       gate/wheeled/wheel_stop.h, of the robot with all these errors
 
 #include <optional>
 

@@ -17,11 +17,10 @@
 /// zero. The robot's `solmix` outweighs the ground's solver settings.
 ///
 /// Joints: limits, damping and friction are those of the URDF; a wheel has no end stops. A drive's rotor is the
-/// `armature` of its joint, and motor_damping · gear_ratio² and motor_friction · gear_ratio add to its losses. A
-/// suspension's spring pulls towards q₀ = load / stiffness. An equality ties a mimic joint to the joint that it
-/// follows. A caster's swivel gets
-/// an armature of 2 % of a quarter of the robot's mass times r². The inertia behind a tyre bounds the tyre's stiffness
-/// (tyre.h).
+/// `armature` of its joint, that of a held joint is assumed (true_robot.h). On driven joints motor_damping ·
+/// gear_ratio² and motor_friction · gear_ratio add to the losses. A suspension's spring pulls towards q₀ = load /
+/// stiffness. An equality ties a mimic joint to the joint that it follows. A caster's swivel gets an armature of 2 % of
+/// a quarter of the robot's mass times r². The inertia behind a tyre bounds the tyre's stiffness (tyre.h).
 ///
 /// Every attribute that a scene's `<default>` could change is written explicitly. All directions are quaternions,
 /// because the scene's `<compiler>` sets the unit of angles. `apply_angles` sets ranges and spring angles of rotating

@@ -200,6 +200,12 @@ std::string exported_mjcf(const MachineModel& robot, const MujocoPlantParameters
   MujocoPlantParameters native = parameters;
   native.tyre = TyreModel::kNative;
   const MujocoModel compiled = compile_model(robot, native, period);
+  for (const std::size_t joint : compiled.actuated) {
+    const JointModel& held = compiled.robot.joints[joint];
+    if (held.role != JointRole::kHeld) continue;
+    mjtNum& friction = compiled.model->dof_frictionloss[compiled.joint_velocity[joint]];
+    friction = std::max(friction, held.effort_limit);
+  }
   std::string path = (std::filesystem::temp_directory_path() / "robot_control_XXXXXX").string();
   const int file = mkstemp(path.data());
   if (file < 0) throw DriverError(path + ": cannot be created: " + std::strerror(errno));

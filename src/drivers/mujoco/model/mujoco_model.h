@@ -58,8 +58,9 @@ MujocoModel compile_model(const MachineModel& robot, const MujocoPlantParameters
 /// Returns new data with the robot at its start pose and speed zero, before it settles.
 MujocoData set_down(const MujocoModel& robot);
 
-/// Returns robot and scene as one self-contained MJCF text for `mujoco-simulate`, with native friction, because that
-/// program has no other. Files that the scene loads (textures, meshes) keep their names. Throws as compile_model does.
+/// Returns robot and scene as one self-contained MJCF text for `mujoco-simulate`. That program has no other friction
+/// than the native one, and no brakes: dry friction of its effort limit holds a held joint. Files that the scene loads
+/// (textures, meshes) keep their names. Throws as compile_model does.
 std::string exported_mjcf(const MachineModel& robot, const MujocoPlantParameters& parameters, double period);
 
 }  // namespace robot_control

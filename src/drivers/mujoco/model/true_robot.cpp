@@ -10,6 +10,7 @@ namespace robot_control {
 namespace {
 
 constexpr double kRotorAcceleration = 200;  // rad/s² or m/s²
+constexpr double kLargestRotor = 1;         // m²: an inertia over the robot's mass
 
 void load(RigidBody& base, double mass, const Eigen::Vector3d& place) {
   const PointInertia both = sum({base.mass, base.centre_of_gravity, base.inertia}, {.mass = mass, .centre = place});
@@ -55,7 +56,8 @@ TrueRobot true_robot(const MachineModel& described, const MujocoPlantParameters&
   std::optional<TrueRobot> wheeled = on_true_wheels(described, parameters, step);
   TrueRobot robot = wheeled ? *std::move(wheeled) : without_wheels(described, parameters);
   for (JointModel& joint : robot.joints) {
-    if (joint.role == JointRole::kHeld) joint.rotor_inertia = joint.effort_limit / kRotorAcceleration;
+    if (joint.role == JointRole::kHeld)
+      joint.rotor_inertia = std::min(joint.effort_limit / kRotorAcceleration, robot.mass * kLargestRotor);
   }
   return robot;
 }

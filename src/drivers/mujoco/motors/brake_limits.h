@@ -9,12 +9,11 @@
 ///
 /// J of a held joint is that of its rotor alone. The joints of an arm brake together, and each is light where its
 /// neighbours give way. But the machine's mass matrix is at least that of the rotors, so that all brakes together are
-/// as stable as each by itself. Under its full effort limit such a joint gives way
-/// by 200 rad/s² · h²/0.06, 3.3 mrad (or mm) at 1 kHz.
+/// as stable as each by itself. Under its full effort limit such a joint gives way by 200 rad/s² · h²/0.06, 3.3 mrad
+/// (or mm) at 1 kHz.
 
 #include <string>
 
-#include "drivers/joint_law.h"
 #include "drivers/mujoco/model/true_robot.h"
 #include "drivers/mujoco/mujoco_plant_parameters.h"
 #include "gate/brake_law.h"

@@ -47,13 +47,6 @@ void InertialError::step(Vector3& value) noexcept {
 
 namespace {
 
-/// Returns the turning joints that have an actuator.
-std::vector<std::size_t> encoders_of(const MachineModel& machine) {
-  std::vector<std::size_t> joints = actuated_joint_indices(machine);
-  std::erase_if(joints, [&](std::size_t joint) { return machine.joints[joint].prismatic; });
-  return joints;
-}
-
 const ImuDelay& imu_of(const std::vector<Rim>& rims) noexcept {
   return rims.empty() ? kImuOnLegs : kImuOnWheels;
 }
@@ -65,8 +58,6 @@ SensorErrors::SensorErrors(const MachineModel& machine, const std::vector<Rim>& 
     : level_(parameters.sensor_errors),
       seed_(parameters.seed),
       period_(period),
-      count_(parameters.encoder_resolution > 0 ? 2 * std::numbers::pi / parameters.encoder_resolution : 0),
-      encoders_(encoders_of(machine)),
       gyro_scale_(1 + parameters.gyro_scale_error),
       gyro_(parameters.gyro_noise, parameters.gyro_bias, parameters.gyro_bias_walk, period, kGyroDevice),
       accelerometer_(parameters.accelerometer_noise, parameters.accelerometer_bias, parameters.accelerometer_bias_walk,
@@ -77,6 +68,11 @@ SensorErrors::SensorErrors(const MachineModel& machine, const std::vector<Rim>& 
                 period, kImuLateStream),
       late_encoders_(0, parameters.encoder_jitter, period, kEncodersLateStream),
       delay_(checked_delay("sensor_delay", parameters.sensor_delay)) {
+  for (const std::size_t joint : actuated_joint_indices(machine)) {
+    const bool held = machine.joints[joint].role == JointRole::kHeld;
+    const double counts = machine.joints[joint].prismatic ? 0 : parameters.encoder_resolution * (held ? kHeldGear : 1);
+    encoders_.push_back({.joint = joint, .count = counts > 0 ? 2 * std::numbers::pi / counts : 0});
+  }
   const bool senses = parameters.contact_sensors && rims.empty();
   const std::size_t feet = senses ? std::min(machine.contacts.size(), kMaxContacts) : 0;
   for (std::size_t foot = 0; foot < feet; ++foot)
@@ -95,12 +91,13 @@ void SensorErrors::reset() {
 }
 
 void SensorErrors::encode(Measurement& measurement) noexcept {
-  for (std::size_t i = 0; i < encoders_.size(); ++i) {
-    JointSample& joint = measurement.joints[encoders_[i]];
-    const double counted = std::round(joint.position / count_);
-    joint.position = counted * count_;
-    joint.velocity = first_ ? 0 : (counted - counted_[i]) * count_ / period_;
-    counted_[i] = counted;
+  for (Encoder& encoder : encoders_) {
+    if (encoder.count == 0) continue;
+    JointSample& joint = measurement.joints[encoder.joint];
+    const double counted = std::round(joint.position / encoder.count);
+    joint.position = counted * encoder.count;
+    joint.velocity = first_ ? 0 : (counted - encoder.counted) * encoder.count / period_;
+    encoder.counted = counted;
   }
 }
 
@@ -108,10 +105,10 @@ void SensorErrors::encode(Measurement& measurement) noexcept {
 void SensorErrors::make_late(Measurement& measurement) noexcept {
   late_imu_.step(measurement.imu);
   Encoders samples{};
-  for (std::size_t i = 0; i < encoders_.size(); ++i) samples[i] = measurement.joints[encoders_[i]];
+  for (std::size_t i = 0; i < encoders_.size(); ++i) samples[i] = measurement.joints[encoders_[i].joint];
   late_encoders_.step(samples);
   for (std::size_t i = 0; i < encoders_.size(); ++i) {
-    JointSample& joint = measurement.joints[encoders_[i]];
+    JointSample& joint = measurement.joints[encoders_[i].joint];
     joint.position = samples[i].position;
     joint.velocity = samples[i].velocity;
   }
@@ -145,7 +142,7 @@ void SensorErrors::step(Measurement& measurement) noexcept {
   if (first_ && level_ == ErrorLevel::kField) begin(measurement);
   disturb(measurement);
   weigh(measurement);
-  if (count_ > 0) encode(measurement);
+  encode(measurement);
   if (level_ == ErrorLevel::kField) make_late(measurement);
   if (first_) delay_.fill(measurement);
   delay_.step(measurement);

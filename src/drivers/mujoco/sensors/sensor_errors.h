@@ -1,14 +1,14 @@
 #pragma once
 /// SensorErrors adds the errors of encoders, gyro and accelerometer to the true values.
 ///
-/// The encoder of a turning joint that has an actuator (driven or held), with N = encoder_resolution counts per turn, δ
-/// = 2π/N, T the period:
+/// The encoder of a driven joint that turns, with N = encoder_resolution counts per turn, δ = 2π/N, T the period:
 ///
 ///   n(k) = round(q(k)/δ)      position = n(k)·δ      velocity = (n(k) − n(k−1))·δ/T
 ///
 /// The velocity is computed as in a drive, in steps of δ/T (1.53 rad/s for 4096 counts at 1 kHz); it is 0 in the first
-/// sample. With N = 0 the encoder is exact. Exact are also other joints, contact forces of wheels, battery and inputs,
-/// and efforts, because a drive measures its own current.
+/// sample. The encoder of a held joint is on its motor, and its gear makes N kHeldGear times larger. With N = 0
+/// encoders are exact. Exact are also other joints, contact forces of wheels, battery and inputs, and efforts, because
+/// a drive measures its own current.
 ///
 /// The force F on the foot of a robot on legs, base axes, with σ = foot_noise and w, u as below:
 ///
@@ -51,6 +51,7 @@
 
 namespace robot_control {
 
+inline constexpr double kHeldGear = 100;       ///< strain wave gears of arms have 50 … 160
 inline constexpr std::size_t kMaxDelay = 100;  ///< cycles, for sensors and actuators
 
 /// An InertialError adds noise and bias to a device with three axes.
@@ -102,9 +103,12 @@ class SensorErrors {
   ErrorLevel level_;
   std::uint64_t seed_;
   double period_;
-  double count_;                              ///< rad, δ; 0: exact
-  std::vector<std::size_t> encoders_;         ///< joints with an encoder that errs
-  std::array<double, kMaxJoints> counted_{};  ///< n in the last sample
+  struct Encoder {
+    std::size_t joint = 0;
+    double count = 0;    ///< rad, δ; 0: exact
+    double counted = 0;  ///< n in the last sample
+  };
+  std::vector<Encoder> encoders_;
   bool first_ = true;
   double gyro_scale_;  ///< 1 + e
   InertialError gyro_, accelerometer_;
