@@ -102,8 +102,8 @@ class ClosedLoop:
         cycle on.
 
         Args:
-            component: left_encoder right_encoder left_motor right_motor, of one driven or held joint
-                <joint>_encoder <joint>_motor; gyro accelerometer battery e_stop_button controller estimator monitor; with `drives`
+            component: left_encoder right_encoder left_motor right_motor, of one driven or held joint <joint>_encoder
+                <joint>_motor; gyro accelerometer battery e_stop_button controller estimator monitor; with `drives`
                 also bus, and the joints by name
             kind: ok (ends the fault) off stuck garbage wrong slow delayed intermittent; bus: ok off lossy disturbed; a
                 joint's drive: ok off reset other_zero encoder released hot under_voltage not_finite

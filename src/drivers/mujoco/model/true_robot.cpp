@@ -10,7 +10,7 @@ namespace robot_control {
 namespace {
 
 constexpr double kRotorAcceleration = 200;  // rad/s² or m/s²
-constexpr double kLargestRotor = 1;         // m²: an inertia over the robot's mass
+constexpr double kMaxRotor = 1;             // m²: an inertia over the robot's mass
 
 void load(RigidBody& base, double mass, const Eigen::Vector3d& place) {
   const PointInertia both = sum({base.mass, base.centre_of_gravity, base.inertia}, {.mass = mass, .centre = place});
@@ -57,7 +57,7 @@ TrueRobot true_robot(const MachineModel& described, const MujocoPlantParameters&
   TrueRobot robot = wheeled ? *std::move(wheeled) : without_wheels(described, parameters);
   for (JointModel& joint : robot.joints) {
     if (joint.role == JointRole::kHeld)
-      joint.rotor_inertia = std::min(joint.effort_limit / kRotorAcceleration, robot.mass * kLargestRotor);
+      joint.rotor_inertia = std::min(joint.effort_limit / kRotorAcceleration, robot.mass * kMaxRotor);
   }
   return robot;
 }
