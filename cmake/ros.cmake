@@ -9,8 +9,10 @@ find_package(catkin REQUIRED COMPONENTS
 
 catkin_python_setup()
 add_action_files(FILES FollowPath.action)
-add_message_files(FILES BodyPose.msg DriveState.msg FootTarget.msg LegState.msg RobotKind.msg RobotStatus.msg SafetyStatus.msg Snapshot.msg Trace.msg TraceHeader.msg TraceSummary.msg)
-add_service_files(FILES InjectFault.srv SetOdometry.srv SetParameters.srv SetPosture.srv Step.srv)
+file(GLOB messages RELATIVE ${CMAKE_CURRENT_SOURCE_DIR}/msg CONFIGURE_DEPENDS msg/*.msg)
+file(GLOB services RELATIVE ${CMAKE_CURRENT_SOURCE_DIR}/srv CONFIGURE_DEPENDS srv/*.srv)
+add_message_files(FILES ${messages})
+add_service_files(FILES ${services})
 generate_messages(DEPENDENCIES actionlib_msgs nav_msgs std_msgs)
 catkin_package(CATKIN_DEPENDS actionlib_msgs message_runtime nav_msgs std_msgs)
 unset(CMAKE_RUNTIME_OUTPUT_DIRECTORY)  # catkin's: test programs are no nodes
