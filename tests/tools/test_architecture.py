@@ -184,7 +184,6 @@ WHEELED = {"machine/wheeled", "gate/wheeled", "estimation", "control", "safety"}
 """The rooms of the wheeled kind's laws."""
 COMPOSED = re.compile(
     r"src/robots/(differential_drive\.|robot_kind\.cpp)"  # the kind itself, and the choice of a kind
-    r"|src/drivers/mujoco/contact/true_wheels\.cpp"  # from the drive train to what rolls in the simulator
     r"|src/configuration/parameters\.h"  # blocks of all kinds, in one file of the user
     r"|python/bindings/(module|describe)\.cpp"  # bindings of all kinds, in one module
 )

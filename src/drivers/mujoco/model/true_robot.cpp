@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "drivers/mujoco/contact/true_wheels.h"
+#include "drivers/mujoco/wheeled/true_wheels.h"
 #include "machine/bodies/link_inertia.h"
 
 namespace robot_control {

@@ -5,7 +5,7 @@
 ///   payload     a point mass, fixed to the base
 ///   centre of gravity   in the field (errors.h), ahead and to the left of the described one by
 ///               centre_of_gravity_error · wheel base, by moving that of the root link
-///   wheels      contact/true_wheels.h
+///   wheels      wheeled/true_wheels.h
 ///   held joints a rotor, which no URDF states: the effort limit alone accelerates it by 200 rad/s² or m/s², or it has
 ///               the inertia of the robot's mass at a lever of 1 m, if that is less
 ///

@@ -1,4 +1,4 @@
-#include "drivers/mujoco/contact/true_wheels.h"
+#include "drivers/mujoco/wheeled/true_wheels.h"
 
 #include <algorithm>
 
