@@ -1,6 +1,7 @@
 """Paths in frames other than odometry's, and what ends a path: without ROS."""
 
 import math
+import time
 from types import SimpleNamespace
 
 import pytest
@@ -105,6 +106,24 @@ def test_nothing_is_against_driving_while_all_speak(robot):
 
 def test_odometry_that_falls_silent_ends_the_path(robot):
     assert robot[0].against_driving(robot[1] + 0.6) == "odom is silent for 0.5 s"
+
+
+def test_a_path_does_not_begin_on_odometry_from_before_a_gap(robot, monkeypatch):
+    """A program that was suspended takes a goal before the odometry that waits beside it."""
+    robot[0].commands = True
+    robot[0].odometry_at -= 10.0
+    monkeypatch.setattr("robot_control.path.robot.PATIENCE", 0.3)
+    sent = []
+    topic = SimpleNamespace(connected=True, send=lambda *_: sent.append(None))
+
+    def begin() -> str:
+        return robot[0].await_drivable(topic, lambda: True, time.monotonic())
+
+    assert begin() == "odom is silent for 0.5 s"
+    sent.clear()
+    topic.send = lambda *_: (sent.append(None), robot[0]._receive_odometry(Odometry()))
+    assert begin() == ""
+    assert len(sent) == 1
 
 
 def test_a_safety_monitor_that_falls_silent_ends_the_path(robot):

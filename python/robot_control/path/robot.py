@@ -34,6 +34,12 @@ def pose_of(odometry: Odometry) -> Pose:
     return Pose(pose.position.x, pose.position.y, yaw_of(pose.orientation))
 
 
+def in_words(safety: SafetyStatus) -> str:
+    """Why the robot may not drive."""
+    why = "; ".join(safety.sentences) or "it is not ready"
+    return f"{safety.state_name}: {why}. Call e_stop_reset, then start the path again"
+
+
 class Robot:
     """The last message of each topic."""
 
@@ -83,21 +89,12 @@ class Robot:
 
     def against_driving(self, now: float) -> str:
         """Why a path that is driven has to end; empty if it goes on."""
-        if now - self.odometry_at > SILENCE:
-            return f"odom is silent for {SILENCE:g} s"
-        if now - self.watch.received_at > SAFETY_SILENCE:
-            return f"safety_status is silent for {SAFETY_SILENCE:g} s"
+        if silence := self._silence(now):
+            return silence
         if not self.drivable:
-            return self.stop_in_words()
+            return in_words(self.safety)
         refused = now - self.refused_at > CAUSE_DELAY
         return "the controller refuses what was requested before a stop" if refused else ""
-
-    def stop_in_words(self) -> str:
-        """Why the robot may not drive."""
-        if self.safety is None:
-            return f"no safety_status: {MONITOR} does not run"
-        why = "; ".join(self.safety.sentences) or "it is not ready"
-        return f"{self.safety.state_name}: {why}. Call e_stop_reset, then start the path again"
 
     def await_drivable(self, topic: CommandTopic, going_on: Callable[[], bool], requested: float) -> str:
         """Sends zeros until the robot may drive; returns why it may not within PATIENCE, or an empty text.
@@ -106,20 +103,33 @@ class Robot:
         """
         end = time.monotonic() + PATIENCE
         while going_on() and time.monotonic() < end:
-            against = self.stop_in_words() if self.stopped else self.revoked(requested, waited=True)
+            against = in_words(self.safety) if self.stopped else self.revoked(requested, waited=True)
             if against:
                 return against
-            if self.drivable and self.odometry is not None and topic.connected and self.commands:
+            speaks = not self._silence(time.monotonic())
+            if speaks and self.drivable and topic.connected and self.commands:
                 return ""
             topic.send(0.0, 0.0)
             time.sleep(0.1)
         if not going_on():
             return "interrupted"
+        if silence := self._silence(time.monotonic()):
+            return silence
+        if not self.drivable:
+            return in_words(self.safety)
+        return f"{SOURCE} is {self.masked_by}" if self.masked_by else "the controller does not take commands"
+
+    def _silence(self, now: float) -> str:
+        """Which topic is silent; empty if both come."""
         if self.odometry is None:
             return f"no odom: {ESTIMATOR} does not run"
-        if not self.drivable:
-            return self.stop_in_words()
-        return f"{SOURCE} is {self.masked_by}" if self.masked_by else "the controller does not take commands"
+        if now - self.odometry_at > SILENCE:
+            return f"odom is silent for {SILENCE:g} s"
+        if self.safety is None:
+            return f"no safety_status: {MONITOR} does not run"
+        if now - self.watch.received_at > SAFETY_SILENCE:
+            return f"safety_status is silent for {SAFETY_SILENCE:g} s"
+        return ""
 
     def _receive_odometry(self, message: Odometry) -> None:
         self.odometry, self.odometry_at = message, time.monotonic()
