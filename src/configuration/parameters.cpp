@@ -39,8 +39,9 @@ void check_stop_delay(const Parameters& parameters, GivenValues& given) {
 
 }  // namespace
 
-std::string_view driver_program(const Parameters& parameters) noexcept {
-  return parameters.driver == DriverChoice::kMujoco ? program_of(Role::kDriver) : "driver";
+Programs programs_of(const Parameters& parameters, std::string_view kind) noexcept {
+  const bool simulator = parameters.driver == DriverChoice::kMujoco;
+  return {.kind = kind, .driver = simulator ? program_of(Role::kDriver) : "driver"};
 }
 
 Schema schema(Parameters& p) {

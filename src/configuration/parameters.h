@@ -71,13 +71,9 @@ struct Parameters {
   std::vector<std::string> warnings;  ///< about accepted values in an old form
 };
 
-/// Returns the program of the driver: that of the simulator (signals/roles.h), or `driver` for all others.
-std::string_view driver_program(const Parameters& parameters) noexcept;
-
-/// Returns the programs of a robot of this kind.
-inline Programs programs_of(const Parameters& parameters, std::string_view kind) noexcept {
-  return {.kind = kind, .driver = driver_program(parameters)};
-}
+/// Returns the programs of a robot of this kind. The driver is the simulator's (signals/roles.h), or `driver` for all
+/// others.
+Programs programs_of(const Parameters& parameters, std::string_view kind) noexcept;
 
 /// Returns the blocks of the file with their places in `parameters`, which must outlive it: `robot`, and one per role
 /// (signals/roles.h).

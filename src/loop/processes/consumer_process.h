@@ -14,6 +14,7 @@
 #include "loop/cycles/trace_sink.h"
 #include "loop/machine_identity.h"
 #include "loop/processes/process.h"
+#include "robots/robot.h"
 #include "signals/roles.h"
 
 namespace robot_control {
@@ -46,19 +47,18 @@ class ConsumerProcess : public Process {
   /// Longest wait before the end of the loop is noticed, ns.
   static constexpr std::int64_t kStopCheck = 100'000'000;
 
-  ConsumerProcess(const Parameters& parameters, const MachineModel& robot, const std::string& bus,
-                  const ConsumerNames& names)
+  ConsumerProcess(const Parameters& parameters, const Robot& robot, const std::string& bus, const ConsumerNames& names)
       : Process(parameters.loop, names.priority, names.thread),
         output_(bus, names.channel),
         sensors_(bus, ChannelNames::kSensors),
-        robot_(identified(robot, parameters.loop)),
-        driver_program_(driver_program(parameters)),
+        robot_(identified(robot.machine(), parameters.loop)),
+        programs_(programs_of(parameters, robot.kind())),
         trace_(bus, names.ring, lockstep()) {}
 
   /// The driver, and before cycle 0 the telemetry that was asked for. Later the loop goes on without one.
   std::vector<std::string> missing_anywhere() const {
     std::vector<std::string> names;
-    if (!sensors_.channel.locked()) names.push_back(driver_program_);
+    if (!sensors_.channel.locked()) names.emplace_back(program_of(Role::kDriver, programs_));
     if (waits_for_telemetry()) names.emplace_back(program_of(Role::kTelemetry));
     return names;
   }
@@ -89,6 +89,7 @@ class ConsumerProcess : public Process {
   Output<Frame> output_;
   Input<SensorFrame> sensors_;
   MachineModel robot_;  ///< identified
+  Programs programs_;
 
  private:
   bool waits_for_telemetry() const {
@@ -112,7 +113,6 @@ class ConsumerProcess : public Process {
     if (memory != nullptr) attach_to_run(output_.writer.memory()->head, attached_run(memory->head));
   }
 
-  std::string driver_program_;
   TraceSink<Row> trace_;
   std::uint64_t announced_ = 0;            ///< hash of another robot that the last poll found
   std::atomic<bool> robot_agrees_{false};  ///< the driver lives, on this robot

@@ -6,7 +6,7 @@
 namespace robot_control {
 
 ControllerProcess::ControllerProcess(const Parameters& parameters, const Robot& robot, const std::string& bus)
-    : ConsumerProcess(parameters, robot.machine(), bus,
+    : ConsumerProcess(parameters, robot, bus,
                       {LoopPriority::kController, "controller", ChannelNames::kCommand, TraceRing::kController}),
       state_(bus, ChannelNames::kState),
       permit_(bus, ChannelNames::kPermit),

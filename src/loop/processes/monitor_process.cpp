@@ -7,11 +7,10 @@
 namespace robot_control {
 
 MonitorProcess::MonitorProcess(const Parameters& parameters, const Robot& robot, const std::string& bus)
-    : ConsumerProcess(parameters, robot.machine(), bus,
+    : ConsumerProcess(parameters, robot, bus,
                       {LoopPriority::kMonitor, "monitor", ChannelNames::kPermit, TraceRing::kMonitor}),
       state_(bus, ChannelNames::kState),
       command_(bus, ChannelNames::kCommand),
-      programs_(programs_of(parameters, robot.kind())),
       latch_file_(parameters.latch_file),
       loss_ns_(static_cast<std::int64_t>(parameters.safety.loss_cycles) * parameters.loop.period_ns()),
       cycle_(robot.make_monitor(), robot_.hash, loss_ns_,

@@ -38,7 +38,6 @@ class MonitorProcess final : public ConsumerProcess<Permit, MonitorTrace> {
 
   Input<StateFrame> state_;
   Input<CommandFrame> command_;
-  Programs programs_;
   LatchFile latch_file_;
   std::int64_t loss_ns_;
   MonitorCycle cycle_;
