@@ -3,6 +3,7 @@
 #include <array>
 
 #include "machine/bodies/gyration.h"
+#include "machine/bodies/posed_bodies.h"
 #include "machine/machine_reading.h"
 #include "machine/model_hash.h"
 #include "machine/suspicions.h"
@@ -62,11 +63,13 @@ MachineModel read_machine(const RobotDescription& description, const MachinePara
   machine.hash = hash.value();
   for (const std::string& name : bodies->moving_joints) {
     const RigidBody& body = *bodies->moved_by(name);
-    machine.joints.push_back(joint_model(body, role_of(body.joint)));
+    machine.joints.push_back(joint_model(*bodies, body, role_of(body.joint)));
   }
+  note_resting_places(machine);
   const double size = robot_size(*bodies);
-  read_masses(*bodies, parameters, size, machine);
-  read_imu(*bodies, parameters, size, machine);
+  const RigidBodies at_rest = resting(*bodies, machine.joints);
+  read_masses(at_rest, parameters, size, machine);
+  read_imu(at_rest, parameters, size, machine);
   machine.contacts = ends_with_a_shape(*bodies);
   machine.bodies = bodies;
   note_suspicious_bodies(machine);

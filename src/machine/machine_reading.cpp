@@ -11,8 +11,14 @@ namespace robot_control {
 namespace {
 
 std::optional<JointRange> range_of(const BodyJoint& joint) {
-  if (!(joint.lower < joint.upper)) return std::nullopt;
+  if (!joint.mimicked.empty() || !(joint.lower < joint.upper)) return std::nullopt;
   return JointRange{joint.lower, joint.upper};
+}
+
+double rest_position(const RigidBodies& bodies, const BodyJoint& joint) {
+  const RigidBody* const leader = bodies.moved_by(joint.mimicked);
+  if (leader != nullptr) return joint.mimic_multiplier * rest_position(bodies, leader->joint) + joint.mimic_offset;
+  return joint.lower < joint.upper ? std::clamp(0.0, joint.lower, joint.upper) : 0;
 }
 
 Eigen::Vector3d effective_centre(const RigidBodies& bodies, const MachineParameters& parameters, double length,
@@ -53,7 +59,7 @@ JointRole role_of(const BodyJoint& joint) {
   return joint.mimicked.empty() && joint.effort_limit > 0 ? JointRole::kHeld : JointRole::kPassive;
 }
 
-JointModel joint_model(const RigidBody& body, JointRole role) {
+JointModel joint_model(const RigidBodies& bodies, const RigidBody& body, JointRole role) {
   return {.name = body.joint.name,
           .child_link = body.name,
           .effort_limit = role == JointRole::kPassive ? 0 : body.joint.effort_limit,
@@ -62,7 +68,20 @@ JointModel joint_model(const RigidBody& body, JointRole role) {
           .damping = body.joint.damping,
           .friction = body.joint.friction,
           .range = range_of(body.joint),
-          .prismatic = body.joint.type == JointType::kPrismatic};
+          .prismatic = body.joint.type == JointType::kPrismatic,
+          .rest_position = rest_position(bodies, body.joint)};
+}
+
+void note_resting_places(MachineModel& machine) {
+  for (const JointModel& joint : machine.joints) {
+    if (joint.rest_position == 0) continue;
+    const char* const unit = joint.prismatic ? " m" : " rad";
+    const std::string why = joint.range ? "its range from " + number(joint.range->lower) + " to " +
+                                              number(joint.range->upper) + unit + " does not contain zero"
+                                        : "the joint that it follows puts it there";
+    machine.notes.push_back({RobotNote::Kind::kAssumed, joint_element(joint.name),
+                             "rests at " + number(joint.rest_position) + unit + ": " + why});
+  }
 }
 
 MassSum sum_of_masses(const RigidBodies& bodies) {

@@ -15,8 +15,12 @@ void refuse_too_many_joints(const RigidBodies& bodies);
 /// Returns kPassive for a joint without an effort limit and for one that follows another joint, else kHeld.
 JointRole role_of(const BodyJoint& joint);
 
-/// Returns the joint that moves `body`, with the values of the URDF.
-JointModel joint_model(const RigidBody& body, JointRole role);
+/// Returns the joint that moves `body`, with the values of the URDF. It rests where its range is nearest to zero. One
+/// that follows another joint rests where that joint puts it, and has no end stops of its own.
+JointModel joint_model(const RigidBodies& bodies, const RigidBody& body, JointRole role);
+
+/// Notes the joints that do not rest at zero.
+void note_resting_places(MachineModel& machine);
 
 struct MassSum {
   double mass = 0;                                   ///< kg

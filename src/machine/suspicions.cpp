@@ -1,5 +1,7 @@
 #include "machine/suspicions.h"
 
+#include "machine/bodies/gravity_load.h"
+#include "machine/bodies/posed_bodies.h"
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/bodies/shape_support.h"
 #include "machine/description/wording.h"
@@ -44,6 +46,20 @@ void note_masses(MachineModel& robot) {
   }
 }
 
+void note_weak_joints(MachineModel& robot) {
+  const RigidBodies at_rest = resting(*robot.bodies, robot.joints);
+  for (const JointModel& joint : robot.joints) {
+    if (joint.role != JointRole::kHeld) continue;
+    const auto body = static_cast<std::size_t>(at_rest.moved_by(joint.name) - at_rest.bodies.data());
+    const double load = gravity_load(at_rest, body);
+    if (load <= joint.effort_limit + joint.friction) continue;
+    const char* const unit = joint.prismatic ? " N" : " N·m";
+    note(robot, joint_element(joint.name),
+         "its effort limit of " + number(joint.effort_limit) + unit + " does not hold its load of " + number(load) +
+             unit + " at rest: it gives way");
+  }
+}
+
 }  // namespace
 
 std::string suspicions_of(const MachineModel& robot) {
@@ -57,6 +73,7 @@ std::string suspicions_of(const MachineModel& robot) {
 void note_suspicious_bodies(MachineModel& machine) {
   note_shapes(machine);
   note_masses(machine);
+  note_weak_joints(machine);
 }
 
 }  // namespace robot_control

@@ -4,6 +4,7 @@
 ///   lengths   a shape larger than kMaxPart: probably millimetres
 ///   masses    more than a block of steel with the size of the box about all shapes: probably grams
 ///   base      less than kLightBase of the mass is in the root and the parts fixed to it: a missing <inertial>
+///   held      the effort limit of a held joint is below the weight that the joint bears at rest
 
 #include <string>
 

@@ -151,6 +151,22 @@ std::string above(const std::string& type, const std::string& axis, const std::s
   return text;
 }
 
+/// Three supports: two wheels, and a foot on a slide with this effort limit in N.
+std::string on_a_foot(const std::string& effort) {
+  return two_wheels() + link("foot", inertial("1") + collision("<sphere radius=\"0.02\"/>")) +
+         joint({.name = "leg",
+                .child = "foot",
+                .xyz = "0.25 0 -0.08",
+                .type = "prismatic",
+                .axis = "<axis xyz=\"0 0 1\"/>",
+                .rest = "<limit lower=\"-0.3\" upper=\"0.3\" effort=\"" + effort + "\" velocity=\"1\"/>"});
+}
+
+TEST(BearingJoints, ThatAreTooWeakForAnEqualShareOfTheWeightAreRefused) {
+  EXPECT_THAT(refusal_of(robot_of(on_a_foot("40"))), HasSubstr("leg"));
+  EXPECT_EQ(refusal_of(robot_of(on_a_foot("50"))), "accepted") << "13 kg on three";
+}
+
 TEST(BearingJoints, OfALiftBelowTheBodyAreRefusedAndThoseOfASuspensionAreNot) {
   const auto limits = [](const std::string& upper) {
     return "<limit lower=\"0\" upper=\"" + upper + "\" effort=\"1000\" velocity=\"0.1\"/>";

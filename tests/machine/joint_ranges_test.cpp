@@ -81,5 +81,45 @@ TEST(JointRanges, NothingLimitsTheEffortRateOfOtherJoints) {
   EXPECT_EQ(arm.effort_rate, 0);
 }
 
+TEST(JointRanges, AJointRestsWhereItsRangeIsNearestToZero) {
+  const auto rest = [](const std::string& range) {
+    return with_joint("prismatic", "<limit " + range + " effort=\"9\" velocity=\"1\"/>").rest_position;
+  };
+  EXPECT_EQ(rest("lower=\"0.3\" upper=\"0.4\""), 0.3);
+  EXPECT_EQ(rest("lower=\"-0.4\" upper=\"-0.3\""), -0.3);
+  EXPECT_EQ(rest("lower=\"-0.4\" upper=\"0.3\""), 0);
+}
+
+/// A lift whose range begins at 0.3 m, and an arm that follows it by twice its way and 0.5 rad, against its own range.
+std::string lift_and_follower() {
+  return two_wheels() + link("lift", inertial("10")) +
+         joint({.name = "lift_joint",
+                .child = "lift",
+                .type = "prismatic",
+                .axis = "<axis xyz=\"0 0 1\"/>",
+                .rest = "<limit lower=\"0.3\" upper=\"0.9\" effort=\"500\" velocity=\"1\"/>"}) +
+         link("arm", inertial("1")) +
+         joint({.name = "arm_joint",
+                .child = "arm",
+                .type = "revolute",
+                .rest = "<limit lower=\"-0.1\" upper=\"0.1\" effort=\"9\" velocity=\"1\"/>"
+                        "<mimic joint=\"lift_joint\" multiplier=\"2\" offset=\"0.5\"/>",
+                .parent = "lift"});
+}
+
+TEST(JointRanges, AFollowerRestsWhereItsLeaderPutsItAndHasNoEndStops) {
+  const DriveTrain robot = read_drive_train(robot_of(lift_and_follower()), {});
+  EXPECT_DOUBLE_EQ(robot.joints.back().rest_position, 1.1);
+  EXPECT_FALSE(robot.joints.back().range);
+}
+
+TEST(JointRanges, WhatDoesNotRestAtZeroIsNotedAndMovesTheCentreOfGravity) {
+  const DriveTrain robot = read_drive_train(robot_of(lift_and_follower()), {});
+  const std::string notes = notes_of(robot, RobotNote::Kind::kAssumed);
+  EXPECT_THAT(notes, testing::HasSubstr("<joint name=\"lift_joint\">: rests at 0.3 m: its range from 0.3 to 0.9 m"));
+  EXPECT_THAT(notes, testing::HasSubstr("<joint name=\"arm_joint\">: rests at 1.1 rad: the joint that it follows"));
+  EXPECT_NEAR(robot.centre_of_gravity_base[2], 0.3 * 11 / 23, kRounding);
+}
+
 }  // namespace
 }  // namespace robot_control

@@ -216,6 +216,17 @@ TEST(RobotRefusals, AFormatInANumber) {
               names("<mass>", "percent"));
 }
 
+TEST(RobotRefusals, AnEmptyName) {
+  EXPECT_THAT(refusal(diffbot_with("<robot", "<joint name=\"left_wheel_joint\"", "<joint name=\"\"")),
+              names("<joint>", "name is empty"));
+}
+
+TEST(RobotRefusals, LossesBeyondAnyJoint) {
+  const std::string part =
+      link("part", inertial("1")) + joint({.name = "p", .child = "part", .rest = "<dynamics friction=\"1e300\"/>"});
+  EXPECT_THAT(refusal_of(robot_of(two_wheels() + part)), HasSubstr("<joint name=\"p\">: <dynamics> of 1e+300"));
+}
+
 TEST(RobotRefusals, AMillionElementsInOneAnother) {
   std::string deep = "<robot name=\"r\">";
   for (int i = 0; i < 1000000; ++i) deep += "<a>";

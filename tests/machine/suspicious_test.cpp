@@ -93,6 +93,27 @@ TEST(Suspicious, AnOriginOfMoreThanAWholeTurnMayBeInDegrees) {
   EXPECT_THAT(with("0 0 6.2831853"), Not(HasSubstr("rpy")));
 }
 
+/// A healthy robot with an arm of 2 kg at 0.5 m on a joint with this effort limit.
+std::string arm_of(const std::string& effort) {
+  return suspicion(
+      two_wheels() +
+      link("arm", "<inertial><origin xyz=\"0.5 0 0\"/><mass value=\"2\"/><inertia " + kBall + "/></inertial>") +
+      joint({.name = "shoulder",
+             .child = "arm",
+             .type = "revolute",
+             .rest = "<limit lower=\"-1\" upper=\"1\" effort=\"" + effort + "\" velocity=\"1\"/>"}));
+}
+
+TEST(Suspicious, AHeldJointThatIsTooWeakForItsLoad) {
+  EXPECT_THAT(arm_of("9.7"),
+              HasSubstr("<joint name=\"shoulder\">: its effort limit of 9.7 N·m does not hold its load of 9.81"));
+  EXPECT_THAT(arm_of("9.9"), Not(HasSubstr("shoulder")));
+}
+
+TEST(Suspicious, AJointThatNothingHolds) {
+  EXPECT_THAT(arm_of("0"), HasSubstr("<joint name=\"shoulder\">: no effort limit above zero is given"));
+}
+
 TEST(Suspicious, OuterWheelsOfADeepMiddlePairThatDoNotDrive) {
   const auto six = [](double deep) {
     std::string text = base();

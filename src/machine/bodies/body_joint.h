@@ -14,7 +14,8 @@ namespace robot_control {
 /// that may turn by more than `endless` rad is taken as continuous. A limit of ±180 is noted as degrees. Efforts and
 /// velocities that are not above zero are unknown: 0.
 ///
-/// Throws RobotError for an axis without length, for numbers that are not finite and for lower above upper.
+/// Throws RobotError for an axis without length, for numbers that are not finite, for lower above upper, and for
+/// damping or friction beyond kBeyondRobots.
 BodyJoint read_joint(const urdf::Joint& joint, const std::string& source, double endless,
                      std::vector<RobotNote>& notes);
 

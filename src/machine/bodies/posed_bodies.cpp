@@ -20,4 +20,12 @@ RigidBodies posed(const RigidBodies& bodies, const std::map<std::string, double>
   return result;
 }
 
+RigidBodies resting(const RigidBodies& bodies, std::span<const JointModel> joints) {
+  std::map<std::string, double> positions;
+  for (const JointModel& joint : joints) {
+    if (joint.rest_position != 0) positions[joint.name] = joint.rest_position;
+  }
+  return positions.empty() ? bodies : posed(bodies, positions);
+}
+
 }  // namespace robot_control

@@ -201,7 +201,7 @@ LegModel read_legs(const RobotDescription& description, const MachineParameters&
     for (const std::size_t index : places[i]) {
       const RigidBody& body = bodies->bodies[index];
       require_limits(*bodies, body.joint);
-      model.joints.push_back(joint_model(body, JointRole::kDriven));
+      model.joints.push_back(joint_model(*bodies, body, JointRole::kDriven));
     }
     const RigidBody& last = bodies->bodies[places[i][2]];
     const Foot foot = foot_of(*bodies, last);

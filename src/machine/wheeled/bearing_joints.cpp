@@ -72,6 +72,7 @@ class Load {
         supports_[i].push_back({.body = i, .point = point});
       }
     }
+    standing_ = std::ranges::count_if(supports_, [](const auto& each) { return !each.empty(); });
     for (std::size_t i = bodies_.size() - 1; i > 0; --i) {
       pass_joint(i);
       std::ranges::move(supports_[i], std::back_inserter(supports_[bodies_[i].parent]));
@@ -116,8 +117,10 @@ class Load {
 
   bool is_held(const RigidBody& body, double lever) const {
     const auto joint = std::ranges::find(robot_.joints, body.joint.name, &JointModel::name);
-    if (joint != robot_.joints.end() && joint->role == JointRole::kHeld) return true;
-    return body.joint.friction > 0 && body.joint.friction >= robot_.mass * kGravity * lever;
+    const double weight = robot_.mass * kGravity;
+    if (joint != robot_.joints.end() && joint->role == JointRole::kHeld)
+      return joint->effort_limit >= weight / static_cast<double>(standing_) * lever;
+    return body.joint.friction > 0 && body.joint.friction >= weight * lever;
   }
 
   void pass_joint(std::size_t index) {
@@ -165,6 +168,7 @@ class Load {
   const DriveTrain& robot_;
   const std::vector<RigidBody>& bodies_;
   std::vector<std::vector<Support>> supports_;  // supports of each body
+  std::ptrdiff_t standing_ = 0;                 // bodies on the floor
   double radius_;
 };
 

@@ -3,7 +3,8 @@
 /// driven here, so gravity would fold them. These joints look similar and are accepted:
 ///
 ///   swivel       it turns about an upright axis (kUpright) and lifts nothing
-///   held         it is braked (JointRole::kHeld), or its dry friction exceeds the robot's weight times its lever
+///   held         its brake (JointRole::kHeld) bears an equal share of the robot's weight at its lever, or its dry
+///                friction all of it
 ///   balanced     a rocker, a bogie or a pivoting axle has supports on both sides of its axis; for the joint above, it
 ///                stands on its axis
 ///   suspension   an upright slide with a spring (suspension.h) travels by at most the drive wheels' diameter

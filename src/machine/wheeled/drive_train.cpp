@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "machine/bodies/posed_bodies.h"
 #include "machine/description/wording.h"
 #include "machine/machine_reading.h"
 #include "machine/model_hash.h"
@@ -75,8 +76,12 @@ void group_sides(DriveTrain& model) {
 
 /// Wheels turn without end, regardless of their joints' limits.
 void free_wheels(DriveTrain& model) {
-  for (const WheelModel& wheel : model.wheels) model.joints[wheel.joint].range.reset();
-  for (const WheelModel& caster : model.casters) model.joints[caster.joint].range.reset();
+  for (const auto* rolling : {&model.wheels, &model.casters}) {
+    for (const WheelModel& wheel : *rolling) {
+      model.joints[wheel.joint].range.reset();
+      model.joints[wheel.joint].rest_position = 0;
+    }
+  }
 }
 
 void read_joints(const RigidBodies& robot, const DriveTrainParameters& parameters, RunningGear& gear,
@@ -85,7 +90,7 @@ void read_joints(const RigidBodies& robot, const DriveTrainParameters& parameter
   const std::vector<JointRole> roles = joint_roles(robot, gear);
   for (RollingBody& wheel : gear.wheels) {
     wheel.wheel.joint = model.joints.size();
-    model.joints.push_back(joint_model(robot.bodies[wheel.body], JointRole::kDriven));
+    model.joints.push_back(joint_model(robot, robot.bodies[wheel.body], JointRole::kDriven));
     const DriveLimits limits = drive_limits(robot, gear, wheel, parameters, model.notes);
     model.joints.back().effort_limit = limits.effort;
     model.joints.back().velocity_limit = limits.velocity;
@@ -101,7 +106,7 @@ void read_joints(const RigidBodies& robot, const DriveTrainParameters& parameter
       caster.wheel.joint = model.joints.size();
       model.casters.push_back(caster.wheel);
     }
-    model.joints.push_back(joint_model(robot.bodies[body], roles[body]));
+    model.joints.push_back(joint_model(robot, robot.bodies[body], roles[body]));
   }
   free_wheels(model);
   group_sides(model);
@@ -196,10 +201,12 @@ DriveTrain read_drive_train(const RobotDescription& description, const DriveTrai
   assume_differential(*bodies, gear, model.notes);
   read_geometry(*bodies, parameters, gear, model);
   read_joints(*bodies, parameters, gear, model);
-  read_masses(*bodies, parameters, model.wheel_base, model);
-  read_yaw_inertia(*bodies, model);
+  note_resting_places(model);
+  const RigidBodies at_rest = resting(*bodies, model.joints);
+  read_masses(at_rest, parameters, model.wheel_base, model);
+  read_yaw_inertia(at_rest, model);
   note_unequal_loads(parameters, model);
-  read_imu(*bodies, parameters, model.wheel_base, model);
+  read_imu(at_rest, parameters, model.wheel_base, model);
   model.bodies = bodies;
   check_finite(model);
   check_missing_meshes(model);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "machine/bodies/gravity_load.h"
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/bodies/shape_support.h"
 #include "machine/description/wording.h"
@@ -119,6 +120,21 @@ void note_far_root(DriveTrain& robot) {
            "those of this frame. Where it is the world, leave it and its joint out");
 }
 
+void note_free_joints(DriveTrain& robot) {
+  const RigidBodies& bodies = *robot.bodies;
+  const auto carries_a_wheel = [&](std::size_t joint) {
+    for (std::size_t i = joint; i < bodies.bodies.size(); ++i) {
+      if (is_carried(bodies, i, joint) && rolling_body(robot, bodies.bodies[i]) != nullptr) return true;
+    }
+    return false;
+  };
+  for (std::size_t i = 1; i < bodies.bodies.size(); ++i) {
+    const BodyJoint& joint = bodies.bodies[i].joint;
+    if (joint.effort_limit > 0 || joint.spring_stiffness > 0 || !joint.mimicked.empty() || carries_a_wheel(i)) continue;
+    note(robot, joint_element(joint.name), "no effort limit above zero is given: nothing holds it");
+  }
+}
+
 }  // namespace
 
 void note_suspicions(DriveTrain& robot) {
@@ -128,6 +144,7 @@ void note_suspicions(DriveTrain& robot) {
   note_weak_wheels(robot);
   note_limits(robot);
   note_far_root(robot);
+  note_free_joints(robot);
 }
 
 }  // namespace robot_control

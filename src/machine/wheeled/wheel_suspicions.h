@@ -9,6 +9,7 @@
 ///   limits    wheels of kFastRim or more at their velocity limit: probably degrees or turns; or wheels with unequal
 ///             limits
 ///   root      farther than kFar diagonals of the robot from its wheels: probably a world that the robot is fixed to
+///   free      a joint without effort limit, spring and leader that carries no wheel: nothing holds it
 ///   mecanum   the file mentions such wheels, and more than two drive
 
 #include "machine/wheeled/drive_train.h"

@@ -37,6 +37,16 @@ bool at_rest(const MujocoModel& model, const mjData& data, double base_speed, do
                      [&](int joint) { return std::abs(data.qvel[joint]) < joint_speed; });
 }
 
+std::vector<std::string> moving_joints(const MujocoModel& model, const mjData& data, double joint_speed) {
+  std::vector<std::string> names;
+  for (std::size_t joint = 0; joint < model.joint_velocity.size(); ++joint) {
+    const bool driven = model.robot.joints[joint].role == JointRole::kDriven;
+    if (!driven && std::abs(data.qvel[model.joint_velocity[joint]]) >= joint_speed)
+      names.push_back(model.robot.joints[joint].name);
+  }
+  return names;
+}
+
 std::string unloaded_side(const MujocoModel& model, const WheelContacts& wheels) {
   const TrueRobot& robot = model.robot;
   if (robot.drive_wheels == 0) return "";

@@ -2,6 +2,7 @@
 /// These functions check whether a placed robot stands, and on which parts.
 
 #include <string>
+#include <vector>
 
 #include "drivers/mujoco/contact/wheel_contacts.h"
 #include "drivers/mujoco/model/mujoco_model.h"
@@ -11,6 +12,9 @@ namespace robot_control {
 /// Returns whether every component of the base's velocity is below `base_speed` (m/s and rad/s) and every joint's below
 /// `joint_speed`.
 bool at_rest(const MujocoModel& model, const mjData& data, double base_speed, double joint_speed) noexcept;
+
+/// Returns the joints that are not driven and faster than `joint_speed`.
+std::vector<std::string> moving_joints(const MujocoModel& model, const mjData& data, double joint_speed);
 
 /// Returns "left" or "right" if the drive wheels of that side carry less than a thousandth of the robot's weight, else
 /// "".

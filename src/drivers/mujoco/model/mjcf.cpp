@@ -5,6 +5,7 @@
 #include <span>
 
 #include "drivers/mujoco/model/mjcf_shapes.h"
+#include "machine/bodies/posed_bodies.h"
 
 namespace robot_control {
 namespace {
@@ -56,8 +57,12 @@ Eigen::Quaterniond from_z(const Eigen::Vector3d& axis) {
 
 class Writer {
  public:
-  Writer(const TrueRobot& model, const MujocoPlantParameters& parameters)
-      : model_(model), robot_(*model.bodies), parameters_(parameters) {}
+  Writer(const TrueRobot& model, const MujocoPlantParameters& parameters, bool at_rest)
+      : model_(model),
+        robot_(*model.bodies),
+        posed_(at_rest ? resting(robot_, model.joints) : robot_),
+        at_rest_(at_rest),
+        parameters_(parameters) {}
 
   std::string write(const MjcfPlace& place) {
     std::string text = "<mujoco" + attribute("model", escaped(robot_.name)) + ">\n";
@@ -89,7 +94,7 @@ class Writer {
     write_shapes(body);
     for (std::size_t child = index + 1; child < robot_.bodies.size(); ++child) {
       if (robot_.bodies[child].parent == index)
-        write_body(child, body.in_root.inverse() * robot_.bodies[child].in_root);
+        write_body(child, posed_.bodies[index].in_root.inverse() * posed_.bodies[child].in_root);
     }
     bodies_ += "</body>\n";
   }
@@ -101,8 +106,7 @@ class Writer {
                                             [&](const JointModel& other) { return other.name == joint.name; });
     const bool driven = model.role == JointRole::kDriven;
     const bool slides = joint.type == JointType::kPrismatic;
-    const bool limited =
-        !(driven && rolling != nullptr) && joint.type != JointType::kContinuous && joint.lower < joint.upper;
+    const bool limited = model.range.has_value();
     const double gear = parameters_.gear_ratio;
     const double damping = joint.damping + (driven ? gear * gear * parameters_.motor_damping : 0);
     const double friction = joint.friction + (driven ? gear * parameters_.motor_friction : 0);
@@ -114,16 +118,17 @@ class Writer {
         "<joint" + attribute("name", escaped(joint.name)) + attribute("type", slides ? "slide" : "hinge") +
         " pos=\"0 0 0\"" + attribute("axis", mjcf_numbers(joint.axis)) +
         attribute("limited", limited ? "true" : "false") +
-        attribute("range", slides && limited ? mjcf_number(joint.lower) + ' ' + mjcf_number(joint.upper) : "-1 1") +
+        attribute("range", slides && limited ? mjcf_number(model.range->lower) + ' ' + mjcf_number(model.range->upper)
+                                             : "-1 1") +
         attribute("springref", slides ? spring_reference(joint) : 0) + attribute("stiffness", joint.spring_stiffness) +
         attribute("armature", armature) + attribute("damping", damping) + attribute("frictionloss", friction) +
         " ref=\"0\" margin=\"0\" solreflimit=\".004 1\" solimplimit=\".9 .95 .001 .5 2\" solreffriction=\".004 1\""
         " solimpfriction=\".9999 .9999 .001 .5 2\"/>\n";
     if (joint.mimicked.empty()) return;
-    equalities_ +=
-        "<joint" + attribute("joint1", escaped(joint.name)) + attribute("joint2", escaped(joint.mimicked)) +
-        attribute("polycoef", mjcf_number(joint.mimic_offset) + ' ' + mjcf_number(joint.mimic_multiplier) + " 0 0 0") +
-        " active=\"true\" solref=\".004 1\" solimp=\".99 .999 .001 .5 2\"/>\n";
+    equalities_ += "<joint" + attribute("joint1", escaped(joint.name)) + attribute("joint2", escaped(joint.mimicked)) +
+                   attribute("polycoef", mjcf_number(at_rest_ ? 0 : joint.mimic_offset) + ' ' +
+                                             mjcf_number(joint.mimic_multiplier) + " 0 0 0") +
+                   " active=\"true\" solref=\".004 1\" solimp=\".99 .999 .001 .5 2\"/>\n";
   }
 
   static double spring_reference(const BodyJoint& joint) {
@@ -176,6 +181,8 @@ class Writer {
 
   const TrueRobot& model_;
   const RigidBodies& robot_;
+  const RigidBodies posed_;
+  const bool at_rest_;
   const MujocoPlantParameters& parameters_;
   std::size_t meshes_ = 0;
   std::string assets_, bodies_, equalities_;
@@ -192,7 +199,7 @@ std::string mjcf_wheel_name(std::size_t wheel) {
 }
 
 std::string robot_mjcf(const TrueRobot& robot, const MujocoPlantParameters& parameters, const MjcfPlace& place) {
-  return Writer(robot, parameters).write(place);
+  return Writer(robot, parameters, place.at_rest).write(place);
 }
 
 void apply_angles(const TrueRobot& robot, mjModel& model) {

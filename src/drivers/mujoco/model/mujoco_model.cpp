@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <map>
 
 #include "drivers/driver.h"
 #include "drivers/mujoco/model/mjcf.h"
@@ -121,21 +120,19 @@ void find_addresses(MujocoModel& result) {
   result.imu = find(model, mjOBJ_SITE, kMjcfImu);
 }
 
-/// Returns the bodies where they are while every joint is at its rest position.
-RigidBodies resting(const TrueRobot& robot) {
-  std::map<std::string, double> positions;
-  for (const JointModel& joint : robot.joints) {
-    if (joint.rest_position != 0) positions[joint.name] = joint.rest_position;
-  }
-  return positions.empty() ? *robot.bodies : posed(*robot.bodies, positions);
-}
-
-/// Returns the height of the root frame above the ground, m.
+/// Returns the height of the root frame above the ground while every joint rests, m.
 double standing_height(const TrueRobot& robot) {
+  const RigidBodies at_rest = resting(*robot.bodies, robot.joints);
   std::vector<Eigen::Vector3d> points;
-  for (const RigidBody& body : resting(robot).bodies) {
+  for (std::size_t i = 0; i < at_rest.bodies.size(); ++i) {
+    const RigidBody &body = at_rest.bodies[i], &at_zero = robot.bodies->bodies[i];
     const TrueWheel* const wheel = wheel_of(robot, body);
-    std::ranges::copy(shape_points(body, wheel == nullptr ? nullptr : &wheel->shape), std::back_inserter(points));
+    RollingEllipsoid shape = wheel == nullptr ? RollingEllipsoid{} : wheel->shape;
+    if (body.in_root.matrix() != at_zero.in_root.matrix()) {
+      Eigen::Map<Eigen::Vector3d> centre(shape.centre_base.data());
+      centre = body.in_root * (at_zero.in_root.inverse() * Eigen::Vector3d(centre));
+    }
+    std::ranges::copy(shape_points(body, wheel == nullptr ? nullptr : &shape), std::back_inserter(points));
   }
   return height_above(points);
 }
@@ -159,7 +156,10 @@ std::string read_file(const std::filesystem::path& path) {
 
 }  // namespace
 
-MujocoModel compile_model(const MachineModel& robot, const MujocoPlantParameters& parameters, double period) {
+namespace {
+
+/// `at_rest`: the joints' references are their rest positions, in which a viewer opens the model.
+MujocoModel compiled(const MachineModel& robot, const MujocoPlantParameters& parameters, double period, bool at_rest) {
   install_mujoco_handlers();
   const std::filesystem::path scene = parameters.scene;
   if (std::error_code error; !std::filesystem::exists(scene, error)) {
@@ -172,9 +172,9 @@ MujocoModel compile_model(const MachineModel& robot, const MujocoPlantParameters
   result.substeps = static_cast<int>(std::ceil(period / kMaxStep - 1e-9));
   const double step = period / result.substeps;
   result.robot = true_robot(robot, parameters, step);
-  const MjcfPlace place =
-      place_of(*load(scene.string(), nullptr, scene.string()), scene, standing_height(result.robot));
+  MjcfPlace place = place_of(*load(scene.string(), nullptr, scene.string()), scene, standing_height(result.robot));
 
+  place.at_rest = at_rest;
   const std::string name = scene.stem().string() + "+robot.xml";
   VirtualFiles files;
   files.add(name, robot_mjcf(result.robot, parameters, place));
@@ -183,10 +183,18 @@ MujocoModel compile_model(const MachineModel& robot, const MujocoPlantParameters
   set_options(*result.model, step, parameters.slope, place.pose);
   apply_angles(result.robot, *result.model);
   find_addresses(result);
+  for (std::size_t joint = 0; at_rest && joint < result.robot.joints.size(); ++joint)
+    result.model->qpos0[result.joint_position[joint]] = result.robot.joints[joint].rest_position;
   check_mass(result, scene.string());
   const mjtNum up[3] = {0, 0, 1};
   mju_rotVecQuat(result.up.data(), up, place.pose.data() + 3);
   return result;
+}
+
+}  // namespace
+
+MujocoModel compile_model(const MachineModel& robot, const MujocoPlantParameters& parameters, double period) {
+  return compiled(robot, parameters, period, false);
 }
 
 MujocoData set_down(const MujocoModel& robot) {
@@ -199,19 +207,19 @@ MujocoData set_down(const MujocoModel& robot) {
 std::string exported_mjcf(const MachineModel& robot, const MujocoPlantParameters& parameters, double period) {
   MujocoPlantParameters native = parameters;
   native.tyre = TyreModel::kNative;
-  const MujocoModel compiled = compile_model(robot, native, period);
-  for (const std::size_t joint : compiled.actuated) {
-    const JointModel& held = compiled.robot.joints[joint];
+  const MujocoModel whole = compiled(robot, native, period, true);
+  for (const std::size_t joint : whole.actuated) {
+    const JointModel& held = whole.robot.joints[joint];
     if (held.role != JointRole::kHeld) continue;
-    mjtNum& friction = compiled.model->dof_frictionloss[compiled.joint_velocity[joint]];
-    friction = std::max(friction, held.effort_limit);
+    mjtNum& friction = whole.model->dof_frictionloss[whole.joint_velocity[joint]];
+    friction = std::max(friction, std::min(held.effort_limit, kBeyondRobots));
   }
   std::string path = (std::filesystem::temp_directory_path() / "robot_control_XXXXXX").string();
   const int file = mkstemp(path.data());
   if (file < 0) throw DriverError(path + ": cannot be created: " + std::strerror(errno));
   close(file);
   std::array<char, 1000> error{};
-  const bool saved = mj_saveLastXML(path.c_str(), compiled.model.get(), error.data(), error.size()) != 0;
+  const bool saved = mj_saveLastXML(path.c_str(), whole.model.get(), error.data(), error.size()) != 0;
   std::string text = read_file(path);
   std::filesystem::remove(path);
   if (!saved) throw DriverError(robot.source + ": MuJoCo does not write it: " + error.data());

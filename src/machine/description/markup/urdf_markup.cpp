@@ -22,6 +22,12 @@ std::string at_line(const RobotDescription& description, const TiXmlBase& place)
   return description.source + (place.Row() > 0 ? " line " + std::to_string(place.Row()) : "");
 }
 
+void check_name(const RobotDescription& description, const TiXmlElement& element) {
+  const char* const name = element.Attribute("name");
+  if (name == nullptr || *name != 0) return;
+  refuse(at_line(description, element), "<" + element.ValueStr() + ">", "its name is empty", "Give it a name");
+}
+
 void check_joint(const RobotDescription& description, const TiXmlElement& joint) {
   const std::string type = attribute(joint, "type");
   const std::string element = joint_element(attribute(joint, "name"));
@@ -293,6 +299,7 @@ TiXmlElement& parse_markup(const RobotDescription& description, TiXmlDocument& x
     for (const TiXmlElement* element = root->FirstChildElement(kind); element != nullptr;
          element = element->NextSiblingElement(kind)) {
       check_percent(description, *element);
+      check_name(description, *element);
     }
   }
   for (const TiXmlElement* joint = root->FirstChildElement("joint"); joint != nullptr;
