@@ -55,6 +55,22 @@ TEST_P(QuadrupedOf, IsFoldedByAnEmergencyStopAndLiesUpright) {
   expect_fold(robot);
 }
 
+TEST_P(QuadrupedOf, KnowsItsHeightAfterEveryFold) {
+  QuadrupedLoop robot = loop_of(GetParam());
+  const auto error = [&] { return robot.state().base.pose_odom.position[2] - robot.truth().pose_world.position[2]; };
+  robot.wait(0.3);
+  for (int round = 0; round < 3; ++round) {
+    robot.run(3.0, stance(kStanceStand));
+    EXPECT_NEAR(error(), 0, 0.01) << round;
+    robot.loop.e_stop();
+    robot.settle();
+    EXPECT_NEAR(error(), 0, 0.035) << round;  // it may lie on a folded leg
+    robot.run(0.5, {});
+    robot.loop.e_stop_reset();
+    robot.run(0.1, {});
+  }
+}
+
 TEST_P(QuadrupedOf, IsFoldedWithARearFootInTheAir) {
   QuadrupedLoop robot = loop_of(GetParam());
   robot.wait(0.3);

@@ -501,6 +501,15 @@ TEST_F(RevokedSenderTest, TheSameCommandIsReportedEveryTenSecondsAtMost) {
   EXPECT_EQ(lines, 6u);
 }
 
+TEST_F(CommandInputTest, ARequestOfNoSenderCanBeWithdrawnAndIsNoZeroOfASender) {
+  input_.receive_once({.twist = {}, .posture = {}, .mode = 2}, now_);
+  input_.withdraw(1, now_.loop_ns);
+  EXPECT_EQ(value().content.mode, 2u) << "another request is in force";
+  input_.withdraw(2, now_.loop_ns);
+  EXPECT_EQ(value().content.mode, 0u);
+  EXPECT_NE(value().contested, 0u);
+}
+
 TEST_F(CommandInputTest, NaNIsPassedOnForTheControllerToRefuse) {
   receive("/teleop", std::numeric_limits<double>::quiet_NaN());
   EXPECT_EQ(value().count, 1u);

@@ -48,7 +48,10 @@ LeggedEstimator::LeggedEstimator(const LegModel& robot, double period)
       legs_(robot.legs),
       dynamics_(robot),
       base_from_imu_(rotation_of(robot.imu_in_base.orientation)),
-      share_(dynamics_.mass() * kGravity / kLegs) {}
+      share_(dynamics_.mass() * kGravity / kLegs),
+      ground_(robot.belly) {
+  for (const Leg& leg : legs_) ground_ += leg.foot_radius / kLegs;
+}
 
 void LeggedEstimator::resume(const StateFrame& last) noexcept {
   state_ = {};
@@ -170,8 +173,22 @@ void LeggedEstimator::weigh(const SensorFrame& sensors, const Feet& feet) noexce
     state_.bears[leg] = state_.loads[leg] > bound ? 1 : 0;
   }
   if (before == state_.bears) return;
+  stand_on_ground(before, attitude, feet);
   for (std::size_t leg = 0; leg < kLegs; ++leg)
     Map(state_.anchors[leg].data()) = ConstMap(state_.position.data()) + attitude * feet.place[leg];
+}
+
+/// Feet that bear after none did stand on the ground.
+void LeggedEstimator::stand_on_ground(const std::array<std::uint64_t, kLegs>& before, const Quaterniond& attitude,
+                                      const Feet& feet) noexcept {
+  if (before != std::array<std::uint64_t, kLegs>{}) return;
+  double height = 0, count = 0;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    if (state_.bears[leg] == 0) continue;
+    height += (attitude * feet.place[leg]).z();
+    count += 1;
+  }
+  state_.position[2] = ground_ - height / count;
 }
 
 void LeggedEstimator::move(const Feet& feet, double dt) noexcept {
@@ -188,6 +205,7 @@ void LeggedEstimator::move(const Feet& feet, double dt) noexcept {
   Map smoothed(state_.velocity.data());
   if (count == 0) {
     smoothed.setZero();
+    if (state_.still > kRest) state_.position[2] = 0;
     return;
   }
   state_.distance += (position / count - ConstMap(state_.position.data())).norm();

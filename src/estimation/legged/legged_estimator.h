@@ -9,9 +9,11 @@
 ///            above kBears of an equal share of the weight, and ends below kFloats
 /// position   the mean over the feet that bear of aᵢ − R pᵢ. A foot that begins to bear is anchored at aᵢ = p + R pᵢ. A
 ///            ball rolls: aᵢ moves with ωᵢ × r u, ωᵢ the rate of the shank
+/// height     above the place where the robot lies on level ground, which it is taken to lie on again: zero while
+///            nothing moves and no foot bears. The first feet that bear stand on that ground
 /// velocity   the mean over the same feet of r ωᵢ × u − (Jᵢ q̇ᵢ + ω × pᵢ), through a low pass of kSmooth
 ///
-/// While no foot bears, the robot lies on its body, and position and velocity stay. The pose begins at zero.
+/// While no foot bears, the robot lies on its body or falls: x and y stay. The pose begins at zero.
 ///
 /// A contact's probability is 1 while its foot bears; its slip is the speed of this foot against the mean.
 
@@ -45,7 +47,7 @@ class LeggedEstimator {
   void enter_run() noexcept { state_ = {}; }
   /// Continues from the last published frame.
   void resume(const StateFrame& last) noexcept;
-  /// x [m], y [m], yaw [rad] of the next frame.
+  /// x [m], y [m], yaw [rad] of the next frame. The height stays.
   void set_pose(const Vector3& pose) noexcept;
   /// Fills everything but `out.head`. It is real-time safe.
   void step(const SensorFrame& sensors, StateFrame& out) noexcept;
@@ -76,6 +78,8 @@ class LeggedEstimator {
   void weigh(const SensorFrame& sensors, const Feet& feet) noexcept;
   void measure_loads(const SensorFrame& sensors, const Eigen::Vector3d& up) noexcept;
   void compute_loads(const SensorFrame& sensors, const Feet& feet, const Eigen::Vector3d& up) noexcept;
+  void stand_on_ground(const std::array<std::uint64_t, kLegs>& before, const Eigen::Quaterniond& attitude,
+                       const Feet& feet) noexcept;
   void move(const Feet& feet, double dt) noexcept;
   void write(const SensorFrame& sensors, const Feet& feet, bool good, StateFrame& out) const noexcept;
 
@@ -83,7 +87,8 @@ class LeggedEstimator {
   std::array<Leg, kLegs> legs_;
   LegDynamics dynamics_;
   Eigen::Matrix3d base_from_imu_;
-  double share_ = 0;  ///< N, an equal share of the weight
+  double share_ = 0;   ///< N, an equal share of the weight
+  double ground_ = 0;  ///< m, odom axes: height of the centres of feet on the ground
   State state_;
 };
 

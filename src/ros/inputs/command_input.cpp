@@ -86,6 +86,10 @@ void CommandInput::receive_once(const Request& request, const ArrivalTime& time)
   ++value_.count;
 }
 
+void CommandInput::withdraw(std::uint64_t mode, std::int64_t loop_ns) {
+  if (value_.content.mode == mode) end_command(loop_ns);
+}
+
 bool CommandInput::update(std::int64_t loop_ns) {
   report_senders(loop_ns);
   const bool over = !requests_.granted() && parts_of(value_.content) != 0 && !motion_requested(loop_ns);

@@ -76,6 +76,9 @@ class CommandInput final : public CommandIntake {
   /// Receives a request of no sender, which ends by itself or with the permission to move: a service was called.
   void receive_once(const Request& request, const ArrivalTime& time);
 
+  /// Ends the request in force, if it has this mode.
+  void withdraw(std::uint64_t mode, std::int64_t loop_ns);
+
   void start(const EarlierController& earlier) override { requests_.start(earlier); }
 
   /// Removes senders that have become silent. Returns true if that changed the value of the inbox.

@@ -253,6 +253,9 @@ class LegControllerNode final : public CommandedNode {
     const StanceMode mode = mode_of(posture);
     if (mode == kStanceStay) return "there is no posture '" + posture + "'; name standing or lying";
     for (const std::string& name : missing()) return "the loop does not run: waiting for " + name;
+    SensorFrame sensors;
+    if (process().sensors().newest(sensors) == Lookup::kFrame && sensors.driver_state == DriverState::kPaused)
+      return "the simulation is paused: let it go on first";
     CommandFrame command;
     for (std::int64_t waited_ns = 0; waited_ns < kBeginWait; waited_ns += kRepeat) {
       if (process().output().newest(command) == Lookup::kFrame && process().is_current(command.head) &&
@@ -267,6 +270,9 @@ class LegControllerNode final : public CommandedNode {
       }
       sleep_ns(kRepeat);
     }
+    const std::lock_guard lock(input_mutex_);
+    input_.withdraw(mode, loop_ns());
+    store();
     return "the posture has not begun to change within 1 s: " +
            sentences_of(kCommandReasonNames, command.reasons, programs());
   }
