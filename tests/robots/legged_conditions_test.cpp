@@ -110,6 +110,20 @@ TEST_F(LeggedConditionsTest, AJointBeyondItsEndStopBrakes) {
   EXPECT_EQ(joint(), 0u);
 }
 
+TEST_F(LeggedConditionsTest, AJointThatDoesNotFollowItsCommandBrakesWhileTheRobotStands) {
+  for (std::size_t i = 0; i < kLegsJoints; ++i)
+    command_.joints[i] = {.mode = JointMode::kImpedance, .position = sensors_.joints[i].position};
+  command_.joints[7].position += 0.24;
+  EXPECT_EQ(run(0.5), 0.5);
+  command_.joints[7].position += 0.02;
+  command_.legged.phase = LegPhase::kRising;
+  EXPECT_EQ(run(0.5), 0.5);
+  command_.legged.phase = LegPhase::kStanding;
+  EXPECT_NEAR(run(1), 0.199, 1e-6);
+  EXPECT_EQ(causes(Reaction::kBrake), "joint_following");
+  EXPECT_EQ(joint(), 7u);
+}
+
 TEST_F(LeggedConditionsTest, AFootThatSlipsLetsItLieDown) {
   const auto slide = [&](double speed) {
     return [this, speed](double t) {

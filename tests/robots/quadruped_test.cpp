@@ -71,6 +71,16 @@ TEST_P(QuadrupedOf, KnowsItsHeightAfterEveryFold) {
   }
 }
 
+TEST_P(QuadrupedOf, IsStoppedWhenAnEncoderIsStuck) {
+  QuadrupedLoop robot = loop_of(GetParam());
+  robot.wait(0.3);
+  robot.run(2.5, stance(kStanceStand));
+  robot.loop.inject_fault(robot.robot().joints[2].name + "_encoder", "stuck");
+  robot.run(3.0, {.twist = {}, .posture = {.height = -0.3 * robot.robot().leg_length()}});
+  EXPECT_NE(robot.permit().causes & (kCauseJointFollowing | kCauseFootSlip), 0u) << robot.causes();
+  EXPECT_EQ(robot.gate().verdict, GateVerdict::kBrake);
+}
+
 TEST_P(QuadrupedOf, IsFoldedWithARearFootInTheAir) {
   QuadrupedLoop robot = loop_of(GetParam());
   robot.wait(0.3);

@@ -49,8 +49,8 @@ LeggedEstimator::LeggedEstimator(const LegModel& robot, double period)
       dynamics_(robot),
       base_from_imu_(rotation_of(robot.imu_in_base.orientation)),
       share_(dynamics_.mass() * kGravity / kLegs),
-      ground_(robot.belly) {
-  for (const Leg& leg : legs_) ground_ += leg.foot_radius / kLegs;
+      belly_ground_(robot.belly) {
+  for (const Leg& leg : legs_) belly_ground_ += leg.foot_radius / kLegs;
 }
 
 void LeggedEstimator::resume(const StateFrame& last) noexcept {
@@ -59,7 +59,8 @@ void LeggedEstimator::resume(const StateFrame& last) noexcept {
   state_.position = last.base.pose_odom.position;
   state_.distance = last.base.distance;
   Map(state_.bias.data()) = base_from_imu_ * ConstMap(last.base.gyro_bias.data());
-  state_.begun = 1;
+  state_.ground = belly_ground_;
+  state_.grounded = state_.begun = 1;
 }
 
 void LeggedEstimator::set_pose(const Vector3& pose) noexcept {
@@ -178,7 +179,6 @@ void LeggedEstimator::weigh(const SensorFrame& sensors, const Feet& feet) noexce
     Map(state_.anchors[leg].data()) = ConstMap(state_.position.data()) + attitude * feet.place[leg];
 }
 
-/// Feet that bear after none did stand on the ground.
 void LeggedEstimator::stand_on_ground(const std::array<std::uint64_t, kLegs>& before, const Quaterniond& attitude,
                                       const Feet& feet) noexcept {
   if (before != std::array<std::uint64_t, kLegs>{}) return;
@@ -188,7 +188,9 @@ void LeggedEstimator::stand_on_ground(const std::array<std::uint64_t, kLegs>& be
     height += (attitude * feet.place[leg]).z();
     count += 1;
   }
-  state_.position[2] = ground_ - height / count;
+  if (state_.grounded == 0) state_.ground = state_.position[2] + height / count;
+  state_.grounded = 1;
+  state_.position[2] = state_.ground - height / count;
 }
 
 void LeggedEstimator::move(const Feet& feet, double dt) noexcept {

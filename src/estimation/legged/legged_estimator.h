@@ -9,8 +9,8 @@
 ///            above kBears of an equal share of the weight, and ends below kFloats
 /// position   the mean over the feet that bear of aᵢ − R pᵢ. A foot that begins to bear is anchored at aᵢ = p + R pᵢ. A
 ///            ball rolls: aᵢ moves with ωᵢ × r u, ωᵢ the rate of the shank
-/// height     above the place where the robot lies on level ground, which it is taken to lie on again: zero while
-///            nothing moves and no foot bears. The first feet that bear stand on that ground
+/// height     the ground is level: feet that bear after none did stand where the first ones of the run stood. While
+///            nothing moves and no foot bears, the robot lies, at zero. A restarted estimator takes its belly's height
 /// velocity   the mean over the same feet of r ωᵢ × u − (Jᵢ q̇ᵢ + ω × pᵢ), through a low pass of kSmooth
 ///
 /// While no foot bears, the robot lies on its body or falls: x and y stay. The pose begins at zero.
@@ -61,6 +61,8 @@ class LeggedEstimator {
     std::array<Vector3, kLegs> anchors{};        ///< m, odom axes
     std::array<double, kLegs> loads{};           ///< N
     std::array<std::uint64_t, kLegs> bears{};    ///< 1: the foot bears
+    double ground = 0;                           ///< m, odom axes: height of the centres of feet on the ground
+    std::uint64_t grounded = 0;                  ///< 1: `ground` is known
     double still = 0;                            ///< s since anything moved
     double distance = 0;                         ///< m
     std::uint64_t begun = 0;                     ///< 1: the attitude was set by an accelerometer
@@ -87,8 +89,8 @@ class LeggedEstimator {
   std::array<Leg, kLegs> legs_;
   LegDynamics dynamics_;
   Eigen::Matrix3d base_from_imu_;
-  double share_ = 0;   ///< N, an equal share of the weight
-  double ground_ = 0;  ///< m, odom axes: height of the centres of feet on the ground
+  double share_ = 0;         ///< N, an equal share of the weight
+  double belly_ground_ = 0;  ///< m, base axes: height of the centres of feet on the ground on which the belly lies
   State state_;
 };
 

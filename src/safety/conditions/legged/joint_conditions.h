@@ -3,6 +3,7 @@
 ///
 ///   joint speed   |q̇| / velocity limit > limit
 ///   joint effort  |τ| / effort limit > limit, for the persistence: no motor may do that for long
+///   following     |q − its command| > limit, while the robot stands: an encoder or a drive that no longer moves
 ///   joint range   distance beyond the nearer end stop > limit: the zero of an encoder, or a stop that broke
 ///
 /// A number that is missing or not finite is not evaluated.
@@ -16,8 +17,8 @@
 #include "machine/legs/leg_model.h"
 #include "safety/conditions/common/condition_watch.h"
 #include "safety/latch/active_causes.h"
+#include "safety/monitor_input.h"
 #include "safety/safety_parameters.h"
-#include "signals/sensor_frame.h"
 
 namespace robot_control {
 
@@ -27,7 +28,8 @@ class JointConditions {
   JointConditions(const SafetyParameters& parameters, const LegModel& robot, double period) noexcept
       : speed_(kCauseJointSpeed, parameters.joint_speed, period),
         effort_(kCauseJointEffort, parameters.joint_effort, period),
-        range_(kCauseJointRange, parameters.joint_range, period) {
+        range_(kCauseJointRange, parameters.joint_range, period),
+        following_(kCauseJointFollowing, parameters.joint_following, period) {
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       const JointModel& joint = robot.joints[i];
       limits_[i] = {.speed = joint.velocity_limit,
@@ -37,11 +39,14 @@ class JointConditions {
   }
 
   void enter_run() noexcept {
-    for (ConditionWatch* watch : {&speed_, &effort_, &range_}) watch->reset();
+    for (ConditionWatch* watch : {&speed_, &effort_, &range_, &following_}) watch->reset();
   }
 
-  void step(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept {
-    ConditionMeasurement speed = kNothingMeasured, effort = kNothingMeasured, range = kNothingMeasured;
+  void step(const MonitorInput& input, std::uint64_t elapsed, ActiveCauses& out) noexcept {
+    const SensorFrame& sensors = *input.sensors;
+    const bool stands = input.command != nullptr && input.command->legged.phase == LegPhase::kStanding;
+    ConditionMeasurement speed = kNothingMeasured, effort = kNothingMeasured, range = kNothingMeasured,
+                         following = kNothingMeasured;
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       const JointSample& joint = sensors.joints[i];
       const Limits& limits = limits_[i];
@@ -51,6 +56,10 @@ class JointConditions {
       if (has_position(joint)) {
         const double outside = std::max(limits.range.lower - joint.position, joint.position - limits.range.upper);
         range = worse(range, beyond(i, outside, range_.limit()));
+        if (stands && input.command->joints[i].mode == JointMode::kImpedance) {
+          const double left = std::abs(input.command->joints[i].position - joint.position);
+          following = worse(following, beyond(i, left, following_.limit()));
+        }
       }
     }
     const auto update = [&](ConditionWatch& watch, const ConditionMeasurement& measurement) {
@@ -60,6 +69,7 @@ class JointConditions {
     update(speed_, speed);
     update(effort_, effort);
     update(range_, range);
+    update(following_, following);
   }
 
  private:
@@ -72,7 +82,7 @@ class JointConditions {
   };
 
   std::array<Limits, kLegsJoints> limits_{};
-  ConditionWatch speed_, effort_, range_;
+  ConditionWatch speed_, effort_, range_, following_;
 };
 
 }  // namespace robot_control

@@ -55,7 +55,7 @@ class LeggedConditions {
     }
     if (standing()) moving_ = false;
     body_conditions_.step(sensors, elapsed, 0, moving_, out);
-    joint_conditions_.step(sensors, elapsed, out);
+    joint_conditions_.step(input, elapsed, out);
     foot_conditions_.step(input, body_conditions_.attitude().up(), elapsed, out);
   }
 
