@@ -143,11 +143,24 @@ def test_a_brake_of_the_gate_counts_while_driving_alone(log):
     assert values_of(log)["gate_brakes"] == 1
 
 
+def test_a_stop_without_a_row_of_the_monitor_in_it_is_one_stop(log):
+    rows = slice(2000, 5000)
+    log["supervisor_state"][rows], log["permit_causes"][rows] = 4, E_STOP_SERVICE
+    for row in (1999, 2500, 3000, 5000):
+        for name in ("supervisor_state", "permit_causes", "permit_action"):
+            log[name][row] = np.nan
+    (stop,) = [one for one in incidents(Drive("run", log)) if one.kind == "stop"]
+    assert (stop.begin, stop.end) == (pytest.approx(2.0), pytest.approx(5.001))
+    assert values_of(log)["latched_stops"] == 1
+
+
 def test_intervals():
     true = np.array([1, 1, 0, 1, 0, 0, 0, 1], dtype=bool)
     assert intervals(true) == [(0, 2), (3, 4), (7, 8)]
     assert joined(intervals(true), 1) == [(0, 4), (7, 8)]
     assert intervals(np.zeros(3, dtype=bool)) == []
+    column = np.array([np.nan, 1, np.nan, 1, np.nan, 0, np.nan, 1, np.nan])
+    assert intervals(column == 1, column) == [(1, 5), (7, 9)]
     assert runs_of(np.array([1, 1, np.nan, 2, 2, 1])) == [(0, 2, 1), (3, 5, 2), (5, 6, 1)]
 
 

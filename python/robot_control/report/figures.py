@@ -72,8 +72,9 @@ def _log(drive: Drive) -> Iterator[Figure]:
 
 
 def _safety(drive: Drive) -> Iterator[Figure]:
-    stopped = np.isin(drive.column("supervisor_state"), STOPPED)
-    yield Figure("latched_stops", "", "stops that needed a reset", float(len(intervals(stopped))))
+    state = drive.column("supervisor_state")
+    stops = intervals(np.isin(state, STOPPED), state)
+    yield Figure("latched_stops", "", "stops that needed a reset", float(len(stops)))
     braked = float(len(intervals(drive.gate_braked()))) if drive.has("gate_verdict") else NAN
     yield Figure("gate_brakes", "", "times that the gate braked while driving", braked)
     refused = drive.count("refused")
