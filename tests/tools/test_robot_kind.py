@@ -1,12 +1,14 @@
 """The kind of a robot, as tools take it from the topic robot_kind, and what they do with another kind's nodes."""
 
+import re
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 import rospy
 from robot_control.common import robot_kind
 from robot_control.common.live_parameters import LiveParameters
-from robot_control.common.roles import LOOP
+from robot_control.common.roles import LEGGED, LOOP, WHEELED, Kind
 from robot_control.console.calls import CALLS, service_of
 from robot_control.msg import RobotKind
 from robot_control.teleop.speed_limits import SpeedLimits
@@ -43,6 +45,14 @@ def test_the_message_names_the_nodes_and_what_can_fail():
     assert kind.name == "quadruped"
     assert kind.loop == ("mujoco_plant", "state_estimator", "leg_controller", "safety_monitor")
     assert (kind.fault_components, kind.fault_kinds) == (("gyro", "hip_motor"), ("ok", "off"))
+
+
+def test_the_first_topic_of_requests_is_that_of_the_table_in_c():
+    table = (Path(__file__).parents[2] / "src" / "signals" / "robot_kinds.h").read_text(encoding="utf-8")
+    for name, constant in ((WHEELED, "kWheeledKind"), (LEGGED, "kLeggedKind")):
+        (request,) = re.findall(rf'{{{constant}, [^,]+, "(\w+)"', table)
+        assert Kind(name).request_topics[0] == request
+    assert Kind().request_topics == Kind(WHEELED).request_topics
 
 
 def test_a_role_that_is_not_known_or_without_a_node_changes_nothing():

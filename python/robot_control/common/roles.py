@@ -14,6 +14,13 @@ DRIVER, ESTIMATOR, CONTROLLER, MONITOR, TELEMETRY = (program for _, program in s
 LOOP = (DRIVER, ESTIMATOR, CONTROLLER, MONITOR)
 HARDWARE_DRIVER = "driver"
 """The program of every driver but the simulator's."""
+WHEELED, LEGGED = (str(kind) for kind, _ in signal_names["RobotKind"])
+"""The kinds of robots (signals/robot_kinds.h)."""
+REQUEST_TOPICS = {
+    WHEELED: ("cmd_vel", "cmd_vel_stamped"),
+    LEGGED: ("body_pose", "foot_target", "joint_trajectory"),
+}
+"""The topics of requests of motion."""
 
 
 @dataclass(frozen=True)
@@ -27,6 +34,21 @@ class Kind:
     monitor: str = MONITOR
     fault_components: tuple[str, ...] = ()
     fault_kinds: tuple[str, ...] = ()
+
+    @property
+    def legged(self) -> bool:
+        """True for a robot on legs."""
+        return self.name == LEGGED
+
+    @property
+    def request_topics(self) -> tuple[str, ...]:
+        """The topics of requests of motion; those of a robot on wheels, before the kind is known."""
+        return REQUEST_TOPICS.get(self.name, REQUEST_TOPICS[WHEELED])
+
+    @property
+    def requests(self) -> str:
+        """These topics, in words."""
+        return " or ".join(self.request_topics)
 
     @property
     def loop(self) -> tuple[str, ...]:

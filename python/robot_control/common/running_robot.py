@@ -11,7 +11,8 @@ from pathlib import Path
 import rosgraph
 import rospy
 
-from robot_control.common.ros_master import COMMAND_TOPICS, Master, senders_of
+from robot_control.common.robot_kind import running_kind
+from robot_control.common.ros_master import Master, senders_of
 from robot_control.common.ros_node import begin_node
 from robot_control.common.server_values import server_description, server_text, server_tree
 from robot_control.common.settings import Settings
@@ -81,4 +82,4 @@ def master_state() -> State:
 
 def other_senders(state: State) -> tuple[str, ...]:
     """Other nodes that may send commands."""
-    return senders_of(state[0], map(rospy.resolve_name, COMMAND_TOPICS), rospy.get_name())
+    return senders_of(state[0], map(rospy.resolve_name, running_kind().request_topics), rospy.get_name())
