@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from robot_control.common.roles import LEGGED
 from robot_control.common.run_log import RunLog, read_run
 from robot_control.common.signal_names import mask_of
 from robot_control.report import main as program
@@ -212,10 +213,10 @@ def written(tmp_path, monkeypatch, log):
     runs = {}
     monkeypatch.setattr(program, "read_run", lambda path: runs[path.name] if path.name in runs else read_run(path))
 
-    def write(name="run.bag"):
+    def write(name="run.bag", **header):
         Path(name).write_text("")
         columns = {column: values.copy() for column, values in log.items()}
-        runs[name] = RunLog(columns, columns["time"], {}, 1, 0, "")
+        runs[name] = RunLog(columns, columns["time"], header, 1, 0, "")
         return name
 
     return write
@@ -272,11 +273,25 @@ def test_the_page_needs_no_network(written, log):
     log["supervisor_state"][2000:5000] = 4
     log["permit_causes"][2000:5000] = E_STOP_SERVICE
     text = written_page([written()])
-    for section in ("Verdict", "Incidents", "Path", "States and reasons", "Speeds", "Wheels", "Latency"):
+    for section in ("Verdict", "Incidents", "Path", "States and reasons", "Speeds", "Joints", "Latency"):
         assert f"<h2>{section}</h2>" in text
     assert "e_stop_service" in text
     assert re.search(r"<(?:script|link|img)[^>]+(?:src|href)=", text) is None
     assert len(text) < 4_000_000
+
+
+def test_the_page_of_a_robot_on_legs_has_no_words_of_wheels(written, log):
+    log["command_reasons"][:200] = mask_of("CommandReason", "no_command", "timed_out")
+    for name in ("wheel_odom_x", "wheel_odom_y", "speed_limit"):
+        log[name] = np.zeros(CYCLES)
+    for name in [name for name in log if "wheel_joint" in name]:
+        log[name.replace("wheel", "knee")] = log.pop(name)
+    of_wheels = re.compile(r"wheels alone|wheels and inertial|cmd_vel|monitor\S+ limit")
+    assert len(set(of_wheels.findall(written_page([written()])))) == 4
+    text = written_page([written(kind=LEGGED)])
+    assert of_wheels.findall(text) == []
+    assert "nothing was received on body_pose" in text
+    assert "older than request_timeout" in text
 
 
 def test_names_in_a_log_are_no_markup(written, log):

@@ -6,6 +6,7 @@ one of robots on wheels.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 from robot_control._robot_control import signal_names
@@ -21,6 +22,12 @@ REQUEST_TOPICS = {
     LEGGED: ("body_pose", "foot_target", "joint_trajectory"),
 }
 """The topics of requests of motion."""
+NAMES_ON_LEGS = {
+    "cmd_vel": REQUEST_TOPICS[LEGGED][0],
+    "cmd_vel_timeout": "request_timeout",
+    CONTROLLER: dict(signal_names["RobotKind"])[LEGGED],
+}
+"""Topic, parameter and program of a robot on wheels → those of a robot on legs."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +56,12 @@ class Kind:
     def requests(self) -> str:
         """These topics, in words."""
         return " or ".join(self.request_topics)
+
+    def worded(self, sentence: str) -> str:
+        """A sentence of signals/names.h, which names topic, parameter and program of wheels, for this kind."""
+        if not self.legged:
+            return sentence
+        return re.sub(r"\w+", lambda word: NAMES_ON_LEGS.get(word[0], word[0]), sentence)
 
     @property
     def loop(self) -> tuple[str, ...]:

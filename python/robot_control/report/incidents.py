@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -39,7 +39,8 @@ class Incident:
 def incidents(drive: Drive) -> list[Incident]:
     """In the order of time."""
     found = [*_stops(drive), *_brakes(drive), *_slips(drive), *_warnings(drive), *_faults(drive), *_gaps(drive)]
-    return sorted(found, key=lambda one: (one.begin, one.severity))
+    worded = [replace(one, evidence=[drive.kind.worded(line) for line in one.evidence]) for one in found]
+    return sorted(worded, key=lambda one: (one.begin, one.severity))
 
 
 def _span(drive: Drive, begin: int, end: int) -> tuple[float, float]:
