@@ -72,3 +72,17 @@ class Kind:
         """The node of a role: driver, estimator, controller or monitor."""
         name: str = getattr(self, role)
         return name
+
+
+class WheelsOnlyError(ValueError):
+    """The robot has no wheels, which the tool needs."""
+
+
+def refuse_legs(kind: Kind, tool: str) -> None:
+    """Ends the work of `tool` where the robot stands on legs.
+
+    Raises:
+        WheelsOnlyError: it does.
+    """
+    if kind.legged:
+        raise WheelsOnlyError(f"this robot is a {kind.name}: {tool} works on wheels only")
