@@ -220,6 +220,17 @@ def test_a_log_of_another_robot_is_refused_with_its_joints(run):
     assert "no column left_wheel_joint_position; it has port_joint_position, right_wheel_joint_position" in message
 
 
+def test_the_log_of_a_robot_on_legs_is_refused_with_and_without_its_description(run):
+    urdf = share_file("urdf/quadbot.urdf")
+    loop = ClosedLoop(urdf=urdf)
+    loop.log_into(".")
+    loop.run(0.1)
+    loop.end_log()
+    for arguments in ([], ["--urdf", urdf]):
+        _, message = run("run.bag", *arguments)
+        assert message == "estimate.py: this robot is a quadruped: estimate.py works on wheels only"
+
+
 def spoil(line, old, new):
     """The file with one line changed; line 1 is the header."""
     lines = Path("in.csv").read_text().splitlines(keepends=True)

@@ -69,6 +69,12 @@ def test_refuses_the_log_of_another_robot(tmp_path, monkeypatch):
     assert not (tmp_path / "x.yaml").exists()
 
 
+def test_refuses_the_log_of_a_robot_on_legs(tmp_path, monkeypatch):
+    log = written(ClosedLoop(urdf=share_file("urdf/quadbot.urdf")), tmp_path, 0.1, (0.0, 0.0))
+    message = refusal(monkeypatch, f"--log={log}", f"--output={tmp_path}/x.yaml")
+    assert message == "identify.py: this robot is a quadruped: identify.py works on wheels only"
+
+
 def test_refuses_a_log_that_is_not_there(tmp_path, monkeypatch):
     message = refusal(monkeypatch, f"--log={tmp_path}/none.bag")
     assert message == f"identify.py: {tmp_path}/none.bag cannot be opened or written: No such file or directory"

@@ -1,6 +1,7 @@
 """record.py calls rosbag with these arguments; no ROS runs."""
 
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -31,6 +32,15 @@ def test_namespace_is_that_of_the_command_line_else_of_the_environment(
 def test_names_are_absolute_and_all_there() -> None:
     assert set(topics()) == {"/" + topic.lstrip("/") for topic in TOPICS}
     assert {"/odom", "/tf", "/imu/data_raw", "/joint_states", "/cmd_vel_out", "/clock"} <= set(topics())
+
+
+def test_every_topic_of_the_interface_table_is_recorded() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "interfaces.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (?:in|out|in, out) \| ([^|]*) \|", page, re.MULTILINE)
+    table = {name for row in rows for name in re.findall(r"`([\w/]+)`", row)}
+    assert len(table) > 30
+    assert set(TOPICS) - table == {"tf", "tf_static", "/rosout"}
+    assert table <= set(TOPICS)
 
 
 def test_namespace_moves_what_belongs_to_the_robot_and_nothing_else() -> None:

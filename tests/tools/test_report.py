@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from robot_control.common.roles import LEGGED
 from robot_control.common.run_log import RunLog, read_run
 from robot_control.common.signal_names import mask_of
 from robot_control.report import main as program
@@ -143,11 +144,24 @@ def test_a_brake_of_the_gate_counts_while_driving_alone(log):
     assert values_of(log)["gate_brakes"] == 1
 
 
+def test_a_stop_without_a_row_of_the_monitor_in_it_is_one_stop(log):
+    rows = slice(2000, 5000)
+    log["supervisor_state"][rows], log["permit_causes"][rows] = 4, E_STOP_SERVICE
+    for row in (1999, 2500, 3000, 5000):
+        for name in ("supervisor_state", "permit_causes", "permit_action"):
+            log[name][row] = np.nan
+    (stop,) = [one for one in incidents(Drive("run", log)) if one.kind == "stop"]
+    assert (stop.begin, stop.end) == (pytest.approx(2.0), pytest.approx(5.001))
+    assert values_of(log)["latched_stops"] == 1
+
+
 def test_intervals():
     true = np.array([1, 1, 0, 1, 0, 0, 0, 1], dtype=bool)
     assert intervals(true) == [(0, 2), (3, 4), (7, 8)]
     assert joined(intervals(true), 1) == [(0, 4), (7, 8)]
     assert intervals(np.zeros(3, dtype=bool)) == []
+    column = np.array([np.nan, 1, np.nan, 1, np.nan, 0, np.nan, 1, np.nan])
+    assert intervals(column == 1, column) == [(1, 5), (7, 9)]
     assert runs_of(np.array([1, 1, np.nan, 2, 2, 1])) == [(0, 2, 1), (3, 5, 2), (5, 6, 1)]
 
 
@@ -199,10 +213,10 @@ def written(tmp_path, monkeypatch, log):
     runs = {}
     monkeypatch.setattr(program, "read_run", lambda path: runs[path.name] if path.name in runs else read_run(path))
 
-    def write(name="run.bag"):
+    def write(name="run.bag", **header):
         Path(name).write_text("")
         columns = {column: values.copy() for column, values in log.items()}
-        runs[name] = RunLog(columns, columns["time"], {}, 1, 0, "")
+        runs[name] = RunLog(columns, columns["time"], header, 1, 0, "")
         return name
 
     return write
@@ -259,11 +273,25 @@ def test_the_page_needs_no_network(written, log):
     log["supervisor_state"][2000:5000] = 4
     log["permit_causes"][2000:5000] = E_STOP_SERVICE
     text = written_page([written()])
-    for section in ("Verdict", "Incidents", "Path", "States and reasons", "Speeds", "Wheels", "Latency"):
+    for section in ("Verdict", "Incidents", "Path", "States and reasons", "Speeds", "Joints", "Latency"):
         assert f"<h2>{section}</h2>" in text
     assert "e_stop_service" in text
     assert re.search(r"<(?:script|link|img)[^>]+(?:src|href)=", text) is None
     assert len(text) < 4_000_000
+
+
+def test_the_page_of_a_robot_on_legs_has_no_words_of_wheels(written, log):
+    log["command_reasons"][:200] = mask_of("CommandReason", "no_command", "timed_out")
+    for name in ("wheel_odom_x", "wheel_odom_y", "speed_limit"):
+        log[name] = np.zeros(CYCLES)
+    for name in [name for name in log if "wheel_joint" in name]:
+        log[name.replace("wheel", "knee")] = log.pop(name)
+    of_wheels = re.compile(r"wheels alone|wheels and inertial|cmd_vel|monitor\S+ limit")
+    assert len(set(of_wheels.findall(written_page([written()])))) == 4
+    text = written_page([written(kind=LEGGED)])
+    assert of_wheels.findall(text) == []
+    assert "nothing was received on body_pose" in text
+    assert "older than request_timeout" in text
 
 
 def test_names_in_a_log_are_no_markup(written, log):

@@ -1,14 +1,19 @@
 """The kind of a robot, as tools take it from the topic robot_kind, and what they do with another kind's nodes."""
 
+import re
+from contextlib import nullcontext
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+import rosgraph
 import rospy
-from robot_control.common import robot_kind
+from robot_control.common import robot_kind, running_robot
 from robot_control.common.live_parameters import LiveParameters
-from robot_control.common.roles import LOOP
+from robot_control.common.roles import LEGGED, LOOP, WHEELED, Kind, WheelsOnlyError
 from robot_control.console.calls import CALLS, service_of
 from robot_control.msg import RobotKind
+from robot_control.path import main as path_program
 from robot_control.teleop.speed_limits import SpeedLimits
 
 LEGS = RobotKind(
@@ -45,6 +50,14 @@ def test_the_message_names_the_nodes_and_what_can_fail():
     assert (kind.fault_components, kind.fault_kinds) == (("gyro", "hip_motor"), ("ok", "off"))
 
 
+def test_the_first_topic_of_requests_is_that_of_the_table_in_c():
+    table = (Path(__file__).parents[2] / "src" / "signals" / "robot_kinds.h").read_text(encoding="utf-8")
+    for name, constant in ((WHEELED, "kWheeledKind"), (LEGGED, "kLeggedKind")):
+        (request,) = re.findall(rf'{{{constant}, [^,]+, "(\w+)"', table)
+        assert Kind(name).request_topics[0] == request
+    assert Kind().request_topics == Kind(WHEELED).request_topics
+
+
 def test_a_role_that_is_not_known_or_without_a_node_changes_nothing():
     other = RobotKind(kind="boat", roles=["captain", "controller", "estimator"], nodes=["anna", ""])
     assert robot_kind.kind_of(other).loop == LOOP
@@ -70,6 +83,35 @@ def test_a_kind_whose_block_is_not_in_the_file_has_the_limits_that_it_reports(su
         SimpleNamespace(doubles=[SimpleNamespace(name="max_linear_speed", value=0.2)])
     )
     assert limits.newest().linear == 0.2
+
+
+def test_a_tool_for_wheels_refuses_a_running_robot_on_legs_alone(monkeypatch):
+    def received(name, _, timeout):
+        assert (name, timeout) == ("robot_kind", robot_kind.PATIENCE)
+        if message is None:
+            raise rospy.ROSException("timeout exceeded")
+        return message
+
+    monkeypatch.setattr(rospy, "wait_for_message", received)
+    for message in (None, RobotKind(kind=WHEELED), RobotKind(kind="boat")):  # noqa: B007 (received reads it)
+        robot_kind.refuse_running_legs("calibrate.py")
+    message = LEGS
+    with pytest.raises(WheelsOnlyError, match=r"this robot is a quadruped: calibrate\.py works on wheels only"):
+        robot_kind.refuse_running_legs("calibrate.py")
+
+
+@pytest.mark.parametrize("tool", ["drive_path.py", "calibrate.py"])
+def test_the_tools_for_wheels_ask_for_the_kind(monkeypatch, tool):
+    monkeypatch.setattr(rospy, "wait_for_message", lambda *_: LEGS)
+    monkeypatch.setattr(rosgraph, "is_master_online", lambda: True)
+    monkeypatch.setattr(running_robot, "begin_node", lambda *_, **__: None)
+    monkeypatch.setattr(path_program, "running_node", lambda _: nullcontext())
+    monkeypatch.setattr("sys.argv", [tool, "square"])
+    with pytest.raises((SystemExit, WheelsOnlyError), match=f"{tool} works on wheels only"):
+        if tool == "drive_path.py":
+            path_program.main()
+        else:
+            running_robot.running_settings("calibrate", "node", "", "").__enter__()
 
 
 def test_the_calls_of_the_console_go_to_the_nodes_of_the_kind():

@@ -5,7 +5,7 @@ from robot_control.common.command import Command
 from robot_control.common.roles import CONTROLLER, LOOP
 from robot_control.teleop.key_map import CLASSIC, KEY_MAPS, SAFETY_HELP
 from robot_control.teleop.screen import HEIGHT, WIDTH, View, render
-from robot_control.why.diagnosis import Cause, Facts, Report, Safety
+from robot_control.why.state import Cause, Facts, Report, Safety
 
 VIEW = View(
     keys=CLASSIC, topic="/cmd_vel_stamped", own_name="/teleop", chosen=Command(0.5, 1.0), requested=Command(0.25, 0.0)

@@ -6,7 +6,7 @@ import pytest
 import rospy
 from robot_control.teleop import services as module
 from robot_control.teleop.services import Answer, Services, in_words
-from robot_control.why.diagnosis import Cause, Facts, Safety
+from robot_control.why.state import Cause, Facts, Safety
 from std_srvs.srv import TriggerResponse
 
 

@@ -4,9 +4,11 @@ import re
 from dataclasses import replace
 
 import pytest
-from robot_control.common.roles import CONTROLLER, DRIVER, ESTIMATOR, LOOP, MONITOR, Kind
-from robot_control.why.diagnosis import Cause, Facts, Report, Safety, Verdict, judge
+from robot_control.common.roles import CONTROLLER, DRIVER, ESTIMATOR, LEGGED, LOOP, MONITOR, Kind
+from robot_control.why.answer import Verdict
+from robot_control.why.diagnosis import judge
 from robot_control.why.screen import Look, render
+from robot_control.why.state import Cause, Facts, Report, Safety
 
 E_STOP = Cause(
     "e_stop_topic",
@@ -215,6 +217,55 @@ def test_the_lost_controller_of_another_kind_is_named_and_started(driving):
     walking = replace(facts, reports={**facts.reports, "leg_controller": driving.reports[CONTROLLER]})
     walking = saying(walking, "leg_controller", command__out_of_reach="the pose is beyond what the legs reach")
     assert "controller the pose is beyond what the legs reach" in " ".join(text(walking).split())
+
+
+@pytest.fixture
+def legged(driving) -> Facts:
+    """It stands, and a node requests poses; an estimate at rest is not exactly zero."""
+    own = Report("running", {"posture": "standing", "senders": "/poser", "requested_m_s": "0", "requested_rad_s": "0"})
+    return replace(
+        driving,
+        kind=Kind(LEGGED, controller="leg_controller"),
+        safety=Safety("DRIVE", "drive", speed_limit=0.0),
+        reports={**{name: driving.reports[name] for name in (DRIVER, ESTIMATOR, MONITOR)}, "leg_controller": own},
+        senders=("/poser",),
+        limited=None,
+        measured=(-0.004, 0.02),
+    )
+
+
+def test_a_robot_on_legs_that_stands_has_no_speeds(legged):
+    assert judge(legged).headline == "It stands; nothing stands against motion, and it follows /poser."
+    idle = saying(legged, "leg_controller", senders="", command__timed_out="the last body_pose is too old")
+    assert judge(idle).headline == "It stands; nothing stands against motion, and no motion is requested."
+    assert judge(idle).commands == ()
+    for facts in (legged, idle):
+        assert not re.search("m/s|cmd_vel|rim", text(facts))
+
+
+def test_a_robot_that_lies_has_to_stand_up(legged):
+    lying = saying(legged, "leg_controller", posture="lying", command__holding="the brake holds the position")
+    answer = judge(lying)
+    assert (answer.verdict, answer.headline) == (Verdict.IDLE, "It may move, but it lies.")
+    assert answer.commands == ("rosservice call /set_posture standing",)
+    said = ("a pose is requested, and the robot does not stand", "call set_posture with 'standing'")
+    answer = judge(saying(lying, "leg_controller", command__not_standing=said))
+    assert answer.headline == f"It may move, but {said[0]}."
+    assert answer.actions == (("operator", said[1]),)
+    assert answer.commands == ("rosservice call /set_posture standing",)
+
+
+def test_a_change_of_posture_is_motion(legged):
+    rising = saying(legged, "leg_controller", posture="rising", command__not_standing="it does not stand")
+    assert judge(rising).verdict is Verdict.MOVING
+    assert judge(rising).headline == "It moves: it stands up."
+
+
+def test_a_sender_of_poses_is_stopped_before_the_reset(legged):
+    answer = judge(stopped(legged, E_STOP))
+    assert ("operator", "stop /poser: while a motion is requested, a reset is refused") in answer.actions
+    waiting = judge(replace(legged, safety=Safety("INIT", "brake", awaiting_zero=True)))
+    assert waiting.actions == (("operator", "publishing on body_pose or foot_target or joint_trajectory: /poser"),)
 
 
 def test_commands_are_for_the_robots_own_namespace(driving):

@@ -6,9 +6,11 @@ from functools import cache
 
 import rospy
 
-from robot_control.common.roles import Kind
+from robot_control.common.roles import Kind, refuse_legs
 from robot_control.msg import RobotKind
 
+PATIENCE = 1.0
+"""s to wait for the topic, which is latched"""
 ROLES = ("driver", "estimator", "controller", "monitor")
 
 
@@ -40,6 +42,21 @@ def _topic() -> _Topic:
 
 forget = _topic.cache_clear
 """Makes the next call of `running_kind` subscribe again."""
+
+
+def refuse_running_legs(tool: str) -> None:
+    """Refuses for `tool`, which works on wheels only, a running robot on legs.
+
+    A robot whose kind does not come within PATIENCE is not refused: its nodes do not run, which the tool reports.
+
+    Raises:
+        WheelsOnlyError: it is one.
+    """
+    try:
+        message = rospy.wait_for_message("robot_kind", RobotKind, PATIENCE)
+    except rospy.ROSException:
+        return
+    refuse_legs(kind_of(message), tool)
 
 
 def running_kind() -> Kind:

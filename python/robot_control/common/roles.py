@@ -6,6 +6,7 @@ one of robots on wheels.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 from robot_control._robot_control import signal_names
@@ -14,6 +15,19 @@ DRIVER, ESTIMATOR, CONTROLLER, MONITOR, TELEMETRY = (program for _, program in s
 LOOP = (DRIVER, ESTIMATOR, CONTROLLER, MONITOR)
 HARDWARE_DRIVER = "driver"
 """The program of every driver but the simulator's."""
+WHEELED, LEGGED = (str(kind) for kind, _ in signal_names["RobotKind"])
+"""The kinds of robots (signals/robot_kinds.h)."""
+REQUEST_TOPICS = {
+    WHEELED: ("cmd_vel", "cmd_vel_stamped"),
+    LEGGED: ("body_pose", "foot_target", "joint_trajectory"),
+}
+"""The topics of requests of motion."""
+NAMES_ON_LEGS = {
+    "cmd_vel": REQUEST_TOPICS[LEGGED][0],
+    "cmd_vel_timeout": "request_timeout",
+    CONTROLLER: dict(signal_names["RobotKind"])[LEGGED],
+}
+"""Topic, parameter and program of a robot on wheels → those of a robot on legs."""
 
 
 @dataclass(frozen=True)
@@ -29,6 +43,27 @@ class Kind:
     fault_kinds: tuple[str, ...] = ()
 
     @property
+    def legged(self) -> bool:
+        """True for a robot on legs."""
+        return self.name == LEGGED
+
+    @property
+    def request_topics(self) -> tuple[str, ...]:
+        """The topics of requests of motion; those of a robot on wheels, before the kind is known."""
+        return REQUEST_TOPICS.get(self.name, REQUEST_TOPICS[WHEELED])
+
+    @property
+    def requests(self) -> str:
+        """These topics, in words."""
+        return " or ".join(self.request_topics)
+
+    def worded(self, sentence: str) -> str:
+        """A sentence of signals/names.h, which names topic, parameter and program of wheels, for this kind."""
+        if not self.legged:
+            return sentence
+        return re.sub(r"\w+", lambda word: NAMES_ON_LEGS.get(word[0], word[0]), sentence)
+
+    @property
     def loop(self) -> tuple[str, ...]:
         """The nodes of the loop."""
         return (self.driver, self.estimator, self.controller, self.monitor)
@@ -37,3 +72,17 @@ class Kind:
         """The node of a role: driver, estimator, controller or monitor."""
         name: str = getattr(self, role)
         return name
+
+
+class WheelsOnlyError(ValueError):
+    """The robot has no wheels, which the tool needs."""
+
+
+def refuse_legs(kind: Kind, tool: str) -> None:
+    """Ends the work of `tool` where the robot stands on legs.
+
+    Raises:
+        WheelsOnlyError: it does.
+    """
+    if kind.legged:
+        raise WheelsOnlyError(f"this robot is a {kind.name}: {tool} works on wheels only")

@@ -10,7 +10,6 @@ import rosgraph
 
 TIMEOUT = 1.0
 """s for an answer of the master, which may hang"""
-COMMAND_TOPICS = ("cmd_vel", "cmd_vel_stamped")
 
 
 class _Transport(xmlrpc.client.Transport):

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from robot_control._robot_control import BagError, TraceError, read_run_bag, read_run_header
 from robot_control.common.files import MAX_TABLE, check_input, utf8
+from robot_control.common.roles import Kind
 
 BAG_MAGIC = b"#ROSBAG"
 BLACK_BOX_MAGIC = b"RCBLACK"
@@ -89,6 +90,11 @@ def is_run_log(path: Path) -> bool:
         return is_bag(path) and bool(read_run_header(utf8(path)))
     except (BagError, TraceError):
         return False
+
+
+def kind_in(header: Mapping[str, Any]) -> Kind:
+    """The kind of robot that the header of a log names."""
+    return Kind(str(header.get("kind", "")))
 
 
 def read_log(path: Path, columns: Sequence[str] = ()) -> dict[str, FloatArray]:

@@ -11,7 +11,8 @@ from pathlib import Path
 import rosgraph
 import rospy
 
-from robot_control.common.ros_master import COMMAND_TOPICS, Master, senders_of
+from robot_control.common.robot_kind import refuse_running_legs, running_kind
+from robot_control.common.ros_master import Master, senders_of
 from robot_control.common.ros_node import begin_node
 from robot_control.common.server_values import server_description, server_text, server_tree
 from robot_control.common.settings import Settings
@@ -37,6 +38,7 @@ def running_settings(tool: str, node: str, without_master: str, in_simulated_tim
 
     Raises:
         RefusedError: there is no robot that could be driven.
+        WheelsOnlyError: it stands on legs.
         ServerValueError: the server holds one of them in another type.
     """
     if not rosgraph.is_master_online():
@@ -45,6 +47,7 @@ def running_settings(tool: str, node: str, without_master: str, in_simulated_tim
             f"{without_master}"
         )
     begin_node(tool, anonymous=True)
+    refuse_running_legs(f"{tool}.py")
     if rospy.get_param("/use_sim_time", default=False):
         raise RefusedError(
             "the robot runs in simulated time, where a wall-clock second is many: use clock wall, " + in_simulated_time
@@ -81,4 +84,4 @@ def master_state() -> State:
 
 def other_senders(state: State) -> tuple[str, ...]:
     """Other nodes that may send commands."""
-    return senders_of(state[0], map(rospy.resolve_name, COMMAND_TOPICS), rospy.get_name())
+    return senders_of(state[0], map(rospy.resolve_name, running_kind().request_topics), rospy.get_name())

@@ -19,8 +19,8 @@ from robot_control.console.view import View, finite
 from robot_control.safety.watch import SafetyWatch
 from robot_control.teleop.services import Services, in_words
 from robot_control.teleop.speed_limits import SpeedLimits
-from robot_control.why.diagnosis import SILENCE
 from robot_control.why.listener import MASTER_PERIOD, Listener
+from robot_control.why.state import SILENCE
 
 SOURCE = "console_vel"
 HEARTBEAT_PERIOD = 0.1

@@ -17,7 +17,8 @@ from robot_control.console.topics import Latest
 from robot_control.msg import DriveState, FollowPathActionFeedback
 from robot_control.path.robot import pose_of
 from robot_control.view.scene import Trail
-from robot_control.why.diagnosis import Facts, judge, missing_nodes
+from robot_control.why.diagnosis import judge, missing_nodes
+from robot_control.why.state import Facts
 
 MAX_PATH = 2000
 """Points of a wanted path that are sent; a longer path is thinned evenly."""

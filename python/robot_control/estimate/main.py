@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 import yaml  # type: ignore[import-untyped]
 
-from robot_control._robot_control import ParameterError, RobotError
+from robot_control._robot_control import ParameterError, RobotError, read_run_header
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import NewFiles, escaped, fit_for_message
+from robot_control.common.files import NewFiles, escaped, fit_for_message, utf8
 from robot_control.common.output_files import check_outputs
 from robot_control.common.picture_file import check_picture
-from robot_control.common.run_log import is_run_log
+from robot_control.common.roles import refuse_legs
+from robot_control.common.run_log import is_run_log, kind_in
 from robot_control.estimate.bag_input import BagTopics, read_bag
 from robot_control.estimate.csv_input import ACCEL_UNITS, GYRO_UNITS, NAMES, TIME_UNITS, CsvForm, read_csv
 from robot_control.estimate.encoder import counts_per_turn
@@ -245,12 +246,14 @@ def _check_options(options: argparse.Namespace) -> None:
 
 
 def _check_paths(options: argparse.Namespace) -> None:
-    """Checks the paths before minutes of work."""
+    """Checks the paths, and the kind of robot in a log, before minutes of work."""
     check_outputs(_outputs(options), [options.input, options.urdf, options.params])
     if options.plot is not None:
         check_picture(options.plot)
     if options.input.suffix in {".db3", ".mcap"}:
         raise InputError(f"{options.input} is a ROS 2 bag; make a ROS 1 bag of it (rosbags-convert), or a CSV")
+    if options.input.suffix == ".bag" and is_run_log(options.input):
+        refuse_legs(kind_in(read_run_header(utf8(options.input))), "estimate.py")
 
 
 def _joints(given: dict[str, str] | None) -> tuple[str, str] | None:

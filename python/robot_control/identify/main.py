@@ -11,8 +11,8 @@ from robot_control import ParameterError, RobotError
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import escaped, fit_for_message, write_text
 from robot_control.common.output_files import check_outputs
-from robot_control.common.roles import CONTROLLER
-from robot_control.common.run_log import FloatArray, LogError, read_log
+from robot_control.common.roles import CONTROLLER, refuse_legs
+from robot_control.common.run_log import FloatArray, LogError, kind_in, read_run
 from robot_control.common.running_robot import RefusedError, await_all, master_state, other_senders, running_settings
 from robot_control.common.settings import Settings
 from robot_control.common.topic_sender import Signals, ended_by_signals
@@ -52,7 +52,9 @@ def main() -> None:
     try:
         check_outputs([options.output], [options.log, options.params, options.urdf])
         if options.log is not None:
-            _fit(read_log(options.log), _settings_of_files(options), options, f"log {options.log.name}")
+            run = read_run(options.log)
+            refuse_legs(kind_in(run.header), "identify.py")
+            _fit(run.columns, _settings_of_files(options), options, f"log {options.log.name}")
         else:
             with running_settings("identify", CONTROLLER, NO_MASTER, SIMULATED_TIME) as settings:
                 with ended_by_signals() as signals:

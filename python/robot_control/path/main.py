@@ -13,6 +13,8 @@ from nav_msgs.msg import Path
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message
+from robot_control.common.robot_kind import refuse_running_legs
+from robot_control.common.roles import WheelsOnlyError
 from robot_control.common.ros_node import running_node
 from robot_control.common.topic_sender import Signals
 from robot_control.drive.send_plan import positive
@@ -119,8 +121,9 @@ def main() -> None:
         sys.exit(f"drive_path.py: {fit_for_message(in_words(error))}")
     try:
         with running_node("drive_path") as signals:
+            refuse_running_legs("drive_path.py")
             reason = drive(points, given, signals)
-    except PathError as error:
+    except (PathError, WheelsOnlyError) as error:
         sys.exit(f"drive_path.py: {error}")
     if reason:
         sys.exit(f"drive_path.py: {reason}")

@@ -10,9 +10,19 @@ import rosgraph.names
 TOPICS = (
     "cmd_vel",
     "cmd_vel_stamped",
+    "joy_vel",
+    "key_vel",
+    "console_vel",
+    "path_vel",
+    "pause",
+    "body_pose",
+    "foot_target",
+    "joint_trajectory",
     "e_stop",
     "heartbeat",
     "clearance",
+    "joy",
+    "imu/input",
     "joint_commands",
     "joint_targets",
     "joint_states",
@@ -23,6 +33,12 @@ TOPICS = (
     "imu/data_raw",
     "imu/data",
     "cmd_vel_out",
+    "battery_state",
+    "drive_state",
+    "leg_state",
+    "path_wanted",
+    "view/markers",
+    "view/path_driven",
     "robot_kind",
     "safety_status",
     "robot_status",
@@ -31,7 +47,7 @@ TOPICS = (
     "/clock",
     "/rosout",
 )
-"""The interface table; relative names belong to the namespace of the robot."""
+"""The table of docs/interfaces.md, tf_static and /rosout; relative names belong to the namespace of the robot."""
 
 
 def namespace_of(arguments: list[str], environment: dict[str, str]) -> str:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robot_control.common.run_log import BoolArray, FloatArray, Log, RunLog, joint_names
+from robot_control.common.roles import Kind
+from robot_control.common.run_log import BoolArray, FloatArray, Log, RunLog, joint_names, kind_in
 from robot_control.common.signal_names import mask_of, number_of
 from robot_control.demo.brakes import GATE_BRAKE
 from robot_control.demo.loop_timing import while_all_ran
@@ -31,6 +32,7 @@ class Drive:
     lost: int | None = None
     """Rows that telemetry counted as lost; None if the file does not hold it: every absent cycle then counts as lost.
     """
+    kind: Kind = field(default_factory=Kind)
     part: str = ""
     """The part that was read of a file that was not completed or holds several runs; empty if all was read."""
 
@@ -107,4 +109,4 @@ def drive_of(path: Path, run: RunLog) -> Drive:
     if "command_published_ns" in log and "permit_published_ns" in log:
         log = while_all_ran(log)
     name = path.stem if path.stem != "run" else path.resolve().parent.name + "/" + path.name
-    return Drive(name, log, run.lost, "; ".join(run.notes))
+    return Drive(name, log, run.lost, kind_in(run.header), "; ".join(run.notes))

@@ -72,8 +72,9 @@ def _log(drive: Drive) -> Iterator[Figure]:
 
 
 def _safety(drive: Drive) -> Iterator[Figure]:
-    stopped = np.isin(drive.column("supervisor_state"), STOPPED)
-    yield Figure("latched_stops", "", "stops that needed a reset", float(len(intervals(stopped))))
+    state = drive.column("supervisor_state")
+    stops = intervals(np.isin(state, STOPPED), state)
+    yield Figure("latched_stops", "", "stops that needed a reset", float(len(stops)))
     braked = float(len(intervals(drive.gate_braked()))) if drive.has("gate_verdict") else NAN
     yield Figure("gate_brakes", "", "times that the gate braked while driving", braked)
     refused = drive.count("refused")
@@ -95,10 +96,15 @@ def _tracking(drive: Drive) -> Iterator[Figure]:
 def _estimate(drive: Drive) -> Iterator[Figure]:
     driving = drive.driving()
     flags = drive.bits("estimate_flags")
-    share = float(np.mean(flags[driving] & SLIP != 0)) if driving.any() else NAN
-    yield Figure("slip", "share", "of the time while driving: wheels and inertial sensors disagree", share)
-    share = float(np.mean(flags[driving] & DEGRADED != 0)) if driving.any() else NAN
-    yield Figure("degraded", "share", "of the time while driving: a correction undone, or no gyro bias yet", share)
+    for name, bit, meaning in (
+        ("slip", SLIP, "wheels and inertial sensors disagree"),
+        ("degraded", DEGRADED, "a correction undone, or no gyro bias yet"),
+    ):
+        if drive.kind.legged:
+            yield Figure(name, "share", "the estimate of a robot on legs has none", NAN)
+        else:
+            share = float(np.mean(flags[driving] & bit != 0)) if driving.any() else NAN
+            yield Figure(name, "share", f"of the time while driving: {meaning}", share)
     for sensor in filter(drive.uses, ("left_encoder", "right_encoder", "gyro", "accelerometer")):
         name = f"confidence_{sensor}"
         low = _percentile(drive.column(name)[driving], 1)

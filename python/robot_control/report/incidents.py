@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -39,7 +39,8 @@ class Incident:
 def incidents(drive: Drive) -> list[Incident]:
     """In the order of time."""
     found = [*_stops(drive), *_brakes(drive), *_slips(drive), *_warnings(drive), *_faults(drive), *_gaps(drive)]
-    return sorted(found, key=lambda one: (one.begin, one.severity))
+    worded = [replace(one, evidence=[drive.kind.worded(line) for line in one.evidence]) for one in found]
+    return sorted(worded, key=lambda one: (one.begin, one.severity))
 
 
 def _span(drive: Drive, begin: int, end: int) -> tuple[float, float]:
@@ -61,7 +62,7 @@ def _union(values: IntArray) -> int:
 def _stops(drive: Drive) -> Iterator[Incident]:
     state = drive.column("supervisor_state")
     causes = drive.bits("permit_causes")
-    for begin, end in intervals(np.isin(state, (*STOPPED, STOPPING)) & (causes != 0)):
+    for begin, end in intervals(np.isin(state, (*STOPPED, STOPPING)) & (causes != 0), state):
         bits = names.bits_in("StopCause", _union(causes[begin:end]))
         title = ", ".join(one.name for one in bits)
         evidence = [one.sentence + (f" (remedy: {one.remedy})" if one.remedy else "") for one in bits]
@@ -111,14 +112,15 @@ def _brakes(drive: Drive) -> Iterator[Incident]:
 
 def _slips(drive: Drive) -> Iterator[Incident]:
     flags, slip = drive.bits("estimate_flags"), drive.bits("estimate_slip")
-    for begin, end in joined(intervals(flags & SLIP != 0), _rows(drive, TOGETHER)):
+    column = drive.column("estimate_flags")
+    for begin, end in joined(intervals(flags & SLIP != 0, column), _rows(drive, TOGETHER)):
         bits = names.bits_in("SlipReason", _union(slip[begin:end]))
         title = ", ".join(one.name for one in bits) or "slip"
         yield Incident(3, "slip", *_span(drive, begin, end), title, [one.sentence for one in bits])
     (flag,) = names.bits_in("StateFlag", DEGRADED)
     reasons = names.bits_in("DegradedReason", names.mask_of("DegradedReason", "position", "heading"))
     evidence = [f"perhaps {one.sentence} (remedy: {one.remedy})" for one in reasons]
-    for begin, end in joined(intervals(flags & DEGRADED != 0), _rows(drive, TOGETHER)):
+    for begin, end in joined(intervals(flags & DEGRADED != 0, column), _rows(drive, TOGETHER)):
         yield Incident(2, "degraded", *_span(drive, begin, end), flag.sentence, evidence)
 
 
@@ -129,7 +131,7 @@ def _warnings(drive: Drive) -> Iterator[Incident]:
 def _faults(drive: Drive) -> Iterator[Incident]:
     yield from _bits(drive, "faults", "DriverFault", "driver fault")
     injected = drive.column("injected")
-    for begin, end in intervals(np.nan_to_num(injected) != 0):
+    for begin, end in intervals(injected != 0, injected):
         yield Incident(3, "injected fault", *_span(drive, begin, end), f"code {int(injected[begin])}")
 
 
@@ -137,7 +139,8 @@ def _bits(drive: Drive, column: str, kind: str, what: str) -> Iterator[Incident]
     values = drive.bits(column)
     for number in range(_union(values).bit_length()):
         bit = names.bit(kind, number)
-        for begin, end in joined(intervals(values >> number & 1 != 0), _rows(drive, TOGETHER)):
+        true = intervals(values >> number & 1 != 0, drive.column(column))
+        for begin, end in joined(true, _rows(drive, TOGETHER)):
             remedy = [f"remedy: {bit.remedy}"] if bit.remedy else []
             yield Incident(2, what, *_span(drive, begin, end), bit.name, [bit.sentence, *remedy])
 

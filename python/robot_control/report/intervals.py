@@ -7,10 +7,15 @@ import numpy as np
 from robot_control.common.run_log import BoolArray, FloatArray
 
 
-def intervals(true: BoolArray) -> list[tuple[int, int]]:
-    """First row and the row behind the last one of every stretch."""
-    edges = np.diff(np.concatenate([[False], true, [False]]).astype(np.int8))
-    return list(zip(np.flatnonzero(edges == 1).tolist(), np.flatnonzero(edges == -1).tolist(), strict=True))
+def intervals(true: BoolArray, column: FloatArray | None = None) -> list[tuple[int, int]]:
+    """First row and the row behind the last one of every stretch.
+
+    `column` is the one that the condition judges. A row in which it is NaN neither begins nor ends a stretch.
+    """
+    rows = np.arange(true.size) if column is None else np.flatnonzero(~np.isnan(column))
+    edges = np.diff(np.concatenate([[False], true[rows], [False]]).astype(np.int8))
+    begins, ends = rows[edges[:-1] == 1], np.append(rows, true.size)[edges == -1]
+    return list(zip(begins.tolist(), ends.tolist(), strict=True))
 
 
 def joined(found: list[tuple[int, int]], gap: int) -> list[tuple[int, int]]:

@@ -71,11 +71,12 @@ def path_plot(drives: list[Drive], found: list[Incident]) -> Any:  # noqa: ANN40
         prefix = f"{drive.name}: " if len(drives) > 1 else ""
         colour = OF_DRIVES[i]
         x, y = drive.column("estimate_x"), drive.column("estimate_y")
-        if len(drives) == 1:
+        if len(drives) == 1 and not drive.kind.legged:
             wheels = _path(
                 plot, drive.column("wheel_odom_x"), drive.column("wheel_odom_y"), Line("", GREY, 1.0, "dotted")
             )
             legend.append(("wheels alone", wheels))
+        if len(drives) == 1:
             legend.append(("true", _path(plot, *true_path(drive), Line("", INK, 1.2, "dashed"))))
         legend.append((f"{prefix}estimated", _path(plot, x, y, Line("", colour, 2.0))))
         legend.append((f"{prefix}95 % of the estimate", _ellipses(plot, drive, colour)))
@@ -160,7 +161,7 @@ def time_lines(axis: TimeAxis, drive: Drive) -> Any:  # noqa: ANN401 (Bokeh's)
                 continue
             order.append(f"{label}: {bit.name}")
             bars += [
-                (order[-1], begin, end, colour, bit.sentence)
+                (order[-1], begin, end, colour, drive.kind.worded(bit.sentence))
                 for begin, end in joined(intervals(values >> number & 1 != 0), gap)
             ]
     if not bars:

@@ -94,7 +94,7 @@ def _sections(drives: list[Drive], found: list[Incident]) -> Iterable[Section]:
         ),
     )
     yield (
-        "Wheels",
+        "Joints",
         "Commanded and measured torque and speed of each joint.",
         joint_plots(axis, drives, ("effort_command", "effort"), "N·m")
         + joint_plots(axis, drives, ("velocity_command", "velocity_measured"), "rad/s"),

@@ -93,7 +93,7 @@ def speeds(axis: TimeAxis, drives: list[Drive], which: str, unit: str) -> Any:  
             (Line("limits", RED, 1.0, "dotted"), drive.time, limit),
             (Line("limits", RED, 1.0, "dotted"), drive.time, low),
         ]
-        if which == "linear":
+        if which == "linear" and not drive.kind.legged:
             series.append((Line("monitor's limit", PURPLE, 1.2), drive.time, drive.column("speed_limit")))
     return _merged_legend(line_plot(axis, unit, series, height=240))
 

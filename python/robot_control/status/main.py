@@ -16,8 +16,8 @@ from robot_control.common.ros_node import running_node
 from robot_control.installed_files import share_file
 from robot_control.msg import DriveState, LegState, RobotStatus, SafetyStatus
 from robot_control.status.report import Reports, changed, status_of
-from robot_control.why.diagnosis import SILENCE
 from robot_control.why.facts import below
+from robot_control.why.state import SILENCE
 
 LOOK = 0.05
 """s between two looks for a change"""

@@ -26,8 +26,8 @@ from robot_control.teleop.screen import View, render
 from robot_control.teleop.services import Services, in_words
 from robot_control.teleop.speed_limits import SpeedLimits
 from robot_control.teleop.terminal import NoTerminalError, Terminal
-from robot_control.why.diagnosis import SILENCE
 from robot_control.why.listener import MASTER_PERIOD, Listener
+from robot_control.why.state import SILENCE
 
 SOURCE = "key_vel"
 LOOK = 0.02

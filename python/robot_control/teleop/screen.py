@@ -6,7 +6,9 @@ from dataclasses import dataclass
 
 from robot_control.common.command import Command
 from robot_control.teleop.key_map import KeyMap
-from robot_control.why.diagnosis import Facts, Verdict, judge
+from robot_control.why.answer import Verdict
+from robot_control.why.diagnosis import judge
+from robot_control.why.state import Facts
 
 WIDTH, HEIGHT = 80, 24
 LABEL = 10

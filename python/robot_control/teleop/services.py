@@ -11,7 +11,7 @@ import rospy
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
-from robot_control.why.diagnosis import Facts
+from robot_control.why.state import Facts
 
 PATIENCE = 0.3
 """s for the answer of e_stop_trigger; then `true` goes out on the topic e_stop as well"""

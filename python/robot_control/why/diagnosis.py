@@ -1,154 +1,15 @@
 """Derives the one reason why a robot does not move from its known state; no ROS in here."""
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
-from enum import Enum
+from collections.abc import Iterator
 
-from robot_control.common.roles import HARDWARE_DRIVER, Kind
 from robot_control.safety.states import DRIVABLE
 from robot_control.safety.zero_request import silent_long_enough
-
-SILENCE = 3.0
-"""s; every node reports once per second: after three it is absent, or hangs."""
+from robot_control.why.answer import Answer, Verdict
+from robot_control.why.legs import execution
+from robot_control.why.state import Cause, Facts
 
 MOVING = 0.01
 """m/s and rad/s; slower is standing."""
-
-
-@dataclass(frozen=True)
-class Cause:
-    """A cause that stopped the robot."""
-
-    name: str
-    sentence: str
-    remedy: str = ""  # action before the reset
-    actor: str = ""  # operator, integrator, technician
-    detail: str = ""  # measured value and limit
-    first: bool = False  # true if it came first
-    active: bool = False  # true if it still holds
-
-
-@dataclass(frozen=True)
-class Safety:
-    """The last message of safety_monitor."""
-
-    state: str  # INIT, READY, DRIVE, STOPPING, STOPPED, FAULT
-    permit: str  # brake, ramp, drive
-    held: float = 0.0  # s in this state
-    age: float = 0.0  # s since it was received
-    causes: tuple[Cause, ...] = ()
-    warnings: tuple[str, ...] = ()
-    speed_limit: float = float("inf")  # m/s
-    missing: tuple[str, ...] = ()  # missing nodes, or their missing data
-    refusal: tuple[str, ...] = ()  # reasons why the last reset was refused
-    awaiting_zero: bool = False  # INIT ends with a zero request, or with silence on cmd_vel
-
-
-@dataclass(frozen=True)
-class Report:
-    """A node's entry on /diagnostics."""
-
-    message: str = ""
-    values: Mapping[str, str] = field(default_factory=dict)
-    age: float = 0.0  # s since it was received
-
-    def reasons(self, whose: str) -> dict[str, str]:
-        """Name → sentence of the values "whose: name"."""
-        start = f"{whose}: "
-        return {key.removeprefix(start): text for key, text in self.values.items() if key.startswith(start)}
-
-
-@dataclass(frozen=True)
-class Facts:
-    """All facts on which the answer depends."""
-
-    master: str  # URI
-    master_answers: bool = True
-    namespace: str = "/"
-    kind: Kind = field(default_factory=Kind)
-    safety: Safety | None = None
-    reports: Mapping[str, Report] = field(default_factory=dict)  # by node, below the namespace
-    registered: frozenset[str] = frozenset()  # nodes that the master knows, below the namespace
-    elsewhere: tuple[str, ...] = ()  # namespaces of other robots
-    senders: tuple[str, ...] = ()  # on cmd_vel and cmd_vel_stamped
-    clearance_senders: tuple[str, ...] = ()  # on clearance
-    limited: tuple[float, float] | None = None  # m/s, rad/s: the command after limits
-    measured: tuple[float, float] | None = None  # m/s, rad/s: by odometry
-    command_timeout: float = 0.0  # s, cmd_vel_timeout of the running controller; 0: off, or not known
-
-    @property
-    def driver(self) -> str:
-        """The node of the driver: that of real machines if it is there, else the one that the robot's kind names."""
-        here = HARDWARE_DRIVER in self.registered or self.there(HARDWARE_DRIVER)
-        return HARDWARE_DRIVER if here else self.kind.driver
-
-    @property
-    def controller(self) -> str:
-        """The node of the controller."""
-        return self.kind.controller
-
-    @property
-    def loop(self) -> tuple[str, ...]:
-        """The nodes of the loop."""
-        return (self.driver, *self.kind.loop[1:])
-
-    def there(self, node: str) -> bool:
-        """True if the last report of the node is recent."""
-        report = self.reports.get(node)
-        return report is not None and report.age < SILENCE
-
-    def received(self) -> Safety | None:
-        """The last status of the monitor, unless it is too old to count."""
-        fresh = self.safety is not None and self.safety.age < SILENCE
-        return self.safety if fresh else None
-
-    def value(self, node: str, key: str) -> str:
-        """A value of a node that reports; else empty."""
-        return self.reports[node].values.get(key, "") if self.there(node) else ""
-
-    def reasons(self, node: str, whose: str) -> dict[str, str]:
-        """The reasons of a node that reports, by name; else empty."""
-        return self.reports[node].reasons(whose) if self.there(node) else {}
-
-    def remedies(self, node: str, whose: str) -> dict[str, str]:
-        """Name of a reason → its remedy, for those that have one."""
-        return self.reasons(node, f"{whose} remedy")
-
-    def not_real_time(self, node: str) -> bool:
-        """True if the real-time thread of a node that reports has done what it must not, in the last 10 s."""
-        return self.there(node) and "not real-time" in self.reports[node].message
-
-    def commanders(self) -> tuple[str, ...]:
-        """Nodes that send commands, as the controller reports; without it, those that are registered."""
-        reported = self.value(self.controller, "senders")
-        return tuple(reported.split(", ")) if reported else self.senders
-
-    def sources(self) -> dict[str, str]:
-        """The state of each command source, by priority; empty if the robot has no list of them."""
-        text = self.value(self.controller, "sources")
-        return dict(part.split(": ", 1) for part in text.split(", ")) if text else {}
-
-    def path(self, name: str) -> str:
-        """The absolute name of a topic or service."""
-        return f"{self.namespace.rstrip('/')}/{name}"
-
-
-class Verdict(Enum):
-    """The answer in one word."""
-
-    STOPPED = "stopped"  # something prevents motion
-    IDLE = "idle"  # it may move, but no velocity command is received
-    MOVING = "moving"
-
-
-@dataclass(frozen=True)
-class Answer:
-    """The answer for a user."""
-
-    verdict: Verdict
-    headline: str
-    actions: tuple[tuple[str, str], ...] = ()  # the role that has to act ("" if any may), and the action
-    commands: tuple[str, ...] = ()  # lines for a shell
 
 
 def judge(facts: Facts) -> Answer:
@@ -169,7 +30,7 @@ def missing_nodes(facts: Facts) -> tuple[str, ...]:
 
 
 def senders_in_words(facts: Facts) -> str:
-    """The publishers of cmd_vel."""
+    """The publishers of requests."""
     senders = facts.commanders()
     if not senders:
         return "no node"
@@ -249,7 +110,7 @@ def _stopped(facts: Facts) -> Answer | None:
         return Answer(
             Verdict.STOPPED,
             f"Not ready: it waits for a zero request; stop the sender{silence} or send zero.",
-            (("operator", f"publishing on cmd_vel: {senders_in_words(facts)}"),) if senders else (),
+            (("operator", f"publishing on {facts.kind.requests}: {senders_in_words(facts)}"),) if senders else (),
         )
     if safety.state == "INIT" or not safety.causes:
         awaited = ", ".join(safety.missing) or "the first cycles"
@@ -279,8 +140,8 @@ def _actions(facts: Facts, causes: list[Cause], absent: tuple[str, ...]) -> Iter
             named.add(cause.remedy)
             yield cause.actor, cause.remedy
     requested = _requested(facts)
-    if requested and facts.senders:
-        yield "operator", f"stop {', '.join(facts.senders)}: while a motion is requested, a reset is refused"
+    if requested and facts.commanders():
+        yield "operator", f"stop {', '.join(facts.commanders())}: while a motion is requested, a reset is refused"
     yield "operator", "then call e_stop_reset" if named or absent or requested else "call e_stop_reset"
 
 
@@ -306,8 +167,7 @@ def _gate(facts: Facts) -> Answer | None:
 
 
 def _no_path(facts: Facts) -> Answer | None:
-    safety = facts.received()
-    if safety is None or safety.speed_limit >= MOVING or not _requested(facts):
+    if facts.speed_limit >= MOVING or not _requested(facts):
         return None
     remedy = "clear the path, and publish it on clearance in metres"
     if facts.clearance_senders:
@@ -352,6 +212,12 @@ def _controller(facts: Facts) -> Answer | None:
     for name, action in whose.items():
         if name in reasons and (name != "revoked" or revoked):
             return Answer(Verdict.STOPPED, f"Commands are refused: {reasons[name]}.", (("operator", action),))
+    return execution(facts) if facts.kind.legged else _without_motion(facts)
+
+
+def _without_motion(facts: Facts) -> Answer | None:
+    """No velocity command is received, or it is zero."""
+    reasons, remedies = facts.reasons(facts.controller, "command"), facts.remedies(facts.controller, "command")
     silent = "timed_out" in reasons or "no_command" in reasons
     for name in ("refused", *(["stale"] if silent else []), "timed_out", "no_command"):
         if name not in reasons:
@@ -374,7 +240,7 @@ def _controller(facts: Facts) -> Answer | None:
             "It may move, but no command source sends."
             if facts.sources() and "commands" not in facts.sources().values()
             else "It may move, but the command is to stand: cmd_vel is zero.",
-            (("operator", f"publishing on cmd_vel: {senders_in_words(facts)}"),),
+            (("operator", f"publishing on {facts.kind.requests}: {senders_in_words(facts)}"),),
         )
     return None
 
@@ -384,6 +250,9 @@ def _namespace(facts: Facts) -> str:
 
 
 def _requested(facts: Facts) -> bool:
+    """True if motion is requested; of a robot on legs the reports hold only who requests it."""
+    if facts.kind.legged:
+        return bool(facts.value(facts.controller, "senders"))
     return any(facts.value(facts.controller, key) not in {"", "0"} for key in ("requested_m_s", "requested_rad_s"))
 
 
@@ -397,8 +266,7 @@ def speeds(pair: tuple[float, float]) -> str:
 
 
 def _moving(facts: Facts) -> Answer:
-    safety = facts.received()
-    slow = f", no faster than {safety.speed_limit:.2g} m/s" if safety and safety.speed_limit < float("inf") else ""
+    slow = f", no faster than {facts.speed_limit:.2g} m/s" if facts.speed_limit < float("inf") else ""
     suspicious = facts.value(facts.driver, "suspicious")
     if suspicious and _motion_commanded(facts):
         return Answer(

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 
 from robot_control.common.roles import DRIVER, ESTIMATOR, HARDWARE_DRIVER, MONITOR
 from robot_control.msg import SafetyStatus
-from robot_control.why.diagnosis import Cause, Safety
+from robot_control.why.state import Cause, Safety
 
 
 def safety_of(status: SafetyStatus, held: float, age: float) -> Safety:

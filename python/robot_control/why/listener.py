@@ -11,10 +11,10 @@ from nav_msgs.msg import Odometry
 
 from robot_control.common.live_parameters import LiveParameters
 from robot_control.common.robot_kind import running_kind
-from robot_control.common.ros_master import COMMAND_TOPICS, Master, senders_of
+from robot_control.common.ros_master import Master, senders_of
 from robot_control.msg import SafetyStatus
-from robot_control.why.diagnosis import SILENCE, Facts, Report, Safety
 from robot_control.why.facts import below, nodes_of, other_robots, safety_of
+from robot_control.why.state import SILENCE, Facts, Report, Safety
 
 MASTER_PERIOD = 1.0
 """s between two queries of the master"""
@@ -79,17 +79,18 @@ class Listener:
         """The present facts."""
         now = time.monotonic()
         state = self._state or ([], [], [])
+        kind = running_kind()
         reports = {name: Report(last.message, last.values, now - at) for name, (at, last) in self._reports.items()}
         return Facts(
             master=self.master.uri,
             master_answers=self._state is not None,
             namespace=self.namespace,
-            kind=running_kind(),
+            kind=kind,
             safety=self.safety(now),
             reports={below(self.namespace, name): report for name, report in reports.items()},
             registered=frozenset(below(self.namespace, name) for name in nodes_of(state)),
             elsewhere=other_robots(self.namespace, (name for name, report in reports.items() if report.age < SILENCE)),
-            senders=senders_of(state[0], map(rospy.resolve_name, COMMAND_TOPICS), rospy.get_name()),
+            senders=senders_of(state[0], map(rospy.resolve_name, kind.request_topics), rospy.get_name()),
             clearance_senders=senders_of(state[0], [rospy.resolve_name("clearance")], rospy.get_name()),
             limited=_fresh(self._limited, now),
             measured=_fresh(self._measured, now),

@@ -12,9 +12,11 @@ import rospy
 
 from robot_control.common.ros_master import Master
 from robot_control.common.ros_node import begin_node
-from robot_control.why.diagnosis import Facts, Verdict, judge
+from robot_control.why.answer import Verdict
+from robot_control.why.diagnosis import judge
 from robot_control.why.listener import MASTER_PERIOD, Listener
 from robot_control.why.screen import Look, render
+from robot_control.why.state import Facts
 
 FRAME = 0.25
 """s between two drawings"""

@@ -5,7 +5,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from robot_control.common.files import escaped
-from robot_control.why.diagnosis import Answer, Facts, Safety, Verdict, judge, missing_nodes, senders_in_words, speeds
+from robot_control.why.answer import Answer, Verdict
+from robot_control.why.diagnosis import judge, missing_nodes, senders_in_words, speeds
+from robot_control.why.state import Facts, Safety
 
 LABEL = 11
 """columns for the word before each line"""
@@ -63,7 +65,7 @@ def _rows(facts: Facts, answer: Answer, look: Look) -> Rows:
     yield from _to_do(answer)
     safety = facts.received()
     if safety is not None:
-        yield from _safety(safety, look)
+        yield from _safety(safety, facts.speed_limit, look)
     yield from _nodes(facts)
     if any(facts.there(node) for node in facts.loop):
         yield from _command(facts, look)
@@ -80,7 +82,7 @@ def _to_do(answer: Answer) -> Rows:
         yield "", "", ""
 
 
-def _safety(safety: Safety, look: Look) -> Rows:
+def _safety(safety: Safety, speed_limit: float, look: Look) -> Rows:
     since = f" for {_duration(safety.held)}" if look.times else ""
     yield "safety", f"{safety.state}{since}, permit: {safety.permit}", ""
     for number, cause in enumerate(sorted(safety.causes, key=lambda cause: not cause.first)):
@@ -90,9 +92,9 @@ def _safety(safety: Safety, look: Look) -> Rows:
         yield "causes" if number == 0 else "", f"{cause.name}: {cause.sentence}{measured}{mark}", ""
     for number, warning in enumerate(safety.warnings):
         yield "warnings" if number == 0 else "", warning, "33"
-    if safety.speed_limit < float("inf"):
+    if speed_limit < float("inf"):
         whose = "a warning or clearance" if safety.warnings else "clearance"
-        yield "limit", f"no rim faster than {safety.speed_limit:.3g} m/s, by {whose}", ""
+        yield "limit", f"no rim faster than {speed_limit:.3g} m/s, by {whose}", ""
     for number, refusal in enumerate(safety.refusal):
         yield "last reset" if number == 0 else "", f"refused: {refusal}", ""
 
@@ -111,23 +113,31 @@ def _nodes(facts: Facts) -> Rows:
 
 
 def _command(facts: Facts, look: Look) -> Rows:
-    yield "cmd_vel", f"published by {senders_in_words(facts)}", ""
+    yield "requests", f"published by {senders_in_words(facts)}", ""
     sources = facts.sources()
     if sources:
         yield "sources", ", ".join(f"{name}: {state}" for name, state in sources.items()), ""
-    requested = [facts.value(facts.controller, key) for key in ("requested_m_s", "requested_rad_s")]
-    parts = []
-    if look.times and all(requested):
-        parts.append(f"requested {speeds((float(requested[0]), float(requested[1])))}")
-    if look.times and facts.limited is not None:
-        parts.append(f"after limits {speeds(facts.limited)}")
-    if look.times and facts.measured is not None:
-        parts.append(f"measured {speeds(facts.measured)}")
-    if parts:
-        yield "", "; ".join(parts), ""
+    posture = facts.value(facts.controller, "posture")
+    if posture:
+        yield "posture", posture, ""
+    if look.times and not facts.kind.legged:
+        yield from _speeds(facts)
     reasons = "; ".join(facts.reasons(facts.controller, "command").values())
     if reasons:
         yield "controller", reasons, ""
+
+
+def _speeds(facts: Facts) -> Rows:
+    requested = [facts.value(facts.controller, key) for key in ("requested_m_s", "requested_rad_s")]
+    parts = []
+    if all(requested):
+        parts.append(f"requested {speeds((float(requested[0]), float(requested[1])))}")
+    if facts.limited is not None:
+        parts.append(f"after limits {speeds(facts.limited)}")
+    if facts.measured is not None:
+        parts.append(f"measured {speeds(facts.measured)}")
+    if parts:
+        yield "", "; ".join(parts), ""
 
 
 def _gate(facts: Facts) -> Rows:

@@ -1,0 +1,40 @@
+"""Explains what a robot on legs that may move does with its requests; no ROS in here."""
+
+from robot_control.why.answer import Answer, Verdict
+from robot_control.why.state import Facts
+
+REFUSALS = {"refused": "", "not_standing": "standing", "not_lying": "lying", "out_of_reach": ""}
+"""Reason why a request is not executed → the posture that it needs."""
+POSTURES = {
+    "gathering": "its legs move to the lying posture",
+    "rising": "it stands up",
+    "lowering": "it lies down",
+}
+"""The postures in which it moves by itself, in words."""
+
+
+def execution(facts: Facts) -> Answer:
+    """The answer by the posture and by the reasons why a request is not executed."""
+    posture = facts.value(facts.controller, "posture")
+    if posture in POSTURES:
+        return Answer(Verdict.MOVING, f"It moves: {POSTURES[posture]}.")
+    reasons, remedies = facts.reasons(facts.controller, "command"), facts.remedies(facts.controller, "command")
+    for name, needed in REFUSALS.items():
+        if name in reasons:
+            return Answer(
+                Verdict.IDLE,
+                f"It may move, but {reasons[name]}.",
+                (("operator", remedies.get(name, "")),),
+                _set_posture(facts, needed),
+            )
+    if posture == "lying":
+        action = ("operator", "call set_posture with 'standing'")
+        return Answer(Verdict.IDLE, "It may move, but it lies.", (action,), _set_posture(facts, "standing"))
+    does = {"standing": "It stands", "joints": "It lies, and its joints may be moved"}.get(posture, "It may move")
+    senders = facts.value(facts.controller, "senders")
+    requested = f"it follows {senders}" if senders else "no motion is requested"
+    return Answer(Verdict.IDLE, f"{does}; nothing stands against motion, and {requested}.")
+
+
+def _set_posture(facts: Facts, posture: str) -> tuple[str, ...]:
+    return (f"rosservice call {facts.path('set_posture')} {posture}",) if posture else ()
