@@ -20,9 +20,21 @@ from robot_control.record.main import TOPICS
 from system_support import ESTIMATOR, MONITOR, Robot, init_test_node, refusal, repository, wait_for
 from tf2_msgs.msg import TFMessage
 
-SILENT = {"cmd_vel", "cmd_vel_stamped", "e_stop", "heartbeat", "clearance", "tf_static", "/clock", "/rosout"}
-"""Topics on which there may be no messages. No node commands, no transform is static, and /clock belongs to lockstep.
-The nodes may have logged all messages before the recorder came."""
+COMMANDS = {"cmd_vel", "cmd_vel_stamped", "joy_vel", "key_vel", "console_vel", "path_vel", "pause"}
+OF_OTHER_NODES = {
+    "e_stop",
+    "heartbeat",
+    "clearance",
+    "joy",
+    "imu/input",
+    "path_wanted",
+    "view/markers",
+    "view/path_driven",
+}
+OF_LEGS = {"body_pose", "foot_target", "joint_trajectory", "leg_state"}
+SILENT = COMMANDS | OF_OTHER_NODES | OF_LEGS | {"battery_state", "tf_static", "/clock", "/rosout"}
+"""Topics on which there may be no messages. The robot has no battery, no transform is static, and /clock belongs to
+lockstep. The nodes may have logged all messages before the recorder came."""
 
 
 def received_by_recorder(namespace: str) -> set[str]:

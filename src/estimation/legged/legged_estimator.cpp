@@ -174,23 +174,19 @@ void LeggedEstimator::weigh(const SensorFrame& sensors, const Feet& feet) noexce
     state_.bears[leg] = state_.loads[leg] > bound ? 1 : 0;
   }
   if (before == state_.bears) return;
-  stand_on_ground(before, attitude, feet);
-  for (std::size_t leg = 0; leg < kLegs; ++leg)
-    Map(state_.anchors[leg].data()) = ConstMap(state_.position.data()) + attitude * feet.place[leg];
-}
-
-void LeggedEstimator::stand_on_ground(const std::array<std::uint64_t, kLegs>& before, const Quaterniond& attitude,
-                                      const Feet& feet) noexcept {
-  if (before != std::array<std::uint64_t, kLegs>{}) return;
   double height = 0, count = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    Map(state_.anchors[leg].data()) = ConstMap(state_.position.data()) + attitude * feet.place[leg];
     if (state_.bears[leg] == 0) continue;
-    height += (attitude * feet.place[leg]).z();
+    height += state_.anchors[leg][2];
     count += 1;
   }
-  if (state_.grounded == 0) state_.ground = state_.position[2] + height / count;
+  if (before != std::array<std::uint64_t, kLegs>{}) return;
+  if (state_.grounded == 0) state_.ground = height / count;
   state_.grounded = 1;
-  state_.position[2] = state_.ground - height / count;
+  const double rise = state_.ground - height / count;
+  state_.position[2] += rise;
+  for (Vector3& anchor : state_.anchors) anchor[2] += rise;
 }
 
 void LeggedEstimator::move(const Feet& feet, double dt) noexcept {

@@ -80,8 +80,6 @@ class LeggedEstimator {
   void weigh(const SensorFrame& sensors, const Feet& feet) noexcept;
   void measure_loads(const SensorFrame& sensors, const Eigen::Vector3d& up) noexcept;
   void compute_loads(const SensorFrame& sensors, const Feet& feet, const Eigen::Vector3d& up) noexcept;
-  void stand_on_ground(const std::array<std::uint64_t, kLegs>& before, const Eigen::Quaterniond& attitude,
-                       const Feet& feet) noexcept;
   void move(const Feet& feet, double dt) noexcept;
   void write(const SensorFrame& sensors, const Feet& feet, bool good, StateFrame& out) const noexcept;
 

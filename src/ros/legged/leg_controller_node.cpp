@@ -255,7 +255,8 @@ class LegControllerNode final : public CommandedNode {
     for (const std::string& name : missing()) return "the loop does not run: waiting for " + name;
     SensorFrame sensors;
     if (process().sensors().newest(sensors) == Lookup::kFrame && sensors.driver_state == DriverState::kPaused)
-      return "the simulation is paused: let it go on first";
+      return "the simulation is paused: call " + std::string(program_of(Role::kDriver, programs())) +
+             "/set_pause with false first";
     CommandFrame command;
     for (std::int64_t waited_ns = 0; waited_ns < kBeginWait; waited_ns += kRepeat) {
       if (process().output().newest(command) == Lookup::kFrame && process().is_current(command.head) &&
