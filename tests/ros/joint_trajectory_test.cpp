@@ -110,7 +110,7 @@ std::vector<BrokenMessage> broken_messages() {
          m.points[1].positions[0] = 50;
          m.points[1].time_from_start.fromSec(100);
        },
-       "rad; its range is -0.86 to 0.86 rad"},
+       "would be at 50 rad; its range is -0.86 to 0.86 rad"},
       // Both ends are inside the range, the cubic between them is not.
       {"OutOfRangeOnTheWay",
        [](auto& m) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "files/ascii.h"
+#include "machine/description/wording.h"
 #include "parameters/block.h"
 
 namespace robot_control {
@@ -120,12 +121,12 @@ std::string JointTrajectory::read(const msg::JointTrajectory& message, const Leg
       const auto [low, high] = path.extent();
       const bool above = low >= range.lower - kWritten;
       if (!above || !(high <= range.upper + kWritten)) {
-        return joint + " would be at " + shortest(above ? high : low) + " rad; its range is " + shortest(range.lower) +
-               " to " + shortest(range.upper) + " rad";
+        return joint + " would be at " + robot_control::number(above ? high : low) + " rad; its range is " +
+               shortest(range.lower) + " to " + shortest(range.upper) + " rad";
       }
       const double speed = path.largest_speed();
       if (!(speed <= bounds[i].motion.speed * (1 + kWritten))) {
-        return joint + " would move at " + shortest(speed) + " rad/s on the way; at most " +
+        return joint + " would move at " + robot_control::number(speed) + " rad/s on the way; at most " +
                shortest(bounds[i].motion.speed) + " rad/s are allowed: give it more time";
       }
     }
