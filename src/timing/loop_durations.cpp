@@ -38,9 +38,10 @@ std::optional<std::int64_t> LoopDurations::measure(Role role, Quantity quantity,
   const Last& last = last_[index(role)];
   const DriverTimes& sampled = marks_[driver.command_cycle.value_or(0) % kMarks];
   const bool next = follows(driver, driver_.run, driver_.cycle);
+  const auto paused_since = [&](const DriverTimes& before) { return driver.held_ns != before.held_ns; };
   switch (quantity) {
     case Quantity::kCyclePeriod:
-      if (!follows(driver, last.run, last.cycle) || !next || driver.held_ns != driver_.held_ns) return std::nullopt;
+      if (!follows(driver, last.run, last.cycle) || !next || paused_since(driver_)) return std::nullopt;
       return driver.due_ns + own.woke_ns - last.woke_ns;
     case Quantity::kWakeUp:
       if (role == Role::kDriver) return own.woke_ns + (next ? driver.slipped_ns - driver_.slipped_ns : 0);
@@ -51,7 +52,8 @@ std::optional<std::int64_t> LoopDurations::measure(Role role, Quantity quantity,
     case Quantity::kSensorToCommand:
       return own.published_ns - driver.timing.woke_ns;
     case Quantity::kSensorToTorque:
-      if (!driver.command_cycle || sampled.run != driver.run || sampled.cycle != *driver.command_cycle) {
+      if (!driver.command_cycle || sampled.run != driver.run || sampled.cycle != *driver.command_cycle ||
+          paused_since(sampled)) {
         return std::nullopt;
       }
       return driver.due_ns + own.published_ns - sampled.due_ns - sampled.timing.woke_ns;

@@ -14,7 +14,7 @@
 /// A frame that was published after the wake-up has not caused it: such a cycle has no wake-up latency.
 ///
 /// A tick that slips (Periodic) begins a new grid: its lateness counts as wake-up latency. A period over a pause, over
-/// a skipped cycle or between runs is no period.
+/// a skipped cycle or between runs is no period. A command from before a pause has no sensor_to_torque.
 
 #include <array>
 #include <cstdint>

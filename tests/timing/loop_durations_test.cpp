@@ -81,13 +81,16 @@ TEST_F(LoopDurationsTest, ATickThatSlipsWasLateByWhatSlipped) {
   EXPECT_EQ(of(Role::kDriver, Quantity::kCyclePeriod).max, 4 * kPeriod);
 }
 
-TEST_F(LoopDurationsTest, APauseIsNoPeriod) {
+TEST_F(LoopDurationsTest, APauseIsNeitherAPeriodNorOnTheWayToTheTorque) {
   add(0, 5);
-  CycleTimes resumed = punctual(6);
-  resumed.driver.held_ns = 5 * kPeriod;
-  resumed.driver.due_ns += 5 * kPeriod;
-  all.add(resumed);
-  EXPECT_EQ(of(Role::kDriver, Quantity::kCyclePeriod).max, kPeriod);
+  for (std::uint64_t cycle = 6; cycle <= 8; ++cycle) {
+    CycleTimes resumed = punctual(cycle);
+    resumed.driver.held_ns = 5 * kPeriod;
+    resumed.driver.due_ns += 5 * kPeriod;
+    all.add(resumed);
+  }
+  expect(Role::kDriver, Quantity::kCyclePeriod, kPeriod, 7);
+  expect(Role::kDriver, Quantity::kSensorToTorque, kPeriod + 10, 7);
 }
 
 TEST_F(LoopDurationsTest, ASkippedCycleIsCountedAndNoPeriod) {
