@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import xml.etree.ElementTree as ET
+from pathlib import Path
 
 import matplotlib.image
 import numpy as np
@@ -13,9 +14,10 @@ import pytest
 from robot_control import ClosedLoop
 from robot_control.common.run_log import LogError
 from robot_control.render.main import main
-from robot_control.render.run import moments_of
+from robot_control.render.run import moments_of, read_moments
 from robot_control.render.scene import Scene, orientation, rotated
 
+ROOT = Path(__file__).parents[2]
 MUST_RUN = bool(os.environ.get("CI") and os.environ.get("ROBOT_CONTROL_NIGHTLY"))
 needs_egl = pytest.mark.skipif(
     ctypes.util.find_library("EGL") is None and not MUST_RUN, reason="libegl1 is not installed: scripts/setup --render"
@@ -69,6 +71,18 @@ def test_height_is_that_of_the_estimate_where_the_robot_tilts_and_none_on_a_plan
     assert [moment.z for moment in moments_of(log_of(rows), 0.04)] == [0.0] * 3
     rows[1] = (*rows[1][:6], 0.05, *rows[1][7:])
     assert moments_of(log_of(rows), 0.04)[2].z == pytest.approx(0.2)
+
+
+def test_a_robot_on_legs_that_stands_up_without_tilting_is_drawn_at_its_height(tmp_path):
+    loop = ClosedLoop(urdf=str(ROOT / "urdf" / "quadbot.urdf"))
+    loop.log_into(tmp_path)
+    loop.run(0.5)
+    loop.set_posture("standing")
+    loop.run(2.5)
+    loop.end_log()
+    moments = read_moments(tmp_path / "run.bag", 0.1)
+    assert moments[0].z == 0
+    assert moments[-1].z == pytest.approx(0.27, abs=0.02)
 
 
 def test_what_holds_no_pose_is_refused():

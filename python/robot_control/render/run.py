@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from robot_control.common.run_log import Log, LogError, read_log
+from robot_control.common.run_log import Log, LogError, kind_in, read_run
 
 FLAT = 0.01
 """rad; a robot that never tilts more stands on a plane, and its estimated height and tilt are drift"""
@@ -37,11 +37,12 @@ def read_moments(path: Path, period: float) -> list[Moment]:
         LogError: it is no log, or holds no pose.
         OSError: it cannot be read.
     """
-    return moments_of(read_log(path), period)
+    run = read_run(path)
+    return moments_of(run.columns, period, legged=kind_in(run.header).legged)
 
 
-def moments_of(log: Log, period: float) -> list[Moment]:
-    """As `read_moments`, of a log in memory.
+def moments_of(log: Log, period: float, *, legged: bool = False) -> list[Moment]:
+    """As `read_moments`, of a log in memory; `legged`: of a robot on legs, whose height changes on a plane, too.
 
     Raises:
         LogError: it holds no pose.
@@ -59,7 +60,8 @@ def moments_of(log: Log, period: float) -> list[Moment]:
         if time >= due:
             rows.append({name: float(values[row]) for name, values in columns.items()})
             due = (time if due == -math.inf else due) + period
-    return [_moment(row, rows[0], pose, flat=_flat(rows)) for row in rows]
+    flat = not legged and _flat(rows)
+    return [_moment(row, rows[0], pose, flat=flat) for row in rows]
 
 
 def _flat(rows: list[dict[str, float]]) -> bool:
