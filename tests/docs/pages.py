@@ -6,7 +6,10 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 README = ROOT / "README.md"
-PAGES = [page for page in (README, ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))) if page.exists()]
+CHINESE = [ROOT / "README.zh.md", *sorted((ROOT / "docs").rglob("*.zh.md"))]
+"""Translations: their code blocks are those of the page of the same name without `.zh`."""
+ENGLISH = [README, ROOT / "CONTRIBUTING.md", *sorted({*(ROOT / "docs").rglob("*.md")} - {*CHINESE})]
+PAGES = [page for page in ENGLISH if page.exists()]
 
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
@@ -26,9 +29,15 @@ class Block:
 
     def commands(self):
         """Logical lines without comments: a backslash at the end of a line continues it."""
-        lines = re.sub(r"\\\n\s*", "", self.text).splitlines()
-        bare = (re.sub(r"(^|\s)#\s.*$", "", line).strip() for line in lines)
+        bare = (re.sub(r"(^|\s)#\s.*$", "", line).strip() for line in self._lines())
         return [line for line in bare if line]
+
+    def refused(self):
+        """The commands with the comment `# refused`: they end with a message and another exit code than 0."""
+        return {line.split(" # ")[0].strip() for line in self._lines() if line.endswith(" # refused")}
+
+    def _lines(self):
+        return re.sub(r"\\\n\s*", "", self.text).splitlines()
 
 
 def blocks(page):

@@ -122,9 +122,11 @@ class Terminal:
         nodes = {node for kind in (publishers, subscribers, services) for _, who in kind for node in who}
         return nodes | {name for name, _ in services}
 
-    def run(self, command):
+    def run(self, command, *, refused=False):
         kind = never_ends(command)
-        if kind == "launch":
+        if refused:
+            self._expect_refusal(command)
+        elif kind == "launch":
             self._start_launch(command)
         elif kind in ("node", "companion"):
             self._start(command, kind)
@@ -168,19 +170,31 @@ class Terminal:
             self.end_programs()
         self.judge(command, ["bash", "-ec", command])
 
+    def _expect_refusal(self, command):
+        program, output = self._ended(command, ["bash", "-ec", command])
+        if program.process.returncode <= 0 or "refused" not in output or "Traceback" in output:
+            raise FailedError(f"{command}\nnot refused, exit code {program.process.returncode}\n{output}")
+
     def run_python(self, text):
         self.judge(text, [sys.executable, "-c", text])
 
     def judge(self, what, arguments):
         """The command must end by itself within LIMIT, with exit code 0 and without an error message."""
+        program, output = self._ended(what, arguments)
+        code = program.process.returncode
+        if code != 0 or re.search(r"Traceback|^usage: |ERROR: ", without_cut_thread(output), re.MULTILINE):
+            raise FailedError(f"{what}\nexit code {code}\n{output}")
+
+    def _ended(self, what, arguments):
+        """The program after its end, and its output."""
         program = Program(what, self.folder, self.environment, arguments)
         with suppress(subprocess.TimeoutExpired):
             program.process.wait(LIMIT)
-        late = f"\nnot ended after {LIMIT:.0f} s" if program.running else ""
+        late = program.running
         program.end()
-        code, output = program.process.returncode, program.text()
-        if late or code != 0 or re.search(r"Traceback|^usage: |ERROR: ", without_cut_thread(output), re.MULTILINE):
-            raise FailedError(f"{what}\nexit code {code}\n{output}{late}")
+        if late:
+            raise FailedError(f"{what}\nnot ended after {LIMIT:.0f} s\n{program.text()}")
+        return program, program.text()
 
     def end_programs(self):
         """The launch first: a robot whose drives end before it keeps that stop for its next start."""

@@ -23,7 +23,7 @@ LANGUAGES = {"sh", "python", "console", "cpp", "text"}
 ALL = [block for page in PAGES for block in blocks(page)]
 RUN = [block for block in ALL if block.language in ("sh", "python")]
 CONSOLE = [block for block in ALL if block.language == "console"]
-FOREIGN = {"git", "printf", "docker", "cd", "cmake", "nft"}
+FOREIGN = {"git", "printf", "docker", "cd", "cmake", "nft", "roscore"}
 """Programs that are not of this project, in `console` blocks."""
 
 
@@ -87,7 +87,7 @@ def test_a_page_can_be_followed_from_top_to_bottom(page, terminal):
                 terminal.run_python(block.text)
             else:
                 for command in block.commands():
-                    terminal.run(command)
+                    terminal.run(command, refused=command in block.refused())
     terminal.end_programs()
 
 

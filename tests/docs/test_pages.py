@@ -5,7 +5,7 @@ import subprocess
 
 import parameters_page
 import pytest
-from pages import PAGES, README, ROOT, anchors, blocks, inline_code, links, prose
+from pages import CHINESE, PAGES, README, ROOT, anchors, blocks, inline_code, links, prose
 
 by_name = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 
@@ -132,10 +132,17 @@ def test_parameter_file_and_page_are_those_of_the_tables():
     assert written == parameters_page.written(), "run tests/docs/parameters_page.py"
 
 
-def test_the_chinese_readme_has_the_same_code_blocks_and_its_links_lead_somewhere():
-    chinese = ROOT / "README.zh.md"
-    assert [block.text for block in blocks(chinese)] == [block.text for block in blocks(README)]
-    assert [target for target in links(chinese) if not (ROOT / target.partition("#")[0]).exists()] == []
+@pytest.mark.parametrize("chinese", CHINESE, ids=lambda page: page.name)
+def test_a_chinese_page_has_the_same_code_blocks_and_its_links_lead_somewhere(chinese):
+    english = chinese.with_name(chinese.name.replace(".zh", ""))
+    assert [block.text for block in blocks(chinese)] == [block.text for block in blocks(english)]
+    assert [target for target in links(chinese) if not (chinese.parent / target.partition("#")[0]).exists()] == []
+    assert chinese.name in links(english)
+
+
+def test_the_chinese_tour_leads_to_the_same_files():
+    tour, chinese = (ROOT / "docs" / name for name in ("tour.md", "tour.zh.md"))
+    assert links(chinese)[1:] == links(tour)[1:]
 
 
 def test_the_chinese_readme_names_every_command_of_the_other():
