@@ -1,4 +1,7 @@
-"""Measures the cost of the nodes of one robot at 1 kHz: processor time, memory, switches. The robot stands."""
+"""Measures the cost of the nodes of one robot at 1 kHz: processor time, memory, switches. The robot stands.
+
+Its driver is first the simulator, then that of a robot without physics (programs/bench_driver.cpp).
+"""
 
 from __future__ import annotations
 
@@ -7,17 +10,20 @@ import socket
 import subprocess
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from robot_control.common.roles import LOOP, TELEMETRY
+from robot_control.common.roles import DRIVER, HARDWARE_DRIVER, LOOP, TELEMETRY
 
 from bench.rows import bounded, compared
 
+MASTER = "rosmaster"
 SECONDS = 30.0
 START = 8.0  # s until everything has settled
-MAX_LOOP, MAX_LOOP_MEMORY = 6.0, 120.0  # % of a core, MiB
+MAX_LOOP, MAX_LOOP_MEMORY = 5.0, 120.0  # % of a core, MiB
 MAX_TELEMETRY, MAX_TELEMETRY_MEMORY = 4.0, 64.0
 MAX_MASTER = 0.5
 
@@ -53,53 +59,80 @@ def free_port() -> int:
         return int(opened.getsockname()[1])
 
 
-def bench(_blocks: int, _programs: Path, say: Callable[[str], None]) -> tuple[list[dict[str, Any]], bool]:
-    """The rows, and whether all figures meet their bounds."""
+@dataclass(frozen=True)
+class Cost:
+    """What one process takes."""
+
+    percent: float  # of a core
+    memory: float  # MiB
+    switches: float  # per s
+
+
+def costs(programs: Mapping[str, Sequence[str]]) -> dict[str, Cost]:
+    """Process → its cost, of these programs beside a master of their own."""
     port = free_port()
     environment = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_IP": "127.0.0.1"}
     quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": environment}
     processes: dict[str, subprocess.Popen[bytes]] = {}
+    try:
+        for name, words in {MASTER: [MASTER, "--core", "-p", str(port)], **programs}.items():
+            processes[name] = subprocess.Popen(words, **quiet)
+        ids = {name: _program(process.pid, name) for name, process in processes.items()}
+        time.sleep(START)
+        before = {name: (processor_ns(pid), switches(pid)) for name, pid in ids.items()}
+        began = time.monotonic()
+        time.sleep(SECONDS)
+        seconds = time.monotonic() - began
+        return {
+            name: Cost(
+                (processor_ns(pid) - before[name][0]) / seconds / 1e7,
+                memory(pid),
+                (switches(pid) - before[name][1]) / seconds,
+            )
+            for name, pid in ids.items()
+        }
+    finally:
+        for process in reversed(processes.values()):
+            process.terminate()  # SIGINT may be ignored: that of a shell's background job is
+            process.wait(20)
+
+
+def bench(_blocks: int, programs: Path, say: Callable[[str], None]) -> tuple[list[dict[str, Any]], bool]:
+    """The rows, and whether all figures meet their bounds."""
     with tempfile.TemporaryDirectory(prefix="cost-") as folder:
-        try:
-            processes["rosmaster"] = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], **quiet)
-            for node in (*LOOP, TELEMETRY):
-                own = [f"_directory:={folder}"] if node == TELEMETRY else []
-                processes[node] = subprocess.Popen(["rosrun", "robot_control", node, *own], **quiet)
-            time.sleep(START)
-            ids = {name: _program(process.pid, name) for name, process in processes.items()}
-            say(f"cost: {SECONDS:g} s")
-            before = {name: (processor_ns(pid), switches(pid)) for name, pid in ids.items()}
-            began = time.monotonic()
-            time.sleep(SECONDS)
-            seconds = time.monotonic() - began
-            percent = {name: (processor_ns(pid) - before[name][0]) / seconds / 1e7 for name, pid in ids.items()}
-            rate = {name: (switches(pid) - before[name][1]) / seconds for name, pid in ids.items()}
-            size = {name: memory(pid) for name, pid in ids.items()}
-        finally:
-            for process in reversed(processes.values()):
-                process.terminate()  # SIGINT may be ignored: that of a shell's background job is
-                process.wait(20)
-    loop = sum(percent[node] for node in LOOP)
+        others = {node: ["rosrun", "robot_control", node] for node in (*LOOP[1:], TELEMETRY)}
+        others[TELEMETRY].append(f"_directory:={folder}")
+        say(f"cost: {SECONDS:g} s with the simulated machine")
+        simulated = costs({DRIVER: ["rosrun", "robot_control", DRIVER], **others})
+        say(f"cost: {SECONDS:g} s without")
+        bare = costs({HARDWARE_DRIVER: [str(programs / "bench_driver")], **others})
+    loop = sum(bare[node].percent for node in (HARDWARE_DRIVER, *LOOP[1:]))
+    size = sum(simulated[node].memory for node in LOOP)
     judged = [
-        bounded("the four nodes", loop, "% of a core", MAX_LOOP),
-        bounded("their memory", sum(size[node] for node in LOOP), "MiB", MAX_LOOP_MEMORY),
-        bounded("telemetry with black box", percent[TELEMETRY], "% of a core", MAX_TELEMETRY),
-        bounded("its memory", size[TELEMETRY], "MiB", MAX_TELEMETRY_MEMORY),
-        bounded("rosmaster", percent["rosmaster"], "% of a core", MAX_MASTER),
+        bounded("the four nodes, without simulated physics", loop, "% of a core", MAX_LOOP),
+        bounded("memory of the four nodes", size, "MiB", MAX_LOOP_MEMORY),
+        bounded("telemetry with black box", simulated[TELEMETRY].percent, "% of a core", MAX_TELEMETRY),
+        bounded("its memory", simulated[TELEMETRY].memory, "MiB", MAX_TELEMETRY_MEMORY),
+        bounded(MASTER, simulated[MASTER].percent, "% of a core", MAX_MASTER),
     ]
     rows = list(judged)
-    for name in ids:
-        rows.append(compared(f"{name}: processor", percent[name], "% of a core", 0, ""))
-        rows.append(compared(f"{name}: memory", size[name], "MiB", 0, ""))
-        rows.append(compared(f"{name}: switches", rate[name], "per s", 0, ""))
+    with_it = sum(simulated[node].percent for node in LOOP)
+    rows.append(compared("the four nodes, with simulated physics", with_it, "% of a core", loop, "those without"))
+    for name, cost in {HARDWARE_DRIVER: bare[HARDWARE_DRIVER], **simulated}.items():
+        rows.append(compared(f"{name}: processor", cost.percent, "% of a core", 0, ""))
+        rows.append(compared(f"{name}: memory", cost.memory, "MiB", 0, ""))
+        rows.append(compared(f"{name}: switches", cost.switches, "per s", 0, ""))
     return rows, all(row["ratio"] <= 1 for row in judged)
 
 
 def _program(pid: int, name: str) -> int:
-    """The id of the program that rosrun became or started."""
-    if name in Path(f"/proc/{pid}/cmdline").read_text().split("\0")[0] or name == "rosmaster":
-        return pid
-    children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
-    if not children:
-        raise RuntimeError(f"{name} does not run")
-    return int(children[0])
+    """The id of the program that rosrun becomes or starts; before, rosrun starts others, such as rospack."""
+    end = time.monotonic() + START
+    while time.monotonic() < end:
+        children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
+        for each in (pid, *map(int, children)):
+            with suppress(FileNotFoundError):
+                if Path(f"/proc/{each}/cmdline").read_text().split("\0")[0].endswith(name) or name == MASTER:
+                    return each
+        time.sleep(0.05)
+    raise RuntimeError(f"{name} does not run")

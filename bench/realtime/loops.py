@@ -9,7 +9,7 @@ import time
 from collections.abc import Mapping
 from pathlib import Path
 
-from robot_control.common.roles import LOOP, TELEMETRY
+from robot_control.common.roles import DRIVER, LOOP, TELEMETRY
 from robot_control.common.run_log import Log, read_log
 
 from bench.participants import START_LIMIT, command, remove_shared_memory, script
@@ -18,20 +18,24 @@ FIRST = 1000
 """cycles that are not judged: the nodes start one after the other"""
 LAST = 200
 """likewise at the end"""
+FREE_WHEELS = "free_wheels"
+"""a driver of a robot without physics (tests/support/free_wheels.h)"""
 SOME_ROWS = 100_000
 """bytes of run.bag"""
 
 
 class Loop:
-    """Four nodes and a telemetry on the bus `name`, until `end`."""
+    """Four nodes and a telemetry on the bus `name`, until `end`; FREE_WHEELS is a driver without physics."""
 
-    def __init__(self, programs: Path, name: str, settings: Mapping[str, object] | None = None) -> None:
+    def __init__(
+        self, programs: Path, name: str, settings: Mapping[str, object] | None = None, driver: str = DRIVER
+    ) -> None:
         self._name = name
         self._folder = tempfile.TemporaryDirectory(prefix=f"{name}-")
         folder = Path(self._folder.name)
         (folder / "script.csv").write_text(script(600_000))
         given = {"telemetry.black_box": 0, **(settings or {})}
-        words = [command(programs, node, name, folder, given) for node in (TELEMETRY, *LOOP)]
+        words = [command(programs, node, name, folder, given) for node in (TELEMETRY, driver, *LOOP[1:])]
         self.processes = [
             subprocess.Popen(each, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
             for each in words
@@ -64,9 +68,9 @@ class Loop:
         self._folder.cleanup()
 
 
-def loop_for(seconds: float, programs: Path, settings: Mapping[str, object] | None = None) -> Log:
+def loop_for(seconds: float, programs: Path, driver: str = DRIVER) -> Log:
     """The rows of one loop of so many seconds."""
-    loop = Loop(programs, f"realtime-{os.getpid()}", settings)
+    loop = Loop(programs, f"realtime-{os.getpid()}", driver=driver)
     try:
         loop.await_start()
         time.sleep(seconds + (FIRST + LAST) / 1000)

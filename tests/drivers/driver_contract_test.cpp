@@ -3,6 +3,7 @@
 #include "drivers/example_machine.h"
 #include "drivers/mujoco/mujoco_plant.h"
 #include "support/diffbot_urdf.h"
+#include "support/free_wheels.h"
 
 namespace robot_control {
 namespace {
@@ -31,7 +32,20 @@ const MachineUnderTest kExample{.name = "ExampleDriver",
                                 .damping = 0.5,
                                 .stiffness = 5};
 
-INSTANTIATE_TEST_SUITE_P(Machines, DriverContract, testing::Values(kSimulatedMachine, kExample), machine_name);
+std::unique_ptr<Driver> free_wheels() {
+  const Brake brake{.effort = 3, .hold_effort = 3, .damping = 3, .stiffness = 20, .hold_speed = 0.3};
+  return std::make_unique<FreeWheels>(read_drive_train(diffbot_urdf(), {}), std::vector<Brake>(2, brake), 0.001);
+}
+
+const MachineUnderTest kFreeWheels{.name = "FreeWheels",
+                                   .make = free_wheels,
+                                   .effort_limit = kEffortLimit,
+                                   .effort = 1,
+                                   .damping = 2,
+                                   .stiffness = 20};
+
+INSTANTIATE_TEST_SUITE_P(Machines, DriverContract, testing::Values(kSimulatedMachine, kExample, kFreeWheels),
+                         machine_name);
 
 }  // namespace
 }  // namespace robot_control

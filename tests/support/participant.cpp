@@ -2,9 +2,9 @@
 ///
 ///   rc_participant NODE --bus NAME --params YAML [--set path=value]… [--seconds S]
 ///
-/// NODE: mujoco_plant, state_estimator, diff_drive_controller, safety_monitor, telemetry. It ends on SIGTERM or SIGINT,
-/// after S seconds, or, as the plant, after mujoco_plant.cycles. At each SIGUSR1 the controller takes another speed
-/// limit over. Exit code 1: refused, reason on stderr.
+/// NODE: mujoco_plant, free_wheels (free_wheels.h), state_estimator, diff_drive_controller, safety_monitor, telemetry.
+/// It ends on SIGTERM or SIGINT, after S seconds, or, as the plant, after mujoco_plant.cycles. At each SIGUSR1 the
+/// controller takes another speed limit over. Exit code 1: refused, reason on stderr.
 
 #include <array>
 #include <atomic>
@@ -28,6 +28,7 @@
 #include "rt/futex.h"
 #include "rt/realtime_thread.h"
 #include "rt/thread_priority.h"
+#include "support/free_wheels.h"
 
 namespace robot_control {
 namespace {
@@ -113,6 +114,10 @@ void participate(const Arguments& arguments) {
   if (arguments.node == "mujoco_plant") {
     DriverProcess driver(parameters, robot, arguments.bus);
     driver.open_driver(std::make_unique<MujocoPlant>(robot.machine(), parameters.plant, loop.period()));
+    run_process(driver, arguments.seconds);
+  } else if (arguments.node == "free_wheels") {
+    DriverProcess driver(parameters, robot, arguments.bus);
+    driver.open_driver(std::make_unique<FreeWheels>(robot.machine(), robot.brakes(), loop.period()));
     run_process(driver, arguments.seconds);
   } else if (arguments.node == "state_estimator") {
     EstimatorProcess estimator(parameters, robot, arguments.bus);

@@ -66,7 +66,7 @@ struct NodeProgram {
 /// after a refusal, which is reported on stderr.
 int run_node(int argc, char** argv, const NodeProgram& program);
 
-/// Returns the tick of the publishing thread, 0.25 … 5 ms. It ends when the first of these topics is due, counted from
+/// Returns the tick of the publishing thread, 0.25 … 10 ms. It ends when the first of these topics is due, counted from
 /// the newest frame, whose stamp is `stamp_ns`. For a topic faster than a quarter of the loop's rate it is a quarter of
 /// a cycle, so that no frame is missed. In lockstep, where simulated time runs much faster, it is 0.25 ms.
 std::int64_t publish_tick_ns(const Parameters& parameters, std::int64_t stamp_ns,
