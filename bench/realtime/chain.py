@@ -1,8 +1,7 @@
 """Measures the way from the sensor frame to the command frame over three processes, with and without simulated physics.
 
 Its references are a bare futex ping-pong of as many hops, and the same frames over roscpp topics on loopback. All four
-alternate. The simulator computes its physics on the core of the loop before any other thread gets it, which no driver
-of a real machine does, so the bounds hold without it.
+alternate. The bounds hold without the physics, because no driver of a real machine computes on the core of the loop.
 """
 
 from __future__ import annotations
@@ -128,7 +127,5 @@ def bench(blocks: int, programs: Path, say: Callable[[str], None]) -> tuple[list
         compared("the same frames over topics", times["topics"], "µs", *whole),
         bounded("times faster than topics", faster, f"[{least:.2f}, {most:.2f}], at least", MIN_FASTER),
         compared("with simulated physics: sensors to command, median", times["simulated"], "µs", *whole),
-        compared(
-            "with simulated physics: gate and machine", times["simulator"], "µs", times["simulated"], "that time"
-        ),
+        compared("with simulated physics: gate and machine", times["simulator"], "µs", times["simulated"], "that time"),
     ], low <= MAX_RATIO and faster >= MIN_FASTER

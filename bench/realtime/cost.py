@@ -18,6 +18,8 @@ from typing import Any
 
 from robot_control.common.roles import DRIVER, HARDWARE_DRIVER, LOOP, TELEMETRY
 
+from bench.participants import START_LIMIT
+from bench.realtime.machine import start_cyclictest
 from bench.rows import bounded, compared
 
 MASTER = "rosmaster"
@@ -61,7 +63,7 @@ def free_port() -> int:
 
 @dataclass(frozen=True)
 class Cost:
-    """What one process takes."""
+    """The cost of one process."""
 
     percent: float  # of a core
     memory: float  # MiB
@@ -97,6 +99,19 @@ def costs(programs: Mapping[str, Sequence[str]]) -> dict[str, Cost]:
             process.wait(20)
 
 
+def bare_wake_ups() -> float:
+    """Percent of a core that four threads take which only wake up once per cycle."""
+    process = start_cyclictest(SECONDS, threads=len(LOOP))
+    try:
+        time.sleep(1)
+        before, began = processor_ns(process.pid), time.monotonic()
+        time.sleep(SECONDS / 3)
+        return (processor_ns(process.pid) - before) / (time.monotonic() - began) / 1e7
+    finally:
+        process.kill()
+        process.communicate()
+
+
 def bench(_blocks: int, programs: Path, say: Callable[[str], None]) -> tuple[list[dict[str, Any]], bool]:
     """The rows, and whether all figures meet their bounds."""
     with tempfile.TemporaryDirectory(prefix="cost-") as folder:
@@ -106,6 +121,7 @@ def bench(_blocks: int, programs: Path, say: Callable[[str], None]) -> tuple[lis
         simulated = costs({DRIVER: ["rosrun", "robot_control", DRIVER], **others})
         say(f"cost: {SECONDS:g} s without")
         bare = costs({HARDWARE_DRIVER: [str(programs / "bench_driver")], **others})
+    wake_ups = bare_wake_ups()
     loop = sum(bare[node].percent for node in (HARDWARE_DRIVER, *LOOP[1:]))
     size = sum(simulated[node].memory for node in LOOP)
     judged = [
@@ -118,6 +134,7 @@ def bench(_blocks: int, programs: Path, say: Callable[[str], None]) -> tuple[lis
     rows = list(judged)
     with_it = sum(simulated[node].percent for node in LOOP)
     rows.append(compared("the four nodes, with simulated physics", with_it, "% of a core", loop, "those without"))
+    rows.append(compared("four threads that only wake up (cyclictest)", wake_ups, "% of a core", loop, "those without"))
     for name, cost in {HARDWARE_DRIVER: bare[HARDWARE_DRIVER], **simulated}.items():
         rows.append(compared(f"{name}: processor", cost.percent, "% of a core", 0, ""))
         rows.append(compared(f"{name}: memory", cost.memory, "MiB", 0, ""))
@@ -127,7 +144,7 @@ def bench(_blocks: int, programs: Path, say: Callable[[str], None]) -> tuple[lis
 
 def _program(pid: int, name: str) -> int:
     """The id of the program that rosrun becomes or starts; before, rosrun starts others, such as rospack."""
-    end = time.monotonic() + START
+    end = time.monotonic() + START_LIMIT
     while time.monotonic() < end:
         children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
         for each in (pid, *map(int, children)):

@@ -65,11 +65,11 @@ def load(*, asked: bool) -> Iterator[None]:
         process.wait()
 
 
-def start_cyclictest(seconds: float) -> subprocess.Popen[str]:
-    """One thread as the driver's: 1 kHz, absolute deadlines, same core and priority. It does not ask for shallow sleep
+def start_cyclictest(seconds: float, threads: int = 1) -> subprocess.Popen[str]:
+    """Threads as the driver's: 1 kHz, absolute deadlines, same core and priority. It does not ask for shallow sleep
     itself (--laptop).
     """
-    words = ["cyclictest", "-q", "-m", "--laptop", "-t1", f"-p{PRIORITY}", f"-a{CORE}", "-i1000", f"-h{BUCKETS}"]
+    words = ["cyclictest", "-q", "-m", "--laptop", f"-t{threads}", f"-p{PRIORITY}", f"-a{CORE}", "-i1000", f"-h{BUCKETS}"]
     return subprocess.Popen([*words, f"-l{int(seconds * 1000)}"], stdout=subprocess.PIPE, text=True)
 
 

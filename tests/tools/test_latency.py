@@ -5,6 +5,7 @@ import pytest
 from robot_control.latency.figures import Figures, figures_of, parse_figures, table
 from robot_control.latency.picture import draw
 
+from bench.realtime.chain import CHAIN, between
 from bench.realtime.jitter import median_interval, wake_up
 from bench.realtime.machine import parse_histogram
 
@@ -47,6 +48,11 @@ def test_reads_the_histogram_of_cyclictest():
 def test_a_tick_that_slips_was_late_by_what_slipped():
     rows = {"driver_woke_ns": np.array([1000.0, 2000.0, 0.0]), "slipped_ns": np.array([0.0, 0.0, 5e6])}
     assert wake_up(rows).tolist() == [1.0, 2.0, 5000.0]
+
+
+def test_the_chain_is_the_median_over_the_cycles_that_hold_both_stamps():
+    rows = {"driver_woke_ns": np.array([0.0, 0.0, 0.0, 0.0]), "command_published_ns": np.array([1e3, np.nan, 9e3, 5e3])}
+    assert between(rows, CHAIN) == 5.0
 
 
 @pytest.mark.parametrize(("count", "rank"), [(10, 1), (20, 5)])

@@ -231,7 +231,7 @@ int run_node(int argc, char** argv, const NodeProgram& program) {
 
 std::int64_t publish_tick_ns(const Parameters& parameters, std::int64_t stamp_ns,
                              std::initializer_list<const Pacer*> topics) {
-  constexpr std::int64_t kMinTick = 250'000;  // ns
+  constexpr std::int64_t kMinTick = 250'000;     // ns
   constexpr std::int64_t kMaxTick = 10'000'000;  // the period of the fastest topic by default
   if (parameters.loop.clock == ClockMode::kLockstep) return kMinTick;
   const std::int64_t cycle_ns = parameters.loop.period_ns();
