@@ -69,8 +69,9 @@ def start_cyclictest(seconds: float, threads: int = 1) -> subprocess.Popen[str]:
     """Threads as the driver's: 1 kHz, absolute deadlines, same core and priority. It does not ask for shallow sleep
     itself (--laptop).
     """
-    words = ["cyclictest", "-q", "-m", "--laptop", f"-t{threads}", f"-p{PRIORITY}", f"-a{CORE}", "-i1000", f"-h{BUCKETS}"]
-    return subprocess.Popen([*words, f"-l{int(seconds * 1000)}"], stdout=subprocess.PIPE, text=True)
+    words = ["cyclictest", "-q", "-m", "--laptop", f"-t{threads}", f"-p{PRIORITY}", f"-a{CORE}", "-i1000"]
+    words += [f"-h{BUCKETS}", f"-l{int(seconds * 1000)}"]
+    return subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
 
 
 def latencies(process: subprocess.Popen[str]) -> FloatArray:
