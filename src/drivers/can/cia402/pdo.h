@@ -17,7 +17,8 @@
 namespace robot_control::canopen {
 
 inline constexpr std::size_t kMaxPdoEntries = 8;  ///< each has at least one byte
-inline constexpr std::uint8_t kEverySync = 1;     ///< transmission type
+inline constexpr std::uint8_t kEverySync = 1;     ///< transmission type; n: with every n-th SYNC, up to kMaxSyncs
+inline constexpr std::uint8_t kMaxSyncs = 240;    ///< transmission type
 inline constexpr std::uint8_t kOnEvent = 255;     ///< transmission type
 
 struct PdoEntry {
