@@ -142,6 +142,6 @@ def test_drives_on_can_drive_and_brake(rate, dialect):
     assert np.mean(log["truth_linear"][log["time"] > 3.0]) == pytest.approx(0.5, rel=0.01)
     assert not stopped(log).any()
     loop.e_stop()
-    log = loop.run(12.0, (0.5, 0.0))
+    log = loop.run(24.0, (0.5, 0.0))
     assert np.ptp(log["truth_x"]) < 0.05 + 22.0 / rate, "the brake's time constant, proportional to the period"
     assert abs(log["truth_linear"][-1]) < 0.005
