@@ -117,7 +117,8 @@ void BagLog::end_chunk() {
     return;
   }
   held_bytes_ += held_.back().chunk.record.size();
-  while (held_.size() > 1 && (held_bytes_ > kBeforeBytes || begin_ns - held_.front().begin_ns > before_ns(header_.period))) {
+  while (held_.size() > 1 &&
+         (held_bytes_ > kBeforeBytes || begin_ns - held_.front().begin_ns > before_ns(header_.period))) {
     held_bytes_ -= held_.front().chunk.record.size();
     held_.pop_front();
   }

@@ -51,10 +51,10 @@ struct SafetyParameters {
   double ramp_time = 2.0;          ///< s, longest category-1 ramp before the brake
   double standstill_speed = 0.05;  ///< rad/s, wheels slower than this are standing
 
-  double slow_speed = 0.3;         ///< m/s, of the rims, under Reaction::kSlow
-  double clearance = 0;            ///< m, free distance ahead until the first message on the topic; 0: unlimited
+  double slow_speed = 0.3;           ///< m/s, of the rims, under Reaction::kSlow
+  double clearance = 0;              ///< m, free distance ahead until the first message on the topic; 0: unlimited
   std::optional<double> stop_delay;  ///< s, from the event to the brake torque; absent: default_stop_delay
-  double stop_deceleration = 0.5;  ///< m/s², which braking and ramping reach on every ground the robot drives on
+  double stop_deceleration = 0.5;    ///< m/s², which braking and ramping reach on every ground the robot drives on
 
   // clang-format off
 #define CAUSE(...)

@@ -112,7 +112,7 @@ class CommandInput final : public CommandIntake {
   CommandSenders senders_;
   MotionRequests requests_;
   VelocityCommand value_;
-  std::int64_t command_ns_ = 0;                          ///< when the command in force arrived
+  std::int64_t command_ns_ = 0;  ///< when the command in force arrived
   std::int64_t unread_ns_ = unread_ns(0);
   std::map<std::string, StampVerdict> reported_stamps_;  ///< last reported verdict of each sender with wrong stamps
   std::map<std::string, std::int64_t>

@@ -93,7 +93,7 @@ class Cia402Device final : public Device {
   std::int64_t now_ns_ = 0;
   std::int64_t boot_ns_ = 0;
   std::uint32_t syncs_ = 0;  // that were received
-  bool announced_ = false;  // The boot-up message was sent.
+  bool announced_ = false;   // The boot-up message was sent.
   std::int64_t heartbeat_ns_ = 0;
   std::int64_t host_ns_ = -1;  // last heartbeat of the host; −1: none yet
 };

@@ -179,11 +179,20 @@ VelocitySource velocity_of(const Cia402Pair& pair, const std::function<void(Cia4
 TEST(Cia402Drive, MapsTheVelocityWhereItCan) {
   const Cia402Pair pair = cia402_pair(5);
   EXPECT_EQ(velocity_of(pair), VelocitySource::kDrive);
-  EXPECT_EQ(velocity_of(pair, [](Cia402Device& device) { device.objects().remove({0x606C, 0}); }),
+  EXPECT_EQ(velocity_of(pair,
+                        [](Cia402Device& device) {
+                          device.objects().remove({0x606C, 0});
+                        }),
             VelocitySource::kNotMapped);
-  EXPECT_EQ(velocity_of(pair, [](Cia402Device& device) { device.objects().remove({0x1801, 1}); }),
+  EXPECT_EQ(velocity_of(pair,
+                        [](Cia402Device& device) {
+                          device.objects().remove({0x1801, 1});
+                        }),
             VelocitySource::kNotMapped);
-  EXPECT_EQ(velocity_of(pair, [](Cia402Device& device) { device.objects().remove({0x1A01, 2}); }),
+  EXPECT_EQ(velocity_of(pair,
+                        [](Cia402Device& device) {
+                          device.objects().remove({0x1A01, 2});
+                        }),
             VelocitySource::kDrive)
       << "one entry is enough";
 }
@@ -224,9 +233,15 @@ TEST(Cia402Drive, UsesTheVelocityOfAFixedPdoThatComesWithSync) {
   pair.device.fixed_mapping = true;
   pair.drive.pdos = PdoSource::kFixed;
   EXPECT_EQ(velocity_of(pair), VelocitySource::kDrive);
-  EXPECT_EQ(velocity_of(pair, [](Cia402Device& device) { device.objects().set({0x1801, 2}, canopen::kOnEvent); }),
+  EXPECT_EQ(velocity_of(pair,
+                        [](Cia402Device& device) {
+                          device.objects().set({0x1801, 2}, canopen::kOnEvent);
+                        }),
             VelocitySource::kNotMapped);
-  EXPECT_EQ(velocity_of(pair, [](Cia402Device& device) { device.objects().set({0x1A01, 0}, 0); }),
+  EXPECT_EQ(velocity_of(pair,
+                        [](Cia402Device& device) {
+                          device.objects().set({0x1A01, 0}, 0);
+                        }),
             VelocitySource::kNotMapped);
 }
 

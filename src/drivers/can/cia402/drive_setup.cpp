@@ -10,8 +10,8 @@ using canopen::SdoClient;
 using canopen::SdoWrite;
 
 constexpr std::uint8_t kVelocityIndex = 2;  // of its PDO
-constexpr unsigned kMaxModeReads = 200;  // until 6061 shows the mode that was written to 6060
-constexpr double kSameTorque = 0.01;     // between the drive file and 6076
+constexpr unsigned kMaxModeReads = 200;     // until 6061 shows the mode that was written to 6060
+constexpr double kSameTorque = 0.01;        // between the drive file and 6076
 
 /// The period as value · 10^index s; a value of 0 if it is no such number.
 struct Period {
@@ -140,9 +140,9 @@ void DriveSetup::add_pdo_steps(std::uint8_t index, const char* subject) {
     read({parameters, 1}, Use::kCobId, false, subject, own_pdo.cob_id(client_.node()));
     if (index == kVelocityIndex) read({parameters, 2}, Use::kSyncs, true, subject);
   } else {
-    const std::uint8_t type = index == kVelocityIndex                ? kVelocitySyncs
+    const std::uint8_t type = index == kVelocityIndex              ? kVelocitySyncs
                               : own_pdo.kind == PdoKind::kTransmit ? canopen::kEverySync
-                                                                     : canopen::kOnEvent;
+                                                                   : canopen::kOnEvent;
     const canopen::PdoSetup setup = pdo_setup(own_pdo, client_.node(), type, 0);
     read({parameters, 1}, Use::kPresentCobId, false, subject);
     for (const SdoWrite& each : setup.all()) {
