@@ -1,5 +1,5 @@
 #pragma once
-/// What a slow loop costs, in sentences that a node says at its start.
+/// A node says at its start what a slow loop costs.
 
 #include <string>
 #include <string_view>

@@ -134,7 +134,7 @@ def test_a_quadruped_stands_leans_and_folds(rate):
 def test_drives_on_can_drive_and_brake(rate, dialect):
     file = share_file(f"config/drives/{dialect}.yaml")
     if rate == 2000:
-        with pytest.raises(ParameterError, match="set robot.rate to at most"):
+        with pytest.raises(ParameterError, match=r"set robot\.rate to at most"):
             loop_at(rate, drives=file)
         return
     loop = loop_at(rate, drives=file)

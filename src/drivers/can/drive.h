@@ -65,7 +65,7 @@ enum class ReactionEvidence : std::uint8_t {
   kConfirmed,  ///< stated by the user in the drive file
 };
 
-/// Where the velocity of a joint comes from, or why it follows from the positions.
+/// The origin of a joint's velocity, or why it follows from the positions.
 enum class VelocitySource : std::uint8_t {
   kDrive,         ///< The drive sends it.
   kNotRequested,  ///< The drive file does not want it.

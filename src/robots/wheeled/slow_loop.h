@@ -1,5 +1,5 @@
 #pragma once
-/// What a slow loop costs a robot on wheels. Torques that change once a period must not make a lifted wheel oscillate,
+/// A slow loop has its price on wheels. Torques that change once a period must not make a lifted wheel oscillate,
 /// so gains and brakes of the drives are proportional to the rate.
 
 #include <string>
@@ -10,8 +10,7 @@
 
 namespace robot_control {
 
-/// s, of the slowest wheel: kp/ki of the derived gains, the time constant with which a wheel loop corrects what its
-/// plan does not contain.
+/// s, kp/ki of the slowest wheel: the time constant with which a wheel loop corrects what its plan does not contain.
 double correction_time(const Parameters& parameters, const DriveTrain& robot);
 
 /// s, of the slowest wheel: J_straight/d, the time constant of the brake (brakes_of_slow_drives) of a robot that drives

@@ -12,8 +12,8 @@
 ///   1400, 1600, 1800, 1A00    PDOs, written and read back, or read alone
 ///   60A9, 1801, 1A01          unit and PDO of the velocity
 ///
-/// Objects that are optional in CiA 402 may be absent. With VelocityPdo::kDerived the first object of the velocity that
-/// is absent, refused or different ends its set-up without a problem: the velocity then follows from the position.
+/// Objects that are optional in CiA 402 may be absent. With VelocityPdo::kDerived those of the velocity are optional,
+/// too. Where one of them is absent, refused or different, the velocity follows from the position.
 
 #include <array>
 #include <cstdint>
