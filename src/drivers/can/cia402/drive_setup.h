@@ -13,7 +13,7 @@
 ///   60A9, 1801, 1A01          unit and PDO of the velocity
 ///
 /// Objects that are optional in CiA 402 may be absent. With VelocityPdo::kDerived those of the velocity are optional,
-/// too. Where one of them is absent, refused or different, the velocity follows from the position.
+/// too. The velocity follows from the position where one of them is absent, refused or different.
 
 #include <array>
 #include <cstdint>

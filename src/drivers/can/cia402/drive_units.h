@@ -47,8 +47,9 @@ inline std::optional<double> counts_per_turn(const ScalingObjects& objects) noex
 
 inline constexpr double kRpm = 2 * std::numbers::pi / 60;  ///< rad/s
 
-/// Returns the rad/s of one raw unit of 606C by 60A9, which has from its highest byte down a power of ten, the unit of
-/// the way and that of the time. Returns 0 for others than revolutions per minute or per second. Source: CiA 303-2.
+/// Returns the rad/s of one raw unit of 606C by 60A9. From the highest byte down, 60A9 holds a power of ten, the unit
+/// of the way and the unit of the time. Returns 0 for others than revolutions per minute or per second. Source: CiA
+/// 303-2.
 inline double velocity_unit(std::uint32_t raw_60a9) noexcept {
   constexpr std::uint32_t kPerMinute = 0xB447, kPerSecond = 0xB403;
   const std::uint32_t unit = raw_60a9 >> 8U & 0xFFFFU;
