@@ -6,6 +6,8 @@
 namespace robot_control::cia402 {
 namespace {
 
+using canopen::entry_of;
+using canopen::mapped;
 using canopen::SdoClient;
 using canopen::SdoWrite;
 
@@ -27,22 +29,6 @@ Period period_of(double seconds) {
     }
   }
   return {};
-}
-
-PdoEntry entry_of(std::uint32_t mapped) noexcept {
-  const auto bits = static_cast<std::uint8_t>(mapped & 0xFFU);
-  const ObjectAddress object{static_cast<std::uint16_t>(mapped >> 16U),
-                             static_cast<std::uint8_t>(mapped >> 8U & 0xFFU)};
-  return {.object = object, .bits = bits};
-}
-
-/// Returns null if the PDO does not hold the object with this length.
-const PdoEntry* mapped(const Pdo& pdo, const PdoEntry& entry) noexcept {
-  for (std::size_t i = 0; i < pdo.mapping.count; ++i) {
-    const PdoEntry& each = pdo.mapping.entries[i];
-    if (each.object == entry.object && each.bits == entry.bits) return &each;
-  }
-  return nullptr;
 }
 
 TorquePdos pdos_of(unsigned axis) {

@@ -66,6 +66,12 @@ struct Pdo {
   constexpr std::uint16_t mapping_index() const noexcept { return static_cast<std::uint16_t>(parameters() + 0x200); }
 };
 
+/// Returns the entry that a mapping holds as this number (PdoEntry::mapped).
+PdoEntry entry_of(std::uint32_t mapped) noexcept;
+
+/// Returns the entry of the PDO with this object and length; null if it has none.
+const PdoEntry* mapped(const Pdo& pdo, const PdoEntry& entry) noexcept;
+
 /// One write to the object dictionary.
 struct SdoWrite {
   ObjectAddress object{};
