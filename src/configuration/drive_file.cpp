@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "configuration/loop_parameters.h"
 #include "configuration/peer_file.h"
 #include "drivers/can/can_load.h"
 #include "drivers/can/drive_set.h"
@@ -13,7 +14,6 @@ namespace {
 
 constexpr const char* kBus = "bus";
 constexpr const char* kEveryJoint = "every_joint";
-constexpr double kMinRate = 100;           // Hz, of robot.rate
 constexpr double kMinTimeoutPeriods = 10;  // in which a drive waits for its host
 
 using cia402::Cia402Parameters;
@@ -63,7 +63,12 @@ class DriveFileReader {
       can.joints = read_joints<Cia402Parameters>(can);
     }
     problems_.throw_if_any(subject);
-    const std::vector<PlannedFrames> plan = DriveSet(can, 1 / rate_).plan();
+    std::vector<PlannedFrames> plan = DriveSet(can, 1 / rate_).plan();
+    if (auto* joints = std::get_if<std::vector<Cia402Parameters>>(&can.joints);
+        joints != nullptr && bus_load(plan, rate_, can.bus.bit_rate) > kMaxBusLoad) {
+      for (Cia402Parameters& joint : *joints) joint.velocity_has_room = false;
+      plan = DriveSet(can, 1 / rate_).plan();
+    }
     if (const auto problem = bus_load_problem(plan, rate_, can.bus.bit_rate, kMinRate)) {
       problems_.add({"bus.bit_rate", shortest(can.bus.bit_rate), *problem, path_, ""});
     }
@@ -81,6 +86,7 @@ class DriveFileReader {
   template <class Parameters>
   std::vector<Parameters> read_joints(const CanParameters& can) {
     Parameters all;
+    set_defaults(all);
     Block every{kEveryJoint, keys(all)};
     for (Key& key : every.keys) key.traits |= kOptional;
     const Schema every_schema = schema_of({every}, [](const Schema&, GivenValues&) {});
@@ -122,6 +128,12 @@ class DriveFileReader {
                "each joint has its own");
       }
     }
+  }
+
+  /// Sets the values that follow from the rate where they are left out.
+  void set_defaults(OdriveParameters& /*all*/) const {}
+  void set_defaults(Cia402Parameters& all) const {
+    all.host_timeout = std::max(all.host_timeout, kMinTimeoutPeriods / rate_);
   }
 
   static bool same_axis(const OdriveParameters& one, const OdriveParameters& other) {

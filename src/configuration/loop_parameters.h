@@ -24,9 +24,13 @@ inline std::vector<Word> words_of(RealtimeChecks) {
   return {{"off", RealtimeChecks::kOff}, {"count", RealtimeChecks::kCount}};
 }
 
+/// Hz, the range of `rate`.
+inline constexpr double kMinRate = 20;
+inline constexpr double kMaxRate = 2000;
+
 /// Values on which all nodes must agree; they are in the block `robot:`, beside those of the robot itself.
 struct LoopParameters {
-  double rate = 1000;  ///< Hz, 100 … 2000
+  double rate = 1000;  ///< Hz, 20 … 2000
   ClockMode clock = ClockMode::kWall;
   RealtimePolicy realtime = RealtimePolicy::kPreferred;
   RealtimeChecks realtime_checks = RealtimeChecks::kCount;
@@ -45,7 +49,7 @@ struct LoopParameters {
 inline Keys keys(LoopParameters& loop) {
   return {
       {"fail_action", &loop.fail_action},
-      {"rate", &loop.rate, "Hz", 100, 2000},
+      {"rate", &loop.rate, "Hz", kMinRate, kMaxRate},
       {"clock", &loop.clock},
       {"realtime", &loop.realtime},
       {"realtime_checks", &loop.realtime_checks},

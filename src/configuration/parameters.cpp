@@ -8,7 +8,7 @@
 namespace robot_control {
 namespace {
 
-void check_rates(const Schema& schema, const LoopParameters& loop, GivenValues& given) {
+void check_timeouts(const Schema& schema, const LoopParameters& loop, GivenValues& given) {
   if (given.refused("robot.rate")) return;
   for (const Block& block : schema.blocks) {
     for (const Key& key : block.keys) {
@@ -19,20 +19,14 @@ void check_rates(const Schema& schema, const LoopParameters& loop, GivenValues& 
         given.refuse(path, "must be 0 (off) or at least two periods, " + shortest(2 * loop.period()) + " s at " +
                                shortest(loop.rate) + " Hz");
       }
-      if ((key.traits & kPublishRate) != 0 && **number > loop.rate) {
-        given.refuse(path, "must be at most the loop's rate, " + shortest(loop.rate) + " Hz",
-                     "lower it or raise robot.rate");
-      }
     }
   }
 }
 
 void check_stop_delay(const Parameters& parameters, GivenValues& given) {
-  // A stop takes the sensors of one cycle, the permit of the next and the torque of the one after.
-  constexpr double kCyclesToStop = 3;
   const std::string delay = std::string(program_of(Role::kMonitor)) + ".stop_delay";
-  const double fastest = kCyclesToStop * parameters.loop.period();
-  if (!given.accepted(delay) || !given.accepted("robot.rate") || parameters.safety.stop_delay >= fastest) return;
+  const double fastest = fastest_stop(parameters.loop.period());
+  if (!given.accepted(delay) || !given.accepted("robot.rate") || *parameters.safety.stop_delay >= fastest) return;
   given.refuse(delay, "must be at least three periods, " + shortest(fastest) + " s at " +
                           shortest(parameters.loop.rate) + " Hz: no stop is faster");
 }
@@ -71,7 +65,7 @@ Schema schema(Parameters& p) {
                  {program_of(Role::kTelemetry), keys(p.telemetry)}},
       .check =
           [&p](const Schema& all, GivenValues& given) {
-            check_rates(all, p.loop, given);
+            check_timeouts(all, p.loop, given);
             check(p.safety, std::string(program_of(Role::kMonitor)), given);
             check(p.controller, std::string(program_of(Role::kController)), given);
             check_stop_delay(p, given);

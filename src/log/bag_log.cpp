@@ -117,7 +117,8 @@ void BagLog::end_chunk() {
     return;
   }
   held_bytes_ += held_.back().chunk.record.size();
-  while (held_.size() > 1 && (held_bytes_ > kBeforeBytes || begin_ns - held_.front().begin_ns > kBeforeNs)) {
+  while (held_.size() > 1 &&
+         (held_bytes_ > kBeforeBytes || begin_ns - held_.front().begin_ns > before_ns(header_.period))) {
     held_bytes_ -= held_.front().chunk.record.size();
     held_.pop_front();
   }
@@ -163,7 +164,7 @@ void BagLog::split_where_due(const Held& next) {
   const bool long_enough = parameters_.split_time > 0 && bag_begin_ns_ != 0 && seconds >= parameters_.split_time;
   if (!too_large && !reached(parameters_.split_size) && !long_enough) return;
   if (split_due_ns_ == 0) split_due_ns_ = next.begin_ns;
-  if (!too_large && !next.snapshot && next.begin_ns - split_due_ns_ < kBeforeNs) return;
+  if (!too_large && !next.snapshot && next.begin_ns - split_due_ns_ < before_ns(header_.period)) return;
   writer_->close();
   begin_bag();
 }

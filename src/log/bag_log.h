@@ -3,15 +3,17 @@
 /// `trace_snapshot` and, on the wall clock, `trace_summary`.
 ///
 /// Rows are collected in chunks of a second. If only motion is recorded (motion_watch.h), the chunks of the last
-/// `kBeforeNs` are held in memory and written when motion begins. A bag of the permitted size or length is closed and
+/// `before_ns` are held in memory and written when motion begins. A bag of the permitted size or length is closed and
 /// kept under the next number, and another one begins (log_folder.h). It begins with the next snapshots of the laws, so
-/// that it can be replayed from its begin. If none comes within `kBeforeNs`, or the quota is small, it begins without.
+/// that it can be replayed from its begin. If none comes within `before_ns`, or the quota is small, it begins without.
 ///
 /// A bag without a message is removed at the end.
 ///
 /// An error of the disk ends the bag, not the log: rows are counted, and another bag is tried every `kRetryNs`. All
 /// times are arguments; no clock is read.
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -23,6 +25,7 @@
 #include "log/messages/log_messages.h"
 #include "log/motion_watch.h"
 #include "log/rows/row_log.h"
+#include "signals/law_snapshot.h"
 
 namespace robot_control {
 
@@ -30,9 +33,14 @@ class BagLog final : public RowLog {
  public:
   static constexpr std::int64_t kChunkNs = 1'000'000'000;
   static constexpr std::size_t kChunkBytes = 1 << 22;        ///< uncompressed size at which a chunk ends early
-  static constexpr std::int64_t kBeforeNs = 12'000'000'000;  ///< at 100 Hz, a snapshot comes every 10.24 s
+  static constexpr std::int64_t kBeforeNs = 12'000'000'000;  ///< of a loop of 93 Hz and more
   static constexpr std::size_t kBeforeBytes = 32 << 20;  ///< compressed; at 2 kHz with 32 joints it is less than 12 s
   static constexpr std::int64_t kRetryNs = 10'000'000'000;
+
+  /// Returns for how long rows are held, ns: kBeforeNs, and at least from one snapshot to the next; `period` in s.
+  static std::int64_t before_ns(double period) noexcept {
+    return std::max<std::int64_t>(kBeforeNs, kChunkNs + std::llround(1e9 * period * kSnapshotCycles));
+  }
 
   /// Begins run.bag in `folder`, which must outlive this object. The quota is that of the folder. Throws LogError.
   BagLog(LogFolder& folder, LogHeader header, const TelemetryParameters& parameters);

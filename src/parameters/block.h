@@ -62,7 +62,7 @@ enum KeyTrait : unsigned {
   kOptional = 1u << 0,     ///< may be absent
   kZeroIsOff = 1u << 1,    ///< 0 is allowed beside the range and switches the function off
   kLoopTimeout = 1u << 2,  ///< s; at least two periods of the loop, otherwise jitter alone would exceed it
-  kPublishRate = 1u << 3,  ///< Hz; at most the rate of the loop
+  kPublishRate = 1u << 3,  ///< Hz of a topic, which comes at most once a cycle
   kPath = 1u << 4,         ///< a file; made absolute
   kMayBeEmpty = 1u << 5,   ///< a text that may be ""
   kLive = 1u << 6,         ///< may change while its node runs (live_parameters.h); double, optional<double> or bool

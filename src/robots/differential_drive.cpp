@@ -5,6 +5,7 @@
 #include "gate/wheeled/wheel_stop.h"
 #include "robots/wheeled/retuning.h"
 #include "robots/wheeled/safety_limits.h"
+#include "robots/wheeled/slow_loop.h"
 #include "robots/wheeled/start_check.h"
 #include "safety/safety_monitor.h"
 
@@ -58,6 +59,10 @@ std::unique_ptr<MonitorLaw> DifferentialDrive::make_monitor() const {
 
 MachineNeeds DifferentialDrive::needs() const {
   return {.modes = {JointMode::kBrake, JointMode::kEffort}, .inputs = {MachineInput::kJointMotion}};
+}
+
+std::vector<std::string> DifferentialDrive::rate_notes(Role role) const {
+  return wheeled_rate_notes(parameters_, machine_, role);
 }
 
 std::vector<Brake> DifferentialDrive::brakes() const {

@@ -31,6 +31,7 @@ class DifferentialDrive final : public Robot {
   std::unique_ptr<ControllerLaw> make_controller() const override;
   std::unique_ptr<MonitorLaw> make_monitor() const override;
   MachineNeeds needs() const override;
+  std::vector<std::string> rate_notes(Role role) const override;
   std::vector<Brake> brakes() const override;
   GateParameters gate() const override;
   std::unique_ptr<Retuner> make_retuner(LatestValue<DriveTuning>& inbox) const override;

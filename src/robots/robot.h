@@ -15,6 +15,7 @@
 #include "machine/machine_model.h"
 #include "robots/laws.h"
 #include "safety/safety_parameters.h"
+#include "signals/roles.h"
 
 namespace robot_control {
 
@@ -68,6 +69,9 @@ class Robot {
 
   /// Returns the modes and inputs without which the laws of this kind do not work on any machine.
   virtual MachineNeeds needs() const = 0;
+
+  /// Returns what the rate of the loop costs with this machine, in sentences of the node that plays `role`.
+  virtual std::vector<std::string> rate_notes(Role /*role*/) const { return {}; }
 
   /// Returns the brakes of the driven joints, which come first, for drives that are given a torque once in each period.
   /// Returns none if such drives do not stop a robot of this kind.

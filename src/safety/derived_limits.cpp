@@ -40,7 +40,7 @@ SafetyParameters derived_limits(const SafetyParameters& given, const DriveTrain&
   double acceleration = 0, power = 0;
   for (const WheelModel& wheel : robot.wheels) {
     const double effort = robot.joints[wheel.joint].effort_limit;
-    acceleration = std::max(acceleration, 2 * effort / wheel.inertia + speed / kSpeedWindow);
+    acceleration = std::max(acceleration, 2 * effort / wheel.inertia + speed / std::max(kSpeedWindow, 2 * period));
     power += effort * speed;
   }
   fill(limits.wheel_acceleration, acceleration);

@@ -93,7 +93,7 @@ class Monitor {
         presence_(parameters.loss_cycles),
         sensor_presence_(parameters, KindConditions::driven_joints(machine), period),
         operator_conditions_(parameters.heartbeat_timeout, period),
-        clearance_(parameters),
+        clearance_(parameters, period),
         kind_(parameters, machine, period),
         gate_conditions_(parameters.loss_cycles, period),
         machine_conditions_(parameters, period),

@@ -41,7 +41,7 @@ const SafetyParameters& checked(const SafetyParameters& parameters, double perio
   require_positive("standstill_speed", parameters.standstill_speed);
   require_not_negative("slow_speed", parameters.slow_speed);
   require_not_negative("clearance", parameters.clearance);
-  require_not_negative("stop_delay", parameters.stop_delay);
+  require_not_negative("stop_delay", parameters.stop_delay.value_or(0));
   require_positive("stop_deceleration", parameters.stop_deceleration);
   for (const auto& [name, member] : kConditions) {
     const Condition& condition = parameters.*member;

@@ -7,6 +7,7 @@
 /// wheel_following.h, yaw_agreement.h and torque_oscillation.h. Those of legs are in joint_conditions.h and
 /// foot_conditions.h, the others in body_conditions.h, sensor_presence.h and machine_conditions.h.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -50,10 +51,10 @@ struct SafetyParameters {
   double ramp_time = 2.0;          ///< s, longest category-1 ramp before the brake
   double standstill_speed = 0.05;  ///< rad/s, wheels slower than this are standing
 
-  double slow_speed = 0.3;         ///< m/s, of the rims, under Reaction::kSlow
-  double clearance = 0;            ///< m, free distance ahead until the first message on the topic; 0: unlimited
-  double stop_delay = 0.03;        ///< s, from the event to the brake torque
-  double stop_deceleration = 0.5;  ///< m/s², which braking and ramping reach on every ground the robot drives on
+  double slow_speed = 0.3;           ///< m/s, of the rims, under Reaction::kSlow
+  double clearance = 0;              ///< m, free distance ahead until the first message on the topic; 0: unlimited
+  std::optional<double> stop_delay;  ///< s, from the event to the brake torque; absent: default_stop_delay
+  double stop_deceleration = 0.5;    ///< m/s², which braking and ramping reach on every ground the robot drives on
 
   // clang-format off
 #define CAUSE(...)
@@ -69,6 +70,17 @@ struct SafetyParameters {
   std::array<double, kMaxWheels> count_ripple{};
 };
 
+/// s. A stop takes the sensors of one period, the permit of the next and the torque of the one after.
+constexpr double fastest_stop(double period) noexcept {
+  return 3 * period;
+}
+
+/// s, stop_delay where it is left out.
+constexpr double default_stop_delay(double period) noexcept {
+  constexpr double kStopDelay = 0.03;
+  return std::max(kStopDelay, fastest_stop(period));
+}
+
 // clang-format off
 inline Keys keys(SafetyParameters& safety) {
   return joined({
@@ -82,7 +94,7 @@ inline Keys keys(SafetyParameters& safety) {
         {"standstill_speed", &safety.standstill_speed, "rad/s", 1.0e-6, 0.5},
         {"slow_speed", &safety.slow_speed, "m/s", 0, 50},
         {"clearance", &safety.clearance, "m", 0, 10000, kZeroIsOff},
-        {"stop_delay", &safety.stop_delay, "s", 0, 10},
+        {"stop_delay", &safety.stop_delay, "s", 0, 10, kOptional},
         {"stop_deceleration", &safety.stop_deceleration, "m/s²", 0.001, 100},
       },
 #define CAUSE(...)

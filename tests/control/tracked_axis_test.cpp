@@ -46,6 +46,17 @@ TEST(TrackedAxes, FollowATargetThatMovesWithALag) {
   EXPECT_EQ(axes[1].value, 0);
 }
 
+// From one cycle to the next an axis moves by no more than its distance.
+TEST(TrackedAxes, ArriveAndRestInASlowLoop) {
+  for (const double period : {0.01, 0.02, 0.05}) {
+    Axes axes{};
+    for (double time = 0; time < 3; time += period) track(axes, {0.05, -0.3}, kBounds, period);
+    for (const TrackedAxis& axis : axes) EXPECT_NEAR(axis.speed, 0, 1e-9) << period;
+    EXPECT_NEAR(axes[0].value, 0.05, 1e-9) << period;
+    EXPECT_NEAR(axes[1].value, -0.3, 1e-9) << period;
+  }
+}
+
 TEST(TrackedAxes, TurnAroundWithinTheirBounds) {
   Axes axes{};
   for (int k = 0; k < 3000; ++k) {

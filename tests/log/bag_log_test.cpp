@@ -138,6 +138,13 @@ TEST_F(ABagLog, HoldsMotionAndWhatWasBeforeIt) {
   EXPECT_EQ(log->unwritten(), 0u);
 }
 
+// A replay begins at a snapshot.
+TEST_F(ABagLog, HoldsASnapshotAtAnyRate) {
+  for (const double rate : {20.0, 50.0, 100.0, 1000.0})
+    EXPECT_GE(BagLog::before_ns(1 / rate), 1e9 * (static_cast<double>(kSnapshotCycles) / rate + 1)) << rate;
+  EXPECT_EQ(BagLog::before_ns(0.001), BagLog::kBeforeNs);
+}
+
 TEST_F(ABagLog, OnRequestHoldsWhatIsRequested) {
   parameters.telemetry.record = RecordMode::kRequest;
   open();

@@ -28,7 +28,7 @@ constexpr double kTimeout = 0.05;  // s, at first
 constexpr std::int64_t kTimeoutTicks = 50;
 constexpr std::array kTimeouts{0.0, 0.02, kTimeout, 0.1};  // s, that set_parameters takes
 constexpr std::int64_t kJudgesMargin = 6;                  // ticks, of the judge's T
-constexpr std::int64_t kWithRelease = 100;                 // driver cycles, MotionRequests::kInTransit
+constexpr std::int64_t kWithRelease = 100;                 // driver cycles, MotionRequests::in_transit_ns
 constexpr std::int64_t kInTransit = 3;  // driver cycles from a message to the command frame that the monitor reads
 constexpr std::int64_t kBrakesWithin = kPermitLife + 2;  // driver cycles for which the last permit lives at the gate
 constexpr std::int64_t kNever = -1'000'000;

@@ -184,7 +184,7 @@ TEST_F(ReadConditions, RefusesABatteryThatIsEmptyBeforeItIsLow) {
 
 TEST_F(ReadConditions, RefusesAStopThatIsFasterThanTheLoop) {
   file.set("rate", "  rate: 200");
-  file.set("stop_delay", "  stop_delay: 0.014");
+  file.set("ramp_time", "  ramp_time: 2\n  stop_delay: 0.014");
   EXPECT_THAT(file.refusal(), HasSubstr("safety_monitor.stop_delay = 0.014: must be at least three periods, 0.015 s "
                                         "at 200 Hz: no stop is faster " +
                                         at("stop_delay")));

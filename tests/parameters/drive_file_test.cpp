@@ -154,6 +154,20 @@ TEST_F(DriveFile, ATimeoutOfLessThanTenPeriodsIsRefused) {
   EXPECT_EQ(refusal(kCia402, "node: 2", "node: 2, host_timeout: 0.02"), "");
 }
 
+TEST_F(DriveFile, ATimeoutThatIsLeftOutHasTenPeriods) {
+  for (const auto& [rate, timeout] : {std::pair{500.0, 0.1}, {50.0, 0.2}, {20.0, 0.5}}) {
+    const CanParameters can = read(kCia402, rate);
+    EXPECT_DOUBLE_EQ(std::get<std::vector<cia402::Cia402Parameters>>(can.joints)[0].host_timeout, timeout) << rate;
+  }
+}
+
+TEST_F(DriveFile, AVelocityIsDerivedWhereTheBusHasRoom) {
+  for (const auto& [rate, room] : {std::pair{1000.0, true}, {1200.0, false}}) {
+    const CanParameters can = read(kCia402, rate);
+    EXPECT_EQ(std::get<std::vector<cia402::Cia402Parameters>>(can.joints)[0].velocity_has_room, room) << rate;
+  }
+}
+
 TEST_F(DriveFile, AReactionOnSilenceWithoutAnActionIsRefused) {
   EXPECT_THAT(refusal(kCia402, "node: 2", "node: 2, abort_option: 0, on_silence: holds"),
               HasSubstr("right_wheel_joint.on_silence = holds: contradicts abort_option: 0"));

@@ -17,6 +17,8 @@ using testing::IsEmpty;
 
 constexpr std::int64_t kWindow = kSecond;
 
+constexpr std::int64_t kInTransit = MotionRequests::in_transit_ns(1'000'000);
+
 class MotionRequestsTest : public testing::Test {
  protected:
   MotionRequestsTest() {
@@ -205,9 +207,9 @@ TEST_F(MotionRequestsTest, OfAnEarlierTimeThanTheGrantAreRevokedByTheirStamp) {
   now_ += 10 * kWindow;
   grant();
   now_ += kSecond;
-  requests_.request(teleop_, now_, kSecond + MotionRequests::kInTransit);
+  requests_.request(teleop_, now_, kSecond + kInTransit);
   EXPECT_FALSE(requests_.revoked(teleop_)) << "with the grant";
-  requests_.request(teleop_, now_, kSecond + MotionRequests::kInTransit + 1);
+  requests_.request(teleop_, now_, kSecond + kInTransit + 1);
   EXPECT_TRUE(requests_.revoked(teleop_));
   requests_.request(teleop_, now_, 0);
   EXPECT_TRUE(requests_.revoked(teleop_)) << "it requested motion before the grant, and goes on";
@@ -216,12 +218,28 @@ TEST_F(MotionRequestsTest, OfAnEarlierTimeThanTheGrantAreRevokedByTheirStamp) {
   EXPECT_FALSE(requests_.revoked(teleop_));
 }
 
+// A grant follows the zero velocity by up to ten cycles, half a second at 20 Hz.
+TEST_F(MotionRequestsTest, ASlowLoopHasLongerWaysFromTheZeroToTheGrant) {
+  constexpr std::int64_t kSlowPeriod = 50'000'000;
+  EarlierController earlier;
+  earlier.period_ns = kSlowPeriod;
+  requests_.start(earlier);
+  for (const std::int64_t cycles : {10, 11}) {
+    withdraw();
+    requests_.end(teleop_);
+    requests_.request(teleop_, now_);
+    now_ += cycles * kSlowPeriod;
+    grant();
+    EXPECT_EQ(requests_.revoked(teleop_), cycles > 10) << cycles;
+  }
+}
+
 TEST_F(MotionRequestsTest, OlderThanTheWindowWereNotMadeWithTheGrant) {
-  requests_.set_window(MotionRequests::kInTransit / 2);
+  requests_.set_window(kInTransit / 2);
   withdraw();
   requests_.end(teleop_);
   requests_.request(teleop_, now_);
-  now_ += MotionRequests::kInTransit / 2 + 1;  // a silence that a reset accepts
+  now_ += kInTransit / 2 + 1;  // a silence that a reset accepts
   grant();
   EXPECT_TRUE(requests_.revoked(teleop_));
 }

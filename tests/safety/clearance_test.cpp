@@ -18,7 +18,7 @@ double limit(double parameter) {
   parameters.clearance = parameter;
   parameters.stop_delay = kDelay;
   parameters.stop_deceleration = kDeceleration;
-  return Clearance(parameters).speed_limit({});
+  return Clearance(parameters, kPeriod).speed_limit({});
 }
 
 double topic_limit(double value, double parameter = 0) {
@@ -29,7 +29,18 @@ double topic_limit(double value, double parameter = 0) {
   OperatorInput input;
   input.clearances = 1;
   input.clearance = value;
-  return Clearance(parameters).speed_limit(input);
+  return Clearance(parameters, kPeriod).speed_limit(input);
+}
+
+TEST(ClearanceTest, WithoutAStopDelayAStopTakesThreePeriodsOfASlowLoop) {
+  const auto delay = [](double period) {
+    SafetyParameters parameters;
+    parameters.clearance = 1e-3;
+    parameters.stop_deceleration = 1e9;
+    return 1e-3 / Clearance(parameters, period).speed_limit({});
+  };
+  EXPECT_NEAR(delay(0.001), 0.03, 1e-9);
+  EXPECT_NEAR(delay(0.05), 0.15, 1e-9);
 }
 
 TEST(ClearanceTest, TheRobotStopsExactlyWithinIt) {

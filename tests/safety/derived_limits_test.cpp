@@ -85,6 +85,18 @@ TEST_F(DerivedLimits, OfStallAreMoreWhereWheelsDragEachOtherAndWhereLoopsAreSlow
   EXPECT_EQ(limits().stall.limit, kScrubbingStall);
 }
 
+// The window over which a speed is measured has two periods at least.
+TEST_F(DerivedLimits, OfTheAccelerationFollowTheWindowOfASlowLoop) {
+  const auto wall = [this](double period) {
+    const SafetyParameters limits = derived_limits(given_, robot_, kCommanded, period);
+    const JointModel& joint = robot_.joints[robot_.wheels[0].joint];
+    const double motor = 2 * joint.effort_limit / robot_.wheels[0].inertia;
+    return (*limits.wheel_acceleration.limit - motor) / *limits.wheel_speed.limit;
+  };
+  EXPECT_NEAR(wall(0.01), 1 / 0.02, 1e-9);
+  EXPECT_NEAR(wall(0.05), 1 / 0.1, 1e-9);
+}
+
 TEST_F(DerivedLimits, OfNotStoppingAreLongerOnlyWhereLoopsAreSlow) {
   EXPECT_EQ(limits().not_stopping.limit, kNotStopping);
   EXPECT_NEAR(derived_limits(given_, robot_, kCommanded, 0.01).not_stopping.limit.value(), 2 * kNotStopping, kRounding);

@@ -40,6 +40,14 @@ TEST_F(MachineConditionsTest, OverrunsOfTheLastSecondCount) {
   EXPECT_FALSE(overruns(101, 1000));
 }
 
+// A loop of 20 Hz cannot be late 50 times in a second.
+TEST_F(MachineConditionsTest, OverrunsOfHalfOfTheCyclesCountInASlowLoop) {
+  facts_ = MachineConditions(parameters(), 0.05);
+  EXPECT_FALSE(overruns(0, 40));
+  EXPECT_FALSE(overruns(10, 10));
+  EXPECT_TRUE(overruns(21, 10));
+}
+
 // A monitor starts, or restarts, beside a driver that has run for hours.
 TEST_F(MachineConditionsTest, OverrunsOfBeforeTheFirstLookDoNotCount) {
   EXPECT_FALSE(overruns(1000, 2000));

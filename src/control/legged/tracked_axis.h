@@ -3,11 +3,11 @@
 /// acceleration. From rest they go straight to their targets. With the vectors e of the distances, v of the speeds, and
 /// the norm |x| = Σ |xᵢ|/Aᵢ,
 ///
-///   wanted = e min(kFollow, √(2/|e|), minᵢ Vᵢ/|eᵢ|)      |Δv| ≤ Δt
+///   wanted = e min(kFollow, 1/Δt, √(2/|e|), minᵢ Vᵢ/|eᵢ|)      |Δv| ≤ Δt
 ///
 /// From rest the axes brake in time and overshoot by less than the way of one cycle. An axis that moves while another
 /// one gets a new target may pass its own, because it brakes with less. The axes lag behind a target that moves by
-/// 1/kFollow seconds, or |v|/2 where that is longer.
+/// 1/kFollow seconds or a cycle, or |v|/2 where that is longer.
 
 #include <algorithm>
 #include <array>
@@ -42,7 +42,7 @@ template <std::size_t N>
 void track(std::array<TrackedAxis, N>& axes, const std::array<double, N>& targets,
            const std::array<AxisBounds, N>& bounds, double dt) noexcept {
   std::array<double, N> distance{}, change{};
-  double rate = TrackedAxis::kFollow;
+  double rate = std::min(TrackedAxis::kFollow, 1 / dt);
   for (std::size_t i = 0; i < N; ++i) {
     distance[i] = targets[i] - axes[i].value;
     rate = std::min(rate, bounds[i].speed / std::abs(distance[i]));

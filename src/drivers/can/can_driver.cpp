@@ -29,6 +29,25 @@ DriverFault fault_of(DriveCause cause) noexcept {
   }
 }
 
+/// Returns why a drive sends no velocity; "" if it does.
+const char* why_no_velocity(VelocitySource source) noexcept {
+  switch (source) {
+    case VelocitySource::kDrive:
+      break;
+    case VelocitySource::kNotRequested:
+      return "velocity_pdo is off";
+    case VelocitySource::kNoRoom:
+      return "the bus has no room for it: lower robot.rate";
+    case VelocitySource::kNoUnit:
+      return "its unit is not known: state velocity_unit";
+    case VelocitySource::kNotMapped:
+      return "the drive does not map 606C";
+    case VelocitySource::kNotSent:
+      return "the drive maps 606C, and does not send it";
+  }
+  return "";
+}
+
 }  // namespace
 
 CanDriver::CanDriver(const CanParameters& parameters, std::span<const Brake> brakes, std::size_t joint_count,
@@ -160,6 +179,17 @@ std::string CanDriver::description() const {
          << (known.reaction == SilenceReaction::kUnknown ? "does what is unknown" : word_of(known.reaction));
     if (known.evidence == ReactionEvidence::kRead) text << " (read from the drive)";
     if (known.evidence == ReactionEvidence::kConfirmed) text << " (stated in the drive file)";
+  }
+  std::string without;
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const char* reason = why_no_velocity(statuses.drives[i].velocity);
+    if (*reason == '\0') continue;
+    without += (without.empty() ? "" : ", ") + drives_[i].drive_parameters().joint + " (" + reason + ")";
+  }
+  if (!without.empty()) {
+    text << "; the velocity follows from the positions, so that frames that are late by up to a period move the joint "
+            "and the robot sways (docs/drivers.md), of "
+         << without;
   }
   return text.str();
 }

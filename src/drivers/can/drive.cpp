@@ -221,6 +221,7 @@ void Drive::settle_reaction() noexcept {
 DriveStatus Drive::full_status() const noexcept {
   DriveStatus status = status_;
   status.on_silence = on_silence_;
+  status.velocity = velocity_source();
   add_details(status);
   return status;
 }

@@ -65,6 +65,16 @@ enum class ReactionEvidence : std::uint8_t {
   kConfirmed,  ///< stated by the user in the drive file
 };
 
+/// The origin of a joint's velocity, or why it follows from the positions.
+enum class VelocitySource : std::uint8_t {
+  kDrive,         ///< The drive sends it.
+  kNotRequested,  ///< The drive file does not want it.
+  kNoRoom,        ///< It would overload the bus.
+  kNoUnit,        ///< Its unit is not known.
+  kNotMapped,     ///< The drive does not map it.
+  kNotSent,       ///< The drive maps it, and has not sent it yet.
+};
+
 struct KnownReaction {
   SilenceReaction reaction = SilenceReaction::kUnknown;
   ReactionEvidence evidence = ReactionEvidence::kNone;
@@ -82,6 +92,7 @@ struct DriveStatus {
   double expected = 0;
   std::array<std::uint64_t, 5> details{};  ///< of an error, as the dialect counts them
   KnownReaction on_silence{};
+  VelocitySource velocity = VelocitySource::kDrive;  ///< known from `ready` on
 
   bool operator==(const DriveStatus&) const = default;
 };
@@ -161,6 +172,7 @@ class Drive {
   /// Runs one cycle. The torque is finite and within the limit.
   virtual void advance(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept = 0;
   virtual void add_details(DriveStatus& status) const noexcept = 0;
+  virtual VelocitySource velocity_source() const noexcept { return VelocitySource::kDrive; }
   /// Uses nothing but the status and the parameters.
   virtual std::string code_words(const DriveStatus& status) const = 0;
 

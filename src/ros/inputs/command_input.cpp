@@ -106,7 +106,7 @@ bool CommandInput::follow(const MotionPermission& permission, std::int64_t loop_
 
 void CommandInput::end_command(std::int64_t loop_ns) {
   value_.content = {};
-  value_.contested = std::abs(loop_ns - command_ns_) < kUnread ? 1 : kNoMessage;
+  value_.contested = std::abs(loop_ns - command_ns_) < unread_ns_ ? 1 : kNoMessage;
   ++value_.count;
 }
 

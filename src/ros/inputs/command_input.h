@@ -79,7 +79,10 @@ class CommandInput final : public CommandIntake {
   /// Ends the request in force, if it has this mode.
   void withdraw(std::uint64_t mode, std::int64_t loop_ns);
 
-  void start(const EarlierController& earlier) override { requests_.start(earlier); }
+  void start(const EarlierController& earlier) override {
+    unread_ns_ = unread_ns(earlier.period_ns);
+    requests_.start(earlier);
+  }
 
   /// Removes senders that have become silent. Returns true if that changed the value of the inbox.
   bool update(std::int64_t loop_ns) override;
@@ -109,7 +112,8 @@ class CommandInput final : public CommandIntake {
   CommandSenders senders_;
   MotionRequests requests_;
   VelocityCommand value_;
-  std::int64_t command_ns_ = 0;                          ///< when the command in force arrived
+  std::int64_t command_ns_ = 0;  ///< when the command in force arrived
+  std::int64_t unread_ns_ = unread_ns(0);
   std::map<std::string, StampVerdict> reported_stamps_;  ///< last reported verdict of each sender with wrong stamps
   std::map<std::string, std::int64_t>
       reported_ns_;  ///< time of each report, by sender and verdict or by the competing senders' names

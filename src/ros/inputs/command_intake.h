@@ -2,6 +2,7 @@
 /// A CommandIntake selects the command for the controller: the newest one (CommandInput), or that of the winner among
 /// several sources (CommandMux). It is pure; time is that of the loop's frames.
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -12,9 +13,11 @@
 
 namespace robot_control {
 
-/// ns of the loop's time for which the controller may not have read a message: one cycle at 100 Hz, the lowest
-/// robot.rate.
-inline constexpr std::int64_t kUnread = 10'000'000;
+/// Returns for how many ns of the loop's time the controller may not have read a message: a period, at least 10 ms.
+constexpr std::int64_t unread_ns(std::int64_t period_ns) noexcept {
+  constexpr std::int64_t kUnread = 10'000'000;
+  return std::max(kUnread, period_ns);
+}
 
 class CommandIntake {
  public:

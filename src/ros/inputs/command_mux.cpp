@@ -32,6 +32,7 @@ void CommandMux::set_timeout(double timeout) {
 }
 
 void CommandMux::start(const EarlierController& earlier) {
+  unread_ns_ = unread_ns(earlier.period_ns);
   for (Source& source : sources_) source.input.start(earlier);
 }
 
@@ -125,7 +126,7 @@ void CommandMux::take_result(std::int64_t loop_ns, bool message) {
 }
 
 bool CommandMux::unread(std::int64_t loop_ns) const {
-  return message_ns_ && std::abs(loop_ns - *message_ns_) < kUnread;
+  return message_ns_ && std::abs(loop_ns - *message_ns_) < unread_ns_;
 }
 
 void CommandMux::add_refusals() {

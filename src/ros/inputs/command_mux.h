@@ -89,6 +89,7 @@ class CommandMux final : public CommandIntake {
   std::vector<Lock> locks_;
   std::optional<std::size_t> winner_;
   std::optional<std::int64_t> message_ns_;  ///< when the last message of any source arrived
+  std::int64_t unread_ns_ = unread_ns(0);
   VelocityCommand value_;
   std::vector<ReportLine> lines_;
 };

@@ -46,7 +46,7 @@ void MotionRequests::forget_the_oldest_closed() {
 void MotionRequests::request(const Publisher& sender, std::int64_t now_ns, std::int64_t age_ns) {
   Record& record = record_of(sender);
   record.requests = true;
-  record.revoked |= permission_.granted && now_ns - age_ns < granted_ns_ - kInTransit;
+  record.revoked |= permission_.granted && now_ns - age_ns < granted_ns_ - in_transit_ns(earlier_.period_ns);
   record.requested_ns = now_ns;
 }
 
@@ -74,7 +74,8 @@ bool MotionRequests::follow(const MotionPermission& permission, std::int64_t now
       record.revoked |= record.requests || recent(record, now_ns);
       record.zero_sent = false;
     }
-    const bool with_grant = record.zero_sent && recent(record, now_ns) && now_ns - *record.requested_ns <= kInTransit;
+    const bool with_grant = record.zero_sent && recent(record, now_ns) &&
+                            now_ns - *record.requested_ns <= in_transit_ns(earlier_.period_ns);
     if (granted && record.requests && !with_grant && !record.revoked) ended = record.revoked = true;
   }
   return ended;

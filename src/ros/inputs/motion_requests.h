@@ -6,8 +6,8 @@
 /// (Permit::withdrawals). A connection is revoked
 ///   - by a withdrawal, if it requests motion then or did so within `window` before;
 ///   - when permission is granted again, if it requests motion then: such a request was made during the stop. A request
-///     that follows a zero velocity and is no older than kInTransit and `window` was made with the grant;
-///   - by a request whose stamp is older than the last grant by more than kInTransit: it was made before that grant;
+///     that follows a zero velocity and is no older than in_transit_ns and `window` was made with the grant;
+///   - by a request whose stamp is older than the last grant by more than in_transit_ns: it was made before that grant;
 ///   - from the beginning, if this controller was restarted and the sender's process was present at its start
 ///     (EarlierController): its requests to the earlier controller are not known.
 /// It stays revoked until its own next accepted zero velocity. A new connection of a process (same_process) continues
@@ -16,6 +16,7 @@
 ///
 /// Time is that of the loop's frames.
 
+#include <algorithm>
 #include <boost/weak_ptr.hpp>
 #include <cstddef>
 #include <cstdint>
@@ -49,12 +50,17 @@ struct EarlierController {
   std::vector<Publisher> present;  ///< publishers of command topics, without connections
   std::uint64_t run = 0;           ///< run of the last command of an earlier controller; 0: none
   bool requested = false;          ///< the last message of its run was received, and was no zero velocity
+  std::int64_t period_ns = 0;      ///< of the loop
 };
 
 class MotionRequests {
  public:
-  /// ns from a zero velocity that releases motion to the permit that grants it, at 100 Hz.
-  static constexpr std::int64_t kInTransit = 100'000'000;
+  /// Returns the ns from a zero velocity that releases motion to the permit that grants it: ten periods, at least
+  /// 100 ms.
+  static constexpr std::int64_t in_transit_ns(std::int64_t period_ns) noexcept {
+    constexpr std::int64_t kInTransit = 100'000'000;
+    return std::max(kInTransit, 10 * period_ns);
+  }
   static constexpr std::size_t kMaxClosed = 256;
 
   /// Sets after which silence a request ends (`window_ns` > 0), except for the rules of revocation.

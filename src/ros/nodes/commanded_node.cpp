@@ -11,6 +11,7 @@ EarlierController CommandedNode::earlier_controller(ros::NodeHandle& handle, con
   std::vector<std::string> resolved;
   for (const std::string& topic : topics) resolved.push_back(handle.resolveName(topic));
   EarlierController earlier;
+  earlier.period_ns = parameters().loop.period_ns();
   const Lookup found = process().output().last_whole(command_);
   if (found == Lookup::kFrame) earlier.run = command_.head.run;
   earlier.requested = found == Lookup::kFrame ? requests_motion(command_) : found == Lookup::kCorrupt;

@@ -214,6 +214,7 @@ int run_node(int argc, char** argv, const NodeProgram& program) {
     for (const std::string& text : setup.unexpected_overrides) ROS_INFO("%s", text.c_str());
     for (const std::string& text : setup.parameters.warnings) ROS_WARN("%s", text.c_str());
     if (!setup.unread_description.empty()) ROS_WARN("%s", setup.unread_description.c_str());
+    for (const std::string& text : node->rate_notes()) ROS_WARN("%s", text.c_str());
     node->connect(handle);
     ros::AsyncSpinner callbacks(kCallbackThreads);
     callbacks.start();

@@ -27,6 +27,9 @@ class Node {
  public:
   virtual ~Node() = default;
 
+  /// Returns what the rate of the loop costs, in sentences that are logged at the start.
+  virtual std::vector<std::string> rate_notes() const { return {}; }
+
   /// Creates topics and services; the locks are held by then. An exception refuses the start.
   virtual void connect(ros::NodeHandle& handle) = 0;
 

@@ -6,12 +6,14 @@
 #include <utility>
 #include <vector>
 
+#include "configuration/rate_notes.h"
 #include "loop/processes/process.h"
 #include "robots/robot_kind.h"
 #include "ros/messages/time_map.h"
 #include "ros/nodes/node.h"
 #include "ros/reports/timing_report.h"
 #include "rt/clock.h"
+#include "signals/robot_kinds.h"
 
 namespace robot_control {
 
@@ -22,11 +24,20 @@ class ProcessNode : public Node {
   template <class... More>
   ProcessNode(const Setup& setup, Role role, More&&... more)
       : setup_(setup),
+        role_(role),
         time_(setup.parameters.loop.clock),
         composed_(compose(setup.parameters, *setup.machine)),
         process_(setup.parameters, *composed_, setup.bus, std::forward<More>(more)...) {
     if (setup.parameters.loop.clock == ClockMode::kLockstep) return;  // no time passes within a cycle
     timing_ = std::make_unique<TimingReport>(setup.parameters.loop, setup.bus, role);
+  }
+
+  std::vector<std::string> rate_notes() const override {
+    const bool controller = role_ == Role::kController;
+    const std::string_view block = controller ? names_of_kind(composed_->kind()).controller : program_of(role_);
+    std::vector<std::string> notes = robot_control::rate_notes(parameters(), block);
+    for (std::string& note : composed_->rate_notes(role_)) notes.push_back(std::move(note));
+    return notes;
   }
 
   void poll() override {
@@ -55,6 +66,7 @@ class ProcessNode : public Node {
 
  private:
   Setup setup_;
+  Role role_;
   TimeMap time_;
   std::unique_ptr<Robot> composed_;
   Work process_;

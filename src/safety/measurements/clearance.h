@@ -19,8 +19,9 @@ namespace robot_control {
 
 class Clearance {
  public:
-  explicit Clearance(const SafetyParameters& parameters) noexcept
-      : delay_(parameters.stop_delay),
+  /// `period` s.
+  Clearance(const SafetyParameters& parameters, double period) noexcept
+      : delay_(parameters.stop_delay.value_or(default_stop_delay(period))),
         deceleration_(parameters.stop_deceleration),
         from_parameter_(parameters.clearance > 0 ? speed(parameters.clearance) : kNoSpeedLimit) {}
 

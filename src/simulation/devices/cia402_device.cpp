@@ -66,6 +66,7 @@ void Cia402Device::add_axis_objects(unsigned axis) {
   add(kDcLinkVoltage, 48000, 4, false);
   add({0x608F, 1}, static_cast<std::uint32_t>(std::lround(parameters_.counts_per_turn)), 4, false);
   add({0x608F, 2}, 1, 4, false);
+  if (parameters_.velocity_unit == kRpm) add(kVelocityUnit, 0x00B4'4700, 4, true);
   add(kPeriodValue, 1, 1, true);
   add(kPeriodIndex, 0xFD, 1, true);
   if (!parameters_.has_reactions) return;
@@ -358,8 +359,12 @@ void Cia402Device::send_states() {
     update_axis(axis);
     refresh_objects(axis);
   }
+  ++syncs_;
   for (std::uint8_t number = 1; number <= kPdos; ++number) {
     if (!enabled(PdoKind::kTransmit, number)) continue;
+    const Pdo unmapped{.kind = PdoKind::kTransmit, .number = number, .mapping = {}};
+    const std::uint32_t type = objects_.value({unmapped.parameters(), 2});
+    if (type == 0 || type > canopen::kMaxSyncs || syncs_ % type != 0) continue;
     const Pdo pdo = mapped_pdo(PdoKind::kTransmit, number);
     std::array<std::int64_t, canopen::kMaxPdoEntries> values{};
     for (std::size_t i = 0; i < pdo.mapping.count; ++i) values[i] = objects_.value(pdo.mapping.entries[i].object);

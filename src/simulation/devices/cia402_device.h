@@ -26,10 +26,10 @@ struct Cia402DeviceParameters {
   bool has_reactions = true;              ///< 1016, 1029, 6007, 605A and 605E exist.
   double rated_torque = 2;                ///< N·m
   double counts_per_turn = 4096;
-  double velocity_unit = 2 * 3.14159265358979323846 / 60;  ///< rad/s
-  double brake_damping = 1;                                ///< N·m·s/rad, of its own brake
-  double brake_stiffness = 25;                             ///< N·m/rad
-  double brake_hold_speed = 0.2;                           ///< rad/s
+  double velocity_unit = cia402::kRpm;  ///< rad/s; 60A9 exists where it is rpm
+  double brake_damping = 1;             ///< N·m·s/rad, of its own brake
+  double brake_stiffness = 25;          ///< N·m/rad
+  double brake_hold_speed = 0.2;        ///< rad/s
   std::uint32_t vendor = 0x1A5;
   std::uint32_t product = 0x402;
   double clock_ppm = 0;
@@ -92,7 +92,8 @@ class Cia402Device final : public Device {
   canopen::NmtState nmt_ = canopen::NmtState::kPreOperational;
   std::int64_t now_ns_ = 0;
   std::int64_t boot_ns_ = 0;
-  bool announced_ = false;  // The boot-up message was sent.
+  std::uint32_t syncs_ = 0;  // that were received
+  bool announced_ = false;   // The boot-up message was sent.
   std::int64_t heartbeat_ns_ = 0;
   std::int64_t host_ns_ = -1;  // last heartbeat of the host; −1: none yet
 };

@@ -37,7 +37,7 @@ Cia402DeviceParameters device_of(const cia402::Cia402Parameters& drive, const Br
   device.fixed_mapping = drive.pdos == cia402::PdoSource::kFixed;
   device.rated_torque = drive.rated_torque != 0 ? drive.rated_torque : drive.drive.torque_limit / drive.drive.gear;
   if (drive.counts_per_turn != 0) device.counts_per_turn = drive.counts_per_turn;
-  device.velocity_unit = drive.velocity_unit;
+  if (drive.velocity_unit != 0) device.velocity_unit = drive.velocity_unit;
   if (drive.vendor != 0) device.vendor = static_cast<std::uint32_t>(drive.vendor);
   if (drive.product != 0) device.product = static_cast<std::uint32_t>(drive.product);
   device.brake_damping = brake.damping / (drive.drive.gear * drive.drive.gear);

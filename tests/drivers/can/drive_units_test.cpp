@@ -32,5 +32,14 @@ TEST(DriveUnits, ObjectsInThousandthsAreSi) {
   EXPECT_DOUBLE_EQ(dc_link_voltage(48'000), 48);
 }
 
+// The values of Synapticon's and Nanotec's manuals.
+TEST(DriveUnits, ReadTheUnitOfTheVelocity) {
+  EXPECT_DOUBLE_EQ(velocity_unit(0x00B4'4700), kRpm);
+  EXPECT_DOUBLE_EQ(velocity_unit(0xFDB4'4700), 0.001 * kRpm);
+  EXPECT_DOUBLE_EQ(velocity_unit(0x00B4'0300), 2 * std::numbers::pi);
+  EXPECT_EQ(velocity_unit(0x00B5'0300), 0) << "increments per second";
+  EXPECT_EQ(velocity_unit(0), 0);
+}
+
 }  // namespace
 }  // namespace robot_control::cia402

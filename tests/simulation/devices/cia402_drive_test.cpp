@@ -147,7 +147,7 @@ TEST(Cia402Drive, TakesAVelocityAtAnyPlaceOfAFixedPdo) {
   Cia402Pair pair = cia402_pair(5);
   pair.device.fixed_mapping = true;
   pair.drive.pdos = PdoSource::kFixed;
-  pair.drive.velocity_pdo = true;
+  pair.drive.velocity_pdo = VelocityPdo::kTrue;
   EXPECT_THAT(words_after(pair), HasSubstr("running"));
   EXPECT_THAT(words_after(pair,
                           [](auto& device) {
@@ -165,9 +165,89 @@ TEST(Cia402Drive, TakesAVelocityAtAnyPlaceOfAFixedPdo) {
   EXPECT_NEAR(rig.drive().sample().joint.velocity * -2.5, 10, 0.06);  // half a unit of 1 rpm
 }
 
+VelocitySource velocity_of(const Cia402Pair& pair, const std::function<void(Cia402Device&)>& change = {}) {
+  DeviceRig rig;
+  Cia402Device& device = add(rig, pair);
+  if (change) change(device);
+  EXPECT_TRUE(rig.runs()) << rig.drive().words();
+  rig.motor().velocity = 10;
+  rig.run(0.05);
+  EXPECT_NEAR(rig.drive().sample().joint.velocity * -2.5, 10, 0.3) << "a count of the position per 8 ms";
+  return rig.drive().full_status().velocity;
+}
+
+TEST(Cia402Drive, MapsTheVelocityWhereItCan) {
+  const Cia402Pair pair = cia402_pair(5);
+  EXPECT_EQ(velocity_of(pair), VelocitySource::kDrive);
+  EXPECT_EQ(velocity_of(pair,
+                        [](Cia402Device& device) {
+                          device.objects().remove({0x606C, 0});
+                        }),
+            VelocitySource::kNotMapped);
+  EXPECT_EQ(velocity_of(pair,
+                        [](Cia402Device& device) {
+                          device.objects().remove({0x1801, 1});
+                        }),
+            VelocitySource::kNotMapped);
+  EXPECT_EQ(velocity_of(pair,
+                        [](Cia402Device& device) {
+                          device.objects().remove({0x1A01, 2});
+                        }),
+            VelocitySource::kDrive)
+      << "one entry is enough";
+}
+
+TEST(Cia402Drive, DrivesOnWithoutADerivedVelocityThatIsNotSent) {
+  DeviceRig rig;
+  Cia402Device& device = add(rig, cia402_pair(5));
+  ASSERT_TRUE(rig.runs());
+  device.objects().set({0x1801, 1}, canopen::kPdoDisabled);
+  rig.motor().velocity = 10;
+  rig.run(0.1);
+  EXPECT_EQ(rig.drive().status().state, DriveState::kRunning);
+  EXPECT_NEAR(rig.drive().sample().joint.velocity * -2.5, 10, 0.3);
+}
+
+// A wrong unit would move the joint by a multiple of its way.
+TEST(Cia402Drive, MapsNoVelocityWithoutItsUnit) {
+  Cia402Pair pair = cia402_pair(5);
+  const auto without = [](Cia402Device& device) { device.objects().remove(kVelocityUnit); };
+  EXPECT_EQ(velocity_of(pair, without), VelocitySource::kNoUnit);
+  EXPECT_EQ(velocity_of(pair, [](Cia402Device& device) { device.objects().set(kVelocityUnit, 0x00B5'0300); }),
+            VelocitySource::kNoUnit)
+      << "increments per second";
+  pair.drive.velocity_unit = pair.device.velocity_unit = 0.01 * kRpm;
+  EXPECT_EQ(velocity_of(pair, without), VelocitySource::kDrive) << "it is stated";
+}
+
+TEST(Cia402Drive, MapsNoVelocityThatIsNotWantedOrHasNoRoom) {
+  Cia402Pair pair = cia402_pair(5);
+  pair.drive.velocity_has_room = false;
+  EXPECT_EQ(velocity_of(pair), VelocitySource::kNoRoom);
+  pair.drive.velocity_pdo = VelocityPdo::kOff;
+  EXPECT_EQ(velocity_of(pair), VelocitySource::kNotRequested);
+}
+
+TEST(Cia402Drive, UsesTheVelocityOfAFixedPdoThatComesWithSync) {
+  Cia402Pair pair = cia402_pair(5);
+  pair.device.fixed_mapping = true;
+  pair.drive.pdos = PdoSource::kFixed;
+  EXPECT_EQ(velocity_of(pair), VelocitySource::kDrive);
+  EXPECT_EQ(velocity_of(pair,
+                        [](Cia402Device& device) {
+                          device.objects().set({0x1801, 2}, canopen::kOnEvent);
+                        }),
+            VelocitySource::kNotMapped);
+  EXPECT_EQ(velocity_of(pair,
+                        [](Cia402Device& device) {
+                          device.objects().set({0x1A01, 0}, 0);
+                        }),
+            VelocitySource::kNotMapped);
+}
+
 TEST(Cia402Drive, AVelocityThatIsNotSentAnyMoreIsNamed) {
   Cia402Pair pair = cia402_pair(5);
-  pair.drive.velocity_pdo = true;
+  pair.drive.velocity_pdo = VelocityPdo::kTrue;
   DeviceRig rig;
   Cia402Device& device = add(rig, pair);
   ASSERT_TRUE(rig.runs());

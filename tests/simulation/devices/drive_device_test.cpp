@@ -37,7 +37,7 @@ Dialect odrive_dialect(const std::string& name, odrive::Firmware firmware, doubl
           .count = 2 * std::numbers::pi / 8192};
 }
 
-Dialect cia402_dialect(const std::string& name, cia402::TorqueMode mode, bool velocity_pdo) {
+Dialect cia402_dialect(const std::string& name, cia402::TorqueMode mode, cia402::VelocityPdo velocity_pdo) {
   return {.name = name,
           .add = [=](DeviceRig& rig, std::uint8_t node, double clock_ppm) -> Device& {
             Cia402Pair pair = cia402_pair(node);
@@ -56,9 +56,9 @@ const Dialect kDialects[] = {
     odrive_dialect("Odrive05", odrive::Firmware::k05, 0),
     odrive_dialect("Odrive06", odrive::Firmware::k06, 0),
     odrive_dialect("Odrive06Cyclic", odrive::Firmware::k06, 0.002),
-    cia402_dialect("Cia402Cyclic", cia402::TorqueMode::kAny, false),
-    cia402_dialect("Cia402VelocityPdo", cia402::TorqueMode::kAny, true),
-    cia402_dialect("Cia402Profile", cia402::TorqueMode::kProfile, false),
+    cia402_dialect("Cia402Cyclic", cia402::TorqueMode::kAny, cia402::VelocityPdo::kOff),
+    cia402_dialect("Cia402VelocityPdo", cia402::TorqueMode::kAny, cia402::VelocityPdo::kTrue),
+    cia402_dialect("Cia402Profile", cia402::TorqueMode::kProfile, cia402::VelocityPdo::kDerived),
 };
 
 void PrintTo(const Dialect& dialect, std::ostream* out) {

@@ -77,7 +77,7 @@ TEST(PlannedLoad, IsThatOfTheFramesOnTheBus) {
   expect_planned_load<OdrivePair>({odrive_pair(1), odrive_pair(2)}, 1000);
   expect_planned_load<OdrivePair>({cyclic}, 1000);
   Cia402Pair with_velocity = cia402_pair(1);
-  with_velocity.drive.velocity_pdo = true;
+  with_velocity.drive.velocity_pdo = cia402::VelocityPdo::kTrue;
   expect_planned_load<Cia402Pair>({cia402_pair(1), cia402_pair(2)}, 1000);
   expect_planned_load<Cia402Pair>({with_velocity}, 500);
 }

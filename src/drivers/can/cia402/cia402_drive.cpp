@@ -52,7 +52,9 @@ void Cia402Drive::join(Cia402Drive& first, Cia402Drive& second) noexcept {
 
 std::vector<PlannedFrames> Cia402Drive::plan() const {
   std::vector<PlannedFrames> plan{{.data_bytes = 4, .per_cycle = 1}, {.data_bytes = 8, .per_cycle = 1}};
-  if (parameters_.velocity_pdo) plan.push_back({.data_bytes = 4, .per_cycle = 1});
+  const bool velocity = parameters_.velocity_pdo == VelocityPdo::kTrue ||
+                        (parameters_.velocity_pdo == VelocityPdo::kDerived && parameters_.velocity_has_room);
+  if (velocity) plan.push_back({.data_bytes = 4, .per_cycle = 1.0 / kVelocitySyncs});
   plan.push_back({.data_bytes = 1, .per_second = 10});
   plan.push_back({.data_bytes = 8, .per_second = 2 * 1.0e9 / kVoltageNs});
   return plan;
@@ -111,7 +113,7 @@ void Cia402Drive::receive_state(const can_frame& frame, std::int64_t now_ns) noe
   const auto own = [this](const PdoEntry& entry) {
     return on_axis(entry.object, static_cast<unsigned>(parameters_.axis));
   };
-  if (parameters_.velocity_pdo && decode_pdo(pdos.velocity, node(), frame, values)) {
+  if (sends_velocity() && decode_pdo(pdos.velocity, node(), frame, values)) {
     velocity_ =
         setup_.units().velocity(static_cast<std::int32_t>(value_of(pdos.velocity, values, own(kVelocityEntry))));
     velocity_ns_ = now_ns;
@@ -124,8 +126,8 @@ void Cia402Drive::receive_state(const can_frame& frame, std::int64_t now_ns) noe
   const double count = 2 * std::numbers::pi / setup_.units().counts_per_turn;
   counts_ = continued(counts_.value_or(raw), raw);
   const double position = count * static_cast<double>(*counts_);
-  if (parameters_.velocity_pdo && velocity_ns_ == 0) return judge_power();
-  if (parameters_.velocity_pdo) {
+  if (needs_velocity() && velocity_ns_ == 0) return judge_power();
+  if (has_velocity(now_ns)) {
     accept_position(position, velocity_, now_ns);
   } else {
     accept_position(position, now_ns);
@@ -195,7 +197,7 @@ void Cia402Drive::advance_power(const DriveCommand& command, std::int64_t now_ns
     next_reset_ns_ = now_ns + kResetCycles * period_ns_;
   }
   if (phase_ == Phase::kRunning) {
-    if (parameters_.velocity_pdo && now_ns - velocity_ns_ > max_silence_ns()) {
+    if (needs_velocity() && !has_velocity(now_ns)) {
       return fail(DriveCause::kSilent, "velocity");
     }
     set(DriveState::kRunning, DriveCause::kNone);
@@ -273,6 +275,11 @@ void Cia402Drive::send_nmt(NmtCommand command, std::int64_t now_ns, FrameBatch& 
   if (now_ns < next_nmt_ns_) return;
   next_nmt_ns_ = now_ns + kNmtNs;
   send.add(canopen::encode_nmt({.command = command, .node = node()}));
+}
+
+VelocitySource Cia402Drive::velocity_source() const noexcept {
+  const VelocitySource source = setup_.velocity_source();
+  return source == VelocitySource::kDrive && set_up() && velocity_ns_ == 0 ? VelocitySource::kNotSent : source;
 }
 
 void Cia402Drive::add_details(DriveStatus& status) const noexcept {

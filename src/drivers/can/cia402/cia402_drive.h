@@ -6,8 +6,9 @@
 ///
 /// Each step of the power state machine waits for the statusword of the one before. In `running` the axis receives
 /// controlword and torque in each cycle, and answers each SYNC (canopen_host.h). In a fault the controlword requests
-/// a quick stop. A velocity with a PDO of its own replaces that of the position's PDO before it, and is judged for
-/// silence by itself. The error of a drive is reset with the operator's reset alone.
+/// a quick stop. A velocity with a PDO of its own replaces that of the position's PDO before it. One that the drive
+/// file demands is judged for silence by itself; any other one is used while it comes. The error of a drive is reset
+/// with the operator's reset alone.
 
 #include <cstdint>
 #include <optional>
@@ -38,6 +39,7 @@ class Cia402Drive final : public Drive {
   void restart(bool reset, std::int64_t now_ns) noexcept override;
   void advance(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept override;
   void add_details(DriveStatus& status) const noexcept override;
+  VelocitySource velocity_source() const noexcept override;
   std::string code_words(const DriveStatus& status) const override;
 
   void receive_network(const can_frame& frame, std::int64_t now_ns) noexcept;
@@ -53,6 +55,11 @@ class Cia402Drive final : public Drive {
   void read_voltage(std::int64_t now_ns, FrameBatch& send) noexcept;
   void send_command(std::uint16_t controlword, double torque, FrameBatch& send) const noexcept;
   void send_nmt(canopen::NmtCommand command, std::int64_t now_ns, FrameBatch& send) noexcept;
+  bool needs_velocity() const noexcept { return parameters_.velocity_pdo == VelocityPdo::kTrue; }
+  bool sends_velocity() const noexcept { return setup_.velocity_source() == VelocitySource::kDrive; }
+  bool has_velocity(std::int64_t now_ns) const noexcept {
+    return velocity_ns_ != 0 && now_ns - velocity_ns_ <= max_silence_ns();
+  }
   bool set_up() const noexcept { return phase_ > Phase::kSetup; }
   std::uint8_t node() const noexcept { return static_cast<std::uint8_t>(drive_parameters().node); }
 

@@ -2,7 +2,6 @@
 /// Cia402Parameters are the statements of the drive file about one axis of a CiA 402 drive.
 
 #include <cstdint>
-#include <numbers>
 #include <vector>
 
 #include "drivers/can/drive_parameters.h"
@@ -28,18 +27,30 @@ inline std::vector<Word> words_of(PdoSource) {
   return {{"written", PdoSource::kWritten}, {"fixed", PdoSource::kFixed}};
 }
 
+/// Whether 606C is mapped to a second TPDO. Without it the velocity is the difference of positions.
+enum class VelocityPdo : std::uint8_t {
+  kDerived,  ///< where the bus has room, the unit is known and the drive maps it
+  kTrue,     ///< refused where the drive does not map it
+  kOff,
+};
+
+inline std::vector<Word> words_of(VelocityPdo) {
+  return {{"derived", VelocityPdo::kDerived}, {"true", VelocityPdo::kTrue}, {"off", VelocityPdo::kOff}};
+}
+
 struct Cia402Parameters {
   DriveParameters drive{};
   std::uint64_t axis = 0;              ///< of a drive with two axes: 1 has its objects at 6800 and its PDOs 3 and 4
   TorqueMode mode = TorqueMode::kAny;  ///< cst and tq outweigh 6502.
   PdoSource pdos = PdoSource::kWritten;
-  bool velocity_pdo = false;   ///< 606C in a second TPDO; otherwise the velocity is the difference of positions.
-  double rated_torque = 0;     ///< N·m, of the motor; 0: 6076
-  double counts_per_turn = 0;  ///< of 6064 and the motor; 0: 608F
-  double velocity_unit = 2 * std::numbers::pi / 60;  ///< rad/s of one unit of 606C
-  double torque_slope = 0;                           ///< N·m/s, of the motor, in tq; 0: the drive's own
-  std::uint64_t vendor = 0;                          ///< 1018:1; 0: not compared
-  std::uint64_t product = 0;                         ///< 1018:2; 0: not compared
+  VelocityPdo velocity_pdo = VelocityPdo::kDerived;
+  bool velocity_has_room = true;       ///< on the bus; not of the drive file
+  double rated_torque = 0;             ///< N·m, of the motor; 0: 6076
+  double counts_per_turn = 0;          ///< of 6064 and the motor; 0: 608F
+  double velocity_unit = 0;            ///< rad/s of one unit of 606C; 0: 60A9, and 1 rpm with VelocityPdo::kTrue
+  double torque_slope = 0;             ///< N·m/s, of the motor, in tq; 0: the drive's own
+  std::uint64_t vendor = 0;            ///< 1018:1; 0: not compared
+  std::uint64_t product = 0;           ///< 1018:2; 0: not compared
   double host_timeout = 0.1;           ///< s without the host's heartbeat, after which the drive reacts (1016)
   std::int64_t quick_stop_option = 6;  ///< 605A
   std::int64_t abort_option = 3;       ///< 6007
@@ -56,7 +67,7 @@ inline Keys keys(Cia402Parameters& p) {
                      {"velocity_pdo", &p.velocity_pdo, {}, 0, 0, kOptional},
                      {"rated_torque", &p.rated_torque, "N·m", 0.001, 1.0e5, kOptional | kZeroIsOff},
                      {"counts_per_turn", &p.counts_per_turn, {}, 1, 1.0e9, kOptional | kZeroIsOff},
-                     {"velocity_unit", &p.velocity_unit, "rad/s", 1.0e-9, 1.0e3, kOptional},
+                     {"velocity_unit", &p.velocity_unit, "rad/s", 1.0e-9, 1.0e3, kOptional | kZeroIsOff},
                      {"torque_slope", &p.torque_slope, "N·m/s", 0.001, 1.0e6, kOptional | kZeroIsOff},
                      {"vendor", &p.vendor, {}, 0, kMaxWord, kOptional},
                      {"product", &p.product, {}, 0, kMaxWord, kOptional},

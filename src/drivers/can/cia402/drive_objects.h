@@ -40,6 +40,7 @@ inline constexpr ObjectAddress kMaxTorque{0x6072, 0};      ///< u16, ‰ of rate
 inline constexpr ObjectAddress kRatedTorque{0x6076, 0};    ///< u32, mN·m
 inline constexpr ObjectAddress kTorqueSlope{0x6087, 0};    ///< u32, ‰ of rated torque per second; TQ alone
 inline constexpr ObjectAddress kDcLinkVoltage{0x6079, 0};  ///< u32, mV
+inline constexpr ObjectAddress kVelocityUnit{0x60A9, 0};   ///< u32, unit of 606C (drive_units.h)
 inline constexpr ObjectAddress kPeriodValue{0x60C2, 1}, kPeriodIndex{0x60C2, 2};  ///< value · 10^index s
 
 inline constexpr PdoEntry kControlwordEntry{{0x6040, 0}, 16, false};
@@ -49,8 +50,12 @@ inline constexpr PdoEntry kPositionEntry{{0x6064, 0}, 32, true};
 inline constexpr PdoEntry kTorqueEntry{{0x6077, 0}, 16, true};
 inline constexpr PdoEntry kVelocityEntry{{0x606C, 0}, 32, true};
 
+/// The velocity comes with every second SYNC. It is used to move positions on over a period (late_position.h), and to
+/// brake. Two drives at 1 kHz then load a bus of 1 Mbit/s with less than 70 %.
+inline constexpr std::uint8_t kVelocitySyncs = 2;
+
 /// The process data of one axis: 4 bytes to the drive and 8 bytes from it in each cycle. The velocity has no room in
-/// the first TPDO; where the second one would overload the bus, velocity follows from the position.
+/// the first TPDO; where the drive cannot send a second one, velocity follows from the position.
 struct TorquePdos {
   Pdo command{PdoKind::kReceive, 1, {kControlwordEntry, kTargetTorqueEntry}};
   Pdo state{PdoKind::kTransmit, 1, {kStatuswordEntry, kPositionEntry, kTorqueEntry}};

@@ -6,11 +6,14 @@
 namespace robot_control::cia402 {
 namespace {
 
+using canopen::entry_of;
+using canopen::mapped;
 using canopen::SdoClient;
 using canopen::SdoWrite;
 
-constexpr unsigned kMaxModeReads = 200;  // until 6061 shows the mode that was written to 6060
-constexpr double kSameTorque = 0.01;     // between the drive file and 6076
+constexpr std::uint8_t kVelocityIndex = 2;  // of its PDO
+constexpr unsigned kMaxModeReads = 200;     // until 6061 shows the mode that was written to 6060
+constexpr double kSameTorque = 0.01;        // between the drive file and 6076
 
 /// The period as value · 10^index s; a value of 0 if it is no such number.
 struct Period {
@@ -26,22 +29,6 @@ Period period_of(double seconds) {
     }
   }
   return {};
-}
-
-PdoEntry entry_of(std::uint32_t mapped) noexcept {
-  const auto bits = static_cast<std::uint8_t>(mapped & 0xFFU);
-  const ObjectAddress object{static_cast<std::uint16_t>(mapped >> 16U),
-                             static_cast<std::uint8_t>(mapped >> 8U & 0xFFU)};
-  return {.object = object, .bits = bits};
-}
-
-/// Returns null if the PDO does not hold the object with this length.
-const PdoEntry* mapped(const Pdo& pdo, const PdoEntry& entry) noexcept {
-  for (std::size_t i = 0; i < pdo.mapping.count; ++i) {
-    const PdoEntry& each = pdo.mapping.entries[i];
-    if (each.object == entry.object && each.bits == entry.bits) return &each;
-  }
-  return nullptr;
 }
 
 TorquePdos pdos_of(unsigned axis) {
@@ -68,7 +55,8 @@ DriveSetup::DriveSetup(const Cia402Parameters& parameters, std::uint8_t host, do
   add_silence_steps(host);
   add_pdo_steps(0, "RPDO of controlword and torque");
   add_pdo_steps(1, "TPDO of statusword, position and torque");
-  if (parameters_.velocity_pdo) add_pdo_steps(2, "TPDO of the velocity");
+  read(kVelocityUnit, Use::kUnit, true, "unit of the velocity (60A9)");
+  add_pdo_steps(kVelocityIndex, "TPDO of the velocity");
   restart();
 }
 
@@ -136,8 +124,11 @@ void DriveSetup::add_pdo_steps(std::uint8_t index, const char* subject) {
     read({mapping, 0}, Use::kMappingCount, false, subject);
     for (std::uint8_t i = 1; i <= canopen::kMaxPdoEntries; ++i) read({mapping, i}, Use::kMappingEntry, false, subject);
     read({parameters, 1}, Use::kCobId, false, subject, own_pdo.cob_id(client_.node()));
+    if (index == kVelocityIndex) read({parameters, 2}, Use::kSyncs, true, subject);
   } else {
-    const std::uint8_t type = own_pdo.kind == PdoKind::kTransmit ? canopen::kEverySync : canopen::kOnEvent;
+    const std::uint8_t type = index == kVelocityIndex              ? kVelocitySyncs
+                              : own_pdo.kind == PdoKind::kTransmit ? canopen::kEverySync
+                                                                   : canopen::kOnEvent;
     const canopen::PdoSetup setup = pdo_setup(own_pdo, client_.node(), type, 0);
     read({parameters, 1}, Use::kPresentCobId, false, subject);
     for (const SdoWrite& each : setup.all()) {
@@ -168,6 +159,10 @@ void DriveSetup::restart() noexcept {
   units_ = {.rated_torque = parameters_.rated_torque,
             .counts_per_turn = parameters_.counts_per_turn,
             .velocity_unit = parameters_.velocity_unit};
+  velocity_ = VelocitySource::kDrive;
+  if (parameters_.velocity_pdo == VelocityPdo::kOff) velocity_ = VelocitySource::kNotRequested;
+  if (parameters_.velocity_pdo == VelocityPdo::kDerived && !parameters_.velocity_has_room)
+    velocity_ = VelocitySource::kNoRoom;
   numerator_ = encoder_ = gear_ = feed_ = 0;
   repeats_ = 0;
   expects_host_ = false;
@@ -184,7 +179,8 @@ DriveSetup::Result DriveSetup::step(std::int64_t now_ns, FrameBatch& send) noexc
   while (next_ < steps_.size() && problem_.cause == DriveCause::kNone) {
     const Step& step = steps_[next_];
     const bool skipped = (step.use == Use::kMappingEntry && step.write.object.sub > mapped_) ||
-                         (step.use == Use::kSlope && mode_ != Mode::kTorque);
+                         (step.use == Use::kSlope && mode_ != Mode::kTorque) ||
+                         (step.pdo == kVelocityIndex && velocity_ != VelocitySource::kDrive);
     if (skipped) {
       ++next_;
       continue;
@@ -202,6 +198,7 @@ DriveSetup::Result DriveSetup::step(std::int64_t now_ns, FrameBatch& send) noexc
     } else if (step.kind == Kind::kRead) {
       evaluate(step, present, client_.value());
     }
+    if (step.pdo == kVelocityIndex) leave_velocity_out();
   }
   if (problem_.cause != DriveCause::kNone) return Result::kRefused;
   judge_pdos();
@@ -251,6 +248,14 @@ void DriveSetup::evaluate(const Step& step, bool present, std::uint32_t value) n
       feed_ = quotient(present, value);
       judge_counts();
       break;
+    case Use::kUnit:
+      judge_velocity_unit(present, value);
+      break;
+    case Use::kSyncs:
+      // A velocity that comes on an event only would be silent at rest.
+      if (parameters_.velocity_pdo == VelocityPdo::kDerived && (!present || value == 0 || value > kVelocitySyncs))
+        velocity_ = VelocitySource::kNotMapped;
+      break;
     case Use::kConsumer:
     case Use::kAbortOption:
     case Use::kQuickStop:
@@ -284,6 +289,22 @@ void DriveSetup::judge_counts() noexcept {
   if (!counts) return refuse(DriveCause::kLacks, "feed constant (6092) beside its gear (6091); state counts_per_turn");
   if (*counts == 0) return refuse(DriveCause::kLacks, "increments per turn (608F); state counts_per_turn");
   units_.counts_per_turn = *counts;
+}
+
+void DriveSetup::judge_velocity_unit(bool present, std::uint32_t value) noexcept {
+  if (units_.velocity_unit != 0) return;  // stated in the drive file
+  const bool of_the_motor = gear_ == 0 || gear_ == 1;
+  if (present && of_the_motor) units_.velocity_unit = velocity_unit(value);
+  if (units_.velocity_unit != 0) return;
+  units_.velocity_unit = kRpm;
+  if (parameters_.velocity_pdo == VelocityPdo::kDerived && velocity_ == VelocitySource::kDrive)
+    velocity_ = VelocitySource::kNoUnit;
+}
+
+void DriveSetup::leave_velocity_out() noexcept {
+  if (parameters_.velocity_pdo != VelocityPdo::kDerived || problem_.cause == DriveCause::kNone) return;
+  problem_ = {};
+  velocity_ = VelocitySource::kNotMapped;
 }
 
 void DriveSetup::judge_torque(const Step& step, bool present, std::uint32_t value) noexcept {
@@ -329,7 +350,9 @@ void DriveSetup::judge_pdos() noexcept {
   const TorquePdos needed = pdos_of(static_cast<unsigned>(parameters_.axis));
   judge_pdo(pdos_.command, needed.command, true);
   judge_pdo(pdos_.state, needed.state, false);
-  if (parameters_.velocity_pdo) judge_pdo(pdos_.velocity, needed.velocity, false);
+  if (velocity_ != VelocitySource::kDrive || problem_.cause != DriveCause::kNone) return;
+  judge_pdo(pdos_.velocity, needed.velocity, false);
+  leave_velocity_out();
 }
 
 void DriveSetup::judge_pdo(Pdo& found, const Pdo& needed, bool complete) noexcept {

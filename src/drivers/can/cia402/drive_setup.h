@@ -10,8 +10,10 @@
 ///   1017, 1016, 1029          heartbeats of the drive and of the host
 ///   6007, 605A, 605E          reactions on a loss and on a fault
 ///   1400, 1600, 1800, 1A00    PDOs, written and read back, or read alone
+///   60A9, 1801, 1A01          unit and PDO of the velocity
 ///
-/// Objects that are optional in CiA 402 may be absent.
+/// Objects that are optional in CiA 402 may be absent. With VelocityPdo::kDerived those of the velocity are optional,
+/// too. The velocity follows from the position where one of them is absent, refused or different.
 
 #include <array>
 #include <cstdint>
@@ -52,6 +54,7 @@ class DriveSetup {
   const DriveUnits& units() const noexcept { return units_; }
   Mode mode() const noexcept { return mode_; }
   SilenceReaction on_silence() const noexcept;
+  VelocitySource velocity_source() const noexcept { return velocity_; }
 
  private:
   enum class Use : std::uint8_t {
@@ -76,6 +79,8 @@ class DriveSetup {
     kCobId,
     kMappingCount,
     kMappingEntry,
+    kUnit,
+    kSyncs,
   };
   enum class Kind : std::uint8_t { kRead, kWrite };
   struct Step {
@@ -103,6 +108,9 @@ class DriveSetup {
   void judge_torque(const Step& step, bool present, std::uint32_t value) noexcept;
   void judge_silence(const Step& step, bool present, std::uint32_t value) noexcept;
   void judge_mapping(const Step& step, std::uint32_t value) noexcept;
+  void judge_velocity_unit(bool present, std::uint32_t value) noexcept;
+  /// A velocity that is derived is left out where its set-up failed.
+  void leave_velocity_out() noexcept;
   void judge_pdos() noexcept;
   /// `complete`: every entry that was found needs a value of this driver.
   void judge_pdo(Pdo& found, const Pdo& needed, bool complete) noexcept;
@@ -119,6 +127,7 @@ class DriveSetup {
   TorquePdos pdos_;
   DriveUnits units_;
   Mode mode_ = Mode::kCyclicTorque;
+  VelocitySource velocity_ = VelocitySource::kDrive;
   double numerator_ = 0;                      // of the ratio that is being read
   double encoder_ = 0, gear_ = 0, feed_ = 0;  // ScalingObjects
   std::uint32_t present_cob_id_ = 0;

@@ -17,7 +17,7 @@ namespace robot_control::cia402 {
 struct DriveUnits {
   double rated_torque = 1;                           ///< N·m
   double counts_per_turn = 4096;                     ///< of 6064
-  double velocity_unit = 2 * std::numbers::pi / 60;  ///< rad/s of one raw unit of 606C; the default is 1 rpm
+  double velocity_unit = 2 * std::numbers::pi / 60;  ///< rad/s of one raw unit of 606C; the default is kRpm
 
   double torque(std::int16_t raw) const noexcept { return raw * rated_torque / 1000; }
   double position(std::int32_t raw) const noexcept { return raw * (2 * std::numbers::pi / counts_per_turn); }
@@ -43,6 +43,18 @@ inline std::optional<double> counts_per_turn(const ScalingObjects& objects) noex
   if (objects.feed != 0 && objects.feed != 1) return objects.feed / gear;
   if (gear != 1) return std::nullopt;
   return objects.encoder;
+}
+
+inline constexpr double kRpm = 2 * std::numbers::pi / 60;  ///< rad/s
+
+/// Returns the rad/s of one raw unit of 606C by 60A9. From the highest byte down, 60A9 holds a power of ten, the unit
+/// of the way and the unit of the time. Returns 0 for others than revolutions per minute or per second. Source: CiA
+/// 303-2.
+inline double velocity_unit(std::uint32_t raw_60a9) noexcept {
+  constexpr std::uint32_t kPerMinute = 0xB447, kPerSecond = 0xB403;
+  const std::uint32_t unit = raw_60a9 >> 8U & 0xFFFFU;
+  if (unit != kPerMinute && unit != kPerSecond) return 0;
+  return std::pow(10.0, static_cast<std::int8_t>(raw_60a9 >> 24U)) * (unit == kPerMinute ? kRpm : 60 * kRpm);
 }
 
 inline double rated_torque(std::uint32_t raw_6076) noexcept {

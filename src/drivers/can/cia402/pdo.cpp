@@ -51,4 +51,19 @@ bool decode_pdo(const Pdo& pdo, std::uint8_t node, const can_frame& frame, std::
   return true;
 }
 
+PdoEntry entry_of(std::uint32_t mapped) noexcept {
+  const auto bits = static_cast<std::uint8_t>(mapped & 0xFFU);
+  const ObjectAddress object{static_cast<std::uint16_t>(mapped >> 16U),
+                             static_cast<std::uint8_t>(mapped >> 8U & 0xFFU)};
+  return {.object = object, .bits = bits};
+}
+
+const PdoEntry* mapped(const Pdo& pdo, const PdoEntry& entry) noexcept {
+  for (std::size_t i = 0; i < pdo.mapping.count; ++i) {
+    const PdoEntry& each = pdo.mapping.entries[i];
+    if (each.object == entry.object && each.bits == entry.bits) return &each;
+  }
+  return nullptr;
+}
+
 }  // namespace robot_control::canopen

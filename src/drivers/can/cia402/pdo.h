@@ -17,7 +17,8 @@
 namespace robot_control::canopen {
 
 inline constexpr std::size_t kMaxPdoEntries = 8;  ///< each has at least one byte
-inline constexpr std::uint8_t kEverySync = 1;     ///< transmission type
+inline constexpr std::uint8_t kEverySync = 1;     ///< transmission type; n: with every n-th SYNC, up to kMaxSyncs
+inline constexpr std::uint8_t kMaxSyncs = 240;    ///< transmission type
 inline constexpr std::uint8_t kOnEvent = 255;     ///< transmission type
 
 struct PdoEntry {
@@ -64,6 +65,12 @@ struct Pdo {
   }
   constexpr std::uint16_t mapping_index() const noexcept { return static_cast<std::uint16_t>(parameters() + 0x200); }
 };
+
+/// Returns the entry that a mapping holds as this number (PdoEntry::mapped).
+PdoEntry entry_of(std::uint32_t mapped) noexcept;
+
+/// Returns the entry of the PDO with this object and length; null if it has none.
+const PdoEntry* mapped(const Pdo& pdo, const PdoEntry& entry) noexcept;
 
 /// One write to the object dictionary.
 struct SdoWrite {

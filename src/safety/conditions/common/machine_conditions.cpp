@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace robot_control {
+namespace {
+
+constexpr double kMaxOverruns = 0.5;  // of all cycles
+
+}  // namespace
 
 MachineConditions::MachineConditions(const SafetyParameters& parameters, double period) noexcept
     : period_(period),
@@ -55,7 +60,7 @@ void MachineConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, 
   }
 
   const auto overruns = static_cast<double>(overruns_of_the_last_second(sensors.overruns, elapsed));
-  const double limit = overruns_.limit();
+  const double limit = std::min(overruns_.limit(), kMaxOverruns / period_);
   out.update(overruns_, {.beyond = overruns > limit, .value = overruns, .limit = limit}, elapsed);
 
   const bool reported = (sensors.valid & kValidBattery) != 0;

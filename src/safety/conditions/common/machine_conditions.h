@@ -6,7 +6,7 @@
 ///                  FAULT
 ///   not ready      driver_state kStarting for start_timeout; leads to FAULT
 ///   overruns       growth of SensorFrame::overruns over the last second, in steps of a tenth; overruns before the
-///                  first step do not count
+///                  first step do not count. The limit is at most half of the cycles of a second
 ///   battery        voltage below its limit, if a battery is reported
 
 #include <array>
