@@ -154,16 +154,24 @@ class LaunchTest(unittest.TestCase):
 
     def test_in_a_namespace_by_argument_a_killed_node_is_started_again(self) -> None:
         init_test_node("launch_test")
-        launch = Launch("ns:=robot3", "respawn:=true", f"bus:={self.bus}")
+        urdf = self.out.parents[2] / "free.urdf"
+        world = '<link name="world"/><joint name="free" type="floating"><parent link="world"/><child link="base_link"/>'
+        shipped = (repository() / "urdf" / "diffbot.urdf").read_text()
+        urdf.write_text(shipped.replace("</robot>", world + "</joint></robot>"))
+        launch = Launch("ns:=robot3", "respawn:=true", f"bus:={self.bus}", f"urdf:={urdf}")
         self.addCleanup(launch.end)
         robot = Robot("robot3")
         robot.await_ready()
-        frames: set[str] = set()
+        parents: dict[str, str] = {}
         for topic in ("tf", "tf_static"):
             rospy.Subscriber(
-                f"/robot3/{topic}", TFMessage, lambda m: frames.update(t.child_frame_id for t in m.transforms)
+                f"/robot3/{topic}",
+                TFMessage,
+                lambda m: parents.update({t.child_frame_id: t.header.frame_id for t in m.transforms}),
             )
-        wait_for("transforms inside the robot", lambda: {"imu_link", "left_wheel_link"} <= frames)
+        wait_for("transforms of the robot", lambda: {"base_link", "imu_link", "left_wheel_link"} <= set(parents))
+        self.assertEqual(parents["base_link"], "odom")
+        self.assertNotIn("world", parents.values())
         name = f"/robot3/{ESTIMATOR}"
         first = pid_of(name)
         os.kill(first, signal.SIGKILL)
