@@ -333,9 +333,11 @@ std::string tip_wheel(double gap, const std::string& axis, const std::string& re
 }
 
 TEST(Suspicious, AnArmWhoseTipWheelCountsAsACastersBecauseNothingHoldsIt) {
-  const std::string lateral = "<axis xyz=\"0 1 0\"/>", motor = R"(<limit lower="-1" upper="1" effort="20" velocity="1"/>)";
-  const auto noted = AllOf(HasSubstr("<joint name=\"shoulder\">: it has an effort limit of 20 N·m, but nothing holds it"),
-                           HasSubstr("the wheel of tip_joint"), HasSubstr("more than 30 mm above the ground"));
+  const std::string lateral = "<axis xyz=\"0 1 0\"/>",
+                    motor = R"(<limit lower="-1" upper="1" effort="20" velocity="1"/>)";
+  const auto noted =
+      AllOf(HasSubstr("<joint name=\"shoulder\">: it has an effort limit of 20 N·m, but nothing holds it"),
+            HasSubstr("the wheel of tip_joint"), HasSubstr("more than 30 mm above the ground"));
   EXPECT_THAT(suspicion(tip_wheel(0.002, lateral, motor)), noted);
   EXPECT_THAT(suspicion(tip_wheel(0.031, lateral, motor)), Not(HasSubstr("nothing holds it, because")));
   EXPECT_THAT(suspicion(tip_wheel(0.002, "<axis xyz=\"0 0 1\"/>", motor)), Not(HasSubstr("shoulder")));

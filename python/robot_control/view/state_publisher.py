@@ -1,8 +1,8 @@
 """state_publisher.py: waits for robot_description, then becomes robot_state_publisher.
 
 Debian's robot_state_publisher ends if robot_description is not set yet. It also warns about every root link with an
-inertia, which moves no transform, and it fixes a robot to the root link that stands for the world. It is given the
-description without either, as a parameter of its own.
+inertia, which moves no transform. A robot that is free to move it fixes to its world. It is given the description
+without either, as a parameter of its own.
 """
 
 from __future__ import annotations
@@ -28,9 +28,10 @@ PACKAGE = "ros-robot-state-publisher"
 
 
 def for_transforms(urdf: str) -> str:
-    """The same robot for readers of its joints alone: without the inertia of the root link, and without floating and
-    planar joints and their parents, which the nodes accept only as `world` (machine/description/markup/free_root.h). A
-    text that is no URDF is returned unchanged.
+    """The same robot for readers of its joints alone. A text that is no URDF is returned unchanged.
+
+    The inertia of the root link is left out. So is a floating or planar joint with its parent, which the nodes accept
+    for the world alone (machine/description/markup/free_root.h).
     """
     try:
         robot = ET.fromstring(urdf)

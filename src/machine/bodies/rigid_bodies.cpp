@@ -160,8 +160,8 @@ class Lumper {
     const FreeRoot& root = document_.free_root;
     if (root.type.empty()) return;
     add_note(RobotNote::Kind::kIgnored, joint_element(root.joint),
-             "type=\"" + root.type + "\" on the empty root link " + root.link + " says that the robot is free: " +
-                 root.base + " is its base, and the joint's origin is not used");
+             "type=\"" + root.type + "\" on the empty root link " + root.link +
+                 " says that the robot is free: " + root.base + " is its base, and the joint's origin is not used");
   }
 
   void note_turned_origins() {

@@ -131,9 +131,9 @@ void note_caster_joints(DriveTrain& robot) {
       if (joint.effort_limit == 0 || joint.spring_stiffness > 0 || !joint.mimicked.empty()) continue;
       if (is_swivel(bodies.bodies[i])) continue;
       note(robot, joint_element(joint.name),
-           "it has an effort limit of " + number(joint.effort_limit) + (joint.type == JointType::kPrismatic ? " N" : " N·m") +
-               ", but nothing holds it, because the wheel of " + wheel +
-               " stands on the ground as a caster's. If it is an arm, let that wheel end more than " +
+           "it has an effort limit of " + number(joint.effort_limit) +
+               (joint.type == JointType::kPrismatic ? " N" : " N·m") + ", but nothing holds it, because the wheel of " +
+               wheel + " stands on the ground as a caster's. If it is an arm, let that wheel end more than " +
                number(1000 * kCasterTolerance) + " mm above the ground");
     }
   }

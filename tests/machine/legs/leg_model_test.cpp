@@ -43,7 +43,8 @@ TEST_P(LegFacts, IsTheSameRobotOnAFreeJointOfAnEmptyWorld) {
   RobotDescription description = legged_description(GetParam());
   description.text.insert(description.text.rfind("</robot>"),
                           "<link name=\"world\"/><joint name=\"free\" type=\"floating\"><parent link=\"world\"/><child "
-                          "link=\"" + robot_.base_link + "\"/><origin xyz=\"1 2 3\" rpy=\"0 1 0\"/></joint>");
+                          "link=\"" +
+                              robot_.base_link + "\"/><origin xyz=\"1 2 3\" rpy=\"0 1 0\"/></joint>");
   const LegModel free = read_legs(description, {}, {});
   EXPECT_EQ(free.base_link, robot_.base_link);
   EXPECT_EQ(free.centre_of_gravity_base, robot_.centre_of_gravity_base);
