@@ -1,13 +1,11 @@
-"""Types of the extension module (python/bindings)."""
-
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-_Values = Sequence[tuple[str, str]]
-_Array = NDArray[np.float64]
+_Values: TypeAlias = Sequence[tuple[str, str]]
+_Array: TypeAlias = NDArray[np.float64]
 
 signal_names: dict[str, Any]
 project_folder: str

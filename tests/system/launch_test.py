@@ -127,13 +127,23 @@ class LaunchTest(unittest.TestCase):
         self.assertEqual(first.wait(), 0, first.output)
         self.assertTrue((folder / "rel" / "run.bag").is_file(), first.output)
         self.assertTrue(rospy.get_param("/mujoco_plant/scene").endswith("/slope_5deg.xml"))
+        for name, given in (("robot/command_script", "stop.csv"), ("safety_monitor/config", "two_lines.yaml")):
+            self.assertEqual(rospy.get_param(name), str(folder / given), "resolved for every other reader")
 
-        second = Launch("clock:=lockstep", "cycles:=200")
+        second = Launch("clock:=lockstep", "cycles:=200", without="HOME")
         self.addCleanup(second.end)
         self.assertEqual(second.wait(), 0, second.output)
         self.assertEqual(set(rospy.get_param("/mujoco_plant")), {"config", "cycles"})
         self.assertEqual([rospy.get_param(f"/robot/{name}") for name in ("urdf", "command_script", "bus")], [""] * 3)
         self.assertTrue(rospy.get_param("/diff_drive_controller/config").endswith("/robot_params.yaml"))
+
+    def test_a_path_that_does_not_open_is_one_sentence(self) -> None:
+        folder = self.out.parents[2]
+        launch = Launch("urdf:=none.urdf", f"bus:={self.bus}", folder=folder)
+        self.addCleanup(launch.end)
+        launch.wait()
+        said = f"none.urdf ({folder}/none.urdf) cannot be opened or written: No such file or directory"
+        self.assertIn(said, launch.output)
 
     def test_drives_the_urdf_it_is_given(self) -> None:
         urdf = self.out.parents[2] / "other.urdf"

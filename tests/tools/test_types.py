@@ -41,10 +41,12 @@ def test_a_type_checker_sees_the_types_from_outside(tmp_path):
     )
     found = re.findall(r'outside.py:(\d+): (?:note: Revealed type is "([^"]*)"|error: (.*))', done.stdout)
     assert len(found) == 4, done.stdout + done.stderr
-    assert found[0][1].startswith(("dict[", "builtins.dict[")) and "float64" in found[0][1].replace("_64Bit", "float64")
+    assert found[0][1].startswith(("dict[", "builtins.dict["))
+    assert "float64" in found[0][1].replace("_64Bit", "float64")
     assert found[1][1].replace("builtins.", "") == "dict[str, Any]"
     assert found[2][1].endswith("RobotError")
-    assert found[3][0] == "8" and '"str"; expected "float"' in found[3][2]
+    assert found[3][0] == "8"
+    assert '"str"; expected "float"' in found[3][2]
 
 
 def test_the_stub_has_the_names_of_the_compiled_module_and_no_other():
