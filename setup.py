@@ -28,5 +28,5 @@ PROGRAMS = (
 )
 packages = ["robot_control", *(f"robot_control.{name}" for name in ("common", "safety", *PROGRAMS))]
 
-data = {"robot_control.console": ["page/*"]}
+data = {"robot_control": ["py.typed", "*.pyi"], "robot_control.console": ["page/*"]}
 setup(**generate_distutils_setup(packages=packages, package_dir={"": "python"}, package_data=data))

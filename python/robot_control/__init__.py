@@ -4,7 +4,12 @@ scripts are made of.
 
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from robot_control._robot_control import DriverError, ParameterError, RobotError
+    from robot_control.closed_loop import ClosedLoop
+    from robot_control.offline_estimator import Estimator
 
 __all__ = ["ClosedLoop", "DriverError", "Estimator", "ParameterError", "RobotError"]
 

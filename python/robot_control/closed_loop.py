@@ -21,6 +21,7 @@ from robot_control.common.files import utf8
 from robot_control.common.roles import DRIVER
 from robot_control.parameter_layers import flow_text, layered
 
+File = str | PathLike[str]
 Log = dict[str, NDArray[np.float64]]
 Command = Callable[[float], tuple[float, float]] | tuple[float, float] | None
 
@@ -38,7 +39,21 @@ def _index(word: str, words: tuple[str, ...], what: str) -> int:
 
 
 class ClosedLoop:
-    """Plant, estimator, controller and safety monitor, one cycle after the other.
+    """A robot with its control loop in one process, in virtual time: plant, estimator, controller and safety monitor.
+
+        loop = ClosedLoop(seed=0)
+        log = loop.run(seconds=10.0, command=(0.5, 0.2))     # m/s, rad/s
+        log["time"], log["truth_linear"], log["estimate_x"]  # numpy arrays, one value per cycle
+        loop.units                                           # every column of the log with its unit
+
+    drive it        run, step, command, record
+    stop it         e_stop, e_stop_reset, heartbeat, set_pause, reset
+    change it       set_parameters, inject_fault
+    move its legs   set_posture, body_pose, foot_target, joint_targets
+    keep a log      log_into, end_log
+    read it         robot, units, time, cycle, period, paused, stop_distance, smooth_speed
+
+    The same arguments and calls give the same bits, and the four nodes in lockstep give them, too.
 
     Args:
         params: path of a YAML file, or a nested dict laid over the installed `config/robot_params.yaml`,
@@ -54,18 +69,17 @@ class ClosedLoop:
         ValueError: a path or another text is not UTF-8.
         RobotError: the robot description cannot be driven.
         DriverError: the scene does not compile.
-
-    Same arguments and calls give the same bits.
     """
 
     def __init__(
         self,
-        params: str | PathLike[str] | Mapping[str, Any] | None = None,
+        params: File | Mapping[str, Any] | None = None,
         seed: int = 0,
-        urdf: str | PathLike[str] | None = None,
-        scene: str | PathLike[str] | None = None,
-        drives: str | PathLike[str] | None = None,
+        urdf: File | None = None,
+        scene: File | None = None,
+        drives: File | None = None,
     ) -> None:
+        """Takes the arguments above."""
         self._running = False
         self._path, self._values = layered(params, urdf)
         if scene is not None:
@@ -243,7 +257,7 @@ class ClosedLoop:
         self._refuse_inside_a_run("record")
         return self._loop.record(commands)
 
-    def log_into(self, folder: str | PathLike[str]) -> None:
+    def log_into(self, folder: File) -> None:
         """Writes every cycle from the next one on to `folder`/run.bag, as the node `telemetry` does, until `end_log`.
 
         An earlier run.bag is kept as run.1.bag, ...
@@ -298,7 +312,7 @@ class ClosedLoop:
 
     @property
     def period(self) -> float:
-        """s"""
+        """Duration [s] of a cycle."""
         return self._loop.period
 
     @property

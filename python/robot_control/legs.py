@@ -27,7 +27,7 @@ def forward(robot: Robot, angles: ArrayLike) -> Array:
         RobotError: the robot does not stand on four legs, and why.
         ValueError: the angles have another shape, or are not finite.
     """
-    return np.asarray(_model(str(robot)).forward(_checked(angles, (12,), "angles")), dtype=float)
+    return np.asarray(_model(str(robot)).forward(_checked(angles, (12,), "angles")), dtype=np.float64)
 
 
 def inverse(robot: Robot, feet: ArrayLike) -> tuple[Array, list[str]]:
@@ -41,7 +41,7 @@ def inverse(robot: Robot, feet: ArrayLike) -> tuple[Array, list[str]]:
         RobotError, ValueError: as `forward`.
     """
     angles, reach = _model(str(robot)).inverse(_checked(feet, (4, 3), "feet"))
-    return np.asarray(angles, dtype=float), list(reach)
+    return np.asarray(angles, dtype=np.float64), list(reach)
 
 
 def jacobian(robot: Robot, angles: ArrayLike) -> Array:
@@ -50,7 +50,7 @@ def jacobian(robot: Robot, angles: ArrayLike) -> Array:
     Raises:
         RobotError, ValueError: as `forward`.
     """
-    return np.asarray(_model(str(robot)).jacobian(_checked(angles, (12,), "angles")), dtype=float)
+    return np.asarray(_model(str(robot)).jacobian(_checked(angles, (12,), "angles")), dtype=np.float64)
 
 
 def _model(robot: str) -> _robot_control.LegModel:
@@ -68,7 +68,7 @@ def _model_of(path: Path, _changed_ns: int, _size: int) -> _robot_control.LegMod
 
 
 def _checked(values: ArrayLike, shape: tuple[int, ...], name: str) -> Array:
-    array = np.asarray(values, dtype=float)
+    array = np.asarray(values, dtype=np.float64)
     if array.shape != shape:
         raise ValueError(f"{name} must have the shape {shape}; they have {array.shape}")
     if not np.isfinite(array).all():

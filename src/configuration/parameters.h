@@ -89,7 +89,7 @@ Schema schema(Parameters& parameters);
 /// A file that is a configuration of ros_controllers' or ros2_controllers' diff_drive_controller is one problem.
 ///
 /// Relative paths of input files (`urdf`, `scene`, `command_script`) refer to the folder of the YAML file, in an
-/// overlay to the current folder. The returned paths are absolute.
+/// overlay to caller_folder(). The returned paths are absolute.
 Parameters read_parameters(const std::string& yaml_path, const std::vector<Overlay>& overlays = {},
                            const std::string& base_path = "");
 

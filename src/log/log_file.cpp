@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "files/given_path.h"
 #include "log/log_error.h"
 
 namespace robot_control {
@@ -30,9 +31,9 @@ LogFile::LogFile(std::string path, Room room) : path_(std::move(path)), room_(st
   const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
   std::error_code error;
   if (!folder.empty()) std::filesystem::create_directories(folder, error);
-  if (error) fail("cannot make its folder", error.value());
+  if (error) fail(kUnwritable, error.value());
   file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (file_ < 0) fail("cannot be opened", errno);
+  if (file_ < 0) fail(kUnwritable, errno);
 }
 
 LogFile::~LogFile() {
@@ -67,7 +68,7 @@ void LogFile::append(std::string_view part) {
   }
   // A reader would misunderstand an incomplete part. A pipe cannot be cut and need not be.
   [[maybe_unused]] const int cut = ::ftruncate(file_, bytes_);
-  fail("cannot be written", error);
+  fail(kUnwritable, error);
 }
 
 void LogFile::replace_begin(std::string_view bytes) {
@@ -89,7 +90,7 @@ void LogFile::end() noexcept {
 void LogFile::fail(const std::string& what, int error) {
   end();
   const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
-  throw LogError("log " + path_ + " " + what + ": " + std::strerror(error) +
+  throw LogError("log " + shown_path(path_) + " " + what + ": " + std::strerror(error) +
                  (full ? "; make room or name another folder" : "; name a folder that can be written") +
                  " (telemetry.directory)");
 }

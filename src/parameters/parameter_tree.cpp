@@ -5,6 +5,7 @@
 
 #include <sstream>
 
+#include "files/given_path.h"
 #include "files/input_file.h"
 #include "parameters/text_file.h"
 #include "parameters/value_reader.h"
@@ -188,8 +189,7 @@ void lay_under(const std::string& base_path, const std::string& yaml_path, Forei
 }
 
 void lay_over(const Overlay& overlay, ParameterTree& tree, ProblemList& problems) {
-  std::error_code ignored;
-  const std::filesystem::path folder = std::filesystem::current_path(ignored);
+  const std::filesystem::path folder = caller_folder();
   try {
     Documents(overlay.text).refuse_tags(overlay.origin, problems);
     put_value(overlay.path, YAML::Load(overlay.text), overlay.origin, overlay.origin, problems,

@@ -6,7 +6,8 @@ namespace {
 std::string line_of(const Problem& problem) {
   std::string line = printable(problem.path);
   if (!problem.value.empty()) line.append(" = ").append(printable(problem.value));
-  line.append(": ").append(fit_for_message(problem.rule));
+  if (!line.empty()) line.append(": ");
+  line.append(fit_for_message(problem.rule));
   if (!problem.origin.empty()) line.append(" [").append(printable(problem.origin)).append("]");
   if (!problem.remedy.empty()) line.append("; ").append(fit_for_message(problem.remedy));
   return line;

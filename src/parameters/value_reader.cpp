@@ -5,6 +5,8 @@
 #include <charconv>
 #include <limits>
 
+#include "files/given_path.h"
+
 namespace robot_control {
 namespace {
 
@@ -93,7 +95,7 @@ class Reader {
     if (entry_.text.empty() && (key_.traits & kMayBeEmpty) == 0) return refuse("must be " + rule_of(key_));
     if (entry_.text.find('\0') != std::string::npos) return refuse("must not contain the character 0");
     const bool file = (key_.traits & kPath) != 0 && !entry_.text.empty();
-    *to = file ? (entry_.folder / entry_.text).lexically_normal().string() : entry_.text;
+    *to = file ? resolved_path(entry_.text, entry_.folder) : entry_.text;
     return true;
   }
 

@@ -40,7 +40,7 @@ TEST(CommandScript, ThatIsNoRegularFileIsRefused) {
       CommandScript script(path);
       ADD_FAILURE() << path << " was accepted";
     } catch (const ParameterError& error) {
-      EXPECT_THAT(error.what(), HasSubstr(std::string(path) + ": cannot be read: "));
+      EXPECT_THAT(error.what(), HasSubstr(std::string(path) + " cannot be opened or written: "));
     }
   }
 }

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <filesystem>
 
-#include "machine/wheeled/drive_train.h"
+#include "machine/urdf_text.h"
 #include "support/corpus.h"
 
 namespace robot_control {
@@ -62,6 +62,15 @@ TEST_P(RobotCorpus, StandsMovesAndHasItsRootInItself) {
       EXPECT_EQ(note.text.find(doubt), std::string::npos) << note.element << ": " << note.text;
     }
   }
+}
+
+TEST_P(RobotCorpus, IsTheSameRobotOnAFreeJointOfAnEmptyWorld) {
+  const RobotDescription description = load_description((corpus() / GetParam() / "robot.urdf").string());
+  const DriveTrain free = read_drive_train(on_world(description, robot_.base_link, "floating"), {});
+  EXPECT_EQ(free.base_link, robot_.base_link);
+  EXPECT_EQ(free.centre_of_gravity_base, robot_.centre_of_gravity_base);
+  EXPECT_EQ(free.wheel_base, robot_.wheel_base);
+  EXPECT_EQ(free.notes.size(), robot_.notes.size() + 1);
 }
 
 TEST_P(RobotCorpus, IsReadAsItIs) {

@@ -176,6 +176,23 @@ TEST(RobotRefusals, AFloatingJointInTheTree) {
   EXPECT_THAT(refusal(diffbot_with("<joint name=\"imu_joint\"", "fixed", "floating")), names("imu_joint", "floating"));
 }
 
+TEST(RobotRefusals, AFloatingJointOnARootThatIsNotEmptyOrCarriesMore) {
+  const std::string joints = joint({.name = "free", .child = "base_link", .type = "floating", .parent = "world"});
+  const std::string lamp =
+      link("lamp", "") + joint({.name = "lamp_joint", .child = "lamp", .type = "fixed", .parent = "world"});
+  const std::string box = "<geometry><box size=\"1 1 1\"/></geometry>";
+  const auto refused =
+      AllOf(HasSubstr("line 1: <joint name=\"free\">: a floating joint is supported only as the one joint of an empty "
+                      "root link"),
+            HasSubstr("Use fixed"));
+  EXPECT_EQ(refusal(robot_of(link("world", "") + joints + two_wheels())), "accepted");
+  for (const std::string& world :
+       {link("world", inertial("1")), link("world", "<visual>" + box + "</visual>"),
+        link("world", "<collision>" + box + "</collision>"), link("world", "") + lamp, std::string()}) {
+    EXPECT_THAT(refusal(robot_of(world + joints + two_wheels())), refused) << world;
+  }
+}
+
 TEST(RobotRefusals, AnUnknownJointTypeWithItsLine) {
   EXPECT_THAT(refusal(diffbot_with("<joint name=\"imu_joint\"", "fixed", "screwed")),
               AllOf(names("imu_joint", "type=\"screwed\" is unknown"), HasSubstr("line "), HasSubstr("prismatic")));

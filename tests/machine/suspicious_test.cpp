@@ -324,5 +324,26 @@ TEST_F(Files, AMissingCollisionMeshOfAWheelIsRefused) {
   EXPECT_THAT(refusal_of(with(text)), AllOf(HasSubstr("<link name=\"right_link\">"), HasSubstr("nowhere.stl")));
 }
 
+/// An arm ahead of the robot whose tip wheel ends `gap` m above the ground; `axis` is that of its shoulder.
+std::string tip_wheel(double gap, const std::string& axis, const std::string& rest) {
+  return made({}) + link("arm", inertial("0.5")) +
+         joint({.name = "shoulder", .child = "arm", .xyz = "0.3 0 0", .type = "revolute", .axis = axis, .rest = rest}) +
+         link("tip", inertial("0.1") + tyre("0.03")) +
+         joint({.name = "tip_joint", .child = "tip", .xyz = xyz(0.1, 0, 0.03 - 0.1 + gap), .parent = "arm"});
+}
+
+TEST(Suspicious, AnArmWhoseTipWheelCountsAsACastersBecauseNothingHoldsIt) {
+  const std::string lateral = "<axis xyz=\"0 1 0\"/>",
+                    motor = R"(<limit lower="-1" upper="1" effort="20" velocity="1"/>)";
+  const auto noted =
+      AllOf(HasSubstr("<joint name=\"shoulder\">: it has an effort limit of 20 N·m, but nothing holds it"),
+            HasSubstr("the wheel of tip_joint"), HasSubstr("more than 30 mm above the ground"));
+  EXPECT_THAT(suspicion(tip_wheel(0.002, lateral, motor)), noted);
+  EXPECT_THAT(suspicion(tip_wheel(0.031, lateral, motor)), Not(HasSubstr("nothing holds it, because")));
+  EXPECT_THAT(suspicion(tip_wheel(0.002, "<axis xyz=\"0 0 1\"/>", motor)), Not(HasSubstr("shoulder")));
+  EXPECT_THAT(suspicion(tip_wheel(0.002, lateral, R"(<limit lower="-1" upper="1" effort="0" velocity="1"/>)")),
+              Not(HasSubstr("nothing holds it, because")));
+}
+
 }  // namespace
 }  // namespace robot_control

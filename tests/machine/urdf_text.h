@@ -68,6 +68,18 @@ inline std::string two_wheels() {
   return base() + wheel("left", "0 0.25 0") + wheel("right", "0 -0.25 0");
 }
 
+/// The same robot in the form that says that it is free: its root hangs by a joint of this type on an empty `world`.
+inline RobotDescription on_world(RobotDescription description, const std::string& root, const std::string& type) {
+  const std::string parts = link("world", "") + joint({.name = "world_joint",
+                                                       .child = root,
+                                                       .xyz = "3 -2 1.5",
+                                                       .type = type,
+                                                       .parent = "world",
+                                                       .rpy = "0.1 0.2 99"});
+  description.text.insert(description.text.rfind("</robot>"), parts);
+  return description;
+}
+
 /// The message of the refusal, or "accepted".
 inline std::string refusal_of(const RobotDescription& description, const DriveTrainParameters& parameters = {}) {
   try {

@@ -47,6 +47,23 @@ TEST(UrdfTraps, VisualMeshesAreNeitherReadNorJudged) {
   EXPECT_EQ(refusal(two_wheels() + decorated("<geometry/>")), "accepted");
 }
 
+TEST(UrdfTraps, AFreeJointOnAnEmptyRootLinkSaysNothingButThatTheRobotIsFree) {
+  const RobotDescription plain = robot_of(two_wheels());
+  const DriveTrain robot = read_drive_train(plain, {});
+  for (const std::string type : {"floating", "planar"}) {
+    const DriveTrain free = read_drive_train(on_world(plain, "base_link", type), {});
+    EXPECT_EQ(free.base_link, "base_link");
+    EXPECT_EQ(free.mass, robot.mass);
+    EXPECT_EQ(free.bodies->links.count("world"), 0u);
+    EXPECT_EQ(free.wheels.front().centre_base, robot.wheels.front().centre_base);
+    EXPECT_EQ(notes_of(free, RobotNote::Kind::kSuspicious), notes_of(robot, RobotNote::Kind::kSuspicious));
+    EXPECT_EQ(notes_of(free, RobotNote::Kind::kIgnored),
+              notes_of(robot, RobotNote::Kind::kIgnored) + "<joint name=\"world_joint\">: type=\"" + type +
+                  "\" on the empty root link world says that the robot is free: base_link is its base, and the joint's "
+                  "origin is not used\n");
+  }
+}
+
 TEST(UrdfTraps, CommentsSayNothing) {
   EXPECT_EQ(refusal("<!-- ${x} <mesh filename=\"package://nowhere/x.stl\" scale=\"\"/> -->" + two_wheels()),
             "accepted");

@@ -240,7 +240,7 @@ TEST_F(ReadParameters, RefusesAFileThatIsNotThere) {
         try {
           read_parameters("/nowhere/robot_params.yaml");
         } catch (const ParameterError& error) {
-          EXPECT_THAT(error.what(), HasSubstr("/nowhere/robot_params.yaml: cannot be read: No such file"));
+          EXPECT_THAT(error.what(), HasSubstr("/nowhere/robot_params.yaml cannot be opened or written: No such file"));
           throw;
         }
       },

@@ -15,7 +15,10 @@ LAUNCH_LIMIT = 3 * LIMIT
 class Launch:
     """sim.launch with its output in a file."""
 
-    def __init__(self, *arguments: str, folder: Path | None = None) -> None:
+    def __init__(self, *arguments: str, folder: Path | None = None, without: str = "") -> None:
+        """`folder` is that of the caller; `without` names a variable that its environment lacks."""
+        environment = os.environ | ({} if folder is None else {"PWD": str(folder)})
+        environment.pop(without, None)
         self._output = tempfile.NamedTemporaryFile(prefix="sim-launch-", suffix=".log")
         self._process = subprocess.Popen(
             ["roslaunch", str(repository() / "launch" / "sim.launch"), *arguments],
@@ -23,7 +26,7 @@ class Launch:
             stdout=self._output,
             stderr=subprocess.STDOUT,
             cwd=folder,
-            env=os.environ | ({} if folder is None else {"PWD": str(folder)}),
+            env=environment,
         )
 
     @property

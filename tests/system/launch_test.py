@@ -127,13 +127,23 @@ class LaunchTest(unittest.TestCase):
         self.assertEqual(first.wait(), 0, first.output)
         self.assertTrue((folder / "rel" / "run.bag").is_file(), first.output)
         self.assertTrue(rospy.get_param("/mujoco_plant/scene").endswith("/slope_5deg.xml"))
+        for name, given in (("robot/command_script", "stop.csv"), ("safety_monitor/config", "two_lines.yaml")):
+            self.assertEqual(rospy.get_param(name), str(folder / given), "resolved for every other reader")
 
-        second = Launch("clock:=lockstep", "cycles:=200")
+        second = Launch("clock:=lockstep", "cycles:=200", without="HOME")
         self.addCleanup(second.end)
         self.assertEqual(second.wait(), 0, second.output)
         self.assertEqual(set(rospy.get_param("/mujoco_plant")), {"config", "cycles"})
         self.assertEqual([rospy.get_param(f"/robot/{name}") for name in ("urdf", "command_script", "bus")], [""] * 3)
         self.assertTrue(rospy.get_param("/diff_drive_controller/config").endswith("/robot_params.yaml"))
+
+    def test_a_path_that_does_not_open_is_one_sentence(self) -> None:
+        folder = self.out.parents[2]
+        launch = Launch("urdf:=none.urdf", f"bus:={self.bus}", folder=folder)
+        self.addCleanup(launch.end)
+        launch.wait()
+        said = f"none.urdf ({folder}/none.urdf) cannot be opened or written: No such file or directory"
+        self.assertIn(said, launch.output)
 
     def test_drives_the_urdf_it_is_given(self) -> None:
         urdf = self.out.parents[2] / "other.urdf"
@@ -154,16 +164,24 @@ class LaunchTest(unittest.TestCase):
 
     def test_in_a_namespace_by_argument_a_killed_node_is_started_again(self) -> None:
         init_test_node("launch_test")
-        launch = Launch("ns:=robot3", "respawn:=true", f"bus:={self.bus}")
+        urdf = self.out.parents[2] / "free.urdf"
+        world = '<link name="world"/><joint name="free" type="floating"><parent link="world"/><child link="base_link"/>'
+        shipped = (repository() / "urdf" / "diffbot.urdf").read_text()
+        urdf.write_text(shipped.replace("</robot>", world + "</joint></robot>"))
+        launch = Launch("ns:=robot3", "respawn:=true", f"bus:={self.bus}", f"urdf:={urdf}")
         self.addCleanup(launch.end)
         robot = Robot("robot3")
         robot.await_ready()
-        frames: set[str] = set()
+        parents: dict[str, str] = {}
         for topic in ("tf", "tf_static"):
             rospy.Subscriber(
-                f"/robot3/{topic}", TFMessage, lambda m: frames.update(t.child_frame_id for t in m.transforms)
+                f"/robot3/{topic}",
+                TFMessage,
+                lambda m: parents.update({t.child_frame_id: t.header.frame_id for t in m.transforms}),
             )
-        wait_for("transforms inside the robot", lambda: {"imu_link", "left_wheel_link"} <= frames)
+        wait_for("transforms of the robot", lambda: {"base_link", "imu_link", "left_wheel_link"} <= set(parents))
+        self.assertEqual(parents["base_link"], "odom")
+        self.assertNotIn("world", parents.values())
         name = f"/robot3/{ESTIMATOR}"
         first = pid_of(name)
         os.kill(first, signal.SIGKILL)

@@ -92,7 +92,7 @@ MAY_INCLUDE = {
     },
     "log/bag": {"files"},
     # The log as a ROS bag; it knows the format, not ROS.
-    "log": {"signals", "log/bag", "parameters"},
+    "log": {"signals", "files", "log/bag", "parameters"},
     # All blocks together, and the other files that a user writes.
     "configuration": LAWS | {"rt", "files", "parameters", "log", "drivers/can", "drivers/mujoco"},
     # A robot of each kind, composed of its laws; the roles as interfaces.

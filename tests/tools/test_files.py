@@ -2,6 +2,7 @@
 
 import importlib
 import os
+import pwd
 import re
 import resource
 import shutil
@@ -11,13 +12,15 @@ import sys
 from pathlib import Path
 
 import pytest
-from robot_control import ClosedLoop, Estimator
+from robot_control import ClosedLoop, DriverError, Estimator, ParameterError, RobotError
 from robot_control.common.files import (
     InputFileError,
     NewFiles,
     check_input,
     escaped_lines,
+    file_error,
     fit_for_message,
+    given_path,
     printable,
     write_text,
 )
@@ -39,6 +42,33 @@ def test_only_regular_files_up_to_a_size_are_read(tmp_path):
             check_input(type(tmp_path)(path), 10**9)
     with pytest.raises(InputFileError, match="has 5 bytes; at most 4 are read"):
         check_input(tmp_path / "file", 4)
+
+
+def test_a_path_counts_from_the_callers_folder_and_a_tilde_is_the_home(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert given_path("rel/x").absolute() == tmp_path / "rel/x"
+    monkeypatch.setenv("ROBOT_CONTROL_CALLER_FOLDER", "/called/here")
+    assert given_path("rel/x") == Path("/called/here/rel/x")
+    assert given_path("/abs") == Path("/abs")
+    monkeypatch.setenv("HOME", "/home/me")
+    assert given_path("~/x") == Path("/home/me/x")
+    monkeypatch.delenv("HOME")
+    assert given_path("~/x") == Path(pwd.getpwuid(os.getuid()).pw_dir, "x")
+
+
+def test_both_languages_say_what_was_given_what_it_became_and_why_it_does_not_open(tmp_path, monkeypatch):
+    monkeypatch.setenv("ROBOT_CONTROL_CALLER_FOLDER", str(tmp_path))
+    why = "cannot be opened or written: No such file or directory"
+    sentence = f"mine.urdf ({tmp_path}/mine.urdf) {why}"
+    assert file_error(given_path("mine.urdf"), "No such file or directory") == sentence
+    with pytest.raises(RobotError, match=re.escape(sentence)):
+        ClosedLoop(urdf="mine.urdf")
+    with pytest.raises(DriverError, match=re.escape(sentence.replace("urdf", "xml"))):
+        ClosedLoop(scene="mine.xml")
+    with pytest.raises(ParameterError, match=re.escape(sentence.replace("urdf", "csv"))):
+        ClosedLoop({"robot": {"command_script": "mine.csv"}})
+    with pytest.raises(ParameterError, match=re.escape(sentence.replace("urdf", "yaml"))):
+        ClosedLoop(drives="mine.yaml")
 
 
 FOREIGN = os.fsdecode(b"\xff")

@@ -185,6 +185,22 @@ def test_our_own_robot_is_understood(tmp_path):
     assert (tmp_path / "bot.png").stat().st_size > 10_000
 
 
+@pytest.mark.parametrize("name", ["diffbot", "quadbot"])
+def test_a_robot_on_a_floating_joint_is_the_same_robot_with_a_note(name, tmp_path):
+    shipped = ROOT / f"urdf/{name}.urdf"
+    world = '<link name="world"/><joint name="free" type="floating"><parent link="world"/><child link="base_link"/>'
+    (tmp_path / "free.urdf").write_text(shipped.read_text().replace("</robot>", world + "</joint></robot>"))
+    models, notes = [], []
+    for urdf in (shipped, tmp_path / "free.urdf"):
+        done = inspect(urdf, "--json", "--mjcf", tmp_path / "model.xml")
+        assert done.returncode == 0, done.stderr
+        models.append((tmp_path / "model.xml").read_text())
+        notes.append(json.loads(done.stdout)["notes"])
+    assert models[0] == models[1]
+    (note,) = [note for note in notes[1] if note not in notes[0]]
+    assert "the robot is free: base_link is its base" in str(note)
+
+
 def test_a_refused_robot_is_one_message_and_an_exit_code(tmp_path):
     (tmp_path / "torn.urdf").write_text("<robot")
     done = inspect(tmp_path / "torn.urdf")

@@ -5,7 +5,6 @@ from pathlib import Path
 
 import pytest
 from roslaunch.config import ROSLaunchConfig
-from roslaunch.substitution_args import resolve_args
 from roslaunch.xmlloader import XmlLoader
 
 LAUNCH = Path(__file__).parents[2] / "launch"
@@ -13,17 +12,16 @@ NODES = ("state_estimator", "diff_drive_controller", "safety_monitor")
 VARIABLES = ("ROS_IP", "ROS_HOSTNAME", "ROS_MASTER_URI")
 
 
-@pytest.fixture(params=["sim.launch", "backend.launch"])
+@pytest.fixture(params=["sim.launch", "backend.launch", "robot.launch drives:=x"])
 def default(request, monkeypatch):
-    """The default of `ip` under these variables."""
-    expression = re.search(r'name="ip" default="(.*?)" doc', (LAUNCH / request.param).read_text())[1]
+    """The address that a launch file gives its nodes under these variables; "" where it leaves the environment's."""
 
     def resolve(**variables):
         for name in VARIABLES:
             monkeypatch.delenv(name, raising=False)
         for name, value in variables.items():
             monkeypatch.setenv(name, value)
-        return resolve_args(expression, context={"arg": {}})
+        return dict(config_of(*request.param.split()).nodes[0].env_args).get("ROS_IP", "")
 
     return resolve
 
@@ -45,35 +43,37 @@ def test_whoever_speaks_of_a_network_is_left_with_it(default, variables):
     assert default(**variables) == ""
 
 
-@pytest.mark.parametrize(
-    ("launch", "name"), [("backend", "params"), ("backend", "urdf"), ("sim", "out"), ("backend", "out")]
-)
-def test_relative_paths_count_from_the_callers_folder(launch, name, monkeypatch):
-    expression = re.search(rf'name="{name}_path" value="(.*?)"/>', (LAUNCH / f"{launch}.launch").read_text())[1]
+def test_no_expression_is_long():
+    for path in LAUNCH.glob("*.launch"):
+        for expression in re.findall(r'"(\$\(eval .*?\))"', path.read_text()):
+            assert len(expression) <= 80, f"{path.name}: {expression}"
+
+
+@pytest.mark.parametrize("launch", ["sim.launch", "backend.launch", "robot.launch drives:=x", "console.launch"])
+def test_paths_are_passed_as_given_with_the_callers_folder(launch, monkeypatch):
     monkeypatch.setenv("PWD", "/called/here")
-    monkeypatch.setenv("HOME", "/home/me")
+    monkeypatch.delenv("HOME", raising=False)
+    monkeypatch.delenv("ROS_HOME", raising=False)
+    given = [] if launch == "console.launch" else ["params:=5", "urdf:=~/mine.urdf"]
+    config = config_of(*launch.split(), *given)
+    for node in config.nodes:
+        assert dict(node.env_args)["ROBOT_CONTROL_CALLER_FOLDER"] == "/called/here", node.name
+    if given:
+        assert config.params["/state_estimator/config"].value == "5"
+        assert config.params["/robot/urdf"].value == "~/mine.urdf"
+        assert config.params["/telemetry/directory"].value == "~/.ros/robot_control"
 
-    def resolve(value):
-        return resolve_args(expression, context={"arg": {name: value}})
 
-    assert resolve("rel/file") == "/called/here/rel/file"
-    assert resolve("5") == "/called/here/5"
-    assert resolve("/abs") == "/abs"
-    assert resolve("~/x") == "/home/me/x"
-    assert resolve("") == ""
+def test_a_word_alone_is_a_shipped_scene_or_robot():
+    def scene(value):
+        return config_of("sim.launch", f"scene:={value}").params["/mujoco_plant/scene"].value
 
-
-def test_a_word_alone_is_a_shipped_scene(monkeypatch):
-    expression = re.search(r'name="scene_path" value="(.*?)"/>', (LAUNCH / "sim.launch").read_text())[1]
-    monkeypatch.setenv("PWD", "/called/here")
-
-    def resolve(value):
-        return resolve_args(expression, context={"arg": {"scene": value}})
-
-    assert resolve("slope_5deg").endswith("/urdf/scenes/slope_5deg.xml")
-    assert resolve("mine.xml") == "/called/here/mine.xml"
-    assert resolve("worlds/mine.xml") == "/called/here/worlds/mine.xml"
-    assert resolve("/abs/mine.xml") == "/abs/mine.xml"
+    assert scene("slope_5deg").endswith("/urdf/scenes/slope_5deg.xml")
+    assert scene("mine.xml") == "mine.xml"
+    assert scene("worlds/mine") == "worlds/mine"
+    shipped = config_of("sim.launch", "robot:=quadbot").params["/robot/urdf"].value
+    assert shipped.endswith("/urdf/quadbot.urdf")
+    assert config_of("sim.launch", "robot:=quadbot", "urdf:=my.urdf").params["/robot/urdf"].value == "my.urdf"
 
 
 def config_of(launch, *arguments):

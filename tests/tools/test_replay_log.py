@@ -126,7 +126,7 @@ def test_a_pipe_is_refused_instead_of_waited_for(capsys, tmp_path):
     os.mkfifo(pipe)
     code, _, message = replay(capsys, pipe)
     assert code == 2
-    assert f"{pipe} is a FIFO" in message
+    assert f"{pipe} cannot be opened or written: is a FIFO" in message
 
 
 def test_what_is_no_log_is_refused(tmp_path, capsys):

@@ -9,7 +9,7 @@ from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from robot_control.common.roles import Kind
 from robot_control.msg import RobotStatus, SafetyStatus
 from robot_control.status.report import Reports, changed, status_of
-from robot_control.view.state_publisher import without_root_inertia
+from robot_control.view.state_publisher import for_transforms
 
 
 def report(level=DiagnosticStatus.OK, message="", **values):
@@ -115,7 +115,13 @@ URDF = """<robot name="r"><link name="base"><inertial><mass value="1"/></inertia
 
 
 def test_state_publisher_takes_the_root_links_inertia_away_and_nothing_else():
-    robot = ET.fromstring(without_root_inertia(URDF))
+    robot = ET.fromstring(for_transforms(URDF))
     assert [link.get("name") for link in robot.findall("link") if link.find("inertial") is not None] == ["wheel"]
     assert robot.find("joint/child").get("link") == "wheel"
-    assert without_root_inertia("no URDF") == "no URDF"
+    assert for_transforms("no URDF") == "no URDF"
+
+
+@pytest.mark.parametrize("kind", ["floating", "planar"])
+def test_state_publisher_takes_the_world_of_a_free_robot_away(kind):
+    world = f'<link name="world"/><joint name="free" type="{kind}"><parent link="world"/><child link="base"/></joint>'
+    assert for_transforms(URDF.replace("</robot>", world + "</robot>")) == for_transforms(URDF)

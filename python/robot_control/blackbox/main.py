@@ -10,7 +10,7 @@ from pathlib import Path
 
 from robot_control._robot_control import RunLogError, TraceError, save_black_box
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import escaped, escaped_lines, fit_for_message, utf8
+from robot_control.common.files import escaped, escaped_lines, fit_for_message, given_path, utf8
 
 RING = "ring"
 BEFORE = "ring.before"
@@ -29,7 +29,7 @@ on. Only the build that wrote a ring reads it.
 def main(arguments: list[str] | None = None) -> None:
     """Entry point of scripts/blackbox.py: 0 with OUT/run.bag whole, else 1 with one message and without that file."""
     options = _parser().parse_args(arguments)
-    given = options.input.expanduser()
+    given = options.input
     bag = options.out / "run.bag"
     try:
         ring = ring_of(given)
@@ -85,11 +85,15 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "input",
         nargs="?",
-        type=Path,
-        default=LOGS,
+        type=given_path,
+        default=str(LOGS),
         help="folder of the logs (default: %(default)s), or a file black_box/ring",
     )
     parser.add_argument(
-        "--out", type=Path, default=Path("blackbox"), metavar="OUT", help="folder for run.bag (default: %(default)s)"
+        "--out",
+        type=given_path,
+        default=Path("blackbox"),
+        metavar="OUT",
+        help="folder for run.bag (default: %(default)s)",
     )
     return parser

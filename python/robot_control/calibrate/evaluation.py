@@ -24,6 +24,7 @@ from robot_control.calibrate.law import (
     return_errors,
     umbmark,
 )
+from robot_control.common.files import given_path
 from robot_control.common.roles import ESTIMATOR
 from robot_control.drive.send_plan import number_of_sends, positive
 
@@ -102,7 +103,7 @@ def parse_options(arguments: Sequence[str]) -> Options:
     add("--yes", action="store_true", help="asks for no permission: the path is free")
     add("--measured", type=positive, nargs="+", default=[], metavar="M", help="answers for the straight drives, m")
     add("--returned", type=place, nargs="+", default=[], metavar="X,Y", help="answers for the squares, m")
-    add("--out", type=Path, default=Path("calibrated.yaml"), help="(default %(default)s)")
+    add("--out", type=given_path, default=Path("calibrated.yaml"), help="(default %(default)s)")
     given = vars(parser.parse_args(list(arguments)))
     if given["distance"] == 0 and given["side"] == 0:
         parser.error("--distance 0 and --side 0 leave nothing to do")

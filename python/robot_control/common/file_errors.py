@@ -1,6 +1,6 @@
 """Errors of files in words for a user."""
 
-from pathlib import Path
+from robot_control.common.files import file_error
 
 
 def in_words(error: Exception) -> str:
@@ -9,6 +9,4 @@ def in_words(error: Exception) -> str:
         return str(error)
     if error.filename is None:
         return error.strerror
-    name = str(error.filename)
-    where = "" if Path(name).is_absolute() else f" (in {Path.cwd()})"
-    return f"{name}{where} cannot be opened or written: {error.strerror}"
+    return file_error(str(error.filename), error.strerror)

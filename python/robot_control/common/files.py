@@ -19,6 +19,12 @@ MAX_ECHO = 200
 MAX_MESSAGE = 1500
 """characters of a sentence with several inputs in it"""
 
+CALLER_FOLDER = "ROBOT_CONTROL_CALLER_FOLDER"
+"""Environment variable in which a launch file passes the folder of its caller on."""
+
+_given: dict[str, str] = {}
+"""The given text of every resolved path that differs from it"""
+
 _KINDS = (
     (stat.S_ISDIR, "a folder"),
     (stat.S_ISFIFO, "a FIFO"),
@@ -32,6 +38,25 @@ class InputFileError(ValueError):
     """A path that is no file to read; the message names it."""
 
 
+def given_path(given: str) -> Path:
+    """A path as a user gives it: `~/` is the home, and a relative one counts from the folder that CALLER_FOLDER names,
+    else from the current one. Every program resolves a path by it before it opens the file.
+    """
+    path = Path(given)
+    with contextlib.suppress(RuntimeError):  # neither the environment nor the account has a home
+        path = path.expanduser()
+    path = Path(os.environ.get(CALLER_FOLDER, "")) / path
+    _given[str(path.absolute())] = given
+    return path
+
+
+def file_error(path: str | os.PathLike[str], why: str) -> str:
+    """A sentence that says what was given, what it became, and why it does not open."""
+    became = str(Path(path).absolute())
+    given = _given.get(became, os.fspath(path))
+    return f"{given}{'' if given == became else f' ({became})'} cannot be opened or written: {why}"
+
+
 def check_input(path: Path, max_size: int) -> None:
     """Accepts regular files of at most `max_size` bytes alone: a device has no end, and a FIFO may have no writer.
 
@@ -42,9 +67,9 @@ def check_input(path: Path, max_size: int) -> None:
     status = path.stat()
     for is_kind, kind in _KINDS:
         if is_kind(status.st_mode):
-            raise InputFileError(f"{path} is {kind}; only a regular file is read")
+            raise InputFileError(file_error(path, f"is {kind}; only a regular file is read"))
     if status.st_size > max_size:
-        raise InputFileError(f"{path} has {status.st_size} bytes; at most {max_size} are read")
+        raise InputFileError(file_error(path, f"has {status.st_size} bytes; at most {max_size} are read"))
 
 
 def utf8(text: str | bytes | os.PathLike[str] | os.PathLike[bytes]) -> str:

@@ -6,6 +6,8 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
+from robot_control.common.files import file_error
+
 
 def check_outputs(outputs: Sequence[Path | None], inputs: Sequence[Path | None] = ()) -> None:
     """Checks the outputs; None stands for a file that the user did not name.
@@ -31,14 +33,14 @@ def check_outputs(outputs: Sequence[Path | None], inputs: Sequence[Path | None] 
 
 def _check_place(path: Path) -> None:
     if path.is_dir():
-        raise ValueError(f"{path} cannot be written: it is a folder")
+        raise ValueError(file_error(path, "it is a folder"))
     target = Path(os.path.realpath(path))
     if not path.exists() and target.is_symlink():
-        raise ValueError(f"{path} cannot be written: its symbolic link leads to itself")
+        raise ValueError(file_error(path, "its symbolic link leads to itself"))
     folder = target.parent if path.is_symlink() else path.parent
     if not folder.is_dir():
-        raise ValueError(f"{path} cannot be written: there is no folder {folder}")
+        raise ValueError(file_error(path, f"there is no folder {folder}"))
     if path.exists() and not os.access(path, os.W_OK):
-        raise ValueError(f"{path} cannot be written: this user may not write to it")
+        raise ValueError(file_error(path, "this user may not write to it"))
     if not path.exists() and not os.access(folder, os.W_OK):
-        raise ValueError(f"{path} cannot be written: this user may not write to the folder {folder}")
+        raise ValueError(file_error(path, f"this user may not write to the folder {folder}"))

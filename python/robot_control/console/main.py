@@ -20,7 +20,7 @@ import rospy
 from aiohttp import web
 
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import fit_for_message
+from robot_control.common.files import fit_for_message, given_path
 from robot_control.common.ros_node import running_node
 from robot_control.common.topic_sender import Signals
 from robot_control.console.addresses import AddressError, Doors, bracketed, doors_of, require_protection
@@ -66,11 +66,11 @@ def arguments(given: list[str]) -> argparse.Namespace:
     add("--address", default="127.0.0.1", help="to listen on; another one than the loopback needs users and TLS")
     add("--port", type=int, default=8080)
     add("--tls", action="store_true", help="HTTPS, with a certificate of its own where none is given")
-    add("--cert", type=Path, help="certificate, PEM; implies --tls")
-    add("--key", type=Path, help="its key, PEM; left out: it stands in the same file")
+    add("--cert", type=given_path, help="certificate, PEM; implies --tls")
+    add("--key", type=given_path, help="its key, PEM; left out: it stands in the same file")
     add("--origin", action="append", default=[], help="further address of the page, as https://console.example")
-    add("--config", type=Path, help="YAML laid over config/console.yaml")
-    add("--runs", type=Path, default=FOLDER, help="folder of recorded runs (default %(default)s)")
+    add("--config", type=given_path, help="YAML laid over config/console.yaml")
+    add("--runs", type=given_path, default=FOLDER, help="folder of recorded runs (default %(default)s)")
     add("--read-only", action="store_true", help="nothing but the emergency stop works")
     return parser.parse_args(given)
 
@@ -108,7 +108,7 @@ def open_journal(path: Path) -> None:
 async def serve(given: argparse.Namespace, setup: Setup, signals: Signals) -> bool:
     """Serves until a signal arrives. True if this program has to begin again because another master was started."""
     backend = Backend(setup.settings)
-    runs, saved = given.runs.expanduser(), os.environ.pop(STATE, "")
+    runs, saved = given.runs, os.environ.pop(STATE, "")
     server = Server(backend, setup.doors, setup.users, runs, saved, port=given.port, read_only=given.read_only)
     runner = web.AppRunner(server.app, access_log=None, keepalive_timeout=KEPT, handle_signals=False)
     await runner.setup()

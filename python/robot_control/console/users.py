@@ -17,11 +17,11 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from robot_control.blackbox.main import LOGS
-from robot_control.common.files import NewFiles, printable
+from robot_control.common.files import NewFiles, given_path, printable
 from robot_control.console.desk import Role
 from robot_control.console.sessions import digest
 
-FOLDER = LOGS.expanduser()
+FOLDER = given_path(str(LOGS))
 """The folder of the console's own files."""
 FILE = FOLDER / "console_users.json"
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,31}")

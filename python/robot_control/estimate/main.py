@@ -14,7 +14,7 @@ import yaml  # type: ignore[import-untyped]
 
 from robot_control._robot_control import ParameterError, RobotError, read_run_header
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import NewFiles, escaped, fit_for_message, utf8
+from robot_control.common.files import NewFiles, escaped, fit_for_message, given_path, utf8
 from robot_control.common.output_files import check_outputs
 from robot_control.common.picture_file import check_picture
 from robot_control.common.roles import refuse_legs
@@ -272,18 +272,23 @@ def _parser() -> argparse.ArgumentParser:
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("input", type=Path, help="CSV, or rosbag (.bag)")
-    parser.add_argument("--csv", type=Path, metavar="OUT.csv", help="write the estimate, a row per row of the input")
-    parser.add_argument("--bag", type=Path, metavar="OUT.bag", help="write nav_msgs/Odometry on /odom, and /tf")
-    parser.add_argument("--plot", type=Path, metavar="OUT.png", help="draw path, yaw, speeds, gyro bias, slip")
+    parser.add_argument("input", type=given_path, help="CSV, or rosbag (.bag)")
     parser.add_argument(
-        "--calibration", type=Path, metavar="OUT.yaml", help="write what was learned, as the node's calibration_file"
+        "--csv", type=given_path, metavar="OUT.csv", help="write the estimate, a row per row of the input"
+    )
+    parser.add_argument("--bag", type=given_path, metavar="OUT.bag", help="write nav_msgs/Odometry on /odom, and /tf")
+    parser.add_argument("--plot", type=given_path, metavar="OUT.png", help="draw path, yaw, speeds, gyro bias, slip")
+    parser.add_argument(
+        "--calibration",
+        type=given_path,
+        metavar="OUT.yaml",
+        help="write what was learned, as the node's calibration_file",
     )
     parser.add_argument("--rate", type=_positive, metavar="HZ", help=f"rows a second; bag: {BAG_RATE:g} unless given")
 
     robot = parser.add_argument_group("the robot")
-    robot.add_argument("--urdf", type=Path, metavar="FILE", help="robot description, .xacro too")
-    robot.add_argument("--params", type=Path, metavar="YAML", help="parameter file; installed: robot_params.yaml")
+    robot.add_argument("--urdf", type=given_path, metavar="FILE", help="robot description, .xacro too")
+    robot.add_argument("--params", type=given_path, metavar="YAML", help="parameter file; installed: robot_params.yaml")
     robot.add_argument("--wheel-radius", type=_positive, metavar="M", help="every wheel")
     robot.add_argument("--wheel-base", type=_positive, metavar="M", help="between the left and the right wheels")
     robot.add_argument("--imu-position", type=_numbers, metavar="X,Y,Z", help="m, in base_link")
@@ -308,10 +313,7 @@ def _parser() -> argparse.ArgumentParser:
     table.add_argument(
         "--counts-per-turn", type=_positive, metavar="N", help="unit of left and right: 360 for degrees, 1 for turns"
     )
-    table.add_argument(
-        "--time-unit",
-        choices=TIME_UNITS,
-    )
+    table.add_argument("--time-unit", choices=TIME_UNITS)
 
     bag = parser.add_argument_group("a bag")
     bag.add_argument("--wheels", metavar="TOPIC", help="of sensor_msgs/JointState or nav_msgs/Odometry")

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import argparse
 import sys
-from pathlib import Path
 
 from robot_control._robot_control import BagError, BagReader, TraceError
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import NewFiles, escaped, fit_for_message, utf8
+from robot_control.common.files import NewFiles, escaped, fit_for_message, given_path, utf8
 from robot_control.common.output_files import check_outputs
 from robot_control.common.run_log import LogError, is_bag
 from robot_control.export.csv_table import write_csv
@@ -59,8 +58,8 @@ def _parser() -> argparse.ArgumentParser:
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("input", type=Path, help="run.bag")
-    parser.add_argument("--csv", type=Path, metavar="OUT.csv")
-    parser.add_argument("--mcap", type=Path, metavar="OUT.mcap")
-    parser.add_argument("--topics", type=Path, metavar="OUT.bag")
+    parser.add_argument("input", type=given_path, help="run.bag")
+    parser.add_argument("--csv", type=given_path, metavar="OUT.csv")
+    parser.add_argument("--mcap", type=given_path, metavar="OUT.mcap")
+    parser.add_argument("--topics", type=given_path, metavar="OUT.bag")
     return parser

@@ -10,6 +10,7 @@ from typing import Any
 
 from robot_control._robot_control import controller_parameters, derived_wheel_loops, wheel_loops
 from robot_control._robot_control import describe as describe_robot
+from robot_control.common.files import given_path
 from robot_control.common.roles import CONTROLLER
 from robot_control.common.run_log import Log
 from robot_control.common.settings import Settings
@@ -57,10 +58,10 @@ def parse_options(arguments: list[str]) -> Options:
     parser.add_argument("--max-speed", type=positive, default=0.5, help="m/s, of robot and rims (default %(default)s)")
     parser.add_argument("--repeats", type=number_of_sends, default=2, help="times all moves (default %(default)s)")
     parser.add_argument("--mass", type=positive, help="kg of the robot as it drives, if it was weighed")
-    parser.add_argument("--output", type=Path, default=Path("identified.yaml"), help="(default %(default)s)")
-    parser.add_argument("--log", type=Path, help="run.bag to fit; nothing is driven")
-    parser.add_argument("--params", type=Path, help="parameter file of the log; default: the installed one")
-    parser.add_argument("--urdf", type=Path, help="robot of the log; default: that of the parameters")
+    parser.add_argument("--output", type=given_path, default=Path("identified.yaml"), help="(default %(default)s)")
+    parser.add_argument("--log", type=given_path, help="run.bag to fit; nothing is driven")
+    parser.add_argument("--params", type=given_path, help="parameter file of the log; default: the installed one")
+    parser.add_argument("--urdf", type=given_path, help="robot of the log; default: that of the parameters")
     given = parser.parse_args(arguments)
     for name in ("params", "urdf"):
         if getattr(given, name) is not None and given.log is None:

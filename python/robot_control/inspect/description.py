@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 from robot_control import _robot_control
@@ -50,4 +49,4 @@ def stand(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) 
 def _arguments(
     urdf: str | PathLike[str], params: str | PathLike[str] | Mapping[str, Any] | None
 ) -> tuple[str, list[tuple[str, str]]]:
-    return layered(params, Path(urdf).absolute())
+    return layered(params, urdf)

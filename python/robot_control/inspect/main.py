@@ -5,11 +5,10 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from pathlib import Path
 
 from robot_control._robot_control import DriverError, ParameterError, RobotError
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import escaped, fit_for_message, write_text
+from robot_control.common.files import escaped, fit_for_message, given_path, write_text
 from robot_control.common.output_files import check_outputs
 from robot_control.common.picture_file import check_picture
 from robot_control.inspect.description import Description, describe, mjcf, stand
@@ -52,13 +51,13 @@ def _parser() -> argparse.ArgumentParser:
         description="Says what is understood of a robot description: wheels, sides, sizes, masses, and what was "
         "assumed, repaired or ignored.",
     )
-    parser.add_argument("file", type=Path, help="URDF, or .xacro")
+    parser.add_argument("file", type=given_path, help="URDF, or .xacro")
     parser.add_argument(
-        "--params", type=Path, metavar="YAML", help="parameter file; its robot: block lies over the URDF"
+        "--params", type=given_path, metavar="YAML", help="parameter file; its robot: block lies over the URDF"
     )
     parser.add_argument("--json", action="store_true", help="the same as JSON")
-    parser.add_argument("--mjcf", type=Path, metavar="OUT.xml", help="write the model that MuJoCo simulates")
-    parser.add_argument("--picture", type=Path, metavar="OUT.png", help="draw the robot")
+    parser.add_argument("--mjcf", type=given_path, metavar="OUT.xml", help="write the model that MuJoCo simulates")
+    parser.add_argument("--picture", type=given_path, metavar="OUT.png", help="draw the robot")
     return parser
 
 

@@ -5,11 +5,11 @@ import contextlib
 import sys
 import threading
 import time
-from pathlib import Path
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 
+from robot_control.common.files import given_path
 from robot_control.common.picture_file import check_picture
 from robot_control.common.ros_master import require_master
 from robot_control.common.ros_node import begin_node
@@ -67,7 +67,7 @@ def main() -> None:
         "command and sensor to torque of each node, live from /diagnostics.",
     )
     parser.add_argument("--seconds", type=float, default=0.0, help="end after so many seconds (0: at Ctrl-C)")
-    parser.add_argument("--plot", type=Path, metavar="FILE", help="at the end, draw the figures over time")
+    parser.add_argument("--plot", type=given_path, metavar="FILE", help="at the end, draw the figures over time")
     given = parser.parse_args(rospy.myargv(sys.argv)[1:])
     if not 0 <= given.seconds < float("inf"):
         parser.error(f"--seconds {given.seconds:g} must be 0 (until Ctrl-C) or more")

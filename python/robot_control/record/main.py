@@ -7,6 +7,9 @@ from pathlib import Path
 
 import rosgraph.names
 
+from robot_control.common.file_errors import in_words
+from robot_control.common.files import given_path
+
 TOPICS = (
     "cmd_vel",
     "cmd_vel_stamped",
@@ -71,7 +74,7 @@ def record_command(arguments: list[str], environment: dict[str, str]) -> list[st
     folder = parser.parse_args([argument for argument in arguments if ":=" not in argument]).folder
     namespace = namespace_of(arguments, environment)
     names = [rosgraph.names.ns_join(namespace, topic) for topic in TOPICS]
-    prefix = Path(folder, namespace.strip("/"), "robot_control")
+    prefix = Path(given_path(folder), namespace.strip("/"), "robot_control")
     return ["rosbag", "record", f"--output-prefix={prefix}", *names]
 
 
@@ -82,5 +85,5 @@ def main() -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise SystemExit(f"record.py: {folder} cannot be made: {error.strerror}. Name another folder.") from None
+        raise SystemExit(f"record.py: {in_words(error)}; name another folder") from None
     os.execvp(command[0], command)

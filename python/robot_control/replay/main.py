@@ -12,7 +12,7 @@ from typing import Any
 from robot_control import ParameterError, RobotError
 from robot_control._robot_control import BagError, replay_log
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import escaped, escaped_lines, fit_for_message, utf8
+from robot_control.common.files import escaped, escaped_lines, fit_for_message, given_path, utf8
 from robot_control.common.picture_file import check_picture
 from robot_control.common.roles import CONTROLLER, ESTIMATOR, MONITOR
 from robot_control.replay.recorded_setup import RecordedSetup, recorded_setup
@@ -63,14 +63,16 @@ def parse(arguments: Sequence[str] | None) -> argparse.Namespace:
         "Exit code 0: all is the same; 1: nothing differs, but not every row could be compared; 2: the log cannot be "
         "replayed; 3: something differs.",
     )
-    parser.add_argument("log", type=Path, metavar="LOG", help="run.bag")
+    parser.add_argument("log", type=given_path, metavar="LOG", help="run.bag")
     parser.add_argument("--law", choices=LAWS, help="of this law alone")
     what_if = parser.add_argument_group("what if", "the laws with other parameters beside, on the recorded inputs")
     what_if.add_argument(
         "--set", action="append", default=[], type=_assignment, metavar="NODE.PARAMETER=VALUE", help="repeatable"
     )
-    what_if.add_argument("--params", type=Path, metavar="FILE", help="YAML, laid over the parameters of the log")
-    what_if.add_argument("--plot", type=Path, default=Path("replay.png"), help="picture of both; default: %(default)s")
+    what_if.add_argument("--params", type=given_path, metavar="FILE", help="YAML, laid over the parameters of the log")
+    what_if.add_argument(
+        "--plot", type=given_path, default=Path("replay.png"), help="picture of both; default: %(default)s"
+    )
     return parser.parse_args(arguments)
 
 

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import escaped, escaped_lines, fit_for_message, write_text
+from robot_control.common.files import escaped, escaped_lines, fit_for_message, given_path, write_text
 from robot_control.common.output_files import check_outputs
 from robot_control.common.pypi import use_packages
 from robot_control.common.run_log import read_run
@@ -87,9 +87,9 @@ def _write(out: Path, drives: list[Drive], judged: list[list[Judged]]) -> None:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="report.py", description=__doc__)
     which = parser.add_mutually_exclusive_group(required=True)
-    which.add_argument("log", nargs="?", type=Path, help="run.bag, or another bag of trace")
-    which.add_argument("--compare", nargs=2, type=Path, metavar=("A", "B"), help="two logs beside each other")
-    parser.add_argument("--out", type=Path, help="the page; default: the log's name with .html")
-    parser.add_argument("--budgets", type=Path, help=f"default: {BUDGETS} of this package")
+    which.add_argument("log", nargs="?", type=given_path, help="run.bag, or another bag of trace")
+    which.add_argument("--compare", nargs=2, type=given_path, metavar=("A", "B"), help="two logs beside each other")
+    parser.add_argument("--out", type=given_path, help="the page; default: the log's name with .html")
+    parser.add_argument("--budgets", type=given_path, help=f"default: {BUDGETS} of this package")
     parser.add_argument("--ci", action="store_true", help="exit code 1 if a budget is broken; a page only with --out")
     return parser

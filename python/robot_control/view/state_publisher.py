@@ -1,7 +1,8 @@
 """state_publisher.py: waits for robot_description, then becomes robot_state_publisher.
 
 Debian's robot_state_publisher ends if robot_description is not set yet. It also warns about every root link with an
-inertia, which moves no transform. It is given the description without that inertia, as a parameter of its own.
+inertia, which moves no transform. A robot that is free to move it fixes to its world. It is given the description
+without either, as a parameter of its own.
 """
 
 from __future__ import annotations
@@ -26,12 +27,23 @@ PROGRAM = "robot_state_publisher"
 PACKAGE = "ros-robot-state-publisher"
 
 
-def without_root_inertia(urdf: str) -> str:
-    """The same robot for readers of its joints alone. A text that is no URDF is returned unchanged."""
+def for_transforms(urdf: str) -> str:
+    """The same robot for readers of its joints alone. A text that is no URDF is returned unchanged.
+
+    The inertia of the root link is left out. So is a floating or planar joint with its parent, which the nodes accept
+    for the world alone (machine/description/markup/free_root.h).
+    """
     try:
         robot = ET.fromstring(urdf)
     except ET.ParseError:
         return urdf
+    for joint in robot.findall("joint"):
+        if joint.get("type") in ("floating", "planar"):
+            parent = joint.find("parent")
+            robot.remove(joint)
+            for link in robot.findall("link"):
+                if parent is not None and link.get("name") == parent.get("link"):
+                    robot.remove(link)
     children = {child.get("link") for child in robot.findall("joint/child")}
     for link in robot.findall("link"):
         if link.get("name") not in children:
@@ -74,5 +86,5 @@ def main() -> None:
         sys.exit(f"state_publisher.py: {error}")
     if not description:
         return
-    rospy.set_param(own, without_root_inertia(description))
+    rospy.set_param(own, for_transforms(description))
     os.execv(path, [path, *sys.argv[1:], f"{name}:={own}"])

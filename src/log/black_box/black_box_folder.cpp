@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "files/given_path.h"
 #include "log/black_box/black_box_reader.h"
 #include "log/log_error.h"
 #include "log/numbered_name.h"
@@ -80,7 +81,7 @@ void BlackBoxFolder::put_ring_aside() {
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) {
-    throw LogError("folder " + folder_ + " of the black box cannot be made: " + error.message() +
+    throw LogError("black box " + file_error(folder_, error.message()) +
                    "; name one that can be written (telemetry.directory)");
   }
   if (in_use(ring())) {

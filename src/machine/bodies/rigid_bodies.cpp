@@ -40,6 +40,7 @@ class Lumper {
     result_.link_order = document.link_order;
     result_.driven_joints = document.driven;
     result_.unsaid_axes = document.unsaid_axes;
+    note_free_root();
     note_turned_origins();
     result_.sideways_names = document.sideways_names;
     result_.sideways_plugins = document.sideways_plugins;
@@ -153,6 +154,14 @@ class Lumper {
     } else {
       body.shapes.clear();
     }
+  }
+
+  void note_free_root() {
+    const FreeRoot& root = document_.free_root;
+    if (root.type.empty()) return;
+    add_note(RobotNote::Kind::kIgnored, joint_element(root.joint),
+             "type=\"" + root.type + "\" on the empty root link " + root.link +
+                 " says that the robot is free: " + root.base + " is its base, and the joint's origin is not used");
   }
 
   void note_turned_origins() {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "files/given_path.h"
 #include "files/input_file.h"
 #include "files/message_text.h"
 #include "machine/description/xacro.h"
@@ -46,7 +47,7 @@ RobotDescription load_description(const std::string& path) {
   InputFile file = read_input_file(path, kMaxDescription);
   if (file.problem.empty() && is_lfs_pointer(file.text)) refuse(path, "URDF", kLfsPointer, kLfsRemedy);
   if (ends_with_xacro(path)) return {expand_xacro(path), path};
-  if (!file.problem.empty()) refuse(path, "URDF", "it cannot be read: " + file.problem, "Give the path of a URDF file");
+  if (!file.problem.empty()) throw RobotError(fit_for_message(file_error(path, file.problem)) + ". Name a URDF file.");
   if (file.text.empty()) refuse(path, "URDF", "it is empty", "Give the path of a URDF file");
   return {std::move(file.text), path};
 }

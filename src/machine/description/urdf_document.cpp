@@ -69,6 +69,7 @@ UrdfDocument parse_urdf(const RobotDescription& description) {
   TiXmlElement& robot = parse_markup(description, xml);
   UrdfDocument document;
   document.source = description.source;
+  document.free_root = take_free_root(robot);
   document.driven = driven_joints(robot);
   document.unsaid_axes = unsaid_axes(robot);
   document.turned_origins = turned_origins(robot);

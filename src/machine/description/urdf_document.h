@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "machine/description/markup/free_root.h"
 #include "machine/description/markup/sideways_names.h"
 #include "machine/description/robot_description.h"
 
@@ -16,6 +17,7 @@ namespace robot_control {
 struct UrdfDocument {
   std::string source;                    ///< for messages
   urdf::ModelInterfaceSharedPtr model;   ///< never null
+  FreeRoot free_root;                    ///< parts of the file that are left out
   std::vector<std::string> joint_order;  ///< names in the order of the file (urdfdom sorts by name)
   std::vector<std::string> link_order;   ///< names in the order of the file
   std::set<std::string> driven;          ///< driven joints (urdf_markup.h)

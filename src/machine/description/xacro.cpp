@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "files/given_path.h"
 #include "files/input_file.h"
+#include "files/message_text.h"
 #include "machine/description/environment.h"
 #include "machine/description/other_process.h"
 #include "machine/description/robot_description.h"
@@ -34,7 +36,7 @@ std::string python_path() {
 
 std::string expand_xacro(const std::string& path) {
   if (const std::string problem = input_file_problem(path, kMaxDescription); !problem.empty()) {
-    refuse(path, "xacro", "it cannot be read: " + problem, "Give the path of a file");
+    throw RobotError(fit_for_message(file_error(path, problem)) + ". Name a .xacro file.");
   }
   const std::string interpreter = python();
   const ProcessResult result =

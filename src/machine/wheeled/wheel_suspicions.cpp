@@ -11,6 +11,8 @@
 #include "machine/gravity.h"
 #include "machine/suspicions.h"
 #include "machine/wheeled/tipping.h"
+#include "machine/wheeled/wheels/drive_wheels.h"
+#include "machine/wheeled/wheels/swivel.h"
 
 namespace robot_control {
 namespace {
@@ -120,6 +122,23 @@ void note_far_root(DriveTrain& robot) {
            "those of this frame. Where it is the world, leave it and its joint out");
 }
 
+void note_caster_joints(DriveTrain& robot) {
+  const RigidBodies& bodies = *robot.bodies;
+  for (const WheelModel& caster : robot.casters) {
+    const std::string& wheel = robot.joints[caster.joint].name;
+    for (std::size_t i = bodies.moved_by(wheel)->parent; i != 0; i = bodies.bodies[i].parent) {
+      const BodyJoint& joint = bodies.bodies[i].joint;
+      if (joint.effort_limit == 0 || joint.spring_stiffness > 0 || !joint.mimicked.empty()) continue;
+      if (is_swivel(bodies.bodies[i])) continue;
+      note(robot, joint_element(joint.name),
+           "it has an effort limit of " + number(joint.effort_limit) +
+               (joint.type == JointType::kPrismatic ? " N" : " N·m") + ", but nothing holds it, because the wheel of " +
+               wheel + " stands on the ground as a caster's. If it is an arm, let that wheel end more than " +
+               number(1000 * kCasterTolerance) + " mm above the ground");
+    }
+  }
+}
+
 void note_free_joints(DriveTrain& robot) {
   const RigidBodies& bodies = *robot.bodies;
   const auto carries_a_wheel = [&](std::size_t joint) {
@@ -144,6 +163,7 @@ void note_suspicions(DriveTrain& robot) {
   note_weak_wheels(robot);
   note_limits(robot);
   note_far_root(robot);
+  note_caster_joints(robot);
   note_free_joints(robot);
 }
 

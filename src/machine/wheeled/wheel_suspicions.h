@@ -9,6 +9,9 @@
 ///   limits    wheels of kFastRim or more at their velocity limit: probably degrees or turns; or wheels with unequal
 ///             limits
 ///   root      farther than kFar diagonals of the robot from its wheels: probably a world that the robot is fixed to
+///   casters   a joint with an effort limit that carries the wheel of a caster and is no swivel, suspension or
+///   follower:
+///             nothing holds it
 ///   free      a joint without effort limit, spring and leader that carries no wheel: nothing holds it
 ///   mecanum   the file mentions such wheels, and more than two drive
 

@@ -11,6 +11,7 @@
 #include <array>
 
 #include "bus/bus.h"
+#include "files/given_path.h"
 #include "loop/latch_file.h"
 #include "robots/robot_kind.h"
 #include "ros/startup/description.h"
@@ -34,6 +35,18 @@ XmlRpc::XmlRpcValue on_server(const std::string& name) {
 
 std::string server_text(const std::string& name, const std::string& what) {
   return text_parameter(on_server(name), name, what);
+}
+
+/// Replaces the paths that this node reads from the server by resolved ones, so that every reader finds the same files.
+void resolve_server_paths() {
+  for (const char* name : {"robot/urdf", "robot/drives", "robot/command_script", "~config", "~urdf", "~drives",
+                           "~scene", "~calibration_file", "~command_sources", "~directory", "~latch_file"}) {
+    XmlRpc::XmlRpcValue value = on_server(ros::names::resolve(name));
+    if (value.getType() != XmlRpc::XmlRpcValue::TypeString) continue;
+    const std::string& given = value;
+    const std::string path = resolved_path(given);
+    if (path != given) ros::param::set(name, path);
+  }
 }
 
 /// Returns `~config`, whose file is laid over the installed one, else the path of the installed file.
@@ -116,6 +129,7 @@ void fill_setup(const std::string& node, Setup& setup) {
   std::vector<Overlay> overlays;
   bool use_sim_time = false;
   try {
+    resolve_server_paths();
     path = config_path();
     overlays = server_overlays(node);
     use_sim_time = truth_parameter(on_server("/use_sim_time"), "/use_sim_time");
@@ -144,8 +158,10 @@ void fill_setup(const std::string& node, Setup& setup) {
   if (!problems.empty()) throw SetupError(problems);
   // Each namespace has a folder of its own, so that two robots never write to one file.
   std::string& directory = setup.parameters.telemetry.directory;
-  directory += (directory.empty() ? "." : "") + ros::this_node::getNamespace();
-  setup.parameters.latch_file = latch_path(setup.parameters.latch_file, host_name(), ros::this_node::getNamespace());
+  directory =
+      (directory.empty() ? caller_folder().string() : resolved_path(directory)) + ros::this_node::getNamespace();
+  setup.parameters.latch_file =
+      latch_path(resolved_path(setup.parameters.latch_file), host_name(), ros::this_node::getNamespace());
   setup.bus = setup.parameters.loop.bus;
   if (setup.bus.empty()) setup.bus = bus_name(ros::master::getURI(), ros::this_node::getNamespace());
 }
@@ -157,7 +173,7 @@ Parameters parameters_of(Role role) {
   std::vector<Overlay> overlays;
   append(overlays, "robot", "robot");
   append(overlays, node, node, {"config", "urdf", "driver", "drives"});
-  std::string path = server_text(ros::names::resolve(node + "/config"), kYamlPath);
+  std::string path = resolved_path(server_text(ros::names::resolve(node + "/config"), kYamlPath));
   if (path.empty()) path = config_path();
   return read_parameters(path, overlays, installed_config());
 }

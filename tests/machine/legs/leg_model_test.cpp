@@ -39,6 +39,19 @@ class LegFacts : public testing::TestWithParam<std::string> {
   LegModel robot_;
 };
 
+TEST_P(LegFacts, IsTheSameRobotOnAFreeJointOfAnEmptyWorld) {
+  RobotDescription description = legged_description(GetParam());
+  description.text.insert(description.text.rfind("</robot>"),
+                          "<link name=\"world\"/><joint name=\"free\" type=\"floating\"><parent link=\"world\"/><child "
+                          "link=\"" +
+                              robot_.base_link + "\"/><origin xyz=\"1 2 3\" rpy=\"0 1 0\"/></joint>");
+  const LegModel free = read_legs(description, {}, {});
+  EXPECT_EQ(free.base_link, robot_.base_link);
+  EXPECT_EQ(free.centre_of_gravity_base, robot_.centre_of_gravity_base);
+  EXPECT_EQ(free.parts(), robot_.parts());
+  EXPECT_EQ(free.notes.size(), robot_.notes.size() + 1);
+}
+
 TEST_P(LegFacts, FindsItsLegsByPlace) {
   EXPECT_NEAR(robot_.mass, facts_["total_mass"].as<double>(), kMassDigits);
   for (const YAML::Node& leg : facts_["legs"]) {

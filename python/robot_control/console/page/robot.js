@@ -97,6 +97,7 @@ export async function build({ urdf, meshes }, say) {
     const name = text(joint, "child", "link"), child = links.get(name);
     const parent = links.get(text(joint, "parent", "link"));
     if (!parent || !child || children.has(name) || parent === child) continue;
+    if (["floating", "planar"].includes(joint.getAttribute("type"))) continue;  // the child is the base
     children.add(name);
     const moving = new THREE.Group().add(child);
     parent.add(placeAt(new THREE.Group(), joint).add(moving));

@@ -10,11 +10,13 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <system_error>
 
 #include "drivers/driver.h"
 #include "drivers/mujoco/model/mjcf.h"
 #include "drivers/mujoco/model/scene_files.h"
 #include "drivers/mujoco/mujoco_errors.h"
+#include "files/given_path.h"
 #include "files/message_text.h"
 #include "machine/bodies/posed_bodies.h"
 #include "machine/description/wording.h"
@@ -163,9 +165,9 @@ MujocoModel compiled(const MachineModel& robot, const MujocoPlantParameters& par
   install_mujoco_handlers();
   const std::filesystem::path scene = parameters.scene;
   if (std::error_code error; !std::filesystem::exists(scene, error)) {
-    throw DriverError(printable(scene.string()) +
-                      ": there is no such file. Set mujoco_plant/scene to the path of an MJCF file" +
-                      scenes_beside(scene) + ".");
+    const std::string why = std::make_error_code(std::errc::no_such_file_or_directory).message();
+    throw DriverError(fit_for_message(file_error(scene.string(), why)) +
+                      ". Set mujoco_plant/scene to the path of an MJCF file" + scenes_beside(scene) + ".");
   }
   check_scene_files(scene);
   MujocoModel result;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "drivers/driver.h"
+#include "files/given_path.h"
 #include "files/input_file.h"
 #include "files/message_text.h"
 
@@ -36,7 +37,7 @@ class SceneFiles {
 
  private:
   [[noreturn]] static void refuse_scene(const std::filesystem::path& path, const std::string& problem) {
-    throw DriverError(printable(path.string()) + ": it " + problem +
+    throw DriverError(fit_for_message(file_error(path.string(), problem)) +
                       ". Set mujoco_plant/scene to an MJCF file whose files are regular ones.");
   }
 

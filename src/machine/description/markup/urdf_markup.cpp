@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "files/message_text.h"
+#include "machine/description/markup/free_root.h"
 #include "machine/description/urdf_document.h"
 #include "machine/description/wording.h"
 
@@ -28,12 +29,14 @@ void check_name(const RobotDescription& description, const TiXmlElement& element
   refuse(at_line(description, element), "<" + element.ValueStr() + ">", "its name is empty", "Give it a name");
 }
 
-void check_joint(const RobotDescription& description, const TiXmlElement& joint) {
+void check_joint(const RobotDescription& description, const TiXmlElement& joint, const TiXmlElement* free_one) {
+  if (&joint == free_one) return;
   const std::string type = attribute(joint, "type");
   const std::string element = joint_element(attribute(joint, "name"));
   const std::string remedy = "Use fixed, revolute, continuous or prismatic";
-  if (type == "floating" || type == "planar") {
-    refuse(at_line(description, joint), element, "floating and planar joints are not supported", remedy);
+  if (is_free(joint)) {
+    refuse(at_line(description, joint), element,
+           "a " + type + " joint is supported only as the one joint of an empty root link", remedy);
   }
   if (type != "fixed" && type != "revolute" && type != "continuous" && type != "prismatic") {
     refuse(at_line(description, joint), element, "type=\"" + type + "\" is unknown", remedy);
@@ -302,9 +305,10 @@ TiXmlElement& parse_markup(const RobotDescription& description, TiXmlDocument& x
       check_name(description, *element);
     }
   }
+  const TiXmlElement* const free_one = free_joint(*root);
   for (const TiXmlElement* joint = root->FirstChildElement("joint"); joint != nullptr;
        joint = joint->NextSiblingElement("joint")) {
-    check_joint(description, *joint);
+    check_joint(description, *joint, free_one);
   }
   check_size(description, *root);
   check_tree(description, *root);

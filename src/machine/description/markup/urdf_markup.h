@@ -27,7 +27,8 @@ inline constexpr std::size_t kMaxLinks = 2000;  ///< bound for code that descend
 ///   - text: bytes that are not UTF-8, NUL characters, a git-LFS pointer, entities of its own
 ///   - markup: not well-formed, another or a second root element, elements nested deeper than kDeepest, elements of
 ///     xacro, a percent sign outside file names
-///   - joints: an unknown, floating or planar type, a revolute joint without limits
+///   - joints: an unknown type, a floating or planar one that is not free_joint (free_root.h), a revolute joint without
+///   limits
 ///   - links: two parents, a ring, more than kMaxLinks
 TiXmlElement& parse_markup(const RobotDescription& description, TiXmlDocument& xml);
 

@@ -1,0 +1,30 @@
+#pragma once
+/// Paths as a user gives them.
+///
+/// `~/` stands for the user's home: HOME, else that of the account. A relative path in a file counts from the folder of
+/// that file, any other one from caller_folder(). Each program resolves a path before it opens the file.
+
+#include <filesystem>
+#include <string>
+
+namespace robot_control {
+
+/// Environment variable in which a launch file passes the folder of its caller on, because roslaunch starts nodes in
+/// another one.
+inline constexpr const char* kCallerFolder = "ROBOT_CONTROL_CALLER_FOLDER";
+
+/// Returns the folder that kCallerFolder names, else the current one.
+std::filesystem::path caller_folder();
+
+/// Returns the absolute path; "" for "". A '/' at its end stays. The given text is kept for shown_path.
+std::string resolved_path(const std::string& given, const std::filesystem::path& folder = caller_folder());
+
+/// Returns the path with the text from which it or a folder above it was resolved: "rel/x.urdf (/here/rel/x.urdf)".
+std::string shown_path(const std::string& path);
+
+inline constexpr const char* kUnwritable = "cannot be opened or written";
+
+/// Returns "<shown_path> cannot be opened or written: <why>".
+std::string file_error(const std::string& path, const std::string& why);
+
+}  // namespace robot_control
