@@ -50,12 +50,12 @@ class CommandsTest(RobotTestCase):
     def drive_until(self, what: str, condition: Callable[[], bool], send: Callable[[], None]) -> None:
         """Calls `send` in every pass; stops that a stalling machine latches are released on the way."""
 
-        def look() -> None:
+        def send_and_release() -> None:
             send()
             if self.robot.stalled:
                 self.robot.release()
 
-        wait_for(what, condition, every=look)
+        wait_for(what, condition, every=send_and_release)
 
     def drive_stamped(self, age: float = 0.0) -> None:
         self.drive_until("0.5 m/s", self.robot.driving, lambda: self.desk.send_aged(0.5, age))

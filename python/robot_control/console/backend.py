@@ -54,13 +54,13 @@ class Backend:
             self.authority.refuse(now)
         self.authority.permit(self._watch.drivable(SILENCE))
         command, self._age = self.authority.command(self._limits.newest(), now)
-        self._pace.look(command, now)
+        self._pace.step(command, now)
         commander = self.authority.commander
         beats = commander is not None and commander.heartbeat and commander.dead_man.alive(now)
         if beats and now - self._beat_at >= HEARTBEAT_PERIOD:
             self._beat_at = now
             self._heartbeat.publish(Empty())
-        self.said += [in_words(answer, self.listener.facts()) for answer in self._services.look()]
+        self.said += [in_words(answer, self.listener.facts()) for answer in self._services.poll()]
 
     def e_stop(self) -> None:
         """Requests the emergency stop."""
