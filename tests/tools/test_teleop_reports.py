@@ -163,12 +163,16 @@ def random_unit(chance):
     )
 
 
-@pytest.mark.parametrize("name", KEY_MAPS)
+@pytest.fixture(params=KEY_MAPS)
+def operator_of_a_key_map(request):
+    made = Operator(KEY_MAPS[request.param], Command(0.5, 1.0), Limits(1.0, 2.0, reverse=1.0))
+    made.permit(True, 0.0)
+    return made
+
+
 @pytest.mark.parametrize("seed", range(150))
-def test_random_input_without_a_bound_key_never_moves_the_robot(seed, name):
-    chance = random.Random(seed)
-    operator = Operator(KEY_MAPS[name], Command(0.5, 1.0), Limits(1.0, 2.0, reverse=1.0))
-    operator.permit(True, 0.0)
+def test_random_input_without_a_bound_key_never_moves_the_robot(seed, operator_of_a_key_map):
+    chance, operator = random.Random(seed), operator_of_a_key_map
     decoder, now = Decoder(), 0.0
     data = b"".join(random_unit(chance) for _ in range(100))
     while data:
@@ -181,13 +185,10 @@ def test_random_input_without_a_bound_key_never_moves_the_robot(seed, name):
         assert operator.command(now) in STILL
 
 
-@pytest.mark.parametrize("name", KEY_MAPS)
 @pytest.mark.parametrize("seed", range(150))
-def test_nor_does_random_input_that_is_torn_in_time(seed, name):
+def test_nor_does_random_input_that_is_torn_in_time(seed, operator_of_a_key_map):
     """Each stop that a pause makes of a byte is taken back at once, so that it hides no motion."""
-    chance = random.Random(seed)
-    operator = Operator(KEY_MAPS[name], Command(0.5, 1.0), Limits(1.0, 2.0, reverse=1.0))
-    operator.permit(True, 0.0)
+    chance, operator = random.Random(seed), operator_of_a_key_map
     decoder, now = Decoder(), 0.0
     data = b"".join(random_unit(chance) for _ in range(100))
     while data:
