@@ -4,18 +4,14 @@
 #include <string>
 
 #include "bus/bus.h"
+#include "support/message_of.h"
 
 namespace robot_control {
 
 /// "" if it does not refuse.
 template <class Call>
 std::string error_of(Call call) {
-  try {
-    call();
-  } catch (const BusError& error) {
-    return error.what();
-  }
-  return {};
+  return message_of<BusError>([&] { call(); });
 }
 
 }  // namespace robot_control
