@@ -89,7 +89,7 @@ def _presses(console: Console, robot: Robot, count: int) -> tuple[float, list[in
         browser.run(PRESSED)
         times: list[int] = []
         while len(times) < count:
-            wait_for("a free stick", lambda: browser.text("hold") == "")
+            wait_for("a free stick", lambda: browser.text("dead-man") == "")
             robot.await_rest()
             browser.key("KeyW")
             time.sleep(0.25)

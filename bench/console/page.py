@@ -38,7 +38,7 @@ class Page:
     @property
     def link(self) -> dict[str, Any]:
         """The server's figures of the link."""
-        found: dict[str, Any] = self.last.get("desk", {}).get("link", {})
+        found: dict[str, Any] = self.last.get("authority", {}).get("link", {})
         return found
 
     def await_link(self) -> None:
@@ -71,8 +71,8 @@ class Page:
         while True:
             while self._outbox:
                 await page.send_json(self._outbox.pop(0))
-            desk = self.last.get("desk", {})
-            if self.sends and desk.get("commander") == desk.get("you") and desk:
+            authority = self.last.get("authority", {})
+            if self.sends and authority.get("commander") == authority.get("you") and authority:
                 number += 1
                 now, held = time.monotonic(), self.held
                 drive = {

@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from robot_control.common.command import Command
-from robot_control.path.follower import Motion, Pose
+from robot_control.common.pose import Pose
+from robot_control.path.follower import Motion
 from robot_control.path.waypoints import Waypoint
 from robot_control.safety.interruptions import GAP, Status
 

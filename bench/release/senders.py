@@ -11,9 +11,10 @@ import math
 from collections.abc import Sequence
 
 from robot_control.common.command import Command
+from robot_control.common.pose import Pose
 from robot_control.drive.release import Phase, Release
 from robot_control.pad.law import Pad
-from robot_control.path.follower import Follower, Motion, Pose
+from robot_control.path.follower import Follower, Motion
 from robot_control.path.pieces import route
 from robot_control.path.waypoints import Waypoint
 from robot_control.safety.interruptions import Interruptions, Status, requested_at
@@ -56,7 +57,7 @@ class TeleopSender:
         late = self._backlog.late(data, now)
         if self._watch.interrupted(now, statuses):
             self._operator.interrupt(now)
-        for key in [*self._decoder.feed(data, now), *self._decoder.look(now)]:
+        for key in [*self._decoder.feed(data, now), *self._decoder.flush(now)]:
             self._operator.key(key, now, late=late)
         self._operator.permit(self._watch.drivable, now)
         return self._operator.command(now)

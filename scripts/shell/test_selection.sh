@@ -21,10 +21,10 @@ select_cases() {  # true: the nightly ones as well
 select_cases false
 
 # CTest entries that contain one of the names: test programs by their own name, rostests by that below tests/, for
-# their full name, _ctest_robot_control_rostest_tests_system_drives.test, contains the project's.
+# their full name, _ctest_robot_control_rostest_build_robot_control_tests_system_drives.test, contains the project's.
 ctest_pattern() {  # NAME …
   local IFS='|'
-  echo "^(_ctest_robot_control_rostest_(tests_.*)?|test_.*)?($*)"
+  echo "^(_ctest_robot_control_rostest_(.*tests_.*)?|test_.*)?($*)"
 }
 
 pytest_expression() {  # NAME …

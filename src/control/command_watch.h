@@ -21,8 +21,7 @@
 ///
 /// The safety monitor (motion_release.h) uses this class as evidence that no motion is requested:
 ///
-///   zero request    an accepted command, all of whose parts are zero, that is not contested
-///   (VelocityCommand::contested); commands
+///   zero request    an accepted command, all of whose parts are zero, that is not VelocityCommand::contested; commands
 ///                   in the inbox before the first step do not count, because they may be as old as the process
 ///   zero requested  a zero request was received, and no other message since then
 ///   silent cycles   k − k_message; k_message is the cycle of the last message, accepted or refused, or of the first

@@ -20,7 +20,7 @@ bool wanted(const Search& search, std::string_view path) noexcept {
   return std::ranges::any_of(search.names, [&](std::string_view name) { return file.starts_with(name); });
 }
 
-/// Is code changed when the library is loaded? Then its pages cannot be read from the file again.
+/// Returns whether code is changed when the library is loaded. Then its pages cannot be read from the file again.
 bool relocates_code(const dl_phdr_info& library) noexcept {
   for (const ElfW(Phdr) & segment : std::span(library.dlpi_phdr, library.dlpi_phnum)) {
     if (segment.p_type != PT_DYNAMIC) continue;

@@ -15,9 +15,9 @@
 #include <fstream>
 
 #include "bus/bus.h"
-#include "bus/bus_refusal.h"
 #include "support/anonymous_memory.h"
 #include "support/child_process.h"
+#include "support/message_of.h"
 #include "support/scoped_bus.h"
 #include "support/test_frame.h"
 
@@ -36,10 +36,10 @@ class BusAccessTest : public testing::Test {
   std::string file() const { return "/dev/shm" + bus_object_name(bus_.name(), ChannelNames::kState); }
 
   std::string write_error() const {
-    return error_of([&] { OwnedChannel<Frames>(bus_.name(), ChannelNames::kState); });
+    return message_of<BusError>([&] { OwnedChannel<Frames>(bus_.name(), ChannelNames::kState); });
   }
   std::string read_error() const {
-    return error_of([&] { ForeignChannel<Frames>(bus_.name(), ChannelNames::kState).poll(); });
+    return message_of<BusError>([&] { ForeignChannel<Frames>(bus_.name(), ChannelNames::kState).poll(); });
   }
 
   /// The error of both, which must be the same.

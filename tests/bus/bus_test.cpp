@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "bus/bus_refusal.h"
+#include "support/message_of.h"
 #include "support/scoped_bus.h"
 #include "support/test_frame.h"
 
@@ -33,7 +33,7 @@ class BusTest : public testing::Test {
     return "/dev/shm" + bus_object_name(bus_.name(), channel);
   }
   std::string write_error() const {
-    return error_of([&] { OwnedChannel<Frames>(bus_.name(), ChannelNames::kState); });
+    return message_of<BusError>([&] { OwnedChannel<Frames>(bus_.name(), ChannelNames::kState); });
   }
   /// Puts a file of this user in the channel's place.
   void plant(const std::string& content) const {
@@ -84,7 +84,7 @@ TEST(BusObjectName, NamesUserBusAndChannel) {
 
 TEST(BusObjectName, RefusesWhatIsNoFileName) {
   for (const std::string& bus : {std::string(), std::string("a/b"), std::string("a b"), std::string(300, 'x')}) {
-    EXPECT_THAT(error_of([&] { bus_object_name(bus, "state"); }), HasSubstr("parameter 'bus'")) << bus;
+    EXPECT_THAT(message_of<BusError>([&] { bus_object_name(bus, "state"); }), HasSubstr("parameter 'bus'")) << bus;
   }
 }
 
@@ -202,7 +202,7 @@ TEST_F(BusTest, AnUnlockedLeftoverOfAnotherLayoutIsRetiredAndRecreated) {
 TEST_F(BusTest, ALockedObjectOfAnotherLayoutIsAnErrorForWriterAndReader) {
   const auto other = wide();
   EXPECT_THAT(write_error(), HasSubstr("its object has another layout"));
-  EXPECT_THAT(error_of([&] { reader_.poll(); }), HasSubstr("all nodes must be of one build"));
+  EXPECT_THAT(message_of<BusError>([&] { reader_.poll(); }), HasSubstr("all nodes must be of one build"));
   EXPECT_EQ(other.memory()->head.retired.load(), 0u);  // this object belongs to another writer
 }
 
@@ -272,7 +272,7 @@ TEST_F(BusTest, ALeftoverShorterThanAHeadIsRecreated) {
 TEST_F(BusTest, AnObjectTruncatedUnderItsWriterIsAnErrorForANewReader) {
   const OwnedChannel<Frames> writer(bus_.name(), ChannelNames::kState);
   ASSERT_EQ(truncate(file().c_str(), 100), 0);
-  EXPECT_THAT(error_of([&] { reader_.poll(); }), HasSubstr("its object is truncated"));
+  EXPECT_THAT(message_of<BusError>([&] { reader_.poll(); }), HasSubstr("its object is truncated"));
   EXPECT_THAT(write_error(), HasSubstr("its object is truncated"));
 }
 
@@ -321,7 +321,7 @@ TEST_F(BusTest, TheSameRobotIsTheOneOfTheSameHash) {
 TEST_F(BusTest, AnotherRobotIsRefusedNamingBothSources) {
   const OwnedChannel<Frames> sensors(bus_.name(), ChannelNames::kSensors);
   announce_robot(sensors.memory()->head, 9, "urdf/a.urdf");
-  const std::string error = error_of([&] { same_robot(sensors.memory()->head, 10, "urdf/b.urdf"); });
+  const std::string error = message_of<BusError>([&] { same_robot(sensors.memory()->head, 10, "urdf/b.urdf"); });
   EXPECT_THAT(error, HasSubstr("'urdf/a.urdf' (0000000000000009)"));
   EXPECT_THAT(error, HasSubstr("'urdf/b.urdf' (000000000000000a)"));
 }

@@ -3,38 +3,38 @@
 import threading
 
 import pytest
-from robot_control.console import examination
-from robot_control.console.examination import Examination
+from robot_control.console import doctor_run
+from robot_control.console.doctor_run import DoctorRun
 from robot_control.console.runs import RunsError
 
 
 def test_the_findings_come_with_the_worst_first():
     order = ["fault", "warning", "note", "unseen", "ok"]
-    found = Examination().result()
+    found = DoctorRun().result()
     verdicts = [order.index(check["verdict"]) for check in found]
     assert verdicts == sorted(verdicts)
     assert {"preemption", "shared_memory"} <= {check["name"] for check in found}
 
 
 def test_a_program_that_prints_nothing_is_one_message(monkeypatch):
-    monkeypatch.setattr(examination, "PROGRAM", "import sys; sys.exit('it is broken')")
+    monkeypatch.setattr(doctor_run, "PROGRAM", "import sys; sys.exit('it is broken')")
     with pytest.raises(RunsError, match="it is broken"):
-        Examination().result()
+        DoctorRun().result()
 
 
 def test_a_program_that_hangs_is_given_up(monkeypatch):
-    monkeypatch.setattr(examination, "PROGRAM", "import time; time.sleep(60)")
-    monkeypatch.setattr(examination, "TIME", 0.2)
+    monkeypatch.setattr(doctor_run, "PROGRAM", "import time; time.sleep(60)")
+    monkeypatch.setattr(doctor_run, "TIME", 0.2)
     with pytest.raises(RunsError, match="not ready within"):
-        Examination().result()
+        DoctorRun().result()
 
 
 def test_one_examination_runs_at_a_time(monkeypatch):
-    monkeypatch.setattr(examination, "PROGRAM", "import time; time.sleep(60)")
-    monkeypatch.setattr(examination, "TIME", 2.0)
-    one = Examination()
+    monkeypatch.setattr(doctor_run, "PROGRAM", "import time; time.sleep(60)")
+    monkeypatch.setattr(doctor_run, "TIME", 2.0)
+    one = DoctorRun()
     began = threading.Event()
-    monkeypatch.setattr(examination.subprocess, "run", hook := Signalled(examination.subprocess.run, began))
+    monkeypatch.setattr(doctor_run.subprocess, "run", hook := Signalled(doctor_run.subprocess.run, began))
     first = threading.Thread(target=given_up, args=(one,))
     first.start()
     assert began.wait(10.0)

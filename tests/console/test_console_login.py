@@ -6,9 +6,9 @@ import random
 import stat
 
 import pytest
-from robot_control.console.addresses import AddressError, doors_of, require_protection
+from robot_control.console.addresses import AddressError, origins_of, require_protection
+from robot_control.console.authority import Role
 from robot_control.console.calls import check_call
-from robot_control.console.desk import Role
 from robot_control.console.messages import BURST, MAX_SIZE, RATE, MessageError, Rate, parse
 from robot_control.console.sessions import LIFE, PERIOD, TRIES_OF_USER, Sessions, Tries
 from robot_control.console.users import LINK_LIFE, Users, UsersError
@@ -197,14 +197,14 @@ def test_failed_logins_are_limited_per_user_and_per_address():
 
 
 def test_only_own_names_and_origins_count():
-    doors = doors_of("127.0.0.1", 8080, [], tls=False, further=["https://console.example"])
-    assert doors.host_is_own("localhost:8080")
-    assert doors.host_is_own("console.example")
-    assert doors.origin_is_own("http://127.0.0.1:8080", "127.0.0.1:8080")
+    origins = origins_of("127.0.0.1", 8080, [], tls=False, further=["https://console.example"])
+    assert origins.host_is_own("localhost:8080")
+    assert origins.host_is_own("console.example")
+    assert origins.origin_is_own("http://127.0.0.1:8080", "127.0.0.1:8080")
     for host in (None, "", "evil.example:8080", "127.0.0.1", "127.0.0.1:80", "127.0.0.1:8080.evil.example"):
-        assert not doors.host_is_own(host)
+        assert not origins.host_is_own(host)
     for origin in (None, "null", "", "https://127.0.0.1:8080", "http://evil.example", "http://localhost:8080"):
-        assert not doors.origin_is_own(origin, "127.0.0.1:8080")
+        assert not origins.origin_is_own(origin, "127.0.0.1:8080")
 
 
 @pytest.mark.parametrize("address", ["0.0.0.0", "192.0.2.1", "::", "robot.local"])

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/driver.h"
+#include "support/message_of.h"
 
 namespace robot_control {
 namespace {
@@ -19,12 +20,7 @@ MachineModel machine(std::initializer_list<JointRole> roles) {
 }
 
 std::string refusal(const MachineModel& model, std::size_t brakes) {
-  try {
-    drive_motors(model, std::vector<Brake>(brakes));
-  } catch (const DriverError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<DriverError>([&] { drive_motors(model, std::vector<Brake>(brakes)); });
 }
 
 TEST(DriveMotors, AreTheDrivenJointsOfAMachine) {

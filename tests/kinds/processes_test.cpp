@@ -78,7 +78,7 @@ class LiftedPole {
       if (monotonic_ns() > end_ns) return false;
       command_.content.twist.angular[2] = speed_;
       ++command_.count;
-      nodes_.desk().command.store(command_);
+      nodes_.controls().command.store(command_);
       sensors_.poll();
       sensors_.reader.newest(newest_);
       sleep_ns(kLookNs);

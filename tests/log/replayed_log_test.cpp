@@ -74,20 +74,5 @@ TEST_F(AReplayedLog, WithStopsResetsTuningAndANewRun) {
   expect_replayed_whole();
 }
 
-TEST_F(AReplayedLog, WithFaultsOfSensorsAndNodes) {
-  drive_on(500);
-  for (const auto& [component, kind] : {std::pair{"controller", "wrong"},
-                                        {"estimator", "delayed"},
-                                        {"monitor", "intermittent"},
-                                        {"left_encoder", "garbage"},
-                                        {"gyro", "off"}}) {
-    loop.inject_fault(component, kind);
-    drive_on(300);
-    loop.inject_fault(component, "ok");
-    drive_on(300);
-  }
-  expect_replayed_whole();
-}
-
 }  // namespace
 }  // namespace robot_control

@@ -12,6 +12,7 @@
 
 #include "configuration/parameters.h"
 #include "support/allocation_guard.h"
+#include "support/message_of.h"
 
 namespace robot_control {
 namespace {
@@ -26,12 +27,7 @@ constexpr const char* kHealthy =
     "30,0,0,e_stop_reset\n";
 
 std::string refusal(const std::string& text) {
-  try {
-    CommandScript::parse(text, "script.csv");
-    return "";
-  } catch (const ParameterError& error) {
-    return error.what();
-  }
+  return message_of<ParameterError>([&] { CommandScript::parse(text, "script.csv"); });
 }
 
 TEST(CommandScript, ThatIsNoRegularFileIsRefused) {

@@ -33,12 +33,12 @@ class AFullDisk : public Losses {
   void expect_reported_and_counted(const std::string& why) {
     nodes().start(LoopNode::kTelemetry);
     expect_drives_on(1000);
-    EXPECT_TRUE(robot_.await([&] { return nodes().desk().unwritten_rows.load() > 0; })) << "counted";
-    const std::uint64_t unwritten = nodes().desk().unwritten_rows.load();
+    EXPECT_TRUE(robot_.await([&] { return nodes().controls().unwritten_rows.load() > 0; })) << "counted";
+    const std::uint64_t unwritten = nodes().controls().unwritten_rows.load();
     // Its rings would be full, were they not emptied on. Rows are counted by whole chunks, of a second each.
     expect_drives_on(kRingRows + 1500);
-    EXPECT_GT(nodes().desk().unwritten_rows.load(), unwritten + kRingRows);
-    EXPECT_EQ(nodes().desk().lost_rows.load(), 0u) << "by the rings";
+    EXPECT_GT(nodes().controls().unwritten_rows.load(), unwritten + kRingRows);
+    EXPECT_EQ(nodes().controls().lost_rows.load(), 0u) << "by the rings";
     expect_lives(LoopNode::kTelemetry);
     const std::string said = nodes().said(LoopNode::kTelemetry);
     EXPECT_NE(said.find(why), std::string::npos) << said;
@@ -77,9 +77,9 @@ TEST_F(NightlyFullDisk, OrAFolderThatIsRemovedIsReportedAndCountedToo) {
   nodes().start(LoopNode::kTelemetry);
   expect_drives_on(1500);
   std::filesystem::remove_all(folder_);
-  EXPECT_TRUE(robot_.await([&] { return nodes().desk().unwritten_rows.load() > 0; })) << "counted";
+  EXPECT_TRUE(robot_.await([&] { return nodes().controls().unwritten_rows.load() > 0; })) << "counted";
   expect_drives_on(kRingRows + 500);
-  EXPECT_EQ(nodes().desk().lost_rows.load(), 0u) << "by the rings";
+  EXPECT_EQ(nodes().controls().lost_rows.load(), 0u) << "by the rings";
   expect_lives(LoopNode::kTelemetry);
   EXPECT_NE(nodes().said(LoopNode::kTelemetry).find("is not there any more"), std::string::npos);
 }
@@ -106,9 +106,9 @@ TEST_F(NightlyFullDisk, OrAReadOnlyOneOverTheFolderIsReportedAndCountedAndTheLog
         .wait();
   };
   ASSERT_EQ(in_its_space([&] { return mount("tmpfs", folder_.c_str(), "tmpfs", MS_RDONLY, nullptr); }), 0);
-  EXPECT_TRUE(robot_.await([&] { return nodes().desk().unwritten_rows.load() > 0; })) << "counted";
+  EXPECT_TRUE(robot_.await([&] { return nodes().controls().unwritten_rows.load() > 0; })) << "counted";
   expect_drives_on(kRingRows + 500);
-  EXPECT_EQ(nodes().desk().lost_rows.load(), 0u) << "by the rings";
+  EXPECT_EQ(nodes().controls().lost_rows.load(), 0u) << "by the rings";
   expect_lives(LoopNode::kTelemetry);
   ASSERT_EQ(in_its_space([&] { return umount2(folder_.c_str(), MNT_DETACH); }), 0);
   EXPECT_TRUE(robot_.await([&] { return std::filesystem::exists(folder_ / "run.1.bag"); }, 60));

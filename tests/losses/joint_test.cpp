@@ -56,7 +56,7 @@ class AJoint : public Losses, public ::testing::WithParamInterface<FailingJoint>
 TEST_P(AJoint, ThatFailsStopsTheRobotAndIsNamed) {
   const FailingJoint& failing = GetParam();
   ASSERT_EQ(nodes().robot().joints.size(), 4u);
-  SpoilRequest& request = nodes().desk().spoil;
+  SpoilRequest& request = nodes().controls().spoil;
   const std::uint64_t before = robot_.cycle();
   request.joint.store(2);
   request.how.store(failing.how);

@@ -134,7 +134,7 @@ TEST_P(ALostTelemetry, HarmsNothing) {
   expect_drives_on(kRingRows + 500);  // its rings are full by then, if a node waited for room
   if (GetParam() == SIGSTOP) {
     nodes().process(LoopNode::kTelemetry).send(SIGCONT);
-    EXPECT_TRUE(robot_.await([&] { return nodes().desk().lost_rows.load() > 0; })) << "what was lost is counted";
+    EXPECT_TRUE(robot_.await([&] { return nodes().controls().lost_rows.load() > 0; })) << "what was lost is counted";
     expect_drives_on(200);
   }
   for (const LoopNode node : kLoop) expect_lives(node);
@@ -150,7 +150,7 @@ TEST_F(NightlyLostTelemetry, StoppedForTenSecondsCountsAndNamesWhatItMissed) {
   nodes().process(LoopNode::kTelemetry).send(SIGSTOP);
   expect_drives_on(10'000);
   nodes().process(LoopNode::kTelemetry).send(SIGCONT);
-  EXPECT_TRUE(robot_.await([&] { return nodes().desk().lost_rows.load() > 0; })) << "counted";
+  EXPECT_TRUE(robot_.await([&] { return nodes().controls().lost_rows.load() > 0; })) << "counted";
   expect_drives_on(4000);
 
   std::uint64_t last = 0, missing = 0, lost = 0;

@@ -7,17 +7,13 @@
 #include <algorithm>
 
 #include "machine/quadruped_urdf.h"
+#include "support/message_of.h"
 
 namespace robot_control {
 namespace {
 
 std::string refusal_of_machine(const std::string& content) {
-  try {
-    read_machine(robot_of(content), {});
-  } catch (const RobotError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return message_of<RobotError>([&] { read_machine(robot_of(content), {}); }, "accepted");
 }
 
 TEST(AMachineOfAnyKind, HasItsJointsInTheOrderOfTheFile) {

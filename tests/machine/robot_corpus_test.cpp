@@ -8,6 +8,7 @@
 
 #include "machine/urdf_text.h"
 #include "support/corpus.h"
+#include "support/message_of.h"
 
 namespace robot_control {
 namespace {
@@ -104,12 +105,8 @@ INSTANTIATE_TEST_SUITE_P(Robots, RobotCorpus, testing::ValuesIn(robots()),
                          [](const auto& robot) { return robot.param; });
 
 std::string refusal_of_robot(const std::string& name) {
-  try {
-    read_drive_train(load_description((corpus() / name / "robot.urdf").string()), {});
-  } catch (const RobotError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return message_of<RobotError>(
+      [&] { read_drive_train(load_description((corpus() / name / "robot.urdf").string()), {}); }, "accepted");
 }
 
 TEST(RobotCorpusRefusals, AnEmptyTemplateHasNoWheels) {

@@ -8,6 +8,7 @@
 #include "machine/urdf_text.h"
 #include "machine/wheeled/drive_train.h"
 #include "support/diffbot_urdf.h"
+#include "support/message_of.h"
 #include "support/quiet_refusal.h"
 
 namespace robot_control {
@@ -36,12 +37,8 @@ auto names(const std::string& element, const std::string& what) {
 }
 
 TEST(RobotRefusals, AFileThatIsNotThere) {
-  try {
-    load_description("/nowhere/robot.urdf");
-    FAIL();
-  } catch (const RobotError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("/nowhere/robot.urdf"));
-  }
+  const std::string message = message_of<RobotError>([&] { load_description("/nowhere/robot.urdf"); });
+  EXPECT_THAT(message, HasSubstr("/nowhere/robot.urdf"));
 }
 
 TEST(RobotRefusals, MalformedXmlWithItsLine) {

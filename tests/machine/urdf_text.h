@@ -4,6 +4,7 @@
 #include <string>
 
 #include "machine/wheeled/drive_train.h"
+#include "support/message_of.h"
 
 namespace robot_control {
 
@@ -82,12 +83,7 @@ inline RobotDescription on_world(RobotDescription description, const std::string
 
 /// The message of the refusal, or "accepted".
 inline std::string refusal_of(const RobotDescription& description, const DriveTrainParameters& parameters = {}) {
-  try {
-    read_drive_train(description, parameters);
-  } catch (const RobotError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return message_of<RobotError>([&] { read_drive_train(description, parameters); }, "accepted");
 }
 
 /// All notes of one kind, one per line: "element: text".

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "configuration/parameters.h"
+#include "support/message_of.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
@@ -33,12 +34,7 @@ class CalibrationFile : public ::testing::Test {
   std::optional<LearnedCalibration> read() const { return read_calibration(path(), robot_, parameters_); }
 
   std::string refusal() const {
-    try {
-      read();
-      return "accepted";
-    } catch (const ParameterError& error) {
-      return error.what();
-    }
+    return message_of<ParameterError>([&] { read(); }, "accepted");
   }
 
   std::string text() const {

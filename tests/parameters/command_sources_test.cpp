@@ -8,6 +8,7 @@
 #include "configuration/parameters.h"
 #include "files/message_text.h"
 #include "parameters/problem_list.h"
+#include "support/message_of.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
@@ -25,12 +26,7 @@ class CommandSources : public ::testing::Test {
   }
 
   std::string refusal(const std::string& text) {
-    try {
-      read(text);
-      return "accepted";
-    } catch (const ParameterError& error) {
-      return error.what();
-    }
+    return message_of<ParameterError>([&] { read(text); }, "accepted");
   }
 
   TemporaryFolder folder_;

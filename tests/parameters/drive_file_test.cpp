@@ -8,6 +8,7 @@
 #include <regex>
 
 #include "parameters/problem_list.h"
+#include "support/message_of.h"
 
 namespace robot_control {
 namespace {
@@ -42,12 +43,7 @@ class DriveFile : public ::testing::Test {
     return refusal_of(text, rate);
   }
   std::string refusal_of(const std::string& text, double rate = 500) {
-    try {
-      read(text, rate);
-    } catch (const ParameterError& error) {
-      return error.what();
-    }
-    return "";
+    return message_of<ParameterError>([&] { read(text, rate); });
   }
   /// Returns an example in which the defaults are no comments.
   static std::string uncommented(const std::string& name) {

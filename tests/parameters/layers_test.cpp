@@ -6,6 +6,7 @@
 #include "control/limits/drive_limits.h"
 #include "parameter_file.h"
 #include "parameters/suggestion.h"
+#include "support/message_of.h"
 
 namespace robot_control {
 namespace {
@@ -22,12 +23,7 @@ class Layers : public ::testing::Test {
   }
 
   std::string refusal(const std::string& text, const std::vector<Overlay>& overlays = {}) {
-    try {
-      read(text, overlays);
-      return "";
-    } catch (const ParameterError& error) {
-      return error.what();
-    }
+    return message_of<ParameterError>([&] { read(text, overlays); });
   }
 
   ParameterFile file;

@@ -13,6 +13,7 @@
 
 #include "configuration/parameters.h"
 #include "parameters/schema.h"
+#include "support/message_of.h"
 
 namespace robot_control {
 
@@ -111,12 +112,7 @@ class ParameterFile {
 
   /// The message of read_parameters; empty if it accepts the file.
   std::string refusal(const std::vector<Overlay>& overlays = {}) const {
-    try {
-      read_parameters(path(), overlays);
-      return "";
-    } catch (const ParameterError& error) {
-      return error.what();
-    }
+    return message_of<ParameterError>([&] { read_parameters(path(), overlays); });
   }
 
  private:

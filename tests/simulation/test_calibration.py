@@ -9,7 +9,7 @@ from robot_control import ClosedLoop
 from robot_control.calibrate.evaluation import evaluate, wheels_of
 from robot_control.calibrate.law import Square, Straight, Truth, largest_mean_return_error
 from robot_control.calibrate.moves import Pilot, square, straight
-from robot_control.identify.excitation_watch import Pose
+from robot_control.common.pose import Pose
 
 LEFT, RIGHT, BASE = 0.012, 0.004, 0.02
 HIDDEN = {

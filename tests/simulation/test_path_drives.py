@@ -4,8 +4,9 @@ import math
 
 import pytest
 from robot_control import ClosedLoop
+from robot_control.common.pose import Pose
 from robot_control.installed_files import share_file
-from robot_control.path.follower import Follower, Motion, Pose, State
+from robot_control.path.follower import Follower, Motion, State
 from robot_control.path.pieces import route, turned
 from robot_control.path.shapes import SHAPES
 from robot_control.path.waypoints import Waypoint

@@ -101,7 +101,7 @@ class DrivingRobot {
       next_send_ns_ = now_ns + kSendNs;
       command_.content = *asked_;
       ++command_.count;
-      nodes_.desk().command.store(command_);
+      nodes_.controls().command.store(command_);
     }
     if (!watching_) return;
     if (mapping_ && now_ns >= next_poll_ns_) {
@@ -169,7 +169,7 @@ class DrivingRobot {
   /// Requests a reset once; returns the refusals, 0 if accepted. Throws std::runtime_error without an answer.
   std::uint64_t ask_reset() {
     ++operator_input_.resets;
-    nodes_.desk().operator_input.store(operator_input_);
+    nodes_.controls().operator_input.store(operator_input_);
     if (!await([&] { return permit().resets_handled == operator_input_.resets; })) {
       throw std::runtime_error("no node answers a reset");
     }

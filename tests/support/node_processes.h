@@ -28,8 +28,8 @@
 #include "rt/realtime_thread.h"
 #include "support/anonymous_memory.h"
 #include "support/child_process.h"
-#include "support/control_desk.h"
 #include "support/scoped_bus.h"
+#include "support/shared_controls.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
@@ -44,7 +44,7 @@ class NodeProcesses {
   /// A robot of any kind, composed with these parameters.
   NodeProcesses(const Parameters& parameters, std::shared_ptr<const Robot> robot)
       : parameters_(parameters), robot_(std::move(robot)) {
-    new (desk_.get()) ControlDesk();
+    new (controls_.get()) SharedControls();
     parameters_.telemetry.black_box = 0;     // see give_black_box
     parameters_.loop.wait_for_nodes = true;  // a run begins with all nodes there
   }
@@ -55,10 +55,10 @@ class NodeProcesses {
 
   /// Forks the node. It receives no earlier message; its own outputs continue.
   void start(LoopNode node) {
-    if (node == LoopNode::kController) desk_->command.store({});
-    if (node == LoopNode::kMonitor) desk_->operator_input.store({});
-    if (node == LoopNode::kTelemetry) desk_->lost_rows.store(0);
-    desk_->missing[index_of(node)].store(0);
+    if (node == LoopNode::kController) controls_->command.store({});
+    if (node == LoopNode::kMonitor) controls_->operator_input.store({});
+    if (node == LoopNode::kTelemetry) controls_->lost_rows.store(0);
+    controls_->missing[index_of(node)].store(0);
     processes_[index_of(node)] = std::make_unique<ChildProcess>([this, node] { return run(node); });
     // Only cycle 0 of the first run waits for all nodes; a restarted plant finds the others braking.
     if (node == LoopNode::kPlant) parameters_.loop.wait_for_nodes = false;
@@ -75,7 +75,7 @@ class NodeProcesses {
     return process != nullptr && process->lives();
   }
   bool misses(LoopNode node, LoopNode whom) const {
-    return (desk_->missing[index_of(node)].load() >> index_of(whom) & 1U) != 0;
+    return (controls_->missing[index_of(node)].load() >> index_of(whom) & 1U) != 0;
   }
 
   /// The node's output on stderr.
@@ -87,7 +87,7 @@ class NodeProcesses {
   /// Sets an action of the process before it becomes a node.
   void prepare(LoopNode node, std::function<void()> act) { preparations_[index_of(node)] = std::move(act); }
 
-  ControlDesk& desk() const noexcept { return *desk_.get(); }
+  SharedControls& controls() const noexcept { return *controls_.get(); }
   const std::string& bus() const noexcept { return bus_.name(); }
   const Parameters& parameters() const noexcept { return parameters_; }
   const DriveTrain& robot() const { return drive_train_of(robot_->machine()); }
@@ -133,12 +133,12 @@ class NodeProcesses {
       case LoopNode::kController:
         return run_consumer<ControllerProcess>(node, [this](ControllerProcess& controller) {
           VelocityCommand command;
-          if (desk_->command.load(command)) controller.cycle().inbox().store(command);
+          if (controls_->command.load(command)) controller.cycle().inbox().store(command);
         });
       case LoopNode::kMonitor:
         return run_consumer<MonitorProcess>(node, [this](MonitorProcess& monitor) {
           OperatorInput input;
-          if (desk_->operator_input.load(input)) monitor.cycle().inbox().store(input);
+          if (controls_->operator_input.load(input)) monitor.cycle().inbox().store(input);
         });
       case LoopNode::kTelemetry:
         return run_telemetry();
@@ -151,7 +151,7 @@ class NodeProcesses {
     for (;;) {
       receive(node);
       node.poll();
-      desk_->missing[index_of(name)].store(missing_bits(node.missing()));
+      controls_->missing[index_of(name)].store(missing_bits(node.missing()));
       sleep_ns(kLookNs);
     }
   }
@@ -160,10 +160,10 @@ class NodeProcesses {
     DriverProcess driver(parameters_, *robot_, bus_.name());
     const double period = parameters_.loop.period();
     auto plant = std::make_unique<MujocoPlant>(robot_->machine(), parameters_.plant, period);
-    driver.open_driver(std::make_unique<SpoiledJoint>(std::move(plant), desk_->spoil, std::llround(1e9 * period)));
+    driver.open_driver(std::make_unique<SpoiledJoint>(std::move(plant), controls_->spoil, std::llround(1e9 * period)));
     for (;;) {
       driver.poll();
-      desk_->missing[index_of(LoopNode::kPlant)].store(missing_bits(driver.missing()));
+      controls_->missing[index_of(LoopNode::kPlant)].store(missing_bits(driver.missing()));
       sleep_ns(kLookNs);
     }
   }
@@ -174,11 +174,11 @@ class NodeProcesses {
       telemetry.poll();
       telemetry.drain();
       const TelemetryCounts counts = telemetry.counts();
-      desk_->lost_rows.store(counts.dropped + counts.overwritten);
-      if (!telemetry.problem().empty() && desk_->unwritten_rows.load() == 0) {
+      controls_->lost_rows.store(counts.dropped + counts.overwritten);
+      if (!telemetry.problem().empty() && controls_->unwritten_rows.load() == 0) {
         std::fprintf(stderr, "%s\n", telemetry.problem().c_str());
       }
-      if (!telemetry.problem().empty()) desk_->unwritten_rows.store(counts.bag_unwritten);
+      if (!telemetry.problem().empty()) controls_->unwritten_rows.store(counts.bag_unwritten);
       sleep_ns(kLookNs);
     }
   }
@@ -186,7 +186,7 @@ class NodeProcesses {
   pid_t test_ = getpid();
   ScopedBus bus_;
   TemporaryFolder folder_;
-  AnonymousMemory<ControlDesk> desk_;
+  AnonymousMemory<SharedControls> controls_;
   Parameters parameters_;
   std::shared_ptr<const Robot> robot_;
   std::array<std::function<void()>, kLoopNodeNames.size()> preparations_;

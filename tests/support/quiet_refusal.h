@@ -5,6 +5,8 @@
 
 #include <string>
 
+#include "support/message_of.h"
+
 namespace robot_control {
 
 /// The message of the Error that `act` throws, or "accepted".
@@ -12,12 +14,7 @@ template <class Error, class Act>
 std::string quiet_refusal(Act act) {
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
-  std::string message = "accepted";
-  try {
-    act();
-  } catch (const Error& error) {
-    message = error.what();
-  }
+  const std::string message = message_of<Error>(act, "accepted");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
   return message;

@@ -11,8 +11,6 @@ from pathlib import Path
 import rospy
 import rostest
 import yaml
-from geometry_msgs.msg import Twist
-from robot_control.msg import SafetyStatus
 from system_support import (
     DRIVER,
     ESTIMATOR,
@@ -51,14 +49,12 @@ class CalibrateTest(RobotTestCase):
 
     @contextlib.contextmanager
     def started(self, *arguments: str) -> Iterator[Program]:
-        """A block in which this test is no sender on cmd_vel."""
-        self.robot._cmd_vel.unregister()
-        program = Program("calibrate.py", f"--out={self.out}", *arguments)
-        try:
-            yield program
-        finally:
-            program.end()
-            self.robot._cmd_vel = rospy.Publisher(self.robot.name("cmd_vel"), Twist, queue_size=1, tcp_nodelay=True)
+        with self.robot.silence():
+            program = Program("calibrate.py", f"--out={self.out}", *arguments)
+            try:
+                yield program
+            finally:
+                program.end()
 
     def refused(self, *arguments: str) -> str:
         before = self.robot.joints.position
@@ -110,18 +106,6 @@ class CalibrateTest(RobotTestCase):
         words = self.refused("--truth")
         self.assertIn("It drives by itself and sees nothing", words)
         self.assertIn("there is no terminal", words)
-
-    def test_refuses_a_stopped_robot_and_says_why(self) -> None:
-        self.assertTrue(self.robot.call("e_stop_trigger").success)
-        wait_for("the stop", lambda: self.robot.state == SafetyStatus.STOPPED)
-        self.assertIn("the robot is STOPPED", self.refused(*SHORT))
-        self.robot.release()
-
-    def test_refuses_beside_another_sender(self) -> None:
-        sender = Program("send_cmd.py", "--linear=0", "--angular=0")
-        self.addCleanup(sender.end)
-        wait_for("the sender", lambda: "cmd_vel 1" in sender.output)
-        self.assertIn("/send_cmd may send on cmd_vel", self.refused(*SHORT))
 
 
 if __name__ == "__main__":

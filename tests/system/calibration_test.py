@@ -10,7 +10,6 @@ from pathlib import Path
 import rospy
 import rostest
 import yaml
-from diagnostic_msgs.msg import DiagnosticArray
 from system_support import DRIVER, ESTIMATOR, RobotTestCase, init_test_node, refusal, wait_for
 
 LEFT = 0.02
@@ -23,11 +22,9 @@ class CalibrationTest(RobotTestCase):
         init_test_node(cls.__name__)
         cls.folder = Path(tempfile.mkdtemp(prefix="calibration-test-"))
         cls.file = cls.folder / "learned.yaml"
-        cls.estimator: dict[str, str] = {}
         rospy.set_param(f"{DRIVER}/left_radius_error", LEFT)
         rospy.set_param(f"{DRIVER}/sensor_errors", "data_sheet")  # only the storage is judged, not the accuracy
         rospy.set_param(f"{ESTIMATOR}/calibration_file", str(cls.file))
-        rospy.Subscriber("/diagnostics", DiagnosticArray, cls.receive_diagnostics)
         super().setUpClass()
 
     @classmethod
@@ -38,14 +35,8 @@ class CalibrationTest(RobotTestCase):
         rospy.delete_param(f"{ESTIMATOR}/calibration_file")
         shutil.rmtree(cls.folder)
 
-    @classmethod
-    def receive_diagnostics(cls, message: DiagnosticArray) -> None:
-        for status in message.status:
-            if status.name == ESTIMATOR:
-                cls.estimator = {pair.key: pair.value for pair in status.values}
-
     def reported(self, name: str) -> float:
-        return float(self.estimator.get(name, "nan"))
+        return float(self.robot.reports[ESTIMATOR].values.get(name, "nan"))
 
     def kept(self) -> dict[str, float]:
         return dict(yaml.safe_load(self.file.read_text())["calibration"])
@@ -66,12 +57,12 @@ class CalibrationTest(RobotTestCase):
             self.robot.drive_until("two seconds", lambda end=end: time.monotonic() > end, angular=angular)
             if known():
                 return
-        raise AssertionError(f"learned too little: {self.estimator}")
+        raise AssertionError(f"learned too little: {self.robot.reports[ESTIMATOR]}")
 
     def start_estimator(self) -> None:
-        self.estimator.clear()
+        self.robot.reports.clear()
         self.robot.start(ESTIMATOR)
-        wait_for("its diagnostics", lambda: "radius_ratio" in self.estimator)
+        wait_for("its diagnostics", lambda: "radius_ratio" in self.robot.reports[ESTIMATOR].values)
 
     def test_what_was_learned_goes_on_after_a_restart_and_a_broken_file_refuses_it(self) -> None:
         self.robot.await_ready()

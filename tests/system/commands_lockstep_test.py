@@ -5,7 +5,7 @@ import time
 
 import rospy
 import rostest
-from commands_support import CommandDesk
+from commands_support import StampedSender
 from geometry_msgs.msg import TwistStamped
 from robot_control.srv import Step
 from std_srvs.srv import SetBool
@@ -18,7 +18,7 @@ class CommandsLockstepTest(RobotTestCase):
         rospy.set_param("/use_sim_time", True)
         rospy.set_param("/robot/clock", "lockstep")
         super().setUpClass()
-        cls.desk = CommandDesk(cls.robot)
+        cls.sender = StampedSender(cls.robot)
         cls.fastest = 0.0
         rospy.Subscriber("cmd_vel_out", TwistStamped, cls.receive)
         rospy.wait_for_service(f"{DRIVER}/step", LIMIT)
@@ -29,7 +29,7 @@ class CommandsLockstepTest(RobotTestCase):
 
     def setUp(self) -> None:
         self.robot.await_ready()
-        wait_for("a subscriber", self.desk.connected)
+        wait_for("a subscriber", self.sender.connected)
         rospy.ServiceProxy(f"{DRIVER}/set_pause", SetBool)(True)
         self.step(3000)  # all commands have timed out, and the robot stands
         self.await_clock()
@@ -48,16 +48,15 @@ class CommandsLockstepTest(RobotTestCase):
 
     def send(self, age: float, expected: str) -> None:
         """Sends one command, stamped `age` s of simulated time ago; waits for the text in log or diagnostics."""
-        self.desk.values = {}  # values and log may hold the sender of an earlier command
+        self.robot.reports.clear()  # values and log may hold the sender of an earlier command
         logged = len(self.robot.nodes[CONTROLLER].output)
         stamp = rospy.Time.from_sec(rospy.get_time() - age)
-        wait_for(
-            expected,
-            lambda: (
-                expected in self.robot.nodes[CONTROLLER].output[logged:] or expected == self.desk.values.get("senders")
-            ),
-            every=lambda: self.desk.send(0.5, 0.0, stamp),
-        )
+
+        def reported() -> bool:
+            log = self.robot.nodes[CONTROLLER].output[logged:]
+            return expected in log or expected == self.sender.report.values.get("senders")
+
+        wait_for(expected, reported, every=lambda: self.sender.send(0.5, 0.0, stamp))
 
     def test_a_command_of_now_drives_however_long_the_pause_lasts(self) -> None:
         self.send(0.0, rospy.get_name())
@@ -69,7 +68,7 @@ class CommandsLockstepTest(RobotTestCase):
     def test_a_command_of_two_seconds_ago_does_not(self) -> None:
         self.send(2.0, "s old by its stamp")
         self.step(400)
-        wait_for("the reason", lambda: "stale" in self.desk.reasons)
+        wait_for("the reason", lambda: "stale" in self.sender.reasons)
         self.assertEqual(self.fastest, 0.0)
 
     def test_a_stamp_of_the_wall_clock_is_reported(self) -> None:

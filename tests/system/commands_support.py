@@ -3,26 +3,20 @@
 import time
 
 import rospy
-from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import TwistStamped
 from robot_control.msg import DriveState
-from system_support import CONTROLLER, SEND_PERIOD, Robot
+from system_support import CONTROLLER, SEND_PERIOD, Report, Robot
 
 
-class CommandDesk:
+class StampedSender:
     """A sender on cmd_vel_stamped, and the controller's reports on commands."""
 
     def __init__(self, robot: Robot) -> None:
         self.robot = robot
         self.drive: DriveState | None = None
-        self.values: dict[str, str] = {}
-        self.message = ""
         self.publisher = rospy.Publisher(robot.name("cmd_vel_stamped"), TwistStamped, queue_size=1, tcp_nodelay=True)
         self._last_send = 0.0
-        self._subscribers = [
-            rospy.Subscriber(robot.name("drive_state"), DriveState, self._receive_drive),
-            rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive_diagnostics),
-        ]
+        self._subscriber = rospy.Subscriber(robot.name("drive_state"), DriveState, self._receive_drive)
 
     def send(self, linear: float, angular: float, stamp: rospy.Time) -> None:
         """Sends on cmd_vel_stamped, at most every SEND_PERIOD; a revoked sender first sends a zero."""
@@ -44,15 +38,14 @@ class CommandDesk:
         return bool(self.publisher.get_num_connections() > 0)
 
     @property
+    def report(self) -> Report:
+        """The controller's."""
+        return self.robot.reports[CONTROLLER]
+
+    @property
     def reasons(self) -> set[str]:
         """Reasons in drive_state."""
         return set() if self.drive is None else set(self.drive.reasons)
 
     def _receive_drive(self, message: DriveState) -> None:
         self.drive = message
-
-    def _receive_diagnostics(self, message: DiagnosticArray) -> None:
-        for status in message.status:
-            if status.name == CONTROLLER:
-                self.message = status.message
-                self.values = {pair.key: pair.value for pair in status.values}

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Strangers, watchers and hostile pages: nothing that they send moves the robot, or ends the server."""
+"""PendingConnections, watchers and hostile pages: nothing that they send moves the robot, or ends the server."""
 
 from __future__ import annotations
 
@@ -191,7 +191,7 @@ class ConsoleAttackTest(RobotTestCase):
                 await page.send_json({**DRIVE, "number": int(1e6 * time.monotonic()), "sent": time.monotonic()})
                 await page.send_json({**DRIVE, "number": 5, "held": False})  # an old release, replayed
                 await asyncio.sleep(0.05)
-            while (await self.until(page, "desk"))["link"]["replayed"] < replayed:
+            while (await self.until(page, "authority"))["link"]["replayed"] < replayed:
                 pass
 
         self.run_page(play)
@@ -201,7 +201,7 @@ class ConsoleAttackTest(RobotTestCase):
         async def whole() -> None:
             async with self.page() as first, self.page() as second:
                 await first.send_json(TAKE)
-                await self.until(first, "desk", '"commander": ')
+                await self.until(first, "authority", '"commander": ')
                 await second.send_json(TAKE)
                 await self.until(second, "said", "commands")
                 await second.send_json(DRIVE)
@@ -226,7 +226,9 @@ class ConsoleAttackTest(RobotTestCase):
         async def play(page: Any) -> None:
             self.assertEqual(await call(page, "reset_odometry"), (False, "take the command first"))
             await page.send_json(TAKE)
-            while (desk := await self.until(page, "desk"))["commander"] != desk["you"] or desk["against"]["step"]:
+            while (authority := await self.until(page, "authority"))["commander"] != authority["you"] or authority[
+                "against"
+            ]["step"]:
                 pass
             self.assertTrue((await call(page, "set_odometry", x=1.0, y=2.0, yaw=0.5))[0])
             while abs((await self.until(page, "fast"))["pose"][1] - 2.0) > 0.1:
@@ -246,7 +248,7 @@ class ConsoleAttackTest(RobotTestCase):
             )
             follow = Program("follow_path.py")
             self.addCleanup(follow.end)
-            while (await self.until(page, "desk"))["against"]["path_shape"]:
+            while (await self.until(page, "authority"))["against"]["path_shape"]:
                 pass
             accepted, why = await call(page, "path_csv", text="x,z\n0,0\n", speed=0.3)
             self.assertEqual((accepted, "the first line must be x,y" in why), (False, True))

@@ -29,7 +29,7 @@ class ConsoleSoakTest(ConsoleTestCase):
             browser.key("KeyA")
             time.sleep(10.0)
             browser.key("KeyA", "keyUp")
-            wait_for("a free stick", lambda: browser.text("hold") == "")
+            wait_for("a free stick", lambda: browser.text("dead-man") == "")
             time.sleep(0.5)
             if not first and time.monotonic() - began > 60 * SETTLED:
                 first, server = browser.heap(), memory_of(self.console.process.pid)

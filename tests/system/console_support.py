@@ -115,7 +115,7 @@ class ConsoleTestCase(RobotTestCase):
         browser.run(
             f"const f = document.getElementById('linear'); f.value = {SPEED}; f.dispatchEvent(new Event('change'))"
         )
-        wait_for("a free stick", lambda: browser.text("hold") == "")
+        wait_for("a free stick", lambda: browser.text("dead-man") == "")
         (press or partial(browser.key, "KeyW"))()
         self.waits_for(browser, "motion", lambda: self.robot.speed > 0.8 * SPEED and self.commanded())
 
@@ -125,7 +125,7 @@ class ConsoleTestCase(RobotTestCase):
         try:
             wait_for(what, condition, limit)
         except AssertionError as error:
-            raise AssertionError(f"{error}: {browser.text('hold')}; {browser.text('messages')}") from None
+            raise AssertionError(f"{error}: {browser.text('dead-man')}; {browser.text('messages')}") from None
 
     def commanded(self) -> bool:
         """True if motion is commanded now."""

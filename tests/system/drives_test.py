@@ -13,7 +13,7 @@ from geometry_msgs.msg import TwistStamped
 from nav_msgs.msg import Odometry
 from robot_control.msg import SafetyStatus
 from sensor_msgs.msg import Imu, JointState
-from system_support import CONTROLLER, ESTIMATOR, LOOP, MONITOR, RobotTestCase, page_faults_of, schedule_of, wait_for
+from system_support import CONTROLLER, LOOP, MONITOR, RobotTestCase, schedule_of, wait_for
 from tf2_msgs.msg import TFMessage
 
 
@@ -118,22 +118,6 @@ class DrivesTest(RobotTestCase):
         wait_for("a line about it", lambda: "released: " in robot.nodes[MONITOR].output[said[MONITOR] :])
         robot.drive_until("0.5 m/s again", robot.driving)
 
-    def test_stops_on_the_service_too(self) -> None:
-        self.assertTrue(self.robot.call("e_stop_trigger").success)
-        wait_for("its cause", lambda: "e_stop_service" in self.robot.causes)
-        self.robot.release()
-
-    def test_a_false_on_e_stop_ends_the_level_of_its_own_publisher_alone(self) -> None:
-        robot = self.robot
-        robot.send_e_stop(True)
-        wait_for("the stop", lambda: "e_stop_topic" in robot.causes)
-        publish("false")
-        refused = robot.call("e_stop_reset")
-        self.assertFalse(refused.success)
-        self.assertIn(f"true on e_stop: {rospy.get_name()}", refused.message)
-        robot.send_e_stop(False)
-        robot.release()
-
     def test_the_level_of_a_publisher_that_has_left_ends_at_a_reset_after_the_false_of_another_one(self) -> None:
         publish("true")
         wait_for("the stop", lambda: "e_stop_topic" in self.robot.causes)
@@ -165,27 +149,6 @@ class DrivesTest(RobotTestCase):
                 pinned = [affinity for _, affinity, _ in tasks if affinity == {0}]
                 self.assertEqual(len(pinned), 1, f"{name}: {tasks}")
                 self.assertTrue(all(affinity == {0} for affinity in fifo), f"{name}: {tasks}")
-
-    def test_takes_no_page_fault_in_a_real_time_thread(self) -> None:
-        # This holds if the memory is locked; otherwise the kernel may take a page away at any time.
-        robot = self.robot
-        robot.drive_until("0.5 m/s", robot.driving)  # every part of the loop has run once
-        before = {}
-        for name in LOOP:
-            if "memory is not locked" in robot.nodes[name].output:
-                self.skipTest(f"{name}: no permission to lock memory")
-            tasks = list(Path(f"/proc/{robot.nodes[name].pid}/task").iterdir())
-            before.update({task: page_faults_of(task) for task in tasks if schedule_of(task)[0] == os.SCHED_FIFO})
-        if not before:
-            self.skipTest("no permission for SCHED_FIFO, by which the loops are distinguished from other threads")
-        robot.drive_until("half a metre", lambda start=robot.distance: robot.distance > start + 0.5)
-        self.assertEqual({task: page_faults_of(task) for task in before}, before)
-
-    def test_stamps_come_from_one_clock(self) -> None:
-        wait_for("odometry", lambda: self.robot.odom is not None)
-        late = rospy.get_time() - self.robot.odom.header.stamp.to_sec()
-        self.assertLess(abs(late), 30, "sample stamps are near the time of day")
-        self.assertIn(ESTIMATOR, self.robot.nodes)
 
 
 if __name__ == "__main__":

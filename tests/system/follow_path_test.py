@@ -78,10 +78,8 @@ class FollowPathTest(RobotTestCase):
         """A goal with points ahead of the robot, x forward."""
         goal = FollowPathGoal(**fields)
         goal.path.header.frame_id = frame
-        here = self.robot.odom.pose.pose
-        yaw = 2 * math.atan2(here.orientation.z, here.orientation.w)
-        x0, y0 = (here.position.x, here.position.y) if frame in {"odom", "map"} else (0.0, 0.0)
-        yaw = yaw if frame in {"odom", "map"} else 0.0
+        here = self.robot.pose
+        x0, y0, yaw = (here.x, here.y, here.yaw) if frame in {"odom", "map"} else (0.0, 0.0, 0.0)
         for x, y in points:
             pose = PoseStamped()
             pose.pose.position.x = x0 + x * math.cos(yaw) - y * math.sin(yaw)
@@ -216,17 +214,6 @@ class FollowPathTest(RobotTestCase):
             self.stop_and_release()
             self.assert_does_not_begin(client, "e_stop_")
 
-    @again_after_a_stall
-    def test_a_goal_whose_server_was_suspended_during_a_stop_and_its_reset_does_not_go_on(self) -> None:
-        client = Client(self.straight(4.0))
-        self.await_motion(client)
-        self.server.send_signal(signal.SIGSTOP)
-        try:
-            self.stop_and_release()
-        finally:
-            self.server.send_signal(signal.SIGCONT)
-        self.assert_does_not_begin(client, "")
-
     def send_unstamped(self, name: str, length: float, *, latch: bool = False) -> Callable[[], tuple[int, str]]:
         """Sends a goal without a time, whose id is new in each attempt; returns a function that waits for its end."""
         name = f"{name} {time.monotonic_ns()}"
@@ -277,24 +264,10 @@ class FollowPathTest(RobotTestCase):
         self.assertAlmostEqual(self.robot.distance, before, delta=0.01)
 
     @again_after_a_stall
-    def test_odometry_that_is_set_ends_a_goal(self) -> None:
-        client = Client(self.straight(4.0))
-        self.await_motion(client)
-        self.robot.call("reset_odometry")
-        state, result = client.end()
-        self.assertEqual(state, ABORTED)
-        self.assertIn("the pose jumped by", result.reason)
-        self.await_rest()
-
-    @again_after_a_stall
     def test_what_cannot_be_driven_is_refused_with_its_reason(self) -> None:
         before = self.robot.distance
-        dense = [(0.05 * number + (3.0 if number > 20 else 0.0), 0.0) for number in range(40)]
         for goal, words in (
             (self.goal([(0.0, 0.0)]), "1 different points: it needs two at least"),
-            (self.goal([(0.0, 0.0), (math.nan, 0.0)]), "point 1 of the path holds a number that is not finite"),
-            (self.goal(dense), "the path jumps by 3.05 m after point 20"),
-            (self.straight(1.0, "mars"), "tf does not connect"),
             (self.straight(1.0, ""), "the path has no frame"),
             (self.straight(1.0, speed=math.nan), "speed is nan m/s"),
             (self.straight(1.0, begin_at=2.0), "begin_at is 2 m"),
@@ -304,33 +277,6 @@ class FollowPathTest(RobotTestCase):
             self.assertEqual(state, ABORTED, words)
             self.assertIn(words, result.reason)
         self.assertAlmostEqual(self.robot.distance, before, delta=0.01)
-
-    @again_after_a_stall
-    def test_ten_thousand_points_are_driven(self) -> None:
-        angles = [2 * math.pi * number / 10_000 for number in range(10_000)]
-        goal = self.goal([(0.3 * math.sin(angle), 0.3 * (1 - math.cos(angle))) for angle in angles])
-        state, result = Client(goal).end()
-        self.assertEqual((state, result.reason), (SUCCEEDED, "done"))
-        self.assertAlmostEqual(result.distance, 0.6 * math.pi, delta=0.01)
-        self.assertLess(result.worst_cross_track_error, 0.03)
-
-    @again_after_a_stall
-    def test_poses_against_the_path_are_driven_backwards(self) -> None:
-        goal = self.goal([(0.0, 0.0), (-0.8, 0.0)])
-        for pose in goal.path.poses:
-            pose.pose.orientation = self.robot.odom.pose.pose.orientation
-        client = Client(goal)
-        wait_for("reverse", lambda: self.robot.speed < -0.2)
-        state, result = client.end()
-        self.assertEqual((state, result.reason), (SUCCEEDED, "done"))
-
-    @again_after_a_stall
-    def test_a_path_before_the_robot_is_taken_where_it_is_at_the_start(self) -> None:
-        before = self.robot.odom.pose.pose.position
-        state, result = Client(self.straight(0.5, "base_link")).end()
-        self.assertEqual((state, result.reason), (SUCCEEDED, "done"))
-        after = self.robot.odom.pose.pose.position
-        self.assertAlmostEqual(math.hypot(after.x - before.x, after.y - before.y), 0.5, delta=0.02)
 
     @again_after_a_stall
     def test_a_path_on_a_map_is_driven_through_tf_and_its_silence_ends_it(self) -> None:

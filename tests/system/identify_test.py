@@ -2,7 +2,6 @@
 """identify.py beside a running robot: it measures, writes, and stops on request."""
 
 import contextlib
-import math
 import signal
 import subprocess
 import tempfile
@@ -12,8 +11,6 @@ from pathlib import Path
 import rospy
 import rostest
 import yaml
-from geometry_msgs.msg import Twist
-from robot_control.msg import SafetyStatus
 from system_support import (
     CONTROLLER,
     DRIVER,
@@ -46,19 +43,10 @@ class IdentifyTest(RobotTestCase):
         self.output = Path(folder.name) / "identified.yaml"
 
     @contextlib.contextmanager
-    def silence(self) -> Iterator[None]:
-        """A block in which this test is no sender on cmd_vel."""
-        self.robot._cmd_vel.unregister()
-        try:
-            yield
-        finally:
-            self.robot._cmd_vel = rospy.Publisher(self.robot.name("cmd_vel"), Twist, queue_size=1, tcp_nodelay=True)
-
-    @contextlib.contextmanager
     def started(self, *arguments: str) -> Iterator[Program]:
         program = Program("identify.py", f"--output={self.output}", *arguments)
         try:
-            with self.silence():
+            with self.robot.silence():
                 yield program
         finally:
             program.end()
@@ -140,26 +128,11 @@ class IdentifyTest(RobotTestCase):
             wait_for("rest", lambda: abs(self.robot.speed) < 0.01)
         self.assertFalse(self.output.exists())
 
-    def test_refuses_too_small_a_space(self) -> None:
-        self.assertIn("--space 0.01 m", self.refused("--space=0.01"))
-
     def test_refuses_beside_another_sender(self) -> None:
         sender = Program("send_cmd.py", "--linear=0", "--angular=0")
         self.addCleanup(sender.end)
         wait_for("the sender", lambda: "cmd_vel 1" in sender.output)
         self.assertIn("/send_cmd may send on cmd_vel", self.refused())
-
-    def test_refuses_a_stopped_robot_and_says_why(self) -> None:
-        self.assertTrue(self.robot.call("e_stop_trigger").success)
-        wait_for("the stop", lambda: self.robot.state == SafetyStatus.STOPPED)
-        self.assertIn("the robot is STOPPED", self.refused())
-        self.robot.release()
-
-    def test_refuses_a_log_that_is_none(self) -> None:
-        file = self.output.with_name("empty.csv")
-        file.write_text("")
-        self.assertIn("is no run.bag", self.refused(f"--log={file}"))
-        self.assertTrue(math.isfinite(self.robot.speed))
 
 
 if __name__ == "__main__":

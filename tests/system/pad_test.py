@@ -14,7 +14,6 @@ from pathlib import Path
 import rospy
 import rostest
 from geometry_msgs.msg import TwistStamped
-from robot_control.msg import DriveState
 from system_support import Program, RobotTestCase, again_after_a_stall, repository, wait_for
 
 ENABLE = 0x134
@@ -87,17 +86,6 @@ class PadTest(RobotTestCase):
         time.sleep(0.5)  # pad.py sees the release, and then the button
         self.plug(ENABLE, forward=FORWARD)
         wait_for("0.3 m/s", lambda: self.robot.speed > 0.27)
-
-    @again_after_a_stall
-    def test_what_the_controller_refuses_is_zero_and_named_until_the_button_was_released(self) -> None:
-        self.drive()
-        state = rospy.Publisher("drive_state", DriveState, queue_size=1)
-        self.addCleanup(state.unregister)
-        refused, words = DriveState(revoked=["/pad"]), "refuses what was requested before a stop"
-        wait_for(words, lambda: words in self.pad.output, every=lambda: state.publish(refused))
-        self.await_words("release the enable button once")
-        wait_for("standstill", self.robot.rests)
-        self.drive()
 
 
 if __name__ == "__main__":

@@ -6,12 +6,11 @@ import time
 
 import rospy
 import rostest
-from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
 from robot_control.msg import SafetyStatus
 from robot_control.srv import InjectFault, Step
 from std_srvs.srv import SetBool, Trigger
-from system_support import DRIVER, LIMIT, SEND_PERIOD, RobotTestCase, wait_for
+from system_support import DRIVER, LIMIT, SEND_PERIOD, Report, RobotTestCase, wait_for
 
 
 class ServicesTest(RobotTestCase):
@@ -19,10 +18,7 @@ class ServicesTest(RobotTestCase):
     def setUpClass(cls) -> None:
         super().setUpClass()
         cls.truth: Odometry | None = None
-        cls.plant: dict[str, str] = {}
-        cls.plant_message = ""
         rospy.Subscriber("ground_truth/odom", Odometry, cls.receive_truth)
-        rospy.Subscriber("/diagnostics", DiagnosticArray, cls.receive_diagnostics)
         for name in ("set_pause", "step", "reset", "inject_fault"):
             rospy.wait_for_service(f"{DRIVER}/{name}", LIMIT)
 
@@ -30,12 +26,9 @@ class ServicesTest(RobotTestCase):
     def receive_truth(cls, message: Odometry) -> None:
         cls.truth = message
 
-    @classmethod
-    def receive_diagnostics(cls, message: DiagnosticArray) -> None:
-        for status in message.status:
-            if status.name == DRIVER:
-                cls.plant_message = status.message
-                cls.plant = {pair.key: pair.value for pair in status.values}
+    @property
+    def plant(self) -> Report:
+        return self.robot.reports[DRIVER]
 
     def setUp(self) -> None:
         self.robot.await_ready()
@@ -63,9 +56,9 @@ class ServicesTest(RobotTestCase):
 
     def cycle(self) -> int:
         """The cycle that the plant reports, once it has reported again."""
-        self.plant.clear()
-        wait_for("diagnostics of the plant", lambda: "cycle" in self.plant)
-        return int(self.plant["cycle"])
+        self.robot.reports.clear()
+        wait_for("diagnostics of the plant", lambda: "cycle" in self.plant.values)
+        return int(self.plant.values["cycle"])
 
     def test_paused_the_robot_stands_and_so_does_its_time(self) -> None:
         self.set_pause(True)
@@ -74,9 +67,9 @@ class ServicesTest(RobotTestCase):
         time.sleep(1.5)  # far longer than the 20 periods after which a silent driver is lost
         self.assertIs(self.truth, truth)
         self.assertIs(self.robot.odom, odom)
-        wait_for("word of it", lambda: self.plant_message == "paused")
-        self.assertEqual(self.plant["driver_state"], "paused")
-        self.assertGreater(float(self.plant["real_time_factor"]), 0)
+        wait_for("word of it", lambda: self.plant.message == "paused")
+        self.assertEqual(self.plant.values["driver_state"], "paused")
+        self.assertGreater(float(self.plant.values["real_time_factor"]), 0)
         self.assertIn("paused", self.robot.call("e_stop_reset").message)
         self.set_pause(False)
         wait_for("odometry", lambda: self.robot.odom is not odom)
@@ -87,7 +80,7 @@ class ServicesTest(RobotTestCase):
     def test_a_command_of_a_pause_moves_nothing_after_it(self) -> None:
         self.robot.await_rest()
         self.set_pause(True)
-        wait_for("word of it", lambda: self.plant_message == "paused")
+        wait_for("word of it", lambda: self.plant.message == "paused")
         for _ in range(5):
             self.robot.send(0.5, 0.0)
             time.sleep(SEND_PERIOD)
@@ -120,41 +113,13 @@ class ServicesTest(RobotTestCase):
         self.robot.await_ready()
         self.robot.drive_until("0.5 m/s in it", self.robot.driving)
 
-    def test_a_reset_releases_no_stop(self) -> None:
-        run = self.robot.status.run
-        self.assertTrue(self.robot.call("e_stop_trigger").success)
-        wait_for("the stop", lambda: "e_stop_service" in self.robot.causes)
-        self.reset()
-        wait_for("a new run", lambda: self.robot.status.run not in (0, run))
-        self.assertEqual(self.robot.state, SafetyStatus.STOPPED)
-        self.assertIn("e_stop_service", self.robot.causes)
-        self.robot.release()
-
-    def test_a_paused_robot_is_reset_and_stepped_from_cycle_zero(self) -> None:
-        self.set_pause(True)
-        self.reset()
-        self.assertTrue(self.step(3)[0])
-        self.assertEqual(self.cycle(), 2)
-
     def test_an_injected_fault_is_seen_and_heals(self) -> None:
         self.assertTrue(self.inject("e_stop_button", "off")[0])
         wait_for("standstill", lambda: abs(self.robot.speed) < 0.01, every=lambda: self.robot.send(0.5, 0.2))
-        wait_for("its name", lambda: "e_stop_button off" in self.plant.get("injected", ""))
+        wait_for("its name", lambda: "e_stop_button off" in self.plant.values.get("injected", ""))
         self.assertTrue(self.inject("e_stop_button", "ok")[0])
-        wait_for("nothing injected", lambda: self.plant["injected"] == "none")
+        wait_for("nothing injected", lambda: self.plant.values["injected"] == "none")
         self.robot.release()
-
-    def test_an_unknown_fault_is_refused_with_the_list(self) -> None:
-        for words, known in ((("left_wing", "off"), "right_motor"), (("gyro", "broken"), "intermittent")):
-            success, message = self.inject(*words)
-            self.assertFalse(success)
-            self.assertIn(known, message)
-
-    def test_the_fault_of_a_node_is_refused_with_the_remedy(self) -> None:
-        for node in ("controller", "estimator", "monitor"):
-            success, message = self.inject(node, "off")
-            self.assertFalse(success)
-            self.assertIn("kill -STOP", message)
 
     @staticmethod
     def position(message: Odometry) -> tuple[float, float]:

@@ -1,8 +1,6 @@
 #!/usr/bin/python3
 """diff_drive_controller/set_parameter_map and set_parameters (dynamic_reconfigure), called while the robot drives."""
 
-import contextlib
-import random
 import re
 import subprocess
 import tempfile
@@ -13,7 +11,6 @@ import rostest
 import yaml
 from dynamic_reconfigure.client import Client
 from robot_control._robot_control import BagError, TraceError, read_run_header
-from robot_control.common.run_log import LogError, read_log
 from robot_control.msg import SafetyStatus
 from robot_control.srv import SetParameters
 from system_support import CONTROLLER, LIMIT, Program, RobotTestCase, wait_for
@@ -65,27 +62,6 @@ class SetParametersTest(RobotTestCase):
         self.assertEqual(rospy.get_param(f"{CONTROLLER}/feed_forward/mass"), 12.5)
         reported = f"set_parameters: set {number}: max_linear_speed from 1 to 0.3, pid_kp from"
         wait_for("a line of it", lambda: reported in self.robot.nodes[CONTROLLER].output)
-
-    def test_the_log_shows_which_rows_belong_to_which_set(self) -> None:
-        first = self.accept("{max_linear_jerk: 8.5}")
-        wait_for("rows of it", lambda: bool(self.rows(first)))
-        second = self.accept("{max_linear_jerk: 10, pid_kd: 0.0005}")
-        wait_for("rows of the next", lambda: bool(self.rows(second)))
-        for number, jerk in ((first, 8.5), (second, 10)):
-            self.assertEqual({set_jerk for _, set_jerk in self.rows(number)}, {jerk})
-        self.assertLess(self.rows(first)[-1][0], self.rows(second)[0][0])
-        self.accept("{pid_kd: 0.0}")
-
-    def rows(self, tuning: int) -> list[tuple[float, float]]:
-        """Cycle and max_linear_jerk of those that were computed with this set."""
-        found: list[tuple[float, float]] = []
-        for path in Path(self.folder.name).glob("run*.bag"):
-            with contextlib.suppress(LogError, OSError):  # it has just begun, or was renamed
-                log = read_log(path, ["tuning", "cycle", "max_linear_jerk"])
-                chosen = log["tuning"] == tuning
-                cycles, jerks = log["cycle"][chosen], log["max_linear_jerk"][chosen]
-                found += zip(cycles.tolist(), jerks.tolist(), strict=True)
-        return sorted(found)
 
     def test_the_next_file_of_the_log_begins_with_the_values_in_force(self) -> None:
         self.accept("{max_linear_jerk: 9.5, feed_forward: {mass: 13.5}}")
@@ -174,22 +150,6 @@ class SetParametersTest(RobotTestCase):
         self.assertFalse(rospy.has_param(f"{CONTROLLER}/tracking_bandwidth"))
         client.update_configuration({"tracking_bandwidth": shown})
         self.assertEqual(rospy.get_param(f"{CONTROLLER}/tracking_bandwidth"), 20.0)
-
-    def test_whatever_is_sent_the_node_lives(self) -> None:
-        good = "{max_linear_speed: 0.5, keep_curvature: true, cmd_vel_timeout: 1.0}"
-        for text in ("", "{}", "[" * 4000, "{a: " * 1000, "&a [*a]", "x" * 10**6, "{pid_kp: " + "9" * 5000 + "}", "\0"):
-            self.refuse(text)
-        service = rospy.ServiceProxy(SERVICE, SetParameters, persistent=True)
-        self.addCleanup(service.close)
-        for seed in range(20):  # 2000 in tests/robots/retuning_test.cpp: each that is accepted calls the master
-            chance = random.Random(seed)
-            letters = list(good)
-            for _ in range(chance.randint(1, 6)):
-                letters.insert(chance.randint(0, len(letters)), chance.choice(":#-[]{}\"'\n \t,!&*|>%@?.~\0é"))
-            service("".join(letters))
-        self.assertTrue(self.robot.nodes[CONTROLLER].running)
-        self.accept(START)
-        self.robot.drive_until("0.5 m/s, as before", self.robot.driving)
 
 
 if __name__ == "__main__":

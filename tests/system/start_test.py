@@ -109,12 +109,6 @@ class StartTest(unittest.TestCase):
                 self.assertIn(f"only {files} files may be open at a time", said)
                 self.assertIn("remedy: `ulimit -n 1024`", said)
 
-    def test_refuses_an_unknown_key_on_the_parameter_server(self) -> None:
-        output = refusal(CONTROLLER, "_pid_kq:=2.0")
-        self.assertIn("pid_kq", output)
-        self.assertIn("/diff_drive_controller/pid_kq", output, "where it stands")
-        self.forget(CONTROLLER)
-
     def test_refusal_shows_the_overrides_in_force(self) -> None:
         output = refusal(DRIVER, "_urdf:=/nonexistent.urdf")
         self.assertIn("/mujoco_plant/urdf", output, "where it stands")
@@ -139,24 +133,6 @@ class StartTest(unittest.TestCase):
         finally:
             rospy.set_param("/use_sim_time", False)
 
-    def test_refuses_lockstep_without_simulated_time(self) -> None:
-        rospy.set_param("robot/clock", "lockstep")
-        try:
-            self.assertIn("/use_sim_time", refusal(MONITOR))
-        finally:
-            rospy.delete_param("robot")
-
-    def test_refuses_a_robot_without_wheels_and_a_scene_that_does_not_compile(self) -> None:
-        with tempfile.TemporaryDirectory() as name:
-            urdf, scene = Path(name, "box.urdf"), Path(name, "scene.xml")
-            inertia = "<mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/>"
-            urdf.write_text(f"<robot name='box'><link name='base_link'><inertial>{inertia}</inertial></link></robot>")
-            scene.write_text("<mujoco><worldbody><geom type='nonsense'/></worldbody></mujoco>")
-            self.assertIn("left_wheel_joint", refusal(DRIVER, f"_urdf:={urdf}"))
-            self.forget(DRIVER)
-            self.assertIn("nonsense", refusal(DRIVER, f"_scene:={scene}"))
-            self.forget(DRIVER)
-
     def test_second_instance_is_refused_and_the_first_drives_on(self) -> None:
         with running_robot() as robot:
             for name in LOOP:
@@ -180,16 +156,6 @@ class StartTest(unittest.TestCase):
         with running_robot() as robot:
             for node in robot.nodes.values():
                 self.assertEqual(node.end(), 0, node.output)
-
-    def test_waiting_node_names_the_nodes_it_waits_for(self) -> None:
-        program = Program(CONTROLLER)
-        try:
-            wait_for("the names", lambda: "waiting for mujoco_plant, state_estimator, safety_monitor" in program.output)
-        finally:
-            objects = program.shared_memory()
-            program.end()
-        for path in objects:
-            path.unlink(missing_ok=True)
 
     def test_a_command_before_the_loop_runs_is_dropped_and_that_is_said_once(self) -> None:
         program = Program(CONTROLLER)

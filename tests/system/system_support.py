@@ -12,16 +12,19 @@ import subprocess
 import tempfile
 import time
 import unittest
+from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from io import BytesIO
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import roslib.packages
 import rospy
 import rosunit_skips
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
+from robot_control.common.pose import Pose, pose_of
 from robot_control.msg import DriveState, SafetyStatus
 from sensor_msgs.msg import JointState
 from stall_witness import StallWitness
@@ -97,32 +100,25 @@ def wait_for(
         time.sleep(0.02)
 
 
-class Program:
-    """A program of the package with its output in a file.
-
-    `prefix`: a command that runs the program; `environment`: laid over that of the test.
-    """
+class Process:
+    """A process with its output in a file. `environment` lies over that of the test."""
 
     def __init__(
         self,
         name: str,
-        *arguments: str,
-        namespace: str = "",
-        prefix: Sequence[str] = (),
+        command: Sequence[str],
         environment: Mapping[str, str] | None = None,
+        folder: Path | None = None,
     ) -> None:
         self.name = name
         self._output = tempfile.NamedTemporaryFile(prefix=f"{name}-", suffix=".log")
-        found = roslib.packages.find_node("robot_control", name)
-        if not found:
-            raise AssertionError(f"robot_control has no program {name}")
-        ns = [f"__ns:={namespace}"] if namespace else []
         self._process = subprocess.Popen(
-            [*prefix, found[0], *arguments, *ns],
+            command,
             stdin=subprocess.DEVNULL,
             stdout=self._output,
             stderr=subprocess.STDOUT,
-            env={**os.environ, **(environment or {})},
+            cwd=folder,
+            env={**os.environ, **environment},
         )
 
     @property
@@ -171,9 +167,25 @@ class Program:
         return set()
 
 
-def refusal(
-    name: str, *arguments: str, prefix: Sequence[str] = (), environment: Mapping[str, str] | None = None
-) -> str:
+class Program(Process):
+    """A program of the package. `prefix`: a command that runs it."""
+
+    def __init__(
+        self,
+        name: str,
+        *arguments: str,
+        namespace: str = "",
+        prefix: Sequence[str] = (),
+        environment: Mapping[str, str] = {},
+    ) -> None:
+        found = roslib.packages.find_node("robot_control", name)
+        if not found:
+            raise AssertionError(f"robot_control has no program {name}")
+        ns = [f"__ns:={namespace}"] if namespace else []
+        super().__init__(name, [*prefix, found[0], *arguments, *ns], environment)
+
+
+def refusal(name: str, *arguments: str, prefix: Sequence[str] = (), environment: Mapping[str, str] = {}) -> str:
     """Starts a node that must refuse; returns its output."""
     program = Program(name, *arguments, prefix=prefix, environment=environment)
     try:
@@ -189,6 +201,13 @@ class NoBool(Bool):
 
     def serialize(self, buff: BytesIO) -> None:
         buff.write(b"")
+
+
+class Report(NamedTuple):
+    """A node's newest status on /diagnostics."""
+
+    message: str = ""
+    values: Mapping[str, str] = {}
 
 
 class Robot:
@@ -208,6 +227,8 @@ class Robot:
         self.status: SafetyStatus | None = None
         self.revoked: tuple[str, ...] = ()
         """Senders whose motion is refused until they send zero."""
+        self.reports: defaultdict[str, Report] = defaultdict(Report)
+        """By node."""
         self.odom_count = 0
         self._moved_at = -math.inf  # s, monotonic
         self._stopped_at = -math.inf  # s, monotonic
@@ -218,6 +239,7 @@ class Robot:
             rospy.Subscriber(self.name("joint_commands"), Float64MultiArray, self._receive_wheels),
             rospy.Subscriber(self.name("safety_status"), SafetyStatus, self._receive_status),
             rospy.Subscriber(self.name("drive_state"), DriveState, self._receive_drive_state),
+            rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive_diagnostics),
         ]
         self._cmd_vel = rospy.Publisher(self.name("cmd_vel"), Twist, queue_size=1, tcp_nodelay=True)
         self._e_stop = rospy.Publisher(self.name("e_stop"), Bool, queue_size=1, tcp_nodelay=True)
@@ -256,6 +278,15 @@ class Robot:
         message = Twist()
         message.linear.x, message.angular.z = linear, angular
         self._cmd_vel.publish(message)
+
+    @contextlib.contextmanager
+    def silence(self) -> Iterator[None]:
+        """A block in which this node is no sender on cmd_vel."""
+        self._cmd_vel.unregister()
+        try:
+            yield
+        finally:
+            self._cmd_vel = rospy.Publisher(self.name("cmd_vel"), Twist, queue_size=1, tcp_nodelay=True)
 
     def send_e_stop(self, stop: bool) -> None:
         """Publishes once, to a monitor that is connected: earlier messages would be lost."""
@@ -336,6 +367,12 @@ class Robot:
         return self.odom is not None and time.monotonic() - self._moved_at > SETTLING
 
     @property
+    def pose(self) -> Pose:
+        """Estimated, in odom."""
+        assert self.odom is not None
+        return pose_of(self.odom)
+
+    @property
     def distance(self) -> float:
         """m from the origin of odom, estimated."""
         if self.odom is None:
@@ -361,6 +398,10 @@ class Robot:
 
     def _receive_drive_state(self, message: DriveState) -> None:
         self.revoked = tuple(message.revoked)
+
+    def _receive_diagnostics(self, message: DiagnosticArray) -> None:
+        for status in message.status:
+            self.reports[status.name] = Report(status.message, {pair.key: pair.value for pair in status.values})
 
     def _receive_status(self, message: SafetyStatus) -> None:
         if message.causes and not self.causes:
@@ -410,9 +451,3 @@ def schedule_of(task: Path) -> tuple[int, set[int], str]:
     """Scheduling class, cores and name of one thread of /proc."""
     number = int(task.name)
     return os.sched_getscheduler(number), os.sched_getaffinity(number), (task / "comm").read_text().strip()
-
-
-def page_faults_of(task: Path) -> int:
-    """Page faults of one thread of /proc since it began, minor and major (proc(5), fields 10 and 12 of stat)."""
-    fields = (task / "stat").read_text().rpartition(")")[2].split()
-    return int(fields[10 - 3]) + int(fields[12 - 3])

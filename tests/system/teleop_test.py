@@ -16,7 +16,7 @@ from pseudo_terminal import PseudoTerminal
 from robot_control.common.run_log import read_log
 from robot_control.teleop.operator import RESET_PAUSE
 from std_msgs.msg import Empty
-from system_support import MONITOR, Program, RobotTestCase, nightly, wait_for
+from system_support import Program, RobotTestCase, nightly, wait_for
 
 PRESSES = 11
 LATENCY = 0.3
@@ -97,14 +97,6 @@ class TeleopTest(RobotTestCase):
         self.await_rest()
         self.assertNotEqual(self.terminal.wait(), 0)
 
-    def test_sigkill_and_sigstop_stop_within_the_command_timeout(self) -> None:
-        for number in (signal.SIGSTOP, signal.SIGKILL):
-            self.drive()
-            self.terminal.send_signal(number)
-            self.await_rest()
-            self.terminal.end()
-            self.terminal = self.started()
-
     def test_a_key_that_is_held_while_it_is_suspended_over_a_stop_moves_nothing_until_its_release(self) -> None:
         self.drive()
         self.terminal.send_signal(signal.SIGSTOP)
@@ -117,25 +109,6 @@ class TeleopTest(RobotTestCase):
         self.terminal.hold("w", 2.0, delay=0.03)
         self.assertAlmostEqual(self.robot.distance, before, delta=0.01)
         time.sleep(1.0)
-        self.drive()
-
-    def test_reports_of_the_mouse_move_nothing(self) -> None:
-        before = self.robot.distance
-        end = time.monotonic() + 2.0
-        while time.monotonic() < end:
-            self.terminal.type("\x1b[<35;119;97M\x1b[MCww\x1b[67;119;97M")
-            time.sleep(0.02)
-        self.assertAlmostEqual(self.robot.distance, before, delta=0.01)
-
-    def test_a_paste_whose_link_stalls_moves_nothing_and_is_named(self) -> None:
-        before = self.robot.distance
-        self.terminal.type("\x1b[200~ww")
-        wait_for("its words", lambda: "a paste has begun" in self.terminal.screen)
-        time.sleep(1.5)
-        self.terminal.hold("w", 1.5, delay=0.03)
-        self.assertAlmostEqual(self.robot.distance, before, delta=0.01)
-        self.terminal.type("\x1b[201~")
-        wait_for("no such words", lambda: "a paste has begun" not in self.terminal.screen)
         self.drive()
 
     def test_ctrl_c_ends_it_and_the_terminal_is_as_before(self) -> None:
@@ -151,15 +124,6 @@ class TeleopTest(RobotTestCase):
         subscriber = rospy.Subscriber("heartbeat", Empty, beats.append)
         self.addCleanup(subscriber.unregister)
         wait_for("heartbeats", lambda: len(beats) > 5)
-
-    def test_a_killed_monitor_is_named_on_the_screen(self) -> None:
-        self.robot.nodes[MONITOR].kill()
-        try:
-            wait_for("its words", lambda: "safety_monitor does not run" in self.terminal.screen)
-        finally:
-            self.robot.start(MONITOR)
-            wait_for("the new one's word", lambda: "monitor_restarted" in self.robot.causes)
-            self.robot.release()
 
     @nightly
     def test_from_a_key_to_the_wheels_torque(self) -> None:

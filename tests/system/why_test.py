@@ -5,10 +5,8 @@ import signal
 import socket
 import time
 
-import rospy
 import rostest
-from std_srvs.srv import SetBool
-from system_support import DRIVER, LIMIT, LOOP, MONITOR, Program, RobotTestCase, wait_for
+from system_support import LIMIT, LOOP, Program, RobotTestCase, wait_for
 
 
 def answer(*arguments: str, **environment: str) -> tuple[int, str]:
@@ -93,25 +91,6 @@ class WhyTest(RobotTestCase):
         self.assertIn("$ rosservice call /e_stop_reset", words)
         self.robot.send_e_stop(False)
         self.robot.release()
-
-    def test_a_killed_monitor_is_missed(self) -> None:
-        self.robot.nodes[MONITOR].kill()
-        code, words = self.ask_until("safety_monitor does not run")
-        self.assertEqual(code, 1)
-        self.assertIn("rosrun robot_control safety_monitor", words)
-        self.robot.start(MONITOR)
-        wait_for("the new one's word", lambda: "monitor_restarted" in self.robot.causes)
-        self.robot.release()
-
-    def test_a_paused_simulation_is_reported_with_its_remedy(self) -> None:
-        pause = rospy.ServiceProxy(f"{DRIVER}/set_pause", SetBool)
-        pause(True)
-        try:
-            code, words = self.ask_until("The simulation is paused.")
-            self.assertEqual(code, 1)
-            self.assertIn("rosservice call /mujoco_plant/set_pause false", words)
-        finally:
-            pause(False)
 
     def test_live_and_not_on_a_terminal_it_prints_what_changes_and_nothing_else(self) -> None:
         self.robot.await_rest()

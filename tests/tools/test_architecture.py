@@ -486,7 +486,7 @@ def test_the_laboratory_is_not_installed():
     "path",
     [
         path
-        for pattern in ("package.xml", "launch/*.launch", "urdf/**/*.urdf", "urdf/**/*.xml", "tests/**/*.test")
+        for pattern in ("package.xml", "launch/*.launch", "urdf/**/*.urdf", "urdf/**/*.xml")
         for path in sorted(ROOT.glob(pattern))
     ],
     ids=lambda path: str(path.relative_to(ROOT)),

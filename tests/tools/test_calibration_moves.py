@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from robot_control.calibrate.moves import CREEP, Pilot, square, straight
-from robot_control.identify.excitation_watch import Pose
+from robot_control.common.pose import Pose
 
 PERIOD = 0.05  # s
 DELAY = 2  # periods

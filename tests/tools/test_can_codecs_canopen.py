@@ -7,6 +7,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from can_wire import Wire
 from robot_control.common.pypi import use_packages
 
 ROOT = Path(__file__).parents[2]
@@ -18,25 +19,10 @@ INTEGERS = range(2, 8)
 """data types of 8, 16 and 32 bits"""
 
 
-class Wire:
-    """python-can's bus, as far as canopen uses it: keeps what the drive sends."""
-
-    def __init__(self):
-        self.sent = []
-
-    def send(self, message, timeout=None):
-        self.sent.append(f"{message.arbitration_id} {bytes(message.data).hex() or '-'}")
-
-    def send_periodic(self, message, period):
-        """The drive's own heartbeat; nothing happens here by itself."""
-        self.send(message)
-        return self
-
-    def stop(self):
-        pass
-
-    def shutdown(self):
-        pass
+def line_of(frame):
+    """The frame as the program reads it."""
+    identifier, data = frame
+    return f"{identifier} {data.hex() or '-'}"
 
 
 class Exchange:
@@ -59,7 +45,7 @@ class Exchange:
         identifier, data = self.codec(line).split()
         self.wire.sent.clear()
         self.network.notify(int(identifier), bytearray.fromhex(data.strip("-")), 0.0)
-        return self.wire.sent
+        return [line_of(frame) for frame in self.wire.sent]
 
     def request(self, line):
         """The drive's response: command, expedited, toggle, last, size, data, words of an abort."""
@@ -163,10 +149,10 @@ def test_network_management_moves_the_drive(exchange, command, state):
 def test_heartbeat_and_emergency_are_read(exchange):
     exchange.deliver(f"nmt 1 {NODE}")
     exchange.drive.nmt.start_heartbeat(100)
-    assert exchange.codec(f"heartbeat {exchange.wire.sent[0]}") == f"{NODE} 5"
+    assert exchange.codec(f"heartbeat {line_of(exchange.wire.sent[0])}") == f"{NODE} 5"
     exchange.wire.sent.clear()
     exchange.drive.emcy.send(0x8130, 0x11, b"12345")
-    assert exchange.codec(f"emergency {exchange.wire.sent[0]}") == f"{NODE} {0x8130} {0x11} {b'12345'.hex()}"
+    assert exchange.codec(f"emergency {line_of(exchange.wire.sent[0])}") == f"{NODE} {0x8130} {0x11} {b'12345'.hex()}"
     assert exchange.codec("sync") == "128 -"
 
 
@@ -192,4 +178,4 @@ def test_process_data_are_mapped_and_exchanged(exchange):
             each.raw = value
         exchange.wire.sent.clear()
         sent.transmit()
-        assert exchange.codec(f"state {NODE} {exchange.wire.sent[0]}") == " ".join(map(str, values))
+        assert exchange.codec(f"state {NODE} {line_of(exchange.wire.sent[0])}") == " ".join(map(str, values))

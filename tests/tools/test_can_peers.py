@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 import pytest
+from can_wire import Wire
 from robot_control.common.pypi import use_packages
 
 ROOT = Path(__file__).parents[2]
@@ -67,27 +68,6 @@ def drive_file(tmp_path, dialect, **values):
     lines = "".join(f"  {key}: {value}\n" for key, value in values.items())
     path.write_text(f"bus: {{dialect: {dialect}}}\nwheel:\n  node: {NODE}\n{lines}")
     return path
-
-
-class Wire:
-    """python-can's bus, as far as canopen uses it: keeps what the drive sends."""
-
-    def __init__(self):
-        self.sent = []
-
-    def send(self, message, timeout=None):
-        self.sent.append((message.arbitration_id, bytes(message.data)))
-
-    def send_periodic(self, message, period):
-        """The drive's own heartbeat; nothing happens here by itself."""
-        self.send(message)
-        return self
-
-    def stop(self):
-        pass
-
-    def shutdown(self):
-        pass
 
 
 POWER_STEPS = {(0x40, 0x06): 0x21, (0x21, 0x07): 0x23, (0x23, 0x0F): 0x27}

@@ -11,7 +11,10 @@ import subprocess
 import sys
 import time
 import xmlrpc.client
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import MappingProxyType
+from typing import NamedTuple
 
 import pytest
 from recorded_machine import (
@@ -50,265 +53,180 @@ HEALTHY = {
 HARDWARE = {"driver": "can", "core": 3}
 USB = "sys/devices/pci0000:00/usb1/1-2"
 
-# Check → the machine, its change, the parameters that differ, a part of the remedy or of its commands.
+
+class Planted(NamedTuple):
+    """A fault of a machine that is well without it."""
+
+    check: str  # that finds it
+    remedy: str  # a part of it, or of its commands
+    changes: Mapping[str, str | None] = MappingProxyType({})  # files
+    parameters: Mapping[str, object] = MappingProxyType({})  # that differ
+    machine: Callable[[], dict[str, str]] = bare_debian
+
+
 FAULTS = {
-    "a kernel without preemption": ("preemption", bare_debian, {"proc/cmdline": "ro preempt=none"}, {}, "preempt=none"),
-    "no time for real-time threads": (
-        "rt_throttling",
-        bare_debian,
-        {"proc/sys/kernel/sched_rt_runtime_us": "0"},
-        {},
-        "sched_rt_runtime_us=950000",
+    "a kernel without preemption": Planted("preemption", "preempt=none", {"proc/cmdline": "ro preempt=none"}),
+    "no time for real-time threads": Planted(
+        "rt_throttling", "sched_rt_runtime_us=950000", {"proc/sys/kernel/sched_rt_runtime_us": "0"}
     ),
-    "a control group without budget": (
+    "a control group without budget": Planted(
         "rt_group_budget",
-        container,
-        {"proc/self/cgroup": "4:cpu,cpuacct:/docker/1", "sys/fs/cgroup/cpu/docker/1/cpu.rt_runtime_us": "0"},
-        {},
         "--cpu-rt-runtime=950000",
+        {"proc/self/cgroup": "4:cpu,cpuacct:/docker/1", "sys/fs/cgroup/cpu/docker/1/cpu.rt_runtime_us": "0"},
+        machine=container,
     ),
-    "budgets with control groups of version 2": (
-        "rt_group_budget",
-        bare_debian,
-        {"boot/config-6.1.0-37-amd64": "CONFIG_RT_GROUP_SCHED=y"},
-        {},
-        "rt_group_sched=0",
+    "budgets with control groups of version 2": Planted(
+        "rt_group_budget", "rt_group_sched=0", {"boot/config-6.1.0-37-amd64": "CONFIG_RT_GROUP_SCHED=y"}
     ),
-    "ticks instead of timers": ("timers", bare_debian, {"proc/cmdline": "ro highres=off"}, {}, "/etc/default/grub"),
-    "required privileges that are not granted": (
-        "realtime_priority",
-        bare_debian,
-        {},
-        {"realtime": "required"},
-        "scripts/privileges install",
+    "ticks instead of timers": Planted("timers", "/etc/default/grub", {"proc/cmdline": "ro highres=off"}),
+    "required privileges that are not granted": Planted(
+        "realtime_priority", "scripts/privileges install", parameters={"realtime": "required"}
     ),
-    "a login older than its privileges": (
-        "memory_lock",
-        bare_debian,
-        {"etc/security/limits.d/robot_control.conf": "robot - memlock unlimited\n"},
-        {},
-        "log in again",
+    "a login older than its privileges": Planted(
+        "memory_lock", "log in again", {"etc/security/limits.d/robot_control.conf": "robot - memlock unlimited\n"}
     ),
-    "too few descriptors": ("open_files", bare_debian, {"proc/self/limits": limits(files="32")}, {}, "ulimit -n 1024"),
-    "a limit on the size of files": (
-        "file_size",
-        bare_debian,
-        {"proc/self/limits": limits(size="1000000")},
-        {},
-        "ulimit -f unlimited",
+    "too few descriptors": Planted("open_files", "ulimit -n 1024", {"proc/self/limits": limits(files="32")}),
+    "a limit on the size of files": Planted(
+        "file_size", "ulimit -f unlimited", {"proc/self/limits": limits(size="1000000")}
     ),
-    "a machine that swaps": ("swap", bare_debian, {"proc/meminfo": meminfo(swap=8_000_000)}, {}, "swapoff"),
-    "little memory": ("free_memory", bare_debian, {"proc/meminfo": meminfo(available=100_000)}, {}, "memory limit"),
-    "a core that is not there": ("core", bare_debian, {}, {"core": 6}, "set robot.core to one of these"),
-    "a core outside the container's set": (
-        "core",
-        container,
-        {"sys/fs/cgroup/cpuset.cpus.effective": "2-3"},
-        {},
-        "set robot.core to one of these",
+    "a machine that swaps": Planted("swap", "swapoff", {"proc/meminfo": meminfo(swap=8_000_000)}),
+    "little memory": Planted("free_memory", "memory limit", {"proc/meminfo": meminfo(available=100_000)}),
+    "a core that is not there": Planted("core", "set robot.core to one of these", parameters={"core": 6}),
+    "a core outside the container's set": Planted(
+        "core", "set robot.core to one of these", {"sys/fs/cgroup/cpuset.cpus.effective": "2-3"}, machine=container
     ),
-    "the lowest frequency": (
-        "governor",
-        bare_debian,
-        {f"{CPU}/cpu0/cpufreq/scaling_driver": "acpi-cpufreq"},
-        {},
-        "echo performance",
+    "the lowest frequency": Planted(
+        "governor", "echo performance", {f"{CPU}/cpu0/cpufreq/scaling_driver": "acpi-cpufreq"}
     ),
-    "a limited frequency": (
-        "governor",
-        bare_debian,
-        {f"{CPU}/cpu0/cpufreq/scaling_max_freq": "800000"},
-        {},
-        "echo 4200000",
-    ),
-    "idle states that may not be excluded": (
+    "a limited frequency": Planted("governor", "echo 4200000", {f"{CPU}/cpu0/cpufreq/scaling_max_freq": "800000"}),
+    "idle states that may not be excluded": Planted(
         "idle_states",
-        bare_debian,
-        {"proc/self/status": status(user=54321)},
-        {"cpu_dma_latency": 0},
         "scripts/privileges install",
+        {"proc/self/status": status(user=54321)},
+        parameters={"cpu_dma_latency": 0},
     ),
-    "a machine that is too hot": (
-        "throttling",
-        bare_debian,
-        {"sys/class/thermal/thermal_zone0/temp": "96000"},
-        {},
-        "cool the machine",
+    "a machine that is too hot": Planted(
+        "throttling", "cool the machine", {"sys/class/thermal/thermal_zone0/temp": "96000"}
     ),
-    "a machine that was throttled for long": (
-        "throttling",
-        bare_debian,
-        {f"{CPU}/cpu0/thermal_throttle/core_throttle_total_time_ms": "900000"},
-        {},
-        "cool the machine",
+    "a machine that was throttled for long": Planted(
+        "throttling", "cool the machine", {f"{CPU}/cpu0/thermal_throttle/core_throttle_total_time_ms": "900000"}
     ),
-    "another core is isolated": ("isolated_cores", bare_debian, {f"{CPU}/isolated": "2"}, {}, "robot.core: 2"),
-    "half a core is isolated": (
+    "another core is isolated": Planted("isolated_cores", "robot.core: 2", {f"{CPU}/isolated": "2"}),
+    "half a core is isolated": Planted(
         "smt_siblings",
-        preempt_rt,
-        {f"{CPU}/cpu3/topology/thread_siblings_list": "1,3"},
-        HARDWARE,
         "echo off",
+        {f"{CPU}/cpu3/topology/thread_siblings_list": "1,3"},
+        parameters=HARDWARE,
+        machine=preempt_rt,
     ),
-    "a quota that stops the nodes": (
+    "a quota that stops the nodes": Planted(
         "cpu_quota",
-        container,
-        {"sys/fs/cgroup/cpu.max": "50000 100000", "sys/fs/cgroup/cpu.stat": "nr_periods 9\nnr_throttled 4\n"},
-        {},
         "docker run --cpus",
+        {"sys/fs/cgroup/cpu.max": "50000 100000", "sys/fs/cgroup/cpu.stat": "nr_periods 9\nnr_throttled 4\n"},
+        machine=container,
     ),
-    "a program on the loop's core": (
-        "core_load",
-        bare_debian,
-        task(800, "blender", ticks=900_000, core=0),
-        {},
-        "taskset -acp 1,2,3 800",
+    "a program on the loop's core": Planted(
+        "core_load", "taskset -acp 1,2,3 800", task(800, "blender", ticks=900_000, core=0)
     ),
-    "a real-time thread above the loop": (
-        "rival_threads",
-        bare_debian,
-        task(801, "jackd", priority=95),
-        {},
-        "chrt -f -p 40 801",
+    "a real-time thread above the loop": Planted("rival_threads", "chrt -f -p 40 801", task(801, "jackd", priority=95)),
+    "time that the host takes": Planted(
+        "steal_time", "reserve processors", {"proc/stat": times(steal=60_000)}, machine=virtual_machine
     ),
-    "time that the host takes": (
-        "steal_time",
-        virtual_machine,
-        {"proc/stat": times(steal=60_000)},
-        {},
-        "reserve processors",
-    ),
-    "an interrupt on the isolated core": (
+    "an interrupt on the isolated core": Planted(
         "interrupts",
-        preempt_rt,
+        "echo 0,1,2 | sudo tee /proc/irq/24/smp_affinity_list",
         {
             "proc/interrupts": "      CPU0 CPU1 CPU2 CPU3\n 24: 5 0 0 90000 PCI-MSI 1-edge eth0\n",
             "proc/irq/24/effective_affinity_list": "3",
         },
-        HARDWARE,
-        "echo 0,1,2 | sudo tee /proc/irq/24/smp_affinity_list",
+        parameters=HARDWARE,
+        machine=preempt_rt,
     ),
-    "a line that no driver handles": (
-        "unhandled_interrupts",
-        bare_debian,
-        {"proc/irq/24/spurious": "count 99\nunhandled 9000\n"},
-        {},
-        "/proc/interrupts",
+    "a line that no driver handles": Planted(
+        "unhandled_interrupts", "/proc/interrupts", {"proc/irq/24/spurious": "count 99\nunhandled 9000\n"}
     ),
-    "a slack of 5 ms": ("timer_slack", bare_debian, {"proc/self/timerslack_ns": "5000000"}, {}, "TimerSlackNSec"),
-    "a slow clock": (
-        "clock_source",
-        bare_debian,
-        {f"{CLOCK}/current_clocksource": "hpet"},
-        {},
-        f"echo tsc | sudo tee /{CLOCK}",
-    ),
-    "two machines with clocks of their own": (
+    "a slack of 5 ms": Planted("timer_slack", "TimerSlackNSec", {"proc/self/timerslack_ns": "5000000"}),
+    "a slow clock": Planted("clock_source", f"echo tsc | sudo tee /{CLOCK}", {f"{CLOCK}/current_clocksource": "hpet"}),
+    "two machines with clocks of their own": Planted(
         "clock_synchronised",
-        bare_debian,
-        {"run/systemd/timesync/synchronized": None, **environment(ROS_MASTER_URI="http://192.0.2.1:1")},
-        {},
         "chrony",
+        {"run/systemd/timesync/synchronized": None, **environment(ROS_MASTER_URI="http://192.0.2.1:1")},
     ),
-    "no CAN interface": ("can", bare_debian, {}, {"driver": "can"}, "connect the adapter"),
-    "a CAN interface that is down": (
+    "no CAN interface": Planted("can", "connect the adapter", parameters={"driver": "can"}),
+    "a CAN interface that is down": Planted(
         "can",
-        preempt_rt,
-        {"commands/ip_-details_-json_link_show_can0": can_link(flags=())},
-        HARDWARE,
         "ip link set can0 up",
+        {"commands/ip_-details_-json_link_show_can0": can_link(flags=())},
+        parameters=HARDWARE,
+        machine=preempt_rt,
     ),
-    "another CAN interface": (
-        "can",
-        preempt_rt,
-        {},
-        HARDWARE | {"drive_bus": {"address": "can1"}},
-        "connect the adapter",
+    "another CAN interface": Planted(
+        "can", "connect the adapter", parameters=HARDWARE | {"drive_bus": {"address": "can1"}}, machine=preempt_rt
     ),
-    "another bit rate than that of the drives": (
+    "another bit rate than that of the drives": Planted(
         "can",
-        preempt_rt,
-        {},
-        HARDWARE | {"drive_bus": {"address": "can0", "bit_rate": 500_000}},
         "bitrate 500000",
+        parameters=HARDWARE | {"drive_bus": {"address": "can0", "bit_rate": 500_000}},
+        machine=preempt_rt,
     ),
-    "a bus that is off": (
+    "a bus that is off": Planted(
         "can",
-        preempt_rt,
+        "terminators",
         {"commands/ip_-details_-json_link_show_can0": can_link(state="BUS-OFF")},
-        HARDWARE,
-        "terminators",
+        parameters=HARDWARE,
+        machine=preempt_rt,
     ),
-    "errors on the bus": (
+    "errors on the bus": Planted(
         "can",
-        preempt_rt,
+        "terminators",
         {"commands/ip_-details_-json_link_show_can0": can_link(state="ERROR-PASSIVE", tx=128)},
-        HARDWARE,
-        "terminators",
+        parameters=HARDWARE,
+        machine=preempt_rt,
     ),
-    "a bus that stays off": (
+    "a bus that stays off": Planted(
         "can",
-        preempt_rt,
-        {"commands/ip_-details_-json_link_show_can0": can_link(restart=0)},
-        HARDWARE,
         "restart-ms 100",
+        {"commands/ip_-details_-json_link_show_can0": can_link(restart=0)},
+        parameters=HARDWARE,
+        machine=preempt_rt,
     ),
-    "a short queue": ("can", preempt_rt, {"sys/class/net/can0/tx_queue_len": "10"}, HARDWARE, "txqueuelen"),
-    "a serial adapter that waits": (
+    "a short queue": Planted(
+        "can", "txqueuelen", {"sys/class/net/can0/tx_queue_len": "10"}, parameters=HARDWARE, machine=preempt_rt
+    ),
+    "a serial adapter that waits": Planted(
         "serial_latency",
-        bare_debian,
-        {"sys/bus/usb-serial/devices/ttyUSB0/latency_timer": "16"},
-        {"driver": "example"},
         "echo 1 | sudo tee",
+        {"sys/bus/usb-serial/devices/ttyUSB0/latency_timer": "16"},
+        parameters={"driver": "example"},
     ),
-    "an adapter that may sleep": (
+    "an adapter that may sleep": Planted(
         "usb_autosuspend",
-        bare_debian,
-        {f"{USB}/power/control": "auto", f"{USB}/idVendor": "0403", f"{USB}/1-2:1.0/ttyUSB0/port": ""},
-        {"driver": "example"},
         "echo on | sudo tee",
+        {f"{USB}/power/control": "auto", f"{USB}/idVendor": "0403", f"{USB}/1-2:1.0/ttyUSB0/port": ""},
+        parameters={"driver": "example"},
     ),
-    "a port of another group": (
+    "a port of another group": Planted(
         "device_files",
-        bare_debian,
-        {"dev/ttyUSB0": "", "proc/self/status": status(user=54321)},
-        {"driver": "example"},
         "usermod -aG dialout",
+        {"dev/ttyUSB0": "", "proc/self/status": status(user=54321)},
+        parameters={"driver": "example"},
     ),
-    "a terminal without the package": (
-        "package",
-        bare_debian,
-        environment(ROS_PACKAGE_PATH=""),
-        {},
-        "install/setup.bash",
+    "a terminal without the package": Planted("package", "install/setup.bash", environment(ROS_PACKAGE_PATH="")),
+    "another python3": Planted("python", "call /usr/bin/python3", {"usr/local/bin/python3": ""}),
+    "a host without address": Planted("host_name", "/etc/hosts", {"etc/hosts": "127.0.0.1 localhost\n"}),
+    "the address of another machine": Planted("ros_ip", "unset ROS_IP", environment(ROS_IP="10.0.0.9")),
+    "an address that no other machine reaches": Planted(
+        "ros_ip", "export ROS_IP=192.168.1.5", environment(ROS_IP="127.0.0.1", ROS_MASTER_URI="http://192.0.2.1:1")
     ),
-    "another python3": ("python", bare_debian, {"usr/local/bin/python3": ""}, {}, "call /usr/bin/python3"),
-    "a host without address": ("host_name", bare_debian, {"etc/hosts": "127.0.0.1 localhost\n"}, {}, "/etc/hosts"),
-    "the address of another machine": ("ros_ip", bare_debian, environment(ROS_IP="10.0.0.9"), {}, "unset ROS_IP"),
-    "an address that no other machine reaches": (
-        "ros_ip",
-        bare_debian,
-        environment(ROS_IP="127.0.0.1", ROS_MASTER_URI="http://192.0.2.1:1"),
-        {},
-        "export ROS_IP=192.168.1.5",
+    "a master without address": Planted(
+        "master_address", "/etc/hosts", environment(ROS_MASTER_URI="http://nowhere.invalid:1")
     ),
-    "a master without address": (
-        "master_address",
-        bare_debian,
-        environment(ROS_MASTER_URI="http://nowhere.invalid:1"),
-        {},
-        "/etc/hosts",
+    "a master without port": Planted(
+        "master_address", "export ROS_MASTER_URI=", environment(ROS_MASTER_URI="localhost")
     ),
-    "a master without port": (
-        "master_address",
-        bare_debian,
-        environment(ROS_MASTER_URI="localhost"),
-        {},
-        "export ROS_MASTER_URI=",
-    ),
-    "the same node twice": (
+    "the same node twice": Planted(
         "duplicate_nodes",
-        bare_debian,
+        "__ns:=robot2",
         {
             f"proc/{pid}/{name}": text
             for pid in (900, 901)
@@ -317,30 +235,18 @@ FAULTS = {
                 ("environ", "ROS_MASTER_URI=http://b:1\0"),
             )
         },
-        {},
-        "__ns:=robot2",
     ),
-    "a robot at another master": (
+    "a robot at another master": Planted(
         "other_master",
-        bare_debian,
-        {"proc/900/cmdline": "/opt/safety_monitor\0", "proc/900/environ": "ROS_MASTER_URI=http://localhost:11399\0"},
-        {},
         "export ROS_MASTER_URI=http://localhost:11399",
+        {"proc/900/cmdline": "/opt/safety_monitor\0", "proc/900/environ": "ROS_MASTER_URI=http://localhost:11399\0"},
     ),
-    "a full disk": ("log_space", bare_debian, {"commands/df_-Pk__home_robot": DF.format(free=5_000)}, {}, "rosclean"),
-    "a quota that is exceeded": (
-        "quota",
-        bare_debian,
-        {"commands/quota_-w": "Filesystem blocks quota\n/dev/sda1 900* 800\n"},
-        {},
-        "larger quota",
+    "a full disk": Planted("log_space", "rosclean", {"commands/df_-Pk__home_robot": DF.format(free=5_000)}),
+    "a quota that is exceeded": Planted(
+        "quota", "larger quota", {"commands/quota_-w": "Filesystem blocks quota\n/dev/sda1 900* 800\n"}
     ),
-    "no room for shared memory": (
-        "shared_memory",
-        container,
-        {"commands/df_-Pk__dev_shm": DF.format(free=1_000)},
-        {},
-        "--shm-size",
+    "no room for shared memory": Planted(
+        "shared_memory", "--shm-size", {"commands/df_-Pk__dev_shm": DF.format(free=1_000)}, machine=container
     ),
 }
 
@@ -397,21 +303,21 @@ def test_an_empty_folder_shows_nothing_that_could_be_good_or_bad_of_the_processo
 
 @pytest.mark.parametrize("name", FAULTS)
 def test_a_planted_fault_is_found_with_its_remedy(tmp_path, name):
-    check, machine, change, robot, remedy = FAULTS[name]
-    write(tmp_path, machine() | change)
-    if "usb1" in "".join(change):
+    planted = FAULTS[name]
+    write(tmp_path, planted.machine() | planted.changes)
+    if "usb1" in "".join(planted.changes):
         (tmp_path / "sys/class/tty").mkdir(parents=True)
         (tmp_path / "sys/class/tty/ttyUSB0").mkdir()
         (tmp_path / "sys/class/tty/ttyUSB0/device").symlink_to(tmp_path / USB / "1-2:1.0/ttyUSB0")
     for port in tmp_path.glob("dev/*"):
         port.chmod(0o700 if port.is_dir() else 0o600)
-    found = rows(tmp_path, robot)[check].finding
+    found = rows(tmp_path, dict(planted.parameters))[planted.check].finding
     assert found.verdict in ALARMS, found
-    assert remedy in " ".join((found.remedy, *found.commands)), found
+    assert planted.remedy in " ".join((found.remedy, *found.commands)), found
 
 
 def test_most_faults_are_planted():
-    assert len({check for check, *_ in FAULTS.values()}) + len(GRAPH) >= 24
+    assert len({planted.check for planted in FAULTS.values()}) + len(GRAPH) >= 24
 
 
 @pytest.fixture(scope="module")

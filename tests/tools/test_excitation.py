@@ -3,8 +3,9 @@
 import math
 
 import pytest
+from robot_control.common.pose import Pose
 from robot_control.identify.excitation import CRUISE, REACH, SLOWEST, AxisLimits, NoRoomError, plan_excitation
-from robot_control.identify.excitation_watch import ANSWER, MARGIN, Look, Pose, hindrance, interruption
+from robot_control.identify.excitation_watch import ANSWER, MARGIN, Observation, hindrance, interruption
 
 LINEAR = AxisLimits(speed=1.0, acceleration=1.0, deceleration=1.0, jerk=10.0)
 ANGULAR = AxisLimits(speed=2.0, acceleration=4.0, deceleration=4.0, jerk=40.0)
@@ -93,13 +94,13 @@ HEALTHY = {
 START = Pose(1.0, 2.0, math.pi / 2)
 
 
-def look(**broken):
-    return Look(**{**HEALTHY, **broken})
+def observation(**broken):
+    return Observation(**{**HEALTHY, **broken})
 
 
 def test_a_healthy_robot_may_be_driven():
-    assert hindrance(look()) == ""
-    assert interruption(look(state="DRIVE"), START, 0.7, 0.0) == ""
+    assert hindrance(observation()) == ""
+    assert interruption(observation(state="DRIVE"), START, 0.7, 0.0) == ""
 
 
 @pytest.mark.parametrize(
@@ -115,7 +116,7 @@ def test_a_healthy_robot_may_be_driven():
     ],
 )
 def test_says_why_it_cannot_begin(broken, said):
-    assert said in hindrance(look(**broken))
+    assert said in hindrance(observation(**broken))
 
 
 @pytest.mark.parametrize(
@@ -130,8 +131,8 @@ def test_says_why_it_cannot_begin(broken, said):
     ],
 )
 def test_stops_when_something_is_not_as_planned(broken, said):
-    assert said in interruption(look(**{"state": "DRIVE", **broken}), START, 0.7, 0.0)
+    assert said in interruption(observation(**{"state": "DRIVE", **broken}), START, 0.7, 0.0)
 
 
 def test_stops_when_the_robot_does_not_answer():
-    assert "stands; rosrun robot_control why.py" in interruption(look(), START, 0.7, ANSWER + 0.1)
+    assert "stands; rosrun robot_control why.py" in interruption(observation(), START, 0.7, ANSWER + 0.1)

@@ -61,15 +61,6 @@ def rows(edit, cycles=None):
     return of_trace
 
 
-def given(**values):
-    def edit(row):
-        for name, value in values.items():
-            assert hasattr(row, name)
-            setattr(row, name, value)
-
-    return edit
-
-
 def moved(row):
     row.estimate_position = [row.estimate_position[0] + 1, *row.estimate_position[1:]]
 
@@ -79,64 +70,19 @@ def test_a_copy_is_as_good_as_its_log(replayed):
     assert code == EXACT, text
 
 
-@pytest.mark.parametrize(
-    "edit",
-    [
-        given(permit_causes=0, permit_active=0, permit_first_cause=0, operator_e_stop_services=0),
-        given(supervisor_state=2),
-        moved,
-        given(estimate_yaw=1.0),
-        given(max_linear_speed=9.0),
-        given(controller_woke_ns=0, command_published_ns=77),
-        given(injected=bytes([1] * 24)),
-        given(faults=1),
-        given(truth_position=[0.0, 0.0, 0.0]),
-        given(lost=5),
-        given(battery_voltage=12.0),
-    ],
-    ids=[
-        "an emergency stop erased",
-        "a state",
-        "an estimate moved",
-        "an angle",
-        "a limit",
-        "timing",
-        "injected",
-        "faults",
-        "truth",
-        "lost",
-        "battery",
-    ],
-)
-@pytest.mark.parametrize("cycles", [None, [LATER]], ids=["in every row", "in one row"])
-def test_a_changed_field_is_noticed(replayed, edit, cycles):
-    code, text = replayed(rows(edit, cycles))
+def test_a_changed_field_is_noticed(replayed):
+    code, text = replayed(rows(moved, [LATER]))
     assert code == DIFFERENT, text
-    assert cycles is None or f"differs: row, run 0, cycle {LATER}: " in text
+    assert f"differs: row, run 0, cycle {LATER}: " in text
 
 
-@pytest.mark.parametrize("field", ["robot", "parameters", "urdf", "scene", "build", "host", "clock", "record"])
-def test_a_changed_header_is_noticed(replayed, field):
+def test_a_changed_header_is_noticed(replayed):
     def edit(topic, message):
         if topic == "trace_header":
-            setattr(message, field, getattr(message, field).replace("e", "e ", 1) + " ")
+            message.parameters += " "
 
     code, text = replayed(edit)
-    assert code in (DIFFERENT, REFUSED), text
-
-
-def test_a_changed_period_is_noticed(replayed):
-    code, text = replayed(lambda topic, message: setattr(message, "period", 0.002) if topic == "trace_header" else None)
     assert code == DIFFERENT, text
-
-
-def test_a_changed_snapshot_is_noticed(replayed):
-    def edit(topic, message):
-        if topic == "trace_snapshot":
-            message.cycle += 1
-
-    code, text = replayed(edit)
-    assert code == REFUSED or "snapshot" in text
 
 
 def test_a_changed_time_is_noticed(replayed):
@@ -148,11 +94,6 @@ def test_rows_that_are_missing_are_the_first_line_and_an_exit_code_of_their_own(
     code, text = replayed(rows(lambda _: False, [LATER]))
     assert code == NOT_COMPARED, text
     assert "rows NOT COMPARED" in text.splitlines()[0]
-
-
-def test_a_row_that_is_hidden_as_a_repetition_is_noticed(replayed):
-    code, text = replayed(rows(given(repeats=1), [LATER]))
-    assert code == DIFFERENT, text
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from kinematic_drive import IMU, RADIUS, WHEEL_BASE, drive
 from robot_control import ClosedLoop, Estimator
-from robot_control.common.rotation import rotation
+from robot_control.common.pose import rotation
 from robot_control.estimate.clock import fit_turning
 from robot_control.estimate.input_check import check, check_angles
 from robot_control.estimate.samples import InputError, Samples, Stream, merged

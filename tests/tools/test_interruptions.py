@@ -123,10 +123,10 @@ def test_a_terminal_that_reports_releases_unblocks_with_the_last_one():
     dead_man.end(now)
     dead_man.release("a")
     dead_man.press("w", now + 0.1, repeat=True)
-    assert dead_man.look(now + 0.1) is None
+    assert dead_man.held(now + 0.1) is None
     dead_man.release("w")
     dead_man.press("w", now + 0.2)
-    assert dead_man.look(now + 0.2) is not None
+    assert dead_man.held(now + 0.2) is not None
 
 
 @pytest.mark.parametrize("kind", [teleop, pad, path, goal, command])

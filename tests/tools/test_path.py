@@ -4,7 +4,8 @@ import math
 from pathlib import Path
 
 import pytest
-from robot_control.path.follower import Follower, FollowParameters, Motion, Pose, State
+from robot_control.common.pose import Pose
+from robot_control.path.follower import Follower, FollowParameters, Motion, State
 from robot_control.path.main import main
 from robot_control.path.pieces import route, turned
 from robot_control.path.shapes import SHAPES

@@ -9,8 +9,8 @@ import rospy
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry
 from nav_msgs.msg import Path as PathMessage
+from robot_control.common.pose import Pose
 from robot_control.msg import SafetyStatus
-from robot_control.path.follower import Pose
 from robot_control.path.frames import PathFrame, Transform, located
 from robot_control.path.robot import Robot
 from robot_control.path.run import points_of

@@ -3,7 +3,8 @@
 import math
 
 import pytest
-from robot_control.path.follower import Motion, Pose, State
+from robot_control.common.pose import Pose
+from robot_control.path.follower import Motion, State
 from robot_control.path.waypoints import Waypoint
 
 from bench.release.path_jumps import FARTHEST, MAX_TIME, PERIOD, STRAIGHT, Jumping, excess

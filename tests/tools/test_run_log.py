@@ -142,16 +142,3 @@ def test_another_bag_is_no_log(tmp_path):
     assert not is_run_log(path)
     with pytest.raises(LogError, match="TraceHeader"):
         read_log(path)
-
-
-def test_rosbag_reads_a_bag_as_any_other(bag_and_log):
-    rosbag = pytest.importorskip("rosbag")
-    path, log = bag_and_log
-    with rosbag.Bag(str(path)) as bag:
-        messages = [message for _, message, _ in bag.read_messages(["trace"])]
-        header = next(message for _, message, _ in bag.read_messages(["trace_header"]))
-    assert header.robot == "diffbot"
-    assert [message.cycle for message in messages] == log["cycle"].tolist()
-    gyro = np.array([message.gyro for message in messages])
-    assert np.array_equal(gyro[:, 2], log["gyro_z"])
-    np.testing.assert_allclose([message.estimate_yaw for message in messages], log["estimate_yaw"], atol=3e-7)

@@ -73,9 +73,9 @@ def test_what_is_no_key_of_ours_is_none(data):
 def test_an_escape_alone_is_the_key_after_a_wait():
     decoder = Decoder()
     assert decoder.feed(b"\x1b", 1.0) == []
-    assert decoder.look(1.0 + ESCAPE_WAIT - 0.001) == []
-    assert decoder.look(1.0 + ESCAPE_WAIT) == [Key("escape")]
-    assert decoder.look(9.0) == []
+    assert decoder.flush(1.0 + ESCAPE_WAIT - 0.001) == []
+    assert decoder.flush(1.0 + ESCAPE_WAIT) == [Key("escape")]
+    assert decoder.flush(9.0) == []
 
 
 def test_an_escape_before_another_key_is_the_key_at_once():
@@ -87,14 +87,14 @@ def test_a_sequence_may_come_in_pieces_and_has_its_end_however_late():
     decoder = Decoder()
     assert decoder.feed(b"\x1b[", 0.0) == []
     assert decoder.feed(b"A", 9.0) == [Key("up")]
-    assert decoder.feed(b"\x1b[1;", 10.0) == decoder.look(20.0) == []
+    assert decoder.feed(b"\x1b[1;", 10.0) == decoder.flush(20.0) == []
     assert decoder.feed(b"ww", 30.0) == [Key("w")]
 
 
 def test_what_follows_an_escape_that_has_counted_as_the_key_completes_its_sequence():
     decoder = Decoder()
     decoder.feed(b"\x1b", 0.0)
-    assert decoder.look(9.0) == [Key("escape")]
+    assert decoder.flush(9.0) == [Key("escape")]
     assert decoder.feed(b"[<35;119;97Mw", 9.0) == [Key("w")]
 
 

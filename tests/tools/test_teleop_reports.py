@@ -62,7 +62,7 @@ def test_nor_where_it_comes_byte_by_byte(name):
     for byte in REPORTS[name][:600]:
         now += ESCAPE_WAIT / 2
         assert decoder.feed(bytes([byte]), now) == []
-        assert decoder.look(now + ESCAPE_WAIT / 4) == []
+        assert decoder.flush(now + ESCAPE_WAIT / 4) == []
 
 
 @pytest.mark.parametrize("begun", [b"\x1b[M", b"\x1b]", b"\x1bP", b"\x1b[200~", b"\x1b[<"])
@@ -70,7 +70,7 @@ def test_nor_where_it_comes_byte_by_byte(name):
 def test_a_report_without_an_end_swallows_no_stop_that_is_typed_later(begun, stop, name):
     decoder = Decoder()
     assert decoder.feed(begun, 0.0) == []
-    assert [*decoder.feed(stop, 2 * ESCAPE_WAIT), *decoder.look(4 * ESCAPE_WAIT)] == [Key(name)]
+    assert [*decoder.feed(stop, 2 * ESCAPE_WAIT), *decoder.flush(4 * ESCAPE_WAIT)] == [Key(name)]
 
 
 LONG = 100 * ESCAPE_WAIT
@@ -82,7 +82,7 @@ def test_nor_where_the_link_stalls_within_it(name):
     data = REPORTS[name]
     for tear in range(1, min(len(data), 50)):
         decoder = Decoder()
-        found = decoder.feed(data[:tear], 0.0) + decoder.look(LONG) + decoder.feed(data[tear:], LONG)
+        found = decoder.feed(data[:tear], 0.0) + decoder.flush(LONG) + decoder.feed(data[tear:], LONG)
         assert {key.name for key in found} <= STOP_NAMES
         assert decoder.feed(b"x", LONG) == [Key("x")]
 
@@ -91,7 +91,7 @@ def test_nor_where_the_link_stalls_within_it(name):
 def test_a_report_without_an_end_is_over_after_ctrl_x(begun):
     decoder = Decoder()
     decoder.feed(begun, 0.0)
-    decoder.look(LONG)
+    decoder.flush(LONG)
     decoder.feed(b"\x18", LONG)
     assert decoder.unfinished == ""
     assert decoder.feed(b"w", 2 * LONG) == [Key("w")]
@@ -163,40 +163,41 @@ def random_unit(chance):
     )
 
 
-@pytest.mark.parametrize("name", KEY_MAPS)
+@pytest.fixture(params=KEY_MAPS)
+def operator_of_a_key_map(request):
+    made = Operator(KEY_MAPS[request.param], Command(0.5, 1.0), Limits(1.0, 2.0, reverse=1.0))
+    made.permit(True, 0.0)
+    return made
+
+
 @pytest.mark.parametrize("seed", range(150))
-def test_random_input_without_a_bound_key_never_moves_the_robot(seed, name):
-    chance = random.Random(seed)
-    operator = Operator(KEY_MAPS[name], Command(0.5, 1.0), Limits(1.0, 2.0, reverse=1.0))
-    operator.permit(True, 0.0)
+def test_random_input_without_a_bound_key_never_moves_the_robot(seed, operator_of_a_key_map):
+    chance, operator = random.Random(seed), operator_of_a_key_map
     decoder, now = Decoder(), 0.0
     data = b"".join(random_unit(chance) for _ in range(100))
     while data:
         size = chance.choice([1, 2, 5, 40, 4096])
         now += chance.uniform(0.0, 0.9 * ESCAPE_WAIT)
-        for key in [*decoder.feed(data[:size], now), *decoder.look(now)]:
+        for key in [*decoder.feed(data[:size], now), *decoder.flush(now)]:
             assert key.event is not Event.SPEAKS_KITTY
             assert operator.key(key, now) is not Request.END
         data = data[size:]
         assert operator.command(now) in STILL
 
 
-@pytest.mark.parametrize("name", KEY_MAPS)
 @pytest.mark.parametrize("seed", range(150))
-def test_nor_does_random_input_that_is_torn_in_time(seed, name):
+def test_nor_does_random_input_that_is_torn_in_time(seed, operator_of_a_key_map):
     """Each stop that a pause makes of a byte is taken back at once, so that it hides no motion."""
-    chance = random.Random(seed)
-    operator = Operator(KEY_MAPS[name], Command(0.5, 1.0), Limits(1.0, 2.0, reverse=1.0))
-    operator.permit(True, 0.0)
+    chance, operator = random.Random(seed), operator_of_a_key_map
     decoder, now = Decoder(), 0.0
     data = b"".join(random_unit(chance) for _ in range(100))
     while data:
         size = chance.choice([1, 2, 5, 40])
         for _ in range(chance.choice([1, 1, 1, 3, 70, 300])):  # passes until more comes
             now += 0.02
-            for key in [*decoder.feed(b"", now), *decoder.look(now)]:
+            for key in [*decoder.feed(b"", now), *decoder.flush(now)]:
                 operator.key(key, now)
-        for key in [*decoder.feed(data[:size], now), *decoder.look(now)]:
+        for key in [*decoder.feed(data[:size], now), *decoder.flush(now)]:
             assert operator.key(key, now) not in {Request.END, Request.RESET}
             operator.reset_accepted()
         data = data[size:]

@@ -61,7 +61,7 @@ def test_where_the_service_does_not_answer_the_topic_says_true_until_the_reset(r
     services = Services()
     services.e_stop()
     answers = []
-    wait_for(lambda: answers.extend(services.look()) or answers)
+    wait_for(lambda: answers.extend(services.poll()) or answers)
     assert answers == [Answer("e_stop_trigger", None, "e_stop_trigger does not answer")]
     assert robot.levels == [True]
     services.reset()
@@ -75,7 +75,7 @@ def test_an_e_stop_that_the_service_could_not_take_is_sent_on_the_topic_and_not_
     services = Services()
     services.e_stop()
     answers = []
-    wait_for(lambda: answers.extend(services.look()) or answers)
+    wait_for(lambda: answers.extend(services.poll()) or answers)
     assert answers == [Answer("e_stop_trigger", None, "no master")]
     assert robot.levels == [True]
 
@@ -84,7 +84,7 @@ def test_after_a_reset_that_is_refused_it_says_on_the_topic_that_it_stops_nothin
     robot.refuses = True
     services = Services()
     services.reset()
-    wait_for(services.look)
+    wait_for(services.poll)
     assert robot.levels == [False]
 
 
@@ -94,10 +94,10 @@ def test_a_reset_that_overtook_its_own_level_of_the_topic_is_called_once_more(ro
     services = Services()
     if raised:
         services.e_stop()
-        wait_for(services.look)
+        wait_for(services.poll)
     services.reset()
     answers = []
-    wait_for(lambda: answers.extend(services.look()) or answers)
+    wait_for(lambda: answers.extend(services.poll()) or answers)
     assert [answer.accepted for answer in answers] == [raised]
     assert robot.calls.count("e_stop_reset") == calls
 
@@ -111,7 +111,7 @@ def test_a_reset_that_waited_too_long_behind_a_silent_service_is_dropped(robot, 
     time.sleep(0.1)
     robot.answers = True
     answers = []
-    wait_for(lambda: answers.extend(services.look()) or len(answers) == 2)
+    wait_for(lambda: answers.extend(services.poll()) or len(answers) == 2)
     assert robot.calls == ["e_stop_trigger"]
     assert not answers[1].accepted
 

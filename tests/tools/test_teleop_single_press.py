@@ -10,10 +10,10 @@ def acts(times, keys="+", period=0.02, end=20.0):
     single, count, looked = SinglePress(), 0, 0.0
     for number, time in enumerate(times):
         while looked < time:
-            count += len(single.look(looked))
+            count += len(single.due(looked))
             looked += period
         count += len(single.press(keys[number % len(keys)], time))
-    return count + len(single.look(end))
+    return count + len(single.due(end))
 
 
 @pytest.mark.parametrize("delay", [0.2, 0.25, 0.5, 0.66])
@@ -40,9 +40,9 @@ def test_a_tap_acts_after_the_time_of_a_repeat():
     single = SinglePress()
     assert single.press("+", 0.0) == ["+"]
     assert single.press("+", 0.3) == []
-    assert single.look(0.3 + SLOWEST_REPEAT - 0.01) == []
-    assert single.look(0.3 + SLOWEST_REPEAT + 0.01) == ["+"]
-    assert single.look(1.0) == []
+    assert single.due(0.3 + SLOWEST_REPEAT - 0.01) == []
+    assert single.due(0.3 + SLOWEST_REPEAT + 0.01) == ["+"]
+    assert single.due(1.0) == []
 
 
 def test_with_reported_releases_each_press_acts_at_once_and_no_repeat():

@@ -26,7 +26,7 @@ def release() -> Release:
 
 @pytest.fixture
 def sending(release) -> Release:
-    release.look(0.1, READY)
+    release.update(0.1, READY)
     assert release.phase is Phase.SENDING
     return release
 
@@ -34,16 +34,16 @@ def sending(release) -> Release:
 @pytest.mark.parametrize("status", [READY, DRIVE])
 def test_the_command_is_sent_when_the_robot_may_drive_for_the_first_time(release, status) -> None:
     assert release.phase is Phase.WAITING
-    release.look(0.1, INIT)
+    release.update(0.1, INIT)
     assert release.phase is Phase.WAITING
-    assert release.look(0.2, status) == []
+    assert release.update(0.2, status) == []
     assert release.phase is Phase.SENDING
 
 
 @pytest.mark.parametrize("state", ["STOPPING", "STOPPED", "FAULT"])
 def test_a_stop_ends_the_command_for_good_and_says_why_and_what_to_do(sending, state) -> None:
     stop = Status(state, STOPPED.sentence, STOPPED.detail, STOPPED.remedy, 1)
-    lines = sending.look(1.0, stop)
+    lines = sending.update(1.0, stop)
     assert sending.phase is Phase.STOPPED
     assert len(lines) == 1
     for words in (
@@ -53,35 +53,35 @@ def test_a_stop_ends_the_command_for_good_and_says_why_and_what_to_do(sending, s
         "free the wheel, then call e_stop_reset, then start send_cmd.py again",
     ):
         assert words in lines[0].text
-    assert sending.look(1.5, stop) == [], "once"
+    assert sending.update(1.5, stop) == [], "once"
 
 
 def test_a_release_after_a_stop_does_not_begin_the_command_again(sending) -> None:
-    sending.look(1.0, STOPPED)
-    assert "start send_cmd.py again" in texts(sending.look(2.0, READY))
+    sending.update(1.0, STOPPED)
+    assert "start send_cmd.py again" in texts(sending.update(2.0, READY))
     assert sending.phase is Phase.RELEASED
     for status in (DRIVE, INIT, READY, STOPPED, READY):
-        assert sending.look(3.0, status) == []
+        assert sending.update(3.0, status) == []
         assert sending.phase is Phase.RELEASED
 
 
 def test_a_robot_that_was_started_again_does_not_get_the_old_command(sending) -> None:
-    assert "started again" in texts(sending.look(1.0, INIT))
+    assert "started again" in texts(sending.update(1.0, INIT))
     assert sending.phase is Phase.STOPPED
 
 
 def test_a_command_that_is_requested_during_a_stop_does_not_begin_with_its_reset(release) -> None:
-    lines = release.look(0.1, STOPPED)
+    lines = release.update(0.1, STOPPED)
     assert "a wheel stands although its target is not zero (0.6 rad, limit 0.5 rad). The command has no" in texts(lines)
-    assert release.look(5.0, STOPPED) == []
-    assert "start send_cmd.py again" in texts(release.look(6.0, READY))
+    assert release.update(5.0, STOPPED) == []
+    assert "start send_cmd.py again" in texts(release.update(6.0, READY))
     assert release.phase is Phase.RELEASED
 
 
 @pytest.mark.parametrize(("began", "phase"), [(0.0, Phase.STOPPED), (2.0, Phase.SENDING)])
 def test_a_program_that_was_suspended_at_its_start_belongs_to_the_time_of_its_start(began, phase) -> None:
     release = Release(3.0, began)
-    release.look(3.1, Status("READY", withdrawals=4, withdrawn=1.0))
+    release.update(3.1, Status("READY", withdrawals=4, withdrawn=1.0))
     assert release.phase is phase
 
 
@@ -89,61 +89,61 @@ def test_a_program_that_was_suspended_at_its_start_belongs_to_the_time_of_its_st
 def test_a_wait_for_a_zero_of_another_sender_is_said_once_in_one_line(release, timeout, silence) -> None:
     release.command_timeout = timeout
     waiting = Status("INIT", awaiting_zero=True)
-    said = [line for i in range(100) for line in release.look(0.1 * i, waiting)]
+    said = [line for i in range(100) for line in release.update(0.1 * i, waiting)]
     assert [line.text for line in said] == [
         f"waits for a zero request; stop the other sender{silence} or let it send zero"
     ]
 
 
 def test_a_start_that_takes_a_moment_needs_no_words(release) -> None:
-    assert release.look(0.1, Status("INIT", awaiting_zero=True)) == []
-    assert release.look(TIMEOUT, INIT) == []
-    assert release.look(TIMEOUT + 0.1, READY) == []
+    assert release.update(0.1, Status("INIT", awaiting_zero=True)) == []
+    assert release.update(TIMEOUT, INIT) == []
+    assert release.update(TIMEOUT + 0.1, READY) == []
 
 
 def test_a_missing_node_is_named_when_the_wait_lasts(release) -> None:
-    release.look(0.1, INIT)
-    assert "waits: state_estimator" in texts(release.look(0.2 + TIMEOUT, INIT))
+    release.update(0.1, INIT)
+    assert "waits: state_estimator" in texts(release.update(0.2 + TIMEOUT, INIT))
 
 
 def test_without_a_monitor_the_command_is_sent_and_that_is_said_once(release) -> None:
-    assert release.look(NO_MONITOR - 0.1, None) == []
+    assert release.update(NO_MONITOR - 0.1, None) == []
     assert release.phase is Phase.WAITING
-    assert "no safety_status within 3 s" in texts(release.look(NO_MONITOR, None))
+    assert "no safety_status within 3 s" in texts(release.update(NO_MONITOR, None))
     assert release.phase is Phase.SENDING
-    assert release.look(NO_MONITOR + 1, None) == []
+    assert release.update(NO_MONITOR + 1, None) == []
 
 
 @pytest.mark.parametrize(("status", "phase"), [(INIT, Phase.WAITING), (STOPPED, Phase.STOPPED), (READY, Phase.SENDING)])
 def test_a_monitor_that_comes_later_decides_as_at_the_start(release, status, phase) -> None:
-    release.look(NO_MONITOR, None)
-    release.look(NO_MONITOR + 1, status)
+    release.update(NO_MONITOR, None)
+    release.update(NO_MONITOR + 1, status)
     assert release.phase is phase
-    release.look(NO_MONITOR + 2, READY)
+    release.update(NO_MONITOR + 2, READY)
     assert release.phase is (Phase.RELEASED if status is STOPPED else Phase.SENDING)
 
 
 def test_a_monitor_that_ends_is_a_stop(sending) -> None:
-    assert sending.look(1.0, DRIVE, 0.0, connected=False) == []
-    assert sending.look(1.0 + GONE, DRIVE, GONE, connected=True) == [], "a connection that comes back at once"
-    sending.look(2.0, DRIVE, 0.0, connected=False)
-    assert "safety_monitor is gone" in texts(sending.look(2.1 + GONE, DRIVE, GONE, connected=False))
+    assert sending.update(1.0, DRIVE, 0.0, connected=False) == []
+    assert sending.update(1.0 + GONE, DRIVE, GONE, connected=True) == [], "a connection that comes back at once"
+    sending.update(2.0, DRIVE, 0.0, connected=False)
+    assert "safety_monitor is gone" in texts(sending.update(2.1 + GONE, DRIVE, GONE, connected=False))
     assert sending.phase is Phase.STOPPED
-    assert sending.look(3.0, DRIVE, 1.0, connected=False) == []
+    assert sending.update(3.0, DRIVE, 1.0, connected=False) == []
     assert sending.phase is Phase.STOPPED
 
 
 def test_a_monitor_that_hangs_is_named_once(sending) -> None:
-    assert "may hang" in texts(sending.look(5.0, DRIVE, NO_MONITOR + 0.1))
-    assert sending.look(6.0, DRIVE, NO_MONITOR + 1.1) == []
+    assert "may hang" in texts(sending.update(5.0, DRIVE, NO_MONITOR + 0.1))
+    assert sending.update(6.0, DRIVE, NO_MONITOR + 1.1) == []
 
 
 def test_a_way_that_is_not_free_is_named(sending) -> None:
     blocked = Status("DRIVE", speed_limit=0.0)
-    assert "clearance leaves the robot no speed" in texts(sending.look(1.0, blocked))
-    assert sending.look(1.1, blocked) == []
-    assert sending.look(1.2, DRIVE) == []
-    assert len(sending.look(1.3, blocked)) == 1
+    assert "clearance leaves the robot no speed" in texts(sending.update(1.0, blocked))
+    assert sending.update(1.1, blocked) == []
+    assert sending.update(1.2, DRIVE) == []
+    assert len(sending.update(1.3, blocked)) == 1
 
 
 def test_other_causes_are_counted() -> None:
@@ -164,7 +164,7 @@ def test_whatever_the_robot_says_a_stop_is_followed_by_no_command(seed) -> None:
         status = chance.choice(statuses)
         last = last if status is None else status
         before = release.phase
-        release.look(now, last, 0.0)
+        release.update(now, last, 0.0)
         if last is not None and before is Phase.SENDING and not last.drivable and release.phase is Phase.STOPPED:
             ended = True
         assert not (ended and release.phase in {Phase.SENDING, Phase.WAITING})

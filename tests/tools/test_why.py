@@ -7,7 +7,7 @@ import pytest
 from robot_control.common.roles import CONTROLLER, DRIVER, ESTIMATOR, LEGGED, LOOP, MONITOR, Kind
 from robot_control.why.answer import Verdict
 from robot_control.why.diagnosis import judge
-from robot_control.why.screen import Look, render
+from robot_control.why.screen import Layout, render
 from robot_control.why.state import Cause, Facts, Report, Safety
 
 E_STOP = Cause(
@@ -55,7 +55,7 @@ def test_text_of_other_programs_is_shown_without_control_characters(driving: Fac
 
 def test_a_real_time_thread_that_blocked_is_named(driving: Facts) -> None:
     blocked = Report("not real-time in the last 10 s: 2 waits outside of its loop (docs/timing.md)")
-    lines = render(replace(driving, reports={**driving.reports, ESTIMATOR: blocked}), Look(width=200))
+    lines = render(replace(driving, reports={**driving.reports, ESTIMATOR: blocked}), Layout(width=200))
     assert f"real time  {ESTIMATOR}: {blocked.message}" in lines
     assert not any("real time" in line for line in render(driving))
 
@@ -85,8 +85,8 @@ def stopped(facts: Facts, *causes: Cause, state: str = "STOPPED") -> Facts:
     )
 
 
-def text(facts: Facts, **look) -> str:
-    return "\n".join(render(facts, Look(**look)))
+def text(facts: Facts, **layout) -> str:
+    return "\n".join(render(facts, Layout(**layout)))
 
 
 @pytest.mark.parametrize(("timeout", "silence"), [(1.25, " for 1.25 s"), (0.6, " for 0.6 s"), (0.0, "")])
@@ -476,11 +476,11 @@ def test_slip_detection_is_shown_where_the_floor_makes_it_slow(driving):
 @pytest.mark.parametrize("width", [40, 80, 132])
 def test_no_line_is_wider_than_the_screen(driving, width):
     facts = stopped(replace(driving, senders=("/send_cmd", "/teleop")), E_STOP, FAST)
-    assert max(map(len, render(facts, Look(width=width)))) <= width
+    assert max(map(len, render(facts, Layout(width=width)))) <= width
 
 
 def test_a_stop_with_two_causes_fits_one_screen(driving):
-    assert len(render(stopped(driving, E_STOP, FAST), Look(width=80))) <= 23
+    assert len(render(stopped(driving, E_STOP, FAST), Layout(width=80))) <= 23
 
 
 def test_colours_are_for_terminals_and_change_no_word(driving):

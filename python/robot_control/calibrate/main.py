@@ -39,12 +39,13 @@ from robot_control.calibrate.robot import CalibratedRobot
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message, printable, write_text
 from robot_control.common.output_files import check_outputs
+from robot_control.common.pose import Pose
 from robot_control.common.roles import CONTROLLER, ESTIMATOR
 from robot_control.common.running_robot import RefusedError, await_all, master_state, other_senders, running_settings
 from robot_control.common.settings import Settings
 from robot_control.common.terminal_dialog import NoAnswerError, Questions
 from robot_control.common.topic_sender import Signals, ended_by_signals
-from robot_control.identify.excitation_watch import Pose, hindrance, ignored, moves, unattended
+from robot_control.identify.excitation_watch import hindrance, ignored, moves, unattended
 
 PERIOD = 0.05
 """s between two commands: 25 are lost before the default cmd_vel_timeout"""
@@ -185,24 +186,24 @@ class Wizard:
     def _follow(self, drive: Drive) -> None:
         """Drives the measurement; the last message is a zero, whatever happens."""
         robot, pilot = self.robot, Pilot(drive.moves, self.options.speed, self.options.turn_speed)
-        start = robot.look().pose or Pose(0.0, 0.0, 0.0)  # hindrance has seen one
+        start = robot.observe().pose or Pose(0.0, 0.0, 0.0)  # hindrance has seen one
         received, received_at = robot.received, time.monotonic()
         unanswered, last = 0.0, time.monotonic()
         try:
             while not pilot.done:
-                now, look = time.monotonic(), robot.look()
+                now, observed = time.monotonic(), robot.observe()
                 if robot.received != received:
                     received, received_at = robot.received, now
                 reason = "" if self.signals.going_on() else "interrupted"
-                reason = reason or unattended(look) or ignored(unanswered)
-                reason = reason or (drive.astray(start, look.pose) if look.pose else "")
+                reason = reason or unattended(observed) or ignored(unanswered)
+                reason = reason or (drive.astray(start, observed.pose) if observed.pose else "")
                 if now - received_at > SILENCE:
                     reason = reason or f"no wheel_odom for {SILENCE:g} s: does {ESTIMATOR} run?"
                 self._refuse(reason)
                 linear, angular = pilot.command(robot.wheels or start, now)
                 robot.send(linear, angular)
                 asked = linear != 0 or angular != 0
-                unanswered = unanswered + now - last if asked and not moves(look) else 0.0
+                unanswered = unanswered + now - last if asked and not moves(observed) else 0.0
                 last = now
                 time.sleep(PERIOD)
         finally:
@@ -214,7 +215,7 @@ class Wizard:
         since = time.monotonic()
         while time.monotonic() - since < STANDSTILL:
             self._refuse("" if self.signals.going_on() else "interrupted")
-            if moves(self.robot.look()):
+            if moves(self.robot.observe()):
                 since = time.monotonic()
             if time.monotonic() > end:
                 raise RefusedError("the robot does not come to rest")
@@ -225,7 +226,7 @@ class Wizard:
             if not self.questions.yes(question):
                 raise RefusedError("as you say. Nothing is written")
             self.robot.requested = time.monotonic()
-        reason = "" if self.options.manual else hindrance(self.robot.look(self.senders))
+        reason = "" if self.options.manual else hindrance(self.robot.observe(self.senders))
         if reason:
             raise RefusedError(f"{reason}. Nothing is written")
 
@@ -263,10 +264,7 @@ def _measured(
     described = describe_robot(settings.path, settings.values)
     robot = CalibratedRobot(sends=not options.manual)
     all_running: Callable[[], bool] = lambda: (  # noqa: E731
-        robot.received > 0
-        and robot.look().pose is not None
-        and bool(robot.look().state)
-        and (options.manual or robot.has_receiver())
+        robot.received > 0 and robot.reports() and (options.manual or robot.has_receiver())
     )
     await_all(all_running, signals)
     senders = () if options.manual else other_senders(master_state())

@@ -13,7 +13,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from robot_control.identify.excitation_watch import Pose
+from robot_control.common.pose import Pose
 
 APPROACH = 1.2  # 1/s
 CREEP = 0.02  # m/s; 2 mm of overshoot per 0.1 s of delay

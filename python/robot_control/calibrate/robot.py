@@ -7,8 +7,7 @@ import rospy
 from nav_msgs.msg import Odometry
 
 from robot_control.calibrate.law import FloatArray
-from robot_control.common.rotation import yaw_of
-from robot_control.identify.excitation_watch import Pose
+from robot_control.common.pose import Pose, pose_of
 from robot_control.identify.robot import RunningRobot
 
 
@@ -44,14 +43,9 @@ class CalibratedRobot(RunningRobot):
         return self._truth
 
     def _receive_wheels(self, message: Odometry) -> None:
-        pose = _pose(message)
+        pose = pose_of(message)
         self._path.append((pose.x, pose.y, pose.yaw))
         self.received += 1
 
     def _receive_truth(self, message: Odometry) -> None:
-        self._truth = _pose(message)
-
-
-def _pose(message: Odometry) -> Pose:
-    pose = message.pose.pose
-    return Pose(pose.position.x, pose.position.y, yaw_of(pose.orientation))
+        self._truth = pose_of(message)

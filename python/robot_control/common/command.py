@@ -25,7 +25,7 @@ class Pace:
         self.last: Command | None = None  # command at the last call; None: there was nothing to send
         self.sent_at: float | None = None  # s, as `now`
 
-    def look(self, command: Command | None, now: float) -> None:
+    def step(self, command: Command | None, now: float) -> None:
         """Updates the pace with the present command; None means that nothing is commanded."""
         due = self.sent_at is None or now - self.sent_at >= SEND_PERIOD
         if command is not None and (due or command != self.last):

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import TypeVar
 
 Answer = TypeVar("Answer")
-LOOK = 0.1
+POLL_PERIOD = 0.1
 """s between two looks at signals"""
 
 
@@ -35,7 +35,7 @@ class Questions:
         while b"\n" not in self._buffer:
             if not self._going_on():
                 raise NoAnswerError("interrupted")
-            if not select.select([self._descriptor], [], [], LOOK)[0]:
+            if not select.select([self._descriptor], [], [], POLL_PERIOD)[0]:
                 continue
             more = os.read(self._descriptor, 4096)
             if not more:

@@ -24,7 +24,7 @@ LIMIT = 5.0
 """s that the end of a node waits for a connection that takes nothing"""
 GRACE = 0.1
 """s for roscpp's subscribers, which drop what they have not yet read when the master says that the publisher is gone"""
-LOOK = 0.005
+POLL_PERIOD = 0.005
 """s between two looks at the connections"""
 NUMBERS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
@@ -125,7 +125,7 @@ def publish_last(publisher: Publisher, message: object, limit: float = LIMIT) ->
         while behind := _behind(publisher, before, messages):
             if time.monotonic() > end:
                 return behind
-            time.sleep(LOOK)
+            time.sleep(POLL_PERIOD)
     if before:
         time.sleep(GRACE)
     return 0

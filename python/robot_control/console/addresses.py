@@ -12,18 +12,18 @@ class AddressError(ValueError):
 
 
 @dataclass(frozen=True)
-class Doors:
-    """The console's own origins (scheme://host:port)."""
+class Origins:
+    """The origins (scheme://host:port) from which requests are taken."""
 
-    origins: frozenset[str]
+    own: frozenset[str]
 
     def host_is_own(self, host: str | None) -> bool:
         """False for another name that a foreign DNS server lets point here."""
-        return host is not None and any(urlsplit(origin).netloc == host.lower() for origin in self.origins)
+        return host is not None and any(urlsplit(origin).netloc == host.lower() for origin in self.own)
 
     def origin_is_own(self, origin: str | None, host: str | None) -> bool:
         """True for a request that a page of this console has sent, to the name from which it came."""
-        return origin in self.origins and urlsplit(origin).netloc == (host or "").lower()
+        return origin in self.own and urlsplit(origin).netloc == (host or "").lower()
 
 
 def is_loopback(address: str) -> bool:
@@ -49,7 +49,7 @@ def require_protection(address: str, *, users: bool, tls: bool) -> None:
         )
 
 
-def doors_of(address: str, port: int, names: list[str], *, tls: bool, further: list[str]) -> Doors:
+def origins_of(address: str, port: int, names: list[str], *, tls: bool, further: list[str]) -> Origins:
     """`names`: of this machine; `further`: whole origins, for instance of a reverse proxy. Raises AddressError."""
     scheme, standard = ("https", ":443") if tls else ("http", ":80")
     hosts = ["127.0.0.1", "localhost", "[::1]"] if is_loopback(address) else [bracketed(address), *names]
@@ -58,4 +58,4 @@ def doors_of(address: str, port: int, names: list[str], *, tls: bool, further: l
         if parts.scheme not in {"http", "https"} or not parts.netloc or f"{parts.scheme}://{parts.netloc}" != origin:
             raise AddressError(f"--origin {origin}: must be as https://console.example or http://robot:8080")
     own = [f"{scheme}://{host}:{port}".removesuffix(standard) for host in hosts]
-    return Doors(frozenset(origin.lower() for origin in [*own, *further]))
+    return Origins(frozenset(origin.lower() for origin in [*own, *further]))

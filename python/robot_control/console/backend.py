@@ -1,4 +1,4 @@
-"""The ROS side of the desk: commands out, reports in. Used by one thread; calls are made in others."""
+"""The ROS side of the console: commands out, reports in. Used by one thread; calls are made in others."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from std_msgs.msg import Empty
 from robot_control.common.command import Pace
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.robot_kind import running_kind
+from robot_control.console.authority import Authority, Page
 from robot_control.console.calls import CALLS, Calls, against
-from robot_control.console.desk import Desk, Page
 from robot_control.console.settings import Settings
 from robot_control.console.view import View, finite
 from robot_control.safety.watch import SafetyWatch
@@ -31,7 +31,7 @@ class Backend:
     """One robot, and the pages that look at it."""
 
     def __init__(self, settings: Settings) -> None:
-        self.desk = Desk(settings)
+        self.authority = Authority(settings)
         self.listener, self.view = Listener(), View()
         self.calls = Calls(self.view.pose)
         self.said: list[str] = []  # for all pages, and taken by the server
@@ -49,18 +49,18 @@ class Backend:
         count, why = self._watch.interruptions()
         if count != self._interruptions:
             self._interruptions = count
-            self.desk.interrupt(now, why)
+            self.authority.interrupt(now, why)
         if self.view.revoked(rospy.get_name()):
-            self.desk.refuse(now)
-        self.desk.permit(self._watch.drivable(SILENCE))
-        command, self._age = self.desk.command(self._limits.newest(), now)
-        self._pace.look(command, now)
-        commander = self.desk.commander
-        beats = commander is not None and commander.heartbeat and commander.hold.alive(now)
+            self.authority.refuse(now)
+        self.authority.permit(self._watch.drivable(SILENCE))
+        command, self._age = self.authority.command(self._limits.newest(), now)
+        self._pace.step(command, now)
+        commander = self.authority.commander
+        beats = commander is not None and commander.heartbeat and commander.dead_man.alive(now)
         if beats and now - self._beat_at >= HEARTBEAT_PERIOD:
             self._beat_at = now
             self._heartbeat.publish(Empty())
-        self.said += [in_words(answer, self.listener.facts()) for answer in self._services.look()]
+        self.said += [in_words(answer, self.listener.facts()) for answer in self._services.poll()]
 
     def e_stop(self) -> None:
         """Requests the emergency stop."""
@@ -78,24 +78,33 @@ class Backend:
         """The robot's state for every page."""
         return self.view.slow(self.listener.facts())
 
-    def desk_of(self, page: Page) -> dict[str, Any]:
+    def authority_of(self, page: Page) -> dict[str, Any]:
         """The values that this page shows of itself and of the others."""
-        now, holder, hold, limits = time.monotonic(), self.desk.commander, page.hold, self._limits.newest()
+        now, commander, dead_man, limits = (
+            time.monotonic(),
+            self.authority.commander,
+            page.dead_man,
+            self._limits.newest(),
+        )
         return finite(
             {
-                "type": "desk",
+                "type": "authority",
                 "you": page.number,
                 "role": str(page.role),
-                "commander": None if holder is None else holder.number,
-                "pages": [{"number": p.number, "name": p.name, "role": str(p.role)} for p in self.desk.pages.values()],
-                "against": {name: against(name, page, self.desk, self.available, running_kind()) for name in CALLS},
-                "hold": hold.state(now) if holder is page else "",
+                "commander": None if commander is None else commander.number,
+                "pages": [
+                    {"number": p.number, "name": p.name, "role": str(p.role)} for p in self.authority.pages.values()
+                ],
+                "against": {
+                    name: against(name, page, self.authority, self.available, running_kind()) for name in CALLS
+                },
+                "dead_man": dead_man.state(now) if commander is page else "",
                 "link": {
-                    "last": hold.round_trips.last(),
-                    "p95": hold.round_trips.percentile95(now),
-                    "gaps": hold.gaps,
-                    "late": hold.late,
-                    "replayed": hold.replayed,
+                    "last": dead_man.round_trips.last(),
+                    "p95": dead_man.round_trips.percentile95(now),
+                    "gaps": dead_man.gaps,
+                    "late": dead_man.late,
+                    "replayed": dead_man.replayed,
                     "cap": page.cap,
                 },
                 "chosen": (page.chosen.linear, page.chosen.angular),

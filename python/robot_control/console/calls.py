@@ -18,7 +18,7 @@ from std_srvs.srv import SetBool, Trigger
 from robot_control.common.files import printable
 from robot_control.common.robot_kind import ROLES, running_kind
 from robot_control.common.roles import Kind
-from robot_control.console.desk import Desk, Page, RefusedError, Role
+from robot_control.console.authority import Authority, Page, RefusedError, Role
 from robot_control.console.messages import SPEED, Fields, MessageError, check_fields, flag, number, text
 from robot_control.msg import FollowPathActionGoal
 from robot_control.path.shapes import SHAPES
@@ -80,13 +80,13 @@ def check_call(name: str, arguments: Mapping[str, Any]) -> None:
     check_fields(name, arguments, CALLS[name].fields)
 
 
-def against(name: str, page: Page, desk: Desk, services: set[str], kind: Kind) -> str:
+def against(name: str, page: Page, authority: Authority, services: set[str], kind: Kind) -> str:
     """Why this page cannot make the call now; empty if it can. `services`: those of the robot, by relative name."""
     call = CALLS[name]
     service = service_of(call, kind)
     if page.role < call.role:
         return f"needs the role {call.role}"
-    if desk.commander is not page:
+    if authority.commander is not page:
         return "take the command first"
     if service and service not in services:
         node, _, _ = service.rpartition("/")

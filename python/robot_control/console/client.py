@@ -16,10 +16,10 @@ from aiohttp import WSMsgType, web
 from robot_control.common.command import Command
 from robot_control.common.files import escaped
 from robot_control.common.robot_kind import running_kind
+from robot_control.console.authority import Page, RefusedError
 from robot_control.console.backend import Backend
 from robot_control.console.calls import against, check_call
-from robot_control.console.desk import Page, RefusedError
-from robot_control.console.hold import Drive
+from robot_control.console.dead_man import Drive
 from robot_control.console.messages import MAX_SIZE, MessageError, Rate, parse
 
 FRAME, SLOW = 0.05, 5
@@ -80,7 +80,7 @@ class Client:
         try:
             await self._read()
         finally:
-            self._backend.desk.leave(self._page, time.monotonic())
+            self._backend.authority.leave(self._page, time.monotonic())
             self._backend.calls.forget(self._page)
             for call in self._calls:
                 call.cancel()
@@ -117,25 +117,25 @@ class Client:
 
     def _receive(self, message: dict[str, Any], now: float) -> None:
         kind = message.pop("type")
-        desk, page = self._backend.desk, self._page
+        authority, page = self._backend.authority, self._page
         if kind in LOGGED:
             journal.info("%s: %s %s", self._who, kind, json.dumps(message))
         if kind == "drive":
-            desk.receive(page, Drive(**message), now)
+            authority.receive(page, Drive(**message), now)
         elif kind == "pong":
-            page.hold.round_trips.pong(message["name"], now)
+            page.dead_man.round_trips.pong(message["name"], now)
             self._unanswered = None
         elif kind == "take":
-            desk.take(page, now, force=message["force"])
+            authority.take(page, now, force=message["force"])
         elif kind == "hand_over":
-            desk.hand_over(page, message["to"], now)
+            authority.hand_over(page, message["to"], now)
         elif kind == "give_back":
-            desk.give_back(page, now)
+            authority.give_back(page, now)
         elif kind == "speeds":
-            desk.require(page)
+            authority.require(page)
             page.chosen = Command(message["linear"], message["angular"])
         elif kind == "heartbeat":
-            desk.require(page)
+            authority.require(page)
             page.heartbeat = message["on"]
         else:
             check_call(message["name"], message["arguments"])
@@ -148,7 +148,7 @@ class Client:
     async def _call(self, number: int, name: str, arguments: dict[str, Any]) -> None:
         backend, accepted = self._backend, False
         try:
-            why = against(name, self._page, backend.desk, backend.available, running_kind())
+            why = against(name, self._page, backend.authority, backend.available, running_kind())
             if why:
                 raise RefusedError(why)
             if name == "reset":
@@ -189,13 +189,13 @@ class Client:
             pass  # the page has ended
 
     async def _ping(self, now: float) -> None:
-        commands = self._backend.desk.commander is self._page
+        commands = self._backend.authority.commander is self._page
         if now - self._pinged_at < (PING_PERIOD if commands else WATCHER_PERIOD):
             return
         name = secrets.token_hex(8)
         self._pinged_at = now
         self._unanswered = self._unanswered or now
-        self._page.hold.round_trips.ping(name, now)
+        self._page.dead_man.round_trips.ping(name, now)
         await self._socket.send_str(json.dumps({"type": "ping", "name": name}))
 
     async def _frame(self) -> None:
@@ -206,7 +206,7 @@ class Client:
         if frames.slow_number != self._seen_slow:
             self._seen_slow = frames.slow_number
             await self._socket.send_str(frames.slow)
-            await self._socket.send_str(json.dumps(self._backend.desk_of(self._page)))
+            await self._socket.send_str(json.dumps(self._backend.authority_of(self._page)))
             at, wanted = self._backend.view.wanted()
             if at != self._wanted_at:
                 self._wanted_at = at

@@ -23,7 +23,7 @@ from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message, given_path
 from robot_control.common.ros_node import running_node
 from robot_control.common.topic_sender import Signals
-from robot_control.console.addresses import AddressError, Doors, bracketed, doors_of, require_protection
+from robot_control.console.addresses import AddressError, Origins, bracketed, origins_of, require_protection
 from robot_control.console.backend import Backend
 from robot_control.console.client import FRAME
 from robot_control.console.server import Server
@@ -50,7 +50,7 @@ class Setup:
 
     settings: Settings
     users: Users | None
-    doors: Doors
+    origins: Origins
     context: ssl.SSLContext | None
 
 
@@ -87,8 +87,8 @@ def setup_of(given: argparse.Namespace) -> Setup:
         certificate, key = (given.cert, given.key or given.cert) if given.cert else self_made(FOLDER, names)
         context = context_of(certificate, key)
         print(f"fingerprint of the certificate (SHA-256): {fingerprint(certificate)}")
-    doors = doors_of(given.address, given.port, [socket.gethostname()], tls=tls, further=given.origin)
-    return Setup(settings, users if has_users else None, doors, context)
+    origins = origins_of(given.address, given.port, [socket.gethostname()], tls=tls, further=given.origin)
+    return Setup(settings, users if has_users else None, origins, context)
 
 
 def open_journal(path: Path) -> None:
@@ -109,7 +109,7 @@ async def serve(given: argparse.Namespace, setup: Setup, signals: Signals) -> bo
     """Serves until a signal arrives. True if this program has to begin again because another master was started."""
     backend = Backend(setup.settings)
     runs, saved = given.runs, os.environ.pop(STATE, "")
-    server = Server(backend, setup.doors, setup.users, runs, saved, port=given.port, read_only=given.read_only)
+    server = Server(backend, setup.origins, setup.users, runs, saved, port=given.port, read_only=given.read_only)
     runner = web.AppRunner(server.app, access_log=None, keepalive_timeout=KEPT, handle_signals=False)
     await runner.setup()
     handler = runner.server
@@ -129,7 +129,7 @@ async def serve(given: argparse.Namespace, setup: Setup, signals: Signals) -> bo
     while signals.going_on() and not replace and not frames.done():
         backend.step()
         server.pass_on()
-        server.strangers.check(handler.connections, time.monotonic())
+        server.pending.check(handler.connections, time.monotonic())
         await asyncio.sleep(PASS)
         replace = backend.listener.unknown_to_master > 1
     if frames.done():

@@ -13,15 +13,15 @@ from typing import Any
 from aiohttp import hdrs, web
 
 from robot_control.common.files import printable
-from robot_control.console.addresses import Doors
+from robot_control.console.addresses import Origins
+from robot_control.console.authority import Role
 from robot_control.console.backend import Backend
 from robot_control.console.client import Client, Frames
-from robot_control.console.desk import Role
-from robot_control.console.door import Strangers
-from robot_control.console.examination import Examination
+from robot_control.console.doctor_run import DoctorRun
 from robot_control.console.files import REPORT_POLICY, page_file, protect
 from robot_control.console.messages import MAX_SIZE
 from robot_control.console.model import Model, ModelError
+from robot_control.console.pending_connections import PendingConnections
 from robot_control.console.runs import Runs, RunsError
 from robot_control.console.sessions import Session, Sessions, Tries
 from robot_control.console.users import Users, UsersError
@@ -43,13 +43,21 @@ class Server:
     """All routes."""
 
     def __init__(
-        self, backend: Backend, doors: Doors, users: Users | None, runs: Path, saved: str, *, port: int, read_only: bool
+        self,
+        backend: Backend,
+        origins: Origins,
+        users: Users | None,
+        runs: Path,
+        saved: str,
+        *,
+        port: int,
+        read_only: bool,
     ) -> None:
         """`users`: None where the token alone opens; `saved`: logins of the process before this one."""
-        self._backend, self._doors, self._users, self._read_only = backend, doors, users, read_only
+        self._backend, self._origins, self._users, self._read_only = backend, origins, users, read_only
         self.sessions, self._tries = Sessions(saved), Tries()
-        self._runs, self._model, self._examination = Runs(runs), Model(), Examination()
-        self.strangers, self.frames = Strangers(), Frames()
+        self._runs, self._model, self._doctor_run = Runs(runs), Model(), DoctorRun()
+        self.pending, self.frames = PendingConnections(), Frames()
         self._clients: list[Client] = []
         self._hashing = asyncio.Semaphore(1)
         self._cookie = f"console_{port}"  # cookies of one host count for all its ports
@@ -104,14 +112,14 @@ class Server:
 
     async def _guarded(self, request: web.Request, handler: Handler) -> web.StreamResponse:
         host, origin = request.headers.get(hdrs.HOST), request.headers.get(hdrs.ORIGIN)
-        if not self._doors.host_is_own(host):
+        if not self._origins.host_is_own(host):
             raise self._refusal(request, web.HTTPMisdirectedRequest, "this host is not the console's")
-        if (request.method != hdrs.METH_GET or request.path == "/ws") and not self._doors.origin_is_own(origin, host):
+        if (request.method != hdrs.METH_GET or request.path == "/ws") and not self._origins.origin_is_own(origin, host):
             raise self._refusal(request, web.HTTPForbidden, "this origin is not the console's")
         session = self.sessions.of(request.cookies.get(self._cookie), time.time())
         request["session"] = session
         if session is not None:
-            self.strangers.admit(request.protocol)
+            self.pending.admit(request.protocol)
         elif request.path == "/" and self._users is None and "token" in request.query:
             return self._with_token(request)
         elif request.path == "/":
@@ -132,7 +140,7 @@ class Server:
         return self._begin(request, web.Response(status=303, headers={"Location": "/"}), LOCAL_USER, Role.MAINTAIN)
 
     def _begin(self, request: web.Request, response: web.Response, user: str, role: Role) -> web.Response:
-        secure = request.secure or f"https://{request.headers[hdrs.HOST]}" in self._doors.origins
+        secure = request.secure or f"https://{request.headers[hdrs.HOST]}" in self._origins.own
         cookie = self.sessions.begin(user, role, time.time())
         response.set_cookie(self._cookie, cookie, httponly=True, samesite="Strict", secure=secure, path="/")
         journal.info("%s: %s has logged in as %s", request.remote, user, role)
@@ -181,7 +189,7 @@ class Server:
         if len(self._clients) >= MAX_PAGES:
             raise self._refusal(request, web.HTTPServiceUnavailable, f"{MAX_PAGES} pages are open already")
         session: Session = request["session"]
-        page = self._backend.desk.join(session.user, Role.WATCH if self._read_only else session.role)
+        page = self._backend.authority.join(session.user, Role.WATCH if self._read_only else session.role)
         who = f"{request.remote}: {session.user}"
         journal.info("%s: page %d begins as %s", who, page.number, page.role)
         client = Client(self._backend, self.frames, page, who, lambda: self.sessions.lives(session, time.time()))
@@ -219,7 +227,7 @@ class Server:
     async def _doctor(self, request: web.Request) -> web.StreamResponse:
         if request["session"].role < Role.MAINTAIN:
             raise web.HTTPForbidden(text=f"needs the role {Role.MAINTAIN}: it names programs and users of the machine")
-        return web.json_response(await _found(self._examination.result))
+        return web.json_response(await _found(self._doctor_run.result))
 
 
 async def _found(find: Callable[..., Any], *arguments: str) -> Any:  # noqa: ANN401 (of the function)

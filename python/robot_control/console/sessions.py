@@ -8,7 +8,7 @@ import secrets
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 
-from robot_control.console.desk import Role
+from robot_control.console.authority import Role
 
 LIFE = 12 * 3600.0
 """s from a login until it ends"""

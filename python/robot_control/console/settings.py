@@ -24,7 +24,7 @@ class Settings:
     link_gap: float = 0.3  # s
 
     @property
-    def hold(self) -> float:
+    def command_life(self) -> float:
         """s for which one message moves the robot; then the command is zero until the next one."""
         return self.link_gap / 2
 

@@ -18,7 +18,7 @@ from pathlib import Path
 
 from robot_control.blackbox.main import LOGS
 from robot_control.common.files import NewFiles, given_path, printable
-from robot_control.console.desk import Role
+from robot_control.console.authority import Role
 from robot_control.console.sessions import digest
 
 FOLDER = given_path(str(LOGS))

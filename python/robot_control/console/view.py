@@ -13,9 +13,9 @@ from nav_msgs.msg import Odometry, Path
 from sensor_msgs.msg import JointState
 
 from robot_control.common.command import Command
+from robot_control.common.pose import pose_of
 from robot_control.console.topics import Latest
 from robot_control.msg import DriveState, FollowPathActionFeedback
-from robot_control.path.robot import pose_of
 from robot_control.view.scene import Trail
 from robot_control.why.diagnosis import judge, missing_nodes
 from robot_control.why.state import Facts

@@ -22,7 +22,7 @@ TIMEOUT = 10.0
 """s to wait for a subscriber; then it is sent all the same"""
 SILENT_WAIT = 2.0
 """s of these in which nothing is said about it"""
-LOOK = 0.02
+POLL_PERIOD = 0.02
 """s between two looks"""
 
 
@@ -41,7 +41,7 @@ def _wait_for_subscriber(publisher: rospy.Publisher, signals: Signals) -> None:
         if not warned and time.monotonic() > begin + SILENT_WAIT:
             warned = True
             rospy.logwarn(f"no node subscribes to {publisher.resolved_name} yet: waiting for {TIMEOUT:g} s at most")
-        time.sleep(LOOK)
+        time.sleep(POLL_PERIOD)
 
 
 def _say_last(missed: int) -> None:
@@ -57,7 +57,7 @@ class Statuses:
         self._parameters = LiveParameters()
         self._subscriber = rospy.Subscriber("safety_status", SafetyStatus, self._receive, tcp_nodelay=True)
 
-    def look(self, release: Release) -> list[Line]:
+    def update(self, release: Release) -> list[Line]:
         """Hands the messages since the last look to `release`, or how long there were none."""
         newest = [self._received.popleft() for _ in range(len(self._received))]
         release.command_timeout = self._parameters.command_timeout
@@ -84,14 +84,14 @@ def send(plan: SendPlan, signals: Signals) -> int:
     sent, end = 0, math.inf
     deadline = time.monotonic()
     while plan.sends_left(sent) and signals.going_on() and phase is not Phase.RELEASED and time.monotonic() < end:
-        for line in watch.look(release):
+        for line in watch.update(release):
             (rospy.logwarn if line.warning else rospy.loginfo)(line.text)
         if release.phase is not phase:
             phase, deadline = release.phase, time.monotonic()  # the other message goes out at once
             if phase is Phase.STOPPED and plan.count is not None:
                 end = deadline + (plan.count - sent) * plan.period
         if time.monotonic() < deadline:
-            time.sleep(min(LOOK, max(0.0, deadline - time.monotonic())))
+            time.sleep(min(POLL_PERIOD, max(0.0, deadline - time.monotonic())))
         elif phase is Phase.SENDING:
             sender.send(_twist(plan.linear, plan.angular))
             sent += 1

@@ -77,12 +77,12 @@ class Release:
             connected: a publisher of safety_status is there.
         """
         self._interruptions.step(now)
-        lines = [line for status in statuses for line in self.look(now, status)]
+        lines = [line for status in statuses for line in self.update(now, status)]
         if statuses:
             self._received_at = now
-        return lines + self.look(now, self._interruptions.status, now - self._received_at, connected=connected)
+        return lines + self.update(now, self._interruptions.status, now - self._received_at, connected=connected)
 
-    def look(self, now: float, status: Status | None, age: float = 0.0, *, connected: bool = True) -> list[Line]:
+    def update(self, now: float, status: Status | None, age: float = 0.0, *, connected: bool = True) -> list[Line]:
         """Updates the state with what is known `now`.
 
         Args:

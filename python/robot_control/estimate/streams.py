@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robot_control.common.rotation import rotation
+from robot_control.common.pose import rotation
 from robot_control.estimate.samples import FloatArray, Robot, Samples
 
 REST = 0.5

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from robot_control.common.pose import Pose
 from robot_control.common.roles import ESTIMATOR, MONITOR
 from robot_control.safety.states import DRIVABLE
 
@@ -20,22 +21,7 @@ STANDING = 0.01
 
 
 @dataclass(frozen=True)
-class Pose:
-    """Pose in odom."""
-
-    x: float  # m
-    y: float  # m
-    yaw: float  # rad
-
-    def seen_from(self, start: Pose) -> tuple[float, float]:
-        """m ahead of and to the left of `start`."""
-        dx, dy = self.x - start.x, self.y - start.y
-        cosine, sine = math.cos(start.yaw), math.sin(start.yaw)
-        return cosine * dx + sine * dy, cosine * dy - sine * dx
-
-
-@dataclass(frozen=True)
-class Look:
+class Observation:
     """The robot's present state; None stands for a message that was never received."""
 
     pose: Pose | None
@@ -51,44 +37,46 @@ class Look:
     revoked: str = ""  # why what was requested does not begin, or go on
 
 
-def moves(look: Look) -> bool:
+def moves(observed: Observation) -> bool:
     """True if it moves by odometry."""
-    return abs(look.linear) > STANDING or abs(look.angular) > STANDING
+    return abs(observed.linear) > STANDING or abs(observed.angular) > STANDING
 
 
-def hindrance(look: Look) -> str:
+def hindrance(observed: Observation) -> str:
     """Why the plan cannot begin; empty if it can."""
-    if not look.state:
+    if not observed.state:
         return f"no safety_status: does {MONITOR} run? Start the robot (roslaunch robot_control sim.launch) first"
-    if look.pose is None:
+    if observed.pose is None:
         return f"no odometry: does {ESTIMATOR} run? Start the robot first"
-    if look.senders:
-        return f"{', '.join(look.senders)} may send on cmd_vel, too: two senders would pull at one robot. End it first"
-    if moves(look):
-        return f"the robot moves ({look.linear:.2f} m/s, {look.angular:.2f} rad/s); wait until it stands"
-    if math.isfinite(look.speed_limit):
+    if observed.senders:
         return (
-            f"the speed is limited to {look.speed_limit:.2g} m/s by warnings or `clearance`; rosrun robot_control "
+            f"{', '.join(observed.senders)} may send on cmd_vel, too: two senders would pull at one robot. End it first"
+        )
+    if moves(observed):
+        return f"the robot moves ({observed.linear:.2f} m/s, {observed.angular:.2f} rad/s); wait until it stands"
+    if math.isfinite(observed.speed_limit):
+        return (
+            f"the speed is limited to {observed.speed_limit:.2g} m/s by warnings or `clearance`; rosrun robot_control "
             "why.py says by which. What is limited is not driven as planned"
         )
-    return _stopped(look)
+    return _stopped(observed)
 
 
-def interruption(look: Look, start: Pose, reach: float, unanswered: float) -> str:
+def interruption(observed: Observation, start: Pose, reach: float, unanswered: float) -> str:
     """Why the plan must end now; empty if it goes on.
 
     Args:
-        look: now.
+        observed: now.
         start: where it began.
         reach: m, the plan's.
         unanswered: s of motion asked for since it moved last.
     """
-    return unattended(look) or _astray(look, start, reach, unanswered)
+    return unattended(observed) or _astray(observed, start, reach, unanswered)
 
 
-def unattended(look: Look) -> str:
+def unattended(observed: Observation) -> str:
     """Why no robot may drive on, wherever it is; empty if it may."""
-    return _unwatched(look) or _stopped(look)
+    return _unwatched(observed) or _stopped(observed)
 
 
 def ignored(unanswered: float) -> str:
@@ -98,18 +86,18 @@ def ignored(unanswered: float) -> str:
     return f"the robot was asked to move for {unanswered:.0f} s and stands; rosrun robot_control why.py says why"
 
 
-def _unwatched(look: Look) -> str:
-    if look.pose is None or look.pose_age > SILENCE:
+def _unwatched(observed: Observation) -> str:
+    if observed.pose is None or observed.pose_age > SILENCE:
         return f"no odometry for {SILENCE:g} s: the position of the robot is unknown"
-    if look.status_age > SILENCE + 1.0:  # published once per second where nothing changes
+    if observed.status_age > SILENCE + 1.0:  # published once per second where nothing changes
         return f"no safety_status for {SILENCE + 1.0:g} s: {MONITOR} or its link is gone"
     return ""
 
 
-def _astray(look: Look, start: Pose, reach: float, unanswered: float) -> str:
-    if look.pose is None:
+def _astray(observed: Observation, start: Pose, reach: float, unanswered: float) -> str:
+    if observed.pose is None:
         return ""
-    ahead, left = look.pose.seen_from(start)
+    ahead, left = observed.pose.seen_from(start)
     if not (-MARGIN <= ahead <= reach + MARGIN and abs(left) <= MARGIN):
         return (
             f"the robot is {ahead:.2f} m ahead and {left:.2f} m to the left of its start, beyond the plan's "
@@ -118,11 +106,11 @@ def _astray(look: Look, start: Pose, reach: float, unanswered: float) -> str:
     return ignored(unanswered)
 
 
-def _stopped(look: Look) -> str:
-    if look.state in DRIVABLE:
-        return look.revoked and f"{look.revoked}: start again"
-    why = "; ".join(look.sentences) or (
-        f"waiting: {', '.join(look.missing)}" if look.missing else "no cause is reported"
+def _stopped(observed: Observation) -> str:
+    if observed.state in DRIVABLE:
+        return observed.revoked and f"{observed.revoked}: start again"
+    why = "; ".join(observed.sentences) or (
+        f"waiting: {', '.join(observed.missing)}" if observed.missing else "no cause is reported"
     )
-    remedy = "do what is named" if look.state == "INIT" else "remove the cause, then rosservice call e_stop_reset"
-    return f"the robot is {look.state}: {why}; {remedy}"
+    remedy = "do what is named" if observed.state == "INIT" else "remove the cause, then rosservice call e_stop_reset"
+    return f"the robot is {observed.state}: {why}; {remedy}"

@@ -11,6 +11,7 @@ from robot_control import ParameterError, RobotError
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import escaped, fit_for_message, write_text
 from robot_control.common.output_files import check_outputs
+from robot_control.common.pose import Pose
 from robot_control.common.roles import CONTROLLER, refuse_legs
 from robot_control.common.run_log import FloatArray, LogError, kind_in, read_run
 from robot_control.common.running_robot import RefusedError, await_all, master_state, other_senders, running_settings
@@ -18,7 +19,7 @@ from robot_control.common.settings import Settings
 from robot_control.common.topic_sender import Signals, ended_by_signals
 from robot_control.identify.evaluation import Options, evaluate, parse_options, plan
 from robot_control.identify.excitation import Excitation, NoRoomError
-from robot_control.identify.excitation_watch import Pose, hindrance, interruption, moves
+from robot_control.identify.excitation_watch import hindrance, interruption, moves
 from robot_control.identify.recorded_log import RecordingError, recording
 from robot_control.identify.robot import RunningRobot
 from robot_control.identify.rows import UnfitError
@@ -85,8 +86,8 @@ def _drive(settings: Settings, options: Options, signals: Signals) -> dict[str, 
     excitation = plan(settings, options)
     robot = RunningRobot()
     senders, telemetry = _others(robot, signals)
-    look = robot.look(senders)
-    reason = hindrance(look)
+    observed = robot.observe(senders)
+    reason = hindrance(observed)
     if reason:
         raise RefusedError(f"{reason}. Nothing was driven")
     running = None
@@ -106,7 +107,7 @@ def _drive(settings: Settings, options: Options, signals: Signals) -> dict[str, 
 
 def _others(robot: RunningRobot, signals: Signals) -> tuple[tuple[str, ...], list[str]]:
     """Other nodes that may send commands, and the telemetry that runs; waits for the first report of the robot."""
-    await_all(lambda: robot.has_receiver() and robot.look().pose is not None and bool(robot.look().state), signals)
+    await_all(lambda: robot.has_receiver() and robot.reports(), signals)
     state = master_state()
     if not robot.has_receiver():
         raise RefusedError(f"no node subscribes to {rospy.resolve_name('cmd_vel')}: does {CONTROLLER} run?")
@@ -115,16 +116,16 @@ def _others(robot: RunningRobot, signals: Signals) -> tuple[tuple[str, ...], lis
 
 def _follow(robot: RunningRobot, excitation: Excitation, signals: Signals) -> None:
     """Sends the plan; whatever happens, a zero is the last thing sent."""
-    start = robot.look().pose or Pose(0.0, 0.0, 0.0)  # hindrance has seen one
+    start = robot.observe().pose or Pose(0.0, 0.0, 0.0)  # hindrance has seen one
     unanswered = 0.0  # s
     try:
         for move in excitation.moves:
             begin = now = time.monotonic()
             while now - begin < move.seconds:
-                look = robot.look()
-                unanswered = 0.0 if moves(look) else unanswered
+                observed = robot.observe()
+                unanswered = 0.0 if moves(observed) else unanswered
                 reason = (
-                    interruption(look, start, excitation.reach, unanswered) if signals.going_on() else "interrupted"
+                    interruption(observed, start, excitation.reach, unanswered) if signals.going_on() else "interrupted"
                 )
                 if reason:
                     raise RefusedError(f"{reason}. A zero was sent, nothing is written")

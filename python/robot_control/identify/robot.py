@@ -10,8 +10,9 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 
+from robot_control.common.pose import pose_of
 from robot_control.common.topic_sender import Sender
-from robot_control.identify.excitation_watch import Look, Pose
+from robot_control.identify.excitation_watch import Observation
 from robot_control.identify.recorded_log import RunningTelemetry
 from robot_control.safety.process_start import process_began
 from robot_control.safety.watch import SafetyWatch
@@ -49,21 +50,19 @@ class RunningRobot:
         """True if a controller receives what is sent."""
         return self._publisher is not None and int(self._publisher.get_num_connections()) > 0
 
-    def look(self, senders: tuple[str, ...] = ()) -> Look:
+    def reports(self) -> bool:
+        """True if odometry and a report of the safety monitor have arrived."""
+        return self._odometry is not None and self._watch.message is not None
+
+    def observe(self, senders: tuple[str, ...] = ()) -> Observation:
         """The present state; `senders` are the others on cmd_vel."""
         revoked = self._watch.revoked(self.requested, waited=True)
         now = time.monotonic()
         odometry, status = self._odometry, self._watch.message
-        pose = None
-        linear = angular = 0.0
-        if odometry is not None:
-            position, q = odometry.pose.pose.position, odometry.pose.pose.orientation
-            pose = Pose(position.x, position.y, 2 * math.atan2(q.z, q.w))  # planar: x and y of the rotation are 0
-            linear, angular = odometry.twist.twist.linear.x, odometry.twist.twist.angular.z
-        return Look(
-            pose=pose,
-            linear=linear,
-            angular=angular,
+        return Observation(
+            pose=None if odometry is None else pose_of(odometry),
+            linear=0.0 if odometry is None else odometry.twist.twist.linear.x,
+            angular=0.0 if odometry is None else odometry.twist.twist.angular.z,
             pose_age=now - self._odometry_at,
             state="" if status is None else status.state_name,
             status_age=now - self._watch.received_at,

@@ -14,7 +14,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Wedge
 
-from robot_control.common.rotation import rotation
+from robot_control.common.pose import rotation
 from robot_control.inspect.rendering import Array, Part, View, Window, render
 from robot_control.inspect.shapes import ground_height, triangles_in_base
 

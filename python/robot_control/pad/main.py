@@ -77,7 +77,7 @@ class Source:
         if topic:
             rospy.Subscriber("joy", Joy, self._received.append, queue_size=MESSAGES, tcp_nodelay=True)
 
-    def look(self, now: float) -> None:
+    def poll(self, now: float) -> None:
         """Hands new messages or the device's state to the pad."""
         if self._publisher is None:
             while self._received:
@@ -127,7 +127,7 @@ def drive(given: argparse.Namespace, signals: Signals) -> None:
     watch, interruptions, refusal, refused = SafetyWatch(), 0, Refusal(), False
     while signals.going_on():
         now = time.monotonic()
-        source.look(now)
+        source.poll(now)
         count, why = watch.interruptions()
         if count != interruptions:
             interruptions = count
@@ -139,7 +139,7 @@ def drive(given: argparse.Namespace, signals: Signals) -> None:
             if not before:
                 rospy.logwarn(REFUSED)
         pad.permit(watch.drivable(SILENCE))
-        pace.look(pad.command(now), now)
+        pace.step(pad.command(now), now)
         if pad.state(now) != said:
             said = pad.state(now)
             rospy.loginfo(said)

@@ -24,6 +24,7 @@ import math
 from dataclasses import dataclass
 from enum import Enum, auto
 
+from robot_control.common.pose import Pose
 from robot_control.path.headway import Headway
 from robot_control.path.pieces import Foot, Route, turned
 
@@ -63,15 +64,6 @@ class State(Enum):
     PAUSED = auto()
     DONE = auto()
     FAILED = auto()
-
-
-@dataclass(frozen=True)
-class Pose:
-    """Pose of the robot in the path's frame."""
-
-    x: float  # m
-    y: float  # m
-    yaw: float  # rad
 
 
 @dataclass(frozen=True)

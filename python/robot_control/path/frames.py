@@ -12,15 +12,14 @@ import rospy
 import tf2_py
 from tf2_msgs.msg import TFMessage
 
-from robot_control.common.rotation import yaw_of
-from robot_control.path.follower import Pose
+from robot_control.common.pose import Pose, yaw_of
 from robot_control.path.waypoints import PathError, Waypoint, placed
 
 SILENCE = 1.0
 """s without a newer transform between two frames that move against each other"""
 PATIENCE = 2.0
 """s that a new subscriber needs at most to know all frames"""
-LOOK = 0.05
+POLL_PERIOD = 0.05
 """s"""
 
 
@@ -61,7 +60,7 @@ class Tf:
             except tf2_py.TransformException as error:
                 if time.monotonic() > self._complete_at:
                     raise PathError(f"tf does not connect the path's frame with the robot's: {error}") from None
-            time.sleep(LOOK)
+            time.sleep(POLL_PERIOD)
         shift = found.transform.translation
         return Transform(Pose(shift.x, shift.y, yaw_of(found.transform.rotation)), found.header.stamp.to_sec())
 

@@ -13,6 +13,7 @@ from nav_msgs.msg import Path
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message
+from robot_control.common.pose import pose_of
 from robot_control.common.robot_kind import refuse_running_legs
 from robot_control.common.roles import WheelsOnlyError
 from robot_control.common.ros_node import running_node
@@ -21,7 +22,7 @@ from robot_control.drive.send_plan import positive
 from robot_control.path.follower import Follower, FollowParameters, State
 from robot_control.path.frames import PathFrame, Tf, located
 from robot_control.path.pieces import route
-from robot_control.path.robot import PATIENCE, SOURCE, Robot, pose_of
+from robot_control.path.robot import PATIENCE, SOURCE, Robot
 from robot_control.path.run import Drive, PauseServices, message_of, points_of
 from robot_control.path.shapes import SHAPES
 from robot_control.path.waypoints import PathError, Waypoint, placed, read_csv

@@ -11,9 +11,7 @@ from nav_msgs.msg import Odometry
 
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.roles import ESTIMATOR, MONITOR
-from robot_control.common.rotation import yaw_of
 from robot_control.msg import DriveState, SafetyStatus
-from robot_control.path.follower import Pose
 from robot_control.safety.states import DRIVABLE, STOPPED
 from robot_control.safety.watch import SafetyWatch
 
@@ -26,12 +24,6 @@ PATIENCE = 10.0
 """s to wait for odometry and the permit to drive"""
 CAUSE_DELAY = 0.3
 """s by which the cause of a stop may follow the refusal that it leads to: they come from two nodes"""
-
-
-def pose_of(odometry: Odometry) -> Pose:
-    """Pose of the robot in the frame odom."""
-    pose = odometry.pose.pose
-    return Pose(pose.position.x, pose.position.y, yaw_of(pose.orientation))
 
 
 def in_words(safety: SafetyStatus) -> str:

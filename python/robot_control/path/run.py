@@ -13,12 +13,13 @@ from nav_msgs.msg import Odometry, Path
 from std_srvs.srv import Trigger, TriggerResponse
 
 from robot_control.common.command_topic import CommandTopic
+from robot_control.common.pose import pose_of
 from robot_control.path.follower import Follower, Motion, State
 from robot_control.path.frames import PathFrame
-from robot_control.path.robot import SILENCE, SOURCE, Robot, pose_of
+from robot_control.path.robot import SILENCE, SOURCE, Robot
 from robot_control.path.waypoints import PathError, Waypoint, from_poses
 
-LOOK = 0.005
+POLL_PERIOD = 0.005
 """s between two looks for a new odometry message"""
 
 
@@ -35,8 +36,8 @@ class Drive:
         self._stamp: rospy.Time | None = None  # of the last odometry
         self.paused_by = ""
 
-    def run(self, going_on: Callable[[], bool], look: Callable[[], None]) -> None:
-        """Drives until the follower ends or `going_on` is false; `look` is called in every pass. Sends no last zero."""
+    def run(self, going_on: Callable[[], bool], poll: Callable[[], None]) -> None:
+        """Drives until the follower ends or `going_on` is false; `poll` is called in every pass. Sends no last zero."""
         last, waited = -math.inf, True
         while going_on() and not self.follower.over:
             revoked = self._robot.revoked(self._requested, waited=waited)
@@ -46,8 +47,8 @@ class Drive:
             elif self._robot.odometry_at > last:
                 last = self._robot.odometry_at
                 self._step(self._robot.odometry)
-            look()
-            time.sleep(LOOK)
+            poll()
+            time.sleep(POLL_PERIOD)
 
     def pause(self, why: str) -> None:
         """Stands until `resume` is called."""

@@ -35,7 +35,7 @@ FEEDBACK_PERIOD = 0.2
 """s; a change of the state is sent at once"""
 END = 2.0
 """s for the goal that is driven when the program is ended"""
-LOOK = 0.05
+POLL_PERIOD = 0.05
 """s between two looks of the main thread"""
 UNSTAMPED = f"a goal without goal_id.stamp counts as sent {GAP:g} s before it arrived"
 
@@ -138,7 +138,7 @@ class Server:
         drive = Drive(self._robot, self._topic, follower, frame, message.requested)
         self._services.drive = drive
         reporter = Reporter(self._action, drive, goal.begin_at)
-        drive.run(self._going_on, reporter.look)
+        drive.run(self._going_on, reporter.poll)
         result.distance = goal.begin_at + follower.distance
         result.worst_cross_track_error = follower.worst_cross_track_error
         return "done" if follower.state is State.DONE else follower.reason
@@ -157,7 +157,7 @@ class Reporter:
         self._action, self._drive, self._begin_at = action, drive, begin_at
         self._sent_at, self._said = -math.inf, State.PAUSED
 
-    def look(self) -> None:
+    def poll(self) -> None:
         """Sends the feedback if it is due."""
         now, follower = time.monotonic(), self._drive.follower
         if follower.state is self._said and now - self._sent_at < FEEDBACK_PERIOD:
@@ -189,5 +189,5 @@ def main() -> None:
         server = Server(signals)
         while signals.going_on():
             server.attend()
-            time.sleep(LOOK)
+            time.sleep(POLL_PERIOD)
         server.await_end()

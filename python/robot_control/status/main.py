@@ -19,7 +19,7 @@ from robot_control.status.report import Reports, changed, status_of
 from robot_control.why.facts import below
 from robot_control.why.state import SILENCE
 
-LOOK = 0.05
+POLL_PERIOD = 0.05
 """s between two looks for a change"""
 PERIOD = 1.0
 """s between two messages of an unchanged state"""
@@ -45,7 +45,7 @@ class Status:
         rospy.Subscriber("leg_state", rospy.AnyMsg, self._receive_legs, queue_size=1)
         rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive_diagnostics)
 
-    def look(self, now: float) -> None:
+    def poll(self, now: float) -> None:
         """Publishes if a message is due."""
         status = status_of(self._reports_of_now(now))
         status.software_version = self._version
@@ -103,5 +103,5 @@ def main() -> None:
     with running_node("robot_status") as signals:
         status = Status()
         while signals.going_on():
-            status.look(time.monotonic())
-            time.sleep(LOOK)
+            status.poll(time.monotonic())
+            time.sleep(POLL_PERIOD)

@@ -114,7 +114,7 @@ class DeadMan:
             return
         self._stopped_in_burst = False
         self._delay.byte(key, now)
-        held = self.look(now)
+        held = self.held(now)
         if self._is_blocked(key, now):
             return
         if held is None:
@@ -156,7 +156,7 @@ class DeadMan:
         if now - self._last_byte <= self._parameters.first_hold:
             self._blocked, self._blocked_byte = set(), self._last_byte
 
-    def look(self, now: float) -> Held | None:
+    def held(self, now: float) -> Held | None:
         """The present hold; None if there is none."""
         if not self._key or now >= self._until:
             self._key = ""

@@ -113,7 +113,7 @@ class Decoder:
             keys += found
         return keys
 
-    def look(self, now: float) -> list[Key]:
+    def flush(self, now: float) -> list[Key]:
         """The key Esc if no byte has followed an ESC."""
         if not self._escape_due or now - self._last < ESCAPE_WAIT:
             return []

@@ -30,7 +30,7 @@ from robot_control.why.listener import MASTER_PERIOD, Listener
 from robot_control.why.state import SILENCE
 
 SOURCE = "key_vel"
-LOOK = 0.02
+POLL_PERIOD = 0.02
 """s between two looks at keys and holds; a key is read at once"""
 HEARTBEAT_PERIOD = 0.1
 """s"""
@@ -65,7 +65,7 @@ class Teleop:
         self._operator.start(begin)
         backlog = Backlog(begin)
         while signals.going_on():
-            data = self._terminal.read(LOOK)
+            data = self._terminal.read(POLL_PERIOD)
             now = time.monotonic()
             count, _ = self._watch.interruptions()
             if count != self._interruptions:
@@ -75,7 +75,7 @@ class Teleop:
                 return
             self._operator.permit(self._watch.drivable(SILENCE), now)
             self._operator.limit(self._limits.newest())
-            self._pace.look(self._operator.command(now), now)
+            self._pace.step(self._operator.command(now), now)
             self._take_answers()
             if now - self._beat_at >= HEARTBEAT_PERIOD:
                 self._beat_at = now
@@ -86,7 +86,7 @@ class Teleop:
 
     def _take(self, data: bytes, now: float, *, late: bool) -> bool:
         """True if the program shall end."""
-        for key in [*self._decoder.feed(data, now), *self._decoder.look(now)]:
+        for key in [*self._decoder.feed(data, now), *self._decoder.flush(now)]:
             if key.event is Event.SPEAKS_KITTY:
                 self._releases = True
                 self._terminal.report_releases()
@@ -102,7 +102,7 @@ class Teleop:
         return False
 
     def _take_answers(self) -> None:
-        for answer in self._services.look():
+        for answer in self._services.poll():
             self._answer = in_words(answer, self._listener.facts())
             if answer.service == "e_stop_reset" and answer.accepted:
                 self._operator.reset_accepted()

@@ -124,7 +124,7 @@ class Operator:
 
     def command(self, now: float) -> Command | None:
         """The command to send now; None: nothing is sent."""
-        self._change_speeds(self._speed_keys.look(now))
+        self._change_speeds(self._speed_keys.due(now))
         held = self.held(now)
         if held is not None:
             self._zeros_until = now + ZEROS
@@ -135,7 +135,7 @@ class Operator:
 
     def held(self, now: float) -> Held | None:
         """The key that moves the robot."""
-        held = self._dead_man.look(now)
+        held = self._dead_man.held(now)
         return None if self._e_stopped else held
 
     def message(self, now: float) -> str:

@@ -84,7 +84,7 @@ class Services:
         self._last_e_stop = float("-inf")  # the next one is another request
         self._wanted.put(("e_stop_reset", time.monotonic(), attempts))
 
-    def look(self) -> list[Answer]:
+    def poll(self) -> list[Answer]:
         """The answers that have arrived."""
         answers = []
         while not self._answers.empty():

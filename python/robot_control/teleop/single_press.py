@@ -22,7 +22,7 @@ class SinglePress:
 
     def press(self, key: str, now: float, *, repeat: bool = False) -> list[str]:
         """The keys that act now, after a byte of `key`; `repeat`: the terminal reports it as a repeat."""
-        acts = self.look(now)
+        acts = self.due(now)
         gap = now - self._last_byte if key == self._key else float("inf")
         if key != self._key and self._undecided:
             acts.append(self._key)
@@ -38,7 +38,7 @@ class SinglePress:
         self._key, self._undecided = "", False
         return acts
 
-    def look(self, now: float) -> list[str]:
+    def due(self, now: float) -> list[str]:
         """The keys that act now, because no repeat has followed."""
         if not self._undecided or now - self._last_byte <= SLOWEST_REPEAT:
             return []

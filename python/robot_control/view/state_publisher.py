@@ -21,7 +21,7 @@ from robot_control.common.ros_node import begin_node
 from robot_control.common.server_values import ServerValueError, server_description
 from robot_control.common.topic_sender import ended_by_signals
 
-LOOK = 0.2
+POLL_PERIOD = 0.2
 """s between two looks at the parameter server"""
 PROGRAM = "robot_state_publisher"
 PACKAGE = "ros-robot-state-publisher"
@@ -70,7 +70,7 @@ def await_description() -> str:
             description = server_description()
             if description:
                 return description
-            time.sleep(LOOK)
+            time.sleep(POLL_PERIOD)
     return ""
 
 

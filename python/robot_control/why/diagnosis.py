@@ -14,8 +14,8 @@ MOVING = 0.01
 
 def judge(facts: Facts) -> Answer:
     """Chooses from all that prevents motion what has to be repaired first."""
-    for look in (_no_nodes, _paused, _starting, _stopped, _gate, _no_path, _locked, _controller):
-        answer = look(facts)
+    for rule in (_no_nodes, _paused, _starting, _stopped, _gate, _no_path, _locked, _controller):
+        answer = rule(facts)
         if answer is not None:
             return answer
     return _moving(facts)

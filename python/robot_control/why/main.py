@@ -15,7 +15,7 @@ from robot_control.common.ros_node import begin_node
 from robot_control.why.answer import Verdict
 from robot_control.why.diagnosis import judge
 from robot_control.why.listener import MASTER_PERIOD, Listener
-from robot_control.why.screen import Look, render
+from robot_control.why.screen import Layout, render
 from robot_control.why.state import Facts
 
 FRAME = 0.25
@@ -24,9 +24,9 @@ TIMEOUT = 2.5
 """s to wait for a report of every node before the first answer; each node reports once per second"""
 
 
-def _look_of(stream: TextIO) -> Look:
+def _layout_of(stream: TextIO) -> Layout:
     colour = stream.isatty() and not os.environ.get("NO_COLOR")
-    return Look(shutil.get_terminal_size((80, 24)).columns, colour)
+    return Layout(shutil.get_terminal_size((80, 24)).columns, colour)
 
 
 class Screen:
@@ -38,8 +38,8 @@ class Screen:
 
     def show(self, facts: Facts) -> None:
         """One frame."""
-        lines = render(facts, _look_of(sys.stdout))
-        essence = lines if self._terminal else render(facts, Look(times=False))
+        lines = render(facts, _layout_of(sys.stdout))
+        essence = lines if self._terminal else render(facts, Layout(times=False))
         if self._terminal:
             start = "\x1b[H" if self._last else "\x1b[2J\x1b[H"
             shown = lines[: max(1, shutil.get_terminal_size((80, 24)).lines - 1)]
@@ -51,7 +51,7 @@ class Screen:
 
 
 def _print_once(facts: Facts) -> int:
-    print("\n".join(render(facts, _look_of(sys.stdout))))
+    print("\n".join(render(facts, _layout_of(sys.stdout))))
     return 1 if judge(facts).verdict is Verdict.STOPPED else 0
 
 

@@ -21,7 +21,7 @@ BOLD = "1"
 
 
 @dataclass(frozen=True)
-class Look:
+class Layout:
     """Format of the answer."""
 
     width: int = 80  # columns; no line is longer
@@ -33,24 +33,24 @@ class Look:
         return f"\x1b[{style}m{text}\x1b[0m" if self.colour and style and text.strip() else text
 
 
-PLAIN = Look()
+PLAIN = Layout()
 
 
-def render(facts: Facts, look: Look = PLAIN) -> list[str]:
+def render(facts: Facts, layout: Layout = PLAIN) -> list[str]:
     """One screen, a line each."""
     answer = judge(facts)
-    width = max(look.width, NARROWEST)
-    lines = [look.paint(line, COLOURS[answer.verdict]) for line in textwrap.wrap(_headline(answer, look), width)]
+    width = max(layout.width, NARROWEST)
+    lines = [layout.paint(line, COLOURS[answer.verdict]) for line in textwrap.wrap(_headline(answer, layout), width)]
     lines.append("")
-    for label, text, style in _rows(facts, answer, look):
+    for label, text, style in _rows(facts, answer, layout):
         for number, line in enumerate(_wrap(text, width - LABEL)):
             head = (label if number == 0 else "").ljust(LABEL)
-            lines.append((look.paint(head, DIM) + look.paint(line, style)).rstrip())
+            lines.append((layout.paint(head, DIM) + layout.paint(line, style)).rstrip())
     return lines
 
 
-def _headline(answer: Answer, look: Look) -> str:
-    return "It moves." if answer.verdict is Verdict.MOVING and not look.times else escaped(answer.headline)
+def _headline(answer: Answer, layout: Layout) -> str:
+    return "It moves." if answer.verdict is Verdict.MOVING and not layout.times else escaped(answer.headline)
 
 
 def _wrap(text: str, width: int) -> list[str]:
@@ -61,14 +61,14 @@ def _wrap(text: str, width: int) -> list[str]:
 Rows = Iterator[tuple[str, str, str]]
 
 
-def _rows(facts: Facts, answer: Answer, look: Look) -> Rows:
+def _rows(facts: Facts, answer: Answer, layout: Layout) -> Rows:
     yield from _to_do(answer)
     safety = facts.received()
     if safety is not None:
-        yield from _safety(safety, facts.speed_limit, look)
+        yield from _safety(safety, facts.speed_limit, layout)
     yield from _nodes(facts)
     if any(facts.there(node) for node in facts.loop):
-        yield from _command(facts, look)
+        yield from _command(facts, layout)
         yield from _gate(facts)
     yield from _circumstances(facts)
 
@@ -82,8 +82,8 @@ def _to_do(answer: Answer) -> Rows:
         yield "", "", ""
 
 
-def _safety(safety: Safety, speed_limit: float, look: Look) -> Rows:
-    since = f" for {_duration(safety.held)}" if look.times else ""
+def _safety(safety: Safety, speed_limit: float, layout: Layout) -> Rows:
+    since = f" for {_duration(safety.held)}" if layout.times else ""
     yield "safety", f"{safety.state}{since}, permit: {safety.permit}", ""
     for number, cause in enumerate(sorted(safety.causes, key=lambda cause: not cause.first)):
         marks = [word for word, true in (("first", cause.first), ("still true", cause.active)) if true]
@@ -112,7 +112,7 @@ def _nodes(facts: Facts) -> Rows:
     yield "nodes", ", ".join(words), ""
 
 
-def _command(facts: Facts, look: Look) -> Rows:
+def _command(facts: Facts, layout: Layout) -> Rows:
     yield "requests", f"published by {senders_in_words(facts)}", ""
     sources = facts.sources()
     if sources:
@@ -120,7 +120,7 @@ def _command(facts: Facts, look: Look) -> Rows:
     posture = facts.value(facts.controller, "posture")
     if posture:
         yield "posture", posture, ""
-    if look.times and not facts.kind.legged:
+    if layout.times and not facts.kind.legged:
         yield from _speeds(facts)
     reasons = "; ".join(facts.reasons(facts.controller, "command").values())
     if reasons:

@@ -54,7 +54,7 @@ class CycleClock {
   std::uint64_t cycle_ = 0;
 };
 
-/// Is `head` of the run that the driver is in now, on a robot with this hash?
+/// Returns whether `head` is of the run that the driver is in now, on a robot with this hash.
 inline bool current(const FrameReader<SensorFrame>& sensors, const FrameHead& head, std::uint64_t robot_hash) noexcept {
   const auto* memory = sensors.memory();
   return memory != nullptr && memory->head.attached_run.load(std::memory_order_acquire) == head.run &&

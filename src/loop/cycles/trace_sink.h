@@ -36,7 +36,7 @@ class TraceSink {
     writer_.begin();
   }
 
-  /// Ordinary thread, at 10 Hz: is a telemetry there, and has it mapped all rings?
+  /// Ordinary thread, at 10 Hz: searches for a telemetry that has mapped all rings.
   void poll() {
     positions_.poll();
     const RingPositions* memory = positions_.memory();

@@ -35,7 +35,7 @@ class ConsumerProcess : public Process {
  public:
   const FrameReader<SensorFrame>& sensors() const noexcept { return sensors_.reader; }
 
-  /// Any thread: is this frame of the present run of a living driver? A frame that an earlier driver left is not.
+  /// Any thread: returns whether this frame is of the present run of a living driver, instead of an earlier one.
   bool is_current(const FrameHead& head) const noexcept {
     return robot_agrees_.load() && current(sensors_.reader, head, robot_.hash);
   }

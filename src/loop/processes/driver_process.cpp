@@ -15,14 +15,14 @@ namespace {
 
 constexpr std::int64_t kStopCheck = 100'000'000;  // ns; longest wait before `stopping` is looked at
 
-/// Does a living node wait on the sensors of this run?
+/// Returns whether a living node waits on the sensors of this run.
 template <class Frame>
 bool attached(const Input<Frame>& input, std::uint64_t run) {
   const auto* memory = input.channel.memory();
   return memory != nullptr && attached_run(memory->head) == run && input.channel.locked();
 }
 
-/// Lockstep: has cycle k passed on this channel, with or without content?
+/// Lockstep: returns whether cycle k has passed on this channel, with or without content.
 template <class Frame>
 bool published(const FrameReader<Frame>& reader, std::uint64_t run, std::uint64_t cycle) noexcept {
   Frame frame;

@@ -36,7 +36,7 @@ class DriverProcess final : public Process {
   const FrameReader<SensorFrame>& sensors() const noexcept { return sensors_.reader; }
   const FrameReader<TruthFrame>& truth() const noexcept { return truth_.reader; }
 
-  /// Any thread: is this frame of the present run? A frame that an earlier process left is not.
+  /// Any thread: returns whether this frame is of the present run, instead of an earlier process.
   bool is_current(const FrameHead& head) const noexcept {
     return attached_run(sensors_.writer.memory()->head) == head.run;
   }

@@ -53,7 +53,7 @@ class LoopHold {
   /// Reads the inbox. The cycle may run under the newest request.
   bool may_tick(std::uint64_t cycle) noexcept;
 
-  /// Reads the inbox: is the loop to park? It parks also while it waits for other nodes.
+  /// Reads the inbox; returns whether the loop has to park. It parks also while it waits for other nodes.
   bool park_requested() noexcept;
 
   /// By the request read last; false: a tick is allowed beyond the cycles of a step.

@@ -4,9 +4,8 @@
 ///
 ///   body   it tilts lengthwise, from level to where the centre of gravity of the root body is lowest
 ///   knee   bent by kFold, or as far as its range less kFromStop allows
-///   hip    swung outwards until no part of thigh and shank is below the ground on which the body lies, or to the end
-///   of
-///          its range
+///   hip    swung outwards until no part of thigh and shank is below the ground on which the body lies, or to the
+///          end of its range
 ///   thigh  turned from hanging down towards the side to which the knee points, so that the lowest point of thigh and
 ///          shank is as high as possible
 

@@ -44,7 +44,7 @@ void CommandMux::receive(std::size_t source, const ArrivedCommand& arrived, cons
   if (accepted) from.last_ns = time.loop_ns;
   select(time.loop_ns);
   message_ns_ = time.loop_ns;
-  take_result(time.loop_ns, true);
+  update_result(time.loop_ns, true);
 }
 
 void CommandMux::receive_lock(std::size_t lock, bool set, std::int64_t loop_ns) {
@@ -58,7 +58,7 @@ bool CommandMux::update(std::int64_t loop_ns) {
   for (Source& source : sources_) changed |= source.input.update(loop_ns);
   changed |= select(loop_ns);
   if (!changed && (winner_ || unread(loop_ns))) return false;
-  take_result(loop_ns, false);
+  update_result(loop_ns, false);
   return true;
 }
 
@@ -71,7 +71,7 @@ bool CommandMux::follow(const MotionPermission& permission, std::int64_t loop_ns
   }
   if (!ended) return false;
   select(loop_ns);
-  take_result(loop_ns, false);
+  update_result(loop_ns, false);
   return true;
 }
 
@@ -104,7 +104,7 @@ bool CommandMux::select(std::int64_t loop_ns) {
   return true;
 }
 
-void CommandMux::take_result(std::int64_t loop_ns, bool message) {
+void CommandMux::update_result(std::int64_t loop_ns, bool message) {
   value_.content = {};
   value_.age_ns = 0;
   value_.many_senders = 0;

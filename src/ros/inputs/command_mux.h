@@ -80,7 +80,7 @@ class CommandMux final : public CommandIntake {
   /// Selects the winner. Returns true if it changed.
   bool select(std::int64_t loop_ns);
   /// Adopts the winner's command; `message` says that a message caused the call.
-  void take_result(std::int64_t loop_ns, bool message);
+  void update_result(std::int64_t loop_ns, bool message);
   /// Returns whether a message arrived within the last cycle, so that the controller may not have read it yet.
   bool unread(std::int64_t loop_ns) const;
   void add_refusals();

@@ -54,7 +54,7 @@ bool names(const Tables& tables, const ElfW(Rela) * relocations, std::size_t byt
   return false;
 }
 
-int look(dl_phdr_info* object, std::size_t /*size*/, void* data) {
+int find_import(dl_phdr_info* object, std::size_t /*size*/, void* data) {
   Search& search = *static_cast<Search*>(data);
   if (std::strstr(object->dlpi_name, search.function.library.c_str()) == nullptr) return 0;
   for (int i = 0; i < object->dlpi_phnum; ++i) {
@@ -79,7 +79,7 @@ bool is_defined_here(const std::string& symbol) {
 
 bool leads_here(const Interposed& function) {
   Search search{.function = function};
-  dl_iterate_phdr(look, &search);
+  dl_iterate_phdr(find_import, &search);
   return search.imported && is_defined_here(function.symbol);
 }
 

@@ -8,9 +8,8 @@
 ///   kGarbage       the healthy value, changed by `distort` with random numbers
 ///   kWrong         the healthy value, changed by `distort`
 ///   kSlow          a new value when the fault begins and every kFaultCycles cycles after; in between no output
-///   kDelayed       the value of kFaultCycles cycles ago; in the first kFaultCycles cycles that of the fault's
-///   beginning kIntermittent  on at first, then changes between no output and the healthy value with kChangeProbability
-///   in
+///   kDelayed       the value of kFaultCycles cycles ago; in the first kFaultCycles cycles that of its beginning
+///   kIntermittent  on at first, then changes between no output and the healthy value with kChangeProbability in
 ///                  each cycle: both last 1 / kChangeProbability cycles on average, from one to a hundred
 ///
 /// A healthy output costs one comparison. Random numbers depend only on the seed and the cycle in which the fault

@@ -10,6 +10,7 @@
 #include "machine/wheeled/tipping.h"
 #include "made_robot.h"
 #include "support/diffbot_urdf.h"
+#include "support/message_of.h"
 
 namespace robot_control {
 namespace {
@@ -109,12 +110,7 @@ TEST(BrakeOf, FitsTheWheelOfDiffbot) {
 class CheckBrake : public testing::Test {
  protected:
   std::string refusal() const {
-    try {
-      check_brake(brake_, "left_wheel_joint", 0.005, kStep);
-    } catch (const DriverError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return message_of<DriverError>([&] { check_brake(brake_, "left_wheel_joint", 0.005, kStep); }, "accepted");
   }
   Brake brake_{.effort = 3, .damping = 2, .stiffness = 300, .hold_speed = 0.3};
 };
@@ -134,12 +130,9 @@ TEST_F(CheckBrake, RefusesStiffnessThatALightWheelDoesNotBear) {
 }
 
 TEST(CheckBrakeOfATinyWheel, NamesItsNumbers) {
-  try {
-    check_brake({.effort = 1, .damping = 1, .stiffness = 1, .hold_speed = 1}, "tiny", 4e-7, kStep);
-    FAIL() << "accepted";
-  } catch (const DriverError& error) {
-    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("4e-07 kg·m²"), testing::HasSubstr("up to 0.0002 ")));
-  }
+  const std::string message = message_of<DriverError>(
+      [&] { check_brake({.effort = 1, .damping = 1, .stiffness = 1, .hold_speed = 1}, "tiny", 4e-7, kStep); });
+  EXPECT_THAT(message, testing::AllOf(testing::HasSubstr("4e-07 kg·m²"), testing::HasSubstr("up to 0.0002 ")));
 }
 
 TEST_F(CheckBrake, RefusesABrakeThatDoesNotHold) {

@@ -7,6 +7,7 @@
 
 #include "drivers/driver.h"
 #include "plant_fixture.h"
+#include "support/message_of.h"
 
 namespace robot_control {
 namespace {
@@ -23,12 +24,7 @@ class MujocoModelTest : public testing::Test {
     return compile_model(robot_, parameters, period);
   }
   std::string refusal(const std::string& scene) const {
-    try {
-      compiled(scene);
-    } catch (const DriverError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return message_of<DriverError>([&] { compiled(scene); }, "accepted");
   }
 
   DriveTrain robot_ = read_drive_train(diffbot_urdf(), {});

@@ -173,15 +173,6 @@ TEST_F(PlantErrors, ABlockedMotorStopsItsWheelWhateverTheCommand) {
   EXPECT_GT(truth(*plant).twist_base.angular[2], 0.1);
 }
 
-TEST_F(PlantErrors, AMotorIsHealthyAgainAfterOk) {
-  auto plant = erring();
-  inject(*plant, FaultComponent::kMotor, FaultKind::kStuck);
-  hold(*plant, both(effort_command(0.5), effort_command(0.5)), 0.2);
-  inject(*plant, FaultComponent::kMotor, FaultKind::kOk);
-  plant->write(both(effort_command(0.5), effort_command(0.5)));
-  EXPECT_EQ(truth(*plant).joints[0].effort, 0.5);
-}
-
 TEST_F(PlantErrors, ReachBatteryAndButton) {
   parameters_.battery_voltage = 24;
   parameters_.battery_resistance = 0;

@@ -6,6 +6,7 @@
 #include "drivers/mujoco/constants.h"
 #include "made_robot.h"
 #include "plant_fixture.h"
+#include "support/message_of.h"
 
 namespace robot_control {
 namespace {
@@ -20,12 +21,7 @@ class SceneTest : public PlantTest {
     return plant;
   }
   std::string refusal(const std::string& scene) {
-    try {
-      in(scene);
-    } catch (const DriverError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return message_of<DriverError>([&] { in(scene); }, "accepted");
   }
 
   DriveTrain robot_ = read_drive_train(diffbot_urdf(), {});

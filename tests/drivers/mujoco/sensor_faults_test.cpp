@@ -85,12 +85,6 @@ TEST_F(SensorFaultsTest, AnEncoderThatIsOffHasNoNumber) {
   }
 }
 
-TEST_F(SensorFaultsTest, TheRightEncoderIsTheRightOne) {
-  step(FaultComponent::kEncoder, FaultKind::kOff, kOnset, 1);
-  EXPECT_TRUE(std::isnan(right().position));
-  EXPECT_EQ(left().position, left_at(kOnset).position);
-}
-
 TEST_F(SensorFaultsTest, AStuckEncoderStandsAtItsAngle) {
   for (std::uint64_t cycle = kOnset; cycle < kOnset + 50; ++cycle) {
     step(FaultComponent::kEncoder, FaultKind::kStuck, cycle);
@@ -135,32 +129,8 @@ TEST_F(SensorFaultsTest, ASlowEncoderIsSampledEveryTenthCycle) {
   }
 }
 
-TEST_F(SensorFaultsTest, ADelayedEncoderIsTenCyclesLate) {
-  for (std::uint64_t i = 0; i < 50; ++i) {
-    step(FaultComponent::kEncoder, FaultKind::kDelayed, kOnset + i);
-    EXPECT_EQ(left().position, left_at(kOnset + (i < kFaultCycles ? 0 : i - kFaultCycles)).position) << i;
-    expect_rest_healthy(kOnset + i);
-  }
-}
-
-TEST_F(SensorFaultsTest, AnIntermittentEncoderIsThereAndNot) {
-  int present = 0, gone = 0;
-  for (std::uint64_t cycle = kOnset; cycle < kOnset + 500; ++cycle) {
-    step(FaultComponent::kEncoder, FaultKind::kIntermittent, cycle);
-    if (std::isnan(left().position)) {
-      EXPECT_TRUE(std::isnan(left().velocity));
-      ++gone;
-    } else {
-      EXPECT_EQ(left().position, left_at(cycle).position);
-      ++present;
-    }
-  }
-  EXPECT_GT(present, 50);
-  EXPECT_GT(gone, 50);
-}
-
 TEST_F(SensorFaultsTest, IsHealthyAgainAfterOk) {
-  for (std::size_t component = 0; component <= static_cast<std::size_t>(FaultComponent::kAccelerometer); ++component) {
+  for (std::size_t component = 0; component < kFaultComponents; ++component) {
     for (std::size_t kind = 1; kind < kFaultKinds; ++kind) {
       step(static_cast<FaultComponent>(component), static_cast<FaultKind>(kind), 500);
       step(static_cast<FaultComponent>(component), FaultKind::kOk, 501);
@@ -239,24 +209,6 @@ TEST_P(InertialFaults, SlowIsSampledEveryTenthCycle) {
   }
 }
 
-TEST_P(InertialFaults, DelayedIsTenCyclesLate) {
-  for (std::uint64_t i = 0; i < 50; ++i) {
-    inject(FaultKind::kDelayed, kOnset + i);
-    EXPECT_EQ(axes(), axes_at(kOnset + (i < kFaultCycles ? 0 : i - kFaultCycles)));
-  }
-}
-
-TEST_P(InertialFaults, IntermittentIsValidAndNot) {
-  int valid = 0, lost = 0;
-  for (std::uint64_t cycle = kOnset; cycle < kOnset + 500; ++cycle) {
-    inject(FaultKind::kIntermittent, cycle);
-    (lost_ == 0 ? valid : lost) += 1;
-    EXPECT_EQ(std::isnan(axes()[0]), lost_ != 0);
-  }
-  EXPECT_GT(valid, 50);
-  EXPECT_GT(lost, 50);
-}
-
 INSTANTIATE_TEST_SUITE_P(Devices, InertialFaults,
                          testing::Values(FaultComponent::kGyro, FaultComponent::kAccelerometer),
                          [](const auto& device) { return std::string(name_of(device.param)); });
@@ -320,21 +272,6 @@ TEST_F(BatteryFaults, SlowIsSampledEveryTenthCycle) {
   }
 }
 
-TEST_F(BatteryFaults, DelayedIsTenCyclesLate) {
-  for (std::uint64_t i = 0; i < 50; ++i) {
-    inject(FaultKind::kDelayed, kOnset + i);
-    EXPECT_EQ(battery().voltage, battery_at(kOnset + (i < kFaultCycles ? 0 : i - kFaultCycles)).voltage);
-  }
-}
-
-TEST_F(BatteryFaults, AreOverAfterOk) {
-  for (std::size_t kind = 1; kind < kFaultKinds; ++kind) {
-    step(FaultComponent::kBattery, static_cast<FaultKind>(kind), 500);
-    step(FaultComponent::kBattery, FaultKind::kOk, 501);
-    expect_rest_healthy(501);
-  }
-}
-
 class ButtonFaults : public SensorFaultsTest {
  protected:
   /// Number of 500 cycles in which the button is pressed.
@@ -364,12 +301,6 @@ TEST_F(ButtonFaults, PressAndReleaseItAtRandom) {
     EXPECT_GT(count, 50);
     EXPECT_LT(count, 450);
   }
-}
-
-TEST_F(ButtonFaults, ReleaseItWhenTheyAreOver) {
-  pressed(FaultKind::kStuck);
-  step(FaultComponent::kEStopButton, FaultKind::kOk, 700);
-  EXPECT_EQ(seen_.digital_inputs, 0u);
 }
 
 TEST_F(SensorFaultsTest, NeverAllocate) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "log/bag/read_bag.h"
+#include "support/message_of.h"
 
 namespace robot_control {
 namespace {
@@ -101,12 +102,7 @@ TEST(AHeader, IsReadFieldByField) {
 
 TEST(AHeader, WithABrokenFieldIsRefusedAtItsByte) {
   const auto said = [](const std::string& bytes) -> std::string {
-    try {
-      const BagHeader header(bytes, {.offset = 100});
-      return "";
-    } catch (const BagError& error) {
-      return error.what();
-    }
+    return message_of<BagError>([&] { const BagHeader header(bytes, {.offset = 100}); });
   };
   const std::string sound = bag_field("op", "\x02");  // 8 bytes
   EXPECT_THAT(said(sound + "xyz"), HasSubstr("byte 108, field field_len: the header ends within its 4 bytes"));

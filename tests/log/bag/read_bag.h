@@ -10,6 +10,7 @@
 
 #include "log/bag/bag_reader.h"
 #include "log/bag/made_bag.h"
+#include "support/message_of.h"
 
 namespace robot_control {
 
@@ -51,12 +52,7 @@ inline std::vector<std::vector<MadeMessage>> read_all(BagReader& bag) {
 /// The message of the refusal; empty if the bag is accepted.
 inline std::string refusal(const std::string& bytes) {
   const BagOfBytes file(bytes);
-  try {
-    const BagReader bag(file.path());
-  } catch (const BagError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<BagError>([&] { const BagReader bag(file.path()); });
 }
 
 }  // namespace robot_control

@@ -53,35 +53,6 @@ class ReplayedDrive : public testing::Test {
   Recording recording;
 };
 
-TEST_F(ReplayedDrive, IsComputedAgainBitForBit) {
-  drive(3 * kSecond);
-  expect_all_compared();
-}
-
-TEST_F(ReplayedDrive, WithAnEmergencyStopAndItsReset) {
-  drive(4 * kSecond, [&](std::uint64_t k) {
-    if (k == 1000) loop.e_stop();
-    if (k >= 1000 && k < 3000) loop.command({});
-    if (k == 2500) loop.e_stop_reset();
-  });
-  expect_all_compared();
-}
-
-TEST_F(ReplayedDrive, WithLiveTuning) {
-  drive(2 * kSecond, [&](std::uint64_t k) {
-    if (k == 700) loop.set_parameters("{max_linear_speed: 0.2, pid_kp: 1.5}");
-  });
-  EXPECT_EQ(row(700).controller.calls.tuned, 1u);
-  expect_all_compared();
-}
-
-TEST_F(ReplayedDrive, WithANewRun) {
-  drive(2 * kSecond, [&](std::uint64_t k) {
-    if (k == 900) loop.reset();
-  });
-  expect_all_compared();
-}
-
 TEST_F(ReplayedDrive, WithEveryFaultOfEveryComponent) {
   for (const std::string component : {"left_encoder", "gyro", "accelerometer", "controller", "estimator", "monitor"}) {
     for (const std::string kind : {"off", "stuck", "garbage", "wrong", "slow", "delayed", "intermittent"}) {

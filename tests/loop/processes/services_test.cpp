@@ -20,14 +20,14 @@ namespace {
 constexpr double kServicePatience = 120;         // s
 constexpr std::int64_t kSecond = 1'000'000'000;  // ns
 
-constexpr const char* kCurve = "1,0.5,0.2,\n1000,0.5,0.2,\n2000,0.5,0.2,\n3000,0.5,0.2,\n";
+constexpr const char* kCurve = "cycle,linear,angular,event\n1,0.5,0.2,\n1000,0.5,0.2,\n2000,0.5,0.2,\n3000,0.5,0.2,\n";
 
 /// Drives a curve in every run.
 class Services : public ::testing::Test {
  protected:
   Services() : folder_(std::filesystem::temp_directory_path() / ("services-" + std::to_string(getpid()))) {
     std::filesystem::create_directories(folder_);
-    set_script(kCurve);
+    std::ofstream(folder_ / "script.csv") << kCurve;
     parameters_ = read_parameters(std::string(PROJECT_DIRECTORY) + "/config/robot_params.yaml",
                                   {{"robot.command_script", (folder_ / "script.csv").string(), "test"}});
     parameters_.loop.wait_for_nodes = true;
@@ -37,11 +37,6 @@ class Services : public ::testing::Test {
     robot_ = read_drive_train(load_description(parameters_.urdf), parameters_.robot);
   }
   ~Services() override { std::filesystem::remove_all(folder_); }
-
-  void set_script(const std::string& rows) {
-    std::ofstream script(folder_ / "script.csv");
-    script << "cycle,linear,angular,event\n" << rows;
-  }
 
   /// run.bag of four processes under these hands.
   void run_processes(ClockMode clock, const FourNodes::Operator& operate) {
@@ -97,22 +92,6 @@ TEST_F(Services, InLockstepStepsAndResetsGiveTheNumbersOfTheClosedLoop) {
   loop.reset();
   steps(kFirst);
   EXPECT_EQ(LogTable::difference(four, one), "");
-}
-
-TEST_F(Services, InLockstepAStoppedRobotStaysStoppedInTheNextRun) {
-  set_script("1,0.5,0.2,\n1000,0.5,0.2,\n1200,,,e_stop\n");
-  const LogTable rows = four_processes(ClockMode::kLockstep, [](DriverProcess& driver) {
-    step_from_the_beginning(*driver.services(), 1210);
-    EXPECT_TRUE(driver.services()->reset().success);
-    EXPECT_TRUE(driver.services()->step(1100).success);
-  });
-  ASSERT_EQ(rows.rows(), 1210u + 1100u);
-  EXPECT_GT(rows.at(1199, "truth_linear"), 0.4);
-  for (std::size_t row = 1210; row < rows.rows(); ++row) {
-    ASSERT_EQ(rows.at(row, "run"), 1);
-    ASSERT_EQ(rows.at(row, "supervisor_state"), static_cast<double>(SupervisorState::kStopped)) << row;
-    ASSERT_EQ(rows.at(row, "gate_verdict"), static_cast<double>(GateVerdict::kBrake)) << row;
-  }
 }
 
 /// Motion begins again from rest: nothing of the first run's 0.5 m/s is left in pose, command or torque.

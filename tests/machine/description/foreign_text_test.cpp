@@ -7,6 +7,7 @@
 #include "machine/description/robot_description.h"
 #include "machine/description/urdf_document.h"
 #include "machine/description/xacro.h"
+#include "support/message_of.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
@@ -23,21 +24,17 @@ const std::string kPointer =
     "size 12345\n";
 
 template <typename Action>
-std::string message_of(const Action& action) {
-  try {
-    action();
-  } catch (const RobotError& error) {
-    EXPECT_LT(std::string(error.what()).size(), kShort);
-    return error.what();
-  }
-  return "accepted";
+std::string short_message_of(const Action& action) {
+  const std::string message = message_of<RobotError>(action, "accepted");
+  EXPECT_LT(message.size(), kShort);
+  return message;
 }
 
 class ForeignText : public testing::Test {
  protected:
   std::string reading(const std::string& name, const std::string& text) {
     const std::string path = folder_.write(name, text);
-    return message_of([&] { parse_urdf(load_description(path)); });
+    return short_message_of([&] { parse_urdf(load_description(path)); });
   }
   TemporaryFolder folder_;
 };
@@ -96,7 +93,7 @@ TEST_F(ForeignText, PointersOfGitLfsAreNamed) {
   }
   for (const std::string name : {"m.stl", "m.STL", "m.obj", "m.dae"}) {
     const std::string path = folder_.write(name, kPointer);
-    EXPECT_THAT(message_of([&] { read_mesh(path); }),
+    EXPECT_THAT(short_message_of([&] { read_mesh(path); }),
                 AllOf(HasSubstr(name), HasSubstr("git-LFS pointer"), HasSubstr("git lfs pull")))
         << name;
   }
@@ -141,7 +138,7 @@ TEST_F(CyclicXacro, IncludesInACircleAreNamed) {
                     kHead + "<xacro:include filename=\"" + next + "\"/></robot>");
     }
     const std::string path = folder_.path() / "part0.xacro";
-    EXPECT_THAT(message_of([&] { expand_xacro(path); }),
+    EXPECT_THAT(short_message_of([&] { expand_xacro(path); }),
                 AllOf(HasSubstr("part0.xacro"), HasSubstr("part" + std::to_string(length - 1) + ".xacro"),
                       HasSubstr("circle")));
   }
@@ -178,7 +175,7 @@ TEST_F(CyclicXacro, EntitiesThatExpandWithoutEndAreNamed) {
 
 TEST(LongMessages, AreCutInTheMiddleToTwoKilobytes) {
   const std::string message =
-      message_of([] { refuse("r.urdf", std::string(5000, 'e'), std::string(100000, 'w'), "Mend it"); });
+      short_message_of([] { refuse("r.urdf", std::string(5000, 'e'), std::string(100000, 'w'), "Mend it"); });
   EXPECT_THAT(message, AllOf(HasSubstr("r.urdf"), HasSubstr("Mend it."), HasSubstr("…")));
 }
 

@@ -9,6 +9,7 @@
 
 #include "machine/description/robot_description.h"
 #include "mesh_texts.h"
+#include "support/message_of.h"
 #include "support/quiet_refusal.h"
 #include "support/temporary_folder.h"
 
@@ -122,12 +123,8 @@ TEST_F(Mesh, NumbersThatADoubleCannotHoldAreZeroOrInfinity) {
 }
 
 TEST_F(Mesh, AbsentFileIsRefused) {
-  try {
-    read_mesh(folder_.path() / "nowhere.stl");
-    FAIL();
-  } catch (const RobotError& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("nowhere.stl"), HasSubstr("no such file")));
-  }
+  const std::string message = message_of<RobotError>([&] { read_mesh(folder_.path() / "nowhere.stl"); });
+  EXPECT_THAT(message, AllOf(HasSubstr("nowhere.stl"), HasSubstr("no such file")));
 }
 
 TEST_F(Mesh, EmptyFileIsRefused) {

@@ -12,6 +12,7 @@
 #include "machine/legs/legs_corpus.h"
 #include "machine/legs/lying_posture.h"
 #include "machine/quadruped_urdf.h"
+#include "support/message_of.h"
 
 namespace robot_control {
 namespace {
@@ -157,12 +158,7 @@ TEST(LegModel, LiesOnItsBodyAlone) {
 class LegRefusals : public testing::Test {
  protected:
   std::string refusal(const std::string& content, const LegParameters& legs = {}) {
-    try {
-      read_legs(robot_of(content), {}, legs);
-    } catch (const RobotError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return message_of<RobotError>([&] { read_legs(robot_of(content), {}, legs); }, "accepted");
   }
   static std::string without(std::string text, const std::string& part) { return replaced(std::move(text), part, ""); }
   static std::string replaced(std::string text, const std::string& part, const std::string& by) {

@@ -49,7 +49,7 @@ export function release() {
 
 /** True if this page commands; else the page says what is missing. */
 function mayDrive() {
-  if (!commands) document.getElementById("hold").textContent = "Take the command first.";
+  if (!commands) document.getElementById("dead-man").textContent = "Take the command first.";
   return commands;
 }
 
@@ -88,8 +88,8 @@ for (const lost of ["blur", "pagehide", "freeze", "gamepaddisconnected"]) addEve
 for (const lost of ["freeze", "visibilitychange"]) document.addEventListener(lost, release);
 addEventListener("contextmenu", (event) => { if (isHeld) { event.preventDefault(); release(); } });
 on("closed", () => { commands = false; release(); });
-on("desk", (desk) => {
-  const mine = desk.commander === desk.you;
+on("authority", (authority) => {
+  const mine = authority.commander === authority.you;
   if (mine !== commands) { commands = mine; release(); }
   document.body.dataset.commands = String(mine);
 });

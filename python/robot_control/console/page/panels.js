@@ -60,18 +60,18 @@ on("slow", (slow) => {
   robotBanner = master + (slow.missing.length ? `Not running: ${slow.missing.join(", ")}.` : "");
 });
 
-on("desk", (desk) => {
-  const holder = desk.pages.find((page) => page.number === desk.commander), { link } = desk;
+on("authority", (authority) => {
+  const commander = authority.pages.find((page) => page.number === authority.commander), { link } = authority;
   const ms = (value) => value === null ? "–" : `${number(1000 * value, 0)} ms`;
-  const other = holder ? `${holder.name} (page ${holder.number}) commands.` : "No page commands.";
-  put("who", desk.commander === desk.you ? "This page commands." : other);
-  put("hold", desk.hold);
-  list("pages", desk.pages.map(({ name, number: page, role }) =>
-    [name, `page ${page}`, role, page === desk.you && "this one", page === desk.commander && "commands"]
+  const other = commander ? `${commander.name} (page ${commander.number}) commands.` : "No page commands.";
+  put("who", authority.commander === authority.you ? "This page commands." : other);
+  put("dead-man", authority.dead_man);
+  list("pages", authority.pages.map(({ name, number: page, role }) =>
+    [name, `page ${page}`, role, page === authority.you && "this one", page === authority.commander && "commands"]
       .filter(Boolean).join(", ")));
   const counts = `gaps: ${link.gaps}, late: ${link.late}`;
   put("link", `${ms(link.last)}, 95 % within ${ms(link.p95)}; ${counts}; allows ${number(link.cap)} m/s`);
-  put("role", `role: ${desk.role}`);
+  put("role", `role: ${authority.role}`);
 });
 
 setInterval(() => {
@@ -80,7 +80,7 @@ setInterval(() => {
   const text = dead ? lost : robotBanner.trim();
   document.body.dataset.link = dead ? "silent" : "open";
   put("banner", text);
-  if (dead) { put("who", "No connection."); put("hold", ""); }
+  if (dead) { put("who", "No connection."); put("dead-man", ""); }
   by("banner").hidden = !text;
   for (const element of document.querySelectorAll("[data-topic]")) {
     const age = ages[element.dataset.topic];

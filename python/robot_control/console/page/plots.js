@@ -50,7 +50,7 @@ const error = new Plot("plot-error", "wheel speed error, rad/s"), latency = new 
 const all = [speed, torque, error, latency], times = [];  // ms of the last redraws
 let last = -Infinity, drawn = -Infinity, link = {}, turn = 0;
 
-on("desk", (desk) => { link = desk.link; });
+on("authority", (authority) => { link = authority.link; });
 on("fast", (frame) => {
   const now = performance.now(), ms = (value) => value === null ? null : 1000 * value;
   const wheels = (of) => Object.fromEntries((frame.wheels ?? []).map((wheel) => [wheel.name, wheel[of]]));

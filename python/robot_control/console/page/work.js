@@ -4,7 +4,7 @@ import { release } from "/drive.js";
 import { by, list, number } from "/panels.js";
 
 const messages = [];
-let desk = null, robot = null, key = "";
+let authority = null, robot = null, key = "";
 
 function say(text) {
   messages.unshift(`${new Date().toLocaleTimeString()} ${text}`);
@@ -41,7 +41,7 @@ const ARGUMENTS = {
 
 for (const button of document.querySelectorAll("[data-call]")) {
   button.addEventListener("click", async () => {
-    const name = button.dataset.call, why = desk?.against[name];
+    const name = button.dataset.call, why = authority?.against[name];
     if (why) return say(`${button.textContent}: ${why}`);
     const args = ARGUMENTS[name] ? await ARGUMENTS[name]() : {};
     if (args === null) return say(`${button.textContent}: nothing was chosen`);
@@ -59,18 +59,18 @@ on("slow", (slow) => {
   by("pause").textContent = slow.paused ? "Go on" : "Pause";
 });
 
-on("desk", (next) => {
-  const first = !desk, mine = next.commander === next.you, taken = next.commander !== null && !mine;
-  desk = next;
+on("authority", (next) => {
+  const first = !authority, mine = next.commander === next.you, taken = next.commander !== null && !mine;
+  authority = next;
   for (const button of document.querySelectorAll("[data-call]")) {
-    button.title = desk.against[button.dataset.call];
+    button.title = authority.against[button.dataset.call];
     button.setAttribute("aria-disabled", String(Boolean(button.title)));
   }
   by("take").hidden = mine;
   by("take").textContent = taken ? "Take it away" : "Take the command";
-  by("take").setAttribute("aria-disabled", String(desk.role === "watch" || (taken && desk.role !== "maintain")));
+  by("take").setAttribute("aria-disabled", String(authority.role === "watch" || (taken && authority.role !== "maintain")));
   by("give").hidden = !mine;
-  const drivers = desk.pages.filter((page) => page.number !== desk.you && page.role !== "watch");
+  const drivers = authority.pages.filter((page) => page.number !== authority.you && page.role !== "watch");
   const others = drivers.map((page) => `${page.number} ${page.name}`);
   by("hand-over").hidden = !mine || !others.length;
   if (others.join() !== Array.from(by("other").options, (option) => option.text).join()) {
@@ -78,13 +78,13 @@ on("desk", (next) => {
   }
   for (const [id, at] of [["linear", 0], ["angular", 1]]) {
     const edited = document.activeElement === by(id);
-    if (first || (!edited && value(id) !== desk.chosen[at])) by(id).value = number(desk.chosen[at]);
-    by(id).max = desk.limits[at];
+    if (first || (!edited && value(id) !== authority.chosen[at])) by(id).value = number(authority.chosen[at]);
+    by(id).max = authority.limits[at];
   }
-  by("heartbeat").checked = desk.heartbeat;
+  by("heartbeat").checked = authority.heartbeat;
 });
 
-by("take").addEventListener("click", () => send({ type: "take", force: desk.commander !== null }));
+by("take").addEventListener("click", () => send({ type: "take", force: authority.commander !== null }));
 by("give").addEventListener("click", () => send({ type: "give_back" }));
 by("hand").addEventListener("click", () => send({ type: "hand_over", to: Number(by("other").value) }));
 by("heartbeat").addEventListener("change", () => send({ type: "heartbeat", on: by("heartbeat").checked }));

@@ -351,17 +351,17 @@ std::set<std::string> unsaid_axes(const TiXmlElement& robot) {
 
 std::map<std::string, std::string> turned_origins(const TiXmlElement& robot) {
   std::map<std::string, std::string> origins;
-  const auto look = [&](const TiXmlElement& owner, const std::string& words) {
+  const auto collect = [&](const TiXmlElement& owner, const std::string& words) {
     const TiXmlElement* origin = owner.FirstChildElement("origin");
     const std::string rpy = origin == nullptr ? "" : attribute(*origin, "rpy");
     if (largest_of(rpy) > 2 * M_PI + kRoundedTurn) origins.emplace(words, rpy);
   };
   for (const TiXmlElement* element = robot.FirstChildElement(); element != nullptr;
        element = element->NextSiblingElement()) {
-    if (element->ValueStr() == "joint") look(*element, joint_element(attribute(*element, "name")));
+    if (element->ValueStr() == "joint") collect(*element, joint_element(attribute(*element, "name")));
     if (element->ValueStr() != "link") continue;
     for (const TiXmlElement* part = element->FirstChildElement(); part != nullptr; part = part->NextSiblingElement()) {
-      look(*part, link_element(attribute(*element, "name")) + "<" + part->ValueStr() + ">");
+      collect(*part, link_element(attribute(*element, "name")) + "<" + part->ValueStr() + ">");
     }
   }
   return origins;

@@ -1,6 +1,6 @@
 """Connections that have not shown a login yet are few, and live briefly.
 
-If there are more than MAX_STRANGERS of them, the oldest are closed. So strangers that send slowly, or nothing, keep no
+If there are more than MAX_PENDING of them, the oldest are closed. So connections that send slowly, or nothing, keep no
 user out.
 """
 
@@ -10,12 +10,12 @@ from collections.abc import Sequence
 
 from aiohttp import web
 
-MAX_STRANGERS = 100
+MAX_PENDING = 100
 PATIENCE = 10.0
 """s"""
 
 
-class Strangers:
+class PendingConnections:
     """The connections that have shown no login. It reads no clock: time is an argument, s."""
 
     def __init__(self) -> None:
@@ -31,6 +31,6 @@ class Strangers:
         self._known.intersection_update(connections)
         self._since = {each: self._since.get(each, now) for each in connections if each not in self._known}
         for position, (each, since) in enumerate(self._since.items()):
-            crowded = position < len(self._since) - MAX_STRANGERS
+            crowded = position < len(self._since) - MAX_PENDING
             if (crowded or now - since > PATIENCE) and each.transport is not None:
                 each.transport.abort()

@@ -1,4 +1,6 @@
-"""One desk, many pages: who commands, and what. It reads no clock: time is an argument, s.
+"""The authority to command: which page has it, and with which command.
+
+It reads no clock: time is an argument, s.
 
 At most one page commands. It takes the command where it is free. It gives it back, hands it over, or loses it by its
 end. A page of the role `maintain` may take it away. Every change ends the motion, for both pages.
@@ -15,7 +17,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 from robot_control.common.command import Command
-from robot_control.console.hold import Drive, Hold
+from robot_control.console.dead_man import DeadMan, Drive
 from robot_control.console.settings import Settings
 from robot_control.pad.law import PadParameters
 from robot_control.teleop.operator import ZEROS, Limits
@@ -46,7 +48,7 @@ class Page:
     number: int
     name: str  # of the user
     role: Role
-    hold: Hold
+    dead_man: DeadMan
     chosen: Command = CHOSEN
     heartbeat: bool = False
     cap: float = 0.0  # m/s, of its link
@@ -55,8 +57,8 @@ class Page:
         return f"{self.name} (page {self.number})"
 
 
-class Desk:
-    """All pages, and the one that commands."""
+class Authority:
+    """All pages, and the one that has the authority to command."""
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
@@ -68,7 +70,7 @@ class Desk:
     def join(self, name: str, role: Role) -> Page:
         """Adds a page."""
         self._last_number += 1
-        page = Page(self._last_number, name, role, Hold(self._settings))
+        page = Page(self._last_number, name, role, DeadMan(self._settings))
         self.pages[page.number] = page
         return page
 
@@ -107,34 +109,34 @@ class Desk:
             raise RefusedError(f"{self.commander or 'no page'} commands: take the command first")
 
     def receive(self, page: Page, drive: Drive, now: float) -> None:
-        """Receives what a page holds; without the command it moves nothing. Raises RefusedError."""
+        """Receives the state of a page; without the command it moves nothing. Raises RefusedError."""
         if self.commander is page:
-            page.hold.receive(drive, now)
+            page.dead_man.receive(drive, now)
         elif drive.held:
             raise RefusedError("this page does not command: take the command first")
 
     def interrupt(self, now: float, why: str) -> None:
         """Ends the motion after a stop, or after a pause of this program (interruptions.py)."""
         for page in self.pages.values():
-            page.hold.interrupt(now, why)
+            page.dead_man.interrupt(now, why)
 
     def permit(self, drivable: bool | None) -> None:  # noqa: FBT001 (a three-valued state)
         """Sets whether the robot may drive by its safety monitor; None if there is no message of it."""
         for page in self.pages.values():
-            page.hold.pad.permit(drivable)
+            page.dead_man.pad.permit(drivable)
 
     def refuse(self, now: float) -> None:
         """Notes that the controller refuses motion until it has received a zero."""
         for page in self.pages.values():
-            page.hold.pad.refuse(now)
+            page.dead_man.pad.refuse(now)
         self._zeros_until = now + ZEROS
 
     def command(self, limits: Limits, now: float) -> tuple[Command | None, float]:
         """The command to send now, or None if nothing is sent; and its age, s."""
         for each in self.pages.values():
-            each.cap = each.hold.cap.step(each.hold.round_trips.percentile95(now), now)
+            each.cap = each.dead_man.cap.step(each.dead_man.round_trips.percentile95(now), now)
         page = self.commander
-        share = None if page is None else page.hold.share(now)
+        share = None if page is None else page.dead_man.share(now)
         if page is None or share is None or share == Command():
             nothing = share is None and now >= self._zeros_until
             return None if nothing else Command(), 0.0
@@ -142,11 +144,11 @@ class Desk:
         linear, angular = min(page.chosen.linear, limits.linear), min(page.chosen.angular, limits.angular)
         factor = min(1.0, page.cap / linear) if linear > 0 else 0.0
         forward = max(share.linear * linear * factor, -limits.reverse)
-        return Command(forward, share.angular * angular * factor), max(0.0, now - page.hold.stamp)
+        return Command(forward, share.angular * angular * factor), max(0.0, now - page.dead_man.stamp)
 
     def _give(self, page: Page | None, now: float, why: str) -> None:
         for each in (self.commander, page):
             if each is not None:
-                each.hold.interrupt(now, why)
+                each.dead_man.interrupt(now, why)
         self.commander = page
         self._zeros_until = now + ZEROS

@@ -31,7 +31,7 @@ inline const char* name_of(LoopNode node) {
 
 /// It lives in memory that the forked nodes share with the test. Counters count from the start of the receiving node,
 /// like those of a ROS node.
-struct ControlDesk {
+struct SharedControls {
   LatestValue<VelocityCommand> command;       ///< to the controller
   LatestValue<OperatorInput> operator_input;  ///< to the monitor
   /// Per node, as of its last look: one bit for each node that it misses.

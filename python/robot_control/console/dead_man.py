@@ -1,13 +1,13 @@
-"""The dead-man law of a link: what one page holds, by keys, stick or pad. It reads no clock: time is an argument, s.
+"""The dead-man law of a link: the input of one page, by keys, stick or pad. It reads no clock: time is an argument, s.
 
 The page sends its state every 50 ms while it commands, held or not. The law of pad.py decides what that state moves.
 Motion counts while it is held, was seen released before, and no stop or pause lies between (pad/law.py).
 
-    number     rises by each message; one that does not rise is a replay and does not count
-    excess     above link_gap: the message is late and is dropped
-    stamp      receipt − excess, of the newest message that counts
-    hold       stamp older than that: zero, until the next message
-    link_gap   stamp older than that: all ends, until a release that comes SETTLING after the gap
+    number        rises by each message; one that does not rise is a replay and does not count
+    excess        above link_gap: the message is late and is dropped
+    stamp         receipt − excess, of the newest message that counts
+    command_life  stamp older than that: zero, until the next message
+    link_gap      stamp older than that: all ends, until a release that comes SETTLING after the gap
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Drive:
     angular: float = 0.0  # the same, to the left
 
 
-class Hold:
+class DeadMan:
     """The state of one page."""
 
     def __init__(self, settings: Settings) -> None:
@@ -76,7 +76,7 @@ class Hold:
         """Shares of the chosen speeds to command now; None if nothing is sent."""
         self._notice_gap(now)
         share = self.pad.command(now)
-        return share if share is None or now - self.stamp <= self._settings.hold else Command()
+        return share if share is None or now - self.stamp <= self._settings.command_life else Command()
 
     def state(self, now: float) -> str:
         """The state as text; empty if the page may drive."""

@@ -15,7 +15,7 @@ TIME = 20.0
 PROGRAM = "import sys; from robot_control.doctor.main import main; sys.exit(main())"
 
 
-class Examination:
+class DoctorRun:
     """One examination of this machine at a time."""
 
     def __init__(self) -> None:

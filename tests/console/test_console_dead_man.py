@@ -2,8 +2,8 @@
 
 import pytest
 from robot_control.common.command import Command
-from robot_control.console.desk import Desk, RefusedError, Role
-from robot_control.console.hold import Drive
+from robot_control.console.authority import Authority, RefusedError, Role
+from robot_control.console.dead_man import Drive
 from robot_control.console.settings import Settings
 from robot_control.pad.law import SETTLING, PadParameters
 from robot_control.teleop.operator import ZEROS, Limits
@@ -16,20 +16,20 @@ LIMITS = Limits(linear=1.0, angular=2.0, reverse=0.3)
 class Page:
     """A page with a perfect link, whose clock is ahead by 1000 s."""
 
-    def __init__(self, desk, role=Role.OPERATE, name="anna"):
-        self.desk, self.page, self.now, self.number = desk, desk.join(name, role), 0.0, 0
-        self.page.hold.pad.permit(True)
+    def __init__(self, authority, role=Role.OPERATE, name="anna"):
+        self.authority, self.page, self.now, self.number = authority, authority.join(name, role), 0.0, 0
+        self.page.dead_man.pad.permit(True)
         self.held, self.linear, self.angular = False, 0.0, 0.0
 
     def send(self, delay=0.0):
         self.number += 1
         drive = Drive(self.number, self.now - delay + 1000.0, self.held, self.linear, self.angular)
-        self.desk.receive(self.page, drive, self.now)
+        self.authority.receive(self.page, drive, self.now)
 
     def answer_pings(self, round_trip=0.0):
         for number in range(200):
-            self.page.hold.round_trips.ping(str(number), self.now)
-            self.page.hold.round_trips.pong(str(number), self.now + round_trip)
+            self.page.dead_man.round_trips.ping(str(number), self.now)
+            self.page.dead_man.round_trips.pong(str(number), self.now + round_trip)
 
     def run(self, seconds, send=True):
         """Commands of every pass."""
@@ -38,7 +38,7 @@ class Page:
         while self.now < end - 1e-9:
             if send:
                 self.send()
-            commands.append(self.desk.command(LIMITS, self.now)[0])
+            commands.append(self.authority.command(LIMITS, self.now)[0])
             self.now += PERIOD
         return commands
 
@@ -52,8 +52,8 @@ class Page:
 @pytest.fixture
 def page():
     """Commands, has released everything, and its link allows the chosen speed."""
-    made = Page(Desk(SETTINGS))
-    made.desk.take(made.page, made.now)
+    made = Page(Authority(SETTINGS))
+    made.authority.take(made.page, made.now)
     made.answer_pings()
     made.run(3.0)
     return made
@@ -88,10 +88,10 @@ def test_a_gap_is_zero_within_link_gap_and_a_pass_and_needs_a_release(page, sile
     page.press()
     page.run(1.0)
     commands = page.run(silence, send=False)
-    assert len(moves(commands)) * PERIOD <= SETTINGS.hold + 1e-9
-    assert page.page.hold.gaps == 1
+    assert len(moves(commands)) * PERIOD <= SETTINGS.command_life + 1e-9
+    assert page.page.dead_man.gaps == 1
     assert not moves(page.run(5.0)), "it is still held"
-    assert "release" in page.page.hold.state(page.now)
+    assert "release" in page.page.dead_man.state(page.now)
     page.release()
     page.run(SETTLING + 0.1)
     page.press()
@@ -101,7 +101,7 @@ def test_a_gap_is_zero_within_link_gap_and_a_pass_and_needs_a_release(page, sile
 def test_a_shorter_gap_is_none(page):
     page.press()
     page.run(1.0)
-    assert len(moves(page.run(0.25, send=False))) * PERIOD <= SETTINGS.hold + 1e-9
+    assert len(moves(page.run(0.25, send=False))) * PERIOD <= SETTINGS.command_life + 1e-9
     assert len(moves(page.run(1.0))) == 20
 
 
@@ -113,7 +113,7 @@ def test_messages_that_waited_in_a_stalled_link_move_nothing(page):
     for number in range(40):
         page.held = number > 20
         page.send(delay=2.0 - number * PERIOD)
-    assert page.page.hold.late > 30
+    assert page.page.dead_man.late > 30
     page.press()
     assert not moves(page.run(3.0))
 
@@ -122,7 +122,7 @@ def test_the_stamp_is_the_receipt_less_what_the_message_took_longer(page):
     page.press()
     page.run(1.0)
     page.send(delay=0.12)
-    command, age = page.desk.command(LIMITS, page.now)
+    command, age = page.authority.command(LIMITS, page.now)
     assert moves([command])
     assert age == pytest.approx(0.12)
 
@@ -132,7 +132,7 @@ def test_a_message_moves_the_robot_for_a_time_since_its_sending_not_since_its_re
     page.run(1.0)
     page.send(delay=0.1)
     page.now += 0.1
-    assert not moves([page.desk.command(LIMITS, page.now)[0]])
+    assert not moves([page.authority.command(LIMITS, page.now)[0]])
 
 
 @pytest.mark.parametrize("step", [0, -5])
@@ -140,8 +140,8 @@ def test_a_replayed_message_does_not_count(page, step):
     page.press()
     page.number -= 1 - step
     page.send()
-    assert page.page.hold.replayed == 1
-    assert not moves([page.desk.command(LIMITS, page.now)[0]])
+    assert page.page.dead_man.replayed == 1
+    assert not moves([page.authority.command(LIMITS, page.now)[0]])
 
 
 @pytest.mark.parametrize("event", ["interrupt", "permit", "refuse"])
@@ -149,13 +149,13 @@ def test_after_a_stop_nothing_moves_before_a_release_and_a_new_press(page, event
     page.press()
     page.run(1.0)
     if event == "interrupt":
-        page.desk.interrupt(page.now, "a stop")
+        page.authority.interrupt(page.now, "a stop")
     elif event == "refuse":
-        page.desk.refuse(page.now)
+        page.authority.refuse(page.now)
     else:
-        page.desk.permit(False)
+        page.authority.permit(False)
         page.run(0.2)
-        page.desk.permit(True)
+        page.authority.permit(True)
     assert not moves(page.run(2.0))
     page.release()
     page.run(1.0)
@@ -166,11 +166,11 @@ def test_after_a_stop_nothing_moves_before_a_release_and_a_new_press(page, event
 def test_a_reloaded_page_whose_key_is_still_held_moves_nothing(page):
     page.press()
     page.run(1.0)
-    page.desk.leave(page.page, page.now)
-    again = Page(page.desk)
+    page.authority.leave(page.page, page.now)
+    again = Page(page.authority)
     again.now = page.now
     again.answer_pings()
-    again.desk.take(again.page, again.now)
+    again.authority.take(again.page, again.now)
     again.press()
     assert not moves(again.run(3.0))
 
@@ -178,8 +178,8 @@ def test_a_reloaded_page_whose_key_is_still_held_moves_nothing(page):
 def test_a_page_that_ends_is_zero_at_once(page):
     page.press()
     page.run(1.0)
-    page.desk.leave(page.page, page.now)
-    assert page.desk.command(LIMITS, page.now)[0] == Command()
+    page.authority.leave(page.page, page.now)
+    assert page.authority.command(LIMITS, page.now)[0] == Command()
 
 
 def test_a_hold_of_max_hold_ends(page):
@@ -189,12 +189,12 @@ def test_a_hold_of_max_hold_ends(page):
 
 
 def test_one_page_commands_and_another_moves_nothing(page):
-    other = Page(page.desk, name="berta")
+    other = Page(page.authority, name="berta")
     other.now = page.now
     with pytest.raises(RefusedError, match=r"anna .* commands"):
-        other.desk.take(other.page, other.now)
+        other.authority.take(other.page, other.now)
     with pytest.raises(RefusedError, match=r"anna .* commands"):
-        other.desk.take(other.page, other.now, force=True)
+        other.authority.take(other.page, other.now, force=True)
     other.press()
     with pytest.raises(RefusedError, match="does not command"):
         other.send()
@@ -202,26 +202,26 @@ def test_one_page_commands_and_another_moves_nothing(page):
 
 
 def test_a_watcher_cannot_take_the_command(page):
-    watcher = Page(page.desk, Role.WATCH)
-    page.desk.give_back(page.page, page.now)
+    watcher = Page(page.authority, Role.WATCH)
+    page.authority.give_back(page.page, page.now)
     with pytest.raises(RefusedError, match="watch"):
-        page.desk.take(watcher.page, 0.0, force=True)
+        page.authority.take(watcher.page, 0.0, force=True)
     with pytest.raises(RefusedError, match="take the command first"):
-        page.desk.hand_over(watcher.page, 1, 0.0)
+        page.authority.hand_over(watcher.page, 1, 0.0)
 
 
 @pytest.mark.parametrize("how", ["force", "hand_over"])
 def test_a_change_of_command_ends_the_motion_of_both(page, how):
-    other = Page(page.desk, Role.MAINTAIN)
+    other = Page(page.authority, Role.MAINTAIN)
     other.now = page.now
     other.answer_pings()
     page.press()
     page.run(1.0)
     if how == "force":
-        page.desk.take(other.page, page.now, force=True)
+        page.authority.take(other.page, page.now, force=True)
     else:
-        page.desk.hand_over(page.page, other.page.number, page.now)
-    assert page.desk.command(LIMITS, page.now)[0] == Command()
+        page.authority.hand_over(page.page, other.page.number, page.now)
+    assert page.authority.command(LIMITS, page.now)[0] == Command()
     with pytest.raises(RefusedError):
         page.send()
     other.now = page.now
@@ -236,29 +236,29 @@ def test_a_change_of_command_ends_the_motion_of_both(page, how):
 @pytest.mark.parametrize("round_trip", [0.02, 0.1, 0.2, 0.4, 0.8])
 def test_the_way_after_the_last_good_command_stays_within_the_distance(round_trip):
     """From its sending: half a round trip at full speed, then until the command of zero."""
-    page = Page(Desk(SETTINGS))
+    page = Page(Authority(SETTINGS))
     page.page.chosen = Command(5.0, 1.0)
-    page.desk.take(page.page, 0.0)
+    page.authority.take(page.page, 0.0)
     page.answer_pings(round_trip)
     page.run(6.0)
     page.press()
     limits, tick = Limits(5.0, 1.0, 1.0), 0.02
     for _ in range(40):
         page.send()
-        speed = page.desk.command(limits, page.now)[0].linear
+        speed = page.authority.command(limits, page.now)[0].linear
         page.now += PERIOD
     assert speed == pytest.approx(0.3 / (round_trip + 0.4))
     page.now -= PERIOD
     way = speed * round_trip / 2
-    while (command := page.desk.command(limits, page.now)[0]) != Command():
+    while (command := page.authority.command(limits, page.now)[0]) != Command():
         way += command.linear * tick
         page.now += tick
     assert 0.4 * 0.3 < way <= 0.3
 
 
 def test_without_a_measured_link_no_speed_is_allowed():
-    page = Page(Desk(SETTINGS))
-    page.desk.take(page.page, 0.0)
+    page = Page(Authority(SETTINGS))
+    page.authority.take(page.page, 0.0)
     page.run(1.0)
     page.press()
     assert not moves(page.run(2.0))
