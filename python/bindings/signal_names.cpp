@@ -14,9 +14,8 @@ namespace {
 
 /// The text for any robot: roles stand for the programs that play them.
 std::string of_any_robot(std::string_view text) {
-  const std::string filled =
-      with_roles(text, [](Role role) { return "the " + std::string(kRoles[static_cast<std::size_t>(role)].role); });
-  return with_programs(filled, Programs{});
+  return with_names(text, kWheeledKind,
+                    [](Role role) { return "the " + std::string(kRoles[static_cast<std::size_t>(role)].role); });
 }
 
 py::list bits(std::span<const BitName> table) {

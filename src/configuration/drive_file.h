@@ -24,4 +24,12 @@ CanParameters read_drive_file(const std::string& path, std::span<const std::stri
 /// problems of the file.
 void read_driver_file(const std::string& path, const std::string& block, Keys keys);
 
+/// Returns the members of such a file, for instance ExampleParameters.
+template <class Members>
+Members read_driver_file(const std::string& path, const std::string& block) {
+  Members members;
+  read_driver_file(path, block, keys(members));
+  return members;
+}
+
 }  // namespace robot_control

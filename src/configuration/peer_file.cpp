@@ -123,7 +123,7 @@ std::string suggest_for_peer_key(std::string_view name) {
   const auto found = std::ranges::find(kPeerKeys, name, &PeerKey::peer_name);
   if (found == kPeerKeys.end()) return "";
   const std::string here = found->own_path.empty() ? "needs no key here" : "here " + std::string(found->own_path);
-  return "a key of ros_controllers, " + with_programs(here) + "; " + kPeerTable;
+  return "a key of ros_controllers, " + with_programs(here, {}) + "; " + kPeerTable;
 }
 
 }  // namespace robot_control

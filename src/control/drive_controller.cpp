@@ -267,25 +267,24 @@ void DriveController::drive(const PlanarTwist& requested, const SensorFrame& sen
   if (in_control_) {
     const PlanarTwist goal = scaled(requested, kinematics_.wheel_speed_scale(requested));
     if (goal.linear != requested.linear || goal.angular != requested.angular || acceleration_scale_ < 1)
-      out.wheeled.reasons |= kReasonSaturated;
+      out.reasons |= kReasonSaturated;
     limiter_.step(goal, periods_ * period_, (out.reasons & kEmergencies) != 0, acceleration_scale_);
-    out.reasons |= limiter_.reasons() & ~kWheeledReasons;
-    out.wheeled.reasons |= limiter_.reasons() & kWheeledReasons;
+    out.reasons |= limiter_.reasons();
   }
   // A target that changed during a ramp may lead past the wheels' limits.
   const double scale = kinematics_.wheel_speed_scale(limiter_.value());
-  if (scale < 1) out.wheeled.reasons |= kReasonSaturated;
+  if (scale < 1) out.reasons |= kReasonSaturated;
   const PlanarTwist limited = scaled(limiter_.value(), scale);
   const PlanarTwist rate = scaled(limiter_.acceleration(), scale);
   const WheelValues velocity = kinematics_.joint_speeds(limited);
   const WheelValues acceleration = kinematics_.joint_speeds(rate);
   const WheelValues feed_forward = planned_efforts(limited, rate);
   const bool clamped = in_control_ && (sensors.gate.reasons & kGateClamps) != 0;
-  if (clamped) out.wheeled.reasons |= kReasonSaturated;
+  if (clamped) out.reasons |= kReasonSaturated;
   for (std::size_t i = 0; i < loops_.size(); ++i) {
     const double effort = loops_[i].step({velocity[i], acceleration[i], feed_forward[i]}, periods_, clamped);
     out.joints[i] = effort_command(velocity[i], effort);
-    if (loops_[i].saturated()) out.wheeled.reasons |= kReasonSaturated;
+    if (loops_[i].saturated()) out.reasons |= kReasonSaturated;
   }
   acceleration_scale_ = in_control_ ? affordable_acceleration_scale(limited, feed_forward) : 1.0;
   out.twist_limited = spatial(limited);

@@ -6,7 +6,7 @@
 
 namespace robot_control {
 
-void identify(MachineModel& machine, const LoopParameters& loop) {
+MachineModel identified(MachineModel machine, const LoopParameters& loop) {
   const bool lockstep = loop.clock == ClockMode::kLockstep;
   Checksum sum;
   sum.mix(machine.hash);
@@ -14,6 +14,7 @@ void identify(MachineModel& machine, const LoopParameters& loop) {
   sum.mix(lockstep ? 1 : 2);
   machine.hash = sum.sum();
   machine.source += " at " + std::to_string(std::lround(loop.rate)) + " Hz, clock " + (lockstep ? "lockstep" : "wall");
+  return machine;
 }
 
 }  // namespace robot_control

@@ -7,15 +7,8 @@
 
 namespace robot_control {
 
-/// Adds rate and clock to hash and source.
-void identify(MachineModel& machine, const LoopParameters& loop);
-
 /// Returns the machine with rate and clock in its hash and source. A node of another rate or clock refuses as one of
 /// another robot does.
-template <class Machine>
-Machine identified(Machine machine, const LoopParameters& loop) {
-  identify(machine, loop);
-  return machine;
-}
+MachineModel identified(MachineModel machine, const LoopParameters& loop);
 
 }  // namespace robot_control

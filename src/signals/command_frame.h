@@ -14,8 +14,8 @@
 
 namespace robot_control {
 
-/// Why the commanded motion differs from the requested one; bits of CommandFrame::reasons. The reasons of one kind of
-/// machine have the bits that follow.
+/// Why the commanded motion differs from the requested one; bits of CommandFrame::reasons. Each kind of robot has
+/// bits of its own behind these; signals/names.h checks that no two share a bit. A bit keeps its meaning in all logs.
 enum CommandReason : std::uint64_t {
   kReasonNoCommand = 1u << 0,     ///< Nothing received in this run yet.
   kReasonTimedOut = 1u << 1,      ///< The last command is older than cmd_vel_timeout.
@@ -38,8 +38,6 @@ enum CommandReason : std::uint64_t {
   kReasonPartIgnored = 1u << 17,  ///< The request has a part that this machine cannot execute (CommandFrame::ignored).
 };
 
-static_assert(kReasonPartIgnored == 1u << (kFirstWheeledReason - 1));
-
 /// The gate uses a command in at most this many ticks: at tick k one of cycles k-kCommandLife … k-1.
 inline constexpr std::uint64_t kCommandLife = 4;
 
@@ -49,18 +47,18 @@ struct CommandFrame {
   std::array<JointCommand, kMaxJoints> joints{};  ///< in the order of MachineModel::joints
   Request requested;                              ///< as last received; zero once timed out or refused
   Twist twist_limited;                            ///< after limits: the target of the base
-  std::uint64_t reasons = 0;
-  std::uint64_t state_cycle = 0;        ///< cycle of the state that was used
-  std::uint64_t permit_cycle = 0;       ///< cycle of the permit that was used
-  std::uint64_t request_cycle = 0;      ///< cycle in which the last command was received
-  std::uint64_t requests_received = 0;  ///< in this run
-  std::uint64_t requests_refused = 0;   ///< in this run: NaN or infinite, or counted below
-  std::uint64_t requests_stale = 0;     ///< those of requests_refused with a wrong stamp
-  std::uint64_t requests_crowded = 0;   ///< those of requests_refused while more than one node sent
-  std::uint64_t requests_revoked = 0;   ///< those of requests_refused from revoked senders (Permit::withdrawals)
-  std::uint64_t requests_partial = 0;   ///< accepted in this run with a part that this machine ignores
-  std::uint64_t ignored = 0;            ///< RequestPart bits of `requested` that this machine cannot execute
-  std::uint64_t timeouts = 0;           ///< in this run, one per event
+  std::uint64_t reasons = 0;                      ///< CommandReason bits, and those of the kind
+  std::uint64_t state_cycle = 0;                  ///< cycle of the state that was used
+  std::uint64_t permit_cycle = 0;                 ///< cycle of the permit that was used
+  std::uint64_t request_cycle = 0;                ///< cycle in which the last command was received
+  std::uint64_t requests_received = 0;            ///< in this run
+  std::uint64_t requests_refused = 0;             ///< in this run: NaN or infinite, or counted below
+  std::uint64_t requests_stale = 0;               ///< those of requests_refused with a wrong stamp
+  std::uint64_t requests_crowded = 0;             ///< those of requests_refused while more than one node sent
+  std::uint64_t requests_revoked = 0;  ///< those of requests_refused from revoked senders (Permit::withdrawals)
+  std::uint64_t requests_partial = 0;  ///< accepted in this run with a part that this machine ignores
+  std::uint64_t ignored = 0;           ///< RequestPart bits of `requested` that this machine cannot execute
+  std::uint64_t timeouts = 0;          ///< in this run, one per event
 
   // The monitor reads the following members before it permits motion (safety/latch/motion_release.h).
   std::uint64_t first_cycle = 0;  ///< cycle of this run in which this process computed its first command
@@ -74,11 +72,6 @@ struct CommandFrame {
   WheeledCommand wheeled;  ///< only wheeled machines fill it
   LeggedCommand legged;    ///< only machines on legs fill it
 };
-
-/// Returns CommandReason and WheeledReason bits together.
-inline std::uint64_t reasons_of(const CommandFrame& command) noexcept {
-  return command.reasons | command.wheeled.reasons;
-}
 
 /// Returns whether the last message before this command was no accepted zero velocity.
 inline bool requests_motion(const CommandFrame& command) noexcept {

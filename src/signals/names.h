@@ -274,7 +274,7 @@ inline std::string names_of(std::span<const BitName> table, std::uint64_t bits, 
 }
 
 /// Returns "the emergency stop button is pressed (release the button); …" for a robot with these programs. Allocates.
-inline std::string sentences_of(std::span<const BitName> table, std::uint64_t bits, const Programs& programs = {}) {
+inline std::string sentences_of(std::span<const BitName> table, std::uint64_t bits, const Programs& programs) {
   std::string text;
   for (const BitName& row : table) {
     if ((bits & row.bit) == 0) continue;

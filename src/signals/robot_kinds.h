@@ -44,11 +44,24 @@ constexpr std::string_view program_of(Role role, const Programs& programs) noexc
   return role == Role::kController ? names_of_kind(programs.kind).controller : program_of(role);
 }
 
-/// Replaces each role in braces by its program on this robot, and so {request} and {request_timeout}.
+/// Replaces each role in braces, as in "start {controller}", by what `name_of(Role)` returns; {request} and
+/// {request_timeout} by the names of the kind.
+template <typename NameOf>
+std::string with_names(std::string_view text, std::string_view kind, const NameOf& name_of) {
+  std::string filled(text);
+  const auto replace = [&](std::string_view word, std::string_view name) {
+    const std::string place = "{" + std::string(word) + "}";
+    for (std::size_t at = 0; (at = filled.find(place)) != std::string::npos;) filled.replace(at, place.size(), name);
+  };
+  for (std::size_t i = 0; i < kRoles.size(); ++i) replace(kRoles[i].role, name_of(static_cast<Role>(i)));
+  replace("request", names_of_kind(kind).request);
+  replace("request_timeout", names_of_kind(kind).timeout);
+  return filled;
+}
+
+/// Replaces each role in braces by its program on this robot.
 inline std::string with_programs(std::string_view text, const Programs& programs) {
-  const std::string filled = with_roles(text, [&](Role role) { return program_of(role, programs); });
-  const KindNames& names = names_of_kind(programs.kind);
-  return replaced(replaced(filled, "{request}", names.request), "{request_timeout}", names.timeout);
+  return with_names(text, programs.kind, [&](Role role) { return program_of(role, programs); });
 }
 
 }  // namespace robot_control

@@ -53,7 +53,7 @@ const std::map<std::uint64_t, Break> kBreaks{
        bench.send(-1, 0);
        while (bench.command.twist_limited.linear[0] > 0.02) bench.step();
        bench.send(0, 0);
-       for (int k = 0; k < 1000 && (reasons_of(bench.command) & kReasonJerkYielded) == 0; ++k) bench.step();
+       for (int k = 0; k < 1000 && (bench.command.reasons & kReasonJerkYielded) == 0; ++k) bench.step();
      }},
     {kReasonStale, [](ControlBench& bench) { ++bench.request.stale; }},
     {kReasonManySenders, [](ControlBench& bench) { bench.request.many_senders = 1; }},
@@ -76,7 +76,7 @@ ControlBench driving() {
 }
 
 TEST(CommandReasons, AreNoneOnAHealthyRobot) {
-  EXPECT_EQ(reasons_of(driving().command), 0u);
+  EXPECT_EQ(driving().command.reasons, 0u);
 }
 
 TEST(CommandReasons, AreEachRaisedByWhatTheySay) {
@@ -87,8 +87,8 @@ TEST(CommandReasons, AreEachRaisedByWhatTheySay) {
     ASSERT_NE(found, kBreaks.end()) << "no test raises it";
     ControlBench bench = driving();
     found->second(bench);
-    if ((reasons_of(bench.command) & row.bit) == 0) bench.step();
-    EXPECT_NE(reasons_of(bench.command) & row.bit, 0u);
+    if ((bench.command.reasons & row.bit) == 0) bench.step();
+    EXPECT_NE(bench.command.reasons & row.bit, 0u);
   }
 }
 
@@ -115,7 +115,7 @@ TEST(CommandReasons, OfOneSenderTooManyRampWithTheEmergencyDeceleration) {
   bench.step();
   EXPECT_NEAR(bench.command.twist_limited.linear[0], 0.5 - 2e-3, 1e-12);
   bench.run(1);
-  EXPECT_NE(reasons_of(bench.command) & kReasonHolding, 0u);
+  EXPECT_NE(bench.command.reasons & kReasonHolding, 0u);
   bench.request.many_senders = 0;
   bench.send(0.5, 0);
   bench.run(1);

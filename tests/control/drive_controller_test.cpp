@@ -42,7 +42,7 @@ TEST_F(DriveControllerTest, DrivesTheArticlesExample) {
   EXPECT_NEAR(bench.command.joints[1].velocity, 5.5, 1e-12);
   EXPECT_NEAR(bench.command.wheeled.velocity[0], 4.5, 1e-5);
   EXPECT_NEAR(bench.command.wheeled.velocity[1], 5.5, 1e-5);
-  EXPECT_EQ(reasons_of(bench.command), 0u);
+  EXPECT_EQ(bench.command.reasons, 0u);
   EXPECT_EQ(bench.command.joint_count, 2u);
   EXPECT_EQ(bench.command.requests_received, 1u);
   EXPECT_EQ(bench.command.request_cycle, 300u);
@@ -54,14 +54,14 @@ TEST_F(DriveControllerTest, BrakesWithoutAPermit) {
   bench.with_permit = false;
   bench.step();
   EXPECT_TRUE(braked());
-  EXPECT_EQ(reasons_of(bench.command), kReasonNoPermit);
+  EXPECT_EQ(bench.command.reasons, kReasonNoPermit);
 }
 
 TEST_F(DriveControllerTest, BrakesWhenThePermitSaysSo) {
   bench.permit.action = PermitAction::kBrake;
   bench.step();
   EXPECT_TRUE(braked());
-  EXPECT_EQ(reasons_of(bench.command), kReasonPermitBrake);
+  EXPECT_EQ(bench.command.reasons, kReasonPermitBrake);
 }
 
 TEST_F(DriveControllerTest, BrakesOnAPermitItDoesNotUnderstand) {
@@ -77,7 +77,7 @@ TEST_F(DriveControllerTest, RampsWithinTheLimitsUnderARampPermit) {
   for (int k = 0; k < 499; ++k) {
     bench.step();
     ASSERT_NEAR(last - limited(), 1e-3, 1e-12);
-    ASSERT_TRUE(reasons_of(bench.command) & kReasonPermitRamp);
+    ASSERT_TRUE(bench.command.reasons & kReasonPermitRamp);
     last = limited();
   }
   EXPECT_NEAR(bench.plant.twist.linear, 0, 5e-3);
@@ -90,7 +90,7 @@ TEST_F(DriveControllerTest, BrakesAfterTheLastCycleOfARamp) {
   EXPECT_FALSE(braked());
   bench.step();
   EXPECT_TRUE(braked());
-  EXPECT_TRUE(reasons_of(bench.command) & kReasonPermitBrake);
+  EXPECT_TRUE(bench.command.reasons & kReasonPermitBrake);
 }
 
 TEST_F(DriveControllerTest, RampsDownFromTheExactCycleOfTheTimeout) {
@@ -101,19 +101,19 @@ TEST_F(DriveControllerTest, RampsDownFromTheExactCycleOfTheTimeout) {
   }
   bench.step();
   EXPECT_NEAR(limited(), 0.499, 1e-12);
-  EXPECT_TRUE(reasons_of(bench.command) & kReasonTimedOut);
+  EXPECT_TRUE(bench.command.reasons & kReasonTimedOut);
   EXPECT_EQ(bench.command.timeouts, 1u);
   EXPECT_EQ(bench.command.requested.twist.linear[0], 0);
   bench.run(2);
   EXPECT_EQ(bench.command.timeouts, 1u);
-  EXPECT_TRUE(reasons_of(bench.command) & kReasonHolding);
+  EXPECT_TRUE(bench.command.reasons & kReasonHolding);
 }
 
 TEST_F(DriveControllerTest, RefusesNaNCountsItAndRampsDownUntilAGoodCommandArrives) {
   bench.send(std::nan(""), 0);
   bench.step();
   EXPECT_NEAR(limited(), 0.499, 1e-12);
-  EXPECT_TRUE(reasons_of(bench.command) & kReasonRefused);
+  EXPECT_TRUE(bench.command.reasons & kReasonRefused);
   EXPECT_EQ(bench.command.requests_refused, 1u);
   bench.run(0.1);
   EXPECT_NEAR(limited(), 0.399, 1e-12);
@@ -129,7 +129,7 @@ TEST_F(DriveControllerTest, BrakesOnJointSamplesThatAreNotFinite) {
     bench.spoil = [=](SensorFrame& sensors) { sensors.joints[1].*member = std::nan(""); };
     bench.step();
     EXPECT_TRUE(braked());
-    EXPECT_TRUE(reasons_of(bench.command) & kReasonBadSensors);
+    EXPECT_TRUE(bench.command.reasons & kReasonBadSensors);
     bench.spoil = [](SensorFrame&) {};
     bench.run(0.5);
     ASSERT_NEAR(bench.plant.twist.linear, 0.5, 1e-3) << "does not recover";
@@ -142,7 +142,7 @@ TEST_F(DriveControllerTest, BrakesForOneCycleOnAnAngleThatJumpsAndDrivesOn) {
     bench.spoil = [=](SensorFrame& sensors) { sensors.joints[0].position += jump; };
     bench.step();
     EXPECT_TRUE(braked());
-    EXPECT_TRUE(reasons_of(bench.command) & kReasonBadSensors);
+    EXPECT_TRUE(bench.command.reasons & kReasonBadSensors);
     bench.spoil = [](SensorFrame&) {};
     for (int k = 0; k < 500; ++k) {
       bench.step();
@@ -187,7 +187,7 @@ TEST_F(DriveControllerTest, DrivesOnWithoutAStateAndSaysSo) {
   bench.with_state = false;
   const std::uint64_t known = bench.command.state_cycle;
   bench.run(0.1);
-  EXPECT_EQ(reasons_of(bench.command), kReasonNoState);
+  EXPECT_EQ(bench.command.reasons, kReasonNoState);
   EXPECT_EQ(bench.command.state_cycle, known);
   EXPECT_NEAR(bench.plant.twist.linear, 0.5, 1e-6);
 }
@@ -195,7 +195,7 @@ TEST_F(DriveControllerTest, DrivesOnWithoutAStateAndSaysSo) {
 TEST_F(DriveControllerTest, SaysThatTheStateIsInvalid) {
   bench.state.base.flags = 0;
   bench.step();
-  EXPECT_EQ(reasons_of(bench.command), kReasonNoState);
+  EXPECT_EQ(bench.command.reasons, kReasonNoState);
 }
 
 TEST_F(DriveControllerTest, RestartsItsRampFromTheMeasuredSpeedWhileTheGateBrakes) {
@@ -222,7 +222,7 @@ TEST_F(DriveControllerTest, ReseedsAfterMoreSkippedCyclesThanTheGateHolds) {
   const double measured =
       0.05 * (bench.command.wheeled.velocity[0] + bench.command.wheeled.velocity[1]);  // r/2 of both
   EXPECT_NEAR(limited(), measured, 1e-12);
-  EXPECT_EQ(reasons_of(bench.command), 0u);
+  EXPECT_EQ(bench.command.reasons, 0u);
 }
 
 TEST_F(DriveControllerTest, KeepsTheCurvatureWhenAWheelIsTooFast) {
@@ -233,7 +233,7 @@ TEST_F(DriveControllerTest, KeepsTheCurvatureWhenAWheelIsTooFast) {
   const double s = 0.9 * 0.4 / 0.55;
   EXPECT_NEAR(limited(), s * 0.5, 1e-12);
   EXPECT_NEAR(bench.command.twist_limited.angular[2], s * 0.2, 1e-12);
-  EXPECT_TRUE(reasons_of(bench.command) & kReasonSaturated);
+  EXPECT_TRUE(bench.command.reasons & kReasonSaturated);
 }
 
 TEST_F(DriveControllerTest, SaysThatATorqueIsAtItsLimitAndDoesNotOvershootForIt) {
@@ -243,7 +243,7 @@ TEST_F(DriveControllerTest, SaysThatATorqueIsAtItsLimitAndDoesNotOvershootForIt)
   bench.run(0.3);
   bench.send(0.5, 0);
   bench.run(0.2);
-  EXPECT_TRUE(reasons_of(bench.command) & kReasonSaturated);
+  EXPECT_TRUE(bench.command.reasons & kReasonSaturated);
   EXPECT_NEAR(bench.command.joints[0].effort, 0.4, 1e-6);
   double fastest = 0;
   for (int k = 0; k < 1000; ++k) {
@@ -359,7 +359,7 @@ TEST_F(DriveControllerTest, StartsANewRunFromNothing) {
   bench.plant = TwoWheelPlant(make_test_robot());
   bench.plant.angle = {123, -456};
   bench.run(0.3);
-  EXPECT_TRUE(reasons_of(bench.command) & kReasonNoCommand);
+  EXPECT_TRUE(bench.command.reasons & kReasonNoCommand);
   EXPECT_EQ(bench.command.requests_received, 0u);
   EXPECT_EQ(bench.plant.distance, 0);
   bench.send(0.5, 0.2);
@@ -390,7 +390,7 @@ TEST_F(DriveControllerTest, NeverExceedsLimitsUnderRandomCommandsPermitsAndFault
       }
       // Compares plan with plan; a seed is the measured speed and no plan.
       const std::uint64_t own = kReasonAccelerationLimited;
-      if ((reasons_of(before) & own) && (reasons_of(bench.command) & own)) {
+      if ((before.reasons & own) && (bench.command.reasons & own)) {
         ASSERT_LE(std::abs(limited() - before.twist_limited.linear[0]), 1e-3 + 1e-12) << "seed " << seed;
         ASSERT_LE(std::abs(bench.command.twist_limited.angular[2] - before.twist_limited.angular[2]), 4e-3 + 1e-12)
             << "seed " << seed;
@@ -412,7 +412,7 @@ class Emergency : public DriveControllerTest {
     for (int k = 0; k < 700; ++k) {
       const double before = limited();
       bench.step();
-      reasons |= reasons_of(bench.command);
+      reasons |= bench.command.reasons;
       strongest = std::fmax(strongest, (before - limited()) / bench.period);
     }
     EXPECT_NEAR(strongest, deceleration, 1e-9);

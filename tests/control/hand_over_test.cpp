@@ -33,10 +33,10 @@ class HandOver : public testing::Test {
 
 TEST_F(HandOver, BeginsWithTheTorqueThatTheBrakeWasHolding) {
   bench.run(0.4);
-  ASSERT_TRUE(reasons_of(bench.command) & kReasonHolding);
+  ASSERT_TRUE(bench.command.reasons & kReasonHolding);
   bench.send(0.5, 0);
   bench.step();
-  EXPECT_FALSE(reasons_of(bench.command) & kReasonHolding);
+  EXPECT_FALSE(bench.command.reasons & kReasonHolding);
   for (const JointCommand& joint : {bench.command.joints[0], bench.command.joints[1]}) {
     EXPECT_EQ(joint.mode, JointMode::kEffort);
     EXPECT_NEAR(joint.effort, kLoad, 0.01 * kLoad) << "a mean, whose first sample was 0";
@@ -72,13 +72,13 @@ TEST_F(HandOver, DoesNotSagOnTheSlope) {
 
 TEST_F(HandOver, HoldsThoughAnEncoderJumpsWhileNobodyAsksForAMotion) {
   bench.run(0.4);
-  ASSERT_TRUE(reasons_of(bench.command) & kReasonHolding);
+  ASSERT_TRUE(bench.command.reasons & kReasonHolding);
   double jump = 0;
   bench.spoil = [&jump](SensorFrame& sensors) { sensors.joints[0].position += jump; };
   jump = 0.3;  // rad, slower than kFastestWheel
   for (int k = 0; k < 100; ++k) {
     bench.step();
-    EXPECT_TRUE(reasons_of(bench.command) & kReasonHolding) << k;
+    EXPECT_TRUE(bench.command.reasons & kReasonHolding) << k;
   }
 }
 
@@ -106,7 +106,7 @@ TEST_F(HandOver, MovesLessThanAMillimetreFromStandstillToHolding) {
     largest = std::fmax(largest, std::abs(bench.plant.distance - standstill));
   }
   EXPECT_LT(largest, 1e-3);
-  EXPECT_TRUE(reasons_of(bench.command) & kReasonHolding);
+  EXPECT_TRUE(bench.command.reasons & kReasonHolding);
 }
 
 TEST_F(HandOver, StaysOnTheBrakeWhenReleasedWithoutAWish) {
@@ -116,7 +116,7 @@ TEST_F(HandOver, StaysOnTheBrakeWhenReleasedWithoutAWish) {
   for (int k = 0; k < 100; ++k) {
     bench.step();
     ASSERT_EQ(bench.command.joints[0].mode, JointMode::kBrake);
-    ASSERT_TRUE(reasons_of(bench.command) & kReasonHolding);
+    ASSERT_TRUE(bench.command.reasons & kReasonHolding);
   }
 }
 

@@ -80,7 +80,7 @@ class PermitSpeed : public testing::Test {
     return {bench.command.twist_limited.linear[0], bench.command.twist_limited.angular[2]};
   }
   double rim() const { return fastest_rim(DriveKinematics(bench.robot), limited()); }
-  bool slowed() const { return (reasons_of(bench.command) & kReasonPermitSlow) != 0; }
+  bool slowed() const { return (bench.command.reasons & kReasonPermitSlow) != 0; }
 
   ControlBench bench{make_test_robot(), patient()};
 };
@@ -137,7 +137,7 @@ TEST_F(PermitSpeed, ZeroRampsToAStandAndHolds) {
     bench.run(2.0);
     EXPECT_EQ(limited().linear, 0) << nothing;
     EXPECT_TRUE(slowed()) << nothing;
-    EXPECT_NE(reasons_of(bench.command) & kReasonHolding, 0u) << nothing;
+    EXPECT_NE(bench.command.reasons & kReasonHolding, 0u) << nothing;
     EXPECT_NEAR(bench.plant.twist.linear, 0, 1e-3) << nothing;
   }
 }

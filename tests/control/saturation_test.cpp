@@ -72,7 +72,7 @@ TEST(TorqueSaturation, UsesWhatTorqueThereIs) {
   bench.run(1.2);
   // 0.4 of 0.65 N·m from where the jerk limit reached them, after 0.06 s, on.
   EXPECT_NEAR(bench.plant.twist.linear, kWeak / 0.65 * (1.2 - 0.5 * 0.06), 0.02);
-  EXPECT_TRUE(reasons_of(bench.command) & kReasonSaturated);
+  EXPECT_TRUE(bench.command.reasons & kReasonSaturated);
 }
 
 TEST(TorqueSaturation, NeverLetsThePlanRunAway) {
@@ -143,7 +143,7 @@ TEST(SpeedSaturation, NothingBeyondAWheelsLimitIsOrderedWhateverTheTargetsDo) {
                               std::abs(bench.command.joints[1].velocity) > kLimit * (1 - 1e-12);
         if (at_limit && kinematics.wheel_speed_scale(target) == 1) {
           ++led_past;
-          ASSERT_TRUE(reasons_of(bench.command) & kReasonSaturated) << "seed " << seed;
+          ASSERT_TRUE(bench.command.reasons & kReasonSaturated) << "seed " << seed;
         }
       }
     }
@@ -163,11 +163,11 @@ double swings_back(double heavier, double rate) {
   bench.run(10);
   bench.send(0, 0);
   double smallest = kSpeed;
-  for (double t = 0; t < 20 && !(reasons_of(bench.command) & kReasonHolding); t += bench.period) {
+  for (double t = 0; t < 20 && !(bench.command.reasons & kReasonHolding); t += bench.period) {
     bench.step();
     smallest = std::min(smallest, bench.plant.twist.linear);
   }
-  EXPECT_TRUE(reasons_of(bench.command) & kReasonHolding) << heavier << " at " << rate << " Hz";
+  EXPECT_TRUE(bench.command.reasons & kReasonHolding) << heavier << " at " << rate << " Hz";
   return smallest;
 }
 

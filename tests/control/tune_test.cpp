@@ -90,7 +90,7 @@ TEST_F(Tune, LeavesTheControllerThatAStartWithTheseValuesMakes) {
     expect_same_bits(tuned.command, started.command);
     if (HasFailure()) FAIL() << "cycle " << k;
   }
-  EXPECT_NE(reasons_of(tuned.command) & kReasonTimedOut, 0u);
+  EXPECT_NE(tuned.command.reasons & kReasonTimedOut, 0u);
 }
 
 TEST_F(Tune, OfGainsLetsTheTorqueGoOn) {
@@ -255,11 +255,11 @@ TEST_F(Tune, BringsNoCommandBackThatTimedOut) {
   given.cmd_vel_timeout = 0.2;
   ControlBench bench = driving(given);
   bench.run(1.0);
-  ASSERT_NE(reasons_of(bench.command) & kReasonTimedOut, 0u);
+  ASSERT_NE(bench.command.reasons & kReasonTimedOut, 0u);
   given.cmd_vel_timeout = 0;  // never
   tune(bench, given);
   bench.run(0.1);
-  EXPECT_NE(reasons_of(bench.command) & kReasonTimedOut, 0u);
+  EXPECT_NE(bench.command.reasons & kReasonTimedOut, 0u);
   EXPECT_EQ(bench.command.twist_limited.linear[0], 0.0);
 }
 
@@ -267,7 +267,7 @@ TEST_F(Tune, WhileBrakedSpoilsNoHandOver) {
   ControlBench bench;
   bench.plant.slope = 0.05;
   bench.run(0.4);
-  ASSERT_NE(reasons_of(bench.command) & kReasonHolding, 0u);
+  ASSERT_NE(bench.command.reasons & kReasonHolding, 0u);
   given.pid_kp = 4;
   given.pid_kd = 0.01;
   given.feed_forward.mass = 20;
@@ -356,7 +356,7 @@ TEST_F(Tune, AtRandomWhileDrivingNeverExceedsTheOldOrTheNewLimits) {
       bench.step();
       linear.check(bench.command.twist_limited.linear[0], tuning.linear, bench.period);
       angular.check(bench.command.twist_limited.angular[2], tuning.angular, bench.period);
-      ASSERT_EQ(reasons_of(bench.command) & kReasonBadSensors, 0u);
+      ASSERT_EQ(bench.command.reasons & kReasonBadSensors, 0u);
       if (HasFailure()) FAIL() << "seed " << seed << ", cycle " << k;
     }
   }

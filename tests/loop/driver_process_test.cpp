@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "cycle_fixture.h"
+#include "robots/differential_drive.h"
 #include "rt/futex.h"
 #include "support/scoped_bus.h"
 

@@ -1,5 +1,6 @@
 #include "loop/processes/telemetry_process.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "cycle_fixture.h"
@@ -42,6 +43,12 @@ class TelemetryProcessTest : public testing::Test {
   ScopedBus bus_;
   TemporaryFolder folder_;
 };
+
+TEST(TimingSummaries, NameTheProgramsOfTheRobot) {
+  const TraceSummary summary = TimingSummary({.kind = kLeggedKind, .driver = "driver"}).summary(1, {});
+  EXPECT_THAT(summary.names, testing::IsSupersetOf({"driver.wake_up", "leg_controller.wake_up.10s"}));
+  EXPECT_THAT(summary.counters, testing::Contains("driver.overruns"));
+}
 
 TEST_F(TelemetryProcessTest, TakesNoRowOfAnEndedWriterWhileTheNextOneStarts) {
   leave_rows(10);

@@ -39,11 +39,9 @@ TEST_P(QuadrupedOf, StandsUpWithinTwoSecondsAndLiesDownAgain) {
 
 /// An emergency stop folds the robot: the promises of docs/legs.md.
 void expect_fold(QuadrupedLoop& robot) {
-  robot.clear();
-  robot.loop.e_stop();
-  robot.wait(0.003);
-  EXPECT_EQ(robot.gate().verdict, GateVerdict::kBrake);
-  EXPECT_LE(robot.settle(), 1.5);
+  const auto [cycles, rest_at] = robot.fold();
+  EXPECT_LE(cycles, 3);
+  EXPECT_LE(rest_at, 1.5);
   EXPECT_LE(robot.tilt, 0.15);
   EXPECT_LE(robot.shock, 40);
 }
@@ -62,8 +60,7 @@ TEST_P(QuadrupedOf, KnowsItsHeightAfterEveryFold) {
   for (int round = 0; round < 3; ++round) {
     robot.run(3.0, stance(kStanceStand));
     EXPECT_NEAR(error(), 0, 0.01) << round;
-    robot.loop.e_stop();
-    robot.settle();
+    robot.fold();
     EXPECT_NEAR(error(), 0, 0.035) << round;  // it may lie on a folded leg
     robot.run(0.5, {});
     robot.loop.e_stop_reset();

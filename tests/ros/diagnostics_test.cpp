@@ -27,7 +27,7 @@ class PermitReport : public testing::Test {
 
   DiagnosticReport report() const {
     DiagnosticReport report("safety_monitor", "diffbot");
-    report_permit(report, permit_);
+    report_permit(report, permit_, {});
     return report;
   }
 
@@ -62,7 +62,7 @@ class StateReport : public testing::Test {
 
   DiagnosticReport report(std::uint64_t slip_lately = 0) const {
     DiagnosticReport report("state_estimator", "diffbot");
-    report_state(report, state_, slip_lately, true);
+    report_state(report, state_, slip_lately, {});
     return report;
   }
 
@@ -78,7 +78,7 @@ TEST_F(StateReport, WarnsOfASensorThatIsLost) {
   for (const std::uint64_t flag : {kStateNoGyro, kStateNoAccelerometer, kStateNoLeftEncoder, kStateNoRightEncoder}) {
     state_.base.flags = kStateValid | flag;
     EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
-    EXPECT_THAT(report().message().message, HasSubstr(sentences_of(kStateFlagNames, flag)));
+    EXPECT_THAT(report().message().message, HasSubstr(sentences_of(kStateFlagNames, flag, {})));
     const BitName& row = *row_of(kStateFlagNames, flag);
     EXPECT_EQ(value_of(report(), "estimate: " + std::string(row.name)), row.sentence);
     EXPECT_EQ(value_of(report(), "estimate remedy: " + std::string(row.name)), row.remedy);
@@ -157,7 +157,7 @@ TEST(CommandReasons, AreEachAValueInWords) {
   command.reasons = kReasonTimedOut | kReasonHolding;
   command.requested.twist.linear[0] = 0.5;
   DiagnosticReport report("diff_drive_controller", "diffbot");
-  report_command(report, command, command.reasons, {});
+  report_command(report, command, command.reasons, {}, {});
   EXPECT_EQ(value_of(report, "reasons"), "timed_out holding");
   EXPECT_EQ(value_of(report, "command: timed_out"), "the last cmd_vel is older than cmd_vel_timeout");
   EXPECT_THAT(value_of(report, "command remedy: timed_out"), HasSubstr("publish on cmd_vel"));
@@ -172,7 +172,7 @@ TEST(CommandReasons, OfIgnoredPartsNameThem) {
   command.ignored = kPartLinearY | kPartMode;
   command.requests_partial = 3;
   DiagnosticReport report("diff_drive_controller", "diffbot");
-  report_command(report, command, 0, {});
+  report_command(report, command, 0, {}, {});
   EXPECT_EQ(value_of(report, "ignored"), "linear.y mode");
   EXPECT_EQ(value_of(report, "commands_partly_ignored"), "3");
   EXPECT_EQ(value_of(report, "reasons"), "part_ignored");
@@ -180,7 +180,7 @@ TEST(CommandReasons, OfIgnoredPartsNameThem) {
 
 TEST(CommandReasons, OfAMomentAreReported) {
   DiagnosticReport report("diff_drive_controller", "diffbot");
-  report_command(report, {}, std::uint64_t{kReasonJerkYielded} | kReasonSaturated, {});
+  report_command(report, {}, std::uint64_t{kReasonJerkYielded} | kReasonSaturated, {}, {});
   EXPECT_EQ(value_of(report, "reasons"), "");
   EXPECT_EQ(value_of(report, "reasons_lately"), "jerk_yielded saturated");
   EXPECT_EQ(report.message().level, static_cast<int>(msg::DiagnosticStatus::OK));
@@ -190,19 +190,19 @@ TEST(CommandReasons, ThatRefuseCommandsWarn) {
   for (const std::uint64_t bit :
        {kReasonRefused, kReasonStale, kReasonManySenders, kReasonRevoked, kReasonPartIgnored}) {
     DiagnosticReport report("diff_drive_controller", "diffbot");
-    report_command(report, {}, bit, {});
+    report_command(report, {}, bit, {}, {});
     EXPECT_EQ(report.message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
-    EXPECT_THAT(report.message().message, HasSubstr(sentences_of(kCommandReasonNames, bit)));
+    EXPECT_THAT(report.message().message, HasSubstr(sentences_of(kCommandReasonNames, bit, {})));
   }
 }
 
 TEST(CommandSenders, AreAValueAndWarnWhereThereIsMoreThanOne) {
   DiagnosticReport one("diff_drive_controller", "diffbot");
-  report_command(one, {}, 0, {"/teleop"});
+  report_command(one, {}, 0, {}, {"/teleop"});
   EXPECT_EQ(value_of(one, "senders"), "/teleop");
   EXPECT_EQ(one.message().level, static_cast<int>(msg::DiagnosticStatus::OK));
   DiagnosticReport two("diff_drive_controller", "diffbot");
-  report_command(two, {}, 0, {"/navigation", "/teleop"});
+  report_command(two, {}, 0, {}, {"/navigation", "/teleop"});
   EXPECT_EQ(value_of(two, "senders"), "/navigation, /teleop");
   EXPECT_EQ(two.message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
   EXPECT_THAT(two.message().message, HasSubstr("/navigation, /teleop"));

@@ -29,7 +29,7 @@ class SafetyStatusTest : public testing::Test {
     robot_.joints[1].name = "right_wheel_joint";
   }
 
-  msg::SafetyStatus message() const { return safety_status(permit_, robot_, absent_, time_, kPeriod); }
+  msg::SafetyStatus message() const { return safety_status(permit_, robot_, absent_, time_, kPeriod, {}); }
 
   Permit stopped() const {
     Permit stopped = permit_;
@@ -148,23 +148,23 @@ TEST_F(SafetyStatusTest, DistinguishesNewsFromRepetition) {
 }
 
 TEST_F(SafetyStatusTest, AnswersAnAcceptedReset) {
-  EXPECT_EQ(reset_text(stopped(), permit_, {}), "released");
+  EXPECT_EQ(reset_text(stopped(), permit_, {}, {}), "released");
 }
 
 TEST_F(SafetyStatusTest, DoesNotClaimToHaveReleasedWhatWasNotStopped) {
-  EXPECT_EQ(reset_text(permit_, permit_, {}), "nothing was stopped");
+  EXPECT_EQ(reset_text(permit_, permit_, {}, {}), "nothing was stopped");
 }
 
 TEST_F(SafetyStatusTest, AnswersARefusedResetWithTheSenders) {
   permit_.reset_refusal = kRefusalCommand;
-  EXPECT_THAT(reset_text(stopped(), permit_, {.commands = {"/send_cmd", "/teleop"}, .e_stop = {}}),
+  EXPECT_THAT(reset_text(stopped(), permit_, {.commands = {"/send_cmd", "/teleop"}, .e_stop = {}}, {}),
               HasSubstr("/send_cmd, /teleop"));
 }
 
 TEST_F(SafetyStatusTest, AnswersARefusedResetWithTheCauseThatPersists) {
   permit_.reset_refusal = kRefusalCauseActive;
   permit_.active = kCauseEmergencyStopTopic;
-  EXPECT_THAT(reset_text(stopped(), permit_, {.commands = {}, .e_stop = {"/panel", "/gate"}}),
+  EXPECT_THAT(reset_text(stopped(), permit_, {.commands = {}, .e_stop = {"/panel", "/gate"}}, {}),
               HasSubstr("true on e_stop: /panel, /gate"));
 }
 

@@ -61,7 +61,7 @@ class StopLogTest : public testing::Test {
     return enter(SupervisorState::kReady);
   }
 
-  msg::SafetyStatus message() const { return safety_status(permit_, robot_, {}, time_, 1'000'000); }
+  msg::SafetyStatus message() const { return safety_status(permit_, robot_, {}, time_, 1'000'000, {}); }
 
   StopLog log_{kLogPeriod, 1.25};
   Permit permit_;

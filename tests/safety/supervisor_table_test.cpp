@@ -100,7 +100,7 @@ TEST(FixedReactions, OnlyTheHeartbeatRampsAndOnlyTheDriversFaultsLeadToFault) {
 TEST(Names, SpeakOfEveryBitThatIsSet) {
   EXPECT_EQ(names_of(kStopCauseNames, kCauseControllerLost | kCauseHeartbeatLost), "controller_lost heartbeat_lost");
   EXPECT_EQ(names_of(kStopCauseNames, 0), "");
-  EXPECT_EQ(sentences_of(kResetRefusalNames, kRefusalMoving),
+  EXPECT_EQ(sentences_of(kResetRefusalNames, kRefusalMoving, {}),
             "the robot has not come to rest (wait until every joint stands)");
   EXPECT_EQ(name_of(static_cast<SupervisorState>(99)), "UNKNOWN");
 }

@@ -55,15 +55,21 @@ class QuadrupedLoop {
     shock = std::max(shock, std::hypot(force[0], force[1], force[2]) - 9.81);
     for (std::size_t i = 0; i < kLegs; ++i) slipped[i] += now.slip[i] * 0.001;
   }
-  /// Runs for 3 s. Returns after how many s the body came to rest.
-  double settle() {
-    double rested = 0, rest_at = 0;
-    for (double t = 0; t < 3; t += 0.001) {
+  struct Fold {
+    int cycles = 0;      ///< until the gate brakes
+    double rest_at = 0;  ///< s, when the body comes to rest
+  };
+  /// Stops the robot as the operator does, and runs for 3 s.
+  Fold fold() {
+    clear();
+    loop.e_stop();
+    Fold fold;
+    for (int k = 1; k <= 3000; ++k) {
+      if (fold.cycles == 0 || gate().verdict != GateVerdict::kBrake) fold.cycles = k;
       step();
-      rested = speed() < 0.01 ? rested + 0.001 : 0;
-      if (rested < 0.001) rest_at = t;
+      if (speed() >= 0.01) fold.rest_at = k * 0.001;
     }
-    return rest_at;
+    return fold;
   }
   void clear() { effort = tilt = shock = 0, slipped = {}; }
   static std::uint64_t cycles(double seconds) { return static_cast<std::uint64_t>(std::llround(seconds / 0.001)); }

@@ -118,7 +118,7 @@ class Process:
             stdout=self._output,
             stderr=subprocess.STDOUT,
             cwd=folder,
-            env={**os.environ, **environment},
+            env={**os.environ, **(environment or {})},
         )
 
     @property

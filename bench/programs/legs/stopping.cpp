@@ -29,9 +29,7 @@ void push_once(const LegModel& model, double speed, int direction, WorstValues& 
   const Vector3 begin = robot.truth().pose_world.position;
   robot.wait(kPush);
   const double reached = robot.speed();
-  robot.clear();
-  robot.loop.e_stop();
-  robot.settle();
+  robot.fold();
   const Vector3& end = robot.truth().pose_world.position;
   const std::string name = (speed == 0.5 ? "0.5" : speed == 1.0 ? "1.0" : "1.5") + std::string(" m/s, ");
   worst.add(name + "turned over", robot.tilt_now() > kTurnedOver ? 1 : 0, "runs");
@@ -55,15 +53,9 @@ void stop(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
       robot.run(2.0, up);
     }
     const double tilted = robot.tilt_now();
-    robot.clear();
-    robot.loop.e_stop();
-    int braked = 0;
-    while (robot.gate().verdict != GateVerdict::kBrake && braked < 100) {
-      robot.step();
-      ++braked;
-    }
-    worst.add("cycles to the brake, " + situation, braked, "cycles");
-    worst.add("rest, " + situation, robot.settle(), "s");
+    const auto [cycles, rest_at] = robot.fold();
+    worst.add("cycles to the brake, " + situation, cycles, "cycles");
+    worst.add("rest, " + situation, rest_at, "s");
     worst.add("acceleration, " + situation, robot.shock, "m/s^2");
     worst.add("tilt, " + situation, std::max(robot.tilt, tilted), "rad");
   }

@@ -40,8 +40,7 @@ std::unique_ptr<Driver> make_example(const Parameters& parameters, const Machine
                                      const std::vector<Brake>& brakes, DriverClock /*clock*/) {
   refuse_held_joints(machine, "example");
   const DriveMotors motors = drive_motors(machine, brakes);
-  ExampleParameters board;
-  read_driver_file(parameters.drives, "board", keys(board));
+  const auto board = read_driver_file<ExampleParameters>(parameters.drives, "board");
   return std::make_unique<ExampleDriver>(board, motors.brakes, motors.effort_limits, motors.joint_count,
                                          parameters.loop.period(), connect_to_board(board.address));
 }

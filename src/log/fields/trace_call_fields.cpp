@@ -38,23 +38,9 @@ void add_velocity(TraceFields& to, const std::string& name, Get) {
   const auto number = [&](const char* what, const char* comment, auto get) {
     to.push_back(field<C, u64>(name + "_" + what, comment, get));
   };
-#define OF(member)             \
-  [](auto& part) -> auto& {    \
-    return Get{}(part).member; \
-  }
   to.push_back(field<C, f64>(name + "_linear", "m/s", OF(content.twist.linear)));
   to.push_back(field<C, f64>(name + "_angular", "rad/s", OF(content.twist.angular)));
-  to.push_back(field<C, f64>(name + "_height", "m, above the nominal posture", OF(content.posture.height)));
-  to.push_back(field<C, f64>(name + "_roll", "rad", OF(content.posture.roll)));
-  to.push_back(field<C, f64>(name + "_pitch", "rad", OF(content.posture.pitch)));
-  to.push_back(field<C, f64>(name + "_x", "m, to the front", OF(content.posture.x)));
-  to.push_back(field<C, f64>(name + "_y", "m, to the left", OF(content.posture.y)));
-  to.push_back(field<C, f64>(name + "_yaw", "rad", OF(content.posture.yaw)));
-  to.push_back(list<C, f64, kRequestJoints>(
-      name + "_joints", "rad or m; empty: all zero",
-      [](const C* part, std::size_t) { return part != nullptr ? logged_joints(Get{}(*part).content) : 0; },
-      [](auto& part, std::size_t i) -> auto& { return Get{}(part).content.joints[i]; }));
-  number("mode", "0: the default of the machine", OF(content.mode));
+  add_request(to, name, OF(content));
   number("count", "usable commands so far", OF(count));
   to.push_back(field<C, std::int64_t>(name + "_age_ns", "ns, when it arrived, by its stamp", OF(age_ns)));
   number("stale", "refused for their stamp", OF(stale));
@@ -62,7 +48,6 @@ void add_velocity(TraceFields& to, const std::string& name, Get) {
   number("revoked", "refused because their sender owes a zero velocity", OF(revoked));
   number("many_senders", "1: more than one node sends now", OF(many_senders));
   number("contested", "1: another sender requested motion; 2: a zero velocity of no sender", OF(contested));
-#undef OF
 }
 
 template <class Get>
@@ -70,10 +55,6 @@ void add_operator(TraceFields& to, const std::string& name, Get) {
   const auto number = [&](const char* what, const char* comment, auto get) {
     to.push_back(field<M, u64>(name + "_" + what, comment, get));
   };
-#define OF(member)             \
-  [](auto& part) -> auto& {    \
-    return Get{}(part).member; \
-  }
   number("e_stop_level", "1: last value on e_stop is true", OF(e_stop_level));
   number("e_stop_messages", "on that topic", OF(e_stop_messages));
   number("e_stop_triggers", "true on that topic", OF(e_stop_triggers));
@@ -82,7 +63,6 @@ void add_operator(TraceFields& to, const std::string& name, Get) {
   number("heartbeats", "messages", OF(heartbeats));
   number("clearances", "messages", OF(clearances));
   to.push_back(field<M, f64>(name + "_clearance", "m, last value", OF(clearance)));
-#undef OF
 }
 
 template <class Frame>

@@ -1,24 +1,30 @@
 #include "log/fields/trace_field_groups.h"
 #include "log/fields/trace_field_kinds.h"
+#include "signals/wheeled/drive_tuning.h"
 
 namespace robot_control {
 
 using namespace trace_words;
 
+#define TUNING(member)                                  \
+  [](auto& part) -> auto& {                             \
+    return content_of<DriveTuning>(part.tuning).member; \
+  }
+#define WHEEL_TUNING(member)                                      \
+  [](auto& part, std::size_t i) -> auto& {                        \
+    return content_of<DriveTuning>(part.tuning).wheels[i].member; \
+  }
+
 namespace {
 
-void add_requested_posture(TraceFields& to) {
-  to.push_back(
-      field<C, f64>("requested_height", "m, above the nominal posture", MEMBER(command.requested.posture.height)));
-  to.push_back(field<C, f64>("requested_roll", "rad", MEMBER(command.requested.posture.roll)));
-  to.push_back(field<C, f64>("requested_pitch", "rad", MEMBER(command.requested.posture.pitch)));
-  to.push_back(field<C, f64>("requested_x", "m, to the front", MEMBER(command.requested.posture.x)));
-  to.push_back(field<C, f64>("requested_y", "m, to the left", MEMBER(command.requested.posture.y)));
-  to.push_back(field<C, f64>("requested_yaw", "rad", MEMBER(command.requested.posture.yaw)));
-  to.push_back(list<C, f64, kRequestJoints>(
-      "requested_joints", "rad or m; empty: all zero",
-      [](const C* part, std::size_t) { return part != nullptr ? logged_joints(part->command.requested) : 0; },
-      ELEMENT(command.requested.joints[i])));
+/// The list holds a value for each joint that may be that of a wheel.
+template <class Part, class Wire, class Get>
+TraceField per_wheel(std::string name, std::string comment, Get get) {
+  TraceField result = list<Part, Wire, kMaxWheels>(
+      std::move(name), std::move(comment), [](const Part*, std::size_t joints) { return std::min(joints, kMaxWheels); },
+      get);
+  result.max_joints = kMaxWheels;
+  return result;
 }
 
 void add_legs(TraceFields& to) {
@@ -44,8 +50,7 @@ void add_command(TraceFields& to) {
   to.push_back(field<C, f64>("requested_angular", "rad/s, base axes", MEMBER(command.requested.twist.angular))
                    .shown_as(column<C>("requested_angular", "rad/s",
                                        [](const C& c, std::size_t) { return c.command.requested.twist.angular[2]; })));
-  add_requested_posture(to);
-  number("requested_mode", "0: the default of the machine", MEMBER(command.requested.mode));
+  add_request(to, "requested", MEMBER(command.requested));
   shown("request_ignored", "RequestPart bits that the machine cannot execute", MEMBER(command.ignored));
   to.push_back(field<C, f32>("limited_linear", "m/s, after limits", MEMBER(command.twist_limited.linear))
                    .shown({"limited_linear"}));
@@ -69,10 +74,7 @@ void add_command(TraceFields& to) {
   number("command_permit_cycle", "of the permit used", MEMBER(command.permit_cycle));
   number("silent_cycles", "since the last message of any sender", MEMBER(command.silent_cycles));
   number("command_joint_count", "", MEMBER(command.joint_count));
-  to.push_back(field<C, u64>("command_reasons", "CommandReason bits", MEMBER(command.reasons))
-                   .shown_as(column<C>("command_reasons", "CommandReason and WheeledReason bits",
-                                       [](const C& c, std::size_t) { return reasons_of(c.command); })));
-  number("wheeled_reasons", "WheeledReason bits", MEMBER(command.wheeled.reasons));
+  shown("command_reasons", "CommandReason bits, and those of the kind of robot", MEMBER(command.reasons));
   add_legs(to);
   number("request_cycle", "in which the last command was received", MEMBER(command.request_cycle));
   shown("requests_received", "in this run", MEMBER(command.requests_received));
@@ -93,41 +95,40 @@ void add_tuning(TraceFields& to) {
     to.push_back(field<C, f64>(name, unit, get).shown());
   };
   to.push_back(
-      field<C, u64>("tuning", "sets of live parameters accepted; what follows was in force", MEMBER(tuning.count))
-          .shown());
-  number("max_linear_speed", "m/s", MEMBER(tuning.linear.speed));
-  number("max_linear_acceleration", "m/s^2", MEMBER(tuning.linear.acceleration));
-  number("max_linear_deceleration", "m/s^2", MEMBER(tuning.linear.deceleration));
-  number("max_linear_emergency_deceleration", "m/s^2", MEMBER(tuning.linear.emergency_deceleration));
-  number("max_linear_jerk", "m/s^3, 0: none", MEMBER(tuning.linear.jerk));
-  to.push_back(field<C, f64>("linear_reverse_speed", "m/s, backwards", MEMBER(tuning.linear.reverse_speed))
-                   .shown_as(column<C>("min_linear_speed", "m/s, at most 0",
-                                       [](const C& c, std::size_t) { return -c.tuning.linear.reverse_speed; })));
-  number("max_linear_acceleration_reverse", "m/s^2", MEMBER(tuning.linear.reverse_acceleration));
-  number("max_linear_deceleration_reverse", "m/s^2", MEMBER(tuning.linear.reverse_deceleration));
-  number("max_angular_speed", "rad/s", MEMBER(tuning.angular.speed));
-  number("max_angular_acceleration", "rad/s^2", MEMBER(tuning.angular.acceleration));
-  number("max_angular_deceleration", "rad/s^2", MEMBER(tuning.angular.deceleration));
-  number("max_angular_emergency_deceleration", "rad/s^2", MEMBER(tuning.angular.emergency_deceleration));
-  number("max_angular_jerk", "rad/s^3, 0: none", MEMBER(tuning.angular.jerk));
-  to.push_back(field<C, f64>("angular_reverse_speed", "rad/s", MEMBER(tuning.angular.reverse_speed)));
-  to.push_back(field<C, f64>("angular_reverse_acceleration", "rad/s^2", MEMBER(tuning.angular.reverse_acceleration)));
-  to.push_back(field<C, f64>("angular_reverse_deceleration", "rad/s^2", MEMBER(tuning.angular.reverse_deceleration)));
-  to.push_back(field<C, u64>("keep_curvature", "1: kept", MEMBER(tuning.keep_curvature)).shown());
-  number("cmd_vel_timeout", "s, 0: never", MEMBER(tuning.cmd_vel_timeout));
-  number("tracking_bandwidth", "Hz", MEMBER(tuning.tracking_bandwidth));
-  number("feed_forward_mass", "kg", MEMBER(tuning.mass));
-  number("feed_forward_yaw_inertia", "kg*m^2", MEMBER(tuning.yaw_inertia));
-  to.push_back(per_wheel<C, f64>("pid_kp", "N*m*s/rad", ELEMENT(tuning.wheels[i].kp)).shown_per_joint("pid_kp"));
-  to.push_back(per_wheel<C, f64>("pid_ki", "N*m/rad", ELEMENT(tuning.wheels[i].ki)).shown_per_joint("pid_ki"));
-  to.push_back(per_wheel<C, f64>("pid_kd", "N*m*s^2/rad", ELEMENT(tuning.wheels[i].kd)).shown_per_joint("pid_kd"));
-  to.push_back(
-      per_wheel<C, f64>("model_inertia", "kg*m^2, of the tracking loop", ELEMENT(tuning.wheels[i].model_inertia)));
-  to.push_back(per_wheel<C, f64>("feed_forward_inertia", "kg*m^2", ELEMENT(tuning.wheels[i].inertia))
+      field<C, u64>("tuning", "sets of live parameters accepted; what follows was in force", TUNING(count)).shown());
+  number("max_linear_speed", "m/s", TUNING(linear.speed));
+  number("max_linear_acceleration", "m/s^2", TUNING(linear.acceleration));
+  number("max_linear_deceleration", "m/s^2", TUNING(linear.deceleration));
+  number("max_linear_emergency_deceleration", "m/s^2", TUNING(linear.emergency_deceleration));
+  number("max_linear_jerk", "m/s^3, 0: none", TUNING(linear.jerk));
+  to.push_back(field<C, f64>("linear_reverse_speed", "m/s, backwards", TUNING(linear.reverse_speed))
+                   .shown_as(column<C>("min_linear_speed", "m/s, at most 0", [](const C& c, std::size_t) {
+                     return -content_of<DriveTuning>(c.tuning).linear.reverse_speed;
+                   })));
+  number("max_linear_acceleration_reverse", "m/s^2", TUNING(linear.reverse_acceleration));
+  number("max_linear_deceleration_reverse", "m/s^2", TUNING(linear.reverse_deceleration));
+  number("max_angular_speed", "rad/s", TUNING(angular.speed));
+  number("max_angular_acceleration", "rad/s^2", TUNING(angular.acceleration));
+  number("max_angular_deceleration", "rad/s^2", TUNING(angular.deceleration));
+  number("max_angular_emergency_deceleration", "rad/s^2", TUNING(angular.emergency_deceleration));
+  number("max_angular_jerk", "rad/s^3, 0: none", TUNING(angular.jerk));
+  to.push_back(field<C, f64>("angular_reverse_speed", "rad/s", TUNING(angular.reverse_speed)));
+  to.push_back(field<C, f64>("angular_reverse_acceleration", "rad/s^2", TUNING(angular.reverse_acceleration)));
+  to.push_back(field<C, f64>("angular_reverse_deceleration", "rad/s^2", TUNING(angular.reverse_deceleration)));
+  to.push_back(field<C, u64>("keep_curvature", "1: kept", TUNING(keep_curvature)).shown());
+  number("cmd_vel_timeout", "s, 0: never", TUNING(cmd_vel_timeout));
+  number("tracking_bandwidth", "Hz", TUNING(tracking_bandwidth));
+  number("feed_forward_mass", "kg", TUNING(mass));
+  number("feed_forward_yaw_inertia", "kg*m^2", TUNING(yaw_inertia));
+  to.push_back(per_wheel<C, f64>("pid_kp", "N*m*s/rad", WHEEL_TUNING(kp)).shown_per_joint("pid_kp"));
+  to.push_back(per_wheel<C, f64>("pid_ki", "N*m/rad", WHEEL_TUNING(ki)).shown_per_joint("pid_ki"));
+  to.push_back(per_wheel<C, f64>("pid_kd", "N*m*s^2/rad", WHEEL_TUNING(kd)).shown_per_joint("pid_kd"));
+  to.push_back(per_wheel<C, f64>("model_inertia", "kg*m^2, of the tracking loop", WHEEL_TUNING(model_inertia)));
+  to.push_back(per_wheel<C, f64>("feed_forward_inertia", "kg*m^2", WHEEL_TUNING(inertia))
                    .shown_per_joint("feed_forward_inertia"));
-  to.push_back(per_wheel<C, f64>("feed_forward_damping", "N*m*s/rad", ELEMENT(tuning.wheels[i].damping))
+  to.push_back(per_wheel<C, f64>("feed_forward_damping", "N*m*s/rad", WHEEL_TUNING(damping))
                    .shown_per_joint("feed_forward_damping"));
-  to.push_back(per_wheel<C, f64>("feed_forward_friction", "N*m", ELEMENT(tuning.wheels[i].friction))
+  to.push_back(per_wheel<C, f64>("feed_forward_friction", "N*m", WHEEL_TUNING(friction))
                    .shown_per_joint("feed_forward_friction"));
 }
 

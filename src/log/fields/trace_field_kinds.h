@@ -40,6 +40,12 @@ using i64 = std::int64_t;
     return part.member;                    \
   }
 
+/// The reference is to a member of what `Get` returns.
+#define OF(member)             \
+  [](auto& part) -> auto& {    \
+    return Get{}(part).member; \
+  }
+
 /// A law has its part also where an injected fault suppressed the frame: the law ran.
 template <class Part>
 const Part* part_of(const JoinedRow& row) {
@@ -189,14 +195,21 @@ TraceField per_joint(std::string name, std::string comment, Get get) {
       std::move(name), std::move(comment), [](const Part*, std::size_t joints) { return joints; }, get);
 }
 
-/// The list holds a value for each joint that may be that of a wheel.
-template <class Part, class Wire, class Get>
-TraceField per_wheel(std::string name, std::string comment, Get get) {
-  TraceField result = list<Part, Wire, kMaxWheels>(
-      std::move(name), std::move(comment), [](const Part*, std::size_t joints) { return std::min(joints, kMaxWheels); },
-      get);
-  result.max_joints = kMaxWheels;
-  return result;
+/// Appends the fields of a Request behind its twist. `Get` returns the Request.
+template <class Get>
+void add_request(TraceFields& to, const std::string& name, Get) {
+  using Part = ControllerTrace;
+  to.push_back(field<Part, double>(name + "_height", "m, above the nominal posture", OF(posture.height)));
+  to.push_back(field<Part, double>(name + "_roll", "rad", OF(posture.roll)));
+  to.push_back(field<Part, double>(name + "_pitch", "rad", OF(posture.pitch)));
+  to.push_back(field<Part, double>(name + "_x", "m, to the front", OF(posture.x)));
+  to.push_back(field<Part, double>(name + "_y", "m, to the left", OF(posture.y)));
+  to.push_back(field<Part, double>(name + "_yaw", "rad", OF(posture.yaw)));
+  to.push_back(list<Part, double, kRequestJoints>(
+      name + "_joints", "rad or m; empty: all zero",
+      [](const Part* part, std::size_t) { return part != nullptr ? logged_joints(Get{}(*part)) : 0; },
+      [](auto& part, std::size_t i) -> auto& { return Get{}(part).joints[i]; }));
+  to.push_back(field<Part, std::uint64_t>(name + "_mode", "0: the default of the machine", OF(mode)));
 }
 
 /// The field holds the yaw of an orientation, computed from the recorded float32. A reader ignores it. The column is

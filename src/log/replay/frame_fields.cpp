@@ -127,7 +127,6 @@ std::vector<FieldDifference> differences(const CommandFrame& logged, const Comma
       whole("zero_requested"),
       whole("silent_cycles"),
       whole("silence_needed"),
-      whole("wheeled_reasons"),
       {"velocity_measured", kMaxWheels},
       whole("legged_phase"),
       whole("legged_lifted"),

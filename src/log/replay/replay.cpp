@@ -83,9 +83,9 @@ struct Replay::Parts {
   SnapshotStore snapshots;
   PublishedFrames frames;
   GateReplica gate;
-  EstimatorReplica estimator;
-  ControllerReplica controller;
-  MonitorReplica monitor;
+  LawReplica<EstimatorLaw, StateFrame> estimator;
+  LawReplica<ControllerLaw, CommandFrame> controller;
+  LawReplica<MonitorLaw, Permit> monitor;
   std::unique_ptr<Variant> variant;
   std::function<void(const VariedRow&)> watch;
 };

@@ -42,22 +42,12 @@ struct GateReplica {
   Continuity continuity;
 };
 
-struct EstimatorReplica {
-  std::unique_ptr<EstimatorLaw> law;
+/// `output` is that of the last cycle.
+template <class Law, class Frame>
+struct LawReplica {
+  std::unique_ptr<Law> law;
   Continuity continuity;
-  StateFrame output;
-};
-
-struct ControllerReplica {
-  std::unique_ptr<ControllerLaw> law;
-  Continuity continuity;
-  CommandFrame output;
-};
-
-struct MonitorReplica {
-  std::unique_ptr<MonitorLaw> law;
-  Continuity continuity;
-  Permit output;
+  Frame output;
 };
 
 }  // namespace robot_control

@@ -12,15 +12,11 @@
 
 #include "loop/cycles/cycle_clock.h"
 #include "loop/cycles/trace_sink.h"
-#include "loop/machine_identity.h"
 #include "loop/processes/process.h"
 #include "robots/robot.h"
 #include "signals/roles.h"
 
 namespace robot_control {
-
-/// The clock with which the cycles stamp their trace; null in lockstep, where time stands still.
-Now clock_of(const LoopParameters& loop);
 
 /// The names of a consumer: thread, channel and ring.
 struct ConsumerNames {
@@ -43,25 +39,23 @@ class ConsumerProcess : public Process {
   /// The channel that this node publishes.
   const FrameReader<Frame>& output() const noexcept { return output_.reader; }
 
- protected:
-  /// Longest wait before the end of the loop is noticed, ns.
-  static constexpr std::int64_t kStopCheck = 100'000'000;
-
-  ConsumerProcess(const Parameters& parameters, const Robot& robot, const std::string& bus, const ConsumerNames& names)
-      : Process(parameters.loop, names.priority, names.thread),
-        output_(bus, names.channel),
-        sensors_(bus, ChannelNames::kSensors),
-        robot_(identified(robot.machine(), parameters.loop)),
-        programs_(programs_of(parameters, robot.kind())),
-        trace_(bus, names.ring, lockstep()) {}
-
   /// The driver, and before cycle 0 the telemetry that was asked for. Later the loop goes on without one.
-  std::vector<std::string> missing_anywhere() const {
+  std::vector<std::string> missing() const override {
     std::vector<std::string> names;
     if (!sensors_.channel.locked()) names.emplace_back(program_of(Role::kDriver, programs_));
     if (waits_for_telemetry()) names.emplace_back(program_of(Role::kTelemetry));
     return names;
   }
+
+ protected:
+  /// Longest wait before the end of the loop is noticed, ns.
+  static constexpr std::int64_t kStopCheck = 100'000'000;
+
+  ConsumerProcess(const Parameters& parameters, const Robot& robot, const std::string& bus, const ConsumerNames& names)
+      : Process(parameters, robot, names.priority, names.thread),
+        output_(bus, names.channel),
+        sensors_(bus, ChannelNames::kSensors),
+        trace_(bus, names.ring, lockstep()) {}
 
   void poll_channels() override {
     sensors_.poll();
@@ -88,8 +82,6 @@ class ConsumerProcess : public Process {
 
   Output<Frame> output_;
   Input<SensorFrame> sensors_;
-  MachineModel robot_;  ///< identified
-  Programs programs_;
 
  private:
   bool waits_for_telemetry() const {

@@ -11,14 +11,14 @@ ControllerProcess::ControllerProcess(const Parameters& parameters, const Robot& 
       state_(bus, ChannelNames::kState),
       permit_(bus, ChannelNames::kPermit),
       cycle_(robot.make_controller(), robot_.hash, {&sensors_.reader, &state_.reader, &permit_.reader, output_.writer},
-             load_script(parameters.loop.command_script), clock_of(parameters.loop)),
+             load_script(parameters.loop.command_script), clock()),
       retuner_(robot.make_retuner(cycle_.tunings())) {
   robot.require_drivable();
   cycle_.set_process(mint_number());
 }
 
 std::vector<std::string> ControllerProcess::missing() const {
-  std::vector<std::string> names = missing_anywhere();
+  std::vector<std::string> names = ConsumerProcess::missing();
   if (!state_.channel.locked()) names.emplace_back(program_of(Role::kEstimator));
   if (!permit_.channel.locked()) names.emplace_back(program_of(Role::kMonitor));
   return names;

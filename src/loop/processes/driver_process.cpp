@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "loop/gate_setup.h"
-#include "loop/machine_identity.h"
 #include "loop/mint_number.h"
 #include "rt/clock.h"
 #include "rt/periodic.h"
@@ -35,9 +34,7 @@ bool published(const FrameReader<Frame>& reader, std::uint64_t run, std::uint64_
 }  // namespace
 
 DriverProcess::DriverProcess(const Parameters& parameters, const Robot& robot, const std::string& bus)
-    : Process(parameters.loop, LoopPriority::kDriver, "driver"),
-      programs_(programs_of(parameters, robot.kind())),
-      robot_(identified(robot.machine(), parameters.loop)),
+    : Process(parameters, robot, LoopPriority::kDriver, "driver"),
       gate_(robot.gate()),
       needs_(robot.needs()),
       cycles_(parameters.plant.cycles),
@@ -59,7 +56,7 @@ void DriverProcess::open_driver(std::unique_ptr<Driver> driver) {
   driver_ = std::move(driver);
   cycle_ = std::make_unique<DriverCycle>(
       *driver_, robot_, DriverCycle::Channels{sensors_.writer, truth_.writer, &command_.reader, &permit_.reader},
-      loop_parameters().period_ns(), lockstep() ? nullptr : &monotonic_ns, gate_);
+      loop_parameters().period_ns(), clock(), gate_);
   SensorFrame last;  // of an earlier process; time never goes back
   if (lockstep() && sensors_.reader.newest(last) == Lookup::kFrame) {
     cycle_->set_start(last.head.stamp_ns + loop_parameters().period_ns());
@@ -72,20 +69,19 @@ void DriverProcess::open_driver(std::unique_ptr<Driver> driver) {
 
 std::vector<std::string> DriverProcess::missing() const {
   std::vector<std::string> names;
+  const auto add_those_without = [&](const auto& has) {
+    if (!has(state_)) names.emplace_back(program_of(Role::kEstimator));
+    if (!has(command_)) names.emplace_back(program_of(Role::kController, programs_));
+    if (!has(permit_)) names.emplace_back(program_of(Role::kMonitor));
+  };
   const std::uint64_t run = attached_run(sensors_.writer.memory()->head);
-  if (loop_parameters().wait_for_nodes || lockstep()) {
-    if (!attached(state_, run)) names.emplace_back(program_of(Role::kEstimator));
-    if (!attached(command_, run)) names.emplace_back(program_of(Role::kController, programs_));
-    if (!attached(permit_, run)) names.emplace_back(program_of(Role::kMonitor));
-  }
+  if (loop_parameters().wait_for_nodes || lockstep())
+    add_those_without([&](const auto& input) { return attached(input, run); });
   if (loop_parameters().wait_for_telemetry && !trace_.reader_present())
     names.emplace_back(program_of(Role::kTelemetry));
   if (!names.empty() || !lockstep()) return names;
-  if (const std::uint64_t awaited = awaited_.load(); awaited != 0) {
-    if (!published(state_.reader, run, awaited - 1)) names.emplace_back(program_of(Role::kEstimator));
-    if (!published(command_.reader, run, awaited - 1)) names.emplace_back(program_of(Role::kController, programs_));
-    if (!published(permit_.reader, run, awaited - 1)) names.emplace_back(program_of(Role::kMonitor));
-  }
+  if (const std::uint64_t awaited = awaited_.load(); awaited != 0)
+    add_those_without([&](const auto& input) { return published(input.reader, run, awaited - 1); });
   return names;
 }
 

@@ -59,8 +59,6 @@ class DriverProcess final : public Process {
   void tick() noexcept;
   bool more() const noexcept { return cycles_ == 0 || cycle_->next_cycle() < cycles_; }
 
-  Programs programs_;
-  MachineModel robot_;
   GateParameters gate_;
   MachineNeeds needs_;
   std::uint64_t cycles_;

@@ -7,12 +7,8 @@ namespace robot_control {
 EstimatorProcess::EstimatorProcess(const Parameters& parameters, const Robot& robot, const std::string& bus)
     : ConsumerProcess(parameters, robot, bus,
                       {LoopPriority::kEstimator, "estimator", ChannelNames::kState, TraceRing::kEstimator}),
-      cycle_(robot.make_estimator(), robot_.hash, sensors_.reader, output_.writer, clock_of(parameters.loop)) {
+      cycle_(robot.make_estimator(), robot_.hash, sensors_.reader, output_.writer, clock()) {
   cycle_.set_process(mint_number());
-}
-
-std::vector<std::string> EstimatorProcess::missing() const {
-  return missing_anywhere();
 }
 
 void EstimatorProcess::loop() noexcept {

@@ -15,7 +15,6 @@ class EstimatorProcess final : public ConsumerProcess<StateFrame, EstimatorTrace
   EstimatorProcess(const Parameters& parameters, const Robot& robot, const std::string& bus);
   ~EstimatorProcess() override { stop(); }
 
-  std::vector<std::string> missing() const override;
   EstimatorCycle& cycle() noexcept { return cycle_; }
 
  private:

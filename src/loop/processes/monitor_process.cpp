@@ -15,7 +15,7 @@ MonitorProcess::MonitorProcess(const Parameters& parameters, const Robot& robot,
       loss_ns_(static_cast<std::int64_t>(parameters.safety.loss_cycles) * parameters.loop.period_ns()),
       cycle_(robot.make_monitor(), robot_.hash, loss_ns_,
              {&sensors_.reader, &state_.reader, &command_.reader, output_.writer},
-             load_script(parameters.loop.command_script), clock_of(parameters.loop),
+             load_script(parameters.loop.command_script), clock(),
              {.causes = latch_file_.found().causes, .first_cause = latch_file_.found().first_cause}),
       inherited_(cycle_.permit()) {
   cycle_.set_process(mint_number());
@@ -44,7 +44,7 @@ void MonitorProcess::with_latched(Keep keep) const {
 }
 
 std::vector<std::string> MonitorProcess::missing() const {
-  std::vector<std::string> names = missing_anywhere();
+  std::vector<std::string> names = ConsumerProcess::missing();
   if (!state_.channel.locked()) names.emplace_back(program_of(Role::kEstimator));
   if (!command_.channel.locked()) names.emplace_back(program_of(Role::kController, programs_));
   return names;

@@ -4,8 +4,12 @@
 
 namespace robot_control {
 
-Process::Process(const LoopParameters& loop, LoopPriority priority, std::string thread_name)
-    : loop_(loop), priority_(priority), thread_name_(std::move(thread_name)) {
+Process::Process(const Parameters& parameters, const Robot& robot, LoopPriority priority, std::string thread_name)
+    : robot_(identified(robot.machine(), parameters.loop)),
+      programs_(programs_of(parameters, robot.kind())),
+      loop_(parameters.loop),
+      priority_(priority),
+      thread_name_(std::move(thread_name)) {
   if (thread_parameters().policy == RealtimePolicy::kRequired) RealtimeThread(thread_parameters(), [] {});
 }
 

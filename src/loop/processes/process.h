@@ -15,7 +15,12 @@
 #include "bus/bus.h"
 #include "bus/latest_frames.h"
 #include "configuration/parameters.h"
+#include "loop/cycles/cycle_clock.h"
+#include "loop/machine_identity.h"
+#include "robots/robot.h"
+#include "rt/clock.h"
 #include "rt/realtime_thread.h"
+#include "signals/robot_kinds.h"
 
 namespace robot_control {
 
@@ -26,7 +31,7 @@ enum class LoopPriority : int { kDriver = 83, kMonitor = 82, kEstimator = 81, kC
 class Process {
  public:
   /// Throws RealtimeError when realtime: required cannot be granted: at start-up, before the other nodes run.
-  Process(const LoopParameters& loop, LoopPriority priority, std::string thread_name);
+  Process(const Parameters& parameters, const Robot& robot, LoopPriority priority, std::string thread_name);
   virtual ~Process();
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
@@ -65,6 +70,12 @@ class Process {
   void finish() noexcept { finished_.store(true); }
   const LoopParameters& loop_parameters() const noexcept { return loop_; }
   bool lockstep() const noexcept { return loop_.clock == ClockMode::kLockstep; }
+
+  /// The clock with which the cycles stamp their trace; null in lockstep, where time stands still.
+  Now clock() const noexcept { return lockstep() ? nullptr : &monotonic_ns; }
+
+  const MachineModel robot_;  ///< identified
+  const Programs programs_;
 
  private:
   RealtimeParameters thread_parameters() const;

@@ -137,7 +137,7 @@ TelemetryProcess::TelemetryProcess(const Parameters& parameters, const Robot& ro
       folder_(parameters.telemetry.directory, bytes_of(parameters.telemetry.quota)),
       lockstep_(parameters.loop.clock == ClockMode::kLockstep),
       permit_(bus, ChannelNames::kPermit),
-      timing_(lockstep_ ? nullptr : std::make_unique<TimingSummary>()),
+      timing_(lockstep_ ? nullptr : std::make_unique<TimingSummary>(programs_)),
       join_(parameters.loop.period(),
             [this](const JoinedRow& row) {
               if (timing_ != nullptr) timing_->add(row);
@@ -198,7 +198,7 @@ void TelemetryProcess::receive(const Row& row, std::size_t ring) {
   const std::uint64_t process = row.calls.law.process;
   if (std::exchange(law_processes_[ring], process) != process) ++parameter_changes_;
   if constexpr (requires { row.tuning; }) {
-    if (std::exchange(tuning_, row.tuning.count) != row.tuning.count) ++parameter_changes_;
+    if (std::exchange(tuning_, row.tuning) != row.tuning) ++parameter_changes_;
   }
   if (black_box_ == nullptr) return;
   black_box_->add(row);

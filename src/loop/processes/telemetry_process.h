@@ -110,7 +110,7 @@ class TelemetryProcess {
   Input<Permit> permit_;
   bool permit_seen_ = false;  ///< before, stops show in the rows that were there when this process began
   std::array<std::uint64_t, kLaws> law_processes_{};  ///< LawRow::process of the newest rows
-  std::uint64_t tuning_ = 0;                          ///< DriveTuning::count of the newest
+  LiveTuning tuning_;                                 ///< of the controller's newest row
   std::uint64_t parameter_changes_ = 0;
   std::unique_ptr<TimingSummary> timing_;  ///< null in lockstep, where no time passes within a cycle
   Join join_;

@@ -2,8 +2,6 @@
 
 #include <string>
 
-#include "signals/roles.h"
-
 namespace robot_control {
 namespace {
 
@@ -19,7 +17,8 @@ void append(TraceSummary& to, const std::string& name, const DurationFigures& fi
 
 }  // namespace
 
-TimingSummary::TimingSummary() : durations_({Role::kDriver, Role::kEstimator, Role::kController, Role::kMonitor}) {}
+TimingSummary::TimingSummary(const Programs& programs)
+    : programs_(programs), durations_({Role::kDriver, Role::kEstimator, Role::kController, Role::kMonitor}) {}
 
 void TimingSummary::add(const JoinedRow& row) noexcept {
   if (row.repeats || row.driver == nullptr) return;
@@ -40,7 +39,7 @@ bool TimingSummary::due(std::int64_t now_ns) noexcept {
 TraceSummary TimingSummary::summary(std::int64_t now_ns, const std::array<int, kLoopRoles>& threads) {
   TraceSummary summary{.stamp_ns = now_ns};
   for (const auto& [role, quantity, durations] : durations_.entries()) {
-    const std::string name = std::string(program_of(role)) + "." + std::string(name_of(quantity));
+    const std::string name = std::string(program_of(role, programs_)) + "." + std::string(name_of(quantity));
     append(summary, name, durations.total());
     append(summary, name + ".10s", durations.recent(now_ns));
   }
@@ -51,10 +50,10 @@ TraceSummary TimingSummary::summary(std::int64_t now_ns, const std::array<int, k
   const MachineTime machine = read_machine_time();
   count("machine.ticks", machine.total);
   count("machine.stolen_ticks", machine.stolen);
-  count(std::string(program_of(Role::kDriver)) + ".overruns", durations_.overruns());
+  count(std::string(programs_.driver) + ".overruns", durations_.overruns());
   for (std::size_t i = 0; i < kLoopRoles; ++i) {
     const Role role = static_cast<Role>(i);
-    const std::string program(program_of(role));
+    const std::string program(program_of(role, programs_));
     count(program + ".skipped", durations_.skipped(role));
     if (const auto read = threads[i] == 0 ? std::nullopt : read_thread_counters(threads[i])) counters_[i] = read;
     const std::optional<ThreadCounters>& counters = counters_[i];

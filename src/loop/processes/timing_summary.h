@@ -8,6 +8,7 @@
 #include "log/messages/log_messages.h"
 #include "log/rows/joined_row.h"
 #include "rt/thread_counters.h"
+#include "signals/robot_kinds.h"
 #include "timing/loop_durations.h"
 
 namespace robot_control {
@@ -16,7 +17,8 @@ class TimingSummary {
  public:
   static constexpr std::int64_t kPeriodNs = 10'000'000'000;
 
-  TimingSummary();
+  /// The figures have the names of these programs.
+  explicit TimingSummary(const Programs& programs);
 
   void add(const JoinedRow& row) noexcept;
 
@@ -28,6 +30,7 @@ class TimingSummary {
   TraceSummary summary(std::int64_t now_ns, const std::array<int, kLoopRoles>& threads);
 
  private:
+  Programs programs_;
   LoopDurations durations_;
   std::array<std::optional<ThreadCounters>, kLoopRoles> counters_;
   std::int64_t due_ns_ = 0;

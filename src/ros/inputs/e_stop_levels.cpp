@@ -11,8 +11,9 @@ namespace {
 // false message ends.
 constexpr std::size_t kMaxPublishers = 1000;
 const char* const kFurther = "(further publishers)";
-const std::string kSilent = with_programs(" (has sent nothing since {monitor} was restarted)");
-const std::string kUnknown = with_programs("an unknown publisher, from before {monitor} was restarted");
+const std::string kRestarted = std::string(program_of(Role::kMonitor)) + " was restarted";
+const std::string kSilent = " (has sent nothing since " + kRestarted + ")";
+const std::string kUnknown = "an unknown publisher, from before " + kRestarted;
 
 }  // namespace
 

@@ -104,8 +104,8 @@ class LegControllerNode final : public CommandedNode {
 
   void diagnose(DiagnosticReport& report) override {
     const std::lock_guard lock(input_mutex_);
-    report_command(report, command_, std::exchange(since_report_, 0), intake().senders(loop_ns()), {},
-                   intake().revoked(), programs());
+    report_command(report, command_, std::exchange(since_report_, 0), programs(), intake().senders(loop_ns()), {},
+                   intake().revoked());
     report.value("posture", std::string(name_of(command_.legged.phase)));
   }
 

@@ -17,7 +17,7 @@ namespace robot_control {
 /// `absent` are the nodes that do not run now. `period_ns` is the loop's period for the field `since`. `robot` names
 /// the joints, and `programs` those of remedies.
 msg::SafetyStatus safety_status(const Permit& permit, const MachineModel& robot, const std::vector<std::string>& absent,
-                                const TimeMap& time, std::int64_t period_ns, const Programs& programs = {});
+                                const TimeMap& time, std::int64_t period_ns, const Programs& programs);
 
 /// Returns what tools need to know of a robot. `injects` says that its machine is simulated and takes faults.
 msg::RobotKind robot_kind(const MachineModel& robot, const Programs& programs, bool injects);
@@ -40,6 +40,6 @@ struct Publishers {
 /// Returns the answer to e_stop_reset: the causes that it released, or why it was refused and the remedy. `before` is
 /// the last permit before the reset, `permit` the first one with its result.
 std::string reset_text(const Permit& before, const Permit& permit, const Publishers& publishers,
-                       const Programs& programs = {});
+                       const Programs& programs);
 
 }  // namespace robot_control

@@ -64,7 +64,7 @@ class EstimatorNode final : public ProcessNode<EstimatorProcess> {
   }
 
   void diagnose(DiagnosticReport& report) override {
-    report_state(report, state_, slip_lately_, kind_of(robot()) == MachineKind::kOnWheels);
+    report_state(report, state_, slip_lately_, programs());
     slip_lately_ = 0;
   }
 

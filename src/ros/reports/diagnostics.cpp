@@ -63,7 +63,8 @@ void report_missing(DiagnosticReport& report, const std::vector<std::string>& mi
 
 void report_driver(DiagnosticReport& report, const SensorFrame& sensors, const MachineModel& machine,
                    const Programs& programs, double real_time_factor) {
-  if (sensors.driver_state == DriverState::kFault) report.error(sentences_of(kDriverFaultNames, sensors.faults));
+  if (sensors.driver_state == DriverState::kFault)
+    report.error(sentences_of(kDriverFaultNames, sensors.faults, programs));
   if (sensors.driver_state == DriverState::kPaused) report.ok("paused");
   const std::string injected = names_of(sensors.injected, machine);
   if (any_fault(sensors.injected)) report.warn("injected faults: " + injected);
@@ -95,17 +96,18 @@ void report_driver(DiagnosticReport& report, const SensorFrame& sensors, const M
   report.reasons("gate", kGateReasonNames, sensors.gate.reasons, programs);
 }
 
-void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64_t slip_lately, bool on_wheels) {
+void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64_t slip_lately,
+                  const Programs& programs) {
   constexpr std::uint64_t kLost = kStateNoGyro | kStateNoAccelerometer | kStateNoLeftEncoder | kStateNoRightEncoder;
   if ((state.base.flags & kStateValid) == 0) report.warn("pose and twist are not valid");
-  if ((state.base.flags & kLost) != 0) report.warn(sentences_of(kStateFlagNames, state.base.flags & kLost));
+  if ((state.base.flags & kLost) != 0) report.warn(sentences_of(kStateFlagNames, state.base.flags & kLost, programs));
   if ((slip_lately | state.wheeled.slip) != 0) {
-    report.warn("slip: " + sentences_of(kSlipReasonNames, slip_lately | state.wheeled.slip));
+    report.warn("slip: " + sentences_of(kSlipReasonNames, slip_lately | state.wheeled.slip, programs));
   } else if ((state.base.flags & kStateSlip) != 0) {
     report.warn("slip: wheels and inertial sensors disagree");
   }
   if ((state.base.flags & kStateDegraded) != 0) {
-    report.warn("odometry is degraded: " + sentences_of(kDegradedReasonNames, state.base.degraded));
+    report.warn("odometry is degraded: " + sentences_of(kDegradedReasonNames, state.base.degraded, programs));
   }
   report.value("cycle", state.head.cycle);
   report.value("flags", names_of(kStateFlagNames, state.base.flags));
@@ -114,15 +116,15 @@ void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64
   report.value("skipped", state.skipped);
   report.value("slip", names_of(kSlipReasonNames, state.wheeled.slip));
   report.value("slip_lately", names_of(kSlipReasonNames, slip_lately));
-  report.reasons("slip", kSlipReasonNames, slip_lately | state.wheeled.slip);
-  report.reasons("estimate", kStateFlagNames, state.base.flags & kLost);
-  report.reasons("degraded", kDegradedReasonNames, state.base.degraded);
+  report.reasons("slip", kSlipReasonNames, slip_lately | state.wheeled.slip, programs);
+  report.reasons("estimate", kStateFlagNames, state.base.flags & kLost, programs);
+  report.reasons("degraded", kDegradedReasonNames, state.base.degraded, programs);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string name = std::string("gyro_bias_") + "xyz"[axis];
     report.value(name + "_deg_s", state.base.gyro_bias[axis] * kDegrees);
     report.value(name + "_deviation_deg_s", state.base.gyro_bias_deviation[axis] * kDegrees);
   }
-  if (!on_wheels) return;
+  if (programs.kind != kWheeledKind) return;
   report.value("residual_level", state.wheeled.residual_level);
   report.value("slip_detection", slip_detection(state.wheeled.residual_level));
   for (std::size_t i = 0; i < kStateSensorNames.size(); ++i) {
@@ -140,14 +142,14 @@ void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64
 }
 
 void report_command(DiagnosticReport& report, const CommandFrame& command, std::uint64_t lately,
-                    const std::vector<std::string>& senders, const std::vector<std::string>& sources,
-                    const std::vector<std::string>& revoked, const Programs& programs) {
+                    const Programs& programs, const std::vector<std::string>& senders,
+                    const std::vector<std::string>& sources, const std::vector<std::string>& revoked) {
   constexpr std::uint64_t kRefusals =
       kReasonRefused | kReasonStale | kReasonManySenders | kReasonRevoked | kReasonPartIgnored;
   if ((lately & kRefusals) != 0) report.warn(sentences_of(kCommandReasonNames, lately & kRefusals, programs));
   if (senders.size() > 1 && sources.empty()) report.warn("commands come from more than one node: " + joined(senders));
   report.value("cycle", command.head.cycle);
-  report.value("reasons", names_of(kCommandReasonNames, reasons_of(command)));
+  report.value("reasons", names_of(kCommandReasonNames, command.reasons));
   report.value("reasons_lately", names_of(kCommandReasonNames, lately));
   report.value("senders", joined(senders));
   if (!sources.empty()) report.value("sources", joined(sources));
@@ -162,7 +164,7 @@ void report_command(DiagnosticReport& report, const CommandFrame& command, std::
   report.value("timeouts", command.timeouts);
   report.value("requested_m_s", command.requested.twist.linear[0]);
   report.value("requested_rad_s", command.requested.twist.angular[2]);
-  report.reasons("command", kCommandReasonNames, reasons_of(command), programs);
+  report.reasons("command", kCommandReasonNames, command.reasons, programs);
 }
 
 void report_permit(DiagnosticReport& report, const Permit& permit, const Programs& programs) {

@@ -31,7 +31,7 @@ class DiagnosticReport {
 
   /// Adds one value per bit that is set: "gate: command_held" = "the command is older than one cycle and is held".
   void reasons(const std::string& subject, std::span<const BitName> table, std::uint64_t bits,
-               const Programs& programs = {});
+               const Programs& programs);
 
   const msg::DiagnosticStatus& message() const noexcept { return message_; }
 
@@ -48,13 +48,14 @@ void report_driver(DiagnosticReport& report, const SensorFrame& sensors, const M
                    const Programs& programs, double real_time_factor);
 /// `slip_lately` has the SlipReason bits of all cycles since the last report.
 /// Calibration, confidences and wheel slip are those of a robot on wheels.
-void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64_t slip_lately, bool on_wheels);
+void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64_t slip_lately,
+                  const Programs& programs);
 /// `lately` has the CommandReason bits of all cycles since the last report; `senders` names the senders of commands.
 /// Several senders are a fault unless they send to different `sources` (CommandMux::states; empty: there is no list).
 /// `revoked` is CommandIntake::revoked.
 void report_command(DiagnosticReport& report, const CommandFrame& command, std::uint64_t lately,
-                    const std::vector<std::string>& senders, const std::vector<std::string>& sources = {},
-                    const std::vector<std::string>& revoked = {}, const Programs& programs = {});
-void report_permit(DiagnosticReport& report, const Permit& permit, const Programs& programs = {});
+                    const Programs& programs, const std::vector<std::string>& senders,
+                    const std::vector<std::string>& sources = {}, const std::vector<std::string>& revoked = {});
+void report_permit(DiagnosticReport& report, const Permit& permit, const Programs& programs);
 
 }  // namespace robot_control

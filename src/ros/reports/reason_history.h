@@ -14,10 +14,10 @@ class ReasonHistory {
   /// In a new run it returns those of `newest` alone.
   std::uint64_t collect(const FrameReader<CommandFrame>& channel, const CommandFrame& newest) noexcept {
     const bool same_run = newest.head.run == run_;
-    std::uint64_t bits = reasons_of(newest);
+    std::uint64_t bits = newest.reasons;
     CommandFrame frame;
     for (std::uint64_t back = 1; same_run && back < kFrameSlots && cycle_ + back < newest.head.cycle; ++back) {
-      if (channel.at(run_, newest.head.cycle - back, frame) == Lookup::kFrame) bits |= reasons_of(frame);
+      if (channel.at(run_, newest.head.cycle - back, frame) == Lookup::kFrame) bits |= frame.reasons;
     }
     run_ = newest.head.run;
     cycle_ = newest.head.cycle;

@@ -28,6 +28,10 @@ std::string requested_text_of(const PlanarTwist& requested) {
   return format("cmd_vel %.4g m/s, %.4g rad/s", shown(requested.linear), shown(requested.angular));
 }
 
+std::string sentence_of(std::uint64_t reasons) {
+  return sentences_of(kCommandReasonNames, reasons, {.kind = kWheeledKind});
+}
+
 PlanarTwist requested_twist(const CommandFrame& command) {
   return {command.requested.twist.linear[0], command.requested.twist.angular[2]};
 }
@@ -57,7 +61,7 @@ CommandReport::Report CommandReport::made_of(const CommandFrame& command) const 
   return {.rims = kinematics_.rim_speeds(twist),
           .zero = requested.linear == 0 && requested.angular == 0 && command.ignored == 0,
           .limited = twist.linear != requested.linear || twist.angular != requested.angular,
-          .hindrance = reasons_of(command) & kHindrances};
+          .hindrance = command.reasons & kHindrances};
 }
 
 bool CommandReport::same(const Report& one, const Report& other) {
@@ -71,10 +75,10 @@ std::string CommandReport::text(const Report& report, const CommandFrame& comman
   std::string requested_text = requested_text_of(requested);
   if ((report.hindrance & kNoEffect) != 0) {
     const std::uint64_t why = report.hindrance & kNoEffect;
-    return requested_text + " has no effect: " + sentences_of(kCommandReasonNames, why & (~why + 1));
+    return requested_text + " has no effect: " + sentence_of(why & (~why + 1));
   }
   if (command.ignored != 0) requested_text += ", " + names_of(kRequestPartNames, command.ignored);
-  if (report.hindrance != 0) return requested_text + ", but " + sentences_of(kCommandReasonNames, report.hindrance);
+  if (report.hindrance != 0) return requested_text + ", but " + sentence_of(report.hindrance);
   if (report.limited) {
     const double scale = kinematics_.wheel_speed_scale(requested);
     const PlanarTwist twist = within_speed({scale * requested.linear, scale * requested.angular}, limits_);

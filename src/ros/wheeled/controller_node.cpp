@@ -92,8 +92,8 @@ class ControllerNode final : public CommandedNode {
 
   void diagnose(DiagnosticReport& report) override {
     const std::lock_guard lock(input_mutex_);
-    report_command(report, command_, std::exchange(since_report_, 0), intake().senders(loop_ns()), intake().states(),
-                   intake().revoked());
+    report_command(report, command_, std::exchange(since_report_, 0), programs(), intake().senders(loop_ns()),
+                   intake().states(), intake().revoked());
   }
 
  private:

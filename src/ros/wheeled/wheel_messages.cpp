@@ -31,7 +31,7 @@ msg::DriveState drive_state(const CommandFrame& command, const CommandFrame& pla
   for (const BitName& row : kCommandReasonNames) {
     if ((reasons & row.bit) == 0) continue;
     message.reasons.emplace_back(row.name);
-    message.sentences.push_back(sentences_of({&row, 1}, row.bit));
+    message.sentences.push_back(sentences_of({&row, 1}, row.bit, {.kind = kWheeledKind}));
   }
   for (const WheelModel& wheel : robot.wheels) {
     const double wanted = plan.joints[wheel.joint].velocity;

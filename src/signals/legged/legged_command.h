@@ -4,8 +4,6 @@
 #include <array>
 #include <cstdint>
 
-#include "signals/wheeled/wheeled_command.h"
-
 namespace robot_control {
 
 /// The modes of Request::mode.
@@ -26,14 +24,11 @@ enum class LegPhase : std::uint64_t {
   kJoints = 5
 };
 
-/// The bits below belong to CommandReason, so that one number holds both.
-inline constexpr unsigned kFirstLeggedReason = kFirstWheeledReason + 2;
-
-/// Bits of CommandFrame::reasons.
+/// Bits 20 to 22 of CommandFrame::reasons.
 enum LeggedReason : std::uint64_t {
-  kReasonOutOfReach = 1u << kFirstLeggedReason,         ///< The pose is beyond the ranges of the legs.
-  kReasonNotStanding = 1u << (kFirstLeggedReason + 1),  ///< A pose or a foot is requested, and it does not stand.
-  kReasonNotLying = 1u << (kFirstLeggedReason + 2),     ///< Joints are requested, and it does not lie.
+  kReasonOutOfReach = 1u << 20,   ///< The pose is beyond the ranges of the legs.
+  kReasonNotStanding = 1u << 21,  ///< A pose or a foot is requested, and it does not stand.
+  kReasonNotLying = 1u << 22,     ///< Joints are requested, and it does not lie.
 };
 
 struct LeggedCommand {

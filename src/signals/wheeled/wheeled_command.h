@@ -8,18 +8,13 @@
 
 namespace robot_control {
 
-/// The bits below belong to CommandReason, so that one number holds both.
-inline constexpr unsigned kFirstWheeledReason = 18;
-
-/// Bits of WheeledCommand::reasons.
+/// Bits 18 and 19 of CommandFrame::reasons.
 enum WheeledReason : std::uint64_t {
-  kReasonCurvatureKept = 1u << kFirstWheeledReason,    ///< One axis was scaled to keep the commanded curvature.
-  kReasonSaturated = 1u << (kFirstWheeledReason + 1),  ///< A wheel's torque or speed is at its limit.
+  kReasonCurvatureKept = 1u << 18,  ///< One axis was scaled to keep the commanded curvature.
+  kReasonSaturated = 1u << 19,      ///< A wheel's torque or speed is at its limit.
 };
-inline constexpr std::uint64_t kWheeledReasons = kReasonCurvatureKept | kReasonSaturated;
 
 struct WheeledCommand {
-  std::uint64_t reasons = 0;                  ///< WheeledReason bits
   std::array<double, kMaxWheels> velocity{};  ///< rad/s, by the tracking loops of the wheel loops
 };
 

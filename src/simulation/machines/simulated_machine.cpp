@@ -26,12 +26,6 @@ std::unique_ptr<CanFront> can_devices(const CanParameters& can, const Parameters
                                     std::move(socket));
 }
 
-ExampleParameters board_of(const Parameters& parameters) {
-  ExampleParameters board;
-  read_driver_file(parameters.drives, "board", keys(board));
-  return board;
-}
-
 /// Returns the two ends of a line, whose messages keep their borders.
 std::array<int, 2> line_ends() {
   std::array<int, 2> ends{};
@@ -43,7 +37,7 @@ std::array<int, 2> line_ends() {
 std::unique_ptr<Driver> make_plant_behind_board(const Parameters& parameters, const MachineModel& machine,
                                                 const DriveMotors& motors) {
   const double period = parameters.loop.period();
-  const ExampleParameters board_parameters = board_of(parameters);
+  const auto board_parameters = read_driver_file<ExampleParameters>(parameters.drives, "board");
   const auto [driver_end, board_end] = line_ends();
   auto board = std::make_unique<ExampleBoard>(motors.brakes, motors.effort_limits, period, board_end);
   auto driver = std::make_unique<ExampleDriver>(board_parameters, motors.brakes, motors.effort_limits,
@@ -74,8 +68,9 @@ std::unique_ptr<DeviceSimulator> make_device_simulator(const Parameters& paramet
   const double period = parameters.loop.period();
   const DriveMotors motors = drive_motors(machine, brakes);
   if (parameters.driver == DriverChoice::kExample) {
+    const auto board_parameters = read_driver_file<ExampleParameters>(parameters.drives, "board");
     auto board = std::make_unique<ExampleBoard>(motors.brakes, motors.effort_limits, period,
-                                                bind_board(board_of(parameters).address));
+                                                bind_board(board_parameters.address));
     return std::make_unique<DeviceSimulator>(machine, parameters.plant, period, std::move(board));
   }
   const CanParameters can = read_drive_file(parameters.drives, motors.joints, parameters.loop.rate);

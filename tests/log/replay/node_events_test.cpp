@@ -8,6 +8,7 @@
 #include "log/replay/recorded.h"
 #include "log/rows/join.h"
 #include "loop/cycle_fixture.h"
+#include "robots/differential_drive.h"
 #include "signals/names.h"
 
 namespace robot_control {

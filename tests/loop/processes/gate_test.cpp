@@ -84,7 +84,7 @@ TEST_F(GateInTheLoop, AtTheSpeedLimitTheControllerKeepsOutOfTheTaper) {
   };
   EXPECT_NEAR(drive(1, 4), 0.9 * 0.8, 0.002);
   EXPECT_EQ(loop.row().driver->gate.reasons & kGateSpeedClamped, 0u);
-  EXPECT_NE(loop.row().controller->command.wheeled.reasons & kReasonSaturated, 0u);
+  EXPECT_NE(loop.row().controller->command.reasons & kReasonSaturated, 0u);
   const double limited = drive(0, 4.2);
   EXPECT_NEAR(limited, loop.row().controller->command.twist_limited.linear[0], 0.02);
 }

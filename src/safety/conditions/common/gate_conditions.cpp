@@ -44,22 +44,23 @@ void GateConditions::step(const SensorFrame& sensors, ActiveCauses& out) noexcep
 bool GateConditions::refuses(const GateReport& report) const noexcept {
   const bool braked = report.verdict == GateVerdict::kBrake && (report.reasons & kGateControllerBrake) == 0;
   if (!braked && report.refused <= refused_frames_) return false;
-  for (std::uint64_t i = permits_; i > 0 && permits_ - i < kRemembered; --i) {
-    const Given& due = given(i - 1);
-    if (due.cycle < report.cycle) return due.allows(report.cycle);
-  }
-  return false;
+  const Given* due = newest_before(report.cycle);
+  return due != nullptr && due->allows(report.cycle);
 }
 
-/// The gate does not brake.
+/// The gate does not brake. A permit of a cycle for which none was issued is none.
 bool GateConditions::disobeys(const GateReport& report) const noexcept {
   if (report.permit_cycle >= report.cycle || report.cycle - report.permit_cycle > kPermitLife) return true;
+  const Given* used = newest_before(report.permit_cycle + 1);
+  return used != nullptr && (used->cycle != report.permit_cycle || !used->allows(report.cycle));
+}
+
+const GateConditions::Given* GateConditions::newest_before(std::uint64_t cycle) const noexcept {
   for (std::uint64_t i = permits_; i > 0 && permits_ - i < kRemembered; --i) {
-    const Given& used = given(i - 1);
-    if (used.cycle == report.permit_cycle) return !used.allows(report.cycle);
-    if (used.cycle < report.permit_cycle) return true;  // a cycle for which none was issued
+    const Given& permit = given_[(i - 1) % kRemembered];
+    if (permit.cycle < cycle) return &permit;
   }
-  return false;
+  return nullptr;
 }
 
 void GateConditions::count(bool refused, std::uint64_t elapsed) noexcept {

@@ -57,7 +57,7 @@ class GateConditions {
   bool refuses(const GateReport& report) const noexcept;
   bool disobeys(const GateReport& report) const noexcept;
   void count(bool refused, std::uint64_t elapsed) noexcept;
-  const Given& given(std::uint64_t i) const noexcept { return given_[i % kRemembered]; }
+  const Given* newest_before(std::uint64_t cycle) const noexcept;
 
   std::uint64_t loss_cycles_;
   std::uint64_t second_;       ///< ticks of the last second
