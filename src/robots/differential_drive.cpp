@@ -44,6 +44,10 @@ void DifferentialDrive::require_drivable() const {
   robot_control::require_drivable(parameters_, machine_);
 }
 
+std::uint64_t DifferentialDrive::executable() const noexcept {
+  return DriveController::kExecutable;
+}
+
 std::unique_ptr<EstimatorLaw> DifferentialDrive::make_estimator() const {
   return wheeled_estimator(parameters_.estimator, machine_, parameters_.loop.period());
 }

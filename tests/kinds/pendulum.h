@@ -53,7 +53,8 @@ struct PendulumEstimator {
 };
 
 struct PendulumController {
-  explicit PendulumController(double period) : watch(0.5, period, kPartAngularZ) {}
+  static constexpr std::uint64_t kExecutable = kPartAngularZ;
+  explicit PendulumController(double period) : watch(0.5, period, kExecutable) {}
   CommandWatch watch;
   DriveTuning tuning;
 
@@ -114,6 +115,7 @@ class Pendulum final : public Robot {
   const MachineModel& machine() const noexcept override { return machine_; }
   std::string_view kind() const noexcept override { return "pendulum"; }
   void require_drivable() const override {}
+  std::uint64_t executable() const noexcept override { return PendulumController::kExecutable; }
   std::unique_ptr<EstimatorLaw> make_estimator() const override {
     struct Composed final : SavedLaw<EstimatorLaw, PendulumEstimator> {
       void enter_run() noexcept override { law_.enter_run(); }
