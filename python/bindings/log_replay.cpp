@@ -110,6 +110,7 @@ std::vector<std::string> header_differences(const LogHeader& logged, const LogHe
   if (!logged.kind.empty()) {  // earlier versions had only one kind
     compare("kind", logged.kind, computed.kind);
     compare("roles", logged.roles, computed.roles);
+    compare("contacts", logged.contacts, computed.contacts);
   }
   compare("joints", logged.joints, computed.joints);
   compare("wheels", logged.wheels, computed.wheels);

@@ -50,9 +50,10 @@ Twist planar(double linear, double angular) {
 }
 
 std::vector<TraceColumn> columns_of(const ClosedLoop& loop) {
+  const MachineModel& machine = loop.robot().machine();
   std::vector<std::string> names;
-  for (const JointModel& joint : loop.robot().machine().joints) names.push_back(joint.name);
-  return log_columns(names, false);
+  for (const JointModel& joint : machine.joints) names.push_back(joint.name);
+  return log_columns(names, machine.contacts, false);
 }
 
 /// Passes the result of a command function to the loop as a command that arrives now.

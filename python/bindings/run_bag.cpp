@@ -38,15 +38,15 @@ py::dict header_of(const LogHeader& header) {
     for (const std::string& each : all) texts.append(text_of(each));
     return texts;
   };
-  return py::dict("robot"_a = text_of(header.robot), "kind"_a = text_of(header.kind),
-                  "joints"_a = texts_of(header.joints), "roles"_a = texts_of(header.roles), "wheels"_a = header.wheels,
-                  "period"_a = header.period, "clock"_a = text_of(header.clock), "record"_a = text_of(header.record),
-                  "part"_a = header.part, "parameters"_a = text_of(header.parameters), "urdf"_a = text_of(header.urdf),
-                  "scene"_a = text_of(header.scene), "calibration"_a = text_of(header.calibration),
-                  "version"_a = text_of(header.version), "build"_a = text_of(header.build),
-                  "host"_a = text_of(header.host), "kernel"_a = text_of(header.kernel),
-                  "processor"_a = text_of(header.processor), "libraries"_a = text_of(header.libraries),
-                  "missing"_a = text_of(header.missing));
+  return py::dict(
+      "robot"_a = text_of(header.robot), "kind"_a = text_of(header.kind), "joints"_a = texts_of(header.joints),
+      "roles"_a = texts_of(header.roles), "contacts"_a = texts_of(header.contacts), "wheels"_a = header.wheels,
+      "period"_a = header.period, "clock"_a = text_of(header.clock), "record"_a = text_of(header.record),
+      "part"_a = header.part, "parameters"_a = text_of(header.parameters), "urdf"_a = text_of(header.urdf),
+      "scene"_a = text_of(header.scene), "calibration"_a = text_of(header.calibration),
+      "version"_a = text_of(header.version), "build"_a = text_of(header.build), "host"_a = text_of(header.host),
+      "kernel"_a = text_of(header.kernel), "processor"_a = text_of(header.processor),
+      "libraries"_a = text_of(header.libraries), "missing"_a = text_of(header.missing));
 }
 
 /// A column of the table, which grows with the rows.
@@ -60,7 +60,7 @@ class Table {
  public:
   /// `names` selects columns; if it is empty, the table has all columns.
   Table(const LogHeader& header, const std::vector<std::string>& names) : period_(header.period) {
-    for (TraceColumn& column : log_columns(header.joints, header.clock == "wall")) {
+    for (TraceColumn& column : log_columns(header.joints, header.contacts, header.clock == "wall")) {
       if (!names.empty() && std::find(names.begin(), names.end(), column.name) == names.end()) continue;
       columns_.push_back({.column = std::move(column), .values = {}});
     }

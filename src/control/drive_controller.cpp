@@ -60,7 +60,7 @@ DriveController::DriveController(const DriveControllerParameters& parameters, co
       kinematics_(robot),
       feed_forward_(measured_robot(robot, parameters.feed_forward)),
       ground_friction_(robot),
-      watch_(parameters.cmd_vel_timeout, period, kPartLinearX | kPartAngularZ),
+      watch_(parameters.cmd_vel_timeout, period, kExecutable),
       limiter_(speed_limits(parameters)),
       standstill_(period),
       loops_(make_loops(parameters, robot, period)) {}

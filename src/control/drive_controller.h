@@ -77,6 +77,8 @@ using WheelLoops = FixedVector<WheelLoop, kMaxWheels>;
 
 class DriveController {
  public:
+  static constexpr std::uint64_t kExecutable = kPartLinearX | kPartAngularZ;  ///< of RequestPart
+
   /// `robot` is a model from read_drive_train: at least one wheel on either side, and wheels[i].joint == i. `period` is
   /// in s.
   DriveController(const DriveControllerParameters& parameters, const DriveTrain& robot, double period);

@@ -36,7 +36,8 @@ bool parse_number(std::string_view text, Number& number) {
 
 class CommandScript::Parser {
  public:
-  Parser(const std::string& source, ProblemList& problems) : source_(source), problems_(problems) {}
+  Parser(const std::string& source, std::uint64_t executable, ProblemList& problems)
+      : source_(source), executable_(executable), problems_(problems) {}
 
   void line(std::string_view text) {
     ++line_;
@@ -100,21 +101,30 @@ class CommandScript::Parser {
 
   Twist twist(const std::vector<std::string_view>& cells) {
     Twist result;
-    if (!parse_number(cells[1], result.linear[0])) problem("linear", cells[1], "must be a number of m/s", "");
-    if (!parse_number(cells[2], result.angular[2])) problem("angular", cells[2], "must be a number of rad/s", "");
+    speed("linear", cells[1], "m/s", kPartLinearX, result.linear[0]);
+    speed("angular", cells[2], "rad/s", kPartAngularZ, result.angular[2]);
     return result;
   }
 
+  void speed(std::string_view column, std::string_view cell, const std::string& unit, RequestPart part, double& value) {
+    if (!parse_number(cell, value)) {
+      problem(column, cell, "must be a number of " + unit, "");
+    } else if (value != 0 && (executable_ & part) == 0) {
+      problem(column, cell, "must be 0, because this robot would ignore it (part_ignored)", "");
+    }
+  }
+
   const std::string& source_;
+  std::uint64_t executable_;
   ProblemList& problems_;
   std::size_t line_ = 0;
   std::size_t columns_ = 0;
   std::uint64_t last_cycle_ = 0;
 };
 
-CommandScript CommandScript::parse(std::string_view text, const std::string& source) {
+CommandScript CommandScript::parse(std::string_view text, const std::string& source, std::uint64_t executable) {
   ProblemList problems;
-  Parser parser(source, problems);
+  Parser parser(source, executable, problems);
   while (!text.empty()) {
     const std::size_t end = text.find('\n');
     parser.line(text.substr(0, end));
@@ -128,11 +138,11 @@ CommandScript CommandScript::parse(std::string_view text, const std::string& sou
   return script;
 }
 
-CommandScript::CommandScript(const std::string& path) {
+CommandScript::CommandScript(const std::string& path, std::uint64_t executable) {
   ProblemList problems;
   const auto text = read_text_file(path, kMaxScript, "name a CSV file or leave robot.command_script empty", problems);
   problems.throw_if_any("command script refused");
-  *this = parse(*text, path);
+  *this = parse(*text, path, executable);
 }
 
 ScriptEvents CommandScript::advance(std::uint64_t cycle) noexcept {

@@ -10,8 +10,8 @@
 /// A row is a message received in that cycle. Speeds are m/s and rad/s as on `cmd_vel`, and subject to its timeout. The
 /// events are calls of the services `e_stop_trigger` and `e_stop_reset`. The header line is required, its last column
 /// may be left out. A row with an event may leave both speeds empty. NaN and infinity are passed on: a bad message is a
-/// legitimate test, and the controller refuses it. Blank lines and lines that begin with # are skipped. Cycles may
-/// repeat, not decrease.
+/// legitimate test, and the controller refuses it. A speed that the robot would ignore is refused when the script is
+/// read. Blank lines and lines that begin with # are skipped. Cycles may repeat, not decrease.
 ///
 /// A script begins each run with a request of zero velocity before its first row. So the first row may move the robot
 /// (safety/latch/motion_release.h).
@@ -22,7 +22,7 @@
 #include <string_view>
 #include <vector>
 
-#include "signals/geometry.h"
+#include "signals/velocity_command.h"
 
 namespace robot_control {
 
@@ -40,11 +40,12 @@ class CommandScript {
   /// A script without events.
   CommandScript() = default;
 
-  /// Reads a CSV file; throws ParameterError with every bad line (line, column, value, rule).
-  explicit CommandScript(const std::string& path);
+  /// Reads a CSV file; throws ParameterError with every bad line (line, column, value, rule). `executable`: RequestPart
+  /// bits that the robot executes.
+  explicit CommandScript(const std::string& path, std::uint64_t executable = kEveryPart);
 
   /// The same from text; `source` stands in messages.
-  static CommandScript parse(std::string_view text, const std::string& source);
+  static CommandScript parse(std::string_view text, const std::string& source, std::uint64_t executable = kEveryPart);
 
   /// The rows behind the last call up to and with `cycle`: those of skipped cycles arrive late, none is lost.
   /// A cycle at or before that of the last call brings nothing new.
@@ -58,6 +59,8 @@ class CommandScript {
   bool begins_with_zero() const noexcept { return begins_with_zero_; }
 
   std::size_t size() const noexcept { return rows_.size(); }
+
+  static constexpr std::uint64_t kEveryPart = ~std::uint64_t{0};
 
  private:
   enum class Event { kNone, kEmergencyStop, kReset };
@@ -74,8 +77,8 @@ class CommandScript {
 };
 
 /// The script of the parameter `command_script`: where that is empty, one without events.
-inline CommandScript load_script(const std::string& path) {
-  return path.empty() ? CommandScript() : CommandScript(path);
+inline CommandScript load_script(const std::string& path, std::uint64_t executable = CommandScript::kEveryPart) {
+  return path.empty() ? CommandScript() : CommandScript(path, executable);
 }
 
 }  // namespace robot_control

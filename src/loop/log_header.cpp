@@ -38,6 +38,7 @@ LogHeader log_header(const Parameters& parameters, const Robot& composed) {
   const auto driven = std::ranges::count(robot.joints, JointRole::kDriven, &JointModel::role);
   LogHeader header{.robot = robot.name,
                    .kind = std::string(composed.kind()),
+                   .contacts = robot.contacts,
                    .wheels = static_cast<std::uint32_t>(driven),
                    .period = parameters.loop.period(),
                    .clock = parameters.loop.clock == ClockMode::kWall ? "wall" : "lockstep",

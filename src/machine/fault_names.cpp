@@ -25,38 +25,42 @@ std::string unknown(std::string_view what, std::string_view word, const std::str
   return std::string("unknown ").append(what).append(" \"").append(word).append("\"; there are ") + known;
 }
 
+/// Returns the groups whose name no joint with components has.
+std::vector<JointGroup> named_groups(const MachineModel& machine) {
+  std::vector<JointGroup> groups = machine.groups;
+  for (const std::size_t joint : actuated_joint_indices(machine)) {
+    std::erase_if(groups, [&](const JointGroup& group) { return group.name == machine.joints[joint].name; });
+  }
+  return groups;
+}
+
 /// Returns the words of all components that exist once, and of those of groups: "left_encoder".
-std::string known_components(const MachineModel& machine) {
-  std::string words;
+std::vector<std::string> common_words(const MachineModel& machine) {
+  std::vector<std::string> words;
   for (std::size_t i = 0; i < kFaultComponents; ++i) {
     const auto component = static_cast<FaultComponent>(i);
-    if (!is_of_joint(component)) {
-      words.append(name_of(component)).append(" ");
-      continue;
-    }
-    for (const JointGroup& group : machine.groups) words += word_of(group.name, component) + " ";
+    if (!is_of_joint(component))
+      words.emplace_back(name_of(component));
+    else
+      for (const JointGroup& group : named_groups(machine)) words.push_back(word_of(group.name, component));
   }
-  return words + "and NAME_encoder, NAME_motor of each driven or held joint";
+  return words;
+}
+
+std::string known_components(const MachineModel& machine) {
+  std::string text;
+  for (const std::string& word : common_words(machine)) text += word + " ";
+  return text + "and NAME_encoder, NAME_motor of each driven or held joint";
 }
 
 }  // namespace
 
 std::vector<std::string> fault_words(const MachineModel& machine) {
-  std::vector<std::string> words;
-  const auto add = [&](std::string word) {
-    if (std::ranges::count(words, word) == 0) words.push_back(std::move(word));
-  };
-  for (std::size_t i = 0; i < kFaultComponents; ++i) {
-    const auto component = static_cast<FaultComponent>(i);
-    if (!is_of_joint(component))
-      add(std::string(name_of(component)));
-    else
-      for (const JointGroup& group : machine.groups) add(word_of(group.name, component));
-  }
+  std::vector<std::string> words = common_words(machine);
   for (const std::size_t joint : actuated_joint_indices(machine)) {
     for (std::size_t i = 0; i < kFaultComponents; ++i) {
       const auto component = static_cast<FaultComponent>(i);
-      if (is_of_joint(component)) add(word_of(machine.joints[joint].name, component));
+      if (is_of_joint(component)) words.push_back(word_of(machine.joints[joint].name, component));
     }
   }
   return words;
@@ -69,7 +73,7 @@ std::vector<InjectedFault> components_of(const MachineModel& machine, std::strin
       if (word == name_of(component)) return {{.component = component}};
       continue;
     }
-    for (const JointGroup& group : machine.groups) {
+    for (const JointGroup& group : named_groups(machine)) {
       if (word == word_of(group.name, component)) return of_joints(component, group.joints, FaultKind::kOk);
     }
     for (std::size_t joint = 0; joint < machine.joints.size(); ++joint) {
@@ -114,7 +118,7 @@ std::string names_of(const InjectedFaults& faults, const MachineModel& machine) 
     if (is_of_joint(first.component)) {
       word = first.index < machine.joints.size() ? word_of(machine.joints[first.index].name, first.component)
                                                  : word_of("joint " + std::to_string(first.index), first.component);
-      for (const JointGroup& group : machine.groups) {
+      for (const JointGroup& group : named_groups(machine)) {
         const std::vector<InjectedFault> all = of_joints(first.component, group.joints, first.kind);
         const auto fails = [&](const InjectedFault& fault) { return std::ranges::count(left, fault) > 0; };
         if (std::ranges::count(all, first) == 0 || !std::ranges::all_of(all, fails)) continue;

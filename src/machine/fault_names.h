@@ -1,8 +1,8 @@
 #pragma once
 /// These functions translate the words of the service inject_fault. A component's word is one of kFaultComponentNames.
 /// Before "encoder" and "motor" stands the name of a driven or held joint, or of a group of joints
-/// (MachineModel::groups): "left_encoder", "left_wheel_joint_motor". A group goes before a joint of the same name. All
-/// functions allocate.
+/// (MachineModel::groups): "left_encoder", "left_wheel_joint_motor". A group with the name of such a joint has no word:
+/// its joints are named one by one. All functions allocate.
 
 #include <string>
 #include <string_view>
@@ -13,8 +13,7 @@
 
 namespace robot_control {
 
-/// Returns all words of components: those that exist once, those of groups, and those of each driven or held joint. A
-/// word that two of them share is there once.
+/// Returns all words of components: those that exist once, those of groups, and those of each driven or held joint.
 std::vector<std::string> fault_words(const MachineModel& machine);
 
 /// Returns the components that a word names, each of them healthy; empty for an unknown word.

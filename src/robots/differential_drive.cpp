@@ -18,6 +18,10 @@ void DifferentialDrive::require_drivable() const {
   robot_control::require_drivable(parameters_, machine_);
 }
 
+std::uint64_t DifferentialDrive::executable() const noexcept {
+  return DriveController::kExecutable;
+}
+
 std::unique_ptr<EstimatorLaw> DifferentialDrive::make_estimator() const {
   return std::make_unique<EstimatorOf<Estimator>>(parameters_.estimator, machine_, parameters_.loop.period());
 }

@@ -19,6 +19,7 @@ class DifferentialDrive final : public Robot {
   const DriveTrain& machine() const noexcept override { return machine_; }
   std::string_view kind() const noexcept override { return kWheeledKind; }
   void require_drivable() const override;
+  std::uint64_t executable() const noexcept override;
   std::unique_ptr<EstimatorLaw> make_estimator() const override;
   std::unique_ptr<ControllerLaw> make_controller() const override;
   std::unique_ptr<MonitorLaw> make_monitor() const override;

@@ -51,6 +51,10 @@ SafetyParameters Quadruped::limits() const {
   return limits;
 }
 
+std::uint64_t Quadruped::executable() const noexcept {
+  return LegController::kExecutable;
+}
+
 std::unique_ptr<EstimatorLaw> Quadruped::make_estimator() const {
   return std::make_unique<EstimatorOf<LeggedEstimator>>(machine_, parameters_.loop.period());
 }

@@ -2,6 +2,7 @@
 /// A Robot is one machine of one kind with its laws, composed. Loop, log, replay and simulation know a robot by this
 /// interface alone. Each kind is composed in one file of this folder.
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -63,6 +64,9 @@ class Robot {
 
   /// Throws ParameterError with every reason why these parameters do not fit this machine.
   virtual void require_drivable() const = 0;
+
+  /// Returns the RequestPart bits that its controller executes.
+  virtual std::uint64_t executable() const noexcept = 0;
 
   virtual std::unique_ptr<EstimatorLaw> make_estimator() const = 0;
   virtual std::unique_ptr<ControllerLaw> make_controller() const = 0;

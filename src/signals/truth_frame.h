@@ -3,6 +3,7 @@
 /// it.
 
 #include <array>
+#include <cstdint>
 
 #include "signals/frame_head.h"
 #include "signals/geometry.h"
@@ -16,8 +17,9 @@ struct TruthFrame {
   Pose pose_world;   ///< base_link relative to its place at cycle 0, where x is its heading and z the ground's normal
   Twist twist_base;  ///< twist of base_link in its own axes
   std::array<JointSample, kMaxJoints> joints{};     ///< before any sensor error
-  std::array<double, kMaxContacts> normal_force{};  ///< N, per wheel, mean over [t_k-1, t_k)
-  std::array<double, kMaxContacts> slip{};          ///< m/s, per wheel: speed of the contact patch over ground
+  std::uint64_t contact_count = 0;                  ///< contacts below, in the order of MachineModel::contacts
+  std::array<double, kMaxContacts> normal_force{};  ///< N, mean over [t_k-1, t_k)
+  std::array<double, kMaxContacts> slip{};          ///< m/s, speed of the contact patch over ground
 };
 
 }  // namespace robot_control

@@ -23,8 +23,8 @@ constexpr std::uint64_t kDriverInstance =
     1;  // any number except 0; the same holds for a run: no other process uses these channels
 
 /// Reads the command script. ClosedLoop is the only sender of commands, so each run begins with a zero request.
-CommandScript script_of(const Parameters& parameters) {
-  CommandScript script = load_script(parameters.loop.command_script);
+CommandScript script_of(const Parameters& parameters, const Robot& robot) {
+  CommandScript script = load_script(parameters.loop.command_script, robot.executable());
   script.begin_with_zero();
   return script;
 }
@@ -55,7 +55,7 @@ struct ClosedLoop::Parts {
                given.loop.period_ns(), nullptr, robot.gate()),
         estimator(robot.make_estimator(), robot.machine().hash, sensors.reader, state.writer, nullptr),
         controller(robot.make_controller(), robot.machine().hash,
-                   {&sensors.reader, &state.reader, &permit.reader, command.writer}, script_of(given), nullptr),
+                   {&sensors.reader, &state.reader, &permit.reader, command.writer}, script_of(given, robot), nullptr),
         monitor(robot.make_monitor(), robot.machine().hash, 0,
                 {&sensors.reader, &state.reader, &command.reader, permit.writer},
                 load_script(given.loop.command_script), nullptr),

@@ -55,7 +55,8 @@ struct PendulumEstimator {
 };
 
 struct PendulumController {
-  explicit PendulumController(double period) : watch(0.5, period, kPartAngularZ) {}
+  static constexpr std::uint64_t kExecutable = kPartAngularZ;
+  explicit PendulumController(double period) : watch(0.5, period, kExecutable) {}
   CommandWatch watch;
 
   void enter_run(const VelocityCommand& inbox, bool with_zero) noexcept { watch.enter_run(inbox, with_zero); }
@@ -116,6 +117,7 @@ class Pendulum final : public Robot {
   const MachineModel& machine() const noexcept override { return machine_; }
   std::string_view kind() const noexcept override { return "pendulum"; }
   void require_drivable() const override {}
+  std::uint64_t executable() const noexcept override { return PendulumController::kExecutable; }
   std::unique_ptr<EstimatorLaw> make_estimator() const override {
     return std::make_unique<EstimatorOf<PendulumEstimator>>();
   }

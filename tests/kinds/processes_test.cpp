@@ -42,7 +42,7 @@ TEST(SecondKindProcesses, LockstepGivesTheNumbersOfTheClosedLoopAndALogThatIsRep
 
   const std::string bag = folder.path() / "log" / "run.bag";
   ClosedLoop loop(parameters, robot);
-  LogTable one(joint_names(robot->machine()), parameters.loop.period(), false);
+  LogTable one(robot->machine(), parameters.loop.period());
   for (int k = 0; k < 1500; ++k) {
     loop.step();
     one.add(loop.row());

@@ -44,7 +44,7 @@ class Columns : public ::testing::Test {
   ControllerTrace controller = controller_row(1, 1234);
   MonitorTrace monitor = monitor_row(1, 1234);
   JoinedRow row;
-  std::vector<TraceColumn> columns = log_columns(kJoints, true);
+  std::vector<TraceColumn> columns = log_columns(kJoints, kContactLinks, true);
 };
 
 TEST_F(Columns, HoldWhatReadersOfTheLogRelyOn) {
@@ -53,9 +53,12 @@ TEST_F(Columns, HoldWhatReadersOfTheLogRelyOn) {
                                                "time",
                                                "truth_x",
                                                "truth_y",
+                                               "truth_z",
                                                "truth_yaw",
                                                "truth_tilt",
                                                "truth_linear",
+                                               "truth_lateral",
+                                               "truth_vertical",
                                                "truth_angular",
                                                "estimate_x",
                                                "estimate_y",
@@ -155,7 +158,7 @@ TEST_F(Columns, OfTimeAreAllAndAloneAbsentFromLockstep) {
   for (const TraceColumn& column : columns) {
     if (!column.timing) physical.push_back(column.name);
   }
-  EXPECT_EQ(names_of(log_columns(kJoints, false)), physical);
+  EXPECT_EQ(names_of(log_columns(kJoints, kContactLinks, false)), physical);
   for (const std::string& name : physical) EXPECT_FALSE(name.ends_with("_ns")) << name;
 }
 
@@ -190,6 +193,18 @@ TEST_F(Columns, KeepTheJointsApart) {
   EXPECT_EQ(value("right_wheel_joint_effort"), -2.5);
   EXPECT_EQ(value("right_wheel_joint_velocity_command"), 3);
   EXPECT_EQ(value("left_wheel_joint_velocity_measured"), 4);
+}
+
+TEST_F(Columns, HoldTheTruthOfEachContact) {
+  driver.truth.pose_world.position = {1, 2, 3};
+  driver.truth.twist_base.linear = {4, 5, 6};
+  driver.truth.normal_force = {7, 8};
+  driver.truth.slip = {9, 10};
+  EXPECT_EQ(value("truth_z"), 3);
+  EXPECT_EQ(value("truth_lateral"), 5);
+  EXPECT_EQ(value("truth_vertical"), 6);
+  EXPECT_EQ(value("right_wheel_link_truth_normal_force"), 8);
+  EXPECT_EQ(value("left_wheel_link_truth_slip"), 9);
 }
 
 TEST_F(Columns, TellWhatTheControllerWasSetTo) {
@@ -235,7 +250,7 @@ TEST_F(Columns, TellWhatTheControllerWasSetTo) {
 TEST_F(Columns, OfGainsAreThoseOfWheels) {
   std::vector<std::string> many;
   for (std::size_t i = 0; i < kMaxJoints; ++i) many.push_back("joint_" + std::to_string(i));
-  const std::vector<std::string> names = names_of(log_columns(many, false));
+  const std::vector<std::string> names = names_of(log_columns(many, {}, false));
   EXPECT_EQ(std::ranges::count_if(names, [](const std::string& name) { return name.ends_with("_pid_kp"); }),
             static_cast<std::ptrdiff_t>(kMaxWheels));
 }

@@ -62,7 +62,8 @@ TEST_F(TraceMessages, HoldWhatEachLawWasGivenBitForBit) {
 
 TEST_F(TraceMessages, HoldEveryColumnOfTheTable) {
   constexpr double kFloat = 1.2e-7;  // relative error of a float32, 2^-23
-  const std::vector<TraceColumn> columns = log_columns(joint_names(loop.robot().machine()), true);
+  const MachineModel& robot = loop.robot().machine();
+  const std::vector<TraceColumn> columns = log_columns(joint_names(robot), robot.contacts, true);
   each(3000, [&](const JoinedRow& row, const JoinedRow& again) {
     for (const TraceColumn& column : columns) {
       const double expected = column.value(row, column.element);

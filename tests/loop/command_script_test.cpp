@@ -145,6 +145,18 @@ TEST(CommandScript, RefusesAFileThatIsNotThere) {
   EXPECT_THROW(CommandScript("/tmp"), ParameterError);
 }
 
+TEST(CommandScript, RefusesSpeedsThatTheRobotIgnores) {
+  constexpr std::uint64_t kLegs = kPartHeight | kPartMode;
+  EXPECT_EQ(CommandScript::parse("cycle,linear,angular\n0,0,0\n", "script.csv", kLegs).size(), 1u);
+  try {
+    CommandScript::parse("cycle,linear,angular\n0,0,0\n500,0.5,-1\n", "script.csv", kLegs);
+    ADD_FAILURE() << "not refused";
+  } catch (const ParameterError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("line 3, linear = 0.5: must be 0, because this robot would ignore it"));
+    EXPECT_THAT(error.what(), HasSubstr("line 3, angular = -1: must be 0"));
+  }
+}
+
 TEST(CommandScript, ReadsAFile) {
   const std::string path = std::filesystem::temp_directory_path() / ("script_" + std::to_string(getpid()) + ".csv");
   std::ofstream(path) << kHealthy;

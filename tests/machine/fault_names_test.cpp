@@ -103,6 +103,23 @@ TEST_F(FaultNames, AreListedOnceEachAndAllTaken) {
   EXPECT_EQ(std::ranges::count(words, "swivel_motor"), 0);
 }
 
+TEST_F(FaultNames, OfAJointWithTheNameOfAGroupMeanTheJoint) {
+  MachineModel machine = three_wheels();
+  machine.joints[4].name = "left";
+  for (const char* word : {"left_encoder", "front_encoder", "rear_encoder"}) {
+    faults_ = {};
+    EXPECT_EQ(set_fault(faults_, machine, word, "stuck"), "");
+    EXPECT_EQ(names_of(faults_, machine), std::string(word) + " stuck");
+    EXPECT_EQ(faults_[1].kind, FaultKind::kOk) << word << " alone";
+  }
+  faults_ = {};
+  set_fault(faults_, machine, "front_encoder", "stuck");
+  set_fault(faults_, machine, "rear_encoder", "stuck");
+  EXPECT_EQ(names_of(faults_, machine), "front_encoder stuck, rear_encoder stuck");
+  const std::vector<std::string> words = fault_words(machine);
+  for (const std::string& word : words) EXPECT_EQ(std::ranges::count(words, word), 1) << word;
+}
+
 TEST_F(FaultNames, RefuseAnUnknownComponentWithTheList) {
   for (const std::string word : {"wheel", "encoder", "swivel_encoder", "left_gyro", ""}) {
     const std::string message = set(word, "off");

@@ -3,6 +3,7 @@
 #include "safety/conditions/legged/legged_conditions.h"
 
 #include <functional>
+#include <random>
 
 #include "robots/quadruped_fixture.h"
 
@@ -103,6 +104,7 @@ TEST_F(LeggedConditionsTest, AJointThatGivesItsTorqueForLongLetsItLieDown) {
 TEST_F(LeggedConditionsTest, AJointBeyondItsEndStopBrakes) {
   command_.legged.phase = LegPhase::kLying;
   sensors_.joints[0].position = robot_.joints[0].range->upper + 0.09;
+  conditions_.enter_run();  // the joint did not turn there at once
   EXPECT_EQ(run(0.2), 0.2);
   sensors_.joints[0].position = robot_.joints[0].range->upper + 0.11;
   EXPECT_NEAR(run(1), 0.049, 1e-6);
@@ -122,6 +124,64 @@ TEST_F(LeggedConditionsTest, AJointThatDoesNotFollowItsCommandBrakesWhileTheRobo
   EXPECT_NEAR(run(1), 0.199, 1e-6);
   EXPECT_EQ(causes(Reaction::kBrake), "joint_following");
   EXPECT_EQ(joint(), 7u);
+}
+
+TEST_F(LeggedConditionsTest, AnEncoderThatJumpsBrakes) {
+  command_.legged.phase = LegPhase::kLying;
+  const double reach = 1.1 * robot_.joints[7].velocity_limit * kPeriod;
+  sensors_.joints[7].position += 0.1 + 0.99 * reach;
+  EXPECT_EQ(run(0.3), 0.3);
+  // It is beyond its reach in each of five cycles.
+  sensors_.joints[7].position -= 0.1 + 5.01 * reach;
+  EXPECT_NEAR(run(1), 0.004, 1e-6);
+  EXPECT_EQ(causes(Reaction::kBrake), "encoder_jump");
+  EXPECT_EQ(joint(), 7u);
+}
+
+TEST_F(LeggedConditionsTest, AnEncoderThatReportsRandomAnglesBrakesBeforeTheFeetAreJudged) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> turn(-6, 6);
+  EXPECT_LE(run(1, [&](double) { sensors_.joints[4].position = turn(random); }), 0.02);
+  EXPECT_EQ(causes(Reaction::kBrake), "encoder_jump");
+  EXPECT_EQ(causes(Reaction::kRamp), "");
+  EXPECT_EQ(joint(), 4u);
+}
+
+TEST_F(LeggedConditionsTest, OneAngleThatIsWrongIsNoStop) {
+  EXPECT_EQ(run(0.3,
+                [&, right = sensors_.joints[7].position](double t) {
+                  sensors_.joints[7].position = right + (t > 0.0995 && t < 0.1035 ? 1.0 : 0.0);  // four cycles
+                }),
+            0.3);
+}
+
+TEST_F(LeggedConditionsTest, AnEncoderThatRepeatsOneAngleWhileItsCommandMovesBrakes) {
+  for (std::size_t i = 0; i < kLegsJoints; ++i)
+    command_.joints[i] = {.mode = JointMode::kImpedance, .position = sensors_.joints[i].position};
+  const std::array<JointCommand, kMaxJoints> before = command_.joints;
+  const std::array<JointSample, kMaxJoints> there = sensors_.joints;
+  for (const LegPhase phase : {LegPhase::kRising, LegPhase::kStanding, LegPhase::kLowering, LegPhase::kGathering}) {
+    command_.legged.phase = LegPhase::kLying;
+    command_.joints = before;
+    sensors_.joints = there;
+    run(0.1);
+    command_.legged.phase = phase;
+    // It changes by one count while the command moves by 0.04 rad, when that has moved by 0.02 rad.
+    const double seen = run(0.2, [&](double t) {
+      command_.joints[7].position = before[7].position + 0.2 * t;
+      sensors_.joints[7].position = there[7].position + 0.0015 * std::floor(10 * t);
+    });
+    EXPECT_EQ(seen, 0.2);
+    const double stuck =
+        run(0.4, [&](double t) { command_.joints[7].position = before[7].position + 0.2 * (t + 0.2); });
+    if (phase == LegPhase::kGathering) {
+      EXPECT_EQ(stuck, 0.4) << "the ground may block a leg of a robot that lies";
+      continue;
+    }
+    EXPECT_NEAR(stuck, 0.15, 0.002);
+    EXPECT_EQ(causes(Reaction::kBrake), "encoder_stuck");
+    EXPECT_EQ(joint(), 7u);
+  }
 }
 
 TEST_F(LeggedConditionsTest, AFootThatSlipsLetsItLieDown) {

@@ -4,6 +4,7 @@
 
 #include "control/legged/body_bounds.h"
 #include "robots/quadruped_fixture.h"
+#include "support/temporary_folder.h"
 
 namespace robot_control {
 namespace {
@@ -68,14 +69,45 @@ TEST_P(QuadrupedOf, KnowsItsHeightAfterEveryFold) {
   }
 }
 
-TEST_P(QuadrupedOf, IsStoppedWhenAnEncoderIsStuck) {
-  QuadrupedLoop robot = loop_of(GetParam());
+/// Returns a robot that stands, with a fault of the encoder of this joint.
+QuadrupedLoop standing_with_fault(const std::string& name, std::size_t joint, const std::string& kind) {
+  QuadrupedLoop robot = loop_of(name);
   robot.wait(0.3);
   robot.run(2.5, stance(kStanceStand));
-  robot.loop.inject_fault(robot.robot().joints[2].name + "_encoder", "stuck");
-  robot.run(3.0, {.twist = {}, .posture = {.height = -0.3 * robot.robot().leg_length()}});
-  EXPECT_NE(robot.permit().causes & (kCauseJointFollowing | kCauseFootSlip), 0u) << robot.causes();
-  EXPECT_EQ(robot.gate().verdict, GateVerdict::kBrake);
+  robot.loop.inject_fault(robot.robot().joints[joint].name + "_encoder", kind);
+  return robot;
+}
+
+/// A pose that moves no command by 0.25 rad.
+TEST_P(QuadrupedOf, IsStoppedByAStuckEncoderWhenItsCommandMoves) {
+  for (const std::size_t joint : {1, 5, 9}) {
+    SCOPED_TRACE(joint);
+    QuadrupedLoop robot = standing_with_fault(GetParam(), joint, "stuck");
+    robot.run(0.5, {});
+    EXPECT_EQ(robot.causes(), "") << "its joint is where it reports to be";
+    const double length = robot.robot().leg_length(), from = robot.command().joints[joint].position;
+    double moved = 0;
+    for (int k = 0; k < 2000 && robot.permit().causes == 0; ++k) {
+      robot.run(0.001, {.twist = {}, .posture = {.height = -0.07 * length, .roll = 0.1, .y = 0.03 * length}});
+      moved = std::max(moved, std::abs(robot.command().joints[joint].position - from));
+    }
+    EXPECT_NEAR(moved, 0.05, 0.005);
+    robot.wait(0.003);
+    EXPECT_EQ(robot.causes(), "encoder_stuck");
+    EXPECT_EQ(robot.permit().evidence[0].joint, joint);
+    EXPECT_EQ(robot.gate().verdict, GateVerdict::kBrake);
+  }
+}
+
+TEST_P(QuadrupedOf, IsStoppedByAnEncoderWithRandomAngles) {
+  for (const std::size_t joint : {3, 7, 11}) {
+    SCOPED_TRACE(joint);
+    QuadrupedLoop robot = standing_with_fault(GetParam(), joint, "garbage");
+    robot.run(0.05, {});
+    EXPECT_EQ(robot.permit().first_cause, std::uint64_t{kCauseEncoderJump}) << robot.causes();
+    EXPECT_EQ(robot.permit().evidence[0].joint, joint);
+    EXPECT_EQ(robot.gate().verdict, GateVerdict::kBrake);
+  }
 }
 
 TEST_P(QuadrupedOf, IsFoldedWithARearFootInTheAir) {
@@ -349,6 +381,54 @@ TEST_F(Quadbot, NamesWhatItCannotDo) {
   robot.run(0.1, {.twist = {}, .posture = {.roll = 0.1}});
   EXPECT_NE(robot.command().reasons & kReasonNotStanding, 0u);
   EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying);
+}
+
+TEST(QuadbotScript, IsRefusedWhereItAsksForATwist) {
+  const TemporaryFolder folder;
+  Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
+  parameters.loop.command_script = folder.write("script.csv", "cycle,linear,angular\n0,0,0\n1,0.5,0\n").string();
+  EXPECT_THROW(QuadrupedLoop(legged_robot("quadbot"), parameters), ParameterError);
+}
+
+/// Returns quadbot standing, with so much clearance in m.
+QuadrupedLoop with_clearance(double clearance) {
+  Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
+  parameters.safety.clearance = clearance;
+  QuadrupedLoop robot(legged_robot("quadbot"), parameters);
+  robot.wait(0.3);
+  robot.run(2.0, stance(kStanceStand));
+  robot.run(0.5, {});
+  return robot;
+}
+
+TEST(QuadbotClearance, KeepsBodyAndFeetWhereTheyAreAndLetsItLieDown) {
+  QuadrupedLoop robot = with_clearance(1e-9);  // 0 in the parameter means unlimited
+  ASSERT_EQ(robot.command().legged.phase, LegPhase::kStanding);
+  EXPECT_EQ(robot.command().reasons & kReasonPermitSlow, 0u) << "no motion is requested";
+  const Vector3 stood = robot.truth().pose_world.position;
+  robot.run(1.0, {.twist = {}, .posture = {.height = -0.03, .roll = 0.1, .x = 0.02}});
+  EXPECT_NE(robot.command().reasons & kReasonPermitSlow, 0u);
+  robot.run(1.0, stance(kStanceLift));
+  EXPECT_GT(robot.truth().normal_force[0], 10);
+  for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(robot.truth().pose_world.position[axis], stood[axis], 1e-3);
+  EXPECT_LE(robot.tilt_now(), 0.01);
+  robot.run(5.0, stance(kStanceLie));
+  EXPECT_NE(robot.command().reasons & kReasonHolding, 0u);
+}
+
+TEST(QuadbotClearance, LimitsTheSpeedOfTheBody) {
+  QuadrupedLoop robot = with_clearance(0.005);
+  const double limit = robot.permit().speed_limit;
+  ASSERT_LT(limit, 0.2);
+  double fastest = 0;
+  for (int k = 0; k < 40; ++k) {
+    robot.run(0.05, {.twist = {}, .posture = {.x = 0.04}});
+    fastest = std::max(fastest, std::abs(robot.command().twist_limited.linear[0]));
+  }
+  EXPECT_LE(fastest, limit + 1e-9);
+  EXPECT_GE(fastest, 0.9 * limit);
+  EXPECT_NEAR(robot.command().legged.body[0], 0.04, 1e-3);
+  EXPECT_EQ(robot.command().reasons & kReasonPermitSlow, 0u) << "it arrived";
 }
 
 TEST_F(Quadbot, StandsUpOnlyAfterAResetThatFollowsZero) {

@@ -104,8 +104,8 @@ const std::vector<Row>& rows() {
 }
 
 /// These are in tests/robots/legged_conditions_test.cpp.
-constexpr std::uint64_t kOfLegs =
-    kCauseJointSpeed | kCauseJointEffort | kCauseJointRange | kCauseFootSlip | kCauseFootLoad | kCauseJointFollowing;
+constexpr std::uint64_t kOfLegs = kCauseJointSpeed | kCauseJointEffort | kCauseJointRange | kCauseFootSlip |
+                                  kCauseFootLoad | kCauseJointFollowing | kCauseEncoderJump | kCauseEncoderStuck;
 
 /// All conditions but one are off, so that nothing else stops the robot.
 SafetyParameters only(const SafetyParameters& given, const Row& row, Reaction reaction) {

@@ -14,16 +14,24 @@
 
 namespace robot_control {
 
+inline std::vector<std::string> joint_names(const MachineModel& robot) {
+  std::vector<std::string> names;
+  for (const JointModel& joint : robot.joints) names.push_back(joint.name);
+  return names;
+}
+
 class LogTable {
  public:
-  /// `joints`: their names. `timing`: with the columns of wall-clock runs.
-  LogTable(const std::vector<std::string>& joints, double period, bool timing)
-      : joints_(joints.size()), period_(period), columns_(log_columns(joints, timing)) {}
+  /// `joints` and `contacts`: their names. `timing`: with the columns of wall-clock runs.
+  LogTable(const std::vector<std::string>& joints, const std::vector<std::string>& contacts, double period, bool timing)
+      : joints_(joints.size()), period_(period), columns_(log_columns(joints, contacts, timing)) {}
+  LogTable(const MachineModel& robot, double period) : LogTable(joint_names(robot), robot.contacts, period, false) {}
 
   /// Reads run.bag.
   static LogTable of_bag(const std::string& path) {
     TraceReader reader(path);
-    LogTable table(reader.header().joints, reader.header().period, reader.header().clock == "wall");
+    const LogHeader& header = reader.header();
+    LogTable table(header.joints, header.contacts, header.period, header.clock == "wall");
     reader.read({.row = [&](const TraceRow& row, std::int64_t) {
       if (!row.repeats) table.append(row);
     }});
@@ -82,11 +90,5 @@ class LogTable {
   std::string message_;
   TraceRow read_;
 };
-
-inline std::vector<std::string> joint_names(const MachineModel& robot) {
-  std::vector<std::string> names;
-  for (const JointModel& joint : robot.joints) names.push_back(joint.name);
-  return names;
-}
 
 }  // namespace robot_control

@@ -62,7 +62,8 @@ def test_its_simulated_model_keeps_its_joints():
 def test_a_closed_loop_on_legs_moves_its_joints_while_it_lies_and_stands_up():
     loop = ClosedLoop(urdf=QUADBOT, params={"mujoco_plant": {"sensor_errors": "ideal"}})
     knee = "front_left_knee_joint"
-    folded = loop.step(300)[f"{knee}_position"][-1]
+    lying = loop.step(300)
+    folded = lying[f"{knee}_position"][-1]
     names = [joint["name"] for joint in loop.robot["joints"]]
     resting = loop.step()
     place = [resting[f"{name}_position"][-1] for name in names]
@@ -74,8 +75,16 @@ def test_a_closed_loop_on_legs_moves_its_joints_while_it_lies_and_stands_up():
     assert loop.step(200)[f"{names[0]}_position"][-1] == pytest.approx(place[0], abs=0.01)
     for _ in range(3):
         loop.set_posture("standing")
-        standing = loop.step(1000)[f"{knee}_position"][-1]
+        stands = loop.step(1000)
+        standing = stands[f"{knee}_position"][-1]
     assert standing > folded + 0.5
+    assert stands["truth_z"][-1] > lying["truth_z"][-1] + 0.2
+    assert max(abs(stands[f"truth_{name}"][-1]) for name in ("lateral", "vertical")) < 1e-3
+    loads = [values[-1] for name, values in stands.items() if name.endswith("_truth_normal_force")]
+    slips = [values[-1] for name, values in stands.items() if name.endswith("_truth_slip")]
+    assert sum(loads) == pytest.approx(9.81 * loop.robot["mass"], rel=0.01)
+    assert len(loads) == len(slips) == 4
+    assert max(slips) < 1e-3
     for _ in range(5):
         loop.body_pose(height=-0.03)
         lower = loop.step(200)[f"{knee}_position"][-1]

@@ -82,6 +82,7 @@ def test_a_bag_says_of_which_robot_and_how_it_was_made(bag_and_log):
     run = read_run(path)
     assert run.header["robot"] == "diffbot"
     assert run.header["joints"] == joint_names(log)
+    assert run.header["contacts"] == ["left_wheel_link", "right_wheel_link"]
     assert run.header["period"] == 0.001
     assert "max_linear_speed" in run.header["parameters"]
     assert (run.runs, run.lost, run.cut) == (1, 0, "")

@@ -15,7 +15,6 @@ constexpr double kShift = 0.6;     // of the way from the middle to the centroid
 constexpr double kMinTime = 0.1;   // s, of gathering
 constexpr std::uint64_t kNoWish =
     kReasonNoCommand | kReasonTimedOut | kReasonRefused | kReasonManySenders | kReasonNotLying;
-constexpr std::uint64_t kPose = kPartHeight | kPartRoll | kPartPitch | kPartX | kPartY | kPartYaw;
 
 using Map = Eigen::Map<const Eigen::Vector3d>;
 
@@ -53,7 +52,7 @@ LegController::LegController(const LegModel& robot, double timeout, double perio
       ground_(robot.belly),
       nominal_(nominal_height(robot)),
       body_motion_(body_bounds(robot)),
-      state_(CommandWatch(timeout, period, kPose | kPartMode | kPartJoints)) {
+      state_(CommandWatch(timeout, period, kExecutable)) {
   const std::array<JointBounds, kLegsJoints> bounds = joint_bounds(robot);
   for (std::size_t i = 0; i < kLegsJoints; ++i) {
     joint_ranges_[i] = bounds[i].range;
@@ -93,6 +92,7 @@ void LegController::step(const ControlInput& input, CommandFrame& out) noexcept 
     out.reasons |= kReasonPermitRamp;
     request = {.twist = {}, .posture = {}, .mode = kStanceLie};
   }
+  state_.pace = std::min(1.0, input.permit->speed_limit / body_motion_[kX].speed);
   const bool of_joints = request.mode == kStanceJoints;
   const bool of_standing = !of_joints && ((parts_of(request) & kPose) != 0 || request.mode >= kStanceLift);
   if (of_standing && state_.phase != LegPhase::kStanding) out.reasons |= kReasonNotStanding;
@@ -310,7 +310,8 @@ void LegController::move_foot(const Request& request, bool wanted, bool supporte
     target = {0, 0, above ? 0.0 : std::max(target[2], kMinLift * tuning_.lift)};
     if (above && !in_air) approach(share, 1, period_ / kLoadTime);
   }
-  track(state_.foot, target, {tuning_.foot, tuning_.foot, tuning_.foot}, period_);
+  const AxisBounds motion = paced(tuning_.foot, wanted ? state_.pace : 1);
+  track(state_.foot, target, {motion, motion, motion}, period_);
   if (!set_angles()) reasons |= kReasonOutOfReach;
   if (!wanted && share == 1) state_.lifted = kLegs;
 }

@@ -41,6 +41,10 @@
 /// also stops before a pose with an almost straight knee, or with a knee on the ground. To lie down it returns from any
 /// pose.
 ///
+/// If the permit limits the speed of the base to v, body and lifted foot follow the request at v/V of their speeds
+/// (kReasonPermitSlow). V is the largest speed of the body to the front. At v = 0 both stay where they are. Standing
+/// up, setting a foot down and lying down are not limited.
+///
 /// Gains and times follow from mass m and leg length l: stiffness ∝ m l, damping ∝ m l^1.5, times ∝ √l.
 
 #include <array>
@@ -88,6 +92,9 @@ static_assert(kLegsJoints == kRequestJoints);
 
 class LegController {
  public:
+  static constexpr std::uint64_t kPose = kPartHeight | kPartRoll | kPartPitch | kPartX | kPartY | kPartYaw;
+  static constexpr std::uint64_t kExecutable = kPose | kPartMode | kPartJoints;  ///< of RequestPart
+
   /// `timeout` of a request and `period` are in s.
   LegController(const LegModel& robot, double timeout, double period);
 
@@ -115,6 +122,7 @@ class LegController {
     std::uint64_t joints_requested = 0;  ///< cycle of the request that they follow
     std::array<TrackedAxis, 6> body{};
     Pose held{};                        ///< from the nominal pose, what the body moves to
+    double pace = 1;                    ///< part of the speeds of body and foot that the permit allows
     double margin = 0;                  ///< of `spare`, which the body keeps: kMargin, or that of the nominal pose
     std::uint64_t blocked = 0;          ///< 1: the body brakes before a pose that it does not enter
     Pose blocked_target{};              ///< what was requested then
@@ -145,6 +153,7 @@ class LegController {
   void choose_pose(const Request& request, std::uint64_t& reasons) noexcept;
   void lower(std::uint64_t& reasons) noexcept;
   bool move(const Pose& target, std::uint64_t& reasons) noexcept;
+  std::array<AxisBounds, 6> paced_motion() const noexcept;
   bool body_arrived(const Pose& target) const noexcept;
   void move_foot(const Request& request, bool wanted, bool supported, std::uint64_t& reasons) noexcept;
   Eigen::Vector2d above_support() const noexcept;

@@ -23,7 +23,7 @@ bool LegController::move(const Pose& target, std::uint64_t& reasons) noexcept {
   const bool moves = stopping_time(state_.body, body_motion_) > 0;
   if (state_.blocked == 0 || !moves || target != state_.blocked_target) {
     std::array<TrackedAxis, 6> next = state_.body;
-    track(next, target, body_motion_, period_);
+    track(next, target, paced_motion(), period_);
     const double left = spare(stopping_place(next, body_motion_));
     const bool leaves = left < state_.margin && left < spare(stopping_place(state_.body, body_motion_));
     state_.blocked = leaves ? 1 : 0;
@@ -35,7 +35,15 @@ bool LegController::move(const Pose& target, std::uint64_t& reasons) noexcept {
     reasons |= kReasonOutOfReach;
   }
   if (!set_angles()) reasons |= kReasonOutOfReach;
-  return body_arrived(target);
+  const bool arrived = body_arrived(target);
+  if (!arrived && state_.pace < 1) reasons |= kReasonPermitSlow;
+  return arrived;
+}
+
+std::array<AxisBounds, 6> LegController::paced_motion() const noexcept {
+  std::array<AxisBounds, 6> motion = body_motion_;
+  for (AxisBounds& axis : motion) axis = paced(axis, state_.pace);
+  return motion;
 }
 
 bool LegController::body_arrived(const Pose& target) const noexcept {

@@ -22,6 +22,12 @@ struct AxisBounds {
   double acceleration = 0;
 };
 
+/// Returns the bounds with `part` of their speed.
+inline AxisBounds paced(AxisBounds bounds, double part) noexcept {
+  bounds.speed *= part;
+  return bounds;
+}
+
 struct TrackedAxis {
   static constexpr double kFollow = 120;  ///< 1/s
 

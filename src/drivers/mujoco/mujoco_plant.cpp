@@ -191,10 +191,6 @@ std::size_t MujocoPlant::contacts() const noexcept {
   return std::min(model_.robot.drive_wheels > 0 ? wheels_.count() : bodies_.count(), kMaxContacts);
 }
 
-const Eigen::Vector3d& MujocoPlant::contact_force(std::size_t contact) const noexcept {
-  return model_.robot.drive_wheels > 0 ? wheels_.force(contact) : bodies_.force(contact);
-}
-
 std::uint64_t MujocoPlant::equipped() const noexcept {
   std::uint64_t devices = kValidGyro | kValidAccelerometer;
   if (parameters_.battery_voltage > 0) devices |= kValidBattery;
@@ -282,11 +278,10 @@ bool MujocoPlant::advance(std::span<const JointCommand> commands) noexcept {
   }
   wheels_.observe(*data_);
   specific_force_sum_ += specific_force_.step(*data_);
-  for (std::size_t wheel = 0; wheel < model_.robot.drive_wheels; ++wheel)
-    normal_force_sum_[wheel] += wheels_.normal_force(wheel);
-  for (std::size_t i = 0; i < bodies_.count(); ++i) normal_force_sum_[i] += bodies_.normal_force(i);
-  if (parameters_.contact_sensors) {
-    for (std::size_t i = 0; i < contacts(); ++i) force_sum_[i] += contact_force(i);
+  const bool on_wheels = model_.robot.drive_wheels > 0;
+  for (std::size_t i = 0; i < contacts(); ++i) {
+    normal_force_sum_[i] += on_wheels ? wheels_.normal_force(i) : bodies_.normal_force(i);
+    if (parameters_.contact_sensors) force_sum_[i] += on_wheels ? wheels_.force(i) : bodies_.force(i);
   }
   return true;
 }
@@ -350,13 +345,10 @@ void MujocoPlant::collect_truth() noexcept {
   std::copy_n(velocity + 3, 3, truth_.twist_base.angular.begin());
 
   truth_.joints = exact_.joints;
-  for (std::size_t wheel = 0; wheel < model_.robot.drive_wheels; ++wheel) {
-    truth_.normal_force[wheel] = normal_force_sum_[wheel] / model_.substeps;
-    truth_.slip[wheel] = wheels_.slip(wheel);
-  }
-  for (std::size_t i = 0; i < bodies_.count(); ++i) {
+  truth_.contact_count = contacts();
+  for (std::size_t i = 0; i < contacts(); ++i) {
     truth_.normal_force[i] = normal_force_sum_[i] / model_.substeps;
-    truth_.slip[i] = bodies_.slip(i);
+    truth_.slip[i] = model_.robot.drive_wheels > 0 ? wheels_.slip(i) : bodies_.slip(i);
   }
 }
 

@@ -92,7 +92,6 @@ class MujocoPlant final : public Simulator {
   void measure() noexcept;
   bool finite() const noexcept;
   std::size_t contacts() const noexcept;
-  const Eigen::Vector3d& contact_force(std::size_t contact) const noexcept;
   std::uint64_t equipped() const noexcept;
   void fail(std::uint64_t fault, const char* message) noexcept;
 
@@ -121,7 +120,7 @@ class MujocoPlant final : public Simulator {
 
   // These are sums over the steps of a period.
   std::array<double, kMaxJoints> effort_sum_{};
-  std::array<double, kMaxContacts> normal_force_sum_{};  ///< of drive wheels, or of contact bodies
+  std::array<double, kMaxContacts> normal_force_sum_{};  ///< of contacts
   Eigen::Vector3d specific_force_sum_ = Eigen::Vector3d::Zero();
   std::array<Eigen::Vector3d, kMaxContacts> force_sum_{};
   double power_sum_ = 0;

@@ -64,7 +64,7 @@ void add_command(TraceFields& to) {
   TraceColumn measured = column<C>(
       "velocity_measured", "rad/s, of the tracking loop; 0: no wheel",
       [](const C& c, std::size_t joint) { return joint < kMaxWheels ? c.command.wheeled.velocity[joint] : 0; });
-  measured.per_joint = true;
+  measured.owner = TraceColumn::Owner::kJoint;
   to.push_back(
       per_wheel<C, f32>("velocity_measured", "rad/s, of the tracking loop", ELEMENT(command.wheeled.velocity[i]))
           .shown_as(measured));

@@ -59,7 +59,7 @@ void add_sensors(TraceFields& to) {
   TraceColumn age = column<D>("age", "s, from the sample of the drive to t_k", [](const D& d, std::size_t joint) {
     return 1e-9 * static_cast<double>(d.sensors.joints[joint].age_ns);
   });
-  age.per_joint = true;
+  age.owner = TraceColumn::Owner::kJoint;
   to.push_back(
       per_joint<D, i64>("joint_age_ns", "ns, from the sample of the drive to t_k", ELEMENT(sensors.joints[i].age_ns))
           .shown_as(age));
@@ -87,7 +87,7 @@ TraceColumn joint_fault(std::string name) {
   TraceColumn result = column<D>(std::move(name), "FaultKind, of a simulator", [](const D& d, std::size_t joint) {
     return as_number(fault_of(d.sensors.injected, component, joint));
   });
-  result.per_joint = true;
+  result.owner = TraceColumn::Owner::kJoint;
   return result;
 }
 
@@ -165,17 +165,28 @@ void add_driver(TraceFields& to) {
 void add_truth(TraceFields& to) {
   to.push_back(field<D, f32>("truth_position", "m, of base_link from where it was in cycle 0; simulation only",
                              MEMBER(truth.pose_world.position))
-                   .shown({"truth_x", "truth_y"}));
+                   .shown({"truth_x", "truth_y", "truth_z"}));
   to.push_back(
       field<D, f32>("truth_orientation", "x, y, z, w", MEMBER(truth.pose_world.orientation))
           .shown_as(column<D>("truth_tilt", "rad, between the verticals of the start pose and of the base",
                               [](const D& d, std::size_t) { return tilt_of(d.truth.pose_world.orientation); })));
   to.push_back(yaw<D>("truth_yaw", MEMBER(truth.pose_world.orientation)).shown());
-  to.push_back(
-      field<D, f32>("truth_linear", "m/s, base axes", MEMBER(truth.twist_base.linear)).shown({"truth_linear"}));
+  to.push_back(field<D, f32>("truth_linear", "m/s, base axes", MEMBER(truth.twist_base.linear))
+                   .shown({"truth_linear", "truth_lateral", "truth_vertical"}));
   to.push_back(field<D, f32>("truth_angular", "rad/s, base axes", MEMBER(truth.twist_base.angular))
                    .shown_as(column<D>("truth_angular", "rad/s",
                                        [](const D& d, std::size_t) { return d.truth.twist_base.angular[2]; })));
+  static constexpr auto kSize = [](const D* driver, std::size_t) {
+    return driver == nullptr ? 0 : std::min<std::size_t>(driver->truth.contact_count, kMaxContacts);
+  };
+  to.push_back(
+      field<D, u64>("truth_contact_count", "contacts below, in the order of TraceHeader", MEMBER(truth.contact_count)));
+  to.push_back(list<D, f32, kMaxContacts>("truth_normal_force", "N, mean over [t_k-1, t_k)", kSize,
+                                          ELEMENT(truth.normal_force[i]))
+                   .shown_per_contact());
+  to.push_back(list<D, f32, kMaxContacts>("truth_slip", "m/s, speed of the contact patch over ground", kSize,
+                                          ELEMENT(truth.slip[i]))
+                   .shown_per_contact());
 }
 
 void add_timing(TraceFields& to) {

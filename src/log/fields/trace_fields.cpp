@@ -146,7 +146,14 @@ TraceField TraceField::shown(const std::vector<std::string>& names) && {
 TraceField TraceField::shown_per_joint(std::string suffix) && {
   columns.push_back(plain);
   columns.back().name = std::move(suffix);
-  columns.back().per_joint = true;
+  columns.back().owner = TraceColumn::Owner::kJoint;
+  return std::move(*this);
+}
+
+TraceField TraceField::shown_per_contact() && {
+  columns.push_back(plain);
+  columns.back().name = name;
+  columns.back().owner = TraceColumn::Owner::kContact;
   return std::move(*this);
 }
 
@@ -165,18 +172,22 @@ const std::vector<TraceField>& trace_fields() {
   return fields;
 }
 
-std::vector<TraceColumn> log_columns(const std::vector<std::string>& joints, bool timing) {
+std::vector<TraceColumn> log_columns(const std::vector<std::string>& joints, const std::vector<std::string>& contacts,
+                                     bool timing) {
+  using Owner = TraceColumn::Owner;
   std::vector<TraceColumn> columns;
   for (const TraceField& field : trace_fields()) {
     for (const TraceColumn& column : field.columns) {
       if (column.timing && !timing) continue;
-      const std::size_t count = column.per_joint ? std::min(joints.size(), field.max_joints) : 1;
-      for (std::size_t j = 0; j < count; ++j) {
+      const std::vector<std::string>& owners = column.owner == Owner::kJoint ? joints : contacts;
+      const std::size_t limit = column.owner == Owner::kJoint ? field.max_joints : kMaxContacts;
+      const std::size_t count = column.owner == Owner::kRow ? 1 : std::min(owners.size(), limit);
+      for (std::size_t i = 0; i < count; ++i) {
         columns.push_back(column);
         if (column.meaning.empty()) columns.back().meaning = field.comment;
-        if (!column.per_joint) continue;
-        columns.back().name = joints[j] + "_" + column.name;
-        columns.back().element = j;
+        if (column.owner == Owner::kRow) continue;
+        columns.back().name = owners[i] + "_" + column.name;
+        columns.back().element = i;
       }
     }
   }
@@ -193,7 +204,10 @@ std::string trace_definition() {
     std::string comment = field.comment;
     for (const TraceColumn& column : field.columns) {
       comment += (&column == field.columns.data() ? " | " : ", ");
-      comment += (column.per_joint ? "<joint>_" : "") + column.name;
+      comment += (column.owner == TraceColumn::Owner::kJoint     ? "<joint>_"
+                  : column.owner == TraceColumn::Owner::kContact ? "<contact>_"
+                                                                 : "") +
+                 column.name;
     }
     text += field.type + " " + field.name + (comment.empty() ? "" : "  # " + comment) + "\n";
   }

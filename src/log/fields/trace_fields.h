@@ -59,13 +59,16 @@ struct TraceSource {
 struct TraceColumn {
   using Value = double (*)(const JoinedRow& row, std::size_t element);
 
-  std::string name = {};     ///< a suffix behind the name of the joint if `per_joint`
+  /// An array or list has a column for the row, or for each joint or contact of the robot.
+  enum class Owner { kRow, kJoint, kContact };
+
+  std::string name = {};     ///< a suffix behind the name of the owner unless that is the row
   std::string meaning = {};  ///< unit and meaning; empty: those of the field
   bool integer = false;      ///< run.csv shows it without a decimal point
-  bool per_joint = false;    ///< each joint has such a column
-  bool timing = false;       ///< only runs on the wall clock have it: equal runs differ in it
-  std::size_t element = 0;   ///< element of the array; `log_columns` sets it to the number of the joint
-  Value value = nullptr;     ///< the number; NaN where its node published no frame. Integers are exact up to 2^53
+  Owner owner = Owner::kRow;
+  bool timing = false;      ///< only runs on the wall clock have it: equal runs differ in it
+  std::size_t element = 0;  ///< element of the array; `log_columns` sets it to the number of the owner
+  Value value = nullptr;    ///< the number; NaN where its node published no frame. Integers are exact up to 2^53
 };
 
 struct TraceField {
@@ -74,7 +77,7 @@ struct TraceField {
   std::string comment;       ///< unit and meaning
   std::string heading = {};  ///< heading in the .msg before this field; mostly empty
   std::vector<TraceColumn> columns = {};
-  std::size_t max_joints = kMaxJoints;  ///< number of joints that have the columns `per_joint`
+  std::size_t max_joints = kMaxJoints;  ///< number of joints that have columns
   TraceColumn plain = {};               ///< shows the member itself, without a name
 
   void (*write)(const TraceSource& source, std::string& to) = nullptr;
@@ -86,6 +89,7 @@ struct TraceField {
   TraceField shown() &&;
   TraceField shown(const std::vector<std::string>& names) &&;
   TraceField shown_per_joint(std::string suffix) &&;
+  TraceField shown_per_contact() &&;
   TraceField shown_as(TraceColumn column) &&;
   /// All columns of this field are of kind `timing`.
   TraceField as_timing() &&;
@@ -94,9 +98,10 @@ struct TraceField {
 using TraceFields = std::vector<TraceField>;
 const TraceFields& trace_fields();
 
-/// The columns of a table, with their meaning, in the order of the fields. `joints`: names in the order of
-/// MachineModel::joints. `timing`: with the columns of that kind.
-std::vector<TraceColumn> log_columns(const std::vector<std::string>& joints, bool timing);
+/// The columns of a table, with their meaning, in the order of the fields. `joints` and `contacts`: names in the order
+/// of MachineModel::joints and MachineModel::contacts. `timing`: with the columns of that kind.
+std::vector<TraceColumn> log_columns(const std::vector<std::string>& joints, const std::vector<std::string>& contacts,
+                                     bool timing);
 
 /// The text of msg/Trace.msg, which names the columns, too.
 std::string trace_definition();

@@ -64,6 +64,7 @@ void each_header_field(Header& header, Visit visit) {
   visit("kind", header.kind);
   visit("joints", header.joints);
   visit("roles", header.roles);
+  visit("contacts", header.contacts);
   visit("wheels", header.wheels);
   visit("period", header.period);
   visit("clock", header.clock);

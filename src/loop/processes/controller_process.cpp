@@ -11,7 +11,7 @@ ControllerProcess::ControllerProcess(const Parameters& parameters, const Robot& 
       state_(bus, ChannelNames::kState),
       permit_(bus, ChannelNames::kPermit),
       cycle_(robot.make_controller(), robot_.hash, {&sensors_.reader, &state_.reader, &permit_.reader, output_.writer},
-             load_script(parameters.loop.command_script), clock()),
+             load_script(parameters.loop.command_script, robot.executable()), clock()),
       retuner_(robot.make_retuner(cycle_.tunings())) {
   robot.require_drivable();
   cycle_.set_process(mint_number());

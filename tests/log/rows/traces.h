@@ -9,6 +9,7 @@
 namespace robot_control {
 
 inline const std::vector<std::string> kJoints{"left_wheel_joint", "right_wheel_joint"};
+inline const std::vector<std::string> kContactLinks{"left_wheel_link", "right_wheel_link"};
 
 /// Run starts lie far apart, so that stamps order runs as a driver's do.
 inline FrameHead head_at(std::uint64_t run, std::uint64_t cycle) {
@@ -22,6 +23,7 @@ inline FrameHead head_at(std::uint64_t run, std::uint64_t cycle) {
 inline DriverTrace driver_row(std::uint64_t run, std::uint64_t cycle) {
   DriverTrace row;
   row.sensors.head = row.truth.head = head_at(run, cycle);
+  row.truth.contact_count = kContactLinks.size();
   return row;
 }
 

@@ -87,7 +87,7 @@ TEST_F(Faults, OfFourProcessesGiveTheNumbersOfTheClosedLoop) {
     }
   });
 
-  LogTable one(joint_names(robot_), parameters_.loop.period(), false);
+  LogTable one(robot_, parameters_.loop.period());
   ClosedLoop loop(parameters_);
   for (const Fault& fault : faults_) {
     bool driving = false;

@@ -53,7 +53,7 @@ class Lockstep : public ::testing::Test {
   /// The same table of the loop in this process.
   LogTable one_process() {
     ClosedLoop loop(parameters_);
-    LogTable table(joint_names(robot_), parameters_.loop.period(), false);
+    LogTable table(robot_, parameters_.loop.period());
     for (std::uint64_t k = 0; k < kCycles; ++k) {
       loop.step();
       table.add(loop.row());

@@ -77,7 +77,7 @@ TEST_F(Services, InLockstepStepsAndResetsGiveTheNumbersOfTheClosedLoop) {
     EXPECT_TRUE(services.step(kFirst).success);
   });
 
-  LogTable one(joint_names(robot_), parameters_.loop.period(), false);
+  LogTable one(robot_, parameters_.loop.period());
   ClosedLoop loop(parameters_);
   const auto steps = [&](std::uint64_t cycles) {
     for (std::uint64_t k = 0; k < cycles; ++k) {

@@ -49,9 +49,9 @@ class WheelContacts {
   void apply(mjData& data) noexcept;
   void weigh(const mjData& data) noexcept;
 
-  /// Returns the sum of normal forces of drive wheel `wheel` in N at the last `weigh`.
+  /// Returns the sum of normal forces of `wheel` (drive wheels, then casters) in N at the last `weigh`.
   double normal_force(std::size_t wheel) const noexcept { return wheels_[wheel].normal_force; }
-  /// Returns the force on `wheel` (drive wheels, then casters) in N, base axes, at the last `weigh`; zero without
+  /// Returns the force on `wheel` in N, base axes, at the last `weigh`; zero without
   /// contact sensors.
   const Eigen::Vector3d& force(std::size_t wheel) const noexcept { return wheels_[wheel].force; }
   /// Returns the number of drive wheels and casters.

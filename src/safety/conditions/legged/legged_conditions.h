@@ -1,7 +1,7 @@
 #pragma once
 /// The conditions of a robot on legs compare body, joints and feet with their limits (body_conditions.h,
-/// joint_conditions.h, foot_conditions.h). They tell whether the joints stand. Joints stand while every
-/// one stays within kWindow of its angle for kStandingTime.
+/// joint_conditions.h, encoder_conditions.h, foot_conditions.h). They tell whether the joints stand. Joints stand while
+/// every one stays within kWindow of its angle for kStandingTime.
 ///
 ///   moving    a joint left its window, or its angle is not known; until the robot stands again
 ///   standing  all joints are inside for kStandingTime
@@ -13,6 +13,7 @@
 
 #include "machine/legs/leg_model.h"
 #include "safety/conditions/common/body_conditions.h"
+#include "safety/conditions/legged/encoder_conditions.h"
 #include "safety/conditions/legged/foot_conditions.h"
 #include "safety/conditions/legged/joint_conditions.h"
 #include "safety/latch/active_causes.h"
@@ -31,6 +32,7 @@ class LeggedConditions {
       : period_(period),
         body_conditions_(parameters, robot, {}, period),
         joint_conditions_(parameters, robot, period),
+        encoder_conditions_(parameters, robot, period),
         foot_conditions_(parameters, robot, period) {}
 
   static std::size_t driven_joints(const LegModel&) noexcept { return kLegsJoints; }
@@ -38,6 +40,7 @@ class LeggedConditions {
   void enter_run() noexcept {
     body_conditions_.enter_run();
     joint_conditions_.enter_run();
+    encoder_conditions_.enter_run();
     foot_conditions_.enter_run();
     moving_ = anchored_ = false;
     inside_ = 0;
@@ -56,6 +59,7 @@ class LeggedConditions {
     if (standing()) moving_ = false;
     body_conditions_.step(sensors, elapsed, 0, moving_, out);
     joint_conditions_.step(input, elapsed, out);
+    encoder_conditions_.step(input, elapsed, out);
     foot_conditions_.step(input, body_conditions_.attitude().up(), elapsed, out);
   }
 
@@ -76,6 +80,7 @@ class LeggedConditions {
   double period_;
   BodyConditions body_conditions_;
   JointConditions joint_conditions_;
+  EncoderConditions encoder_conditions_;
   FootConditions foot_conditions_;
   std::array<double, kLegsJoints> anchor_{};  ///< rad
   bool anchored_ = false;

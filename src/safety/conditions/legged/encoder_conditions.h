@@ -1,0 +1,101 @@
+#pragma once
+/// The encoder of a leg's joint reports angles that its joint cannot have. The worst joint counts and is named.
+///
+///   jump   |q − q₀| − kFaster V t > limit. q₀ is the last angle that was possible, t s ago, V the velocity limit
+///   stuck  |c − c₀| > limit, while the robot is on its feet. c is the angle that the command demands, c₀ was demanded
+///          when q changed for the last time. A joint that is blocked looks the same
+///
+/// While c stays, a stuck encoder changes nothing: the joint is where it reports to be. An angle that is missing or not
+/// finite is not evaluated.
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "machine/legs/leg_model.h"
+#include "safety/conditions/common/condition_watch.h"
+#include "safety/latch/active_causes.h"
+#include "safety/monitor_input.h"
+#include "safety/safety_parameters.h"
+
+namespace robot_control {
+
+class EncoderConditions {
+ public:
+  static constexpr double kFaster = 1.1;  ///< as the default limit of joint_speed
+
+  /// `period` s.
+  EncoderConditions(const SafetyParameters& parameters, const LegModel& robot, double period) noexcept
+      : jump_(kCauseEncoderJump, parameters.encoder_jump, period),
+        stuck_(kCauseEncoderStuck, parameters.encoder_stuck, period) {
+    for (std::size_t i = 0; i < kLegsJoints; ++i) joints_[i].reach = kFaster * robot.joints[i].velocity_limit * period;
+  }
+
+  void enter_run() noexcept {
+    jump_.reset();
+    stuck_.reset();
+    for (Joint& joint : joints_) joint.known = joint.demanded = false;
+  }
+
+  void step(const MonitorInput& input, std::uint64_t elapsed, ActiveCauses& out) noexcept {
+    ConditionMeasurement jump = kNothingMeasured, stuck = kNothingMeasured;
+    for (std::size_t i = 0; i < kLegsJoints; ++i) {
+      Joint& joint = joints_[i];
+      joint.cycles += elapsed;
+      const JointSample& sample = input.sensors->joints[i];
+      if (!has_position(sample)) continue;
+      jump = worse(jump, beyond(i, jumped(joint, sample.position), jump_.limit()));
+      stuck = worse(stuck, beyond(i, demanded(joint, sample.position, demand(input.command, i)), stuck_.limit()));
+    }
+    jump_.step(jump, elapsed);
+    out.add(jump_);
+    stuck_.step(stuck, elapsed);
+    out.add(stuck_);
+  }
+
+ private:
+  struct Joint {
+    double reach = 0;          ///< rad, in a cycle
+    bool known = false;        ///< q₀ is known
+    double possible = 0;       ///< rad, q₀
+    std::uint64_t cycles = 0;  ///< since q₀
+    bool demanded = false;     ///< c₀ is known
+    double reported = 0;       ///< rad, the last q
+    double demand = 0;         ///< rad, c₀
+  };
+
+  /// Returns the impedance's command of a joint while the robot is on its feet; else null.
+  static const JointCommand* demand(const CommandFrame* command, std::size_t joint) noexcept {
+    if (command == nullptr || command->joints[joint].mode != JointMode::kImpedance) return nullptr;
+    const LegPhase phase = command->legged.phase;
+    const bool on_feet = phase == LegPhase::kRising || phase == LegPhase::kStanding || phase == LegPhase::kLowering;
+    return on_feet ? &command->joints[joint] : nullptr;
+  }
+
+  /// Returns by how many rad the angle is beyond the reach of the joint.
+  double jumped(Joint& joint, double position) const noexcept {
+    const double past =
+        joint.known ? std::abs(position - joint.possible) - joint.reach * static_cast<double>(joint.cycles) : 0;
+    if (!joint.known || past <= jump_.limit()) {
+      joint.known = true;
+      joint.possible = position;
+      joint.cycles = 0;
+    }
+    return past;
+  }
+
+  /// Returns by how many rad the command moved while the angle stayed.
+  static double demanded(Joint& joint, double position, const JointCommand* command) noexcept {
+    if (command == nullptr || !joint.demanded || position != joint.reported) {
+      joint.demanded = command != nullptr;
+      joint.demand = command != nullptr ? command->position : 0;
+    }
+    joint.reported = position;
+    return command != nullptr ? std::abs(command->position - joint.demand) : 0;
+  }
+
+  std::array<Joint, kLegsJoints> joints_{};
+  ConditionWatch jump_, stuck_;
+};
+
+}  // namespace robot_control
