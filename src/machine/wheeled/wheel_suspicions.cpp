@@ -10,6 +10,7 @@
 #include "machine/description/wording.h"
 #include "machine/gravity.h"
 #include "machine/suspicions.h"
+#include "machine/wheeled/ground_points.h"
 #include "machine/wheeled/tipping.h"
 
 namespace robot_control {
