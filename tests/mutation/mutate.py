@@ -8,31 +8,30 @@ They are found if a test program of the folder below tests with the same name, o
 crashes or does not end. Each change that no test finds is printed with its place. The exit code is 0 if and only if at
 least 85 % are found.
 
-A copy of the sources in build/mutants holds all changes at once, and an environment variable chooses one (switch.h).
-A first run notes which test executes which place; a change is then tried with these tests alone.
+A copy of the sources in build/mutants holds all changes of control, gate … at once, and an environment variable chooses
+one (switch.h). A first run notes which test executes which place; a change is then tried with these tests alone.
 """
 
 import os
 import random
 import re
 import resource
-import shutil
 import subprocess
 import sys
 from collections import defaultdict
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-WORK = ROOT / "build/mutants"
-TREE = WORK / "tree"
-BUILD = WORK / "build"
 EQUAL = Path(__file__).with_name("equal.txt")
 REQUIRED = 0.85
-# Every test program of the copy notes which places its tests execute.
-NOTES = ("add_executable(${name} ${ARG_SOURCES})", "add_executable(${name} ${ARG_SOURCES} ${PROJECT_SOURCE_DIR}/tests/mutation/notes.cpp)")
+# Every test program of the copy notes which places its tests execute, and each of its sources is compiled alone.
+PROGRAM = {
+    "add_executable(${name} ": "add_executable(${name} ${PROJECT_SOURCE_DIR}/tests/mutation/notes.cpp ",
+    "UNITY_BUILD_BATCH_SIZE 0": "UNITY_BUILD OFF",
+}
 
 TOKEN = re.compile(
     r"""(?P<skip>\s+|//[^\n]*|/\*.*?\*/|(?<![^\n])[ \t]*\#(?:[^\n]*\\\n)*[^\n]*)
@@ -50,7 +49,13 @@ BINARY = {
 }  # fmt: skip
 ASSIGN = {"+=": "-=", "-=": "+=", "*=": "/=", "/=": "*=", "&=": "|=", "|=": "&="}
 LOGICAL = {"&&": "||", "||": "&&"}
-PREFIX = {"!": ("Not", ""), "-": ("Minus", ""), "~": ("Complement", ""), "++": ("Increment", "--"), "--": ("Decrement", "++")}
+PREFIX = {
+    "!": ("Not", ""),
+    "-": ("Minus", ""),
+    "~": ("Complement", ""),
+    "++": ("Increment", "--"),
+    "--": ("Decrement", "++"),
+}
 FUNCTION = {
     "min": ("Min", "max"), "max": ("Max", "min"), "sin": ("Sin", "cos"), "cos": ("Cos", "sin"), "abs": ("Abs", ""),
     "floor": ("Floor", "ceil"), "ceil": ("Ceil", "floor"), "isfinite": ("IsFinite", "true || "), "clamp": ("Clamp", ""),
@@ -59,8 +64,8 @@ FUNCTION = {
 # A statement that begins with one of these is a declaration or changes the flow, which `if` covers.
 NO_STATEMENT = {
     "return", "break", "continue", "if", "for", "while", "do", "switch", "case", "default", "else", "using", "const",
-    "constexpr", "static", "auto", "struct", "class", "enum", "template", "throw", "goto", "public", "private", "namespace",
-    "delete", "new", "static_assert",
+    "constexpr", "static", "auto", "struct", "class", "enum", "template", "throw", "goto", "public", "private",
+    "namespace", "delete", "new", "static_assert",
 }  # fmt: skip
 CONSTANT = re.compile(
     r"\b(?:(?:inline|static) )?constexpr (?P<type>double|float|int|bool|std::u?int\d+_t|std::size_t) (?P<name>\w+)\s*="
@@ -77,6 +82,7 @@ class Token:
 
     @property
     def end(self) -> int:
+        """Where the next one may begin."""
         return self.begin + len(self.text)
 
 
@@ -100,11 +106,11 @@ class Source:
     text: str
     freed: set[str]  # constants whose constexpr is left out
     first: int  # number of its first change
-    bad_lines: set[int] = field(default_factory=set)
-    changes: list[Change] = field(default_factory=list)
-    edits: list[tuple[int, int, int, str]] = field(default_factory=list)  # begin, rank, end, text
+    bad_lines: set[int]  # whose changes do not compile
 
     def __post_init__(self) -> None:
+        self.changes: list[Change] = []
+        self.edits: list[tuple[int, int, int, str]] = []  # begin, rank, end, text
         self.tokens = [
             Token(match.lastgroup or "", match.group(), match.start())
             for match in TOKEN.finditer(self.text)
@@ -120,9 +126,11 @@ class Source:
     # Where things are.
 
     def line_of(self, position: int) -> int:
+        """Number of the line, from 1."""
         return self.text.count("\n", 0, position) + 1
 
     def brackets(self) -> dict[int, int]:
+        """The index of the other one, for each bracket."""
         partner, stack = {}, []
         for index, token in enumerate(self.tokens):
             if token.kind != "mark":
@@ -135,6 +143,7 @@ class Source:
         return partner
 
     def word(self, index: int) -> str:
+        """Text of a token; empty outside."""
         return self.tokens[index].text if 0 <= index < len(self.tokens) else ""
 
     def end_of_statement(self, index: int) -> int:
@@ -196,6 +205,7 @@ class Source:
         return fixed
 
     def free(self, index: int) -> None:
+        """Makes a constant of the compiler one of the program."""
         token = self.tokens[index]
         static = self.word(index - 1) == "static" and not self.in_block(index)
         self.edits.append((token.begin, 0, token.end, "inline const" if static else "const"))
@@ -217,12 +227,15 @@ class Source:
         return number
 
     def replace(self, token: Token, text: str) -> None:
+        """Puts `text` in place of a token."""
         self.edits.append((token.begin, 0, token.end, text))
 
     def insert(self, position: int, rank: int, text: str) -> None:
+        """Puts `text` between tokens; that of a lower rank first."""
         self.edits.append((position, rank, position, text))
 
     def visit(self, index: int, token: Token) -> None:
+        """Finds the changes that begin at a token."""
         if token.kind == "number":
             self.number(index, token)
         elif token.text in {"true", "false"}:
@@ -237,6 +250,7 @@ class Source:
         self.statement(index, token)
 
     def number(self, index: int, token: Token) -> None:
+        """A number becomes its double and 0, and 0 becomes 1."""
         inside_template = self.text[token.begin - 1] == "<" or self.text[token.end] == ">"
         pure = token.text == "0" and self.word(index - 1) == "=" and self.word(index - 2) in {")", "const", "noexcept"}
         if inside_template or pure:
@@ -251,6 +265,7 @@ class Source:
         self.replace(token, f"::mutation::number<{number}>({token.text})")
 
     def function(self, index: int, token: Token) -> None:
+        """std::min becomes std::max, and so on."""
         name, other = FUNCTION[token.text]
         begin = self.tokens[index - 2].begin
         arguments, end = "", token.end
@@ -265,6 +280,7 @@ class Source:
         self.edits.append((begin, 0, end, f"::mutation::{name}<{number}{arguments}>{{}}"))
 
     def condition(self, index: int) -> None:
+        """A condition of `if` becomes its opposite, and false."""
         first, last = index + 2, self.partner[index + 1] - 1
         inside = {self.word(i) for i in range(first, last + 1)}
         if inside & {";", "="}:
@@ -276,6 +292,7 @@ class Source:
         self.insert(end, 5, "))")
 
     def operator(self, index: int, token: Token) -> None:
+        """An operator becomes another one, or is left out."""
         spaced = self.text[token.begin - 1].isspace() and self.text[token.end].isspace()
         if spaced and token.text in BINARY:
             numbers = [self.add(token.begin, token.end, other, other) for other in BINARY[token.text]]
@@ -293,7 +310,7 @@ class Source:
     def prefixes(self, index: int) -> bool:
         """The operator stands before its operand, and no other one follows."""
         last = self.tokens[index - 1]
-        after_value = last.kind in {"word", "number"} and last.text != "return" or last.text in {")", "]", "}"}
+        after_value = (last.kind in {"word", "number"} and last.text != "return") or last.text in {")", "]", "}"}
         if after_value and not (last.text == ")" and self.text[self.tokens[index].begin - 1].isspace()):
             return False
         return self.word(index + 1) not in PREFIX
@@ -345,19 +362,21 @@ class Source:
         for begin, _, end, text in sorted(self.edits, key=lambda edit: (edit[0], edit[2] > edit[0], edit[1])):
             out += [self.text[position:begin], text]
             position = end
-        return "".join(out) + self.text[position:]
+        return '#include "mutation/switch.h"\n#line 1\n' + "".join(out) + self.text[position:]
 
 
 def fail(message: str) -> None:
+    """Ends with a sentence."""
     sys.exit(f"mutate.py: {message}")
 
 
 def sources_below(folder: Path) -> list[Path]:
+    """Headers and sources of a folder and those below."""
     return sorted(path for path in folder.rglob("*") if path.suffix in {".h", ".cpp"})
 
 
 def constants_to_free(room: list[Path]) -> set[str]:
-    """Constants of the room that nothing needs at compile time; constants elsewhere that are computed from them, too."""
+    """Constants of the room that nothing needs at compile time, and those elsewhere that are computed from them."""
     texts = {path: path.read_text() for folder in ("src", "tests") for path in sources_below(ROOT / folder)}
     freed = {match["name"] for path in room for match in CONSTANT.finditer(texts[path])}
     statement = re.compile(r"\bconstexpr\b[^;{(]*[={][^;]*;")
@@ -367,10 +386,14 @@ def constants_to_free(room: list[Path]) -> set[str]:
             for name in sorted(freed):
                 if name not in text:
                     continue
-                if re.search(rf"<[^<>;(){{}}\n]*\b{name}\b[^<>;(){{}}\n]*>|static_assert\([^;]*\b{name}\b|\w\[{name}\]", text):
+                if re.search(
+                    rf"<[^<>;(){{}}\n]*\b{name}\b[^<>;(){{}}\n]*>|static_assert\([^;]*\b{name}\b|\w\[{name}\]", text
+                ):
                     freed.discard(name)
             for match in statement.finditer(text):
-                used = {name for name in freed if re.search(rf"=.*\b{name}\b|\{{.*\b{name}\b", match.group(), re.DOTALL)}
+                used = {
+                    name for name in freed if re.search(rf"=.*\b{name}\b|\{{.*\b{name}\b", match.group(), re.DOTALL)
+                }
                 constant = CONSTANT.match(match.group())
                 if used and constant:
                     freed.add(constant["name"])
@@ -378,54 +401,6 @@ def constants_to_free(room: list[Path]) -> set[str]:
                     freed -= used
         if freed == last:
             return freed
-
-
-def write_if_changed(path: Path, text: str) -> None:
-    if not path.exists() or path.read_text() != text:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-
-
-def write_tree(room: str, freed: set[str], bad: dict[str, set[int]]) -> list[Change]:
-    """Writes the copy of the repository and returns the changes in it."""
-    listed = subprocess.run(
-        ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=ROOT, check=True, capture_output=True, text=True
-    ).stdout.split("\0")
-    files = {name for name in listed if name and (ROOT / name).is_file()}
-    changes: list[Change] = []
-    for name in sorted(files):
-        path, copy = ROOT / name, TREE / name
-        if name == "tests/CMakeLists.txt":
-            write_if_changed(copy, path.read_text().replace(*NOTES))
-            continue
-        if path.suffix not in {".h", ".cpp"}:
-            if not copy.exists() or copy.read_bytes() != path.read_bytes():
-                copy.parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy2(path, copy)
-            continue
-        text = path.read_text()
-        if name.startswith(f"src/{room}/"):
-            source = Source(name, text, freed, len(changes), bad[name])
-            changes += source.changes
-            text = source.changed()
-        elif name.startswith(("src/", "tests/")) and any(constant in text for constant in freed):
-            text = without_constexpr(text, freed)
-        write_if_changed(copy, text)
-    for copy in TREE.rglob("*"):
-        if copy.is_file() and str(copy.relative_to(TREE)) not in files:
-            copy.unlink()
-    return changes
-
-
-def without_constexpr(text: str, freed: set[str]) -> str:
-    def const(match: re.Match[str]) -> str:
-        if match["name"] not in freed:
-            return match.group()
-        indented = text[text.rfind("\n", 0, match.start()) + 1 : match.start()].isspace()
-        static = "static constexpr" in match.group() and indented
-        return match.group().replace("constexpr", "inline const" if static else "const", 1)
-
-    return CONSTANT.sub(const, text)
 
 
 def programs(room: str) -> list[str]:
@@ -441,55 +416,91 @@ def programs(room: str) -> list[str]:
     return []
 
 
-def build(targets: list[str]) -> str:
-    """Builds the copy; returns the compiler's messages, empty if it succeeds."""
-    flags = f"-std=c++20 -O1 -w -Wno-narrowing -include {TREE}/tests/mutation/switch.h"
-    configure = ["cmake", "-S", str(TREE), "-B", str(BUILD), "-DROBOT_CONTROL_ROS=OFF", "-DCMAKE_UNITY_BUILD=OFF"]
-    subprocess.run([*configure, "-DCMAKE_BUILD_TYPE=None", f"-DCMAKE_CXX_FLAGS={flags}"], check=True, stdout=subprocess.DEVNULL)
-    result = subprocess.run(
-        ["cmake", "--build", str(BUILD), "-j", str(os.cpu_count()), "--target", *targets, "--", "-k"],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    (WORK / "build.log").write_text(result.stdout + result.stderr)
-    return result.stderr if result.returncode != 0 else ""
+def without_constexpr(text: str, freed: set[str]) -> str:
+    """The text of a file that computes constants from those of the room."""
+
+    def const(match: re.Match[str]) -> str:
+        if match["name"] not in freed:
+            return match.group()
+        indented = text[text.rfind("\n", 0, match.start()) + 1 : match.start()].isspace()
+        static = "static constexpr" in match.group() and indented
+        return match.group().replace("constexpr", "inline const" if static else "const", 1)
+
+    return CONSTANT.sub(const, text)
 
 
-def prepare(room: str, targets: list[str]) -> list[Change]:
-    """Builds the room with all changes; leaves out those on lines that do not compile with them."""
-    freed = constants_to_free(sources_below(ROOT / "src" / room))
-    bad: dict[str, set[int]] = defaultdict(set)
-    for _ in range(8):
-        changes = write_tree(room, freed, bad)
-        messages = build(targets)
-        if not messages:
-            return changes
-        constants = set(re.findall(r"the value of ‘(?:\w+::)*(\w+)’ is not usable in a constant", messages)) & freed
-        freed -= constants
-        places = re.findall(rf"\b(src/{room}/[\w/.]+):(\d+):", messages)
-        found = {(name, int(line)) for name, line in places} - {(n, line) for n in bad for line in bad[n]}
-        if not found and not constants:
-            break
-        for name, line in () if constants else found:
-            bad[name].add(line)
-    fail(f"the copy with all changes does not compile; see {WORK / 'build.log'}")
-    return []
+class Copy:
+    """A copy of the repository that holds all changes of a folder directly below src, and its build."""
 
+    def __init__(self, folder: str) -> None:
+        self.folder = folder
+        self.work = ROOT / "build/mutants" / folder
+        self.tree = self.work / "tree"
+        self.build = self.work / "build"
 
-@dataclass
-class Result:
-    """What one run of a test program was like."""
+    def prepare(self, targets: list[str]) -> list[Change]:
+        """Builds it; leaves out the changes of lines that do not compile with them."""
+        freed = constants_to_free(sources_below(ROOT / "src" / self.folder))
+        bad: dict[str, set[int]] = defaultdict(set)
+        for _ in range(8):
+            changes = self.write(freed, bad)
+            messages = self.compile(targets)
+            if not messages:
+                return changes
+            constants = set(re.findall(r"the value of ‘(?:\w+::)*(\w+)’ is not usable in a constant", messages)) & freed
+            places = {(name, int(line)) for name, line in re.findall(r"\b(src/[\w/.]+):(\d+):", messages)}
+            places -= {(name, line) for name in bad for line in bad[name]}
+            if not places and not constants:
+                break
+            freed -= constants
+            for name, line in () if constants else places:
+                bad[name].add(line)
+        fail(f"the copy with all changes does not compile; see {self.work / 'build.log'}")
+        return []
 
-    passed: bool
-    seconds: float
+    def write(self, freed: set[str], bad: dict[str, set[int]]) -> list[Change]:
+        """Writes the files that differ, and returns the changes in them."""
+        listing = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+        listed = subprocess.run(listing, cwd=ROOT, check=True, capture_output=True, text=True).stdout.split("\0")
+        files = {name for name in listed if name and (ROOT / name).is_file()}
+        changes: list[Change] = []
+        for name in sorted(files):
+            content = (ROOT / name).read_bytes()
+            if name == "tests/CMakeLists.txt":
+                for before, after in PROGRAM.items():
+                    content = content.replace(before.encode(), after.encode())
+            elif name.startswith(f"src/{self.folder}/") and name.endswith((".h", ".cpp")):
+                source = Source(name, content.decode(), freed, len(changes), bad[name])
+                changes += source.changes
+                content = source.changed().encode()
+            elif name.startswith(("src/", "tests/")) and name.endswith((".h", ".cpp")):
+                content = without_constexpr(content.decode(), freed).encode()
+            copy = self.tree / name
+            if not copy.exists() or copy.read_bytes() != content:
+                copy.parent.mkdir(parents=True, exist_ok=True)
+                copy.write_bytes(content)
+        for copy in self.tree.rglob("*"):
+            if copy.is_file() and str(copy.relative_to(self.tree)) not in files:
+                copy.unlink()
+        return changes
+
+    def compile(self, targets: list[str]) -> str:
+        """Returns the compiler's messages, empty if it succeeds."""
+        flags = f"-O1 -w -Wno-narrowing -I{self.tree}/tests"
+        options = ["-DROBOT_CONTROL_ROS=OFF", "-DCMAKE_BUILD_TYPE=None", f"-DCMAKE_CXX_FLAGS={flags}"]
+        configure = ["cmake", "-S", str(self.tree), "-B", str(self.build), *options]
+        subprocess.run(configure, check=True, stdout=subprocess.DEVNULL)
+        build = ["cmake", "--build", str(self.build), "-j", str(os.cpu_count()), "--target", *targets, "--", "-k"]
+        result = subprocess.run(build, capture_output=True, text=True, check=False)
+        (self.work / "build.log").write_text(result.stdout + result.stderr)
+        return result.stderr if result.returncode != 0 else ""
 
 
 class Programs:
     """The test programs, built with all changes."""
 
-    def __init__(self, names: list[str]) -> None:
-        self.paths = [BUILD / name for name in names]
+    def __init__(self, copy: Copy, names: list[str]) -> None:
+        self.paths = [copy.build / name for name in names]
         self.known: set[int] = set()
         self.tests: dict[int, list[tuple[Path, str]]] = defaultdict(list)
         self.seconds: dict[tuple[Path, str], float] = {}
@@ -497,7 +508,7 @@ class Programs:
     def explore(self) -> None:
         """Runs all tests without a change, and notes the places that each executes."""
         for path in self.paths:
-            notes = WORK / f"{path.name}.reached"
+            notes = path.with_suffix(".reached")
             notes.unlink(missing_ok=True)
             if self.run(path, "*", {"MUTATION_NOTES": str(notes)}, None) is False:
                 fail(f"{path.name} fails without a change: run scripts/test {path.name} first")
@@ -580,8 +591,11 @@ def main() -> int:
     if not sources_below(ROOT / "src" / room):
         fail(f"src/{room} has no sources; ROOM is a folder below src")
     tests = programs(room)
-    changes = prepare(room, [Path(name).name for name in tests])
-    runner = Programs(tests)
+    copy = Copy(room.split("/")[0])
+    changes = [
+        change for change in copy.prepare([Path(name).name for name in tests]) if change.file.startswith(f"src/{room}/")
+    ]
+    runner = Programs(copy, tests)
     runner.explore()
     equal = equal_changes(room)
     possible = []
@@ -603,7 +617,10 @@ def main() -> int:
             found += is_found
             if not is_found:
                 note = "" if runner.tests[change.number] else " (no test executes it)"
-                print(f"{change.file}:{change.line}: {change.what}{note}\n  - {change.before}\n  + {change.after}", flush=True)
+                print(
+                    f"{change.file}:{change.line}: {change.what}{note}\n  - {change.before}\n  + {change.after}",
+                    flush=True,
+                )
     share = found / len(drawn)
     print(
         f"{room}: {found} of {len(drawn)} changes found, {100 * share:.1f} %, of {len(possible)} possible ones; "

@@ -1,5 +1,5 @@
-/// Linked into a test program that holds changes (switch.h): appends to the file $MUTATION_NOTES which changes are known,
-/// and which places each test executes.
+/// Linked into a test program that holds changes (switch.h): appends to the file $MUTATION_NOTES which changes are
+/// known, and which places each test executes.
 
 #include <gtest/gtest.h>
 

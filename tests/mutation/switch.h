@@ -133,16 +133,16 @@ MUTATION_ASSIGN(/=, *=)
 MUTATION_ASSIGN(&=, |=)
 MUTATION_ASSIGN(|=, &=)
 
-#define MUTATION_PREFIX(Name, original, other)         \
-  template <int kId>                                   \
-  struct Name {};                                      \
-  template <int kId, typename T>                       \
-  constexpr auto operator->*(Name<kId>, T&& v) {       \
-    using Result = decltype(plain(original v));        \
-    if constexpr (requires { Result(other v); }) {     \
-      if (on<kId>()) return Result(other v);           \
-    }                                                  \
-    return Result(original v);                         \
+#define MUTATION_PREFIX(Name, original, other)     \
+  template <int kId>                               \
+  struct Name {};                                  \
+  template <int kId, typename T>                   \
+  constexpr auto operator->*(Name<kId>, T&& v) {   \
+    using Result = decltype(plain(original v));    \
+    if constexpr (requires { Result(other v); }) { \
+      if (on<kId>()) return Result(other v);       \
+    }                                              \
+    return Result(original v);                     \
   }
 MUTATION_PREFIX(Not, !, !!)
 MUTATION_PREFIX(Minus, -, +)
@@ -188,42 +188,40 @@ constexpr bool condition(bool v) noexcept {
   return v;
 }
 
-#define MUTATION_EXTREME(Name, original, other)                                     \
-  template <int kId, typename T = void>                                             \
-  struct Name {                                                                     \
-    constexpr T operator()(const T& a, const T& b) const {                          \
-      return on<kId>() ? other(a, b) : original(a, b);                              \
-    }                                                                               \
-  };                                                                                \
-  template <int kId>                                                                \
-  struct Name<kId, void> {                                                          \
-    template <typename T>                                                           \
-    constexpr T operator()(const T& a, const T& b) const {                          \
-      return on<kId>() ? other(a, b) : original(a, b);                              \
-    }                                                                               \
-    template <typename T>                                                           \
-    constexpr T operator()(std::initializer_list<T> list) const {                   \
-      return on<kId>() ? other(list) : original(list);                              \
-    }                                                                               \
+#define MUTATION_EXTREME(Name, original, other)                                                               \
+  template <int kId, typename T = void>                                                                       \
+  struct Name {                                                                                               \
+    constexpr T operator()(const T& a, const T& b) const { return on<kId>() ? other(a, b) : original(a, b); } \
+  };                                                                                                          \
+  template <int kId>                                                                                          \
+  struct Name<kId, void> {                                                                                    \
+    template <typename T>                                                                                     \
+    constexpr T operator()(const T& a, const T& b) const {                                                    \
+      return on<kId>() ? other(a, b) : original(a, b);                                                        \
+    }                                                                                                         \
+    template <typename T>                                                                                     \
+    constexpr T operator()(std::initializer_list<T> list) const {                                             \
+      return on<kId>() ? other(list) : original(list);                                                        \
+    }                                                                                                         \
   };
 MUTATION_EXTREME(Min, std::min, std::max)
 MUTATION_EXTREME(Max, std::max, std::min)
 
-#define MUTATION_FUNCTION(Name, original, other)   \
-  template <int kId>                               \
-  struct Name {                                    \
-    template <typename T>                          \
-    constexpr auto operator()(const T& v) const {  \
-      using Result = decltype(original(v));        \
+#define MUTATION_FUNCTION(Name, original, other)         \
+  template <int kId>                                     \
+  struct Name {                                          \
+    template <typename T>                                \
+    constexpr auto operator()(const T& v) const {        \
+      using Result = decltype(original(v));              \
       return on<kId>() ? Result(other(v)) : original(v); \
-    }                                              \
+    }                                                    \
   };
 MUTATION_FUNCTION(Abs, std::abs, )
 MUTATION_FUNCTION(Sin, std::sin, std::cos)
 MUTATION_FUNCTION(Cos, std::cos, std::sin)
 MUTATION_FUNCTION(Floor, std::floor, std::ceil)
 MUTATION_FUNCTION(Ceil, std::ceil, std::floor)
-MUTATION_FUNCTION(IsFinite, std::isfinite, true || )
+MUTATION_FUNCTION(IsFinite, std::isfinite, true ||)
 
 template <int kId>
 struct Clamp {

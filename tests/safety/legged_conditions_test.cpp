@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "robots/quadruped_fixture.h"
+#include "machine/legs/legs_corpus.h"
 
 namespace robot_control {
 namespace {
