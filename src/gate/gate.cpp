@@ -83,7 +83,6 @@ std::span<const JointCommand> Gate::step(const GateInput& input) noexcept {
   read_samples(input);
   if (!check_and_clamp(input)) stop(elapsed_at(input.cycle));
   remember();
-  samples_ = {};
   last_cycle_ = input.cycle;
   return {commands_.data(), limits_.size()};
 }
@@ -237,7 +236,7 @@ void Gate::clamp(double elapsed) noexcept {
     const JointMemory& memory = memory_[i];
     const bool measured = has_position(i) && has(samples_[i], kValidEffort) && std::isfinite(samples_[i].effort);
     const double from = memory.driven ? memory.effort : 0.0;
-    const double to = memory.driven || !measured ? from : std::clamp(samples_[i].effort, -limits.effort, limits.effort);
+    const double to = memory.driven || !measured ? from : samples_[i].effort;
     const double step = limits.effort_rate * elapsed;
     report_.reasons |= clamp_rate(std::min(from, to) - step, std::max(from, to) + step, command);
     if (!has_position(i)) continue;

@@ -103,7 +103,7 @@ class Gate {
   double period_;
   FixedVector<JointStop, kMaxJoints> stops_;
   FixedVector<JointMemory, kMaxJoints> memory_;
-  std::span<const JointSample> samples_;     ///< of this tick; empty: missing, or between two ticks
+  std::span<const JointSample> samples_;     ///< of the last tick; empty: missing
   std::optional<std::uint64_t> last_cycle_;  ///< of the last tick
   std::uint64_t newest_permit_ = 0;          ///< cycle of the newest permit seen in this run
   bool ramping_ = false;                     ///< the last permit that had not expired was a ramp

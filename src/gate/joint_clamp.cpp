@@ -75,11 +75,12 @@ std::uint64_t clamp_position(const JointLimits& limits, double position, JointCo
     const double left = direction > 0 ? limits.upper - position : position - limits.lower;
     if (left > limits.soft_zone) continue;
     const bool moves = has_velocity(command) && direction * command.velocity > 0;
-    if (left <= 0 && (moves || direction * command.effort > 0)) {
+    if (left <= 0) {
+      if (!moves && direction * command.effort <= 0) continue;
       command = {};
       return kGatePositionClamped;
     }
-    const double taper = left <= 0 ? 0.0 : left / limits.soft_zone;
+    const double taper = left / limits.soft_zone;
     const double fastest = std::isfinite(limits.velocity) ? limits.velocity : std::abs(command.velocity);
     clamped |= bound_towards(direction, taper * limits.effort, command.effort);
     if (has_velocity(command)) clamped |= bound_towards(direction, taper * fastest, command.velocity);

@@ -7,7 +7,7 @@ namespace robot_control {
 
 JointSpeed::JointSpeed(double period) noexcept
     : period_(period),
-      base_(static_cast<std::uint64_t>(std::clamp(std::ceil(kSpeedBase / period - 1e-9), 2.0, kChanges - 2.0))) {}
+      base_(static_cast<std::uint64_t>(std::clamp(std::ceil(kSpeedBase / period), 2.0, kChanges - 2.0))) {}
 
 void JointSpeed::step(double position, std::uint64_t cycle) noexcept {
   if (count_ == 0 || position != change(count_ - 1).position) {

@@ -48,6 +48,15 @@ TEST_F(GateRamp, CountsCyclesThatWereSkipped) {
   expect_brake(kGateRampTooLong);
 }
 
+TEST_F(GateRamp, BeginsAnewInANewRun) {
+  for (int tick = 0; tick < 9; ++tick) next();
+  gate_.enter_run();
+  for (int tick = 0; tick < 10; ++tick) {
+    next();
+    ASSERT_EQ(verdict(), GateVerdict::kRamp) << tick;
+  }
+}
+
 TEST_F(GateRamp, AMissingPermitDoesNotRestartIt) {
   for (int tick = 0; tick < 10; ++tick) next();
   input_.permit_found = Lookup::kMissing;
@@ -106,6 +115,15 @@ TEST_F(GateRate, SkippedTicksAddUp) {
   EXPECT_NEAR(joints_[0].effort, 0.4 + 4 * 0.4, 1e-15);
 }
 
+TEST_F(GateRate, TheTicksBetweenTwoRunsDoNot) {
+  next();
+  gate_.enter_run();
+  tick_at(input_.cycle + 9);
+  request(5.0);
+  step();
+  EXPECT_NEAR(joints_[0].effort, 0.4, 1e-15);
+}
+
 TEST_F(GateRate, AHeldCommandGoesOnTowardsIt) {
   request(1.0);
   next();
@@ -145,6 +163,17 @@ TEST_F(GateRate, WhatTheBrakeHeldCountsUpToTheEffortLimit) {
     request(kLimit);
     step();
     EXPECT_NEAR(joints_[0].effort, absurd == 1e9 ? kLimit : 0.4, 1e-15) << absurd;
+  }
+}
+
+TEST_F(GateRate, WhatIsNotMeasuredCountsForNothing) {
+  sensors_.joints[0].effort = -3;
+  request(-3);
+  for (const std::uint32_t valid : {std::uint32_t{kValidPosition}, std::uint32_t{kValidEffort}}) {
+    gate_.enter_run();
+    set_joints_valid(sensors_, valid);
+    step();
+    EXPECT_NEAR(joints_[0].effort, -0.4, 1e-15) << valid;
   }
 }
 
@@ -239,14 +268,18 @@ TEST_F(GateSpeed, BrakesWhereTheSamplesAreMissing) {
   set_joints_valid(sensors_, kValidMotion);
   sensors_.joint_count = 1;
   expect_brake(kGateBadSensors);
+  command_.joints[1].mode = JointMode::kBrake;
+  expect_brake(kGateBadSensors);
 }
 
 TEST_F(GateSpeed, BrakesOnAPositionThatIsNotFinite) {
-  for (const double position : {kNaN, kInfinity, -kInfinity}) {
-    sensors_.joints[1].position = position;
-    expect_brake(kGateBadSensors);
+  for (const std::size_t joint : {0U, 1U}) {
+    for (const double position : {kNaN, kInfinity, -kInfinity}) {
+      sensors_.joints[joint].position = position;
+      expect_brake(kGateBadSensors);
+    }
+    sensors_.joints[joint].position = 0;
   }
-  sensors_.joints[1].position = 0;
   step();
   EXPECT_EQ(verdict(), GateVerdict::kPassed);
 }
@@ -321,6 +354,11 @@ TEST_F(GateWithStopActions, OrdersThatOfEachJointWhateverIsMissing) {
   expect_stop();
 }
 
+TEST_F(GateWithStopActions, OrdersThemInTickZeroAlready) {
+  input_.cycle = 0;
+  expect_stop();
+}
+
 TEST_F(GateWithStopActions, ACommandThatBrakesEveryJointIsApplied) {
   command_.joints[0].mode = command_.joints[1].mode = JointMode::kBrake;
   expect_brake(kGateControllerBrake);
@@ -330,6 +368,44 @@ TEST_F(GateWithStopActions, DrivesAsEver) {
   step();
   EXPECT_EQ(verdict(), GateVerdict::kPassed);
   EXPECT_EQ(joints_[0].effort, 1.5);
+}
+
+class GateWithAFold : public GateFixture {
+ protected:
+  static constexpr StopAction kFold{
+      .kind = StopKind::kFold, .damping = 2, .stiffness = 60, .posture = 1.5, .time = 1.25};
+  GateWithAFold() : GateFixture({.effort = kLimit}, {.stops = {kFold, kFold}}) {}
+
+  void brake() {
+    permit_.action = PermitAction::kBrake;
+    next();
+  }
+  /// The order is that of a fold that begins now, `cycles` after the last tick.
+  void expect_first_order(int cycles) {
+    const JointCommand first = JointStop(kFold).step(0.5, cycles * kPeriod);
+    EXPECT_EQ(std::memcmp(&joints_[0], &first, sizeof first), 0);
+  }
+};
+
+TEST_F(GateWithAFold, FoldsByTheTimeBetweenTheTicks) {
+  sensors_.joints[0].position = 0.5;
+  next();
+  tick_at(input_.cycle + 2);
+  brake();
+  expect_first_order(3);
+}
+
+TEST_F(GateWithAFold, FoldsFromTheBeginningAfterACommandAndInANewRun) {
+  for (int i = 0; i < 100; ++i) brake();
+  sensors_.joints[0].position = 0.5;
+  permit_.action = PermitAction::kDrive;
+  next();
+  brake();
+  expect_first_order(1);
+  brake();
+  gate_.enter_run();
+  brake();
+  expect_first_order(1);
 }
 
 // Construction.
@@ -357,13 +433,24 @@ TEST(GateConstruction, RefusesLimitsThatAreNone) {
   EXPECT_TRUE(refused({.soft_zone = kInfinity}));
 }
 
+TEST(GateConstruction, TakesSmallLimits) {
+  EXPECT_NO_THROW(Gate({{.effort = 0, .effort_rate = 0.1, .velocity = 0.1, .lower = 0.1, .upper = 0.2}}, {}, kPeriod));
+}
+
 TEST(GateConstruction, RefusesStopActionsThatAreNone) {
   const std::vector<JointLimits> limits(2);
   EXPECT_NO_THROW(Gate(limits, {.stops = {{}, {.kind = StopKind::kDamp, .damping = 1}}}, kPeriod));
   EXPECT_THROW(Gate(limits, {.stops = {{}}}, kPeriod), std::invalid_argument);
   for (const double damping : {-1.0, kNaN, kInfinity}) {
     EXPECT_THROW(Gate(limits, {.stops = {{}, {.damping = damping}}}, kPeriod), std::invalid_argument) << damping;
+    EXPECT_THROW(Gate(limits, {.stops = {{}, {.stiffness = damping}}}, kPeriod), std::invalid_argument) << damping;
+    EXPECT_THROW(Gate(limits, {.stops = {{}, {.time = damping}}}, kPeriod), std::invalid_argument) << damping;
   }
+  for (const double position : {kNaN, kInfinity, -kInfinity}) {
+    EXPECT_THROW(Gate(limits, {.stops = {{}, {.posture = position}}}, kPeriod), std::invalid_argument) << position;
+    EXPECT_THROW(Gate(limits, {.stops = {{}, {.upright = position}}}, kPeriod), std::invalid_argument) << position;
+  }
+  EXPECT_NO_THROW(Gate(limits, {.stops = {{}, {.posture = -1, .upright = -2}}}, kPeriod));
 }
 
 TEST(GateConstruction, RefusesMoreJointsThanAFrameHoldsAndNoPeriod) {

@@ -14,6 +14,8 @@ TEST_F(GateTest, PassesTheHealthyCommandUnchanged) {
   EXPECT_EQ(gate_.report().reasons, 0u);
   EXPECT_EQ(gate_.report().command_cycle, 99u);
   EXPECT_EQ(gate_.report().permit_cycle, 99u);
+  EXPECT_EQ(gate_.report().cycle, 100u);
+  EXPECT_EQ(gate_.report().refused, 0u);
   ASSERT_EQ(joints_.size(), 2u);
   EXPECT_EQ(std::memcmp(joints_.data(), command_.joints.data(), joints_.size_bytes()), 0);
 }
@@ -129,6 +131,7 @@ TEST_F(GateTest, BrakesWhenThePermitSaysSo) {
 TEST_F(GateTest, BrakesOnAnUnknownAction) {
   permit_.action = static_cast<PermitAction>(3);
   expect_brake(kGateUnknownMode);
+  EXPECT_EQ(gate_.report().refused, 1u);
 }
 
 TEST_F(GateTest, RampPassesThroughItsLastCycleAndNoLonger) {
@@ -173,6 +176,7 @@ TEST_F(GateTest, HoldsACommandForExactlyThreeCycles) {
 
 TEST_F(GateTest, BrakesWithoutACommand) {
   input_.command_found = Lookup::kMissing;
+  command_of(1000);  // of no meaning
   expect_brake(kGateNoCommand);
   EXPECT_EQ(gate_.report().missed, 1u);
 }
@@ -190,6 +194,7 @@ TEST_F(GateTest, BrakesOnACommandOfAnotherRun) {
 TEST_F(GateTest, BrakesOnACommandOfThisCycleOrTheFuture) {
   command_of(100);
   expect_brake(kGateFuture);
+  EXPECT_EQ(gate_.report().command_cycle, 0u);
   command_of(1000);
   expect_brake(kGateFuture);
   EXPECT_EQ(gate_.report().refused, 2u);
@@ -245,6 +250,7 @@ TEST_F(GateTest, BrakesOnAnotherNumberOfJoints) {
     command_.joint_count = count;
     expect_brake(kGateWrongJointCount);
   }
+  EXPECT_EQ(gate_.report().refused, 4u);
 }
 
 TEST_F(GateTest, BrakesOnAnUnknownMode) {
@@ -279,6 +285,35 @@ TEST_F(GateTest, ReportsAHeldCommandThatWasClampedAsBoth) {
   EXPECT_EQ(gate_.report().held, 1u);
 }
 
+TEST_F(GateTest, PassesEveryMode) {
+  command_.joints[0] = {.mode = JointMode::kImpedance, .position = 1, .velocity = 2, .stiffness = 3, .damping = 4};
+  command_.joints[1] = {.mode = JointMode::kBrake, .damping = -2, .effort = 3};
+  step();
+  EXPECT_EQ(gate_.report().verdict, GateVerdict::kPassed);
+  EXPECT_EQ(std::memcmp(joints_.data(), command_.joints.data(), joints_.size_bytes()), 0);
+}
+
+// Each array ends with its last joint: what lies behind it is that of nothing.
+TEST_F(GateTest, PassesTheCommandOfAsManyJointsAsAFrameHolds) {
+  Gate gate(std::vector<JointLimits>(kMaxJoints, {.effort = kLimit, .velocity = 20}), {}, kPeriod);
+  command_.joint_count = sensors_.joint_count = kMaxJoints;
+  command_.joints.fill({.mode = JointMode::kEffort, .effort = 1.5});
+  const std::span<const JointCommand> all = gate.step(input_);
+  EXPECT_EQ(gate.report().verdict, GateVerdict::kPassed);
+  EXPECT_EQ(gate.report().cycle, 100u);
+  ASSERT_EQ(all.size(), kMaxJoints);
+  for (const JointCommand& joint : all) EXPECT_EQ(joint.effort, 1.5);
+  permit_.action = PermitAction::kBrake;
+  for (const JointCommand& joint : gate.step(input_)) EXPECT_EQ(joint.mode, JointMode::kBrake);
+  EXPECT_EQ(gate.report().verdict, GateVerdict::kBrake);
+  EXPECT_EQ(gate.report().cycle, 100u);
+}
+
+TEST_F(GateTest, AJointWhoseEffortLimitIsNotGivenGetsNoEffort) {
+  Gate gate({{}, {}}, {}, kPeriod);
+  for (const JointCommand& joint : gate.step(input_)) EXPECT_EQ(joint.effort, 0);
+}
+
 TEST_F(GateTest, ACommandThatBrakesEveryJointIsABrake) {
   command_.joints[0] = {.mode = JointMode::kBrake, .velocity = 3};
   command_.joints[1] = {.mode = JointMode::kBrake};
@@ -308,6 +343,15 @@ TEST_F(GateTest, ANewRunForgetsWhatItKnew) {
   tick_at(5);  // else a permit of cycle 4 were superseded by that of cycle 1000
   step();
   EXPECT_EQ(gate_.report().verdict, GateVerdict::kPassed);
+}
+
+TEST_F(GateTest, PassesInTheFirstTickAfterTickZero) {
+  for (int run = 0; run < 2; ++run) {
+    gate_.enter_run();
+    tick_at(1);
+    step();
+    EXPECT_EQ(gate_.report().verdict, GateVerdict::kPassed);
+  }
 }
 
 TEST_F(GateTest, StepsWithoutAllocating) {

@@ -33,6 +33,20 @@ TEST_P(SpeedClamp, LeavesEverythingAloneBelowTheTaper) {
   EXPECT_TRUE(same(command, effort(4)));
 }
 
+// 18 of 20 rad/s.
+TEST_P(SpeedClamp, LeavesEverythingAloneAtTheStartOfTheTaper) {
+  JointCommand command{.mode = JointMode::kImpedance, .position = sign, .stiffness = 8, .effort = sign * 4};
+  const JointCommand before = command;
+  EXPECT_EQ(clamp_speed(kWheel, 0, sign * 18, command), 0u);
+  EXPECT_TRUE(same(command, before));
+}
+
+TEST_P(SpeedClamp, LeavesTheSpeedLimitItselfAlone) {
+  JointCommand command{.mode = JointMode::kVelocity, .velocity = sign * 20, .damping = 1};
+  EXPECT_EQ(clamp_speed(kWheel, 0, 0, command), 0u);
+  EXPECT_EQ(command.velocity, sign * 20);
+}
+
 TEST_P(SpeedClamp, TapersTheEffortTowardsMoreSpeed) {
   for (const auto& [speed, left] : {std::pair{18.5, 3.0}, {19.0, 2.0}, {19.5, 1.0}}) {
     JointCommand command = effort(4);
@@ -81,6 +95,7 @@ TEST_P(SpeedClamp, ASpringThatPullsOnIsSlackedOneThatPullsBackIsNot) {
   EXPECT_EQ(clamp_speed(kWheel, sign * 1, sign * 19, command), std::uint64_t{kGateSpeedClamped});
   EXPECT_NEAR(command.stiffness, 4, 10 * kClampRounding);
   command.stiffness = 8;
+  EXPECT_EQ(clamp_speed(kWheel, sign * 2, sign * 19, command), 0u) << "it pulls nowhere";
   EXPECT_EQ(clamp_speed(kWheel, sign * 3, sign * 19, command), 0u);
   EXPECT_EQ(command.stiffness, 8);
 }
@@ -99,6 +114,20 @@ TEST(GainClamp, GainsBelowZeroAreZero) {
   EXPECT_EQ(clamp_gains(command), std::uint64_t{kGateSpeedClamped});
   EXPECT_EQ(command.stiffness, 0);
   EXPECT_EQ(command.damping, 0);
+}
+
+TEST(GainClamp, EitherGainBelowZeroIsReported) {
+  JointCommand command{.mode = JointMode::kImpedance, .stiffness = 0.5, .damping = -2};
+  EXPECT_EQ(clamp_gains(command), std::uint64_t{kGateSpeedClamped});
+  EXPECT_EQ(command.stiffness, 0.5);
+  command = {.mode = JointMode::kImpedance, .stiffness = -1, .damping = 0.5};
+  EXPECT_EQ(clamp_gains(command), std::uint64_t{kGateSpeedClamped});
+  EXPECT_EQ(command.damping, 0.5);
+}
+
+TEST(GainClamp, GainsOfZeroAreLeftAlone) {
+  JointCommand command{.mode = JointMode::kImpedance};
+  EXPECT_EQ(clamp_gains(command), 0u);
 }
 
 TEST(GainClamp, GainsThatTheModeDoesNotUseAreCarried) {
@@ -146,6 +175,16 @@ TEST_P(PositionClamp, AwayFromTheEndStopEverythingIsFree) {
   }
 }
 
+TEST_P(PositionClamp, AtTheEndStopSpeedOrEffortAwayFromItIsFree) {
+  JointCommand speed{.mode = JointMode::kVelocity, .velocity = -sign, .damping = 1};
+  JointCommand effort{.mode = JointMode::kVelocity, .damping = 1, .effort = -sign};
+  for (JointCommand* command : {&speed, &effort}) {
+    const JointCommand before = *command;
+    EXPECT_EQ(clamp_position(kJoint, at(0), *command), 0u);
+    EXPECT_TRUE(same(*command, before));
+  }
+}
+
 TEST_P(PositionClamp, AtTheEndStopAndBeyondACommandTowardsItIsTheBrake) {
   const JointCommand towards[] = {{.mode = JointMode::kEffort, .effort = sign * 0.01},
                                   {.mode = JointMode::kVelocity, .velocity = sign * 0.01, .damping = 1},
@@ -171,6 +210,10 @@ TEST_P(PositionClamp, WithoutASoftZoneTheEndStopAloneCounts) {
   JointCommand command{.mode = JointMode::kEffort, .effort = sign * 4};
   EXPECT_EQ(clamp_position(limits, at(1e-9), command), 0u);
   EXPECT_EQ(command.effort, sign * 4);
+  limits.velocity = std::numeric_limits<double>::infinity();
+  JointCommand still{.mode = JointMode::kVelocity, .damping = 1};
+  for (const double left : {1.0, 0.0}) EXPECT_EQ(clamp_position(limits, at(left), still), 0u) << left;
+  EXPECT_EQ(still.velocity, 0);
   EXPECT_EQ(clamp_position(limits, at(0), command), std::uint64_t{kGatePositionClamped});
   EXPECT_EQ(command.mode, JointMode::kBrake);
 }
@@ -191,6 +234,8 @@ TEST(RateClamp, BringsTheEffortToTheNearerEnd) {
   command.effort = -1.5;
   EXPECT_EQ(clamp_rate(-1, 2, command), std::uint64_t{kGateRateClamped});
   EXPECT_EQ(command.effort, -1);
+  EXPECT_EQ(clamp_rate(-1, 2, command), 0u);
+  command.effort = 2;
   EXPECT_EQ(clamp_rate(-1, 2, command), 0u);
 }
 

@@ -73,6 +73,26 @@ TEST(JointSpeed, ASteadySpeedIsOffByOneCycleOrOneCountOfTheBase) {
   }
 }
 
+/// Returns the speed after changes to 0, 1, 2 … rad in these cycles.
+double speed_of(std::initializer_list<std::uint64_t> cycles, double period = kPeriod) {
+  JointSpeed joint(period);
+  double position = 0;
+  for (const std::uint64_t cycle : cycles) joint.step(position++, cycle);
+  return joint.value();
+}
+
+// A single count is as fast as if it took the base: 12 ms, at least two cycles, above 2.5 kHz 30 cycles.
+TEST(JointSpeed, ASingleCountTakesTheBase) {
+  for (const auto& [rate, base] : {std::pair{1.0, 2.0}, {100.0, 2.0}, {500.0, 6.0}, {1000.0, 12.0}, {10000.0, 30.0}})
+    EXPECT_NEAR(speed_of({50, 51}, 1 / rate), rate / base, 1e-9 * rate) << rate;
+}
+
+TEST(JointSpeed, GoesBackToTheLastChangeThatIsABaseBefore) {
+  EXPECT_NEAR(speed_of({0, 1, 12}), 2 / 0.012, 1e-9);  // 12 − 1 is less than the base
+  EXPECT_NEAR(speed_of({0, 1, 13}), 1 / 0.012, 1e-9);
+  EXPECT_NEAR(speed_of({0, 1, 20}), 1 / 0.019, 1e-9);
+}
+
 TEST(JointSpeed, SkippedCyclesCount) {
   JointSpeed joint(kPeriod);
   const Wheel wheel{7, 0};

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 
 namespace robot_control {
 namespace {
@@ -47,10 +48,10 @@ TEST(JointStop, DampsAloneAfterItsStiffnessFaded) {
 // The foot was in the air: it meets the ground when the others come as low.
 TEST(JointStop, OfAJointThatIsAheadWaitsForTheOthers) {
   StopAction action = kFolding;
-  action.upright = kBegin;
+  action.upright = 0.3;
   JointStop ahead(action), usual(action);
   for (double t = 0; t < 2; t += kCycle) {
-    const JointCommand waits = ahead.step(0.9, kCycle), other = usual.step(kBegin, kCycle);
+    const JointCommand waits = ahead.step(0.9, kCycle), other = usual.step(0.3, kCycle);
     if (waits.mode != JointMode::kImpedance) break;
     EXPECT_NEAR(waits.position, std::max(0.9, other.position), 1e-9);
     EXPECT_EQ(waits.velocity, other.position < 0.9 ? 0 : other.velocity);
@@ -70,7 +71,19 @@ TEST(JointStop, FoldsAgainFromWhereACommandLeftTheJoint) {
   JointStop stop(kFolding);
   for (double t = 0; t < 2; t += kCycle) stop.step(kBegin, kCycle);
   stop.release();
-  EXPECT_NEAR(stop.step(1.0, kCycle).position, 1.0, 0.001);
+  const JointCommand again = stop.step(1.0, kCycle), first = JointStop(kFolding).step(1.0, kCycle);
+  EXPECT_EQ(std::memcmp(&again, &first, sizeof first), 0);
+}
+
+TEST(JointStop, DampsAloneOnceItsTimeIsOver) {
+  JointStop stop(kFolding);
+  EXPECT_EQ(stop.step(kBegin, kFolding.time).mode, JointMode::kVelocity);
+}
+
+TEST(JointStop, WithoutNumbersIsWithoutTorque) {
+  const JointCommand order = JointStop({.kind = StopKind::kFold}).step(kBegin, kCycle);
+  EXPECT_EQ(order.mode, JointMode::kVelocity);
+  EXPECT_EQ(order.damping, 0);
 }
 
 TEST(JointStop, DampsAJointWithoutAPosition) {

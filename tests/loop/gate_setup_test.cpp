@@ -5,7 +5,6 @@
 #include <functional>
 #include <limits>
 
-#include "gate/wheeled/wheel_stop.h"
 #include "loop/cycle_fixture.h"
 #include "robots/differential_drive.h"
 
@@ -88,17 +87,6 @@ TEST(GateSetup, WheelsStopByTheUsersActionAndAnArmBrakes) {
     EXPECT_EQ(stops[1].kind, kind);
     EXPECT_EQ(stops[2].kind, StopKind::kBrake);
   }
-}
-
-// A robot of mass m at v has the wheels' force Σ d v/r² against it: m v/T.
-TEST(GateSetup, WheelsThatDampTakeTheSpeedInTheTimeOfTheHeader) {
-  const DriveTrain robot = two_wheels();
-  double force = 0;  // N per m/s
-  for (std::size_t i = 0; i < robot.wheels.size(); ++i) {
-    const double radius = robot.wheels[i].radius;
-    force += wheel_stop(robot, i, StopKind::kDamp).damping / (radius * radius);
-  }
-  EXPECT_NEAR(force, robot.mass / kDampTime, 1e-9);
 }
 
 /// A machine whose wheel runs away, or whose encoder is lost.

@@ -10,6 +10,7 @@
 #include "machine/description/wording.h"
 #include "machine/gravity.h"
 #include "machine/suspicions.h"
+#include "machine/wheeled/ground_points.h"
 #include "machine/wheeled/tipping.h"
 #include "machine/wheeled/wheels/drive_wheels.h"
 #include "machine/wheeled/wheels/swivel.h"

@@ -2,7 +2,7 @@
 /// mm/s over any second: with the wheels ramped up, in a curve, on the spot, and braked hard.
 
 #include "integrated_force.h"
-#include "made_robot.h"
+#include "support/made_robot.h"
 #include "plant_fixture.h"
 
 namespace robot_control {

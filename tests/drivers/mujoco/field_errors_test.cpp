@@ -14,7 +14,7 @@
 #include "drivers/mujoco/sensors/late_samples.h"
 #include "drivers/mujoco/sensors/sensor_errors.h"
 #include "drivers/mujoco/sensors/vibration.h"
-#include "made_robot.h"
+#include "support/made_robot.h"
 #include "plant_fixture.h"
 #include "support/allocation_guard.h"
 #include "two_wheels.h"

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <random>
 
-#include "made_robot.h"
+#include "support/made_robot.h"
 #include "plant_fixture.h"
 
 namespace robot_control {

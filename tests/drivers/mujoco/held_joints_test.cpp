@@ -11,7 +11,7 @@
 #include "drivers/mujoco/constants.h"
 #include "drivers/mujoco/motors/brake_limits.h"
 #include "machine/fault_names.h"
-#include "made_robot.h"
+#include "support/made_robot.h"
 #include "plant_fixture.h"
 
 namespace robot_control {

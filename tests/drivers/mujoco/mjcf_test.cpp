@@ -11,7 +11,7 @@
 #include "drivers/mujoco/constants.h"
 #include "drivers/mujoco/model/mujoco_model.h"
 #include "drivers/mujoco/mujoco_errors.h"
-#include "made_robot.h"
+#include "support/made_robot.h"
 #include "plant_fixture.h"
 
 namespace robot_control {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "drivers/mujoco/constants.h"
-#include "made_robot.h"
+#include "support/made_robot.h"
 #include "plant_fixture.h"
 
 namespace robot_control {

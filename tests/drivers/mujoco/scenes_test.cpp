@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/mujoco/constants.h"
-#include "made_robot.h"
+#include "support/made_robot.h"
 #include "plant_fixture.h"
 #include "support/message_of.h"
 

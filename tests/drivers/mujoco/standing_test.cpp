@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "made_robot.h"
+#include "support/made_robot.h"
 #include "plant_fixture.h"
 #include "support/message_of.h"
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/mujoco/constants.h"
-#include "made_robot.h"
+#include "support/made_robot.h"
 #include "support/diffbot_urdf.h"
 
 namespace robot_control {

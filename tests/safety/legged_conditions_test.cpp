@@ -5,7 +5,7 @@
 #include <functional>
 #include <random>
 
-#include "robots/quadruped_fixture.h"
+#include "machine/legs/legs_corpus.h"
 
 namespace robot_control {
 namespace {
