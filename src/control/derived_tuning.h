@@ -9,7 +9,7 @@
 #include "control/limits/speed_limiter.h"
 #include "control/wheel_loops/wheel_loop.h"
 #include "machine/wheeled/drive_train.h"
-#include "signals/drive_tuning.h"
+#include "signals/wheeled/drive_tuning.h"
 
 namespace robot_control {
 

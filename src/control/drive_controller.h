@@ -61,12 +61,12 @@
 #include "control/wheel_loops/wheel_loop.h"
 #include "machine/wheeled/drive_train.h"
 #include "signals/command_frame.h"
-#include "signals/drive_tuning.h"
 #include "signals/fixed_vector.h"
 #include "signals/permit.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
 #include "signals/velocity_command.h"
+#include "signals/wheeled/drive_tuning.h"
 
 namespace robot_control {
 

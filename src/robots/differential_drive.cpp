@@ -9,33 +9,6 @@
 #include "safety/safety_monitor.h"
 
 namespace robot_control {
-namespace {
-
-class WheeledController final : public SavedLaw<ControllerLaw, DriveController> {
- public:
-  using SavedLaw::SavedLaw;
-  void enter_run(const VelocityCommand& inbox, bool with_zero) noexcept override { law_.enter_run(inbox, with_zero); }
-  void tune(const DriveTuning& tuning) noexcept override { law_.tune(tuning); }
-  const DriveTuning& tuning() const noexcept override { return law_.tuning(); }
-  void step(const ControlInput& input, CommandFrame& out) noexcept override { law_.step(input, out); }
-};
-
-}  // namespace
-
-std::unique_ptr<EstimatorLaw> wheeled_estimator(const EstimatorParameters& parameters, const DriveTrain& machine,
-                                                double period) {
-  return std::make_unique<EstimatorOf<Estimator>>(parameters, machine, period);
-}
-
-std::unique_ptr<ControllerLaw> wheeled_controller(const DriveControllerParameters& parameters,
-                                                  const DriveTrain& machine, double period) {
-  return std::make_unique<WheeledController>(parameters, machine, period);
-}
-
-std::unique_ptr<MonitorLaw> wheeled_monitor(const SafetyParameters& parameters, const DriveTrain& machine,
-                                            double period) {
-  return std::make_unique<MonitorOf<SafetyMonitor>>(parameters, machine, period);
-}
 
 DifferentialDrive::DifferentialDrive(const Parameters& parameters, const DriveTrain& machine)
     : parameters_(parameters), machine_(machine) {}
@@ -45,15 +18,16 @@ void DifferentialDrive::require_drivable() const {
 }
 
 std::unique_ptr<EstimatorLaw> DifferentialDrive::make_estimator() const {
-  return wheeled_estimator(parameters_.estimator, machine_, parameters_.loop.period());
+  return std::make_unique<EstimatorOf<Estimator>>(parameters_.estimator, machine_, parameters_.loop.period());
 }
 
 std::unique_ptr<ControllerLaw> DifferentialDrive::make_controller() const {
-  return wheeled_controller(parameters_.controller, machine_, parameters_.loop.period());
+  return std::make_unique<ControllerOf<DriveController>>(parameters_.controller, machine_, parameters_.loop.period());
 }
 
 std::unique_ptr<MonitorLaw> DifferentialDrive::make_monitor() const {
-  return wheeled_monitor(safety_limits(parameters_, machine_), machine_, parameters_.loop.period());
+  return std::make_unique<MonitorOf<SafetyMonitor>>(safety_limits(parameters_, machine_), machine_,
+                                                    parameters_.loop.period());
 }
 
 MachineNeeds DifferentialDrive::needs() const {
@@ -73,7 +47,7 @@ GateParameters DifferentialDrive::gate() const {
   return gate;
 }
 
-std::unique_ptr<Retuner> DifferentialDrive::make_retuner(LatestValue<DriveTuning>& inbox) const {
+std::unique_ptr<Retuner> DifferentialDrive::make_retuner(LatestValue<LiveTuning>& inbox) const {
   return std::make_unique<Retuning>(parameters_, machine_, inbox);
 }
 

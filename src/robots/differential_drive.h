@@ -12,14 +12,6 @@
 
 namespace robot_control {
 
-/// Return the laws alone; `period` is in s.
-std::unique_ptr<EstimatorLaw> wheeled_estimator(const EstimatorParameters& parameters, const DriveTrain& machine,
-                                                double period);
-std::unique_ptr<ControllerLaw> wheeled_controller(const DriveControllerParameters& parameters,
-                                                  const DriveTrain& machine, double period);
-std::unique_ptr<MonitorLaw> wheeled_monitor(const SafetyParameters& parameters, const DriveTrain& machine,
-                                            double period);
-
 class DifferentialDrive final : public Robot {
  public:
   DifferentialDrive(const Parameters& parameters, const DriveTrain& machine);
@@ -33,7 +25,7 @@ class DifferentialDrive final : public Robot {
   MachineNeeds needs() const override;
   std::vector<Brake> brakes() const override;
   GateParameters gate() const override;
-  std::unique_ptr<Retuner> make_retuner(LatestValue<DriveTuning>& inbox) const override;
+  std::unique_ptr<Retuner> make_retuner(LatestValue<LiveTuning>& inbox) const override;
 
  private:
   Parameters parameters_;

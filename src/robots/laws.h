@@ -10,8 +10,8 @@
 #include "control/control_input.h"
 #include "safety/monitor_input.h"
 #include "signals/command_frame.h"
-#include "signals/drive_tuning.h"
 #include "signals/law_snapshot.h"
+#include "signals/live_tuning.h"
 #include "signals/permit.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
@@ -45,8 +45,8 @@ class ControllerLaw : public Law {
   /// Begins a new run. Requests in the inbox do not count; with `with_zero` the run begins with a zero request.
   virtual void enter_run(const VelocityCommand& inbox, bool with_zero) noexcept = 0;
   /// Sets limits and gains between two cycles. They stay after `enter_run`.
-  virtual void tune(const DriveTuning& tuning) noexcept = 0;
-  virtual const DriveTuning& tuning() const noexcept = 0;
+  virtual void tune(const LiveTuning& tuning) noexcept = 0;
+  virtual LiveTuning tuning() const noexcept = 0;
   /// Fills everything but `out.head`.
   virtual void step(const ControlInput& input, CommandFrame& out) noexcept = 0;
 };
@@ -80,6 +80,27 @@ class EstimatorOf final : public SavedLaw<EstimatorLaw, Implementation> {
   void resume(const StateFrame& last) noexcept override { this->law_.resume(last); }
   void set_pose(const Vector3& pose) noexcept override { this->law_.set_pose(pose); }
   void step(const SensorFrame& sensors, StateFrame& out) noexcept override { this->law_.step(sensors, out); }
+};
+
+/// A controller whose law has the functions of the role. One without `tune` has no values that change while it runs.
+template <class Implementation>
+class ControllerOf final : public SavedLaw<ControllerLaw, Implementation> {
+ public:
+  using SavedLaw<ControllerLaw, Implementation>::SavedLaw;
+  void enter_run(const VelocityCommand& inbox, bool with_zero) noexcept override {
+    this->law_.enter_run(inbox, with_zero);
+  }
+  void tune(const LiveTuning& tuning) noexcept override {
+    if constexpr (kTuned) this->law_.tune(content_of<std::decay_t<decltype(this->law_.tuning())>>(tuning));
+  }
+  LiveTuning tuning() const noexcept override {
+    if constexpr (kTuned) return tuning_of(this->law_.tuning());
+    return {};
+  }
+  void step(const ControlInput& input, CommandFrame& out) noexcept override { this->law_.step(input, out); }
+
+ private:
+  static constexpr bool kTuned = requires(Implementation law) { law.tune(law.tuning()); };
 };
 
 /// A monitor whose law has the function of the role.

@@ -14,18 +14,6 @@
 namespace robot_control {
 namespace {
 
-class LegsController final : public SavedLaw<ControllerLaw, LegController> {
- public:
-  using SavedLaw::SavedLaw;
-  void enter_run(const VelocityCommand& inbox, bool with_zero) noexcept override { law_.enter_run(inbox, with_zero); }
-  void tune(const DriveTuning& tuning) noexcept override { tuning_ = tuning; }
-  const DriveTuning& tuning() const noexcept override { return tuning_; }
-  void step(const ControlInput& input, CommandFrame& out) noexcept override { law_.step(input, out); }
-
- private:
-  DriveTuning tuning_;  ///< has no effect on legs
-};
-
 /// Returns the angles of a leg while the robot stands at that height [m], its foot where it lay.
 LegAngles upright(const Leg& leg, double height) noexcept {
   const LegGeometry& geometry = leg.kinematics.geometry();
@@ -68,7 +56,8 @@ std::unique_ptr<EstimatorLaw> Quadruped::make_estimator() const {
 }
 
 std::unique_ptr<ControllerLaw> Quadruped::make_controller() const {
-  return std::make_unique<LegsController>(machine_, parameters_.leg_control.request_timeout, parameters_.loop.period());
+  return std::make_unique<ControllerOf<LegController>>(machine_, parameters_.leg_control.request_timeout,
+                                                       parameters_.loop.period());
 }
 
 std::unique_ptr<MonitorLaw> Quadruped::make_monitor() const {
@@ -95,10 +84,6 @@ GateParameters Quadruped::gate() const {
     }
   }
   return gate;
-}
-
-std::unique_ptr<Retuner> Quadruped::make_retuner(LatestValue<DriveTuning>&) const {
-  return nullptr;
 }
 
 }  // namespace robot_control

@@ -33,7 +33,6 @@ class Quadruped final : public Robot {
   std::unique_ptr<MonitorLaw> make_monitor() const override;
   MachineNeeds needs() const override;
   GateParameters gate() const override;
-  std::unique_ptr<Retuner> make_retuner(LatestValue<DriveTuning>& inbox) const override;
 
  private:
   SafetyParameters limits() const;

@@ -15,12 +15,13 @@
 #include "machine/machine_model.h"
 #include "robots/laws.h"
 #include "safety/safety_parameters.h"
+#include "signals/live_tuning.h"
 
 namespace robot_control {
 
 /// An accepted request to change limits and gains.
 struct Retuned {
-  std::uint64_t count = 0;  ///< DriveTuning::count, column `tuning` of the log
+  std::uint64_t count = 0;  ///< of the sets accepted, column `tuning` of the log
   std::vector<LiveValue> values;
 };
 
@@ -78,7 +79,7 @@ class Robot {
 
   /// `inbox` is that of the controller's cycle. Returns null if nothing of this kind's controller changes while it
   /// runs.
-  virtual std::unique_ptr<Retuner> make_retuner(LatestValue<DriveTuning>& inbox) const = 0;
+  virtual std::unique_ptr<Retuner> make_retuner(LatestValue<LiveTuning>& /*inbox*/) const { return nullptr; }
 };
 
 }  // namespace robot_control

@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "signals/command_frame.h"
-#include "signals/drive_tuning.h"
 #include "signals/law_calls.h"
+#include "signals/live_tuning.h"
 #include "signals/permit.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
@@ -42,7 +42,7 @@ struct EstimatorTrace {
 
 struct ControllerTrace {
   CommandFrame command;
-  DriveTuning tuning;  ///< the tuning with which the command was computed
+  LiveTuning tuning;  ///< the tuning with which the command was computed
   CycleTiming timing;
   ControllerCalls calls;
 };

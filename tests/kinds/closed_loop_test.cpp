@@ -8,6 +8,7 @@
 #include "log/replay/recorded.h"
 #include "signals/checksum.h"
 #include "signals/names.h"
+#include "signals/wheeled/drive_tuning.h"
 
 namespace robot_control {
 namespace {
@@ -129,6 +130,24 @@ TEST_F(SecondKind, IsReplayedBitForBit) {
 
 TEST_F(SecondKind, HasNoParametersThatChangeWhileItRuns) {
   EXPECT_THROW(loop.set_parameters("{max_linear_speed: 0.5}"), ParameterError);
+}
+
+TEST_F(SecondKind, ALiveTuningInItsLogIsForged) {
+  std::vector<LoggedMessage> messages;
+  const auto replayed = [&] { return replay(messages, recording.snapshots, loop.robot(), parameters().loop.period()); };
+  for (int k = 0; k < 3; ++k) {
+    step();
+    log(loop.row(), 1, messages);
+  }
+  EXPECT_TRUE(replayed().exact()) << text_of(replayed());
+  ControllerTrace forged = *loop.row().controller;
+  forged.calls.tuned = 1;
+  content_of<DriveTuning>(forged.tuning).count = 1;
+  JoinedRow row = loop.row();
+  row.controller = row.laws.controller = &forged;
+  messages.pop_back();
+  log(row, 1, messages);
+  EXPECT_FALSE(replayed().exact());
 }
 
 TEST(SecondKindTwice, GivesTheSameBits) {

@@ -43,6 +43,8 @@ struct PendulumEstimator {
   std::uint64_t cycles = 0;
 
   void enter_run() noexcept { cycles = 0; }
+  void resume(const StateFrame& last) noexcept { cycles = static_cast<std::uint64_t>(last.base.distance); }
+  void set_pose(const Vector3&) noexcept {}
   void step(const SensorFrame& sensors, StateFrame& out) noexcept {
     out = {};
     ++cycles;
@@ -55,8 +57,8 @@ struct PendulumEstimator {
 struct PendulumController {
   explicit PendulumController(double period) : watch(0.5, period, kPartAngularZ) {}
   CommandWatch watch;
-  DriveTuning tuning;
 
+  void enter_run(const VelocityCommand& inbox, bool with_zero) noexcept { watch.enter_run(inbox, with_zero); }
   void step(const ControlInput& input, CommandFrame& out) noexcept {
     const std::uint64_t cycle = input.sensors->head.cycle;
     out = {};
@@ -115,27 +117,10 @@ class Pendulum final : public Robot {
   std::string_view kind() const noexcept override { return "pendulum"; }
   void require_drivable() const override {}
   std::unique_ptr<EstimatorLaw> make_estimator() const override {
-    struct Composed final : SavedLaw<EstimatorLaw, PendulumEstimator> {
-      void enter_run() noexcept override { law_.enter_run(); }
-      void resume(const StateFrame& last) noexcept override {
-        law_.cycles = static_cast<std::uint64_t>(last.base.distance);
-      }
-      void set_pose(const Vector3&) noexcept override {}
-      void step(const SensorFrame& sensors, StateFrame& out) noexcept override { law_.step(sensors, out); }
-    };
-    return std::make_unique<Composed>();
+    return std::make_unique<EstimatorOf<PendulumEstimator>>();
   }
   std::unique_ptr<ControllerLaw> make_controller() const override {
-    struct Composed final : SavedLaw<ControllerLaw, PendulumController> {
-      using SavedLaw::SavedLaw;
-      void enter_run(const VelocityCommand& inbox, bool with_zero) noexcept override {
-        law_.watch.enter_run(inbox, with_zero);
-      }
-      void tune(const DriveTuning& tuning) noexcept override { law_.tuning = tuning; }
-      const DriveTuning& tuning() const noexcept override { return law_.tuning; }
-      void step(const ControlInput& input, CommandFrame& out) noexcept override { law_.step(input, out); }
-    };
-    return std::make_unique<Composed>(parameters_.loop.period());
+    return std::make_unique<ControllerOf<PendulumController>>(parameters_.loop.period());
   }
   std::unique_ptr<MonitorLaw> make_monitor() const override {
     return std::make_unique<MonitorOf<Monitor<PendulumConditions>>>(parameters_.safety, machine_,
@@ -149,7 +134,6 @@ class Pendulum final : public Robot {
         .stops = {
             {.kind = StopKind::kFold, .damping = kDamping, .stiffness = kStiffness, .posture = 0, .time = kDownTime}}};
   }
-  std::unique_ptr<Retuner> make_retuner(LatestValue<DriveTuning>&) const override { return nullptr; }
 
  private:
   Parameters parameters_;

@@ -7,6 +7,7 @@
 
 #include "log/fields/trace_fields.h"
 #include "log/rows/traces.h"
+#include "signals/wheeled/drive_tuning.h"
 
 namespace robot_control {
 namespace {
@@ -192,7 +193,7 @@ TEST_F(Columns, KeepTheJointsApart) {
 }
 
 TEST_F(Columns, TellWhatTheControllerWasSetTo) {
-  controller.tuning = {
+  controller.tuning = tuning_of(DriveTuning{
       .count = 3,
       .linear = {.speed = 1, .acceleration = 2, .deceleration = 3, .emergency_deceleration = 4, .jerk = 5},
       .angular = {.speed = 6, .acceleration = 7, .deceleration = 8, .emergency_deceleration = 9, .jerk = 10},
@@ -200,8 +201,8 @@ TEST_F(Columns, TellWhatTheControllerWasSetTo) {
       .cmd_vel_timeout = 11,
       .tracking_bandwidth = 12,
       .mass = 13,
-      .yaw_inertia = 14};
-  controller.tuning.wheels[1] = {
+      .yaw_inertia = 14});
+  content_of<DriveTuning>(controller.tuning).wheels[1] = {
       .kp = 15, .ki = 16, .kd = 17, .model_inertia = 0, .inertia = 18, .damping = 19, .friction = 20};
   EXPECT_EQ(value("tuning"), 3);
   EXPECT_EQ(value("keep_curvature"), 1);

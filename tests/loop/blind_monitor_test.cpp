@@ -27,7 +27,7 @@ class BlindMonitor : public ::testing::Test {
 
   std::unique_ptr<MonitorCycle> make_monitor() {
     return std::make_unique<MonitorCycle>(
-        wheeled_monitor({}, loop.robot, kPeriod), loop.robot.hash, kLossNs,
+        std::make_unique<MonitorOf<SafetyMonitor>>(SafetyParameters{}, loop.robot, kPeriod), loop.robot.hash, kLossNs,
         MonitorCycle::Channels{&loop.sensors.reader, &loop.state.reader, &loop.command.reader, loop.permit.writer},
         CommandScript(), virtual_clock);
   }

@@ -5,12 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "control/drive_controller.h"
 #include "drivers/driver.h"
+#include "estimation/estimator.h"
 #include "loop/cycles/controller_cycle.h"
 #include "loop/cycles/driver_cycle.h"
 #include "loop/cycles/estimator_cycle.h"
 #include "loop/cycles/monitor_cycle.h"
 #include "robots/differential_drive.h"
+#include "safety/safety_monitor.h"
 #include "simulation/faults/node_faults.h"
 
 namespace robot_control {
@@ -86,18 +89,19 @@ struct Loop {
 
   /// A killed and restarted node is a new object on the channels that its predecessor left.
   void restart_estimator() {
-    estimator = std::make_unique<EstimatorCycle>(wheeled_estimator({}, robot, kPeriod), robot.hash, sensors.reader,
-                                                 state.writer, nullptr);
+    estimator = std::make_unique<EstimatorCycle>(
+        std::make_unique<EstimatorOf<Estimator>>(EstimatorParameters{}, robot, kPeriod), robot.hash, sensors.reader,
+        state.writer, nullptr);
   }
   void restart_controller() {
     controller = std::make_unique<ControllerCycle>(
-        wheeled_controller({}, robot, kPeriod), robot.hash,
+        std::make_unique<ControllerOf<DriveController>>(DriveControllerParameters{}, robot, kPeriod), robot.hash,
         ControllerCycle::Channels{&sensors.reader, &state.reader, &permit.reader, command.writer}, script_with_zero(),
         nullptr);
   }
   void restart_monitor() {
     monitor = std::make_unique<MonitorCycle>(
-        wheeled_monitor({}, robot, kPeriod), robot.hash, kLossNs,
+        std::make_unique<MonitorOf<SafetyMonitor>>(SafetyParameters{}, robot, kPeriod), robot.hash, kLossNs,
         MonitorCycle::Channels{&sensors.reader, &state.reader, &command.reader, permit.writer}, CommandScript(),
         nullptr);
   }

@@ -116,12 +116,13 @@ class Sequence {
         driver_->begin_run(random_() | 1);
         break;
       case kEstimatorNode:
-        estimator_ = std::make_unique<EstimatorCycle>(wheeled_estimator({}, robot_, kPeriod), robot_.hash,
-                                                      sensors_.reader, state_.writer, nullptr);
+        estimator_ = std::make_unique<EstimatorCycle>(
+            std::make_unique<EstimatorOf<Estimator>>(EstimatorParameters{}, robot_, kPeriod), robot_.hash,
+            sensors_.reader, state_.writer, nullptr);
         break;
       case kControllerNode:
         controller_ = std::make_unique<ControllerCycle>(
-            wheeled_controller(parameters_, robot_, kPeriod), robot_.hash,
+            std::make_unique<ControllerOf<DriveController>>(parameters_, robot_, kPeriod), robot_.hash,
             ControllerCycle::Channels{&sensors_.reader, &state_.reader, &permit_.reader, command_.writer},
             CommandScript(), nullptr);
         inbox_.emplace(parameters_.cmd_vel_timeout, parameters_.one_sender);
@@ -131,7 +132,7 @@ class Sequence {
         break;
       case kMonitorNode:
         monitor_ = std::make_unique<MonitorCycle>(
-            wheeled_monitor({}, robot_, kPeriod), robot_.hash, kLossNs,
+            std::make_unique<MonitorOf<SafetyMonitor>>(SafetyParameters{}, robot_, kPeriod), robot_.hash, kLossNs,
             MonitorCycle::Channels{&sensors_.reader, &state_.reader, &command_.reader, permit_.writer}, CommandScript(),
             nullptr);
         operator_input_ = {};
@@ -288,7 +289,7 @@ class Sequence {
     parameters_.cmd_vel_timeout = kTimeouts[random_() % kTimeouts.size()];
     DriveTuning tuning = drive_tuning(parameters_, robot_, kPeriod);
     tuning.count = ++tunings_;
-    controller_->tunings().store(tuning);
+    controller_->tunings().store(tuning_of(tuning));
     inbox_->set_timeout(parameters_.cmd_vel_timeout);
     mux_->set_timeout(parameters_.cmd_vel_timeout);
     for (Sender& sender : senders_) sender.silence = std::min(sender.silence, silence());

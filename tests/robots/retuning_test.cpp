@@ -33,14 +33,14 @@ class RetuningTest : public ::testing::Test {
   }
 
   DriveTuning handed_over() const {
-    DriveTuning tuning;
+    LiveTuning tuning;
     EXPECT_TRUE(inbox.load(tuning));
-    return tuning;
+    return content_of<DriveTuning>(tuning);
   }
 
   Parameters parameters;
   DriveTrain robot = two_wheels();
-  LatestValue<DriveTuning> inbox;
+  LatestValue<LiveTuning> inbox;
   Retuning retuning{parameters, robot, inbox};
 };
 
@@ -159,13 +159,14 @@ class RetunedLoop : public ::testing::Test {
     loop.step();  // a command from before the run would be dropped
     loop.controller->inbox().store({.content = {.twist = {.linear = {0.5, 0, 0}}}, .count = 1});
     loop.steps(20);
-    tuning = loop.controller->trace().tuning;
+    tuning = in_force();
   }
 
   void hand_over() {
     ++tuning.count;
-    loop.controller->tunings().store(tuning);
+    loop.controller->tunings().store(tuning_of(tuning));
   }
+  const DriveTuning& in_force() const { return content_of<DriveTuning>(loop.controller->trace().tuning); }
 
   Loop loop;
   DriveTuning tuning;
@@ -182,10 +183,10 @@ TEST_F(RetunedLoop, RunsWithASetFromTheNextCycleOn) {
   tuning.linear.jerk = 0;
   const double before = loop.newest_command().twist_limited.linear[0];
   hand_over();
-  EXPECT_EQ(loop.controller->trace().tuning.count, 0u);
+  EXPECT_EQ(in_force().count, 0u);
   loop.step();
-  EXPECT_EQ(loop.controller->trace().tuning.count, 1u);
-  EXPECT_EQ(loop.controller->trace().tuning.linear.acceleration, 0.25);
+  EXPECT_EQ(in_force().count, 1u);
+  EXPECT_EQ(in_force().linear.acceleration, 0.25);
   EXPECT_NEAR(loop.newest_command().twist_limited.linear[0], before + 0.25 * kPeriod, 1e-12);
 }
 
@@ -196,7 +197,7 @@ TEST_F(RetunedLoop, AllocatesNothingForASet) {
   const AllocationGuard guard;
   loop.step();
   EXPECT_EQ(guard.count(), 0u);
-  EXPECT_EQ(loop.controller->trace().tuning.count, 1u);
+  EXPECT_EQ(in_force().count, 1u);
 }
 
 TEST_F(RetunedLoop, KeepsASetInANewRun) {
@@ -205,15 +206,15 @@ TEST_F(RetunedLoop, KeepsASetInANewRun) {
   loop.step();
   loop.driver.begin_run(2);
   loop.steps(3);
-  EXPECT_EQ(loop.controller->trace().tuning.cmd_vel_timeout, 0.5);
-  EXPECT_EQ(loop.controller->trace().tuning.count, 1u);
+  EXPECT_EQ(in_force().cmd_vel_timeout, 0.5);
+  EXPECT_EQ(in_force().count, 1u);
 }
 
 TEST_F(RetunedLoop, TakesASetOnceThatArrivedBeforeTheFirstCycle) {
   loop.restart_controller();
   hand_over();
   loop.step();
-  EXPECT_EQ(loop.controller->trace().tuning.count, 1u);
+  EXPECT_EQ(in_force().count, 1u);
 }
 
 }  // namespace

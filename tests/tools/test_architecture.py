@@ -203,6 +203,40 @@ def test_only_the_wheeled_kind_sees_the_drive_train():
     assert seen == set()
 
 
+KINDS = ({"wheeled"}, {"legged", "legs"})
+"""Names of the folders of each kind."""
+COMMON = {"signals", "bus", "loop", "log", "log/replay"}
+ROLES = {"src/robots/laws.h", "src/robots/robot.h"}
+ALL_KINDS = {"src/signals/command_frame.h", "src/signals/state_frame.h", "src/signals/names.h"}
+"""The frames have one member per kind, and the table has the words of all bits."""
+OF_KIND = re.compile(r"^(?:struct|class|enum(?: class)?|inline constexpr [\w:]+) (k?[A-Z]\w+)", re.MULTILINE)
+
+
+def kinds_in(name):
+    return [kind for kind in KINDS if kind & set(str(name).split("/"))]
+
+
+def test_the_common_interfaces_know_no_kind():
+    """Headers of signals, bus, loop and log, and the roles of a robot, use no type and no constant of a kind."""
+    names = {name for path in FILES if path.suffix == ".h" and kinds_in(path) for name in OF_KIND.findall(code(path))}
+    assert {"DriveTuning", "WheeledCommand", "LeggedCommand", "DriveTrain", "LegModel", "kMaxWheels"} <= names
+
+    def rule(path):
+        own = str(path.relative_to(ROOT))
+        if path.suffix == ".h" and (folder(path) in COMMON or own in ROLES) and own not in ALL_KINDS:
+            yield from set() if kinds_in(own) else names & set(re.findall(r"\w+", code(path)))
+
+    assert violations(rule) == []
+
+
+def test_no_kind_knows_another():
+    def rule(path):
+        own = kinds_in(path)
+        yield from (name for name in includes(path) if own and kinds_in(name) not in ([], own))
+
+    assert violations(rule) == []
+
+
 def test_project_headers_are_named_from_the_root():
     def rule(path):
         for name in includes(path):

@@ -97,7 +97,6 @@ class LegController {
   void step(const ControlInput& input, CommandFrame& out) noexcept;
 
   LegPhase phase() const noexcept { return state_.phase; }
-  const LegTuning& tuning() const noexcept { return tuning_; }
 
   /// The body in the stance frame: x, y, height above one that lies level in m, roll, pitch, yaw in rad.
   using Pose = std::array<double, 6>;

@@ -25,7 +25,7 @@
 
 #include "control/planar_twist.h"
 #include "machine/wheeled/drive_train.h"
-#include "signals/drive_tuning.h"
+#include "signals/wheeled/drive_tuning.h"
 
 namespace robot_control {
 

@@ -42,7 +42,7 @@ class Variant {
   std::unique_ptr<EstimatorLaw> estimator_;
   std::unique_ptr<ControllerLaw> controller_;
   std::unique_ptr<MonitorLaw> monitor_;
-  DriveTuning tuning_;
+  LiveTuning tuning_;
   LawSnapshot snapshot_;
   bool controls_ = false;
   bool estimates_ = false;

@@ -12,6 +12,7 @@ ControllerCycle::ControllerCycle(std::unique_ptr<ControllerLaw> controller, std:
       channels_(channels),
       script_(std::move(script)),
       robot_hash_(robot_hash),
+      tunings_(controller_->tuning()),
       snapshots_(LawName::kController) {
   trace_.tuning = controller_->tuning();
 }
@@ -58,10 +59,10 @@ void ControllerCycle::receive(std::uint64_t cycle) noexcept {
 void ControllerCycle::tune() noexcept {
   const std::uint64_t version = tunings_.version();
   if (version == tunings_seen_) return;
-  DriveTuning tuning;
+  LiveTuning tuning;
   if (!tunings_.load(tuning)) return;
   tunings_seen_ = version;
-  if (tuning.count == trace_.tuning.count) return;
+  if (tuning == trace_.tuning) return;
   controller_->tune(tuning);
   trace_.tuning = tuning;
   calls_.tuned = 1;

@@ -33,7 +33,7 @@ class ControllerCycle {
   LatestValue<VelocityCommand>& inbox() noexcept { return inbox_; }
 
   /// Other limits and gains: one ordinary thread stores; they hold from the next cycle on that computes a command.
-  LatestValue<DriveTuning>& tunings() noexcept { return tunings_; }
+  LatestValue<LiveTuning>& tunings() noexcept { return tunings_; }
 
   /// Random number of this process, in every row.
   void set_process(std::uint64_t process) noexcept { calls_.law.process = process; }
@@ -60,7 +60,7 @@ class ControllerCycle {
   CommandScript script_;
   std::uint64_t robot_hash_;
   LatestValue<VelocityCommand> inbox_;
-  LatestValue<DriveTuning> tunings_;
+  LatestValue<LiveTuning> tunings_;
   std::uint64_t tunings_seen_ = 0;  ///< version of the one that was looked at
   VelocityCommand received_;        ///< what the inbox held when last looked at
   VelocityCommand request_;         ///< inbox and script merged in the order of arrival

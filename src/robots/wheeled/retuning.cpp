@@ -46,7 +46,7 @@ DriveControllerParameters spelled_out(DriveControllerParameters given, const Dri
 
 }  // namespace
 
-Retuning::Retuning(const Parameters& parameters, const DriveTrain& robot, LatestValue<DriveTuning>& inbox)
+Retuning::Retuning(const Parameters& parameters, const DriveTrain& robot, LatestValue<LiveTuning>& inbox)
     : parameters_(parameters),
       robot_(robot),
       commanded_at_start_(commanded_wheel_speed(parameters.controller, robot)),
@@ -86,7 +86,7 @@ Retuned Retuning::set(const std::string& request) {
   }
   DriveTuning tuning = drive_tuning(wanted, robot_, parameters_.loop.period());
   tuning.count = ++count_;
-  inbox_.store(tuning);
+  inbox_.store(tuning_of(tuning));
   parameters_ = std::move(change.parameters);
   return {.count = count_, .values = std::move(change.values)};
 }

@@ -21,7 +21,7 @@
 #include "machine/wheeled/drive_train.h"
 #include "robots/robot.h"
 #include "safety/safety_parameters.h"
-#include "signals/drive_tuning.h"
+#include "signals/wheeled/drive_tuning.h"
 
 namespace robot_control {
 
@@ -29,7 +29,7 @@ class Retuning final : public Retuner {
  public:
   /// `parameters` with which the controller starts; the cycle takes `inbox` over. The monitor is assumed to run with
   /// the same parameters.
-  Retuning(const Parameters& parameters, const DriveTrain& robot, LatestValue<DriveTuning>& inbox);
+  Retuning(const Parameters& parameters, const DriveTrain& robot, LatestValue<LiveTuning>& inbox);
 
   /// The monitor's limits are derived from these parameters.
   void expect_monitor(const Parameters& monitor) override;
@@ -46,7 +46,7 @@ class Retuning final : public Retuner {
   DriveTrain robot_;
   double commanded_at_start_;  ///< rad/s of a wheel
   Condition wheel_speed_;      ///< the monitor's
-  LatestValue<DriveTuning>& inbox_;
+  LatestValue<LiveTuning>& inbox_;
   std::uint64_t count_ = 0;
 };
 

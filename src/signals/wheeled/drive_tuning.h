@@ -1,7 +1,6 @@
 #pragma once
-/// A DriveTuning holds the limits and gains in force in a drive controller; values that the user left out are derived.
-/// The controller receives it between two cycles (~set_parameter_map). Every row of its trace contains it, so that a
-/// log shows the values in force.
+/// A DriveTuning is the LiveTuning (signals/live_tuning.h) of a robot on wheels; values that the user left out are
+/// derived.
 
 #include <array>
 #include <cstddef>
