@@ -12,7 +12,7 @@
 #include "loop/cycles/driver_cycle.h"
 #include "loop/cycles/estimator_cycle.h"
 #include "loop/cycles/monitor_cycle.h"
-#include "robots/laws.h"
+#include "robots/differential_drive.h"
 #include "safety/safety_monitor.h"
 #include "simulation/faults/node_faults.h"
 
