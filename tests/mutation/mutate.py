@@ -27,10 +27,23 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 EQUAL = Path(__file__).with_name("equal.txt")
 REQUIRED = 0.85
-# Every test program of the copy notes which places its tests execute, and each of its sources is compiled alone.
-PROGRAM = {
-    "add_executable(${name} ": "add_executable(${name} ${PROJECT_SOURCE_DIR}/tests/mutation/notes.cpp ",
-    "UNITY_BUILD_BATCH_SIZE 0": "UNITY_BUILD OFF",
+# What differs in the copy, by file. Every test program notes which places its tests execute, and each of its sources is
+# compiled alone. A library of another folder is that of the workspace.
+DIFFERENCES = {
+    "tests/CMakeLists.txt": {
+        "add_executable(${name} ": "add_executable(${name} ${PROJECT_SOURCE_DIR}/tests/mutation/notes.cpp ",
+        "UNITY_BUILD_BATCH_SIZE 0": "UNITY_BUILD OFF",
+    },
+    "cmake/library.cmake": {
+        "  if(ARG_SOURCES)\n": """\
+  set(built ${WORKSPACE_LIBRARIES}/librc_${name}.a)
+  if(ARG_SOURCES AND EXISTS ${built} AND NOT CMAKE_CURRENT_SOURCE_DIR MATCHES "/src/${MUTATED}(/|$)")
+    file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/none.cpp "")
+    add_library(rc_${name} STATIC ${CMAKE_CURRENT_BINARY_DIR}/none.cpp)
+    target_link_libraries(rc_${name} PUBLIC robot_control_options ${built} ${ARG_LINK})
+  elseif(ARG_SOURCES)
+""",
+    },
 }
 
 TOKEN = re.compile(
@@ -387,7 +400,8 @@ def constants_to_free(room: list[Path]) -> set[str]:
                 if name not in text:
                     continue
                 if re.search(
-                    rf"<[^<>;(){{}}\n]*\b{name}\b[^<>;(){{}}\n]*>|static_assert\([^;]*\b{name}\b|\w\[{name}\]", text
+                    rf"<[^<>;(){{}}\n]*\b{name}\b[^<>;(){{}}\n]*>|, {name}>|static_assert\([^;]*\b{name}\b|\w\[{name}\]",
+                    text,
                 ):
                     freed.discard(name)
             for match in statement.finditer(text):
@@ -466,10 +480,9 @@ class Copy:
         changes: list[Change] = []
         for name in sorted(files):
             content = (ROOT / name).read_bytes()
-            if name == "tests/CMakeLists.txt":
-                for before, after in PROGRAM.items():
-                    content = content.replace(before.encode(), after.encode())
-            elif name.startswith(f"src/{self.folder}/") and name.endswith((".h", ".cpp")):
+            for before, after in DIFFERENCES.get(name, {}).items():
+                content = content.replace(before.encode(), after.encode())
+            if name.startswith(f"src/{self.folder}/") and name.endswith((".h", ".cpp")):
                 source = Source(name, content.decode(), freed, len(changes), bad[name])
                 changes += source.changes
                 content = source.changed().encode()
@@ -487,7 +500,8 @@ class Copy:
     def compile(self, targets: list[str]) -> str:
         """Returns the compiler's messages, empty if it succeeds."""
         flags = f"-O1 -w -Wno-narrowing -I{self.tree}/tests"
-        options = ["-DROBOT_CONTROL_ROS=OFF", "-DCMAKE_BUILD_TYPE=None", f"-DCMAKE_CXX_FLAGS={flags}"]
+        workspace = [f"-DMUTATED={self.folder}", f"-DWORKSPACE_LIBRARIES={ROOT}/build/robot_control/devel/lib"]
+        options = [*workspace, "-DROBOT_CONTROL_ROS=OFF", "-DCMAKE_BUILD_TYPE=None", f"-DCMAKE_CXX_FLAGS={flags}"]
         configure = ["cmake", "-S", str(self.tree), "-B", str(self.build), *options]
         subprocess.run(configure, check=True, stdout=subprocess.DEVNULL)
         build = ["cmake", "--build", str(self.build), "-j", str(os.cpu_count()), "--target", *targets, "--", "-k"]

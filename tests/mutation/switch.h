@@ -223,8 +223,14 @@ MUTATION_FUNCTION(Floor, std::floor, std::ceil)
 MUTATION_FUNCTION(Ceil, std::ceil, std::floor)
 MUTATION_FUNCTION(IsFinite, std::isfinite, true ||)
 
-template <int kId>
+template <int kId, typename T = void>
 struct Clamp {
+  constexpr T operator()(const T& v, const T& low, const T& high) const {
+    return on<kId>() ? v : std::clamp(v, low, high);
+  }
+};
+template <int kId>
+struct Clamp<kId, void> {
   template <typename T>
   constexpr T operator()(const T& v, const T& low, const T& high) const {
     return on<kId>() ? v : std::clamp(v, low, high);
