@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "machine/legs/legs_corpus.h"
+#include "signals/names.h"
 
 namespace robot_control {
 namespace {
