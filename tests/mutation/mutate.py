@@ -4,8 +4,8 @@
 usage: mutate.py ROOM N [SEED]    ROOM: a folder below src (gate/wheeled); N: how many changes; SEED: which ones, 1
 
 The changes are drawn at random among all of the room, without those that do not compile and those that equal.txt lists.
-They are found if a test program of the folder below tests with the same name, or of the nearest folder above it, fails,
-crashes or does not end. Each change that no test finds is printed with its place. The exit code is 0 if and only if at
+One is found if a test program fails, crashes or does not end. The programs are those of the folder below tests with the
+same name, or of the nearest folder above it. Each change that no test finds is printed with its place. The exit code is 0 if and only if at
 least 85 % are found.
 
 A copy of the sources in build/mutants holds all changes of control, gate … at once, and an environment variable chooses
@@ -27,7 +27,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 EQUAL = Path(__file__).with_name("equal.txt")
 REQUIRED = 0.85
-# What differs in the copy, by file. Every test program notes which places its tests execute, and each of its sources is
+# The copy differs by file in this. Every test program notes which places its tests execute, and each of its sources is
 # compiled alone. A library of another folder is that of the workspace.
 DIFFERENCES = {
     "tests/CMakeLists.txt": {
@@ -95,7 +95,7 @@ class Token:
 
     @property
     def end(self) -> int:
-        """Where the next one may begin."""
+        """The position behind it."""
         return self.begin + len(self.text)
 
 
@@ -136,7 +136,7 @@ class Source:
                 continue
             self.visit(index, token)
 
-    # Where things are.
+    # Places.
 
     def line_of(self, position: int) -> int:
         """Number of the line, from 1."""
@@ -400,7 +400,8 @@ def constants_to_free(room: list[Path]) -> set[str]:
                 if name not in text:
                     continue
                 if re.search(
-                    rf"<[^<>;(){{}}\n]*\b{name}\b[^<>;(){{}}\n]*>|, {name}>|static_assert\([^;]*\b{name}\b|\w\[{name}\]",
+                    rf"<[^<>;(){{}}\n]*\b{name}\b[^<>;(){{}}\n]*>|, {name}>|"
+                    rf"static_assert\([^;]*\b{name}\b|\w\[{name}\]",
                     text,
                 ):
                     freed.discard(name)

@@ -1,4 +1,4 @@
-/// What the latch keeps of causes: the measurements of one cycle, the evidence of a stop, the warnings of a second.
+/// The latch keeps the measurements of one cycle, the evidence of a stop, and the warnings of a second.
 
 #include <gtest/gtest.h>
 
