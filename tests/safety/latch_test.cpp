@@ -8,44 +8,44 @@
 namespace robot_control {
 namespace {
 
-constexpr double kPeriod = 0.01;  // s: a warning is held for 100 cycles
+constexpr double kTick = 0.01;  // s: a warning is held for 100 cycles
 
-constexpr StopCause cause(std::size_t bit) {
+constexpr StopCause bit_of(std::size_t bit) {
   return static_cast<StopCause>(std::uint64_t{1} << bit);
 }
 
-ConditionMeasurement of(double value) {
+ConditionMeasurement measured(double value) {
   return {.beyond = true, .value = value, .limit = 10, .joint = 2};
 }
 
-ActiveCauses with(StopCause active, Reaction reaction, double value = 11) {
+ActiveCauses active_with(StopCause active, Reaction reaction, double value = 11) {
   ActiveCauses causes;
-  causes.add(active, reaction, of(value));
+  causes.add(active, reaction, measured(value));
   return causes;
 }
 
 TEST(ActiveCauses, KeepTheFirstMeasurementOfEachCause) {
   ActiveCauses causes;
-  causes.add(cause(3), Reaction::kBrake, of(11));
-  causes.add(cause(3), Reaction::kBrake, of(12));
-  causes.add(cause(5), Reaction::kRamp, of(13));
+  causes.add(bit_of(3), Reaction::kBrake, measured(11));
+  causes.add(bit_of(3), Reaction::kBrake, measured(12));
+  causes.add(bit_of(5), Reaction::kRamp, measured(13));
   ASSERT_EQ(causes.measurements().size(), 2u);
-  EXPECT_EQ(causes.measurements()[0].cause, cause(3));
+  EXPECT_EQ(causes.measurements()[0].cause, bit_of(3));
   EXPECT_EQ(causes.measurements()[0].value, 11);
   EXPECT_EQ(causes.measurements()[0].limit, 10);
   EXPECT_EQ(causes.measurements()[0].joint, 2u);
-  EXPECT_EQ(causes.measurements()[1].cause, cause(5));
+  EXPECT_EQ(causes.measurements()[1].cause, bit_of(5));
 }
 
 TEST(ActiveCauses, OnlyRampAndBrakeStop) {
   ActiveCauses causes;
-  causes.add(cause(1), Reaction::kWarn);
-  causes.add(cause(2), Reaction::kSlow);
+  causes.add(bit_of(1), Reaction::kWarn);
+  causes.add(bit_of(2), Reaction::kSlow);
   EXPECT_EQ(causes.stopping(), 0u);
-  causes.add(cause(3), Reaction::kRamp);
-  causes.add(cause(4), Reaction::kBrake);
-  EXPECT_EQ(causes.stopping(), cause(3) | cause(4));
-  EXPECT_EQ(causes.with(Reaction::kSlow), std::uint64_t{cause(2)});
+  causes.add(bit_of(3), Reaction::kRamp);
+  causes.add(bit_of(4), Reaction::kBrake);
+  EXPECT_EQ(causes.stopping(), bit_of(3) | bit_of(4));
+  EXPECT_EQ(causes.with(Reaction::kSlow), std::uint64_t{bit_of(2)});
   causes.clear();
   EXPECT_EQ(causes.stopping() | causes.with(Reaction::kWarn) | causes.with(Reaction::kSlow), 0u);
   EXPECT_TRUE(causes.measurements().empty());
@@ -53,18 +53,18 @@ TEST(ActiveCauses, OnlyRampAndBrakeStop) {
 
 TEST(ActiveCauses, HoldAllCausesThatThereAre) {
   ActiveCauses causes;
-  for (std::size_t bit = 0; bit < kStopCauses; ++bit) causes.add(cause(bit), Reaction::kBrake);
+  for (std::size_t bit = 0; bit < kStopCauses; ++bit) causes.add(bit_of(bit), Reaction::kBrake);
   EXPECT_EQ(causes.measurements().size(), kStopCauses);
 }
 
 TEST(ActiveCauses, OfAConditionThatIsNotActiveNoneIsAdded) {
   ActiveCauses causes;
-  ConditionWatch watch(cause(3), {.limit = 10, .persistence = 2 * kPeriod, .reaction = Reaction::kBrake}, kPeriod);
-  causes.update(watch, of(11), 1);
+  ConditionWatch watch(bit_of(3), {.limit = 10, .persistence = 2 * kTick, .reaction = Reaction::kBrake}, kTick);
+  causes.update(watch, measured(11), 1);
   causes.add(watch);
   EXPECT_EQ(causes.stopping(), 0u);
-  causes.update(watch, of(12), 1);
-  EXPECT_EQ(causes.stopping(), std::uint64_t{cause(3)});
+  causes.update(watch, measured(12), 1);
+  EXPECT_EQ(causes.stopping(), std::uint64_t{bit_of(3)});
   EXPECT_EQ(causes.measurements()[0].value, 12);
 }
 
@@ -85,12 +85,12 @@ class EvidenceOf : public testing::Test {
   using Causes = std::vector<std::uint64_t>;
 
   Evidence evidence_;
-  Warnings warnings_{kPeriod};
+  Warnings warnings_{kTick};
 };
 
 TEST_F(EvidenceOf, CausesIsWrittenWithTheCycleOfItsLatchAndTheRestIsEmpty) {
-  evidence_.latch(with(cause(3), Reaction::kBrake), 7);
-  evidence_.latch(with(cause(3), Reaction::kBrake, 12), 8);
+  evidence_.latch(active_with(bit_of(3), Reaction::kBrake), 7);
+  evidence_.latch(active_with(bit_of(3), Reaction::kBrake, 12), 8);
   EXPECT_EQ(written()[0].cycle, 7u);
   EXPECT_EQ(written()[0].value, 11);
   for (std::size_t i = 1; i < kMaxEvidence; ++i) {
@@ -100,7 +100,7 @@ TEST_F(EvidenceOf, CausesIsWrittenWithTheCycleOfItsLatchAndTheRestIsEmpty) {
 }
 
 TEST_F(EvidenceOf, WarningsIsNotLatched) {
-  evidence_.latch(with(cause(3), Reaction::kSlow), 7);
+  evidence_.latch(active_with(bit_of(3), Reaction::kSlow), 7);
   EXPECT_EQ(causes(), Causes());
 }
 
@@ -108,92 +108,92 @@ TEST_F(EvidenceOf, ManyCausesIsThatOfTheFirst) {
   ActiveCauses active;
   Causes first;
   for (std::size_t bit = 1; bit <= kMaxEvidence + 2; ++bit) {
-    active.add(cause(bit), Reaction::kBrake);
-    if (bit <= kMaxEvidence) first.push_back(cause(bit));
+    active.add(bit_of(bit), Reaction::kBrake);
+    if (bit <= kMaxEvidence) first.push_back(bit_of(bit));
   }
   evidence_.latch(active, 7);
   EXPECT_EQ(causes(), first);
-  warnings_.step(with(cause(20), Reaction::kWarn), 8, 1);
+  warnings_.step(active_with(bit_of(20), Reaction::kWarn), 8, 1);
   EXPECT_EQ(causes(), first) << "no room for a warning";
 }
 
 TEST_F(EvidenceOf, WarningsFollowsThatOfCausesInTheOrderOfTheirBits) {
-  ActiveCauses active = with(cause(9), Reaction::kWarn);
-  active.add(cause(4), Reaction::kSlow);
+  ActiveCauses active = active_with(bit_of(9), Reaction::kWarn);
+  active.add(bit_of(4), Reaction::kSlow);
   warnings_.step(active, 5, 1);
-  evidence_.latch(with(cause(6), Reaction::kRamp), 7);
-  EXPECT_EQ(causes(), (Causes{cause(6), cause(4), cause(9)}));
+  evidence_.latch(active_with(bit_of(6), Reaction::kRamp), 7);
+  EXPECT_EQ(causes(), (Causes{bit_of(6), bit_of(4), bit_of(9)}));
 }
 
 TEST_F(EvidenceOf, AnEarlierMonitorIsTakenOverForItsLatchedCauses) {
-  evidence_.latch(with(cause(8), Reaction::kBrake), 3);
+  evidence_.latch(active_with(bit_of(8), Reaction::kBrake), 3);
   Permit last;
-  last.causes = cause(3) | cause(5);
-  last.evidence[0] = {.cause = cause(5), .cycle = 40, .value = 1};
-  last.evidence[1] = {.cause = cause(9), .cycle = 41, .value = 2};  // a warning
-  last.evidence[2] = {.cause = cause(3), .cycle = 42, .value = 3};
+  last.causes = bit_of(3) | bit_of(5);
+  last.evidence[0] = {.cause = bit_of(5), .cycle = 40, .value = 1};
+  last.evidence[1] = {.cause = bit_of(9), .cycle = 41, .value = 2};  // a warning
+  last.evidence[2] = {.cause = bit_of(3), .cycle = 42, .value = 3};
   evidence_.restore(last);
-  EXPECT_EQ(causes(), (Causes{cause(5), cause(3)}));
+  EXPECT_EQ(causes(), (Causes{bit_of(5), bit_of(3)}));
   EXPECT_EQ(written()[1].cycle, 42u);
-  evidence_.latch(with(cause(3), Reaction::kBrake), 50);
-  EXPECT_EQ(causes(), (Causes{cause(5), cause(3)})) << "it was latched already";
+  evidence_.latch(active_with(bit_of(3), Reaction::kBrake), 50);
+  EXPECT_EQ(causes(), (Causes{bit_of(5), bit_of(3)})) << "it was latched already";
 }
 
 TEST_F(EvidenceOf, ACauseThatComesBackAfterAResetIsNew) {
-  evidence_.latch(with(cause(3), Reaction::kBrake), 7);
+  evidence_.latch(active_with(bit_of(3), Reaction::kBrake), 7);
   evidence_.clear();
   EXPECT_EQ(causes(), Causes());
-  evidence_.latch(with(cause(3), Reaction::kBrake), 9);
+  evidence_.latch(active_with(bit_of(3), Reaction::kBrake), 9);
   EXPECT_EQ(written()[0].cycle, 9u);
 }
 
 TEST(Warnings, EndASecondAfterTheirCondition) {
-  Warnings warnings(kPeriod);
+  Warnings warnings(kTick);
   const ActiveCauses none;
-  warnings.step(with(cause(3), Reaction::kWarn), 1, 1);
+  warnings.step(active_with(bit_of(3), Reaction::kWarn), 1, 1);
   warnings.step(none, 61, 60);
   warnings.step(none, 101, 40);
-  EXPECT_EQ(warnings.bits(), std::uint64_t{cause(3)});
+  EXPECT_EQ(warnings.bits(), std::uint64_t{bit_of(3)});
   warnings.step(none, 102, 1);
   EXPECT_EQ(warnings.bits(), 0u);
 }
 
 TEST(Warnings, EachEndsByItself) {
-  Warnings warnings(kPeriod);
-  warnings.step(with(cause(3), Reaction::kSlow), 1, 1);
-  warnings.step(with(cause(4), Reaction::kWarn, 12), 51, 50);
+  Warnings warnings(kTick);
+  warnings.step(active_with(bit_of(3), Reaction::kSlow), 1, 1);
+  warnings.step(active_with(bit_of(4), Reaction::kWarn, 12), 51, 50);
   EXPECT_TRUE(warnings.slowing());
-  EXPECT_EQ(warnings.bits(), cause(3) | cause(4));
+  EXPECT_EQ(warnings.bits(), bit_of(3) | bit_of(4));
   warnings.step({}, 111, 60);
   EXPECT_FALSE(warnings.slowing());
-  EXPECT_EQ(warnings.bits(), std::uint64_t{cause(4)});
-  EXPECT_EQ(warnings.evidence(cause(4)).value, 12);
+  EXPECT_EQ(warnings.bits(), std::uint64_t{bit_of(4)});
+  EXPECT_EQ(warnings.evidence(bit_of(4)).value, 12);
 }
 
 TEST(Warnings, OneThatComesBackInTimeIsTheSameAndLaterAnother) {
-  Warnings warnings(kPeriod);
-  warnings.step(with(cause(3), Reaction::kWarn, 11), 1, 1);
-  warnings.step(with(cause(3), Reaction::kWarn, 12), 51, 50);
-  EXPECT_EQ(warnings.evidence(cause(3)).cycle, 1u);
-  EXPECT_EQ(warnings.evidence(cause(3)).value, 12);
+  Warnings warnings(kTick);
+  warnings.step(active_with(bit_of(3), Reaction::kWarn, 11), 1, 1);
+  warnings.step(active_with(bit_of(3), Reaction::kWarn, 12), 51, 50);
+  EXPECT_EQ(warnings.evidence(bit_of(3)).cycle, 1u);
+  EXPECT_EQ(warnings.evidence(bit_of(3)).value, 12);
   warnings.step({}, 200, 149);
-  warnings.step(with(cause(3), Reaction::kWarn, 13), 201, 1);
-  EXPECT_EQ(warnings.evidence(cause(3)).cycle, 201u);
+  warnings.step(active_with(bit_of(3), Reaction::kWarn, 13), 201, 1);
+  EXPECT_EQ(warnings.evidence(bit_of(3)).cycle, 201u);
 }
 
 TEST(Warnings, StopsAreNone) {
-  Warnings warnings(kPeriod);
-  ActiveCauses active = with(cause(3), Reaction::kBrake);
-  active.add(cause(4), Reaction::kWarn);
+  Warnings warnings(kTick);
+  ActiveCauses active = active_with(bit_of(3), Reaction::kBrake);
+  active.add(bit_of(4), Reaction::kWarn);
   warnings.step(active, 1, 1);
-  EXPECT_EQ(warnings.bits(), std::uint64_t{cause(4)});
+  EXPECT_EQ(warnings.bits(), std::uint64_t{bit_of(4)});
   EXPECT_FALSE(warnings.slowing());
 }
 
 TEST(Warnings, EndWithTheRun) {
-  Warnings warnings(kPeriod);
-  ActiveCauses active = with(cause(3), Reaction::kSlow);
-  active.add(cause(4), Reaction::kWarn);
+  Warnings warnings(kTick);
+  ActiveCauses active = active_with(bit_of(3), Reaction::kSlow);
+  active.add(bit_of(4), Reaction::kWarn);
   warnings.step(active, 1, 1);
   warnings.enter_run();
   EXPECT_EQ(warnings.bits(), 0u);
