@@ -12,6 +12,7 @@ A copy of the sources in build/mutants holds all changes of control, gate … at
 one (switch.h). A first run notes which test executes which place; a change is then tried with these tests alone.
 """
 
+import fcntl
 import os
 import random
 import re
@@ -452,6 +453,9 @@ class Copy:
         self.work = ROOT / "build/mutants" / folder
         self.tree = self.work / "tree"
         self.build = self.work / "build"
+        self.work.mkdir(parents=True, exist_ok=True)
+        self.lock = (self.work / "lock").open("w")
+        fcntl.flock(self.lock, fcntl.LOCK_EX)  # another run in the same folder ends first
 
     def prepare(self, targets: list[str]) -> list[Change]:
         """Builds it; leaves out the changes of lines that do not compile with them."""

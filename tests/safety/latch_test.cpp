@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "safety/latch/evidence.h"
+#include "safety/latch/supervisor.h"
 #include "safety/latch/warnings.h"
 
 namespace robot_control {
@@ -145,6 +146,24 @@ TEST_F(EvidenceOf, ACauseThatComesBackAfterAResetIsNew) {
   EXPECT_EQ(causes(), Causes());
   evidence_.latch(active_with(bit_of(3), Reaction::kBrake), 9);
   EXPECT_EQ(written()[0].cycle, 9u);
+}
+
+TEST(SupervisorOf, ANewMonitorCountsEachCauseThatLatchesOnce) {
+  Supervisor supervisor(300);
+  EXPECT_EQ(supervisor.stops(), 0u);
+  for (std::uint64_t cycle = 1; cycle < 4; ++cycle) supervisor.step({.cycle = cycle, .brake = bit_of(3)});
+  EXPECT_EQ(supervisor.stops(), 1u);
+  supervisor.step({.cycle = 4, .brake = bit_of(3), .ramp = bit_of(4)});
+  EXPECT_EQ(supervisor.stops(), 2u);
+}
+
+TEST(SupervisorOf, ANewRunHasNoRamp) {
+  Supervisor supervisor(300);
+  supervisor.step({.cycle = 1, .released = true});
+  supervisor.step({.cycle = 2, .ramp = bit_of(4), .released = true});
+  EXPECT_EQ(supervisor.ramp_until(), 302u);
+  supervisor.enter_run();
+  EXPECT_EQ(supervisor.ramp_until(), 0u);
 }
 
 TEST(Warnings, EndASecondAfterTheirCondition) {
