@@ -186,6 +186,13 @@ TEST_F(GateRate, WhileItDrivesTheMeasuredEffortCountsForNothing) {
   EXPECT_NEAR(joints_[0].effort, 0.8, 1e-15);
 }
 
+TEST_F(GateRate, AJointThatBrakesIsNotClamped) {
+  command_.joints[0] = {.mode = JointMode::kBrake, .effort = 3};
+  step();
+  EXPECT_EQ(reasons(), 0u);
+  EXPECT_EQ(joints_[0].effort, 3);
+}
+
 TEST_F(GateRate, AJointThatBrakedAloneRestarts) {
   request(0.4);
   next();
@@ -393,6 +400,11 @@ TEST_F(GateWithAFold, FoldsByTheTimeBetweenTheTicks) {
   tick_at(input_.cycle + 2);
   brake();
   expect_first_order(3);
+  JointStop fold(kFold);
+  fold.step(0.5, 3 * kPeriod);
+  brake();
+  const JointCommand second = fold.step(0.5, kPeriod);
+  EXPECT_EQ(std::memcmp(&joints_[0], &second, sizeof second), 0);
 }
 
 TEST_F(GateWithAFold, FoldsFromTheBeginningAfterACommandAndInANewRun) {

@@ -205,8 +205,7 @@ TEST_P(PositionClamp, APositionBehindTheEndStopIsTheEndStop) {
 }
 
 TEST_P(PositionClamp, WithoutASoftZoneTheEndStopAloneCounts) {
-  JointLimits limits = kJoint;
-  limits.soft_zone = 0;
+  JointLimits limits{.effort = 4, .velocity = 20, .lower = kJoint.lower, .upper = kJoint.upper};
   JointCommand command{.mode = JointMode::kEffort, .effort = sign * 4};
   EXPECT_EQ(clamp_position(limits, at(1e-9), command), 0u);
   EXPECT_EQ(command.effort, sign * 4);

@@ -4,14 +4,15 @@
 usage: mutate.py ROOM N [SEED]    ROOM: a folder below src (gate/wheeled); N: how many changes; SEED: which ones, 1
 
 The changes are drawn at random among all of the room, without those that do not compile and those that equal.txt lists.
-They are found if a test program of the folder below tests with the same name, or of the nearest folder above it, fails,
-crashes or does not end. Each change that no test finds is printed with its place. The exit code is 0 if and only if at
-least 85 % are found.
+One is found if a test program fails, crashes or does not end. The programs are those of the folder below tests with the
+same name, or of the nearest folder above it. Each change that no test finds is printed with its place. The exit code is
+0 if and only if at least 85 % are found.
 
 A copy of the sources in build/mutants holds all changes of control, gate … at once, and an environment variable chooses
 one (switch.h). A first run notes which test executes which place; a change is then tried with these tests alone.
 """
 
+import fcntl
 import os
 import random
 import re
@@ -27,10 +28,23 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 EQUAL = Path(__file__).with_name("equal.txt")
 REQUIRED = 0.85
-# Every test program of the copy notes which places its tests execute, and each of its sources is compiled alone.
-PROGRAM = {
-    "add_executable(${name} ": "add_executable(${name} ${PROJECT_SOURCE_DIR}/tests/mutation/notes.cpp ",
-    "UNITY_BUILD_BATCH_SIZE 0": "UNITY_BUILD OFF",
+# The copy differs by file in this. Every test program notes which places its tests execute, and each of its sources is
+# compiled alone. A library of another folder is that of the workspace.
+DIFFERENCES = {
+    "tests/CMakeLists.txt": {
+        "add_executable(${name} ": "add_executable(${name} ${PROJECT_SOURCE_DIR}/tests/mutation/notes.cpp ",
+        "UNITY_BUILD_BATCH_SIZE 0": "UNITY_BUILD OFF",
+    },
+    "cmake/library.cmake": {
+        "  if(ARG_SOURCES)\n": """\
+  set(built ${WORKSPACE_LIBRARIES}/librc_${name}.a)
+  if(ARG_SOURCES AND EXISTS ${built} AND NOT CMAKE_CURRENT_SOURCE_DIR MATCHES "/src/${MUTATED}(/|$)")
+    file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/none.cpp "")
+    add_library(rc_${name} STATIC ${CMAKE_CURRENT_BINARY_DIR}/none.cpp)
+    target_link_libraries(rc_${name} PUBLIC robot_control_options ${built} ${ARG_LINK})
+  elseif(ARG_SOURCES)
+""",
+    },
 }
 
 TOKEN = re.compile(
@@ -82,7 +96,7 @@ class Token:
 
     @property
     def end(self) -> int:
-        """Where the next one may begin."""
+        """The position behind it."""
         return self.begin + len(self.text)
 
 
@@ -123,7 +137,7 @@ class Source:
                 continue
             self.visit(index, token)
 
-    # Where things are.
+    # Places.
 
     def line_of(self, position: int) -> int:
         """Number of the line, from 1."""
@@ -387,7 +401,9 @@ def constants_to_free(room: list[Path]) -> set[str]:
                 if name not in text:
                     continue
                 if re.search(
-                    rf"<[^<>;(){{}}\n]*\b{name}\b[^<>;(){{}}\n]*>|static_assert\([^;]*\b{name}\b|\w\[{name}\]", text
+                    rf"<[^<>;(){{}}\n]*\b{name}\b[^<>;(){{}}\n]*>|, {name}>|"
+                    rf"static_assert\([^;]*\b{name}\b|\w\[{name}\]",
+                    text,
                 ):
                     freed.discard(name)
             for match in statement.finditer(text):
@@ -437,6 +453,9 @@ class Copy:
         self.work = ROOT / "build/mutants" / folder
         self.tree = self.work / "tree"
         self.build = self.work / "build"
+        self.work.mkdir(parents=True, exist_ok=True)
+        self.lock = (self.work / "lock").open("w")
+        fcntl.flock(self.lock, fcntl.LOCK_EX)  # another run in the same folder ends first
 
     def prepare(self, targets: list[str]) -> list[Change]:
         """Builds it; leaves out the changes of lines that do not compile with them."""
@@ -466,10 +485,9 @@ class Copy:
         changes: list[Change] = []
         for name in sorted(files):
             content = (ROOT / name).read_bytes()
-            if name == "tests/CMakeLists.txt":
-                for before, after in PROGRAM.items():
-                    content = content.replace(before.encode(), after.encode())
-            elif name.startswith(f"src/{self.folder}/") and name.endswith((".h", ".cpp")):
+            for before, after in DIFFERENCES.get(name, {}).items():
+                content = content.replace(before.encode(), after.encode())
+            if name.startswith(f"src/{self.folder}/") and name.endswith((".h", ".cpp")):
                 source = Source(name, content.decode(), freed, len(changes), bad[name])
                 changes += source.changes
                 content = source.changed().encode()
@@ -487,7 +505,8 @@ class Copy:
     def compile(self, targets: list[str]) -> str:
         """Returns the compiler's messages, empty if it succeeds."""
         flags = f"-O1 -w -Wno-narrowing -I{self.tree}/tests"
-        options = ["-DROBOT_CONTROL_ROS=OFF", "-DCMAKE_BUILD_TYPE=None", f"-DCMAKE_CXX_FLAGS={flags}"]
+        workspace = [f"-DMUTATED={self.folder}", f"-DWORKSPACE_LIBRARIES={ROOT}/build/robot_control/devel/lib"]
+        options = [*workspace, "-DROBOT_CONTROL_ROS=OFF", "-DCMAKE_BUILD_TYPE=None", f"-DCMAKE_CXX_FLAGS={flags}"]
         configure = ["cmake", "-S", str(self.tree), "-B", str(self.build), *options]
         subprocess.run(configure, check=True, stdout=subprocess.DEVNULL)
         build = ["cmake", "--build", str(self.build), "-j", str(os.cpu_count()), "--target", *targets, "--", "-k"]
@@ -557,12 +576,16 @@ class Programs:
 
 
 def groups(names: list[tuple[float, str]]) -> Iterator[list[tuple[float, str]]]:
-    """The tests that take less than 0.2 s together, then the others."""
-    fast, total = 0, 0.0
-    while fast < len(names) and total + names[fast][0] < 0.2:
-        total += names[fast][0]
-        fast += 1
-    yield from (group for group in (names[:fast], names[fast:]) if group)
+    """The tests from fast to slow, in groups that take 0.2 s, 0.4 s, 0.8 s and so on together."""
+    group: list[tuple[float, str]] = []
+    bound = 0.2
+    for test in names:
+        if group and sum(seconds for seconds, _ in [*group, test]) > bound:
+            yield group
+            group, bound = [], 2 * bound
+        group.append(test)
+    if group:
+        yield group
 
 
 def equal_changes(room: str) -> dict[tuple[str, str, str], bool]:

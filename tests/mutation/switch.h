@@ -1,6 +1,6 @@
 #pragma once
-/// Changes of a program that are compiled into it together, of which the environment variable MUTANT chooses one by its
-/// number. mutate.py puts these functions around operators, numbers and statements of a copy of the sources:
+/// All changes of a program are compiled into it together. The environment variable MUTANT chooses one by its number.
+/// mutate.py puts these functions around operators, numbers and statements of a copy of the sources:
 ///
 ///   a < b      a <::mutation::Binary<7>{}< b     change 7 is a <= b, change 8 is a >= b
 ///   !a         ::mutation::Not<9>{}->*a          change 9 is a
@@ -223,8 +223,14 @@ MUTATION_FUNCTION(Floor, std::floor, std::ceil)
 MUTATION_FUNCTION(Ceil, std::ceil, std::floor)
 MUTATION_FUNCTION(IsFinite, std::isfinite, true ||)
 
-template <int kId>
+template <int kId, typename T = void>
 struct Clamp {
+  constexpr T operator()(const T& v, const T& low, const T& high) const {
+    return on<kId>() ? v : std::clamp(v, low, high);
+  }
+};
+template <int kId>
+struct Clamp<kId, void> {
   template <typename T>
   constexpr T operator()(const T& v, const T& low, const T& high) const {
     return on<kId>() ? v : std::clamp(v, low, high);

@@ -103,7 +103,7 @@ const std::vector<Row>& rows() {
   return kRows;
 }
 
-/// These are in tests/robots/legged_conditions_test.cpp.
+/// These are in legged_conditions_test.cpp.
 constexpr std::uint64_t kOfLegs = kCauseJointSpeed | kCauseJointEffort | kCauseJointRange | kCauseFootSlip |
                                   kCauseFootLoad | kCauseJointFollowing | kCauseEncoderJump | kCauseEncoderStuck;
 

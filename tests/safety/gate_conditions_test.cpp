@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "safety/monitor_fixture.h"
+#include "support/constants.h"
 
 namespace robot_control {
 namespace {

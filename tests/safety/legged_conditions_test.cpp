@@ -6,6 +6,7 @@
 #include <random>
 
 #include "machine/legs/legs_corpus.h"
+#include "signals/names.h"
 
 namespace robot_control {
 namespace {
@@ -68,6 +69,35 @@ class LeggedConditionsTest : public testing::Test {
   std::array<Eigen::Vector3d, kLegs> stand_;
 };
 
+TEST_F(LeggedConditionsTest, StandAfterATenthOfASecondAndDoNotMoveBeforeThat) {
+  conditions_.enter_run();
+  run(0.0995);  // 100 cycles, of which the first one takes the angles
+  EXPECT_FALSE(conditions_.standing());
+  EXPECT_FALSE(conditions_.moving());
+  run(0.0025);
+  EXPECT_TRUE(conditions_.standing());
+  EXPECT_FALSE(conditions_.sliding());
+}
+
+TEST_F(LeggedConditionsTest, AJointThatLeavesItsWindowMovesUntilTheRobotStandsAgain) {
+  sensors_.joints[11].position += 0.009;
+  run(0.01);
+  EXPECT_TRUE(conditions_.standing());
+  sensors_.joints[11].position += 0.002;
+  run(0.095);
+  EXPECT_TRUE(conditions_.moving());
+  EXPECT_FALSE(conditions_.standing());
+  run(0.01);
+  EXPECT_TRUE(conditions_.standing());
+  EXPECT_FALSE(conditions_.moving());
+}
+
+TEST_F(LeggedConditionsTest, AJointWithoutAnAngleMoves) {
+  sensors_.joints[11].position = std::numeric_limits<double>::quiet_NaN();
+  run(0.002);
+  EXPECT_TRUE(conditions_.moving());
+}
+
 TEST_F(LeggedConditionsTest, AreNoneWhileItStandsAndMovesItsBody) {
   // Sway, height and turn at 0.5 Hz: the feet move together in the base's axes.
   const double seen = run(4, [&](double t) {
@@ -88,6 +118,13 @@ TEST_F(LeggedConditionsTest, AJointThatIsTooFastBrakes) {
   EXPECT_NEAR(run(1), 0.049, 1e-6);
   EXPECT_EQ(causes(Reaction::kBrake), "joint_speed");
   EXPECT_EQ(joint(), 4u);
+  EXPECT_NEAR(active_.measurements()[0].value, 1.2, 1e-9);
+}
+
+TEST_F(LeggedConditionsTest, ANumberThatIsMissingIsNotEvaluated) {
+  command_.joints[3] = {.mode = JointMode::kImpedance, .position = sensors_.joints[3].position};
+  sensors_.joints[3] = {.position = 100, .velocity = 1000, .effort = 1000};
+  EXPECT_EQ(run(2), 2);
 }
 
 TEST_F(LeggedConditionsTest, AJointThatGivesItsTorqueForLongLetsItLieDown) {
@@ -110,6 +147,10 @@ TEST_F(LeggedConditionsTest, AJointBeyondItsEndStopBrakes) {
   EXPECT_NEAR(run(1), 0.049, 1e-6);
   EXPECT_EQ(causes(Reaction::kBrake), "joint_range");
   EXPECT_EQ(joint(), 0u);
+  EXPECT_NEAR(active_.measurements()[0].value, 0.11, 1e-9);
+  sensors_.joints[0].position = robot_.joints[0].range->lower - 0.12;
+  run(0.001);
+  EXPECT_NEAR(active_.measurements()[0].value, 0.12, 1e-9);
 }
 
 TEST_F(LeggedConditionsTest, AJointThatDoesNotFollowItsCommandBrakesWhileTheRobotStands) {
@@ -124,6 +165,9 @@ TEST_F(LeggedConditionsTest, AJointThatDoesNotFollowItsCommandBrakesWhileTheRobo
   EXPECT_NEAR(run(1), 0.199, 1e-6);
   EXPECT_EQ(causes(Reaction::kBrake), "joint_following");
   EXPECT_EQ(joint(), 7u);
+  EXPECT_NEAR(active_.measurements()[0].value, 0.26, 1e-9);
+  command_.joints[7].mode = JointMode::kVelocity;
+  EXPECT_EQ(run(0.3), 0.3);
 }
 
 TEST_F(LeggedConditionsTest, AnEncoderThatJumpsBrakes) {
@@ -201,6 +245,8 @@ TEST_F(LeggedConditionsTest, AFootThatSlipsLetsItLieDown) {
   EXPECT_NEAR(run(0.3, slide(1.5 * limit)), 0.12, 0.012);
   EXPECT_EQ(causes(Reaction::kRamp), "foot_slip");
   EXPECT_EQ(joint(), 11u);
+  // It leaves the foot beside it, along the line of both.
+  EXPECT_NEAR(active_.measurements()[0].value, 1.5 * limit, 1e-3 * limit);
 }
 
 TEST_F(LeggedConditionsTest, AFootInTheAirMayMoveAndCarryNothing) {
@@ -225,6 +271,11 @@ TEST_F(LeggedConditionsTest, AFootThatCarriesNothingIsAWarning) {
   EXPECT_NEAR(run(1), 0.499, 1e-6);
   EXPECT_EQ(causes(Reaction::kWarn), "foot_load");
   EXPECT_EQ(joint(), 5u);
+  EXPECT_NEAR(active_.measurements()[0].value, 2 / (robot_.mass * 9.81 / kLegs), 1e-6);
+  // With a foot in the air three share the weight.
+  command_.legged.lifted = 4;
+  run(0.001);
+  EXPECT_NEAR(active_.measurements()[0].value, 2 / (robot_.mass * 9.81 / 3), 1e-6);
   for (ContactSample& contact : sensors_.contacts) contact.valid = 0;
   EXPECT_EQ(run(1), 1) << "a load that is not measured is not judged";
 }

@@ -23,7 +23,6 @@ void Warnings::step(const ActiveCauses& active, std::uint64_t cycle, std::uint64
   age(elapsed);
   const std::uint64_t warning = active.with(Reaction::kWarn);
   const std::uint64_t slowing = active.with(Reaction::kSlow);
-  if ((warning | slowing) == 0) return;
   for (const CauseEvidence& measurement : active.measurements()) {
     if ((measurement.cause & (warning | slowing)) == 0) continue;
     Held& held = held_[index_of(measurement.cause)];

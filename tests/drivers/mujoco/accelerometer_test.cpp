@@ -2,8 +2,8 @@
 /// mm/s over any second: with the wheels ramped up, in a curve, on the spot, and braked hard.
 
 #include "integrated_force.h"
-#include "support/made_robot.h"
 #include "plant_fixture.h"
+#include "support/made_robot.h"
 
 namespace robot_control {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "drivers/mujoco/constants.h"
-#include "support/made_robot.h"
 #include "plant_fixture.h"
+#include "support/made_robot.h"
 
 namespace robot_control {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <random>
 
-#include "support/made_robot.h"
 #include "plant_fixture.h"
+#include "support/made_robot.h"
 #include "support/message_of.h"
 
 namespace robot_control {

@@ -14,9 +14,9 @@
 #include "drivers/mujoco/sensors/late_samples.h"
 #include "drivers/mujoco/sensors/sensor_errors.h"
 #include "drivers/mujoco/sensors/vibration.h"
-#include "support/made_robot.h"
 #include "plant_fixture.h"
 #include "support/allocation_guard.h"
+#include "support/made_robot.h"
 #include "two_wheels.h"
 
 namespace robot_control {

@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 #include <random>
 
-#include "support/made_robot.h"
 #include "plant_fixture.h"
+#include "support/made_robot.h"
 
 namespace robot_control {
 namespace {

@@ -11,8 +11,8 @@
 #include "drivers/mujoco/constants.h"
 #include "drivers/mujoco/motors/brake_limits.h"
 #include "machine/fault_names.h"
-#include "support/made_robot.h"
 #include "plant_fixture.h"
+#include "support/made_robot.h"
 
 namespace robot_control {
 namespace {

@@ -11,8 +11,8 @@
 #include "drivers/mujoco/constants.h"
 #include "drivers/mujoco/model/mujoco_model.h"
 #include "drivers/mujoco/mujoco_errors.h"
-#include "support/made_robot.h"
 #include "plant_fixture.h"
+#include "support/made_robot.h"
 
 namespace robot_control {
 namespace {

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "drivers/mujoco/constants.h"
-#include "support/made_robot.h"
 #include "plant_fixture.h"
+#include "support/made_robot.h"
 #include "support/message_of.h"
 
 namespace robot_control {

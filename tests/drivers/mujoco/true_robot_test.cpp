@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "drivers/mujoco/constants.h"
-#include "support/made_robot.h"
 #include "support/diffbot_urdf.h"
+#include "support/made_robot.h"
 
 namespace robot_control {
 namespace {
