@@ -127,8 +127,8 @@ TEST(LyingDownTime, IsThatOfTheFootThenOfTheBodyThenOfTheRise) {
   const auto norm_of = [&](std::size_t axis, double range) { return range / bounds[axis].acceleration; };
   const double n = norm_of(0, tuning.sway) + norm_of(1, tuning.sway) + norm_of(2, tuning.bob) +
                    norm_of(3, tuning.lean) + norm_of(4, tuning.lean) + norm_of(5, tuning.lean);
-  const double slowest = std::max({tuning.sway / bounds[0].speed, tuning.bob / bounds[2].speed,
-                                   tuning.lean / bounds[3].speed});
+  const double slowest =
+      std::max({tuning.sway / bounds[0].speed, tuning.bob / bounds[2].speed, tuning.lean / bounds[3].speed});
   const double w = std::min(std::sqrt(n), n / slowest);
   const double foot = (tuning.foot_range + tuning.lift + tuning.foot_range) / 0.5 + 4 * 0.5 / 15 + 0.2;
   EXPECT_NEAR(lying_down_time(robot), foot + n / w + 2 * w + 0.05 + 1.3, 1e-6);

@@ -9,8 +9,7 @@ namespace {
 
 Request pose_of(const std::array<double, 6>& pose) {
   Request request;
-  request.posture = {
-      .height = pose[2], .roll = pose[3], .pitch = pose[4], .x = pose[0], .y = pose[1], .yaw = pose[5]};
+  request.posture = {.height = pose[2], .roll = pose[3], .pitch = pose[4], .x = pose[0], .y = pose[1], .yaw = pose[5]};
   return request;
 }
 
@@ -162,8 +161,7 @@ TEST(BodyPose, StopsBeforeAKneeIsOnTheGround) {
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     LegModel robot = nominal.robot;
     const auto clear_of = [&](const IdealLegs& legs) {
-      const Eigen::Vector3d knee = IdealLegs::attitude(legs.pose()) *
-                                   robot.legs[leg].kinematics.knee(legs.angles(leg));
+      const Eigen::Vector3d knee = IdealLegs::attitude(legs.pose()) * robot.legs[leg].kinematics.knee(legs.angles(leg));
       return legs.pose()[2] + knee.z() - robot.belly;
     };
     robot.legs[leg].knee_radius = clear_of(nominal) - 0.03;
@@ -239,7 +237,8 @@ TEST(BodyPose, RollsOnTheBallsOfItsFeet) {
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
       EXPECT_GT(rolled[leg].norm(), 0.0005);
       const Eigen::Vector3d moved = legs.foot(leg) - from[leg];
-      EXPECT_LE((moved.head<2>() - rolled[leg].head<2>()).norm(), 0.05 * rolled[leg].norm() + 1e-5) << leg << " by " << rolled[leg].transpose();
+      EXPECT_LE((moved.head<2>() - rolled[leg].head<2>()).norm(), 0.05 * rolled[leg].norm() + 1e-5)
+          << leg << " by " << rolled[leg].transpose();
     }
   }
 }

@@ -12,8 +12,8 @@ namespace {
 /// Feet at four heights, and a load under which all push.
 FootForcesInput uneven() {
   FootForcesInput input;
-  input.feet = {Eigen::Vector3d(0.21, 0.12, -0.3), Eigen::Vector3d(0.19, -0.15, -0.27), Eigen::Vector3d(-0.2, 0.14, -0.31),
-                Eigen::Vector3d(-0.17, -0.13, -0.25)};
+  input.feet = {Eigen::Vector3d(0.21, 0.12, -0.3), Eigen::Vector3d(0.19, -0.15, -0.27),
+                Eigen::Vector3d(-0.2, 0.14, -0.31), Eigen::Vector3d(-0.17, -0.13, -0.25)};
   input.share = {1, 0.8, 0.6, 0.9};
   input.force = {8, -5, 120};
   input.moment = {1.5, -2, 0.7};

@@ -68,8 +68,9 @@ void expect_efforts(const IdealLegs& legs, const Vector& expected, double tolera
 }
 
 TEST(LegEfforts, CarryTheWeightInAnyPose) {
-  for (const Posture& posture : {Posture{}, Posture{.height = -0.03, .roll = 0.1, .pitch = -0.06, .x = 0.02, .yaw = 0.1},
-                                 Posture{.roll = -0.15, .pitch = 0.1, .y = 0.02}}) {
+  for (const Posture& posture :
+       {Posture{}, Posture{.height = -0.03, .roll = 0.1, .pitch = -0.06, .x = 0.02, .yaw = 0.1},
+        Posture{.roll = -0.15, .pitch = 0.1, .y = 0.02}}) {
     IdealLegs legs = standing();
     Request request;
     request.posture = posture;
