@@ -21,7 +21,7 @@ namespace robot_control {
 inline constexpr double kPeriod = 0.001;
 inline constexpr std::int64_t kPeriodNs = 1'000'000;
 inline constexpr std::int64_t kLossNs = 20 * kPeriodNs;
-inline constexpr Twist kForward{.linear = {0.5, 0, 0}, .angular = {0, 0, 0}};
+inline constexpr Twist kAhead{.linear = {0.5, 0, 0}, .angular = {0, 0, 0}};
 
 inline DriveTrain two_wheels() {
   DriveTrain robot;

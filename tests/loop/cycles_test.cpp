@@ -11,7 +11,7 @@ class RunningLoop : public ::testing::Test {
  protected:
   RunningLoop() {
     loop.step();  // a command from before the run would be dropped
-    loop.controller->inbox().store({.content = {.twist = kForward}, .count = 1});
+    loop.controller->inbox().store({.content = {.twist = kAhead}, .count = 1});
     loop.steps(20);
   }
 
@@ -111,7 +111,7 @@ TEST_F(RunningLoop, ForgetsTheCommandInANewRun) {
 }
 
 TEST_F(RunningLoop, TakesAgeAndRefusalsFromTheInbox) {
-  VelocityCommand command{.content = {.twist = kForward}, .count = 2};
+  VelocityCommand command{.content = {.twist = kAhead}, .count = 2};
   command.age_ns = 1'249 * kPeriodNs;  // of the default timeout's 1250
   loop.controller->inbox().store(command);
   loop.steps(2);

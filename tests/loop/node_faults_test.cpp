@@ -25,7 +25,7 @@ class NodeFaults : public ::testing::Test {
 
   static void start(Loop& any) {
     any.step();
-    any.controller->inbox().store({.content = {.twist = kForward}, .count = 1});
+    any.controller->inbox().store({.content = {.twist = kAhead}, .count = 1});
     any.steps(20);
   }
 
@@ -74,7 +74,7 @@ TEST(NodesOfTheRobot, PublishTheSameFramesWhateverIsInjected) {
       any->estimator->step();
       any->controller->step();
       any->monitor->step();
-      if (i == 0) any->controller->inbox().store({.content = {.twist = kForward}, .count = 1});
+      if (i == 0) any->controller->inbox().store({.content = {.twist = kAhead}, .count = 1});
     }
     EXPECT_EQ(healthy.newest_state().head.checksum, injected.newest_state().head.checksum) << i;
     EXPECT_EQ(healthy.newest_command().head.checksum, injected.newest_command().head.checksum) << i;

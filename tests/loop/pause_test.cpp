@@ -13,7 +13,7 @@ class PausedLoop : public ::testing::Test {
  protected:
   PausedLoop() {
     loop.step();
-    loop.controller->inbox().store({.content = {.twist = kForward}, .count = 1});
+    loop.controller->inbox().store({.content = {.twist = kAhead}, .count = 1});
     loop.steps(20);
   }
 

@@ -308,6 +308,8 @@ class Source:
     def operator(self, index: int, token: Token) -> None:
         """An operator becomes another one, or is left out."""
         spaced = self.text[token.begin - 1].isspace() and self.text[token.end].isspace()
+        if token.text in {"<<", ">>"} and self.of_a_stream(index):
+            return
         if spaced and token.text in BINARY:
             numbers = [self.add(token.begin, token.end, other, other) for other in BINARY[token.text]]
             self.replace(token, f"{token.text} ::mutation::Binary<{numbers[0]}>{{}} {token.text}")
@@ -320,6 +322,13 @@ class Source:
             name, other = PREFIX[token.text]
             number = self.add(token.begin, token.end, other, other or f"without {token.text}")
             self.replace(token, f"::mutation::{name}<{number}>{{}}->*")
+
+    def of_a_stream(self, index: int) -> bool:
+        """The statement has a text, so that its << write to a stream."""
+        first = index
+        while self.word(first) not in {";", "{", "}", ""}:
+            first -= 1
+        return any(token.kind == "text" for token in self.tokens[first + 1 : self.end_of_statement(index)])
 
     def prefixes(self, index: int) -> bool:
         """The operator stands before its operand, and no other one follows."""

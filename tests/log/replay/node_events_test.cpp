@@ -80,7 +80,7 @@ class RandomNodes {
   void act() {
     switch (std::uniform_int_distribution<>(0, 11)(random_)) {
       case 0:
-        loop_.controller->inbox().store({.content = {.twist = chance(0.5) ? kForward : Twist{}}, .count = ++count_});
+        loop_.controller->inbox().store({.content = {.twist = chance(0.5) ? kAhead : Twist{}}, .count = ++count_});
         return;
       case 1:
         loop_.estimator->request_pose({1, -2, 0.5 * static_cast<double>(++count_)});
