@@ -151,7 +151,7 @@ TEST_F(ForgedFields, OfEveryNameAreNoticed) {
 }
 
 TEST_F(ForgedFields, WithARenewedChecksumAreNoticedOrListedInTheDocumentation) {
-  constexpr int kEdits = 5, kTries = 100;
+  constexpr int kEdits = 5, kTries = 1000;  // few rows have neither a usable command nor permit
   std::set<std::string> listed = fields_that_cannot_be_known();
   EXPECT_FALSE(listed.empty());
   for (std::size_t field = 0; field < places_.size(); ++field) {

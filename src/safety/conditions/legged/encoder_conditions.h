@@ -2,12 +2,13 @@
 /// The encoder of a leg's joint reports angles that its joint cannot have. The worst joint counts and is named.
 ///
 ///   jump   |q − q₀| − kFaster V t > limit. q₀ is the last angle that was possible, t s ago, V the velocity limit
-///   stuck  |c − c₀| > limit, while the robot is on its feet. c is the angle that the command demands, c₀ was demanded
-///          when q changed for the last time. A joint that is blocked looks the same
+///   stuck  |c − c₀| > limit, while the robot is on its feet. c is the angle that q can show: the command demanded it
+///          kAnswer cycles ago. c₀ was this angle when q changed for the last time. A joint that is blocked looks the same
 ///
 /// While c stays, a stuck encoder changes nothing: the joint is where it reports to be. An angle that is missing or not
 /// finite is not evaluated.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -22,7 +23,8 @@ namespace robot_control {
 
 class EncoderConditions {
  public:
-  static constexpr double kFaster = 1.1;  ///< as the default limit of joint_speed
+  static constexpr double kFaster = 1.1;     ///< as the default limit of joint_speed
+  static constexpr std::size_t kAnswer = 2;  ///< cycles: command k − 1 moves the joint from cycle k to k + 1
 
   /// `period` s.
   EncoderConditions(const SafetyParameters& parameters, const LegModel& robot, double period) noexcept
@@ -34,7 +36,10 @@ class EncoderConditions {
   void enter_run() noexcept {
     jump_.reset();
     stuck_.reset();
-    for (Joint& joint : joints_) joint.known = joint.demanded = false;
+    for (Joint& joint : joints_) {
+      joint.known = joint.demanded = false;
+      joint.demand_count = 0;
+    }
   }
 
   void step(const MonitorInput& input, std::uint64_t elapsed, ActiveCauses& out) noexcept {
@@ -55,13 +60,15 @@ class EncoderConditions {
 
  private:
   struct Joint {
-    double reach = 0;          ///< rad, in a cycle
-    bool known = false;        ///< q₀ is known
-    double possible = 0;       ///< rad, q₀
-    std::uint64_t cycles = 0;  ///< since q₀
-    bool demanded = false;     ///< c₀ is known
-    double reported = 0;       ///< rad, the last q
-    double demand = 0;         ///< rad, c₀
+    double reach = 0;                       ///< rad, in a cycle
+    bool known = false;                     ///< q₀ is known
+    double possible = 0;                    ///< rad, q₀
+    std::uint64_t cycles = 0;               ///< since q₀
+    std::array<double, kAnswer> demands{};  ///< rad, of the last commands, the oldest first
+    std::size_t demand_count = 0;           ///< of `demands`
+    bool demanded = false;                  ///< c₀ is known
+    double reported = 0;                    ///< rad, the last q
+    double demand = 0;                      ///< rad, c₀
   };
 
   /// Returns the impedance's command of a joint while the robot is on its feet; else null.
@@ -86,12 +93,26 @@ class EncoderConditions {
 
   /// Returns by how many rad the command moved while the angle stayed.
   static double demanded(Joint& joint, double position, const JointCommand* command) noexcept {
-    if (command == nullptr || !joint.demanded || position != joint.reported) {
-      joint.demanded = command != nullptr;
-      joint.demand = command != nullptr ? command->position : 0;
+    double moved = 0;
+    if (joint.demand_count == kAnswer && command != nullptr) {
+      if (!joint.demanded || position != joint.reported) joint.demand = joint.demands.front();
+      joint.demanded = true;
+      moved = std::abs(joint.demands.front() - joint.demand);
     }
     joint.reported = position;
-    return command != nullptr ? std::abs(command->position - joint.demand) : 0;
+    remember(joint, command);
+    return moved;
+  }
+
+  static void remember(Joint& joint, const JointCommand* command) noexcept {
+    if (command == nullptr) {
+      joint.demanded = false;
+      joint.demand_count = 0;
+      return;
+    }
+    std::rotate(joint.demands.begin(), joint.demands.begin() + 1, joint.demands.end());
+    joint.demands.back() = command->position;
+    joint.demand_count = std::min(joint.demand_count + 1, kAnswer);
   }
 
   std::array<Joint, kLegsJoints> joints_{};
