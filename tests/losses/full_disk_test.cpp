@@ -15,7 +15,7 @@
 namespace robot_control {
 namespace {
 
-constexpr rlim_t kLimit = 512 * 1024;  // bytes, less than half a second of log
+constexpr rlim_t kLimit = 768 * 1024;  // bytes: room for one chunk of a second, not for two
 
 /// The mount is invisible to every other process.
 bool mount_small_disk(const std::string& folder) {

@@ -103,7 +103,7 @@ TEST_F(Xacro, WhatItIncludesIsARegularFile) {
   SKIP_WITHOUT_XACRO();
   folder_.write("including.xacro",
                 "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\"><xacro:include filename=\"/dev/zero\"/></robot>");
-  EXPECT_THAT(refusal("including.xacro"), HasSubstr("/dev/zero is a device"));
+  EXPECT_THAT(refusal("including.xacro"), HasSubstr("/dev/zero cannot be opened or written: is a device"));
 }
 
 TEST_F(Xacro, AbsentPythonIsNamedWithTheRemedy) {
