@@ -135,7 +135,7 @@ def promises(outcomes: Sequence[Outcome]) -> list[Promise]:
             value = float(np.percentile(ours, quantile))
             found.append(Promise(f"parts, {name}, {what}", value, bound, "mm"))
             if case.errors:
-                better = min(np.percentile(errors_of(outcomes, name, part), quantile) for part in (WHEELS, GYRO))
+                better = min(float(np.percentile(errors_of(outcomes, name, part), quantile)) for part in (WHEELS, GYRO))
                 found.append(Promise(f"parts, {name}, {what} over the better part", value / better, 1.1, ""))
     for what, (half, most) in QUANTILES.items():
         values = np.concatenate([getattr(each, f"{what}_nees") for each in outcomes if CASES[each.case].errors])

@@ -11,12 +11,12 @@
 /// that is blocked (slip/wheel_slide.h).
 ///
 /// At rest (rest/rest_watch.h) nothing is integrated: pose and covariance stay. The gyro's bias and the tilt
-/// (tilt/tilt.h) are learned. What the first rest shows also corrects the pose. The estimator takes the robot
-/// to rest at the beginning of a run. A window that turns out not to be quiet is integrated at once, together with the
+/// (tilt/tilt.h) are learned. The first rest also corrects the pose. At the beginning of a run the robot counts as
+/// resting. A window that turns out not to be quiet is integrated at once, together with the
 /// one before.
 ///
-/// No slip is named before the first rest, because the accelerometer's bias is not known then, nor of wheels whose
-/// readings come more than kSlowWheels apart.
+/// No slip is named before the first rest, because the accelerometer's bias is not known then. Neither is the slip of
+/// wheels whose readings come more than kSlowWheels apart.
 ///
 /// Samples may come at any rate. A sample that is not finite or impossible is not used and sets kStateBadSample. A
 /// missing encoder sample sets the same flag. The last good sample holds for three times the gap between the last two,

@@ -1,4 +1,4 @@
-/// What each cycle hands to its law and publishes, with laws that only note it.
+/// Each cycle hands its inputs to its law and publishes what it returns. The laws here only note what they are given.
 
 #include <gtest/gtest.h>
 

@@ -193,8 +193,8 @@ void PlanarCore::rest(double mean, double variance, bool keeps_pose) noexcept {
   correct(gain, ph, s, mean - bias());
 }
 
-/// A heading that is wrong by δ since the doubt began turns the way since then by δ: it errs by sin δ across, and by
-/// 1 − cos δ along that way.
+/// A heading that is wrong by δ since the doubt began turns the way since then by δ. The way errs by sin δ across, and
+/// by 1 − cos δ along it.
 Eigen::Matrix4d PlanarCore::pose_covariance() const noexcept {
   Eigen::Matrix4d covariance = (*covariance_).topLeftCorner<4, 4>();
   if (doubt_ == 0) return covariance;

@@ -1,5 +1,5 @@
 #pragma once
-/// The planar core estimates the pose in the plane: the gyro turns the robot, the wheels move it, and a Kalman filter
+/// The planar core estimates the pose in the plane. The gyro turns the robot, and the wheels move it. A Kalman filter
 /// weighs the turn of the wheels against that of the gyro.
 ///
 ///   ψ ← ψ + (1 + κ)(gyro − b) dt    (x, y) ← (x, y) + d (cos ψ̄, sin ψ̄)    d: distance of the middle of the wheels
@@ -20,10 +20,10 @@
 /// Wheels that a turn drags over the floor do not measure the heading: load and floor change ε and β as much as a gyro
 /// errs. Their blocks correct τ, ε and β alone.
 ///
-/// An innovation counts with at most kHuber deviations. Beyond kGate deviations wheels and gyro contradict each other:
-/// the heading follows the gyro, and its doubt, a deviation beside P, grows by the angle between both. Wheels that are
-/// dragged may turn the robot by three quarters of their own turn. Each block in which both agree takes kAgreement of the
-/// doubt, three times as much where turns drag wheels, because a gyro that fails seldom becomes right again.
+/// An innovation counts with at most kHuber deviations. Beyond kGate deviations wheels and gyro contradict each other.
+/// The heading then follows the gyro, and its doubt, a deviation beside P, grows by the angle between both. Wheels that
+/// are dragged may turn the robot by three quarters of their own turn. Each block in which both agree takes kAgreement
+/// of the doubt, and three times as much where turns drag wheels. A gyro that fails seldom becomes right again.
 ///
 /// ε and β walk in proportion to the slip noise (wheel_noise.h). The blocks that follow check them: where those of the
 /// start predict the blocks better, by kDrop, ε and β are dropped. They begin again with the deviation of the start.

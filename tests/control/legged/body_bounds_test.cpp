@@ -39,8 +39,8 @@ TEST_P(BodyBoundsOf, AreFiniteAndPositiveForLegsThatDoNotReachTheGround) {
 
 INSTANTIATE_TEST_SUITE_P(Robots, BodyBoundsOf, testing::ValuesIn(legged_robots()), robot_name);
 
-/// The forces that the feet of a standing robot need while its base moves: by LegDynamics, with the rates of the joints
-/// by inverse kinematics of two places of the base, and the smallest forces by a decomposition.
+/// Returns the forces that the feet of a standing robot need while its base moves, by LegDynamics. The rates of the
+/// joints follow from inverse kinematics of two places of the base, the smallest forces from a decomposition.
 std::array<Eigen::Vector3d, kLegs> forces_of(const IdealLegs& legs, int axis, double size) {
   constexpr double kMove = 1e-5;  // m or rad
   Eigen::Matrix<double, kLeggedDofs, 1> all = Eigen::Matrix<double, kLeggedDofs, 1>::Zero();

@@ -83,8 +83,8 @@ TEST(BodyPose, HoldsTheStoppingPlaceOfAMotionThatIsInterrupted) {
   EXPECT_NE(legs.out.reasons & kReasonTimedOut, 0u);
 }
 
-/// Returns lopsided() with another range of this joint for standing legs alone: it begins `left` rad from where the
-/// joint is in the nominal pose, on the side of `side`.
+/// Returns lopsided() with another range of this joint for standing legs alone. The range begins `left` rad from the
+/// joint's angle in the nominal pose, on the side of `side`.
 LegModel with_end(std::size_t leg, std::size_t joint, double side, double left) {
   const IdealLegs legs = standing();
   LegModel robot = legs.robot;

@@ -87,12 +87,12 @@ class LyingJoints : public testing::Test {
   LyingJoints() {
     for (std::size_t i = 0; i < kLegsJoints; ++i) start_[i] = legs_.sensors.joints[i].position;
   }
-  Request near(double way) const {
+  Request near(double distance) const {
     Request request = stance_of(kStanceJoints);
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       const JointRange& range = *legs_.robot.joints[i].range;
       const double inside = std::clamp(start_[i], range.lower, range.upper);
-      request.joints[i] = inside + std::copysign(way, (range.lower + range.upper) / 2 - inside);
+      request.joints[i] = inside + std::copysign(distance, (range.lower + range.upper) / 2 - inside);
     }
     return request;
   }
@@ -151,8 +151,8 @@ TEST_F(LyingJoints, NameAPositionBeyondTheirRange) {
 
 TEST_F(LyingJoints, StayWhereTheyAreAfterTheRequestHasTimedOut) {
   legs_.run(0.05, near(0.5));
-  const double way = std::abs(legs_.out.joints[2].position - start_[2]);
-  ASSERT_GT(way, 0.001);
+  const double distance = std::abs(legs_.out.joints[2].position - start_[2]);
+  ASSERT_GT(distance, 0.001);
   legs_.run(0.3, {});
   EXPECT_EQ(legs_.out.legged.phase, LegPhase::kJoints);
   const Positions rest = legs_.state().angles;
