@@ -9,7 +9,7 @@
 namespace robot_control {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 /// Acceleration 1 m/s² and 3 rad/s².
 DriveControllerParameters plain() {
@@ -104,13 +104,13 @@ TEST(DriveLimits, OfTheJerkLetTheLargestAccelerationBuildUpInATenthOfASecond) {
 }
 
 TEST(DriveLimits, OfJerkZeroAreNone) {
-  EXPECT_EQ(jerk_limit(0), kInfinity);
+  EXPECT_EQ(jerk_limit(0), kUnlimited);
   EXPECT_EQ(jerk_limit(0.5), 0.5);
   DriveControllerParameters parameters = plain();
   parameters.max_linear_jerk = 0;
   parameters.max_angular_jerk = 0;
-  EXPECT_EQ(speed_limits(parameters).linear.jerk, kInfinity);
-  EXPECT_EQ(speed_limits(parameters).angular.jerk, kInfinity);
+  EXPECT_EQ(speed_limits(parameters).linear.jerk, kUnlimited);
+  EXPECT_EQ(speed_limits(parameters).angular.jerk, kUnlimited);
 }
 
 TEST(MotionLimits, OfTheReverseHoldBelowZeroAlone) {
