@@ -1,4 +1,5 @@
-// Conditions of wheels by themselves. An encoder counts once per cycle, so that its quantum is what a wheel turns in one.
+// Conditions of wheels by themselves. An encoder counts once per cycle, so that its quantum is what a wheel turns in
+// one.
 
 #include "safety/conditions/wheeled/wheeled_conditions.h"
 
@@ -68,7 +69,8 @@ TEST_F(WheeledConditionsTest, PowerIsThatWhichTheMotorsDraw) {
   EXPECT_NEAR(power->limit, 60 + (15 + 15) * tolerance(5), 1e-6);
 }
 
-// The left side stands and the right one rolls at 1 m/s: 2 rad/s by a wheel base of 0.5 m. The gyro measures −0.1 rad/s.
+// The left side stands and the right one rolls at 1 m/s: 2 rad/s by a wheel base of 0.5 m. The gyro measures −0.1
+// rad/s.
 TEST_F(WheeledConditionsTest, SeveralWheelsOnOneSideScrub) {
   SafetyParameters parameters;
   parameters.yaw_rate = {.limit = 1, .persistence = 0, .reaction = Reaction::kBrake};
