@@ -141,7 +141,7 @@ TEST_F(TorqueOscillationTest, IsWarnedOfAfterAPartOfItsPersistence) {
   begin(0, {.limit = 0.3, .persistence = 0.4, .reaction = Reaction::kBrake});
   alternate(kLimit, 2);
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseTorqueOscillation});
-  EXPECT_NEAR(static_cast<double>(first_warning_), TorqueOscillation::kWarned * 400 + 50, 30);
+  EXPECT_NEAR(static_cast<double>(first_warning_), 0.5 * 400 + 50, 30);
 }
 
 }  // namespace

@@ -89,7 +89,7 @@ TEST_F(WheeledConditionsTest, SeveralWheelsOnOneSideScrub) {
     const auto several = measured(robot, parameters, {0, 10, side == Side::kLeft ? 0.0 : 10.0}, kCauseYawRate);
     ASSERT_TRUE(several.has_value());
     EXPECT_NEAR(several->value, 2.1, 1e-6);
-    EXPECT_NEAR(several->limit, 1 + YawAgreement::kScrub * 2 + tolerance(10) * 0.1 / 0.5, 1e-6);
+    EXPECT_NEAR(several->limit, 1 + 0.5 * 2 + tolerance(10) * 0.1 / 0.5, 1e-6);
   }
 }
 
