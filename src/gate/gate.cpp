@@ -254,10 +254,13 @@ void Gate::stop(std::uint64_t elapsed) noexcept {
 
 void Gate::remember() noexcept {
   const bool braked = report_.verdict == GateVerdict::kBrake;
-  for (std::size_t i = 0; i < limits_.size(); ++i) {
-    if (!braked) stops_[i].release();
-    memory_[i].driven = !braked && !is_brake(commands_[i]);
-    memory_[i].effort = commands_[i].effort;
+  if (!braked) {
+    for (JointStop& stop : stops_) stop.release();
+  }
+  auto command = commands_.begin();
+  for (JointMemory& memory : memory_) {
+    memory.driven = !braked && !is_brake(*command);
+    memory.effort = (command++)->effort;
   }
 }
 

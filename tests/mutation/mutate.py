@@ -399,9 +399,16 @@ def sources_below(folder: Path) -> list[Path]:
 
 
 def constants_to_free(room: list[Path]) -> set[str]:
-    """Constants of the room that nothing needs at compile time, and those elsewhere that are computed from them."""
+    """Constants of the room that nothing needs at compile time, and those elsewhere that are computed from them.
+
+    Those of a function that may run at compile time are needed there.
+    """
     texts = {path: path.read_text() for folder in ("src", "tests") for path in sources_below(ROOT / folder)}
     freed = {match["name"] for path in room for match in CONSTANT.finditer(texts[path])}
+    function = re.compile(r"\bconstexpr [\w:]+ \w+\([^()]*\)[^{};]*\{[^}]*\}")
+    for path in room:
+        for body in function.findall(texts[path]):
+            freed -= {match["name"] for match in CONSTANT.finditer(body)}
     statement = re.compile(r"\bconstexpr\b[^;{(]*[={][^;]*;")
     while True:
         last = set(freed)

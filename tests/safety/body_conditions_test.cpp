@@ -386,6 +386,9 @@ TEST_F(BodyConditionsTest, ANewRunKnowsNothing) {
   steps(cycles(parameters_.free_fall) - 1);
   facts_.enter_run();
   EXPECT_FALSE(facts_.attitude().known());
+  EXPECT_EQ(facts_.force(), 0);
+  EXPECT_EQ(facts_.shock(), 0);
+  EXPECT_EQ(made().shock(), 0);
   step();
   EXPECT_TRUE(quiet()) << "the count restarts";
 }

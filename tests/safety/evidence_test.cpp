@@ -47,6 +47,20 @@ TEST_F(EvidenceTest, AWarningStaysForASecondAfterItsFactAndSlowsDownAsLong) {
   EXPECT_EQ(reported(), Causes());
 }
 
+TEST(Warnings, ACauseThatStopsInsteadIsNoWarningASecondLater) {
+  Warnings warnings(1e-3);
+  ActiveCauses active;
+  active.add(kCauseTorqueOscillation, Reaction::kWarn, {.value = 1});
+  warnings.step(active, 1, 1);
+  active.clear();
+  active.add(kCauseTorqueOscillation, Reaction::kBrake, {.value = 2});
+  for (std::uint64_t k = 2; k <= 1001; ++k) warnings.step(active, k, 1);
+  EXPECT_EQ(warnings.bits(), std::uint64_t{kCauseTorqueOscillation});
+  EXPECT_EQ(warnings.evidence(kCauseTorqueOscillation).value, 1);
+  warnings.step(active, 1002, 1);
+  EXPECT_EQ(warnings.bits(), 0u);
+}
+
 TEST_F(EvidenceTest, AFactThatComesAndGoesIsOneWarning) {
   sensors_.battery_voltage = 21;
   step();

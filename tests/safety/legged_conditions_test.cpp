@@ -127,6 +127,13 @@ TEST_F(LeggedConditionsTest, ANumberThatIsMissingIsNotEvaluated) {
   EXPECT_EQ(run(2), 2);
 }
 
+TEST_F(LeggedConditionsTest, AJointThatIsNoneOfTheLegsIsNotEvaluated) {
+  sensors_.joint_count = kLegsJoints + 1;
+  JointSample& held = sensors_.joints[kLegsJoints];
+  held.position = held.velocity = held.effort = 1e9;
+  EXPECT_EQ(run(1), 1);
+}
+
 TEST_F(LeggedConditionsTest, AJointThatGivesItsTorqueForLongLetsItLieDown) {
   sensors_.joints[5].effort = 0.95 * robot_.joints[5].effort_limit;
   EXPECT_EQ(run(0.9), 0.9);

@@ -40,6 +40,10 @@ TEST_F(MachineConditionsTest, OverrunsOfTheLastSecondCount) {
   EXPECT_FALSE(overruns(101, 1000));
 }
 
+TEST_F(MachineConditionsTest, AMachineThatIsReadyIsNotStarting) {
+  EXPECT_FALSE(facts_.starting());
+}
+
 // A loop of 20 Hz cannot be late 50 times in a second.
 TEST_F(MachineConditionsTest, OverrunsOfHalfOfTheCyclesCountInASlowLoop) {
   facts_ = MachineConditions(parameters(), 0.05);

@@ -147,6 +147,20 @@ TEST_F(MonitorTest, AResetInInitIsRefusedNamingTheMissingNode) {
   input_.command = nullptr;
   EXPECT_EQ(reset(), std::uint64_t{kRefusalInit});
   EXPECT_EQ(permit_.missing, std::uint64_t{kMissingCommand});
+  EXPECT_EQ(reset(), std::uint64_t{kRefusalInit}) << "in the second cycle as well";
+}
+
+TEST_F(MonitorTest, AResetInTheCycleThatEndsInitIsNotRefused) {
+  new_run();
+  input_.command = nullptr;
+  steps(2);
+  ASSERT_EQ(permit_.state, SupervisorState::kInit);
+  EXPECT_EQ(permit_.reset_refusal, 0u) << "none was requested";
+  input_.command = &command_;
+  step();
+  ASSERT_EQ(permit_.state, SupervisorState::kInit) << "the gate has not found the command yet";
+  EXPECT_EQ(reset(), 0u);
+  EXPECT_EQ(permit_.state, SupervisorState::kReady);
 }
 
 // Each seed gives random facts for 2000 cycles. No permit drives under a latch, and a latch ends only by an accepted

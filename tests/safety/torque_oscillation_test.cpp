@@ -14,10 +14,11 @@ class TorqueOscillationTest : public MonitorTest {
   TorqueOscillationTest() { begin({}); }
 
   /// Begins with this torque per rad of a count.
-  void begin(double count_ripple) {
+  void begin(double count_ripple,
+             const Condition& condition = {.limit = 0.3, .persistence = 1.0, .reaction = Reaction::kBrake}) {
     SafetyParameters chosen = parameters();
     chosen.heartbeat_timeout = 0;
-    chosen.torque_oscillation = {.limit = 0.3, .persistence = 1.0, .reaction = Reaction::kBrake};
+    chosen.torque_oscillation = condition;
     chosen.wheel_effort.reaction = chosen.power.reaction = Reaction::kOff;
     chosen.count_ripple.fill(count_ripple);
     monitor_ = SafetyMonitor(chosen, robot(), kPeriod);
@@ -123,6 +124,24 @@ TEST_F(TorqueOscillationTest, IsNoneOfSamplesThatAreMissing) {
     if (permit_.causes != 0) break;
   }
   EXPECT_EQ(permit_.causes & kCauseTorqueOscillation, 0u);
+}
+
+// The ripple of a torque is that since the first target: what it was before does not count.
+TEST_F(TorqueOscillationTest, IsNoneOfATorqueThatIsSteadySinceTheFirstTarget) {
+  sensors_.joints[1].effort = kLimit;
+  begin(0, {.limit = 0.1, .persistence = 0, .reaction = Reaction::kBrake});
+  for (int k = 0; k < 200; ++k) {
+    command_.joints[1].effort = k / 8 % 2 == 0 ? kLimit : -kLimit;
+    step();
+  }
+  EXPECT_EQ(permit_.causes | permit_.warnings, 0u);
+}
+
+TEST_F(TorqueOscillationTest, IsWarnedOfAfterAPartOfItsPersistence) {
+  begin(0, {.limit = 0.3, .persistence = 0.4, .reaction = Reaction::kBrake});
+  alternate(kLimit, 2);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseTorqueOscillation});
+  EXPECT_NEAR(static_cast<double>(first_warning_), 0.5 * 400 + 50, 30);
 }
 
 }  // namespace

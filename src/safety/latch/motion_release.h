@@ -1,5 +1,5 @@
 #pragma once
-/// May motion begin? Two independent rules; missing evidence never releases motion.
+/// Two independent rules decide whether motion may begin; missing evidence never releases motion.
 ///
 /// A *current command frame* in cycle k is the command of cycle k−1, computed from the state of cycle k−1. Its counters
 /// of requests (control/command_watch.h) began in its first_cycle.

@@ -1,5 +1,5 @@
 #pragma once
-/// Are all numbers finite that a frame marks as valid?
+/// A frame is finite if all numbers are finite that it marks as valid.
 
 #include <cstdint>
 

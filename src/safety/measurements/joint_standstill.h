@@ -1,6 +1,6 @@
 #pragma once
-/// Does the robot stand, judged by its wheel angles alone (the monitor does not trust the estimate)? A caster may still
-/// turn.
+/// Whether the robot stands is judged by its wheel angles alone: the monitor does not trust the estimate. A caster may
+/// still turn.
 ///
 ///   inside    every wheel within ±w of its angle at the beginning of the window;  w = max(v·T, 1.5 quanta), T =
 ///             kStandingTime, v standstill_speed; doubled while standing, as hysteresis

@@ -1,6 +1,6 @@
 #pragma once
-/// Can the input frames be trusted? The cause is active after kPersistence bad cycles in a row; in a single bad cycle
-/// only the gate brakes.
+/// These conditions find input frames that cannot be trusted. The cause is active after kPersistence bad cycles in a
+/// row; in a single bad cycle only the gate brakes.
 ///
 ///   corrupt     a checksum of this cycle's inputs was wrong; without a sensor frame the attempts to read one count
 ///   not finite  a number that sensors or command mark as valid is NaN or infinite (finite.h); reported with the joint

@@ -1,6 +1,6 @@
 #pragma once
-/// Does the gate obey the permits? The sensors of cycle k report what it did in its last tick t, which is k−1. On
-/// hardware it is earlier if the driver was late and skipped cycles.
+/// These conditions find a gate that does not obey the permits. The sensors of cycle k report what it did in its last
+/// tick t, which is k−1. On hardware it is earlier if the driver was late and skipped cycles.
 ///
 ///   due         the newest permit of cycles < t that was alive in tick t: the one that the gate should have used
 ///   refuses     the due permit allowed motion (drive, or ramp while t ≤ ramp_until), the command did not request the

@@ -1,5 +1,5 @@
 #pragma once
-/// Do the other nodes make progress, and does the monitor itself?
+/// These conditions find nodes that make no progress, the monitor among them.
 ///
 ///   estimator lost   k − k_last ≥ loss_cycles, from the first state of this run on
 ///   controller lost  the same for commands, counted only while states arrive: without a state no command is due

@@ -1,5 +1,5 @@
 #pragma once
-/// Do the sensors report?
+/// These conditions find sensors that do not report.
 ///
 ///   encoders lost  a driven joint gave no new sample with kValidMotion, which the controller needs, for the
 ///                  persistence. The time is the age of a valid sample, and grows by the elapsed time while there is

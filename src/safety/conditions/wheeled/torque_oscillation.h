@@ -1,5 +1,5 @@
 #pragma once
-/// Does a motor torque oscillate although the planned motion does not require it?
+/// This condition finds a motor torque that oscillates although the planned motion does not require it.
 ///
 ///   ripple     τ minus its low pass of kSlow; RMS over kWindow. The smaller of the ripples of measured and commanded
 ///              torque: a command that the gate clamps, and ripple that the motor adds, do not count

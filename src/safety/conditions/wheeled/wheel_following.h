@@ -1,5 +1,5 @@
 #pragma once
-/// Does each wheel follow its target?
+/// These conditions find wheels that do not follow their targets.
 ///
 /// s: sign of the target q̇*; ω: measured speed (wheel_motion.h); δ: its tolerance; all in the joint's sign. Evaluated
 /// only while a target reaches the wheel (wheel_targets.h).

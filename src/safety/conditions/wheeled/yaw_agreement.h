@@ -1,5 +1,5 @@
 #pragma once
-/// Do gyro and wheels measure the same yaw rate?
+/// This condition finds gyro and wheels that measure different yaw rates.
 ///
 ///   |ω_gyro·z − ω| > limit + kScrub·|ω| + δ,   ω = (v_right − v_left)/b
 ///
