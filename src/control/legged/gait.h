@@ -1,0 +1,65 @@
+#pragma once
+/// A gait as data: when each foot bears, and how high it swings.
+///
+/// The phase of the gait grows from 0 to 1 within `period` and wraps. A leg's own phase is that of the gait plus its
+/// offset, within 0 … 1. The foot bears while this phase is below `duty`, and swings for the rest of the period.
+///
+/// Periods and lifts are those of a leg of kReferenceLeg. They change with √l and l (R. McN. Alexander, A. S. Jayes,
+/// J. Zool. 201 (1983) 135: legged machines of equal Froude number move alike).
+///
+/// Offsets are in the order of LegPlace.
+
+#include <array>
+#include <cmath>
+
+#include "machine/legs/leg_model.h"
+
+namespace robot_control {
+
+inline constexpr double kReferenceLeg = 0.426;  ///< m
+
+struct Gait {
+  const char* name;
+  double period;                    ///< s
+  double duty;                      ///< 0 … 1; 1: no foot leaves the ground
+  std::array<double, kLegs> phase;  ///< 0 … 1, offsets of the legs
+  double lift;                      ///< m, of the foot's centre in the middle of its swing
+
+  /// Returns the phase of a leg within 0 … 1.
+  double leg_phase(std::size_t leg, double gait_phase) const noexcept {
+    const double sum = gait_phase + phase[leg];
+    return sum - std::floor(sum);
+  }
+
+  bool bears(std::size_t leg, double gait_phase) const noexcept {
+    return duty >= 1 || leg_phase(leg, gait_phase) < duty;
+  }
+
+  /// Returns how much of its swing a foot has done, 0 … 1; 0 while it bears.
+  double swung(std::size_t leg, double gait_phase) const noexcept {
+    return bears(leg, gait_phase) ? 0 : (leg_phase(leg, gait_phase) - duty) / (1 - duty);
+  }
+
+  double stance_time() const noexcept { return period * duty; }
+  double swing_time() const noexcept { return period * (1 - duty); }
+
+  /// Returns this gait of a robot with legs of `length` m.
+  Gait scaled(double length) const noexcept {
+    Gait gait = *this;
+    gait.period *= std::sqrt(length / kReferenceLeg);
+    gait.lift *= length / kReferenceLeg;
+    return gait;
+  }
+};
+
+enum class GaitName { kStand, kTrot, kWalkingTrot, kCrawl };
+
+/// By GaitName.
+inline constexpr std::array kGaits{
+    Gait{"stand", 0.5, 1, {0, 0, 0, 0}, 0},
+    Gait{"trot", 0.38, 0.5, {0.5, 0, 0, 0.5}, 0.08},
+    Gait{"walking_trot", 0.5, 0.6, {0.5, 0, 0, 0.5}, 0.07},
+    Gait{"crawl", 1.0, 0.78, {0, 0.5, 0.25, 0.75}, 0.06},
+};
+
+}  // namespace robot_control

@@ -1,0 +1,93 @@
+#include "control/legged/gait.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace robot_control {
+namespace {
+
+constexpr int kParts = 1000;  // of a period
+
+std::array<bool, kLegs> bearing(const Gait& gait, double phase) {
+  std::array<bool, kLegs> bears{};
+  for (std::size_t leg = 0; leg < kLegs; ++leg) bears[leg] = gait.bears(leg, phase);
+  return bears;
+}
+
+const Gait& gait_of(GaitName name) {
+  return kGaits[static_cast<std::size_t>(name)];
+}
+
+TEST(Gait, EachFootBearsForItsDutyAndSwingsOncePerPeriod) {
+  for (const Gait& gait : kGaits) {
+    for (std::size_t leg = 0; leg < kLegs; ++leg) {
+      int bears = 0, landings = 0;
+      for (int i = 0; i < kParts; ++i) {
+        const double phase = (i + 0.5) / kParts;
+        bears += gait.bears(leg, phase);
+        landings += gait.bears(leg, phase) && !gait.bears(leg, phase - 1.0 / kParts);
+      }
+      EXPECT_NEAR(bears, gait.duty * kParts, 1) << gait.name;
+      EXPECT_EQ(landings, gait.duty < 1 ? 1 : 0) << gait.name;
+    }
+  }
+}
+
+TEST(Gait, NoGaitLeavesFewerThanTwoFeet) {
+  for (const Gait& gait : kGaits) {
+    for (int i = 0; i < kParts; ++i) {
+      const auto bears = bearing(gait, (i + 0.5) / kParts);
+      EXPECT_GE(std::count(bears.begin(), bears.end(), true), 2) << gait.name << " at " << i;
+    }
+  }
+}
+
+TEST(Gait, ATrotMovesTheDiagonalFeetTogether) {
+  for (const GaitName name : {GaitName::kTrot, GaitName::kWalkingTrot}) {
+    for (int i = 0; i < kParts; ++i) {
+      const auto bears = bearing(gait_of(name), (i + 0.5) / kParts);
+      EXPECT_EQ(bears[0], bears[3]);
+      EXPECT_EQ(bears[1], bears[2]);
+    }
+  }
+}
+
+TEST(Gait, ACrawlLiftsOneFootAtATimeInTheOrderOfAWalk) {
+  const Gait& crawl = gait_of(GaitName::kCrawl);
+  std::vector<std::size_t> order;
+  for (int i = 0; i < kParts; ++i) {
+    const auto bears = bearing(crawl, (i + 0.5) / kParts);
+    EXPECT_GE(std::count(bears.begin(), bears.end(), true), 3);
+    for (std::size_t leg = 0; leg < kLegs; ++leg)
+      if (!bears[leg] && (order.empty() || order.back() != leg)) order.push_back(leg);
+  }
+  // Each front foot follows the rear foot of its side (R. B. McGhee, A. A. Frank, Math. Biosci. 3 (1968) 331).
+  const auto next = [&](LegPlace place) {
+    const auto at = std::find(order.begin(), order.end(), static_cast<std::size_t>(place));
+    return static_cast<LegPlace>(at + 1 == order.end() ? order.front() : *(at + 1));
+  };
+  EXPECT_EQ(next(LegPlace::kRearLeft), LegPlace::kFrontLeft);
+  EXPECT_EQ(next(LegPlace::kRearRight), LegPlace::kFrontRight);
+}
+
+TEST(Gait, TheSwingGrowsFromZeroToOne) {
+  const Gait& trot = gait_of(GaitName::kTrot);
+  EXPECT_EQ(trot.swung(1, 0.25), 0);
+  EXPECT_NEAR(trot.swung(1, 0.5), 0, 1e-12);
+  EXPECT_NEAR(trot.swung(1, 0.75), 0.5, 1e-12);
+  EXPECT_NEAR(trot.swung(0, 0.25), 0.5, 1e-12);
+}
+
+TEST(Gait, TimesGrowWithTheRootOfTheLegAndLengthsWithTheLeg) {
+  const Gait& trot = gait_of(GaitName::kTrot);
+  const Gait larger = trot.scaled(4 * kReferenceLeg);
+  EXPECT_NEAR(larger.period, 2 * trot.period, 1e-12);
+  EXPECT_NEAR(larger.lift, 4 * trot.lift, 1e-12);
+  EXPECT_EQ(larger.duty, trot.duty);
+}
+
+}  // namespace
+}  // namespace robot_control
