@@ -3,22 +3,18 @@
 #include <Eigen/Cholesky>
 
 namespace robot_control {
-namespace {
 
-/// Returns the matrix of v × x.
-Eigen::Matrix3d cross(const Eigen::Vector3d& v) noexcept {
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) noexcept {
   Eigen::Matrix3d matrix;
   matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
   return matrix;
 }
 
-}  // namespace
-
 std::array<Eigen::Vector3d, kLegs> foot_forces(const FootForcesInput& input) noexcept {
   // With Gᵢ = [1; pᵢ×], fᵢ = wᵢ Gᵢᵀ λ and Σ wᵢ Gᵢ Gᵢᵀ λ = [force; moment].
   Eigen::Matrix<double, 6, 6> sum = Eigen::Matrix<double, 6, 6>::Zero();
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const Eigen::Matrix3d lever = cross(input.feet[leg]);
+    const Eigen::Matrix3d lever = cross_matrix(input.feet[leg]);
     sum.topLeftCorner<3, 3>().diagonal().array() += input.share[leg];
     sum.bottomLeftCorner<3, 3>() += input.share[leg] * lever;
     sum.bottomRightCorner<3, 3>() -= input.share[leg] * lever * lever;

@@ -20,6 +20,9 @@ struct FootForcesInput {
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();     ///< unit vector
 };
 
+/// Returns the matrix of v × x.
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) noexcept;
+
 /// Returns the forces in N.
 std::array<Eigen::Vector3d, kLegs> foot_forces(const FootForcesInput& input) noexcept;
 

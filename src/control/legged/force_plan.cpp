@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "control/legged/foot_forces.h"
 #include "control/legged/gait.h"
 #include "machine/gravity.h"
 
@@ -11,12 +12,6 @@ namespace robot_control {
 namespace {
 
 using Effect = Eigen::Matrix<double, 6, 3>;  // Bₐ
-
-Eigen::Matrix3d cross(const Eigen::Vector3d& v) noexcept {
-  Eigen::Matrix3d matrix;
-  matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return matrix;
-}
 
 /// Returns a speed that turns with its own yaw rate, after `time` s.
 PlanVector turned(const PlanVector& speed, double time) noexcept {
@@ -92,7 +87,7 @@ void ForcePlan::set_cost(const ForcePlanInput& input, double step, std::size_t s
 
   std::array<Effect, kPlanVariables / 3> effects;
   for (std::size_t i = 0; i < count_; ++i)
-    effects[i] << inverse_inertia_ * cross(input.feet[variables_[i].leg] - centre[variables_[i].step]),
+    effects[i] << inverse_inertia_ * cross_matrix(input.feet[variables_[i].leg] - centre[variables_[i].step]),
         Eigen::Matrix3d::Identity() / parameters_.mass;
 
   // They weigh a force of step j beside one of step l, and against the motion without forces.

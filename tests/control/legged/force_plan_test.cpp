@@ -14,9 +14,9 @@
 namespace robot_control {
 namespace {
 
-constexpr double kMass = 12.7;      // kg
-constexpr double kHeight = 0.3;     // m, of the centre of gravity
-constexpr double kRounding = 1e-8;  // N, of forces of 100 N from well-conditioned equations
+constexpr double kMass = 12.7;           // kg
+constexpr double kHeight = 0.3;          // m, of the centre of gravity
+constexpr double kForceRounding = 1e-8;  // N, of forces of 100 N from well-conditioned equations
 
 const Eigen::Matrix3d kInertia = Eigen::Vector3d(0.07, 0.21, 0.24).asDiagonal();
 
@@ -44,7 +44,7 @@ TEST(ForcePlan, StandingFeetCarryTheWeightInEqualParts) {
   ASSERT_EQ(result.outcome, QpOutcome::kSolved);
   const double share = kMass * kGravity / kLegs;
   for (const Eigen::Vector3d& force : result.forces) {
-    EXPECT_LT((force - Eigen::Vector3d(0, 0, share)).norm(), kRounding);
+    EXPECT_LT((force - Eigen::Vector3d(0, 0, share)).norm(), kForceRounding);
   }
 }
 
@@ -108,7 +108,8 @@ TEST(ForcePlan, MinimisesTheCostOfTheIntegratedMotion) {
   ASSERT_EQ(result.outcome, QpOutcome::kSolved);
   EXPECT_EQ(result.forces[0], Eigen::Vector3d::Zero().eval());  // this foot swings in the first step
   for (std::size_t leg = 1; leg < kLegs; ++leg)
-    EXPECT_LT((result.forces[leg] - expected.segment<3>(static_cast<Eigen::Index>(3 * (leg - 1)))).norm(), kRounding);
+    EXPECT_LT((result.forces[leg] - expected.segment<3>(static_cast<Eigen::Index>(3 * (leg - 1)))).norm(),
+              kForceRounding);
 }
 
 TEST(ForcePlan, ForcesStayWithinFrictionAndBounds) {
@@ -122,9 +123,9 @@ TEST(ForcePlan, ForcesStayWithinFrictionAndBounds) {
     const ForcePlanResult result = plan.step(input);
     ASSERT_EQ(result.outcome, QpOutcome::kSolved) << trial;
     for (const Eigen::Vector3d& force : result.forces) {
-      EXPECT_LE(force.head<2>().cwiseAbs().maxCoeff(), bounds.friction * force.z() + kRounding);
-      EXPECT_GE(force.z(), bounds.smallest - kRounding);
-      EXPECT_LE(force.z(), bounds.largest + kRounding);
+      EXPECT_LE(force.head<2>().cwiseAbs().maxCoeff(), bounds.friction * force.z() + kForceRounding);
+      EXPECT_GE(force.z(), bounds.smallest - kForceRounding);
+      EXPECT_LE(force.z(), bounds.largest + kForceRounding);
     }
   }
 }
