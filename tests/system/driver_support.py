@@ -14,7 +14,6 @@ from robot_control.srv import InjectFault
 from system_support import (
     CONTROLLER,
     ESTIMATOR,
-    LIMIT,
     MONITOR,
     STALL_CAUSES,
     Program,
@@ -72,16 +71,10 @@ class DriverTestCase(unittest.TestCase):
         answer = rospy.ServiceProxy("device_simulator/inject_fault", InjectFault)(component, kind)
         self.assertTrue(answer.success, answer.message)
 
-    def wait_for(
-        self,
-        what: str,
-        condition: Callable[[], bool],
-        limit: float = LIMIT,
-        every: Callable[[], object] | None = None,
-    ) -> None:
+    def wait_for(self, what: str, condition: Callable[[], bool], every: Callable[[], object] | None = None) -> None:
         """As system_support.wait_for; its failure shows the robot."""
         with self.explained():
-            wait_for(what, condition, limit, every)
+            wait_for(what, condition, every=every)
 
     @contextlib.contextmanager
     def explained(self) -> Iterator[None]:
