@@ -7,7 +7,6 @@
 #include <memory>
 #include <mutex>
 
-#include "bus/latest_value.h"
 #include "files/ascii.h"
 #include "robots/robot_kind.h"
 #include "ros/messages/motion_messages.h"
@@ -32,7 +31,6 @@ class DeviceSimulatorNode final : public Node {
       : setup_(setup),
         simulator_(make_device_simulator(setup.parameters, *setup.machine,
                                          compose(setup.parameters, *setup.machine)->brakes())),
-        latest_truth_(simulator_->truth()),
         pace_(setup.parameters.report.truth_rate) {}
   ~DeviceSimulatorNode() override { end(); }
 
@@ -59,7 +57,7 @@ class DeviceSimulatorNode final : public Node {
     time_.follow(now);
     if (!pace_.due(1, now.head.stamp_ns)) return;
     TruthFrame truth;
-    if (!latest_truth_.load(truth)) return;
+    if (!simulator_->truth(truth)) return;
     const ReportParameters& report = setup_.parameters.report;
     truth_.publish(ground_truth(truth, report.odom_frame, report.base_frame, time_.at(now.head.stamp_ns)));
   }
@@ -74,7 +72,6 @@ class DeviceSimulatorNode final : public Node {
         const std::lock_guard lock(mutex_);
         simulator_->step();
       }
-      latest_truth_.store(simulator_->truth());
       schedule.end(monotonic_ns());
       slipped_ns_.store(schedule.slipped_ns());
     }
@@ -96,7 +93,6 @@ class DeviceSimulatorNode final : public Node {
   Setup setup_;
   std::mutex mutex_;  // of a step and of a fault
   std::unique_ptr<DeviceSimulator> simulator_;
-  LatestValue<TruthFrame> latest_truth_;
   Pacer pace_;
   TimeMap time_{ClockMode::kWall};
   ros::Publisher truth_;
