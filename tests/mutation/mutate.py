@@ -39,9 +39,12 @@ DIFFERENCES = {
         "  if(ARG_SOURCES)\n": """\
   set(built ${WORKSPACE_LIBRARIES}/librc_${name}.a)
   if(ARG_SOURCES AND EXISTS ${built} AND NOT CMAKE_CURRENT_SOURCE_DIR MATCHES "/src/${MUTATED}(/|$)")
+    add_library(${name}_of_workspace STATIC IMPORTED GLOBAL)
+    set_target_properties(${name}_of_workspace PROPERTIES IMPORTED_LOCATION ${built})
+    target_link_libraries(${name}_of_workspace INTERFACE ${ARG_LINK})
     file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/none.cpp "")
     add_library(rc_${name} STATIC ${CMAKE_CURRENT_BINARY_DIR}/none.cpp)
-    target_link_libraries(rc_${name} PUBLIC robot_control_options ${built} ${ARG_LINK})
+    target_link_libraries(rc_${name} PUBLIC robot_control_options ${name}_of_workspace ${ARG_LINK})
   elseif(ARG_SOURCES)
 """,
     },

@@ -257,20 +257,22 @@ TEST_F(LeggedConditionsTest, AFootThatSlipsLetsItLieDown) {
 }
 
 TEST_F(LeggedConditionsTest, AFootInTheAirMayMoveAndCarryNothing) {
-  command_.legged.lifted = 4;
-  sensors_.contacts[3].force = {};
-  for (std::size_t leg = 0; leg < 3; ++leg) sensors_.contacts[leg].force[2] = robot_.mass * 9.81 / 3;
-  EXPECT_EQ(run(0.6,
-                [&](double t) {
-                  std::array<Eigen::Vector3d, kLegs> feet = stand_;
-                  feet[3].x() += 0.5 * std::min(t, 0.1);
-                  place(feet);
-                }),
-            0.6);
-  // It counts from where it is set down.
-  command_.legged.lifted = 0;
-  for (ContactSample& contact : sensors_.contacts) contact.force[2] = robot_.mass * 9.81 / kLegs;
-  EXPECT_EQ(run(0.3), 0.3);
+  for (const std::size_t lifted : {0, 3}) {
+    command_.legged.lifted = lifted + 1;
+    for (ContactSample& contact : sensors_.contacts) contact.force[2] = robot_.mass * 9.81 / 3;
+    sensors_.contacts[lifted].force = {};
+    EXPECT_EQ(run(0.6,
+                  [&](double t) {
+                    std::array<Eigen::Vector3d, kLegs> feet = stand_;
+                    feet[lifted].x() += 0.5 * std::min(t, 0.1);
+                    place(feet);
+                  }),
+              0.6);
+    // It counts from where it is set down.
+    command_.legged.lifted = 0;
+    for (ContactSample& contact : sensors_.contacts) contact.force[2] = robot_.mass * 9.81 / kLegs;
+    EXPECT_EQ(run(0.3), 0.3);
+  }
 }
 
 TEST_F(LeggedConditionsTest, AFootThatCarriesNothingIsAWarning) {

@@ -37,6 +37,22 @@ TEST_F(WheelFollowingTest, AWheelThatKeepsTurningWronglyIs) {
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseWrongDirection});
 }
 
+TEST_F(WheelFollowingTest, AWheelThatWasWrongAtAHigherSpeedIsReportedNoLater) {
+  turn_wheels(2 * kSpeed);
+  target(2 * kSpeed);
+  steps(200);
+  target(-2 * kSpeed);
+  steps(30);
+  turn_wheels(kSpeed);
+  target(kSpeed);
+  steps(200);
+  target(-kSpeed);
+  steps(49);
+  EXPECT_EQ(permit_.causes, 0u);
+  step();
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseWrongDirection});
+}
+
 // It slows down by 6 rad/s² as in the first test, but the target jumped: 10 rad/s against it.
 TEST_F(WheelFollowingTest, AWheelThatIsFarFromFollowingIsWrongThoughItSlowsDown) {
   turn_wheels(2 * kSpeed);
@@ -189,6 +205,17 @@ TEST_F(WheelFollowingTest, ARobotWithoutEncodersIsNotSaidToMove) {
 
 TEST_F(WheelFollowingTest, ACommandThatDescendsFromAnOldStateIsStaleAfterLossCycles) {
   fresh_state_ = false;
+  steps(kLoss - 1);
+  EXPECT_EQ(permit_.causes, 0u);
+  step();
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseCommandStale});
+}
+
+TEST_F(WheelFollowingTest, ACommandIsStaleAsLateInANewRun) {
+  ask_for(0);
+  turn_wheels(0);
+  fresh_state_ = false;
+  new_run();
   steps(kLoss - 1);
   EXPECT_EQ(permit_.causes, 0u);
   step();

@@ -69,6 +69,21 @@ TEST_F(WheeledConditionsTest, PowerIsThatWhichTheMotorsDraw) {
   EXPECT_NEAR(power->limit, 60 + (15 + 15) * tolerance(5), 1e-6);
 }
 
+TEST(SpeedLimitInForce, HoldsAfterTwoRampTimesOfItsRun) {
+  SpeedLimitInForce limit(10 * kPeriod, kPeriod);
+  limit.step(1, 5);
+  limit.enter_run();
+  for (int k = 1; k < 20; ++k) EXPECT_EQ(limit.step(1, 1), kNoSpeedLimit) << k;
+  EXPECT_EQ(limit.step(1, 1), 1);
+}
+
+TEST_F(WheeledConditionsTest, WithoutAGyroNoYawRateIsCompared) {
+  SafetyParameters parameters;
+  parameters.yaw_rate = {.limit = 1, .persistence = 0, .reaction = Reaction::kBrake};
+  sensors_.valid = 0;
+  EXPECT_FALSE(measured(two_wheels(), parameters, {0, 10}, kCauseYawRate).has_value());
+}
+
 // The left side stands and the right one rolls at 1 m/s: 2 rad/s by a wheel base of 0.5 m. The gyro measures −0.1
 // rad/s.
 TEST_F(WheeledConditionsTest, SeveralWheelsOnOneSideScrub) {

@@ -6,7 +6,6 @@ namespace robot_control {
 
 void Evidence::latch(const ActiveCauses& active, std::uint64_t cycle) noexcept {
   std::uint64_t fresh = active.stopping() & ~known_;
-  if (fresh == 0) return;
   known_ |= fresh;
   for (const CauseEvidence& measurement : active.measurements()) {
     if ((measurement.cause & fresh) == 0 || count_ == kMaxEvidence) continue;
