@@ -134,6 +134,25 @@ TEST_F(LeggedConditionsTest, AJointThatIsNoneOfTheLegsIsNotEvaluated) {
   EXPECT_EQ(run(1), 1);
 }
 
+TEST_F(LeggedConditionsTest, AContactThatIsNoFootIsNotEvaluated) {
+  sensors_.contact_count = kLegs + 1;
+  sensors_.contacts[kLegs] = {.force = {}, .valid = 1};
+  EXPECT_EQ(run(1), 1);
+}
+
+TEST_F(LeggedConditionsTest, ANewRunBeginsEachPersistenceAgain) {
+  const auto restarted = [&](double persistence) {
+    run(0.8 * persistence);
+    conditions_.enter_run();
+    return run(1);
+  };
+  sensors_.joints[4].velocity = 1.2 * robot_.joints[4].velocity_limit;
+  EXPECT_NEAR(restarted(0.05), 0.049, 1e-6);
+  sensors_.joints[4].velocity = 0;
+  sensors_.contacts[1].force = {};
+  EXPECT_NEAR(restarted(0.5), 0.499, 1e-6);
+}
+
 TEST_F(LeggedConditionsTest, AJointThatGivesItsTorqueForLongLetsItLieDown) {
   sensors_.joints[5].effort = 0.95 * robot_.joints[5].effort_limit;
   EXPECT_EQ(run(0.9), 0.9);
@@ -143,6 +162,7 @@ TEST_F(LeggedConditionsTest, AJointThatGivesItsTorqueForLongLetsItLieDown) {
   EXPECT_NEAR(run(2), 0.999, 1e-6);
   EXPECT_EQ(causes(Reaction::kRamp), "joint_effort");
   EXPECT_EQ(joint(), 5u);
+  EXPECT_NEAR(active_.measurements()[0].value, 0.95, 1e-9);
 }
 
 TEST_F(LeggedConditionsTest, AJointBeyondItsEndStopBrakes) {
@@ -245,6 +265,19 @@ TEST_F(LeggedConditionsTest, AFootThatSlipsLetsItLieDown) {
   };
   const double limit = robot_.leg_length();
   EXPECT_EQ(run(0.3, slide(0.9 * limit)), 0.3);
+  for (const bool new_run : {false, true}) {
+    place(stand_);
+    conditions_.enter_run();
+    run(0.3);
+    if (new_run) {
+      conditions_.enter_run();
+    } else {
+      command_.legged.phase = LegPhase::kRising;
+      run(0.1);
+      command_.legged.phase = LegPhase::kStanding;
+    }
+    EXPECT_NEAR(run(0.3, slide(1.5 * limit)), 0.149, 1e-6) << "a window in which it slips all the time, then 0.05 s";
+  }
   place(stand_);
   conditions_.enter_run();
   run(0.3);
@@ -264,7 +297,7 @@ TEST_F(LeggedConditionsTest, AFootInTheAirMayMoveAndCarryNothing) {
     EXPECT_EQ(run(0.6,
                   [&](double t) {
                     std::array<Eigen::Vector3d, kLegs> feet = stand_;
-                    feet[lifted].x() += 0.5 * std::min(t, 0.1);
+                    feet[lifted].x() += std::min(t, 0.1);
                     place(feet);
                   }),
               0.6);

@@ -84,6 +84,40 @@ TEST_F(WheeledConditionsTest, WithoutAGyroNoYawRateIsCompared) {
   EXPECT_FALSE(measured(two_wheels(), parameters, {0, 10}, kCauseYawRate).has_value());
 }
 
+// The right wheel speeds up by 10 rad/s within 20 ms, the left one by 5.
+TEST_F(WheeledConditionsTest, TheWheelThatSpeedsUpMostIsNamed) {
+  SafetyParameters parameters;
+  parameters.wheel_acceleration = {.limit = 100, .persistence = 0, .reaction = Reaction::kBrake};
+  const DriveTrain robot = two_wheels();
+  WheeledConditions conditions(derived_limits(parameters, robot, 15), robot, kPeriod);
+  sensors_.joint_count = 2;
+  run(conditions, {1, 1});
+  std::uint64_t named = kMaxJoints;
+  for (int k = 1; k <= 20; ++k) {
+    ++sensors_.head.cycle;
+    sensors_.joints[0].position += (1 + 5 * k / 20.0) * kPeriod;
+    sensors_.joints[1].position += (1 + 10 * k / 20.0) * kPeriod;
+    out_.clear();
+    conditions.step({.sensors = &sensors_}, 1, kNoSpeedLimit, out_);
+    for (const auto& measurement : out_.measurements())
+      if (measurement.cause == kCauseWheelAcceleration) named = measurement.joint;
+  }
+  EXPECT_EQ(named, 1u);
+}
+
+// The IMU is turned, and the vertical of the base is (−0.36, 0.8, 0.48) in its axes. The base turns by −0.1 rad/s about
+// it, and by 0.88 rad/s across it.
+TEST_F(WheeledConditionsTest, TheYawRateIsThatAboutTheVerticalOfTheBase) {
+  SafetyParameters parameters;
+  parameters.yaw_rate = {.limit = 1, .persistence = 0, .reaction = Reaction::kBrake};
+  DriveTrain robot = two_wheels();
+  robot.imu_in_base.orientation = {0.1, 0.5, 0.7, 0.5};
+  sensors_.imu.angular_velocity = {0.036 + 0.8, -0.08 + 0.36, -0.048};
+  const auto yaw = measured(robot, parameters, {0, 10}, kCauseYawRate);
+  ASSERT_TRUE(yaw.has_value());
+  EXPECT_NEAR(yaw->value, 2.1, 1e-6);
+}
+
 // The left side stands and the right one rolls at 1 m/s: 2 rad/s by a wheel base of 0.5 m. The gyro measures −0.1
 // rad/s.
 TEST_F(WheeledConditionsTest, SeveralWheelsOnOneSideScrub) {

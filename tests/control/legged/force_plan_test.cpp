@@ -133,9 +133,10 @@ TEST(ForcePlan, IsTheSameForAHeavierAndLargerRobot) {
   larger.target_speed.tail<3>() *= kLarger / kSlower;
   for (Eigen::Vector3d& foot : larger.feet) foot *= kLarger;
   const ForcePlanResult result = ForcePlan(parameters()).step(input);
-  const ForcePlanResult scaled = ForcePlan(force_plan_parameters(kHeavier * kMass, kHeavier * kLarger * kLarger * kInertia,
-                                                                 kLarger * kReferenceLeg))
-                                     .step(larger);
+  const ForcePlanResult scaled =
+      ForcePlan(
+          force_plan_parameters(kHeavier * kMass, kHeavier * kLarger * kLarger * kInertia, kLarger * kReferenceLeg))
+          .step(larger);
   for (std::size_t leg = 0; leg < kLegs; ++leg)
     EXPECT_LT((scaled.forces[leg] - kHeavier * result.forces[leg]).norm(), kForceRounding) << leg;
 }
