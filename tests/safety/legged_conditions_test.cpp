@@ -297,7 +297,7 @@ TEST_F(LeggedConditionsTest, AFootInTheAirMayMoveAndCarryNothing) {
     EXPECT_EQ(run(0.6,
                   [&](double t) {
                     std::array<Eigen::Vector3d, kLegs> feet = stand_;
-                    feet[lifted].x() += std::min(t, 0.1);
+                    feet[lifted].x() += std::min({t, 0.1, 0.6 - t});
                     place(feet);
                   }),
               0.6);
