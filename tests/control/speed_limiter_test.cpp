@@ -157,6 +157,17 @@ TEST(SpeedLimiter, ReversesWithoutStoppingAndWithEachLimitOnItsSideOfZero) {
   EXPECT_NEAR(cycles_to(limiter, {-1, 0}), 1000 * (before_zero + beyond_zero), 3);
 }
 
+TEST(SpeedLimiter, ReversesBothAxesOnTheLineThroughZero) {
+  SpeedLimiter limiter(kSmooth);
+  for (const double direction : {1.0, -1.0}) {
+    for (int k = 0; k < 2000; ++k) {
+      const PlanarTwist now = limiter.step({direction * 0.5, direction * 0.4}, kDt);
+      ASSERT_NEAR(now.angular, 0.8 * now.linear, 1e-12) << "cycle " << k;
+    }
+    EXPECT_EQ(limiter.value().linear, direction * 0.5);
+  }
+}
+
 TEST(SpeedLimiter, OvershootsATargetThatComesNearerByWhatIsUnavoidable) {
   SpeedLimiter limiter(kSmooth);
   for (int k = 0; k < 500; ++k) limiter.step({1, 0}, kDt);
