@@ -183,9 +183,9 @@ TEST_F(LeggedConditionsTest, AJointBeyondItsEndStopBrakes) {
 TEST_F(LeggedConditionsTest, AJointThatDoesNotFollowItsCommandBrakesWhileTheRobotStands) {
   for (std::size_t i = 0; i < kLegsJoints; ++i)
     command_.joints[i] = {.mode = JointMode::kImpedance, .position = sensors_.joints[i].position};
-  command_.joints[7].position += 0.24;
+  command_.joints[7].position -= 0.24;
   EXPECT_EQ(run(0.5), 0.5);
-  command_.joints[7].position += 0.02;
+  command_.joints[7].position -= 0.02;
   command_.legged.phase = LegPhase::kRising;
   EXPECT_EQ(run(0.5), 0.5);
   command_.legged.phase = LegPhase::kStanding;

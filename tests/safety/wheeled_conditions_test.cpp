@@ -84,8 +84,8 @@ TEST_F(WheeledConditionsTest, WithoutAGyroNoYawRateIsCompared) {
   EXPECT_FALSE(measured(two_wheels(), parameters, {0, 10}, kCauseYawRate).has_value());
 }
 
-// The right wheel speeds up by 10 rad/s within 20 ms, the left one by 5.
-TEST_F(WheeledConditionsTest, TheWheelThatSpeedsUpMostIsNamed) {
+// The right wheel slows down by 10 rad/s within 20 ms, the left one speeds up by 5.
+TEST_F(WheeledConditionsTest, TheWheelWhoseSpeedChangesMostIsNamed) {
   SafetyParameters parameters;
   parameters.wheel_acceleration = {.limit = 100, .persistence = 0, .reaction = Reaction::kBrake};
   const DriveTrain robot = two_wheels();
@@ -96,7 +96,7 @@ TEST_F(WheeledConditionsTest, TheWheelThatSpeedsUpMostIsNamed) {
   for (int k = 1; k <= 20; ++k) {
     ++sensors_.head.cycle;
     sensors_.joints[0].position += (1 + 5 * k / 20.0) * kPeriod;
-    sensors_.joints[1].position += (1 + 10 * k / 20.0) * kPeriod;
+    sensors_.joints[1].position += (1 - 10 * k / 20.0) * kPeriod;
     out_.clear();
     conditions.step({.sensors = &sensors_}, 1, kNoSpeedLimit, out_);
     for (const auto& measurement : out_.measurements())
@@ -116,6 +116,16 @@ TEST_F(WheeledConditionsTest, TheYawRateIsThatAboutTheVerticalOfTheBase) {
   const auto yaw = measured(robot, parameters, {0, 10}, kCauseYawRate);
   ASSERT_TRUE(yaw.has_value());
   EXPECT_NEAR(yaw->value, 2.1, 1e-6);
+}
+
+TEST_F(WheeledConditionsTest, TheTorqueOfAJointThatIsNoWheelIsNotEvaluated) {
+  SafetyParameters parameters;
+  parameters.wheel_effort = {.limit = 1, .persistence = 0, .reaction = Reaction::kBrake};
+  sensors_.gate.verdict = GateVerdict::kPassed;
+  sensors_.joints[2].effort = 100;
+  EXPECT_FALSE(measured(two_wheels(), parameters, {1, 1}, kCauseWheelEffort).has_value());
+  sensors_.joints[1].effort = -1.1 * two_wheels().joints[1].effort_limit;
+  EXPECT_TRUE(measured(two_wheels(), parameters, {1, 1}, kCauseWheelEffort).has_value());
 }
 
 // The left side stands and the right one rolls at 1 m/s: 2 rad/s by a wheel base of 0.5 m. The gyro measures −0.1
