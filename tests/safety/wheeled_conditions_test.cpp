@@ -57,6 +57,20 @@ TEST_F(WheeledConditionsTest, InANewRunTheRobotNeitherStandsNorMoves) {
   EXPECT_FALSE(conditions.moving());
 }
 
+TEST_F(WheeledConditionsTest, ATargetOfAnEarlierRunIsNone) {
+  const DriveTrain robot = two_wheels();
+  WheeledConditions conditions(derived_limits({}, robot, 15), robot, kPeriod);
+  sensors_.joint_count = 2;
+  sensors_.gate.verdict = GateVerdict::kPassed;
+  CommandFrame command;
+  command.joint_count = 2;
+  for (JointCommand& joint : command.joints) joint = {.mode = JointMode::kEffort, .velocity = -5};
+  conditions.step({.sensors = &sensors_, .command = &command}, 1, kNoSpeedLimit, out_);
+  conditions.enter_run();
+  run(conditions, {5, 5});
+  EXPECT_TRUE(out_.measurements().empty());
+}
+
 // 15 N·m · 5 rad/s; the other wheel brakes and draws nothing.
 TEST_F(WheeledConditionsTest, PowerIsThatWhichTheMotorsDraw) {
   SafetyParameters parameters;
