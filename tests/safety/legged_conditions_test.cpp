@@ -256,35 +256,37 @@ TEST_F(LeggedConditionsTest, AnEncoderThatRepeatsOneAngleWhileItsCommandMovesBra
 }
 
 TEST_F(LeggedConditionsTest, AFootThatSlipsLetsItLieDown) {
-  const auto slide = [&](double speed) {
-    return [this, speed](double t) {
+  const auto slide = [&](std::size_t foot, double speed) {
+    return [this, foot, speed](double t) {
       std::array<Eigen::Vector3d, kLegs> feet = stand_;
-      feet[3].y() -= speed * t;
+      feet[foot].y() += std::copysign(speed * t, feet[foot].y());
       place(feet);
     };
   };
   const double limit = robot_.leg_length();
-  EXPECT_EQ(run(0.3, slide(0.9 * limit)), 0.3);
-  for (const bool new_run : {false, true}) {
-    place(stand_);
-    conditions_.enter_run();
-    run(0.3);
-    if (new_run) {
+  EXPECT_EQ(run(0.3, slide(3, 0.9 * limit)), 0.3);
+  for (const std::size_t foot : {0, 1, 2, 3}) {
+    for (const bool new_run : {false, true}) {
+      place(stand_);
       conditions_.enter_run();
-    } else {
-      command_.legged.phase = LegPhase::kRising;
-      run(0.1);
-      command_.legged.phase = LegPhase::kStanding;
+      run(0.3);
+      if (new_run) {
+        conditions_.enter_run();
+      } else {
+        command_.legged.phase = LegPhase::kRising;
+        run(0.1);
+        command_.legged.phase = LegPhase::kStanding;
+      }
+      EXPECT_NEAR(run(0.3, slide(foot, 1.5 * limit)), 0.149, 1e-6) << "it slips for a window, and 0.05 s more";
+      EXPECT_EQ(joint(), 3 * foot + 2);
     }
-    EXPECT_NEAR(run(0.3, slide(1.5 * limit)), 0.149, 1e-6) << "a window in which it slips all the time, then 0.05 s";
   }
   place(stand_);
   conditions_.enter_run();
   run(0.3);
   // The window of 0.1 s has its mean beyond the limit after 0.1/1.5 s, in steps of 10 ms, then 0.05 s of persistence.
-  EXPECT_NEAR(run(0.3, slide(1.5 * limit)), 0.12, 0.012);
+  EXPECT_NEAR(run(0.3, slide(3, 1.5 * limit)), 0.12, 0.012);
   EXPECT_EQ(causes(Reaction::kRamp), "foot_slip");
-  EXPECT_EQ(joint(), 11u);
   // It leaves the foot beside it, along the line of both.
   EXPECT_NEAR(active_.measurements()[0].value, 1.5 * limit, 1e-3 * limit);
 }
