@@ -309,7 +309,7 @@ def test_a_slower_segment_is_entered_at_its_speed_and_a_faster_one_is_left_at_it
 
 def test_a_turn_obeys_the_limit_of_the_segment_that_follows_and_the_last_one_that_before():
     points = [Waypoint(0.0, 0.0), Waypoint(1.0, 0.0), Waypoint(1.0, 1.0, yaw=math.pi)]
-    for given, fastest in (([0.0, 0.0, 0.0], 1.0), ([0.4, 0.0, 0.0], 0.4), ([0.0, 0.4, 0.0], 1.0)):
+    for given, fastest in (([0.0, 0.0, 0.0], 1.0), ([0.4, 0.0, 0.0], 1.0), ([0.0, 0.4, 0.0], 0.4)):
         follower = Follower(limits(points, [0.5] * 3, given))
         turns = [abs(command.angular) for command in drive(follower, Ideal(), 30.0) if command.linear == 0.0]
         assert follower.state is State.DONE
@@ -340,7 +340,7 @@ def test_limits_that_fit_no_path_are_refused(speeds, turns, words):
 
 
 def test_a_path_that_begins_later_keeps_its_limits():
-    points = shortened(limited([Waypoint(float(x), 0.0) for x in range(4)], [0.3] * 4, [0.2, 0.0, 0.0, 0.0]), 1.5)
+    points = shortened(limited([Waypoint(float(x), 0.0) for x in range(4)], [0.3] * 4, [0.0, 0.2, 0.0, 0.0]), 1.5)
     assert (points[0].speed, points[0].turn_speed) == (0.3, 0.2)
 
 
