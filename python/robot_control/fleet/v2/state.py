@@ -132,12 +132,6 @@ def state(vehicle: Vehicle, facts: Facts, unknown_charge: float, *, new_base: bo
     }
 
 
-def events(message: Message) -> Message:
-    """The part of a state whose change is sent at once (6.10)."""
-    continuous = ("agvPosition", "velocity", "batteryState", "information")
-    return {key: value for key, value in message.items() if key not in continuous}
-
-
 def _info(kind: str, text: str) -> Message:
     return {"infoType": kind, "infoDescription": text, "infoLevel": "INFO"}
 

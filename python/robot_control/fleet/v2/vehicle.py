@@ -280,6 +280,13 @@ class Vehicle:
             begun.append(state)
         return begun
 
+    @property
+    def revision(self) -> object:
+        """Differs after every change of what the state says of the order."""
+        statuses = tuple((each.action.id, each.status) for each in self.actions)
+        point = (self.order_id, self.update_id, self.last_id, self.last_sequence, len(self.nodes), self.paused)
+        return *point, statuses, tuple(self.refusals)
+
     # across a restart
 
     def dump(self) -> Message:
