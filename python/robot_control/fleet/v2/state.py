@@ -66,7 +66,6 @@ class Machine:
     height: float = 0.0
     speed: float = 0.5
     slowest: float = 0.02
-    angular_speed: float = 1.0
     acceleration: float = 0.5
     deceleration: float = 0.3
     wheels: tuple[tuple[float, float, float, float], ...] = ()  # x, y, diameter, width
@@ -170,7 +169,6 @@ def factsheet(machine: Machine) -> Message:
         "physicalParameters": {
             "speedMin": machine.slowest,
             "speedMax": machine.speed,
-            "angularSpeedMax": machine.angular_speed,
             "accelerationMax": machine.acceleration,
             "decelerationMax": machine.deceleration,
             "heightMin": machine.height,

@@ -80,22 +80,18 @@ class Vehicle:
             refuse: raises RefusedError for what this robot cannot do.
 
         Raises:
-            RefusedError: with the reason, which is added to `refusals`.
+            RefusedError: with the reason, for `refuse`.
         """
-        try:
-            if order.id != self.order_id:
-                self._check_new(order, near)
-                refuse(order)
-                self._take_new(order)
-            else:
-                if order.update == self.update_id:
-                    return False
-                self._check_update(order, near)
-                refuse(order)
-                self._take_update(order)
-        except RefusedError as refused:
-            self.refuse(refused.error)
-            raise
+        if order.id != self.order_id:
+            self._check_new(order, near)
+            refuse(order)
+            self._take_new(order)
+        else:
+            if order.update == self.update_id:
+                return False
+            self._check_update(order, near)
+            refuse(order)
+            self._take_update(order)
         self.refusals.clear()
         return True
 
