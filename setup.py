@@ -27,7 +27,8 @@ PROGRAMS = (
     "view",
     "why",
 )
-packages = ["robot_control", "robot_control.fleet.v2", *(f"robot_control.{name}" for name in ("common", "safety", *PROGRAMS))]
+packages = ["robot_control", "robot_control.fleet.v2"]
+packages += [*(f"robot_control.{name}" for name in ("common", "safety", *PROGRAMS))]
 
 data = {"robot_control": ["py.typed", "*.pyi"], "robot_control.console": ["page/*"]}
 data["robot_control.fleet.v2"] = ["schemas/*"]

@@ -1,1 +1,1 @@
-"""What the fleet client promises: order rules against a model, orders on a simulated robot, losses of the link."""
+"""Trials of the fleet's client: order rules against a model, orders on a simulated robot, losses of the link."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import json
 import random
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 from bench.fleet.messages import Message, action, header, order
@@ -59,12 +59,13 @@ def mutated(seed: int) -> tuple[str, bytes]:
     topic = "order" if "nodes" in message else "instantActions"
     for _ in range(source.randint(1, 3)):
         container, key = source.choice(list(_paths(message)))
-        changes: list[Callable[[], Any]] = [
-            lambda c=container, k=key: c.__setitem__(k, copy.deepcopy(source.choice(VALUES))),
-            lambda c=container, k=key: c.pop(k),
-            lambda c=container, k=key: c.__setitem__(k, [c[k]] * source.randint(2, 40)),
-        ]
-        source.choice(changes)()
+        match source.randrange(3):
+            case 0:
+                container[key] = copy.deepcopy(source.choice(VALUES))
+            case 1:
+                del container[key]
+            case _:
+                container[key] = [container[key]] * source.randint(2, 40)
     payload = json.dumps(message).encode()
     if source.random() < 0.3:
         at = source.randrange(len(payload))

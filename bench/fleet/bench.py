@@ -1,4 +1,4 @@
-"""`scripts/bench fleet`: random sequences against the model, orders and losses on a simulated robot, latency and cost."""
+"""`scripts/bench fleet`: random sequences against the model; orders, losses, latency and cost on a simulated robot."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def _sequences(first: int, count: int, say: Say) -> list[dict[str, Any]]:
 
 
 class _Figures:
-    """Of all orders."""
+    """The figures of all orders."""
 
     def __init__(self) -> None:
         self.off, self.turned, self.aside, self.passing = [0.0], [0.0], [0.0], [1.0]

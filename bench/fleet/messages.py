@@ -10,7 +10,7 @@ Message = dict[str, Any]
 
 
 def header(number: int = 1) -> Message:
-    """Of any message."""
+    """The header of any message."""
     return {
         "headerId": number,
         "timestamp": "2026-01-31T12:00:00.00Z",

@@ -11,7 +11,7 @@ import tempfile
 import threading
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -139,9 +139,9 @@ class System:
         self.origin = self._poses[-1][1]
         self.act("initPosition", x=0.0, y=0.0, theta=0.0, mapId="hall")
 
-    def send(self, places: list[tuple[float, ...]], released: int | None = None, **options: Any) -> float:
-        """An order, or an update, until the robot has it: one that is sent without a connection is lost, and one that
-        comes twice is ignored. s, monotonic, of its first sending.
+    def send(self, places: Sequence[tuple[float, ...]], released: int | None = None, **options: Any) -> float:
+        """Sends an order, or an update, until the robot has it; s, monotonic, of the first time. One that is sent
+        without a connection is lost, and one that comes twice is ignored.
         """
         if not options.get("update"):
             self.count += 1

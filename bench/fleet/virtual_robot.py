@@ -43,8 +43,8 @@ class VirtualRobot:
         self._begin_at, self._passes, self._stopping = 0.0, 0, False
 
     def facts(self) -> Facts:
-        pose = {"x": self.pose.x, "y": self.pose.y, "theta": self.pose.yaw}
-        return replace(self.given, **pose, linear=self.motion.linear, angular=self.motion.angular)
+        x, y, theta = self.pose.x, self.pose.y, self.pose.yaw
+        return replace(self.given, x=x, y=y, theta=theta, linear=self.motion.linear, angular=self.motion.angular)
 
     def drive(self, points: list[PathPoint], begin_at: float) -> None:
         self.points, self._begin_at, self._stopping = points, begin_at, False

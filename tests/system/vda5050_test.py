@@ -145,7 +145,7 @@ class Vda5050Test(RobotTestCase):
         self.listen("no eStop", lambda: self.state["safetyState"]["eStop"] == "NONE")
         time.sleep(1.0)
         self.assertTrue(self.robot.rests())
-        self.listen("the way on", lambda: self.go_on())
+        self.listen("the way on", self.go_on)
         self.listen("the end", self.reached("n1"))
 
     def go_on(self) -> bool:

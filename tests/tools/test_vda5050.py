@@ -1,4 +1,4 @@
-"""What the client of VDA 5050 sends and takes: the standard's schemas, both ways, and its settings and file."""
+"""Messages of the client of VDA 5050 by the standard's schemas, both ways; its settings and its file."""
 
 import json
 import math
@@ -71,7 +71,13 @@ def test_a_name_that_the_schema_does_not_know_is_found():
 def test_times_are_utc_with_a_fraction():
     assert time_text(1.239) == "1970-01-01T00:00:01.23Z"
     assert is_time(time_text(1e9))
-    for wrong in ("2026-01-31T12:00:00", "2026-01-31 12:00:00Z", "2026-13-01T00:00:00.00Z", "now", "2026-02-30T00:00:00Z"):
+    for wrong in (
+        "2026-01-31T12:00:00",
+        "2026-01-31 12:00:00Z",
+        "2026-13-01T00:00:00.00Z",
+        "now",
+        "2026-02-30T00:00:00Z",
+    ):
         assert not is_time(wrong)
 
 
@@ -157,7 +163,8 @@ def test_beyond_the_loopback_it_needs_tls_or_a_word(tmp_path):
 
 def test_custom_actions_are_known_with_their_scopes(tmp_path):
     given = settings(tmp_path, actions={"lift": {"service": "lift/up", "scopes": ["NODE"], "timeout": 3}})
-    assert given.kinds["lift"].scopes == ("NODE",) and "cancelOrder" in given.kinds
+    assert given.kinds["lift"].scopes == ("NODE",)
+    assert "cancelOrder" in given.kinds
     with pytest.raises(SettingsError, match="is an action of the standard"):
         settings(tmp_path, actions={"cancelOrder": {"topic": "x"}})
 
@@ -179,7 +186,8 @@ def test_what_was_saved_outlives_and_another_file_is_refused(tmp_path):
     run.send(order(PLACES))
     Memory(path).save(vehicle=run.client.vehicle.dump())
     again = Memory(path)
-    assert again["vehicle"]["ids"][0] == "o1" and again["position"] is None
+    assert again["vehicle"]["ids"][0] == "o1"
+    assert again["position"] is None
     path.write_text("[]")
     with pytest.raises(MemoryFileError, match="move it away"):
         Memory(path)

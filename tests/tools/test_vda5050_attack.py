@@ -21,7 +21,8 @@ def refused(payload, topic="order", words="", **options):
     assert [error["errorType"] for error in run.state["errors"]] == ["validationError"]
     assert words in run.state["errors"][0]["errorDescription"]
     assert len(json.dumps(run.state["errors"])) < 2000
-    assert run.robot.goals == 0 and not run.state["nodeStates"]
+    assert run.robot.goals == 0
+    assert not run.state["nodeStates"]
 
 
 @pytest.mark.parametrize(
@@ -70,10 +71,13 @@ def test_a_retained_message_is_refused_for_its_age_is_not_known():
 def test_a_flood_of_instant_actions_and_errors_keeps_the_state_small():
     run = Run()
     for number in range(500):
-        run.client.receive("instantActions", json.dumps({**header(), "actions": [action("stateRequest", number)]}).encode())
+        run.client.receive(
+            "instantActions", json.dumps({**header(), "actions": [action("stateRequest", number)]}).encode()
+        )
         run.client.receive("order", b"{%d" % number)
     run.step(0.1)
-    assert len(run.state["actionStates"]) <= 100 and len(run.state["errors"]) <= 20
+    assert len(run.state["actionStates"]) <= 100
+    assert len(run.state["errors"]) <= 20
 
 
 def attack(first, count):
@@ -88,7 +92,7 @@ def attack(first, count):
         if run.client.vehicle.nodes or run.client.vehicle.order_id:
             moved += 1
             order_id = run.client.vehicle.order_id
-            assert json.loads(payload)["nodes"] and order_id == json.loads(payload)["orderId"], seed
+            assert order_id == json.loads(payload)["orderId"], seed
             run = Run()
     return moved
 

@@ -93,13 +93,15 @@ def test_the_robot_stops_at_the_decision_point_and_shows_its_horizon():
     assert nodes(run.state) == [("n2", False), ("n3", False)]
     assert run.robot.pose.x == pytest.approx(1.0, abs=0.02)
     assert run.robot.motion.linear == 0.0
-    assert run.state["lastNodeId"] == "n1" and run.state["newBaseRequest"]
+    assert run.state["lastNodeId"] == "n1"
+    assert run.state["newBaseRequest"]
 
 
 def test_the_first_node_is_one_on_which_the_robot_stands():
     run = Run(VirtualRobot(0.2, 0.0))
     state = run.send(order(LINE))
-    assert kinds(state) == ["orderError"] and not state["nodeStates"]
+    assert kinds(state) == ["orderError"]
+    assert not state["nodeStates"]
     wide = order(LINE)
     wide["nodes"][0]["nodePosition"]["allowedDeviationXY"] = 0.3
     assert nodes(run.send(wide))[0] == ("n1", True)
@@ -114,7 +116,8 @@ def test_another_order_is_refused_while_one_is_executed():
     state = run.send(order(LINE, name="o2"))
     assert (state["orderId"], kinds(state)) == ("o1", ["orderError"])
     references = {each["referenceKey"]: each["referenceValue"] for each in state["errors"][0]["errorReferences"]}
-    assert references["orderId"] == "o2" and references["errorName"] == "OTHER_ORDER_ACTIVE"
+    assert references["orderId"] == "o2"
+    assert references["errorName"] == "OTHER_ORDER_ACTIVE"
 
 
 def test_a_horizon_counts_as_executing():
@@ -150,7 +153,8 @@ def test_the_same_update_is_ignored():
     run.step(1.0)
     before = len(run.states)
     state = run.send(order(LINE))
-    assert kinds(state) == [] and len(run.states) == before
+    assert kinds(state) == []
+    assert len(run.states) == before
     assert run.robot.goals == 1
 
 
@@ -159,7 +163,8 @@ def test_an_update_is_stitched_to_the_last_released_node_not_to_the_last_one():
     run.send(order(LINE, 2))
     assert kinds(run.send(order(LINE[3:], update=1, first=3))) == ["orderUpdateError"]
     state = run.send(order(LINE[1:3], update=1, first=1))
-    assert kinds(state) == [] and nodes(state) == [("n1", True), ("n2", True)]
+    assert kinds(state) == []
+    assert nodes(state) == [("n1", True), ("n2", True)]
 
 
 def test_the_decision_point_is_node_and_sequence():
@@ -175,9 +180,11 @@ def test_a_horizon_can_be_changed_and_removed():
     run.send(order(LINE, 2, actions={4: [action("horn", 1)]}))
     assert statuses(run.state) == {"1": "WAITING"}
     state = run.send(order([(1.0, 0.0), (1.0, 1.0)], 1, update=1, first=1, actions={4: [action("horn", 2)]}))
-    assert nodes(state) == [("n1", True), ("n2", False)] and statuses(state) == {"2": "WAITING"}
+    assert nodes(state) == [("n1", True), ("n2", False)]
+    assert statuses(state) == {"2": "WAITING"}
     state = run.send(order(LINE[1:2], update=2, first=1))
-    assert nodes(state) == [("n1", True)] and statuses(state) == {}
+    assert nodes(state) == [("n1", True)]
+    assert statuses(state) == {}
 
 
 def test_the_stitching_node_keeps_its_content():
@@ -195,7 +202,8 @@ def test_a_completed_order_is_continued_at_its_last_node():
     run.until_over()
     assert kinds(run.send(order(LINE[2:], update=1, first=2))) == ["orderUpdateError"]
     state = run.send(order(LINE[1:], update=2, first=1))
-    assert kinds(state) == [] and nodes(state) == [("n2", True), ("n3", True)]
+    assert kinds(state) == []
+    assert nodes(state) == [("n2", True), ("n3", True)]
     run.until_over()
     assert run.robot.pose.x == pytest.approx(3.0, abs=0.02)
 
@@ -210,7 +218,8 @@ def test_a_loop_passes_one_node_twice():
     run.send(loop)
     run.until_over()
     reached = [state["lastNodeSequenceId"] for state in run.states]
-    assert sorted(set(reached)) == [0, 2, 4, 6, 8] and reached == sorted(reached)
+    assert sorted(set(reached)) == [0, 2, 4, 6, 8]
+    assert reached == sorted(reached)
 
 
 def test_an_error_is_reported_until_an_order_is_accepted():
@@ -229,10 +238,13 @@ def test_cancel_order_stops_between_nodes_and_keeps_the_ids():
     run.send(order(LINE, actions={0: [action("horn", 1)], 4: [action("horn", 2)]}))
     run.step(2.0)
     state = run.send(instant(action("cancelOrder", "c", "HARD")))
-    assert statuses(state) == {"1": "FAILED", "2": "FAILED", "c": "RUNNING"} and state["nodeStates"]
+    assert statuses(state) == {"1": "FAILED", "2": "FAILED", "c": "RUNNING"}
+    assert state["nodeStates"]
     run.step(3.0)
-    assert statuses(run.state)["c"] == "FINISHED" and run.robot.motion.linear == 0.0
-    assert not run.state["nodeStates"] and not run.state["edgeStates"]
+    assert statuses(run.state)["c"] == "FINISHED"
+    assert run.robot.motion.linear == 0.0
+    assert not run.state["nodeStates"]
+    assert not run.state["edgeStates"]
     assert (run.state["orderId"], run.state["lastNodeId"]) == ("o1", "n0")
     assert 0.3 < run.robot.pose.x < 1.5
 
@@ -247,13 +259,15 @@ def test_cancel_order_waits_for_an_action_that_cannot_be_interrupted(monkeypatch
     assert statuses(run.state) == {"1": "RUNNING", "c": "RUNNING"}
     run.robot.ended.append(("1", "FINISHED", "done"))
     run.step(0.1)
-    assert statuses(run.state) == {"1": "FINISHED", "c": "FINISHED"} and not run.state["nodeStates"]
+    assert statuses(run.state) == {"1": "FINISHED", "c": "FINISHED"}
+    assert not run.state["nodeStates"]
 
 
 def test_cancel_order_without_an_order_fails_with_its_id():
     run = Run()
     state = run.send(instant(action("cancelOrder", "c")))
-    assert statuses(state) == {"c": "FAILED"} and kinds(state) == ["noOrderToCancel"]
+    assert statuses(state) == {"c": "FAILED"}
+    assert kinds(state) == ["noOrderToCancel"]
     assert state["errors"][0]["errorReferences"][0] == {"referenceKey": "actionId", "referenceValue": "c"}
 
 
@@ -283,7 +297,8 @@ def test_after_a_cancel_an_order_begins_at_the_last_node_with_a_wide_deviation()
     goal = run.robot.pose.x
     run.until_over()
     assert run.robot.pose.x == pytest.approx(3.0, abs=0.02)
-    assert min(run.speeds[-100:]) >= 0 and goal < 3.0
+    assert min(run.speeds[-100:]) >= 0
+    assert goal < 3.0
 
 
 # 6.6.4, 6.6.5, 6.7: what cannot be done
@@ -291,7 +306,8 @@ def test_after_a_cancel_an_order_begins_at_the_last_node_with_a_wide_deviation()
 
 def field_refused(run, message, name, kind="orderError"):
     state = run.send(message)
-    assert kinds(state) == [kind] and not state["nodeStates"]
+    assert kinds(state) == [kind]
+    assert not state["nodeStates"]
     references = {each["referenceKey"]: each["referenceValue"] for each in state["errors"][0]["errorReferences"]}
     assert name in references.values() or name in references, references
 
@@ -308,7 +324,10 @@ def field_refused(run, message, name, kind="orderError"):
         ({"maxRotationSpeed": -1.0}, "maxRotationSpeed"),
         ({"maxHeight": 0.1}, "maxHeight"),
         ({"minHeight": 0.5}, "minHeight"),
-        ({"trajectory": {"degree": 1, "knotVector": [0, 0, 1, 1], "controlPoints": [{"x": 0, "y": 9}] * 2}}, "trajectory"),
+        (
+            {"trajectory": {"degree": 1, "knotVector": [0, 0, 1, 1], "controlPoints": [{"x": 0, "y": 9}] * 2}},
+            "trajectory",
+        ),
         ({"trajectory": {"degree": 2, "knotVector": [0, 1], "controlPoints": [{"x": 0, "y": 0}] * 3}}, "trajectory"),
     ],
 )
@@ -332,10 +351,12 @@ def test_no_order_is_taken_before_the_position_is_initialized():
     robot.given = replace(robot.given, map_id="")
     run = Run(robot)
     state = run.send(order(LINE))
-    assert kinds(state) == ["orderError"] and not state["agvPosition"]["positionInitialized"]
+    assert kinds(state) == ["orderError"]
+    assert not state["agvPosition"]["positionInitialized"]
     given = {"x": 5.0, "y": 0.0, "theta": 0.0, "mapId": "hall", "lastNodeId": "n7"}
     state = run.send(instant(action("initPosition", 1, **given)))
-    assert statuses(state) == {"1": "FINISHED"} and state["lastNodeId"] == "n7"
+    assert statuses(state) == {"1": "FINISHED"}
+    assert state["lastNodeId"] == "n7"
     assert (state["agvPosition"]["x"], state["agvPosition"]["mapId"]) == (5.0, "hall")
     assert run.send(order([(5.0, 0.0), (6.0, 0.0)]))["nodeStates"]
     run.send(instant(action("initPosition", 2, **given), action("initPosition", 3)))
@@ -394,7 +415,11 @@ def test_a_trajectory_is_a_nurbs():
     run.send(order([(0.0, 0.0), (1.0, 1.0)], trajectory=arc))
     run.until_over()
     assert (run.robot.pose.x, run.robot.pose.y) == pytest.approx((1.0, 1.0), abs=0.02)
-    cubic = {"degree": 1, "knotVector": [0, 0, 0.5, 1, 1], "controlPoints": [{"x": 0, "y": 0}, {"x": 1, "y": 0}, {"x": 1, "y": 2}]}
+    cubic = {
+        "degree": 1,
+        "knotVector": [0, 0, 0.5, 1, 1],
+        "controlPoints": [{"x": 0, "y": 0}, {"x": 1, "y": 0}, {"x": 1, "y": 2}],
+    }
     assert points_of(cubic) == [(0, 0), (1, 0), (1, 2)]
     for wrong in ({"degree": 3}, {"knotVector": [0, 0, 0, 1, 1]}, {"knotVector": [0, 0, 0, 1, 0.5, 1]}):
         with pytest.raises(CurveError):
@@ -402,7 +427,11 @@ def test_a_trajectory_is_a_nurbs():
 
 
 def test_a_corner_of_a_trajectory_needs_rotation_to_be_allowed():
-    corner = {"degree": 1, "knotVector": [0, 0, 0.5, 1, 1], "controlPoints": [{"x": 0, "y": 0}, {"x": 1, "y": 0}, {"x": 1, "y": 1}]}
+    corner = {
+        "degree": 1,
+        "knotVector": [0, 0, 0.5, 1, 1],
+        "controlPoints": [{"x": 0, "y": 0}, {"x": 1, "y": 0}, {"x": 1, "y": 1}],
+    }
     places = [(0.0, 0.0), (1.0, 1.0)]
     field_refused(Run(), order(places, trajectory=corner, rotationAllowed=False), "rotationAllowed")
     assert Run().send(order(places, trajectory=corner))["nodeStates"]
@@ -416,9 +445,12 @@ def test_a_pause_stands_and_the_order_goes_on_after_it():
     run.send(order(LINE))
     run.step(2.0)
     state = run.send(instant(action("startPause", "p", "HARD")))
-    assert state["paused"] and statuses(state) == {"p": "RUNNING"}
+    assert state["paused"]
+    assert statuses(state) == {"p": "RUNNING"}
     run.step(3.0)
-    assert statuses(run.state) == {"p": "FINISHED"} and run.robot.motion.linear == 0.0 and run.state["nodeStates"]
+    assert statuses(run.state) == {"p": "FINISHED"}
+    assert run.robot.motion.linear == 0.0
+    assert run.state["nodeStates"]
     assert not run.send(instant(action("stopPause", "s")))["paused"]
     run.until_over()
     assert run.robot.pose.x == pytest.approx(3.0, abs=0.02)
@@ -443,7 +475,8 @@ def test_state_and_factsheet_are_sent_on_request():
 def test_an_unknown_instant_action_fails_with_an_error():
     run = Run()
     state = run.send(instant(action("dance", 1), action("horn", 2)))
-    assert statuses(state)["1"] == "FAILED" and kinds(state) == ["orderError"]
+    assert statuses(state)["1"] == "FAILED"
+    assert kinds(state) == ["orderError"]
 
 
 # 6.10: the state
@@ -496,8 +529,10 @@ def test_a_person_who_drives_clears_the_order():
     run.step(1.0)
     run.robot.given = replace(run.robot.given, mode="MANUAL")
     run.step(3.0)
-    assert run.state["operatingMode"] == "MANUAL" and not run.state["nodeStates"]
-    assert statuses(run.state) == {"1": "FAILED"} and run.robot.motion.linear == 0.0
+    assert run.state["operatingMode"] == "MANUAL"
+    assert not run.state["nodeStates"]
+    assert statuses(run.state) == {"1": "FAILED"}
+    assert run.robot.motion.linear == 0.0
     assert kinds(run.send(order(LINE, name="o2"))) == ["orderError"]
 
 
@@ -507,14 +542,18 @@ def test_after_a_stop_nothing_moves_by_itself():
     run.step(2.0)
     run.robot.given = replace(run.robot.given, may_drive=False, stopped=True)
     run.step(3.0)
-    assert run.state["safetyState"]["eStop"] == "MANUAL" and run.state["paused"] and run.state["nodeStates"]
+    assert run.state["safetyState"]["eStop"] == "MANUAL"
+    assert run.state["paused"]
+    assert run.state["nodeStates"]
     assert statuses(run.send(instant(action("stopPause", 1))))["1"] == "FAILED"
     run.robot.given = replace(run.robot.given, may_drive=True, stopped=False)
     run.step(5.0)
-    assert run.state["paused"] and run.robot.motion.linear == 0.0
+    assert run.state["paused"]
+    assert run.robot.motion.linear == 0.0
     run.send(instant(action("stopPause", 2)))
     run.until_over()
-    assert run.robot.pose.x == pytest.approx(3.0, abs=0.02) and kinds(run.state) == []
+    assert run.robot.pose.x == pytest.approx(3.0, abs=0.02)
+    assert kinds(run.state) == []
 
 
 def test_after_a_restart_the_order_stands_paused():
@@ -523,7 +562,9 @@ def test_after_a_restart_the_order_stands_paused():
     run.step(2.0)
     run.restart()
     run.step(3.0)
-    assert run.state["paused"] and nodes(run.state)[-1] == ("n3", True) and run.robot.motion.linear == 0.0
+    assert run.state["paused"]
+    assert nodes(run.state)[-1] == ("n3", True)
+    assert run.robot.motion.linear == 0.0
     assert statuses(run.state) == {"1": "WAITING"}
     run.send(instant(action("stopPause", 2)))
     while not run.robot.begun and run.now < 60.0:

@@ -1,5 +1,5 @@
-"""Our client against a master by others: MasterClient of PyPI's vda5050-sdk, in virtual time. Its models and schemas check
-every message of ours.
+"""Our client against a master by others, in virtual time: MasterClient of PyPI's vda5050-sdk. Its models and schemas
+check every message of ours.
 """
 
 import asyncio
@@ -21,7 +21,7 @@ TOPIC = f"uagv/v2/{TARGET}"
 def imported():
     use_packages("fleet")
     try:
-        import vda5050  # noqa: PLC0415 (it may be missing)
+        import vda5050
     except ImportError:
         if os.environ.get("CI") and os.environ.get("ROBOT_CONTROL_NIGHTLY"):
             raise
@@ -113,5 +113,6 @@ def test_a_master_by_others_assigns_extends_cancels_and_sees_every_node():
         assert expected in reached
     ended = {each.action_id: each.action_status.value for state in states for each in state.action_states}
     assert ended["cancel-1"] == "FINISHED"
-    assert not states[-1].node_states and states[-1].errors == []
+    assert not states[-1].node_states
+    assert states[-1].errors == []
     assert (run.robot.pose.x, run.robot.pose.y) == pytest.approx((0.0, 0.0), abs=0.02)

@@ -26,7 +26,7 @@ LATE = 0.4
 
 @dataclass(frozen=True)
 class Progress:
-    """Of the present leg."""
+    """The progress on the present leg."""
 
     status: str = IDLE  # done: its end was reached; ended: it failed or was stopped
     distance: float = 0.0  # m along it
@@ -34,7 +34,7 @@ class Progress:
 
 
 class Robot(Protocol):
-    """What executes."""
+    """The robot as the client sees it."""
 
     progress: Progress
 
@@ -65,7 +65,7 @@ class Robot(Protocol):
 
 @dataclass(frozen=True)
 class ClientSettings:
-    """Of one robot; config/fleet.yaml explains them."""
+    """The settings of one robot; config/fleet.yaml explains them."""
 
     manufacturer: str = "robot_control"
     serial_number: str = "r1"
@@ -189,11 +189,11 @@ class Client:
             vehicle.paused = True
         self._follow(before)
         for action_id, status, result in self.robot.results():
-            for state in vehicle.actions:
-                if state.action.id == action_id:
-                    state.end(status, result)
-        for state in vehicle.started():
-            self._begin(state)
+            for each in vehicle.actions:
+                if each.action.id == action_id:
+                    each.end(status, result)
+        for begun in vehicle.started():
+            self._begin(begun)
         vehicle.settle()
         self._drive()
         self._tell(now)
@@ -206,22 +206,24 @@ class Client:
             return
         given = state.action.parameters
         try:
-            numbers = [float(given[name]) for name in ("x", "y", "theta")]
-            why = "" if all(map(math.isfinite, numbers)) and given["mapId"] else "x, y, theta and mapId must be given"
+            x, y, theta = float(given["x"]), float(given["y"]), float(given["theta"])
         except (TypeError, ValueError):
-            why = "x, y and theta must be numbers"
+            x = y = theta = math.nan
         if self.vehicle.executing or not self.vehicle.standing:
             why = "the robot must stand without an order"
-        why = why or self.robot.set_position(*numbers, str(given["mapId"]))
+        elif not math.isfinite(x + y + theta) or not given["mapId"]:
+            why = "x, y and theta must be numbers, and mapId a name"
+        else:
+            why = self.robot.set_position(x, y, theta, str(given["mapId"]))
         if not why:
             self.vehicle.last_id, self.vehicle.last_sequence = str(given.get("lastNodeId", "")), 0
             self.vehicle.last, self._facts = None, self.robot.facts()
         state.end(FAILED if why else FINISHED, why)
 
     def _interrupt(self, states: list[ActionState]) -> None:
-        for state in states:
-            if self.robot.end(state.action.id):
-                state.end(FAILED, "interrupted")
+        for each in states:
+            if self.robot.end(each.action.id):
+                each.end(FAILED, "interrupted")
 
     def _follow(self, before: Facts) -> None:
         """Notes which nodes of the leg were reached since the pass before."""
@@ -238,8 +240,8 @@ class Client:
             last = node is leg.nodes[-1]
             off = _from_segment(node.place.x, node.place.y, before, self._facts)
             if progress.status == DONE or (not last and off <= radius and progress.distance + late >= along - radius):
-                for state in vehicle.traverse():
-                    self.robot.end(state.action.id)
+                for ended in vehicle.traverse():
+                    self.robot.end(ended.action.id)
             else:
                 if not last and progress.distance > along + radius:
                     self._fail(f"node {node.id} was passed at {off:.2f} m, more than {radius:g} m")
@@ -283,8 +285,8 @@ class Client:
             wanted, along = _straight(wanted, self._facts), 0.0
         passed = [end for end in wanted.ends[:-1] if end <= along - self.settings.node_tolerance]
         if passed:  # while this program did not run; follow_path drove them as they were ordered
-            for state in [each for _ in passed for each in vehicle.traverse()]:
-                self.robot.end(state.action.id)
+            for ended in [each for _ in passed for each in vehicle.traverse()]:
+                self.robot.end(ended.action.id)
             return
         self._send(wanted, min(along, wanted.length - REST))
 

@@ -1,4 +1,4 @@
-"""What the factsheet says of the running robot: from robot_description, its limits in force and the settings."""
+"""Makes the factsheet of the running robot from robot_description, its limits in force and the settings."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def running_description() -> Description:
 
 
 def machine_of(robot: Description, settings: Settings) -> Machine:
-    """Of a robot on wheels; the smaller limit of follow_path and of the controller holds."""
+    """The machine of a robot on wheels; the smaller limit of follow_path and of the controller holds."""
     law, limits, live = FollowParameters(), SpeedLimits().newest(), LiveParameters()
     corners = [corner for shape in robot["shapes"] for corner in triangles_in_base(shape).reshape(-1, 3)]
     size = np.ptp(np.asarray(corners), axis=0) if corners else np.zeros(3)

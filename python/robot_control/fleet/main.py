@@ -82,7 +82,7 @@ class Node:
         self.link.end()
 
     def step(self) -> None:
-        """One pass. What was accepted is in the file before the master knows of it."""
+        """One pass. An accepted order is in the file before the master knows of it."""
         if self.link.came_up:
             self.link.came_up = False
             rospy.loginfo("connected to the broker")

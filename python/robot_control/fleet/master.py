@@ -62,7 +62,7 @@ class Master:
         return action_id
 
     def messages(self, seconds: float) -> Iterator[tuple[str, Message]]:
-        """What comes in this time, as it comes."""
+        """The messages of this time, as they come."""
         end = time.monotonic() + seconds
         while (left := end - time.monotonic()) > 0:
             try:

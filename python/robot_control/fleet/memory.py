@@ -1,4 +1,4 @@
-"""What outlives a restart: the order with its actions, the position, and the headerId of each topic."""
+"""Keeps over a restart: the order with its actions, the position, and the headerId of each topic."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Memory:
         self._lock = threading.RLock()  # the link has a thread of its own
 
     def __getitem__(self, name: str) -> Any:
-        """What was saved as `name`; None if nothing was."""
+        """The value that was saved as `name`; None if there is none."""
         return self._content.get(name)
 
     def save(self, **values: Any) -> None:

@@ -79,9 +79,9 @@ class RosRobot:
 
     def facts(self) -> Facts:
         """As measured now."""
-        now, odometry, safety, status = time.monotonic(), self._odometry, self._safety, self._status
+        now, odometry, status = time.monotonic(), self._odometry, self._status
+        safety = self._safety if now - self._safety_at < STATUS_SILENCE else None
         fresh = odometry is not None and now - self._odometry_at < SILENCE
-        knows_safety = safety is not None and now - self._safety_at < STATUS_SILENCE
         if self.progress.status == DRIVING and now - self._feedback_at > STATUS_SILENCE:
             self._goal += 1
             self.progress = Progress(ENDED, self.progress.distance, f"{ACTION} is silent: follow_path.py has ended")
@@ -109,10 +109,10 @@ class RosRobot:
         return Facts(
             **result,
             mode="MANUAL" if manual else "AUTOMATIC",
-            stopped=knows_safety and safety.state_name in STOPPED,
-            may_drive=fresh and knows_safety and safety.state_name in DRIVABLE,
+            stopped=safety is not None and safety.state_name in STOPPED,
+            may_drive=fresh and safety is not None and safety.state_name in DRIVABLE,
             held_by=self._held_by,
-            errors=tuple(_errors(safety)) if knows_safety else (_SILENT,),
+            errors=(_SILENT,) if safety is None else tuple(_errors(safety)),
         )
 
     @property

@@ -71,7 +71,7 @@ class Settings:
 
     @property
     def topic(self) -> str:
-        """What all topics begin with."""
+        """The levels with which all topics begin."""
         return f"{self.interface}/v2/{self.manufacturer}/{self.serial_number}"
 
     @property
@@ -120,6 +120,7 @@ def read_settings(*paths: Path) -> Settings:
 
 
 def _value(name: str, value: Any) -> Any:
+    """The value of a key. Raises ValueError with the rule that it breaks."""
     known = {each.name: each for each in fields(Settings)}
     if name not in known:
         raise ValueError(f"is unknown; known are {', '.join(known)}")
@@ -134,9 +135,12 @@ def _value(name: str, value: Any) -> Any:
         if whole and value != int(value):
             raise ValueError("must be a whole number")
         return int(value) if whole else float(value)
-    wanted: type = bool if name in ("insecure", "localization") else str
-    if not isinstance(value, wanted):
-        raise ValueError("must be true or false" if wanted is bool else "must be a text")
+    if name in ("insecure", "localization"):
+        if not isinstance(value, bool):
+            raise ValueError("must be true or false")
+        return value
+    if not isinstance(value, str):
+        raise ValueError("must be a text")
     if name in LEVEL and not re.fullmatch(r"[A-Za-z0-9_.:-]{1,64}", value):
         raise ValueError("must be 1 to 64 letters, digits and _ . : -")
     if name == "version" and value not in VERSIONS:
@@ -165,7 +169,7 @@ def _actions(tree: Any) -> dict[str, CustomAction]:
 
 
 def _together(settings: Settings) -> Iterator[str]:
-    """What no single value decides."""
+    """The rules across values."""
     if not (settings.ca_file or settings.insecure or _is_loopback(settings.host)):
         yield f"host = {settings.host}: beyond the loopback it needs ca_file (TLS), or insecure: true"
     if settings.key_file and not settings.certificate_file:

@@ -164,7 +164,10 @@ def route(waypoints: Sequence[Waypoint]) -> Route:
 
 def _held(given: list[float | None]) -> list[float | None]:
     """Each value until the next one."""
-    return list(accumulate(given, lambda before, value: before if value is None else value))
+    held: list[float | None] = []
+    for value in given:
+        held.append(value if value is not None or not held else held[-1])
+    return held
 
 
 def _sign(begin: Waypoint, end: Waypoint, tangent: float) -> int:

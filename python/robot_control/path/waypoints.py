@@ -124,7 +124,8 @@ def limited(points: Sequence[Waypoint], speeds: Sequence[float], turn_speeds: Se
             raise PathError(f"{name} has {len(given)} numbers and the path {len(points)} poses: it needs one of each")
     if not all(map(math.isfinite, speeds)) or 0 in speeds:
         raise PathError("speeds must be finite and not zero")
-    limits = zip(points, speeds or [None] * len(points), turn_speeds or [0.0] * len(points), strict=True)
+    no_speeds: list[float | None] = [None] * len(points)
+    limits = zip(points, speeds or no_speeds, turn_speeds or [0.0] * len(points), strict=True)
     return [
         replace(
             point,
@@ -188,7 +189,7 @@ def _points_of(path: str, rows: "csv.DictReader[str]") -> list[Waypoint]:
             if None in row:
                 raise ValueError  # more values than names
             values = {name: float(row[name]) for name in names if (row[name] or "").strip()}
-            points.append(Waypoint(**values))
-        except (TypeError, ValueError):
+            points.append(Waypoint(values["x"], values["y"], values.get("yaw"), values.get("speed")))
+        except (KeyError, TypeError, ValueError):
             raise PathError(f"{path}:{rows.line_num}: not a point of {','.join(names)}") from None
     return points

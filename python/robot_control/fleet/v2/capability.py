@@ -1,4 +1,4 @@
-"""What this robot can do of an order; the factsheet says the same."""
+"""Says what this robot can do of an order, as the factsheet does."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ STANDARD = {
 
 @dataclass(frozen=True)
 class Capabilities:
-    """Of one robot."""
+    """The capabilities of one robot."""
 
     map_id: str = ""  # of the map on which it is; empty: not known
     height: float = 0.0  # m
@@ -48,7 +48,7 @@ class Capabilities:
         except RefusedError as error:
             found = error.error
             references = dict(found.references) | order.references
-            raise RefusedError(found.kind, found.description, found.hint, **references) from None
+            raise RefusedError(found.kind, found.description, **references) from None
 
     def refuse_action(self, action: Action, scope: str) -> None:
         """Raises RefusedError: orderError, for it is unknown there or lacks a parameter."""
@@ -62,7 +62,7 @@ class Capabilities:
 
     def _check(self, order: Order, last: Node | None) -> None:
         if not self.map_id:
-            raise RefusedError("orderError", "the position of the robot is not initialized", "send initPosition")
+            raise RefusedError("orderError", "the position of the robot is not initialized: send initPosition")
         if order.zone_set:
             raise RefusedError("orderError", "the robot knows no zones", parameter="zoneSetId")
         nodes = [last or order.nodes[0], *order.nodes[1:]]
@@ -71,7 +71,9 @@ class Capabilities:
                 raise RefusedError("orderError", f"node {node.id} needs a nodePosition", nodeId=node.id)
             if node.place.map_id != self.map_id:
                 why = f"node {node.id} lies on map {node.place.map_id}, the robot on {self.map_id}"
-                raise RefusedError("orderError", why, nodeId=node.id, mapId=node.place.map_id, errorName="UNKNOWN_MAP_ID")
+                raise RefusedError(
+                    "orderError", why, nodeId=node.id, mapId=node.place.map_id, errorName="UNKNOWN_MAP_ID"
+                )
             for action in node.actions:
                 self.refuse_action(action, NODE)
         for edge, begin, end in zip(order.edges, nodes, nodes[1:], strict=False):

@@ -1,19 +1,19 @@
 """The way from one stand to the next: what follow_path is given, and where its nodes lie on it.
 
-A leg ends where the robot has to stand: at the end of the base, at a node with a SOFT or HARD action there or on the edge
-after it, and at a node whose orientation is not that of the way.
+A leg ends where the robot has to stand: at the end of the base, and at a node with another orientation than the way. It
+also ends before a SOFT or HARD action, which belongs to the node or to the edge after it.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
 from robot_control.fleet.v2.curve import CurveError, Point, points_of
-from robot_control.fleet.v2.messages import RefusedError
+from robot_control.fleet.v2.messages import Message, RefusedError
 from robot_control.fleet.v2.order import NONE, Edge, Node, Place
 
 SAME_HEADING = math.radians(2.0)
@@ -110,18 +110,18 @@ def _sharpest(way: Way) -> float:
     return max((abs(angle(b - a)) for a, b in pairwise(headings)), default=0.0)
 
 
-def _sign(way: Way, raw: dict[str, object], refused: object) -> int:
-    wanted = float(raw.get("orientation", 0.0))  # type: ignore[arg-type]
+def _sign(way: Way, raw: Message, refused: Callable[[str, str], RefusedError]) -> int:
+    wanted = raw.get("orientation", 0.0)
     kind = raw.get("orientationType", "TANGENTIAL")
     if kind not in ("TANGENTIAL", "GLOBAL"):
-        raise refused("orientationType", "must be TANGENTIAL or GLOBAL")  # type: ignore[operator]
+        raise refused("orientationType", "must be TANGENTIAL or GLOBAL")
     numbers = range(len(way.points) - 1)
     offsets = [angle(wanted - (way.heading(n) if kind == "GLOBAL" else 0.0)) for n in numbers]
     if all(abs(offset) <= SAME_HEADING for offset in offsets):
         return 1
     if all(abs(angle(offset - math.pi)) <= SAME_HEADING for offset in offsets):
         return -1
-    raise refused("orientation", "is neither along the edge nor against it: a differential drive cannot")  # type: ignore[operator]
+    raise refused("orientation", "is neither along the edge nor against it: a differential drive cannot")
 
 
 @dataclass(frozen=True)

@@ -56,10 +56,10 @@ class Error:
 class RefusedError(ValueError):
     """A message, an order or an action that is not taken."""
 
-    def __init__(self, kind: str, description: str, hint: str = "", **references: object) -> None:
+    def __init__(self, kind: str, description: str, **references: object) -> None:
         super().__init__(description)
         pairs = tuple((key, str(value)[:MAX_ID]) for key, value in references.items())
-        self.error = Error(kind, description, pairs, hint)
+        self.error = Error(kind, description, pairs)
 
 
 def decoded(payload: bytes, topic: str, manufacturer: str, serial_number: str) -> Message:
@@ -137,9 +137,9 @@ def _check_field(path: str, value: Any) -> None:
         raise _malformed(path, f"has {len(value)} entries, more than {LIMITS[name]}")
     if name in COUNTS and isinstance(value, int | float) and not 0 <= value <= MAX_NUMBER:
         raise _malformed(path, f"must be from 0 to {MAX_NUMBER}")
-    if name.endswith("Id") and isinstance(value, str):
-        if len(value) > MAX_ID or not value.isprintable() or set(value) & set(NO_ID):
-            raise _malformed(path, f"must be at most {MAX_ID} printable characters, without {' '.join(NO_ID)}")
+    wrong_id = isinstance(value, str) and (len(value) > MAX_ID or not value.isprintable() or set(value) & set(NO_ID))
+    if name.endswith("Id") and wrong_id:
+        raise _malformed(path, f"must be at most {MAX_ID} printable characters, without {' '.join(NO_ID)}")
 
 
 @cache

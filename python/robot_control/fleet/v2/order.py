@@ -14,7 +14,7 @@ NONE, SOFT, HARD = "NONE", "SOFT", "HARD"
 
 @dataclass(frozen=True)
 class Action:
-    """What is to be done at a node, on an edge or at once."""
+    """An action of a node, of an edge, or instant."""
 
     raw: Message = field(repr=False)
     id: str
@@ -34,7 +34,7 @@ class Action:
 
 @dataclass(frozen=True)
 class Place:
-    """Where a node lies on its map."""
+    """The position of a node on its map."""
 
     x: float  # m
     y: float  # m
@@ -145,15 +145,19 @@ def _broken(order: Order) -> Iterator[tuple[str, str]]:
             yield "must run over nodes and edges without a gap", f"edges[{number}].sequenceId"
         if (edge.raw["startNodeId"], edge.raw["endNodeId"]) != (begin.id, end.id):
             yield f"must lead from {begin.id} to {end.id}", f"edges[{number}]"
-    if not order.nodes[0].released:
+    yield from _broken_releases(order.elements)
+    ids = [action.id for each in order.elements for action in each.actions]
+    if len(set(ids)) < len(ids) or "" in ids:
+        yield "each action needs an id of its own", "actionId"
+
+
+def _broken_releases(elements: list[Node | Edge]) -> Iterator[tuple[str, str]]:
+    """The base comes first, and it ends with a node."""
+    if not elements[0].released:
         yield "the first node must be released", "nodes[0].released"
-    elements = order.elements
     for before, after in pairwise(elements):
         if after.released and not before.released:
             yield "nothing released follows what is not", f"sequenceId {after.sequence}"
     for before, after in pairwise(elements):
         if isinstance(before, Edge) and before.released and not after.released:
             yield "an edge is released only with both its nodes", f"sequenceId {before.sequence}"
-    ids = [action.id for each in elements for action in each.actions]
-    if len(set(ids)) < len(ids) or "" in ids:
-        yield "each action needs an id of its own", "actionId"

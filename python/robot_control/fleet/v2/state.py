@@ -1,4 +1,4 @@
-"""What the robot says: state, visualization, connection and factsheet, as the schemas want them (6.10, 6.13 to 6.15)."""
+"""Messages of the robot as the schemas want them: state, visualization and factsheet (6.10, 6.13, 6.15)."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ OPTIONAL = (
 
 @dataclass(frozen=True)
 class Facts:
-    """What is measured of the robot."""
+    """The measured values of the robot."""
 
     x: float = 0.0  # m, on the map
     y: float = 0.0
@@ -58,7 +58,7 @@ class Facts:
 
 @dataclass(frozen=True)
 class Machine:
-    """What the factsheet says of it; SI units."""
+    """The content of its factsheet; SI units."""
 
     series: str = "robot_control"
     length: float = 0.0
@@ -89,7 +89,7 @@ def position(facts: Facts) -> Message:
 
 
 def velocity(facts: Facts) -> Message:
-    """Of the robot in its own axes."""
+    """The velocity of the robot in its own axes."""
     return {"vx": facts.linear, "vy": 0.0, "omega": facts.angular}
 
 
@@ -155,7 +155,12 @@ def _action_state(state: ActionState) -> Message:
 def factsheet(machine: Machine) -> Message:
     """Without its header; the limits are those that messages.py enforces."""
     half_length, half_width = machine.length / 2, machine.width / 2
-    corners = [(half_length, half_width), (-half_length, half_width), (-half_length, -half_width), (half_length, -half_width)]
+    corners = [
+        (half_length, half_width),
+        (-half_length, half_width),
+        (-half_length, -half_width),
+        (half_length, -half_width),
+    ]
     return {
         "typeSpecification": {
             "seriesName": machine.series,
@@ -235,5 +240,3 @@ def _wheel(x: float, y: float, diameter: float, width: float) -> Message:
         "diameter": diameter,
         "width": width,
     }
-
-

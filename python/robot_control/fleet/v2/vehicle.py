@@ -3,10 +3,12 @@
 The master's messages and the robot's events go in; `may_drive`, `base` and `started` come out. A node is driven to only
 while it and the edge before it are released. Decision on an order (figure 8):
 
-    other orderId      executing: refused; first node out of reach: refused; else taken
-    same orderId       lower orderUpdateId: refused; equal: ignored
-                       executing: taken if its first node is the decision point, the last released node
-                       completed: taken if its first node is the last one reached, and the robot still stands there
+    orderId    orderUpdateId    it is taken if
+    another    any              nothing is executed, and the robot stands on its first node
+    the same   lower            never
+    the same   equal            never; it is ignored
+    the same   higher           executing: its first node is the decision point, the last released node
+    the same   higher           completed: its first node is the last one reached, and the robot stands there
 
 Executing: `nodeStates` is not empty, an action is neither FINISHED nor FAILED, or the robot does not stand yet after
 cancelOrder.
@@ -56,7 +58,7 @@ class ActionState:
 
 
 class Vehicle:
-    """What the standard says about one robot and its order."""
+    """One robot and its order, as the standard describes them."""
 
     def __init__(self) -> None:
         self.order_id, self.update_id = "", 0
@@ -103,7 +105,9 @@ class Vehicle:
     @property
     def executing(self) -> bool:
         """True while an order is held that is not completed, or is being cancelled; a horizon counts."""
-        return bool(self.nodes or self.cancelling) or any(not state.over for state in self.actions if state.sequence >= 0)
+        return bool(self.nodes or self.cancelling) or any(
+            not state.over for state in self.actions if state.sequence >= 0
+        )
 
     def _check_new(self, order: Order, near: Near) -> None:
         if self.executing:
@@ -217,7 +221,7 @@ class Vehicle:
 
     @property
     def base(self) -> list[Node | Edge]:
-        """What may be driven: edges and nodes that are released, from the last node on."""
+        """Edges and nodes that are released, from the last node on: they may be driven."""
         elements = in_sequence(self.nodes, self.edges)
         released = next((n for n, each in enumerate(elements) if not each.released), len(elements))
         return elements[:released]
@@ -317,5 +321,3 @@ def _refused(order: Order, kind: str, why: str, name: str = "", **references: ob
     """`name`: that of the error in version 3.0, as a further reference."""
     named = {"errorName": name} if name else {}
     return RefusedError(kind, f"order refused: {why}", **order.references, **references, **named)
-
-
