@@ -150,8 +150,8 @@ def _one_order(system: System, name: str, event: str, found: _Figures) -> None:
     way = [place[:2] for place in places] if "trajectory" not in fields else list(points_of(ARC))
     samples = [(pose.seen_from(system.origin), speed) for _, pose, speed in system.poses(began)]
     found.aside.append(max(_beside(way, point) for point, _ in samples))
-    if name == "line" and event in ("", "broker"):
-        near = [abs(speed) for point, speed in samples if abs(point[0] - 1.0) < 0.1]
+    if name in ("line", "reversed") and not event:
+        near = [abs(speed) for point, speed in samples if abs(point[0] - places[1][0]) < 0.1]
         found.passing.append(min(near) / SPEED)
 
 
@@ -211,7 +211,7 @@ def _one_loss(system: System, kind: str, after: float, wills: list[float]) -> No
     elif kind == "client stopped":
         system.pause("vda5050.py")
     if kind.startswith(("cable", "client")):
-        system.listen("the will", lambda: system.connection == "CONNECTIONBROKEN", 3 * KEEP_ALIVE)
+        system.listen("the will", lambda: system.connection == "CONNECTIONBROKEN", 10 * KEEP_ALIVE)
         wills.append(time.monotonic() - lost)
     time.sleep(1.0)
     system.robot.await_rest()

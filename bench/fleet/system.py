@@ -120,7 +120,14 @@ class System:
     def act(self, kind: str, **parameters: object) -> None:
         """An instant action until it has ended; a stopPause is repeated until it is taken."""
         action = self.master.act(kind, **parameters)
-        self.listen(kind, lambda: self.status(action) in ("FINISHED", "FAILED"))
+        end = time.monotonic() + LIMIT
+        while self.status(action) not in ("FINISHED", "FAILED"):
+            with contextlib.suppress(AssertionError):
+                self.listen(kind, lambda: self.status(action) in ("FINISHED", "FAILED"), AGAIN)
+                break
+            if time.monotonic() > end:
+                raise AssertionError(f"{kind} did not end: {self.state}")
+            self.master.act(kind, action, **parameters)
         if self.status(action) == "FAILED" and kind == "stopPause":
             self.act(kind)
 

@@ -86,14 +86,14 @@ class Client:
         self._mode = self._facts.mode
         self._driving_error: Error | None = None
         self._outbox: list[tuple[str, Message]] = []
-        self._told: object = None  # what the last state said
+        self._sent_key: object = None  # what the last state said
         self._state_at = self._visualization_at = -math.inf
         self._asked = True  # a state is due, whatever it says
 
     # messages
 
     def connected(self) -> None:
-        """The broker is there (again): all is told at once."""
+        """The broker is there (again): everything is sent at once."""
         self._asked = True
         self._outbox.append(("factsheet", factsheet(self.machine)))
 
@@ -196,7 +196,7 @@ class Client:
             self._begin(begun)
         vehicle.settle()
         self._drive()
-        self._tell(now)
+        self._publish(now)
         outbox, self._outbox = self._outbox, []
         return outbox
 
@@ -294,7 +294,7 @@ class Client:
         self._leg = leg
         self.robot.drive(leg.path(self.machine.speed), max(0.0, begin_at))
 
-    # what is told
+    # messages out
 
     @property
     def _base_is_short(self) -> bool:
@@ -308,7 +308,7 @@ class Client:
         stop = self._facts.linear**2 / (2 * self.machine.deceleration)
         return leg.nodes[-1].sequence == base[-1].sequence and left <= stop + self.settings.base_reserve
 
-    def _tell(self, now: float) -> None:
+    def _publish(self, now: float) -> None:
         vehicle, facts = self.vehicle, self._facts
         if self._driving_error is not None:
             facts = replace(facts, errors=(*facts.errors, self._driving_error))
@@ -323,8 +323,8 @@ class Client:
             facts.held_by,
             facts.errors,
         )
-        if self._asked or key != self._told or now - self._state_at >= STATE_PERIOD:
-            self._asked, self._told, self._state_at = False, key, now
+        if self._asked or key != self._sent_key or now - self._state_at >= STATE_PERIOD:
+            self._asked, self._sent_key, self._state_at = False, key, now
             charge = self.settings.unknown_battery_charge
             self._outbox.append(("state", state(vehicle, facts, charge, new_base=short)))
         if 0 < self.settings.visualization_period <= now - self._visualization_at:

@@ -53,9 +53,9 @@ class Master:
         }
         self._client.publish(f"{self._topic}/{topic}", encoded({**header, **content}))
 
-    def act(self, kind: str, **parameters: object) -> str:
-        """Sends an instant action; its actionId."""
-        action_id = str(uuid.uuid4())
+    def act(self, kind: str, action_id: str = "", **parameters: object) -> str:
+        """Sends an instant action, again if its id is given; its actionId."""
+        action_id = action_id or str(uuid.uuid4())
         pairs = [{"key": key, "value": value} for key, value in parameters.items()]
         action = {"actionId": action_id, "actionType": kind, "blockingType": "HARD", "actionParameters": pairs}
         self.send("instantActions", {"actions": [action]})
