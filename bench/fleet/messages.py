@@ -72,3 +72,20 @@ def order(
         for number in range(first, first + len(places) - 1)
     ]
     return {**header(), "orderId": name, "orderUpdateId": update, "nodes": nodes, "edges": edges}
+
+
+def unknown_names(message: Any, described: Message, path: str = "") -> list[str]:
+    """Paths of fields that the schema does not describe, which it does not forbid."""
+    if isinstance(message, list):
+        items = described.get("items", {})
+        return [name for number, each in enumerate(message) for name in unknown_names(each, items, f"{path}[{number}]")]
+    known = described.get("properties")
+    if not isinstance(message, dict) or known is None:
+        return []
+    wrong = [f"{path}.{name}" for name in message if name not in known]
+    return wrong + [
+        each
+        for name, value in message.items()
+        if name in known
+        for each in unknown_names(value, known[name], f"{path}.{name}")
+    ]

@@ -8,7 +8,8 @@ from dataclasses import replace
 from typing import Any
 
 from robot_control.common.pose import Pose
-from robot_control.fleet.client import DONE, DRIVING, ENDED, Client, ClientSettings, Progress
+from robot_control.fleet.client import DONE, DRIVING, ENDED, Client, Progress
+from robot_control.fleet.settings import Settings
 from robot_control.fleet.v2.capability import EDGE, INSTANT, NODE, STANDARD, ActionKind
 from robot_control.fleet.v2.leg import PathPoint
 from robot_control.fleet.v2.order import Action
@@ -105,7 +106,7 @@ class Run:
     def __init__(self, robot: VirtualRobot | None = None, **settings: Any) -> None:
         self.robot = robot or VirtualRobot()
         self.now = 0.0
-        self.settings = ClientSettings(visualization_period=0.0, **settings)
+        self.settings = Settings(visualization_rate=0.0, **settings)
         self.client = Client(self.robot, self.settings, MACHINE, Vehicle())
         self.states: list[dict[str, Any]] = []
         self.sent: list[tuple[str, dict[str, Any]]] = []

@@ -9,11 +9,11 @@ import pytest
 import yaml
 from robot_control.fleet.memory import BLOCK, Memory, MemoryFileError
 from robot_control.fleet.settings import Settings, SettingsError, read_settings
-from robot_control.fleet.v2.messages import Error, RefusedError, decoded, is_time, schema, time_text, unknown_names
+from robot_control.fleet.v2.messages import Error, RefusedError, decoded, is_time, schema, time_text
 from robot_control.fleet.v2.state import factsheet, visualization
 from robot_control.installed_files import share_file
 
-from bench.fleet.messages import MANUFACTURER, SERIAL, action, header, order
+from bench.fleet.messages import MANUFACTURER, SERIAL, action, header, order, unknown_names
 from bench.fleet.virtual_robot import MACHINE, Run
 
 jsonschema = pytest.importorskip("jsonschema", reason="needs Debian's python3-jsonschema: scripts/setup --fleet")

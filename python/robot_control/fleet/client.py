@@ -8,6 +8,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import Protocol
 
+from robot_control.fleet.settings import Settings
 from robot_control.fleet.v2.capability import INSTANT, Capabilities
 from robot_control.fleet.v2.leg import Leg, PathPoint, Way, angle, leg_of
 from robot_control.fleet.v2.messages import INBOUND, Error, Message, RefusedError, decoded
@@ -63,23 +64,10 @@ class Robot(Protocol):
         """actionId, FINISHED or FAILED and a description of the actions that ended since the last call."""
 
 
-@dataclass(frozen=True)
-class ClientSettings:
-    """The settings of one robot; config/fleet.yaml explains them."""
-
-    manufacturer: str = "robot_control"
-    serial_number: str = "r1"
-    node_tolerance: float = 0.05  # m
-    heading_tolerance: float = 0.05  # rad
-    base_reserve: float = 1.0  # m
-    unknown_battery_charge: float = 80.0  # %
-    visualization_period: float = 0.2  # s, 0: none
-
-
 class Client:
     """One robot; `step` is called 50 times per second."""
 
-    def __init__(self, robot: Robot, settings: ClientSettings, machine: Machine, vehicle: Vehicle) -> None:
+    def __init__(self, robot: Robot, settings: Settings, machine: Machine, vehicle: Vehicle) -> None:
         self.robot, self.settings, self.machine, self.vehicle = robot, settings, machine, vehicle
         self._leg: Leg | None = None
         self._facts = robot.facts()
@@ -327,7 +315,7 @@ class Client:
             self._asked, self._sent_key, self._state_at = False, key, now
             charge = self.settings.unknown_battery_charge
             self._outbox.append(("state", state(vehicle, facts, charge, new_base=short)))
-        if 0 < self.settings.visualization_period <= now - self._visualization_at:
+        if self.settings.visualization_rate * (now - self._visualization_at) >= 1:
             self._visualization_at = now
             self._outbox.append(("visualization", visualization(facts)))
 

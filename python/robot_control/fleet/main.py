@@ -19,7 +19,7 @@ from robot_control.common.roles import WheelsOnlyError
 from robot_control.common.ros_node import running_node
 from robot_control.common.server_values import ServerValueError
 from robot_control.common.topic_sender import Signals
-from robot_control.fleet.client import DRIVING, Client, ClientSettings
+from robot_control.fleet.client import DRIVING, Client
 from robot_control.fleet.machine import machine_of, running_description
 from robot_control.fleet.memory import Memory, MemoryFileError
 from robot_control.fleet.robot import RosRobot
@@ -47,17 +47,7 @@ class Node:
         vehicle = Vehicle()
         if self._memory["vehicle"]:
             vehicle.load(self._memory["vehicle"])
-        machine = machine_of(running_description(), settings)
-        own = ClientSettings(
-            settings.manufacturer,
-            settings.serial_number,
-            settings.node_tolerance,
-            settings.heading_tolerance,
-            settings.base_reserve,
-            settings.unknown_battery_charge,
-            machine.visualization_period,
-        )
-        self.client = Client(self.robot, own, machine, vehicle)
+        self.client = Client(self.robot, settings, machine_of(running_description(), settings), vehicle)
         self.link = Link(settings, self._memory)
         self._saved: object = None
         self._reason = ""

@@ -53,7 +53,7 @@ class Master:
         }
         self._client.publish(f"{self._topic}/{topic}", encoded({**header, **content}))
 
-    def act(self, kind: str, action_id: str = "", **parameters: object) -> str:
+    def act(self, kind: str, action_id: str = "", /, **parameters: object) -> str:
         """Sends an instant action, again if its id is given; its actionId."""
         action_id = action_id or str(uuid.uuid4())
         pairs = [{"key": key, "value": value} for key, value in parameters.items()]

@@ -6,7 +6,7 @@ import ipaddress
 import math
 import re
 import stat
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
@@ -111,7 +111,7 @@ def read_settings(*paths: Path) -> Settings:
         for name, value in tree.items():
             try:
                 settings = replace(settings, **{str(name): _value(str(name), value)})
-            except ValueError as error:
+            except (TypeError, ValueError) as error:
                 problems.append(f"{path}: {name} = {value!r}: {error}")
     problems += _together(settings)
     if problems:
@@ -162,6 +162,8 @@ def _actions(tree: Any) -> dict[str, CustomAction]:
             raise ValueError(f"{name} needs either service or topic")
         if not set(custom.scopes) <= SCOPES or not custom.scopes:
             raise ValueError(f"{name}: scopes are {', '.join(sorted(SCOPES))}")
+        if not isinstance(custom.service + custom.topic, str):
+            raise ValueError(f"{name}: service and topic must be texts")
         if not all(isinstance(n, int | float) and 0 < n <= 3600 for n in (custom.seconds, custom.timeout)):
             raise ValueError(f"{name}: seconds and timeout must be above 0, up to 3600")
         result[str(name)] = custom
@@ -183,9 +185,8 @@ def _together(settings: Settings) -> Iterator[str]:
 
 
 def _file_problems(name: str, path: Path, *, secret: bool) -> Iterator[str]:
-    read: Callable[[], object] = path.read_bytes
     try:
-        read()
+        path.read_bytes()
         if secret and stat.S_IMODE(path.stat().st_mode) & 0o077:
             yield f"{name} = {path}: others can read it; chmod 600 {path}"
     except OSError as error:
