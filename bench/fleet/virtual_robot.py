@@ -121,7 +121,7 @@ class Run:
     def send(self, message: dict[str, Any], *, retained: bool = False) -> dict[str, Any]:
         """The state after the message."""
         topic = "order" if "nodes" in message else "instantActions"
-        self.client.receive(topic, json.dumps(message).encode(), retained=retained)
+        self.client.receive(topic, json.dumps(message).encode(), self.now, retained=retained)
         self.step(PERIOD)
         return self.state
 

@@ -16,7 +16,9 @@ NIGHTLY_COUNT = 100_000
 
 def refused(payload, topic="order", words="", **options):
     run = Run()
-    run.client.receive(topic, payload if isinstance(payload, bytes) else json.dumps(payload).encode(), **options)
+    run.client.receive(
+        topic, payload if isinstance(payload, bytes) else json.dumps(payload).encode(), run.now, **options
+    )
     run.step(0.5)
     assert [error["errorType"] for error in run.state["errors"]] == ["validationError"]
     assert words in run.state["errors"][0]["errorDescription"]
@@ -72,9 +74,9 @@ def test_a_flood_of_instant_actions_and_errors_keeps_the_state_small():
     run = Run()
     for number in range(500):
         run.client.receive(
-            "instantActions", json.dumps({**header(), "actions": [action("stateRequest", number)]}).encode()
+            "instantActions", json.dumps({**header(), "actions": [action("stateRequest", number)]}).encode(), run.now
         )
-        run.client.receive("order", b"{%d" % number)
+        run.client.receive("order", b"{%d" % number, run.now)
     run.step(0.1)
     assert len(run.state["actionStates"]) <= 100
     assert len(run.state["errors"]) <= 20
@@ -86,7 +88,7 @@ def attack(first, count):
     run = Run()
     for seed in range(first, first + count):
         topic, payload = mutated(seed)
-        run.client.receive(topic, payload)
+        run.client.receive(topic, payload, run.now)
         run.step(0.02)
         json.dumps(run.state, allow_nan=False)
         if run.client.vehicle.nodes or run.client.vehicle.order_id:

@@ -426,6 +426,15 @@ def test_a_trajectory_is_a_nurbs():
             points_of({**arc, **wrong})
 
 
+def test_trajectories_that_take_seconds_to_plan_are_refused():
+    far = {"degree": 2, "knotVector": [0, 0, 0, 1, 1, 1], "controlPoints": [{"x": x, "y": 0} for x in (0, 75, 150)]}
+    back = {**far, "controlPoints": far["controlPoints"][::-1]}
+    message = order([(0.0, 0.0), (150.0, 0.0)] * 10)
+    for number, edge in enumerate(message["edges"]):
+        edge["trajectory"] = back if number % 2 else far
+    field_refused(Run(), message, "trajectory")
+
+
 def test_a_corner_of_a_trajectory_needs_rotation_to_be_allowed():
     corner = {
         "degree": 1,
@@ -571,6 +580,16 @@ def test_after_a_restart_the_order_stands_paused():
         run.step(0.1)
     run.step(1.0)
     assert run.robot.pose.x == pytest.approx(3.0, abs=0.02)
+
+
+def test_what_waited_while_the_client_stood_still_moves_nothing():
+    run = Run()
+    run.now += 5.0
+    state = run.send(order(LINE))
+    assert kinds(state) == ["orderError"]
+    assert run.robot.goals == 0
+    run.step(1.0)
+    assert run.send(order(LINE))["nodeStates"]
 
 
 # 6.11, 6.12: actions of nodes and edges

@@ -43,7 +43,8 @@ class Wire:
 
     async def publish(self, topic, payload, *, qos=0, retain=False):
         name = topic.rpartition("/")[2]
-        self.run.client.receive(name, payload if isinstance(payload, bytes) else payload.encode(), retained=retain)
+        payload = payload if isinstance(payload, bytes) else payload.encode()
+        self.run.client.receive(name, payload, self.run.now, retained=retain)
 
     async def subscribe(self, topic, handler, *, qos=0):
         self.handlers.append((topic.rpartition("/")[2], handler))

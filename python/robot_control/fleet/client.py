@@ -21,6 +21,8 @@ OFF_EDGE = 0.3
 """m beside an edge from which the robot joins it; farther away it drives straight to its end. follow_path's off_path"""
 REST = 0.02
 """m of a leg that are driven again after a pause at its end"""
+GAP = 1.0
+"""s without a pass after which messages may have waited, and for which they are then refused"""
 LATE = 0.4
 """s by which the distance that follow_path reports is late at most"""
 
@@ -76,6 +78,8 @@ class Client:
         self._outbox: list[tuple[str, Message]] = []
         self._sent_key: object = None  # what the last state said
         self._state_at = self._visualization_at = -math.inf
+        self._stepped_at, self._deaf_until = math.inf, -math.inf
+        self._planned: object = None  # revision of the order that the present leg is made of
         self._asked = True  # a state is due, whatever it says
 
     # messages
@@ -85,9 +89,13 @@ class Client:
         self._asked = True
         self._outbox.append(("factsheet", factsheet(self.machine)))
 
-    def receive(self, topic: str, payload: bytes, *, retained: bool = False) -> None:
-        """A message of the master."""
+    def receive(self, topic: str, payload: bytes, now: float, *, retained: bool = False) -> None:
+        """A message of the master, taken at `now` s. What waited while this program stood still moves nothing."""
         try:
+            if now - self._stepped_at > GAP:
+                self._deaf_until = now + GAP
+            if now < self._deaf_until:
+                raise RefusedError("orderError", f"{topic} came while the robot's client stood still: send it again")
             if topic not in INBOUND or retained:
                 raise RefusedError("validationError", f"{topic} must not be retained: the robot cannot know its age")
             message = decoded(payload, topic, self.settings.manufacturer, self.settings.serial_number)
@@ -101,12 +109,12 @@ class Client:
 
     def _take_order(self, message: Message) -> None:
         order = order_of(message)
+        new = order.id != self.vehicle.order_id
         if self._facts.mode != "AUTOMATIC":
             raise RefusedError("orderError", f"the mode is {self._facts.mode}", **order.references)
         if self.vehicle.receive(order, self._near, self._refuse):
             self._asked = True
-            if order.id and order.update == 0:
-                self._driving_error = None
+            self._driving_error = None if new else self._driving_error
 
     def _refuse(self, order: Order) -> None:
         continued = None
@@ -167,6 +175,7 @@ class Client:
 
     def step(self, now: float) -> list[tuple[str, Message]]:
         """One pass at `now` s, monotonic; topics and messages that are due, without their headers."""
+        self._stepped_at = now
         before, self._facts = self._facts, self.robot.facts()
         vehicle, facts = self.vehicle, self._facts
         vehicle.standing = not facts.driving and self.robot.progress.status != DRIVING
@@ -250,24 +259,30 @@ class Client:
             if driving:
                 self.robot.stop()
             return
+        if driving and self._planned == vehicle.revision:
+            return
+        self._planned = vehicle.revision
         wanted = leg_of(vehicle.last, vehicle.base, self.settings.heading_tolerance)
         if not wanted.nodes:
             return
         if driving and self._leg is not None:
-            if self._leg.nodes[-1].sequence != wanted.nodes[-1].sequence:
-                done = sum(node.sequence <= vehicle.last_sequence for node in self._leg.nodes)
-                ways = (*self._leg.ways[:done], *wanted.ways)
-                self._send(
-                    *Leg(self._leg.begin, ways, (*self._leg.nodes[:done], *wanted.nodes)).without_driven(
-                        self.robot.progress.distance
-                    )
-                )
-            return
-        if self._facts.driving:
-            return  # it still rolls after a stop
+            self._extend(self._leg, wanted)
+        elif not self._facts.driving:  # after a stop it rolls for a moment
+            self._begin_leg(wanted)
+
+    def _extend(self, leg: Leg, wanted: Leg) -> None:
+        """Sends the present leg with the edges that were released since, if there are some."""
+        if leg.nodes[-1].sequence != wanted.nodes[-1].sequence:
+            done = sum(node.sequence <= self.vehicle.last_sequence for node in leg.nodes)
+            longer = Leg(leg.begin, (*leg.ways[:done], *wanted.ways), (*leg.nodes[:done], *wanted.nodes))
+            self._send(*longer.without_driven(self.robot.progress.distance))
+
+    def _begin_leg(self, wanted: Leg) -> None:
+        """Sends it from where the robot stands."""
+        vehicle = self.vehicle
         along, off = wanted.foot(self._facts.x, self._facts.y, OFF_EDGE)
         if off > OFF_EDGE:
-            if not self._near(vehicle.last):
+            if not self._near(wanted.begin):
                 self._fail(f"the robot is {off:.2f} m off edge {vehicle.edges[0].id}, more than {OFF_EDGE:g} m")
                 return
             wanted, along = _straight(wanted, self._facts), 0.0

@@ -79,7 +79,7 @@ class Node:
             self.client.connected()
         while not self.link.received.empty():
             topic, payload, retained = self.link.received.get()
-            self.client.receive(topic, payload, retained=retained)
+            self.client.receive(topic, payload, time.monotonic(), retained=retained)
         outbox = self.client.step(time.monotonic())
         self._save()
         for topic, message in outbox:

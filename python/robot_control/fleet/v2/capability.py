@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from robot_control.fleet.v2.curve import STEP
 from robot_control.fleet.v2.leg import way_of
 from robot_control.fleet.v2.messages import RefusedError
 from robot_control.fleet.v2.order import Action, Node, Order
 
+MAX_POINTS = 20_000
+"""of all edges of an order: a longer one takes seconds to plan"""
 INSTANT, NODE, EDGE = "INSTANT", "NODE", "EDGE"
 
 
@@ -65,6 +68,7 @@ class Capabilities:
             raise RefusedError("orderError", "the position of the robot is not initialized: send initPosition")
         if order.zone_set:
             raise RefusedError("orderError", "the robot knows no zones", parameter="zoneSetId")
+        points = 0
         nodes = [last or order.nodes[0], *order.nodes[1:]]
         for node in nodes:
             if node.place is None:
@@ -81,7 +85,10 @@ class Capabilities:
                 why = f"edge {edge.id}: maxHeight is below the robot's {self.height:g} m"
                 raise RefusedError("orderError", why, edgeId=edge.id, parameter="maxHeight")
             if begin.place is not None and end.place is not None:
-                way_of(edge, begin.place, end.place)
+                points += len(way_of(edge, begin.place, end.place).points)
+            if points > MAX_POINTS:
+                why = f"edge {edge.id}: the trajectories have more than {MAX_POINTS} points, one each {STEP:g} m"
+                raise RefusedError("orderError", why, edgeId=edge.id, parameter="trajectory")
             for action in edge.actions:
                 self.refuse_action(action, EDGE)
 

@@ -17,7 +17,7 @@ Point = tuple[float, float]
 STEP = 0.05
 """m between two points, along the control points"""
 MAX_DEGREE = 10
-MAX_LENGTH = 1000.0
+MAX_LENGTH = 200.0
 """m along the control points of one edge"""
 
 
