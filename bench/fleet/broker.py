@@ -32,8 +32,13 @@ class Broker:
             free.bind(("127.0.0.1", 0))
             self.port = free.getsockname()[1]
         self._config = folder / "mosquitto.conf"
-        self._config.write_text(f"listener {self.port} 127.0.0.1\nallow_anonymous true\npersistence false\n")
         self._process: subprocess.Popen[bytes] | None = None
+        self.configure("allow_anonymous true")
+
+    def configure(self, *lines: str) -> None:
+        """Starts it (again) with these lines of its configuration."""
+        self.kill()
+        self._config.write_text("\n".join([f"listener {self.port} 127.0.0.1", "persistence false", *lines, ""]))
         self.start()
 
     def start(self) -> None:

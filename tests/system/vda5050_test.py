@@ -12,11 +12,12 @@ import rospy
 import rostest
 import yaml
 from robot_control.fleet.master import Master
-from std_srvs.srv import Trigger
+from std_msgs.msg import Bool
+from std_srvs.srv import Trigger, TriggerResponse
 from system_support import Program, RobotTestCase, again_after_a_stall, wait_for
 
 from bench.fleet.broker import Broker, missing
-from bench.fleet.messages import order
+from bench.fleet.messages import action, order
 
 KEEP_ALIVE = 2
 """s; the will comes after 1.5 of them at the latest"""
@@ -31,6 +32,7 @@ class Vda5050Test(RobotTestCase):
         cls.broker = Broker(Path(cls.folder.name))
         cls.config = Path(cls.folder.name) / "fleet.yaml"
         values = {"port": cls.broker.port, "keep_alive": KEEP_ALIVE, "memory_file": f"{cls.folder.name}/memory.json"}
+        values["actions"] = {"horn": {"topic": "horn", "seconds": 0.5}, "lift": {"service": "lift", "timeout": 5}}
         cls.config.write_text(yaml.safe_dump(values))
         cls.follower = Program("follow_path.py")
         cls.client = Program("vda5050.py", "--config", str(cls.config))
@@ -57,8 +59,8 @@ class Vda5050Test(RobotTestCase):
         self.master.act("cancelOrder")
         self.master.act("stopPause")
         self.listen("no order", lambda: "state" in self.master.last and not self.state["nodeStates"])
-        action = self.master.act("initPosition", x=0.0, y=0.0, theta=0.0, mapId="hall")
-        self.listen("initPosition", lambda: self.status(action) == "FINISHED")
+        placed = self.master.act("initPosition", x=0.0, y=0.0, theta=0.0, mapId="hall")
+        self.listen("initPosition", lambda: self.status(placed) == "FINISHED")
 
     @property
     def state(self) -> dict[str, Any]:
@@ -101,6 +103,25 @@ class Vda5050Test(RobotTestCase):
         self.listen("the end", lambda: self.reached("n2")() and not self.state["driving"])
         self.assertAlmostEqual(self.robot.pose.seen_from(begin)[0], 2.0, delta=0.02)
         self.assertEqual(self.state["errors"], [])
+
+    @again_after_a_stall
+    def test_actions_of_a_node_are_topics_services_and_a_trigger(self) -> None:
+        heard: list[bool] = []
+        horn = rospy.Subscriber("horn", Bool, lambda message: heard.append(message.data))
+        lift = rospy.Service("lift", Trigger, lambda _: TriggerResponse(success=True, message="is up"))
+        kinds = (("horn", "SOFT"), ("lift", "HARD"), ("waitForTrigger", "HARD"))
+        actions = [action(kind, f"{kind}{time.monotonic()}", blocking) for kind, blocking in kinds]
+        self.send([(0.0, 0.0), (0.5, 0.0)], actions={2: actions})
+        names = [each["actionId"] for each in actions]
+        self.listen("waitForTrigger", lambda: self.status(names[2]) == "RUNNING")
+        self.assertEqual([self.status(name) for name in names[:2]], ["FINISHED", "FINISHED"])
+        self.assertEqual(heard[-2:], [True, False])
+        results = {each["actionId"]: each.get("resultDescription") for each in self.state["actionStates"]}
+        self.assertEqual(results[names[1]], "is up")
+        self.assertTrue(rospy.ServiceProxy("vda5050/trigger", Trigger)().success)
+        self.listen("the end", lambda: self.status(names[2]) == "FINISHED")
+        horn.unregister()
+        lift.shutdown()
 
     @again_after_a_stall
     def test_a_killed_broker_lets_the_base_end_and_the_state_is_told_at_once(self) -> None:
@@ -150,12 +171,12 @@ class Vda5050Test(RobotTestCase):
 
     def go_on(self) -> bool:
         """stopPause until it is taken: zero first lasts for a moment."""
-        action = self.master.act("stopPause")
+        asked = self.master.act("stopPause")
         end = time.monotonic() + 1.0
-        while time.monotonic() < end and not self.status(action):
+        while time.monotonic() < end and not self.status(asked):
             for _ in self.master.messages(0.05):
                 pass
-        return self.status(action) == "FINISHED"
+        return self.status(asked) == "FINISHED"
 
 
 if __name__ == "__main__":

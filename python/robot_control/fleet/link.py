@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import queue
 import ssl
+import sys
 import time
 from typing import Any
 
@@ -34,7 +35,7 @@ class Link:
         name = f"{settings.manufacturer}-{settings.serial_number}"
         self._client = mqtt.Client(client_id=name, clean_session=True)
         self._client.on_connect, self._client.on_disconnect = self._connected, self._disconnected
-        self._client.on_message = self._message
+        self._client.on_message, self._client.on_connect_fail = self._message, self._failed
         self._client.reconnect_delay_set(*RETRY)
         if settings.user:
             self._client.username_pw_set(settings.user, settings.password)
@@ -88,6 +89,9 @@ class Link:
         self.up = True
         self.publish("connection", {"connectionState": "ONLINE"})
         self.came_up = True
+
+    def _failed(self, _client: mqtt.Client, _data: Any) -> None:
+        self.reason = str(sys.exception() or "it does not answer")  # paho calls this where it handles the exception
 
     def _disconnected(self, _client: mqtt.Client, _data: Any, code: int) -> None:
         self.up = False
