@@ -211,7 +211,7 @@ def _one_loss(system: System, kind: str, after: float, wills: list[float]) -> No
     elif kind == "client stopped":
         system.pause("vda5050.py")
     if kind.startswith(("cable", "client")):
-        system.listen("the will", lambda: system.connection == "CONNECTIONBROKEN", 10 * KEEP_ALIVE)
+        system.listen("the will", lambda: system.connection == "CONNECTIONBROKEN", 3 * KEEP_ALIVE)
         wills.append(time.monotonic() - lost)
     time.sleep(1.0)
     system.robot.await_rest()

@@ -27,7 +27,7 @@ from bench.console.robot import Robot
 from bench.fleet.broker import Broker
 from bench.fleet.messages import order
 
-KEEP_ALIVE = 2
+KEEP_ALIVE = 6
 """s"""
 AGAIN = 2.0
 """s until an order is sent again"""

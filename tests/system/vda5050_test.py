@@ -19,8 +19,8 @@ from system_support import Program, RobotTestCase, again_after_a_stall, wait_for
 from bench.fleet.broker import Broker, missing
 from bench.fleet.messages import action, order
 
-KEEP_ALIVE = 2
-"""s; the will comes after 1.5 of them at the latest"""
+KEEP_ALIVE = 5
+"""s; the shortest one"""
 
 
 @unittest.skipIf(missing(), missing())

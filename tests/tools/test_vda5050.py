@@ -120,37 +120,38 @@ def test_the_shipped_settings_are_the_defaults():
 
 
 def test_every_wrong_value_is_named_in_one_message(tmp_path):
-    secret = tmp_path / "password"
-    secret.write_text("x\n")
     with pytest.raises(SettingsError) as error:
         settings(
             tmp_path,
             hots="broker",
             port=0,
-            keep_alive=1.5,
+            keep_alive=7.5,
             version="3.0.0",
             serial_number="a/b",
             speed=math.inf,
             insecure="yes",
-            host="10.0.0.1",
-            localization=True,
-            password_file=str(secret),
-            ca_file=str(tmp_path / "none.pem"),
             actions={"horn": {"topic": "horn", "service": "horn"}},
         )
     for words in (
-        "hots = 'broker': is unknown",
-        "port = 0: must be a number from 1 to 65535",
-        "keep_alive = 1.5: must be a whole number",
-        "version = '3.0.0': must be 2.1.0 or 2.0.0",
-        "serial_number = 'a/b': must be 1 to 64 letters",
-        "speed = inf",
-        "insecure = 'yes': must be true or false",
-        "needs map",
-        "others can read it; chmod 600",
-        "none.pem: cannot be read",
-        "horn needs either service or topic",
+        "'hots' was unexpected",
+        "port: 0 is less than the minimum of 1",
+        "keep_alive: 7.5 is not of type 'integer'",
+        "version: '3.0.0' is not one of ['2.1.0', '2.0.0']",
+        "serial_number: 'a/b' does not match",
+        "speed: inf is greater than the maximum of 10",
+        "insecure: 'yes' is not of type 'boolean'",
+        "is valid under each of",
     ):
+        assert words in str(error.value)
+
+
+def test_rules_across_values_are_named_too(tmp_path):
+    secret = tmp_path / "password"
+    secret.write_text("x\n")
+    files = {"password_file": str(secret), "ca_file": str(tmp_path / "none.pem"), "key_file": str(secret)}
+    with pytest.raises(SettingsError) as error:
+        settings(tmp_path, localization=True, speed=math.nan, **files)
+    for words in ("needs map", "chmod 600", "none.pem: cannot be read", "needs certificate_file", "must be finite"):
         assert words in str(error.value)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import queue
 import ssl
 import sys
@@ -18,6 +19,8 @@ RETRY = (1, 30)
 """s between two tries to connect: the first, and the longest after doubling"""
 WAITING = 50
 """messages that may wait; more than a master sends in a second. Further ones are dropped"""
+BROKER_CHECK = 5.0
+"""s between two looks of mosquitto for silent clients; by so much its will may come later than 1.5 keep-alives"""
 END = 2.0
 """s for the last message"""
 RETAINED = ("connection", "factsheet")
@@ -47,7 +50,8 @@ class Link:
 
     def begin(self) -> None:
         """Connects, now or as soon as the broker answers."""
-        self._client.connect_async(self._settings.host, self._settings.port, self._settings.keep_alive)
+        keep_alive = max(1, math.floor(self._settings.keep_alive - BROKER_CHECK / 1.5))
+        self._client.connect_async(self._settings.host, self._settings.port, keep_alive)
         self._client.loop_start()
 
     def publish(self, topic: str, message: Message) -> mqtt.MQTTMessageInfo | None:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import ipaddress
+import json
 import math
-import re
 import stat
 from collections.abc import Iterator
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
@@ -16,8 +16,6 @@ import yaml  # type: ignore[import-untyped]
 from robot_control.common.files import given_path
 from robot_control.fleet.v2.capability import STANDARD, ActionKind
 from robot_control.fleet.v2.messages import VERSIONS
-
-SCOPES = {"INSTANT", "NODE", "EDGE"}
 
 
 class SettingsError(ValueError):
@@ -80,19 +78,6 @@ class Settings:
         return Path(self.password_file).read_text(encoding="utf-8").partition("\n")[0] if self.password_file else None
 
 
-RANGES: dict[str, tuple[float, float]] = {
-    "port": (1, 65535),
-    "keep_alive": (1, 600),
-    "speed": (0.02, 10),
-    "node_tolerance": (0.01, 0.3),
-    "heading_tolerance": (0.01, 1),
-    "base_reserve": (0, 100),
-    "unknown_battery_charge": (0, 100),
-    "visualization_rate": (0, 20),
-}
-LEVEL = ("interface", "manufacturer", "serial_number")
-
-
 def read_settings(*paths: Path) -> Settings:
     """The values of these files, each laid over the one before.
 
@@ -100,78 +85,41 @@ def read_settings(*paths: Path) -> Settings:
         SettingsError: with all problems.
         OSError: a file cannot be read.
     """
-    settings, problems = Settings(), list[str]()
+    import jsonschema
+
+    rules = json.loads(Path(__file__).with_name("settings.schema.json").read_text(encoding="utf-8"))
+    values, problems = dict[str, Any](), list[str]()
     for path in paths:
         try:
             tree = yaml.safe_load(path.read_text(encoding="utf-8")) or {}
         except (yaml.YAMLError, UnicodeDecodeError, RecursionError) as error:
             raise SettingsError(f"{path}: is no YAML: {error}") from None
-        if not isinstance(tree, dict):
-            raise SettingsError(f"{path}: must be a map of names and values")
-        for name, value in tree.items():
-            try:
-                settings = replace(settings, **{str(name): _value(str(name), value)})
-            except (TypeError, ValueError) as error:
-                problems.append(f"{path}: {name} = {value!r}: {error}")
+        found = [
+            f"{path}: {'.'.join(map(str, error.absolute_path)) or 'a key'}: {error.message}"
+            for error in jsonschema.Draft202012Validator(rules).iter_errors(tree)
+        ]
+        problems += found
+        values |= {} if found else tree
+    custom = {
+        str(name): CustomAction(**{**each, "scopes": tuple(each.get("scopes", CustomAction.scopes))})
+        for name, each in values.pop("actions", {}).items()
+    }
+    names = (name for name, value in values.items() if name.endswith("_file") and value)
+    settings = Settings(**(values | {name: str(given_path(values[name])) for name in names}), actions=custom)
     problems += _together(settings)
     if problems:
         raise SettingsError("; ".join(problems))
     return settings
 
 
-def _value(name: str, value: Any) -> Any:
-    """The value of a key. Raises ValueError with the rule that it breaks."""
-    known = {each.name: each for each in fields(Settings)}
-    if name not in known:
-        raise ValueError(f"is unknown; known are {', '.join(known)}")
-    if name == "actions":
-        return _actions(value)
-    if name in RANGES:
-        low, high = RANGES[name]
-        number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-        if not number or not low <= value <= high:
-            raise ValueError(f"must be a number from {low:g} to {high:g}")
-        whole = known[name].type == "int"
-        if whole and value != int(value):
-            raise ValueError("must be a whole number")
-        return int(value) if whole else float(value)
-    if name in ("insecure", "localization"):
-        if not isinstance(value, bool):
-            raise ValueError("must be true or false")
-        return value
-    if not isinstance(value, str):
-        raise ValueError("must be a text")
-    if name in LEVEL and not re.fullmatch(r"[A-Za-z0-9_.:-]{1,64}", value):
-        raise ValueError("must be 1 to 64 letters, digits and _ . : -")
-    if name == "version" and value not in VERSIONS:
-        raise ValueError(f"must be {' or '.join(VERSIONS)}")
-    return str(given_path(value)) if name.endswith("_file") and value else value
-
-
-def _actions(tree: Any) -> dict[str, CustomAction]:
-    if not isinstance(tree, dict):
-        raise ValueError("must be a map of action types")
-    result = {}
-    for name, each in tree.items():
-        if name in STANDARD:
-            raise ValueError(f"{name} is an action of the standard")
-        if not isinstance(each, dict) or not set(each) <= {item.name for item in fields(CustomAction)}:
-            raise ValueError(f"{name} must be a map of service or topic, seconds, timeout, scopes")
-        custom = CustomAction(**{**each, "scopes": tuple(each.get("scopes", ("INSTANT", "NODE")))})
-        if bool(custom.service) == bool(custom.topic):
-            raise ValueError(f"{name} needs either service or topic")
-        if not set(custom.scopes) <= SCOPES or not custom.scopes:
-            raise ValueError(f"{name}: scopes are {', '.join(sorted(SCOPES))}")
-        if not isinstance(custom.service + custom.topic, str):
-            raise ValueError(f"{name}: service and topic must be texts")
-        if not all(isinstance(n, int | float) and 0 < n <= 3600 for n in (custom.seconds, custom.timeout)):
-            raise ValueError(f"{name}: seconds and timeout must be above 0, up to 3600")
-        result[str(name)] = custom
-    return result
-
-
 def _together(settings: Settings) -> Iterator[str]:
-    """The rules across values."""
+    """The rules across values, and what the schema cannot say."""
+    for each in fields(settings):
+        value = getattr(settings, each.name)
+        if isinstance(value, float) and not math.isfinite(value):
+            yield f"{each.name} = {value}: must be finite"
+    for name in settings.actions.keys() & STANDARD.keys():
+        yield f"actions.{name}: is an action of the standard"
     if not (settings.ca_file or settings.insecure or _is_loopback(settings.host)):
         yield f"host = {settings.host}: beyond the loopback it needs ca_file (TLS), or insecure: true"
     if settings.key_file and not settings.certificate_file:
