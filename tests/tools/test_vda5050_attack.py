@@ -61,6 +61,16 @@ def test_ids_that_could_structure_a_topic_or_a_line_are_refused(name):
     refused(wrong, words="nodes[1].nodeId")
 
 
+def test_a_long_text_of_a_master_makes_no_long_state():
+    run = Run()
+    long = "x" * 100_000
+    given = {"x": 0.0, "y": 0.0, "theta": 0.0}
+    run.send({**header(), "actions": [action(long, 1), action("initPosition", 2, **given, mapId=long)]})
+    run.send({**header(), "actions": [action("initPosition", 3, **given, mapId="m", lastNodeId=long)]})
+    run.send({**order(PLACES), "zoneSetId": long})
+    assert len(json.dumps(run.state)) < 5000
+
+
 def test_another_serial_number_is_refused():
     refused({**order(PLACES), "serialNumber": "r2"}, words="another robot")
 

@@ -113,8 +113,11 @@ def test_messages_of_the_master_arrive_bounded(tmp_path, broker):
     wait_for(lambda: link.came_up)
     sender = Listener(broker.port)
     topic = "uagv/v2/robot_control/r1/order"
-    wait_for(lambda: (sender.client.publish(topic, b"x" * 10_000_000), link.received.qsize())[1])
-    assert len(link.received.get()[1]) == MAX_BYTES + 1
+    wait_for(lambda: (sender.client.publish(topic, b"{}"), time.sleep(0.1), link.received.qsize())[2])  # subscribed
+    sender.client.publish(topic, b"x" * 10_000_000)
+    sizes = []
+    wait_for(lambda: (sizes.append(len(link.received.get(timeout=LIMIT)[1])), sizes[-1] > 2)[1])
+    assert sizes[-1] == MAX_BYTES + 1
     for _ in range(3 * WAITING):
         sender.client.publish(topic, b"{}")
     wait_for(lambda: "one was dropped" in link.reason)

@@ -11,7 +11,7 @@ from typing import Protocol
 from robot_control.fleet.settings import Settings
 from robot_control.fleet.v2.capability import INSTANT, Capabilities
 from robot_control.fleet.v2.leg import Leg, PathPoint, Way, angle, leg_of
-from robot_control.fleet.v2.messages import INBOUND, Error, Message, RefusedError, decoded
+from robot_control.fleet.v2.messages import INBOUND, MAX_ID, Error, Message, RefusedError, decoded
 from robot_control.fleet.v2.order import Action, Node, Order, order_of
 from robot_control.fleet.v2.state import STATE_PERIOD, Facts, Machine, factsheet, state, visualization
 from robot_control.fleet.v2.vehicle import FAILED, FINISHED, RUNNING, ActionState, Vehicle
@@ -208,12 +208,12 @@ class Client:
             x = y = theta = math.nan
         if self.vehicle.executing or not self.vehicle.standing:
             why = "the robot must stand without an order"
-        elif not math.isfinite(x + y + theta) or not given["mapId"]:
+        elif not math.isfinite(x + y + theta) or not 0 < len(str(given["mapId"])) <= MAX_ID:
             why = "x, y and theta must be numbers, and mapId a name"
         else:
             why = self.robot.set_position(x, y, theta, str(given["mapId"]))
         if not why:
-            self.vehicle.last_id, self.vehicle.last_sequence = str(given.get("lastNodeId", "")), 0
+            self.vehicle.last_id, self.vehicle.last_sequence = str(given.get("lastNodeId", ""))[:MAX_ID], 0
             self.vehicle.last, self._facts = None, self.robot.facts()
         state.end(FAILED if why else FINISHED, why)
 

@@ -24,6 +24,8 @@ MAX_NUMBER = 2**32 - 1
 """uint32 of headerId, orderUpdateId and sequenceId"""
 MAX_ID = 128
 """characters"""
+MAX_TEXT = 300
+"""characters of a description, in which texts of a master may stand"""
 NO_ID = "/+#$"
 """They structure topics (6.3); none of the recommended characters of an id (6.1.2)"""
 LIMITS = {"nodes": 500, "edges": 499, "actions": 32, "actionParameters": 32, "knotVector": 220, "controlPoints": 200}
@@ -57,6 +59,7 @@ class RefusedError(ValueError):
     """A message, an order or an action that is not taken."""
 
     def __init__(self, kind: str, description: str, **references: object) -> None:
+        description = description[:MAX_TEXT]
         super().__init__(description)
         pairs = tuple((key, str(value)[:MAX_ID]) for key, value in references.items())
         self.error = Error(kind, description, pairs)
@@ -138,7 +141,7 @@ def _check_field(path: str, value: Any) -> None:
     if name in COUNTS and isinstance(value, int | float) and not 0 <= value <= MAX_NUMBER:
         raise _malformed(path, f"must be from 0 to {MAX_NUMBER}")
     wrong_id = isinstance(value, str) and (len(value) > MAX_ID or not value.isprintable() or set(value) & set(NO_ID))
-    if name.endswith("Id") and wrong_id:
+    if name.endswith(("Id", "Type")) and wrong_id:
         raise _malformed(path, f"must be at most {MAX_ID} printable characters, without {' '.join(NO_ID)}")
 
 
