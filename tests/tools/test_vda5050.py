@@ -104,6 +104,8 @@ def test_a_violation_names_the_path_of_the_field():
 
 def test_version_2_0_0_is_taken_too():
     assert decoded(json.dumps({**order(PLACES), "version": "2.0.0"}).encode(), "order", MANUFACTURER, SERIAL)
+    old = {**header(), "instantActions": [action("startPause", 1)]}
+    assert decoded(json.dumps(old).encode(), "instantActions", MANUFACTURER, SERIAL)["actions"]
 
 
 # settings and file

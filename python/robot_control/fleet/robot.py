@@ -36,7 +36,9 @@ STATUS_SILENCE = 3.0
 """s without safety_status, robot_status or feedback of follow_path; the slowest come once per second"""
 ACTION = "follow_path"
 JUMP = 0.5
-"""m, rad between two odometry messages: odometry was set, and map → odom does not hold any more"""
+"""m, rad beyond the measured motion: odometry was set, and map → odom does not hold any more"""
+SPEED_CHANGE = 1.0
+"""m/s², rad/s² by which the robot may have been faster between two messages than at both"""
 
 
 class RosRobot:
@@ -224,12 +226,9 @@ class RosRobot:
     # messages
 
     def _receive_odometry(self, message: Odometry) -> None:
-        if self._odometry is not None and self._tf is None:
-            before, after = pose_of(self._odometry), pose_of(message)
-            moved = max(math.dist((before.x, before.y), (after.x, after.y)), abs(angle(after.yaw - before.yaw)))
-            if moved > JUMP and time.monotonic() - self._odometry_at < SILENCE:
-                self.map_odom = None
-                rospy.logwarn("odometry was set: the position on the map is not known any more; send initPosition")
+        if self._odometry is not None and self._tf is None and _jumped(self._odometry, message):
+            self.map_odom = None
+            rospy.logwarn("odometry was set: the position on the map is not known any more; send initPosition")
         self._odometry, self._odometry_at = message, time.monotonic()
 
     def _receive_safety(self, message: SafetyStatus) -> None:
@@ -244,6 +243,15 @@ class RosRobot:
 
     def _receive_battery(self, message: BatteryState) -> None:
         self._battery = message
+
+
+def _jumped(before: Odometry, after: Odometry) -> bool:
+    """True if the pose moved by more than the measured speeds allow in the time between the two messages."""
+    elapsed = max(0.0, float((after.header.stamp - before.header.stamp).to_sec()))
+    a, b, twists = pose_of(before), pose_of(after), (before.twist.twist, after.twist.twist)
+    way = JUMP + elapsed * (SPEED_CHANGE * elapsed + max(abs(twist.linear.x) for twist in twists))
+    turn = JUMP + elapsed * (SPEED_CHANGE * elapsed + max(abs(twist.angular.z) for twist in twists))
+    return bool(math.dist((a.x, a.y), (b.x, b.y)) > way or abs(angle(b.yaw - a.yaw)) > turn)
 
 
 _SILENT = Error("safetyMonitorSilent", "safety_status is silent", (), "start the robot's nodes", fatal=True)

@@ -72,16 +72,18 @@ def decoded(payload: bytes, topic: str, manufacturer: str, serial_number: str) -
         RefusedError: validationError with the path of the field.
     """
     message = _read(payload)
+    if topic == "instantActions" and "instantActions" in message:
+        message.setdefault("actions", message.pop("instantActions"))  # its name in some masters of 2.0.0
     for path, value in _fields(message):
         _check_field(path, value)
     _check_schema(message, topic)
     for name, own in (("manufacturer", manufacturer), ("serialNumber", serial_number)):
         if message[name] != own:
-            raise _malformed(name, "is that of another robot", topic=topic)
+            raise _malformed(name, "is that of another robot")
     if message["version"].split(".")[0] != "2":
-        raise _malformed("version", "must be 2.0.0 or 2.1.0", topic=topic)
+        raise _malformed("version", "must be 2.0.0 or 2.1.0")
     if not is_time(message["timestamp"]):
-        raise _malformed("timestamp", "must be UTC as 2026-01-31T12:00:00.00Z", topic=topic)
+        raise _malformed("timestamp", "must be UTC as 2026-01-31T12:00:00.00Z")
     return message
 
 
@@ -162,7 +164,7 @@ def _validator(topic: str) -> Any:
 
 def _check_schema(message: Message, topic: str) -> None:
     for error in _validator(topic).iter_errors(message):
-        raise _malformed(error.json_path.removeprefix("$").removeprefix("."), error.message[:120], topic=topic)
+        raise _malformed(error.json_path.removeprefix("$").removeprefix("."), error.message[:120])
 
 
 def is_time(text: str) -> bool:
