@@ -90,7 +90,7 @@ class Client:
         self._outbox.append(("factsheet", factsheet(self.machine)))
 
     def receive(self, topic: str, payload: bytes, now: float, *, retained: bool = False) -> None:
-        """A message of the master, taken at `now` s. What waited while this program stood still moves nothing."""
+        """Takes a message of the master at `now` s; one that waited while this program stood still moves nothing."""
         try:
             if now - self._stepped_at > GAP:
                 self._deaf_until = now + GAP
