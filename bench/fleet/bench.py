@@ -186,6 +186,7 @@ def _losses(system: System, runs: int, say: Say) -> list[dict[str, Any]]:
             except AssertionError as error:
                 failed += 1
                 say(f"{kind}: {error}")
+                system.repair()
     return [
         bounded("losses that did not end as stated", failed, f"of {runs * len(LOSSES)}", 0),
         bounded("will seen by the master, worst", max(wills) / KEEP_ALIVE, "of keep_alive", 1.5),
@@ -217,17 +218,7 @@ def _one_loss(system: System, kind: str, after: float, wills: list[float]) -> No
     system.robot.await_rest()
     at = system.here[0]
     assert abs(at - expected) < 0.02, f"the robot stands at {at:.2f} m, not at the end of the base"
-    if kind == "broker killed":
-        system.broker.start()
-    elif kind == "broker stalled":
-        system.broker.stall(go_on=True)
-    elif kind == "cable cut":
-        system.cable.cut()
-        system.cable.stalled = False
-    elif kind == "client killed":
-        system.begin("vda5050.py")
-    elif kind == "client stopped":
-        system.pause("vda5050.py", go_on=True)
+    system.repair()
     system.master.last.pop("state", None)
     system.listen("a state", lambda: system.connection == "ONLINE" and _fresh(system))
     name = f"o{system.count}"

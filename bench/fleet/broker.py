@@ -53,6 +53,11 @@ class Broker:
             time.sleep(0.02)
         raise RuntimeError(f"{MOSQUITTO} does not listen on port {self.port}")
 
+    @property
+    def running(self) -> bool:
+        """False after `kill`."""
+        return self._process is not None and self._process.poll() is None
+
     def kill(self) -> None:
         """SIGKILL."""
         if self._process is not None:
@@ -61,7 +66,7 @@ class Broker:
 
     def stall(self, *, go_on: bool = False) -> None:
         """SIGSTOP, or SIGCONT."""
-        if self._process is not None:
+        if self._process is not None and self.running:
             self._process.send_signal(signal.SIGCONT if go_on else signal.SIGSTOP)
 
     def end(self) -> None:

@@ -80,6 +80,18 @@ class System:
         self._programs[name].kill()
         self._programs[name].wait()
 
+    def repair(self) -> None:
+        """Ends every loss."""
+        if self.cable.stalled:
+            self.cable.cut()
+            self.cable.stalled = False
+        self.broker.stall(go_on=True)
+        if not self.broker.running:
+            self.broker.start()
+        if self._programs["vda5050.py"].poll() is not None:
+            self.begin("vda5050.py")
+        self.pause("vda5050.py", go_on=True)
+
     def pause(self, name: str, *, go_on: bool = False) -> None:
         """SIGSTOP or SIGCONT."""
         self._programs[name].send_signal(signal.SIGCONT if go_on else signal.SIGSTOP)
@@ -142,9 +154,10 @@ class System:
         self.act("cancelOrder")
         self.act("stopPause")
         self.robot.await_rest()
-        time.sleep(0.3)
-        self.origin = self._poses[-1][1]
         self.act("initPosition", x=0.0, y=0.0, theta=0.0, mapId="hall")
+        placed = time.monotonic()
+        self.listen("odometry", lambda: self.poses(placed))
+        self.origin = self._poses[-1][1]
 
     def send(self, places: Sequence[tuple[float, ...]], released: int | None = None, **options: Any) -> float:
         """Sends an order, or an update, until the robot has it; s, monotonic, of the first time. One that is sent
