@@ -28,6 +28,7 @@ from robot_control.msg import FollowPathAction, FollowPathFeedback, FollowPathGo
 from robot_control.path.frames import Tf
 from robot_control.path.waypoints import PathError
 from robot_control.safety.states import DRIVABLE, STOPPED
+from robot_control.safety.watch import CATCH_UP, LATE
 
 MAP = "map"
 SILENCE = 0.5
@@ -53,6 +54,7 @@ class RosRobot:
         self._status: RobotStatus | None = None
         self._battery: BatteryState | None = None
         self._odometry_at = self._safety_at = self._status_at = self._feedback_at = -math.inf
+        self._asked_at = -math.inf
         self._held_by = ""
         self._saved = saved
         self.map_odom: list[Any] | None = None  # mapId, x, y, yaw of odom in the map, if this program sets it
@@ -80,8 +82,11 @@ class RosRobot:
     # facts
 
     def facts(self) -> Facts:
-        """As measured now."""
+        """As measured now. After a late call the receiving threads first take what waits for them."""
+        if time.monotonic() - self._asked_at > LATE:
+            time.sleep(CATCH_UP)
         now, odometry, status = time.monotonic(), self._odometry, self._status
+        self._asked_at = now
         safety = self._safety if now - self._safety_at < STATUS_SILENCE else None
         fresh = odometry is not None and now - self._odometry_at < SILENCE
         if self.progress.status == DRIVING and now - self._feedback_at > STATUS_SILENCE:

@@ -92,8 +92,8 @@ class Piece:
         return self.points[number][0] + rest * math.cos(tangent), self.points[number][1] + rest * math.sin(tangent)
 
     def speed_at(self, along: float, ahead: float, speed: float, deceleration: float) -> float:
-        """m/s at the distance `along` from the begin: that of its segment, else `speed`. It is lower where that is needed
-        to enter a slower segment at its own speed, with this deceleration from the distance `ahead` on.
+        """m/s at the distance `along` from the begin: that of its segment, else `speed`. It is lower where a slower
+        segment has to be entered at its own speed, with this deceleration from the distance `ahead` on.
         """
         number = self._segment_at(along)
         result = self._own(number, speed)
