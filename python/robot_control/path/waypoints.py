@@ -124,6 +124,8 @@ def limited(points: Sequence[Waypoint], speeds: Sequence[float], turn_speeds: Se
             raise PathError(f"{name} has {len(given)} numbers and the path {len(points)} poses: it needs one of each")
     if not all(map(math.isfinite, speeds)) or 0 in speeds:
         raise PathError("speeds must be finite and not zero")
+    if not speeds and not turn_speeds:
+        return list(points)
     no_speeds: list[float | None] = [None] * len(points)
     limits = zip(points, speeds or no_speeds, turn_speeds or [0.0] * len(points), strict=True)
     return [
