@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import getpass
 import shutil
 import signal
 import socket
@@ -38,7 +39,8 @@ class Broker:
     def configure(self, *lines: str) -> None:
         """Starts it (again) with these lines of its configuration."""
         self.kill()
-        self._config.write_text("\n".join([f"listener {self.port} 127.0.0.1", "persistence false", *lines, ""]))
+        head = [f"listener {self.port} 127.0.0.1", "persistence false", f"user {getpass.getuser()}"]  # it reads our keys
+        self._config.write_text("\n".join([*head, *lines, ""]))
         self.start()
 
     def start(self) -> None:

@@ -121,6 +121,12 @@ def test_the_shipped_settings_are_the_defaults():
     assert read_settings(Path(share_file("config/fleet.yaml"))) == Settings()
 
 
+def test_the_file_of_the_client_lies_in_the_home_of_its_user(monkeypatch, tmp_path):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert Settings(serial_number="amr-07").memory == tmp_path / ".ros/robot_control/fleet/robot_control-amr-07.json"
+    assert Settings(memory_file="/var/lib/robot/fleet.json").memory == Path("/var/lib/robot/fleet.json")
+
+
 def test_every_wrong_value_is_named_in_one_message(tmp_path):
     with pytest.raises(SettingsError) as error:
         settings(

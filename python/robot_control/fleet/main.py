@@ -11,7 +11,6 @@ import rospy
 from std_srvs.srv import Trigger, TriggerResponse
 
 from robot_control._robot_control import ParameterError, RobotError
-from robot_control.blackbox.main import LOGS
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message, given_path
 from robot_control.common.robot_kind import refuse_running_legs
@@ -41,8 +40,7 @@ class Node:
         """Raises OSError, MemoryFileError, and what `running_description` raises."""
         from robot_control.fleet.link import Link
 
-        path = settings.memory_file or LOGS / "fleet" / f"{settings.manufacturer}-{settings.serial_number}.json"
-        self._memory = Memory(Path(path))
+        self._memory = Memory(settings.memory)
         self.robot = RosRobot(settings, self._memory["position"])
         vehicle = Vehicle()
         if self._memory["vehicle"]:

@@ -13,6 +13,7 @@ from typing import Any
 
 import yaml  # type: ignore[import-untyped]
 
+from robot_control.blackbox.main import LOGS
 from robot_control.common.files import given_path
 from robot_control.fleet.v2.capability import STANDARD, ActionKind
 from robot_control.fleet.v2.messages import VERSIONS
@@ -76,6 +77,12 @@ class Settings:
     def password(self) -> str | None:
         """The first line of its file. Raises OSError."""
         return Path(self.password_file).read_text(encoding="utf-8").partition("\n")[0] if self.password_file else None
+
+    @property
+    def memory(self) -> Path:
+        """`memory_file`, or that of this robot among the logs."""
+        name = f"{self.manufacturer}-{self.serial_number}.json"
+        return Path(self.memory_file) if self.memory_file else given_path(str(LOGS / "fleet" / name))
 
 
 def read_settings(*paths: Path) -> Settings:
