@@ -39,7 +39,8 @@ class Broker:
     def configure(self, *lines: str) -> None:
         """Starts it (again) with these lines of its configuration."""
         self.kill()
-        head = [f"listener {self.port} 127.0.0.1", "persistence false", f"user {getpass.getuser()}"]  # it reads our keys
+        user = getpass.getuser()  # one of its own could not read the keys
+        head = [f"listener {self.port} 127.0.0.1", "persistence false", f"user {user}"]
         self._config.write_text("\n".join([*head, *lines, ""]))
         self.start()
 
