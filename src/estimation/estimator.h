@@ -2,20 +2,21 @@
 /// The estimator computes the state of a cycle from the sensors of that cycle (REP 103, REP 105).
 ///
 ///   encoders ─► travel of either side ─┬─► planar core ─► pose, calibration, covariance
-///   gyro ──────────────────────────────┤        ▲ explicit, bounded correction of the path
+///   gyro ──────────────────────────────┤        ▲ variance
 ///   accelerometer, tilt filter ────────┴─► slip detector ─► slide
 ///
-/// The wheels give the distance and the gyro the heading (planar/planar_core.h). The accelerometer shortens the
-/// distance by parts of a percent: it shows the tilt and the creep of tyres. It corrects the path further only while
-/// slip is proven, and within bounds (slip/slip_detector.h, slip/wheel_slide.h). Slip widens the covariance.
+/// The wheels give the distance. Gyro and wheels give the heading, weighed by their deviations from the first metre on
+/// (planar/planar_core.h). The accelerometer shortens the distance by parts of a percent: it shows the tilt and the
+/// creep of tyres. Slip is named and widens the covariance (slip/slip_detector.h); it moves the path only of a robot
+/// that is blocked (slip/wheel_slide.h).
 ///
 /// At rest (rest/rest_watch.h) nothing is integrated: pose and covariance stay. The gyro's bias and the tilt
-/// (tilt/tilt.h) are learned. The bias that the first rest shows also corrects the pose. The estimator takes the robot
-/// to rest at the beginning of a run. A window that turns out not to be quiet is integrated at once, together with the
+/// (tilt/tilt.h) are learned. The first rest also corrects the pose. At the beginning of a run the robot counts as
+/// resting. A window that turns out not to be quiet is integrated at once, together with the
 /// one before.
 ///
-/// A run that begins in motion uses wheels and gyro until the robot rests. No slide is corrected before that rest,
-/// because the accelerometer's bias is not known then.
+/// No slip is named before the first rest, because the accelerometer's bias is not known then. Neither is the slip of
+/// wheels whose readings come more than kSlowWheels apart.
 ///
 /// Samples may come at any rate. A sample that is not finite or impossible is not used and sets kStateBadSample. A
 /// missing encoder sample sets the same flag. The last good sample holds for three times the gap between the last two,
@@ -32,8 +33,7 @@
 /// and biases use every sample.
 ///
 /// kStateDegraded has two possible reasons. In kDegradedPosition wheels slip. In kDegradedHeading the deviation of the
-/// gyro's bias exceeds kUnknownBias, or wheels and gyro have contradicted each other since the last rest. Before the
-/// first rest the bias is unknown.
+/// gyro's bias exceeds kUnknownBias, or wheels and gyro contradict each other (planar/planar_core.h).
 ///
 /// The confidence of a sensor is 0 while it is not used, else min(1, 1/nis), with nis smoothed over kBlock.
 
@@ -84,6 +84,7 @@ class Estimator {
     TurnComparison comparison;
     Tilt tilt;                              ///< tilt and the accelerometer's bias
     std::array<BiasEstimate, 2> gyro_bias;  ///< rad/s, about x and y
+    RestNoise gyro_noise;
     SlipWatch slip;
     RobotRest rest;
     double yaw_rate = 0;  ///< rad/s, in this step
@@ -169,6 +170,7 @@ class Estimator {
   // These functions are in estimator_output.cpp.
   void fill(const SensorFrame& sensors, StateFrame& out) const noexcept;
   void fill_pose(BaseState& base) const noexcept;
+  double late_wheels() const noexcept;
   void fill_pose_covariance(double yaw, const Planar& lever, BaseState& base) const noexcept;
   void fill_attitude_covariance(double yaw, double yaw_variance, BaseState& base) const noexcept;
   void fill_twist(BaseState& base) const noexcept;

@@ -1,6 +1,7 @@
 #pragma once
 /// Divides a drive into blocks of at least kBlock, over which the planar core compares the turn of the wheels with that
 /// of the gyro. A block begins and ends where both sides have been read.
+/// While wheels slip, blocks show contradictions but teach nothing (planar_core.h).
 /// After a fault of a drive no block begins before the next rest. One wheel brakes while the other coasts, so wheels
 /// and gyro differ by slip.
 
@@ -16,11 +17,12 @@ class TurnComparison {
     double dt = 0;               ///< s
     double left = 0, right = 0;  ///< m, travel in this step
     bool border = false;         ///< Both sides were read, and the gyro turns the robot.
-    bool slide = false;          ///< Wheels slip, so that the open block is not compared.
+    bool slide = false;          ///< Wheels slip.
     double gyro_unchanged = 0;   ///< s, ImuReading::gyro_unchanged
   };
   struct Block {
     double time = 0, left = 0, right = 0;  ///< s, m
+    bool slid = false;                     ///< Wheels slipped.
     bool stuck = false;                    ///< The gyro repeated one sample for longer than kMaxHoldTime.
   };
   struct Output {
@@ -33,7 +35,7 @@ class TurnComparison {
     block_.left += input.left;
     block_.right += input.right;
     block_.stuck = block_.stuck || input.gyro_unchanged > Tuning::kMaxHoldTime;
-    open_ = open_ && !input.slide;
+    block_.slid = block_.slid || input.slide;
     if (!input.border || suspended_ || (open_ && block_.time < Tuning::kBlock)) return {};
     const Output output{.begins = true, .ended = open_ ? std::optional(block_) : std::nullopt};
     begin();

@@ -25,9 +25,11 @@ class WheelNoise {
     double slips = 0, twists = 0;
   };
 
-  /// `least` (m/√m) is that of the best floor. A turn that drags no wheel begins with a third of the noise.
+  /// `least` (m/√m) is that of the best floor. Wheels that no turn drags begin with a fifth of the noise.
   WheelNoise(double least, bool drags_wheels) noexcept
-      : least_(least), slip_(std::max(Tuning::kFirstSlip, least)), twist_(drags_wheels ? kScrub : kScrub / 3) {}
+      : least_(least),
+        slip_(std::max(least, drags_wheels ? Tuning::kFirstSlip : Tuning::kFirstSlip / 5)),
+        twist_(drags_wheels ? kScrub : kScrub / 5) {}
 
   /// `rolled` is the sum of both sides in m, `angle` is in rad and `wheel_base` in m.
   Variances variances(double rolled, double angle, double wheel_base) const noexcept {

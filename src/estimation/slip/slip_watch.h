@@ -22,7 +22,7 @@ class SlipWatch {
     std::array<double, 2> side_speed{};  ///< m/s, of the treads
     double clock_offset = 0;             ///< s, by which the wheels are late
     SlipUncertainty uncertainty;
-    bool corrects = true;  ///< A slide may begin, because the accelerometer's bias is known or no turn drags wheels.
+    bool corrects = true;  ///< A slide may begin, because the accelerometer's bias is known.
   };
   struct Output {
     bool judged = false;                                ///< The members below are those of a new judgement.

@@ -1,10 +1,18 @@
 #include "estimation/slip/wheel_slide.h"
 
 #include <cmath>
+#include <utility>
 
 #include "signals/state_frame.h"
 
 namespace robot_control {
+namespace {
+
+double significant(double sigma) noexcept {
+  return std::max(Tuning::kMinSlipSpeed, Tuning::kSignificant * sigma);
+}
+
+}  // namespace
 
 WheelSlide::Correction WheelSlide::begin(const MotionDifference& difference, double span, const Input& input) noexcept {
   const Point onset = difference.before(difference.last().time - 0.9 * span);
@@ -43,42 +51,26 @@ WheelSlide::Correction WheelSlide::step(const MotionDifference& difference, cons
   const double dt = now.time - corrected_.time;
   if (!(dt > 0)) return {};
   const double yaw = (now.yaw + corrected_.yaw) / 2;
-  const Excess since = excess(corrected_, now);
-  const double slipped = slipped_speed(since, input) * dt;
   corrected_ = now;
   const Excess latest = excess(before, now);
-  excess_speed_ = slipped_speed(latest, input);
-  const auto [low, high] = std::minmax({0.0, onset_speed_, input.wheel_speed()});
-  const double apart = sideways_ ? std::hypot(latest.along, latest.across) : latest.along;
-  const double choice = Tuning::kChoiceDeviation * std::clamp(apart, low - high, high - low);
-  const double path_speed_deviation = std::hypot(std::min(high - low, deviation), choice);
-  const double changed = std::max(std::abs(excess_speed_), std::abs(input.wheel_speed() - onset_speed_));
-  speed_deviation_ = std::max(path_speed_deviation, changed / 2);
-  const double earlier = path_deviation_;
-  path_deviation_ += path_speed_deviation * dt;
-  return {.shift = rotated({-slipped, 0}, yaw),
-          .variance = square(path_deviation_) - square(earlier),
-          .contradiction = contradict(since.turn / input.wheel_base * dt, latest, deviation, input)};
-}
-
-double WheelSlide::contradict(double apart, const Excess& excess, double deviation, const Input& input) noexcept {
-  turned_apart_ += apart;
-  const double earlier = contradiction_;
-  const double speed = std::abs(input.wheel_speed() - excess_speed_);
-  const double sideways =
-      std::abs(excess.across) + Tuning::kSignificant * std::hypot(deviation, input.path_slope_deviation);
-  contradiction_ = turned_apart_;
-  if (std::abs(turned_apart_) * speed > sideways) contradiction_ = std::copysign(sideways / speed, turned_apart_);
-  return contradiction_ - earlier;
-}
-
-/// A side that rolls gives the speed without the accelerometer.
-double WheelSlide::slipped_speed(const Excess& excess, const Input& input) const noexcept {
-  if (!slips_[0] && !slips_[1]) return 0;
-  const double along = slips_[0] && slips_[1] ? excess.along : (slips_[1] ? 1 : -1) * excess.turn / 2;
   const double wheels = input.wheel_speed();
+  const double ground = wheels - latest.along;
+  const double stands = significant(deviation);
+  const bool blocked = slips_[0] && slips_[1] && std::abs(ground) <= stands && std::abs(wheels) > stands;
+  blocked_ = blocked ? blocked_ + dt : 0;
+  const Planar rolled = rotated({wheels * dt, 0}, yaw);
+  held_ = blocked_ > 0 && now.time > difference.path_begin() ? held_ + rolled : Planar{};
+  Correction correction;
+  if (blocked_ >= Tuning::kBlock) correction.shift = -std::exchange(held_, Planar{});
+  excess_speed_ = blocked_ >= Tuning::kBlock ? wheels : 0;
+  const double apart = sideways_ ? std::hypot(latest.along, latest.across) : latest.along;
   const auto [low, high] = std::minmax({0.0, onset_speed_, wheels});
-  return wheels - std::clamp(wheels - along, low, high);
+  const double choice = Tuning::kChoiceDeviation * std::min(std::abs(apart), high - low);
+  speed_deviation_ = std::max(choice, std::abs(wheels - onset_speed_) / 2);
+  const double earlier = path_deviation_;
+  path_deviation_ += choice * dt;
+  correction.variance = square(path_deviation_) - square(earlier);
+  return correction;
 }
 
 Planar WheelSlide::rolling_slope(const MotionDifference& difference) const noexcept {
@@ -89,7 +81,6 @@ Planar WheelSlide::rolling_slope(const MotionDifference& difference) const noexc
 
 /// A side rolls if the slip of the other one explains its excess.
 void WheelSlide::evaluate(double time, const Excess& excess, double deviation, const Input& input) noexcept {
-  const auto significant = [](double sigma) { return std::max(Tuning::kMinSlipSpeed, Tuning::kSignificant * sigma); };
   largest_ = std::max({largest_, std::abs(excess.side(0)), std::abs(excess.side(1))});
   const bool sudden = largest_ > Tuning::kSignificantTurn * line_deviation_;
   const double carried = significant(std::hypot(deviation, input.path_slope_deviation));

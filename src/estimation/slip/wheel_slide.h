@@ -1,6 +1,8 @@
 #pragma once
 /// A slide lasts from the onset of slip that the detector proved until all wheels roll again.
 ///
+/// A slide names the slip, widens the covariance and moves nothing, with one exception: a blocked robot.
+///
 /// Before the onset E follows a straight line (motion_difference.h). The slide extends that line. The slope of E beyond
 /// it is the excess speed of the wheels over the ground, and line + ∫ acceleration is the ground speed u.
 ///
@@ -9,16 +11,12 @@
 /// A side slips while its share of the slope exceeds kSignificant σ_u. After sudden slip, whose largest slope exceeds
 /// kSignificantTurn σ, a side slips until half of that slope is gone, because no drift explains it.
 ///
-/// While a side slips, the path takes the speed u instead of the wheels' speed. It is clamped between zero, the speed
-/// at the onset and the wheels' speed. So a robot that is lifted or tipped with standing wheels does not move. The path
-/// is never moved sideways.
+/// The robot is blocked, by a wall, while both sides slip and u is zero within kSignificant σ_u, which the wheels'
+/// speed exceeds. After kBlock the path takes back what the wheels have rolled since then. So a robot that is lifted or
+/// tipped with standing wheels does not move.
 ///
-/// A slide adds the variance of the path's speed, integrated as one error. It consists of σ_u within these bounds and
-/// of kChoiceDeviation times the difference between wheels and accelerometer, because either may be right.
-///
-/// In a slide wheels and gyro turn apart by Φ = ∫ W dt / B. A wrong gyro bends the path against the acceleration, so
-/// that E moves across by u Φ. So the gyro is wrong by at most Φ. It is also wrong by at most the motion of E across
-/// plus kSignificant deviations, over u.
+/// The variance is that of the path's speed, integrated as one error: kChoiceDeviation times the difference between
+/// wheels and accelerometer, because either may be right.
 ///
 /// The slide ends when nothing has slipped for kRolls.
 
@@ -47,9 +45,8 @@ class WheelSlide {
   };
   /// Describes the changes of the path that the caller applies.
   struct Correction {
-    Planar shift{};            ///< m, odom axes
-    double variance = 0;       ///< m²
-    double contradiction = 0;  ///< rad by which the gyro may be wrong more than before
+    Planar shift{};       ///< m, odom axes
+    double variance = 0;  ///< m²
   };
 
   /// Begins a slide after slip was proven that began `span` s ago at most.
@@ -64,7 +61,7 @@ class WheelSlide {
   bool sideways() const noexcept { return sideways_; }
   /// Returns the slope of E at the end, while all wheels rolled, in m/s, odom axes.
   Planar rolling_slope(const MotionDifference& difference) const noexcept;
-  double excess_speed() const noexcept { return excess_speed_; }        ///< m/s, wheels minus path
+  double excess_speed() const noexcept { return excess_speed_; }        ///< m/s, wheels minus path: of a blocked robot
   double speed_deviation() const noexcept { return speed_deviation_; }  ///< m/s, of the path's speed
 
  private:
@@ -78,9 +75,7 @@ class WheelSlide {
   };
 
   Excess excess(const Point& from, const Point& to) const noexcept;
-  double slipped_speed(const Excess& excess, const Input& input) const noexcept;  ///< m/s, wheels minus ground
-  double contradict(double apart, const Excess& excess, double deviation, const Input& input) noexcept;  ///< rad
-  double line_deviation(double time, const AccelerationNoise& noise) const noexcept;                     ///< m/s: σ_u
+  double line_deviation(double time, const AccelerationNoise& noise) const noexcept;  ///< m/s: σ_u
   void evaluate(double time, const Excess& excess, double deviation, const Input& input) noexcept;
 
   bool active_ = false;
@@ -95,8 +90,8 @@ class WheelSlide {
   bool sideways_ = false;
   std::uint64_t reasons_ = 0;
   double excess_speed_ = 0, speed_deviation_ = 0;
-  double turned_apart_ = 0;    ///< rad: Φ
-  double contradiction_ = 0;   ///< rad, of the gyro
+  double blocked_ = 0;         ///< s for which both sides spin and the robot stands
+  Planar held_;                ///< m, odom axes, path of the wheels in that time
   double path_deviation_ = 0;  ///< m, deviation that this slide has added
 };
 

@@ -37,6 +37,7 @@ WheelReading WheelSides::step(const SensorFrame& sensors, double dt) noexcept {
   }
   reading.fell_silent = reading.both_lost() && sides_[0].encoder.gap() > 0 && sides_[1].encoder.gap() > 0;
   reading.batch = reading.both_received() && sides_[0].encoder.time() < Tuning::kBatch * usual_gap_;
+  reading.gap = usual_gap_;
   reading.speed_step = quantum_.step();
   if (reading.both_received()) reading.travel_variance = quantum_.travel_variance();
   return reading;

@@ -21,6 +21,7 @@ struct WheelReading {
   std::array<bool, 2> received{};  ///< A reading was accepted in this step.
   std::array<bool, 2> lost{};      ///< The side is lost.
   double unread = 0;               ///< m, travel of the middle by sides without a reading, at their last speeds
+  double gap = 0;                  ///< s, usual time between two readings
   double speed_step = 0;           ///< m/s, in which speeds are reported; 0: none
   double travel_variance = 0;      ///< m², of each side's travel, by that step
   bool refused = false;            ///< A reading was not used.
