@@ -16,11 +16,10 @@ Estimator::State::State(const EstimatorParameters& parameters, const DriveTrain&
     : wheel_sides(robot, parameters.speed_bandwidth, period, std::sqrt(12.0) * encoder_deviation(parameters, robot)),
       core(core_params(parameters, robot)),
       tilt(tilt_params(parameters)),
-      gyro_noise(core_params(parameters, robot).gyro_noise),
+      gyro_noise(parameters.gyro_noise),
       slip(slip_params(parameters, robot)),
       rest(rest_params(parameters, robot)),
-      rate(parameters.rate_bandwidth, period),
-      wheel_velocities(robot, parameters.speed_bandwidth, period) {}
+      rate(parameters.rate_bandwidth, period) {}
 
 Estimator::Estimator(const EstimatorParameters& parameters, const DriveTrain& robot, double period)
     : parameters_(checked(parameters, robot, period)),
@@ -29,7 +28,6 @@ Estimator::Estimator(const EstimatorParameters& parameters, const DriveTrain& ro
       wheel_slip_(robot),
       base_from_imu_(rotation_of(robot.imu_in_base.orientation)),
       encoder_(encoder_deviation(parameters, robot)),
-      gyro_noise_(core_params(parameters, robot).gyro_noise),
       state_(parameters, robot, period),
       fresh_(state_) {
   rate_noise_gain_ = state_.rate.noise_gain();
@@ -85,7 +83,6 @@ void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
   if (!s.rest.resting()) rate.z() = s.yaw_rate;
   if (by_gyro) rate = vector(s.imu.rate) - gyro_bias();
   s.rate.follow(rate, by_gyro, dt);
-  s.wheel_velocities.step(sensors, dt);
   s.pose_set = std::exchange(s.pose_request, std::nullopt);
   if (!s.pose_set) return;
   place(*s.pose_set);
@@ -111,7 +108,7 @@ void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
     s.comparison.suspend();
     s.middle_travel.forget_credit(side);
     s.core.shift(0, 0, square(Tuning::kRestart));
-    s.slip.restart();
+    restart_slip();
     if (time <= Tuning::kMaxHoldTime) continue;
     s.middle_travel.forget_turn();
     if (!replaced) lose_travel(time);
@@ -148,13 +145,14 @@ void Estimator::move(double dt) noexcept {
   const double already = s.middle_travel.turned_since(s.wheels);
   const double wheel_turn = s.core.wheel_turn(s.wheels.left(), s.wheels.right()) - already;
   const std::optional<double> angle = s.gyro_turn.step(s.imu, wheel_turn, s.core.bias(), dt);
-  if (angle) {
+  const bool by_gyro = angle.has_value();
+  if (by_gyro) {
     s.core.turn_by_gyro(*angle, dt);
   } else {
     s.core.turn_by_wheels(s.wheels.left(), s.wheels.right(), already);
     s.comparison.interrupt();
   }
-  s.yaw_rate = angle ? s.imu.rate[2] - s.core.bias() : wheel_rate();
+  s.yaw_rate = by_gyro ? s.imu.rate[2] - s.core.bias() : wheel_rate();
   const double turned = s.core.pose().yaw - before;
   Planar path;
   for (const auto& travel : s.middle_travel.step(s.wheels, turned, geometry_.wheel_base, s.core.ratio())) {
@@ -163,7 +161,7 @@ void Estimator::move(double dt) noexcept {
   s.core.shift(0, 0, s.wheels.travel_variance / 2);
   if (s.imu.gyro) turn_tilt(*s.imu.gyro, dt);
   if (parameters_.slip_detection) watch_slip(dt, turned, path);
-  compare_turns(dt, angle.has_value());
+  compare_turns(dt, by_gyro);
 }
 
 /// `gyro` is in rad/s and includes the bias.
@@ -231,7 +229,7 @@ double Estimator::forward_speed() const noexcept {
   if (s.wheels.any_lost() && !s.wheels.both_lost()) {
     speed = s.wheels.lost[kLeft] ? s.wheels.speed[kRight] - faster : s.wheels.speed[kLeft] + faster;
   }
-  return speed - s.slip.slide().excess_speed();
+  return speed - s.slide.excess_speed();
 }
 
 double Estimator::wheel_rate() const noexcept {

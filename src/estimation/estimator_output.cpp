@@ -24,7 +24,7 @@ void Estimator::fill(const SensorFrame& sensors, StateFrame& out) const noexcept
   fill_health(out);
   const auto joints = static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(sensors.joint_count, kMaxJoints));
   std::transform(sensors.joints.begin(), sensors.joints.begin() + joints, out.joint_velocity.begin(), valid_velocity);
-  state_.wheel_velocities.write(out.joint_velocity);
+  state_.wheel_sides.write(out.joint_velocity);
   wheel_slip_.write(out);
 }
 
@@ -112,7 +112,7 @@ void Estimator::fill_twist_covariance(double yaw_rate, BaseState& base) const no
     if (apart > square(Tuning::kSignificant) * turn) turn = apart;
   }
   if (state_.rest.resting()) wheel = turn = 0;
-  const double slides = state_.slip.slide().active() ? square(state_.slip.slide().speed_deviation()) : 0;
+  const double slides = state_.slide.active() ? square(state_.slide.speed_deviation()) : 0;
   base.twist_covariance = {};
   base.twist_covariance[0] = wheel / 2 + slides + square(parameters_.wheel_radius_deviation * forward_speed()) +
                              square(geometry_.axle_y) * turn;
@@ -136,18 +136,18 @@ void Estimator::fill_health(StateFrame& out) const noexcept {
   out.wheeled.odometry = state_.wheel_odometry;
   out.wheeled.nis = state_.nis;
   out.wheeled.rejected = state_.rejected;
-  out.wheeled.slip = state_.rest.resting() ? 0 : state_.slip.slide().reasons();
+  out.wheeled.slip = state_.rest.resting() ? 0 : state_.slide.reasons();
   out.wheeled.residual_level = state_.slip.level();
   out.base.distance = state_.distance;
   out.skipped = state_.skipped;
   const auto confidence = [&](SensorIndex sensor, bool used) {
     out.wheeled.confidence[sensor] = used ? 1 / std::max(1.0, out.wheeled.nis[sensor]) : 0;
   };
-  confidence(kLeftEncoder, state_.wheels.received[kLeft] && !state_.slip.slide().slips(kLeft));
-  confidence(kRightEncoder, state_.wheels.received[kRight] && !state_.slip.slide().slips(kRight));
+  confidence(kLeftEncoder, state_.wheels.received[kLeft] && !state_.slide.slips(kLeft));
+  confidence(kRightEncoder, state_.wheels.received[kRight] && !state_.slide.slips(kRight));
   confidence(kGyro, state_.imu.gyro.has_value());
   confidence(kAccelerometer, state_.imu.accelerometer.has_value());
-  confidence(kLateralContact, !state_.slip.slide().sideways());
+  confidence(kLateralContact, !state_.slide.sideways());
   confidence(kVerticalContact, true);
   out.base.flags = state_.flags;
   if (!state_.wheels.any_lost() || (!state_.wheels.both_lost() && state_.imu.gyro)) out.base.flags |= kStateValid;
@@ -155,7 +155,7 @@ void Estimator::fill_health(StateFrame& out) const noexcept {
   if (state_.restarted) out.base.flags |= kStateRestarted;
   if (out.wheeled.slip != 0) out.base.flags |= kStateSlip;
   out.base.degraded = 0;
-  if (state_.slip.slide().active()) out.base.degraded |= kDegradedPosition;
+  if (state_.slide.active()) out.base.degraded |= kDegradedPosition;
   if (state_.core.contradicted()) out.base.degraded |= kDegradedHeading;
   const bool unknown_bias = state_.core.bias_variance() > square(Tuning::kUnknownBias);
   if (!state_.rest.resting() && state_.imu.gyro && unknown_bias) out.base.degraded |= kDegradedHeading;

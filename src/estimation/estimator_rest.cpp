@@ -16,20 +16,21 @@ void Estimator::watch_rest(double dt) noexcept {
     acceleration = {now[0], now[1]};
   }
   const bool bridged = !s.imu.gyro && s.imu.gyro_unchanged < Tuning::kMaxHoldTime;
-  const RobotRest::Output output = s.rest.step({.sample = {.dt = dt,
-                                                           .left = s.wheels.left(),
-                                                           .right = s.wheels.right(),
-                                                           .gyro = s.imu.gyro,
-                                                           .accelerometer = s.imu.accelerometer},
-                                                .rate = bridged ? std::optional(s.imu.sample) : s.imu.gyro,
-                                                .acceleration = acceleration,
-                                                .any_lost = s.wheels.any_lost(),
-                                                .fell_silent = s.wheels.fell_silent,
-                                                .bias = array(gyro_bias()),
-                                                .bias_variance = array(gyro_bias_variance()),
-                                                .mean_variance = square(gyro_noise_) / parameters_.standstill_time});
+  const RobotRest::Output output =
+      s.rest.step({.sample = {.dt = dt,
+                              .left = s.wheels.left(),
+                              .right = s.wheels.right(),
+                              .gyro = s.imu.gyro,
+                              .accelerometer = s.imu.accelerometer},
+                   .rate = bridged ? std::optional(s.imu.sample) : s.imu.gyro,
+                   .acceleration = acceleration,
+                   .any_lost = s.wheels.any_lost(),
+                   .fell_silent = s.wheels.fell_silent,
+                   .bias = array(gyro_bias()),
+                   .bias_variance = array(gyro_bias_variance()),
+                   .mean_variance = square(parameters_.gyro_noise) / parameters_.standstill_time});
   if (output.began) {
-    s.slip.end_slide();
+    s.slide.end();
     s.comparison.interrupt();
     s.middle_travel.forget_turn();
   }
@@ -50,9 +51,10 @@ void Estimator::integrate(const HeldMotion& held, bool stood) noexcept {
   roll({.distance = (held.left + held.right) / 2, .turn_since = (s.core.pose().yaw - before) / 2});
   s.middle_travel.forget_turn();
   if (stood) {
-    s.slip.restart_at_rest(s.tilt.up(), held.velocity);
+    s.slide.end();
+    s.slip.restart_at_rest(s.slip_yaw, s.tilt.up(), rotated(held.velocity, s.slip_yaw));
   } else {
-    s.slip.restart();
+    restart_slip();
   }
   s.comparison.resume();
   if (!s.wheels.both_received()) return;

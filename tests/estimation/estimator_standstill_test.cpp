@@ -42,7 +42,7 @@ TEST_F(EstimatorStandstillTest, LearnsAConstantBiasExactlyInTheLimit) {
   observe();
   drive(0, 0, 80 * kWindow);
   const EstimatorParameters parameters;
-  const double noise = Tuning::kMountedGyro * parameters.gyro_noise;
+  const double noise = parameters.gyro_noise;
   const double r = noise * noise / parameters.standstill_time;
   const double p = parameters.gyro_bias_initial * parameters.gyro_bias_initial;
   EXPECT_NEAR(state_.base.gyro_bias[2], 0.03, 0.03 * r / (80 * p) * 1.1);

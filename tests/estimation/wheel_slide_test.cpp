@@ -10,13 +10,7 @@ class WheelSlideTest : public SlipFixture {
  protected:
   WheelSlideTest() { learn(); }
 
-  WheelSlide::Input input() const {
-    return {.noise = body_.detector.acceleration_noise(1e-6),
-            .path_slope_deviation = body_.detector.slope_deviation(SlipResidual::kAlong),
-            .turn_slope_deviation = body_.detector.slope_deviation(SlipResidual::kTurn),
-            .side_speed = {body_.speed + body_.left, body_.speed + body_.right},
-            .sideways = body_.detector.proven(SlipResidual::kAcross)};
-  }
+  WheelSlide::Speeds treads() const { return {body_.speed + body_.left, body_.speed + body_.right}; }
   void add(const WheelSlide::Correction& correction) {
     corrected_ = corrected_ + correction.shift;
     variance_ += correction.variance;
@@ -27,10 +21,10 @@ class WheelSlideTest : public SlipFixture {
       if (!body_.step(ahead, across)) continue;
       evaluate(false);
       if (slide_.active()) {
-        add(slide_.step(body_.detector.difference(), input()));
+        add(slide_.step(body_.detector, treads()));
         if (!slide_.active()) return t;
-      } else if (const double span = body_.detector.shortest_proven_span(); span > 0) {
-        add(slide_.begin(body_.detector.difference(), span, input()));
+      } else if (any_proven()) {
+        add(slide_.begin(body_.detector, treads()));
       }
     }
     return seconds;
@@ -141,13 +135,10 @@ TEST_F(SlipFixture, ARobotThatIsTippedOnStandingWheelsDoesNotMove) {
     body_.error = i < 200 ? 3.0 : -2.0;
     if (!body_.step()) continue;
     evaluate(false);
-    const WheelSlide::Input input{.noise = body_.detector.acceleration_noise(1e-6),
-                                  .path_slope_deviation = body_.detector.slope_deviation(SlipResidual::kAlong)};
-    const double span = body_.detector.shortest_proven_span();
     if (slide.active()) {
-      moved = moved + slide.step(body_.detector.difference(), input).shift;
-    } else if (span > 0) {
-      moved = moved + slide.begin(body_.detector.difference(), span, input).shift;
+      moved = moved + slide.step(body_.detector, {}).shift;
+    } else if (any_proven()) {
+      moved = moved + slide.begin(body_.detector, {}).shift;
     }
   }
   EXPECT_LT(std::hypot(moved.x, moved.y), 0.02);

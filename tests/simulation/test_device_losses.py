@@ -22,10 +22,24 @@ def test_silence_on_a_slope_does_what_is_stated(dialect):
     assert as_stated((dialect, SEED))
 
 
+def drives(dialect, bus, seconds):
+    """The figures of an undisturbed drive and of one on this bus."""
+    return [run_drive(DisturbedDrive(dialect, each, seconds)) for each in (BUSES[0], bus)]
+
+
 @pytest.mark.parametrize("bus", BUSES[1:])
-@pytest.mark.parametrize("dialect", DIALECTS)
-def test_lost_and_late_frames_stop_nothing_and_hardly_disturb(dialect, bus):
-    undisturbed, disturbed = (run_drive(DisturbedDrive(dialect, each, 30.0)) for each in (BUSES[0], bus))
+@pytest.mark.parametrize(
+    ("dialect", "seconds"), [("odrive", 30.0), pytest.param("cia402", 900.0, marks=pytest.mark.nightly)]
+)
+def test_lost_and_late_frames_stop_nothing_and_hardly_disturb(dialect, seconds, bus):
+    undisturbed, disturbed = drives(dialect, bus, seconds)
     assert disturbed.stops == 0
     assert disturbed.ripple < RIPPLE * undisturbed.ripple
     assert disturbed.odometry < ODOMETRY * undisturbed.odometry
+
+
+@pytest.mark.parametrize("bus", BUSES[1:])
+def test_nor_do_they_make_a_cia_402_drive_ripple(bus):
+    undisturbed, disturbed = drives("cia402", bus, 30.0)
+    assert disturbed.stops == 0
+    assert disturbed.ripple < RIPPLE * undisturbed.ripple

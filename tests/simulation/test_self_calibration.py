@@ -46,4 +46,4 @@ def test_a_robot_that_never_rested_claims_little_of_its_wheels(seed):
     end = wander(rest=60, seconds=60, seed=seed)
     assert int(end["estimate_flags"]) & DEGRADED
     assert end["radius_ratio_deviation"] > 0.005
-    assert end["radius_ratio"] == pytest.approx(1.0, abs=0.4 * end["radius_ratio_deviation"])
+    assert end["radius_ratio"] == pytest.approx(RATIO, abs=3 * end["radius_ratio_deviation"])

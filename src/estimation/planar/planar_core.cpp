@@ -124,29 +124,16 @@ PlanarCore::Innovation PlanarCore::end_block(const Block& block) noexcept {
   if (square(angle) > square(Tuning::kSignificantTurn) * drift) h[kBase] = params_.wheel_base * angle;
   const Vector ph = *covariance_ * h;
   const WheelNoise::Variances parts = noise_.variances(rolled, angle, b);
-  const double noise = parts.slips + parts.twists + 4 * square(params_.encoder) + square(b * Tuning::kJitter * later);
-  const double s = h.dot(ph) + noise;
+  const double s = h.dot(ph) + parts.slips + parts.twists + 4 * square(params_.encoder);
   const double difference = block.right - block.left;
   const double innovation = difference + ratio() * mean - b * angle;
   const double normalised = innovation / std::sqrt(s);
-  const bool agree = std::abs(normalised) <= Tuning::kGate && !block.stuck;
-  if (agree) {
-    const double taken = params_.drags_wheels ? 3 * Tuning::kAgreement : Tuning::kAgreement;
-    doubt_ *= 1 - taken;
-    apart_ *= 1 - taken;
-  } else {
-    const double wheels = angle + innovation / b;
-    const bool scrubs = params_.drags_wheels && !block.stuck;
-    const double least = scrubs ? wheels * 3 / 4 : wheels;
-    const double nearest = std::clamp(angle, std::min(least, wheels), std::max(least, wheels));
-    const double usual = block.stuck ? 0 : Tuning::kSignificant * std::sqrt(s) / b;
-    contradict(std::copysign(std::max(0.0, std::abs(angle - nearest) - usual), nearest - angle));
-  }
+  const bool agree = std::abs(normalised) <= Tuning::kGate;
+  compare(angle, angle + innovation / b, Tuning::kSignificant * std::sqrt(s) / b, agree, block.stuck);
   if (block.slid) return {.nis = square(normalised), .used = false};
-  const bool used = std::abs(normalised) <= Tuning::kGate;
   Vector gain = ph / s;
   if (params_.drags_wheels) gain.segment<5>(kX).setZero();
-  if (used) correct(gain, ph, s, std::clamp(normalised, -Tuning::kHuber, Tuning::kHuber) * std::sqrt(s));
+  if (agree) correct(gain, ph, s, std::clamp(normalised, -Tuning::kHuber, Tuning::kHuber) * std::sqrt(s));
   noise_.learn(normalised, parts, s);
   const double other =
       difference + (start_.radius_ratio - 1) * mean - params_.wheel_base * start_.wheel_base_factor * angle;
@@ -155,7 +142,20 @@ PlanarCore::Innovation PlanarCore::end_block(const Block& block) noexcept {
   walk(kOffset, square(Tuning::kOffsetWalk) * block.time);
   walk(kRatio, calibration * std::abs(mean));
   walk(kBase, calibration * rolled / 2);
-  return {.nis = square(normalised), .used = used};
+  return {.nis = square(normalised), .used = agree};
+}
+
+/// `angle` is the turn by the gyro, `wheels` that by the wheels, `usual` their usual difference, rad.
+void PlanarCore::compare(double angle, double wheels, double usual, bool agree, bool stuck) noexcept {
+  if (agree && !stuck) {
+    const double taken = params_.drags_wheels ? 3 * Tuning::kAgreement : Tuning::kAgreement;
+    doubt_ *= 1 - taken;
+    apart_ *= 1 - taken;
+    return;
+  }
+  const double least = params_.drags_wheels && !stuck ? wheels * 3 / 4 : wheels;
+  const double nearest = std::clamp(angle, std::min(least, wheels), std::max(least, wheels));
+  contradict(std::copysign(std::max(0.0, std::abs(angle - nearest) - (stuck ? 0 : usual)), nearest - angle));
 }
 
 /// `learned` and `other` are the innovations of a block by the learned calibration and by that of the start, m.
@@ -163,7 +163,7 @@ void PlanarCore::check_calibration(double learned, double other, double variance
   const double bound = square(Tuning::kHuber) * variance;
   const double worse = (std::min(square(learned), bound) - std::min(square(other), bound)) / variance;
   worse_ = std::max(0.0, worse_ + worse);
-  if (worse_ > Tuning::kDrop) set_calibration(start_);
+  if (worse_ > square(Tuning::kSignificant)) set_calibration(start_);
 }
 
 void PlanarCore::contradict(double angle) noexcept {

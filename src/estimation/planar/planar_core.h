@@ -26,7 +26,8 @@
 /// of the doubt, and three times as much where turns drag wheels. A gyro that fails seldom becomes right again.
 ///
 /// ε and β walk in proportion to the slip noise (wheel_noise.h). The blocks that follow check them: where those of the
-/// start predict the blocks better, by kDrop, ε and β are dropped. They begin again with the deviation of the start.
+/// start predict the blocks better, by a nis of kSignificant², ε and β are dropped. They begin again with the deviation
+/// of the start.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -129,6 +130,7 @@ class PlanarCore {
   void forget(int first, int count) noexcept;
   void slide(double turned) noexcept;
   void correct(Vector gain, const Vector& ph, double s, double innovation) noexcept;
+  void compare(double angle, double wheels, double usual, bool agree, bool stuck) noexcept;
   void check_calibration(double learned, double other, double variance) noexcept;
   void walk(int i, double variance) noexcept {  ///< A held value has no variance and does not walk.
     if ((*covariance_)(i, i) > 0) (*covariance_)(i, i) += variance;

@@ -40,8 +40,8 @@ class WheelNoise {
   void learn(double normalised, const Variances& parts, double s) noexcept {
     constexpr double kNormalMedian = 0.6745;  // deviations, median of |normal|
     const double step = std::abs(normalised) > kNormalMedian ? Tuning::kLevelStep : -Tuning::kLevelStep;
-    twist_ = std::clamp(twist_ * std::exp(step * parts.twists / s), Tuning::kMinTwistNoise, Tuning::kMaxTwistNoise);
-    slip_ = std::clamp(slip_ * std::exp(step * parts.slips / s), least_, Tuning::kMaxSlipNoise);
+    twist_ = std::clamp(twist_ * std::exp(step * parts.twists / s), kMinTwist, 1.0);
+    slip_ = std::clamp(slip_ * std::exp(step * parts.slips / s), least_, kMaxSlip);
   }
 
   double slip() const noexcept { return slip_; }    ///< m/√m
@@ -49,6 +49,8 @@ class WheelNoise {
 
  private:
   static constexpr double kScrub = Tuning::kFirstScrub;
+  static constexpr double kMinTwist = 5e-4;  ///< rad/√rad, of a hard tyre on a hard floor
+  static constexpr double kMaxSlip = 0.05;   ///< m/√m, ten times that of skid steers
   double least_, slip_, twist_;
 };
 
