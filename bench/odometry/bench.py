@@ -17,13 +17,15 @@ from typing import Any
 import numpy as np
 
 from bench.drives.sensor_errors import LEVELS
+from bench.odometry import parts
 from bench.odometry.judge import Run, run
-from bench.odometry.promises import all_promises, runs_of
+from bench.odometry.promises import Promise, all_promises, runs_of
 from bench.odometry.scenarios import SCENARIOS
 from bench.odometry.table import table
 from bench.runs.runner import Processes, Runner
 
 SEEDS = 50
+PARTS = "parts"  # parts.py; its drives need no rest at the beginning, which every other scenario has
 SLOW_SCENARIOS = ("umbmark", "random", "standstill", "waves")  # so that all processors are busy to the end
 
 
@@ -53,8 +55,10 @@ def _one(work: tuple[str, int], level: str, pictured: int | None, cache: Path | 
     return run(scenario, seed, level, picture=seed == pictured, cache=cache)
 
 
-def result_of(runs: Sequence[Run], seconds: float, level: str = "data_sheet") -> dict[str, Any]:
-    """As the benchmark programs print it; `seconds` of wall-clock time."""
+def result_of(
+    runs: Sequence[Run], seconds: float, level: str = "data_sheet", beside: Sequence[parts.Outcome] = ()
+) -> dict[str, Any]:
+    """As the benchmark programs print it; `seconds` of wall-clock time, `beside` the outcomes of `parts`."""
     rows = [
         {
             "name": promise.name,
@@ -65,7 +69,7 @@ def result_of(runs: Sequence[Run], seconds: float, level: str = "data_sheet") ->
             "ratio": float(promise.value / promise.bound),
             "kept": bool(promise.kept),
         }
-        for promise in all_promises(runs, level)
+        for promise in every_promise(runs, level, beside)
     ]
     for scenario in SCENARIOS:
         pitch = [each.pitch for each in runs_of(runs, scenario)]
@@ -85,7 +89,13 @@ def result_of(runs: Sequence[Run], seconds: float, level: str = "data_sheet") ->
         }
         for each in runs
     ]
-    return {"bench": "odometry", "rows": rows, "table": table(runs), "runs": errors}
+    lines = (table(runs) if runs else []) + (parts.table(beside) if beside else [])
+    return {"bench": "odometry", "rows": rows, "table": lines, "runs": errors}
+
+
+def every_promise(runs: Sequence[Run], level: str, beside: Sequence[parts.Outcome]) -> list[Promise]:
+    """Those of the scenarios and of `parts`."""
+    return (all_promises(runs, level) if runs else []) + (parts.promises(beside) if beside else [])
 
 
 def _plain(name: str, value: float, unit: str) -> dict[str, Any]:
@@ -100,7 +110,7 @@ def bench(
     *,
     plots: Path | None = None,
     cache: Path | None = None,
-    scenarios: Sequence[str] = tuple(SCENARIOS),
+    scenarios: Sequence[str] = (*SCENARIOS, PARTS),
     runner: Runner | None = None,
 ) -> tuple[dict[str, Any], bool]:
     """The result, and whether every promise is kept; `say` receives progress and broken promises."""
@@ -109,15 +119,18 @@ def bench(
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
     pictured = None if plots is None else first
-    runs = all_runs(range(first, first + count), scenarios, say, level, pictured=pictured, cache=cache, runner=runner)
+    seeds = range(first, first + count)
+    named = [scenario for scenario in scenarios if scenario != PARTS]
+    runs = all_runs(seeds, named, say, level, pictured=pictured, cache=cache, runner=runner)
+    beside = parts.all_outcomes(seeds, say, level, runner) if PARTS in scenarios else []
     if plots is not None:
         from bench.odometry.plots import draw_all  # noqa: PLC0415 (matplotlib takes half a second to load)
 
         draw_all(runs, plots)
-    broken = [promise for promise in all_promises(runs, level) if not promise.kept]
+    broken = [promise for promise in every_promise(runs, level, beside) if not promise.kept]
     for promise in broken:
         say(str(promise))
-    return result_of(runs, time.monotonic() - began, level), not broken
+    return result_of(runs, time.monotonic() - began, level, beside), not broken
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -125,7 +138,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--first", type=int, default=0, help="first seed")
     parser.add_argument("--runs", type=int, default=SEEDS, help="number of seeds")
-    parser.add_argument("--only", default=",".join(SCENARIOS), help="scenarios, with commas between")
+    parser.add_argument("--only", default=",".join((*SCENARIOS, PARTS)), help="scenarios, with commas between")
     parser.add_argument("--errors", choices=LEVELS, default=LEVELS[0], help="of the sensors")
     parser.add_argument("--plots", type=Path, help="folder for the pictures")
     parser.add_argument("--cache", type=Path, help="folder of recordings: taken from there, or put there")

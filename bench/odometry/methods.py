@@ -62,6 +62,15 @@ def simple_odometry(recording: Recording) -> Track:
     return _sampled(recording, _distance(recording), _integrated(recording, np.where(still, 0.0, rate)))
 
 
+def bias_of_first_rest(recording: Recording, rest: float) -> Track:
+    """Distance by raw wheels, heading by the gyro less its mean in the first `rest` s; 0: less nothing."""
+    rate, rows = recording.gyro[:, 2], round(rest / _period(recording))
+    edge = round(STILL / _period(recording))
+    bias_then = float(rate[edge : rows - edge].mean()) if rows > 2 * edge else 0.0
+    turning = np.where(np.arange(len(rate)) < rows, 0.0, rate - bias_then)
+    return _sampled(recording, _distance(recording), _integrated(recording, turning))
+
+
 def standing(recording: Recording) -> NDArray[np.bool_]:
     """(N,): true in cycles at rest."""
     window = round(STILL / _period(recording))

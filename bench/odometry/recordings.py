@@ -33,6 +33,10 @@ NAMES = (
     "outdoor_skid_steer_imu_b",
     "vehicle",
     "vehicle_mirrored_x",
+    "husky_ice",
+    "husky_snow",
+    "husky_asphalt",
+    "warthog_grass",
 )
 
 _SKID_COUNTS = 360  # of a wheel's turn
@@ -103,7 +107,14 @@ def recording(name: str) -> Recording:
     kind = name.rstrip("abcd") if name.startswith(("skid", "vacuum")) else name.split("_", maxsplit=1)[0]
     file = {"outdoor": "outdoor_skid_steer", "vehicle": "vehicle"}.get(kind, name)
     with np.load(folder / f"{file}.npz") as data:
-        read = {"skid_steer_": _skid_steer, "vacuum_": _vacuum, "outdoor": _outdoor, "vehicle": _vehicle}[kind]
+        read = {
+            "skid_steer_": _skid_steer,
+            "vacuum_": _vacuum,
+            "outdoor": _outdoor,
+            "vehicle": _vehicle,
+            "husky": _husky,
+            "warthog": _warthog,
+        }[kind]
         drive = read(name, data)
     for array in (drive.time, drive.left, drive.right, drive.gyro, drive.accel, drive.truth):
         array.flags.writeable = False  # all callers share it
@@ -195,6 +206,25 @@ def _vehicle(name: str, data: Mapping[str, FloatArray]) -> Recording:
         (data["imu_time"], -force * data["gyro"], force * data["accel"]),
     )
     return Recording(name, *rows, rest=_rest_of(rows), radius=_VEHICLE_RADIUS, base=_VEHICLE_BASE)
+
+
+def _husky(name: str, data: Mapping[str, FloatArray]) -> Recording:
+    """It begins and ends in motion. Its wheels report speeds in steps of 0.079 m/s at 6.5 Hz."""
+    since = np.diff(data["wheel_time"], prepend=data["wheel_time"][0])
+    left, right = (np.cumsum(data[f"{side}_speed"] * since) for side in ("left", "right"))
+    rows = merged((data["wheel_time"], left, right), (data["imu_time"], data["gyro"], data["accel"]))
+    return Recording(name, *rows, rest=0.0, radius=float(data["wheel_radius"]), base=float(data["wheel_base"]))
+
+
+def _warthog(name: str, data: Mapping[str, FloatArray]) -> Recording:
+    """The truth is that of a lidar, which is late by 0.3 … 1.5 s: it holds at rest."""
+    start = min(data["wheel_time"][0], data["imu_time"][0])
+    rows = merged(
+        (data["wheel_time"], data["left_angle"], data["right_angle"]), (data["imu_time"], data["gyro"], data["accel"])
+    )
+    truth = np.column_stack([data["truth_time"] - start, data["truth_x"], data["truth_y"]])
+    radius, base = (float(data[which]) for which in ("wheel_radius", "wheel_base"))
+    return Recording(name, *rows, rest=_rest_of(rows), radius=radius, base=base, truth=truth)
 
 
 def _rest_of(rows: tuple[FloatArray, ...]) -> float:

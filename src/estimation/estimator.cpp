@@ -16,10 +16,10 @@ Estimator::State::State(const EstimatorParameters& parameters, const DriveTrain&
     : wheel_sides(robot, parameters.speed_bandwidth, period, std::sqrt(12.0) * encoder_deviation(parameters, robot)),
       core(core_params(parameters, robot)),
       tilt(tilt_params(parameters)),
+      gyro_noise(parameters.gyro_noise),
       slip(slip_params(parameters, robot)),
       rest(rest_params(parameters, robot)),
-      rate(parameters.rate_bandwidth, period),
-      wheel_velocities(robot, parameters.speed_bandwidth, period) {}
+      rate(parameters.rate_bandwidth, period) {}
 
 Estimator::Estimator(const EstimatorParameters& parameters, const DriveTrain& robot, double period)
     : parameters_(checked(parameters, robot, period)),
@@ -28,7 +28,6 @@ Estimator::Estimator(const EstimatorParameters& parameters, const DriveTrain& ro
       wheel_slip_(robot),
       base_from_imu_(rotation_of(robot.imu_in_base.orientation)),
       encoder_(encoder_deviation(parameters, robot)),
-      gyro_noise_(core_params(parameters, robot).gyro_noise),
       state_(parameters, robot, period),
       fresh_(state_) {
   rate_noise_gain_ = state_.rate.noise_gain();
@@ -36,7 +35,6 @@ Estimator::Estimator(const EstimatorParameters& parameters, const DriveTrain& ro
   for (const int i : {0, 1}) state_.gyro_bias[i] = {bias[i], square(parameters.gyro_bias_initial)};
   state_.core.set_bias(bias.z(), parameters.gyro_bias_initial);
   state_.core.set_calibration(parameters.calibration);
-  state_.core.set_bias_known(false);
   place({0, 0, 0});
   fresh_ = state_;
 }
@@ -85,7 +83,6 @@ void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
   if (!s.rest.resting()) rate.z() = s.yaw_rate;
   if (by_gyro) rate = vector(s.imu.rate) - gyro_bias();
   s.rate.follow(rate, by_gyro, dt);
-  s.wheel_velocities.step(sensors, dt);
   s.pose_set = std::exchange(s.pose_request, std::nullopt);
   if (!s.pose_set) return;
   place(*s.pose_set);
@@ -97,6 +94,7 @@ void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
   State& s = state_;
   s.imu = s.imu_samples.step(sensors, base_from_imu_, dt);
   s.wheels = s.wheel_sides.step(sensors, dt);
+  if (s.imu.fresh_gyro) s.gyro_noise.add(s.imu.sample[2], s.imu.gyro_gap, s.rest.standing());
   if (s.imu.refused || s.wheels.refused) s.flags |= kStateBadSample;
   if (!s.imu.gyro) s.flags |= kStateNoGyro;
   if (!s.imu.accelerometer) s.flags |= kStateNoAccelerometer;
@@ -110,7 +108,7 @@ void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
     s.comparison.suspend();
     s.middle_travel.forget_credit(side);
     s.core.shift(0, 0, square(Tuning::kRestart));
-    s.slip.restart();
+    restart_slip();
     if (time <= Tuning::kMaxHoldTime) continue;
     s.middle_travel.forget_turn();
     if (!replaced) lose_travel(time);
@@ -144,15 +142,17 @@ void Estimator::integrate_wheels() noexcept {
 void Estimator::move(double dt) noexcept {
   State& s = state_;
   const double before = s.core.pose().yaw;
-  const double wheel_turn = s.core.wheel_turn(s.wheels.left(), s.wheels.right());
+  const double already = s.middle_travel.turned_since(s.wheels);
+  const double wheel_turn = s.core.wheel_turn(s.wheels.left(), s.wheels.right()) - already;
   const std::optional<double> angle = s.gyro_turn.step(s.imu, wheel_turn, s.core.bias(), dt);
-  if (angle) {
+  const bool by_gyro = angle.has_value();
+  if (by_gyro) {
     s.core.turn_by_gyro(*angle, dt);
   } else {
-    s.core.turn_by_wheels(s.wheels.left(), s.wheels.right());
+    s.core.turn_by_wheels(s.wheels.left(), s.wheels.right(), already);
     s.comparison.interrupt();
   }
-  s.yaw_rate = angle ? s.imu.rate[2] - s.core.bias() : wheel_rate();
+  s.yaw_rate = by_gyro ? s.imu.rate[2] - s.core.bias() : wheel_rate();
   const double turned = s.core.pose().yaw - before;
   Planar path;
   for (const auto& travel : s.middle_travel.step(s.wheels, turned, geometry_.wheel_base, s.core.ratio())) {
@@ -161,7 +161,7 @@ void Estimator::move(double dt) noexcept {
   s.core.shift(0, 0, s.wheels.travel_variance / 2);
   if (s.imu.gyro) turn_tilt(*s.imu.gyro, dt);
   if (parameters_.slip_detection) watch_slip(dt, turned, path);
-  compare_turns(dt, angle.has_value());
+  compare_turns(dt, by_gyro);
 }
 
 /// `gyro` is in rad/s and includes the bias.
@@ -204,136 +204,6 @@ Planar Estimator::tyres_creep(double distance) const noexcept {
   return Planar{creep[0], creep[1]} * (parameters_.tyre_creep * std::abs(distance));
 }
 
-SlipWatch::Input Estimator::slip_input(double dt, double turned, const Planar& path) const noexcept {
-  const State& s = state_;
-  const double left = s.wheels.left();
-  const double right = s.wheels.right();
-  return {.motion = {.dt = dt,
-                     .acceleration = s.tilt.acceleration(*s.imu.accelerometer),
-                     .up = s.tilt.up(),
-                     .turned = turned,
-                     .path = path,
-                     .right_minus_left = (right - left + s.core.ratio() * (left + right) / 2) / (1 + s.core.base()),
-                     .distance = (std::abs(left) + std::abs(right)) / 2,
-                     .both_sides_read = s.wheels.both_received(),
-                     .yaw_rate = s.yaw_rate},
-          .side_speed = s.wheels.speed,
-          .clock_offset = s.core.offset(),
-          .uncertainty = {.acceleration_variance = {s.tilt.acceleration_variance(0), s.tilt.acceleration_variance(1)},
-                          .wheel_base = s.core.deviation(PlanarCore::kBase),
-                          .clock_offset = s.core.deviation(PlanarCore::kOffset),
-                          .gyro_bias = std::sqrt(s.core.bias_variance()),
-                          .speed_step = s.wheels.speed_step},
-          .corrects = s.rest.bias_measured()};
-}
-
-void Estimator::watch_slip(double dt, double turned, const Planar& path) noexcept {
-  State& s = state_;
-  if (!s.imu.gyro || !s.imu.accelerometer || s.wheels.any_lost() || s.wheels.batch) return s.slip.restart();
-  const SlipWatch::Output slip = s.slip.step(slip_input(dt, turned, path));
-  if (!slip.judged) return;
-  smooth_nis(kAccelerometer, slip.nis[SlipResidual::kAlong], Tuning::kPointInterval);
-  smooth_nis(kLateralContact, slip.nis[SlipResidual::kAcross], Tuning::kPointInterval);
-  smooth_nis(kGyro, slip.nis[SlipResidual::kTurn], Tuning::kPointInterval);
-  if (slip.sideways_began) ++s.rejected[kLateralContact];
-  const Planar shift = rotated(slip.correction.shift, s.core.pose().yaw);
-  s.core.shift(shift.x, shift.y, slip.correction.variance);
-  s.core.contradict(slip.correction.contradiction, 0);
-  if (slip.gravity.known) {
-    s.tilt.correct(slip.gravity.along, slip.gravity.across, slip.gravity.interval, slip.gravity.deviation);
-  }
-}
-
-void Estimator::compare_turns(double dt, bool by_gyro) noexcept {
-  State& s = state_;
-  const double rate = s.rate.rate().z();
-  const auto [begins, ended] = s.comparison.step({.dt = dt,
-                                                  .left = s.wheels.left(),
-                                                  .right = s.wheels.right(),
-                                                  .border = s.wheels.both_received() && by_gyro,
-                                                  .slide = s.slip.slide().active(),
-                                                  .gyro_unchanged = s.imu.gyro_unchanged});
-  if (ended) {
-    const auto [nis, used, apart, usual] = s.core.end_block(ended->left, ended->right, rate, ended->time);
-    for (const SensorIndex sensor : {kLeftEncoder, kRightEncoder}) {
-      smooth_nis(sensor, nis, ended->time);
-      if (!used) ++s.rejected[sensor];
-    }
-    const double explained = ended->stuck ? 0 : std::copysign(usual, apart);
-    if (!used || ended->stuck) s.core.contradict(apart - explained, (ended->left + ended->right) / 2);
-  }
-  if (begins) s.core.begin_block(rate);
-}
-
-void Estimator::watch_rest(double dt) noexcept {
-  State& s = state_;
-  Planar acceleration;
-  if (s.imu.accelerometer) {
-    const std::array<double, 2> now = s.tilt.acceleration(*s.imu.accelerometer);
-    acceleration = {now[0], now[1]};
-  }
-  const RobotRest::Output output = s.rest.step({.sample = {.dt = dt,
-                                                           .left = s.wheels.left(),
-                                                           .right = s.wheels.right(),
-                                                           .gyro = s.imu.gyro,
-                                                           .accelerometer = s.imu.accelerometer},
-                                                .acceleration = acceleration,
-                                                .any_lost = s.wheels.any_lost(),
-                                                .fell_silent = s.wheels.fell_silent,
-                                                .bias = array(gyro_bias()),
-                                                .bias_variance = array(gyro_bias_variance()),
-                                                .bias_known = s.core.bias_known(),
-                                                .mean_variance = square(gyro_noise_) / parameters_.standstill_time});
-  if (output.began) {
-    s.slip.end_slide();
-    s.core.end_contradiction();
-    s.comparison.interrupt();
-    s.middle_travel.forget_turn();
-  }
-  if (output.means) learn_at_rest(*output.means, output.bias_changed);
-  if (output.held) integrate(*output.held, output.was_standing);
-}
-
-/// Integrates a motion that was held back. A robot that `stood` before it began had no speed.
-void Estimator::integrate(const HeldMotion& held, bool stood) noexcept {
-  State& s = state_;
-  const double before = s.core.pose().yaw;
-  if (held.gyro) {
-    s.core.turn_by_gyro(held.turn[2], held.time);
-    turn_tilt(array(vector(held.turn) / held.time), held.time);
-  } else {
-    s.core.turn_by_wheels(held.left, held.right);
-  }
-  roll({.distance = (held.left + held.right) / 2, .turn_since = (s.core.pose().yaw - before) / 2});
-  s.middle_travel.forget_turn();
-  if (stood) {
-    s.slip.restart_at_rest(s.tilt.up(), held.velocity);
-  } else {
-    s.slip.restart();
-  }
-  s.comparison.resume();
-  if (!s.wheels.both_received()) return;
-  s.core.begin_block(s.rate.rate().z());
-  s.comparison.begin();
-}
-
-void Estimator::learn_at_rest(const RestWatch::Means& means, bool bias_changed) noexcept {
-  State& s = state_;
-  s.core.age(means.time);
-  if (means.gyro) {
-    const Vector3& mean = *means.gyro;
-    const double noise = square(gyro_noise_) / means.time;
-    const double walk = square(parameters_.gyro_bias_walk) * means.time;
-    if (bias_changed) s.core.open_bias(square(mean[2] - s.core.bias()));
-    s.core.rest(mean[2], noise, s.rest.rested());
-    for (const std::size_t i : {0U, 1U}) {
-      if (bias_changed) s.gyro_bias[i].variance += square(mean[i] - s.gyro_bias[i].value);
-      s.gyro_bias[i].measure(mean[i], noise, walk);
-    }
-  }
-  if (means.accelerometer) s.tilt.rest(*means.accelerometer, means.time);
-}
-
 void Estimator::smooth_nis(SensorIndex sensor, double nis, double dt) noexcept {
   if (!(nis >= 0)) return;  // A sensor of this comparison is lost.
   double& smoothed = state_.nis[sensor];
@@ -359,7 +229,7 @@ double Estimator::forward_speed() const noexcept {
   if (s.wheels.any_lost() && !s.wheels.both_lost()) {
     speed = s.wheels.lost[kLeft] ? s.wheels.speed[kRight] - faster : s.wheels.speed[kLeft] + faster;
   }
-  return speed - s.slip.slide().excess_speed();
+  return speed - s.slide.excess_speed();
 }
 
 double Estimator::wheel_rate() const noexcept {

@@ -2,40 +2,32 @@
 /// The estimator computes the state of a cycle from the sensors of that cycle (REP 103, REP 105).
 ///
 ///   encoders ─► travel of either side ─┬─► planar core ─► pose, calibration, covariance
-///   gyro ──────────────────────────────┤        ▲ explicit, bounded correction of the path
+///   gyro ──────────────────────────────┤        ▲ variance
 ///   accelerometer, tilt filter ────────┴─► slip detector ─► slide
 ///
-/// The wheels give the distance and the gyro the heading (planar/planar_core.h). The accelerometer shortens the
-/// distance by parts of a percent: it shows the tilt and the creep of tyres. It corrects the path further only while
-/// slip is proven, and within bounds (slip/slip_detector.h, slip/wheel_slide.h). Slip widens the covariance.
+/// The wheels give the distance. Gyro and wheels give the heading, weighed by their deviations from the first metre on
+/// (planar/planar_core.h). The accelerometer shortens the distance by parts of a percent: it shows the tilt and the
+/// creep of tyres. Slip is named and widens the covariance (slip/slip_detector.h); it moves the path only of a robot
+/// that is blocked (slip/wheel_slide.h).
 ///
 /// At rest (rest/rest_watch.h) nothing is integrated: pose and covariance stay. The gyro's bias and the tilt
-/// (tilt/tilt.h) are learned. The bias that the first rest shows also corrects the pose. The estimator takes the robot
-/// to rest at the beginning of a run. A window that turns out not to be quiet is integrated at once, together with the
-/// one before.
-///
-/// A run that begins in motion uses wheels and gyro until the robot rests. No slide is corrected before that rest,
-/// because the accelerometer's bias is not known then.
+/// (tilt/tilt.h) are learned. The first rest also corrects the pose. A run begins at rest. A window that turns out not
+/// to be quiet is integrated at once, together with the one before. No slip is named before the first rest,
+/// because the accelerometer's bias is not known then. Neither is that of wheels with readings more than kSlowWheels
+/// apart.
 ///
 /// Samples may come at any rate. A sample that is not finite or impossible is not used and sets kStateBadSample. A
-/// missing encoder sample sets the same flag. The last good sample holds for three times the gap between the last two,
-/// within kMinHoldTime … kMaxHoldTime. After that the sensor is lost, and its flag is set:
+/// sensor that is lost sets its flag (inertial/imu_samples.h, wheels/wheel_sides.h):
 ///   gyro            the wheels turn the robot, by the calibration learned so far
 ///   accelerometer   tilt and slip of all wheels together are not noticed
 ///   one encoder     gyro and the other side continue
 ///   both encoders, or one and the gyro: kStateValid is cleared. The next good reading brings the whole travel.
-/// A drive that had a fault and then no position may have another zero, so its travel meanwhile is unknown. If the
-/// other side did not replace it, the deviation of the position grows by the last speed times that time. If the cycle
-/// of a frame is not newer than the last one, the last state is published again.
-///
-/// The angular velocity of the twist is the gyro's minus its bias, smoothed by a tracking loop (rate_tracker.h). Pose
-/// and biases use every sample.
+/// A drive that had a fault and then no position may have another zero. If the other side did not replace its travel,
+/// the deviation of the position grows by the last speed times that time.
 ///
 /// kStateDegraded has two possible reasons. In kDegradedPosition wheels slip. In kDegradedHeading the deviation of the
-/// gyro's bias exceeds kUnknownBias, or wheels and gyro have contradicted each other since the last rest. Before the
-/// first rest the bias is unknown.
-///
-/// The confidence of a sensor is 0 while it is not used, else min(1, 1/nis), with nis smoothed over kBlock.
+/// gyro's bias exceeds kUnknownBias, or wheels and gyro contradict each other (planar/planar_core.h). The confidence of
+/// a sensor is 0 while it is not used, else min(1, 1/nis), with nis smoothed over kBlock.
 
 #include <Eigen/Core>
 #include <array>
@@ -50,13 +42,13 @@
 #include "estimation/planar/turn_comparison.h"
 #include "estimation/rest/bias_estimate.h"
 #include "estimation/rest/robot_rest.h"
-#include "estimation/slip/slip_watch.h"
+#include "estimation/slip/slip_detector.h"
+#include "estimation/slip/wheel_slide.h"
 #include "estimation/tilt/tilt.h"
 #include "estimation/tuning.h"
 #include "estimation/wheels/middle_travel.h"
 #include "estimation/wheels/wheel_geometry.h"
 #include "estimation/wheels/wheel_sides.h"
-#include "estimation/wheels/wheel_velocities.h"
 #include "machine/wheeled/drive_train.h"
 #include "machine/wheeled/wheels/wheel_slip.h"
 #include "signals/sensor_frame.h"
@@ -84,7 +76,10 @@ class Estimator {
     TurnComparison comparison;
     Tilt tilt;                              ///< tilt and the accelerometer's bias
     std::array<BiasEstimate, 2> gyro_bias;  ///< rad/s, about x and y
-    SlipWatch slip;
+    RestNoise gyro_noise;
+    SlipDetector slip;
+    WheelSlide slide;
+    double slip_yaw = 0;  ///< rad, by the gyro alone
     RobotRest rest;
     double yaw_rate = 0;  ///< rad/s, in this step
     double height = 0;    ///< m
@@ -92,7 +87,6 @@ class Estimator {
 
     // These are published beside the estimates.
     RateTracker rate;
-    WheelVelocities wheel_velocities;
     WheelOdometry wheel_odometry;
     std::array<double, kWheeledSensors> nis{};
     std::array<std::uint64_t, kWheeledSensors> rejected{};
@@ -150,8 +144,9 @@ class Estimator {
   void move(double dt) noexcept;
   void turn_tilt(const Vector3& gyro, double dt) noexcept;
   Planar roll(const MiddleTravel::Travel& travel) noexcept;
-  SlipWatch::Input slip_input(double dt, double turned, const Planar& path) const noexcept;
+  MotionDifference::Sample slip_sample(double dt, double turned, const Planar& path) const noexcept;
   void watch_slip(double dt, double turned, const Planar& path) noexcept;
+  void restart_slip() noexcept;
   void compare_turns(double dt, bool by_gyro) noexcept;
   void watch_rest(double dt) noexcept;
   void integrate(const HeldMotion& held, bool stood) noexcept;
@@ -169,6 +164,7 @@ class Estimator {
   // These functions are in estimator_output.cpp.
   void fill(const SensorFrame& sensors, StateFrame& out) const noexcept;
   void fill_pose(BaseState& base) const noexcept;
+  double late_wheels() const noexcept;
   void fill_pose_covariance(double yaw, const Planar& lever, BaseState& base) const noexcept;
   void fill_attitude_covariance(double yaw, double yaw_variance, BaseState& base) const noexcept;
   void fill_twist(BaseState& base) const noexcept;
@@ -183,7 +179,6 @@ class Estimator {
   WheelSlip wheel_slip_;
   Eigen::Matrix3d base_from_imu_;
   double encoder_;          ///< m, deviation of one side's reading
-  double gyro_noise_;       ///< rad/s/√Hz, of the mounted gyro
   double rate_noise_gain_;  ///< RateTracker::noise_gain
   State state_;
   State fresh_;  ///< state at the beginning of a run

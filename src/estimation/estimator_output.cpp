@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "estimation/estimator.h"
 #include "estimation/values.h"
@@ -23,7 +24,7 @@ void Estimator::fill(const SensorFrame& sensors, StateFrame& out) const noexcept
   fill_health(out);
   const auto joints = static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(sensors.joint_count, kMaxJoints));
   std::transform(sensors.joints.begin(), sensors.joints.begin() + joints, out.joint_velocity.begin(), valid_velocity);
-  state_.wheel_velocities.write(out.joint_velocity);
+  state_.wheel_sides.write(out.joint_velocity);
   wheel_slip_.write(out);
 }
 
@@ -49,14 +50,14 @@ void Estimator::fill_pose(BaseState& base) const noexcept {
 /// J is the Jacobian by clock offset, x, y and yaw, a the direction of travel and m the velocity of base_link. The
 /// present is evenly distributed over the gap between two samples of the gyro.
 void Estimator::fill_pose_covariance(double yaw, const Planar& lever, BaseState& base) const noexcept {
-  const double late = state_.core.offset() >= 0 ? 1 : 0;
+  const double late = late_wheels();
   const double yaw_rate = state_.rest.resting() ? 0 : state_.yaw_rate;
   const Eigen::Vector3d along(std::cos(yaw), std::sin(yaw), 0);
   const Eigen::Vector3d turning(lever.y, -lever.x, 1);
   Eigen::Matrix<double, 3, 4> jacobian;
   jacobian << late * forward_speed() * along + (late - 1) * yaw_rate * turning, Eigen::Vector3d::UnitX(),
       Eigen::Vector3d::UnitY(), turning;
-  const Eigen::Matrix4d states = state_.core.covariance().topLeftCorner<4, 4>();
+  const Eigen::Matrix4d states = state_.core.pose_covariance();
   Eigen::Matrix3d covariance = jacobian * states * jacobian.transpose();
   const Eigen::Vector3d motion = forward_speed() * along + yaw_rate * turning;
   covariance += square(state_.imu.gyro_gap) / 8 * motion * motion.transpose();
@@ -66,6 +67,12 @@ void Estimator::fill_pose_covariance(double yaw, const Planar& lever, BaseState&
   published = Tuning::kPlanarVariance * PoseMatrix::Identity();
   published(kPlane, kPlane) = covariance;
   fill_attitude_covariance(yaw, covariance(2, 2), base);
+}
+
+/// Returns the probability that the wheels are late, not the gyro.
+double Estimator::late_wheels() const noexcept {
+  const double deviation = state_.core.deviation(PlanarCore::kOffset);
+  return deviation > 0 ? std::erfc(-state_.core.offset() / deviation * std::numbers::sqrt2 / 2) / 2 : 1;
 }
 
 /// An error of u across is an error of roll, and an error of u along is one of −pitch. Both are turned to odom axes.
@@ -99,8 +106,13 @@ void Estimator::fill_twist_covariance(double yaw_rate, BaseState& base) const no
   double turn = state_.core.bias_variance() + square(parameters_.gyro_noise) / period_ * rate_noise_gain_ +
                 square(parameters_.gyro_scale_deviation * yaw_rate);
   if (!state_.imu.gyro) turn = 4 * wheel / square(geometry_.wheel_base);
+  if (state_.imu.gyro && !state_.wheels.any_lost()) {
+    const double by_wheels = state_.core.wheel_turn(state_.wheels.speed[kLeft], state_.wheels.speed[kRight]);
+    const double apart = square(by_wheels - yaw_rate);
+    if (apart > square(Tuning::kSignificant) * turn) turn = apart;
+  }
   if (state_.rest.resting()) wheel = turn = 0;
-  const double slides = state_.slip.slide().active() ? square(state_.slip.slide().speed_deviation()) : 0;
+  const double slides = state_.slide.active() ? square(state_.slide.speed_deviation()) : 0;
   base.twist_covariance = {};
   base.twist_covariance[0] = wheel / 2 + slides + square(parameters_.wheel_radius_deviation * forward_speed()) +
                              square(geometry_.axle_y) * turn;
@@ -124,18 +136,18 @@ void Estimator::fill_health(StateFrame& out) const noexcept {
   out.wheeled.odometry = state_.wheel_odometry;
   out.wheeled.nis = state_.nis;
   out.wheeled.rejected = state_.rejected;
-  out.wheeled.slip = state_.rest.resting() ? 0 : state_.slip.slide().reasons();
+  out.wheeled.slip = state_.rest.resting() ? 0 : state_.slide.reasons();
   out.wheeled.residual_level = state_.slip.level();
   out.base.distance = state_.distance;
   out.skipped = state_.skipped;
   const auto confidence = [&](SensorIndex sensor, bool used) {
     out.wheeled.confidence[sensor] = used ? 1 / std::max(1.0, out.wheeled.nis[sensor]) : 0;
   };
-  confidence(kLeftEncoder, state_.wheels.received[kLeft] && !state_.slip.slide().slips(kLeft));
-  confidence(kRightEncoder, state_.wheels.received[kRight] && !state_.slip.slide().slips(kRight));
+  confidence(kLeftEncoder, state_.wheels.received[kLeft] && !state_.slide.slips(kLeft));
+  confidence(kRightEncoder, state_.wheels.received[kRight] && !state_.slide.slips(kRight));
   confidence(kGyro, state_.imu.gyro.has_value());
   confidence(kAccelerometer, state_.imu.accelerometer.has_value());
-  confidence(kLateralContact, !state_.slip.slide().sideways());
+  confidence(kLateralContact, !state_.slide.sideways());
   confidence(kVerticalContact, true);
   out.base.flags = state_.flags;
   if (!state_.wheels.any_lost() || (!state_.wheels.both_lost() && state_.imu.gyro)) out.base.flags |= kStateValid;
@@ -143,7 +155,7 @@ void Estimator::fill_health(StateFrame& out) const noexcept {
   if (state_.restarted) out.base.flags |= kStateRestarted;
   if (out.wheeled.slip != 0) out.base.flags |= kStateSlip;
   out.base.degraded = 0;
-  if (state_.slip.slide().active()) out.base.degraded |= kDegradedPosition;
+  if (state_.slide.active()) out.base.degraded |= kDegradedPosition;
   if (state_.core.contradicted()) out.base.degraded |= kDegradedHeading;
   const bool unknown_bias = state_.core.bias_variance() > square(Tuning::kUnknownBias);
   if (!state_.rest.resting() && state_.imu.gyro && unknown_bias) out.base.degraded |= kDegradedHeading;

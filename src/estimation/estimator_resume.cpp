@@ -49,7 +49,6 @@ void Estimator::resume(const StateFrame& last) noexcept {
   s.height = last.base.pose_odom.position[2];
   place({last.base.pose_odom.position[0], last.base.pose_odom.position[1], yaw_of(last.base.pose_odom.orientation)});
   s.core.set_pose_covariance(covariance_of_middle(last, axle(yaw_of(last.base.pose_odom.orientation))));
-  s.core.set_bias_known(true);
   s.yaw_rate = last.base.twist_base.angular[2];
   const double speed = last.base.twist_base.linear[0] - s.yaw_rate * geometry_.axle_y;
   const double faster = s.yaw_rate * geometry_.wheel_base / 2;

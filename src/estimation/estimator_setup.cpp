@@ -4,18 +4,16 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <variant>
 
 namespace robot_control {
 
 const EstimatorParameters& checked(const EstimatorParameters& parameters, const DriveTrain& robot, double period) {
-  const auto require = [](bool holds, const char* what, double value) {
-    if (!holds) throw std::invalid_argument("estimator: " + std::string(what) + ", is " + std::to_string(value));
+  const auto require = [](bool holds, const std::string& what, double value) {
+    if (!holds) throw std::invalid_argument("estimator: " + what + ", is " + std::to_string(value));
   };
   const auto positive = [&](double value, const char* what) {
     require(value > 0 && std::isfinite(value), what, value);
-  };
-  const auto no_less = [&](double value, const char* what) {
-    require(value >= 0 && std::isfinite(value), what, value);
   };
   positive(period, "period must be > 0 s");
   positive(robot.effective_wheel_base(), "wheel_base and its multiplier must be > 0 m");
@@ -27,23 +25,13 @@ const EstimatorParameters& checked(const EstimatorParameters& parameters, const 
     require(wheels > 0, "there must be a wheel on either side", static_cast<double>(wheels));
   }
   for (const WheelModel& wheel : robot.wheels) positive(wheel.radius, "radius of a wheel must be > 0 m");
-  no_less(parameters.wheel_slip_noise, "wheel_slip_noise must be >= 0 m/√m");
-  no_less(parameters.wheel_radius_deviation, "wheel_radius_deviation must be >= 0");
-  no_less(parameters.tyre_creep, "tyre_creep must be >= 0 s²/m");
-  positive(parameters.encoder_noise, "encoder_noise must be > 0 rad");
-  positive(parameters.gyro_noise, "gyro_noise must be > 0 rad/s/√Hz");
-  positive(parameters.accelerometer_noise, "accelerometer_noise must be > 0 m/s²/√Hz");
-  positive(parameters.standstill_speed, "standstill_speed must be > 0 rad/s");
-  positive(parameters.standstill_time, "standstill_time must be > 0 s");
-  no_less(parameters.gyro_scale_deviation, "gyro_scale_deviation must be >= 0");
-  no_less(parameters.gyro_bias_initial, "gyro_bias_initial must be >= 0 rad/s");
-  no_less(parameters.gyro_bias_walk, "gyro_bias_walk must be >= 0 rad/s/√s");
-  no_less(parameters.accelerometer_bias_initial, "accelerometer_bias_initial must be >= 0 m/s²");
-  no_less(parameters.accelerometer_bias_walk, "accelerometer_bias_walk must be >= 0 m/s²/√s");
-  no_less(parameters.calibration.radius_ratio_deviation, "radius_ratio_deviation must be >= 0");
-  no_less(parameters.calibration.wheel_base_deviation, "wheel_base_deviation must be >= 0");
-  positive(parameters.speed_bandwidth, "speed_bandwidth must be > 0 Hz");
-  positive(parameters.rate_bandwidth, "rate_bandwidth must be > 0 Hz");
+  EstimatorParameters given = parameters;
+  for (const Key& key : keys(given)) {
+    if (!std::holds_alternative<double*>(key.field)) continue;
+    const double value = *std::get<double*>(key.field);
+    const std::string rule = std::string(key.name) + (key.min > 0 ? " must be > 0 " : " must be >= 0 ");
+    require((key.min > 0 ? value > 0 : value >= 0) && std::isfinite(value), rule + std::string(key.unit), value);
+  }
   return parameters;
 }
 
@@ -66,7 +54,7 @@ bool drags_wheels(const DriveTrain& robot) {
 PlanarCoreParams core_params(const EstimatorParameters& parameters, const DriveTrain& robot) {
   const double learns = parameters.self_calibration ? 1.0 : 0.0;
   return {.wheel_base = robot.effective_wheel_base(),
-          .gyro_noise = Tuning::kMountedGyro * parameters.gyro_noise,
+          .gyro_noise = parameters.gyro_noise,
           .gyro_bias_walk = parameters.gyro_bias_walk,
           .gyro_bias_initial = parameters.gyro_bias_initial,
           .gyro_scale = parameters.gyro_scale_deviation,

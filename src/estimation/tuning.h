@@ -20,9 +20,9 @@ struct Tuning {
   static constexpr double kCalibrationWalk = 0.04;  ///< 1/m, walk of ratio and base, of the slip noise; recordings
   static constexpr double kOffset = 0.08;  ///< s, deviation of the clock offset at the start; recordings: 0.03 … 0.17
   static constexpr double kOffsetWalk = 2e-3;  ///< s/√s, walk of the clock offset; recordings
+  static constexpr double kAgreement = 0.05;   ///< share of a doubt of the heading that an agreeing block takes
   static constexpr double kSlowTime = 3.0;     ///< s, in which slow errors of the accelerometer change; recordings
-  static constexpr double kMountedGyro = 2;  ///< noise of a mounted gyro over its data sheet's; recordings: 1.5 … 1.9
-  static constexpr double kBatch = 0.3;      ///< share of the usual gap, below which readings are a batch; recordings
+  static constexpr double kBatch = 0.3;        ///< share of the usual gap, below which readings are a batch; recordings
 
   // These constants of slip (slip/) were measured or chosen on drives.
 
@@ -33,7 +33,7 @@ struct Tuning {
   // These constants are conventions of statistics.
 
   static constexpr double kSignificant = 3;  ///< deviations; the three-sigma rule
-  static constexpr double kHuber = 2;        ///< deviations by which an innovation counts at most; P. J. Huber, 1964
+  static constexpr double kHuber = 1.345;    ///< deviations by which an innovation counts at most; P. J. Huber, 1964
   static constexpr double kGate = 6;         ///< deviations, beyond which an innovation is not used
   static constexpr double kSignificantTurn = 10;     ///< deviations of a turn above which a block shows the wheel base
   static constexpr double kProof = 5;                ///< deviations that prove slip: 1 of 1.7 million normal residuals
@@ -52,6 +52,7 @@ struct Tuning {
   static constexpr double kMinHoldTime = 0.02;    ///< s for which a sample of an IMU holds at least: 50 Hz
   static constexpr double kMaxHoldTime = 0.2;     ///< s for which a sample or a bridged gap holds at most
   static constexpr double kSlowAccelerometer = 0.03;  ///< s between samples, above which motion is not resolved
+  static constexpr double kSlowWheels = 0.08;         ///< s, likewise between two readings of the wheels
   static constexpr double kMaxGap = 0.5;              ///< s, upper bound of the usual gap between readings of a wheel
 
   static constexpr double kConstantRate = 10.0;  ///< s of one rate on standing wheels: time-out for an old bias
@@ -65,12 +66,9 @@ struct Tuning {
   static constexpr double kSteepest = 0.6;     ///< sine of a tilt, 37°, at which rubber on dry ground begins to slide
   static constexpr double kInitialTilt = 0.1;  ///< rad, deviation at switch-on; the steepest road
   static constexpr double kMaxOffset = 0.4;    ///< s, twice the largest clock offset of the recordings
-  static constexpr double kMinTwistNoise = 5e-4;   ///< rad/√rad, turn noise of a hard tyre on a hard floor
-  static constexpr double kMaxSlipNoise = 0.05;    ///< m/√m, slip noise, ten times that of skid steers
-  static constexpr double kMaxTwistNoise = 1.0;    ///< rad/√rad, turn noise at which nothing is known of a turn
-  static constexpr double kFirstLevel = 10;        ///< level before any residual: real floors shake 10 … 40 times
-  static constexpr double kMaxNis = 1e6;           ///< nis that enters a confidence
-  static constexpr double kRestart = 0.05;         ///< m and rad, deviation added by a restart or a lost travel
+  static constexpr double kFirstLevel = 10;    ///< level before any residual: real floors shake 10 … 40 times
+  static constexpr double kMaxNis = 1e6;       ///< nis that enters a confidence
+  static constexpr double kRestart = 0.05;     ///< m and rad, deviation added by a restart or a lost travel
   static constexpr double kPlanarVariance = 1e-4;  ///< m² and rad² of z, roll and pitch on an even floor: 1 cm, 0.6°
   static constexpr double kSpeedShare = 0.02;      ///< share of an encoder's quantum that the tracking loop leaves
   static constexpr double kMinSlipSpeed = 0.02;    ///< m/s, and rad/s at rest: slower slip counts as none

@@ -283,7 +283,7 @@ TEST_P(EstimatorGarbageTest, NeverPoisonsTheState) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, EstimatorGarbageTest, testing::Range(0U, 10U));
 
-// Either sensor may have failed: the deviation of the heading is the whole difference, until a rest and beyond.
+// Either sensor may have failed: the deviation of the heading is the difference, and shrinks while both agree.
 class ALyingGyro : public EstimatorFixture, public testing::WithParamInterface<double> {};
 
 TEST_P(ALyingGyro, WidensTheHeading) {

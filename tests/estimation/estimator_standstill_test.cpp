@@ -42,7 +42,7 @@ TEST_F(EstimatorStandstillTest, LearnsAConstantBiasExactlyInTheLimit) {
   observe();
   drive(0, 0, 80 * kWindow);
   const EstimatorParameters parameters;
-  const double noise = Tuning::kMountedGyro * parameters.gyro_noise;
+  const double noise = parameters.gyro_noise;
   const double r = noise * noise / parameters.standstill_time;
   const double p = parameters.gyro_bias_initial * parameters.gyro_bias_initial;
   EXPECT_NEAR(state_.base.gyro_bias[2], 0.03, 0.03 * r / (80 * p) * 1.1);
@@ -61,7 +61,7 @@ TEST_F(EstimatorStandstillTest, LearnsTheBiasUnderNoise) {
   }
 }
 
-// Noise as in the parameters: the published deviation is that of the mean of a mounted gyro, kMountedGyro 2.44e-4/√T,
+// Noise as in the parameters: the published deviation is that of the mean as the samples scatter, 2.44e-4/√T,
 // and the error is within it. One window of twenty does not count yet: √(20/19) = 1.03.
 TEST_F(EstimatorStandstillTest, KnowsHowWellItKnowsTheBias) {
   const EstimatorParameters parameters;
@@ -69,7 +69,7 @@ TEST_F(EstimatorStandstillTest, KnowsHowWellItKnowsTheBias) {
   robot_.noise = {.gyro = parameters.gyro_noise, .accelerometer = 1e-3, .counts = 0};
   drive(0, 0, 20 * kWindow);
   const double expected = parameters.gyro_noise / std::sqrt(20 * parameters.standstill_time);
-  EXPECT_NEAR(state_.base.gyro_bias_deviation[2], Tuning::kMountedGyro * expected, 0.1 * expected);
+  EXPECT_NEAR(state_.base.gyro_bias_deviation[2], expected, 0.1 * expected);
   EXPECT_NEAR(state_.base.gyro_bias[2], 0.01, 4 * expected);
 }
 

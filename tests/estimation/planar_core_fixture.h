@@ -28,8 +28,13 @@ inline CoreVector values_of(const PlanarCore& core) {
   return x;
 }
 
+/// Wheels that a turn does not drag over the floor.
+inline PlanarCoreParams rolling_wheels() {
+  return {.drags_wheels = false};
+}
+
 inline PlanarCoreParams core_without_noise() {
-  return {.gyro_noise = 0, .gyro_bias_walk = 0};
+  return {.gyro_noise = 0, .gyro_bias_walk = 0, .drags_wheels = false};
 }
 
 /// Drives `blocks` of 1 s at 0.4 m/s with a turn of 0.3 rad, exact sensors and clocks. The rate alternates.
@@ -45,7 +50,8 @@ inline void practise(PlanarCore& core, int blocks) {
       core.turn_by_gyro(kTurn / kSteps, 1.0 / kSteps);
       core.roll(kWay / kSteps * std::cos(core.pose().yaw), kWay / kSteps * std::sin(core.pose().yaw), kTurn);
     }
-    core.end_block(kWay - kBase * kTurn / 2, kWay + kBase * kTurn / 2, kTurn + 0.2 * sign, 1.0);
+    core.end_block(
+        {.time = 1.0, .left = kWay - kBase * kTurn / 2, .right = kWay + kBase * kTurn / 2, .rate = kTurn + 0.2 * sign});
   }
 }
 

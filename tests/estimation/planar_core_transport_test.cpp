@@ -41,7 +41,7 @@ class CoreTransportTest : public testing::Test {
   void expect_transport(const Step& step, const CoreMatrix& before, const CoreVector& at, const CoreMatrix& noise) {
     const CoreMatrix by = derivative(step, at);
     const CoreMatrix expected = by * before * by.transpose() + noise;
-    const CoreMatrix p = core_.covariance();
+    const CoreMatrix p = *core_.covariance();
     for (int i = 0; i < p.rows(); ++i) {
       for (int k = 0; k < p.cols(); ++k) {
         const double scale = std::sqrt(expected(i, i) * expected(k, k));
@@ -55,7 +55,7 @@ class CoreTransportTest : public testing::Test {
 TEST_F(CoreTransportTest, TheGyroTurnsByItsBiasAndItsScale) {
   constexpr double kAngle = 0.05;
   constexpr double kInterval = 0.1;
-  const CoreMatrix before = core_.covariance();
+  const CoreMatrix before = *core_.covariance();
   const CoreVector at = values_of(core_);
   const Step step = [&](CoreVector x) {
     x[PlanarCore::kYaw] += (1 + x[PlanarCore::kScale]) * (kAngle - x[PlanarCore::kBias] * kInterval);
@@ -71,7 +71,7 @@ TEST_F(CoreTransportTest, AWayTurnsWithTheYawOfItsReading) {
   constexpr double kRate = 0.8;
   const double x = 0.3;
   const double y = -0.4;
-  const CoreMatrix before = core_.covariance();
+  const CoreMatrix before = *core_.covariance();
   const CoreVector at = values_of(core_);
   const Step step = [&](CoreVector state) {
     const double turned =
@@ -94,7 +94,7 @@ TEST_F(CoreTransportTest, TheWheelsTurnByTheirCalibration) {
   core_.roll(1, 2, 0);
   const double left = 0.2;
   const double right = 0.5;
-  const CoreMatrix before = core_.covariance();
+  const CoreMatrix before = *core_.covariance();
   const CoreVector at = values_of(core_);
   const Step step = [&](CoreVector x) {
     PlanarCore other(params);
@@ -102,11 +102,11 @@ TEST_F(CoreTransportTest, TheWheelsTurnByTheirCalibration) {
     x[PlanarCore::kYaw] += other.wheel_turn(left, right);
     return x;
   };
-  core_.turn_by_wheels(left, right);
+  core_.turn_by_wheels(left, right, 0);
   EXPECT_NEAR(core_.pose().yaw, (right - left) / params.wheel_base, 1e-15);
   const CoreMatrix by = derivative(step, at);
   CoreMatrix noise = CoreMatrix::Zero();
-  noise(PlanarCore::kYaw, PlanarCore::kYaw) = core_.covariance(PlanarCore::kYaw, PlanarCore::kYaw) -
+  noise(PlanarCore::kYaw, PlanarCore::kYaw) = (*core_.covariance())(PlanarCore::kYaw, PlanarCore::kYaw) -
                                               (by * before * by.transpose())(PlanarCore::kYaw, PlanarCore::kYaw);
   EXPECT_GT(noise(PlanarCore::kYaw, PlanarCore::kYaw), 0) << "slip of both sides";
   expect_transport(step, before, at, noise);
@@ -128,10 +128,10 @@ TEST(CoreTransport, TheCovarianceOfAStraightWayIsThatOfTheClosedForm) {
   const double yaw = kBias * kBias * kSeconds * kSeconds + kNoise * kNoise * kSeconds;
   const double across =
       kBias * kBias * kWay * kWay * kSeconds * kSeconds / 4 + kNoise * kNoise * kWay * kWay * kSeconds / 3;
-  EXPECT_NEAR(core.covariance(PlanarCore::kYaw, PlanarCore::kYaw), yaw, 1e-9 * yaw);
-  EXPECT_NEAR(core.covariance(PlanarCore::kY, PlanarCore::kY), across + slips,
+  EXPECT_NEAR((*core.covariance())(PlanarCore::kYaw, PlanarCore::kYaw), yaw, 1e-9 * yaw);
+  EXPECT_NEAR((*core.covariance())(PlanarCore::kY, PlanarCore::kY), across + slips,
               2e-3 * across);  // of the sum for the integral
-  EXPECT_NEAR(core.covariance(PlanarCore::kX, PlanarCore::kX), slips, 1e-9 * slips);
+  EXPECT_NEAR((*core.covariance())(PlanarCore::kX, PlanarCore::kX), slips, 1e-9 * slips);
 }
 
 }  // namespace

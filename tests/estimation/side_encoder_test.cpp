@@ -8,6 +8,8 @@
 namespace robot_control {
 namespace {
 
+constexpr double kBandwidth = 20;  // Hz
+
 /// The left wheel of a robot that stands at 12.5 rad.
 class SideEncoderTest : public testing::Test {
  protected:
@@ -21,7 +23,7 @@ class SideEncoderTest : public testing::Test {
     return encoder_.step(sensors_, dt);
   }
   DriveTrain robot_ = two_wheeler();
-  SideEncoder encoder_{robot_, Side::kLeft};
+  SideEncoder encoder_{robot_, Side::kLeft, kBandwidth, kPeriod};
   SensorFrame sensors_;
 };
 
@@ -39,7 +41,7 @@ TEST_F(SideEncoderTest, TurnsAnglesIntoTravel) {
 
 TEST_F(SideEncoderTest, TurnsAMirroredWheelsAnglesAround) {
   robot_.wheels[0].sign = -1;
-  SideEncoder mirrored(robot_, Side::kLeft);
+  SideEncoder mirrored(robot_, Side::kLeft, kBandwidth, kPeriod);
   mirrored.step(sensors_, 0);
   sensors_.joints[0].position = 12.51;
   mirrored.step(sensors_, kPeriod);
@@ -60,8 +62,8 @@ class SideEncoderOfFourWheels : public testing::Test {
     EXPECT_EQ(left_.step(sensors_, 0), EncoderReading::kOffset);
     EXPECT_EQ(right_.step(sensors_, 0), EncoderReading::kOffset);
   }
-  SideEncoder left_{four_wheeler(), Side::kLeft};
-  SideEncoder right_{four_wheeler(), Side::kRight};
+  SideEncoder left_{four_wheeler(), Side::kLeft, kBandwidth, kPeriod};
+  SideEncoder right_{four_wheeler(), Side::kRight, kBandwidth, kPeriod};
   SensorFrame sensors_;
 };
 

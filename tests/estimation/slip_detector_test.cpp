@@ -188,8 +188,8 @@ TEST_F(SlipDetectorTest, TheAccelerometersSlowErrorIsTheGravityError) {
 }
 
 TEST_F(SlipDetectorTest, SensorsOfTheDataSheetAreAsSpecified) {
-  EXPECT_GE(body_.detector.levels().level(), 1);
-  EXPECT_LT(body_.detector.acceleration_noise(0).white, 3 * SlipParams{}.accelerometer);
+  EXPECT_GE(body_.detector.level(), 1);
+  EXPECT_LT(body_.detector.acceleration_noise().white, 3 * SlipParams{}.accelerometer);
 }
 
 // Vibration that grows with the speed: levels that were learned at 0.5 m/s hold at four times that speed.
@@ -197,11 +197,11 @@ TEST_F(SlipFixture, FasterDrivingThanUsualShakesMore) {
   body_.noise = 30 * SlipParams{}.accelerometer;
   drive(0.5, 1.0);
   drive(60);
-  const double before = body_.detector.acceleration_noise(0).white;
+  const double before = body_.detector.acceleration_noise().white;
   drive(1.5, 1.0);
   body_.noise *= 4;
   EXPECT_EQ(drive(0.8), 0);
-  EXPECT_GT(body_.detector.acceleration_noise(0).white, 3 * before);
+  EXPECT_GT(body_.detector.acceleration_noise().white, 3 * before);
 }
 
 TEST_F(SlipDetectorTest, ARestartProvesNothing) {
@@ -214,8 +214,8 @@ TEST_F(SlipDetectorTest, ARestartProvesNothing) {
 
 // Before anything is learned the levels are those of real floors.
 TEST_F(SlipFixture, BeginsPessimistic) {
-  EXPECT_EQ(body_.detector.levels().level(), 0);
-  EXPECT_DOUBLE_EQ(body_.detector.acceleration_noise(0).white, Tuning::kFirstLevel * SlipParams{}.accelerometer);
+  EXPECT_EQ(body_.detector.level(), 0);
+  EXPECT_DOUBLE_EQ(body_.detector.acceleration_noise().white, Tuning::kFirstLevel * SlipParams{}.accelerometer);
 }
 
 /// Factor on the noise of the data sheet.
@@ -238,7 +238,7 @@ TEST_F(SlipFixture, TheLevelIsTheQuantileOfTheResiduals) {
   body_.noise = 100 * SlipParams{}.accelerometer;
   drive(0.5, 1.0);
   drive(60);
-  EXPECT_GT(body_.detector.levels().level(), 5);
+  EXPECT_GT(body_.detector.level(), 5);
   int beyond = 0;
   int count = 0;
   for (int i = 0; i < 200000; ++i) {
@@ -278,10 +278,10 @@ TEST(SlipDetector, GarbageLeavesItFinite) {
       ASSERT_TRUE(std::isfinite(detector.shortest_proven_span())) << seed << ' ' << i;
       const MotionDifference& difference = detector.difference();
       ASSERT_TRUE(difference.empty() || std::isfinite(difference.last().path_difference.x)) << seed << ' ' << i;
-      ASSERT_TRUE(std::isfinite(detector.levels().level())) << seed << ' ' << i;
+      ASSERT_TRUE(std::isfinite(detector.level())) << seed << ' ' << i;
       ASSERT_TRUE(std::isfinite(detector.gravity_error().along) && std::isfinite(detector.gravity_error().deviation));
-      ASSERT_TRUE(std::isfinite(detector.acceleration_noise(1e-4).white) &&
-                  std::isfinite(detector.acceleration_noise(1e-4).slow));
+      ASSERT_TRUE(std::isfinite(detector.acceleration_noise().white) &&
+                  std::isfinite(detector.acceleration_noise().slow));
     }
   }
 }

@@ -14,6 +14,7 @@ from robot_control.offline_estimator import FLAGS
 from bench.odometry.field_drive import Errors, field_drive, load
 from bench.odometry.recordings import (
     ABSENT,
+    NAMES,
     Recording,
     aligned_rms,
     recording,
@@ -48,9 +49,11 @@ needs_recordings = pytest.mark.skipif(recordings_folder() is None, reason=ABSENT
 class Drive:
     """A recording and its estimate."""
 
-    def __init__(self, drive: Recording) -> None:
+    def __init__(self, drive: Recording, *, self_calibration: bool = True) -> None:
         self.drive = drive
-        self.out = Estimator(**drive.geometry()).process(*drive.samples())
+        given = drive.geometry()
+        given["params"] = {**given.get("params", {}), "state_estimator": {"self_calibration": self_calibration}}
+        self.out = Estimator(**given).process(*drive.samples())
         self.path = np.column_stack([self.out["x"], self.out["y"]])
         self.simple = simple_path(drive)
         self.away = np.hypot(*(self.path - self.simple[:, :2]).T)
@@ -93,6 +96,47 @@ def test_a_real_drive_ends_where_the_simple_odometry_does(drives, name):
 @pytest.mark.parametrize("name", BOUNDS)
 def test_a_floor_that_shakes_the_robot_is_not_called_slip(drives, name):
     assert drives(name).share("slip") <= SLIP
+
+
+@needs_recordings
+@pytest.mark.parametrize("name", NAMES)
+def test_a_real_drive_ends_within_a_percent_of_the_simple_odometry(drives, name):
+    drive = drives(name)
+    assert drive.away[-1] <= 0.15 + 0.01 * drive.distance
+
+
+@needs_recordings
+@pytest.mark.parametrize("name", NAMES)
+def test_the_heading_is_as_sure_as_the_bias_of_the_first_rest(drives, name):
+    """A gyro whose bias no rest has shown is off by 3 °/s."""
+    drive = drives(name)
+    rest, time = drive.drive.rest, drive.drive.time
+    rate = drive.drive.gyro[time < rest - min(0.5, rest / 4), 2]
+    rate = rate[~np.isnan(rate)]
+    bias = np.std(rate) / np.sqrt(rate.size) if rest > 1 else 0.05
+    deviation = np.rad2deg(np.sqrt(drive.out["pose_covariance"][-1, 5, 5]))
+    assert deviation <= 5 + 2 * np.rad2deg(bias * (time[-1] - rest))
+
+
+@needs_recordings
+@pytest.mark.parametrize("name", ["husky_ice", "husky_snow", "husky_asphalt"])
+def test_speeds_in_coarse_steps_are_not_called_slip(drives, name):
+    assert drives(name).share("slip") <= 0.02
+
+
+@needs_recordings
+@pytest.mark.parametrize("name", ["outdoor_skid_steer", "outdoor_skid_steer_imu_b", "warthog_grass"])
+def test_self_calibration_harms_no_drive_with_a_truth(drives, name):
+    drive, without = drives(name), Drive(recording(name), self_calibration=False)
+    time, *truth = drive.drive.truth.T
+    seen = time < drive.drive.time[-1]
+
+    def rms(path: np.ndarray) -> float:
+        at = np.column_stack([np.interp(time[seen], drive.drive.time, path[:, axis]) for axis in (0, 1)])
+        return aligned_rms(at, np.column_stack(truth)[seen])
+
+    assert rms(drive.path) <= 1.05 * rms(without.path)
+    assert rms(drive.path) <= 1.05 * rms(drive.simple)
 
 
 @needs_recordings

@@ -39,11 +39,11 @@ def test_a_robot_that_rested_learns_its_wheels(seconds, deviation, seed):
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_a_robot_that_never_rested_claims_nothing_of_its_wheels(seed):
-    """60 ms are too short for a rest. The state then reports that the bias is not known. The deviation stays that of
-    new tyres, and the ratio within a part of it.
+def test_a_robot_that_never_rested_claims_little_of_its_wheels(seed):
+    """60 ms are too short for a rest. The state then reports that the bias is not known. At a constant speed bias and
+    ratio cannot be told apart: of the deviation of new tyres, 0.01, at least half remains.
     """
     end = wander(rest=60, seconds=60, seed=seed)
     assert int(end["estimate_flags"]) & DEGRADED
-    assert end["radius_ratio_deviation"] > 0.009
-    assert end["radius_ratio"] == pytest.approx(1.0, abs=0.4 * end["radius_ratio_deviation"])
+    assert end["radius_ratio_deviation"] > 0.005
+    assert end["radius_ratio"] == pytest.approx(RATIO, abs=3 * end["radius_ratio_deviation"])

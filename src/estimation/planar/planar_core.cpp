@@ -1,6 +1,6 @@
 #include "estimation/planar/planar_core.h"
 
-#include <utility>
+#include <numbers>
 
 namespace robot_control {
 
@@ -8,33 +8,33 @@ PlanarCore::PlanarCore(const PlanarCoreParams& params) noexcept
     : params_(params), noise_(params.slip_least, params.drags_wheels) {
   (*covariance_)(kOffset, kOffset) = square(params.clock_offset);
   (*covariance_)(kBias, kBias) = square(params.gyro_bias_initial);
-  (*covariance_)(kRatio, kRatio) = square(params.ratio_deviation);
-  (*covariance_)(kBase, kBase) = square(params.wheel_base_deviation);
   (*covariance_)(kScale, kScale) = square(params.gyro_scale);
   (*covariance_)(kIcr, kIcr) = square(params.icr_deviation);
   (*covariance_)(kRadius, kRadius) = square(params.radius_deviation);
+  set_calibration(
+      {.radius_ratio_deviation = params.ratio_deviation, .wheel_base_deviation = params.wheel_base_deviation});
 }
 
 void PlanarCore::forget(int first, int count) noexcept {
   (*covariance_).middleRows(first, count).setZero();
   (*covariance_).middleCols(first, count).setZero();
-  (*held_).segment(first, count).setZero();
-  (*by_bias_).segment(first, count).setZero();
 }
 
 void PlanarCore::place(const PlanarPose& pose) noexcept {
   forget(kX, 4);
   (*state_).segment<4>(kX) << pose.x, pose.y, pose.yaw, pose.yaw;
+  doubt_ = apart_ = 0;
 }
 
 void PlanarCore::set_bias(double bias, double deviation) noexcept {
   forget(kBias, 1);
-  (*by_bias_)[kBias] = 1;
   (*state_)[kBias] = bias;
   (*covariance_)(kBias, kBias) = square(deviation);
 }
 
 void PlanarCore::set_calibration(const WheelCalibration& known) noexcept {
+  start_ = known;
+  worse_ = 0;
   forget(kRatio, 2);
   (*state_)[kRatio] = known.radius_ratio - 1;
   (*state_)[kBase] = known.wheel_base_factor - 1;
@@ -50,8 +50,6 @@ void PlanarCore::set_pose_covariance(const Eigen::Matrix3d& known) noexcept {
 void PlanarCore::add(int to, double factor, int from) noexcept {
   (*covariance_).row(to) += factor * (*covariance_).row(from);
   (*covariance_).col(to) += factor * (*covariance_).col(from);
-  (*held_)[to] += factor * (*held_)[from];
-  (*by_bias_)[to] += factor * (*by_bias_)[from];
 }
 
 /// The middle of the wheels moves sideways if it is not the centre of rotation.
@@ -68,15 +66,15 @@ void PlanarCore::turn_by_gyro(double angle, double dt) noexcept {
   slide(turned);
   add(kYaw, -dt, kBias);
   add(kYaw, turned, kScale);
-  (*covariance_)(kYaw, kYaw) += square(params_.gyro_noise) * dt;
+  add_yaw_variance(square(params_.gyro_noise) * dt);
 }
 
 double PlanarCore::wheel_turn(double left, double right) const noexcept {
   return (right - left + ratio() * (left + right) / 2) / (params_.wheel_base * (1 + base()));
 }
 
-void PlanarCore::turn_by_wheels(double left, double right) noexcept {
-  const double turned = wheel_turn(left, right);
+void PlanarCore::turn_by_wheels(double left, double right, double already) noexcept {
+  const double turned = wheel_turn(left, right) - already;
   (*state_)[kYaw] += turned;
   add(kYaw, (left + right) / 2 / params_.wheel_base, kRatio);
   add(kYaw, -turned, kBase);
@@ -104,17 +102,17 @@ void PlanarCore::shift(double x, double y, double variance) noexcept {
 
 void PlanarCore::begin_block(double rate) noexcept {
   anchor_rate_ = rate;
+  anchor_x_ = (*state_)[kX];
+  anchor_y_ = (*state_)[kY];
   (*state_)[kAnchor] = (*state_)[kYaw];
-  (*held_)[kAnchor] = (*held_)[kYaw];
-  (*by_bias_)[kAnchor] = (*by_bias_)[kYaw];
   (*covariance_).row(kAnchor) = (*covariance_).row(kYaw);
   (*covariance_).col(kAnchor) = (*covariance_).col(kYaw);
 }
 
-PlanarCore::Innovation PlanarCore::end_block(double left, double right, double rate, double dt) noexcept {
-  const double rolled = std::abs(left) + std::abs(right);
-  const double mean = (left + right) / 2;
-  const double later = rate - anchor_rate_;
+PlanarCore::Innovation PlanarCore::end_block(const Block& block) noexcept {
+  const double rolled = std::abs(block.left) + std::abs(block.right);
+  const double mean = (block.left + block.right) / 2;
+  const double later = block.rate - anchor_rate_;
   const double angle = turned() - offset() * later;
   const double b = params_.wheel_base * (1 + base());
   Vector h = Vector::Zero();
@@ -122,53 +120,69 @@ PlanarCore::Innovation PlanarCore::end_block(double left, double right, double r
   h[kAnchor] = -b;
   h[kOffset] = -b * later;
   h[kRatio] = -mean;
-  const double drift = square(params_.gyro_noise) * dt + (*covariance_)(kBias, kBias) * dt * dt;
+  const double drift = square(params_.gyro_noise) * block.time + bias_variance() * square(block.time);
   if (square(angle) > square(Tuning::kSignificantTurn) * drift) h[kBase] = params_.wheel_base * angle;
   const Vector ph = *covariance_ * h;
   const WheelNoise::Variances parts = noise_.variances(rolled, angle, b);
   const double s = h.dot(ph) + parts.slips + parts.twists + 4 * square(params_.encoder);
-  const double innovation = right - left + ratio() * mean - b * angle - h.dot(*held_);
+  const double difference = block.right - block.left;
+  const double innovation = difference + ratio() * mean - b * angle;
   const double normalised = innovation / std::sqrt(s);
-  const bool used = std::abs(normalised) <= Tuning::kGate;
-  if (used) correct(ph / s, ph, s, std::clamp(normalised, -Tuning::kHuber, Tuning::kHuber) * std::sqrt(s));
-  if (!bias_known_ && !params_.drags_wheels && bias_proven()) {
-    *state_ += *held_;
-    (*held_).setZero();
-    bias_known_ = true;
-  }
+  const bool agree = std::abs(normalised) <= Tuning::kGate;
+  compare(angle, angle + innovation / b, Tuning::kSignificant * std::sqrt(s) / b, agree, block.stuck);
+  if (block.slid) return {.nis = square(normalised), .used = false};
+  Vector gain = ph / s;
+  if (params_.drags_wheels) gain.segment<5>(kX).setZero();
+  if (agree) correct(gain, ph, s, std::clamp(normalised, -Tuning::kHuber, Tuning::kHuber) * std::sqrt(s));
   noise_.learn(normalised, parts, s);
+  const double other =
+      difference + (start_.radius_ratio - 1) * mean - params_.wheel_base * start_.wheel_base_factor * angle;
+  check_calibration(innovation, other, s);
   const double calibration = square(Tuning::kCalibrationWalk * slip());
-  walk(kOffset, square(Tuning::kOffsetWalk) * dt);
+  walk(kOffset, square(Tuning::kOffsetWalk) * block.time);
   walk(kRatio, calibration * std::abs(mean));
   walk(kBase, calibration * rolled / 2);
-  return {.nis = square(normalised),
-          .used = used,
-          .apart = innovation / b,
-          .usual = Tuning::kSignificant * std::sqrt(s) / b};
+  return {.nis = square(normalised), .used = agree};
 }
 
-void PlanarCore::contradict(double angle, double distance) noexcept {
+/// `angle` is the turn by the gyro, `wheels` that by the wheels, `usual` their usual difference, rad.
+void PlanarCore::compare(double angle, double wheels, double usual, bool agree, bool stuck) noexcept {
+  if (agree && !stuck) {
+    const double taken = params_.drags_wheels ? 3 * Tuning::kAgreement : Tuning::kAgreement;
+    doubt_ *= 1 - taken;
+    apart_ *= 1 - taken;
+    return;
+  }
+  const double least = params_.drags_wheels && !stuck ? wheels * 3 / 4 : wheels;
+  const double nearest = std::clamp(angle, std::min(least, wheels), std::max(least, wheels));
+  contradict(std::copysign(std::max(0.0, std::abs(angle - nearest) - (stuck ? 0 : usual)), nearest - angle));
+}
+
+/// `learned` and `other` are the innovations of a block by the learned calibration and by that of the start, m.
+void PlanarCore::check_calibration(double learned, double other, double variance) noexcept {
+  const double bound = square(Tuning::kHuber) * variance;
+  const double worse = (std::min(square(learned), bound) - std::min(square(other), bound)) / variance;
+  worse_ = std::max(0.0, worse_ + worse);
+  if (worse_ > square(Tuning::kSignificant)) set_calibration(start_);
+}
+
+void PlanarCore::contradict(double angle) noexcept {
+  if (angle == 0) return;
+  if (doubt_ == 0) {
+    doubted_x_ = anchor_x_;
+    doubted_y_ = anchor_y_;
+  }
   apart_ += angle;
-  const double earlier = std::exchange(largest_apart_, std::max(largest_apart_, std::abs(apart_)));
-  add_yaw_variance(square(largest_apart_) - square(earlier));
-  shift(0, 0, square(angle * distance / 2));
+  doubt_ = std::max(doubt_, std::abs(apart_));
 }
 
 ///   P ← (I − k hᵀ) P (I − k hᵀ)ᵀ + k r kᵀ, with s = hᵀ P h + r
 void PlanarCore::correct(Vector gain, const Vector& ph, double s, double innovation) noexcept {
   gain.tail<kConsidered>().setZero();
-  const Vector change = innovation * gain;
-  (*(bias_known_ ? state_ : held_)).segment<5>(kX) += change.segment<5>(kX);
-  (*state_).segment<2>(kRatio) += change.segment<2>(kRatio);
-  (*state_)[kOffset] = std::clamp((*state_)[kOffset] + change[kOffset], -Tuning::kMaxOffset, Tuning::kMaxOffset);
+  *state_ += innovation * gain;
+  (*state_)[kOffset] = std::clamp((*state_)[kOffset], -Tuning::kMaxOffset, Tuning::kMaxOffset);
   const Matrix half = gain * (s / 2 * gain - ph).transpose();
   *covariance_ += half + half.transpose();
-}
-
-/// Compares an unknown bias with the bias that the path was integrated with, by their Bayes factor.
-bool PlanarCore::bias_proven() const noexcept {
-  const double variance = (*covariance_)(kBias, kBias);
-  return square((*held_)[kBias]) > variance * std::max(1.0, std::log(square(params_.gyro_bias_initial) / variance));
 }
 
 void PlanarCore::rest(double mean, double variance, bool keeps_pose) noexcept {
@@ -176,17 +190,21 @@ void PlanarCore::rest(double mean, double variance, bool keeps_pose) noexcept {
   const double s = ph[kBias] + variance;
   Vector gain = ph / s;
   if (keeps_pose) gain.segment<4>(kX).setZero();
-  const bool known = std::exchange(bias_known_, keeps_pose);
-  correct(gain, ph, s, mean - bias() - (*held_)[kBias]);
-  const bool integrated = !(*by_bias_).segment<4>(kX).isZero(0);
-  bias_known_ = known || keeps_pose || !integrated || bias_proven();
-  if (!bias_known_) return;
-  const double change = std::exchange((*held_)[kBias], 0);
-  (*state_)[kBias] += change;
-  if (keeps_pose) return;
-  const Eigen::Vector4d shift = change * (*by_bias_).segment<4>(kX);
-  (*state_).segment<4>(kX) += shift;
-  (*held_).segment<4>(kX) -= shift;
+  correct(gain, ph, s, mean - bias());
+}
+
+/// A heading that is wrong by δ since the doubt began turns the way since then by δ. The way errs by sin δ across, and
+/// by 1 − cos δ along it.
+Eigen::Matrix4d PlanarCore::pose_covariance() const noexcept {
+  Eigen::Matrix4d covariance = (*covariance_).topLeftCorner<4, 4>();
+  if (doubt_ == 0) return covariance;
+  const double x = (*state_)[kX] - doubted_x_;
+  const double y = (*state_)[kY] - doubted_y_;
+  const Eigen::Vector4d across(0, -y, x, 1);
+  const Eigen::Vector4d along(0, x, y, 0);
+  covariance += square(doubt_) * across * across.transpose();
+  covariance += square(1 - std::cos(std::min(doubt_, std::numbers::pi))) * along * along.transpose();
+  return covariance;
 }
 
 }  // namespace robot_control

@@ -1,5 +1,6 @@
 #pragma once
-/// The planar core estimates the pose in the plane: the gyro turns the robot, and the wheels move it.
+/// The planar core estimates the pose in the plane. The gyro turns the robot, and the wheels move it. A Kalman filter
+/// weighs the turn of the wheels against that of the gyro.
 ///
 ///   ψ ← ψ + (1 + κ)(gyro − b) dt    (x, y) ← (x, y) + d (cos ψ̄, sin ψ̄)    d: distance of the middle of the wheels
 ///
@@ -16,13 +17,17 @@
 ///   x_ICR    centre of rotation ahead of the middle of the wheels: a turn dψ moves the middle by −x_ICR dψ sideways
 ///   radius   mean radius of the wheels, relative; it scales the path
 ///
-/// An innovation counts with at most kHuber deviations. Beyond kGate deviations it is not used. ε and β walk in
-/// proportion to the slip noise (wheel_noise.h). If wheels and gyro contradict each other, the heading follows the
-/// gyro. Its deviation is the largest angle by which both have turned apart since the last rest.
+/// Wheels that a turn drags over the floor do not measure the heading: load and floor change ε and β as much as a gyro
+/// errs. Their blocks correct τ, ε and β alone.
 ///
-/// Until the bias is known, corrections of pose and b are held back, and P is that of the uncorrected pose. The bias is
-/// known after a rest, or once undragged wheels prove that b differs from the bias used so far. The first rest corrects
-/// the pose by ∂(x, y, ψ)/∂b alone. The reasons are in docs/evidence/derivations.md.
+/// An innovation counts with at most kHuber deviations. Beyond kGate deviations wheels and gyro contradict each other.
+/// The heading then follows the gyro, and its doubt, a deviation beside P, grows by the angle between both. Wheels that
+/// are dragged may turn the robot by three quarters of their own turn. Each block in which both agree takes kAgreement
+/// of the doubt, and three times as much where turns drag wheels. A gyro that fails seldom becomes right again.
+///
+/// ε and β walk in proportion to the slip noise (wheel_noise.h). The blocks that follow check them: where those of the
+/// start predict the blocks better, by a nis of kSignificant², ε and β are dropped. They begin again with the deviation
+/// of the start.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -63,11 +68,16 @@ class PlanarCore {
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
   using Vector = Eigen::Matrix<double, kSize, 1>;
 
+  /// Describes the travel of both sides since the block began.
+  struct Block {
+    double time = 0, left = 0, right = 0;  ///< s, m
+    double rate = 0;                       ///< rad/s, of the gyro at the end
+    bool slid = false;                     ///< Wheels slipped: nothing is learned of them.
+    bool stuck = false;                    ///< The gyro repeated one sample for longer than kMaxHoldTime.
+  };
   struct Innovation {
     double nis = 0;
     bool used = false;
-    double apart = 0;  ///< rad by which the wheels turned more than the gyro
-    double usual = 0;  ///< rad, kSignificant deviations of `apart`
   };
 
   explicit PlanarCore(const PlanarCoreParams& params = {}) noexcept;
@@ -78,28 +88,22 @@ class PlanarCore {
   void set_calibration(const WheelCalibration& known) noexcept;
   void set_pose_covariance(const Eigen::Matrix3d& known) noexcept;  ///< covariance of x, y, yaw
 
-  void turn_by_gyro(double angle, double dt) noexcept;          ///< rad, bias included
-  void turn_by_wheels(double left, double right) noexcept;      ///< m
+  void turn_by_gyro(double angle, double dt) noexcept;  ///< rad, bias included
+  /// The travel is in m; the robot has turned by `already` rad since the last readings.
+  void turn_by_wheels(double left, double right, double already) noexcept;
   double wheel_turn(double left, double right) const noexcept;  ///< rad, by the calibration
   /// Moves the pose by x, y (m, odom axes) while the robot turns at `rate` rad/s.
   void roll(double x, double y, double rate) noexcept;
   void shift(double x, double y, double variance) noexcept;  ///< m, m²
   void add_yaw_variance(double variance) noexcept { (*covariance_)(kYaw, kYaw) += variance; }
 
-  /// While the bias is unknown, corrections of pose and bias are held back, and the covariance includes them. Clock
-  /// offset and calibration are corrected nevertheless.
-  void set_bias_known(bool known) noexcept { bias_known_ = known; }
-  bool bias_known() const noexcept { return bias_known_; }
-
   /// Begins a block when the travel of both sides has been read.
   void begin_block(double rate) noexcept;
-  /// Ends the block after `left` and `right` m in `dt` s. `rate` (rad/s) is the gyro's at the end.
-  Innovation end_block(double left, double right, double rate, double dt) noexcept;
-  /// Adds a contradiction of wheels and gyro by `angle` rad, which arose while the robot travelled `distance` m.
-  void contradict(double angle, double distance) noexcept;
-  /// Returns true if the contradiction since the last rest exceeded kUnknownHeading.
-  bool contradicted() const noexcept { return largest_apart_ > Tuning::kUnknownHeading; }
-  void end_contradiction() noexcept { apart_ = largest_apart_ = 0; }  ///< The covariance stays.
+  Innovation end_block(const Block& block) noexcept;
+  /// Adds a contradiction of wheels and gyro by `angle` rad.
+  void contradict(double angle) noexcept;
+  /// Returns true if wheels and gyro contradict each other by more than kUnknownHeading.
+  bool contradicted() const noexcept { return doubt_ > Tuning::kUnknownHeading; }
   /// Measures the bias by the gyro's mean at rest, rad/s. With `keeps_pose` the pose is not corrected.
   void rest(double mean, double variance, bool keeps_pose) noexcept;
   void age(double dt) noexcept { (*covariance_)(kBias, kBias) += square(params_.gyro_bias_walk) * dt; }
@@ -116,32 +120,32 @@ class PlanarCore {
     return {1 + ratio(), 1 + base(), deviation(kRatio), deviation(kBase)};
   }
 
-  /// Covariance of the published state, including the corrections that are held back.
-  Matrix covariance() const noexcept { return *covariance_ + *held_ * (*held_).transpose(); }
-  double covariance(int i, int k) const noexcept { return (*covariance_)(i, k) + (*held_)[i] * (*held_)[k]; }
-  double deviation(int i) const noexcept { return std::sqrt(std::max(0.0, covariance(i, i))); }
-  double bias_variance() const noexcept { return covariance(kBias, kBias); }  ///< (rad/s)²
+  const Stored<Matrix>& covariance() const noexcept { return covariance_; }  ///< P, without the doubt
+  Eigen::Matrix4d pose_covariance() const noexcept;  ///< covariance of τ, x, y, yaw, with the doubt
+  double deviation(int i) const noexcept { return std::sqrt(std::max(0.0, (*covariance_)(i, i))); }
+  double bias_variance() const noexcept { return (*covariance_)(kBias, kBias); }  ///< (rad/s)²
 
  private:
   void add(int to, double factor, int from) noexcept;
   void forget(int first, int count) noexcept;
   void slide(double turned) noexcept;
   void correct(Vector gain, const Vector& ph, double s, double innovation) noexcept;
+  void compare(double angle, double wheels, double usual, bool agree, bool stuck) noexcept;
+  void check_calibration(double learned, double other, double variance) noexcept;
   void walk(int i, double variance) noexcept {  ///< A held value has no variance and does not walk.
     if ((*covariance_)(i, i) > 0) (*covariance_)(i, i) += variance;
   }
-  bool bias_proven() const noexcept;
 
   PlanarCoreParams params_;
   Stored<Vector> state_;
   Stored<Matrix> covariance_;
-  Stored<Vector> held_;                          ///< corrections that are held back
-  Stored<Vector> by_bias_{Vector::Unit(kBias)};  ///< derivative of the pose by the bias of its integration
   WheelNoise noise_;
-  double apart_ = 0;          ///< rad, sum of the contradictions since the last rest
-  double largest_apart_ = 0;  ///< rad, largest |apart_| since the last rest
-  double anchor_rate_ = 0;    ///< rad/s, at the beginning of the block
-  bool bias_known_ = true;
+  WheelCalibration start_;                ///< calibration at the start
+  double worse_ = 0;                      ///< nis by which what was learned predicts worse than the start
+  double doubt_ = 0, apart_ = 0;          ///< rad: largest |apart_|; sum of the contradictions
+  double doubted_x_ = 0, doubted_y_ = 0;  ///< m, where the doubt began
+  double anchor_x_ = 0, anchor_y_ = 0;    ///< m, where the block began
+  double anchor_rate_ = 0;                ///< rad/s, at the beginning of the block
 };
 
 }  // namespace robot_control

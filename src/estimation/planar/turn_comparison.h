@@ -1,44 +1,27 @@
 #pragma once
 /// Divides a drive into blocks of at least kBlock, over which the planar core compares the turn of the wheels with that
-/// of the gyro. A block begins and ends where both sides have been read.
-/// After a fault of a drive no block begins before the next rest. One wheel brakes while the other coasts, so wheels
-/// and gyro differ by slip.
+/// of the gyro. A block begins and ends where both sides have been read. While wheels slip, blocks show contradictions
+/// but teach nothing. After a fault of a drive no block begins before the next rest: one wheel brakes while the other
+/// coasts.
 
-#include <optional>
-
-#include "estimation/tuning.h"
+#include "estimation/planar/planar_core.h"
 
 namespace robot_control {
 
 class TurnComparison {
  public:
-  struct Input {
-    double dt = 0;               ///< s
-    double left = 0, right = 0;  ///< m, travel in this step
-    bool border = false;         ///< Both sides were read, and the gyro turns the robot.
-    bool slide = false;          ///< Wheels slip, so that the open block is not compared.
-    double gyro_unchanged = 0;   ///< s, ImuReading::gyro_unchanged
-  };
-  struct Block {
-    double time = 0, left = 0, right = 0;  ///< s, m
-    bool stuck = false;                    ///< The gyro repeated one sample for longer than kMaxHoldTime.
-  };
-  struct Output {
-    bool begins = false;         ///< A block begins.
-    std::optional<Block> ended;  ///< the block before
-  };
-
-  Output step(const Input& input) noexcept {
-    block_.time += input.dt;
-    block_.left += input.left;
-    block_.right += input.right;
-    block_.stuck = block_.stuck || input.gyro_unchanged > Tuning::kMaxHoldTime;
-    open_ = open_ && !input.slide;
-    if (!input.border || suspended_ || (open_ && block_.time < Tuning::kBlock)) return {};
-    const Output output{.begins = true, .ended = open_ ? std::optional(block_) : std::nullopt};
-    begin();
-    return output;
+  /// Adds the time and travel of a step, and the flags of `step`.
+  void add(const PlanarCore::Block& step) noexcept {
+    block_.time += step.time;
+    block_.left += step.left;
+    block_.right += step.right;
+    block_.stuck = block_.stuck || step.stuck;
+    block_.slid = block_.slid || step.slid;
   }
+  /// Returns true if a block may begin where both sides have been read. The block before ends.
+  bool at_border() const noexcept { return !suspended_ && (!open_ || block_.time >= Tuning::kBlock); }
+  bool open() const noexcept { return open_; }
+  const PlanarCore::Block& block() const noexcept { return block_; }
   void begin() noexcept {  ///< begins a block
     block_ = {};
     open_ = true;
@@ -51,7 +34,7 @@ class TurnComparison {
   void resume() noexcept { suspended_ = false; }
 
  private:
-  Block block_;
+  PlanarCore::Block block_;
   bool open_ = false;
   bool suspended_ = false;
 };

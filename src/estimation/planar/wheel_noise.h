@@ -25,9 +25,11 @@ class WheelNoise {
     double slips = 0, twists = 0;
   };
 
-  /// `least` (m/√m) is that of the best floor. A turn that drags no wheel begins with a third of the noise.
+  /// `least` (m/√m) is that of the best floor. Wheels that no turn drags begin with a fifth of the noise.
   WheelNoise(double least, bool drags_wheels) noexcept
-      : least_(least), slip_(std::max(Tuning::kFirstSlip, least)), twist_(drags_wheels ? kScrub : kScrub / 3) {}
+      : least_(least),
+        slip_(std::max(least, drags_wheels ? Tuning::kFirstSlip : Tuning::kFirstSlip / 5)),
+        twist_(drags_wheels ? kScrub : kScrub / 5) {}
 
   /// `rolled` is the sum of both sides in m, `angle` is in rad and `wheel_base` in m.
   Variances variances(double rolled, double angle, double wheel_base) const noexcept {
@@ -38,8 +40,8 @@ class WheelNoise {
   void learn(double normalised, const Variances& parts, double s) noexcept {
     constexpr double kNormalMedian = 0.6745;  // deviations, median of |normal|
     const double step = std::abs(normalised) > kNormalMedian ? Tuning::kLevelStep : -Tuning::kLevelStep;
-    twist_ = std::clamp(twist_ * std::exp(step * parts.twists / s), Tuning::kMinTwistNoise, Tuning::kMaxTwistNoise);
-    slip_ = std::clamp(slip_ * std::exp(step * parts.slips / s), least_, Tuning::kMaxSlipNoise);
+    twist_ = std::clamp(twist_ * std::exp(step * parts.twists / s), kMinTwist, 1.0);
+    slip_ = std::clamp(slip_ * std::exp(step * parts.slips / s), least_, kMaxSlip);
   }
 
   double slip() const noexcept { return slip_; }    ///< m/√m
@@ -47,6 +49,8 @@ class WheelNoise {
 
  private:
   static constexpr double kScrub = Tuning::kFirstScrub;
+  static constexpr double kMinTwist = 5e-4;  ///< rad/√rad, of a hard tyre on a hard floor
+  static constexpr double kMaxSlip = 0.05;   ///< m/√m, ten times that of skid steers
   double least_, slip_, twist_;
 };
 

@@ -1,6 +1,8 @@
 #pragma once
 /// A Kalman filter of one state estimates a bias that walks and is measured directly.
 
+#include <utility>
+
 namespace robot_control {
 
 struct BiasEstimate {
@@ -14,6 +16,28 @@ struct BiasEstimate {
     value += gain * (measured - value);
     variance *= 1 - gain;
   }
+};
+
+/// Measures the noise density of a gyro at rest by the differences of successive samples.
+class RestNoise {
+ public:
+  explicit RestNoise(double expected) noexcept : sum_(kExpected * expected * expected) {}
+
+  /// `sample` is in rad/s, `gap` s after the one before.
+  void add(double sample, double gap, bool rests) noexcept {
+    const double change = sample - std::exchange(last_, sample);
+    if (!std::exchange(rested_, rests) || !rests) return;
+    sum_ += change * change * gap / 2;
+    count_ += 1;
+  }
+  double squared() const noexcept { return sum_ / count_; }  ///< (rad/s)²/Hz
+
+ private:
+  static constexpr double kExpected = 8;  ///< samples that the expected density counts for
+  double sum_;
+  double count_ = kExpected;
+  double last_ = 0;
+  bool rested_ = false;
 };
 
 }  // namespace robot_control

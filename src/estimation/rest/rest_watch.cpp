@@ -21,10 +21,12 @@ void RestWatch::reset() noexcept {
 }
 
 RestWindow RestWatch::step(const Sample& sample, const Bias& bias) noexcept {
-  bias_changed_ = false;
+  bias_changed_ = confirmed_ = false;
   left_ += sample.left;
   right_ += sample.right;
   if (std::abs(left_) > params_.tolerance || std::abs(right_) > params_.tolerance) {
+    confirmed_ = time_ >= 2 * Tuning::kOffset && pending_.time > 0;
+    if (confirmed_) done_ = pending_;
     begin();
     pending_ = {};
     steady_time_ = 0;

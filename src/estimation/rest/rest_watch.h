@@ -11,7 +11,7 @@
 /// The third rule excludes a body that swings after a stop.
 ///
 /// Readings of the wheels may be late, so that the robot may move before they show it. Therefore the means of a window
-/// count only when the next one is quiet, too.
+/// count only when the next one is quiet, too, or lasts longer than readings are late.
 
 #include <cstdint>
 #include <optional>
@@ -82,6 +82,8 @@ class RestWatch {
   const Means& means() const noexcept { return done_; }  ///< those of the window that counts
   /// Returns true if the last window shows another bias of the gyro than the known one.
   bool bias_changed() const noexcept { return bias_changed_; }
+  /// Returns true if a wheel moved so late in the last window that the one before counts.
+  bool confirmed() const noexcept { return confirmed_; }
 
  private:
   void begin() noexcept;
@@ -95,6 +97,7 @@ class RestWatch {
   Vector3 steady_gyro_{};
   double steady_time_ = 0, repeated_time_ = 0;
   bool bias_changed_ = false;
+  bool confirmed_ = false;
 };
 
 }  // namespace robot_control

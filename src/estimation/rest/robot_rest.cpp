@@ -6,7 +6,8 @@
 namespace robot_control {
 
 RestWatch::Bias RobotRest::bias(const Input& input) const noexcept {
-  RestWatch::Bias bias{.value = input.bias, .known = input.bias_known || bias_measured_ || !moved_};
+  const bool known = bias_measured_ || !moved_ || input.bias_variance[2] < square(steady_);
+  RestWatch::Bias bias{.value = input.bias, .known = known};
   for (std::size_t i = 0; i < 3; ++i) {
     bias.deviation[i] = std::sqrt(input.mean_variance + (bias.known ? input.bias_variance[i] : input.mean_variance));
   }
@@ -28,8 +29,8 @@ RobotRest::Output RobotRest::step(const Input& input) noexcept {
                  .left = input.sample.left,
                  .right = input.sample.right,
                  .velocity = input.acceleration * input.sample.dt,
-                 .gyro = input.sample.gyro.has_value()};
-  for (std::size_t i = 0; now.gyro && i < 3; ++i) now.turn[i] = (*input.sample.gyro)[i] * input.sample.dt;
+                 .gyro = input.rate.has_value()};
+  for (std::size_t i = 0; now.gyro && i < 3; ++i) now.turn[i] = (*input.rate)[i] * input.sample.dt;
   open_.add(now);
   if (input.fell_silent) {  // No sensor confirms that the robot still rests.
     watch_.reset();
@@ -46,12 +47,15 @@ RobotRest::Output RobotRest::close(RestWindow window) noexcept {
     standing_ = true;
     return learn(false);
   }
+  Output output;
+  if (watch_.confirmed()) output = learn(false);
   rested_ = rested_ || bias_measured_;
   moved_ = true;
   resting_ = false;
-  HeldMotion held = std::exchange(open_, {});
-  held.add(std::exchange(last_, {}));
-  return {.held = held, .was_standing = std::exchange(standing_, false)};
+  output.held = std::exchange(open_, {});
+  output.held->add(std::exchange(last_, {}));
+  output.was_standing = std::exchange(standing_, false);
+  return output;
 }
 
 RobotRest::Output RobotRest::learn(bool began) noexcept {

@@ -31,17 +31,17 @@ struct HeldMotion {
 
 class RobotRest {
  public:
-  explicit RobotRest(const RestWatchParams& params) noexcept : watch_(params) {}
+  explicit RobotRest(const RestWatchParams& params) noexcept : steady_(params.steady), watch_(params) {}
 
   struct Input {
     RestWatch::Sample sample;
-    Planar acceleration{};     ///< m/s², base axes, without gravity
-    bool any_lost = false;     ///< The wheels of a side are lost.
-    bool fell_silent = false;  ///< Both sides are lost and had brought readings.
-    Vector3 bias{};            ///< rad/s, of the gyro
-    Vector3 bias_variance{};   ///< (rad/s)²
-    bool bias_known = false;   ///< It was known before the first rest.
-    double mean_variance = 0;  ///< (rad/s)², noise of a window's mean
+    std::optional<Vector3> rate{};  ///< rad/s, of the gyro, also in a short silence
+    Planar acceleration{};          ///< m/s², base axes, without gravity
+    bool any_lost = false;          ///< The wheels of a side are lost.
+    bool fell_silent = false;       ///< Both sides are lost and had brought readings.
+    Vector3 bias{};                 ///< rad/s, of the gyro
+    Vector3 bias_variance{};        ///< (rad/s)²
+    double mean_variance = 0;       ///< (rad/s)², noise of a window's mean
   };
   struct Output {
     bool began = false;                       ///< The robot has come to rest.
@@ -69,6 +69,7 @@ class RobotRest {
   RestWatch::Bias bias(const Input& input) const noexcept;
   Output learn(bool began) noexcept;
 
+  double steady_;  ///< rad/s
   RestWatch watch_;
   HeldMotion open_;  ///< motion in the window that is not over yet
   HeldMotion last_;  ///< motion in the window before

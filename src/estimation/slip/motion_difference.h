@@ -6,18 +6,15 @@
 ///   W(t) = right − left − B ψ(t − τ)                                                  turn_difference: m
 ///
 /// The path is that of the middle of the wheels. The acceleration is the IMU's without gravity. The lever leads from
-/// the middle of the wheels to the IMU and turns with the yaw ψ of the gyro. B is the wheel base.
-///
-/// τ is the clock offset: a reading of the wheels with the stamp t shows the state at t − τ (planar/planar_core.h).
-/// Both motions are compared at the same moment. A comparison at the same stamp would show a slip of τ Δv after a speed
-/// change Δv.
+/// the middle of the wheels to the IMU and turns with the yaw ψ of the gyro. B is the wheel base. τ is the clock
+/// offset. A reading of the wheels with the stamp t shows the state at t − τ (planar/planar_core.h).
 ///
 /// While no wheel slips, E is a straight line, whose slope is the unknown speed at the beginning, and W is constant.
 /// Time begins at 0 at the end of a rest and after a restart.
 ///
 /// τ is learned in motion. Therefore the points keep both motions, and every difference uses the present τ. The
-/// inertial motion is interpolated between two points. If τ < 0, the wheels are early. Then the last point is the last
-/// one for which t − τ has passed, and a newer point is judged when the next one is added.
+/// inertial motion between two points is that of a constant acceleration. If τ < 0, the wheels are early: a point is
+/// known when t − τ has passed.
 
 #include <array>
 #include <cstddef>
@@ -62,7 +59,6 @@ class MotionDifference {
     double yaw_rate = 0;                   ///< rad/s
   };
 
-  MotionDifference() = default;
   explicit MotionDifference(const SlipParams& params) noexcept : params_(params) {}
 
   void restart() noexcept;  ///< removes all points
@@ -80,45 +76,37 @@ class MotionDifference {
   /// Returns true if a point was added.
   bool step(const Sample& sample) noexcept;
 
-  double time() const noexcept { return now_.inertial.time; }  ///< s, of the last step
+  double time() const noexcept { return now_.time; }  ///< s, of the last step
   bool empty() const noexcept { return count_ == 0; }
-  /// Returns the newest point that is known; there must be one.
-  Point last() const noexcept { return difference(record(last_index())); }
-  Point before(double time) const noexcept;  ///< the newest point that is not later, else the oldest
+  Point last() const noexcept { return before(time()); }  ///< the newest point that is known; there must be one
+  Point before(double time) const noexcept;               ///< the newest known point that is not later, else the oldest
 
  private:
   static constexpr std::size_t kPoints = 64;
 
-  /// Holds the motion by gyro and accelerometer at one time.
-  struct Inertial {
-    double time = 0;      ///< s
-    Planar path{};        ///< m, odom axes: ∬ acceleration dt² of the IMU since the restart
-    Planar lever{};       ///< m, odom axes: from the middle of the wheels to the IMU
-    Planar velocity{};    ///< m/s, odom axes: integral of the acceleration since the restart
-    double yaw = 0;       ///< rad
-    double yaw_rate = 0;  ///< rad/s
-  };
-  /// Holds both motions until `inertial.time`.
+  /// Holds both motions until `time`.
   struct Record {
-    Inertial inertial;
-    Planar wheel_path{};          ///< m, odom axes
-    double right_minus_left = 0;  ///< m
-    double distance = 0;          ///< m
+    double time = 0;               ///< s
+    Planar wheel_path{};           ///< m, odom axes
+    double right_minus_left = 0;   ///< m
+    double distance = 0;           ///< m
+    Planar inertial{};             ///< m, odom axes: lever − ∬ acceleration dt²
+    Planar velocity{};             ///< m/s, odom axes: ∫ acceleration dt since the restart
+    double yaw = 0, yaw_rate = 0;  ///< rad, rad/s
   };
 
   Planar lever(double yaw, const Vector3& up) const noexcept;
-  bool waits() const noexcept { return clock_offset_ < 0; }  ///< True if the newest points wait for the IMU.
+  Record& record(std::size_t i) noexcept { return records_[i % kPoints]; }
   const Record& record(std::size_t i) const noexcept { return records_[i % kPoints]; }
   std::size_t oldest() const noexcept { return count_ > kPoints ? count_ - kPoints : 0; }
-  std::size_t last_index() const noexcept { return index_before(waits() ? time() + clock_offset_ : time()); }
   std::size_t index_before(double time) const noexcept;  ///< newest record that is not later, else the oldest
-  Inertial inertial_at(double time) const noexcept;
-  Point difference(const Record& record) const noexcept;
+  Point difference(const Record& wheels) const noexcept;
 
   SlipParams params_;
   std::array<Record, kPoints> records_{};  ///< ring, at least Tuning::kPointInterval apart
   std::size_t count_ = 0;
   Record now_;
+  Planar lever_;  ///< m, odom axes, at the end of the last step
   double clock_offset_ = 0;
   double path_begin_ = 0;
 };

@@ -1,12 +1,24 @@
 #include "estimation/slip/wheel_slide.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "signals/state_frame.h"
 
 namespace robot_control {
+namespace {
 
-WheelSlide::Correction WheelSlide::begin(const MotionDifference& difference, double span, const Input& input) noexcept {
+double significant(double sigma) noexcept {
+  return std::max(Tuning::kMinSlipSpeed, Tuning::kSignificant * sigma);
+}
+
+}  // namespace
+
+WheelSlide::Correction WheelSlide::begin(const SlipDetector& detector, const Speeds& treads) noexcept {
+  const MotionDifference& difference = detector.difference();
+  const AccelerationNoise noise = detector.acceleration_noise();
+  const double span = detector.shortest_proven_span();
   const Point onset = difference.before(difference.last().time - 0.9 * span);
   const Point older = difference.before(onset.time - span);
   const double time = onset.time - older.time;
@@ -14,71 +26,53 @@ WheelSlide::Correction WheelSlide::begin(const MotionDifference& difference, dou
   *this = {};
   active_ = true;
   line_ = (onset.path_difference - older.path_difference) / time;
-  line_deviation_ = std::sqrt(square(input.path_slope_deviation) + square(input.noise.slow * time / 2) +
-                              square(input.noise.white) * time / 3);
+  line_deviation_ = std::sqrt(square(detector.slope_deviation(SlipResidual::kAlong)) + square(noise.slow * time / 2) +
+                              square(noise.white) * time / 3);
   onset_ = onset.time;
   onset_speed_ = rotated(onset.velocity + line_, -onset.yaw).x;
   slipped_ = difference.time();
   corrected_ = difference.before(std::max(onset.time, difference.path_begin()));
-  return step(difference, input);
+  return step(detector, treads);
 }
 
-WheelSlide::Excess WheelSlide::excess(const Point& from, const Point& to) const noexcept {
-  const double dt = to.time - from.time;
-  const Planar off = rotated((to.path_difference - from.path_difference) / dt - line_, -(to.yaw + from.yaw) / 2);
-  return {.along = off.x, .across = off.y, .turn = (to.turn_difference - from.turn_difference) / dt};
-}
-
-double WheelSlide::line_deviation(double time, const AccelerationNoise& noise) const noexcept {
-  const double t = time - onset_;
-  return std::sqrt(square(line_deviation_) + square(noise.slow * t) + square(noise.white) * t);
-}
-
-WheelSlide::Correction WheelSlide::step(const MotionDifference& difference, const Input& input) noexcept {
+WheelSlide::Correction WheelSlide::step(const SlipDetector& detector, const Speeds& treads) noexcept {
+  const MotionDifference& difference = detector.difference();
+  const AccelerationNoise noise = detector.acceleration_noise();
   const Point now = difference.last();
   const Point before = difference.before(now.time - 2 * Tuning::kPointInterval * (1 - 1e-9));
-  if (!(now.time > before.time)) return {};
-  const double deviation = line_deviation(now.time, input.noise);
-  evaluate(now.time, excess(before, now), deviation, input);
+  const double span = now.time - before.time;
+  if (!(span > 0)) return {};
+  const Planar off =
+      rotated((now.path_difference - before.path_difference) / span - line_, -(now.yaw + before.yaw) / 2);
+  const Excess latest{off.x, off.y, (now.turn_difference - before.turn_difference) / span};
+  const double t = now.time - onset_;
+  const double deviation = std::sqrt(square(line_deviation_) + square(noise.slow * t) + square(noise.white) * t);
+  evaluate(detector, latest, deviation, treads);
   const double dt = now.time - corrected_.time;
   if (!(dt > 0)) return {};
   const double yaw = (now.yaw + corrected_.yaw) / 2;
-  const Excess since = excess(corrected_, now);
-  const double slipped = slipped_speed(since, input) * dt;
   corrected_ = now;
-  const Excess latest = excess(before, now);
-  excess_speed_ = slipped_speed(latest, input);
-  const auto [low, high] = std::minmax({0.0, onset_speed_, input.wheel_speed()});
+  const double wheels = (treads[0] + treads[1]) / 2;
+  const double stands = significant(deviation);
+  const bool stood = slips_[0] && slips_[1] && std::abs(wheels - latest.along) <= stands;
+  const bool blocked = stood && (excess_speed_ != 0 || std::abs(wheels) > stands);
+  Correction correction{.shift = take_back(wheels, dt, yaw, blocked, now.time <= difference.path_begin())};
   const double apart = sideways_ ? std::hypot(latest.along, latest.across) : latest.along;
-  const double choice = Tuning::kChoiceDeviation * std::clamp(apart, low - high, high - low);
-  const double path_speed_deviation = std::hypot(std::min(high - low, deviation), choice);
-  const double changed = std::max(std::abs(excess_speed_), std::abs(input.wheel_speed() - onset_speed_));
-  speed_deviation_ = std::max(path_speed_deviation, changed / 2);
-  const double earlier = path_deviation_;
-  path_deviation_ += path_speed_deviation * dt;
-  return {.shift = rotated({-slipped, 0}, yaw),
-          .variance = square(path_deviation_) - square(earlier),
-          .contradiction = contradict(since.turn / input.wheel_base * dt, latest, deviation, input)};
-}
-
-double WheelSlide::contradict(double apart, const Excess& excess, double deviation, const Input& input) noexcept {
-  turned_apart_ += apart;
-  const double earlier = contradiction_;
-  const double speed = std::abs(input.wheel_speed() - excess_speed_);
-  const double sideways =
-      std::abs(excess.across) + Tuning::kSignificant * std::hypot(deviation, input.path_slope_deviation);
-  contradiction_ = turned_apart_;
-  if (std::abs(turned_apart_) * speed > sideways) contradiction_ = std::copysign(sideways / speed, turned_apart_);
-  return contradiction_ - earlier;
-}
-
-/// A side that rolls gives the speed without the accelerometer.
-double WheelSlide::slipped_speed(const Excess& excess, const Input& input) const noexcept {
-  if (!slips_[0] && !slips_[1]) return 0;
-  const double along = slips_[0] && slips_[1] ? excess.along : (slips_[1] ? 1 : -1) * excess.turn / 2;
-  const double wheels = input.wheel_speed();
   const auto [low, high] = std::minmax({0.0, onset_speed_, wheels});
-  return wheels - std::clamp(wheels - along, low, high);
+  const double choice = Tuning::kChoiceDeviation * std::min(std::abs(apart), high - low);
+  speed_deviation_ = std::max(choice, std::abs(wheels - onset_speed_) / 2);
+  const double earlier = std::exchange(path_deviation_, path_deviation_ + choice * dt);
+  correction.variance = square(path_deviation_) - square(earlier);
+  return correction;
+}
+
+/// Returns the shift of a robot that is blocked. A path that `begins` now has nothing to take back.
+Planar WheelSlide::take_back(double wheels, double dt, double yaw, bool blocked, bool begins) noexcept {
+  blocked_ = blocked ? blocked_ + dt : 0;
+  held_ = blocked && !begins ? held_ + rotated({wheels * dt, 0}, yaw) : Planar{};
+  const bool known = blocked_ >= Tuning::kBlock;
+  excess_speed_ = known ? wheels : 0;
+  return known ? -std::exchange(held_, Planar{}) : Planar{};
 }
 
 Planar WheelSlide::rolling_slope(const MotionDifference& difference) const noexcept {
@@ -88,19 +82,25 @@ Planar WheelSlide::rolling_slope(const MotionDifference& difference) const noexc
 }
 
 /// A side rolls if the slip of the other one explains its excess.
-void WheelSlide::evaluate(double time, const Excess& excess, double deviation, const Input& input) noexcept {
-  const auto significant = [](double sigma) { return std::max(Tuning::kMinSlipSpeed, Tuning::kSignificant * sigma); };
+void WheelSlide::evaluate(const SlipDetector& detector, const Excess& excess, double deviation,
+                          const Speeds& treads) noexcept {
   largest_ = std::max({largest_, std::abs(excess.side(0)), std::abs(excess.side(1))});
-  const bool sudden = largest_ > Tuning::kSignificantTurn * line_deviation_;
-  const double carried = significant(std::hypot(deviation, input.path_slope_deviation));
-  const double tolerance = sudden ? std::min(carried, largest_ / 2) : carried;
+  const double carried = significant(std::hypot(deviation, detector.slope_deviation(SlipResidual::kAlong)));
+  const double tolerance =
+      largest_ > Tuning::kSignificantTurn * line_deviation_ ? std::min(carried, largest_ / 2) : carried;
   for (const std::size_t i : {0U, 1U}) slips_[i] = std::abs(excess.side(i)) > tolerance;
-  if (!slips_[0] && !slips_[1] && std::abs(excess.turn) > significant(input.turn_slope_deviation)) {
+  const double turns = significant(detector.slope_deviation(SlipResidual::kTurn));
+  if (!slips_[0] && !slips_[1] && std::abs(excess.turn) > turns) {
     slips_[std::abs(excess.side(0)) > std::abs(excess.side(1)) ? 0 : 1] = true;
   }
-  sideways_ = input.sideways;
+  sideways_ = detector.proven(SlipResidual::kAcross);
+  const double time = detector.difference().last().time;
   if (slips_[0] || slips_[1]) slipped_ = time;
   active_ = time - slipped_ < kRolls;
+  name(excess, treads);
+}
+
+void WheelSlide::name(const Excess& excess, const Speeds& treads) noexcept {
   reasons_ = 0;
   if (slips_[0]) reasons_ |= kSlipLeft;
   if (slips_[1]) reasons_ |= kSlipRight;
@@ -108,8 +108,7 @@ void WheelSlide::evaluate(double time, const Excess& excess, double deviation, c
   if (sideways_) reasons_ |= kSlipSideways;
   for (const std::size_t i : {0U, 1U}) {
     if (!slips_[i]) continue;
-    // The wheels of this side are faster than the ground.
-    const bool faster = std::abs(input.side_speed[i]) > std::abs(input.side_speed[i] - excess.side(i));
+    const bool faster = std::abs(treads[i]) > std::abs(treads[i] - excess.side(i));  // than the ground
     reasons_ |= faster ? kSlipSpinning : kSlipStalled;
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
-/// A slide lasts from the onset of slip that the detector proved until all wheels roll again.
+/// A slide lasts from the onset of slip that the detector proved until all wheels roll again. It names the slip, widens
+/// the covariance and moves nothing, with one exception: a blocked robot.
 ///
 /// Before the onset E follows a straight line (motion_difference.h). The slide extends that line. The slope of E beyond
 /// it is the excess speed of the wheels over the ground, and line + ∫ acceleration is the ground speed u.
@@ -7,55 +8,36 @@
 ///   σ_u² = σ² + (slow t)² + white² t        t: time since the onset; σ: of the line's slope at the onset
 ///
 /// A side slips while its share of the slope exceeds kSignificant σ_u. After sudden slip, whose largest slope exceeds
-/// kSignificantTurn σ, a side slips until half of that slope is gone, because no drift explains it.
+/// kSignificantTurn σ, a side slips until half of that slope is gone, because no drift explains it. The slide ends when
+/// nothing has slipped for kRolls.
 ///
-/// While a side slips, the path takes the speed u instead of the wheels' speed. It is clamped between zero, the speed
-/// at the onset and the wheels' speed. So a robot that is lifted or tipped with standing wheels does not move. The path
-/// is never moved sideways.
+/// A wall blocks the robot while both sides slip and u is zero within kSignificant σ_u. At the beginning the wheels'
+/// speed exceeds that, too. After kBlock the path takes back what the wheels have rolled since then. So a robot that is
+/// lifted or tipped with standing wheels does not move.
 ///
-/// A slide adds the variance of the path's speed, integrated as one error. It consists of σ_u within these bounds and
-/// of kChoiceDeviation times the difference between wheels and accelerometer, because either may be right.
-///
-/// In a slide wheels and gyro turn apart by Φ = ∫ W dt / B. A wrong gyro bends the path against the acceleration, so
-/// that E moves across by u Φ. So the gyro is wrong by at most Φ. It is also wrong by at most the motion of E across
-/// plus kSignificant deviations, over u.
-///
-/// The slide ends when nothing has slipped for kRolls.
+/// The variance is that of the path's speed, integrated as one error: kChoiceDeviation times the difference between
+/// wheels and accelerometer, because either may be right.
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 
-#include "estimation/slip/motion_difference.h"
-#include "estimation/slip/residual_levels.h"
+#include "estimation/slip/slip_detector.h"
 
 namespace robot_control {
 
 class WheelSlide {
  public:
-  /// Holds the values that are known at a point.
-  struct Input {
-    AccelerationNoise noise;
-    double path_slope_deviation = 0;     ///< m/s, of E along, over two points
-    double turn_slope_deviation = 0;     ///< m/s, of W, over two points
-    std::array<double, 2> side_speed{};  ///< m/s, of the treads, left and right
-
-    double wheel_base = 0;  ///< m
-    bool sideways = false;  ///< Slip across is proven now.
-
-    double wheel_speed() const noexcept { return (side_speed[0] + side_speed[1]) / 2; }
-  };
+  using Speeds = std::array<double, 2>;  ///< m/s, of the treads, left and right
   /// Describes the changes of the path that the caller applies.
   struct Correction {
-    Planar shift{};            ///< m, odom axes
-    double variance = 0;       ///< m²
-    double contradiction = 0;  ///< rad by which the gyro may be wrong more than before
+    Planar shift{};       ///< m, odom axes
+    double variance = 0;  ///< m²
   };
 
-  /// Begins a slide after slip was proven that began `span` s ago at most.
-  Correction begin(const MotionDifference& difference, double span, const Input& input) noexcept;
+  /// Begins a slide where the detector has proven slip.
+  Correction begin(const SlipDetector& detector, const Speeds& treads) noexcept;
   /// Updates the active slide; called at every point of the differences.
-  Correction step(const MotionDifference& difference, const Input& input) noexcept;
+  Correction step(const SlipDetector& detector, const Speeds& treads) noexcept;
   void end() noexcept { *this = {}; }
 
   bool active() const noexcept { return active_; }
@@ -64,7 +46,7 @@ class WheelSlide {
   bool sideways() const noexcept { return sideways_; }
   /// Returns the slope of E at the end, while all wheels rolled, in m/s, odom axes.
   Planar rolling_slope(const MotionDifference& difference) const noexcept;
-  double excess_speed() const noexcept { return excess_speed_; }        ///< m/s, wheels minus path
+  double excess_speed() const noexcept { return excess_speed_; }        ///< m/s, wheels minus path: of a blocked robot
   double speed_deviation() const noexcept { return speed_deviation_; }  ///< m/s, of the path's speed
 
  private:
@@ -77,11 +59,9 @@ class WheelSlide {
     double side(std::size_t i) const noexcept { return along + (i == 0 ? -1 : 1) * turn / 2; }
   };
 
-  Excess excess(const Point& from, const Point& to) const noexcept;
-  double slipped_speed(const Excess& excess, const Input& input) const noexcept;  ///< m/s, wheels minus ground
-  double contradict(double apart, const Excess& excess, double deviation, const Input& input) noexcept;  ///< rad
-  double line_deviation(double time, const AccelerationNoise& noise) const noexcept;                     ///< m/s: σ_u
-  void evaluate(double time, const Excess& excess, double deviation, const Input& input) noexcept;
+  void evaluate(const SlipDetector& detector, const Excess& excess, double deviation, const Speeds& treads) noexcept;
+  void name(const Excess& excess, const Speeds& treads) noexcept;
+  Planar take_back(double wheels, double dt, double yaw, bool blocked, bool begins) noexcept;
 
   bool active_ = false;
   Planar line_;                ///< m/s, odom axes, slope of E before the onset
@@ -95,8 +75,8 @@ class WheelSlide {
   bool sideways_ = false;
   std::uint64_t reasons_ = 0;
   double excess_speed_ = 0, speed_deviation_ = 0;
-  double turned_apart_ = 0;    ///< rad: Φ
-  double contradiction_ = 0;   ///< rad, of the gyro
+  double blocked_ = 0;         ///< s for which both sides spin and the robot stands
+  Planar held_;                ///< m, odom axes, path of the wheels in that time
   double path_deviation_ = 0;  ///< m, deviation that this slide has added
 };
 

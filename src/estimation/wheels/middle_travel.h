@@ -44,6 +44,10 @@ class MiddleTravel {
     return travels;
   }
 
+  /// Returns the turn since the last readings of the sides that were received now, rad.
+  double turned_since(const WheelReading& wheels) const noexcept {
+    return (wheels.received[0] ? sides_[0].turned / 2 : 0) + (wheels.received[1] ? sides_[1].turned / 2 : 0);
+  }
   void forget_turn() noexcept { sides_[0].turned = sides_[1].turned = 0; }      ///< forgets the turn since the readings
   void forget_credit(std::size_t side) noexcept { sides_[side].credited = 0; }  ///< The side lost its travel.
 

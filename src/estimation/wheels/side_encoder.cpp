@@ -8,8 +8,11 @@
 
 namespace robot_control {
 
-SideEncoder::Wheel::Wheel(const WheelModel& wheel, const DriveTrain& robot) noexcept
-    : joint(wheel.joint), metres_per_radian(wheel.sign * wheel.radius), velocity_bound(Tuning::kFastestWheel) {
+SideEncoder::Wheel::Wheel(const WheelModel& wheel, const DriveTrain& robot, double bandwidth, double period)
+    : joint(wheel.joint),
+      metres_per_radian(wheel.sign * wheel.radius),
+      velocity_bound(Tuning::kFastestWheel),
+      tracking(bandwidth, period) {
   const double limit = joint < robot.joints.size() ? robot.joints[joint].velocity_limit : 0;
   if (limit > 0 && std::isfinite(limit)) velocity_bound = 2 * limit;
 }
@@ -35,10 +38,33 @@ double SideEncoder::Wheel::accept(const SensorFrame& sensors) noexcept {
   return metres_per_radian * (position - std::exchange(angle, position));
 }
 
-SideEncoder::SideEncoder(const DriveTrain& robot, Side side) {
+void SideEncoder::Wheel::track(double periods) noexcept {
+  if (periods > 0) return tracking.step(angle, 0, periods);
+  tracking.restart_from(angle, tracking.velocity());
+}
+
+SideEncoder::SideEncoder(const DriveTrain& robot, Side side, double bandwidth, double period) : period_(period) {
   for (const WheelModel& wheel : robot.wheels) {
-    if (wheel.side == side) wheels_.emplace_back(wheel, robot);
+    if (wheel.side == side) wheels_.emplace_back(wheel, robot, bandwidth, period);
   }
+}
+
+double SideEncoder::speed() const noexcept {
+  double sum = 0;
+  for (const Wheel& wheel : wheels_) sum += wheel.metres_per_radian * wheel.tracking.velocity();
+  return sum / static_cast<double>(wheels_.size());
+}
+
+void SideEncoder::set_speed(double speed) noexcept {
+  for (Wheel& wheel : wheels_) wheel.tracking.restart_from(wheel.angle, speed / wheel.metres_per_radian);
+}
+
+void SideEncoder::assume_encoder_of(const SideEncoder& other) noexcept {
+  for (Wheel& wheel : wheels_) wheel.tracking.assume_encoder_of(other.wheels_.begin()->tracking);
+}
+
+void SideEncoder::write(std::array<double, kMaxJoints>& joint_velocity) const noexcept {
+  for (const Wheel& wheel : wheels_) joint_velocity[wheel.joint] = wheel.tracking.velocity();
 }
 
 EncoderReading SideEncoder::step(const SensorFrame& sensors, double dt) noexcept {
@@ -58,7 +84,12 @@ EncoderReading SideEncoder::step(const SensorFrame& sensors, double dt) noexcept
     reading = EncoderReading::kLost;
   }
   double sum = 0;
-  for (Wheel& wheel : wheels_) sum += wheel.accept(sensors);
+  since_lost_ = reading == EncoderReading::kLost ? 0 : since_lost_ + waiting_;
+  const bool continues = reading == EncoderReading::kTravel && since_lost_ >= Tuning::kMaxHoldTime;
+  for (Wheel& wheel : wheels_) {
+    sum += wheel.accept(sensors);
+    wheel.track(continues ? waiting_ / period_ : 0);
+  }
   if (reading == EncoderReading::kTravel) travel_ = sum / static_cast<double>(wheels_.size());
   time_ = waiting_;
   gap_ = std::min(std::max(waiting_, (1 - Tuning::kForgetting) * gap_), Tuning::kMaxGap);

@@ -3,6 +3,10 @@
 ///
 ///   travel = mean over the side's wheels of signᵢ · radiusᵢ · (qᵢ − qᵢ,last)    [m]
 ///
+/// Each wheel's speed is that of the tracking loop of the wheel loops (machine/encoders/tracking_loop.h), without a
+/// torque that explains its acceleration. A difference over one period would jump by a count: 1.5 rad/s with 4096
+/// counts at 1 kHz. For kMaxHoldTime after a reset the speed is held.
+///
 /// The side's wheels are read together: one unused sample rejects the reading. The first reading is the offset, without
 /// travel. A sample that is missing, not finite, impossible or old is not used; the next good one brings the travel of
 /// the gap. A difference is impossible above 2 · velocity_limit times the time passed, plus kEncoderSlack; without a
@@ -10,9 +14,12 @@
 /// encoder was reset. Then the present angles become the offset, and the travel in between is lost. The same holds for
 /// the first angles after a drive had a fault and then no position, because its zero may be another one.
 
+#include <array>
 #include <cstdint>
 
+#include "estimation/tuning.h"
 #include "machine/encoders/sample_time.h"
+#include "machine/encoders/tracking_loop.h"
 #include "machine/wheeled/drive_train.h"
 #include "signals/fixed_vector.h"
 #include "signals/sensor_frame.h"
@@ -28,8 +35,8 @@ enum class EncoderReading : std::uint8_t {
 
 class SideEncoder {
  public:
-  /// There must be at least one wheel on that side.
-  SideEncoder(const DriveTrain& robot, Side side);
+  /// There must be at least one wheel on that side. `bandwidth` (Hz) is that of the speeds, `period` is in s.
+  SideEncoder(const DriveTrain& robot, Side side, double bandwidth, double period);
 
   /// `dt` is the time in s since the last call.
   EncoderReading step(const SensorFrame& sensors, double dt) noexcept;
@@ -38,6 +45,12 @@ class SideEncoder {
   double travel() const noexcept { return travel_; }
   /// Returns the time in which that travel was made, in s.
   double time() const noexcept { return time_; }
+  double speed() const noexcept;          ///< m/s, tracked
+  void set_speed(double speed) noexcept;  ///< m/s
+  /// Uses the encoder's count of the other side until these wheels turn.
+  void assume_encoder_of(const SideEncoder& other) noexcept;
+  /// Writes rad/s of the wheels in the joint's own sign.
+  void write(std::array<double, kMaxJoints>& joint_velocity) const noexcept;
   /// Returns true if a reading was accepted in the last step.
   bool received() const noexcept { return waiting_ == 0 && known_; }
   bool known() const noexcept { return known_; }        ///< A reading was accepted in this run.
@@ -54,15 +67,19 @@ class SideEncoder {
     double angle = 0;       ///< rad, as last accepted
     SampleTime taken{};     ///< of that angle
     bool faulty = false;    ///< The drive had a fault in the last step.
+    TrackingLoop tracking;
 
-    Wheel(const WheelModel& wheel, const DriveTrain& robot) noexcept;
+    Wheel(const WheelModel& wheel, const DriveTrain& robot, double bandwidth, double period);
     bool measured(const SensorFrame& sensors) const noexcept;
     bool plausible(const SensorFrame& sensors, double time) const noexcept;
     bool lost_zero(const SensorFrame& sensors) noexcept;  ///< The drive may come back with another zero.
     double accept(const SensorFrame& sensors) noexcept;   ///< m, travel
+    void track(double periods) noexcept;                  ///< since the last accepted angle; 0: it does not continue
   };
 
   FixedVector<Wheel, kMaxWheels> wheels_;
+  double period_;
+  double since_lost_ = Tuning::kMaxHoldTime;  ///< s since the encoder was reset
   double travel_ = 0;
   double time_ = 0;
   double waiting_ = 0;

@@ -8,7 +8,6 @@
 
 #include "estimation/wheels/side_encoder.h"
 #include "estimation/wheels/speed_quantum.h"
-#include "estimation/wheels/speed_tracker.h"
 #include "machine/wheeled/drive_train.h"
 #include "signals/sensor_frame.h"
 
@@ -16,18 +15,19 @@ namespace robot_control {
 
 /// Holds what the wheels show in one step; the arrays hold left and right.
 struct WheelReading {
-  std::array<double, 2> travel{};  ///< m, since the last readings; 0 without a reading in this step
-  std::array<double, 2> speed{};   ///< m/s, tracked
-  std::array<bool, 2> received{};  ///< A reading was accepted in this step.
-  std::array<bool, 2> lost{};      ///< The side is lost.
-  double unread = 0;               ///< m, travel of the middle by sides without a reading, at their last speeds
-  double speed_step = 0;           ///< m/s, in which speeds are reported; 0: none
-  double travel_variance = 0;      ///< m², of each side's travel, by that step
-  bool refused = false;            ///< A reading was not used.
-  bool restarted = false;          ///< A side began from a new offset; its travel does not continue the earlier one.
-  bool fell_silent = false;        ///< Both are lost and had brought readings.
-  bool batch = false;              ///< The readings were held up; their stamps give no speed.
+  std::array<double, 2> travel{};        ///< m, since the last readings; 0 without a reading in this step
+  std::array<double, 2> speed{};         ///< m/s, tracked
+  std::array<bool, 2> received{};        ///< A reading was accepted in this step.
+  std::array<bool, 2> lost{};            ///< The side is lost.
   std::array<double, 2> unknown_time{};  ///< s, in which a travel that is now lost was made; 0: none was lost
+  double unread = 0;                     ///< m, travel of the middle by sides without a reading, at their last speeds
+  double gap = 0;                        ///< s, usual time between two readings
+  double speed_step = 0;                 ///< m/s, in which speeds are reported; 0: none
+  double travel_variance = 0;            ///< m², of each side's travel, by that step
+  bool refused = false;                  ///< A reading was not used.
+  bool restarted = false;    ///< A side began from a new offset; its travel does not continue the earlier one.
+  bool fell_silent = false;  ///< Both are lost and had brought readings.
+  bool batch = false;        ///< The readings were held up; their stamps give no speed.
 
   double left() const noexcept { return travel[0]; }
   double right() const noexcept { return travel[1]; }
@@ -46,18 +46,16 @@ class WheelSides {
   /// `dt` is the time in s since the last call.
   WheelReading step(const SensorFrame& sensors, double dt) noexcept;
   void set_speed(double left, double right) noexcept;  ///< m/s
+  /// Writes rad/s of the wheels in the joint's own sign.
+  void write(std::array<double, kMaxJoints>& joint_velocity) const noexcept {
+    for (const SideEncoder& side : sides_) side.write(joint_velocity);
+  }
 
  private:
-  struct SideState {
-    SideEncoder encoder;
-    SpeedTracker speed;
-  };
-
   bool lost(const SideEncoder& encoder) const noexcept;
-  void follow_stamps(const SideEncoder& left) noexcept;
 
   double longest_held_;  ///< s
-  std::array<SideState, 2> sides_;
+  std::array<SideEncoder, 2> sides_;
   SpeedQuantum quantum_;
   double usual_gap_ = 0;  ///< s, between two readings
 };
