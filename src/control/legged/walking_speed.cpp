@@ -62,4 +62,12 @@ WalkingTwist walking_speed(const LegModel& robot, const NominalStance& stance, c
   return result;
 }
 
+double walk_ending_time(const LegControllerParameters& parameters, const LegModel& robot) noexcept {
+  double slowest = 0, period = 0;
+  for (const MotionLimits& axis : twist_limits(parameters))
+    slowest = std::max(slowest, axis.speed / axis.emergency_deceleration + axis.emergency_deceleration / axis.jerk);
+  for (const Gait& gait : kGaits) period = std::max(period, gait.scaled(robot.leg_length()).period);
+  return slowest + period + kAllDown;
+}
+
 }  // namespace robot_control
