@@ -80,6 +80,7 @@ std::span<const JointCommand> Gate::step(const GateInput& input) noexcept {
   report_.cycle = input.cycle;
   report_.verdict = GateVerdict::kBrake;
   report_.reasons = 0;
+  report_.stance = {};
   read_samples(input);
   if (!check_and_clamp(input)) stop(elapsed_at(input.cycle));
   remember();
@@ -114,6 +115,7 @@ bool Gate::check_and_clamp(const GateInput& input) noexcept {
     report_.reasons |= kGateControllerBrake;
     return true;
   }
+  report_.stance = input.command->legged.stance;
   clamp(static_cast<double>(elapsed_at(input.cycle)) * period_);
   if (input.permit->action == PermitAction::kRamp) {
     report_.verdict = GateVerdict::kRamp;

@@ -21,7 +21,8 @@ enum class LegPhase : std::uint64_t {
   kRising = 2,
   kStanding = 3,
   kLowering = 4,
-  kJoints = 5
+  kJoints = 5,
+  kWalking = 6
 };
 
 /// Bits 20 to 22 of CommandFrame::reasons.
@@ -31,10 +32,17 @@ enum LeggedReason : std::uint64_t {
   kReasonNotLying = 1u << 22,     ///< Joints are requested, and it does not lie.
 };
 
+/// What is asked of each foot, by LegPlace: the part of its stance that it has done at the end of this cycle, above 0 …
+/// 1; 0.5 where it stands without a gait; 0 where it shall not bear.
+using FootStances = std::array<double, 4>;
+
 struct LeggedCommand {
   LegPhase phase = LegPhase::kLying;
   std::uint64_t lifted = 0;      ///< 1 + i: the foot of LegPlace i is in the air, or on its way; 0: none
   std::array<double, 6> body{};  ///< m and rad: x y height roll pitch yaw from the nominal pose, after limits
+  std::uint64_t gait = 0;        ///< GaitName (control/legged/gait.h)
+  double gait_phase = 0;         ///< 0 … 1
+  FootStances stance{};
 };
 
 }  // namespace robot_control
