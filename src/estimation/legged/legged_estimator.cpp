@@ -1,6 +1,5 @@
 #include "estimation/legged/legged_estimator.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -32,23 +31,17 @@ Quaterniond turned_by(const Vector3d& angle) noexcept {
   return Quaterniond(1, angle.x() / 2, angle.y() / 2, angle.z() / 2).normalized();
 }
 
-}  // namespace
+bool stands_asked(const SensorFrame& sensors) noexcept {
+  return std::any_of(sensors.gate.stance.begin(), sensors.gate.stance.end(), [](double part) { return part > 0; });
+}
 
-/// The feet in one step, in base axes.
-struct LeggedEstimator::Feet {
-  std::array<Vector3d, kLegs> place;            ///< m
-  std::array<Eigen::Matrix3d, kLegs> jacobian;  ///< m/rad
-  std::array<Vector3d, kLegs> body_velocity;    ///< m/s, of the base if this foot stands
-  std::array<Vector3d, kLegs> rolling;          ///< m/s, of the foot's centre over the ground
-  std::array<double, kLegsJoints> angles{};     ///< rad
-};
+}  // namespace
 
 LeggedEstimator::LeggedEstimator(const LegModel& robot, double period)
     : period_(period),
       legs_(robot.legs),
-      dynamics_(robot),
+      contacts_(robot),
       base_from_imu_(rotation_of(robot.imu_in_base.orientation)),
-      share_(dynamics_.mass() * kGravity / kLegs),
       belly_ground_(robot.belly) {
   for (const Leg& leg : legs_) belly_ground_ += leg.foot_radius / kLegs;
 }
@@ -80,10 +73,12 @@ void LeggedEstimator::step(const SensorFrame& sensors, StateFrame& out) noexcept
   const double dt = static_cast<double>(elapsed) * period_;
   const bool measured = joints_have(sensors, kLegsJoints, kValidMotion);
   const bool felt = turn(sensors, dt);
-  const Feet feet = observe(sensors);
+  const Vector3d up = quaternion(state_.attitude).conjugate() * Vector3d::UnitZ();
+  const FeetMotion feet = feet_motion(legs_, sensors, ConstMap(state_.rate.data()), up);
   if (measured) {
+    contacts_.step(sensors, feet, ConstMap(state_.rate.data()), ConstMap(state_.force.data()), up, dt, state_.contacts);
     weigh(sensors, feet);
-    move(feet, dt);
+    move(sensors, feet, dt);
   }
   write(sensors, feet, felt && measured, out);
 }
@@ -105,6 +100,7 @@ bool LeggedEstimator::turn(const SensorFrame& sensors, double dt) noexcept {
     if (state_.still > kRest) Map(state_.bias.data()) += dt / kBiasTime * (rate - ConstMap(state_.bias.data()));
     Map(state_.rate.data()) = rate - ConstMap(state_.bias.data());
   }
+  if (accelerometer) Map(state_.force.data()) = force;
   if (accelerometer) correct(force, dt);
   store(quaternion(state_.attitude) * turned_by(dt * ConstMap(state_.rate.data())), state_.attitude);
   return gyro && accelerometer;
@@ -118,62 +114,17 @@ void LeggedEstimator::correct(const Vector3d& force, double dt) noexcept {
   store(now * turned_by(dt / time * force.normalized().cross(up)), state_.attitude);
 }
 
-LeggedEstimator::Feet LeggedEstimator::observe(const SensorFrame& sensors) const noexcept {
-  Feet feet;
-  const Vector3d up = quaternion(state_.attitude).conjugate() * Vector3d::UnitZ();
-  const Vector3d rate = ConstMap(state_.rate.data());
-  for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const JointSample* const joints = &sensors.joints[kLegJoints * leg];
-    for (std::size_t i = 0; i < kLegJoints; ++i)
-      feet.angles[kLegJoints * leg + i] = has_position(joints[i]) ? joints[i].position : 0;
-    const Vector3d speeds(valid_velocity(joints[0]), valid_velocity(joints[1]), valid_velocity(joints[2]));
-    const LegGeometry& geometry = legs_[leg].kinematics.geometry();
-    feet.jacobian[leg] = legs_[leg].kinematics.jacobian(LegModel::angles_of(feet.angles, leg), feet.place[leg]);
-    const double first = geometry.sign[0] * feet.angles[kLegJoints * leg];
-    const double pitching = geometry.sign[1] * speeds[1] + geometry.sign[2] * speeds[2];
-    const Vector3d shank =
-        rate + Vector3d(geometry.sign[0] * speeds[0], pitching * std::cos(first), pitching * std::sin(first));
-    feet.rolling[leg] = legs_[leg].foot_radius * shank.cross(up);
-    feet.body_velocity[leg] = feet.rolling[leg] - feet.jacobian[leg] * speeds - rate.cross(feet.place[leg]);
-  }
-  return feet;
-}
-
-void LeggedEstimator::measure_loads(const SensorFrame& sensors, const Vector3d& up) noexcept {
-  for (std::size_t leg = 0; leg < kLegs; ++leg)
-    state_.loads[leg] = up.dot(ConstMap(sensors.contacts[leg].force.data()));
-}
-
-void LeggedEstimator::compute_loads(const SensorFrame& sensors, const Feet& feet, const Vector3d& up) noexcept {
-  LeggedEquations equations;
-  dynamics_.step({.angles = feet.angles, .gravity = -kGravity * up}, equations);
-  for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const JointSample* const joints = &sensors.joints[kLegJoints * leg];
-    const Vector3d effort = Vector3d(joints[0].effort, joints[1].effort, joints[2].effort) -
-                            equations.bias.segment<3>(static_cast<Eigen::Index>(6 + kLegJoints * leg));
-    const double load = -up.dot(feet.jacobian[leg].transpose().inverse() * effort);
-    state_.loads[leg] = load;
-  }
-}
-
-void LeggedEstimator::weigh(const SensorFrame& sensors, const Feet& feet) noexcept {
-  const Quaterniond attitude = quaternion(state_.attitude);
-  const Vector3d up = attitude.conjugate() * Vector3d::UnitZ();
-  const bool sensed =
-      sensors.contact_count >= kLegs && std::all_of(sensors.contacts.begin(), sensors.contacts.begin() + kLegs,
-                                                    [](const ContactSample& contact) { return contact.valid != 0; });
-  if (sensed) {
-    measure_loads(sensors, up);
-  } else {
-    compute_loads(sensors, feet, up);
-  }
+void LeggedEstimator::weigh(const SensorFrame& sensors, const FeetMotion& feet) noexcept {
   const std::array<std::uint64_t, kLegs> before = state_.bears;
-  for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    if (!std::isfinite(state_.loads[leg])) state_.loads[leg] = 0;
-    const double bound = (state_.bears[leg] != 0 ? kFloats : kBears) * share_;
-    state_.bears[leg] = state_.loads[leg] > bound ? 1 : 0;
-  }
-  if (before == state_.bears) return;
+  for (std::size_t leg = 0; leg < kLegs; ++leg)
+    state_.bears[leg] = FootContacts::bears(state_.contacts.probability[leg]) ? 1 : 0;
+  constexpr std::array<std::uint64_t, kLegs> kNone{};
+  if (state_.bears == kNone && !stands_asked(sensors)) state_.lay = 1;
+  if (before != state_.bears) anchor(feet);
+}
+
+void LeggedEstimator::anchor(const FeetMotion& feet) noexcept {
+  const Quaterniond attitude = quaternion(state_.attitude);
   double height = 0, count = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     Map(state_.anchors[leg].data()) = ConstMap(state_.position.data()) + attitude * feet.place[leg];
@@ -181,7 +132,8 @@ void LeggedEstimator::weigh(const SensorFrame& sensors, const Feet& feet) noexce
     height += state_.anchors[leg][2];
     count += 1;
   }
-  if (before != std::array<std::uint64_t, kLegs>{}) return;
+  if (state_.lay == 0 || count == 0) return;
+  state_.lay = 0;
   if (state_.grounded == 0) state_.ground = height / count;
   state_.grounded = 1;
   const double rise = state_.ground - height / count;
@@ -189,7 +141,7 @@ void LeggedEstimator::weigh(const SensorFrame& sensors, const Feet& feet) noexce
   for (Vector3& anchor : state_.anchors) anchor[2] += rise;
 }
 
-void LeggedEstimator::move(const Feet& feet, double dt) noexcept {
+void LeggedEstimator::move(const SensorFrame& sensors, const FeetMotion& feet, double dt) noexcept {
   const Quaterniond attitude = quaternion(state_.attitude);
   Vector3d position = Vector3d::Zero(), velocity = Vector3d::Zero();
   double count = 0;
@@ -197,10 +149,15 @@ void LeggedEstimator::move(const Feet& feet, double dt) noexcept {
     if (state_.bears[leg] == 0) continue;
     Map(state_.anchors[leg].data()) += dt * (attitude * feet.rolling[leg]);
     position += ConstMap(state_.anchors[leg].data()) - attitude * feet.place[leg];
-    velocity += feet.body_velocity[leg];
+    velocity += feet.base_velocity[leg];
     count += 1;
   }
   Map smoothed(state_.velocity.data());
+  if (count == 0 && stands_asked(sensors)) {
+    position = ConstMap(state_.position.data()) + dt * (attitude * smoothed);
+    velocity = smoothed;
+    count = 1;
+  }
   if (count == 0) {
     smoothed.setZero();
     if (state_.still > kRest) state_.position[2] = 0;
@@ -211,7 +168,7 @@ void LeggedEstimator::move(const Feet& feet, double dt) noexcept {
   smoothed += std::min(1.0, dt / kSmooth) * (velocity / count - smoothed);
 }
 
-void LeggedEstimator::write(const SensorFrame& sensors, const Feet& feet, bool good, StateFrame& out) const noexcept {
+void LeggedEstimator::write(const SensorFrame& sensors, const FeetMotion& feet, bool good, StateFrame& out) const noexcept {
   out = {};
   BaseState& base = out.base;
   base.pose_odom = {.position = state_.position, .orientation = state_.attitude};
@@ -228,10 +185,9 @@ void LeggedEstimator::write(const SensorFrame& sensors, const Feet& feet, bool g
                (state_.still > kRest ? std::uint64_t{kStateStandstill} : 0);
   out.contact_count = kLegs;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const bool bears = state_.bears[leg] != 0;
-    out.contacts[leg].probability = bears ? 1 : 0;
-    out.contacts[leg].load = state_.loads[leg];
-    out.contacts[leg].slip = bears ? (feet.body_velocity[leg] - ConstMap(state_.velocity.data())).norm() : 0;
+    out.contacts[leg].probability = state_.contacts.probability[leg];
+    out.contacts[leg].load = state_.contacts.loads[leg];
+    out.contacts[leg].slip = state_.bears[leg] != 0 ? (feet.base_velocity[leg] - ConstMap(state_.velocity.data())).norm() : 0;
   }
   for (std::size_t i = 0; i < kLegsJoints; ++i) out.joint_velocity[i] = valid_velocity(sensors.joints[i]);
 }

@@ -4,25 +4,26 @@
 /// attitude   the gyro, less its bias, turns it; the accelerometer corrects roll and pitch with kTilt, or with
 ///            kTiltAtRest while nothing moves. Yaw is that of the gyro alone
 /// bias       the mean of the gyro while nothing moves
-/// load       fᵢ = u·Fᵢ of each foot, u upwards, F the measured force, where all feet have force sensors. Else
-///            fᵢ = −u·Jᵢ⁻ᵀ (τᵢ − hᵢ), τ the measured efforts, h those that hold the leg alone. A foot begins to bear
-///            above kBears of an equal share of the weight, and ends below kFloats
+/// contact    foot_contacts.h; a foot bears where it is more probable than not
 /// position   the mean over the feet that bear of aᵢ − R pᵢ. A foot that begins to bear is anchored at aᵢ = p + R pᵢ. A
 ///            ball rolls: aᵢ moves with ωᵢ × r u, ωᵢ the rate of the shank
-/// height     the ground is level: feet that bear after none did stand where the first ones of the run stood. While
-///            nothing moves and no foot bears, the robot lies, at zero. A restarted estimator takes its belly's height
+/// height     the ground is level where the robot lies: feet that bear after it lay stand where the first ones of the run
+///            stood. While nothing moves and no foot bears, it lies, at zero. A restarted estimator takes its belly's
+///            height
 /// velocity   the mean over the same feet of r ωᵢ × u − (Jᵢ q̇ᵢ + ω × pᵢ), through a low pass of kSmooth
 ///
-/// While no foot bears, the robot lies on its body or falls: x and y stay. The pose begins at zero.
+/// While no foot bears and none is asked to, the robot lies on its body or falls: x and y stay. Between two steps it
+/// keeps its velocity. The pose begins at zero.
 ///
-/// A contact's probability is 1 while its foot bears; its slip is the speed of this foot against the mean.
+/// A contact's slip is the speed of its foot against the mean.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 
-#include "machine/legs/leg_dynamics.h"
+#include "estimation/legged/feet_motion.h"
+#include "estimation/legged/foot_contacts.h"
 #include "machine/legs/leg_model.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
@@ -37,8 +38,6 @@ class LeggedEstimator {
   static constexpr double kRest = 0.3;        ///< s without motion
   static constexpr double kStill = 0.05;      ///< rad/s, of gyro and joints
   static constexpr double kBiasTime = 0.5;    ///< s
-  static constexpr double kBears = 0.35;
-  static constexpr double kFloats = 0.15;
   static constexpr double kSmooth = 0.02;  ///< s
 
   /// `period` is in s.
@@ -58,9 +57,11 @@ class LeggedEstimator {
     Vector3 velocity{};                          ///< m/s, base axes
     Vector3 rate{};                              ///< rad/s, base axes
     Vector3 bias{};                              ///< rad/s, base axes
+    Vector3 force{};                             ///< m/s², base axes: the newest specific force
     std::array<Vector3, kLegs> anchors{};        ///< m, odom axes
-    std::array<double, kLegs> loads{};           ///< N
+    FootContacts::State contacts;
     std::array<std::uint64_t, kLegs> bears{};    ///< 1: the foot bears
+    std::uint64_t lay = 1;                       ///< 1: no foot has borne since the robot lay
     double ground = 0;                           ///< m, odom axes: height of the centres of feet on the ground
     std::uint64_t grounded = 0;                  ///< 1: `ground` is known
     double still = 0;                            ///< s since anything moved
@@ -73,21 +74,17 @@ class LeggedEstimator {
   void set_state(const State& state) noexcept { state_ = state; }
 
  private:
-  struct Feet;
   bool turn(const SensorFrame& sensors, double dt) noexcept;
   void correct(const Eigen::Vector3d& force, double dt) noexcept;
-  Feet observe(const SensorFrame& sensors) const noexcept;
-  void weigh(const SensorFrame& sensors, const Feet& feet) noexcept;
-  void measure_loads(const SensorFrame& sensors, const Eigen::Vector3d& up) noexcept;
-  void compute_loads(const SensorFrame& sensors, const Feet& feet, const Eigen::Vector3d& up) noexcept;
-  void move(const Feet& feet, double dt) noexcept;
-  void write(const SensorFrame& sensors, const Feet& feet, bool good, StateFrame& out) const noexcept;
+  void weigh(const SensorFrame& sensors, const FeetMotion& feet) noexcept;
+  void anchor(const FeetMotion& feet) noexcept;
+  void move(const SensorFrame& sensors, const FeetMotion& feet, double dt) noexcept;
+  void write(const SensorFrame& sensors, const FeetMotion& feet, bool good, StateFrame& out) const noexcept;
 
   double period_;
   std::array<Leg, kLegs> legs_;
-  LegDynamics dynamics_;
+  FootContacts contacts_;
   Eigen::Matrix3d base_from_imu_;
-  double share_ = 0;         ///< N, an equal share of the weight
   double belly_ground_ = 0;  ///< m, base axes: height of the centres of feet on the ground on which the belly lies
   State state_;
 };
