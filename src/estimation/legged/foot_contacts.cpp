@@ -52,8 +52,8 @@ void FootContacts::step(const SensorFrame& sensors, const FeetMotion& feet, cons
       load = up.dot(feet.jacobian[leg].transpose().inverse() * missing);
     }
     state.loads[leg] = std::isfinite(load) ? load : 0;
-    const double asked = sensors.gate.stance[leg] > 0 ? kAsked : -kAsked;
-    state.probability[leg] = 1 / (1 + std::exp(-(state.loads[leg] / share_ - kLoad) / kBlur - asked));
+    const double bound = sensors.gate.stance[leg] > 0 ? kAsked : kNotAsked;
+    state.probability[leg] = std::clamp(0.5 + (state.loads[leg] / share_ - bound) / kBlur, 0.0, 1.0);
   }
 }
 

@@ -10,10 +10,9 @@
 ///        matrix hardly changes within kObserve (A. De Luca, R. Mattone, ICRA 2005).
 /// bears  the probability pᵢ of a contact, with the share of the load x = fᵢ/(m g/4):
 ///
-///          ln p/(1 − p) = (x − kLoad)/kBlur ± kAsked
+///          p = ½ + (x − bound)/kBlur within 0 … 1
 ///
-///        + where the command asked the foot to bear, − where it did not. So a foot that is asked to bear does so above
-///        0.15 of its share, and another one above 0.3.
+///        The bound is kAsked where the command asked the foot to bear, else kNotAsked.
 
 #include <Eigen/Core>
 #include <array>
@@ -27,10 +26,10 @@ namespace robot_control {
 
 class FootContacts {
  public:
-  static constexpr double kObserve = 0.004;  ///< s
-  static constexpr double kLoad = 0.225;
-  static constexpr double kBlur = 0.05;
-  static constexpr double kAsked = 1.5;
+  static constexpr double kObserve = 0.002;  ///< s
+  static constexpr double kAsked = 0.15;
+  static constexpr double kNotAsked = 0.35;
+  static constexpr double kBlur = 0.2;
 
   struct State {
     std::array<double, kLegsJoints> rates{}, efforts{};  ///< rad/s, N·m: low passes

@@ -51,20 +51,36 @@ void LegFilter::begin(const Quaterniond& attitude, const Vector3d& velocity, dou
   }
 }
 
+void LegFilter::turn(double angle) noexcept {
+  const Quaterniond turned(Eigen::AngleAxisd(angle, Vector3d::UnitZ()));
+  const Matrix3d matrix = turned.toRotationMatrix();
+  store(turned * attitude(), state_.attitude);
+  const auto rotate = [&](Vector3& vector) { Map(vector.data()) = (matrix * ConstMap(vector.data())).eval(); };
+  rotate(state_.velocity);
+  for (Vector3& foot : state_.feet) rotate(foot);
+  auto P = covariance();
+  for (int entry = 0; entry < kEntries; entry += 3) {
+    if (entry == kRateBias || entry == kForceBias) continue;
+    P.middleRows<3>(entry) = (matrix * P.middleRows<3>(entry)).eval();
+    P.middleCols<3>(entry) = (P.middleCols<3>(entry) * matrix.transpose()).eval();
+  }
+}
+
 void LegFilter::predict(const Vector3d& rate, const Vector3d& force, const std::array<Vector3d, kLegs>& rolling,
                         const std::array<double, kLegs>& slide, double dt) noexcept {
   const Quaterniond before = attitude();
   const Vector3d turn = dt * (rate - ConstMap(state_.rate_bias.data()));
   Transition transition;
   transition.turned = dt * before.toRotationMatrix();
-  transition.velocity = velocity();
+  Map velocity(state_.velocity.data());
+  transition.velocity = velocity;
   transition.dt = dt;
   const Vector3d change = (before * turned_by(turn / 2)) * (force - ConstMap(state_.force_bias.data())) * dt -
                           Vector3d(0, 0, kGravity * dt);
   store(before * turned_by(turn), state_.attitude);
-  const Vector3d way = dt * (velocity() + change / 2);
+  const Vector3d way = dt * (velocity + change / 2);
   Map(state_.position.data()) += way;
-  velocity() += change;
+  velocity += change;
   for (std::size_t foot = 0; foot < kLegs; ++foot) {
     Map place(state_.feet[foot].data());
     transition.feet[foot] = place;

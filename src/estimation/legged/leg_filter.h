@@ -34,11 +34,11 @@ class LegFilter {
  public:
   static constexpr double kGyroNoise = 5e-4;           ///< rad/s/√Hz
   static constexpr double kGyroWalk = 2e-5;            ///< rad/s/√s
-  static constexpr double kAccelerometerNoise = 0.02;  ///< m/s²/√Hz
+  static constexpr double kAccelerometerNoise = 0.1;   ///< m/s²/√Hz
   static constexpr double kAccelerometerWalk = 2e-4;   ///< m/s²/√s
   static constexpr double kGyroBias = 0.02;            ///< rad/s, before a rest
   static constexpr double kAccelerometerBias = 0.2;    ///< m/s²
-  static constexpr double kFoot = 1e-3;                ///< m, of a foot's place by kinematics
+  static constexpr double kFoot = 3e-4;                ///< m, of a foot's place by kinematics
   static constexpr double kSlide = 0.003;              ///< m/√s
   static constexpr double kLandSlide = 0.03;           ///< m/√s
   static constexpr double kGate = 4;
@@ -58,15 +58,12 @@ class LegFilter {
 
   explicit LegFilter(State& state) noexcept : state_(state) {}
 
-  Eigen::Quaterniond attitude() const noexcept;
-  Eigen::Map<Eigen::Vector3d> velocity() noexcept { return Eigen::Map<Eigen::Vector3d>(state_.velocity.data()); }
-  Eigen::Map<Covariance, Eigen::Aligned16> covariance() noexcept {
-    return Eigen::Map<Covariance, Eigen::Aligned16>(state_.covariance.data());
-  }
-
   /// Begins with this attitude and velocity, known to `tilt` [rad] and `speed` [m/s]. Position, yaw and biases, with
   /// their covariances, stay.
   void begin(const Eigen::Quaterniond& attitude, const Eigen::Vector3d& velocity, double tilt, double speed) noexcept;
+
+  /// Turns odom by this angle in rad about z, beneath the position.
+  void turn(double angle) noexcept;
 
   /// `rate` and `force` are measured; `rolling` is in base axes.
   void predict(const Eigen::Vector3d& rate, const Eigen::Vector3d& force,
@@ -86,6 +83,10 @@ class LegFilter {
   void set_variance(int entry, double variance) noexcept;
 
  private:
+  Eigen::Quaterniond attitude() const noexcept;
+  Eigen::Map<Covariance, Eigen::Aligned16> covariance() noexcept {
+    return Eigen::Map<Covariance, Eigen::Aligned16>(state_.covariance.data());
+  }
   void measure(int entry, double error, double variance) noexcept;
 
   State& state_;
