@@ -60,7 +60,7 @@ std::unique_ptr<EstimatorLaw> Quadruped::make_estimator() const {
 }
 
 std::unique_ptr<ControllerLaw> Quadruped::make_controller() const {
-  return std::make_unique<ControllerOf<LegController>>(machine_, parameters_.leg_control.request_timeout,
+  return std::make_unique<ControllerOf<LegController>>(machine_, parameters_.leg_control,
                                                        parameters_.loop.period());
 }
 

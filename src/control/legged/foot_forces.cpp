@@ -1,6 +1,7 @@
 #include "control/legged/foot_forces.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 
 namespace robot_control {
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "control/legged/leg_controller.h"
+#include "control/legged/leg_tuning.h"
 
 namespace robot_control {
 

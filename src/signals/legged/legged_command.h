@@ -13,6 +13,7 @@ enum StanceMode : std::uint64_t {
   kStanceStand = 2,
   kStanceLift = 3,    ///< kStanceLift + i lifts the foot of LegPlace i.
   kStanceJoints = 7,  ///< Move the joints to Request::joints while the robot lies.
+  kStanceGait = 8,    ///< kStanceGait + i walks with the gait of this GaitName. In mode 0 the speed chooses it.
 };
 
 enum class LegPhase : std::uint64_t {
@@ -25,11 +26,12 @@ enum class LegPhase : std::uint64_t {
   kWalking = 6
 };
 
-/// Bits 20 to 22 of CommandFrame::reasons.
+/// Bits 20 to 23 of CommandFrame::reasons.
 enum LeggedReason : std::uint64_t {
   kReasonOutOfReach = 1u << 20,   ///< The pose is beyond the ranges of the legs.
   kReasonNotStanding = 1u << 21,  ///< A pose or a foot is requested, and it does not stand.
   kReasonNotLying = 1u << 22,     ///< Joints are requested, and it does not lie.
+  kReasonLegSpeed = 1u << 23,     ///< The legs do not carry the body faster.
 };
 
 /// What is asked of each foot, by LegPlace: the part of its stance that it has done at the end of this cycle, above 0 …

@@ -1,0 +1,26 @@
+#pragma once
+/// The gaits of a robot, and how fast its legs carry it in each of them.
+///
+///   gait   that of gait.h, scaled. Its lift is lower where a step in place would need more than kOfLift of the speed
+///          limit of a joint
+///   speed  the largest steady one of the body at which each foot stays within the reach of its leg, and each joint
+///          within kOfJointSpeed of its speed limit, during stance and swing (swing.h)
+
+#include "control/legged/gait.h"
+#include "control/legged/nominal_stance.h"
+#include "control/legged/twist_limiter.h"
+#include "machine/legs/leg_model.h"
+
+namespace robot_control {
+
+inline constexpr double kOfLift = 0.35, kOfJointSpeed = 0.85;
+
+Gait gait_of(const LegModel& robot, const NominalStance& stance, const Gait& reference) noexcept;
+
+/// Returns the largest speeds to the front, to the left, and turning, each of them alone; at least kLeastSpeed. `gait`
+/// is one of `gait_of`.
+WalkingTwist walking_speed(const LegModel& robot, const NominalStance& stance, const Gait& gait) noexcept;
+
+inline constexpr double kLeastSpeed = 1e-3;  ///< m/s, rad/s
+
+}  // namespace robot_control
