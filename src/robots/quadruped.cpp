@@ -86,7 +86,8 @@ GateParameters Quadruped::gate() const {
                             .stiffness = kFoldStiffness * tuning.stiffness,
                             .posture = leg.lying[i],
                             .upright = standing[i],
-                            .time = kFoldTime * std::sqrt(machine_.leg_length() / 0.426)});
+                            .time = kFoldTime * std::sqrt(machine_.leg_length() / 0.426),
+                            .walking_time = kWalkingFoldTime * std::sqrt(machine_.leg_length() / 0.426)});
     }
   }
   return gate;
