@@ -32,6 +32,11 @@ void replayed(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// The time of each law's step, its allocations, and the time of a cycle of ClosedLoop beside that of a bare mj_step.
 void cost(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 
+/// The estimated way of a straight line, a square and an eight of 20 m against the truth, without foot sensors.
+void odometry(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// Touchdowns that the estimator finds without foot sensors.
+void contact(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+
 inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kSway = 0.5;  ///< Hz
 

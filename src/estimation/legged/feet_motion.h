@@ -1,8 +1,8 @@
 #pragma once
 /// The feet of a robot on legs in one cycle, from its joints and its gyro. All vectors are in base axes.
 ///
-/// A ball foot rolls: while it stands, its centre moves over the ground with r ωₛ × u. r is its radius, ωₛ the rate of its
-/// shank, u points upwards.
+/// A ball foot rolls: while it stands, its centre moves over the ground with r ωₛ × u. r is its radius, ωₛ the rate of
+/// its shank, u points upwards.
 
 #include <Eigen/Core>
 #include <array>
@@ -13,11 +13,11 @@
 namespace robot_control {
 
 struct FeetMotion {
-  std::array<Eigen::Vector3d, kLegs> place;            ///< m, of the foot's centre
-  std::array<Eigen::Matrix3d, kLegs> jacobian;         ///< m/rad
-  std::array<Eigen::Vector3d, kLegs> rolling;          ///< m/s, of the foot's centre over the ground while it stands
-  std::array<Eigen::Vector3d, kLegs> base_velocity;    ///< m/s, of the base's origin if this foot stands
-  std::array<double, kLegsJoints> angles{}, rates{};   ///< rad, rad/s; 0 where they are not valid
+  std::array<Eigen::Vector3d, kLegs> place;           ///< m, of the foot's centre
+  std::array<Eigen::Matrix3d, kLegs> jacobian;        ///< m/rad
+  std::array<Eigen::Vector3d, kLegs> rolling;         ///< m/s, of the foot's centre over the ground while it stands
+  std::array<Eigen::Vector3d, kLegs> base_velocity;   ///< m/s, of the base's origin if this foot stands
+  std::array<double, kLegsJoints> angles{}, rates{};  ///< rad, rad/s; 0 where they are not valid
 };
 
 /// `rate` is that of the base in rad/s.

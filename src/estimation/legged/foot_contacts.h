@@ -26,7 +26,7 @@ namespace robot_control {
 
 class FootContacts {
  public:
-  static constexpr double kObserve = 0.002;  ///< s
+  static constexpr double kObserve = 0.0015;  ///< s
   static constexpr double kAsked = 0.15;
   static constexpr double kNotAsked = 0.35;
   static constexpr double kBlur = 0.2;

@@ -2,9 +2,9 @@
 /// An error-state Kalman filter for a body on legs, with the feet that stand as landmarks (R. Hartley et al., IJRR 39
 /// (2020) 402; M. Bloesch et al., RSS 2012). It has one owner, LeggedEstimator.
 ///
-/// The body is a point and axes: the IMU's place and the axes of the base. With its attitude R, velocity v and position p
-/// in odom, the measured rate ω and specific force f in base axes, their biases b and c, the vector eᵢ from the body to
-/// foot i in odom axes, and the velocity ρᵢ with which this foot rolls,
+/// The body is a point and axes: the IMU's place and the axes of the base. With its attitude R, velocity v and position
+/// p in odom, the measured rate ω and specific force f in base axes, their biases b and c, the vector eᵢ from the body
+/// to foot i in odom axes, and the velocity ρᵢ with which this foot rolls,
 ///
 ///   Ṙ = R (ω − b)×    v̇ = R (f − c) + g    ṗ = v    ėᵢ = −v + ρᵢ
 ///
@@ -32,15 +32,15 @@ namespace robot_control {
 
 class LegFilter {
  public:
-  static constexpr double kGyroNoise = 5e-4;           ///< rad/s/√Hz
-  static constexpr double kGyroWalk = 2e-5;            ///< rad/s/√s
-  static constexpr double kAccelerometerNoise = 0.1;   ///< m/s²/√Hz
-  static constexpr double kAccelerometerWalk = 2e-4;   ///< m/s²/√s
-  static constexpr double kGyroBias = 0.02;            ///< rad/s, before a rest
-  static constexpr double kAccelerometerBias = 0.2;    ///< m/s²
-  static constexpr double kFoot = 3e-4;                ///< m, of a foot's place by kinematics
-  static constexpr double kSlide = 0.003;              ///< m/√s
-  static constexpr double kLandSlide = 0.03;           ///< m/√s
+  static constexpr double kGyroNoise = 5e-4;          ///< rad/s/√Hz
+  static constexpr double kGyroWalk = 2e-5;           ///< rad/s/√s
+  static constexpr double kAccelerometerNoise = 0.1;  ///< m/s²/√Hz
+  static constexpr double kAccelerometerWalk = 2e-4;  ///< m/s²/√s
+  static constexpr double kGyroBias = 0.02;           ///< rad/s, before a rest
+  static constexpr double kAccelerometerBias = 0.2;   ///< m/s²
+  static constexpr double kFoot = 3e-4;               ///< m, of a foot's place by kinematics
+  static constexpr double kSlide = 0.003;             ///< m/√s
+  static constexpr double kLandSlide = 0.03;          ///< m/√s
   static constexpr double kGate = 4;
 
   /// Entries of the error.
@@ -75,8 +75,8 @@ class LegFilter {
 
   /// Measurements of one cycle; `finish` corrects the state by all of them.
   void stand(std::size_t foot, const Eigen::Vector3d& place) noexcept;
-  void rest(const Eigen::Vector3d& rate, double deviation) noexcept;     ///< the measured rate is the bias
-  void stop(double deviation) noexcept;                                  ///< the velocity is zero
+  void rest(const Eigen::Vector3d& rate, double deviation) noexcept;  ///< the measured rate is the bias
+  void stop(double deviation) noexcept;                               ///< the velocity is zero
   void finish() noexcept;
 
   /// Sets entry and all of its covariances to zero, but `variance` on the diagonal.

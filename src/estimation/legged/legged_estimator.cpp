@@ -24,8 +24,9 @@ constexpr double kRestRate = 0.01;          // rad/s, of one sample of the gyro
 constexpr double kRestSpeed = 0.02;         // m/s
 constexpr double kFallSpeed = 1;            // m/s, of a body on the ground: its velocity vanishes within 0.3 s
 constexpr double kEdge = 0.15;              // of a stance
-// The densities of the filter exceed white noise, so that errors which repeat with every step do not look like knowledge
-// of the tilt. The velocity is better than they say, by this part of the variance (docs/evidence/derivations.md).
+// The densities of the filter exceed white noise, so that errors which repeat with every step do not look like
+// knowledge of the tilt. The velocity is better than they say, by this part of the variance
+// (docs/evidence/derivations.md).
 constexpr double kSpeedPart = 0.07;
 
 bool stands_asked(const SensorFrame& sensors) noexcept {
@@ -49,7 +50,8 @@ void LeggedEstimator::enter_run() noexcept {
   state_ = {};
   for (int axis = 0; axis < 3; ++axis) {
     leg_filter().set_variance(LegFilter::kRateBias + axis, LegFilter::kGyroBias * LegFilter::kGyroBias);
-    leg_filter().set_variance(LegFilter::kForceBias + axis, LegFilter::kAccelerometerBias * LegFilter::kAccelerometerBias);
+    leg_filter().set_variance(LegFilter::kForceBias + axis,
+                              LegFilter::kAccelerometerBias * LegFilter::kAccelerometerBias);
   }
   set_height(0);
 }
@@ -75,7 +77,6 @@ void LeggedEstimator::resume(const StateFrame& last) noexcept {
 }
 
 void LeggedEstimator::set_pose(const Vector3& pose) noexcept {
-  const Quaterniond now = quaternion_of(state_.filter.attitude);
   const double turn = pose[2] - yaw_of(state_.filter.attitude);
   leg_filter().turn(turn);
   store(Quaterniond(Eigen::AngleAxisd(turn, Vector3d::UnitZ())) * quaternion_of(state_.plain.attitude),
@@ -215,7 +216,8 @@ void LeggedEstimator::compare(double dt) noexcept {
   if (state_.apart < kApartTime) return;
   state_.apart = 0;
   state_.degraded = kDegraded;
-  const Quaterniond turn(Eigen::AngleAxisd(yaw_of(state_.filter.attitude) - yaw_of(state_.plain.attitude), Vector3d::UnitZ()));
+  const Quaterniond turn(
+      Eigen::AngleAxisd(yaw_of(state_.filter.attitude) - yaw_of(state_.plain.attitude), Vector3d::UnitZ()));
   const Quaterniond attitude = turn * quaternion_of(state_.plain.attitude);
   const Vector3d at = position();
   leg_filter().begin(attitude, attitude * (plain + rate().cross(imu_)), kPlainTilt, kPlainSpeed);
@@ -227,7 +229,6 @@ void LeggedEstimator::write(const SensorFrame& sensors, const FeetMotion& feet, 
                             StateFrame& out) const noexcept {
   out = {};
   BaseState& base = out.base;
-  const Quaterniond attitude = quaternion_of(state_.filter.attitude);
   Map(base.pose_odom.position.data()) = position();
   base.pose_odom.orientation = base.attitude = state_.filter.attitude;
   Map(base.twist_base.linear.data()) = velocity();
@@ -259,12 +260,14 @@ void LeggedEstimator::write_covariances(BaseState& base) const noexcept {
   pose.topRightCorner<3, 3>() = P.block<3, 3>(kPlace, kTurn);
   pose.bottomLeftCorner<3, 3>() = P.block<3, 3>(kTurn, kPlace);
   pose.bottomRightCorner<3, 3>() = P.block<3, 3>(kTurn, kTurn);
-  twist.topLeftCorner<3, 3>() = kSpeedPart * into_base * P.block<3, 3>(LegFilter::kSpeed, LegFilter::kSpeed) * into_base.transpose();
+  twist.topLeftCorner<3, 3>() =
+      kSpeedPart * into_base * P.block<3, 3>(LegFilter::kSpeed, LegFilter::kSpeed) * into_base.transpose();
   twist.bottomRightCorner<3, 3>() = P.block<3, 3>(LegFilter::kRateBias, LegFilter::kRateBias);
   twist.diagonal().tail<3>().array() += kRestRate * kRestRate;
-  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(base.attitude_covariance.data()) = P.block<3, 3>(kTurn, kTurn);
-  const Matrix3d biases = base_from_imu_.transpose() *
-                          P.block<3, 3>(LegFilter::kRateBias, LegFilter::kRateBias) * base_from_imu_;
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(base.attitude_covariance.data()) =
+      P.block<3, 3>(kTurn, kTurn);
+  const Matrix3d biases =
+      base_from_imu_.transpose() * P.block<3, 3>(LegFilter::kRateBias, LegFilter::kRateBias) * base_from_imu_;
   Map(base.gyro_bias_deviation.data()) = biases.diagonal().cwiseMax(0).cwiseSqrt();
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 /// The plain estimate of a body on legs, beside which the filter must do no harm.
 ///
-/// attitude   the gyro, less its bias, turns it; the accelerometer corrects roll and pitch with kTilt, while |a| is about
+/// attitude   the gyro, less its bias, turns it; the accelerometer corrects roll and pitch with kTilt, while |a| is
+/// about
 ///            g. Yaw is that of the gyro alone
 /// bias       the mean of the gyro while nothing moves
 /// velocity   the mean over the feet that bear of r ωᵢ × u − (Jᵢ q̇ᵢ + ω × pᵢ), through a low pass of kSmooth. While

@@ -179,7 +179,8 @@ void LegDynamics::step(const LeggedMotion& motion, LeggedEquations& out) const n
   out.centre_of_gravity = first / whole.mass;
 }
 
-Vector LegDynamics::efforts(std::size_t leg, const LeggedMotion& motion, const LeggedAcceleration& change) const noexcept {
+Vector LegDynamics::efforts(std::size_t leg, const LeggedMotion& motion,
+                            const LeggedAcceleration& change) const noexcept {
   const std::size_t first = kLegJoints * leg;
   const MovedLeg moving =
       moved(geometry_[leg], bodies_[leg], &motion.angles[first], &motion.rates[first], &change.joints[first],

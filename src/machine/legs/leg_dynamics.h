@@ -31,7 +31,7 @@ struct LeggedMotion {
 };
 
 struct LeggedAcceleration {
-  std::array<double, kLegsJoints> joints{};            ///< rad/s²
+  std::array<double, kLegsJoints> joints{};           ///< rad/s²
   Eigen::Vector3d angular = Eigen::Vector3d::Zero();  ///< rad/s², ω̇
 };
 
