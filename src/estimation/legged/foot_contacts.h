@@ -26,9 +26,9 @@ namespace robot_control {
 
 class FootContacts {
  public:
-  static constexpr double kObserve = 0.0015;  ///< s
+  static constexpr double kObserve = 0.01;  ///< s
   static constexpr double kAsked = 0.15;
-  static constexpr double kNotAsked = 0.35;
+  static constexpr double kNotAsked = 0.8;
   static constexpr double kBlur = 0.2;
 
   struct State {
