@@ -68,15 +68,15 @@ void receive(ClosedLoop& loop, const py::object& given, std::uint64_t mode) {
   }
   if (numbers.size() == 2) return loop.request(planar(numbers[0], 0, numbers[1], mode));
   if (numbers.size() == 3) return loop.request(planar(numbers[0], numbers[1], numbers[2], mode));
-  throw py::type_error("command must give (linear, angular), two numbers in m/s and rad/s, or (linear, lateral, "
-                       "angular); it gave " +
-                       std::string(py::repr(given)));
+  throw py::type_error(
+      "command must give (linear, angular), two numbers in m/s and rad/s, or (linear, lateral, "
+      "angular); it gave " +
+      std::string(py::repr(given)));
 }
 
-/// Runs `cycles` cycles. `command(t)` returns (linear, angular) or (linear, lateral, angular), or is None. Other Python threads run meanwhile if no
-/// command function needs the interpreter. `replay` stores the cycles, or is None.
-py::dict run(ClosedLoop& loop, std::int64_t cycles, const py::object& command, LoopReplay* replay,
-             std::uint64_t mode) {
+/// Runs `cycles` cycles. `command(t)` returns (linear, angular) or (linear, lateral, angular), or is None. Other Python
+/// threads run meanwhile if no command function needs the interpreter. `replay` stores the cycles, or is None.
+py::dict run(ClosedLoop& loop, std::int64_t cycles, const py::object& command, LoopReplay* replay, std::uint64_t mode) {
   constexpr std::int64_t kBlock = 1000;  // cycles between two checks for Ctrl-C
   if (cycles < 0) throw py::value_error("cycles must not be negative");
   const std::vector<TraceColumn> columns = columns_of(loop);
@@ -257,8 +257,7 @@ void bind_closed_loop(py::module_& module) {
       .def("reset", &ClosedLoop::reset)
       .def("set_parameters", &ClosedLoop::set_parameters, py::arg("request"))
       .def("inject_fault", &ClosedLoop::inject_fault, py::arg("component"), py::arg("kind"))
-      .def("run", &run, py::arg("cycles"), py::arg("command"), py::arg("replay") = nullptr,
-           py::arg("mode") = 0)
+      .def("run", &run, py::arg("cycles"), py::arg("command"), py::arg("replay") = nullptr, py::arg("mode") = 0)
       .def("record", &record, py::arg("commands"))
       .def("stop_distance", &distance_to_stop, py::arg("speed"), py::arg("emergency"))
       .def_property_readonly("smooth_speed", &smooth_speed_of)

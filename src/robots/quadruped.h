@@ -21,9 +21,9 @@ namespace robot_control {
 
 class Quadruped final : public Robot {
  public:
-  static constexpr double kFoldTime = 1.25;         ///< s
-  static constexpr double kWalkingFoldTime = 0.2;   ///< s
-  static constexpr double kFoldStiffness = 3;       ///< as damping its root
+  static constexpr double kFoldTime = 1.25;        ///< s
+  static constexpr double kWalkingFoldTime = 0.2;  ///< s
+  static constexpr double kFoldStiffness = 3;      ///< as damping its root
 
   Quadruped(const Parameters& parameters, const LegModel& machine);
 

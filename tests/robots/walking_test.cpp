@@ -34,7 +34,8 @@ void expect_walk(QuadrupedLoop& robot, const Request& request, double part, doub
   robot.clear();
   const WalkingTwist mean = mean_twist(robot, 3.0, request);
   const WalkingTwist wanted{request.twist.linear[0], request.twist.linear[1], request.twist.angular[2]};
-  for (std::size_t i = 0; i < wanted.size(); ++i) EXPECT_NEAR(mean[i], wanted[i], part * std::abs(wanted[i]) + 0.01) << i;
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    EXPECT_NEAR(mean[i], wanted[i], part * std::abs(wanted[i]) + 0.01) << i;
   EXPECT_LE(robot.tilt, tilt);
   EXPECT_LE(robot.effort, 0.98);
   EXPECT_EQ(robot.command().legged.phase, LegPhase::kWalking);

@@ -87,8 +87,8 @@ void trot(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
 }
 
 void gaits(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
-  for (const Walk& each : {Walk{"crawl", {0.2, 0, 0}, GaitName::kCrawl},
-                           Walk{"walking trot", {0.5, 0, 0}, GaitName::kWalkingTrot}}) {
+  for (const Walk& each :
+       {Walk{"crawl", {0.2, 0, 0}, GaitName::kCrawl}, Walk{"walking trot", {0.5, 0, 0}, GaitName::kWalkingTrot}}) {
     QuadrupedLoop robot(model, parameters_of(seed));
     walk(robot, each, worst);
   }
@@ -101,11 +101,10 @@ void robots(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
 
 void walking_stop(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   constexpr int kPhases = 40;
-  for (const Walk& each : {Walk{"0.5 m/s", {0.5, 0, 0}}, Walk{"1.0 m/s", {1, 0, 0}}, Walk{"1.5 m/s", {1.5, 0, 0}},
-                           Walk{"crawl", {0.2, 0, 0}, GaitName::kCrawl}, Walk{"sideways", {0, 0.3, 0}},
-                           Walk{"turn", {0, 0, 1.5}}}) {
-    const double period =
-        kGaits[static_cast<std::size_t>(each.gait)].scaled(model.leg_length()).period / kPhases;
+  for (const Walk& each :
+       {Walk{"0.5 m/s", {0.5, 0, 0}}, Walk{"1.0 m/s", {1, 0, 0}}, Walk{"1.5 m/s", {1.5, 0, 0}},
+        Walk{"crawl", {0.2, 0, 0}, GaitName::kCrawl}, Walk{"sideways", {0, 0.3, 0}}, Walk{"turn", {0, 0, 1.5}}}) {
+    const double period = kGaits[static_cast<std::size_t>(each.gait)].scaled(model.leg_length()).period / kPhases;
     for (int phase = 0; phase < kPhases; ++phase) {
       QuadrupedLoop robot(model, parameters_of(seed));
       robot.wait(0.3);

@@ -10,10 +10,9 @@
 namespace robot_control {
 namespace {
 
-constexpr double kSlow = 0.3;        // m/s, of a body of legs of kReferenceLeg whose walk may end
+constexpr double kSlow = 0.3;         // m/s, of a body of legs of kReferenceLeg whose walk may end
 constexpr double kCarriedPart = 0.5;  // of the ranges of a standing body
-constexpr std::uint64_t kEmergencies =
-    kReasonTimedOut | kReasonRefused | kReasonManySenders | kReasonPermitRamp;
+constexpr std::uint64_t kEmergencies = kReasonTimedOut | kReasonRefused | kReasonManySenders | kReasonPermitRamp;
 
 bool rests(const WalkingTwist& twist) noexcept {
   return twist[0] == 0 && twist[1] == 0 && twist[2] == 0;

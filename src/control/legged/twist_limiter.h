@@ -9,8 +9,8 @@
 #include <array>
 #include <cstdint>
 
-#include "control/limits/axis_limiter.h"
 #include "control/legged/leg_controller_parameters.h"
+#include "control/limits/axis_limiter.h"
 #include "control/limits/speed_limiter.h"
 
 namespace robot_control {

@@ -14,7 +14,8 @@ constexpr double kFastest = 10;  // m/s, rad/s
 constexpr int kHalvings = 12, kSamples = 24;
 
 /// Returns the largest part of its speed limit that a joint needs at this twist; ∞ where a leg does not reach.
-double needed(const LegModel& robot, const NominalStance& stance, const Gait& gait, const WalkingTwist& twist) noexcept {
+double needed(const LegModel& robot, const NominalStance& stance, const Gait& gait,
+              const WalkingTwist& twist) noexcept {
   const double time = gait.swing_time(), half = gait.stance_time() / 2;
   double part = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
@@ -32,8 +33,8 @@ double needed(const LegModel& robot, const NominalStance& stance, const Gait& ga
       const Eigen::Matrix3d inverse = kinematics.jacobian(solution.angles, place).inverse();
       const Eigen::Vector3d rates = inverse * (point.velocity + velocity);
       for (std::size_t j = 0; j < kLegJoints; ++j)
-        part = std::max(part, std::abs(rates[static_cast<Eigen::Index>(j)]) /
-                                  robot.joints[kLegJoints * leg + j].velocity_limit);
+        part = std::max(
+            part, std::abs(rates[static_cast<Eigen::Index>(j)]) / robot.joints[kLegJoints * leg + j].velocity_limit);
     }
   }
   return part;

@@ -53,11 +53,10 @@ class LegControllerNode final : public CommandedNode {
     leg_state_ = handle.advertise<msg::LegState>("leg_state", 10);
     set_posture_ = handle.advertiseService("set_posture", &LegControllerNode::set_posture, this);
     set_gait_ = handle.advertiseService("set_gait", &LegControllerNode::set_gait, this);
-    intake().start(earlier_controller(
-        handle, {"body_pose", "foot_target", "joint_trajectory", "cmd_vel", "cmd_vel_stamped"}));
-    body_pose_.connect_with_sender(handle, [this](const msg::BodyPose& message, const Publisher& sender) {
-      pose(posture_of(message), sender);
-    });
+    intake().start(
+        earlier_controller(handle, {"body_pose", "foot_target", "joint_trajectory", "cmd_vel", "cmd_vel_stamped"}));
+    body_pose_.connect_with_sender(
+        handle, [this](const msg::BodyPose& message, const Publisher& sender) { pose(posture_of(message), sender); });
     foot_target_.connect_with_sender(handle, [this](const msg::FootTarget& message, const Publisher& sender) {
       const auto request = request_of(message);
       if (request) return receive({.sender = sender, .twist = {}, .posture = request->posture, .mode = request->mode});
@@ -327,8 +326,8 @@ class LegControllerNode final : public CommandedNode {
   ros::ServiceServer set_gait_;
   std::mutex posture_mutex_;  ///< locked only by try_lock
   CommandInput input_;
-  Posture pose_{};                    ///< the last body_pose; protected by input_mutex_
-  std::uint64_t gait_ = kStanceStay;  ///< mode of the gait that set_gait fixed; protected by input_mutex_
+  Posture pose_{};                      ///< the last body_pose; protected by input_mutex_
+  std::uint64_t gait_ = kStanceStay;    ///< mode of the gait that set_gait fixed; protected by input_mutex_
   std::optional<Execution> execution_;  ///< protected by input_mutex_
   Pacer pace_;
 };
