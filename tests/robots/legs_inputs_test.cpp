@@ -43,7 +43,7 @@ TEST(LegsInputs, ATwistBeyondEveryLimitIsLimited) {
   request.twist.linear[1] = -1e9;
   request.twist.angular[2] = 1e9;
   robot.run(2.0, request);
-  EXPECT_NE(robot.command().reasons & (kReasonSpeedLimited | kReasonLegSpeed), 0u);
+  EXPECT_NE(robot.command().reasons & (std::uint64_t{kReasonSpeedLimited} | kReasonLegSpeed), 0u);
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
 }
 

@@ -37,8 +37,8 @@ void odometry(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// Touchdowns that the estimator finds without foot sensors.
 void contact(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 
-/// Trots at four speeds, sideways, turning and on all axes, and ends each walk, with the errors of data sheets and
-/// without force sensors at the feet, as the next three.
+/// Trots at four speeds, sideways, turning and on all axes. Each walk ends with a zero. The sensors have the errors of
+/// data sheets, and the feet no force sensors. The next three rows have the same sensors.
 void trot(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// Crawl and walking trot.
 void gaits(const LegModel& model, std::uint64_t seed, WorstValues& worst);

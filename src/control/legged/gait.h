@@ -53,14 +53,14 @@ struct Gait {
   }
 };
 
-/// Returns true if a robot can walk with this gait: each foot bears for a part of each cycle, swings for as long as it
-/// needs, and is lifted.
+/// Returns true if a robot can walk with this gait. Each foot has to bear for a part of the period, to swing for long
+/// enough, and to be lifted.
 constexpr bool walkable(const Gait& gait) noexcept {
-  constexpr double kLeastSwing = 0.05;  // s
+  constexpr double kMinSwing = 0.05;  // s
   if (!(gait.duty > 0 && gait.duty <= 1 && gait.lift >= 0 && gait.period > 0)) return false;
   for (const double offset : gait.phase)
     if (!(offset >= 0 && offset < 1)) return false;
-  return gait.duty == 1 || (gait.lift > 0 && gait.period * (1 - gait.duty) >= kLeastSwing);
+  return gait.duty == 1 || (gait.lift > 0 && gait.period * (1 - gait.duty) >= kMinSwing);
 }
 
 enum class GaitName { kStand, kTrot, kWalkingTrot, kCrawl };

@@ -49,7 +49,7 @@ Gait gait_of(const LegModel& robot, const NominalStance& stance, const Gait& ref
 }
 
 WalkingTwist walking_speed(const LegModel& robot, const NominalStance& stance, const Gait& gait) noexcept {
-  WalkingTwist result{kLeastSpeed, kLeastSpeed, kLeastSpeed};
+  WalkingTwist result{kMinSpeed, kMinSpeed, kMinSpeed};
   if (gait.duty >= 1) return result;
   for (std::size_t axis = 0; axis < result.size(); ++axis) {
     double low = 0, high = kFastest;
@@ -58,7 +58,7 @@ WalkingTwist walking_speed(const LegModel& robot, const NominalStance& stance, c
       twist[axis] = (low + high) / 2;
       (needed(robot, stance, gait, twist) <= kOfJointSpeed ? low : high) = twist[axis];
     }
-    result[axis] = std::max(kLeastSpeed, low);
+    result[axis] = std::max(kMinSpeed, low);
   }
   return result;
 }
