@@ -21,8 +21,8 @@ Gait gait_of(const LegModel& robot, const NominalStance& stance, const Gait& ref
 /// is one of `gait_of`.
 WalkingTwist walking_speed(const LegModel& robot, const NominalStance& stance, const Gait& gait) noexcept;
 
-/// Returns after how many s at most a walk ends in an emergency. That is the time of the limits, a period of the slowest
-/// gait, and kAllDown.
+/// Returns after how many s at most a walk ends in an emergency. That is the time of the limits, a period of the
+/// slowest gait, and kAllDown.
 double walk_ending_time(const LegControllerParameters& parameters, const LegModel& robot) noexcept;
 
 inline constexpr double kAllDown = 0.15;  ///< s, for which all feet stand before the joints hold the body
