@@ -387,6 +387,7 @@ TEST(QuadbotScript, LetsItStandUpAndWalk) {
   const TemporaryFolder folder;
   Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
   parameters.loop.command_script = folder.write("script.csv", "cycle,linear,angular\n0,0,0\n1,0.5,0\n").string();
+  parameters.leg_control.request_timeout = 0;
   QuadrupedLoop robot(legged_robot("quadbot"), parameters);
   robot.wait(3);
   EXPECT_EQ(robot.command().legged.phase, LegPhase::kWalking);
