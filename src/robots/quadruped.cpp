@@ -6,7 +6,7 @@
 
 #include "control/legged/body_bounds.h"
 #include "control/legged/leg_controller.h"
-#include "control/legged/walking_speed.h"
+#include "control/legged/walking/walking_speed.h"
 #include "estimation/legged/legged_estimator.h"
 #include "parameters/problem_list.h"
 #include "safety/conditions/legged/legged_conditions.h"

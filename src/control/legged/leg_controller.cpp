@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "control/legged/body_bounds.h"
-#include "control/legged/walking_speed.h"
+#include "control/legged/walking/walking_speed.h"
 
 namespace robot_control {
 namespace {

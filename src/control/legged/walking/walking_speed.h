@@ -8,7 +8,7 @@
 
 #include "control/legged/gait.h"
 #include "control/legged/nominal_stance.h"
-#include "control/legged/twist_limiter.h"
+#include "control/legged/walking/twist_limiter.h"
 #include "machine/legs/leg_model.h"
 
 namespace robot_control {

@@ -1,11 +1,11 @@
-#include "control/legged/walking_speed.h"
+#include "control/legged/walking/walking_speed.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "control/legged/swing.h"
+#include "control/legged/walking/swing.h"
 
 namespace robot_control {
 namespace {

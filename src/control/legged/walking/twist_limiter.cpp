@@ -1,4 +1,4 @@
-#include "control/legged/twist_limiter.h"
+#include "control/legged/walking/twist_limiter.h"
 
 #include <algorithm>
 #include <cmath>

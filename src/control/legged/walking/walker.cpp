@@ -1,4 +1,4 @@
-#include "control/legged/walker.h"
+#include "control/legged/walking/walker.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "control/legged/foothold.h"
-#include "control/legged/swing.h"
-#include "control/legged/walking_speed.h"
+#include "control/legged/walking/swing.h"
+#include "control/legged/walking/walking_speed.h"
 #include "machine/gravity.h"
 
 namespace robot_control {

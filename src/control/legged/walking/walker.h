@@ -25,7 +25,7 @@
 #include "control/legged/leg_tuning.h"
 #include "control/legged/nominal_stance.h"
 #include "control/legged/tracked_axis.h"
-#include "control/legged/twist_limiter.h"
+#include "control/legged/walking/twist_limiter.h"
 #include "machine/legs/leg_dynamics.h"
 #include "machine/legs/leg_model.h"
 #include "signals/command_frame.h"
