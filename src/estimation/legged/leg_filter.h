@@ -38,7 +38,7 @@ class LegFilter {
   static constexpr double kAccelerometerWalk = 2e-4;  ///< m/s²/√s
   static constexpr double kGyroBias = 0.02;           ///< rad/s, before a rest
   static constexpr double kAccelerometerBias = 0.2;   ///< m/s²
-  static constexpr double kFoot = 3e-4;               ///< m, of a foot's place by kinematics
+  static constexpr double kFoot = 5e-4;               ///< m, of a foot's place by kinematics
   static constexpr double kSlide = 0.003;             ///< m/√s
   static constexpr double kLandSlide = 0.03;          ///< m/√s
   static constexpr double kGate = 4;
