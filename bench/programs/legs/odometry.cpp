@@ -125,8 +125,8 @@ void odometry(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
 }
 
 void contact(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
-  constexpr int kAir = 40, kInTime = 15;  // cycles
-  constexpr double kTouches = 1;          // N
+  constexpr int kAir = 40, kInTime = 15, kBounce = 10;  // cycles; a foot that lands leaves the ground again for less
+  constexpr double kTouches = 1;                        // N
   constexpr double kSeconds = 10;
   struct Walk {
     GaitName gait;
@@ -151,8 +151,9 @@ void contact(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
         if (waits[leg] && said) found += since[leg] <= kInTime ? 1 : 0, waits[leg] = false;
         since[leg] += 1;
         air[leg] = touches ? 0 : air[leg] + 1;
-        swing += touches ? 0 : 1;
-        wrong += !touches && said ? 1 : 0;
+        const bool swings = air[leg] > kBounce;
+        swing += swings ? 1 : 0;
+        wrong += swings && said ? 1 : 0;
       }
     }
     const std::string name =
