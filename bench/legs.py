@@ -32,10 +32,14 @@ PARTS = (
     "hour",
     "odometry",
     "contact",
+    "trot",
+    "gaits",
+    "robots",
+    "walking_stop",
 )
-SEEDS = {"postures": 8, "stop": 4, "replayed": 4, "odometry": 24, "contact": 4}
+SEEDS = {"postures": 8, "stop": 4, "replayed": 4, "odometry": 24, "contact": 4, "trot": 24, "gaits": 24, "robots": 4}
 """of each robot; others have one"""
-OWN_ROBOT = ("cost", "pose", "circle", "odometry", "contact")
+OWN_ROBOT = ("cost", "pose", "circle", "odometry", "contact", "trot", "gaits")
 """parts that are promised of the project's own quadruped alone"""
 BOUNDS = {
     "round trip of reachable feet": 1e-9,  # m
@@ -74,6 +78,24 @@ BOUNDS = {
     "speed after 10 min without power": 0.001,  # m/s
     "way of the body by": 0.01,  # m
     "replay that is not exact": 0,
+    "speed off, 0.25 m/s": 0.02,
+    "speed off, ": 0.05,
+    "speed off, crawl": 0.03,
+    "speed off, walking trot": 0.03,
+    "speed off, trot": 0.03,
+    "roll RMS, ": 0.05,  # rad
+    "pitch RMS, ": 0.05,
+    "largest tilt, ": 0.15,
+    "joint speed, ": 0.9,
+    "cycles not passed, ": 0,
+    "stops, ": 0,
+    "stands after, ": 1.2,  # s
+    "tilt of a stop, ": 0.35,  # rad
+    "tilt of a stop, 0.5 m/s": 0.21,
+    "tilt of a stop, 1.5 m/s": 0.61,
+    "rest of a stop, ": 1.0,  # s
+    "way of a stop, 1.5 m/s": 0.8,  # m
+    "way of a stop, ": 0.4,
     "stops in an hour": 0,
     "time with a warning in an hour": 0,  # s
     "error of the way": 1,  # %

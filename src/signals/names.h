@@ -220,7 +220,8 @@ constexpr std::string_view name_of(LinkState state) noexcept {
 }
 
 constexpr std::string_view name_of(LegPhase phase) noexcept {
-  constexpr std::array<std::string_view, 6> kNames{"lying", "gathering", "rising", "standing", "lowering", "joints"};
+  constexpr std::array<std::string_view, 7> kNames{"lying",    "gathering", "rising", "standing",
+                                                   "lowering", "joints",    "walking"};
   const auto index = static_cast<std::size_t>(phase);
   return index < kNames.size() ? kNames[index] : "unknown";
 }

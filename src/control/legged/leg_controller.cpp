@@ -133,7 +133,8 @@ bool LegController::advance(const Request& request, const ControlInput& input, s
   switch (state_.phase) {
     case LegPhase::kLying:
       if (!up && request.mode != kStanceJoints) return false;
-      for (std::size_t i = 0; i < kLegsJoints; ++i) state_.from[i] = state_.angles[i] = input.sensors->joints[i].position;
+      for (std::size_t i = 0; i < kLegsJoints; ++i)
+        state_.from[i] = state_.angles[i] = input.sensors->joints[i].position;
       state_.joints.begin(state_.from);
       enter(up ? LegPhase::kGathering : LegPhase::kJoints, 0);
       return true;

@@ -52,8 +52,8 @@
 
 #include "control/command_watch.h"
 #include "control/control_input.h"
-#include "control/legged/leg_controller_parameters.h"
 #include "control/legged/joint_motion.h"
+#include "control/legged/leg_controller_parameters.h"
 #include "control/legged/leg_tuning.h"
 #include "control/legged/tracked_axis.h"
 #include "control/legged/twist_limiter.h"

@@ -5,15 +5,14 @@
 #include <cmath>
 
 #include "control/legged/leg_controller.h"
+#include "control/legged/walking_speed.h"
 
 namespace robot_control {
 namespace {
 
-constexpr double kAllDown = 0.15;     // s, for which all feet stand before the body is held by its joints
-constexpr double kSlow = 0.3;        // m/s, of a body of legs of kReferenceLeg whose walk may end
+constexpr double kSlow = 0.3;         // m/s, of a body of legs of kReferenceLeg whose walk may end
 constexpr double kCarriedPart = 0.5;  // of the ranges of a standing body
-constexpr std::uint64_t kEmergencies =
-    kReasonTimedOut | kReasonRefused | kReasonManySenders | kReasonPermitRamp;
+constexpr std::uint64_t kEmergencies = kReasonTimedOut | kReasonRefused | kReasonManySenders | kReasonPermitRamp;
 
 bool rests(const WalkingTwist& twist) noexcept {
   return twist[0] == 0 && twist[1] == 0 && twist[2] == 0;

@@ -4,8 +4,8 @@
 ///   over ground   from a to b:  a + b(s) (b − a)
 ///   height        in the first half up to the top with b(2 s), in the second half down with b(2 s − 1)
 ///
-/// So it leaves and meets the ground without speed, and its acceleration is at most 6/T² of its way over ground, and
-/// 24/T² of its lift, for a swing of T seconds.
+/// So it leaves and meets the ground without speed. For a swing of T seconds, its acceleration is at most 6/T² of its
+/// way over ground, and 24/T² of its lift.
 
 #include <Eigen/Core>
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
-/// Limits the requested twist of a body that walks, as limits/speed_limiter.h does for wheels, on three axes: to the
-/// front, to the left, and turning.
+/// Limits the requested twist of a body that walks on three axes: to the front, to the left, and turning. The limits
+/// are those of wheels (limits/speed_limiter.h).
 ///
 /// The target is scaled by the largest s ≤ 1 with which each axis is within its speed limit, and Σ |xᵢ|/cᵢ ≤ 1, where
 /// cᵢ is the speed that the legs allow on this axis alone. Each axis follows axis_limiter.h. Their limits are scaled so
@@ -9,8 +9,8 @@
 #include <array>
 #include <cstdint>
 
-#include "control/limits/axis_limiter.h"
 #include "control/legged/leg_controller_parameters.h"
+#include "control/limits/axis_limiter.h"
 #include "control/limits/speed_limiter.h"
 
 namespace robot_control {

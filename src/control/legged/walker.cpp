@@ -14,12 +14,12 @@
 namespace robot_control {
 namespace {
 
-constexpr double kOfEffort = 0.97;          // of the limits, the largest effort
-constexpr double kFarthest = 0.08;          // m, the target from the robot, of a leg of kReferenceLeg
-constexpr double kFarthestYaw = 0.3;        // rad
-constexpr double kGroundTime = 0.05;        // s, in which the height of the ground follows the feet
-constexpr double kEarly = 0.5;              // of the swing, from which on a foot may touch down
-constexpr double kTouches = 0.5;            // probability of a contact
+constexpr double kOfEffort = 0.97;    // of the limits, the largest effort
+constexpr double kFarthest = 0.08;    // m, the target from the robot, of a leg of kReferenceLeg
+constexpr double kFarthestYaw = 0.3;  // rad
+constexpr double kGroundTime = 0.05;  // s, in which the height of the ground follows the feet
+constexpr double kEarly = 0.5;        // of the swing, from which on a foot may touch down
+constexpr double kTouches = 0.5;      // probability of a contact
 
 using Map = Eigen::Map<Eigen::Vector3d>;
 using ConstMap = Eigen::Map<const Eigen::Vector3d>;
@@ -122,7 +122,8 @@ bool Walker::step(State& state, const WalkInput& input, CommandFrame& out) noexc
 /// Moves what is kept in level axes, which move and turn with the body.
 void Walker::move(State& state, const WalkInput& input, const WalkingBody& body) const noexcept {
   const Eigen::Vector3d turning(0, 0, body.rate.z());
-  for (Vector3& lifted : state.lifted) Map(lifted.data()) -= period_ * (body.velocity + turning.cross(Map(lifted.data())));
+  for (Vector3& lifted : state.lifted)
+    Map(lifted.data()) -= period_ * (body.velocity + turning.cross(Map(lifted.data())));
   const double farthest = kFarthest * length_ / kReferenceLeg;
   std::array<double, 3>& ahead = state.ahead;
   ahead[0] += period_ * (input.twist[0] - body.velocity.x());

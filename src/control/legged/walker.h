@@ -63,15 +63,15 @@ class Walker {
   struct State {
     std::uint64_t gait = 0;  ///< GaitName
     double phase = 0;
-    double stood = 0;                              ///< s since all feet stand
-    std::array<std::uint64_t, kLegs> bears{};      ///< 1: its force is planned
-    std::array<std::uint64_t, kLegs> swings{};     ///< 1: by the clock
-    std::array<Vector3, kLegs> lifted{};           ///< m, level axes: where it left the ground
-    std::array<Vector3, kLegs> forces{};           ///< N, level axes
-    std::array<double, 3> ahead{};                 ///< m, m, rad: the target from the robot
-    double ground = 0;                             ///< m, height of the ground, level axes
-    std::uint64_t planned = 0;                     ///< cycles since the last plan
-    std::uint64_t failures = 0;                    ///< plans without a solution, one after the other
+    double stood = 0;                           ///< s since all feet stand
+    std::array<std::uint64_t, kLegs> bears{};   ///< 1: its force is planned
+    std::array<std::uint64_t, kLegs> swings{};  ///< 1: by the clock
+    std::array<Vector3, kLegs> lifted{};        ///< m, level axes: where it left the ground
+    std::array<Vector3, kLegs> forces{};        ///< N, level axes
+    std::array<double, 3> ahead{};              ///< m, m, rad: the target from the robot
+    double ground = 0;                          ///< m, height of the ground, level axes
+    std::uint64_t planned = 0;                  ///< cycles since the last plan
+    std::uint64_t failures = 0;                 ///< plans without a solution, one after the other
   };
 
   /// `friction` is μ of the forces, `period` s.
@@ -106,9 +106,9 @@ class Walker {
   LegTuning tuning_;
   std::array<double, kLegsJoints> effort_limits_{};  ///< N·m
   std::array<Gait, kGaits.size()> gaits_;
-  double length_;                              ///< m, of a leg
+  double length_;                                 ///< m, of a leg
   std::array<Eigen::Vector2d, kLegs> nominal_{};  ///< m, feet from the centre of gravity
-  double height_ = 0;                          ///< m, of the centre of gravity above the ground
+  double height_ = 0;                             ///< m, of the centre of gravity above the ground
   ForcePlanParameters plan_parameters_;
   ForcePlan plan_;
 };

@@ -14,7 +14,8 @@ constexpr double kFastest = 10;  // m/s, rad/s
 constexpr int kHalvings = 12, kSamples = 24;
 
 /// Returns the largest part of its speed limit that a joint needs at this twist; ∞ where a leg does not reach.
-double needed(const LegModel& robot, const NominalStance& stance, const Gait& gait, const WalkingTwist& twist) noexcept {
+double needed(const LegModel& robot, const NominalStance& stance, const Gait& gait,
+              const WalkingTwist& twist) noexcept {
   const double time = gait.swing_time(), half = gait.stance_time() / 2;
   double part = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
@@ -32,8 +33,8 @@ double needed(const LegModel& robot, const NominalStance& stance, const Gait& ga
       const Eigen::Matrix3d inverse = kinematics.jacobian(solution.angles, place).inverse();
       const Eigen::Vector3d rates = inverse * (point.velocity + velocity);
       for (std::size_t j = 0; j < kLegJoints; ++j)
-        part = std::max(part, std::abs(rates[static_cast<Eigen::Index>(j)]) /
-                                  robot.joints[kLegJoints * leg + j].velocity_limit);
+        part = std::max(
+            part, std::abs(rates[static_cast<Eigen::Index>(j)]) / robot.joints[kLegJoints * leg + j].velocity_limit);
     }
   }
   return part;
@@ -48,7 +49,7 @@ Gait gait_of(const LegModel& robot, const NominalStance& stance, const Gait& ref
 }
 
 WalkingTwist walking_speed(const LegModel& robot, const NominalStance& stance, const Gait& gait) noexcept {
-  WalkingTwist result{kLeastSpeed, kLeastSpeed, kLeastSpeed};
+  WalkingTwist result{kMinSpeed, kMinSpeed, kMinSpeed};
   if (gait.duty >= 1) return result;
   for (std::size_t axis = 0; axis < result.size(); ++axis) {
     double low = 0, high = kFastest;
@@ -57,9 +58,17 @@ WalkingTwist walking_speed(const LegModel& robot, const NominalStance& stance, c
       twist[axis] = (low + high) / 2;
       (needed(robot, stance, gait, twist) <= kOfJointSpeed ? low : high) = twist[axis];
     }
-    result[axis] = std::max(kLeastSpeed, low);
+    result[axis] = std::max(kMinSpeed, low);
   }
   return result;
+}
+
+double walk_ending_time(const LegControllerParameters& parameters, const LegModel& robot) noexcept {
+  double slowest = 0, period = 0;
+  for (const MotionLimits& axis : twist_limits(parameters))
+    slowest = std::max(slowest, axis.speed / axis.emergency_deceleration + axis.emergency_deceleration / axis.jerk);
+  for (const Gait& gait : kGaits) period = std::max(period, gait.scaled(robot.leg_length()).period);
+  return slowest + period + kAllDown;
 }
 
 }  // namespace robot_control

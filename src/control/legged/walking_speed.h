@@ -17,10 +17,16 @@ inline constexpr double kOfLift = 0.35, kOfJointSpeed = 0.85;
 
 Gait gait_of(const LegModel& robot, const NominalStance& stance, const Gait& reference) noexcept;
 
-/// Returns the largest speeds to the front, to the left, and turning, each of them alone; at least kLeastSpeed. `gait`
+/// Returns the largest speeds to the front, to the left, and turning, each of them alone; at least kMinSpeed. `gait`
 /// is one of `gait_of`.
 WalkingTwist walking_speed(const LegModel& robot, const NominalStance& stance, const Gait& gait) noexcept;
 
-inline constexpr double kLeastSpeed = 1e-3;  ///< m/s, rad/s
+/// Returns after how many s at most a walk ends in an emergency. That is the time of the limits, a period of the
+/// slowest gait, and kAllDown.
+double walk_ending_time(const LegControllerParameters& parameters, const LegModel& robot) noexcept;
+
+inline constexpr double kAllDown = 0.15;  ///< s, for which all feet stand before the joints hold the body
+
+inline constexpr double kMinSpeed = 1e-3;  ///< m/s, rad/s
 
 }  // namespace robot_control

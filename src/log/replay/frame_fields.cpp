@@ -160,10 +160,9 @@ std::vector<FieldDifference> differences(const Permit& logged, const Permit& rep
 }
 
 std::vector<FieldDifference> differences(const GateReport& logged, const GateReport& replayed) {
-  static const std::vector<Member> kMembers{whole("cycle"),         whole("verdict"),      whole("reasons"),
-                                            whole("command_cycle"), whole("permit_cycle"), whole("held"),
-                                            whole("missed"),        whole("late_permits"), whole("refused"),
-                                            {"stance", 4}};
+  static const std::vector<Member> kMembers{
+      whole("cycle"), whole("verdict"), whole("reasons"),      whole("command_cycle"), whole("permit_cycle"),
+      whole("held"),  whole("missed"),  whole("late_permits"), whole("refused"),       {"stance", 4}};
   return compare(logged, replayed, 0, kMembers);
 }
 

@@ -34,8 +34,8 @@ enum LeggedReason : std::uint64_t {
   kReasonLegSpeed = 1u << 23,     ///< The legs do not carry the body faster.
 };
 
-/// What is asked of each foot, by LegPlace: the part of its stance that it has done at the end of this cycle, above 0 …
-/// 1; 0.5 where it stands without a gait; 0 where it shall not bear.
+/// These numbers say what is asked of each foot, by LegPlace. 0: it shall not bear. 0.5: it stands without a gait. Else
+/// it is the part of its stance that it has done at the end of this cycle, above 0 … 1.
 using FootStances = std::array<double, 4>;
 
 struct LeggedCommand {
