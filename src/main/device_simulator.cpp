@@ -52,15 +52,12 @@ class DeviceSimulatorNode final : public Node {
   }
 
   void publish() override {
-    TruthFrame truth;
-    {
-      const std::lock_guard lock(mutex_);
-      truth = simulator_->truth();
-    }
     SensorFrame now;
     now.head.stamp_ns = monotonic_ns();
     time_.follow(now);
     if (!pace_.due(1, now.head.stamp_ns)) return;
+    TruthFrame truth;
+    if (!simulator_->truth(truth)) return;
     const ReportParameters& report = setup_.parameters.report;
     truth_.publish(ground_truth(truth, report.odom_frame, report.base_frame, time_.at(now.head.stamp_ns)));
   }
@@ -94,7 +91,7 @@ class DeviceSimulatorNode final : public Node {
   }
 
   Setup setup_;
-  std::mutex mutex_;
+  std::mutex mutex_;  // of a step and of a fault
   std::unique_ptr<DeviceSimulator> simulator_;
   Pacer pace_;
   TimeMap time_{ClockMode::kWall};

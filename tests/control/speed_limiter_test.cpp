@@ -99,6 +99,8 @@ TEST(SpeedLimiter, KeepsTheCurvatureOfATooFastCommandAndSaysSo) {
   EXPECT_EQ(limiter.value().linear, 1.0);
   EXPECT_EQ(limiter.value().angular, 0.5);
   EXPECT_EQ(limiter.reasons(), std::uint64_t{kReasonSpeedLimited} | kReasonCurvatureKept);
+  for (int k = 0; k < 2000; ++k) limiter.step({2, 0}, kDt);
+  EXPECT_EQ(limiter.reasons(), std::uint64_t{kReasonSpeedLimited}) << "it is straight";
 }
 
 TEST(SpeedLimiter, ContinuesFromTheSeedAndReturnsFromAboveTheLimit) {
@@ -155,6 +157,17 @@ TEST(SpeedLimiter, ReversesWithoutStoppingAndWithEachLimitOnItsSideOfZero) {
   const double before_zero = 1.5 / 10 / 2 + (1 - 0.0625) / 1.5 + 0.05;
   const double beyond_zero = 1 / 1.0 + 1.0 / 10 / 2;
   EXPECT_NEAR(cycles_to(limiter, {-1, 0}), 1000 * (before_zero + beyond_zero), 3);
+}
+
+TEST(SpeedLimiter, ReversesBothAxesOnTheLineThroughZero) {
+  SpeedLimiter limiter(kSmooth);
+  for (const double direction : {1.0, -1.0}) {
+    for (int k = 0; k < 2000; ++k) {
+      const PlanarTwist now = limiter.step({direction * 0.5, direction * 0.4}, kDt);
+      ASSERT_NEAR(now.angular, 0.8 * now.linear, 1e-12) << "cycle " << k;
+    }
+    EXPECT_EQ(limiter.value().linear, direction * 0.5);
+  }
 }
 
 TEST(SpeedLimiter, OvershootsATargetThatComesNearerByWhatIsUnavoidable) {
@@ -259,10 +272,14 @@ TEST(SpeedLimiter, APartOfTheLimitsKeepsLineAndJerk) {
 }
 
 TEST(SpeedLimiter, HalfOfTheLimitsTakesTwiceAsLong) {
-  SpeedLimiter limiter(kLimits);
-  for (int k = 1; k <= 2000; ++k) limiter.step({1, 0}, kDt, false, 0.5);
-  EXPECT_NEAR(limiter.value().linear, 1, 1e-12);  // 2000 roundings
-  EXPECT_NEAR(limiter.used_acceleration_scale(), 0.5, 1e-9);
+  for (const PlanarTwist& target : {PlanarTwist{1, 0}, PlanarTwist{-1, 0}, PlanarTwist{0, 2}, PlanarTwist{0, -2}}) {
+    SpeedLimiter limiter(kLimits);
+    const double cycles = target.linear != 0 ? 2000 : 1000;
+    for (int k = 1; k <= cycles; ++k) limiter.step(target, kDt, false, 0.5);
+    EXPECT_NEAR(limiter.value().linear, target.linear, 1e-12);  // 2000 roundings
+    EXPECT_NEAR(limiter.value().angular, target.angular, 1e-12);
+    EXPECT_NEAR(limiter.used_acceleration_scale(), 0.5, 1e-9);
+  }
 }
 
 // 1 m/s² grew under 10 m/s³: it fades as fast, and carries the speed on by 0.05 m/s, whatever the limit is now.

@@ -27,9 +27,13 @@ struct Saved : Role {
 struct NotedEstimator final : Saved<EstimatorLaw> {
   void enter_run() noexcept override { ++runs; }
   void resume(const StateFrame& last) noexcept override { resumed = last.head.cycle; }
-  void set_pose(const Vector3&) noexcept override { ++poses; }
+  void set_pose(const Vector3& wanted) noexcept override {
+    pose = wanted;
+    ++poses;
+  }
   void step(const SensorFrame&, StateFrame&) noexcept override {}
   int runs = 0, poses = 0;
+  Vector3 pose{};
   std::optional<std::uint64_t> resumed;
 };
 
@@ -288,6 +292,7 @@ TEST_F(EstimatorCycleTest, SetsAPoseOncePerRequest) {
     EXPECT_EQ(cycle_->trace().calls.first_cycle, 5u);
   }
   EXPECT_EQ(law_->poses, 1);
+  EXPECT_EQ(law_->pose, (Vector3{1, 2, 3}));
 }
 
 TEST_F(EstimatorCycleTest, NotesItsTimesAndProcess) {

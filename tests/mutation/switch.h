@@ -119,12 +119,12 @@ struct Right {
     return {std::forward<R>(r)};                                           \
   }                                                                        \
   template <typename L, typename R, int kId>                               \
-  constexpr L& operator original(L& l, Right<R, kId> r) {                  \
+  constexpr L&& operator original(L&& l, Right<R, kId> r) {                \
     if constexpr (requires { l other r.value; }) {                         \
-      if (on<kId>()) return l other r.value, l;                            \
+      if (on<kId>()) return l other r.value, std::forward<L>(l);           \
     }                                                                      \
     l original std::forward<R>(r.value);                                   \
-    return l;                                                              \
+    return std::forward<L>(l);                                             \
   }
 MUTATION_ASSIGN(+=, -=)
 MUTATION_ASSIGN(-=, +=)

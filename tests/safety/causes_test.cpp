@@ -272,6 +272,13 @@ TEST_F(MonitorTest, AStandingRobotNeedsNoHeartbeat) {
   EXPECT_EQ(permit_.state, SupervisorState::kReady);
 }
 
+TEST_F(MonitorTest, AHeartbeatFromBeforeTheRunIsNone) {
+  ++input_.operator_input.heartbeats;
+  new_run();
+  steps(2 * kHeartbeat);
+  EXPECT_EQ(permit_.causes, 0u);
+}
+
 TEST_F(MonitorTest, HeartbeatTimeoutZeroAsksForNone) {
   SafetyParameters none = parameters();
   none.heartbeat_timeout = 0;

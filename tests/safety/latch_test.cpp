@@ -100,6 +100,16 @@ TEST_F(EvidenceOf, CausesIsWrittenWithTheCycleOfItsLatchAndTheRestIsEmpty) {
   }
 }
 
+TEST_F(EvidenceOf, EachCauseIsWrittenInANewMonitor) {
+  for (std::size_t bit = 0; bit < kStopCauses; ++bit) {
+    Evidence evidence;
+    evidence.latch(active_with(bit_of(bit), Reaction::kBrake), 7);
+    std::array<CauseEvidence, kMaxEvidence> out;
+    evidence.write(warnings_, out);
+    EXPECT_EQ(out[0].cause, bit_of(bit));
+  }
+}
+
 TEST_F(EvidenceOf, WarningsIsNotLatched) {
   evidence_.latch(active_with(bit_of(3), Reaction::kSlow), 7);
   EXPECT_EQ(causes(), Causes());
@@ -108,9 +118,9 @@ TEST_F(EvidenceOf, WarningsIsNotLatched) {
 TEST_F(EvidenceOf, ManyCausesIsThatOfTheFirst) {
   ActiveCauses active;
   Causes first;
-  for (std::size_t bit = 1; bit <= kMaxEvidence + 2; ++bit) {
+  for (std::size_t bit = 0; bit < kMaxEvidence + 2; ++bit) {
     active.add(bit_of(bit), Reaction::kBrake);
-    if (bit <= kMaxEvidence) first.push_back(bit_of(bit));
+    if (bit < kMaxEvidence) first.push_back(bit_of(bit));
   }
   evidence_.latch(active, 7);
   EXPECT_EQ(causes(), first);
@@ -120,10 +130,10 @@ TEST_F(EvidenceOf, ManyCausesIsThatOfTheFirst) {
 
 TEST_F(EvidenceOf, WarningsFollowsThatOfCausesInTheOrderOfTheirBits) {
   ActiveCauses active = active_with(bit_of(9), Reaction::kWarn);
-  active.add(bit_of(4), Reaction::kSlow);
+  active.add(bit_of(0), Reaction::kSlow);
   warnings_.step(active, 5, 1);
   evidence_.latch(active_with(bit_of(6), Reaction::kRamp), 7);
-  EXPECT_EQ(causes(), (Causes{bit_of(6), bit_of(4), bit_of(9)}));
+  EXPECT_EQ(causes(), (Causes{bit_of(6), bit_of(0), bit_of(9)}));
 }
 
 TEST_F(EvidenceOf, AnEarlierMonitorIsTakenOverForItsLatchedCauses) {
@@ -148,9 +158,34 @@ TEST_F(EvidenceOf, ACauseThatComesBackAfterAResetIsNew) {
   EXPECT_EQ(written()[0].cycle, 9u);
 }
 
+TEST(SupervisorOf, ANewMonitorHasLatchedAndRefusedNothing) {
+  const Supervisor supervisor(300);
+  EXPECT_EQ(supervisor.state(), SupervisorState::kInit);
+  EXPECT_EQ(supervisor.causes() | supervisor.first_cause() | supervisor.stops(), 0u);
+  EXPECT_EQ(supervisor.since_cycle() | supervisor.ramp_until() | supervisor.reset_refusal(), 0u);
+}
+
+TEST(SupervisorOf, AnEarlierMonitorTakesOverEachCauseThatThereIs) {
+  for (std::size_t bit = 0; bit <= kStopCauses; ++bit) {
+    Supervisor supervisor(300);
+    supervisor.restore(bit_of(bit), 0);
+    EXPECT_EQ(supervisor.causes(), bit < kStopCauses ? std::uint64_t{bit_of(bit)} : 0) << bit;
+  }
+}
+
+TEST(SupervisorOf, AStopIsResetOnRequestAlone) {
+  Supervisor supervisor(300);
+  supervisor.step({.cycle = 1, .brake = bit_of(3)});
+  SupervisorInput rest{.cycle = 2, .released = true, .no_motion_requested = true, .standing = true};
+  supervisor.step(rest);
+  EXPECT_EQ(supervisor.state(), SupervisorState::kStopped);
+  rest.reset_requested = true;
+  supervisor.step(rest);
+  EXPECT_EQ(supervisor.state(), SupervisorState::kReady);
+}
+
 TEST(SupervisorOf, ANewMonitorCountsEachCauseThatLatchesOnce) {
   Supervisor supervisor(300);
-  EXPECT_EQ(supervisor.stops(), 0u);
   for (std::uint64_t cycle = 1; cycle < 4; ++cycle) supervisor.step({.cycle = cycle, .brake = bit_of(3)});
   EXPECT_EQ(supervisor.stops(), 1u);
   supervisor.step({.cycle = 4, .brake = bit_of(3), .ramp = bit_of(4)});
@@ -168,6 +203,7 @@ TEST(SupervisorOf, ANewRunHasNoRamp) {
 
 TEST(Warnings, EndASecondAfterTheirCondition) {
   Warnings warnings(kTick);
+  EXPECT_EQ(warnings.bits(), 0u);
   const ActiveCauses none;
   warnings.step(active_with(bit_of(3), Reaction::kWarn), 1, 1);
   warnings.step(none, 61, 60);
@@ -179,10 +215,10 @@ TEST(Warnings, EndASecondAfterTheirCondition) {
 
 TEST(Warnings, EachEndsByItself) {
   Warnings warnings(kTick);
-  warnings.step(active_with(bit_of(3), Reaction::kSlow), 1, 1);
+  warnings.step(active_with(bit_of(0), Reaction::kSlow), 1, 1);
   warnings.step(active_with(bit_of(4), Reaction::kWarn, 12), 51, 50);
   EXPECT_TRUE(warnings.slowing());
-  EXPECT_EQ(warnings.bits(), bit_of(3) | bit_of(4));
+  EXPECT_EQ(warnings.bits(), bit_of(0) | bit_of(4));
   warnings.step({}, 111, 60);
   EXPECT_FALSE(warnings.slowing());
   EXPECT_EQ(warnings.bits(), std::uint64_t{bit_of(4)});

@@ -134,6 +134,25 @@ TEST_F(LeggedConditionsTest, AJointThatIsNoneOfTheLegsIsNotEvaluated) {
   EXPECT_EQ(run(1), 1);
 }
 
+TEST_F(LeggedConditionsTest, AContactThatIsNoFootIsNotEvaluated) {
+  sensors_.contact_count = kLegs + 1;
+  sensors_.contacts[kLegs] = {.force = {}, .valid = 1};
+  EXPECT_EQ(run(1), 1);
+}
+
+TEST_F(LeggedConditionsTest, ANewRunBeginsEachPersistenceAgain) {
+  const auto restarted = [&](double persistence) {
+    run(0.8 * persistence);
+    conditions_.enter_run();
+    return run(1);
+  };
+  sensors_.joints[4].velocity = 1.2 * robot_.joints[4].velocity_limit;
+  EXPECT_NEAR(restarted(0.05), 0.049, 1e-6);
+  sensors_.joints[4].velocity = 0;
+  sensors_.contacts[1].force = {};
+  EXPECT_NEAR(restarted(0.5), 0.499, 1e-6);
+}
+
 TEST_F(LeggedConditionsTest, AJointThatGivesItsTorqueForLongLetsItLieDown) {
   sensors_.joints[5].effort = 0.95 * robot_.joints[5].effort_limit;
   EXPECT_EQ(run(0.9), 0.9);
@@ -143,6 +162,7 @@ TEST_F(LeggedConditionsTest, AJointThatGivesItsTorqueForLongLetsItLieDown) {
   EXPECT_NEAR(run(2), 0.999, 1e-6);
   EXPECT_EQ(causes(Reaction::kRamp), "joint_effort");
   EXPECT_EQ(joint(), 5u);
+  EXPECT_NEAR(active_.measurements()[0].value, 0.95, 1e-9);
 }
 
 TEST_F(LeggedConditionsTest, AJointBeyondItsEndStopBrakes) {
@@ -163,9 +183,9 @@ TEST_F(LeggedConditionsTest, AJointBeyondItsEndStopBrakes) {
 TEST_F(LeggedConditionsTest, AJointThatDoesNotFollowItsCommandBrakesWhileTheRobotStands) {
   for (std::size_t i = 0; i < kLegsJoints; ++i)
     command_.joints[i] = {.mode = JointMode::kImpedance, .position = sensors_.joints[i].position};
-  command_.joints[7].position += 0.24;
+  command_.joints[7].position -= 0.24;
   EXPECT_EQ(run(0.5), 0.5);
-  command_.joints[7].position += 0.02;
+  command_.joints[7].position -= 0.02;
   command_.legged.phase = LegPhase::kRising;
   EXPECT_EQ(run(0.5), 0.5);
   command_.legged.phase = LegPhase::kStanding;
@@ -236,41 +256,58 @@ TEST_F(LeggedConditionsTest, AnEncoderThatRepeatsOneAngleWhileItsCommandMovesBra
 }
 
 TEST_F(LeggedConditionsTest, AFootThatSlipsLetsItLieDown) {
-  const auto slide = [&](double speed) {
-    return [this, speed](double t) {
+  const auto slide = [&](std::size_t foot, double speed) {
+    return [this, foot, speed](double t) {
       std::array<Eigen::Vector3d, kLegs> feet = stand_;
-      feet[3].y() -= speed * t;
+      feet[foot].y() += std::copysign(speed * t, feet[foot].y());
       place(feet);
     };
   };
   const double limit = robot_.leg_length();
-  EXPECT_EQ(run(0.3, slide(0.9 * limit)), 0.3);
+  EXPECT_EQ(run(0.3, slide(3, 0.9 * limit)), 0.3);
+  for (const std::size_t foot : {0, 1, 2, 3}) {
+    for (const bool new_run : {false, true}) {
+      place(stand_);
+      conditions_.enter_run();
+      run(0.3);
+      if (new_run) {
+        conditions_.enter_run();
+      } else {
+        command_.legged.phase = LegPhase::kRising;
+        run(0.1);
+        command_.legged.phase = LegPhase::kStanding;
+      }
+      EXPECT_NEAR(run(0.3, slide(foot, 1.5 * limit)), 0.149, 1e-6) << "it slips for a window, and 0.05 s more";
+      EXPECT_EQ(joint(), 3 * foot + 2);
+    }
+  }
   place(stand_);
   conditions_.enter_run();
   run(0.3);
   // The window of 0.1 s has its mean beyond the limit after 0.1/1.5 s, in steps of 10 ms, then 0.05 s of persistence.
-  EXPECT_NEAR(run(0.3, slide(1.5 * limit)), 0.12, 0.012);
+  EXPECT_NEAR(run(0.3, slide(3, 1.5 * limit)), 0.12, 0.012);
   EXPECT_EQ(causes(Reaction::kRamp), "foot_slip");
-  EXPECT_EQ(joint(), 11u);
   // It leaves the foot beside it, along the line of both.
   EXPECT_NEAR(active_.measurements()[0].value, 1.5 * limit, 1e-3 * limit);
 }
 
 TEST_F(LeggedConditionsTest, AFootInTheAirMayMoveAndCarryNothing) {
-  command_.legged.lifted = 4;
-  sensors_.contacts[3].force = {};
-  for (std::size_t leg = 0; leg < 3; ++leg) sensors_.contacts[leg].force[2] = robot_.mass * 9.81 / 3;
-  EXPECT_EQ(run(0.6,
-                [&](double t) {
-                  std::array<Eigen::Vector3d, kLegs> feet = stand_;
-                  feet[3].x() += 0.5 * std::min(t, 0.1);
-                  place(feet);
-                }),
-            0.6);
-  // It counts from where it is set down.
-  command_.legged.lifted = 0;
-  for (ContactSample& contact : sensors_.contacts) contact.force[2] = robot_.mass * 9.81 / kLegs;
-  EXPECT_EQ(run(0.3), 0.3);
+  for (const std::size_t lifted : {0, 3}) {
+    command_.legged.lifted = lifted + 1;
+    for (ContactSample& contact : sensors_.contacts) contact.force[2] = robot_.mass * 9.81 / 3;
+    sensors_.contacts[lifted].force = {};
+    EXPECT_EQ(run(0.6,
+                  [&](double t) {
+                    std::array<Eigen::Vector3d, kLegs> feet = stand_;
+                    feet[lifted].x() += std::min({t, 0.1, 0.6 - t});
+                    place(feet);
+                  }),
+              0.6);
+    // It counts from where it is set down.
+    command_.legged.lifted = 0;
+    for (ContactSample& contact : sensors_.contacts) contact.force[2] = robot_.mass * 9.81 / kLegs;
+    EXPECT_EQ(run(0.3), 0.3);
+  }
 }
 
 TEST_F(LeggedConditionsTest, AFootThatCarriesNothingIsAWarning) {

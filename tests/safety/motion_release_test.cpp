@@ -149,6 +149,10 @@ TEST_F(MotionReleaseTest, CyclesThatWereNotLookedAtAreAGap) {
   step(2);
   step();
   EXPECT_FALSE(release_.no_motion_requested());
+  steps(kSilence - 3);
+  EXPECT_FALSE(release_.no_motion_requested());
+  step();
+  EXPECT_TRUE(release_.no_motion_requested()) << "silence counts from the last of them";
 }
 
 TEST_F(MotionReleaseTest, ACommandFromAnOldStateIsNoEvidence) {
@@ -181,10 +185,19 @@ TEST_F(MotionReleaseTest, ARestartedEstimatorTakesTheReleaseBackAndOlderZerosDoN
   expect_release_by_a_new_zero_only();
 }
 
-TEST_F(MotionReleaseTest, ANewRunTakesTheReleaseBack) {
+TEST_F(MotionReleaseTest, ANewMonitorHasSeenNoStartAndNoEvidence) {
+  const MotionRelease release;
+  EXPECT_EQ(release.starts(), 0u);
+  EXPECT_FALSE(release.released());
+  EXPECT_FALSE(release.no_motion_requested());
+}
+
+TEST_F(MotionReleaseTest, ANewRunIsAStartAndTakesTheReleaseBack) {
   request_zero();
   step();
+  const std::uint64_t starts = release_.starts();
   release_.enter_run();
+  EXPECT_EQ(release_.starts(), starts + 1);
   cycle_ = 0;
   command_.zero_requests = 0;
   request_motion();

@@ -31,9 +31,35 @@ TEST_F(WheelFollowingTest, AWeakDriveThatTurnsRoundIsNotWrong) {
   }
 }
 
+// It needs 0.2 s from 5 rad/s to the limit of 3.75 rad/s, and loses 0.18 rad/s within the persistence of 50 ms.
+TEST_F(WheelFollowingTest, AWheelThatSlowsDownAfterItsTargetJumpedIsNotWrong) {
+  target(-kSpeed);
+  for (double speed = kSpeed; speed > -kSpeed; speed -= 6 * kPeriod) {
+    turn_wheels(speed);
+    step();
+    ASSERT_EQ(permit_.causes, 0u) << speed;
+  }
+}
+
 TEST_F(WheelFollowingTest, AWheelThatKeepsTurningWronglyIs) {
   target(-kSpeed);
   steps(50 + 1);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseWrongDirection});
+}
+
+TEST_F(WheelFollowingTest, AWheelThatWasWrongAtAHigherSpeedIsReportedNoLater) {
+  turn_wheels(2 * kSpeed);
+  target(2 * kSpeed);
+  steps(200);
+  target(-2 * kSpeed);
+  steps(30);
+  turn_wheels(kSpeed);
+  target(kSpeed);
+  steps(200);
+  target(-kSpeed);
+  steps(49);
+  EXPECT_EQ(permit_.causes, 0u);
+  step();
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseWrongDirection});
 }
 
@@ -74,6 +100,28 @@ TEST_F(WheelFollowingTest, AWheelThatStandsThoughItsMotorPushesIsStalledHoweverS
   EXPECT_EQ(permit_.causes, 0u);
   steps(40);
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
+}
+
+// It pushes above 1.2 times its friction, and from 0.9 of its effort limit on in any case.
+TEST_F(WheelFollowingTest, AWheelWithMuchFrictionIsStalledAboveItHoweverSlowItsTarget) {
+  const auto stalls = [&](double friction, double torque) {
+    DriveTrain stiff = robot();
+    for (JointModel& joint : stiff.joints) joint.friction = friction * joint.effort_limit;
+    monitor_ = SafetyMonitor(without_heartbeat(), stiff, kPeriod);
+    ask_for(0);
+    turn_wheels(0);
+    new_run();
+    steps(kStart);
+    ask_for(0.02);
+    target(0.2);
+    for (std::size_t i = 0; i < kWheels; ++i) sensors_.joints[i].effort = torque * stiff.joints[i].effort_limit;
+    steps(300);
+    return permit_.causes == kCauseStall;
+  };
+  EXPECT_FALSE(stalls(0.5, 0.58));
+  EXPECT_TRUE(stalls(0.5, 0.62));
+  EXPECT_FALSE(stalls(1, 0.88));
+  EXPECT_TRUE(stalls(1, 0.92));
 }
 
 // The left encoder is stuck, and its target passes 0: the gyro alone shows that the wheel turns.
@@ -189,6 +237,17 @@ TEST_F(WheelFollowingTest, ARobotWithoutEncodersIsNotSaidToMove) {
 
 TEST_F(WheelFollowingTest, ACommandThatDescendsFromAnOldStateIsStaleAfterLossCycles) {
   fresh_state_ = false;
+  steps(kLoss - 1);
+  EXPECT_EQ(permit_.causes, 0u);
+  step();
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseCommandStale});
+}
+
+TEST_F(WheelFollowingTest, ACommandIsStaleAsLateInANewRun) {
+  ask_for(0);
+  turn_wheels(0);
+  fresh_state_ = false;
+  new_run();
   steps(kLoss - 1);
   EXPECT_EQ(permit_.causes, 0u);
   step();

@@ -57,6 +57,20 @@ TEST_F(WheeledConditionsTest, InANewRunTheRobotNeitherStandsNorMoves) {
   EXPECT_FALSE(conditions.moving());
 }
 
+TEST_F(WheeledConditionsTest, ATargetOfAnEarlierRunIsNone) {
+  const DriveTrain robot = two_wheels();
+  WheeledConditions conditions(derived_limits({}, robot, 15), robot, kPeriod);
+  sensors_.joint_count = 2;
+  sensors_.gate.verdict = GateVerdict::kPassed;
+  CommandFrame command;
+  command.joint_count = 2;
+  for (JointCommand& joint : command.joints) joint = {.mode = JointMode::kEffort, .velocity = -5};
+  conditions.step({.sensors = &sensors_, .command = &command}, 1, kNoSpeedLimit, out_);
+  conditions.enter_run();
+  run(conditions, {5, 5});
+  EXPECT_TRUE(out_.measurements().empty());
+}
+
 // 15 N·m · 5 rad/s; the other wheel brakes and draws nothing.
 TEST_F(WheeledConditionsTest, PowerIsThatWhichTheMotorsDraw) {
   SafetyParameters parameters;
@@ -67,6 +81,65 @@ TEST_F(WheeledConditionsTest, PowerIsThatWhichTheMotorsDraw) {
   ASSERT_TRUE(power.has_value());
   EXPECT_NEAR(power->value, 75, 1e-6);
   EXPECT_NEAR(power->limit, 60 + (15 + 15) * tolerance(5), 1e-6);
+}
+
+TEST(SpeedLimitInForce, HoldsAfterTwoRampTimesOfItsRun) {
+  SpeedLimitInForce limit(10 * kPeriod, kPeriod);
+  limit.step(1, 5);
+  limit.enter_run();
+  for (int k = 1; k < 20; ++k) EXPECT_EQ(limit.step(1, 1), kNoSpeedLimit) << k;
+  EXPECT_EQ(limit.step(1, 1), 1);
+}
+
+TEST_F(WheeledConditionsTest, WithoutAGyroNoYawRateIsCompared) {
+  SafetyParameters parameters;
+  parameters.yaw_rate = {.limit = 1, .persistence = 0, .reaction = Reaction::kBrake};
+  sensors_.valid = 0;
+  EXPECT_FALSE(measured(two_wheels(), parameters, {0, 10}, kCauseYawRate).has_value());
+}
+
+// The right wheel slows down by 10 rad/s within 20 ms, the left one speeds up by 5.
+TEST_F(WheeledConditionsTest, TheWheelWhoseSpeedChangesMostIsNamed) {
+  SafetyParameters parameters;
+  parameters.wheel_acceleration = {.limit = 100, .persistence = 0, .reaction = Reaction::kBrake};
+  const DriveTrain robot = two_wheels();
+  WheeledConditions conditions(derived_limits(parameters, robot, 15), robot, kPeriod);
+  sensors_.joint_count = 2;
+  run(conditions, {1, 1});
+  std::uint64_t named = kMaxJoints;
+  for (int k = 1; k <= 20; ++k) {
+    ++sensors_.head.cycle;
+    sensors_.joints[0].position += (1 + 5 * k / 20.0) * kPeriod;
+    sensors_.joints[1].position += (1 - 10 * k / 20.0) * kPeriod;
+    out_.clear();
+    conditions.step({.sensors = &sensors_}, 1, kNoSpeedLimit, out_);
+    for (const auto& measurement : out_.measurements())
+      if (measurement.cause == kCauseWheelAcceleration) named = measurement.joint;
+  }
+  EXPECT_EQ(named, 1u);
+}
+
+// The IMU is turned, and the vertical of the base is (−0.36, 0.8, 0.48) in its axes. The base turns by −0.1 rad/s about
+// it, and by 0.88 rad/s across it.
+TEST_F(WheeledConditionsTest, TheYawRateIsThatAboutTheVerticalOfTheBase) {
+  SafetyParameters parameters;
+  parameters.yaw_rate = {.limit = 1, .persistence = 0, .reaction = Reaction::kBrake};
+  DriveTrain robot = two_wheels();
+  robot.imu_in_base.orientation = {0.1, 0.5, 0.7, 0.5};
+  sensors_.imu.angular_velocity = {0.036 + 0.8, -0.08 + 0.36, -0.048};
+  const auto yaw = measured(robot, parameters, {0, 10}, kCauseYawRate);
+  ASSERT_TRUE(yaw.has_value());
+  EXPECT_NEAR(yaw->value, 2.1, 1e-6);
+}
+
+TEST_F(WheeledConditionsTest, TheTorqueOfAJointThatIsNoWheelIsNotEvaluated) {
+  SafetyParameters parameters;
+  parameters.wheel_effort = {.limit = 1, .persistence = 0, .reaction = Reaction::kBrake};
+  sensors_.gate.verdict = GateVerdict::kPassed;
+  sensors_.joints[2].effort = 100;
+  EXPECT_FALSE(measured(two_wheels(), parameters, {1, 1}, kCauseWheelEffort).has_value());
+  sensors_.joints[1].effort = -1.1 * two_wheels().joints[1].effort_limit;
+  EXPECT_TRUE(measured(two_wheels(), parameters, {1, 1}, kCauseWheelEffort).has_value());
 }
 
 // The left side stands and the right one rolls at 1 m/s: 2 rad/s by a wheel base of 0.5 m. The gyro measures −0.1

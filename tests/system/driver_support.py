@@ -11,6 +11,7 @@ import rospy
 import yaml
 from nav_msgs.msg import Odometry
 from robot_control.srv import InjectFault
+from stall_witness import StallWitness
 from system_support import (
     CONTROLLER,
     ESTIMATOR,
@@ -28,6 +29,8 @@ STANDING = 0.01
 """m/s"""
 DEVICE_STALL_CAUSES = STALL_CAUSES | {"driver_fault", "encoders_lost", "imu_lost"}
 """The drives are a process of this machine, too, which may stall."""
+DEVICE_WITNESS = StallWitness(0.008, 85)
+"""Their thread runs on any core. After 10 ms without a position a drive is silent (lost_after of the drive file)."""
 
 
 class DriverTestCase(unittest.TestCase):
@@ -52,6 +55,7 @@ class DriverTestCase(unittest.TestCase):
         self.addCleanup(subscriber.unregister)
         self.robot = Robot()
         self.robot.stall_causes = frozenset(DEVICE_STALL_CAUSES)
+        self.robot.stall_witness = DEVICE_WITNESS
         self.addCleanup(self.robot.end)
         self.robot.start("driver", ESTIMATOR, CONTROLLER, MONITOR)
 

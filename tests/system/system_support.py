@@ -220,6 +220,7 @@ class Robot:
         self.namespace = namespace
         self.prefix = prefix
         self.stall_causes = frozenset(STALL_CAUSES)
+        self.stall_witness = LOOP_WITNESS
         self.nodes: dict[str, Program] = {}
         self.odom: Odometry | None = None
         self.joints: JointState | None = None
@@ -355,7 +356,7 @@ class Robot:
     def stalled(self) -> bool:
         """True if only causes of a stall stopped the robot, within a second of a stall that the witness measured."""
         near = (self._stopped_at - 1.0, self._stopped_at + 1.0)
-        return bool(self.causes) and self.causes <= self.stall_causes and LOOP_WITNESS.saw(*near)
+        return bool(self.causes) and self.causes <= self.stall_causes and self.stall_witness.saw(*near)
 
     @property
     def speed(self) -> float:

@@ -59,6 +59,7 @@ MAY_INCLUDE = {
     # The simulated robot as one machine: the plant, and before its motors the drives, where there are some.
     "simulation/machines": {
         "signals",
+        "bus",
         "configuration",
         "drivers",
         "drivers/can",

@@ -23,8 +23,9 @@
 
 namespace robot_control {
 
-inline constexpr double kReturn = 0.05;                ///< s
-inline constexpr double kAhead = 0.66, kAside = 0.47;  ///< of the leg's length
+inline constexpr double kReturn = 0.05;  ///< s
+inline constexpr double kAhead = 0.66;   ///< of the leg's length
+inline constexpr double kAside = 0.47;   ///< of the leg's length
 
 struct FootholdInput {
   Eigen::Vector2d nominal = Eigen::Vector2d::Zero();    ///< m, n

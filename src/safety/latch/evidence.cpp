@@ -6,7 +6,6 @@ namespace robot_control {
 
 void Evidence::latch(const ActiveCauses& active, std::uint64_t cycle) noexcept {
   std::uint64_t fresh = active.stopping() & ~known_;
-  if (fresh == 0) return;
   known_ |= fresh;
   for (const CauseEvidence& measurement : active.measurements()) {
     if ((measurement.cause & fresh) == 0 || count_ == kMaxEvidence) continue;
@@ -29,7 +28,7 @@ void Evidence::write(const Warnings& warnings, std::array<CauseEvidence, kMaxEvi
   std::copy_n(latched_.begin(), count_, out.begin());
   std::size_t i = count_;
   for (std::uint64_t rest = warnings.bits(); rest != 0 && i < kMaxEvidence; rest &= rest - 1) {
-    out[i++] = warnings.evidence(rest & (~rest + 1));
+    out[i++] = warnings.evidence(rest);
   }
   std::fill(out.begin() + static_cast<std::ptrdiff_t>(i), out.end(), CauseEvidence{});
 }

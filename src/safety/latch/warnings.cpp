@@ -6,8 +6,8 @@
 namespace robot_control {
 namespace {
 
-std::size_t index_of(std::uint64_t cause) noexcept {
-  return static_cast<std::size_t>(std::countr_zero(cause));
+std::size_t index_of(std::uint64_t causes) noexcept {
+  return static_cast<std::size_t>(std::countr_zero(causes));
 }
 
 }  // namespace
@@ -15,8 +15,8 @@ std::size_t index_of(std::uint64_t cause) noexcept {
 Warnings::Warnings(double period) noexcept
     : hold_cycles_(static_cast<std::uint64_t>(std::llround(kWarningHold / period))) {}
 
-const CauseEvidence& Warnings::evidence(std::uint64_t cause) const noexcept {
-  return held_[index_of(cause)].evidence;
+const CauseEvidence& Warnings::evidence(std::uint64_t causes) const noexcept {
+  return held_[index_of(causes)].evidence;
 }
 
 void Warnings::step(const ActiveCauses& active, std::uint64_t cycle, std::uint64_t elapsed) noexcept {

@@ -24,8 +24,8 @@ class Warnings {
   std::uint64_t bits() const noexcept { return warning_ | slowing_; }
   bool slowing() const noexcept { return slowing_ != 0; }
 
-  /// The last measurement of one set bit, with the cycle since which it is active.
-  const CauseEvidence& evidence(std::uint64_t cause) const noexcept;
+  /// The last measurement of the lowest of these bits, which is set, with the cycle since which it is active.
+  const CauseEvidence& evidence(std::uint64_t causes) const noexcept;
 
  private:
   struct Held {

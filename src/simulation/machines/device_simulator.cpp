@@ -7,6 +7,7 @@ DeviceSimulator::DeviceSimulator(const MachineModel& robot, const MujocoPlantPar
     : plant_(robot, plant, period), devices_(std::move(devices)), torques_(robot.joints.size()) {
   plant_.start();
   plant_.truth(truth_);
+  published_truth_.store(truth_);
 }
 
 void DeviceSimulator::step() noexcept {
@@ -15,6 +16,7 @@ void DeviceSimulator::step() noexcept {
     torques_[i] = {.mode = JointMode::kEffort, .effort = devices_->torque(i)};
   plant_.write(torques_);
   plant_.truth(truth_);
+  published_truth_.store(truth_);
 }
 
 }  // namespace robot_control

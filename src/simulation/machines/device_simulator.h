@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "bus/latest_value.h"
 #include "drivers/mujoco/mujoco_plant.h"
 #include "simulation/devices/device_front.h"
 
@@ -22,8 +23,8 @@ class DeviceSimulator {
 
   void step() noexcept;
 
-  /// Returns the true state at the end of the last step.
-  const TruthFrame& truth() const noexcept { return truth_; }
+  /// Any thread: the true state at the end of the last step. False, and `out` is as before, if steps disturbed it.
+  bool truth(TruthFrame& out) const noexcept { return published_truth_.load(out); }
 
   /// As DeviceFront::inject.
   std::string inject(std::string_view component, std::string_view kind) { return devices_->inject(component, kind); }
@@ -32,6 +33,7 @@ class DeviceSimulator {
   MujocoPlant plant_;
   std::unique_ptr<DeviceFront> devices_;
   TruthFrame truth_;
+  LatestValue<TruthFrame> published_truth_;
   std::vector<JointCommand> torques_;
 };
 

@@ -34,9 +34,13 @@ TEST(Foothold, TheHipIsAboveTheFootInTheMiddleOfTheStance) {
 
 TEST(Foothold, ABodyThatIsTooFastPutsItsFootFartherAhead) {
   FootholdInput input = walking();
-  const Eigen::Vector2d before = foothold(input);
-  input.measured += Eigen::Vector2d(0.1, 0);
-  EXPECT_NEAR((foothold(input) - before).x(), 0.1 * (input.stance_time / 2 + kReturn), kRounding);
+  for (const double legs : {1.0, 4.0}) {
+    input.leg_length = legs * 0.426;
+    input.measured = input.requested;
+    const Eigen::Vector2d before = foothold(input);
+    input.measured += Eigen::Vector2d(0.1, 0);
+    EXPECT_NEAR((foothold(input) - before).x(), 0.1 * (0.1 + 0.05 * std::sqrt(legs)), kRounding);
+  }
 }
 
 TEST(Foothold, TurningOnTheSpotTurnsTheNominalPlace) {
@@ -45,6 +49,21 @@ TEST(Foothold, TurningOnTheSpotTurnsTheNominalPlace) {
   input.yaw_rate = 1.5;
   const double angle = input.yaw_rate * (input.until_landing + input.stance_time / 2);
   EXPECT_LT((foothold(input) - Eigen::Rotation2Dd(angle) * input.nominal).norm(), kRounding);
+}
+
+// In each of the two times the body moves along a chord of its circle, which is shorter by (ω t/2)²/6 at most.
+TEST(Foothold, TheHipIsAboveTheFootInTheMiddleOfTheStanceOnACircleToo) {
+  FootholdInput input = walking();
+  input.height = 0;
+  input.yaw_rate = 0.5;
+  constexpr int kParts = 1000;
+  const double time = input.until_landing + input.stance_time / 2;
+  Eigen::Vector2d hip = Eigen::Rotation2Dd(input.yaw_rate * time) * input.nominal;
+  for (int i = 0; i < kParts; ++i) {
+    const double angle = input.yaw_rate * time * (i + 0.5) / kParts;
+    hip += time / kParts * (Eigen::Rotation2Dd(angle) * input.requested);
+  }
+  EXPECT_LT((foothold(input) - hip).norm(), 1.1e-4 * time * input.requested.norm());
 }
 
 TEST(Foothold, ATurningRobotLeansTheForcesInwards) {
@@ -61,8 +80,8 @@ TEST(Foothold, StaysWithinReachOfTheLeg) {
   FootholdInput input = walking();
   input.measured << 100, -100;
   const Eigen::Vector2d beyond = foothold(input) - input.nominal;
-  EXPECT_NEAR(beyond.x(), kAhead * input.leg_length, kRounding);
-  EXPECT_NEAR(beyond.y(), -kAside * input.leg_length, kRounding);
+  EXPECT_NEAR(beyond.x(), 0.66 * input.leg_length, kRounding);
+  EXPECT_NEAR(beyond.y(), -0.47 * input.leg_length, kRounding);
 }
 
 }  // namespace

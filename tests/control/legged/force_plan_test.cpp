@@ -51,26 +51,32 @@ TEST(ForcePlan, StandingFeetCarryTheWeightInEqualParts) {
 /// The state after each step, one below the other, that these forces cause by explicit integration.
 Eigen::VectorXd integrated(const ForcePlanInput& input, double step, const Eigen::VectorXd& forces) {
   Eigen::VectorXd states(12 * static_cast<Eigen::Index>(input.steps));
-  PlanVector place = input.place, speed = input.speed;
+  PlanVector place = input.place, speed = input.speed, target = input.target;
+  const auto target_speed = [&](double time) {
+    PlanVector turned = input.target_speed;
+    turned.segment<2>(3) = Eigen::Rotation2Dd(time * turned[2]) * turned.segment<2>(3);
+    return turned;
+  };
   Eigen::Index next = 0;
   for (std::size_t i = 0; i < input.steps; ++i) {
+    const auto number = static_cast<double>(i);
+    const PlanVector moved = step * target_speed((number + 0.5) * step);
+    const Eigen::Vector3d centre = (target + moved / 2 - input.target).tail<3>();
+    target += moved;
     PlanVector acceleration = PlanVector::Zero();
     acceleration[5] = -kGravity;
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
       if (!input.bears[i][leg]) continue;
       const Eigen::Vector3d force = forces.segment<3>(next);
       next += 3;
-      const Eigen::Vector3d lever =
-          input.feet[leg] - (static_cast<double>(i) + 0.5) * step * input.target_speed.tail<3>();
-      acceleration.head<3>() += kInertia.inverse() * lever.cross(force);
+      acceleration.head<3>() += kInertia.inverse() * (input.feet[leg] - centre).cross(force);
       acceleration.tail<3>() += force / kMass;
     }
     place += step * speed + step * step / 2 * acceleration;
     speed += step * acceleration;
     const auto row = static_cast<Eigen::Index>(12 * i);
-    const double time = static_cast<double>(i + 1) * step;
-    states.segment<6>(row) = place - input.target - time * input.target_speed;
-    states.segment<6>(row + 6) = speed - input.target_speed;
+    states.segment<6>(row) = place - target;
+    states.segment<6>(row + 6) = speed - target_speed((number + 1) * step);
   }
   return states;
 }
@@ -79,7 +85,7 @@ TEST(ForcePlan, MinimisesTheCostOfTheIntegratedMotion) {
   ForcePlanInput input = standing();
   input.place << 0.01, -0.02, 0.03, 0.002, -0.003, 0.001;
   input.speed << 0.02, 0.01, -0.03, 0.51, 0.02, 0.01;
-  input.target_speed << 0, 0, 0, 0.5, 0, 0;
+  input.target_speed << 0, 0, 0.4, 0.5, 0.1, 0;
   for (std::size_t i = 0; i < input.steps; ++i)  // three feet in turn
     for (std::size_t leg = 0; leg < kLegs; ++leg) input.bears[i][leg] = leg != i % kLegs;
   ForcePlanParameters unbounded = parameters();
@@ -112,9 +118,33 @@ TEST(ForcePlan, MinimisesTheCostOfTheIntegratedMotion) {
               kForceRounding);
 }
 
-TEST(ForcePlan, ForcesStayWithinFrictionAndBounds) {
-  const ForcePlanParameters bounds = parameters();
-  ForcePlan plan(bounds);
+// Angles and weights stay; times grow with the root of the length.
+TEST(ForcePlan, IsTheSameForAHeavierAndLargerRobot) {
+  constexpr double kHeavier = 3, kLarger = 4, kSlower = 2;
+  ForcePlanInput input = standing();
+  input.place << 0.01, -0.02, 0.03, 0.002, -0.003, 0.001;
+  input.speed << 0.02, 0.01, -0.03, 0.51, 0.02, 0.01;
+  input.target_speed << 0, 0, 0.4, 0.5, 0.1, 0;
+  ForcePlanInput larger = input;
+  larger.place.tail<3>() *= kLarger;
+  larger.speed.head<3>() /= kSlower;
+  larger.speed.tail<3>() *= kLarger / kSlower;
+  larger.target_speed.head<3>() /= kSlower;
+  larger.target_speed.tail<3>() *= kLarger / kSlower;
+  for (Eigen::Vector3d& foot : larger.feet) foot *= kLarger;
+  const ForcePlanResult result = ForcePlan(parameters()).step(input);
+  const ForcePlanResult scaled =
+      ForcePlan(
+          force_plan_parameters(kHeavier * kMass, kHeavier * kLarger * kLarger * kInertia, kLarger * kReferenceLeg))
+          .step(larger);
+  for (std::size_t leg = 0; leg < kLegs; ++leg)
+    EXPECT_LT((scaled.forces[leg] - kHeavier * result.forces[leg]).norm(), kForceRounding) << leg;
+}
+
+TEST(ForcePlan, ForcesStayWithinFrictionAndBoundsAndReachThem) {
+  constexpr double kFriction = 0.4, kSmallest = 0.016 * kMass * kGravity, kLargest = 1.45 * kMass * kGravity;
+  ForcePlan plan(parameters());
+  double grip = 0, smallest = kLargest, largest = 0;
   std::mt19937 random(1);
   std::uniform_real_distribution<double> number(-1, 1);
   for (int trial = 0; trial < 200; ++trial) {
@@ -123,11 +153,14 @@ TEST(ForcePlan, ForcesStayWithinFrictionAndBounds) {
     const ForcePlanResult result = plan.step(input);
     ASSERT_EQ(result.outcome, QpOutcome::kSolved) << trial;
     for (const Eigen::Vector3d& force : result.forces) {
-      EXPECT_LE(force.head<2>().cwiseAbs().maxCoeff(), bounds.friction * force.z() + kForceRounding);
-      EXPECT_GE(force.z(), bounds.smallest - kForceRounding);
-      EXPECT_LE(force.z(), bounds.largest + kForceRounding);
+      grip = std::max(grip, force.head<2>().cwiseAbs().maxCoeff() / force.z());
+      smallest = std::min(smallest, force.z());
+      largest = std::max(largest, force.z());
     }
   }
+  EXPECT_NEAR(grip, kFriction, kForceRounding);
+  EXPECT_NEAR(smallest, kSmallest, kForceRounding);
+  EXPECT_NEAR(largest, kLargest, kForceRounding);
 }
 
 TEST(ForcePlan, CutsTheHorizonWhereTheForcesAreTooMany) {
@@ -150,7 +183,9 @@ TEST(ForcePlan, ReportsAStateThatIsNotFinite) {
   ForcePlanInput input = standing();
   input.speed[0] = std::nan("");
   ForcePlan plan(parameters());
-  EXPECT_EQ(plan.step(input).outcome, QpOutcome::kNotFinite);
+  const ForcePlanResult result = plan.step(input);
+  EXPECT_EQ(result.outcome, QpOutcome::kNotFinite);
+  for (const Eigen::Vector3d& force : result.forces) EXPECT_EQ(force, Eigen::Vector3d::Zero().eval());
 }
 
 TEST(ForcePlan, AllocatesNothing) {

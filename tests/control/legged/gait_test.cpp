@@ -96,9 +96,15 @@ TEST(Gait, TheSwingGrowsFromZeroToOne) {
   EXPECT_NEAR(trot.swung(0, 0.25), 0.5, 1e-12);
 }
 
+TEST(Gait, StanceAndSwingShareThePeriodByTheDuty) {
+  const Gait gait{.name = "", .period = 0.4, .duty = 0.75, .phase = {}, .lift = 0};
+  EXPECT_NEAR(gait.stance_time(), 0.3, 1e-12);
+  EXPECT_NEAR(gait.swing_time(), 0.1, 1e-12);
+}
+
 TEST(Gait, TimesGrowWithTheRootOfTheLegAndLengthsWithTheLeg) {
   const Gait& trot = gait_of(GaitName::kTrot);
-  const Gait larger = trot.scaled(4 * kReferenceLeg);
+  const Gait larger = trot.scaled(4 * 0.426);
   EXPECT_NEAR(larger.period, 2 * trot.period, 1e-12);
   EXPECT_NEAR(larger.lift, 4 * trot.lift, 1e-12);
   EXPECT_EQ(larger.duty, trot.duty);

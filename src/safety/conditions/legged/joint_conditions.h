@@ -76,9 +76,9 @@ class JointConditions {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
   struct Limits {
-    double speed = 0;   ///< rad/s
-    double effort = 0;  ///< N·m
-    JointRange range;   ///< rad; ±∞ without end stops
+    double speed;      ///< rad/s
+    double effort;     ///< N·m
+    JointRange range;  ///< rad; ±∞ without end stops
   };
 
   std::array<Limits, kLegsJoints> limits_{};

@@ -43,9 +43,8 @@ TorqueOscillation::TorqueOscillation(const SafetyParameters& parameters, const D
       one_cycle_(weights_of(period)),
       warning_(kCauseTorqueOscillation, announced(parameters.torque_oscillation), period),
       watch_(kCauseTorqueOscillation, parameters.torque_oscillation, period),
-      count_(std::min(robot.wheels.size(), kMaxWheels)),
       count_ripple_(parameters.count_ripple) {
-  for (std::size_t i = 0; i < count_; ++i) {
+  for (std::size_t i = 0; i < std::min(robot.wheels.size(), kMaxWheels); ++i) {
     effort_limit_[i] = robot.joints[robot.wheels[i].joint].effort_limit;
     inertia_[i] = loaded_inertia(robot, robot.wheels[i]);
   }
@@ -61,7 +60,7 @@ void TorqueOscillation::enter_run() noexcept {
 void TorqueOscillation::step(const MonitorInput& input, const WheelTargets& targets, const WheelMotion& motion,
                              std::uint64_t elapsed, ActiveCauses& out) noexcept {
   ConditionMeasurement measurement = kNothingMeasured;
-  for (std::size_t i = 0; i < count_; ++i) {
+  for (std::size_t i = 0; i < motion.wheels(); ++i) {
     const double measured = input.sensors->joints[i].effort;
     if (input.command != nullptr) commanded_[i] = input.command->joints[i].effort;
     if (!motion.sampled() || !targets.has(i) || !std::isfinite(measured) || !std::isfinite(commanded_[i])) {
@@ -100,7 +99,6 @@ void TorqueOscillation::follow(std::size_t wheel, double measured, double comman
 ConditionMeasurement TorqueOscillation::measure(std::size_t wheel, const WheelMotion& motion) const noexcept {
   const Wheel& state = wheels_[wheel];
   const double effort_limit = effort_limit_[wheel];
-  if (effort_limit <= 0) return kNothingMeasured;
   const double explained = 2 * state.planned.rms() + count_ripple_[wheel] * motion.quantum(wheel);
   const double ripple = std::min(state.measured.rms(), state.commanded.rms());
   return beyond(wheel, ripple / effort_limit, watch_.limit() + explained / effort_limit);

@@ -70,7 +70,6 @@ class TorqueOscillation {
   Weights one_cycle_;
   ConditionWatch warning_;
   ConditionWatch watch_;
-  std::size_t count_;
   std::array<Wheel, kMaxWheels> wheels_{};
   std::array<double, kMaxWheels> commanded_{};     ///< N·m, last seen
   std::array<double, kMaxWheels> effort_limit_{};  ///< N·m

@@ -4,8 +4,9 @@
 #include <cmath>
 
 namespace robot_control {
+
 SpeedLimitInForce::SpeedLimitInForce(double ramp_time, double period) noexcept
-    : cycles_(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(ramp_time / period)))) {}
+    : cycles_(static_cast<std::uint64_t>(std::llround(ramp_time / period))) {}
 
 void SpeedLimitInForce::enter_run() noexcept {
   since_ = 0;

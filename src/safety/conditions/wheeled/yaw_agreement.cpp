@@ -1,6 +1,5 @@
 #include "safety/conditions/wheeled/yaw_agreement.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace robot_control {
@@ -19,11 +18,11 @@ YawAgreement::YawAgreement(const Condition& condition, const DriveTrain& robot, 
   std::array<double, 2> count{};
   for (const WheelModel& wheel : robot.wheels) count[wheel.side == Side::kRight ? 1 : 0] += 1;
   scrub_ = count[0] > 1 || count[1] > 1 ? kScrub : 0;
-  for (std::size_t i = 0; i < std::min(robot.wheels.size(), kMaxWheels); ++i) {
-    const WheelModel& wheel = robot.wheels[i];
+  std::size_t i = 0;
+  for (const WheelModel& wheel : robot.wheels) {
     const bool right = wheel.side == Side::kRight;
     const double share = wheel.sign * wheel.radius / (count[right ? 1 : 0] * robot.effective_wheel_base());
-    yaw_per_speed_[i] = right ? share : -share;
+    yaw_per_speed_[i++] = right ? share : -share;
   }
 }
 
