@@ -13,8 +13,8 @@
 ///          p = ½ + (x − bound)/kBlur within 0 … 1
 ///
 ///        The bound is kAsked where the command asked the foot to bear, kSwings where it asked others alone, and
-///        kNotAsked where it asked none. While others are asked to, a
-///        foot that no longer is does not bear for kLift: its load ends in the low pass alone.
+///        kNotAsked where it asked none. While others are asked to, a foot that no longer is does not bear for kLift,
+///        because its load ends in the low pass alone.
 ///
 /// kObserve follows from encoders of 4096 counts per turn, whose speed has steps of 1.5 rad/s.
 
