@@ -84,13 +84,13 @@ void drive(const LegModel& model, const Course& course, std::uint64_t seed, Wors
   stand_up(robot);
   robot.run(kStand, {});
   Vector3d before = vector_of(robot.truth().pose_world.position);
-  double way = 0, squares = 0, cycles = 0, pose_nees = 0, speed_nees = 0;
+  double travelled = 0, squares = 0, cycles = 0, pose_nees = 0, speed_nees = 0;
   const auto run = [&](double seconds, const std::function<Request(double)>& request) {
     for (double t = 0; t < seconds; t += 0.02) {
       robot.loop.request(request(t));
       for (int k = 0; k < 20; ++k) robot.step();
       const Vector3d now = vector_of(robot.truth().pose_world.position);
-      way += (now - before).head<2>().norm();
+      travelled += (now - before).head<2>().norm();
       before = now;
       const Difference difference(robot.state().base, robot.truth());
       squares += difference.speed.squaredNorm();
@@ -102,9 +102,9 @@ void drive(const LegModel& model, const Course& course, std::uint64_t seed, Wors
   run(course.seconds, [&](double t) { return walk(course.speed(t)); });
   run(kStand, [](double) { return Request{}; });
   const Difference end(robot.state().base, robot.truth());
-  const double error = 100 * end.pose.head<2>().norm() / way;
+  const double error = 100 * end.pose.head<2>().norm() / travelled;
   const Vector3d plain = vector_of(beside.state().plain.position) - vector_of(robot.truth().pose_world.position);
-  const double plain_error = 100 * plain.head<2>().norm() / way;
+  const double plain_error = 100 * plain.head<2>().norm() / travelled;
   worst.add("error of the way, " + course.name, error, "%");
   worst.add("error of yaw, " + course.name, std::abs(end.pose[5]) * 180 / kPi, "deg");
   worst.add("error of height, " + course.name, std::abs(end.pose[2]), "m");

@@ -2,9 +2,9 @@
 /// An error-state Kalman filter for a body on legs, with the feet that stand as landmarks (R. Hartley et al., IJRR 39
 /// (2020) 402; M. Bloesch et al., RSS 2012). It has one owner, LeggedEstimator.
 ///
-/// The body is a point and axes: the IMU's place and the axes of the base. With its attitude R, velocity v and position
-/// p in odom, the measured rate ω and specific force f in base axes, their biases b and c, the vector eᵢ from the body
-/// to foot i in odom axes, and the velocity ρᵢ with which this foot rolls,
+/// The body is a point and axes: the IMU's place and the axes of the base. R is its attitude, v its velocity and p its
+/// position in odom. ω and f are the measured rate and specific force in base axes, b and c their biases. eᵢ is the
+/// vector from the body to foot i in odom axes, ρᵢ the velocity with which this foot rolls.
 ///
 ///   Ṙ = R (ω − b)×    v̇ = R (f − c) + g    ṗ = v    ėᵢ = −v + ρᵢ
 ///
@@ -16,8 +16,9 @@
 ///   gain K = P column / (P entry + variance)
 ///
 /// A foot that lands becomes a landmark where it is, which changes nothing else. One that stands may slide, with the
-/// density kSlide, and kLandSlide at the edges of its stance. Where its innovation is beyond kGate deviations, it has
-/// moved: its own variance grows by the innovation's square, so that the foot moves and not the body.
+/// density kSlide, and kLandSlide at the edges of its stance. An innovation
+/// beyond kGate deviations means that it has moved. Then its own variance grows by the innovation's square, so that the
+/// foot moves and not the body.
 ///
 /// All functions are real-time safe.
 

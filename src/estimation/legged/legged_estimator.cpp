@@ -156,7 +156,7 @@ bool LeggedEstimator::read(const SensorFrame& sensors, double dt) noexcept {
   if (gyro) Map(state_.rate.data()) = rate;
   if (gyro) mean += std::min(1.0, dt / kMeanTime) * (rate - mean);
   bool moves = !gyro || (rate - mean).cwiseAbs().maxCoeff() > kStill ||
-               (mean - ConstMap(state_.filter.rate_bias.data())).cwiseAbs().maxCoeff() > kLargestBias;
+               (mean - ConstMap(state_.filter.rate_bias.data())).cwiseAbs().maxCoeff() > kMaxBias;
   for (std::size_t i = 0; i < kLegsJoints; ++i) {
     double& joint = state_.mean_rates[i];
     joint += std::min(1.0, dt / kMeanTime) * (valid_velocity(sensors.joints[i]) - joint);

@@ -35,13 +35,13 @@ namespace robot_control {
 
 class LeggedEstimator {
  public:
-  static constexpr double kRest = 0.3;         ///< s without motion
-  static constexpr double kStill = 0.05;       ///< rad/s, of gyro and joints
-  static constexpr double kLargestBias = 0.1;  ///< rad/s
-  static constexpr double kMeanTime = 0.1;     ///< s, of the means of gyro and joints
-  static constexpr double kApart = 0.15;       ///< m/s
-  static constexpr double kApartTime = 0.1;    ///< s
-  static constexpr double kDegraded = 1.0;     ///< s
+  static constexpr double kRest = 0.3;       ///< s without motion
+  static constexpr double kStill = 0.05;     ///< rad/s, of gyro and joints
+  static constexpr double kMaxBias = 0.1;    ///< rad/s
+  static constexpr double kMeanTime = 0.1;   ///< s, of the means of gyro and joints
+  static constexpr double kApart = 0.15;     ///< m/s
+  static constexpr double kApartTime = 0.1;  ///< s
+  static constexpr double kDegraded = 1.0;   ///< s
 
   /// `period` is in s.
   LeggedEstimator(const LegModel& robot, double period);
