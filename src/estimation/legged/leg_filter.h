@@ -3,8 +3,8 @@
 /// (2020) 402; M. Bloesch et al., RSS 2012). It has one owner, LeggedEstimator.
 ///
 /// The body is a point and axes: the IMU's place and the axes of the base. R is its attitude, v its velocity and p its
-/// position in odom. ω and f are the measured rate and specific force in base axes, b and c their biases. eᵢ is the
-/// vector from the body to foot i in odom axes, ρᵢ the velocity with which this foot rolls.
+/// position in odom. The measured rate is ω, the specific force f, both in base axes, with the biases b and c. The
+/// vector from the body to foot i is eᵢ in odom axes. This foot rolls with the velocity ρᵢ.
 ///
 ///   Ṙ = R (ω − b)×    v̇ = R (f − c) + g    ṗ = v    ėᵢ = −v + ρᵢ
 ///
