@@ -1,7 +1,7 @@
 #pragma once
 /// The feet of a robot on legs in one cycle, from its joints and its gyro. All vectors are in base axes.
 ///
-/// A ball foot rolls: while it stands, its centre moves over the ground with r ωₛ × u. r is its radius, ωₛ the rate of
+/// A ball foot rolls. While it stands, its centre moves over the ground with r ωₛ × u. r is its radius, ωₛ the rate of
 /// its shank, u points upwards.
 
 #include <Eigen/Core>

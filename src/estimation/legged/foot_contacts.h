@@ -12,7 +12,11 @@
 ///
 ///          p = ½ + (x − bound)/kBlur within 0 … 1
 ///
-///        The bound is kAsked where the command asked the foot to bear, else kNotAsked.
+///        The bound is kAsked where the command asked the foot to bear, kSwings where it asked others alone, and
+///        kNotAsked where it asked none. While others are asked to, a foot that no longer is does not bear for kLift,
+///        because its load ends in the low pass alone.
+///
+/// kObserve follows from encoders of 4096 counts per turn, whose speed has steps of 1.5 rad/s.
 
 #include <Eigen/Core>
 #include <array>
@@ -24,11 +28,16 @@
 
 namespace robot_control {
 
+/// Returns whether any foot was asked to bear.
+bool feet_asked(const SensorFrame& sensors) noexcept;
+
 class FootContacts {
  public:
-  static constexpr double kObserve = 0.01;  ///< s
+  static constexpr double kObserve = 0.012;  ///< s
+  static constexpr double kLift = 0.04;      ///< s
   static constexpr double kAsked = 0.15;
-  static constexpr double kNotAsked = 0.8;
+  static constexpr double kNotAsked = 0.35;
+  static constexpr double kSwings = 0.8;
   static constexpr double kBlur = 0.2;
 
   struct State {
@@ -36,7 +45,8 @@ class FootContacts {
     Vector3 angular{}, force{};                          ///< rad/s, m/s²: low passes of gyro and accelerometer
     std::array<double, kLegs> loads{};                   ///< N
     std::array<double, kLegs> probability{};
-    std::uint64_t begun = 0;  ///< 1: the low passes have begun
+    std::array<double, kLegs> lifted{};  ///< s for which others, and not this foot, are asked to bear
+    std::uint64_t begun = 0;             ///< 1: the low passes have begun
   };
 
   explicit FootContacts(const LegModel& robot);

@@ -2,9 +2,9 @@
 /// An error-state Kalman filter for a body on legs, with the feet that stand as landmarks (R. Hartley et al., IJRR 39
 /// (2020) 402; M. Bloesch et al., RSS 2012). It has one owner, LeggedEstimator.
 ///
-/// The body is a point and axes: the IMU's place and the axes of the base. With its attitude R, velocity v and position
-/// p in odom, the measured rate ω and specific force f in base axes, their biases b and c, the vector eᵢ from the body
-/// to foot i in odom axes, and the velocity ρᵢ with which this foot rolls,
+/// The body is a point and axes: the IMU's place and the axes of the base. R is its attitude, v its velocity and p its
+/// position in odom. The measured rate is ω, the specific force f, both in base axes, with the biases b and c. The
+/// vector from the body to foot i is eᵢ in odom axes. This foot rolls with the velocity ρᵢ.
 ///
 ///   Ṙ = R (ω − b)×    v̇ = R (f − c) + g    ṗ = v    ėᵢ = −v + ρᵢ
 ///
@@ -16,8 +16,9 @@
 ///   gain K = P column / (P entry + variance)
 ///
 /// A foot that lands becomes a landmark where it is, which changes nothing else. One that stands may slide, with the
-/// density kSlide, and kLandSlide at the edges of its stance. Where its innovation is beyond kGate deviations, it has
-/// moved: its own variance grows by the innovation's square, so that the foot moves and not the body.
+/// density kSlide, and kLandSlide at the edges of its stance. An innovation
+/// beyond kGate deviations means that it has moved. Then its own variance grows by the innovation's square, so that the
+/// foot moves and not the body.
 ///
 /// All functions are real-time safe.
 
@@ -38,7 +39,7 @@ class LegFilter {
   static constexpr double kAccelerometerWalk = 2e-4;  ///< m/s²/√s
   static constexpr double kGyroBias = 0.02;           ///< rad/s, before a rest
   static constexpr double kAccelerometerBias = 0.2;   ///< m/s²
-  static constexpr double kFoot = 3e-4;               ///< m, of a foot's place by kinematics
+  static constexpr double kFoot = 5e-4;               ///< m, of a foot's place by kinematics
   static constexpr double kSlide = 0.003;             ///< m/√s
   static constexpr double kLandSlide = 0.03;          ///< m/√s
   static constexpr double kGate = 4;

@@ -29,8 +29,16 @@ constexpr double kEdge = 0.15;              // of a stance
 // (docs/evidence/derivations.md).
 constexpr double kSpeedPart = 0.07;
 
-bool stands_asked(const SensorFrame& sensors) noexcept {
-  return std::any_of(sensors.gate.stance.begin(), sensors.gate.stance.end(), [](double part) { return part > 0; });
+/// Returns which feet stand: those that bear as the command asked, or, where none is asked to, those that bear. A foot
+/// that stood still does while it may bear.
+std::array<bool, kLegs> feet_that_stand(const SensorFrame& sensors, const LeggedEstimator::State& state) noexcept {
+  std::array<bool, kLegs> stand{};
+  const bool asked = feet_asked(sensors);
+  for (std::size_t leg = 0; leg < kLegs; ++leg)
+    stand[leg] = (FootContacts::bears(state.contacts.probability[leg]) ||
+                  (state.bears[leg] != 0 && state.contacts.probability[leg] > 0)) &&
+                 (sensors.gate.stance[leg] > 0 || !asked);
+  return stand;
 }
 
 }  // namespace
@@ -126,10 +134,10 @@ void LeggedEstimator::step(const SensorFrame& sensors, StateFrame& out) noexcept
     const PlainLegs::Input input{.rate = ConstMap(state_.rate.data()),
                                  .force = ConstMap(state_.force.data()),
                                  .at_rest = state_.still > kRest,
-                                 .asked = stands_asked(sensors),
+                                 .asked = feet_asked(sensors),
                                  .dt = dt};
     PlainLegs::turn(input, state_.plain);
-    if (measured) PlainLegs::move(input, feet, state_.contacts.probability, state_.plain);
+    if (measured) PlainLegs::move(input, feet, feet_that_stand(sensors, state_), state_.plain);
     filter(sensors, feet, dt);
     settle(sensors);
     compare(dt);
@@ -148,8 +156,12 @@ bool LeggedEstimator::read(const SensorFrame& sensors, double dt) noexcept {
   if (gyro) Map(state_.rate.data()) = rate;
   if (gyro) mean += std::min(1.0, dt / kMeanTime) * (rate - mean);
   bool moves = !gyro || (rate - mean).cwiseAbs().maxCoeff() > kStill ||
-               (mean - ConstMap(state_.filter.rate_bias.data())).cwiseAbs().maxCoeff() > kLargestBias;
-  for (std::size_t i = 0; i < kLegsJoints; ++i) moves = moves || std::abs(valid_velocity(sensors.joints[i])) > kStill;
+               (mean - ConstMap(state_.filter.rate_bias.data())).cwiseAbs().maxCoeff() > kMaxBias;
+  for (std::size_t i = 0; i < kLegsJoints; ++i) {
+    double& joint = state_.mean_rates[i];
+    joint += std::min(1.0, dt / kMeanTime) * (valid_velocity(sensors.joints[i]) - joint);
+    moves = moves || std::abs(joint) > kStill;
+  }
   state_.still = moves ? 0 : state_.still + dt;
   if (accelerometer) Map(state_.force.data()) = force;
   if (accelerometer && state_.begun == 0 && force.norm() > PlainLegs::kBand) {
@@ -171,20 +183,18 @@ void LeggedEstimator::filter(const SensorFrame& sensors, const FeetMotion& feet,
     slide[leg] = inside ? LegFilter::kSlide : LegFilter::kLandSlide;
   }
   filter.predict(ConstMap(state_.rate.data()), ConstMap(state_.force.data()), feet.rolling, slide, dt);
-  bool any = false;
+  const std::array<bool, kLegs> stand = feet_that_stand(sensors, state_);
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const bool bears = FootContacts::bears(state_.contacts.probability[leg]);
     const Vector3d place = feet.place[leg] - imu_;
-    if (bears && state_.bears[leg] != 0) filter.stand(leg, place);
-    if (bears && state_.bears[leg] == 0) filter.land(leg, place);
-    state_.bears[leg] = bears ? 1 : 0;
-    any = any || bears;
+    if (stand[leg] && state_.bears[leg] != 0) filter.stand(leg, place);
+    if (stand[leg] && state_.bears[leg] == 0) filter.land(leg, place);
+    state_.bears[leg] = stand[leg] ? 1 : 0;
   }
   const double once = std::sqrt(0.001 / dt);
   if (state_.still > kRest) {
     filter.rest(ConstMap(state_.rate.data()), kRestRate * once);
     filter.stop(kRestSpeed * once);
-  } else if (!any && !stands_asked(sensors)) {
+  } else if (stand == std::array<bool, kLegs>{} && !feet_asked(sensors)) {
     filter.stop(kFallSpeed * once);
   }
   filter.finish();
@@ -197,7 +207,7 @@ void LeggedEstimator::settle(const SensorFrame& sensors) noexcept {
     height += state_.filter.position[2] + state_.filter.feet[leg][2];
     count += 1;
   }
-  if (count == 0 && !stands_asked(sensors)) {
+  if (count == 0 && !feet_asked(sensors)) {
     state_.lay = 1;
     if (state_.still > kRest) set_height(0);
   }

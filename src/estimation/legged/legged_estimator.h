@@ -3,8 +3,9 @@
 /// state.
 ///
 /// contacts   foot_contacts.h: what each foot bears, and how probably
-/// rest       nothing moves: joints slower than kStill, and a gyro within kStill about its mean, for kRest
-/// filter     leg_filter.h: feet that bear are landmarks. At rest the gyro measures its bias, and the velocity is zero.
+/// rest       nothing moves: joints slower than kStill in the mean over kMeanTime, a gyro within kStill about it, for
+/// kRest filter     leg_filter.h: feet that bear are landmarks. At rest the gyro measures its bias, and the velocity is
+/// zero.
 /// A
 ///            robot whose feet neither bear nor are asked to lies, or falls on its body: its velocity vanishes
 /// plain      plain_legs.h. Where both velocities differ by more than kApart for kApartTime, the filter begins again
@@ -34,13 +35,13 @@ namespace robot_control {
 
 class LeggedEstimator {
  public:
-  static constexpr double kRest = 0.3;         ///< s without motion
-  static constexpr double kStill = 0.05;       ///< rad/s, of gyro and joints
-  static constexpr double kLargestBias = 0.1;  ///< rad/s
-  static constexpr double kMeanTime = 0.1;     ///< s, of the gyro's mean
-  static constexpr double kApart = 0.15;       ///< m/s
-  static constexpr double kApartTime = 0.1;    ///< s
-  static constexpr double kDegraded = 1.0;     ///< s
+  static constexpr double kRest = 0.3;       ///< s without motion
+  static constexpr double kStill = 0.05;     ///< rad/s, of gyro and joints
+  static constexpr double kMaxBias = 0.1;    ///< rad/s
+  static constexpr double kMeanTime = 0.1;   ///< s, of the means of gyro and joints
+  static constexpr double kApart = 0.15;     ///< m/s
+  static constexpr double kApartTime = 0.1;  ///< s
+  static constexpr double kDegraded = 1.0;   ///< s
 
   /// `period` is in s.
   LeggedEstimator(const LegModel& robot, double period);
@@ -57,17 +58,18 @@ class LeggedEstimator {
     LegFilter::State filter;
     PlainLegs::State plain;
     FootContacts::State contacts;
-    std::array<std::uint64_t, kLegs> bears{};  ///< 1: the foot is a landmark
-    Vector3 rate{}, force{};                   ///< rad/s, m/s², base axes: the newest sample
-    Vector3 mean_rate{};                       ///< rad/s, base axes
-    double ground = 0;                         ///< m, odom axes: height of the centres of feet on the ground
-    std::uint64_t grounded = 0;                ///< 1: `ground` is known
-    std::uint64_t lay = 1;                     ///< 1: no foot has borne since the robot lay
-    double still = 0;                          ///< s since anything moved
-    double apart = 0;                          ///< s for which filter and plain estimate differ
-    double degraded = 0;                       ///< s left
-    double distance = 0;                       ///< m
-    std::uint64_t begun = 0;                   ///< 1: the attitude was set by an accelerometer
+    std::array<std::uint64_t, kLegs> bears{};      ///< 1: the foot is a landmark
+    Vector3 rate{}, force{};                       ///< rad/s, m/s², base axes: the newest sample
+    Vector3 mean_rate{};                           ///< rad/s, base axes
+    std::array<double, kLegsJoints> mean_rates{};  ///< rad/s, of the joints
+    double ground = 0;                             ///< m, odom axes: height of the centres of feet on the ground
+    std::uint64_t grounded = 0;                    ///< 1: `ground` is known
+    std::uint64_t lay = 1;                         ///< 1: no foot has borne since the robot lay
+    double still = 0;                              ///< s since anything moved
+    double apart = 0;                              ///< s for which filter and plain estimate differ
+    double degraded = 0;                           ///< s left
+    double distance = 0;                           ///< m
+    std::uint64_t begun = 0;                       ///< 1: the attitude was set by an accelerometer
     std::uint64_t last_cycle = 0;
     std::uint64_t stepped = 0;  ///< 1: last_cycle is that of a step
   };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimation/legged/foot_contacts.h"
 #include "estimation/legged/small_turn.h"
 #include "machine/gravity.h"
 
@@ -25,12 +24,12 @@ void PlainLegs::turn(const Input& input, State& state) noexcept {
   store(before * turned_by(turn), state.attitude);
 }
 
-void PlainLegs::move(const Input& input, const FeetMotion& feet, const std::array<double, kLegs>& probability,
+void PlainLegs::move(const Input& input, const FeetMotion& feet, const std::array<bool, kLegs>& stand,
                      State& state) noexcept {
   Vector3d sum = Vector3d::Zero();
   double count = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    if (!FootContacts::bears(probability[leg])) continue;
+    if (!stand[leg]) continue;
     sum += feet.base_velocity[leg];
     count += 1;
   }

@@ -5,8 +5,8 @@
 /// about
 ///            g. Yaw is that of the gyro alone
 /// bias       the mean of the gyro while nothing moves
-/// velocity   the mean over the feet that bear of r ωᵢ × u − (Jᵢ q̇ᵢ + ω × pᵢ), through a low pass of kSmooth. While
-///            none bears, it stays where feet are asked to bear, and is zero otherwise
+/// velocity   the mean over the feet that stand of r ωᵢ × u − (Jᵢ q̇ᵢ + ω × pᵢ), through a low pass of kSmooth. While
+///            none does, it stays where feet are asked to bear, and is zero otherwise
 /// position   the sum of velocities
 
 #include <array>
@@ -38,7 +38,7 @@ class PlainLegs {
     double dt = 0;       ///< s
   };
   static void turn(const Input& input, State& state) noexcept;
-  static void move(const Input& input, const FeetMotion& feet, const std::array<double, kLegs>& probability,
+  static void move(const Input& input, const FeetMotion& feet, const std::array<bool, kLegs>& stand,
                    State& state) noexcept;
 };
 

@@ -10,10 +10,9 @@
 namespace robot_control {
 namespace {
 
-constexpr double kPeriod = 0.001;  // s
-
 /// quadbot, which stands level while its legs swing in the air as fast as in a trot.
 struct SwingingLegs {
+  static constexpr double kPeriod = 0.001;  // s
   LegModel robot = legged_robot("quadbot");
   LegDynamics dynamics{robot};
   FootContacts contacts{robot};
@@ -60,7 +59,7 @@ TEST(FootContacts, AreNotFoundInLegsThatSwing) {
     legs.step(0);
     if (k < 20) continue;
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
-      // Accelerations are late by kObserve: of 200 rad/s², 8 rad/s² at the knee with its 0.03 kg·m².
+      // The swing needs up to 25 N. Masses and angles of the leg change within kObserve.
       EXPECT_NEAR(legs.state.loads[leg], 0, 6) << leg;
       EXPECT_EQ(legs.state.probability[leg], 0) << leg;
     }
@@ -74,8 +73,8 @@ TEST(FootContacts, AreFoundWithinMillisecondsAndSoonerWhereTheyAreAskedFor) {
     if (asked) legs.sensors.gate.stance[0] = 0.01;
     int found = 0;
     while (!FootContacts::bears(legs.state.probability[0]) && found < 100) legs.step(20), ++found;
-    EXPECT_LE(found, asked ? 2 : 6);
-    EXPECT_GE(found, asked ? 1 : 2);
+    EXPECT_LE(found, asked ? 5 : 12);
+    EXPECT_GE(found, asked ? 2 : 5);
     for (int k = 0; k < 20; ++k) legs.step(20);
     EXPECT_NEAR(legs.state.loads[0], 20, 6);
     EXPECT_EQ(legs.state.probability[1], 0);

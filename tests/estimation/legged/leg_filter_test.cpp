@@ -15,8 +15,6 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kPeriod = 0.001;  // s
-
 Vector3d vector_of(const Vector3& v) {
   return {v[0], v[1], v[2]};
 }
@@ -24,6 +22,7 @@ Vector3d vector_of(const Vector3& v) {
 /// A body that sways and turns on four feet, and the filter that follows it. The densities of all errors are those that
 /// the filter assumes.
 struct Walk {
+  static constexpr double kPeriod = 0.001;  // s
   explicit Walk(std::uint64_t seed, bool errors = true) : random(seed), noisy(errors) {
     state.covariance = {};
     LegFilter filter(state);

@@ -9,10 +9,9 @@
 namespace robot_control {
 namespace {
 
-constexpr double kPeriod = 0.001;  // s
-
 /// quadbot, which stands at rest on four feet with force sensors.
 struct Standing {
+  static constexpr double kPeriod = 0.001;  // s
   LegModel robot = legged_robot("quadbot");
   LeggedEstimator estimator{robot, kPeriod};
   SensorFrame sensors;
@@ -63,7 +62,7 @@ TEST(LeggedEstimator, GivesWayToThePlainEstimateWhereTheyContradict) {
   bool degraded = false;
   for (int k = 0; k < 500; ++k) {
     robot.sensors.joints[1].velocity = 0.1;  // it is not at rest
-    robot.run(kPeriod);
+    robot.run(Standing::kPeriod);
     fastest = std::max(fastest, robot.speed());
     degraded = degraded || (robot.out.base.flags & kStateDegraded) != 0;
   }
@@ -81,7 +80,7 @@ TEST(LeggedEstimator, ContinuesWithoutAJump) {
   const StateFrame before = robot.out;
   EXPECT_NEAR(before.base.pose_odom.position[0], 2, 1e-6);
   EXPECT_LE(before.base.pose_covariance[0], 1e-8);
-  LeggedEstimator restarted(robot.robot, kPeriod);
+  LeggedEstimator restarted(robot.robot, Standing::kPeriod);
   restarted.resume(before);
   ++robot.sensors.head.cycle;
   restarted.step(robot.sensors, robot.out);
