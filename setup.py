@@ -12,6 +12,7 @@ PROGRAMS = (
     "drive",
     "estimate",
     "export",
+    "fleet",
     "identify",
     "inspect",
     "latency",
@@ -26,7 +27,10 @@ PROGRAMS = (
     "view",
     "why",
 )
-packages = ["robot_control", *(f"robot_control.{name}" for name in ("common", "safety", *PROGRAMS))]
+packages = ["robot_control", "robot_control.fleet.v2"]
+packages += [*(f"robot_control.{name}" for name in ("common", "safety", *PROGRAMS))]
 
 data = {"robot_control": ["py.typed", "*.pyi"], "robot_control.console": ["page/*"]}
+data["robot_control.fleet"] = ["*.json"]
+data["robot_control.fleet.v2"] = ["schemas/*"]
 setup(**generate_distutils_setup(packages=packages, package_dir={"": "python"}, package_data=data))

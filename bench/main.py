@@ -47,10 +47,11 @@ JUDGED = (
     "processes",
     "devices",
     "console",
+    "fleet",
     "realtime",
 )
 REALTIME_PARTS = ("jitter", "chain", "cost", "scale")
-PARTS = {"realtime": REALTIME_PARTS, "legs": legs.PARTS}
+PARTS = {"realtime": REALTIME_PARTS, "legs": legs.PARTS, "fleet": ("sequences", "orders", "losses", "cost")}
 NAMES = MEASURED + JUDGED
 SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores
 ON_CLUSTERS = ("campaign", "devices", "driving", "odometry", "tuning", *SEED_PROGRAMS)
@@ -171,6 +172,12 @@ def _realtime(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     return realtime.bench(_parts_of("realtime", given), given.runs or 0, given.programs, say)
 
 
+def _fleet(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    from bench.fleet import bench as fleet
+
+    return fleet.bench(_parts_of("fleet", given), given.first, given.runs, say)
+
+
 def _drive(_given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     from bench.drives import drive_promises
 
@@ -193,6 +200,7 @@ TRIALS = {
     "processes": _processes,
     "drive": _drive,
     "console": _console,
+    "fleet": _fleet,
     "realtime": _realtime,
 }
 
@@ -260,7 +268,9 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parts = "".join(f"; after {name} also its parts {', '.join(own)}" for name, own in PARTS.items())
     which = f"of {', '.join(NAMES)} (default: {', '.join(MEASURED)}){parts}"
     parser.add_argument("names", nargs="*", metavar="NAME", help=which)
-    seeds = "campaign, devices, replay, limiter, release, bags, odometry, hostile, tuning, blackbox, processes, legs"
+    seeds = (
+        "campaign, devices, replay, limiter, release, bags, odometry, hostile, tuning, blackbox, processes, legs, fleet"
+    )
     parser.add_argument("--first", type=_whole(0), default=0, help=f"{seeds}: first seed")
     parser.add_argument("--runs", type=_whole(1), help=f"{seeds}: number of seeds")
     parser.add_argument(

@@ -83,6 +83,8 @@ def never_ends(command):
     """The kind of a command that does not end by itself: a launch, a node, a companion or an observer; else ""."""
     words = shlex.split(command)
     if words[0] == "roslaunch":
+        if "fleet.launch" in words:
+            return "companion"
         return "" if any(word.startswith("cycles:=") for word in words) else "launch"
     if words[:2] == ["rosrun", "robot_control"]:
         if words[2] in NODES:
@@ -153,7 +155,7 @@ class Terminal:
             self.end_programs()
         program = Program(command, self.folder, self.environment)
         self.others.append(program)
-        name = "/" + shlex.split(command)[2].removesuffix(".py")
+        name = "/" + shlex.split(command)[2].removesuffix(".py").replace("fleet.launch", "vda5050")
         until(lambda: any(node.startswith(name) for node in self.registered()), command, program)
 
     def _observe(self, command):

@@ -12,7 +12,7 @@ import roslib.packages
 
 ROOT = Path(__file__).parents[2]
 ONLY_LISTED = ROOT / ".ci/only_listed.py"
-OPTIONAL = {"aiohttp", "evdev", "mcap", "bokeh", "xacro"}
+OPTIONAL = {"aiohttp", "evdev", "jsonschema", "mcap", "bokeh", "paho", "xacro"}
 """modules of a section of the list, or of PyPI, without which the programs offer less"""
 
 

@@ -9,7 +9,7 @@ from robot_control.path.follower import Follower, FollowParameters, Motion, Stat
 from robot_control.path.main import main
 from robot_control.path.pieces import route, turned
 from robot_control.path.shapes import SHAPES
-from robot_control.path.waypoints import PathError, Waypoint, checked, from_poses, placed, read_csv, shortened
+from robot_control.path.waypoints import PathError, Waypoint, checked, from_poses, limited, placed, read_csv, shortened
 
 STRAIGHT = [Waypoint(0.0, 0.0), Waypoint(4.0, 0.0)]
 PERIOD = 0.02  # s
@@ -288,3 +288,67 @@ def test_crossing_paths_do_not_confuse_where_it_is():
         assert follower.progress - last < 0.1
         last = follower.progress
     assert follower.state is State.DONE
+
+
+def limits(points, speeds, turn_speeds=()):
+    return route(limited(points, speeds, turn_speeds))
+
+
+def test_a_slower_segment_is_entered_at_its_speed_and_a_faster_one_is_left_at_its_own():
+    """Without the look ahead the robot enters the third metre at 0.5 m/s."""
+    points = [Waypoint(float(x), 0.0) for x in range(5)]
+    follower, robot = Follower(limits(points, [0.3, 0.5, 0.1, 0.5, 0.5])), Ideal()
+    speeds = [[], [], [], []]
+    for _ in range(1500):
+        robot.drive(follower.step(robot.pose, robot.motion))
+        speeds[min(3, int(robot.pose.x))].append(robot.motion.linear)
+    assert follower.state is State.DONE
+    for own, limit in zip(speeds, (0.3, 0.5, 0.1, 0.5), strict=True):
+        assert max(own) == pytest.approx(limit, abs=0.01)
+
+
+def test_a_turn_obeys_the_limit_of_the_segment_that_follows_and_the_last_one_that_before():
+    points = [Waypoint(0.0, 0.0), Waypoint(1.0, 0.0), Waypoint(1.0, 1.0, yaw=math.pi)]
+    for given, fastest in (([0.0, 0.0, 0.0], 1.0), ([0.4, 0.0, 0.0], 1.0), ([0.0, 0.4, 0.0], 0.4)):
+        follower = Follower(limits(points, [0.5] * 3, given))
+        turns = [abs(command.angular) for command in drive(follower, Ideal(), 30.0) if command.linear == 0.0]
+        assert follower.state is State.DONE
+        assert max(turns) == pytest.approx(fastest, abs=0.01)
+
+
+def test_a_negative_speed_is_driven_backwards_whatever_the_orientations_are():
+    points = [Waypoint(0.0, 0.0, yaw=0.0), Waypoint(1.0, 0.0, yaw=0.0), Waypoint(2.0, 0.0, yaw=0.0)]
+    assert [(piece.sign, piece.length) for piece in limits(points, [0.3, -0.2, -0.2]).pieces] == [(1, 1.0), (-1, 1.0)]
+    assert [piece.sign for piece in limits(points, []).pieces] == [1]
+
+
+@pytest.mark.parametrize(
+    ("speeds", "turns", "words"),
+    [
+        ([0.5], [], "speeds has 1 numbers and the path 2 poses"),
+        ([], [0.5] * 3, "turn_speeds has 3 numbers"),
+        ([0.5, 0.0], [], "not zero"),
+        ([0.5, math.nan], [], "finite"),
+        ([], [0.5, -1.0], "must be above zero"),
+        ([], [0.5, math.nan], "must be above zero"),
+    ],
+)
+def test_limits_that_fit_no_path_are_refused(speeds, turns, words):
+    with pytest.raises(PathError) as error:
+        limits(STRAIGHT, speeds, turns)
+    assert words in str(error.value)
+
+
+def test_a_path_that_begins_later_keeps_its_limits():
+    points = shortened(limited([Waypoint(float(x), 0.0) for x in range(4)], [0.3] * 4, [0.0, 0.2, 0.0, 0.0]), 1.5)
+    assert (points[0].speed, points[0].turn_speed) == (0.3, 0.2)
+
+
+def test_an_extension_goes_on_without_a_stop():
+    """A newer goal with the longer path, from where the robot is: the speed never falls below that of the edge."""
+    first, robot = Follower(limits([Waypoint(0.0, 0.0), Waypoint(1.0, 0.0)], [0.5] * 2)), Ideal()
+    drive(first, robot, 1.0)
+    longer = limited([Waypoint(float(x), 0.0) for x in range(4)], [0.5] * 4, [])
+    second = Follower(route(shortened(longer, first.distance)))
+    speeds = [command.linear for command in drive(second, robot, 4.0)]
+    assert min(speeds) == pytest.approx(0.5)

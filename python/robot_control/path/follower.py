@@ -5,8 +5,11 @@ tracking, Autonomous Robots 47 (2023), doi:10.1007/s10514-023-10097-6. The looka
 path lies at (x_L, y_L) in the robot's axes, turned by π if it drives backwards. The rest of the piece is d:
 
     κ = 2·y_L/(x_L² + y_L²)                      curvature of the arc to it
-    v = min(speed, √(a_lateral/|κ|), ω_max/|κ|, √(2·a·d), limit)
+    v = min(speed, √(vᵢ² + 2·a·dᵢ), √(a_lateral/|κ|), ω_max/|κ|, √(2·a·d), limit)
     ω = v·κ
+
+`speed` and ω_max are those of the segment on which the robot is, where the path gives some. A slower segment at the
+distance dᵢ is entered at its speed vᵢ.
 
 A path is driven in pieces (pieces.py). Between two of them, and at the end, the robot stands and turns on the spot:
 ω = ±min(ω_max, √(2·α·|error|)).
@@ -215,8 +218,16 @@ class Follower:
             self.fail(f"turned by {given.turned_in_vain:g} rad without coming nearer to its heading")
             return STAND
         left = abs(error) - abs(measured.angular) * given.reaction
-        speed = min(given.max_angular_speed, math.sqrt(2 * given.angular_deceleration * max(left, 0.0)))
-        return Motion(0.0, math.copysign(max(speed, given.slowest), error))
+        limit = self._turn_limit()
+        speed = min(limit, math.sqrt(2 * given.angular_deceleration * max(left, 0.0)))
+        return Motion(0.0, math.copysign(max(speed, min(given.slowest, limit)), error))
+
+    def _turn_limit(self) -> float:
+        """rad/s on the spot: that of the segment that follows, at the end that of the last one."""
+        pieces = self._route.pieces
+        piece = pieces[min(self._number, len(pieces) - 1)]
+        at = piece.length if self._number == len(pieces) else 0.0
+        return piece.turn_speed_at(at, self._parameters.max_angular_speed)
 
     def _drive(self, pose: Pose, measured: Motion, limit: float, moved: float) -> Motion:
         given = self._parameters
@@ -227,7 +238,8 @@ class Follower:
         self._note_errors(foot, pose, piece.heading(foot.tangent))
         if self._goes_wrong(foot, piece.length - foot.along, piece.sign * moved):
             return STAND
-        left = piece.length - foot.along - abs(measured.linear) * given.reaction
+        reaction = abs(measured.linear) * given.reaction
+        left = piece.length - foot.along - reaction
         if piece.length - foot.along <= given.at_end:
             self._driven += piece.length
             self._along = 0.0
@@ -239,11 +251,11 @@ class Follower:
         dx, dy = ahead[0] - pose.x, ahead[1] - pose.y
         aside = dy * math.cos(axes) - dx * math.sin(axes)
         curvature = 2 * aside / (dx * dx + dy * dy)
-        asked = piece.speed_at(foot.along)
+        turn_limit = piece.turn_speed_at(foot.along, given.max_angular_speed)
         speed = min(
-            given.speed if asked is None else asked,
+            piece.speed_at(foot.along, foot.along + reaction, given.speed, given.deceleration),
             math.sqrt(given.lateral_acceleration / max(abs(curvature), 1e-9)),
-            given.max_angular_speed / max(abs(curvature), 1e-9),
+            turn_limit / max(abs(curvature), 1e-9),
             math.sqrt(2 * given.deceleration * max(left, 0.0)),
         )
         speed = min(max(speed, given.slowest), limit)

@@ -35,9 +35,18 @@ class Foot:
 class Piece:
     """A polyline; lengths in m."""
 
-    def __init__(self, points: Sequence[Point], sign: int, speeds: Sequence[float | None]) -> None:
-        """`sign` −1: driven backwards; `speeds` of each segment, None: the requested speed."""
+    def __init__(
+        self,
+        points: Sequence[Point],
+        sign: int,
+        speeds: Sequence[float | None],
+        turn_speeds: Sequence[float | None] = (),
+    ) -> None:
+        """`sign` −1: driven backwards; `speeds` and `turn_speeds` of each segment, None: the requested speed, the limit
+        of the law.
+        """
         self.points, self.sign, self.speeds = list(points), sign, list(speeds)
+        self.turn_speeds = list(turn_speeds) or [None] * len(self.speeds)
         lengths = (math.dist(a, b) for a, b in pairwise(self.points))
         self.starts = list(accumulate(lengths, initial=0.0))
         self._segment = 0
@@ -82,9 +91,30 @@ class Piece:
         tangent, rest = self._tangent(number), along - self.starts[number]
         return self.points[number][0] + rest * math.cos(tangent), self.points[number][1] + rest * math.sin(tangent)
 
-    def speed_at(self, along: float) -> float | None:
-        """m/s, if the path gives a speed."""
-        return self.speeds[min(max(bisect_right(self.starts, along) - 1, 0), len(self.speeds) - 1)]
+    def speed_at(self, along: float, ahead: float, speed: float, deceleration: float) -> float:
+        """m/s at the distance `along` from the begin: that of its segment, else `speed`. It is lower where a slower
+        segment has to be entered at its own speed, with this deceleration from the distance `ahead` on.
+        """
+        number = self._segment_at(along)
+        result = self._own(number, speed)
+        for slower in range(number + 1, len(self.speeds)):
+            distance = max(0.0, self.starts[slower] - ahead)
+            if 2 * deceleration * distance >= result * result:
+                break
+            result = min(result, math.sqrt(self._own(slower, speed) ** 2 + 2 * deceleration * distance))
+        return result
+
+    def _own(self, number: int, speed: float) -> float:
+        given = self.speeds[number]
+        return speed if given is None else given
+
+    def turn_speed_at(self, along: float, turn_speed: float) -> float:
+        """rad/s at this distance from the begin: that of the path where it is lower."""
+        given = self.turn_speeds[self._segment_at(along)]
+        return turn_speed if given is None else min(given, turn_speed)
+
+    def _segment_at(self, along: float) -> int:
+        return min(max(bisect_right(self.starts, along) - 1, 0), len(self.speeds) - 1)
 
     def _tangent(self, number: int) -> float:
         (ax, ay), (bx, by) = self.points[number], self.points[number + 1]
@@ -119,22 +149,31 @@ def route(waypoints: Sequence[Waypoint]) -> Route:
     segments = list(pairwise(points))
     tangents = [math.atan2(b.y - a.y, b.x - a.x) for a, b in segments]
     signs = [_sign(a, b, tangent) for (a, b), tangent in zip(segments, tangents, strict=True)]
-    speeds: list[float | None] = []
-    for point in points[:-1]:
-        speeds.append(point.speed if point.speed is not None else (speeds[-1] if speeds else None))
+    speeds = _held([point.speed for point in points[:-1]])
+    turn_speeds = _held([point.turn_speed for point in points[:-1]])
     pieces, begin = [], 0
     for number in range(1, len(points)):
         last = number == len(points) - 1
         if last or signs[number] != signs[number - 1] or abs(turned(tangents[number] - tangents[number - 1])) > CORNER:
             part = [(point.x, point.y) for point in points[begin : number + 1]]
-            pieces.append(Piece(part, signs[begin], speeds[begin:number]))
+            pieces.append(Piece(part, signs[begin], speeds[begin:number], turn_speeds[begin:number]))
             begin = number
     end = points[-1].yaw
     return Route(tuple(pieces), pieces[-1].last_heading if end is None else turned(end))
 
 
+def _held(given: list[float | None]) -> list[float | None]:
+    """Each value until the next one."""
+    held: list[float | None] = []
+    for value in given:
+        held.append(value if value is not None or not held else held[-1])
+    return held
+
+
 def _sign(begin: Waypoint, end: Waypoint, tangent: float) -> int:
-    """−1 if the mean of the robot's headings at both ends points against the segment, else 1."""
+    """That of the segment, if given; else −1 if the mean of the robot's headings at both ends points against it."""
+    if begin.sign:
+        return begin.sign
     headings = [point.yaw for point in (begin, end) if point.yaw is not None]
     if len(headings) < 2:
         return 1

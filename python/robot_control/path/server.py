@@ -27,7 +27,7 @@ from robot_control.path.frames import Tf, located
 from robot_control.path.pieces import route
 from robot_control.path.robot import SOURCE, Robot
 from robot_control.path.run import Drive, PauseServices, message_of, points_of
-from robot_control.path.waypoints import PathError, checked, shortened
+from robot_control.path.waypoints import PathError, checked, limited, shortened
 from robot_control.safety.interruptions import GAP, requested_at
 
 NAME = "follow_path"
@@ -124,7 +124,8 @@ class Server:
         if not (math.isfinite(goal.speed) and goal.speed >= 0):
             raise PathError(f"speed is {goal.speed:g} m/s: it must be a number from zero on; zero is the default")
         message = self._action.current_goal.goal
-        points = shortened(checked(points_of(goal.path)), goal.begin_at)
+        points = limited(points_of(goal.path), goal.speeds, goal.turn_speeds)
+        points = shortened(checked(points), goal.begin_at)
         result.distance = goal.begin_at
         self._action.publish_feedback(FollowPathFeedback(state="waiting", reason="for the permit to drive"))
         refusal = self._refusal(message)

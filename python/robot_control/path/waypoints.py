@@ -30,6 +30,8 @@ class Waypoint:
     y: float  # m
     yaw: float | None = None  # rad, of the robot; None: along the path
     speed: float | None = None  # m/s, from here on; None: as before, at first as asked for
+    turn_speed: float | None = None  # rad/s at most, from here on; None: as before, at first that of the law
+    sign: int = 0  # −1: backwards from here on, 1: forwards, 0: by the yaws at both ends
 
 
 def checked(points: Sequence[Waypoint]) -> list[Waypoint]:
@@ -46,6 +48,8 @@ def checked(points: Sequence[Waypoint]) -> list[Waypoint]:
             raise PathError(f"point {number} of the path holds a number that is not finite")
         if point.speed is not None and point.speed <= 0:
             raise PathError(f"point {number} of the path has a speed of {point.speed:g} m/s: it must be above zero")
+        if point.turn_speed is not None and not point.turn_speed > 0:
+            raise PathError(f"point {number} of the path turns at {point.turn_speed:g} rad/s: it must be above zero")
     kept: list[Waypoint] = []
     for point in points:
         if kept and math.hypot(point.x - kept[-1].x, point.y - kept[-1].y) < 1e-4:
@@ -94,16 +98,45 @@ def shortened(points: Sequence[Waypoint], begin_at: float) -> list[Waypoint]:
     length = sum(math.hypot(b.x - a.x, b.y - a.y) for a, b in itertools.pairwise(points))
     if not 0 <= begin_at < length:
         raise PathError(f"begin_at is {begin_at:g} m: it must be from 0 to below the path's length, {length:.2f} m")
-    speed, start = None, 0.0
+    speed, turn_speed, start = None, None, 0.0
     for number, (a, b) in enumerate(itertools.pairwise(points)):
         speed = a.speed if a.speed is not None else speed
+        turn_speed = a.turn_speed if a.turn_speed is not None else turn_speed
         size = math.hypot(b.x - a.x, b.y - a.y)
         if begin_at < start + size:
             share = (begin_at - start) / size
-            first = replace(a, x=a.x + share * (b.x - a.x), y=a.y + share * (b.y - a.y), speed=speed)
+            x, y = a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)
+            first = replace(a, x=x, y=y, speed=speed, turn_speed=turn_speed)
             return [first, *points[number + 1 :]]
         start += size
     return list(points[-2:])  # the rounding of the sum
+
+
+def limited(points: Sequence[Waypoint], speeds: Sequence[float], turn_speeds: Sequence[float]) -> list[Waypoint]:
+    """The points with limits from each of them on: m/s, negative for backwards, and rad/s, 0 for none. Either list may
+    be empty.
+
+    Raises:
+        PathError: a list has another length, or a number is none.
+    """
+    for name, given in (("speeds", speeds), ("turn_speeds", turn_speeds)):
+        if given and len(given) != len(points):
+            raise PathError(f"{name} has {len(given)} numbers and the path {len(points)} poses: it needs one of each")
+    if not all(map(math.isfinite, speeds)) or 0 in speeds:
+        raise PathError("speeds must be finite and not zero")
+    if not speeds and not turn_speeds:
+        return list(points)
+    no_speeds: list[float | None] = [None] * len(points)
+    limits = zip(points, speeds or no_speeds, turn_speeds or [0.0] * len(points), strict=True)
+    return [
+        replace(
+            point,
+            speed=point.speed if speed is None else abs(speed),
+            sign=0 if speed is None else int(math.copysign(1, speed)),
+            turn_speed=turn_speed or math.inf,
+        )
+        for point, speed, turn_speed in limits
+    ]
 
 
 def placed(points: Sequence[Waypoint], x: float, y: float, yaw: float) -> list[Waypoint]:
@@ -158,7 +191,7 @@ def _points_of(path: str, rows: "csv.DictReader[str]") -> list[Waypoint]:
             if None in row:
                 raise ValueError  # more values than names
             values = {name: float(row[name]) for name in names if (row[name] or "").strip()}
-            points.append(Waypoint(**values))
-        except (TypeError, ValueError):
+            points.append(Waypoint(values["x"], values["y"], values.get("yaw"), values.get("speed")))
+        except (KeyError, TypeError, ValueError):
             raise PathError(f"{path}:{rows.line_num}: not a point of {','.join(names)}") from None
     return points

@@ -1,0 +1,350 @@
+"""The robot under the order rules: messages in, legs for follow_path and messages out. It reads no clock and needs
+neither ROS nor MQTT, whose parts it sees as `Robot` and as the list that `step` returns.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+from robot_control.fleet.settings import Settings
+from robot_control.fleet.v2.capability import INSTANT, Capabilities
+from robot_control.fleet.v2.leg import Leg, PathPoint, Way, angle, leg_of
+from robot_control.fleet.v2.messages import INBOUND, MAX_ID, Error, Message, RefusedError, decoded
+from robot_control.fleet.v2.order import Action, Node, Order, order_of
+from robot_control.fleet.v2.state import STATE_PERIOD, Facts, Machine, factsheet, state, visualization
+from robot_control.fleet.v2.vehicle import FAILED, FINISHED, RUNNING, ActionState, Vehicle
+
+IDLE, DRIVING, DONE, ENDED = "idle", "driving", "done", "ended"
+OFF_EDGE = 0.3
+"""m beside an edge from which the robot joins it; farther away it drives straight to its end. follow_path's off_path"""
+REST = 0.02
+"""m of a leg that are driven again after a pause at its end"""
+GAP = 1.0
+"""s without a pass after which messages may have waited, and for which they are then refused"""
+LATE = 0.4
+"""s by which the distance that follow_path reports is late at most"""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """The progress on the present leg."""
+
+    status: str = IDLE  # done: its end was reached; ended: it failed or was stopped
+    distance: float = 0.0  # m along it
+    reason: str = ""  # why it failed; empty if it was stopped
+
+
+class Robot(Protocol):
+    """The robot as the client sees it."""
+
+    progress: Progress
+
+    def facts(self) -> Facts:
+        """As measured now."""
+
+    def drive(self, points: list[PathPoint], begin_at: float) -> None:
+        """Replaces the present leg without a stop."""
+
+    def stop(self) -> None:
+        """Ends the present leg."""
+
+    def resume(self) -> str:
+        """Why the path that is held at the robot does not go on; empty if it does."""
+
+    def set_position(self, x: float, y: float, theta: float, map_id: str) -> str:
+        """Why it is refused; empty if the robot is there from now on."""
+
+    def begin(self, action: Action) -> None:
+        """Its end comes with `results`."""
+
+    def end(self, action_id: str) -> bool:
+        """True if the action was interrupted; else its end comes with `results`."""
+
+    def results(self) -> list[tuple[str, str, str]]:
+        """actionId, FINISHED or FAILED and a description of the actions that ended since the last call."""
+
+
+class Client:
+    """One robot; `step` is called 50 times per second."""
+
+    def __init__(self, robot: Robot, settings: Settings, machine: Machine, vehicle: Vehicle) -> None:
+        self.robot, self.settings, self.machine, self.vehicle = robot, settings, machine, vehicle
+        self._leg: Leg | None = None
+        self._facts = robot.facts()
+        self._mode = self._facts.mode
+        self._driving_error: Error | None = None
+        self._outbox: list[tuple[str, Message]] = []
+        self._sent_key: object = None  # what the last state said
+        self._state_at = self._visualization_at = -math.inf
+        self._stepped_at, self._deaf_until = math.inf, -math.inf
+        self._planned: object = None  # revision of the order that the present leg is made of
+        self._asked = True  # a state is due, whatever it says
+
+    # messages
+
+    def connected(self) -> None:
+        """The broker is there (again): everything is sent at once."""
+        self._asked = True
+        self._outbox.append(("factsheet", factsheet(self.machine)))
+
+    def receive(self, topic: str, payload: bytes, now: float, *, retained: bool = False) -> None:
+        """Takes a message of the master at `now` s; one that waited while this program stood still moves nothing."""
+        try:
+            if now - self._stepped_at > GAP:
+                self._deaf_until = now + GAP
+            if now < self._deaf_until:
+                raise RefusedError("orderError", f"{topic} came while the robot's client stood still: send it again")
+            if topic not in INBOUND or retained:
+                raise RefusedError("validationError", f"{topic} must not be retained: the robot cannot know its age")
+            message = decoded(payload, topic, self.settings.manufacturer, self.settings.serial_number)
+            if topic == "order":
+                self._take_order(message)
+            else:
+                for raw in message["actions"]:
+                    self._take_instant(Action.of(raw))
+        except RefusedError as refused:
+            self.vehicle.refuse(replace(refused.error, references=(*refused.error.references, ("topic", topic))))
+
+    def _take_order(self, message: Message) -> None:
+        order = order_of(message)
+        new = order.id != self.vehicle.order_id
+        if self._facts.mode != "AUTOMATIC":
+            raise RefusedError("orderError", f"the mode is {self._facts.mode}", **order.references)
+        if self.vehicle.receive(order, self._near, self._refuse):
+            self._asked = True
+            self._driving_error = None if new else self._driving_error
+
+    def _refuse(self, order: Order) -> None:
+        continued = None
+        if order.id == self.vehicle.order_id:
+            known = [*self.vehicle.nodes, *([self.vehicle.last] if self.vehicle.last else [])]
+            continued = next((node for node in known if node.sequence == order.nodes[0].sequence), None)
+        actions = dict(self.machine.actions)
+        Capabilities(self._facts.map_id, self.machine.height, actions).refuse(order, continued)
+
+    def _near(self, node: Node) -> bool:
+        if node.place is None:
+            return True  # refused with its reason by the capabilities
+        off = math.dist((node.place.x, node.place.y), (self._facts.x, self._facts.y))
+        turned = 0.0
+        if node.place.theta is not None and node.place.deviation_theta is not None:
+            turned = abs(angle(node.place.theta - self._facts.theta)) - node.place.deviation_theta
+        near = off <= max(node.place.deviation_xy, self.settings.node_tolerance)
+        return near and turned <= self.settings.heading_tolerance
+
+    def _take_instant(self, action: Action) -> None:
+        state = self.vehicle.add_instant(action)
+        if state is None:
+            return
+        self._asked = True
+        try:
+            Capabilities(actions=dict(self.machine.actions)).refuse_action(action, INSTANT)
+        except RefusedError:
+            state.end(FAILED, "this robot does not know it as an instant action, or a parameter is missing")
+            raise
+        match action.kind:
+            case "cancelOrder":
+                self._interrupt(self.vehicle.cancel(state))
+            case "startPause":
+                self.vehicle.paused, state.status = True, RUNNING
+            case "stopPause":
+                why = self.resume()
+                state.end(FAILED if why else FINISHED, why)
+            case "stateRequest":
+                state.end(FINISHED)
+            case "factsheetRequest":
+                self._outbox.append(("factsheet", factsheet(self.machine)))
+                state.end(FINISHED)
+
+    def resume(self) -> str:
+        """stopPause, or the same at the robot; why it does not go on, empty if it does."""
+        if not self._facts.may_drive:
+            return "the safety monitor does not permit to drive"
+        why = self.robot.resume() if self._facts.held_by else ""
+        if not why:
+            self.vehicle.paused, self._driving_error = False, None
+        return why
+
+    def pause(self) -> None:
+        """startPause, at the robot."""
+        self.vehicle.paused = True
+
+    # one pass
+
+    def step(self, now: float) -> list[tuple[str, Message]]:
+        """One pass at `now` s, monotonic; topics and messages that are due, without their headers."""
+        self._stepped_at = now
+        before, self._facts = self._facts, self.robot.facts()
+        vehicle, facts = self.vehicle, self._facts
+        vehicle.standing = not facts.driving and self.robot.progress.status != DRIVING
+        if facts.mode != self._mode:
+            self._mode = facts.mode
+            self._interrupt(vehicle.clear(f"the mode became {facts.mode}"))
+        if vehicle.nodes and not facts.may_drive:
+            vehicle.paused = True
+        self._follow(before)
+        for action_id, status, result in self.robot.results():
+            for each in vehicle.actions:
+                if each.action.id == action_id:
+                    each.end(status, result)
+        for begun in vehicle.started():
+            self._begin(begun)
+        vehicle.settle()
+        self._drive()
+        self._publish(now)
+        outbox, self._outbox = self._outbox, []
+        return outbox
+
+    def _begin(self, state: ActionState) -> None:
+        if state.action.kind != "initPosition":
+            self.robot.begin(state.action)
+            return
+        given = state.action.parameters
+        try:
+            x, y, theta = float(given["x"]), float(given["y"]), float(given["theta"])
+        except (TypeError, ValueError):
+            x = y = theta = math.nan
+        if self.vehicle.executing or not self.vehicle.standing:
+            why = "the robot must stand without an order"
+        elif not math.isfinite(x + y + theta) or not 0 < len(str(given["mapId"])) <= MAX_ID:
+            why = "x, y and theta must be numbers, and mapId a name"
+        else:
+            why = self.robot.set_position(x, y, theta, str(given["mapId"]))
+        if not why:
+            self.vehicle.last_id, self.vehicle.last_sequence = str(given.get("lastNodeId", ""))[:MAX_ID], 0
+            self.vehicle.last, self._facts = None, self.robot.facts()
+        state.end(FAILED if why else FINISHED, why)
+
+    def _interrupt(self, states: list[ActionState]) -> None:
+        for each in states:
+            if self.robot.end(each.action.id):
+                each.end(FAILED, "interrupted")
+
+    def _follow(self, before: Facts) -> None:
+        """Notes which nodes of the leg were reached since the pass before."""
+        progress, leg, vehicle = self.robot.progress, self._leg, self.vehicle
+        if leg is None:
+            return
+        if progress.status == ENDED and progress.reason:
+            self._fail(progress.reason)
+        late = abs(self._facts.linear) * LATE
+        for node, along in zip(leg.nodes, leg.ends, strict=True):
+            if not vehicle.nodes or node.sequence < vehicle.nodes[0].sequence or node.place is None:
+                continue
+            radius = max(node.place.deviation_xy, self.settings.node_tolerance)
+            last = node is leg.nodes[-1]
+            off = _from_segment(node.place.x, node.place.y, before, self._facts)
+            if progress.status == DONE or (not last and off <= radius and progress.distance + late >= along - radius):
+                for ended in vehicle.traverse():
+                    self.robot.end(ended.action.id)
+            else:
+                if not last and progress.distance > along + radius:
+                    self._fail(f"node {node.id} was passed at {off:.2f} m, more than {radius:g} m")
+                break
+        if progress.status != DRIVING:
+            self._leg = None
+
+    def _fail(self, reason: str) -> None:
+        node = self.vehicle.nodes[0].id if self.vehicle.nodes else ""
+        references = (("orderId", self.vehicle.order_id), ("nodeId", node))
+        self._driving_error = Error("drivingError", reason, references, "cancelOrder, or stopPause to go on")
+        self.vehicle.paused = bool(self.vehicle.nodes)
+
+    def _drive(self) -> None:
+        vehicle = self.vehicle
+        driving = self.robot.progress.status == DRIVING
+        if not vehicle.may_drive or not self._facts.may_drive or vehicle.last is None:
+            if driving:
+                self.robot.stop()
+            return
+        if driving and self._planned == vehicle.revision:
+            return
+        self._planned = vehicle.revision
+        wanted = leg_of(vehicle.last, vehicle.base, self.settings.heading_tolerance)
+        if not wanted.nodes:
+            return
+        if driving and self._leg is not None:
+            self._extend(self._leg, wanted)
+        elif not self._facts.driving:  # after a stop it rolls for a moment
+            self._begin_leg(wanted)
+
+    def _extend(self, leg: Leg, wanted: Leg) -> None:
+        """Sends the present leg with the edges that were released since, if there are some."""
+        if leg.nodes[-1].sequence != wanted.nodes[-1].sequence:
+            done = sum(node.sequence <= self.vehicle.last_sequence for node in leg.nodes)
+            longer = Leg(leg.begin, (*leg.ways[:done], *wanted.ways), (*leg.nodes[:done], *wanted.nodes))
+            self._send(*longer.without_driven(self.robot.progress.distance))
+
+    def _begin_leg(self, wanted: Leg) -> None:
+        """Sends it from where the robot stands."""
+        vehicle = self.vehicle
+        along, off = wanted.foot(self._facts.x, self._facts.y, OFF_EDGE)
+        if off > OFF_EDGE:
+            if not self._near(wanted.begin):
+                self._fail(f"the robot is {off:.2f} m off edge {vehicle.edges[0].id}, more than {OFF_EDGE:g} m")
+                return
+            wanted, along = _straight(wanted, self._facts), 0.0
+        passed = [end for end in wanted.ends[:-1] if end <= along - self.settings.node_tolerance]
+        if passed:  # while this program did not run; follow_path drove them as they were ordered
+            for ended in [each for _ in passed for each in vehicle.traverse()]:
+                self.robot.end(ended.action.id)
+            return
+        self._send(wanted, min(along, wanted.length - REST))
+
+    def _send(self, leg: Leg, begin_at: float) -> None:
+        self._leg = leg
+        self.robot.drive(leg.path(self.machine.speed), max(0.0, begin_at))
+
+    # messages out
+
+    @property
+    def _base_is_short(self) -> bool:
+        vehicle = self.vehicle
+        if not vehicle.horizon:
+            return False
+        base, leg = vehicle.base, self._leg
+        if not base or leg is None:
+            return not base
+        left = leg.length - self.robot.progress.distance
+        stop = self._facts.linear**2 / (2 * self.machine.deceleration)
+        return leg.nodes[-1].sequence == base[-1].sequence and left <= stop + self.settings.base_reserve
+
+    def _publish(self, now: float) -> None:
+        vehicle, facts = self.vehicle, self._facts
+        if self._driving_error is not None:
+            facts = replace(facts, errors=(*facts.errors, self._driving_error))
+        short = self._base_is_short
+        key = (
+            vehicle.revision,
+            short,
+            facts.driving,
+            facts.mode,
+            facts.map_id,
+            facts.stopped,
+            facts.held_by,
+            facts.errors,
+        )
+        if self._asked or key != self._sent_key or now - self._state_at >= STATE_PERIOD:
+            self._asked, self._sent_key, self._state_at = False, key, now
+            charge = self.settings.unknown_battery_charge
+            self._outbox.append(("state", state(vehicle, facts, charge, new_base=short)))
+        if self.settings.visualization_rate * (now - self._visualization_at) >= 1:
+            self._visualization_at = now
+            self._outbox.append(("visualization", visualization(facts)))
+
+
+def _from_segment(x: float, y: float, a: Facts, b: Facts) -> float:
+    """m from a point to the way between two poses."""
+    dx, dy = b.x - a.x, b.y - a.y
+    size = dx * dx + dy * dy
+    share = min(1.0, max(0.0, ((x - a.x) * dx + (y - a.y) * dy) / size)) if size else 0.0
+    return math.hypot(x - a.x - share * dx, y - a.y - share * dy)
+
+
+def _straight(leg: Leg, facts: Facts) -> Leg:
+    """The leg whose first edge begins where the robot stands, within the deviation that the master allows."""
+    first = leg.ways[0]
+    way = Way(((facts.x, facts.y), first.points[-1]), first.sign, first.speed, first.turn_speed)
+    return Leg(leg.begin, (way, *leg.ways[1:]), leg.nodes)

@@ -1,0 +1,59 @@
+"""Makes the factsheet of the running robot from robot_description, its limits in force and the settings."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+import xml.etree.ElementTree as ET
+
+import numpy as np
+
+from robot_control.common.live_parameters import LiveParameters
+from robot_control.common.server_values import server_description, server_tree
+from robot_control.fleet.settings import Settings
+from robot_control.fleet.v2.state import Machine
+from robot_control.inspect.description import Description, describe
+from robot_control.inspect.shapes import triangles_in_base
+from robot_control.installed_files import share_file
+from robot_control.path.follower import FollowParameters
+from robot_control.teleop.speed_limits import SpeedLimits
+
+PATIENCE = 5.0
+"""s until robot_description is set"""
+
+
+def running_description() -> Description:
+    """robot_description as the robot's nodes read it.
+
+    Raises:
+        RobotError, ParameterError, ServerValueError: it is missing or cannot be driven.
+    """
+    end = time.monotonic() + PATIENCE
+    while not server_description() and time.monotonic() < end:
+        time.sleep(0.1)
+    robot = {key: value for key, value in server_tree("robot").items() if key != "urdf"}
+    with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
+        file.write(server_description())
+        file.flush()
+        return describe(file.name, {"robot": robot})
+
+
+def machine_of(robot: Description, settings: Settings) -> Machine:
+    """The machine of a robot on wheels; the smaller limit of follow_path and of the controller holds."""
+    law, limits, live = FollowParameters(), SpeedLimits().newest(), LiveParameters()
+    corners = [corner for shape in robot["shapes"] for corner in triangles_in_base(shape).reshape(-1, 3)]
+    size = np.ptp(np.asarray(corners), axis=0) if corners else np.zeros(3)
+    return Machine(
+        series=robot["name"],
+        length=float(size[0]),
+        width=float(size[1]),
+        height=float(size[2]),
+        speed=min(settings.speed, limits.linear),
+        slowest=law.slowest,
+        acceleration=live.value("max_linear_acceleration", law.deceleration),
+        deceleration=law.deceleration,
+        wheels=tuple((w["centre"][0], w["centre"][1], 2 * w["radius"], w["width"]) for w in robot["wheels"]),
+        software=ET.parse(share_file("package.xml")).findtext("version", ""),
+        actions=settings.kinds,
+        visualization_period=1 / settings.visualization_rate if settings.visualization_rate else 0.0,
+    )

@@ -1,0 +1,142 @@
+"""vda5050.py's main loop: the broker's messages in, the client's out, what was accepted in a file."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+import rospy
+from std_srvs.srv import Trigger, TriggerResponse
+
+from robot_control._robot_control import ParameterError, RobotError
+from robot_control.blackbox.main import LOGS
+from robot_control.common.file_errors import in_words
+from robot_control.common.files import fit_for_message, given_path
+from robot_control.common.robot_kind import refuse_running_legs
+from robot_control.common.roles import WheelsOnlyError
+from robot_control.common.ros_node import running_node
+from robot_control.common.server_values import ServerValueError
+from robot_control.common.topic_sender import Signals
+from robot_control.fleet.client import DRIVING, Client
+from robot_control.fleet.machine import machine_of, running_description
+from robot_control.fleet.memory import Memory, MemoryFileError
+from robot_control.fleet.robot import RosRobot
+from robot_control.fleet.settings import Settings, SettingsError, read_settings
+from robot_control.fleet.v2.vehicle import Vehicle
+from robot_control.installed_files import share_file
+
+PERIOD = 0.02
+"""s of one pass; odometry comes as often"""
+END = 3.0
+"""s for the robot to stop when the program is ended"""
+MISSING = "needs Debian's python3-paho-mqtt and python3-jsonschema: scripts/setup --fleet"
+
+
+class Node:
+    """The client with its robot, its link and its file."""
+
+    def __init__(self, settings: Settings) -> None:
+        """Raises OSError, MemoryFileError, and what `running_description` raises."""
+        from robot_control.fleet.link import Link
+
+        path = settings.memory_file or LOGS / "fleet" / f"{settings.manufacturer}-{settings.serial_number}.json"
+        self._memory = Memory(Path(path))
+        self.robot = RosRobot(settings, self._memory["position"])
+        vehicle = Vehicle()
+        if self._memory["vehicle"]:
+            vehicle.load(self._memory["vehicle"])
+        self.client = Client(self.robot, settings, machine_of(running_description(), settings), vehicle)
+        self.link = Link(settings, self._memory)
+        self._saved: object = None
+        self._reason = ""
+        for name in ("pause", "resume", "trigger"):
+            rospy.Service(f"~{name}", Trigger, getattr(self, f"_{name}"))
+        self.robot.stop_all()
+
+    def run(self, signals: Signals) -> None:
+        """Until a signal; the robot then stops on its way, and the order stays in the file."""
+        self.link.begin()
+        due = time.monotonic()
+        while signals.going_on():
+            self.step()
+            due = max(due + PERIOD, time.monotonic())
+            time.sleep(max(0.0, due - time.monotonic()))
+        self.robot.stop()
+        end = time.monotonic() + END
+        while self.robot.progress.status == DRIVING and time.monotonic() < end:
+            time.sleep(PERIOD)
+        self.client.vehicle.paused = bool(self.client.vehicle.nodes)
+        self.step()
+        self.link.end()
+
+    def step(self) -> None:
+        """One pass. An accepted order is in the file before the master knows of it."""
+        if self.link.came_up:
+            self.link.came_up = False
+            rospy.loginfo("connected to the broker")
+            self.client.connected()
+        while not self.link.received.empty():
+            topic, payload, retained = self.link.received.get()
+            self.client.receive(topic, payload, time.monotonic(), retained=retained)
+        outbox = self.client.step(time.monotonic())
+        self._save()
+        for topic, message in outbox:
+            self.link.publish(topic, message)
+        if self.link.reason != self._reason:
+            self._reason = self.link.reason
+            if self._reason:
+                rospy.logwarn(f"broker: {self._reason}; the robot drives on to the end of its base")
+
+    def _save(self) -> None:
+        position = self.robot.position
+        key = (self.client.vehicle.revision, position)
+        if key != self._saved:
+            self._saved = key
+            self._memory.save(vehicle=self.client.vehicle.dump(), position=position)
+
+    def _pause(self, _request: object) -> TriggerResponse:
+        self.client.pause()
+        return TriggerResponse(success=True, message="paused; goes on after ~resume or stopPause")
+
+    def _resume(self, _request: object) -> TriggerResponse:
+        why = self.client.resume()
+        return TriggerResponse(success=not why, message=why or "goes on")
+
+    def _trigger(self, _request: object) -> TriggerResponse:
+        triggered = self.robot.actions.trigger()
+        return TriggerResponse(success=triggered, message="" if triggered else "no waitForTrigger runs")
+
+
+def arguments(given: list[str]) -> argparse.Namespace:
+    """The command line, without the program's name; ends the program on a wrong one."""
+    parser = argparse.ArgumentParser(
+        prog="vda5050.py",
+        description="Lets the master of a fleet command the robot: VDA 5050 over MQTT. It needs the robot's nodes and "
+        "follow_path.py; fleet.launch starts all but the robot. Services: vda5050/pause, vda5050/resume, "
+        "vda5050/trigger.",
+    )
+    parser.add_argument("--config", type=given_path, help="YAML file, laid over the installed config/fleet.yaml")
+    return parser.parse_args(given)
+
+
+def main() -> None:
+    """Entry point of scripts/vda5050.py."""
+    given = arguments([each for each in rospy.myargv(sys.argv)[1:] if each])
+    try:
+        import jsonschema  # noqa: F401 (a missing module is one message, before anything runs)
+        import paho.mqtt.client  # noqa: F401
+
+        shipped = Path(share_file("config/fleet.yaml"))
+        settings = read_settings(shipped, *([given.config] if given.config else []))
+    except ImportError:
+        sys.exit(f"vda5050.py: {MISSING}")
+    except (SettingsError, OSError) as error:
+        sys.exit(f"vda5050.py: {fit_for_message(in_words(error))}")
+    try:
+        with running_node("vda5050") as signals:
+            refuse_running_legs("vda5050.py")
+            Node(settings).run(signals)
+    except (MemoryFileError, RobotError, ParameterError, ServerValueError, WheelsOnlyError) as error:
+        sys.exit(f"vda5050.py: {fit_for_message(str(error))}")

@@ -1,0 +1,279 @@
+"""The robot behind its topics: facts from messages, legs as goals of follow_path, map → odom."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import Any
+
+import actionlib
+import rospy
+from actionlib import CommState
+from actionlib_msgs.msg import GoalStatus
+from geometry_msgs.msg import PoseStamped, TransformStamped
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import BatteryState
+from std_srvs.srv import Trigger
+from tf2_msgs.msg import TFMessage
+
+from robot_control.common.pose import pose_of
+from robot_control.fleet.client import DONE, DRIVING, ENDED, Progress
+from robot_control.fleet.custom import Actions
+from robot_control.fleet.settings import Settings
+from robot_control.fleet.v2.leg import PathPoint, angle
+from robot_control.fleet.v2.messages import Error
+from robot_control.fleet.v2.order import Action
+from robot_control.fleet.v2.state import Facts
+from robot_control.msg import FollowPathAction, FollowPathFeedback, FollowPathGoal, RobotStatus, SafetyStatus
+from robot_control.path.frames import Tf
+from robot_control.path.waypoints import PathError
+from robot_control.safety.states import DRIVABLE, STOPPED
+from robot_control.safety.watch import CATCH_UP, LATE
+
+MAP = "map"
+SILENCE = 0.5
+"""s without odometry; it comes at 50 Hz"""
+STATUS_SILENCE = 3.0
+"""s without safety_status, robot_status or feedback of follow_path; the slowest come once per second"""
+ACTION = "follow_path"
+JUMP = 0.5
+"""m, rad beyond the measured motion: odometry was set, and map → odom does not hold any more"""
+SPEED_CHANGE = 1.0
+"""m/s², rad/s² by which the robot may have been faster between two messages than at both"""
+
+
+class RosRobot:
+    """The port of the client; its methods are called by one thread, the callbacks by rospy's."""
+
+    def __init__(self, settings: Settings, saved: list[Any] | None) -> None:
+        """`saved`: `position` of the program before; None: the position is not initialized."""
+        self.progress, self._goal = Progress(), 0
+        self._settings, self.actions = settings, Actions(settings.actions)
+        self._odometry: Odometry | None = None
+        self._safety: SafetyStatus | None = None
+        self._status: RobotStatus | None = None
+        self._battery: BatteryState | None = None
+        self._odometry_at = self._safety_at = self._status_at = self._feedback_at = -math.inf
+        self._asked_at = -math.inf
+        self._held_by = ""
+        self._saved = saved
+        self.map_odom: list[Any] | None = None  # mapId, x, y, yaw of odom in the map, if this program sets it
+        self._tf = Tf() if settings.localization else None
+        self._static = rospy.Publisher("tf_static", TFMessage, queue_size=1, latch=True)
+        rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1, tcp_nodelay=True)
+        rospy.Subscriber("safety_status", SafetyStatus, self._receive_safety, queue_size=1)
+        rospy.Subscriber("robot_status", RobotStatus, self._receive_status, queue_size=1)
+        rospy.Subscriber("battery_state", BatteryState, self._receive_battery, queue_size=1)
+        self._client = actionlib.ActionClient(ACTION, FollowPathAction)
+        self._handles: list[actionlib.ClientGoalHandle] = []  # of goals that have not ended, the present one last
+
+    def begin(self, action: Action) -> None:
+        """Its end comes with `results`."""
+        self.actions.begin(action)
+
+    def end(self, action_id: str) -> bool:
+        """True if the action was interrupted."""
+        return self.actions.end(action_id)
+
+    def results(self) -> list[tuple[str, str, str]]:
+        """Actions that ended since the last call."""
+        return self.actions.results()
+
+    # facts
+
+    def facts(self) -> Facts:
+        """As measured now. After a late call the receiving threads first take what waits for them."""
+        if time.monotonic() - self._asked_at > LATE:
+            time.sleep(CATCH_UP)
+        now, odometry, status = time.monotonic(), self._odometry, self._status
+        self._asked_at = now
+        safety = self._safety if now - self._safety_at < STATUS_SILENCE else None
+        fresh = odometry is not None and now - self._odometry_at < SILENCE
+        if self.progress.status == DRIVING and now - self._feedback_at > STATUS_SILENCE:
+            self._goal += 1
+            self.progress = Progress(ENDED, self.progress.distance, f"{ACTION} is silent: follow_path.py has ended")
+        transform = self._map_odom()
+        result: dict[str, Any] = {}
+        if odometry is not None and transform is not None:
+            map_id, x, y, yaw = transform
+            pose = pose_of(odometry)
+            result["x"] = x + math.cos(yaw) * pose.x - math.sin(yaw) * pose.y
+            result["y"] = y + math.sin(yaw) * pose.x + math.cos(yaw) * pose.y
+            result["theta"] = angle(pose.yaw + yaw)
+            result["map_id"] = map_id if fresh else ""
+        if odometry is not None:
+            spread = odometry.pose.covariance[0] + odometry.pose.covariance[7]
+            result["deviation"] = math.sqrt(spread) if 0 <= spread < math.inf else None
+            twist = odometry.twist.twist
+            result["linear"], result["angular"] = (twist.linear.x, twist.angular.z) if fresh else (0.0, 0.0)
+        battery = self._battery
+        if battery is not None:
+            charge, voltage = 100 * battery.percentage, battery.voltage
+            result["battery_charge"] = min(100.0, max(0.0, charge)) if math.isfinite(charge) else None
+            result["battery_voltage"] = voltage if math.isfinite(voltage) else None
+            result["charging"] = battery.power_supply_status == BatteryState.POWER_SUPPLY_STATUS_CHARGING
+        manual = status is not None and now - self._status_at < STATUS_SILENCE and status.mode == "manual"
+        return Facts(
+            **result,
+            mode="MANUAL" if manual else "AUTOMATIC",
+            stopped=safety is not None and safety.state_name in STOPPED,
+            may_drive=fresh and safety is not None and safety.state_name in DRIVABLE,
+            held_by=self._held_by,
+            errors=(_SILENT,) if safety is None else tuple(_errors(safety)),
+        )
+
+    @property
+    def position(self) -> list[Any]:
+        """map → odom with the run of the robot's nodes in which it holds."""
+        return [self.map_odom, self._safety.run if self._safety is not None else 0]
+
+    def _map_odom(self) -> list[Any] | None:
+        if self._tf is None:
+            return self.map_odom
+        try:
+            found = self._tf.lookup(MAP, self._odom_frame)
+        except PathError:
+            return None
+        return [self._settings.map, found.pose.x, found.pose.y, found.pose.yaw]
+
+    @property
+    def _odom_frame(self) -> str:
+        return str(self._odometry.header.frame_id) if self._odometry is not None else "odom"
+
+    def set_position(self, x: float, y: float, theta: float, map_id: str) -> str:
+        """map → odom from now on; why it is refused, empty if it is not."""
+        if self._tf is not None:
+            return "a localization knows the position"
+        if self._odometry is None:
+            return "there is no odometry"
+        pose = pose_of(self._odometry)
+        yaw = angle(theta - pose.yaw)
+        dx, dy = math.cos(yaw) * pose.x - math.sin(yaw) * pose.y, math.sin(yaw) * pose.x + math.cos(yaw) * pose.y
+        self.map_odom = [map_id, x - dx, y - dy, yaw]
+        self.publish_map()
+        return ""
+
+    def publish_map(self) -> None:
+        """map → odom on tf_static, if this program sets it."""
+        if self.map_odom is None or self._tf is not None:
+            return
+        _, x, y, yaw = self.map_odom
+        transform = TransformStamped()
+        transform.header.frame_id, transform.child_frame_id = MAP, self._odom_frame
+        transform.header.stamp = rospy.Time.now()
+        transform.transform.translation.x, transform.transform.translation.y = x, y
+        transform.transform.rotation.z, transform.transform.rotation.w = math.sin(yaw / 2), math.cos(yaw / 2)
+        self._static.publish(TFMessage([transform]))
+
+    # legs
+
+    def drive(self, points: list[PathPoint], begin_at: float) -> None:
+        """Replaces the present leg without a stop."""
+        self._goal, self._held_by, self._feedback_at = self._goal + 1, "", time.monotonic()
+        if not self._client.wait_for_server(rospy.Duration(0.01)):
+            self.progress = Progress(ENDED, begin_at, f"{ACTION} is not served: start follow_path.py")
+            return
+        goal = FollowPathGoal(speed=abs(points[0].speed), begin_at=begin_at)
+        goal.path.header.frame_id = MAP
+        for point in points:
+            pose = PoseStamped()
+            pose.pose.position.x, pose.pose.position.y = point.x, point.y
+            pose.pose.orientation.z, pose.pose.orientation.w = math.sin(point.yaw / 2), math.cos(point.yaw / 2)
+            goal.path.poses.append(pose)
+        goal.speeds, goal.turn_speeds = [p.speed for p in points], [p.turn_speed for p in points]
+        self.progress = Progress(DRIVING, begin_at)
+        number = self._goal
+        handle = self._client.send_goal(
+            goal,
+            transition_cb=lambda handle: self._transition(number, handle),
+            feedback_cb=lambda _, feedback: self._feedback(number, feedback),
+        )
+        self._handles = [each for each in self._handles if each.get_comm_state() != CommState.DONE] + [handle]
+
+    def stop(self) -> None:
+        """Ends the present leg."""
+        for handle in self._handles[-1:]:
+            handle.cancel()
+
+    def stop_all(self) -> None:
+        """Ends every goal of follow_path, also one of the program that ran before this one."""
+        if self._client.wait_for_server(rospy.Duration(0.01)):
+            self._client.cancel_goals_at_and_before_time(rospy.Time.now())
+
+    def resume(self) -> str:
+        """Why the path that is held at the robot does not go on; empty if it does."""
+        try:
+            answer = rospy.ServiceProxy(f"{ACTION}/resume", Trigger)()
+        except rospy.ServiceException as error:
+            return str(error)
+        return "" if answer.success else str(answer.message)
+
+    def _feedback(self, number: int, feedback: FollowPathFeedback) -> None:
+        if number == self._goal and self.progress.status == DRIVING:
+            self._feedback_at = time.monotonic()
+            self._held_by = (feedback.reason or "paused at the robot") if feedback.state == "paused" else ""
+            if feedback.state != "waiting":  # then it does not know the distance yet
+                self.progress = Progress(DRIVING, feedback.distance)
+
+    def _transition(self, number: int, handle: actionlib.ClientGoalHandle) -> None:
+        if number != self._goal or handle.get_comm_state() != CommState.DONE:
+            return
+        status, result = handle.get_goal_status(), handle.get_result()
+        self._held_by = ""
+        distance = self.progress.distance if result is None else max(result.distance, 0.0)
+        if status == GoalStatus.SUCCEEDED:
+            self.progress = Progress(DONE, distance)
+        else:
+            stopped = status == GoalStatus.PREEMPTED
+            why = "" if stopped else (result.reason if result is not None else "") or "follow_path refused it"
+            self.progress = Progress(ENDED, distance, why)
+
+    # messages
+
+    def _receive_odometry(self, message: Odometry) -> None:
+        if self._odometry is not None and self._tf is None and _jumped(self._odometry, message):
+            self.map_odom = None
+            rospy.logwarn("odometry was set: the position on the map is not known any more; send initPosition")
+        self._odometry, self._odometry_at = message, time.monotonic()
+
+    def _receive_safety(self, message: SafetyStatus) -> None:
+        saved, self._saved = self._saved, None
+        if saved is not None and saved[1] == message.run:
+            self.map_odom = saved[0]
+            self.publish_map()
+        self._safety, self._safety_at = message, time.monotonic()
+
+    def _receive_status(self, message: RobotStatus) -> None:
+        self._status, self._status_at = message, time.monotonic()
+
+    def _receive_battery(self, message: BatteryState) -> None:
+        self._battery = message
+
+
+def _jumped(before: Odometry, after: Odometry) -> bool:
+    """True if the pose moved by more than the measured speeds allow in the time between the two messages."""
+    elapsed = max(0.0, float((after.header.stamp - before.header.stamp).to_sec()))
+    a, b, twists = pose_of(before), pose_of(after), (before.twist.twist, after.twist.twist)
+    way = JUMP + elapsed * (SPEED_CHANGE * elapsed + max(abs(twist.linear.x) for twist in twists))
+    turn = JUMP + elapsed * (SPEED_CHANGE * elapsed + max(abs(twist.angular.z) for twist in twists))
+    return bool(math.dist((a.x, a.y), (b.x, b.y)) > way or abs(angle(b.yaw - a.yaw)) > turn)
+
+
+_SILENT = Error("safetyMonitorSilent", "safety_status is silent", (), "start the robot's nodes", fatal=True)
+
+
+def _errors(safety: SafetyStatus) -> list[Error]:
+    """Latched causes need a person at the robot; warnings and what is waited for end by themselves."""
+    causes = [
+        Error(name, f"{sentence} {detail}".strip(), (("actor", actor),), remedy, fatal=True)
+        for name, sentence, remedy, actor, detail in zip(
+            safety.causes, safety.sentences, safety.remedies, safety.actors, safety.details, strict=False
+        )
+    ]
+    warnings = [
+        Error(name, sentence) for name, sentence in zip(safety.warnings, safety.warning_sentences, strict=False)
+    ]
+    waits = [Error("nodeMissing", f"{name} does not run", (), f"start {name}") for name in safety.missing]
+    if safety.awaiting_zero_request:
+        waits.append(Error("awaitingZeroRequest", "no zero velocity was requested since the start"))
+    return [*causes, *warnings, *waits]

@@ -1,0 +1,154 @@
+"""The values of config/fleet.yaml."""
+
+from __future__ import annotations
+
+import ipaddress
+import json
+import math
+import stat
+from collections.abc import Iterator
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any
+
+import yaml  # type: ignore[import-untyped]
+
+from robot_control.common.files import given_path
+from robot_control.fleet.v2.capability import STANDARD, ActionKind
+from robot_control.fleet.v2.messages import VERSIONS
+
+
+class SettingsError(ValueError):
+    """The settings cannot be used; the message names every problem."""
+
+
+@dataclass(frozen=True)
+class CustomAction:
+    """An actionType that calls a service, or holds a topic at true."""
+
+    service: str = ""
+    topic: str = ""
+    seconds: float = 1.0
+    timeout: float = 10.0
+    scopes: tuple[str, ...] = ("INSTANT", "NODE")
+
+
+@dataclass(frozen=True)
+class Settings:
+    """The values; config/fleet.yaml explains them."""
+
+    interface: str = "uagv"
+    manufacturer: str = "robot_control"
+    serial_number: str = "r1"
+    version: str = VERSIONS[0]
+    host: str = "127.0.0.1"
+    port: int = 1883
+    keep_alive: int = 15
+    user: str = ""
+    password_file: str = ""
+    ca_file: str = ""
+    certificate_file: str = ""
+    key_file: str = ""
+    insecure: bool = False
+    localization: bool = False
+    map: str = ""
+    speed: float = 0.5
+    node_tolerance: float = 0.05
+    heading_tolerance: float = 0.05
+    base_reserve: float = 1.0
+    unknown_battery_charge: float = 80.0
+    visualization_rate: float = 5.0
+    memory_file: str = ""
+    actions: dict[str, CustomAction] = field(default_factory=dict)
+
+    @property
+    def kinds(self) -> dict[str, ActionKind]:
+        """All actions of the robot."""
+        custom = {name: ActionKind(each.scopes, description=_what(each)) for name, each in self.actions.items()}
+        return {**STANDARD, **custom}
+
+    @property
+    def topic(self) -> str:
+        """The levels with which all topics begin."""
+        return f"{self.interface}/v2/{self.manufacturer}/{self.serial_number}"
+
+    @property
+    def password(self) -> str | None:
+        """The first line of its file. Raises OSError."""
+        return Path(self.password_file).read_text(encoding="utf-8").partition("\n")[0] if self.password_file else None
+
+
+def read_settings(*paths: Path) -> Settings:
+    """The values of these files, each laid over the one before.
+
+    Raises:
+        SettingsError: with all problems.
+        OSError: a file cannot be read.
+    """
+    import jsonschema
+
+    rules = json.loads(Path(__file__).with_name("settings.schema.json").read_text(encoding="utf-8"))
+    values, problems = dict[str, Any](), list[str]()
+    for path in paths:
+        try:
+            tree = yaml.safe_load(path.read_text(encoding="utf-8")) or {}
+        except (yaml.YAMLError, UnicodeDecodeError, RecursionError) as error:
+            raise SettingsError(f"{path}: is no YAML: {error}") from None
+        found = [
+            f"{path}: {'.'.join(map(str, error.absolute_path)) or 'a key'}: {error.message}"
+            for error in jsonschema.Draft202012Validator(rules).iter_errors(tree)
+        ]
+        problems += found
+        values |= {} if found else tree
+    custom = {
+        str(name): CustomAction(**{**each, "scopes": tuple(each.get("scopes", CustomAction.scopes))})
+        for name, each in values.pop("actions", {}).items()
+    }
+    names = (name for name, value in values.items() if name.endswith("_file") and value)
+    settings = Settings(**(values | {name: str(given_path(values[name])) for name in names}), actions=custom)
+    problems += _together(settings)
+    if problems:
+        raise SettingsError("; ".join(problems))
+    return settings
+
+
+def _together(settings: Settings) -> Iterator[str]:
+    """The rules across values, and what the schema cannot say."""
+    for each in fields(settings):
+        value = getattr(settings, each.name)
+        if isinstance(value, float) and not math.isfinite(value):
+            yield f"{each.name} = {value}: must be finite"
+    for name in settings.actions.keys() & STANDARD.keys():
+        yield f"actions.{name}: is an action of the standard"
+    if not (settings.ca_file or settings.insecure or _is_loopback(settings.host)):
+        yield f"host = {settings.host}: beyond the loopback it needs ca_file (TLS), or insecure: true"
+    if settings.key_file and not settings.certificate_file:
+        yield "key_file: needs certificate_file"
+    if settings.localization and not settings.map:
+        yield "localization = true: needs map, the mapId of its map"
+    for name in ("password_file", "ca_file", "certificate_file", "key_file"):
+        path = Path(getattr(settings, name))
+        if getattr(settings, name):
+            yield from _file_problems(name, path, secret=name in ("password_file", "key_file"))
+
+
+def _file_problems(name: str, path: Path, *, secret: bool) -> Iterator[str]:
+    try:
+        path.read_bytes()
+        if secret and stat.S_IMODE(path.stat().st_mode) & 0o077:
+            yield f"{name} = {path}: others can read it; chmod 600 {path}"
+    except OSError as error:
+        yield f"{name} = {path}: cannot be read: {error.strerror}"
+
+
+def _is_loopback(host: str) -> bool:
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+def _what(action: CustomAction) -> str:
+    if action.service:
+        return f"service {action.service}, at most {action.timeout:g} s"
+    return f"topic {action.topic}, true for {action.seconds:g} s"

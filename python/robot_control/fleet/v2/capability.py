@@ -1,0 +1,97 @@
+"""Says what this robot can do of an order, as the factsheet does."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from robot_control.fleet.v2.curve import STEP
+from robot_control.fleet.v2.leg import way_of
+from robot_control.fleet.v2.messages import RefusedError
+from robot_control.fleet.v2.order import Action, Node, Order
+
+MAX_POINTS = 20_000
+"""of all edges of an order: a longer one takes seconds to plan"""
+INSTANT, NODE, EDGE = "INSTANT", "NODE", "EDGE"
+
+
+@dataclass(frozen=True)
+class ActionKind:
+    """An actionType with its scopes, and the parameters that it needs."""
+
+    scopes: tuple[str, ...]
+    needs: tuple[str, ...] = ()
+    description: str = ""
+
+
+STANDARD = {
+    "startPause": ActionKind((INSTANT,)),
+    "stopPause": ActionKind((INSTANT,)),
+    "cancelOrder": ActionKind((INSTANT,)),
+    "stateRequest": ActionKind((INSTANT,)),
+    "factsheetRequest": ActionKind((INSTANT,)),
+    "logReport": ActionKind((INSTANT,), description="resultDescription: the newest incident of the black box"),
+    "initPosition": ActionKind((INSTANT,), ("x", "y", "theta", "mapId"), "at standstill without an order"),
+    "waitForTrigger": ActionKind((NODE,), description="until the service vda5050/trigger is called"),
+}
+
+
+@dataclass(frozen=True)
+class Capabilities:
+    """The capabilities of one robot."""
+
+    map_id: str = ""  # of the map on which it is; empty: not known
+    height: float = 0.0  # m
+    actions: Mapping[str, ActionKind] = field(default_factory=lambda: dict(STANDARD))
+
+    def refuse(self, order: Order, last: Node | None = None) -> None:
+        """Raises RefusedError: orderError with the field. `last`: the node that an update continues."""
+        try:
+            self._check(order, last)
+        except RefusedError as error:
+            found = error.error
+            references = dict(found.references) | order.references
+            raise RefusedError(found.kind, found.description, **references) from None
+
+    def refuse_action(self, action: Action, scope: str) -> None:
+        """Raises RefusedError: orderError, for it is unknown there or lacks a parameter."""
+        kind = self.actions.get(action.kind)
+        if kind is None or scope not in kind.scopes:
+            why = "is not known" if kind is None else f"is not possible on {scope}"
+            raise RefusedError("orderError", f"actionType {action.kind} {why}", **_of(action), parameter="actionType")
+        for name in kind.needs:
+            if name not in action.parameters:
+                raise RefusedError("orderError", f"{action.kind} needs {name}", **_of(action), parameter=name)
+
+    def _check(self, order: Order, last: Node | None) -> None:
+        if not self.map_id:
+            raise RefusedError("orderError", "the position of the robot is not initialized: send initPosition")
+        if order.zone_set:
+            raise RefusedError("orderError", "the robot knows no zones", parameter="zoneSetId")
+        points = 0
+        nodes = [last or order.nodes[0], *order.nodes[1:]]
+        for node in nodes:
+            if node.place is None:
+                raise RefusedError("orderError", f"node {node.id} needs a nodePosition", nodeId=node.id)
+            if node.place.map_id != self.map_id:
+                why = f"node {node.id} lies on map {node.place.map_id}, the robot on {self.map_id}"
+                raise RefusedError(
+                    "orderError", why, nodeId=node.id, mapId=node.place.map_id, errorName="UNKNOWN_MAP_ID"
+                )
+            for action in node.actions:
+                self.refuse_action(action, NODE)
+        for edge, begin, end in zip(order.edges, nodes, nodes[1:], strict=False):
+            if edge.raw.get("maxHeight", self.height) < self.height:
+                why = f"edge {edge.id}: maxHeight is below the robot's {self.height:g} m"
+                raise RefusedError("orderError", why, edgeId=edge.id, parameter="maxHeight")
+            if begin.place is not None and end.place is not None:
+                points += len(way_of(edge, begin.place, end.place).points)
+            if points > MAX_POINTS:
+                why = f"edge {edge.id}: the trajectories have more than {MAX_POINTS} points, one each {STEP:g} m"
+                raise RefusedError("orderError", why, edgeId=edge.id, parameter="trajectory")
+            for action in edge.actions:
+                self.refuse_action(action, EDGE)
+
+
+def _of(action: Action) -> dict[str, str]:
+    return {"actionId": action.id, "errorName": "INVALID_ORDER_ACTION"}

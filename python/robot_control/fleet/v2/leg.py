@@ -1,0 +1,198 @@
+"""The way from one stand to the next: what follow_path is given, and where its nodes lie on it.
+
+A leg ends where the robot has to stand: at the end of the base, and at a node with another orientation than the way. It
+also ends before a SOFT or HARD action, which belongs to the node or to the edge after it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
+
+from robot_control.fleet.v2.curve import CurveError, Point, points_of
+from robot_control.fleet.v2.messages import Message, RefusedError
+from robot_control.fleet.v2.order import NONE, Edge, Node, Place
+
+SAME_HEADING = math.radians(2.0)
+"""rad between two orientations that count as one"""
+END_GAP = 0.1
+"""m that the ends of a trajectory may lie off their nodes"""
+SHORTEST = 0.02
+"""m of an edge that is driven"""
+TURN = math.radians(35.0)
+"""rad; follow_path turns on the spot at a sharper corner, and leaves a leg there"""
+
+
+def angle(value: float) -> float:
+    """The same angle in [−π, π]."""
+    return math.remainder(value, math.tau)
+
+
+class PathPoint(NamedTuple):
+    """A point of a leg; the limits hold from it on."""
+
+    x: float
+    y: float
+    yaw: float  # rad, of the robot
+    speed: float  # m/s, negative: backwards
+    turn_speed: float  # rad/s, 0: that of the robot
+
+
+@dataclass(frozen=True)
+class Way:
+    """An edge as it is driven."""
+
+    points: tuple[Point, ...]
+    sign: int  # −1: backwards
+    speed: float  # m/s, 0: the speed of the robot
+    turn_speed: float  # rad/s, 0: that of the robot
+
+    @property
+    def length(self) -> float:
+        """m"""
+        return sum(math.dist(a, b) for a, b in pairwise(self.points))
+
+    def heading(self, number: int) -> float:
+        """rad, of the robot on a segment."""
+        (ax, ay), (bx, by) = self.points[number : number + 2] if number >= 0 else self.points[-2:]
+        return angle(math.atan2(by - ay, bx - ax) + (math.pi if self.sign < 0 else 0.0))
+
+    def foot(self, x: float, y: float, start: float) -> tuple[float, float]:
+        """Its nearest point: m along it plus `start`, m of distance."""
+        best = (0.0, math.inf)
+        for (ax, ay), (bx, by) in pairwise(self.points):
+            size = math.dist((ax, ay), (bx, by))
+            share = min(1.0, max(0.0, ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / size**2))
+            distance = math.dist((x, y), (ax + share * (bx - ax), ay + share * (by - ay)))
+            best = min(best, (start + share * size, distance), key=lambda each: each[1])
+            start += size
+        return best
+
+
+def way_of(edge: Edge, begin: Place, end: Place) -> Way:
+    """Raises RefusedError: orderError with the field that cannot be followed."""
+
+    def refused(field: str, why: str) -> RefusedError:
+        return RefusedError("orderError", f"edge {edge.id}: {field} {why}", edgeId=edge.id, parameter=field)
+
+    raw = edge.raw
+    for field in ("corridor", "direction"):
+        if field in raw:
+            raise refused(field, "cannot be followed by this robot")
+    if raw.get("minHeight", 0.0) > 0:
+        raise refused("minHeight", "needs a load handling device, and the robot has none")
+    if not raw.get("maxSpeed", 1.0) > 0 or not raw.get("maxRotationSpeed", 1.0) > 0:
+        raise refused("maxSpeed" if raw.get("maxSpeed", 1.0) <= 0 else "maxRotationSpeed", "must be above zero")
+    points: list[Point] = [(begin.x, begin.y), (end.x, end.y)]
+    if "trajectory" in raw:
+        try:
+            points = points_of(raw["trajectory"])
+        except CurveError as error:
+            raise refused("trajectory", str(error)) from None
+        for place, point in ((begin, points[0]), (end, points[-1])):
+            if math.dist((place.x, place.y), point) > max(END_GAP, place.deviation_xy):
+                raise refused("trajectory", f"must begin and end within {END_GAP:g} m of the nodes")
+    kept = [points[0]]
+    kept += [b for a, b in pairwise(points) if b != a]
+    way = Way(tuple(kept), 1, raw.get("maxSpeed", 0.0), raw.get("maxRotationSpeed", 0.0))
+    if len(kept) < 2 or way.length < SHORTEST:
+        raise refused("trajectory" if "trajectory" in raw else "endNodeId", f"is shorter than {SHORTEST:g} m")
+    if raw.get("rotationAllowed") is False and _sharpest(way) > TURN:
+        raise refused("rotationAllowed", "is false, and the trajectory has a corner")
+    return Way(way.points, _sign(way, raw, refused), way.speed, way.turn_speed)
+
+
+def _sharpest(way: Way) -> float:
+    headings = [way.heading(number) for number in range(len(way.points) - 1)]
+    return max((abs(angle(b - a)) for a, b in pairwise(headings)), default=0.0)
+
+
+def _sign(way: Way, raw: Message, refused: Callable[[str, str], RefusedError]) -> int:
+    wanted = raw.get("orientation", 0.0)
+    kind = raw.get("orientationType", "TANGENTIAL")
+    if kind not in ("TANGENTIAL", "GLOBAL"):
+        raise refused("orientationType", "must be TANGENTIAL or GLOBAL")
+    numbers = range(len(way.points) - 1)
+    offsets = [angle(wanted - (way.heading(n) if kind == "GLOBAL" else 0.0)) for n in numbers]
+    if all(abs(offset) <= SAME_HEADING for offset in offsets):
+        return 1
+    if all(abs(angle(offset - math.pi)) <= SAME_HEADING for offset in offsets):
+        return -1
+    raise refused("orientation", "is neither along the edge nor against it: a differential drive cannot")
+
+
+@dataclass(frozen=True)
+class Leg:
+    """Edges with the nodes at their ends, in one go."""
+
+    begin: Node
+    ways: tuple[Way, ...]
+    nodes: tuple[Node, ...]  # at the ends of `ways`
+
+    @property
+    def ends(self) -> list[float]:
+        """m along the leg, of each node."""
+        total, result = 0.0, []
+        for way in self.ways:
+            total += way.length
+            result.append(total)
+        return result
+
+    @property
+    def length(self) -> float:
+        """m"""
+        return self.ends[-1]
+
+    def path(self, fastest: float) -> list[PathPoint]:
+        """Its points; the last one's yaw is the orientation of the last node, if it has one. `fastest`: m/s."""
+        result = [
+            PathPoint(x, y, way.heading(number), way.sign * min(way.speed or fastest, fastest), way.turn_speed)
+            for way in self.ways
+            for number, (x, y) in enumerate(way.points[:-1])
+        ]
+        last, place = self.ways[-1], self.nodes[-1].place
+        yaw = last.heading(-1) if place is None or place.theta is None else place.theta
+        return [*result, PathPoint(*last.points[-1], yaw, result[-1].speed, last.turn_speed)]
+
+    def without_driven(self, along: float) -> tuple[Leg, float]:
+        """The leg from the edge on which the robot is, and the distance on it."""
+        starts = [0.0, *self.ends[:-1]]
+        number = max(n for n, start in enumerate(starts) if n == 0 or start < along)
+        begin = self.begin if number == 0 else self.nodes[number - 1]
+        return Leg(begin, self.ways[number:], self.nodes[number:]), along - starts[number]
+
+    def foot(self, x: float, y: float, reach: float) -> tuple[float, float]:
+        """m along the leg, m of distance: the nearest point of the first edge within `reach`, else of all."""
+        feet, start = [], 0.0
+        for way in self.ways:
+            feet.append(way.foot(x, y, start))
+            start += way.length
+        return next((foot for foot in feet if foot[1] <= reach), min(feet, key=lambda foot: foot[1]))
+
+
+def leg_of(begin: Node, base: Sequence[Node | Edge], tolerance: float) -> Leg:
+    """The leg from a node over the base, which begins with an edge. `tolerance`: rad, of an orientation."""
+    ways: list[Way] = []
+    nodes: list[Node] = []
+    for edge, node in zip(base[::2], base[1::2], strict=False):
+        if not isinstance(edge, Edge) or not isinstance(node, Node):
+            break
+        before = nodes[-1] if nodes else begin
+        if before.place is None or node.place is None:
+            break
+        if nodes and any(action.blocking != NONE for action in edge.actions):
+            break
+        ways.append(way_of(edge, before.place, node.place))
+        nodes.append(node)
+        if any(action.blocking != NONE for action in node.actions) or _turns(node.place, ways[-1], tolerance):
+            break
+    return Leg(begin, tuple(ways), tuple(nodes))
+
+
+def _turns(place: Place, way: Way, tolerance: float) -> bool:
+    if place.theta is None:
+        return False
+    return abs(angle(place.theta - way.heading(-1))) > max(place.deviation_theta or 0.0, tolerance)
