@@ -45,8 +45,10 @@ namespace py = pybind11;
 namespace robot_control {
 namespace {
 
-Twist planar(double linear, double angular) {
-  return {.linear = {linear, 0, 0}, .angular = {0, 0, angular}};
+/// Returns a request to drive. `mode` is the way of moving while the twist is not zero.
+Request planar(double linear, double lateral, double angular, std::uint64_t mode) {
+  const bool moves = linear != 0 || lateral != 0 || angular != 0;
+  return {.twist = {.linear = {linear, lateral, 0}, .angular = {0, 0, angular}}, .mode = moves ? mode : 0};
 }
 
 std::vector<TraceColumn> columns_of(const ClosedLoop& loop) {
@@ -57,19 +59,24 @@ std::vector<TraceColumn> columns_of(const ClosedLoop& loop) {
 }
 
 /// Passes the result of a command function to the loop as a command that arrives now.
-void receive(ClosedLoop& loop, const py::object& given) {
+void receive(ClosedLoop& loop, const py::object& given, std::uint64_t mode) {
+  std::vector<double> numbers;
   try {
-    const auto [linear, angular] = given.cast<std::pair<double, double>>();
-    loop.command(planar(linear, angular));
+    numbers = given.cast<std::vector<double>>();
   } catch (const py::cast_error&) {
-    throw py::type_error("command must give (linear, angular), two numbers in m/s and rad/s; it gave " +
-                         std::string(py::repr(given)));
+    numbers.clear();
   }
+  if (numbers.size() == 2) return loop.request(planar(numbers[0], 0, numbers[1], mode));
+  if (numbers.size() == 3) return loop.request(planar(numbers[0], numbers[1], numbers[2], mode));
+  throw py::type_error(
+      "command must give (linear, angular), two numbers in m/s and rad/s, or (linear, lateral, "
+      "angular); it gave " +
+      std::string(py::repr(given)));
 }
 
-/// Runs `cycles` cycles. `command(t)` returns (linear, angular), or is None. Other Python threads run meanwhile if no
-/// command function needs the interpreter. `replay` stores the cycles, or is None.
-py::dict run(ClosedLoop& loop, std::int64_t cycles, const py::object& command, LoopReplay* replay) {
+/// Runs `cycles` cycles. `command(t)` returns (linear, angular) or (linear, lateral, angular), or is None. Other Python
+/// threads run meanwhile if no command function needs the interpreter. `replay` stores the cycles, or is None.
+py::dict run(ClosedLoop& loop, std::int64_t cycles, const py::object& command, LoopReplay* replay, std::uint64_t mode) {
   constexpr std::int64_t kBlock = 1000;  // cycles between two checks for Ctrl-C
   if (cycles < 0) throw py::value_error("cycles must not be negative");
   const std::vector<TraceColumn> columns = columns_of(loop);
@@ -93,7 +100,7 @@ py::dict run(ClosedLoop& loop, std::int64_t cycles, const py::object& command, L
       for (std::int64_t row = first; row < last; ++row) step(row);
     } else {
       for (std::int64_t row = first; row < last; ++row) {
-        receive(loop, command(loop.time()));
+        receive(loop, command(loop.time()), mode);
         step(row);
       }
     }
@@ -227,7 +234,12 @@ void bind_closed_loop(py::module_& module) {
       .def(py::init(
                [](const std::string& path, const Values& values) { return ClosedLoop(parameters_from(path, values)); }),
            py::arg("path"), py::arg("values"))
-      .def("command", [](ClosedLoop& loop, double linear, double angular) { loop.command(planar(linear, angular)); })
+      .def(
+          "command",
+          [](ClosedLoop& loop, double linear, double angular, double lateral, std::uint64_t mode) {
+            loop.request(planar(linear, lateral, angular, mode));
+          },
+          py::arg("linear"), py::arg("angular"), py::arg("lateral") = 0.0, py::arg("mode") = 0)
       .def(
           "request",
           [](ClosedLoop& loop, const std::array<double, 6>& pose, std::uint64_t mode,
@@ -245,7 +257,7 @@ void bind_closed_loop(py::module_& module) {
       .def("reset", &ClosedLoop::reset)
       .def("set_parameters", &ClosedLoop::set_parameters, py::arg("request"))
       .def("inject_fault", &ClosedLoop::inject_fault, py::arg("component"), py::arg("kind"))
-      .def("run", &run, py::arg("cycles"), py::arg("command"), py::arg("replay") = nullptr)
+      .def("run", &run, py::arg("cycles"), py::arg("command"), py::arg("replay") = nullptr, py::arg("mode") = 0)
       .def("record", &record, py::arg("commands"))
       .def("stop_distance", &distance_to_stop, py::arg("speed"), py::arg("emergency"))
       .def_property_readonly("smooth_speed", &smooth_speed_of)

@@ -23,10 +23,14 @@ from robot_control.parameter_layers import flow_text, layered
 
 File = str | PathLike[str]
 Log = dict[str, NDArray[np.float64]]
-Command = Callable[[float], tuple[float, float]] | tuple[float, float] | None
+Twist = tuple[float, float] | tuple[float, float, float]
+"""(linear, angular) or (linear, lateral, angular): m/s to the front, m/s to the left, rad/s"""
+Command = Callable[[float], Twist] | Twist | None
 
+GAITS = ("auto", "trot", "walking_trot", "crawl")
+"""what set_gait takes; in the order of GaitName, whose stand no robot walks with"""
 FEET = ("front_left", "front_right", "rear_left", "rear_right")
-_LIE, _LIFT, _MOVE_JOINTS = 1, 3, 7
+_LIE, _LIFT, _MOVE_JOINTS, _GAIT = 1, 3, 7, 8
 """StanceMode of src/signals/legged/legged_command.h; standing up follows lying down."""
 _POSE = (0.0,) * 6
 _JOINTS = (0.0,) * 12
@@ -49,7 +53,7 @@ class ClosedLoop:
     drive it        run, step, command, record
     stop it         e_stop, e_stop_reset, heartbeat, set_pause, reset
     change it       set_parameters, inject_fault
-    move its legs   set_posture, body_pose, foot_target, joint_targets
+    move its legs   set_posture, set_gait, body_pose, foot_target, joint_targets
     keep a log      log_into, end_log
     read it         robot, units, time, cycle, period, paused, stop_distance, smooth_speed
 
@@ -81,6 +85,7 @@ class ClosedLoop:
     ) -> None:
         """Takes the arguments above."""
         self._running = False
+        self._mode = 0
         self._path, self._values = layered(params, urdf)
         if scene is not None:
             self._values.append((f"{DRIVER}.scene", utf8(scene)))
@@ -140,9 +145,23 @@ class ClosedLoop:
         """
         self._loop.set_parameters(flow_text(values))
 
-    def command(self, linear: float = 0.0, angular: float = 0.0) -> None:
-        """Acts as a message on cmd_vel: linear [m/s], angular [rad/s]; it times out like cmd_vel."""
-        self._loop.command(linear, angular)
+    def command(self, linear: float = 0.0, angular: float = 0.0, *, lateral: float = 0.0) -> None:
+        """Acts as a message on cmd_vel: linear [m/s], angular [rad/s], of a robot on legs also lateral [m/s], to the
+        left. It times out like cmd_vel. A robot that lies stands up first.
+        """
+        self._loop.command(linear, angular, lateral, self._mode)
+
+    def set_gait(self, gait: str) -> None:
+        """Acts as a call of `set_gait` of a robot on legs, for the commands that follow.
+
+        Args:
+            gait: "auto" (the speed chooses), "trot", "walking_trot" or "crawl"
+
+        Raises:
+            ValueError: another word.
+        """
+        index = _index(gait, GAITS, "gait")
+        self._mode = _GAIT + index if index else 0
 
     def set_posture(self, posture: str) -> None:
         """Acts as a call of `set_posture` of a robot on legs.
@@ -221,8 +240,8 @@ class ClosedLoop:
         Args:
             seconds: s, rounded to whole cycles.
             command: called with the time [s] of each cycle, gives (linear [m/s], angular [rad/s]), each as
-                if just received; or one such pair for every cycle; or None: the last `command`, which
-                times out like cmd_vel.
+                if just received; of a robot on legs also (linear, lateral [m/s], angular); or one such tuple for
+                every cycle; or None: the last `command`, which times out like cmd_vel.
 
         Returns:
             Column name → float array of shape (cycles,); NaN where a node published nothing. Units: `units`.
@@ -235,11 +254,11 @@ class ClosedLoop:
         cycles = round(seconds / self.period)
         return self._run(cycles, command if command is None or callable(command) else lambda _time: command)
 
-    def _run(self, cycles: int, command: Callable[[float], tuple[float, float]] | None) -> Log:
+    def _run(self, cycles: int, command: Callable[[float], Twist] | None) -> Log:
         self._refuse_inside_a_run("step and run")
         self._running = True
         try:
-            return self._loop.run(cycles, command)
+            return self._loop.run(cycles, command, None, self._mode)
         finally:
             self._running = False
 

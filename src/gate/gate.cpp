@@ -36,6 +36,7 @@ const StopAction& checked(const StopAction& action, std::size_t joint) {
   check("stop damping", action.damping);
   check("stop stiffness", action.stiffness);
   check("stop time", action.time);
+  check("stop time of a walk", action.walking_time);
   if (!std::isfinite(action.posture)) refuse("stop posture", joint, action.posture, "that is finite");
   if (action.upright && !std::isfinite(*action.upright))
     refuse("upright position", joint, *action.upright, "that is finite");
@@ -72,7 +73,7 @@ void Gate::enter_run() noexcept {
   for (JointStop& stop : stops_) stop.release();
   last_cycle_.reset();
   newest_permit_ = ramp_began_ = 0;
-  ramping_ = false;
+  ramping_ = walks_ = false;
   report_ = GateReport{};
 }
 
@@ -80,6 +81,7 @@ std::span<const JointCommand> Gate::step(const GateInput& input) noexcept {
   report_.cycle = input.cycle;
   report_.verdict = GateVerdict::kBrake;
   report_.reasons = 0;
+  report_.stance = {};
   read_samples(input);
   if (!check_and_clamp(input)) stop(elapsed_at(input.cycle));
   remember();
@@ -114,6 +116,8 @@ bool Gate::check_and_clamp(const GateInput& input) noexcept {
     report_.reasons |= kGateControllerBrake;
     return true;
   }
+  report_.stance = input.command->legged.stance;
+  walks_ = input.command->legged.phase == LegPhase::kWalking;
   clamp(static_cast<double>(elapsed_at(input.cycle)) * period_);
   if (input.permit->action == PermitAction::kRamp) {
     report_.verdict = GateVerdict::kRamp;
@@ -248,7 +252,7 @@ void Gate::clamp(double elapsed) noexcept {
 void Gate::stop(std::uint64_t elapsed) noexcept {
   for (std::size_t i = 0; i < limits_.size(); ++i) {
     const auto position = has_position(i) ? std::optional(samples_[i].position) : std::nullopt;
-    commands_[i] = stops_[i].step(position, static_cast<double>(elapsed) * period_);
+    commands_[i] = stops_[i].step(position, static_cast<double>(elapsed) * period_, walks_);
   }
 }
 

@@ -107,6 +107,7 @@ class Gate {
   std::optional<std::uint64_t> last_cycle_;  ///< of the last tick
   std::uint64_t newest_permit_ = 0;          ///< cycle of the newest permit seen in this run
   bool ramping_ = false;                     ///< the last permit that had not expired was a ramp
+  bool walks_ = false;                       ///< the last command that was executed walked
   std::uint64_t ramp_began_ = 0;             ///< the tick of its first permit
   std::array<JointCommand, kMaxJoints> commands_{};
   GateReport report_;

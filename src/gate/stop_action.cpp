@@ -13,7 +13,7 @@ constexpr double kFade = 0.2;
 
 }  // namespace
 
-JointCommand JointStop::step(std::optional<double> position, double dt) noexcept {
+JointCommand JointStop::step(std::optional<double> position, double dt, bool walked) noexcept {
   const JointCommand damped{.mode = JointMode::kVelocity, .damping = action_.damping};
   switch (action_.kind) {
     case StopKind::kCoast:
@@ -27,14 +27,15 @@ JointCommand JointStop::step(std::optional<double> position, double dt) noexcept
   }
   if (!begin_) begin_ = position;
   elapsed_ += dt;
-  if (!begin_ || elapsed_ >= action_.time) return damped;
-  const double falling = std::min(1 / kQuick, left_ / kGentle) / action_.time;
+  const double time = walked ? action_.walking_time : action_.time;
+  if (!begin_ || elapsed_ >= time) return damped;
+  const double falling = std::min(1 / kQuick, left_ / kGentle) / time;
   left_ = std::max(0.0, left_ - falling * dt);
   const double own = *begin_ - action_.posture, usual = action_.upright.value_or(*begin_) - action_.posture;
   const bool ahead = own * usual > 0 && std::abs(own) < std::abs(usual);
   const double path = ahead ? usual : own;
   const double begun = ahead ? own / usual : 1;
-  const double held = std::min(1.0, (action_.time - elapsed_) / (kFade * action_.time));
+  const double held = std::min(1.0, (time - elapsed_) / (kFade * time));
   return {.mode = JointMode::kImpedance,
           .position = action_.posture + std::min(left_, begun) * path,
           .velocity = left_ < begun ? -falling * path : 0,

@@ -11,7 +11,8 @@
 ///           the ground slowly: the first part is 1/0.64 times as fast as the mean. q* = P + u (Q − P). A joint with Q
 ///           between P and `upright`, U, is ahead of the others, for instance that of a foot in the air, or while the
 ///           robot rises. It waits for them: q* = P + min(u, (Q − P)/(U − P)) (U − P). In the last 0.2 of `time` the
-///           stiffness falls to 0. After `time`, and without a position, it is kDamp
+///           stiffness falls to 0. After `time`, and without a position, it is kDamp. A machine that walks has
+///           `walking_time` in place of `time`: a foot stays behind while the body moves on
 ///
 /// A driver that cannot carry out an action says so (Driver::accepts), and the loop does not start.
 
@@ -37,6 +38,7 @@ struct StopAction {
   double posture = 0;                            ///< rad or m, P of kFold
   std::optional<double> upright = std::nullopt;  ///< rad or m, U of kFold; none: no joint waits
   double time = 0;                               ///< s, ≥ 0; kFold
+  double walking_time = 0;                       ///< s, ≥ 0; kFold
 };
 
 /// The stop of one joint as a law. Its state is empty while a command moves the joint.
@@ -52,7 +54,8 @@ class JointStop {
   }
 
   /// Returns the order of one cycle, `dt` s after the last one. `position`: measured, rad or m; none: not known.
-  JointCommand step(std::optional<double> position, double dt) noexcept;
+  /// `walked`: the machine walked before the first order.
+  JointCommand step(std::optional<double> position, double dt, bool walked = false) noexcept;
 
  private:
   StopAction action_;

@@ -6,6 +6,7 @@
 
 #include "control/legged/body_bounds.h"
 #include "control/legged/leg_controller.h"
+#include "control/legged/walking/walking_speed.h"
 #include "estimation/legged/legged_estimator.h"
 #include "parameters/problem_list.h"
 #include "safety/conditions/legged/legged_conditions.h"
@@ -45,7 +46,8 @@ void Quadruped::require_drivable() const {
 
 SafetyParameters Quadruped::limits() const {
   SafetyParameters limits = legged_limits(parameters_.safety, machine_);
-  limits.ramp_time = std::max(limits.ramp_time, lying_down_time(machine_));
+  limits.ramp_time =
+      std::max(limits.ramp_time, walk_ending_time(parameters_.leg_control, machine_) + lying_down_time(machine_));
   limits.imu_lost.reaction = Reaction::kBrake;
   limits.lift.reaction = Reaction::kOff;  // a robot that lies stands on no foot
   return limits;
@@ -60,8 +62,7 @@ std::unique_ptr<EstimatorLaw> Quadruped::make_estimator() const {
 }
 
 std::unique_ptr<ControllerLaw> Quadruped::make_controller() const {
-  return std::make_unique<ControllerOf<LegController>>(machine_, parameters_.leg_control.request_timeout,
-                                                       parameters_.loop.period());
+  return std::make_unique<ControllerOf<LegController>>(machine_, parameters_.leg_control, parameters_.loop.period());
 }
 
 std::unique_ptr<MonitorLaw> Quadruped::make_monitor() const {
@@ -84,7 +85,8 @@ GateParameters Quadruped::gate() const {
                             .stiffness = kFoldStiffness * tuning.stiffness,
                             .posture = leg.lying[i],
                             .upright = standing[i],
-                            .time = kFoldTime * std::sqrt(machine_.leg_length() / 0.426)});
+                            .time = kFoldTime * std::sqrt(machine_.leg_length() / 0.426),
+                            .walking_time = kWalkingFoldTime * std::sqrt(machine_.leg_length() / 0.426)});
     }
   }
   return gate;

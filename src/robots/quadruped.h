@@ -3,7 +3,8 @@
 ///
 ///   recognised by   four legs (machine/legs/leg_model.h)
 ///   laws            estimation/legged, control/legged, safety/conditions/legged
-///   stop action     fold: every joint moves to the lying posture within kFoldTime, kFoldStiffness times as stiff as
+///   stop action     fold: every joint moves to the lying posture within kFoldTime, in a walk kWalkingFoldTime,
+///                   kFoldStiffness times as stiff as
 ///                   while it stands, since no feed-forward carries the body. Then it damps
 ///   ramp            the robot lies down
 ///
@@ -20,8 +21,9 @@ namespace robot_control {
 
 class Quadruped final : public Robot {
  public:
-  static constexpr double kFoldTime = 1.25;    ///< s
-  static constexpr double kFoldStiffness = 3;  ///< as damping its root
+  static constexpr double kFoldTime = 1.25;        ///< s
+  static constexpr double kWalkingFoldTime = 0.2;  ///< s
+  static constexpr double kFoldStiffness = 3;      ///< as damping its root
 
   Quadruped(const Parameters& parameters, const LegModel& machine);
 

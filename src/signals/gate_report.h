@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "signals/legged/legged_command.h"
+
 namespace robot_control {
 
 enum class GateVerdict : std::uint64_t {
@@ -46,6 +48,7 @@ struct GateReport {
   std::uint64_t missed = 0;         ///< Ticks of this run that braked because no command was available, except tick 0.
   std::uint64_t late_permits = 0;   ///< Ticks of this run whose permit was older than k-1, except tick 0.
   std::uint64_t refused = 0;        ///< Frames refused in this run for checksum, future, count, finiteness or mode.
+  FootStances stance{};  ///< LeggedCommand::stance of the command that this tick executed; 0 where it braked.
 };
 
 }  // namespace robot_control

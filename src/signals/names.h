@@ -107,7 +107,7 @@ inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
      "a sender goes on requesting motion that was requested before a stop, a restart or a pause, or meanwhile",
      "let it send zero, or restart it"},
     {kReasonPartIgnored, "part_ignored", "a part of the request is ignored, because this robot cannot execute it",
-     "request only what this robot can do; a differential drive takes linear.x and angular.z, a robot on legs no twist"},
+     "request only what this robot can do; a differential drive takes linear.x and angular.z, a robot on legs linear.y, too"},
     {kReasonCurvatureKept, "curvature_kept", "one axis was scaled to keep the commanded curvature", ""},
     {kReasonSaturated, "saturated", "a wheel's torque or speed is at its limit", ""},
     {kReasonOutOfReach, "out_of_reach", "the requested pose is beyond the ranges of the legs: the body stops before it",
@@ -116,6 +116,8 @@ inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
      "call set_posture with 'standing'"},
     {kReasonNotLying, "not_lying", "positions of joints are requested, and the robot does not lie",
      "call set_posture with 'lying'"},
+    {kReasonLegSpeed, "leg_speed", "the legs do not carry the body faster, by the speed limits of their joints or their "
+     "reach", "request less speed"},
 });
 
 inline constexpr auto kRequestPartNames = std::to_array<BitName>({
@@ -218,7 +220,8 @@ constexpr std::string_view name_of(LinkState state) noexcept {
 }
 
 constexpr std::string_view name_of(LegPhase phase) noexcept {
-  constexpr std::array<std::string_view, 6> kNames{"lying", "gathering", "rising", "standing", "lowering", "joints"};
+  constexpr std::array<std::string_view, 7> kNames{"lying",    "gathering", "rising", "standing",
+                                                   "lowering", "joints",    "walking"};
   const auto index = static_cast<std::size_t>(phase);
   return index < kNames.size() ? kNames[index] : "unknown";
 }

@@ -30,6 +30,15 @@ TEST_F(GateTest, ReportsTheCommandThatItFindsWhateverThePermitSays) {
   EXPECT_EQ(gate_.report().command_cycle, 0u);
 }
 
+TEST_F(GateTest, ReportsWhatTheExecutedCommandAsksOfTheFeet) {
+  command_.legged.stance = {0.25, 0, 0, 0.25};
+  step();
+  EXPECT_EQ(gate_.report().stance, command_.legged.stance);
+  permit_.action = PermitAction::kBrake;
+  step();
+  EXPECT_EQ(gate_.report().stance, FootStances{});
+}
+
 // 1. Is the permit alive?
 
 TEST_F(GateTest, BrakesInTickZero) {

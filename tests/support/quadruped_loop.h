@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -46,6 +47,7 @@ class QuadrupedLoop {
   void step() {
     loop.step();
     if (record) recording.add(loop);
+    if (after_step) after_step();
     const TruthFrame& now = truth();
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       effort = std::max(effort, std::abs(now.joints[i].effort) / robot().joints[i].effort_limit);
@@ -94,6 +96,7 @@ class QuadrupedLoop {
   ClosedLoop loop;
   Recording recording;
   bool record = false;
+  std::function<void()> after_step;  // is called after each cycle
   // Largest values since `clear`.
   double effort = 0;                    // of the limits
   double tilt = 0;                      // rad

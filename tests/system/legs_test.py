@@ -14,7 +14,7 @@ from geometry_msgs.msg import Twist
 from launch_support import Launch
 from nav_msgs.msg import Odometry
 from robot_control.msg import BodyPose, FootTarget, LegState, RobotStatus, SafetyStatus
-from robot_control.srv import SetPosture
+from robot_control.srv import SetGait, SetPosture
 from std_srvs.srv import Trigger
 from system_support import CONTROLLER, LIMIT, init_test_node, refusal, repository, wait_for
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -128,15 +128,19 @@ class LegsTest(unittest.TestCase):
         self.send_until("a refused pose", BodyPose(roll=0.1), lambda: "not_standing" in self.legs.reasons)
         self.assertFalse(math.isnan(self.legs.actual[0]))
 
-    def test_a_walk_and_an_unknown_foot_are_refused_in_words(self) -> None:
-        walk = Twist()
-        walk.linear.x = 0.5
+    def test_it_walks_on_a_twist_and_refuses_unknown_gaits_and_feet_in_words(self) -> None:
         wait_for("a subscriber", lambda: self.cmd_vel.get_num_connections() > 0)
-        wait_for(
-            "the refusal of a walk",
-            lambda: "this robot does not walk yet; body_pose moves its body" in self.launch.output,
-            every=lambda: self.cmd_vel.publish(walk),
-        )
+        self.cmd_vel.publish(Twist())  # a stop may have revoked this sender: its zero ends that
+        walk = Twist()
+        walk.linear.x = 0.2
+        wait_for("a walk", lambda: self.legs.posture == "walking", every=lambda: self.cmd_vel.publish(walk))
+        self.assertEqual(self.legs.gait, "trot")
+        set_gait = rospy.ServiceProxy("set_gait", SetGait)
+        self.assertFalse(set_gait("moonwalk").success)
+        self.assertTrue(set_gait("crawl").success)
+        wait_for("a crawl", lambda: self.legs.gait == "crawl", every=lambda: self.cmd_vel.publish(walk))
+        self.assertTrue(set_gait("auto").success)
+        wait_for("standing", lambda: self.legs.posture == "standing", every=lambda: self.cmd_vel.publish(Twist()))
         wait_for(
             "the refusal of a foot",
             lambda: "there is no foot 'tail'; name one of front_left, front_right" in self.launch.output,

@@ -17,6 +17,9 @@ def measured(name, value):
         ("stops", 0, 0),
         ("stops", 1, 2),
         ("mass matrix against MuJoCo", 5e-10, 0.5),
+        ("NEES of the pose, eight", 1, 0.5),
+        ("NEES of the pose, eight", 0.4, 1.25),
+        ("NEES of the pose, eight", 2.5, 1.25),
     ],
 )
 def test_a_figure_has_the_bound_of_its_longest_known_beginning(figure, value, ratio):

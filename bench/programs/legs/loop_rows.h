@@ -32,6 +32,21 @@ void replayed(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// The time of each law's step, its allocations, and the time of a cycle of ClosedLoop beside that of a bare mj_step.
 void cost(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 
+/// The estimated way of a straight line, a square and an eight of 20 m against the truth, without foot sensors.
+void odometry(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// Touchdowns that the estimator finds without foot sensors.
+void contact(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+
+/// Trots at four speeds, sideways, turning and on all axes. Each walk ends with a zero. The sensors have the errors of
+/// data sheets, and the feet no force sensors. The next three rows have the same sensors.
+void trot(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// Crawl and walking trot.
+void gaits(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// A trot of 0.5 m/s.
+void robots(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// An e-stop in 40 phases of a gait, at three speeds, in a crawl, sideways and while it turns.
+void walking_stop(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+
 inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kSway = 0.5;  ///< Hz
 

@@ -8,7 +8,7 @@
 
 #include "control/legged/foot_forces.h"
 #include "control/legged/leg_controller.h"
-#include "machine/legs/leg_dynamics.h"
+#include "control/legged/nominal_stance.h"
 
 namespace robot_control {
 namespace {
@@ -22,41 +22,8 @@ constexpr double kSettle = 0.05;  // s, of an axis that arrives
 using Feet = std::array<Eigen::Vector3d, kLegs>;
 using Axes = Eigen::Matrix<double, 6, 1>;
 
-/// A robot that stands at its nominal pose, in the base's axes.
-struct Stance {
-  Feet feet{};  ///< m
-  LeggedMotion motion;
-  LeggedEquations equations;
-  std::optional<LegPlace> short_leg;
-};
-
-Stance nominal_stance(const LegModel& robot) {
-  const LegDynamics dynamics(robot);
-  const double height = nominal_height(robot);
-  Stance stance;
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    Eigen::Vector3d& foot = stance.feet[leg];
-    foot = robot.legs[leg].kinematics.position(robot.legs[leg].lying);
-    foot.z() = robot.belly + robot.legs[leg].foot_radius - height;
-    middle += foot / kLegs;
-  }
-  for (int pass = 0; pass < 2; ++pass) {  // the centre of gravity comes above the middle of the feet
-    const Eigen::Vector3d off = stance.equations.centre_of_gravity - middle;
-    for (std::size_t leg = 0; leg < kLegs; ++leg) {
-      if (pass > 0) stance.feet[leg].head<2>() += off.head<2>();
-      const LegSolution solution = robot.legs[leg].kinematics.inverse(stance.feet[leg]);
-      if (pass > 0 && solution.reach != FootReach::kReached) stance.short_leg = static_cast<LegPlace>(leg);
-      for (std::size_t i = 0; i < kLegJoints; ++i)
-        stance.motion.angles[kLegJoints * leg + i] = solution.angles[static_cast<Eigen::Index>(i)];
-    }
-    dynamics.step(stance.motion, stance.equations);
-  }
-  return stance;
-}
-
 /// Returns the forces of the feet that carry the weight and accelerate the body so, while they stand.
-Feet forces(const LegModel& robot, const Stance& stance, const Axes& acceleration) {
+Feet forces(const LegModel& robot, const NominalStance& stance, const Axes& acceleration) {
   Eigen::Matrix<double, kLeggedDofs, 1> all;
   all.head<6>() = acceleration;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
@@ -74,17 +41,8 @@ Feet forces(const LegModel& robot, const Stance& stance, const Axes& acceleratio
 
 }  // namespace
 
-double nominal_height(const LegModel& robot) noexcept {
-  const LegGeometry& first = robot.legs[0].kinematics.geometry();
-  return leg_tuning(robot).height - first.hip.z() - first.upper.z() + robot.belly + robot.legs[0].foot_radius;
-}
-
-std::optional<LegPlace> short_leg(const LegModel& robot) {
-  return nominal_stance(robot).short_leg;
-}
-
 std::array<AxisBounds, 6> body_bounds(const LegModel& robot) {
-  const Stance stance = nominal_stance(robot);
+  const NominalStance stance = nominal_stance(robot);
   const Feet weight = forces(robot, stance, Axes::Zero());
   const double time = std::sqrt(robot.leg_length() / 0.426);
   std::array<AxisBounds, 6> bounds;

@@ -13,18 +13,12 @@
 /// 0.9 rad/s, so that roll and pitch together stay below the default of tip_over, 1.5 rad/s.
 
 #include <array>
-#include <optional>
 
+#include "control/legged/nominal_stance.h"
 #include "control/legged/tracked_axis.h"
 #include "machine/legs/leg_model.h"
 
 namespace robot_control {
-
-/// Returns the nominal height of the body above the one that lies level, in m.
-double nominal_height(const LegModel& robot) noexcept;
-
-/// Returns a leg that does not reach the ground in the nominal pose.
-std::optional<LegPlace> short_leg(const LegModel& robot);
 
 /// Returns the bounds of x, y and height in m, and of roll, pitch and yaw in rad.
 std::array<AxisBounds, 6> body_bounds(const LegModel& robot);

@@ -30,7 +30,7 @@ ForcePlanParameters force_plan_parameters(double mass, const Eigen::Matrix3d& in
   const double length = leg_length / kReferenceLeg, heaviness = mass / 12.7;
   ForcePlanParameters parameters{.mass = mass, .inertia = inertia, .horizon = 0.3 * std::sqrt(length)};
   const double place = 1 / (length * length), turning = length, moving = 1 / length;
-  parameters.place_weight << 4, 4, 10, 2 * place, 2 * place, 50 * place;
+  parameters.place_weight << 4, 4, 10, 6 * place, 6 * place, 50 * place;
   parameters.speed_weight << 0.01 * turning, 0.01 * turning, 0.3 * turning, 0.2 * moving, 0.2 * moving, 0.1 * moving;
   parameters.force_weight = 4e-5 / (heaviness * heaviness);
   parameters.friction = 0.4;

@@ -9,6 +9,7 @@
 ///
 /// Offsets are in the order of LegPlace.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -52,6 +53,16 @@ struct Gait {
   }
 };
 
+/// Returns true if a robot can walk with this gait. Each foot has to bear for a part of the period, to swing for long
+/// enough, and to be lifted.
+constexpr bool walkable(const Gait& gait) noexcept {
+  constexpr double kMinSwing = 0.05;  // s
+  if (!(gait.duty > 0 && gait.duty <= 1 && gait.lift >= 0 && gait.period > 0)) return false;
+  for (const double offset : gait.phase)
+    if (!(offset >= 0 && offset < 1)) return false;
+  return gait.duty == 1 || (gait.lift > 0 && gait.period * (1 - gait.duty) >= kMinSwing);
+}
+
 enum class GaitName { kStand, kTrot, kWalkingTrot, kCrawl };
 
 /// By GaitName.
@@ -61,5 +72,6 @@ inline constexpr std::array kGaits{
     Gait{"walking_trot", 0.5, 0.6, {0.5, 0, 0, 0.5}, 0.07},
     Gait{"crawl", 1.0, 0.78, {0, 0.5, 0.25, 0.75}, 0.06},
 };
+static_assert(std::all_of(kGaits.begin(), kGaits.end(), walkable));
 
 }  // namespace robot_control

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "control/legged/body_bounds.h"
+#include "control/legged/walking/walking_speed.h"
 
 namespace robot_control {
 namespace {
@@ -44,7 +45,7 @@ void approach(double& value, double target, double step) noexcept {
 
 }  // namespace
 
-LegController::LegController(const LegModel& robot, double timeout, double period)
+LegController::LegController(const LegModel& robot, const LegControllerParameters& parameters, double period)
     : period_(period),
       legs_(robot.legs),
       dynamics_(robot),
@@ -52,7 +53,12 @@ LegController::LegController(const LegModel& robot, double timeout, double perio
       ground_(robot.belly),
       nominal_(nominal_height(robot)),
       body_motion_(body_bounds(robot)),
-      state_(CommandWatch(timeout, period, kExecutable)) {
+      lie_down_after_(parameters.lie_down_after),
+      limiter_(twist_limits(parameters)),
+      walker_(robot, parameters.friction, period),
+      state_(CommandWatch(parameters.request_timeout, period, kExecutable)) {
+  const NominalStance stance = nominal_stance(robot);
+  for (std::size_t i = 0; i < fastest_.size(); ++i) fastest_[i] = walking_speed(robot, stance, walker_.gaits()[i]);
   const std::array<JointBounds, kLegsJoints> bounds = joint_bounds(robot);
   for (std::size_t i = 0; i < kLegsJoints; ++i) {
     joint_ranges_[i] = bounds[i].range;
@@ -94,12 +100,16 @@ void LegController::step(const ControlInput& input, CommandFrame& out) noexcept 
   }
   state_.pace = std::min(1.0, input.permit->speed_limit / body_motion_[kX].speed);
   const bool of_joints = request.mode == kStanceJoints;
-  const bool of_standing = !of_joints && ((parts_of(request) & kPose) != 0 || request.mode >= kStanceLift);
-  if (of_standing && state_.phase != LegPhase::kStanding) out.reasons |= kReasonNotStanding;
+  const bool lifts = request.mode >= kStanceLift && request.mode < kStanceLift + kLegs;
+  const bool of_standing = !of_joints && ((parts_of(request) & kPose) != 0 || lifts);
+  const bool stands = state_.phase == LegPhase::kStanding || (state_.phase == LegPhase::kWalking && !lifts);
+  if (of_standing && !stands && !walks(request)) out.reasons |= kReasonNotStanding;
+  if (request.mode >= kStanceGait + kGaits.size() || request.mode == kStanceGait) out.reasons |= kReasonPartIgnored;
   const bool lies = state_.phase == LegPhase::kLying || state_.phase == LegPhase::kJoints;
   if (of_joints && !lies) out.reasons |= kReasonNotLying;
   const std::array<double, kLegsJoints> before = state_.angles;
-  const bool began = advance(request, sensors, out.reasons);
+  const bool began = advance(request, input, out.reasons);
+  if (state_.phase == LegPhase::kWalking) return walk(input, request, out);
   report(out);
   if (state_.phase == LegPhase::kLying) {
     out.reasons |= kReasonHolding;
@@ -116,20 +126,22 @@ void LegController::step(const ControlInput& input, CommandFrame& out) noexcept 
 }
 
 /// Returns true if the joints begin to move in this cycle.
-bool LegController::advance(const Request& request, const SensorFrame& sensors, std::uint64_t& reasons) noexcept {
+bool LegController::advance(const Request& request, const ControlInput& input, std::uint64_t& reasons) noexcept {
   state_.elapsed += period_;
   const bool down = request.mode == kStanceLie;
+  const bool up = request.mode == kStanceStand || walks(request);
   switch (state_.phase) {
     case LegPhase::kLying:
-      if (request.mode != kStanceStand && request.mode != kStanceJoints) return false;
-      for (std::size_t i = 0; i < kLegsJoints; ++i) state_.from[i] = state_.angles[i] = sensors.joints[i].position;
+      if (!up && request.mode != kStanceJoints) return false;
+      for (std::size_t i = 0; i < kLegsJoints; ++i)
+        state_.from[i] = state_.angles[i] = input.sensors->joints[i].position;
       state_.joints.begin(state_.from);
-      enter(request.mode == kStanceStand ? LegPhase::kGathering : LegPhase::kJoints, 0);
+      enter(up ? LegPhase::kGathering : LegPhase::kJoints, 0);
       return true;
     case LegPhase::kJoints:
       move_joints(request, reasons);
       state_.from = state_.angles;
-      if (request.mode == kStanceStand) enter(LegPhase::kGathering, 0);
+      if (up) enter(LegPhase::kGathering, 0);
       if (down) enter(LegPhase::kLying, 0);
       return false;
     case LegPhase::kGathering:
@@ -150,11 +162,16 @@ bool LegController::advance(const Request& request, const SensorFrame& sensors, 
       return false;
     case LegPhase::kStanding:
       stand(request, reasons);
-      if (down) enter(LegPhase::kLowering, 0);
+      state_.idle = parts_of(request) == 0 ? state_.idle + period_ : 0;
+      if (walks(request) && state_.lifted == kLegs) begin_walk(input);
+      if (down || state_.lies_next != 0 || (lie_down_after_ > 0 && state_.idle >= lie_down_after_))
+        enter(LegPhase::kLowering, 0);
+      return false;
+    case LegPhase::kWalking:
       return false;
     case LegPhase::kLowering:
       lower(reasons);
-      if (request.mode == kStanceStand && state_.phase == LegPhase::kLowering)
+      if (up && state_.phase == LegPhase::kLowering)
         enter(state_.sinks != 0 ? LegPhase::kRising : LegPhase::kStanding, tuning_.rise_time - state_.elapsed);
       return false;
   }
@@ -164,6 +181,8 @@ bool LegController::advance(const Request& request, const SensorFrame& sensors, 
 void LegController::report(CommandFrame& out) const noexcept {
   out.legged.phase = state_.phase;
   out.legged.lifted = state_.phase >= LegPhase::kStanding && state_.lifted != kLegs ? state_.lifted + 1 : 0;
+  if (state_.phase < LegPhase::kRising || state_.phase > LegPhase::kLowering) return;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) out.legged.stance[leg] = state_.share[leg] > 0 ? 0.5 : 0;
   if (state_.phase != LegPhase::kStanding) return;
   const std::array<double, 3> nominal{state_.home[0], state_.home[1], nominal_};
   for (std::size_t i = 0; i < state_.body.size(); ++i)
@@ -174,6 +193,8 @@ void LegController::enter(LegPhase phase, double elapsed) noexcept {
   state_.phase = phase;
   state_.elapsed = std::max(0.0, elapsed);
   state_.sinks = 0;
+  state_.idle = 0;
+  state_.lies_next = 0;
 }
 
 void LegController::move_joints(const Request& request, std::uint64_t& reasons) noexcept {
@@ -232,7 +253,6 @@ void LegController::rise(double elapsed, std::uint64_t& reasons) noexcept {
 
 void LegController::stand(const Request& request, std::uint64_t& reasons) noexcept {
   const bool lifts = request.mode >= kStanceLift && request.mode < kStanceLift + kLegs;
-  if (request.mode > kStanceJoints) reasons |= kReasonPartIgnored;
   const std::uint64_t wanted = lifts ? request.mode - kStanceLift : kLegs;
   if (state_.lifted == kLegs && lifts) {
     state_.lifted = wanted;

@@ -53,7 +53,11 @@
 #include "control/command_watch.h"
 #include "control/control_input.h"
 #include "control/legged/joint_motion.h"
+#include "control/legged/leg_controller_parameters.h"
+#include "control/legged/leg_tuning.h"
 #include "control/legged/tracked_axis.h"
+#include "control/legged/walking/twist_limiter.h"
+#include "control/legged/walking/walker.h"
 #include "machine/legs/leg_dynamics.h"
 #include "machine/legs/leg_model.h"
 #include "signals/command_frame.h"
@@ -61,42 +65,18 @@
 
 namespace robot_control {
 
-/// The values that follow from the robot.
-struct LegTuning {
-  double stiffness = 0;     ///< N·m/rad, of each joint
-  double damping = 0;       ///< N·m·s/rad
-  double gather_speed = 0;  ///< rad/s
-  double rise_time = 0;     ///< s, also of lowering
-  double height = 0;        ///< m, from the feet to the second joints, while standing
-  double lift = 0;          ///< m, of a foot in the air
-  double sway = 0;          ///< m, range of the body in x and y
-  double bob = 0;           ///< m, range of its height
-  double lean = 0;          ///< rad, range of roll and pitch together, and of yaw
-  double foot_range = 0;    ///< m, of a foot in the air, from above its place
-  AxisBounds foot;          ///< m
-  AxisBounds joint;         ///< rad, of a joint while the robot lies
-};
-
-LegTuning leg_tuning(const LegModel& robot) noexcept;
-
 inline constexpr double kLoadTime = 0.2;  ///< s, in which a foot's share of the weight comes and goes
-
-/// The bounds of a joint while the robot lies.
-struct JointBounds {
-  JointRange range;   ///< rad; ±∞ where it turns without end
-  AxisBounds motion;  ///< rad
-};
-std::array<JointBounds, kLegsJoints> joint_bounds(const LegModel& robot) noexcept;
 
 static_assert(kLegsJoints == kRequestJoints);
 
 class LegController {
  public:
   static constexpr std::uint64_t kPose = kPartHeight | kPartRoll | kPartPitch | kPartX | kPartY | kPartYaw;
-  static constexpr std::uint64_t kExecutable = kPose | kPartMode | kPartJoints;  ///< of RequestPart
+  static constexpr std::uint64_t kWalk = kPartLinearX | kPartLinearY | kPartAngularZ;
+  static constexpr std::uint64_t kExecutable = kPose | kWalk | kPartMode | kPartJoints;  ///< of RequestPart
 
-  /// `timeout` of a request and `period` are in s.
-  LegController(const LegModel& robot, double timeout, double period);
+  /// `period` s.
+  LegController(const LegModel& robot, const LegControllerParameters& parameters, double period);
 
   void enter_run(const VelocityCommand& inbox, bool with_zero) noexcept;
 
@@ -133,6 +113,12 @@ class LegController {
     std::array<double, kLegs> share{};  ///< of foot_forces.h
     std::array<double, 2> centre{};     ///< m, x and y of the centre of gravity in the base's axes
     std::array<double, 2> home{};       ///< m, x and y of the standing body: its centre of gravity is amid its feet
+    Walker::State walk;
+    TwistLimiter::State twist;
+    std::array<TrackedAxis, 3> carried{};  ///< height, roll and pitch of the body that walks, from the nominal pose
+    std::uint64_t gait = 0;                ///< GaitName, the last one that was chosen
+    std::uint64_t lies_next = 0;           ///< 1: it lies down when the walk has ended
+    double idle = 0;                       ///< s without a request of motion
     std::array<double, kLeggedDofs> velocity{};      ///< of the reference, in the order of leg_dynamics.h
     std::array<double, kLeggedDofs> acceleration{};  ///< of the reference, through a low pass
   };
@@ -143,7 +129,13 @@ class LegController {
   static constexpr std::size_t kX = 0, kY = 1, kZ = 2, kRoll = 3, kPitch = 4, kYaw = 5;  ///< indices of a Pose
   static constexpr double kArrived = 0.0005;                                             ///< m and rad
 
-  bool advance(const Request& request, const SensorFrame& sensors, std::uint64_t& reasons) noexcept;
+  bool advance(const Request& request, const ControlInput& input, std::uint64_t& reasons) noexcept;
+  bool walks(const Request& request) const noexcept;
+  void begin_walk(const ControlInput& input) noexcept;
+  void walk(const ControlInput& input, const Request& request, CommandFrame& out) noexcept;
+  GaitName choose_gait(const Request& request, const WalkingTwist& twist) noexcept;
+  void carry(const Request& request, std::uint64_t& reasons) noexcept;
+  void stand_here(const ControlInput& input) noexcept;
   void report(CommandFrame& out) const noexcept;
   void enter(LegPhase phase, double elapsed) noexcept;
   void move_joints(const Request& request, std::uint64_t& reasons) noexcept;
@@ -180,6 +172,10 @@ class LegController {
   double ground_;   ///< m, height of the ground below the base of a robot that lies level
   double nominal_;  ///< m, height of the standing body above one that lies level
   std::array<AxisBounds, 6> body_motion_;
+  double lie_down_after_;  ///< s; 0: never
+  TwistLimiter limiter_;
+  Walker walker_;
+  std::array<WalkingTwist, kGaits.size()> fastest_{};  ///< by GaitName
   State state_;
 };
 

@@ -1,8 +1,8 @@
+#include "control/legged/leg_tuning.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "control/legged/leg_controller.h"
 
 namespace robot_control {
 

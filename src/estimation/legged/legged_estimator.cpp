@@ -1,75 +1,119 @@
 #include "estimation/legged/legged_estimator.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/legged/small_turn.h"
 #include "machine/gravity.h"
 #include "signals/rotation.h"
 
 namespace robot_control {
 namespace {
 
+using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Map = Eigen::Map<Vector3d>;
 using ConstMap = Eigen::Map<const Vector3d>;
 
-constexpr double kPositionVariance = 1e-6;  // m², of the pose of a robot that never walked
-constexpr double kAngleVariance = 1e-4;     // rad²
-constexpr double kSpeedVariance = 1e-4;     // m²/s²
+constexpr double kFirstTilt = 0.3;          // rad, of the first sample of an accelerometer
+constexpr double kPlainTilt = 0.05;         // rad
+constexpr double kPlainSpeed = 0.05;        // m/s
+constexpr double kHeightDeviation = 0.005;  // m, of a robot that lies or stands on level ground
+constexpr double kRestRate = 0.01;          // rad/s, of one sample of the gyro
+constexpr double kRestSpeed = 0.02;         // m/s
+constexpr double kFallSpeed = 1;            // m/s, of a body on the ground: its velocity vanishes within 0.3 s
+constexpr double kEdge = 0.15;              // of a stance
+// The densities of the filter exceed white noise, so that errors which repeat with every step do not look like
+// knowledge of the tilt. The velocity is better than they say, by this part of the variance
+// (docs/evidence/derivations.md).
+constexpr double kSpeedPart = 0.07;
 
-Quaterniond quaternion(const std::array<double, 4>& q) noexcept {
-  return {q[3], q[0], q[1], q[2]};
-}
-
-void store(const Quaterniond& q, std::array<double, 4>& to) noexcept {
-  const Quaterniond unit = q.normalized();
-  to = {unit.x(), unit.y(), unit.z(), unit.w()};
-}
-
-Quaterniond turned_by(const Vector3d& angle) noexcept {
-  return Quaterniond(1, angle.x() / 2, angle.y() / 2, angle.z() / 2).normalized();
+/// Returns which feet stand: those that bear as the command asked, or, where none is asked to, those that bear. A foot
+/// that stood still does while it may bear.
+std::array<bool, kLegs> feet_that_stand(const SensorFrame& sensors, const LeggedEstimator::State& state) noexcept {
+  std::array<bool, kLegs> stand{};
+  const bool asked = feet_asked(sensors);
+  for (std::size_t leg = 0; leg < kLegs; ++leg)
+    stand[leg] = (FootContacts::bears(state.contacts.probability[leg]) ||
+                  (state.bears[leg] != 0 && state.contacts.probability[leg] > 0)) &&
+                 (sensors.gate.stance[leg] > 0 || !asked);
+  return stand;
 }
 
 }  // namespace
 
-/// The feet in one step, in base axes.
-struct LeggedEstimator::Feet {
-  std::array<Vector3d, kLegs> place;            ///< m
-  std::array<Eigen::Matrix3d, kLegs> jacobian;  ///< m/rad
-  std::array<Vector3d, kLegs> body_velocity;    ///< m/s, of the base if this foot stands
-  std::array<Vector3d, kLegs> rolling;          ///< m/s, of the foot's centre over the ground
-  std::array<double, kLegsJoints> angles{};     ///< rad
-};
-
 LeggedEstimator::LeggedEstimator(const LegModel& robot, double period)
     : period_(period),
       legs_(robot.legs),
-      dynamics_(robot),
+      contacts_(robot),
       base_from_imu_(rotation_of(robot.imu_in_base.orientation)),
-      share_(dynamics_.mass() * kGravity / kLegs),
+      imu_(robot.imu_in_base.position.data()),
       belly_ground_(robot.belly) {
   for (const Leg& leg : legs_) belly_ground_ += leg.foot_radius / kLegs;
+  enter_run();
+}
+
+void LeggedEstimator::enter_run() noexcept {
+  state_ = {};
+  for (int axis = 0; axis < 3; ++axis) {
+    leg_filter().set_variance(LegFilter::kRateBias + axis, LegFilter::kGyroBias * LegFilter::kGyroBias);
+    leg_filter().set_variance(LegFilter::kForceBias + axis,
+                              LegFilter::kAccelerometerBias * LegFilter::kAccelerometerBias);
+  }
+  set_height(0);
 }
 
 void LeggedEstimator::resume(const StateFrame& last) noexcept {
-  state_ = {};
-  state_.attitude = last.base.pose_odom.orientation;
-  state_.position = last.base.pose_odom.position;
-  state_.distance = last.base.distance;
-  Map(state_.bias.data()) = base_from_imu_ * ConstMap(last.base.gyro_bias.data());
+  const BaseState& base = last.base;
+  enter_run();
+  Map(state_.filter.rate_bias.data()) = base_from_imu_ * ConstMap(base.gyro_bias.data());
+  Map(state_.filter.force_bias.data()) = base_from_imu_ * ConstMap(base.accelerometer_bias.data());
+  state_.plain = {.attitude = base.pose_odom.orientation,
+                  .bias = state_.filter.rate_bias,
+                  .velocity = base.twist_base.linear,
+                  .position = base.pose_odom.position};
+  const Quaterniond attitude = quaternion_of(base.pose_odom.orientation);
+  Map(state_.filter.position.data()) = ConstMap(base.pose_odom.position.data()) + attitude * imu_;
+  leg_filter().begin(attitude, attitude * ConstMap(base.twist_base.linear.data()), kPlainTilt, kPlainSpeed);
+  for (std::size_t i = 0; i < 3; ++i)
+    leg_filter().set_variance(LegFilter::kPlace + static_cast<int>(i), base.pose_covariance[7 * i]);
+  leg_filter().set_variance(LegFilter::kTurn + 2, base.pose_covariance[35]);
+  state_.distance = base.distance;
   state_.ground = belly_ground_;
   state_.grounded = state_.begun = 1;
 }
 
 void LeggedEstimator::set_pose(const Vector3& pose) noexcept {
-  const Quaterniond now = quaternion(state_.attitude);
-  const double yaw = yaw_of({now.x(), now.y(), now.z(), now.w()});
-  store(Quaterniond(Eigen::AngleAxisd(pose[2] - yaw, Vector3d::UnitZ())) * now, state_.attitude);
-  state_.position[0] = pose[0];
-  state_.position[1] = pose[1];
-  state_.bears = {};  // each foot gets a new anchor
+  const double turn = pose[2] - yaw_of(state_.filter.attitude);
+  leg_filter().turn(turn);
+  store(Quaterniond(Eigen::AngleAxisd(turn, Vector3d::UnitZ())) * quaternion_of(state_.plain.attitude),
+        state_.plain.attitude);
+  const Vector3d at = position();
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const auto i = static_cast<Eigen::Index>(axis);
+    state_.filter.position[axis] += pose[axis] - at[i];
+    leg_filter().set_variance(LegFilter::kPlace + static_cast<int>(axis), 0);
+  }
+  leg_filter().set_variance(LegFilter::kTurn + 2, 0);
+}
+
+Vector3d LeggedEstimator::rate() const noexcept {
+  return ConstMap(state_.rate.data()) - ConstMap(state_.filter.rate_bias.data());
+}
+
+Vector3d LeggedEstimator::velocity() const noexcept {
+  return quaternion_of(state_.filter.attitude).conjugate() * ConstMap(state_.filter.velocity.data()) -
+         rate().cross(imu_);
+}
+
+Vector3d LeggedEstimator::position() const noexcept {
+  return ConstMap(state_.filter.position.data()) - quaternion_of(state_.filter.attitude) * imu_;
+}
+
+void LeggedEstimator::set_height(double height) noexcept {
+  state_.filter.position[2] += height - position()[2];
+  leg_filter().set_variance(LegFilter::kPlace + 2, kHeightDeviation * kHeightDeviation);
 }
 
 void LeggedEstimator::step(const SensorFrame& sensors, StateFrame& out) noexcept {
@@ -79,161 +123,162 @@ void LeggedEstimator::step(const SensorFrame& sensors, StateFrame& out) noexcept
   state_.last_cycle = cycle;
   const double dt = static_cast<double>(elapsed) * period_;
   const bool measured = joints_have(sensors, kLegsJoints, kValidMotion);
-  const bool felt = turn(sensors, dt);
-  const Feet feet = observe(sensors);
-  if (measured) {
-    weigh(sensors, feet);
-    move(feet, dt);
+  const bool felt = read(sensors, dt);
+  const Vector3d up = quaternion_of(state_.filter.attitude).conjugate() * Vector3d::UnitZ();
+  const FeetMotion feet = feet_motion(legs_, sensors, rate(), up);
+  if (state_.begun != 0) {
+    if (measured) {
+      const Vector3d force = ConstMap(state_.force.data()) - ConstMap(state_.filter.force_bias.data());
+      contacts_.step(sensors, feet, rate(), force, up, dt, state_.contacts);
+    }
+    const PlainLegs::Input input{.rate = ConstMap(state_.rate.data()),
+                                 .force = ConstMap(state_.force.data()),
+                                 .at_rest = state_.still > kRest,
+                                 .asked = feet_asked(sensors),
+                                 .dt = dt};
+    PlainLegs::turn(input, state_.plain);
+    if (measured) PlainLegs::move(input, feet, feet_that_stand(sensors, state_), state_.plain);
+    filter(sensors, feet, dt);
+    settle(sensors);
+    compare(dt);
+    state_.distance += dt * velocity().norm();
   }
   write(sensors, feet, felt && measured, out);
 }
 
 /// Returns whether gyro and accelerometer were valid.
-bool LeggedEstimator::turn(const SensorFrame& sensors, double dt) noexcept {
+bool LeggedEstimator::read(const SensorFrame& sensors, double dt) noexcept {
   const Vector3d rate = base_from_imu_ * ConstMap(sensors.imu.angular_velocity.data());
   const Vector3d force = base_from_imu_ * ConstMap(sensors.imu.linear_acceleration.data());
   const bool gyro = (sensors.valid & kValidGyro) != 0 && rate.allFinite();
   const bool accelerometer = (sensors.valid & kValidAccelerometer) != 0 && force.allFinite();
-  bool moves = !gyro || (rate - ConstMap(state_.bias.data())).cwiseAbs().maxCoeff() > kStill;
-  for (std::size_t i = 0; i < kLegsJoints; ++i) moves = moves || std::abs(valid_velocity(sensors.joints[i])) > kStill;
+  Map mean(state_.mean_rate.data());
+  if (gyro) Map(state_.rate.data()) = rate;
+  if (gyro) mean += std::min(1.0, dt / kMeanTime) * (rate - mean);
+  bool moves = !gyro || (rate - mean).cwiseAbs().maxCoeff() > kStill ||
+               (mean - ConstMap(state_.filter.rate_bias.data())).cwiseAbs().maxCoeff() > kMaxBias;
+  for (std::size_t i = 0; i < kLegsJoints; ++i) {
+    double& joint = state_.mean_rates[i];
+    joint += std::min(1.0, dt / kMeanTime) * (valid_velocity(sensors.joints[i]) - joint);
+    moves = moves || std::abs(joint) > kStill;
+  }
   state_.still = moves ? 0 : state_.still + dt;
-  if (accelerometer && state_.begun == 0 && force.norm() > kBand) {
+  if (accelerometer) Map(state_.force.data()) = force;
+  if (accelerometer && state_.begun == 0 && force.norm() > PlainLegs::kBand) {
     state_.begun = 1;
-    store(Quaterniond::FromTwoVectors(force, Vector3d::UnitZ()), state_.attitude);
+    const Quaterniond attitude = Quaterniond::FromTwoVectors(force, Vector3d::UnitZ());
+    store(attitude, state_.plain.attitude);
+    leg_filter().begin(attitude, Vector3d::Zero(), kFirstTilt, kRestSpeed);
+    set_height(0);
   }
-  if (gyro) {
-    if (state_.still > kRest) Map(state_.bias.data()) += dt / kBiasTime * (rate - ConstMap(state_.bias.data()));
-    Map(state_.rate.data()) = rate - ConstMap(state_.bias.data());
-  }
-  if (accelerometer) correct(force, dt);
-  store(quaternion(state_.attitude) * turned_by(dt * ConstMap(state_.rate.data())), state_.attitude);
   return gyro && accelerometer;
 }
 
-void LeggedEstimator::correct(const Vector3d& force, double dt) noexcept {
-  if (std::abs(force.norm() - kGravity) > kBand) return;
-  const Quaterniond now = quaternion(state_.attitude);
-  const Vector3d up = now.conjugate() * Vector3d::UnitZ();
-  const double time = state_.still > kRest ? kTiltAtRest : kTilt;
-  store(now * turned_by(dt / time * force.normalized().cross(up)), state_.attitude);
-}
-
-LeggedEstimator::Feet LeggedEstimator::observe(const SensorFrame& sensors) const noexcept {
-  Feet feet;
-  const Vector3d up = quaternion(state_.attitude).conjugate() * Vector3d::UnitZ();
-  const Vector3d rate = ConstMap(state_.rate.data());
+void LeggedEstimator::filter(const SensorFrame& sensors, const FeetMotion& feet, double dt) noexcept {
+  LegFilter filter(state_.filter);
+  std::array<double, kLegs> slide{};
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const JointSample* const joints = &sensors.joints[kLegJoints * leg];
-    for (std::size_t i = 0; i < kLegJoints; ++i)
-      feet.angles[kLegJoints * leg + i] = has_position(joints[i]) ? joints[i].position : 0;
-    const Vector3d speeds(valid_velocity(joints[0]), valid_velocity(joints[1]), valid_velocity(joints[2]));
-    const LegGeometry& geometry = legs_[leg].kinematics.geometry();
-    feet.jacobian[leg] = legs_[leg].kinematics.jacobian(LegModel::angles_of(feet.angles, leg), feet.place[leg]);
-    const double first = geometry.sign[0] * feet.angles[kLegJoints * leg];
-    const double pitching = geometry.sign[1] * speeds[1] + geometry.sign[2] * speeds[2];
-    const Vector3d shank =
-        rate + Vector3d(geometry.sign[0] * speeds[0], pitching * std::cos(first), pitching * std::sin(first));
-    feet.rolling[leg] = legs_[leg].foot_radius * shank.cross(up);
-    feet.body_velocity[leg] = feet.rolling[leg] - feet.jacobian[leg] * speeds - rate.cross(feet.place[leg]);
+    const double stance = sensors.gate.stance[leg];
+    const bool inside = stance > kEdge && stance < 1 - kEdge;
+    slide[leg] = inside ? LegFilter::kSlide : LegFilter::kLandSlide;
   }
-  return feet;
-}
-
-void LeggedEstimator::measure_loads(const SensorFrame& sensors, const Vector3d& up) noexcept {
-  for (std::size_t leg = 0; leg < kLegs; ++leg)
-    state_.loads[leg] = up.dot(ConstMap(sensors.contacts[leg].force.data()));
-}
-
-void LeggedEstimator::compute_loads(const SensorFrame& sensors, const Feet& feet, const Vector3d& up) noexcept {
-  LeggedEquations equations;
-  dynamics_.step({.angles = feet.angles, .gravity = -kGravity * up}, equations);
+  filter.predict(ConstMap(state_.rate.data()), ConstMap(state_.force.data()), feet.rolling, slide, dt);
+  const std::array<bool, kLegs> stand = feet_that_stand(sensors, state_);
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const JointSample* const joints = &sensors.joints[kLegJoints * leg];
-    const Vector3d effort = Vector3d(joints[0].effort, joints[1].effort, joints[2].effort) -
-                            equations.bias.segment<3>(static_cast<Eigen::Index>(6 + kLegJoints * leg));
-    const double load = -up.dot(feet.jacobian[leg].transpose().inverse() * effort);
-    state_.loads[leg] = load;
+    const Vector3d place = feet.place[leg] - imu_;
+    if (stand[leg] && state_.bears[leg] != 0) filter.stand(leg, place);
+    if (stand[leg] && state_.bears[leg] == 0) filter.land(leg, place);
+    state_.bears[leg] = stand[leg] ? 1 : 0;
   }
+  const double once = std::sqrt(0.001 / dt);
+  if (state_.still > kRest) {
+    filter.rest(ConstMap(state_.rate.data()), kRestRate * once);
+    filter.stop(kRestSpeed * once);
+  } else if (stand == std::array<bool, kLegs>{} && !feet_asked(sensors)) {
+    filter.stop(kFallSpeed * once);
+  }
+  filter.finish();
 }
 
-void LeggedEstimator::weigh(const SensorFrame& sensors, const Feet& feet) noexcept {
-  const Quaterniond attitude = quaternion(state_.attitude);
-  const Vector3d up = attitude.conjugate() * Vector3d::UnitZ();
-  const bool sensed =
-      sensors.contact_count >= kLegs && std::all_of(sensors.contacts.begin(), sensors.contacts.begin() + kLegs,
-                                                    [](const ContactSample& contact) { return contact.valid != 0; });
-  if (sensed) {
-    measure_loads(sensors, up);
-  } else {
-    compute_loads(sensors, feet, up);
-  }
-  const std::array<std::uint64_t, kLegs> before = state_.bears;
-  for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    if (!std::isfinite(state_.loads[leg])) state_.loads[leg] = 0;
-    const double bound = (state_.bears[leg] != 0 ? kFloats : kBears) * share_;
-    state_.bears[leg] = state_.loads[leg] > bound ? 1 : 0;
-  }
-  if (before == state_.bears) return;
+void LeggedEstimator::settle(const SensorFrame& sensors) noexcept {
   double height = 0, count = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    Map(state_.anchors[leg].data()) = ConstMap(state_.position.data()) + attitude * feet.place[leg];
     if (state_.bears[leg] == 0) continue;
-    height += state_.anchors[leg][2];
+    height += state_.filter.position[2] + state_.filter.feet[leg][2];
     count += 1;
   }
-  if (before != std::array<std::uint64_t, kLegs>{}) return;
+  if (count == 0 && !feet_asked(sensors)) {
+    state_.lay = 1;
+    if (state_.still > kRest) set_height(0);
+  }
+  if (count == 0 || state_.lay == 0) return;
+  state_.lay = 0;
   if (state_.grounded == 0) state_.ground = height / count;
   state_.grounded = 1;
-  const double rise = state_.ground - height / count;
-  state_.position[2] += rise;
-  for (Vector3& anchor : state_.anchors) anchor[2] += rise;
+  set_height(position()[2] + state_.ground - height / count);
 }
 
-void LeggedEstimator::move(const Feet& feet, double dt) noexcept {
-  const Quaterniond attitude = quaternion(state_.attitude);
-  Vector3d position = Vector3d::Zero(), velocity = Vector3d::Zero();
-  double count = 0;
-  for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    if (state_.bears[leg] == 0) continue;
-    Map(state_.anchors[leg].data()) += dt * (attitude * feet.rolling[leg]);
-    position += ConstMap(state_.anchors[leg].data()) - attitude * feet.place[leg];
-    velocity += feet.body_velocity[leg];
-    count += 1;
-  }
-  Map smoothed(state_.velocity.data());
-  if (count == 0) {
-    smoothed.setZero();
-    if (state_.still > kRest) state_.position[2] = 0;
-    return;
-  }
-  state_.distance += (position / count - ConstMap(state_.position.data())).norm();
-  Map(state_.position.data()) = position / count;
-  smoothed += std::min(1.0, dt / kSmooth) * (velocity / count - smoothed);
+void LeggedEstimator::compare(double dt) noexcept {
+  const Vector3d plain = ConstMap(state_.plain.velocity.data());
+  state_.degraded = std::max(0.0, state_.degraded - dt);
+  const bool apart = (velocity() - plain).norm() > kApart;
+  state_.apart = apart ? state_.apart + dt : 0;
+  if (state_.apart < kApartTime) return;
+  state_.apart = 0;
+  state_.degraded = kDegraded;
+  const Quaterniond turn(
+      Eigen::AngleAxisd(yaw_of(state_.filter.attitude) - yaw_of(state_.plain.attitude), Vector3d::UnitZ()));
+  const Quaterniond attitude = turn * quaternion_of(state_.plain.attitude);
+  const Vector3d at = position();
+  leg_filter().begin(attitude, attitude * (plain + rate().cross(imu_)), kPlainTilt, kPlainSpeed);
+  Map(state_.filter.position.data()) += at - position();
+  state_.bears = {};
 }
 
-void LeggedEstimator::write(const SensorFrame& sensors, const Feet& feet, bool good, StateFrame& out) const noexcept {
+void LeggedEstimator::write(const SensorFrame& sensors, const FeetMotion& feet, bool good,
+                            StateFrame& out) const noexcept {
   out = {};
   BaseState& base = out.base;
-  base.pose_odom = {.position = state_.position, .orientation = state_.attitude};
-  base.twist_base = {.linear = state_.velocity, .angular = state_.rate};
-  base.attitude = state_.attitude;
-  for (std::size_t i = 0; i < 6; ++i) {
-    base.pose_covariance[7 * i] = i < 3 ? kPositionVariance : kAngleVariance;
-    base.twist_covariance[7 * i] = i < 3 ? kSpeedVariance : kAngleVariance;
-  }
-  for (std::size_t i = 0; i < 3; ++i) base.attitude_covariance[4 * i] = kAngleVariance;
-  Map(base.gyro_bias.data()) = base_from_imu_.transpose() * ConstMap(state_.bias.data());
+  Map(base.pose_odom.position.data()) = position();
+  base.pose_odom.orientation = base.attitude = state_.filter.attitude;
+  Map(base.twist_base.linear.data()) = velocity();
+  Map(base.twist_base.angular.data()) = rate();
+  write_covariances(base);
+  Map(base.gyro_bias.data()) = base_from_imu_.transpose() * ConstMap(state_.filter.rate_bias.data());
+  Map(base.accelerometer_bias.data()) = base_from_imu_.transpose() * ConstMap(state_.filter.force_bias.data());
   base.distance = state_.distance;
+  if (state_.degraded > 0) base.degraded = kDegradedPosition;
   base.flags = (state_.begun != 0 ? std::uint64_t{kStateValid} : 0) | (good ? 0 : std::uint64_t{kStateBadSample}) |
-               (state_.still > kRest ? std::uint64_t{kStateStandstill} : 0);
+               (state_.still > kRest ? std::uint64_t{kStateStandstill} : 0) |
+               (state_.degraded > 0 ? std::uint64_t{kStateDegraded} : 0);
   out.contact_count = kLegs;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const bool bears = state_.bears[leg] != 0;
-    out.contacts[leg].probability = bears ? 1 : 0;
-    out.contacts[leg].load = state_.loads[leg];
-    out.contacts[leg].slip = bears ? (feet.body_velocity[leg] - ConstMap(state_.velocity.data())).norm() : 0;
+    out.contacts[leg].probability = state_.contacts.probability[leg];
+    out.contacts[leg].load = state_.contacts.loads[leg];
+    out.contacts[leg].slip = state_.bears[leg] != 0 ? (feet.base_velocity[leg] - velocity()).norm() : 0;
   }
   for (std::size_t i = 0; i < kLegsJoints; ++i) out.joint_velocity[i] = valid_velocity(sensors.joints[i]);
+}
+
+void LeggedEstimator::write_covariances(BaseState& base) const noexcept {
+  using Matrix6d = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+  Eigen::Map<Matrix6d> pose(base.pose_covariance.data()), twist(base.twist_covariance.data());
+  const auto P = Eigen::Map<const LegFilter::Covariance, Eigen::Aligned16>(state_.filter.covariance.data());
+  const Matrix3d into_base = quaternion_of(state_.filter.attitude).conjugate().toRotationMatrix();
+  constexpr int kTurn = LegFilter::kTurn, kPlace = LegFilter::kPlace;
+  pose.topLeftCorner<3, 3>() = P.block<3, 3>(kPlace, kPlace);
+  pose.topRightCorner<3, 3>() = P.block<3, 3>(kPlace, kTurn);
+  pose.bottomLeftCorner<3, 3>() = P.block<3, 3>(kTurn, kPlace);
+  pose.bottomRightCorner<3, 3>() = P.block<3, 3>(kTurn, kTurn);
+  twist.topLeftCorner<3, 3>() =
+      kSpeedPart * into_base * P.block<3, 3>(LegFilter::kSpeed, LegFilter::kSpeed) * into_base.transpose();
+  twist.bottomRightCorner<3, 3>() = P.block<3, 3>(LegFilter::kRateBias, LegFilter::kRateBias);
+  twist.diagonal().tail<3>().array() += kRestRate * kRestRate;
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(base.attitude_covariance.data()) =
+      P.block<3, 3>(kTurn, kTurn);
+  const Matrix3d biases =
+      base_from_imu_.transpose() * P.block<3, 3>(LegFilter::kRateBias, LegFilter::kRateBias) * base_from_imu_;
+  Map(base.gyro_bias_deviation.data()) = biases.diagonal().cwiseMax(0).cwiseSqrt();
 }
 
 }  // namespace robot_control

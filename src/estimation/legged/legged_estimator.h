@@ -1,28 +1,32 @@
 #pragma once
-/// Estimates the state of a robot on legs while it lies or stands, from joints and IMU.
+/// Estimates the state of a robot on legs from joints, IMU, foot sensors and what was asked of its feet. It owns the
+/// state.
 ///
-/// attitude   the gyro, less its bias, turns it; the accelerometer corrects roll and pitch with kTilt, or with
-///            kTiltAtRest while nothing moves. Yaw is that of the gyro alone
-/// bias       the mean of the gyro while nothing moves
-/// load       fᵢ = u·Fᵢ of each foot, u upwards, F the measured force, where all feet have force sensors. Else
-///            fᵢ = −u·Jᵢ⁻ᵀ (τᵢ − hᵢ), τ the measured efforts, h those that hold the leg alone. A foot begins to bear
-///            above kBears of an equal share of the weight, and ends below kFloats
-/// position   the mean over the feet that bear of aᵢ − R pᵢ. A foot that begins to bear is anchored at aᵢ = p + R pᵢ. A
-///            ball rolls: aᵢ moves with ωᵢ × r u, ωᵢ the rate of the shank
-/// height     the ground is level: feet that bear after none did stand where the first ones of the run stood. While
-///            nothing moves and no foot bears, the robot lies, at zero. A restarted estimator takes its belly's height
-/// velocity   the mean over the same feet of r ωᵢ × u − (Jᵢ q̇ᵢ + ω × pᵢ), through a low pass of kSmooth
+/// contacts   foot_contacts.h: what each foot bears, and how probably
+/// rest       nothing moves: joints slower than kStill in the mean over kMeanTime, a gyro within kStill about it, for
+/// kRest filter     leg_filter.h: feet that bear are landmarks. At rest the gyro measures its bias, and the velocity is
+/// zero.
+/// A
+///            robot whose feet neither bear nor are asked to lies, or falls on its body: its velocity vanishes
+/// plain      plain_legs.h. Where both velocities differ by more than kApart for kApartTime, the filter begins again
+/// with
+///            roll, pitch and velocity of the plain estimate, and the state is degraded for kDegraded
+/// height     the ground is level where the robot lies: feet that bear after it lay stand where the first ones of the
+/// run
+///            stood. While nothing moves and no foot bears, it lies, at zero. A restarted estimator takes its belly's
+///            height
 ///
-/// While no foot bears, the robot lies on its body or falls: x and y stay. The pose begins at zero.
-///
-/// A contact's probability is 1 while its foot bears; its slip is the speed of this foot against the mean.
+/// The pose begins at zero. A contact's slip is the speed of its foot over the ground.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 
-#include "machine/legs/leg_dynamics.h"
+#include "estimation/legged/feet_motion.h"
+#include "estimation/legged/foot_contacts.h"
+#include "estimation/legged/leg_filter.h"
+#include "estimation/legged/plain_legs.h"
 #include "machine/legs/leg_model.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
@@ -31,20 +35,18 @@ namespace robot_control {
 
 class LeggedEstimator {
  public:
-  static constexpr double kTilt = 1.5;        ///< s
-  static constexpr double kTiltAtRest = 0.3;  ///< s
-  static constexpr double kBand = 1.0;        ///< m/s², of |a| about g within which the accelerometer corrects
-  static constexpr double kRest = 0.3;        ///< s without motion
-  static constexpr double kStill = 0.05;      ///< rad/s, of gyro and joints
-  static constexpr double kBiasTime = 0.5;    ///< s
-  static constexpr double kBears = 0.35;
-  static constexpr double kFloats = 0.15;
-  static constexpr double kSmooth = 0.02;  ///< s
+  static constexpr double kRest = 0.3;       ///< s without motion
+  static constexpr double kStill = 0.05;     ///< rad/s, of gyro and joints
+  static constexpr double kMaxBias = 0.1;    ///< rad/s
+  static constexpr double kMeanTime = 0.1;   ///< s, of the means of gyro and joints
+  static constexpr double kApart = 0.15;     ///< m/s
+  static constexpr double kApartTime = 0.1;  ///< s
+  static constexpr double kDegraded = 1.0;   ///< s
 
   /// `period` is in s.
   LeggedEstimator(const LegModel& robot, double period);
 
-  void enter_run() noexcept { state_ = {}; }
+  void enter_run() noexcept;
   /// Continues from the last published frame.
   void resume(const StateFrame& last) noexcept;
   /// x [m], y [m], yaw [rad] of the next frame. The height stays.
@@ -53,19 +55,21 @@ class LeggedEstimator {
   void step(const SensorFrame& sensors, StateFrame& out) noexcept;
 
   struct State {
-    std::array<double, 4> attitude{0, 0, 0, 1};  ///< x y z w, base → odom
-    Vector3 position{};                          ///< m
-    Vector3 velocity{};                          ///< m/s, base axes
-    Vector3 rate{};                              ///< rad/s, base axes
-    Vector3 bias{};                              ///< rad/s, base axes
-    std::array<Vector3, kLegs> anchors{};        ///< m, odom axes
-    std::array<double, kLegs> loads{};           ///< N
-    std::array<std::uint64_t, kLegs> bears{};    ///< 1: the foot bears
-    double ground = 0;                           ///< m, odom axes: height of the centres of feet on the ground
-    std::uint64_t grounded = 0;                  ///< 1: `ground` is known
-    double still = 0;                            ///< s since anything moved
-    double distance = 0;                         ///< m
-    std::uint64_t begun = 0;                     ///< 1: the attitude was set by an accelerometer
+    LegFilter::State filter;
+    PlainLegs::State plain;
+    FootContacts::State contacts;
+    std::array<std::uint64_t, kLegs> bears{};      ///< 1: the foot is a landmark
+    Vector3 rate{}, force{};                       ///< rad/s, m/s², base axes: the newest sample
+    Vector3 mean_rate{};                           ///< rad/s, base axes
+    std::array<double, kLegsJoints> mean_rates{};  ///< rad/s, of the joints
+    double ground = 0;                             ///< m, odom axes: height of the centres of feet on the ground
+    std::uint64_t grounded = 0;                    ///< 1: `ground` is known
+    std::uint64_t lay = 1;                         ///< 1: no foot has borne since the robot lay
+    double still = 0;                              ///< s since anything moved
+    double apart = 0;                              ///< s for which filter and plain estimate differ
+    double degraded = 0;                           ///< s left
+    double distance = 0;                           ///< m
+    std::uint64_t begun = 0;                       ///< 1: the attitude was set by an accelerometer
     std::uint64_t last_cycle = 0;
     std::uint64_t stepped = 0;  ///< 1: last_cycle is that of a step
   };
@@ -73,21 +77,23 @@ class LeggedEstimator {
   void set_state(const State& state) noexcept { state_ = state; }
 
  private:
-  struct Feet;
-  bool turn(const SensorFrame& sensors, double dt) noexcept;
-  void correct(const Eigen::Vector3d& force, double dt) noexcept;
-  Feet observe(const SensorFrame& sensors) const noexcept;
-  void weigh(const SensorFrame& sensors, const Feet& feet) noexcept;
-  void measure_loads(const SensorFrame& sensors, const Eigen::Vector3d& up) noexcept;
-  void compute_loads(const SensorFrame& sensors, const Feet& feet, const Eigen::Vector3d& up) noexcept;
-  void move(const Feet& feet, double dt) noexcept;
-  void write(const SensorFrame& sensors, const Feet& feet, bool good, StateFrame& out) const noexcept;
+  bool read(const SensorFrame& sensors, double dt) noexcept;
+  void filter(const SensorFrame& sensors, const FeetMotion& feet, double dt) noexcept;
+  void settle(const SensorFrame& sensors) noexcept;
+  void compare(double dt) noexcept;
+  LegFilter leg_filter() noexcept { return LegFilter(state_.filter); }
+  Eigen::Vector3d rate() const noexcept;      ///< rad/s, less its bias
+  Eigen::Vector3d velocity() const noexcept;  ///< m/s, of the base's origin, base axes
+  Eigen::Vector3d position() const noexcept;  ///< m, of the base's origin
+  void set_height(double height) noexcept;
+  void write_covariances(BaseState& base) const noexcept;
+  void write(const SensorFrame& sensors, const FeetMotion& feet, bool good, StateFrame& out) const noexcept;
 
   double period_;
   std::array<Leg, kLegs> legs_;
-  LegDynamics dynamics_;
+  FootContacts contacts_;
   Eigen::Matrix3d base_from_imu_;
-  double share_ = 0;         ///< N, an equal share of the weight
+  Eigen::Vector3d imu_;      ///< m, base axes
   double belly_ground_ = 0;  ///< m, base axes: height of the centres of feet on the ground on which the belly lies
   State state_;
 };

@@ -33,6 +33,10 @@ void add_legs(TraceFields& to) {
       field<C, u64>("legged_lifted", "1 + leg of the foot in the air; 0: none", MEMBER(command.legged.lifted)));
   to.push_back(field<C, f32>("legged_body", "m, rad: x y height roll pitch yaw from the nominal pose, after limits",
                              MEMBER(command.legged.body)));
+  to.push_back(field<C, u64>("legged_gait", "GaitName", MEMBER(command.legged.gait)));
+  to.push_back(field<C, f64>("legged_gait_phase", "0 to 1", MEMBER(command.legged.gait_phase)));
+  to.push_back(field<C, f64>("legged_stance", "by leg: part of the stance that was asked for; 0: it shall not bear",
+                             MEMBER(command.legged.stance)));
 }
 
 }  // namespace

@@ -135,6 +135,7 @@ void add_driver(TraceFields& to) {
   to.push_back(field<D, u64>("last_gate_missed", "of the last tick", MEMBER(sensors.gate.missed)));
   to.push_back(field<D, u64>("last_gate_late_permits", "of the last tick", MEMBER(sensors.gate.late_permits)));
   to.push_back(field<D, u64>("last_gate_refused", "of the last tick", MEMBER(sensors.gate.refused)));
+  to.push_back(field<D, f64>("last_gate_stance", "by leg, of the last tick", MEMBER(sensors.gate.stance)));
   to.push_back(field<D, u64>("gate_cycle", "k", MEMBER(gate.cycle)));
   to.push_back(field<D, u8>("gate_verdict", "GateVerdict, of tick k", MEMBER(gate.verdict)).shown());
   to.push_back(field<D, u64>("gate_reasons", "GateReason bits", MEMBER(gate.reasons)).shown());

@@ -130,7 +130,10 @@ std::vector<FieldDifference> differences(const CommandFrame& logged, const Comma
       {"velocity_measured", kMaxWheels},
       whole("legged_phase"),
       whole("legged_lifted"),
-      {"legged_body", 6, {"x", "y", "height", "roll", "pitch", "yaw"}}};
+      {"legged_body", 6, {"x", "y", "height", "roll", "pitch", "yaw"}},
+      whole("legged_gait"),
+      {"legged_gait_phase", 1},
+      {"legged_stance", 4}};
   return compare(logged, replayed, kHead, kMembers);
 }
 
@@ -157,9 +160,9 @@ std::vector<FieldDifference> differences(const Permit& logged, const Permit& rep
 }
 
 std::vector<FieldDifference> differences(const GateReport& logged, const GateReport& replayed) {
-  static const std::vector<Member> kMembers{whole("cycle"),         whole("verdict"),      whole("reasons"),
-                                            whole("command_cycle"), whole("permit_cycle"), whole("held"),
-                                            whole("missed"),        whole("late_permits"), whole("refused")};
+  static const std::vector<Member> kMembers{
+      whole("cycle"), whole("verdict"), whole("reasons"),      whole("command_cycle"), whole("permit_cycle"),
+      whole("held"),  whole("missed"),  whole("late_permits"), whole("refused"),       {"stance", 4}};
   return compare(logged, replayed, 0, kMembers);
 }
 

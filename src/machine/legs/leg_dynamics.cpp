@@ -106,7 +106,7 @@ namespace {
 
 template <class Body>
 MovedLeg moved(const LegGeometry& geometry, const std::array<Body, kLegJoints>& bodies, const double* angles,
-               const double* rates, Spatial speed, Spatial change) noexcept {
+               const double* rates, const double* accelerations, Spatial speed, Spatial change) noexcept {
   const std::array<Turn, kLegJoints> turn = turns(geometry, angles);
   const std::array<Vector, kLegJoints> arm{geometry.hip, turn[0] * geometry.upper, turn[1] * geometry.lower};
   const Vector lateral(0, turn[0].c1, turn[0].s1);
@@ -118,7 +118,7 @@ MovedLeg moved(const LegGeometry& geometry, const std::array<Body, kLegJoints>& 
     origin += arm[i];
     leg.screw[i] = {axis[i], origin.cross(axis[i])};
     const Spatial joint_speed = leg.screw[i] * rates[i];
-    change = change + cross(speed, joint_speed);
+    change = change + cross(speed, joint_speed) + leg.screw[i] * accelerations[i];
     speed = speed + joint_speed;
     const Matrix rotation = turn[i].matrix();
     leg.inertia[i] = about_origin(bodies[i].mass, origin + turn[i] * bodies[i].centre,
@@ -127,6 +127,8 @@ MovedLeg moved(const LegGeometry& geometry, const std::array<Body, kLegJoints>& 
   }
   return leg;
 }
+
+constexpr std::array<double, kLegJoints> kNoAcceleration{};
 
 /// Sums the leg from its foot to the base; `first` is the row of its first joint.
 void gather(MovedLeg& leg, Eigen::Index first, double rotor_inertia, Inertia& whole, Spatial& total,
@@ -161,7 +163,8 @@ void LegDynamics::step(const LeggedMotion& motion, LeggedEquations& out) const n
   Spatial total = needed(whole, speed, change);
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const std::size_t first = kLegJoints * leg;
-    MovedLeg of_base = moved(geometry_[leg], bodies_[leg], &motion.angles[first], &motion.rates[first], speed, change);
+    MovedLeg of_base = moved(geometry_[leg], bodies_[leg], &motion.angles[first], &motion.rates[first],
+                             kNoAcceleration.data(), speed, change);
     gather(of_base, static_cast<Eigen::Index>(6 + first), rotor_inertia_, whole, total, out);
   }
   out.bias.head<3>() = total.linear;
@@ -174,6 +177,21 @@ void LegDynamics::step(const LeggedMotion& motion, LeggedEquations& out) const n
   out.mass.block<3, 3>(3, 0) = skew;
   out.mass.block<3, 3>(3, 3) = whole.second;
   out.centre_of_gravity = first / whole.mass;
+}
+
+Vector LegDynamics::efforts(std::size_t leg, const LeggedMotion& motion,
+                            const LeggedAcceleration& change) const noexcept {
+  const std::size_t first = kLegJoints * leg;
+  const MovedLeg moving =
+      moved(geometry_[leg], bodies_[leg], &motion.angles[first], &motion.rates[first], &change.joints[first],
+            {motion.angular, motion.linear}, {change.angular, -motion.angular.cross(motion.linear) - motion.gravity});
+  Vector result;
+  Spatial sum;
+  for (std::size_t i = kLegJoints; i-- > 0;) {
+    sum = sum + moving.force[i];
+    result[static_cast<Eigen::Index>(i)] = moving.screw[i].dot(sum) + rotor_inertia_ * change.joints[first + i];
+  }
+  return result;
 }
 
 }  // namespace robot_control

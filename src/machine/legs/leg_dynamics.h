@@ -30,6 +30,11 @@ struct LeggedMotion {
   Eigen::Vector3d gravity = Eigen::Vector3d(0, 0, -9.81);  ///< m/s², base axes
 };
 
+struct LeggedAcceleration {
+  std::array<double, kLegsJoints> joints{};           ///< rad/s²
+  Eigen::Vector3d angular = Eigen::Vector3d::Zero();  ///< rad/s², ω̇
+};
+
 struct LeggedEquations {
   Eigen::Matrix<double, kLeggedDofs, kLeggedDofs> mass = Eigen::Matrix<double, kLeggedDofs, kLeggedDofs>::Zero();
   Eigen::Matrix<double, kLeggedDofs, 1> bias = Eigen::Matrix<double, kLeggedDofs, 1>::Zero();
@@ -42,6 +47,10 @@ class LegDynamics {
   explicit LegDynamics(const LegModel& model);
 
   void step(const LeggedMotion& motion, LeggedEquations& out) const noexcept;
+
+  /// Returns the efforts in N·m of leg `leg` while no force acts on its foot: its rows of M a + h. A base that
+  /// accelerates counts as one in another gravity: `motion.gravity` is g − Rᵀ p̈.
+  Eigen::Vector3d efforts(std::size_t leg, const LeggedMotion& motion, const LeggedAcceleration& change) const noexcept;
 
   /// Returns the robot's mass in kg.
   double mass() const noexcept { return mass_; }

@@ -37,7 +37,8 @@ double seconds_of(std::int64_t ns) {
 /// Returns whether the robot already is in this posture, or on its way.
 bool begun(StanceMode mode, LegPhase phase) {
   if (mode == kStanceLie) return phase == LegPhase::kLying || phase == LegPhase::kLowering;
-  return phase == LegPhase::kGathering || phase == LegPhase::kRising || phase == LegPhase::kStanding;
+  return phase == LegPhase::kGathering || phase == LegPhase::kRising || phase == LegPhase::kStanding ||
+         phase == LegPhase::kWalking;
 }
 
 class LegControllerNode final : public CommandedNode {
@@ -51,10 +52,11 @@ class LegControllerNode final : public CommandedNode {
   void connect(ros::NodeHandle& handle) override {
     leg_state_ = handle.advertise<msg::LegState>("leg_state", 10);
     set_posture_ = handle.advertiseService("set_posture", &LegControllerNode::set_posture, this);
-    intake().start(earlier_controller(handle, {"body_pose", "foot_target", "joint_trajectory"}));
-    body_pose_.connect_with_sender(handle, [this](const msg::BodyPose& message, const Publisher& sender) {
-      receive({.sender = sender, .twist = {}, .posture = posture_of(message)});
-    });
+    set_gait_ = handle.advertiseService("set_gait", &LegControllerNode::set_gait, this);
+    intake().start(
+        earlier_controller(handle, {"body_pose", "foot_target", "joint_trajectory", "cmd_vel", "cmd_vel_stamped"}));
+    body_pose_.connect_with_sender(
+        handle, [this](const msg::BodyPose& message, const Publisher& sender) { pose(posture_of(message), sender); });
     foot_target_.connect_with_sender(handle, [this](const msg::FootTarget& message, const Publisher& sender) {
       const auto request = request_of(message);
       if (request) return receive({.sender = sender, .twist = {}, .posture = request->posture, .mode = request->mode});
@@ -63,12 +65,12 @@ class LegControllerNode final : public CommandedNode {
     });
     joint_trajectory_.connect_with_sender(
         handle, [this](const msg::JointTrajectory& message, const Publisher& sender) { begin(message, sender); });
-    cmd_vel_.connect_with_sender(handle, [](const msg::Twist& message, const Publisher& sender) {
-      if (zero(twist_of(message))) return;
-      ROS_WARN_THROTTLE(10,
-                        "cmd_vel of %s is refused: this robot does not walk yet; body_pose moves its body, foot_target "
-                        "a foot, set_posture lets it stand up or lie down",
-                        sender.name.c_str());
+    cmd_vel_.connect_with_sender(handle, [this](const msg::Twist& message, const Publisher& sender) {
+      walk({.sender = sender, .twist = twist_of(message)});
+    });
+    cmd_vel_stamped_.connect_with_sender(handle, [this](const msg::TwistStamped& message, const Publisher& sender) {
+      const auto stamp_ns = static_cast<std::int64_t>(message.header.stamp.toNSec());
+      walk({.sender = sender, .twist = twist_of(message.twist), .stamp_ns = stamp_ns});
     });
   }
 
@@ -116,6 +118,25 @@ class LegControllerNode final : public CommandedNode {
     end_trajectory("a message of " + arrived.sender.name + " on another topic came");
     input_.receive(arrived, arrival_of(arrived.sender.name));
     store();
+  }
+
+  /// While the robot walks, the twist's sender alone requests motion, and its twists carry this pose.
+  void pose(const Posture& posture, const Publisher& sender) {
+    {
+      const std::lock_guard lock(input_mutex_);
+      pose_ = posture;
+      if (command_.legged.phase == LegPhase::kWalking) return;
+    }
+    receive({.sender = sender, .twist = {}, .posture = posture});
+  }
+
+  void walk(ArrivedCommand arrived) {
+    if (!zero(arrived.twist)) {
+      const std::lock_guard lock(input_mutex_);
+      arrived.posture = pose_;
+      arrived.mode = gait_;
+    }
+    receive(arrived);
   }
 
   /// A trajectory that is being executed.
@@ -234,6 +255,23 @@ class LegControllerNode final : public CommandedNode {
     return no_permission(found, permit, robot(), programs());
   }
 
+  bool set_gait(msg::SetGaitRequest& request, msg::SetGaitResponse& response) {
+    const std::lock_guard lock(input_mutex_);
+    const std::optional<std::uint64_t> mode = mode_of_gait(request.gait);
+    const LegPhase phase = command_.legged.phase;
+    std::string problem = refusal_of_permission();
+    if (!mode) {
+      problem = "there is no gait '" + request.gait + "'; name auto, trot, walking_trot or crawl";
+    } else if (problem.empty() && phase != LegPhase::kStanding && phase != LegPhase::kWalking) {
+      problem = "the robot does not stand or walk, it is " + std::string(name_of(phase)) +
+                ": call set_posture with 'standing'";
+    }
+    if (problem.empty()) gait_ = *mode;
+    response.success = problem.empty() ? 1 : 0;
+    response.message = ascii(problem.empty() ? request.gait : "refused: " + problem);
+    return true;
+  }
+
   bool set_posture(msg::SetPostureRequest& request, msg::SetPostureResponse& response) {
     const std::unique_lock one_at_a_time(posture_mutex_, std::try_to_lock);
     const std::string problem =
@@ -282,10 +320,14 @@ class LegControllerNode final : public CommandedNode {
   InputTopic<BoundedFootTarget> foot_target_{"foot_target", 1};
   InputTopic<BoundedJointTrajectory> joint_trajectory_{"joint_trajectory", 2};
   InputTopic<BoundedTwist> cmd_vel_{"cmd_vel", 1};
+  InputTopic<BoundedTwistStamped> cmd_vel_stamped_{"cmd_vel_stamped", 1};
   ros::Publisher leg_state_;
   ros::ServiceServer set_posture_;
+  ros::ServiceServer set_gait_;
   std::mutex posture_mutex_;  ///< locked only by try_lock
   CommandInput input_;
+  Posture pose_{};                      ///< the last body_pose; protected by input_mutex_
+  std::uint64_t gait_ = kStanceStay;    ///< mode of the gait that set_gait fixed; protected by input_mutex_
   std::optional<Execution> execution_;  ///< protected by input_mutex_
   Pacer pace_;
 };

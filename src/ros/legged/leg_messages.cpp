@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "control/legged/gait.h"
 #include "ros/messages/status_messages.h"
 #include "signals/names.h"
 #include "signals/roles.h"
@@ -40,12 +41,23 @@ StanceMode mode_of(const std::string& posture) {
   return posture == name_of(LegPhase::kLying) ? kStanceLie : kStanceStay;
 }
 
+std::optional<std::uint64_t> mode_of_gait(const std::string& gait) {
+  if (gait == "auto") return kStanceStay;
+  for (std::size_t i = 1; i < kGaits.size(); ++i)
+    if (gait == kGaits[i].name) return kStanceGait + i;
+  return std::nullopt;
+}
+
 msg::LegState leg_state(const LegReport& report, const LegModel& robot, ros::Time stamp) {
   const CommandFrame& command = report.command;
   msg::LegState message;
   message.header.stamp = stamp;
   message.posture = name_of(command.legged.phase);
   if (command.legged.lifted != 0) message.lifted = name_of(static_cast<LegPlace>(command.legged.lifted - 1));
+  if (command.legged.phase == LegPhase::kWalking && command.legged.gait < kGaits.size()) {
+    message.gait = kGaits[command.legged.gait].name;
+    message.gait_phase = command.legged.gait_phase;
+  }
   const auto& [x, y, height, roll, pitch, yaw] = command.legged.body;
   message.body.x = x;
   message.body.y = y;

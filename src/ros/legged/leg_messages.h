@@ -4,6 +4,8 @@
 #include <robot_control/BodyPose.h>
 #include <robot_control/FootTarget.h>
 #include <robot_control/LegState.h>
+#include <robot_control/SetGaitRequest.h>
+#include <robot_control/SetGaitResponse.h>
 #include <robot_control/SetPostureRequest.h>
 #include <robot_control/SetPostureResponse.h>
 #include <ros/time.h>
@@ -25,6 +27,8 @@ namespace msg {
 using BodyPose = robot_control::BodyPose_<Allocator>;
 using FootTarget = robot_control::FootTarget_<Allocator>;
 using LegState = robot_control::LegState_<Allocator>;
+using SetGaitRequest = robot_control::SetGaitRequest_<Allocator>;
+using SetGaitResponse = robot_control::SetGaitResponse_<Allocator>;
 using SetPostureRequest = robot_control::SetPostureRequest_<Allocator>;
 using SetPostureResponse = robot_control::SetPostureResponse_<Allocator>;
 
@@ -35,6 +39,12 @@ template <>
 inline constexpr Service kServiceOf<msg::SetPostureRequest> = kSetPostureService;
 template <>
 inline constexpr Service kServiceOf<msg::SetPostureResponse> = kSetPostureService;
+
+inline constexpr Service kSetGaitService{"robot_control/SetGait", "7e62cc59373477b4b7a24c7ae4d7d354"};
+template <>
+inline constexpr Service kServiceOf<msg::SetGaitRequest> = kSetGaitService;
+template <>
+inline constexpr Service kServiceOf<msg::SetGaitResponse> = kSetGaitService;
 
 inline constexpr std::uint32_t kMaxFootName = 64;  ///< bytes
 using BoundedBodyPose = Bounded<msg::BodyPose, 48>;
@@ -50,6 +60,9 @@ std::string foot_names();
 
 /// Returns the mode of a posture of set_posture; kStanceStay for an unknown one.
 StanceMode mode_of(const std::string& posture);
+
+/// Returns the mode that walks with the gait of set_gait: kStanceStay for "auto". Returns none for an unknown one.
+std::optional<std::uint64_t> mode_of_gait(const std::string& gait);
 
 /// The inputs of a LegState. `plan` is the command two cycles before `command`; an ideal joint now has its angles.
 struct LegReport {

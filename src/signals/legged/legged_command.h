@@ -13,6 +13,7 @@ enum StanceMode : std::uint64_t {
   kStanceStand = 2,
   kStanceLift = 3,    ///< kStanceLift + i lifts the foot of LegPlace i.
   kStanceJoints = 7,  ///< Move the joints to Request::joints while the robot lies.
+  kStanceGait = 8,    ///< kStanceGait + i walks with the gait of this GaitName. In mode 0 the speed chooses it.
 };
 
 enum class LegPhase : std::uint64_t {
@@ -21,20 +22,29 @@ enum class LegPhase : std::uint64_t {
   kRising = 2,
   kStanding = 3,
   kLowering = 4,
-  kJoints = 5
+  kJoints = 5,
+  kWalking = 6
 };
 
-/// Bits 20 to 22 of CommandFrame::reasons.
+/// Bits 20 to 23 of CommandFrame::reasons.
 enum LeggedReason : std::uint64_t {
   kReasonOutOfReach = 1u << 20,   ///< The pose is beyond the ranges of the legs.
   kReasonNotStanding = 1u << 21,  ///< A pose or a foot is requested, and it does not stand.
   kReasonNotLying = 1u << 22,     ///< Joints are requested, and it does not lie.
+  kReasonLegSpeed = 1u << 23,     ///< The legs do not carry the body faster.
 };
+
+/// These numbers say what is asked of each foot, by LegPlace. 0: it shall not bear. 0.5: it stands without a gait. Else
+/// it is the part of its stance that it has done at the end of this cycle, above 0 … 1.
+using FootStances = std::array<double, 4>;
 
 struct LeggedCommand {
   LegPhase phase = LegPhase::kLying;
   std::uint64_t lifted = 0;      ///< 1 + i: the foot of LegPlace i is in the air, or on its way; 0: none
   std::array<double, 6> body{};  ///< m and rad: x y height roll pitch yaw from the nominal pose, after limits
+  std::uint64_t gait = 0;        ///< GaitName (control/legged/gait.h)
+  double gait_phase = 0;         ///< 0 … 1
+  FootStances stance{};
 };
 
 }  // namespace robot_control

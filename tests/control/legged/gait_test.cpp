@@ -21,6 +21,21 @@ const Gait& gait_of(GaitName name) {
   return kGaits[static_cast<std::size_t>(name)];
 }
 
+TEST(Gait, RefusesTablesWithWhichNoRobotWalks) {
+  const Gait trot = gait_of(GaitName::kTrot);
+  EXPECT_TRUE(walkable(trot));
+  const auto with = [&](auto change) {
+    Gait gait = trot;
+    change(gait);
+    return walkable(gait);
+  };
+  EXPECT_FALSE(with([](Gait& gait) { gait.duty = 0; }));
+  EXPECT_FALSE(with([](Gait& gait) { gait.period = 0.001; }));
+  EXPECT_FALSE(with([](Gait& gait) { gait.lift = -0.01; }));
+  EXPECT_FALSE(with([](Gait& gait) { gait.phase[2] = 1; }));
+  EXPECT_FALSE(with([](Gait& gait) { gait.period = std::nan(""); }));
+}
+
 TEST(Gait, EachFootBearsForItsDutyAndSwingsOncePerPeriod) {
   for (const Gait& gait : kGaits) {
     for (std::size_t leg = 0; leg < kLegs; ++leg) {

@@ -49,7 +49,7 @@ inline constexpr double kCycle = 0.005;  // s
 
 struct IdealLegs {
   explicit IdealLegs(const LegModel& model, double cycle = kCycle, double timeout = 0)
-      : robot(model), period(cycle), controller(model, timeout, cycle) {
+      : robot(model), period(cycle), controller(model, {.request_timeout = timeout}, cycle) {
     sensors.joint_count = kLegsJoints;
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
       for (std::size_t i = 0; i < kLegJoints; ++i) {

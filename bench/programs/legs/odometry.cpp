@@ -1,0 +1,167 @@
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <functional>
+
+#include "bench/programs/legs/loop_rows.h"
+#include "control/legged/gait.h"
+#include "estimation/legged/legged_estimator.h"
+
+namespace robot_control::bench {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+constexpr double kWalk = 0.5;   // m/s
+constexpr double kStand = 3;    // s, before and after the walk
+constexpr double kTurn = 0.5;   // rad/s
+constexpr double kSide = 10;    // s, of the square
+constexpr double kCircle = 20;  // s, of the eight
+
+struct Course {
+  std::string name;
+  double seconds;
+  std::function<std::array<double, 2>(double)> speed;  ///< m/s and rad/s at a time
+};
+
+std::vector<Course> courses() {
+  constexpr double kCorner = kPi / 2 / kTurn;
+  return {{"straight", 40,
+           [](double) {
+             return std::array{kWalk, 0.0};
+           }},
+          {"square", 4 * (kSide + kCorner),
+           [](double t) {
+             return std::fmod(t, kSide + kCorner) < kSide ? std::array{kWalk, 0.0} : std::array{0.0, kTurn};
+           }},
+          {"eight", 2 * kCircle, [](double t) {
+             return std::array{kWalk, (t < kCircle ? 2 : -2) * kPi / kCircle};
+           }}};
+}
+
+Request walk(const std::array<double, 2>& speed, std::uint64_t mode = kStanceStay) {
+  Request request = stance(mode);
+  request.twist.linear[0] = speed[0];
+  request.twist.angular[2] = speed[1];
+  return request;
+}
+
+Quaterniond turn_of(const Quaternion& q) {
+  return {q[3], q[0], q[1], q[2]};
+}
+
+Vector3d vector_of(const Vector3& v) {
+  return {v[0], v[1], v[2]};
+}
+
+/// The difference of an estimate from the truth, with the covariance of the estimate.
+struct Difference {
+  Eigen::Matrix<double, 6, 1> pose;
+  Vector3d speed;
+  double pose_nees, speed_nees;
+
+  Difference(const BaseState& base, const TruthFrame& truth) {
+    const Eigen::AngleAxisd turn(turn_of(base.pose_odom.orientation) *
+                                 turn_of(truth.pose_world.orientation).conjugate());
+    pose << vector_of(base.pose_odom.position) - vector_of(truth.pose_world.position), turn.angle() * turn.axis();
+    speed = vector_of(base.twist_base.linear) - vector_of(truth.twist_base.linear);
+    using Matrix = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+    const Eigen::Map<const Matrix> of_pose(base.pose_covariance.data()), of_twist(base.twist_covariance.data());
+    pose_nees = pose.dot(of_pose.ldlt().solve(pose)) / 6;
+    speed_nees = speed.dot(of_twist.topLeftCorner<3, 3>().ldlt().solve(speed)) / 3;
+  }
+};
+
+void drive(const LegModel& model, const Course& course, std::uint64_t seed, WorstValues& worst) {
+  Parameters parameters = QuadrupedLoop::parameters(seed, ErrorLevel::kField);
+  parameters.plant.contact_sensors = false;
+  parameters.plant.gyro_bias = 0.02;
+  parameters.plant.accelerometer_bias = 0.2;
+  QuadrupedLoop robot(model, parameters);
+  LeggedEstimator beside(model, parameters.loop.period());  // its plain estimate alone counts
+  StateFrame unused;
+  robot.after_step = [&] { beside.step(robot.loop.row().driver->sensors, unused); };
+  stand_up(robot);
+  robot.run(kStand, {});
+  Vector3d before = vector_of(robot.truth().pose_world.position);
+  double travelled = 0, squares = 0, cycles = 0, pose_nees = 0, speed_nees = 0;
+  const auto run = [&](double seconds, const std::function<Request(double)>& request) {
+    for (double t = 0; t < seconds; t += 0.02) {
+      robot.loop.request(request(t));
+      for (int k = 0; k < 20; ++k) robot.step();
+      const Vector3d now = vector_of(robot.truth().pose_world.position);
+      travelled += (now - before).head<2>().norm();
+      before = now;
+      const Difference difference(robot.state().base, robot.truth());
+      squares += difference.speed.squaredNorm();
+      pose_nees += difference.pose_nees;
+      speed_nees += difference.speed_nees;
+      cycles += 1;
+    }
+  };
+  run(course.seconds, [&](double t) { return walk(course.speed(t)); });
+  run(kStand, [](double) { return Request{}; });
+  const Difference end(robot.state().base, robot.truth());
+  const double error = 100 * end.pose.head<2>().norm() / travelled;
+  const Vector3d plain = vector_of(beside.state().plain.position) - vector_of(robot.truth().pose_world.position);
+  const double plain_error = 100 * plain.head<2>().norm() / travelled;
+  worst.add("error of the way, " + course.name, error, "%");
+  worst.add("error of yaw, " + course.name, std::abs(end.pose[5]) * 180 / kPi, "deg");
+  worst.add("error of height, " + course.name, std::abs(end.pose[2]), "m");
+  worst.add("RMS of the speed, " + course.name, std::sqrt(squares / cycles), "m/s");
+  worst.average("mean error of the way, " + course.name, error, "%");
+  worst.average("mean error of the plain estimate, " + course.name, plain_error, "%");
+  worst.add("error beyond 1.1 of the plain estimate, " + course.name, std::max(0.0, error - 1.1 * plain_error), "%");
+  worst.average("NEES of the pose, " + course.name, pose_nees / cycles, "");
+  worst.average("NEES of the speed, " + course.name, speed_nees / cycles, "");
+  worst.add("stopped or degraded, " + course.name, robot.permit().causes != 0 || robot.state().base.degraded != 0,
+            "runs");
+}
+
+}  // namespace
+
+void odometry(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
+  for (const Course& course : courses()) drive(model, course, seed, worst);
+}
+
+void contact(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
+  constexpr int kAir = 40, kInTime = 15, kBounce = 10;  // cycles; a foot that lands leaves the ground again for less
+  constexpr double kTouches = 1;                        // N
+  constexpr double kSeconds = 10;
+  struct Walk {
+    GaitName gait;
+    double speed;
+  };
+  for (const Walk& chosen : {Walk{GaitName::kTrot, 0.5}, Walk{GaitName::kTrot, 1.0}, Walk{GaitName::kCrawl, 0.2}}) {
+    Parameters parameters = QuadrupedLoop::parameters(seed, ErrorLevel::kField);
+    parameters.plant.contact_sensors = false;
+    QuadrupedLoop robot(model, parameters);
+    stand_up(robot);
+    std::array<int, kLegs> air{}, since{};
+    std::array<bool, kLegs> waits{};
+    double touchdowns = 0, found = 0, swing = 0, wrong = 0;
+    const Request request = walk({chosen.speed, 0}, kStanceGait + static_cast<std::uint64_t>(chosen.gait));
+    for (int k = 0; k < kSeconds * 1000; ++k) {
+      if (k % 20 == 0) robot.loop.request(request);
+      robot.step();
+      for (std::size_t leg = 0; leg < kLegs; ++leg) {
+        const bool touches = robot.truth().normal_force[leg] > kTouches;
+        const bool said = robot.state().contacts[leg].probability >= 0.5;
+        if (touches && air[leg] > kAir) touchdowns += 1, waits[leg] = true, since[leg] = 0;
+        if (waits[leg] && said) found += since[leg] <= kInTime ? 1 : 0, waits[leg] = false;
+        since[leg] += 1;
+        air[leg] = touches ? 0 : air[leg] + 1;
+        const bool swings = air[leg] > kBounce;
+        swing += swings ? 1 : 0;
+        wrong += swings && said ? 1 : 0;
+      }
+    }
+    const std::string name =
+        std::string(kGaits[static_cast<std::size_t>(chosen.gait)].name) + (chosen.speed == 1.0 ? " 1.0 m/s" : "");
+    worst.add("touchdowns not found in 15 ms, " + name, 100 * (1 - found / touchdowns), "%");
+    worst.add("swing taken for a stance, " + name, 100 * wrong / swing, "%");
+    worst.add("no touchdown, " + name, touchdowns > 20 ? 0 : 1, "runs");
+  }
+}
+
+}  // namespace robot_control::bench

@@ -1,0 +1,35 @@
+#pragma once
+/// The values of the leg controller that follow from the robot.
+
+#include <array>
+
+#include "control/legged/tracked_axis.h"
+#include "machine/legs/leg_model.h"
+
+namespace robot_control {
+
+struct LegTuning {
+  double stiffness = 0;     ///< N·m/rad, of each joint
+  double damping = 0;       ///< N·m·s/rad
+  double gather_speed = 0;  ///< rad/s
+  double rise_time = 0;     ///< s, also of lowering
+  double height = 0;        ///< m, from the feet to the second joints, while standing
+  double lift = 0;          ///< m, of a foot in the air
+  double sway = 0;          ///< m, range of the body in x and y
+  double bob = 0;           ///< m, range of its height
+  double lean = 0;          ///< rad, range of roll and pitch together, and of yaw
+  double foot_range = 0;    ///< m, of a foot in the air, from above its place
+  AxisBounds foot;          ///< m
+  AxisBounds joint;         ///< rad, of a joint while the robot lies
+};
+
+LegTuning leg_tuning(const LegModel& robot) noexcept;
+
+/// The bounds of a joint while the robot lies.
+struct JointBounds {
+  JointRange range;   ///< rad; ±∞ where it turns without end
+  AxisBounds motion;  ///< rad
+};
+std::array<JointBounds, kLegsJoints> joint_bounds(const LegModel& robot) noexcept;
+
+}  // namespace robot_control

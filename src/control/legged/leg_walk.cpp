@@ -1,0 +1,134 @@
+/// The phase in which the robot walks, and how it begins and ends.
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "control/legged/leg_controller.h"
+#include "control/legged/walking/walking_speed.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kSlow = 0.3;         // m/s, of a body of legs of kReferenceLeg whose walk may end
+constexpr double kCarriedPart = 0.5;  // of the ranges of a standing body
+constexpr std::uint64_t kEmergencies = kReasonTimedOut | kReasonRefused | kReasonManySenders | kReasonPermitRamp;
+
+bool rests(const WalkingTwist& twist) noexcept {
+  return twist[0] == 0 && twist[1] == 0 && twist[2] == 0;
+}
+
+bool usable(const ControlInput& input) noexcept {
+  return input.state != nullptr && input.state->head.cycle == input.sensors->head.cycle &&
+         (input.state->base.flags & kStateValid) != 0;
+}
+
+}  // namespace
+
+/// Returns true if this request asks the robot to walk.
+bool LegController::walks(const Request& request) const noexcept {
+  if (request.mode > kStanceGait && request.mode < kStanceGait + kGaits.size()) return true;
+  return request.mode == kStanceStay && (parts_of(request) & kWalk) != 0;
+}
+
+void LegController::begin_walk(const ControlInput& input) noexcept {
+  if (!usable(input)) return;
+  const std::array<double, 3> nominal{nominal_, 0, 0};
+  for (std::size_t i = 0; i < nominal.size(); ++i) {
+    state_.carried[i] = state_.body[kZ + i];
+    state_.carried[i].value -= nominal[i];
+  }
+  state_.twist = {};
+  state_.gait = static_cast<std::uint64_t>(GaitName::kStand);
+  walker_.begin(state_.walk, *input.sensors, *input.state);
+  enter(LegPhase::kWalking, 0);
+}
+
+void LegController::walk(const ControlInput& input, const Request& request, CommandFrame& out) noexcept {
+  out.legged.phase = LegPhase::kWalking;
+  if (!usable(input)) {
+    out.reasons |= kReasonNoState;
+    state_ = State(state_.watch);
+    out.legged.phase = LegPhase::kLying;
+    return;  // all joints brake
+  }
+  const bool wanted = walks(request);
+  if (request.mode == kStanceLie) state_.lies_next = 1;
+  if (wanted || request.mode == kStanceStand) state_.lies_next = 0;
+  WalkingTwist target{};
+  if (wanted) target = {request.twist.linear[0], request.twist.linear[1], request.twist.angular[2]};
+  const double speed = std::hypot(target[0], target[1]);
+  if (speed > input.permit->speed_limit) {
+    out.reasons |= kReasonPermitSlow;
+    for (double& axis : target) axis *= input.permit->speed_limit / speed;
+  }
+  const GaitName gait = choose_gait(request, target);
+  const WalkingTwist twist = limiter_.step(state_.twist, target, fastest_[state_.gait],
+                                           (out.reasons & kEmergencies) != 0, period_, out.reasons);
+  carry(request, out.reasons);
+  const Vector3& moves = input.state->base.twist_base.linear;
+  const bool slow = std::hypot(moves[0], moves[1]) < kSlow * std::sqrt(walker_.gaits()[1].period / kGaits[1].period);
+  const bool all_down = state_.walk.gait == static_cast<std::uint64_t>(GaitName::kStand);
+  const bool ends = !wanted && rests(twist) && (slow || all_down);
+  const WalkInput to{.sensors = input.sensors,
+                     .state = input.state,
+                     .twist = twist,
+                     .height = state_.carried[0].value,
+                     .roll = state_.carried[1].value,
+                     .pitch = state_.carried[2].value,
+                     .gait = ends ? GaitName::kStand : gait};
+  const bool planned = walker_.step(state_.walk, to, out);
+  out.twist_limited = {.linear = {twist[0], twist[1], 0}, .angular = {0, 0, twist[2]}};
+  for (std::size_t i = 0; i < 3; ++i) out.legged.body[kZ + i] = state_.carried[i].value;
+  if (!planned || (ends && all_down && state_.walk.stood > kAllDown)) stand_here(input);
+}
+
+GaitName LegController::choose_gait(const Request& request, const WalkingTwist& target) noexcept {
+  if (request.mode > kStanceGait) {
+    state_.gait = std::min<std::uint64_t>(request.mode - kStanceGait, kGaits.size() - 1);
+  } else if (!rests(target) || state_.gait == 0) {
+    state_.gait = static_cast<std::uint64_t>(GaitName::kTrot);
+  }
+  return static_cast<GaitName>(state_.gait);
+}
+
+/// Moves height, roll and pitch towards the requested ones.
+void LegController::carry(const Request& request, std::uint64_t& reasons) noexcept {
+  const std::array<double, 3> wanted{request.posture.height, request.posture.roll, request.posture.pitch};
+  const std::array<double, 3> range{kCarriedPart * tuning_.bob, kCarriedPart * tuning_.lean,
+                                    kCarriedPart * tuning_.lean};
+  std::array<double, 3> target{};
+  for (std::size_t i = 0; i < target.size(); ++i) {
+    target[i] = std::clamp(wanted[i], -range[i], range[i]);
+    if (target[i] != wanted[i]) reasons |= kReasonOutOfReach;
+  }
+  track(state_.carried, target, {body_motion_[kZ], body_motion_[kRoll], body_motion_[kPitch]}, period_);
+}
+
+/// Holds the body from now on by the angles of its joints, on the feet where they are.
+void LegController::stand_here(const ControlInput& input) noexcept {
+  const WalkingBody body = walker_.measure(*input.sensors, *input.state);
+  const bool lies_next = state_.lies_next != 0;
+  state_.body = {};
+  state_.body[kZ].value = ground_ - state_.walk.ground;
+  state_.body[kRoll].value = std::atan2(body.turned(2, 1), body.turned(2, 2));
+  state_.body[kPitch].value = -std::asin(std::clamp(body.turned(2, 0), -1.0, 1.0));
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const Eigen::Vector3d& foot = body.feet[leg];
+    state_.places[leg] = {foot.x(), foot.y(), foot.z() + state_.body[kZ].value};
+  }
+  state_.share.fill(1);
+  state_.lifted = kLegs;
+  state_.angles = body.angles;
+  state_.centre = {body.equations.centre_of_gravity.x(), body.equations.centre_of_gravity.y()};
+  const Eigen::Vector2d middle = above_support();
+  state_.home = {middle.x(), middle.y()};
+  state_.held = {};
+  state_.follows = state_.blocked = 0;
+  state_.velocity = state_.acceleration = {};
+  enter(LegPhase::kStanding, 0);
+  state_.margin = margin();
+  state_.lies_next = lies_next ? 1 : 0;
+}
+
+}  // namespace robot_control

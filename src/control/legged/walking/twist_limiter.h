@@ -1,0 +1,42 @@
+#pragma once
+/// Limits the requested twist of a body that walks on three axes: to the front, to the left, and turning. The limits
+/// are those of wheels (limits/speed_limiter.h).
+///
+/// The target is scaled by the largest s ≤ 1 with which each axis is within its speed limit, and Σ |xᵢ|/cᵢ ≤ 1, where
+/// cᵢ is the speed that the legs allow on this axis alone. Each axis follows axis_limiter.h. Their limits are scaled so
+/// that all arrive in the same step. In an emergency every axis stops as fast as its own limits allow.
+
+#include <array>
+#include <cstdint>
+
+#include "control/legged/leg_controller_parameters.h"
+#include "control/limits/axis_limiter.h"
+#include "control/limits/speed_limiter.h"
+
+namespace robot_control {
+
+/// m/s, m/s, rad/s.
+using WalkingTwist = std::array<double, 3>;
+
+/// Returns the limits of the three axes. Emergency decelerations and jerks follow from the accelerations as on wheels
+/// (limits/drive_limits.h).
+std::array<MotionLimits, 3> twist_limits(const LegControllerParameters& parameters) noexcept;
+
+class TwistLimiter {
+ public:
+  struct State {
+    std::array<AxisState, 3> axes{};
+  };
+
+  explicit TwistLimiter(const std::array<MotionLimits, 3>& limits) noexcept : limits_(limits) {}
+
+  /// Moves towards the finite `target` over `dt` s. `capable`: c, > 0. `reasons`: bits of CommandReason and
+  /// LeggedReason are added.
+  WalkingTwist step(State& state, const WalkingTwist& target, const WalkingTwist& capable, bool emergency, double dt,
+                    std::uint64_t& reasons) const noexcept;
+
+ private:
+  std::array<MotionLimits, 3> limits_;
+};
+
+}  // namespace robot_control

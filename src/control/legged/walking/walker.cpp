@@ -1,0 +1,292 @@
+#include "control/legged/walking/walker.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "control/legged/foothold.h"
+#include "control/legged/walking/swing.h"
+#include "control/legged/walking/walking_speed.h"
+#include "machine/gravity.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kOfEffort = 0.97;    // of the limits, the largest effort
+constexpr double kFarthest = 0.08;    // m, the target from the robot, of a leg of kReferenceLeg
+constexpr double kFarthestYaw = 0.3;  // rad
+constexpr double kGroundTime = 0.05;  // s, in which the height of the ground follows the feet
+constexpr double kEarly = 0.5;        // of the swing, from which on a foot may touch down
+constexpr double kTouches = 0.5;      // probability of a contact
+
+using Map = Eigen::Map<Eigen::Vector3d>;
+using ConstMap = Eigen::Map<const Eigen::Vector3d>;
+
+Vector3 plain(const Eigen::Vector3d& vector) noexcept {
+  return {vector.x(), vector.y(), vector.z()};
+}
+
+Eigen::Index joint_row(std::size_t leg) noexcept {
+  return static_cast<Eigen::Index>(6 + kLegJoints * leg);
+}
+
+}  // namespace
+
+Walker::Walker(const LegModel& robot, double friction, double period)
+    : period_(period),
+      legs_(robot.legs),
+      dynamics_(robot),
+      tuning_(leg_tuning(robot)),
+      length_(robot.leg_length()),
+      plan_parameters_([&] {
+        ForcePlanParameters parameters =
+            force_plan_parameters(dynamics_.mass(), nominal_stance(robot).inertia(), robot.leg_length());
+        parameters.friction = friction;
+        return parameters;
+      }()),
+      plan_(plan_parameters_) {
+  for (std::size_t i = 0; i < kLegsJoints; ++i) effort_limits_[i] = kOfEffort * robot.joints[i].effort_limit;
+  const NominalStance stance = nominal_stance(robot);
+  for (std::size_t i = 0; i < gaits_.size(); ++i) gaits_[i] = gait_of(robot, stance, kGaits[i]);
+  const Eigen::Vector3d& centre = stance.equations.centre_of_gravity;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    nominal_[leg] = (stance.feet[leg] - centre).head<2>();
+    height_ += (centre.z() - stance.feet[leg].z() + legs_[leg].foot_radius) / kLegs;
+  }
+}
+
+WalkingBody Walker::measure(const SensorFrame& sensors, const StateFrame& estimate) const noexcept {
+  const Quaternion& q = estimate.base.attitude;
+  const Eigen::Matrix3d attitude = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).toRotationMatrix();
+  WalkingBody body;
+  body.turned =
+      Eigen::AngleAxisd(-std::atan2(attitude(1, 0), attitude(0, 0)), Eigen::Vector3d::UnitZ()).toRotationMatrix() *
+      attitude;
+  LeggedMotion motion;
+  for (std::size_t i = 0; i < kLegsJoints; ++i) {
+    motion.angles[i] = sensors.joints[i].position;
+    motion.rates[i] = valid_velocity(sensors.joints[i]);
+  }
+  motion.linear = ConstMap(estimate.base.twist_base.linear.data());
+  motion.angular = ConstMap(estimate.base.twist_base.angular.data());
+  motion.gravity = -kGravity * body.turned.row(2).transpose();
+  body.velocity = body.turned * motion.linear;
+  body.rate = body.turned * motion.angular;
+  body.angles = motion.angles;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    Eigen::Vector3d foot;
+    body.jacobians[leg] = legs_[leg].kinematics.jacobian(LegModel::angles_of(motion.angles, leg), foot);
+    body.feet[leg] = body.turned * foot;
+  }
+  dynamics_.step(motion, body.equations);
+  body.centre = body.turned * body.equations.centre_of_gravity;
+  return body;
+}
+
+void Walker::begin(State& state, const SensorFrame& sensors, const StateFrame& estimate) const noexcept {
+  state = {};
+  const WalkingBody body = measure(sensors, estimate);
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    state.bears[leg] = 1;
+    state.ground += (body.feet[leg].z() - legs_[leg].foot_radius) / kLegs;
+  }
+  state.planned = kPlanCycles;
+}
+
+bool Walker::step(State& state, const WalkInput& input, CommandFrame& out) noexcept {
+  const WalkingBody body = measure(*input.sensors, *input.state);
+  move(state, input, body);
+  turn_clock(state, input.gait);
+  const bool changed = choose_feet(state, input, body);
+  if (++state.planned >= kPlanCycles || changed) plan(state, input, body);
+  const Gait& gait = this->gait(state);
+  out.legged.gait = state.gait;
+  out.legged.gait_phase = state.phase;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const bool bears = state.bears[leg] != 0;
+    if (bears) {
+      bear(state, body, leg, out);
+    } else {
+      swing(state, input, body, leg, out);
+    }
+    const double part = gait.leg_phase(leg, state.phase) / gait.duty;
+    const bool early = gait.duty < 1 && !gait.bears(leg, state.phase);
+    const double done = gait.duty >= 1 ? 0.5 : early ? 0 : part;
+    out.legged.stance[leg] = bears ? std::max(done, period_) : 0;
+  }
+  return state.failures <= kFailures;
+}
+
+/// Moves what is kept in level axes, which move and turn with the body.
+void Walker::move(State& state, const WalkInput& input, const WalkingBody& body) const noexcept {
+  const Eigen::Vector3d turning(0, 0, body.rate.z());
+  for (Vector3& lifted : state.lifted)
+    Map(lifted.data()) -= period_ * (body.velocity + turning.cross(Map(lifted.data())));
+  const double farthest = kFarthest * length_ / kReferenceLeg;
+  std::array<double, 3>& ahead = state.ahead;
+  ahead[0] += period_ * (input.twist[0] - body.velocity.x());
+  ahead[1] += period_ * (input.twist[1] - body.velocity.y());
+  ahead[2] += period_ * (input.twist[2] - body.rate.z());
+  for (std::size_t i = 0; i < 2; ++i) ahead[i] = std::clamp(ahead[i], -farthest, farthest);
+  ahead[2] = std::clamp(ahead[2], -kFarthestYaw, kFarthestYaw);
+  double measured = 0, count = 0;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    if (state.bears[leg] == 0) continue;
+    measured += body.feet[leg].z() - legs_[leg].foot_radius;
+    ++count;
+  }
+  state.ground -= period_ * body.velocity.z();
+  if (count > 0) state.ground += period_ / kGroundTime * (measured / count - state.ground);
+}
+
+void Walker::turn_clock(State& state, GaitName wanted) const noexcept {
+  const auto next = static_cast<std::uint64_t>(wanted);
+  const Gait& gait = this->gait(state);
+  if (gait.duty >= 1) {
+    state.stood += period_;
+    if (wanted == GaitName::kStand) return;
+    state.gait = next;
+    state.phase = 0;
+    return;
+  }
+  const double step = period_ / gait.period;
+  state.phase += step;
+  const bool wraps = state.phase >= 1;
+  state.phase -= std::floor(state.phase);
+  double farthest = 0;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) farthest = std::max(farthest, gait.swung(leg, state.phase));
+  const bool ends = wanted == GaitName::kStand && farthest * (1 - gait.duty) < 1.5 * step;
+  if (!ends && !(wraps && wanted != GaitName::kStand)) return;
+  state.gait = next;
+  if (!ends) return;
+  state.phase = state.stood = 0;
+  state.ahead = {};
+}
+
+/// Returns true if other feet bear than before.
+bool Walker::choose_feet(State& state, const WalkInput& input, const WalkingBody& body) const noexcept {
+  const Gait& gait = this->gait(state);
+  const std::array<std::uint64_t, kLegs> before = state.bears;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const bool swings = !gait.bears(leg, state.phase);
+    if (!swings) {
+      state.bears[leg] = 1;
+    } else if (state.swings[leg] == 0) {
+      state.bears[leg] = 0;
+      state.lifted[leg] = plain(body.feet[leg]);
+    } else if (gait.swung(leg, state.phase) > kEarly && input.state->contacts[leg].probability >= kTouches) {
+      state.bears[leg] = 1;
+    }
+    state.swings[leg] = swings ? 1 : 0;
+  }
+  return state.bears != before;
+}
+
+/// Returns where a foot in the air lands, in m from the base's origin.
+Eigen::Vector3d Walker::landing(const State& state, const WalkInput& input, const WalkingBody& body,
+                                std::size_t leg) const noexcept {
+  const Gait& gait = this->gait(state);
+  const Eigen::Vector3d moves = body.velocity + body.rate.cross(body.centre);
+  FootholdInput at{.nominal = nominal_[leg],
+                   .requested = {input.twist[0], input.twist[1]},
+                   .measured = moves.head<2>(),
+                   .yaw_rate = input.twist[2],
+                   .until_landing = (1 - gait.swung(leg, state.phase)) * gait.swing_time(),
+                   .stance_time = gait.stance_time(),
+                   .height = height_ + input.height,
+                   .leg_length = length_};
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  place.head<2>() = body.centre.head<2>() + foothold(at);
+  place.z() = state.ground + legs_[leg].foot_radius;
+  return place;
+}
+
+void Walker::plan(State& state, const WalkInput& input, const WalkingBody& body) noexcept {
+  const Gait& gait = this->gait(state);
+  ForcePlanInput to;
+  const Eigen::Vector3d moves = body.velocity + body.rate.cross(body.centre);
+  to.place << std::atan2(body.turned(2, 1), body.turned(2, 2)), -std::asin(std::clamp(body.turned(2, 0), -1.0, 1.0)), 0,
+      0, 0, body.centre.z() - state.ground;
+  to.speed << body.rate, moves;
+  to.target << input.roll, input.pitch, state.ahead[2], state.ahead[0], state.ahead[1], height_ + input.height;
+  to.target_speed << 0, 0, input.twist[2], input.twist[0], input.twist[1], 0;
+  to.steps = std::min(kPlanSteps, static_cast<std::size_t>(5 / gait.duty));
+  const double step = plan_parameters_.horizon / static_cast<double>(to.steps);
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const bool bears = state.bears[leg] != 0;
+    const double until = (1 - gait.swung(leg, state.phase)) * gait.swing_time();
+    to.feet[leg] = (bears ? body.feet[leg] : landing(state, input, body, leg)) - body.centre;
+    to.feet[leg].z() -= legs_[leg].foot_radius;
+    to.bears[0][leg] = bears;
+    for (std::size_t i = 1; i < to.steps; ++i) {
+      const double later = (static_cast<double>(i) + 0.5) * step;
+      const bool landed = bears && state.swings[leg] != 0 && later < until;
+      to.bears[i][leg] = landed || gait.bears(leg, state.phase + later / gait.period);
+    }
+  }
+  const ForcePlanResult result = plan_.step(to);
+  state.planned = 0;
+  if (result.outcome != QpOutcome::kSolved) {
+    ++state.failures;
+    return;
+  }
+  state.failures = 0;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) state.forces[leg] = plain(result.forces[leg]);
+}
+
+void Walker::bear(const State& state, const WalkingBody& body, std::size_t leg, CommandFrame& out) const noexcept {
+  const Eigen::Vector3d own = body.equations.bias.segment<3>(joint_row(leg));
+  const Eigen::Vector3d load =
+      -body.jacobians[leg].transpose() * (body.turned.transpose() * ConstMap(state.forces[leg].data()));
+  double part = 1;
+  for (std::size_t i = 0; i < kLegJoints; ++i) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    const double room = effort_limits_[kLegJoints * leg + i] - std::copysign(own[axis], own[axis] * load[axis]);
+    if (std::abs(load[axis]) > room) part = std::min(part, std::max(0.0, room) / std::abs(load[axis]));
+  }
+  for (std::size_t i = 0; i < kLegJoints; ++i) {
+    const std::size_t joint = kLegJoints * leg + i;
+    const auto axis = static_cast<Eigen::Index>(i);
+    out.joints[joint] = {.mode = JointMode::kImpedance,
+                         .position = body.angles[joint],
+                         .velocity = 0,
+                         .stiffness = 0,
+                         .damping = 0,
+                         .effort = own[axis] + part * load[axis]};
+  }
+}
+
+void Walker::swing(const State& state, const WalkInput& input, const WalkingBody& body, std::size_t leg,
+                   CommandFrame& out) const noexcept {
+  const Gait& gait = this->gait(state);
+  const Eigen::Vector3d from = ConstMap(state.lifted[leg].data());
+  const Eigen::Vector3d to = landing(state, input, body, leg);
+  const double top = std::max(from.z(), to.z()) + gait.lift;
+  const SwingPoint point = swing_point(from, to, top, gait.swung(leg, state.phase), gait.swing_time());
+  const LegKinematics& kinematics = legs_[leg].kinematics;
+  const Eigen::Matrix3d back = body.turned.transpose();
+  const LegSolution solution = kinematics.inverse(back * point.place);
+  Eigen::Vector3d foot;
+  const Eigen::Matrix3d jacobian = kinematics.jacobian(solution.angles, foot);
+  const Eigen::Matrix3d inverse = jacobian.inverse();
+  const Eigen::Vector3d rates = inverse * back * (point.velocity - body.velocity - body.rate.cross(point.place));
+  const Eigen::Vector3d accelerations = inverse * back * point.acceleration;
+  const Eigen::Index row = joint_row(leg);
+  const Eigen::Vector3d efforts =
+      body.equations.mass.block<3, 3>(row, row) * accelerations + body.equations.bias.segment<3>(row);
+  for (std::size_t i = 0; i < kLegJoints; ++i) {
+    const std::size_t joint = kLegJoints * leg + i;
+    const auto axis = static_cast<Eigen::Index>(i);
+    const double limit = effort_limits_[joint];
+    out.joints[joint] = {.mode = JointMode::kImpedance,
+                         .position = solution.angles[axis],
+                         .velocity = rates[axis],
+                         .stiffness = tuning_.stiffness,
+                         .damping = tuning_.damping,
+                         .effort = std::clamp(efforts[axis], -limit, limit)};
+  }
+}
+
+}  // namespace robot_control

@@ -1,0 +1,116 @@
+#pragma once
+/// Walks: from the measured state of body and legs, and the twist that is requested, to the efforts of the joints.
+///
+/// The level axes have the body's heading and a vertical z; their origin is that of the base.
+///
+///   clock     the gait's phase says which feet bear (gait.h). Another gait begins where the phase wraps. A walk ends in
+///             a cycle in which no foot is far from where it left the ground
+///   contact   a foot that meets the ground in the second half of its swing bears from then on. A foot that is late is
+///             pushed down by the force that it is to bear
+///   target    moves with the twist from where the robot was. It stays within kFarthest of the robot
+///   plan      every kPlanCycles cycles, and where other feet bear, the forces of the feet (force_plan.h)
+///   stance    τ = h − Jᵀ f, f the planned force, h what holds the leg itself. f is scaled down until each |τ| is within
+///             the joint's limit, so that f stays within friction
+///   swing     the foot follows swing.h to its foothold (foothold.h) with the impedance of standing, and the efforts
+///             M q̈ + h of its own leg
+///
+/// If a plan fails, the last forces stay for up to kFailures plans.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+
+#include "control/legged/force_plan.h"
+#include "control/legged/gait.h"
+#include "control/legged/leg_tuning.h"
+#include "control/legged/nominal_stance.h"
+#include "control/legged/tracked_axis.h"
+#include "control/legged/walking/twist_limiter.h"
+#include "machine/legs/leg_dynamics.h"
+#include "machine/legs/leg_model.h"
+#include "signals/command_frame.h"
+#include "signals/sensor_frame.h"
+#include "signals/state_frame.h"
+
+namespace robot_control {
+
+struct WalkInput {
+  const SensorFrame* sensors = nullptr;  ///< all joints are measured
+  const StateFrame* state = nullptr;     ///< valid
+  WalkingTwist twist{};                  ///< limited
+  double height = 0;                     ///< m, of the body from the nominal one
+  double roll = 0, pitch = 0;            ///< rad
+  GaitName gait = GaitName::kStand;      ///< wanted; kStand ends the walk
+};
+
+/// The body as it is.
+struct WalkingBody {
+  Eigen::Matrix3d turned = Eigen::Matrix3d::Identity();  ///< base axes → level axes
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();    ///< m/s, of the base's origin, level axes
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();        ///< rad/s, level axes
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();      ///< m, centre of gravity, level axes
+  std::array<double, kLegsJoints> angles{};              ///< rad
+  std::array<Eigen::Vector3d, kLegs> feet{};             ///< m, level axes
+  std::array<Eigen::Matrix3d, kLegs> jacobians{};        ///< base axes
+  LeggedEquations equations;
+};
+
+class Walker {
+ public:
+  static constexpr std::uint64_t kPlanCycles = 10;
+  static constexpr std::uint64_t kFailures = 3;
+
+  struct State {
+    std::uint64_t gait = 0;  ///< GaitName
+    double phase = 0;
+    double stood = 0;                           ///< s since all feet stand
+    std::array<std::uint64_t, kLegs> bears{};   ///< 1: its force is planned
+    std::array<std::uint64_t, kLegs> swings{};  ///< 1: by the clock
+    std::array<Vector3, kLegs> lifted{};        ///< m, level axes: where it left the ground
+    std::array<Vector3, kLegs> forces{};        ///< N, level axes
+    std::array<double, 3> ahead{};              ///< m, m, rad: the target from the robot
+    double ground = 0;                          ///< m, height of the ground, level axes
+    std::uint64_t planned = 0;                  ///< cycles since the last plan
+    std::uint64_t failures = 0;                 ///< plans without a solution, one after the other
+  };
+
+  /// `friction` is μ of the forces, `period` s.
+  Walker(const LegModel& robot, double friction, double period);
+
+  /// Begins with all feet on the ground.
+  void begin(State& state, const SensorFrame& sensors, const StateFrame& estimate) const noexcept;
+
+  /// Fills joints, gait and stance of `out`. Returns false if the plan has failed too often.
+  bool step(State& state, const WalkInput& input, CommandFrame& out) noexcept;
+
+  /// The gaits of this robot, by GaitName.
+  const std::array<Gait, kGaits.size()>& gaits() const noexcept { return gaits_; }
+
+  WalkingBody measure(const SensorFrame& sensors, const StateFrame& estimate) const noexcept;
+
+ private:
+  void move(State& state, const WalkInput& input, const WalkingBody& body) const noexcept;
+  void turn_clock(State& state, GaitName wanted) const noexcept;
+  bool choose_feet(State& state, const WalkInput& input, const WalkingBody& body) const noexcept;
+  Eigen::Vector3d landing(const State& state, const WalkInput& input, const WalkingBody& body,
+                          std::size_t leg) const noexcept;
+  void plan(State& state, const WalkInput& input, const WalkingBody& body) noexcept;
+  void bear(const State& state, const WalkingBody& body, std::size_t leg, CommandFrame& out) const noexcept;
+  void swing(const State& state, const WalkInput& input, const WalkingBody& body, std::size_t leg,
+             CommandFrame& out) const noexcept;
+  const Gait& gait(const State& state) const noexcept { return gaits_[state.gait]; }
+
+  double period_;
+  std::array<Leg, kLegs> legs_;
+  LegDynamics dynamics_;
+  LegTuning tuning_;
+  std::array<double, kLegsJoints> effort_limits_{};  ///< N·m
+  std::array<Gait, kGaits.size()> gaits_;
+  double length_;                                 ///< m, of a leg
+  std::array<Eigen::Vector2d, kLegs> nominal_{};  ///< m, feet from the centre of gravity
+  double height_ = 0;                             ///< m, of the centre of gravity above the ground
+  ForcePlanParameters plan_parameters_;
+  ForcePlan plan_;
+};
+
+}  // namespace robot_control

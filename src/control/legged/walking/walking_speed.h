@@ -1,0 +1,32 @@
+#pragma once
+/// The gaits of a robot, and how fast its legs carry it in each of them.
+///
+///   gait   that of gait.h, scaled. Its lift is lower where a step in place would need more than kOfLift of the speed
+///          limit of a joint
+///   speed  the largest steady one of the body at which each foot stays within the reach of its leg, and each joint
+///          within kOfJointSpeed of its speed limit, during stance and swing (swing.h)
+
+#include "control/legged/gait.h"
+#include "control/legged/nominal_stance.h"
+#include "control/legged/walking/twist_limiter.h"
+#include "machine/legs/leg_model.h"
+
+namespace robot_control {
+
+inline constexpr double kOfLift = 0.35, kOfJointSpeed = 0.85;
+
+Gait gait_of(const LegModel& robot, const NominalStance& stance, const Gait& reference) noexcept;
+
+/// Returns the largest speeds to the front, to the left, and turning, each of them alone; at least kMinSpeed. `gait`
+/// is one of `gait_of`.
+WalkingTwist walking_speed(const LegModel& robot, const NominalStance& stance, const Gait& gait) noexcept;
+
+/// Returns after how many s at most a walk ends in an emergency. That is the time of the limits, a period of the
+/// slowest gait, and kAllDown.
+double walk_ending_time(const LegControllerParameters& parameters, const LegModel& robot) noexcept;
+
+inline constexpr double kAllDown = 0.15;  ///< s, for which all feet stand before the joints hold the body
+
+inline constexpr double kMinSpeed = 1e-3;  ///< m/s, rad/s
+
+}  // namespace robot_control

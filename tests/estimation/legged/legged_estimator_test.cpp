@@ -1,0 +1,103 @@
+#include "estimation/legged/legged_estimator.h"
+
+#include <gtest/gtest.h>
+
+#include "machine/gravity.h"
+#include "machine/legs/legs_corpus.h"
+#include "support/allocation_guard.h"
+
+namespace robot_control {
+namespace {
+
+/// quadbot, which stands at rest on four feet with force sensors.
+struct Standing {
+  static constexpr double kPeriod = 0.001;  // s
+  LegModel robot = legged_robot("quadbot");
+  LeggedEstimator estimator{robot, kPeriod};
+  SensorFrame sensors;
+  StateFrame out;
+
+  Standing() {
+    sensors.valid = kValidGyro | kValidAccelerometer;
+    sensors.imu.linear_acceleration = {0, 0, kGravity};
+    sensors.joint_count = kLegsJoints;
+    sensors.contact_count = kLegs;
+    for (std::size_t leg = 0; leg < kLegs; ++leg) {
+      sensors.contacts[leg] = {.force = {0, 0, 31}, .valid = 1};
+      sensors.gate.stance[leg] = 0.5;
+      for (std::size_t i = 0; i < kLegJoints; ++i) {
+        JointSample& joint = sensors.joints[kLegJoints * leg + i];
+        joint.valid = kValidMotion;
+        joint.position = i == 1 ? 0.8 : i == 2 ? -1.6 : 0;
+      }
+    }
+  }
+  void run(double seconds) {
+    for (double time = 0; time < seconds - kPeriod / 2; time += kPeriod) {
+      ++sensors.head.cycle;
+      estimator.step(sensors, out);
+    }
+  }
+  double speed() const { return std::hypot(out.base.twist_base.linear[0], out.base.twist_base.linear[1]); }
+};
+
+TEST(LeggedEstimator, LearnsTheGyrosBiasAtRest) {
+  Standing robot;
+  robot.sensors.imu.angular_velocity = {0.03, -0.02, 0.04};
+  robot.run(3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(robot.out.base.gyro_bias[i], robot.sensors.imu.angular_velocity[i], 5e-4) << i;
+    EXPECT_LE(robot.out.base.gyro_bias_deviation[i], 1e-3) << i;
+  }
+  EXPECT_LE(robot.speed(), 1e-3);
+  EXPECT_EQ(robot.out.base.degraded, 0u);
+}
+
+TEST(LeggedEstimator, GivesWayToThePlainEstimateWhereTheyContradict) {
+  Standing robot;
+  robot.run(1);
+  // An accelerometer that fails pushes the filter away from four feet that stand.
+  robot.sensors.imu.linear_acceleration[0] = 60;
+  double fastest = 0;
+  bool degraded = false;
+  for (int k = 0; k < 500; ++k) {
+    robot.sensors.joints[1].velocity = 0.1;  // it is not at rest
+    robot.run(Standing::kPeriod);
+    fastest = std::max(fastest, robot.speed());
+    degraded = degraded || (robot.out.base.flags & kStateDegraded) != 0;
+  }
+  EXPECT_TRUE(degraded);
+  EXPECT_NE(robot.out.base.degraded & kDegradedPosition, 0u);
+  EXPECT_LE(fastest, 60 * 0.15);
+}
+
+TEST(LeggedEstimator, ContinuesWithoutAJump) {
+  Standing robot;
+  robot.sensors.imu.angular_velocity = {0.03, -0.02, 0.04};
+  robot.run(3);
+  robot.estimator.set_pose({2, 1, 0.5});
+  robot.run(0.01);
+  const StateFrame before = robot.out;
+  EXPECT_NEAR(before.base.pose_odom.position[0], 2, 1e-6);
+  EXPECT_LE(before.base.pose_covariance[0], 1e-8);
+  LeggedEstimator restarted(robot.robot, Standing::kPeriod);
+  restarted.resume(before);
+  ++robot.sensors.head.cycle;
+  restarted.step(robot.sensors, robot.out);
+  for (std::size_t i = 0; i < 2; ++i)
+    EXPECT_NEAR(robot.out.base.pose_odom.position[i], before.base.pose_odom.position[i], 1e-4) << i;
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(robot.out.base.twist_base.linear[i], before.base.twist_base.linear[i], 1e-3) << i;
+}
+
+TEST(LeggedEstimator, AllocatesNothing) {
+  Standing robot;
+  const AllocationGuard guard;
+  robot.run(0.01);
+  robot.estimator.set_pose({1, 0, 0});
+  robot.run(0.01);
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+}  // namespace
+}  // namespace robot_control

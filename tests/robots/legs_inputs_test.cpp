@@ -1,0 +1,74 @@
+/// Bad inputs to a robot on legs: it refuses them with the reason, or walks on as before.
+
+#include <limits>
+
+#include "control/legged/gait.h"
+#include "robots/quadruped_fixture.h"
+
+namespace robot_control {
+namespace {
+
+Request walk(double linear, std::uint64_t mode = kStanceStay) {
+  return {.twist = {.linear = {linear, 0, 0}, .angular = {}}, .posture = {}, .mode = mode};
+}
+
+QuadrupedLoop walking() {
+  QuadrupedLoop robot = loop_of("quadbot");
+  robot.wait(0.3);
+  robot.run(4.5, walk(0.5));
+  return robot;
+}
+
+TEST(LegsInputs, AnUnknownGaitMovesNothing) {
+  for (const std::uint64_t mode : {std::uint64_t{kStanceGait}, kStanceGait + kGaits.size(), ~std::uint64_t{0}}) {
+    QuadrupedLoop robot = loop_of("quadbot");
+    robot.wait(0.3);
+    robot.run(1.0, walk(0.5, mode));
+    EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying) << mode;
+    EXPECT_NE(robot.command().reasons & kReasonPartIgnored, 0u) << mode;
+  }
+}
+
+TEST(LegsInputs, ATwistThatIsNotFiniteEndsTheWalk) {
+  QuadrupedLoop robot = walking();
+  robot.run(1.5, walk(std::numeric_limits<double>::quiet_NaN()));
+  EXPECT_NE(robot.command().reasons & kReasonRefused, 0u);
+  EXPECT_EQ(robot.command().legged.phase, LegPhase::kStanding);
+  EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
+}
+
+TEST(LegsInputs, ATwistBeyondEveryLimitIsLimited) {
+  QuadrupedLoop robot = walking();
+  Request request = walk(1e9);
+  request.twist.linear[1] = -1e9;
+  request.twist.angular[2] = 1e9;
+  robot.run(2.0, request);
+  EXPECT_NE(robot.command().reasons & (std::uint64_t{kReasonSpeedLimited} | kReasonLegSpeed), 0u);
+  EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
+}
+
+TEST(LegsInputs, GaitsThatSwitchInEveryCycleDoNotStopTheWalk) {
+  QuadrupedLoop robot = walking();
+  for (std::uint64_t k = 0; k < 2000; ++k) {
+    robot.loop.request(walk(0.3, kStanceGait + 1 + k % 3));
+    robot.step();
+  }
+  EXPECT_EQ(robot.command().legged.phase, LegPhase::kWalking);
+  EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
+  EXPECT_LT(robot.tilt, 0.2);
+}
+
+TEST(LegsInputs, ATwistWhileAFootIsInTheAirSetsItDownFirst) {
+  QuadrupedLoop robot = loop_of("quadbot");
+  robot.wait(0.3);
+  robot.run(2.5, stance(kStanceStand));
+  robot.run(2.0, stance(kStanceLift));
+  robot.run(0.1, walk(0.3));
+  EXPECT_EQ(robot.command().legged.phase, LegPhase::kStanding);
+  robot.run(3.0, walk(0.3));
+  EXPECT_EQ(robot.command().legged.phase, LegPhase::kWalking);
+  EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
+}
+
+}  // namespace
+}  // namespace robot_control

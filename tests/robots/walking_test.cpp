@@ -1,0 +1,162 @@
+/// Robots on legs that walk, in the closed loop.
+
+#include "control/legged/gait.h"
+#include "robots/quadruped_fixture.h"
+
+namespace robot_control {
+namespace {
+
+Request walk(double linear, double lateral, double angular, std::uint64_t mode = kStanceStay) {
+  return {.twist = {.linear = {linear, lateral, 0}, .angular = {0, 0, angular}}, .posture = {}, .mode = mode};
+}
+
+std::uint64_t gait(GaitName name) {
+  return kStanceGait + static_cast<std::uint64_t>(name);
+}
+
+/// Returns the mean twist of the base, by truth, while it walks so for `seconds`.
+WalkingTwist mean_twist(QuadrupedLoop& robot, double seconds, const Request& request) {
+  WalkingTwist mean{};
+  const double part = 1 / static_cast<double>(QuadrupedLoop::cycles(seconds));
+  for (std::uint64_t k = 0; k < QuadrupedLoop::cycles(seconds); ++k) {
+    if (k % 20 == 0) robot.loop.request(request);
+    robot.step();
+    const Twist& twist = robot.truth().twist_base;
+    mean[0] += part * twist.linear[0];
+    mean[1] += part * twist.linear[1];
+    mean[2] += part * twist.angular[2];
+  }
+  return mean;
+}
+
+void expect_walk(QuadrupedLoop& robot, const Request& request, double part, double tilt) {
+  robot.run(2.0, request);
+  robot.clear();
+  const WalkingTwist mean = mean_twist(robot, 3.0, request);
+  const WalkingTwist wanted{request.twist.linear[0], request.twist.linear[1], request.twist.angular[2]};
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    EXPECT_NEAR(mean[i], wanted[i], part * std::abs(wanted[i]) + 0.01) << i;
+  EXPECT_LE(robot.tilt, tilt);
+  EXPECT_LE(robot.effort, 0.98);
+  EXPECT_EQ(robot.command().legged.phase, LegPhase::kWalking);
+  EXPECT_EQ(robot.command().reasons, 0u);
+  EXPECT_EQ(robot.permit().causes | robot.permit().warnings, 0u) << robot.causes();
+}
+
+/// A lying robot stands up, walks, stops and stands.
+class WalkingOf : public testing::TestWithParam<std::string> {};
+
+TEST_P(WalkingOf, ATwistLetsALyingRobotStandUpAndWalkAndAZeroLetsItStand) {
+  QuadrupedLoop robot = loop_of(GetParam());
+  robot.wait(0.3);
+  robot.run(3.0, walk(0.5, 0, 0));
+  expect_walk(robot, walk(0.5, 0, 0), 0.03, 0.1);
+  double stood = 0;
+  while (robot.command().legged.phase == LegPhase::kWalking && stood < 3) {
+    robot.run(0.02, {});
+    stood += 0.02;
+  }
+  EXPECT_LE(stood, 1.2);
+  robot.run(0.5, {});
+  EXPECT_LT(robot.speed(), 0.02);
+  EXPECT_EQ(robot.command().legged.phase, LegPhase::kStanding);
+  EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
+}
+
+INSTANTIATE_TEST_SUITE_P(Robots, WalkingOf, testing::ValuesIn(legged_robots()), robot_name);
+
+struct Walk {
+  Request request;
+  double part;  ///< of the speed
+  double tilt;  ///< rad
+};
+
+class WalkOfQuadbot : public testing::TestWithParam<Walk> {};
+
+TEST_P(WalkOfQuadbot, FollowsTheTwist) {
+  QuadrupedLoop robot = loop_of("quadbot");
+  robot.wait(0.3);
+  robot.run(3.0, GetParam().request);
+  expect_walk(robot, GetParam().request, GetParam().part, GetParam().tilt);
+}
+
+INSTANTIATE_TEST_SUITE_P(Walks, WalkOfQuadbot,
+                         testing::Values(Walk{walk(1.0, 0, 0), 0.05, 0.15}, Walk{walk(0, 0.3, 0), 0.05, 0.15},
+                                         Walk{walk(0, 0, 1.5), 0.05, 0.15}, Walk{walk(0.5, 0.2, 0.5), 0.05, 0.15},
+                                         Walk{walk(0.2, 0, 0, gait(GaitName::kCrawl)), 0.03, 0.15},
+                                         Walk{walk(0.5, 0, 0, gait(GaitName::kWalkingTrot)), 0.03, 0.15}));
+
+/// Returns quadbot that walks with 0.5 m/s.
+QuadrupedLoop walking() {
+  QuadrupedLoop robot = loop_of("quadbot");
+  robot.wait(0.3);
+  robot.run(4.5, walk(0.5, 0, 0));
+  return robot;
+}
+
+TEST(Walking, AnEmergencyStopFoldsFromAnyPhaseOfTheGait) {
+  for (int phase = 0; phase < 4; ++phase) {
+    QuadrupedLoop robot = loop_of("quadbot");
+    robot.wait(0.3);
+    robot.run(4.5 + 0.0475 * phase, walk(1.0, 0, 0));
+    const auto [cycles, rest_at] = robot.fold();
+    EXPECT_LE(cycles, 3) << phase;
+    EXPECT_LE(rest_at, 1.0) << phase;
+    EXPECT_LE(robot.tilt, 0.35) << phase;
+  }
+}
+
+TEST(Walking, AZeroEndsAtTheEndOfTheStepWithAllFeetDown) {
+  QuadrupedLoop robot = walking();
+  while (robot.command().legged.phase == LegPhase::kWalking) robot.run(0.001, {});
+  for (const double stance : robot.command().legged.stance) EXPECT_EQ(stance, 0.5);
+}
+
+TEST(Walking, LiesDownOnlyAfterTheWalkHasEnded) {
+  QuadrupedLoop robot = walking();
+  robot.run(0.1, stance(kStanceLie));
+  EXPECT_EQ(robot.command().legged.phase, LegPhase::kWalking);
+  robot.run(5.0, stance(kStanceLie));
+  EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying);
+  EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
+}
+
+TEST(Walking, WalksWithAnotherGaitFromTheEndOfTheCycleOn) {
+  QuadrupedLoop robot = walking();
+  const auto crawl = static_cast<std::uint64_t>(GaitName::kCrawl);
+  double phase = robot.command().legged.gait_phase;
+  while (robot.command().legged.gait != crawl) {
+    phase = robot.command().legged.gait_phase;
+    robot.run(0.001, walk(0.2, 0, 0, kStanceGait + crawl));
+  }
+  EXPECT_GT(phase, 0.99);
+  robot.run(2.0, walk(0.2, 0, 0, kStanceGait + crawl));
+  EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
+}
+
+TEST(Walking, IsLimitedInItsSpeed) {
+  Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
+  parameters.leg_control.max_linear_speed = 0.3;
+  QuadrupedLoop robot(legged_robot("quadbot"), parameters);
+  robot.wait(0.3);
+  robot.run(5.0, walk(1.0, 0, 0));
+  EXPECT_NE(robot.command().reasons & kReasonSpeedLimited, 0u);
+  EXPECT_NEAR(robot.command().twist_limited.linear[0], 0.3, 1e-9);
+}
+
+TEST(Walking, NamesTheLegsWhoseSpeedLimitsTheBody) {
+  Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
+  parameters.leg_control.max_linear_speed = 20;
+  QuadrupedLoop robot(legged_robot("quadbot"), parameters);
+  robot.wait(0.3);
+  robot.run(2.6, walk(20, 0, 0));
+  EXPECT_NE(robot.command().reasons & kReasonLegSpeed, 0u);
+}
+
+TEST(Walking, IsTheSameBitForBit) {
+  QuadrupedLoop a = walking(), b = walking();
+  EXPECT_EQ(a.truth().pose_world.position, b.truth().pose_world.position);
+}
+
+}  // namespace
+}  // namespace robot_control
