@@ -268,8 +268,8 @@ def test_refuses_a_robot_without_wheels(tmp_path):
         ClosedLoop(urdf=urdf)
 
 
-@pytest.mark.parametrize("command", [5, (1,), (1, 2, 3), lambda t: None, lambda t: "fast"])
-def test_refuses_a_command_that_is_no_pair_of_numbers(loop, command):
+@pytest.mark.parametrize("command", [5, (1,), (1, 2, 3, 4), lambda t: None, lambda t: "fast"])
+def test_refuses_a_command_that_is_not_two_or_three_numbers(loop, command):
     with pytest.raises(TypeError, match="linear, angular"):
         loop.run(0.01, command)
     assert drive(loop, 0.01)["time"].shape == (10,), "the loop goes on"

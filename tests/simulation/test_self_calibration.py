@@ -41,7 +41,7 @@ def test_a_robot_that_rested_learns_its_wheels(seconds, deviation, seed):
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_robot_that_never_rested_claims_little_of_its_wheels(seed):
     """60 ms are too short for a rest. The state then reports that the bias is not known. At a constant speed bias and
-    ratio cannot be told apart: of the deviation of new tyres, 0.01, at least half remains.
+    ratio cannot be separated: of the deviation of new tyres, 0.01, at least half remains.
     """
     end = wander(rest=60, seconds=60, seed=seed)
     assert int(end["estimate_flags"]) & DEGRADED

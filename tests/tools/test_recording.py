@@ -39,7 +39,7 @@ def test_every_topic_of_the_interface_table_is_recorded() -> None:
     rows = re.findall(r"^\| (?:in|out|in, out) \| ([^|]*) \|", page, re.MULTILINE)
     table = {name for row in rows for name in re.findall(r"`([\w/]+)`", row)}
     assert len(table) > 30
-    assert set(TOPICS) - table == {"tf", "tf_static", "/rosout"}
+    assert set(TOPICS) - table == {"tf", "/rosout"}
     assert table <= set(TOPICS)
 
 
