@@ -134,6 +134,15 @@ TEST(Walking, WalksWithAnotherGaitFromTheEndOfTheCycleOn) {
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
 }
 
+TEST(Walking, EndsWithFeetOnTheirPlacesSoThatTheRobotCanLieDown) {
+  QuadrupedLoop robot = loop_of("quadbot");
+  robot.wait(0.3);
+  robot.run(6.0, walk(0.2, 0, 0, gait(GaitName::kCrawl)));
+  robot.run(5.0, {.mode = kStanceLie});
+  EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying);
+  EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
+}
+
 TEST(Walking, IsLimitedInItsSpeed) {
   Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
   parameters.leg_control.max_linear_speed = 0.3;

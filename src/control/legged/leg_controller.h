@@ -133,6 +133,7 @@ class LegController {
   bool walks(const Request& request) const noexcept;
   void begin_walk(const ControlInput& input) noexcept;
   void walk(const ControlInput& input, const Request& request, CommandFrame& out) noexcept;
+  bool placed(const ControlInput& input) const noexcept;
   GaitName choose_gait(const Request& request, const WalkingTwist& twist) noexcept;
   void carry(const Request& request, std::uint64_t& reasons) noexcept;
   void stand_here(const ControlInput& input) noexcept;

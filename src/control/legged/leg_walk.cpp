@@ -11,6 +11,8 @@ namespace robot_control {
 namespace {
 
 constexpr double kSlow = 0.3;         // m/s, of a body of legs of kReferenceLeg whose walk may end
+constexpr double kPlaced = 0.1;       // of the leg length, of the feet at the end of a walk
+constexpr double kInPlace = 3;        // s, after which a walk ends wherever the feet are
 constexpr double kCarriedPart = 0.5;  // of the ranges of a standing body
 constexpr std::uint64_t kEmergencies = kReasonTimedOut | kReasonRefused | kReasonManySenders | kReasonPermitRamp;
 
@@ -69,18 +71,27 @@ void LegController::walk(const ControlInput& input, const Request& request, Comm
   const Vector3& moves = input.state->base.twist_base.linear;
   const bool slow = std::hypot(moves[0], moves[1]) < kSlow * std::sqrt(walker_.gaits()[1].period / kGaits[1].period);
   const bool all_down = state_.walk.gait == static_cast<std::uint64_t>(GaitName::kStand);
-  const bool ends = !wanted && rests(twist) && (slow || all_down);
+  state_.idle = !wanted && rests(twist) ? state_.idle + period_ : 0;
+  const bool ends = state_.idle > 0 && (all_down || (slow && (placed(input) || state_.idle > kInPlace)));
   const WalkInput to{.sensors = input.sensors,
                      .state = input.state,
                      .twist = twist,
                      .height = state_.carried[0].value,
                      .roll = state_.carried[1].value,
                      .pitch = state_.carried[2].value,
-                     .gait = ends ? GaitName::kStand : gait};
+                     .gait = ends              ? GaitName::kStand
+                             : state_.idle > 0 ? GaitName::kTrot  // it sets the feet on their places
+                                               : gait};
   const bool planned = walker_.step(state_.walk, to, out);
   out.twist_limited = {.linear = {twist[0], twist[1], 0}, .angular = {0, 0, twist[2]}};
   for (std::size_t i = 0; i < 3; ++i) out.legged.body[kZ + i] = state_.carried[i].value;
   if (!planned || (ends && all_down && state_.walk.stood > kAllDown)) stand_here(input);
+}
+
+/// Returns true if all feet are so near to their nominal places that the robot can lie down.
+bool LegController::placed(const ControlInput& input) const noexcept {
+  const WalkingBody body = walker_.measure(*input.sensors, *input.state);
+  return walker_.farthest_foot(body) < kPlaced * legs_[0].kinematics.length();
 }
 
 GaitName LegController::choose_gait(const Request& request, const WalkingTwist& target) noexcept {

@@ -236,6 +236,15 @@ void Walker::plan(State& state, const WalkInput& input, const WalkingBody& body)
   for (std::size_t leg = 0; leg < kLegs; ++leg) state.forces[leg] = plain(result.forces[leg]);
 }
 
+double Walker::farthest_foot(const WalkingBody& body) const noexcept {
+  double farthest = 0;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const Eigen::Vector2d place = (body.feet[leg] - body.centre).head<2>();
+    farthest = std::max(farthest, (place - nominal_[leg]).norm());
+  }
+  return farthest;
+}
+
 void Walker::bear(const State& state, const WalkingBody& body, std::size_t leg, CommandFrame& out) const noexcept {
   const Eigen::Vector3d own = body.equations.bias.segment<3>(joint_row(leg));
   const Eigen::Vector3d load =

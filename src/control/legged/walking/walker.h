@@ -88,6 +88,9 @@ class Walker {
 
   WalkingBody measure(const SensorFrame& sensors, const StateFrame& estimate) const noexcept;
 
+  /// Returns the distance in m of the foot that is farthest from its nominal place, along the ground.
+  double farthest_foot(const WalkingBody& body) const noexcept;
+
  private:
   void move(State& state, const WalkInput& input, const WalkingBody& body) const noexcept;
   void turn_clock(State& state, GaitName wanted) const noexcept;
