@@ -10,6 +10,8 @@ import subprocess
 import time
 from pathlib import Path
 
+from bench.console.process import free_port
+
 MOSQUITTO = "/usr/sbin/mosquitto"
 LIMIT = 10.0
 """s until it listens"""
@@ -29,9 +31,7 @@ class Broker:
     """mosquitto, without persistence: what is retained ends with it."""
 
     def __init__(self, folder: Path) -> None:
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            self.port = free.getsockname()[1]
+        self.port = free_port()
         self._config = folder / "mosquitto.conf"
         self._process: subprocess.Popen[bytes] | None = None
         self.configure("allow_anonymous true")

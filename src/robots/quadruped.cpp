@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "control/legged/body_bounds.h"
+#include "control/legged/gait.h"
 #include "control/legged/leg_controller.h"
 #include "control/legged/walking/walking_speed.h"
 #include "estimation/legged/legged_estimator.h"
@@ -85,8 +86,8 @@ GateParameters Quadruped::gate() const {
                             .stiffness = kFoldStiffness * tuning.stiffness,
                             .posture = leg.lying[i],
                             .upright = standing[i],
-                            .time = kFoldTime * std::sqrt(machine_.leg_length() / 0.426),
-                            .walking_time = kWalkingFoldTime * std::sqrt(machine_.leg_length() / 0.426)});
+                            .time = kFoldTime * std::sqrt(machine_.leg_length() / kReferenceLeg),
+                            .walking_time = kWalkingFoldTime * std::sqrt(machine_.leg_length() / kReferenceLeg)});
     }
   }
   return gate;

@@ -10,11 +10,12 @@ from typing import Protocol
 
 from robot_control.fleet.settings import Settings
 from robot_control.fleet.v2.capability import INSTANT, Capabilities
-from robot_control.fleet.v2.leg import Leg, PathPoint, Way, angle, leg_of
+from robot_control.fleet.v2.leg import Leg, PathPoint, Way, leg_of
 from robot_control.fleet.v2.messages import INBOUND, MAX_ID, Error, Message, RefusedError, decoded
 from robot_control.fleet.v2.order import Action, Node, Order, order_of
 from robot_control.fleet.v2.state import STATE_PERIOD, Facts, Machine, factsheet, state, visualization
 from robot_control.fleet.v2.vehicle import FAILED, FINISHED, RUNNING, ActionState, Vehicle
+from robot_control.path.pieces import turned
 
 IDLE, DRIVING, DONE, ENDED = "idle", "driving", "done", "ended"
 OFF_EDGE = 0.3
@@ -128,11 +129,11 @@ class Client:
         if node.place is None:
             return True  # refused with its reason by the capabilities
         off = math.dist((node.place.x, node.place.y), (self._facts.x, self._facts.y))
-        turned = 0.0
+        beyond = 0.0
         if node.place.theta is not None and node.place.deviation_theta is not None:
-            turned = abs(angle(node.place.theta - self._facts.theta)) - node.place.deviation_theta
+            beyond = abs(turned(node.place.theta - self._facts.theta)) - node.place.deviation_theta
         near = off <= max(node.place.deviation_xy, self.settings.node_tolerance)
-        return near and turned <= self.settings.heading_tolerance
+        return near and beyond <= self.settings.heading_tolerance
 
     def _take_instant(self, action: Action) -> None:
         state = self.vehicle.add_instant(action)

@@ -20,12 +20,13 @@ from robot_control.common.pose import pose_of
 from robot_control.fleet.client import DONE, DRIVING, ENDED, Progress
 from robot_control.fleet.custom import Actions
 from robot_control.fleet.settings import Settings
-from robot_control.fleet.v2.leg import PathPoint, angle
+from robot_control.fleet.v2.leg import PathPoint
 from robot_control.fleet.v2.messages import Error
 from robot_control.fleet.v2.order import Action
 from robot_control.fleet.v2.state import Facts
 from robot_control.msg import FollowPathAction, FollowPathFeedback, FollowPathGoal, RobotStatus, SafetyStatus
 from robot_control.path.frames import Tf
+from robot_control.path.pieces import turned
 from robot_control.path.waypoints import PathError
 from robot_control.safety.states import DRIVABLE, STOPPED
 from robot_control.safety.watch import CATCH_UP, LATE
@@ -99,7 +100,7 @@ class RosRobot:
             pose = pose_of(odometry)
             result["x"] = x + math.cos(yaw) * pose.x - math.sin(yaw) * pose.y
             result["y"] = y + math.sin(yaw) * pose.x + math.cos(yaw) * pose.y
-            result["theta"] = angle(pose.yaw + yaw)
+            result["theta"] = turned(pose.yaw + yaw)
             result["map_id"] = map_id if fresh else ""
         if odometry is not None:
             spread = odometry.pose.covariance[0] + odometry.pose.covariance[7]
@@ -147,7 +148,7 @@ class RosRobot:
         if self._odometry is None:
             return "there is no odometry"
         pose = pose_of(self._odometry)
-        yaw = angle(theta - pose.yaw)
+        yaw = turned(theta - pose.yaw)
         dx, dy = math.cos(yaw) * pose.x - math.sin(yaw) * pose.y, math.sin(yaw) * pose.x + math.cos(yaw) * pose.y
         self.map_odom = [map_id, x - dx, y - dy, yaw]
         self.publish_map()
@@ -256,7 +257,7 @@ def _jumped(before: Odometry, after: Odometry) -> bool:
     a, b, twists = pose_of(before), pose_of(after), (before.twist.twist, after.twist.twist)
     way = JUMP + elapsed * (SPEED_CHANGE * elapsed + max(abs(twist.linear.x) for twist in twists))
     turn = JUMP + elapsed * (SPEED_CHANGE * elapsed + max(abs(twist.angular.z) for twist in twists))
-    return bool(math.dist((a.x, a.y), (b.x, b.y)) > way or abs(angle(b.yaw - a.yaw)) > turn)
+    return bool(math.dist((a.x, a.y), (b.x, b.y)) > way or abs(turned(b.yaw - a.yaw)) > turn)
 
 
 _SILENT = Error("safetyMonitorSilent", "safety_status is silent", (), "start the robot's nodes", fatal=True)

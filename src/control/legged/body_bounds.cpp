@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "control/legged/foot_forces.h"
+#include "control/legged/gait.h"
 #include "control/legged/leg_controller.h"
 #include "control/legged/nominal_stance.h"
 
@@ -44,7 +45,7 @@ Feet forces(const LegModel& robot, const NominalStance& stance, const Axes& acce
 std::array<AxisBounds, 6> body_bounds(const LegModel& robot) {
   const NominalStance stance = nominal_stance(robot);
   const Feet weight = forces(robot, stance, Axes::Zero());
-  const double time = std::sqrt(robot.leg_length() / 0.426);
+  const double time = std::sqrt(robot.leg_length() / kReferenceLeg);
   std::array<AxisBounds, 6> bounds;
   for (std::size_t axis = 0; axis < bounds.size(); ++axis) {
     const Feet moved = forces(robot, stance, kSmall * Axes::Unit(static_cast<Eigen::Index>(axis)));

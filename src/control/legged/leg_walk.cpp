@@ -122,8 +122,8 @@ void LegController::stand_here(const ControlInput& input) noexcept {
   const bool lies_next = state_.lies_next != 0;
   state_.body = {};
   state_.body[kZ].value = ground_ - state_.walk.ground;
-  state_.body[kRoll].value = std::atan2(body.turned(2, 1), body.turned(2, 2));
-  state_.body[kPitch].value = -std::asin(std::clamp(body.turned(2, 0), -1.0, 1.0));
+  state_.body[kRoll].value = body.roll;
+  state_.body[kPitch].value = body.pitch;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const Eigen::Vector3d& foot = body.feet[leg];
     state_.places[leg] = {foot.x(), foot.y(), foot.z() + state_.body[kZ].value};

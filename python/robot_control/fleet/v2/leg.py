@@ -15,6 +15,7 @@ from typing import NamedTuple
 from robot_control.fleet.v2.curve import CurveError, Point, points_of
 from robot_control.fleet.v2.messages import Message, RefusedError
 from robot_control.fleet.v2.order import NONE, Edge, Node, Place
+from robot_control.path.pieces import CORNER, turned
 
 SAME_HEADING = math.radians(2.0)
 """rad between two orientations that count as one"""
@@ -22,13 +23,6 @@ END_GAP = 0.1
 """m that the ends of a trajectory may lie off their nodes"""
 SHORTEST = 0.02
 """m of an edge that is driven"""
-TURN = math.radians(35.0)
-"""rad; follow_path turns on the spot at a sharper corner, and leaves a leg there"""
-
-
-def angle(value: float) -> float:
-    """The same angle in [−π, π]."""
-    return math.remainder(value, math.tau)
 
 
 class PathPoint(NamedTuple):
@@ -58,7 +52,7 @@ class Way:
     def heading(self, number: int) -> float:
         """rad, of the robot on a segment."""
         (ax, ay), (bx, by) = self.points[number : number + 2] if number >= 0 else self.points[-2:]
-        return angle(math.atan2(by - ay, bx - ax) + (math.pi if self.sign < 0 else 0.0))
+        return turned(math.atan2(by - ay, bx - ax) + (math.pi if self.sign < 0 else 0.0))
 
     def foot(self, x: float, y: float, start: float) -> tuple[float, float]:
         """Its nearest point: m along it plus `start`, m of distance."""
@@ -100,14 +94,14 @@ def way_of(edge: Edge, begin: Place, end: Place) -> Way:
     way = Way(tuple(kept), 1, raw.get("maxSpeed", 0.0), raw.get("maxRotationSpeed", 0.0))
     if len(kept) < 2 or way.length < SHORTEST:
         raise refused("trajectory" if "trajectory" in raw else "endNodeId", f"is shorter than {SHORTEST:g} m")
-    if raw.get("rotationAllowed") is False and _sharpest(way) > TURN:
+    if raw.get("rotationAllowed") is False and _sharpest(way) > CORNER:
         raise refused("rotationAllowed", "is false, and the trajectory has a corner")
     return Way(way.points, _sign(way, raw, refused), way.speed, way.turn_speed)
 
 
 def _sharpest(way: Way) -> float:
     headings = [way.heading(number) for number in range(len(way.points) - 1)]
-    return max((abs(angle(b - a)) for a, b in pairwise(headings)), default=0.0)
+    return max((abs(turned(b - a)) for a, b in pairwise(headings)), default=0.0)
 
 
 def _sign(way: Way, raw: Message, refused: Callable[[str, str], RefusedError]) -> int:
@@ -116,10 +110,10 @@ def _sign(way: Way, raw: Message, refused: Callable[[str, str], RefusedError]) -
     if kind not in ("TANGENTIAL", "GLOBAL"):
         raise refused("orientationType", "must be TANGENTIAL or GLOBAL")
     numbers = range(len(way.points) - 1)
-    offsets = [angle(wanted - (way.heading(n) if kind == "GLOBAL" else 0.0)) for n in numbers]
+    offsets = [turned(wanted - (way.heading(n) if kind == "GLOBAL" else 0.0)) for n in numbers]
     if all(abs(offset) <= SAME_HEADING for offset in offsets):
         return 1
-    if all(abs(angle(offset - math.pi)) <= SAME_HEADING for offset in offsets):
+    if all(abs(turned(offset - math.pi)) <= SAME_HEADING for offset in offsets):
         return -1
     raise refused("orientation", "is neither along the edge nor against it: a differential drive cannot")
 
@@ -195,4 +189,4 @@ def leg_of(begin: Node, base: Sequence[Node | Edge], tolerance: float) -> Leg:
 def _turns(place: Place, way: Way, tolerance: float) -> bool:
     if place.theta is None:
         return False
-    return abs(angle(place.theta - way.heading(-1))) > max(place.deviation_theta or 0.0, tolerance)
+    return abs(turned(place.theta - way.heading(-1))) > max(place.deviation_theta or 0.0, tolerance)

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from robot_control.fleet.v2.capability import ActionKind
-from robot_control.fleet.v2.leg import angle
 from robot_control.fleet.v2.messages import LIMITS, MAX_BYTES, MAX_ID, Error, Message
 from robot_control.fleet.v2.order import Edge, Node
 from robot_control.fleet.v2.vehicle import ActionState, Vehicle
+from robot_control.path.pieces import turned
 
 STATE_PERIOD = 30.0
 """s between two states at the latest (6.10)"""
@@ -81,7 +81,7 @@ def position(facts: Facts) -> Message:
     result: Message = {
         "x": facts.x,
         "y": facts.y,
-        "theta": angle(facts.theta),
+        "theta": turned(facts.theta),
         "mapId": facts.map_id,
         "positionInitialized": bool(facts.map_id),
     }

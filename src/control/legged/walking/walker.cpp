@@ -82,6 +82,9 @@ WalkingBody Walker::measure(const SensorFrame& sensors, const StateFrame& estima
   }
   dynamics_.step(motion, body.equations);
   body.centre = body.turned * body.equations.centre_of_gravity;
+  body.moves = body.velocity + body.rate.cross(body.centre);
+  body.roll = std::atan2(body.turned(2, 1), body.turned(2, 2));
+  body.pitch = -std::asin(std::clamp(body.turned(2, 0), -1.0, 1.0));
   return body;
 }
 
@@ -188,10 +191,9 @@ bool Walker::choose_feet(State& state, const WalkInput& input, const WalkingBody
 Eigen::Vector3d Walker::landing(const State& state, const WalkInput& input, const WalkingBody& body,
                                 std::size_t leg) const noexcept {
   const Gait& gait = this->gait(state);
-  const Eigen::Vector3d moves = body.velocity + body.rate.cross(body.centre);
   FootholdInput at{.nominal = nominal_[leg],
                    .requested = {input.twist[0], input.twist[1]},
-                   .measured = moves.head<2>(),
+                   .measured = body.moves.head<2>(),
                    .yaw_rate = input.twist[2],
                    .until_landing = (1 - gait.swung(leg, state.phase)) * gait.swing_time(),
                    .stance_time = gait.stance_time(),
@@ -206,10 +208,8 @@ Eigen::Vector3d Walker::landing(const State& state, const WalkInput& input, cons
 void Walker::plan(State& state, const WalkInput& input, const WalkingBody& body) noexcept {
   const Gait& gait = this->gait(state);
   ForcePlanInput to;
-  const Eigen::Vector3d moves = body.velocity + body.rate.cross(body.centre);
-  to.place << std::atan2(body.turned(2, 1), body.turned(2, 2)), -std::asin(std::clamp(body.turned(2, 0), -1.0, 1.0)), 0,
-      0, 0, body.centre.z() - state.ground;
-  to.speed << body.rate, moves;
+  to.place << body.roll, body.pitch, 0, 0, 0, body.centre.z() - state.ground;
+  to.speed << body.rate, body.moves;
   to.target << input.roll, input.pitch, state.ahead[2], state.ahead[0], state.ahead[1], height_ + input.height;
   to.target_speed << 0, 0, input.twist[2], input.twist[0], input.twist[1], 0;
   to.steps = std::min(kPlanSteps, static_cast<std::size_t>(5 / gait.duty));

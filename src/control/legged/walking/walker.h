@@ -49,6 +49,8 @@ struct WalkingBody {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();    ///< m/s, of the base's origin, level axes
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();        ///< rad/s, level axes
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();      ///< m, centre of gravity, level axes
+  Eigen::Vector3d moves = Eigen::Vector3d::Zero();       ///< m/s, of the centre of gravity, level axes
+  double roll = 0, pitch = 0;                            ///< rad
   std::array<double, kLegsJoints> angles{};              ///< rad
   std::array<Eigen::Vector3d, kLegs> feet{};             ///< m, level axes
   std::array<Eigen::Matrix3d, kLegs> jacobians{};        ///< base axes
