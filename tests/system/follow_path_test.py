@@ -200,10 +200,10 @@ class FollowPathTest(RobotTestCase):
         self.robot.call("e_stop_trigger")
         self.robot.release()
 
-    def assert_does_not_begin(self, client: Client, words: str) -> None:
+    def assert_does_not_begin(self, client: Client) -> None:
         state, result = client.end()
         self.assertEqual(state, ABORTED, result.reason)
-        self.assertIn(words, result.reason)
+        self.assertIn("tart the path again", result.reason)
         moved_at = self.robot.distance
         time.sleep(1.5)
         self.assertAlmostEqual(self.robot.distance, moved_at, delta=0.01)
@@ -212,7 +212,7 @@ class FollowPathTest(RobotTestCase):
         for number in (20_000, 100_000):
             client = Client(self.goal([(2.0 * n / number, 0.0) for n in range(number)]))
             self.stop_and_release()
-            self.assert_does_not_begin(client, "e_stop_")
+            self.assert_does_not_begin(client)
 
     def send_unstamped(self, name: str, length: float, *, latch: bool = False) -> Callable[[], tuple[int, str]]:
         """Sends a goal without a time, whose id is new in each attempt; returns a function that waits for its end."""
