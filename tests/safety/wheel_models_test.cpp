@@ -16,8 +16,8 @@
 namespace robot_control {
 namespace {
 
-constexpr double kPeriod = 2e-3;  // s
-constexpr double kQuantum = 2 * std::numbers::pi / 4096;
+constexpr double kModelPeriod = 2e-3;  // s
+constexpr double kModelQuantum = 2 * std::numbers::pi / 4096;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Two wheels a side that scrub in a turn; the joints of one side count backwards.
@@ -46,7 +46,7 @@ struct Watched {
 
   bool step(bool beyond, const Condition& condition, std::uint64_t cycles) {
     count = beyond ? count + cycles : 0;
-    return beyond && static_cast<double>(count) * kPeriod >= condition.persistence - 1e-9;
+    return beyond && static_cast<double>(count) * kModelPeriod >= condition.persistence - 1e-9;
   }
 };
 
@@ -83,9 +83,9 @@ struct Measured {
   JointStandstill standstill;
 
   Measured(const DriveTrain& robot, const SafetyParameters& parameters)
-      : motion(robot.wheels.size(), kPeriod),
+      : motion(robot.wheels.size(), kModelPeriod),
         targets(robot.wheels.size()),
-        standstill(parameters.standstill_speed, kPeriod) {}
+        standstill(parameters.standstill_speed, kModelPeriod) {}
 
   void step(const Facts& facts) {
     motion.step(facts.sensors);
@@ -134,7 +134,7 @@ class Model {
     // The largest limit of whole windows of ramp_time, the present one included.
     since_ += facts.elapsed;
     largest_now_ = std::max(largest_now_, facts.speed_limit);
-    if (since_ >= static_cast<std::uint64_t>(std::lround(parameters_.ramp_time / kPeriod))) {
+    if (since_ >= static_cast<std::uint64_t>(std::lround(parameters_.ramp_time / kModelPeriod))) {
       since_ = 0;
       largest_last_ = largest_now_;
       largest_now_ = facts.speed_limit;
@@ -181,7 +181,7 @@ class Model {
   }
 
   void following(const Facts& facts, const Measured& m) {
-    const double dt = static_cast<double>(facts.elapsed) * kPeriod;
+    const double dt = static_cast<double>(facts.elapsed) * kModelPeriod;
     const bool known = m.motion.speed_known();
     for (std::size_t i = 0; i < wheels_.size(); ++i) {
       Wheel& wheel = wheels_[i];
@@ -252,16 +252,16 @@ class Model {
 
   Quantity moving_on(const Measured& m, std::uint64_t elapsed) {
     rested_ = m.standstill.moving() ? 0 : rested_ + elapsed;
-    if (!m.targets.commanded_to_stand() || static_cast<double>(rested_) * kPeriod >= 0.5) {
+    if (!m.targets.commanded_to_stand() || static_cast<double>(rested_) * kModelPeriod >= 0.5) {
       moved_ = 0;
     } else if (m.standstill.moving()) {
       moved_ += elapsed;
     }
-    return {static_cast<double>(moved_) * kPeriod, *parameters_.not_stopping.limit};
+    return {static_cast<double>(moved_) * kModelPeriod, *parameters_.not_stopping.limit};
   }
 
   void oscillation(const Facts& facts, const Measured& m) {
-    const double dt = static_cast<double>(facts.elapsed) * kPeriod;
+    const double dt = static_cast<double>(facts.elapsed) * kModelPeriod;
     std::vector<Quantity> all;
     for (std::size_t i = 0; i < wheels_.size(); ++i) {
       Wheel& wheel = wheels_[i];
@@ -294,7 +294,8 @@ class Model {
   }
 
   double inertia(std::size_t i) const {
-    const double beside = wheels_.size() / 2.0, square = robot_.wheels[i].radius * robot_.wheels[i].radius / beside;
+    const double beside = static_cast<double>(wheels_.size()) / 2,
+                 square = robot_.wheels[i].radius * robot_.wheels[i].radius / beside;
     return robot_.wheels[i].inertia +
            std::max(0.5 * robot_.mass * square,
                     2 * robot_.yaw_inertia * square / (robot_.wheel_base * robot_.effective_wheel_base()));
@@ -327,9 +328,9 @@ class RandomDrive {
     sensors.head.cycle += facts_.elapsed;
     for (std::size_t i = 0; i < wheels_; ++i) {
       speed_[i] += 0.05 * (aim_[i] - speed_[i]);
-      angle_[i] += speed_[i] * static_cast<double>(facts_.elapsed) * kPeriod;
+      angle_[i] += speed_[i] * static_cast<double>(facts_.elapsed) * kModelPeriod;
       JointSample& joint = sensors.joints[i];
-      joint.position = kQuantum * std::floor(angle_[i] / kQuantum);
+      joint.position = kModelQuantum * std::floor(angle_[i] / kModelQuantum);
       joint.effort =
           torque_[i] + shake_ * (1 + 0.1 * static_cast<double>(i)) * (sensors.head.cycle / 3 % 2 == 0 ? 1 : -1);
       if (grows_) torque_[i] += 0.02 * between(0, 1) * (target_[i] < 0 ? -1 : 1);
@@ -417,9 +418,9 @@ TEST(WheelModels, RandomDrivesAreJudgedAsTheHeadersSayInEveryRun) {
     for (JointModel& joint : robot.joints) joint.friction = 0.2 * (seed % 3);
     if (seed % 5 == 0) robot.joints[0].velocity_limit = 0;
     const SafetyParameters parameters = drawn(random, robot);
-    WheelLimits limits(parameters, robot, kPeriod);
-    WheelFollowing following(parameters, robot, kPeriod);
-    TorqueOscillation oscillation(parameters, robot, kPeriod);
+    WheelLimits limits(parameters, robot, kModelPeriod);
+    WheelFollowing following(parameters, robot, kModelPeriod);
+    TorqueOscillation oscillation(parameters, robot, kModelPeriod);
     RandomDrive drive(robot.wheels.size(), seed);
     for (int run = 0; run < 3; ++run) {
       Measured measured(robot, parameters);
