@@ -12,13 +12,13 @@ import yaml
 from robot_control.common.roles import LEGGED
 from robot_control.common.run_log import RunLog, read_run
 from robot_control.common.signal_names import mask_of
+from robot_control.demo.intervals import intervals, joined, runs_of
 from robot_control.report import main as program
 from robot_control.report.budgets import BudgetError, Verdict, judge, read_budgets
 from robot_control.report.decimate import decimated
 from robot_control.report.drive import Drive
 from robot_control.report.figures import Figure, figures
 from robot_control.report.incidents import incidents
-from robot_control.report.intervals import intervals, joined, runs_of
 from synthetic_run import BEGIN, CYCLES, PERIOD, brake_at, healthy_run
 
 MUST_RUN = bool(os.environ.get("CI") and os.environ.get("ROBOT_CONTROL_NIGHTLY"))

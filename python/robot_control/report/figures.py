@@ -9,8 +9,8 @@ import numpy as np
 
 from robot_control.common.run_log import FloatArray
 from robot_control.common.signal_names import mask_of, number_of
+from robot_control.demo.intervals import intervals
 from robot_control.report.drive import Drive
-from robot_control.report.intervals import intervals
 from robot_control.report.latency import LATENCIES, durations_ns
 
 NAN = float("nan")

@@ -9,11 +9,11 @@ from bokeh.models import ColumnDataSource, FactorRange
 
 from robot_control.common import signal_names as names
 from robot_control.common.run_log import FloatArray
+from robot_control.demo.intervals import intervals, joined, runs_of
 from robot_control.report.decimate import BINS
 from robot_control.report.drive import Drive
 from robot_control.report.figures import true_path
 from robot_control.report.incidents import Incident
-from robot_control.report.intervals import intervals, joined, runs_of
 from robot_control.report.latency import LATENCIES, durations_ns
 from robot_control.report.style import (
     BLUE,
