@@ -1,14 +1,20 @@
 """The tools that drive a robot on wheels drive the quadbot, in virtual time: the demo's verdict, paths, footfalls."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from path_drive import driven
 from robot_control import ClosedLoop
+from robot_control.common.roles import LEGGED, Kind
 from robot_control.demo.footfalls import FEET, footfalls_of
 from robot_control.demo.run_picture import draw_run
 from robot_control.demo.run_summary import summarize, to_table
 from robot_control.installed_files import share_file
 from robot_control.path.shapes import SHAPES
+from robot_control.report.drive import Drive, mass_of
+from robot_control.report.figures import figures
+from robot_control.report.walking import BEARS, footfalls
 
 QUADBOT = share_file("urdf/quadbot.urdf")
 LINEAR, ANGULAR = 0.5, 0.2  # m/s, rad/s, of scripts/demo
@@ -54,6 +60,18 @@ def test_the_feet_bear_in_turn_as_they_are_asked_to(log):
         assert 0.4 < foot.bears[walks].mean() < 0.6
         assert (foot.bears == foot.asked)[walks].mean() > 0.9
     assert (feet[0].bears == feet[3].bears)[walks].mean() > 0.9, "a trot moves diagonal legs together"
+
+
+def test_the_report_has_the_feet_and_the_cost_of_transport(log):
+    drive = Drive("walk", log, kind=Kind(LEGGED), mass=mass_of(Path(QUADBOT).read_text()))
+    assert 5 < drive.mass < 50
+    cost = figures(drive)["cost_of_transport"].value
+    print(f"cost of transport {cost:.2f}")
+    assert 0.1 < cost < 2.0, "of quadrupeds of this size; of a trotting dog about 0.3"
+    found = footfalls(drive)
+    assert {foot for foot, *_ in found} == {foot.replace("_", " ") for foot in FEET}
+    strides = [begin for foot, begin, _, words in found if foot == "front left" and words == BEARS]
+    assert len(strides) > WALK / 0.5
 
 
 @pytest.mark.parametrize(("shape", "size"), [("square", 1.0), ("eight", 1.5)])
