@@ -10,12 +10,19 @@ from pathlib import Path
 import actionlib
 import rospy
 import rostest
+import rosunit_skips
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from launch_support import Launch
 from nav_msgs.msg import Odometry
+from robot_control.common.pose import Pose, pose_of
 from robot_control.msg import FollowPathAction, FollowPathGoal, LegState, SafetyStatus
 from system_support import LIMIT, Program, init_test_node, wait_for
+
+from bench.console.browser import Browser, missing
+from bench.console.process import Console
+
+rosunit_skips.record()
 
 CROSS_TRACK = 0.1
 """m, admitted on legs"""
@@ -23,8 +30,11 @@ SIDE = 0.5
 """m, of the square"""
 
 
-def beside_square(x: float, y: float) -> float:
-    """m from the square that begins at 0, 0 and turns left."""
+def beside_square(start: Pose, place: tuple[float, float]) -> float:
+    """m of a place from the square that begins at `start` and turns left."""
+    dx, dy = place[0] - start.x, place[1] - start.y
+    x = dx * math.cos(start.yaw) + dy * math.sin(start.yaw)
+    y = dy * math.cos(start.yaw) - dx * math.sin(start.yaw)
     edges = (abs(x), abs(x - SIDE), abs(y), abs(y - SIDE))
     outside = math.hypot(max(0.0, -x, x - SIDE), max(0.0, -y, y - SIDE))
     return outside or min(edges)
@@ -42,6 +52,7 @@ class LegsToolsTest(unittest.TestCase):
         cls.safety: SafetyStatus | None = None
         cls.limited: TwistStamped | None = None
         cls.places: list[tuple[float, float]] = []
+        cls.truth: Odometry | None = None
         for topic, kind, name in (
             ("leg_state", LegState, "legs"),
             ("safety_status", SafetyStatus, "safety"),
@@ -60,13 +71,16 @@ class LegsToolsTest(unittest.TestCase):
 
     @classmethod
     def receive_truth(cls, message: Odometry) -> None:
+        cls.truth = message
         cls.places.append((message.pose.pose.position.x, message.pose.pose.position.y))
 
     def test_a_square_a_goal_and_a_way_sideways_are_walked(self) -> None:
+        start = pose_of(self.truth)
+        self.places.clear()
         square = Program("drive_path.py", "square", "--size", str(SIDE))
         self.assertEqual(square.wait(2 * LIMIT), 0, square.output)
         self.assertIn("done; at most", square.output)
-        self.assertLess(max(beside_square(x, y) for x, y in self.places), CROSS_TRACK)
+        self.assertLess(max(beside_square(start, place) for place in self.places), CROSS_TRACK)
 
         server = Program("follow_path.py")
         self.addCleanup(server.end)
@@ -91,6 +105,38 @@ class LegsToolsTest(unittest.TestCase):
         self.assertIn("m/s to the left", why.output)
         sender.end()
         wait_for("standing", lambda: self.legs.posture == "standing")
+
+    def test_a_page_of_the_console_walks_sideways_and_chooses_the_gait(self) -> None:
+        if missing():
+            self.skipTest(missing())
+        console, browser = Console(), Browser(height=1000)
+        self.addCleanup(console.end)
+        self.addCleanup(browser.end)
+        browser.open(console.address)
+        wait_for("the model", lambda: browser.data("model"))
+        browser.rest()
+        wait_for("the kind", lambda: browser.data("legged") == "true")
+        browser.command(0.3)
+        browser.click("stand")
+        wait_for("standing", lambda: self.legs.posture == "standing")
+        browser.run("document.getElementById('gait').value = 'walking_trot'")
+        browser.click("set-gait")
+        wait_for("the gait", lambda: self.legs.chosen_gait == "walking_trot")
+        begin = self.places[-1]
+        browser.key("KeyJ")
+        wait_for("a way to the left", lambda: math.dist(begin, self.places[-1]) > 0.3)
+        self.assertIn("walking, walking_trot (chosen)", browser.text("posture"))
+        self.assertIn("front left", browser.text("feet"))
+        self.assertGreater(float(browser.text("asked-l")), 0.1)
+        if folder := os.environ.get("CONSOLE_PICTURES"):
+            browser.run("document.getElementById('view').hidden = false")
+            time.sleep(1.0)
+            browser.picture(Path(folder, "console_legs.png"))
+        browser.key("KeyJ", "keyUp")
+        wait_for("standing", lambda: self.legs.posture == "standing")
+        browser.click("lie")
+        wait_for("lying", lambda: self.legs.posture == "lying")
+        self.assertEqual(browser.problems(), [])
 
 
 if __name__ == "__main__":
