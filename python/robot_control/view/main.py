@@ -138,7 +138,7 @@ def main() -> None:
     """Entry point of scripts/view_markers.py."""
     argparse.ArgumentParser(
         prog="view_markers.py",
-        description="Publishes for RViz, as view.launch starts it: forces of wheels or feet, the ways of swinging feet, "
+        description="Publishes for RViz, as view.launch starts it: forces of wheels or feet, ways of swinging feet, "
         "safety state and reasons as markers on view/markers, the path driven on view/path_driven.",
     ).parse_args(rospy.myargv(sys.argv)[1:])
     with running_node("view_markers") as signals:
