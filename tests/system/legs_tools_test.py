@@ -1,13 +1,16 @@
 #!/usr/bin/python3
-"""The programs that drive a robot on wheels drive the quadbot: drive_path.py, follow_path.py, send_cmd.py; why.py."""
+"""The programs that drive a robot on wheels drive the quadbot: by a path, a goal, keys, a pad and a page."""
 
+import json
 import math
 import os
+import tempfile
 import time
 import unittest
 from pathlib import Path
 
 import actionlib
+import roslib.packages
 import rospy
 import rostest
 import rosunit_skips
@@ -15,15 +18,18 @@ from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from launch_support import Launch
 from nav_msgs.msg import Odometry
+from pseudo_terminal import PseudoTerminal
 from robot_control.common.pose import Pose, pose_of
 from robot_control.msg import FollowPathAction, FollowPathGoal, LegState, SafetyStatus
-from system_support import LIMIT, Program, init_test_node, wait_for
+from system_support import LIMIT, Program, init_test_node, repository, wait_for
 
 from bench.console.browser import Browser, missing
 from bench.console.process import Console
 
 rosunit_skips.record()
 
+ENABLE = 0x134
+"""the fifth of the codes of a pad from 0x130: button 4"""
 CROSS_TRACK = 0.1
 """m, admitted on legs"""
 SIDE = 0.5
@@ -104,6 +110,35 @@ class LegsToolsTest(unittest.TestCase):
         self.assertIn("It walks: ", why.output)
         self.assertIn("m/s to the left", why.output)
         sender.end()
+        wait_for("standing", lambda: self.legs.posture == "standing")
+
+    def test_a_key_and_a_pad_walk_sideways(self) -> None:
+        begin = self.places[-1]
+        terminal = PseudoTerminal([roslib.packages.find_node("robot_control", "teleop.py")[0]])
+        self.addCleanup(terminal.end)
+        wait_for("the column of legs", lambda: b"sideways m/s" in terminal.written)
+        terminal.hold("j", 20.0, until=lambda: math.dist(begin, self.places[-1]) > 0.2)
+        self.assertGreater(math.dist(begin, self.places[-1]), 0.2)
+        wait_for("standing", lambda: self.legs.posture == "standing")
+
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        device, fake = Path(folder.name, "event5"), repository() / "tests" / "support" / "fake_evdev"
+        path = f"{fake}:{os.environ.get('PYTHONPATH', '')}"
+        pad = Program("pad.py", environment={"FAKE_PAD": str(device), "PYTHONPATH": path})
+        self.addCleanup(pad.end)
+
+        def plug(*held: int, sideways: int = 128) -> None:
+            new = device.with_suffix(".new")
+            new.write_text(json.dumps({"axes": {"0": 128, "1": 128, "2": 128, "3": sideways}, "held": held}))
+            new.replace(device)
+
+        plug()
+        wait_for(f"a pad with nothing held: {pad.output}", lambda: "hold button 4" in pad.output)
+        plug(ENABLE, sideways=0)
+        begin = self.places[-1]
+        wait_for("a way to the left", lambda: math.dist(begin, self.places[-1]) > 0.2)
+        plug()
         wait_for("standing", lambda: self.legs.posture == "standing")
 
     def test_a_page_of_the_console_walks_sideways_and_chooses_the_gait(self) -> None:
