@@ -40,10 +40,9 @@ def cost_of_transport(drive: Drive) -> float:
     """
     walks = drive.column("legged_phase") == WALKING
     way = float(np.nansum(_steps(drive.column("estimate_distance"))[walks]))
-    power = sum(
-        np.abs(np.nan_to_num(drive.column(f"{joint}_effort") * drive.column(f"{joint}_velocity")))
-        for joint in drive.joints
-    )
+    power = np.zeros_like(drive.time)
+    for joint in drive.joints:
+        power += np.abs(np.nan_to_num(drive.column(f"{joint}_effort") * drive.column(f"{joint}_velocity")))
     if not way > SHORTEST:
         return float("nan")
     return float(np.sum(power[walks])) * drive.period / (drive.mass * GRAVITY * way)
