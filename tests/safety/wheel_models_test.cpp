@@ -76,7 +76,7 @@ struct Facts {
   std::uint64_t elapsed = 1;
 };
 
-/// What is measured and commanded, as the conditions get it.
+/// The measurements and targets that the conditions get.
 struct Measured {
   WheelMotion motion;
   WheelTargets targets;
@@ -125,8 +125,8 @@ class Model {
     double command = 0;
   };
 
-  void judge(StopCause cause, Watched& watched, const Condition& condition, const Quantity& quantity,
-             std::uint64_t cycles) {
+  void evaluate(StopCause cause, Watched& watched, const Condition& condition, const Quantity& quantity,
+                std::uint64_t cycles) {
     if (watched.step(quantity.beyond(), condition, cycles)) active_.try_emplace(cause, quantity);
   }
 
@@ -155,12 +155,12 @@ class Model {
     }
     const bool known = m.motion.speed_known();
     const Quantity speed = known ? worst(speeds) : Quantity{};
-    judge(kCauseWheelSpeed, speed_, parameters_.wheel_speed, speed, facts.elapsed * speed.weight());
-    judge(kCauseWheelAcceleration, acceleration_, parameters_.wheel_acceleration,
-          m.motion.acceleration_known() ? worst(accelerations) : Quantity{}, facts.elapsed);
-    judge(kCauseWheelEffort, effort_, parameters_.wheel_effort,
-          m.motion.sampled() && m.targets.passed() ? worst(efforts) : Quantity{}, facts.elapsed);
-    judge(kCausePower, power_, parameters_.power, known ? power : Quantity{}, facts.elapsed);
+    evaluate(kCauseWheelSpeed, speed_, parameters_.wheel_speed, speed, facts.elapsed * speed.weight());
+    evaluate(kCauseWheelAcceleration, acceleration_, parameters_.wheel_acceleration,
+             m.motion.acceleration_known() ? worst(accelerations) : Quantity{}, facts.elapsed);
+    evaluate(kCauseWheelEffort, effort_, parameters_.wheel_effort,
+             m.motion.sampled() && m.targets.passed() ? worst(efforts) : Quantity{}, facts.elapsed);
+    evaluate(kCausePower, power_, parameters_.power, known ? power : Quantity{}, facts.elapsed);
   }
 
   void excess(StopCause cause, Watched& watched, std::optional<double>& mark, const Condition& condition,
@@ -177,7 +177,7 @@ class Model {
       watched.count = 0;
       return;
     }
-    judge(cause, watched, condition, quantity, cycles);
+    evaluate(cause, watched, condition, quantity, cycles);
   }
 
   void following(const Facts& facts, const Measured& m) {
@@ -201,9 +201,9 @@ class Model {
              {back, *parameters_.wrong_direction.limit + tolerance, i}, back, 0.1 + tolerance, facts.elapsed);
     }
     planned_.step(m.targets, dt);
-    judge(kCauseStall, stall_, parameters_.stall, known ? stalled(facts, m, dt) : Quantity{}, facts.elapsed);
-    judge(kCauseNotStopping, not_stopping_, parameters_.not_stopping, known ? moving_on(m, facts.elapsed) : Quantity{},
-          facts.elapsed);
+    evaluate(kCauseStall, stall_, parameters_.stall, known ? stalled(facts, m, dt) : Quantity{}, facts.elapsed);
+    evaluate(kCauseNotStopping, not_stopping_, parameters_.not_stopping,
+             known ? moving_on(m, facts.elapsed) : Quantity{}, facts.elapsed);
   }
 
   Quantity stalled(const Facts& facts, const Measured& m, double dt) {
@@ -281,16 +281,16 @@ class Model {
         wheel.planned.step(inertia(i) * (m.targets[i] - *wheel.last_target) / dt, dt);
       }
       wheel.last_target = m.targets[i];
-      const double most = robot_.joints[i].effort_limit;
+      const double effort_limit = robot_.joints[i].effort_limit;
       const double ripple = std::sqrt(std::min(wheel.measured.square, wheel.commanded.square));
       const double explained = 2 * std::sqrt(wheel.planned.square) + parameters_.count_ripple[i] * m.motion.quantum(i);
-      all.push_back({ripple / most, *parameters_.torque_oscillation.limit + explained / most, i});
+      all.push_back({ripple / effort_limit, *parameters_.torque_oscillation.limit + explained / effort_limit, i});
     }
     const Quantity quantity = worst(all);
     Condition announced = parameters_.torque_oscillation;
     announced.persistence *= 0.5;
-    judge(kCauseTorqueOscillation, oscillation_, parameters_.torque_oscillation, quantity, facts.elapsed);
-    judge(kCauseTorqueOscillation, announced_, announced, quantity, facts.elapsed);
+    evaluate(kCauseTorqueOscillation, oscillation_, parameters_.torque_oscillation, quantity, facts.elapsed);
+    evaluate(kCauseTorqueOscillation, announced_, announced, quantity, facts.elapsed);
   }
 
   double inertia(std::size_t i) const {
@@ -357,7 +357,7 @@ class RandomDrive {
   }
 
  private:
-  double between(double least, double most) { return std::uniform_real_distribution<>(least, most)(random_); }
+  double between(double lower, double upper) { return std::uniform_real_distribution<>(lower, upper)(random_); }
   bool chance(double share) { return between(0, 1) < share; }
   std::uint64_t pick(std::uint64_t count) { return random_() % count; }
 
@@ -391,11 +391,13 @@ class RandomDrive {
 };
 
 SafetyParameters drawn(std::mt19937& random, const DriveTrain& robot) {
-  const auto between = [&](double least, double most) { return std::uniform_real_distribution<>(least, most)(random); };
+  const auto between = [&](double lower, double upper) {
+    return std::uniform_real_distribution<>(lower, upper)(random);
+  };
   SafetyParameters parameters;
   parameters.ramp_time = between(0.05, 0.4);
-  const auto set = [&](Condition& condition, double least, double most) {
-    condition = {.limit = between(least, most), .persistence = between(0, 0.1), .reaction = Reaction::kBrake};
+  const auto set = [&](Condition& condition, double lower, double upper) {
+    condition = {.limit = between(lower, upper), .persistence = between(0, 0.1), .reaction = Reaction::kBrake};
   };
   set(parameters.wheel_speed, 5, 20);
   set(parameters.wheel_acceleration, 20, 300);
