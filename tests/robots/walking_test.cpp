@@ -143,6 +143,43 @@ TEST(Walking, EndsWithFeetOnTheirPlacesSoThatTheRobotCanLieDown) {
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
 }
 
+/// Returns a robot with the sensors of data sheets and without force sensors at its feet.
+QuadrupedLoop with_errors(const std::string& name, std::uint64_t seed) {
+  Parameters parameters = QuadrupedLoop::parameters(seed, ErrorLevel::kDataSheet);
+  parameters.plant.contact_sensors = false;
+  QuadrupedLoop robot(legged_robot(name), parameters);
+  robot.wait(0.3);
+  return robot;
+}
+
+TEST(Walking, KeepsItsBodyParallelToTheGroundWhateverTheErrorOfTheTilt) {
+  QuadrupedLoop robot = with_errors("quadbot", 0);
+  robot.run(4.0, walk(0.25, 0, 0));
+  robot.clear();
+  double estimated = 0;
+  robot.after_step = [&] {
+    const Quaternion& q = robot.state().base.attitude;
+    estimated = std::max(estimated, 2 * std::hypot(q[0], q[1]));
+  };
+  robot.run(2.0, walk(0.25, 0, 0));
+  EXPECT_GT(estimated, 0.025);  // rad
+  EXPECT_LT(robot.tilt, 0.015);
+}
+
+TEST(Walking, AFootThatIsStillInTheAirIsNotPushedFasterThanItsJointsTurn) {
+  if (quadrupeds().empty()) GTEST_SKIP() << "no folder of real quadrupeds; ROBOT_QUADRUPEDS names one";
+  QuadrupedLoop robot = with_errors("anymal_c", 1);
+  robot.run(4.0, walk(1.0, 0, 0));
+  double fastest = 0;
+  robot.after_step = [&] {
+    for (std::size_t i = 0; i < kLegsJoints; ++i)
+      fastest =
+          std::max(fastest, std::abs(robot.truth().joints[i].velocity) / robot.robot().joints[i].velocity_limit);
+  };
+  robot.run(3.0, walk(1.0, 0, 0));
+  EXPECT_LE(fastest, 0.9);
+}
+
 TEST(Walking, IsLimitedInItsSpeed) {
   Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
   parameters.leg_control.max_linear_speed = 0.3;

@@ -121,7 +121,7 @@ void LegController::stand_here(const ControlInput& input) noexcept {
   const WalkingBody body = walker_.measure(*input.sensors, *input.state);
   const bool lies_next = state_.lies_next != 0;
   state_.body = {};
-  state_.body[kZ].value = ground_ - state_.walk.ground;
+  state_.body[kZ].value = ground_ - state_.walk.ground[0];
   state_.body[kRoll].value = body.roll;
   state_.body[kPitch].value = body.pitch;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
