@@ -134,6 +134,23 @@ TEST(Walking, WalksWithAnotherGaitFromTheEndOfTheCycleOn) {
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
 }
 
+TEST(Walking, ChoosesTheGaitByTheSpeedWithAHysteresisUnlessOneIsRequested) {
+  QuadrupedLoop robot = loop_of("quadbot");
+  robot.wait(0.3);
+  const auto gait_at = [&](double speed, std::uint64_t mode) {
+    robot.run(2.0, walk(speed, 0, 0, mode));
+    return static_cast<GaitName>(robot.command().legged.gait);
+  };
+  robot.run(2.5, walk(0.2, 0, 0));
+  EXPECT_EQ(gait_at(0.2, kStanceStay), GaitName::kWalkingTrot);
+  EXPECT_EQ(gait_at(0.35, kStanceStay), GaitName::kWalkingTrot);
+  EXPECT_EQ(gait_at(0.45, kStanceStay), GaitName::kTrot);
+  EXPECT_EQ(gait_at(0.35, kStanceStay), GaitName::kTrot);
+  EXPECT_EQ(gait_at(0.25, kStanceStay), GaitName::kWalkingTrot);
+  EXPECT_EQ(gait_at(0.25, gait(GaitName::kTrot)), GaitName::kTrot);
+  EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
+}
+
 TEST(Walking, EndsWithFeetOnTheirPlacesSoThatTheRobotCanLieDown) {
   QuadrupedLoop robot = loop_of("quadbot");
   robot.wait(0.3);
