@@ -190,8 +190,7 @@ TEST(Walking, AFootThatIsStillInTheAirIsNotPushedFasterThanItsJointsTurn) {
   double fastest = 0;
   robot.after_step = [&] {
     for (std::size_t i = 0; i < kLegsJoints; ++i)
-      fastest =
-          std::max(fastest, std::abs(robot.truth().joints[i].velocity) / robot.robot().joints[i].velocity_limit);
+      fastest = std::max(fastest, std::abs(robot.truth().joints[i].velocity) / robot.robot().joints[i].velocity_limit);
   };
   robot.run(3.0, walk(1.0, 0, 0));
   EXPECT_LE(fastest, 0.9);

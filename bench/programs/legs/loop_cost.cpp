@@ -120,7 +120,7 @@ class BareSteps {
 };
 
 /// `standing` are the frames of a robot that sways.
-void measure_speed(const LegModel& model, const Frames& standing, Requests requests, const std::string& of,
+void measure_speed(const LegModel& model, const Frames& standing, Requests requests, const std::string& motion,
                    WorstValues& worst) {
   BareSteps bare(model, standing);
   QuadrupedLoop robot(model, 0, ErrorLevel::kField);
@@ -138,7 +138,7 @@ void measure_speed(const LegModel& model, const Frames& standing, Requests reque
     loop_ns.push_back(static_cast<double>(monotonic_ns() - start) / kCycles);
   }
   worst.add("bare mj_step", median(bare_ns) / 1000, "us");
-  worst.add("cycle of ClosedLoop" + of + ", of a bare mj_step", median_ratio(loop_ns, bare_ns), "");
+  worst.add("cycle of ClosedLoop" + motion + ", of a bare mj_step", median_ratio(loop_ns, bare_ns), "");
   if (bare.height() < 0.5 * below) std::fprintf(stderr, "%s does not stand in the bare loop\n", model.name.c_str());
 }
 
@@ -208,7 +208,8 @@ void walking_cost(const LegModel& model, std::uint64_t /*seed*/, WorstValues& wo
   const std::unique_ptr<EstimatorLaw> estimator = robot.make_estimator();
   StateFrame state;
   measure_law(
-      "estimator, walking", frames, *estimator, [&](std::size_t k) { estimator->step(frames.sensors[k], state); }, worst);
+      "estimator, walking", frames, *estimator, [&](std::size_t k) { estimator->step(frames.sensors[k], state); },
+      worst);
 
   LegController controller(model, parameters.leg_control, period);
   controller.enter_run({}, true);

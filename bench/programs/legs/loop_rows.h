@@ -33,8 +33,9 @@ void walking_replayed(const LegModel& model, std::uint64_t seed, WorstValues& wo
 
 /// The time of each law's step, its allocations, and the time of a cycle of ClosedLoop beside that of a bare mj_step.
 void cost(const LegModel& model, std::uint64_t seed, WorstValues& worst);
-/// Estimator and controller of a trot of 0.5 m/s: the fastest of all blocks for each cycle, and of these the median, that
-/// of cycles with a plan, and the 99th percentile. Then the time of a cycle of ClosedLoop as in `cost`.
+/// The time of estimator and controller in a trot of 0.5 m/s. Each cycle of the controller counts with its fastest
+/// block; of these follow the median, that of cycles with a plan, and the 99th percentile. A cycle of ClosedLoop is as
+/// in `cost`.
 void walking_cost(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 
 /// The estimated way of a straight line, a square and an eight of 20 m against the truth, without foot sensors.

@@ -77,9 +77,10 @@ void end_walk(QuadrupedLoop& robot, const Walk& walk, WorstValues& worst) {
   const double speed = walk.twist[0];
   if (walk.twist != std::array{speed, 0.0, 0.0}) return;
   const Vector3& to = robot.truth().pose_world.position;
-  const double way = std::hypot(to[0] - from[0], to[1] - from[1]);
-  const double predicted = walking_stop_distance(robot.parameters_.leg_control, robot.robot().leg_length(), speed, false);
-  worst.add("way after zero from the predicted one, " + walk.name, std::abs(way - predicted), "m");
+  const double walked = std::hypot(to[0] - from[0], to[1] - from[1]);
+  const double predicted =
+      walking_stop_distance(robot.parameters_.leg_control, robot.robot().leg_length(), speed, false);
+  worst.add("way after zero from the predicted one, " + walk.name, std::abs(walked - predicted), "m");
 }
 
 }  // namespace

@@ -148,7 +148,8 @@ void Walker::move(State& state, const WalkInput& input, const WalkingBody& body)
   Map(state.ground.data()) += period_ / kGroundTime * (fit_ground(state) - Map(state.ground.data()));
 }
 
-/// Returns the plane on which the feet bore last: its height at the base's origin, and its slopes to the front and left.
+/// Returns the plane on which the feet bore last: its height at the base's origin, and its slopes to the front and
+/// left.
 Eigen::Vector3d Walker::fit_ground(const State& state) const noexcept {
   const double level = kLevel * length_;
   Eigen::Matrix3d squares = Eigen::Vector3d(0, level * level, level * level).asDiagonal();

@@ -150,15 +150,14 @@ void FootConditions::compare(const Distances& now, double limit) noexcept {
   worst_ = beyond(knee_of(foot), largest / window_, limit);
 }
 
-ConditionMeasurement FootConditions::lightest(const SensorFrame& sensors, const Eigen::Vector3d& up,
-                                              const Feet& judged, double share) noexcept {
+ConditionMeasurement FootConditions::lightest(const SensorFrame& sensors, const Eigen::Vector3d& up, const Feet& judged,
+                                              double share) noexcept {
   if (sensors.contact_count < kLegs) return kNothingMeasured;
   ConditionMeasurement result{.beyond = false, .value = 1, .limit = load_.limit()};
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const ContactSample& contact = sensors.contacts[leg];
     if (judged[leg])
-      loads_[leg] =
-          contact.valid != 0 ? up.dot(Eigen::Map<const Eigen::Vector3d>(contact.force.data())) / share : 1;
+      loads_[leg] = contact.valid != 0 ? up.dot(Eigen::Map<const Eigen::Vector3d>(contact.force.data())) / share : 1;
     if (loads_[leg] < result.value) result.value = loads_[leg], result.joint = knee_of(leg);
   }
   result.beyond = result.value < result.limit;

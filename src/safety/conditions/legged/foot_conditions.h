@@ -1,6 +1,6 @@
 #pragma once
-/// How the feet stand, while the command says that the robot stands or walks. Feet in the air, or on their way, are left
-/// out. Of a robot that walks a foot is judged after kEdge of its stance, and its slip with kOfStep of the limit.
+/// How the feet stand, while the command says that the robot stands or walks. Feet in the air, or on their way, are
+/// left out. While it walks, a foot is judged after kEdge of its stance, and its slip with kOfStep of the limit.
 ///
 ///   foot slip  max over pairs of standing feet of |d(t) − d(t − T)| / T > limit, T = kWindow. d is the distance of two
 ///              feet by the measured angles. It stays while both stand, however the body moves, and changes by the
@@ -10,8 +10,9 @@
 ///   sinking    (c − c₀ − (h − h₀)) / l > limit, while it walks. h is the mean height of the body above its feet by the
 ///              measured angles, c the commanded height, l the leg length. h₀ and c₀ are those of the robot that stood
 ///
-/// While it walks, the load of a foot that is not judged stays what it was. So a foot that bears in none of its steps is
-/// found. Without contact sensors the load is not known and not evaluated. Slip and load name the knee of the worst foot.
+/// While it walks, the load of a foot that is not judged stays what it was. So a foot that bears in none of its steps
+/// is found. Without contact sensors the load is not known and not evaluated. Slip and load name the knee of the worst
+/// foot.
 
 #include <array>
 #include <cstddef>
@@ -72,10 +73,10 @@ class FootConditions {
   std::array<std::size_t, kLegs> counts_{};  ///< samples since the foot stands
   std::uint64_t waited_ = 0;                 ///< cycles since the last sample
   std::array<double, kLegs> loads_{};        ///< of a share, of the feet when they were judged last
-  bool stood_ = false;            ///< reference_ is known
-  double reference_ = 0;          ///< m, height of the body less the commanded one, when it stood last
-  ConditionMeasurement worst_{};  ///< slip of the last sample
-  ConditionMeasurement sunk_{};   ///< of the last sample
+  bool stood_ = false;                       ///< reference_ is known
+  double reference_ = 0;                     ///< m, height of the body less the commanded one, when it stood last
+  ConditionMeasurement worst_{};             ///< slip of the last sample
+  ConditionMeasurement sunk_{};              ///< of the last sample
 };
 
 }  // namespace robot_control
