@@ -15,11 +15,24 @@ struct NamedRow {
   void (*measure)(const LegModel&, std::uint64_t, WorstValues&);
 };
 
-constexpr NamedRow kRows[] = {
-    {"postures", postures}, {"pose", body_pose}, {"circle", circle},     {"stop", stop},
-    {"push", push},         {"rest", rest},      {"silent", silent},     {"hour", hour},
-    {"replayed", replayed}, {"cost", cost},      {"odometry", odometry}, {"contact", contact},
-    {"trot", trot},         {"gaits", gaits},    {"robots", robots},     {"walking_stop", walking_stop}};
+constexpr NamedRow kRows[] = {{"postures", postures},
+                              {"pose", body_pose},
+                              {"circle", circle},
+                              {"stop", stop},
+                              {"push", push},
+                              {"rest", rest},
+                              {"silent", silent},
+                              {"hour", hour},
+                              {"replayed", replayed},
+                              {"cost", cost},
+                              {"odometry", odometry},
+                              {"contact", contact},
+                              {"trot", trot},
+                              {"gaits", gaits},
+                              {"robots", robots},
+                              {"walking_stop", walking_stop},
+                              {"walking_cost", walking_cost},
+                              {"walking_replayed", walking_replayed}};
 
 int run(int argc, char** argv) {
   const auto found = std::find_if(std::begin(kRows), std::end(kRows),

@@ -25,6 +25,7 @@
 #include "bindings/signal_names.h"
 #include "bindings/wheeled/offline_estimator.h"
 #include "bindings/wheeled/wheel_loops.h"
+#include "control/legged/walking/twist_limiter.h"
 #include "control/limits/drive_limits.h"
 #include "control/limits/stop_distance.h"
 #include "control/smooth_speed.h"
@@ -37,6 +38,7 @@
 #include "robots/robot_kind.h"
 #include "robots/wheeled/start_check.h"
 #include "signals/names.h"
+#include "signals/robot_kinds.h"
 #include "signals/wheeled/slip_detection.h"
 #include "simulation/closed_loop.h"
 
@@ -179,6 +181,9 @@ py::list derived_wheel_loops(Parameters parameters) {
 /// Returns the distance in m of a ramp from `speed`, including the cycle before it begins.
 double distance_to_stop(const ClosedLoop& loop, double speed, bool emergency) {
   const Parameters& parameters = loop.parameters();
+  if (loop.robot().kind() == kLeggedKind)
+    return walking_stop_distance(parameters.leg_control, leg_model_of(loop.robot().machine()).leg_length(), speed,
+                                 emergency);
   const MotionLimits limits = speed_limits(parameters.controller).linear;
   const double deceleration = emergency ? limits.emergency_deceleration : limits.deceleration_from(speed);
   return stop_distance(speed, deceleration, limits.jerk) + std::abs(speed) * parameters.loop.period();

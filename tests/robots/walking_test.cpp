@@ -134,6 +134,23 @@ TEST(Walking, WalksWithAnotherGaitFromTheEndOfTheCycleOn) {
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
 }
 
+TEST(Walking, ChoosesTheGaitByTheSpeedWithAHysteresisUnlessOneIsRequested) {
+  QuadrupedLoop robot = loop_of("quadbot");
+  robot.wait(0.3);
+  const auto gait_at = [&](double speed, std::uint64_t mode) {
+    robot.run(2.0, walk(speed, 0, 0, mode));
+    return static_cast<GaitName>(robot.command().legged.gait);
+  };
+  robot.run(2.5, walk(0.2, 0, 0));
+  EXPECT_EQ(gait_at(0.2, kStanceStay), GaitName::kWalkingTrot);
+  EXPECT_EQ(gait_at(0.35, kStanceStay), GaitName::kWalkingTrot);
+  EXPECT_EQ(gait_at(0.45, kStanceStay), GaitName::kTrot);
+  EXPECT_EQ(gait_at(0.35, kStanceStay), GaitName::kTrot);
+  EXPECT_EQ(gait_at(0.25, kStanceStay), GaitName::kWalkingTrot);
+  EXPECT_EQ(gait_at(0.25, gait(GaitName::kTrot)), GaitName::kTrot);
+  EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
+}
+
 TEST(Walking, EndsWithFeetOnTheirPlacesSoThatTheRobotCanLieDown) {
   QuadrupedLoop robot = loop_of("quadbot");
   robot.wait(0.3);
@@ -141,6 +158,42 @@ TEST(Walking, EndsWithFeetOnTheirPlacesSoThatTheRobotCanLieDown) {
   robot.run(5.0, {.mode = kStanceLie});
   EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying);
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
+}
+
+/// Returns a robot with the sensors of data sheets and without force sensors at its feet.
+QuadrupedLoop with_errors(const std::string& name, std::uint64_t seed) {
+  Parameters parameters = QuadrupedLoop::parameters(seed, ErrorLevel::kDataSheet);
+  parameters.plant.contact_sensors = false;
+  QuadrupedLoop robot(legged_robot(name), parameters);
+  robot.wait(0.3);
+  return robot;
+}
+
+TEST(Walking, KeepsItsBodyParallelToTheGroundWhateverTheErrorOfTheTilt) {
+  QuadrupedLoop robot = with_errors("quadbot", 0);
+  robot.run(4.0, walk(0.25, 0, 0));
+  robot.clear();
+  double estimated = 0;
+  robot.after_step = [&] {
+    const Quaternion& q = robot.state().base.attitude;
+    estimated = std::max(estimated, 2 * std::hypot(q[0], q[1]));
+  };
+  robot.run(2.0, walk(0.25, 0, 0));
+  EXPECT_GT(estimated, 0.025);  // rad
+  EXPECT_LT(robot.tilt, 0.015);
+}
+
+TEST(Walking, AFootThatIsStillInTheAirIsNotPushedFasterThanItsJointsTurn) {
+  if (quadrupeds().empty()) GTEST_SKIP() << "no folder of real quadrupeds; ROBOT_QUADRUPEDS names one";
+  QuadrupedLoop robot = with_errors("anymal_c", 1);
+  robot.run(4.0, walk(1.0, 0, 0));
+  double fastest = 0;
+  robot.after_step = [&] {
+    for (std::size_t i = 0; i < kLegsJoints; ++i)
+      fastest = std::max(fastest, std::abs(robot.truth().joints[i].velocity) / robot.robot().joints[i].velocity_limit);
+  };
+  robot.run(3.0, walk(1.0, 0, 0));
+  EXPECT_LE(fastest, 0.9);
 }
 
 TEST(Walking, IsLimitedInItsSpeed) {

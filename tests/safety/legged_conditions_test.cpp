@@ -324,6 +324,94 @@ TEST_F(LeggedConditionsTest, AFootThatCarriesNothingIsAWarning) {
   EXPECT_EQ(run(1), 1) << "a load that is not measured is not judged";
 }
 
+/// Quadbot trots on the spot: each pair of feet bears for 0.2 s, and lifts its knees by 0.3 rad in its swing.
+class WalkingConditionsTest : public LeggedConditionsTest {
+ protected:
+  WalkingConditionsTest() { command_.legged.phase = LegPhase::kWalking; }
+
+  /// Returns as `run`. `change` is called after the joints and their commands of this cycle are set.
+  double walk(double seconds, const std::function<void(double)>& change = {}) {
+    return run(seconds, [&](double t) {
+      place(stand_);
+      for (std::size_t leg = 0; leg < kLegs; ++leg) {
+        const double part = std::fmod(t / 0.4 + (leg == 0 || leg == 3 ? 0.5 : 0), 1.0) * 2;
+        const bool bears = part < 1;
+        command_.legged.stance[leg] = bears ? std::max(part, 1e-3) : 0;
+        sensors_.contacts[leg].force[2] = bears ? robot_.mass * 9.81 / 2 : 0;
+        const double lift = bears ? 0 : 0.3 * std::pow(std::sin(3.1416 * (part - 1)), 2);
+        JointSample* joint = &sensors_.joints[kLegJoints * leg];
+        joint[1].position += lift / 2;
+        joint[2].position -= lift;
+        for (std::size_t i = 0; i < kLegJoints; ++i)
+          command_.joints[kLegJoints * leg + i] = {
+              .mode = JointMode::kImpedance, .position = joint[i].position, .stiffness = bears ? 0.0 : 20.0};
+      }
+      if (change) change(t);
+    });
+  }
+};
+
+TEST_F(WalkingConditionsTest, AreNoneWhileItTrots) {
+  EXPECT_EQ(walk(4), 4) << causes(Reaction::kBrake) << causes(Reaction::kRamp) << causes(Reaction::kWarn);
+}
+
+TEST_F(WalkingConditionsTest, AFootThatSlipsInItsStanceLetsItLieDown) {
+  const double seen = walk(2, [&](double t) {
+    std::array<Eigen::Vector3d, kLegs> feet = stand_;
+    const double since = std::fmod(t + 0.2, 0.4);  // since the rear right foot's stance began
+    feet[3].x() -= 0.8 * robot_.leg_length() * std::min(since, 0.4 - since);
+    if (t > 0.6) place(feet);
+    for (std::size_t i = 0; i < kLegsJoints; ++i) command_.joints[i].position = sensors_.joints[i].position;
+  });
+  EXPECT_LT(seen, 1.2);
+  EXPECT_EQ(causes(Reaction::kRamp), "foot_slip") << causes(Reaction::kBrake);
+}
+
+TEST_F(WalkingConditionsTest, AFootThatBearsInNoneOfItsStepsIsAWarning) {
+  const double seen = walk(2, [&](double) { sensors_.contacts[1].force = {}; });
+  EXPECT_GT(seen, 0.5) << "one step without load is none";
+  EXPECT_LT(seen, 1.0);
+  EXPECT_EQ(causes(Reaction::kWarn), "foot_load");
+  EXPECT_EQ(joint(), 5u);
+}
+
+TEST_F(WalkingConditionsTest, AJointThatDoesNotFollowItsSwingsBrakes) {
+  const double seen = walk(2, [&](double) {
+    if (command_.joints[8].stiffness > 0) command_.joints[8].position += 0.25;
+  });
+  EXPECT_LT(seen, 0.8);
+  EXPECT_EQ(causes(Reaction::kBrake), "joint_following");
+  EXPECT_EQ(joint(), 8u);
+}
+
+TEST_F(WalkingConditionsTest, AnEncoderThatRepeatsOneAngleInItsSwingBrakes) {
+  const double seen = walk(2, [&, held = sensors_.joints[8].position](double t) {
+    if (t > 0.6) sensors_.joints[8].position = held;
+  });
+  EXPECT_LT(seen, 1.1);
+  EXPECT_EQ(causes(Reaction::kBrake), "encoder_stuck");
+  EXPECT_EQ(joint(), 8u);
+}
+
+TEST_F(WalkingConditionsTest, ABodyThatSinksBrakes) {
+  const double limit = 0.13 * robot_.leg_length();
+  double depth = 0;
+  const auto sinks = [&](double to) {
+    return [&, to](double) {
+      depth += std::clamp(to - depth, -3e-4, 3e-4);
+      std::array<Eigen::Vector3d, kLegs> feet = stand_;
+      for (Eigen::Vector3d& foot : feet) foot.z() += depth;
+      place(feet);
+      for (std::size_t i = 0; i < kLegsJoints; ++i) command_.joints[i].position = sensors_.joints[i].position;
+    };
+  };
+  EXPECT_EQ(walk(1, sinks(0.9 * limit)), 1);
+  command_.legged.body[2] = -0.2 * limit;
+  EXPECT_EQ(walk(1, sinks(1.1 * limit)), 1) << "it is asked to be lower";
+  EXPECT_LT(walk(1, sinks(1.3 * limit)), 0.15);
+  EXPECT_EQ(causes(Reaction::kBrake), "sinking");
+}
+
 TEST_F(LeggedConditionsTest, FeetAreJudgedOnlyWhileItStands) {
   for (ContactSample& contact : sensors_.contacts) contact.force = {};
   for (const LegPhase phase : {LegPhase::kLying, LegPhase::kGathering, LegPhase::kRising, LegPhase::kJoints}) {

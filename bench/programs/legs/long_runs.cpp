@@ -1,6 +1,7 @@
 #include <random>
 
 #include "bench/programs/legs/loop_rows.h"
+#include "control/legged/gait.h"
 
 namespace robot_control::bench {
 namespace {
@@ -26,6 +27,56 @@ class Draw {
  private:
   std::mt19937_64 random_;
 };
+
+/// Disturbs a robot for some seconds, and computes its run again from its rows.
+void replay(const LegModel& model, std::uint64_t seed, bool walks, WorstValues& worst) {
+  constexpr double kSeconds = 8;
+  QuadrupedLoop robot(model, seed, ErrorLevel::kField);
+  robot.record = true;
+  Draw draw(seed);
+  const double length = model.leg_length();
+  const char* const nodes[] = {"estimator", "controller", "monitor"};
+  const char* const kinds[] = {"off", "stuck", "delayed", "garbage", "wrong"};
+  robot.wait(0.3);
+  robot.run(2.5, stance(kStanceStand));
+  for (double begun = robot.loop.time(); robot.loop.time() - begun < kSeconds;) {
+    switch (draw.below(walks ? 7 : 5)) {
+      case 0: {
+        const char* const node = nodes[draw.below(3)];
+        robot.loop.inject_fault(node, kinds[draw.below(5)]);
+        robot.wait(draw.within(0.005, 0.1));
+        robot.loop.inject_fault(node, "ok");
+        break;
+      }
+      case 1:
+        robot.loop.e_stop();
+        break;
+      case 2:
+        robot.run(1.5, {});
+        robot.loop.e_stop_reset();
+        robot.run(0.1, {});
+        robot.run(2.0, stance(kStanceStand));
+        break;
+      case 3:
+        robot.run(0.5, {.twist = {}, .posture = draw.pose(length)});
+        break;
+      case 4:
+        robot.run(0.7, stance(kStanceLift + draw.below(kLegs)));
+        break;
+      default: {
+        Request walk = stance(kStanceGait + 1 + draw.below(kGaits.size() - 1));
+        walk.twist.linear[0] = draw.within(-0.5, 0.5);
+        walk.twist.angular[2] = draw.within(-0.5, 0.5);
+        robot.run(draw.within(0.2, 1.0), walk);
+      }
+    }
+  }
+  const ReplayReport report = robot.recording.replay(robot.loop.robot(), 0.001);
+  worst.add("replay that is not exact", report.exact() ? 0 : 1, "runs");
+  if (!report.exact())
+    std::fprintf(stderr, "%s, seed %llu: %s", model.name.c_str(), static_cast<unsigned long long>(seed),
+                 text_of(report).c_str());
+}
 
 }  // namespace
 
@@ -65,45 +116,11 @@ void hour(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
 }
 
 void replayed(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
-  constexpr double kSeconds = 8;
-  QuadrupedLoop robot(model, seed, ErrorLevel::kField);
-  robot.record = true;
-  Draw draw(seed);
-  const double length = model.leg_length();
-  const char* const nodes[] = {"estimator", "controller", "monitor"};
-  const char* const kinds[] = {"off", "stuck", "delayed", "garbage", "wrong"};
-  robot.wait(0.3);
-  robot.run(2.5, stance(kStanceStand));
-  for (double begun = robot.loop.time(); robot.loop.time() - begun < kSeconds;) {
-    switch (draw.below(5)) {
-      case 0: {
-        const char* const node = nodes[draw.below(3)];
-        robot.loop.inject_fault(node, kinds[draw.below(5)]);
-        robot.wait(draw.within(0.005, 0.1));
-        robot.loop.inject_fault(node, "ok");
-        break;
-      }
-      case 1:
-        robot.loop.e_stop();
-        break;
-      case 2:
-        robot.run(1.5, {});
-        robot.loop.e_stop_reset();
-        robot.run(0.1, {});
-        robot.run(2.0, stance(kStanceStand));
-        break;
-      case 3:
-        robot.run(0.5, {.twist = {}, .posture = draw.pose(length)});
-        break;
-      default:
-        robot.run(0.7, stance(kStanceLift + draw.below(kLegs)));
-    }
-  }
-  const ReplayReport report = robot.recording.replay(robot.loop.robot(), 0.001);
-  worst.add("replay that is not exact", report.exact() ? 0 : 1, "runs");
-  if (!report.exact())
-    std::fprintf(stderr, "%s, seed %llu: %s", model.name.c_str(), static_cast<unsigned long long>(seed),
-                 text_of(report).c_str());
+  replay(model, seed, false, worst);
+}
+
+void walking_replayed(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
+  replay(model, seed, true, worst);
 }
 
 }  // namespace robot_control::bench

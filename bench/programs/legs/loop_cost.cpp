@@ -13,13 +13,13 @@ constexpr std::size_t kCycles = 2000;  // of a block
 constexpr int kBlocks = 51;
 constexpr int kSpeedBlocks = 7;
 
-/// The frames of a robot that stands up and sways.
+/// The frames of a robot that stands up, and sways or walks in the end.
 struct Frames {
   std::vector<SensorFrame> sensors;
   std::vector<StateFrame> states;
   std::vector<CommandFrame> commands;
   std::vector<Permit> permits;
-  std::size_t swaying = 0;  ///< number of the first one of a block
+  std::size_t begin = 0;  ///< number of the first one of a block
 };
 
 Request swaying(const LegModel& model, std::size_t cycle) {
@@ -28,7 +28,16 @@ Request swaying(const LegModel& model, std::size_t cycle) {
   return request;
 }
 
-Frames record(const LegModel& model) {
+Request walking(const LegModel&, std::size_t) {
+  Request request;
+  request.twist.linear[0] = 0.5;
+  return request;
+}
+
+using Requests = Request (*)(const LegModel&, std::size_t cycle);
+
+/// The robot follows `requests` for `begins` cycles before the block.
+Frames record(const LegModel& model, Requests requests, std::size_t begins) {
   QuadrupedLoop robot(model, 0, ErrorLevel::kField);
   Frames frames;
   const auto step = [&](const Request& request) {
@@ -41,8 +50,9 @@ Frames record(const LegModel& model) {
   };
   for (int k = 0; k < 300; ++k) step({});
   for (int k = 0; k < 2500; ++k) step(stance(kStanceStand));
-  frames.swaying = frames.sensors.size();
-  for (std::size_t k = 0; k <= kCycles; ++k) step(swaying(model, k));
+  for (std::size_t k = 0; k < begins; ++k) step(requests(model, k));
+  frames.begin = frames.sensors.size();
+  for (std::size_t k = 0; k <= kCycles; ++k) step(requests(model, begins + k));
   return frames;
 }
 
@@ -56,7 +66,7 @@ void measure(const std::string& name, const Frames& frames, Begin begin, Step st
     begin();
     const AllocationGuard guard;
     const std::int64_t start = monotonic_ns();
-    for (std::size_t k = 0; k < kCycles; ++k) step(frames.swaying + k);
+    for (std::size_t k = 0; k < kCycles; ++k) step(frames.begin + k);
     fastest = std::min(fastest, static_cast<double>(monotonic_ns() - start) / kCycles);
     allocations = guard.count();
   }
@@ -67,7 +77,7 @@ void measure(const std::string& name, const Frames& frames, Begin begin, Step st
 /// Measures a law that can be saved, from its state at the beginning of the block.
 template <class Law, class Step>
 void measure_law(const std::string& name, const Frames& frames, Law& law, Step step, WorstValues& worst) {
-  for (std::size_t k = 1; k < frames.swaying; ++k) step(k);
+  for (std::size_t k = 1; k < frames.begin; ++k) step(k);
   LawSnapshot begin;
   law.save(begin);
   measure(
@@ -80,7 +90,7 @@ class BareSteps {
   BareSteps(const LegModel& model, const Frames& frames)
       : simulated_(compile_model(model, QuadrupedLoop::parameters(0, ErrorLevel::kIdeal).plant, 0.001)),
         data_(set_down(simulated_)),
-        held_(frames.commands[frames.swaying - 1].joints) {
+        held_(frames.commands[frames.begin - 1].joints) {
     for (std::size_t i = 0; i < kLegsJoints; ++i) begin_[i] = data_->qpos[simulated_.joint_position[i]];
     for (int k = 0; k < 2500; ++k) step(std::min(1.0, k / 1300.0));
   }
@@ -109,30 +119,33 @@ class BareSteps {
   std::array<double, kLegsJoints> begin_{};
 };
 
-void measure_speed(const LegModel& model, const Frames& frames, WorstValues& worst) {
-  BareSteps bare(model, frames);
+/// `standing` are the frames of a robot that sways.
+void measure_speed(const LegModel& model, const Frames& standing, Requests requests, const std::string& motion,
+                   WorstValues& worst) {
+  BareSteps bare(model, standing);
   QuadrupedLoop robot(model, 0, ErrorLevel::kField);
   stand_up(robot);
+  robot.run(1.0, requests(model, 0));
   const double below = robot.truth().pose_world.position[2];
   std::vector<double> bare_ns, loop_ns;
   for (int block = 0; block < kSpeedBlocks; ++block) {
     bare_ns.push_back(bare.nanoseconds());
     const std::int64_t start = monotonic_ns();
     for (std::size_t k = 0; k < kCycles; ++k) {
-      if (k % 20 == 0) robot.loop.request(swaying(model, k));
+      if (k % 20 == 0) robot.loop.request(requests(model, k));
       robot.loop.step();
     }
     loop_ns.push_back(static_cast<double>(monotonic_ns() - start) / kCycles);
   }
   worst.add("bare mj_step", median(bare_ns) / 1000, "us");
-  worst.add("cycle of ClosedLoop, of a bare mj_step", median_ratio(loop_ns, bare_ns), "");
+  worst.add("cycle of ClosedLoop" + motion + ", of a bare mj_step", median_ratio(loop_ns, bare_ns), "");
   if (bare.height() < 0.5 * below) std::fprintf(stderr, "%s does not stand in the bare loop\n", model.name.c_str());
 }
 
 }  // namespace
 
 void cost(const LegModel& model, std::uint64_t /*seed*/, WorstValues& worst) {
-  const Frames frames = record(model);
+  const Frames frames = record(model, swaying, 0);
   const Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kField);
   const Quadruped robot(parameters, model);
   const double period = parameters.loop.period();
@@ -184,7 +197,56 @@ void cost(const LegModel& model, std::uint64_t /*seed*/, WorstValues& worst) {
       },
       worst);
   worst.add("monitor that stops", permit.causes == 0 ? 0 : 1, "runs");
-  measure_speed(model, frames, worst);
+  measure_speed(model, frames, swaying, "", worst);
+}
+
+void walking_cost(const LegModel& model, std::uint64_t /*seed*/, WorstValues& worst) {
+  const Frames frames = record(model, walking, 2000);
+  const Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kField);
+  const Quadruped robot(parameters, model);
+  const double period = parameters.loop.period();
+  const std::unique_ptr<EstimatorLaw> estimator = robot.make_estimator();
+  StateFrame state;
+  measure_law(
+      "estimator, walking", frames, *estimator, [&](std::size_t k) { estimator->step(frames.sensors[k], state); },
+      worst);
+
+  LegController controller(model, parameters.leg_control, period);
+  controller.enter_run({}, true);
+  CommandFrame command;
+  const auto step = [&](std::size_t k) {
+    controller.step({.sensors = &frames.sensors[k],
+                     .state = &frames.states[k],
+                     .permit = &frames.permits[k - 1],
+                     .request = {.content = frames.commands[k].requested, .count = k}},
+                    command);
+  };
+  for (std::size_t k = 1; k < frames.begin; ++k) step(k);
+  const LegController::State begin = controller.state();
+  std::vector<double> fastest(kCycles, std::numeric_limits<double>::infinity()), planned;
+  std::uint64_t allocations = 0;
+  for (int block = 0; block < kBlocks; ++block) {
+    controller.set_state(begin);
+    const AllocationGuard guard;
+    for (std::size_t k = 0; k < kCycles; ++k) {
+      const std::int64_t start = monotonic_ns();
+      step(frames.begin + k);
+      fastest[k] = std::min(fastest[k], static_cast<double>(monotonic_ns() - start));
+    }
+    allocations = guard.count();
+  }
+  controller.set_state(begin);
+  for (std::size_t k = 0; k < kCycles; ++k) {
+    step(frames.begin + k);
+    if (controller.state().walk.planned == 0) planned.push_back(fastest[k]);
+  }
+  worst.add("allocations", static_cast<double>(allocations), "calls");
+  worst.add("controller that does not walk", command.legged.phase == LegPhase::kWalking ? 0 : 1, "runs");
+  worst.add("controller with a plan, median", median(planned) / 1000, "us");
+  std::sort(fastest.begin(), fastest.end());
+  worst.add("controller, walking, median", fastest[kCycles / 2] / 1000, "us");
+  worst.add("controller, walking, 99 %", fastest[kCycles * 99 / 100] / 1000, "us");
+  measure_speed(model, record(model, swaying, 0), walking, ", walking", worst);
 }
 
 }  // namespace robot_control::bench

@@ -28,9 +28,15 @@ void silent(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 void hour(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// Runs with failing nodes, stops and resets, computed again from their rows.
 void replayed(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// The same of a robot that walks, with gaits that change.
+void walking_replayed(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 
 /// The time of each law's step, its allocations, and the time of a cycle of ClosedLoop beside that of a bare mj_step.
 void cost(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// The time of estimator and controller in a trot of 0.5 m/s. Each cycle of the controller counts with its fastest
+/// block; of these follow the median, that of cycles with a plan, and the 99th percentile. A cycle of ClosedLoop is as
+/// in `cost`.
+void walking_cost(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 
 /// The estimated way of a straight line, a square and an eight of 20 m against the truth, without foot sensors.
 void odometry(const LegModel& model, std::uint64_t seed, WorstValues& worst);
@@ -44,7 +50,7 @@ void trot(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 void gaits(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// A trot of 0.5 m/s.
 void robots(const LegModel& model, std::uint64_t seed, WorstValues& worst);
-/// An e-stop in 40 phases of a gait, at three speeds, in a crawl, sideways and while it turns.
+/// An e-stop at three speeds, in a crawl, sideways and while it turns. The seed chooses one of 40 phases of the gait.
 void walking_stop(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 
 inline constexpr double kPi = 3.14159265358979323846;

@@ -23,7 +23,7 @@
 ///   while a foot is lifted    the place of this foot from where it stood: x, y, and height above the ground. The body
 ///                             has its nominal attitude. Without a request the foot is set down again
 ///
-/// A twist has no effect, because this robot does not walk yet (kReasonPartIgnored).
+/// A twist lets the robot stand up and walk (walking/walker.h). It ends the walk with a zero.
 ///
 /// The stance frame has its origin where that of the base was when it began to rise. It is level, and its x axis shows
 /// ahead. Let aᵢ be the feet, p the body's position and R its rotation in it. The feet in the base's axes are
@@ -135,6 +135,7 @@ class LegController {
   void walk(const ControlInput& input, const Request& request, CommandFrame& out) noexcept;
   bool placed(const ControlInput& input) const noexcept;
   GaitName choose_gait(const Request& request, const WalkingTwist& twist) noexcept;
+  double pace_of(const WalkingTwist& twist) const noexcept;
   void carry(const Request& request, std::uint64_t& reasons) noexcept;
   void stand_here(const ControlInput& input) noexcept;
   void report(CommandFrame& out) const noexcept;
@@ -170,6 +171,7 @@ class LegController {
   LegTuning tuning_;
   std::array<JointRange, kLegsJoints> joint_ranges_;
   std::array<AxisBounds, kLegsJoints> joint_motion_;
+  std::array<double, kLegsJoints> joint_steps_{};  ///< rad, of a cycle at the speed limit
   double ground_;   ///< m, height of the ground below the base of a robot that lies level
   double nominal_;  ///< m, height of the standing body above one that lies level
   std::array<AxisBounds, 6> body_motion_;
@@ -177,6 +179,7 @@ class LegController {
   TwistLimiter limiter_;
   Walker walker_;
   std::array<WalkingTwist, kGaits.size()> fastest_{};  ///< by GaitName
+  double foot_distance_ = 0;                           ///< m, of the farthest foot from the centre of gravity
   State state_;
 };
 

@@ -107,7 +107,8 @@ double LegController::spare(const Pose& pose) const noexcept {
   return result;
 }
 
-/// Sets the joint angles of the present pose. Returns false if a leg does not reach its foot.
+/// Moves the joint angles to those of the present pose, no faster than the joints may. The nearest angles to a foot out
+/// of reach are not continuous. Returns false if a leg does not reach its foot.
 bool LegController::set_angles() noexcept {
   const Pose pose = this->pose();
   const Eigen::Matrix3d turned = rotation(pose);
@@ -115,8 +116,12 @@ bool LegController::set_angles() noexcept {
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const LegSolution solution = legs_[leg].kinematics.inverse(foot_in_base(leg, pose, turned));
     reached = reached && solution.reach == FootReach::kReached;
-    for (std::size_t i = 0; i < kLegJoints; ++i)
-      state_.angles[kLegJoints * leg + i] = solution.angles[static_cast<Eigen::Index>(i)];
+    for (std::size_t i = 0; i < kLegJoints; ++i) {
+      const std::size_t joint = kLegJoints * leg + i;
+      double& angle = state_.angles[joint];
+      angle = std::clamp(solution.angles[static_cast<Eigen::Index>(i)], angle - joint_steps_[joint],
+                         angle + joint_steps_[joint]);
+    }
   }
   return reached;
 }

@@ -10,10 +10,11 @@
 namespace robot_control {
 namespace {
 
-constexpr double kSlow = 0.3;         // m/s, of a body of legs of kReferenceLeg whose walk may end
-constexpr double kPlaced = 0.1;       // of the leg length, of the feet at the end of a walk
-constexpr double kInPlace = 3;        // s, after which a walk ends wherever the feet are
-constexpr double kCarriedPart = 0.5;  // of the ranges of a standing body
+constexpr double kSlow = 0.3;                        // m/s, of a body of legs of kReferenceLeg whose walk may end
+constexpr double kTrotFrom = 0.4, kTrotUntil = 0.3;  // m/s, of the feet (docs/evidence/derivations.md)
+constexpr double kPlaced = 0.1;                      // of the leg length, of the feet at the end of a walk
+constexpr double kInPlace = 3;                       // s, after which a walk ends wherever the feet are
+constexpr double kCarriedPart = 0.5;                 // of the ranges of a standing body
 constexpr std::uint64_t kEmergencies = kReasonTimedOut | kReasonRefused | kReasonManySenders | kReasonPermitRamp;
 
 bool rests(const WalkingTwist& twist) noexcept {
@@ -94,13 +95,27 @@ bool LegController::placed(const ControlInput& input) const noexcept {
   return walker_.farthest_foot(body) < kPlaced * legs_[0].kinematics.length();
 }
 
+/// Returns the gait that is requested. Otherwise the walking trot, or the trot from kTrotFrom on until below
+/// kTrotUntil.
 GaitName LegController::choose_gait(const Request& request, const WalkingTwist& target) noexcept {
+  constexpr auto kTrot = static_cast<std::uint64_t>(GaitName::kTrot);
   if (request.mode > kStanceGait) {
     state_.gait = std::min<std::uint64_t>(request.mode - kStanceGait, kGaits.size() - 1);
-  } else if (!rests(target) || state_.gait == 0) {
-    state_.gait = static_cast<std::uint64_t>(GaitName::kTrot);
+  } else if (!rests(target)) {
+    const auto& now = state_.twist.axes;
+    const double fastest = std::max(pace_of(target), pace_of({now[0].speed, now[1].speed, now[2].speed})) /
+                           (walker_.gaits()[kTrot].period / kGaits[kTrot].period);
+    const bool trots = fastest >= (state_.gait == kTrot ? kTrotUntil : kTrotFrom);
+    state_.gait = trots ? kTrot : static_cast<std::uint64_t>(GaitName::kWalkingTrot);
+  } else if (state_.gait == 0) {
+    state_.gait = kTrot;
   }
   return static_cast<GaitName>(state_.gait);
+}
+
+/// Returns the speed of the fastest foot under the body in m/s.
+double LegController::pace_of(const WalkingTwist& twist) const noexcept {
+  return std::hypot(twist[0], twist[1]) + std::abs(twist[2]) * foot_distance_;
 }
 
 /// Moves height, roll and pitch towards the requested ones.
@@ -121,7 +136,7 @@ void LegController::stand_here(const ControlInput& input) noexcept {
   const WalkingBody body = walker_.measure(*input.sensors, *input.state);
   const bool lies_next = state_.lies_next != 0;
   state_.body = {};
-  state_.body[kZ].value = ground_ - state_.walk.ground;
+  state_.body[kZ].value = ground_ - state_.walk.ground[0];
   state_.body[kRoll].value = body.roll;
   state_.body[kPitch].value = body.pitch;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {

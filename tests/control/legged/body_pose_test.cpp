@@ -243,5 +243,20 @@ TEST(BodyPose, RollsOnTheBallsOfItsFeet) {
   }
 }
 
+TEST(BodyPose, AFootThatComesOutOfReachMovesItsJointsNoFasterThanTheyMay) {
+  IdealLegs legs = standing(legged_robot("quadbot"), 0.001);
+  LegController::State state = legs.state();
+  state.places[0] = {-0.6, -0.3, 0.1};
+  legs.controller.set_state(state);
+  for (int k = 0; k < 200; ++k) {
+    legs.step(Request{});
+    for (std::size_t i = 0; i < kLegsJoints; ++i)
+      ASSERT_LE(std::abs(legs.out.joints[i].position - legs.before.joints[i].position),
+                legs.robot.joints[i].velocity_limit * legs.period + 1e-12)
+          << i << " in cycle " << k;
+  }
+  EXPECT_NE(legs.out.reasons & kReasonOutOfReach, 0u);
+}
+
 }  // namespace
 }  // namespace robot_control

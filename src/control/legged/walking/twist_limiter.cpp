@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "control/legged/gait.h"
 #include "control/limits/drive_limits.h"
+#include "control/limits/stop_distance.h"
 #include "signals/command_frame.h"
 #include "signals/legged/legged_command.h"
 
@@ -25,6 +27,14 @@ std::array<MotionLimits, 3> twist_limits(const LegControllerParameters& paramete
   return {axis(parameters.max_linear_speed, parameters.max_linear_acceleration),
           axis(parameters.max_lateral_speed, parameters.max_lateral_acceleration),
           axis(parameters.max_angular_speed, parameters.max_angular_acceleration)};
+}
+
+double walking_stop_distance(const LegControllerParameters& parameters, double leg_length, double speed,
+                             bool emergency) noexcept {
+  const MotionLimits ahead = twist_limits(parameters)[0];
+  const double deceleration = emergency ? ahead.emergency_deceleration : ahead.deceleration;
+  const Gait trot = kGaits[static_cast<std::size_t>(GaitName::kTrot)].scaled(leg_length);
+  return stop_distance(speed, deceleration, ahead.jerk) + std::abs(speed) * trot.period / 2;
 }
 
 WalkingTwist TwistLimiter::step(State& state, const WalkingTwist& target, const WalkingTwist& capable, bool emergency,

@@ -22,6 +22,12 @@ using WalkingTwist = std::array<double, 3>;
 /// (limits/drive_limits.h).
 std::array<MotionLimits, 3> twist_limits(const LegControllerParameters& parameters) noexcept;
 
+/// Returns the way in m of a body that trots ahead with `speed` until it stands. It is that of the limits, as on wheels
+/// (limits/stop_distance.h), after half a period of the gait. The feet that were in the air land ahead of the body,
+/// which moves to them. `leg_length` is in m.
+double walking_stop_distance(const LegControllerParameters& parameters, double leg_length, double speed,
+                             bool emergency) noexcept;
+
 class TwistLimiter {
  public:
   struct State {

@@ -17,15 +17,21 @@ namespace {
 constexpr double kOfEffort = 0.97;    // of the limits, the largest effort
 constexpr double kFarthest = 0.08;    // m, the target from the robot, of a leg of kReferenceLeg
 constexpr double kFarthestYaw = 0.3;  // rad
-constexpr double kGroundTime = 0.05;  // s, in which the height of the ground follows the feet
+constexpr double kGroundTime = 0.05;  // s, in which the ground follows the feet
+constexpr double kLevel = 0.1;        // of a leg length, by how much the feet have to be apart to show a slope
 constexpr double kEarly = 0.5;        // of the swing, from which on a foot may touch down
 constexpr double kTouches = 0.5;      // probability of a contact
+constexpr double kTouchTime = 0.005;  // s, for which an early foot touches: the observed load is noisy in the air
 
 using Map = Eigen::Map<Eigen::Vector3d>;
 using ConstMap = Eigen::Map<const Eigen::Vector3d>;
 
 Vector3 plain(const Eigen::Vector3d& vector) noexcept {
   return {vector.x(), vector.y(), vector.z()};
+}
+
+double ground_below(const Walker::State& state, const Eigen::Vector3d& place) noexcept {
+  return state.ground[0] + state.ground[1] * place.x() + state.ground[2] * place.y();
 }
 
 Eigen::Index joint_row(std::size_t leg) noexcept {
@@ -93,8 +99,9 @@ void Walker::begin(State& state, const SensorFrame& sensors, const StateFrame& e
   const WalkingBody body = measure(sensors, estimate);
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     state.bears[leg] = 1;
-    state.ground += (body.feet[leg].z() - legs_[leg].foot_radius) / kLegs;
+    state.bore[leg] = plain(body.feet[leg]);
   }
+  state.ground = plain(fit_ground(state));
   state.planned = kPlanCycles;
 }
 
@@ -125,8 +132,11 @@ bool Walker::step(State& state, const WalkInput& input, CommandFrame& out) noexc
 /// Moves what is kept in level axes, which move and turn with the body.
 void Walker::move(State& state, const WalkInput& input, const WalkingBody& body) const noexcept {
   const Eigen::Vector3d turning(0, 0, body.rate.z());
-  for (Vector3& lifted : state.lifted)
-    Map(lifted.data()) -= period_ * (body.velocity + turning.cross(Map(lifted.data())));
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    Map bore(state.bore[leg].data());
+    bore -= period_ * (body.velocity + turning.cross(bore));
+    if (state.bears[leg] != 0 && input.state->contacts[leg].probability >= kTouches) bore = body.feet[leg];
+  }
   const double farthest = kFarthest * length_ / kReferenceLeg;
   std::array<double, 3>& ahead = state.ahead;
   ahead[0] += period_ * (input.twist[0] - body.velocity.x());
@@ -134,14 +144,23 @@ void Walker::move(State& state, const WalkInput& input, const WalkingBody& body)
   ahead[2] += period_ * (input.twist[2] - body.rate.z());
   for (std::size_t i = 0; i < 2; ++i) ahead[i] = std::clamp(ahead[i], -farthest, farthest);
   ahead[2] = std::clamp(ahead[2], -kFarthestYaw, kFarthestYaw);
-  double measured = 0, count = 0;
+  state.ground[0] -= period_ * body.velocity.z();
+  Map(state.ground.data()) += period_ / kGroundTime * (fit_ground(state) - Map(state.ground.data()));
+}
+
+/// Returns the plane on which the feet bore last: its height at the base's origin, and its slopes to the front and
+/// left.
+Eigen::Vector3d Walker::fit_ground(const State& state) const noexcept {
+  const double level = kLevel * length_;
+  Eigen::Matrix3d squares = Eigen::Vector3d(0, level * level, level * level).asDiagonal();
+  Eigen::Vector3d heights = Eigen::Vector3d::Zero();
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    if (state.bears[leg] == 0) continue;
-    measured += body.feet[leg].z() - legs_[leg].foot_radius;
-    ++count;
+    const ConstMap bore(state.bore[leg].data());
+    const Eigen::Vector3d place(1, bore.x(), bore.y());
+    squares += place * place.transpose();
+    heights += (bore.z() - legs_[leg].foot_radius) * place;
   }
-  state.ground -= period_ * body.velocity.z();
-  if (count > 0) state.ground += period_ / kGroundTime * (measured / count - state.ground);
+  return squares.inverse() * heights;
 }
 
 void Walker::turn_clock(State& state, GaitName wanted) const noexcept {
@@ -174,12 +193,13 @@ bool Walker::choose_feet(State& state, const WalkInput& input, const WalkingBody
   const std::array<std::uint64_t, kLegs> before = state.bears;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const bool swings = !gait.bears(leg, state.phase);
+    state.touched[leg] = input.state->contacts[leg].probability >= kTouches ? state.touched[leg] + period_ : 0;
     if (!swings) {
       state.bears[leg] = 1;
     } else if (state.swings[leg] == 0) {
       state.bears[leg] = 0;
-      state.lifted[leg] = plain(body.feet[leg]);
-    } else if (gait.swung(leg, state.phase) > kEarly && input.state->contacts[leg].probability >= kTouches) {
+      state.bore[leg] = plain(body.feet[leg]);
+    } else if (gait.swung(leg, state.phase) > kEarly && state.touched[leg] >= kTouchTime) {
       state.bears[leg] = 1;
     }
     state.swings[leg] = swings ? 1 : 0;
@@ -201,16 +221,17 @@ Eigen::Vector3d Walker::landing(const State& state, const WalkInput& input, cons
                    .leg_length = length_};
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
   place.head<2>() = body.centre.head<2>() + foothold(at);
-  place.z() = state.ground + legs_[leg].foot_radius;
+  place.z() = ground_below(state, place) + legs_[leg].foot_radius;
   return place;
 }
 
 void Walker::plan(State& state, const WalkInput& input, const WalkingBody& body) noexcept {
   const Gait& gait = this->gait(state);
   ForcePlanInput to;
-  to.place << body.roll, body.pitch, 0, 0, 0, body.centre.z() - state.ground;
+  to.place << body.roll, body.pitch, 0, 0, 0, body.centre.z() - ground_below(state, body.centre);
   to.speed << body.rate, body.moves;
-  to.target << input.roll, input.pitch, state.ahead[2], state.ahead[0], state.ahead[1], height_ + input.height;
+  to.target << input.roll + state.ground[2], input.pitch - state.ground[1], state.ahead[2], state.ahead[0],
+      state.ahead[1], height_ + input.height;
   to.target_speed << 0, 0, input.twist[2], input.twist[0], input.twist[1], 0;
   to.steps = std::min(kPlanSteps, static_cast<std::size_t>(5 / gait.duty));
   const double step = plan_parameters_.horizon / static_cast<double>(to.steps);
@@ -270,7 +291,7 @@ void Walker::bear(const State& state, const WalkingBody& body, std::size_t leg, 
 void Walker::swing(const State& state, const WalkInput& input, const WalkingBody& body, std::size_t leg,
                    CommandFrame& out) const noexcept {
   const Gait& gait = this->gait(state);
-  const Eigen::Vector3d from = ConstMap(state.lifted[leg].data());
+  const Eigen::Vector3d from = ConstMap(state.bore[leg].data());
   const Eigen::Vector3d to = landing(state, input, body, leg);
   const double top = std::max(from.z(), to.z()) + gait.lift;
   const SwingPoint point = swing_point(from, to, top, gait.swung(leg, state.phase), gait.swing_time());

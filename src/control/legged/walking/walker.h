@@ -7,6 +7,8 @@
 ///             a cycle in which no foot is far from where it left the ground
 ///   contact   a foot that meets the ground in the second half of its swing bears from then on. A foot that is late is
 ///             pushed down by the force that it is to bear
+///   ground    is the plane through the places where the feet bore last. So a foot lands where the others stand, whatever
+///             the error of the estimated tilt
 ///   target    moves with the twist from where the robot was. It stays within kFarthest of the robot
 ///   plan      every kPlanCycles cycles, and where other feet bear, the forces of the feet (force_plan.h)
 ///   stance    τ = h − Jᵀ f, f the planned force, h what holds the leg itself. f is scaled down until each |τ| is within
@@ -68,10 +70,11 @@ class Walker {
     double stood = 0;                           ///< s since all feet stand
     std::array<std::uint64_t, kLegs> bears{};   ///< 1: its force is planned
     std::array<std::uint64_t, kLegs> swings{};  ///< 1: by the clock
-    std::array<Vector3, kLegs> lifted{};        ///< m, level axes: where it left the ground
+    std::array<double, kLegs> touched{};        ///< s for which a contact is probable
+    std::array<Vector3, kLegs> bore{};          ///< m, level axes: where it bore last
     std::array<Vector3, kLegs> forces{};        ///< N, level axes
     std::array<double, 3> ahead{};              ///< m, m, rad: the target from the robot
-    double ground = 0;                          ///< m, height of the ground, level axes
+    Vector3 ground{};                           ///< m: height of the ground below the base; its slopes
     std::uint64_t planned = 0;                  ///< cycles since the last plan
     std::uint64_t failures = 0;                 ///< plans without a solution, one after the other
   };
@@ -94,6 +97,7 @@ class Walker {
   double farthest_foot(const WalkingBody& body) const noexcept;
 
  private:
+  Eigen::Vector3d fit_ground(const State& state) const noexcept;
   void move(State& state, const WalkInput& input, const WalkingBody& body) const noexcept;
   void turn_clock(State& state, GaitName wanted) const noexcept;
   bool choose_feet(State& state, const WalkInput& input, const WalkingBody& body) const noexcept;

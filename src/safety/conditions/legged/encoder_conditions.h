@@ -3,7 +3,8 @@
 ///
 ///   jump   |q − q₀| − kFaster V t > limit. q₀ is the last angle that was possible, t s ago, V the velocity limit
 ///   stuck  |c − c₀| > limit, while the robot is on its feet. c is the angle that q can show: the command demanded it
-///          kAnswer cycles ago. c₀ was this angle when q changed for the last time. A joint that is blocked looks the same
+///          kAnswer cycles ago. c₀ was this angle when q changed for the last time. A joint that is blocked looks the same.
+///          The command of a robot that walks demands angles of feet in the air alone. Its limit is kOfSwing larger
 ///
 /// While c stays, a stuck encoder changes nothing: the joint is where it reports to be. An angle that is missing or not
 /// finite is not evaluated.
@@ -24,6 +25,7 @@ namespace robot_control {
 class EncoderConditions {
  public:
   static constexpr double kFaster = 1.1;     ///< as the default limit of joint_speed
+  static constexpr double kOfSwing = 1.8;    ///< a foot leaves the ground late (docs/evidence/derivations.md)
   static constexpr std::size_t kAnswer = 2;  ///< cycles: command k − 1 moves the joint from cycle k to k + 1
 
   /// `period` s.
@@ -44,13 +46,15 @@ class EncoderConditions {
 
   void step(const MonitorInput& input, std::uint64_t elapsed, ActiveCauses& out) noexcept {
     ConditionMeasurement jump = kNothingMeasured, stuck = kNothingMeasured;
+    const bool walks = input.command != nullptr && input.command->legged.phase == LegPhase::kWalking;
+    const double limit = (walks ? kOfSwing : 1) * stuck_.limit();
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       Joint& joint = joints_[i];
       joint.cycles += elapsed;
       const JointSample& sample = input.sensors->joints[i];
       if (!has_position(sample)) continue;
       jump = worse(jump, beyond(i, jumped(joint, sample.position), jump_.limit()));
-      stuck = worse(stuck, beyond(i, demanded(joint, sample.position, demand(input.command, i)), stuck_.limit()));
+      stuck = worse(stuck, beyond(i, demanded(joint, sample.position, demand(input.command, i)), limit));
     }
     jump_.step(jump, elapsed);
     out.add(jump_);
@@ -71,11 +75,13 @@ class EncoderConditions {
     double demand = 0;                      ///< rad, c₀
   };
 
-  /// Returns the impedance's command of a joint while the robot is on its feet; else null.
+  /// Returns the command of a joint that demands an angle while the robot is on its feet; else null.
   static const JointCommand* demand(const CommandFrame* command, std::size_t joint) noexcept {
     if (command == nullptr || command->joints[joint].mode != JointMode::kImpedance) return nullptr;
     const LegPhase phase = command->legged.phase;
-    const bool on_feet = phase == LegPhase::kRising || phase == LegPhase::kStanding || phase == LegPhase::kLowering;
+    const bool swings = phase == LegPhase::kWalking && command->joints[joint].stiffness > 0;
+    const bool on_feet =
+        phase == LegPhase::kRising || phase == LegPhase::kStanding || phase == LegPhase::kLowering || swings;
     return on_feet ? &command->joints[joint] : nullptr;
   }
 

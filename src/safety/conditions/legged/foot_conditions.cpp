@@ -36,7 +36,10 @@ FootConditions::FootConditions(const SafetyParameters& parameters, const LegMode
       window_(static_cast<double>(interval_ * kSamplesInWindow) * period),
       slip_(kCauseFootSlip, parameters.foot_slip, period),
       load_(kCauseFootLoad, parameters.foot_load, period),
-      worst_(kNothingMeasured) {
+      sinking_(kCauseSinking, parameters.sinking, period),
+      length_(robot.leg_length()),
+      worst_(kNothingMeasured),
+      sunk_(kNothingMeasured) {
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const LegGeometry& given = robot.legs[leg].kinematics.geometry();
     legs_[leg] = {.hip = plain(given.hip),
@@ -59,58 +62,84 @@ Eigen::Vector3d FootConditions::position(const Lengths& leg, const LegAngles& an
 void FootConditions::enter_run() noexcept {
   slip_.reset();
   load_.reset();
-  count_ = 0;
-  worst_ = kNothingMeasured;
+  sinking_.reset();
+  counts_ = {};
+  loads_.fill(1);
+  worst_ = sunk_ = kNothingMeasured;
+  stood_ = false;
 }
 
 void FootConditions::step(const MonitorInput& input, const Eigen::Vector3d& up, std::uint64_t elapsed,
                           ActiveCauses& out) noexcept {
-  const SensorFrame& sensors = *input.sensors;
-  const bool stands = input.command != nullptr && input.command->legged.phase == LegPhase::kStanding;
-  const std::uint64_t lifted = stands ? input.command->legged.lifted : 0;
-  if (!stands || lifted != lifted_) {
-    count_ = 0;
-    worst_ = kNothingMeasured;
+  const LeggedCommand asked = input.command != nullptr ? input.command->legged : LeggedCommand{};
+  const bool stands = asked.phase == LegPhase::kStanding, walks = asked.phase == LegPhase::kWalking;
+  Feet judged{};
+  for (std::size_t leg = 0; leg < kLegs; ++leg)
+    judged[leg] = stands ? leg + 1 != asked.lifted : walks && asked.stance[leg] > kEdge;
+  const bool begins = counts_ == std::array<std::size_t, kLegs>{};
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    if (!judged[leg]) counts_[leg] = 0;
   }
-  lifted_ = lifted;
+  if (!walks) loads_.fill(1);
   waited_ += elapsed;
-  if (stands && (count_ == 0 || waited_ >= interval_)) {
+  const bool any = judged != Feet{};
+  if (!any) worst_ = kNothingMeasured;
+  if (!walks) sunk_ = kNothingMeasured;
+  if (any && (begins || waited_ >= interval_)) {
     waited_ = 0;
-    sample(sensors, lifted);
+    sample(*input.sensors, asked, up, judged);
   }
   slip_.step(worst_, elapsed);
   out.add(slip_);
-  load_.step(stands ? lightest(sensors, up, lifted) : kNothingMeasured, elapsed);
+  const double share = weight_ / static_cast<double>(stands && asked.lifted != 0 ? kLegs - 1 : kLegs);
+  load_.step(stands || walks ? lightest(*input.sensors, up, judged, share) : kNothingMeasured, elapsed);
   out.add(load_);
+  sinking_.step(sunk_, elapsed);
+  out.add(sinking_);
 }
 
-void FootConditions::sample(const SensorFrame& sensors, std::uint64_t lifted) noexcept {
+void FootConditions::sample(const SensorFrame& sensors, const LeggedCommand& asked, const Eigen::Vector3d& up,
+                            const Feet& judged) noexcept {
   std::array<double, kLegsJoints> angles{};
   for (std::size_t i = 0; i < kLegsJoints; ++i) {
     if (!has_position(sensors.joints[i])) return;
     angles[i] = sensors.joints[i].position;
   }
   std::array<Eigen::Vector3d, kLegs> feet;
-  for (std::size_t leg = 0; leg < kLegs; ++leg) feet[leg] = position(legs_[leg], LegModel::angles_of(angles, leg));
+  double height = 0, count = 0;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    feet[leg] = position(legs_[leg], LegModel::angles_of(angles, leg));
+    if (!judged[leg]) continue;
+    height -= up.dot(feet[leg]);
+    ++count;
+  }
+  height = height / count - asked.body[2];
+  if (asked.phase == LegPhase::kStanding) {
+    reference_ = height;
+    stood_ = true;
+  } else if (stood_) {
+    sunk_ = beyond(kMaxJoints, (reference_ - height) / length_, sinking_.limit());
+  }
   Distances now{};
   std::size_t pair = 0;
   for (std::size_t a = 0; a < kLegs; ++a) {
     for (std::size_t b = a + 1; b < kLegs; ++b) now[pair++] = (feet[a] - feet[b]).norm();
   }
-  if (count_ >= kSamplesInWindow) compare(now, lifted);
-  samples_[count_ % kSamplesInWindow] = now;
-  ++count_;
+  compare(now, (asked.phase == LegPhase::kWalking ? kOfStep : 1) * slip_.limit());
+  samples_[next_] = now;
+  next_ = (next_ + 1) % kSamplesInWindow;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) counts_[leg] += judged[leg] ? 1 : 0;
 }
 
 /// The oldest sample is about to be replaced by `now`.
-void FootConditions::compare(const Distances& now, std::uint64_t lifted) noexcept {
-  const Distances& before = samples_[count_ % kSamplesInWindow];
+void FootConditions::compare(const Distances& now, double limit) noexcept {
+  const Distances& before = samples_[next_];
   std::array<double, kLegs> changes{};
   double largest = 0;
   std::size_t pair = 0;
   for (std::size_t a = 0; a < kLegs; ++a) {
     for (std::size_t b = a + 1; b < kLegs; ++b, ++pair) {
-      if (a + 1 == lifted || b + 1 == lifted) continue;
+      if (std::min(counts_[a], counts_[b]) < kSamplesInWindow) continue;
       const double change = std::abs(now[pair] - before[pair]);
       largest = std::max(largest, change);
       changes[a] += change;
@@ -118,19 +147,18 @@ void FootConditions::compare(const Distances& now, std::uint64_t lifted) noexcep
     }
   }
   const auto foot = static_cast<std::size_t>(std::ranges::max_element(changes) - changes.begin());
-  worst_ = beyond(knee_of(foot), largest / window_, slip_.limit());
+  worst_ = beyond(knee_of(foot), largest / window_, limit);
 }
 
-ConditionMeasurement FootConditions::lightest(const SensorFrame& sensors, const Eigen::Vector3d& up,
-                                              std::uint64_t lifted) const noexcept {
+ConditionMeasurement FootConditions::lightest(const SensorFrame& sensors, const Eigen::Vector3d& up, const Feet& judged,
+                                              double share) noexcept {
   if (sensors.contact_count < kLegs) return kNothingMeasured;
-  const double share = weight_ / static_cast<double>(lifted == 0 ? kLegs : kLegs - 1);
   ConditionMeasurement result{.beyond = false, .value = 1, .limit = load_.limit()};
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const ContactSample& contact = sensors.contacts[leg];
-    if (leg + 1 == lifted || contact.valid == 0) continue;
-    const double carried = up.dot(Eigen::Map<const Eigen::Vector3d>(contact.force.data())) / share;
-    if (carried < result.value) result.value = carried, result.joint = knee_of(leg);
+    if (judged[leg])
+      loads_[leg] = contact.valid != 0 ? up.dot(Eigen::Map<const Eigen::Vector3d>(contact.force.data())) / share : 1;
+    if (loads_[leg] < result.value) result.value = loads_[leg], result.joint = knee_of(leg);
   }
   result.beyond = result.value < result.limit;
   return result;

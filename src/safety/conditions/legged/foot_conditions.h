@@ -1,13 +1,18 @@
 #pragma once
-/// How the feet stand, while the command says that the robot stands. The foot in the air, or on its way, is left out.
+/// How the feet stand, while the command says that the robot stands or walks. Feet in the air, or on their way, are
+/// left out. While it walks, a foot is judged after kEdge of its stance, and its slip with kOfStep of the limit.
 ///
 ///   foot slip  max over pairs of standing feet of |d(t) − d(t − T)| / T > limit, T = kWindow. d is the distance of two
 ///              feet by the measured angles. It stays while both stand, however the body moves, and changes by the
 ///              slip. Feet that slip together are not noticed. A ball that rolls changes d by less than its radius
 ///              times the body's turn
 ///   foot load  F·u / w < limit, with the measured force F of a foot, the vertical u and an equal share w of the weight
+///   sinking    (c − c₀ − (h − h₀)) / l > limit, while it walks. h is the mean height of the body above its feet by the
+///              measured angles, c the commanded height, l the leg length. h₀ and c₀ are those of the robot that stood
 ///
-/// Without contact sensors the load is not known and not evaluated. Each condition names the knee of the worst foot.
+/// While it walks, the load of a foot that is not judged stays what it was. So a foot that bears in none of its steps
+/// is found. Without contact sensors the load is not known and not evaluated. Slip and load name the knee of the worst
+/// foot.
 
 #include <array>
 #include <cstddef>
@@ -28,6 +33,8 @@ class FootConditions {
  public:
   static constexpr double kWindow = 0.1;  ///< s
   static constexpr std::size_t kSamplesInWindow = 10;
+  static constexpr double kEdge = 0.15;
+  static constexpr double kOfStep = 0.55;  ///< docs/evidence/derivations.md
 
   /// `period` s.
   FootConditions(const SafetyParameters& parameters, const LegModel& robot, double period);
@@ -40,10 +47,13 @@ class FootConditions {
   static constexpr std::size_t kPairs = kLegs * (kLegs - 1) / 2;
   using Distances = std::array<double, kPairs>;  ///< m
 
-  void sample(const SensorFrame& sensors, std::uint64_t lifted) noexcept;
-  void compare(const Distances& now, std::uint64_t lifted) noexcept;
-  ConditionMeasurement lightest(const SensorFrame& sensors, const Eigen::Vector3d& up,
-                                std::uint64_t lifted) const noexcept;
+  using Feet = std::array<bool, kLegs>;
+
+  void sample(const SensorFrame& sensors, const LeggedCommand& asked, const Eigen::Vector3d& up,
+              const Feet& judged) noexcept;
+  void compare(const Distances& now, double limit) noexcept;
+  ConditionMeasurement lightest(const SensorFrame& sensors, const Eigen::Vector3d& up, const Feet& judged,
+                                double share) noexcept;
 
   /// The numbers of a LegGeometry, which is not trivially copyable.
   struct Lengths {
@@ -56,12 +66,17 @@ class FootConditions {
   double weight_;           ///< N
   std::uint64_t interval_;  ///< cycles between two samples of the distances
   double window_;           ///< s
-  ConditionWatch slip_, load_;
+  ConditionWatch slip_, load_, sinking_;
+  double length_;  ///< m, of a leg
   std::array<Distances, kSamplesInWindow> samples_{};
-  std::size_t count_ = 0;         ///< samples since the feet stand
-  std::uint64_t waited_ = 0;      ///< cycles since the last sample
-  std::uint64_t lifted_ = 0;      ///< 1 + leg of the foot that is left out; 0: none
-  ConditionMeasurement worst_{};  ///< slip of the last sample
+  std::size_t next_ = 0;                     ///< index of the oldest sample
+  std::array<std::size_t, kLegs> counts_{};  ///< samples since the foot stands
+  std::uint64_t waited_ = 0;                 ///< cycles since the last sample
+  std::array<double, kLegs> loads_{};        ///< of a share, of the feet when they were judged last
+  bool stood_ = false;                       ///< reference_ is known
+  double reference_ = 0;                     ///< m, height of the body less the commanded one, when it stood last
+  ConditionMeasurement worst_{};             ///< slip of the last sample
+  ConditionMeasurement sunk_{};              ///< of the last sample
 };
 
 }  // namespace robot_control

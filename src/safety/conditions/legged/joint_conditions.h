@@ -3,7 +3,9 @@
 ///
 ///   joint speed   |q̇| / velocity limit > limit
 ///   joint effort  |τ| / effort limit > limit, for the persistence: no motor may do that for long
-///   following     |q − its command| > limit, while the robot stands: an encoder or a drive that no longer moves
+///   following     |q − its command| > limit, while the robot stands: an encoder or a drive that no longer moves.
+///                 While it walks, the joints of feet in the air are judged: their mean over kMeanTime > kOfSwing limit.
+///                 This mean stays while the foot bears
 ///   joint range   distance beyond the nearer end stop > limit: the zero of an encoder, or a stop that broke
 ///
 /// A number that is missing or not finite is not evaluated.
@@ -24,9 +26,13 @@ namespace robot_control {
 
 class JointConditions {
  public:
+  static constexpr double kMeanTime = 0.2;  ///< s
+  static constexpr double kOfSwing = 0.45;  ///< docs/evidence/derivations.md
+
   /// `period` s.
   JointConditions(const SafetyParameters& parameters, const LegModel& robot, double period) noexcept
-      : speed_(kCauseJointSpeed, parameters.joint_speed, period),
+      : period_(period),
+        speed_(kCauseJointSpeed, parameters.joint_speed, period),
         effort_(kCauseJointEffort, parameters.joint_effort, period),
         range_(kCauseJointRange, parameters.joint_range, period),
         following_(kCauseJointFollowing, parameters.joint_following, period) {
@@ -40,11 +46,13 @@ class JointConditions {
 
   void enter_run() noexcept {
     for (ConditionWatch* watch : {&speed_, &effort_, &range_, &following_}) watch->reset();
+    behind_ = {};
   }
 
   void step(const MonitorInput& input, std::uint64_t elapsed, ActiveCauses& out) noexcept {
     const SensorFrame& sensors = *input.sensors;
-    const bool stands = input.command != nullptr && input.command->legged.phase == LegPhase::kStanding;
+    const LegPhase phase = input.command != nullptr ? input.command->legged.phase : LegPhase::kLying;
+    if (phase != LegPhase::kWalking) behind_ = {};
     ConditionMeasurement speed = kNothingMeasured, effort = kNothingMeasured, range = kNothingMeasured,
                          following = kNothingMeasured;
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
@@ -56,10 +64,7 @@ class JointConditions {
       if (has_position(joint)) {
         const double outside = std::max(limits.range.lower - joint.position, joint.position - limits.range.upper);
         range = worse(range, beyond(i, outside, range_.limit()));
-        if (stands && input.command->joints[i].mode == JointMode::kImpedance) {
-          const double left = std::abs(input.command->joints[i].position - joint.position);
-          following = worse(following, beyond(i, left, following_.limit()));
-        }
+        following = worse(following, follows(i, phase, input.command, joint.position, elapsed));
       }
     }
     const auto update = [&](ConditionWatch& watch, const ConditionMeasurement& measurement) {
@@ -73,6 +78,19 @@ class JointConditions {
   }
 
  private:
+  ConditionMeasurement follows(std::size_t i, LegPhase phase, const CommandFrame* command, double position,
+                               std::uint64_t elapsed) noexcept {
+    const bool walks = phase == LegPhase::kWalking;
+    if (!walks && phase != LegPhase::kStanding) return kNothingMeasured;
+    const JointCommand& joint = command->joints[i];
+    const bool judged = joint.mode == JointMode::kImpedance && (!walks || joint.stiffness > 0);
+    const double left = judged ? std::abs(joint.position - position) : 0;
+    if (!walks) return judged ? beyond(i, left, following_.limit()) : kNothingMeasured;
+    const double part = std::min(1.0, static_cast<double>(elapsed) * period_ / kMeanTime);
+    if (judged) behind_[i] += part * (left - behind_[i]);
+    return beyond(i, behind_[i], kOfSwing * following_.limit());
+  }
+
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
   struct Limits {
@@ -81,7 +99,9 @@ class JointConditions {
     JointRange range;  ///< rad; ±∞ without end stops
   };
 
+  double period_;
   std::array<Limits, kLegsJoints> limits_{};
+  std::array<double, kLegsJoints> behind_{};  ///< rad, of joints of feet in the air, the mean
   ConditionWatch speed_, effort_, range_, following_;
 };
 
