@@ -105,6 +105,8 @@ MAY_INCLUDE = {
     "simulation": ALL - {"simulation"} | {"simulation/machines"},
     "bindings": ALL | {"log/replay"},
     "ros": LOOP | {"files", "machine/description"},
+    # Maps, costmap, planner: services beside the loop, without ROS.
+    "navigation": {"files"},
     "main": {"ros", "configuration", "files", "robots", "rt", "drivers/factory", "simulation/machines"},
 }
 ROS = re.compile(r"^(ros|tf2?|tf2_\w+|\w+_msgs|std_srvs|rosgraph_msgs|robot_control)/")
