@@ -106,7 +106,7 @@ MAY_INCLUDE = {
     "bindings": ALL | {"log/replay"},
     "ros": LOOP | {"files", "machine/description"},
     # Maps, costmap, planner: services beside the loop, without ROS.
-    "navigation": {"files"},
+    "navigation": {"files", "machine"},
     "main": {"ros", "configuration", "files", "robots", "rt", "drivers/factory", "simulation/machines"},
 }
 ROS = re.compile(r"^(ros|tf2?|tf2_\w+|\w+_msgs|std_srvs|rosgraph_msgs|robot_control)/")
