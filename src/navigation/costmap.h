@@ -13,6 +13,7 @@
 
 #include "navigation/footprint.h"
 #include "navigation/grid.h"
+#include "navigation/scan.h"
 
 namespace robot_control {
 
@@ -20,16 +21,6 @@ inline constexpr double kMemory = 20;        ///< s
 inline constexpr double kExplained = 0.1;    ///< m
 inline constexpr double kBehindWall = 0.3;   ///< m; a ray that ends so far behind a wall contradicts the map
 inline constexpr double kPadding = 0.07;     ///< m of air about the outline: noise of the laser and lag of the follower
-
-/// One turn of a laser, as in sensor_msgs/LaserScan.
-struct Scan {
-  double angle_min = 0, angle_increment = 0;  ///< rad; a negative increment is that of a laser on its head
-  double range_min = 0, range_max = 0;        ///< m
-  std::vector<float> ranges;                  ///< m; ∞: nothing up to range_max; below range_min and NaN: not measured
-
-  bool hit(float range) const noexcept { return range >= range_min && range <= range_max; }
-  double angle(std::size_t ray) const noexcept { return angle_min + static_cast<double>(ray) * angle_increment; }
-};
 
 /// Returns the ends of all rays that hit, in the frame in which `sensor` is given.
 std::vector<Point> points_of(const Scan& scan, const PlanarPose& sensor);

@@ -2,17 +2,12 @@
 /// Finds the way of an outline over a costmap, as poses that follow_path drives.
 ///
 /// States are (cell, heading sector of 22.5°). Moves are one step along the heading, one step back, and a turn on the
-/// spot by one sector. The cost of a step is its length times
-///
-///   1 + kNearness·max(0, 1 − (d − inscribed)/kComfort)      d: distance of the cell from the nearest occupied one
-///
-/// a step back counts kBackFactor times, a sector turned as kSectorCost. A* is guided by the same cost without headings, from a
-/// search backwards from the goal. MRPT's PlannerSimple2D takes a circle alone, and the planners of OMPL draw samples:
+/// spot by one sector. A step costs its length times step_cost (smoothing.h), one back kBackFactor times that, a sector
+/// kSectorCost. A* is guided by the same cost without headings, from a search backwards from the goal. MRPT's PlannerSimple2D takes a circle alone, and the planners of OMPL draw samples:
 /// their ways differ from run to run, and that there is none is found by a timeout. Therefore neither is used.
 ///
-/// The way is then straightened as far as no cell nearer to obstacles is crossed, its corners are rounded where there is
-/// room, and points are set every kSpacing. Every pose carries the robot's heading: follow_path drives a segment
-/// backwards whose poses point against it.
+/// The way is then smoothed (smoothing.h). Every pose carries the robot's heading: follow_path drives a segment backwards
+/// whose poses point against it.
 
 #include <string>
 #include <vector>
@@ -21,11 +16,8 @@
 
 namespace robot_control {
 
-inline constexpr double kNearness = 1.0;
-inline constexpr double kComfort = 0.4;   ///< m
 inline constexpr double kBackFactor = 3;
 inline constexpr double kSectorCost = 0.15;     ///< m; 22.5° take 0.4 s, in which follow_path drives 0.2 m
-inline constexpr double kSpacing = 0.1;   ///< m
 
 struct Plan {
   std::vector<PlanarPose> poses;  ///< from start to goal; empty: there is no way
