@@ -55,7 +55,7 @@ class ClosedLoop:
     change it       set_parameters, inject_fault
     move its legs   set_posture, set_gait, body_pose, foot_target, joint_targets
     keep a log      log_into, end_log
-    read it         robot, units, time, cycle, period, paused, stop_distance, smooth_speed
+    read it         scan, robot, units, time, cycle, period, paused, stop_distance, smooth_speed
 
     The same arguments and calls give the same bits, and the four nodes in lockstep give them, too.
 
@@ -299,6 +299,21 @@ class ClosedLoop:
     def _refuse_inside_a_run(self, what: str) -> None:
         if self._running:
             raise RuntimeError(f"{what} cannot be called from the command function of a run")
+
+    def scan(self) -> dict[str, Any]:
+        """What the laser (`mujoco_plant.laser`) measures in the last cycle, as published on `scan`.
+
+        Returns:
+            `ranges`, float32 array of shape (rays,), m: +inf where nothing came back, -inf nearer than `range_min`.
+            Ray i points along `angle_min` + i * `angle_increment` [rad] in the axes of the link `link`. `range_min` and
+            `range_max` m, `cycle`, `stamp_ns` ns.
+
+        Raises:
+            ValueError: there is no laser.
+            RuntimeError: it is called from the command function of a run.
+        """
+        self._refuse_inside_a_run("scan")
+        return self._loop.scan()
 
     def stop_distance(self, speed: float, *, emergency: bool = False) -> float:
         """Distance [m] to rest that the limits predict, straight on from a steady `speed` [m/s]. It counts from the

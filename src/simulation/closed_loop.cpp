@@ -196,6 +196,10 @@ double ClosedLoop::time() const noexcept {
 const JoinedRow& ClosedLoop::row() const noexcept {
   return parts_->row;
 }
+LaserScan ClosedLoop::scan() const {
+  Simulator* const simulator = simulator_of(*parts_->machine);
+  return simulator == nullptr ? LaserScan{} : simulator->scan(parts_->driver.trace().truth);
+}
 std::array<const LawSnapshot*, kLaws> ClosedLoop::snapshots() const noexcept {
   const JoinedRow::Laws& laws = parts_->row.laws;
   return {parts_->driver.snapshot(), laws.estimator != nullptr ? parts_->estimator.snapshot() : nullptr,

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "configuration/parameters.h"
+#include "drivers/laser_scan.h"
 #include "log/rows/joined_row.h"
 #include "log/rows/row_log.h"
 #include "robots/robot.h"
@@ -65,6 +66,10 @@ class ClosedLoop {
 
   /// Returns the rows that the four nodes published in the last step.
   const JoinedRow& row() const noexcept;
+
+  /// Returns what the laser measures in the true state of the last step, whichever cycle it is (mujoco_plant.laser).
+  /// Without a laser there are no ranges.
+  LaserScan scan() const;
 
   /// Returns the states of the laws before the last step in the order of LawName; null for those that were not copied.
   std::array<const LawSnapshot*, kLaws> snapshots() const noexcept;
