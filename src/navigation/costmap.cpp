@@ -98,10 +98,7 @@ Costmap::Costmap(Grid map, Footprint footprint, bool unknown_is_free)
       unknown_is_free_(unknown_is_free),
       marked_(grid_.cells.size(), kNever) {
   std::vector<bool> walls(grid_.cells.size());
-  for (std::size_t i = 0; i < walls.size(); ++i) {
-    walls[i] = grid_.cells[i] >= 65;
-    unknown_[i] = grid_.cells[i] < 0;
-  }
+  for (std::size_t i = 0; i < walls.size(); ++i) walls[i] = grid_.cells[i] >= 65;
   wall_distance_ = distances(walls, grid_.columns, grid_.rows, grid_.resolution);
   const int reach = static_cast<int>(std::ceil((footprint_.circumscribed + kPadding) / grid_.resolution));
   for (int heading = 0; heading < kHeadings; ++heading) {
@@ -115,6 +112,12 @@ Costmap::Costmap(Grid map, Footprint footprint, bool unknown_is_free)
       }
     }
   }
+  clear();
+}
+
+void Costmap::clear() {
+  for (std::size_t i = 0; i < unknown_.size(); ++i) unknown_[i] = grid_.cells[i] < 0;
+  std::fill(marked_.begin(), marked_.end(), kNever);
   update(0);
 }
 

@@ -55,6 +55,9 @@ class Costmap {
   const Grid& grid() const noexcept { return grid_; }
   const Footprint& footprint() const noexcept { return footprint_; }
 
+  /// Forgets what rays have marked and seen.
+  void clear();
+
  private:
   static constexpr int kHeadings = 64;  ///< of the covered cells; half a step moves the far corner of 0.5 m by 2.5 cm
 
