@@ -18,9 +18,12 @@ inline constexpr std::int8_t kOccupiedCell = 100;
 /// 250 m × 250 m at 5 cm. A costmap of that size takes 0.4 GB.
 inline constexpr std::size_t kMaxCells = 25'000'000;
 
+/// m; farther coordinates are an error, so that a cell's number stays an int.
+inline constexpr double kFarthest = 1e6;
+
 struct Cell {
   int column = 0, row = 0;
-  bool operator==(const Cell&) const = default;
+  bool operator==(Cell other) const noexcept { return column == other.column && row == other.row; }
 };
 
 struct Grid {
@@ -36,7 +39,7 @@ struct Grid {
     return static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(columns) +
            static_cast<std::size_t>(cell.column);
   }
-  /// The place must be within ±10⁶ m.
+  /// The place must be within ±kFarthest.
   Cell cell_at(double x, double y) const noexcept {
     return {static_cast<int>(std::floor((x - origin_x) / resolution)),
             static_cast<int>(std::floor((y - origin_y) / resolution))};

@@ -18,7 +18,6 @@
 namespace robot_control {
 namespace {
 
-constexpr double kFarthest = 1e6;  // m; an origin beyond it is an error, and a cell's number stays an int
 constexpr std::size_t kMaxHead = 65536;  // bytes of a picture before its pixels, comments included
 constexpr double kFreeUpTo = 25, kOccupiedFrom = 65;  // %, of map_server's map_saver
 constexpr auto kKeys = std::to_array<std::string_view>(

@@ -106,8 +106,9 @@ MAY_INCLUDE = {
     "bindings": ALL | {"log/replay"},
     "ros": LOOP | {"files", "machine/description"},
     # Maps, costmap, planner: services beside the loop, without ROS.
-    "navigation": {"files"},
-    "main": {"ros", "configuration", "files", "robots", "rt", "drivers/factory", "simulation/machines"},
+    "navigation": {"files", "machine"},
+    "ros/navigation": {"navigation", "files"},
+    "main": {"ros", "ros/navigation", "configuration", "files", "robots", "rt", "drivers/factory", "simulation/machines"},
 }
 ROS = re.compile(r"^(ros|tf2?|tf2_\w+|\w+_msgs|std_srvs|rosgraph_msgs|robot_control)/")
 """of headers that are included in angle brackets; those of src/ros are included in quotes"""

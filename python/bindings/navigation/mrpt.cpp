@@ -7,8 +7,8 @@
 
 #include <array>
 
-#include "navigation/localizer.h"
-#include "navigation/mapper.h"
+#include "navigation/mrpt/localizer.h"
+#include "navigation/mrpt/mapper.h"
 
 namespace py = pybind11;
 

@@ -1,11 +1,11 @@
-#include "navigation/mapper.h"
+#include "navigation/mrpt/mapper.h"
 
 #include <mrpt/maps/COccupancyGridMap2D.h>
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/slam/CICP.h>
 
-#include "navigation/mrpt_grid.h"
-#include "navigation/mrpt_scan.h"
+#include "navigation/mrpt/mrpt_grid.h"
+#include "navigation/mrpt/mrpt_scan.h"
 
 namespace robot_control {
 namespace {

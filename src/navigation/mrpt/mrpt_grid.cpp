@@ -1,4 +1,4 @@
-#include "navigation/mrpt_grid.h"
+#include "navigation/mrpt/mrpt_grid.h"
 
 #include <cmath>
 

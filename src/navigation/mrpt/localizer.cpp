@@ -1,4 +1,4 @@
-#include "navigation/localizer.h"
+#include "navigation/mrpt/localizer.h"
 
 #include <mrpt/bayes/CParticleFilter.h>
 #include <mrpt/obs/CActionCollection.h>
@@ -13,8 +13,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "navigation/mrpt_grid.h"
-#include "navigation/mrpt_scan.h"
+#include "navigation/mrpt/mrpt_grid.h"
+#include "navigation/mrpt/mrpt_scan.h"
 
 namespace robot_control {
 namespace {
