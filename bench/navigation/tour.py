@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from robot_control.installed_files import share_file
 
 SCAN_PERIOD = 0.1  # s
 SPEED, TURN = 0.5, 1.0  # m/s, rad/s
+LASER = (0.05, 0.0, 0.0)  # m, m, rad: the laser of diffbot in base_link
 NEAR, FACING = 0.1, 0.1  # m, rad
 
 Corners = tuple[tuple[float, float], ...]
@@ -42,10 +44,11 @@ class Sight:
     scan: dict[str, Any]
 
 
-def new_loop(scene: str, seed: int, plant: dict[str, Any] | None = None) -> ClosedLoop:
-    """The robot with a laser of 10 Hz at the start of this scene."""
+def new_loop(scene: str | Path, seed: int, plant: dict[str, Any] | None = None) -> ClosedLoop:
+    """The robot with a laser of 10 Hz at the start of this scene, a shipped one or a file."""
     values = {**(plant or {}), "laser": {"rate": 1 / SCAN_PERIOD}}
-    return ClosedLoop({"mujoco_plant": values}, seed=seed, scene=share_file(f"urdf/scenes/{scene}.xml"))
+    path = share_file(f"urdf/scenes/{scene}.xml") if isinstance(scene, str) else scene
+    return ClosedLoop({"mujoco_plant": values}, seed=seed, scene=path)
 
 
 def look(loop: ClosedLoop, command: tuple[float, float]) -> Sight:
@@ -89,3 +92,10 @@ def drive(loop: ClosedLoop, corners: Iterable[tuple[float, float]], limit: float
             before, sight = sight, look(loop, command)
             way += float(np.hypot(*(sight.truth - before.truth)[:2]))
             yield sight
+
+
+def errors(sights: list[Sight], poses: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Poses (n, 3) less the true ones: m, m, rad within ±π."""
+    off = poses - np.array([sight.truth for sight in sights])
+    off[:, 2] = (off[:, 2] + math.pi) % (2 * math.pi) - math.pi
+    return off

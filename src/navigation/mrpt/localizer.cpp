@@ -62,7 +62,6 @@ mrpt::math::CMatrixDouble33 mrpt_matrix(const Eigen::Matrix3d& matrix) {
 mrpt::bayes::CParticleFilter filter() {
   mrpt::bayes::CParticleFilter result;
   result.m_options.PF_algorithm = mrpt::bayes::CParticleFilter::pfStandardProposal;
-  result.m_options.resamplingMethod = mrpt::bayes::CParticleFilter::prSystematic;
   result.m_options.adaptiveSampleSize = true;
   return result;
 }
