@@ -33,7 +33,7 @@ TOURS: dict[str, Corners] = {
 
 @dataclass
 class Sight:
-    """What is known at the time of one scan; poses are x [m], y [m], yaw [rad]."""
+    """A scan with the poses at its time: x [m], y [m], yaw [rad]."""
 
     time: float
     truth: NDArray[np.float64]

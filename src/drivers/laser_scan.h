@@ -1,6 +1,6 @@
 #pragma once
-/// One turn of a simulated laser scanner, in the axes of its link: ray i points along angle_min + i · angle_increment
-/// about z, counted from x towards y.
+/// A LaserScan is one turn of a simulated laser scanner in the axes of its link. Ray i points along
+/// angle_min + i · angle_increment about z, counted from x towards y.
 
 #include <string>
 #include <vector>

@@ -1,11 +1,9 @@
 /// The extension module robot_control._navigation: costmap, planner, guard and navigator in virtual time, for benchmarks.
 
-#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <array>
-
+#include "bindings/navigation/conversions.h"
 #include "navigation/doubt.h"
 #include "navigation/guard.h"
 #include "navigation/map_file.h"
@@ -16,38 +14,6 @@ namespace py = pybind11;
 
 namespace robot_control {
 namespace {
-
-using Pose = std::array<double, 3>;  // x m, y m, yaw rad
-
-PlanarPose planar_of(const Pose& pose) {
-  return {pose[0], pose[1], pose[2]};
-}
-
-/// Takes what ClosedLoop.scan gives.
-Scan scan_of(const py::dict& given) {
-  const auto number = [&](const char* name) { return given[name].cast<double>(); };
-  return {.angle_min = number("angle_min"),
-          .angle_increment = number("angle_increment"),
-          .range_min = number("range_min"),
-          .range_max = number("range_max"),
-          .ranges = given["ranges"].cast<std::vector<float>>()};
-}
-
-/// Takes origin x, origin y [m], resolution [m] and cells (rows, columns).
-Grid grid_of(const py::tuple& map) {
-  const auto cells = map[3].cast<py::array_t<std::int8_t, py::array::c_style>>();
-  return {.columns = static_cast<int>(cells.shape(1)),
-          .rows = static_cast<int>(cells.shape(0)),
-          .resolution = map[2].cast<double>(),
-          .origin_x = map[0].cast<double>(),
-          .origin_y = map[1].cast<double>(),
-          .cells = {cells.data(), cells.data() + cells.size()}};
-}
-
-py::tuple numpy_of(const Grid& grid) {
-  py::array_t<std::int8_t> cells({grid.rows, grid.columns}, grid.cells.data());
-  return py::make_tuple(grid.origin_x, grid.origin_y, grid.resolution, cells);
-}
 
 std::vector<Pose> poses_of(const Plan& plan) {
   std::vector<Pose> poses;

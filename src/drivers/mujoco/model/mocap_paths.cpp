@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view kPrefix = "path/";
 
-double distance(const std::array<double, 2>& from, const std::array<double, 2>& to) {
+double length_of(const std::array<double, 2>& from, const std::array<double, 2>& to) {
   return std::hypot(to[0] - from[0], to[1] - from[1]);
 }
 
@@ -27,7 +27,7 @@ MocapPaths::MocapPaths(const mjModel& model) {
     Path path{.mocap = body < 0 ? -1 : model.body_mocapid[body], .speed = data[0], .length = 0, .corners = {}};
     for (int i = 1; i + 1 < size; i += 2) path.corners.push_back({data[i], data[i + 1]});
     for (std::size_t i = 0; i < path.corners.size(); ++i)
-      path.length += distance(path.corners[i], path.corners[(i + 1) % path.corners.size()]);
+      path.length += length_of(path.corners[i], path.corners[(i + 1) % path.corners.size()]);
     if (path.mocap < 0 || size % 2 == 0 || !(path.length > 0) || !std::isfinite(path.length + path.speed)) {
       throw DriverError("<numeric name=\"" + name +
                         "\">: there is no such path. Name a body with mocap=\"true\" behind \"" + std::string(kPrefix) +
@@ -39,19 +39,19 @@ MocapPaths::MocapPaths(const mjModel& model) {
 
 void MocapPaths::place(double time, mjData& data) const noexcept {
   for (const Path& path : paths_) {
-    double way = std::fmod(path.speed * time, path.length);
-    if (way < 0) way += path.length;
+    double travelled = std::fmod(path.speed * time, path.length);
+    if (travelled < 0) travelled += path.length;
     std::size_t from = 0, to = 1;
     for (;; from = to, to = (to + 1) % path.corners.size()) {
-      const double side = distance(path.corners[from], path.corners[to]);
-      if (way <= side || to == 0) {
-        const double part = side > 0 ? std::min(way / side, 1.0) : 0;
+      const double side = length_of(path.corners[from], path.corners[to]);
+      if (travelled <= side || to == 0) {
+        const double part = side > 0 ? std::min(travelled / side, 1.0) : 0;
         for (std::size_t axis = 0; axis < 2; ++axis)
           data.mocap_pos[3 * static_cast<std::size_t>(path.mocap) + axis] =
               path.corners[from][axis] + part * (path.corners[to][axis] - path.corners[from][axis]);
         break;
       }
-      way -= side;
+      travelled -= side;
     }
   }
 }
