@@ -264,6 +264,7 @@ void bind_closed_loop(py::module_& module) {
       .def("e_stop", &ClosedLoop::e_stop)
       .def("e_stop_reset", &ClosedLoop::e_stop_reset)
       .def("heartbeat", &ClosedLoop::heartbeat)
+      .def("clearance", &ClosedLoop::clearance, py::arg("metres"))
       .def("reset", &ClosedLoop::reset)
       .def("set_parameters", &ClosedLoop::set_parameters, py::arg("request"))
       .def("inject_fault", &ClosedLoop::inject_fault, py::arg("component"), py::arg("kind"))

@@ -51,7 +51,7 @@ class ClosedLoop:
         loop.units                                           # every column of the log with its unit
 
     drive it        run, step, command, record
-    stop it         e_stop, e_stop_reset, heartbeat, set_pause, reset
+    stop it         e_stop, e_stop_reset, heartbeat, clearance, set_pause, reset
     change it       set_parameters, inject_fault
     move its legs   set_posture, set_gait, body_pose, foot_target, joint_targets
     keep a log      log_into, end_log
@@ -229,6 +229,10 @@ class ClosedLoop:
     def heartbeat(self) -> None:
         """Acts as a message on `heartbeat`."""
         self._loop.heartbeat()
+
+    def clearance(self, metres: float) -> None:
+        """Acts as a message on `clearance`: the free distance ahead, m."""
+        self._loop.clearance(metres)
 
     def step(self, cycles: int = 1) -> Log:
         """Runs `cycles` cycles; returns their log, arrays of shape (cycles,)."""

@@ -125,6 +125,11 @@ void ClosedLoop::heartbeat() noexcept {
   ++parts_->operator_input.heartbeats;
 }
 
+void ClosedLoop::clearance(double metres) noexcept {
+  ++parts_->operator_input.clearances;
+  parts_->operator_input.clearance = metres;
+}
+
 void ClosedLoop::step() noexcept {
   Parts& parts = *parts_;
   if (cycle() > 0) parts.hand_over();  // every node drops inputs that arrive before a run begins

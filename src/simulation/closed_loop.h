@@ -43,6 +43,9 @@ class ClosedLoop {
   void e_stop_reset() noexcept;
   void heartbeat() noexcept;
 
+  /// Acts like a message on clearance, m.
+  void clearance(double metres) noexcept;
+
   /// Runs one cycle. Time does not pass between two steps.
   void step() noexcept;
 

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "navigation/doubt.h"
 #include "navigation/house.h"
 
 namespace robot_control {
@@ -88,6 +89,19 @@ TEST(CostmapTest, AnUntruePoseLetsRaysPassWalls) {
     const Agreement seen = costmap.see(scan_of(map, kLeft), wrong, 1.0);
     EXPECT_GT(seen.contradicting, seen.rays / 8);
   }
+}
+
+TEST(DoubtTest, AnUntruePoseIsDoubtedAfterHalfASecondAndATrueOneTrustedAgain) {
+  const Grid map = two_rooms(0.8);
+  Costmap costmap = costmap_of(map);
+  Doubt doubt;
+  const PlanarPose wrong{kLeft.x + 0.5, kLeft.y, kLeft.yaw};
+  for (int i = 0; i < kDoubtful - 1; ++i) doubt.see(costmap.see(scan_of(map, kLeft), wrong, 1));
+  EXPECT_EQ(doubt.problem(), "");
+  doubt.see(costmap.see(scan_of(map, kLeft), wrong, 1));
+  EXPECT_THAT(doubt.problem(), HasSubstr("contradicts the map: of 360 rays"));
+  for (int i = 0; i < kDoubtful; ++i) doubt.see(costmap.see(scan_of(map, kLeft), kLeft, 1));
+  EXPECT_EQ(doubt.problem(), "");
 }
 
 TEST(PlannerTest, TheWayThroughADoorKeepsTheOutlineFree) {

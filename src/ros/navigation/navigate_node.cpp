@@ -10,6 +10,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "navigation/doubt.h"
 #include "navigation/footprint.h"
 #include "navigation/map_file.h"
 #include "navigation/smoothing.h"
@@ -23,10 +24,6 @@ namespace {
 
 constexpr double kPeriod = 0.1;         // s
 constexpr double kOldPlace = 1.0;       // s; a localisation is as slow as its scans
-constexpr int kDoubtful = 5;            // scans in a row; a person who passes a wall takes less
-constexpr double kContradicting = 0.15;  // share of rays that pass walls; 2° and 5 cm at 4 m: 3 to 5 % at door posts
-constexpr double kExplainedLeast = 0.2;  // share of rays that end at walls; boxes all around leave a third
-constexpr int kFewRays = 20;
 
 Footprint read_footprint(ros::NodeHandle& handle) {
   std::string urdf;
@@ -83,7 +80,7 @@ class NavigateNode {
     Grid grid{static_cast<int>(info.width), static_cast<int>(info.height), info.resolution,
               origin.position.x, origin.position.y, data};
     costmap_ = std::make_unique<Costmap>(std::move(grid), footprint_, unknown_is_free_);
-    doubts_ = 0;
+    doubt_ = Doubt();
   }
 
   /// Takes the newest scan into the costmap, and compares it with the map.
@@ -94,20 +91,9 @@ class NavigateNode {
     if (!sensor) return;
     Scan& scan = waiting_->scan;
     if (sensor->upside_down) scan.angle_min *= -1, scan.angle_increment *= -1;
-    const Agreement seen = costmap_->see(scan, sensor->pose, now());
+    doubt_.see(costmap_->see(scan, sensor->pose, now()));
     waiting_.reset();
     seen_at_ = time;
-    const bool bad = seen.rays >= kFewRays && (seen.contradicting > kContradicting * seen.rays ||
-                                               seen.explained < kExplainedLeast * seen.rays);
-    doubts_ = std::clamp(doubts_ + (bad ? 1 : -1), 0, kDoubtful);
-    doubtful_ = doubts_ == kDoubtful || (doubtful_ && doubts_ > 0);
-    if (bad) {
-      std::array<char, 200> text;
-      std::snprintf(text.data(), text.size(),
-                    "the scan contradicts the map: %d of %d rays pass its walls, %d end at them; is this the map of this "
-                    "place, and is the robot where it is taken to be?", seen.contradicting, seen.rays, seen.explained);
-      doubt_ = text.data();
-    }
   }
 
   /// Returns why nothing can be driven now, and sets the robot's place if it is known.
@@ -125,7 +111,7 @@ class NavigateNode {
       return text.data();
     }
     if ((time - seen_at_).toSec() > kOldPlace) return "tf does not give the place of the scans in the map: " + scan_problem_;
-    if (doubtful_) return doubt_;
+    if (!doubt_.problem().empty()) return doubt_.problem();
     return path_client_.connected() ? "" : "follow_path does not run: rosrun robot_control follow_path.py";
   }
 
@@ -190,6 +176,9 @@ class NavigateNode {
     const std::string& reason = navigator_.active() ? output_.reason : last_;
     status.level = reason.empty() ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN;
     status.message = reason.empty() ? name_of(navigator_.active() ? output_.state : NavigatorState::kIdle) : reason;
+    status.values.resize(1);
+    status.values[0].key = "goal";
+    status.values[0].value = name_of(navigator_.active() ? output_.state : last_.empty() ? NavigatorState::kIdle : NavigatorState::kFailed);
     diagnostics_.publish(array);
     if (!costmap_ || costmap_topic_.getNumSubscribers() == 0) return;
     costmap_->update(now());
@@ -233,9 +222,8 @@ class NavigateNode {
   std::string map_frame_, map_problem_ = "no map has come: start slam, or localization with a saved map";
   std::optional<StampedScan> waiting_;  // for tf
   ros::Time seen_at_, requested_;
-  std::string scan_problem_, doubt_, last_;
-  int doubts_ = 0;  // scans
-  bool doubtful_ = false;
+  std::string scan_problem_, last_;
+  Doubt doubt_;
   PlanarPose pose_;
   NavigatorOutput output_;
 };
