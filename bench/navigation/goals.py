@@ -5,6 +5,7 @@ from __future__ import annotations
 import heapq
 import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from robot_control.installed_files import share_file
 from bench.navigation.scene_map import Map, Obstacle, read_scene, true_map
 from bench.navigation.virtual import Lies, Place, Robot, Trip
 from bench.rows import bounded
-from bench.runs.runner import Runner
+from bench.runs.runner import Processes
 
 SCENES = ("room", "crowd")
 GOALS, FAULT_RUNS, PER_ROBOT = 100, 50, 5
@@ -26,7 +27,7 @@ TURNED = math.radians(30)
 
 def scene_of(name: str) -> tuple[list[Obstacle], Map]:
     """The obstacles of a scene and its true map."""
-    obstacles = read_scene(share_file(f"urdf/scenes/{name}.xml"))
+    obstacles = read_scene(Path(share_file(f"urdf/scenes/{name}.xml")))
     return obstacles, true_map(obstacles)
 
 
@@ -131,13 +132,13 @@ LIES = {
 }
 
 
-def goals(first: int, runs: int | None, say: Callable[[str], None], runner: Runner) -> list[dict[str, Any]]:
+def goals(first: int, runs: int, say: Callable[[str], None]) -> list[dict[str, Any]]:
     """Rows of `goals`; `runs`: goals in each scene."""
     rows = []
     for scene in SCENES:
-        count = math.ceil((runs or GOALS) / PER_ROBOT)
+        count = math.ceil(runs / PER_ROBOT)
         tasks = [(scene, seed) for seed in range(first, first + count)]
-        trips = [trip for found in runner.outcomes(drive_goals, tasks, say) for trip in found]
+        trips = [trip for found in Processes().outcomes(drive_goals, tasks, say) for trip in found]
         rows += _goal_rows(scene, trips, say)
     return rows
 
@@ -158,12 +159,12 @@ def _goal_rows(scene: str, trips: list[tuple[Trip, bool, float]], say: Callable[
     ]
 
 
-def faults(first: int, runs: int | None, say: Callable[[str], None], runner: Runner) -> list[dict[str, Any]]:
+def faults(first: int, runs: int, say: Callable[[str], None]) -> list[dict[str, Any]]:
     """Rows of `faults`; `runs`: drives with each lie."""
     rows = []
     for lie, cause in LIES.items():
-        tasks = [(lie, seed) for seed in range(first, first + (runs or FAULT_RUNS))]
-        drives = list(runner.outcomes(drive_lies, tasks, say))
+        tasks = [(lie, seed) for seed in range(first, first + runs)]
+        drives = list(Processes().outcomes(drive_lies, tasks, say))
         told = [trip for trip, since in drives if trip.doubts or trip.state != "reached" or lie == "other map"]
         unnamed = [trip for trip in told if cause not in trip.doubts]
         for trip in unnamed:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -60,12 +61,13 @@ class Robot:
     def __init__(self, scene: str, obstacles: list[Obstacle], known: Map, seed: int) -> None:
         self.loop: ClosedLoop = new_loop(scene, seed)
         self._obstacles = obstacles
-        self.navigation = Navigation(known, share_file("urdf/diffbot.urdf").read_text())
+        self.navigation = Navigation(known, Path(share_file("urdf/diffbot.urdf")).read_text())
         self.lies = Lies()
         self._scan: dict[str, Any] = {}
         self._moved = 0.0
         self._follower: Follower | None = None
-        self._state = self._advance((0.0, 0.0))
+        self._command = (0.0, 0.0)
+        self._state = self._advance(self._command)
 
     @property
     def place(self) -> Place:
