@@ -16,20 +16,22 @@
 #include "navigation/mrpt/mrpt_grid.h"
 #include "navigation/mrpt/mrpt_scan.h"
 
+#include <cstdlib>
 namespace robot_control {
 namespace {
+double E(const char* n,double d){const char* s=getenv(n);return s?atof(s):d;}
 
 using mrpt::poses::CPose2D;
 
-constexpr unsigned kMinParticles = 300, kMaxParticles = 20000;
+const unsigned kMinParticles = (unsigned)E("MINP",300);constexpr unsigned  kMaxParticles = 20000;
 constexpr std::size_t kGlobalParticles = 20000;
 constexpr double kFreeFrom = 0.7;          // probability from which a cell is free for a global start
-constexpr double kAtWall = 0.15;           // m: a point that near to a wall is explained by the map
-constexpr double kFits = 0.6;              // part of the points that must be explained
+const double kAtWall = E("AW",0.15);           // m: a point that near to a wall is explained by the map
+const double kFits = E("FITS",0.6);              // part of the points that must be explained
 constexpr double kSmoothing = 0.2;         // of each new part of explained points, per scan
 constexpr double kSmallSpread = 0.3;       // m, below which a search has found the place
 constexpr double kLargeSpread = 1.0;       // m, above which the place is lost
-constexpr double kMinStep = 0.005, kMinTurn = 0.005;  // m, rad: deviations that particles need to differ at all
+const double kMinStep = E("MS",0.005), kMinTurn = E("MT",0.005);  // m, rad: deviations that particles need to differ at all
 constexpr double kMapDeviation = 0.02;     // m: a wall lies anywhere in its cell, and the map has errors of its own
 constexpr double kHeadingDeviation = 0.005;  // rad, likewise
 
@@ -62,7 +64,7 @@ mrpt::math::CMatrixDouble33 mrpt_matrix(const Eigen::Matrix3d& matrix) {
 mrpt::bayes::CParticleFilter filter() {
   mrpt::bayes::CParticleFilter result;
   result.m_options.PF_algorithm = mrpt::bayes::CParticleFilter::pfStandardProposal;
-  result.m_options.adaptiveSampleSize = true;
+  result.m_options.adaptiveSampleSize = true; result.m_options.powFactor=E("POW",1);
   return result;
 }
 
@@ -154,8 +156,8 @@ Localizer::Localizer(const Grid& map, std::uint32_t seed) : parts_(std::make_uni
     throw std::invalid_argument("the map has no free cell, in which the robot could be");
   auto& likelihood = parts.map->likelihoodOptions;
   likelihood.likelihoodMethod = mrpt::maps::COccupancyGridMap2D::lmLikelihoodField_Thrun;
-  likelihood.LF_decimation = 10;
-  likelihood.LF_stdHit = 0.2f;
+  likelihood.LF_decimation = (unsigned)E("DEC",10);
+  likelihood.LF_stdHit = (float)E("STD",0.2); likelihood.LF_useSquareDist=E("SQ",0)>0; likelihood.LF_zRandom=(float)E("ZR",0.05);
   likelihood.LF_maxRange = 30;
   parts.particles.options.metricMap = parts.map;
   parts.particles.options.KLD_params.KLD_maxSampleSize = kMaxParticles;

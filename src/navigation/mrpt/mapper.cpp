@@ -113,6 +113,15 @@ PlanarPose Mapper::correction() const noexcept {
 double Mapper::matched() const noexcept {
   return parts_->matched;
 }
+bool Mapper::fits() const noexcept {
+  return parts_->matched >= kMinMatched;
+}
+std::string Mapper::reason() const {
+  if (fits()) return "";
+  return "the laser and the map agree in " + std::to_string(std::lround(100 * parts_->matched)) +
+         " % of the points, less than " + std::to_string(std::lround(100 * kMinMatched)) +
+         " %: drive back to where the map is known, or load it again";
+}
 Grid Mapper::grid() const {
   return grid_of(parts_->grid);
 }

@@ -9,6 +9,7 @@
 /// match, so that `odom` never jumps.
 
 #include <memory>
+#include <string>
 
 #include "navigation/grid.h"
 #include "navigation/scan.h"
@@ -36,6 +37,12 @@ class Mapper {
 
   /// Returns the part of the last matched scan's points that found one of the map; 1 before the first match.
   double matched() const noexcept;
+
+  /// Returns whether the last scan fits the map. One that does not changes nothing.
+  bool fits() const noexcept;
+
+  /// Returns why it does not, in one sentence; "" if it does.
+  std::string reason() const;
 
   /// Returns the map up to now; cells that no ray has touched are unknown.
   Grid grid() const;
