@@ -83,7 +83,7 @@ class Robot:
         self._moved += (abs(state["estimate_linear"]) + abs(state["estimate_angular"])) * STEP
         return state
 
-    def _believed(self) -> Place:
+    def _assumed(self) -> Place:
         return self.lies.place(self.place) if self.loop.time >= self.lies.since else self.place
 
     def _see(self) -> str:
@@ -91,7 +91,7 @@ class Robot:
         if not (lying and self.lies.frozen):
             self._scan = self.loop.scan()
         sensor = self.lies.sensor if lying else SENSOR
-        x, y, yaw = self._believed()
+        x, y, yaw = self._assumed()
         seen_from = (
             x + sensor[0] * math.cos(yaw) - sensor[1] * math.sin(yaw),
             y + sensor[0] * math.sin(yaw) + sensor[1] * math.cos(yaw),
@@ -127,7 +127,7 @@ class Robot:
         path = "none"
         while self.loop.time - begin < LONGEST:
             path = self._report(path)
-            state, reason, way, cancel = self.navigation.step(self.loop.time, self._problem, self._believed(), path)
+            state, reason, way, cancel = self.navigation.step(self.loop.time, self._problem, self._assumed(), path)
             if cancel:
                 self._follower, path = None, "none"
             if way is not None:
@@ -170,7 +170,7 @@ class Robot:
         self._command = (0.0, 0.0)
         if self._follower is not None and not self._follower.over:
             measured = Motion(self._state["estimate_linear"], self._state["estimate_angular"])
-            motion = self._follower.step(Pose(*self._believed()), measured, elapsed=STEP)
+            motion = self._follower.step(Pose(*self._assumed()), measured, elapsed=STEP)
             self._command = (motion.linear, motion.angular)
         self._state = self._advance(self._command)
 
