@@ -47,9 +47,7 @@ def shortest(known: Map, start: Place, goal: Place, radius: float = HALF_WIDTH) 
     """m of the shortest way of a circle over the map, in steps to 16 neighbours; infinite without one."""
     x0, y0, resolution, cells = known
     blocked = grown(cells == 100, radius / resolution)
-    begin, end = (
-        (int((place[1] - y0) / resolution), int((place[0] - x0) / resolution)) for place in (start, goal)
-    )
+    begin, end = ((int((place[1] - y0) / resolution), int((place[0] - x0) / resolution)) for place in (start, goal))
     blocked[begin] = blocked[end] = False
     steps = [(a, b) for a in range(-2, 3) for b in range(-2, 3) if math.gcd(a, b) == 1]
     best, queue = {begin: 0.0}, [(0.0, begin)]
@@ -164,7 +162,12 @@ def _goal_rows(scene: str, trips: list[tuple[Trip, bool, float]], say: Callable[
         bounded(f"{scene}: goals refused for a true reason", len(trips) - len(reached) - len(wrong), "", len(trips)),
         bounded(f"{scene}: ends beyond 5 cm or 3°", inexact, f"of {len(reached)}", 0),
         bounded(f"{scene}: touches of what stands", sum(trip.air <= 0 for trip, _, _ in trips), f"of {len(trips)}", 0),
-        bounded(f"{scene}: touches of carts, which stop for nothing", sum(trip.hit for trip, _, _ in trips), f"of {len(trips)}", 0),
+        bounded(
+            f"{scene}: touches of carts, which stop for nothing",
+            sum(trip.hit for trip, _, _ in trips),
+            f"of {len(trips)}",
+            0,
+        ),
         bounded(f"{scene}: way / shortest way", sum(a for a, _ in ways) / max(sum(b for _, b in ways), 1e-9), "", 1.15),
     ]
 

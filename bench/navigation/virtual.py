@@ -138,7 +138,10 @@ class Robot:
             self._until_next_scan(trip)
         self._stand(trip)
         x, y, yaw = self.place
-        trip.error, trip.turn_error = math.hypot(goal[0] - x, goal[1] - y), abs(math.remainder(goal[2] - yaw, 2 * math.pi))
+        trip.error, trip.turn_error = (
+            math.hypot(goal[0] - x, goal[1] - y),
+            abs(math.remainder(goal[2] - yaw, 2 * math.pi)),
+        )
         return trip
 
     def _stand(self, trip: Trip) -> None:

@@ -109,7 +109,16 @@ MAY_INCLUDE = {
     "navigation": {"files", "machine"},
     "navigation/mrpt": {"navigation"},
     "ros/navigation": {"navigation", "navigation/mrpt", "files"},
-    "main": {"ros", "ros/navigation", "configuration", "files", "robots", "rt", "drivers/factory", "simulation/machines"},
+    "main": {
+        "ros",
+        "ros/navigation",
+        "configuration",
+        "files",
+        "robots",
+        "rt",
+        "drivers/factory",
+        "simulation/machines",
+    },
 }
 ROS = re.compile(r"^(ros|tf2?|tf2_\w+|\w+_msgs|std_srvs|rosgraph_msgs|robot_control)/")
 """of headers that are included in angle brackets; those of src/ros are included in quotes"""
