@@ -24,6 +24,7 @@ from bench.navigation.tour import new_loop
 SPEED = 0.5  # m/s
 STEP, SCAN = 0.02, 5  # s between two steps of the law; such steps between two scans
 LONGEST = 240.0  # s for one goal
+STANDING = 10  # scans before and after it
 MOVING = 0.02  # m/s, rad/s
 SENSOR = (0.0, 0.0, 0.0)
 REACH = 2.0  # m: farther obstacles touch nothing
@@ -51,7 +52,8 @@ class Trip:
     planned: float = 0.0  # m
     error: float = math.inf  # m from the goal, at the end
     turn_error: float = math.inf  # rad
-    air: float = math.inf  # m between outline and obstacles, the least while the robot moved
+    air: float = math.inf  # m between outline and obstacles, the least that the robot's own motion left
+    hit: bool = False  # by an obstacle that moves on, whatever it meets
     doubts: set[str] = field(default_factory=set)
 
 
@@ -68,6 +70,7 @@ class Robot:
         self._follower: Follower | None = None
         self._command = (0.0, 0.0)
         self._state = self._advance(self._command)
+        self._before, self._problem = self.place, ""
 
     @property
     def place(self) -> Place:
@@ -80,7 +83,7 @@ class Robot:
         self._moved += (abs(state["estimate_linear"]) + abs(state["estimate_angular"])) * STEP
         return state
 
-    def _believed(self) -> Place:
+    def _assumed(self) -> Place:
         return self.lies.place(self.place) if self.loop.time >= self.lies.since else self.place
 
     def _see(self) -> str:
@@ -88,7 +91,7 @@ class Robot:
         if not (lying and self.lies.frozen):
             self._scan = self.loop.scan()
         sensor = self.lies.sensor if lying else SENSOR
-        x, y, yaw = self._believed()
+        x, y, yaw = self._assumed()
         seen_from = (
             x + sensor[0] * math.cos(yaw) - sensor[1] * math.sin(yaw),
             y + sensor[0] * math.sin(yaw) + sensor[1] * math.cos(yaw),
@@ -114,36 +117,41 @@ class Robot:
         return self._command[0], 0.0
 
     def drive(self, goal: Place) -> Trip:
-        """Begins the goal and returns at its end."""
+        """Begins the goal and returns at its end. A stop of before, by an obstacle that hit the robot, is reset."""
         trip = Trip()
+        self.loop.e_stop_reset()
+        self._stand(trip)
         begin, self._follower, self._command = self.loop.time, None, (0.0, 0.0)
         _, trip.planned, _ = self.navigation.plan(self.place, goal, self.loop.time)
         self.navigation.begin(goal, self.loop.time)
-        path, number = "none", 0
+        path = "none"
         while self.loop.time - begin < LONGEST:
-            if number % SCAN == 0:
-                problem = self._see()
-                trip.doubts |= {problem.split(":")[0]} - {""}
-                path = self._report(path)
-                state, reason, way, cancel = self.navigation.step(self.loop.time, problem, self._believed(), path)
-                if cancel:
-                    self._follower, path = None, "none"
-                if way is not None:
-                    self._follower, path = self._new_follower(way), "active"
-                if state in {"reached", "failed"}:
-                    trip.state, trip.reason = state, reason
-                    break
-            number += 1
-            self._follow()
-            self._note(trip)
-        self._follower = None
-        for _ in range(50):
-            self._command = (0.0, 0.0)
-            self._follow()
-            self._note(trip)
+            path = self._report(path)
+            state, reason, way, cancel = self.navigation.step(self.loop.time, self._problem, self._assumed(), path)
+            if cancel:
+                self._follower, path = None, "none"
+            if way is not None:
+                self._follower, path = self._new_follower(way), "active"
+            if state in {"reached", "failed"}:
+                trip.state, trip.reason = state, reason
+                break
+            self._until_next_scan(trip)
+        self._stand(trip)
         x, y, yaw = self.place
         trip.error, trip.turn_error = math.hypot(goal[0] - x, goal[1] - y), abs(math.remainder(goal[2] - yaw, 2 * math.pi))
         return trip
+
+    def _stand(self, trip: Trip) -> None:
+        self._follower = None
+        for _ in range(STANDING):
+            self._until_next_scan(trip)
+
+    def _until_next_scan(self, trip: Trip) -> None:
+        for _ in range(SCAN):
+            self._follow()
+            self._note(trip)
+        self._problem = self._see()
+        trip.doubts |= {self._problem.split(":")[0]} - {""}
 
     def _new_follower(self, way: list[Place]) -> Follower | None:
         try:
@@ -162,22 +170,21 @@ class Robot:
         self._command = (0.0, 0.0)
         if self._follower is not None and not self._follower.over:
             measured = Motion(self._state["estimate_linear"], self._state["estimate_angular"])
-            motion = self._follower.step(Pose(*self._believed()), measured, elapsed=STEP)
+            motion = self._follower.step(Pose(*self._assumed()), measured, elapsed=STEP)
             self._command = (motion.linear, motion.angular)
         self._state = self._advance(self._command)
 
     def _note(self, trip: Trip) -> None:
-        speed = abs(self._state["truth_linear"])
-        trip.way += speed * STEP
-        if speed > MOVING or abs(self._state["truth_angular"]) > MOVING:
-            trip.air = min(trip.air, self.air())
-
-    def air(self) -> float:
-        """m between the outline and the nearest obstacle."""
-        return self.air_at(self.place)
+        before, self._before = self._before, self.place
+        trip.way += abs(self._state["truth_linear"]) * STEP
+        air = self.air_at(self.place)
+        if air < self.air_at(before):  # the robot came nearer to where the obstacles are now
+            trip.air = min(trip.air, air)
+        elif air <= 0:
+            trip.hit = True
 
     def air_at(self, place: Place, *, standing: bool = False) -> float:
-        """The same of a robot at this place; `standing`: of obstacles that stand."""
+        """m between the outline at this place and the nearest obstacle; `standing`: of those that stand."""
         x, y, yaw = place
         points: list[NDArray[np.float64]] = []
         for item in self._obstacles:

@@ -141,7 +141,7 @@ std::string grid_problem(double columns, double rows, double resolution, double 
     return "origin is (" + text_of(origin_x) + ", " + text_of(origin_y) + ") m: it must be within 1e+06 m";
   }
   if (!(std::abs(origin_yaw) <= 1e-6)) {
-    return "origin is turned by " + text_of(origin_yaw) + " rad: only 0 is taken; turn the picture instead";
+    return "origin is turned by " + text_of(std::round(origin_yaw * 1000) / 1000) + " rad: only 0 is taken; turn the picture instead";
   }
   return "";
 }

@@ -73,9 +73,19 @@ std::vector<float> costs_to(const Costmap& costmap, Cell goal) {
 class Search {
  public:
   Search(const Costmap& costmap, const PlanarPose& start, const PlanarPose& goal)
-      : costmap_(costmap), grid_(costmap.grid()), goal_(state(grid_.cell_at(goal.x, goal.y), sector(goal.yaw))),
-        to_goal_(costs_to(costmap, grid_.cell_at(goal.x, goal.y))), start_air_(costmap.distance(grid_.cell_at(start.x, start.y))) {
-    reach(state(grid_.cell_at(start.x, start.y), sector(start.yaw)), 0, 0);
+      : costmap_(costmap),
+        grid_(costmap.grid()),
+        goal_(goal),
+        goal_cell_(grid_.cell_at(goal.x, goal.y)),
+        to_goal_(costs_to(costmap, goal_cell_)),
+        start_air_(costmap.distance(grid_.cell_at(start.x, start.y))) {
+    // The turn from the start's own heading to that of a sector may be free where the nearest sector is not.
+    const Cell cell = grid_.cell_at(start.x, start.y);
+    for (int i = 0; i < kSectors; ++i) {
+      const double turn = std::abs(std::remainder(heading_of(i) - start.yaw, 2 * M_PI));
+      const bool possible = turn_is_free(costmap, {start.x, start.y}, start.yaw, heading_of(i));
+      if (possible || i == sector(start.yaw)) reach(state(cell, i), turn / (2 * M_PI) * kSectors * kSectorCost, kStart);
+    }
   }
 
   /// Returns the states from start to goal; empty if there is no way.
@@ -86,13 +96,16 @@ class Search {
       Node& node = nodes_[at];
       if (node.closed) continue;
       node.closed = true;
-      if (at == goal_) return way();
+      const double yaw = heading_of(static_cast<int>(at % kSectors));
+      if (cell_of(at) == goal_cell_ && turn_is_free(costmap_, {goal_.x, goal_.y}, yaw, goal_.yaw)) return way(at);
       expand(at, node.cost);
     }
     return {};
   }
 
  private:
+  static constexpr std::uint64_t kStart = std::numeric_limits<std::uint64_t>::max();
+
   struct Node {
     float cost = kUnreached;
     bool closed = false;
@@ -151,19 +164,17 @@ class Search {
     }
   }
 
-  std::vector<PlanarPose> way() {
+  std::vector<PlanarPose> way(std::uint64_t end) {
     std::vector<PlanarPose> poses;
-    for (std::uint64_t at = goal_;; at = nodes_[at].from) {
-      poses.push_back(pose_of(at));
-      if (nodes_[at].cost == 0) break;
-    }
+    for (std::uint64_t at = end; at != kStart; at = nodes_[at].from) poses.push_back(pose_of(at));
     std::reverse(poses.begin(), poses.end());
     return poses;
   }
 
   const Costmap& costmap_;
   const Grid& grid_;
-  std::uint64_t goal_;
+  PlanarPose goal_;
+  Cell goal_cell_;
   std::vector<float> to_goal_;
   double start_air_;
   std::unordered_map<std::uint64_t, Node> nodes_;
