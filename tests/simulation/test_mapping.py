@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from robot_control.installed_files import share_file
 
-from bench.navigation.outline import distances, outline
+from bench.navigation.moved import distances
+from bench.navigation.scene_map import read_scene
 from bench.navigation.tour import LASER, drive, errors, new_loop
 
 mrpt = pytest.importorskip("robot_control._mrpt", reason="built without MRPT: scripts/setup --navigation")
@@ -43,7 +44,7 @@ def test_the_map_shows_the_true_walls_and_the_pose_in_it(sights):
     rows, columns = np.nonzero(cells >= 65)
     walls = np.column_stack((x + (columns + 0.5) * resolution, y + (rows + 0.5) * resolution))
     assert len(walls) > 200
-    away = distances(outline(Path(share_file("urdf/scenes/room.xml"))), walls)
+    away = distances(read_scene(Path(share_file("urdf/scenes/room.xml"))), walls)
     assert np.sqrt(np.mean(away**2)) < 0.05
     assert np.mean(away > 0.1) < 0.05
 

@@ -19,7 +19,8 @@ from std_srvs.srv import Empty
 from system_support import Program, RobotTestCase, again_after_a_stall, wait_for
 from tf2_msgs.msg import TFMessage
 
-MISSING = "" if roslib.packages.find_node("robot_control", "slam") else "slam was built without MRPT: scripts/setup --navigation"
+BUILT = roslib.packages.find_node("robot_control", "slam")
+MISSING = "" if BUILT else "slam was built without MRPT: scripts/setup --navigation"
 
 
 class Latest:

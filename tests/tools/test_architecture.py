@@ -109,7 +109,16 @@ MAY_INCLUDE = {
     "navigation": {"files", "machine"},
     "navigation/mrpt": {"navigation"},
     "ros/navigation": {"navigation", "navigation/mrpt", "files"},
-    "main": {"ros", "ros/navigation", "configuration", "files", "robots", "rt", "drivers/factory", "simulation/machines"},
+    "main": {
+        "ros",
+        "ros/navigation",
+        "configuration",
+        "files",
+        "robots",
+        "rt",
+        "drivers/factory",
+        "simulation/machines",
+    },
 }
 ROS = re.compile(r"^(ros|tf2?|tf2_\w+|\w+_msgs|std_srvs|rosgraph_msgs|robot_control)/")
 """of headers that are included in angle brackets; those of src/ros are included in quotes"""
@@ -255,6 +264,14 @@ def test_only_ros_and_main_see_ros():
     def rule(path):
         if folder(path) not in ("ros", "ros/navigation", "main"):
             yield from (name for name in foreign_includes(path) if ROS.match(name))
+
+    assert violations(rule) == []
+
+
+def test_only_mapping_and_localisation_see_mrpt():
+    def rule(path):
+        if folder(path) != "navigation/mrpt":
+            yield from (name for name in foreign_includes(path) if name.startswith("mrpt/"))
 
     assert violations(rule) == []
 

@@ -23,23 +23,23 @@ using mrpt::poses::CPose2D;
 
 constexpr unsigned kMinParticles = 300, kMaxParticles = 20000;
 constexpr std::size_t kGlobalParticles = 20000;
-constexpr double kFreeFrom = 0.7;          // probability from which a cell is free for a global start
-constexpr double kAtWall = 0.1;            // m: a point that near to a wall is explained by the map
-constexpr double kFits = 0.75;             // part of the points that must be explained; a fifth of them may be moved
-constexpr double kSmoothing = 0.05;        // of each new part of explained points, per scan: 2 s at 10 Hz
-constexpr double kSmallSpread = 0.3;       // m, below which a search has found the place
-constexpr int kProof = 60;                 // scans within which a place that a search found must fit, else it goes on
-constexpr double kLargeSpread = 1.0;       // m, above which the place is lost
+constexpr double kFreeFrom = 0.7;     // probability from which a cell is free for a global start
+constexpr double kAtWall = 0.1;       // m: a point that near to a wall is explained by the map
+constexpr double kFits = 0.75;        // part of the points that must be explained; a fifth of them may be moved
+constexpr double kSmoothing = 0.05;   // of each new part of explained points, per scan: 2 s at 10 Hz
+constexpr double kSmallSpread = 0.3;  // m, below which a search has found the place
+constexpr int kProof = 60;            // scans within which a place that a search found must fit, else it goes on
+constexpr double kLargeSpread = 1.0;  // m, above which the place is lost
 // m, rad, between two updates: wheels that slip do more than the odometry knows.
 constexpr double kMinStep = 0.02, kMinTurn = 0.02;
-constexpr double kMapDeviation = 0.02;     // m: a wall lies anywhere in its cell, and the map has errors of its own
+constexpr double kMapDeviation = 0.02;       // m: a wall lies anywhere in its cell, and the map has errors of its own
 constexpr double kHeadingDeviation = 0.005;  // rad, likewise
 
 /// Returns the positive part of a symmetric matrix, with each variance at least that of `least`.
 Eigen::Matrix3d at_least(const Eigen::Matrix3d& matrix, const Eigen::Vector3d& least) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts((matrix + matrix.transpose()) / 2);
-  Eigen::Matrix3d result = parts.eigenvectors() * parts.eigenvalues().cwiseMax(0).asDiagonal() *
-                           parts.eigenvectors().transpose();
+  Eigen::Matrix3d result =
+      parts.eigenvectors() * parts.eigenvalues().cwiseMax(0).asDiagonal() * parts.eigenvectors().transpose();
   result.diagonal() += least.cwiseProduct(least);
   return result;
 }
@@ -91,14 +91,14 @@ struct Localizer::Parts {
   mrpt::slam::CMonteCarloLocalization2D particles{1};
   mrpt::bayes::CParticleFilter pf = filter();
   Localization state = Localization::kNoPose;
-  UncertainPose updated;   // the odometry at the last update
-  PlanarPose odometry;     // at the last scan
-  UncertainPose pose;      // of the particles, at the last update
-  bool first = true;       // the next scan updates
-  double explained = 0;    // smoothed
+  UncertainPose updated;  // the odometry at the last update
+  PlanarPose odometry;    // at the last scan
+  UncertainPose pose;     // of the particles, at the last update
+  bool first = true;      // the next scan updates
+  double explained = 0;   // smoothed
   double last_explained = 0;
-  double spread = 0;       // m
-  int settled = 0;         // scans since the particles of a search came together
+  double spread = 0;  // m
+  int settled = 0;    // scans since the particles of a search came together
 
   void measure_spread() {
     const auto [covariance, mean] = particles.getCovarianceAndMean();
@@ -124,13 +124,13 @@ struct Localizer::Parts {
       const double angle = laser.yaw + scan.angle(ray);
       const double x = laser.x + scan.ranges[ray] * std::cos(angle), y = laser.y + scan.ranges[ray] * std::sin(angle);
       ++hits;
-      near += walls.squareDistanceToClosestCorrespondence(static_cast<float>(x), static_cast<float>(y)) <
-              kAtWall * kAtWall;
+      near +=
+          walls.squareDistanceToClosestCorrespondence(static_cast<float>(x), static_cast<float>(y)) < kAtWall * kAtWall;
     }
     return hits == 0 ? 0 : static_cast<double>(near) / hits;
   }
 
-  void judge() {
+  void update_state() {
     const bool fits = explained > kFits;
     if (state == Localization::kSearching) {
       settled = spread < kSmallSpread ? settled + 1 : 0;
@@ -208,7 +208,7 @@ bool Localizer::update(const Scan& scan, const PlanarPose& sensor, const Uncerta
   parts.explained += kSmoothing * (parts.last_explained - parts.explained);
   const bool updated = parts.first || moved;
   parts.first = false;
-  parts.judge();
+  parts.update_state();
   return updated;
 }
 
