@@ -52,8 +52,8 @@ class Trip:
     planned: float = 0.0  # m
     error: float = math.inf  # m from the goal, at the end
     turn_error: float = math.inf  # rad
-    air: float = math.inf  # m between outline and obstacles, the least that the robot's own motion left
-    hit: bool = False  # by an obstacle that moves on, whatever it meets
+    air: float = math.inf  # m between outline and what stands, the least
+    hit: bool = False  # an obstacle that moves on, whatever it meets, touched the outline
     doubts: set[str] = field(default_factory=set)
 
 
@@ -70,7 +70,7 @@ class Robot:
         self._follower: Follower | None = None
         self._command = (0.0, 0.0)
         self._state = self._advance(self._command)
-        self._before, self._problem = self.place, ""
+        self._problem = ""
 
     @property
     def place(self) -> Place:
@@ -175,20 +175,16 @@ class Robot:
         self._state = self._advance(self._command)
 
     def _note(self, trip: Trip) -> None:
-        before, self._before = self._before, self.place
         trip.way += abs(self._state["truth_linear"]) * STEP
-        air = self.air_at(self.place)
-        if air < self.air_at(before):  # the robot came nearer to where the obstacles are now
-            trip.air = min(trip.air, air)
-        elif air <= 0:
-            trip.hit = True
+        trip.air = min(trip.air, self.air_at(self.place, moving=False))
+        trip.hit |= self.air_at(self.place, moving=True) <= 0
 
-    def air_at(self, place: Place, *, standing: bool = False) -> float:
-        """m between the outline at this place and the nearest obstacle; `standing`: of those that stand."""
+    def air_at(self, place: Place, *, moving: bool) -> float:
+        """m between the outline at this place and the nearest obstacle; `moving`: of those that move, or of those that stand."""
         x, y, yaw = place
         points: list[NDArray[np.float64]] = []
         for item in self._obstacles:
-            if standing and item.path:
+            if moving != bool(item.path):
                 continue
             at = item.at(self.loop.time)
             if max(abs(at[0] - x) - item.half_x, abs(at[1] - y) - (item.half_y or item.half_x)) < REACH:

@@ -2,6 +2,7 @@
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <nav_msgs/OccupancyGrid.h>
+#include <robot_control/LocalizationState.h>
 #include <ros/ros.h>
 #include <std_srvs/Empty.h>
 
@@ -50,6 +51,8 @@ class NavigateNode {
     map_frame_ = own.param("map_frame", std::string("map"));
     if (!(speed_ > 0 && speed_ <= 10)) throw std::runtime_error("~speed must be above 0 and at most 10 m/s");
     map_ = handle_.subscribe("map", 1, &NavigateNode::receive_map, this);
+    localized_ = handle_.subscribe<LocalizationState>(
+        "localization_state", 1, [this](const LocalizationState::ConstPtr& message) { localization_ = message; });
     costmap_topic_ = handle_.advertise<nav_msgs::OccupancyGrid>("costmap", 1, true);
     diagnostics_ = handle_.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1);
     clear_ = handle_.advertiseService("clear_costmaps", &NavigateNode::clear, this);
@@ -100,6 +103,9 @@ class NavigateNode {
   std::string problem(const ros::Time& time) {
     if (!costmap_) return map_problem_;
     if (const std::string why = guard_.problem(); !why.empty()) return why;
+    if (localization_ && localization_->state != "localized") {
+      return "the robot is not localised: " + localization_->state + ": " + localization_->reason;
+    }
     std::string why;
     const auto place = frames_.lookup(map_frame_, guard_.odometry_frames().second, ros::Time(), why);
     if (!place) return "the robot is not localised: " + why;
@@ -212,7 +218,8 @@ class NavigateNode {
   Navigator navigator_;
   std::unique_ptr<Costmap> costmap_;
   GoalServers servers_;
-  ros::Subscriber map_;
+  ros::Subscriber map_, localized_;
+  LocalizationState::ConstPtr localization_;
   ros::Publisher costmap_topic_, diagnostics_;
   ros::ServiceServer clear_;
   ros::WallTimer timer_, seconds_;
