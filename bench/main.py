@@ -281,7 +281,8 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     which = f"of {', '.join(NAMES)} (default: {', '.join(MEASURED)}){parts}"
     parser.add_argument("names", nargs="*", metavar="NAME", help=which)
     seeds = (
-        "campaign, devices, replay, limiter, release, bags, odometry, hostile, tuning, blackbox, processes, legs, fleet, navigation"
+        "campaign, devices, replay, limiter, release, bags, odometry, hostile, tuning, blackbox, processes, legs, "
+        "fleet, navigation"
     )
     parser.add_argument("--first", type=_whole(0), default=0, help=f"{seeds}: first seed")
     parser.add_argument("--runs", type=_whole(1), help=f"{seeds}: number of seeds")

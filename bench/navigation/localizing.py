@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import random
 import tempfile
 from collections.abc import Callable
 from dataclasses import replace
@@ -13,12 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 from robot_control._mrpt import Localizer
 
-from bench.navigation.mapping import build_map
-from bench.navigation.outline import partly_moved
+from bench.navigation.mapping import build_map, text_of
+from bench.navigation.moved import partly_moved
+from bench.navigation.scene_map import Map
 from bench.navigation.tour import LASER, SCAN_PERIOD, TOURS, Sight, drive, errors, new_loop
 from bench.rows import bounded
 
 Say = Callable[[str], None]
+Followed = tuple[str, tuple[float, float, float], NDArray[np.float64]]
+"""state, pose (x m, y m, yaw rad) and covariance"""
 SCENE = "room"
 WAY = 100.0  # m
 DRIVES = 10
@@ -53,7 +55,7 @@ def record(variant: str, seed: int, folder: Path) -> list[Sight]:
     return list(drive(new_loop(scene, seed, VARIANTS[variant]), corners * 3, WAY))
 
 
-def follow(localizer: Any, sights: list[Sight]) -> list[tuple[str, Any, Any]]:
+def follow(localizer: Localizer, sights: list[Sight]) -> list[Followed]:
     """State, pose and covariance at each scan."""
     result = []
     for sight in sights:
@@ -62,7 +64,7 @@ def follow(localizer: Any, sights: list[Sight]) -> list[tuple[str, Any, Any]]:
     return result
 
 
-def judge_drive(grid: Any, sights: list[Sight], seed: int) -> dict[str, float]:
+def judge_drive(grid: Map, sights: list[Sight], seed: int) -> dict[str, float]:
     """Errors, and how true the ellipse is."""
     localizer = Localizer(grid, seed)
     localizer.set_pose(sights[0].truth, np.diag([0.01, 0.01, 0.003]))
@@ -78,12 +80,12 @@ def judge_drive(grid: Any, sights: list[Sight], seed: int) -> dict[str, float]:
     }
 
 
-def kidnapped(grid: Any, sights: list[Sight], seed: int) -> float:
+def kidnapped(grid: Map, sights: list[Sight], seed: int) -> float:
     """The time [s] after which a robot that was carried elsewhere is called lost."""
-    numbers = random.Random(seed)
+    numbers = np.random.default_rng(seed)
     count = round(2 * NOTICED / SCAN_PERIOD)
     while True:
-        before, after = numbers.randrange(100, len(sights) - count), numbers.randrange(100, len(sights) - count)
+        before, after = (int(number) for number in numbers.integers(100, len(sights) - count, 2))
         if np.hypot(*(sights[before].truth - sights[after].truth)[:2]) > FAR:
             break
     localizer = Localizer(grid, seed)
@@ -98,10 +100,10 @@ def kidnapped(grid: Any, sights: list[Sight], seed: int) -> float:
     return SCAN_PERIOD * (states.index("lost") if "lost" in states else count)
 
 
-def global_start(grid: Any, sights: list[Sight], seed: int) -> tuple[bool, bool]:
+def global_start(grid: Map, sights: list[Sight], seed: int) -> tuple[bool, bool]:
     """Whether the place is found while the robot drives, and whether a wrong one is believed."""
     count = round(SEARCH / SCAN_PERIOD)
-    begin = random.Random(seed).randrange(len(sights) - count)
+    begin = int(np.random.default_rng(seed).integers(len(sights) - count))
     localizer = Localizer(grid, seed)
     localizer.search()
     part = sights[begin : begin + count]
@@ -120,7 +122,7 @@ def rows_of(first: int, runs: int, say: Say) -> list[dict[str, Any]]:
             for seed in range(first + 1, first + 1 + runs):
                 sights = record(variant, seed, Path(folder))
                 results.append(judge_drive(grid, sights, seed))
-                say(f"{variant}, seed {seed}: " + ", ".join(f"{key} {value:.3g}" for key, value in results[-1].items()))
+                say(f"{variant}, seed {seed}: {text_of(results[-1])}")
                 drives += [sights] if variant == "as mapped" else []
             worst = {key: max(result[key] for result in results) for key in results[0]}
             rows += [

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from robot_control._mrpt import Mapper
 from robot_control.installed_files import share_file
 
-from bench.navigation.outline import distances, outline
+from bench.navigation.moved import distances
+from bench.navigation.scene_map import Map, read_scene
 from bench.navigation.tour import LASER, SCAN_PERIOD, TOURS, Sight, drive, errors, new_loop
 from bench.rows import bounded
 
@@ -21,7 +22,7 @@ OCCUPIED = 65  # %
 RUNS = 2
 
 
-def build_map(sights: list[Sight]) -> tuple[Any, NDArray[np.float64], float]:
+def build_map(sights: list[Sight]) -> tuple[Map, NDArray[np.float64], float]:
     """The map of these scans, the poses (n, 3) in it and the time [s] that it took."""
     mapper, poses = Mapper(), []
     begin = time.process_time()
@@ -31,18 +32,23 @@ def build_map(sights: list[Sight]) -> tuple[Any, NDArray[np.float64], float]:
     return mapper.map, np.array(poses), time.process_time() - begin
 
 
-def occupied_points(grid: Any) -> NDArray[np.float64]:
+def occupied_points(grid: Map) -> NDArray[np.float64]:
     """The middles (n, 2) [m] of the occupied cells."""
     x, y, resolution, cells = grid
     rows, columns = np.nonzero(cells >= OCCUPIED)
     return np.column_stack((x + (columns + 0.5) * resolution, y + (rows + 0.5) * resolution))
 
 
+def text_of(figures: dict[str, float]) -> str:
+    """Returns "walls 0.02, pose 0.01"."""
+    return ", ".join(f"{key} {value:.3g}" for key, value in figures.items())
+
+
 def judge(scene: str, seed: int) -> dict[str, float]:
     """One tour: m and parts."""
     sights = list(drive(new_loop(scene, seed), TOURS[scene]))
     grid, poses, seconds = build_map(sights)
-    off = distances(outline(Path(share_file(f"urdf/scenes/{scene}.xml"))), occupied_points(grid))
+    off = distances(read_scene(Path(share_file(f"urdf/scenes/{scene}.xml"))), occupied_points(grid))
     error = np.hypot(*errors(sights, poses)[:, :2].T)
     odometry = np.hypot(*errors(sights, np.array([sight.odometry for sight in sights]))[:, :2].T)
     return {
@@ -62,7 +68,7 @@ def rows_of(first: int, runs: int, say: Say) -> list[dict[str, Any]]:
         results = []
         for seed in range(first, first + runs):
             results.append(judge(scene, seed))
-            say(f"map of {scene}, seed {seed}: " + ", ".join(f"{key} {value:.3g}" for key, value in results[-1].items()))
+            say(f"map of {scene}, seed {seed}: {text_of(results[-1])}")
         worst = {key: max(result[key] for result in results) for key in results[0]}
         over_odometry = max(result["pose"] / result["odometry"] for result in results)
         rows += [

@@ -98,4 +98,4 @@ def errors(sights: list[Sight], poses: NDArray[np.float64]) -> NDArray[np.float6
     """Poses (n, 3) less the true ones: m, m, rad within ±π."""
     off = poses - np.array([sight.truth for sight in sights])
     off[:, 2] = (off[:, 2] + math.pi) % (2 * math.pi) - math.pi
-    return off
+    return np.asarray(off)

@@ -305,7 +305,7 @@ class ClosedLoop:
             raise RuntimeError(f"{what} cannot be called from the command function of a run")
 
     def scan(self) -> dict[str, Any]:
-        """Measures with the laser of `mujoco_plant.laser` in the last cycle. The plant publishes the same bits on `scan`.
+        """Measures with the laser (`mujoco_plant.laser`) in the last cycle, with the bits that the plant publishes.
 
         Returns:
             `ranges`, float32 array of shape (rays,), m: +inf where nothing came back, -inf nearer than `range_min`.

@@ -268,6 +268,14 @@ def test_only_ros_and_main_see_ros():
     assert violations(rule) == []
 
 
+def test_only_mapping_and_localisation_see_mrpt():
+    def rule(path):
+        if folder(path) != "navigation/mrpt":
+            yield from (name for name in foreign_includes(path) if name.startswith("mrpt/"))
+
+    assert violations(rule) == []
+
+
 def test_only_its_driver_sees_mujoco():
     def rule(path):
         if folder(path) != "drivers/mujoco":

@@ -33,8 +33,8 @@
 /// the state itself. `start` removes all injected faults.
 ///
 /// The sensors are encoders at all joints, gyro and accelerometer at the IMU, and an e-stop button, which only an
-/// injected fault presses. The parameters can add a laser scanner (laser.h). They can also add a battery (battery.h) that feeds all
-/// motors, and the ground's forces (wheel_contacts.h; body_contacts.h for a machine without wheels).
+/// injected fault presses. The parameters can add a laser scanner (laser.h). They can also add a battery (battery.h)
+/// that feeds all motors, and the ground's forces (wheel_contacts.h; body_contacts.h for a machine without wheels).
 
 #include <array>
 #include <memory>

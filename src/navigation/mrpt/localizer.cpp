@@ -16,30 +16,30 @@
 #include "navigation/mrpt/mrpt_grid.h"
 #include "navigation/mrpt/mrpt_scan.h"
 
-#include <cstdlib>
 namespace robot_control {
 namespace {
-double E(const char* n,double d){const char* s=getenv(n);return s?atof(s):d;}
 
 using mrpt::poses::CPose2D;
 
-const unsigned kMinParticles = (unsigned)E("MINP",300);constexpr unsigned  kMaxParticles = 20000;
+constexpr unsigned kMinParticles = 300, kMaxParticles = 20000;
 constexpr std::size_t kGlobalParticles = 20000;
-constexpr double kFreeFrom = 0.7;          // probability from which a cell is free for a global start
-const double kAtWall = E("AW",0.15);           // m: a point that near to a wall is explained by the map
-const double kFits = E("FITS",0.6);              // part of the points that must be explained
-constexpr double kSmoothing = 0.2;         // of each new part of explained points, per scan
-constexpr double kSmallSpread = 0.3;       // m, below which a search has found the place
-constexpr double kLargeSpread = 1.0;       // m, above which the place is lost
-const double kMinStep = E("MS",0.005), kMinTurn = E("MT",0.005);  // m, rad: deviations that particles need to differ at all
-constexpr double kMapDeviation = 0.02;     // m: a wall lies anywhere in its cell, and the map has errors of its own
+constexpr double kFreeFrom = 0.7;     // probability from which a cell is free for a global start
+constexpr double kAtWall = 0.1;       // m: a point that near to a wall is explained by the map
+constexpr double kFits = 0.75;        // part of the points that must be explained; a fifth of them may be moved
+constexpr double kSmoothing = 0.05;   // of each new part of explained points, per scan: 2 s at 10 Hz
+constexpr double kSmallSpread = 0.3;  // m, below which a search has found the place
+constexpr int kProof = 60;            // scans within which a place that a search found must fit, else it goes on
+constexpr double kLargeSpread = 1.0;  // m, above which the place is lost
+// m, rad, between two updates: wheels that slip do more than the odometry knows.
+constexpr double kMinStep = 0.02, kMinTurn = 0.02;
+constexpr double kMapDeviation = 0.02;       // m: a wall lies anywhere in its cell, and the map has errors of its own
 constexpr double kHeadingDeviation = 0.005;  // rad, likewise
 
 /// Returns the positive part of a symmetric matrix, with each variance at least that of `least`.
 Eigen::Matrix3d at_least(const Eigen::Matrix3d& matrix, const Eigen::Vector3d& least) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts((matrix + matrix.transpose()) / 2);
-  Eigen::Matrix3d result = parts.eigenvectors() * parts.eigenvalues().cwiseMax(0).asDiagonal() *
-                           parts.eigenvectors().transpose();
+  Eigen::Matrix3d result =
+      parts.eigenvectors() * parts.eigenvalues().cwiseMax(0).asDiagonal() * parts.eigenvectors().transpose();
   result.diagonal() += least.cwiseProduct(least);
   return result;
 }
@@ -64,8 +64,18 @@ mrpt::math::CMatrixDouble33 mrpt_matrix(const Eigen::Matrix3d& matrix) {
 mrpt::bayes::CParticleFilter filter() {
   mrpt::bayes::CParticleFilter result;
   result.m_options.PF_algorithm = mrpt::bayes::CParticleFilter::pfStandardProposal;
-  result.m_options.adaptiveSampleSize = true; result.m_options.powFactor=E("POW",1);
+  result.m_options.adaptiveSampleSize = true;
   return result;
+}
+
+/// Returns the map with the likelihood of a range whose deviation is `deviation` m.
+std::shared_ptr<mrpt::maps::COccupancyGridMap2D> likelihood_field(const Grid& grid, float deviation) {
+  auto map = std::make_shared<mrpt::maps::COccupancyGridMap2D>(mrpt_grid(grid));
+  map->likelihoodOptions.likelihoodMethod = mrpt::maps::COccupancyGridMap2D::lmLikelihoodField_Thrun;
+  map->likelihoodOptions.LF_decimation = 10;
+  map->likelihoodOptions.LF_stdHit = deviation;
+  map->likelihoodOptions.LF_maxRange = 30;
+  return map;
 }
 
 }  // namespace
@@ -76,18 +86,19 @@ const char* name_of(Localization state) noexcept {
 }
 
 struct Localizer::Parts {
-  std::shared_ptr<mrpt::maps::COccupancyGridMap2D> map;
+  std::shared_ptr<mrpt::maps::COccupancyGridMap2D> map, wide;  // with a likelihood for tracking, and for a search
   mrpt::maps::CSimplePointsMap walls;
   mrpt::slam::CMonteCarloLocalization2D particles{1};
   mrpt::bayes::CParticleFilter pf = filter();
   Localization state = Localization::kNoPose;
-  UncertainPose updated;   // the odometry at the last update
-  PlanarPose odometry;     // at the last scan
-  UncertainPose pose;      // of the particles, at the last update
-  bool first = true;       // the next scan updates
-  double explained = 0;    // smoothed
+  UncertainPose updated;  // the odometry at the last update
+  PlanarPose odometry;    // at the last scan
+  UncertainPose pose;     // of the particles, at the last update
+  bool first = true;      // the next scan updates
+  double explained = 0;   // smoothed
   double last_explained = 0;
-  double spread = 0;       // m
+  double spread = 0;  // m
+  int settled = 0;    // scans since the particles of a search came together
 
   void measure_spread() {
     const auto [covariance, mean] = particles.getCovarianceAndMean();
@@ -100,7 +111,8 @@ struct Localizer::Parts {
   void begin(Localization next) {
     state = next;
     first = true;
-    explained = 1;
+    explained = next == Localization::kSearching ? 0 : 1;  // a search has to prove its place
+    settled = 0;
     measure_spread();
   }
 
@@ -112,21 +124,28 @@ struct Localizer::Parts {
       const double angle = laser.yaw + scan.angle(ray);
       const double x = laser.x + scan.ranges[ray] * std::cos(angle), y = laser.y + scan.ranges[ray] * std::sin(angle);
       ++hits;
-      near += walls.squareDistanceToClosestCorrespondence(static_cast<float>(x), static_cast<float>(y)) <
-              kAtWall * kAtWall;
+      near +=
+          walls.squareDistanceToClosestCorrespondence(static_cast<float>(x), static_cast<float>(y)) < kAtWall * kAtWall;
     }
     return hits == 0 ? 0 : static_cast<double>(near) / hits;
   }
 
-  void judge() {
+  void update_state() {
     const bool fits = explained > kFits;
-    if (state == Localization::kSearching && spread < kSmallSpread) {
-      state = fits ? Localization::kLocalized : Localization::kLost;
+    if (state == Localization::kSearching) {
+      settled = spread < kSmallSpread ? settled + 1 : 0;
+      if (settled > 0 && fits) state = Localization::kLocalized;
+      if (settled > kProof) search();
     } else if (state == Localization::kLocalized && (spread > kLargeSpread || !fits)) {
       state = Localization::kLost;
     } else if (state == Localization::kLost && spread < kSmallSpread && fits) {
       state = Localization::kLocalized;
     }
+  }
+
+  void search() {
+    particles.resetUniformFreeSpace(map.get(), kFreeFrom, kGlobalParticles);
+    begin(Localization::kSearching);
   }
 
   void filter_step(const mrpt::obs::CObservation2DRangeScan& scan, const UncertainPose& to) {
@@ -139,8 +158,9 @@ struct Localizer::Parts {
     actions.insert(motion);
     mrpt::obs::CSensoryFrame frame;
     frame.insert(std::make_shared<mrpt::obs::CObservation2DRangeScan>(scan));
-    const bool wide = state == Localization::kSearching;
-    particles.options.KLD_params.KLD_minSampleSize = wide ? kGlobalParticles : kMinParticles;
+    const bool searching = state == Localization::kSearching;
+    particles.options.metricMap = searching ? wide : map;
+    particles.options.KLD_params.KLD_minSampleSize = searching ? kGlobalParticles : kMinParticles;
     pf.executeOn(particles, &actions, &frame);
     updated = to;
     measure_spread();
@@ -149,17 +169,12 @@ struct Localizer::Parts {
 
 Localizer::Localizer(const Grid& map, std::uint32_t seed) : parts_(std::make_unique<Parts>()) {
   Parts& parts = *parts_;
-  parts.map = std::make_shared<mrpt::maps::COccupancyGridMap2D>(mrpt_grid(map));
+  parts.map = likelihood_field(map, 0.1f);
+  parts.wide = likelihood_field(map, 0.2f);  // few of the particles of a search are near the place
   parts.walls = wall_points(map);
   if (parts.walls.empty()) throw std::invalid_argument("the map has no occupied cell, so that no scan fits it");
   if (std::ranges::count(map.cells, kFreeCell) == 0)
     throw std::invalid_argument("the map has no free cell, in which the robot could be");
-  auto& likelihood = parts.map->likelihoodOptions;
-  likelihood.likelihoodMethod = mrpt::maps::COccupancyGridMap2D::lmLikelihoodField_Thrun;
-  likelihood.LF_decimation = (unsigned)E("DEC",10);
-  likelihood.LF_stdHit = (float)E("STD",0.2); likelihood.LF_useSquareDist=E("SQ",0)>0; likelihood.LF_zRandom=(float)E("ZR",0.05);
-  likelihood.LF_maxRange = 30;
-  parts.particles.options.metricMap = parts.map;
   parts.particles.options.KLD_params.KLD_maxSampleSize = kMaxParticles;
   mrpt::random::getRandomGenerator().randomize(seed);
 }
@@ -178,8 +193,7 @@ void Localizer::set_pose(const UncertainPose& pose) {
 }
 
 void Localizer::search() {
-  parts_->particles.resetUniformFreeSpace(parts_->map.get(), kFreeFrom, kGlobalParticles);
-  parts_->begin(Localization::kSearching);
+  parts_->search();
 }
 
 bool Localizer::update(const Scan& scan, const PlanarPose& sensor, const UncertainPose& odometry) {
@@ -194,7 +208,7 @@ bool Localizer::update(const Scan& scan, const PlanarPose& sensor, const Uncerta
   parts.explained += kSmoothing * (parts.last_explained - parts.explained);
   const bool updated = parts.first || moved;
   parts.first = false;
-  parts.judge();
+  parts.update_state();
   return updated;
 }
 

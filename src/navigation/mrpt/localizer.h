@@ -1,6 +1,6 @@
 #pragma once
-/// A Localizer finds the robot in a given map by a particle filter: MRPT's CMonteCarloLocalization2D with the likelihood
-/// field of the grid (S. Thrun, W. Burgard, D. Fox, Probabilistic Robotics, 2005, sections 6.4 and 8.3).
+/// A Localizer finds the robot in a given map by a particle filter: MRPT's CMonteCarloLocalization2D with the
+/// likelihood field of the grid (S. Thrun, W. Burgard, D. Fox, Probabilistic Robotics, 2005, sections 6.4 and 8.3).
 ///
 /// Particles move with the odometry and with its own uncertainty: between two updates its covariance Σ grows by
 ///
@@ -11,12 +11,11 @@
 /// The number of particles adapts to their spread (KLD sampling). A global start begins with kGlobalParticles all over
 /// the free cells and keeps that many until the spread is small. The same seed and calls give the same poses.
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "navigation/grid.h"
 #include "navigation/scan.h"
@@ -36,7 +35,7 @@ enum class Localization {
   kNoPose,     ///< neither a pose nor a global start was given
   kSearching,  ///< after a global start: the particles lie far apart
   kLocalized,
-  kLost,       ///< the particles lie far apart, or the scans do not fit the map
+  kLost,  ///< the particles lie far apart, or the scans do not fit the map
 };
 
 /// Returns "no pose", "searching", "localized" or "lost".

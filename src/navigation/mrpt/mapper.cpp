@@ -14,7 +14,7 @@ using mrpt::maps::COccupancyGridMap2D;
 using mrpt::maps::CSimplePointsMap;
 using mrpt::poses::CPose2D;
 
-constexpr float kResolution = 0.05f;  // m
+constexpr float kResolution = 0.05f;                                    // m
 constexpr double kMatchDistance = 0.05, kMatchTurn = 2 * M_PI / 180;    // m, rad between two matches
 constexpr double kInsertDistance = 0.6, kInsertTurn = 15 * M_PI / 180;  // m, rad between two scans of the map
 constexpr double kMinMatched = 0.4;  // part of the points, below which a match is no match

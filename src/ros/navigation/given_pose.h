@@ -14,7 +14,8 @@ struct GivenPose {
   std::string problem;  ///< why it is refused; "": it is not
 };
 
-/// Refuses another frame than `map`, a pose that is not finite or beyond 10⁶ m, and an orientation without the length 1.
+/// Refuses another frame than `map`, a pose that is not finite or beyond 10⁶ m, and an orientation without the
+/// length 1.
 GivenPose given_pose(const geometry_msgs::PoseWithCovarianceStamped& message);
 
 /// Returns the planar part of a pose; its yaw is NaN if the orientation has not the length 1.

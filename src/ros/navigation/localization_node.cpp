@@ -19,9 +19,9 @@
 namespace robot_control {
 namespace {
 
-constexpr std::uint32_t kSeed = 1;         // the same scans give the same particles
-constexpr double kCloudPeriod = 1;         // s
-constexpr std::size_t kShown = 2000;       // particles of particlecloud
+constexpr std::uint32_t kSeed = 1;    // the same scans give the same particles
+constexpr double kCloudPeriod = 1;    // s
+constexpr std::size_t kShown = 2000;  // particles of particlecloud
 
 /// Deviations at ~initial_pose: a robot that is set down by hand on a mark.
 const Eigen::Vector3d kByHand(0.2, 0.2, 0.1);  // m, m, rad
@@ -38,7 +38,8 @@ class LocalizationNode {
     pose_ = handle_.advertise<geometry_msgs::PoseWithCovarianceStamped>("amcl_pose", 2, true);
     cloud_ = handle_.advertise<geometry_msgs::PoseArray>("particlecloud", 1, true);
     global_ = handle_.advertiseService("global_localization", &LocalizationNode::search, this);
-    timer_ = handle_.createWallTimer(ros::WallDuration(kCloudPeriod), [this](const ros::WallTimerEvent&) { publish_cloud(); });
+    timer_ = handle_.createWallTimer(ros::WallDuration(kCloudPeriod),
+                                     [this](const ros::WallTimerEvent&) { publish_cloud(); });
   }
 
  private:

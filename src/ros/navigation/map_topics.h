@@ -1,5 +1,5 @@
 #pragma once
-/// What slam and localization publish alike: the map, the transform from map to odom, and their state.
+/// MapTopics publishes what slam and localization have in common: map, transform from map to odom, and state.
 
 #include <nav_msgs/GetMap.h>
 #include <nav_msgs/Odometry.h>

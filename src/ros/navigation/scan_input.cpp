@@ -55,7 +55,8 @@ void ScanInput::receive_odometry(const nav_msgs::Odometry& message) {
   }
   if (!readings_.empty()) {
     const Reading& last = readings_.back();
-    if (message.header.stamp < last.stamp) readings_.clear();  // the robot was started again
+    if (message.header.stamp < last.stamp)
+      readings_.clear();  // the robot was started again
     else
       moved_ += std::hypot(pose.mean.x - last.pose.mean.x, pose.mean.y - last.pose.mean.y) +
                 std::abs(turn_between(last.pose.mean.yaw, pose.mean.yaw));

@@ -24,7 +24,8 @@ class SlamNode {
     const std::string path = own.param("map", std::string());
     if (!path.empty()) load(path);
     initial_ = handle_.subscribe("initialpose", 1, &SlamNode::receive_pose, this);
-    timer_ = handle_.createWallTimer(ros::WallDuration(kMapPeriod), [this](const ros::WallTimerEvent&) { publish_map(); });
+    timer_ =
+        handle_.createWallTimer(ros::WallDuration(kMapPeriod), [this](const ros::WallTimerEvent&) { publish_map(); });
   }
 
  private:
