@@ -1,4 +1,4 @@
-"""Navigation on the simulated robot in virtual time: the classes of the node navigate, follow_path's law, ClosedLoop."""
+"""Navigation in virtual time: the classes of the node navigate, the law of follow_path, and ClosedLoop."""
 
 from __future__ import annotations
 
@@ -183,7 +183,7 @@ class Robot:
         trip.hit |= self.air_at(self.place, moving=True) <= 0
 
     def air_at(self, place: Place, *, moving: bool) -> float:
-        """m between the outline at this place and the nearest obstacle; `moving`: of those that move, or of those that stand."""
+        """m between the outline at this place and the nearest obstacle of those that move, or of those that stand."""
         x, y, yaw = place
         points: list[NDArray[np.float64]] = []
         for item in self._obstacles:
