@@ -24,6 +24,7 @@ namespace robot_control {
 namespace {
 
 constexpr double kPeriod = 0.1;    // s
+constexpr double kTfPatience = 0.3;  // s for which a scan waits for tf
 constexpr double kOldPlace = 1.0;  // s; a localisation is as slow as its scans
 
 Footprint read_footprint(ros::NodeHandle& handle) {
@@ -91,15 +92,16 @@ class NavigateNode {
     doubt_ = Doubt();
   }
 
-  /// Takes the newest scan into the costmap, and compares it with the map.
+  /// Takes a scan into the costmap, and compares it with the map. A scan waits until tf knows the place at its stamp.
   void see(const ros::Time& time) {
-    if (const auto scan = guard_.take()) waiting_ = scan;
+    if (!waiting_ || (time - waiting_->stamp).toSec() > kTfPatience) {
+      if (auto scan = guard_.take()) waiting_ = std::move(scan);
+    }
     if (!waiting_ || !costmap_) return;
     const auto sensor = frames_.lookup(map_frame_, waiting_->frame, waiting_->stamp, scan_problem_);
     if (!sensor) return;
-    Scan& scan = waiting_->scan;
-    if (sensor->upside_down) scan.angle_min *= -1, scan.angle_increment *= -1;
-    doubt_.see(costmap_->see(scan, sensor->pose, now()));
+    if (sensor->upside_down) waiting_->scan.angle_min *= -1, waiting_->scan.angle_increment *= -1;
+    doubt_.see(costmap_->see(waiting_->scan, sensor->pose, now()));
     waiting_.reset();
     seen_at_ = time;
   }
