@@ -26,6 +26,8 @@ WRONG = 0.1  # of the goals are anywhere in the scene
 ASIDE = 0.8  # m: nearer to the way of a cart, which stops for nothing, no robot may stand
 TURNED = math.radians(30)
 
+NEIGHBOURS = [(a, b, math.hypot(a, b)) for a in range(-2, 3) for b in range(-2, 3) if math.gcd(a, b) == 1]
+
 
 def scene_of(name: str) -> tuple[list[Obstacle], Map]:
     """The obstacles of a scene and its true map."""
@@ -44,29 +46,29 @@ def random_goal(random: np.random.Generator, known: Map) -> Place:
 
 
 def shortest(known: Map, start: Place, goal: Place, radius: float = HALF_WIDTH) -> float:
-    """m of the shortest way of a circle over the map, in steps to 16 neighbours; infinite without one."""
+    """m of the shortest way of a circle over every second cell of the map, in steps to 16 neighbours; infinite without
+    one.
+    """
     x0, y0, resolution, cells = known
-    blocked = grown(cells == 100, radius / resolution)
-    begin, end = (
-        (int((place[1] - y0) / resolution), int((place[0] - x0) / resolution)) for place in (start, goal)
-    )
+    blocked = grown(cells == 100, radius / resolution)[::2, ::2]
+    step = 2 * resolution
+    begin, end = (((place[1] - y0) / step, (place[0] - x0) / step) for place in (start, goal))
+    begin, end = (int(begin[0]), int(begin[1])), (int(end[0]), int(end[1]))
     blocked[begin] = blocked[end] = False
-    steps = [(a, b) for a in range(-2, 3) for b in range(-2, 3) if math.gcd(a, b) == 1]
     best, queue = {begin: 0.0}, [(0.0, begin)]
     while queue:
         way, at = heapq.heappop(queue)
         if at == end:
-            return way * resolution
+            return way * step
         if way > best[at]:
             continue
-        for down, right in steps:
+        for down, right, length in NEIGHBOURS:
             to = at[0] + down, at[1] + right
             if not (0 <= to[0] < blocked.shape[0] and 0 <= to[1] < blocked.shape[1]) or blocked[to]:
                 continue
-            longer = way + math.hypot(down, right)
-            if longer < best.get(to, math.inf):
-                best[to] = longer
-                heapq.heappush(queue, (longer, to))
+            if way + length < best.get(to, math.inf):
+                best[to] = way + length
+                heapq.heappush(queue, (way + length, to))
     return math.inf
 
 
@@ -91,10 +93,10 @@ def drive_goals(task: tuple[str, int]) -> list[tuple[Trip, bool, float]]:
     for _ in range(PER_ROBOT):
         start, goal = robot.place, random_goal(random, known)
         wrong = random.random() < WRONG
-        while not wrong and not (aside(obstacles, goal) and feasible(robot, obstacles, known, goal)):
+        while not wrong and not (aside(obstacles, goal) and feasible(robot, known, goal)):
             goal = random_goal(random, known)
         trip = robot.drive(goal)
-        trips.append((trip, not feasible(robot, obstacles, known, goal), shortest(known, start, goal)))
+        trips.append((trip, not feasible(robot, known, goal), shortest(known, start, goal)))
     return trips
 
 
@@ -104,7 +106,7 @@ def aside(obstacles: list[Obstacle], place: Place) -> bool:
     return all(math.dist(cart.at(time), place[:2]) > ASIDE for cart in obstacles if cart.path for time in times)
 
 
-def feasible(robot: Robot, obstacles: list[Obstacle], known: Map, goal: Place) -> bool:
+def feasible(robot: Robot, known: Map, goal: Place) -> bool:
     """True if the outline has FREE of air there and a way leads to it."""
     if robot.air_at(goal, moving=False) < FREE:
         return False
@@ -127,7 +129,7 @@ def drive_lies(task: tuple[str, int]) -> tuple[Trip, float]:
         "jump": Lies(since, place=lambda at: (at[0] + shift[0], at[1] + shift[1], at[2])),
     }
     robot.lies = lies[lie]
-    while not feasible(robot, obstacles, known, goal := random_goal(random, known)):
+    while not feasible(robot, known, goal := random_goal(random, known)):
         pass
     return robot.drive(goal), since
 
@@ -164,7 +166,12 @@ def _goal_rows(scene: str, trips: list[tuple[Trip, bool, float]], say: Callable[
         bounded(f"{scene}: goals refused for a true reason", len(trips) - len(reached) - len(wrong), "", len(trips)),
         bounded(f"{scene}: ends beyond 5 cm or 3°", inexact, f"of {len(reached)}", 0),
         bounded(f"{scene}: touches of what stands", sum(trip.air <= 0 for trip, _, _ in trips), f"of {len(trips)}", 0),
-        bounded(f"{scene}: touches of carts, which stop for nothing", sum(trip.hit for trip, _, _ in trips), f"of {len(trips)}", 0),
+        bounded(
+            f"{scene}: touches of carts, which stop for nothing",
+            sum(trip.hit for trip, _, _ in trips),
+            f"of {len(trips)}",
+            0,
+        ),
         bounded(f"{scene}: way / shortest way", sum(a for a, _ in ways) / max(sum(b for _, b in ways), 1e-9), "", 1.15),
     ]
 

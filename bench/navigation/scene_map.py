@@ -1,4 +1,4 @@
-"""The true map of a scene, from its MJCF file: boxes and cylinders that stand on the floor, and those that move on paths."""
+"""The true map of a scene, from its MJCF file: boxes and cylinders that stand on the floor or move on paths."""
 
 from __future__ import annotations
 
@@ -42,7 +42,8 @@ class Obstacle:
         ys = np.linspace(-self.half_y, self.half_y, max(2, int(2 * self.half_y / spacing)))
         sides = [np.column_stack([xs, np.full_like(xs, side)]) for side in (-self.half_y, self.half_y)]
         sides += [np.column_stack([np.full_like(ys, side), ys]) for side in (-self.half_x, self.half_x)]
-        return np.concatenate(sides) + (x, y)
+        points: NDArray[np.float64] = np.concatenate(sides) + np.array([x, y])
+        return points
 
     def at(self, time: float) -> tuple[float, float]:
         """Its middle at this time, by the law of drivers/mujoco/model/mocap_paths.h."""
@@ -67,7 +68,8 @@ def read_scene(path: Path) -> list[Obstacle]:
         for item in root.iter("numeric")
     }
     world = root.find("worldbody")
-    assert world is not None
+    if world is None:
+        return []
     found = [_obstacle(geom, geom) for geom in world.findall("geom")]
     for body in world.findall("body"):
         moves = paths.get(str(body.get("name")), ())
@@ -91,7 +93,7 @@ def true_map(obstacles: list[Obstacle]) -> Map:
     standing = [obstacle for obstacle in obstacles if not obstacle.path]
     points = np.concatenate([obstacle.outline(0) for obstacle in standing])
     low, high = points.min(axis=0) - MARGIN, points.max(axis=0) + MARGIN
-    columns, rows = (int(math.ceil(size / RESOLUTION)) for size in high - low)
+    columns, rows = (math.ceil(size / RESOLUTION) for size in high - low)
     x = low[0] + (np.arange(columns) + 0.5) * RESOLUTION
     y = low[1] + (np.arange(rows) + 0.5) * RESOLUTION
     cells = np.zeros((rows, columns), dtype=np.int8)

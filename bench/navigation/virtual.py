@@ -1,4 +1,4 @@
-"""Navigation on the simulated robot in virtual time: the classes of the node navigate, follow_path's law, ClosedLoop."""
+"""Navigation in virtual time: the classes of the node navigate, the law of follow_path, and ClosedLoop."""
 
 from __future__ import annotations
 
@@ -138,7 +138,10 @@ class Robot:
             self._until_next_scan(trip)
         self._stand(trip)
         x, y, yaw = self.place
-        trip.error, trip.turn_error = math.hypot(goal[0] - x, goal[1] - y), abs(math.remainder(goal[2] - yaw, 2 * math.pi))
+        trip.error, trip.turn_error = (
+            math.hypot(goal[0] - x, goal[1] - y),
+            abs(math.remainder(goal[2] - yaw, 2 * math.pi)),
+        )
         return trip
 
     def _stand(self, trip: Trip) -> None:
@@ -180,7 +183,7 @@ class Robot:
         trip.hit |= self.air_at(self.place, moving=True) <= 0
 
     def air_at(self, place: Place, *, moving: bool) -> float:
-        """m between the outline at this place and the nearest obstacle; `moving`: of those that move, or of those that stand."""
+        """m between the outline at this place and the nearest obstacle of those that move, or of those that stand."""
         x, y, yaw = place
         points: list[NDArray[np.float64]] = []
         for item in self._obstacles:

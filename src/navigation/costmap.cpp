@@ -63,7 +63,8 @@ std::vector<float> distances(const std::vector<bool>& occupied, int columns, int
     line.resize(static_cast<std::size_t>(rows));
     for (int row = 0; row < rows; ++row) line[static_cast<std::size_t>(row)] = occupied[place(column, row)] ? 0 : kFar;
     transform(line, out, apex, from);
-    for (int row = 0; row < rows; ++row) squares[place(column, row)] = static_cast<float>(out[static_cast<std::size_t>(row)]);
+    for (int row = 0; row < rows; ++row)
+      squares[place(column, row)] = static_cast<float>(out[static_cast<std::size_t>(row)]);
   }
   line.resize(static_cast<std::size_t>(columns));
   for (int row = 0; row < rows; ++row) {
@@ -72,7 +73,7 @@ std::vector<float> distances(const std::vector<bool>& occupied, int columns, int
     for (int column = 0; column < columns; ++column) {
       const double square = out[static_cast<std::size_t>(column)];
       squares[place(column, row)] = square >= kFar / 2 ? std::numeric_limits<float>::infinity()
-                                                      : static_cast<float>(std::sqrt(square) * resolution);
+                                                       : static_cast<float>(std::sqrt(square) * resolution);
     }
   }
   return squares;
@@ -166,8 +167,7 @@ void Costmap::update(double now) {
 bool Costmap::free(const PlanarPose& pose) const noexcept {
   const Cell base = grid_.cell_at(pose.x, pose.y);
   const double nearest = distance(base);
-  if (nearest > footprint_.circumscribed + kPadding + grid_.resolution &&
-      std::isfinite(nearest)) {
+  if (nearest > footprint_.circumscribed + kPadding + grid_.resolution && std::isfinite(nearest)) {
     const int reach = static_cast<int>((footprint_.circumscribed + kPadding) / grid_.resolution) + 1;
     return base.column >= reach && base.row >= reach && base.column < grid_.columns - reach &&
            base.row < grid_.rows - reach;

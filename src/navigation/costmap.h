@@ -1,9 +1,9 @@
 #pragma once
 /// Where a robot may stand: the map, what the laser sees beside it, and the outline of the robot.
 ///
-/// A cell is occupied if the map says so (≥ 65 %), if a ray ended there within the last kMemory and none passed it since,
-/// or, unless `unknown_is_free`, if neither the map nor a ray knows it. A ray that ends within kExplained of an occupied
-/// cell of the map marks nothing: it is the map's own wall, within the error of the localisation.
+/// A cell is occupied if the map says so (≥ 65 %), if a ray ended there within the last kMemory and none passed it
+/// since, or, unless `unknown_is_free`, if neither the map nor a ray knows it. A ray that ends within kExplained of an
+/// occupied cell of the map marks nothing: it is the map's own wall, within the error of the localisation.
 ///
 /// Rays also say whether map and pose can be true. Something that was added shortens a ray; only a thing that is gone,
 /// or an untrue pose or map, lets a ray pass a wall of the map.
@@ -17,10 +17,10 @@
 
 namespace robot_control {
 
-inline constexpr double kMemory = 20;        ///< s
-inline constexpr double kExplained = 0.1;    ///< m
-inline constexpr double kBehindWall = 0.3;   ///< m; a ray that ends so far behind a wall contradicts the map
-inline constexpr double kPadding = 0.07;     ///< m of air about the outline: noise of the laser and lag of the follower
+inline constexpr double kMemory = 20;       ///< s
+inline constexpr double kExplained = 0.1;   ///< m
+inline constexpr double kBehindWall = 0.3;  ///< m; a ray that ends so far behind a wall contradicts the map
+inline constexpr double kPadding = 0.07;    ///< m of air about the outline: noise of the laser and lag of the follower
 
 /// Returns the ends of all rays that hit, in the frame in which `sensor` is given.
 std::vector<Point> points_of(const Scan& scan, const PlanarPose& sensor);
@@ -45,9 +45,7 @@ class Costmap {
   bool unknown(Cell cell) const noexcept { return unknown_[grid_.index(cell)]; }
 
   /// Returns the distance of the cell from the nearest occupied one, m; 0 outside the map.
-  double distance(Cell cell) const noexcept {
-    return grid_.contains(cell) ? distance_[grid_.index(cell)] : 0;
-  }
+  double distance(Cell cell) const noexcept { return grid_.contains(cell) ? distance_[grid_.index(cell)] : 0; }
 
   /// Returns whether the outline, grown by kPadding, holds no occupied cell and lies within the map.
   bool free(const PlanarPose& pose) const noexcept;
@@ -67,8 +65,8 @@ class Costmap {
   std::vector<float> wall_distance_;        ///< m, to the map's own walls
   std::vector<bool> unknown_;
   bool unknown_is_free_;
-  std::vector<float> marked_;               ///< s, when a ray ended here; −∞: never, or passed since
-  std::vector<float> distance_;             ///< m
+  std::vector<float> marked_;    ///< s, when a ray ended here; −∞: never, or passed since
+  std::vector<float> distance_;  ///< m
 };
 
 /// Returns the distance of each cell from the nearest one that is set, in m; ∞ without any (P. Felzenszwalb, D.

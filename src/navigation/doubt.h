@@ -10,10 +10,10 @@
 
 namespace robot_control {
 
-inline constexpr int kDoubtful = 5;              ///< scans; what stands wrong for half a second is no noise
-inline constexpr double kContradicting = 0.15;   ///< 2° and 5 cm at 4 m make 3 to 5 %, at door posts
-inline constexpr double kExplainedLeast = 0.2;   ///< boxes all around leave a third
-inline constexpr int kFewRays = 20;              ///< scans of fewer hits are not judged
+inline constexpr int kDoubtful = 5;             ///< scans; what stands wrong for half a second is no noise
+inline constexpr double kContradicting = 0.15;  ///< 2° and 5 cm at 4 m make 3 to 5 %, at door posts
+inline constexpr double kExplainedLeast = 0.2;  ///< boxes all around leave a third
+inline constexpr int kFewRays = 20;             ///< scans of fewer hits are not judged
 
 class Doubt {
  public:

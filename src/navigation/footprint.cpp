@@ -9,7 +9,9 @@
 namespace robot_control {
 namespace {
 
-double cross(Point a, Point b, Point c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
+double cross(Point a, Point b, Point c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
 
 /// Adds the lower half of the hull of sorted points (A. M. Andrew, 1979).
 template <class Iterator>

@@ -17,7 +17,8 @@ struct Footprint {
   double circumscribed = 0;    ///< m, radius of the smallest circle about it that holds the outline
   double half_width = 0;       ///< m, largest distance of a corner from the x axis
 
-  /// Returns the distance of the point from the outline, m; negative inside. Beside a corner it is less than the true one.
+  /// Returns the distance of the point from the outline, m; negative inside. Beside a corner it is less than the true
+  /// one.
   double distance(Point point) const noexcept;
 };
 

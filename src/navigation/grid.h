@@ -1,8 +1,8 @@
 #pragma once
 /// An occupancy grid as in nav_msgs/OccupancyGrid, without ROS.
 ///
-/// Cell (column, row) covers x ∈ [origin_x + column·resolution, … + resolution) of the frame `map`, y likewise; the cells
-/// lie row by row, that of the smallest y first. The grid is not turned against its frame.
+/// Cell (column, row) covers x ∈ [origin_x + column·resolution, … + resolution) of the frame `map`, y likewise; the
+/// cells lie row by row, that of the smallest y first. The grid is not turned against its frame.
 
 #include <cmath>
 #include <cstddef>
@@ -28,9 +28,9 @@ struct Cell {
 
 struct Grid {
   int columns = 0, rows = 0;
-  double resolution = 0.05;          ///< m
+  double resolution = 0.05;           ///< m
   double origin_x = 0, origin_y = 0;  ///< m, corner of cell (0, 0)
-  std::vector<std::int8_t> cells;    ///< kUnknownCell, or 0 … 100 % occupied
+  std::vector<std::int8_t> cells;     ///< kUnknownCell, or 0 … 100 % occupied
 
   bool contains(Cell cell) const noexcept {
     return cell.column >= 0 && cell.row >= 0 && cell.column < columns && cell.row < rows;

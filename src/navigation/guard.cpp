@@ -7,8 +7,8 @@
 namespace robot_control {
 namespace {
 
-constexpr double kStep = 0.02;      // m of the way of the outline's widest place
-constexpr double kNearer = 0.001;   // m
+constexpr double kStep = 0.02;       // m of the way of the outline's widest place
+constexpr double kNearer = 0.001;    // m
 constexpr double kOnTheSpot = 0.02;  // m/s; a slower base turns on the spot, if it turns
 
 struct Watched {
@@ -27,7 +27,7 @@ double free_way(const Footprint& footprint, const std::vector<Point>& points, co
     if (distance > 0 && std::hypot(point.x, point.y) <= reach) watched.push_back({point, distance});
   }
   const double sign = std::copysign(1.0, spot ? motion.angular : motion.linear);
-  const double turn = spot               ? sign / footprint.half_width  // rad per m
+  const double turn = spot                 ? sign / footprint.half_width  // rad per m
                       : motion.linear != 0 ? motion.angular / std::abs(motion.linear)
                                            : 0;
   const double end = spot ? 2 * M_PI * footprint.half_width : kLookout;

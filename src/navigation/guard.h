@@ -7,9 +7,9 @@
 
 namespace robot_control {
 
-inline constexpr double kLookout = 4.0;   ///< m; what is farther ahead limits no speed: 1 m/s² stops from 2.8 m/s
+inline constexpr double kLookout = 4.0;     ///< m; what is farther ahead limits no speed: 1 m/s² stops from 2.8 m/s
 inline constexpr double kStopShort = 0.03;  ///< m that stay between the outline and an obstacle
-inline constexpr double kBeside = 0.02;   ///< m of air beside the outline: noise of the laser
+inline constexpr double kBeside = 0.02;     ///< m of air beside the outline: noise of the laser
 
 /// The motion that is intended or measured; its ratio counts, and for a turn on the spot its sign.
 struct PlanarMotion {

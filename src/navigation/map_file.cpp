@@ -18,7 +18,7 @@
 namespace robot_control {
 namespace {
 
-constexpr std::size_t kMaxHead = 65536;  // bytes of a picture before its pixels, comments included
+constexpr std::size_t kMaxHead = 65536;               // bytes of a picture before its pixels, comments included
 constexpr double kFreeUpTo = 25, kOccupiedFrom = 65;  // %, of map_server's map_saver
 constexpr auto kKeys = std::to_array<std::string_view>(
     {"image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode"});
@@ -114,9 +114,8 @@ Picture read_picture(const std::string& path, std::string_view text, const Head&
   const auto columns = next_number(text), rows = next_number(text), white = next_number(text);
   if (!columns || !rows || !white || text.empty()) refuse(path, "the head of the PGM is incomplete");
   if (*white < 1 || *white > 255) refuse(path, "has " + std::to_string(*white) + " grey values: at most 255 are read");
-  const std::string problem =
-      grid_problem(static_cast<double>(*columns), static_cast<double>(*rows), head.resolution, head.origin_x,
-                   head.origin_y, head.yaw);
+  const std::string problem = grid_problem(static_cast<double>(*columns), static_cast<double>(*rows), head.resolution,
+                                           head.origin_x, head.origin_y, head.yaw);
   if (!problem.empty()) refuse(yaml, problem);
   text.remove_prefix(1);
   const std::size_t cells = static_cast<std::size_t>(*columns) * static_cast<std::size_t>(*rows);
@@ -141,7 +140,8 @@ std::string grid_problem(double columns, double rows, double resolution, double 
     return "origin is (" + text_of(origin_x) + ", " + text_of(origin_y) + ") m: it must be within 1e+06 m";
   }
   if (!(std::abs(origin_yaw) <= 1e-6)) {
-    return "origin is turned by " + text_of(std::round(origin_yaw * 1000) / 1000) + " rad: only 0 is taken; turn the picture instead";
+    return "origin is turned by " + text_of(std::round(origin_yaw * 1000) / 1000) +
+           " rad: only 0 is taken; turn the picture instead";
   }
   return "";
 }
@@ -181,12 +181,12 @@ void write_map(const std::string& given, const Grid& grid) {
     }
   }
   try {
-    write_output_file(path.string() + ".pgm", "P5\n" + std::to_string(grid.columns) + " " + std::to_string(grid.rows) +
-                                                  "\n255\n" + pixels);
-    write_output_file(path.string() + ".yaml",
-                      "image: " + stem + ".pgm\nresolution: " + text_of(grid.resolution) + "\norigin: [" +
-                          text_of(grid.origin_x) + ", " + text_of(grid.origin_y) +
-                          ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+    write_output_file(path.string() + ".pgm",
+                      "P5\n" + std::to_string(grid.columns) + " " + std::to_string(grid.rows) + "\n255\n" + pixels);
+    write_output_file(path.string() + ".yaml", "image: " + stem + ".pgm\nresolution: " + text_of(grid.resolution) +
+                                                   "\norigin: [" + text_of(grid.origin_x) + ", " +
+                                                   text_of(grid.origin_y) +
+                                                   ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
   } catch (const std::system_error& error) {
     throw MapError(error.what());
   }

@@ -57,7 +57,8 @@ NavigatorOutput Navigator::step(const NavigatorInput& input, Costmap* costmap) {
       plan(input, *costmap, out);
     }
     const double patience = driven_ ? kPatience : kStartPatience, waited = input.now - progress_at_;
-    if (active() && waited > patience) fail(for_seconds(reason_.empty() ? "the robot does not move" : reason_, waited), out);
+    if (active() && waited > patience)
+      fail(for_seconds(reason_.empty() ? "the robot does not move" : reason_, waited), out);
   }
   out.state = state_;
   if (state_ != NavigatorState::kReached) out.reason = reason_;

@@ -1,6 +1,6 @@
 #pragma once
-/// Brings a robot to a goal: plans, watches the path, plans again, waits and gives up. It reads no clock and knows no ROS;
-/// follow_path drives what it plans.
+/// Brings a robot to a goal: plans, watches the path, plans again, waits and gives up. It reads no clock and knows no
+/// ROS; follow_path drives what it plans.
 ///
 ///   planning   the first plan of a goal; a goal that the map alone does not allow is refused at once
 ///   driving    follow_path has a path. A path that is blocked within kLookout is replaced, at most once per kReplan.
@@ -49,10 +49,10 @@ const char* name_of(NavigatorState state);
 
 struct NavigatorOutput {
   NavigatorState state = NavigatorState::kIdle;
-  std::string reason;           ///< why it waits, failed or does not come nearer
-  double remaining = 0;         ///< m of the path
-  std::optional<Plan> path;     ///< to be sent to follow_path in place of what it drives
-  bool cancel = false;          ///< follow_path is to stop
+  std::string reason;        ///< why it waits, failed or does not come nearer
+  double remaining = 0;      ///< m of the path
+  std::optional<Plan> path;  ///< to be sent to follow_path in place of what it drives
+  bool cancel = false;       ///< follow_path is to stop
 };
 
 class Navigator {
@@ -67,7 +67,8 @@ class Navigator {
   NavigatorOutput step(const NavigatorInput& input, Costmap* costmap);
 
   bool active() const noexcept {
-    return state_ == NavigatorState::kPlanning || state_ == NavigatorState::kDriving || state_ == NavigatorState::kWaiting;
+    return state_ == NavigatorState::kPlanning || state_ == NavigatorState::kDriving ||
+           state_ == NavigatorState::kWaiting;
   }
 
  private:
@@ -81,10 +82,10 @@ class Navigator {
   NavigatorState state_ = NavigatorState::kIdle;
   PlanarPose goal_;
   Plan path_;
-  std::size_t passed_ = 0;      // poses of path_
-  bool driven_ = false;         // a path of this goal was sent
-  double progress_at_ = 0;      // s, when the robot last came nearer or a path was sent
-  double least_remaining_ = 0;  // m
+  std::size_t passed_ = 0;                        // poses of path_
+  bool driven_ = false;                           // a path of this goal was sent
+  double progress_at_ = 0;                        // s, when the robot last came nearer or a path was sent
+  double least_remaining_ = 0;                    // m
   double planned_at_ = -1e9, updated_at_ = -1e9;  // s
   int attempts_ = 0;
   std::string reason_;

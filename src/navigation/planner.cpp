@@ -16,8 +16,22 @@ namespace robot_control {
 namespace {
 
 constexpr int kSectors = 16;
-constexpr std::array<Cell, kSectors> kSteps = {{{1, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 1}, {-1, 2}, {-1, 1}, {-2, 1},
-                                                {-1, 0}, {-2, -1}, {-1, -1}, {-1, -2}, {0, -1}, {1, -2}, {1, -1}, {2, -1}}};
+constexpr std::array<Cell, kSectors> kSteps = {{{1, 0},
+                                                {2, 1},
+                                                {1, 1},
+                                                {1, 2},
+                                                {0, 1},
+                                                {-1, 2},
+                                                {-1, 1},
+                                                {-2, 1},
+                                                {-1, 0},
+                                                {-2, -1},
+                                                {-1, -1},
+                                                {-1, -2},
+                                                {0, -1},
+                                                {1, -2},
+                                                {1, -1},
+                                                {2, -1}}};
 constexpr float kUnreached = std::numeric_limits<float>::infinity();
 
 double heading_of(int sector) {
@@ -219,8 +233,8 @@ std::string no_way(const Costmap& costmap, Cell start, Cell goal) {
   const auto narrow = narrowest(costmap, start, goal);
   if (!narrow) return "there is no way to the goal: obstacles or unknown space lie all around it or the robot";
   const double needed = 2 * (costmap.footprint().half_width + kPadding), wide = 2 * narrow->second;
-  const std::string where = "the narrowest place of the widest way, at " + place(costmap.grid(), narrow->first) + ", is " +
-                            number(wide) + " m wide";
+  const std::string where = "the narrowest place of the widest way, at " + place(costmap.grid(), narrow->first) +
+                            ", is " + number(wide) + " m wide";
   if (wide < needed) return "there is no way for this outline: " + where + ", and it needs " + number(needed) + " m";
   return "there is no way for this outline: it cannot turn where it would have to; " + where;
 }

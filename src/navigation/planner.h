@@ -3,11 +3,12 @@
 ///
 /// States are (cell, heading sector of 22.5°). Moves are one step along the heading, one step back, and a turn on the
 /// spot by one sector. A step costs its length times step_cost (smoothing.h), one back kBackFactor times that, a sector
-/// kSectorCost. A* is guided by the same cost without headings, from a search backwards from the goal. MRPT's PlannerSimple2D takes a circle alone, and the planners of OMPL draw samples:
-/// their ways differ from run to run, and that there is none is found by a timeout. Therefore neither is used.
+/// kSectorCost. A* is guided by the same cost without headings, from a search backwards from the goal. MRPT's
+/// PlannerSimple2D takes a circle alone, and the planners of OMPL draw samples: their ways differ from run to run, and
+/// that there is none is found by a timeout. Therefore neither is used.
 ///
-/// The way is then smoothed (smoothing.h). Every pose carries the robot's heading: follow_path drives a segment backwards
-/// whose poses point against it.
+/// The way is then smoothed (smoothing.h). Every pose carries the robot's heading: follow_path drives a segment
+/// backwards whose poses point against it.
 
 #include <string>
 #include <vector>
@@ -17,7 +18,7 @@
 namespace robot_control {
 
 inline constexpr double kBackFactor = 3;
-inline constexpr double kSectorCost = 0.15;     ///< m; 22.5° take 0.4 s, in which follow_path drives 0.2 m
+inline constexpr double kSectorCost = 0.15;  ///< m; 22.5° take 0.4 s, in which follow_path drives 0.2 m
 
 struct Plan {
   std::vector<PlanarPose> poses;  ///< from start to goal; empty: there is no way

@@ -43,11 +43,13 @@ std::string ScanWatch::receive(const Scan& scan, const std::string& publisher, d
     return refuse("scan has two publishers, " + publisher_ + " and " + publisher + ": stop one of them");
   }
   if (publisher == publisher_ && stamp < stamp_) {
-    return refuse(text("the stamps of scan go back by %.3f s: check the clock of the laser's computer", stamp_ - stamp));
+    return refuse(
+        text("the stamps of scan go back by %.3f s: check the clock of the laser's computer", stamp_ - stamp));
   }
   blind_ = std::none_of(scan.ranges.begin(), scan.ranges.end(),
                         [&](float range) { return scan.hit(range) || range > scan.range_max; });
-  const bool nothing = std::none_of(scan.ranges.begin(), scan.ranges.end(), [&](float range) { return scan.hit(range); });
+  const bool nothing =
+      std::none_of(scan.ranges.begin(), scan.ranges.end(), [&](float range) { return scan.hit(range); });
   if (scan.ranges != ranges_ || nothing) changed_at_ = moved;
   ranges_ = scan.ranges;
   publisher_ = publisher, stamp_ = stamp, received_ = now, moved_ = moved;
@@ -57,7 +59,8 @@ std::string ScanWatch::receive(const Scan& scan, const std::string& publisher, d
 
 std::string ScanWatch::problem(double now) const {
   if (now - received_ > kSilence) {
-    return refused_.empty() ? text("scan is silent for %.1f s: check the laser and its driver", now - received_) : refused_;
+    return refused_.empty() ? text("scan is silent for %.1f s: check the laser and its driver", now - received_)
+                            : refused_;
   }
   if (std::abs(now - stamp_) > kSilence) {
     return text("the stamps of scan are %.1f s %s: synchronise the clocks of laser and robot", std::abs(now - stamp_),

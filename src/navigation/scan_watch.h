@@ -5,8 +5,8 @@
 /// increment of zero, more than one turn, angles that run against their increment, a stamp before that of the last one
 /// or from another publisher while the first one still sends. A refused message is as good as none.
 ///
-/// The scan is silent if no message was accepted for kSilence, or if its stamps are older than that. It is blind without
-/// one range that was measured, and frozen if the same ranges come again while the robot moved by kMoved.
+/// The scan is silent if no message was accepted for kSilence, or if its stamps are older than that. It is blind
+/// without one range that was measured, and frozen if the same ranges come again while the robot moved by kMoved.
 
 #include <string>
 #include <vector>
@@ -21,8 +21,8 @@ inline constexpr double kMoved = 0.05;   ///< m or rad
 
 class ScanWatch {
  public:
-  /// Returns why the message is refused; "" if it is taken. `stamp` and `now` are s on the clock of stamps, `moved` is the
-  /// way that the robot has driven or turned so far, m + rad.
+  /// Returns why the message is refused; "" if it is taken. `stamp` and `now` are s on the clock of stamps, `moved` is
+  /// the way that the robot has driven or turned so far, m + rad.
   std::string receive(const Scan& scan, const std::string& publisher, double stamp, double now, double moved);
 
   /// Returns why the newest scan does not count at this time; "" if it does.

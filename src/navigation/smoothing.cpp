@@ -7,7 +7,9 @@
 namespace robot_control {
 namespace {
 
-double turned(double angle) { return std::remainder(angle, 2 * M_PI); }
+double turned(double angle) {
+  return std::remainder(angle, 2 * M_PI);
+}
 
 /// Returns the cost of the straight segment with the outline along it; ∞ if it is not free.
 double straight_cost(const Costmap& costmap, Point a, Point b, bool back) {
@@ -97,7 +99,8 @@ std::vector<Vertex> rounded(const Costmap& costmap, const std::vector<Vertex>& g
       bool free = true;
       for (int k = 1; k <= pieces && free; ++k) {
         const double t = static_cast<double>(k) / pieces, u = 1 - t;
-        const Point at{u * u * begin.x + 2 * u * t * b.x + t * t * end.x, u * u * begin.y + 2 * u * t * b.y + t * t * end.y};
+        const Point at{u * u * begin.x + 2 * u * t * b.x + t * t * end.x,
+                       u * u * begin.y + 2 * u * t * b.y + t * t * end.y};
         free = std::isfinite(straight_cost(costmap, curve.back().at, at, corner.back));
         curve.push_back({at, corner.back});
       }
@@ -149,7 +152,8 @@ std::vector<PlanarPose> smoothed(const Costmap& costmap, const std::vector<Plana
 
 double length_of(const std::vector<PlanarPose>& poses) {
   double length = 0;
-  for (std::size_t i = 1; i < poses.size(); ++i) length += std::hypot(poses[i].x - poses[i - 1].x, poses[i].y - poses[i - 1].y);
+  for (std::size_t i = 1; i < poses.size(); ++i)
+    length += std::hypot(poses[i].x - poses[i - 1].x, poses[i].y - poses[i - 1].y);
   return length;
 }
 

@@ -9,7 +9,9 @@ namespace {
 
 using testing_house::diffbot;
 
-double free_of(std::vector<Point> points, PlanarMotion motion) { return free_way(diffbot(), points, motion); }
+double free_of(std::vector<Point> points, PlanarMotion motion) {
+  return free_way(diffbot(), points, motion);
+}
 
 TEST(FreeWayTest, ItEndsBeforeTheObstacleAheadOrBehind) {
   EXPECT_NEAR(free_of({{1.12, 0}}, {0.5, 0}), 1.0 - kBeside - kStopShort, 0.021);

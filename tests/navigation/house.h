@@ -41,8 +41,14 @@ inline Grid two_rooms(double door) {
 
 /// The outline of the shipped robot, nearly.
 inline Footprint diffbot() {
-  return footprint_of({{0.12, 0.18}, {0.1, 0.27}, {-0.1, 0.27}, {-0.28, 0.18}, {0.12, -0.18}, {0.1, -0.27},
-                       {-0.1, -0.27}, {-0.28, -0.18}});
+  return footprint_of({{0.12, 0.18},
+                       {0.1, 0.27},
+                       {-0.1, 0.27},
+                       {-0.28, 0.18},
+                       {0.12, -0.18},
+                       {0.1, -0.27},
+                       {-0.1, -0.27},
+                       {-0.28, -0.18}});
 }
 
 /// A scan of `rays` over a full turn up to 8 m, without noise.

@@ -30,7 +30,8 @@ class NavigatorTest : public testing::Test {
     out_ = navigator_.step({now_, problem_, "", pose_, report_}, &costmap_);
     if (out_.cancel) report_.state = PathReport::State::kNone;
     if (out_.path) path_ = *out_.path, along_ = 0, report_ = {PathReport::State::kActive, ""}, ++paths_;
-    if (report_.state == PathReport::State::kActive && !failing_.empty()) report_ = {PathReport::State::kFailed, failing_};
+    if (report_.state == PathReport::State::kActive && !failing_.empty())
+      report_ = {PathReport::State::kFailed, failing_};
     if (report_.state == PathReport::State::kActive) follow();
   }
 
@@ -39,7 +40,8 @@ class NavigatorTest : public testing::Test {
     for (; along_ + 1 < path_.poses.size() && left > 0; ++along_) {
       left -= std::hypot(path_.poses[along_ + 1].x - pose_.x, path_.poses[along_ + 1].y - pose_.y);
       pose_ = path_.poses[along_ + 1];
-      for (const Point point : points_of(scan_of(world_, pose_, 180), {})) least_air_ = std::min(least_air_, diffbot().distance(point));
+      for (const Point point : points_of(scan_of(world_, pose_, 180), {}))
+        least_air_ = std::min(least_air_, diffbot().distance(point));
     }
     if (along_ + 1 == path_.poses.size()) report_.state = PathReport::State::kDone;
   }

@@ -16,7 +16,9 @@ using testing::HasSubstr;
 
 constexpr PlanarPose kLeft{1.6, 1.6, 0}, kRight{4.7, 1.6, 0};
 
-Costmap costmap_of(const Grid& grid, bool unknown_is_free = false) { return {grid, diffbot(), unknown_is_free}; }
+Costmap costmap_of(const Grid& grid, bool unknown_is_free = false) {
+  return {grid, diffbot(), unknown_is_free};
+}
 
 /// Returns the smallest distance of the true outline from any occupied cell's border along the plan, m.
 double air(const Grid& grid, const Plan& plan) {
@@ -133,7 +135,9 @@ TEST(PlannerTest, ATooNarrowDoorIsNamed) {
 
 TEST(PlannerTest, EachGoalThatCannotBeIsRefused) {
   const Costmap costmap = costmap_of(two_rooms(0.8));
-  const auto problem = [&](double x, double y, double yaw = 0) { return plan_path(costmap, kLeft, {x, y, yaw}).problem; };
+  const auto problem = [&](double x, double y, double yaw = 0) {
+    return plan_path(costmap, kLeft, {x, y, yaw}).problem;
+  };
   EXPECT_THAT(problem(3.15, 0.3), HasSubstr("lies in an obstacle"));
   EXPECT_THAT(problem(6.05, 1.6, M_PI / 2), HasSubstr("too near to an obstacle"));
   EXPECT_THAT(problem(1e6, 0), HasSubstr("lies outside the map"));

@@ -1,4 +1,4 @@
-"""What the rostests of navigate share: the map of a scene, tf of a place that is known, and whether navigate was built."""
+"""What the rostests of navigate share: a map as message, tf of a known place, and whether navigate was built."""
 
 import threading
 from pathlib import Path

@@ -75,7 +75,9 @@ class NavigationTest(RobotTestCase):
 
         self.clearances.clear()
         client = self.end_of("move_base", MoveBaseAction, MoveBaseGoal(self.pose(1.2, 0.1, 1.0)))
-        self.assertEqual((client.get_state(), client.get_goal_status_text()), (SUCCEEDED, "reached"), self.navigate.output)
+        self.assertEqual(
+            (client.get_state(), client.get_goal_status_text()), (SUCCEEDED, "reached"), self.navigate.output
+        )
         self.assert_reached(1.2, 0.1)
         wait_for("the clearance without a limit", lambda: math.isinf(self.clearances[-1]))
         self.assertGreater(len(self.clearances), 20)

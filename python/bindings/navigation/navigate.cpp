@@ -1,4 +1,5 @@
-/// The extension module robot_control._navigation: costmap, planner, guard and navigator in virtual time, for benchmarks.
+/// The extension module robot_control._navigation: costmap, planner, guard and navigator in virtual time, for
+/// benchmarks.
 
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -37,7 +38,8 @@ class Navigation {
   }
   bool silent(double now) const { return !watch_.problem(now).empty(); }
   double free_way(const py::dict& scan, const Pose& sensor, double linear, double angular) const {
-    return robot_control::free_way(costmap_.footprint(), points_of(scan_of(scan), planar_of(sensor)), {linear, angular});
+    return robot_control::free_way(costmap_.footprint(), points_of(scan_of(scan), planar_of(sensor)),
+                                   {linear, angular});
   }
   double distance(double x, double y) const { return costmap_.footprint().distance({x, y}); }
   py::tuple plan(const Pose& start, const Pose& goal, double now) {
@@ -50,7 +52,10 @@ class Navigation {
   /// `path`: "none", "active", "done" or why it failed. Returns state, reason, path or None, whether to stop.
   py::tuple step(double now, const std::string& problem, const Pose& pose, const std::string& path) {
     using State = PathReport::State;
-    const State state = path == "none" ? State::kNone : path == "active" ? State::kActive : path == "done" ? State::kDone : State::kFailed;
+    const State state = path == "none"     ? State::kNone
+                        : path == "active" ? State::kActive
+                        : path == "done"   ? State::kDone
+                                           : State::kFailed;
     const NavigatorOutput out = navigator_.step({now, problem, "", planar_of(pose), {state, path}}, &costmap_);
     py::object way = py::none();
     if (out.path) way = py::cast(poses_of(*out.path));
@@ -69,9 +74,11 @@ class Navigation {
 
 PYBIND11_MODULE(_navigation, module) {
   using namespace robot_control;
-  module.def("read_map", [](const std::string& path) { return numpy_of(read_map(path)); }, py::arg("path"));
-  module.def("write_map", [](const std::string& path, const py::tuple& map) { write_map(path, grid_of(map)); },
-             py::arg("path"), py::arg("map"));
+  module.def(
+      "read_map", [](const std::string& path) { return numpy_of(read_map(path)); }, py::arg("path"));
+  module.def(
+      "write_map", [](const std::string& path, const py::tuple& map) { write_map(path, grid_of(map)); },
+      py::arg("path"), py::arg("map"));
   py::class_<Navigation>(module, "Navigation")
       .def(py::init<const py::tuple&, const std::string&, bool>(), py::arg("map"), py::arg("urdf"),
            py::arg("unknown_is_free") = false)

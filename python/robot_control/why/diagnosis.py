@@ -169,13 +169,16 @@ def _gate(facts: Facts) -> Answer | None:
 
 def _navigation(facts: Facts) -> Answer | None:
     """A goal in the map waits, or was refused or given up."""
-    if not facts.there(NAVIGATE) or facts.value(NAVIGATE, "goal") not in {"waiting", "failed"} or _motion_commanded(facts):
+    state = facts.value(NAVIGATE, "goal")
+    if state not in {"waiting", "failed"} or _motion_commanded(facts):
         return None
-    waits = facts.value(NAVIGATE, "goal") == "waiting"
+    waits = state == "waiting"
+    verdict, what = (Verdict.STOPPED, "waits") if waits else (Verdict.IDLE, "is given up")
+    then = "; the robot then drives on" if waits else ", and send the goal again"
     return Answer(
-        Verdict.STOPPED if waits else Verdict.IDLE,
-        f"The goal {'waits' if waits else 'is given up'}: {facts.reports[NAVIGATE].message}.",
-        (("operator", "remove this cause; the robot then drives on" if waits else "remove this cause, and send the goal again"),),
+        verdict,
+        f"The goal {what}: {facts.reports[NAVIGATE].message}.",
+        (("operator", f"remove this cause{then}"),),
     )
 
 

@@ -12,7 +12,7 @@ Frames::Frames(ros::NodeHandle& handle) {
       receive(message, fixed);
     };
     return handle.subscribe<tf2_msgs::TFMessage, const tf2_msgs::TFMessage&>(topic, 100, take, nullptr,
-                                                                              ros::TransportHints().tcpNoDelay());
+                                                                             ros::TransportHints().tcpNoDelay());
   };
   moving_ = subscribe("tf", false);
   fixed_ = subscribe("tf_static", true);
@@ -32,7 +32,8 @@ std::optional<FoundPose> Frames::lookup(const std::string& target, const std::st
                                         found.transform.rotation.z, found.transform.rotation.w);
     const double yaw = std::atan2(2 * (w * z + x * y), w * w + x * x - y * y - z * z);
     return FoundPose{{found.transform.translation.x, found.transform.translation.y, yaw},
-                     w * w - x * x - y * y + z * z < 0, found.header.stamp.toSec()};
+                     w * w - x * x - y * y + z * z < 0,
+                     found.header.stamp.toSec()};
   } catch (const tf2::TransformException& error) {
     problem = error.what();
     return std::nullopt;

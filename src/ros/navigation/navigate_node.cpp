@@ -23,8 +23,8 @@
 namespace robot_control {
 namespace {
 
-constexpr double kPeriod = 0.1;         // s
-constexpr double kOldPlace = 1.0;       // s; a localisation is as slow as its scans
+constexpr double kPeriod = 0.1;    // s
+constexpr double kOldPlace = 1.0;  // s; a localisation is as slow as its scans
 
 Footprint read_footprint(ros::NodeHandle& handle) {
   std::string urdf;
@@ -44,7 +44,8 @@ class NavigateNode {
         guard_(handle_, read_footprint(handle_), frames_),
         footprint_(read_footprint(handle_)),
         path_client_(handle_),
-        servers_(handle_, [this](const GoalServers::Goal& goal) { begin(goal); }, [this] { cancel("cancelled"); }) {
+        servers_(
+            handle_, [this](const GoalServers::Goal& goal) { begin(goal); }, [this] { cancel("cancelled"); }) {
     ros::NodeHandle own("~");
     speed_ = own.param("speed", 0.5);
     unknown_is_free_ = own.param("unknown_is_free", false);
@@ -80,8 +81,12 @@ class NavigateNode {
       if (!costmap_) map_problem_ = "map is refused: " + problem;
       return;
     }
-    Grid grid{static_cast<int>(info.width), static_cast<int>(info.height), info.resolution,
-              origin.position.x, origin.position.y, data};
+    Grid grid{static_cast<int>(info.width),
+              static_cast<int>(info.height),
+              info.resolution,
+              origin.position.x,
+              origin.position.y,
+              data};
     costmap_ = std::make_unique<Costmap>(std::move(grid), footprint_, unknown_is_free_);
     doubt_ = Doubt();
   }
@@ -113,10 +118,12 @@ class NavigateNode {
     const double age = time.toSec() - place->stamp;
     if (place->stamp > 0 && age > kOldPlace) {
       std::array<char, 120> text;
-      std::snprintf(text.data(), text.size(), "the robot is not localised: tf from %s is %.1f s old", map_frame_.c_str(), age);
+      std::snprintf(text.data(), text.size(), "the robot is not localised: tf from %s is %.1f s old",
+                    map_frame_.c_str(), age);
       return text.data();
     }
-    if ((time - seen_at_).toSec() > kOldPlace) return "tf does not give the place of the scans in the map: " + scan_problem_;
+    if ((time - seen_at_).toSec() > kOldPlace)
+      return "tf does not give the place of the scans in the map: " + scan_problem_;
     if (!doubt_.problem().empty()) return doubt_.problem();
     return path_client_.connected() ? "" : "follow_path does not run: rosrun robot_control follow_path.py";
   }
@@ -129,7 +136,8 @@ class NavigateNode {
     std::string why, frame = goal.target.header.frame_id;
     if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);
     if (!yaw) return refuse("the goal's orientation is no quaternion of length 1");
-    if (!std::isfinite(position.x) || !std::isfinite(position.y)) return refuse("the goal holds a number that is not finite");
+    if (!std::isfinite(position.x) || !std::isfinite(position.y))
+      return refuse("the goal holds a number that is not finite");
     if (!(goal.speed >= 0 && goal.speed <= 10)) return refuse("the goal's speed must be from 0 to 10 m/s");
     if (frame.empty()) return refuse("the goal has no frame: set header.frame_id, for instance to " + map_frame_);
     PlanarPose target{position.x, position.y, *yaw};
@@ -164,7 +172,8 @@ class NavigateNode {
       const std::string held = path_client_.held().empty() ? guard_.held() : path_client_.held();
       output_ = navigator_.step({now(), why, held, pose_, path_client_.report()}, costmap_.get());
       if (output_.cancel) path_client_.cancel();
-      if (output_.path) path_client_.send(*output_.path, map_frame_, goal_speed_ > 0 ? goal_speed_ : speed_, requested_);
+      if (output_.path)
+        path_client_.send(*output_.path, map_frame_, goal_speed_ > 0 ? goal_speed_ : speed_, requested_);
       if (output_.state == NavigatorState::kReached) conclude(true, false, "reached");
       if (output_.state == NavigatorState::kFailed) conclude(false, false, output_.reason);
       servers_.feedback(output_, pose_, map_frame_);
@@ -184,14 +193,17 @@ class NavigateNode {
     status.message = reason.empty() ? name_of(navigator_.active() ? output_.state : NavigatorState::kIdle) : reason;
     status.values.resize(1);
     status.values[0].key = "goal";
-    status.values[0].value = name_of(navigator_.active() ? output_.state : last_.empty() ? NavigatorState::kIdle : NavigatorState::kFailed);
+    status.values[0].value = name_of(navigator_.active() ? output_.state
+                                     : last_.empty()     ? NavigatorState::kIdle
+                                                         : NavigatorState::kFailed);
     diagnostics_.publish(array);
     if (!costmap_ || costmap_topic_.getNumSubscribers() == 0) return;
     costmap_->update(now());
     const Grid& grid = costmap_->grid();
     nav_msgs::OccupancyGrid message;
     message.header.frame_id = map_frame_, message.header.stamp = array.header.stamp;
-    message.info.width = static_cast<std::uint32_t>(grid.columns), message.info.height = static_cast<std::uint32_t>(grid.rows);
+    message.info.width = static_cast<std::uint32_t>(grid.columns),
+    message.info.height = static_cast<std::uint32_t>(grid.rows);
     message.info.resolution = static_cast<float>(grid.resolution);
     message.info.origin.position.x = grid.origin_x, message.info.origin.position.y = grid.origin_y;
     message.info.origin.orientation.w = 1;

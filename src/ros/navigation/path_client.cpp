@@ -49,7 +49,9 @@ PlanarMotion PathClient::intended(const PlanarPose& pose) const {
   if (turning_) return {0, heading_error_ > 0 ? -1.0 : 1.0};
   std::size_t near = 1;
   for (std::size_t i = 1; i < poses_.size(); ++i) {
-    if (std::hypot(poses_[i].x - pose.x, poses_[i].y - pose.y) < std::hypot(poses_[near].x - pose.x, poses_[near].y - pose.y)) near = i;
+    if (std::hypot(poses_[i].x - pose.x, poses_[i].y - pose.y) <
+        std::hypot(poses_[near].x - pose.x, poses_[near].y - pose.y))
+      near = i;
   }
   const PlanarPose &a = poses_[near - 1], &b = poses_[near];
   return {(b.x - a.x) * std::cos(a.yaw) + (b.y - a.y) * std::sin(a.yaw) < 0 ? -1.0 : 1.0, 0};

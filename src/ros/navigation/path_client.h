@@ -28,8 +28,8 @@ class PathClient {
   /// Returns why follow_path holds the robot, as it says; "" if it does not.
   std::string held() const { return held_; }
 
-  /// Returns the motion that follow_path intends now, as far as its feedback says: the sign of a turn on the spot, or of
-  /// the speed.
+  /// Returns the motion that follow_path intends now, as far as its feedback says: the sign of a turn on the spot, or
+  /// of the speed.
   PlanarMotion intended(const PlanarPose& pose) const;
   bool connected() const { return goal_.getNumSubscribers() > 0; }
 

@@ -1,8 +1,8 @@
 #pragma once
 /// Publishes `clearance` from the laser while a goal is driven, in a thread of its own: planning delays it by nothing.
 ///
-/// With a scan that does not count the clearance is 0, and the robot stands. After the goal, once the robot stands, it is
-/// infinite, so that the robot can be driven by hand.
+/// With a scan that does not count the clearance is 0, and the robot stands. After the goal, once the robot stands, it
+/// is infinite, so that the robot can be driven by hand.
 
 #include <nav_msgs/Odometry.h>
 #include <ros/callback_queue.h>
