@@ -179,7 +179,7 @@ py::list derived_wheel_loops(Parameters parameters) {
 py::dict scan_of(const ClosedLoop& loop) {
   using namespace py::literals;
   const LaserScan scan = loop.scan();
-  if (scan.ranges.empty()) throw py::value_error("there is no laser: set mujoco_plant.laser.rate");
+  if (scan.ranges.empty()) throw py::value_error("there is no laser: set laser.rate of the simulated machine");
   return py::dict("cycle"_a = scan.head.cycle, "stamp_ns"_a = scan.head.stamp_ns, "link"_a = scan.link,
                   "angle_min"_a = scan.angle_min, "angle_increment"_a = scan.angle_increment,
                   "range_min"_a = scan.range_min, "range_max"_a = scan.range_max,

@@ -70,7 +70,7 @@ class ClosedLoop {
   /// Returns the rows that the four nodes published in the last step.
   const JoinedRow& row() const noexcept;
 
-  /// Returns what the laser measures in the true state of the last step, whichever cycle it is (mujoco_plant.laser).
+  /// Returns what the laser measures in the true state of the last step, whichever cycle it is (laser_parameters.h).
   /// Without a laser there are no ranges.
   LaserScan scan() const;
 

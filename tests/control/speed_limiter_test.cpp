@@ -251,20 +251,25 @@ TEST(SpeedLimiter, ReturnsFromLimitsThatWereLowered) {
   EXPECT_EQ(before, 0.4);
 }
 
-// The machine follows only a part of the acceleration, another one in every cycle.
+// The machine follows only a part of the acceleration, another one in every cycle. The tighter jerk limit of both axes
+// holds: in the second case that of the linear axis.
 TEST(SpeedLimiter, APartOfTheLimitsKeepsLineAndJerk) {
+  SpeedLimits gentle = kSmooth;
+  gentle.linear.acceleration = gentle.linear.deceleration = 2;
+  gentle.linear.jerk = 8;
   for (unsigned seed = 0; seed < 20; ++seed) {
+    const SpeedLimits& limits = seed % 2 == 0 ? kSmooth : gentle;
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> part(0.01, 1);
-    SpeedLimiter limiter(kSmooth);
+    SpeedLimiter limiter(limits);
     PlanarTwist last;
     for (int k = 0; k < 6000; ++k) {
       const PlanarTwist goal = k < 3000 ? PlanarTwist{0.9, 1.5} : PlanarTwist{};
       limiter.step(goal, kDt, false, part(random));
       ASSERT_NEAR(1.5 * limiter.value().linear, 0.9 * limiter.value().angular, 1e-12) << "seed " << seed;
       const PlanarTwist& a = limiter.acceleration();
-      ASSERT_LE(std::abs(a.linear - last.linear), kSmooth.linear.jerk * kDt * (1 + 1e-9)) << "seed " << seed;
-      ASSERT_LE(std::abs(a.angular - last.angular), kSmooth.angular.jerk * kDt * (1 + 1e-9)) << "seed " << seed;
+      ASSERT_LE(std::abs(a.linear - last.linear), limits.linear.jerk * kDt * (1 + 1e-9)) << "seed " << seed;
+      ASSERT_LE(std::abs(a.angular - last.angular), limits.angular.jerk * kDt * (1 + 1e-9)) << "seed " << seed;
       last = a;
     }
     ASSERT_EQ(limiter.value().linear, 0.0) << "seed " << seed;
@@ -279,6 +284,8 @@ TEST(SpeedLimiter, HalfOfTheLimitsTakesTwiceAsLong) {
     EXPECT_NEAR(limiter.value().linear, target.linear, 1e-12);  // 2000 roundings
     EXPECT_NEAR(limiter.value().angular, target.angular, 1e-12);
     EXPECT_NEAR(limiter.used_acceleration_scale(), 0.5, 1e-9);
+    limiter.step({}, kDt, false, 0.5);
+    EXPECT_NEAR(limiter.used_acceleration_scale(), 1, 1e-9) << "decelerations are not scaled";
   }
 }
 

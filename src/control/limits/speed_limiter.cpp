@@ -74,7 +74,6 @@ void SpeedLimiter::set_limits(const SpeedLimits& limits) noexcept {
 }
 
 void SpeedLimiter::restart_from(const PlanarTwist& twist) noexcept {
-  release_jerk_ = {limits_.linear.jerk, limits_.angular.jerk};
   linear_ = {.speed = twist.linear};
   angular_ = {.speed = twist.angular};
   acceleration_ = {};

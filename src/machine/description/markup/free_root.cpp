@@ -49,8 +49,9 @@ const TiXmlElement* free_joint(const TiXmlElement& robot) {
   for (const TiXmlElement* joint = robot.FirstChildElement("joint"); joint != nullptr;
        joint = joint->NextSiblingElement("joint")) {
     const std::string parent = link_at(*joint, "parent");
+    if (!is_free(*joint) || ends.count(parent) != 1) continue;
     const TiXmlElement* const link = named(robot, "link", parent);
-    if (is_free(*joint) && ends.count(parent) == 1 && link != nullptr && is_empty(*link)) return joint;
+    if (link != nullptr && is_empty(*link)) return joint;
   }
   return nullptr;
 }

@@ -38,7 +38,7 @@ void GateConditions::step(const SensorFrame& sensors, ActiveCauses& out) noexcep
   if (report.verdict != GateVerdict::kBrake && (out_of_place || disobeys(report)))
     out.add(kCauseGateDisobeys, Reaction::kBrake, {.beyond = true, .value = 1});
   frame_ = frame;
-  tick_ = report.cycle;
+  tick_ = out_of_place ? frame - 1 : report.cycle;
 }
 
 bool GateConditions::refuses(const GateReport& report) const noexcept {

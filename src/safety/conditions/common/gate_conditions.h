@@ -12,7 +12,8 @@
 ///               longer stop this machine, so it leads to FAULT
 ///
 /// A permit from before the first step (of an earlier monitor) is judged by its age only. Ticks that the monitor
-/// skipped count as the next tick that it evaluated. Cycles that the driver skipped are no ticks.
+/// skipped count as the next tick that it evaluated. Cycles that the driver skipped are no ticks. A report that is not
+/// between the last frame and this one counts as that of tick k−1.
 
 #include <array>
 #include <bitset>
