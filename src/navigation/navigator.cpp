@@ -11,7 +11,7 @@ namespace {
 
 /// s between two updates of the distances: 20 ns a cell are 5 % of one processor at most.
 double update_period(const Costmap& costmap) {
-  return std::max(0.1, 4e-7 * static_cast<double>(costmap.grid().cells.size()));
+  return std::max(0.2, 4e-7 * static_cast<double>(costmap.grid().cells.size()));
 }
 
 std::string for_seconds(const std::string& reason, double seconds) {
