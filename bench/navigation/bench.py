@@ -28,7 +28,7 @@ def bench(parts: Sequence[str], first: int, runs: int | None, say: Say) -> tuple
 
 def _of_mrpt(parts: Sequence[str], first: int, runs: int | None, say: Say) -> list[dict[str, Any]]:
     try:
-        from bench.navigation import localizing, mapping
+        from bench.navigation import localizing, mapping  # noqa: PLC0415 (without MRPT the other parts run)
     except ImportError:
         raise RuntimeError("MRPT is not installed: scripts/setup --navigation, then build again") from None
     rows: list[dict[str, Any]] = []

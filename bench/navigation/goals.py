@@ -95,8 +95,11 @@ def drive_goals(task: tuple[str, int]) -> list[tuple[Trip, bool, float]]:
         wrong = random.random() < WRONG
         while not wrong and not (aside(obstacles, goal) and feasible(robot, known, goal)):
             goal = random_goal(random, known)
+        possible, way = feasible(robot, known, goal), shortest(known, start, goal)
         trip = robot.drive(goal)
-        trips.append((trip, not feasible(robot, known, goal), shortest(known, start, goal)))
+        trips.append((trip, not possible, way))
+        if trip.hit:  # a cart pushes it anywhere, through walls, too
+            robot = Robot(scene, obstacles, known, seed)
     return trips
 
 

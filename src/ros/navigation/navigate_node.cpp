@@ -23,9 +23,9 @@
 namespace robot_control {
 namespace {
 
-constexpr double kPeriod = 0.1;    // s
+constexpr double kPeriod = 0.1;      // s
 constexpr double kTfPatience = 0.3;  // s for which a scan waits for tf
-constexpr double kOldPlace = 1.0;  // s; a localisation is as slow as its scans
+constexpr double kOldPlace = 1.0;    // s; a localisation is as slow as its scans
 
 Footprint read_footprint(ros::NodeHandle& handle) {
   std::string urdf;
