@@ -34,7 +34,7 @@ Place = tuple[float, float, float]
 
 @dataclass
 class Lies:
-    """What is wrong on purpose, from `since` s on; the defaults are true."""
+    """The errors that are made on purpose, from `since` s on; the defaults are true."""
 
     since: float = math.inf
     frozen: bool = False
@@ -97,7 +97,7 @@ class Robot:
             y + sensor[0] * math.sin(yaw) + sensor[1] * math.cos(yaw),
             yaw + sensor[2],
         )
-        problem: str = self.navigation.see(self._scan, seen_from, self.loop.time, self._moved)
+        problem: str = self.navigation.update(self._scan, seen_from, self.loop.time, self._moved)
         free = 0.0
         if not self.navigation.silent(self.loop.time):
             free = self.navigation.free_way(self._scan, sensor, *self._motion())

@@ -122,7 +122,7 @@ void Costmap::clear() {
   update(0);
 }
 
-Agreement Costmap::see(const Scan& scan, const PlanarPose& sensor, double now) {
+Agreement Costmap::insert(const Scan& scan, const PlanarPose& sensor, double now) {
   Agreement result;
   std::vector<std::size_t> ends;
   for (std::size_t ray = 0; ray < scan.ranges.size(); ++ray) {

@@ -1,11 +1,12 @@
 #pragma once
-/// Where a robot may stand: the map, what the laser sees beside it, and the outline of the robot.
+/// A Costmap says where a robot may stand, by the map, the laser and the outline of the robot.
 ///
-/// A cell is occupied if the map says so (≥ 65 %), if a ray ended there within the last kMemory and none passed it
-/// since, or, unless `unknown_is_free`, if neither the map nor a ray knows it. A ray that ends within kExplained of an
-/// occupied cell of the map marks nothing: it is the map's own wall, within the error of the localisation.
+/// A cell is occupied if the map says so (≥ 65 %), or if a ray ended there within the last kMemory and none passed it
+/// since. Unless `unknown_is_free`, it is also occupied if neither the map nor a ray knows it. A ray that ends within
+/// kExplained of an occupied cell of the map marks nothing. It has hit the map's own wall, within the error of the
+/// localisation.
 ///
-/// Rays also say whether map and pose can be true. Something that was added shortens a ray; only a thing that is gone,
+/// Rays also say whether map and pose can be true. Something that was added shortens a ray. Only a thing that is gone,
 /// or an untrue pose or map, lets a ray pass a wall of the map.
 
 #include <limits>
@@ -17,7 +18,7 @@
 
 namespace robot_control {
 
-inline constexpr double kMemory = 20;       ///< s
+inline constexpr double kMemory = 10;       ///< s; less than the patience of a goal that it blocks
 inline constexpr double kExplained = 0.1;   ///< m
 inline constexpr double kBehindWall = 0.3;  ///< m; a ray that ends so far behind a wall contradicts the map
 inline constexpr double kPadding = 0.07;    ///< m of air about the outline: noise of the laser and lag of the follower
@@ -36,7 +37,7 @@ class Costmap {
   Costmap(Grid map, Footprint footprint, bool unknown_is_free);
 
   /// Takes one scan whose sensor was at `sensor` in the map; `now` in s of any clock that does not turn back.
-  Agreement see(const Scan& scan, const PlanarPose& sensor, double now);
+  Agreement insert(const Scan& scan, const PlanarPose& sensor, double now);
 
   /// Brings the distances up to date, which `free` and `distance` use. Takes about 20 ns a cell.
   void update(double now);

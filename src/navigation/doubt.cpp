@@ -4,7 +4,7 @@
 
 namespace robot_control {
 
-void Doubt::see(const Agreement& seen) {
+void Doubt::update(const Agreement& seen) {
   if (seen.rays < kFewRays) return;
   const bool bad = seen.contradicting > kContradicting * seen.rays || seen.explained < kExplainedLeast * seen.rays;
   bad_ = std::clamp(bad_ + (bad ? 1 : -1), 0, kDoubtful);

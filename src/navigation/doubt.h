@@ -2,7 +2,7 @@
 /// Whether map, place and laser can all be true: the scans are compared with the map (Agreement in costmap.h).
 ///
 /// A scan is bad if more than kContradicting of its rays pass walls of the map, or less than kExplainedLeast end at
-/// them. kDoubtful bad scans more than good ones begin the doubt, and as many good ones end it.
+/// them. The doubt begins with kDoubtful more bad scans than good ones. It ends when as many good ones have followed.
 
 #include <string>
 
@@ -17,7 +17,7 @@ inline constexpr int kFewRays = 20;             ///< scans of fewer hits are not
 
 class Doubt {
  public:
-  void see(const Agreement& seen);
+  void update(const Agreement& seen);
 
   /// Returns the doubt as a sentence; "" without one.
   const std::string& problem() const noexcept { return doubtful_ ? text_ : none_; }

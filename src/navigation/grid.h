@@ -1,8 +1,8 @@
 #pragma once
 /// An occupancy grid as in nav_msgs/OccupancyGrid, without ROS.
 ///
-/// Cell (column, row) covers x ∈ [origin_x + column·resolution, … + resolution) of the frame `map`, y likewise; the
-/// cells lie row by row, that of the smallest y first. The grid is not turned against its frame.
+/// Cell (column, row) begins at x = origin_x + column·resolution and y = origin_y + row·resolution of the frame `map`.
+/// The cells lie row by row, that of the smallest y first. The grid is not turned against its frame.
 
 #include <cmath>
 #include <cstddef>

@@ -1,5 +1,5 @@
 #pragma once
-/// What the laser says about the way ahead, without map and localisation: the safety monitor's `clearance` follows it.
+/// The free way ahead, from the laser alone, without map and localisation. The safety monitor's `clearance` follows it.
 
 #include <vector>
 
@@ -17,9 +17,9 @@ struct PlanarMotion {
   double angular = 0;  ///< rad/s
 };
 
-/// Returns how far the outline may go along the arc of this motion until it comes within kBeside of a point, less
-/// kStopShort, in m of the base's way; ∞ beyond kLookout. For a turn on the spot it is the way of the outline's widest
-/// place, ∞ beyond a whole turn. Without motion it is that straight ahead.
+/// Returns how far the outline may go along the arc of this motion until a point is within kBeside, less kStopShort. It
+/// is in m of the base's way, ∞ beyond kLookout. For a turn on the spot it is the way of the outline's widest place, ∞
+/// beyond a whole turn. Without motion it is the way straight ahead.
 ///
 /// `points` are in base axes. A point inside the outline is a part of the robot. One that is nearer than kBeside at the
 /// start counts if the motion brings it nearer.

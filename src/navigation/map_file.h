@@ -9,9 +9,9 @@
 ///   free_thresh: 0.196          below it free, else unknown
 ///   mode: trinary               may be absent
 ///
-/// The picture is binary PGM (P5) of 8 bits. A file is refused that is not so, is truncated, has more than kMaxCells
-/// cells, a resolution beyond 0.001 … 10 m, thresholds beyond 0 … 1 or in the wrong order, an origin beyond 10⁶ m or
-/// turned, another mode, a key that is not known or not there.
+/// The picture is binary PGM (P5) of 8 bits. Other pictures, truncated ones and those of more than kMaxCells cells are
+/// refused. So are a resolution beyond 0.001 … 10 m, an origin beyond 10⁶ m or turned, and another mode. Thresholds
+/// must be within 0 … 1 and in this order. Every key but `mode` has to be there, and no other one.
 
 #include <stdexcept>
 #include <string>

@@ -8,8 +8,8 @@
 ///   waiting    nothing is driven: the way is blocked, or the laser, the map or the place is not to be trusted. After
 ///              kPatience the goal is given up, before the first path after kStartPatience
 ///
-/// A path that follow_path gave up is planned again, kAttempts times without kProgress in between. follow_path decides
-/// itself what a stop of the robot has revoked.
+/// A path that follow_path gave up is planned again, kAttempts times without kProgress in between. follow_path
+/// refuses what a stop of the robot has revoked.
 
 #include <optional>
 #include <string>
@@ -27,7 +27,7 @@ inline constexpr double kStopBefore = 0.6;   ///< m
 inline constexpr double kProgress = 0.3;     ///< m
 inline constexpr int kAttempts = 3;
 
-/// What became of the last path that was sent to follow_path.
+/// The end of the last path that was sent to follow_path.
 struct PathReport {
   enum class State { kNone, kActive, kDone, kFailed };
   State state = State::kNone;

@@ -3,9 +3,9 @@
 ///
 /// States are (cell, heading sector of 22.5°). Moves are one step along the heading, one step back, and a turn on the
 /// spot by one sector. A step costs its length times step_cost (smoothing.h), one back kBackFactor times that, a sector
-/// kSectorCost. A* is guided by the same cost without headings, from a search backwards from the goal. MRPT's
-/// PlannerSimple2D takes a circle alone, and the planners of OMPL draw samples: their ways differ from run to run, and
-/// that there is none is found by a timeout. Therefore neither is used.
+/// kSectorCost. A* is guided by the same cost without headings, from a search backwards from the goal.
+/// MRPT's PlannerSimple2D takes a circle alone. The planners of OMPL draw samples. Their ways differ from run to run,
+/// and a timeout stands for "there is no way". Therefore neither is used.
 ///
 /// The way is then smoothed (smoothing.h). Every pose carries the robot's heading: follow_path drives a segment
 /// backwards whose poses point against it.
@@ -27,8 +27,8 @@ struct Plan {
 };
 
 /// The costmap is up to date (Costmap::update). A start that is not free may be left, as long as every step is freer
-/// than the start or free. Refuses a goal outside the map, in an obstacle, in unknown space or too near to an obstacle
-/// for the outline, and names the narrowest place where there is no way.
+/// than the start or free. A goal is refused outside the map, in an obstacle, in unknown space, or too near to either.
+/// The problem names the narrowest place of the widest way if there is no way for the outline.
 Plan plan_path(const Costmap& costmap, const PlanarPose& start, const PlanarPose& goal);
 
 /// Returns the distance along the poses to the first one that is not free, from the pose nearest to `robot` on; ∞ if

@@ -1,9 +1,9 @@
 #pragma once
 /// Whether a laser can be trusted, from its messages alone.
 ///
-/// A message is refused that cannot be a scan: no ray, more than kMaxRays, angles or limits that are not finite, an
-/// increment of zero, more than one turn, angles that run against their increment, a stamp before that of the last one
-/// or from another publisher while the first one still sends. A refused message is as good as none.
+/// A message is refused that has no ray, more than kMaxRays, or more than one turn. Angles and limits have to be
+/// finite, and the increment not zero. A message is refused, too, with a stamp before that of the last one. So is one
+/// of another publisher while the first one still sends. A refused message is as good as none.
 ///
 /// The scan is silent if no message was accepted for kSilence, or if its stamps are older than that. It is blind
 /// without one range that was measured, and frozen if the same ranges come again while the robot moved by kMoved.

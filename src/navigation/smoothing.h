@@ -1,6 +1,6 @@
 #pragma once
-/// Makes a way of lattice steps into one that follow_path drives: straightened as far as no cell nearer to obstacles is
-/// crossed, its corners rounded where there is room, with a pose every kSpacing.
+/// These functions make a way of lattice steps into one that follow_path drives. It is straightened as far as no cell
+/// nearer to obstacles is crossed. Its corners are rounded where there is room. A pose is set every kSpacing.
 
 #include <vector>
 

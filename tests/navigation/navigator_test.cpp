@@ -26,7 +26,7 @@ class NavigatorTest : public testing::Test {
 
   void step() {
     now_ += kPeriod;
-    costmap_.see(scan_of(world_, pose_, 180), pose_, now_);
+    costmap_.insert(scan_of(world_, pose_, 180), pose_, now_);
     out_ = navigator_.step({now_, problem_, "", pose_, report_}, &costmap_);
     if (out_.cancel) report_.state = PathReport::State::kNone;
     if (out_.path) path_ = *out_.path, along_ = 0, report_ = {PathReport::State::kActive, ""}, ++paths_;
@@ -113,7 +113,7 @@ TEST_F(NavigatorTest, ADoorThatStaysShutIsGivenUpWithTheReason) {
 
 TEST_F(NavigatorTest, ABoxOnTheGoalIsWaitedForFromTheStart) {
   box(47, 16);
-  costmap_.see(scan_of(world_, {4.0, 1.6, 0}, 720), {4.0, 1.6, 0}, now_);
+  costmap_.insert(scan_of(world_, {4.0, 1.6, 0}, 720), {4.0, 1.6, 0}, now_);
   navigator_.begin({4.7, 1.6, 0}, now_);
   run(5);
   EXPECT_EQ(out_.state, State::kWaiting);

@@ -61,12 +61,12 @@ TEST(CostmapTest, ARayMarksWhatTheMapDoesNotHaveAndClearsItAgain) {
   Grid world = map;
   world.cells[world.index({20, 16})] = kOccupiedCell;
   Costmap costmap = costmap_of(map);
-  const Agreement seen = costmap.see(scan_of(world, kLeft), kLeft, 1.0);
+  const Agreement seen = costmap.insert(scan_of(world, kLeft), kLeft, 1.0);
   costmap.update(1.0);
   EXPECT_TRUE(costmap.occupied({20, 16}));
   EXPECT_GT(seen.explained, seen.rays * 9 / 10);
   EXPECT_EQ(seen.contradicting, 0);
-  costmap.see(scan_of(map, kLeft), kLeft, 1.1);
+  costmap.insert(scan_of(map, kLeft), kLeft, 1.1);
   costmap.update(1.1);
   EXPECT_FALSE(costmap.occupied({20, 16}));
 }
@@ -76,7 +76,7 @@ TEST(CostmapTest, WhatIsNotSeenAgainIsForgotten) {
   Grid world = map;
   world.cells[world.index({20, 16})] = kOccupiedCell;
   Costmap costmap = costmap_of(map);
-  costmap.see(scan_of(world, kLeft), kLeft, 1.0);
+  costmap.insert(scan_of(world, kLeft), kLeft, 1.0);
   costmap.update(0.9 + kMemory);
   EXPECT_TRUE(costmap.occupied({20, 16}));
   costmap.update(1.1 + kMemory);
@@ -88,7 +88,7 @@ TEST(CostmapTest, AnUntruePoseLetsRaysPassWalls) {
   Costmap costmap = costmap_of(map);
   const PlanarPose shifted{kLeft.x + 0.5, kLeft.y, kLeft.yaw}, turned{kLeft.x, kLeft.y, M_PI / 6};
   for (const PlanarPose& wrong : {shifted, turned}) {
-    const Agreement seen = costmap.see(scan_of(map, kLeft), wrong, 1.0);
+    const Agreement seen = costmap.insert(scan_of(map, kLeft), wrong, 1.0);
     EXPECT_GT(seen.contradicting, seen.rays / 8);
   }
 }
@@ -98,11 +98,11 @@ TEST(DoubtTest, AnUntruePoseIsDoubtedAfterHalfASecondAndATrueOneTrustedAgain) {
   Costmap costmap = costmap_of(map);
   Doubt doubt;
   const PlanarPose wrong{kLeft.x + 0.5, kLeft.y, kLeft.yaw};
-  for (int i = 0; i < kDoubtful - 1; ++i) doubt.see(costmap.see(scan_of(map, kLeft), wrong, 1));
+  for (int i = 0; i < kDoubtful - 1; ++i) doubt.update(costmap.insert(scan_of(map, kLeft), wrong, 1));
   EXPECT_EQ(doubt.problem(), "");
-  doubt.see(costmap.see(scan_of(map, kLeft), wrong, 1));
+  doubt.update(costmap.insert(scan_of(map, kLeft), wrong, 1));
   EXPECT_THAT(doubt.problem(), HasSubstr("contradicts the map: of 360 rays"));
-  for (int i = 0; i < kDoubtful; ++i) doubt.see(costmap.see(scan_of(map, kLeft), kLeft, 1));
+  for (int i = 0; i < kDoubtful; ++i) doubt.update(costmap.insert(scan_of(map, kLeft), kLeft, 1));
   EXPECT_EQ(doubt.problem(), "");
 }
 
@@ -200,7 +200,7 @@ TEST(PlannerTest, TheDistanceToWhatBlocksThePathFallsAsTheRobotMoves) {
   EXPECT_TRUE(std::isinf(free_distance(costmap, plan.poses, kLeft, passed)));
   Grid world = map;
   world.cells[world.index({28, 16})] = kOccupiedCell;
-  costmap.see(scan_of(world, kLeft), kLeft, 1);
+  costmap.insert(scan_of(world, kLeft), kLeft, 1);
   costmap.update(1);
   const double far = free_distance(costmap, plan.poses, kLeft, passed);
   EXPECT_NEAR(far, 2.8 - 1.6 - 0.12 - kPadding, 0.15);

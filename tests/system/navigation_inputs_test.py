@@ -30,7 +30,7 @@ SECOND = "{header: {frame_id: laser_link}, angle_increment: 0.1, range_max: 9.0,
 
 
 def scan_of(hall: tuple[float, float, float, float] = (-1.95, 3.95, -1.95, 1.95)) -> LaserScan:
-    """What a laser at the origin sees of the hall: left, right, bottom, top [m]."""
+    """Returns the scan of a laser at the origin of the hall: left, right, bottom, top [m]."""
     scan = LaserScan(angle_min=-math.pi, angle_increment=2 * math.pi / RAYS, range_min=0.1, range_max=12.0)
     scan.header.frame_id, scan.header.stamp = "laser_link", rospy.Time.now()
     angles = scan.angle_min + np.arange(RAYS) * scan.angle_increment

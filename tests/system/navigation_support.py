@@ -1,4 +1,4 @@
-"""What the rostests of navigate share: a map as message, tf of a known place, and whether navigate was built."""
+"""The rostests of navigate share a map as message, tf of a known place, and whether navigate was built."""
 
 import threading
 from pathlib import Path

@@ -22,17 +22,17 @@ std::vector<Pose> poses_of(const Plan& plan) {
   return poses;
 }
 
-/// What the node does with scan, place and goal, without ROS.
+/// It does what the node navigate does with scan, place and goal, without ROS.
 class Navigation {
  public:
   Navigation(const py::tuple& map, const std::string& urdf, bool unknown_is_free)
       : costmap_(grid_of(map), footprint_of_urdf(urdf, "the URDF"), unknown_is_free) {}
 
   /// `moved`: m + rad so far. Returns why the laser, or map and place, cannot be trusted.
-  std::string see(const py::dict& given, const Pose& sensor, double now, double moved) {
+  std::string update(const py::dict& given, const Pose& sensor, double now, double moved) {
     const Scan scan = scan_of(given);
     watch_.receive(scan, "laser", now, now, moved);
-    doubt_.see(costmap_.see(scan, planar_of(sensor), now));
+    doubt_.update(costmap_.insert(scan, planar_of(sensor), now));
     const std::string problem = watch_.problem(now);
     return problem.empty() ? doubt_.problem() : problem;
   }
@@ -82,7 +82,7 @@ PYBIND11_MODULE(_navigation, module) {
   py::class_<Navigation>(module, "Navigation")
       .def(py::init<const py::tuple&, const std::string&, bool>(), py::arg("map"), py::arg("urdf"),
            py::arg("unknown_is_free") = false)
-      .def("see", &Navigation::see, py::arg("scan"), py::arg("sensor"), py::arg("now"), py::arg("moved"))
+      .def("update", &Navigation::update, py::arg("scan"), py::arg("sensor"), py::arg("now"), py::arg("moved"))
       .def("silent", &Navigation::silent, py::arg("now"))
       .def("free_way", &Navigation::free_way, py::arg("scan"), py::arg("sensor"), py::arg("linear"), py::arg("angular"))
       .def("distance", &Navigation::distance, py::arg("x"), py::arg("y"))

@@ -93,15 +93,15 @@ class NavigateNode {
   }
 
   /// Takes a scan into the costmap, and compares it with the map. A scan waits until tf knows the place at its stamp.
-  void see(const ros::Time& time) {
+  void process_scan(const ros::Time& time) {
     if (!waiting_ || (time - waiting_->stamp).toSec() > kTfPatience) {
-      if (auto scan = guard_.take()) waiting_ = std::move(scan);
+      if (auto scan = guard_.next_scan()) waiting_ = std::move(scan);
     }
     if (!waiting_ || !costmap_) return;
     const auto sensor = frames_.lookup(map_frame_, waiting_->frame, waiting_->stamp, scan_problem_);
     if (!sensor) return;
     if (sensor->upside_down) waiting_->scan.angle_min *= -1, waiting_->scan.angle_increment *= -1;
-    doubt_.see(costmap_->see(waiting_->scan, sensor->pose, now()));
+    doubt_.update(costmap_->insert(waiting_->scan, sensor->pose, now()));
     waiting_.reset();
     seen_at_ = time;
   }
@@ -168,7 +168,7 @@ class NavigateNode {
 
   void step() {
     const ros::Time time = ros::Time::now();
-    see(time);
+    process_scan(time);
     const std::string why = problem(time);
     if (navigator_.active()) {
       const std::string held = path_client_.held().empty() ? guard_.held() : path_client_.held();

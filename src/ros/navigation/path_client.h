@@ -1,8 +1,8 @@
 #pragma once
 /// Sends paths to the action follow_path.
 ///
-/// Each goal bears the time at which the user asked for the place, not that of its planning. follow_path therefore
-/// refuses what a stop has revoked since.
+/// Each goal bears the time at which the place was requested, not that of its planning. follow_path therefore refuses
+/// what a stop has revoked since.
 
 #include <robot_control/FollowPathActionFeedback.h>
 #include <robot_control/FollowPathActionResult.h>

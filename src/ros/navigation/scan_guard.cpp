@@ -43,7 +43,7 @@ std::string ScanGuard::problem() {
   return problem.empty() ? frame_problem_ : problem;
 }
 
-std::optional<StampedScan> ScanGuard::take() {
+std::optional<StampedScan> ScanGuard::next_scan() {
   const std::lock_guard lock(mutex_);
   return std::exchange(newest_, std::nullopt);
 }
@@ -98,9 +98,9 @@ double ScanGuard::clearance_of(const StampedScan& scan) {
   Scan upright = scan.scan;
   if (sensor->upside_down) upright.angle_min *= -1, upright.angle_increment *= -1;
   const bool moves = std::abs(measured_.linear) > kStanding || std::abs(measured_.angular) > 2 * kStanding;
-  const double way = free_way(footprint_, points_of(upright, sensor->pose), moves ? measured_ : intended_);
+  const double free = free_way(footprint_, points_of(upright, sensor->pose), moves ? measured_ : intended_);
   const double age = std::clamp((ros::Time::now() - scan.stamp).toSec(), 0.0, kSilence);
-  return std::max(0.0, way - std::abs(measured_.linear) * age);
+  return std::max(0.0, free - std::abs(measured_.linear) * age);
 }
 
 void ScanGuard::watch() {

@@ -37,7 +37,7 @@ class ScanGuard {
   std::string problem();
 
   /// Returns the newest accepted scan, once.
-  std::optional<StampedScan> take();
+  std::optional<StampedScan> next_scan();
 
   /// Returns what slows the robot, in words; "" if the way ahead is free.
   std::string held();
