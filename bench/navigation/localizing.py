@@ -101,7 +101,7 @@ def kidnapped(grid: Map, sights: list[Sight], seed: int) -> float:
 
 
 def global_start(grid: Map, sights: list[Sight], seed: int) -> tuple[bool, bool]:
-    """Whether the place is found while the robot drives, and whether a wrong one is believed."""
+    """Whether the place is found while the robot drives, and whether a wrong one is assumed."""
     count = round(SEARCH / SCAN_PERIOD)
     begin = int(np.random.default_rng(seed).integers(len(sights) - count))
     localizer = Localizer(grid, seed)

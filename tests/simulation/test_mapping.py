@@ -50,7 +50,7 @@ def test_the_map_shows_the_true_walls_and_the_pose_in_it(sights):
 
 
 def test_a_saved_map_goes_on_where_the_robot_is(sights, grid):
-    """The odometry begins anew, at another place of the map."""
+    """The odometry begins again, at another place of the map."""
     again = sights[len(sights) // 2 :]
     mapper = mrpt.Mapper(grid, again[0].truth)
     off = errors(again, mapped(again, mapper))
