@@ -127,7 +127,7 @@ def _links(
             if page is None:
                 page = Page(f"http://127.0.0.1:{proxy.port}", f"http://127.0.0.1:{proxy.port}", cookie)
                 page.send({"type": "take", "force": True})
-                page.send({"type": "speeds", "linear": 2.0, "angular": 1.0})
+                page.send({"type": "speeds", "linear": 2.0, "angular": 1.0, "lateral": 0.3})
                 page.await_link()
                 time.sleep(14.0 if number == 0 else 6.0)  # 100 pings take 10 s
             if number == 0:

@@ -81,6 +81,7 @@ class Page:
                     "held": held,
                     "linear": self.linear if held else 0.0,
                     "angular": 0.0,
+                    "lateral": 0.0,
                 }
                 self.sent_at = now if held else self.sent_at
                 await page.send_json({"type": "drive", **drive})

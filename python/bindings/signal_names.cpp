@@ -63,6 +63,7 @@ py::dict signal_names() {
   all["GateVerdict"] = states<GateVerdict>(5);
   all["DriverState"] = states<DriverState>(5);
   all["JointMode"] = states<JointMode>(4);
+  all["LegPhase"] = states<LegPhase>(7);
   all["SensorIndex"] = words(kStateSensorNames);
   all["FaultComponent"] = words(kFaultComponentNames);
   all["FaultKind"] = words(kFaultKindNames);

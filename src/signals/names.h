@@ -88,7 +88,8 @@ inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
     {kReasonTimedOut, "timed_out", "the last {request} is older than {request_timeout}",
      "publish on {request} more often than every {request_timeout}"},
     {kReasonRefused, "refused", "the last {request} was NaN or infinite", "repair the sender on {request}"},
-    {kReasonSpeedLimited, "speed_limited", "cmd_vel is above max_linear_speed or max_angular_speed", ""},
+    {kReasonSpeedLimited, "speed_limited", "the requested speed is above max_linear_speed, max_angular_speed or, on legs, "
+     "max_lateral_speed", ""},
     {kReasonAccelerationLimited, "acceleration_limited", "the acceleration limit shapes the motion", ""},
     {kReasonJerkLimited, "jerk_limited", "the jerk limit shapes the motion", ""},
     {kReasonNoPermit, "no_permit", "there is no live permit", "start {monitor}"},
@@ -165,8 +166,8 @@ inline constexpr auto kStateFlagNames = std::to_array<BitName>({
 });
 
 inline constexpr auto kDegradedReasonNames = std::to_array<BitName>({
-    {kDegradedPosition, "position", "wheels slip: the path takes the speed that the accelerometer carries on",
-     "look at the IMU's mounting; a robot that shakes: slip_detection false"},
+    {kDegradedPosition, "position", "wheels or feet contradict the IMU, as in a slip: the speed is that of one of them alone",
+     "look at the ground and at the IMU's mounting; wheels of a robot that shakes: slip_detection false"},
     {kDegradedHeading, "heading", "no rest has shown the gyro's bias yet, or wheels and gyro contradict each other",
      "let the robot rest for a second"},
 });

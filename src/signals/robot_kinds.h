@@ -14,7 +14,7 @@ namespace robot_control {
 struct KindNames {
   std::string_view kind;
   std::string_view controller;  ///< program, and name of its node and of its block of parameters
-  std::string_view request;     ///< topic of requests of motion
+  std::string_view request;     ///< topics of requests of motion, in words
   std::string_view timeout;     ///< parameter with the time after which a request of a silent sender ends
   std::string_view begin;       ///< what lets the robot move, after "ready: "
 };
@@ -23,7 +23,7 @@ inline constexpr std::string_view kWheeledKind = "differential_drive";
 inline constexpr std::string_view kLeggedKind = "quadruped";
 inline constexpr std::array<KindNames, 2> kKinds{
     {{kWheeledKind, program_of(Role::kController), "cmd_vel", "cmd_vel_timeout", "send cmd_vel"},
-     {kLeggedKind, "leg_controller", "body_pose", "request_timeout", "call set_posture"}}};
+     {kLeggedKind, "leg_controller", "cmd_vel or body_pose", "request_timeout", "send cmd_vel, or call set_posture"}}};
 
 /// Returns the row of this kind. A kind that is not in the table has the first one.
 constexpr const KindNames& names_of_kind(std::string_view kind) noexcept {

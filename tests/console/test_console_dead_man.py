@@ -1,5 +1,8 @@
 """The dead-man of a link, in virtual time."""
 
+import math
+from dataclasses import replace
+
 import pytest
 from robot_control.common.command import Command
 from robot_control.console.authority import Authority, RefusedError, Role
@@ -16,14 +19,16 @@ LIMITS = Limits(linear=1.0, angular=2.0, reverse=0.3)
 class Page:
     """A page with a perfect link, whose clock is ahead by 1000 s."""
 
+    limits = LIMITS
+
     def __init__(self, authority, role=Role.OPERATE, name="anna"):
         self.authority, self.page, self.now, self.number = authority, authority.join(name, role), 0.0, 0
         self.page.dead_man.pad.permit(True)
-        self.held, self.linear, self.angular = False, 0.0, 0.0
+        self.held, self.linear, self.angular, self.lateral = False, 0.0, 0.0, 0.0
 
     def send(self, delay=0.0):
         self.number += 1
-        drive = Drive(self.number, self.now - delay + 1000.0, self.held, self.linear, self.angular)
+        drive = Drive(self.number, self.now - delay + 1000.0, self.held, self.linear, self.angular, self.lateral)
         self.authority.receive(self.page, drive, self.now)
 
     def answer_pings(self, round_trip=0.0):
@@ -38,7 +43,7 @@ class Page:
         while self.now < end - 1e-9:
             if send:
                 self.send()
-            commands.append(self.authority.command(LIMITS, self.now)[0])
+            commands.append(self.authority.command(self.limits, self.now)[0])
             self.now += PERIOD
         return commands
 
@@ -69,6 +74,20 @@ def test_a_held_key_drives_at_the_chosen_speed_and_its_release_is_zero_at_once(p
     page.release()
     commands = page.run(ZEROS - PERIOD)
     assert set(commands) == {Command()}
+
+
+def test_on_legs_alone_a_page_moves_sideways_and_the_cap_of_the_link_holds_for_both_axes_together(page):
+    page.press(1.0)
+    page.lateral = -1.0
+    assert page.run(1.0)[-1] == Command(0.5, 0.0)
+    assert "does not move sideways" in page.page.dead_man.state(page.now)
+    page.page.dead_man.pad.legged = True
+    page.limits = replace(LIMITS, lateral=0.2)
+    assert page.run(1.0)[-1] == Command(0.5, 0.0, -0.2)
+    page.page.chosen = Command(1.0, 1.0, 0.2)
+    command = page.run(1.0)[-1]
+    assert math.hypot(command.linear, command.lateral) == pytest.approx(page.page.cap)
+    assert command.lateral == pytest.approx(-0.2 * command.linear)
 
 
 def test_without_a_held_key_nothing_is_sent_after_a_second(page):

@@ -13,7 +13,7 @@ from robot_control.console.messages import BURST, MAX_SIZE, RATE, MessageError, 
 from robot_control.console.sessions import LIFE, PERIOD, TRIES_OF_USER, Sessions, Tries
 from robot_control.console.users import LINK_LIFE, Users, UsersError
 
-DRIVE = {"type": "drive", "number": 1, "sent": 2.5, "held": True, "linear": 1.0, "angular": -0.5}
+DRIVE = {"type": "drive", "number": 1, "sent": 2.5, "held": True, "linear": 1.0, "angular": -0.5, "lateral": 0.5}
 
 
 def test_a_message_of_the_schema_is_read():

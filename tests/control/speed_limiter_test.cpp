@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "control/limiter_properties.h"
 #include "signals/command_frame.h"
@@ -101,6 +102,28 @@ TEST(SpeedLimiter, KeepsTheCurvatureOfATooFastCommandAndSaysSo) {
   EXPECT_EQ(limiter.reasons(), std::uint64_t{kReasonSpeedLimited} | kReasonCurvatureKept);
   for (int k = 0; k < 2000; ++k) limiter.step({2, 0}, kDt);
   EXPECT_EQ(limiter.reasons(), std::uint64_t{kReasonSpeedLimited}) << "it is straight";
+}
+
+TEST(SpeedLimiter, ScalesACommandIntoTheLimitsOfEitherAxisAndDirection) {
+  for (const double linear : {1.0, -1.0}) {
+    for (const double angular : {1.0, -1.0}) {
+      const PlanarTwist fast = within_speed({4 * linear, 2 * angular}, kLimits);
+      EXPECT_EQ(fast.linear, linear) << "of 1 m/s";
+      EXPECT_EQ(fast.angular, 0.5 * angular);
+      const PlanarTwist turning = within_speed({0.5 * linear, 8 * angular}, kLimits);
+      EXPECT_EQ(turning.linear, 0.125 * linear);
+      EXPECT_EQ(turning.angular, 2 * angular) << "of 2 rad/s";
+    }
+  }
+}
+
+TEST(SpeedLimiter, HasNoReasonBeforeItsFirstStepAndAfterARestart) {
+  SpeedLimiter limiter(kLimits);
+  EXPECT_EQ(limiter.reasons(), 0U);
+  limiter.step({2, 0}, kDt);
+  EXPECT_NE(limiter.reasons(), 0U);
+  limiter.restart_from({});
+  EXPECT_EQ(limiter.reasons(), 0U);
 }
 
 TEST(SpeedLimiter, ContinuesFromTheSeedAndReturnsFromAboveTheLimit) {
@@ -317,14 +340,19 @@ TEST(SpeedLimiter, AJerkLimitLoweredDuringARampHoldsUpNoStop) {
 }
 
 TEST(SpeedLimiter, ALowerJerkHoldsBothWaysForARampThatBeginsAfterIt) {
-  SpeedLimiter limiter(kSmooth);
-  SpeedLimits lower = kSmooth;
-  lower.linear.jerk = 1;
-  limiter.set_limits(lower);
-  while (limiter.value().linear < 0.2) limiter.step({1, 0}, kDt);
-  for (double before = limiter.acceleration().linear; before > 0.1; before = limiter.acceleration().linear) {
-    limiter.step({0.3, 0}, kDt);
-    ASSERT_GE(limiter.acceleration().linear, before - 1 * kDt - 1e-9);
+  for (const bool turns : {false, true}) {
+    const auto axis = [&](const PlanarTwist& twist) { return turns ? twist.angular : twist.linear; };
+    const auto ask = [&](double speed) { return turns ? PlanarTwist{0, speed} : PlanarTwist{speed, 0}; };
+    SpeedLimiter limiter(kSmooth);
+    limiter.step(ask(1), kDt);
+    SpeedLimits lower = kSmooth;
+    lower.linear.jerk = lower.angular.jerk = 1;
+    limiter.set_limits(lower);
+    while (axis(limiter.value()) < 0.2) limiter.step(ask(1), kDt);
+    for (double before = axis(limiter.acceleration()); before > 0.1; before = axis(limiter.acceleration())) {
+      limiter.step(ask(0.3), kDt);
+      ASSERT_GE(axis(limiter.acceleration()), before - 1 * kDt - 1e-9) << (turns ? "angular" : "linear");
+    }
   }
 }
 
@@ -352,6 +380,32 @@ TEST(SpeedLimiter, TooLittleTorqueForATurnDoesNotHoldUpWhoSlowsDown) {
   int weak = 0;
   while (limiter.step({0, 2}, kDt, false, 0.01).linear != 0 && weak < 100'000) ++weak;
   EXPECT_LE(weak, whole + 1);
+}
+
+TEST(SpeedLimiter, TooLittleTorqueForAStartDoesNotHoldUpTheEndOfATurn) {
+  SpeedLimiter limiter(kSmooth);
+  cycles_to(limiter, {0, 1});
+  int whole = 0;
+  SpeedLimiter strong = limiter;
+  while (strong.step({0.1, 0}, kDt).angular != 0) ++whole;
+  int weak = 0;
+  while (limiter.step({0.1, 0}, kDt, false, 0.01).angular != 0 && weak < 100'000) ++weak;
+  EXPECT_LE(weak, whole + 1);
+}
+
+// One axis slows down while the other one speeds up.
+TEST(SpeedLimiter, MovesOnTheStraightLineBetweenTwoCommands) {
+  for (const auto& [from, to] : {std::pair{PlanarTwist{0.8, 0}, PlanarTwist{0.2, 1}}, {{0.1, 1.5}, {0.9, 0.1}}}) {
+    SpeedLimiter limiter(kSmooth);
+    for (int k = 0; k < 3000; ++k) limiter.step(from, kDt);
+    for (int k = 0; k < 3000; ++k) {
+      const PlanarTwist now = limiter.step(to, kDt);
+      ASSERT_NEAR((now.linear - from.linear) * (to.angular - from.angular),
+                  (now.angular - from.angular) * (to.linear - from.linear), 1e-12);
+    }
+    EXPECT_EQ(limiter.value().linear, to.linear);
+    EXPECT_EQ(limiter.value().angular, to.angular);
+  }
 }
 
 /// There is no jerk limit. Forwards the limits are 1 m/s at 1 m/s² and 2 m/s², in reverse 0.2 m/s at 0.4 and 0.5 m/s².

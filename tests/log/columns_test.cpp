@@ -207,6 +207,21 @@ TEST_F(Columns, HoldTheTruthOfEachContact) {
   EXPECT_EQ(value("left_wheel_link_truth_slip"), 9);
 }
 
+TEST_F(Columns, ShowHowARobotOnLegsWalks) {
+  controller.command.requested.twist.linear = {0.5, 0.2, 0};
+  controller.command.twist_limited.linear = {0.4, 0.1, 0};
+  controller.command.legged = {.phase = LegPhase::kWalking, .gait = 1, .gait_phase = 0.25, .stance = {0, 0.5, 0, 0.75}};
+  estimator.state.contacts[1].probability = 0.9;
+  EXPECT_EQ(value("requested_lateral"), 0.2);
+  EXPECT_EQ(value("limited_lateral"), 0.1);
+  EXPECT_EQ(value("legged_phase"), 6);
+  EXPECT_EQ(value("legged_gait"), 1);
+  EXPECT_EQ(value("legged_gait_phase"), 0.25);
+  EXPECT_EQ(value("front_right_stance"), 0.5);
+  EXPECT_EQ(value("rear_right_stance"), 0.75);
+  EXPECT_EQ(value(kContactLinks[1] + "_estimate_contact_probability"), 0.9);
+}
+
 TEST_F(Columns, TellWhatTheControllerWasSetTo) {
   controller.tuning = tuning_of(DriveTuning{
       .count = 3,

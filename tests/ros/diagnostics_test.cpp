@@ -110,9 +110,9 @@ TEST_F(StateReport, WarnsOfAPoseWhoseWheelsSlip) {
   state_.base.flags = kStateValid | kStateDegraded;
   state_.base.degraded = kDegradedPosition;
   EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
-  EXPECT_THAT(report().message().message, HasSubstr("wheels slip: the path takes the speed"));
+  EXPECT_THAT(report().message().message, HasSubstr("wheels or feet contradict the IMU, as in a slip"));
   EXPECT_EQ(value_of(report(), "degraded"), "position");
-  EXPECT_THAT(value_of(report(), "degraded remedy: position"), HasSubstr("look at the IMU's mounting"));
+  EXPECT_THAT(value_of(report(), "degraded remedy: position"), HasSubstr("at the IMU's mounting"));
 }
 
 TEST_F(StateReport, ReportsHowWellSlipIsNoticed) {

@@ -37,6 +37,14 @@ TEST(LegMessages, OnlyTwoPosturesCanBeSet) {
   for (const char* other : {"", "sitting", "Standing", "rising"}) EXPECT_EQ(mode_of(other), kStanceStay) << other;
 }
 
+TEST(LegMessages, AGaitAndItsModeAreOneAndTheSame) {
+  for (const char* gait : {"auto", "trot", "walking_trot", "crawl"}) {
+    ASSERT_TRUE(mode_of_gait(gait).has_value()) << gait;
+    EXPECT_EQ(gait_of_mode(*mode_of_gait(gait)), gait);
+  }
+  EXPECT_FALSE(mode_of_gait("stand").has_value());
+}
+
 TEST(LegMessages, TheStateNamesPostureFootAndReasons) {
   CommandFrame command;
   command.legged = {.phase = LegPhase::kStanding, .lifted = 4, .body = {0.01, 0.02, 0.03, 0.1, 0.2, 0.3}};

@@ -50,9 +50,9 @@ class GateModel {
         static_cast<std::uint64_t>(std::count(last_.end() - static_cast<std::ptrdiff_t>(kept), last_.end(), true));
     Causes causes;
     if (in_a_row_ >= loss_cycles_) {
-      causes[kCauseGateRefuses] = {in_a_row_, loss_cycles_};
+      causes[kCauseGateRefuses] = {static_cast<double>(in_a_row_), static_cast<double>(loss_cycles_)};
     } else if (2 * in_second > second_) {
-      causes[kCauseGateRefuses] = {in_second, second_ / 2.0};
+      causes[kCauseGateRefuses] = {static_cast<double>(in_second), static_cast<double>(second_) / 2};
     }
     if (sensors.gate.verdict != GateVerdict::kBrake && (out_of_place || disobeys(sensors.gate)))
       causes[kCauseGateDisobeys] = {1, 0};
@@ -128,7 +128,7 @@ TEST(GateModels, RandomReportsOfAGateAreJudgedAsTheHeaderSaysInEveryRun) {
         gate.verdict =
             random.chance(braking) || action == PermitAction::kBrake ? GateVerdict::kBrake : GateVerdict::kPassed;
         if (random.chance(0.02)) gate.verdict = GateVerdict::kPassed;
-        gate.reasons = random.chance(0.02) ? kGateControllerBrake : 0;
+        gate.reasons = random.chance(0.02) ? std::uint64_t{kGateControllerBrake} : 0;
         refused += random.chance(0.02) ? 1 : 0;
         gate.refused = refused;
         ActiveCauses active;
@@ -216,7 +216,7 @@ TEST(GateModels, RandomReportsOfAMachineAreJudgedAsTheHeaderSaysInEveryRun) {
           late = random.chance(0.5) ? 0 : 0.4;
           sensors.driver_state = random.chance(run == 0 ? 0.5 : 0.2) ? DriverState::kStarting : DriverState::kRunning;
           sensors.battery_voltage = 18.0 + static_cast<double>(random.below(8));
-          sensors.valid = random.chance(0.7) ? kValidBattery : 0;
+          sensors.valid = random.chance(0.7) ? std::uint64_t{kValidBattery} : 0;
         }
         const std::uint64_t elapsed = random.chance(0.05) ? 1 + random.below(30) : 1;
         sensors.overruns = random.chance(0.002) ? 0 : sensors.overruns + (random.chance(late) ? 1 : 0);

@@ -16,8 +16,8 @@
 namespace robot_control {
 namespace {
 
-constexpr double kPeriod = 2e-3;  // s
-constexpr double kQuantum = 2 * std::numbers::pi / 4096;
+constexpr double kModelPeriod = 2e-3;  // s
+constexpr double kModelQuantum = 2 * std::numbers::pi / 4096;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Two wheels a side that scrub in a turn; the joints of one side count backwards.
@@ -46,7 +46,7 @@ struct Watched {
 
   bool step(bool beyond, const Condition& condition, std::uint64_t cycles) {
     count = beyond ? count + cycles : 0;
-    return beyond && static_cast<double>(count) * kPeriod >= condition.persistence - 1e-9;
+    return beyond && static_cast<double>(count) * kModelPeriod >= condition.persistence - 1e-9;
   }
 };
 
@@ -76,16 +76,16 @@ struct Facts {
   std::uint64_t elapsed = 1;
 };
 
-/// What is measured and commanded, as the conditions get it.
+/// The measurements and targets that the conditions get.
 struct Measured {
   WheelMotion motion;
   WheelTargets targets;
   JointStandstill standstill;
 
   Measured(const DriveTrain& robot, const SafetyParameters& parameters)
-      : motion(robot.wheels.size(), kPeriod),
+      : motion(robot.wheels.size(), kModelPeriod),
         targets(robot.wheels.size()),
-        standstill(parameters.standstill_speed, kPeriod) {}
+        standstill(parameters.standstill_speed, kModelPeriod) {}
 
   void step(const Facts& facts) {
     motion.step(facts.sensors);
@@ -125,8 +125,8 @@ class Model {
     double command = 0;
   };
 
-  void judge(StopCause cause, Watched& watched, const Condition& condition, const Quantity& quantity,
-             std::uint64_t cycles) {
+  void evaluate(StopCause cause, Watched& watched, const Condition& condition, const Quantity& quantity,
+                std::uint64_t cycles) {
     if (watched.step(quantity.beyond(), condition, cycles)) active_.try_emplace(cause, quantity);
   }
 
@@ -134,7 +134,7 @@ class Model {
     // The largest limit of whole windows of ramp_time, the present one included.
     since_ += facts.elapsed;
     largest_now_ = std::max(largest_now_, facts.speed_limit);
-    if (since_ >= static_cast<std::uint64_t>(std::lround(parameters_.ramp_time / kPeriod))) {
+    if (since_ >= static_cast<std::uint64_t>(std::lround(parameters_.ramp_time / kModelPeriod))) {
       since_ = 0;
       largest_last_ = largest_now_;
       largest_now_ = facts.speed_limit;
@@ -155,12 +155,12 @@ class Model {
     }
     const bool known = m.motion.speed_known();
     const Quantity speed = known ? worst(speeds) : Quantity{};
-    judge(kCauseWheelSpeed, speed_, parameters_.wheel_speed, speed, facts.elapsed * speed.weight());
-    judge(kCauseWheelAcceleration, acceleration_, parameters_.wheel_acceleration,
-          m.motion.acceleration_known() ? worst(accelerations) : Quantity{}, facts.elapsed);
-    judge(kCauseWheelEffort, effort_, parameters_.wheel_effort,
-          m.motion.sampled() && m.targets.passed() ? worst(efforts) : Quantity{}, facts.elapsed);
-    judge(kCausePower, power_, parameters_.power, known ? power : Quantity{}, facts.elapsed);
+    evaluate(kCauseWheelSpeed, speed_, parameters_.wheel_speed, speed, facts.elapsed * speed.weight());
+    evaluate(kCauseWheelAcceleration, acceleration_, parameters_.wheel_acceleration,
+             m.motion.acceleration_known() ? worst(accelerations) : Quantity{}, facts.elapsed);
+    evaluate(kCauseWheelEffort, effort_, parameters_.wheel_effort,
+             m.motion.sampled() && m.targets.passed() ? worst(efforts) : Quantity{}, facts.elapsed);
+    evaluate(kCausePower, power_, parameters_.power, known ? power : Quantity{}, facts.elapsed);
   }
 
   void excess(StopCause cause, Watched& watched, std::optional<double>& mark, const Condition& condition,
@@ -177,11 +177,11 @@ class Model {
       watched.count = 0;
       return;
     }
-    judge(cause, watched, condition, quantity, cycles);
+    evaluate(cause, watched, condition, quantity, cycles);
   }
 
   void following(const Facts& facts, const Measured& m) {
-    const double dt = static_cast<double>(facts.elapsed) * kPeriod;
+    const double dt = static_cast<double>(facts.elapsed) * kModelPeriod;
     const bool known = m.motion.speed_known();
     for (std::size_t i = 0; i < wheels_.size(); ++i) {
       Wheel& wheel = wheels_[i];
@@ -201,9 +201,9 @@ class Model {
              {back, *parameters_.wrong_direction.limit + tolerance, i}, back, 0.1 + tolerance, facts.elapsed);
     }
     planned_.step(m.targets, dt);
-    judge(kCauseStall, stall_, parameters_.stall, known ? stalled(facts, m, dt) : Quantity{}, facts.elapsed);
-    judge(kCauseNotStopping, not_stopping_, parameters_.not_stopping, known ? moving_on(m, facts.elapsed) : Quantity{},
-          facts.elapsed);
+    evaluate(kCauseStall, stall_, parameters_.stall, known ? stalled(facts, m, dt) : Quantity{}, facts.elapsed);
+    evaluate(kCauseNotStopping, not_stopping_, parameters_.not_stopping,
+             known ? moving_on(m, facts.elapsed) : Quantity{}, facts.elapsed);
   }
 
   Quantity stalled(const Facts& facts, const Measured& m, double dt) {
@@ -252,16 +252,16 @@ class Model {
 
   Quantity moving_on(const Measured& m, std::uint64_t elapsed) {
     rested_ = m.standstill.moving() ? 0 : rested_ + elapsed;
-    if (!m.targets.commanded_to_stand() || static_cast<double>(rested_) * kPeriod >= 0.5) {
+    if (!m.targets.commanded_to_stand() || static_cast<double>(rested_) * kModelPeriod >= 0.5) {
       moved_ = 0;
     } else if (m.standstill.moving()) {
       moved_ += elapsed;
     }
-    return {static_cast<double>(moved_) * kPeriod, *parameters_.not_stopping.limit};
+    return {static_cast<double>(moved_) * kModelPeriod, *parameters_.not_stopping.limit};
   }
 
   void oscillation(const Facts& facts, const Measured& m) {
-    const double dt = static_cast<double>(facts.elapsed) * kPeriod;
+    const double dt = static_cast<double>(facts.elapsed) * kModelPeriod;
     std::vector<Quantity> all;
     for (std::size_t i = 0; i < wheels_.size(); ++i) {
       Wheel& wheel = wheels_[i];
@@ -281,20 +281,21 @@ class Model {
         wheel.planned.step(inertia(i) * (m.targets[i] - *wheel.last_target) / dt, dt);
       }
       wheel.last_target = m.targets[i];
-      const double most = robot_.joints[i].effort_limit;
+      const double effort_limit = robot_.joints[i].effort_limit;
       const double ripple = std::sqrt(std::min(wheel.measured.square, wheel.commanded.square));
       const double explained = 2 * std::sqrt(wheel.planned.square) + parameters_.count_ripple[i] * m.motion.quantum(i);
-      all.push_back({ripple / most, *parameters_.torque_oscillation.limit + explained / most, i});
+      all.push_back({ripple / effort_limit, *parameters_.torque_oscillation.limit + explained / effort_limit, i});
     }
     const Quantity quantity = worst(all);
     Condition announced = parameters_.torque_oscillation;
     announced.persistence *= 0.5;
-    judge(kCauseTorqueOscillation, oscillation_, parameters_.torque_oscillation, quantity, facts.elapsed);
-    judge(kCauseTorqueOscillation, announced_, announced, quantity, facts.elapsed);
+    evaluate(kCauseTorqueOscillation, oscillation_, parameters_.torque_oscillation, quantity, facts.elapsed);
+    evaluate(kCauseTorqueOscillation, announced_, announced, quantity, facts.elapsed);
   }
 
   double inertia(std::size_t i) const {
-    const double beside = wheels_.size() / 2.0, square = robot_.wheels[i].radius * robot_.wheels[i].radius / beside;
+    const double beside = static_cast<double>(wheels_.size()) / 2,
+                 square = robot_.wheels[i].radius * robot_.wheels[i].radius / beside;
     return robot_.wheels[i].inertia +
            std::max(0.5 * robot_.mass * square,
                     2 * robot_.yaw_inertia * square / (robot_.wheel_base * robot_.effective_wheel_base()));
@@ -327,9 +328,9 @@ class RandomDrive {
     sensors.head.cycle += facts_.elapsed;
     for (std::size_t i = 0; i < wheels_; ++i) {
       speed_[i] += 0.05 * (aim_[i] - speed_[i]);
-      angle_[i] += speed_[i] * static_cast<double>(facts_.elapsed) * kPeriod;
+      angle_[i] += speed_[i] * static_cast<double>(facts_.elapsed) * kModelPeriod;
       JointSample& joint = sensors.joints[i];
-      joint.position = kQuantum * std::floor(angle_[i] / kQuantum);
+      joint.position = kModelQuantum * std::floor(angle_[i] / kModelQuantum);
       joint.effort =
           torque_[i] + shake_ * (1 + 0.1 * static_cast<double>(i)) * (sensors.head.cycle / 3 % 2 == 0 ? 1 : -1);
       if (grows_) torque_[i] += 0.02 * between(0, 1) * (target_[i] < 0 ? -1 : 1);
@@ -356,7 +357,7 @@ class RandomDrive {
   }
 
  private:
-  double between(double least, double most) { return std::uniform_real_distribution<>(least, most)(random_); }
+  double between(double lower, double upper) { return std::uniform_real_distribution<>(lower, upper)(random_); }
   bool chance(double share) { return between(0, 1) < share; }
   std::uint64_t pick(std::uint64_t count) { return random_() % count; }
 
@@ -390,11 +391,13 @@ class RandomDrive {
 };
 
 SafetyParameters drawn(std::mt19937& random, const DriveTrain& robot) {
-  const auto between = [&](double least, double most) { return std::uniform_real_distribution<>(least, most)(random); };
+  const auto between = [&](double lower, double upper) {
+    return std::uniform_real_distribution<>(lower, upper)(random);
+  };
   SafetyParameters parameters;
   parameters.ramp_time = between(0.05, 0.4);
-  const auto set = [&](Condition& condition, double least, double most) {
-    condition = {.limit = between(least, most), .persistence = between(0, 0.1), .reaction = Reaction::kBrake};
+  const auto set = [&](Condition& condition, double lower, double upper) {
+    condition = {.limit = between(lower, upper), .persistence = between(0, 0.1), .reaction = Reaction::kBrake};
   };
   set(parameters.wheel_speed, 5, 20);
   set(parameters.wheel_acceleration, 20, 300);
@@ -417,9 +420,9 @@ TEST(WheelModels, RandomDrivesAreJudgedAsTheHeadersSayInEveryRun) {
     for (JointModel& joint : robot.joints) joint.friction = 0.2 * (seed % 3);
     if (seed % 5 == 0) robot.joints[0].velocity_limit = 0;
     const SafetyParameters parameters = drawn(random, robot);
-    WheelLimits limits(parameters, robot, kPeriod);
-    WheelFollowing following(parameters, robot, kPeriod);
-    TorqueOscillation oscillation(parameters, robot, kPeriod);
+    WheelLimits limits(parameters, robot, kModelPeriod);
+    WheelFollowing following(parameters, robot, kModelPeriod);
+    TorqueOscillation oscillation(parameters, robot, kModelPeriod);
     RandomDrive drive(robot.wheels.size(), seed);
     for (int run = 0; run < 3; ++run) {
       Measured measured(robot, parameters);

@@ -21,7 +21,7 @@ from system_support import Program, RobotTestCase, wait_for
 
 from bench.console.process import Console
 
-DRIVE = {"type": "drive", "number": 1, "sent": 1.0, "held": True, "linear": 1.0, "angular": 0.0}
+DRIVE = {"type": "drive", "number": 1, "sent": 1.0, "held": True, "linear": 1.0, "angular": 0.0, "lateral": 0.0}
 TAKE = {"type": "take", "force": False}
 
 

@@ -83,6 +83,13 @@ def test_a_run_too_short_to_judge_is_refused(seconds, capsys):
     assert "--seconds" in capsys.readouterr().err
 
 
+def test_drives_of_wheels_on_a_robot_on_legs_are_refused(tmp_path, capsys):
+    assert parse(["--robot", "quadbot", "--out", str(tmp_path)]).robot == "quadbot"
+    with pytest.raises(SystemExit):
+        parse(["--robot", "quadbot", "--drives", "odrive", "--out", str(tmp_path)])
+    assert "--drives move wheels alone, and quadbot stands on legs" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("out", ["file", "file/below", "/proc/xx"])
 def test_a_folder_that_cannot_be_written_to_is_refused_before_anything_starts(out, tmp_path, capsys):
     (tmp_path / "file").touch()
@@ -106,7 +113,7 @@ def test_the_folder_is_made_and_left_empty(tmp_path):
 
 
 def test_a_disk_that_fails_during_the_run_is_reported_without_a_traceback(tmp_path, monkeypatch, capsys):
-    def fail(seconds, out, drives):
+    def fail(seconds, out, robot, drives):
         raise OSError(28, "No space left on device", str(out / "run.png"))
 
     monkeypatch.setattr(demo, "run_demo", fail)

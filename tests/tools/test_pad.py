@@ -45,6 +45,16 @@ def test_with_the_enable_button_it_does(pad):
     assert pad.command(now) == Command(0.0, GIVEN.scale_angular)
 
 
+def test_on_legs_the_right_stick_moves_sideways_and_on_wheels_the_state_says_why_nothing_happens(pad):
+    sideways = (0.0, 0.0, 0.0, 1.0)
+    now = hold(pad, sideways, ENABLE, 0.1, 1.0)
+    assert pad.command(now) == Command()
+    assert pad.state(now) == "drives, but this robot has wheels and does not move sideways"
+    pad.legged = True
+    assert pad.command(now) == Command(0.0, 0.0, GIVEN.scale_lateral)
+    assert pad.state(now) == "drives"
+
+
 def test_the_turbo_button_has_scales_of_its_own(pad):
     now = hold(pad, (1.0, 1.0), TURBO, 0.1, 1.0)
     assert pad.command(now) == Command(GIVEN.scale_linear_turbo, GIVEN.scale_angular_turbo)

@@ -12,13 +12,13 @@ import yaml
 from robot_control.common.roles import LEGGED
 from robot_control.common.run_log import RunLog, read_run
 from robot_control.common.signal_names import mask_of
+from robot_control.demo.intervals import intervals, joined, runs_of
 from robot_control.report import main as program
 from robot_control.report.budgets import BudgetError, Verdict, judge, read_budgets
 from robot_control.report.decimate import decimated
 from robot_control.report.drive import Drive
 from robot_control.report.figures import Figure, figures
 from robot_control.report.incidents import incidents
-from robot_control.report.intervals import intervals, joined, runs_of
 from synthetic_run import BEGIN, CYCLES, PERIOD, brake_at, healthy_run
 
 MUST_RUN = bool(os.environ.get("CI") and os.environ.get("ROBOT_CONTROL_NIGHTLY"))
@@ -286,11 +286,11 @@ def test_the_page_of_a_robot_on_legs_has_no_words_of_wheels(written, log):
         log[name] = np.zeros(CYCLES)
     for name in [name for name in log if "wheel_joint" in name]:
         log[name.replace("wheel", "knee")] = log.pop(name)
-    of_wheels = re.compile(r"wheels alone|wheels and inertial|cmd_vel|monitor\S+ limit")
+    of_wheels = re.compile(r"wheels alone|wheels and inertial|cmd_vel_timeout|monitor\S+ limit")
     assert len(set(of_wheels.findall(written_page([written()])))) == 4
     text = written_page([written(kind=LEGGED)])
     assert of_wheels.findall(text) == []
-    assert "nothing was received on body_pose" in text
+    assert "nothing was received on cmd_vel or body_pose" in text
     assert "older than request_timeout" in text
 
 

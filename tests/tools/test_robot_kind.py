@@ -1,7 +1,6 @@
 """The kind of a robot, as tools take it from the topic robot_kind, and what they do with another kind's nodes."""
 
 import re
-from contextlib import nullcontext
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -13,7 +12,6 @@ from robot_control.common.live_parameters import LiveParameters
 from robot_control.common.roles import LEGGED, LOOP, WHEELED, Kind, WheelsOnlyError
 from robot_control.console.calls import CALLS, service_of
 from robot_control.msg import RobotKind
-from robot_control.path import main as path_program
 from robot_control.teleop.speed_limits import SpeedLimits
 
 LEGS = RobotKind(
@@ -50,11 +48,12 @@ def test_the_message_names_the_nodes_and_what_can_fail():
     assert (kind.fault_components, kind.fault_kinds) == (("gyro", "hip_motor"), ("ok", "off"))
 
 
-def test_the_first_topic_of_requests_is_that_of_the_table_in_c():
+def test_the_words_for_requests_are_those_of_the_table_in_c_and_name_topics():
     table = (Path(__file__).parents[2] / "src" / "signals" / "robot_kinds.h").read_text(encoding="utf-8")
     for name, constant in ((WHEELED, "kWheeledKind"), (LEGGED, "kLeggedKind")):
-        (request,) = re.findall(rf'{{{constant}, [^,]+, "(\w+)"', table)
-        assert Kind(name).request_topics[0] == request
+        (request,) = re.findall(rf'{{{constant}, [^,]+, "([\w ]+)"', table)
+        assert Kind(name).worded("cmd_vel") == request
+        assert set(request.split(" or ")) <= set(Kind(name).request_topics)
     assert Kind().request_topics == Kind(WHEELED).request_topics
 
 
@@ -100,18 +99,12 @@ def test_a_tool_for_wheels_refuses_a_running_robot_on_legs_alone(monkeypatch):
         robot_kind.refuse_running_legs("calibrate.py")
 
 
-@pytest.mark.parametrize("tool", ["drive_path.py", "calibrate.py"])
-def test_the_tools_for_wheels_ask_for_the_kind(monkeypatch, tool):
+def test_a_tool_for_wheels_asks_for_the_kind(monkeypatch):
     monkeypatch.setattr(rospy, "wait_for_message", lambda *_: LEGS)
     monkeypatch.setattr(rosgraph, "is_master_online", lambda: True)
     monkeypatch.setattr(running_robot, "begin_node", lambda *_, **__: None)
-    monkeypatch.setattr(path_program, "running_node", lambda _: nullcontext())
-    monkeypatch.setattr("sys.argv", [tool, "square"])
-    with pytest.raises((SystemExit, WheelsOnlyError), match=f"{tool} works on wheels only"):
-        if tool == "drive_path.py":
-            path_program.main()
-        else:
-            running_robot.running_settings("calibrate", "node", "", "").__enter__()
+    with pytest.raises(WheelsOnlyError, match=r"calibrate\.py works on wheels only"):
+        running_robot.running_settings("calibrate", "node", "", "").__enter__()
 
 
 def test_the_calls_of_the_console_go_to_the_nodes_of_the_kind():

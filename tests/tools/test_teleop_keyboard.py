@@ -142,6 +142,6 @@ def test_the_e_stop_does_not_lie_beside_a_motion_key(name):
 
 @pytest.mark.parametrize("name", KEY_MAPS)
 def test_every_motion_has_its_opposite(name):
-    motions = {(motion.linear, motion.angular) for motion in KEY_MAPS[name].motions.values()}
-    assert motions == {(-linear, -angular) for linear, angular in motions}
-    assert len(motions) == 8
+    motions = {(motion.linear, motion.angular, motion.lateral) for motion in KEY_MAPS[name].motions.values()}
+    assert motions == {(-linear, -angular, -lateral) for linear, angular, lateral in motions}
+    assert len(motions) == 10

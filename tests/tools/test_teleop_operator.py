@@ -43,6 +43,28 @@ def test_forward_is_positive_and_left_is_positive(keys, key, signs):
     assert operator.command(last) == Command(signs[0] * LINEAR, signs[1] * ANGULAR)
 
 
+@pytest.mark.parametrize(("keys", "key", "sign"), [(ARROWS, "j", 1), (ARROWS, "l", -1), (CLASSIC, "a", 1)])
+def test_a_robot_on_legs_moves_sideways_within_its_limit(keys, key, sign):
+    operator = Operator(keys, Command(LINEAR, ANGULAR, 0.9), Limits(1.0, 2.0, reverse=1.0, lateral=0.5))
+    last = hold(operator, key, 0.0, 2.0)
+    assert operator.command(last) == Command(0.0, 0.0, sign * 0.5)
+    assert operator.message(last) == ""
+
+
+def test_on_wheels_a_key_for_sideways_says_why_nothing_happens(operator):
+    last = hold(operator, "j", 0.0, 2.0)
+    assert operator.command(last) == Command()
+    assert operator.message(last) == "key j has no effect: this robot has wheels and does not move sideways"
+
+
+def test_the_speed_sideways_changes_with_the_linear_one_also_before_the_kind_is_known():
+    operator = Operator(ARROWS, Command(LINEAR, ANGULAR, 0.3), LIMITS)
+    operator.key(Key("+"), 0.0)
+    operator.limit(Limits(1.0, 2.0, reverse=1.0, lateral=0.5))
+    assert operator.chosen.linear == pytest.approx(1.1 * LINEAR)
+    assert operator.chosen.lateral == pytest.approx(1.1 * 0.3)
+
+
 def test_after_a_release_zeros_follow_and_then_nothing_so_that_others_may_command(operator):
     last = hold(operator, "w", 0.0, 2.0)
     operator.command(last)

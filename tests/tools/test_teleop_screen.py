@@ -2,7 +2,7 @@
 
 import pytest
 from robot_control.common.command import Command
-from robot_control.common.roles import CONTROLLER, LOOP
+from robot_control.common.roles import CONTROLLER, LEGGED, LOOP, Kind
 from robot_control.teleop.key_map import CLASSIC, KEY_MAPS, SAFETY_HELP
 from robot_control.teleop.screen import HEIGHT, WIDTH, View, render
 from robot_control.why.state import Cause, Facts, Report, Safety
@@ -30,6 +30,14 @@ def screen(robot, view=VIEW):
 def test_it_shows_speed_requested_limited_and_measured():
     lines = [" ".join(line.split()) for line in render(facts(), VIEW)]
     for line in ("chosen 0.50 1.00", "requested 0.25 0.00", "after limits 0.25 0.00", "measured 0.24 0.00"):
+        assert line in lines
+
+
+def test_of_a_robot_on_legs_it_shows_the_speed_sideways():
+    legs = facts(kind=Kind(LEGGED, controller="leg_controller"), limited=(0.25, 0.0, 0.1))
+    view = View(**{**vars(VIEW), "chosen": Command(0.5, 1.0, 0.3)})
+    lines = [" ".join(line.split()) for line in render(legs, view)]
+    for line in ("linear m/s angular rad/s sideways m/s", "chosen 0.50 1.00 0.30", "after limits 0.25 0.00 0.10"):
         assert line in lines
 
 

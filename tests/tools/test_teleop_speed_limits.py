@@ -6,7 +6,9 @@ from types import SimpleNamespace
 import pytest
 import rospy
 import yaml
+from robot_control.common import robot_kind
 from robot_control.installed_files import share_file
+from robot_control.msg import RobotKind
 from robot_control.teleop.operator import Limits
 from robot_control.teleop.speed_limits import SpeedLimits
 
@@ -14,8 +16,15 @@ from robot_control.teleop.speed_limits import SpeedLimits
 @pytest.fixture
 def subscribed(monkeypatch):
     callbacks = {}
-    monkeypatch.setattr(rospy, "Subscriber", lambda topic, _, callback, **__: callbacks.update({topic: callback}))
-    return callbacks
+
+    def subscribe(topic, _, callback, **__):
+        callbacks[topic] = callback
+        return SimpleNamespace(unregister=lambda: None)
+
+    monkeypatch.setattr(rospy, "Subscriber", subscribe)
+    robot_kind.forget()
+    yield callbacks
+    robot_kind.forget()
 
 
 def config(**values):
@@ -35,6 +44,14 @@ def test_what_the_controller_reports_holds(subscribed):
     assert limits.newest() == Limits(0.3, 0.7, reverse=0.3)
     receive(config(max_linear_speed=0.4))
     assert limits.newest() == Limits(0.4, 0.7, reverse=0.4)
+
+
+def test_a_robot_on_legs_has_a_limit_sideways(subscribed):
+    limits = SpeedLimits()
+    assert limits.newest().lateral == 0.0
+    subscribed["robot_kind"](RobotKind(kind="quadruped", roles=["controller"], nodes=["leg_controller"]))
+    file = yaml.safe_load(Path(share_file("config/robot_params.yaml")).read_text())["leg_controller"]
+    assert limits.newest().lateral == file["max_lateral_speed"] > 0
 
 
 def test_a_slower_reverse_is_a_limit_of_its_own_and_never_above_the_forward_one(subscribed):

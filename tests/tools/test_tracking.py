@@ -5,7 +5,15 @@ import math
 import numpy as np
 import pytest
 from robot_control.common.signal_names import mask_of
-from robot_control.demo.tracking import EXCUSED_CYCLES, SETTLE, NotSteadyError, commanded_path, judge, steady_rows
+from robot_control.demo.tracking import (
+    EXCUSED_CYCLES,
+    ON_LEGS,
+    SETTLE,
+    NotSteadyError,
+    commanded_path,
+    judge,
+    steady_rows,
+)
 from synthetic_run import ANGULAR, BEGIN, END, LINEAR, PERIOD, RAMP, brake_at, healthy_run, with_truth
 
 MIDDLE = 4000  # a cycle in the steady part
@@ -43,6 +51,17 @@ def test_a_robot_that_never_moves_fails(run):
 def test_a_robot_two_percent_slow_fails_on_the_mean_alone(run):
     slow = with_truth(run, 0.98 * run["truth_linear"], 0.98 * run["truth_angular"])
     assert failed(slow) == {"mean true linear speed", "mean true angular speed"}
+
+
+def test_a_body_on_legs_that_sways_within_each_step_is_judged_by_its_mean(run):
+    sway = 0.1 * np.sin(2 * np.pi * run["time"] / 0.19)
+    swaying = with_truth(run, run["truth_linear"] + sway, run["truth_angular"] + sway)
+    assert judge(swaying, LINEAR, ANGULAR, ON_LEGS).passed
+    assert not verdict(swaying).passed
+    slow = with_truth(swaying, 0.96 * swaying["truth_linear"], swaying["truth_angular"])
+    assert [check.name for check in judge(slow, LINEAR, ANGULAR, ON_LEGS).checks if not check.passed] == [
+        "mean true linear speed"
+    ]
 
 
 def test_a_robot_half_a_percent_slow_passes(run):

@@ -27,6 +27,12 @@ def test_line_for_the_log_has_both_speeds_and_their_units() -> None:
     assert SendPlan(linear=-0.25, angular=1.5).describe(3) == "cmd_vel 3: -0.25 m/s, 1.5 rad/s"
 
 
+def test_a_speed_sideways_is_sent_and_named() -> None:
+    plan = parse_plan(["--lateral", "-0.2"])
+    assert plan == SendPlan(lateral=-0.2)
+    assert plan.describe(1) == "cmd_vel 1: 0.5 m/s, -0.2 m/s to the left, 0.2 rad/s"
+
+
 @pytest.mark.parametrize(
     "wrong",
     [

@@ -4,10 +4,14 @@ import math
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
+import numpy as np
 import pytest
 import rospy
 import yaml
+from geometry_msgs.msg import Point as Position
+from geometry_msgs.msg import Pose, Quaternion
 from robot_control.inspect.description import describe
+from robot_control.view.feet import METRES_PER_NEWTON, Swings, in_odom, load_arrows
 from robot_control.view.scene import (
     AMBER,
     GREEN,
@@ -20,7 +24,7 @@ from robot_control.view.scene import (
     limits_of,
     status_text,
 )
-from robot_control.view.wheels import running_wheels, wheels_of
+from robot_control.view.wheels import running_robot, wheels_of
 
 ROOT = Path(__file__).parents[2]
 URDF = ROOT / "urdf/diffbot.urdf"
@@ -36,14 +40,14 @@ def test_the_wheels_of_our_robot_are_found_where_they_are():
 @pytest.mark.parametrize("text", ["", "<robot", "<robot/>", "<robot><joint name='a' type='continuous'/></robot>"])
 def test_a_description_without_wheels_shows_none(monkeypatch, text):
     monkeypatch.setattr(rospy, "get_param", {"robot_description": text}.get)
-    assert running_wheels() == {}
+    assert running_robot() == ({}, None)
 
 
 def test_the_wheels_of_a_running_robot_are_read_as_its_nodes_read_them(monkeypatch):
     robot = {"left_wheel_joints": ["left_wheel_joint"], "right_wheel_joints": ["right_wheel_joint"], "bus": ""}
     server = {"robot_description": URDF.read_text(), "robot": robot}
     monkeypatch.setattr(rospy, "get_param", server.get)
-    assert running_wheels() == wheels_of(describe(URDF))
+    assert running_robot() == (wheels_of(describe(URDF)), None)
 
 
 def test_an_arrow_is_as_long_as_its_force_and_points_where_it_pushes():
@@ -98,3 +102,32 @@ def test_rviz_shows_topics_that_are_published():
     sources = "\n".join(path.read_text() for path in [*ROOT.glob("python/**/*.py"), *ROOT.glob("src/ros/**/*.cpp")])
     assert topics == {"odom", "ground_truth/odom", "path_wanted", "view/path_driven", "view/markers"}
     assert all(f'"{topic}"' in sources for topic in topics)
+
+
+def test_the_force_of_a_foot_is_an_arrow_upwards_where_it_bears():
+    places = np.array([[0.2, 0.1, -0.3], [0.2, -0.1, -0.3], [-0.2, 0.1, -0.3], [-0.2, -0.1, -0.3]])
+    arrows = load_arrows(places, [True, False, True, True], [50.0, 50.0, 0.0, math.nan])
+    assert arrows == [((0.2, 0.1, -0.3), (0.2, 0.1, -0.3 + 50 * METRES_PER_NEWTON))]
+
+
+def test_the_way_of_a_swing_stays_until_the_next_one_begins():
+    swings = Swings(1)
+    for x, bears in ((0.0, True), (0.1, False), (0.2, False), (0.3, True)):
+        swings.add(np.array([[x, 0.0, 0.0]]), [bears])
+    assert swings.ways == [[(0.1, 0.0, 0.0), (0.2, 0.0, 0.0)]]
+    swings.add(np.array([[0.5, 0.0, 0.0]]), [False])
+    assert swings.ways == [[(0.5, 0.0, 0.0)]]
+
+
+def test_places_of_the_base_are_turned_and_moved_into_odometry():
+    half = math.radians(45)
+    pose = Pose(Position(1.0, 2.0, 0.3), Quaternion(0.0, 0.0, math.sin(half), math.cos(half)))
+    assert in_odom(np.array([[0.2, 0.0, -0.3]]), pose).tolist()[0] == pytest.approx([1.0, 2.2, 0.0])
+
+
+def test_the_legs_of_a_running_quadruped_are_found(monkeypatch):
+    text = (ROOT / "urdf/quadbot.urdf").read_text()
+    monkeypatch.setattr(rospy, "get_param", lambda name, *_, **__: text if name == "robot_description" else {})
+    wheels, legs = running_robot()
+    assert wheels == {}
+    assert np.shape(legs.forward(np.zeros(12))) == (4, 3)

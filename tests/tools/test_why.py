@@ -265,7 +265,30 @@ def test_a_sender_of_poses_is_stopped_before_the_reset(legged):
     answer = judge(stopped(legged, E_STOP))
     assert ("operator", "stop /poser: while a motion is requested, a reset is refused") in answer.actions
     waiting = judge(replace(legged, safety=Safety("INIT", "brake", awaiting_zero=True)))
-    assert waiting.actions == (("operator", "publishing on body_pose or foot_target or joint_trajectory: /poser"),)
+    topics = "cmd_vel or cmd_vel_stamped or body_pose or foot_target or joint_trajectory"
+    assert waiting.actions == (("operator", f"publishing on {topics}: /poser"),)
+
+
+def test_a_walk_is_motion_with_its_speeds_and_what_limits_them(legged):
+    walking = saying(legged, "leg_controller", posture="walking", gait="trot")
+    walking = replace(walking, limited=(0.5, 0.2, 0.1), measured=(0.49, 0.2, 0.1))
+    assert judge(walking).verdict is Verdict.MOVING
+    assert judge(walking).headline == "It walks: 0.49 m/s, 0.10 m/s to the left, 0.20 rad/s."
+    said = ("the legs do not carry the body faster", "request less speed")
+    limited = judge(saying(walking, "leg_controller", command__leg_speed=said))
+    assert limited.headline.endswith(f"0.20 rad/s; {said[0]}.")
+    assert limited.actions == (("operator", said[1]),)
+    assert "after limits 0.50 m/s, 0.10 m/s to the left, 0.20 rad/s" in " ".join(text(walking).split())
+
+
+def test_a_walk_that_ended_because_its_sender_is_silent_says_so(legged):
+    said = ("the last cmd_vel or body_pose is older than request_timeout", "publish more often")
+    silent = saying(legged, "leg_controller", senders="", posture="walking", command__timed_out=said)
+    ending = judge(replace(silent, limited=(0.0, 0.0, 0.0)))
+    assert ending.headline == f"It walks in place until its feet are on their places, and then stands; {said[0]}."
+    stands = judge(saying(silent, "leg_controller", posture="standing"))
+    assert stands.headline == "It stands; nothing stands against motion, and no motion is requested."
+    assert stands.actions == (("operator", said[1]),)
 
 
 def test_commands_are_for_the_robots_own_namespace(driving):

@@ -15,12 +15,13 @@ class Command:
 
     linear: float = 0.0  # m/s
     angular: float = 0.0  # rad/s
+    lateral: float = 0.0  # m/s, to the left; robots on wheels ignore it
 
 
 class Pace:
     """Publishes a command when it changes, and again every SEND_PERIOD."""
 
-    def __init__(self, send: Callable[[float, float], None]) -> None:
+    def __init__(self, send: Callable[[Command], None]) -> None:
         self._send = send
         self.last: Command | None = None  # command at the last call; None: there was nothing to send
         self.sent_at: float | None = None  # s, as `now`
@@ -29,6 +30,6 @@ class Pace:
         """Updates the pace with the present command; None means that nothing is commanded."""
         due = self.sent_at is None or now - self.sent_at >= SEND_PERIOD
         if command is not None and (due or command != self.last):
-            self._send(command.linear, command.angular)
+            self._send(command)
             self.sent_at = now
         self.last = command

@@ -8,6 +8,7 @@ silent.
 import rospy
 from geometry_msgs.msg import TwistStamped
 
+from robot_control.common.command import Command
 from robot_control.common.robot_kind import running_kind
 from robot_control.common.topic_sender import Sender
 
@@ -30,11 +31,12 @@ class CommandTopic:
         name: str = self._publishers[self._chosen()].resolved_name
         return name
 
-    def send(self, linear: float, angular: float, age: float = 0.0) -> None:
-        """Sends m/s and rad/s, stamped with the time of the request, `age` s ago."""
+    def send(self, command: Command, age: float = 0.0) -> None:
+        """Sends it, stamped with the time of the request, `age` s ago."""
         message = TwistStamped()
         message.header.stamp = rospy.Time.now() - rospy.Duration(age)
-        message.twist.linear.x, message.twist.angular.z = linear, angular
+        message.twist.linear.x, message.twist.linear.y = command.linear, command.lateral
+        message.twist.angular.z = command.angular
         self._senders[self._chosen()].send(message)
 
     @property

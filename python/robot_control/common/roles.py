@@ -19,15 +19,16 @@ WHEELED, LEGGED = (str(kind) for kind, _ in signal_names["RobotKind"])
 """The kinds of robots (signals/robot_kinds.h)."""
 REQUEST_TOPICS = {
     WHEELED: ("cmd_vel", "cmd_vel_stamped"),
-    LEGGED: ("body_pose", "foot_target", "joint_trajectory"),
+    LEGGED: ("cmd_vel", "cmd_vel_stamped", "body_pose", "foot_target", "joint_trajectory"),
 }
 """The topics of requests of motion."""
+NO_LATERAL = "this robot has wheels and does not move sideways"
 NAMES_ON_LEGS = {
-    "cmd_vel": REQUEST_TOPICS[LEGGED][0],
+    "cmd_vel": "cmd_vel or body_pose",
     "cmd_vel_timeout": "request_timeout",
     CONTROLLER: dict(signal_names["RobotKind"])[LEGGED],
 }
-"""Topic, parameter and program of a robot on wheels → those of a robot on legs."""
+"""Words for topic, parameter and program of a robot on wheels → those of a robot on legs (signals/robot_kinds.h)."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,11 @@ class Kind:
     def legged(self) -> bool:
         """True for a robot on legs."""
         return self.name == LEGGED
+
+    @property
+    def wheeled(self) -> bool:
+        """True for a robot that is known to stand on wheels."""
+        return self.name == WHEELED
 
     @property
     def request_topics(self) -> tuple[str, ...]:

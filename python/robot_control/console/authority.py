@@ -5,9 +5,9 @@ It reads no clock: time is an argument, s.
 At most one page commands. It takes the command where it is free. It gives it back, hands it over, or loses it by its
 end. A page of the role `maintain` may take it away. Every change ends the motion, for both pages.
 
-    v = share · chosen speed · min(1, speed cap of the link / chosen linear speed)
+    v = share · chosen speed · min(1, speed cap of the link / hypot(chosen linear, chosen lateral speed))
 
-The same factor holds for both axes, so the curve stays.
+The same factor holds for all axes, so the curve stays. On wheels the lateral speed is zero.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from robot_control.console.settings import Settings
 from robot_control.pad.law import PadParameters
 from robot_control.teleop.operator import ZEROS, Limits
 
-CHOSEN = Command(PadParameters.scale_linear, PadParameters.scale_angular)
-"""Chosen speeds of a new page, m/s and rad/s"""
+CHOSEN = Command(PadParameters.scale_linear, PadParameters.scale_angular, PadParameters.scale_lateral)
+"""Chosen speeds of a new page"""
 
 
 class Role(IntEnum):
@@ -120,9 +120,12 @@ class Authority:
         for page in self.pages.values():
             page.dead_man.interrupt(now, why)
 
-    def permit(self, drivable: bool | None) -> None:  # noqa: FBT001 (a three-valued state)
-        """Sets whether the robot may drive by its safety monitor; None if there is no message of it."""
+    def permit(self, drivable: bool | None, *, legged: bool = False) -> None:  # noqa: FBT001 (a three-valued state)
+        """Sets whether the robot may drive by its safety monitor; None if there is no message of it. `legged`: it also
+        moves sideways.
+        """
         for page in self.pages.values():
+            page.dead_man.pad.legged = legged
             page.dead_man.pad.permit(drivable)
 
     def refuse(self, now: float) -> None:
@@ -142,9 +145,15 @@ class Authority:
             return None if nothing else Command(), 0.0
         self._zeros_until = now + ZEROS
         linear, angular = min(page.chosen.linear, limits.linear), min(page.chosen.angular, limits.angular)
-        factor = min(1.0, page.cap / linear) if linear > 0 else 0.0
-        forward = max(share.linear * linear * factor, -limits.reverse)
-        return Command(forward, share.angular * angular * factor), max(0.0, now - page.dead_man.stamp)
+        lateral = min(page.chosen.lateral, limits.lateral)
+        fastest = math.hypot(linear, lateral)
+        factor = min(1.0, page.cap / fastest) if fastest > 0 else 0.0
+        command = Command(
+            max(share.linear * linear * factor, -limits.reverse),
+            share.angular * angular * factor,
+            share.lateral * lateral * factor,
+        )
+        return command, max(0.0, now - page.dead_man.stamp)
 
     def _give(self, page: Page | None, now: float, why: str) -> None:
         for each in (self.commander, page):

@@ -39,7 +39,7 @@ class Backend:
         self._watch, self._services, self._limits = SafetyWatch(), Services(), SpeedLimits()
         self._topic, self._age = CommandTopic(SOURCE), 0.0
         self._heartbeat = rospy.Publisher("heartbeat", Empty, queue_size=1, tcp_nodelay=True)
-        self._pace = Pace(lambda linear, angular: self._topic.send(linear, angular, self._age))
+        self._pace = Pace(lambda command: self._topic.send(command, self._age))
         self._interruptions, self._beat_at = 0, float("-inf")
         threading.Thread(target=self._query_master, daemon=True).start()
 
@@ -52,7 +52,7 @@ class Backend:
             self.authority.interrupt(now, why)
         if self.view.revoked(rospy.get_name()):
             self.authority.refuse(now)
-        self.authority.permit(self._watch.drivable(SILENCE))
+        self.authority.permit(self._watch.drivable(SILENCE), legged=running_kind().legged)
         command, self._age = self.authority.command(self._limits.newest(), now)
         self._pace.step(command, now)
         commander = self.authority.commander
@@ -107,8 +107,8 @@ class Backend:
                     "replayed": dead_man.replayed,
                     "cap": page.cap,
                 },
-                "chosen": (page.chosen.linear, page.chosen.angular),
-                "limits": (limits.linear, limits.angular),
+                "chosen": (page.chosen.linear, page.chosen.angular, page.chosen.lateral),
+                "limits": (limits.linear, limits.angular, limits.lateral),
                 "heartbeat": page.heartbeat,
             }
         )

@@ -23,7 +23,7 @@ from robot_control.console.messages import SPEED, Fields, MessageError, check_fi
 from robot_control.msg import FollowPathActionGoal
 from robot_control.path.shapes import SHAPES
 from robot_control.path.waypoints import PathError, Waypoint, checked, placed, read_csv_text
-from robot_control.srv import InjectFault, SetOdometry, SetParameters, Step
+from robot_control.srv import InjectFault, SetGait, SetOdometry, SetParameters, SetPosture, Step
 
 RESET_PAUSE, RESET_WINDOW = 0.5, 10.0
 """s; the second step of a reset follows the first one no sooner and no later"""
@@ -51,6 +51,8 @@ class Call:
 CALLS: Mapping[str, Call] = {
     "reset_asked": Call("e_stop_reset"),
     "reset": Call("e_stop_reset", fields={"key": text(32)}),
+    "set_posture": Call("set_posture", SetPosture, {"posture": text(16)}),
+    "set_gait": Call("set_gait", SetGait, {"gait": text(16)}),
     "reset_odometry": Call("reset_odometry", Trigger),
     "set_odometry": Call("set_odometry", SetOdometry, {"x": METRES, "y": METRES, "yaw": number(-7.0, 7.0)}),
     "set_parameters": Call("controller/set_parameter_map", SetParameters, {"parameters": text(8192)}, Role.MAINTAIN),
@@ -90,6 +92,8 @@ def against(name: str, page: Page, authority: Authority, services: set[str], kin
         return "take the command first"
     if service and service not in services:
         node, _, _ = service.rpartition("/")
+        if call.kind in {SetPosture, SetGait}:
+            return "the robot has no legs, or its controller does not run"
         return f"{'follow_path.py' if node == FOLLOW else node or 'the robot'} does not run"
     return ""
 

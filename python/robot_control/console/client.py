@@ -133,7 +133,7 @@ class Client:
             authority.give_back(page, now)
         elif kind == "speeds":
             authority.require(page)
-            page.chosen = Command(message["linear"], message["angular"])
+            page.chosen = Command(**message)
         elif kind == "heartbeat":
             authority.require(page)
             page.heartbeat = message["on"]

@@ -29,7 +29,8 @@ class Drive:
     sent: float  # s, by the page's clock
     held: bool
     linear: float = 0.0  # share of the chosen speed, −1 … 1, forward
-    angular: float = 0.0  # the same, to the left
+    angular: float = 0.0  # the same, turning to the left
+    lateral: float = 0.0  # the same, sideways to the left
 
 
 class DeadMan:
@@ -37,7 +38,8 @@ class DeadMan:
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
-        axes = PadParameters(axis_linear=0, axis_angular=1, scale_linear=1.0, scale_angular=1.0, enable_button=0)
+        axes = PadParameters(axis_linear=0, axis_angular=1, axis_lateral=2, enable_button=0)
+        axes = replace(axes, scale_linear=1.0, scale_angular=1.0, scale_lateral=1.0)
         self.pad = Pad(replace(axes, enable_turbo_button=-1, joy_timeout=settings.link_gap))
         self._excess = Excess()
         self.round_trips = RoundTrips()
@@ -61,7 +63,7 @@ class DeadMan:
             return
         self.stamp, self._gap, self._held = now - excess, False, drive.held
         self._ended = self._ended if drive.held else ""
-        self.pad.receive((drive.linear, drive.angular), (int(drive.held),), now)
+        self.pad.receive((drive.linear, drive.angular, drive.lateral), (int(drive.held),), now)
 
     def alive(self, now: float) -> bool:
         """True while messages arrive."""
@@ -85,7 +87,7 @@ class DeadMan:
         words = self.pad.state(now)
         if words == "release the enable button once":
             return f"release everything once{f': {self._ended}' if self._ended else ''}"
-        return words if words == "drives" else ""
+        return words if words.startswith("drives") else ""
 
     def _notice_gap(self, now: float) -> None:
         if not self._gap and not self.alive(now):

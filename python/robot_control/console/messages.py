@@ -44,12 +44,19 @@ def flag(value: Any) -> bool:  # noqa: ANN401 (JSON)
 
 COUNT, SHARE, SPEED = number(0, 1 << 53, int), number(-1.0, 1.0), number(0.0, 100.0)
 TYPES: Mapping[str, Fields] = {
-    "drive": {"number": COUNT, "sent": number(0.0, 1e12), "held": flag, "linear": SHARE, "angular": SHARE},
+    "drive": {
+        "number": COUNT,
+        "sent": number(0.0, 1e12),
+        "held": flag,
+        "linear": SHARE,
+        "angular": SHARE,
+        "lateral": SHARE,
+    },
     "pong": {"name": text(32)},
     "take": {"force": flag},
     "hand_over": {"to": COUNT},
     "give_back": {},
-    "speeds": {"linear": SPEED, "angular": SPEED},
+    "speeds": {"linear": SPEED, "angular": SPEED, "lateral": SPEED},
     "heartbeat": {"on": flag},
     "call": {"number": COUNT, "name": text(32), "arguments": lambda value: isinstance(value, dict)},
 }

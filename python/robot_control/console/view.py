@@ -15,7 +15,7 @@ from sensor_msgs.msg import JointState
 from robot_control.common.command import Command
 from robot_control.common.pose import pose_of
 from robot_control.console.topics import Latest
-from robot_control.msg import DriveState, FollowPathActionFeedback
+from robot_control.msg import DriveState, FollowPathActionFeedback, LegState
 from robot_control.view.scene import Trail
 from robot_control.why.diagnosis import judge, missing_nodes
 from robot_control.why.state import Facts
@@ -23,7 +23,7 @@ from robot_control.why.state import Facts
 MAX_PATH = 2000
 """Points of a wanted path that are sent; a longer path is thinned evenly."""
 DRIVE_SILENCE = 1.0
-"""s after which a drive_state is too old to count"""
+"""s after which a drive_state or leg_state is too old to count"""
 
 Values = dict[str, Any]
 
@@ -39,15 +39,16 @@ class View:
             "truth": Latest("ground_truth/odom", Odometry),
             "joints": Latest("joint_states", JointState),
             "drive": Latest("drive_state", DriveState),
+            "legs": Latest("leg_state", LegState),
             "feedback": Latest("follow_path/feedback", FollowPathActionFeedback),
         }
         self._wanted = Latest("path_wanted", Path)
 
     def revoked(self, node: str) -> bool:
         """True if the controller refuses what the node requested before a stop."""
-        drive = self._topics["drive"]
-        fresh = time.monotonic() - drive.received_at < DRIVE_SILENCE
-        return fresh and node in drive.message.revoked
+        states = (self._topics["drive"], self._topics["legs"])
+        now = time.monotonic()
+        return any(now - state.received_at < DRIVE_SILENCE and node in state.message.revoked for state in states)
 
     def pose(self) -> tuple[float, float, float] | None:
         """x, y [m], yaw [rad] in odom."""
@@ -66,11 +67,11 @@ class View:
         """The values of a frame; `asked` is the last command of this console."""
         now = time.monotonic()
         newest = {name: topic.message for name, topic in self._topics.items()}
-        odometry, truth, joints, drive = (newest[name] for name in ("odom", "truth", "joints", "drive"))
+        odometry, truth, joints, drive, legs = (newest[name] for name in ("odom", "truth", "joints", "drive", "legs"))
         values: Values = {
             "type": "fast",
             "ages": {name: topic.age(now) for name, topic in self._topics.items()},
-            "asked": None if asked is None else [asked.linear, asked.angular],
+            "asked": None if asked is None else [asked.linear, asked.angular, asked.lateral],
             "limited": None if newest["limited"] is None else _speeds(newest["limited"].twist),
             "joints": {} if joints is None else dict(zip(joints.name, joints.position, strict=False)),
         }
@@ -83,13 +84,20 @@ class View:
             values |= {"truth": _pose(truth), "true": _speeds(truth.twist.twist)}
         if drive is not None:
             rows = zip(drive.name, drive.error, drive.effort, strict=False)
-            values["wheels"] = [{"name": name, "error": error, "effort": effort} for name, error, effort in rows]
+            values["driven"] = [{"name": name, "error": error, "effort": effort} for name, error, effort in rows]
+        if legs is not None:
+            values["legs"] = legs_of(legs)
+            values["driven"] = [
+                {"name": name, "error": wanted - actual, "effort": effort}
+                for name, wanted, actual, effort in zip(legs.name, legs.wanted, legs.actual, legs.effort, strict=False)
+            ]
         return finite(values)
 
     def slow(self, facts: Facts) -> Values:
         """The values that change rarely: state, causes, remedies, senders."""
         answer, safety, estimator = judge(facts), facts.received(), facts.kind.estimator
-        drive, feedback = self._topics["drive"].message, self._topics["feedback"]
+        drive, legs = (self._topics[name].message for name in ("drive", "legs"))
+        feedback, revoked = self._topics["feedback"], drive or legs
         progress = (
             {}
             if feedback.message is None
@@ -118,7 +126,8 @@ class View:
                 "paused": facts.value(facts.driver, "driver_state") == "paused",
                 "safety": None if safety is None else dataclasses.asdict(safety),
                 "sources": [] if drive is None else drive.sources,
-                "revoked": [] if drive is None else drive.revoked,
+                "revoked": [] if revoked is None else revoked.revoked,
+                "legged": facts.kind.legged,
                 "path": {"age": feedback.age(time.monotonic()), **progress},
             }
         )
@@ -129,8 +138,19 @@ def _pose(odometry: Odometry) -> tuple[float, float, float]:
     return pose.x, pose.y, pose.yaw
 
 
-def _speeds(twist: Any) -> tuple[float, float]:  # noqa: ANN401 (geometry_msgs)
-    return twist.linear.x, twist.angular.z
+def _speeds(twist: Any) -> tuple[float, float, float]:  # noqa: ANN401 (geometry_msgs)
+    return twist.linear.x, twist.angular.z, twist.linear.y
+
+
+def legs_of(message: LegState) -> Values:
+    """Posture, gait and feet."""
+    feet = zip(message.foot, message.bears, message.load, strict=False)
+    return {
+        "posture": message.posture,
+        "gait": message.gait,
+        "chosen": message.chosen_gait,
+        "feet": [{"name": name, "bears": bool(bears), "load": load} for name, bears, load in feet],
+    }
 
 
 def finite(values: Values) -> Values:

@@ -7,16 +7,27 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
+LEGGED_ROBOT = "quadbot"
+
 
 def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
-    """The command line of scripts/demo: `seconds`, `out` and `drives`; ends the program on a wrong one."""
+    """The command line of scripts/demo: `seconds`, `out`, `robot` and `drives`; ends the program on a wrong one."""
     parser = argparse.ArgumentParser(prog="scripts/demo", description="Drives the simulated robot and judges the run.")
     parser.add_argument("--seconds", type=_seconds, default=10.0, help="of driving (default %(default)g)")
     parser.add_argument("--out", type=_folder, default="demo_out", help="folder (default ./demo_out)")
     parser.add_argument(
+        "--robot",
+        choices=("diffbot", LEGGED_ROBOT),
+        default="diffbot",
+        help="on wheels or on legs (default %(default)s)",
+    )
+    parser.add_argument(
         "--drives", choices=("odrive", "cia402", "example"), help="the motors stand behind such simulated drives"
     )
-    return parser.parse_args(arguments)
+    given = parser.parse_args(arguments)
+    if given.drives and given.robot == LEGGED_ROBOT:
+        parser.error(f"--drives move wheels alone, and {LEGGED_ROBOT} stands on legs: leave one of both out")
+    return given
 
 
 def _seconds(text: str) -> float:

@@ -19,9 +19,10 @@ from robot_control._robot_control import BagError, BagReader
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import printable, utf8
 from robot_control.common.program import run
-from robot_control.common.roles import LOOP, TELEMETRY
+from robot_control.common.roles import LEGGED, LOOP, TELEMETRY, WHEELED, Kind
 from robot_control.common.run_log import LogError, read_log
-from robot_control.demo.arguments import parse
+from robot_control.common.signal_names import number_of
+from robot_control.demo.arguments import LEGGED_ROBOT, parse
 from robot_control.demo.loop_timing import processor_time, stolen_share
 from robot_control.demo.run_picture import draw_run
 from robot_control.demo.run_summary import summarize, to_json, to_table
@@ -43,7 +44,7 @@ END_LIMIT = 20.0
 """s for an orderly end after SIGINT; roslaunch itself gives its nodes 15 s."""
 BUS = f"demo_{os.getpid()}"
 """The bus belongs to this demo alone, which removes it: 12 MB that outlive the nodes would fill a small /dev/shm."""
-OUTPUTS = ("run.bag", "run.csv", "summary.json", "run.png", "launch.log", "send_cmd.log")
+OUTPUTS = ("run.bag", "run.csv", "summary.json", "run.png", "launch.log", "send_cmd.log", "set_posture.log")
 EVERY_CYCLE = "telemetry: {record: always}\n"
 """parameters laid over the package's"""
 
@@ -90,8 +91,8 @@ class Child:
         return True
 
 
-def run_demo(seconds: float, out: Path, drives: Path | None = None) -> int:
-    """Drives for `seconds` and writes everything to `out`; `drives`: a drive file. Returns the exit code."""
+def run_demo(seconds: float, out: Path, robot: str, drives: Path | None = None) -> int:
+    """Drives `robot` for `seconds` and writes everything to `out`; `drives`: a drive file. Returns the exit code."""
     out.mkdir(parents=True, exist_ok=True)
     for name in OUTPUTS:
         (out / name).unlink(missing_ok=True)
@@ -99,7 +100,7 @@ def run_demo(seconds: float, out: Path, drives: Path | None = None) -> int:
     shutil.rmtree(out / "ros", ignore_errors=True)
 
     before = processor_time()
-    driven = _drive(seconds, out, drives)
+    driven = _drive(seconds, out, robot, drives)
     stolen = stolen_share(before, processor_time())
 
     _print_refusals((out / "launch.log").read_text(errors="replace"))
@@ -108,10 +109,12 @@ def run_demo(seconds: float, out: Path, drives: Path | None = None) -> int:
         write_csv(out / "run.bag", out / "run.csv")
     except (OSError, LogError) as error:
         raise DemoError(f"no log of the run: {in_words(error)}; see {out / 'launch.log'}") from error
-    summary = summarize(log, LINEAR, ANGULAR, driven, stolen)
+    summary = summarize(log, LINEAR, ANGULAR, driven, stolen, legged=robot == LEGGED_ROBOT)
     (out / "summary.json").write_text(to_json(summary))
     verdict = "tracked" if summary.passed else "NOT TRACKED"
-    draw_run(log, summary, f"{LINEAR} m/s and {ANGULAR} rad/s, wall clock, 1 ms cycles: {verdict}", out / "run.png")
+    draw_run(
+        log, summary, f"{robot}, {LINEAR} m/s and {ANGULAR} rad/s, wall clock, 1 ms cycles: {verdict}", out / "run.png"
+    )
     print(f"\n{to_table(summary)}\n\n{verdict}; see {printable(str(out))}/summary.json, run.bag, run.csv, run.png")
     return 0 if summary.passed else 1
 
@@ -127,18 +130,21 @@ def refusals(launch_log: str) -> list[str]:
     return list(found.values())
 
 
-def _drive(seconds: float, out: Path, drives: Path | None) -> float:
-    """Starts everything, drives, ends everything. Returns the seconds from the command's arrival to its end."""
+def _drive(seconds: float, out: Path, robot: str, drives: Path | None) -> float:
+    """Starts everything, drives, ends everything. Returns the seconds from the command's arrival, or from full speed of
+    a robot that stands up first, to the command's end.
+    """
     log = out / "run.bag"
     parameters = out / "ros" / "every_cycle.yaml"
     parameters.parent.mkdir()
     parameters.write_text(EVERY_CYCLE)
     with _ended_at_the_end() as children:
-        print(f"starting roscore, {', '.join(LOOP)}, {TELEMETRY}")
+        kind = Kind(LEGGED if robot == LEGGED_ROBOT else WHEELED)
+        print(f"starting roscore, {kind.worded(', '.join(LOOP))}, {TELEMETRY}")
         port = os.environ["ROS_MASTER_URI"].rsplit(":", 1)[1].strip("/")
         launch = Child(
             [
-                *("roslaunch", "-p", port, "robot_control", "sim.launch"),
+                *("roslaunch", "-p", port, "robot_control", "sim.launch", f"robot:={robot}"),
                 *("telemetry:=true", "black_box:=false", f"out:={out}", f"bus:={BUS}", f"params:={parameters}"),
                 *(
                     []
@@ -154,6 +160,8 @@ def _drive(seconds: float, out: Path, drives: Path | None) -> float:
         sender = Child(["rosrun", "robot_control", "send_cmd.py"], out / "send_cmd.log")
         children.append(sender)
         _wait_until(lambda: _commanded(_last_row(log)), "command", launch, sender)
+        if robot == LEGGED_ROBOT:
+            _wait_until(lambda: _walks(_last_row(log)), "walk at full speed", launch, sender)
         start, due = time.monotonic(), 0.0
         while (driven := time.monotonic() - start) < seconds:
             time.sleep(max(0.0, min(1.0, seconds - driven)))
@@ -164,10 +172,19 @@ def _drive(seconds: float, out: Path, drives: Path | None) -> float:
         print("stopping")
         if not sender.end():
             print(f"send_cmd.py had to be killed; see {sender.output}")
+        if robot == LEGGED_ROBOT:
+            _lie_down(log, launch, children, out)
         time.sleep(RAMP_TIME)
         if not launch.end():
             print(f"roslaunch had to be killed; see {launch.output}")
     return driven
+
+
+def _lie_down(log: Path, launch: Child, children: list[Child], out: Path) -> None:
+    _wait_until(lambda: _is(_last_row(log), "standing"), "standing robot", launch)
+    print("lying down")
+    children.append(Child(["rosservice", "call", "set_posture", "lying"], out / "set_posture.log"))
+    _wait_until(lambda: _is(_last_row(log), "lying"), "lying robot", launch)
 
 
 @contextlib.contextmanager
@@ -226,6 +243,14 @@ def _commanded(row: Trace | None) -> bool:
     return row is not None and row.requested_linear[0] == LINEAR
 
 
+def _walks(row: Trace | None) -> bool:
+    return _is(row, "walking") and row is not None and row.limited_linear[0] == LINEAR
+
+
+def _is(row: Trace | None, posture: str) -> bool:
+    return row is not None and row.legged_phase == number_of("LegPhase", posture)
+
+
 def _print_refusals(launch_log: str) -> None:
     said = refusals(launch_log)
     for refusal in said:
@@ -248,7 +273,7 @@ def main() -> int:
     signal.signal(signal.SIGTERM, _interrupt)
     try:
         drives = Path(share_file(f"config/drives/{given.drives}.yaml")) if given.drives else None
-        return run_demo(given.seconds, given.out, drives)
+        return run_demo(given.seconds, given.out, given.robot, drives)
     except (DemoError, OSError) as error:
         print(f"scripts/demo: {in_words(error)}", file=sys.stderr)
         return 2

@@ -1,4 +1,4 @@
-"""A run as one picture: the path, the speeds, the torques."""
+"""A run as one picture: the path, the speeds, the torques; on legs the feet in place of the torques."""
 
 from __future__ import annotations
 
@@ -14,8 +14,10 @@ import numpy as np
 from robot_control.common.picture_style import STYLE
 from robot_control.common.run_log import Log, joint_names
 from robot_control.demo.brakes import Brake
+from robot_control.demo.footfalls import Footfalls, footfalls_of
+from robot_control.demo.intervals import intervals
 from robot_control.demo.run_summary import RunSummary
-from robot_control.demo.tracking import CYCLE_TOLERANCE, commanded_path
+from robot_control.demo.tracking import ON_WHEELS, commanded_path
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,18 +40,21 @@ def draw_run(log: Log, summary: RunSummary, title: str, path: Path) -> None:
         _draw_path(figure.add_subplot(grid[:, 0]), log, summary)
         linear = figure.add_subplot(grid[0, 1])
         angular = figure.add_subplot(grid[1, 1], sharex=linear)
-        torque = figure.add_subplot(grid[2, 1], sharex=linear)
+        below = figure.add_subplot(grid[2, 1], sharex=linear)
         linear.set_xlim(float(log["time"][0]), float(log["time"][-1]))
         _draw_speed(linear, log, summary, "linear")
         _draw_speed(angular, log, summary, "angular")
-        _draw_torques(torque, log)
-        for axes in (linear, angular, torque):
+        if summary.postures:
+            _draw_feet(below, log, footfalls_of(log))
+        else:
+            _draw_torques(below, log)
+        for axes in (linear, angular, below):
             _mark_brakes(axes, summary.brakes)
             _legend_beside(axes)
         _name_brakes(linear, summary.brakes)
         for axes in (linear, angular):
             axes.tick_params(labelbottom=False)
-        torque.set_xlabel("time [s]")
+        below.set_xlabel("time [s]")
         figure.savefig(path)
         plt.close(figure)
 
@@ -101,12 +106,17 @@ def _draw_speed(axes: Axes, log: Log, summary: RunSummary, component: str) -> No
     axes.plot(time, log[f"truth_{component}"], color=TRUE, linewidth=1.2, label="true")  # above the estimate's noise
     if summary.tracking is not None:
         tracking = summary.tracking
-        commanded = tracking.linear.commanded if component == "linear" else tracking.angular.commanded
-        band = abs(commanded) * CYCLE_TOLERANCE
-        axes.fill_between(
-            [tracking.begin, tracking.end], commanded - band, commanded + band, color=TRUE, alpha=0.12, linewidth=0,
-            label=f"±{CYCLE_TOLERANCE * 100:.0f} %, judged",
-        )  # fmt: skip
+        axis = tracking.linear if component == "linear" else tracking.angular
+        steady = [tracking.begin, tracking.end]
+        if summary.postures:
+            axes.plot(steady, [axis.truth] * 2, color="black", linewidth=2, linestyle="--", label="true mean, judged")
+        else:
+            share = ON_WHEELS.cycle or 0.0
+            band = abs(axis.commanded) * share
+            axes.fill_between(
+                steady, axis.commanded - band, axis.commanded + band, color=TRUE, alpha=0.12, linewidth=0,
+                label=f"±{share * 100:.0f} %, judged",
+            )  # fmt: skip
     axes.set_title(name)
     axes.set_ylabel(f"{name.lower()} [{unit}]")
 
@@ -125,6 +135,24 @@ def _draw_torques(axes: Axes, log: Log) -> None:
         axes.plot(log["time"], log[f"{joint}_effort"], color=color, linewidth=1.2, label=f"{name}, actual")
     axes.set_title("Torque")
     axes.set_ylabel("torque [N·m]")
+
+
+def _draw_feet(axes: Axes, log: Log, feet: list[Footfalls]) -> None:
+    """A bar while a foot bears; a pale one while it was asked to."""
+    time = log["time"]
+    for row, foot in enumerate(reversed(feet)):
+        for asked, true, color, half, name in (
+            (True, foot.asked, COMMANDED, 0.42, "asked to bear"),
+            (False, foot.bears, TRUE, 0.22, "bears"),
+        ):
+            spans = [(time[begin], time[end - 1] - time[begin]) for begin, end in intervals(true)]
+            alpha = 0.5 if asked else 1.0
+            axes.broken_barh(
+                spans, (row - half, 2 * half), color=color, alpha=alpha, linewidth=0, label=None if row else name
+            )
+    axes.set_yticks(range(len(feet)), [foot.foot.replace("_", " ") for foot in reversed(feet)])
+    axes.grid(visible=False, axis="y")
+    axes.set_title("Feet")
 
 
 def _mark_brakes(axes: Axes, brakes: tuple[Brake, ...]) -> None:

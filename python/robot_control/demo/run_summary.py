@@ -12,13 +12,14 @@ from typing import Any
 import numpy as np
 
 from robot_control.common.cause_names import causes_in
-from robot_control.common.run_log import Log, last
+from robot_control.common.run_log import FloatArray, Log, last
 from robot_control.common.signal_names import states
 from robot_control.demo.brakes import Brake, brakes_in_drive
 from robot_control.demo.loop_timing import Distribution, LoopTiming, loop_timing
-from robot_control.demo.tracking import RISE_LIMIT, SETTLE, NotSteadyError, Tracking, judge
+from robot_control.demo.tracking import ON_LEGS, ON_WHEELS, SETTLE, NotSteadyError, Tracking, judge
 
 BRAKES_SHOWN = 4
+LYING = "lying"
 WIDTH = 80
 """columns of the table"""
 
@@ -49,14 +50,23 @@ class RunSummary:
     safety: Safety
     brakes: tuple[Brake, ...] = ()
     """Brakes of the gate while a motion was requested."""
+    postures: tuple[str, ...] = ()
+    """Postures of a robot on legs in the order in which they were entered."""
 
     @property
     def passed(self) -> bool:
-        """True if the robot tracked its command; timing does not count."""
-        return self.tracking is not None and self.tracking.passed
+        """True if the robot tracked its command, and on legs lies again; timing does not count."""
+        return self.tracking is not None and self.tracking.passed and (not self.postures or self.lies)
+
+    @property
+    def lies(self) -> bool:
+        """True if the robot on legs lies at the end of the log."""
+        return self.postures[-1:] == (LYING,)
 
 
-def summarize(log: Log, linear: float, angular: float, driven: float, stolen_share: float = 0.0) -> RunSummary:
+def summarize(
+    log: Log, linear: float, angular: float, driven: float, stolen_share: float = 0.0, *, legged: bool = False
+) -> RunSummary:
     """Judges a run.
 
     Args:
@@ -66,31 +76,38 @@ def summarize(log: Log, linear: float, angular: float, driven: float, stolen_sha
         driven: s of wall-clock time from the command's arrival to its end. A log whose steady part ends early, because
             something died, tracked nothing.
         stolen_share: of the processors' time during the run.
+        legged: of a robot on legs.
     """
     tracking, untracked = None, ""
+    tolerances = ON_LEGS if legged else ON_WHEELS
     try:
-        tracking = judge(log, linear, angular)
+        tracking = judge(log, linear, angular, tolerances)
     except NotSteadyError as error:
         untracked = str(error)
     timing = loop_timing(log)
     if tracking is not None:
         # The time that a slow plant lost against the wall clock is no fault.
         missing = driven - timing.slipped - (tracking.end - tracking.begin)
-        if missing > RISE_LIMIT + SETTLE:
+        if missing > tolerances.rise + SETTLE:
             tracking, untracked = None, f"{missing:.1f} s of the {driven:g} s driven are not in the steady part"
-    return RunSummary(tracking, untracked, timing, stolen_share, safety(log), brakes_in_drive(log))
+    postures = entered(log["legged_phase"], "LegPhase") if legged else ()
+    return RunSummary(tracking, untracked, timing, stolen_share, safety(log), brakes_in_drive(log), postures)
 
 
 def safety(log: Log) -> Safety:
     """States and causes in the log."""
     numbers = log["supervisor_state"]
-    known = numbers[~np.isnan(numbers)].astype(int)
-    entered = [int(state) for i, state in enumerate(known) if i == 0 or state != known[i - 1]]
     return Safety(
-        state=_state_name(last(numbers)),
-        states=tuple(_state_name(state) for state in entered),
+        state=_name(last(numbers), "SupervisorState"),
+        states=entered(numbers, "SupervisorState"),
         causes=tuple(causes_in(log["permit_causes"])),
     )
+
+
+def entered(numbers: FloatArray, kind: str) -> tuple[str, ...]:
+    """Names of the states of this kind in the order in which they were entered."""
+    known = numbers[~np.isnan(numbers)]
+    return tuple(_name(state, kind) for i, state in enumerate(known) if i == 0 or state != known[i - 1])
 
 
 def to_json(summary: RunSummary) -> str:
@@ -107,7 +124,7 @@ def to_json(summary: RunSummary) -> str:
 def to_table(summary: RunSummary) -> str:
     """The summary for a reader at a terminal, at most 80 columns wide."""
     lines = [*_motion_lines(summary), "", *_timing_lines(summary), ""]
-    lines += [_safety_line(summary.safety), *_brake_lines(summary.brakes)]
+    lines += [_safety_line(summary.safety), *_posture_lines(summary), *_brake_lines(summary.brakes)]
     return "\n".join(lines)
 
 
@@ -162,6 +179,13 @@ def _safety_line(safety_: Safety) -> str:
     return f"{'safety':<34}{safety_.state}, {stops} ({' → '.join(safety_.states)})"
 
 
+def _posture_lines(summary: RunSummary) -> list[str]:
+    if not summary.postures:
+        return []
+    verdict = "" if summary.lies else ": FAILED, it does not lie"
+    return textwrap.wrap(f"{'posture':<34}{' → '.join(summary.postures)}{verdict}", WIDTH, subsequent_indent=" " * 34)
+
+
 def _brake_lines(brakes: tuple[Brake, ...]) -> list[str]:
     if not brakes:
         return [f"{'brakes of the gate while driving':<34}none"]
@@ -178,8 +202,8 @@ def _brake_lines(brakes: tuple[Brake, ...]) -> list[str]:
     return lines
 
 
-def _state_name(state: float) -> str:
-    known = states("SupervisorState")
+def _name(state: float, kind: str) -> str:
+    known = states(kind)
     if math.isnan(state) or not 0 <= state < len(known):
         return "UNKNOWN"
     return known[int(state)]

@@ -9,6 +9,8 @@ import rospy
 from geometry_msgs.msg import Twist
 
 from robot_control.common.live_parameters import LiveParameters
+from robot_control.common.robot_kind import running_kind
+from robot_control.common.roles import NO_LATERAL
 from robot_control.common.ros_node import begin_node
 from robot_control.common.topic_sender import Sender, Signals, ended_by_signals
 from robot_control.drive.release import Line, Phase, Release
@@ -26,10 +28,10 @@ POLL_PERIOD = 0.02
 """s between two looks"""
 
 
-def _twist(linear: float, angular: float) -> Twist:
+def _twist(plan: SendPlan) -> Twist:
     message = Twist()
-    message.linear.x = linear
-    message.angular.z = angular
+    message.linear.x, message.linear.y = plan.linear, plan.lateral
+    message.angular.z = plan.angular
     return message
 
 
@@ -93,8 +95,10 @@ def send(plan: SendPlan, signals: Signals) -> int:
         if time.monotonic() < deadline:
             time.sleep(min(POLL_PERIOD, max(0.0, deadline - time.monotonic())))
         elif phase is Phase.SENDING:
-            sender.send(_twist(plan.linear, plan.angular))
+            sender.send(_twist(plan))
             sent += 1
+            if sent == 1 and plan.lateral and running_kind().wheeled:
+                rospy.logwarn(f"--lateral {plan.lateral:g}: {NO_LATERAL}")
             rospy.loginfo(plan.describe(sent))
             deadline += plan.period
         else:

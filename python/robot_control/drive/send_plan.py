@@ -24,6 +24,7 @@ class SendPlan:
     angular: float = 0.2  # rad/s, to the left
     period: float = 0.5  # s, between two sends
     count: int | None = None  # sends; None: until interrupted
+    lateral: float = 0.0  # m/s, to the left
 
     def sends_left(self, sent: int) -> bool:
         """True if another command has to be sent after `sent`."""
@@ -36,7 +37,8 @@ class SendPlan:
 
     def describe(self, sent: int) -> str:
         """One line for the log."""
-        return f"cmd_vel {sent}: {self.linear:g} m/s, {self.angular:g} rad/s"
+        lateral = f"{self.lateral:g} m/s to the left, " if self.lateral else ""
+        return f"cmd_vel {sent}: {self.linear:g} m/s, {lateral}{self.angular:g} rad/s"
 
 
 def positive(text: str) -> float:
@@ -64,6 +66,9 @@ def parse_plan(arguments: list[str]) -> SendPlan:
         prog="send_cmd.py", description=f"Repeats one velocity command on cmd_vel. {START}", epilog=LOCKSTEP
     )
     parser.add_argument("--linear", type=float, default=SendPlan.linear, help="m/s (default %(default)s)")
+    parser.add_argument(
+        "--lateral", type=float, default=SendPlan.lateral, help="m/s to the left, robots on legs (default %(default)s)"
+    )
     parser.add_argument("--angular", type=float, default=SendPlan.angular, help="rad/s (default %(default)s)")
     parser.add_argument(
         "--period", type=positive, default=SendPlan.period, help="s between sends (default %(default)s)"
@@ -75,4 +80,4 @@ def parse_plan(arguments: list[str]) -> SendPlan:
     count = given.count
     if given.seconds is not None:
         count = max(1, math.ceil(given.seconds / given.period))
-    return SendPlan(given.linear, given.angular, given.period, count)
+    return SendPlan(given.linear, given.angular, given.period, count, given.lateral)

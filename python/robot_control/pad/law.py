@@ -1,6 +1,7 @@
 """Converts a pad's axes and buttons to a velocity. It reads no clock: time is an argument, s of any one clock.
 
-    v = scale_linear · axes[axis_linear]      while enable_button is held, else 0
+    v_x = scale_linear · axes[axis_linear]      while enable_button is held, else 0
+    v_y = scale_lateral · axes[axis_lateral]    on legs, else 0
     ω = scale_angular · axes[axis_angular]
 
 With enable_turbo_button held, the turbo scales hold instead. The names are those of teleop_twist_joy.
@@ -17,6 +18,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 from robot_control.common.command import Command
+from robot_control.common.roles import NO_LATERAL
 
 SETTLING = 0.3
 """s after an interruption, or a silence of the pad, in which messages may still arrive that were sent before it"""
@@ -32,10 +34,13 @@ class PadParameters:
 
     axis_linear: int = 1  # left stick, forward
     axis_angular: int = 0  # left stick, to the left
+    axis_lateral: int = 3  # right stick, to the left
     scale_linear: float = 0.5  # m/s
     scale_angular: float = 1.0  # rad/s
+    scale_lateral: float = 0.3  # m/s
     scale_linear_turbo: float = 1.0  # m/s
     scale_angular_turbo: float = 1.5  # rad/s
+    scale_lateral_turbo: float = 0.5  # m/s
     enable_button: int = 4  # left shoulder
     enable_turbo_button: int = 5  # right shoulder
     deadzone: float = 0.1  # share of an axis around its middle that counts as the middle
@@ -53,6 +58,7 @@ class Pad:
 
     def __init__(self, parameters: PadParameters | None = None) -> None:
         self._given = parameters or PadParameters()
+        self.legged = False  # true: the robot also moves sideways
         self._axes: tuple[float, ...] = ()
         self._buttons: tuple[int, ...] = ()
         self._answered_at = float("-inf")
@@ -115,10 +121,15 @@ class Pad:
         if not (self.answers(now) and self._armed and self._held()):
             return Command() if now < self._zeros_until else None
         self._zeros_until = now + ZEROS
-        turbo = self._pressed(self._given.enable_turbo_button)
-        linear = self._given.scale_linear_turbo if turbo else self._given.scale_linear
-        angular = self._given.scale_angular_turbo if turbo else self._given.scale_angular
-        return Command(linear * self._axis(self._given.axis_linear), angular * self._axis(self._given.axis_angular))
+        given, turbo = self._given, self._pressed(self._given.enable_turbo_button)
+        linear = given.scale_linear_turbo if turbo else given.scale_linear
+        angular = given.scale_angular_turbo if turbo else given.scale_angular
+        lateral = given.scale_lateral_turbo if turbo else given.scale_lateral
+        return Command(
+            linear * self._axis(given.axis_linear),
+            angular * self._axis(given.axis_angular),
+            lateral * self._axis(given.axis_lateral) if self.legged else 0.0,
+        )
 
     def answers(self, now: float) -> bool:
         """True while the device answers, or messages arrive."""
@@ -132,7 +143,10 @@ class Pad:
             return f"{' and '.join(self._senders(now))} publish joy: zero until one is left"
         if not self._armed:
             return "release the enable button once"
-        return "drives" if self._held() else f"hold button {self._given.enable_button} to drive"
+        if not self._held():
+            return f"hold button {self._given.enable_button} to drive"
+        sideways = not self.legged and self._axis(self._given.axis_lateral)
+        return f"drives, but {NO_LATERAL}" if sideways else "drives"
 
     def _senders(self, now: float) -> list[str]:
         return [name for name, at in self._newest.items() if now - at <= self._given.joy_timeout]

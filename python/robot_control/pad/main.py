@@ -15,10 +15,11 @@ from sensor_msgs.msg import Joy
 from robot_control.common.command import SEND_PERIOD, Pace
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.files import printable
+from robot_control.common.robot_kind import running_kind
 from robot_control.common.ros_node import running_node
 from robot_control.common.server_values import ServerValueError, server_tree
 from robot_control.common.topic_sender import Signals
-from robot_control.msg import DriveState
+from robot_control.msg import DriveState, LegState
 from robot_control.pad.device import PACKAGE, Device, open_device
 from robot_control.pad.law import Pad, PadParameters
 from robot_control.safety.watch import SafetyWatch
@@ -108,13 +109,14 @@ class Source:
 
 
 class Refusal:
-    """Whether the controller refuses the motion that this program requests (DriveState.revoked)."""
+    """Whether the controller refuses the motion that this program requests (DriveState.revoked, LegState.revoked)."""
 
     def __init__(self) -> None:
         self.active = False
-        rospy.Subscriber("drive_state", DriveState, self._receive, queue_size=1, tcp_nodelay=True)
+        for name, kind in (("drive_state", DriveState), ("leg_state", LegState)):
+            rospy.Subscriber(name, kind, self._receive, queue_size=1, tcp_nodelay=True)
 
-    def _receive(self, message: DriveState) -> None:
+    def _receive(self, message: DriveState | LegState) -> None:
         self.active = rospy.get_name() in message.revoked
 
 
@@ -138,6 +140,7 @@ def drive(given: argparse.Namespace, signals: Signals) -> None:
             pad.refuse(now)
             if not before:
                 rospy.logwarn(REFUSED)
+        pad.legged = running_kind().legged
         pad.permit(watch.drivable(SILENCE))
         pace.step(pad.command(now), now)
         if pad.state(now) != said:

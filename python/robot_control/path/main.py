@@ -10,12 +10,11 @@ from pathlib import Path as FilePath
 import rospy
 from nav_msgs.msg import Path
 
+from robot_control.common.command import Command
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message
 from robot_control.common.pose import pose_of
-from robot_control.common.robot_kind import refuse_running_legs
-from robot_control.common.roles import WheelsOnlyError
 from robot_control.common.ros_node import running_node
 from robot_control.common.topic_sender import Signals
 from robot_control.drive.send_plan import positive
@@ -75,7 +74,7 @@ def drive(points: list[Waypoint] | None, given: argparse.Namespace, signals: Sig
             rospy.loginfo(run.describe())
 
     run.run(signals.going_on, report)
-    topic.send(0.0, 0.0)
+    topic.send(Command())
     rospy.loginfo(run.describe())
     if follower.state is State.DONE:
         rospy.loginfo(f"done; at most {1000 * follower.worst_cross_track_error:.0f} mm aside by odometry")
@@ -122,9 +121,8 @@ def main() -> None:
         sys.exit(f"drive_path.py: {fit_for_message(in_words(error))}")
     try:
         with running_node("drive_path") as signals:
-            refuse_running_legs("drive_path.py")
             reason = drive(points, given, signals)
-    except (PathError, WheelsOnlyError) as error:
+    except PathError as error:
         sys.exit(f"drive_path.py: {error}")
     if reason:
         sys.exit(f"drive_path.py: {reason}")

@@ -1,4 +1,4 @@
-"""The robot as a path's program sees it: odometry, permit, and whether its commands reach the wheels."""
+"""The robot as a path's program sees it: odometry, permit, and whether its commands reach the joints."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ from collections.abc import Callable
 import rospy
 from nav_msgs.msg import Odometry
 
+from robot_control.common.command import Command
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.roles import ESTIMATOR, MONITOR
-from robot_control.msg import DriveState, SafetyStatus
+from robot_control.msg import DriveState, LegState, SafetyStatus
 from robot_control.safety.states import DRIVABLE, STOPPED
 from robot_control.safety.watch import SafetyWatch
 
@@ -41,11 +42,12 @@ class Robot:
         self.odometry: Odometry | None = None
         self.odometry_at = -math.inf
         self.watch = SafetyWatch()
-        self.commands = False  # true if the commands of this program reach the wheels
+        self.commands = False  # true if the commands of this program reach the joints
         self.refused_at = math.inf  # s, since when the controller awaits a zero from this program after a stop
         self.masked_by = ""
         rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1, tcp_nodelay=True)
         rospy.Subscriber("drive_state", DriveState, self._receive_state, queue_size=1, tcp_nodelay=True)
+        rospy.Subscriber("leg_state", LegState, self._receive_refusal, queue_size=1, tcp_nodelay=True)
 
     @property
     def frames(self) -> tuple[str, str]:
@@ -101,7 +103,7 @@ class Robot:
             speaks = not self._silence(time.monotonic())
             if speaks and self.drivable and topic.connected and self.commands:
                 return ""
-            topic.send(0.0, 0.0)
+            topic.send(Command())
             time.sleep(0.1)
         if not going_on():
             return "interrupted"
@@ -130,6 +132,9 @@ class Robot:
         states = dict(text.split(": ", 1) for text in message.sources)
         state = states.get(SOURCE, "")
         self.masked_by = state if state.startswith(("masked", "locked")) else ""
+        self._receive_refusal(message, chosen=state in {"", "commands"})
+
+    def _receive_refusal(self, message: DriveState | LegState, *, chosen: bool = True) -> None:
         refused = rospy.get_name() in message.revoked
         self.refused_at = min(self.refused_at, time.monotonic()) if refused else math.inf
-        self.commands = state in {"", "commands"} and not refused
+        self.commands = chosen and not refused

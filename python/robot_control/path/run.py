@@ -12,6 +12,7 @@ from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry, Path
 from std_srvs.srv import Trigger, TriggerResponse
 
+from robot_control.common.command import Command
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.pose import pose_of
 from robot_control.path.follower import Follower, Motion, State
@@ -73,11 +74,11 @@ class Drive:
             measured = Motion(odometry.twist.twist.linear.x, odometry.twist.twist.angular.z)
             try:
                 pose = self._frame.pose(pose_of(odometry), time.monotonic())
-                command = self.follower.step(pose, measured, self._robot.speed_limit, self._elapsed(odometry))
+                motion = self.follower.step(pose, measured, self._robot.speed_limit, self._elapsed(odometry))
             except PathError as error:
                 self.follower.fail(str(error))
                 return
-        self._topic.send(command.linear, command.angular)
+        self._topic.send(Command(motion.linear, motion.angular))
 
     def _elapsed(self, odometry: Odometry) -> float:
         """s since the last one; more than SILENCE would have ended the path."""

@@ -12,6 +12,7 @@ import actionlib
 import rospy
 from nav_msgs.msg import Path
 
+from robot_control.common.command import Command
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.ros_node import running_node
 from robot_control.common.topic_sender import Signals
@@ -103,7 +104,7 @@ class Server:
             self._services.drive = None
             replaced = self._action.is_new_goal_available()
             if result.reason or not replaced:
-                self._topic.send(0.0, 0.0)
+                self._topic.send(Command())
             self._conclude(result, replaced=replaced)
             self._idle.set()
 

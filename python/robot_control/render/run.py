@@ -61,14 +61,15 @@ def moments_of(log: Log, period: float, *, legged: bool = False) -> list[Moment]
             rows.append({name: float(values[row]) for name, values in columns.items()})
             due = (time if due == -math.inf else due) + period
     flat = not legged and _flat(rows)
-    return [_moment(row, rows[0], pose, flat=flat) for row in rows]
+    height = f"{pose}_z" if legged else "estimate_z"
+    return [_moment(row, rows[0], pose, height, flat=flat) for row in rows]
 
 
 def _flat(rows: list[dict[str, float]]) -> bool:
     return not any(row.get("truth_tilt", 0.0) > FLAT for row in rows)
 
 
-def _moment(row: dict[str, float], first: dict[str, float], pose: str, *, flat: bool) -> Moment:
+def _moment(row: dict[str, float], first: dict[str, float], pose: str, height: str, *, flat: bool) -> Moment:
     def since(name: str) -> float:
         change = row.get(name, math.nan) - first.get(name, math.nan)
         return change if math.isfinite(change) and not flat else 0.0
@@ -82,7 +83,7 @@ def _moment(row: dict[str, float], first: dict[str, float], pose: str, *, flat: 
         row["time"],
         row[f"{pose}_x"],
         row[f"{pose}_y"],
-        since("estimate_z"),
+        since(height),
         since("estimate_roll"),
         since("estimate_pitch"),
         row[f"{pose}_yaw"],

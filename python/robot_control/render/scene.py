@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 from robot_control.render.run import Moment
@@ -146,27 +147,29 @@ class Scene:
                     geom.set("rgba", BODY)
 
     def _add_path(self, moments: Sequence[Moment]) -> None:
-        places = [self.place(moment) for moment in moments]
+        ground = self._ground()
+        on_ground = moments if ground is not None else [replace(moment, z=0.0) for moment in moments]
+        places = [self.place(moment) for moment in on_ground]
         points = [places[0]]
         step = max(STEP, sum(math.dist(a, b) for a, b in pairwise(places)) / MAX_POINTS)
         for place in places[1:]:
             if math.dist(place, points[-1]) > step:
                 points.append(place)
-        under = rotated(self._attitude, (0.0, 0.0, self._ground()))
+        under = rotated(self._attitude, (0.0, 0.0, -self._start[2] if ground is None else ground))
         for a, b in pairwise(points):
             ends = [place + shift for point in (a, b) for place, shift in zip(point, under, strict=True)]
             fromto = " ".join(f"{number:.4f}" for number in ends)
             ET.SubElement(self._world, "geom", UNTOUCHABLE, type="capsule", size="0.008", fromto=fromto, rgba=PATH)
 
-    def _ground(self) -> float:
-        """m below the robot's origin, by its wheels."""
+    def _ground(self) -> float | None:
+        """m below the robot's origin, by its wheels; None on legs, whose path is drawn at the height 0 of the world."""
         lows = [
             _numbers(body.get("pos"), (0.0, 0.0, 0.0))[2] - _numbers(geom.get("size"), (0.0,))[0]
             for body in self._robot.iter("body")
             for geom in body.findall("geom")
             if (geom.get("name") or "").startswith("robot_control/wheel/")
         ]
-        return min(lows, default=0.0)
+        return min(lows, default=None)
 
 
 def _make_wheel(body: ET.Element, geom: ET.Element) -> None:

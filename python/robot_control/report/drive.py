@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ET
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -33,6 +34,8 @@ class Drive:
     """Rows that telemetry counted as lost; None if the file does not hold it: every absent cycle then counts as lost.
     """
     kind: Kind = field(default_factory=Kind)
+    mass: float = float("nan")
+    """kg, by the robot's description"""
     part: str = ""
     """The part that was read of a file that was not completed or holds several runs; empty if all was read."""
 
@@ -103,10 +106,20 @@ class Drive:
         return braked
 
 
+def mass_of(urdf: str) -> float:
+    """kg, of all links of a description; NaN if its text names no masses, as one of xacro."""
+    try:
+        masses = [float(mass.get("value", "")) for mass in ET.fromstring(urdf).iterfind("link/inertial/mass")]
+    except (ET.ParseError, ValueError):
+        return float("nan")
+    return sum(masses) if masses else float("nan")
+
+
 def drive_of(path: Path, run: RunLog) -> Drive:
     """The drive without its tail, in which the nodes end one after the other."""
     log: Log = run.columns
     if "command_published_ns" in log and "permit_published_ns" in log:
         log = while_all_ran(log)
     name = path.stem if path.stem != "run" else path.resolve().parent.name + "/" + path.name
-    return Drive(name, log, run.lost, kind_in(run.header), "; ".join(run.notes))
+    mass = mass_of(str(run.header.get("urdf", "")))
+    return Drive(name, log, run.lost, kind_in(run.header), mass, "; ".join(run.notes))

@@ -9,14 +9,17 @@ import numpy as np
 
 from robot_control.common.run_log import FloatArray
 from robot_control.common.signal_names import mask_of, number_of
+from robot_control.demo.intervals import intervals
 from robot_control.report.drive import Drive
-from robot_control.report.intervals import intervals
 from robot_control.report.latency import LATENCIES, durations_ns
+from robot_control.report.walking import cost_of_transport
 
 NAN = float("nan")
 STOPPED = tuple(number_of("SupervisorState", name) for name in ("STOPPED", "FAULT"))
 """latched"""
 SATURATED = mask_of("CommandReason", "saturated")
+STRIDE = 0.5
+"""s; of the gaits of control/legged/gait.h a trot takes 0.38, a crawl 1.0, whose halves are alike"""
 SLIP, DEGRADED = mask_of("StateFlag", "slip"), mask_of("StateFlag", "degraded")
 
 
@@ -41,8 +44,22 @@ class Figure:
 
 def figures(drive: Drive) -> dict[str, Figure]:
     """All of them, by name."""
-    parts: tuple[Callable[[Drive], Iterator[Figure]], ...] = (_log, _safety, _tracking, _estimate, _torque, _timing)
+    parts: tuple[Callable[[Drive], Iterator[Figure]], ...] = (
+        _log,
+        _safety,
+        _tracking,
+        _estimate,
+        _torque,
+        _walking,
+        _timing,
+    )
     return {figure.name: figure for part in parts for figure in part(drive)}
+
+
+def _mean_over(values: FloatArray, rows: float) -> FloatArray:
+    known = values[~np.isnan(values)]
+    width = max(1, round(rows))
+    return np.convolve(known, np.full(width, 1.0 / width), "valid") if known.size >= width else known
 
 
 def _largest(values: FloatArray) -> float:
@@ -82,9 +99,12 @@ def _safety(drive: Drive) -> Iterator[Figure]:
 
 
 def _tracking(drive: Drive) -> Iterator[Figure]:
+    """A body on legs sways within each stride: its error is the mean over STRIDE."""
     driving = drive.driving()
     for axis, unit in (("linear", "m/s"), ("angular", "rad/s")):
         error = (drive.column(f"limited_{axis}") - drive.column(f"estimate_{axis}"))[driving]
+        if drive.kind.legged:
+            error = _mean_over(error, STRIDE / drive.period)
         yield Figure(
             f"{axis}_error_rms", unit, f"commanded minus estimated {axis} speed while driving, RMS", _rms(error)
         )
@@ -158,6 +178,11 @@ def _torque(drive: Drive) -> Iterator[Figure]:
     yield Figure("saturated", "share", "of the time while driving: a joint's torque or speed is at its limit", share)
     battery = drive.column("battery_voltage")
     yield Figure("battery_least", "V", "lowest voltage", _percentile(battery, 0))
+
+
+def _walking(drive: Drive) -> Iterator[Figure]:
+    meaning = "mechanical work of all joints per weight and way while a robot on legs walks"
+    yield Figure("cost_of_transport", "", meaning, cost_of_transport(drive) if drive.kind.legged else NAN)
 
 
 def _timing(drive: Drive) -> Iterator[Figure]:

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from robot_control.common import signal_names as names
+from robot_control.demo.intervals import intervals, joined
 from robot_control.report.drive import MOVING, Drive, IntArray
 from robot_control.report.figures import DEGRADED, SLIP, STOPPED
-from robot_control.report.intervals import intervals, joined
 
 TOGETHER = 0.5
 """s: two of a kind that are closer count as one"""

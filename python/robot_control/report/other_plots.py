@@ -9,11 +9,11 @@ from bokeh.models import ColumnDataSource, FactorRange
 
 from robot_control.common import signal_names as names
 from robot_control.common.run_log import FloatArray
+from robot_control.demo.intervals import intervals, joined, runs_of
 from robot_control.report.decimate import BINS
 from robot_control.report.drive import Drive
 from robot_control.report.figures import true_path
 from robot_control.report.incidents import Incident
-from robot_control.report.intervals import intervals, joined, runs_of
 from robot_control.report.latency import LATENCIES, durations_ns
 from robot_control.report.style import (
     BLUE,
@@ -33,6 +33,7 @@ from robot_control.report.style import (
     with_legend,
     with_values,
 )  # fmt: skip
+from robot_control.report.walking import BEARS, MISSING, UNASKED, footfalls
 
 ELLIPSES = 40
 """along the path, at equal distances"""
@@ -51,12 +52,14 @@ ROWS = (
     ("estimate_flags", "StateFlag", "estimate", SKY),
 )
 """columns of bits: kind of name, word before it, colour"""
-STATE_ROWS = ("state", "permit", "gate verdict")
+STATE_ROWS = ("state", "permit", "gate verdict", "posture")
 WORD_WIDTH = 0.07
 """share of the run; a shorter bar has no word in it"""
 ORDINARY = {"valid"}
 """bits that are set in normal operation"""
 ACTIONS = {"brake": RED, "ramp": ORANGE, "drive": GREEN}
+FEET = {BEARS: BLUE, UNASKED: ORANGE, MISSING: GREY}
+POSTURES = {"lying": GREY, "standing": SKY, "walking": GREEN}
 VERDICTS = {"brake": RED, "passed": GREEN, "held": ORANGE, "clamped": PURPLE, "ramp": ORANGE}
 
 
@@ -143,6 +146,7 @@ def time_lines(axis: TimeAxis, drive: Drive) -> Any:  # noqa: ANN401 (Bokeh's)
         ("supervisor_state", "SupervisorState", STATE_ROWS[0], STATES),
         ("permit_action", "PermitAction", STATE_ROWS[1], ACTIONS),
         ("gate_verdict", "GateVerdict", STATE_ROWS[2], VERDICTS),
+        *([("legged_phase", "LegPhase", STATE_ROWS[3], POSTURES)] if drive.kind.legged else []),
     ):
         known = names.states(kind)
         found = runs_of(drive.column(column))
@@ -167,6 +171,13 @@ def time_lines(axis: TimeAxis, drive: Drive) -> Any:  # noqa: ANN401 (Bokeh's)
     if not bars:
         return None
     return _bars(axis, drive, order, bars)
+
+
+def foot_lines(axis: TimeAxis, drive: Drive) -> Any:  # noqa: ANN401 (Bokeh's)
+    """Draws a bar for each time that a foot bore, or was asked to; None on wheels."""
+    found = footfalls(drive)
+    bars = [(foot, begin, end, FEET[words], words) for foot, begin, end, words in found]
+    return _bars(axis, drive, list(dict.fromkeys(foot for foot, *_ in found)), bars) if bars else None
 
 
 def _thinned(found: list[tuple[int, int, int]], rows: int) -> list[tuple[int, int, int]]:

@@ -13,7 +13,7 @@ from robot_control.common.files import printable
 from robot_control.report.budgets import Judged, Verdict, failed
 from robot_control.report.drive import Drive
 from robot_control.report.incidents import Incident
-from robot_control.report.other_plots import histograms, path_plot, time_lines
+from robot_control.report.other_plots import foot_lines, histograms, path_plot, time_lines
 from robot_control.report.page_style import STYLE
 from robot_control.report.style import TimeAxis
 from robot_control.report.time_plots import (
@@ -79,6 +79,11 @@ def _sections(drives: list[Drive], found: list[Incident]) -> Iterable[Section]:
             "States and reasons",
             "What the safety monitor permitted, what the gate let through, and why a command was not executed as sent.",
             _plots(time_lines(axis, drives[0])),
+        )
+        yield (
+            "Feet",
+            "When each foot bore: as it was asked to, or not; and when it was asked to bear and did not.",
+            _plots(foot_lines(axis, drives[0])),
         )
     yield (
         "Speeds",

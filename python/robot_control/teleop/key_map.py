@@ -1,7 +1,10 @@
 """Assigns a function to each key.
 
-`arrows`   arrow keys and w a s d, curves with q e (forward) and z c (backward)
-`classic`  the keys of teleop_twist_keyboard, where z and q change both speeds, w x the linear, e c the angular one
+`arrows`   arrow keys and w a s d, curves with q e (forward) and z c (backward), sideways with j l
+`classic`  the keys of teleop_twist_keyboard, where z and q change both speeds, w x the linear, e c the angular one;
+           sideways with a d
+
+The keys that move sideways have no effect on wheels. They change with the linear speed.
 
 In both: space stops, Esc and ! are the e-stop, r and then y resets, Ctrl-C ends.
 """
@@ -14,10 +17,11 @@ FASTER, SLOWER = 1.1, 0.9
 
 @dataclass(frozen=True)
 class Motion:
-    """Shares of the chosen speeds, −1, 0 or 1: forward, to the left."""
+    """Shares of the chosen speeds, −1, 0 or 1: forward, turning to the left, sideways to the left."""
 
     linear: int
     angular: int
+    lateral: int = 0
 
 
 @dataclass(frozen=True)
@@ -50,6 +54,8 @@ ARROWS = KeyMap(
         "e": Motion(1, -1),
         "z": Motion(-1, -1),
         "c": Motion(-1, 1),
+        "j": Motion(0, 0, 1),
+        "l": Motion(0, 0, -1),
     },
     speeds={
         **dict.fromkeys(("+", "="), Speeds(FASTER, 1)),
@@ -61,7 +67,7 @@ ARROWS = KeyMap(
     help=(
         "q  w  e     hold a key to drive, or an arrow key;    + -  linear speed",
         "a     d     release it to stop                       . ,  angular speed",
-        "z  s  c",
+        "z  s  c     j  l  sideways, on legs",
         SAFETY_HELP,
     ),
 )
@@ -76,6 +82,8 @@ CLASSIC = KeyMap(
         "m": Motion(-1, -1),
         ",": Motion(-1, 0),
         ".": Motion(-1, 1),
+        "a": Motion(0, 0, 1),
+        "d": Motion(0, 0, -1),
     },
     speeds={
         "q": Speeds(FASTER, FASTER),
@@ -89,7 +97,7 @@ CLASSIC = KeyMap(
     help=(
         "u  i  o     hold a key to drive;                     q z  both speeds",
         "j  k  l     release it to stop                       w x  linear speed",
-        "m  ,  .                                              e c  angular speed",
+        "m  ,  .     a  d  sideways, on legs                  e c  angular speed",
         SAFETY_HELP,
     ),
 )

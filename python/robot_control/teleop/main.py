@@ -46,7 +46,9 @@ class Teleop:
         self._keys = KEY_MAPS[given.keys]
         hold = HoldParameters(first_hold=given.first_hold, max_hold=given.max_hold)
         self._limits = SpeedLimits()
-        self._operator = Operator(self._keys, Command(given.linear, given.angular), self._limits.newest(), hold)
+        self._operator = Operator(
+            self._keys, Command(given.linear, given.angular, given.lateral), self._limits.newest(), hold
+        )
         self._decoder = Decoder()
         self._listener, self._watch = Listener(), SafetyWatch()
         self._interruptions = 0
@@ -157,6 +159,12 @@ def arguments(given: list[str]) -> argparse.Namespace:
         type=positive,
         default=1.0,
         help="rad/s, chosen speed, at most max_angular_speed (default %(default)s)",
+    )
+    parser.add_argument(
+        "--lateral",
+        type=positive,
+        default=0.3,
+        help="m/s sideways, chosen speed of a robot on legs, at most max_lateral_speed (default %(default)s)",
     )
     parser.add_argument(
         "--first-hold",

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from enum import Enum, auto
 
 from robot_control.common.command import Command
+from robot_control.common.roles import NO_LATERAL
 from robot_control.teleop.dead_man import DeadMan, Held, HoldParameters
 from robot_control.teleop.key_map import E_STOPS, KeyMap
 from robot_control.teleop.keyboard import Event, Key
@@ -40,6 +41,7 @@ class Limits:
     linear: float  # m/s
     angular: float  # rad/s
     reverse: float  # m/s, backwards
+    lateral: float = 0.0  # m/s, to the left and right; 0 on wheels
 
 
 class Operator:
@@ -98,7 +100,10 @@ class Operator:
     @property
     def chosen(self) -> Command:
         """The speeds of a held key, within the robot's limits."""
-        return Command(min(self._chosen.linear, self._limits.linear), min(self._chosen.angular, self._limits.angular))
+        chosen, limits = self._chosen, self._limits
+        return Command(
+            min(chosen.linear, limits.linear), min(chosen.angular, limits.angular), min(chosen.lateral, limits.lateral)
+        )
 
     def limit(self, limits: Limits) -> None:
         """Sets the robot's present limits."""
@@ -130,7 +135,11 @@ class Operator:
             self._zeros_until = now + ZEROS
             motion, chosen = self._keys.motions[held.key], self.chosen
             linear = max(motion.linear * chosen.linear, -self._limits.reverse)
-            return Command(held.share * linear, motion.angular * held.share * chosen.angular)
+            return Command(
+                held.share * linear,
+                motion.angular * held.share * chosen.angular,
+                motion.lateral * held.share * chosen.lateral,
+            )
         return Command() if now < self._zeros_until or self._e_stopped else None
 
     def held(self, now: float) -> Held | None:
@@ -145,6 +154,8 @@ class Operator:
             text = "EMERGENCY STOP requested; no motion until a reset (r, then y)"
         elif held is not None and self._dead_man.ends_soon(held):
             text = f"key {held.key}: held for long; the robot stops in {held.left:.0f} s unless it is pressed again"
+        elif held is not None and self._keys.motions[held.key].lateral and self._limits.lateral == 0:
+            text = f"key {held.key} has no effect: {NO_LATERAL}"
         elif self._dead_man.overlong:
             text = "stopped: the key was held too long; release it, then press again"
         elif self._dead_man.blocked(now) and self._drivable is not False:
@@ -158,7 +169,10 @@ class Operator:
     def _change_speeds(self, keys: list[str]) -> None:
         for key in keys:
             factor, chosen = self._keys.speeds[key], self.chosen
-            self._chosen = Command(chosen.linear * factor.linear, chosen.angular * factor.angular)
+            lateral = chosen.lateral or self._chosen.lateral  # before the robot's kind is known, its limit is 0
+            self._chosen = Command(
+                chosen.linear * factor.linear, chosen.angular * factor.angular, lateral * factor.linear
+            )
 
     def _stop(self, now: float) -> None:
         self._dead_man.stop(now)

@@ -24,7 +24,7 @@ class View:
     keys: KeyMap
     topic: str  # absolute
     own_name: str  # of this node
-    chosen: Command  # m/s, rad/s: the speeds of a held key
+    chosen: Command  # the speeds of a held key
     requested: Command | None  # what is sent now; None: nothing
     held: str = ""  # the held key and the kind of hold
     sent_age: float | None = None  # s since the last command; None: none was sent
@@ -40,16 +40,16 @@ def render(facts: Facts, view: View, height: int = HEIGHT) -> list[str]:
     height = min(height, HEIGHT)
     safety = facts.received()
     state = "no safety_status" if safety is None else f"{safety.state}, permit: {safety.permit}"
-    left = f"teleop {facts.namespace}"
+    left, legged = f"teleop {facts.namespace}", facts.kind.legged
     foot = ["-" * WIDTH, *view.keys.help][-height:]
     body = [
         f"{left}{state:>{WIDTH - len(left)}}",
         "-" * WIDTH,
-        f"{'':14}{'linear m/s':>12}{'angular rad/s':>16}",
-        _speeds("chosen", view.chosen),
-        _speeds("requested", view.requested, view.held),
-        _speeds("after limits", None if facts.limited is None else Command(*facts.limited)),
-        _speeds("measured", None if facts.measured is None else Command(*facts.measured)),
+        f"{'':14}{'linear m/s':>12}{'angular rad/s':>16}{'sideways m/s' if legged else '':>15}".rstrip(),
+        _speeds("chosen", view.chosen, legged=legged),
+        _speeds("requested", view.requested, view.held, legged=legged),
+        _speeds("after limits", None if facts.limited is None else Command(*facts.limited), legged=legged),
+        _speeds("measured", None if facts.measured is None else Command(*facts.measured), legged=legged),
         "",
         *_wrapped(_headline(facts), "", 2),
     ]
@@ -65,9 +65,9 @@ def _headline(facts: Facts) -> str:
     return "It may move: hold a key." if answer.verdict is Verdict.IDLE else answer.headline
 
 
-def _speeds(label: str, pair: Command | None, note: str = "") -> str:
-    linear, angular = ("-", "-") if pair is None else (_number(pair.linear), _number(pair.angular))
-    return f"{label:<14}{linear:>12}{angular:>16}    {note}"
+def _speeds(label: str, speeds: Command | None, note: str = "", *, legged: bool = False) -> str:
+    values = ["-"] * 3 if speeds is None else [_number(one) for one in (speeds.linear, speeds.angular, speeds.lateral)]
+    return f"{label:<14}{values[0]:>12}{values[1]:>16}{values[2] if legged else '':>{15 if legged else 0}}    {note}"
 
 
 def _number(value: float) -> str:

@@ -1,5 +1,5 @@
-"""The robot's max_linear_speed, max_angular_speed and min_linear_speed, which the controller publishes latched.
-Until they are received, those of the installed parameter file are used.
+"""The robot's max_linear_speed, max_lateral_speed, max_angular_speed and min_linear_speed. The controller of a robot on
+wheels publishes them latched. Until they are received, those of the installed parameter file are used.
 """
 
 from pathlib import Path
@@ -22,7 +22,8 @@ class SpeedLimits:
     def newest(self) -> Limits:
         """The limits; without min_linear_speed the robot is as fast backwards as forwards."""
         linear, angular = self._value("max_linear_speed"), self._value("max_angular_speed")
-        return Limits(linear, angular, reverse=min(linear, -self._value("min_linear_speed", -linear)))
+        reverse = min(linear, -self._value("min_linear_speed", -linear))
+        return Limits(linear, angular, reverse, self._value("max_lateral_speed"))
 
     def _value(self, name: str, default: float = 0.0) -> float:
         known = self._defaults.get(self._live.controller, {})

@@ -5,18 +5,26 @@ from __future__ import annotations
 import argparse
 import sys
 
+import numpy as np
 import rospy
 from geometry_msgs.msg import Point, PoseStamped
 from nav_msgs.msg import Odometry, Path
 from visualization_msgs.msg import Marker, MarkerArray
 
+from robot_control._robot_control import LegModel
 from robot_control.common.ros_node import running_node
-from robot_control.msg import DriveState, SafetyStatus
+from robot_control.msg import DriveState, LegState, SafetyStatus
+from robot_control.view.feet import Swings, in_odom, load_arrows
+from robot_control.view.scene import Point as Place
 from robot_control.view.scene import Trail, Wheel, force_arrows, limits_of, status_text
-from robot_control.view.wheels import running_wheels
+from robot_control.view.wheels import running_robot
 
 PERIOD = 0.1
 """s between two sets of markers"""
+JOINTS = 12
+"""of a robot on legs"""
+SWINGS = 100
+"""number of the first marker of a swing"""
 ABOVE = 0.5
 """m, of the text above the robot's origin"""
 
@@ -30,10 +38,14 @@ class View:
         self._odometry: Odometry | None = None
         self._trail = Trail()
         self._wheels: dict[str, Wheel] = {}
+        self._legs: LegModel | None = None
+        self._leg_state: LegState | None = None
+        self._swings = Swings()
         self._markers = rospy.Publisher("view/markers", MarkerArray, queue_size=1)
         self._path = rospy.Publisher("view/path_driven", Path, queue_size=1, latch=True)
         rospy.Subscriber("safety_status", SafetyStatus, self._receive_safety)
         rospy.Subscriber("drive_state", DriveState, self._receive_drive, queue_size=1)
+        rospy.Subscriber("leg_state", LegState, self._receive_legs, queue_size=1)
         rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1)
 
     def draw(self) -> None:
@@ -41,27 +53,49 @@ class View:
         odometry = self._odometry
         if odometry is None:
             return
-        if not self._wheels:
-            self._wheels = running_wheels()
+        if not self._wheels and self._legs is None:
+            self._wheels, self._legs = running_robot()
         position = odometry.pose.pose.position
         if self._trail.add(position.x, position.y):
             self._path.publish(self._path_message(odometry.header.frame_id))
         frame = odometry.child_frame_id
         markers = [self._text(frame)]
-        arrows = force_arrows(self._wheels, self._drive.name, self._drive.effort)
+        arrows = force_arrows(self._wheels, self._drive.name, self._drive.effort) + self._forces_of_feet()
         for number, (begin, end) in enumerate(arrows):
             arrow = _marker(frame, number + 1, Marker.ARROW, (0.2, 0.6, 1.0))
             arrow.points = [Point(*begin), Point(*end)]
             arrow.scale.x, arrow.scale.y, arrow.scale.z = 0.02, 0.05, 0.05
             markers.append(arrow)
+        for number, way in enumerate(self._swings.ways):
+            if len(way) > 1:
+                line = _marker(odometry.header.frame_id, SWINGS + number, Marker.LINE_STRIP, (1.0, 0.6, 0.1))
+                line.points = [Point(*point) for point in way]
+                line.scale.x = 0.01
+                markers.append(line)
         self._markers.publish(MarkerArray(markers=markers))
 
+    def _forces_of_feet(self) -> list[tuple[Place, Place]]:
+        state = self._leg_state
+        if self._legs is None or state is None or len(state.actual) != JOINTS:
+            return []
+        return load_arrows(np.array(self._legs.forward(np.array(state.actual))), state.bears, state.load)
+
+    def _receive_legs(self, message: LegState) -> None:
+        """Follows the swings here: a swing lasts few periods of the drawing. The joints of a brake want no place."""
+        self._leg_state, odometry = message, self._odometry
+        wanted = np.array(message.wanted)
+        if self._legs is None or odometry is None or wanted.size != JOINTS or not np.isfinite(wanted).all():
+            return
+        places = in_odom(np.array(self._legs.forward(wanted)), odometry.pose.pose)
+        self._swings.add(places, message.bears)
+
     def _text(self, frame: str) -> Marker:
+        state = self._leg_state or self._drive
         said = status_text(
             self._safety.state_name,
             self._safety.sentences,
             self._safety.warning_sentences,
-            limits_of(self._drive.reasons, self._drive.sentences),
+            limits_of(state.reasons, state.sentences),
             self._safety.speed_limit,
         )
         text = _marker(frame, 0, Marker.TEXT_VIEW_FACING, said.colour)
@@ -104,8 +138,8 @@ def main() -> None:
     """Entry point of scripts/view_markers.py."""
     argparse.ArgumentParser(
         prog="view_markers.py",
-        description="Publishes for RViz, as view.launch starts it: wheel forces, safety state and reasons as markers "
-        "on view/markers, the path driven on view/path_driven.",
+        description="Publishes for RViz, as view.launch starts it: forces of wheels or feet, ways of swinging feet, "
+        "safety state and reasons as markers on view/markers, the path driven on view/path_driven.",
     ).parse_args(rospy.myargv(sys.argv)[1:])
     with running_node("view_markers") as signals:
         view = View()

@@ -1,13 +1,15 @@
-"""The wheels of the robot that is shown."""
+"""The wheels or legs of the robot that is shown."""
 
 from __future__ import annotations
 
 import tempfile
 from typing import Any
 
+from robot_control import _robot_control
 from robot_control._robot_control import ParameterError, RobotError
 from robot_control.common.server_values import ServerValueError, server_description, server_tree
 from robot_control.inspect.description import Description, describe
+from robot_control.parameter_layers import layered
 from robot_control.view.scene import Wheel
 
 
@@ -21,13 +23,16 @@ def _wheel(wheel: dict[str, Any]) -> Wheel:
     return Wheel((x, y, z), wheel["radius"])
 
 
-def running_wheels() -> dict[str, Wheel]:
-    """The wheels of robot_description, read as the robot's nodes read it; none if it is missing or cannot be driven."""
+def running_robot() -> tuple[dict[str, Wheel], _robot_control.LegModel | None]:
+    """The wheels and the legs of robot_description, read as the robot's nodes read it; none if it is missing or cannot
+    be driven.
+    """
     try:
         robot = {key: value for key, value in server_tree("robot").items() if key != "urdf"}
         with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
             file.write(server_description())
             file.flush()
-            return wheels_of(describe(file.name, {"robot": robot}))
+            wheels = wheels_of(describe(file.name, {"robot": robot}))
+            return wheels, None if wheels else _robot_control.legs(*layered({"robot": robot}, file.name))
     except (RobotError, ParameterError, ServerValueError):
-        return {}
+        return {}, None

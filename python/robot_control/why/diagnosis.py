@@ -6,7 +6,7 @@ from robot_control.safety.states import DRIVABLE
 from robot_control.safety.zero_request import silent_long_enough
 from robot_control.why.answer import Answer, Verdict
 from robot_control.why.legs import execution
-from robot_control.why.state import Cause, Facts
+from robot_control.why.state import Cause, Facts, speeds
 
 NAVIGATE = "navigate"
 MOVING = 0.01
@@ -274,11 +274,6 @@ def _requested(facts: Facts) -> bool:
 
 def _motion_commanded(facts: Facts) -> bool:
     return facts.limited is not None and max(map(abs, facts.limited)) > MOVING
-
-
-def speeds(pair: tuple[float, float]) -> str:
-    """Both with their units."""
-    return f"{pair[0]:.2f} m/s, {pair[1]:.2f} rad/s"
 
 
 def _moving(facts: Facts) -> Answer:

@@ -1,10 +1,12 @@
 """Explains what a robot on legs that may move does with its requests; no ROS in here."""
 
 from robot_control.why.answer import Answer, Verdict
-from robot_control.why.state import Facts
+from robot_control.why.state import Facts, speeds
 
 REFUSALS = {"refused": "", "not_standing": "standing", "not_lying": "lying", "out_of_reach": ""}
 """Reason why a request is not executed → the posture that it needs."""
+LIMITS = ("leg_speed", "speed_limited", "permit_slow", "timed_out", "stale")
+"""Reasons why a walk differs from what is requested, or ends."""
 POSTURES = {
     "gathering": "its legs move to the lying posture",
     "rising": "it stands up",
@@ -19,6 +21,11 @@ def execution(facts: Facts) -> Answer:
     if posture in POSTURES:
         return Answer(Verdict.MOVING, f"It moves: {POSTURES[posture]}.")
     reasons, remedies = facts.reasons(facts.controller, "command"), facts.remedies(facts.controller, "command")
+    if posture == "walking":
+        known = [name for name in LIMITS if name in reasons]
+        why = "".join(f"; {reasons[name]}" for name in known)
+        actions = tuple(("operator", remedies[name]) for name in known if remedies.get(name))
+        return Answer(Verdict.MOVING, f"It walks{_speed(facts)}{why}.", actions)
     for name, needed in REFUSALS.items():
         if name in reasons:
             return Answer(
@@ -33,7 +40,15 @@ def execution(facts: Facts) -> Answer:
     does = {"standing": "It stands", "joints": "It lies, and its joints may be moved"}.get(posture, "It may move")
     senders = facts.value(facts.controller, "senders")
     requested = f"it follows {senders}" if senders else "no motion is requested"
-    return Answer(Verdict.IDLE, f"{does}; nothing stands against motion, and {requested}.")
+    silent = next((name for name in ("stale", "timed_out") if name in reasons and not senders), "")
+    actions = (("operator", remedies[silent]),) if remedies.get(silent) else ()
+    return Answer(Verdict.IDLE, f"{does}; nothing stands against motion, and {requested}.", actions)
+
+
+def _speed(facts: Facts) -> str:
+    if facts.limited is not None and not any(facts.limited):
+        return " in place until its feet are on their places, and then stands"
+    return "" if facts.measured is None else f": {speeds(facts.measured)}"
 
 
 def _set_posture(facts: Facts, posture: str) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ from typing import Any
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import TwistStamped
+from geometry_msgs.msg import Twist, TwistStamped
 from nav_msgs.msg import Odometry
 
 from robot_control.common.live_parameters import LiveParameters
@@ -14,7 +14,7 @@ from robot_control.common.robot_kind import running_kind
 from robot_control.common.ros_master import Master, senders_of
 from robot_control.msg import SafetyStatus
 from robot_control.why.facts import below, nodes_of, other_robots, safety_of
-from robot_control.why.state import SILENCE, Facts, Report, Safety
+from robot_control.why.state import SILENCE, Facts, Report, Safety, Speeds
 
 MASTER_PERIOD = 1.0
 """s between two queries of the master"""
@@ -31,8 +31,8 @@ class Listener:
         self._status: SafetyStatus | None = None
         self._status_at = 0.0
         self._reports: dict[str, tuple[float, Report]] = {}  # by absolute name
-        self._limited: tuple[float, float, float] | None = None  # m/s, rad/s, when
-        self._measured: tuple[float, float, float] | None = None
+        self._limited: tuple[Speeds, float] | None = None  # and when
+        self._measured: tuple[Speeds, float] | None = None
         self._parameters = LiveParameters()
         self.unknown_to_master = 0  # how often in a row the master did not list this program
         rospy.Subscriber("safety_status", SafetyStatus, self._receive_status)
@@ -49,10 +49,10 @@ class Listener:
             self._reports["/" + status.name.lstrip("/")] = (time.monotonic(), report)
 
     def _receive_limited(self, message: TwistStamped) -> None:
-        self._limited = (message.twist.linear.x, message.twist.angular.z, time.monotonic())
+        self._limited = _speeds(message.twist), time.monotonic()
 
     def _receive_odometry(self, message: Odometry) -> None:
-        self._measured = (message.twist.twist.linear.x, message.twist.twist.angular.z, time.monotonic())
+        self._measured = _speeds(message.twist.twist), time.monotonic()
 
     def query_master(self) -> None:
         """Queries the master at most every MASTER_PERIOD; waits up to ros_master.TIMEOUT."""
@@ -105,5 +105,9 @@ class Listener:
         return safety_of(self._status, held, now - self._status_at)
 
 
-def _fresh(pair: tuple[float, float, float] | None, now: float) -> tuple[float, float] | None:
-    return None if pair is None or now - pair[2] > SILENCE else pair[:2]
+def _speeds(twist: Twist) -> Speeds:
+    return (twist.linear.x, twist.angular.z, twist.linear.y)
+
+
+def _fresh(received: tuple[Speeds, float] | None, now: float) -> Speeds | None:
+    return None if received is None or now - received[1] > SILENCE else received[0]

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from robot_control.common.files import escaped
 from robot_control.why.answer import Answer, Verdict
-from robot_control.why.diagnosis import judge, missing_nodes, senders_in_words, speeds
-from robot_control.why.state import Facts, Safety
+from robot_control.why.diagnosis import judge, missing_nodes, senders_in_words
+from robot_control.why.state import Facts, Safety, speeds
 
 LABEL = 11
 """columns for the word before each line"""
@@ -120,7 +120,7 @@ def _command(facts: Facts, layout: Layout) -> Rows:
     posture = facts.value(facts.controller, "posture")
     if posture:
         yield "posture", posture, ""
-    if layout.times and not facts.kind.legged:
+    if layout.times and (not facts.kind.legged or posture == "walking"):
         yield from _speeds(facts)
     reasons = "; ".join(facts.reasons(facts.controller, "command").values())
     if reasons:

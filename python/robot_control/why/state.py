@@ -9,6 +9,13 @@ SILENCE = 3.0
 """s; every node reports once per second: after three it is absent, or hangs."""
 
 
+SHOWN = 0.005
+"""m/s to the left; slower is not named"""
+
+Speeds = tuple[float, float] | tuple[float, float, float]
+"""m/s, rad/s; of a robot on legs also m/s to the left"""
+
+
 @dataclass(frozen=True)
 class Cause:
     """A cause that stopped the robot."""
@@ -66,8 +73,8 @@ class Facts:
     elsewhere: tuple[str, ...] = ()  # namespaces of other robots
     senders: tuple[str, ...] = ()  # on the topics of requests
     clearance_senders: tuple[str, ...] = ()  # on clearance
-    limited: tuple[float, float] | None = None  # m/s, rad/s: the command after limits
-    measured: tuple[float, float] | None = None  # m/s, rad/s: by odometry
+    limited: Speeds | None = None  # the command after limits
+    measured: Speeds | None = None  # by odometry
     command_timeout: float = 0.0  # s, cmd_vel_timeout of the running controller; 0: off, or not known
 
     @property
@@ -131,3 +138,9 @@ class Facts:
     def path(self, name: str) -> str:
         """The absolute name of a topic or service."""
         return f"{self.namespace.rstrip('/')}/{name}"
+
+
+def speeds(values: Speeds) -> str:
+    """All of them with their units; the one to the left where it is not zero."""
+    sideways = f"{values[2]:.2f} m/s to the left, " if len(values) > 2 and abs(values[2]) >= SHOWN else ""
+    return f"{values[0]:.2f} m/s, {sideways}{values[1]:.2f} rad/s"

@@ -28,15 +28,16 @@ TraceField per_wheel(std::string name, std::string comment, Get get) {
 }
 
 void add_legs(TraceFields& to) {
-  to.push_back(field<C, u64>("legged_phase", "LegPhase", MEMBER(command.legged.phase)));
+  to.push_back(field<C, u64>("legged_phase", "LegPhase", MEMBER(command.legged.phase)).shown());
   to.push_back(
       field<C, u64>("legged_lifted", "1 + leg of the foot in the air; 0: none", MEMBER(command.legged.lifted)));
   to.push_back(field<C, f32>("legged_body", "m, rad: x y height roll pitch yaw from the nominal pose, after limits",
                              MEMBER(command.legged.body)));
-  to.push_back(field<C, u64>("legged_gait", "GaitName", MEMBER(command.legged.gait)));
-  to.push_back(field<C, f64>("legged_gait_phase", "0 to 1", MEMBER(command.legged.gait_phase)));
+  to.push_back(field<C, u64>("legged_gait", "GaitName", MEMBER(command.legged.gait)).shown());
+  to.push_back(field<C, f64>("legged_gait_phase", "0 to 1", MEMBER(command.legged.gait_phase)).shown());
   to.push_back(field<C, f64>("legged_stance", "by leg: part of the stance that was asked for; 0: it shall not bear",
-                             MEMBER(command.legged.stance)));
+                             MEMBER(command.legged.stance))
+                   .shown({"front_left_stance", "front_right_stance", "rear_left_stance", "rear_right_stance"}));
 }
 
 }  // namespace
@@ -50,14 +51,14 @@ void add_command(TraceFields& to) {
   };
   to.push_back(
       field<C, f64>("requested_linear", "m/s, base axes, as last received", MEMBER(command.requested.twist.linear))
-          .shown({"requested_linear"}));
+          .shown({"requested_linear", "requested_lateral"}));
   to.push_back(field<C, f64>("requested_angular", "rad/s, base axes", MEMBER(command.requested.twist.angular))
                    .shown_as(column<C>("requested_angular", "rad/s",
                                        [](const C& c, std::size_t) { return c.command.requested.twist.angular[2]; })));
   add_request(to, "requested", MEMBER(command.requested));
   shown("request_ignored", "RequestPart bits that the machine cannot execute", MEMBER(command.ignored));
   to.push_back(field<C, f32>("limited_linear", "m/s, after limits", MEMBER(command.twist_limited.linear))
-                   .shown({"limited_linear"}));
+                   .shown({"limited_linear", "limited_lateral"}));
   to.push_back(field<C, f32>("limited_angular", "rad/s, after limits", MEMBER(command.twist_limited.angular))
                    .shown_as(column<C>("limited_angular", "rad/s",
                                        [](const C& c, std::size_t) { return c.command.twist_limited.angular[2]; })));

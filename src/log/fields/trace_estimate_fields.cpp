@@ -44,7 +44,8 @@ void add_estimate(TraceFields& to) {
   };
   to.push_back(field<E, u64>("estimate_contact_count", "contacts estimated", MEMBER(state.contact_count)));
   to.push_back(list<E, f32, kMaxContacts>("estimate_contact_probability", "0 (not trusted) ... 1", kContacts,
-                                          ELEMENT(state.contacts[i].probability)));
+                                          ELEMENT(state.contacts[i].probability))
+                   .shown_per_contact());
   to.push_back(list<E, f32, kMaxContacts>("estimate_contact_slip", "m/s, over the ground, along the wheel", kContacts,
                                           ELEMENT(state.contacts[i].slip)));
   to.push_back(

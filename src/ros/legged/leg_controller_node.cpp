@@ -51,6 +51,7 @@ class LegControllerNode final : public CommandedNode {
 
   void connect(ros::NodeHandle& handle) override {
     leg_state_ = handle.advertise<msg::LegState>("leg_state", 10);
+    velocity_out_ = handle.advertise<msg::TwistStamped>("cmd_vel_out", 10);
     set_posture_ = handle.advertiseService("set_posture", &LegControllerNode::set_posture, this);
     set_gait_ = handle.advertiseService("set_gait", &LegControllerNode::set_gait, this);
     intake().start(
@@ -100,8 +101,10 @@ class LegControllerNode final : public CommandedNode {
       const std::vector<std::string> senders = intake().senders(loop_ns()), revoked = intake().revoked();
       message.senders.assign(senders.begin(), senders.end());
       message.revoked.assign(revoked.begin(), revoked.end());
+      message.chosen_gait = gait_of_mode(gait_);
     }
     leg_state_.publish(message);
+    velocity_out_.publish(velocity_out(command_, report().base_frame, time().at(command_.head.stamp_ns)));
   }
 
   void diagnose(DiagnosticReport& report) override {
@@ -322,6 +325,7 @@ class LegControllerNode final : public CommandedNode {
   InputTopic<BoundedTwist> cmd_vel_{"cmd_vel", 1};
   InputTopic<BoundedTwistStamped> cmd_vel_stamped_{"cmd_vel_stamped", 1};
   ros::Publisher leg_state_;
+  ros::Publisher velocity_out_;
   ros::ServiceServer set_posture_;
   ros::ServiceServer set_gait_;
   std::mutex posture_mutex_;  ///< locked only by try_lock

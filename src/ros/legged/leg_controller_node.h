@@ -1,6 +1,6 @@
 #pragma once
-/// The controller of a robot on legs subscribes to body_pose, foot_target and joint_trajectory, and has the service
-/// set_posture. It publishes leg_state. Requests for a walk on cmd_vel are refused by a line of the log.
+/// The controller of a robot on legs subscribes to cmd_vel, cmd_vel_stamped, body_pose, foot_target and
+/// joint_trajectory, and has the services set_posture and set_gait. It publishes leg_state and cmd_vel_out.
 ///
 /// A trajectory (ros/legged/joint_trajectory.h) is executed while the robot lies. This node requests every 10 ms where
 /// the joints shall be kHorizon later (control/legged/joint_motion.h), as if its sender had done so. It ends early with

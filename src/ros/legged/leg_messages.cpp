@@ -48,6 +48,10 @@ std::optional<std::uint64_t> mode_of_gait(const std::string& gait) {
   return std::nullopt;
 }
 
+std::string gait_of_mode(std::uint64_t mode) {
+  return mode > kStanceGait && mode < kStanceGait + kGaits.size() ? kGaits[mode - kStanceGait].name : "auto";
+}
+
 msg::LegState leg_state(const LegReport& report, const LegModel& robot, ros::Time stamp) {
   const CommandFrame& command = report.command;
   msg::LegState message;
@@ -100,9 +104,8 @@ std::string no_permission(bool found, const Permit& permit, const MachineModel& 
   if (permit.missing != 0)
     return "the safety monitor waits: " + sentences_of(kMissingNodeNames, permit.missing, programs);
   if (permit.unreleased != 0) {
-    return "a node was started or the simulation was reset: request nothing for request_timeout, or send a body_pose "
-           "of "
-           "zero, then call again";
+    return "a node was started or the simulation was reset: request nothing for request_timeout, or send a " +
+           std::string(names_of_kind(programs.kind).request) + " of zero, then call again";
   }
   return "the safety monitor permits no motion: look at safety_status";
 }

@@ -61,6 +61,9 @@ std::string foot_names();
 /// Returns the mode of a posture of set_posture; kStanceStay for an unknown one.
 StanceMode mode_of(const std::string& posture);
 
+/// Returns the gait of a mode that mode_of_gait returns, as set_gait takes it.
+std::string gait_of_mode(std::uint64_t mode);
+
 /// Returns the mode that walks with the gait of set_gait: kStanceStay for "auto". Returns none for an unknown one.
 std::optional<std::uint64_t> mode_of_gait(const std::string& gait);
 
@@ -73,7 +76,7 @@ struct LegReport {
   std::uint64_t reasons;  ///< CommandReason bits
 };
 
-/// Fills everything but the senders.
+/// Fills everything but the senders and the chosen gait.
 msg::LegState leg_state(const LegReport& report, const LegModel& robot, ros::Time stamp);
 
 /// Returns why no motion is permitted, and what to do, or "" if it is. `found` says whether there is a live permit.

@@ -5,11 +5,12 @@ const PERIOD = 50;       // ms between two messages while this page commands
 const FROZEN = 300;      // ms between two passes, after which this page stood still
 const ASLEEP = 1000;     // ms that the time of day went on while the page's clock, which the server compares, stood
 const ENABLE = [4, 5];   // shoulder buttons of the standard mapping
-const MOTIONS = {        // forward, to the left
+const MOTIONS = {        // forward, turning to the left, sideways to the left
   KeyW: [1, 0], ArrowUp: [1, 0], KeyS: [-1, 0], ArrowDown: [-1, 0], KeyA: [0, 1], ArrowLeft: [0, 1],
   KeyD: [0, -1], ArrowRight: [0, -1], KeyQ: [1, 1], KeyE: [1, -1], KeyZ: [-1, -1], KeyC: [-1, 1],
+  KeyJ: [0, 0, 1], KeyL: [0, 0, -1],
 };
-const keys = new Set(), stick = { pointer: null, x: 0, y: 0 };
+const keys = new Set(), stick = { pointer: null, x: 0, y: 0, sideways: false };
 const offset = () => Date.now() - performance.now();
 let padBlocked = true, commands = false, number = 0, passed = performance.now(), awake = offset(), isHeld = false;
 const area = document.getElementById("pad"), knob = document.getElementById("stick");
@@ -20,21 +21,21 @@ function pad() {
   const pressed = found && ENABLE.some((button) => found.buttons[button]?.pressed);
   if (!found) padBlocked = true;        // it may come back with the button held
   else if (!pressed) padBlocked = false;
-  return pressed && !padBlocked ? [-found.axes[1], -found.axes[0]] : null;
+  return pressed && !padBlocked ? [-found.axes[1], -found.axes[0], -found.axes[2]] : null;
 }
 
 function held() {
-  if (stick.pointer !== null) return [-stick.y, -stick.x];
-  if (keys.size) return [...keys].reduce(([a, b], key) => [a + MOTIONS[key][0], b + MOTIONS[key][1]], [0, 0]);
+  if (stick.pointer !== null) return stick.sideways ? [-stick.y, 0, -stick.x] : [-stick.y, -stick.x, 0];
+  if (keys.size) return [0, 1, 2].map((axis) => [...keys].reduce((sum, key) => sum + (MOTIONS[key][axis] ?? 0), 0));
   return pad();
 }
 
 function report() {
-  const motion = held(), [linear, angular] = (motion ?? [0, 0]).map(clamp);
+  const motion = held(), [linear, angular, lateral] = (motion ?? [0, 0, 0]).map(clamp);
   isHeld = motion !== null;
   document.body.dataset.held = String(isHeld && commands);
   const sent = performance.now() / 1000;
-  if (commands) send({ type: "drive", number: ++number, sent, held: isHeld, linear, angular });
+  if (commands) send({ type: "drive", number: ++number, sent, held: isHeld, linear, angular, lateral });
 }
 
 /** Releases everything; what is still held has to be released and pressed again. */
@@ -80,7 +81,8 @@ function move(event) {
   const box = area.getBoundingClientRect(), radius = box.width / 2;
   const x = (event.clientX - box.left) / radius - 1, y = (event.clientY - box.top) / radius - 1;
   const length = Math.max(1, Math.hypot(x, y));
-  Object.assign(stick, { x: x / length, y: y / length });
+  const sideways = event.shiftKey || document.getElementById("sideways").checked;
+  Object.assign(stick, { x: x / length, y: y / length, sideways });
   knob.style.transform = `translate(${stick.x * radius}px, ${stick.y * radius}px)`;
 }
 

@@ -27,16 +27,29 @@ on("fast", (frame) => {
   for (const name of ["asked", "limited", "measured", "true"]) {
     put(`${name}-v`, number(frame[name]?.[0]));
     put(`${name}-w`, number(frame[name]?.[1]));
+    put(`${name}-l`, number(frame[name]?.[2]));
   }
   const [x, y, yaw] = frame.pose ?? [];
   put("pose", `${number(x)} m, ${number(y)} m, ${number(yaw)} rad`);
+  if (frame.legs) legs(frame.legs);
   document.body.dataset.frames = String(Number(document.body.dataset.frames ?? 0) + 1);
 });
+
+function legs({ posture, gait, chosen, feet }) {
+  const whose = chosen === "auto" ? "by the speed" : "chosen";
+  put("posture", gait ? `${posture}, ${gait} (${whose})` : `${posture}, gait: ${chosen}`);
+  while (by("feet").children.length < feet.length) by("feet").append(document.createElement("span"));
+  feet.forEach(({ name, bears, load }, i) => {
+    const text = `${bears ? "●" : "○"} ${name.replace("_", " ")} ${number(load, 0)} N`, foot = by("feet").children[i];
+    if (foot.textContent !== text) foot.textContent = text;
+  });
+}
 
 on("slow", (slow) => {
   slowAt = performance.now();
   const safety = slow.safety, causes = safety?.causes ?? [], path = slow.path;
   document.body.dataset.verdict = slow.verdict;
+  document.body.dataset.legged = String(slow.legged);
   document.body.dataset.state = safety?.state ?? "";
   document.body.dataset.drivable = String(DRIVABLE.includes(safety?.state));
   put("sign", SIGNS[slow.verdict]);

@@ -46,19 +46,19 @@ class Plot {
 }
 
 const speed = new Plot("plot-speed", "speed, m/s"), torque = new Plot("plot-torque", "torque, N·m");
-const error = new Plot("plot-error", "wheel speed error, rad/s"), latency = new Plot("plot-latency", "link, ms");
+const error = new Plot("plot-error", "error of wheels, rad/s, or of joints, rad"), latency = new Plot("plot-latency", "link, ms");
 const all = [speed, torque, error, latency], times = [];  // ms of the last redraws
 let last = -Infinity, drawn = -Infinity, link = {}, turn = 0;
 
 on("authority", (authority) => { link = authority.link; });
 on("fast", (frame) => {
   const now = performance.now(), ms = (value) => value === null ? null : 1000 * value;
-  const wheels = (of) => Object.fromEntries((frame.wheels ?? []).map((wheel) => [wheel.name, wheel[of]]));
+  const driven = (of) => Object.fromEntries((frame.driven ?? []).map((joint) => [joint.name, joint[of]]));
   if (now - last >= 1000 * STEP * 0.9) {
     last = now;
     speed.add(Object.fromEntries(["asked", "limited", "measured", "true"].map((name) => [name, frame[name]?.[0]])));
-    torque.add(wheels("effort"));
-    error.add(wheels("error"));
+    torque.add(driven("effort"));
+    error.add(driven("error"));
     latency.add({ "round trip": ms(link.last), "95 %": ms(link.p95) });
   }
   if (document.hidden || now - drawn < REDRAW / all.length) return;

@@ -32,6 +32,8 @@ const ARGUMENTS = {
     const [file] = by("csv").files;
     return file ? { text: await file.text(), speed: speed() } : null;
   },
+  set_gait: () => ({ gait: by("gait").value }),
+  set_posture: (button) => ({ posture: button.dataset.posture }),
   set_odometry: () => ({ x: value("x"), y: value("y"), yaw: value("yaw") }),
   set_parameters: () => ({ parameters: by("parameters").value }),
   pause: () => ({ on: !robot?.paused }),
@@ -43,7 +45,7 @@ for (const button of document.querySelectorAll("[data-call]")) {
   button.addEventListener("click", async () => {
     const name = button.dataset.call, why = authority?.against[name];
     if (why) return say(`${button.textContent}: ${why}`);
-    const args = ARGUMENTS[name] ? await ARGUMENTS[name]() : {};
+    const args = ARGUMENTS[name] ? await ARGUMENTS[name](button) : {};
     if (args === null) return say(`${button.textContent}: nothing was chosen`);
     const { accepted, text } = await call(name, args);
     if (name === "reset_asked" && accepted) return confirmReset(text);
@@ -76,7 +78,7 @@ on("authority", (next) => {
   if (others.join() !== Array.from(by("other").options, (option) => option.text).join()) {
     by("other").replaceChildren(...others.map((text) => new Option(text, text.split(" ")[0])));
   }
-  for (const [id, at] of [["linear", 0], ["angular", 1]]) {
+  for (const [id, at] of [["linear", 0], ["angular", 1], ["lateral", 2]]) {
     const edited = document.activeElement === by(id);
     if (first || (!edited && value(id) !== authority.chosen[at])) by(id).value = number(authority.chosen[at]);
     by(id).max = authority.limits[at];
@@ -88,8 +90,10 @@ by("take").addEventListener("click", () => send({ type: "take", force: authority
 by("give").addEventListener("click", () => send({ type: "give_back" }));
 by("hand").addEventListener("click", () => send({ type: "hand_over", to: Number(by("other").value) }));
 by("heartbeat").addEventListener("change", () => send({ type: "heartbeat", on: by("heartbeat").checked }));
-for (const id of ["linear", "angular"]) {
-  by(id).addEventListener("change", () => send({ type: "speeds", linear: value("linear"), angular: value("angular") }));
+const SPEEDS = ["linear", "angular", "lateral"];
+for (const id of SPEEDS) {
+  const chosen = () => Object.fromEntries(SPEEDS.map((name) => [name, value(name)]));
+  by(id).addEventListener("change", () => send({ type: "speeds", ...chosen() }));
 }
 
 by("e-stop").addEventListener("click", async () => {

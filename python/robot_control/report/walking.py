@@ -1,0 +1,53 @@
+"""A walk in figures: when the feet bore, and what the way cost."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robot_control.common.run_log import FloatArray
+from robot_control.common.signal_names import number_of
+from robot_control.demo.footfalls import footfalls_of
+from robot_control.demo.intervals import intervals
+from robot_control.report.drive import Drive
+
+GRAVITY = 9.81
+"""m/s²"""
+WALKING = number_of("LegPhase", "walking")
+SHORTEST = 1.0
+"""m; a shorter way costs nothing that could be judged"""
+BEARS, UNASKED, MISSING = "bears", "bears, and was not asked to", "was asked to bear, and does not"
+Stretch = tuple[str, int, int, str]
+"""foot, first row of the log, the row behind the last one, what it did"""
+
+
+def footfalls(drive: Drive) -> list[Stretch]:
+    """The diagram of the feet; empty on wheels."""
+    return [
+        (foot.foot.replace("_", " "), begin, end, words)
+        for foot in footfalls_of(drive.log)
+        for true, words in (
+            (foot.bears & foot.asked, BEARS),
+            (foot.bears & ~foot.asked, UNASKED),
+            (~foot.bears & foot.asked, MISSING),
+        )
+        for begin, end in intervals(true)
+    ]
+
+
+def cost_of_transport(drive: Drive) -> float:
+    """Σ|τ·ω|·Δt / (m·g·way) of all joints while it walks: their mechanical work, without the losses of the motors. NaN
+    where mass or way is not known.
+    """
+    walks = drive.column("legged_phase") == WALKING
+    way = float(np.nansum(_steps(drive.column("estimate_distance"))[walks]))
+    power = np.zeros_like(drive.time)
+    for joint in drive.joints:
+        power += np.abs(np.nan_to_num(drive.column(f"{joint}_effort") * drive.column(f"{joint}_velocity")))
+    if not way > SHORTEST:
+        return float("nan")
+    return float(np.sum(power[walks])) * drive.period / (drive.mass * GRAVITY * way)
+
+
+def _steps(values: FloatArray) -> FloatArray:
+    steps: FloatArray = np.diff(values, prepend=values[0])
+    return steps
