@@ -35,7 +35,7 @@ def test_a_scan_is_of_the_last_cycle():
 def test_without_a_laser_it_says_what_to_set():
     loop = ClosedLoop()
     loop.step()
-    with pytest.raises(ValueError, match="there is no laser: set laser.rate"):
+    with pytest.raises(ValueError, match=r"there is no laser: set laser\.rate"):
         loop.scan()
 
 
