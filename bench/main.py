@@ -23,6 +23,7 @@ from robot_control.common.files import write_text
 from bench import legs, markdown
 from bench.drives.sensor_errors import LEVELS
 from bench.faults.fault_sequence import ALL_RUNS
+from bench.navigation import bench as navigation
 from bench.release.sender_sequences import sender_rows
 from bench.runs import seed_programs
 from bench.runs.address import check_address
@@ -49,9 +50,15 @@ JUDGED = (
     "console",
     "fleet",
     "realtime",
+    "navigation",
 )
 REALTIME_PARTS = ("jitter", "chain", "cost", "scale")
-PARTS = {"realtime": REALTIME_PARTS, "legs": legs.PARTS, "fleet": ("sequences", "orders", "losses", "cost")}
+PARTS = {
+    "realtime": REALTIME_PARTS,
+    "legs": legs.PARTS,
+    "fleet": ("sequences", "orders", "losses", "cost"),
+    "navigation": navigation.PARTS,
+}
 NAMES = MEASURED + JUDGED
 SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores
 ON_CLUSTERS = ("campaign", "devices", "driving", "odometry", "tuning", *SEED_PROGRAMS)
@@ -178,6 +185,10 @@ def _fleet(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     return fleet.bench(_parts_of("fleet", given), given.first, given.runs, say)
 
 
+def _navigation(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    return navigation.bench(_parts_of("navigation", given), given.first, given.runs, say)
+
+
 def _drive(_given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     from bench.drives import drive_promises
 
@@ -202,6 +213,7 @@ TRIALS = {
     "console": _console,
     "fleet": _fleet,
     "realtime": _realtime,
+    "navigation": _navigation,
 }
 
 
@@ -269,7 +281,8 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     which = f"of {', '.join(NAMES)} (default: {', '.join(MEASURED)}){parts}"
     parser.add_argument("names", nargs="*", metavar="NAME", help=which)
     seeds = (
-        "campaign, devices, replay, limiter, release, bags, odometry, hostile, tuning, blackbox, processes, legs, fleet"
+        "campaign, devices, replay, limiter, release, bags, odometry, hostile, tuning, blackbox, processes, legs, "
+        "fleet, navigation"
     )
     parser.add_argument("--first", type=_whole(0), default=0, help=f"{seeds}: first seed")
     parser.add_argument("--runs", type=_whole(1), help=f"{seeds}: number of seeds")

@@ -8,13 +8,13 @@ find_package(catkin REQUIRED COMPONENTS
   tf2_msgs trajectory_msgs)
 
 catkin_python_setup()
-add_action_files(FILES FollowPath.action)
+add_action_files(FILES FollowPath.action NavigateTo.action)
 file(GLOB messages RELATIVE ${CMAKE_CURRENT_SOURCE_DIR}/msg CONFIGURE_DEPENDS msg/*.msg)
 file(GLOB services RELATIVE ${CMAKE_CURRENT_SOURCE_DIR}/srv CONFIGURE_DEPENDS srv/*.srv)
 add_message_files(FILES ${messages})
 add_service_files(FILES ${services})
-generate_messages(DEPENDENCIES actionlib_msgs nav_msgs std_msgs)
-catkin_package(CATKIN_DEPENDS actionlib_msgs message_runtime nav_msgs std_msgs)
+generate_messages(DEPENDENCIES actionlib_msgs geometry_msgs nav_msgs std_msgs)
+catkin_package(CATKIN_DEPENDS actionlib_msgs geometry_msgs message_runtime nav_msgs std_msgs)
 unset(CMAKE_RUNTIME_OUTPUT_DIRECTORY)  # catkin's: test programs are no nodes
 
 # robot_control_ros(TARGET): ROS headers, generated messages included, for one target.

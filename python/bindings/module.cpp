@@ -178,6 +178,16 @@ py::list derived_wheel_loops(Parameters parameters) {
   return wheel_loops(parameters, robot_of(parameters));
 }
 
+py::dict scan_of(const ClosedLoop& loop) {
+  using namespace py::literals;
+  const LaserScan scan = loop.scan();
+  if (scan.ranges.empty()) throw py::value_error("there is no laser: set laser.rate of the simulated machine");
+  return py::dict("cycle"_a = scan.head.cycle, "stamp_ns"_a = scan.head.stamp_ns, "link"_a = scan.link,
+                  "angle_min"_a = scan.angle_min, "angle_increment"_a = scan.angle_increment,
+                  "range_min"_a = scan.range_min, "range_max"_a = scan.range_max,
+                  "ranges"_a = py::array_t<float>(static_cast<py::ssize_t>(scan.ranges.size()), scan.ranges.data()));
+}
+
 /// Returns the distance in m of a ramp from `speed`, including the cycle before it begins.
 double distance_to_stop(const ClosedLoop& loop, double speed, bool emergency) {
   const Parameters& parameters = loop.parameters();
@@ -259,11 +269,13 @@ void bind_closed_loop(py::module_& module) {
       .def("e_stop", &ClosedLoop::e_stop)
       .def("e_stop_reset", &ClosedLoop::e_stop_reset)
       .def("heartbeat", &ClosedLoop::heartbeat)
+      .def("clearance", &ClosedLoop::clearance, py::arg("metres"))
       .def("reset", &ClosedLoop::reset)
       .def("set_parameters", &ClosedLoop::set_parameters, py::arg("request"))
       .def("inject_fault", &ClosedLoop::inject_fault, py::arg("component"), py::arg("kind"))
       .def("run", &run, py::arg("cycles"), py::arg("command"), py::arg("replay") = nullptr, py::arg("mode") = 0)
       .def("record", &record, py::arg("commands"))
+      .def("scan", &scan_of)
       .def("stop_distance", &distance_to_stop, py::arg("speed"), py::arg("emergency"))
       .def_property_readonly("smooth_speed", &smooth_speed_of)
       .def_property_readonly("period", [](const ClosedLoop& loop) { return loop.parameters().loop.period(); })

@@ -51,11 +51,11 @@ class ClosedLoop:
         loop.units                                           # every column of the log with its unit
 
     drive it        run, step, command, record
-    stop it         e_stop, e_stop_reset, heartbeat, set_pause, reset
+    stop it         e_stop, e_stop_reset, heartbeat, clearance, set_pause, reset
     change it       set_parameters, inject_fault
     move its legs   set_posture, set_gait, body_pose, foot_target, joint_targets
     keep a log      log_into, end_log
-    read it         robot, units, time, cycle, period, paused, stop_distance, smooth_speed
+    read it         scan, robot, units, time, cycle, period, paused, stop_distance, smooth_speed
 
     The same arguments and calls give the same bits, and the four nodes in lockstep give them, too.
 
@@ -230,6 +230,10 @@ class ClosedLoop:
         """Acts as a message on `heartbeat`."""
         self._loop.heartbeat()
 
+    def clearance(self, metres: float) -> None:
+        """Acts as a message on `clearance`: the free distance ahead, m."""
+        self._loop.clearance(metres)
+
     def step(self, cycles: int = 1) -> Log:
         """Runs `cycles` cycles; returns their log, arrays of shape (cycles,)."""
         return self._run(cycles, None)
@@ -299,6 +303,21 @@ class ClosedLoop:
     def _refuse_inside_a_run(self, what: str) -> None:
         if self._running:
             raise RuntimeError(f"{what} cannot be called from the command function of a run")
+
+    def scan(self) -> dict[str, Any]:
+        """Measures with the laser (`mujoco_plant.laser`) in the last cycle, with the bits that the plant publishes.
+
+        Returns:
+            `ranges`, float32 array of shape (rays,), m: +inf where nothing came back, -inf nearer than `range_min`.
+            Ray i points along `angle_min` + i * `angle_increment` [rad] in the axes of the link `link`. `range_min` and
+            `range_max` m, `cycle`, `stamp_ns` ns.
+
+        Raises:
+            ValueError: there is no laser.
+            RuntimeError: it is called from the command function of a run.
+        """
+        self._refuse_inside_a_run("scan")
+        return self._loop.scan()
 
     def stop_distance(self, speed: float, *, emergency: bool = False) -> float:
         """Distance [m] to rest that the limits predict, straight on from a steady `speed` [m/s]. It counts from the

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "drivers/laser_scan.h"
 #include "gate/machine_needs.h"
 #include "signals/injected_fault.h"
 #include "signals/joint.h"
@@ -70,6 +71,13 @@ class Simulator : public Driver {
 
   /// From the next `read` on the machine has these faults.
   virtual void inject(const InjectedFaults& faults) noexcept = 0;
+
+  /// Returns the number of cycles from one laser scan to the next; 0: the machine has no laser.
+  virtual std::uint64_t scan_cycles() const noexcept { return 0; }
+
+  /// Returns what the laser measures in this true state; one ordinary thread at a time calls it. The same state gives
+  /// the same bits. Without a laser there are no ranges.
+  virtual LaserScan scan(const TruthFrame& /*truth*/) { return {}; }
 
   /// From now on a device of the machine has a fault. Returns the problem with the list of words; "" if there is none.
   virtual std::string inject_device(std::string_view /*component*/, std::string_view /*kind*/) {

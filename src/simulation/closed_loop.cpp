@@ -125,6 +125,11 @@ void ClosedLoop::heartbeat() noexcept {
   ++parts_->operator_input.heartbeats;
 }
 
+void ClosedLoop::clearance(double metres) noexcept {
+  ++parts_->operator_input.clearances;
+  parts_->operator_input.clearance = metres;
+}
+
 void ClosedLoop::step() noexcept {
   Parts& parts = *parts_;
   if (cycle() > 0) parts.hand_over();  // every node drops inputs that arrive before a run begins
@@ -195,6 +200,10 @@ double ClosedLoop::time() const noexcept {
 }
 const JoinedRow& ClosedLoop::row() const noexcept {
   return parts_->row;
+}
+LaserScan ClosedLoop::scan() const {
+  Simulator* const simulator = simulator_of(*parts_->machine);
+  return simulator == nullptr ? LaserScan{} : simulator->scan(parts_->driver.trace().truth);
 }
 std::array<const LawSnapshot*, kLaws> ClosedLoop::snapshots() const noexcept {
   const JoinedRow::Laws& laws = parts_->row.laws;

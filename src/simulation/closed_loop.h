@@ -11,6 +11,7 @@
 #include <string>
 
 #include "configuration/parameters.h"
+#include "drivers/laser_scan.h"
 #include "log/rows/joined_row.h"
 #include "log/rows/row_log.h"
 #include "robots/robot.h"
@@ -42,6 +43,9 @@ class ClosedLoop {
   void e_stop_reset() noexcept;
   void heartbeat() noexcept;
 
+  /// Acts like a message on clearance, m.
+  void clearance(double metres) noexcept;
+
   /// Runs one cycle. Time does not pass between two steps.
   void step() noexcept;
 
@@ -65,6 +69,10 @@ class ClosedLoop {
 
   /// Returns the rows that the four nodes published in the last step.
   const JoinedRow& row() const noexcept;
+
+  /// Returns what the laser measures in the true state of the last step, whichever cycle it is (laser_parameters.h).
+  /// Without a laser there are no ranges.
+  LaserScan scan() const;
 
   /// Returns the states of the laws before the last step in the order of LawName; null for those that were not copied.
   std::array<const LawSnapshot*, kLaws> snapshots() const noexcept;

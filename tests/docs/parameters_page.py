@@ -29,7 +29,7 @@ own file and parameter server: [interfaces.md](interfaces.md#parameters).
 BLOCK = re.compile(r"^(\w+):\s*$")
 VALUE = r"\{.*?\}|\[.*?\]|\"[^\"]*\"|[^#\s]\S*"
 KEY = re.compile(rf"^  (?P<off># )?(?P<key>\w+):(?:\s+(?P<value>{VALUE}))?\s*(?:#\s*(?P<text>.*))?$")
-MEMBER = re.compile(r"^  #   (?P<key>\w+):\s+(?P<value>\S+)\s*(?:#\s*(?P<text>.*))?$")
+MEMBER = re.compile(r"^  (?P<off># )?  (?P<key>\w+):\s+(?P<value>\S+)\s*(?:#\s*(?P<text>.*))?$")
 CONTINUED = re.compile(r"^\s{4,}#\s*(?P<text>.*)$")
 REMARK = re.compile(r"^(?:  )?# ?(?P<text>.*)$")
 
@@ -52,7 +52,7 @@ def read_yaml(text, paths):
                 remarks.insert(0, items.pop())
             items += [("block", block), *remarks]
         elif (found := MEMBER.match(line)) and f"{block}.{group}.{found['key']}" in paths:
-            latest = Entry(found["value"], True, found["text"] or "")
+            latest = Entry(found["value"], bool(found["off"]), found["text"] or "")
             items.append(("key", f"{block}.{group}.{found['key']}", latest))
         elif (found := KEY.match(line)) and is_known(f"{block}.{found['key']}", paths):
             group = found["key"]

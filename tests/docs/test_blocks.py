@@ -120,6 +120,8 @@ def check(words):
         assert (ROOT / "launch" / words[2]).is_file(), words
     elif program == "rosservice":
         assert f"`{words[2]}`" in (ROOT / "docs" / "interfaces.md").read_text(), words
+    elif program == "rostopic":
+        assert any(f"`{word}`" in (ROOT / "docs" / "interfaces.md").read_text() for word in words[2:]), words
     elif program == "rosparam":
         assert any(words[2] in path.read_text() for path in (ROOT / "python").rglob("*.py")), words
     else:

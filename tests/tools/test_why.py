@@ -450,6 +450,20 @@ def test_without_a_free_path_clearance_is_reported_and_not_a_zero_on_cmd_vel(dri
     assert "/lidar does" in text(replace(facts, clearance_senders=("/lidar",)))
 
 
+@pytest.mark.parametrize(
+    ("goal", "headline", "verdict"),
+    [
+        ("waiting", "The goal waits: scan is silent for 3.0 s.", Verdict.STOPPED),
+        ("failed", "The goal is given up: scan is silent for 3.0 s.", Verdict.IDLE),
+    ],
+)
+def test_a_goal_that_waits_or_was_given_up_is_reported_with_its_reason(driving, goal, headline, verdict):
+    report = Report("scan is silent for 3.0 s", {"goal": goal})
+    answer = judge(replace(driving, reports={**driving.reports, "navigate": report}, limited=(0.0, 0.0)))
+    assert (answer.headline, answer.verdict) == (headline, verdict)
+    assert judge(replace(driving, reports={**driving.reports, "navigate": report})).verdict is Verdict.MOVING
+
+
 def test_without_a_warning_a_limit_is_that_of_clearance(driving):
     facts = replace(driving, safety=replace(driving.safety, speed_limit=0.288))
     assert "no rim faster than 0.288 m/s, by clearance" in text(facts)

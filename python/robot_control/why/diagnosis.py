@@ -8,13 +8,14 @@ from robot_control.why.answer import Answer, Verdict
 from robot_control.why.legs import execution
 from robot_control.why.state import Cause, Facts, speeds
 
+NAVIGATE = "navigate"
 MOVING = 0.01
 """m/s and rad/s; slower is standing."""
 
 
 def judge(facts: Facts) -> Answer:
     """Chooses from all that prevents motion what has to be repaired first."""
-    for rule in (_no_nodes, _paused, _starting, _stopped, _gate, _no_path, _locked, _controller):
+    for rule in (_no_nodes, _paused, _starting, _stopped, _gate, _navigation, _no_path, _locked, _controller):
         answer = rule(facts)
         if answer is not None:
             return answer
@@ -163,6 +164,21 @@ def _gate(facts: Facts) -> Answer | None:
         Verdict.STOPPED,
         f"The gate brakes: {next(iter(reasons.values()))}.",
         tuple(("integrator", text) for name, text in facts.remedies(facts.driver, "gate").items() if name in reasons),
+    )
+
+
+def _navigation(facts: Facts) -> Answer | None:
+    """A goal in the map waits, or was refused or given up."""
+    state = facts.value(NAVIGATE, "goal")
+    if state not in {"waiting", "failed"} or _motion_commanded(facts):
+        return None
+    waits = state == "waiting"
+    verdict, what = (Verdict.STOPPED, "waits") if waits else (Verdict.IDLE, "is given up")
+    then = "; the robot then drives on" if waits else ", and send the goal again"
+    return Answer(
+        verdict,
+        f"The goal {what}: {facts.reports[NAVIGATE].message}.",
+        (("operator", f"remove this cause{then}"),),
     )
 
 

@@ -42,12 +42,14 @@ std::vector<Rim> rims_of(const TrueRobot& robot) {
 
 MujocoPlant::MujocoPlant(const MachineModel& robot, const MujocoPlantParameters& parameters, double period)
     : model_(compile_model(robot, parameters, period)),
+      paths_(*model_.model),
       wheels_(model_, parameters),
       bodies_(model_),
       parameters_(parameters),
       specific_force_(model_),
       sensor_errors_(model_.robot, rims_of(model_.robot), parameters, period),
       sensor_faults_(model_.robot, parameters.seed),
+      period_(period),
       actuator_delay_(checked_delay("actuator_delay", parameters.actuator_delay)) {
   const double step = model_.model->opt.timestep;
   for (const std::size_t joint : model_.actuated) {
@@ -67,6 +69,7 @@ void MujocoPlant::start() {
                       "). Restart the process.");
   }
   data_ = set_down(model_);
+  paths_.place(0, *data_);
   wheels_.reset();
   bodies_.reset();
   for (JointLaw& law : laws_) law.reset();
@@ -83,6 +86,8 @@ void MujocoPlant::start() {
   actuator_delay_.fill({});
   settled_ = false;
   settle();
+  // The origin is the same after every start. The laser is made once, because another thread uses it.
+  if (parameters_.laser.rate > 0 && !laser_) laser_ = std::make_unique<Laser>(model_, parameters_, origin_, period_);
   state_ = DriverState::kRunning;
   cycle_ = 0;
   measure();
@@ -240,6 +245,11 @@ void MujocoPlant::truth(TruthFrame& truth) noexcept {
   truth.head = head;
 }
 
+std::uint64_t MujocoPlant::scan_cycles() const noexcept {
+  const double rate = parameters_.laser.rate;
+  return rate > 0 ? static_cast<std::uint64_t>(std::max(1.0, std::round(1 / (rate * period_)))) : 0;
+}
+
 void MujocoPlant::inject(const InjectedFaults& faults) noexcept {
   injected_ = faults;
 }
@@ -249,6 +259,7 @@ void MujocoPlant::substep(void* plant) {
   mj_step2(self.model_.model.get(), self.data_.get());
   self.wheels_.weigh(*self.data_);
   self.bodies_.weigh(*self.data_);  // before mj_step1, which finds the new contacts without their forces
+  if (self.settled_) self.paths_.place(self.data_->time, *self.data_);
   mj_step1(self.model_.model.get(), self.data_.get());
 }
 

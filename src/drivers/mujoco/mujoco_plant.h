@@ -33,10 +33,11 @@
 /// the state itself. `start` removes all injected faults.
 ///
 /// The sensors are encoders at all joints, gyro and accelerometer at the IMU, and an e-stop button, which only an
-/// injected fault presses. The parameters can add a battery (battery.h) that feeds all motors, and the ground's forces
-/// (wheel_contacts.h; body_contacts.h for a machine without wheels).
+/// injected fault presses. The parameters can add a laser scanner (laser.h). They can also add a battery (battery.h)
+/// that feeds all motors, and the ground's forces (wheel_contacts.h; body_contacts.h for a machine without wheels).
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -44,10 +45,12 @@
 #include "drivers/joint_law.h"
 #include "drivers/mujoco/contact/body_contacts.h"
 #include "drivers/mujoco/contact/wheel_contacts.h"
+#include "drivers/mujoco/model/mocap_paths.h"
 #include "drivers/mujoco/model/mujoco_model.h"
 #include "drivers/mujoco/motors/motor.h"
 #include "drivers/mujoco/motors/motor_faults.h"
 #include "drivers/mujoco/mujoco_plant_parameters.h"
+#include "drivers/mujoco/sensors/laser.h"
 #include "drivers/mujoco/sensors/sensor_errors.h"
 #include "drivers/mujoco/sensors/sensor_faults.h"
 #include "drivers/mujoco/sensors/specific_force.h"
@@ -68,6 +71,8 @@ class MujocoPlant final : public Simulator {
   bool measures(MachineInput) const noexcept override { return true; }
   void truth(TruthFrame& truth) noexcept override;
   void inject(const InjectedFaults& faults) noexcept override;
+  std::uint64_t scan_cycles() const noexcept override;
+  LaserScan scan(const TruthFrame& truth) override { return laser_ ? laser_->scan(truth) : LaserScan{}; }
 
   /// Returns MuJoCo's message about the fault.
   std::string_view fault_message() const noexcept override { return fault_message_.data(); }
@@ -97,6 +102,7 @@ class MujocoPlant final : public Simulator {
 
   MujocoModel model_;
   MujocoData data_;
+  MocapPaths paths_;
   WheelContacts wheels_;
   BodyContacts bodies_;  ///< of a machine without wheels
   MujocoPlantParameters parameters_;
@@ -109,6 +115,8 @@ class MujocoPlant final : public Simulator {
   std::vector<JointCommand> brakes_;
   std::array<double, 7> origin_{};  ///< origin of truth: position, quaternion w x y z
   std::array<double, 3> push_{};    ///< N, world axes
+  std::unique_ptr<Laser> laser_;    ///< null: there is none, or not yet started
+  double period_;                   ///< s
   bool settled_ = false;
   bool has_rested_ = false;
   std::string unloaded_;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "drivers/mujoco/sensors/errors.h"
+#include "drivers/mujoco/sensors/laser_parameters.h"
 #include "parameters/block.h"
 
 namespace robot_control {
@@ -55,8 +56,9 @@ struct MujocoPlantParameters : Errors {
   double motor_damping = 0;          ///< N·m·s/rad
   std::uint64_t actuator_delay = 0;  ///< cycles in addition to the one of the bus
 
-  // This member describes the sensors.
+  // These members describe the sensors.
   bool contact_sensors = false;  ///< true: forces at wheels and casters, or feet (SensorFrame::contacts)
+  LaserParameters laser;
 
   // These members describe the battery (battery.h), which does not discharge.
   double battery_voltage = 0;       ///< V without load; 0: no battery is reported
@@ -110,6 +112,7 @@ inline Keys keys(MujocoPlantParameters& plant) {
           {"push_start", &plant.push_start, "s", 0, 1.0e6},
           {"push_duration", &plant.push_duration, "s", 0, 1.0e6, kZeroIsOff},
       },
+      keys(plant.laser),
   });
 }
 

@@ -54,6 +54,7 @@ void DriverProcess::open_driver(std::unique_ptr<Driver> driver) {
   require_needs(*driver, needs_);
   driver->start();
   driver_ = std::move(driver);
+  if (const Simulator* const simulator = simulator_of(*driver_)) scan_cycles_ = simulator->scan_cycles();
   cycle_ = std::make_unique<DriverCycle>(
       *driver_, robot_, DriverCycle::Channels{sensors_.writer, truth_.writer, &command_.reader, &permit_.reader},
       loop_parameters().period_ns(), clock(), gate_);
@@ -111,6 +112,8 @@ void DriverProcess::loop() noexcept {
 void DriverProcess::tick() noexcept {
   cycle_->inject(hold_.faults());
   cycle_->step();
+  const TruthFrame& truth = cycle_->trace().truth;
+  if (scan_cycles_ != 0 && truth.head.cycle % scan_cycles_ == 0) scanned_writer_.append(truth, nullptr);
   trace_.append(cycle_->trace(), cycle_->snapshot(), stopping());
 }
 

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "bus/ring.h"
 #include "loop/cycles/driver_cycle.h"
 #include "loop/cycles/trace_sink.h"
 #include "loop/processes/loop_hold.h"
@@ -40,6 +41,9 @@ class DriverProcess final : public Process {
   bool is_current(const FrameHead& head) const noexcept {
     return attached_run(sensors_.writer.memory()->head) == head.run;
   }
+
+  /// An ordinary thread: the true state of the next laser scan, in the order of their cycles. False: there is none yet.
+  bool next_scanned(TruthFrame& truth) noexcept { return scanned_reader_.read(truth); }
 
   /// The services of a simulated machine, once it is open; null for hardware.
   SimulationServices* services() noexcept { return services_.get(); }
@@ -70,6 +74,12 @@ class DriverProcess final : public Process {
   TraceSink<DriverTrace> trace_;
   std::unique_ptr<Driver> driver_;
   std::unique_ptr<DriverCycle> cycle_;
+  std::uint64_t scan_cycles_ = 0;  ///< 0: there is no laser
+  // States wait here for their scans. Later ones replace them if the ordinary thread is 64 scans late.
+  using Scanned = Ring<TruthFrame, std::atomic, 64>;
+  std::unique_ptr<Scanned> scanned_ = std::make_unique<Scanned>();
+  RingWriter<TruthFrame, std::atomic, 64> scanned_writer_{scanned_.get()};
+  RingReader<TruthFrame, std::atomic, 64> scanned_reader_{scanned_.get()};
   LoopHold hold_;
   std::unique_ptr<SimulationServices> services_;
   std::atomic<std::uint64_t> awaited_{0};  ///< lockstep: cycle waited for, plus 1

@@ -19,6 +19,7 @@
 #include <sensor_msgs/BatteryState.h>
 #include <sensor_msgs/Imu.h>
 #include <sensor_msgs/JointState.h>
+#include <sensor_msgs/LaserScan.h>
 #include <std_msgs/Bool.h>
 #include <std_msgs/Empty.h>
 #include <std_msgs/Float64.h>
@@ -70,6 +71,7 @@ using Empty = std_msgs::Empty_<Allocator>;
 using Float64 = std_msgs::Float64_<Allocator>;
 using Float64MultiArray = std_msgs::Float64MultiArray_<Allocator>;
 using Imu = sensor_msgs::Imu_<Allocator>;
+using LaserScan = sensor_msgs::LaserScan_<Allocator>;
 using JointState = sensor_msgs::JointState_<Allocator>;
 using KeyValue = diagnostic_msgs::KeyValue_<Allocator>;
 using MultiArrayDimension = std_msgs::MultiArrayDimension_<Allocator>;

@@ -133,6 +133,20 @@ ExternalImuSample imu_sample(const msg::Imu& message, std::int64_t now_ns, std::
   return sample;
 }
 
+msg::LaserScan laser_scan(const LaserScan& scan, ros::Time stamp) {
+  msg::LaserScan message;
+  message.header.stamp = stamp;
+  message.header.frame_id = scan.link;
+  message.angle_min = static_cast<float>(scan.angle_min);
+  message.angle_max =
+      static_cast<float>(scan.angle_min + scan.angle_increment * (static_cast<double>(scan.ranges.size()) - 1));
+  message.angle_increment = static_cast<float>(scan.angle_increment);
+  message.range_min = static_cast<float>(scan.range_min);
+  message.range_max = static_cast<float>(scan.range_max);
+  message.ranges.assign(scan.ranges.begin(), scan.ranges.end());
+  return message;
+}
+
 msg::Imu imu(const SensorFrame& sensors, const MachineModel& robot, ros::Time stamp) {
   msg::Imu message;
   message.header.stamp = stamp;

@@ -8,6 +8,7 @@
 
 #include "configuration/parameters.h"
 #include "drivers/external_imu.h"
+#include "drivers/laser_scan.h"
 #include "estimation/estimator_parameters.h"
 #include "machine/machine_model.h"
 #include "ros/messages/messages.h"
@@ -49,6 +50,9 @@ msg::Odometry wheel_odometry(const StateFrame& state, const std::string& odom_fr
 /// Returns the true motion as odometry. The covariances are zero, because the truth is exact.
 msg::Odometry ground_truth(const TruthFrame& truth, const std::string& odom_frame, const std::string& base_frame,
                            ros::Time stamp);
+
+/// Returns one turn of the laser; all rays are of `stamp`. Without intensities.
+msg::LaserScan laser_scan(const LaserScan& scan, ros::Time stamp);
 
 /// Returns the measured rates and accelerations in the axes of the IMU's link (REP 145). A covariance that begins with
 /// −1 means "not measured", one that is all zero "unknown".

@@ -29,6 +29,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
         clock_pace_(kClockRate) {
     auto driver = with_imu(make(parameters(), composed()));
     driver_ = driver.get();
+    simulator_ = simulator_of(*driver);
     description_ = std::make_unique<PublishedDescription>(robot(), parameters().urdf);
     process().open_driver(std::move(driver));
   }
@@ -44,6 +45,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
       imu_input_ =
           handle.subscribe("imu/input", 10, &DriverNode::receive_imu, this, ros::TransportHints().tcpNoDelay());
     }
+    if (simulator_ != nullptr && simulator_->scan_cycles() != 0) scan_ = handle.advertise<msg::LaserScan>("scan", 5);
     if (process().services() == nullptr) return;  // a real machine is neither paused nor reset
     ros::NodeHandle own("~");
     set_pause_ = own.advertiseService("set_pause", &DriverNode::set_pause, this);
@@ -64,6 +66,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
     describe_machine();
     if (clock_ && clock_pace_.due(head.run, head.stamp_ns)) publish_clock();
     if (imu_pace_.due(head.run, head.stamp_ns)) imu_.publish(imu(sensors_, robot(), time().at(head.stamp_ns)));
+    publish_scans();
     if (!truth_pace_.due(head.run, head.stamp_ns) || process().truth().newest(truth_frame_) != Lookup::kFrame) return;
     truth_.publish(
         ground_truth(truth_frame_, report().odom_frame, report().base_frame, time().at(truth_frame_.head.stamp_ns)));
@@ -176,6 +179,15 @@ class DriverNode final : public ProcessNode<DriverProcess> {
     return answer(process().services()->inject_fault(request.component, request.kind), response);
   }
 
+  /// Casts the rays here, from copies of the true state.
+  void publish_scans() {
+    TruthFrame scanned;
+    while (process().next_scanned(scanned)) {
+      if (!process().is_current(scanned.head) || scan_.getNumSubscribers() == 0) continue;
+      scan_.publish(laser_scan(simulator_->scan(scanned), time().at(scanned.head.stamp_ns)));
+    }
+  }
+
   void publish_clock() {
     msg::Clock message;
     message.clock = time().at(sensors_.head.stamp_ns);
@@ -183,6 +195,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
   }
 
   const Driver* driver_ = nullptr;
+  Simulator* simulator_ = nullptr;  // null: a real machine
   std::unique_ptr<PublishedDescription> description_;
   std::shared_ptr<ImuInbox> imu_inbox_;  // null: the driver's own IMU, or none
   bool described_ = false;
@@ -191,6 +204,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
   ros::Publisher imu_;
   ros::Publisher truth_;
   ros::Publisher clock_;
+  ros::Publisher scan_;
   ros::ServiceServer set_pause_;
   ros::ServiceServer step_;
   ros::ServiceServer reset_;

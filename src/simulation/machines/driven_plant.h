@@ -35,6 +35,8 @@ class DrivenPlant final : public Simulator {
   }
   void truth(TruthFrame& truth) noexcept override { plant_.truth(truth); }
   void inject(const InjectedFaults& faults) noexcept override { plant_.inject(faults); }
+  std::uint64_t scan_cycles() const noexcept override { return plant_.scan_cycles(); }
+  LaserScan scan(const TruthFrame& truth) override { return plant_.scan(truth); }
   std::string inject_device(std::string_view component, std::string_view kind) override {
     return devices_->inject(component, kind);
   }

@@ -128,7 +128,7 @@ TEST_F(MujocoModelTest, ASceneThatDoesNotCompileIsRefusedWithMujocosMessage) {
 TEST_F(MujocoModelTest, ASceneThatIsNotThereIsRefused) {
   EXPECT_THAT(refusal("/nowhere/scene.xml"), HasSubstr("/nowhere/scene.xml cannot be opened or written: No such file"));
   EXPECT_THAT(refusal(std::filesystem::path(kFlat).parent_path() / "slope.xml"),
-              HasSubstr("kerb, low_friction_patch, slope_5deg"));
+              HasSubstr("kerb, loop, low_friction_patch, room, slope_5deg"));
   EXPECT_THAT(refusal("/"), HasSubstr("is a folder"));
 }
 

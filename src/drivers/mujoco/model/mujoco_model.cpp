@@ -187,6 +187,10 @@ MujocoModel compiled(const MachineModel& robot, const MujocoPlantParameters& par
   find_addresses(result);
   for (std::size_t joint = 0; at_rest && joint < result.robot.joints.size(); ++joint)
     result.model->qpos0[result.joint_position[joint]] = result.robot.joints[joint].rest_position;
+  for (int shape = 0; shape < result.model->ngeom; ++shape) {
+    if (result.model->body_rootid[result.model->geom_bodyid[shape]] == result.base_body)
+      result.model->geom_group[shape] = kRobotGroup;
+  }
   check_mass(result, scene.string());
   const mjtNum up[3] = {0, 0, 1};
   mju_rotVecQuat(result.up.data(), up, place.pose.data() + 3);

@@ -29,6 +29,8 @@ namespace robot_control {
 /// A MuJoCo step has at most this length in s: the contact's time constant of 4 ms (mjcf.h) needs four steps.
 inline constexpr double kMaxStep = 0.001;
 
+inline constexpr int kRobotGroup = 5;  ///< geom group of all shapes of the robot
+
 struct DeleteMujoco {
   void operator()(mjModel* model) const noexcept { mj_deleteModel(model); }
   void operator()(mjData* data) const noexcept { mj_deleteData(data); }
@@ -51,8 +53,9 @@ struct MujocoModel {
   int imu = 0;                        ///< site
 };
 
-/// Compiles the model; `period` is in s. Throws DriverError if the scene does not compile (with MuJoCo's message), has
-/// no site `start` or changes the robot's mass. Throws RobotError as true_robot does.
+/// Compiles the model; `period` is in s. The robot's shapes are in geom group kRobotGroup. Throws DriverError if the
+/// scene does not compile (with MuJoCo's message), has no site `start` or changes the robot's mass. Throws RobotError
+/// as true_robot does.
 MujocoModel compile_model(const MachineModel& robot, const MujocoPlantParameters& parameters, double period);
 
 /// Returns new data with the robot at its start pose and speed zero, before it settles.

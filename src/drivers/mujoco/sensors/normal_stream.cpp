@@ -10,7 +10,6 @@ void NormalStream::seed(std::uint64_t seed, std::uint64_t stream) {
   has_spare_ = false;
 }
 
-/// Returns a number x with −1 ≤ x < 1.
 double NormalStream::uniform() noexcept {
   return static_cast<double>(static_cast<std::int64_t>(engine_()) >> 11) * 0x1p-52;
 }

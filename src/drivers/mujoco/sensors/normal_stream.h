@@ -15,6 +15,7 @@ enum ErrorStream : std::uint64_t {
   kEncodersLateStream = 9,
   kLeftSlipStream = 10,
   kRightSlipStream = 11,
+  kLaserStream = 16,  ///< and all numbers behind it: one stream per scan
 };
 
 /// A NormalStream returns independent standard normal numbers by G. Marsaglia's polar method (SIAM Review 6, 1964, p.
@@ -24,9 +25,10 @@ class NormalStream {
   void seed(std::uint64_t seed, std::uint64_t stream);
   double next() noexcept;
 
- private:
+  /// Returns an independent number x with −1 ≤ x < 1, all equally probable.
   double uniform() noexcept;
 
+ private:
   std::mt19937_64 engine_;
   double spare_ = 0;  ///< the method computes two numbers at a time
   bool has_spare_ = false;

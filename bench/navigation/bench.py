@@ -1,0 +1,39 @@
+"""`scripts/bench navigation`: maps, localisation, goals, and drives with something wrong, in virtual time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from bench.navigation import goals
+
+Say = Callable[[str], None]
+PARTS = ("map", "localization", "goals", "faults")
+MAPPING = ("map", "localization")
+
+
+def bench(parts: Sequence[str], first: int, runs: int | None, say: Say) -> tuple[dict[str, Any], bool]:
+    """The rows of these parts, and whether all bounds hold. `runs`: tours of each scene, or drives of each kind.
+
+    Raises:
+        RuntimeError: MRPT is missing.
+    """
+    rows = _of_mrpt(parts, first, runs, say) if set(parts) & set(MAPPING) else []
+    if "goals" in parts:
+        rows += goals.goals(first, runs or goals.GOALS, say)
+    if "faults" in parts:
+        rows += goals.faults(first, runs or goals.FAULT_RUNS, say)
+    return {"bench": "navigation", "rows": rows}, all(row["value"] <= row["reference"] for row in rows)
+
+
+def _of_mrpt(parts: Sequence[str], first: int, runs: int | None, say: Say) -> list[dict[str, Any]]:
+    try:
+        from bench.navigation import localizing, mapping  # noqa: PLC0415 (without MRPT the other parts run)
+    except ImportError:
+        raise RuntimeError("MRPT is not installed: scripts/setup --navigation, then build again") from None
+    rows: list[dict[str, Any]] = []
+    if "map" in parts:
+        rows += mapping.rows_of(first, runs or mapping.RUNS, say)
+    if "localization" in parts:
+        rows += localizing.rows_of(first, runs or localizing.DRIVES, say)
+    return rows

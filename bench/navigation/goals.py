@@ -1,0 +1,196 @@
+"""Random goals in the scenes, and drives with something wrong on purpose; all in virtual time."""
+
+from __future__ import annotations
+
+import heapq
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from robot_control.installed_files import share_file
+
+from bench.navigation.scene_map import Map, Obstacle, read_scene, true_map
+from bench.navigation.virtual import Lies, Place, Robot, Trip
+from bench.rows import bounded
+from bench.runs.runner import Processes
+
+SCENES = ("room", "crowd")
+GOALS, FAULT_RUNS, PER_ROBOT = 100, 50, 5
+AT_GOAL, AT_HEADING = 0.05, math.radians(3)  # m, rad
+HALF_WIDTH = 0.27  # m, of the shipped robot: the narrowest feasible way is twice as wide
+FREE = 0.05  # m of air at a goal, below which a refusal is true
+WRONG = 0.1  # of the goals are anywhere in the scene
+ASIDE = 0.8  # m: nearer to the way of a cart, which stops for nothing, no robot may stand
+TURNED = math.radians(30)
+
+NEIGHBOURS = [(a, b, math.hypot(a, b)) for a in range(-2, 3) for b in range(-2, 3) if math.gcd(a, b) == 1]
+
+
+def scene_of(name: str) -> tuple[list[Obstacle], Map]:
+    """The obstacles of a scene and its true map."""
+    obstacles = read_scene(Path(share_file(f"urdf/scenes/{name}.xml")))
+    return obstacles, true_map(obstacles)
+
+
+def random_goal(random: np.random.Generator, known: Map) -> Place:
+    """A place anywhere in the scene."""
+    x0, y0, resolution, cells = known
+    inside = np.argwhere(cells == 100)
+    (low_row, low_column), (high_row, high_column) = inside.min(axis=0), inside.max(axis=0)
+    x = x0 + random.uniform(low_column, high_column) * resolution
+    y = y0 + random.uniform(low_row, high_row) * resolution
+    return float(x), float(y), float(random.uniform(-math.pi, math.pi))
+
+
+def shortest(known: Map, start: Place, goal: Place, radius: float = HALF_WIDTH) -> float:
+    """m of the shortest way of a circle over every second cell of the map, in steps to 16 neighbours; infinite without
+    one.
+    """
+    x0, y0, resolution, cells = known
+    blocked = grown(cells == 100, radius / resolution)[::2, ::2]
+    step = 2 * resolution
+    begin, end = (((place[1] - y0) / step, (place[0] - x0) / step) for place in (start, goal))
+    begin, end = (int(begin[0]), int(begin[1])), (int(end[0]), int(end[1]))
+    blocked[begin] = blocked[end] = False
+    best, queue = {begin: 0.0}, [(0.0, begin)]
+    while queue:
+        way, at = heapq.heappop(queue)
+        if at == end:
+            return way * step
+        if way > best[at]:
+            continue
+        for down, right, length in NEIGHBOURS:
+            to = at[0] + down, at[1] + right
+            if not (0 <= to[0] < blocked.shape[0] and 0 <= to[1] < blocked.shape[1]) or blocked[to]:
+                continue
+            if way + length < best.get(to, math.inf):
+                best[to] = way + length
+                heapq.heappush(queue, (way + length, to))
+    return math.inf
+
+
+def grown(occupied: NDArray[np.bool_], radius: float) -> NDArray[np.bool_]:
+    """Cells nearer than `radius` cells to an occupied one."""
+    reach = int(radius)
+    result = occupied.copy()
+    for down in range(-reach, reach + 1):
+        for right in range(-reach, reach + 1):
+            if math.hypot(down, right) < radius:
+                result |= np.roll(occupied, (down, right), axis=(0, 1))
+    return result
+
+
+def drive_goals(task: tuple[str, int]) -> list[tuple[Trip, bool, float]]:
+    """PER_ROBOT goals of one seed: the trip, whether a refusal is true, the shortest way [m]."""
+    scene, seed = task
+    obstacles, known = scene_of(scene)
+    random = np.random.default_rng(seed)
+    robot = Robot(scene, obstacles, known, seed)
+    trips = []
+    for _ in range(PER_ROBOT):
+        start, goal = robot.place, random_goal(random, known)
+        wrong = random.random() < WRONG
+        while not wrong and not (aside(obstacles, goal) and feasible(robot, known, goal)):
+            goal = random_goal(random, known)
+        possible, way = feasible(robot, known, goal), shortest(known, start, goal)
+        trip = robot.drive(goal)
+        trips.append((trip, not possible, way))
+        if trip.hit:  # a cart pushes it anywhere, through walls, too
+            robot = Robot(scene, obstacles, known, seed)
+    return trips
+
+
+def aside(obstacles: list[Obstacle], place: Place) -> bool:
+    """True if no cart passes there."""
+    times = np.linspace(0, 120, 1200)
+    return all(math.dist(cart.at(time), place[:2]) > ASIDE for cart in obstacles if cart.path for time in times)
+
+
+def feasible(robot: Robot, known: Map, goal: Place) -> bool:
+    """True if the outline has FREE of air there and a way leads to it."""
+    if robot.air_at(goal, moving=False) < FREE:
+        return False
+    return math.isfinite(shortest(known, robot.place, goal, HALF_WIDTH + FREE))
+
+
+def drive_lies(task: tuple[str, int]) -> tuple[Trip, float]:
+    """One drive of one seed with this lie, which begins while the robot drives; and the way after it, m."""
+    lie, seed = task
+    obstacles, known = scene_of("room")
+    random = np.random.default_rng(seed)
+    robot = Robot("room", obstacles, scene_of("crowd")[1] if lie == "other map" else known, seed)
+    angle, since = random.uniform(-math.pi, math.pi), robot.loop.time + float(random.uniform(2, 12))
+    shift = (math.cos(angle), math.sin(angle))
+    lies = {
+        "frozen": Lies(since, frozen=True),
+        "shifted": Lies(since, sensor=(0.5 * shift[0], 0.5 * shift[1], 0.0)),
+        "other map": Lies(),
+        "turned": Lies(since, place=lambda at: (at[0], at[1], at[2] + math.copysign(TURNED, angle))),
+        "jump": Lies(since, place=lambda at: (at[0] + shift[0], at[1] + shift[1], at[2])),
+    }
+    robot.lies = lies[lie]
+    while not feasible(robot, known, goal := random_goal(random, known)):
+        pass
+    return robot.drive(goal), since
+
+
+LIES = {
+    "frozen": "scan is frozen",
+    "shifted": "the scan contradicts the map",
+    "other map": "the scan contradicts the map",
+    "turned": "the scan contradicts the map",
+    "jump": "the scan contradicts the map",
+}
+
+
+def goals(first: int, runs: int, say: Callable[[str], None]) -> list[dict[str, Any]]:
+    """Rows of `goals`; `runs`: goals in each scene."""
+    rows = []
+    for scene in SCENES:
+        count = math.ceil(runs / PER_ROBOT)
+        tasks = [(scene, seed) for seed in range(first, first + count)]
+        trips = [trip for found in Processes().outcomes(drive_goals, tasks, say) for trip in found]
+        rows += _goal_rows(scene, trips, say)
+    return rows
+
+
+def _goal_rows(scene: str, trips: list[tuple[Trip, bool, float]], say: Callable[[str], None]) -> list[dict[str, Any]]:
+    reached = [(trip, way) for trip, _, way in trips if trip.state == "reached"]
+    wrong = [trip for trip, infeasible, _ in trips if trip.state != "reached" and not infeasible]
+    for trip in wrong:
+        say(f"{scene}: {trip.state or 'no end'}: {trip.reason}")
+    ways = [(trip.way, way) for trip, way in reached if math.isfinite(way) and way > 1]
+    inexact = sum(trip.error > AT_GOAL or trip.turn_error > AT_HEADING for trip, _ in reached)
+    return [
+        bounded(f"{scene}: goals neither reached nor refused for a true reason", len(wrong), f"of {len(trips)}", 0),
+        bounded(f"{scene}: goals refused for a true reason", len(trips) - len(reached) - len(wrong), "", len(trips)),
+        bounded(f"{scene}: ends beyond 5 cm or 3°", inexact, f"of {len(reached)}", 0),
+        bounded(f"{scene}: touches of what stands", sum(trip.air <= 0 for trip, _, _ in trips), f"of {len(trips)}", 0),
+        bounded(
+            f"{scene}: touches of carts, which stop for nothing",
+            sum(trip.hit for trip, _, _ in trips),
+            f"of {len(trips)}",
+            0,
+        ),
+        bounded(f"{scene}: way / shortest way", sum(a for a, _ in ways) / max(sum(b for _, b in ways), 1e-9), "", 1.15),
+    ]
+
+
+def faults(first: int, runs: int, say: Callable[[str], None]) -> list[dict[str, Any]]:
+    """Rows of `faults`; `runs`: drives with each lie."""
+    rows = []
+    for lie, cause in LIES.items():
+        tasks = [(lie, seed) for seed in range(first, first + runs)]
+        drives = list(Processes().outcomes(drive_lies, tasks, say))
+        affected = [trip for trip, since in drives if trip.doubts or trip.state != "reached" or lie == "other map"]
+        unnamed = [trip for trip in affected if cause not in trip.doubts]
+        for trip in unnamed:
+            say(f"{lie}: {trip.state}: {trip.reason}; {sorted(trip.doubts)}")
+        rows += [
+            bounded(f"{lie}: touches", sum(trip.air <= 0 for trip, _ in drives), f"of {len(drives)}", 0),
+            bounded(f"{lie}: ends without the cause named", len(unnamed), f"of {len(affected)} affected", 0),
+        ]
+    return rows

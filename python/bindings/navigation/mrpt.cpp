@@ -1,0 +1,67 @@
+/// The extension module robot_control._mrpt: mapping and localisation in virtual time, for benchmarks and tests.
+
+#include <pybind11/eigen.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include "bindings/navigation/conversions.h"
+#include "navigation/mrpt/localizer.h"
+#include "navigation/mrpt/mapper.h"
+
+namespace py = pybind11;
+
+namespace robot_control {
+namespace {
+
+UncertainPose uncertain(const Pose& pose, const Eigen::Matrix3d& covariance) {
+  return {planar_of(pose), covariance};
+}
+
+void bind_localizer(py::module_& module) {
+  py::class_<Localizer>(module, "Localizer")
+      .def(py::init([](const py::tuple& map, std::uint32_t seed) { return Localizer(grid_of(map), seed); }),
+           py::arg("map"), py::arg("seed"))
+      .def(
+          "set_pose",
+          [](Localizer& localizer, const Pose& pose, const Eigen::Matrix3d& covariance) {
+            localizer.set_pose(uncertain(pose, covariance));
+          },
+          py::arg("pose"), py::arg("covariance"))
+      .def("search", &Localizer::search)
+      .def(
+          "update",
+          [](Localizer& localizer, const py::dict& scan, const Pose& sensor, const Pose& odometry,
+             const Eigen::Matrix3d& covariance) {
+            return localizer.update(scan_of(scan), planar_of(sensor), uncertain(odometry, covariance));
+          },
+          py::arg("scan"), py::arg("sensor"), py::arg("odometry"), py::arg("covariance"))
+      .def_property_readonly("state", [](const Localizer& localizer) { return name_of(localizer.state()); })
+      .def_property_readonly("reason", &Localizer::reason)
+      .def_property_readonly("explained", &Localizer::explained)
+      .def_property_readonly("pose", [](const Localizer& localizer) {
+        const UncertainPose pose = localizer.pose();
+        return py::make_tuple(pose_of(pose.mean), pose.covariance);
+      });
+}
+
+}  // namespace
+}  // namespace robot_control
+
+PYBIND11_MODULE(_mrpt, module) {
+  using namespace robot_control;
+  py::class_<Mapper>(module, "Mapper")
+      .def(py::init<>())
+      .def(py::init([](const py::tuple& map, const Pose& pose) { return Mapper(grid_of(map), planar_of(pose)); }),
+           py::arg("map"), py::arg("pose"))
+      .def(
+          "update",
+          [](Mapper& mapper, const py::dict& scan, const Pose& sensor, const Pose& odometry) {
+            mapper.update(scan_of(scan), planar_of(sensor), planar_of(odometry));
+          },
+          py::arg("scan"), py::arg("sensor"), py::arg("odometry"))
+      .def_property_readonly("pose", [](const Mapper& mapper) { return pose_of(mapper.pose()); })
+      .def_property_readonly("matched", &Mapper::matched)
+      .def_property_readonly("reason", &Mapper::reason)
+      .def_property_readonly("map", [](const Mapper& mapper) { return numpy_of(mapper.grid()); });
+  bind_localizer(module);
+}

@@ -1,0 +1,77 @@
+#pragma once
+/// A Costmap says where a robot may stand, by the map, the laser and the outline of the robot.
+///
+/// A cell is occupied if the map says so (≥ 65 %), or if a ray ended there within the last kMemory and none passed it
+/// since. Unless `unknown_is_free`, it is also occupied if neither the map nor a ray knows it. A ray that ends within
+/// kExplained of an occupied cell of the map marks nothing. It has hit the map's own wall, within the error of the
+/// localisation.
+///
+/// Rays also say whether map and pose can be true. Something that was added shortens a ray. Only a thing that is gone,
+/// or an untrue pose or map, lets a ray pass a wall of the map.
+
+#include <limits>
+#include <vector>
+
+#include "navigation/footprint.h"
+#include "navigation/grid.h"
+#include "navigation/scan.h"
+
+namespace robot_control {
+
+inline constexpr double kMemory = 10;       ///< s; less than the patience of a goal that it blocks
+inline constexpr double kExplained = 0.1;   ///< m
+inline constexpr double kBehindWall = 0.3;  ///< m; a ray that ends so far behind a wall contradicts the map
+inline constexpr double kPadding = 0.07;    ///< m of air about the outline: noise of the laser and lag of the follower
+
+/// Returns the ends of all rays that hit, in the frame in which `sensor` is given.
+std::vector<Point> points_of(const Scan& scan, const PlanarPose& sensor);
+
+struct Agreement {
+  int rays = 0;           ///< those that hit
+  int explained = 0;      ///< end at a wall of the map
+  int contradicting = 0;  ///< passed a wall of the map
+};
+
+class Costmap {
+ public:
+  Costmap(Grid map, Footprint footprint, bool unknown_is_free);
+
+  /// Takes one scan whose sensor was at `sensor` in the map; `now` in s of any clock that does not turn back.
+  Agreement insert(const Scan& scan, const PlanarPose& sensor, double now);
+
+  /// Brings the distances up to date, which `free` and `distance` use. Takes about 20 ns a cell.
+  void update(double now);
+
+  bool occupied(Cell cell) const noexcept { return distance_[grid_.index(cell)] == 0; }
+  bool unknown(Cell cell) const noexcept { return unknown_[grid_.index(cell)]; }
+
+  /// Returns the distance of the cell from the nearest occupied one, m; 0 outside the map.
+  double distance(Cell cell) const noexcept { return grid_.contains(cell) ? distance_[grid_.index(cell)] : 0; }
+
+  /// Returns whether the outline, grown by kPadding, holds no occupied cell and lies within the map.
+  bool free(const PlanarPose& pose) const noexcept;
+
+  const Grid& grid() const noexcept { return grid_; }
+  const Footprint& footprint() const noexcept { return footprint_; }
+
+  /// Forgets what rays have marked and seen.
+  void clear();
+
+ private:
+  static constexpr int kHeadings = 64;  ///< of the covered cells; half a step moves the far corner of 0.5 m by 2.5 cm
+
+  Grid grid_;
+  Footprint footprint_;
+  std::vector<std::vector<Cell>> covered_;  ///< per heading, relative to the cell of the base
+  std::vector<float> wall_distance_;        ///< m, to the map's own walls
+  std::vector<bool> unknown_;
+  bool unknown_is_free_;
+  std::vector<float> marked_;    ///< s, when a ray ended here; −∞: never, or passed since
+  std::vector<float> distance_;  ///< m
+};
+
+/// Returns the distance of each cell from the nearest one that is set, in m; ∞ without any (P. Felzenszwalb, D.
+/// Huttenlocher, Distance transforms of sampled functions, Theory of Computing 8, 2012).
+std::vector<float> distances(const std::vector<bool>& occupied, int columns, int rows, double resolution);
+
+}  // namespace robot_control

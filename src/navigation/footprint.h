@@ -1,0 +1,32 @@
+#pragma once
+/// The outline of a robot in the plane: the convex hull of all its shapes, seen from above, with every joint at zero.
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace robot_control {
+
+struct Point {
+  double x = 0, y = 0;  ///< m
+};
+
+struct Footprint {
+  std::vector<Point> corners;  ///< in base axes, counter-clockwise
+  double inscribed = 0;        ///< m, radius of the largest circle about the base's origin that lies inside
+  double circumscribed = 0;    ///< m, radius of the smallest circle about it that holds the outline
+  double half_width = 0;       ///< m, largest distance of a corner from the x axis
+
+  /// Returns the distance of the point from the outline, m; negative inside. Beside a corner it is less than the true
+  /// one.
+  double distance(Point point) const noexcept;
+};
+
+/// Returns the hull of the points. Throws std::invalid_argument unless the base's origin lies inside.
+Footprint footprint_of(std::vector<Point> points);
+
+/// Reads a URDF. Throws what read_rigid_bodies throws, and std::invalid_argument for a robot without shapes or whose
+/// base lies beside them.
+Footprint footprint_of_urdf(const std::string& urdf, const std::string& source);
+
+}  // namespace robot_control

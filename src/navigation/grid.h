@@ -1,0 +1,62 @@
+#pragma once
+/// An occupancy grid as in nav_msgs/OccupancyGrid, without ROS.
+///
+/// Cell (column, row) begins at x = origin_x + column·resolution and y = origin_y + row·resolution of the frame `map`.
+/// The cells lie row by row, that of the smallest y first. The grid is not turned against its frame.
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace robot_control {
+
+inline constexpr std::int8_t kUnknownCell = -1;
+inline constexpr std::int8_t kFreeCell = 0;
+inline constexpr std::int8_t kOccupiedCell = 100;
+
+/// 250 m × 250 m at 5 cm. A costmap of that size takes 0.4 GB.
+inline constexpr std::size_t kMaxCells = 25'000'000;
+
+/// m; farther coordinates are an error, so that a cell's number stays an int.
+inline constexpr double kFarthest = 1e6;
+
+struct Cell {
+  int column = 0, row = 0;
+  bool operator==(Cell other) const noexcept { return column == other.column && row == other.row; }
+};
+
+struct Grid {
+  int columns = 0, rows = 0;
+  double resolution = 0.05;           ///< m
+  double origin_x = 0, origin_y = 0;  ///< m, corner of cell (0, 0)
+  std::vector<std::int8_t> cells;     ///< kUnknownCell, or 0 … 100 % occupied
+
+  bool contains(Cell cell) const noexcept {
+    return cell.column >= 0 && cell.row >= 0 && cell.column < columns && cell.row < rows;
+  }
+  std::size_t index(Cell cell) const noexcept {
+    return static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(columns) +
+           static_cast<std::size_t>(cell.column);
+  }
+  /// The place must be within ±kFarthest.
+  Cell cell_at(double x, double y) const noexcept {
+    return {static_cast<int>(std::floor((x - origin_x) / resolution)),
+            static_cast<int>(std::floor((y - origin_y) / resolution))};
+  }
+  double x_of(int column) const noexcept { return origin_x + (column + 0.5) * resolution; }  ///< m, of its middle
+  double y_of(int row) const noexcept { return origin_y + (row + 0.5) * resolution; }        ///< m, of its middle
+};
+
+/// The pose of a robot or sensor in a plane.
+struct PlanarPose {
+  double x = 0, y = 0, yaw = 0;  ///< m, m, rad
+};
+
+/// Returns `inner`, given in the frame of `outer`, in the frame in which `outer` is given.
+inline PlanarPose composed(const PlanarPose& outer, const PlanarPose& inner) noexcept {
+  const double c = std::cos(outer.yaw), s = std::sin(outer.yaw);
+  return {outer.x + c * inner.x - s * inner.y, outer.y + s * inner.x + c * inner.y, outer.yaw + inner.yaw};
+}
+
+}  // namespace robot_control

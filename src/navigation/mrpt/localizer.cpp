@@ -1,0 +1,261 @@
+#include "navigation/mrpt/localizer.h"
+
+#include <mrpt/bayes/CParticleFilter.h>
+#include <mrpt/obs/CActionCollection.h>
+#include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/poses/CPosePDFGaussian.h>
+#include <mrpt/random/RandomGenerators.h>
+#include <mrpt/slam/CMonteCarloLocalization2D.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "navigation/mrpt/mrpt_grid.h"
+#include "navigation/mrpt/mrpt_scan.h"
+
+namespace robot_control {
+namespace {
+
+using mrpt::poses::CPose2D;
+
+constexpr unsigned kMinParticles = 300, kMaxParticles = 20000;
+constexpr std::size_t kGlobalParticles = 20000;
+constexpr double kFreeFrom = 0.7;     // probability from which a cell is free for a global start
+constexpr double kAtWall = 0.1;       // m: a point that near to a wall is explained by the map
+constexpr double kFits = 0.75;        // part of the points that must be explained; a fifth of them may be moved
+constexpr double kSmoothing = 0.05;   // of each new part of explained points, per scan: 2 s at 10 Hz
+constexpr double kSmallSpread = 0.3;  // m, below which a search has found the place
+constexpr int kProof = 60;            // scans within which a place that a search found must fit, else it goes on
+constexpr double kLargeSpread = 1.0;  // m, above which the place is lost
+// m, rad, between two updates: wheels that slip do more than the odometry knows.
+constexpr double kMinStep = 0.02, kMinTurn = 0.02;
+constexpr double kMapDeviation = 0.02;       // m: a wall lies anywhere in its cell, and the map has errors of its own
+constexpr double kHeadingDeviation = 0.005;  // rad, likewise
+
+/// Returns the positive part of a symmetric matrix, with each variance at least that of `least`.
+Eigen::Matrix3d at_least(const Eigen::Matrix3d& matrix, const Eigen::Vector3d& least) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts((matrix + matrix.transpose()) / 2);
+  Eigen::Matrix3d result =
+      parts.eigenvectors() * parts.eigenvalues().cwiseMax(0).asDiagonal() * parts.eigenvectors().transpose();
+  result.diagonal() += least.cwiseProduct(least);
+  return result;
+}
+
+/// Returns the covariance of the motion between two poses of the odometry, in the axes of the first one.
+Eigen::Matrix3d growth(const UncertainPose& from, const UncertainPose& to) {
+  Eigen::Matrix3d f = Eigen::Matrix3d::Identity(), r = Eigen::Matrix3d::Identity();
+  f(0, 2) = -(to.mean.y - from.mean.y);
+  f(1, 2) = to.mean.x - from.mean.x;
+  const double c = std::cos(from.mean.yaw), s = std::sin(from.mean.yaw);
+  r.topLeftCorner<2, 2>() << c, -s, s, c;
+  return r.transpose() * (to.covariance - f * from.covariance * f.transpose()) * r;
+}
+
+mrpt::math::CMatrixDouble33 mrpt_matrix(const Eigen::Matrix3d& matrix) {
+  mrpt::math::CMatrixDouble33 result;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) result(row, column) = matrix(row, column);
+  return result;
+}
+
+mrpt::bayes::CParticleFilter filter() {
+  mrpt::bayes::CParticleFilter result;
+  result.m_options.PF_algorithm = mrpt::bayes::CParticleFilter::pfStandardProposal;
+  result.m_options.adaptiveSampleSize = true;
+  return result;
+}
+
+/// Returns the map with the likelihood of a range whose deviation is `deviation` m.
+std::shared_ptr<mrpt::maps::COccupancyGridMap2D> likelihood_field(const Grid& grid, float deviation) {
+  auto map = std::make_shared<mrpt::maps::COccupancyGridMap2D>(mrpt_grid(grid));
+  map->likelihoodOptions.likelihoodMethod = mrpt::maps::COccupancyGridMap2D::lmLikelihoodField_Thrun;
+  map->likelihoodOptions.LF_decimation = 10;
+  map->likelihoodOptions.LF_stdHit = deviation;
+  map->likelihoodOptions.LF_maxRange = 30;
+  return map;
+}
+
+}  // namespace
+
+const char* name_of(Localization state) noexcept {
+  constexpr const char* kNames[] = {"no pose", "searching", "localized", "lost"};
+  return kNames[static_cast<int>(state)];
+}
+
+struct Localizer::Parts {
+  std::shared_ptr<mrpt::maps::COccupancyGridMap2D> map, wide;  // with a likelihood for tracking, and for a search
+  mrpt::maps::CSimplePointsMap walls;
+  mrpt::slam::CMonteCarloLocalization2D particles{1};
+  mrpt::bayes::CParticleFilter pf = filter();
+  Localization state = Localization::kNoPose;
+  UncertainPose updated;  // the odometry at the last update
+  PlanarPose odometry;    // at the last scan
+  UncertainPose pose;     // of the particles, at the last update
+  bool first = true;      // the next scan updates
+  double explained = 0;   // smoothed
+  double last_explained = 0;
+  double spread = 0;  // m
+  int settled = 0;    // scans since the particles of a search came together
+
+  void measure_spread() {
+    const auto [covariance, mean] = particles.getCovarianceAndMean();
+    pose.mean = planar(CPose2D(mean));
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 3; ++column) pose.covariance(row, column) = covariance(row, column);
+    spread = std::sqrt(pose.covariance(0, 0) + pose.covariance(1, 1));
+  }
+
+  void begin(Localization next) {
+    state = next;
+    first = true;
+    explained = next == Localization::kSearching ? 0 : 1;  // a search has to prove its place
+    settled = 0;
+    measure_spread();
+  }
+
+  /// Returns the part of the points that lie at a wall of the map, seen from `laser`.
+  double explained_from(const Scan& scan, const PlanarPose& laser) const {
+    int hits = 0, near = 0;
+    for (std::size_t ray = 0; ray < scan.ranges.size(); ++ray) {
+      if (!scan.hit(scan.ranges[ray])) continue;
+      const double angle = laser.yaw + scan.angle(ray);
+      const double x = laser.x + scan.ranges[ray] * std::cos(angle), y = laser.y + scan.ranges[ray] * std::sin(angle);
+      ++hits;
+      near +=
+          walls.squareDistanceToClosestCorrespondence(static_cast<float>(x), static_cast<float>(y)) < kAtWall * kAtWall;
+    }
+    return hits == 0 ? 0 : static_cast<double>(near) / hits;
+  }
+
+  void update_state() {
+    const bool fits = explained > kFits;
+    if (state == Localization::kSearching) {
+      settled = spread < kSmallSpread ? settled + 1 : 0;
+      if (settled > 0 && fits) state = Localization::kLocalized;
+      if (settled > kProof) search();
+    } else if (state == Localization::kLocalized && (spread > kLargeSpread || !fits)) {
+      state = Localization::kLost;
+    } else if (state == Localization::kLost && spread < kSmallSpread && fits) {
+      state = Localization::kLocalized;
+    }
+  }
+
+  void search() {
+    particles.resetUniformFreeSpace(map.get(), kFreeFrom, kGlobalParticles);
+    begin(Localization::kSearching);
+  }
+
+  void filter_step(const mrpt::obs::CObservation2DRangeScan& scan, const UncertainPose& to) {
+    const CPose2D step = mrpt_pose(to.mean) - mrpt_pose(updated.mean);
+    const Eigen::Matrix3d noise = at_least(growth(updated, to), {kMinStep, kMinStep, kMinTurn});
+    mrpt::obs::CActionRobotMovement2D motion;
+    motion.rawOdometryIncrementReading = step;
+    motion.poseChange = mrpt::poses::CPosePDFGaussian::Create(step, mrpt_matrix(noise));
+    mrpt::obs::CActionCollection actions;
+    actions.insert(motion);
+    mrpt::obs::CSensoryFrame frame;
+    frame.insert(std::make_shared<mrpt::obs::CObservation2DRangeScan>(scan));
+    const bool searching = state == Localization::kSearching;
+    particles.options.metricMap = searching ? wide : map;
+    particles.options.KLD_params.KLD_minSampleSize = searching ? kGlobalParticles : kMinParticles;
+    pf.executeOn(particles, &actions, &frame);
+    updated = to;
+    measure_spread();
+  }
+};
+
+Localizer::Localizer(const Grid& map, std::uint32_t seed) : parts_(std::make_unique<Parts>()) {
+  Parts& parts = *parts_;
+  parts.map = likelihood_field(map, 0.1f);
+  parts.wide = likelihood_field(map, 0.2f);  // few of the particles of a search are near the place
+  parts.walls = wall_points(map);
+  if (parts.walls.empty()) throw std::invalid_argument("the map has no occupied cell, so that no scan fits it");
+  if (std::ranges::count(map.cells, kFreeCell) == 0)
+    throw std::invalid_argument("the map has no free cell, in which the robot could be");
+  parts.particles.options.KLD_params.KLD_maxSampleSize = kMaxParticles;
+  mrpt::random::getRandomGenerator().randomize(seed);
+}
+Localizer::~Localizer() = default;
+Localizer::Localizer(Localizer&&) noexcept = default;
+Localizer& Localizer::operator=(Localizer&&) noexcept = default;
+
+void Localizer::set_pose(const UncertainPose& pose) {
+  std::vector<mrpt::math::CVectorDouble> drawn;
+  const Eigen::Matrix3d covariance = at_least(pose.covariance, {kMinStep, kMinStep, kMinTurn});
+  mrpt::poses::CPosePDFGaussian(mrpt_pose(pose.mean), mrpt_matrix(covariance)).drawManySamples(2000, drawn);
+  parts_->particles.resetDeterministic({}, drawn.size());
+  for (std::size_t i = 0; i < drawn.size(); ++i)
+    parts_->particles.m_particles[i].d = {drawn[i][0], drawn[i][1], drawn[i][2]};
+  parts_->begin(Localization::kLocalized);
+}
+
+void Localizer::search() {
+  parts_->search();
+}
+
+bool Localizer::update(const Scan& scan, const PlanarPose& sensor, const UncertainPose& odometry) {
+  Parts& parts = *parts_;
+  if (parts.state == Localization::kNoPose) return false;
+  if (parts.first) parts.updated = odometry;
+  parts.odometry = odometry.mean;
+  const CPose2D step = mrpt_pose(odometry.mean) - mrpt_pose(parts.updated.mean);
+  const bool moved = step.norm() > kUpdateDistance || std::abs(step.phi()) > kUpdateTurn;
+  if (parts.first || moved) parts.filter_step(mrpt_scan(scan, sensor), odometry);
+  parts.last_explained = parts.explained_from(scan, composed(pose().mean, sensor));
+  parts.explained += kSmoothing * (parts.last_explained - parts.explained);
+  const bool updated = parts.first || moved;
+  parts.first = false;
+  parts.update_state();
+  return updated;
+}
+
+Localization Localizer::state() const noexcept {
+  return parts_->state;
+}
+
+std::string Localizer::reason() const {
+  const auto cm = [](double m) { return std::to_string(std::lround(100 * m)) + " cm"; };
+  switch (parts_->state) {
+    case Localization::kLocalized:
+      return "";
+    case Localization::kNoPose:
+      return "no pose was given: set one (initialpose) or search (global_localization)";
+    case Localization::kSearching:
+      return "it searches in the whole map: the poses that fit differ by " + cm(parts_->spread) + "; drive on";
+    case Localization::kLost:
+      break;
+  }
+  if (parts_->spread > kSmallSpread)
+    return "the place is lost: the poses that fit differ by " + cm(parts_->spread) + "; set one or search again";
+  return "the place is lost: " + std::to_string(std::lround(100 * parts_->explained)) +
+         " % of what the laser sees is in the map there, less than " + std::to_string(std::lround(100 * kFits)) +
+         " %; set the pose or search again";
+}
+
+UncertainPose Localizer::pose() const {
+  const CPose2D step = mrpt_pose(parts_->odometry) - mrpt_pose(parts_->updated.mean);
+  UncertainPose result{planar(mrpt_pose(parts_->pose.mean) + step), parts_->pose.covariance};
+  const Eigen::Vector3d map(kMapDeviation, kMapDeviation, kHeadingDeviation);
+  result.covariance.diagonal() += map.cwiseProduct(map);
+  return result;
+}
+
+PlanarPose Localizer::correction() const {
+  return planar(mrpt_pose(pose().mean) + -mrpt_pose(parts_->odometry));
+}
+
+double Localizer::explained() const noexcept {
+  return parts_->last_explained;
+}
+
+std::vector<PlanarPose> Localizer::particles() const {
+  std::vector<PlanarPose> result;
+  for (const auto& particle : parts_->particles.m_particles)
+    result.push_back({particle.d.x, particle.d.y, particle.d.phi});
+  return result;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,56 @@
+#include "navigation/mrpt/mrpt_grid.h"
+
+#include <cmath>
+
+namespace robot_control {
+namespace {
+
+constexpr std::int8_t kOccupiedFrom = 65;  // %, as in map_server's files
+
+}  // namespace
+
+mrpt::maps::COccupancyGridMap2D mrpt_grid(const Grid& grid) {
+  const auto width = static_cast<float>(grid.columns * grid.resolution);
+  const auto height = static_cast<float>(grid.rows * grid.resolution);
+  const auto x = static_cast<float>(grid.origin_x), y = static_cast<float>(grid.origin_y);
+  mrpt::maps::COccupancyGridMap2D map(x, x + width, y, y + height, static_cast<float>(grid.resolution));
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const std::int8_t cell = grid.cells[grid.index({column, row})];
+      if (cell == kUnknownCell) continue;
+      const int at = map.x2idx(static_cast<float>(grid.x_of(column)));
+      map.setCell(at, map.y2idx(static_cast<float>(grid.y_of(row))), 1 - static_cast<float>(cell) / 100);
+    }
+  }
+  return map;
+}
+
+Grid grid_of(const mrpt::maps::COccupancyGridMap2D& map) {
+  Grid grid{.columns = static_cast<int>(map.getSizeX()),
+            .rows = static_cast<int>(map.getSizeY()),
+            .resolution = map.getResolution(),
+            .origin_x = map.getXMin(),
+            .origin_y = map.getYMin(),
+            .cells = {}};
+  const float untouched = mrpt::maps::COccupancyGridMap2D::l2p(0);
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const float free = map.getCell(column, row);
+      grid.cells.push_back(free == untouched ? kUnknownCell : static_cast<std::int8_t>(std::lround(100 * (1 - free))));
+    }
+  }
+  return grid;
+}
+
+mrpt::maps::CSimplePointsMap wall_points(const Grid& grid) {
+  mrpt::maps::CSimplePointsMap points;
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      if (grid.cells[grid.index({column, row})] >= kOccupiedFrom)
+        points.insertPoint(static_cast<float>(grid.x_of(column)), static_cast<float>(grid.y_of(row)));
+    }
+  }
+  return points;
+}
+
+}  // namespace robot_control

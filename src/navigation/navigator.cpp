@@ -1,0 +1,142 @@
+#include "navigation/navigator.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace robot_control {
+namespace {
+
+/// s between two updates of the distances: 20 ns a cell are 5 % of one processor at most.
+double update_period(const Costmap& costmap) {
+  return std::max(0.2, 4e-7 * static_cast<double>(costmap.grid().cells.size()));
+}
+
+std::string for_seconds(const std::string& reason, double seconds) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), " (for %.0f s)", seconds);
+  return reason + text.data();
+}
+
+}  // namespace
+
+const char* name_of(NavigatorState state) {
+  constexpr std::array kNames = {"idle", "planning", "driving", "waiting", "reached", "failed"};
+  return kNames[static_cast<std::size_t>(state)];
+}
+
+void Navigator::begin(const PlanarPose& goal, double now) {
+  *this = Navigator();
+  state_ = NavigatorState::kPlanning;
+  goal_ = goal;
+  progress_at_ = now;
+}
+
+void Navigator::wait(const std::string& reason, NavigatorOutput& out) {
+  out.cancel = state_ == NavigatorState::kDriving;
+  if (driven_) state_ = NavigatorState::kWaiting;
+  reason_ = reason;
+}
+
+void Navigator::fail(const std::string& reason, NavigatorOutput& out) {
+  out.cancel = state_ == NavigatorState::kDriving;
+  state_ = NavigatorState::kFailed;
+  reason_ = reason;
+}
+
+NavigatorOutput Navigator::step(const NavigatorInput& input, Costmap* costmap) {
+  NavigatorOutput out;
+  if (active()) {
+    if (!input.problem.empty()) {
+      wait(input.problem, out);
+    } else if (state_ == NavigatorState::kDriving) {
+      drive(input, *costmap, out);
+    } else if (input.now - planned_at_ >= kReplan) {
+      plan(input, *costmap, out);
+    }
+    const double patience = driven_ ? kPatience : kStartPatience, waited = input.now - progress_at_;
+    if (active() && waited > patience)
+      fail(for_seconds(reason_.empty() ? "the robot does not move" : reason_, waited), out);
+  }
+  out.state = state_;
+  if (state_ != NavigatorState::kReached) out.reason = reason_;
+  if (state_ == NavigatorState::kDriving) out.remaining = remaining(input.pose);
+  return out;
+}
+
+void Navigator::plan(const NavigatorInput& input, Costmap& costmap, NavigatorOutput& out) {
+  planned_at_ = input.now;
+  costmap.update(input.now);
+  Plan found = plan_path(costmap, input.pose, goal_);
+  if (!found.problem.empty()) {
+    const std::string blocked = found.problem;
+    if (state_ == NavigatorState::kDriving) {  // the present path may still be free for a while
+      reason_ = blocked;
+      return;
+    }
+    if (!driven_) {
+      costmap.update(std::numeric_limits<double>::infinity());  // the map alone
+      found = plan_path(costmap, input.pose, goal_);
+      costmap.update(input.now);
+      if (!found.problem.empty()) return fail(found.problem, out);
+      driven_ = true;  // a way will be there when what blocks it has gone
+    }
+    return wait(blocked, out);
+  }
+  if (state_ != NavigatorState::kDriving) progress_at_ = input.now;
+  state_ = NavigatorState::kDriving;
+  driven_ = true;
+  passed_ = 0;
+  path_ = found;
+  least_remaining_ = found.length;
+  reason_.clear();
+  out.path = std::move(found);
+}
+
+void Navigator::drive(const NavigatorInput& input, Costmap& costmap, NavigatorOutput& out) {
+  if (input.path.state == PathReport::State::kDone) {
+    state_ = NavigatorState::kReached;
+    return;
+  }
+  if (input.path.state == PathReport::State::kFailed) {
+    if (++attempts_ > kAttempts) return fail(input.path.reason, out);
+    state_ = NavigatorState::kWaiting;
+    reason_ = input.path.reason;
+    return;
+  }
+  if (input.now - updated_at_ >= update_period(costmap)) {
+    updated_at_ = input.now;
+    costmap.update(input.now);
+  }
+  const double free = free_distance(costmap, path_.poses, input.pose, passed_);
+  note_progress(input);
+  const bool blocked = free < kWatched;
+  if (blocked && input.now - planned_at_ >= kReplan) plan(input, costmap, out);
+  if (blocked && !out.path && free < kStopBefore) wait(reason_.empty() ? "the way is blocked" : reason_, out);
+  if (!blocked) reason_ = input.now - progress_at_ > kReplan ? input.held : "";
+}
+
+void Navigator::note_progress(const NavigatorInput& input) {
+  const double left = remaining(input.pose);
+  if (left < least_remaining_ - kProgress) {
+    least_remaining_ = left;
+    attempts_ = 0;
+    progress_at_ = input.now;
+  }
+}
+
+double Navigator::remaining(const PlanarPose& pose) const {
+  double left = 0;
+  if (passed_ < path_.poses.size()) {
+    const std::size_t next = std::min(passed_ + 1, path_.poses.size() - 1);
+    left = std::hypot(path_.poses[next].x - pose.x, path_.poses[next].y - pose.y);
+    for (std::size_t i = next + 1; i < path_.poses.size(); ++i) {
+      left += std::hypot(path_.poses[i].x - path_.poses[i - 1].x, path_.poses[i].y - path_.poses[i - 1].y);
+    }
+  }
+  return left;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,94 @@
+#pragma once
+/// Brings a robot to a goal: plans, watches the path, plans again, waits and gives up. It reads no clock and knows no
+/// ROS; follow_path drives what it plans.
+///
+///   planning   the first plan of a goal; a goal that the map alone does not allow is refused at once
+///   driving    follow_path has a path. A path that is blocked within kLookout is replaced, at most once per kReplan.
+///              Where there is no other way, the robot drives on until kStopBefore before the obstacle
+///   waiting    nothing is driven: the way is blocked, or the laser, the map or the place is not to be trusted. After
+///              kPatience the goal is given up, before the first path after kStartPatience
+///
+/// A path that follow_path gave up is planned again, kAttempts times without kProgress in between. follow_path
+/// refuses what a stop of the robot has revoked.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "navigation/planner.h"
+
+namespace robot_control {
+
+inline constexpr double kPatience = 20;      ///< s
+inline constexpr double kStartPatience = 2;  ///< s, in which a map, a scan and tf arrive after a start
+inline constexpr double kReplan = 1;         ///< s
+inline constexpr double kWatched = 4;        ///< m ahead of the robot; farther obstacles may have gone until then
+inline constexpr double kStopBefore = 0.6;   ///< m
+inline constexpr double kProgress = 0.3;     ///< m
+inline constexpr int kAttempts = 3;
+
+/// The end of the last path that was sent to follow_path.
+struct PathReport {
+  enum class State { kNone, kActive, kDone, kFailed };
+  State state = State::kNone;
+  std::string reason;  ///< of a failure
+};
+
+struct NavigatorInput {
+  double now = 0;       ///< s of a clock that does not turn back
+  std::string problem;  ///< why map, scan or place cannot be trusted now; then `pose` may be old
+  std::string held;     ///< what slows the robot, if something does: why it may not come nearer
+  PlanarPose pose;      ///< of the base in the map
+  PathReport path;
+};
+
+enum class NavigatorState { kIdle, kPlanning, kDriving, kWaiting, kReached, kFailed };
+
+/// Returns "idle", "planning", "driving", "waiting", "reached" or "failed".
+const char* name_of(NavigatorState state);
+
+struct NavigatorOutput {
+  NavigatorState state = NavigatorState::kIdle;
+  std::string reason;        ///< why it waits, failed or does not come nearer
+  double remaining = 0;      ///< m of the path
+  std::optional<Plan> path;  ///< to be sent to follow_path in place of what it drives
+  bool cancel = false;       ///< follow_path is to stop
+};
+
+class Navigator {
+ public:
+  /// Begins a goal, in place of the one before.
+  void begin(const PlanarPose& goal, double now);
+
+  /// Ends the goal.
+  void end() { state_ = NavigatorState::kIdle; }
+
+  /// `costmap` is null without a map, and then `input.problem` says so.
+  NavigatorOutput step(const NavigatorInput& input, Costmap* costmap);
+
+  bool active() const noexcept {
+    return state_ == NavigatorState::kPlanning || state_ == NavigatorState::kDriving ||
+           state_ == NavigatorState::kWaiting;
+  }
+
+ private:
+  void wait(const std::string& reason, NavigatorOutput& out);
+  void fail(const std::string& reason, NavigatorOutput& out);
+  void plan(const NavigatorInput& input, Costmap& costmap, NavigatorOutput& out);
+  void drive(const NavigatorInput& input, Costmap& costmap, NavigatorOutput& out);
+  void note_progress(const NavigatorInput& input);
+  double remaining(const PlanarPose& pose) const;
+
+  NavigatorState state_ = NavigatorState::kIdle;
+  PlanarPose goal_;
+  Plan path_;
+  std::size_t passed_ = 0;                        // poses of path_
+  bool driven_ = false;                           // a path of this goal was sent
+  double progress_at_ = 0;                        // s, when the robot last came nearer or a path was sent
+  double least_remaining_ = 0;                    // m
+  double planned_at_ = -1e9, updated_at_ = -1e9;  // s
+  int attempts_ = 0;
+  std::string reason_;
+};
+
+}  // namespace robot_control

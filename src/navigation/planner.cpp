@@ -1,0 +1,298 @@
+#include "navigation/planner.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <optional>
+#include <queue>
+#include <unordered_map>
+#include <utility>
+
+#include "navigation/smoothing.h"
+
+namespace robot_control {
+namespace {
+
+constexpr int kSectors = 16;
+constexpr std::array<Cell, kSectors> kSteps = {{{1, 0},
+                                                {2, 1},
+                                                {1, 1},
+                                                {1, 2},
+                                                {0, 1},
+                                                {-1, 2},
+                                                {-1, 1},
+                                                {-2, 1},
+                                                {-1, 0},
+                                                {-2, -1},
+                                                {-1, -1},
+                                                {-1, -2},
+                                                {0, -1},
+                                                {1, -2},
+                                                {1, -1},
+                                                {2, -1}}};
+constexpr float kUnreached = std::numeric_limits<float>::infinity();
+
+double heading_of(int sector) {
+  const Cell step = kSteps[static_cast<std::size_t>(sector)];
+  return std::atan2(step.row, step.column);
+}
+
+std::string place(const Grid& grid, Cell cell) {
+  std::array<char, 64> text;
+  std::snprintf(text.data(), text.size(), "(%.2f, %.2f) m", grid.x_of(cell.column), grid.y_of(cell.row));
+  return text.data();
+}
+
+std::string number(double value) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.2f", value);
+  return text.data();
+}
+
+struct Open {
+  float cost;
+  std::uint64_t state;
+  bool operator<(const Open& other) const { return cost > other.cost; }  // the queue's top is the cheapest
+};
+
+/// Costs from each cell to the goal without headings; kUnreached where there is no way even for the inscribed circle.
+std::vector<float> costs_to(const Costmap& costmap, Cell goal) {
+  const Grid& grid = costmap.grid();
+  std::vector<float> costs(grid.cells.size(), kUnreached);
+  std::priority_queue<Open> open;
+  costs[grid.index(goal)] = 0;
+  open.push({0, grid.index(goal)});
+  while (!open.empty()) {
+    const Open top = open.top();
+    open.pop();
+    if (top.cost > costs[top.state]) continue;
+    const Cell cell{static_cast<int>(top.state % static_cast<std::uint64_t>(grid.columns)),
+                    static_cast<int>(top.state / static_cast<std::uint64_t>(grid.columns))};
+    for (const Cell step : kSteps) {
+      const Cell next{cell.column + step.column, cell.row + step.row};
+      if (!grid.contains(next) || costmap.distance(next) < costmap.footprint().inscribed) continue;
+      const double length = std::hypot(step.column, step.row) * grid.resolution;
+      const auto cost = static_cast<float>(top.cost + length * step_cost(costmap, next));
+      if (cost >= costs[grid.index(next)]) continue;
+      costs[grid.index(next)] = cost;
+      open.push({cost, grid.index(next)});
+    }
+  }
+  return costs;
+}
+
+/// The search over cells and headings.
+class Search {
+ public:
+  Search(const Costmap& costmap, const PlanarPose& start, const PlanarPose& goal)
+      : costmap_(costmap),
+        grid_(costmap.grid()),
+        goal_(goal),
+        goal_cell_(grid_.cell_at(goal.x, goal.y)),
+        to_goal_(costs_to(costmap, goal_cell_)),
+        start_air_(costmap.distance(grid_.cell_at(start.x, start.y))) {
+    // The turn from the start's own heading to that of a sector may be free where the nearest sector is not.
+    const Cell cell = grid_.cell_at(start.x, start.y);
+    for (int i = 0; i < kSectors; ++i) {
+      const double turn = std::abs(std::remainder(heading_of(i) - start.yaw, 2 * M_PI));
+      const bool possible = turn_is_free(costmap, {start.x, start.y}, start.yaw, heading_of(i));
+      if (possible || i == sector(start.yaw)) reach(state(cell, i), turn / (2 * M_PI) * kSectors * kSectorCost, kStart);
+    }
+  }
+
+  /// Returns the states from start to goal; empty if there is no way.
+  std::vector<PlanarPose> run() {
+    while (!open_.empty()) {
+      const std::uint64_t at = open_.top().state;
+      open_.pop();
+      Node& node = nodes_[at];
+      if (node.closed) continue;
+      node.closed = true;
+      const double yaw = heading_of(static_cast<int>(at % kSectors));
+      if (cell_of(at) == goal_cell_ && turn_is_free(costmap_, {goal_.x, goal_.y}, yaw, goal_.yaw)) return way(at);
+      expand(at, node.cost);
+    }
+    return {};
+  }
+
+ private:
+  static constexpr std::uint64_t kStart = std::numeric_limits<std::uint64_t>::max();
+
+  struct Node {
+    float cost = kUnreached;
+    bool closed = false;
+    std::uint64_t from = 0;
+  };
+
+  static int sector(double yaw) {
+    int best = 0;
+    for (int i = 1; i < kSectors; ++i) {
+      if (std::cos(heading_of(i) - yaw) > std::cos(heading_of(best) - yaw)) best = i;
+    }
+    return best;
+  }
+  std::uint64_t state(Cell cell, int sector) const {
+    return grid_.index(cell) * kSectors + static_cast<std::uint64_t>(sector);
+  }
+  Cell cell_of(std::uint64_t state) const {
+    const auto columns = static_cast<std::uint64_t>(grid_.columns);
+    return {static_cast<int>(state / kSectors % columns), static_cast<int>(state / kSectors / columns)};
+  }
+  PlanarPose pose_of(std::uint64_t state) const {
+    const Cell cell = cell_of(state);
+    return {grid_.x_of(cell.column), grid_.y_of(cell.row), heading_of(static_cast<int>(state % kSectors))};
+  }
+
+  void reach(std::uint64_t state, double cost, std::uint64_t from) {
+    Node& node = nodes_[state];
+    if (node.closed || cost >= node.cost) return;
+    node.cost = static_cast<float>(cost);
+    node.from = from;
+    open_.push({static_cast<float>(cost) + to_goal_[state / kSectors], state});
+  }
+
+  bool allowed(std::uint64_t next, std::uint64_t at) const {
+    if (costmap_.free(pose_of(next))) return true;
+    // Out of a start that is not free: away from what is near.
+    const double air = costmap_.distance(cell_of(next));
+    return !costmap_.free(pose_of(at)) && air >= costmap_.distance(cell_of(at)) && air > 0 && air <= start_air_ + 0.3;
+  }
+
+  void expand(std::uint64_t at, double cost) {
+    const Cell cell = cell_of(at);
+    const int heading = static_cast<int>(at % kSectors);
+    for (const int turn : {1, kSectors - 1}) {
+      const std::uint64_t next = state(cell, (heading + turn) % kSectors);
+      if (allowed(next, at)) reach(next, cost + kSectorCost, at);
+    }
+    const Cell step = kSteps[static_cast<std::size_t>(heading)];
+    const double length = std::hypot(step.column, step.row) * grid_.resolution;
+    for (const int sign : {1, -1}) {
+      const Cell to{cell.column + sign * step.column, cell.row + sign * step.row};
+      if (!grid_.contains(to) || to_goal_[grid_.index(to)] == kUnreached) continue;
+      if (sign < 0 && costmap_.unknown(to)) continue;  // backwards only over what was seen
+      const std::uint64_t next = state(to, heading);
+      if (allowed(next, at)) reach(next, cost + length * step_cost(costmap_, to) * (sign < 0 ? kBackFactor : 1), at);
+    }
+  }
+
+  std::vector<PlanarPose> way(std::uint64_t end) {
+    std::vector<PlanarPose> poses;
+    for (std::uint64_t at = end; at != kStart; at = nodes_[at].from) poses.push_back(pose_of(at));
+    std::reverse(poses.begin(), poses.end());
+    return poses;
+  }
+
+  const Costmap& costmap_;
+  const Grid& grid_;
+  PlanarPose goal_;
+  Cell goal_cell_;
+  std::vector<float> to_goal_;
+  double start_air_;
+  std::unordered_map<std::uint64_t, Node> nodes_;
+  std::priority_queue<Open> open_;
+};
+
+/// Returns the widest way's narrowest cell and its distance from obstacles, for a point; nothing if there is no way.
+std::optional<std::pair<Cell, double>> narrowest(const Costmap& costmap, Cell start, Cell goal) {
+  const Grid& grid = costmap.grid();
+  std::vector<float> width(grid.cells.size(), 0);  // of the widest way to the cell
+  std::vector<std::size_t> at_cell(grid.cells.size());
+  std::priority_queue<std::pair<float, std::size_t>> open;
+  const auto reach = [&](Cell cell, float before, std::size_t narrow) {
+    const std::size_t index = grid.index(cell);
+    const auto own = static_cast<float>(costmap.distance(cell));
+    const float wide = std::min(before, own);
+    if (wide <= width[index]) return;
+    width[index] = wide;
+    at_cell[index] = own < before ? index : narrow;
+    open.emplace(wide, index);
+  };
+  reach(start, kUnreached, grid.index(start));
+  const auto columns = static_cast<std::size_t>(grid.columns);
+  while (!open.empty()) {
+    const auto [wide, index] = open.top();
+    open.pop();
+    if (wide < width[index]) continue;
+    const Cell cell{static_cast<int>(index % columns), static_cast<int>(index / columns)};
+    if (cell == goal) {
+      const std::size_t narrow = at_cell[index];
+      return std::pair{Cell{static_cast<int>(narrow % columns), static_cast<int>(narrow / columns)}, double{wide}};
+    }
+    for (const Cell step : {Cell{1, 0}, Cell{0, 1}, Cell{-1, 0}, Cell{0, -1}}) {
+      const Cell next{cell.column + step.column, cell.row + step.row};
+      if (grid.contains(next)) reach(next, wide, at_cell[index]);
+    }
+  }
+  return std::nullopt;
+}
+
+std::string no_way(const Costmap& costmap, Cell start, Cell goal) {
+  const auto narrow = narrowest(costmap, start, goal);
+  if (!narrow) return "there is no way to the goal: obstacles or unknown space lie all around it or the robot";
+  const double needed = 2 * (costmap.footprint().half_width + kPadding), wide = 2 * narrow->second;
+  const std::string where = "the narrowest place of the widest way, at " + place(costmap.grid(), narrow->first) +
+                            ", is " + number(wide) + " m wide";
+  if (wide < needed) return "there is no way for this outline: " + where + ", and it needs " + number(needed) + " m";
+  return "there is no way for this outline: it cannot turn where it would have to; " + where;
+}
+
+std::string goal_problem(const Costmap& costmap, const PlanarPose& goal) {
+  const Grid& grid = costmap.grid();
+  if (!std::isfinite(goal.x) || !std::isfinite(goal.y) || !std::isfinite(goal.yaw)) {
+    return "the goal holds a number that is not finite";
+  }
+  const bool near = std::abs(goal.x) <= kFarthest && std::abs(goal.y) <= kFarthest;
+  const Cell cell = near ? grid.cell_at(goal.x, goal.y) : Cell{-1, -1};
+  const std::string at = "the goal (" + number(goal.x) + ", " + number(goal.y) + ") m ";
+  if (!grid.contains(cell)) return at + "lies outside the map";
+  if (costmap.occupied(cell)) return at + (costmap.unknown(cell) ? "lies in unknown space" : "lies in an obstacle");
+  if (costmap.free(goal)) return "";
+  return at + "is too near to an obstacle or to unknown space for the outline: " + number(costmap.distance(cell)) +
+         " m from its base";
+}
+
+}  // namespace
+
+Plan plan_path(const Costmap& costmap, const PlanarPose& start, const PlanarPose& goal) {
+  constexpr double kHere = 0.04;  // m; the end of a path is as exact
+  Plan plan;
+  plan.problem = goal_problem(costmap, goal);
+  const Grid& grid = costmap.grid();
+  const Cell from = grid.cell_at(start.x, start.y);
+  if (plan.problem.empty() && !grid.contains(from)) plan.problem = "the robot is outside the map";
+  if (plan.problem.empty() && costmap.occupied(from)) plan.problem = "the robot stands in an obstacle of the map";
+  if (!plan.problem.empty()) return plan;
+  if (std::hypot(goal.x - start.x, goal.y - start.y) < kHere) {  // a path needs two points; the robot turns on the spot
+    constexpr double kTiny = 0.002;                              // m
+    const PlanarPose end{start.x + kTiny * std::cos(start.yaw), start.y + kTiny * std::sin(start.yaw), goal.yaw};
+    if (turn_is_free(costmap, {start.x, start.y}, start.yaw, goal.yaw)) return {{start, end}, kTiny, ""};
+  }
+  const std::vector<PlanarPose> way = Search(costmap, start, goal).run();
+  if (way.empty()) {
+    plan.problem = no_way(costmap, from, grid.cell_at(goal.x, goal.y));
+    return plan;
+  }
+  plan.poses = smoothed(costmap, way, start, goal);
+  plan.length = length_of(plan.poses);
+  return plan;
+}
+
+double free_distance(const Costmap& costmap, const std::vector<PlanarPose>& poses, const PlanarPose& robot,
+                     std::size_t& passed) {
+  const auto away = [&](std::size_t i) { return std::hypot(poses[i].x - robot.x, poses[i].y - robot.y); };
+  constexpr std::size_t kReach = 20;  // poses; a way that crosses itself is not left for its later part
+  for (std::size_t i = passed; i < std::min(poses.size(), passed + kReach); ++i) {
+    if (away(i) < away(passed)) passed = i;
+  }
+  double along = 0;
+  for (std::size_t i = passed + 1; i < poses.size(); ++i) {
+    along += std::hypot(poses[i].x - poses[i - 1].x, poses[i].y - poses[i - 1].y);
+    if (!costmap.free(poses[i])) return along;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+}  // namespace robot_control

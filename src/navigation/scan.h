@@ -1,0 +1,19 @@
+#pragma once
+/// One turn of a laser, as in sensor_msgs/LaserScan, without ROS.
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace robot_control {
+
+struct Scan {
+  double angle_min = 0, angle_increment = 0;  ///< rad; a negative increment is that of a laser on its head
+  double range_min = 0, range_max = 0;        ///< m
+  std::vector<float> ranges;  ///< m; +∞: nothing up to range_max; below range_min and NaN: not measured
+
+  bool hit(float range) const noexcept { return range >= range_min && range <= range_max; }
+  double angle(std::size_t ray) const noexcept { return angle_min + static_cast<double>(ray) * angle_increment; }
+};
+
+}  // namespace robot_control

@@ -1,0 +1,74 @@
+#include "navigation/scan_watch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace robot_control {
+namespace {
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+  std::string result(300, '\0');
+  result.resize(static_cast<std::size_t>(std::max(0, std::snprintf(result.data(), result.size(), format, values...))));
+  return result;
+}
+
+}  // namespace
+
+std::string ScanWatch::structure_problem(const Scan& scan) const {
+  const std::size_t rays = scan.ranges.size();
+  if (rays == 0) return "scan has no rays";
+  if (rays > kMaxRays) return text("scan has %zu rays: at most %zu are taken", rays, kMaxRays);
+  if (!std::isfinite(scan.angle_min) || !std::isfinite(scan.angle_increment) || scan.angle_increment == 0) {
+    return text("scan has angle_min %g and angle_increment %g: both must be finite, the increment not zero",
+                scan.angle_min, scan.angle_increment);
+  }
+  constexpr double kTurn = 2 * M_PI + 0.1;  // rad
+  if (std::abs(scan.angle_increment) * static_cast<double>(rays - 1) > kTurn) {
+    return text("scan covers %.1f rad: one turn at most is taken",
+                std::abs(scan.angle_increment) * static_cast<double>(rays - 1));
+  }
+  if (!(scan.range_min >= 0 && scan.range_min < scan.range_max && std::isfinite(scan.range_max))) {
+    return text("scan has range_min %g m and range_max %g m: 0 <= range_min < range_max must hold", scan.range_min,
+                scan.range_max);
+  }
+  return "";
+}
+
+std::string ScanWatch::receive(const Scan& scan, const std::string& publisher, double stamp, double now, double moved) {
+  const auto refuse = [&](const std::string& why) { return refused_ = why; };
+  if (const std::string why = structure_problem(scan); !why.empty()) return refuse(why);
+  if (publisher != publisher_ && now - received_ < 2 * kSilence) {
+    return refuse("scan has two publishers, " + publisher_ + " and " + publisher + ": stop one of them");
+  }
+  if (publisher == publisher_ && stamp < stamp_) {
+    return refuse(
+        text("the stamps of scan go back by %.3f s: check the clock of the laser's computer", stamp_ - stamp));
+  }
+  blind_ = std::none_of(scan.ranges.begin(), scan.ranges.end(),
+                        [&](float range) { return scan.hit(range) || range > scan.range_max; });
+  const bool nothing =
+      std::none_of(scan.ranges.begin(), scan.ranges.end(), [&](float range) { return scan.hit(range); });
+  if (scan.ranges != ranges_ || nothing) changed_at_ = moved;
+  ranges_ = scan.ranges;
+  publisher_ = publisher, stamp_ = stamp, received_ = now, moved_ = moved;
+  refused_.clear();
+  return "";
+}
+
+std::string ScanWatch::problem(double now) const {
+  if (now - received_ > kSilence) {
+    return refused_.empty() ? text("scan is silent for %.1f s: check the laser and its driver", now - received_)
+                            : refused_;
+  }
+  if (std::abs(now - stamp_) > kSilence) {
+    return text("the stamps of scan are %.1f s %s: synchronise the clocks of laser and robot", std::abs(now - stamp_),
+                now > stamp_ ? "old" : "ahead");
+  }
+  if (blind_) return "scan has no range that was measured: is the laser covered?";
+  if (moved_ - changed_at_ > kMoved) return "scan is frozen: its ranges stay the same while the robot moves";
+  return "";
+}
+
+}  // namespace robot_control

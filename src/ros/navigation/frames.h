@@ -1,0 +1,40 @@
+#pragma once
+/// Poses in a plane from the topics tf and tf_static of the robot's namespace.
+
+#include <ros/ros.h>
+#include <tf2/buffer_core.h>
+#include <tf2_msgs/TFMessage.h>
+
+#include <optional>
+#include <string>
+
+#include "navigation/grid.h"
+
+namespace robot_control {
+
+struct FoundPose {
+  PlanarPose pose;
+  bool upside_down = false;  ///< its z axis points down: angles in it run the other way
+  double stamp = 0;          ///< s; 0: the two frames are fixed to each other
+};
+
+class Frames {
+ public:
+  explicit Frames(ros::NodeHandle& handle);
+
+  /// Returns the pose of `source` in `target` at `time`, zero: the newest; nothing, with the reason in `problem`, where
+  /// tf does not have it.
+  std::optional<FoundPose> lookup(const std::string& target, const std::string& source, ros::Time time,
+                                  std::string& problem) const;
+
+ private:
+  void receive(const tf2_msgs::TFMessage& message, bool fixed);
+
+  tf2::BufferCore buffer_;
+  ros::Subscriber moving_, fixed_;
+};
+
+/// Returns the yaw of a quaternion; nothing unless its length is 1.
+std::optional<double> yaw_of(double x, double y, double z, double w);
+
+}  // namespace robot_control

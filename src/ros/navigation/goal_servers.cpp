@@ -1,0 +1,82 @@
+#include "ros/navigation/goal_servers.h"
+
+#include <cmath>
+
+namespace robot_control {
+
+GoalServers::GoalServers(ros::NodeHandle& handle, std::function<void(const Goal&)> begin, std::function<void()> cancel)
+    : begin_(std::move(begin)), navigate_to_(handle, "navigate_to", false), move_base_(handle, "move_base", false) {
+  navigate_to_.registerGoalCallback([this] { accept_navigate_to(); });
+  move_base_.registerGoalCallback([this] { accept_move_base(); });
+  navigate_to_.registerPreemptCallback(cancel);
+  move_base_.registerPreemptCallback(cancel);
+  navigate_to_.start();
+  move_base_.start();
+  simple_ = handle.advertise<move_base_msgs::MoveBaseActionGoal>("move_base/goal", 1);
+  const boost::function<void(const geometry_msgs::PoseStamped&)> forward =
+      [this](const geometry_msgs::PoseStamped& pose) {
+        move_base_msgs::MoveBaseActionGoal goal;
+        goal.header.stamp = ros::Time::now();
+        goal.goal.target_pose = pose;
+        simple_.publish(goal);
+      };
+  simple_goal_ = handle.subscribe<geometry_msgs::PoseStamped, const geometry_msgs::PoseStamped&>(
+      "move_base_simple/goal", 1, forward);
+}
+
+void GoalServers::accept_navigate_to() {
+  if (!navigate_to_.isNewGoalAvailable()) return;
+  const auto goal = navigate_to_.acceptNewGoal();
+  if (move_base_.isActive()) move_base_.setPreempted({}, "replaced by a newer goal");
+  begin_({goal->target, goal->speed});
+}
+
+void GoalServers::accept_move_base() {
+  if (!move_base_.isNewGoalAvailable()) return;
+  const auto goal = move_base_.acceptNewGoal();
+  NavigateToResult replaced;
+  replaced.reason = "replaced by a newer goal";
+  if (navigate_to_.isActive()) navigate_to_.setPreempted(replaced, replaced.reason);
+  begin_({goal->target_pose, 0});
+}
+
+void GoalServers::feedback(const NavigatorOutput& output, const PlanarPose& pose, const std::string& map_frame) {
+  if (navigate_to_.isActive()) {
+    NavigateToFeedback message;
+    message.state = name_of(output.state);
+    message.reason = output.reason;
+    message.remaining_distance = output.remaining;
+    navigate_to_.publishFeedback(message);
+  }
+  if (move_base_.isActive()) {
+    move_base_msgs::MoveBaseFeedback message;
+    message.base_position.header.stamp = ros::Time::now();
+    message.base_position.header.frame_id = map_frame;
+    message.base_position.pose.position.x = pose.x, message.base_position.pose.position.y = pose.y;
+    message.base_position.pose.orientation.z = std::sin(pose.yaw / 2);
+    message.base_position.pose.orientation.w = std::cos(pose.yaw / 2);
+    move_base_.publishFeedback(message);
+  }
+}
+
+template <class Server>
+void GoalServers::finish(Server& server, const typename Server::Result& result, bool reached, bool cancelled,
+                         const std::string& reason) {
+  if (!server.isActive()) return;
+  if (reached) {
+    server.setSucceeded(result, reason);
+  } else if (cancelled) {
+    server.setPreempted(result, reason);
+  } else {
+    server.setAborted(result, reason);
+  }
+}
+
+void GoalServers::conclude(bool reached, bool cancelled, const std::string& reason) {
+  NavigateToResult result;
+  result.reason = reason;
+  finish(navigate_to_, result, reached, cancelled, reason);
+  finish(move_base_, move_base_msgs::MoveBaseResult(), reached, cancelled, reason);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,145 @@
+#include "ros/navigation/localization_node.h"
+
+#include <geometry_msgs/PoseArray.h>
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
+#include <std_srvs/Empty.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "navigation/map_file.h"
+#include "ros/navigation/given_pose.h"
+#include "ros/navigation/map_service.h"
+#include "ros/navigation/map_topics.h"
+#include "ros/navigation/scan_input.h"
+
+namespace robot_control {
+namespace {
+
+constexpr std::uint32_t kSeed = 1;    // the same scans give the same particles
+constexpr double kCloudPeriod = 1;    // s
+constexpr std::size_t kShown = 2000;  // particles of particlecloud
+
+/// Deviations at ~initial_pose: a robot that is set down by hand on a mark.
+const Eigen::Vector3d kByHand(0.2, 0.2, 0.1);  // m, m, rad
+
+class LocalizationNode {
+ public:
+  LocalizationNode() {
+    ros::NodeHandle own("~");
+    const std::string path = own.param("map", std::string());
+    if (!path.empty()) load(path);
+    std::vector<double> pose;
+    if (own.getParam("initial_pose", pose)) begin_at(pose);
+    initial_ = handle_.subscribe("initialpose", 1, &LocalizationNode::receive_pose, this);
+    pose_ = handle_.advertise<geometry_msgs::PoseWithCovarianceStamped>("amcl_pose", 2, true);
+    cloud_ = handle_.advertise<geometry_msgs::PoseArray>("particlecloud", 1, true);
+    global_ = handle_.advertiseService("global_localization", &LocalizationNode::search, this);
+    timer_ = handle_.createWallTimer(ros::WallDuration(kCloudPeriod),
+                                     [this](const ros::WallTimerEvent&) { publish_cloud(); });
+  }
+
+ private:
+  std::string load(const std::string& path) {
+    const Grid map = read_map(path);
+    localizer_ = std::make_unique<Localizer>(map, kSeed);
+    topics_.publish(map);
+    return "loaded " + path + ": " + std::to_string(map.columns) + " x " + std::to_string(map.rows) +
+           " cells; give a pose (initialpose) or search (global_localization)";
+  }
+
+  void begin_at(const std::vector<double>& pose) {
+    if (pose.size() != 3 || !std::isfinite(pose[0] + pose[1] + pose[2]))
+      throw std::invalid_argument("~initial_pose must be three finite numbers: x, y in m and yaw in rad");
+    if (!localizer_) throw std::invalid_argument("~initial_pose needs a map: set ~map, too");
+    localizer_->set_pose({{pose[0], pose[1], pose[2]}, kByHand.cwiseProduct(kByHand).asDiagonal()});
+  }
+
+  void receive_pose(const geometry_msgs::PoseWithCovarianceStamped& message) {
+    const GivenPose given = given_pose(message);
+    if (!given.problem.empty()) {
+      ROS_WARN("%s", given.problem.c_str());
+      return;
+    }
+    if (!localizer_) {
+      ROS_WARN("initialpose is refused: there is no map yet (load_map)");
+      return;
+    }
+    localizer_->set_pose(given.pose);
+  }
+
+  bool search(std_srvs::Empty::Request& /*request*/, std_srvs::Empty::Response& /*response*/) {
+    if (!localizer_) return false;
+    localizer_->search();
+    return true;
+  }
+
+  void use(const PlacedScan& scan) {
+    stamp_ = scan.stamp;
+    if (localizer_ && localizer_->update(scan.scan, scan.laser, scan.odometry)) publish_pose();
+  }
+
+  void receive_odometry(const nav_msgs::Odometry& odometry) {
+    const std::string scan = input_.problem();
+    if (!localizer_) return topics_.publish("no pose", "there is no map: set ~map or call load_map", 0, stamp_);
+    const bool localized = localizer_->state() == Localization::kLocalized;
+    const std::string why = localized ? scan : localizer_->reason();
+    topics_.publish(name_of(localizer_->state()), why, localizer_->explained(), stamp_);
+    if (localized) topics_.publish(localizer_->correction(), odometry);
+  }
+
+  void publish_pose() {
+    const UncertainPose pose = localizer_->pose();
+    geometry_msgs::PoseWithCovarianceStamped message;
+    message.header.frame_id = kMapFrame;
+    message.header.stamp = stamp_;
+    message.pose.pose = pose_message(pose.mean);
+    constexpr int kOf[3] = {0, 1, 5};  // x, y, yaw among x y z roll pitch yaw
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 3; ++column)
+        message.pose.covariance[static_cast<std::size_t>(6 * kOf[row] + kOf[column])] = pose.covariance(row, column);
+    pose_.publish(message);
+  }
+
+  void publish_cloud() {
+    if (!localizer_ || cloud_.getNumSubscribers() == 0) return;
+    const std::vector<PlanarPose> particles = localizer_->particles();
+    geometry_msgs::PoseArray message;
+    message.header.frame_id = kMapFrame;
+    message.header.stamp = stamp_;
+    const std::size_t step = std::max<std::size_t>(1, particles.size() / kShown);
+    for (std::size_t i = 0; i < particles.size(); i += step) message.poses.push_back(pose_message(particles[i]));
+    cloud_.publish(message);
+  }
+
+  ros::NodeHandle handle_;
+  std::unique_ptr<Localizer> localizer_;  // null: there is no map
+  ros::Time stamp_;
+  MapTopics topics_{handle_};
+  ScanInput input_{handle_, [this](const PlacedScan& scan) { use(scan); },
+                   [this](const nav_msgs::Odometry& odometry) { receive_odometry(odometry); }};
+  MapService load_{handle_, "load_map", [this](const std::string& path) { return load(path); }};
+  ros::Subscriber initial_;
+  ros::Publisher pose_, cloud_;
+  ros::ServiceServer global_;
+  ros::WallTimer timer_;
+};
+
+}  // namespace
+
+int run_localization(int argc, char** argv) {
+  try {
+    ros::init(argc, argv, "localization");
+    LocalizationNode node;
+    ros::spin();
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "localization: refused:\n%s\n", error.what());
+    return 1;
+  }
+}
+
+}  // namespace robot_control

@@ -1,0 +1,13 @@
+#pragma once
+/// The node localization finds the robot in a saved map. Topics and services: docs/interfaces.md.
+///
+///   ~map            YAML file of the map; "": it waits for load_map
+///   ~initial_pose   [x, y, yaw] in m and rad, where the robot is at the start; left out: it waits for initialpose or
+///                   global_localization
+
+namespace robot_control {
+
+/// The body of main. Returns 0 after an end by a signal, 1 after a refusal, which is reported on stderr.
+int run_localization(int argc, char** argv);
+
+}  // namespace robot_control

@@ -1,0 +1,71 @@
+#include "ros/navigation/map_topics.h"
+
+#include <tf2_msgs/TFMessage.h>
+
+#include <cmath>
+
+namespace robot_control {
+
+geometry_msgs::Pose pose_message(const PlanarPose& pose) {
+  geometry_msgs::Pose message;
+  message.position.x = pose.x;
+  message.position.y = pose.y;
+  message.orientation.z = std::sin(pose.yaw / 2);
+  message.orientation.w = std::cos(pose.yaw / 2);
+  return message;
+}
+
+MapTopics::MapTopics(ros::NodeHandle& handle)
+    : map_(handle.advertise<nav_msgs::OccupancyGrid>("map", 1, true)),
+      metadata_(handle.advertise<nav_msgs::MapMetaData>("map_metadata", 1, true)),
+      tf_(handle.advertise<tf2_msgs::TFMessage>("tf", 100)),
+      state_(handle.advertise<robot_control::LocalizationState>("localization_state", 1, true)),
+      static_map_(handle.advertiseService("static_map", &MapTopics::answer, this)) {}
+
+void MapTopics::publish(const Grid& grid) {
+  newest_.header.frame_id = kMapFrame;
+  newest_.header.stamp = ros::Time::now();
+  newest_.info.map_load_time = newest_.header.stamp;
+  newest_.info.width = static_cast<std::uint32_t>(grid.columns);
+  newest_.info.height = static_cast<std::uint32_t>(grid.rows);
+  newest_.info.resolution = static_cast<float>(grid.resolution);
+  newest_.info.origin = pose_message({grid.origin_x, grid.origin_y, 0});
+  newest_.data = grid.cells;
+  map_.publish(newest_);
+  metadata_.publish(newest_.info);
+}
+
+void MapTopics::publish(const PlanarPose& correction, const nav_msgs::Odometry& odometry) {
+  geometry_msgs::TransformStamped transform;
+  transform.header.frame_id = kMapFrame;
+  transform.header.stamp = odometry.header.stamp;
+  transform.child_frame_id = odometry.header.frame_id;
+  const geometry_msgs::Pose pose = pose_message(correction);
+  transform.transform.translation.x = pose.position.x;
+  transform.transform.translation.y = pose.position.y;
+  transform.transform.rotation = pose.orientation;
+  tf2_msgs::TFMessage message;
+  message.transforms.push_back(transform);
+  tf_.publish(message);
+}
+
+void MapTopics::publish(const std::string& state, const std::string& reason, double explained, ros::Time stamp) {
+  if (state == last_.state && reason == last_.reason) return;
+  // A reason holds figures, which change while it stays the same.
+  if (state != last_.state || reason.empty() != last_.reason.empty())
+    ROS_LOG(reason.empty() ? ros::console::levels::Info : ros::console::levels::Warn, ROSCONSOLE_DEFAULT_NAME, "%s%s%s",
+            state.c_str(), reason.empty() ? "" : ": ", reason.c_str());
+  last_.header.frame_id = kMapFrame;
+  last_.header.stamp = stamp;
+  last_.state = state;
+  last_.reason = reason;
+  last_.explained = explained;
+  state_.publish(last_);
+}
+
+bool MapTopics::answer(nav_msgs::GetMap::Request& /*request*/, nav_msgs::GetMap::Response& response) {
+  response.map = newest_;
+  return !newest_.data.empty();
+}
+
+}  // namespace robot_control

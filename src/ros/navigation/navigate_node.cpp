@@ -1,0 +1,266 @@
+#include "ros/navigation/navigate_node.h"
+
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <nav_msgs/OccupancyGrid.h>
+#include <robot_control/LocalizationState.h>
+#include <ros/ros.h>
+#include <std_srvs/Empty.h>
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+
+#include "navigation/doubt.h"
+#include "navigation/footprint.h"
+#include "navigation/map_file.h"
+#include "navigation/smoothing.h"
+#include "ros/navigation/frames.h"
+#include "ros/navigation/goal_servers.h"
+#include "ros/navigation/path_client.h"
+#include "ros/navigation/scan_guard.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kPeriod = 0.1;      // s
+constexpr double kTfPatience = 0.3;  // s for which a scan waits for tf
+constexpr double kOldPlace = 1.0;    // s; a localisation is as slow as its scans
+
+Footprint read_footprint(ros::NodeHandle& handle) {
+  std::string urdf;
+  const std::string name = handle.resolveName("robot_description");
+  for (bool said = false; !handle.getParam("robot_description", urdf); said = true) {
+    if (!said) ROS_INFO("waiting for %s: start the robot", name.c_str());
+    ros::WallDuration(0.2).sleep();
+    if (!ros::ok()) throw std::runtime_error("interrupted while it waited for " + name);
+  }
+  return footprint_of_urdf(urdf, name);
+}
+
+class NavigateNode {
+ public:
+  NavigateNode()
+      : frames_(handle_),
+        guard_(handle_, read_footprint(handle_), frames_),
+        footprint_(read_footprint(handle_)),
+        path_client_(handle_),
+        servers_(
+            handle_, [this](const GoalServers::Goal& goal) { begin(goal); }, [this] { cancel("cancelled"); }) {
+    ros::NodeHandle own("~");
+    speed_ = own.param("speed", 0.5);
+    unknown_is_free_ = own.param("unknown_is_free", false);
+    map_frame_ = own.param("map_frame", std::string("map"));
+    if (!(speed_ > 0 && speed_ <= 10)) throw std::runtime_error("~speed must be above 0 and at most 10 m/s");
+    map_ = handle_.subscribe("map", 1, &NavigateNode::receive_map, this);
+    localized_ = handle_.subscribe<LocalizationState>(
+        "localization_state", 1, [this](const LocalizationState::ConstPtr& message) { localization_ = message; });
+    costmap_topic_ = handle_.advertise<nav_msgs::OccupancyGrid>("costmap", 1, true);
+    diagnostics_ = handle_.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1);
+    clear_ = handle_.advertiseService("clear_costmaps", &NavigateNode::clear, this);
+    timer_ = handle_.createWallTimer(ros::WallDuration(kPeriod), [this](const ros::WallTimerEvent&) { step(); });
+    seconds_ = handle_.createWallTimer(ros::WallDuration(1), [this](const ros::WallTimerEvent&) { report(); });
+  }
+
+ private:
+  static double now() { return ros::SteadyTime::now().toSec(); }
+
+  void receive_map(const nav_msgs::OccupancyGrid& message) {
+    const auto& [info, data] = std::tie(message.info, message.data);
+    const auto& origin = info.origin;
+    const auto yaw = yaw_of(origin.orientation.x, origin.orientation.y, origin.orientation.z, origin.orientation.w);
+    std::string problem = grid_problem(info.width, info.height, info.resolution, origin.position.x, origin.position.y,
+                                       yaw.value_or(std::nan("")));
+    if (problem.empty() && data.size() != std::size_t{info.width} * info.height) {
+      problem = "the map has " + std::to_string(data.size()) + " cells, and width x height are others";
+    }
+    if (problem.empty() && message.header.frame_id != map_frame_) {
+      problem = "the map is in the frame '" + message.header.frame_id + "', and ~map_frame is '" + map_frame_ + "'";
+    }
+    if (!problem.empty()) {
+      ROS_WARN("map is refused: %s", problem.c_str());
+      if (!costmap_) map_problem_ = "map is refused: " + problem;
+      return;
+    }
+    Grid grid{static_cast<int>(info.width),
+              static_cast<int>(info.height),
+              info.resolution,
+              origin.position.x,
+              origin.position.y,
+              data};
+    costmap_ = std::make_unique<Costmap>(std::move(grid), footprint_, unknown_is_free_);
+    doubt_ = Doubt();
+  }
+
+  /// Takes a scan into the costmap, and compares it with the map. A scan waits until tf knows the place at its stamp.
+  void process_scan(const ros::Time& time) {
+    if (!waiting_ || (time - waiting_->stamp).toSec() > kTfPatience) {
+      if (auto scan = guard_.next_scan()) waiting_ = std::move(scan);
+    }
+    if (!waiting_ || !costmap_) return;
+    const auto sensor = frames_.lookup(map_frame_, waiting_->frame, waiting_->stamp, scan_problem_);
+    if (!sensor) return;
+    if (sensor->upside_down) waiting_->scan.angle_min *= -1, waiting_->scan.angle_increment *= -1;
+    doubt_.update(costmap_->insert(waiting_->scan, sensor->pose, now()));
+    waiting_.reset();
+    seen_at_ = time;
+  }
+
+  /// Returns why nothing can be driven now, and sets the robot's place if it is known.
+  std::string problem(const ros::Time& time) {
+    if (!costmap_) return map_problem_;
+    if (const std::string why = guard_.problem(); !why.empty()) return why;
+    if (localization_ && localization_->state != "localized") {
+      return "the robot is not localised: " + localization_->state + ": " + localization_->reason;
+    }
+    std::string why;
+    const auto place = frames_.lookup(map_frame_, guard_.odometry_frames().second, ros::Time(), why);
+    if (!place) return "the robot is not localised: " + why;
+    pose_ = place->pose;
+    const double age = time.toSec() - place->stamp;
+    if (place->stamp > 0 && age > kOldPlace) {
+      std::array<char, 120> text;
+      std::snprintf(text.data(), text.size(), "the robot is not localised: tf from %s is %.1f s old",
+                    map_frame_.c_str(), age);
+      return text.data();
+    }
+    if ((time - seen_at_).toSec() > kOldPlace)
+      return "tf does not give the place of the scans in the map: " + scan_problem_;
+    if (!doubt_.problem().empty()) return doubt_.problem();
+    return path_client_.connected() ? "" : "follow_path does not run: rosrun robot_control follow_path.py";
+  }
+
+  void begin(const GoalServers::Goal& goal) {
+    requested_ = ros::Time::now();
+    goal_speed_ = goal.speed;
+    const auto& [position, turn] = std::tie(goal.target.pose.position, goal.target.pose.orientation);
+    const auto yaw = yaw_of(turn.x, turn.y, turn.z, turn.w);
+    std::string why, frame = goal.target.header.frame_id;
+    if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);
+    if (!yaw) return refuse("the goal's orientation is no quaternion of length 1");
+    if (!std::isfinite(position.x) || !std::isfinite(position.y))
+      return refuse("the goal holds a number that is not finite");
+    if (!(goal.speed >= 0 && goal.speed <= 10)) return refuse("the goal's speed must be from 0 to 10 m/s");
+    if (frame.empty()) return refuse("the goal has no frame: set header.frame_id, for instance to " + map_frame_);
+    PlanarPose target{position.x, position.y, *yaw};
+    if (frame != map_frame_) {
+      const auto found = frames_.lookup(map_frame_, frame, ros::Time(), why);
+      if (!found) return refuse("tf does not connect the goal's frame with the map's: " + why);
+      target = composed(found->pose, target);
+    }
+    if (navigator_.active()) path_client_.cancel();
+    navigator_.begin(target, now());
+  }
+
+  void refuse(const std::string& why) { cancel(why, false); }
+
+  void cancel(const std::string& why, bool cancelled = true) {
+    if (navigator_.active()) path_client_.cancel();
+    navigator_.end();
+    conclude(false, cancelled, why);
+  }
+
+  void conclude(bool reached, bool cancelled, const std::string& reason) {
+    ROS_INFO("%s", reason.c_str());
+    last_ = reached || cancelled ? "" : reason;
+    servers_.conclude(reached, cancelled, reason);
+  }
+
+  void step() {
+    const ros::Time time = ros::Time::now();
+    process_scan(time);
+    const std::string why = problem(time);
+    if (navigator_.active()) {
+      const std::string held = path_client_.held().empty() ? guard_.held() : path_client_.held();
+      output_ = navigator_.step({now(), why, held, pose_, path_client_.report()}, costmap_.get());
+      if (output_.cancel) path_client_.cancel();
+      if (output_.path)
+        path_client_.send(*output_.path, map_frame_, goal_speed_ > 0 ? goal_speed_ : speed_, requested_);
+      if (output_.state == NavigatorState::kReached) conclude(true, false, "reached");
+      if (output_.state == NavigatorState::kFailed) conclude(false, false, output_.reason);
+      servers_.feedback(output_, pose_, map_frame_);
+    }
+    guard_.guard(navigator_.active(), path_client_.intended(pose_));
+  }
+
+  /// Publishes costmap and diagnostics, at 1 Hz.
+  void report() {
+    diagnostic_msgs::DiagnosticArray array;
+    array.header.stamp = ros::Time::now();
+    array.status.resize(1);
+    auto& status = array.status[0];
+    status.name = ros::this_node::getName().substr(1);
+    const std::string& reason = navigator_.active() ? output_.reason : last_;
+    status.level = reason.empty() ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN;
+    status.message = reason.empty() ? name_of(navigator_.active() ? output_.state : NavigatorState::kIdle) : reason;
+    status.values.resize(1);
+    status.values[0].key = "goal";
+    status.values[0].value = name_of(navigator_.active() ? output_.state
+                                     : last_.empty()     ? NavigatorState::kIdle
+                                                         : NavigatorState::kFailed);
+    diagnostics_.publish(array);
+    if (!costmap_ || costmap_topic_.getNumSubscribers() == 0) return;
+    costmap_->update(now());
+    const Grid& grid = costmap_->grid();
+    nav_msgs::OccupancyGrid message;
+    message.header.frame_id = map_frame_, message.header.stamp = array.header.stamp;
+    message.info.width = static_cast<std::uint32_t>(grid.columns),
+    message.info.height = static_cast<std::uint32_t>(grid.rows);
+    message.info.resolution = static_cast<float>(grid.resolution);
+    message.info.origin.position.x = grid.origin_x, message.info.origin.position.y = grid.origin_y;
+    message.info.origin.orientation.w = 1;
+    for (int row = 0; row < grid.rows; ++row) {
+      for (int column = 0; column < grid.columns; ++column) {
+        const double air = costmap_->distance({column, row}) - footprint_.inscribed;
+        message.data.push_back(air <= 0 ? (costmap_->occupied({column, row}) ? 100 : 99)
+                                        : static_cast<std::int8_t>(98 * std::max(0.0, 1 - air / kComfort)));
+      }
+    }
+    costmap_topic_.publish(message);
+  }
+
+  bool clear(std_srvs::Empty::Request& /*request*/, std_srvs::Empty::Response& /*response*/) {
+    if (costmap_) costmap_->clear();
+    return true;
+  }
+
+  ros::NodeHandle handle_;
+  Frames frames_;
+  ScanGuard guard_;
+  const Footprint footprint_;
+  PathClient path_client_;
+  Navigator navigator_;
+  std::unique_ptr<Costmap> costmap_;
+  GoalServers servers_;
+  ros::Subscriber map_, localized_;
+  LocalizationState::ConstPtr localization_;
+  ros::Publisher costmap_topic_, diagnostics_;
+  ros::ServiceServer clear_;
+  ros::WallTimer timer_, seconds_;
+
+  double speed_ = 0.5, goal_speed_ = 0;  // m/s
+  bool unknown_is_free_ = false;
+  std::string map_frame_, map_problem_ = "no map has come: start slam, or localization with a saved map";
+  std::optional<StampedScan> waiting_;  // for tf
+  ros::Time seen_at_, requested_;
+  std::string scan_problem_, last_;
+  Doubt doubt_;
+  PlanarPose pose_;
+  NavigatorOutput output_;
+};
+
+}  // namespace
+
+int run_navigate(int argc, char** argv) {
+  try {
+    ros::init(argc, argv, "navigate");
+    NavigateNode node;
+    ros::spin();
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "navigate: refused:\n%s\n", error.what());
+    return 1;
+  }
+}
+
+}  // namespace robot_control

@@ -1,0 +1,73 @@
+#include "ros/navigation/path_client.h"
+
+#include <actionlib_msgs/GoalID.h>
+#include <actionlib_msgs/GoalStatus.h>
+#include <robot_control/FollowPathActionGoal.h>
+
+#include <cmath>
+
+namespace robot_control {
+
+PathClient::PathClient(ros::NodeHandle& handle)
+    : goal_(handle.advertise<FollowPathActionGoal>("follow_path/goal", 10)),
+      cancel_(handle.advertise<actionlib_msgs::GoalID>("follow_path/cancel", 10)),
+      feedback_(handle.subscribe("follow_path/feedback", 10, &PathClient::receive_feedback, this)),
+      result_(handle.subscribe("follow_path/result", 10, &PathClient::receive_result, this)) {}
+
+void PathClient::send(const Plan& plan, const std::string& frame, double speed, ros::Time requested) {
+  FollowPathActionGoal message;
+  id_ = ros::this_node::getName() + "-" + std::to_string(ros::Time::now().toNSec()) + "-" + std::to_string(++sent_);
+  message.header.stamp = ros::Time::now();
+  message.goal_id.id = id_;
+  message.goal_id.stamp = requested;
+  message.goal.speed = speed;
+  message.goal.path.header.frame_id = frame;
+  message.goal.path.header.stamp = message.header.stamp;
+  for (const PlanarPose& pose : plan.poses) {
+    geometry_msgs::PoseStamped stamped;
+    stamped.header = message.goal.path.header;
+    stamped.pose.position.x = pose.x, stamped.pose.position.y = pose.y;
+    stamped.pose.orientation.z = std::sin(pose.yaw / 2), stamped.pose.orientation.w = std::cos(pose.yaw / 2);
+    message.goal.path.poses.push_back(stamped);
+  }
+  goal_.publish(message);
+  poses_ = plan.poses;
+  turning_ = false;
+  held_.clear();
+  report_ = {PathReport::State::kActive, ""};
+}
+
+void PathClient::cancel() {
+  actionlib_msgs::GoalID message;
+  message.id = id_;
+  if (!id_.empty()) cancel_.publish(message);
+  report_ = {};
+}
+
+PlanarMotion PathClient::intended(const PlanarPose& pose) const {
+  if (report_.state != PathReport::State::kActive || poses_.size() < 2) return {};
+  if (turning_) return {0, heading_error_ > 0 ? -1.0 : 1.0};
+  std::size_t near = 1;
+  for (std::size_t i = 1; i < poses_.size(); ++i) {
+    if (std::hypot(poses_[i].x - pose.x, poses_[i].y - pose.y) <
+        std::hypot(poses_[near].x - pose.x, poses_[near].y - pose.y))
+      near = i;
+  }
+  const PlanarPose &a = poses_[near - 1], &b = poses_[near];
+  return {(b.x - a.x) * std::cos(a.yaw) + (b.y - a.y) * std::sin(a.yaw) < 0 ? -1.0 : 1.0, 0};
+}
+
+void PathClient::receive_feedback(const FollowPathActionFeedback& message) {
+  if (message.status.goal_id.id != id_) return;
+  turning_ = message.feedback.state == "turning";
+  heading_error_ = message.feedback.heading_error;
+  held_ = message.feedback.reason;
+}
+
+void PathClient::receive_result(const FollowPathActionResult& message) {
+  if (message.status.goal_id.id != id_ || report_.state != PathReport::State::kActive) return;
+  const bool done = message.status.status == actionlib_msgs::GoalStatus::SUCCEEDED;
+  report_ = {done ? PathReport::State::kDone : PathReport::State::kFailed, message.result.reason};
+}
+
+}  // namespace robot_control

@@ -1,0 +1,50 @@
+#pragma once
+/// Sends paths to the action follow_path.
+///
+/// Each goal bears the time at which the place was requested, not that of its planning. follow_path therefore refuses
+/// what a stop has revoked since.
+
+#include <robot_control/FollowPathActionFeedback.h>
+#include <robot_control/FollowPathActionResult.h>
+#include <ros/ros.h>
+
+#include <string>
+
+#include "navigation/guard.h"
+#include "navigation/navigator.h"
+
+namespace robot_control {
+
+class PathClient {
+ public:
+  explicit PathClient(ros::NodeHandle& handle);
+
+  /// `frame` is that of the poses, `speed` in m/s.
+  void send(const Plan& plan, const std::string& frame, double speed, ros::Time requested);
+  void cancel();
+
+  const PathReport& report() const noexcept { return report_; }
+
+  /// Returns why follow_path holds the robot, as it says; "" if it does not.
+  std::string held() const { return held_; }
+
+  /// Returns the motion that follow_path intends now, as far as its feedback says: the sign of a turn on the spot, or
+  /// of the speed.
+  PlanarMotion intended(const PlanarPose& pose) const;
+  bool connected() const { return goal_.getNumSubscribers() > 0; }
+
+ private:
+  void receive_feedback(const FollowPathActionFeedback& message);
+  void receive_result(const FollowPathActionResult& message);
+
+  ros::Publisher goal_, cancel_;
+  ros::Subscriber feedback_, result_;
+  std::string id_, held_;
+  PathReport report_;
+  std::vector<PlanarPose> poses_;
+  bool turning_ = false;
+  double heading_error_ = 0;  // rad
+  int sent_ = 0;
+};
+
+}  // namespace robot_control

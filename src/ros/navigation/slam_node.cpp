@@ -1,0 +1,107 @@
+#include "ros/navigation/slam_node.h"
+
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
+
+#include <cstdio>
+#include <optional>
+
+#include "navigation/map_file.h"
+#include "navigation/mrpt/mapper.h"
+#include "ros/navigation/given_pose.h"
+#include "ros/navigation/map_service.h"
+#include "ros/navigation/map_topics.h"
+#include "ros/navigation/scan_input.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kMapPeriod = 2;  // s between two messages of a map that grows
+
+class SlamNode {
+ public:
+  SlamNode() {
+    ros::NodeHandle own("~");
+    const std::string path = own.param("map", std::string());
+    if (!path.empty()) load(path);
+    initial_ = handle_.subscribe("initialpose", 1, &SlamNode::receive_pose, this);
+    timer_ =
+        handle_.createWallTimer(ros::WallDuration(kMapPeriod), [this](const ros::WallTimerEvent&) { publish_map(); });
+  }
+
+ private:
+  void use(const PlacedScan& scan) {
+    mapper_.update(scan.scan, scan.laser, scan.odometry.mean);
+    changed_ = used_ = true;
+    stamp_ = scan.stamp;
+  }
+
+  void receive_odometry(const nav_msgs::Odometry& odometry) {
+    const std::string why = input_.problem();
+    if (!used_) return topics_.publish("no pose", why, 0, odometry.header.stamp);
+    const bool fits = mapper_.fits();
+    topics_.publish(fits ? "localized" : "lost", !fits ? mapper_.reason() : why, mapper_.matched(), stamp_);
+    if (fits) topics_.publish(mapper_.correction(), odometry);
+  }
+
+  void publish_map() {
+    if (changed_) topics_.publish(mapper_.grid());
+    changed_ = false;
+  }
+
+  std::string save(const std::string& path) {
+    const Grid grid = mapper_.grid();
+    write_map(path, grid);
+    return "saved " + path + ": " + std::to_string(grid.columns) + " x " + std::to_string(grid.rows) + " cells";
+  }
+
+  std::string load(const std::string& path) {
+    saved_ = read_map(path);
+    mapper_ = Mapper(*saved_, {});
+    used_ = false;
+    changed_ = true;
+    return "goes on with " + path + ", the robot at its origin until initialpose says otherwise";
+  }
+
+  void receive_pose(const geometry_msgs::PoseWithCovarianceStamped& message) {
+    const GivenPose given = given_pose(message);
+    if (!given.problem.empty()) {
+      ROS_WARN("%s", given.problem.c_str());
+      return;
+    }
+    if (!saved_) {
+      ROS_WARN("initialpose is refused: this map began where the robot was; load a saved one before");
+      return;
+    }
+    mapper_ = Mapper(*saved_, given.pose.mean);
+    used_ = false;
+  }
+
+  ros::NodeHandle handle_;
+  Mapper mapper_;
+  std::optional<Grid> saved_;
+  bool changed_ = false, used_ = false;
+  ros::Time stamp_;
+  MapTopics topics_{handle_};
+  ScanInput input_{handle_, [this](const PlacedScan& scan) { use(scan); },
+                   [this](const nav_msgs::Odometry& odometry) { receive_odometry(odometry); }};
+  MapService save_{handle_, "save_map", [this](const std::string& path) { return save(path); }};
+  MapService load_{handle_, "load_map", [this](const std::string& path) { return load(path); }};
+  ros::Subscriber initial_;
+  ros::WallTimer timer_;
+};
+
+}  // namespace
+
+int run_slam(int argc, char** argv) {
+  try {
+    ros::init(argc, argv, "slam");
+    SlamNode node;
+    ros::spin();
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "slam: refused:\n%s\n", error.what());
+    return 1;
+  }
+}
+
+}  // namespace robot_control

@@ -1,0 +1,164 @@
+#include "navigation/navigator.h"
+
+#include <gmock/gmock.h>
+
+#include "navigation/guard.h"
+#include "navigation/house.h"
+
+namespace robot_control {
+namespace {
+
+using namespace testing_house;
+using testing::HasSubstr;
+using State = NavigatorState;
+
+constexpr double kPeriod = 0.1;  // s
+constexpr double kSpeed = 0.5;   // m/s
+
+/// A robot in two rooms with a door, which follows paths exactly and at once, with a laser of 10 Hz in virtual time.
+class NavigatorTest : public testing::Test {
+ protected:
+  void box(int column, int row, std::int8_t cell = kOccupiedCell) {
+    for (int i = -2; i <= 2; ++i) {
+      for (int j = -2; j <= 2; ++j) world_.cells[world_.index({column + i, row + j})] = cell;
+    }
+  }
+
+  void step() {
+    now_ += kPeriod;
+    costmap_.insert(scan_of(world_, pose_, 180), pose_, now_);
+    out_ = navigator_.step({now_, problem_, "", pose_, report_}, &costmap_);
+    if (out_.cancel) report_.state = PathReport::State::kNone;
+    if (out_.path) path_ = *out_.path, along_ = 0, report_ = {PathReport::State::kActive, ""}, ++paths_;
+    if (report_.state == PathReport::State::kActive && !failing_.empty())
+      report_ = {PathReport::State::kFailed, failing_};
+    if (report_.state == PathReport::State::kActive) follow();
+  }
+
+  void follow() {
+    double left = kSpeed * kPeriod;
+    for (; along_ + 1 < path_.poses.size() && left > 0; ++along_) {
+      left -= std::hypot(path_.poses[along_ + 1].x - pose_.x, path_.poses[along_ + 1].y - pose_.y);
+      pose_ = path_.poses[along_ + 1];
+      for (const Point point : points_of(scan_of(world_, pose_, 180), {}))
+        least_air_ = std::min(least_air_, diffbot().distance(point));
+    }
+    if (along_ + 1 == path_.poses.size()) report_.state = PathReport::State::kDone;
+  }
+
+  /// Steps for this long, or until the goal is over.
+  void run(double seconds) {
+    for (const double end = now_ + seconds; now_ < end && (navigator_.active() || out_.state == State::kIdle);) step();
+  }
+
+  Grid world_ = two_rooms(1.0);
+  Costmap costmap_{two_rooms(1.0), diffbot(), false};
+  Navigator navigator_;
+  NavigatorOutput out_;
+  Plan path_;
+  std::size_t along_ = 0;
+  PathReport report_;
+  std::string problem_, failing_;
+  PlanarPose pose_{1.6, 1.6, 0};
+  double now_ = 100, least_air_ = 1e9;
+  int paths_ = 0;
+};
+
+TEST_F(NavigatorTest, ReachesAGoalInTheOtherRoom) {
+  navigator_.begin({4.7, 2.2, 1}, now_);
+  run(30);
+  EXPECT_EQ(out_.state, State::kReached);
+  EXPECT_NEAR(pose_.x, 4.7, 1e-6);
+  EXPECT_NEAR(pose_.yaw, 1, 1e-6);
+  EXPECT_EQ(paths_, 1);
+  EXPECT_GT(least_air_, 0);
+}
+
+TEST_F(NavigatorTest, AGoalInAWallIsRefusedAtOnce) {
+  navigator_.begin({3.15, 0.3, 0}, now_);
+  step();
+  EXPECT_EQ(out_.state, State::kFailed);
+  EXPECT_THAT(out_.reason, HasSubstr("lies in an obstacle"));
+}
+
+TEST_F(NavigatorTest, ABoxOnThePathIsPassed) {
+  box(45, 16);
+  navigator_.begin({5.6, 1.6, 0}, now_);
+  run(40);
+  EXPECT_EQ(out_.state, State::kReached);
+  EXPECT_GT(least_air_, 0);
+}
+
+TEST_F(NavigatorTest, ADoorThatIsShutWhileItDrivesIsWaitedForAndPassedWhenItOpens) {
+  navigator_.begin({5.0, 1.6, 0}, now_);
+  run(0.5);
+  box(31, 16);
+  run(8);
+  EXPECT_EQ(out_.state, State::kWaiting);
+  EXPECT_THAT(out_.reason, HasSubstr("there is no way"));
+  EXPECT_GT(least_air_, 0);
+  box(31, 16, kFreeCell);
+  run(20);
+  EXPECT_EQ(out_.state, State::kReached);
+}
+
+TEST_F(NavigatorTest, ADoorThatStaysShutIsGivenUpWithTheReason) {
+  navigator_.begin({5.0, 1.6, 0}, now_);
+  run(0.5);
+  box(31, 16);
+  run(kPatience + 10);
+  EXPECT_EQ(out_.state, State::kFailed);
+  EXPECT_THAT(out_.reason, HasSubstr("(for 20 s)"));
+}
+
+TEST_F(NavigatorTest, ABoxOnTheGoalIsWaitedForFromTheStart) {
+  box(47, 16);
+  costmap_.insert(scan_of(world_, {4.0, 1.6, 0}, 720), {4.0, 1.6, 0}, now_);
+  navigator_.begin({4.7, 1.6, 0}, now_);
+  run(5);
+  EXPECT_EQ(out_.state, State::kWaiting);
+  EXPECT_THAT(out_.reason, HasSubstr("obstacle"));
+}
+
+TEST_F(NavigatorTest, AGoalWithoutALaserIsRefusedAfterTheStartPatience) {
+  problem_ = "scan is silent";
+  navigator_.begin({4.7, 1.6, 0}, now_);
+  run(kStartPatience + 1);
+  EXPECT_EQ(out_.state, State::kFailed);
+  EXPECT_THAT(out_.reason, HasSubstr("scan is silent"));
+  EXPECT_EQ(paths_, 0);
+}
+
+TEST_F(NavigatorTest, WhileTheLaserIsSilentNothingIsDriven) {
+  navigator_.begin({4.7, 1.6, 0}, now_);
+  run(1);
+  problem_ = "scan is silent";
+  step();
+  EXPECT_TRUE(out_.cancel);
+  EXPECT_EQ(out_.state, State::kWaiting);
+  EXPECT_EQ(out_.reason, "scan is silent");
+  problem_.clear();
+  run(30);
+  EXPECT_EQ(out_.state, State::kReached);
+}
+
+TEST_F(NavigatorTest, APathThatCannotBeFollowedIsTriedAgainAndGivenUp) {
+  failing_ = "0.40 m off the path, more than 0.3 m";
+  navigator_.begin({4.7, 1.6, 0}, now_);
+  run(30);
+  EXPECT_EQ(out_.state, State::kFailed);
+  EXPECT_THAT(out_.reason, HasSubstr("off the path"));
+  EXPECT_EQ(paths_, kAttempts + 1);
+}
+
+TEST_F(NavigatorTest, ARobotThatDoesNotMoveIsGivenUp) {
+  navigator_.begin({4.7, 1.6, 0}, now_);
+  step();
+  report_.state = PathReport::State::kNone;  // follow_path is paused
+  run(kPatience + 1);
+  EXPECT_EQ(out_.state, State::kFailed);
+  EXPECT_THAT(out_.reason, HasSubstr("does not move"));
+}
+
+}  // namespace
+}  // namespace robot_control

@@ -1,0 +1,211 @@
+#include "navigation/planner.h"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "navigation/doubt.h"
+#include "navigation/house.h"
+
+namespace robot_control {
+namespace {
+
+using namespace testing_house;
+using testing::HasSubstr;
+
+constexpr PlanarPose kLeft{1.6, 1.6, 0}, kRight{4.7, 1.6, 0};
+
+Costmap costmap_of(const Grid& grid, bool unknown_is_free = false) {
+  return {grid, diffbot(), unknown_is_free};
+}
+
+/// Returns the smallest distance of the true outline from any occupied cell's border along the plan, m.
+double air(const Grid& grid, const Plan& plan) {
+  double least = 1e9;
+  for (const PlanarPose& pose : plan.poses) {
+    for (std::size_t i = 0; i < grid.cells.size(); ++i) {
+      if (grid.cells[i] != kOccupiedCell) continue;
+      const int column = static_cast<int>(i) % grid.columns, row = static_cast<int>(i) / grid.columns;
+      for (const double u : {-0.5, 0.5}) {
+        for (const double v : {-0.5, 0.5}) {
+          const double dx = grid.x_of(column) + u * grid.resolution - pose.x;
+          const double dy = grid.y_of(row) + v * grid.resolution - pose.y;
+          const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
+          least = std::min(least, diffbot().distance({c * dx + s * dy, c * dy - s * dx}));
+        }
+      }
+    }
+  }
+  return least;
+}
+
+TEST(FootprintTest, TheOutlineOfTheShippedRobotHoldsBodyAndWheels) {
+  std::ifstream file(PROJECT_DIRECTORY "/urdf/diffbot.urdf");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const Footprint outline = footprint_of_urdf(text, "diffbot.urdf");
+  EXPECT_NEAR(outline.inscribed, 0.12, 1e-3);
+  EXPECT_NEAR(outline.half_width, 0.27, 1e-3);
+  EXPECT_NEAR(outline.circumscribed, std::hypot(0.28, 0.18), 1e-3);
+  EXPECT_NEAR(outline.distance({0.22, 0}), 0.1, 1e-3);
+  EXPECT_LT(outline.distance({-0.2, 0.17}), 0);
+}
+
+TEST(FootprintTest, ABaseBesideTheOutlineIsRefused) {
+  EXPECT_THROW(footprint_of({{1, 0}, {2, 0}, {2, 1}}), std::invalid_argument);
+  EXPECT_THROW(footprint_of({}), std::invalid_argument);
+}
+
+TEST(CostmapTest, ARayMarksWhatTheMapDoesNotHaveAndClearsItAgain) {
+  const Grid map = two_rooms(0.8);
+  Grid world = map;
+  world.cells[world.index({20, 16})] = kOccupiedCell;
+  Costmap costmap = costmap_of(map);
+  const Agreement seen = costmap.insert(scan_of(world, kLeft), kLeft, 1.0);
+  costmap.update(1.0);
+  EXPECT_TRUE(costmap.occupied({20, 16}));
+  EXPECT_GT(seen.explained, seen.rays * 9 / 10);
+  EXPECT_EQ(seen.contradicting, 0);
+  costmap.insert(scan_of(map, kLeft), kLeft, 1.1);
+  costmap.update(1.1);
+  EXPECT_FALSE(costmap.occupied({20, 16}));
+}
+
+TEST(CostmapTest, WhatIsNotSeenAgainIsForgotten) {
+  const Grid map = two_rooms(0.8);
+  Grid world = map;
+  world.cells[world.index({20, 16})] = kOccupiedCell;
+  Costmap costmap = costmap_of(map);
+  costmap.insert(scan_of(world, kLeft), kLeft, 1.0);
+  costmap.update(0.9 + kMemory);
+  EXPECT_TRUE(costmap.occupied({20, 16}));
+  costmap.update(1.1 + kMemory);
+  EXPECT_FALSE(costmap.occupied({20, 16}));
+}
+
+TEST(CostmapTest, AnUntruePoseLetsRaysPassWalls) {
+  const Grid map = two_rooms(0.8);
+  Costmap costmap = costmap_of(map);
+  const PlanarPose shifted{kLeft.x + 0.5, kLeft.y, kLeft.yaw}, turned{kLeft.x, kLeft.y, M_PI / 6};
+  for (const PlanarPose& wrong : {shifted, turned}) {
+    const Agreement seen = costmap.insert(scan_of(map, kLeft), wrong, 1.0);
+    EXPECT_GT(seen.contradicting, seen.rays / 8);
+  }
+}
+
+TEST(DoubtTest, AnUntruePoseIsDoubtedAfterHalfASecondAndATrueOneTrustedAgain) {
+  const Grid map = two_rooms(0.8);
+  Costmap costmap = costmap_of(map);
+  Doubt doubt;
+  const PlanarPose wrong{kLeft.x + 0.5, kLeft.y, kLeft.yaw};
+  for (int i = 0; i < kDoubtful - 1; ++i) doubt.update(costmap.insert(scan_of(map, kLeft), wrong, 1));
+  EXPECT_EQ(doubt.problem(), "");
+  doubt.update(costmap.insert(scan_of(map, kLeft), wrong, 1));
+  EXPECT_THAT(doubt.problem(), HasSubstr("contradicts the map: of 360 rays"));
+  for (int i = 0; i < kDoubtful; ++i) doubt.update(costmap.insert(scan_of(map, kLeft), kLeft, 1));
+  EXPECT_EQ(doubt.problem(), "");
+}
+
+TEST(PlannerTest, TheWayThroughADoorKeepsTheOutlineFree) {
+  const Grid map = two_rooms(0.8);
+  for (const double yaw : {0.0, 1.0, 2.0, 3.0, -1.0, -2.0}) {
+    const PlanarPose start{1.0, 0.7, yaw}, goal{5.3, 2.5, -yaw};
+    const Plan plan = plan_path(costmap_of(map), start, goal);
+    ASSERT_EQ(plan.problem, "");
+    EXPECT_LT(plan.length, 1.1 * (std::hypot(2.15, 0.9) + std::hypot(2.15, 0.9)));
+    EXPECT_GT(air(map, plan), 0.02);
+    EXPECT_NEAR(plan.poses.front().x, start.x, 1e-9);
+    EXPECT_NEAR(plan.poses.back().x, goal.x, 1e-9);
+    EXPECT_NEAR(plan.poses.back().yaw, goal.yaw, 1e-9);
+  }
+}
+
+TEST(PlannerTest, NoCornerOfTheWayIsSharpWhereThereIsRoom) {
+  const Plan plan = plan_path(costmap_of(two_rooms(1.6)), {1.0, 0.7, 0.4}, {5.3, 2.5, 0});
+  for (std::size_t i = 2; i + 1 < plan.poses.size(); ++i) {
+    EXPECT_LT(std::abs(std::remainder(plan.poses[i].yaw - plan.poses[i - 1].yaw, 2 * M_PI)), 0.6);
+  }
+}
+
+TEST(PlannerTest, ATooNarrowDoorIsNamed) {
+  EXPECT_THAT(plan_path(costmap_of(two_rooms(0.5)), kLeft, kRight).problem,
+              HasSubstr("the narrowest place of the widest way, at (3.15, 1.65) m"));
+  EXPECT_THAT(plan_path(costmap_of(two_rooms(0)), kLeft, kRight).problem, HasSubstr("lie all around it or the robot"));
+}
+
+TEST(PlannerTest, EachGoalThatCannotBeIsRefused) {
+  const Costmap costmap = costmap_of(two_rooms(0.8));
+  const auto problem = [&](double x, double y, double yaw = 0) {
+    return plan_path(costmap, kLeft, {x, y, yaw}).problem;
+  };
+  EXPECT_THAT(problem(3.15, 0.3), HasSubstr("lies in an obstacle"));
+  EXPECT_THAT(problem(6.05, 1.6, M_PI / 2), HasSubstr("too near to an obstacle"));
+  EXPECT_THAT(problem(1e6, 0), HasSubstr("lies outside the map"));
+  EXPECT_THAT(problem(1e300, 0), HasSubstr("lies outside the map"));
+  EXPECT_THAT(problem(std::nan(""), 1), HasSubstr("not finite"));
+  EXPECT_THAT(problem(1, 1, INFINITY), HasSubstr("not finite"));
+}
+
+TEST(PlannerTest, UnknownSpaceIsDrivenOnlyOnRequest) {
+  Grid map = two_rooms(0.8);
+  for (std::size_t i = 0; i < map.cells.size(); ++i) {
+    if (map.cells[i] == kFreeCell && static_cast<int>(i) % map.columns > 31) map.cells[i] = kUnknownCell;
+  }
+  EXPECT_THAT(plan_path(costmap_of(map), kLeft, kRight).problem, HasSubstr("lies in unknown space"));
+  EXPECT_EQ(plan_path(costmap_of(map, true), kLeft, kRight).problem, "");
+}
+
+TEST(PlannerTest, ATurnOnTheSpotIsAPath) {
+  const Plan plan = plan_path(costmap_of(two_rooms(0.8)), kLeft, {kLeft.x + 0.01, kLeft.y, 2});
+  ASSERT_EQ(plan.poses.size(), 2u);
+  EXPECT_EQ(plan.poses.back().yaw, 2);
+  EXPECT_LT(plan.length, 0.01);
+}
+
+TEST(PlannerTest, ADeadEndIsLeftBackwards) {
+  // A slot of 0.7 m, in which an outline of 0.8 m × 0.4 m cannot turn.
+  Grid map = grid_of(std::vector<std::string>(40, std::string(40, '.')));
+  for (int column = 20; column < 40; ++column) {
+    for (int row = 0; row < 40; ++row) {
+      if (row < 15 || row > 21) map.cells[map.index({column, row})] = kOccupiedCell;
+    }
+  }
+  const PlanarPose inside{3.0, 1.85, 0};
+  const Costmap costmap(map, footprint_of({{0.2, 0.2}, {-0.6, 0.2}, {-0.6, -0.2}, {0.2, -0.2}}), false);
+  const Plan plan = plan_path(costmap, inside, {0.8, 1.85, M_PI});
+  ASSERT_EQ(plan.problem, "");
+  EXPECT_LT(std::cos(plan.poses[1].yaw) * (plan.poses[1].x - plan.poses[0].x), 0);
+}
+
+TEST(PlannerTest, AGoalInASlotIsReachedWhoseHeadingIsBetweenTwoSectors) {
+  // A slot of 0.7 m, in which the outline of 0.8 m × 0.4 m has room for ±15°.
+  Grid map = grid_of(std::vector<std::string>(40, std::string(40, '.')));
+  for (int column = 20; column < 40; ++column) {
+    for (int row = 0; row < 40; ++row) {
+      if (row < 15 || row > 21) map.cells[map.index({column, row})] = kOccupiedCell;
+    }
+  }
+  const Costmap costmap(map, footprint_of({{0.2, 0.2}, {-0.6, 0.2}, {-0.6, -0.2}, {0.2, -0.2}}), false);
+  const PlanarPose outside{0.8, 1.85, 1}, inside{3.0, 1.85, 0.235};
+  ASSERT_TRUE(costmap.free(inside));
+  EXPECT_EQ(plan_path(costmap, outside, inside).problem, "");
+  EXPECT_EQ(plan_path(costmap, inside, outside).problem, "");
+}
+
+TEST(PlannerTest, TheDistanceToWhatBlocksThePathFallsAsTheRobotMoves) {
+  const Grid map = two_rooms(0.8);
+  Costmap costmap = costmap_of(map);
+  const Plan plan = plan_path(costmap, kLeft, kRight);
+  std::size_t passed = 0;
+  EXPECT_TRUE(std::isinf(free_distance(costmap, plan.poses, kLeft, passed)));
+  Grid world = map;
+  world.cells[world.index({28, 16})] = kOccupiedCell;
+  costmap.insert(scan_of(world, kLeft), kLeft, 1);
+  costmap.update(1);
+  const double far = free_distance(costmap, plan.poses, kLeft, passed);
+  EXPECT_NEAR(far, 2.8 - 1.6 - 0.12 - kPadding, 0.15);
+  EXPECT_NEAR(free_distance(costmap, plan.poses, {2.1, 1.6, 0}, passed), far - 0.5, 0.11);
+}
+
+}  // namespace
+}  // namespace robot_control

@@ -1,0 +1,118 @@
+"""Mapping and localisation in virtual time, on a short drive in the scene `room`."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from robot_control.installed_files import share_file
+
+from bench.navigation.moved import distances
+from bench.navigation.scene_map import read_scene
+from bench.navigation.tour import LASER, drive, errors, new_loop
+
+mrpt = pytest.importorskip("robot_control._mrpt", reason="built without MRPT: scripts/setup --navigation")
+
+ROUND = ((2.0, 0.0), (0.0, 0.0), (2.0, 0.0))  # m, in the corridor
+KNOWN = np.diag([0.01, 0.01, 0.003])  # m², m², rad²
+
+
+@pytest.fixture(scope="module")
+def sights():
+    return list(drive(new_loop("room", 3), ROUND))
+
+
+def mapped(sights, mapper):
+    poses = []
+    for sight in sights:
+        mapper.update(sight.scan, LASER, sight.odometry)
+        poses.append(mapper.pose)
+    return np.array(poses)
+
+
+@pytest.fixture(scope="module")
+def grid(sights):
+    mapper = mrpt.Mapper()
+    mapped(sights, mapper)
+    return mapper.map
+
+
+def test_the_map_shows_the_true_walls_and_the_pose_in_it(sights):
+    mapper = mrpt.Mapper()
+    off = errors(sights, mapped(sights, mapper))
+    assert np.sqrt(np.mean(off[:, 0] ** 2 + off[:, 1] ** 2)) < 0.03
+    x, y, resolution, cells = mapper.map
+    rows, columns = np.nonzero(cells >= 65)
+    walls = np.column_stack((x + (columns + 0.5) * resolution, y + (rows + 0.5) * resolution))
+    assert len(walls) > 200
+    away = distances(read_scene(Path(share_file("urdf/scenes/room.xml"))), walls)
+    assert np.sqrt(np.mean(away**2)) < 0.05
+    assert np.mean(away > 0.1) < 0.05
+
+
+def test_a_saved_map_goes_on_where_the_robot_is(sights, grid):
+    """The odometry begins again, at another place of the map."""
+    again = sights[len(sights) // 2 :]
+    mapper = mrpt.Mapper(grid, again[0].truth)
+    off = errors(again, mapped(again, mapper))
+    assert np.max(np.hypot(off[:, 0], off[:, 1])) < 0.08
+
+
+def test_a_scan_of_another_place_does_not_change_the_map(sights, grid):
+    mapper = mrpt.Mapper(grid, (0.0, 0.0, 0.0))
+    elsewhere = list(drive(new_loop("loop", 3), ROUND))[:20]
+    mapped(elsewhere, mapper)
+    assert "drive back to where the map is known" in mapper.reason
+    assert np.array_equal(mapper.map[3] >= 65, grid[3] >= 65)
+
+
+def followed(localizer, sights):
+    states = []
+    for sight in sights:
+        localizer.update(sight.scan, LASER, sight.odometry, sight.covariance)
+        states.append(localizer.state)
+    return states
+
+
+def test_a_robot_is_followed_in_the_map_and_its_ellipse_is_true(sights, grid):
+    localizer = mrpt.Localizer(grid, 1)
+    assert localizer.state == "no pose"
+    assert "initialpose" in localizer.reason
+    localizer.set_pose(sights[0].truth, KNOWN)
+    assert set(followed(localizer, sights)) == {"localized"}
+    pose, covariance = localizer.pose
+    off = errors(sights[-1:], np.array([pose]))[0]
+    assert np.hypot(off[0], off[1]) < 0.05
+    assert off @ np.linalg.solve(covariance, off) < 11.3  # 99 % in three dimensions
+
+
+def test_the_same_seed_gives_the_same_pose(sights, grid):
+    def last():
+        localizer = mrpt.Localizer(grid, 7)
+        localizer.set_pose(sights[0].truth, KNOWN)
+        followed(localizer, sights[:60])
+        return localizer.pose[0]
+
+    assert last() == last()
+
+
+def test_a_robot_in_another_house_is_lost_and_says_why(sights, grid):
+    localizer = mrpt.Localizer(grid, 1)
+    localizer.set_pose(sights[0].truth, KNOWN)
+    states = followed(localizer, list(drive(new_loop("loop", 3), ROUND))[:60])
+    assert states.index("lost") < 50  # 5 s
+    assert "of what the laser sees is in the map there" in localizer.reason
+
+
+def test_a_search_finds_the_place_while_the_robot_drives(sights, grid):
+    localizer = mrpt.Localizer(grid, 1)
+    localizer.search()
+    assert followed(localizer, sights[:1]) == ["searching"]
+    assert "drive on" in localizer.reason
+    assert followed(localizer, sights[1:])[-1] == "localized"
+    off = errors(sights[-1:], np.array([localizer.pose[0]]))[0]
+    assert np.hypot(off[0], off[1]) < 0.1
+
+
+def test_a_map_without_walls_is_refused():
+    with pytest.raises(ValueError, match="no occupied cell"):
+        mrpt.Localizer((0.0, 0.0, 0.05, np.zeros((10, 10), np.int8)), 1)

@@ -1,0 +1,74 @@
+"""The rostests of navigate share a map as message, tf of a known place, and whether navigate was built."""
+
+import threading
+from pathlib import Path
+
+import numpy as np
+import roslib.packages
+import rospy
+from geometry_msgs.msg import TransformStamped
+from nav_msgs.msg import OccupancyGrid
+from tf2_msgs.msg import TFMessage
+
+PERIOD = 0.1
+"""s between two transforms"""
+
+
+def missing() -> str:
+    """The remedy if navigate was not built, or its messages are absent; else empty."""
+    try:
+        import move_base_msgs.msg  # noqa: F401
+    except ImportError:
+        return "needs Debian's python3-move-base-msgs: scripts/setup --navigation"
+    found = roslib.packages.find_node("robot_control", "navigate")
+    return "" if found else "navigate was built without libmove-base-msgs-dev: scripts/setup --navigation"
+
+
+def message_of(map_: tuple[float, float, float, np.ndarray], frame: str = "map") -> OccupancyGrid:
+    """The message of origin x, y [m], resolution [m] and cells."""
+    message = OccupancyGrid()
+    message.header.frame_id = frame
+    message.info.origin.position.x, message.info.origin.position.y, message.info.resolution, cells = map_
+    message.info.origin.orientation.w = 1.0
+    message.info.height, message.info.width = cells.shape
+    message.data = cells.ravel().tolist()
+    return message
+
+
+def transform(parent: str, child: str, x: float = 0.0, stamp: rospy.Time | None = None) -> TransformStamped:
+    """`child` lies x m ahead in `parent`, not turned."""
+    result = TransformStamped(child_frame_id=child)
+    result.header.frame_id, result.header.stamp = parent, stamp or rospy.Time.now()
+    result.transform.translation.x, result.transform.rotation.w = x, 1.0
+    return result
+
+
+class Localised:
+    """Publishes that odometry is true: map and odom are the same. `place`: also where the base is in odom, x [m]."""
+
+    def __init__(self, place: float | None = None) -> None:
+        self.silent = False
+        self._place = place
+        self._publisher = rospy.Publisher("tf", TFMessage, queue_size=5)
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def end(self) -> None:
+        self._ended.set()
+        self._thread.join()
+
+    def _run(self) -> None:
+        while not self._ended.wait(PERIOD):
+            if self.silent:
+                continue
+            ahead = rospy.Time.now() + rospy.Duration(PERIOD)  # as a localisation does, so that no scan waits for it
+            found = [transform("map", "odom", stamp=ahead)]
+            if self._place is not None:
+                found += [transform("odom", "base_link", self._place, ahead)]
+            self._publisher.publish(TFMessage(found))
+
+
+def share(name: str) -> Path:
+    """A file of the package."""
+    return Path(roslib.packages.get_pkg_dir("robot_control")) / name
