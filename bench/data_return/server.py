@@ -1,4 +1,4 @@
-"""A far side of rclone's own (SFTP or WebDAV) on the loopback, which can be killed, and rclone's configuration for it."""
+"""A far side of rclone's own (SFTP or WebDAV) on the loopback, which can be killed, and a configuration for it."""
 
 from __future__ import annotations
 

@@ -2,12 +2,14 @@
 
 import os
 import random
+import re
 from datetime import datetime
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from robot_control.common import durable_file
-from robot_control.common.durable_file import write_durably
+from robot_control.common import files as common_files
+from robot_control.common.files import write_durably
 from robot_control.data_return import plan
 from robot_control.data_return.fetch import verify
 from robot_control.data_return.node import default_interfaces
@@ -96,7 +98,7 @@ def test_a_loss_of_power_at_any_call_leaves_the_old_or_the_new_content(monkeypat
     losses = 0
     for lost_at in range(100):
         disk = VirtualDisk("queue.json", old, lost_at)
-        monkeypatch.setattr(durable_file, "os", disk)
+        monkeypatch.setattr(common_files, "os", disk)
         try:
             write_durably(Path("/queue.json"), new)
         except PowerLoss:
@@ -113,7 +115,7 @@ def test_the_disk_of_that_test_notices_what_is_missing(monkeypatch, left_out):
     """Without a flush of the content or of the folder, or without the rename, that test fails."""
     disk = VirtualDisk("queue.json", b"old", 100)
     monkeypatch.setattr(disk, left_out, lambda *_: None)
-    monkeypatch.setattr(durable_file, "os", disk)
+    monkeypatch.setattr(common_files, "os", disk)
     write_durably(Path("/queue.json"), "new")
     assert set(disk.states("queue.json")) != {b"new"}
 
@@ -125,8 +127,8 @@ def test_an_error_of_the_disk_names_the_file_and_leaves_the_old_content(tmp_path
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(durable_file.os, "write", full)
-    with pytest.raises(OSError, match="queue.json"):
+    monkeypatch.setattr(common_files.os, "write", full)
+    with pytest.raises(OSError, match=r"queue\.json"):
         write_durably(path, "new")
     assert path.read_text() == "old"
 
@@ -142,7 +144,7 @@ def test_a_file_that_is_no_queue_is_refused_and_not_replaced(tmp_path):
 def test_one_program_uses_a_queue(tmp_path):
     first = QueueFile(tmp_path)
     first.lock()
-    with pytest.raises(QueueError, match="another data_return.py"):
+    with pytest.raises(QueueError, match="another data_return"):
         QueueFile(tmp_path).lock()
 
 
@@ -226,7 +228,7 @@ def test_a_file_of_any_size_is_put_together(tmp_path, size):
         (MANIFEST, lambda data: data.replace(b"00001", b"../01"), "does not list the parts one by one"),
         (MANIFEST, lambda data: data.replace(b'"size": 3000,\n "m', b'"size": 3001,\n "m'), "hold 3000 of 3001 bytes"),
     ],
-    ids=str,
+    ids=["short", "other content", "missing", "cut manifest", "other names", "other size"],
 )
 def test_every_gap_is_named(tmp_path, capsys, name, change, words):
     system = System(tmp_path, {"run.1.bag": random.Random(1).randbytes(3 * PART)})
@@ -360,7 +362,7 @@ def test_the_program_may_end_before_every_effect(tmp_path, monkeypatch, hashes):
 
 
 def check_nothing_is_lost(system):
-    """What is no more on the robot is whole on the far side."""
+    """Each file that is no more on the robot is whole on the far side."""
     for name, content in system.sources.items():
         path = system.folder / "logs" / name
         if path.exists():
@@ -407,8 +409,9 @@ def test_a_failure_is_said_once_and_tried_again_later_and_later(tmp_path):
     for _ in range(2000):
         system.step()
     assert len(system.said) == 1
-    assert [round(b - a) for a, b in zip(tries, tries[1:], strict=False)][:5] == [2, 4, 8, 16, 32]
-    assert max(b - a for a, b in zip(tries, tries[1:], strict=False)) == plan.LONGEST_WAIT
+    pauses = [b - a for a, b in pairwise(tries)]
+    assert pauses[:5] == [2, 4, 8, 16, 32]
+    assert max(pauses) == plan.LONGEST_WAIT
     assert "it does not answer" in system.sender.progress
     system.far.before = lambda: None
     system.finish()
@@ -469,9 +472,8 @@ def test_a_file_that_is_deleted_before_it_was_sent_is_named(tmp_path):
 )
 def test_a_wrong_value_is_named(tmp_path, text, words):
     (tmp_path / "my.yaml").write_text(text)
-    with pytest.raises(SettingsError, match=".") as raised:
+    with pytest.raises(SettingsError, match=re.escape(words)):
         read_settings(tmp_path / "my.yaml")
-    assert words in str(raised.value)
 
 
 def test_passwords_that_others_can_read_are_refused(tmp_path):

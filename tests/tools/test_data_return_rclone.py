@@ -6,7 +6,7 @@ import subprocess
 import time
 
 import pytest
-from robot_control.data_return.far_side import FarSide, Interrupted, reason
+from robot_control.data_return.far_side import FarSide, InterruptedCallError, reason
 from robot_control.data_return.fetch import verify
 from robot_control.data_return.queue_file import QueueFile
 from robot_control.data_return.sender import Sender
@@ -96,7 +96,7 @@ def test_what_is_being_sent_ends_when_nothing_may_be_sent(systems):
     system = systems(bandwidth=0.1)
     far = FarSide(system.settings, lambda: "only at rest")
     began = time.monotonic()
-    with pytest.raises(Interrupted, match="only at rest"):
+    with pytest.raises(InterruptedCallError, match="only at rest"):
         far.put(system.logs, "x")
     assert time.monotonic() - began < 10.0
 

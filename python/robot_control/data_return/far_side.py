@@ -51,7 +51,7 @@ class FarSideError(RuntimeError):
     """A call failed; the message says why and what helps."""
 
 
-class Interrupted(RuntimeError):
+class InterruptedCallError(RuntimeError):
     """A call was ended, because nothing may be sent now."""
 
 
@@ -77,18 +77,18 @@ class FarSide:
             self._options += ["--ca-cert", str(given_path(settings.ca_file))]
 
     def put(self, source: Path, target: str) -> None:
-        """Copies the files of a folder. One that is there with the same hash, or without hashes the same size, stays."""
+        """Copies the files of a folder. One with the same hash (without hashes: size) that is there already stays."""
         size = sum(each.stat().st_size for each in source.iterdir())
         self._rclone("copy", "--checksum", "--no-traverse", str(source), f"{self._at}/{target}", size=size)
 
     def found(self, target: str, names: Sequence[str]) -> dict[str, tuple[int, str, str]]:
-        """Of those of these files that are there: size, kind of hash and hash; both empty where it computes none."""
+        """Size, kind of hash and hash of those of these files that are there; both empty where it computes none."""
         chosen = [word for name in names for word in ("--include", f"/{name}")]
         listed = json.loads(self._rclone("lsjson", "--hash", "--files-only", *chosen, f"{self._at}/{target}"))
         return {each["Name"]: (int(each["Size"]), *_hash(each.get("Hashes") or {})) for each in listed}
 
     def sizes(self, target: str) -> dict[str, int]:
-        """Of all files of a folder; empty where there is none."""
+        """Size of all files of a folder; empty where there is none."""
         listed = self._rclone("lsjson", "--files-only", "--no-modtime", f"{self._at}/{target}", missing=b"[]")
         return {each["Name"]: int(each["Size"]) for each in json.loads(listed)}
 
@@ -121,7 +121,7 @@ class FarSide:
                         process.kill()
                         process.communicate()
                         if why:
-                            raise Interrupted(why) from None
+                            raise InterruptedCallError(why) from None
                         raise FarSideError(f"{self._at}: the link is slower than {self._slowest:.0f} bytes/s") from None
         if process.returncode in NOT_FOUND and missing is not None:
             return missing
@@ -135,7 +135,7 @@ def _hash(known: dict[str, str]) -> tuple[str, str]:
 
 
 def reason(problem: str) -> str:
-    """What stopped rclone, in one sentence, out of what it wrote."""
+    """One sentence for what stopped rclone, out of its output."""
     for pattern, meaning in REASONS:
         if re.search(pattern, problem, re.IGNORECASE):
             return meaning

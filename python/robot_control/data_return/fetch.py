@@ -55,7 +55,7 @@ def _unfinished(local: Path) -> str:
 
 
 def _folders(source: str, rclone_config: str) -> list[str]:
-    """Of files, below the source."""
+    """Folders with files in them, below the source."""
     if (root := given_path(source)).is_dir():
         names = [str(path.relative_to(root)) for path in root.rglob("*") if path.is_file()]
     else:

@@ -62,7 +62,9 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(dest="command", required=True)
     for name, text in (("run", "the node on the robot: sends"), ("status", "what waits and what has returned")):
         command = commands.add_parser(name, help=text, description=text)
-        command.add_argument("--config", type=given_path, help="YAML file, laid over the installed config/data_return.yaml")
+        command.add_argument(
+            "--config", type=given_path, help="YAML file, laid over the installed config/data_return.yaml"
+        )
     for name, text in (
         ("verify", "checks every part that robots have sent; exit code 1: there is a gap"),
         ("fetch", "verify, and puts each file together that is whole"),

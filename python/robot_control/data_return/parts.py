@@ -1,4 +1,4 @@
-"""A file as parts and a manifest, and back. `zcat -f` over the parts in the order of their names gives the file, too."""
+"""A file as parts and a manifest, and back. `zcat -f` over the parts in order of their names gives the file, too."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def sha256(data: bytes) -> str:
 
 
 def manifest(entry: Entry) -> bytes:
-    """Of a file whose parts are all verified."""
+    """Content of the manifest of a file whose parts are all verified."""
     parts = [
         {"name": part.name, "size": part.size, "sha256": part.sha256}
         for part in (entry.parts[number] for number in range(entry.count))

@@ -1,4 +1,4 @@
-"""What is sent next, when, and what may be deleted. Pure: no clock, no file, no link."""
+"""Decides what is sent next, when, and what may be deleted. Pure: no clock, no file, no link."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class Conditions:
-    """What decides whether anything is sent now."""
+    """The facts by which it is decided whether anything is sent now."""
 
     now: datetime
     """local time"""

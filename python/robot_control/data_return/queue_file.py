@@ -12,7 +12,7 @@ from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
 
-from robot_control.common.durable_file import write_durably
+from robot_control.common.files import write_durably
 from robot_control.data_return.plan import Entry, Part, kind_of
 
 NAME = "queue.json"
@@ -29,7 +29,7 @@ class QueueError(ValueError):
 
 
 class QueueFile:
-    """The entries, by key. What `save` has returned from is never lost."""
+    """The entries, by key. Once `save` has returned, they are never lost."""
 
     def __init__(self, folder: Path) -> None:
         """Raises OSError, QueueError."""

@@ -5,11 +5,9 @@ from __future__ import annotations
 import hashlib
 import shutil
 from collections.abc import Callable
-from pathlib import Path
-from typing import Protocol
 
 from robot_control.common.file_errors import in_words
-from robot_control.data_return.far_side import FarSideError, Interrupted
+from robot_control.data_return.far_side import FarSide, FarSideError, InterruptedCallError
 from robot_control.data_return.parts import MANIFEST, manifest, packed, sha256
 from robot_control.data_return.plan import (
     GB,
@@ -28,21 +26,10 @@ SCAN_PERIOD = 5.0
 """s between two looks into the folder of logs"""
 
 
-class Far(Protocol):
-    """What `FarSide` offers."""
-
-    def put(self, source: Path, target: str) -> None: ...
-    def found(self, target: str, names: list[str]) -> dict[str, tuple[int, str, str]]: ...
-    def sizes(self, target: str) -> dict[str, int]: ...
-    def read(self, name: str, size: int) -> bytes: ...
-    def remove(self, name: str) -> None: ...
-    def used(self) -> int: ...
-
-
 class Sender:
     """Brings the files of the queue to the far side. After a failure it tries again later, and longer and longer."""
 
-    def __init__(self, settings: Settings, queue: QueueFile, far: Far, say: Callable[[str], None]) -> None:
+    def __init__(self, settings: Settings, queue: QueueFile, far: FarSide, say: Callable[[str], None]) -> None:
         self._settings, self._queue, self._far, self._say = settings, queue, far, say
         self.problem = ""
         self._waits = ""
@@ -57,7 +44,10 @@ class Sender:
         return progress(list(self._queue.entries.values()), self.problem or self._waits)
 
     def step(self, now: float, day: float, waits: str) -> bool:
-        """One pass at `now` (s, monotonic) and `day` (s, of files); `waits`: why nothing is sent. True: go on at once."""
+        """One pass at `now` [s, monotonic] and `day` [s, as of files]; `waits`: why nothing is sent.
+
+        True: the next pass is due at once.
+        """
         self._waits = waits
         if now < self._again:
             return False
@@ -68,7 +58,7 @@ class Sender:
             entry = None if waits else next_entry(self._queue.entries.values())
             if entry is not None:
                 self._send(entry)
-        except Interrupted:
+        except InterruptedCallError:
             return True
         except (FarSideError, OSError) as error:
             self._fail(now, in_words(error))
@@ -87,7 +77,9 @@ class Sender:
     def _scan(self, day: float) -> None:
         logs = self._settings.logs
         for lost in self._queue.scan(logs, day):
-            self._say(f"{lost.path} was deleted or changed before it was sent; a larger telemetry.quota keeps it longer")
+            self._say(
+                f"{lost.path} was deleted or changed before it was sent; a larger telemetry.quota keeps it longer"
+            )
         for each in deletable(list(self._queue.entries.values()), self._settings.local_quota):
             (logs / each.path).unlink(missing_ok=True)
             del self._queue.entries[each.key]
@@ -170,5 +162,7 @@ class Sender:
             self._used = self._far.used()
         if self._used + size > quota:
             self._used = None
-            raise FarSideError(f"the far side holds far_quota ({self._settings.far_quota:g} GB) of this robot: delete there")
+            raise FarSideError(
+                f"the far side holds far_quota ({self._settings.far_quota:g} GB) of this robot: delete there"
+            )
         self._used += size

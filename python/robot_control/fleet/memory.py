@@ -7,7 +7,7 @@ import threading
 from pathlib import Path
 from typing import Any
 
-from robot_control.common.durable_file import write_durably
+from robot_control.common.files import write_durably
 
 BLOCK = 1000
 """headerIds that are reserved with one write: they grow over restarts, and a write per message is saved"""
