@@ -39,12 +39,12 @@ class VirtualFarSide:
             self.files[name] = data
             self.received += len(data) - len(data) // 2
 
-    def found(self, target: str, names: Sequence[str]) -> dict[str, tuple[int, str, str]]:
+    def found(self, target: str, names: Sequence[str]) -> dict[str, tuple[str, str]]:
         self.before()
         there = {name: self.files[f"{target}/{name}"] for name in names if f"{target}/{name}" in self.files}
         kind = "md5" if self.hashes else ""
         return {
-            name: (len(data), kind, hashlib.md5(data).hexdigest() if kind else "")  # noqa: S324 (as servers offer it)
+            name: (kind, hashlib.md5(data).hexdigest() if kind else "")  # noqa: S324 (as servers offer it)
             for name, data in there.items()
         }
 

@@ -81,11 +81,11 @@ class FarSide:
         size = sum(each.stat().st_size for each in source.iterdir())
         self._rclone("copy", "--checksum", "--no-traverse", str(source), f"{self._at}/{target}", size=size)
 
-    def found(self, target: str, names: Sequence[str]) -> dict[str, tuple[int, str, str]]:
-        """Size, kind of hash and hash of those of these files that are there; both empty where it computes none."""
+    def found(self, target: str, names: Sequence[str]) -> dict[str, tuple[str, str]]:
+        """Kind of hash and hash of those of these files that are there; both empty where it computes none."""
         chosen = [word for name in names for word in ("--include", f"/{name}")]
         listed = json.loads(self._rclone("lsjson", "--hash", "--files-only", *chosen, f"{self._at}/{target}"))
-        return {each["Name"]: (int(each["Size"]), *_hash(each.get("Hashes") or {})) for each in listed}
+        return {each["Name"]: _hash(each.get("Hashes") or {}) for each in listed}
 
     def sizes(self, target: str) -> dict[str, int]:
         """Size of all files of a folder; empty where there is none."""
