@@ -142,7 +142,7 @@ def _cost(environment: dict[str, str], programs: Path, say: Say) -> list[dict[st
     """The far side has the lowest priority, too: on a robot it is another machine."""
     alone, beside, rates = [], [], []
     with System("sftp", environment, bandwidth=BANDWIDTH, prefix=("chrt", "--idle", "0")) as system:
-        (system.logs / "run.1.bag").write_bytes(random.Random(1).randbytes(1_000_000_000))
+        (system.logs / "run.1.bag").write_bytes(4 * random.Random(1).randbytes(100_000_000))
         os.utime(system.logs / "run.1.bag", (1e9, 1e9))
         for number in range(BLOCKS):
             say(f"cost: block {number + 1} of {BLOCKS}")

@@ -28,6 +28,7 @@ NOT_FOUND = (3, 4)
 
 REASONS = (
     (r"didn't find section in config", "this remote is not in rclone's configuration: rclone config shows all"),
+    (r"directory not found", "there is no such folder"),
     (r"certificate has expired", "its certificate has expired: renew it there"),
     (r"x509|certificate", "its certificate is not trusted: set ca_file"),
     (r"knownhosts|host key", "its host key is not the known one: known_hosts_file of rclone's configuration"),
