@@ -149,7 +149,7 @@ def test_a_full_far_side(systems, tmp_path, kind):
     small = ("unshare", "--mount", "sh", "-c", f'mount -t tmpfs -o size=1m tmpfs {tmp_path}/far && exec "$@"', "sh")
     if subprocess.run([*small, "true"], check=False, capture_output=True).returncode:
         pytest.skip("mounting is not granted")
-    said_once(systems(kind, prefix=small), "it could not write there; its disk may be full")
+    said_once(systems(kind, prefix=small), "it cannot write; is its disk full?")
 
 
 def test_a_full_local_disk(systems, monkeypatch):

@@ -36,8 +36,7 @@ REASONS = (
         r"unable to authenticate|\b401\b|unauthorized|invalid ?credentials|SignatureDoesNotMatch|InvalidAccessKeyId",
         "it refuses user or password: rclone config",
     ),
-    (r"no space left|\b507\b|insufficient storage|quota", "it is full: make room there"),
-    (r"\b405\b|SSH_FX_FAILURE", "it could not write there; its disk may be full"),
+    (r"no space left|\b507\b|insufficient storage|quota|\b405\b|SSH_FX_FAILURE", "it cannot write; is its disk full?"),
     (r"permission denied|\b403\b|forbidden|read-?only", "this user may not write there"),
     (
         r"connection re|no such host|i/o timeout|unreachable|no route|deadline exceeded|broken pipe|connection lost|"
