@@ -77,9 +77,14 @@ class FarSide:
             self._options += ["--ca-cert", str(given_path(settings.ca_file))]
 
     def put(self, source: Path, target: str) -> None:
-        """Copies the files of a folder. One with the same hash (without hashes: size) that is there already stays."""
+        """Copies the files of a folder. One with the same hash (without hashes: size) that is there already stays.
+
+        The caller verifies them: a copy that verifies by itself deletes a whole file where the link is cut meanwhile.
+        """
         size = sum(each.stat().st_size for each in source.iterdir())
-        self._rclone("copy", "--checksum", "--no-traverse", str(source), f"{self._at}/{target}", size=size)
+        self._rclone(
+            "copy", "--checksum", "--ignore-checksum", "--no-traverse", str(source), f"{self._at}/{target}", size=size
+        )
 
     def found(self, target: str, names: Sequence[str]) -> dict[str, tuple[str, str]]:
         """Kind of hash and hash of those of these files that are there; both empty where it computes none."""
