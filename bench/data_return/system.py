@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import random
+import shutil
 import subprocess
 import tempfile
 import threading
@@ -13,6 +15,9 @@ from types import TracebackType
 from typing import Self
 
 import yaml  # type: ignore[import-untyped]
+from robot_control.data_return.far_side import FarSide
+from robot_control.data_return.plan import BATCH, PART_BYTES
+from robot_control.data_return.settings import read_settings
 
 from bench.console.process import program
 from bench.console.proxy import Proxy
@@ -37,6 +42,7 @@ class System:
         settings = {"far_side": "far:", "robot": "r1", "rclone_config": str(config), "folder": str(self.logs)}
         self._settings = folder / "data_return.yaml"
         self._settings.write_text(yaml.safe_dump({**settings, "queue_folder": str(self._queue), **values}))
+        self._values = read_settings(self._settings)
         self._environment = environment
         self._process: subprocess.Popen[bytes] | None = None
 
@@ -50,6 +56,16 @@ class System:
         self.cable.end()
         self.server.kill()
         self._temporary.cleanup()
+
+    def protocol(self) -> float:
+        """Bytes that leave for each byte of a part, without a loss."""
+        sent, parts = self.cable.sent, self.logs.parent / "parts"
+        parts.mkdir()
+        for number in range(BATCH):
+            (parts / str(number)).write_bytes(random.Random(number).randbytes(PART_BYTES))
+        FarSide(self._values).put(parts, "protocol")
+        shutil.rmtree(self.far / "r1/protocol")
+        return (self.cable.sent - sent) / (BATCH * PART_BYTES)
 
     def begin(self) -> None:
         """Starts data_return.py."""
