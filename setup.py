@@ -7,6 +7,7 @@ PROGRAMS = (
     "blackbox",
     "calibrate",
     "console",
+    "data_return",
     "demo",
     "doctor",
     "drive",

@@ -49,6 +49,7 @@ JUDGED = (
     "devices",
     "console",
     "fleet",
+    "data_return",
     "realtime",
     "navigation",
 )
@@ -58,6 +59,7 @@ PARTS = {
     "legs": legs.PARTS,
     "fleet": ("sequences", "orders", "losses", "cost"),
     "navigation": navigation.PARTS,
+    "data_return": ("upload", "cost"),
 }
 NAMES = MEASURED + JUDGED
 SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores
@@ -189,6 +191,12 @@ def _navigation(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     return navigation.bench(_parts_of("navigation", given), given.first, given.runs, say)
 
 
+def _data_return(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    from bench.data_return import bench as data_return
+
+    return data_return.bench(_parts_of("data_return", given), given.first, given.share, given.programs, say)
+
+
 def _drive(_given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     from bench.drives import drive_promises
 
@@ -212,6 +220,7 @@ TRIALS = {
     "drive": _drive,
     "console": _console,
     "fleet": _fleet,
+    "data_return": _data_return,
     "realtime": _realtime,
     "navigation": _navigation,
 }
@@ -282,7 +291,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("names", nargs="*", metavar="NAME", help=which)
     seeds = (
         "campaign, devices, replay, limiter, release, bags, odometry, hostile, tuning, blackbox, processes, legs, "
-        "fleet, navigation"
+        "fleet, navigation, data_return"
     )
     parser.add_argument("--first", type=_whole(0), default=0, help=f"{seeds}: first seed")
     parser.add_argument("--runs", type=_whole(1), help=f"{seeds}: number of seeds")
@@ -290,7 +299,8 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
         "--share",
         type=_share,
         default=1.0,
-        help="driving: of the two hours; record: of the ten minutes; console: of presses, losses and seconds",
+        help="driving: of the two hours; record: of the ten minutes; console: of presses, losses and seconds; "
+        "data_return: of the files",
     )
     parser.add_argument("--errors", choices=LEVELS, default=LEVELS[0], help="driving, odometry: of the sensors")
     parser.add_argument("--plots", type=Path, help="odometry: folder for pictures")

@@ -20,6 +20,7 @@ class Proxy:
         self.target = target
         self.delay = self.jitter = 0.0  # s, each way
         self.stalled = False  # nothing passes until it ends
+        self.sent = 0  # bytes of the clients
         self._random = random.Random(seed)  # noqa: S311 (of a link, not of a key)
         self._listening = socket.create_server(("127.0.0.1", 0))
         self._listening.settimeout(None)  # rospy sets a default of 60 s
@@ -52,9 +53,9 @@ class Proxy:
                 for source, sink in ((inner, outer), (outer, inner)):
                     source.settimeout(None)
                     source.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-                    self._pass(source, sink)
+                    self._pass(source, sink, counted=source is inner)
 
-    def _pass(self, source: socket.socket, sink: socket.socket) -> None:
+    def _pass(self, source: socket.socket, sink: socket.socket, *, counted: bool) -> None:
         waiting: deque[tuple[float, bytes]] = deque()
         there = threading.Condition()
 
@@ -66,6 +67,7 @@ class Proxy:
                     data = source.recv(PIECE)
                 except OSError:
                     data = b""
+                self.sent += len(data) if counted else 0
                 due = max(due, time.monotonic() + self.delay + self._random.uniform(0.0, self.jitter))
                 with there:
                     waiting.append((due, data))

@@ -101,6 +101,14 @@ def test_what_the_drives_do_on_silence_is_repeated():
     assert status_of(reports()).machine == ""
 
 
+def test_the_return_of_data_is_repeated_and_a_failure_of_it_is_a_problem():
+    said = report(DiagnosticStatus.WARN, "it does not answer", progress="run.7.bag 40 %")
+    status = status_of(reports(data_return=said))
+    assert status.data_return == "run.7.bag 40 %"
+    assert status.problems == ["data_return: it does not answer"]
+    assert status_of(reports()).data_return == ""
+
+
 def test_numbers_that_always_change_are_no_change_and_a_cause_is_one():
     before, after = status_of(reports()), status_of(reports())
     after.uptime, after.odometry_confidence = 3.0, 0.9

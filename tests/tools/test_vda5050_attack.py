@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from robot_control.fleet.client import RIVAL_SILENCE
 
 from bench.fleet.attack import mutated
 from bench.fleet.messages import action, header, order
@@ -78,6 +79,31 @@ def test_another_serial_number_is_refused():
 def test_a_retained_message_is_refused_for_its_age_is_not_known():
     refused(order(PLACES), words="retained", retained=True)
     refused({**header(), "actions": [action("stopPause", 1)]}, "instantActions", words="retained", retained=True)
+
+
+def test_a_second_client_of_the_serial_number_makes_the_robot_stand_until_a_person_or_the_master_resumes():
+    run = Run()
+    run.send(order(PLACES))
+    run.step(2.0)
+    assert run.robot.motion.linear > 0.2
+    run.client.receive("connection", b'{"connectionState": "ONLINE"}', run.now)
+    run.step(3.0)
+    assert run.state["paused"]
+    assert run.robot.motion.linear == 0.0
+    (error,) = run.state["errors"]
+    assert (error["errorType"], error["errorLevel"]) == ("connectionError", "FATAL")
+    goals = run.robot.goals
+    state = run.send({**header(), "actions": [action("stopPause", 1)]})
+    assert "another client" in state["errors"][0]["errorDescription"]
+    run.send(order(PLACES, 3, name="another"))
+    assert run.client.resume() == "another client uses this serial number"
+    run.step(RIVAL_SILENCE)
+    assert not [each for each in run.state["errors"] if each["errorType"] == "connectionError"]
+    assert run.state["paused"]
+    assert run.robot.goals == goals
+    run.send({**header(), "actions": [action("stopPause", 2)]})
+    run.step(20.0)
+    assert not run.state["nodeStates"]
 
 
 def test_a_flood_of_instant_actions_and_errors_keeps_the_state_small():

@@ -82,6 +82,30 @@ def test_online_is_retained_after_every_connection_and_offline_before_the_end(tm
     again.end()
 
 
+def test_two_clients_of_one_serial_number_notice_each_other_and_one_does_not_notice_itself(tmp_path, broker):
+    links = []
+    for number in range(2):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        links.append(link_of(folder, broker.port))
+    first, second = links
+    first.begin()
+    wait_for(lambda: first.came_up)
+    broker.kill()
+    wait_for(lambda: not first.up)
+    first.came_up = False
+    broker.start()
+    wait_for(lambda: first.came_up)
+    time.sleep(0.5)
+    assert first.received.empty()
+    second.begin()
+    for each in links:
+        wait_for(lambda each=each: not each.received.empty())
+        assert each.received.get()[0] == "connection"
+    for each in links:
+        each.end()
+
+
 PROGRAM = """
 import sys, time
 from pathlib import Path

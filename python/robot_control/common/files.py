@@ -204,6 +204,31 @@ def write_text(path: Path, text: str) -> None:
             file.write(text)
 
 
+def write_durably(path: Path, text: str) -> None:
+    """The new content is on the disk when this returns. Raises OSError; the old content then stays.
+
+    The content is flushed before the rename, so that a loss of power never leaves a part of it under this name. The
+    folder is flushed after it, so that the rename outlives one, too.
+    """
+    partial = path.with_suffix(".partial")
+    descriptor = os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
+    try:
+        left = memoryview(text.encode())
+        while left:
+            left = left[os.write(descriptor, left) :]
+        os.fsync(descriptor)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(path)) from error
+    finally:
+        os.close(descriptor)
+    os.replace(partial, path)  # noqa: PTH105 (beside the other calls of os, which a test replaces together)
+    folder = os.open(path.parent, os.O_RDONLY)
+    try:
+        os.fsync(folder)
+    finally:
+        os.close(folder)
+
+
 def _put(partial: Path, target: Path) -> None:
     if target.exists() and not (target.is_file() and _takes_after(partial, target)):
         with partial.open("rb") as source, target.open("wb") as sink:

@@ -15,7 +15,7 @@ from sensor_msgs.msg import JointState
 from robot_control.common.command import Command
 from robot_control.common.pose import pose_of
 from robot_control.console.topics import Latest
-from robot_control.msg import DriveState, FollowPathActionFeedback, LegState
+from robot_control.msg import DriveState, FollowPathActionFeedback, LegState, RobotStatus
 from robot_control.view.scene import Trail
 from robot_control.why.diagnosis import judge, missing_nodes
 from robot_control.why.state import Facts
@@ -43,6 +43,7 @@ class View:
             "feedback": Latest("follow_path/feedback", FollowPathActionFeedback),
         }
         self._wanted = Latest("path_wanted", Path)
+        self._status = Latest("robot_status", RobotStatus)
 
     def revoked(self, node: str) -> bool:
         """True if the controller refuses what the node requested before a stop."""
@@ -97,7 +98,7 @@ class View:
         """The values that change rarely: state, causes, remedies, senders."""
         answer, safety, estimator = judge(facts), facts.received(), facts.kind.estimator
         drive, legs = (self._topics[name].message for name in ("drive", "legs"))
-        feedback, revoked = self._topics["feedback"], drive or legs
+        feedback, revoked, status = self._topics["feedback"], drive or legs, self._status.message
         progress = (
             {}
             if feedback.message is None
@@ -128,6 +129,7 @@ class View:
                 "sources": [] if drive is None else drive.sources,
                 "revoked": [] if revoked is None else revoked.revoked,
                 "legged": facts.kind.legged,
+                "data_return": "" if status is None else status.data_return,
                 "path": {"age": feedback.age(time.monotonic()), **progress},
             }
         )

@@ -26,6 +26,14 @@ GAP = 1.0
 """s without a pass after which messages may have waited, and for which they are then refused"""
 LATE = 0.4
 """s by which the distance that follow_path reports is late at most"""
+RIVAL_SILENCE = 60.0
+"""s without a sign of another client of this serial number after which it is gone; it connects again within 30 s"""
+RIVAL = Error(
+    "connectionError",
+    "another client uses this serial number",
+    hint="give each robot a serial_number of its own; then stopPause or vda5050/resume",
+    fatal=True,
+)
 
 
 @dataclass(frozen=True)
@@ -80,6 +88,7 @@ class Client:
         self._sent_key: object = None  # what the last state said
         self._state_at = self._visualization_at = -math.inf
         self._stepped_at, self._deaf_until = math.inf, -math.inf
+        self._rival_until = -math.inf
         self._planned: object = None  # revision of the order that the present leg is made of
         self._asked = True  # a state is due, whatever it says
 
@@ -97,6 +106,11 @@ class Client:
                 self._deaf_until = now + GAP
             if now < self._deaf_until:
                 raise RefusedError("orderError", f"{topic} came while the robot's client stood still: send it again")
+            if topic == "connection":  # the link passes on no own one
+                self._rival_until = now + RIVAL_SILENCE
+                return
+            if now < self._rival_until:
+                raise RefusedError("orderError", f"{topic}: {RIVAL.description}")
             if topic not in INBOUND or retained:
                 raise RefusedError("validationError", f"{topic} must not be retained: the robot cannot know its age")
             message = decoded(payload, topic, self.settings.manufacturer, self.settings.serial_number)
@@ -163,6 +177,8 @@ class Client:
         """stopPause, or the same at the robot; why it does not go on, empty if it does."""
         if not self._facts.may_drive:
             return "the safety monitor does not permit to drive"
+        if self._stepped_at < self._rival_until:
+            return RIVAL.description
         why = self.robot.resume() if self._facts.held_by else ""
         if not why:
             self.vehicle.paused, self._driving_error = False, None
@@ -183,7 +199,7 @@ class Client:
         if facts.mode != self._mode:
             self._mode = facts.mode
             self._interrupt(vehicle.clear(f"the mode became {facts.mode}"))
-        if vehicle.nodes and not facts.may_drive:
+        if vehicle.nodes and (now < self._rival_until or not facts.may_drive):
             vehicle.paused = True
         self._follow(before)
         for action_id, status, result in self.robot.results():
@@ -316,6 +332,8 @@ class Client:
         vehicle, facts = self.vehicle, self._facts
         if self._driving_error is not None:
             facts = replace(facts, errors=(*facts.errors, self._driving_error))
+        if now < self._rival_until:
+            facts = replace(facts, errors=(*facts.errors, RIVAL))
         short = self._base_is_short
         key = (
             vehicle.revision,

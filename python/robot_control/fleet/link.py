@@ -35,6 +35,7 @@ class Link:
         self.up = False
         self.came_up = False  # a connection was made; the reader sets it back
         self.reason = ""  # why there is none
+        self._connections = 0
         name = f"{settings.manufacturer}-{settings.serial_number}"
         self._client = mqtt.Client(client_id=name, clean_session=True)
         self._client.on_connect, self._client.on_disconnect = self._connected, self._disconnected
@@ -47,6 +48,7 @@ class Link:
             self._client.tls_set(settings.ca_file, *certificate, tls_version=ssl.PROTOCOL_TLS_CLIENT)
         broken = self._bytes("connection", {"connectionState": "CONNECTIONBROKEN"})
         self._client.will_set(self._topic("connection"), broken, qos=1, retain=True)
+        self._own = [broken, b""]  # what this program says on `connection`: the will, and the last message
 
     def begin(self) -> None:
         """Connects, now or as soon as the broker answers."""
@@ -58,10 +60,10 @@ class Link:
         """Sends it with a header, if there is a connection: what is old by then helps no master."""
         if not self.up:
             return None
-        quality = 1 if topic == "connection" else 0
-        return self._client.publish(
-            self._topic(topic), self._bytes(topic, message), qos=quality, retain=topic in RETAINED
-        )
+        quality, payload = int(topic == "connection"), self._bytes(topic, message)
+        if topic == "connection":
+            self._own[1] = payload
+        return self._client.publish(self._topic(topic), payload, qos=quality, retain=topic in RETAINED)
 
     def end(self) -> None:
         """OFFLINE, then the orderly end."""
@@ -89,7 +91,8 @@ class Link:
         self.reason = mqtt.connack_string(code) if code else ""
         if code:
             return
-        client.subscribe([(self._topic(name), 0) for name in INBOUND])
+        self._connections += 1
+        client.subscribe([(self._topic(name), 0) for name in (*INBOUND, "connection")])
         self.up = True
         self.publish("connection", {"connectionState": "ONLINE"})
         self.came_up = True
@@ -102,8 +105,12 @@ class Link:
         self.reason = self.reason or (mqtt.error_string(code) if code else "")
 
     def _message(self, _client: mqtt.Client, _data: Any, message: mqtt.MQTTMessage) -> None:
+        topic = message.topic.rpartition("/")[2]
+        before = message.retain and self._connections == 1  # of this robot's program before
+        if topic == "connection" and (before or message.payload in self._own):
+            return
         try:
             payload = message.payload[: MAX_BYTES + 1]  # one byte more than is taken
-            self.received.put_nowait((message.topic.rpartition("/")[2], payload, bool(message.retain)))
+            self.received.put_nowait((topic, payload, bool(message.retain)))
         except queue.Full:
             self.reason = f"more than {WAITING} messages wait: one was dropped"

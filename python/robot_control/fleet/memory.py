@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
-import os
 import threading
 from pathlib import Path
 from typing import Any
+
+from robot_control.common.files import write_durably
 
 BLOCK = 1000
 """headerIds that are reserved with one write: they grow over restarts, and a write per message is saved"""
@@ -47,17 +48,7 @@ class Memory:
     def _write(self, values: Content) -> None:
         self._content |= values
         self._content["headers"] = self._reserved
-        partial = self.path.with_suffix(".partial")
-        with partial.open("w", encoding="utf-8") as file:
-            json.dump(self._content, file)
-            file.flush()
-            os.fsync(file.fileno())
-        partial.replace(self.path)
-        folder = os.open(self.path.parent, os.O_RDONLY)
-        try:
-            os.fsync(folder)
-        finally:
-            os.close(folder)
+        write_durably(self.path, json.dumps(self._content))
 
     def header_id(self, topic: str) -> int:
         """The next one of this topic. Raises OSError."""

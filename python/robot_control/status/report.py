@@ -48,6 +48,7 @@ def status_of(reports: Reports) -> RobotStatus:
     status.mode = _mode(status)
     status.odometry_confidence = _confidence(reports)
     status.machine = _machine(reports)
+    status.data_return = reports.value("data_return", "progress")
     status.odometry_degraded = bool(reports.value(reports.kind.estimator, "degraded"))
     return status
 
@@ -96,5 +97,5 @@ def _confidence(reports: Reports) -> float:
 
 def changed(new: RobotStatus, old: RobotStatus) -> bool:
     """True if the state differs, not merely its numbers; it is then published at once."""
-    names = [name for name in new.__slots__ if name not in {"header", "uptime", "odometry_confidence"}]
+    names = [name for name in new.__slots__ if name not in {"header", "uptime", "odometry_confidence", "data_return"}]
     return any(getattr(new, name) != getattr(old, name) for name in names)

@@ -1,0 +1,144 @@
+"""Decides what is sent next, when, and what may be deleted. Pure: no clock, no file, no link."""
+
+from __future__ import annotations
+
+import fnmatch
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+
+from robot_control.data_return.settings import HOURS, Settings
+
+KINDS = ("incidents", "reports", "runs")
+"""in the order in which they are sent; also the folders on the far side"""
+INCIDENT = re.compile(r"(stop|crash)\.\d+\.bag")
+CURRENT = "run.bag"
+PART_BYTES = 4 << 20
+"""bytes of a file in one part: what a cut of the link costs at most"""
+BATCH = 4
+"""parts for one start of rclone, which costs a connection"""
+FIRST_WAIT, LONGEST_WAIT = 2.0, 300.0
+"""s before another try, doubled after each failure"""
+GB = 1e9
+"""bytes"""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part that was verified on the far side."""
+
+    name: str
+    size: int
+    sha256: str
+
+
+@dataclass
+class Entry:
+    """A finished file."""
+
+    key: str
+    """of the file's inode, size and time, so that telemetry may rename it"""
+    path: str
+    """below the folder of logs, now"""
+    kind: str
+    size: int
+    mtime_ns: int
+    target: str
+    """folder on the far side, below the robot's"""
+    parts: dict[int, Part] = field(default_factory=dict)
+    """those verified, until the file is returned"""
+    returned: bool = False
+    """the manifest was read back, and all parts were there"""
+
+    @property
+    def count(self) -> int:
+        """Parts of the file; an empty file has one."""
+        return max(1, -(-self.size // PART_BYTES))
+
+    @property
+    def left(self) -> int:
+        """Bytes of the file that are not on the far side yet."""
+        return 0 if self.returned else max(0, self.size - len(self.parts) * PART_BYTES)
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """The facts by which it is decided whether anything is sent now."""
+
+    now: datetime
+    """local time"""
+    mode: str = ""
+    """of robot_status; empty while it is silent"""
+    interfaces: Sequence[str] = ()
+    """of the default routes"""
+
+
+def kind_of(name: str) -> str | None:
+    """The kind of a file by its name; None: it does not return."""
+    if INCIDENT.fullmatch(name):
+        return "incidents"
+    if name.startswith("."):  # a file that is being written
+        return None
+    return {"bag": "runs", "html": "reports"}.get(name.rpartition(".")[2])
+
+
+def next_entry(entries: Iterable[Entry]) -> Entry | None:
+    """Incidents, reports, runs; of a kind what was begun, then the oldest, which telemetry deletes first."""
+    waiting = (each for each in entries if not each.returned)
+    return min(waiting, default=None, key=lambda e: (KINDS.index(e.kind), not e.parts, e.mtime_ns, e.key))
+
+
+def next_parts(entry: Entry) -> list[int]:
+    """Numbers of the parts that are sent together; none: the manifest is due."""
+    return [number for number in range(entry.count) if number not in entry.parts][:BATCH]
+
+
+def deletable(entries: Sequence[Entry], quota: float) -> list[Entry]:
+    """The oldest returned files without which all are within the quota [GB]; 0: none.
+
+    run.bag stays: telemetry gives this name to another file whenever it begins.
+    """
+    excess = sum(each.size for each in entries) - quota * GB
+    chosen = []
+    for each in sorted(entries, key=lambda e: (e.mtime_ns, e.key)) if quota else ():
+        if each.returned and excess > 0 and not each.path.endswith(CURRENT):
+            chosen.append(each)
+            excess -= each.size
+    return chosen
+
+
+def waits(settings: Settings, given: Conditions) -> str:
+    """Why nothing is sent now; empty: nothing stands against it."""
+    if settings.hours and not any(_within(each, given.now) for each in settings.hours):
+        return f"outside of hours ({', '.join(settings.hours)})"
+    if settings.only_at_rest and given.mode in ("", "manual", "automatic"):
+        return f"only at rest, and the robot is commanded ({given.mode})" if given.mode else "robot_status is silent"
+    for name in () if settings.metered else given.interfaces:
+        if any(fnmatch.fnmatch(name, each) for each in settings.metered_interfaces):
+            return f"the link {name} is metered"
+    return ""
+
+
+def _within(hours: str, now: datetime) -> bool:
+    found = HOURS.fullmatch(hours)
+    assert found  # noqa: S101 (settings.py refuses others)
+    first, first_minute, last, last_minute = map(int, found.groups())
+    begin, end, at = 60 * first + first_minute, 60 * last + last_minute, 60 * now.hour + now.minute
+    return begin <= at < end if begin <= end else at >= begin or at < end
+
+
+def wait_after(failures: int) -> float:
+    """s until the next try."""
+    return float(min(LONGEST_WAIT, FIRST_WAIT * 2 ** min(failures - 1, 10)))
+
+
+def progress(entries: Sequence[Entry], why: str) -> str:
+    """One line; `why` nothing is sent."""
+    waiting = [each for each in entries if not each.returned]
+    if not waiting:
+        return f"all {len(entries)} files are on the far side"
+    left = sum(each.left for each in waiting)
+    now = next_entry(waiting)
+    sending = f"waits: {why}" if why or now is None else f"{now.path} {100 * len(now.parts) // now.count} %"
+    return f"{sending}; to go: {len(waiting)} files, {left / 1e6:.1f} MB"

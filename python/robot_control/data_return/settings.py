@@ -1,0 +1,131 @@
+"""The values of config/data_return.yaml."""
+
+from __future__ import annotations
+
+import math
+import re
+import socket
+import stat
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import yaml  # type: ignore[import-untyped]
+
+from robot_control.blackbox.main import LOGS
+from robot_control.common.files import given_path, printable
+
+RCLONE_CONFIG = "~/.config/rclone/rclone.conf"
+"""rclone's own place for it"""
+HOURS = re.compile(r"([01]\d|2[0-3]):([0-5]\d)-([01]\d|2[0-3]):([0-5]\d)")
+ROBOT = re.compile(r"[A-Za-z0-9_.-]{1,64}")
+
+
+class SettingsError(ValueError):
+    """The settings cannot be used; the message names every problem."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """The values; config/data_return.yaml explains them."""
+
+    far_side: str = ""
+    robot: str = ""
+    rclone_config: str = RCLONE_CONFIG
+    ca_file: str = ""
+    folder: str = ""
+    queue_folder: str = ""
+    bandwidth: float = 0.0
+    hours: tuple[str, ...] = ()
+    only_at_rest: bool = False
+    metered: bool = False
+    metered_interfaces: tuple[str, ...] = ()
+    local_quota: float = 0.0
+    far_quota: float = 0.0
+
+    @property
+    def logs(self) -> Path:
+        """The folder whose files return."""
+        return given_path(self.folder or str(LOGS))
+
+    @property
+    def queue(self) -> Path:
+        """The folder of the queue."""
+        return given_path(self.queue_folder) if self.queue_folder else self.logs / "data_return"
+
+    @property
+    def destination(self) -> str:
+        """The folder of this robot, as rclone names it."""
+        slash = "" if self.far_side.endswith((":", "/")) else "/"
+        return f"{self.far_side}{slash}{self.robot or socket.gethostname()}"
+
+
+def read_settings(*paths: Path) -> Settings:
+    """The values of these files, each laid over the one before.
+
+    Raises:
+        SettingsError: with all problems.
+        OSError: a file cannot be read.
+    """
+    values, problems = dict[str, Any](), list[str]()
+    for path in paths:
+        try:
+            tree = yaml.safe_load(path.read_text(encoding="utf-8")) or {}
+        except (yaml.YAMLError, UnicodeDecodeError, RecursionError) as error:
+            raise SettingsError(f"{path}: is no YAML: {error}") from None
+        found = list(_wrong_types(tree))
+        problems += [f"{path}: {each}" for each in found]
+        values |= {} if found else tree
+    values = {name: tuple(value) if isinstance(value, list) else value for name, value in values.items()}
+    settings = Settings(**values)
+    problems += _together(settings)
+    if problems:
+        raise SettingsError("; ".join(problems))
+    return settings
+
+
+def _wrong_types(tree: object) -> Iterator[str]:
+    if not isinstance(tree, Mapping):
+        yield "must hold keys with values"
+        return
+    defaults = {each.name: each.default for each in fields(Settings)}
+    for name, value in tree.items():
+        default, text = defaults.get(name), printable(str(value))
+        if name not in defaults:
+            yield f"{printable(str(name))}: is unknown; known are {', '.join(defaults)}"
+        elif isinstance(default, tuple):
+            if not isinstance(value, list) or not all(isinstance(each, str) for each in value):
+                yield f"{name} = {text}: must be a list of texts"
+        elif isinstance(default, float):
+            if not isinstance(value, int | float) or isinstance(value, bool) or not 0 <= value < math.inf:
+                yield f"{name} = {text}: must be a number, 0 or more"
+        elif not isinstance(value, type(default)):
+            yield f"{name} = {text}: must be {'true or false' if isinstance(default, bool) else 'a text'}"
+
+
+def _together(settings: Settings) -> Iterator[str]:
+    if not settings.far_side:
+        yield "far_side is empty: name a remote of rclone's configuration and a folder there, as in factory:robots"
+    elif settings.far_side.startswith("-"):
+        yield f"far_side = {printable(settings.far_side)}: begins with -"
+    if settings.robot and not ROBOT.fullmatch(settings.robot):
+        yield f"robot = {printable(settings.robot)}: must be of letters, digits and _ . -, at most 64"
+    for each in settings.hours:
+        if not HOURS.fullmatch(each):
+            yield f"hours: {printable(each)}: must be as in 22:00-06:00"
+    if 0 < settings.bandwidth < 0.01:
+        yield f"bandwidth = {settings.bandwidth:g}: must be 0 (no limit) or at least 0.01 MB/s"
+    remote = ":" in settings.far_side.partition("/")[0]
+    for name in ("rclone_config",) * remote + ("ca_file",) * bool(settings.ca_file):
+        yield from _file_problems(name, given_path(getattr(settings, name)), secret=name == "rclone_config")
+
+
+def _file_problems(name: str, path: Path, *, secret: bool) -> Iterator[str]:
+    try:
+        path.read_bytes()
+        if secret and stat.S_IMODE(path.stat().st_mode) & 0o077:
+            yield f"{name} = {path}: others can read the passwords in it; chmod 600 {path}"
+    except OSError as error:
+        remedy = "; make it with rclone config" if secret else ""
+        yield f"{name} = {path}: cannot be read: {error.strerror}{remedy}"
