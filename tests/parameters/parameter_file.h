@@ -83,14 +83,17 @@ class ParameterFile {
     write(result);
   }
 
-  /// The value of `key` in the map `group`, which stands on one line; an empty `value` removes the key.
+  /// The value of `key` in the map `group`, on one line or with a line per key; an empty `value` removes the key.
   void set_in(const std::string& group, const std::string& key, const std::string& value) {
-    const std::size_t line = text_.find("\n  " + group + ":");
-    const std::size_t begin = text_.find(key + ": ", line);
-    const std::size_t end = text_.find_first_of(",}", begin);
+    const std::size_t line = text_.find("\n  " + group + ":") + 1;
+    const bool on_one_line = text_.substr(line, text_.find('\n', line) - line).find('{') != std::string::npos;
+    const std::size_t begin = text_.find((on_one_line ? "" : "    ") + key + ": ", line);
+    const std::size_t end = text_.find_first_of(on_one_line ? ",}" : "\n", begin);
     ASSERT_NE(end, std::string::npos) << group << "." << key << " does not stand in the file";
     std::string text = text_;
-    if (!value.empty()) {
+    if (!on_one_line) {
+      write(text.replace(begin, end + 1 - begin, value.empty() ? "" : "    " + key + ": " + value + "\n"));
+    } else if (!value.empty()) {
       write(text.replace(begin, end - begin, key + ": " + value));
     } else if (text[end] == ',') {
       write(text.erase(begin, end + 2 - begin));

@@ -134,7 +134,7 @@ class LegsTest(unittest.TestCase):
         walk = Twist()
         walk.linear.x = 0.2
         wait_for("a walk", lambda: self.legs.posture == "walking", every=lambda: self.cmd_vel.publish(walk))
-        self.assertEqual(self.legs.gait, "trot")
+        self.assertEqual(self.legs.gait, "walking_trot")  # the choice of a slow walk
         set_gait = rospy.ServiceProxy("set_gait", SetGait)
         self.assertFalse(set_gait("moonwalk").success)
         self.assertTrue(set_gait("crawl").success)

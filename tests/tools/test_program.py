@@ -2,6 +2,7 @@
 
 import ast
 import os
+import re
 import select
 import subprocess
 import sys
@@ -66,13 +67,16 @@ def begins_with(path, call):
 
 
 def test_every_program_writes_its_lines_at_once():
-    """`run` does this for Python's programs, `run_node` for nodes; expand_xacro writes a document for its caller."""
+    """`run` does this for Python's programs, `run_node` and `run_service` for nodes; expand_xacro writes a document for
+    its caller.
+    """
     package = SCRIPTS.parent / "python/robot_control"
     modules = [path for path in package.rglob("*.py") if "__main__" in path.read_text()]
     python = {*SCRIPTS.rglob("*.py"), *modules} - {package / "expand_xacro.py"}
     assert [str(path) for path in sorted(python) if not begins_with(path, "run(main)")] == []
     nodes = set((SCRIPTS.parent / "src/main").glob("*.cpp"))
-    assert [str(path) for path in sorted(nodes) if "return run_node(" not in path.read_text()] == []
+    begins = re.compile(r"return run_(node|service)\(")
+    assert [str(path) for path in sorted(nodes) if not begins.search(path.read_text())] == []
     installed = Path(roslib.packages.find_node("robot_control", "telemetry")[0]).parent
     assert {path.stem for path in installed.iterdir()} <= {path.stem for path in python | nodes}
 

@@ -11,8 +11,7 @@ from robot_control.common import running_robot
 from robot_control.common.server_values import ServerValueError, server_text, server_tree
 from robot_control.pad.main import ParameterError
 from robot_control.pad.main import parameters as pad_parameters
-from robot_control.view import state_publisher
-from robot_control.view.wheels import running_wheels
+from robot_control.view import state_publisher, wheels
 
 NO_TEXT = ([1, 2], 5, -0.0, float("nan"), True, {"a": [1]})
 NO_TREE = ([1, 2], 5, float("nan"), True, "text")
@@ -88,7 +87,7 @@ def test_the_pad_has_no_such_parameters(server, value):
 @pytest.mark.parametrize("value", [[1, 2], 5])
 def test_a_robot_that_no_node_reads_is_shown_without_wheels(server, name, value):
     server[name] = value
-    assert running_wheels() == {}
+    assert wheels.running_robot() == ({}, None)
 
 
 @pytest.mark.parametrize("value", NO_TEXT)

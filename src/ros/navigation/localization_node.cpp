@@ -5,7 +5,6 @@
 #include <std_srvs/Empty.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <stdexcept>
 #include <vector>
@@ -130,16 +129,9 @@ class LocalizationNode {
 
 }  // namespace
 
-int run_localization(int argc, char** argv) {
-  try {
-    ros::init(argc, argv, "localization");
-    LocalizationNode node;
-    ros::spin();
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "localization: refused:\n%s\n", error.what());
-    return 1;
-  }
+void spin_localization() {
+  LocalizationNode node;
+  ros::spin();
 }
 
 }  // namespace robot_control

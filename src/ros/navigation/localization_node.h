@@ -7,7 +7,7 @@
 
 namespace robot_control {
 
-/// The body of main. Returns 0 after an end by a signal, 1 after a refusal, which is reported on stderr.
-int run_localization(int argc, char** argv);
+/// Makes the node and spins until ROS ends; throws what refuses the start.
+void spin_localization();
 
 }  // namespace robot_control

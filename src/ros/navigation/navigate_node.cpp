@@ -251,16 +251,9 @@ class NavigateNode {
 
 }  // namespace
 
-int run_navigate(int argc, char** argv) {
-  try {
-    ros::init(argc, argv, "navigate");
-    NavigateNode node;
-    ros::spin();
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "navigate: refused:\n%s\n", error.what());
-    return 1;
-  }
+void spin_navigate() {
+  NavigateNode node;
+  ros::spin();
 }
 
 }  // namespace robot_control

@@ -2,7 +2,6 @@
 
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 
-#include <cstdio>
 #include <optional>
 
 #include "navigation/map_file.h"
@@ -92,16 +91,9 @@ class SlamNode {
 
 }  // namespace
 
-int run_slam(int argc, char** argv) {
-  try {
-    ros::init(argc, argv, "slam");
-    SlamNode node;
-    ros::spin();
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "slam: refused:\n%s\n", error.what());
-    return 1;
-  }
+void spin_slam() {
+  SlamNode node;
+  ros::spin();
 }
 
 }  // namespace robot_control
