@@ -58,6 +58,7 @@ def _parser() -> argparse.ArgumentParser:
         prog="data_return.py",
         description="Brings finished runs, incidents and reports to a far side of rclone's, in parts that are verified "
         "there, and puts them together on the other side.",
+        epilog="run and status take --config FILE, which is laid over the installed config/data_return.yaml",
     )
     commands = parser.add_subparsers(dest="command", required=True)
     for name, text in (("run", "the node on the robot: sends"), ("status", "what waits and what has returned")):
