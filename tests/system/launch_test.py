@@ -32,7 +32,16 @@ OF_OTHER_NODES = {
     "view/path_driven",
 }
 OF_LEGS = {"body_pose", "foot_target", "joint_trajectory", "leg_state"}
-SILENT = COMMANDS | OF_OTHER_NODES | OF_LEGS | {"battery_state", "tf_static", "/clock", "/rosout"}
+OF_NAVIGATION = {
+    "scan",
+    "map",
+    "map_metadata",
+    "localization_state",
+    "amcl_pose",
+    "particlecloud",
+    "initialpose",
+}
+SILENT = COMMANDS | OF_OTHER_NODES | OF_LEGS | OF_NAVIGATION | {"battery_state", "tf_static", "/clock", "/rosout"}
 """Topics on which there may be no messages. The robot has no battery, no transform is static, and /clock belongs to
 lockstep. The nodes may have logged all messages before the recorder came."""
 
