@@ -78,7 +78,7 @@ def test_finds_hidden_inertia_and_friction_within_five_percent(robot):
     assert log["truth_x"].max() < excitation.reach + 0.02 < OPTIONS.space
 
 
-@pytest.mark.parametrize("ground", [0.5, 1.0])
+@pytest.mark.parametrize("ground", [pytest.param(0.5, marks=pytest.mark.nightly), 1.0])
 def test_finds_the_friction_of_the_ground_under_a_skid_steer(ground, tmp_path):
     settings = Settings(PARAMS, (("robot.urdf", write_skid_steer(tmp_path)),))
     excitation = plan(settings, OPTIONS)
