@@ -10,11 +10,12 @@
 namespace robot_control {
 namespace {
 
-constexpr double kSlow = 0.3;                        // m/s, of a body of legs of kReferenceLeg whose walk may end
-constexpr double kTrotFrom = 0.4, kTrotUntil = 0.3;  // m/s, of the feet (docs/evidence/derivations.md)
-constexpr double kPlaced = 0.1;                      // of the leg length, of the feet at the end of a walk
-constexpr double kInPlace = 3;                       // s, after which a walk ends wherever the feet are
-constexpr double kCarriedPart = 0.5;                 // of the ranges of a standing body
+constexpr double kSlow = 0.3;         // m/s, of a body of legs of kReferenceLeg whose walk may end
+constexpr double kTrotFrom = 0.4;     // m/s, of the feet (docs/evidence/derivations.md)
+constexpr double kTrotUntil = 0.3;    // m/s, likewise
+constexpr double kPlaced = 0.1;       // of the leg length, of the feet at the end of a walk
+constexpr double kInPlace = 3;        // s, after which a walk ends wherever the feet are
+constexpr double kCarriedPart = 0.5;  // of the ranges of a standing body
 constexpr std::uint64_t kEmergencies = kReasonTimedOut | kReasonRefused | kReasonManySenders | kReasonPermitRamp;
 
 bool rests(const WalkingTwist& twist) noexcept {

@@ -11,7 +11,8 @@ namespace robot_control {
 namespace {
 
 constexpr double kFastest = 10;  // m/s, rad/s
-constexpr int kHalvings = 12, kSamples = 24;
+constexpr int kHalvings = 12;
+constexpr int kSamples = 24;
 
 /// Returns the largest part of its speed limit that a joint needs at this twist; ∞ where a leg does not reach.
 double needed(const LegModel& robot, const NominalStance& stance, const Gait& gait,

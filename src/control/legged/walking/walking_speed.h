@@ -13,7 +13,8 @@
 
 namespace robot_control {
 
-inline constexpr double kOfLift = 0.35, kOfJointSpeed = 0.85;
+inline constexpr double kOfLift = 0.35;
+inline constexpr double kOfJointSpeed = 0.85;
 
 Gait gait_of(const LegModel& robot, const NominalStance& stance, const Gait& reference) noexcept;
 
