@@ -212,6 +212,17 @@ TEST(Walking, ReachesItsSpeedThoughTheErrorOfTheTiltPullsTheBodyBack) {
   EXPECT_NEAR(mean_twist(robot, 2.0, walk(1.5, 0, 0))[0], 1.5, 0.02 * 1.5);
 }
 
+TEST(Walking, IsNotStoppedForATiltThatOnlyABiasOfTheGyroShows) {
+  Parameters parameters = QuadrupedLoop::parameters(13, ErrorLevel::kField);
+  parameters.plant.contact_sensors = false;
+  parameters.plant.gyro_bias = 0.02;
+  QuadrupedLoop robot(legged_robot("quadbot"), parameters);
+  robot.wait(0.3);
+  robot.run(20.0, walk(0.5, 0, 0));
+  EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
+  EXPECT_LT(robot.tilt, 0.1);
+}
+
 TEST(Walking, IsLimitedInItsSpeed) {
   Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
   parameters.leg_control.max_linear_speed = 0.3;
