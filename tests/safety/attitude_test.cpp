@@ -175,7 +175,8 @@ TEST_F(AttitudeTest, SpeaksTheSameAtAnyRate) {
   EXPECT_NEAR((slow.up() - attitude_.up()).norm(), 0, 2e-3) << "half a long step of 0.4 rad/s";
 }
 
-/// A trot: the body is thrown up and falls, and its acceleration along the ground changes with that. Its gyro has a bias.
+/// A trot: the body is thrown up and falls, and its acceleration along the ground changes with that. Its gyro has a
+/// bias.
 double tilt_in_a_trot(Attitude attitude) {
   constexpr double kPeriod = 0.19, kPi = 3.14159265358979323846;  // s, of a step
   const Vector3d bias(0, 0.05, 0);

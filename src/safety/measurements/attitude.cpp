@@ -32,7 +32,7 @@ void Attitude::carry(const Eigen::Vector3d& rate, double dt) noexcept {
 }
 
 Eigen::Vector3d Attitude::smooth(const Eigen::Vector3d& force, double dt) noexcept {
-  if (force.norm() < kLargestForce)
+  if (force.norm() < kMaxForce)
     *force_ += ((*force_).isZero(0) ? 1 : std::min(1.0, dt / force_time_)) * (force - *force_);
   return *force_;
 }

@@ -60,7 +60,7 @@ class Attitude {
   double tilt_rate() const noexcept { return tilt_rate_; }
 
  private:
-  static constexpr double kLargestForce = 160;  ///< m/s², 16 g: an accelerometer measures up to it
+  static constexpr double kMaxForce = 160;  ///< m/s²; accelerometers measure up to 16 g
 
   void carry(const Eigen::Vector3d& rate, double dt) noexcept;
   Eigen::Vector3d smooth(const Eigen::Vector3d& force, double dt) noexcept;

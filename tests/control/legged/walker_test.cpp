@@ -31,8 +31,7 @@ struct WalkerTest : testing::Test {
   bool plan() {
     out = {};
     state.planned = Walker::kPlanCycles;
-    return walker.step(
-        state, {.sensors = &sensors, .state = &estimate, .twist = {}, .gait = GaitName::kStand}, out);
+    return walker.step(state, {.sensors = &sensors, .state = &estimate, .twist = {}, .gait = GaitName::kStand}, out);
   }
 
   LegModel robot = legged_robot("quadbot");
