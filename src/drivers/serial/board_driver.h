@@ -2,8 +2,9 @@
 /// A motor board on a serial line as a Driver, after docs/board_protocol.md. The board runs the code of `firmware/`.
 ///
 /// The driver sends one order in each cycle and the board answers it with one report. The counts of a report are those
-/// of the instant at which the order came. Offset and drift of the board's clock are estimated (board_clock.h), so
-/// that a sample has its own time, however late it arrived, and is brought to the time of `read` by its velocity.
+/// of the instant at which the order came. Offset and drift of the board's clock are estimated
+/// (board_clock.h). A sample therefore has its own time, however late it arrived, and its velocity brings it to the time
+/// of `read`.
 ///
 /// The board is given torques: every mode, the brake included, is computed here (drivers/joint_law.h). `read` reports
 /// kStarting until the board answers without BOARD_WATCHDOG and BOARD_REFUSED. Its faults stay until the operator's

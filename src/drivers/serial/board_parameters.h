@@ -14,7 +14,7 @@ struct BoardLineParameters {
   bool e_stop_input = false;   ///< The board has a contact of the emergency stop; a broken wire counts as pressed.
   std::uint64_t max_silence = 20;  ///< cycles in a row without a new report
 
-  /// Of the board's watchdog, which the host cannot ask for.
+  /// The reaction of the board's watchdog, which the host cannot read.
   SilenceReaction on_silence = SilenceReaction::kUnknown;
 };
 

@@ -4,11 +4,11 @@
 /// The tty is opened raw and exclusively: TIOCEXCL, and a lock that also keeps out programs of root. Low latency is
 /// requested, because an FTDI adapter otherwise holds bytes for 16 ms. A thread waits for bytes and notes the time of
 /// their arrival. It tries again once per kRetry where the device is absent or has disappeared. A device that comes back
-/// is found under another number, too: an address outside /dev/serial is replaced by the link in /dev/serial/by-id that
-/// leads to it, if there is one.
+/// is found under another number, too. For this, an address outside /dev/serial is replaced by the link in
+/// /dev/serial/by-id that leads to it, if there is one.
 ///
-/// The descriptor has the same number for the whole life of the object, so that `send` needs no lock: without a device
-/// it leads to /dev/null.
+/// The descriptor has the same number for the whole life of the object, so that `send` needs no lock. Without a device it
+/// leads to /dev/null.
 
 #include <atomic>
 #include <memory>

@@ -1,11 +1,13 @@
 #pragma once
-/// A BoardFront is a motor board with the code of `firmware/` before the motors of a simulated robot, at the device's
-/// end of a serial line.
+/// A BoardFront is a motor board before the motors of a simulated robot, at the device's end of a serial line. Its code
+/// is that of `firmware/`.
 ///
-/// `inject` takes `board` or `line` as the component. Kinds of the board: ok, off, reset (once), brown_out (off for
-/// kBootNs, then another reset cause), fault (of wheel 0), e_stop (the button is pressed, or its wire is broken), other_protocol
-/// (its answers are of another version). Kinds of the line, where it is simulated: ok, lossy (5 % of the messages are lost
-/// and 1 % damaged), late (3 ms of jitter), disturbed (both), partial, stalled, cut.
+/// `inject` takes `board` or `line` as the component; the line has faults in virtual time alone.
+///
+///   board  ok | off | reset, brown_out (silent for kBootNs) | fault (of its wheel 0) | other_protocol
+///          e_stop (the button is pressed, or its wire is broken)
+///   line   ok | lossy (5 % of the messages are lost, 1 % damaged) | late (3 ms of jitter) | disturbed (both)
+///          partial (writes are taken in part) | stalled | cut
 
 #include <memory>
 #include <span>
@@ -47,7 +49,7 @@ class BoardFront final : public DeviceFront {
   /// The line in virtual time.
   VirtualSerial& line() { return *virtual_line_; }
 
-  /// What the board measures beside counts and torques; a test may set it.
+  /// Returns the measurements beside counts and torques; a test may set them.
   board_sensors& sensors() noexcept { return sensors_; }
 
   /// Lets the counters begin at this number.
