@@ -111,7 +111,8 @@ class DriveFileReader {
 
   /// Reads the block that is not a joint's.
   void read_block(const char* name, Keys keys, const std::function<void(GivenValues&)>& check) {
-    const Schema schema = schema_of({{name, std::move(keys)}}, [&](const Schema&, GivenValues& given) { check(given); });
+    const Schema schema =
+        schema_of({{name, std::move(keys)}}, [&](const Schema&, GivenValues& given) { check(given); });
     read_blocks(extracted(tree_, name), schema, schema.blocks, path_, problems_);
   }
 

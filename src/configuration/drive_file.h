@@ -21,7 +21,8 @@ namespace robot_control {
 /// with all problems of the file, also if the planned frames overload the bus.
 CanParameters read_drive_file(const std::string& path, std::span<const std::string> joints, double rate);
 
-/// The same of a board on a serial line: a block `board` (BoardLineParameters) and one per joint (BoardWheelParameters).
+/// The same of a board on a serial line: a block `board` (BoardLineParameters) and one per joint
+/// (BoardWheelParameters).
 BoardParameters read_board_file(const std::string& path, std::span<const std::string> joints, double rate);
 
 /// Reads a driver's file of one block with these keys into the members of the keys. Throws ParameterError with all

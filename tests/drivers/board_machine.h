@@ -17,11 +17,9 @@ class BoardMachine final : public Driver {
   explicit BoardMachine(double rate = 1000, unsigned counter_bits = 32, std::uint32_t zero = 0,
                         std::uint64_t bit_rate = 0)
       : period_(1 / rate) {
-    BoardParameters parameters{.line = {.address = "none",
-                                        .bit_rate = bit_rate,
-                                        .e_stop_input = true,
-                                        .on_silence = SilenceReaction::kHolds},
-                               .wheels = {}};
+    BoardParameters parameters{
+        .line = {.address = "none", .bit_rate = bit_rate, .e_stop_input = true, .on_silence = SilenceReaction::kHolds},
+        .wheels = {}};
     for (std::uint64_t i = 0; i < 2; ++i) {
       parameters.wheels.push_back({.joint = i == 0 ? "left" : "right",
                                    .wheel = 1 - i,  // the joints are not in the order of the board

@@ -19,8 +19,8 @@
 
 #include "drivers/can/can_frame.h"
 #include "drivers/can/can_load.h"
-#include "drivers/drive_parameters.h"
 #include "drivers/can/late_position.h"
+#include "drivers/drive_parameters.h"
 #include "drivers/position_difference.h"
 #include "signals/joint.h"
 

@@ -60,9 +60,11 @@ std::unique_ptr<Driver> make_board(const Parameters& parameters, const MachineMo
   const BoardParameters board = read_board_file(parameters.drives, motors.joints, parameters.loop.rate);
   const RealtimeParameters thread{
       .name = "serial", .policy = parameters.loop.realtime, .priority = kSerialPriority, .core = -1};
-  auto line = std::make_unique<SerialPort>(board.line.address, static_cast<unsigned>(board.line.bit_rate), thread);
+  const auto time_ns = [clock = std::move(clock)] { return clock().time_ns; };
+  auto line =
+      std::make_unique<SerialPort>(board.line.address, static_cast<unsigned>(board.line.bit_rate), thread, time_ns);
   return std::make_unique<BoardDriver>(board, motors.brakes, motors.joint_count, parameters.loop.period(),
-                                       std::move(line), [clock = std::move(clock)] { return clock().time_ns; });
+                                       std::move(line), time_ns);
 }
 
 struct DriverRow {

@@ -8,8 +8,8 @@
 ///
 /// Delays of a line vary, but each way is now and then nearly free of them. The least `down` and the least `up` of a
 /// window are therefore the constant delays, which count as equal. Half of their difference is the error of the
-/// estimate. It corrects the offset, and its rate the drift. Until the first window ends, the exchange with the shortest round trip
-/// gives the offset.
+/// estimate. It corrects the offset, and its rate the drift. Until the first window ends, the exchange with the
+/// shortest round trip gives the offset.
 
 #include <algorithm>
 #include <cstdint>

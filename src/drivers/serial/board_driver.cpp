@@ -173,7 +173,8 @@ void BoardDriver::accept_counts(const board_report& report, std::int64_t elapsed
       wheel.total = counts;
     }
     wheel.position = wheel.rad_per_count * static_cast<double>(wheel.total);
-    wheel.difference.add(wheel.position, 1000 * total_us_);  // the estimate of the offset moves; drift is 0.05 % at most
+    wheel.difference.add(wheel.position,
+                         1000 * total_us_);  // the estimate of the offset moves; drift is 0.05 % at most
     wheel.velocity = wheel.difference.velocity();
     const double direction = static_cast<double>(parameters.direction);
     wheel.effort = direction * kMicro * report.sensors.effort[parameters.wheel];
@@ -208,8 +209,8 @@ void BoardDriver::read(SensorFrame& sensors) noexcept {
   sensors.joint_count = joint_count_;
   for (std::size_t i = wheels_.size(); i < joint_count_; ++i) sensors.joints[i] = {};
   const std::int64_t age_ns = now_ns_ - sample_ns_;
-  const auto age = static_cast<double>(std::clamp<std::int64_t>(
-      age_ns, 0, static_cast<std::int64_t>(max_silence) * period_ns_));
+  const auto age =
+      static_cast<double>(std::clamp<std::int64_t>(age_ns, 0, static_cast<std::int64_t>(max_silence) * period_ns_));
   const std::uint32_t motion = kValidPosition | kValidVelocity;
   const std::uint32_t effort = (sensors_.valid & BOARD_HAS_EFFORT) != 0 ? std::uint32_t{kValidEffort} : 0U;
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
@@ -271,8 +272,8 @@ void BoardDriver::write(std::span<const JointCommand> commands) noexcept {
     const double age = 1.0e-9 * static_cast<double>(now_ns_ - sample_ns_);
     const double torque =
         laws_[i].step(obeys ? commands[i] : JointCommand{}, wheel.position + wheel.velocity * age, wheel.velocity);
-    order.wheel[parameters_.wheels[i].wheel] = {
-        BOARD_EFFORT, micro(static_cast<double>(parameters_.wheels[i].direction) * torque)};
+    order.wheel[parameters_.wheels[i].wheel] = {BOARD_EFFORT,
+                                                micro(static_cast<double>(parameters_.wheels[i].direction) * torque)};
   }
   send_order(order);
 }
@@ -308,16 +309,18 @@ std::string BoardDriver::warning() const {
   switch (status.cause) {
     case BoardCause::kNoReport:
     case BoardCause::kSilent:
-      return board + (status.connected == 0 ? " is not there: look at its cable and at the address in the drive file"
-                                            : " sends no report: look at its power, its program and the bit rate") +
+      return board +
+             (status.connected == 0 ? " is not there: look at its cable and at the address in the drive file"
+                                    : " sends no report: look at its power, its program and the bit rate") +
              (status.state == DriverState::kFault ? ", then reset" : "");
     case BoardCause::kOwnBrake:
       return board + " braked by itself, because it received no order in time: look at the line, then reset";
     case BoardCause::kRefused:
       return board + " refuses the orders: it has another version of the protocol or another number of wheels";
     case BoardCause::kOtherProtocol:
-      return board + " speaks version " + std::to_string(status.detail) + " of the protocol, and this program version " +
-             std::to_string(int{BOARD_PROTOCOL}) + ": flash the firmware of this version";
+      return board + " speaks version " + std::to_string(status.detail) +
+             " of the protocol, and this program version " + std::to_string(int{BOARD_PROTOCOL}) +
+             ": flash the firmware of this version";
     case BoardCause::kOtherWheels:
       return board + " has " + std::to_string(status.detail) + " wheels, and the drive file " +
              std::to_string(parameters_.wheels.size()) + ": correct one of both";

@@ -3,8 +3,8 @@
 ///
 /// The driver sends one order in each cycle and the board answers it with one report. The counts of a report are those
 /// of the instant at which the order came. Offset and drift of the board's clock are estimated
-/// (board_clock.h). A sample therefore has its own time, however late it arrived, and its velocity brings it to the time
-/// of `read`.
+/// (board_clock.h). A sample therefore has its own time, however late it arrived, and its velocity brings it to the
+/// time of `read`.
 ///
 /// The board is given torques: every mode, the brake included, is computed here (drivers/joint_law.h). `read` reports
 /// kStarting until the board answers without BOARD_WATCHDOG and BOARD_REFUSED. Its faults stay until the operator's
@@ -53,10 +53,10 @@ enum class BoardCause : std::uint8_t {
 
 class BoardDriver final : public Driver {
  public:
-  static constexpr std::size_t kOrders = 256;                  ///< the answer to an older order is refused
-  static constexpr std::int64_t kClockJumpNs = 200'000'000;    ///< two boots lie further apart
-  static constexpr std::int64_t kVelocitySpanNs = 8'000'000;   ///< over which a velocity is measured, at 125 Hz and more
-  static constexpr double kSpeedMargin = 1.5;                  ///< of the velocity limit, above which a position jumped
+  static constexpr std::size_t kOrders = 256;                 ///< the answer to an older order is refused
+  static constexpr std::int64_t kClockJumpNs = 200'000'000;   ///< two boots lie further apart
+  static constexpr std::int64_t kVelocitySpanNs = 8'000'000;  ///< over which a velocity is measured, at 125 Hz and more
+  static constexpr double kSpeedMargin = 1.5;                 ///< of the velocity limit, above which a position jumped
   static constexpr double kMaxLineLoad = 0.9;
 
   /// `brakes`: one per wheel of the board. The wheels move the first joints of a robot that has `joint_count`. `clock`
@@ -126,10 +126,10 @@ class BoardDriver final : public Driver {
   std::uint16_t cycle_ = 0;                      // of the last order
   std::uint64_t orders_ = 0;
   bool has_report_ = false;
-  std::uint16_t answered_ = 0;   // cycle of the newest report
-  std::uint32_t board_us_ = 0;   // its time, as sent
-  std::int64_t total_us_ = 0;    // the same without wraps
-  std::int64_t answered_ns_ = 0; // when its order was sent
+  std::uint16_t answered_ = 0;    // cycle of the newest report
+  std::uint32_t board_us_ = 0;    // its time, as sent
+  std::int64_t total_us_ = 0;     // the same without wraps
+  std::int64_t answered_ns_ = 0;  // when its order was sent
   std::int64_t sample_ns_ = 0;
   std::uint64_t silent_for_ = 0;  // cycles
   board_sensors sensors_{};

@@ -9,9 +9,9 @@
 namespace robot_control {
 
 struct BoardLineParameters {
-  std::string address;         ///< serial_port.h
-  std::uint64_t bit_rate = 0;  ///< bit/s of a UART, as set in the board; 0: USB, which has none
-  bool e_stop_input = false;   ///< The board has a contact of the emergency stop; a broken wire counts as pressed.
+  std::string address;             ///< serial_port.h
+  std::uint64_t bit_rate = 0;      ///< bit/s of a UART, as set in the board; 0: USB, which has none
+  bool e_stop_input = false;       ///< The board has a contact of the emergency stop; a broken wire counts as pressed.
   std::uint64_t max_silence = 20;  ///< cycles in a row without a new report
 
   /// The reaction of the board's watchdog, which the host cannot read.
@@ -20,10 +20,8 @@ struct BoardLineParameters {
 
 inline Keys keys(BoardLineParameters& line) {
   return {
-      {"address", &line.address},
-      {"bit_rate", &line.bit_rate, "bit/s", 0, 3000000, kOptional},
-      {"e_stop_input", &line.e_stop_input},
-      {"max_silence", &line.max_silence, "cycles", 3, 1000, kOptional},
+      {"address", &line.address},           {"bit_rate", &line.bit_rate, "bit/s", 0, 3000000, kOptional},
+      {"e_stop_input", &line.e_stop_input}, {"max_silence", &line.max_silence, "cycles", 3, 1000, kOptional},
       {"on_silence", &line.on_silence},
   };
 }

@@ -15,7 +15,6 @@
 #include <utility>
 
 #include "drivers/driver.h"
-#include "rt/clock.h"
 
 namespace robot_control {
 namespace {
@@ -71,8 +70,9 @@ bool is_bit_rate(unsigned bit_rate) noexcept {
   return find_rate(bit_rate) != nullptr;
 }
 
-SerialPort::SerialPort(std::string address, unsigned bit_rate, const RealtimeParameters& thread, std::string links)
-    : address_(std::filesystem::path(address).string()), bit_rate_(bit_rate) {
+SerialPort::SerialPort(std::string address, unsigned bit_rate, const RealtimeParameters& thread,
+                       std::function<std::int64_t()> clock, std::string links)
+    : address_(std::move(address)), bit_rate_(bit_rate), clock_(std::move(clock)) {
   if (!address_.starts_with("/dev/serial/")) address_ = by_id(address_, links);
   descriptor_ = open("/dev/null", O_RDWR | O_CLOEXEC);
   if (descriptor_ < 0) throw DriverError(std::string("/dev/null cannot be opened: ") + std::strerror(errno));
@@ -147,7 +147,7 @@ void SerialPort::read_available() noexcept {
     disconnect();
     return;
   }
-  chunk.time_ns = monotonic_ns();
+  chunk.time_ns = clock_();
   chunk.size = static_cast<std::size_t>(got);
   const std::size_t written = written_.load(std::memory_order_relaxed);
   if (written - taken_.load(std::memory_order_acquire) == kChunks) {

@@ -3,14 +3,15 @@
 ///
 /// The tty is opened raw and exclusively: TIOCEXCL, and a lock that also keeps out programs of root. Low latency is
 /// requested, because an FTDI adapter otherwise holds bytes for 16 ms. A thread waits for bytes and notes the time of
-/// their arrival. It tries again once per kRetry where the device is absent or has disappeared. A device that comes back
-/// is found under another number, too. For this, an address outside /dev/serial is replaced by the link in
+/// their arrival. It tries again once per kRetry where the device is absent or has disappeared. A device that comes
+/// back is found under another number, too. For this, an address outside /dev/serial is replaced by the link in
 /// /dev/serial/by-id that leads to it, if there is one.
 ///
-/// The descriptor has the same number for the whole life of the object, so that `send` needs no lock. Without a device it
-/// leads to /dev/null.
+/// The descriptor has the same number for the whole life of the object, so that `send` needs no lock. Without a device
+/// it leads to /dev/null.
 
 #include <atomic>
+#include <functional>
 #include <memory>
 
 #include "drivers/serial/serial_line.h"
@@ -24,9 +25,10 @@ class SerialPort final : public SerialLine {
   static constexpr const char* kById = "/dev/serial/by-id";
 
   /// `bit_rate` in bit/s; 0 leaves it as it is, which a USB device ignores. `links` is the folder of the links by id.
-  /// `thread` states how the reading thread runs. A device that is absent is awaited. Throws DriverError if there is one
-  /// that cannot be used.
-  SerialPort(std::string address, unsigned bit_rate, const RealtimeParameters& thread, std::string links = kById);
+  /// `thread` states how the reading thread runs, which calls `clock` for the present time in ns. A device that is
+  /// absent is awaited. Throws DriverError if there is one that cannot be used.
+  SerialPort(std::string address, unsigned bit_rate, const RealtimeParameters& thread,
+             std::function<std::int64_t()> clock, std::string links = kById);
   ~SerialPort() override;
   SerialPort(const SerialPort&) = delete;
   SerialPort& operator=(const SerialPort&) = delete;
@@ -49,6 +51,7 @@ class SerialPort final : public SerialLine {
 
   std::string address_;
   unsigned bit_rate_;
+  std::function<std::int64_t()> clock_;
   int descriptor_ = -1;
   std::atomic<bool> connected_ = false;
   std::atomic<bool> ending_ = false;

@@ -51,8 +51,10 @@ void BoardFront::boot(board_reset reason) {
                   std::int32_t value) { static_cast<BoardFront*>(front)->drive(wheel, mode, value); },
       .sensors = [](void* front, std::uint8_t /*outputs*/,
                     board_sensors* sensors) { static_cast<BoardFront*>(front)->read_sensors(*sensors); },
-      .write = [](void* front, const std::uint8_t* bytes,
-                  std::uint8_t size) { static_cast<BoardFront*>(front)->write({bytes, size}); }};
+      .write =
+          [](void* front, const std::uint8_t* bytes, std::uint8_t size) {
+            static_cast<BoardFront*>(front)->write({bytes, size});
+          }};
   booted_ns_ = now_ns_;
   sensors_.reset = reason;
   board_begin(&board_, &config);
@@ -88,8 +90,8 @@ void BoardFront::read_sensors(board_sensors& sensors) const {
   sensors = sensors_;
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
     const BoardWheelParameters& wheel = parameters_.wheels[i];
-    sensors.effort[wheel.wheel] = static_cast<std::int32_t>(
-        std::lround(wheels_[i].torque * static_cast<double>(wheel.direction) / kMicro));
+    sensors.effort[wheel.wheel] =
+        static_cast<std::int32_t>(std::lround(wheels_[i].torque * static_cast<double>(wheel.direction) / kMicro));
   }
   if (fault_) sensors.fault[0] = kWheelFault;
   sensors.imu.time_us = time_us();
@@ -159,8 +161,7 @@ void BoardFront::run(std::span<const JointSample> joints) {
 
 std::string BoardFront::inject(std::string_view component, std::string_view kind) {
   const auto is = [kind](auto... words) { return ((kind == words) || ...); };
-  if (component == "board" &&
-      is("ok", "off", "reset", "brown_out", "fault", "e_stop", "other_protocol")) {
+  if (component == "board" && is("ok", "off", "reset", "brown_out", "fault", "e_stop", "other_protocol")) {
     const bool back = off_ && kind != "off";
     off_ = kind == "off";
     fault_ = kind == "fault";
@@ -170,8 +171,7 @@ std::string BoardFront::inject(std::string_view component, std::string_view kind
     next_reset_ = kind == "reset" ? BOARD_RESET_BUTTON : kind == "brown_out" ? BOARD_BROWN_OUT : BOARD_POWER_ON;
     return "";
   }
-  if (component == "line" && virtual_line_ &&
-      is("ok", "lossy", "late", "disturbed", "partial", "stalled", "cut")) {
+  if (component == "line" && virtual_line_ && is("ok", "lossy", "late", "disturbed", "partial", "stalled", "cut")) {
     SerialFaults faults;
     faults.message_loss = is("lossy", "disturbed") ? 0.05 : 0;
     faults.bit_errors = is("lossy", "disturbed") ? 0.01 : 0;

@@ -85,8 +85,8 @@ class BoardFront final : public DeviceFront {
   board_sensors sensors_{};
   std::uint32_t zero_ = 0;
   std::int64_t now_ns_ = 0;
-  std::int64_t boots_ns_ = 0;    // the board is silent until then
-  std::int64_t booted_ns_ = 0;   // zero of its clock
+  std::int64_t boots_ns_ = 0;   // the board is silent until then
+  std::int64_t booted_ns_ = 0;  // zero of its clock
   board_reset next_reset_ = BOARD_POWER_ON;
   bool off_ = false;
   bool fault_ = false;

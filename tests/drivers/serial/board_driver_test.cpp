@@ -9,6 +9,7 @@
 
 #include "drivers/board_machine.h"
 #include "drivers/driver_contract.h"
+#include "drivers/serial/mutated_stream.h"
 
 namespace robot_control {
 namespace {
@@ -16,8 +17,8 @@ namespace {
 /// The healthy board at 500 Hz, whose wheels turn at 10 rad/s.
 class BoardDriverTest : public testing::Test {
  protected:
-  static constexpr double kSpeed = 10;          // rad/s
-  static constexpr int kWatchdogCycles = 26;    // 50 ms and one cycle at 500 Hz
+  static constexpr double kSpeed = 10;           // rad/s
+  static constexpr int kWatchdogCycles = 26;     // 50 ms and one cycle at 500 Hz
   static constexpr std::uint64_t kSilence = 20;  // max_silence
 
   void SetUp() override { begin(); }
@@ -100,9 +101,10 @@ TEST_F(BoardDriverTest, EveryLossIsAFaultWithItsCauseAndStandsUntilTheReset) {
     const char* kind;
     const char* words;
   };
-  for (const Loss& loss : {Loss{"board", "off", "sends no report"}, Loss{"board", "reset", "sends no report"},
-                           Loss{"board", "brown_out", "sends no report"}, Loss{"board", "fault", "reports a fault of right"},
-                           Loss{"board", "other_protocol", "speaks version 2"}, Loss{"line", "stalled", "sends no report"}}) {
+  for (const Loss& loss :
+       {Loss{"board", "off", "sends no report"}, Loss{"board", "reset", "sends no report"},
+        Loss{"board", "brown_out", "sends no report"}, Loss{"board", "fault", "reports a fault of right"},
+        Loss{"board", "other_protocol", "speaks version 2"}, Loss{"line", "stalled", "sends no report"}}) {
     SCOPED_TRACE(loss.kind);
     inject(loss.component, loss.kind);
     cycles(300);
@@ -207,6 +209,76 @@ TEST(BoardLine, IsRefusedIfItCannotCarryTheMessages) {
     EXPECT_NE(std::string(error.what()).find("115200 bit/s"), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find("at 126 Hz at most"), std::string::npos) << error.what();
   }
+}
+
+/// A line that answers each order with a stream that is nearly its report.
+class MutatedLine final : public SerialLine {
+ public:
+  bool receive(SerialChunk& chunk) noexcept override {
+    chunk.size = std::min(chunk.bytes.size(), pending_.size());
+    std::copy_n(pending_.begin(), chunk.size, chunk.bytes.begin());
+    pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(chunk.size));
+    return chunk.size > 0;
+  }
+  bool send(std::span<const std::uint8_t> order) noexcept override {
+    board_report report{};
+    report.wheels = 2;
+    report.cycle = static_cast<std::uint16_t>(orders++);
+    report.sensors.valid = BOARD_HAS_EFFORT | BOARD_HAS_IMU;
+    std::vector<std::uint8_t> body(BOARD_MAX_BODY);
+    std::vector<std::uint8_t> frame(BOARD_MAX_FRAME);
+    frame.resize(board_encode(body.data(), board_write_report(&report, body.data()), frame.data()));
+    pending_ = mutated_.next(frame);
+    board_decoder decoder{};
+    for (const std::uint8_t byte : order) {
+      const std::uint8_t size = board_decode(&decoder, byte);
+      board_order decoded{};
+      if (size == 0 || board_read_order(decoder.body, size, &decoded) == 0) continue;
+      for (std::size_t i = 0; i < decoded.wheels; ++i) driven += decoded.wheel[i].mode != BOARD_BRAKE ? 1 : 0;
+    }
+    return true;
+  }
+  bool connected() const noexcept override { return true; }
+  std::string name() const override { return "a line with errors"; }
+
+  int orders = 1;
+  int driven = 0;  // wheels that were to move
+
+ private:
+  MutatedStreams mutated_;
+  std::vector<std::uint8_t> pending_;
+};
+
+void expect_no_motion(int streams) {
+  BoardParameters parameters{.line = {.address = "none", .e_stop_input = false}, .wheels = {}};
+  for (std::uint64_t i = 0; i < 2; ++i) {
+    parameters.wheels.push_back(
+        {.joint = "joint", .wheel = i, .counts_per_turn = 4096, .torque_limit = 3, .velocity_limit = 30});
+  }
+  auto owned = std::make_unique<MutatedLine>();
+  MutatedLine& line = *owned;
+  std::int64_t now_ns = 0;
+  BoardDriver driver(parameters, std::vector<Brake>(2, Brake{}), 2, 0.002, std::move(owned), [&] { return now_ns; });
+  driver.start();
+  SensorFrame frame;
+  for (int i = 0; i < streams; ++i) {
+    now_ns += 2'000'000;
+    driver.read(frame);
+    ASSERT_NE(frame.driver_state, DriverState::kRunning) << i;
+    ASSERT_EQ(frame.joints[0].valid, 0U) << i;
+    driver.write(std::vector<JointCommand>(2, {.mode = JointMode::kEffort, .effort = 1}));
+    driver.reset();
+  }
+  EXPECT_EQ(line.driven, 0);
+  EXPECT_GT(frame.links[0].errors, static_cast<std::uint64_t>(streams) / 2);
+}
+
+TEST(BoardFuzz, NoStreamOfBytesIsAReportUnlessItIsWhole) {
+  expect_no_motion(20'000);
+}
+
+TEST(BoardFuzz, NightlyNorIsAMillion) {
+  expect_no_motion(1'000'000);
 }
 
 const MachineUnderTest kBoardMachine{.name = "BoardDriver",

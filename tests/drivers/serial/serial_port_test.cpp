@@ -9,6 +9,7 @@
 #include <string>
 
 #include "drivers/driver.h"
+#include "rt/clock.h"
 #include "simulation/devices/pseudo_terminal.h"
 #include "support/temporary_folder.h"
 
@@ -42,7 +43,7 @@ class SerialPortTest : public testing::Test {
 
 TEST_F(SerialPortTest, CarriesAnyBytesUnchanged) {
   PseudoTerminal device(path_);
-  SerialPort port(path_, 921600, kThread);
+  SerialPort port(path_, 921600, kThread, &monotonic_ns);
   const std::string raw("\0\x03\x04\x11\x13\r\n\x7f\xff\x1a", 10);  // what a cooked line would change
   EXPECT_TRUE(passes(port, device, raw));
   EXPECT_TRUE(passes(device, port, raw));
@@ -51,7 +52,7 @@ TEST_F(SerialPortTest, CarriesAnyBytesUnchanged) {
 TEST_F(SerialPortTest, FindsADeviceAgainUnderAnotherNumberByItsId) {
   PseudoTerminal device(path_);
   const std::string number = std::filesystem::canonical(path_).string();
-  SerialPort port(number, 0, kThread, folder_.path());
+  SerialPort port(number, 0, kThread, &monotonic_ns, folder_.path());
   EXPECT_EQ(port.name(), path_);
   device.unplug();
   EXPECT_TRUE(comes_true([&] { return !port.connected(); }));
@@ -64,7 +65,7 @@ TEST_F(SerialPortTest, FindsADeviceAgainUnderAnotherNumberByItsId) {
 }
 
 TEST_F(SerialPortTest, AwaitsADeviceThatIsAbsent) {
-  SerialPort port(path_, 0, kThread);
+  SerialPort port(path_, 0, kThread, &monotonic_ns);
   EXPECT_FALSE(port.connected());
   EXPECT_FALSE(port.send(std::array<std::uint8_t, 1>{}));
   PseudoTerminal device(path_);
@@ -72,11 +73,11 @@ TEST_F(SerialPortTest, AwaitsADeviceThatIsAbsent) {
 }
 
 TEST_F(SerialPortTest, RefusesAFileAndASecondProgram) {
-  EXPECT_THROW(SerialPort("/dev/null", 0, kThread), DriverError);
+  EXPECT_THROW(SerialPort("/dev/null", 0, kThread, &monotonic_ns), DriverError);
   const PseudoTerminal device(path_);
-  const SerialPort port(path_, 0, kThread);
+  const SerialPort port(path_, 0, kThread, &monotonic_ns);
   try {
-    const SerialPort second(path_, 0, kThread);
+    const SerialPort second(path_, 0, kThread, &monotonic_ns);
     FAIL() << "no refusal";
   } catch (const DriverError& error) {
     EXPECT_NE(std::string(error.what()).find("another program uses it"), std::string::npos) << error.what();
@@ -85,7 +86,7 @@ TEST_F(SerialPortTest, RefusesAFileAndASecondProgram) {
 
 TEST_F(SerialPortTest, SendNeverBlocksThoughNothingIsTaken) {
   PseudoTerminal device(path_);
-  SerialPort port(path_, 0, kThread);
+  SerialPort port(path_, 0, kThread, &monotonic_ns);
   bool taken = true;
   for (int i = 0; i < 100'000 && taken; ++i) taken = port.send(std::array<std::uint8_t, 100>{});
   EXPECT_FALSE(taken);
