@@ -108,7 +108,8 @@ MAY_INCLUDE = {
     # The log as a ROS bag; it knows the format, not ROS.
     "log": {"signals", "files", "log/bag", "parameters"},
     # All blocks together, and the other files that a user writes.
-    "configuration": LAWS | {"rt", "files", "parameters", "log", "drivers", "drivers/can", "drivers/mujoco", "drivers/serial"},
+    "configuration": LAWS
+    | {"rt", "files", "parameters", "log", "drivers", "drivers/can", "drivers/mujoco", "drivers/serial"},
     # A robot of each kind, composed of its laws; the roles as interfaces.
     "robots": LAWS | {"bus", "parameters", "configuration"},
     # The step of each node in one cycle, and the process around it.
