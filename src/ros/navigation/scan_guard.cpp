@@ -15,7 +15,8 @@ constexpr double kTick = 0.1;       // s
 constexpr double kStanding = 0.02;  // m/s, rad/s
 
 Scan scan_of(const sensor_msgs::LaserScan& message) {
-  return {message.angle_min, message.angle_increment, message.range_min, message.range_max, message.ranges};
+  return {message.angle_min, message.angle_increment, message.range_min, message.range_max, message.ranges,
+          message.angle_max};
 }
 
 }  // namespace
@@ -76,7 +77,7 @@ void ScanGuard::receive_odometry(const nav_msgs::Odometry& message) {
 
 void ScanGuard::receive(const ros::MessageEvent<const sensor_msgs::LaserScan>& event) {
   const sensor_msgs::LaserScan& message = *event.getConstMessage();
-  StampedScan scan{scan_of(message), message.header.frame_id, message.header.stamp};
+  StampedScan scan{scan_of(message), message.header.frame_id, message.header.stamp, {}};
   const std::lock_guard lock(mutex_);
   const std::string refused = watch_.receive(scan.scan, event.getPublisherName(), message.header.stamp.toSec(),
                                              ros::Time::now().toSec(), moved_);
