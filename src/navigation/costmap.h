@@ -69,7 +69,7 @@ class Costmap {
   std::vector<float> wall_distance_;        ///< m, to the map's own walls
   std::vector<bool> unknown_;
   bool unknown_is_free_;
-  std::vector<float> marked_;    ///< s, when a ray ended here; −∞: never, or passed since
+  std::vector<float> marked_;          ///< s, when a ray ended here; −∞: never, or passed since
   std::vector<std::size_t> foreseen_;  ///< cells
   std::vector<float> distance_;        ///< m
 };

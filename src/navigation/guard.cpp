@@ -47,7 +47,8 @@ double free_way(const Footprint& footprint, const std::vector<Point>& points, co
                       : motion.linear != 0 ? motion.angular / std::abs(motion.linear)
                                            : 0;
   const double end = spot ? 2 * M_PI * footprint.half_width : kLookout;
-  const double speed = std::max(kSlow, spot ? std::abs(motion.angular) * footprint.half_width : std::abs(motion.linear));
+  const double speed =
+      std::max(kSlow, spot ? std::abs(motion.angular) * footprint.half_width : std::abs(motion.linear));
   for (double along = kStep; along < end; along += kStep) {
     const double yaw = turn * along, half = yaw / 2;
     const double chord = spot ? 0 : sign * along * (std::abs(half) < 1e-9 ? 1 : std::sin(half) / half);

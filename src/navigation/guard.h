@@ -27,7 +27,7 @@ struct PlanarMotion {
 ///
 /// `movers`, in base axes too, are things in motion. The places ahead of one that would pass a robot that stands count
 /// as points: the robot lets it pass. One that would touch the standing robot counts where it is when the robot arrives
-/// there, and only if that is before it would touch the standing robot: to go on is better then.
+/// there. It counts only before the time at which it would touch the standing robot. Later, to go on is better.
 double free_way(const Footprint& footprint, const std::vector<Point>& points, const PlanarMotion& motion,
                 const std::vector<Mover>& movers = {});
 

@@ -64,9 +64,8 @@ std::vector<Mover> Movers::update(const Scan& scan, const PlanarPose& sensor, do
   const double elapsed = before != nullptr ? now - before->at : 0;
   for (std::size_t i = 0; before != nullptr && elapsed > kApart / 2 && i < things.size(); ++i) {
     const Thing& thing = things[i];
-    const auto fresh = std::count_if(thing.points.begin(), thing.points.end(), [&](Point point) {
-      return seen_free(before->scan, before->sensor, point);
-    });
+    const auto fresh = std::count_if(thing.points.begin(), thing.points.end(),
+                                     [&](Point point) { return seen_free(before->scan, before->sensor, point); });
     if (static_cast<double>(fresh) < std::max(2.0, kNew * static_cast<double>(thing.points.size()))) continue;
     double nearest = kFastest * elapsed;
     Point velocity;

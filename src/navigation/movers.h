@@ -1,5 +1,5 @@
 #pragma once
-/// What moves, from two scans of one laser alone, and where it will be.
+/// Movers are things in motion. Two scans of one laser show them, and where they will be.
 ///
 /// Neighbouring rays whose ends are within kGap are one thing. A thing moves if kNew of its points lie where the laser
 /// looked through kApart before. Walls that come into sight do not: there the view was blocked. Its velocity is that of
@@ -49,8 +49,8 @@ std::vector<Mover> movers_seen_from(std::vector<Mover> movers, const PlanarPose&
 /// Returns the time after which a thing touches the outline that stands, s; ∞ beyond kForesight. Axes of the base.
 double time_to_touch(const Footprint& footprint, const Mover& mover);
 
-/// Returns the places, in base axes, that the movers will take within kForesight. Those that touch the outline on their way are left
-/// out: where it stands is no better than what lies ahead.
+/// Returns the places, in base axes, that the movers will take within kForesight. Those that touch the outline on their
+/// way are left out: where it stands is no better than what lies ahead.
 std::vector<Point> places_ahead(const Footprint& footprint, const std::vector<Mover>& movers);
 
 }  // namespace robot_control

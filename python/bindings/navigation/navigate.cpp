@@ -44,8 +44,8 @@ class Navigation {
   }
   bool silent(double now) const { return !watch_.problem(now).empty(); }
   double free_way(const py::dict& scan, const Pose& sensor, double linear, double angular) const {
-    return robot_control::free_way(costmap_.footprint(), points_of(scan_of(scan), planar_of(sensor)),
-                                   {linear, angular}, seen_);
+    return robot_control::free_way(costmap_.footprint(), points_of(scan_of(scan), planar_of(sensor)), {linear, angular},
+                                   seen_);
   }
   double distance(double x, double y) const { return costmap_.footprint().distance({x, y}); }
   py::tuple plan(const Pose& start, const Pose& goal, double now) {

@@ -1,4 +1,4 @@
-"""What navigation knows, for the page: the grids of map and costmap, and where map, scan and particles are in odom."""
+"""The view of navigation for the page: the grids of map and costmap, and where map, scan and particles are in odom."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import time
 from typing import Any
 
 import numpy as np
-import rospy
 from geometry_msgs.msg import PoseArray
 from nav_msgs.msg import OccupancyGrid, Odometry
 from sensor_msgs.msg import LaserScan

@@ -15,8 +15,8 @@ constexpr double kTick = 0.1;       // s
 constexpr double kStanding = 0.02;  // m/s, rad/s
 
 Scan scan_of(const sensor_msgs::LaserScan& message) {
-  return {message.angle_min, message.angle_increment, message.range_min, message.range_max, message.ranges,
-          message.angle_max};
+  return {message.angle_min, message.angle_increment, message.range_min,
+          message.range_max, message.ranges,          message.angle_max};
 }
 
 }  // namespace
