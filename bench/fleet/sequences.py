@@ -29,6 +29,7 @@ class Model:
         self.released: set[int] = set()  # sequenceIds that the master released, of this order
         self.status: dict[str, str] = {}
         self.cancelling = False  # cancelOrder runs
+        self.dropped = True  # it was not completed: the robot may be anywhere
         self.of: dict[str, tuple[int, str]] = {}  # sequenceId and blockingType of each action
 
     @property
@@ -47,13 +48,14 @@ class Model:
             return IGNORED
         base = [(node["nodeId"], node["sequenceId"]) for node in self.nodes if node["released"]]
         if self.executing:
-            return TAKEN if start == (base[-1] if base else self.reached) and not self.cancelling else REFUSED
-        return TAKEN if start == self.reached and near else REFUSED
+            point = base[-1] if base else self.reached
+            return TAKEN if start == point and not self.cancelling and (near or not self.dropped) else REFUSED
+        return TAKEN if start == self.reached and (near or not self.dropped) else REFUSED
 
     def take(self, message: dict[str, Any]) -> None:
         """Populates or appends the states."""
         new = message["orderId"] != self.order
-        self.order, self.update = message["orderId"], message["orderUpdateId"]
+        self.order, self.update, self.dropped = message["orderId"], message["orderUpdateId"], False
         first = message["nodes"][0]["sequenceId"]
         if new:
             self.nodes, self.released, self.status, self.of = [], set(), {}, {}
@@ -81,7 +83,7 @@ class Model:
     def settle(self, standing: bool) -> None:
         """Figure 9: the order ends when the robot stands and its actions are over."""
         if self.cancelling and standing and all(status in OVER for status in self.status.values()):
-            self.nodes, self.cancelling = [], False
+            self.nodes, self.cancelling, self.dropped = [], False, True
 
     def may_start(self, name: str) -> bool:
         """6.12: reached or entered, in its sequence, and no HARD one beside another."""
@@ -228,7 +230,7 @@ class Trial:
     def clear(self) -> None:
         self.vehicle.clear("MANUAL")
         self.fail_waiting()
-        self.model.nodes, self.model.cancelling = [], False
+        self.model.nodes, self.model.cancelling, self.model.dropped = [], False, True
 
     def restart(self) -> None:
         dumped = json.loads(json.dumps(self.vehicle.dump()))

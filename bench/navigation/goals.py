@@ -22,7 +22,7 @@ SCENES = ("room", "crowd")
 GOALS, FAULT_RUNS, PER_ROBOT = 100, 50, 5
 AT_GOAL, AT_HEADING = 0.05, math.radians(3)  # m, rad
 HALF_WIDTH = 0.27  # m, of the shipped robot: the narrowest feasible way is twice as wide
-FREE = 0.05  # m of air at a goal, below which a refusal is true
+PADDING = 0.07  # m of air; with less than this and a cell a goal or a way may be refused (docs/navigation.md)
 WRONG = 0.1  # of the goals are anywhere in the scene
 ASIDE = 0.8  # m: nearer to the way of a cart, which stops for nothing, no robot may stand
 TURNED = math.radians(30)
@@ -111,10 +111,11 @@ def aside(obstacles: list[Obstacle], place: Place) -> bool:
 
 
 def feasible(robot: Robot, known: Map, goal: Place) -> bool:
-    """True if the outline has FREE of air there and a way leads to it."""
-    if robot.air_at(goal, moving=False) < FREE:
+    """True if the outline has the air there that the product asks for, and a way leads to it."""
+    air = PADDING + known[2]
+    if robot.air_at(goal, moving=False) < air:
         return False
-    return math.isfinite(shortest(known, robot.place, goal, HALF_WIDTH + FREE))
+    return math.isfinite(shortest(known, robot.place, goal, HALF_WIDTH + air))
 
 
 def drive_lies(task: tuple[str, int]) -> tuple[Trip, float]:

@@ -14,17 +14,21 @@ import roslib.packages
 import rospy
 import rostest
 import rosunit_skips
+import yaml
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from launch_support import Launch
 from nav_msgs.msg import Odometry
 from pseudo_terminal import PseudoTerminal
 from robot_control.common.pose import Pose, pose_of
+from robot_control.fleet.master import Master
 from robot_control.msg import FollowPathAction, FollowPathGoal, LegState, SafetyStatus
 from system_support import LIMIT, Program, init_test_node, repository, wait_for
 
 from bench.console.browser import Browser, missing
 from bench.console.process import Console
+from bench.fleet import broker
+from bench.fleet.messages import order
 
 rosunit_skips.record()
 
@@ -110,6 +114,37 @@ class LegsToolsTest(unittest.TestCase):
         self.assertIn("It walks: ", why.output)
         self.assertIn("m/s to the left", why.output)
         sender.end()
+        wait_for("standing", lambda: self.legs.posture == "standing")
+
+    @unittest.skipIf(broker.missing(), broker.missing())
+    def test_an_order_of_a_fleet_is_walked(self) -> None:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        mosquitto, config = broker.Broker(Path(folder.name)), Path(folder.name) / "fleet.yaml"
+        self.addCleanup(mosquitto.end)
+        config.write_text(yaml.safe_dump({"port": mosquitto.port, "memory_file": f"{folder.name}/memory.json"}))
+        follower, client = Program("follow_path.py"), Program("vda5050.py", "--config", str(config))
+        self.addCleanup(follower.end)
+        self.addCleanup(client.end)
+        master = Master("127.0.0.1", mosquitto.port, "uagv/v2/robot_control/r1")
+        self.addCleanup(master.end)
+
+        def wait(what: str, key: str, value: object) -> None:
+            end = time.monotonic() + 2 * LIMIT
+            while master.last.get("state", {}).get(key) != value:
+                self.assertLess(time.monotonic(), end, f"{what}: {master.last}; {client.output}")
+                for _ in master.messages(0.05):
+                    pass
+
+        wait("a state", "orderId", "")
+        master.act("initPosition", x=0.0, y=0.0, theta=0.0, mapId="hall", lastNodeId="here")
+        wait("initPosition", "lastNodeId", "here")
+        begin = pose_of(self.truth)
+        message = order([(0.0, 0.0), (SIDE, 0.0)])
+        master.send("order", {key: message[key] for key in ("orderId", "orderUpdateId", "nodes", "edges")})
+        wait("the order", "lastNodeId", "n1")
+        self.assertEqual(master.last["state"]["errors"], [])
+        self.assertAlmostEqual(pose_of(self.truth).seen_from(begin)[0], SIDE, delta=CROSS_TRACK)
         wait_for("standing", lambda: self.legs.posture == "standing")
 
     def test_a_key_and_a_pad_walk_sideways(self) -> None:

@@ -34,6 +34,7 @@ def scan_of(hall: tuple[float, float, float, float] = (-1.95, 3.95, -1.95, 1.95)
     scan = LaserScan(angle_min=-math.pi, angle_increment=2 * math.pi / RAYS, range_min=0.1, range_max=12.0)
     scan.header.frame_id, scan.header.stamp = "laser_link", rospy.Time.now()
     angles = scan.angle_min + np.arange(RAYS) * scan.angle_increment
+    scan.angle_max = float(angles[-1])
     with np.errstate(divide="ignore"):
         walls = [np.where(np.cos(angles) * x > 0, x / np.cos(angles), np.inf) for x in hall[:2]]
         walls += [np.where(np.sin(angles) * y > 0, y / np.sin(angles), np.inf) for y in hall[2:]]

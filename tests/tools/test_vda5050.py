@@ -7,10 +7,12 @@ from pathlib import Path
 
 import pytest
 import yaml
+from robot_control.fleet.machine import size_of
 from robot_control.fleet.memory import BLOCK, Memory, MemoryFileError
 from robot_control.fleet.settings import Settings, SettingsError, read_settings
 from robot_control.fleet.v2.messages import Error, RefusedError, decoded, is_time, schema, time_text
 from robot_control.fleet.v2.state import factsheet, visualization
+from robot_control.inspect.description import describe
 from robot_control.installed_files import share_file
 
 from bench.fleet.messages import MANUFACTURER, SERIAL, action, header, order, unknown_names
@@ -60,6 +62,12 @@ def test_every_message_of_an_order_with_all_that_can_happen_is_valid():
         valid("connection", {"connectionState": state})
     seen = {each["actionStatus"] for state in run.states for each in state["actionStates"]}
     assert seen == {"WAITING", "RUNNING", "FINISHED", "FAILED"}
+
+
+def test_the_height_of_a_robot_on_legs_is_that_with_stretched_legs():
+    length, width, height = size_of(describe(share_file("urdf/quadbot.urdf"), {"robot": {}}))
+    assert (length, width) == pytest.approx((0.62, 0.37), abs=0.01)
+    assert height == pytest.approx(0.062 + 0.426 + 0.02, abs=0.005)  # thighs that are folded, legs, a foot
 
 
 def test_a_name_that_the_schema_does_not_know_is_found():

@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from robot_control.common.pose import Pose
 from robot_control.fleet.v2.capability import Capabilities
 from robot_control.fleet.v2.curve import CurveError, points_of
 from robot_control.fleet.v2.messages import RefusedError
@@ -204,6 +205,43 @@ def test_a_completed_order_is_continued_at_its_last_node():
     state = run.send(order(LINE[1:], update=2, first=1))
     assert kinds(state) == []
     assert nodes(state) == [("n2", True), ("n3", True)]
+    run.until_over()
+    assert run.robot.pose.x == pytest.approx(3.0, abs=0.02)
+
+
+def test_a_node_that_was_reached_is_not_measured_again():
+    run = Run()
+    run.send(order(LINE[:2]))
+    run.until_over()
+    run.robot.pose = Pose(0.947, 0.0, 0.0)  # localization corrects the place
+    run.step(0.1)
+    assert kinds(run.send(order(LINE[1:], update=1, first=1))) == []
+    run.until_over()
+    assert run.robot.pose.x == pytest.approx(3.0, abs=0.02)
+
+
+@pytest.mark.parametrize("drop", ["cancelOrder", "MANUAL", "initPosition"])
+def test_a_dropped_order_is_continued_only_on_its_last_node(drop):
+    run = Run()
+    run.send(order(LINE[:1]))
+    if drop == "cancelOrder":
+        run.send(order(LINE, update=1))
+        run.step(1.5)
+        run.send(instant(action("cancelOrder", "c")))
+        run.step(3.0)
+    elif drop == "MANUAL":
+        run.robot.given = replace(run.robot.given, mode="MANUAL")
+        run.step(0.1)
+        run.robot.given = replace(run.robot.given, mode="AUTOMATIC")
+    else:
+        place = {"x": 0.5, "y": 0.0, "theta": 0.0, "mapId": "hall", "lastNodeId": "n0"}
+        run.send(instant(action("initPosition", "i", **place)))
+    run.robot.pose = Pose(0.5, 0.0, 0.0)
+    run.step(0.1)
+    assert kinds(run.send(order(LINE, update=2))) == ["orderUpdateError"]
+    run.robot.pose = Pose(0.0, 0.0, 0.0)
+    run.step(0.1)
+    assert kinds(run.send(order(LINE, update=2))) == []
     run.until_over()
     assert run.robot.pose.x == pytest.approx(3.0, abs=0.02)
 

@@ -38,21 +38,30 @@ def running_description() -> Description:
         return describe(file.name, {"robot": robot})
 
 
-def machine_of(robot: Description, settings: Settings) -> Machine:
-    """The machine of a robot on wheels; the smaller limit of follow_path and of the controller holds."""
-    law, limits, live = FollowParameters(), SpeedLimits().newest(), LiveParameters()
+def size_of(robot: Description) -> tuple[float, float, float]:
+    """m: length, width and height; the height of a robot on legs is that with stretched ones."""
     corners = [corner for shape in robot["shapes"] for corner in triangles_in_base(shape).reshape(-1, 3)]
+    corners += [
+        np.array((*leg["hip"][:2], leg["hip"][2] - leg["length"] - leg["foot_radius"])) for leg in robot.get("legs", ())
+    ]
     size = np.ptp(np.asarray(corners), axis=0) if corners else np.zeros(3)
+    return float(size[0]), float(size[1]), float(size[2])
+
+
+def machine_of(robot: Description, settings: Settings) -> Machine:
+    """The machine of a robot; the smaller limit of follow_path and of the controller holds."""
+    law, limits, live = FollowParameters(), SpeedLimits().newest(), LiveParameters()
+    length, width, height = size_of(robot)
     return Machine(
         series=robot["name"],
-        length=float(size[0]),
-        width=float(size[1]),
-        height=float(size[2]),
+        length=length,
+        width=width,
+        height=height,
         speed=min(settings.speed, limits.linear),
         slowest=law.slowest,
         acceleration=live.value("max_linear_acceleration", law.deceleration),
         deceleration=law.deceleration,
-        wheels=tuple((w["centre"][0], w["centre"][1], 2 * w["radius"], w["width"]) for w in robot["wheels"]),
+        wheels=tuple((w["centre"][0], w["centre"][1], 2 * w["radius"], w["width"]) for w in robot.get("wheels", ())),
         software=ET.parse(share_file("package.xml")).findtext("version", ""),
         actions=settings.kinds,
         visualization_period=1 / settings.visualization_rate if settings.visualization_rate else 0.0,

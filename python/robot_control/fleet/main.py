@@ -13,8 +13,6 @@ from std_srvs.srv import Trigger, TriggerResponse
 from robot_control._robot_control import ParameterError, RobotError
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message, given_path
-from robot_control.common.robot_kind import refuse_running_legs
-from robot_control.common.roles import WheelsOnlyError
 from robot_control.common.ros_node import running_node
 from robot_control.common.server_values import ServerValueError
 from robot_control.common.topic_sender import Signals
@@ -134,7 +132,6 @@ def main() -> None:
         sys.exit(f"vda5050.py: {fit_for_message(in_words(error))}")
     try:
         with running_node("vda5050") as signals:
-            refuse_running_legs("vda5050.py")
             Node(settings).run(signals)
-    except (MemoryFileError, RobotError, ParameterError, ServerValueError, WheelsOnlyError) as error:
+    except (MemoryFileError, RobotError, ParameterError, ServerValueError) as error:
         sys.exit(f"vda5050.py: {fit_for_message(str(error))}")

@@ -8,10 +8,12 @@ while it and the edge before it are released. Decision on an order (figure 8):
     the same   lower            never
     the same   equal            never; it is ignored
     the same   higher           executing: its first node is the decision point, the last released node
-    the same   higher           completed: its first node is the last one reached, and the robot stands there
+    the same   higher           completed: its first node is the last one reached
+    the same   higher           dropped: the same, and the robot stands on it
 
 Executing: `nodeStates` is not empty, an action is neither FINISHED nor FAILED, or the robot does not stand yet after
-cancelOrder.
+cancelOrder. Dropped: by cancelOrder, a person who drove or initPosition. The robot may be anywhere then. A node that
+counted as reached is not measured again: its deviation held at that time.
 """
 
 from __future__ import annotations
@@ -63,7 +65,7 @@ class Vehicle:
     def __init__(self) -> None:
         self.order_id, self.update_id = "", 0
         self.last_id, self.last_sequence = "", 0
-        self.last: Node | None = None  # the node of these, as its first order described it
+        self.last: Node | None = None  # the node of these, as its first order described it; None: dropped
         self.nodes: list[Node] = []  # that are still to be traversed
         self.edges: list[Edge] = []
         self.actions: list[ActionState] = []
@@ -134,8 +136,8 @@ class Vehicle:
         self._check_ids(order, order.elements[1:], (s for s in self.actions if s.sequence <= first.sequence))
         if self.cancelling:
             raise _refused(order, "orderUpdateError", "the order is being cancelled")
-        if not self.executing:
-            self._check_start(order, self.last or first, near)
+        if self.last is None:
+            self._check_start(order, first, near)
 
     def _check_ids(self, order: Order, elements: Iterable[Node | Edge], kept: Iterable[ActionState]) -> None:
         known = {state.action.id for state in kept}
@@ -153,7 +155,7 @@ class Vehicle:
     def _take_update(self, order: Order) -> None:
         """The stitching node keeps its content; the horizon makes room for the new one."""
         after = order.nodes[0].sequence
-        self.update_id = order.update
+        self.update_id, self.last = order.update, self.last or order.nodes[0]
         self.nodes = [node for node in self.nodes if node.sequence <= after] + list(order.nodes[1:])
         self.edges = [edge for edge in self.edges if edge.sequence < after] + list(order.edges)
         self.actions = [state for state in self.actions if state.sequence <= after]
@@ -204,15 +206,18 @@ class Vehicle:
         if self.cancelling and self.standing and not running:
             for state in self.cancelling:
                 state.end(FINISHED)
-            self.nodes, self.edges = [], []
+            self._drop()
         for state in self.actions:
             if state.action.kind == "startPause" and state.status == RUNNING and self.standing:
                 state.end(FINISHED)
 
+    def _drop(self) -> None:
+        self.nodes, self.edges, self.last = [], [], None
+
     def clear(self, why: str) -> list[ActionState]:
         """Drops the order at once (MANUAL); the running actions of the order, which have to be ended."""
         running = self._fail_waiting(why)
-        self.nodes, self.edges = [], []
+        self._drop()
         for state in self.cancelling:
             state.end(FINISHED)
         return running
