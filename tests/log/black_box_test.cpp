@@ -78,7 +78,7 @@ TEST_F(ABlackBox, LeavesNoBagWhereverTheCallerGivesUp) {
   save_black_box(path("ring"), build_id(), path("saved/run.bag"), [&] { return ++asked < 0; });
   std::filesystem::remove_all(path("saved"));
   ASSERT_GT(asked, 300);
-  for (int last = 1; last <= asked; last += 1 + asked / 50) {
+  for (int last = 1; last <= asked; last += 1 + asked / 20) {
     int calls = 0;
     const auto give_up = [&] { return ++calls == last; };
     EXPECT_THROW(save_black_box(path("ring"), build_id(), path("saved/run.bag"), give_up), SavingGivenUp);

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <cstdlib>
 #include <initializer_list>
 #include <type_traits>
@@ -207,6 +208,20 @@ constexpr bool condition(bool v) noexcept {
 MUTATION_EXTREME(Min, std::min, std::max)
 MUTATION_EXTREME(Max, std::max, std::min)
 
+/// Without the magnitude a number is itself, a complex one its real part.
+template <int kId>
+struct Abs {
+  template <typename T>
+  constexpr auto operator()(const T& v) const {
+    using Result = decltype(std::abs(v));
+    if constexpr (std::is_same_v<T, std::complex<Result>>) {
+      return on<kId>() ? v.real() : std::abs(v);
+    } else {
+      return on<kId>() ? Result(v) : std::abs(v);
+    }
+  }
+};
+
 #define MUTATION_FUNCTION(Name, original, other)         \
   template <int kId>                                     \
   struct Name {                                          \
@@ -216,7 +231,6 @@ MUTATION_EXTREME(Max, std::max, std::min)
       return on<kId>() ? Result(other(v)) : original(v); \
     }                                                    \
   };
-MUTATION_FUNCTION(Abs, std::abs, )
 MUTATION_FUNCTION(Sin, std::sin, std::cos)
 MUTATION_FUNCTION(Cos, std::cos, std::sin)
 MUTATION_FUNCTION(Floor, std::floor, std::ceil)

@@ -53,8 +53,8 @@ class ReadParametersFuzz : public testing::TestWithParam<std::pair<unsigned, uns
     }
   }
 };
-INSTANTIATE_TEST_SUITE_P(EveryDay, ReadParametersFuzz, testing::Values(std::pair(0u, 300u)));
-INSTANTIATE_TEST_SUITE_P(Nightly, ReadParametersFuzz, testing::Values(std::pair(300u, 1500u)));
+INSTANTIATE_TEST_SUITE_P(EveryDay, ReadParametersFuzz, testing::Values(std::pair(0u, 100u)));
+INSTANTIATE_TEST_SUITE_P(Nightly, ReadParametersFuzz, testing::Values(std::pair(100u, 1500u)));
 
 TEST_P(ReadParametersFuzz, ReadsOrRefusesWhateverStandsInTheFile) {
   ParameterFile file;

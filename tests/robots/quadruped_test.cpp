@@ -1,6 +1,7 @@
 /// Robots on legs in the closed loop: lie, stand, move the body, lift a foot, lie down, and be stopped.
 
 #include <random>
+#include <vector>
 
 #include "control/legged/body_bounds.h"
 #include "robots/quadruped_fixture.h"
@@ -145,25 +146,26 @@ TEST_P(QuadrupedOf, StandsFirmWhileItsPoseStepsOnAllAxesAtOnce) {
   EXPECT_LE(robot.tilt, 0.33);                                         // rad, roll and pitch together
 }
 
-TEST_P(QuadrupedOf, LiesDownFromAnyPoseAndMotionInTime) {
-  QuadrupedLoop robot = loop_of(GetParam());
+/// From random poses: `moving` of them while the body moves, then one with each of `feet` in the air.
+void expect_lying_in_time(const std::string& name, std::size_t moving, const std::vector<std::uint64_t>& feet) {
+  QuadrupedLoop robot = loop_of(name);
   const double length = robot.robot().leg_length();
   robot.wait(0.3);
   std::mt19937_64 random(7);
   const auto within = [&](double size) { return std::uniform_real_distribution<double>(-size, size)(random); };
-  for (int trial = 0; trial < 12; ++trial) {
+  for (std::size_t trial = 0; trial < moving + feet.size(); ++trial) {
     robot.run(2.5, stance(kStanceStand));
     ASSERT_EQ(robot.command().legged.phase, LegPhase::kStanding) << trial;
-    if (trial >= 8) {  // a foot is in the air
+    if (trial >= moving) {
       const LegTuning tuning = leg_tuning(robot.robot());
-      Request foot = stance(kStanceLift + static_cast<std::uint64_t>(trial) % kLegs);
+      Request foot = stance(kStanceLift + feet[trial - moving]);
       foot.posture = {
           .height = tuning.lift + tuning.foot_range, .x = within(tuning.foot_range), .y = within(tuning.foot_range)};
       robot.run(2.2, foot);
       ASSERT_NE(robot.command().legged.lifted, 0u) << trial;
     }
     for (const double seconds : {0.6 + within(0.4), 0.35 + within(0.25)}) {
-      if (trial >= 8) break;
+      if (trial >= moving) break;
       robot.run(seconds, {.twist = {},
                           .posture = {.height = within(0.16 * length),
                                       .roll = within(0.3),
@@ -178,6 +180,14 @@ TEST_P(QuadrupedOf, LiesDownFromAnyPoseAndMotionInTime) {
     EXPECT_LE(took, lying_down_time(robot.robot())) << trial;
     ASSERT_EQ(robot.permit().causes, 0u) << trial << ": " << robot.causes();
   }
+}
+
+TEST_P(QuadrupedOf, LiesDownFromAnyPoseAndMotionInTime) { expect_lying_in_time(GetParam(), 2, {0, 3}); }
+
+class NightlyQuadrupedOf : public QuadrupedOf {};
+
+TEST_P(NightlyQuadrupedOf, LiesDownFromMorePosesAndMotionsInTime) {
+  expect_lying_in_time(GetParam(), 8, {0, 1, 2, 3});
 }
 
 TEST_P(QuadrupedOf, MovesItsJointsAlongAPathWhileItLies) {
@@ -227,6 +237,7 @@ TEST_P(QuadrupedOf, MovesItsJointsAlongAPathWhileItLies) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Robots, QuadrupedOf, testing::ValuesIn(legged_robots()), robot_name);
+INSTANTIATE_TEST_SUITE_P(Robots, NightlyQuadrupedOf, testing::ValuesIn(legged_robots()), robot_name);
 
 class Quadbot : public testing::Test {
  protected:

@@ -141,24 +141,28 @@ TEST_F(ForgedFields, AreNoneInTheLogAsItWasWritten) {
   EXPECT_TRUE(report.gaps.empty()) << text_of(report);
 }
 
-TEST_F(ForgedFields, OfEveryNameAreNoticed) {
-  constexpr int kEdits = 3;
+/// The parameter is the number of edits of each field.
+class EditsOfForgedFields : public ForgedFields, public testing::WithParamInterface<int> {};
+INSTANTIATE_TEST_SUITE_P(EveryDay, EditsOfForgedFields, testing::Values(1));
+INSTANTIATE_TEST_SUITE_P(Nightly, EditsOfForgedFields, testing::Values(5));
+
+TEST_P(EditsOfForgedFields, OfEveryNameAreNoticed) {
   for (std::size_t field = 0; field < places_.size(); ++field) {
     const std::string& name = trace_fields()[field].name;
     ASSERT_FALSE(places_[field].empty()) << name << " has no element in this drive";
-    for (int i = 0; i < kEdits; ++i) EXPECT_TRUE(notices_edit(places_[field], false)) << name;
+    for (int i = 0; i < GetParam(); ++i) EXPECT_TRUE(notices_edit(places_[field], false)) << name;
   }
 }
 
-TEST_F(ForgedFields, WithARenewedChecksumAreNoticedOrListedInTheDocumentation) {
-  constexpr int kEdits = 5, kTries = 1000;  // few rows have neither a usable command nor permit
+TEST_P(EditsOfForgedFields, WithARenewedChecksumAreNoticedOrListedInTheDocumentation) {
+  constexpr int kTries = 1000;  // few rows have neither a usable command nor permit
   std::set<std::string> listed = fields_that_cannot_be_known();
   EXPECT_FALSE(listed.empty());
   for (std::size_t field = 0; field < places_.size(); ++field) {
     const std::string& name = trace_fields()[field].name;
     const bool known = listed.erase(name) == 0;
     bool noticed = true;
-    for (int i = 0; noticed && i < (known ? kEdits : kTries); ++i) noticed = notices_edit(places_[field], true);
+    for (int i = 0; noticed && i < (known ? GetParam() : kTries); ++i) noticed = notices_edit(places_[field], true);
     EXPECT_EQ(noticed, known) << name << (known ? " is not listed" : " is listed, but every edit is noticed");
   }
   EXPECT_THAT(listed, testing::IsEmpty()) << "no such fields";
