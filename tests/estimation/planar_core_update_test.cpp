@@ -94,7 +94,7 @@ TEST_F(CoreUpdateTest, AnInnovationBeyondHubersBoundWidensItsOwnDeviation) {
               1e-9 * variance);
 }
 
-// Where a turn drags wheels, such innovations are usual, and n deviations pull like kHuber.
+// On dragged wheels such innovations are usual, and one of n deviations pulls like one of kHuber.
 TEST_F(CoreUpdateTest, AnInnovationOfDraggedWheelsPullsNoHarderThanHubersBound) {
   core_ = PlanarCore{PlanarCoreParams{}};
   practise(core_, 3);

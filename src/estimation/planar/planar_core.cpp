@@ -110,22 +110,18 @@ void PlanarCore::begin_block(double rate) noexcept {
 }
 
 PlanarCore::Innovation PlanarCore::end_block(const Block& block) noexcept {
-  const double rolled = std::abs(block.left) + std::abs(block.right);
-  const double mean = (block.left + block.right) / 2;
-  const double later = block.rate - anchor_rate_;
-  const double angle = turned() - offset() * later;
-  const double b = params_.wheel_base * (1 + base());
+  const double rolled = std::abs(block.left) + std::abs(block.right), mean = (block.left + block.right) / 2;
+  const double later = block.rate - anchor_rate_, angle = turned() - offset() * later;
+  const double b = params_.wheel_base * (1 + base()), difference = block.right - block.left;
   Vector h = Vector::Zero();
   h[kYaw] = b;
   h[kAnchor] = -b;
   h[kOffset] = -b * later;
   h[kRatio] = -mean;
-  const double difference = block.right - block.left;
   const WheelNoise::Variances parts = noise_.variances(rolled, angle, b);
-  const double by_gyro = square(b) * (square(params_.gyro_noise) * block.time + bias_variance() * square(block.time));
-  const double by_wheels = parts.slips + 4 * square(params_.encoder);
+  const double drift = square(params_.gyro_noise) * block.time + bias_variance() * square(block.time);
   const double turn = params_.drags_wheels ? b * angle : difference + ratio() * mean;
-  const double noise = params_.drags_wheels ? by_gyro : by_wheels;
+  const double noise = params_.drags_wheels ? square(b) * drift : parts.slips + 4 * square(params_.encoder);
   if (square(turn) > square(Tuning::kSignificantTurn) * noise) h[kBase] = turn / (1 + base());
   const Vector ph = *covariance_ * h;
   const double s = h.dot(ph) + parts.slips + parts.twists + 4 * square(params_.encoder);
