@@ -26,12 +26,12 @@ class CoreUpdateTest : public testing::Test {
     right_ = kWay + difference / 2;
     return core_.end_block({.time = 1.0, .left = left_, .right = right_, .rate = 0.1 + kLater});
   }
-  /// d innovation / d state.
-  CoreVector measurement() const {
+  /// d innovation / d state, of a block that ends with `innovation` m.
+  CoreVector measurement(double innovation) const {
     CoreVector h = CoreVector::Zero();
     h[PlanarCore::kYaw] = kBase * (1 + core_.base());
     h[PlanarCore::kAnchor] = -h[PlanarCore::kYaw];
-    h[PlanarCore::kBase] = kBase * (core_.turned() - core_.offset() * kLater);
+    h[PlanarCore::kBase] = kBase * (core_.turned() - core_.offset() * kLater) + innovation / (1 + core_.base());
     h[PlanarCore::kOffset] = -kBase * (1 + core_.base()) * kLater;
     h[PlanarCore::kRatio] = -kWay;
     return h;
@@ -45,8 +45,8 @@ class CoreUpdateTest : public testing::Test {
 TEST_F(CoreUpdateTest, ABlockIsAKalmanUpdateThatConsidersTheGyrosScale) {
   const CoreMatrix before = *core_.covariance();
   const CoreVector x = values_of(core_);
-  const CoreVector h = measurement();
   constexpr double kInnovation = 2e-4;
+  const CoreVector h = measurement(kInnovation);
   const PlanarCore::Innovation verdict = end_block(kInnovation);
   ASSERT_TRUE(verdict.used);
   ASSERT_LT(verdict.nis, 1);
@@ -79,18 +79,49 @@ TEST_F(CoreUpdateTest, TheGyrosScaleIsNeverBetterKnown) {
   EXPECT_EQ(core_.deviation(PlanarCore::kScale), before);
 }
 
-// Huber's bound lets an innovation of n deviations pull like kHuber.
-TEST_F(CoreUpdateTest, AnInnovationPullsNoHarderThanHubersBound) {
+// Huber's bound lets an innovation of n deviations s pull as one of kHuber √w does, with w = n² s / kHuber².
+TEST_F(CoreUpdateTest, AnInnovationBeyondHubersBoundWidensItsOwnDeviation) {
+  constexpr double kInnovation = 0.02;
+  const double variance = (*core_.covariance())(PlanarCore::kBias, PlanarCore::kBias);
+  const double bias = core_.bias();
+  const double ph = (*core_.covariance() * measurement(kInnovation))[PlanarCore::kBias];
+  const PlanarCore::Innovation verdict = end_block(kInnovation);
+  ASSERT_TRUE(verdict.used);
+  ASSERT_GT(verdict.nis, 2 * Tuning::kHuber * Tuning::kHuber);
+  const double widened = kInnovation * kInnovation / (Tuning::kHuber * Tuning::kHuber);
+  EXPECT_NEAR(core_.bias() - bias, ph * kInnovation / widened, 1e-9 * std::abs(ph / kInnovation));
+  EXPECT_NEAR((*core_.covariance())(PlanarCore::kBias, PlanarCore::kBias), variance - ph * ph / widened,
+              1e-9 * variance);
+}
+
+// On dragged wheels such innovations are usual, and one of n deviations pulls like one of kHuber.
+TEST_F(CoreUpdateTest, AnInnovationOfDraggedWheelsPullsNoHarderThanHubersBound) {
+  core_ = PlanarCore{PlanarCoreParams{}};
+  practise(core_, 3);
+  core_.begin_block(0.1);
+  core_.turn_by_gyro(0.3, 1.0);
   PlanarCore other = core_;
-  const double deviation = 1e-4 / std::sqrt(end_block(1e-4).nis);
+  const double base = core_.base();
+  end_block(1e-3);
+  const double least = core_.base() - base;
   core_ = other;
-  const CoreVector x = values_of(core_);
-  const CoreVector ph = *core_.covariance() * measurement();
-  const PlanarCore::Innovation verdict = end_block(5 * deviation);
-  EXPECT_TRUE(verdict.used);
-  EXPECT_NEAR(verdict.nis, 25, 1e-6);
-  EXPECT_NEAR(values_of(core_)[PlanarCore::kBias] - x[PlanarCore::kBias],
-              ph[PlanarCore::kBias] * Tuning::kHuber / deviation, 1e-9 * std::abs(ph[PlanarCore::kBias] / deviation));
+  const double deviation = 1e-3 / std::sqrt(end_block(1e-3).nis);
+  core_ = other;
+  ASSERT_TRUE(end_block(5 * deviation).used);
+  EXPECT_NEAR(core_.base() - base, least * Tuning::kHuber * deviation / 1e-3, 1e-6 * std::abs(least));
+}
+
+// The first block of a turn shows the sum of the errors of bias and base.
+TEST_F(CoreUpdateTest, ABaseThatIsNotKnownStaysInTheDeviationOfTheBias) {
+  constexpr double kWrong = 0.06;
+  constexpr double kTurn = 0.4;
+  PlanarCore core{PlanarCoreParams{.drags_wheels = false, .ratio_deviation = 0.001}};
+  core.begin_block(kTurn);
+  core.turn_by_gyro(kTurn, 1.0);
+  const double difference = kBase * (1 + kWrong) * kTurn;
+  core.end_block({.time = 1.0, .left = kWay - difference / 2, .right = kWay + difference / 2, .rate = kTurn});
+  EXPECT_LT(std::abs(core.bias()), 2.5 * core.deviation(PlanarCore::kBias));
+  EXPECT_LT(std::abs(core.pose().yaw - kTurn), 2.5 * core.deviation(PlanarCore::kYaw));
 }
 
 TEST_F(CoreUpdateTest, AnInnovationBeyondSixDeviationsIsNotUsed) {

@@ -1,6 +1,7 @@
 #include "estimation/planar/planar_core.h"
 
 #include <numbers>
+#include <tuple>
 
 namespace robot_control {
 
@@ -36,8 +37,7 @@ void PlanarCore::set_calibration(const WheelCalibration& known) noexcept {
   start_ = known;
   worse_ = 0;
   forget(kRatio, 2);
-  (*state_)[kRatio] = known.radius_ratio - 1;
-  (*state_)[kBase] = known.wheel_base_factor - 1;
+  (*state_).segment<2>(kRatio) << known.radius_ratio - 1, known.wheel_base_factor - 1;
   if (params_.ratio_deviation > 0) (*covariance_)(kRatio, kRatio) = square(known.radius_ratio_deviation);
   if (params_.wheel_base_deviation > 0) (*covariance_)(kBase, kBase) = square(known.wheel_base_deviation);
 }
@@ -110,30 +110,32 @@ void PlanarCore::begin_block(double rate) noexcept {
 }
 
 PlanarCore::Innovation PlanarCore::end_block(const Block& block) noexcept {
-  const double rolled = std::abs(block.left) + std::abs(block.right);
-  const double mean = (block.left + block.right) / 2;
-  const double later = block.rate - anchor_rate_;
-  const double angle = turned() - offset() * later;
-  const double b = params_.wheel_base * (1 + base());
+  const double rolled = std::abs(block.left) + std::abs(block.right), mean = (block.left + block.right) / 2;
+  const double later = block.rate - anchor_rate_, angle = turned() - offset() * later;
+  const double b = params_.wheel_base * (1 + base()), difference = block.right - block.left;
   Vector h = Vector::Zero();
   h[kYaw] = b;
   h[kAnchor] = -b;
   h[kOffset] = -b * later;
   h[kRatio] = -mean;
-  const double drift = square(params_.gyro_noise) * block.time + bias_variance() * square(block.time);
-  if (square(angle) > square(Tuning::kSignificantTurn) * drift) h[kBase] = params_.wheel_base * angle;
-  const Vector ph = *covariance_ * h;
   const WheelNoise::Variances parts = noise_.variances(rolled, angle, b);
-  const double s = h.dot(ph) + parts.slips + parts.twists + 4 * square(params_.encoder);
-  const double difference = block.right - block.left;
-  const double innovation = difference + ratio() * mean - b * angle;
+  const double drift = square(params_.gyro_noise) * block.time + bias_variance() * square(block.time);
+  const double by_wheels = difference + ratio() * mean, innovation = by_wheels - b * angle;
+  const double reading = 4 * square(params_.encoder);
+  const auto [turn, noise, widest, held] =
+      params_.drags_wheels ? std::tuple(b * angle, square(b) * drift, 0.0, 5)
+                           : std::tuple(by_wheels, parts.slips + reading, square(innovation / Tuning::kHuber), 0);
+  if (square(turn) > square(Tuning::kSignificantTurn) * noise) h[kBase] = turn / (1 + base());
+  const Vector ph = *covariance_ * h;
+  const double s = h.dot(ph) + parts.slips + parts.twists + reading;
   const double normalised = innovation / std::sqrt(s);
   const bool agree = std::abs(normalised) <= Tuning::kGate;
   compare(angle, angle + innovation / b, Tuning::kSignificant * std::sqrt(s) / b, agree, block.stuck);
   if (block.slid) return {.nis = square(normalised), .used = false};
-  Vector gain = ph / s;
-  if (params_.drags_wheels) gain.segment<5>(kX).setZero();
-  if (agree) correct(gain, ph, s, std::clamp(normalised, -Tuning::kHuber, Tuning::kHuber) * std::sqrt(s));
+  const double widened = std::max(s, widest), most = Tuning::kHuber * std::sqrt(widened);
+  Vector gain = ph / widened;
+  gain.segment(kX, held).setZero();
+  if (agree) correct(gain, ph, widened, std::clamp(innovation, -most, most));
   noise_.learn(normalised, parts, s);
   const double other =
       difference + (start_.radius_ratio - 1) * mean - params_.wheel_base * start_.wheel_base_factor * angle;
@@ -198,8 +200,7 @@ void PlanarCore::rest(double mean, double variance, bool keeps_pose) noexcept {
 Eigen::Matrix4d PlanarCore::pose_covariance() const noexcept {
   Eigen::Matrix4d covariance = (*covariance_).topLeftCorner<4, 4>();
   if (doubt_ == 0) return covariance;
-  const double x = (*state_)[kX] - doubted_x_;
-  const double y = (*state_)[kY] - doubted_y_;
+  const double x = (*state_)[kX] - doubted_x_, y = (*state_)[kY] - doubted_y_;
   const Eigen::Vector4d across(0, -y, x, 1);
   const Eigen::Vector4d along(0, x, y, 0);
   covariance += square(doubt_) * across * across.transpose();

@@ -17,14 +17,13 @@
 ///   x_ICR    centre of rotation ahead of the middle of the wheels: a turn dψ moves the middle by −x_ICR dψ sideways
 ///   radius   mean radius of the wheels, relative; it scales the path
 ///
-/// Wheels that a turn drags over the floor do not measure the heading: load and floor change ε and β as much as a gyro
-/// errs. Their blocks correct τ, ε and β alone.
-///
-/// An innovation counts with at most kHuber deviations. Beyond kGate deviations wheels and gyro contradict each other.
-/// The heading then follows the gyro, and its doubt, a deviation beside P, grows by the angle between both. Wheels that
-/// are dragged may turn the robot by three quarters of their own turn. Each block in which both agree takes kAgreement
-/// of the doubt, and three times as much where turns drag wheels. A gyro that fails seldom becomes right again.
-///
+/// The Jacobian by β contains the turn of the wheels, because that of the gyro contains a bias. Turns below
+/// kSignificantTurn of their deviations do not show β. Wheels that a turn drags do not measure the heading: load and
+/// floor change ε and β as much as a gyro errs. Their blocks correct τ, ε and β alone, and the gyro's turn shows β.
+/// An innovation counts with at most kHuber deviations. On wheels that no turn drags, it widens its own to that. Beyond
+/// kGate deviations wheels and gyro contradict each other. The heading then follows the gyro. Its doubt, a deviation
+/// beside P, grows by the angle between both. Wheels that are dragged may turn the robot by three quarters of their own
+/// turn. Each block in which both agree takes kAgreement of the doubt. Turns that drag wheels triple that.
 /// ε and β walk in proportion to the slip noise (wheel_noise.h). The blocks that follow check them: where those of the
 /// start predict the blocks better, by a nis of kSignificant², ε and β are dropped. They begin again with the deviation
 /// of the start.
