@@ -1,5 +1,6 @@
 /// The simulated robot whose drives the program `driver` commands over the bus of the drive file (`address:
-/// unix:FOLDER`). It publishes ground_truth/odom and has the service ~inject_fault: component is a joint or `bus`.
+/// unix:FOLDER`), or over a serial line, to whose address it makes a link. It publishes ground_truth/odom and has the
+/// service ~inject_fault: component is a joint or `bus`, and `board` of a motor board.
 
 #include <ros/ros.h>
 
@@ -109,8 +110,8 @@ int main(int argc, char** argv) {
   using namespace robot_control;
   return run_node(argc, argv,
                   {.name = "device_simulator",
-                   .purpose = "Simulates a robot with motor drives on CAN, which the program driver commands over the "
-                              "bus of the drive file.",
+                   .purpose = "Simulates a robot with motor drives on CAN or a motor board, which the program driver "
+                              "commands over the bus or line of the drive file.",
                    .make = [](const Setup& setup) -> std::unique_ptr<Node> {
                      return std::make_unique<DeviceSimulatorNode>(setup);
                    }});

@@ -1,7 +1,10 @@
 #pragma once
 /// Two wheels in the air on the simulated motor board, whose code is that of firmware/, behind its driver.
 
+#include <array>
+#include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "drivers/serial/board_driver.h"
@@ -17,24 +20,19 @@ class BoardMachine final : public Driver {
   explicit BoardMachine(double rate = 1000, unsigned counter_bits = 32, std::uint32_t zero = 0,
                         std::uint64_t bit_rate = 0)
       : period_(1 / rate) {
-    BoardParameters parameters{
-        .line = {.address = "none", .bit_rate = bit_rate, .e_stop_input = true, .on_silence = SilenceReaction::kHolds},
-        .wheels = {}};
-    for (std::uint64_t i = 0; i < 2; ++i) {
-      parameters.wheels.push_back({.joint = i == 0 ? "left" : "right",
-                                   .wheel = 1 - i,  // the joints are not in the order of the board
-                                   .direction = i == 0 ? 1 : -1,
-                                   .counts_per_turn = 16384,
-                                   .counter_bits = counter_bits,
-                                   .torque_limit = kEffortLimit,
-                                   .velocity_limit = 100});
-    }
-    const Brake brake{.effort = 3, .hold_effort = 3, .damping = 3, .stiffness = 20, .hold_speed = 0.3};
-    const std::vector<Brake> brakes{brake, brake};
-    board_ = std::make_unique<BoardFront>(parameters, brakes, period_, 1);
+    const BoardParameters parameters = parameters_of(counter_bits, bit_rate);
+    board_ = std::make_unique<BoardFront>(parameters, kBrakes, period_, 1);
     board_->set_zero(zero);
-    driver_ = std::make_unique<BoardDriver>(parameters, brakes, 2, period_, board_->driver_end(),
-                                            [this] { return board_->now_ns(); });
+    connect(parameters, board_->driver_end());
+  }
+
+  /// Over a true line; its driver's end is made after its device's end.
+  BoardMachine(double rate, std::unique_ptr<SerialLine> device_end,
+               const std::function<std::unique_ptr<SerialLine>()>& driver_end)
+      : period_(1 / rate) {
+    const BoardParameters parameters = parameters_of(32, 0);
+    board_ = std::make_unique<BoardFront>(parameters, kBrakes, period_, std::move(device_end));
+    connect(parameters, driver_end());
   }
 
   /// The contract begins with a machine that is ready.
@@ -74,6 +72,30 @@ class BoardMachine final : public Driver {
   std::vector<JointSample> joints = std::vector<JointSample>(2);
 
  private:
+  static constexpr Brake kBrake{.effort = 3, .hold_effort = 3, .damping = 3, .stiffness = 20, .hold_speed = 0.3};
+  static constexpr std::array kBrakes{kBrake, kBrake};
+
+  static BoardParameters parameters_of(unsigned counter_bits, std::uint64_t bit_rate) {
+    BoardParameters parameters{
+        .line = {.address = "none", .bit_rate = bit_rate, .e_stop_input = true, .on_silence = SilenceReaction::kHolds},
+        .wheels = {}};
+    for (std::uint64_t i = 0; i < 2; ++i) {
+      parameters.wheels.push_back({.joint = i == 0 ? "left" : "right",
+                                   .wheel = 1 - i,  // the joints are not in the order of the board
+                                   .direction = i == 0 ? 1 : -1,
+                                   .counts_per_turn = 16384,
+                                   .counter_bits = counter_bits,
+                                   .torque_limit = kEffortLimit,
+                                   .velocity_limit = 100});
+    }
+    return parameters;
+  }
+
+  void connect(const BoardParameters& parameters, std::unique_ptr<SerialLine> driver_end) {
+    driver_ = std::make_unique<BoardDriver>(parameters, kBrakes, 2, period_, std::move(driver_end),
+                                            [this] { return board_->now_ns(); });
+  }
+
   double period_;
   std::unique_ptr<BoardFront> board_;
   std::unique_ptr<BoardDriver> driver_;

@@ -45,7 +45,7 @@ def program(request, tmp_path):
     """The linked program with its stack usage; skipped where the compiler is absent."""
     compiler = shutil.which(f"{request.param}-gcc")
     if compiler is None:
-        pytest.skip(f"no {request.param}-gcc: apt-get install gcc-{request.param}")
+        pytest.skip(f"needs {request.param}-gcc: scripts/setup --firmware")
     main = tmp_path / "main.c"
     main.write_text(PROGRAM)
     file = tmp_path / "program.elf"

@@ -1,7 +1,6 @@
 #include "simulation/devices/pseudo_terminal.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -9,6 +8,8 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <string_view>
 #include <utility>
 
 #include "drivers/driver.h"
@@ -16,9 +17,17 @@
 namespace robot_control {
 
 PseudoTerminal::PseudoTerminal(std::string path) : path_(std::move(path)) {
-  struct stat left {};
-  if (lstat(path_.c_str(), &left) == 0 && !S_ISLNK(left.st_mode))
-    throw DriverError(path_ + " is no link to a tty. Choose another address (board.address)");
+  std::error_code ignored;
+  const auto left = std::filesystem::symlink_status(path_, ignored);
+  const std::string remedy = ", or choose another address (board.address)";
+  if (std::filesystem::exists(left) && !std::filesystem::is_symlink(left))
+    throw DriverError("no tty can be made at " + path_ + ", which is no link. Remove it" + remedy);
+  if (std::filesystem::exists(path_, ignored)) {
+    throw DriverError("no tty can be made at " + path_ + ", which leads to " +
+                      std::filesystem::read_symlink(path_, ignored).string() +
+                      " in use. End the program that made it" + remedy);
+  }
+  std::filesystem::remove(path_, ignored);  // of a program that was killed
   plug();
 }
 
@@ -34,6 +43,7 @@ void PseudoTerminal::plug() {
   const bool made = descriptor_ >= 0 && grantpt(descriptor_) == 0 && unlockpt(descriptor_) == 0 &&
                     ptsname_r(descriptor_, name.data(), name.size()) == 0 && tcgetattr(descriptor_, &line) == 0;
   cfmakeraw(&line);
+  tty_ = name.data();
   if (made && tcsetattr(descriptor_, TCSANOW, &line) == 0 && symlink(name.data(), path_.c_str()) == 0) return;
   const std::string why = std::strerror(errno);
   unplug();
@@ -41,9 +51,11 @@ void PseudoTerminal::plug() {
 }
 
 void PseudoTerminal::unplug() noexcept {
-  struct stat link {};
-  if (lstat(path_.c_str(), &link) == 0 && S_ISLNK(link.st_mode)) unlink(path_.c_str());
-  if (descriptor_ >= 0) close(descriptor_);
+  if (descriptor_ < 0) return;
+  std::array<char, 64> target{};
+  const ssize_t size = readlink(path_.c_str(), target.data(), target.size());
+  if (size > 0 && std::string_view(target.data(), static_cast<std::size_t>(size)) == tty_) unlink(path_.c_str());
+  close(descriptor_);
   descriptor_ = -1;
 }
 

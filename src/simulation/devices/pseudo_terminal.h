@@ -8,7 +8,8 @@ namespace robot_control {
 
 class PseudoTerminal final : public SerialLine {
  public:
-  /// Throws DriverError if `path` is taken by something else than a link, or cannot be made.
+  /// A link that leads nowhere is replaced. Throws DriverError if `path` is taken by anything else, as by the link of a
+  /// running simulator, or cannot be made.
   explicit PseudoTerminal(std::string path);
   ~PseudoTerminal() override;
   PseudoTerminal(const PseudoTerminal&) = delete;
@@ -25,6 +26,7 @@ class PseudoTerminal final : public SerialLine {
 
  private:
   std::string path_;
+  std::string tty_;  // to which the link leads
   int descriptor_ = -1;
 };
 

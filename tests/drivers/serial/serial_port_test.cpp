@@ -6,8 +6,11 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <limits>
+#include <memory>
 #include <string>
 
+#include "drivers/board_machine.h"
 #include "drivers/driver.h"
 #include "rt/clock.h"
 #include "simulation/devices/pseudo_terminal.h"
@@ -18,15 +21,19 @@ namespace {
 
 const RealtimeParameters kThread{.name = "serial", .policy = RealtimePolicy::kOff};
 
+/// Waits at most 10 s, as a loaded machine may need.
+bool comes_true(const std::function<bool()>& condition) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  bool is_true = condition();
+  while (!is_true && std::chrono::steady_clock::now() < end) {
+    poll(nullptr, 0, 1);
+    is_true = condition();
+  }
+  return is_true;
+}
+
 class SerialPortTest : public testing::Test {
  protected:
-  /// Waits at most 10 s, as a loaded machine may need.
-  static bool comes_true(const std::function<bool()>& condition) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
-    while (!condition() && std::chrono::steady_clock::now() < end) poll(nullptr, 0, 1);
-    return condition();
-  }
-
   bool passes(SerialLine& from, SerialLine& to, const std::string& text) {
     if (!from.send({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()})) return false;
     std::string got;
@@ -90,6 +97,76 @@ TEST_F(SerialPortTest, SendNeverBlocksThoughNothingIsTaken) {
   bool taken = true;
   for (int i = 0; i < 100'000 && taken; ++i) taken = port.send(std::array<std::uint8_t, 100>{});
   EXPECT_FALSE(taken);
+}
+
+TEST_F(SerialPortTest, APseudoTerminalTakesNoLinkInUseAndReplacesOneThatLeadsNowhere) {
+  std::filesystem::create_symlink("/dev/pts/none", path_);
+  PseudoTerminal device(path_);
+  try {
+    const PseudoTerminal second(path_);
+    FAIL() << "no refusal";
+  } catch (const DriverError& error) {
+    EXPECT_NE(std::string(error.what()).find("in use"), std::string::npos) << error.what();
+  }
+  SerialPort port(path_, 0, kThread, &monotonic_ns);
+  EXPECT_TRUE(passes(port, device, "still there"));
+}
+
+/// Bytes that are under way to the driver.
+using UnderWay = std::shared_ptr<std::size_t>;
+
+class CountedLine final : public SerialLine {
+ public:
+  CountedLine(const std::string& path, UnderWay bytes) : line_(path), bytes_(std::move(bytes)) {}
+  bool receive(SerialChunk& chunk) noexcept override { return line_.receive(chunk); }
+  bool send(std::span<const std::uint8_t> bytes) noexcept override {
+    *bytes_ += bytes.size();
+    return line_.send(bytes);
+  }
+  bool connected() const noexcept override { return line_.connected(); }
+  std::string name() const override { return line_.name(); }
+
+ private:
+  PseudoTerminal line_;
+  UnderWay bytes_;
+};
+
+/// The true port. It waits for what is under way, so that the load of the machine changes nothing.
+class AwaitedLine final : public SerialLine {
+ public:
+  AwaitedLine(const std::string& path, UnderWay bytes) : line_(path, 0, kThread, &latest), bytes_(std::move(bytes)) {}
+  bool receive(SerialChunk& chunk) noexcept override {
+    if (*bytes_ == 0 || !comes_true([&] { return line_.receive(chunk); })) return false;
+    *bytes_ -= chunk.size;
+    return true;
+  }
+  bool send(std::span<const std::uint8_t> bytes) noexcept override { return line_.send(bytes); }
+  bool connected() const noexcept override { return line_.connected(); }
+  std::string name() const override { return line_.name(); }
+
+ private:
+  /// The driver takes a later time for its own present one.
+  static std::int64_t latest() { return std::numeric_limits<std::int64_t>::max(); }
+
+  SerialPort line_;
+  UnderWay bytes_;
+};
+
+TEST_F(SerialPortTest, TheDriverTurnsTheWheelsOfABoardBehindAPseudoTerminal) {
+  const UnderWay bytes = std::make_shared<std::size_t>(0);
+  BoardMachine machine(500, std::make_unique<CountedLine>(path_, bytes),
+                       [&] { return std::make_unique<AwaitedLine>(path_, bytes); });
+  machine.start();
+  SensorFrame frame;
+  const std::vector<JointCommand> commands(2, {.mode = JointMode::kVelocity, .velocity = 10, .damping = 0.2});
+  for (int i = 0; i < 500; ++i) {
+    machine.read(frame);
+    ASSERT_EQ(frame.driver_state, DriverState::kRunning) << machine.warning();
+    machine.write(commands);
+  }
+  EXPECT_NEAR(frame.joints[0].velocity, 10, 0.5);
+  EXPECT_NEAR(machine.joints[0].velocity, 10, 0.5);
+  EXPECT_EQ(frame.links[0].errors, 0U);
 }
 
 }  // namespace
