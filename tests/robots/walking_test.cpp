@@ -223,6 +223,17 @@ TEST(Walking, IsNotStoppedForATiltThatOnlyABiasOfTheGyroShows) {
   EXPECT_LT(robot.tilt, 0.1);
 }
 
+TEST(Walking, GoesOnWhenATrotBecomesACrawlThatIsRequestedFaster) {
+  QuadrupedLoop robot = loop_of("quadbot");
+  robot.wait(0.3);
+  robot.run(5.0, walk(1.0, 0, 0, gait(GaitName::kTrot)));
+  robot.run(3.0, walk(0.55, 0, 0, gait(GaitName::kCrawl)));
+  EXPECT_EQ(robot.command().legged.gait, static_cast<std::uint64_t>(GaitName::kCrawl));
+  EXPECT_EQ(robot.command().legged.phase, LegPhase::kWalking);
+  EXPECT_EQ(robot.command().reasons, kReasonLegSpeed);
+  EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
+}
+
 TEST(Walking, IsLimitedInItsSpeed) {
   Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
   parameters.leg_control.max_linear_speed = 0.3;

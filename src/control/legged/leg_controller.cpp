@@ -58,7 +58,7 @@ LegController::LegController(const LegModel& robot, const LegControllerParameter
       walker_(robot, parameters.friction, period),
       state_(CommandWatch(parameters.request_timeout, period, kExecutable)) {
   const NominalStance stance = nominal_stance(robot);
-  for (std::size_t i = 0; i < fastest_.size(); ++i) fastest_[i] = walking_speed(robot, stance, walker_.gaits()[i]);
+  fastest_ = walking_speeds(robot, stance, walker_.gaits());
   for (const Eigen::Vector3d& foot : stance.feet)
     foot_distance_ = std::max(foot_distance_, (foot - stance.equations.centre_of_gravity).head<2>().norm());
   const std::array<JointBounds, kLegsJoints> bounds = joint_bounds(robot);

@@ -23,7 +23,8 @@
 ///   while a foot is lifted    the place of this foot from where it stood: x, y, and height above the ground. The body
 ///                             has its nominal attitude. Without a request the foot is set down again
 ///
-/// A twist lets the robot stand up and walk (walking/walker.h). It ends the walk with a zero.
+/// A twist lets the robot stand up and walk (walking/walker.h). It ends the walk with a zero. Another gait begins when
+/// its legs carry the body at the twist of then. Until then the twist is limited by both gaits (walking_speed.h).
 ///
 /// The stance frame has its origin where that of the base was when it began to rise. It is level, and its x axis shows
 /// ahead. Let aᵢ be the feet, p the body's position and R its rotation in it. The feet in the base's axes are
@@ -58,6 +59,7 @@
 #include "control/legged/tracked_axis.h"
 #include "control/legged/walking/twist_limiter.h"
 #include "control/legged/walking/walker.h"
+#include "control/legged/walking/walking_speed.h"
 #include "machine/legs/leg_dynamics.h"
 #include "machine/legs/leg_model.h"
 #include "signals/command_frame.h"
@@ -135,6 +137,8 @@ class LegController {
   void walk(const ControlInput& input, const Request& request, CommandFrame& out) noexcept;
   bool placed(const ControlInput& input) const noexcept;
   GaitName choose_gait(const Request& request, const WalkingTwist& twist) noexcept;
+  WalkingTwist capable(GaitName now, GaitName wanted) const noexcept;
+  bool carries(GaitName gait, const WalkingTwist& twist) const noexcept;
   double pace_of(const WalkingTwist& twist) const noexcept;
   void carry(const Request& request, std::uint64_t& reasons) noexcept;
   void stand_here(const ControlInput& input) noexcept;
@@ -178,8 +182,8 @@ class LegController {
   double lie_down_after_;  ///< s; 0: never
   TwistLimiter limiter_;
   Walker walker_;
-  std::array<WalkingTwist, kGaits.size()> fastest_{};  ///< by GaitName
-  double foot_distance_ = 0;                           ///< m, of the farthest foot from the centre of gravity
+  Speeds fastest_{};          ///< by GaitName
+  double foot_distance_ = 0;  ///< m, of the farthest foot from the centre of gravity
   State state_;
 };
 

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "control/legged/leg_controller.h"
-#include "control/legged/walking/walking_speed.h"
 
 namespace robot_control {
 namespace {
@@ -67,8 +66,9 @@ void LegController::walk(const ControlInput& input, const Request& request, Comm
     for (double& axis : target) axis *= input.permit->speed_limit / speed;
   }
   const GaitName gait = choose_gait(request, target);
-  const WalkingTwist twist = limiter_.step(state_.twist, target, fastest_[state_.gait],
-                                           (out.reasons & kEmergencies) != 0, period_, out.reasons);
+  const auto now = static_cast<GaitName>(state_.walk.gait);
+  const WalkingTwist twist =
+      limiter_.step(state_.twist, target, capable(now, gait), (out.reasons & kEmergencies) != 0, period_, out.reasons);
   carry(request, out.reasons);
   const Vector3& moves = input.state->base.twist_base.linear;
   const bool slow = std::hypot(moves[0], moves[1]) < kSlow * std::sqrt(walker_.gaits()[1].period / kGaits[1].period);
@@ -81,9 +81,10 @@ void LegController::walk(const ControlInput& input, const Request& request, Comm
                      .height = state_.carried[0].value,
                      .roll = state_.carried[1].value,
                      .pitch = state_.carried[2].value,
-                     .gait = ends              ? GaitName::kStand
-                             : state_.idle > 0 ? GaitName::kTrot  // it sets the feet on their places
-                                               : gait};
+                     .gait = ends                   ? GaitName::kStand
+                             : state_.idle > 0      ? GaitName::kTrot  // it sets the feet on their places
+                             : carries(gait, twist) ? gait
+                                                    : now};
   const bool planned = walker_.step(state_.walk, to, out);
   out.twist_limited = {.linear = {twist[0], twist[1], 0}, .angular = {0, 0, twist[2]}};
   for (std::size_t i = 0; i < 3; ++i) out.legged.body[kZ + i] = state_.carried[i].value;
@@ -112,6 +113,24 @@ GaitName LegController::choose_gait(const Request& request, const WalkingTwist& 
     state_.gait = kTrot;
   }
   return static_cast<GaitName>(state_.gait);
+}
+
+/// Returns the speeds that the gait in force and the wanted one can have.
+WalkingTwist LegController::capable(GaitName now, GaitName wanted) const noexcept {
+  WalkingTwist speeds = fastest_[static_cast<std::size_t>(wanted)];
+  if (now == GaitName::kStand) return speeds;
+  for (std::size_t i = 0; i < speeds.size(); ++i)
+    speeds[i] = std::min(speeds[i], fastest_[static_cast<std::size_t>(now)][i]);
+  return speeds;
+}
+
+/// Returns true if the legs carry the body at this twist in this gait.
+bool LegController::carries(GaitName gait, const WalkingTwist& twist) const noexcept {
+  constexpr double kRounding = 1e-9;
+  double used = 0;
+  for (std::size_t i = 0; i < twist.size(); ++i)
+    used += std::abs(twist[i]) / fastest_[static_cast<std::size_t>(gait)][i];
+  return used <= 1 + kRounding;
 }
 
 /// Returns the speed of the fastest foot under the body in m/s.

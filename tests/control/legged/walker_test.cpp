@@ -1,4 +1,4 @@
-/// A walk whose forces have no solution.
+/// A walk whose forces have no solution, and the speeds of gaits.
 
 #include "control/legged/walking/walker.h"
 
@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "control/legged/walking/walking_speed.h"
 #include "machine/legs/legs_corpus.h"
 #include "signals/legged/legged_command.h"
 
@@ -54,6 +55,22 @@ TEST_F(WalkerTest, KeepsTheLastForcesForThreePlansThatFailAndSaysSo) {
   }
   EXPECT_FALSE(plan());
   EXPECT_NE(out.reasons & kReasonNoPlan, 0u);
+}
+
+TEST_F(WalkerTest, ACrawlIsSoSlowThatAFootReachesThroughItsStanceAfterTheEndOfThatOfATrot) {
+  const NominalStance stance = nominal_stance(robot);
+  const Gaits& gaits = walker.gaits();
+  const Gait& trot = gaits[static_cast<std::size_t>(GaitName::kTrot)];
+  const Gait& crawl = gaits[static_cast<std::size_t>(GaitName::kCrawl)];
+  const Speeds speeds = walking_speeds(robot, stance, gaits);
+  const double fastest = speeds[static_cast<std::size_t>(GaitName::kCrawl)][0];
+  EXPECT_GT(fastest, 0.2);
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const Eigen::Vector3d way(fastest * (trot.stance_time() / 2 + crawl.stance_time()), 0, 0);
+    EXPECT_EQ(robot.legs[leg].kinematics.inverse(stance.feet[leg] - way).reach, FootReach::kReached) << leg;
+  }
+  EXPECT_GT(speeds[static_cast<std::size_t>(GaitName::kWalkingTrot)][0], 1.0);
+  EXPECT_GT(speeds[static_cast<std::size_t>(GaitName::kTrot)][0], 1.8);
 }
 
 }  // namespace

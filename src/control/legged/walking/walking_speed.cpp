@@ -14,31 +14,72 @@ constexpr double kFastest = 10;  // m/s, rad/s
 constexpr int kHalvings = 12;
 constexpr int kSamples = 24;
 
-/// Returns the largest part of its speed limit that a joint needs at this twist; ∞ where a leg does not reach.
+constexpr double kOutOfReach = std::numeric_limits<double>::infinity();
+
+/// Returns the velocity of a foot that stands, under the body.
+Eigen::Vector3d velocity_of(const Eigen::Vector3d& foot, const WalkingTwist& twist) noexcept {
+  return {twist[2] * foot.y() - twist[0], -twist[2] * foot.x() - twist[1], 0};
+}
+
+/// Returns the largest part of its speed limit that a joint of this leg needs; kOutOfReach where the leg ends.
+double needed_at(const LegModel& robot, std::size_t leg, const Eigen::Vector3d& place,
+                 const Eigen::Vector3d& velocity) noexcept {
+  const LegKinematics& kinematics = robot.legs[leg].kinematics;
+  const LegSolution solution = kinematics.inverse(place);
+  if (solution.reach != FootReach::kReached) return kOutOfReach;
+  Eigen::Vector3d foot;
+  const Eigen::Matrix3d inverse = kinematics.jacobian(solution.angles, foot).inverse();
+  const Eigen::Vector3d rates = inverse * velocity;
+  double part = 0;
+  for (std::size_t i = 0; i < kLegJoints; ++i)
+    part = std::max(part,
+                    std::abs(rates[static_cast<Eigen::Index>(i)]) / robot.joints[kLegJoints * leg + i].velocity_limit);
+  return part;
+}
+
+/// Returns the largest part of its speed limit that a joint needs at this twist.
 double needed(const LegModel& robot, const NominalStance& stance, const Gait& gait,
               const WalkingTwist& twist) noexcept {
   const double time = gait.swing_time(), half = gait.stance_time() / 2;
   double part = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const LegKinematics& kinematics = robot.legs[leg].kinematics;
     const Eigen::Vector3d& foot = stance.feet[leg];
-    // A foot that stands moves backwards under the body with this velocity.
-    const Eigen::Vector3d velocity(twist[2] * foot.y() - twist[0], -twist[2] * foot.x() - twist[1], 0);
+    const Eigen::Vector3d velocity = velocity_of(foot, twist);
     const Eigen::Vector3d from = foot + half * velocity, to = foot - (half + time) * velocity;  // over ground
     for (int i = 0; i <= kSamples; ++i) {
       const double swung = static_cast<double>(i) / kSamples;
       const SwingPoint point = swing_point(from, to, foot.z() + gait.lift, swung, time);
-      const LegSolution solution = kinematics.inverse(point.place + swung * time * velocity);
-      if (solution.reach != FootReach::kReached) return std::numeric_limits<double>::infinity();
-      Eigen::Vector3d place;
-      const Eigen::Matrix3d inverse = kinematics.jacobian(solution.angles, place).inverse();
-      const Eigen::Vector3d rates = inverse * (point.velocity + velocity);
-      for (std::size_t j = 0; j < kLegJoints; ++j)
-        part = std::max(
-            part, std::abs(rates[static_cast<Eigen::Index>(j)]) / robot.joints[kLegJoints * leg + j].velocity_limit);
+      part = std::max(part, needed_at(robot, leg, point.place + swung * time * velocity, point.velocity + velocity));
     }
   }
   return part;
+}
+
+/// Returns the same of the feet that stand on where `last` ends, at the end of their first stance in `next`.
+double needed_after(const LegModel& robot, const NominalStance& stance, const Gait& last, const Gait& next,
+                    const WalkingTwist& twist) noexcept {
+  double part = 0;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    if (!next.bears(leg, 0)) continue;
+    const double stood = last.period * (std::min(last.leg_phase(leg, 0), last.duty) - last.duty / 2);
+    const double stands = next.period * (next.duty - next.leg_phase(leg, 0));
+    const Eigen::Vector3d& foot = stance.feet[leg];
+    const Eigen::Vector3d velocity = velocity_of(foot, twist);
+    part = std::max(part, needed_at(robot, leg, foot + (stood + stands) * velocity, velocity));
+  }
+  return part;
+}
+
+/// Returns the largest speed on this axis for which `part_of` returns at most kOfJointSpeed.
+template <class Part>
+double largest(std::size_t axis, const Part& part_of) noexcept {
+  double low = 0, high = kFastest;
+  for (int i = 0; i < kHalvings; ++i) {
+    WalkingTwist twist{};
+    twist[axis] = (low + high) / 2;
+    (part_of(twist) <= kOfJointSpeed ? low : high) = twist[axis];
+  }
+  return std::max(kMinSpeed, low);
 }
 
 }  // namespace
@@ -49,19 +90,28 @@ Gait gait_of(const LegModel& robot, const NominalStance& stance, const Gait& ref
   return gait;
 }
 
-WalkingTwist walking_speed(const LegModel& robot, const NominalStance& stance, const Gait& gait) noexcept {
-  WalkingTwist result{kMinSpeed, kMinSpeed, kMinSpeed};
-  if (gait.duty >= 1) return result;
-  for (std::size_t axis = 0; axis < result.size(); ++axis) {
-    double low = 0, high = kFastest;
-    for (int i = 0; i < kHalvings; ++i) {
-      WalkingTwist twist{};
-      twist[axis] = (low + high) / 2;
-      (needed(robot, stance, gait, twist) <= kOfJointSpeed ? low : high) = twist[axis];
-    }
-    result[axis] = std::max(kMinSpeed, low);
+Speeds walking_speeds(const LegModel& robot, const NominalStance& stance, const Gaits& gaits) noexcept {
+  Speeds speeds;
+  for (std::size_t i = 0; i < gaits.size(); ++i) {
+    speeds[i].fill(kMinSpeed);
+    if (gaits[i].duty >= 1) continue;
+    for (std::size_t axis = 0; axis < speeds[i].size(); ++axis)
+      speeds[i][axis] =
+          largest(axis, [&](const WalkingTwist& twist) { return needed(robot, stance, gaits[i], twist); });
   }
-  return result;
+  for (std::size_t next = 0; next < gaits.size(); ++next) {
+    for (std::size_t last = 0; last < gaits.size(); ++last) {
+      if (gaits[next].duty >= 1 || gaits[last].duty >= 1) continue;
+      for (std::size_t axis = 0; axis < speeds[next].size(); ++axis) {
+        const double change = largest(axis, [&](const WalkingTwist& twist) {
+          return needed_after(robot, stance, gaits[last], gaits[next], twist);
+        });
+        double& slower = speeds[last][axis] < speeds[next][axis] ? speeds[last][axis] : speeds[next][axis];
+        slower = std::min(slower, change);
+      }
+    }
+  }
+  return speeds;
 }
 
 double walk_ending_time(const LegControllerParameters& parameters, const LegModel& robot) noexcept {

@@ -3,8 +3,12 @@
 ///
 ///   gait   that of gait.h, scaled. Its lift is lower where a step in place would need more than kOfLift of the speed
 ///          limit of a joint
-///   speed  the largest steady one of the body at which each foot stays within the reach of its leg, and each joint
-///          within kOfJointSpeed of its speed limit, during stance and swing (swing.h)
+///   speed  the largest one of the body at which each foot stays within the reach of its leg, and each joint within
+///          kOfJointSpeed of its speed limit, during stance and swing (swing.h). That holds for a steady walk, and for
+///          the first stance after a change of gaits: a foot that ended a stance may have to bear for a whole one. The
+///          slower gait of a change bounds its speed
+
+#include <array>
 
 #include "control/legged/gait.h"
 #include "control/legged/nominal_stance.h"
@@ -18,9 +22,12 @@ inline constexpr double kOfJointSpeed = 0.85;
 
 Gait gait_of(const LegModel& robot, const NominalStance& stance, const Gait& reference) noexcept;
 
-/// Returns the largest speeds to the front, to the left, and turning, each of them alone; at least kMinSpeed. `gait`
-/// is one of `gait_of`.
-WalkingTwist walking_speed(const LegModel& robot, const NominalStance& stance, const Gait& gait) noexcept;
+using Gaits = std::array<Gait, kGaits.size()>;
+using Speeds = std::array<WalkingTwist, kGaits.size()>;
+
+/// Returns, by GaitName, the largest speeds to the front, to the left, and turning, each of them alone; at least
+/// kMinSpeed. `gaits` are those of `gait_of`.
+Speeds walking_speeds(const LegModel& robot, const NominalStance& stance, const Gaits& gaits) noexcept;
 
 /// Returns after how many s at most a walk ends in an emergency. That is the time of the limits, a period of the
 /// slowest gait, and kAllDown.
