@@ -9,7 +9,17 @@ from collections.abc import Callable
 from typing import Any
 
 from bench.devices.disturbed_drive import BUSES, DisturbedDrive, DriveFigures, run_drive
-from bench.devices.loss_trial import BRAKE_CYCLES, DIALECTS, KINDS, LATEST, LossTrial, Outcome, run_trial
+from bench.devices.loss_trial import (
+    BOARD,
+    BOARD_LATEST,
+    BRAKE_CYCLES,
+    DIALECTS,
+    KINDS,
+    LossTrial,
+    Outcome,
+    latest,
+    run_trial,
+)
 from bench.devices.slope_trial import as_stated
 from bench.markdown import ALLOWED
 from bench.runs.runner import Runner
@@ -45,9 +55,8 @@ def row(name: str, value: float, unit: str, allowed: float) -> Row:
 
 def loss_rows(first: int, runs: int, say: Callable[[str], None], runner: Runner) -> list[Row]:
     """Per dialect and kind of loss: broken rules, and the latest times until it is seen and until the brake."""
-    trials = [
-        LossTrial(dialect, kind, seed) for dialect in DIALECTS for kind in KINDS for seed in range(first, first + runs)
-    ]
+    kinds = [(dialect, kind) for dialect in DIALECTS for kind in KINDS] + [(BOARD, kind) for kind in BOARD_LATEST]
+    trials = [LossTrial(dialect, kind, seed) for dialect, kind in kinds for seed in range(first, first + runs)]
     outcomes: dict[tuple[str, str], list[Outcome]] = {}
     for trial, outcome in zip(trials, runner.outcomes(run_trial, trials, say, chunk=10), strict=True):
         outcomes.setdefault((trial.dialect, trial.kind), []).append(outcome)
@@ -55,9 +64,10 @@ def loss_rows(first: int, runs: int, say: Callable[[str], None], runner: Runner)
             say(f"{trial}: {', '.join(outcome.broken)}")
     rows = []
     for (dialect, kind), found in outcomes.items():
+        allowed = 1e3 * latest(LossTrial(dialect, kind, first))
         rows += [
             row(f"{dialect} {kind}: losses that broke a rule", sum(bool(each.broken) for each in found), "", 0),
-            row(f"{dialect} {kind}: until it is seen", max(each.seen for each in found), "ms", 1e3 * LATEST[kind]),
+            row(f"{dialect} {kind}: until it is seen", max(each.seen for each in found), "ms", allowed),
             row(f"{dialect} {kind}: from there to the brake", max(e.brake for e in found), "cycles", BRAKE_CYCLES),
         ]
     return rows
@@ -76,21 +86,18 @@ def slope_rows(first: int, runs: int, say: Callable[[str], None], runner: Runner
 
 def drive_rows(seconds: float, say: Callable[[str], None], runner: Runner) -> list[Row]:
     """False stops, and the ratios of odometry's error and of the ripple."""
-    drives = [DisturbedDrive(dialect, bus, seconds) for dialect in DIALECTS for bus in BUSES]
+    drives = [DisturbedDrive(dialect, bus, seconds) for dialect in (*DIALECTS, BOARD) for bus in BUSES]
     figures = dict(zip(drives, runner.outcomes(run_drive, drives, say), strict=True))
     rows = []
     for drive, found in figures.items():
         reference: DriveFigures = figures[DisturbedDrive(drive.dialect, BUSES[0], seconds)]
-        name = f"{drive.dialect} {drive.bus} bus:"
+        name = f"{drive.dialect} {drive.bus} {'line' if drive.dialect == BOARD else 'bus'}:"
         rows.append(row(f"{name} false stops", found.stops, "", 0))
-        if drive.bus != BUSES[0]:
-            rows += [
-                row(
-                    f"{name} error of the odometry, of the undisturbed",
-                    found.odometry / reference.odometry,
-                    "",
-                    ODOMETRY,
-                ),
-                row(f"{name} ripple of the turn, of the undisturbed", found.ripple / reference.ripple, "", RIPPLE),
-            ]
+        if drive.bus == BUSES[0]:
+            continue
+        ratio = found.odometry / reference.odometry
+        rows.append(row(f"{name} error of the odometry, of the undisturbed", ratio, "", ODOMETRY))
+        if drive.dialect in DIALECTS:
+            ratio = found.ripple / reference.ripple
+            rows.append(row(f"{name} ripple of the turn, of the undisturbed", ratio, "", RIPPLE))
     return rows

@@ -1,4 +1,4 @@
-"""Half an hour of driving behind drives on a disturbed bus, beside the same drive on an undisturbed one.
+"""Half an hour of driving behind drives on a disturbed bus or line, beside the same drive on an undisturbed one.
 
 The request changes every `SEGMENT`, in the middle of which the ripple is measured. The clocks of the drives are always
 apart (simulation/devices/simulated_drives.h).
@@ -11,21 +11,21 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from robot_control import ClosedLoop
 from robot_control.closed_loop import Log
-from robot_control.installed_files import share_file
 
+from bench.devices.loss_trial import BOARD, robot_behind
 from bench.faults.sequence_judge import STOPPED_STATES
 
 SEGMENT = 10.0  # s
 SETTLED = 4.0  # s of a segment after which speed and turn are steady
 RIPPLE_TIME = 0.5  # s over which the speed is averaged
 BUSES = ("ok", "lossy", "disturbed")
+BOARD_RATE = 250.0  # Hz
 
 
 @dataclass(frozen=True)
 class DisturbedDrive:
-    """A drive of `seconds` behind drives of this dialect on a bus in this state (ok, lossy, disturbed)."""
+    """A drive of `seconds` behind drives of this dialect on a bus or line in this state (ok, lossy, disturbed)."""
 
     dialect: str
     bus: str
@@ -50,9 +50,9 @@ def requests(seed: int, count: int) -> list[tuple[float, float]]:
 
 def run_drive(drive: DisturbedDrive) -> DriveFigures:
     """Runs one drive."""
-    loop = ClosedLoop(seed=drive.seed, drives=share_file(f"config/drives/{drive.dialect}.yaml"))
+    loop = robot_behind(drive.dialect, drive.seed, BOARD_RATE)
     loop.run(1.0, (0.0, 0.0))
-    loop.inject_fault("bus", drive.bus)
+    loop.inject_fault("line" if drive.dialect == BOARD else "bus", drive.bus)
     stops, odometry, ripple = 0, [], []
     for request in requests(drive.seed, round(drive.seconds / SEGMENT)):
         log = loop.run(SEGMENT, request)

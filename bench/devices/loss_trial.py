@@ -29,6 +29,7 @@ from robot_control.installed_files import share_file
 from bench.faults.sequence_judge import BRAKE, STOPPED_STATES
 
 DIALECTS = ("odrive", "cia402")
+BOARD = "board"
 CABLE = "cable"
 LATEST = {  # s, by the driver's own promises: 20 missing samples, or a heartbeat of 0.1 s with what follows it
     CABLE: 0.025,
@@ -40,6 +41,8 @@ LATEST = {  # s, by the driver's own promises: 20 missing samples, or a heartbea
     "under_voltage": 0.15,
 }
 KINDS = tuple(LATEST)
+BOARD_LATEST = {CABLE: 0.016, "stalled": 0.016, "off": 0.016, "reset": 0.016, "brown_out": 0.016, "fault": 0.005}
+"""s, by 12 missing reports"""
 SPEED = 1.0  # m/s, the default limit
 BRAKE_CYCLES = 5
 REST_TIME = 2.0  # s, in which the gyro's bias is learned; a later rest would correct the pose by it
@@ -73,6 +76,17 @@ class Outcome:
     seen: int
     brake: int
     broken: tuple[str, ...]
+
+
+def robot_behind(dialect: str, seed: int, board_rate: float = 1000.0) -> ClosedLoop:
+    """A robot behind such drives; behind a board it runs at `board_rate` in Hz."""
+    params = {"robot": {"driver": BOARD, "rate": board_rate}} if dialect == BOARD else {}
+    return ClosedLoop(params, seed=seed, drives=share_file(f"config/drives/{dialect}.yaml"))
+
+
+def latest(trial: LossTrial) -> float:
+    """s, from the loss until the driver reports it."""
+    return (BOARD_LATEST if trial.dialect == BOARD else LATEST)[trial.kind]
 
 
 def first(condition: NDArray[np.bool_]) -> int:
@@ -113,12 +127,16 @@ def seen_in(log: Log) -> NDArray[np.bool_]:
 def run_trial(trial: LossTrial) -> Outcome:
     """Runs one trial."""
     random = np.random.default_rng(trial.seed)
-    loop = ClosedLoop(seed=trial.seed, drives=share_file(f"config/drives/{trial.dialect}.yaml"))
+    loop = robot_behind(trial.dialect, trial.seed)
     request = (random.choice((SPEED, -SPEED)), 0.0)
     loop.run(REST_TIME, (0.0, 0.0))
     loop.run(random.uniform(2.5, 3.5), request)
     joint = random.choice([wheel["joint"] for wheel in loop.robot["wheels"]])
-    component, kind = ("bus", "off") if trial.kind == CABLE else (joint, trial.kind)
+    if trial.dialect == BOARD:
+        component = "line" if trial.kind in (CABLE, "stalled") else "board"
+        kind = "cut" if trial.kind == CABLE else trial.kind
+    else:
+        component, kind = ("bus", "off") if trial.kind == CABLE else (joint, trial.kind)
     loop.inject_fault(component, kind)
     log = loop.run(LOSS_TIME, request)
     loop.inject_fault(component, "ok")
@@ -132,7 +150,7 @@ def broken_rules(trial: LossTrial, loop: ClosedLoop, log: Log, request: tuple[fl
     period, base = loop.period, loop.robot["wheel_base"]
     seen = first(seen_in(log))
     brake = first(log["gate_verdict"] == BRAKE)
-    if seen * period > LATEST[trial.kind]:
+    if seen * period > latest(trial):
         yield "seen"
     if brake > seen + BRAKE_CYCLES:
         yield "brake"
@@ -149,7 +167,9 @@ def broken_rules(trial: LossTrial, loop: ClosedLoop, log: Log, request: tuple[fl
             break
         loop.e_stop_reset()
     estimated, true = (moved(back, source, round(JUMP_TIME / period)) for source in ("estimate", "truth"))
-    if (estimated - true).max() > JUMP[trial.kind == CABLE] or error(back[-1]) > DEVIATIONS * deviation(back[-1]):
+    if (estimated - true).max() > JUMP[trial.kind == CABLE or trial.dialect == BOARD] or error(
+        back[-1]
+    ) > DEVIATIONS * deviation(back[-1]):
         yield "pose"
     if speed_of(loop.run(1.0), base).max() > STANDING:
         yield "release"

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "control/wheel_loops/wheel_loop_gains.h"
 #include "loop/cycle_fixture.h"
 #include "safety/derived_limits.h"
@@ -54,6 +56,19 @@ TEST(SafetyLimits, KnowWhatTheDerivedGainsMakeOfACount) {
   EXPECT_NEAR(filled.count_ripple[0], 62.83 * kp, 0.01) << "whatever the user has set";
   EXPECT_EQ(filled.count_ripple[1], filled.count_ripple[0]);
   EXPECT_EQ(filled.count_ripple[2], 0);
+}
+
+TEST(SafetyLimits, ASerialBoardMayBeSilentForTwelveCyclesAndNoLongerThanItsWatchdog) {
+  Parameters parameters;
+  for (const auto& [rate, silence] : {std::pair{1000.0, 0.012}, std::pair{250.0, 0.048}, std::pair{20.0, 0.05}}) {
+    parameters.loop.rate = rate;
+    parameters.driver = DriverChoice::kCan;
+    EXPECT_EQ(safety_limits(parameters, two_wheels()).encoders_lost.persistence, 0.01);
+    parameters.driver = DriverChoice::kBoard;
+    EXPECT_NEAR(safety_limits(parameters, two_wheels()).encoders_lost.persistence, silence, 1.0e-12) << rate;
+  }
+  parameters.safety.encoders_lost.persistence = 0.1;
+  EXPECT_EQ(safety_limits(parameters, two_wheels()).encoders_lost.persistence, 0.1) << "a longer one stays";
 }
 
 }  // namespace

@@ -4,7 +4,7 @@ import pytest
 
 from bench.devices.bench import ODOMETRY, RIPPLE
 from bench.devices.disturbed_drive import BUSES, DisturbedDrive, run_drive
-from bench.devices.loss_trial import DIALECTS, KINDS, LossTrial, run_trial
+from bench.devices.loss_trial import BOARD, BOARD_LATEST, DIALECTS, KINDS, LossTrial, run_trial
 from bench.devices.slope_trial import as_stated
 
 SEED = 1000
@@ -14,6 +14,12 @@ SEED = 1000
 @pytest.mark.parametrize("dialect", DIALECTS)
 def test_a_loss_stops_the_robot_until_the_reset(dialect, kind):
     outcome = run_trial(LossTrial(dialect, kind, SEED))
+    assert outcome.broken == (), outcome
+
+
+@pytest.mark.parametrize("kind", BOARD_LATEST)
+def test_a_loss_of_a_board_stops_the_robot_until_the_reset(kind):
+    outcome = run_trial(LossTrial(BOARD, kind, SEED))
     assert outcome.broken == (), outcome
 
 
@@ -35,6 +41,12 @@ def test_lost_and_late_frames_stop_nothing_and_hardly_disturb(dialect, seconds, 
     undisturbed, disturbed = drives(dialect, bus, seconds)
     assert disturbed.stops == 0
     assert disturbed.ripple < RIPPLE * undisturbed.ripple
+    assert disturbed.odometry < ODOMETRY * undisturbed.odometry
+
+
+def test_a_disturbed_serial_line_stops_nothing():
+    undisturbed, disturbed = drives(BOARD, "disturbed", 20.0)
+    assert disturbed.stops == 0
     assert disturbed.odometry < ODOMETRY * undisturbed.odometry
 
 

@@ -24,9 +24,8 @@ def drive_file(tmp_path):
     return file
 
 
-def board_loop(drive_file, **safety):
-    params = {"robot": {"driver": "board", "rate": 500}, "safety_monitor": safety}
-    return ClosedLoop(params, seed=3, drives=drive_file)
+def board_loop(drive_file, rate=500):
+    return ClosedLoop({"robot": {"driver": "board", "rate": rate}}, seed=3, drives=drive_file)
 
 
 def driven(loop, seconds=5.0):
@@ -42,13 +41,13 @@ def still_stopped_after_a_reset(loop):
 
 
 @pytest.mark.parametrize("line", ["ok", "disturbed"])
-def test_the_robot_drives_through_the_board(drive_file, line):
-    # A sample that is late twice and lost twice is older than the 10 ms of the default (docs/drivers.md).
-    loop = board_loop(drive_file, encoders_lost={"persistence": 0.04, "reaction": "brake"})
+@pytest.mark.parametrize("rate", [250, 500])
+def test_the_robot_drives_through_the_board(drive_file, rate, line):
+    loop = board_loop(drive_file, rate)
     loop.run(1.0, (0.0, 0.0))
     loop.inject_fault("line", line)
     log = driven(loop, 8.0)
-    assert np.mean(log["truth_linear"][-500:]) == pytest.approx(COMMAND[0], abs=0.01)
+    assert np.mean(log["truth_linear"][-rate:]) == pytest.approx(COMMAND[0], abs=0.01)
     assert math.hypot(*(log[f"estimate_{axis}"][-1] - log[f"truth_{axis}"][-1] for axis in "xy")) < 0.05
 
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "configuration/line_silence.h"
 #include "control/wheel_loops/wheel_loop_gains.h"
 #include "safety/derived_limits.h"
 
@@ -31,6 +32,8 @@ SafetyParameters safety_limits(const Parameters& parameters, const DriveTrain& r
   SafetyParameters limits =
       derived_limits(parameters.safety, robot, commanded_wheel_speed(parameters.controller, robot), period);
   for (const WheelModel& wheel : robot.wheels) limits.count_ripple[wheel.joint] = count_ripple(robot, wheel, period);
+  double& silence = limits.encoders_lost.persistence;
+  silence = std::max(silence, tolerated_silence(parameters));
   return limits;
 }
 

@@ -17,9 +17,8 @@ namespace {
 /// The healthy board at 500 Hz, whose wheels turn at 10 rad/s.
 class BoardDriverTest : public testing::Test {
  protected:
-  static constexpr double kSpeed = 10;           // rad/s
-  static constexpr int kWatchdogCycles = 26;     // 50 ms and one cycle at 500 Hz
-  static constexpr std::uint64_t kSilence = 20;  // max_silence
+  static constexpr double kSpeed = 10;        // rad/s
+  static constexpr int kWatchdogCycles = 26;  // 50 ms and one cycle at 500 Hz
 
   void SetUp() override { begin(); }
 

@@ -1,0 +1,19 @@
+#pragma once
+/// How old the samples of a driver may become without a fault of the robot, by the nature of its line.
+
+#include <algorithm>
+
+#include "configuration/parameters.h"
+#include "drivers/serial/board_parameters.h"
+
+namespace robot_control {
+
+/// Returns s: of a board on a serial line kMaxSilence cycles, and no longer than its own watchdog waits for an order;
+/// of other drivers 0.
+inline double tolerated_silence(const Parameters& parameters) noexcept {
+  constexpr double kBoardWatchdog = 0.05;
+  if (parameters.driver != DriverChoice::kBoard) return 0;
+  return std::min(static_cast<double>(kMaxSilence) * parameters.loop.period(), kBoardWatchdog);
+}
+
+}  // namespace robot_control
