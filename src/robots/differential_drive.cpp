@@ -36,7 +36,10 @@ std::unique_ptr<MonitorLaw> DifferentialDrive::make_monitor() const {
 }
 
 MachineNeeds DifferentialDrive::needs() const {
-  return {.modes = {JointMode::kBrake, JointMode::kEffort}, .inputs = {MachineInput::kJointMotion}};
+  if (machine_.wheel_command == WheelCommand::kVelocity)
+    return {.modes = {JointMode::kBrake, JointMode::kDriveVelocity}, .inputs = {MachineInput::kJointMotion}};
+  return {.modes = {JointMode::kBrake, JointMode::kEffort},
+          .inputs = {MachineInput::kJointMotion, MachineInput::kJointEffort}};
 }
 
 std::vector<std::string> DifferentialDrive::rate_notes(Role role) const {
