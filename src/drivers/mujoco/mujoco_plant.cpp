@@ -59,8 +59,30 @@ MujocoPlant::MujocoPlant(const MachineModel& robot, const MujocoPlantParameters&
                          parameters.gear_ratio);
     motor_faults_.add(joint, inertia_of(model_.robot, joint, parameters), model.effort_limit, parameters.seed, step);
   }
+  if (parameters.drive == SimulatedDrive::kVelocity) add_velocity_drives();
   brakes_.resize(robot.joints.size());
   check_battery(parameters.battery_voltage, parameters.battery_resistance);
+}
+
+void MujocoPlant::add_velocity_drives() {
+  const TrueRobot& robot = model_.robot;
+  if (robot.drive_wheels == 0)
+    throw DriverError("mujoco_plant: drive is velocity, but " + robot.source +
+                      " has no drive wheels. Set it to torque.");
+  for (std::size_t i = 0; i < robot.drive_wheels; ++i) {
+    const TrueWheel& wheel = robot.wheels[i];
+    const double radius = wheel.shape.radius;
+    const double share = robot.mass / static_cast<double>(robot.drive_wheels);
+    drives_.emplace_back(VelocityDriveParameters{.loaded_inertia = wheel.inertia + share * radius * radius,
+                                                 .lifted_inertia = wheel.inertia,
+                                                 .effort_limit = robot.joints[wheel.joint].effort_limit,
+                                                 .gain = parameters_.drive_gain,
+                                                 .dead_band = parameters_.drive_dead_band,
+                                                 .resolution = parameters_.drive_resolution,
+                                                 .at_rest = parameters_.drive_brake,
+                                                 .brake = wheel.brake},
+                         model_.model->opt.timestep);
+  }
 }
 
 void MujocoPlant::start() {
@@ -73,6 +95,7 @@ void MujocoPlant::start() {
   wheels_.reset();
   bodies_.reset();
   for (JointLaw& law : laws_) law.reset();
+  for (VelocityDrive& drive : drives_) drive.reset();
   state_ = DriverState::kStarting;
   faults_ = 0;
   fault_message_ = {};
@@ -270,7 +293,9 @@ bool MujocoPlant::advance(std::span<const JointCommand> commands) noexcept {
     const int dof = model_.joint_velocity[joint];
     const double position = data_->qpos[model_.joint_position[joint]];
     const double velocity = data_->qvel[dof];
-    const double wanted = motors_[drive].limited(laws_[drive].step(commands[joint], position, velocity), velocity);
+    const double asked = joint < drives_.size() ? drives_[joint].step(commands[joint], velocity)
+                                                : laws_[drive].step(commands[joint], position, velocity);
+    const double wanted = motors_[drive].limited(asked, velocity);
     const double effort = motor_faults_.effort(drive, commands[joint].mode, wanted, position, velocity);
     data_->qfrc_applied[dof] = effort;
     effort_sum_[joint] += effort;
@@ -335,6 +360,10 @@ void MujocoPlant::collect() noexcept {
 void MujocoPlant::measure() noexcept {
   measured_ = exact_;
   sensor_errors_.step(measured_);
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    measured_.joints[i].effort = std::numeric_limits<double>::quiet_NaN();
+    measured_.joints[i].valid &= ~std::uint32_t{kValidEffort};
+  }
   read_ = false;
 }
 
