@@ -49,7 +49,7 @@ MAY_INCLUDE = {
     "gate": {"signals", "bus", "parameters"},
     # The stop actions of one robot kind.
     "gate/wheeled": {"signals", "gate", "machine", "machine/wheeled"},
-    "drivers": {"signals", "bus", "gate", "machine"},
+    "drivers": {"signals", "bus", "gate", "machine", "parameters"},
     # This holds simulated faults: of the machine in drivers/mujoco, of nodes in simulation.
     "simulation/faults": {"signals", "rt", "bus"},
     "drivers/can": {"signals", "bus", "drivers", "files", "parameters"},

@@ -8,6 +8,7 @@
 
 #include "drivers/mujoco/contact/rest.h"
 #include "drivers/mujoco/motors/brake_limits.h"
+#include "drivers/mujoco/motors/velocity_drives.h"
 #include "drivers/mujoco/mujoco_errors.h"
 #include "machine/description/wording.h"
 #include "machine/suspicions.h"
@@ -59,30 +60,9 @@ MujocoPlant::MujocoPlant(const MachineModel& robot, const MujocoPlantParameters&
                          parameters.gear_ratio);
     motor_faults_.add(joint, inertia_of(model_.robot, joint, parameters), model.effort_limit, parameters.seed, step);
   }
-  if (parameters.drive == SimulatedDrive::kVelocity) add_velocity_drives();
+  drives_ = velocity_drives(model_.robot, parameters, step);
   brakes_.resize(robot.joints.size());
   check_battery(parameters.battery_voltage, parameters.battery_resistance);
-}
-
-void MujocoPlant::add_velocity_drives() {
-  const TrueRobot& robot = model_.robot;
-  if (robot.drive_wheels == 0)
-    throw DriverError("mujoco_plant: drive is velocity, but " + robot.source +
-                      " has no drive wheels. Set it to torque.");
-  for (std::size_t i = 0; i < robot.drive_wheels; ++i) {
-    const TrueWheel& wheel = robot.wheels[i];
-    const double radius = wheel.shape.radius;
-    const double share = robot.mass / static_cast<double>(robot.drive_wheels);
-    drives_.emplace_back(VelocityDriveParameters{.loaded_inertia = wheel.inertia + share * radius * radius,
-                                                 .lifted_inertia = wheel.inertia,
-                                                 .effort_limit = robot.joints[wheel.joint].effort_limit,
-                                                 .gain = parameters_.drive_gain,
-                                                 .dead_band = parameters_.drive_dead_band,
-                                                 .resolution = parameters_.drive_resolution,
-                                                 .at_rest = parameters_.drive_brake,
-                                                 .brake = wheel.brake},
-                         model_.model->opt.timestep);
-  }
 }
 
 void MujocoPlant::start() {

@@ -97,7 +97,6 @@ class MujocoPlant final : public Simulator {
   std::span<const JointCommand> received(std::span<const JointCommand> commands) noexcept;
   void simulate(std::span<const JointCommand> commands) noexcept;
   bool advance(std::span<const JointCommand> commands) noexcept;
-  void add_velocity_drives();
   void set_origin();
   void settle();
   void push() noexcept;

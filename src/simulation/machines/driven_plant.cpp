@@ -14,8 +14,8 @@ DrivenPlant::DrivenPlant(const MachineModel& robot, const MujocoPlantParameters&
       torques_(robot.joints.size()) {
   if (plant.drive == SimulatedDrive::kTorque) return;
   throw DriverError(
-      "mujoco_plant: drive is velocity, but robot.drives names devices that turn the motors. Set drive to torque, or "
-      "leave robot.drives out.");
+      "the simulated machine's parameter drive is velocity, but robot.drives names devices that turn the motors. Set "
+      "drive to torque, or leave robot.drives out.");
 }
 
 void DrivenPlant::run_devices() noexcept {
