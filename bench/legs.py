@@ -38,6 +38,9 @@ PARTS = (
     "walking_stop",
     "walking_cost",
     "walking_replayed",
+    "switches",
+    "disturbances",
+    "walking_silent",
 )
 SEEDS = {
     "postures": 8,
@@ -50,6 +53,8 @@ SEEDS = {
     "robots": 4,
     "walking_stop": 40,
     "walking_replayed": 4,
+    "switches": 24,
+    "disturbances": 24,
 }
 """of each robot; others have one"""
 OWN_ROBOT = ("cost", "walking_cost", "pose", "circle", "odometry", "contact", "trot", "gaits")
@@ -116,6 +121,10 @@ BOUNDS = {
     "rest of a stop, ": 1.0,  # s
     "way of a stop, 1.5 m/s": 0.8,  # m
     "way of a stop, ": 0.4,
+    "tilt while gaits change": 0.3,  # rad
+    "dip of the speed while gaits change": 0.3,
+    "pushed over": 0.02,
+    "tilt with a silent controller": 0.15,  # rad
     "stops in an hour": 0,
     "time with a warning in an hour": 0,  # s
     "error of the way": 1,  # %
@@ -138,7 +147,7 @@ WITHOUT_BOUND = (
     "0.5 m/s, ",
     "1.0 m/s, ",
     "1.5 m/s, ",
-    "way after zero from the predicted one, 1.5 m/s",
+    "stopped by a push, ",
     "mean error of",
     "error of height",
 )

@@ -188,7 +188,7 @@ def _fleet(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
 
 
 def _navigation(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    return navigation.bench(_parts_of("navigation", given), given.first, given.runs, say)
+    return navigation.bench(_parts_of("navigation", given), given.first, given.runs, given.programs, say)
 
 
 def _data_return(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:

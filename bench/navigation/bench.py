@@ -1,19 +1,21 @@
-"""`scripts/bench navigation`: maps, localisation, goals, and drives with something wrong, in virtual time."""
+"""`scripts/bench navigation`: maps, localisation, goals, and drives with something wrong, in virtual time; costs."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 from bench.navigation import goals
 
 Say = Callable[[str], None]
-PARTS = ("map", "localization", "goals", "faults")
+PARTS = ("map", "localization", "goals", "faults", "cost")
 MAPPING = ("map", "localization")
 
 
-def bench(parts: Sequence[str], first: int, runs: int | None, say: Say) -> tuple[dict[str, Any], bool]:
-    """The rows of these parts, and whether all bounds hold. `runs`: tours of each scene, or drives of each kind.
+def bench(parts: Sequence[str], first: int, runs: int | None, programs: Path, say: Say) -> tuple[dict[str, Any], bool]:
+    """The rows of these parts, and whether all bounds hold. `runs`: tours of each scene, drives of each kind, or
+    blocks of the costs.
 
     Raises:
         RuntimeError: MRPT is missing.
@@ -23,6 +25,10 @@ def bench(parts: Sequence[str], first: int, runs: int | None, say: Say) -> tuple
         rows += goals.goals(first, runs or goals.GOALS, say)
     if "faults" in parts:
         rows += goals.faults(first, runs or goals.FAULT_RUNS, say)
+    if "cost" in parts:
+        from bench.navigation import costs  # noqa: PLC0415 (needs ROS's messages of navigation)
+
+        rows += costs.rows_of(runs or costs.BLOCKS, programs, say)
     return {"bench": "navigation", "rows": rows}, all(row["value"] <= row["reference"] for row in rows)
 
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from robot_control.installed_files import share_file
 
 from bench.navigation.scene_map import Map, Obstacle, read_scene, true_map
+from bench.navigation.tour import LASER
 from bench.navigation.virtual import Lies, Place, Robot, Trip
 from bench.rows import bounded
 from bench.runs.runner import Processes
@@ -126,7 +127,7 @@ def drive_lies(task: tuple[str, int]) -> tuple[Trip, float]:
     shift = (math.cos(angle), math.sin(angle))
     lies = {
         "frozen": Lies(since, frozen=True),
-        "shifted": Lies(since, sensor=(0.5 * shift[0], 0.5 * shift[1], 0.0)),
+        "shifted": Lies(since, sensor=(LASER[0] + 0.5 * shift[0], 0.5 * shift[1], 0.0)),
         "other map": Lies(),
         "turned": Lies(since, place=lambda at: (at[0], at[1], at[2] + math.copysign(TURNED, angle))),
         "jump": Lies(since, place=lambda at: (at[0] + shift[0], at[1] + shift[1], at[2])),
@@ -172,6 +173,12 @@ def _goal_rows(scene: str, trips: list[tuple[Trip, bool, float]], say: Callable[
         bounded(
             f"{scene}: touches of carts, which stop for nothing",
             sum(trip.hit for trip, _, _ in trips),
+            f"of {len(trips)}",
+            0,
+        ),
+        bounded(
+            f"{scene}: of these, touches to which the robot moved",
+            sum(trip.drove_into for trip, _, _ in trips),
             f"of {len(trips)}",
             0,
         ),

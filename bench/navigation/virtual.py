@@ -19,14 +19,14 @@ from robot_control.path.pieces import route
 from robot_control.path.waypoints import PathError, Waypoint, checked
 
 from bench.navigation.scene_map import Map, Obstacle
-from bench.navigation.tour import new_loop
+from bench.navigation.tour import LASER, new_loop
 
 SPEED = 0.5  # m/s
 STEP, SCAN = 0.02, 5  # s between two steps of the law; such steps between two scans
 LONGEST = 240.0  # s for one goal
 STANDING = 10  # scans before and after it
 MOVING = 0.02  # m/s, rad/s
-SENSOR = (0.0, 0.0, 0.0)
+NEARER = 0.001  # m in one step: 0.05 m/s
 REACH = 2.0  # m: farther obstacles touch nothing
 
 Place = tuple[float, float, float]
@@ -38,7 +38,7 @@ class Lies:
 
     since: float = math.inf
     frozen: bool = False
-    sensor: Place = SENSOR  # where the laser is taken to be on the robot
+    sensor: Place = LASER  # where the laser is taken to be on the robot
     place: Callable[[Place], Place] = lambda place: place
 
 
@@ -54,6 +54,7 @@ class Trip:
     turn_error: float = math.inf  # rad
     air: float = math.inf  # m between outline and what stands, the least
     hit: bool = False  # an obstacle that moves on, whatever it meets, touched the outline
+    drove_into: bool = False  # in a touch of such an obstacle, the robot's own motion brought them nearer
     doubts: set[str] = field(default_factory=set)
 
 
@@ -71,6 +72,7 @@ class Robot:
         self._command = (0.0, 0.0)
         self._state = self._advance(self._command)
         self._problem = ""
+        self._before = self.place
 
     @property
     def place(self) -> Place:
@@ -90,14 +92,11 @@ class Robot:
         lying = self.loop.time >= self.lies.since
         if not (lying and self.lies.frozen):
             self._scan = self.loop.scan()
-        sensor = self.lies.sensor if lying else SENSOR
-        x, y, yaw = self._assumed()
-        seen_from = (
-            x + sensor[0] * math.cos(yaw) - sensor[1] * math.sin(yaw),
-            y + sensor[0] * math.sin(yaw) + sensor[1] * math.cos(yaw),
-            yaw + sensor[2],
+        sensor = self.lies.sensor if lying else LASER
+        odometry = (self._state["estimate_x"], self._state["estimate_y"], self._state["estimate_yaw"])
+        problem: str = self.navigation.update(
+            self._scan, sensor, self._assumed(), odometry, self.loop.time, self._moved
         )
-        problem: str = self.navigation.update(self._scan, seen_from, self.loop.time, self._moved)
         free = 0.0
         if not self.navigation.silent(self.loop.time):
             free = self.navigation.free_way(self._scan, sensor, *self._motion())
@@ -175,12 +174,15 @@ class Robot:
             measured = Motion(self._state["estimate_linear"], self._state["estimate_angular"])
             motion = self._follower.step(Pose(*self._assumed()), measured, elapsed=STEP)
             self._command = (motion.linear, motion.angular)
+        self._before = self.place
         self._state = self._advance(self._command)
 
     def _note(self, trip: Trip) -> None:
         trip.way += abs(self._state["truth_linear"]) * STEP
         trip.air = min(trip.air, self.air_at(self.place, moving=False))
-        trip.hit |= self.air_at(self.place, moving=True) <= 0
+        air = self.air_at(self.place, moving=True)
+        if air <= 0 and not trip.hit:
+            trip.hit, trip.drove_into = True, self.air_at(self._before, moving=True) > air + NEARER
 
     def air_at(self, place: Place, *, moving: bool) -> float:
         """m between the outline at this place and the nearest obstacle of those that move, or of those that stand."""

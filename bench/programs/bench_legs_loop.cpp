@@ -31,6 +31,9 @@ constexpr NamedRow kRows[] = {{"postures", postures},
                               {"gaits", gaits},
                               {"robots", robots},
                               {"walking_stop", walking_stop},
+                              {"switches", switches},
+                              {"disturbances", disturbances},
+                              {"walking_silent", walking_silent},
                               {"walking_cost", walking_cost},
                               {"walking_replayed", walking_replayed}};
 

@@ -1,19 +1,24 @@
 #include "configuration/drive_file.h"
 
 #include <algorithm>
+#include <functional>
+#include <numbers>
 
 #include "configuration/loop_parameters.h"
 #include "configuration/peer_file.h"
 #include "drivers/can/can_load.h"
 #include "drivers/can/drive_set.h"
 #include "drivers/can/odrive/odrive_codec.h"
+#include "drivers/serial/serial_port.h"
 #include "parameters/tree_reader.h"
 
 namespace robot_control {
 namespace {
 
 constexpr const char* kBus = "bus";
+constexpr const char* kBoard = "board";
 constexpr const char* kEveryJoint = "every_joint";
+constexpr double kMaxCountsUnseen = 32767;
 constexpr double kMinTimeoutPeriods = 10;  // in which a drive waits for its host
 
 using cia402::Cia402Parameters;
@@ -39,23 +44,36 @@ ParameterTree extracted(ParameterTree& tree, const std::string& block) {
   return part;
 }
 
+/// Returns the largest number of counts between two reports.
+double counts_unseen(const BoardWheelParameters& wheel, const BoardLineParameters& line, double rate) {
+  const double seconds = (static_cast<double>(line.max_silence) + 1) / rate;
+  return wheel.velocity_limit * seconds * wheel.counts_per_turn / (2 * std::numbers::pi);
+}
+
 /// A DriveFileReader collects the problems of one file.
 class DriveFileReader {
  public:
   DriveFileReader(const std::string& path, std::span<const std::string> joints, double rate)
       : path_(path), joints_(joints), rate_(rate), tree_(read_tree(path, {}, problems_, &peer_problem)) {}
 
-  CanParameters read() {
-    const std::string subject = "drive file refused (" + path_ + ")";
-    if (tree_.blocks.empty() && problems_.empty()) problems_.add({path_, "", "holds no blocks", "", ""});
-    if (tree_.blocks.empty()) problems_.throw_if_any(subject);
-    CanParameters can;
-    ParameterTree bus = extracted(tree_, kBus);
-    bool known_dialect = false;
-    const Schema schema = schema_of({{kBus, keys(can.bus)}}, [&](const Schema&, GivenValues& given) {
-      known_dialect = given.accepted("bus.dialect");
+  BoardParameters read_board() {
+    const std::string subject = begin();
+    BoardParameters board;
+    read_block(kBoard, keys(board.line), [&](GivenValues& given) {
+      const std::uint64_t bit_rate = board.line.bit_rate;
+      if (given.accepted("board.bit_rate") && bit_rate != 0 && !is_bit_rate(static_cast<unsigned>(bit_rate)))
+        given.refuse("board.bit_rate", "is no bit rate of a tty", "take 115200, 460800, 921600 …, or 0 for USB");
     });
-    read_blocks(std::move(bus), schema, schema.blocks, path_, problems_);
+    board.wheels = read_joints<BoardWheelParameters>(board);
+    problems_.throw_if_any(subject);
+    return board;
+  }
+
+  CanParameters read() {
+    const std::string subject = begin();
+    CanParameters can;
+    bool known_dialect = false;
+    read_block(kBus, keys(can.bus), [&](GivenValues& given) { known_dialect = given.accepted("bus.dialect"); });
     if (!known_dialect) problems_.throw_if_any(subject);
     if (can.bus.dialect == CanDialect::kOdrive) {
       can.joints = read_joints<OdriveParameters>(can);
@@ -83,8 +101,23 @@ class DriveFileReader {
             }};
   }
 
-  template <class Parameters>
-  std::vector<Parameters> read_joints(const CanParameters& can) {
+  /// Returns the first sentence of the refusal, after a file without blocks was refused.
+  std::string begin() {
+    std::string subject = "drive file refused (" + path_ + ")";
+    if (tree_.blocks.empty() && problems_.empty()) problems_.add({path_, "", "holds no blocks", "", ""});
+    if (tree_.blocks.empty()) problems_.throw_if_any(subject);
+    return subject;
+  }
+
+  /// Reads the block that is not a joint's.
+  void read_block(const char* name, Keys keys, const std::function<void(GivenValues&)>& check) {
+    const Schema schema =
+        schema_of({{name, std::move(keys)}}, [&](const Schema&, GivenValues& given) { check(given); });
+    read_blocks(extracted(tree_, name), schema, schema.blocks, path_, problems_);
+  }
+
+  template <class Parameters, class File>
+  std::vector<Parameters> read_joints(const File& file) {
     Parameters all;
     set_defaults(all);
     Block every{kEveryJoint, keys(all)};
@@ -96,14 +129,14 @@ class DriveFileReader {
     std::vector<Parameters> joints(joints_.size(), all);
     std::vector<Block> blocks;
     for (std::size_t i = 0; i < joints_.size(); ++i) {
-      joints[i].drive.joint = joints_[i];
+      name_joint(joints[i], joints_[i]);
       blocks.push_back({joints_[i], keys(joints[i])});
       for (Key& key : blocks.back().keys) {
         if (common.entries.contains(path_of(every, key))) key.traits |= kOptional;
       }
     }
     const Schema schema = schema_of(std::move(blocks), [&](const Schema&, GivenValues& given) {
-      for (std::size_t i = 0; i < joints.size(); ++i) check_joint(joints, i, can, given);
+      for (std::size_t i = 0; i < joints.size(); ++i) check_joint(joints, i, file, given);
     });
     read_blocks(std::move(tree_), schema, schema.blocks, path_, problems_);
     return joints;
@@ -130,7 +163,33 @@ class DriveFileReader {
     }
   }
 
+  template <class Parameters>
+  static void name_joint(Parameters& joint, const std::string& name) {
+    joint.drive.joint = name;
+  }
+  static void name_joint(BoardWheelParameters& wheel, const std::string& name) { wheel.joint = name; }
+
+  void check_joint(const std::vector<BoardWheelParameters>& wheels, std::size_t i, const BoardParameters& board,
+                   GivenValues& given) {
+    const BoardWheelParameters& wheel = wheels[i];
+    if (wheel.direction == 0) refuse(given, wheel.joint, "direction", "must be 1 or -1");
+    if (wheel.counter_bits != 16 && wheel.counter_bits != 32)
+      refuse(given, wheel.joint, "counter_bits", "must be 16 or 32");
+    if (wheel.counter_bits == 16 && counts_unseen(wheel, board.line, rate_) > kMaxCountsUnseen) {
+      refuse(given, wheel.joint, "counter_bits",
+             "must be 32: a counter of 16 bits wraps unseen within max_silence at this velocity_limit",
+             "send counts of 32 bits, or lower max_silence");
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      if (wheels[j].wheel == wheel.wheel && given.accepted(wheel.joint + ".wheel"))
+        refuse(given, wheel.joint, "wheel", "is the wheel of " + wheels[j].joint + ", too", "each joint has its own");
+    }
+    if (wheel.wheel >= wheels.size() && given.accepted(wheel.joint + ".wheel"))
+      refuse(given, wheel.joint, "wheel", "must be below the number of joints, " + std::to_string(wheels.size()));
+  }
+
   /// Sets the values that follow from the rate where they are left out.
+  void set_defaults(BoardWheelParameters& /*all*/) const {}
   void set_defaults(OdriveParameters& /*all*/) const {}
   void set_defaults(Cia402Parameters& all) const {
     all.host_timeout = std::max(all.host_timeout, kMinTimeoutPeriods / rate_);
@@ -188,6 +247,10 @@ void read_driver_file(const std::string& path, const std::string& block, Keys ke
                       .other_package_remedy = [](std::string_view) { return std::string(); }};
   read_blocks(read_tree(path, {}, problems, &peer_problem), schema, schema.blocks, path, problems);
   problems.throw_if_any("drive file refused (" + path + ")");
+}
+
+BoardParameters read_board_file(const std::string& path, std::span<const std::string> joints, double rate) {
+  return DriveFileReader(path, joints, rate).read_board();
 }
 
 CanParameters read_drive_file(const std::string& path, std::span<const std::string> joints, double rate) {

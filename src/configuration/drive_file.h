@@ -1,5 +1,5 @@
 #pragma once
-/// The drive file is YAML: which drive on a CAN bus moves which joint.
+/// The drive file is YAML: which drive on a CAN bus, or which wheel of a board, moves which joint.
 ///
 ///   bus:                # CanBusParameters; dialect: odrive | cia402
 ///   every_joint:        # may be left out; values of all joints, which the block of a joint outweighs
@@ -12,6 +12,7 @@
 #include <string>
 
 #include "drivers/can/can_parameters.h"
+#include "drivers/serial/board_parameters.h"
 #include "parameters/block.h"
 
 namespace robot_control {
@@ -19,6 +20,10 @@ namespace robot_control {
 /// `joints` are the names of the robot's joints that have a motor, `rate` is the loop's in Hz. Throws ParameterError
 /// with all problems of the file, also if the planned frames overload the bus.
 CanParameters read_drive_file(const std::string& path, std::span<const std::string> joints, double rate);
+
+/// The same of a board on a serial line: a block `board` (BoardLineParameters) and one per joint
+/// (BoardWheelParameters).
+BoardParameters read_board_file(const std::string& path, std::span<const std::string> joints, double rate);
 
 /// Reads a driver's file of one block with these keys into the members of the keys. Throws ParameterError with all
 /// problems of the file.

@@ -32,10 +32,14 @@ enum class DriverChoice {
   kMujoco,   ///< the simulated machine
   kCan,      ///< motor drives on CAN, as the drive file says
   kExample,  ///< drivers/example: a motor board
+  kBoard,    ///< a motor board on a serial line, with the code of firmware/
 };
 
 inline std::vector<Word> words_of(DriverChoice) {
-  return {{"mujoco", DriverChoice::kMujoco}, {"can", DriverChoice::kCan}, {"example", DriverChoice::kExample}};
+  return {{"mujoco", DriverChoice::kMujoco},
+          {"can", DriverChoice::kCan},
+          {"example", DriverChoice::kExample},
+          {"board", DriverChoice::kBoard}};
 }
 
 /// The IMU of a real machine.

@@ -156,10 +156,21 @@ Agreement Costmap::insert(const Scan& scan, const PlanarPose& sensor, double now
   return result;
 }
 
+void Costmap::foresee(const std::vector<Point>& places) {
+  foreseen_.clear();
+  for (const Point place : places) {
+    const Cell cell = grid_.cell_at(place.x, place.y);
+    if (grid_.contains(cell)) foreseen_.push_back(grid_.index(cell));
+  }
+}
+
 void Costmap::update(double now) {
   std::vector<bool> occupied(grid_.cells.size());
   for (std::size_t i = 0; i < occupied.size(); ++i) {
     occupied[i] = wall_distance_[i] == 0 || marked_[i] > now - kMemory || (unknown_[i] && !unknown_is_free_);
+  }
+  if (std::isfinite(now)) {
+    for (const std::size_t cell : foreseen_) occupied[cell] = true;
   }
   distance_ = distances(occupied, grid_.columns, grid_.rows, grid_.resolution);
 }

@@ -39,6 +39,9 @@ class Costmap {
   /// Takes one scan whose sensor was at `sensor` in the map; `now` in s of any clock that does not turn back.
   Agreement insert(const Scan& scan, const PlanarPose& sensor, double now);
 
+  /// Takes the places, in the map, that things in motion will take soon. They count as occupied until the next call.
+  void foresee(const std::vector<Point>& places);
+
   /// Brings the distances up to date, which `free` and `distance` use. Takes about 20 ns a cell.
   void update(double now);
 
@@ -66,8 +69,9 @@ class Costmap {
   std::vector<float> wall_distance_;        ///< m, to the map's own walls
   std::vector<bool> unknown_;
   bool unknown_is_free_;
-  std::vector<float> marked_;    ///< s, when a ray ended here; −∞: never, or passed since
-  std::vector<float> distance_;  ///< m
+  std::vector<float> marked_;          ///< s, when a ray ended here; −∞: never, or passed since
+  std::vector<std::size_t> foreseen_;  ///< cells
+  std::vector<float> distance_;        ///< m
 };
 
 /// Returns the distance of each cell from the nearest one that is set, in m; ∞ without any (P. Felzenszwalb, D.

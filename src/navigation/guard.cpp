@@ -10,33 +10,53 @@ namespace {
 constexpr double kStep = 0.02;       // m of the way of the outline's widest place
 constexpr double kNearer = 0.001;    // m
 constexpr double kOnTheSpot = 0.02;  // m/s; a slower base turns on the spot, if it turns
+constexpr double kSlow = 0.1;        // m/s; with what moves, a slower base is taken to have that speed
 
 struct Watched {
   Point point;
   double at_start;  // m from the outline
+  Point velocity;   // m/s
+  double until;     // s, when the point reaches a robot that stands
 };
 
 }  // namespace
 
-double free_way(const Footprint& footprint, const std::vector<Point>& points, const PlanarMotion& motion) {
+double free_way(const Footprint& footprint, const std::vector<Point>& points, const PlanarMotion& motion,
+                const std::vector<Mover>& movers) {
   const bool spot = std::abs(motion.linear) < kOnTheSpot && motion.angular != 0;
   const double reach = footprint.circumscribed + kBeside + (spot ? 0 : kLookout);
   std::vector<Watched> watched;
-  for (const Point point : points) {
+  const auto watch = [&](Point point, Point velocity, double until) {
     const double distance = footprint.distance(point);
-    if (distance > 0 && std::hypot(point.x, point.y) <= reach) watched.push_back({point, distance});
+    const double approach = std::isfinite(until) ? std::hypot(velocity.x, velocity.y) * until : 0;
+    if (distance > 0 && std::hypot(point.x, point.y) <= reach + approach) {
+      watched.push_back({point, distance, velocity, until});
+    }
+  };
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  for (const Point point : points) watch(point, {}, kNever);
+  for (const Point point : places_ahead(footprint, movers)) watch(point, {}, kNever);
+  for (const Mover& mover : movers) {
+    const double until = time_to_touch(footprint, mover);
+    for (const Point point : mover.points) {
+      if (std::isfinite(until)) watch(point, mover.velocity, until);
+    }
   }
   const double sign = std::copysign(1.0, spot ? motion.angular : motion.linear);
   const double turn = spot                 ? sign / footprint.half_width  // rad per m
                       : motion.linear != 0 ? motion.angular / std::abs(motion.linear)
                                            : 0;
   const double end = spot ? 2 * M_PI * footprint.half_width : kLookout;
+  const double speed =
+      std::max(kSlow, spot ? std::abs(motion.angular) * footprint.half_width : std::abs(motion.linear));
   for (double along = kStep; along < end; along += kStep) {
     const double yaw = turn * along, half = yaw / 2;
     const double chord = spot ? 0 : sign * along * (std::abs(half) < 1e-9 ? 1 : std::sin(half) / half);
     const double x = chord * std::cos(half), y = chord * std::sin(half), c = std::cos(yaw), s = std::sin(yaw);
-    for (const auto& [point, at_start] : watched) {
-      const double dx = point.x - x, dy = point.y - y;
+    for (const auto& [point, at_start, velocity, until] : watched) {
+      const double time = along / speed;
+      if (time > until) continue;
+      const double dx = point.x + velocity.x * time - x, dy = point.y + velocity.y * time - y;
       const double distance = footprint.distance({c * dx + s * dy, c * dy - s * dx});
       if (distance < kBeside && distance < at_start - kNearer) return std::max(0.0, along - kStep - kStopShort);
     }

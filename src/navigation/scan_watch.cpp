@@ -29,6 +29,12 @@ std::string ScanWatch::structure_problem(const Scan& scan) const {
     return text("scan covers %.1f rad: one turn at most is taken",
                 std::abs(scan.angle_increment) * static_cast<double>(rays - 1));
   }
+  const double last = scan.angle(rays - 1);
+  if (std::abs(scan.angle_max - last) > 2 * std::abs(scan.angle_increment)) {
+    return text(
+        "scan has angle_max %.3f rad, and its last ray is at %.3f rad: angle_min + angle_increment x (rays - 1)",
+        scan.angle_max, last);
+  }
   if (!(scan.range_min >= 0 && scan.range_min < scan.range_max && std::isfinite(scan.range_max))) {
     return text("scan has range_min %g m and range_max %g m: 0 <= range_min < range_max must hold", scan.range_min,
                 scan.range_max);

@@ -119,6 +119,8 @@ inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
      "call set_posture with 'lying'"},
     {kReasonLegSpeed, "leg_speed", "the legs do not carry the body faster, by the speed limits of their joints or their "
      "reach", "request less speed"},
+    {kReasonNoPlan, "no_plan", "the forces of the feet have no solution: the last ones are in force for up to three plans, "
+     "then the robot stands", "look for a jump of odom, and compare mass and inertia of the URDF with the robot"},
 });
 
 inline constexpr auto kRequestPartNames = std::to_array<BitName>({

@@ -196,6 +196,33 @@ TEST(Walking, AFootThatIsStillInTheAirIsNotPushedFasterThanItsJointsTurn) {
   EXPECT_LE(fastest, 0.9);
 }
 
+TEST(Walking, DoesNotBecomeFasterThanRequestedWhenItStarts) {
+  QuadrupedLoop robot = loop_of("quadbot");
+  robot.wait(0.3);
+  robot.run(3.0, walk(0.01, 0, 0));
+  double fastest = 0;
+  for (int steps = 0; steps < 8; ++steps)
+    fastest = std::max(fastest, mean_twist(robot, kGaits[1].period, walk(0.5, 0, 0, gait(GaitName::kTrot)))[0]);
+  EXPECT_LE(fastest, 0.53);
+}
+
+TEST(Walking, ReachesItsSpeedThoughTheErrorOfTheTiltPullsTheBodyBack) {
+  QuadrupedLoop robot = with_errors("quadbot", 17);
+  robot.run(5.0, walk(1.5, 0, 0));
+  EXPECT_NEAR(mean_twist(robot, 2.0, walk(1.5, 0, 0))[0], 1.5, 0.02 * 1.5);
+}
+
+TEST(Walking, IsNotStoppedForATiltThatOnlyABiasOfTheGyroShows) {
+  Parameters parameters = QuadrupedLoop::parameters(13, ErrorLevel::kField);
+  parameters.plant.contact_sensors = false;
+  parameters.plant.gyro_bias = 0.02;
+  QuadrupedLoop robot(legged_robot("quadbot"), parameters);
+  robot.wait(0.3);
+  robot.run(20.0, walk(0.5, 0, 0));
+  EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
+  EXPECT_LT(robot.tilt, 0.1);
+}
+
 TEST(Walking, IsLimitedInItsSpeed) {
   Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
   parameters.leg_control.max_linear_speed = 0.3;

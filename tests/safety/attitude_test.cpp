@@ -175,5 +175,43 @@ TEST_F(AttitudeTest, SpeaksTheSameAtAnyRate) {
   EXPECT_NEAR((slow.up() - attitude_.up()).norm(), 0, 2e-3) << "half a long step of 0.4 rad/s";
 }
 
+/// A trot: the body is thrown up and falls, and its acceleration along the ground changes with that. Its gyro has a
+/// bias.
+double tilt_in_a_trot(Attitude attitude) {
+  constexpr double kPeriod = 0.19, kPi = 3.14159265358979323846;  // s, of a step
+  const Vector3d bias(0, 0.05, 0);
+  for (int i = 0; i < 20'000; ++i) {
+    const double phase = 2 * kPi * kStep * i / kPeriod;
+    const Vector3d force(-1.5 * std::sin(phase), 0, kGravity + 6 * std::cos(phase));
+    attitude.step(&bias, &force, kStep);
+  }
+  return attitude.tilt();
+}
+
+TEST_F(AttitudeTest, IsPulledByTheMeanForceOfABodyOnLegs) {
+  EXPECT_LT(tilt_in_a_trot(Attitude(0.3)), 0.05 * kTime + 0.02);
+  EXPECT_GT(tilt_in_a_trot(Attitude()), 0.25);
+}
+
+TEST_F(AttitudeTest, TheMeanForceTurnsWithTheGyro) {
+  Attitude turns(0.3);
+  const Vector3d still = Vector3d::Zero(), rate(1, 0, 0);
+  const Vector3d upright = rest();
+  for (int i = 0; i < 1000; ++i) turns.step(&still, &upright, kStep);
+  for (int i = 0; i < 500; ++i) {
+    const Vector3d force = Eigen::AngleAxisd(-kStep * (i + 1), Vector3d::UnitX()) * upright;
+    turns.step(&rate, &force, kStep);
+  }
+  EXPECT_NEAR(turns.tilt(), 0.5, 1e-6);
+}
+
+TEST_F(AttitudeTest, AForceThatNoAccelerometerMeasuresDoesNotEnterTheMean) {
+  Attitude attitude(0.3);
+  const Vector3d still = Vector3d::Zero(), upright = rest(), huge(1e300, 0, 0);
+  for (int i = 0; i < 1000; ++i) attitude.step(&still, i == 500 ? &huge : &upright, kStep);
+  EXPECT_TRUE(attitude.known());
+  EXPECT_NEAR(attitude.tilt(), 0, kSmall);
+}
+
 }  // namespace
 }  // namespace robot_control

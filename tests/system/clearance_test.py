@@ -36,6 +36,16 @@ class ClearanceTest(RobotTestCase):
         self.robot.drive_until("0.5 m/s again", self.robot.driving, angular=0.0)
         self.assertEqual(self.robot.causes, set())
 
+    def test_a_sender_that_falls_silent_leaves_no_free_way(self) -> None:
+        self.robot.await_ready()
+        for _ in range(5):
+            self.clearance.publish(100.0)
+            rospy.sleep(0.1)
+        wait_for("no free way", lambda: self.robot.status.speed_limit == 0)
+        self.clearance.publish(math.inf)
+        wait_for("the limit to end", lambda: self.robot.status.speed_limit > 0)
+        self.assertEqual(self.robot.causes, set())
+
 
 if __name__ == "__main__":
     rostest.rosrun("robot_control", "clearance", ClearanceTest)

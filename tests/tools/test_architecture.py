@@ -54,8 +54,18 @@ MAY_INCLUDE = {
     "simulation/faults": {"signals", "rt", "bus"},
     "drivers/can": {"signals", "bus", "drivers", "files", "parameters"},
     "drivers/example": {"signals", "drivers", "parameters"},
+    "drivers/serial": {"signals", "bus", "drivers", "parameters", "rt"},
     # Motor drives on a CAN bus, as devices in virtual time.
-    "simulation/devices": {"gate", "signals", "bus", "parameters", "drivers", "drivers/can", "drivers/example"},
+    "simulation/devices": {
+        "gate",
+        "signals",
+        "bus",
+        "parameters",
+        "drivers",
+        "drivers/can",
+        "drivers/example",
+        "drivers/serial",
+    },
     # The simulated robot as one machine: the plant, and before its motors the drives, where there are some.
     "simulation/machines": {
         "signals",
@@ -65,6 +75,7 @@ MAY_INCLUDE = {
         "drivers/can",
         "drivers/example",
         "drivers/mujoco",
+        "drivers/serial",
         "gate",
         "machine",
         "simulation/devices",
@@ -75,8 +86,10 @@ MAY_INCLUDE = {
         "drivers",
         "drivers/can",
         "drivers/example",
+        "drivers/serial",
         "gate",
         "machine",
+        "rt",
     },
     "drivers/mujoco": {
         "signals",
@@ -95,7 +108,8 @@ MAY_INCLUDE = {
     # The log as a ROS bag; it knows the format, not ROS.
     "log": {"signals", "files", "log/bag", "parameters"},
     # All blocks together, and the other files that a user writes.
-    "configuration": LAWS | {"rt", "files", "parameters", "log", "drivers/can", "drivers/mujoco"},
+    "configuration": LAWS
+    | {"rt", "files", "parameters", "log", "drivers", "drivers/can", "drivers/mujoco", "drivers/serial"},
     # A robot of each kind, composed of its laws; the roles as interfaces.
     "robots": LAWS | {"bus", "parameters", "configuration"},
     # The step of each node in one cycle, and the process around it.

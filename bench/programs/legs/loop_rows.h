@@ -53,8 +53,23 @@ void robots(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// An e-stop at three speeds, in a crawl, sideways and while it turns. The seed chooses one of 40 phases of the gait.
 void walking_stop(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 
+/// 100 changes among all gaits, at random times and speeds.
+void switches(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// A trot of 0.3 m/s that is pushed in 8 directions, with a payload, on slippery ground, and with motors that are late.
+/// The seed chooses one of 24 phases of the gait for the push.
+void disturbances(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// The controller is silent for 5 … 19 cycles at 200 phases of a trot of 1.0 m/s.
+void walking_silent(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+
 inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kSway = 0.5;  ///< Hz
+
+/// Returns the errors of data sheets, and feet without force sensors.
+inline Parameters walking_parameters(std::uint64_t seed) {
+  Parameters parameters = QuadrupedLoop::parameters(seed, ErrorLevel::kDataSheet);
+  parameters.plant.contact_sensors = false;
+  return parameters;
+}
 
 /// Stands up, and stands for half a second.
 inline void stand_up(QuadrupedLoop& robot) {

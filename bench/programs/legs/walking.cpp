@@ -20,12 +20,6 @@ Request request_of(const Walk& walk) {
           .mode = kStanceGait + static_cast<std::uint64_t>(walk.gait)};
 }
 
-Parameters parameters_of(std::uint64_t seed) {
-  Parameters parameters = QuadrupedLoop::parameters(seed, ErrorLevel::kDataSheet);
-  parameters.plant.contact_sensors = false;
-  return parameters;
-}
-
 /// Stands up, walks, and measures the mean of the true twist, angles, joints and clamps.
 void walk(QuadrupedLoop& robot, const Walk& walk, WorstValues& worst) {
   robot.wait(0.3);
@@ -89,7 +83,7 @@ void trot(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   for (const Walk& each : {Walk{"0.25 m/s", {0.25, 0, 0}}, Walk{"0.5 m/s", {0.5, 0, 0}}, Walk{"1.0 m/s", {1, 0, 0}},
                            Walk{"1.5 m/s", {1.5, 0, 0}}, Walk{"sideways", {0, 0.3, 0}}, Walk{"turn", {0, 0, 1.5}},
                            Walk{"all axes", {0.5, 0.2, 0.5}}}) {
-    QuadrupedLoop robot(model, parameters_of(seed));
+    QuadrupedLoop robot(model, walking_parameters(seed));
     walk(robot, each, worst);
     end_walk(robot, each, worst);
   }
@@ -98,13 +92,13 @@ void trot(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
 void gaits(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   for (const Walk& each :
        {Walk{"crawl", {0.2, 0, 0}, GaitName::kCrawl}, Walk{"walking trot", {0.5, 0, 0}, GaitName::kWalkingTrot}}) {
-    QuadrupedLoop robot(model, parameters_of(seed));
+    QuadrupedLoop robot(model, walking_parameters(seed));
     walk(robot, each, worst);
   }
 }
 
 void robots(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
-  QuadrupedLoop robot(model, parameters_of(seed));
+  QuadrupedLoop robot(model, walking_parameters(seed));
   walk(robot, {"trot", {0.5, 0, 0}}, worst);
 }
 
@@ -114,7 +108,7 @@ void walking_stop(const LegModel& model, std::uint64_t seed, WorstValues& worst)
        {Walk{"0.5 m/s", {0.5, 0, 0}}, Walk{"1.0 m/s", {1, 0, 0}}, Walk{"1.5 m/s", {1.5, 0, 0}},
         Walk{"crawl", {0.2, 0, 0}, GaitName::kCrawl}, Walk{"sideways", {0, 0.3, 0}}, Walk{"turn", {0, 0, 1.5}}}) {
     const double period = kGaits[static_cast<std::size_t>(each.gait)].scaled(model.leg_length()).period / kPhases;
-    QuadrupedLoop robot(model, parameters_of(seed));
+    QuadrupedLoop robot(model, walking_parameters(seed));
     robot.wait(0.3);
     robot.run(kStart + period * static_cast<double>(seed % kPhases), request_of(each));
     const Vector3 from = robot.truth().pose_world.position;

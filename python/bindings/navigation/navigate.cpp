@@ -8,6 +8,7 @@
 #include "navigation/doubt.h"
 #include "navigation/guard.h"
 #include "navigation/map_file.h"
+#include "navigation/movers.h"
 #include "navigation/navigator.h"
 #include "navigation/scan_watch.h"
 
@@ -28,18 +29,23 @@ class Navigation {
   Navigation(const py::tuple& map, const std::string& urdf, bool unknown_is_free)
       : costmap_(grid_of(map), footprint_of_urdf(urdf, "the URDF"), unknown_is_free) {}
 
-  /// `moved`: m + rad so far. Returns why the laser, or map and place, cannot be trusted.
-  std::string update(const py::dict& given, const Pose& sensor, double now, double moved) {
+  /// `sensor`: on the base, which is at `place` in the map and at `odometry`. `moved`: m + rad so far. Returns why the
+  /// laser, or map and place, cannot be trusted.
+  std::string update(const py::dict& given, const Pose& sensor, const Pose& place, const Pose& odometry, double now,
+                     double moved) {
     const Scan scan = scan_of(given);
     watch_.receive(scan, "laser", now, now, moved);
-    doubt_.update(costmap_.insert(scan, planar_of(sensor), now));
+    doubt_.update(costmap_.insert(scan, composed(planar_of(place), planar_of(sensor)), now));
+    const PlanarPose base = planar_of(odometry);
+    seen_ = movers_seen_from(movers_.update(scan, composed(base, planar_of(sensor)), now), base);
+    costmap_.foresee(placed(places_ahead(costmap_.footprint(), seen_), planar_of(place)));
     const std::string problem = watch_.problem(now);
     return problem.empty() ? doubt_.problem() : problem;
   }
   bool silent(double now) const { return !watch_.problem(now).empty(); }
   double free_way(const py::dict& scan, const Pose& sensor, double linear, double angular) const {
-    return robot_control::free_way(costmap_.footprint(), points_of(scan_of(scan), planar_of(sensor)),
-                                   {linear, angular});
+    return robot_control::free_way(costmap_.footprint(), points_of(scan_of(scan), planar_of(sensor)), {linear, angular},
+                                   seen_);
   }
   double distance(double x, double y) const { return costmap_.footprint().distance({x, y}); }
   py::tuple plan(const Pose& start, const Pose& goal, double now) {
@@ -65,6 +71,8 @@ class Navigation {
  private:
   Costmap costmap_;
   ScanWatch watch_;
+  Movers movers_;
+  std::vector<Mover> seen_;
   Doubt doubt_;
   Navigator navigator_;
 };
@@ -82,7 +90,8 @@ PYBIND11_MODULE(_navigation, module) {
   py::class_<Navigation>(module, "Navigation")
       .def(py::init<const py::tuple&, const std::string&, bool>(), py::arg("map"), py::arg("urdf"),
            py::arg("unknown_is_free") = false)
-      .def("update", &Navigation::update, py::arg("scan"), py::arg("sensor"), py::arg("now"), py::arg("moved"))
+      .def("update", &Navigation::update, py::arg("scan"), py::arg("sensor"), py::arg("place"), py::arg("odometry"),
+           py::arg("now"), py::arg("moved"))
       .def("silent", &Navigation::silent, py::arg("now"))
       .def("free_way", &Navigation::free_way, py::arg("scan"), py::arg("sensor"), py::arg("linear"), py::arg("angular"))
       .def("distance", &Navigation::distance, py::arg("x"), py::arg("y"))

@@ -33,7 +33,7 @@ class Backend:
     def __init__(self, settings: Settings) -> None:
         self.authority = Authority(settings)
         self.listener, self.view = Listener(), View()
-        self.calls = Calls(self.view.pose)
+        self.calls = Calls(self.view.pose, self.view.navigation.frame)
         self.said: list[str] = []  # for all pages, and taken by the server
         self.available: set[str] = set()  # services of the robot
         self._watch, self._services, self._limits = SafetyWatch(), Services(), SpeedLimits()

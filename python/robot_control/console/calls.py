@@ -12,7 +12,7 @@ from typing import Any
 
 import rospy
 from actionlib_msgs.msg import GoalID
-from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
 from std_srvs.srv import SetBool, Trigger
 
 from robot_control.common.files import printable
@@ -29,7 +29,12 @@ RESET_PAUSE, RESET_WINDOW = 0.5, 10.0
 """s; the second step of a reset follows the first one no sooner and no later"""
 FOLLOW = "follow_path"
 
-METRES = number(-1e6, 1e6)
+METRES, RADIANS = number(-1e6, 1e6), number(-7.0, 7.0)
+PLACE = {"x": METRES, "y": METRES, "yaw": RADIANS}
+NAVIGATE, LOCALIZATION = "clear_costmaps", "global_localization"
+"""Services that only these nodes have"""
+BY_HAND = (0.25, 0.25, 0.07)
+"""m², m², rad² of a pose that was set on the map, as RViz's"""
 
 
 def _points(value: Any) -> bool:  # noqa: ANN401 (JSON)
@@ -54,7 +59,7 @@ CALLS: Mapping[str, Call] = {
     "set_posture": Call("set_posture", SetPosture, {"posture": text(16)}),
     "set_gait": Call("set_gait", SetGait, {"gait": text(16)}),
     "reset_odometry": Call("reset_odometry", Trigger),
-    "set_odometry": Call("set_odometry", SetOdometry, {"x": METRES, "y": METRES, "yaw": number(-7.0, 7.0)}),
+    "set_odometry": Call("set_odometry", SetOdometry, PLACE),
     "set_parameters": Call("controller/set_parameter_map", SetParameters, {"parameters": text(8192)}, Role.MAINTAIN),
     "path_points": Call(f"{FOLLOW}/pause", fields={"points": _points, "speed": SPEED}),
     "path_shape": Call(f"{FOLLOW}/pause", fields={"shape": text(16), "size": number(0.1, 100.0), "speed": SPEED}),
@@ -62,6 +67,9 @@ CALLS: Mapping[str, Call] = {
     "path_pause": Call(f"{FOLLOW}/pause", Trigger),
     "path_resume": Call(f"{FOLLOW}/resume", Trigger),
     "path_cancel": Call(f"{FOLLOW}/pause"),
+    "goal": Call(NAVIGATE, fields=PLACE),
+    "goal_cancel": Call(NAVIGATE),
+    "place": Call(LOCALIZATION, fields=PLACE),
     "pause": Call("driver/set_pause", SetBool, {"on": flag}, Role.MAINTAIN),
     "step": Call("driver/step", Step, {"cycles": number(1, 10_000, int)}, Role.MAINTAIN),
     "simulation_reset": Call("driver/reset", Trigger, role=Role.MAINTAIN),
@@ -91,7 +99,7 @@ def against(name: str, page: Page, authority: Authority, services: set[str], kin
     if authority.commander is not page:
         return "take the command first"
     if service and service not in services:
-        node, _, _ = service.rpartition("/")
+        node = {NAVIGATE: "navigate", LOCALIZATION: "localization"}.get(service, service.rpartition("/")[0])
         if call.kind in {SetPosture, SetGait}:
             return "the robot has no legs, or its controller does not run"
         return f"{'follow_path.py' if node == FOLLOW else node or 'the robot'} does not run"
@@ -101,9 +109,12 @@ def against(name: str, page: Page, authority: Authority, services: set[str], kin
 class Calls:
     """Makes the calls. A call may take seconds, so each is made in a thread of its own."""
 
-    def __init__(self, pose: Callable[[], tuple[float, float, float] | None]) -> None:
-        """`pose`: of the robot in odom."""
-        self._pose = pose
+    def __init__(self, pose: Callable[[], tuple[float, float, float] | None], map_frame: Callable[[], str]) -> None:
+        """`pose`: of the robot in odom; `map_frame`: empty without a map."""
+        self._pose, self._map_frame = pose, map_frame
+        self._goal = rospy.Publisher("move_base_simple/goal", PoseStamped, queue_size=1)
+        self._ends = [rospy.Publisher(f"{name}/cancel", GoalID, queue_size=1) for name in ("navigate_to", "move_base")]
+        self._initial = rospy.Publisher("initialpose", PoseWithCovarianceStamped, queue_size=1)
         self._goals = rospy.Publisher(f"{FOLLOW}/goal", FollowPathActionGoal, queue_size=1)
         self._cancel = rospy.Publisher(f"{FOLLOW}/cancel", GoalID, queue_size=1)
         self._keys: dict[int, tuple[str, float]] = {}  # page → key of its first step of a reset, and when
@@ -125,6 +136,12 @@ class Calls:
             if name == "path_cancel":
                 self._cancel.publish(GoalID())
                 return "the path was cancelled"
+            if name == "goal_cancel":
+                for publisher in self._ends:
+                    publisher.publish(GoalID())
+                return "the goal was cancelled"
+            if name in ("goal", "place"):
+                return self._send_place(name, given)
             return self._start(self._path(name, given), given["speed"])
         except (PathError, rospy.ServiceException, rospy.ROSException, OSError) as error:
             raise RefusedError(f"{name}: {error}") from None
@@ -149,6 +166,22 @@ class Calls:
         if given["shape"] not in SHAPES or pose is None:
             raise PathError("no odometry" if pose is None else f"a shape is one of {', '.join(SHAPES)}")
         return placed(SHAPES[given["shape"]](given["size"]), *pose)
+
+    def _send_place(self, name: str, given: Mapping[str, Any]) -> str:
+        frame = self._map_frame()
+        if not frame:
+            raise RefusedError("no map has come: start navigation.launch")
+        message = PoseStamped() if name == "goal" else PoseWithCovarianceStamped()
+        message.header.stamp, message.header.frame_id = rospy.Time.now(), frame
+        pose = message.pose if name == "goal" else message.pose.pose
+        pose.position.x, pose.position.y = given["x"], given["y"]
+        pose.orientation.z, pose.orientation.w = math.sin(given["yaw"] / 2), math.cos(given["yaw"] / 2)
+        if name == "place":
+            covariance = [0.0] * 36
+            covariance[0], covariance[7], covariance[35] = BY_HAND
+            message.pose.covariance = covariance
+        (self._goal if name == "goal" else self._initial).publish(message)
+        return f"sent: {given['x']:.2f} m, {given['y']:.2f} m, {given['yaw']:.2f} rad in {frame}"
 
     def _start(self, points: list[Waypoint], speed: float) -> str:
         message = FollowPathActionGoal()

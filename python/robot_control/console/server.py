@@ -21,6 +21,7 @@ from robot_control.console.doctor_run import DoctorRun
 from robot_control.console.files import REPORT_POLICY, page_file, protect
 from robot_control.console.messages import MAX_SIZE
 from robot_control.console.model import Model, ModelError
+from robot_control.console.navigation import NoGridError
 from robot_control.console.pending_connections import PendingConnections
 from robot_control.console.runs import Runs, RunsError
 from robot_control.console.sessions import Session, Sessions, Tries
@@ -66,6 +67,7 @@ class Server:
         get("/ws", self._socket)
         get("/api/model", self._urdf)
         get("/api/mesh/{id}", self._mesh)
+        get("/api/grids/{name}", self._grid)
         get("/api/runs", self._run_list)
         get("/api/runs/{id}/file", self._run_file)
         get("/api/runs/{id}/report", self._report)
@@ -210,6 +212,9 @@ class Server:
     async def _mesh(self, request: web.Request) -> web.StreamResponse:
         return web.Response(body=await _found(self._model.mesh, request.match_info["id"]))
 
+    async def _grid(self, request: web.Request) -> web.StreamResponse:
+        return web.json_response(await _found(self._backend.view.navigation.grid, request.match_info["name"]))
+
     async def _run_list(self, _: web.Request) -> web.StreamResponse:
         return web.json_response(await _found(self._runs.list))
 
@@ -234,5 +239,5 @@ async def _found(find: Callable[..., Any], *arguments: str) -> Any:  # noqa: ANN
     """The result of a function that may take long; 404 where it finds nothing."""
     try:
         return await asyncio.to_thread(find, *arguments)
-    except (ModelError, RunsError, OSError) as error:
+    except (ModelError, NoGridError, RunsError, OSError) as error:
         raise web.HTTPNotFound(text=printable(str(error), 1000)) from None

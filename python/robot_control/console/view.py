@@ -14,6 +14,7 @@ from sensor_msgs.msg import JointState
 
 from robot_control.common.command import Command
 from robot_control.common.pose import pose_of
+from robot_control.console.navigation import NavigationView
 from robot_control.console.topics import Latest
 from robot_control.msg import DriveState, FollowPathActionFeedback, LegState, RobotStatus
 from robot_control.view.scene import Trail
@@ -42,6 +43,7 @@ class View:
             "legs": Latest("leg_state", LegState),
             "feedback": Latest("follow_path/feedback", FollowPathActionFeedback),
         }
+        self.navigation = NavigationView(self._topics["odom"])
         self._wanted = Latest("path_wanted", Path)
         self._status = Latest("robot_status", RobotStatus)
 
@@ -130,6 +132,8 @@ class View:
                 "revoked": [] if revoked is None else revoked.revoked,
                 "legged": facts.kind.legged,
                 "data_return": "" if status is None else status.data_return,
+                "navigation": self.navigation.values(),
+                "goal": facts.value("navigate", "goal"),
                 "path": {"age": feedback.age(time.monotonic()), **progress},
             }
         )

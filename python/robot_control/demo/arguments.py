@@ -22,7 +22,9 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
         help="on wheels or on legs (default %(default)s)",
     )
     parser.add_argument(
-        "--drives", choices=("odrive", "cia402", "example"), help="the motors stand behind such simulated drives"
+        "--drives",
+        choices=("odrive", "cia402", "example", "board"),
+        help="the motors stand behind such simulated drives",
     )
     given = parser.parse_args(arguments)
     if given.drives and given.robot == LEGGED_ROBOT:

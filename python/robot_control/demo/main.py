@@ -149,7 +149,10 @@ def _drive(seconds: float, out: Path, robot: str, drives: Path | None) -> float:
                 *(
                     []
                     if drives is None
-                    else [f"drives:={drives}", f"driver:={'example' if drives.stem == 'example' else 'can'}"]
+                    else [
+                        f"drives:={drives}",
+                        f"driver:={drives.stem if drives.stem in ('example', 'board') else 'can'}",
+                    ]
                 ),
             ],
             out / "launch.log",

@@ -5,7 +5,7 @@ from robot_control.why.state import Facts, speeds
 
 REFUSALS = {"refused": "", "not_standing": "standing", "not_lying": "lying", "out_of_reach": ""}
 """Reason why a request is not executed → the posture that it needs."""
-LIMITS = ("leg_speed", "speed_limited", "permit_slow", "timed_out", "stale")
+LIMITS = ("no_plan", "leg_speed", "speed_limited", "permit_slow", "timed_out", "stale")
 """Reasons why a walk differs from what is requested, or ends."""
 POSTURES = {
     "gathering": "its legs move to the lying posture",

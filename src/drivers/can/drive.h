@@ -19,9 +19,9 @@
 
 #include "drivers/can/can_frame.h"
 #include "drivers/can/can_load.h"
-#include "drivers/can/drive_parameters.h"
 #include "drivers/can/late_position.h"
-#include "drivers/can/position_difference.h"
+#include "drivers/drive_parameters.h"
+#include "drivers/position_difference.h"
 #include "signals/joint.h"
 
 namespace robot_control {

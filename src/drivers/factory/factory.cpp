@@ -8,9 +8,13 @@
 #include "drivers/can/can_driver.h"
 #include "drivers/drive_motors.h"
 #include "drivers/example/example_driver.h"
+#include "drivers/serial/board_driver.h"
+#include "drivers/serial/serial_port.h"
 
 namespace robot_control {
 namespace {
+
+constexpr int kSerialPriority = 84;  // above the loop: it only takes bytes, at the time of their arrival
 
 /// For a driver that moves the driven joints alone.
 void refuse_held_joints(const MachineModel& machine, const std::string& driver) {
@@ -45,13 +49,32 @@ std::unique_ptr<Driver> make_example(const Parameters& parameters, const Machine
                                          parameters.loop.period(), connect_to_board(board.address));
 }
 
+std::unique_ptr<Driver> make_board(const Parameters& parameters, const MachineModel& machine,
+                                   const std::vector<Brake>& brakes, DriverClock clock) {
+  if (parameters.drives.empty())
+    throw DriverError(
+        "robot.driver is board, but robot.drives names no drive file: set it, for instance to "
+        "config/drives/board.yaml");
+  refuse_held_joints(machine, "board");
+  const DriveMotors motors = drive_motors(machine, brakes);
+  const BoardParameters board = read_board_file(parameters.drives, motors.joints, parameters.loop.rate);
+  const RealtimeParameters thread{
+      .name = "serial", .policy = parameters.loop.realtime, .priority = kSerialPriority, .core = -1};
+  const auto time_ns = [clock = std::move(clock)] { return clock().time_ns; };
+  auto line =
+      std::make_unique<SerialPort>(board.line.address, static_cast<unsigned>(board.line.bit_rate), thread, time_ns);
+  return std::make_unique<BoardDriver>(board, motors.brakes, motors.joint_count, parameters.loop.period(),
+                                       std::move(line), time_ns);
+}
+
 struct DriverRow {
   DriverChoice choice;
   std::unique_ptr<Driver> (*make)(const Parameters&, const MachineModel&, const std::vector<Brake>&, DriverClock);
 };
 
 constexpr std::array kDrivers{DriverRow{DriverChoice::kCan, &make_can},
-                              DriverRow{DriverChoice::kExample, &make_example}};
+                              DriverRow{DriverChoice::kExample, &make_example},
+                              DriverRow{DriverChoice::kBoard, &make_board}};
 
 }  // namespace
 

@@ -33,15 +33,15 @@ namespace robot_control {
 
 class LegFilter {
  public:
-  static constexpr double kGyroNoise = 5e-4;          ///< rad/s/√Hz
-  static constexpr double kGyroWalk = 2e-5;           ///< rad/s/√s
-  static constexpr double kAccelerometerNoise = 0.1;  ///< m/s²/√Hz
-  static constexpr double kAccelerometerWalk = 2e-4;  ///< m/s²/√s
-  static constexpr double kGyroBias = 0.02;           ///< rad/s, before a rest
-  static constexpr double kAccelerometerBias = 0.2;   ///< m/s²
-  static constexpr double kFoot = 5e-4;               ///< m, of a foot's place by kinematics
-  static constexpr double kSlide = 0.003;             ///< m/√s
-  static constexpr double kLandSlide = 0.03;          ///< m/√s
+  static constexpr double kGyroNoise = 5e-4;           ///< rad/s/√Hz
+  static constexpr double kGyroWalk = 2e-5;            ///< rad/s/√s
+  static constexpr double kAccelerometerNoise = 0.07;  ///< m/s²/√Hz
+  static constexpr double kAccelerometerWalk = 2e-4;   ///< m/s²/√s
+  static constexpr double kGyroBias = 0.02;            ///< rad/s, before a rest
+  static constexpr double kAccelerometerBias = 0.2;    ///< m/s²
+  static constexpr double kFoot = 5e-4;                ///< m, of a foot's place by kinematics
+  static constexpr double kSlide = 0.003;              ///< m/√s
+  static constexpr double kLandSlide = 0.03;           ///< m/√s
   static constexpr double kGate = 4;
 
   /// Entries of the error.

@@ -101,6 +101,8 @@ class NavigateNode {
     const auto sensor = frames_.lookup(map_frame_, waiting_->frame, waiting_->stamp, scan_problem_);
     if (!sensor) return;
     if (sensor->upside_down) waiting_->scan.angle_min *= -1, waiting_->scan.angle_increment *= -1;
+    const auto base = frames_.lookup(map_frame_, guard_.odometry_frames().second, waiting_->stamp, scan_problem_);
+    costmap_->foresee(base ? placed(waiting_->ahead, base->pose) : std::vector<Point>());
     doubt_.update(costmap_->insert(waiting_->scan, sensor->pose, now()));
     waiting_.reset();
     seen_at_ = time;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <tuple>
 
 namespace robot_control {
 namespace {
@@ -14,7 +15,8 @@ constexpr double kTick = 0.1;       // s
 constexpr double kStanding = 0.02;  // m/s, rad/s
 
 Scan scan_of(const sensor_msgs::LaserScan& message) {
-  return {message.angle_min, message.angle_increment, message.range_min, message.range_max, message.ranges};
+  return {message.angle_min, message.angle_increment, message.range_min,
+          message.range_max, message.ranges,          message.angle_max};
 }
 
 }  // namespace
@@ -65,6 +67,8 @@ std::pair<std::string, std::string> ScanGuard::odometry_frames() {
 void ScanGuard::receive_odometry(const nav_msgs::Odometry& message) {
   const std::lock_guard lock(mutex_);
   odom_frame_ = message.header.frame_id, base_frame_ = message.child_frame_id;
+  const auto& [position, turn] = std::tie(message.pose.pose.position, message.pose.pose.orientation);
+  base_ = {position.x, position.y, yaw_of(turn.x, turn.y, turn.z, turn.w).value_or(base_.yaw)};
   measured_ = {message.twist.twist.linear.x, message.twist.twist.angular.z};
   const double elapsed = std::clamp((message.header.stamp - odometry_at_).toSec(), 0.0, 0.1);
   moved_ += (std::abs(measured_.linear) + std::abs(measured_.angular)) * elapsed;
@@ -73,7 +77,7 @@ void ScanGuard::receive_odometry(const nav_msgs::Odometry& message) {
 
 void ScanGuard::receive(const ros::MessageEvent<const sensor_msgs::LaserScan>& event) {
   const sensor_msgs::LaserScan& message = *event.getConstMessage();
-  StampedScan scan{scan_of(message), message.header.frame_id, message.header.stamp};
+  StampedScan scan{scan_of(message), message.header.frame_id, message.header.stamp, {}};
   const std::lock_guard lock(mutex_);
   const std::string refused = watch_.receive(scan.scan, event.getPublisherName(), message.header.stamp.toSec(),
                                              ros::Time::now().toSec(), moved_);
@@ -86,7 +90,7 @@ void ScanGuard::receive(const ros::MessageEvent<const sensor_msgs::LaserScan>& e
   if (guards_) publish(clearance);
 }
 
-double ScanGuard::clearance_of(const StampedScan& scan) {
+double ScanGuard::clearance_of(StampedScan& scan) {
   frame_problem_.clear();
   std::string why;
   const auto sensor = frames_.lookup(base_frame_, scan.frame, ros::Time(), why);
@@ -98,7 +102,10 @@ double ScanGuard::clearance_of(const StampedScan& scan) {
   Scan upright = scan.scan;
   if (sensor->upside_down) upright.angle_min *= -1, upright.angle_increment *= -1;
   const bool moves = std::abs(measured_.linear) > kStanding || std::abs(measured_.angular) > 2 * kStanding;
-  const double free = free_way(footprint_, points_of(upright, sensor->pose), moves ? measured_ : intended_);
+  const std::vector<Mover> movers =
+      movers_seen_from(movers_.update(upright, composed(base_, sensor->pose), scan.stamp.toSec()), base_);
+  scan.ahead = places_ahead(footprint_, movers);
+  const double free = free_way(footprint_, points_of(upright, sensor->pose), moves ? measured_ : intended_, movers);
   const double age = std::clamp((ros::Time::now() - scan.stamp).toSec(), 0.0, kSilence);
   return std::max(0.0, free - std::abs(measured_.linear) * age);
 }

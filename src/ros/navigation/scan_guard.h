@@ -23,6 +23,7 @@ struct StampedScan {
   Scan scan;
   std::string frame;
   ros::Time stamp;
+  std::vector<Point> ahead;  ///< in base axes: places that things in motion will take
 };
 
 class ScanGuard {
@@ -50,7 +51,7 @@ class ScanGuard {
   void receive_odometry(const nav_msgs::Odometry& message);
   void watch();
   void publish(double clearance);
-  double clearance_of(const StampedScan& scan);
+  double clearance_of(StampedScan& scan);
 
   const Footprint footprint_;
   const Frames& frames_;
@@ -65,6 +66,8 @@ class ScanGuard {
   std::optional<StampedScan> newest_;
   std::string frame_problem_, odom_frame_, base_frame_;
   PlanarMotion measured_, intended_;
+  PlanarPose base_;  // in odom
+  Movers movers_;
   double moved_ = 0, published_ = 0;  // m + rad; m
   ros::Time odometry_at_;
   bool active_ = false, guards_ = false;

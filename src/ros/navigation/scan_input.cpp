@@ -14,7 +14,7 @@ constexpr std::size_t kReadings = 250;  // 5 s at 50 Hz
 Scan scan_of(const sensor_msgs::LaserScan& message, bool upside_down) {
   const double sign = upside_down ? -1 : 1;
   return {sign * message.angle_min, sign * message.angle_increment, message.range_min, message.range_max,
-          message.ranges};
+          message.ranges,           sign * message.angle_max};
 }
 
 double turn_between(double from, double to) {

@@ -7,6 +7,7 @@
 #include "configuration/command_sources.h"
 #include "files/ascii.h"
 #include "loop/processes/monitor_process.h"
+#include "ros/inputs/clearance_stream.h"
 #include "ros/inputs/e_stop_levels.h"
 #include "ros/inputs/input_topic.h"
 #include "ros/messages/messages.h"
@@ -54,6 +55,7 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
 
   void publish() override {
     const std::int64_t now_ns = monotonic_ns();
+    check_clearance(now_ns);
     Permit permit;
     const bool found = seen(permit);
     if (found) withdrawal_.update(permit, now_ns);
@@ -158,9 +160,21 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
 
   void receive_clearance(double clearance) {
     const std::lock_guard lock(input_mutex_);
+    clearance_stream_.receive(clearance, monotonic_ns());
+    set_clearance(clearance);
+  }
+
+  void set_clearance(double clearance) {
     input_.clearance = clearance;
     ++input_.clearances;
     process().cycle().inbox().store(input_);
+  }
+
+  void check_clearance(std::int64_t now_ns) {
+    const std::lock_guard lock(input_mutex_);
+    if (!clearance_stream_.falls_silent(now_ns)) return;
+    set_clearance(0);
+    ROS_WARN("clearance has fallen silent, the robot stands: start its sender again, or publish inf on clearance");
   }
 
   bool trigger(msg::TriggerRequest& /*request*/, msg::TriggerResponse& response) {
@@ -218,6 +232,7 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
   std::mutex input_mutex_;
   std::mutex reset_mutex_;
   EStopLevels levels_;
+  ClearanceStream clearance_stream_;
   OperatorInput input_;
   StopLog stop_log_{static_cast<double>(parameters().loop.period_ns()) * 1e-9,
                     kind_of(robot()) == MachineKind::kOnLegs ? parameters().leg_control.request_timeout

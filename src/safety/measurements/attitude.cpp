@@ -16,7 +16,7 @@ constexpr double kUpright = 1e-9;  // rad; below it no direction of tilting is k
 void Attitude::step(const Eigen::Vector3d* rate, const Eigen::Vector3d* force, double dt) noexcept {
   uncorrected_ = std::min(uncorrected_ + dt, 2 * kTrust);
   if (rate != nullptr) carry(*rate, dt);
-  if (force != nullptr) pull(*force, dt);
+  if (force != nullptr) pull(force_time_ > 0 ? smooth(*force, dt) : *force, dt);
   horizontal_ = std::hypot((*up_).x(), (*up_).y());
   const bool leaning = rate != nullptr && horizontal_ > kUpright;
   tilt_rate_ = leaning ? (rate->x() * (*up_).y() - rate->y() * (*up_).x()) / horizontal_ : 0;
@@ -25,7 +25,16 @@ void Attitude::step(const Eigen::Vector3d* rate, const Eigen::Vector3d* force, d
 void Attitude::carry(const Eigen::Vector3d& rate, double dt) noexcept {
   const double size = rate.norm();
   const double angle = size * dt;
-  if (angle > 0 && std::isfinite(angle)) *up_ = Eigen::AngleAxisd(-angle, rate / size) * up();
+  if (!(angle > 0 && std::isfinite(angle))) return;
+  const Eigen::AngleAxisd back(-angle, rate / size);
+  *up_ = back * up();
+  if (force_time_ > 0) *force_ = back * Eigen::Vector3d(*force_);
+}
+
+Eigen::Vector3d Attitude::smooth(const Eigen::Vector3d& force, double dt) noexcept {
+  if (force.norm() < kMaxForce)
+    *force_ += ((*force_).isZero(0) ? 1 : std::min(1.0, dt / force_time_)) * (force - *force_);
+  return *force_;
 }
 
 void Attitude::pull(const Eigen::Vector3d& force, double dt) noexcept {

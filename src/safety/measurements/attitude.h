@@ -6,7 +6,9 @@
 ///   correction (accelerometer)   u ← u + dt/T·(â − u),   â = (a − c)/|a − c|,   if ||a − c| − g| < kBand
 ///   initial value                u = â, of the first sample within the band
 ///
-/// a  accelerometer: specific force, +g upwards at rest; c  the part of it that the caller knows not to be gravity
+/// a  accelerometer: specific force, +g upwards at rest; c  the part of it that the caller knows not to be gravity.
+///    With `force_time`, a − c is its low pass, which turns with the gyro: a body on legs falls and rises in each step,
+///    so that one sample in five is within the band, and these all belong to the same moment of a step
 /// u  always of unit length. If a sample of one device is missing or too large to be squared, the other is used alone
 ///
 /// Errors of u [rad], T = 1.5 s, b a gyro's bias, A an acceleration along the ground that is not in c:
@@ -37,7 +39,10 @@ class Attitude {
   static constexpr double kBand = 1.0;          ///< m/s²
   static constexpr double kTrust = 3.0;         ///< s, 0.15 rad of a bias of 0.05 rad/s
 
-  void reset() noexcept { *this = {}; }
+  /// `force_time`: s, of the low pass of a − c; 0: none.
+  explicit Attitude(double force_time = 0) noexcept : force_time_(force_time) {}
+
+  void reset() noexcept { *this = Attitude(force_time_); }
 
   /// Base axes: `rate` ω, rad/s, null without a gyro; `force` a − c, m/s², null without an accelerometer; finite.
   /// `dt` s since the last step.
@@ -55,9 +60,14 @@ class Attitude {
   double tilt_rate() const noexcept { return tilt_rate_; }
 
  private:
+  static constexpr double kMaxForce = 160;  ///< m/s²; accelerometers measure up to 16 g
+
   void carry(const Eigen::Vector3d& rate, double dt) noexcept;
+  Eigen::Vector3d smooth(const Eigen::Vector3d& force, double dt) noexcept;
   void pull(const Eigen::Vector3d& force, double dt) noexcept;
 
+  double force_time_;
+  Stored<Eigen::Vector3d> force_;  ///< m/s², the low pass; zero before the first sample
   Stored<Eigen::Vector3d> up_{Eigen::Vector3d::UnitZ()};
   double horizontal_ = 0;            ///< length of u's part across the base's z axis
   double uncorrected_ = 2 * kTrust;  ///< s since the last correction

@@ -6,8 +6,8 @@
 /// c the clearance (m), t stop_delay (s), during which the robot drives on, a stop_deceleration (m/s²). The second form
 /// has no cancellation for a small c. c = ∞ means unlimited; c ≤ 0 and NaN give speed 0.
 ///
-/// c is the parameter `clearance` (0: unlimited) until the first message on the topic, then the topic's last value. It
-/// has no timeout: the sender must also publish when the distance becomes free.
+/// c is the parameter `clearance` (0: unlimited) until the first message on the topic, then the topic's last value. The
+/// node sets it to 0 when a stream falls silent (ros/inputs/clearance_stream.h).
 
 #include <cmath>
 

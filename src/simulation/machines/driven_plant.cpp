@@ -47,6 +47,7 @@ void DrivenPlant::read(SensorFrame& sensors) noexcept {
   std::copy_n(wheels_.joints.begin(), devices_->size(), sensors.joints.begin());
   sensors.link_count = wheels_.link_count;
   sensors.links = wheels_.links;
+  sensors.digital_inputs |= wheels_.digital_inputs;
   if ((sensors.valid & kValidBattery) != 0 || (wheels_.valid & kValidBattery) == 0) return;
   sensors.valid |= kValidBattery;
   sensors.battery_voltage = wheels_.battery_voltage;

@@ -4,7 +4,8 @@
 /// they are simulated.
 ///
 /// In each period the devices see the wheels move on with the velocity of its beginning. The plant applies the mean
-/// torque of a device over the period. IMU, contacts, battery and the other joints are those of the plant.
+/// torque of a device over the period. IMU, contacts, battery and the other joints are those of the plant. Digital
+/// inputs are those of both.
 ///
 /// `start` runs the drives until they are ready, at most kMaxStart, while the robot stands.
 

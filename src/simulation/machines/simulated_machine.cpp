@@ -13,8 +13,11 @@
 #include "drivers/drive_motors.h"
 #include "drivers/example/example_driver.h"
 #include "drivers/mujoco/mujoco_plant.h"
+#include "drivers/serial/board_driver.h"
+#include "simulation/devices/board_front.h"
 #include "simulation/devices/can_front.h"
 #include "simulation/devices/example_board.h"
+#include "simulation/devices/pseudo_terminal.h"
 #include "simulation/machines/driven_plant.h"
 
 namespace robot_control {
@@ -45,6 +48,16 @@ std::unique_ptr<Driver> make_plant_behind_board(const Parameters& parameters, co
   return std::make_unique<DrivenPlant>(machine, parameters.plant, period, std::move(board), std::move(driver));
 }
 
+std::unique_ptr<Driver> make_plant_behind_serial(const Parameters& parameters, const MachineModel& machine,
+                                                 const DriveMotors& motors) {
+  const double period = parameters.loop.period();
+  const BoardParameters board = read_board_file(parameters.drives, motors.joints, parameters.loop.rate);
+  auto front = std::make_unique<BoardFront>(board, motors.brakes, period, parameters.plant.seed);
+  auto driver = std::make_unique<BoardDriver>(board, motors.brakes, motors.joint_count, period, front->driver_end(),
+                                              [clock = front.get()] { return clock->now_ns(); });
+  return std::make_unique<DrivenPlant>(machine, parameters.plant, period, std::move(front), std::move(driver));
+}
+
 }  // namespace
 
 std::unique_ptr<Driver> make_simulated_machine(const Parameters& parameters, const MachineModel& machine,
@@ -54,6 +67,7 @@ std::unique_ptr<Driver> make_simulated_machine(const Parameters& parameters, con
     return std::make_unique<MujocoPlant>(machine, parameters.plant, period);
   const DriveMotors motors = drive_motors(machine, brakes);
   if (parameters.driver == DriverChoice::kExample) return make_plant_behind_board(parameters, machine, motors);
+  if (parameters.driver == DriverChoice::kBoard) return make_plant_behind_serial(parameters, machine, motors);
   const CanParameters can = read_drive_file(parameters.drives, motors.joints, parameters.loop.rate);
   const auto [driver_end, device_end] = line_ends();
   std::unique_ptr<DeviceFront> devices = can_devices(can, parameters, motors, CanSocket::line_end(device_end));
@@ -72,6 +86,12 @@ std::unique_ptr<DeviceSimulator> make_device_simulator(const Parameters& paramet
     auto board = std::make_unique<ExampleBoard>(motors.brakes, motors.effort_limits, period,
                                                 bind_board(board_parameters.address));
     return std::make_unique<DeviceSimulator>(machine, parameters.plant, period, std::move(board));
+  }
+  if (parameters.driver == DriverChoice::kBoard) {
+    const BoardParameters board = read_board_file(parameters.drives, motors.joints, parameters.loop.rate);
+    auto front = std::make_unique<BoardFront>(board, motors.brakes, period,
+                                              std::make_unique<PseudoTerminal>(board.line.address));
+    return std::make_unique<DeviceSimulator>(machine, parameters.plant, period, std::move(front));
   }
   const CanParameters can = read_drive_file(parameters.drives, motors.joints, parameters.loop.rate);
   auto devices = can_devices(can, parameters, motors, CanSocket::open(can.bus.address));

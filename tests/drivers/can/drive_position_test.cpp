@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "drivers/can/late_position.h"
-#include "drivers/can/position_difference.h"
+#include "drivers/position_difference.h"
 
 namespace robot_control {
 namespace {

@@ -66,6 +66,7 @@ on("slow", (slow) => {
   list("nodes", Object.entries(slow.nodes).map(([name, there]) => there ? `● ${name}` : `○ ${name} (silent)`));
   put("faults", slow.faults && slow.faults !== "none" ? `injected: ${slow.faults}` : "");
   put("data-return", slow.data_return && `data return: ${slow.data_return}`);
+  put("goal-state", slow.goal ? `goal: ${slow.goal}` : "navigate does not run");
   put("progress", path.age === null || path.age >= TALKS ? "no path" : [
     path.reason ? `${path.state}: ${path.reason}` : path.state, `${number(100 * path.progress, 0)} %`,
     `${number(path.remaining_distance)} m left`, `${number(1000 * path.cross_track_error, 0)} mm beside`,

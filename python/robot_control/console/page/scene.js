@@ -12,7 +12,8 @@ const LATE = 40, RESTING = 250;         // ms; a browser that is so late rests s
 const HALF = 20, SQUARE = 0.5, PIECE = 1;    // m; a software renderer loses long lines that begin behind the camera
 const view = document.getElementById("view"), note = document.getElementById("scene-note");
 const canvas = document.getElementById("scene"), notes = new Set();
-const scene = new THREE.Scene(), camera = new THREE.PerspectiveCamera(50, 1, 0.05, 500);
+export const scene = new THREE.Scene();
+const camera = new THREE.PerspectiveCamera(50, 1, 0.05, 500);
 let robot = new THREE.Group(), joints = new Map(), lift = 0, trail = [];
 camera.up.set(0, 0, 1);
 const controls = new OrbitControls(camera, canvas);
@@ -23,7 +24,7 @@ function say(text) {
   note.textContent = [...notes].slice(0, MAX_NOTES).join("; ");
 }
 
-function polyline(colour, size, dashed) {
+export function polyline(colour, size, dashed) {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * size), 3));
   geometry.setDrawRange(0, 0);
@@ -35,7 +36,10 @@ function polyline(colour, size, dashed) {
   return line;
 }
 
-function fill(line, points, z) {
+/** Something was changed: draws again. */
+export function redraw() { dirty = true; }
+
+export function fill(line, points, z) {
   const attribute = line.geometry.attributes.position, count = Math.min(points.length, attribute.count);
   points.slice(-count).forEach(([x, y], i) => attribute.setXYZ(i, x, y, z));
   attribute.needsUpdate = true;
@@ -149,6 +153,10 @@ function ground(event) {
   ray.setFromCamera({ x, y }, camera);
   return ray.ray.intersectPlane(new THREE.Plane(new THREE.Vector3(0, 0, 1), 0), new THREE.Vector3());
 }
+canvas.addEventListener("pointerdown", (event) => {
+  const at = finish && ground(event);
+  if (at) points.push([at.x, at.y]);
+});
 canvas.addEventListener("pointermove", (event) => {
   if (!finish || !event.buttons) return;
   const at = ground(event), last = points[points.length - 1];

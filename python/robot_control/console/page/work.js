@@ -27,6 +27,8 @@ const ARGUMENTS = {
     const points = await draw();
     return points.length > 1 ? { points, speed: speed() } : null;
   },
+  goal: () => placeOnMap("goal"),
+  place: () => placeOnMap("place"),
   path_shape: () => ({ shape: by("shape").value, size: value("size"), speed: speed() }),
   path_csv: async () => {
     const [file] = by("csv").files;
@@ -40,6 +42,13 @@ const ARGUMENTS = {
   step: () => ({ cycles: 100 }),
   inject_fault: () => ({ component: by("component").value, kind: by("kind").value }),
 };
+
+async function placeOnMap(what) {
+  const { draw } = await import("/scene.js"), { onMap } = await import("/map.js");
+  say(`${what}: press on the map, drag to the heading, release`);
+  const points = await draw();
+  return points.length ? onMap(points[0], points[points.length - 1]) : null;
+}
 
 for (const button of document.querySelectorAll("[data-call]")) {
   button.addEventListener("click", async () => {

@@ -15,7 +15,7 @@ namespace robot_control {
 namespace {
 
 constexpr double kOfEffort = 0.97;    // of the limits, the largest effort
-constexpr double kFarthest = 0.08;    // m, the target from the robot, of a leg of kReferenceLeg
+constexpr double kFarthest = 0.2;     // m, the target from the robot, of a leg of kReferenceLeg
 constexpr double kFarthestYaw = 0.3;  // rad
 constexpr double kGroundTime = 0.05;  // s, in which the ground follows the feet
 constexpr double kLevel = 0.1;        // of a leg length, by how much the feet have to be apart to show a slope
@@ -126,6 +126,7 @@ bool Walker::step(State& state, const WalkInput& input, CommandFrame& out) noexc
     const double done = gait.duty >= 1 ? 0.5 : early ? 0 : part;
     out.legged.stance[leg] = bears ? std::max(done, period_) : 0;
   }
+  if (state.failures > 0) out.reasons |= kReasonNoPlan;
   return state.failures <= kFailures;
 }
 
@@ -139,9 +140,12 @@ void Walker::move(State& state, const WalkInput& input, const WalkingBody& body)
   }
   const double farthest = kFarthest * length_ / kReferenceLeg;
   std::array<double, 3>& ahead = state.ahead;
-  ahead[0] += period_ * (input.twist[0] - body.velocity.x());
-  ahead[1] += period_ * (input.twist[1] - body.velocity.y());
-  ahead[2] += period_ * (input.twist[2] - body.rate.z());
+  const double half = gait(state).period / 2;
+  const std::array<double, 3> moves{body.velocity.x(), body.velocity.y(), body.rate.z()};
+  for (std::size_t i = 0; i < moves.size(); ++i) {
+    state.follows[i] += period_ / half * (input.twist[i] - state.follows[i]);
+    ahead[i] += period_ * (state.follows[i] - moves[i]);
+  }
   for (std::size_t i = 0; i < 2; ++i) ahead[i] = std::clamp(ahead[i], -farthest, farthest);
   ahead[2] = std::clamp(ahead[2], -kFarthestYaw, kFarthestYaw);
   state.ground[0] -= period_ * body.velocity.z();

@@ -9,14 +9,15 @@
 ///             pushed down by the force that it is to bear
 ///   ground    is the plane through the places where the feet bore last. So a foot lands where the others stand, whatever
 ///             the error of the estimated tilt
-///   target    moves with the twist from where the robot was. It stays within kFarthest of the robot
+///   target    moves from where the robot was, with the twist through a low pass of half a period: a body follows its
+///             twist when the next feet have landed. It stays within kFarthest of the robot
 ///   plan      every kPlanCycles cycles, and where other feet bear, the forces of the feet (force_plan.h)
 ///   stance    τ = h − Jᵀ f, f the planned force, h what holds the leg itself. f is scaled down until each |τ| is within
 ///             the joint's limit, so that f stays within friction
 ///   swing     the foot follows swing.h to its foothold (foothold.h) with the impedance of standing, and the efforts
 ///             M q̈ + h of its own leg
 ///
-/// If a plan fails, the last forces stay for up to kFailures plans.
+/// If a plan fails, the last forces stay for up to kFailures plans (kReasonNoPlan).
 
 #include <Eigen/Core>
 #include <array>
@@ -73,6 +74,7 @@ class Walker {
     std::array<double, kLegs> touched{};        ///< s for which a contact is probable
     std::array<Vector3, kLegs> bore{};          ///< m, level axes: where it bore last
     std::array<Vector3, kLegs> forces{};        ///< N, level axes
+    WalkingTwist follows{};                     ///< the twist with which the target moves
     std::array<double, 3> ahead{};              ///< m, m, rad: the target from the robot
     Vector3 ground{};                           ///< m: height of the ground below the base; its slopes
     std::uint64_t planned = 0;                  ///< cycles since the last plan
@@ -85,7 +87,7 @@ class Walker {
   /// Begins with all feet on the ground.
   void begin(State& state, const SensorFrame& sensors, const StateFrame& estimate) const noexcept;
 
-  /// Fills joints, gait and stance of `out`. Returns false if the plan has failed too often.
+  /// Fills joints, gait and stance of `out`, and adds to its reasons. Returns false if the plan has failed too often.
   bool step(State& state, const WalkInput& input, CommandFrame& out) noexcept;
 
   /// The gaits of this robot, by GaitName.

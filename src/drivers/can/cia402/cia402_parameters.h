@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "drivers/can/drive_parameters.h"
+#include "drivers/drive_parameters.h"
 
 namespace robot_control::cia402 {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/can/drive_parameters.h"
+#include "drivers/drive_parameters.h"
 
 namespace robot_control::odrive {
 

@@ -15,7 +15,7 @@ using Vector = Eigen::Map<const Eigen::Vector3d>;
 }  // namespace
 
 BodyConditions::BodyConditions(const SafetyParameters& parameters, const MachineModel& machine, const Vector3& point,
-                               double period)
+                               double period, double force_time)
     : period_(period),
       weight_(machine.mass * kGravity),
       persistence_(parameters.imu_stuck.persistence),
@@ -28,6 +28,7 @@ BodyConditions::BodyConditions(const SafetyParameters& parameters, const Machine
       free_fall_(kCauseFreeFall, parameters.free_fall, period),
       lift_(kCauseLift, parameters.lift, period),
       impact_(kCauseImpact, parameters.impact, period),
+      attitude_(force_time),
       gyro_{.watch{kCauseImuStuck, parameters.imu_stuck, period}},
       accelerometer_{.watch{kCauseImuStuck, parameters.imu_stuck, period}},
       window_(std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(kImpactWindow / period)), 1, kMaxSamples)) {}

@@ -43,8 +43,10 @@ class BodyConditions {
  public:
   static constexpr double kImpactWindow = 0.01;  ///< s
 
-  /// `point` is the one to which the forward speed belongs, m, base axes. `period` s.
-  BodyConditions(const SafetyParameters& parameters, const MachineModel& machine, const Vector3& point, double period);
+  /// `point` is the one to which the forward speed belongs, m, base axes. `period` s. `force_time` is that of
+  /// Attitude.
+  BodyConditions(const SafetyParameters& parameters, const MachineModel& machine, const Vector3& point, double period,
+                 double force_time = 0);
 
   /// A new run: all state restarts.
   void enter_run() noexcept;

@@ -26,11 +26,12 @@ class LeggedConditions {
  public:
   static constexpr double kWindow = 0.01;       ///< rad
   static constexpr double kStandingTime = 0.1;  ///< s
+  static constexpr double kForceTime = 0.3;     ///< s, of attitude.h: some steps of a trot
 
   /// `period` s.
   LeggedConditions(const SafetyParameters& parameters, const LegModel& robot, double period)
       : period_(period),
-        body_conditions_(parameters, robot, {}, period),
+        body_conditions_(parameters, robot, {}, period, kForceTime),
         joint_conditions_(parameters, robot, period),
         encoder_conditions_(parameters, robot, period),
         foot_conditions_(parameters, robot, period) {}

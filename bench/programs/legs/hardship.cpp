@@ -1,0 +1,130 @@
+#include <random>
+
+#include "bench/programs/legs/loop_rows.h"
+#include "control/legged/gait.h"
+
+namespace robot_control::bench {
+namespace {
+
+constexpr double kBegin = 5, kDisturbed = 5;  // s
+constexpr double kFallen = kPi / 3;           // rad
+
+Request trot(double speed, double lateral = 0) {
+  return {.twist = {.linear = {speed, lateral, 0}, .angular = {}},
+          .posture = {},
+          .mode = kStanceGait + static_cast<std::uint64_t>(GaitName::kTrot)};
+}
+
+double stopped(const QuadrupedLoop& robot) {
+  return robot.permit().causes != 0 || robot.command().legged.phase != LegPhase::kWalking ? 1 : 0;
+}
+
+/// Low passes of the true and of the requested speed, of which the second follows the twist as the walk does.
+struct Speeds {
+  static constexpr double kTime = 0.5;   // s
+  static constexpr double kSlow = 0.08;  // m/s, below which no dip is judged
+
+  void step(const QuadrupedLoop& robot, double lag) {
+    requested += 0.001 / lag * (robot.command().twist_limited.linear[0] - requested);
+    limited += 0.001 / kTime * (requested - limited);
+    measured += 0.001 / kTime * (robot.truth().twist_base.linear[0] - measured);
+    if (limited > kSlow) dip = std::max(dip, 1 - measured / limited);
+  }
+
+  double requested = 0, limited = 0, measured = 0, dip = 0;
+};
+
+/// A trot of 0.3 m/s on a machine with these parameters.
+void disturbed(const LegModel& model, const Parameters& parameters, const std::string& name, WorstValues& worst) {
+  constexpr double kSpeed = 0.3;  // m/s
+  QuadrupedLoop robot(model, parameters);
+  robot.wait(0.3);
+  robot.run(kBegin, trot(kSpeed));
+  robot.clear();
+  double sum = 0, count = 0;
+  robot.after_step = [&] { sum += robot.truth().twist_base.linear[0], count += 1; };
+  robot.run(kDisturbed, trot(kSpeed));
+  worst.add("speed off, " + name, std::abs(sum / count / kSpeed - 1), "of it");
+  worst.add("largest tilt, " + name, robot.tilt, "rad");
+  worst.add("stops, " + name, stopped(robot), "");
+}
+
+}  // namespace
+
+void switches(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
+  constexpr int kSwitches = 100;
+  std::mt19937_64 random(seed);
+  const auto between = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random() >> 11) / 9007199254740992.0;
+  };
+  QuadrupedLoop robot(model, walking_parameters(seed));
+  robot.wait(0.3);
+  robot.run(kBegin, trot(0.3));
+  robot.clear();
+  Speeds speeds{.requested = 0.3, .limited = 0.3, .measured = 0.3};
+  double period = 0;
+  robot.after_step = [&] {
+    period = kGaits[robot.command().legged.gait].scaled(model.leg_length()).period;
+    speeds.step(robot, period / 2);
+  };
+  for (int i = 0; i < kSwitches; ++i) {
+    Request request = trot(between(0.1, 0.6));
+    request.mode = kStanceGait + 1 + static_cast<std::uint64_t>(between(0, kGaits.size() - 1.0));
+    robot.run(between(0.3, 2), request);
+  }
+  worst.add("tilt while gaits change", robot.tilt, "rad");
+  worst.add("dip of the speed while gaits change", speeds.dip, "of it");
+  worst.add("stops, gaits that change", stopped(robot), "");
+}
+
+void disturbances(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
+  constexpr int kDirections = 8, kPhases = 24;
+  constexpr double kForce = 150, kDuration = 0.1;  // N on a robot of 12.7 kg, s
+  const Gait gait = kGaits[static_cast<std::size_t>(GaitName::kTrot)].scaled(model.leg_length());
+  for (int i = 0; i < kDirections; ++i) {
+    Parameters parameters = walking_parameters(seed);
+    const double direction = 2 * kPi * i / kDirections, force = kForce * model.mass / 12.7;
+    parameters.plant.push_x = force * std::cos(direction);
+    parameters.plant.push_y = force * std::sin(direction);
+    parameters.plant.push_start =
+        kBegin + gait.period * static_cast<double>(seed % kPhases) / static_cast<double>(kPhases);
+    parameters.plant.push_duration = kDuration;
+    QuadrupedLoop robot(model, parameters);
+    robot.wait(0.3);
+    robot.run(kBegin + 3, trot(0.3));
+    const double fallen = robot.tilt > kFallen ? 1 : 0;
+    worst.average("pushed over", fallen, "of the pushes");
+    worst.average("stopped by a push, " + std::to_string(45 * i) + " deg", stopped(robot), "of the pushes");
+  }
+  const double far = 0.1 * model.leg_length();
+  Parameters payload = walking_parameters(seed), ice = walking_parameters(seed), late = walking_parameters(seed);
+  payload.plant.payload = 0.2 * model.mass;
+  payload.plant.payload_x = payload.plant.payload_y = far;
+  payload.plant.payload_z = far;
+  disturbed(model, payload, "payload", worst);
+  ice.plant.ground_friction = 0.3;
+  disturbed(model, ice, "friction 0.3", worst);
+  late.plant.actuator_delay = 5;
+  disturbed(model, late, "motors 5 ms late", worst);
+}
+
+void walking_silent(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
+  constexpr int kLosses = 200, kMin = 5, kMax = 19;  // cycles
+  QuadrupedLoop robot(model, walking_parameters(seed));
+  robot.wait(0.3);
+  robot.run(kBegin, trot(1.0));
+  robot.clear();
+  const double period = kGaits[static_cast<std::size_t>(GaitName::kTrot)].scaled(model.leg_length()).period;
+  for (int i = 0; i < kLosses && stopped(robot) == 0; ++i) {
+    const int silent = kMin + i % (kMax - kMin + 1);
+    robot.loop.request(trot(1.0));
+    robot.loop.inject_fault("controller", "off");
+    robot.wait(0.001 * silent);
+    robot.loop.inject_fault("controller", "ok");
+    robot.run(0.6 + period * i / kLosses, trot(1.0));
+  }
+  worst.add("tilt with a silent controller", robot.tilt, "rad");
+  worst.add("stops, silent controller", stopped(robot), "");
+}
+
+}  // namespace robot_control::bench

@@ -1,0 +1,113 @@
+"""The view of navigation for the page: the grids of map and costmap, and where map, scan and particles are in odom."""
+
+from __future__ import annotations
+
+import base64
+import math
+import threading
+import time
+from typing import Any
+
+import numpy as np
+from geometry_msgs.msg import PoseArray
+from nav_msgs.msg import OccupancyGrid, Odometry
+from sensor_msgs.msg import LaserScan
+
+from robot_control.common.pose import Pose, yaw_of
+from robot_control.console.topics import Latest
+from robot_control.path.frames import Tf
+from robot_control.path.waypoints import PathError
+
+MAX_SIDE, MAX_PARTICLES = 1000, 300
+"""cells and poses that are sent; a larger grid has coarser cells, of which the fullest counts"""
+PERIOD = 0.2
+"""s between two looks at tf"""
+SILENCE = 2.0
+"""s after which a scan or particles are not shown"""
+
+
+class NoGridError(Exception):
+    """There is no such grid; the message says why."""
+
+
+class NavigationView:
+    """The newest messages of navigation."""
+
+    def __init__(self, odometry: Latest) -> None:
+        self._odometry = odometry
+        self._grids = {"map": Latest("map", OccupancyGrid), "costmap": Latest("costmap", OccupancyGrid)}
+        self._scan, self._particles = Latest("scan", LaserScan), Latest("particlecloud", PoseArray)
+        self._tf = Tf()
+        self._places: dict[str, Any] = {}
+        threading.Thread(target=self._locate, daemon=True).start()
+
+    def values(self) -> dict[str, Any]:
+        """`map`: its pose in odom; `scan`, `particles`: points in odom and in the map; `grids`: name → age's mark."""
+        marks = {name: grid.received_at for name, grid in self._grids.items() if math.isfinite(grid.received_at)}
+        return {**self._places, "grids": marks}
+
+    def frame(self) -> str:
+        """The frame of the map; empty without one."""
+        grid = self._grids["map"].message
+        return "" if grid is None else str(grid.header.frame_id)
+
+    def grid(self, name: str) -> dict[str, Any]:
+        """Origin, cell size [m] and cells, row by row, -1 … 100 as bytes in base64. Raises NoGridError."""
+        message = self._grids[name].message if name in self._grids else None
+        if message is None:
+            raise NoGridError("there is no such grid")
+        info, cells = message.info, np.asarray(message.data, dtype=np.int8)
+        if cells.size != info.width * info.height or not cells.size:
+            raise NoGridError(f"{name} has {cells.size} cells, and its width x height are others")
+        step = max(1, math.ceil(max(info.width, info.height) / MAX_SIDE))
+        rows, columns = (np.arange(0, size, step) for size in (info.height, info.width))
+        cells = np.maximum.reduceat(cells.reshape(info.height, info.width), rows, axis=0)
+        cells = np.maximum.reduceat(cells, columns, axis=1)
+        origin = info.origin
+        return {
+            "x": origin.position.x,
+            "y": origin.position.y,
+            "yaw": yaw_of(origin.orientation),
+            "resolution": info.resolution * step,
+            "columns": cells.shape[1],
+            "cells": base64.b64encode(cells.tobytes()).decode(),
+        }
+
+    def _locate(self) -> None:
+        while True:
+            odometry: Odometry | None = self._odometry.message
+            frame = self.frame()
+            places: dict[str, Any] = {}
+            if odometry is not None and frame:
+                places = {"map": self._pose(odometry.header.frame_id, frame)} | self._seen(odometry)
+            self._places = places
+            time.sleep(PERIOD)
+
+    def _pose(self, target: str, source: str) -> tuple[float, float, float] | None:
+        try:
+            pose = self._tf.lookup(target, source).pose
+        except PathError:
+            return None
+        return pose.x, pose.y, pose.yaw
+
+    def _seen(self, odometry: Odometry) -> dict[str, Any]:
+        now, seen = time.monotonic(), {}
+        scan, particles = self._scan.message, self._particles.message
+        if scan is not None and now - self._scan.received_at < SILENCE:
+            laser = self._pose(odometry.header.frame_id, scan.header.frame_id)
+            if laser is not None:
+                seen["scan"] = points_of(scan, Pose(*laser))
+        if particles is not None and now - self._particles.received_at < SILENCE:
+            step = max(1, math.ceil(len(particles.poses) / MAX_PARTICLES))
+            seen["particles"] = [(each.position.x, each.position.y) for each in particles.poses[::step]]
+        return seen
+
+
+def points_of(scan: LaserScan, laser: Pose) -> list[tuple[float, float]]:
+    """The ends of the rays that hit, at most 1,000, in the frame of the laser's pose."""
+    step = max(1, math.ceil(len(scan.ranges) / 1000))
+    ranges = np.asarray(scan.ranges[::step], dtype=float)
+    angles = laser.yaw + scan.angle_min + scan.angle_increment * step * np.arange(len(ranges))
+    hit = (ranges >= scan.range_min) & (ranges <= scan.range_max)
+    points = np.column_stack([laser.x + ranges * np.cos(angles), laser.y + ranges * np.sin(angles)])[hit]
+    return [(round(float(x), 3), round(float(y), 3)) for x, y in points]

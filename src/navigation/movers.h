@@ -1,0 +1,56 @@
+#pragma once
+/// Movers are things in motion. Two scans of one laser show them, and where they will be.
+///
+/// Neighbouring rays whose ends are within kGap are one thing. A thing moves if kNew of its points lie where the laser
+/// looked through kApart before. Walls that come into sight do not: there the view was blocked. Its velocity is that of
+/// the middle of its points between the two scans. A thing that is larger than kLargest is taken to stand.
+
+#include <deque>
+#include <vector>
+
+#include "navigation/costmap.h"
+
+namespace robot_control {
+
+inline constexpr double kForesight = 3;  ///< s; at 0.5 m/s the outline crosses the way of a cart in 2.5 s
+
+struct Mover {
+  std::vector<Point> points;  ///< m
+  Point velocity;             ///< m/s
+};
+
+class Movers {
+ public:
+  /// Returns what moves, in the frame of `sensor`, which has to be at rest: the odometry's. `now` in s.
+  std::vector<Mover> update(const Scan& scan, const PlanarPose& sensor, double now);
+
+ private:
+  struct Thing {
+    std::vector<Point> points;
+    Point middle;
+  };
+  struct View {
+    Scan scan;
+    PlanarPose sensor;
+    double at = 0;  // s
+    std::vector<Thing> things;
+  };
+  static std::vector<Thing> things_of(const Scan& scan, const PlanarPose& sensor);
+
+  std::deque<View> views_;
+};
+
+/// Returns points, given in the axes of `base`, in the frame in which `base` is given.
+std::vector<Point> placed(std::vector<Point> points, const PlanarPose& base);
+
+/// Returns the movers in the axes of `pose`, which is given in their frame.
+std::vector<Mover> movers_seen_from(std::vector<Mover> movers, const PlanarPose& pose);
+
+/// Returns the time after which a thing touches the outline that stands, s; ∞ beyond kForesight. Axes of the base.
+double time_to_touch(const Footprint& footprint, const Mover& mover);
+
+/// Returns the places, in base axes, that the movers will take within kForesight. Those that touch the outline on their
+/// way are left out: where it stands is no better than what lies ahead.
+std::vector<Point> places_ahead(const Footprint& footprint, const std::vector<Mover>& movers);
+
+}  // namespace robot_control

@@ -1,0 +1,189 @@
+#include "simulation/devices/board_front.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace robot_control {
+namespace {
+
+constexpr double kMicro = 1.0e-6;
+constexpr std::uint16_t kFirmware = 1;
+constexpr std::uint8_t kWheelFault = 1;
+
+}  // namespace
+
+BoardFront::BoardFront(const BoardParameters& parameters, std::span<const Brake> brakes, double period,
+                       std::uint64_t seed)
+    : parameters_(parameters),
+      period_ns_(std::llround(1.0e9 * period)),
+      virtual_line_(std::make_unique<VirtualSerial>(static_cast<double>(parameters.line.bit_rate), seed)),
+      line_(virtual_line_->device_end()) {
+  for (const Brake& brake : brakes) wheels_.push_back({.brake = BrakeLaw(brake)});
+  sensors_.valid = BOARD_HAS_EFFORT;
+  sensors_.inputs = BOARD_E_STOP_RELEASED;
+  boot(BOARD_POWER_ON);
+}
+
+BoardFront::BoardFront(const BoardParameters& parameters, std::span<const Brake> brakes, double period,
+                       std::unique_ptr<SerialLine> line)
+    : parameters_(parameters),
+      period_ns_(std::llround(1.0e9 * period)),
+      true_line_(std::move(line)),
+      line_(*true_line_) {
+  for (const Brake& brake : brakes) wheels_.push_back({.brake = BrakeLaw(brake)});
+  sensors_.valid = BOARD_HAS_EFFORT;
+  sensors_.inputs = BOARD_E_STOP_RELEASED;
+  boot(BOARD_POWER_ON);
+}
+
+void BoardFront::boot(board_reset reason) {
+  board_config config{};
+  config.context = this;
+  config.wheels = static_cast<std::uint8_t>(wheels_.size());
+  config.firmware = kFirmware;
+  config.functions = {
+      .time_us = [](void* front) { return static_cast<BoardFront*>(front)->time_us(); },
+      .counts = [](void* front, std::uint32_t* counts) { static_cast<BoardFront*>(front)->counts(counts); },
+      .drive = [](void* front, std::uint8_t wheel, board_mode mode,
+                  std::int32_t value) { static_cast<BoardFront*>(front)->drive(wheel, mode, value); },
+      .sensors = [](void* front, std::uint8_t /*outputs*/,
+                    board_sensors* sensors) { static_cast<BoardFront*>(front)->read_sensors(*sensors); },
+      .write =
+          [](void* front, const std::uint8_t* bytes, std::uint8_t size) {
+            static_cast<BoardFront*>(front)->write({bytes, size});
+          }};
+  booted_ns_ = now_ns_;
+  sensors_.reset = reason;
+  board_begin(&board_, &config);
+}
+
+std::size_t BoardFront::joint_of(std::size_t wheel) const {
+  const auto found = std::ranges::find(parameters_.wheels, wheel, &BoardWheelParameters::wheel);
+  return static_cast<std::size_t>(found - parameters_.wheels.begin());
+}
+
+std::uint32_t BoardFront::time_us() const {
+  const double elapsed_us = 1.0e-3 * static_cast<double>(now_ns_ - booted_ns_) * (1 + kMicro * kClockPpm);
+  return static_cast<std::uint32_t>(static_cast<std::uint64_t>(elapsed_us));
+}
+
+void BoardFront::counts(std::uint32_t* counts) const {
+  for (std::size_t i = 0; i < wheels_.size(); ++i) {
+    const BoardWheelParameters& wheel = parameters_.wheels[i];
+    const double turns = wheels_[i].position / (2 * std::numbers::pi) * static_cast<double>(wheel.direction);
+    const auto counted = static_cast<std::int64_t>(std::floor(turns * wheel.counts_per_turn));
+    const auto wrapped = static_cast<std::uint32_t>(static_cast<std::uint64_t>(counted) + zero_);
+    counts[wheel.wheel] = wheel.counter_bits == 16 ? wrapped & 0xFFFFU : wrapped;
+  }
+}
+
+void BoardFront::drive(std::size_t wheel, board_mode mode, std::int32_t value) {
+  const std::size_t joint = joint_of(wheel);
+  wheels_[joint].mode = mode;
+  wheels_[joint].ordered = kMicro * value * static_cast<double>(parameters_.wheels[joint].direction);
+}
+
+void BoardFront::read_sensors(board_sensors& sensors) const {
+  sensors = sensors_;
+  for (std::size_t i = 0; i < wheels_.size(); ++i) {
+    const BoardWheelParameters& wheel = parameters_.wheels[i];
+    sensors.effort[wheel.wheel] =
+        static_cast<std::int32_t>(std::lround(wheels_[i].torque * static_cast<double>(wheel.direction) / kMicro));
+  }
+  if (fault_) sensors.fault[0] = kWheelFault;
+  sensors.imu.time_us = time_us();
+}
+
+void BoardFront::write(std::span<const std::uint8_t> bytes) {
+  if (!other_protocol_) {
+    line_.send(bytes);
+    return;
+  }
+  board_decoder decoder{};
+  std::array<std::uint8_t, BOARD_MAX_FRAME> frame;
+  std::uint8_t size = 0;
+  for (const std::uint8_t byte : bytes) size = board_decode(&decoder, byte);
+  decoder.body[0] = BOARD_PROTOCOL + 1;
+  line_.send(std::span(frame).first(board_encode(decoder.body, size, frame.data())));
+}
+
+void BoardFront::run_board() {
+  SerialChunk chunk;
+  if (off_ || now_ns_ < boots_ns_) {
+    while (line_.receive(chunk)) {
+    }
+    for (Wheel& wheel : wheels_) wheel = {.brake = wheel.brake, .position = wheel.position, .velocity = wheel.velocity};
+    for (Wheel& wheel : wheels_) wheel.mode = BOARD_EFFORT;  // no supply, no torque
+    return;
+  }
+  if (boots_ns_ != 0) {
+    boots_ns_ = 0;
+    boot(next_reset_);
+  }
+  bool stepped = false;
+  while (line_.receive(chunk)) {
+    board_step(&board_, chunk.bytes.data(), static_cast<std::uint8_t>(chunk.size));
+    stepped = true;
+  }
+  if (!stepped) board_step(&board_, nullptr, 0);
+}
+
+void BoardFront::run(std::span<const JointSample> joints) {
+  for (Wheel& wheel : wheels_) wheel.mean_torque = 0;
+  const std::int64_t begin_ns = now_ns_;
+  const std::int64_t end_ns = begin_ns + period_ns_;
+  while (now_ns_ < end_ns) {
+    const auto elapsed = 1.0e-9 * static_cast<double>(now_ns_ - begin_ns);
+    for (std::size_t i = 0; i < wheels_.size(); ++i) {
+      wheels_[i].position = joints[i].position + joints[i].velocity * elapsed;
+      wheels_[i].velocity = joints[i].velocity;
+    }
+    if (virtual_line_) virtual_line_->advance(now_ns_);
+    run_board();
+    const std::int64_t next_ns = std::min(now_ns_ + kStepNs, end_ns);
+    const double share = static_cast<double>(next_ns - now_ns_) / static_cast<double>(period_ns_);
+    for (std::size_t i = 0; i < wheels_.size(); ++i) {
+      Wheel& wheel = wheels_[i];
+      if (wheel.mode != BOARD_BRAKE) wheel.brake.release();
+      const double wanted =
+          wheel.mode == BOARD_BRAKE ? wheel.brake.step(wheel.torque, wheel.position, wheel.velocity) : wheel.ordered;
+      const double limit = parameters_.wheels[i].torque_limit;
+      wheel.torque = std::clamp(wanted, -limit, limit);
+      wheel.mean_torque += share * wheel.torque;
+    }
+    now_ns_ = next_ns;
+  }
+  if (virtual_line_) virtual_line_->advance(now_ns_);
+}
+
+std::string BoardFront::inject(std::string_view component, std::string_view kind) {
+  const auto is = [kind](auto... words) { return ((kind == words) || ...); };
+  if (component == "board" && is("ok", "off", "reset", "brown_out", "fault", "e_stop", "other_protocol")) {
+    const bool back = off_ && kind != "off";
+    off_ = kind == "off";
+    fault_ = kind == "fault";
+    other_protocol_ = kind == "other_protocol";
+    sensors_.inputs = kind == "e_stop" ? 0 : BOARD_E_STOP_RELEASED;
+    if (back || is("reset", "brown_out")) boots_ns_ = now_ns_ + kBootNs;
+    next_reset_ = kind == "reset" ? BOARD_RESET_BUTTON : kind == "brown_out" ? BOARD_BROWN_OUT : BOARD_POWER_ON;
+    return "";
+  }
+  if (component == "line" && virtual_line_ && is("ok", "lossy", "late", "disturbed", "partial", "stalled", "cut")) {
+    SerialFaults faults;
+    faults.message_loss = is("lossy", "disturbed") ? 0.05 : 0;
+    faults.bit_errors = is("lossy", "disturbed") ? 0.01 : 0;
+    faults.jitter_ns = is("late", "disturbed") ? 3'000'000 : 0;
+    faults.partial = is("partial");
+    faults.stalled = is("stalled");
+    faults.cut = is("cut");
+    virtual_line_->faults() = faults;
+    return "";
+  }
+  return "component must be board (with ok, off, reset, brown_out, fault, e_stop, other_protocol) or line (with ok, "
+         "lossy, late, disturbed, partial, stalled, cut)";
+}
+
+}  // namespace robot_control

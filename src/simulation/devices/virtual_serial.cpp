@@ -1,0 +1,55 @@
+#include "simulation/devices/virtual_serial.h"
+
+#include <algorithm>
+
+namespace robot_control {
+namespace {
+
+constexpr double kBitsPerByte = 10;
+constexpr double kPartialWrites = 0.1;
+constexpr std::int64_t kFirstBytesNs = 100'000;  // bytes that arrive within this time are one chunk
+
+}  // namespace
+
+VirtualSerial::VirtualSerial(double bit_rate, std::uint64_t seed)
+    : byte_ns_(bit_rate > 0 ? static_cast<std::int64_t>(1.0e9 * kBitsPerByte / bit_rate) : 0), random_(seed) {}
+
+std::unique_ptr<SerialLine> VirtualSerial::driver_end() {
+  return std::make_unique<End>(*this, to_driver_, to_device_);
+}
+
+bool VirtualSerial::receive(Way& way, SerialChunk& chunk) const noexcept {
+  chunk.size = 0;
+  if (faults_.stalled) return false;
+  while (way.taken < way.written && chunk.size < chunk.bytes.size()) {
+    const Byte& byte = way.bytes[way.taken % kBufferBytes];
+    if (byte.arrives_ns > now_ns_) break;
+    if (chunk.size > 0 && byte.arrives_ns > chunk.time_ns + kFirstBytesNs) break;
+    chunk.bytes[chunk.size++] = byte.value;
+    chunk.time_ns = byte.arrives_ns;
+    ++way.taken;
+  }
+  return chunk.size > 0;
+}
+
+bool VirtualSerial::send(Way& way, std::span<const std::uint8_t> bytes) {
+  if (faults_.cut) return false;
+  if (chance() < faults_.message_loss) return true;
+  const bool partial = faults_.partial && chance() < kPartialWrites;
+  const std::size_t taken = partial ? bytes.size() / 2 : bytes.size();
+  const bool damaged = chance() < faults_.bit_errors;
+  const std::size_t damage = random_() % (8 * std::max<std::size_t>(1, taken));
+  const auto late_ns = faults_.delay_ns + static_cast<std::int64_t>(chance() * static_cast<double>(faults_.jitter_ns));
+  std::int64_t time_ns = std::max(now_ns_ + late_ns, way.free_ns);
+  for (std::size_t i = 0; i < taken; ++i) {
+    time_ns += byte_ns_;
+    if (faults_.byte_loss > 0 && chance() < faults_.byte_loss) continue;
+    const unsigned flip = damaged && damage / 8 == i ? 1U << damage % 8 : 0U;
+    if (way.written - way.taken == kBufferBytes) continue;
+    way.bytes[way.written++ % kBufferBytes] = {time_ns, static_cast<std::uint8_t>(bytes[i] ^ flip)};
+  }
+  way.free_ns = time_ns;
+  return !partial;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,60 @@
+/// A walk whose forces have no solution.
+
+#include "control/legged/walking/walker.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "machine/legs/legs_corpus.h"
+#include "signals/legged/legged_command.h"
+
+namespace robot_control {
+namespace {
+
+/// quadbot in its nominal stance, whose estimate is right.
+struct WalkerTest : testing::Test {
+  WalkerTest() {
+    sensors.joint_count = kLegsJoints;
+    const NominalStance stance = nominal_stance(robot);
+    for (std::size_t leg = 0; leg < kLegs; ++leg) {
+      const LegAngles angles = robot.legs[leg].kinematics.inverse(stance.feet[leg]).angles;
+      for (std::size_t i = 0; i < kLegJoints; ++i)
+        sensors.joints[kLegJoints * leg + i].position = angles[static_cast<Eigen::Index>(i)];
+      estimate.contacts[leg].probability = 1;
+    }
+    estimate.base.attitude = {0, 0, 0, 1};
+    walker.begin(state, sensors, estimate);
+  }
+
+  /// Returns whether the walk goes on after a plan.
+  bool plan() {
+    out = {};
+    state.planned = Walker::kPlanCycles;
+    return walker.step(state, {.sensors = &sensors, .state = &estimate, .twist = {}, .gait = GaitName::kStand}, out);
+  }
+
+  LegModel robot = legged_robot("quadbot");
+  Walker walker{robot, 0.4, 0.001};
+  Walker::State state;
+  SensorFrame sensors;
+  StateFrame estimate;
+  CommandFrame out;
+};
+
+TEST_F(WalkerTest, KeepsTheLastForcesForThreePlansThatFailAndSaysSo) {
+  ASSERT_TRUE(plan());
+  EXPECT_EQ(out.reasons & kReasonNoPlan, 0u);
+  const auto forces = state.forces;
+  estimate.base.twist_base.linear[0] = std::numeric_limits<double>::infinity();
+  for (std::uint64_t i = 0; i < Walker::kFailures; ++i) {
+    EXPECT_TRUE(plan());
+    EXPECT_NE(out.reasons & kReasonNoPlan, 0u);
+    EXPECT_EQ(state.forces, forces);
+  }
+  EXPECT_FALSE(plan());
+  EXPECT_NE(out.reasons & kReasonNoPlan, 0u);
+}
+
+}  // namespace
+}  // namespace robot_control

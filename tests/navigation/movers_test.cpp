@@ -1,0 +1,80 @@
+#include "navigation/movers.h"
+
+#include <gtest/gtest.h>
+
+#include "navigation/guard.h"
+#include "navigation/house.h"
+
+namespace robot_control {
+namespace {
+
+using namespace testing_house;
+
+constexpr double kScanPeriod = 0.1;  // s
+
+/// An empty hall of 10 m, 5 m ahead of its lower left corner the laser, and a box of 0.5 m in it.
+class MoversTest : public testing::Test {
+ protected:
+  Scan seen(Point box) const {
+    Grid world;
+    world.columns = world.rows = 100, world.resolution = kCell;
+    world.cells.assign(10'000, kFreeCell);
+    for (int row = 0; row < 100; ++row) {
+      for (int column = 0; column < 100; ++column) {
+        const bool in_box = std::abs(world.x_of(column) - box.x) < 0.25 && std::abs(world.y_of(row) - box.y) < 0.25;
+        const bool wall = row == 0 || column == 0 || row == 99 || column == 99;
+        if (wall || in_box) world.cells[world.index({column, row})] = kOccupiedCell;
+      }
+    }
+    return scan_of(world, sensor_);
+  }
+
+  /// The movers after a second in which box and laser have these speeds, m/s, both in x.
+  std::vector<Mover> after_a_second(double box_speed, double own_speed = 0) {
+    std::vector<Mover> found;
+    for (int i = 0; i <= 10; ++i) {
+      sensor_.x = 3 + own_speed * i * kScanPeriod;
+      found = movers_.update(seen({5 + box_speed * i * kScanPeriod, 7}), sensor_, i * kScanPeriod);
+    }
+    return found;
+  }
+
+  PlanarPose sensor_{3, 5, 0};
+  Movers movers_;
+};
+
+TEST_F(MoversTest, AThingThatMovesHasItsVelocity) {
+  const std::vector<Mover> found = after_a_second(0.8);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR(found[0].velocity.x, 0.8, 0.3);  // one cell of the world in 0.4 s
+  EXPECT_NEAR(found[0].velocity.y, 0, 0.3);
+}
+
+TEST_F(MoversTest, WhatStandsDoesNotMoveWhereTheRobotDrivesPastIt) {
+  EXPECT_TRUE(after_a_second(0, 0.5).empty());
+  EXPECT_TRUE(after_a_second(0).empty());
+}
+
+TEST(TimeToTouchTest, ItIsThatOfTheStandingOutline) {
+  EXPECT_NEAR(time_to_touch(diffbot(), {{{1.12, 0}}, {-0.5, 0}}), 2.0, 0.11);
+  EXPECT_TRUE(std::isinf(time_to_touch(diffbot(), {{{1.12, 0}}, {0.5, 0}})));
+  EXPECT_TRUE(std::isinf(time_to_touch(diffbot(), {{{1.12, 0.5}}, {-0.5, 0}})));
+}
+
+TEST(FreeWayAmongMoversTest, ItEndsBeforeThePlacesThatOneWillTake) {
+  const Mover crossing{{{1.12, -1.5}}, {0, 0.8}};
+  EXPECT_NEAR(free_way(diffbot(), {}, {0.5, 0}, {crossing}), 1.0 - kBeside - kStopShort, 0.021);
+}
+
+TEST(FreeWayAmongMoversTest, OneThatComesToTheRobotEndsItAtTheMeeting) {
+  const Mover oncoming{{{1.12, 0}}, {-0.5, 0}};
+  EXPECT_NEAR(free_way(diffbot(), {}, {0.5, 0}, {oncoming}), 0.5 - kStopShort, 0.05);
+}
+
+TEST(FreeWayAmongMoversTest, TheRobotDrivesOnOutOfTheWayOfOneThatWouldTouchIt) {
+  const Mover from_the_side{{{0, -1.27}}, {0, 0.5}};
+  EXPECT_TRUE(std::isinf(free_way(diffbot(), {}, {0.5, 0}, {from_the_side})));
+}
+
+}  // namespace
+}  // namespace robot_control
