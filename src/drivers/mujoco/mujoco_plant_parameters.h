@@ -68,9 +68,10 @@ struct MujocoPlantParameters : Errors {
 
   // These members describe the drives of the wheels; those but the first one hold for drive: velocity.
   SimulatedDrive drive = SimulatedDrive::kTorque;
-  double drive_gain = 1;        ///< times the gains of its speed loop
-  double drive_dead_band = 0;   ///< rad/s, slower commands are 0
-  double drive_resolution = 0;  ///< rad/s, of the commands that it takes; 0: exact
+  double drive_gain = 1;           ///< times the gains of its speed loop
+  bool drive_feed_forward = true;  ///< it adds the torque of the command
+  double drive_dead_band = 0;      ///< rad/s, slower commands are 0
+  double drive_resolution = 0;     ///< rad/s, of the commands that it takes; 0: exact
   DriveBrake drive_brake = DriveBrake::kHold;
 
   // These members describe the sensors.
@@ -118,6 +119,7 @@ inline Keys keys(MujocoPlantParameters& plant) {
           {"actuator_delay", &plant.actuator_delay, "cycles", 0, 100},
           {"drive", &plant.drive},
           {"drive_gain", &plant.drive_gain, {}, 0.1, 10},
+          {"drive_feed_forward", &plant.drive_feed_forward},
           {"drive_dead_band", &plant.drive_dead_band, "rad/s", 0, 10},
           {"drive_resolution", &plant.drive_resolution, "rad/s", 0, 1, kZeroIsOff},
           {"drive_brake", &plant.drive_brake},

@@ -38,6 +38,16 @@ TEST_F(VelocityDriveTest, ReachesItsSpeedWhateverTheLoad) {
   EXPECT_NEAR(effort, 1, 1e-2);
 }
 
+TEST_F(VelocityDriveTest, AddsTheTorqueOfTheCommandIfItTakesOne) {
+  const JointCommand ahead{.mode = JointMode::kDriveVelocity, .velocity = 0, .effort = 1};
+  run(ahead, kStep);
+  EXPECT_EQ(effort, 1);
+  velocity = 0;
+  parameters.takes_feed_forward = false;
+  run(ahead, kStep);
+  EXPECT_EQ(effort, 0);
+}
+
 TEST_F(VelocityDriveTest, GivesNoMoreThanItsTorque) {
   run(at(1000), 0.1);
   EXPECT_EQ(effort, parameters.effort_limit);

@@ -4,7 +4,9 @@
 ///   kDriveVelocity   q̇* = velocity, as a multiple of `resolution`; 0 if it is below `dead_band`
 ///   kBrake, unknown modes, numbers that are not finite   q̇* = 0, and at rest what `at_rest` says
 ///
-///   e = q̇* − q̇,   τ = P e + ∫ I e dt,   |τ| ≤ the effort limit, or that of the brake
+///   e = q̇* − q̇,   τ = P e + ∫ I e dt + τ_ff,   |τ| ≤ the effort limit, or that of the brake
+///
+/// τ_ff is the command's effort if the drive takes one and does not brake, else 0.
 ///
 /// The integral stands while the torque is at its limit towards e. At rest, |q̇| below the hold speed of the brake, a
 /// drive that releases gives no torque until the next velocity.
@@ -30,6 +32,7 @@ struct VelocityDriveParameters {
   double lifted_inertia = 0;  ///< kg·m², J
   double effort_limit = 0;    ///< N·m
   double gain = 1;
+  bool takes_feed_forward = true;
   double dead_band = 0;   ///< rad/s
   double resolution = 0;  ///< rad/s; 0: exact
   DriveBrake at_rest = DriveBrake::kHold;
@@ -60,7 +63,8 @@ class VelocityDrive {
     const double braking = rests ? parameters_.brake.hold_effort : parameters_.brake.effort;
     const double limit = drives ? parameters_.effort_limit : std::min(braking, parameters_.effort_limit);
     const double error = (drives ? taken(command.velocity) : 0) - velocity;
-    const double wanted = proportional_ * error + integral_;
+    const double feed_forward = drives && parameters_.takes_feed_forward ? command.effort : 0;
+    const double wanted = proportional_ * error + integral_ + feed_forward;
     const double effort = std::clamp(wanted, -limit, limit);
     if ((wanted - effort) * error <= 0)
       integral_ = std::clamp(integral_ + integral_gain_ * error * step_, -limit, limit);

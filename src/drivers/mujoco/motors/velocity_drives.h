@@ -26,6 +26,7 @@ inline std::vector<VelocityDrive> velocity_drives(const TrueRobot& robot, const 
                                                 .lifted_inertia = wheel.inertia,
                                                 .effort_limit = robot.joints[wheel.joint].effort_limit,
                                                 .gain = parameters.drive_gain,
+                                                .takes_feed_forward = parameters.drive_feed_forward,
                                                 .dead_band = parameters.drive_dead_band,
                                                 .resolution = parameters.drive_resolution,
                                                 .at_rest = parameters.drive_brake,
