@@ -47,8 +47,7 @@ std::vector<std::string> DifferentialDrive::rate_notes(Role role) const {
   if (role == Role::kMonitor && machine_.wheel_command == WheelCommand::kVelocity) {
     notes.emplace_back(
         "robot.wheel_command is velocity: where drives measure no torque, wheel_effort, power and torque_oscillation "
-        "are "
-        "blind, and stall judges speeds alone");
+        "are blind, and stall judges speeds alone");
   }
   return notes;
 }
