@@ -238,8 +238,7 @@ void add_unused_gains(const DriveControllerParameters& parameters, std::vector<s
     std::ostringstream text;
     text << program_of(Role::kController) << "." << key << " = " << value
          << ": has no effect with robot.wheel_command: velocity, because the drives close the wheel loops. Leave it "
-            "out, "
-            "or set robot.wheel_command to torque.";
+            "out, or set robot.wheel_command to torque.";
     problems.push_back(text.str());
   };
   if (parameters.pid_kp) add("pid_kp", *parameters.pid_kp);

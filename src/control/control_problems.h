@@ -21,7 +21,7 @@ namespace robot_control {
 ///                        encoder, the torque of the lifted wheel is below 0.3 of the limit, RMS
 ///                        (quantisation_ripple.h), or 1.2 times that of derived gains
 ///
-/// Where the drives close the wheel loops (robot.wheel_command), the gains are not checked: one that is set is a
+/// The gains are not checked where the drives close the wheel loops (robot.wheel_command): one that is set is a
 /// problem.
 ///
 /// `parameters` are within their ranges, and `period` (s) is > 0.
