@@ -21,6 +21,7 @@ def test_the_robot_drives_and_stops_as_requested(gain, delay):
     speed, time = log["truth_linear"], log["time"]
     steady = (time > 2) & (time < 4)
     assert np.sqrt(np.mean((speed[steady] - SPEED) ** 2)) <= 0.03 * SPEED
+    assert speed.max() <= 1.02 * SPEED
     assert abs(speed[-1]) < 1e-3
     assert not log["permit_causes"].any()
 
