@@ -62,7 +62,7 @@ py::dict signal_names() {
   all["PermitAction"] = states<PermitAction>(3);
   all["GateVerdict"] = states<GateVerdict>(5);
   all["DriverState"] = states<DriverState>(5);
-  all["JointMode"] = states<JointMode>(4);
+  all["JointMode"] = states<JointMode>(kJointModes);
   all["LegPhase"] = states<LegPhase>(7);
   all["SensorIndex"] = words(kStateSensorNames);
   all["FaultComponent"] = words(kFaultComponentNames);

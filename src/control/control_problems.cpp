@@ -233,6 +233,19 @@ std::string powerless_message(const JointModel& joint, const DriveTrain& robot) 
   return text.str();
 }
 
+void add_unused_gains(const DriveControllerParameters& parameters, std::vector<std::string>& problems) {
+  const auto add = [&](const char* key, double value) {
+    std::ostringstream text;
+    text << program_of(Role::kController) << "." << key << " = " << value
+         << ": has no effect with robot.wheel_command: velocity, because the drives close the wheel loops. Leave it "
+            "out, or set robot.wheel_command to torque.";
+    problems.push_back(text.str());
+  };
+  if (parameters.pid_kp) add("pid_kp", *parameters.pid_kp);
+  if (parameters.pid_ki) add("pid_ki", *parameters.pid_ki);
+  if (parameters.pid_kd != 0) add("pid_kd", parameters.pid_kd);
+}
+
 /// Returns true if nothing but limits is set: the rest is derived from the description.
 bool only_limits(const DriveControllerParameters& parameters) noexcept {
   const FeedForwardParameters& given = parameters.feed_forward;
@@ -280,13 +293,22 @@ std::vector<std::string> control_problems(const DriveControllerParameters& param
                                           double period) {
   const DriveTrain robot = measured_robot(described, parameters.feed_forward);
   std::vector<std::string> problems = feed_forward_problems(parameters, described);
+  const bool drives_close_loops = robot.wheel_command == WheelCommand::kVelocity;
+  if (drives_close_loops) add_unused_gains(parameters, problems);
   const double bandwidth = tracking_bandwidth(parameters, period);
   const double limit = std::max(kMaxTracking / period, tracking_bandwidth({}, period));
   if (bandwidth > limit) problems.push_back(tracking_message(bandwidth, limit, period));
   if (const double derived = tracking_bandwidth({}, period); bandwidth < kMinShare * derived) {
     problems.push_back(weak_message("tracking_bandwidth", bandwidth, derived, "Hz"));
   }
-  check_loops(parameters, described, robot, period, problems);
+  if (drives_close_loops) {
+    for (const WheelModel& wheel : robot.wheels) {
+      const JointModel& joint = robot.joints[wheel.joint];
+      if (!(joint.effort_limit > 0)) problems.push_back(powerless_message(joint, robot));
+    }
+  } else {
+    check_loops(parameters, described, robot, period, problems);
+  }
   return problems;
 }
 

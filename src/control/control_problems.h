@@ -21,6 +21,9 @@ namespace robot_control {
 ///                        encoder, the torque of the lifted wheel is below 0.3 of the limit, RMS
 ///                        (quantisation_ripple.h), or 1.2 times that of derived gains
 ///
+/// The gains are not checked where the drives close the wheel loops (robot.wheel_command): one that is set is a
+/// problem.
+///
 /// `parameters` are within their ranges, and `period` (s) is > 0.
 std::vector<std::string> control_problems(const DriveControllerParameters& parameters, const DriveTrain& described,
                                           double period);

@@ -13,12 +13,19 @@ namespace robot_control {
 
 namespace {
 
+/// Returns the gains of a loop that the drive closes: it has no part of ours, and the speed comes from the encoder
+/// alone.
+WheelLoopGains no_gains() noexcept {
+  return {.kp = 0, .ki = 0, .kd = 0, .model_inertia = std::numeric_limits<double>::infinity()};
+}
+
 WheelLoops make_loops(const DriveControllerParameters& parameters, const DriveTrain& described, double period) {
   const DriveTrain robot = measured_robot(described, parameters.feed_forward);
   WheelLoops loops;
   for (const WheelModel& wheel : robot.wheels) {
-    loops.emplace_back(wheel_loop_gains(parameters, robot, wheel, period), tracking_bandwidth(parameters, period),
-                       robot.joints[wheel.joint].effort_limit, period);
+    const bool ours = robot.wheel_command == WheelCommand::kTorque;
+    loops.emplace_back(ours ? wheel_loop_gains(parameters, robot, wheel, period) : no_gains(),
+                       tracking_bandwidth(parameters, period), robot.joints[wheel.joint].effort_limit, period);
   }
   return loops;
 }
@@ -41,11 +48,8 @@ double affordable_multiple(double inertial, double rest, double limit) noexcept 
   return std::max((limit - std::copysign(rest, rest * inertial)) / std::abs(inertial), 0.0);
 }
 
-JointCommand effort_command(double velocity, double effort) noexcept {
-  return {.mode = JointMode::kEffort, .velocity = velocity, .effort = effort};
-}
-
 constexpr double kMinAccelerationScale = 0.2;  // lower bound of the scale
+constexpr double kUsualLag = 3;                // response times: gains of the drive half as high, and a delay
 
 constexpr std::uint64_t kGateClamps = kGateEffortClamped | kGateRateClamped | kGateSpeedClamped | kGatePositionClamped;
 constexpr std::uint64_t kEmergencies = kReasonTimedOut | kReasonRefused | kReasonManySenders | kReasonPermitRamp;
@@ -63,7 +67,9 @@ DriveController::DriveController(const DriveControllerParameters& parameters, co
       watch_(parameters.cmd_vel_timeout, period, kExecutable),
       limiter_(speed_limits(parameters)),
       standstill_(period),
-      loops_(make_loops(parameters, robot, period)) {}
+      loops_(make_loops(parameters, robot, period)),
+      mode_(robot.wheel_command == WheelCommand::kTorque ? JointMode::kEffort : JointMode::kDriveVelocity),
+      usual_lag_(kUsualLag * robot.wheel_response_time) {}
 
 void DriveController::enter_run(const VelocityCommand& inbox, bool with_zero) noexcept {
   watch_.enter_run(inbox, with_zero);
@@ -95,17 +101,19 @@ void DriveController::tune(const DriveTuning& tuning) noexcept {
       decrease.steady = steady_before[i] - steady_after[i];
       decrease.inertial = before[i] - after[i] - decrease.steady;
     }
-    loops_[i].tune(wheel_loop_gains(tuning.wheels[i]), tuning.tracking_bandwidth, decrease);
+    loops_[i].tune(drives_close_loops() ? no_gains() : wheel_loop_gains(tuning.wheels[i]), tuning.tracking_bandwidth,
+                   decrease);
   }
 }
 
 bool DriveController::usable(const SensorFrame& sensors) const noexcept {
-  if (sensors.joint_count != joint_count_ || !joints_have(sensors, loops_.size(), kValidMotion)) return false;
+  const std::uint32_t needed = drives_close_loops() ? kValidKinematics : kValidMotion;
+  if (sensors.joint_count != joint_count_ || !joints_have(sensors, loops_.size(), needed)) return false;
   if (last_cycle_ && sensors.head.cycle <= *last_cycle_) return false;
   return std::all_of(sensors.joints.begin(), sensors.joints.begin() + static_cast<std::ptrdiff_t>(loops_.size()),
-                     [](const JointSample& sample) {
+                     [needed](const JointSample& sample) {
                        return std::isfinite(sample.position) && std::isfinite(sample.velocity) &&
-                              std::isfinite(sample.effort);
+                              (needed == kValidKinematics || std::isfinite(sample.effort));
                      });
 }
 
@@ -116,7 +124,9 @@ bool DriveController::track(const WheelValues& angle, const SensorFrame& sensors
   }
   bool good = true;
   for (std::size_t i = 0; i < loops_.size(); ++i) {
-    loops_[i].measure(sensors.joints[i], periods_, in_control_);
+    JointSample sample = sensors.joints[i];
+    if (drives_close_loops()) sample.effort = 0;
+    loops_[i].measure(sample, periods_, in_control_);
     // Very large finite numbers overflow the tracking loops, which would not recover by themselves.
     good = good && std::isfinite(loops_[i].velocity());
   }
@@ -188,7 +198,7 @@ PlanarTwist DriveController::measured_twist() const noexcept {
 }
 
 void DriveController::follow_measured(const SensorFrame& sensors) noexcept {
-  average_held_efforts(sensors);
+  if (!drives_close_loops()) average_held_efforts(sensors);
   const PlanarTwist twist = measured_twist();
   const double scale = kinematics_.wheel_speed_scale(twist);  // The plan stays within the joints' limits.
   // Strained treads tremble under a brake. A plan that began with that motion would strain them the other way.
@@ -203,7 +213,8 @@ void DriveController::follow_measured(const SensorFrame& sensors) noexcept {
   }
   for (std::size_t i = 0; i < loops_.size(); ++i) {
     loops_[i].reset_to_measured();
-    if (standstill_.standing()) loops_[i].preload_integrator(held_effort_[i] - ground_friction_.effort(i));
+    if (standstill_.standing() && !drives_close_loops())
+      loops_[i].preload_integrator(held_effort_[i] - ground_friction_.effort(i));
   }
 }
 
@@ -221,9 +232,21 @@ double DriveController::affordable_acceleration_scale(const PlanarTwist& limited
   return std::clamp(multiple * limiter_.used_acceleration_scale(), kMinAccelerationScale, 1.0);
 }
 
+double DriveController::followable_acceleration_scale(const WheelValues& velocity,
+                                                      const WheelValues& acceleration) const noexcept {
+  double scale = 1;
+  for (std::size_t i = 0; i < loops_.size(); ++i) {
+    if (acceleration[i] == 0) continue;
+    const double usual = usual_lag_ * std::abs(acceleration[i]) / limiter_.used_acceleration_scale();
+    const double lag = std::copysign(1.0, acceleration[i]) * (velocity[i] - loops_[i].velocity());
+    scale = std::min(scale, 2 - lag / usual);
+  }
+  return std::max(scale, kMinAccelerationScale);
+}
+
 WheelValues DriveController::planned_efforts(const PlanarTwist& twist, const PlanarTwist& acceleration) noexcept {
   WheelValues efforts = in_control_ ? feed_forward_.efforts(twist, acceleration) : WheelValues{};
-  if (!ground_friction_.scrubs()) return efforts;
+  if (!ground_friction_.scrubs() || drives_close_loops()) return efforts;
   if (in_control_) {
     learn_ground_friction();
     ground_friction_.move(twist, periods_ * period_);
@@ -283,10 +306,16 @@ void DriveController::drive(const PlanarTwist& requested, const SensorFrame& sen
   if (clamped) out.reasons |= kReasonSaturated;
   for (std::size_t i = 0; i < loops_.size(); ++i) {
     const double effort = loops_[i].step({velocity[i], acceleration[i], feed_forward[i]}, periods_, clamped);
-    out.joints[i] = effort_command(velocity[i], effort);
+    out.joints[i] = {.mode = mode_, .velocity = velocity[i], .effort = effort};
     if (loops_[i].saturated()) out.reasons |= kReasonSaturated;
   }
-  acceleration_scale_ = in_control_ ? affordable_acceleration_scale(limited, feed_forward) : 1.0;
+  if (!in_control_) {
+    acceleration_scale_ = 1;
+  } else if (drives_close_loops()) {
+    acceleration_scale_ = followable_acceleration_scale(velocity, acceleration);
+  } else {
+    acceleration_scale_ = affordable_acceleration_scale(limited, feed_forward);
+  }
   out.twist_limited = spatial(limited);
 }
 

@@ -42,6 +42,13 @@
 /// (not_stopping, runaway). After five times its ramp time the target is the requested speed. So the monitor also
 /// detects a robot that is blocked or pushed back (stall, wrong_direction).
 ///
+/// With robot.wheel_command `velocity` the drives close the wheel loops (JointMode::kDriveVelocity). The command holds
+/// the planned speed, and the feed-forward torque for drives that take one. The loops have no gains then: they measure
+/// the speeds, without the torque. Nothing is preloaded or learnt. The scale of the acceleration limits follows the lag
+/// λ_i = q̇*_i − q̇_i of the wheels, in the direction of the acceleration a_i that the plan has without the scale:
+///
+///   scale = 2 − max_i λ_i/(3 T |a_i|),   0.2 ≤ scale ≤ 1        T: robot.wheel_response_time
+///
 /// The wheel loops use the encoders only. A state frame of an older cycle or one marked invalid does not stop the
 /// drive. A cycle without any state frame does, because state frames wake the controller. The gate then holds the last
 /// command for up to 3 missed cycles and brakes. After skipped cycles dt = (k − k_previous)·period. After more than
@@ -109,6 +116,8 @@ class DriveController {
   PlanarTwist measured_twist() const noexcept;  ///< twist by the wheels' speeds
   void follow_measured(const SensorFrame& sensors) noexcept;
   double affordable_acceleration_scale(const PlanarTwist& limited, const WheelValues& feed_forward) const noexcept;
+  double followable_acceleration_scale(const WheelValues& velocity, const WheelValues& acceleration) const noexcept;
+  bool drives_close_loops() const noexcept { return mode_ == JointMode::kDriveVelocity; }
   WheelValues planned_efforts(const PlanarTwist& twist, const PlanarTwist& acceleration) noexcept;
   void search_ground_friction(const PlanarTwist& twist) noexcept;
   void learn_ground_friction() noexcept;
@@ -124,6 +133,8 @@ class DriveController {
   SpeedLimiter limiter_;
   Standstill standstill_;
   WheelLoops loops_;                         ///< one per wheel, with the index of its joint
+  JointMode mode_;                           ///< of the commands of driven wheels
+  double usual_lag_;                         ///< s, by which wheels with a speed loop of their own may follow a plan
   std::optional<std::uint64_t> last_cycle_;  ///< cycle of the last usable sample
   std::optional<WheelValues> last_angle_;    ///< rad, in the sample before; none: the loops restart
   WheelValues held_effort_{};                ///< N·m, mean since `held_cycles_`

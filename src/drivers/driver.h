@@ -59,7 +59,9 @@ class Driver {
 
   /// Returns true if the frames of `read` hold this input. The loop does not start with a robot kind that needs
   /// another one.
-  virtual bool measures(MachineInput input) const noexcept { return input == MachineInput::kJointMotion; }
+  virtual bool measures(MachineInput input) const noexcept {
+    return input == MachineInput::kJointMotion || input == MachineInput::kJointEffort;
+  }
 };
 
 /// The driver of a simulated machine. It waits when its node is late: time slips, cycles stay consecutive. Hardware

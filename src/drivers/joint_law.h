@@ -15,6 +15,9 @@ namespace robot_control {
 
 class JointLaw {
  public:
+  /// Returns true for the modes whose torque this law computes.
+  static bool computes(JointMode mode) noexcept { return mode != JointMode::kDriveVelocity; }
+
   /// `effort_limit` is in N·m or N and above 0.
   JointLaw(const Brake& brake, double effort_limit);
 

@@ -25,6 +25,7 @@ void check(const JointLimits& limits, std::size_t joint) {
   if (!(limits.effort >= 0) || std::isinf(limits.effort)) refuse("effort limit", joint, limits.effort, ">= 0");
   if (!(limits.effort_rate > 0)) refuse("effort rate", joint, limits.effort_rate, "> 0");
   if (!(limits.velocity > 0)) refuse("velocity limit", joint, limits.velocity, "> 0");
+  if (!(limits.acceleration > 0)) refuse("acceleration limit", joint, limits.acceleration, "> 0");
   if (!(limits.lower < limits.upper)) refuse("lower end stop", joint, limits.lower, "< the upper one");
   if (!(limits.soft_zone >= 0) || std::isinf(limits.soft_zone)) refuse("soft zone", joint, limits.soft_zone, ">= 0");
 }
@@ -214,7 +215,7 @@ bool Gate::command_is_valid(const CommandFrame& command) noexcept {
   std::uint64_t wrong = 0;
   for (std::size_t i = 0; i < limits_.size(); ++i) {
     if (!finite(command.joints[i])) wrong |= kGateNotFinite;
-    if (command.joints[i].mode > JointMode::kImpedance) wrong |= kGateUnknownMode;
+    if (static_cast<std::uint64_t>(command.joints[i].mode) >= kJointModes) wrong |= kGateUnknownMode;
   }
   report_.reasons |= wrong;
   if (wrong != 0) ++report_.refused;
@@ -244,7 +245,12 @@ void Gate::clamp(double elapsed) noexcept {
     const double step = limits.effort_rate * elapsed;
     report_.reasons |= clamp_rate(std::min(from, to) - step, std::max(from, to) + step, command);
     if (!has_position(i)) continue;
-    report_.reasons |= clamp_speed(limits, samples_[i].position, memory.speed.value(), command);
+    const double now = memory.speed.value();
+    const double slowest = memory.follows ? memory.velocity : std::min(0.0, now);
+    const double fastest = memory.follows ? memory.velocity : std::max(0.0, now);
+    const double change = limits.acceleration * elapsed;
+    report_.reasons |= clamp_acceleration(slowest - change, fastest + change, command);
+    report_.reasons |= clamp_speed(limits, samples_[i].position, now, command);
     report_.reasons |= clamp_position(limits, samples_[i].position, command);
   }
 }
@@ -264,6 +270,8 @@ void Gate::remember() noexcept {
   auto command = commands_.begin();
   for (JointMemory& memory : memory_) {
     memory.driven = !braked && !is_brake(*command);
+    memory.follows = memory.driven && command->mode == JointMode::kDriveVelocity;
+    memory.velocity = command->velocity;
     memory.effort = (command++)->effort;
   }
 }

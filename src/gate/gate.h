@@ -15,11 +15,12 @@
 ///   command  k − kCommandLife ≤ cycle ≤ k − 1; one of cycle k − 1 is on time, an older one is *held*
 ///   numbers  every field of every joint is finite, every mode is a JointMode, joint_count is that of the robot. The
 ///            position sample of a joint that is to move and has a speed limit or end stops is finite, too
-///   clamps   joint_clamp.h, in this order: |effort| ≤ limit; gains ≥ 0; |Δeffort| ≤ effort_rate·Δt; speed limit; end
-///            stops
+///   clamps   joint_clamp.h, in this order: |effort| ≤ limit; gains ≥ 0; |Δeffort| ≤ effort_rate·Δt; kDriveVelocity:
+///            |Δvelocity| ≤ acceleration·Δt; speed limit; end stops
 ///
 /// The torque of a brake is the driver's and may be large. When a brake ends, its torque is removed at once. The first
-/// effort command after it may therefore lie between the torque measured last and zero, ± effort_rate·Δt.
+/// effort command after it may therefore lie between the torque measured last and zero, ± effort_rate·Δt. The first
+/// kDriveVelocity command may lie between the measured speed and zero, ± acceleration·Δt.
 ///
 /// Tick 0 brakes. A brake orders the stop action of every joint (stop_action.h). A command that itself requests the
 /// brake on every joint is applied as JointCommand{}, whatever their stop actions are. GateReport counts: `refused`
@@ -74,8 +75,10 @@ class Gate {
   /// The state of one joint between two ticks.
   struct JointMemory {
     JointSpeed speed;
-    bool driven = false;  ///< a command moved it in the last tick
-    double effort = 0;    ///< the effort that it got then
+    bool driven = false;   ///< a command moved it in the last tick
+    double effort = 0;     ///< the effort that it got then
+    bool follows = false;  ///< it was driven with kDriveVelocity
+    double velocity = 0;   ///< the velocity that it got then
   };
 
   void read_samples(const GateInput& input) noexcept;

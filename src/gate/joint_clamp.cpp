@@ -8,8 +8,12 @@
 namespace robot_control {
 namespace {
 
-bool has_velocity(const JointCommand& command) noexcept {
+bool has_damping(const JointCommand& command) noexcept {
   return command.mode == JointMode::kVelocity || command.mode == JointMode::kImpedance;
+}
+
+bool has_velocity(const JointCommand& command) noexcept {
+  return has_damping(command) || command.mode == JointMode::kDriveVelocity;
 }
 
 /// True: `value` was more than `bound` in the direction ±1.
@@ -34,7 +38,7 @@ std::uint64_t clamp_effort(const JointLimits& limits, JointCommand& command) noe
 }
 
 std::uint64_t clamp_gains(JointCommand& command) noexcept {
-  bool clamped = has_velocity(command) && drop_if_negative(command.damping);
+  bool clamped = has_damping(command) && drop_if_negative(command.damping);
   if (command.mode == JointMode::kImpedance) clamped |= drop_if_negative(command.stiffness);
   return clamped ? std::uint64_t{kGateSpeedClamped} : 0;
 }
@@ -42,6 +46,13 @@ std::uint64_t clamp_gains(JointCommand& command) noexcept {
 std::uint64_t clamp_rate(double low, double high, JointCommand& command) noexcept {
   if (command.effort >= low && command.effort <= high) return 0;
   command.effort = command.effort < low ? low : high;
+  return kGateRateClamped;
+}
+
+std::uint64_t clamp_acceleration(double low, double high, JointCommand& command) noexcept {
+  if (command.mode != JointMode::kDriveVelocity) return 0;
+  if (command.velocity >= low && command.velocity <= high) return 0;
+  command.velocity = command.velocity < low ? low : high;
   return kGateRateClamped;
 }
 

@@ -23,14 +23,17 @@ std::uint64_t clamp_effort(const JointLimits& limits, JointCommand& command) noe
 /// low ≤ e ≤ high.
 std::uint64_t clamp_rate(double low, double high, JointCommand& command) noexcept;
 
+/// kDriveVelocity: low ≤ velocity ≤ high.
+std::uint64_t clamp_acceleration(double low, double high, JointCommand& command) noexcept;
+
 /// Towards more speed, with x = |v|/limits.velocity and taper = (1 − x)/(1 − kTaperStart) within 0 … 1:
 ///   e ≤ taper·limits.effort        kImpedance: stiffness · taper while its spring pulls that way
-///   kVelocity, kImpedance: |velocity| ≤ limits.velocity
+///   kVelocity, kImpedance, kDriveVelocity: |velocity| ≤ limits.velocity
 /// Against the motion everything is free.
 std::uint64_t clamp_speed(const JointLimits& limits, double position, double speed, JointCommand& command) noexcept;
 
 /// Towards an end stop, with d the way left to it and taper = d/soft_zone within 0 … 1:
-///   e ≤ taper·limits.effort        kVelocity, kImpedance: velocity ≤ taper·limits.velocity (unknown: of itself)
+///   e ≤ taper·limits.effort        with a velocity: velocity ≤ taper·limits.velocity (unknown: of itself)
 ///   kImpedance: lower ≤ position ≤ upper
 ///   d ≤ 0: effort or velocity towards it becomes the brake of this joint
 /// Away from it everything is free.

@@ -9,7 +9,8 @@
 namespace robot_control {
 
 enum class MachineInput : std::uint8_t {
-  kJointMotion,  ///< position, velocity and effort of each joint (kValidMotion)
+  kJointMotion,  ///< position and velocity of each joint (kValidKinematics)
+  kJointEffort,  ///< effort of each joint (kValidEffort)
   kImu,          ///< angular velocity and linear acceleration
   kContacts,     ///< forces of contacts
 };

@@ -10,6 +10,7 @@ std::vector<JointLimits> joint_limits(const MachineModel& robot) {
   for (const JointModel& joint : robot.joints) {
     JointLimits limits{.effort = joint.effort_limit};
     if (joint.effort_rate > 0) limits.effort_rate = joint.effort_rate;
+    if (joint.acceleration_limit > 0) limits.acceleration = joint.acceleration_limit;
     if (joint.velocity_limit > 0) limits.velocity = joint.velocity_limit;
     if (joint.range) {
       limits.lower = joint.range->lower;
@@ -52,12 +53,15 @@ struct NeedWords {
 // In the order of JointMode and of MachineInput.
 constexpr NeedWords kModeWords[] = {
     {"to brake", "let the driver brake by a law of its own (gate/brake_law.h)"},
-    {"commands of torques", "use drives that take torques"},
+    {"commands of torques", "use drives that take torques, or set robot.wheel_command to velocity"},
     {"commands of velocities", "let the driver compute their torques (drivers/joint_law.h)"},
     {"commands of impedances", "let the driver compute their torques (drivers/joint_law.h)"},
+    {"speeds that the drives control themselves (robot.wheel_command: velocity)",
+     "use drives with a velocity mode, or set robot.wheel_command to torque"},
 };
 constexpr NeedWords kInputWords[] = {
-    {"position, velocity and effort of each joint", "use drives that measure them"},
+    {"position and velocity of each joint", "use drives that measure them"},
+    {"effort of each joint", "use drives that measure it, or set robot.wheel_command to velocity"},
     {"an IMU", "set robot.imu to topic and start the IMU's node, or use a driver with an IMU"},
     {"forces of contacts", "use a driver with contact sensors"},
 };

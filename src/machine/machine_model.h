@@ -41,6 +41,7 @@ struct JointModel {
   std::optional<JointRange> range = std::nullopt;  ///< end stops; none: it turns without end
   bool prismatic = false;                          ///< true: m, m/s, N; false: rad, rad/s, N·m
   double effort_rate = 0;                          ///< N·m/s or N/s; 0: unlimited
+  double acceleration_limit = 0;                   ///< rad/s² or m/s², of a commanded velocity; 0: unlimited
   double rotor_inertia = 0;  ///< kg·m² or kg, of a rotor times its gear ratio squared, which the URDF leaves out
   double rest_position = 0;  ///< rad or m, in which a simulator sets the machine down
 };

@@ -36,11 +36,20 @@ std::unique_ptr<MonitorLaw> DifferentialDrive::make_monitor() const {
 }
 
 MachineNeeds DifferentialDrive::needs() const {
-  return {.modes = {JointMode::kBrake, JointMode::kEffort}, .inputs = {MachineInput::kJointMotion}};
+  if (machine_.wheel_command == WheelCommand::kVelocity)
+    return {.modes = {JointMode::kBrake, JointMode::kDriveVelocity}, .inputs = {MachineInput::kJointMotion}};
+  return {.modes = {JointMode::kBrake, JointMode::kEffort},
+          .inputs = {MachineInput::kJointMotion, MachineInput::kJointEffort}};
 }
 
 std::vector<std::string> DifferentialDrive::rate_notes(Role role) const {
-  return wheeled_rate_notes(parameters_, machine_, role);
+  std::vector<std::string> notes = wheeled_rate_notes(parameters_, machine_, role);
+  if (role == Role::kMonitor && machine_.wheel_command == WheelCommand::kVelocity) {
+    notes.emplace_back(
+        "robot.wheel_command is velocity: where drives measure no torque, wheel_effort, power and torque_oscillation "
+        "are blind, and stall judges speeds alone");
+  }
+  return notes;
 }
 
 std::vector<Brake> DifferentialDrive::brakes() const {

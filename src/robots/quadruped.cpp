@@ -72,7 +72,7 @@ std::unique_ptr<MonitorLaw> Quadruped::make_monitor() const {
 
 MachineNeeds Quadruped::needs() const {
   return {.modes = {JointMode::kBrake, JointMode::kImpedance},
-          .inputs = {MachineInput::kJointMotion, MachineInput::kImu}};
+          .inputs = {MachineInput::kJointMotion, MachineInput::kJointEffort, MachineInput::kImu}};
 }
 
 GateParameters Quadruped::gate() const {

@@ -75,7 +75,7 @@ class Robot {
   /// Returns the modes and inputs without which the laws of this kind do not work on any machine.
   virtual MachineNeeds needs() const = 0;
 
-  /// Returns what the rate of the loop costs with this machine, in sentences of the node that plays `role`.
+  /// Returns what the rate of the loop and the drives of this machine cost, in sentences of the node that plays `role`.
   virtual std::vector<std::string> rate_notes(Role /*role*/) const { return {}; }
 
   /// Returns the brakes of the driven joints, which come first, for drives that are given a torque once in each period.

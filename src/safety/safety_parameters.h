@@ -14,6 +14,7 @@
 
 #include "machine/wheeled/drive_train.h"
 #include "parameters/block.h"
+#include "signals/joint.h"
 
 namespace robot_control {
 
@@ -68,6 +69,9 @@ struct SafetyParameters {
   /// N·m/rad, of each wheel: RMS of the torque that the derived gains produce from encoder quantisation, divided by the
   /// size of a count. Not a user parameter: it follows from robot and rate (robots/wheeled/safety_limits.h).
   std::array<double, kMaxWheels> count_ripple{};
+
+  /// JointValidity bits that a driven joint must report. Not a user parameter: velocity drives need not measure torque.
+  std::uint32_t joint_numbers = kValidMotion;
 };
 
 /// s. A stop takes the sensors of one period, the permit of the next and the torque of the one after.

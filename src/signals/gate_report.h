@@ -32,7 +32,7 @@ enum GateReason : std::uint64_t {
   kGateControllerBrake = 1u << 12,  ///< The command itself requests the brake of every joint.
   kGateUnknownMode = 1u << 13,      ///< A mode outside JointMode, or a permit action outside PermitAction.
   kGateRampTooLong = 1u << 14,      ///< Ramp permits have lasted longer than any ramp may.
-  kGateRateClamped = 1u << 15,      ///< The effort changed faster than the joint's effort rate.
+  kGateRateClamped = 1u << 15,      ///< The effort, or the velocity for a drive's own loop, changed too fast.
   kGateSpeedClamped = 1u << 16,     ///< Effort towards more speed, or a target speed, near or above the speed limit.
   kGatePositionClamped = 1u << 17,  ///< The joint is near or at an end stop.
   kGateBadSensors = 1u << 18,       ///< Joint samples that the clamps need are missing or not finite.

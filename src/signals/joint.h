@@ -17,14 +17,17 @@ enum JointValidity : std::uint32_t {
   kValidTemperature = 1u << 3,
 };
 
+/// The bits of a drive with an encoder.
+inline constexpr std::uint32_t kValidKinematics = kValidPosition | kValidVelocity;
+
 /// The bits of a drive with an encoder and a measurement of its torque.
 inline constexpr std::uint32_t kValidMotion = kValidPosition | kValidVelocity | kValidEffort;
 
 /// A drive that sends no sample in a cycle leaves the last one in force, and its age grows.
 struct JointSample {
-  double position = 0;      ///< rad or m, at t_k − age
-  double velocity = 0;      ///< rad/s or m/s, at t_k − age
-  double effort = 0;        ///< N·m or N, the mean actually applied over one period before t_k − age
+  double position = 0;  ///< rad or m, at t_k − age
+  double velocity = 0;  ///< rad/s or m/s, at t_k − age
+  double effort = 0;  ///< N·m or N, the mean actually applied over one period before t_k − age; NaN: never measured
   double temperature = 0;   ///< °C
   std::int64_t age_ns = 0;  ///< time from the drive's sample to t_k
   std::uint32_t valid = 0;  ///< JointValidity bits
@@ -51,7 +54,13 @@ enum class JointMode : std::uint64_t {
   kEffort = 1,     ///< τ = effort
   kVelocity = 2,   ///< τ = effort + damping · (velocity − q̇)
   kImpedance = 3,  ///< τ = effort + stiffness · (position − q) + damping · (velocity − q̇)
+
+  /// The drive itself closes the loop of its speed, with its own gains: q̇ → velocity. A drive that takes a torque as
+  /// feed-forward adds `effort`, any other one ignores it.
+  kDriveVelocity = 4,
 };
+
+inline constexpr std::size_t kJointModes = 5;
 
 /// Gate and driver clamp the resulting effort to the joint's limit. Fields that a mode does not use are also filled in:
 /// in kEffort, `velocity` is the wheel loop's target, for display.

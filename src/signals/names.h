@@ -77,7 +77,7 @@ inline constexpr auto kGateReasonNames = std::to_array<BitName>({
      "look for two builds on one bus"},
     {kGateRampTooLong, "ramp_too_long", "ramp permits have lasted longer than any ramp may",
      "read the cause in safety_status"},
-    {kGateRateClamped, "rate_clamped", "an effort changed faster than its joint's effort rate", ""},
+    {kGateRateClamped, "rate_clamped", "an effort, or a drive's velocity, changed faster than its joint can", ""},
     {kGateSpeedClamped, "speed_clamped", "a joint is near or above its speed limit", ""},
     {kGatePositionClamped, "position_clamped", "a joint is near or at an end stop", ""},
     {kGateBadSensors, "bad_sensors", "joint samples are missing or not finite", "look at the driver's faults"},
@@ -230,7 +230,8 @@ constexpr std::string_view name_of(LegPhase phase) noexcept {
 }
 
 constexpr std::string_view name_of(JointMode mode) noexcept {
-  constexpr std::array<std::string_view, 4> kNames{"brake", "effort", "velocity", "impedance"};
+  constexpr std::array<std::string_view, kJointModes> kNames{"brake", "effort", "velocity", "impedance",
+                                                             "drive_velocity"};
   const auto index = static_cast<std::size_t>(mode);
   return index < kNames.size() ? kNames[index] : "unknown";
 }

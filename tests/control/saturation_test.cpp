@@ -75,6 +75,18 @@ TEST(TorqueSaturation, UsesWhatTorqueThereIs) {
   EXPECT_TRUE(bench.command.reasons & kReasonSaturated);
 }
 
+TEST(TorqueSaturation, TheAffordedAccelerationStaysInForceOnceTheTorqueIsWithinItsLimit) {
+  ControlBench bench(with_effort_limit(kWeak), patient());
+  bench.plant.counts = 4096;  // one count moves the torque across its limit and back
+  bench.run(0.3);
+  bench.send(1, 0);
+  bench.run(0.2);
+  for (int k = 0; k < 1000; ++k) {
+    bench.step();
+    ASSERT_TRUE(bench.command.reasons & kReasonSaturated) << k << " ms";
+  }
+}
+
 TEST(TorqueSaturation, NeverLetsThePlanRunAway) {
   DriveTrain loaded = with_effort_limit(kWeak);
   loaded.mass *= 2;

@@ -91,7 +91,7 @@ class GateEnumeration : public GateFixture {
     command_.head.run = wanted.run;
     command_.head.cycle = from_now(-wanted.age);
     if (wanted.content == Content::kNotFinite) command_.joints[1].stiffness = kNaN;
-    if (wanted.content == Content::kUnknownMode) command_.joints[1].mode = static_cast<JointMode>(4);
+    if (wanted.content == Content::kUnknownMode) command_.joints[1].mode = static_cast<JointMode>(kJointModes);
     if (wanted.content == Content::kOneJointMore) command_.joint_count = 3;
   }
 

@@ -20,6 +20,42 @@ TEST_F(GateFixture, AJointWithoutLimitsAndWithoutAPositionGetsNoDampingBelowZero
   EXPECT_EQ(joints_[1].damping, 0);
 }
 
+// Velocities for a drive's own loop.
+
+class GateDriveVelocity : public GateFixture {
+ protected:
+  GateDriveVelocity() : GateFixture({.effort = kLimit, .acceleration = 100}, {}) {
+    command_.joints.fill({});
+    request(0);
+  }
+  void request(double velocity) { command_.joints[0] = {.mode = JointMode::kDriveVelocity, .velocity = velocity}; }
+};
+
+TEST_F(GateDriveVelocity, ChangesByTheAccelerationOfTheJointAtMost) {
+  next();
+  EXPECT_EQ(verdict(), GateVerdict::kPassed);
+  request(5);
+  next();
+  EXPECT_EQ(verdict(), GateVerdict::kClamped);
+  const double first = joints_[0].velocity;
+  next();
+  EXPECT_NEAR(joints_[0].velocity, 2 * first, 1e-12);
+  EXPECT_LT(first, 5);
+}
+
+TEST_F(GateDriveVelocity, BeginsAfterABrakeBetweenTheMeasuredSpeedAndZero) {
+  next();
+  permit_.action = PermitAction::kBrake;
+  next();
+  EXPECT_EQ(verdict(), GateVerdict::kBrake);
+  permit_.action = PermitAction::kDrive;
+  request(-5);
+  next();
+  const double first = joints_[0].velocity;
+  EXPECT_LT(first, 0);
+  EXPECT_GT(first, -5);
+}
+
 // Ramps.
 
 class GateRamp : public GateFixture {

@@ -263,7 +263,7 @@ TEST_F(GateTest, BrakesOnAnotherNumberOfJoints) {
 }
 
 TEST_F(GateTest, BrakesOnAnUnknownMode) {
-  command_.joints[1].mode = static_cast<JointMode>(4);
+  command_.joints[1].mode = static_cast<JointMode>(kJointModes);
   expect_brake(kGateUnknownMode);
 }
 

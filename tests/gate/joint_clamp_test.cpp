@@ -226,6 +226,21 @@ TEST_P(PositionClamp, AWheelHasNoEnd) {
 
 INSTANTIATE_TEST_SUITE_P(BothEnds, PositionClamp, testing::Values(1.0, -1.0));
 
+TEST(AccelerationClamp, BringsTheVelocityOfADrivesOwnLoopToTheNearerEnd) {
+  JointCommand command{.mode = JointMode::kDriveVelocity, .velocity = 3};
+  EXPECT_EQ(clamp_acceleration(-1, 2, command), std::uint64_t{kGateRateClamped});
+  EXPECT_EQ(command.velocity, 2);
+  EXPECT_EQ(clamp_acceleration(-1, 2, command), 0u);
+  JointCommand torque{.mode = JointMode::kEffort, .velocity = 3};
+  EXPECT_EQ(clamp_acceleration(-1, 2, torque), 0u);
+}
+
+TEST(SpeedClamp, BoundsTheVelocityOfADrivesOwnLoop) {
+  JointCommand command{.mode = JointMode::kDriveVelocity, .velocity = -20};
+  EXPECT_EQ(clamp_speed({.effort = 4, .velocity = 10}, 0, 0, command), std::uint64_t{kGateSpeedClamped});
+  EXPECT_EQ(command.velocity, -10);
+}
+
 TEST(RateClamp, BringsTheEffortToTheNearerEnd) {
   JointCommand command{.mode = JointMode::kEffort, .effort = 3};
   EXPECT_EQ(clamp_rate(-1, 2, command), std::uint64_t{kGateRateClamped});

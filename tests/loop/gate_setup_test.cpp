@@ -122,6 +122,16 @@ TEST(RequireNeeds, NamesEverythingThatTheDriverLacksWithTheRemedy) {
   }
 }
 
+TEST(RequireNeeds, DrivesWithoutAModeForSpeedsRefuseARobotThatCommandsThem) {
+  const RunawayMachine machine;
+  try {
+    require_needs(machine, {.modes = {JointMode::kBrake, JointMode::kDriveVelocity}});
+    ADD_FAILURE() << "accepted";
+  } catch (const DriverError& error) {
+    EXPECT_NE(std::string(error.what()).find("set robot.wheel_command to torque"), std::string::npos) << error.what();
+  }
+}
+
 TEST(DriverCycleAndGate, AStopActionThatTheDriverDoesNotImplementIsRefusedAtStart) {
   RunawayMachine machine;
   TestChannel<SensorFrame> sensors;

@@ -170,6 +170,15 @@ TEST(DriveTrain, TheBodiesAreThoseOfTheFile) {
   EXPECT_EQ(robot.bodies->moving_joints, (std::vector<std::string>{"left_wheel_joint", "right_wheel_joint"}));
 }
 
+TEST(ReadDriveTrain, TheHashSaysWhatTheWheelsTake) {
+  DriveTrainParameters velocity;
+  velocity.wheel_command = WheelCommand::kVelocity;
+  const std::uint64_t hash = read_drive_train(diffbot_urdf(), velocity).hash;
+  EXPECT_NE(read_drive_train(diffbot_urdf(), {}).hash, hash);
+  velocity.wheel_response_time *= 2;
+  EXPECT_NE(read_drive_train(diffbot_urdf(), velocity).hash, hash);
+}
+
 TEST(DriveTrain, EqualHashMeansEqualRobot) {
   const std::uint64_t hash = read_drive_train(diffbot_urdf(), {}).hash;
   EXPECT_EQ(read_drive_train(diffbot_urdf(), {}).hash, hash);

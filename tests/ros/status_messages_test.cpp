@@ -54,6 +54,21 @@ TEST_F(SafetyStatusTest, SaysThatAHealthyRobotMayDrive) {
   EXPECT_EQ(status.run, 7u);
 }
 
+TEST_F(SafetyStatusTest, NamesTheConditionsThatAreBlindWithoutATorque) {
+  SensorFrame sensors;
+  sensors.joint_count = 2;
+  const auto warnings = [&](std::uint32_t valid) {
+    for (JointSample& joint : sensors.joints) joint.valid = valid;
+    msg::SafetyStatus status = message();
+    warn_of_blind_conditions(sensors, status);
+    EXPECT_EQ(status.warning_sentences.size(), status.warnings.size());
+    return status.warnings;
+  };
+  EXPECT_THAT(warnings(kValidKinematics), testing::ElementsAre("torque_not_measured"));
+  EXPECT_THAT(warnings(kValidMotion), IsEmpty());
+  EXPECT_THAT(warnings(0), IsEmpty()) << "before the first sample";
+}
+
 TEST_F(SafetyStatusTest, DatesTheStateByItsFirstCycle) {
   EXPECT_DOUBLE_EQ(message().since.toSec(), 0.5);
   EXPECT_DOUBLE_EQ(message().header.stamp.toSec(), 1.5);

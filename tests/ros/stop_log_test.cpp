@@ -183,6 +183,16 @@ TEST_F(StopLogTest, SaysThatTheWayIsNotFree) {
   EXPECT_EQ(report(), "");
 }
 
+TEST_F(StopLogTest, AWarningOfTheMachineDoesNotHideThatTheWayIsNotFree) {
+  msg::SafetyStatus status = message();
+  status.warnings = {"torque_not_measured"};
+  status.warning_sentences = {"drives measure no torque"};
+  status.speed_limit = 0;
+  const std::string said = report(status);
+  EXPECT_THAT(said, HasSubstr("W warning: torque_not_measured: drives measure no torque\n"));
+  EXPECT_THAT(said, HasSubstr("clearance leaves no speed"));
+}
+
 TEST_F(StopLogTest, IsSilentWhileAHealthyRobotDrives) {
   for (int i = 0; i < 1000; ++i) {
     permit_.head.cycle += 100;

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -211,6 +212,57 @@ INSTANTIATE_TEST_SUITE_P(Every, Conditions,
                          testing::Combine(testing::Range<std::size_t>(0, rows().size()),
                                           testing::Values(Reaction::kOff, Reaction::kWarn, Reaction::kSlow,
                                                           Reaction::kRamp, Reaction::kBrake)),
+                         name_of_row);
+
+/// Drives that take speeds and measure no torque (robot.wheel_command: velocity).
+class ConditionsWithoutTorque : public Conditions {
+ protected:
+  /// docs/safety.md names them.
+  static constexpr std::uint64_t kBlind = kCauseWheelEffort | kCausePower | kCauseTorqueOscillation;
+
+  ConditionsWithoutTorque() {
+    SafetyParameters chosen = only(parameters(), row_, reaction_);
+    chosen.joint_numbers = kValidKinematics;
+    monitor_ = SafetyMonitor(chosen, robot(), kPeriod);
+    measure_no_torque();
+    ask_for(0);
+    turn_wheels(0);
+    new_run();
+    steps(kStart);
+    drive();
+    steps(100);
+  }
+
+  void measure_no_torque() {
+    for (JointSample& joint : sensors_.joints) {
+      joint.effort = std::numeric_limits<double>::quiet_NaN();
+      joint.valid &= ~std::uint32_t{kValidEffort};
+    }
+  }
+};
+
+TEST_P(ConditionsWithoutTorque, ReactInTheSameTimeOrAreNamedAsBlind) {
+  ASSERT_EQ(permit_.action, PermitAction::kDrive);
+  ASSERT_EQ(permit_.causes, 0u);
+  const std::uint64_t patience = latest() + 200;
+  Robot broken{sensors_, command_, speed_, noisy_gyro_};
+  for (JointCommand& joint : command_.joints) joint.velocity *= row_.commanded_to_stand ? 0 : 1;
+  std::uint64_t k = 0;
+  for (; k < patience && permit_.causes == 0; ++k) {
+    broken.t = static_cast<double>(k) * kPeriod;
+    row_.onset(broken);
+    measure_no_torque();
+    step();
+  }
+  EXPECT_EQ(permit_.causes, (row_.cause & kBlind) != 0 ? 0u : std::uint64_t{row_.cause});
+  if (permit_.causes != 0) {
+    EXPECT_LE(k, latest() + 1);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, ConditionsWithoutTorque,
+                         testing::Combine(testing::Range<std::size_t>(0, rows().size()),
+                                          testing::Values(Reaction::kBrake)),
                          name_of_row);
 
 // The reaction decides whether a reset is needed; the messages add it.

@@ -78,6 +78,25 @@ TEST_F(SingleJointTest, ASampleWithoutOneOfTheNumbersThatTheControllerNeedsIsMis
   }
 }
 
+TEST(SensorPresence, ADriveOfSpeedsNeedsNoTorque) {
+  SafetyParameters parameters;
+  parameters.joint_numbers = kValidKinematics;
+  SensorPresence presence(parameters, kJoints, kCycle);
+  SensorFrame sensors;
+  sensors.joint_count = kJoints;
+  ActiveCauses out;
+  const auto lost = [&](std::uint32_t valid) {
+    set_joints_valid(sensors, valid);
+    for (std::uint64_t i = 0; i < 2 * kPersistence; ++i) {
+      out.clear();
+      presence.step(sensors, 1, out);
+    }
+    return (out.stopping() & kCauseEncodersLost) != 0;
+  };
+  EXPECT_FALSE(lost(kValidKinematics));
+  EXPECT_TRUE(lost(kValidPosition));
+}
+
 TEST_F(SingleJointTest, ASampleThatGrowsOldIsNamedInTheSameCycle) {
   const auto freeze = [&](std::uint64_t cycle) {
     sensors_.joints[2].age_ns = static_cast<std::int64_t>(cycle) * 1000000;

@@ -44,10 +44,8 @@ class FreeWheels final : public Simulator {
   void stop() noexcept override { stopped_ = true; }
   void truth(TruthFrame&) noexcept override {}
   void inject(const InjectedFaults&) noexcept override {}
-  bool accepts(JointMode) const noexcept override { return true; }
-  bool measures(MachineInput input) const noexcept override {
-    return input == MachineInput::kJointMotion || input == MachineInput::kImu;
-  }
+  bool accepts(JointMode mode) const noexcept override { return JointLaw::computes(mode); }
+  bool measures(MachineInput input) const noexcept override { return input != MachineInput::kContacts; }
 
  private:
   double inertia(std::size_t i) const noexcept {

@@ -43,7 +43,7 @@ class CanDriver final : public Driver {
   void stop() noexcept override;
 
   /// The drives take torques, so they follow every mode.
-  bool accepts(JointMode) const noexcept override { return true; }
+  bool accepts(JointMode mode) const noexcept override { return JointLaw::computes(mode); }
 
   /// Returns the bus with its load, and what each joint does on silence.
   std::string description() const override;

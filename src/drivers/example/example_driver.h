@@ -45,7 +45,7 @@ class ExampleDriver final : public Driver {
   std::string description() const override { return "a motor board that brakes by itself when it hears nothing"; }
   std::string warning() const override;
   /// The motors take torques, so they follow every mode.
-  bool accepts(JointMode) const noexcept override { return true; }
+  bool accepts(JointMode mode) const noexcept override { return JointLaw::computes(mode); }
 
  private:
   void begin() noexcept;

@@ -8,6 +8,7 @@
 
 #include "drivers/mujoco/contact/rest.h"
 #include "drivers/mujoco/motors/brake_limits.h"
+#include "drivers/mujoco/motors/velocity_drives.h"
 #include "drivers/mujoco/mujoco_errors.h"
 #include "machine/description/wording.h"
 #include "machine/suspicions.h"
@@ -59,6 +60,7 @@ MujocoPlant::MujocoPlant(const MachineModel& robot, const MujocoPlantParameters&
                          parameters.gear_ratio);
     motor_faults_.add(joint, inertia_of(model_.robot, joint, parameters), model.effort_limit, parameters.seed, step);
   }
+  drives_ = velocity_drives(model_.robot, parameters, step);
   brakes_.resize(robot.joints.size());
   check_battery(parameters.battery_voltage, parameters.battery_resistance);
 }
@@ -73,6 +75,7 @@ void MujocoPlant::start() {
   wheels_.reset();
   bodies_.reset();
   for (JointLaw& law : laws_) law.reset();
+  for (VelocityDrive& drive : drives_) drive.reset();
   state_ = DriverState::kStarting;
   faults_ = 0;
   fault_message_ = {};
@@ -270,7 +273,9 @@ bool MujocoPlant::advance(std::span<const JointCommand> commands) noexcept {
     const int dof = model_.joint_velocity[joint];
     const double position = data_->qpos[model_.joint_position[joint]];
     const double velocity = data_->qvel[dof];
-    const double wanted = motors_[drive].limited(laws_[drive].step(commands[joint], position, velocity), velocity);
+    const double asked = joint < drives_.size() ? drives_[joint].step(commands[joint], velocity)
+                                                : laws_[drive].step(commands[joint], position, velocity);
+    const double wanted = motors_[drive].limited(asked, velocity);
     const double effort = motor_faults_.effort(drive, commands[joint].mode, wanted, position, velocity);
     data_->qfrc_applied[dof] = effort;
     effort_sum_[joint] += effort;
@@ -335,6 +340,10 @@ void MujocoPlant::collect() noexcept {
 void MujocoPlant::measure() noexcept {
   measured_ = exact_;
   sensor_errors_.step(measured_);
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    measured_.joints[i].effort = std::numeric_limits<double>::quiet_NaN();
+    measured_.joints[i].valid &= ~std::uint32_t{kValidEffort};
+  }
   read_ = false;
 }
 

@@ -28,6 +28,8 @@
 /// (T = 4 ms), but omits the rotation of the contact's frame (J̇q̇). In a curve at v, ω the robot therefore moves
 /// outwards with v ω T/2: 0.2 mm/s at 0.5 m/s and 0.2 rad/s.
 ///
+/// With drive `velocity` each drive wheel has the law of velocity_drive.h, and its torque is not measured.
+///
 /// A command passes actuator_delay, injected faults (motor_faults.h) and the motor's torque–speed line (motor.h). The
 /// state passes sensor errors and delay (sensor_errors.h) and injected faults (sensor_faults.h) before `read`. Truth is
 /// the state itself. `start` removes all injected faults.
@@ -49,6 +51,7 @@
 #include "drivers/mujoco/model/mujoco_model.h"
 #include "drivers/mujoco/motors/motor.h"
 #include "drivers/mujoco/motors/motor_faults.h"
+#include "drivers/mujoco/motors/velocity_drive.h"
 #include "drivers/mujoco/mujoco_plant_parameters.h"
 #include "drivers/mujoco/sensors/laser.h"
 #include "drivers/mujoco/sensors/sensor_errors.h"
@@ -67,8 +70,13 @@ class MujocoPlant final : public Simulator {
   void read(SensorFrame& sensors) noexcept override;
   void write(std::span<const JointCommand> commands) noexcept override;
   void stop() noexcept override;
-  bool accepts(JointMode) const noexcept override { return true; }
-  bool measures(MachineInput) const noexcept override { return true; }
+  bool accepts(JointMode mode) const noexcept override {
+    const bool own_loops = parameters_.drive == SimulatedDrive::kVelocity;
+    return own_loops ? mode == JointMode::kBrake || mode == JointMode::kDriveVelocity : JointLaw::computes(mode);
+  }
+  bool measures(MachineInput input) const noexcept override {
+    return input != MachineInput::kJointEffort || parameters_.drive == SimulatedDrive::kTorque;
+  }
   void truth(TruthFrame& truth) noexcept override;
   void inject(const InjectedFaults& faults) noexcept override;
   std::uint64_t scan_cycles() const noexcept override;
@@ -106,8 +114,9 @@ class MujocoPlant final : public Simulator {
   WheelContacts wheels_;
   BodyContacts bodies_;  ///< of a machine without wheels
   MujocoPlantParameters parameters_;
-  std::vector<JointLaw> laws_;  ///< per joint of MujocoModel::actuated
-  std::vector<Motor> motors_;   ///< likewise
+  std::vector<JointLaw> laws_;         ///< per joint of MujocoModel::actuated
+  std::vector<VelocityDrive> drives_;  ///< of the drive wheels, the first joints; empty: they have a JointLaw
+  std::vector<Motor> motors_;          ///< per joint of MujocoModel::actuated
   MotorFaults motor_faults_;
   SpecificForce specific_force_;
   SensorErrors sensor_errors_;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "drivers/drive_brake.h"
 #include "drivers/mujoco/sensors/errors.h"
 #include "drivers/mujoco/sensors/laser_parameters.h"
 #include "parameters/block.h"
@@ -19,6 +20,15 @@ enum class TyreModel {
 
 inline std::vector<Word> words_of(TyreModel) {
   return {{"brush", TyreModel::kBrush}, {"native", TyreModel::kNative}};
+}
+
+enum class SimulatedDrive {
+  kTorque,    ///< joint_law.h
+  kVelocity,  ///< motors/velocity_drive.h
+};
+
+inline std::vector<Word> words_of(SimulatedDrive) {
+  return {{"torque", SimulatedDrive::kTorque}, {"velocity", SimulatedDrive::kVelocity}};
 }
 
 struct MujocoPlantParameters : Errors {
@@ -55,6 +65,14 @@ struct MujocoPlantParameters : Errors {
   double motor_friction = 0;         ///< N·m, Coulomb
   double motor_damping = 0;          ///< N·m·s/rad
   std::uint64_t actuator_delay = 0;  ///< cycles in addition to the one of the bus
+
+  // These members describe the drives of the wheels; those but the first one hold for drive: velocity.
+  SimulatedDrive drive = SimulatedDrive::kTorque;
+  double drive_gain = 1;           ///< times the gains of its speed loop
+  bool drive_feed_forward = true;  ///< it adds the torque of the command
+  double drive_dead_band = 0;      ///< rad/s, slower commands are 0
+  double drive_resolution = 0;     ///< rad/s, of the commands that it takes; 0: exact
+  DriveBrake drive_brake = DriveBrake::kHold;
 
   // These members describe the sensors.
   bool contact_sensors = false;  ///< true: forces at wheels and casters, or feet (SensorFrame::contacts)
@@ -99,6 +117,12 @@ inline Keys keys(MujocoPlantParameters& plant) {
           {"motor_friction", &plant.motor_friction, "N·m", 0, 1000},
           {"motor_damping", &plant.motor_damping, "N·m·s/rad", 0, 1000},
           {"actuator_delay", &plant.actuator_delay, "cycles", 0, 100},
+          {"drive", &plant.drive},
+          {"drive_gain", &plant.drive_gain, {}, 0.1, 10},
+          {"drive_feed_forward", &plant.drive_feed_forward},
+          {"drive_dead_band", &plant.drive_dead_band, "rad/s", 0, 10},
+          {"drive_resolution", &plant.drive_resolution, "rad/s", 0, 1, kZeroIsOff},
+          {"drive_brake", &plant.drive_brake},
       },
       keys(static_cast<Errors&>(plant)),
       {

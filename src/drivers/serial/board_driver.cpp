@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <sstream>
 
@@ -211,16 +212,17 @@ void BoardDriver::read(SensorFrame& sensors) noexcept {
   const std::int64_t age_ns = now_ns_ - sample_ns_;
   const auto age =
       static_cast<double>(std::clamp<std::int64_t>(age_ns, 0, static_cast<std::int64_t>(max_silence) * period_ns_));
-  const std::uint32_t motion = kValidPosition | kValidVelocity;
-  const std::uint32_t effort = (sensors_.valid & BOARD_HAS_EFFORT) != 0 ? std::uint32_t{kValidEffort} : 0U;
+  const bool has_effort = (sensors_.valid & BOARD_HAS_EFFORT) != 0;
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
     const Wheel& wheel = wheels_[i];
     sensors.joints[i] = {.position = wheel.position + wheel.velocity * 1.0e-9 * age,
                          .velocity = wheel.velocity,
-                         .effort = wheel.effort,
+                         .effort = has_effort ? wheel.effort : std::numeric_limits<double>::quiet_NaN(),
                          .temperature = 0.1 * sensors_.temperature_dc,
                          .age_ns = age_ns,
-                         .valid = running ? motion | effort : 0U,
+                         .valid = !running     ? 0U
+                                  : has_effort ? std::uint32_t{kValidMotion}
+                                               : kValidKinematics,
                          .fault = wheel.fault};
     if ((sensors_.valid & BOARD_HAS_TEMPERATURE) != 0 && running) sensors.joints[i].valid |= kValidTemperature;
   }

@@ -71,8 +71,8 @@ class BoardDriver final : public Driver {
   /// The next `write` brakes. Until then the board brakes by itself.
   void stop() noexcept override;
 
-  bool accepts(JointMode) const noexcept override { return true; }
-  /// The board may have an IMU, which is known after its first report.
+  bool accepts(JointMode mode) const noexcept override { return JointLaw::computes(mode); }
+  /// The board may measure efforts and have an IMU, which is known after its first report.
   bool measures(MachineInput input) const noexcept override { return input != MachineInput::kContacts; }
   std::string description() const override;
   std::string warning() const override;

@@ -41,6 +41,10 @@ std::uint64_t hash_of(const std::string& urdf, const DriveTrainParameters& param
   hash.add(parameters.wheel_velocity_limit);
   hash.add(parameters.wheel_effort_rate);
   hash.add(static_cast<const MachineParameters&>(parameters));
+  if (parameters.wheel_command == WheelCommand::kVelocity) {
+    hash.add(std::string("velocity"));
+    hash.add(std::optional(parameters.wheel_response_time));
+  }
   return hash.value();
 }
 
@@ -130,6 +134,19 @@ void read_yaw_inertia(const RigidBodies& robot, DriveTrain& model) {
       model.mass / sum.mass * sum.yaw_inertia + model.mass * (centre - middle_of_axles(model)).squaredNorm();
 }
 
+/// A wheel of the robot on its wheels is accelerated by all wheels together, straight or turning. The factor admits a
+/// robot of half the described mass.
+void set_acceleration_limits(DriveTrain& model) {
+  constexpr double kLighter = 2;
+  for (const WheelModel& wheel : model.wheels) {
+    const double square = wheel.radius * wheel.radius / static_cast<double>(model.wheels.size());
+    const double straight = model.mass * square;
+    const double turning = 4 * model.yaw_inertia * square / (model.wheel_base * model.effective_wheel_base());
+    JointModel& joint = model.joints[wheel.joint];
+    joint.acceleration_limit = kLighter * joint.effort_limit / (wheel.inertia + std::min(straight, turning));
+  }
+}
+
 /// The multiplier is that of equal loads.
 void note_unequal_loads(const DriveTrainParameters& parameters, DriveTrain& model) {
   if (model.wheels.size() == 2 || parameters.wheel_base_multiplier) return;
@@ -192,6 +209,8 @@ DriveTrain read_drive_train(const RobotDescription& description, const DriveTrai
   DriveTrain model;
   static_cast<MachineModel&>(model) = named_machine(description, *bodies);
   model.hash = hash_of(description.text, parameters);
+  model.wheel_command = parameters.wheel_command;
+  model.wheel_response_time = parameters.wheel_response_time;
 
   RunningGear gear = find_running_gear(*bodies, parameters, model.notes);
   release_followers(*bodies, gear, model.notes);
@@ -208,6 +227,7 @@ DriveTrain read_drive_train(const RobotDescription& description, const DriveTrai
   note_unequal_loads(parameters, model);
   read_imu(at_rest, parameters, model.wheel_base, model);
   model.bodies = bodies;
+  set_acceleration_limits(model);
   check_finite(model);
   check_missing_meshes(model);
   refuse_unheld_joints(model);

@@ -5,6 +5,7 @@
 
 #include "machine/machine_model.h"
 #include "machine/wheeled/drive_train_parameters.h"
+#include "machine/wheeled/wheel_command.h"
 #include "signals/wheeled/wheel_count.h"
 
 namespace robot_control {
@@ -39,6 +40,9 @@ struct DriveTrain : MachineModel {
   /// across it. Equal loads under isotropic Coulomb friction turn the robot steadily if
   ///   Σ (b s/2 − xᵢ²)/√(s² + xᵢ²) = 0,   multiplier 1 + 2 s/b:   1 + (L/b)² for two axles L apart.
   double wheel_base_multiplier = 1;
+
+  WheelCommand wheel_command = WheelCommand::kTorque;
+  double wheel_response_time = 0;  ///< s, of drives that take velocities
 
   double yaw_inertia = 0;           ///< kg·m² about the vertical through the middle of the axles
   std::vector<WheelModel> casters;  ///< passive wheels that roll; `side` and `sign` have no meaning

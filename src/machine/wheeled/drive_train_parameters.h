@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "machine/machine_parameters.h"
+#include "machine/wheeled/wheel_command.h"
 #include "parameters/block.h"
 
 namespace robot_control {
@@ -21,6 +22,8 @@ struct DriveTrainParameters : MachineParameters {
   std::optional<double> wheel_effort_limit;             ///< N·m, every wheel; also that of the simulated drive
   std::optional<double> wheel_velocity_limit;           ///< rad/s, every wheel
   std::optional<double> wheel_effort_rate;              ///< N·m/s, every wheel; empty: kEffortRise
+  WheelCommand wheel_command = WheelCommand::kTorque;
+  double wheel_response_time = 0.05;  ///< s, of drives that take velocities: from a step of the command to 63 % of it
 };
 
 inline Keys keys(DriveTrainParameters& robot) {
@@ -46,6 +49,8 @@ inline Keys keys(DriveTrainParameters& robot) {
           {"wheel_effort_limit", &robot.wheel_effort_limit, "N·m", 0.001, 10000, kOptional},
           {"wheel_velocity_limit", &robot.wheel_velocity_limit, "rad/s", 0.01, 1000, kOptional},
           {"wheel_effort_rate", &robot.wheel_effort_rate, "N·m/s", 0.01, 1.0e9, kOptional},
+          {"wheel_command", &robot.wheel_command},
+          {"wheel_response_time", &robot.wheel_response_time, "s", 0.001, 1},
       },
       keys(static_cast<MachineParameters&>(robot)),
   });

@@ -127,6 +127,17 @@ msg::SafetyStatus safety_status(const Permit& permit, const MachineModel& robot,
   return message;
 }
 
+void warn_of_blind_conditions(const SensorFrame& sensors, msg::SafetyStatus& status) {
+  const bool blind = std::any_of(
+      sensors.joints.begin(), sensors.joints.begin() + std::min<std::size_t>(sensors.joint_count, kMaxJoints),
+      [](const JointSample& joint) { return (joint.valid & kValidMotion) == kValidKinematics; });
+  if (!blind) return;
+  status.warnings.emplace_back("torque_not_measured");
+  status.warning_sentences.emplace_back(
+      "drives measure no torque: wheel_effort, power and torque_oscillation are blind, and stall judges speeds alone "
+      "(the limits of the drives protect motor and gear)");
+}
+
 msg::SafetyStatus waiting_status(const std::vector<std::string>& missing) {
   msg::SafetyStatus message;
   message.state = msg::SafetyStatus::INIT;

@@ -11,6 +11,7 @@
 #include "ros/messages/time_map.h"
 #include "signals/permit.h"
 #include "signals/robot_kinds.h"
+#include "signals/sensor_frame.h"
 
 namespace robot_control {
 
@@ -18,6 +19,10 @@ namespace robot_control {
 /// the joints, and `programs` those of remedies.
 msg::SafetyStatus safety_status(const Permit& permit, const MachineModel& robot, const std::vector<std::string>& absent,
                                 const TimeMap& time, std::int64_t period_ns, const Programs& programs);
+
+/// Adds the warning `torque_not_measured`, which names the conditions that are blind without a torque, where a drive
+/// measures its motion and no torque.
+void warn_of_blind_conditions(const SensorFrame& sensors, msg::SafetyStatus& status);
 
 /// Returns what tools need to know of a robot. `injects` says that its machine is simulated and takes faults.
 msg::RobotKind robot_kind(const MachineModel& robot, const Programs& programs, bool injects);

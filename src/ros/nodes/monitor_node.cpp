@@ -64,7 +64,9 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
         found != reported_permit_ || absent != reported_missing_ || (found && differs(reported_, permit));
     const std::int64_t silence_ns = now_ns - reported_ns_;
     if (reported_ns_ != 0 && silence_ns < (changed ? kStatusGap : kStatusPeriod)) return;
-    if (SensorFrame sensors; live(sensors)) time().follow(sensors);
+    SensorFrame sensors;
+    const bool measured = live(sensors);
+    if (measured) time().follow(sensors);
     msg::SafetyStatus status =
         found ? safety_status(permit, robot(), absent, time(), parameters().loop.period_ns(), programs())
               : waiting_status(absent);
@@ -73,6 +75,7 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
           ros::Time().fromNSec(ros::WallTime::now().toNSec() - static_cast<std::uint64_t>(now_ns - *last_ns));
     }
     note_latch_file(status);
+    if (measured) warn_of_blind_conditions(sensors, status);
     status_.publish(status);
     write_log(stop_log_.update(status));
     reported_permit_ = found;

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <limits>
 #include <string_view>
+
+#include "signals/names.h"
 
 namespace robot_control {
 namespace {
@@ -17,6 +20,11 @@ std::string cause_text(const msg::SafetyStatus& status, std::size_t i) {
   std::string text = status.causes[i] + ": " + status.sentences[i];
   if (!status.details[i].empty()) text += " (" + status.details[i] + ")";
   return text;
+}
+
+/// Some warnings are of the machine or its files. Those of conditions limit the speed.
+bool limits_speed(const std::string& warning) {
+  return std::ranges::any_of(kStopCauseNames, [&](const BitName& row) { return row.name == warning; });
 }
 
 std::string speed_text(double speed) {
@@ -106,12 +114,12 @@ void StopLog::look_at_warnings(const msg::SafetyStatus& status, std::vector<Repo
   for (std::size_t i = 0; i < status.warnings.size(); ++i) {
     if (!due(status.warnings[i], true, now)) continue;
     std::string text = "warning: " + status.warnings[i] + ": " + status.warning_sentences[i];
-    if (status.speed_limit < std::numeric_limits<double>::infinity()) {
+    if (limits_speed(status.warnings[i]) && status.speed_limit < std::numeric_limits<double>::infinity()) {
       text += "; no faster than " + speed_text(status.speed_limit);
     }
     lines.push_back({true, text});
   }
-  const bool no_speed = status.warnings.empty() && status.speed_limit < kNoSpeed;
+  const bool no_speed = std::ranges::none_of(status.warnings, limits_speed) && status.speed_limit < kNoSpeed;
   if (due("clearance", no_speed, now)) {
     lines.push_back({true, "the clearance leaves no speed: the robot stands until the way is free"});
   }

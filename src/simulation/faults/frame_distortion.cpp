@@ -39,7 +39,7 @@ void distort(FaultKind kind, StateFrame& state, FaultRandom& random) noexcept {
 }
 
 void distort(FaultKind kind, CommandFrame& command, FaultRandom& random) noexcept {
-  constexpr double kModes = 6;  // two of them unknown
+  constexpr double kModes = 6;  // the last one is unknown
   for (std::size_t i = 0; i < command.joint_count && i < kMaxJoints; ++i) {
     JointCommand& joint = command.joints[i];
     if (kind == FaultKind::kWrong) {

@@ -11,7 +11,12 @@ DrivenPlant::DrivenPlant(const MachineModel& robot, const MujocoPlantParameters&
       driver_(std::move(driver)),
       seen_(devices_->size()),
       turned_(devices_->size()),
-      torques_(robot.joints.size()) {}
+      torques_(robot.joints.size()) {
+  if (plant.drive == SimulatedDrive::kTorque) return;
+  throw DriverError(
+      "the simulated machine's parameter drive is velocity, but robot.drives names devices that turn the motors. Set "
+      "drive to torque, or leave robot.drives out.");
+}
 
 void DrivenPlant::run_devices() noexcept {
   std::copy_n(truth_.joints.begin(), seen_.size(), seen_.begin());

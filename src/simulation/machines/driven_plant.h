@@ -21,7 +21,8 @@ class DrivenPlant final : public Simulator {
  public:
   static constexpr std::int64_t kMaxStart = 10'000'000'000;  ///< ns
 
-  /// `period` is in s. `devices` are at the other end of the driver's line. Throws DriverError as MujocoPlant does.
+  /// `period` is in s. `devices` are at the other end of the driver's line. Throws DriverError as MujocoPlant
+  /// does, and for a plant whose drives are not those of torque.
   DrivenPlant(const MachineModel& robot, const MujocoPlantParameters& plant, double period,
               std::unique_ptr<DeviceFront> devices, std::unique_ptr<Driver> driver);
 
@@ -32,7 +33,8 @@ class DrivenPlant final : public Simulator {
   void stop() noexcept override;
   bool accepts(JointMode mode) const noexcept override { return driver_->accepts(mode); }
   bool measures(MachineInput input) const noexcept override {
-    return input == MachineInput::kJointMotion ? driver_->measures(input) : plant_.measures(input);
+    const bool of_drives = input == MachineInput::kJointMotion || input == MachineInput::kJointEffort;
+    return of_drives ? driver_->measures(input) : plant_.measures(input);
   }
   void truth(TruthFrame& truth) noexcept override { plant_.truth(truth); }
   void inject(const InjectedFaults& faults) noexcept override { plant_.inject(faults); }

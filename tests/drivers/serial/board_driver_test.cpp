@@ -56,6 +56,20 @@ TEST_F(BoardDriverTest, PositionAndVelocityAreThoseOfTheJointAtTheTimeOfRead) {
   }
 }
 
+TEST_F(BoardDriverTest, AnEffortThatTheBoardDoesNotMeasureIsNotInvented) {
+  machine_.board().sensors().valid = 0;
+  cycles(10);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(frame_.joints[i].valid, kValidKinematics) << i;
+    EXPECT_TRUE(std::isnan(frame_.joints[i].effort)) << i;
+  }
+}
+
+TEST_F(BoardDriverTest, TakesTorquesAlone) {
+  EXPECT_TRUE(machine_.accepts(JointMode::kEffort));
+  EXPECT_FALSE(machine_.accepts(JointMode::kDriveVelocity));
+}
+
 TEST_F(BoardDriverTest, NothingOfOneCycleAllocates) {
   if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
   BoardDriver& driver = machine_.driver();

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "log/replay/recorded.h"
 #include "log/replay/replay_error.h"
@@ -66,6 +68,23 @@ TEST_F(ReplayedDrive, WithEveryFaultOfEveryComponent) {
       expect_all_compared();
     }
   }
+}
+
+TEST_F(ReplayedDrive, OfWheelsThatTakeSpeedsAndMeasureNoTorque) {
+  parameters.robot.wheel_command = WheelCommand::kVelocity;
+  parameters.plant.drive = SimulatedDrive::kVelocity;
+  loop = ClosedLoop(parameters);
+  std::vector<LoggedMessage> messages;
+  drive(kSecond, [&, this](std::uint64_t k) {
+    if (k == 0) return;
+    ASSERT_TRUE(std::isnan(loop.row().driver->sensors.joints[0].effort)) << k;
+    robot_control::log(loop.row(), loop.robot().machine().joints.size(), messages);
+  });
+  expect_all_compared();
+  const ReplayReport report =
+      robot_control::replay(messages, recording.snapshots, loop.robot(), parameters.loop.period());
+  EXPECT_TRUE(report.exact()) << text_of(report);
+  EXPECT_EQ(report.rows, messages.size());
 }
 
 TEST_F(ReplayedDrive, BeginsAtASnapshotInTheMiddle) {

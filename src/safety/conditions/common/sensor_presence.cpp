@@ -27,6 +27,7 @@ void SensorPresence::Silence::step(std::uint64_t cycles, std::uint64_t joint, Ac
 
 SensorPresence::SensorPresence(const SafetyParameters& parameters, std::size_t joints, double period) noexcept
     : joints_(std::min(joints, kMaxJoints)),
+      needed_(parameters.joint_numbers),
       period_ns_(static_cast<std::uint64_t>(std::max(1LL, std::llround(period * 1e9)))),
       encoders_(kCauseEncodersLost, parameters.encoders_lost, period),
       imu_(kCauseImuLost, parameters.imu_lost, period) {}
@@ -40,7 +41,7 @@ void SensorPresence::step_encoders(const SensorFrame& sensors, std::uint64_t ela
   std::size_t worst = 0;
   for (std::size_t i = 0; i < joints_; ++i) {
     const JointSample& sample = sensors.joints[i];
-    const bool sampled = i < sensors.joint_count && has(sample, kValidMotion);
+    const bool sampled = i < sensors.joint_count && has(sample, needed_);
     const auto age = static_cast<std::uint64_t>(std::max<std::int64_t>(0, sample.age_ns));
     joint_silent_[i] = sampled ? age / period_ns_ : joint_silent_[i] + elapsed;
     if (joint_silent_[i] > joint_silent_[worst]) worst = i;

@@ -45,6 +45,7 @@ class SensorPresence {
   void step_encoders(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept;
 
   std::size_t joints_;
+  std::uint32_t needed_;  ///< JointValidity bits
   std::uint64_t period_ns_;
   Silence encoders_;
   Silence imu_;

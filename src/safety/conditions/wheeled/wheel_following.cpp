@@ -97,7 +97,7 @@ void WheelFollowing::update_direction(const WheelTargets& targets, const WheelMo
 }
 
 bool WheelFollowing::Stall::builds_up(double torque, double held, double dt) noexcept {
-  if (torque > held) return false;
+  if (!(torque <= held)) return false;
   if (torque > peak + kRise * std::abs(held)) {
     peak = torque;
     level = 0;

@@ -20,7 +20,9 @@
 ///                    ground friction 1, S: its largest. 0 for one wheel a side: then `held` is −∞
 ///   runaway          s·ω − |q̇*| > limit + δ;  |ω| if the target is 0
 ///   wrong_direction  −s·ω > limit + δ
-/// A runaway of 3 × limit and more has a shorter persistence (condition_watch.h).
+/// Without a measured torque `stall` counts w = 0 and excuses nothing: a wheel that stands is found by its target
+/// alone, and a stuck encoder under a target below kPushed later. A runaway of 3 × limit and more has a shorter
+/// persistence (condition_watch.h).
 ///
 /// The persistence of the last two restarts whenever the wheel has lost kProgress + δ of that speed since it began. A
 /// drive at its torque limit, or a scrubbing skid steer, lags behind a target that changes sign, but slows down. A

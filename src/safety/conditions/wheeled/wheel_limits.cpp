@@ -51,8 +51,9 @@ void WheelLimits::step(const SensorFrame& sensors, const WheelMotion& motion, bo
   const ConditionMeasurement speed = known ? fastest(motion, in_force) : kNothingMeasured;
   out.update(speed_, speed, weighed(speed, elapsed));
   out.update(acceleration_, motion.acceleration_known() ? most_jerked(motion) : kNothingMeasured, elapsed);
-  out.update(effort_, motion.sampled() && passed ? strongest(sensors) : kNothingMeasured, elapsed);
-  out.update(power_, known ? drawn(sensors, motion) : kNothingMeasured, elapsed);
+  const bool measured = joints_have(sensors, motion.wheels(), kValidEffort);
+  out.update(effort_, motion.sampled() && passed && measured ? strongest(sensors) : kNothingMeasured, elapsed);
+  out.update(power_, known && measured ? drawn(sensors, motion) : kNothingMeasured, elapsed);
 }
 
 ConditionMeasurement WheelLimits::fastest(const WheelMotion& motion, double speed_limit) const noexcept {

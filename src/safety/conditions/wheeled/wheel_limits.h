@@ -9,6 +9,8 @@
 ///                       driver's own brake may be stronger than the motor
 ///   power               Σ max(0, τ ω) > limit + Σ |τ|·tolerance: the power that the motors draw; braking draws none
 ///
+/// Without a measured torque wheel_effort and power are not evaluated.
+///
 /// ω, ω̇ and their tolerances: wheel_motion.h. The measurement is that of the worst wheel.
 
 #include <array>

@@ -1,0 +1,58 @@
+"""Robots whose drives close the loops of their wheels' speeds (robot.wheel_command: velocity), in virtual time."""
+
+import numpy as np
+import pytest
+from robot_control import ClosedLoop, DriverError
+
+SPEED = 0.5
+"""m/s"""
+
+
+def velocity_loop(**plant):
+    return ClosedLoop({"robot": {"wheel_command": "velocity"}, "mujoco_plant": {"drive": "velocity", **plant}})
+
+
+@pytest.mark.parametrize("gain", [0.5, 1.5])
+@pytest.mark.parametrize("delay", [0, 20])
+def test_the_robot_drives_and_stops_as_requested(gain, delay):
+    log = velocity_loop(drive_gain=gain, actuator_delay=delay).run(
+        seconds=6.0, command=lambda t: (SPEED if 0.5 <= t < 4 else 0, 0)
+    )
+    speed, time = log["truth_linear"], log["time"]
+    steady = (time > 2) & (time < 4)
+    assert np.sqrt(np.mean((speed[steady] - SPEED) ** 2)) <= 0.03 * SPEED
+    assert speed.max() <= 1.02 * SPEED
+    assert abs(speed[-1]) < 1e-3
+    assert not log["permit_causes"].any()
+
+
+def test_a_torque_that_is_not_measured_is_not_invented():
+    log = velocity_loop().run(seconds=1.0, command=(SPEED, 0.2))
+    assert np.isnan(log["left_wheel_joint_effort"]).all()
+    assert np.isnan(log["right_wheel_joint_effort"]).all()
+
+
+@pytest.mark.parametrize("fault", ["left_motor stuck", "left_motor wrong", "left_encoder wrong", "left_encoder stuck"])
+def test_a_wheel_that_fails_stops_the_robot(fault):
+    loop = velocity_loop()
+    loop.run(seconds=2.0, command=(SPEED, 0))
+    loop.inject_fault(*fault.split())
+    log = loop.run(seconds=1.0, command=(SPEED, 0))
+    assert log["permit_causes"].any()
+
+
+def test_the_same_seed_gives_the_same_bits():
+    first, second = (velocity_loop().run(seconds=1.0, command=(SPEED, 0.2)) for _ in range(2))
+    assert all(np.array_equal(first[name], second[name], equal_nan=True) for name in first)
+
+
+@pytest.mark.parametrize(
+    ("params", "words"),
+    [
+        ({"robot": {"wheel_command": "velocity"}}, "speeds that the drives control themselves"),
+        ({"mujoco_plant": {"drive": "velocity"}}, "commands of torques"),
+    ],
+)
+def test_drives_without_the_commanded_mode_are_refused(params, words):
+    with pytest.raises(DriverError, match=words):
+        ClosedLoop(params).run(seconds=0.1)
