@@ -65,6 +65,7 @@ void FootConditions::enter_run() noexcept {
   sinking_.reset();
   counts_ = {};
   loads_.fill(1);
+  judged_ = {};
   worst_ = sunk_ = kNothingMeasured;
   stood_ = false;
 }
@@ -92,7 +93,7 @@ void FootConditions::step(const MonitorInput& input, const Eigen::Vector3d& up, 
   slip_.step(worst_, elapsed);
   out.add(slip_);
   const double share = weight_ / static_cast<double>(stands && asked.lifted != 0 ? kLegs - 1 : kLegs);
-  load_.step(stands || walks ? lightest(*input.sensors, up, judged, share) : kNothingMeasured, elapsed);
+  load_.step(stands || walks ? lightest(*input.sensors, up, judged, share, walks) : kNothingMeasured, elapsed);
   out.add(load_);
   sinking_.step(sunk_, elapsed);
   out.add(sinking_);
@@ -151,15 +152,19 @@ void FootConditions::compare(const Distances& now, double limit) noexcept {
 }
 
 ConditionMeasurement FootConditions::lightest(const SensorFrame& sensors, const Eigen::Vector3d& up, const Feet& judged,
-                                              double share) noexcept {
+                                              double share, bool walks) noexcept {
   if (sensors.contact_count < kLegs) return kNothingMeasured;
   ConditionMeasurement result{.beyond = false, .value = 1, .limit = load_.limit()};
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const ContactSample& contact = sensors.contacts[leg];
-    if (judged[leg])
-      loads_[leg] = contact.valid != 0 ? up.dot(Eigen::Map<const Eigen::Vector3d>(contact.force.data())) / share : 1;
+    if (judged[leg]) {
+      const double load =
+          contact.valid != 0 ? up.dot(Eigen::Map<const Eigen::Vector3d>(contact.force.data())) / share : 1;
+      loads_[leg] = walks && judged_[leg] ? std::max(loads_[leg], load) : load;
+    }
     if (loads_[leg] < result.value) result.value = loads_[leg], result.joint = knee_of(leg);
   }
+  judged_ = judged;
   result.beyond = result.value < result.limit;
   return result;
 }

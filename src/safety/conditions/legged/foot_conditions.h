@@ -10,9 +10,9 @@
 ///   sinking    (c − c₀ − (h − h₀)) / l > limit, while it walks. h is the mean height of the body above its feet by the
 ///              measured angles, c the commanded height, l the leg length. h₀ and c₀ are those of the robot that stood
 ///
-/// While it walks, the load of a foot that is not judged stays what it was. So a foot that bears in none of its steps
-/// is found. Without contact sensors the load is not known and not evaluated. Slip and load name the knee of the worst
-/// foot.
+/// While it walks, the load of a foot is the largest of its present or last step. So a foot that bears in none of its
+/// steps is found, and one that leaves the ground a little early is not. Without contact sensors the load is not known
+/// and not evaluated. Slip and load name the knee of the worst foot.
 
 #include <array>
 #include <cstddef>
@@ -52,8 +52,8 @@ class FootConditions {
   void sample(const SensorFrame& sensors, const LeggedCommand& asked, const Eigen::Vector3d& up,
               const Feet& judged) noexcept;
   void compare(const Distances& now, double limit) noexcept;
-  ConditionMeasurement lightest(const SensorFrame& sensors, const Eigen::Vector3d& up, const Feet& judged,
-                                double share) noexcept;
+  ConditionMeasurement lightest(const SensorFrame& sensors, const Eigen::Vector3d& up, const Feet& judged, double share,
+                                bool walks) noexcept;
 
   /// The numbers of a LegGeometry, which is not trivially copyable.
   struct Lengths {
@@ -73,6 +73,7 @@ class FootConditions {
   std::array<std::size_t, kLegs> counts_{};  ///< samples since the foot stands
   std::uint64_t waited_ = 0;                 ///< cycles since the last sample
   std::array<double, kLegs> loads_{};        ///< of a share, of the feet when they were judged last
+  Feet judged_{};                            ///< in the last cycle
   bool stood_ = false;                       ///< reference_ is known
   double reference_ = 0;                     ///< m, height of the body less the commanded one, when it stood last
   ConditionMeasurement worst_{};             ///< slip of the last sample
