@@ -142,10 +142,9 @@ void Walker::move(State& state, const WalkInput& input, const WalkingBody& body)
   std::array<double, 3>& ahead = state.ahead;
   const double half = gait(state).period / 2;
   const std::array<double, 3> moves{body.velocity.x(), body.velocity.y(), body.rate.z()};
-  for (std::size_t i = 0; i < moves.size(); ++i) {
-    state.follows[i] += period_ / half * (input.twist[i] - state.follows[i]);
-    ahead[i] += period_ * (state.follows[i] - moves[i]);
-  }
+  for (std::size_t i = 0; i < 2; ++i) state.follows[i] += period_ / half * (input.twist[i] - state.follows[i]);
+  state.follows[2] = input.twist[2];
+  for (std::size_t i = 0; i < moves.size(); ++i) ahead[i] += period_ * (state.follows[i] - moves[i]);
   for (std::size_t i = 0; i < 2; ++i) ahead[i] = std::clamp(ahead[i], -farthest, farthest);
   ahead[2] = std::clamp(ahead[2], -kFarthestYaw, kFarthestYaw);
   state.ground[0] -= period_ * body.velocity.z();

@@ -9,8 +9,8 @@
 ///             pushed down by the force that it is to bear
 ///   ground    is the plane through the places where the feet bore last. So a foot lands where the others stand, whatever
 ///             the error of the estimated tilt
-///   target    moves from where the robot was, with the twist through a low pass of half a period: a body follows its
-///             twist when the next feet have landed. It stays within kFarthest of the robot
+///   target    moves from where the robot was, with the twist, its velocity through a low pass of half a period: a body
+///             follows it when the next feet have landed. It stays within kFarthest of the robot
 ///   plan      every kPlanCycles cycles, and where other feet bear, the forces of the feet (force_plan.h)
 ///   stance    τ = h − Jᵀ f, f the planned force, h what holds the leg itself. f is scaled down until each |τ| is within
 ///             the joint's limit, so that f stays within friction
