@@ -18,7 +18,7 @@ uint8_t board_encode(const uint8_t* body, uint8_t size, uint8_t* frame) {
   uint8_t count = 1;
   uint8_t code_at = 0; /* of the block that is being written; blocks are shorter than 254 bytes */
   for (uint8_t i = 0; i < size + CRC_SIZE; ++i) {
-    const uint8_t byte = i < size ? body[i] : (uint8_t)(crc >> (8u * (unsigned)(i - size)));
+    const uint8_t byte = (uint8_t)(i < size ? body[i] : crc >> (8u * (unsigned)(i - size)));
     if (byte == 0) {
       frame[code_at] = (uint8_t)(count - code_at);
       code_at = count;

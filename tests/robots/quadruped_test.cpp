@@ -182,7 +182,9 @@ void expect_lying_in_time(const std::string& name, std::size_t moving, const std
   }
 }
 
-TEST_P(QuadrupedOf, LiesDownFromAnyPoseAndMotionInTime) { expect_lying_in_time(GetParam(), 2, {0, 3}); }
+TEST_P(QuadrupedOf, LiesDownFromAnyPoseAndMotionInTime) {
+  expect_lying_in_time(GetParam(), 2, {0, 3});
+}
 
 class NightlyQuadrupedOf : public QuadrupedOf {};
 
