@@ -355,6 +355,14 @@ TEST_F(WalkingConditionsTest, AreNoneWhileItTrots) {
   EXPECT_EQ(walk(4), 4) << causes(Reaction::kBrake) << causes(Reaction::kRamp) << causes(Reaction::kWarn);
 }
 
+TEST_F(WalkingConditionsTest, AreNoneWhileEachFootLeavesTheGroundALittleEarly) {
+  const double seen = walk(2, [&](double) {
+    for (std::size_t leg = 0; leg < kLegs; ++leg)
+      if (command_.legged.stance[leg] > 0.85) sensors_.contacts[leg].force = {};
+  });
+  EXPECT_EQ(seen, 2) << causes(Reaction::kWarn);
+}
+
 TEST_F(WalkingConditionsTest, AFootThatSlipsInItsStanceLetsItLieDown) {
   const double seen = walk(2, [&](double t) {
     std::array<Eigen::Vector3d, kLegs> feet = stand_;
