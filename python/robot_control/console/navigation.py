@@ -37,7 +37,7 @@ class NavigationView:
         self._odometry = odometry
         self._grids = {"map": Latest("map", OccupancyGrid), "costmap": Latest("costmap", OccupancyGrid)}
         self._scan, self._particles = Latest("scan", LaserScan), Latest("particlecloud", PoseArray)
-        self._tf = Tf()
+        self._tf: Tf | None = None
         self._places: dict[str, Any] = {}
         threading.Thread(target=self._locate, daemon=True).start()
 
@@ -84,6 +84,7 @@ class NavigationView:
             time.sleep(PERIOD)
 
     def _pose(self, target: str, source: str) -> tuple[float, float, float] | None:
+        self._tf = self._tf or Tf()  # a robot without a map needs none of its many messages
         try:
             pose = self._tf.lookup(target, source).pose
         except PathError:
