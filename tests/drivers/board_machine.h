@@ -8,18 +8,16 @@
 #include <vector>
 
 #include "drivers/serial/board_driver.h"
+#include "drivers/wheels_in_air.h"
 #include "simulation/devices/board_front.h"
 
 namespace robot_control {
 
-class BoardMachine final : public Driver {
+class BoardMachine final : public WheelsInAir<BoardFront, BoardDriver> {
  public:
-  static constexpr double kInertia = 0.01;  ///< kg·m²
-  static constexpr double kEffortLimit = 3.5;
-
   explicit BoardMachine(double rate = 1000, unsigned counter_bits = 32, std::uint32_t zero = 0,
                         std::uint64_t bit_rate = 0)
-      : period_(1 / rate) {
+      : WheelsInAir(1 / rate) {
     const BoardParameters parameters = parameters_of(counter_bits, bit_rate);
     board_ = std::make_unique<BoardFront>(parameters, kBrakes, period_, 1);
     board_->set_zero(zero);
@@ -29,50 +27,15 @@ class BoardMachine final : public Driver {
   /// Over a true line; its driver's end is made after its device's end.
   BoardMachine(double rate, std::unique_ptr<SerialLine> device_end,
                const std::function<std::unique_ptr<SerialLine>()>& driver_end)
-      : period_(1 / rate) {
+      : WheelsInAir(1 / rate) {
     const BoardParameters parameters = parameters_of(32, 0);
     board_ = std::make_unique<BoardFront>(parameters, kBrakes, period_, std::move(device_end));
     connect(parameters, driver_end());
   }
 
-  /// The contract begins with a machine that is ready.
-  void start() override {
-    driver_->start();
-    SensorFrame frame;
-    for (int i = 0; i < 50 && frame.driver_state != DriverState::kRunning; ++i) {
-      read(frame);
-      write(std::vector<JointCommand>(2));
-    }
-  }
-  void reset() noexcept override { driver_->reset(); }
-  void read(SensorFrame& sensors) noexcept override { driver_->read(sensors); }
-  void write(std::span<const JointCommand> commands) noexcept override {
-    driver_->write(commands);
-    run_board();
-  }
-  void stop() noexcept override { driver_->stop(); }
-  bool accepts(JointMode mode) const noexcept override { return driver_->accepts(mode); }
-  bool measures(MachineInput input) const noexcept override { return driver_->measures(input); }
-  std::string description() const override { return driver_->description(); }
-  std::string warning() const override { return driver_->warning(); }
-
-  /// Runs the board without its driver.
-  void run_board() {
-    board_->run(joints);
-    for (std::size_t i = 0; i < joints.size(); ++i) {
-      joints[i].velocity += board_->torque(i) / kInertia * period_;
-      joints[i].position += joints[i].velocity * period_;
-    }
-  }
-
-  BoardFront& board() { return *board_; }
   BoardDriver& driver() { return *driver_; }
-  double period() const { return period_; }
-
-  std::vector<JointSample> joints = std::vector<JointSample>(2);
 
  private:
-  static constexpr Brake kBrake{.effort = 3, .hold_effort = 3, .damping = 3, .stiffness = 20, .hold_speed = 0.3};
   static constexpr std::array kBrakes{kBrake, kBrake};
 
   static BoardParameters parameters_of(unsigned counter_bits, std::uint64_t bit_rate) {
@@ -95,10 +58,6 @@ class BoardMachine final : public Driver {
     driver_ = std::make_unique<BoardDriver>(parameters, kBrakes, 2, period_, std::move(driver_end),
                                             [this] { return board_->now_ns(); });
   }
-
-  double period_;
-  std::unique_ptr<BoardFront> board_;
-  std::unique_ptr<BoardDriver> driver_;
 };
 
 }  // namespace robot_control

@@ -27,12 +27,16 @@ void refuse_held_joints(const MachineModel& machine, const std::string& driver) 
   }
 }
 
+void require_drive_file(const Parameters& parameters, const std::string& driver, const std::string& example) {
+  if (parameters.drives.empty())
+    throw DriverError("robot.driver is " + driver +
+                      ", but robot.drives names no drive file: set it, for instance to config/drives/" + example +
+                      ".yaml");
+}
+
 std::unique_ptr<Driver> make_can(const Parameters& parameters, const MachineModel& machine,
                                  const std::vector<Brake>& brakes, DriverClock clock) {
-  if (parameters.drives.empty())
-    throw DriverError(
-        "robot.driver is can, but robot.drives names no drive file: set it, for instance to "
-        "config/drives/odrive.yaml");
+  require_drive_file(parameters, "can", "odrive");
   refuse_held_joints(machine, "can");
   const DriveMotors motors = drive_motors(machine, brakes);
   const CanParameters can = read_drive_file(parameters.drives, motors.joints, parameters.loop.rate);
@@ -51,10 +55,7 @@ std::unique_ptr<Driver> make_example(const Parameters& parameters, const Machine
 
 std::unique_ptr<Driver> make_board(const Parameters& parameters, const MachineModel& machine,
                                    const std::vector<Brake>& brakes, DriverClock clock) {
-  if (parameters.drives.empty())
-    throw DriverError(
-        "robot.driver is board, but robot.drives names no drive file: set it, for instance to "
-        "config/drives/board.yaml");
+  require_drive_file(parameters, "board", "board");
   refuse_held_joints(machine, "board");
   const DriveMotors motors = drive_motors(machine, brakes);
   const BoardParameters board = read_board_file(parameters.drives, motors.joints, parameters.loop.rate);

@@ -1,0 +1,64 @@
+#pragma once
+/// Two wheels in the air, moved by the torques of a simulated Board, behind Inner, its driver.
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "drivers/driver.h"
+#include "drivers/joint_law.h"
+
+namespace robot_control {
+
+template <class Board, class Inner>
+class WheelsInAir : public Driver {
+ public:
+  static constexpr double kInertia = 0.01;  ///< kg·m²
+  static constexpr double kEffortLimit = 3.5;
+  static constexpr Brake kBrake{.effort = 3, .hold_effort = 3, .damping = 3, .stiffness = 20, .hold_speed = 0.3};
+
+  /// The contract begins with a machine that is ready.
+  void start() override {
+    driver_->start();
+    SensorFrame frame;
+    for (int i = 0; i < 50 && frame.driver_state != DriverState::kRunning; ++i) {
+      read(frame);
+      write(std::vector<JointCommand>(2));
+    }
+  }
+  void reset() noexcept override { driver_->reset(); }
+  void read(SensorFrame& sensors) noexcept override { driver_->read(sensors); }
+  void write(std::span<const JointCommand> commands) noexcept override {
+    driver_->write(commands);
+    run_board();
+  }
+  void stop() noexcept override { driver_->stop(); }
+  bool accepts(JointMode mode) const noexcept override { return driver_->accepts(mode); }
+  bool measures(MachineInput input) const noexcept override { return driver_->measures(input); }
+  std::string description() const override { return driver_->description(); }
+  std::string warning() const override { return driver_->warning(); }
+
+  /// Runs the board without its driver.
+  void run_board() {
+    board_->run(joints);
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      joints[i].velocity += board_->torque(i) / kInertia * period_;
+      joints[i].position += joints[i].velocity * period_;
+    }
+  }
+
+  Board& board() { return *board_; }
+  double period() const { return period_; }
+
+  std::vector<JointSample> joints = std::vector<JointSample>(2);
+
+ protected:
+  explicit WheelsInAir(double period) : period_(period) {}
+
+  double period_;
+  std::unique_ptr<Board> board_;
+  std::unique_ptr<Inner> driver_;
+};
+
+}  // namespace robot_control
