@@ -13,6 +13,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from robot_control.pad.law import SETTLING
+
 from bench.console.process import wait_for
 
 CHROMIUM = "/usr/bin/chromium"
@@ -138,6 +140,21 @@ class Browser:
     def key(self, code: str, kind: str = "keyDown") -> None:
         """A real key of the browser: keyDown or keyUp."""
         self.driver.execute_cdp_cmd("Input.dispatchKeyEvent", {"type": kind, "code": code, "key": code[-1].lower()})
+
+    def hold(self, code: str, what: str, condition: Callable[[], object]) -> None:
+        """Holds a key until the condition holds. A page that stands still for command_life sends a command of zero, and
+        for link_gap has to see a release: then the key is pressed again, as an operator does.
+        """
+        self.key(code)
+
+        def held() -> object:
+            if self.text("dead-man").startswith("release"):
+                self.key(code, "keyUp")
+                time.sleep(2 * SETTLING)
+                self.key(code)
+            return condition()
+
+        wait_for(what, held)
 
     def touch(self, kind: str) -> None:
         """A finger on the upper edge of the stick: touchStart, touchEnd or touchCancel."""
