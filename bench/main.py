@@ -114,7 +114,8 @@ def run_many(name: str, given: argparse.Namespace, runner: Runner) -> tuple[dict
         from bench.odometry import bench as odometry
 
         count = given.runs or odometry.SEEDS
-        return odometry.bench(given.first, count, say, given.errors, plots=given.plots, runner=runner)
+        which = given.only or odometry.ALL
+        return odometry.bench(given.first, count, say, given.errors, plots=given.plots, scenarios=which, runner=runner)
     from bench import tuning
 
     return tuning.bench(given.first, given.runs or tuning.ALL_RUNS, say, runner)
@@ -283,6 +284,15 @@ def _share(text: str) -> float:
     return share
 
 
+def _scenarios(text: str) -> list[str]:
+    from bench.odometry.bench import ALL
+
+    unknown = [name for name in text.split(",") if name not in ALL]
+    if unknown:
+        raise argparse.ArgumentTypeError(f"no scenario {', '.join(unknown)}; there are {', '.join(ALL)}")
+    return text.split(",")
+
+
 def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     """The command line of scripts/bench; ends the program on a wrong one."""
     parser = argparse.ArgumentParser(prog="scripts/bench", description="Measures this machine.")
@@ -303,6 +313,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
         "data_return: of the files",
     )
     parser.add_argument("--errors", choices=LEVELS, default=LEVELS[0], help="driving, odometry: of the sensors")
+    parser.add_argument("--only", type=_scenarios, metavar="SCENARIO[,…]", help="odometry: these scenarios alone")
     parser.add_argument("--plots", type=Path, help="odometry: folder for pictures")
     parser.add_argument("--keep", type=Path, help="record: folder for the logs and their reports")
     cluster = parser.add_argument_group("cluster", f"{', '.join(ON_CLUSTERS)} run with the workers of a Dask scheduler")
@@ -326,6 +337,8 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
         parser.error(f"{', '.join(alone)} cannot run on a cluster; {', '.join(ON_CLUSTERS)} can")
     if given.markdown and given.errors != LEVELS[0]:
         parser.error(f"--markdown writes the tables of {LEVELS[0]}, not of --errors {given.errors}")
+    if given.markdown and given.only:
+        parser.error("--markdown writes the tables of all scenarios, not of --only some")
     if given.scheduler is not None:
         try:
             check_address(given.scheduler, insecure=given.insecure)

@@ -26,6 +26,7 @@ from bench.runs.runner import Processes, Runner
 
 SEEDS = 50
 PARTS = "parts"  # parts.py; its drives need no rest at the beginning, which every other scenario has
+ALL = (*SCENARIOS, PARTS)
 SLOW_SCENARIOS = ("umbmark", "random", "standstill", "waves")  # so that all processors are busy to the end
 
 
@@ -110,7 +111,7 @@ def bench(
     *,
     plots: Path | None = None,
     cache: Path | None = None,
-    scenarios: Sequence[str] = (*SCENARIOS, PARTS),
+    scenarios: Sequence[str] = ALL,
     runner: Runner | None = None,
 ) -> tuple[dict[str, Any], bool]:
     """The result, and whether every promise is kept; `say` receives progress and broken promises."""
@@ -138,7 +139,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--first", type=int, default=0, help="first seed")
     parser.add_argument("--runs", type=int, default=SEEDS, help="number of seeds")
-    parser.add_argument("--only", default=",".join((*SCENARIOS, PARTS)), help="scenarios, with commas between")
+    parser.add_argument("--only", default=",".join(ALL), help="scenarios, with commas between")
     parser.add_argument("--errors", choices=LEVELS, default=LEVELS[0], help="of the sensors")
     parser.add_argument("--plots", type=Path, help="folder for the pictures")
     parser.add_argument("--cache", type=Path, help="folder of recordings: taken from there, or put there")

@@ -83,6 +83,17 @@ def test_the_tables_of_the_documentation_are_of_one_level_of_errors(capsys):
     assert "--markdown writes the tables of data_sheet, not of --errors field" in capsys.readouterr().err
 
 
+def test_scenarios_of_the_odometry_can_be_named(capsys):
+    assert bench.parse(["odometry", "--only", "parts,slip"]).only == ["parts", "slip"]
+    for wrong, complaint in (
+        (["--only", "party"], "no scenario party; there are umbmark"),
+        (["--only", "parts", "--markdown"], "--markdown writes the tables of all scenarios"),
+    ):
+        with pytest.raises(SystemExit):
+            bench.parse(["odometry", *wrong])
+        assert complaint in capsys.readouterr().err
+
+
 def test_an_unknown_name_is_refused(capsys):
     with pytest.raises(SystemExit):
         bench.parse(["warp"])

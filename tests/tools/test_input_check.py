@@ -190,6 +190,20 @@ def test_a_broken_gyro_axis_is_said(exact):
     assert "the gyro's x axis shows -31.0 °/s at rest" in warnings_of(samples)
 
 
+def test_two_sensors_may_be_sampled_at_the_same_time(exact):
+    """Two devices with one clock and one rate: their stamps differ by a microsecond."""
+    time = np.arange(0, 39, 0.02)
+    at, stamps = exact.at(time), np.round(time * 1e9).astype(np.int64)
+    time_ns, (wheels, gyro, accel) = merged(
+        [
+            Stream(stamps, np.column_stack([at.left, at.right])),
+            Stream(stamps + 1000, at.gyro),
+            Stream(stamps + 1000, at.accel),
+        ]
+    )
+    assert warnings_of(Samples(time_ns, wheels[:, 0], wheels[:, 1], gyro, accel)) == ""
+
+
 def test_too_little_concludes_nothing(exact):
     samples = samples_of(exact)
     few = slice(0, 10)
@@ -235,12 +249,28 @@ def test_offsets_of_real_recordings_are_found(name):
         assert offset == pytest.approx(OFFSETS[name], abs=0.02)
 
 
+IN_MOTION = {
+    "husky_ice": "never rests",
+    "husky_snow": "starts in motion, the first rest is after 6.5 s",
+    "husky_asphalt": "starts in motion, the first rest is after 0.8 s",
+}
+"""recordings that do not begin with a rest, each with its warning"""
+
+
 @pytest.mark.skipif(recordings_folder() is None, reason=ABSENT)
 @pytest.mark.parametrize(
-    "name", [name for name in NAMES if not name.startswith("vehicle") and name != "outdoor_skid_steer_imu_b"]
+    "name",
+    [name for name in NAMES if name not in {*IN_MOTION, "vehicle", "vehicle_mirrored_x", "outdoor_skid_steer_imu_b"}],
 )
 def test_sound_recordings_of_real_robots_cause_no_warning(name):
     assert check(*recorded(name)).warnings == []
+
+
+@pytest.mark.skipif(recordings_folder() is None, reason=ABSENT)
+@pytest.mark.parametrize("name", IN_MOTION)
+def test_real_recordings_that_begin_in_motion_are_said_and_nothing_else(name):
+    (said,) = check(*recorded(name)).warnings
+    assert IN_MOTION[name] in said
 
 
 @pytest.mark.skipif(recordings_folder() is None, reason=ABSENT)

@@ -30,7 +30,7 @@ OFFSET, OFFSET_DEVIATION = 0.005, 0.02
 FEWEST = 10
 """number of samples from which their distance can be judged"""
 MIN_APART, MAX_APART = 2e-5, 2.0
-"""s between samples; a robot's sensors are sampled neither at 50 kHz nor once in two seconds"""
+"""s between samples of one sensor; a robot's sensors are sampled neither at 50 kHz nor once in two seconds"""
 COUNTS = 20
 """number of different whole numbers from which they are counts, not angles"""
 
@@ -84,12 +84,15 @@ def check(samples: Samples, robot: Robot) -> Findings:
 def _check_time(samples: Samples) -> None:
     if samples.own_log or samples.time_ns.size < FEWEST:
         return
-    apart = 1e-9 * float(np.median(np.diff(samples.time_ns)))
-    if not MIN_APART <= apart <= MAX_APART:
-        raise InputError(
-            f"half of the samples are less than {apart:.3g} s apart; expected is {MIN_APART:g} to {MAX_APART:g} s: "
-            "look at the unit of the times (of a CSV: --time-unit, s unless given)"
-        )
+    tables = (table for table in (samples.left, samples.gyro) if table is not None)
+    present = (~np.isnan(table.reshape(len(table), -1)).any(axis=1) for table in tables)
+    for time_ns in (samples.time_ns[rows] for rows in present if rows.sum() >= FEWEST):
+        apart = 1e-9 * float(np.median(np.diff(time_ns)))
+        if not MIN_APART <= apart <= MAX_APART:
+            raise InputError(
+                f"half of a sensor's samples are less than {apart:.3g} s apart; expected is {MIN_APART:g} to "
+                f"{MAX_APART:g} s: look at the unit of the times (of a CSV: --time-unit, s unless given)"
+            )
 
 
 def _check_gravity(streams: Streams, gravity: FloatArray, findings: Findings) -> bool:
