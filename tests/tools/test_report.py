@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from robot_control.common.roles import LEGGED
+from robot_control.common.roles import LEGGED, Kind
 from robot_control.common.run_log import RunLog, read_run
 from robot_control.common.signal_names import mask_of
 from robot_control.demo.intervals import intervals, joined, runs_of
@@ -74,6 +74,21 @@ def test_figures_are_what_they_say(log):
     log["missed"][3000:] = 0
     log["missed"][4000:] = 1
     assert values_of(log)["missed"] == 3
+
+
+def walked(log, speed=1.0):
+    """The log of a trot of 0.38 s whose body follows the law of walker.h, and sways twice in each period."""
+    mean, cycles = np.zeros(CYCLES), np.arange(CYCLES)
+    for row in range(1, CYCLES):
+        mean[row] = mean[row - 1] + PERIOD / 0.19 * (speed * log["limited_linear"][row] - mean[row - 1])
+    log["legged_gait_phase"] = np.where(cycles > BEGIN, (cycles - BEGIN) * PERIOD / 0.38 % 1, 0)
+    log["estimate_linear"] = mean * (1 + 0.12 * np.sin(4 * np.pi * log["legged_gait_phase"]))
+    return figures(Drive("run", log, kind=Kind(LEGGED)))["linear_error_rms"].value
+
+
+def test_a_walk_is_judged_by_the_mean_over_a_period_of_what_its_target_does(log):
+    assert walked(log) < 0.005
+    assert walked(log, speed=0.9) > 0.03
 
 
 def test_rows_that_are_not_there_are_counted(log):

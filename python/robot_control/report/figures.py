@@ -12,14 +12,12 @@ from robot_control.common.signal_names import mask_of, number_of
 from robot_control.demo.intervals import intervals
 from robot_control.report.drive import Drive
 from robot_control.report.latency import LATENCIES, durations_ns
-from robot_control.report.walking import cost_of_transport
+from robot_control.report.walking import cost_of_transport, phase_steps, walked_speed
 
 NAN = float("nan")
 STOPPED = tuple(number_of("SupervisorState", name) for name in ("STOPPED", "FAULT"))
 """latched"""
 SATURATED = mask_of("CommandReason", "saturated")
-STRIDE = 0.5
-"""s; of the gaits of control/legged/gait.h a trot takes 0.38, a crawl 1.0, whose halves are alike"""
 SLIP, DEGRADED = mask_of("StateFlag", "slip"), mask_of("StateFlag", "degraded")
 
 
@@ -56,10 +54,9 @@ def figures(drive: Drive) -> dict[str, Figure]:
     return {figure.name: figure for part in parts for figure in part(drive)}
 
 
-def _mean_over(values: FloatArray, rows: float) -> FloatArray:
+def _mean_over(values: FloatArray, rows: int) -> FloatArray:
     known = values[~np.isnan(values)]
-    width = max(1, round(rows))
-    return np.convolve(known, np.full(width, 1.0 / width), "valid") if known.size >= width else known
+    return np.convolve(known, np.full(rows, 1.0 / rows), "valid") if known.size >= rows else known
 
 
 def _largest(values: FloatArray) -> float:
@@ -99,12 +96,15 @@ def _safety(drive: Drive) -> Iterator[Figure]:
 
 
 def _tracking(drive: Drive) -> Iterator[Figure]:
-    """A body on legs sways within each stride: its error is the mean over STRIDE."""
+    """A body on legs sways within each period of its gait: its error is the mean over one, from the speed that the walk
+    has for its target.
+    """
     driving = drive.driving()
+    steps = phase_steps(drive)
+    period = round(1 / np.median(steps[steps > 0])) if (steps > 0).any() else 1
     for axis, unit in (("linear", "m/s"), ("angular", "rad/s")):
-        error = (drive.column(f"limited_{axis}") - drive.column(f"estimate_{axis}"))[driving]
-        if drive.kind.legged:
-            error = _mean_over(error, STRIDE / drive.period)
+        commanded = walked_speed(drive) if axis == "linear" else drive.column("limited_angular")
+        error = _mean_over((commanded - drive.column(f"estimate_{axis}"))[driving], period)
         yield Figure(
             f"{axis}_error_rms", unit, f"commanded minus estimated {axis} speed while driving, RMS", _rms(error)
         )

@@ -34,6 +34,25 @@ def footfalls(drive: Drive) -> list[Stretch]:
     ]
 
 
+def phase_steps(drive: Drive) -> FloatArray:
+    """By how much of its period the gait went on since the row before; 0 where no foot swings, and on wheels."""
+    phase = np.nan_to_num(drive.column("legged_gait_phase"))
+    steps: FloatArray = np.mod(np.diff(phase, prepend=phase[0]), 1.0)
+    return steps
+
+
+def walked_speed(drive: Drive) -> FloatArray:
+    """m/s to the front: the command after limits, while the feet swing through the low pass of half a period of the
+    gait that the target of a walk has (control/legged/walking/walker.h).
+    """
+    speed, parts = drive.column("limited_linear").copy(), np.minimum(1.0, 2 * phase_steps(drive))
+    for row in np.flatnonzero(parts):
+        before = speed[row - 1]
+        if not np.isnan(before):
+            speed[row] = before + parts[row] * (speed[row] - before)
+    return speed
+
+
 def cost_of_transport(drive: Drive) -> float:
     """Σ|τ·ω|·Δt / (m·g·way) of all joints while it walks: their mechanical work, without the losses of the motors. NaN
     where mass or way is not known.
