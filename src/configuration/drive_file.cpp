@@ -19,6 +19,7 @@ constexpr const char* kBus = "bus";
 constexpr const char* kBoard = "board";
 constexpr const char* kEveryJoint = "every_joint";
 constexpr double kMaxCountsUnseen = 32767;
+constexpr double kMaxCountsPerSecond = 0x3FFFFFFF / 256.0;  // firmware/board.c
 constexpr double kMinTimeoutPeriods = 10;  // in which a drive waits for its host
 
 using cia402::Cia402Parameters;
@@ -44,6 +45,10 @@ ParameterTree extracted(ParameterTree& tree, const std::string& block) {
   return part;
 }
 
+bool takes_speeds(const Parameters& parameters) {
+  return parameters.robot.wheel_command == WheelCommand::kVelocity;
+}
+
 /// Returns the largest number of counts between two reports.
 double counts_unseen(const BoardWheelParameters& wheel, const BoardLineParameters& line, double rate) {
   const double seconds = (static_cast<double>(line.max_silence) + 1) / rate;
@@ -53,12 +58,13 @@ double counts_unseen(const BoardWheelParameters& wheel, const BoardLineParameter
 /// A DriveFileReader collects the problems of one file.
 class DriveFileReader {
  public:
-  DriveFileReader(const std::string& path, std::span<const std::string> joints, double rate)
-      : path_(path), joints_(joints), rate_(rate), tree_(read_tree(path, {}, problems_, &peer_problem)) {}
+  DriveFileReader(const std::string& path, std::span<const std::string> joints, double rate, bool takes_speeds)
+      : path_(path), joints_(joints), rate_(rate), takes_speeds_(takes_speeds), tree_(read_tree(path, {}, problems_, &peer_problem)) {}
 
   BoardParameters read_board() {
     const std::string subject = begin();
     BoardParameters board;
+    board.takes_speeds = takes_speeds_;
     read_block(kBoard, keys(board.line), [&](GivenValues& given) {
       const std::uint64_t bit_rate = board.line.bit_rate;
       if (given.accepted("board.bit_rate") && bit_rate != 0 && !is_bit_rate(static_cast<unsigned>(bit_rate)))
@@ -175,6 +181,10 @@ class DriveFileReader {
     if (wheel.direction == 0) refuse(given, wheel.joint, "direction", "must be 1 or -1");
     if (wheel.counter_bits != 16 && wheel.counter_bits != 32)
       refuse(given, wheel.joint, "counter_bits", "must be 16 or 32");
+    if (takes_speeds_ && wheel.velocity_limit * wheel.counts_per_turn / (2 * std::numbers::pi) > kMaxCountsPerSecond) {
+      refuse(given, wheel.joint, "velocity_limit", "must be below 4 194 303 counts per second, the greatest speed of an order",
+             "lower it, or count fewer edges per turn");
+    }
     if (wheel.counter_bits == 16 && counts_unseen(wheel, board.line, rate_) > kMaxCountsUnseen) {
       refuse(given, wheel.joint, "counter_bits",
              "must be 32: a counter of 16 bits wraps unseen within max_silence at this velocity_limit",
@@ -234,6 +244,7 @@ class DriveFileReader {
   const std::string& path_;
   std::span<const std::string> joints_;
   double rate_;
+  bool takes_speeds_;
   ProblemList problems_;
   ParameterTree tree_;
 };
@@ -249,12 +260,22 @@ void read_driver_file(const std::string& path, const std::string& block, Keys ke
   problems.throw_if_any("drive file refused (" + path + ")");
 }
 
-BoardParameters read_board_file(const std::string& path, std::span<const std::string> joints, double rate) {
-  return DriveFileReader(path, joints, rate).read_board();
+CanParameters read_drive_file(const Parameters& parameters, std::span<const std::string> joints) {
+  return read_drive_file(parameters.drives, joints, parameters.loop.rate, takes_speeds(parameters));
 }
 
-CanParameters read_drive_file(const std::string& path, std::span<const std::string> joints, double rate) {
-  return DriveFileReader(path, joints, rate).read();
+BoardParameters read_board_file(const Parameters& parameters, std::span<const std::string> joints) {
+  return read_board_file(parameters.drives, joints, parameters.loop.rate, takes_speeds(parameters));
+}
+
+BoardParameters read_board_file(const std::string& path, std::span<const std::string> joints, double rate,
+                                bool takes_speeds) {
+  return DriveFileReader(path, joints, rate, takes_speeds).read_board();
+}
+
+CanParameters read_drive_file(const std::string& path, std::span<const std::string> joints, double rate,
+                              bool takes_speeds) {
+  return DriveFileReader(path, joints, rate, takes_speeds).read();
 }
 
 }  // namespace robot_control

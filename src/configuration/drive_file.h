@@ -11,19 +11,27 @@
 #include <span>
 #include <string>
 
+#include "configuration/parameters.h"
 #include "drivers/can/can_parameters.h"
 #include "drivers/serial/board_parameters.h"
 #include "parameters/block.h"
 
 namespace robot_control {
 
-/// `joints` are the names of the robot's joints that have a motor, `rate` is the loop's in Hz. Throws ParameterError
+/// `joints` are the names of the robot's joints that have a motor, `rate` is the loop's in Hz. `takes_speeds`: the
+/// drives close the loops of their own speeds (robot.wheel_command). Throws ParameterError
 /// with all problems of the file, also if the planned frames overload the bus.
-CanParameters read_drive_file(const std::string& path, std::span<const std::string> joints, double rate);
+CanParameters read_drive_file(const std::string& path, std::span<const std::string> joints, double rate,
+                              bool takes_speeds = false);
 
 /// The same of a board on a serial line: a block `board` (BoardLineParameters) and one per joint
 /// (BoardWheelParameters).
-BoardParameters read_board_file(const std::string& path, std::span<const std::string> joints, double rate);
+BoardParameters read_board_file(const std::string& path, std::span<const std::string> joints, double rate,
+                                bool takes_speeds = false);
+
+/// The same of the drive file, the rate and the wheel command of these parameters.
+CanParameters read_drive_file(const Parameters& parameters, std::span<const std::string> joints);
+BoardParameters read_board_file(const Parameters& parameters, std::span<const std::string> joints);
 
 /// Reads a driver's file of one block with these keys into the members of the keys. Throws ParameterError with all
 /// problems of the file.

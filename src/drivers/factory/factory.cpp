@@ -39,7 +39,7 @@ std::unique_ptr<Driver> make_can(const Parameters& parameters, const MachineMode
   require_drive_file(parameters, "can", "odrive");
   refuse_held_joints(machine, "can");
   const DriveMotors motors = drive_motors(machine, brakes);
-  const CanParameters can = read_drive_file(parameters.drives, motors.joints, parameters.loop.rate);
+  const CanParameters can = read_drive_file(parameters, motors.joints);
   return std::make_unique<CanDriver>(can, motors.brakes, motors.joint_count, parameters.loop.period(),
                                      CanSocket::open(can.bus.address), std::move(clock));
 }
@@ -58,7 +58,7 @@ std::unique_ptr<Driver> make_board(const Parameters& parameters, const MachineMo
   require_drive_file(parameters, "board", "board");
   refuse_held_joints(machine, "board");
   const DriveMotors motors = drive_motors(machine, brakes);
-  const BoardParameters board = read_board_file(parameters.drives, motors.joints, parameters.loop.rate);
+  const BoardParameters board = read_board_file(parameters, motors.joints);
   const RealtimeParameters thread{
       .name = "serial", .policy = parameters.loop.realtime, .priority = kSerialPriority, .core = -1};
   const auto time_ns = [clock = std::move(clock)] { return clock().time_ns; };

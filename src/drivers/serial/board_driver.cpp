@@ -10,6 +10,7 @@ namespace robot_control {
 namespace {
 
 constexpr double kMicro = 1.0e-6;
+constexpr double kSpeedSteps = 256;  // of a speed, per count
 constexpr double kBitsPerByte = 10;  // with start and stop bit
 constexpr int kMaxChunks = 32;       // in one cycle, so that a flooded line does not stop the loop
 
@@ -26,8 +27,8 @@ double line_load(std::size_t wheels, double period, std::uint64_t bit_rate) {
   return std::max(order, report) * kBitsPerByte / period / static_cast<double>(bit_rate);
 }
 
-std::int32_t micro(double value) noexcept {
-  return static_cast<std::int32_t>(std::clamp(std::round(value / kMicro), -2.0e9, 2.0e9));
+std::int32_t rounded(double value) noexcept {
+  return static_cast<std::int32_t>(std::clamp(std::round(value), -2.0e9, 2.0e9));
 }
 
 const char* words_of_reset(std::uint64_t reason) noexcept {
@@ -270,14 +271,21 @@ void BoardDriver::write(std::span<const JointCommand> commands) noexcept {
   board_order order{};
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
     if (status_.state != DriverState::kRunning) continue;  // BOARD_BRAKE
-    const Wheel& wheel = wheels_[i];
-    const double age = 1.0e-9 * static_cast<double>(now_ns_ - sample_ns_);
-    const double torque =
-        laws_[i].step(obeys ? commands[i] : JointCommand{}, wheel.position + wheel.velocity * age, wheel.velocity);
-    order.wheel[parameters_.wheels[i].wheel] = {BOARD_EFFORT,
-                                                micro(static_cast<double>(parameters_.wheels[i].direction) * torque)};
+    order.wheel[parameters_.wheels[i].wheel] = order_of(i, obeys ? commands[i] : JointCommand{});
   }
   send_order(order);
+}
+
+board_wheel_order BoardDriver::order_of(std::size_t i, const JointCommand& command) noexcept {
+  const Wheel& wheel = wheels_[i];
+  const BoardWheelParameters& parameters = parameters_.wheels[i];
+  if (parameters_.takes_speeds) {
+    const double speed = wanted_speed(command, parameters.velocity_limit);
+    return {BOARD_VELOCITY, rounded(kSpeedSteps * speed / wheel.rad_per_count)};
+  }
+  const double age = 1.0e-9 * static_cast<double>(now_ns_ - sample_ns_);
+  const double torque = laws_[i].step(command, wheel.position + wheel.velocity * age, wheel.velocity);
+  return {BOARD_EFFORT, rounded(static_cast<double>(parameters.direction) * torque / kMicro)};
 }
 
 void BoardDriver::stop() noexcept {
@@ -293,7 +301,7 @@ std::string BoardDriver::description() const {
   text << "board on " << line_->name() << ", protocol " << int{BOARD_PROTOCOL};
   if (published_status_.load(status) && status.firmware != 0) text << ", firmware " << status.firmware;
   if (load_ > 0) text << ", load of the line " << std::lround(100 * load_) << " %";
-  text << "; on silence ";
+  text << (parameters_.takes_speeds ? ", takes speeds" : ", takes torques") << "; on silence ";
   for (const Word& word : words_of(parameters_.line.on_silence)) {
     if (word.value != static_cast<int>(parameters_.line.on_silence)) continue;
     text << (parameters_.line.on_silence == SilenceReaction::kUnknown ? "it does what is unknown"

@@ -6,7 +6,9 @@
 /// (board_clock.h). A sample therefore has its own time, however late it arrived, and its velocity brings it to the
 /// time of `read`.
 ///
-/// The board is given torques: every mode, the brake included, is computed here (drivers/joint_law.h). `read` reports
+/// The board is given torques: every mode, the brake included, is computed here (drivers/joint_law.h). A board that
+/// takes speeds is given the speed of kDriveVelocity, without its effort, and brakes with the speed zero, which it
+/// keeps at rest. `read` reports
 /// kStarting until the board answers without BOARD_WATCHDOG and BOARD_REFUSED. Its faults stay until the operator's
 /// reset; meanwhile the driver orders the brake of the board.
 ///
@@ -28,6 +30,7 @@
 
 #include "bus/latest_value.h"
 #include "drivers/driver.h"
+#include "drivers/drive_speed.h"
 #include "drivers/joint_law.h"
 #include "drivers/position_difference.h"
 #include "drivers/serial/board_clock.h"
@@ -71,7 +74,7 @@ class BoardDriver final : public Driver {
   /// The next `write` brakes. Until then the board brakes by itself.
   void stop() noexcept override;
 
-  bool accepts(JointMode mode) const noexcept override { return JointLaw::computes(mode); }
+  bool accepts(JointMode mode) const noexcept override { return accepted(mode, parameters_.takes_speeds); }
   /// The board may measure efforts and have an IMU, which is known after its first report.
   bool measures(MachineInput input) const noexcept override { return input != MachineInput::kContacts; }
   std::string description() const override;
@@ -109,6 +112,7 @@ class BoardDriver final : public Driver {
   void accept_counts(const board_report& report, std::int64_t elapsed_us) noexcept;
   void accept_imu(const board_report& report) noexcept;
   void fail(BoardCause cause, std::uint64_t detail = 0) noexcept;
+  board_wheel_order order_of(std::size_t i, const JointCommand& command) noexcept;
   void send_order(board_order& order) noexcept;
   void publish_status() noexcept;
 

@@ -54,6 +54,7 @@ inline Keys keys(BoardWheelParameters& wheel) {
 struct BoardParameters {
   BoardLineParameters line;
   std::vector<BoardWheelParameters> wheels;  ///< in the order of the robot's joints
+  bool takes_speeds = false;  ///< The board closes the loops of the wheels' speeds (JointMode::kDriveVelocity).
 };
 
 }  // namespace robot_control

@@ -10,6 +10,10 @@ namespace robot_control {
 namespace {
 
 constexpr double kMicro = 1.0e-6;
+constexpr double kFullPwm = 10'000;
+constexpr double kSpeedSteps = 256;        // of a speed, per count
+constexpr double kGainSteps = 65536;       // of a gain
+constexpr std::int64_t kLoopNs = 2'000'000;  // of the speed loop, in which a wheel moves by some counts
 constexpr std::uint16_t kFirmware = 1;
 constexpr std::uint8_t kWheelFault = 1;
 
@@ -21,7 +25,7 @@ BoardFront::BoardFront(const BoardParameters& parameters, std::span<const Brake>
       period_ns_(std::llround(1.0e9 * period)),
       virtual_line_(std::make_unique<VirtualSerial>(static_cast<double>(parameters.line.bit_rate), seed)),
       line_(virtual_line_->device_end()) {
-  for (const Brake& brake : brakes) wheels_.push_back({.brake = BrakeLaw(brake)});
+  for (const Brake& brake : brakes) wheels_.push_back({.brake = BrakeLaw(brake), .damping = brake.damping});
   sensors_.valid = BOARD_HAS_EFFORT;
   sensors_.inputs = BOARD_E_STOP_RELEASED;
   boot(BOARD_POWER_ON);
@@ -33,7 +37,7 @@ BoardFront::BoardFront(const BoardParameters& parameters, std::span<const Brake>
       period_ns_(std::llround(1.0e9 * period)),
       true_line_(std::move(line)),
       line_(*true_line_) {
-  for (const Brake& brake : brakes) wheels_.push_back({.brake = BrakeLaw(brake)});
+  for (const Brake& brake : brakes) wheels_.push_back({.brake = BrakeLaw(brake), .damping = brake.damping});
   sensors_.valid = BOARD_HAS_EFFORT;
   sensors_.inputs = BOARD_E_STOP_RELEASED;
   boot(BOARD_POWER_ON);
@@ -55,9 +59,29 @@ void BoardFront::boot(board_reset reason) {
           [](void* front, const std::uint8_t* bytes, std::uint8_t size) {
             static_cast<BoardFront*>(front)->write({bytes, size});
           }};
+  if (parameters_.takes_speeds) tune(config);
   booted_ns_ = now_ns_;
   sensors_.reset = reason;
   board_begin(&board_, &config);
+}
+
+/// One set of gains serves all wheels: that of wheel 0. The damping of the brake, in N·m·s/rad, is stable also for a
+/// wheel that is lifted, and the proportional gain is the same.
+void BoardFront::tune(board_config& config) const {
+  const std::size_t joint = joint_of(0);
+  const BoardWheelParameters& wheel = parameters_.wheels[joint];
+  const double counts_per_rad = kSpeedSteps * wheel.counts_per_turn / (2 * std::numbers::pi);
+  const double full_torque = kStall * wheel.torque_limit;
+  const auto gain = [&](double pwm_s_per_rad) {
+    return static_cast<std::int32_t>(std::lround(kGainSteps * kFullPwm * pwm_s_per_rad / counts_per_rad));
+  };
+  const double proportional = wheels_[joint].damping / full_torque;
+  config.velocity_loop = 1;
+  config.loop_period_us = static_cast<std::uint32_t>(std::max<std::int64_t>(kLoopNs, period_ns_) / 1000);
+  config.kf = gain(1 / (kFree * wheel.velocity_limit));
+  config.kp = gain(proportional);
+  config.ki = gain(proportional * kMicro * config.loop_period_us / kIntegralTime);
+  config.max_pwm = static_cast<std::int16_t>(kFullPwm);
 }
 
 std::size_t BoardFront::joint_of(std::size_t wheel) const {
@@ -83,7 +107,15 @@ void BoardFront::counts(std::uint32_t* counts) const {
 void BoardFront::drive(std::size_t wheel, board_mode mode, std::int32_t value) {
   const std::size_t joint = joint_of(wheel);
   wheels_[joint].mode = mode;
-  wheels_[joint].ordered = kMicro * value * static_cast<double>(parameters_.wheels[joint].direction);
+  const double unit = mode == BOARD_PWM ? 1 / kFullPwm : kMicro;
+  wheels_[joint].ordered = unit * value * static_cast<double>(parameters_.wheels[joint].direction);
+}
+
+double BoardFront::ordered_torque(std::size_t joint) const {
+  const Wheel& wheel = wheels_[joint];
+  if (wheel.mode != BOARD_PWM) return wheel.ordered;
+  const BoardWheelParameters& parameters = parameters_.wheels[joint];
+  return kStall * parameters.torque_limit * (wheel.ordered - wheel.velocity / (kFree * parameters.velocity_limit));
 }
 
 void BoardFront::read_sensors(board_sensors& sensors) const {
@@ -115,8 +147,10 @@ void BoardFront::run_board() {
   if (off_ || now_ns_ < boots_ns_) {
     while (line_.receive(chunk)) {
     }
-    for (Wheel& wheel : wheels_) wheel = {.brake = wheel.brake, .position = wheel.position, .velocity = wheel.velocity};
-    for (Wheel& wheel : wheels_) wheel.mode = BOARD_EFFORT;  // no supply, no torque
+    for (Wheel& wheel : wheels_) {
+      wheel.torque = wheel.ordered = 0;
+      wheel.mode = BOARD_EFFORT;  // no supply, no torque
+    }
     return;
   }
   if (boots_ns_ != 0) {
@@ -149,7 +183,7 @@ void BoardFront::run(std::span<const JointSample> joints) {
       Wheel& wheel = wheels_[i];
       if (wheel.mode != BOARD_BRAKE) wheel.brake.release();
       const double wanted =
-          wheel.mode == BOARD_BRAKE ? wheel.brake.step(wheel.torque, wheel.position, wheel.velocity) : wheel.ordered;
+          wheel.mode == BOARD_BRAKE ? wheel.brake.step(wheel.torque, wheel.position, wheel.velocity) : ordered_torque(i);
       const double limit = parameters_.wheels[i].torque_limit;
       wheel.torque = std::clamp(wanted, -limit, limit);
       wheel.mean_torque += share * wheel.torque;

@@ -1,6 +1,7 @@
 #pragma once
 /// A BoardFront is a motor board before the motors of a simulated robot, at the device's end of a serial line. Its code
-/// is that of `firmware/`.
+/// is that of `firmware/`. For a board that takes speeds that code runs its own speed loop, and the motors are those of
+/// direct current: torque = kStall · limit · (pwm − speed/(kFree · speed limit)), within the torque limit.
 ///
 /// `inject` takes `board` or `line` as the component; the line has faults in virtual time alone.
 ///
@@ -27,6 +28,9 @@ class BoardFront final : public DeviceFront {
   static constexpr std::int64_t kStepNs = 250'000;      ///< between two calls of the board's main loop
   static constexpr std::int64_t kBootNs = 300'000'000;  ///< in which a board that restarts is silent
   static constexpr double kClockPpm = 200;              ///< by which its clock runs fast
+  static constexpr double kStall = 2;                   ///< torque at rest, of the limit
+  static constexpr double kFree = 1.5;                  ///< speed without load, of the limit
+  static constexpr double kIntegralTime = 0.08;         ///< s, of the speed loop
 
   /// Before a line in virtual time.
   BoardFront(const BoardParameters& parameters, std::span<const Brake> brakes, double period, std::uint64_t seed);
@@ -58,15 +62,17 @@ class BoardFront final : public DeviceFront {
  private:
   struct Wheel {
     BrakeLaw brake;
+    double damping = 0;   // N·m·s/rad, of the brake
     double position = 0;  // rad, of the joint
     double velocity = 0;
     double torque = 0;  // N·m, of the joint
     double mean_torque = 0;
     board_mode mode = BOARD_BRAKE;
-    double ordered = 0;  // N·m, of the joint
+    double ordered = 0;  // N·m or a share of the supply, of the joint
   };
 
   void boot(board_reset reason);
+  void tune(board_config& config) const;
   void run_board();
   std::size_t joint_of(std::size_t wheel) const;
   std::uint32_t time_us() const;
@@ -74,6 +80,7 @@ class BoardFront final : public DeviceFront {
   void drive(std::size_t wheel, board_mode mode, std::int32_t value);
   void read_sensors(board_sensors& sensors) const;
   void write(std::span<const std::uint8_t> bytes);
+  double ordered_torque(std::size_t joint) const;
 
   BoardParameters parameters_;
   std::vector<Wheel> wheels_;  // in the order of the joints

@@ -51,7 +51,7 @@ std::unique_ptr<Driver> make_plant_behind_board(const Parameters& parameters, co
 std::unique_ptr<Driver> make_plant_behind_serial(const Parameters& parameters, const MachineModel& machine,
                                                  const DriveMotors& motors) {
   const double period = parameters.loop.period();
-  const BoardParameters board = read_board_file(parameters.drives, motors.joints, parameters.loop.rate);
+  const BoardParameters board = read_board_file(parameters, motors.joints);
   auto front = std::make_unique<BoardFront>(board, motors.brakes, period, parameters.plant.seed);
   auto driver = std::make_unique<BoardDriver>(board, motors.brakes, motors.joint_count, period, front->driver_end(),
                                               [clock = front.get()] { return clock->now_ns(); });
@@ -68,7 +68,7 @@ std::unique_ptr<Driver> make_simulated_machine(const Parameters& parameters, con
   const DriveMotors motors = drive_motors(machine, brakes);
   if (parameters.driver == DriverChoice::kExample) return make_plant_behind_board(parameters, machine, motors);
   if (parameters.driver == DriverChoice::kBoard) return make_plant_behind_serial(parameters, machine, motors);
-  const CanParameters can = read_drive_file(parameters.drives, motors.joints, parameters.loop.rate);
+  const CanParameters can = read_drive_file(parameters, motors.joints);
   const auto [driver_end, device_end] = line_ends();
   std::unique_ptr<DeviceFront> devices = can_devices(can, parameters, motors, CanSocket::line_end(device_end));
   const auto clock = [front = devices.get()] { return CanTime{.time_ns = front->now_ns(), .utc_ns = front->now_ns()}; };
@@ -88,12 +88,12 @@ std::unique_ptr<DeviceSimulator> make_device_simulator(const Parameters& paramet
     return std::make_unique<DeviceSimulator>(machine, parameters.plant, period, std::move(board));
   }
   if (parameters.driver == DriverChoice::kBoard) {
-    const BoardParameters board = read_board_file(parameters.drives, motors.joints, parameters.loop.rate);
+    const BoardParameters board = read_board_file(parameters, motors.joints);
     auto front = std::make_unique<BoardFront>(board, motors.brakes, period,
                                               std::make_unique<PseudoTerminal>(board.line.address));
     return std::make_unique<DeviceSimulator>(machine, parameters.plant, period, std::move(front));
   }
-  const CanParameters can = read_drive_file(parameters.drives, motors.joints, parameters.loop.rate);
+  const CanParameters can = read_drive_file(parameters, motors.joints);
   auto devices = can_devices(can, parameters, motors, CanSocket::open(can.bus.address));
   return std::make_unique<DeviceSimulator>(machine, parameters.plant, period, std::move(devices));
 }
