@@ -41,6 +41,7 @@ class Model:
         first = message["nodes"][0]
         start = (first["nodeId"], first["sequenceId"])
         if message["orderId"] != self.order:
+            near = near or (not self.dropped and start[0] == self.reached[0])
             return REFUSED if self.executing or not near else TAKEN
         if message["orderUpdateId"] < self.update:
             return REFUSED

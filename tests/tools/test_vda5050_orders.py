@@ -220,6 +220,19 @@ def test_a_node_that_was_reached_is_not_measured_again():
     assert run.robot.pose.x == pytest.approx(3.0, abs=0.02)
 
 
+def test_a_robot_stands_on_the_node_that_it_reached_last_until_it_drives():
+    run = Run()
+    run.send(order(LINE[:2]))
+    run.until_over()
+    run.robot.pose = Pose(0.947, 0.0, 0.0)  # localization corrects the place
+    run.step(0.1)
+    elsewhere = order([(1.2, 0.0), *LINE[2:]], name="o2", first=1)
+    assert kinds(run.send(elsewhere)) == ["orderError"]
+    assert kinds(run.send(order(LINE[1:], name="o2", first=1))) == []
+    run.until_over()
+    assert run.robot.pose.x == pytest.approx(3.0, abs=0.02)
+
+
 @pytest.mark.parametrize("drop", ["cancelOrder", "MANUAL", "initPosition"])
 def test_a_dropped_order_is_continued_only_on_its_last_node(drop):
     run = Run()
@@ -601,6 +614,24 @@ def test_after_a_stop_nothing_moves_by_itself():
     run.until_over()
     assert run.robot.pose.x == pytest.approx(3.0, abs=0.02)
     assert kinds(run.state) == []
+
+
+def test_a_gap_of_the_messages_pauses_no_order_and_a_stop_that_was_not_seen_does():
+    run = Run()
+    run.send(order(LINE, 2))
+    run.step(6.0)
+    run.robot.given = replace(run.robot.given, silent=True)
+    run.step(1.0)
+    run.send(order(LINE[1:], update=1, first=1))
+    run.step(1.0)
+    assert run.robot.pose.x == pytest.approx(1.0, abs=0.02)
+    run.robot.given = replace(run.robot.given, silent=False)
+    run.step(1.0)
+    assert not run.state["paused"]
+    assert run.robot.motion.linear > 0.1
+    run.robot.given = replace(run.robot.given, permit=(0, 1))
+    run.step(0.1)
+    assert run.state["paused"]
 
 
 def test_after_a_restart_the_order_stands_paused():

@@ -82,7 +82,7 @@ class Client:
         self.robot, self.settings, self.machine, self.vehicle = robot, settings, machine, vehicle
         self._leg: Leg | None = None
         self._facts = robot.facts()
-        self._mode = self._facts.mode
+        self._mode, self._permit = self._facts.mode, self._facts.permit
         self._driving_error: Error | None = None
         self._outbox: list[tuple[str, Message]] = []
         self._sent_key: object = None  # what the last state said
@@ -175,8 +175,8 @@ class Client:
 
     def resume(self) -> str:
         """stopPause, or the same at the robot; why it does not go on, empty if it does."""
-        if not self._facts.may_drive:
-            return "the safety monitor does not permit to drive"
+        if not self._facts.may_drive or self._facts.silent:
+            return "the safety monitor does not permit to drive, or it or odometry is silent"
         if self._stepped_at < self._rival_until:
             return RIVAL.description
         why = self.robot.resume() if self._facts.held_by else ""
@@ -199,8 +199,9 @@ class Client:
         if facts.mode != self._mode:
             self._mode = facts.mode
             self._interrupt(vehicle.clear(f"the mode became {facts.mode}"))
-        if vehicle.nodes and (now < self._rival_until or not facts.may_drive):
+        if vehicle.nodes and (now < self._rival_until or not facts.may_drive or facts.permit != self._permit):
             vehicle.paused = True
+        self._permit = facts.permit
         self._follow(before)
         for action_id, status, result in self.robot.results():
             for each in vehicle.actions:
@@ -272,7 +273,8 @@ class Client:
     def _drive(self) -> None:
         vehicle = self.vehicle
         driving = self.robot.progress.status == DRIVING
-        if not vehicle.may_drive or not self._facts.may_drive or vehicle.last is None:
+        permitted = self._facts.may_drive and not self._facts.silent
+        if not vehicle.may_drive or not permitted or vehicle.last is None:
             if driving:
                 self.robot.stop()
             return

@@ -88,7 +88,7 @@ class RosRobot:
             time.sleep(CATCH_UP)
         now, odometry, status = time.monotonic(), self._odometry, self._status
         self._asked_at = now
-        safety = self._safety if now - self._safety_at < STATUS_SILENCE else None
+        safety, speaks = self._safety, now - self._safety_at < STATUS_SILENCE
         fresh = odometry is not None and now - self._odometry_at < SILENCE
         if self.progress.status == DRIVING and now - self._feedback_at > STATUS_SILENCE:
             self._goal += 1
@@ -118,9 +118,14 @@ class RosRobot:
             **result,
             mode="MANUAL" if manual else "AUTOMATIC",
             stopped=safety is not None and safety.state_name in STOPPED,
-            may_drive=fresh and safety is not None and safety.state_name in DRIVABLE,
+            may_drive=safety is not None and safety.state_name in DRIVABLE,
+            permit=(safety.run, safety.withdrawals) if safety is not None else (0, 0),
+            silent=not fresh or not speaks,
             held_by=self._held_by,
-            errors=(_SILENT,) if safety is None else tuple(_errors(safety)),
+            errors=(
+                *(_errors(safety) if safety is not None and speaks else [_silent("safetyMonitor", "safety_status")]),
+                *([] if fresh else [_silent("odometry", "odom")]),
+            ),
         )
 
     @property
@@ -260,7 +265,8 @@ def _jumped(before: Odometry, after: Odometry) -> bool:
     return bool(math.dist((a.x, a.y), (b.x, b.y)) > way or abs(turned(b.yaw - a.yaw)) > turn)
 
 
-_SILENT = Error("safetyMonitorSilent", "safety_status is silent", (), "start the robot's nodes", fatal=True)
+def _silent(what: str, topic: str) -> Error:
+    return Error(f"{what}Silent", f"{topic} is silent", (), "start the robot's nodes", fatal=True)
 
 
 def _errors(safety: SafetyStatus) -> list[Error]:

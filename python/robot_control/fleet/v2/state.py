@@ -47,6 +47,8 @@ class Facts:
     mode: str = "AUTOMATIC"  # operatingMode
     stopped: bool = False  # a stop is latched, which a reset at the robot ends
     may_drive: bool = True  # the safety monitor permits it
+    permit: tuple[int, int] = (0, 0)  # that of the monitor: each stop and each start begin another one
+    silent: bool = False  # odometry or safety_status does not come
     held_by: str = ""  # why the present path is paused at the robot
     errors: tuple[Error, ...] = ()
 

@@ -4,7 +4,7 @@ The master's messages and the robot's events go in; `may_drive`, `base` and `sta
 while it and the edge before it are released. Decision on an order (figure 8):
 
     orderId    orderUpdateId    it is taken if
-    another    any              nothing is executed, and the robot stands on its first node
+    another    any              nothing is executed, and the robot stands on its first node, or reached it last
     the same   lower            never
     the same   equal            never; it is ignored
     the same   higher           executing: its first node is the decision point, the last released node
@@ -118,10 +118,19 @@ class Vehicle:
         self._check_start(order, order.nodes[0], near)
 
     def _check_start(self, order: Order, node: Node, near: Near) -> None:
-        if not near(node):
+        if not self._stands_on(node) and not near(node):
             kind = "orderUpdateError" if order.id == self.order_id else "orderError"
             why = f"the robot does not stand on node {node.id}"
             raise _refused(order, kind, why, "START_NODE_OUT_OF_RANGE", nodeId=node.id)
+
+    def _stands_on(self, node: Node) -> bool:
+        """True if it is the last one reached, at the same place: the robot has not driven since."""
+        last, place = self.last, node.place
+        if last is None or last.place is None or place is None or last.id != node.id:
+            return False
+        known = last.place
+        same = (known.x, known.y, known.map_id) == (place.x, place.y, place.map_id)
+        return same and place.theta in (None, known.theta)
 
     def _check_update(self, order: Order, near: Near) -> None:
         first = order.nodes[0]
