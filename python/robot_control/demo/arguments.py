@@ -11,7 +11,7 @@ LEGGED_ROBOT = "quadbot"
 
 
 def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
-    """The command line of scripts/demo: `seconds`, `out`, `robot`, `drives` and `wheel_command`; ends the program on a wrong one."""
+    """`seconds`, `out`, `robot`, `drives` and `wheel_command` of scripts/demo; ends the program on a wrong one."""
     parser = argparse.ArgumentParser(prog="scripts/demo", description="Drives the simulated robot and judges the run.")
     parser.add_argument("--seconds", type=_seconds, default=10.0, help="of driving (default %(default)g)")
     parser.add_argument("--out", type=_folder, default="demo_out", help="folder (default ./demo_out)")

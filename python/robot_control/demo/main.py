@@ -95,7 +95,8 @@ class Child:
 
 
 def run_demo(seconds: float, out: Path, robot: str, drives: Path | None = None, *, velocity: bool = False) -> int:
-    """Drives `robot` for `seconds` and writes everything to `out`; `drives`: a drive file, `velocity`: they take speeds.
+    """Drives `robot` for `seconds` and writes everything to `out`; `drives`: a drive file, `velocity`: of
+    speeds.
     Returns the exit code.
     """
     out.mkdir(parents=True, exist_ok=True)

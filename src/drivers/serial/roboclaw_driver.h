@@ -7,8 +7,8 @@
 /// these pairs battery, temperature or status. A loop of 200 Hz and more thus orders 100 times per second. The counts
 /// are those of the middle between request and answer; their speed brings them to the time of `read`.
 ///
-/// `read` reports kStarting until the board was compared: version, gains and QPPS of both motors, and its serial
-/// timeout, which is set to kTimeoutNs and read back. It is refused with gains or a QPPS of zero: such a board answers
+/// `read` reports kStarting until version, gains and QPPS of both motors were read, and its serial timeout, which is
+/// set to kTimeoutNs. It is refused with gains or a QPPS of zero: such a board answers
 /// a speed with full power. Until then, and after a fault of the counts, the order is a duty of zero. Otherwise the
 /// board brakes with the speed zero, which it keeps at rest. Faults stay until the operator's reset:
 ///

@@ -65,8 +65,8 @@ void BoardFront::boot(board_reset reason) {
   board_begin(&board_, &config);
 }
 
-/// One set of gains serves all wheels: that of wheel 0. The damping of the brake, in N·m·s/rad, is stable also for a
-/// wheel that is lifted, and the proportional gain is the same.
+/// One set of gains serves all wheels: that of wheel 0. The proportional gain is the
+/// damping of the brake, which is stable also for a lifted wheel.
 void BoardFront::tune(board_config& config) const {
   const std::size_t joint = joint_of(0);
   const BoardWheelParameters& wheel = parameters_.wheels[joint];

@@ -61,7 +61,7 @@ void RoboclawFront::stop() {
 }
 
 /// A byte that can begin no request, and a request with a wrong CRC, are dropped.
-void RoboclawFront::take(std::uint8_t byte) {
+void RoboclawFront::receive_byte(std::uint8_t byte) {
   request_.add(byte, 1);
   if (request_.number(0, 1) != parameters_.line.board_address) return request_.clear();
   if (request_.size() < 2) return;
@@ -163,7 +163,7 @@ void RoboclawFront::run(std::span<const JointSample> joints) {
     if (timeout_ > 0 && now_ns_ - request_ns_ > timeout_ * kTimeoutStepNs) stop();
     SerialChunk chunk;
     while (line_.receive(chunk)) {
-      for (const std::uint8_t byte : chunk.received()) alive ? take(byte) : request_.clear();
+      for (const std::uint8_t byte : chunk.received()) alive ? receive_byte(byte) : request_.clear();
     }
     const std::int64_t next_ns = std::min(now_ns_ + kStepNs, end_ns);
     const double seconds = 1.0e-9 * static_cast<double>(next_ns - now_ns_);

@@ -62,7 +62,7 @@ class RoboclawFront final : public DeviceFront {
   };
 
   void add_wheels(std::span<const Brake> brakes, std::span<const double> effort_limits);
-  void take(std::uint8_t byte);
+  void receive_byte(std::uint8_t byte);
   void obey();
   void stop();
   void answer(roboclaw::Packet data);

@@ -16,7 +16,7 @@ double clock_of(std::size_t device) {
   return device % 2 == 0 ? SimulatedDrives::kClockPpm : -SimulatedDrives::kClockPpm;
 }
 
-/// The damping of a brake in N·m·s/rad is stable also for a wheel that is lifted; it is the gain of a speed loop, too.
+/// The gain of the speed loop is the damping of the brake, which is stable also for a lifted wheel.
 OdriveDeviceParameters device_of(const odrive::OdriveParameters& drive, const Brake& brake, double clock_ppm) {
   const double gain = brake.damping / (drive.drive.gear * drive.drive.gear);
   return {.node = static_cast<std::uint8_t>(drive.drive.node),

@@ -175,7 +175,7 @@ TEST_F(RoboclawDriverTest, OnADisturbedLineNoWrongValueIsAcceptedAndOnlySilenceS
   for (int i = 0; i < 20000; ++i) {
     machine_.read(frame_);
     if (frame_.driver_state == DriverState::kRunning) {
-      // The middle of an exchange is up to 3 ms from the counts' instant, and the speed, over 28 ms and more, in error
+      // The middle of an exchange is up to 3 ms from the counts' instant. The speed, over 28 ms and more, is in error
       // by 6 ms of that span: 2.1 rad/s, for up to 50 ms.
       ASSERT_NEAR(frame_.joints[0].position, machine_.joints[0].position, 0.14) << i;
     } else if (frame_.driver_state == DriverState::kFault) {
