@@ -9,8 +9,8 @@
 
 namespace robot_control {
 
-/// Returns s. Of a board on a serial line it is kMaxSilence cycles, and no longer than its own watchdog waits for an
-/// order. Of a RoboClaw it is kRoboclawSilence, of other drivers 0.
+/// Returns s. A board on a serial line has kMaxSilence cycles, and no longer than its own watchdog waits for an order.
+/// A RoboClaw has kRoboclawSilence, other drivers have 0.
 inline double tolerated_silence(const Parameters& parameters) noexcept {
   constexpr double kBoardWatchdog = 0.05;
   if (parameters.driver == DriverChoice::kRoboclaw) return kRoboclawSilence;

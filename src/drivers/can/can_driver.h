@@ -9,9 +9,9 @@
 /// moves on, and its age grows.
 ///
 /// Drives that take speeds are given that of kDriveVelocity, with its effort where the dialect has a feed-forward. They
-/// brake with the speed zero, which they keep at rest. Of other drives the torque of every mode, the brake included, is
-/// computed here from the newest sample (drivers/joint_law.h). The sample is one or two cycles old, and is brought to
-/// the time of the call by its velocity. With an inertia J at the joint and the period h, the brake's damping d is
+/// brake with the speed zero, which they keep at rest. For other drives the torque of every mode, the brake included,
+/// is computed here from the newest sample (drivers/joint_law.h). The sample is one or two cycles old, and is brought
+/// to the time of the call by its velocity. With an inertia J at the joint and the period h, the brake's damping d is
 /// stable below d h / J = 0.6. Half of that is recommended.
 
 #include <array>
