@@ -17,10 +17,11 @@ namespace {
 
 constexpr const char* kBus = "bus";
 constexpr const char* kBoard = "board";
+constexpr const char* kRoboclaw = "roboclaw";
 constexpr const char* kEveryJoint = "every_joint";
 constexpr double kMaxCountsUnseen = 32767;
 constexpr double kMaxCountsPerSecond = 0x3FFFFFFF / 256.0;  // firmware/board.c
-constexpr double kMinTimeoutPeriods = 10;  // in which a drive waits for its host
+constexpr double kMinTimeoutPeriods = 10;                   // in which a drive waits for its host
 
 using cia402::Cia402Parameters;
 using odrive::OdriveParameters;
@@ -59,19 +60,22 @@ double counts_unseen(const BoardWheelParameters& wheel, const BoardLineParameter
 class DriveFileReader {
  public:
   DriveFileReader(const std::string& path, std::span<const std::string> joints, double rate, bool takes_speeds)
-      : path_(path), joints_(joints), rate_(rate), takes_speeds_(takes_speeds), tree_(read_tree(path, {}, problems_, &peer_problem)) {}
+      : path_(path),
+        joints_(joints),
+        rate_(rate),
+        takes_speeds_(takes_speeds),
+        tree_(read_tree(path, {}, problems_, &peer_problem)) {}
 
   BoardParameters read_board() {
-    const std::string subject = begin();
     BoardParameters board;
     board.takes_speeds = takes_speeds_;
-    read_block(kBoard, keys(board.line), [&](GivenValues& given) {
-      const std::uint64_t bit_rate = board.line.bit_rate;
-      if (given.accepted("board.bit_rate") && bit_rate != 0 && !is_bit_rate(static_cast<unsigned>(bit_rate)))
-        given.refuse("board.bit_rate", "is no bit rate of a tty", "take 115200, 460800, 921600 …, or 0 for USB");
-    });
-    board.wheels = read_joints<BoardWheelParameters>(board);
-    problems_.throw_if_any(subject);
+    read_serial(kBoard, board);
+    return board;
+  }
+
+  RoboclawParameters read_roboclaw() {
+    RoboclawParameters board;
+    read_serial(kRoboclaw, board);
     return board;
   }
 
@@ -113,6 +117,18 @@ class DriveFileReader {
     if (tree_.blocks.empty() && problems_.empty()) problems_.add({path_, "", "holds no blocks", "", ""});
     if (tree_.blocks.empty()) problems_.throw_if_any(subject);
     return subject;
+  }
+
+  template <class File>
+  void read_serial(const std::string& block, File& file) {
+    const std::string subject = begin();
+    read_block(block.c_str(), keys(file.line), [&](GivenValues& given) {
+      const std::uint64_t bit_rate = file.line.bit_rate;
+      if (given.accepted(block + ".bit_rate") && bit_rate != 0 && !is_bit_rate(static_cast<unsigned>(bit_rate)))
+        given.refuse(block + ".bit_rate", "is no bit rate of a tty", "take 115200, 460800, 921600 …, or 0 for USB");
+    });
+    file.wheels = read_joints<typename decltype(file.wheels)::value_type>(file);
+    problems_.throw_if_any(subject);
   }
 
   /// Reads the block that is not a joint's.
@@ -174,6 +190,17 @@ class DriveFileReader {
     joint.drive.joint = name;
   }
   static void name_joint(BoardWheelParameters& wheel, const std::string& name) { wheel.joint = name; }
+  static void name_joint(RoboclawWheelParameters& wheel, const std::string& name) { wheel.joint = name; }
+
+  void check_joint(const std::vector<RoboclawWheelParameters>& wheels, std::size_t i,
+                   const RoboclawParameters& /*file*/, GivenValues& given) {
+    const RoboclawWheelParameters& wheel = wheels[i];
+    if (wheel.direction == 0) refuse(given, wheel.joint, "direction", "must be 1 or -1");
+    for (std::size_t j = 0; j < i; ++j) {
+      if (wheels[j].motor == wheel.motor && given.accepted(wheel.joint + ".motor"))
+        refuse(given, wheel.joint, "motor", "is the motor of " + wheels[j].joint + ", too", "each joint has its own");
+    }
+  }
 
   void check_joint(const std::vector<BoardWheelParameters>& wheels, std::size_t i, const BoardParameters& board,
                    GivenValues& given) {
@@ -182,7 +209,8 @@ class DriveFileReader {
     if (wheel.counter_bits != 16 && wheel.counter_bits != 32)
       refuse(given, wheel.joint, "counter_bits", "must be 16 or 32");
     if (takes_speeds_ && wheel.velocity_limit * wheel.counts_per_turn / (2 * std::numbers::pi) > kMaxCountsPerSecond) {
-      refuse(given, wheel.joint, "velocity_limit", "must be below 4 194 303 counts per second, the greatest speed of an order",
+      refuse(given, wheel.joint, "velocity_limit",
+             "must be below 4 194 303 counts per second, the greatest speed of an order",
              "lower it, or count fewer edges per turn");
     }
     if (wheel.counter_bits == 16 && counts_unseen(wheel, board.line, rate_) > kMaxCountsUnseen) {
@@ -200,8 +228,10 @@ class DriveFileReader {
 
   /// Sets the values that follow from the rate where they are left out.
   void set_defaults(BoardWheelParameters& /*all*/) const {}
-  void set_defaults(OdriveParameters& /*all*/) const {}
+  void set_defaults(RoboclawWheelParameters& /*all*/) const {}
+  void set_defaults(OdriveParameters& all) const { all.drive.takes_speeds = takes_speeds_; }
   void set_defaults(Cia402Parameters& all) const {
+    all.drive.takes_speeds = takes_speeds_;
     all.host_timeout = std::max(all.host_timeout, kMinTimeoutPeriods / rate_);
   }
 
@@ -235,6 +265,12 @@ class DriveFileReader {
       refuse(given, p.drive.joint, "host_timeout", "must be at least ten periods of the loop (robot.rate)",
              "a host that is late for a few cycles would stop the drive");
     }
+    if (p.mode != cia402::ModeChoice::kAny && is_of_speeds(p.mode) != takes_speeds_) {
+      refuse(given, p.drive.joint, "mode",
+             takes_speeds_ ? "must be any, csv or pv with robot.wheel_command: velocity"
+                           : "must be any, cst or tq with robot.wheel_command: torque",
+             "correct it, or set robot.wheel_command");
+    }
     if (p.abort_option == 0 && p.drive.on_silence != SilenceReaction::kUnknown) {
       refuse(given, p.drive.joint, "on_silence", "contradicts abort_option: 0, with which the drive does nothing",
              "leave one of them out");
@@ -262,6 +298,10 @@ void read_driver_file(const std::string& path, const std::string& block, Keys ke
 
 CanParameters read_drive_file(const Parameters& parameters, std::span<const std::string> joints) {
   return read_drive_file(parameters.drives, joints, parameters.loop.rate, takes_speeds(parameters));
+}
+
+RoboclawParameters read_roboclaw_file(const Parameters& parameters, std::span<const std::string> joints) {
+  return DriveFileReader(parameters.drives, joints, parameters.loop.rate, true).read_roboclaw();
 }
 
 BoardParameters read_board_file(const Parameters& parameters, std::span<const std::string> joints) {

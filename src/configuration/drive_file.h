@@ -14,6 +14,7 @@
 #include "configuration/parameters.h"
 #include "drivers/can/can_parameters.h"
 #include "drivers/serial/board_parameters.h"
+#include "drivers/serial/roboclaw_parameters.h"
 #include "parameters/block.h"
 
 namespace robot_control {
@@ -32,6 +33,7 @@ BoardParameters read_board_file(const std::string& path, std::span<const std::st
 /// The same of the drive file, the rate and the wheel command of these parameters.
 CanParameters read_drive_file(const Parameters& parameters, std::span<const std::string> joints);
 BoardParameters read_board_file(const Parameters& parameters, std::span<const std::string> joints);
+RoboclawParameters read_roboclaw_file(const Parameters& parameters, std::span<const std::string> joints);
 
 /// Reads a driver's file of one block with these keys into the members of the keys. Throws ParameterError with all
 /// problems of the file.

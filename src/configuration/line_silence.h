@@ -5,13 +5,15 @@
 
 #include "configuration/parameters.h"
 #include "drivers/serial/board_parameters.h"
+#include "drivers/serial/roboclaw_parameters.h"
 
 namespace robot_control {
 
-/// Returns s: of a board on a serial line kMaxSilence cycles, and no longer than its own watchdog waits for an order;
-/// of other drivers 0.
+/// Returns s. A board on a serial line has kMaxSilence cycles, and no longer than its own watchdog waits for an order.
+/// A RoboClaw has kRoboclawSilence, other drivers have 0.
 inline double tolerated_silence(const Parameters& parameters) noexcept {
   constexpr double kBoardWatchdog = 0.05;
+  if (parameters.driver == DriverChoice::kRoboclaw) return kRoboclawSilence;
   if (parameters.driver != DriverChoice::kBoard) return 0;
   return std::min(static_cast<double>(kMaxSilence) * parameters.loop.period(), kBoardWatchdog);
 }

@@ -29,17 +29,19 @@ namespace robot_control {
 
 /// The driver that stands before the machine.
 enum class DriverChoice {
-  kMujoco,   ///< the simulated machine
-  kCan,      ///< motor drives on CAN, as the drive file says
-  kExample,  ///< drivers/example: a motor board
-  kBoard,    ///< a motor board on a serial line, with the code of firmware/
+  kMujoco,    ///< the simulated machine
+  kCan,       ///< motor drives on CAN, as the drive file says
+  kExample,   ///< drivers/example: a motor board
+  kBoard,     ///< a motor board on a serial line, with the code of firmware/
+  kRoboclaw,  ///< a RoboClaw on a serial line
 };
 
 inline std::vector<Word> words_of(DriverChoice) {
   return {{"mujoco", DriverChoice::kMujoco},
           {"can", DriverChoice::kCan},
           {"example", DriverChoice::kExample},
-          {"board", DriverChoice::kBoard}};
+          {"board", DriverChoice::kBoard},
+          {"roboclaw", DriverChoice::kRoboclaw}};
 }
 
 /// The IMU of a real machine.

@@ -34,6 +34,7 @@ struct DriveParameters {
   double velocity_limit = 0;       ///< rad/s or m/s, of the joint
   double max_temperature = 90;     ///< °C
   double min_voltage = 0;          ///< V; 0: not judged
+  bool takes_speeds = false;       ///< The drive closes the loop of its speed (robot.wheel_command).
   bool effort_is_rare = false;     ///< The torque is measured more rarely than the position.
   double sample_period = 0;        ///< s between positions that the drive sends by itself; 0: one in each cycle
   std::uint64_t max_silence = 20;  ///< samples in a row that may be missing

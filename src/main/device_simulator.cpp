@@ -1,6 +1,6 @@
 /// The simulated robot whose drives the program `driver` commands over the bus of the drive file (`address:
 /// unix:FOLDER`) or over a serial line. It makes a link at the address of a serial line. It publishes ground_truth/odom
-/// and has the service ~inject_fault: component is a joint or `bus`, and `board` of a motor board.
+/// and has the service ~inject_fault: component is a joint or `bus`, and `board` or `encoder` of a board.
 
 #include <ros/ros.h>
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from robot_control import ClosedLoop, DriverError
+from robot_control.installed_files import share_file
 
 SPEED = 0.5
 """m/s"""
@@ -24,6 +25,26 @@ def test_the_robot_drives_and_stops_as_requested(gain, delay):
     assert speed.max() <= 1.02 * SPEED
     assert abs(speed[-1]) < 1e-3
     assert not log["permit_causes"].any()
+
+
+@pytest.mark.parametrize(
+    ("drives", "driver"), [("board", "board"), ("odrive", "can"), ("cia402", "can"), ("roboclaw", "roboclaw")]
+)
+def test_devices_with_a_speed_loop_of_their_own_drive_and_stop(drives, driver):
+    loop = ClosedLoop(
+        {"robot": {"wheel_command": "velocity", "driver": driver}}, drives=share_file(f"config/drives/{drives}.yaml")
+    )
+    log = loop.run(seconds=6.0, command=lambda t: (SPEED if 0.5 <= t < 4 else 0, 0.2 if 0.5 <= t < 4 else 0))
+    speed, time = log["truth_linear"], log["time"]
+    steady = (time > 2) & (time < 4)
+    assert np.sqrt(np.mean((speed[steady] - SPEED) ** 2)) <= 0.03 * SPEED
+    assert abs(speed[-1]) < 1e-3
+    assert not log["permit_causes"].any()
+
+
+def test_a_roboclaw_is_refused_where_torques_are_commanded():
+    with pytest.raises(DriverError, match="commands of torques"):
+        ClosedLoop({"robot": {"driver": "roboclaw"}}, drives=share_file("config/drives/roboclaw.yaml")).run(seconds=0.1)
 
 
 def test_a_torque_that_is_not_measured_is_not_invented():

@@ -113,7 +113,7 @@ def test_the_folder_is_made_and_left_empty(tmp_path):
 
 
 def test_a_disk_that_fails_during_the_run_is_reported_without_a_traceback(tmp_path, monkeypatch, capsys):
-    def fail(seconds, out, robot, drives):
+    def fail(seconds, out, robot, drives, velocity):
         raise OSError(28, "No space left on device", str(out / "run.png"))
 
     monkeypatch.setattr(demo, "run_demo", fail)

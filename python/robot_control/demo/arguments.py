@@ -11,7 +11,7 @@ LEGGED_ROBOT = "quadbot"
 
 
 def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
-    """The command line of scripts/demo: `seconds`, `out`, `robot` and `drives`; ends the program on a wrong one."""
+    """`seconds`, `out`, `robot`, `drives` and `wheel_command` of scripts/demo; ends the program on a wrong one."""
     parser = argparse.ArgumentParser(prog="scripts/demo", description="Drives the simulated robot and judges the run.")
     parser.add_argument("--seconds", type=_seconds, default=10.0, help="of driving (default %(default)g)")
     parser.add_argument("--out", type=_folder, default="demo_out", help="folder (default ./demo_out)")
@@ -23,12 +23,23 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     )
     parser.add_argument(
         "--drives",
-        choices=("odrive", "cia402", "example", "board"),
+        choices=("odrive", "cia402", "example", "board", "roboclaw"),
         help="the motors stand behind such simulated drives",
+    )
+    parser.add_argument(
+        "--wheel-command",
+        choices=("torque", "velocity"),
+        help="what the drives take (default torque, and velocity with --drives roboclaw)",
     )
     given = parser.parse_args(arguments)
     if given.drives and given.robot == LEGGED_ROBOT:
         parser.error(f"--drives move wheels alone, and {LEGGED_ROBOT} stands on legs: leave one of both out")
+    if given.wheel_command and given.robot == LEGGED_ROBOT:
+        parser.error(f"--wheel-command is of wheels, and {LEGGED_ROBOT} stands on legs: leave one of both out")
+    only = {"example": "torque", "roboclaw": "velocity"}.get(given.drives)
+    given.wheel_command = given.wheel_command or only or "torque"
+    if only not in (None, given.wheel_command):
+        parser.error(f"the board of --drives {given.drives} takes {only} alone: leave --wheel-command out")
     return given
 
 

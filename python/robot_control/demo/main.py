@@ -19,7 +19,7 @@ from robot_control._robot_control import BagError, BagReader
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import printable, utf8
 from robot_control.common.program import run
-from robot_control.common.roles import LEGGED, LOOP, TELEMETRY, WHEELED, Kind
+from robot_control.common.roles import DRIVER, LEGGED, LOOP, TELEMETRY, WHEELED, Kind
 from robot_control.common.run_log import LogError, read_log
 from robot_control.common.signal_names import number_of
 from robot_control.demo.arguments import LEGGED_ROBOT, parse
@@ -47,6 +47,9 @@ BUS = f"demo_{os.getpid()}"
 OUTPUTS = ("run.bag", "run.csv", "summary.json", "run.png", "launch.log", "send_cmd.log", "set_posture.log")
 EVERY_CYCLE = "telemetry: {record: always}\n"
 """parameters laid over the package's"""
+VELOCITY = "robot: {wheel_command: velocity}\n"
+SIMULATED_VELOCITY = f"{DRIVER}: {{drive: velocity}}\n"
+"""the same, of drives that take speeds; the second one where no other drives stand before the motors"""
 
 
 class DemoError(RuntimeError):
@@ -91,8 +94,11 @@ class Child:
         return True
 
 
-def run_demo(seconds: float, out: Path, robot: str, drives: Path | None = None) -> int:
-    """Drives `robot` for `seconds` and writes everything to `out`; `drives`: a drive file. Returns the exit code."""
+def run_demo(seconds: float, out: Path, robot: str, drives: Path | None = None, *, velocity: bool = False) -> int:
+    """Drives `robot` for `seconds` and writes everything to `out`; `drives`: a drive file, `velocity`: of
+    speeds.
+    Returns the exit code.
+    """
     out.mkdir(parents=True, exist_ok=True)
     for name in OUTPUTS:
         (out / name).unlink(missing_ok=True)
@@ -100,7 +106,10 @@ def run_demo(seconds: float, out: Path, robot: str, drives: Path | None = None) 
     shutil.rmtree(out / "ros", ignore_errors=True)
 
     before = processor_time()
-    driven = _drive(seconds, out, robot, drives)
+    parameters = out / "ros" / "overlay.yaml"
+    parameters.parent.mkdir()
+    parameters.write_text(overlay(drives, velocity=velocity))
+    driven = _drive(seconds, out, robot, drives, parameters)
     stolen = stolen_share(before, processor_time())
 
     _print_refusals((out / "launch.log").read_text(errors="replace"))
@@ -119,6 +128,11 @@ def run_demo(seconds: float, out: Path, robot: str, drives: Path | None = None) 
     return 0 if summary.passed else 1
 
 
+def overlay(drives: Path | None, *, velocity: bool) -> str:
+    """The parameters that are laid over the package's."""
+    return EVERY_CYCLE + (VELOCITY + (SIMULATED_VELOCITY if drives is None else "") if velocity else "")
+
+
 def refusals(launch_log: str) -> list[str]:
     """The real-time privileges that were not granted, with their remedy. Each kind appears once although every node
     reports it.
@@ -130,14 +144,11 @@ def refusals(launch_log: str) -> list[str]:
     return list(found.values())
 
 
-def _drive(seconds: float, out: Path, robot: str, drives: Path | None) -> float:
+def _drive(seconds: float, out: Path, robot: str, drives: Path | None, parameters: Path) -> float:
     """Starts everything, drives, ends everything. Returns the seconds from the command's arrival, or from full speed of
     a robot that stands up first, to the command's end.
     """
     log = out / "run.bag"
-    parameters = out / "ros" / "every_cycle.yaml"
-    parameters.parent.mkdir()
-    parameters.write_text(EVERY_CYCLE)
     with _ended_at_the_end() as children:
         kind = Kind(LEGGED if robot == LEGGED_ROBOT else WHEELED)
         print(f"starting roscore, {kind.worded(', '.join(LOOP))}, {TELEMETRY}")
@@ -151,7 +162,7 @@ def _drive(seconds: float, out: Path, robot: str, drives: Path | None) -> float:
                     if drives is None
                     else [
                         f"drives:={drives}",
-                        f"driver:={drives.stem if drives.stem in ('example', 'board') else 'can'}",
+                        f"driver:={drives.stem if drives.stem in ('example', 'board', 'roboclaw') else 'can'}",
                     ]
                 ),
             ],
@@ -276,7 +287,7 @@ def main() -> int:
     signal.signal(signal.SIGTERM, _interrupt)
     try:
         drives = Path(share_file(f"config/drives/{given.drives}.yaml")) if given.drives else None
-        return run_demo(given.seconds, given.out, given.robot, drives)
+        return run_demo(given.seconds, given.out, given.robot, drives, velocity=given.wheel_command == "velocity")
     except (DemoError, OSError) as error:
         print(f"scripts/demo: {in_words(error)}", file=sys.stderr)
         return 2

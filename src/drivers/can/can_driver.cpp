@@ -56,6 +56,7 @@ CanDriver::CanDriver(const CanParameters& parameters, std::span<const Brake> bra
       bus_(std::move(socket)),
       parameters_(parameters.bus),
       drives_(parameters, period),
+      takes_speeds_(drives_.size() > 0 && drives_[0].drive_parameters().takes_speeds),
       load_(bus_load(drives_.plan(), 1 / period, parameters.bus.bit_rate)),
       clock_(std::move(clock)),
       commands_(drives_.size()) {
@@ -67,7 +68,7 @@ CanDriver::CanDriver(const CanParameters& parameters, std::span<const Brake> bra
 void CanDriver::stop() noexcept {
   stopped_ = true;
   if (state_ != DriverState::kRunning) return;
-  std::ranges::fill(commands_, DriveCommand{.enabled = true, .reset = false, .torque = 0});
+  std::ranges::fill(commands_, DriveCommand{.enabled = true});
   send_commands(clock_().time_ns);
 }
 
@@ -169,8 +170,8 @@ void CanDriver::publish_statuses() noexcept {
 
 std::string CanDriver::description() const {
   std::ostringstream text;
-  text << word_of(parameters_.dialect) << " on " << parameters_.address << " at " << parameters_.bit_rate / 1000
-       << " kbit/s, load at most " << std::lround(100 * load_) << " %";
+  text << word_of(parameters_.dialect) << (takes_speeds_ ? " that takes speeds" : "") << " on " << parameters_.address
+       << " at " << parameters_.bit_rate / 1000 << " kbit/s, load at most " << std::lround(100 * load_) << " %";
   Statuses statuses;
   if (!published_statuses_.load(statuses)) return text.str();
   for (std::size_t i = 0; i < drives_.size(); ++i) {
@@ -207,20 +208,25 @@ std::string CanDriver::warning() const {
   return text;
 }
 
-double CanDriver::wanted_torque(std::size_t joint, const JointCommand& command) noexcept {
+DriveCommand CanDriver::wanted(std::size_t joint, const JointCommand& command) noexcept {
+  DriveCommand wanted{.enabled = true, .reset = reset_};
   const DriveSample& sample = drives_[joint].sample();
   if (!sample.valid) {
     laws_[joint].reset();
-    return 0;
+  } else if (takes_speeds_) {
+    wanted.speed = wanted_speed(command, drives_[joint].drive_parameters().velocity_limit);
+    if (command.mode == JointMode::kDriveVelocity && finite(command)) wanted.torque = command.effort;
+  } else {
+    const JointSample now = at_time(sample, now_ns_);
+    wanted.torque = laws_[joint].step(command, now.position, now.velocity);
   }
-  const JointSample now = at_time(sample, now_ns_);
-  return laws_[joint].step(command, now.position, now.velocity);
+  return wanted;
 }
 
 void CanDriver::write(std::span<const JointCommand> commands) noexcept {
   const bool obeys = !stopped_ && state_ == DriverState::kRunning && commands.size() == joint_count_;
   for (std::size_t i = 0; i < drives_.size(); ++i) {
-    commands_[i] = {.enabled = true, .reset = reset_, .torque = wanted_torque(i, obeys ? commands[i] : JointCommand{})};
+    commands_[i] = wanted(i, obeys ? commands[i] : JointCommand{});
   }
   reset_ = false;
   send_commands(now_ns_);

@@ -8,9 +8,11 @@
 /// The samples of all drives are brought to the time of `read` by their velocities. A sample that is missing therefore
 /// moves on, and its age grows.
 ///
-/// The torque of every mode, the brake included, is computed here from the newest sample (drivers/joint_law.h). The
-/// sample is one or two cycles old, and is brought to the time of the call by its velocity. With an inertia J at the
-/// joint and the period h, the brake's damping d is stable below d h / J = 0.6. Half of that is recommended.
+/// Drives that take speeds are given that of kDriveVelocity, with its effort where the dialect has a feed-forward. They
+/// brake with the speed zero, which they keep at rest. For other drives the torque of every mode, the brake included,
+/// is computed here from the newest sample (drivers/joint_law.h). The sample is one or two cycles old, and is brought
+/// to the time of the call by its velocity. With an inertia J at the joint and the period h, the brake's damping d is
+/// stable below d h / J = 0.6. Half of that is recommended.
 
 #include <array>
 #include <functional>
@@ -23,6 +25,7 @@
 #include "drivers/can/can_bus.h"
 #include "drivers/can/can_parameters.h"
 #include "drivers/can/drive_set.h"
+#include "drivers/drive_speed.h"
 #include "drivers/driver.h"
 #include "drivers/joint_law.h"
 
@@ -42,8 +45,7 @@ class CanDriver final : public Driver {
   /// The next `write` brakes. Until then the drives have no torque: a drive keeps the last one that it was sent.
   void stop() noexcept override;
 
-  /// The drives take torques, so they follow every mode.
-  bool accepts(JointMode mode) const noexcept override { return JointLaw::computes(mode); }
+  bool accepts(JointMode mode) const noexcept override { return accepted(mode, takes_speeds_); }
 
   /// Returns the bus with its load, and what each joint does on silence.
   std::string description() const override;
@@ -70,13 +72,14 @@ class CanDriver final : public Driver {
   LinkStatus link() const noexcept;
   void publish_statuses() noexcept;
   void judge_faults() noexcept;
-  double wanted_torque(std::size_t joint, const JointCommand& command) noexcept;
+  DriveCommand wanted(std::size_t joint, const JointCommand& command) noexcept;
 
   std::size_t joint_count_;
   CanBus bus_;
   BusWatch watch_;
   CanBusParameters parameters_;
   DriveSet drives_;
+  bool takes_speeds_;
   double load_;  // of the bus, planned
   std::function<CanTime()> clock_;
   std::vector<JointLaw> laws_;

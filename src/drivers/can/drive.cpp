@@ -50,6 +50,10 @@ std::string number_words(double value) {
   return text;
 }
 
+double within(double value, double limit) noexcept {
+  return std::isfinite(value) ? std::clamp(value, -limit, limit) : 0;
+}
+
 }  // namespace
 
 JointSample at_time(const DriveSample& sample, std::int64_t now_ns) noexcept {
@@ -80,8 +84,8 @@ void Drive::step(const DriveCommand& command, std::int64_t now_ns, FrameBatch& s
   reset_before_ = command.reset;
   judge_silence(now_ns);
   DriveCommand limited = command;
-  limited.torque =
-      std::isfinite(command.torque) ? std::clamp(command.torque, -drive_.torque_limit, drive_.torque_limit) : 0;
+  limited.torque = within(command.torque, drive_.torque_limit);
+  limited.speed = within(command.speed, drive_.velocity_limit);
   advance(limited, now_ns, send);
   note_order(status_.state == DriveState::kRunning ? limited.torque : 0);
 }

@@ -100,7 +100,8 @@ struct DriveStatus {
 struct DriveCommand {
   bool enabled = false;  ///< The motor shall have torque.
   bool reset = false;    ///< The operator resets; its rising edge counts.
-  double torque = 0;     ///< N·m or N, of the joint; applied in `running` alone
+  double torque = 0;     ///< N·m or N, of the joint; applied in `running` alone; a drive that takes speeds may add it
+  double speed = 0;      ///< rad/s or m/s, of the joint, for a drive that takes speeds; the same
 };
 
 struct DriveSample {
@@ -169,7 +170,7 @@ class Drive {
  protected:
   /// Forgets what was learned of the drive. `reset`: the operator asks to clear its errors.
   virtual void restart(bool reset, std::int64_t now_ns) noexcept = 0;
-  /// Runs one cycle. The torque is finite and within the limit.
+  /// Runs one cycle. Torque and speed are finite and within their limits.
   virtual void advance(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept = 0;
   virtual void add_details(DriveStatus& status) const noexcept = 0;
   virtual VelocitySource velocity_source() const noexcept { return VelocitySource::kDrive; }
@@ -199,6 +200,7 @@ class Drive {
   void accept_temperature(double celsius) noexcept;
   void accept_voltage(double voltage) noexcept;
   double motor_torque(double joint_torque) const noexcept { return to_joint_ * joint_torque; }
+  double motor_speed(double joint_speed) const noexcept { return joint_speed / to_joint_; }
   std::int64_t sample_period_ns() const noexcept;
   std::int64_t max_silence_ns() const noexcept {
     return static_cast<std::int64_t>(drive_.max_silence) * sample_period_ns();

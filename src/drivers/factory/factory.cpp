@@ -9,6 +9,7 @@
 #include "drivers/drive_motors.h"
 #include "drivers/example/example_driver.h"
 #include "drivers/serial/board_driver.h"
+#include "drivers/serial/roboclaw_driver.h"
 #include "drivers/serial/serial_port.h"
 
 namespace robot_control {
@@ -53,19 +54,34 @@ std::unique_ptr<Driver> make_example(const Parameters& parameters, const Machine
                                          parameters.loop.period(), connect_to_board(board.address));
 }
 
+template <class Line>
+std::unique_ptr<SerialLine> open_line(const Parameters& parameters, const Line& line,
+                                      const std::function<std::int64_t()>& clock) {
+  const RealtimeParameters thread{
+      .name = "serial", .policy = parameters.loop.realtime, .priority = kSerialPriority, .core = -1};
+  return std::make_unique<SerialPort>(line.address, static_cast<unsigned>(line.bit_rate), thread, clock);
+}
+
 std::unique_ptr<Driver> make_board(const Parameters& parameters, const MachineModel& machine,
                                    const std::vector<Brake>& brakes, DriverClock clock) {
   require_drive_file(parameters, "board", "board");
   refuse_held_joints(machine, "board");
   const DriveMotors motors = drive_motors(machine, brakes);
   const BoardParameters board = read_board_file(parameters, motors.joints);
-  const RealtimeParameters thread{
-      .name = "serial", .policy = parameters.loop.realtime, .priority = kSerialPriority, .core = -1};
   const auto time_ns = [clock = std::move(clock)] { return clock().time_ns; };
-  auto line =
-      std::make_unique<SerialPort>(board.line.address, static_cast<unsigned>(board.line.bit_rate), thread, time_ns);
   return std::make_unique<BoardDriver>(board, motors.brakes, motors.joint_count, parameters.loop.period(),
-                                       std::move(line), time_ns);
+                                       open_line(parameters, board.line, time_ns), time_ns);
+}
+
+std::unique_ptr<Driver> make_roboclaw(const Parameters& parameters, const MachineModel& machine,
+                                      const std::vector<Brake>& brakes, DriverClock clock) {
+  require_drive_file(parameters, "roboclaw", "roboclaw");
+  refuse_held_joints(machine, "roboclaw");
+  const DriveMotors motors = drive_motors(machine, brakes);
+  const RoboclawParameters board = read_roboclaw_file(parameters, motors.joints);
+  const auto time_ns = [clock = std::move(clock)] { return clock().time_ns; };
+  return std::make_unique<RoboclawDriver>(board, motors.joint_count, parameters.loop.period(),
+                                          open_line(parameters, board.line, time_ns), time_ns);
 }
 
 struct DriverRow {
@@ -73,9 +89,9 @@ struct DriverRow {
   std::unique_ptr<Driver> (*make)(const Parameters&, const MachineModel&, const std::vector<Brake>&, DriverClock);
 };
 
-constexpr std::array kDrivers{DriverRow{DriverChoice::kCan, &make_can},
-                              DriverRow{DriverChoice::kExample, &make_example},
-                              DriverRow{DriverChoice::kBoard, &make_board}};
+constexpr std::array kDrivers{
+    DriverRow{DriverChoice::kCan, &make_can}, DriverRow{DriverChoice::kExample, &make_example},
+    DriverRow{DriverChoice::kBoard, &make_board}, DriverRow{DriverChoice::kRoboclaw, &make_roboclaw}};
 
 }  // namespace
 

@@ -12,7 +12,6 @@ namespace {
 constexpr double kMicro = 1.0e-6;
 constexpr double kSpeedSteps = 256;  // of a speed, per count
 constexpr double kBitsPerByte = 10;  // with start and stop bit
-constexpr int kMaxChunks = 32;       // in one cycle, so that a flooded line does not stop the loop
 
 /// Returns bytes of the longest frame with a body of this size.
 constexpr double frame_bytes(std::size_t body) {

@@ -29,8 +29,8 @@
 #include <vector>
 
 #include "bus/latest_value.h"
-#include "drivers/driver.h"
 #include "drivers/drive_speed.h"
+#include "drivers/driver.h"
 #include "drivers/joint_law.h"
 #include "drivers/position_difference.h"
 #include "drivers/serial/board_clock.h"

@@ -18,6 +18,9 @@ struct SerialChunk {
   std::span<const std::uint8_t> received() const noexcept { return {bytes.data(), size}; }
 };
 
+/// Chunks that a driver takes in one cycle, so that a flooded line does not stop the loop.
+inline constexpr int kMaxChunks = 32;
+
 class SerialLine {
  public:
   virtual ~SerialLine() = default;

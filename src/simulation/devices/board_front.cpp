@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kMicro = 1.0e-6;
 constexpr double kFullPwm = 10'000;
-constexpr double kSpeedSteps = 256;        // of a speed, per count
-constexpr double kGainSteps = 65536;       // of a gain
+constexpr double kSpeedSteps = 256;          // of a speed, per count
+constexpr double kGainSteps = 65536;         // of a gain
 constexpr std::int64_t kLoopNs = 2'000'000;  // of the speed loop, in which a wheel moves by some counts
 constexpr std::uint16_t kFirmware = 1;
 constexpr std::uint8_t kWheelFault = 1;
@@ -65,8 +65,8 @@ void BoardFront::boot(board_reset reason) {
   board_begin(&board_, &config);
 }
 
-/// One set of gains serves all wheels: that of wheel 0. The damping of the brake, in N·m·s/rad, is stable also for a
-/// wheel that is lifted, and the proportional gain is the same.
+/// One set of gains serves all wheels: that of wheel 0. The proportional gain is the
+/// damping of the brake, which is stable also for a lifted wheel.
 void BoardFront::tune(board_config& config) const {
   const std::size_t joint = joint_of(0);
   const BoardWheelParameters& wheel = parameters_.wheels[joint];
@@ -182,8 +182,8 @@ void BoardFront::run(std::span<const JointSample> joints) {
     for (std::size_t i = 0; i < wheels_.size(); ++i) {
       Wheel& wheel = wheels_[i];
       if (wheel.mode != BOARD_BRAKE) wheel.brake.release();
-      const double wanted =
-          wheel.mode == BOARD_BRAKE ? wheel.brake.step(wheel.torque, wheel.position, wheel.velocity) : ordered_torque(i);
+      const double wanted = wheel.mode == BOARD_BRAKE ? wheel.brake.step(wheel.torque, wheel.position, wheel.velocity)
+                                                      : ordered_torque(i);
       const double limit = parameters_.wheels[i].torque_limit;
       wheel.torque = std::clamp(wanted, -limit, limit);
       wheel.mean_torque += share * wheel.torque;
@@ -205,19 +205,16 @@ std::string BoardFront::inject(std::string_view component, std::string_view kind
     next_reset_ = kind == "reset" ? BOARD_RESET_BUTTON : kind == "brown_out" ? BOARD_BROWN_OUT : BOARD_POWER_ON;
     return "";
   }
-  if (component == "line" && virtual_line_ && is("ok", "lossy", "late", "disturbed", "partial", "stalled", "cut")) {
-    SerialFaults faults;
-    faults.message_loss = is("lossy", "disturbed") ? 0.05 : 0;
-    faults.bit_errors = is("lossy", "disturbed") ? 0.01 : 0;
-    faults.jitter_ns = is("late", "disturbed") ? 3'000'000 : 0;
-    faults.partial = is("partial");
-    faults.stalled = is("stalled");
-    faults.cut = is("cut");
-    virtual_line_->faults() = faults;
-    return "";
+  if (component == "line" && virtual_line_) {
+    if (const std::optional<SerialFaults> faults = serial_faults(kind)) {
+      virtual_line_->faults() = *faults;
+      return "";
+    }
   }
-  return "component must be board (with ok, off, reset, brown_out, fault, e_stop, other_protocol) or line (with ok, "
-         "lossy, late, disturbed, partial, stalled, cut)";
+  return std::string(
+             "component must be board (with ok, off, reset, brown_out, fault, e_stop, other_protocol) or line "
+             "(with ") +
+         kSerialFaultWords + ")";
 }
 
 }  // namespace robot_control

@@ -7,8 +7,7 @@
 ///
 ///   board  ok | off | reset, brown_out (silent for kBootNs) | fault (of its wheel 0) | other_protocol
 ///          e_stop (the button is pressed, or its wire is broken)
-///   line   ok | lossy (5 % of the messages are lost, 1 % damaged) | late (3 ms of jitter) | disturbed (both)
-///          partial (writes are taken in part) | stalled | cut
+///   line   kSerialFaultWords
 
 #include <memory>
 #include <span>

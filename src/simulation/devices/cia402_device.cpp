@@ -12,8 +12,8 @@ using canopen::SdoSide;
 
 constexpr std::uint8_t kPdos = 4;
 constexpr std::uint16_t kHostLost = 0x8130, kSensorFault = 0x7305, kSupplyTooLow = 0x3220;
-constexpr ObjectAddress kControlword{0x6040, 0}, kStatusword{0x6041, 0}, kTarget{0x6071, 0}, kTorque{0x6077, 0},
-    kPosition{0x6064, 0}, kVelocity{0x606C, 0}, kErrorRegister{0x1001, 0};
+constexpr ObjectAddress kControlword{0x6040, 0}, kStatusword{0x6041, 0}, kTarget{0x6071, 0}, kTargetVelocity{0x60FF, 0},
+    kTorque{0x6077, 0}, kPosition{0x6064, 0}, kVelocity{0x606C, 0}, kErrorRegister{0x1001, 0};
 
 }  // namespace
 
@@ -57,6 +57,7 @@ void Cia402Device::add_axis_objects(unsigned axis) {
   add(kSupportedModes, parameters_.supported_modes, 4, false);
   add(kErrorCode, 0, 2, false);
   add(kTarget, 0, 2, true);
+  add(kTargetVelocity, 0, 4, true);
   add(kMaxTorque, 3000, 2, true);
   add(kRatedTorque, static_cast<std::uint32_t>(std::lround(1000 * parameters_.rated_torque)), 4, false);
   add(kTorque, 0, 2, false);
@@ -93,14 +94,11 @@ void Cia402Device::add_pdos() {
   }
   if (!parameters_.fixed_mapping) return;
   for (unsigned axis = 0; axis < axes_.size(); ++axis) {
-    TorquePdos pdos;
+    AxisPdos pdos = pdos_of(axis, parameters_.supported_modes == Cia402DeviceParameters::kSpeedModes);
     for (Pdo* pdo : {&pdos.command, &pdos.state, &pdos.velocity}) {
-      pdo->number = static_cast<std::uint8_t>(pdo->number + 2 * axis);
       objects_.set({pdo->mapping_index(), 0}, pdo->mapping.count);
       for (std::uint8_t i = 0; i < pdo->mapping.count; ++i) {
-        PdoEntry entry = pdo->mapping.entries[i];
-        entry.object = on_axis(entry.object, axis);
-        objects_.set({pdo->mapping_index(), static_cast<std::uint8_t>(i + 1)}, entry.mapped());
+        objects_.set({pdo->mapping_index(), static_cast<std::uint8_t>(i + 1)}, pdo->mapping.entries[i].mapped());
       }
     }
   }
@@ -164,10 +162,21 @@ double Cia402Device::max_torque(unsigned axis) const {
   return at(kMaxTorque, axis) * parameters_.rated_torque / 1000;
 }
 
+double Cia402Device::speed_torque(unsigned axis, double seconds) {
+  Axis& own = axes_[axis];
+  const double target = objects_.signed_value(on_axis(kTargetVelocity, axis)) * parameters_.velocity_unit;
+  const double error = target - own.motor->velocity;
+  const double integral = own.integral + parameters_.brake_damping / kIntegralTime * error * seconds;
+  const double wanted = parameters_.brake_damping * error + integral;
+  if (std::abs(wanted) < max_torque(axis)) own.integral = integral;
+  return std::clamp(wanted, -max_torque(axis), max_torque(axis));
+}
+
 double Cia402Device::driven_torque(unsigned axis, double seconds) {
   Axis& own = axes_[axis];
   const double target = objects_.signed_value(on_axis(kTarget, axis)) * parameters_.rated_torque / 1000;
   const auto mode = static_cast<Mode>(at(kModeOfOperation, axis));
+  if (mode == Mode::kCyclicVelocity || mode == Mode::kProfileVelocity) return speed_torque(axis, seconds);
   const double step = at(kTorqueSlope, axis) * parameters_.rated_torque / 1000 * seconds;
   if (mode == Mode::kTorque) {
     own.torque += std::clamp(target - own.torque, -step, step);
@@ -200,7 +209,7 @@ void Cia402Device::update_axis(unsigned axis) {
   if (own.power == PowerState::kOperationEnabled) {
     own.motor->torque = driven_torque(axis, seconds);
   } else {
-    own.torque = 0;
+    own.torque = own.integral = 0;
     own.motor->torque = brakes ? brake_torque(axis) : 0;
   }
 }

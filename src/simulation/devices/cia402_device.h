@@ -1,6 +1,6 @@
 #pragma once
-/// A CiA 402 drive as a device, with one or two axes and the torque modes CST and TQ. It has NMT, both heartbeats, an
-/// SDO server, SYNC, EMCY and the power state machine. The mapping of its PDOs may be written.
+/// A CiA 402 drive as a device, with one or two axes and the modes CST, TQ, CSV and PV (without a ramp). It has NMT,
+/// both heartbeats, an SDO server, SYNC, EMCY and the power state machine. The mapping of its PDOs may be written.
 ///
 /// Source: CiA 301 and CiA 402-2. On the loss of the host's heartbeat (1016) it sends EMCY 8130, becomes
 /// pre-operational, and each axis follows 6007. A quick stop follows 605A and a fault 605E: the axis is damped down to
@@ -20,11 +20,13 @@
 namespace robot_control {
 
 struct Cia402DeviceParameters {
+  static constexpr std::uint32_t kTorqueModes = 0x208, kSpeedModes = 0x104;  ///< of 6502: TQ and CST; PV and CSV
+
   std::uint8_t node = 1;
-  std::uint32_t supported_modes = 0x208;  ///< 6502: TQ and CST
-  bool fixed_mapping = false;             ///< Its PDOs hold what a torque drive needs and cannot be changed.
-  bool has_reactions = true;              ///< 1016, 1029, 6007, 605A and 605E exist.
-  double rated_torque = 2;                ///< N·m
+  std::uint32_t supported_modes = kTorqueModes;
+  bool fixed_mapping = false;  ///< Its PDOs hold what its modes need and cannot be changed.
+  bool has_reactions = true;   ///< 1016, 1029, 6007, 605A and 605E exist.
+  double rated_torque = 2;     ///< N·m
   double counts_per_turn = 4096;
   double velocity_unit = cia402::kRpm;  ///< rad/s; 60A9 exists where it is rpm
   double brake_damping = 1;             ///< N·m·s/rad, of its own brake
@@ -53,9 +55,10 @@ class Cia402Device final : public Device {
     DeviceMotor* motor = nullptr;
     cia402::PowerState power = cia402::PowerState::kSwitchOnDisabled;
     std::uint16_t controlword = 0;
-    double zero = 0;    // rad, true position of its zero
-    double torque = 0;  // N·m, of TQ with its slope
-    double held = 0;    // rad, true position that a quick stop holds
+    double zero = 0;      // rad, true position of its zero
+    double torque = 0;    // N·m, of TQ with its slope
+    double integral = 0;  // N·m, of CSV and PV
+    double held = 0;      // rad, true position that a quick stop holds
     std::int64_t updated_ns = 0;
     bool holding = false;
   };
@@ -79,6 +82,7 @@ class Cia402Device final : public Device {
   void quick_stop(unsigned axis);
   void fail(unsigned axis, std::uint16_t code);
   double driven_torque(unsigned axis, double seconds);
+  double speed_torque(unsigned axis, double seconds);
   double brake_torque(unsigned axis);
   double max_torque(unsigned axis) const;
   std::uint32_t at(const canopen::ObjectAddress& object, unsigned axis) const;

@@ -40,7 +40,7 @@ void OdriveDevice::boot(std::int64_t now_ns) {
   clear_errors();
   disarm_reason_ = 0;
   mode_ = {.control = ControlMode::kPosition};
-  input_torque_ = 0;
+  input_torque_ = input_velocity_ = 0;
   zero_ = motor_.position;
   motor_.torque = 0;
 }
@@ -78,22 +78,38 @@ void OdriveDevice::fail(std::uint32_t error) {
 }
 
 void OdriveDevice::step(std::int64_t now_ns) {
+  const double seconds = 1.0e-9 * static_cast<double>(now_ns - now_ns_);
   now_ns_ = now_ns;
   if (fault_ == DeviceFault::kOff || now_ns < boot_ns_) return;
   const bool watched = !is_06() || state_ == AxisState::kClosedLoopControl;
   if (watched && watchdog_timer_.expired(now_ns)) fail(is_06() ? kWatchdogExpired06 : kWatchdogExpired05);
-  motor_.torque = state_ == AxisState::kClosedLoopControl ? limited_torque() : 0;
+  const bool closed = state_ == AxisState::kClosedLoopControl;
+  if (!closed) integral_ = 0;
+  motor_.torque = closed ? limited_torque(seconds) : 0;
   if (heartbeat_timer_.expired(now_ns)) send_heartbeat();
   if (estimates_timer_.expired(now_ns)) send_estimates();
   if (effort_timer_.expired(now_ns)) is_06() ? send_torques() : send_current();
 }
 
-double OdriveDevice::limited_torque() const {
-  if (mode_.control != ControlMode::kTorque || mode_.input != InputMode::kPassthrough) return 0;
+double OdriveDevice::wanted_torque(double seconds) {
+  if (mode_.input != InputMode::kPassthrough) return 0;
+  if (mode_.control == ControlMode::kVelocity) {
+    const double error = std::clamp(input_velocity_, -velocity_limit_, velocity_limit_) - motor_.velocity;
+    integral_ += parameters_.speed_integral * error * seconds;
+    return input_torque_ + parameters_.speed_gain * error + integral_;
+  }
+  if (mode_.control != ControlMode::kTorque) return 0;
   const double fast = kVelocityGain * (velocity_limit_ - motor_.velocity);
   const double slow = kVelocityGain * (-velocity_limit_ - motor_.velocity);
+  return std::clamp(input_torque_, std::min(slow, fast), std::max(slow, fast));
+}
+
+double OdriveDevice::limited_torque(double seconds) {
   const double maximum = current_limit_ * parameters_.torque_constant;
-  return std::clamp(std::clamp(input_torque_, std::min(slow, fast), std::max(slow, fast)), -maximum, maximum);
+  const double before = integral_;
+  const double wanted = wanted_torque(seconds);
+  if (std::abs(wanted) > maximum) integral_ = before;
+  return std::clamp(wanted, -maximum, maximum);
 }
 
 double OdriveDevice::measured_position() const {
@@ -163,6 +179,10 @@ void OdriveDevice::receive_command(const can_frame& frame) {
   }
   if (const auto mode = decode<SetControllerMode>(frame)) mode_ = *mode;
   if (const auto input = decode<SetInputTorque>(frame)) input_torque_ = input->torque;
+  if (const auto input = decode<SetInputVelocity>(frame)) {
+    input_velocity_ = input->velocity;
+    input_torque_ = input->torque;
+  }
   if (const auto limits = decode<SetLimits>(frame)) {
     velocity_limit_ = limits->velocity;
     current_limit_ = limits->current;

@@ -16,7 +16,9 @@ double clock_of(std::size_t device) {
   return device % 2 == 0 ? SimulatedDrives::kClockPpm : -SimulatedDrives::kClockPpm;
 }
 
-OdriveDeviceParameters device_of(const odrive::OdriveParameters& drive, double clock_ppm) {
+/// The gain of the speed loop is the damping of the brake, which is stable also for a lifted wheel.
+OdriveDeviceParameters device_of(const odrive::OdriveParameters& drive, const Brake& brake, double clock_ppm) {
+  const double gain = brake.damping / (drive.drive.gear * drive.drive.gear);
   return {.node = static_cast<std::uint8_t>(drive.drive.node),
           .firmware = drive.firmware == odrive::Firmware::k05 ? odrive::Firmware::k05 : odrive::Firmware::k06,
           .serial_number = drive.serial_number != 0 ? drive.serial_number : 1 + drive.drive.node,
@@ -28,6 +30,8 @@ OdriveDeviceParameters device_of(const odrive::OdriveParameters& drive, double c
           .watchdog_timeout = drive.drive.on_silence == SilenceReaction::kCoasts ? kOdriveWatchdog : 0,
           .enable_watchdog_endpoint = static_cast<std::uint16_t>(drive.enable_watchdog_endpoint),
           .watchdog_timeout_endpoint = static_cast<std::uint16_t>(drive.watchdog_timeout_endpoint),
+          .speed_gain = gain,
+          .speed_integral = gain / Device::kIntegralTime,
           .clock_ppm = clock_ppm};
 }
 
@@ -43,6 +47,7 @@ Cia402DeviceParameters device_of(const cia402::Cia402Parameters& drive, const Br
   device.brake_damping = brake.damping / (drive.drive.gear * drive.drive.gear);
   device.brake_stiffness = brake.stiffness / (drive.drive.gear * drive.drive.gear);
   device.brake_hold_speed = brake.hold_speed * drive.drive.gear;
+  if (drive.drive.takes_speeds) device.supported_modes = Cia402DeviceParameters::kSpeedModes;
   device.clock_ppm = clock_ppm;
   return device;
 }
@@ -61,12 +66,12 @@ void SimulatedDrives::disturb(bool lossy, bool late) {
   bus_.delay(late ? period_ns_ : 0);
 }
 
-void SimulatedDrives::add(const std::vector<odrive::OdriveParameters>& joints, std::span<const Brake> /*they coast*/) {
+void SimulatedDrives::add(const std::vector<odrive::OdriveParameters>& joints, std::span<const Brake> brakes) {
   for (const odrive::OdriveParameters& joint : joints) {
     to_motor_.push_back(static_cast<double>(joint.drive.direction) * joint.drive.gear);
     device_of_.push_back(devices_.size());
     DeviceMotor& motor = *motors_.emplace_back(std::make_unique<DeviceMotor>());
-    const OdriveDeviceParameters device = device_of(joint, clock_of(devices_.size()));
+    const OdriveDeviceParameters device = device_of(joint, brakes[motors_.size() - 1], clock_of(devices_.size()));
     devices_.push_back(std::make_unique<OdriveDevice>(device, bus_, motor));
   }
 }

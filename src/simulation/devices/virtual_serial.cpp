@@ -11,6 +11,19 @@ constexpr std::int64_t kFirstBytesNs = 100'000;  // bytes that arrive within thi
 
 }  // namespace
 
+std::optional<SerialFaults> serial_faults(std::string_view word) {
+  const auto is = [word](auto... words) { return ((word == words) || ...); };
+  if (!is("ok", "lossy", "late", "disturbed", "partial", "stalled", "cut")) return std::nullopt;
+  SerialFaults faults;
+  faults.message_loss = is("lossy", "disturbed") ? 0.05 : 0;
+  faults.bit_errors = is("lossy", "disturbed") ? 0.01 : 0;
+  faults.jitter_ns = is("late", "disturbed") ? 3'000'000 : 0;
+  faults.partial = is("partial");
+  faults.stalled = is("stalled");
+  faults.cut = is("cut");
+  return faults;
+}
+
 VirtualSerial::VirtualSerial(double bit_rate, std::uint64_t seed)
     : byte_ns_(bit_rate > 0 ? static_cast<std::int64_t>(1.0e9 * kBitsPerByte / bit_rate) : 0), random_(seed) {}
 

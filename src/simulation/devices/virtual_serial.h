@@ -5,7 +5,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <random>
+#include <string_view>
 #include <vector>
 
 #include "drivers/serial/serial_line.h"
@@ -22,6 +24,13 @@ struct SerialFaults {
   bool stalled = false;
   bool cut = false;
 };
+
+/// The words of `inject`: lossy (5 % of the messages are lost, 1 % damaged), late (3 ms of jitter), disturbed (both),
+/// partial (writes are taken in part).
+inline constexpr const char* kSerialFaultWords = "ok, lossy, late, disturbed, partial, stalled, cut";
+
+/// Returns nothing for another word.
+std::optional<SerialFaults> serial_faults(std::string_view word);
 
 class VirtualSerial {
  public:

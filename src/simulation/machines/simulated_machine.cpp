@@ -14,10 +14,12 @@
 #include "drivers/example/example_driver.h"
 #include "drivers/mujoco/mujoco_plant.h"
 #include "drivers/serial/board_driver.h"
+#include "drivers/serial/roboclaw_driver.h"
 #include "simulation/devices/board_front.h"
 #include "simulation/devices/can_front.h"
 #include "simulation/devices/example_board.h"
 #include "simulation/devices/pseudo_terminal.h"
+#include "simulation/devices/roboclaw_front.h"
 #include "simulation/machines/driven_plant.h"
 
 namespace robot_control {
@@ -58,6 +60,17 @@ std::unique_ptr<Driver> make_plant_behind_serial(const Parameters& parameters, c
   return std::make_unique<DrivenPlant>(machine, parameters.plant, period, std::move(front), std::move(driver));
 }
 
+std::unique_ptr<Driver> make_plant_behind_roboclaw(const Parameters& parameters, const MachineModel& machine,
+                                                   const DriveMotors& motors) {
+  const double period = parameters.loop.period();
+  const RoboclawParameters board = read_roboclaw_file(parameters, motors.joints);
+  auto front =
+      std::make_unique<RoboclawFront>(board, motors.brakes, motors.effort_limits, period, parameters.plant.seed);
+  auto driver = std::make_unique<RoboclawDriver>(board, motors.joint_count, period, front->driver_end(),
+                                                 [clock = front.get()] { return clock->now_ns(); });
+  return std::make_unique<DrivenPlant>(machine, parameters.plant, period, std::move(front), std::move(driver));
+}
+
 }  // namespace
 
 std::unique_ptr<Driver> make_simulated_machine(const Parameters& parameters, const MachineModel& machine,
@@ -68,6 +81,7 @@ std::unique_ptr<Driver> make_simulated_machine(const Parameters& parameters, con
   const DriveMotors motors = drive_motors(machine, brakes);
   if (parameters.driver == DriverChoice::kExample) return make_plant_behind_board(parameters, machine, motors);
   if (parameters.driver == DriverChoice::kBoard) return make_plant_behind_serial(parameters, machine, motors);
+  if (parameters.driver == DriverChoice::kRoboclaw) return make_plant_behind_roboclaw(parameters, machine, motors);
   const CanParameters can = read_drive_file(parameters, motors.joints);
   const auto [driver_end, device_end] = line_ends();
   std::unique_ptr<DeviceFront> devices = can_devices(can, parameters, motors, CanSocket::line_end(device_end));
@@ -91,6 +105,12 @@ std::unique_ptr<DeviceSimulator> make_device_simulator(const Parameters& paramet
     const BoardParameters board = read_board_file(parameters, motors.joints);
     auto front = std::make_unique<BoardFront>(board, motors.brakes, period,
                                               std::make_unique<PseudoTerminal>(board.line.address));
+    return std::make_unique<DeviceSimulator>(machine, parameters.plant, period, std::move(front));
+  }
+  if (parameters.driver == DriverChoice::kRoboclaw) {
+    const RoboclawParameters board = read_roboclaw_file(parameters, motors.joints);
+    auto front = std::make_unique<RoboclawFront>(board, motors.brakes, motors.effort_limits, period,
+                                                 std::make_unique<PseudoTerminal>(board.line.address));
     return std::make_unique<DeviceSimulator>(machine, parameters.plant, period, std::move(front));
   }
   const CanParameters can = read_drive_file(parameters, motors.joints);

@@ -51,8 +51,9 @@ struct WalkingSpeedTest : testing::Test {
       const Eigen::Vector3d& foot = stance.feet[leg];
       const Eigen::Vector3d moves = under(leg, axis, speed), half = gait.stance_time() / 2 * moves;
       const double swing = gait.swing_time();
-      part = std::max(part, fastest_joint(robot, leg, gait.stance_time(),
-                                          [&](double done) -> Eigen::Vector3d { return foot + (2 * done - 1) * half; }));
+      part = std::max(part, fastest_joint(robot, leg, gait.stance_time(), [&](double done) -> Eigen::Vector3d {
+                        return foot + (2 * done - 1) * half;
+                      }));
       part = std::max(part, fastest_joint(robot, leg, swing, [&](double done) -> Eigen::Vector3d {
                         const Eigen::Vector3d to = foot - half - swing * moves;
                         return swing_point(foot + half, to, foot.z() + gait.lift, done, swing).place +
@@ -98,8 +99,8 @@ TEST_F(WalkingSpeedTest, NoJointNeedsMoreThanItsPartAtTheSpeedsOfAGaitAndItsChan
         if (speeds[other][axis] < speeds[gait][axis]) continue;  // that one bounds the change
         EXPECT_LE(changed(gaits[other], gaits[gait], axis, low), kOfJointSpeed) << gaits[gait].name << axis << other;
         EXPECT_LE(changed(gaits[gait], gaits[other], axis, low), kOfJointSpeed) << gaits[gait].name << axis << other;
-        beyond = std::max({beyond, changed(gaits[other], gaits[gait], axis, high),
-                           changed(gaits[gait], gaits[other], axis, high)});
+        beyond = std::max(
+            {beyond, changed(gaits[other], gaits[gait], axis, high), changed(gaits[gait], gaits[other], axis, high)});
       }
       EXPECT_GT(beyond, kOfJointSpeed) << gaits[gait].name << axis;
     }

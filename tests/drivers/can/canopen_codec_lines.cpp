@@ -75,7 +75,7 @@ void print_emergency(const can_frame& frame) {
 }
 
 void print_setup(const std::string& kind, std::uint8_t node) {
-  const cia402::TorquePdos pdos;
+  const cia402::AxisPdos pdos;
   const Pdo& pdo = kind == "command" ? pdos.command : kind == "state" ? pdos.state : pdos.velocity;
   for (const SdoWrite& write : pdo_setup(pdo, node, kEverySync, 0).all()) {
     std::printf("%u %u %u %u;", write.object.index, write.object.sub, write.value, write.bytes);
@@ -112,7 +112,7 @@ bool answer_request(const std::string& verb, std::istream& line) {
 }
 
 void answer_other(const std::string& verb, std::istream& line) {
-  const cia402::TorquePdos pdos;
+  const cia402::AxisPdos pdos;
   if (verb == "nmt") {
     const NmtCommand command{byte_from(line)};
     print(encode_nmt({.command = command, .node = byte_from(line)}));

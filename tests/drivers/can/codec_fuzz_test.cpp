@@ -95,7 +95,7 @@ std::vector<can_frame> valid_canopen_frames() {
 
 int check_canopen(const can_frame& frame) {
   using namespace canopen;
-  const cia402::TorquePdos pdos;
+  const cia402::AxisPdos pdos;
   int accepted = 0;
   for (const SdoSide side : {SdoSide::kRequest, SdoSide::kResponse}) {
     const auto message = decode_sdo(side, 1, frame);

@@ -11,7 +11,7 @@ namespace {
 using ::testing::ElementsAre;
 
 constexpr std::uint8_t kNode = 5;
-const cia402::TorquePdos kPdos;
+const cia402::AxisPdos kPdos;
 
 TEST(Pdo, TheSetUpOfTheCommandIsThatOfTheStandard) {
   const PdoSetup setup = pdo_setup(kPdos.command, kNode, kEverySync, 0);

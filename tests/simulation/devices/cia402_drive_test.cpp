@@ -41,7 +41,7 @@ TEST(Cia402Drive, RefusesADriveWithoutATorqueModeByItsName) {
 TEST(Cia402Drive, AModeOfTheFileOutweighsAnEmpty6502) {
   Cia402Pair pair = cia402_pair(5);
   pair.device.supported_modes = 0;
-  pair.drive.mode = TorqueMode::kProfile;
+  pair.drive.mode = ModeChoice::kProfileTorque;
   EXPECT_THAT(words_after(pair), HasSubstr("running"));
 }
 

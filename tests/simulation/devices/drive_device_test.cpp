@@ -37,13 +37,13 @@ Dialect odrive_dialect(const std::string& name, odrive::Firmware firmware, doubl
           .count = 2 * std::numbers::pi / 8192};
 }
 
-Dialect cia402_dialect(const std::string& name, cia402::TorqueMode mode, cia402::VelocityPdo velocity_pdo) {
+Dialect cia402_dialect(const std::string& name, cia402::ModeChoice mode, cia402::VelocityPdo velocity_pdo) {
   return {.name = name,
           .add = [=](DeviceRig& rig, std::uint8_t node, double clock_ppm) -> Device& {
             Cia402Pair pair = cia402_pair(node);
             pair.drive.mode = mode;
             pair.drive.velocity_pdo = velocity_pdo;
-            pair.drive.torque_slope = mode == cia402::TorqueMode::kProfile ? 1.0e4 : 0;
+            pair.drive.torque_slope = mode == cia402::ModeChoice::kProfileTorque ? 1.0e4 : 0;
             pair.device.clock_ppm = clock_ppm;
             return add(rig, pair);
           },
@@ -56,9 +56,9 @@ const Dialect kDialects[] = {
     odrive_dialect("Odrive05", odrive::Firmware::k05, 0),
     odrive_dialect("Odrive06", odrive::Firmware::k06, 0),
     odrive_dialect("Odrive06Cyclic", odrive::Firmware::k06, 0.002),
-    cia402_dialect("Cia402Cyclic", cia402::TorqueMode::kAny, cia402::VelocityPdo::kOff),
-    cia402_dialect("Cia402VelocityPdo", cia402::TorqueMode::kAny, cia402::VelocityPdo::kTrue),
-    cia402_dialect("Cia402Profile", cia402::TorqueMode::kProfile, cia402::VelocityPdo::kDerived),
+    cia402_dialect("Cia402Cyclic", cia402::ModeChoice::kAny, cia402::VelocityPdo::kOff),
+    cia402_dialect("Cia402VelocityPdo", cia402::ModeChoice::kAny, cia402::VelocityPdo::kTrue),
+    cia402_dialect("Cia402Profile", cia402::ModeChoice::kProfileTorque, cia402::VelocityPdo::kDerived),
 };
 
 void PrintTo(const Dialect& dialect, std::ostream* out) {

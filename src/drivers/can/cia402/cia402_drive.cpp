@@ -51,7 +51,8 @@ void Cia402Drive::join(Cia402Drive& first, Cia402Drive& second) noexcept {
 }
 
 std::vector<PlannedFrames> Cia402Drive::plan() const {
-  std::vector<PlannedFrames> plan{{.data_bytes = 4, .per_cycle = 1}, {.data_bytes = 8, .per_cycle = 1}};
+  std::vector<PlannedFrames> plan{{.data_bytes = parameters_.drive.takes_speeds ? 6U : 4U, .per_cycle = 1},
+                                  {.data_bytes = 8, .per_cycle = 1}};
   const bool velocity = parameters_.velocity_pdo == VelocityPdo::kTrue ||
                         (parameters_.velocity_pdo == VelocityPdo::kDerived && parameters_.velocity_has_room);
   if (velocity) plan.push_back({.data_bytes = 4, .per_cycle = 1.0 / kVelocitySyncs});
@@ -109,7 +110,7 @@ void Cia402Drive::receive_network(const can_frame& frame, std::int64_t now_ns) n
 
 void Cia402Drive::receive_state(const can_frame& frame, std::int64_t now_ns) noexcept {
   std::array<std::int64_t, canopen::kMaxPdoEntries> values{};
-  const TorquePdos& pdos = setup_.pdos();
+  const AxisPdos& pdos = setup_.pdos();
   const auto own = [this](const PdoEntry& entry) {
     return on_axis(entry.object, static_cast<unsigned>(parameters_.axis));
   };
@@ -149,7 +150,7 @@ void Cia402Drive::judge_power() noexcept {
 void Cia402Drive::advance(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept {
   if (disabled()) {
     if (!set_up()) return;
-    send_command(Controlword::kQuickStop, 0, send);
+    send_command(Controlword::kQuickStop, send);
     return read_error(now_ns, send);
   }
   const Cia402Drive* other = first_axis_ != nullptr ? first_axis_ : second_axis_;
@@ -189,7 +190,7 @@ void Cia402Drive::advance_power(const DriveCommand& command, std::int64_t now_ns
   if (!command.enabled) {
     phase_ = Phase::kReady;
     set(DriveState::kReady, DriveCause::kEnable);
-    return send_command(Controlword::kDisableVoltage, 0, send);
+    return send_command(Controlword::kDisableVoltage, send);
   }
   if (phase_ == Phase::kReady) {
     phase_ = Phase::kPower;
@@ -202,7 +203,7 @@ void Cia402Drive::advance_power(const DriveCommand& command, std::int64_t now_ns
     }
     set(DriveState::kRunning, DriveCause::kNone);
     read_voltage(now_ns, send);
-    return send_command(Controlword::kEnableOperation, command.torque, send);
+    return send_command(Controlword::kEnableOperation, send, command);
   }
   set(DriveState::kReady, DriveCause::kPower, power_state_words(power_));
   if (power_ == PowerState::kOperationEnabled) {
@@ -213,7 +214,7 @@ void Cia402Drive::advance_power(const DriveCommand& command, std::int64_t now_ns
     return fail(DriveCause::kStaysOff, power_state_words(power_));
   }
   const bool resets = power_ == PowerState::kFault && resets_fault(now_ns);
-  send_command(resets ? Controlword::kFaultReset : step_to_operation(power_), 0, send);
+  send_command(resets ? Controlword::kFaultReset : step_to_operation(power_), send);
 }
 
 bool Cia402Drive::resets_fault(std::int64_t now_ns) noexcept {
@@ -258,14 +259,18 @@ void Cia402Drive::read_voltage(std::int64_t now_ns, FrameBatch& send) noexcept {
   accept_voltage(dc_link_voltage(*voltage));
 }
 
-void Cia402Drive::send_command(std::uint16_t controlword, double torque, FrameBatch& send) const noexcept {
+void Cia402Drive::send_command(std::uint16_t controlword, FrameBatch& send,
+                               const DriveCommand& command) const noexcept {
   const Pdo& pdo = setup_.pdos().command;
   const auto axis = static_cast<unsigned>(parameters_.axis);
   std::array<std::int64_t, canopen::kMaxPdoEntries> values{};
   for (std::size_t i = 0; i < pdo.mapping.count; ++i) {
     const ObjectAddress& object = pdo.mapping.entries[i].object;
     if (object == on_axis(kControlwordEntry.object, axis)) values[i] = controlword;
-    if (object == on_axis(kTargetTorqueEntry.object, axis)) values[i] = setup_.units().raw_torque(motor_torque(torque));
+    if (object == on_axis(kTargetTorqueEntry.object, axis))
+      values[i] = setup_.units().raw_torque(motor_torque(command.torque));
+    if (object == on_axis(kTargetVelocityEntry.object, axis))
+      values[i] = setup_.units().raw_velocity(motor_speed(command.speed));
     if (object == on_axis(kModeOfOperation, axis)) values[i] = static_cast<std::int64_t>(setup_.mode());
   }
   send.add(encode_pdo(pdo, node(), values));

@@ -1,11 +1,11 @@
 #pragma once
-/// The state machine of one axis of a CiA 402 drive in a torque mode.
+/// The state machine of one axis of a CiA 402 drive in a torque mode, or in a velocity mode (takes_speeds).
 ///
 ///   pre-operational → objects (drive_setup.h) → NMT start → first TPDO → ready → shutdown → switch on →
 ///   enable operation → running
 ///
 /// Each step of the power state machine waits for the statusword of the one before. In `running` the axis receives
-/// controlword and torque in each cycle, and answers each SYNC (canopen_host.h). In a fault the controlword requests
+/// controlword and target in each cycle, and answers each SYNC (canopen_host.h). In a fault the controlword requests
 /// a quick stop. A velocity with a PDO of its own replaces that of the position's PDO before it. One that the drive
 /// file demands is judged for silence by itself; any other one is used while it comes. The error of a drive is reset
 /// with the operator's reset alone.
@@ -53,7 +53,8 @@ class Cia402Drive final : public Drive {
   std::optional<std::uint32_t> read_object(const ObjectAddress& object, std::int64_t now_ns, FrameBatch& send) noexcept;
   void read_error(std::int64_t now_ns, FrameBatch& send) noexcept;
   void read_voltage(std::int64_t now_ns, FrameBatch& send) noexcept;
-  void send_command(std::uint16_t controlword, double torque, FrameBatch& send) const noexcept;
+  /// Without a command the target is 0.
+  void send_command(std::uint16_t controlword, FrameBatch& send, const DriveCommand& command = {}) const noexcept;
   void send_nmt(canopen::NmtCommand command, std::int64_t now_ns, FrameBatch& send) noexcept;
   bool needs_velocity() const noexcept { return parameters_.velocity_pdo == VelocityPdo::kTrue; }
   bool sends_velocity() const noexcept { return setup_.velocity_source() == VelocitySource::kDrive; }

@@ -8,14 +8,25 @@
 
 namespace robot_control::cia402 {
 
-enum class TorqueMode : std::uint8_t {
-  kAny,  ///< cyclic synchronous torque, else profile torque, by 6502
-  kCyclic,
-  kProfile,
+enum class ModeChoice : std::uint8_t {
+  kAny,  ///< the cyclic mode of torque or velocity (robot.wheel_command), else its profile mode, by 6502
+  kCyclicTorque,
+  kProfileTorque,
+  kCyclicVelocity,
+  kProfileVelocity,
 };
 
-inline std::vector<Word> words_of(TorqueMode) {
-  return {{"any", TorqueMode::kAny}, {"cst", TorqueMode::kCyclic}, {"tq", TorqueMode::kProfile}};
+inline std::vector<Word> words_of(ModeChoice) {
+  using enum ModeChoice;
+  return {{"any", kAny},
+          {"cst", kCyclicTorque},
+          {"tq", kProfileTorque},
+          {"csv", kCyclicVelocity},
+          {"pv", kProfileVelocity}};
+}
+
+inline bool is_of_speeds(ModeChoice mode) noexcept {
+  return mode == ModeChoice::kCyclicVelocity || mode == ModeChoice::kProfileVelocity;
 }
 
 enum class PdoSource : std::uint8_t {
@@ -41,7 +52,7 @@ inline std::vector<Word> words_of(VelocityPdo) {
 struct Cia402Parameters {
   DriveParameters drive{};
   std::uint64_t axis = 0;              ///< of a drive with two axes: 1 has its objects at 6800 and its PDOs 3 and 4
-  TorqueMode mode = TorqueMode::kAny;  ///< cst and tq outweigh 6502.
+  ModeChoice mode = ModeChoice::kAny;  ///< others than `any` outweigh 6502
   PdoSource pdos = PdoSource::kWritten;
   VelocityPdo velocity_pdo = VelocityPdo::kDerived;
   bool velocity_has_room = true;       ///< on the bus; not of the drive file

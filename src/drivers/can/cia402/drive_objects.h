@@ -1,6 +1,6 @@
 #pragma once
-/// Objects of CiA 402 with which a torque drive is set up and driven, and its process data. The modes are cyclic
-/// synchronous torque (CST) and profile torque (TQ), which have the same objects. A drive with several axes repeats all
+/// Objects of CiA 402 with which a drive is set up and driven, and its process data. The modes are cyclic synchronous
+/// torque (CST) and profile torque (TQ), or the same of the velocity (CSV, PV). A drive with several axes repeats all
 /// 6xxx with 800 more per axis. Sources: CiA 402-2; CiA 301 for 1xxx.
 
 #include "drivers/can/cia402/pdo.h"
@@ -45,6 +45,7 @@ inline constexpr ObjectAddress kPeriodValue{0x60C2, 1}, kPeriodIndex{0x60C2, 2};
 
 inline constexpr PdoEntry kControlwordEntry{{0x6040, 0}, 16, false};
 inline constexpr PdoEntry kTargetTorqueEntry{{0x6071, 0}, 16, true};
+inline constexpr PdoEntry kTargetVelocityEntry{{0x60FF, 0}, 32, true};  ///< unit of 606C
 inline constexpr PdoEntry kStatuswordEntry{{0x6041, 0}, 16, false};
 inline constexpr PdoEntry kPositionEntry{{0x6064, 0}, 32, true};
 inline constexpr PdoEntry kTorqueEntry{{0x6077, 0}, 16, true};
@@ -54,9 +55,10 @@ inline constexpr PdoEntry kVelocityEntry{{0x606C, 0}, 32, true};
 /// brake. Two drives at 1 kHz then load a bus of 1 Mbit/s with less than 70 %.
 inline constexpr std::uint8_t kVelocitySyncs = 2;
 
-/// The process data of one axis: 4 bytes to the drive and 8 bytes from it in each cycle. The velocity has no room in
-/// the first TPDO; where the drive cannot send a second one, velocity follows from the position.
-struct TorquePdos {
+/// The process data of one axis: 4 bytes to the drive, or 6 with a velocity, and 8 bytes from it in each cycle. The
+/// velocity has no room in the first TPDO; where the drive cannot send a second one, velocity follows from the
+/// position.
+struct AxisPdos {
   Pdo command{PdoKind::kReceive, 1, {kControlwordEntry, kTargetTorqueEntry}};
   Pdo state{PdoKind::kTransmit, 1, {kStatuswordEntry, kPositionEntry, kTorqueEntry}};
   Pdo velocity{PdoKind::kTransmit, 2, {kVelocityEntry}};
@@ -66,6 +68,17 @@ struct TorquePdos {
 constexpr ObjectAddress on_axis(const ObjectAddress& object, unsigned axis) noexcept {
   if (object.index < 0x6000) return object;
   return {.index = static_cast<std::uint16_t>(object.index + 0x800 * axis), .sub = object.sub};
+}
+
+/// Returns the process data of this axis of a drive that takes torques, or speeds.
+inline AxisPdos pdos_of(unsigned axis, bool takes_speeds) noexcept {
+  AxisPdos pdos;
+  if (takes_speeds) pdos.command.mapping.entries[1] = kTargetVelocityEntry;
+  for (Pdo* pdo : {&pdos.command, &pdos.state, &pdos.velocity}) {
+    pdo->number = static_cast<std::uint8_t>(pdo->number + 2 * axis);
+    for (PdoEntry& entry : pdo->mapping.entries) entry.object = on_axis(entry.object, axis);
+  }
+  return pdos;
 }
 
 }  // namespace robot_control::cia402

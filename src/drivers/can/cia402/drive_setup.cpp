@@ -31,29 +31,21 @@ Period period_of(double seconds) {
   return {};
 }
 
-TorquePdos pdos_of(unsigned axis) {
-  TorquePdos pdos;
-  for (Pdo* pdo : {&pdos.command, &pdos.state, &pdos.velocity}) {
-    pdo->number = static_cast<std::uint8_t>(pdo->number + 2 * axis);
-    for (PdoEntry& entry : pdo->mapping.entries) entry.object = on_axis(entry.object, axis);
-  }
-  return pdos;
-}
-
 }  // namespace
 
 DriveSetup::DriveSetup(const Cia402Parameters& parameters, std::uint8_t host, double period)
     : parameters_(parameters), client_(static_cast<std::uint8_t>(parameters.drive.node)) {
-  pdos_ = pdos_of(static_cast<unsigned>(parameters_.axis));
+  pdos_ = pdos_of(static_cast<unsigned>(parameters_.axis), parameters_.drive.takes_speeds);
   read(kVendor, parameters_.vendor != 0 ? Use::kEqual : Use::kNone, false, "vendor (1018:1)",
        static_cast<std::uint32_t>(parameters_.vendor));
   read(kProduct, parameters_.product != 0 ? Use::kEqual : Use::kNone, parameters_.product == 0, "product (1018:2)",
        static_cast<std::uint32_t>(parameters_.product));
   write({0x6040, 0}, 0, 2, Use::kNone, true, "controlword (6040)");
   write({0x6071, 0}, 0, 2, Use::kNone, true, "target torque (6071)");
+  if (parameters_.drive.takes_speeds) write({0x60FF, 0}, 0, 4, Use::kNone, true, "target velocity (60FF)");
   add_motor_steps(period);
   add_silence_steps(host);
-  add_pdo_steps(0, "RPDO of controlword and torque");
+  add_pdo_steps(0, "RPDO of controlword and target");
   add_pdo_steps(1, "TPDO of statusword, position and torque");
   read(kVelocityUnit, Use::kUnit, true, "unit of the velocity (60A9)");
   add_pdo_steps(kVelocityIndex, "TPDO of the velocity");
@@ -155,7 +147,7 @@ void DriveSetup::restart() noexcept {
   next_ = 0;
   client_.cancel();
   problem_ = {};
-  pdos_ = pdos_of(static_cast<unsigned>(parameters_.axis));
+  pdos_ = pdos_of(static_cast<unsigned>(parameters_.axis), parameters_.drive.takes_speeds);
   units_ = {.rated_torque = parameters_.rated_torque,
             .counts_per_turn = parameters_.counts_per_turn,
             .velocity_unit = parameters_.velocity_unit};
@@ -268,14 +260,20 @@ void DriveSetup::evaluate(const Step& step, bool present, std::uint32_t value) n
 }
 
 void DriveSetup::judge_modes(bool present, std::uint32_t modes) noexcept {
-  if (parameters_.mode != TorqueMode::kAny) {
-    mode_ = parameters_.mode == TorqueMode::kCyclic ? Mode::kCyclicTorque : Mode::kTorque;
-  } else if (present && supports(modes, Mode::kCyclicTorque)) {
-    mode_ = Mode::kCyclicTorque;
-  } else if (present && supports(modes, Mode::kTorque)) {
-    mode_ = Mode::kTorque;
+  const bool speeds = parameters_.drive.takes_speeds;
+  const Mode cyclic = speeds ? Mode::kCyclicVelocity : Mode::kCyclicTorque;
+  const Mode profile = speeds ? Mode::kProfileVelocity : Mode::kTorque;
+  if (parameters_.mode != ModeChoice::kAny) {
+    const bool is_cyclic =
+        parameters_.mode == ModeChoice::kCyclicTorque || parameters_.mode == ModeChoice::kCyclicVelocity;
+    mode_ = is_cyclic ? cyclic : profile;
+  } else if (present && supports(modes, cyclic)) {
+    mode_ = cyclic;
+  } else if (present && supports(modes, profile)) {
+    mode_ = profile;
   } else {
-    refuse(DriveCause::kLacks, "torque mode in its supported modes (6502)");
+    refuse(DriveCause::kLacks,
+           speeds ? "velocity mode in its supported modes (6502)" : "torque mode in its supported modes (6502)");
   }
 }
 
@@ -296,6 +294,8 @@ void DriveSetup::judge_velocity_unit(bool present, std::uint32_t value) noexcept
   const bool of_the_motor = gear_ == 0 || gear_ == 1;
   if (present && of_the_motor) units_.velocity_unit = velocity_unit(value);
   if (units_.velocity_unit != 0) return;
+  if (parameters_.drive.takes_speeds)
+    return refuse(DriveCause::kLacks, "unit of the velocity (60A9); state velocity_unit");
   units_.velocity_unit = kRpm;
   if (parameters_.velocity_pdo == VelocityPdo::kDerived && velocity_ == VelocitySource::kDrive)
     velocity_ = VelocitySource::kNoUnit;
@@ -347,7 +347,7 @@ void DriveSetup::judge_mapping(const Step& step, std::uint32_t value) noexcept {
 }
 
 void DriveSetup::judge_pdos() noexcept {
-  const TorquePdos needed = pdos_of(static_cast<unsigned>(parameters_.axis));
+  const AxisPdos needed = pdos_of(static_cast<unsigned>(parameters_.axis), parameters_.drive.takes_speeds);
   judge_pdo(pdos_.command, needed.command, true);
   judge_pdo(pdos_.state, needed.state, false);
   if (velocity_ != VelocitySource::kDrive || problem_.cause != DriveCause::kNone) return;

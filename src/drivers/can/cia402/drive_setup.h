@@ -3,7 +3,7 @@
 /// the drive file, and learns from it what the file leaves to the drive.
 ///
 ///   1018                      identity
-///   6040, 6071                no torque
+///   6040, 6071, 60FF          no torque, no speed
 ///   6502, 6060, 6061          mode
 ///   6076, 6072, 6087          torque
 ///   608F, 6091, 6092, 60C2    position, period of the loop
@@ -50,7 +50,7 @@ class DriveSetup {
   bool answered() const noexcept { return next_ > 0; }
 
   // Valid when it is done:
-  const TorquePdos& pdos() const noexcept { return pdos_; }
+  const AxisPdos& pdos() const noexcept { return pdos_; }
   const DriveUnits& units() const noexcept { return units_; }
   Mode mode() const noexcept { return mode_; }
   SilenceReaction on_silence() const noexcept;
@@ -124,7 +124,7 @@ class DriveSetup {
   std::size_t next_ = 0;
   canopen::SdoClient client_;
   SetupProblem problem_;
-  TorquePdos pdos_;
+  AxisPdos pdos_;
   DriveUnits units_;
   Mode mode_ = Mode::kCyclicTorque;
   VelocitySource velocity_ = VelocitySource::kDrive;

@@ -26,6 +26,9 @@ struct DriveUnits {
   std::int16_t raw_torque(double torque) const noexcept {
     return static_cast<std::int16_t>(saturated(1000 * torque / rated_torque, 16));
   }
+  std::int32_t raw_velocity(double velocity) const noexcept {
+    return static_cast<std::int32_t>(saturated(velocity / velocity_unit, 32));
+  }
 };
 
 /// The objects from which the unit of 6064 follows, each as its ratio; 0: the drive has none.

@@ -53,7 +53,7 @@ std::uint32_t parts_in_error(const can_frame& frame) noexcept {
 
 DriveParameters with_sample_period(DriveParameters drive, double period) {
   drive.sample_period = period;
-  drive.effort_is_rare = true;
+  drive.effort_is_rare = !drive.takes_speeds;  // The drive gives other torques than those of the command.
   return drive;
 }
 
@@ -63,7 +63,7 @@ OdriveDrive::OdriveDrive(const OdriveParameters& parameters, double period)
     : Drive(with_sample_period(parameters.drive, parameters.estimates_period), period), parameters_(parameters) {}
 
 std::vector<PlannedFrames> OdriveDrive::plan() const {
-  std::vector<PlannedFrames> plan{{.data_bytes = 4, .per_cycle = 1}};
+  std::vector<PlannedFrames> plan{{.data_bytes = parameters_.drive.takes_speeds ? 8U : 4U, .per_cycle = 1}};
   if (parameters_.estimates_period > 0) {
     plan.push_back({.data_bytes = 8, .per_second = 1 / parameters_.estimates_period});
   } else {
@@ -195,7 +195,7 @@ void OdriveDrive::receive_error_details(const can_frame& frame) noexcept {
 
 void OdriveDrive::advance(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept {
   if (disabled()) {
-    send.add(encode(node(), SetInputTorque{}));
+    send.add(input({}));
     send_idle(now_ns, send);
     if (due(next_details_ns_, kSlowNs, now_ns)) {
       send.add(request<v06::Error>(node()));
@@ -207,7 +207,7 @@ void OdriveDrive::advance(const DriveCommand& command, std::int64_t now_ns, Fram
     return;
   }
   // An axis in closed loop has the torque of an earlier program, whose watchdog these frames feed.
-  if (phase_ < Phase::kPosition) send.add(encode(node(), SetInputTorque{}));
+  if (phase_ < Phase::kPosition) send.add(input({}));
   if (phase_ == Phase::kHeartbeat) return set(DriveState::kStarting, DriveCause::kFirstFrame);
   const auto max_silence = static_cast<std::int64_t>(1.0e9 * kMaxHeartbeats * parameters_.heartbeat_period);
   if (now_ns - heartbeat_ns_ > max_silence) {
@@ -269,7 +269,7 @@ void OdriveDrive::ask_watchdog(std::int64_t now_ns, FrameBatch& send) noexcept {
 
 void OdriveDrive::advance_power(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept {
   const bool running = phase_ == Phase::kRunning && command.enabled;
-  send.add(encode(node(), SetInputTorque{.torque = running ? motor_torque(command.torque) : 0}));
+  send.add(input(running ? command : DriveCommand{}));
   if (phase_ == Phase::kPosition) {
     set(DriveState::kStarting, DriveCause::kFirstSample);
     if (!sample().valid) return;
@@ -289,8 +289,9 @@ void OdriveDrive::advance_power(const DriveCommand& command, std::int64_t now_ns
   set(DriveState::kReady, DriveCause::kPower, "in closed loop; axis state", static_cast<std::uint32_t>(axis_state_));
   if (tries_ < kZeroCycles) {
     ++tries_;
-    send.add(encode(node(), SetControllerMode{}));
     const DriveParameters& drive = drive_parameters();
+    send.add(encode(node(),
+                    SetControllerMode{.control = drive.takes_speeds ? ControlMode::kVelocity : ControlMode::kTorque}));
     const double velocity = parameters_.motor_velocity_limit > 0 ? parameters_.motor_velocity_limit
                                                                  : kVelocityMargin * drive.velocity_limit * drive.gear;
     const double current = drive.torque_limit / drive.gear / parameters_.torque_constant;
@@ -313,6 +314,13 @@ void OdriveDrive::clear_errors(std::int64_t now_ns, FrameBatch& send) noexcept {
   if (!may_clear()) return fail(DriveCause::kDriveError, "", axis_error_);
   cleared_ns_ = now_ns;
   send.add(encode(node(), v06::ClearErrors{}));
+}
+
+/// A velocity also sets the torque, so that a zero one leaves nothing of an earlier program.
+can_frame OdriveDrive::input(const DriveCommand& command) const noexcept {
+  const double torque = motor_torque(command.torque);
+  if (!drive_parameters().takes_speeds) return encode(node(), SetInputTorque{.torque = torque});
+  return encode(node(), SetInputVelocity{.velocity = motor_speed(command.speed), .torque = torque});
 }
 
 void OdriveDrive::send_idle(std::int64_t now_ns, FrameBatch& send) noexcept {

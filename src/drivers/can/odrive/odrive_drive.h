@@ -1,10 +1,11 @@
 #pragma once
-/// The state machine of one ODrive axis (CANSimple) in torque mode.
+/// The state machine of one ODrive axis (CANSimple) in torque mode, or in velocity mode (takes_speeds) with the torque
+/// of the command as feed-forward.
 ///
 ///   heartbeat → version (no answer: 0.5) → address (0.6: serial number, a second drive) → watchdog, if its endpoints
-///   are known → first position → ready → mode, zero torque and limits in kZeroCycles cycles → closed loop → running
+///   are known → first position → ready → mode, zero input and limits in kZeroCycles cycles → closed loop → running
 ///
-/// The zero torque is sent in every cycle before closed loop, because the axis executes the last set-point that it has
+/// The zero input is sent in every cycle before closed loop, because the axis executes the last set-point that it has
 /// received. That may be one of an earlier program. In closed loop the state of each heartbeat is judged: an axis may
 /// become idle without an error. Errors are cleared before closed loop is requested. An ODrive whose watchdog expires
 /// becomes idle: the joint coasts.
@@ -61,6 +62,7 @@ class OdriveDrive final : public Drive {
   void keep_resolution(std::int64_t now_ns, FrameBatch& send) noexcept;
   void set_position(double position, FrameBatch& send) const noexcept;
   void clear_errors(std::int64_t now_ns, FrameBatch& send) noexcept;
+  can_frame input(const DriveCommand& command) const noexcept;
   void send_idle(std::int64_t now_ns, FrameBatch& send) noexcept;
   bool due(std::int64_t& next_ns, std::int64_t interval_ns, std::int64_t now_ns) const noexcept;
   std::uint8_t node() const noexcept { return static_cast<std::uint8_t>(drive_parameters().node); }

@@ -1,0 +1,137 @@
+#pragma once
+/// A RoboClaw with two motors on a serial line as a Driver. The board closes the loop of each wheel's speed; torques
+/// are neither taken nor measured.
+///
+/// One exchange runs at a time: the driver sends a request in `write`, and takes its answer in a later `read`. After
+/// kAnswerNs the answer counts as lost. In turn it orders the speeds and reads both encoders, and after kSlowEvery of
+/// these pairs battery, temperature or status. A loop of 200 Hz and more thus orders 100 times per second. The counts
+/// are those of the middle between request and answer; their speed brings them to the time of `read`.
+///
+/// `read` reports kStarting until version, gains and QPPS of both motors were read, and its serial timeout, which is
+/// set to kTimeoutNs. It is refused with gains or a QPPS of zero: such a board answers
+/// a speed with full power. Until then, and after a fault of the counts, the order is a duty of zero. Otherwise the
+/// board brakes with the speed zero, which it keeps at rest. Faults stay until the operator's reset:
+///
+///   silence         no new counts for kRoboclawSilence
+///   error           of the board's status
+///   position jump   counts that the joint cannot reach within its velocity limit
+///   no counts       kBlindWay was ordered, and not one count came: the encoder is unplugged, or the wheel is blocked
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bus/latest_value.h"
+#include "drivers/drive_speed.h"
+#include "drivers/driver.h"
+#include "drivers/position_difference.h"
+#include "drivers/serial/roboclaw_parameters.h"
+#include "drivers/serial/roboclaw_protocol.h"
+#include "drivers/serial/serial_line.h"
+
+namespace robot_control {
+
+enum class RoboclawCause : std::uint8_t {
+  kNone,
+  kNoAnswer,  ///< none yet
+  kSilent,
+  kNoGains,     ///< detail: number of the motor
+  kLowQpps,     ///< the same
+  kNoTimeout,   ///< detail: 100 ms
+  kBoardError,  ///< detail: its bits
+  kPositionJump,
+  kNoCounts,
+};
+
+class RoboclawDriver final : public Driver {
+ public:
+  static constexpr std::int64_t kTimeoutNs = 100'000'000;  ///< of the board, its shortest one
+  static constexpr std::int64_t kAnswerNs = 10'000'000;
+  static constexpr unsigned kSlowEvery = 4;
+  static constexpr double kSpeedMargin = 1.5;  ///< of the velocity limit, above which a position jumped
+  static constexpr double kBlindWay = 0.5;     ///< rad
+
+  /// The wheels move the first joints of a robot that has `joint_count`. `clock` states the present time in ns.
+  RoboclawDriver(const RoboclawParameters& parameters, std::size_t joint_count, double period,
+                 std::unique_ptr<SerialLine> line, std::function<std::int64_t()> clock);
+
+  void start() override;
+  void reset() noexcept override;
+  void read(SensorFrame& sensors) noexcept override;
+  void write(std::span<const JointCommand> commands) noexcept override;
+  /// The next orders brake.
+  void stop() noexcept override { stopped_ = true; }
+
+  bool accepts(JointMode mode) const noexcept override { return accepted(mode, true); }
+  bool measures(MachineInput input) const noexcept override { return input == MachineInput::kJointMotion; }
+  std::string description() const override;
+  std::string warning() const override;
+
+ private:
+  using Command = roboclaw::PacketCommand;
+  /// Two samples of the counts give the first speed.
+  static constexpr std::array kSetup{Command::kVersion,    Command::kVelocityPid1, Command::kVelocityPid2,
+                                     Command::kSetTimeout, Command::kGetTimeout,   Command::kEncoders,
+                                     Command::kEncoders};
+  static constexpr std::array kSlow{Command::kBattery, Command::kTemperature, Command::kStatus};
+
+  struct Wheel {
+    double rad_per_count = 0;
+    std::uint32_t counts = 0;
+    std::int64_t total = 0;
+    double position = 0;
+    double velocity = 0;
+    double blind = 0;    // rad, ordered since the last count
+    double ordered = 0;  // rad/s
+    PositionDifference difference;
+  };
+  struct Status {
+    DriverState state = DriverState::kStarting;
+    RoboclawCause cause = RoboclawCause::kNoAnswer;
+    std::uint64_t detail = 0;
+    std::uint64_t connected = 0;
+    bool operator==(const Status&) const = default;
+  };
+
+  void begin() noexcept;
+  void receive() noexcept;
+  bool answered() noexcept;
+  void accept() noexcept;
+  void accept_gains(unsigned motor) noexcept;
+  void accept_counts() noexcept;
+  void fail(RoboclawCause cause, std::uint64_t detail = 0) noexcept;
+  Command next() noexcept;
+  void send(Command command) noexcept;
+  bool counts_are_trusted() const noexcept;
+  void publish_status() noexcept;
+
+  std::size_t joint_count_;
+  RoboclawParameters parameters_;
+  std::int64_t period_ns_;
+  std::unique_ptr<SerialLine> line_;
+  std::function<std::int64_t()> clock_;
+  std::vector<Wheel> wheels_;
+  std::array<std::int32_t, 2> speeds_{};  // counts per s, of the motors
+  roboclaw::Packet asked_, received_;
+  Command command_ = Command::kVersion;
+  bool pending_ = false;
+  std::int64_t sent_ns_ = 0;
+  std::int64_t arrived_ns_ = 0;
+  std::size_t setup_ = 0;  // next one of kSetup; its size: running
+  unsigned turn_ = 0;
+  bool has_counts_ = false;
+  std::int64_t sample_ns_ = 0;
+  std::uint64_t valid_ = 0;  // kValidBattery, once it was read
+  double battery_ = 0;       // V
+  double temperature_ = 0;   // °C
+  bool has_temperature_ = false;
+  LinkStatus link_;
+  Status status_;
+  LatestValue<Status> published_status_;
+  std::int64_t now_ns_ = 0;
+  bool stopped_ = true;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,209 @@
+#include "simulation/devices/roboclaw_front.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace robot_control {
+namespace {
+
+using roboclaw::Packet;
+using roboclaw::PacketCommand;
+
+constexpr std::int64_t kTimeoutStepNs = 100'000'000;
+constexpr std::uint32_t kGain = 65536;  // 1
+constexpr std::uint32_t kTooHot = 0x0002;
+constexpr double kQppsMargin = 1.2;  // of the velocity limit
+
+double counts_per_rad(const RoboclawWheelParameters& wheel) {
+  return static_cast<double>(wheel.direction) * wheel.counts_per_turn / (2 * std::numbers::pi);
+}
+
+}  // namespace
+
+RoboclawFront::RoboclawFront(const RoboclawParameters& parameters, std::span<const Brake> brakes,
+                             std::span<const double> effort_limits, double period, std::uint64_t seed)
+    : parameters_(parameters),
+      period_ns_(std::llround(1.0e9 * period)),
+      virtual_line_(std::make_unique<VirtualSerial>(static_cast<double>(parameters.line.bit_rate), seed)),
+      line_(virtual_line_->device_end()) {
+  add_wheels(brakes, effort_limits);
+}
+
+RoboclawFront::RoboclawFront(const RoboclawParameters& parameters, std::span<const Brake> brakes,
+                             std::span<const double> effort_limits, double period, std::unique_ptr<SerialLine> line)
+    : parameters_(parameters),
+      period_ns_(std::llround(1.0e9 * period)),
+      true_line_(std::move(line)),
+      line_(*true_line_) {
+  add_wheels(brakes, effort_limits);
+}
+
+void RoboclawFront::add_wheels(std::span<const Brake> brakes, std::span<const double> effort_limits) {
+  for (std::size_t i = 0; i < parameters_.wheels.size(); ++i)
+    wheels_.push_back({.damping = brakes[i].damping, .limit = effort_limits[i]});
+}
+
+std::size_t RoboclawFront::joint_of(std::size_t motor) const {
+  const auto found = std::ranges::find(parameters_.wheels, motor, &RoboclawWheelParameters::motor);
+  return static_cast<std::size_t>(found - parameters_.wheels.begin());
+}
+
+std::int32_t RoboclawFront::counts(std::size_t wheel) const {
+  if (stuck_ && parameters_.wheels[wheel].motor == 1) return wheels_[wheel].stuck;
+  const double turned = wheels_[wheel].position - wheels_[wheel].zero;
+  return static_cast<std::int32_t>(
+      static_cast<std::int64_t>(std::floor(counts_per_rad(parameters_.wheels[wheel]) * turned)));
+}
+
+void RoboclawFront::stop() {
+  for (Wheel& wheel : wheels_) wheel.driven = false;
+}
+
+/// A byte that can begin no request, and a request with a wrong CRC, are dropped.
+void RoboclawFront::receive_byte(std::uint8_t byte) {
+  request_.add(byte, 1);
+  if (request_.number(0, 1) != parameters_.line.board_address) return request_.clear();
+  if (request_.size() < 2) return;
+  const auto command = static_cast<PacketCommand>(request_.number(1, 1));
+  if (!roboclaw::is_write(command)) {
+    if (roboclaw::answer_size(command) > 0 || command == PacketCommand::kVersion) obey();
+    return request_.clear();
+  }
+  const std::size_t size = 2 + roboclaw::data_size(command);
+  if (request_.size() < size + 2) return;
+  if (roboclaw::crc16(request_.bytes().first(size)) == request_.number(size, 2)) obey();
+  request_.clear();
+}
+
+void RoboclawFront::answer(Packet data) {
+  data.add(roboclaw::crc16(data.bytes(), roboclaw::crc16(request_.bytes())), 2);
+  line_.send(data.bytes());
+}
+
+void RoboclawFront::obey() {
+  request_ns_ = now_ns_;
+  const auto command = static_cast<PacketCommand>(request_.number(1, 1));
+  Packet data;
+  switch (command) {
+    case PacketCommand::kSetTimeout:
+      timeout_ = static_cast<std::uint8_t>(request_.number(2, 1));
+      break;
+    case PacketCommand::kDuties:
+      stop();
+      break;
+    case PacketCommand::kSpeeds:
+      for (std::size_t motor = 1; motor <= wheels_.size(); ++motor) {
+        const std::size_t joint = joint_of(motor);
+        const auto speed = static_cast<std::int32_t>(request_.number(2 + 4 * (motor - 1), 4));
+        wheels_[joint].wanted = speed / counts_per_rad(parameters_.wheels[joint]);
+        wheels_[joint].driven = !fault_;
+      }
+      break;
+    case PacketCommand::kGetTimeout:
+      data.add(timeout_, 1);
+      break;
+    case PacketCommand::kVersion:
+      for (const char letter : std::string_view("USB Roboclaw 2x15a v4.2.4\n"))
+        data.add(static_cast<std::uint8_t>(letter), 1);
+      data.add(0, 1);
+      break;
+    case PacketCommand::kBattery:
+      data.add(242, 2);
+      break;
+    case PacketCommand::kTemperature:
+      data.add(355, 2);
+      break;
+    case PacketCommand::kStatus:
+      data.add(fault_ ? kTooHot : 0, 4);
+      break;
+    case PacketCommand::kEncoders:
+      for (std::size_t motor = 1; motor <= wheels_.size(); ++motor)
+        data.add(static_cast<std::uint32_t>(counts(joint_of(motor))), 4);
+      break;
+    case PacketCommand::kVelocityPid1:
+    case PacketCommand::kVelocityPid2: {
+      const RoboclawWheelParameters& wheel =
+          parameters_.wheels[joint_of(command == PacketCommand::kVelocityPid1 ? 1 : 2)];
+      for (const std::uint32_t gain : {kGain, kGain, 0U}) data.add(gains_ ? gain : 0, 4);
+      data.add(static_cast<std::uint32_t>(kQppsMargin * wheel.velocity_limit * std::abs(counts_per_rad(wheel))), 4);
+      break;
+    }
+  }
+  if (!roboclaw::is_write(command)) return answer(data);
+  const std::uint8_t acknowledged = roboclaw::kAcknowledged;
+  line_.send({&acknowledged, 1});
+}
+
+double RoboclawFront::step_wheel(Wheel& wheel, std::size_t index, double seconds) const {
+  if (!wheel.driven) {
+    wheel.integral = 0;
+    return std::clamp(-wheel.damping * wheel.velocity, -wheel.limit, wheel.limit);
+  }
+  const bool blind = stuck_ && parameters_.wheels[index].motor == 1;
+  const double error = wheel.wanted - (blind ? 0 : wheel.velocity);
+  const double integral = wheel.integral + wheel.damping / kIntegralTime * error * seconds;
+  const double wanted = wheel.damping * error + integral;
+  if (std::abs(wanted) < wheel.limit) wheel.integral = integral;
+  return std::clamp(wanted, -wheel.limit, wheel.limit);
+}
+
+void RoboclawFront::run(std::span<const JointSample> joints) {
+  for (Wheel& wheel : wheels_) wheel.mean_torque = 0;
+  const std::int64_t begin_ns = now_ns_;
+  const std::int64_t end_ns = begin_ns + period_ns_;
+  while (now_ns_ < end_ns) {
+    const auto elapsed = 1.0e-9 * static_cast<double>(now_ns_ - begin_ns);
+    for (std::size_t i = 0; i < wheels_.size(); ++i) {
+      wheels_[i].position = joints[i].position + joints[i].velocity * elapsed;
+      wheels_[i].velocity = joints[i].velocity;
+    }
+    if (virtual_line_) virtual_line_->advance(now_ns_);
+    const bool alive = !off_ && now_ns_ >= boots_ns_;
+    if (timeout_ > 0 && now_ns_ - request_ns_ > timeout_ * kTimeoutStepNs) stop();
+    SerialChunk chunk;
+    while (line_.receive(chunk)) {
+      for (const std::uint8_t byte : chunk.received()) alive ? receive_byte(byte) : request_.clear();
+    }
+    const std::int64_t next_ns = std::min(now_ns_ + kStepNs, end_ns);
+    const double seconds = 1.0e-9 * static_cast<double>(next_ns - now_ns_);
+    for (std::size_t i = 0; i < wheels_.size() && alive; ++i)
+      wheels_[i].mean_torque += step_wheel(wheels_[i], i, seconds) * seconds * 1.0e9 / static_cast<double>(period_ns_);
+    now_ns_ = next_ns;
+  }
+  if (virtual_line_) virtual_line_->advance(now_ns_);
+}
+
+std::string RoboclawFront::inject(std::string_view component, std::string_view kind) {
+  const auto is = [kind](auto... words) { return ((kind == words) || ...); };
+  if (component == "board" && is("ok", "off", "reset", "fault", "no_gains")) {
+    const bool restarts = (off_ && kind != "off") || kind == "reset";
+    off_ = kind == "off";
+    fault_ = kind == "fault";
+    gains_ = kind != "no_gains";
+    if (off_ || restarts || fault_) stop();
+    if (!restarts) return "";
+    boots_ns_ = now_ns_ + kBootNs;
+    timeout_ = 0;
+    for (Wheel& wheel : wheels_) wheel.zero = wheel.position;
+    return "";
+  }
+  if (component == "encoder" && is("ok", "stuck")) {
+    stuck_ = false;
+    for (std::size_t i = 0; i < wheels_.size(); ++i) wheels_[i].stuck = counts(i);
+    stuck_ = kind == "stuck";
+    return "";
+  }
+  if (component == "line" && virtual_line_) {
+    if (const std::optional<SerialFaults> faults = serial_faults(kind)) {
+      virtual_line_->faults() = *faults;
+      return "";
+    }
+  }
+  return std::string(
+             "component must be board (with ok, off, reset, fault, no_gains), encoder (with ok, stuck) or line "
+             "(with ") +
+         kSerialFaultWords + ")";
+}
+
+}  // namespace robot_control
