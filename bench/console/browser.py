@@ -133,6 +133,10 @@ class Browser:
         """The text of an element, by id."""
         return str(self.run("return document.getElementById(arguments[0])?.textContent ?? ''", element))
 
+    def number(self, element: str) -> float:
+        """The number that an element shows, by id; NaN for the dash of a value that is not there."""
+        return float(self.text(element).replace("–", "nan"))
+
     def click(self, element: str) -> None:
         """Clicks on an element, by id."""
         self.run("document.getElementById(arguments[0]).click()", element)

@@ -197,10 +197,13 @@ class LegsToolsTest(unittest.TestCase):
         begin = self.places[-1]
         browser.hold(
             "KeyJ",
-            "a way to the left",
-            lambda: math.dist(begin, self.places[-1]) > 0.3 and float(browser.text("asked-l")) > 0.1,
+            "a way to the left, and the page that shows the walk",
+            lambda: (
+                math.dist(begin, self.places[-1]) > 0.3
+                and browser.number("asked-l") > 0.1
+                and browser.text("posture") == "walking, walking_trot (chosen)"
+            ),
         )
-        self.assertIn("walking, walking_trot (chosen)", browser.text("posture"))
         self.assertIn("front left", browser.text("feet"))
         if folder := os.environ.get("CONSOLE_PICTURES"):
             browser.run("document.getElementById('view').hidden = false")
