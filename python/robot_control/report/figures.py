@@ -96,8 +96,8 @@ def _safety(drive: Drive) -> Iterator[Figure]:
 
 
 def _tracking(drive: Drive) -> Iterator[Figure]:
-    """A body on legs sways within each period of its gait: its error is the mean over one, from the speed that the walk
-    has for its target.
+    """A body on legs sways within each period of its gait. Its error is the mean over one, from the speed that is the
+    target of the walk.
     """
     driving = drive.driving()
     steps = phase_steps(drive)

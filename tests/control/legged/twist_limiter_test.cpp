@@ -162,14 +162,14 @@ TEST_F(TwistLimiterTest, TheStopDistanceIsThatOfTheRampAndOfHalfAPeriod) {
       state = {};
       twist = {};
       reach({speed, 0, 0});
-      double way = 0;
+      double distance = 0;
       while (twist[0] != 0) {
         step({}, emergency);
-        way += twist[0] * kPeriod;
+        distance += twist[0] * kPeriod;
       }
       const double half = std::sqrt(0.852 / 0.426) * kGaits[static_cast<std::size_t>(GaitName::kTrot)].period / 2;
       for (const double sense : {1.0, -1.0})
-        EXPECT_NEAR(walking_stop_distance(kParameters, 0.852, sense * speed, emergency), way + speed * half,
+        EXPECT_NEAR(walking_stop_distance(kParameters, 0.852, sense * speed, emergency), distance + speed * half,
                     speed * 2 * kPeriod);
     }
   }

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kFound = 0.015;  // of a speed: it is found by bisection, and at some places of a swing alone
 
-/// Returns the largest part of its speed limit at which a joint turns while the foot goes along `path` of 0 … 1 within
-/// `time` s; infinity where the leg ends.
+/// Returns the largest share of its speed limit that a joint has while the foot follows `path`, of 0 … 1, for `time` s.
+/// It is infinite where the leg ends.
 template <class Path>
 double fastest_joint(const LegModel& robot, std::size_t leg, double time, const Path& path) {
   constexpr int kSteps = 200;
