@@ -12,8 +12,9 @@
 ///   h   height of the centre of gravity; with ω × w h/g the forces of a robot that turns pass through it
 ///
 /// k (v − w) brings the speed back to the requested one. A foot that is √(h/g) (v − w) farther ahead takes all of the
-/// difference away (J. Pratt et al., Humanoids 2006); a long stance would put it beyond that place. The part beyond n is limited to kAhead l and kAside l, so that the
-/// leg reaches the foot during its whole stance. All vectors are in level axes with the body's heading now.
+/// difference away (J. Pratt et al., Humanoids 2006); a long stance would put it beyond that place. The part beyond n
+/// is limited to kAhead l and kAside l, so that the leg reaches the foot during its whole stance. All vectors are in
+/// level axes with the body's heading now.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -48,8 +49,8 @@ inline Eigen::Vector2d foothold(const FootholdInput& input) noexcept {
   const double caught = std::sqrt(std::max(0.0, input.height) / kGravity);
   const double gain = std::min(half + kReturn * std::sqrt(input.leg_length / kReferenceLeg), caught);
   const Eigen::Vector2d placed =
-      turned(until + half) * (input.nominal + gain * (input.measured - input.requested) -
-                              input.height / kGravity * inwards) +
+      turned(until + half) *
+          (input.nominal + gain * (input.measured - input.requested) - input.height / kGravity * inwards) +
       until * (turned(until / 2) * input.requested) + half * (turned(until + half / 2) * input.requested);
   const Eigen::Vector2d bound(kAhead * input.leg_length, kAside * input.leg_length);
   const Eigen::Vector2d beyond = placed - input.nominal;

@@ -59,7 +59,8 @@ struct Gait {
 /// enough, and to be lifted.
 constexpr bool walkable(const Gait& gait) noexcept {
   constexpr double kMinSwing = 0.05;  // s
-  if (!(gait.duty > 0 && gait.duty <= 1 && gait.lift >= 0 && gait.period > 0 && gait.begin >= 0 && gait.begin < 1)) return false;
+  if (!(gait.duty > 0 && gait.duty <= 1 && gait.lift >= 0 && gait.period > 0 && gait.begin >= 0 && gait.begin < 1))
+    return false;
   for (const double offset : gait.phase)
     if (!(offset >= 0 && offset < 1)) return false;
   return gait.duty == 1 || (gait.lift > 0 && gait.period * (1 - gait.duty) >= kMinSwing);
