@@ -51,8 +51,9 @@ struct WalkingSpeedTest : testing::Test {
       const Eigen::Vector3d& foot = stance.feet[leg];
       const Eigen::Vector3d moves = under(leg, axis, speed), half = gait.stance_time() / 2 * moves;
       const double swing = gait.swing_time();
-      part = std::max(part, fastest_joint(robot, leg, gait.stance_time(),
-                                          [&](double done) -> Eigen::Vector3d { return foot + (2 * done - 1) * half; }));
+      part = std::max(part, fastest_joint(robot, leg, gait.stance_time(), [&](double done) -> Eigen::Vector3d {
+                        return foot + (2 * done - 1) * half;
+                      }));
       part = std::max(part, fastest_joint(robot, leg, swing, [&](double done) -> Eigen::Vector3d {
                         const Eigen::Vector3d to = foot - half - swing * moves;
                         return swing_point(foot + half, to, foot.z() + gait.lift, done, swing).place +
@@ -62,14 +63,15 @@ struct WalkingSpeedTest : testing::Test {
     return part;
   }
 
-  /// Returns what they need at the end of the first stance after a change where the phase is 0.
+  /// Returns what they need at the end of the first stance after a change, where the phase of `last` wraps and `next`
+  /// begins.
   double changed(const Gait& last, const Gait& next, std::size_t axis, double speed) const {
     constexpr double kEnd = 0.002;  // s
     double part = 0;
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
-      if (next.leg_phase(leg, 0) >= next.duty) continue;
+      if (next.leg_phase(leg, next.begin) >= next.duty) continue;
       const double stood = std::min(last.leg_phase(leg, 0), last.duty) * last.period - last.stance_time() / 2;
-      const double until = stood + next.stance_time() - next.leg_phase(leg, 0) * next.period;
+      const double until = stood + next.stance_time() - next.leg_phase(leg, next.begin) * next.period;
       part = std::max(part, fastest_joint(robot, leg, kEnd, [&](double done) -> Eigen::Vector3d {
                         return stance.feet[leg] + (until - kEnd + done * kEnd) * under(leg, axis, speed);
                       }));
@@ -98,8 +100,8 @@ TEST_F(WalkingSpeedTest, NoJointNeedsMoreThanItsPartAtTheSpeedsOfAGaitAndItsChan
         if (speeds[other][axis] < speeds[gait][axis]) continue;  // that one bounds the change
         EXPECT_LE(changed(gaits[other], gaits[gait], axis, low), kOfJointSpeed) << gaits[gait].name << axis << other;
         EXPECT_LE(changed(gaits[gait], gaits[other], axis, low), kOfJointSpeed) << gaits[gait].name << axis << other;
-        beyond = std::max({beyond, changed(gaits[other], gaits[gait], axis, high),
-                           changed(gaits[gait], gaits[other], axis, high)});
+        beyond = std::max(
+            {beyond, changed(gaits[other], gaits[gait], axis, high), changed(gaits[gait], gaits[other], axis, high)});
       }
       EXPECT_GT(beyond, kOfJointSpeed) << gaits[gait].name << axis;
     }
