@@ -146,8 +146,8 @@ class Browser:
         self.driver.execute_cdp_cmd("Input.dispatchKeyEvent", {"type": kind, "code": code, "key": code[-1].lower()})
 
     def hold(self, code: str, what: str, condition: Callable[[], object]) -> None:
-        """Holds a key until the condition holds. A page that stands still for link_gap has to see a release. Then the key
-        is pressed again, as an operator does.
+        """Holds a key until the condition holds. A page that stands still for link_gap has to see a release: the key is
+        then pressed again, as an operator does.
         """
         self.key(code)
 
