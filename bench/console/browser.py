@@ -146,16 +146,16 @@ class Browser:
         self.driver.execute_cdp_cmd("Input.dispatchKeyEvent", {"type": kind, "code": code, "key": code[-1].lower()})
 
     def hold(self, code: str, what: str, condition: Callable[[], object]) -> None:
-        """Holds a key until the condition holds. A page that stands still for link_gap has to see a release: the key is
-        then pressed again, as an operator does.
+        """Holds a key until the condition holds. A page that stood still releases its keys, and a link that was silent has
+        to see a release: the key is then pressed again, as an operator does.
         """
-        self.key(code)
 
         def held() -> object:
-            if self.text("dead-man").startswith("release"):
+            if not self.text("dead-man").startswith("drives"):
                 self.key(code, "keyUp")
                 time.sleep(2 * SETTLING)
                 self.key(code)
+                time.sleep(SETTLING)
             return condition()
 
         wait_for(what, held)
