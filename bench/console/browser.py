@@ -146,8 +146,9 @@ class Browser:
         self.driver.execute_cdp_cmd("Input.dispatchKeyEvent", {"type": kind, "code": code, "key": code[-1].lower()})
 
     def hold(self, code: str, what: str, condition: Callable[[], object]) -> None:
-        """Holds a key until the condition holds. A page that stood still releases its keys, and a link that was silent has
-        to see a release: the key is then pressed again, as an operator does.
+        """Holds a key until the condition holds; presses it again, as operators do, where the page does not drive.
+
+        A page that stood still has released its keys; after a silent link it has to see a release.
         """
 
         def held() -> object:
