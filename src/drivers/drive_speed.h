@@ -2,6 +2,8 @@
 /// The commands of drives that close the loops of their own speeds (`takes_speeds`, from robot.wheel_command).
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 
 #include "drivers/joint_law.h"
 #include "signals/joint.h"
@@ -19,6 +21,11 @@ inline bool accepted(JointMode mode, bool takes_speeds) noexcept {
 inline double wanted_speed(const JointCommand& command, double velocity_limit) noexcept {
   if (command.mode != JointMode::kDriveVelocity || !finite(command)) return 0;
   return std::clamp(command.velocity, -velocity_limit, velocity_limit);
+}
+
+/// Returns the whole number of a message, within ±2·10⁹.
+inline std::int32_t rounded(double value) noexcept {
+  return static_cast<std::int32_t>(std::clamp(std::round(value), -2.0e9, 2.0e9));
 }
 
 }  // namespace robot_control

@@ -33,6 +33,15 @@ struct Word {
   std::string_view now;  ///< if `text` is an old word, accepted with a warning: the present one
 };
 
+/// Returns the word of a value, by the `words_of(Enum)` that is declared beside the enum; "" if it has none.
+template <class Enum>
+requires std::is_enum_v<Enum> std::string word_of(Enum value) {
+  for (const Word& word : words_of(value)) {
+    if (word.value == static_cast<int>(value)) return std::string(word.text);
+  }
+  return "";
+}
+
 /// A Choice points to a member of an enum type. The words are those of `words_of(Enum)`, which is declared beside the
 /// enum.
 struct Choice {

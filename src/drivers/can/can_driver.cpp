@@ -9,14 +9,6 @@
 namespace robot_control {
 namespace {
 
-template <class Enum>
-std::string word_of(Enum value) {
-  for (const Word& word : words_of(value)) {
-    if (word.value == static_cast<int>(value)) return std::string(word.text);
-  }
-  return "";
-}
-
 DriverFault fault_of(DriveCause cause) noexcept {
   switch (cause) {
     case DriveCause::kSilent:

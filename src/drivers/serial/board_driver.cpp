@@ -26,10 +26,6 @@ double line_load(std::size_t wheels, double period, std::uint64_t bit_rate) {
   return std::max(order, report) * kBitsPerByte / period / static_cast<double>(bit_rate);
 }
 
-std::int32_t rounded(double value) noexcept {
-  return static_cast<std::int32_t>(std::clamp(std::round(value), -2.0e9, 2.0e9));
-}
-
 const char* words_of_reset(std::uint64_t reason) noexcept {
   switch (reason) {
     case BOARD_BROWN_OUT:
@@ -301,12 +297,9 @@ std::string BoardDriver::description() const {
   if (published_status_.load(status) && status.firmware != 0) text << ", firmware " << status.firmware;
   if (load_ > 0) text << ", load of the line " << std::lround(100 * load_) << " %";
   text << (parameters_.takes_speeds ? ", takes speeds" : ", takes torques") << "; on silence ";
-  for (const Word& word : words_of(parameters_.line.on_silence)) {
-    if (word.value != static_cast<int>(parameters_.line.on_silence)) continue;
-    text << (parameters_.line.on_silence == SilenceReaction::kUnknown ? "it does what is unknown"
-                                                                      : "it " + std::string(word.text));
-  }
-  text << " (stated in the drive file)";
+  text << (parameters_.line.on_silence == SilenceReaction::kUnknown ? "it does what is unknown"
+                                                                    : "it " + word_of(parameters_.line.on_silence))
+       << " (stated in the drive file)";
   return text.str();
 }
 

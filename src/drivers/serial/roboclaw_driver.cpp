@@ -249,8 +249,7 @@ void RoboclawDriver::write(std::span<const JointCommand> commands) noexcept {
     const RoboclawWheelParameters& parameters = parameters_.wheels[i];
     wheel.ordered = obeys ? wanted_speed(commands[i], parameters.velocity_limit) : 0;
     wheel.blind += std::abs(wheel.ordered) * 1.0e-9 * static_cast<double>(period_ns_);
-    speeds_[parameters.motor - 1] =
-        static_cast<std::int32_t>(std::clamp(std::round(wheel.ordered / wheel.rad_per_count), -2.0e9, 2.0e9));
+    speeds_[parameters.motor - 1] = rounded(wheel.ordered / wheel.rad_per_count);
   }
   if (!pending_) send(next());
 }
@@ -259,12 +258,9 @@ std::string RoboclawDriver::description() const {
   std::ostringstream text;
   text << "RoboClaw on " << line_->name() << ", takes speeds, its serial timeout is " << kTimeoutNs / 1'000'000
        << " ms; on silence ";
-  for (const Word& word : words_of(parameters_.line.on_silence)) {
-    if (word.value != static_cast<int>(parameters_.line.on_silence)) continue;
-    text << (parameters_.line.on_silence == SilenceReaction::kUnknown ? "it does what is unknown"
-                                                                      : "it " + std::string(word.text));
-  }
-  text << " (stated in the drive file)";
+  text << (parameters_.line.on_silence == SilenceReaction::kUnknown ? "it does what is unknown"
+                                                                    : "it " + word_of(parameters_.line.on_silence))
+       << " (stated in the drive file)";
   return text.str();
 }
 
