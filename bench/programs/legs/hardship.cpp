@@ -75,6 +75,9 @@ void switches(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   worst.add("tilt while gaits change", robot.tilt, "rad");
   worst.add("dip of the speed while gaits change", speeds.dip, "of it");
   worst.add("stops, gaits that change", stopped(robot), "");
+  if (robot.permit().causes != 0)
+    std::fprintf(stderr, "%s, seed %llu: stopped by %s\n", model.name.c_str(), static_cast<unsigned long long>(seed),
+                 robot.causes().c_str());
 }
 
 void disturbances(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
