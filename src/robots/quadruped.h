@@ -19,7 +19,7 @@
 
 namespace robot_control {
 
-class Quadruped final : public Robot {
+class Quadruped : public Robot {
  public:
   static constexpr double kFoldTime = 1.25;        ///< s
   static constexpr double kWalkingFoldTime = 0.2;  ///< s
