@@ -56,7 +56,8 @@ void walking_stop(const LegModel& model, std::uint64_t seed, WorstValues& worst)
 /// 100 changes among all gaits, at random times and speeds.
 void switches(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// A trot of 0.3 m/s that is pushed in 8 directions. Then with a payload, on slippery ground, with motors that are late
-/// or weak, and with masses that are not the described ones. The seed chooses one of 24 phases of the gait for the push.
+/// or weak, and with masses that are not the described ones. The seed chooses one of 24 phases of the gait for the
+/// push.
 void disturbances(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// A trot of 0.5 m/s with each fault of each encoder, of each motor and of the IMU. The seed chooses one of 20 phases
 /// of the gait. A fault is named if the first cause of the stop comes in time and names its joint, or the IMU.
