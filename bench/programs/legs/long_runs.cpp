@@ -152,7 +152,7 @@ void walking_hours(const LegModel& model, std::uint64_t seed, WorstValues& worst
     const Eigen::Vector2d off =
         (estimate.inverse() * measured).translation() - (truth.inverse() * before).translation();
     worst.add("error of the way between two resets", 100 * off.norm() / walked, "%");
-    worst.average("mean error between two resets", 100 * off.norm() / walked, "%");
+    worst.average("mean error of the way between two resets", 100 * off.norm() / walked, "%");
     truth = before, estimate = measured, walked = 0, next += kStretch;
   }
   worst.add("stops in ten minutes", robot.permit().causes == 0 ? 0 : 1, "runs");
