@@ -40,6 +40,8 @@ PARTS = (
     "walking_replayed",
     "switches",
     "disturbances",
+    "faults",
+    "walking_hours",
     "walking_silent",
 )
 SEEDS = {
@@ -55,6 +57,8 @@ SEEDS = {
     "walking_replayed": 4,
     "switches": 24,
     "disturbances": 24,
+    "faults": 20,
+    "walking_hours": 12,
 }
 """of each robot; others have one"""
 OWN_ROBOT = ("cost", "walking_cost", "pose", "circle", "odometry", "contact", "trot", "gaits")
@@ -127,6 +131,10 @@ BOUNDS = {
     "tilt with a silent controller": 0.15,  # rad
     "stops in an hour": 0,
     "time with a warning in an hour": 0,  # s
+    "stops in ten minutes": 0,
+    "time with a warning in ten minutes": 0,  # s
+    "turned over by a fault": 0.05,
+    "neither named nor walked through": 0,
     "error of the way": 1,  # %
     "error of yaw": 1.5,  # °
     "RMS of the speed": 0.03,  # m/s
@@ -148,6 +156,7 @@ WITHOUT_BOUND = (
     "1.0 m/s, ",
     "1.5 m/s, ",
     "stopped by a push, ",
+    "neither, ",
     "mean error of",
     "error of height",
 )

@@ -33,6 +33,8 @@ constexpr NamedRow kRows[] = {{"postures", postures},
                               {"walking_stop", walking_stop},
                               {"switches", switches},
                               {"disturbances", disturbances},
+                              {"faults", faults},
+                              {"walking_hours", walking_hours},
                               {"walking_silent", walking_silent},
                               {"walking_cost", walking_cost},
                               {"walking_replayed", walking_replayed}};

@@ -9,7 +9,7 @@
 ///   ramp            the robot lies down
 ///
 /// The time of the fold is that of legs of 0.426 m. Time and gains follow leg length and mass as in
-/// control/legged. Without its IMU a robot on legs is stopped (imu_lost brakes instead of slowing).
+/// control/legged. Without its IMU a robot on legs is stopped (imu_lost and imu_stuck brake instead of slowing).
 /// Its feet need not carry it, because it may lie (lift is off).
 
 #include "configuration/parameters.h"
@@ -19,7 +19,7 @@
 
 namespace robot_control {
 
-class Quadruped final : public Robot {
+class Quadruped : public Robot {
  public:
   static constexpr double kFoldTime = 1.25;        ///< s
   static constexpr double kWalkingFoldTime = 0.2;  ///< s

@@ -234,6 +234,24 @@ TEST(Walking, GoesOnWhenATrotBecomesACrawlThatIsRequestedFaster) {
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
 }
 
+TEST(Walking, IsStoppedByAFaultThatIsNamedBeforeItFalls) {
+  struct Fault {
+    std::string component, kind, cause;
+  };
+  for (const Fault& fault :
+       {Fault{"front_left_knee_joint_motor", "off", "joint_following"}, Fault{"gyro", "stuck", "imu_stuck"}}) {
+    SCOPED_TRACE(fault.component);
+    QuadrupedLoop robot(legged_robot("quadbot"), 0, ErrorLevel::kDataSheet);
+    robot.wait(0.3);
+    robot.run(4.0, walk(0.5, 0, 0));
+    robot.loop.inject_fault(fault.component, fault.kind);
+    robot.run(0.3, walk(0.5, 0, 0));
+    EXPECT_EQ(names_of(kStopCauseNames, robot.permit().first_cause), fault.cause);
+    robot.run(2.0, {});
+    EXPECT_LT(robot.tilt_now(), 0.3);
+  }
+}
+
 TEST(Walking, IsLimitedInItsSpeed) {
   Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
   parameters.leg_control.max_linear_speed = 0.3;

@@ -401,6 +401,33 @@ TEST_F(WalkingConditionsTest, AnEncoderThatRepeatsOneAngleInItsSwingBrakes) {
   EXPECT_EQ(joint(), 8u);
 }
 
+TEST_F(WalkingConditionsTest, AMotorThatGivesNoTorqueWhileItsFootBearsBrakes) {
+  const auto loaded = [&](double part) {
+    return [&, part](double) {
+      for (std::size_t i = 0; i < kLegsJoints; ++i) {
+        JointCommand& command = command_.joints[i];
+        command.effort = command.stiffness > 0 ? 0 : 0.3 * robot_.joints[i].effort_limit;
+        sensors_.joints[i].effort = (i == 8 ? part : 1) * command.effort;
+      }
+    };
+  };
+  EXPECT_EQ(walk(1, loaded(0.7)), 1) << "it is weak";
+  EXPECT_LT(walk(1, loaded(0)), 0.3);
+  EXPECT_EQ(causes(Reaction::kBrake), "joint_following");
+  EXPECT_EQ(joint(), 8u);
+}
+
+/// The state of a noisy gyro moves where a foot is to land.
+TEST_F(WalkingConditionsTest, ACommandThatJumpsInEachCycleIsNoStuckEncoder) {
+  bool aside = false;
+  const double seen = walk(2, [&](double) {
+    aside = !aside;
+    if (command_.joints[8].stiffness > 0) command_.joints[8].position += aside ? 0.1 : -0.1;
+    sensors_.joints[8].position += aside ? 0 : 0.001;
+  });
+  EXPECT_EQ(seen, 2) << causes(Reaction::kBrake);
+}
+
 TEST_F(WalkingConditionsTest, ABodyThatSinksBrakes) {
   const double limit = 0.13 * robot_.leg_length();
   double depth = 0;

@@ -22,7 +22,9 @@ class QuadrupedLoop {
   explicit QuadrupedLoop(const LegModel& robot, std::uint64_t seed = 0, ErrorLevel errors = ErrorLevel::kIdeal)
       : QuadrupedLoop(robot, parameters(seed, errors)) {}
   QuadrupedLoop(const LegModel& robot, const Parameters& parameters)
-      : parameters_(parameters), loop(parameters_, std::make_shared<Quadruped>(parameters_, robot)) {}
+      : QuadrupedLoop(std::make_shared<Quadruped>(parameters, robot), parameters) {}
+  QuadrupedLoop(std::shared_ptr<const Robot> robot, const Parameters& parameters)
+      : parameters_(parameters), loop(parameters_, std::move(robot)) {}
 
   static Parameters parameters(std::uint64_t seed, ErrorLevel errors) {
     Parameters result = default_parameters();

@@ -2,21 +2,17 @@
 """sim.launch robot:=quadbot: a robot on legs stands up, sways, lifts a foot, moves its joints, is stopped and reset."""
 
 import math
-import os
 import time
-import unittest
 from collections.abc import Callable
-from pathlib import Path
 
 import rospy
 import rostest
 from geometry_msgs.msg import Twist
-from launch_support import Launch
-from nav_msgs.msg import Odometry
-from robot_control.msg import BodyPose, FootTarget, LegState, RobotStatus, SafetyStatus
+from legs_support import LegsTestCase
+from robot_control.msg import BodyPose, FootTarget, RobotStatus
 from robot_control.srv import SetGait, SetPosture
 from std_srvs.srv import Trigger
-from system_support import CONTROLLER, LIMIT, init_test_node, refusal, repository, wait_for
+from system_support import CONTROLLER, LIMIT, again_after_a_stall, refusal, repository, wait_for
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 SEND_PERIOD = 0.1
@@ -24,25 +20,12 @@ SEND_PERIOD = 0.1
 QUADBOT = repository() / "urdf" / "quadbot.urdf"
 
 
-class LegsTest(unittest.TestCase):
+class LegsTest(LegsTestCase):
     @classmethod
     def setUpClass(cls) -> None:
-        init_test_node("legs_test")
-        cls.bus = f"legs{os.getpid()}.{time.monotonic_ns()}"
-        cls.launch = Launch("robot:=quadbot", "black_box:=false", f"bus:={cls.bus}")
-        cls.addClassCleanup(cls.remove_what_stays)
-        cls.addClassCleanup(cls.launch.end)
-        cls.legs: LegState | None = None
-        cls.safety: SafetyStatus | None = None
-        cls.truth: Odometry | None = None
+        cls.launch_quadbot("legs")
         cls.status: RobotStatus | None = None
-        for topic, kind, name in (
-            ("leg_state", LegState, "legs"),
-            ("safety_status", SafetyStatus, "safety"),
-            ("ground_truth/odom", Odometry, "truth"),
-            ("robot_status", RobotStatus, "status"),
-        ):
-            rospy.Subscriber(topic, kind, lambda message, name=name: setattr(cls, name, message))
+        rospy.Subscriber("robot_status", RobotStatus, lambda message: setattr(cls, "status", message))
         cls.body_pose = rospy.Publisher("body_pose", BodyPose, queue_size=1, tcp_nodelay=True)
         cls.foot_target = rospy.Publisher("foot_target", FootTarget, queue_size=1, tcp_nodelay=True)
         cls.joints = rospy.Publisher("joint_trajectory", JointTrajectory, queue_size=1, tcp_nodelay=True)
@@ -54,17 +37,11 @@ class LegsTest(unittest.TestCase):
     def startup_limit() -> float:
         return 2 * LIMIT
 
-    @classmethod
-    def remove_what_stays(cls) -> None:
-        for path in Path("/dev/shm").glob(f"robot_control.*.{cls.bus}.*"):
-            path.unlink(missing_ok=True)
-
     def set_posture(self, posture: str) -> tuple[bool, str]:
         answer = rospy.ServiceProxy("set_posture", SetPosture)(posture)
         return answer.success, answer.message
 
     def stand(self) -> None:
-        wait_for("permission", lambda: self.safety is not None and self.safety.permit_name == "drive")
         wait_for("standing up", lambda: self.set_posture("standing")[0])
         wait_for("standing", lambda: self.legs is not None and self.legs.posture == "standing")
 
@@ -83,6 +60,7 @@ class LegsTest(unittest.TestCase):
         assert self.truth is not None
         return float(self.truth.pose.pose.position.z)
 
+    @again_after_a_stall
     def test_it_stands_sways_lifts_a_foot_is_stopped_reset_and_lies_down(self) -> None:
         wait_for("the monitor", lambda: self.safety is not None and self.safety.state_name == "READY")
         self.assertEqual(
@@ -128,6 +106,7 @@ class LegsTest(unittest.TestCase):
         self.send_until("a refused pose", BodyPose(roll=0.1), lambda: "not_standing" in self.legs.reasons)
         self.assertFalse(math.isnan(self.legs.actual[0]))
 
+    @again_after_a_stall
     def test_it_walks_on_a_twist_and_refuses_unknown_gaits_and_feet_in_words(self) -> None:
         wait_for("a subscriber", lambda: self.cmd_vel.get_num_connections() > 0)
         self.cmd_vel.publish(Twist())  # a stop may have revoked this sender: its zero ends that
@@ -155,8 +134,8 @@ class LegsTest(unittest.TestCase):
             message.points.append(point)
         self.joints.publish(message)
 
+    @again_after_a_stall
     def test_joint_trajectory_moves_a_robot_that_lies_and_is_refused_in_words(self) -> None:
-        wait_for("permission", lambda: self.safety is not None and self.safety.permit_name == "drive")
         wait_for("lying", lambda: self.set_posture("lying")[0] and self.legs.posture == "lying")
         wait_for("a subscriber", lambda: self.joints.get_num_connections() > 0)
         self.joints.publish(JointTrajectory())  # a stop may have revoked this sender: its zero ends that

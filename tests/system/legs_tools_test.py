@@ -17,13 +17,13 @@ import rosunit_skips
 import yaml
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped, TwistStamped
-from launch_support import Launch
+from legs_support import LegsTestCase
 from nav_msgs.msg import Odometry
 from pseudo_terminal import PseudoTerminal
 from robot_control.common.pose import Pose, pose_of
 from robot_control.fleet.master import Master
-from robot_control.msg import FollowPathAction, FollowPathGoal, LegState, SafetyStatus
-from system_support import LIMIT, Program, init_test_node, repository, wait_for
+from robot_control.msg import FollowPathAction, FollowPathGoal
+from system_support import LIMIT, Program, again_after_a_stall, repository, wait_for
 
 from bench.console.browser import Browser, missing
 from bench.console.process import Console
@@ -50,40 +50,21 @@ def beside_square(start: Pose, place: tuple[float, float]) -> float:
     return outside or min(edges)
 
 
-class LegsToolsTest(unittest.TestCase):
+class LegsToolsTest(LegsTestCase):
     @classmethod
     def setUpClass(cls) -> None:
-        init_test_node("legs_tools_test")
-        cls.bus = f"legs_tools{os.getpid()}.{time.monotonic_ns()}"
-        cls.launch = Launch("robot:=quadbot", "black_box:=false", f"bus:={cls.bus}")
-        cls.addClassCleanup(cls.remove_what_stays)
-        cls.addClassCleanup(cls.launch.end)
-        cls.legs: LegState | None = None
-        cls.safety: SafetyStatus | None = None
         cls.limited: TwistStamped | None = None
         cls.places: list[tuple[float, float]] = []
-        cls.truth: Odometry | None = None
-        for topic, kind, name in (
-            ("leg_state", LegState, "legs"),
-            ("safety_status", SafetyStatus, "safety"),
-            ("cmd_vel_out", TwistStamped, "limited"),
-        ):
-            rospy.Subscriber(topic, kind, lambda message, name=name: setattr(cls, name, message))
-        rospy.Subscriber("ground_truth/odom", Odometry, cls.receive_truth)
-        wait_for(
-            "permission", lambda: cls.safety is not None and cls.safety.permit_name == "drive" and cls.places, 2 * LIMIT
-        )
-
-    @classmethod
-    def remove_what_stays(cls) -> None:
-        for path in Path("/dev/shm").glob(f"robot_control.*.{cls.bus}.*"):
-            path.unlink(missing_ok=True)
+        cls.launch_quadbot("legs_tools")
+        rospy.Subscriber("cmd_vel_out", TwistStamped, lambda message: setattr(cls, "limited", message))
+        wait_for("a place", lambda: cls.places, 2 * LIMIT)
 
     @classmethod
     def receive_truth(cls, message: Odometry) -> None:
-        cls.truth = message
+        super().receive_truth(message)
         cls.places.append((message.pose.pose.position.x, message.pose.pose.position.y))
 
+    @again_after_a_stall
     def test_a_square_a_goal_and_a_way_sideways_are_walked(self) -> None:
         start = pose_of(self.truth)
         self.places.clear()
@@ -118,6 +99,7 @@ class LegsToolsTest(unittest.TestCase):
         sender.end()
         wait_for("standing", lambda: self.legs.posture == "standing")
 
+    @again_after_a_stall
     @unittest.skipIf(broker.missing(), broker.missing())
     def test_an_order_of_a_fleet_is_walked(self) -> None:
         folder = tempfile.TemporaryDirectory()
@@ -149,6 +131,7 @@ class LegsToolsTest(unittest.TestCase):
         self.assertAlmostEqual(pose_of(self.truth).seen_from(begin)[0], SIDE, delta=CROSS_TRACK)
         wait_for("standing", lambda: self.legs.posture == "standing")
 
+    @again_after_a_stall
     def test_a_key_and_a_pad_walk_sideways(self) -> None:
         begin = self.places[-1]
         terminal = PseudoTerminal([roslib.packages.find_node("robot_control", "teleop.py")[0]])
@@ -178,6 +161,7 @@ class LegsToolsTest(unittest.TestCase):
         plug()
         wait_for("standing", lambda: self.legs.posture == "standing")
 
+    @again_after_a_stall
     def test_a_page_of_the_console_walks_sideways_and_chooses_the_gait(self) -> None:
         if missing():
             self.skipTest(missing())

@@ -20,6 +20,8 @@ def measured(name, value):
         ("NEES of the pose, eight", 1, 0.5),
         ("NEES of the pose, eight", 0.4, 1.25),
         ("NEES of the pose, eight", 2.5, 1.25),
+        ("error of the way between two resets", 0.5, 0.5),
+        ("turned over by a fault", 0.1, 2),
     ],
 )
 def test_a_figure_has_the_bound_of_its_longest_known_beginning(figure, value, ratio):
@@ -30,8 +32,9 @@ def test_a_figure_has_the_bound_of_its_longest_known_beginning(figure, value, ra
 
 
 def test_what_has_no_bound_is_measured_alone():
-    row = legs.judged(measured("quadbot 1.5 m/s, turned over", 1), "push")
-    assert (row["ratio"], row["reference_name"]) == (0, markdown.MEASURED)
+    for figure in ("1.5 m/s, turned over", "neither, motor off", "mean error of the way between two resets"):
+        row = legs.judged(measured(f"quadbot {figure}", 1), "push")
+        assert (row["ratio"], row["reference_name"]) == (0, markdown.MEASURED)
 
 
 def test_an_unknown_figure_is_an_error():

@@ -40,6 +40,19 @@ def drive(follower, robot, seconds, limit=math.inf):
     return commands
 
 
+def test_gaps_in_the_odometry_are_no_motion_in_vain():
+    """A machine with other work lets the program wait for 0.3 s again and again; the robot keeps its last command."""
+    robot, follower = Ideal(), Follower(route(SHAPES["square"](0.5)))
+    while not follower.over:
+        drive(follower, robot, 0.5)
+        if follower.over:
+            break
+        for _ in range(14):
+            robot.drive(robot.motion)
+        robot.drive(follower.step(robot.pose, robot.motion, elapsed=15 * PERIOD))
+    assert follower.state is State.DONE, follower.reason
+
+
 def refusal(points):
     with pytest.raises(PathError) as error:
         route(points)

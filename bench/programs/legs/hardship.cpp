@@ -2,12 +2,12 @@
 
 #include "bench/programs/legs/loop_rows.h"
 #include "control/legged/gait.h"
+#include "machine/bodies/rigid_bodies.h"
 
 namespace robot_control::bench {
 namespace {
 
 constexpr double kBegin = 5, kDisturbed = 5;  // s
-constexpr double kFallen = kPi / 3;           // rad
 
 Request trot(double speed, double lateral = 0) {
   return {.twist = {.linear = {speed, lateral, 0}, .angular = {}},
@@ -34,10 +34,31 @@ struct Speeds {
   double requested = 0, limited = 0, measured = 0, dip = 0;
 };
 
-/// A trot of 0.3 m/s on a machine with these parameters.
-void disturbed(const LegModel& model, const Parameters& parameters, const std::string& name, WorstValues& worst) {
+/// The machine has `factor` of the masses that its laws know. Motors that give a part of their torque move it as if all
+/// masses were divided by this part.
+class HeavierQuadruped final : public Quadruped {
+ public:
+  HeavierQuadruped(const Parameters& parameters, const LegModel& known, double factor)
+      : Quadruped(parameters, known), actual_(known) {
+    auto bodies = std::make_shared<RigidBodies>(*known.bodies);
+    for (RigidBody& body : bodies->bodies) {
+      body.mass *= factor;
+      body.inertia *= factor;
+    }
+    actual_.bodies = std::move(bodies);
+    actual_.mass *= factor;
+  }
+  const LegModel& machine() const noexcept override { return actual_; }
+
+ private:
+  LegModel actual_;
+};
+
+/// A trot of 0.3 m/s on a machine with these parameters and this factor of its masses.
+void disturbed(const LegModel& model, const Parameters& parameters, const std::string& name, WorstValues& worst,
+               double masses = 1) {
   constexpr double kSpeed = 0.3;  // m/s
-  QuadrupedLoop robot(model, parameters);
+  QuadrupedLoop robot(std::make_shared<HeavierQuadruped>(parameters, model, masses), parameters);
   robot.wait(0.3);
   robot.run(kBegin, trot(kSpeed));
   robot.clear();
@@ -75,6 +96,9 @@ void switches(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   worst.add("tilt while gaits change", robot.tilt, "rad");
   worst.add("dip of the speed while gaits change", speeds.dip, "of it");
   worst.add("stops, gaits that change", stopped(robot), "");
+  if (robot.permit().causes != 0)
+    std::fprintf(stderr, "%s, seed %llu: stopped by %s\n", model.name.c_str(), static_cast<unsigned long long>(seed),
+                 robot.causes().c_str());
 }
 
 void disturbances(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
@@ -92,7 +116,7 @@ void disturbances(const LegModel& model, std::uint64_t seed, WorstValues& worst)
     QuadrupedLoop robot(model, parameters);
     robot.wait(0.3);
     robot.run(kBegin + 3, trot(0.3));
-    const double fallen = robot.tilt > kFallen ? 1 : 0;
+    const double fallen = robot.tilt > kTurnedOver ? 1 : 0;
     worst.average("pushed over", fallen, "of the pushes");
     worst.average("stopped by a push, " + std::to_string(45 * i) + " deg", stopped(robot), "of the pushes");
   }
@@ -106,6 +130,10 @@ void disturbances(const LegModel& model, std::uint64_t seed, WorstValues& worst)
   disturbed(model, ice, "friction 0.3", worst);
   late.plant.actuator_delay = 5;
   disturbed(model, late, "motors 5 ms late", worst);
+  const Parameters usual = walking_parameters(seed);
+  disturbed(model, usual, "motors at 0.8 of their torque", worst, 1 / 0.8);
+  disturbed(model, usual, "masses 5 % less", worst, 0.95);
+  disturbed(model, usual, "masses 5 % more", worst, 1.05);
 }
 
 void walking_silent(const LegModel& model, std::uint64_t seed, WorstValues& worst) {

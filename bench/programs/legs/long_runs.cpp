@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <random>
 
 #include "bench/programs/legs/loop_rows.h"
@@ -27,6 +28,15 @@ class Draw {
  private:
   std::mt19937_64 random_;
 };
+
+using Place = Eigen::Isometry2d;
+
+/// Returns position and heading on the ground.
+Place place_of(const Pose& pose) {
+  const Quaternion& q = pose.orientation;
+  const double yaw = std::atan2(2 * (q[3] * q[2] + q[0] * q[1]), 1 - 2 * (q[1] * q[1] + q[2] * q[2]));
+  return Eigen::Translation2d(pose.position[0], pose.position[1]) * Eigen::Rotation2Dd(yaw);
+}
 
 /// Disturbs a robot for some seconds, and computes its run again from its rows.
 void replay(const LegModel& model, std::uint64_t seed, bool walks, WorstValues& worst) {
@@ -110,6 +120,43 @@ void hour(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   }
   worst.add("stops in an hour", robot.permit().causes == 0 ? 0 : 1, "runs");
   worst.add("time with a warning in an hour", warned, "s");
+  if (robot.permit().causes != 0)
+    std::fprintf(stderr, "%s, seed %llu: stopped after %.1f s by %s\n", model.name.c_str(),
+                 static_cast<unsigned long long>(seed), robot.loop.time(), robot.causes().c_str());
+}
+
+void walking_hours(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
+  constexpr double kTime = 600, kStretch = 60;         // s
+  constexpr double kFastest[] = {0.6, 0.6, 0.5, 0.2};  // m/s, by GaitName
+  QuadrupedLoop robot(model, walking_parameters(seed));
+  Draw draw(seed);
+  double warned = 0, walked = 0;
+  robot.run(5, stance(kStanceStand));
+  Place before = place_of(robot.truth().pose_world), truth = before, estimate = place_of(robot.state().base.pose_odom);
+  double next = robot.loop.time() + kStretch;
+  while (robot.loop.time() < kTime && robot.permit().causes == 0) {
+    const std::uint64_t gait = draw.below(kGaits.size());
+    Request walk = stance(gait == 0 ? std::uint64_t{kStanceStay} : kStanceGait + gait);
+    walk.twist.linear[0] = draw.within(-0.5, 1) * kFastest[gait];
+    walk.twist.linear[1] = draw.within(-0.1, 0.1);
+    walk.twist.angular[2] = draw.within(-0.4, 0.4);
+    for (double left = draw.within(2, 6); left > 0 && robot.permit().causes == 0; left -= 0.02) {
+      robot.run(0.02, walk);
+      if (robot.permit().warnings != 0) warned += 0.02;
+      const Place now = place_of(robot.truth().pose_world);
+      walked += (now.translation() - before.translation()).norm();
+      before = now;
+    }
+    if (robot.loop.time() < next) continue;
+    const Place measured = place_of(robot.state().base.pose_odom);
+    const Eigen::Vector2d off =
+        (estimate.inverse() * measured).translation() - (truth.inverse() * before).translation();
+    worst.add("error of the way between two resets", 100 * off.norm() / walked, "%");
+    worst.average("mean error of the way between two resets", 100 * off.norm() / walked, "%");
+    truth = before, estimate = measured, walked = 0, next += kStretch;
+  }
+  worst.add("stops in ten minutes", robot.permit().causes == 0 ? 0 : 1, "runs");
+  worst.add("time with a warning in ten minutes", warned, "s");
   if (robot.permit().causes != 0)
     std::fprintf(stderr, "%s, seed %llu: stopped after %.1f s by %s\n", model.name.c_str(),
                  static_cast<unsigned long long>(seed), robot.loop.time(), robot.causes().c_str());

@@ -55,14 +55,21 @@ void walking_stop(const LegModel& model, std::uint64_t seed, WorstValues& worst)
 
 /// 100 changes among all gaits, at random times and speeds.
 void switches(const LegModel& model, std::uint64_t seed, WorstValues& worst);
-/// A trot of 0.3 m/s that is pushed in 8 directions, with a payload, on slippery ground, and with motors that are late.
-/// The seed chooses one of 24 phases of the gait for the push.
+/// A trot of 0.3 m/s that is pushed in 8 directions. Then with a payload, on slippery ground, with motors that are late
+/// or weak, and with masses that are not the described ones. The seed chooses one of 24 phases of the gait for the
+/// push.
 void disturbances(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// A trot of 0.5 m/s with each fault of each encoder, of each motor and of the IMU. The seed chooses one of 20 phases
+/// of the gait. A fault is named if the first cause of the stop comes in time and names its joint, or the IMU.
+void faults(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// Ten minutes of walking with random gaits and twists, in stretches between two resets of the odometry.
+void walking_hours(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// The controller is silent for 5 … 19 cycles at 200 phases of a trot of 1.0 m/s.
 void walking_silent(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 
 inline constexpr double kPi = 3.14159265358979323846;
-inline constexpr double kSway = 0.5;  ///< Hz
+inline constexpr double kSway = 0.5;            ///< Hz
+inline constexpr double kTurnedOver = kPi / 3;  ///< rad
 
 /// Returns the errors of data sheets, and feet without force sensors.
 inline Parameters walking_parameters(std::uint64_t seed) {

@@ -6,8 +6,7 @@
 namespace robot_control::bench {
 namespace {
 
-constexpr double kTurnedOver = kPi / 3;  // rad
-constexpr double kPush = 0.02;           // s
+constexpr double kPush = 0.02;  // s
 
 void sway(QuadrupedLoop& robot, double size, int cycle) {
   Request request;

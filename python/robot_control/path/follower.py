@@ -18,7 +18,8 @@ Three things end a path of any form:
 
     jump        the pose moves between two messages by more than the measured speeds allow in that time
     off         the nearest point of the piece, from the farthest one reached to the reach of the lookahead, is too far
-    in vain     the robot moves without coming nearer to the end of the piece, or of a turn (headway.py)
+    in vain     the robot moves without coming nearer to the end of the piece, or of a turn (headway.py). Progress
+                counts from where a piece begins, and anew after a gap in the odometry: nothing steered meanwhile
 """
 
 from __future__ import annotations
@@ -55,6 +56,7 @@ class FollowParameters:
     heading_jump: float = 0.2  # rad; a localisation corrects a heading by less at once
     in_vain: float = 0.15  # m
     turned_in_vain: float = 0.5  # rad
+    gap: float = 0.1  # s between two odometry messages, five periods
     speed_error: float = 0.1  # share by which a measured speed may exceed that of the poses
     scale_error: float = 0.01  # share by which a length in the path's frame may be shorter than by odometry
 
@@ -98,6 +100,7 @@ class Follower:
         given = self._parameters
         self._headway = Headway(given.in_vain, given.scale_error)
         self._turning_headway = Headway(given.turned_in_vain, given.scale_error)
+        self._anew = False  # progress is judged from here on
         self._driven = 0.0  # m, length of the pieces that are done
         self._along = 0.0  # m, progress on the present piece
         self.reason = ""
@@ -157,6 +160,7 @@ class Follower:
         if not all(map(math.isfinite, (pose.x, pose.y, pose.yaw, measured.linear, measured.angular))):
             self.fail("the odometry holds a number that is not finite")
         moved = Motion(measured.linear * elapsed, measured.angular * elapsed)
+        self._anew = self._anew or elapsed > self._parameters.gap
         if not self.over:
             if self._last is None:
                 self._begin(pose)
@@ -194,7 +198,7 @@ class Follower:
 
     def _begin_piece(self) -> None:
         self._state = State.DRIVING
-        self._headway.begin(self._route.pieces[self._number].length + self._reachable)
+        self._anew = True
 
     def _turn(self, pose: Pose, measured: Motion, moved: float) -> Motion:
         given = self._parameters
@@ -202,8 +206,10 @@ class Follower:
         wanted = self._route.end_heading if at_end else self._route.pieces[self._number].first_heading
         error = turned(wanted - pose.yaw)
         self.heading_error = -error
-        if self._settling:
+        if self._settling or self._anew:
             self._turning_headway.begin(abs(error))
+            self._anew, moved = False, 0.0
+        if self._settling:
             self._settling = abs(measured.linear) >= given.standing
             if self._settling:
                 return STAND
@@ -269,7 +275,11 @@ class Follower:
             self._reachable = 0.0
         if foot.distance > allowed:
             self.fail(f"{foot.distance:.2f} m off the path, more than {allowed:g} m")
-        elif self._headway.step(driven, left + foot.distance):
+            return True
+        if self._anew:
+            self._headway.begin(left + foot.distance)
+            self._anew, driven = False, 0.0
+        if self._headway.step(driven, left + foot.distance):
             self.fail(f"driven by {given.in_vain:g} m without coming nearer to its end")
         return self.over
 

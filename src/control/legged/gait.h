@@ -7,7 +7,8 @@
 /// Periods and lifts are those of a leg of kReferenceLeg. They change with √l and l (R. McN. Alexander, A. S. Jayes,
 /// J. Zool. 201 (1983) 135: legged machines of equal Froude number move alike).
 ///
-/// Offsets are in the order of LegPlace.
+/// Offsets are in the order of LegPlace. A crawl begins with the feet at which a trot ends its stance: they are behind,
+/// and the body lies over the others.
 
 #include <algorithm>
 #include <array>
@@ -25,6 +26,7 @@ struct Gait {
   double duty;                      ///< 0 … 1; 1: no foot leaves the ground
   std::array<double, kLegs> phase;  ///< 0 … 1, offsets of the legs
   double lift;                      ///< m, of the foot's centre in the middle of its swing
+  double begin = 0;                 ///< 0 … 1, the phase with which the gait begins
 
   /// Returns the phase of a leg within 0 … 1.
   double leg_phase(std::size_t leg, double gait_phase) const noexcept {
@@ -57,7 +59,8 @@ struct Gait {
 /// enough, and to be lifted.
 constexpr bool walkable(const Gait& gait) noexcept {
   constexpr double kMinSwing = 0.05;  // s
-  if (!(gait.duty > 0 && gait.duty <= 1 && gait.lift >= 0 && gait.period > 0)) return false;
+  if (!(gait.duty > 0 && gait.duty <= 1 && gait.lift >= 0 && gait.period > 0 && gait.begin >= 0 && gait.begin < 1))
+    return false;
   for (const double offset : gait.phase)
     if (!(offset >= 0 && offset < 1)) return false;
   return gait.duty == 1 || (gait.lift > 0 && gait.period * (1 - gait.duty) >= kMinSwing);
@@ -70,7 +73,7 @@ inline constexpr std::array kGaits{
     Gait{"stand", 0.5, 1, {0, 0, 0, 0}, 0},
     Gait{"trot", 0.38, 0.5, {0.5, 0, 0, 0.5}, 0.08},
     Gait{"walking_trot", 0.5, 0.6, {0.5, 0, 0, 0.5}, 0.07},
-    Gait{"crawl", 1.0, 0.78, {0, 0.5, 0.25, 0.75}, 0.06},
+    Gait{"crawl", 1.0, 0.78, {0, 0.5, 0.25, 0.75}, 0.06, 0.75},
 };
 static_assert(std::all_of(kGaits.begin(), kGaits.end(), walkable));
 

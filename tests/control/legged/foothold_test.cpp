@@ -36,11 +36,20 @@ TEST(Foothold, ABodyThatIsTooFastPutsItsFootFartherAhead) {
   FootholdInput input = walking();
   for (const double legs : {1.0, 4.0}) {
     input.leg_length = legs * 0.426;
+    input.height = legs * 0.3;
     input.measured = input.requested;
     const Eigen::Vector2d before = foothold(input);
     input.measured += Eigen::Vector2d(0.1, 0);
     EXPECT_NEAR((foothold(input) - before).x(), 0.1 * (0.1 + 0.05 * std::sqrt(legs)), kRounding);
   }
+}
+
+TEST(Foothold, ALongStanceDoesNotPutItBeyondThePlaceThatCatchesTheBody) {
+  FootholdInput input = walking();
+  input.stance_time = 0.8;
+  const Eigen::Vector2d before = foothold(input);
+  input.measured += Eigen::Vector2d(0.1, 0);
+  EXPECT_NEAR((foothold(input) - before).x(), 0.1 * std::sqrt(input.height / kGravity), kRounding);
 }
 
 TEST(Foothold, TurningOnTheSpotTurnsTheNominalPlace) {

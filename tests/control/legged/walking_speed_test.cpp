@@ -63,14 +63,15 @@ struct WalkingSpeedTest : testing::Test {
     return part;
   }
 
-  /// Returns what they need at the end of the first stance after a change where the phase is 0.
+  /// Returns what they need at the end of the first stance after a change, where the phase of `last` wraps and `next`
+  /// begins.
   double changed(const Gait& last, const Gait& next, std::size_t axis, double speed) const {
     constexpr double kEnd = 0.002;  // s
     double part = 0;
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
-      if (next.leg_phase(leg, 0) >= next.duty) continue;
+      if (next.leg_phase(leg, next.begin) >= next.duty) continue;
       const double stood = std::min(last.leg_phase(leg, 0), last.duty) * last.period - last.stance_time() / 2;
-      const double until = stood + next.stance_time() - next.leg_phase(leg, 0) * next.period;
+      const double until = stood + next.stance_time() - next.leg_phase(leg, next.begin) * next.period;
       part = std::max(part, fastest_joint(robot, leg, kEnd, [&](double done) -> Eigen::Vector3d {
                         return stance.feet[leg] + (until - kEnd + done * kEnd) * under(leg, axis, speed);
                       }));

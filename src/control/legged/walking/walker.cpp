@@ -173,7 +173,7 @@ void Walker::turn_clock(State& state, GaitName wanted) const noexcept {
     state.stood += period_;
     if (wanted == GaitName::kStand) return;
     state.gait = next;
-    state.phase = 0;
+    state.phase = gaits_[next].begin;
     return;
   }
   const double step = period_ / gait.period;
@@ -184,6 +184,10 @@ void Walker::turn_clock(State& state, GaitName wanted) const noexcept {
   for (std::size_t leg = 0; leg < kLegs; ++leg) farthest = std::max(farthest, gait.swung(leg, state.phase));
   const bool ends = wanted == GaitName::kStand && farthest * (1 - gait.duty) < 1.5 * step;
   if (!ends && !(wraps && wanted != GaitName::kStand)) return;
+  if (state.gait != next) {
+    state.swings = {};  // a foot that then swings begins where it is, in the air or not
+    state.phase = gaits_[next].begin;
+  }
   state.gait = next;
   if (!ends) return;
   state.phase = state.stood = 0;

@@ -3,7 +3,8 @@
 ///
 /// The level axes have the body's heading and a vertical z; their origin is that of the base.
 ///
-///   clock     the gait's phase says which feet bear (gait.h). Another gait begins where the phase wraps. A walk ends in
+///   clock     the gait's phase says which feet bear (gait.h). Another gait begins where the phase wraps. A foot
+///             that then swings begins its swing where it is. A walk ends in
 ///             a cycle in which no foot is far from where it left the ground
 ///   contact   a foot that meets the ground in the second half of its swing bears from then on. A foot that is late is
 ///             pushed down by the force that it is to bear

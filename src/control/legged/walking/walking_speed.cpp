@@ -60,9 +60,9 @@ double needed_after(const LegModel& robot, const NominalStance& stance, const Ga
                     const WalkingTwist& twist) noexcept {
   double part = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    if (!next.bears(leg, 0)) continue;
+    if (!next.bears(leg, next.begin)) continue;
     const double stood = last.period * (std::min(last.leg_phase(leg, 0), last.duty) - last.duty / 2);
-    const double stands = next.period * (next.duty - next.leg_phase(leg, 0));
+    const double stands = next.period * (next.duty - next.leg_phase(leg, next.begin));
     const Eigen::Vector3d& foot = stance.feet[leg];
     const Eigen::Vector3d velocity = velocity_of(foot, twist);
     part = std::max(part, needed_at(robot, leg, foot + (stood + stands) * velocity, velocity));

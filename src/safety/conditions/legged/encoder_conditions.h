@@ -4,7 +4,8 @@
 ///   jump   |q − q₀| − kFaster V t > limit. q₀ is the last angle that was possible, t s ago, V the velocity limit
 ///   stuck  |c − c₀| > limit, while the robot is on its feet. c is the angle that q can show: the command demanded it
 ///          kAnswer cycles ago. c₀ was this angle when q changed for the last time. A joint that is blocked looks the same.
-///          The command of a robot that walks demands angles of feet in the air alone. Its limit is kOfSwing larger
+///          The command of a robot that walks demands angles of feet in the air alone. Its limit is kOfSwing larger. q
+///          has to stay for kStays cycles: a noisy gyro moves the command at once, and no joint
 ///
 /// While c stays, a stuck encoder changes nothing: the joint is where it reports to be. An angle that is missing or not
 /// finite is not evaluated.
@@ -24,9 +25,10 @@ namespace robot_control {
 
 class EncoderConditions {
  public:
-  static constexpr double kFaster = 1.1;     ///< as the default limit of joint_speed
-  static constexpr double kOfSwing = 1.8;    ///< a foot leaves the ground late (docs/evidence/derivations.md)
-  static constexpr std::size_t kAnswer = 2;  ///< cycles: command k − 1 moves the joint from cycle k to k + 1
+  static constexpr double kFaster = 1.1;       ///< as the default limit of joint_speed
+  static constexpr double kOfSwing = 1.8;      ///< a foot leaves the ground late (docs/evidence/derivations.md)
+  static constexpr std::uint64_t kStays = 10;  ///< cycles
+  static constexpr std::size_t kAnswer = 2;    ///< cycles: command k − 1 moves the joint from cycle k to k + 1
 
   /// `period` s.
   EncoderConditions(const SafetyParameters& parameters, const LegModel& robot, double period) noexcept
@@ -54,7 +56,7 @@ class EncoderConditions {
       const JointSample& sample = input.sensors->joints[i];
       if (!has_position(sample)) continue;
       jump = worse(jump, beyond(i, jumped(joint, sample.position), jump_.limit()));
-      stuck = worse(stuck, beyond(i, demanded(joint, sample.position, demand(input.command, i)), limit));
+      stuck = worse(stuck, beyond(i, demanded(joint, sample.position, demand(input.command, i), elapsed), limit));
     }
     jump_.step(jump, elapsed);
     out.add(jump_);
@@ -72,6 +74,7 @@ class EncoderConditions {
     std::size_t demand_count = 0;           ///< of `demands`
     bool demanded = false;                  ///< c₀ is known
     double reported = 0;                    ///< rad, the last q
+    std::uint64_t stays = 0;                ///< cycles since it changed
     double demand = 0;                      ///< rad, c₀
   };
 
@@ -98,12 +101,13 @@ class EncoderConditions {
   }
 
   /// Returns by how many rad the command moved while the angle stayed.
-  static double demanded(Joint& joint, double position, const JointCommand* command) noexcept {
+  static double demanded(Joint& joint, double position, const JointCommand* command, std::uint64_t elapsed) noexcept {
     double moved = 0;
+    joint.stays = position == joint.reported ? joint.stays + elapsed : 0;
     if (joint.demand_count == kAnswer && command != nullptr) {
       if (!joint.demanded || position != joint.reported) joint.demand = joint.demands.front();
       joint.demanded = true;
-      moved = std::abs(joint.demands.front() - joint.demand);
+      if (joint.stays >= kStays) moved = std::abs(joint.demands.front() - joint.demand);
     }
     joint.reported = position;
     remember(joint, command);

@@ -5,7 +5,9 @@
 ///   joint effort  |τ| / effort limit > limit, for the persistence: no motor may do that for long
 ///   following     |q − its command| > limit, while the robot stands: an encoder or a drive that no longer moves.
 ///                 While it walks, the joints of feet in the air are judged: their mean over kMeanTime > kOfSwing limit.
-///                 This mean stays while the foot bears
+///                 This mean stays while the foot bears. The motors of feet that bear are judged by their torques:
+///                 (mean |τ − τ*| − kOfAsked mean |τ*|) / (kOfEffort L) > 1 counts as an angle beyond the limit. τ* is
+///                 the torque of the command before, L the effort limit; the means are over kTorqueTime
 ///   joint range   distance beyond the nearer end stop > limit: the zero of an encoder, or a stop that broke
 ///
 /// A number that is missing or not finite is not evaluated.
@@ -15,6 +17,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "machine/legs/leg_model.h"
 #include "safety/conditions/common/condition_watch.h"
@@ -26,8 +29,11 @@ namespace robot_control {
 
 class JointConditions {
  public:
-  static constexpr double kMeanTime = 0.2;  ///< s
-  static constexpr double kOfSwing = 0.45;  ///< docs/evidence/derivations.md
+  static constexpr double kMeanTime = 0.2;     ///< s
+  static constexpr double kOfSwing = 0.45;     ///< docs/evidence/derivations.md
+  static constexpr double kTorqueTime = 0.02;  ///< s
+  static constexpr double kOfAsked = 0.5;      ///< a weak or late motor is none that fails
+  static constexpr double kOfEffort = 0.06;
 
   /// `period` s.
   JointConditions(const SafetyParameters& parameters, const LegModel& robot, double period) noexcept
@@ -35,7 +41,8 @@ class JointConditions {
         speed_(kCauseJointSpeed, parameters.joint_speed, period),
         effort_(kCauseJointEffort, parameters.joint_effort, period),
         range_(kCauseJointRange, parameters.joint_range, period),
-        following_(kCauseJointFollowing, parameters.joint_following, period) {
+        following_(kCauseJointFollowing, parameters.joint_following, period),
+        torque_(kCauseJointFollowing, without_persistence(parameters.joint_following), period) {
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       const JointModel& joint = robot.joints[i];
       limits_[i] = {.speed = joint.velocity_limit,
@@ -45,8 +52,9 @@ class JointConditions {
   }
 
   void enter_run() noexcept {
-    for (ConditionWatch* watch : {&speed_, &effort_, &range_, &following_}) watch->reset();
+    for (ConditionWatch* watch : {&speed_, &effort_, &range_, &following_, &torque_}) watch->reset();
     behind_ = {};
+    torques_ = {};
   }
 
   void step(const MonitorInput& input, std::uint64_t elapsed, ActiveCauses& out) noexcept {
@@ -54,7 +62,7 @@ class JointConditions {
     const LegPhase phase = input.command != nullptr ? input.command->legged.phase : LegPhase::kLying;
     if (phase != LegPhase::kWalking) behind_ = {};
     ConditionMeasurement speed = kNothingMeasured, effort = kNothingMeasured, range = kNothingMeasured,
-                         following = kNothingMeasured;
+                         following = kNothingMeasured, torque = kNothingMeasured;
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       const JointSample& joint = sensors.joints[i];
       const Limits& limits = limits_[i];
@@ -66,6 +74,7 @@ class JointConditions {
         range = worse(range, beyond(i, outside, range_.limit()));
         following = worse(following, follows(i, phase, input.command, joint.position, elapsed));
       }
+      torque = worse(torque, gives(i, phase, input.command, joint, elapsed));
     }
     const auto update = [&](ConditionWatch& watch, const ConditionMeasurement& measurement) {
       watch.step(measurement, elapsed);
@@ -75,6 +84,7 @@ class JointConditions {
     update(effort_, effort);
     update(range_, range);
     update(following_, following);
+    update(torque_, torque);
   }
 
  private:
@@ -91,6 +101,30 @@ class JointConditions {
     return beyond(i, behind_[i], kOfSwing * following_.limit());
   }
 
+  /// Returns how far the torque of a motor is from the commanded one while its foot bears, as an angle.
+  ConditionMeasurement gives(std::size_t i, LegPhase phase, const CommandFrame* command, const JointSample& joint,
+                             std::uint64_t elapsed) noexcept {
+    Torque& torque = torques_[i];
+    const bool bears = phase == LegPhase::kWalking && command->joints[i].mode == JointMode::kImpedance &&
+                       command->joints[i].stiffness == 0;
+    if (!bears || elapsed > 1 || !has(joint, kValidEffort) || !std::isfinite(joint.effort)) {
+      torque = {};
+      return kNothingMeasured;
+    }
+    const double asked = std::exchange(torque.asked, command->joints[i].effort), part = period_ / kTorqueTime;
+    if (torque.cycles++ == 0) return kNothingMeasured;
+    torque.off += part * (std::abs(joint.effort - asked) - torque.off);
+    torque.size += part * (std::abs(asked) - torque.size);
+    if (static_cast<double>(torque.cycles) * part < 1) return kNothingMeasured;
+    const double times = (torque.off - kOfAsked * torque.size) / (kOfEffort * limits_[i].effort);
+    return beyond(i, times * following_.limit(), following_.limit());
+  }
+
+  static Condition without_persistence(Condition condition) noexcept {
+    condition.persistence = 0;
+    return condition;
+  }
+
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
   struct Limits {
@@ -99,10 +133,18 @@ class JointConditions {
     JointRange range;  ///< rad; ±∞ without end stops
   };
 
+  /// The torque of a motor since its foot bears.
+  struct Torque {
+    double asked = 0;  ///< N·m, of the last command
+    std::uint64_t cycles = 0;
+    double off = 0, size = 0;  ///< N·m, means of |τ − τ*| and |τ*|
+  };
+
   double period_;
   std::array<Limits, kLegsJoints> limits_{};
   std::array<double, kLegsJoints> behind_{};  ///< rad, of joints of feet in the air, the mean
-  ConditionWatch speed_, effort_, range_, following_;
+  std::array<Torque, kLegsJoints> torques_{};
+  ConditionWatch speed_, effort_, range_, following_, torque_;
 };
 
 }  // namespace robot_control

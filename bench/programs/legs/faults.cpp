@@ -1,0 +1,70 @@
+#include "bench/programs/legs/loop_rows.h"
+#include "control/legged/gait.h"
+
+namespace robot_control::bench {
+namespace {
+
+constexpr double kHealthy = 4, kNamed = 0.3, kAfter = 2.5;  // s
+constexpr std::uint64_t kPhases = 20;
+constexpr std::uint64_t kNoNames = kCauseFootSlip | kCauseFootLoad;  // of a joint: they name the knee of each foot
+
+struct Fault {
+  std::string component, kind;
+  std::size_t joint = kLegsJoints;  ///< kLegsJoints: that of no joint
+};
+
+std::vector<Fault> faults_of(const LegModel& model) {
+  std::vector<Fault> faults;
+  for (const std::string kind : {"off", "stuck", "garbage", "wrong", "slow", "delayed", "intermittent"}) {
+    for (std::size_t i = 0; i < kLegsJoints; ++i)
+      for (const std::string part : {"encoder", "motor"})
+        faults.push_back({model.joints[i].name + "_" + part, kind, i});
+    for (const std::string part : {"gyro", "accelerometer"}) faults.push_back({part, kind});
+  }
+  return faults;
+}
+
+std::string part_of(const Fault& fault) {
+  return fault.component.substr(fault.component.rfind('_') + 1);  // npos + 1 is 0
+}
+
+/// Returns whether the permit names the faulty part: its joint, or the IMU.
+bool names(const Permit& permit, const Fault& fault) {
+  if (permit.causes == 0) return false;
+  if (fault.joint == kLegsJoints) return (permit.first_cause & (kCauseImuLost | kCauseImuStuck | kCauseNotFinite)) != 0;
+  return (permit.first_cause & kNoNames) == 0 && permit.evidence[0].joint == fault.joint;
+}
+
+}  // namespace
+
+void faults(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
+  const double period = kGaits[static_cast<std::size_t>(GaitName::kTrot)].scaled(model.leg_length()).period;
+  Request trot = stance(kStanceGait + static_cast<std::uint64_t>(GaitName::kTrot));
+  trot.twist.linear[0] = 0.5;
+  for (const Fault& fault : faults_of(model)) {
+    QuadrupedLoop robot(model, walking_parameters(seed));
+    robot.wait(0.3);
+    robot.run(kHealthy + period * static_cast<double>(seed % kPhases) / kPhases, trot);
+    robot.clear();
+    robot.loop.inject_fault(fault.component, fault.kind);
+    double stopped = kAfter;
+    for (double t = 0; t < kAfter; t += 0.02) {
+      robot.run(0.02, trot);
+      if (robot.permit().causes != 0) stopped = std::min(stopped, t + 0.02);
+    }
+    const bool walks = robot.permit().causes == 0 && robot.command().legged.phase == LegPhase::kWalking;
+    const bool told = names(robot.permit(), fault) && stopped <= kNamed;
+    const bool over = robot.tilt_now() > kTurnedOver;
+    worst.average("turned over by a fault", over ? 1 : 0, "of the faults");
+    worst.average("neither named nor walked through", walks || told ? 0 : 1, "of the faults");
+    worst.average("neither, " + part_of(fault) + " " + fault.kind, walks || told ? 0 : 1, "of the faults");
+    if (over || !(walks || told))
+      std::fprintf(stderr, "%s, seed %llu, %s %s: %s, first %s of joint %d, after %.2f s, tilt %.2f rad\n",
+                   model.name.c_str(), static_cast<unsigned long long>(seed), fault.component.c_str(),
+                   fault.kind.c_str(), over ? "turned over" : "upright",
+                   names_of(kStopCauseNames, robot.permit().first_cause).c_str(),
+                   static_cast<int>(robot.permit().evidence[0].joint), stopped, robot.tilt);
+  }
+}
+
+}  // namespace robot_control::bench
