@@ -100,7 +100,7 @@ struct WalkerLaws : testing::Test {
       state.bore[leg] = array(feet[leg] + around(0.02));
       estimate.contacts[leg].probability = uniform(1) > 0 ? 0.5 : 0.49;
       if (state.swings[leg] != 0) estimate.contacts[leg].probability = 0;
-      state.forces[leg] = array(Eigen::Vector3d(uniform(10), uniform(10), 40 + uniform(30)));
+      state.forces[leg] = {uniform(10), uniform(10), 40 + uniform(30)};
     }
     for (double& axis : state.ahead) axis = uniform(0.05);
     for (double& axis : state.follows) axis = uniform(0.4);
