@@ -25,6 +25,34 @@ TEST_F(RunningLoop, PassesACommandExactlyOneCycleAfterItsSensors) {
   EXPECT_EQ(loop.machine.mode, JointMode::kEffort);
 }
 
+/// In one thread a frame stays where its writer has put it (bus/latest_frames.h).
+TEST(DriverCycleInOneThread, UsesThePermitAndTheCommandOfItsWriters) {
+  StandingMachine machine;
+  const TestChannel<SensorFrame> sensors;
+  const TestChannel<TruthFrame> truth;
+  const TestChannel<CommandFrame> command;
+  const TestChannel<Permit> permit;
+  const auto own_command = std::make_unique<OwnFrames<CommandFrame>>();
+  const auto own_permit = std::make_unique<OwnFrames<Permit>>();
+  FrameWriter<CommandFrame> commands(command.memory.get(), own_command.get());
+  FrameWriter<Permit> permits(permit.memory.get(), own_permit.get());
+  const auto commands_read = commands.reader();
+  const auto permits_read = permits.reader();
+  DriverCycle driver{
+      machine, two_wheels(), {sensors.writer, truth.writer, &commands_read, &permits_read}, kPeriodNs, nullptr};
+  driver.begin_run(1);
+  driver.step();
+  CommandFrame wanted;
+  Permit allowed;
+  wanted.head.run = allowed.head.run = 1;
+  commands.publish(wanted);
+  permits.publish(allowed);
+  driver.step();
+  EXPECT_NE(wanted.head.checksum, 0u);
+  EXPECT_EQ(driver.trace().calls.command.checksum, wanted.head.checksum);
+  EXPECT_EQ(driver.trace().calls.permit.checksum, allowed.head.checksum);
+}
+
 TEST_F(RunningLoop, HoldsTheLastCommandForThreeMissedCyclesThenBrakes) {
   for (int missed = 1; missed <= 3; ++missed) {
     loop.driver.step();

@@ -58,12 +58,7 @@ double DriverCycle::real_time_factor() const noexcept {
 }
 
 GateInput DriverCycle::latch() noexcept {
-  GateInput input;
-  input.run = run_;
-  input.cycle = cycle_;
-  input.command = &command_;
-  input.permit = &permit_;
-  input.sensors = &trace_.sensors;
+  GateInput input{.run = run_, .cycle = cycle_, .permit = &permit_, .command = &command_, .sensors = &trace_.sensors};
   if (cycle_ == 0) return input;
   const std::uint64_t last = cycle_ - 1;
   const auto command = channels_.command->find_within(run_, cycle_ - std::min(cycle_, kCommandLife), last, command_);

@@ -31,7 +31,12 @@ TEST(Gait, RefusesTablesWithWhichNoRobotWalks) {
   };
   EXPECT_FALSE(with([](Gait& gait) { gait.duty = 0; }));
   EXPECT_FALSE(with([](Gait& gait) { gait.period = 0.001; }));
+  EXPECT_FALSE(with([](Gait& gait) { gait.duty = 1.01; }));
   EXPECT_FALSE(with([](Gait& gait) { gait.lift = -0.01; }));
+  EXPECT_FALSE(with([](Gait& gait) { gait.lift = 0; }));
+  EXPECT_FALSE(with([](Gait& gait) { gait.period = 0.099; })) << "a swing of 0.0495 s";
+  EXPECT_TRUE(with([](Gait& gait) { gait.period = 0.1; }));
+  EXPECT_FALSE(with([](Gait& gait) { gait.phase[0] = -0.01; }));
   EXPECT_FALSE(with([](Gait& gait) { gait.phase[2] = 1; }));
   EXPECT_FALSE(with([](Gait& gait) { gait.period = std::nan(""); }));
 }

@@ -44,6 +44,18 @@ inline LegModel lopsided() {
   return robot;
 }
 
+/// Returns the lopsided robot with `part` of its lengths, and as heavy.
+inline LegModel sized(double part) {
+  LegModel robot = lopsided();
+  robot.belly *= part;
+  for (Leg& leg : robot.legs) {
+    LegGeometry geometry = leg.kinematics.geometry();
+    for (Eigen::Vector3d* length : {&geometry.hip, &geometry.upper, &geometry.lower, &geometry.foot}) *length *= part;
+    leg.kinematics = LegKinematics(geometry);
+  }
+  return robot;
+}
+
 /// The cycle is as long as the low pass of the accelerations, which has no effect then.
 inline constexpr double kCycle = 0.005;  // s
 
@@ -70,7 +82,12 @@ struct IdealLegs {
     ++sensors.head.cycle;
     before = out;
     pose_before = pose();
-    controller.step({.sensors = &sensors, .permit = has_permit ? &permit : nullptr, .request = inbox}, out);
+    estimate.head.cycle = sensors.head.cycle;
+    controller.step({.sensors = &sensors,
+                     .state = has_estimate ? &estimate : nullptr,
+                     .permit = has_permit ? &permit : nullptr,
+                     .request = inbox},
+                    out);
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       if (out.joints[i].mode == JointMode::kImpedance) sensors.joints[i].position = out.joints[i].position;
     }
@@ -129,6 +146,8 @@ struct IdealLegs {
   SensorFrame sensors;
   Permit permit;
   bool has_permit = true;
+  StateFrame estimate;
+  bool has_estimate = false;
   VelocityCommand inbox;
   CommandFrame out, before;
   LegController::Pose pose_before{};

@@ -137,8 +137,11 @@ TEST_F(WalkingSpeedTest, AnEmergencyEndsAWalkAfterTheSlowestAxisAndAPeriodOfTheC
       std::uint64_t reasons = 0;
       twist = limiter.step(state, {}, {100, 100, 100}, true, kTick, reasons);
     }
-    const double crawl = kGaits[number(GaitName::kCrawl)].period * std::sqrt(robot.leg_length() / kReferenceLeg);
-    EXPECT_NEAR(walk_ending_time(parameters, robot), time + crawl + kAllDown, 3 * kTick) << slowest;
+    for (const double size : {1.0, 0.25}) {
+      const LegModel legs = sized(size);
+      const double crawl = kGaits[number(GaitName::kCrawl)].period * std::sqrt(legs.leg_length() / kReferenceLeg);
+      EXPECT_NEAR(walk_ending_time(parameters, legs), time + crawl + kAllDown, 3 * kTick) << slowest;
+    }
   }
 }
 
