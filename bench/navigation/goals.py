@@ -208,8 +208,10 @@ def faults(first: int, runs: int, say: Callable[[str], None]) -> list[dict[str, 
         unnamed = [trip for trip in affected if cause not in trip.doubts]
         for trip in unnamed:
             say(f"{lie}: {trip.state}: {trip.reason}; {sorted(trip.doubts)}")
+        touches = sum(trip.air <= 0 for trip, _ in drives)
+        say(f"{lie}: {touches} touches of {len(drives)}, {len(unnamed)} of {len(affected)} affected without the cause")
         rows += [
-            bounded(f"{lie}: touches", sum(trip.air <= 0 for trip, _ in drives), f"of {len(drives)}", 0),
+            bounded(f"{lie}: touches", touches, f"of {len(drives)}", 0),
             bounded(f"{lie}: ends without the cause named", len(unnamed), f"of {len(affected)} affected", 0),
         ]
     return rows

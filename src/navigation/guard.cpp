@@ -17,7 +17,6 @@ struct Watched {
   double at_start;  // m from the outline
   Point velocity;   // m/s
   double until;     // s, when the point reaches a robot that stands
-  double air;       // m that have to stay
 };
 
 }  // namespace
@@ -25,21 +24,21 @@ struct Watched {
 double free_way(const Footprint& footprint, const std::vector<Point>& points, const PlanarMotion& motion,
                 const std::vector<Mover>& movers) {
   const bool spot = std::abs(motion.linear) < kOnTheSpot && motion.angular != 0;
-  const double reach = footprint.circumscribed + kMoverAir + (spot ? 0 : kLookout);
+  const double reach = footprint.circumscribed + kBeside + (spot ? 0 : kLookout);
   std::vector<Watched> watched;
-  const auto watch = [&](Point point, Point velocity, double until, double air) {
+  const auto watch = [&](Point point, Point velocity, double until) {
     const double distance = footprint.distance(point);
     const double approach = std::isfinite(until) ? std::hypot(velocity.x, velocity.y) * until : 0;
     if (distance > 0 && std::hypot(point.x, point.y) <= reach + approach) {
-      watched.push_back({point, distance, velocity, until, air});
+      watched.push_back({point, distance, velocity, until});
     }
   };
   constexpr double kNever = std::numeric_limits<double>::infinity();
-  for (const Point point : points) watch(point, {}, kNever, kBeside);
-  for (const Point point : places_ahead(movers)) watch(point, {}, kNever, kMoverAir);
+  for (const Point point : points) watch(point, {}, kNever);
+  for (const Point point : places_ahead(movers)) watch(point, {}, kNever);
   for (const Mover& mover : movers) {
     if (!std::isfinite(mover.touches)) continue;
-    for (const Point point : mover.points) watch(point, mover.velocity, mover.touches, kMoverAir);
+    for (const Point point : mover.points) watch(point, mover.velocity, mover.touches);
   }
   const double sign = std::copysign(1.0, spot ? motion.angular : motion.linear);
   const double turn = spot                 ? sign / footprint.half_width  // rad per m
@@ -52,12 +51,12 @@ double free_way(const Footprint& footprint, const std::vector<Point>& points, co
     const double yaw = turn * along, half = yaw / 2;
     const double chord = spot ? 0 : sign * along * (std::abs(half) < 1e-9 ? 1 : std::sin(half) / half);
     const double x = chord * std::cos(half), y = chord * std::sin(half), c = std::cos(yaw), s = std::sin(yaw);
-    for (const auto& [point, at_start, velocity, until, air] : watched) {
+    for (const auto& [point, at_start, velocity, until] : watched) {
       const double time = along / speed;
       if (time > until) continue;
       const double dx = point.x + velocity.x * time - x, dy = point.y + velocity.y * time - y;
       const double distance = footprint.distance({c * dx + s * dy, c * dy - s * dx});
-      if (distance < air && distance < at_start - kNearer) return std::max(0.0, along - kStep - kStopShort);
+      if (distance < kBeside && distance < at_start - kNearer) return std::max(0.0, along - kStep - kStopShort);
     }
   }
   return std::numeric_limits<double>::infinity();

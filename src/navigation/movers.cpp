@@ -15,6 +15,7 @@ constexpr double kThrough = 0.1;    // m by which a ray passed the place of a po
 constexpr double kFastest = 2.5;    // m/s; what is farther away is another thing
 constexpr double kSlowest = 0.1;    // m/s
 constexpr double kTick = 0.1;       // s
+constexpr double kTouching = 0.02;  // m
 
 /// Returns whether the laser looked through this place.
 bool seen_free(const Scan& scan, const PlanarPose& sensor, Point at) {
@@ -27,12 +28,12 @@ bool seen_free(const Scan& scan, const PlanarPose& sensor, Point at) {
   return range > std::hypot(dx, dy) + kThrough && range >= scan.range_min;
 }
 
-/// Returns Mover::touches, in base axes.
+/// Returns the time after which the thing touches the outline that stands, s; ∞ beyond kForesight. Axes of the base.
 double time_to_touch(const Footprint& footprint, const Mover& mover) {
   for (double time = 0; time <= kForesight; time += kTick) {
     for (const Point point : mover.points) {
       const Point at{point.x + mover.velocity.x * time, point.y + mover.velocity.y * time};
-      if (footprint.distance(at) < kMoverAir) return time;
+      if (footprint.distance(at) < kTouching) return time;
     }
   }
   return std::numeric_limits<double>::infinity();

@@ -15,13 +15,10 @@ namespace robot_control {
 
 inline constexpr double kForesight = 3;  ///< s; at 0.5 m/s the outline crosses the way of a cart in 2.5 s
 
-/// m by which a mover has to miss the outline. Its velocity errs by 5 cm in 0.4 s, as other sides of it come into sight.
-inline constexpr double kMoverAir = 0.12;
-
 struct Mover {
   std::vector<Point> points;  ///< m
   Point velocity;             ///< m/s
-  double touches = std::numeric_limits<double>::infinity();  ///< s, after which it comes within kMoverAir of a robot that stands
+  double touches = std::numeric_limits<double>::infinity();  ///< s, after which it touches a robot that stands
 };
 
 class Movers {

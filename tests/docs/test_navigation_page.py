@@ -1,4 +1,4 @@
-"""The commands of docs/navigation.md are followed, from an empty house to a goal; a path stands for the hand's drive."""
+"""The commands of docs/navigation.md are followed, from an empty house to a goal; a program drives as a hand would."""
 
 import importlib.util
 
@@ -7,8 +7,27 @@ from pages import ROOT, blocks
 from terminal import Terminal, until
 
 MRPT = importlib.util.find_spec("robot_control._mrpt")
-ROOMS = "x,y\n0.1,0\n6.8,0\n6.8,1.6\n"
-"""m; from where the robot starts into the room of the goal"""
+HAND = """
+import rospy
+from bench.navigation.tour import command_to
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from robot_control.common.pose import pose_of
+rospy.init_node("hand")
+commands, seen = rospy.Publisher("cmd_vel", Twist, queue_size=1), [rospy.wait_for_message("odom", Odometry, 5)]
+rospy.Subscriber("odom", Odometry, lambda message: seen.__setitem__(0, message), queue_size=1)
+for corner in ((6.8, 0.0), (6.8, 1.6)):
+    while True:
+        pose = pose_of(seen[0])
+        command = command_to((pose.x, pose.y, pose.yaw), corner)
+        twist = Twist()
+        twist.linear.x, twist.angular.z = command or (0.0, 0.0)
+        commands.publish(twist)
+        if command is None:
+            break
+        rospy.sleep(0.05)
+"""
+"""Drives from the start into the room of the goal; corners in m."""
 LOCALIZED = """
 import rospy
 from robot_control.msg import LocalizationState
@@ -33,13 +52,13 @@ def test_the_page_of_navigation_is_followed_from_an_empty_house_to_a_goal(tmp_pa
         block.commands() for block in blocks(ROOT / "docs" / "navigation.md") if "scene:=room" in block.text
     )
     assert hand == "rosrun robot_control teleop.py"
-    (tmp_path / "rooms.csv").write_text(ROOMS)
     terminal = Terminal(tmp_path)
+    terminal.environment["PYTHONPATH"] = f"{ROOT}:{terminal.environment['PYTHONPATH']}"
     try:
         terminal.run(house)
         until(lambda: "/save_map" in terminal.registered(), "slam", terminal.launch)
         terminal.run_python(LOCALIZED)
-        terminal.run("rosrun robot_control drive_path.py --in-odom rooms.csv")
+        terminal.run_python(HAND)
         terminal.run(save)
         assert {path.name for path in tmp_path.glob("house.*")} == {"house.yaml", "house.pgm"}
         terminal.run(again)

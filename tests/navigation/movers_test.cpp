@@ -60,23 +60,20 @@ std::vector<Mover> mover(Point point, Point velocity) {
   return movers_seen_from({{{point}, velocity}}, {}, diffbot());
 }
 
-TEST(MoversSeenFromTest, TheTimeToTheTouchIsThatOfTheStandingOutlineAndOfTheAirAboutIt) {
-  EXPECT_NEAR(mover({1.12 + kMoverAir, 0}, {-0.5, 0})[0].touches, 2.0, 0.11);
+TEST(MoversSeenFromTest, TheTimeToTheTouchIsThatOfTheStandingOutline) {
+  EXPECT_NEAR(mover({1.12, 0}, {-0.5, 0})[0].touches, 2.0, 0.11);
   EXPECT_TRUE(std::isinf(mover({1.12, 0}, {0.5, 0})[0].touches));
-  const double beside = diffbot().half_width + kMoverAir;
-  EXPECT_TRUE(std::isfinite(mover({1.12, beside - 0.02}, {-0.5, 0})[0].touches));
-  EXPECT_TRUE(std::isinf(mover({1.12, beside + 0.02}, {-0.5, 0})[0].touches));
   EXPECT_TRUE(std::isinf(mover({1.12, 0.5}, {-0.5, 0})[0].touches));
 }
 
 TEST(FreeWayAmongMoversTest, ItEndsBeforeThePlacesThatOneWillTake) {
   const std::vector<Mover> crossing = mover({1.12, -1.5}, {0, 0.8});
-  EXPECT_NEAR(free_way(diffbot(), {}, {0.5, 0}, crossing), 1.0 - kMoverAir - kStopShort, 0.021);
+  EXPECT_NEAR(free_way(diffbot(), {}, {0.5, 0}, crossing), 1.0 - kBeside - kStopShort, 0.021);
 }
 
 TEST(FreeWayAmongMoversTest, OneThatComesToTheRobotEndsItAtTheMeeting) {
   const std::vector<Mover> oncoming = mover({1.12, 0}, {-0.5, 0});
-  EXPECT_NEAR(free_way(diffbot(), {}, {0.5, 0}, oncoming), 0.5 - kMoverAir / 2 - kStopShort, 0.05);
+  EXPECT_NEAR(free_way(diffbot(), {}, {0.5, 0}, oncoming), 0.5 - kStopShort, 0.05);
 }
 
 TEST(FreeWayAmongMoversTest, TheRobotDrivesOnOutOfTheWayOfOneThatWouldTouchIt) {
