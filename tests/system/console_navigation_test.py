@@ -71,8 +71,8 @@ class ConsoleNavigationTest(ConsoleTestCase):
             event = {"type": kind, "x": x, "y": y, "button": "left", "buttons": held, "clickCount": 1}
             browser.driver.execute_cdp_cmd("Input.dispatchMouseEvent", event)
 
-    def received(self, topic: Latest, before: int) -> tuple[float, float, float]:
-        wait_for("what was clicked", lambda: topic.count > before)
+    def received(self, browser: Browser, topic: Latest, before: int) -> tuple[float, float, float]:
+        self.waits_for(browser, "what was clicked", lambda: topic.count > before)
         pose = topic.message.pose if isinstance(topic.message, PoseStamped) else topic.message.pose.pose
         return pose.position.x, pose.position.y, 2 * math.atan2(pose.orientation.z, pose.orientation.w)
 
@@ -85,16 +85,18 @@ class ConsoleNavigationTest(ConsoleTestCase):
         browser.run("document.getElementById('navigation').open = true")
         wait_for("the place's button", lambda: not browser.run("return document.getElementById('set-place').title"))
         start = self.robot.pose
+        wait_for("a robot without a place", lambda: self.state.message is not None)
+        self.assertEqual(self.state.message.state, "no pose")
         before = self.place.count
         self.stroke(browser, "set-place", 0.0)
-        x, y, yaw = self.received(self.place, before)
+        x, y, yaw = self.received(browser, self.place, before)
         self.assertLess(math.hypot(x - start.x, y - start.y), CLICKED)
         self.assertLess(abs(yaw), 0.2)
         self.waits_for(browser, "a place", lambda: self.state.message.state == "localized")
 
         before = self.goal.count
         self.stroke(browser, "set-goal", 1.0)
-        x, y, _ = self.received(self.goal, before)
+        x, y, _ = self.received(browser, self.goal, before)
         self.assertLess(math.hypot(x - start.x - 1.0, y - start.y), 3 * CLICKED)
         self.waits_for(browser, "motion", lambda: self.robot.pose.x - start.x > 0.1)
         browser.run("document.querySelector('[data-call=goal_cancel]').click()")
