@@ -18,7 +18,8 @@ inline constexpr double kForesight = 3;  ///< s; at 0.5 m/s the outline crosses 
 struct Mover {
   std::vector<Point> points;  ///< m
   Point velocity;             ///< m/s
-  double touches = std::numeric_limits<double>::infinity();  ///< s, after which it touches a robot that stands
+  /// s, after which it touches a robot that stands
+  double touches = std::numeric_limits<double>::infinity();
 };
 
 class Movers {
