@@ -1,7 +1,7 @@
 """Costs of slam, localization and navigate beside the loop, on the wall clock.
 
-One loop runs in each block. The nodes are stopped (SIGSTOP) and continued in it every few seconds, so that the load of
-the machine is the same with and without them. Two loops one after the other differ by 1.5 × on a busy machine.
+One loop runs in each block. In it the nodes are stopped (SIGSTOP) and continued every few seconds: the load of the
+machine is then the same with and without them. On a busy machine two loops one after the other differ by 1.5 ×.
 """
 
 from __future__ import annotations
@@ -120,9 +120,7 @@ def _of_one(with_map: bool, blocks: int, programs: Path) -> tuple[list[dict[str,
         bounded(f"{name}, beside {system.names[0]}", statistics.median(shares[name]), "% of a core", BOUNDS[name])
         for name in system.names
     ]
-    rows += [
-        bounded(f"{name}: growth in {lasted:.0f} s", grown[name], "MB", GROWTH) for name in system.names
-    ]
+    rows += [bounded(f"{name}: growth in {lasted:.0f} s", grown[name], "MB", GROWTH) for name in system.names]
     return rows, ratios
 
 

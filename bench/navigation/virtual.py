@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from robot_control import ClosedLoop
 from robot_control._navigation import Navigation
 from robot_control.common.pose import Pose

@@ -50,7 +50,7 @@ class ConsoleNavigationTest(ConsoleTestCase):
         super().tearDownClass()
 
     def pixel(self, browser: Browser, ahead: float) -> tuple[float, float]:
-        """Where the page shows the place so far ahead of the robot, which looks along x."""
+        """The pixel of the place so far ahead of the robot, which looks along x."""
         left, top, width, height = browser.run(
             "const b = document.querySelector('#scene').getBoundingClientRect();"
             " return [b.left, b.top, b.width, b.height]"
