@@ -123,26 +123,37 @@ def drive_lies(task: tuple[str, int]) -> tuple[Trip, float]:
     lie, seed = task
     obstacles, known = scene_of("room")
     random = np.random.default_rng(seed)
-    robot = Robot("room", obstacles, scene_of("crowd")[1] if lie == "other map" else known, seed)
+    assumed = {"other map": scene_of("crowd")[1], "mirrored map": mirrored(known)}.get(lie, known)
+    robot = Robot("room", obstacles, assumed, seed)
     angle, since = random.uniform(-math.pi, math.pi), robot.loop.time + float(random.uniform(2, 12))
     shift = (math.cos(angle), math.sin(angle))
     lies = {
         "frozen": Lies(since, frozen=True),
         "shifted": Lies(since, sensor=(LASER[0] + 0.5 * shift[0], 0.5 * shift[1], 0.0)),
         "other map": Lies(),
+        "mirrored map": Lies(),
         "turned": Lies(since, place=lambda at: (at[0], at[1], at[2] + math.copysign(TURNED, angle))),
         "jump": Lies(since, place=lambda at: (at[0] + shift[0], at[1] + shift[1], at[2])),
     }
     robot.lies = lies[lie]
-    while not feasible(robot, known, goal := random_goal(random, known)):
-        pass
-    return robot.drive(goal), since
+    while True:
+        goal = random_goal(random, known)
+        if feasible(robot, known, goal) and (lie != "mirrored map" or feasible(robot, assumed, goal)):
+            return robot.drive(goal), since
 
 
+def mirrored(house: Map) -> Map:
+    """The map of a house that lies on the other side of the x axis."""
+    x, y, resolution, cells = house
+    return x, -y - len(cells) * resolution, resolution, cells[::-1].copy()
+
+
+OTHER_MAPS = {"other map", "mirrored map"}
 LIES = {
     "frozen": "scan is frozen",
     "shifted": "the scan contradicts the map",
     "other map": "the scan contradicts the map",
+    "mirrored map": "the scan contradicts the map",
     "turned": "the scan contradicts the map",
     "jump": "the scan contradicts the map",
 }
@@ -193,12 +204,14 @@ def faults(first: int, runs: int, say: Callable[[str], None]) -> list[dict[str, 
     for lie, cause in LIES.items():
         tasks = [(lie, seed) for seed in range(first, first + runs)]
         drives = list(Processes().outcomes(drive_lies, tasks, say))
-        affected = [trip for trip, since in drives if trip.doubts or trip.state != "reached" or lie == "other map"]
+        affected = [trip for trip, since in drives if trip.doubts or trip.state != "reached" or lie in OTHER_MAPS]
         unnamed = [trip for trip in affected if cause not in trip.doubts]
         for trip in unnamed:
             say(f"{lie}: {trip.state}: {trip.reason}; {sorted(trip.doubts)}")
+        touches = sum(trip.air <= 0 for trip, _ in drives)
+        say(f"{lie}: {touches} touches of {len(drives)}, {len(unnamed)} of {len(affected)} affected without the cause")
         rows += [
-            bounded(f"{lie}: touches", sum(trip.air <= 0 for trip, _ in drives), f"of {len(drives)}", 0),
+            bounded(f"{lie}: touches", touches, f"of {len(drives)}", 0),
             bounded(f"{lie}: ends without the cause named", len(unnamed), f"of {len(affected)} affected", 0),
         ]
     return rows

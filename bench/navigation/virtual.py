@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from robot_control import ClosedLoop
 from robot_control._navigation import Navigation
 from robot_control.common.pose import Pose
@@ -27,7 +26,7 @@ LONGEST = 240.0  # s for one goal
 STANDING = 10  # scans before and after it
 MOVING = 0.02  # m/s, rad/s
 NEARER = 0.001  # m in one step: 0.05 m/s
-REACH = 2.0  # m: farther obstacles touch nothing
+REACH = 0.6  # m: farther points are not looked at
 
 Place = tuple[float, float, float]
 
@@ -64,6 +63,7 @@ class Robot:
     def __init__(self, scene: str, obstacles: list[Obstacle], known: Map, seed: int) -> None:
         self.loop: ClosedLoop = new_loop(scene, seed)
         self._obstacles = obstacles
+        self._standing = np.concatenate([item.outline(0.0) for item in obstacles if not item.path])
         self.navigation = Navigation(known, Path(share_file("urdf/diffbot.urdf")).read_text())
         self.lies = Lies()
         self._scan: dict[str, Any] = {}
@@ -187,15 +187,11 @@ class Robot:
     def air_at(self, place: Place, *, moving: bool) -> float:
         """m between the outline at this place and the nearest obstacle of those that move, or of those that stand."""
         x, y, yaw = place
-        points: list[NDArray[np.float64]] = []
-        for item in self._obstacles:
-            if moving != bool(item.path):
-                continue
-            at = item.at(self.loop.time)
-            if max(abs(at[0] - x) - item.half_x, abs(at[1] - y) - (item.half_y or item.half_x)) < REACH:
-                outline = item.outline(self.loop.time)
-                points.append(outline[np.hypot(outline[:, 0] - x, outline[:, 1] - y) < 0.6])
-        near = np.concatenate(points) - (x, y) if points else np.empty((0, 2))
+        points = self._standing
+        if moving:
+            carts = [item.outline(self.loop.time) for item in self._obstacles if item.path]
+            points = np.concatenate([np.empty((0, 2)), *carts])
+        near = points[np.hypot(points[:, 0] - x, points[:, 1] - y) < REACH] - (x, y)
         cosine, sine = math.cos(yaw), math.sin(yaw)
         return min(
             (self.navigation.distance(cosine * dx + sine * dy, cosine * dy - sine * dx) for dx, dy in near),

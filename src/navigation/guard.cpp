@@ -35,12 +35,10 @@ double free_way(const Footprint& footprint, const std::vector<Point>& points, co
   };
   constexpr double kNever = std::numeric_limits<double>::infinity();
   for (const Point point : points) watch(point, {}, kNever);
-  for (const Point point : places_ahead(footprint, movers)) watch(point, {}, kNever);
+  for (const Point point : places_ahead(movers)) watch(point, {}, kNever);
   for (const Mover& mover : movers) {
-    const double until = time_to_touch(footprint, mover);
-    for (const Point point : mover.points) {
-      if (std::isfinite(until)) watch(point, mover.velocity, until);
-    }
+    if (!std::isfinite(mover.touches)) continue;
+    for (const Point point : mover.points) watch(point, mover.velocity, mover.touches);
   }
   const double sign = std::copysign(1.0, spot ? motion.angular : motion.linear);
   const double turn = spot                 ? sign / footprint.half_width  // rad per m

@@ -28,6 +28,17 @@ bool seen_free(const Scan& scan, const PlanarPose& sensor, Point at) {
   return range > std::hypot(dx, dy) + kThrough && range >= scan.range_min;
 }
 
+/// Returns the time after which the thing touches the outline that stands, s; ∞ beyond kForesight. Axes of the base.
+double time_to_touch(const Footprint& footprint, const Mover& mover) {
+  for (double time = 0; time <= kForesight; time += kTick) {
+    for (const Point point : mover.points) {
+      const Point at{point.x + mover.velocity.x * time, point.y + mover.velocity.y * time};
+      if (footprint.distance(at) < kTouching) return time;
+    }
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
 std::vector<Movers::Thing> Movers::things_of(const Scan& scan, const PlanarPose& sensor) {
@@ -89,30 +100,21 @@ std::vector<Point> placed(std::vector<Point> points, const PlanarPose& base) {
   return points;
 }
 
-std::vector<Mover> movers_seen_from(std::vector<Mover> movers, const PlanarPose& pose) {
-  const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
+std::vector<Mover> movers_seen_from(std::vector<Mover> movers, const PlanarPose& base, const Footprint& footprint) {
+  const double c = std::cos(base.yaw), s = std::sin(base.yaw);
   const auto turned = [&](double x, double y) { return Point{c * x + s * y, c * y - s * x}; };
   for (Mover& mover : movers) {
-    for (Point& point : mover.points) point = turned(point.x - pose.x, point.y - pose.y);
+    for (Point& point : mover.points) point = turned(point.x - base.x, point.y - base.y);
     mover.velocity = turned(mover.velocity.x, mover.velocity.y);
+    mover.touches = time_to_touch(footprint, mover);
   }
   return movers;
 }
 
-double time_to_touch(const Footprint& footprint, const Mover& mover) {
-  for (double time = 0; time <= kForesight; time += kTick) {
-    for (const Point point : mover.points) {
-      const Point at{point.x + mover.velocity.x * time, point.y + mover.velocity.y * time};
-      if (footprint.distance(at) < kTouching) return time;
-    }
-  }
-  return std::numeric_limits<double>::infinity();
-}
-
-std::vector<Point> places_ahead(const Footprint& footprint, const std::vector<Mover>& movers) {
+std::vector<Point> places_ahead(const std::vector<Mover>& movers) {
   std::vector<Point> places;
   for (const Mover& mover : movers) {
-    if (std::isfinite(time_to_touch(footprint, mover))) continue;
+    if (std::isfinite(mover.touches)) continue;
     for (double time = kTick; time <= kForesight; time += kTick) {
       for (const Point point : mover.points) {
         places.push_back({point.x + mover.velocity.x * time, point.y + mover.velocity.y * time});

@@ -6,6 +6,7 @@
 /// the middle of its points between the two scans. A thing that is larger than kLargest is taken to stand.
 
 #include <deque>
+#include <limits>
 #include <vector>
 
 #include "navigation/costmap.h"
@@ -17,6 +18,8 @@ inline constexpr double kForesight = 3;  ///< s; at 0.5 m/s the outline crosses 
 struct Mover {
   std::vector<Point> points;  ///< m
   Point velocity;             ///< m/s
+  /// s, after which it touches a robot that stands
+  double touches = std::numeric_limits<double>::infinity();
 };
 
 class Movers {
@@ -43,14 +46,12 @@ class Movers {
 /// Returns points, given in the axes of `base`, in the frame in which `base` is given.
 std::vector<Point> placed(std::vector<Point> points, const PlanarPose& base);
 
-/// Returns the movers in the axes of `pose`, which is given in their frame.
-std::vector<Mover> movers_seen_from(std::vector<Mover> movers, const PlanarPose& pose);
+/// Returns the movers in the axes of `base`, which is given in their frame, with `touches` for this outline: ∞ beyond
+/// kForesight.
+std::vector<Mover> movers_seen_from(std::vector<Mover> movers, const PlanarPose& base, const Footprint& footprint);
 
-/// Returns the time after which a thing touches the outline that stands, s; ∞ beyond kForesight. Axes of the base.
-double time_to_touch(const Footprint& footprint, const Mover& mover);
-
-/// Returns the places, in base axes, that the movers will take within kForesight. Those that touch the outline on their
+/// Returns the places that the movers will take within kForesight, in their axes. Those that touch the outline on their
 /// way are left out: where it stands is no better than what lies ahead.
-std::vector<Point> places_ahead(const Footprint& footprint, const std::vector<Mover>& movers);
+std::vector<Point> places_ahead(const std::vector<Mover>& movers);
 
 }  // namespace robot_control

@@ -5,6 +5,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <vector>
 
 namespace robot_control {
 namespace {
@@ -60,6 +62,57 @@ TEST_F(MapFileTest, AWrittenMapIsReadAgain) {
   EXPECT_EQ(copy.cells, read().cells);
   EXPECT_EQ(copy.origin_x, -7);
   EXPECT_EQ(copy.resolution, 0.05);
+}
+
+/// The forms in which public packages keep the maps of map_server. Each is the head as it stands there.
+TEST_F(MapFileTest, TheFilesOfPublicMapPackagesAreRead) {
+  struct Public {
+    const char* what;
+    std::string yaml, picture;
+  };
+  const std::string pixels("\xfe\xcd\0\xfe\xfe\0", 6);
+  const std::vector<Public> packages = {
+      {"map_server's manual",
+       "image: house.pgm\nresolution: 0.1\norigin: [0.0, 0.0, 0.0]\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+       "negate: 0\n",
+       "P5\n3 2\n255\n"},
+      {"map_saver of Noetic",
+       "image: " + (folder_ / "house.pgm").string() +
+           "\nresolution: 0.050000\norigin: [-10.000000, -10.000000, 0.000000]\nnegate: 0\noccupied_thresh: 0.65\n"
+           "free_thresh: 0.196\n\n",
+       "P5\n# CREATOR: Map_generator.cpp 0.050 m/pix\n3 2\n255\n"},
+      {"a folder beside the file, edited by GIMP",
+       "image: ./house.pgm\nresolution: 0.05\norigin: [-6.8999999999999915, -5.8999999999999915, 0.0]\nnegate: 0\n"
+       "occupied_thresh: 0.65\nfree_thresh: 0.196",
+       "P5\n# Created by GIMP version 2.10.18 PNM plug-in\n3 2\n255\n"},
+      {"map_saver of Nav2",
+       "image: house.pgm\nmode: trinary\nresolution: 0.05\norigin: [-2.95, -2.58, 0]\nnegate: 0\n"
+       "occupied_thresh: 0.65\nfree_thresh: 0.25\n",
+       "P5\n3 2\n255\n"},
+      {"lines that end as Windows ends them",
+       "image: house.pgm\r\nresolution: 0.05\r\norigin: [0, 0, 0]\r\nnegate: 0\r\noccupied_thresh: 0.65\r\n"
+       "free_thresh: 0.196\r\n",
+       "P5\r\n3 2\r\n255\n"},
+  };
+  for (const auto& [what, yaml, picture] : packages) {
+    write("house.yaml", yaml);
+    write("house.pgm", picture + pixels);
+    const bool unknown_is_free = yaml.find("free_thresh: 0.25") != std::string::npos;  // 205 is 19.6 % black
+    EXPECT_THAT(read().cells, testing::ElementsAre(0, 0, 100, 0, unknown_is_free ? 0 : -1, 100)) << what;
+  }
+}
+
+/// The bytes are those of map_saver's savePGM, and the lines those of its YAML file: map_server reads them.
+TEST_F(MapFileTest, AWrittenMapIsAFileOfMapServer) {
+  write_map((folder_ / "copy").string(), read());
+  const auto text_of = [&](const std::string& name) {
+    std::ifstream file(folder_ / name, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  EXPECT_EQ(text_of("copy.pgm"), "P5\n3 2\n255\n" + std::string("\xfe\xcd\0\xfe\xfe\0", 6));
+  EXPECT_EQ(text_of("copy.yaml"),
+            "image: copy.pgm\nresolution: 0.05\norigin: [-7, -5.5, 0]\nnegate: 0\noccupied_thresh: 0.65\n"
+            "free_thresh: 0.196\n");
 }
 
 TEST_F(MapFileTest, NegateSwapsFreeAndOccupied) {

@@ -55,25 +55,30 @@ TEST_F(MoversTest, WhatStandsDoesNotMoveWhereTheRobotDrivesPastIt) {
   EXPECT_TRUE(after_a_second(0).empty());
 }
 
-TEST(TimeToTouchTest, ItIsThatOfTheStandingOutline) {
-  EXPECT_NEAR(time_to_touch(diffbot(), {{{1.12, 0}}, {-0.5, 0}}), 2.0, 0.11);
-  EXPECT_TRUE(std::isinf(time_to_touch(diffbot(), {{{1.12, 0}}, {0.5, 0}})));
-  EXPECT_TRUE(std::isinf(time_to_touch(diffbot(), {{{1.12, 0.5}}, {-0.5, 0}})));
+/// A thing of one point with its velocity, in base axes.
+std::vector<Mover> mover(Point point, Point velocity) {
+  return movers_seen_from({{{point}, velocity}}, {}, diffbot());
+}
+
+TEST(MoversSeenFromTest, TheTimeToTheTouchIsThatOfTheStandingOutline) {
+  EXPECT_NEAR(mover({1.12, 0}, {-0.5, 0})[0].touches, 2.0, 0.11);
+  EXPECT_TRUE(std::isinf(mover({1.12, 0}, {0.5, 0})[0].touches));
+  EXPECT_TRUE(std::isinf(mover({1.12, 0.5}, {-0.5, 0})[0].touches));
 }
 
 TEST(FreeWayAmongMoversTest, ItEndsBeforeThePlacesThatOneWillTake) {
-  const Mover crossing{{{1.12, -1.5}}, {0, 0.8}};
-  EXPECT_NEAR(free_way(diffbot(), {}, {0.5, 0}, {crossing}), 1.0 - kBeside - kStopShort, 0.021);
+  const std::vector<Mover> crossing = mover({1.12, -1.5}, {0, 0.8});
+  EXPECT_NEAR(free_way(diffbot(), {}, {0.5, 0}, crossing), 1.0 - kBeside - kStopShort, 0.021);
 }
 
 TEST(FreeWayAmongMoversTest, OneThatComesToTheRobotEndsItAtTheMeeting) {
-  const Mover oncoming{{{1.12, 0}}, {-0.5, 0}};
-  EXPECT_NEAR(free_way(diffbot(), {}, {0.5, 0}, {oncoming}), 0.5 - kStopShort, 0.05);
+  const std::vector<Mover> oncoming = mover({1.12, 0}, {-0.5, 0});
+  EXPECT_NEAR(free_way(diffbot(), {}, {0.5, 0}, oncoming), 0.5 - kStopShort, 0.05);
 }
 
 TEST(FreeWayAmongMoversTest, TheRobotDrivesOnOutOfTheWayOfOneThatWouldTouchIt) {
-  const Mover from_the_side{{{0, -1.27}}, {0, 0.5}};
-  EXPECT_TRUE(std::isinf(free_way(diffbot(), {}, {0.5, 0}, {from_the_side})));
+  const std::vector<Mover> from_the_side = mover({0, -1.27}, {0, 0.5});
+  EXPECT_TRUE(std::isinf(free_way(diffbot(), {}, {0.5, 0}, from_the_side)));
 }
 
 }  // namespace

@@ -6,12 +6,11 @@ import tempfile
 import unittest
 from pathlib import Path
 
-import roslib.packages
 import rospy
 import rostest
 from geometry_msgs.msg import PoseWithCovarianceStamped, Twist
 from nav_msgs.msg import OccupancyGrid
-from navigation_support import share
+from navigation_support import Latest, missing_mrpt, share
 from robot_control.msg import LocalizationState
 from robot_control.srv import MapFile
 from sensor_msgs.msg import LaserScan
@@ -19,23 +18,8 @@ from std_srvs.srv import Empty
 from system_support import Program, RobotTestCase, again_after_a_stall, wait_for
 from tf2_msgs.msg import TFMessage
 
-BUILT = roslib.packages.find_node("robot_control", "slam")
-MISSING = "" if BUILT else "slam was built without MRPT: scripts/setup --navigation"
 
-
-class Latest:
-    """The newest message of a topic."""
-
-    def __init__(self, topic: str, kind: type) -> None:
-        self.message = None
-        self.count = 0
-        self._subscriber = rospy.Subscriber(topic, kind, self._receive)
-
-    def _receive(self, message: object) -> None:
-        self.message, self.count = message, self.count + 1
-
-
-@unittest.skipIf(MISSING, MISSING)
+@unittest.skipIf(missing_mrpt(), missing_mrpt())
 class MappingTest(RobotTestCase):
     @classmethod
     def setUpClass(cls) -> None:

@@ -1,4 +1,4 @@
-"""The rostests of navigate share a map as message, tf of a known place, and whether navigate was built."""
+"""The rostests of navigation share a map as message, tf of a known place, and whether the programs were built."""
 
 import threading
 from pathlib import Path
@@ -22,6 +22,24 @@ def missing() -> str:
         return "needs Debian's python3-move-base-msgs: scripts/setup --navigation"
     found = roslib.packages.find_node("robot_control", "navigate")
     return "" if found else "navigate was built without libmove-base-msgs-dev: scripts/setup --navigation"
+
+
+def missing_mrpt() -> str:
+    """The remedy if slam and localization were not built; else empty."""
+    found = roslib.packages.find_node("robot_control", "slam")
+    return "" if found else "slam was built without MRPT: scripts/setup --navigation"
+
+
+class Latest:
+    """The newest message of a topic."""
+
+    def __init__(self, topic: str, kind: type) -> None:
+        self.message = None
+        self.count = 0
+        self._subscriber = rospy.Subscriber(topic, kind, self._receive)
+
+    def _receive(self, message: object) -> None:
+        self.message, self.count = message, self.count + 1
 
 
 def message_of(map_: tuple[float, float, float, np.ndarray], frame: str = "map") -> OccupancyGrid:

@@ -39,6 +39,7 @@ class NavigationView:
         self._scan, self._particles = Latest("scan", LaserScan), Latest("particlecloud", PoseArray)
         self._tf: Tf | None = None
         self._places: dict[str, Any] = {}
+        self._map = (0.0, 0.0, 0.0)  # until tf says where it is, so that a place can be set on it
         threading.Thread(target=self._locate, daemon=True).start()
 
     def values(self) -> dict[str, Any]:
@@ -79,7 +80,8 @@ class NavigationView:
             frame = self.frame()
             places: dict[str, Any] = {}
             if odometry is not None and frame:
-                places = {"map": self._pose(odometry.header.frame_id, frame)} | self._seen(odometry)
+                self._map = self._pose(odometry.header.frame_id, frame) or self._map
+                places = {"map": self._map} | self._seen(odometry)
             self._places = places
             time.sleep(PERIOD)
 

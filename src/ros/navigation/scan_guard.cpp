@@ -103,8 +103,8 @@ double ScanGuard::clearance_of(StampedScan& scan) {
   if (sensor->upside_down) upright.angle_min *= -1, upright.angle_increment *= -1;
   const bool moves = std::abs(measured_.linear) > kStanding || std::abs(measured_.angular) > 2 * kStanding;
   const std::vector<Mover> movers =
-      movers_seen_from(movers_.update(upright, composed(base_, sensor->pose), scan.stamp.toSec()), base_);
-  scan.ahead = places_ahead(footprint_, movers);
+      movers_seen_from(movers_.update(upright, composed(base_, sensor->pose), scan.stamp.toSec()), base_, footprint_);
+  scan.ahead = places_ahead(movers);
   const double free = free_way(footprint_, points_of(upright, sensor->pose), moves ? measured_ : intended_, movers);
   const double age = std::clamp((ros::Time::now() - scan.stamp).toSec(), 0.0, kSilence);
   return std::max(0.0, free - std::abs(measured_.linear) * age);
