@@ -1,0 +1,35 @@
+"""The table of `scripts/bench board_clock`: samples of a motor board have their own times, whatever the line's jitter."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from bench.devices.bench import row
+from bench.devices.disturbed_drive import BUSES, DisturbedDrive, run_drive
+from bench.devices.loss_trial import BOARD
+from bench.runs.runner import Processes
+
+ODOMETRY = 1.1
+"""Bound of the odometry's error on a line with jitter, by that on a line with a constant delay."""
+SECONDS = 1800.0
+SEEDS = 4
+
+
+def bench(
+    program: Callable[..., dict[str, Any]], share: float, say: Callable[[str], None]
+) -> tuple[dict[str, Any], bool]:
+    """The table, and whether every figure keeps its bound.
+
+    Args:
+        program: runs one of bench/programs.
+        share: of the drives' time.
+        say: receives progress.
+    """
+    rows = list(program("bench_board_clock")["rows"])
+    lines = (BUSES[0], "late")
+    drives = [DisturbedDrive(BOARD, line, share * SECONDS, seed) for seed in range(1, 1 + SEEDS) for line in lines]
+    errors = [figures.odometry for figures in Processes().outcomes(run_drive, drives, say)]
+    for drive, exact, late in zip(drives[::2], errors[::2], errors[1::2], strict=True):
+        rows.append(row(f"odometry, seed {drive.seed}, of that with exact stamps", late / exact, "", ODOMETRY))
+    return {"bench": "board_clock", "rows": rows}, all(each["value"] <= each["reference"] for each in rows)

@@ -1,0 +1,59 @@
+#pragma once
+/// The cost of one cycle of the driver of a board on a serial line: its `read` and its `write`, over a pseudo-terminal.
+
+#include <unistd.h>
+
+#include <chrono>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "bench/programs/rows.h"
+#include "drivers/serial/serial_port.h"
+#include "rt/clock.h"
+#include "simulation/devices/pseudo_terminal.h"
+#include "support/allocation_guard.h"
+
+namespace robot_control::bench {
+
+/// Adds the rows of one board, whose machine (tests/drivers) has two wheels in the air. Bytes arrive at once in virtual
+/// time; in true time the loop waits for them.
+template <class Machine>
+void add_serial_cycle(std::vector<Row>& rows, const std::string& name, const JointCommand& command) {
+  constexpr int kCycles = 5'000;
+  constexpr int kStart = 500;  // until the board runs
+  constexpr double kRate = 500;
+  constexpr std::chrono::microseconds kArrival(150);
+  constexpr double kAllowed = 20'000;
+  const RealtimeParameters kThread{.name = "serial", .policy = RealtimePolicy::kOff};
+  const std::string path = "/tmp/bench_step_" + std::to_string(getpid());
+  const auto latest = [] { return std::numeric_limits<std::int64_t>::max(); };  // the driver takes its own present time
+  Machine machine(kRate, std::make_unique<PseudoTerminal>(path),
+                  [&] { return std::make_unique<SerialPort>(path, 0, kThread, latest); });
+  SensorFrame sensors;
+  const std::vector<JointCommand> commands(2, command);
+  std::vector<double> cycle_ns;
+  std::uint64_t allocations = 0;
+  machine.driver().start();
+  for (int cycle = 0; cycle < kCycles; ++cycle) {
+    const std::int64_t start_ns = monotonic_ns();
+    {
+      const AllocationGuard guard;
+      machine.driver().read(sensors);
+      machine.driver().write(commands);
+      if (cycle >= kStart) allocations += guard.count();
+    }
+    if (cycle >= kStart) cycle_ns.push_back(static_cast<double>(monotonic_ns() - start_ns));
+    machine.run_board();
+    std::this_thread::sleep_for(kArrival);
+  }
+  if (sensors.driver_state != DriverState::kRunning) throw std::runtime_error(name + ": " + machine.warning());
+  rows.push_back({name + " cycle of two wheels", median(cycle_ns), "ns", kAllowed, "what is allowed",
+                  median(cycle_ns) / kAllowed});
+  rows.push_back({name + " allocations", static_cast<double>(allocations), "per 4500 cycles", 0, "none", 0});
+}
+
+}  // namespace robot_control::bench
