@@ -141,7 +141,7 @@ def run_seed_program(name: str, given: argparse.Namespace) -> tuple[dict[str, An
         result = run_program(given.programs / f"bench_{name}", str(given.first), str(runs), *drives)
     else:
         with opened_runner(given) as runner:
-            result = seed_programs.run_seeds(name, given.first, runs, say, runner, drives)
+            result = seed_programs.run_seeds(name, given.first, runs, say, runner, *drives)
     if name == "release":
         with opened_runner(given) as runner:
             result["rows"] += sender_rows(given.first, runs, say, runner)

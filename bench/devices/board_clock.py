@@ -1,4 +1,4 @@
-"""The table of `scripts/bench board_clock`: samples of a motor board have their own times, whatever the line's jitter."""
+"""The table of `scripts/bench board_clock`: a motor board's samples have their own times in spite of jitter."""
 
 from __future__ import annotations
 

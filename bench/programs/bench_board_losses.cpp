@@ -1,6 +1,7 @@
-/// bench_board_losses FIRST RUNS: a board on a serial line loses its cable, its supply or its driver while the wheels are
-/// driven, at a random moment. How long is a wheel driven after that, in virtual time? Plugged in again the wheels stay
-/// braked, and turn after the reset and a new command; after a killed driver they stay braked until the new one orders.
+/// bench_board_losses FIRST RUNS: a board on a serial line loses its cable, its supply or its driver while the wheels
+/// are driven, at a random moment. How long is a wheel driven after that, in virtual time? Plugged in again the wheels
+/// stay braked, and turn after the reset and a new command; after a killed driver they stay braked until the new one
+/// orders.
 
 #include <array>
 #include <cmath>
@@ -19,11 +20,11 @@ namespace robot_control::bench {
 namespace {
 
 constexpr double kRate = 1000;
-constexpr double kSpeed = 10;         // rad/s
-constexpr double kStanding = 0.5;     // rad/s
-constexpr double kDriving = 0.01;     // N·m along the motion
-constexpr double kDrag = 0.05;        // N·m·s/rad, which a driven wheel needs torque for
-constexpr double kStepMs = 1;         // of the loop, in which the loss falls
+constexpr double kSpeed = 10;      // rad/s
+constexpr double kStanding = 0.5;  // rad/s
+constexpr double kDriving = 0.01;  // N·m along the motion
+constexpr double kDrag = 0.05;     // N·m·s/rad, which a driven wheel needs torque for
+constexpr double kStepMs = 1;      // of the loop, in which the loss falls
 constexpr std::string_view kKilled = "killed";
 
 struct Loss {
@@ -85,8 +86,7 @@ class Trial {
     }
   }
   void drag() {
-    for (JointSample& joint : machine_.joints)
-      joint.velocity *= 1 - kDrag / Machine::kInertia * machine_.period();
+    for (JointSample& joint : machine_.joints) joint.velocity *= 1 - kDrag / Machine::kInertia * machine_.period();
   }
   bool driven() {
     for (std::size_t i = 0; i < 2; ++i) {
@@ -123,7 +123,8 @@ void add_board(std::vector<Row>& rows, const std::string& name, double watchdog_
     const std::string what = name + " " + std::string(loss.name) + " on blocks: ";
     const double allowed_ms = watchdog_ms + 2 * kStepMs;
     rows.push_back({what + "losses that broke a rule", broken, "", 0, "what is allowed", broken});
-    rows.push_back({what + "driven after it", longest_ms, "ms", allowed_ms, "what is allowed", longest_ms / allowed_ms});
+    rows.push_back(
+        {what + "driven after it", longest_ms, "ms", allowed_ms, "what is allowed", longest_ms / allowed_ms});
   }
 }
 
@@ -138,8 +139,8 @@ int main(int argc, char** argv) {
   }
   const std::uint64_t first = std::strtoull(argv[1], nullptr, 10), runs = std::strtoull(argv[2], nullptr, 10);
   std::vector<bench::Row> rows;
-  bench::add_board<BoardMachine>(rows, "board", 50, {.mode = JointMode::kVelocity, .velocity = 10, .damping = 2},
-                                 first, runs);
+  bench::add_board<BoardMachine>(rows, "board", 50, {.mode = JointMode::kVelocity, .velocity = 10, .damping = 2}, first,
+                                 runs);
   bench::add_board<RoboclawMachine>(rows, "roboclaw", 100, {.mode = JointMode::kDriveVelocity, .velocity = 10}, first,
                                     runs);
   bench::print("board_losses", rows);

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ PROGRAMS = Path(__file__).resolve().parents[2] / "build" / "robot_control" / "be
 BLOCKS = 200
 
 
-def run_block(name: str, more: Sequence[str], block: tuple[int, int]) -> tuple[dict[str, Any], str]:
+def run_block(name: str, more: tuple[str, ...], block: tuple[int, int]) -> tuple[dict[str, Any], str]:
     """Runs on the worker: returns the result of (first seed, number of seeds), and the program's messages."""
     program = [str(PROGRAMS / f"bench_{name}"), *map(str, block), *more]
     done = subprocess.run(program, capture_output=True, check=True, text=True, stdin=subprocess.DEVNULL)
@@ -25,7 +25,7 @@ def run_block(name: str, more: Sequence[str], block: tuple[int, int]) -> tuple[d
 
 
 def run_seeds(
-    name: str, first: int, runs: int, say: Callable[[str], None], runner: Runner, more: Sequence[str] = ()
+    name: str, first: int, runs: int, say: Callable[[str], None], runner: Runner, *more: str
 ) -> dict[str, Any]:
     """The result of all seeds: the sums of the blocks' counts, and the speed of all of them; `more` follows the seeds
     on the program's command line.

@@ -50,7 +50,7 @@ enum class RoboclawCause : std::uint8_t {
 class RoboclawDriver final : public Driver {
  public:
   static constexpr std::int64_t kTimeoutNs = 100'000'000;  ///< of the board, its shortest one
-  static constexpr std::int64_t kAnswerNs = 8'000'000;      ///< 3 ms of jitter each way, and the board's own time
+  static constexpr std::int64_t kAnswerNs = 8'000'000;     ///< 3 ms of jitter each way, and the board's own time
   static constexpr unsigned kSlowEvery = 4;
   static constexpr double kSpeedMargin = 1.5;  ///< of the velocity limit, above which a position jumped
   static constexpr double kBlindWay = 0.5;     ///< rad

@@ -23,9 +23,9 @@ namespace {
 
 using roboclaw::PacketCommand;
 
-constexpr double kPeriod = 0.002;    // s
-constexpr double kInertia = 0.01;    // kg·m²
-constexpr double kCounts = 1000;     // per turn
+constexpr double kPeriod = 0.002;  // s
+constexpr double kInertia = 0.01;  // kg·m²
+constexpr double kCounts = 1000;   // per turn
 constexpr std::uint8_t kAddress = 0x80;
 
 void print_requests() {
