@@ -70,8 +70,8 @@ def nearest_to_its_bound(figures: list[Figure]) -> Figure:
 
 def drives_of_velocity(robot: str) -> list[Figure]:
     """Robots whose drives close the loops of their speeds, over all gains and delays of these drives. A stop may be
-    longer by what the robot drives during the delay. Where no torque is taken as a feed-forward, the integral of the
-    drive has to discharge at the end of a ramp.
+    longer by what the robot drives during the delay. Without a torque as feed-forward, the integral of the drive has to
+    discharge at the end of a ramp.
     """
     figures = []
     for name, takes_torque in (("", True), (", without feed-forward", False)):

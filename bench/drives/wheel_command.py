@@ -1,4 +1,4 @@
-"""What the drives of the wheels take, `scripts/bench … --wheel-command`: torques, or speeds whose loops they close."""
+"""`scripts/bench … --wheel-command` chooses drives that take torques, or speeds whose loops they close."""
 
 from __future__ import annotations
 

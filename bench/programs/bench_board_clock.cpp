@@ -1,6 +1,6 @@
-/// bench_board_clock: how far the driver's time of a sample is from the truth, on a line with 3 ms of jitter before a
-/// motor board whose clock runs fast by 200 ppm. A wheel turns steadily, so that the error of its position at the time
-/// of `read` by its speed is the error of the time. It contains the resolution of the encoder.
+/// bench_board_clock measures how far the driver's time of a sample is from the truth. The line before the motor board
+/// has 3 ms of jitter, and the board's clock runs fast by 200 ppm. A wheel turns steadily, so that the error of its
+/// position at the time of `read` by its speed is the error of the time. It contains the resolution of the encoder.
 
 #include <cmath>
 #include <iostream>

@@ -1,7 +1,6 @@
-/// bench_board_losses FIRST RUNS: a board on a serial line loses its cable, its supply or its driver while the wheels
-/// are driven, at a random moment. How long is a wheel driven after that, in virtual time? Plugged in again the wheels
-/// stay braked, and turn after the reset and a new command; after a killed driver they stay braked until the new one
-/// orders.
+/// bench_board_losses FIRST RUNS measures for how long a wheel is driven after a loss, in virtual time. At a random
+/// moment a board on a serial line loses its cable, its supply or its driver. Plugged in again the wheels stay braked.
+/// They turn after the reset and a new command. After a killed driver they stay braked until the new one orders.
 
 #include <array>
 #include <cmath>

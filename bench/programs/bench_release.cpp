@@ -1,5 +1,5 @@
-/// bench_release FIRST RUNS [torque | velocity]: random sequences of deaths, restarts, resets and senders
-/// (tests/loop/release_sequences.h), on all cores; the last argument is robot.wheel_command.
+/// bench_release FIRST RUNS [torque | velocity] runs random sequences of deaths, restarts, resets and senders on all
+/// cores (tests/loop/release_sequences.h). The last argument is robot.wheel_command.
 
 #include <cstdlib>
 #include <string_view>

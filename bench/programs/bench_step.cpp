@@ -3,8 +3,8 @@
 /// Inputs are the frames of a real drive (the closed loop at 0.5 m/s, 0.2 rad/s), replayed in blocks. The estimator's
 /// are those of its steady part, in which both encoders and both contacts correct it in every cycle. The reference is a
 /// fixed arithmetic kernel (a chain of dependent multiply-adds), interleaved block by block. The cycle of motor drives
-/// on CAN is compared with bare system calls (can_cycle.h), that of boards on a serial line with what is allowed
-/// (serial_cycle.h).
+/// on CAN is compared with bare system calls (can_cycle.h). That of boards on a serial line is compared with what is
+/// allowed (serial_cycle.h).
 
 #include <filesystem>
 #include <iostream>

@@ -1,4 +1,4 @@
-// What docs/firmware_arduino.md uses of Arduino's core, as declared in its reference.
+// These are declarations of what docs/firmware_arduino.md uses of Arduino's core.
 #pragma once
 #include <stddef.h>
 #include <stdint.h>

@@ -1,4 +1,4 @@
-// What docs/firmware_stm32.md uses of ST's HAL and CMSIS, as declared in their references.
+// These are declarations of what docs/firmware_stm32.md uses of ST's HAL and CMSIS.
 #pragma once
 #include <stdint.h>
 

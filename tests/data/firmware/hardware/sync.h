@@ -1,4 +1,4 @@
-// As pico/stdlib.h.
+// These are declarations of what docs/firmware_pico.md uses of the Pico SDK.
 #pragma once
 #include <stdint.h>
 

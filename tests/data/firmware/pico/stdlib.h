@@ -1,4 +1,4 @@
-// What docs/firmware_pico.md uses of the Pico SDK, as declared in its reference.
+// These are declarations of what docs/firmware_pico.md uses of the Pico SDK.
 #pragma once
 #include <stdbool.h>
 #include <stdint.h>
