@@ -3,12 +3,13 @@
 
 #include <unistd.h>
 
-#include <chrono>
+#include <atomic>
 #include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "bench/programs/rows.h"
@@ -19,20 +20,73 @@
 
 namespace robot_control::bench {
 
-/// Adds the rows of one board, whose machine (tests/drivers) has two wheels in the air. Bytes arrive at once in virtual
-/// time; in true time the loop waits for them.
+/// The device's end, which counts its bytes.
+class CountedEnd final : public SerialLine {
+ public:
+  CountedEnd(const std::string& path, std::atomic<std::size_t>& sent) : line_(path), sent_(sent) {}
+  bool receive(SerialChunk& chunk) noexcept override { return line_.receive(chunk); }
+  bool send(std::span<const std::uint8_t> bytes) noexcept override {
+    sent_ += bytes.size();
+    return line_.send(bytes);
+  }
+  bool connected() const noexcept override { return line_.connected(); }
+  std::string name() const override { return line_.name(); }
+
+ private:
+  PseudoTerminal line_;
+  std::atomic<std::size_t>& sent_;
+};
+
+/// The port of the driver. `await` waits for the bytes of the device, so that the load of the machine changes nothing.
+class AwaitedPort final : public SerialLine {
+ public:
+  AwaitedPort(const std::string& path, std::atomic<std::size_t>& sent)
+      : port_(path, 0, {.name = "serial", .policy = RealtimePolicy::kOff}, &latest), sent_(sent) {}
+  void await() noexcept {
+    while (!has_next_ && taken_ < sent_) {
+      has_next_ = port_.receive(next_);
+      if (!has_next_) std::this_thread::yield();
+    }
+  }
+  bool receive(SerialChunk& chunk) noexcept override {
+    if (std::exchange(has_next_, false)) {
+      chunk = next_;
+    } else if (!port_.receive(chunk)) {
+      return false;
+    }
+    taken_ += chunk.size;
+    return true;
+  }
+  bool send(std::span<const std::uint8_t> bytes) noexcept override { return port_.send(bytes); }
+  bool connected() const noexcept override { return port_.connected(); }
+  std::string name() const override { return port_.name(); }
+
+ private:
+  /// The driver takes a later time for its own present one.
+  static std::int64_t latest() { return std::numeric_limits<std::int64_t>::max(); }
+
+  SerialPort port_;
+  SerialChunk next_;
+  bool has_next_ = false;
+  std::size_t taken_ = 0;
+  std::atomic<std::size_t>& sent_;
+};
+
+/// Adds the rows of one board, whose machine (tests/drivers) has two wheels in the air.
 template <class Machine>
 void add_serial_cycle(std::vector<Row>& rows, const std::string& name, const JointCommand& command) {
   constexpr int kCycles = 5'000;
   constexpr int kStart = 500;  // until the board runs
   constexpr double kRate = 500;
-  constexpr std::chrono::microseconds kArrival(150);
   constexpr double kAllowed = 20'000;
-  const RealtimeParameters kThread{.name = "serial", .policy = RealtimePolicy::kOff};
   const std::string path = "/tmp/bench_step_" + std::to_string(getpid());
-  const auto latest = [] { return std::numeric_limits<std::int64_t>::max(); };  // the driver takes its own present time
-  Machine machine(kRate, std::make_unique<PseudoTerminal>(path),
-                  [&] { return std::make_unique<SerialPort>(path, 0, kThread, latest); });
+  std::atomic<std::size_t> sent = 0;
+  AwaitedPort* port = nullptr;
+  Machine machine(kRate, std::make_unique<CountedEnd>(path, sent), [&] {
+    auto made = std::make_unique<AwaitedPort>(path, sent);
+    port = made.get();
+    return made;
+  });
   SensorFrame sensors;
   const std::vector<JointCommand> commands(2, command);
   std::vector<double> cycle_ns;
@@ -48,7 +102,7 @@ void add_serial_cycle(std::vector<Row>& rows, const std::string& name, const Joi
     }
     if (cycle >= kStart) cycle_ns.push_back(static_cast<double>(monotonic_ns() - start_ns));
     machine.run_board();
-    std::this_thread::sleep_for(kArrival);
+    port->await();
   }
   if (sensors.driver_state != DriverState::kRunning) throw std::runtime_error(name + ": " + machine.warning());
   rows.push_back({name + " cycle of two wheels", median(cycle_ns), "ns", kAllowed, "what is allowed",

@@ -4,7 +4,7 @@ import pytest
 
 from bench.devices.bench import ODOMETRY, RIPPLE
 from bench.devices.disturbed_drive import BUSES, DisturbedDrive, run_drive
-from bench.devices.loss_trial import DIALECTS, KINDS, SERIAL, SERIAL_LATEST, LossTrial, run_trial
+from bench.devices.loss_trial import BOARD, DIALECTS, KINDS, ROBOCLAW, SERIAL_LATEST, LossTrial, run_trial
 from bench.devices.slope_trial import as_stated
 
 SEED = 1000
@@ -44,9 +44,9 @@ def test_lost_and_late_frames_stop_nothing_and_hardly_disturb(dialect, seconds, 
     assert disturbed.odometry < ODOMETRY * undisturbed.odometry
 
 
-@pytest.mark.parametrize("board", SERIAL)
-def test_a_disturbed_serial_line_stops_nothing(board):
-    undisturbed, disturbed = drives(board, "disturbed", 20.0)
+@pytest.mark.parametrize(("board", "seconds"), [(BOARD, 20.0), (ROBOCLAW, 120.0)])
+def test_a_disturbed_serial_line_stops_nothing(board, seconds):
+    undisturbed, disturbed = drives(board, "disturbed", seconds)
     assert disturbed.stops == 0
     assert disturbed.odometry < ODOMETRY * undisturbed.odometry
 

@@ -193,6 +193,8 @@ void RoboclawDriver::read(SensorFrame& sensors) noexcept {
   sensors.joint_count = joint_count_;
   for (std::size_t i = wheels_.size(); i < joint_count_; ++i) sensors.joints[i] = {};
   const std::int64_t age_ns = now_ns_ - sample_ns_;
+  // A board that restarts counts from zero: what a wheel travels during a fault is unknown.
+  const auto fault = status_.state == DriverState::kFault ? static_cast<std::uint32_t>(status_.cause) : 0U;
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
     const Wheel& wheel = wheels_[i];
     const double age = 1.0e-9 * static_cast<double>(std::clamp<std::int64_t>(age_ns, 0, kTimeoutNs));
@@ -201,7 +203,8 @@ void RoboclawDriver::read(SensorFrame& sensors) noexcept {
                          .effort = std::numeric_limits<double>::quiet_NaN(),
                          .temperature = temperature_,
                          .age_ns = age_ns,
-                         .valid = running ? std::uint32_t{kValidKinematics} : 0U};
+                         .valid = running ? std::uint32_t{kValidKinematics} : 0U,
+                         .fault = fault};
     if (running && has_temperature_) sensors.joints[i].valid |= kValidTemperature;
   }
   link_.state = !line_->connected() || silent ? LinkState::kDown : running ? LinkState::kUp : LinkState::kStarting;
