@@ -92,6 +92,7 @@ void RoboclawDriver::receive() noexcept {
   // Older firmware answers with 16 bits.
   if (command_ == Command::kStatus && roboclaw::is_answer(asked_, received_, 2)) return accept();
   pending_ = false;
+  if (std::ranges::find(kSlow, command_) != kSlow.end()) ++turn_;  // a board may lack it
   ++link_.lost;
   if (received_.size() > 0) ++link_.errors;
 }

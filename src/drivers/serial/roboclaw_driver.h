@@ -3,7 +3,7 @@
 /// are neither taken nor measured.
 ///
 /// One exchange runs at a time: the driver sends a request in `write`, and takes its answer in a later `read`. After
-/// kAnswerNs the answer counts as lost, and the request is repeated. In turn it orders the speeds and reads both
+/// kAnswerNs the answer counts as lost; orders and readings of the encoders are repeated. In turn it orders the speeds and reads both
 /// encoders, and after kSlowEvery of these pairs battery, temperature or status. A loop of 200 Hz and more thus orders
 /// 100 times per second. The counts
 /// are those of the middle between request and answer; their speed brings them to the time of `read`.
