@@ -3,10 +3,10 @@
 /// are neither taken nor measured.
 ///
 /// One exchange runs at a time: the driver sends a request in `write`, and takes its answer in a later `read`. After
-/// kAnswerNs the answer counts as lost; orders and readings of the encoders are repeated. In turn it orders the speeds and reads both
-/// encoders, and after kSlowEvery of these pairs battery, temperature or status. A loop of 200 Hz and more thus orders
-/// 100 times per second. The counts
-/// are those of the middle between request and answer; their speed brings them to the time of `read`.
+/// kAnswerNs the answer counts as lost; orders and readings of the encoders are repeated. In turn it orders the speeds
+/// and reads both encoders, and after kSlowEvery of these pairs battery, temperature or status. A loop of 200 Hz and
+/// more thus orders 100 times per second. The counts are those of the middle between request and answer; their speed
+/// brings them to the time of `read`.
 ///
 /// `read` reports kStarting until version, gains and QPPS of both motors were read, and its serial timeout, which is
 /// set to kTimeoutNs. It is refused with gains or a QPPS of zero: such a board answers
