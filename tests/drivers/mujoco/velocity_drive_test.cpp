@@ -50,12 +50,12 @@ TEST_F(VelocityDriveTest, AddsTheTorqueOfTheCommandIfItTakesOne) {
 
 /// As a slope that is too steep for the effort of the brake does.
 TEST_F(VelocityDriveTest, HoldsALoadThatItsBrakingEffortDoesNotSlowDown) {
-  constexpr double kLoad = 2.5;  // N·m, between effort and hold_effort
+  constexpr double kSteep = 2.5;  // N·m, between effort and hold_effort
   for (const double begin : {0.0, -5.0}) {
     velocity = begin;
-    run({}, 8, kLoad);
+    run({}, 8, kSteep);
     EXPECT_NEAR(velocity, 0, 1e-3) << begin;
-    EXPECT_NEAR(effort, kLoad, 1e-2) << begin;
+    EXPECT_NEAR(effort, kSteep, 1e-2) << begin;
   }
 }
 
