@@ -22,6 +22,7 @@ from robot_control.common.files import write_text
 
 from bench import legs, markdown
 from bench.drives.sensor_errors import LEVELS
+from bench.drives.wheel_command import WHEEL_COMMANDS
 from bench.faults.fault_sequence import ALL_RUNS
 from bench.navigation import bench as navigation
 from bench.release.sender_sequences import sender_rows
@@ -47,6 +48,7 @@ JUDGED = (
     "blackbox",
     "processes",
     "devices",
+    "board_clock",
     "console",
     "fleet",
     "data_return",
@@ -63,6 +65,7 @@ PARTS = {
 }
 NAMES = MEASURED + JUDGED
 SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores
+BY_WHEEL_COMMAND = ("campaign", "driving", "drive", "release")
 ON_CLUSTERS = ("campaign", "devices", "driving", "odometry", "tuning", *SEED_PROGRAMS)
 
 
@@ -73,6 +76,15 @@ def run_program(program: Path, *arguments: str | Path) -> dict[str, Any]:
     )
     result: dict[str, Any] = json.loads(done.stdout)
     return result
+
+
+def programs_of(given: argparse.Namespace) -> Callable[..., dict[str, Any]]:
+    """Runs a program of bench/programs by its name."""
+
+    def program(name: str, *arguments: str | int) -> dict[str, Any]:
+        return run_program(given.programs / name, *map(str, arguments))
+
+    return program
 
 
 def say(text: str) -> None:
@@ -101,15 +113,15 @@ def run_many(name: str, given: argparse.Namespace, runner: Runner) -> tuple[dict
     if name == "campaign":
         from bench.faults import campaign
 
-        return campaign.bench(given.first, given.runs or ALL_RUNS, say, runner)
+        return campaign.bench(given.first, given.runs or ALL_RUNS, say, runner, given.wheel_command)
     if name == "devices":
         from bench.devices import bench as devices
 
-        return devices.bench(given.first, given.runs or devices.ALL_RUNS, say, runner)
+        return devices.bench(given.first, given.runs or devices.ALL_RUNS, say, runner, programs_of(given))
     if name == "driving":
         from bench.drives import normal_driving
 
-        return normal_driving.bench(given.share, say, runner, given.errors)
+        return normal_driving.bench(given.share, say, runner, given.errors, given.wheel_command)
     if name == "odometry":
         from bench.odometry import bench as odometry
 
@@ -124,11 +136,12 @@ def run_many(name: str, given: argparse.Namespace, runner: Runner) -> tuple[dict
 def run_seed_program(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     """One of `SEED_PROGRAMS`: it uses all processors by itself, or runs in blocks on the workers of a cluster."""
     runs = given.runs or SEED_PROGRAMS[name]
+    drives = [given.wheel_command] if name in BY_WHEEL_COMMAND else []
     if given.scheduler is None:
-        result = run_program(given.programs / f"bench_{name}", str(given.first), str(runs))
+        result = run_program(given.programs / f"bench_{name}", str(given.first), str(runs), *drives)
     else:
         with opened_runner(given) as runner:
-            result = seed_programs.run_seeds(name, given.first, runs, say, runner)
+            result = seed_programs.run_seeds(name, given.first, runs, say, runner, *drives)
     if name == "release":
         with opened_runner(given) as runner:
             result["rows"] += sender_rows(given.first, runs, say, runner)
@@ -198,17 +211,20 @@ def _data_return(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     return data_return.bench(_parts_of("data_return", given), given.first, given.share, given.programs, say)
 
 
-def _drive(_given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+def _drive(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     from bench.drives import drive_promises
 
-    return drive_promises.bench(say)
+    return drive_promises.bench(say, given.wheel_command)
+
+
+def _board_clock(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    from bench.devices import board_clock
+
+    return board_clock.bench(programs_of(given), given.share, say)
 
 
 def _legs(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    def program(name: str, *arguments: str | int) -> dict[str, Any]:
-        return run_program(given.programs / name, *map(str, arguments))
-
-    return legs.bench(_parts_of("legs", given), given.first, given.runs, program, say)
+    return legs.bench(_parts_of("legs", given), given.first, given.runs, programs_of(given), say)
 
 
 TRIALS = {
@@ -219,6 +235,7 @@ TRIALS = {
     "blackbox": _blackbox,
     "processes": _processes,
     "drive": _drive,
+    "board_clock": _board_clock,
     "console": _console,
     "fleet": _fleet,
     "data_return": _data_return,
@@ -310,9 +327,15 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
         type=_share,
         default=1.0,
         help="driving: of the two hours; record: of the ten minutes; console: of presses, losses and seconds; "
-        "data_return: of the files",
+        "data_return: of the files; board_clock: of the drives",
     )
     parser.add_argument("--errors", choices=LEVELS, default=LEVELS[0], help="driving, odometry: of the sensors")
+    parser.add_argument(
+        "--wheel-command",
+        choices=WHEEL_COMMANDS,
+        default=WHEEL_COMMANDS[0],
+        help=f"{', '.join(BY_WHEEL_COMMAND)}: of the drives of the wheels",
+    )
     parser.add_argument("--only", type=_scenarios, metavar="SCENARIO[,…]", help="odometry: these scenarios alone")
     parser.add_argument("--plots", type=Path, help="odometry: folder for pictures")
     parser.add_argument("--keep", type=Path, help="record: folder for the logs and their reports")
@@ -337,6 +360,8 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
         parser.error(f"{', '.join(alone)} cannot run on a cluster; {', '.join(ON_CLUSTERS)} can")
     if given.markdown and given.errors != LEVELS[0]:
         parser.error(f"--markdown writes the tables of {LEVELS[0]}, not of --errors {given.errors}")
+    if given.markdown and given.wheel_command != WHEEL_COMMANDS[0]:
+        parser.error(f"--markdown writes the tables of --wheel-command {WHEEL_COMMANDS[0]}")
     if given.markdown and given.only:
         parser.error("--markdown writes the tables of all scenarios, not of --only some")
     if given.scheduler is not None:

@@ -1,4 +1,4 @@
-"""The table of `scripts/bench devices`: losses, silence on a slope, and disturbed buses, by dialect.
+"""The table of `scripts/bench devices`: losses, silence on a slope, and disturbed buses and lines, by dialect.
 
 scripts/bench devices --first 40 --runs 1
 """
@@ -10,11 +10,11 @@ from typing import Any
 
 from bench.devices.disturbed_drive import BUSES, DisturbedDrive, DriveFigures, run_drive
 from bench.devices.loss_trial import (
-    BOARD,
-    BOARD_LATEST,
     BRAKE_CYCLES,
     DIALECTS,
     KINDS,
+    SERIAL,
+    SERIAL_LATEST,
     LossTrial,
     Outcome,
     latest,
@@ -32,7 +32,9 @@ ODOMETRY, RIPPLE = 1.2, 2.0
 Row = dict[str, Any]
 
 
-def bench(first: int, runs: int, say: Callable[[str], None], runner: Runner) -> tuple[dict[str, Any], bool]:
+def bench(
+    first: int, runs: int, say: Callable[[str], None], runner: Runner, program: Callable[..., dict[str, Any]]
+) -> tuple[dict[str, Any], bool]:
     """The table, and whether every figure keeps its bound.
 
     Args:
@@ -40,8 +42,10 @@ def bench(first: int, runs: int, say: Callable[[str], None], runner: Runner) -> 
         runs: seeds of each kind of loss; the drives last `runs`/`ALL_RUNS` of `DRIVE_TIME`.
         say: receives progress and every broken rule.
         runner: where the trials run.
+        program: runs one of bench/programs.
     """
-    rows = loss_rows(first, runs, say, runner)
+    rows: list[Row] = list(program("bench_board_losses", first, runs)["rows"])
+    rows += loss_rows(first, runs, say, runner)
     rows += slope_rows(first, runs, say, runner)
     rows += drive_rows(max(60.0, DRIVE_TIME * min(runs, ALL_RUNS) / ALL_RUNS), say, runner)
     return {"bench": "devices", "rows": rows}, all(row["value"] <= row["reference"] for row in rows)
@@ -55,7 +59,8 @@ def row(name: str, value: float, unit: str, allowed: float) -> Row:
 
 def loss_rows(first: int, runs: int, say: Callable[[str], None], runner: Runner) -> list[Row]:
     """Per dialect and kind of loss: broken rules, and the latest times until it is seen and until the brake."""
-    kinds = [(dialect, kind) for dialect in DIALECTS for kind in KINDS] + [(BOARD, kind) for kind in BOARD_LATEST]
+    kinds = [(dialect, kind) for dialect in DIALECTS for kind in KINDS]
+    kinds += [(board, kind) for board, latest_of in SERIAL_LATEST.items() for kind in latest_of]
     trials = [LossTrial(dialect, kind, seed) for dialect, kind in kinds for seed in range(first, first + runs)]
     outcomes: dict[tuple[str, str], list[Outcome]] = {}
     for trial, outcome in zip(trials, runner.outcomes(run_trial, trials, say, chunk=10), strict=True):
@@ -86,12 +91,12 @@ def slope_rows(first: int, runs: int, say: Callable[[str], None], runner: Runner
 
 def drive_rows(seconds: float, say: Callable[[str], None], runner: Runner) -> list[Row]:
     """False stops, and the ratios of odometry's error and of the ripple."""
-    drives = [DisturbedDrive(dialect, bus, seconds) for dialect in (*DIALECTS, BOARD) for bus in BUSES]
+    drives = [DisturbedDrive(dialect, bus, seconds) for dialect in (*DIALECTS, *SERIAL) for bus in BUSES]
     figures = dict(zip(drives, runner.outcomes(run_drive, drives, say), strict=True))
     rows = []
     for drive, found in figures.items():
         reference: DriveFigures = figures[DisturbedDrive(drive.dialect, BUSES[0], seconds)]
-        name = f"{drive.dialect} {drive.bus} {'line' if drive.dialect == BOARD else 'bus'}:"
+        name = f"{drive.dialect} {drive.bus} {'line' if drive.dialect in SERIAL else 'bus'}:"
         rows.append(row(f"{name} false stops", found.stops, "", 0))
         if drive.bus == BUSES[0]:
             continue

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from robot_control.closed_loop import Log
 
-from bench.devices.loss_trial import BOARD, robot_behind
+from bench.devices.loss_trial import SERIAL, robot_behind
 from bench.faults.sequence_judge import STOPPED_STATES
 
 SEGMENT = 10.0  # s
@@ -52,7 +52,7 @@ def run_drive(drive: DisturbedDrive) -> DriveFigures:
     """Runs one drive."""
     loop = robot_behind(drive.dialect, drive.seed, BOARD_RATE)
     loop.run(1.0, (0.0, 0.0))
-    loop.inject_fault("line" if drive.dialect == BOARD else "bus", drive.bus)
+    loop.inject_fault("line" if drive.dialect in SERIAL else "bus", drive.bus)
     stops, odometry, ripple = 0, [], []
     for request in requests(drive.seed, round(drive.seconds / SEGMENT)):
         log = loop.run(SEGMENT, request)

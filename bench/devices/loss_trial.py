@@ -9,7 +9,8 @@ follows.
     latch    the stop is latched with the cause driver_fault
     pose     while the drives come back, the estimate moves in no `JUMP_TIME` by more than `JUMP` beyond the truth,
              which stays within `DEVIATIONS` of it
-    torque   from `STEADY_TIME` after the brake on, the robot does not become faster
+    torque   from `STEADY_TIME` after the brake on, the robot does not become faster. A RoboClaw without supply brakes
+             when it is switched on again
     release  it stands between the reset and the new request
     drives   after the new request it reaches its speed
 """
@@ -29,7 +30,9 @@ from robot_control.installed_files import share_file
 from bench.faults.sequence_judge import BRAKE, STOPPED_STATES
 
 DIALECTS = ("odrive", "cia402")
-BOARD = "board"
+BOARD, ROBOCLAW = "board", "roboclaw"
+SERIAL = {BOARD: "torque", ROBOCLAW: "velocity"}
+"""The wheel commands of boards on a serial line."""
 CABLE = "cable"
 LATEST = {  # s, by the driver's own promises: 20 missing samples, or a heartbeat of 0.1 s with what follows it
     CABLE: 0.025,
@@ -41,8 +44,11 @@ LATEST = {  # s, by the driver's own promises: 20 missing samples, or a heartbea
     "under_voltage": 0.15,
 }
 KINDS = tuple(LATEST)
-BOARD_LATEST = {CABLE: 0.016, "stalled": 0.016, "off": 0.016, "reset": 0.016, "brown_out": 0.016, "fault": 0.005}
-"""s, by 12 missing reports"""
+SERIAL_LATEST = {
+    BOARD: {CABLE: 0.016, "stalled": 0.016, "off": 0.016, "reset": 0.016, "brown_out": 0.016, "fault": 0.005},
+    ROBOCLAW: {CABLE: 0.105, "stalled": 0.105, "off": 0.105, "reset": 0.105, "brown_out": 0.105, "fault": 0.06},
+}
+"""s, by 12 missing reports; by 100 ms without counts, and a status in 24 exchanges"""
 SPEED = 1.0  # m/s, the default limit
 BRAKE_CYCLES = 5
 REST_TIME = 2.0  # s, in which the gyro's bias is learned; a later rest would correct the pose by it
@@ -80,13 +86,14 @@ class Outcome:
 
 def robot_behind(dialect: str, seed: int, board_rate: float = 1000.0) -> ClosedLoop:
     """A robot behind such drives; behind a board it runs at `board_rate` in Hz."""
-    params = {"robot": {"driver": BOARD, "rate": board_rate}} if dialect == BOARD else {}
+    serial = {"driver": dialect, "rate": board_rate, "wheel_command": SERIAL.get(dialect)}
+    params = {"robot": serial} if dialect in SERIAL else {}
     return ClosedLoop(params, seed=seed, drives=share_file(f"config/drives/{dialect}.yaml"))
 
 
 def latest(trial: LossTrial) -> float:
     """s, from the loss until the driver reports it."""
-    return (BOARD_LATEST if trial.dialect == BOARD else LATEST)[trial.kind]
+    return SERIAL_LATEST.get(trial.dialect, LATEST)[trial.kind]
 
 
 def first(condition: NDArray[np.bool_]) -> int:
@@ -132,7 +139,7 @@ def run_trial(trial: LossTrial) -> Outcome:
     loop.run(REST_TIME, (0.0, 0.0))
     loop.run(random.uniform(2.5, 3.5), request)
     joint = random.choice([wheel["joint"] for wheel in loop.robot["wheels"]])
-    if trial.dialect == BOARD:
+    if trial.dialect in SERIAL:
         component = "line" if trial.kind in (CABLE, "stalled") else "board"
         kind = "cut" if trial.kind == CABLE else trial.kind
     else:
@@ -156,8 +163,10 @@ def broken_rules(trial: LossTrial, loop: ClosedLoop, log: Log, request: tuple[fl
         yield "brake"
     if log["supervisor_state"][-1] not in STOPPED_STATES or not int(log["permit_causes"][-1]) & DRIVER_FAULT:
         yield "latch"
-    after = loop.run(1.0, request)
-    steady = np.concatenate([speed_of(log, base)[brake + round(STEADY_TIME / period) :], speed_of(after, base)])
+    brakes_late = STEADY_TIME if (trial.dialect, trial.kind) == (ROBOCLAW, "off") else 0.0
+    after = loop.run(1.0 + brakes_late, request)
+    parts = (log, brake + round(STEADY_TIME / period)), (after, round(brakes_late / period))
+    steady = np.concatenate([speed_of(part, base)[begin:] for part, begin in parts])
     if np.any(steady > np.minimum.accumulate(steady) + FASTER):
         yield "torque"
     back = [after]
@@ -167,9 +176,8 @@ def broken_rules(trial: LossTrial, loop: ClosedLoop, log: Log, request: tuple[fl
             break
         loop.e_stop_reset()
     estimated, true = (moved(back, source, round(JUMP_TIME / period)) for source in ("estimate", "truth"))
-    if (estimated - true).max() > JUMP[trial.kind == CABLE or trial.dialect == BOARD] or error(
-        back[-1]
-    ) > DEVIATIONS * deviation(back[-1]):
+    jump = JUMP[trial.kind == CABLE or trial.dialect in SERIAL]
+    if (estimated - true).max() > jump or error(back[-1]) > DEVIATIONS * deviation(back[-1]):
         yield "pose"
     if speed_of(loop.run(1.0), base).max() > STANDING:
         yield "release"

@@ -100,19 +100,22 @@ def straight(robot: str, speed: float, payload: float = 0.0, params: Mapping[str
     return Straight(rms, max(over), max(back), max(late) * loop.period)
 
 
-def stop_error(robot: str, speed: float, slope: float, *, silence: bool) -> tuple[float, float]:
-    """Stops from `speed` [m/s] on `slope` [rad], commanded or by `silence`.
+def stop_error(
+    robot: str, speed: float, slope: float, *, silence: bool, params: Mapping[str, Any] | None = None
+) -> tuple[float, float]:
+    """Stops from `speed` [m/s] on `slope` [rad], commanded or by `silence`; `params` over the defaults.
 
     Returns:
-        True way less the predicted one, and what that may be, 3 % or 5 mm [m].
+        True way less the predicted one, and the predicted one [m].
     """
-    loop = make(robot, {"mujoco_plant": {"slope": slope}})
+    plant = {"slope": slope, **(params or {}).get("mujoco_plant", {})}
+    loop = make(robot, {**(params or {}), "mujoco_plant": plant})
     loop.run(2.0, (speed, 0.0))
     log = loop.run(3.0, None if silence else (0.0, 0.0))
     start = int(np.flatnonzero(log["limited_linear"] != speed)[0])
     distance = float(np.hypot(log["truth_x"][-1] - log["truth_x"][start], log["truth_y"][-1] - log["truth_y"][start]))
     predicted = loop.stop_distance(speed, emergency=silence)
-    return distance - predicted, max(0.03 * predicted, 0.005)
+    return distance - predicted, predicted
 
 
 def rims(loop: ClosedLoop, linear: float, angular: float) -> float:

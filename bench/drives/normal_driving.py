@@ -27,6 +27,7 @@ from robot_control.report.figures import DEGRADED
 from bench.drives import turning_drive
 from bench.drives.normal_drive import LINEAR_LIMIT, WHEEL_COLUMNS, NormalDrive, area_of
 from bench.drives.sensor_errors import LEVELS, plant_parameters
+from bench.drives.wheel_command import WHEEL_COMMANDS, for_drives
 from bench.robot_corpus import DIFFBOT, SCENES, robot_names, scene_of, urdf_of
 from bench.runs.runner import Processes, Runner
 
@@ -52,6 +53,7 @@ class Drive:
     seconds: float
     seed: int
     errors: str = "data_sheet"  # one of sensor_errors.LEVELS
+    wheel_command: str = "torque"  # one of WHEEL_COMMANDS
 
 
 @dataclass(frozen=True)
@@ -68,22 +70,23 @@ class Driven:
         drive = self.drive
         what = f"{drive.robot} in {drive.scene} at {drive.rate} Hz, seed {drive.seed}, {drive.seconds:.0f} s"
         what += "" if drive.errors == "data_sheet" else f", errors: {drive.errors}"
+        what += "" if drive.wheel_command == "torque" else f", drives of {drive.wheel_command}"
         said = [f"stopped: {', '.join(self.causes)}"] if self.causes else []
         said += [f"warned: {', '.join(self.warnings)}"] if self.warnings else []
         return f"{what}: {'; '.join(said) or 'nothing amiss'}"
 
 
-def all_drives(share: float, errors: str = "data_sheet") -> list[Drive]:
+def all_drives(share: float, errors: str = "data_sheet", wheel_command: str = "torque") -> list[Drive]:
     """Two hours, if the real robots are there, times `share`, with sensors that err as `errors` says."""
     drives: list[Drive] = []
     for scene in SCENES:
         for rate, seconds in RATES.items():
             if rate < SLOW and scene == "bumps":
                 continue
-            drives += _split(Drive(DIFFBOT, scene, rate, share * seconds, 0, errors))
+            drives += _split(Drive(DIFFBOT, scene, rate, share * seconds, 0, errors, wheel_command))
     for robot in robot_names()[1:]:
         for scene in SCENES:
-            drives += _split(Drive(robot, scene, 1000, share * OTHERS_SECONDS, 0, errors))
+            drives += _split(Drive(robot, scene, 1000, share * OTHERS_SECONDS, 0, errors, wheel_command))
     return drives
 
 
@@ -120,8 +123,9 @@ def top_speed(loop: ClosedLoop, scene: str) -> float:
 
 def carry_out(drive: Drive) -> Driven:
     """Carries out a drive."""
+    params = {"robot": {"rate": drive.rate}, "mujoco_plant": plant_parameters(drive.errors)}
     loop = ClosedLoop(
-        params={"robot": {"rate": drive.rate}, "mujoco_plant": plant_parameters(drive.errors)},
+        params=for_drives(drive.wheel_command, params),
         seed=drive.seed,
         urdf=urdf_of(drive.robot),
         scene=scene_of(drive.scene),
@@ -143,16 +147,20 @@ def degraded_share(log: Log) -> float:
     return float(np.mean(flags[judged] & DEGRADED != 0)) if judged.any() else math.nan
 
 
-def _turn(job: tuple[str, int, str]) -> turning_drive.Turning:
+def _turn(job: tuple[str, int, str, str]) -> turning_drive.Turning:
     return turning_drive.carry_out(*job)
 
 
 def bench(
-    share: float, say: Callable[[str], None], runner: Runner | None = None, errors: str = "data_sheet"
+    share: float,
+    say: Callable[[str], None],
+    runner: Runner | None = None,
+    errors: str = "data_sheet",
+    wheel_command: str = "torque",
 ) -> tuple[dict[str, Any], bool]:
     """The result, and whether no drive had a fault; `say` receives the faults."""
     began = time.monotonic()
-    drives = all_drives(share, errors)
+    drives = all_drives(share, errors, wheel_command)
     driven = []
     runner = runner or Processes()
     for outcome in runner.outcomes(carry_out, drives, say):
@@ -160,7 +168,7 @@ def bench(
         if outcome.causes or outcome.warnings:
             say(str(outcome))
     seeds = range(max(1, round(share * TURNS)))
-    turns = [(robot, seed, errors) for robot in robot_names() for seed in seeds]
+    turns = [(robot, seed, errors, wheel_command) for robot in robot_names() for seed in seeds]
     turned = []
     for turning in runner.outcomes(_turn, turns, say):
         turned.append(turning)
@@ -194,8 +202,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--share", type=float, default=1.0, help="of the two hours")
     parser.add_argument("--errors", choices=LEVELS, default=LEVELS[0], help="of the sensors")
+    parser.add_argument("--wheel-command", choices=WHEEL_COMMANDS, default=WHEEL_COMMANDS[0], help="of the drives")
     given = parser.parse_args(arguments)
-    result, fine = bench(given.share, print, errors=given.errors)
+    result, fine = bench(given.share, print, errors=given.errors, wheel_command=given.wheel_command)
     for row in result["rows"]:
         print(f"{row['name']:<24}{row['value']:12.5g} {row['unit']}")
     return 0 if fine else 1

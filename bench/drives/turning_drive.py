@@ -18,6 +18,7 @@ from robot_control.closed_loop import ClosedLoop
 from robot_control.common.cause_names import causes_in
 
 from bench.drives.sensor_errors import plant_parameters
+from bench.drives.wheel_command import for_drives
 from bench.robot_corpus import urdf_of
 
 GRAVITY = 9.81  # m/s²
@@ -126,8 +127,8 @@ def slides(loop: ClosedLoop, log: dict[str, Any]) -> bool:
     return bool(spans.all(axis=1).any())
 
 
-def carry_out(robot: str, seed: int, errors: str = "data_sheet") -> Turning:
-    """Drives it with sensors that err as `errors` says, one of sensor_errors.LEVELS."""
+def carry_out(robot: str, seed: int, errors: str = "data_sheet", wheel_command: str = "torque") -> Turning:
+    """Drives it with sensors that err as `errors` says, one of sensor_errors.LEVELS, and drives of `wheel_command`."""
     random = np.random.default_rng([seed, len(robot), sum(robot.encode())])
     urdf = urdf_of(robot)
     described = ClosedLoop(urdf=urdf)
@@ -136,7 +137,8 @@ def carry_out(robot: str, seed: int, errors: str = "data_sheet") -> Turning:
     plant = {"ground_friction": friction, "wheel_friction_error": joints - 1, "encoder_resolution": counts}
     plant |= plant_parameters(errors)
     estimator = {"encoder_noise": 2 * np.pi / counts / 12**0.5}
-    loop = ClosedLoop({"mujoco_plant": plant, "state_estimator": estimator}, seed=seed, urdf=urdf)
+    params = for_drives(wheel_command, {"mujoco_plant": plant, "state_estimator": estimator})
+    loop = ClosedLoop(params, seed=seed, urdf=urdf)
     logs = [loop.run(REST, (0.0, 0.0))]
     commands = draw(random, loop.robot["effective_wheel_base"] / 2)
     logs += [loop.run(PHASE, command) for command in commands]

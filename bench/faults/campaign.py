@@ -33,6 +33,7 @@ class Outcome:
     violations: list[tuple[str, str]]
     stops: list[str]  # causes that ever latched
     seconds: float  # of simulated time
+    wheel_command: str = "torque"
 
     @property
     def text(self) -> str:
@@ -40,7 +41,8 @@ class Outcome:
         lines = [f"seed {self.seed}: {self.story}"]
         lines += [f"    {what}" for _, what in self.violations]
         if self.violations:
-            lines.append(f"    again: scripts/bench campaign --first {self.seed} --runs 1")
+            again = f"--first {self.seed} --runs 1 --wheel-command {self.wheel_command}"
+            lines.append(f"    again: scripts/bench campaign {again}")
         return "\n".join(lines)
 
 
@@ -69,23 +71,25 @@ def fastest_rim(loop: ClosedLoop) -> float:
     return LINEAR_LIMIT + ANGULAR_LIMIT * float(loop.robot["wheel_base"]) / 2
 
 
-def run_seed(seed: int, robots: Sequence[str]) -> Outcome:
+def run_seed(seed: int, robots: Sequence[str], wheel_command: str = "torque") -> Outcome:
     """Draws, runs and judges one sequence."""
-    sequence = draw_sequence(seed, robots)
+    sequence = draw_sequence(seed, robots, wheel_command)
     loop = make_loop(sequence)
     log = run_sequence(sequence, loop)
     found = judge(sequence, log, loop.robot["wheel_base"], loop.period, fastest_rim(loop))
     violations = [(violation.rule, str(violation)) for violation in found]
-    return Outcome(
-        seed, sequence.describe(), violations, causes_in(log["permit_causes"]), len(log["cycle"]) * loop.period
-    )
+    stops, seconds = causes_in(log["permit_causes"]), len(log["cycle"]) * loop.period
+    return Outcome(seed, sequence.describe(), violations, stops, seconds, wheel_command)
 
 
-def campaign(seeds: Sequence[int], say: Callable[[str], None], runner: Runner | None = None) -> Tally:
+def campaign(
+    seeds: Sequence[int], say: Callable[[str], None], runner: Runner | None = None, wheel_command: str = "torque"
+) -> Tally:
     """Runs all seeds; `say` receives every failure, and the progress."""
     tally = Tally()
     runner = runner or Processes()
-    for outcome in runner.outcomes(partial(run_seed, robots=robot_names()), seeds, say, chunk=4):
+    one = partial(run_seed, robots=robot_names(), wheel_command=wheel_command)
+    for outcome in runner.outcomes(one, seeds, say, chunk=4):
         tally.add(outcome)
         if outcome.violations:
             say(outcome.text)
@@ -111,11 +115,11 @@ def result_of(tally: Tally, seconds: float) -> dict[str, Any]:
 
 
 def bench(
-    first: int, runs: int, say: Callable[[str], None], runner: Runner | None = None
+    first: int, runs: int, say: Callable[[str], None], runner: Runner | None = None, wheel_command: str = "torque"
 ) -> tuple[dict[str, Any], bool]:
     """The result, and whether the robot survived every sequence."""
     began = time.monotonic()
     if runs == 1:
-        say(draw_sequence(first, robot_names()).describe())
-    tally = campaign(range(first, first + runs), say, runner)
+        say(draw_sequence(first, robot_names(), wheel_command).describe())
+    tally = campaign(range(first, first + runs), say, runner, wheel_command)
     return result_of(tally, time.monotonic() - began), not tally.failed

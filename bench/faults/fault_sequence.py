@@ -66,6 +66,7 @@ class FaultSequence:
     falls_silent: bool  # nothing is sent after `driven`; otherwise zeros are
     faults_end: bool  # before the release
     events: list[Event] = field(default_factory=list)
+    wheel_command: str = "torque"  # one of WHEEL_COMMANDS
 
     @property
     def rested(self) -> float:
@@ -81,10 +82,11 @@ class FaultSequence:
         """One line: robot, scene, and the events with their times."""
         events = ", ".join(f"{e.time:.3f} s {e.action} {e.component} {e.kind}".rstrip() for e in self.events)
         silent = "then silence" if self.falls_silent else "then zero"
-        return f"{self.robot} in {self.scene}, driven {self.driven:.2f} s, {silent}: {events or 'no fault'}"
+        drives = "" if self.wheel_command == "torque" else f" with drives of {self.wheel_command}"
+        return f"{self.robot}{drives} in {self.scene}, driven {self.driven:.2f} s, {silent}: {events or 'no fault'}"
 
 
-def draw_sequence(seed: int, robots: Sequence[str]) -> FaultSequence:
+def draw_sequence(seed: int, robots: Sequence[str], wheel_command: str = "torque") -> FaultSequence:
     """The sequence of this seed; `robots`: those that are there, the project's own first."""
     random = np.random.default_rng(seed)
     others = robots[1:]
@@ -101,6 +103,7 @@ def draw_sequence(seed: int, robots: Sequence[str]) -> FaultSequence:
         falls_silent=bool(random.random() < 0.5),
         faults_end=bool(random.random() < 0.5),
         events=sorted(events, key=lambda event: event.time),
+        wheel_command=wheel_command,
     )
 
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from robot_control.closed_loop import ClosedLoop, Log
 
+from bench.drives.wheel_command import for_drives
 from bench.faults.fault_sequence import BATTERY_VOLTAGE, Event, FaultSequence
 from bench.faults.random_drive import leg_at
 from bench.robot_corpus import scene_of, stop_deceleration_of, urdf_of
@@ -36,11 +37,12 @@ JOINT_COLUMN = "_injected_motor"
 
 def loop_arguments(sequence: FaultSequence) -> dict[str, Any]:
     """Arguments for the robot of this sequence in its scene; its sensors err as the seed says."""
+    params = {
+        "mujoco_plant": {"sensor_errors": "data_sheet", "battery_voltage": BATTERY_VOLTAGE},
+        "safety_monitor": {"stop_deceleration": stop_deceleration_of(sequence.robot)},
+    }
     return {
-        "params": {
-            "mujoco_plant": {"sensor_errors": "data_sheet", "battery_voltage": BATTERY_VOLTAGE},
-            "safety_monitor": {"stop_deceleration": stop_deceleration_of(sequence.robot)},
-        },
+        "params": for_drives(sequence.wheel_command, params),
         "seed": sequence.seed,
         "urdf": urdf_of(sequence.robot),
         "scene": scene_of(sequence.scene),

@@ -1,7 +1,8 @@
-/// bench_release FIRST RUNS: random sequences of deaths, restarts, resets and senders
-/// (tests/loop/release_sequences.h), on all cores.
+/// bench_release FIRST RUNS [torque | velocity] runs random sequences of deaths, restarts, resets and senders on all
+/// cores (tests/loop/release_sequences.h). The last argument is robot.wheel_command.
 
 #include <cstdlib>
+#include <string_view>
 
 #include "bench/programs/rows.h"
 #include "bench/programs/seed_trials.h"
@@ -11,13 +12,13 @@
 namespace robot_control::bench {
 namespace {
 
-void run(std::uint64_t first, std::uint64_t runs) {
+void run(std::uint64_t first, std::uint64_t runs, WheelCommand drives) {
   std::mutex adding;
   ReleaseFigures all;
   const std::int64_t start = monotonic_ns();
   const auto failed = static_cast<double>(SeedTrials("release", [&](std::uint64_t seed) {
                                             ReleaseFigures figures;
-                                            auto violated = release_violation(seed, figures);
+                                            auto violated = release_violation(seed, figures, drives);
                                             const std::lock_guard lock(adding);
                                             all.moving_cycles += figures.moving_cycles;
                                             all.accepted_resets += figures.accepted_resets;
@@ -38,9 +39,12 @@ void run(std::uint64_t first, std::uint64_t runs) {
 }  // namespace robot_control::bench
 
 int main(int argc, char** argv) {
-  if (argc != 3) {
-    std::cerr << "usage: bench_release FIRST RUNS\n";
+  using robot_control::WheelCommand;
+  const std::string_view drives = argc == 4 ? argv[3] : "torque";
+  if (argc < 3 || argc > 4 || (drives != "torque" && drives != "velocity")) {
+    std::cerr << "usage: bench_release FIRST RUNS [torque | velocity]\n";
     return 2;
   }
-  robot_control::bench::run(std::strtoull(argv[1], nullptr, 10), std::strtoull(argv[2], nullptr, 10));
+  robot_control::bench::run(std::strtoull(argv[1], nullptr, 10), std::strtoull(argv[2], nullptr, 10),
+                            drives == "velocity" ? WheelCommand::kVelocity : WheelCommand::kTorque);
 }

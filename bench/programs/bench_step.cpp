@@ -3,7 +3,8 @@
 /// Inputs are the frames of a real drive (the closed loop at 0.5 m/s, 0.2 rad/s), replayed in blocks. The estimator's
 /// are those of its steady part, in which both encoders and both contacts correct it in every cycle. The reference is a
 /// fixed arithmetic kernel (a chain of dependent multiply-adds), interleaved block by block. The cycle of motor drives
-/// on CAN is compared with bare system calls (can_cycle.h).
+/// on CAN is compared with bare system calls (can_cycle.h). That of boards on a serial line is compared with what is
+/// allowed (serial_cycle.h).
 
 #include <filesystem>
 #include <iostream>
@@ -13,8 +14,11 @@
 #include "bench/programs/can_cycle.h"
 #include "bench/programs/kernel.h"
 #include "bench/programs/rows.h"
+#include "bench/programs/serial_cycle.h"
 #include "configuration/drive_file.h"
 #include "control/drive_controller.h"
+#include "drivers/board_machine.h"
+#include "drivers/roboclaw_machine.h"
 #include "estimation/estimator.h"
 #include "gate/gate.h"
 #include "loop/gate_setup.h"
@@ -150,6 +154,8 @@ int run(const std::string& path) {
     const std::string file = drives / (std::string(dialect) + ".yaml");
     add_can_cycle(rows, dialect, read_drive_file(file, joints, parameters.loop.rate), robot, period);
   }
+  add_serial_cycle<BoardMachine>(rows, "board", {.mode = JointMode::kEffort, .effort = 0});
+  add_serial_cycle<RoboclawMachine>(rows, "roboclaw", {.mode = JointMode::kDriveVelocity, .velocity = 5});
   print("step", rows);
   return 0;
 }

@@ -16,21 +16,25 @@ PROGRAMS = Path(__file__).resolve().parents[2] / "build" / "robot_control" / "be
 BLOCKS = 200
 
 
-def run_block(name: str, block: tuple[int, int]) -> tuple[dict[str, Any], str]:
+def run_block(name: str, more: tuple[str, ...], block: tuple[int, int]) -> tuple[dict[str, Any], str]:
     """Runs on the worker: returns the result of (first seed, number of seeds), and the program's messages."""
-    program = [str(PROGRAMS / f"bench_{name}"), *map(str, block)]
+    program = [str(PROGRAMS / f"bench_{name}"), *map(str, block), *more]
     done = subprocess.run(program, capture_output=True, check=True, text=True, stdin=subprocess.DEVNULL)
     result: dict[str, Any] = json.loads(done.stdout)
     return result, done.stderr
 
 
-def run_seeds(name: str, first: int, runs: int, say: Callable[[str], None], runner: Runner) -> dict[str, Any]:
-    """The result of all seeds: the sums of the blocks' counts, and the speed of all of them."""
+def run_seeds(
+    name: str, first: int, runs: int, say: Callable[[str], None], runner: Runner, *more: str
+) -> dict[str, Any]:
+    """The result of all seeds: the sums of the blocks' counts, and the speed of all of them; `more` follows the seeds
+    on the program's command line.
+    """
     began = time.monotonic()
     size = max(1, -(-runs // BLOCKS))
     blocks = [(start, min(size, first + runs - start)) for start in range(first, first + runs, size)]
     total: dict[str, Any] = {}
-    for result, messages in runner.outcomes(partial(run_block, name), blocks, say):
+    for result, messages in runner.outcomes(partial(run_block, name, more), blocks, say):
         for line in messages.splitlines():
             if line.startswith(("seed ", "    ")):  # a violation; the other lines are the progress of a block
                 say(line)

@@ -19,7 +19,7 @@ from robot_control import ClosedLoop
 from sensor_msgs.msg import Imu, JointState
 from terminal import Terminal
 
-LANGUAGES = {"sh", "python", "console", "cpp", "text"}
+LANGUAGES = {"sh", "python", "console", "c", "cpp", "text"}
 ALL = [block for page in PAGES for block in blocks(page)]
 RUN = [block for block in ALL if block.language in ("sh", "python")]
 CONSOLE = [block for block in ALL if block.language == "console"]

@@ -17,23 +17,24 @@ class BoardMachine final : public WheelsInAir<BoardFront, BoardDriver> {
  public:
   explicit BoardMachine(double rate = 1000, unsigned counter_bits = 32, std::uint32_t zero = 0,
                         std::uint64_t bit_rate = 0)
-      : WheelsInAir(1 / rate) {
-    const BoardParameters parameters = parameters_of(counter_bits, bit_rate);
-    board_ = std::make_unique<BoardFront>(parameters, kBrakes, period_, 1);
+      : WheelsInAir(1 / rate), parameters_(parameters_of(counter_bits, bit_rate)) {
+    board_ = std::make_unique<BoardFront>(parameters_, kBrakes, period_, 1);
     board_->set_zero(zero);
-    connect(parameters, board_->driver_end());
+    connect(board_->driver_end());
   }
 
   /// Over a true line; its driver's end is made after its device's end.
   BoardMachine(double rate, std::unique_ptr<SerialLine> device_end,
                const std::function<std::unique_ptr<SerialLine>()>& driver_end)
-      : WheelsInAir(1 / rate) {
-    const BoardParameters parameters = parameters_of(32, 0);
-    board_ = std::make_unique<BoardFront>(parameters, kBrakes, period_, std::move(device_end));
-    connect(parameters, driver_end());
+      : WheelsInAir(1 / rate), parameters_(parameters_of(32, 0)) {
+    board_ = std::make_unique<BoardFront>(parameters_, kBrakes, period_, std::move(device_end));
+    connect(driver_end());
   }
 
   BoardDriver& driver() { return *driver_; }
+
+  /// The driver's process ended, and another one is there. The board ran on.
+  void replace_driver() { connect(board_->driver_end()); }
 
  private:
   static constexpr std::array kBrakes{kBrake, kBrake};
@@ -54,10 +55,12 @@ class BoardMachine final : public WheelsInAir<BoardFront, BoardDriver> {
     return parameters;
   }
 
-  void connect(const BoardParameters& parameters, std::unique_ptr<SerialLine> driver_end) {
-    driver_ = std::make_unique<BoardDriver>(parameters, kBrakes, 2, period_, std::move(driver_end),
+  void connect(std::unique_ptr<SerialLine> driver_end) {
+    driver_ = std::make_unique<BoardDriver>(parameters_, kBrakes, 2, period_, std::move(driver_end),
                                             [this] { return board_->now_ns(); });
   }
+
+  BoardParameters parameters_;
 };
 
 }  // namespace robot_control

@@ -47,7 +47,7 @@ class StandingMachine final : public Simulator {
   void read(SensorFrame& sensors) noexcept override {
     sensors.injected = faults;
     sensors.driver_state = state;
-    for (std::size_t i = 0; i < 2; ++i) sensors.joints[i].valid = kValidMotion;
+    for (std::size_t i = 0; i < 2; ++i) sensors.joints[i].valid = measured;
     sensors.valid = kValidGyro | kValidAccelerometer;
     sensors.joint_count = 2;
     sensors.imu.linear_acceleration = {0, 0, 9.81};
@@ -61,6 +61,7 @@ class StandingMachine final : public Simulator {
   InjectedFaults faults{};
   DriverState state = DriverState::kRunning;
   JointMode mode = JointMode::kBrake;
+  std::uint32_t measured = kValidMotion;
   int resets = 0;
 };
 

@@ -79,7 +79,9 @@ struct Button {
 
 class Sequence {
  public:
-  Sequence(std::uint64_t seed, ReleaseFigures& figures) : random_(seed), figures_(figures) {
+  Sequence(std::uint64_t seed, ReleaseFigures& figures, WheelCommand drives) : random_(seed), figures_(figures) {
+    robot_.wheel_command = drives;
+    if (drives == WheelCommand::kVelocity) machine_.measured = monitored_.joint_numbers = kValidKinematics;
     parameters_.cmd_vel_timeout = kTimeout;
     parameters_.one_sender = chance(3);
     with_list_ = chance(3);
@@ -132,7 +134,7 @@ class Sequence {
         break;
       case kMonitorNode:
         monitor_ = std::make_unique<MonitorCycle>(
-            std::make_unique<MonitorOf<SafetyMonitor>>(SafetyParameters{}, robot_, kPeriod), robot_.hash, kLossNs,
+            std::make_unique<MonitorOf<SafetyMonitor>>(monitored_, robot_, kPeriod), robot_.hash, kLossNs,
             MonitorCycle::Channels{&sensors_.reader, &state_.reader, &command_.reader, permit_.writer}, CommandScript(),
             nullptr);
         operator_input_ = {};
@@ -494,6 +496,7 @@ class Sequence {
   DriveTrain robot_ = two_wheels();
   DriveControllerParameters parameters_;
   StandingMachine machine_;
+  SafetyParameters monitored_;
   TestChannel<SensorFrame> sensors_;
   TestChannel<TruthFrame> truth_;
   TestChannel<StateFrame> state_;
@@ -544,8 +547,8 @@ class Sequence {
 
 }  // namespace
 
-std::optional<std::string> release_violation(std::uint64_t seed, ReleaseFigures& figures) {
-  return Sequence(seed, figures).run();
+std::optional<std::string> release_violation(std::uint64_t seed, ReleaseFigures& figures, WheelCommand drives) {
+  return Sequence(seed, figures, drives).run();
 }
 
 }  // namespace robot_control

@@ -25,6 +25,8 @@
 #include <optional>
 #include <string>
 
+#include "machine/wheeled/wheel_command.h"
+
 namespace robot_control {
 
 inline constexpr int kReleaseCycles = 2000;
@@ -36,7 +38,8 @@ struct ReleaseFigures {
   std::uint64_t starts = 0;
 };
 
-/// The rule that `seed` violates, and its cycle; none if all hold. Adds to `figures`.
-std::optional<std::string> release_violation(std::uint64_t seed, ReleaseFigures& figures);
+/// The rule that `seed` violates with drives of this command, and its cycle; none if all hold. Adds to `figures`.
+std::optional<std::string> release_violation(std::uint64_t seed, ReleaseFigures& figures,
+                                             WheelCommand drives = WheelCommand::kTorque);
 
 }  // namespace robot_control

@@ -13,17 +13,23 @@ constexpr std::uint64_t kSeeds = 20;  // one thread, ten times slower
 constexpr std::uint64_t kSeeds = 100;
 #endif
 
-TEST(MotionReleaseSequences, NothingMovesWithoutARelease) {
+class MotionReleaseSequences : public testing::TestWithParam<WheelCommand> {};
+
+TEST_P(MotionReleaseSequences, NothingMovesWithoutARelease) {
   ReleaseFigures figures;
-  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
-    const auto violated = release_violation(seed, figures);
+  const std::uint64_t seeds = GetParam() == WheelCommand::kTorque ? kSeeds : kSeeds / 5;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    const auto violated = release_violation(seed, figures, GetParam());
     ASSERT_FALSE(violated) << "seed " << seed << ", " << *violated;
   }
   // Otherwise the sequences proved nothing.
-  EXPECT_GT(figures.moving_cycles, 30 * kSeeds);
-  EXPECT_GT(figures.accepted_resets, kSeeds / 2);
-  EXPECT_GT(figures.starts, 10 * kSeeds);
+  EXPECT_GT(figures.moving_cycles, 30 * seeds);
+  EXPECT_GT(figures.accepted_resets, seeds / 2);
+  EXPECT_GT(figures.starts, 10 * seeds);
 }
+
+INSTANTIATE_TEST_SUITE_P(Drives, MotionReleaseSequences,
+                         testing::Values(WheelCommand::kTorque, WheelCommand::kVelocity));
 
 }  // namespace
 }  // namespace robot_control

@@ -8,6 +8,8 @@ import pytest
 from corpus import CorpusRobot, drivable_robots
 from robot_control import ClosedLoop, RobotError
 
+from bench.drives.wheel_command import WHEEL_COMMANDS, for_drives
+
 pytestmark = pytest.mark.skipif(corpus.FOLDER is None, reason=corpus.ABSENT)
 
 SPEED, YAW_RATE = 0.3, 0.5  # m/s, rad/s
@@ -24,11 +26,12 @@ def skid_steer(request) -> CorpusRobot:
     return request.param
 
 
-def make(robot: CorpusRobot, **params) -> ClosedLoop:
+def make(robot: CorpusRobot, wheel_command: str = "torque") -> ClosedLoop:
     """The robot as described: its centre of gravity is where the description says, and its wheels do not slip at
     random.
     """
-    return ClosedLoop(urdf=robot.urdf, params={"mujoco_plant": {"sensor_errors": "data_sheet"}, **params})
+    params = for_drives(wheel_command, {"mujoco_plant": {"sensor_errors": "data_sheet"}})
+    return ClosedLoop(urdf=robot.urdf, params=params)
 
 
 def processor_time() -> float:
@@ -65,8 +68,9 @@ def test_stands_still(robot):
     assert np.max(np.hypot(log["truth_x"], log["truth_y"])) <= 1e-3
 
 
-def test_tracks_a_straight_line_and_a_turn(robot):
-    loop = make(robot)
+@pytest.mark.parametrize("wheel_command", WHEEL_COMMANDS)
+def test_tracks_a_straight_line_and_a_turn(robot, wheel_command):
+    loop = make(robot, wheel_command)
     limits = [
         0.6 * joint["velocity_limit"] * robot.truth["radius_collision"]
         for joint in loop.robot["joints"]
@@ -79,7 +83,7 @@ def test_tracks_a_straight_line_and_a_turn(robot):
     if robot.skid_steer:
         return
     rate = min(YAW_RATE, speed / (robot.truth["separation_wheel_centres"] / 2))
-    log = make(robot).run(RAMP + 4.0, (0.0, rate))
+    log = make(robot, wheel_command).run(RAMP + 4.0, (0.0, rate))
     assert log["truth_angular"][steady].mean() == pytest.approx(rate, rel=0.05)
 
 

@@ -4,7 +4,7 @@ import pytest
 
 from bench.devices.bench import ODOMETRY, RIPPLE
 from bench.devices.disturbed_drive import BUSES, DisturbedDrive, run_drive
-from bench.devices.loss_trial import BOARD, BOARD_LATEST, DIALECTS, KINDS, LossTrial, run_trial
+from bench.devices.loss_trial import BOARD, DIALECTS, KINDS, ROBOCLAW, SERIAL_LATEST, LossTrial, run_trial
 from bench.devices.slope_trial import as_stated
 
 SEED = 1000
@@ -17,9 +17,9 @@ def test_a_loss_stops_the_robot_until_the_reset(dialect, kind):
     assert outcome.broken == (), outcome
 
 
-@pytest.mark.parametrize("kind", BOARD_LATEST)
-def test_a_loss_of_a_board_stops_the_robot_until_the_reset(kind):
-    outcome = run_trial(LossTrial(BOARD, kind, SEED))
+@pytest.mark.parametrize(("board", "kind"), [(board, kind) for board, kinds in SERIAL_LATEST.items() for kind in kinds])
+def test_a_loss_of_a_board_stops_the_robot_until_the_reset(board, kind):
+    outcome = run_trial(LossTrial(board, kind, SEED))
     assert outcome.broken == (), outcome
 
 
@@ -44,8 +44,9 @@ def test_lost_and_late_frames_stop_nothing_and_hardly_disturb(dialect, seconds, 
     assert disturbed.odometry < ODOMETRY * undisturbed.odometry
 
 
-def test_a_disturbed_serial_line_stops_nothing():
-    undisturbed, disturbed = drives(BOARD, "disturbed", 20.0)
+@pytest.mark.parametrize(("board", "seconds"), [(BOARD, 20.0), (ROBOCLAW, 120.0)])
+def test_a_disturbed_serial_line_stops_nothing(board, seconds):
+    undisturbed, disturbed = drives(board, "disturbed", seconds)
     assert disturbed.stops == 0
     assert disturbed.odometry < ODOMETRY * undisturbed.odometry
 

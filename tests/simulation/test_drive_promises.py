@@ -110,7 +110,7 @@ def test_a_robot_that_is_pushed_back_at_full_torque_is_stopped():
 
 def test_robots_without_a_description_are_reported_as_not_judged(monkeypatch):
     monkeypatch.setattr(drive_promises, "robot_names", lambda: [DIFFBOT])
-    monkeypatch.setattr(drive_promises, "promises", lambda _: [drive_figures.Figure("way", 0.5, 1.0, "m")])
+    monkeypatch.setattr(drive_promises, "promises", lambda *_: [drive_figures.Figure("way", 0.5, 1.0, "m")])
     result, good = drive_promises.bench(print)
     assert good
     assert result["not_judged"] == [robot for robot in ROBOTS if robot != DIFFBOT]

@@ -81,6 +81,9 @@ def test_the_tables_of_the_documentation_are_of_one_level_of_errors(capsys):
     with pytest.raises(SystemExit):
         bench.parse(["odometry", "--errors", "field", "--markdown"])
     assert "--markdown writes the tables of data_sheet, not of --errors field" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        bench.parse(["drive", "--wheel-command", "velocity", "--markdown"])
+    assert "--markdown writes the tables of --wheel-command torque" in capsys.readouterr().err
 
 
 def test_scenarios_of_the_odometry_can_be_named(capsys):

@@ -209,6 +209,8 @@ void BoardDriver::read(SensorFrame& sensors) noexcept {
   const auto age =
       static_cast<double>(std::clamp<std::int64_t>(age_ns, 0, static_cast<std::int64_t>(max_silence) * period_ns_));
   const bool has_effort = (sensors_.valid & BOARD_HAS_EFFORT) != 0;
+  // A board that restarts counts from zero: what a wheel travels during a fault is unknown.
+  const auto fault = status_.state == DriverState::kFault ? static_cast<std::uint32_t>(status_.cause) : 0U;
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
     const Wheel& wheel = wheels_[i];
     sensors.joints[i] = {.position = wheel.position + wheel.velocity * 1.0e-9 * age,
@@ -219,7 +221,7 @@ void BoardDriver::read(SensorFrame& sensors) noexcept {
                          .valid = !running     ? 0U
                                   : has_effort ? std::uint32_t{kValidMotion}
                                                : kValidKinematics,
-                         .fault = wheel.fault};
+                         .fault = wheel.fault != 0 ? wheel.fault : fault};
     if ((sensors_.valid & BOARD_HAS_TEMPERATURE) != 0 && running) sensors.joints[i].valid |= kValidTemperature;
   }
   if (running && (sensors_.valid & BOARD_HAS_BATTERY) != 0) {

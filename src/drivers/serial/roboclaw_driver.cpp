@@ -88,10 +88,11 @@ void RoboclawDriver::receive() noexcept {
       if (answered()) accept();
     }
   }
-  if (!pending_ || now_ns_ - sent_ns_ <= std::max(kAnswerNs, 2 * period_ns_)) return;
+  if (!pending_ || now_ns_ - sent_ns_ < kAnswerNs) return;
   // Older firmware answers with 16 bits.
   if (command_ == Command::kStatus && roboclaw::is_answer(asked_, received_, 2)) return accept();
   pending_ = false;
+  if (std::ranges::find(kSlow, command_) != kSlow.end()) ++turn_;  // a board may lack it
   ++link_.lost;
   if (received_.size() > 0) ++link_.errors;
 }
@@ -134,7 +135,10 @@ void RoboclawDriver::accept() noexcept {
     default:
       break;
   }
-  if (status_.state != DriverState::kStarting) return;
+  if (status_.state != DriverState::kStarting) {
+    ++turn_;
+    return;
+  }
   if (setup_ < kSetup.size() && command_ == kSetup[setup_]) ++setup_;
   if (setup_ < kSetup.size()) return;
   status_.state = DriverState::kRunning;
@@ -165,6 +169,7 @@ void RoboclawDriver::accept_counts() noexcept {
       const double reach = kSpeedMargin * parameters.velocity_limit * elapsed;
       if (std::abs(wheel.rad_per_count * moved) > reach) fail(RoboclawCause::kPositionJump, i);
       if (moved != 0) wheel.blind = 0;
+      if (wheel.blind > kBlindWay) fail(RoboclawCause::kNoCounts, i);
     }
     wheel.position = wheel.rad_per_count * static_cast<double>(wheel.total);
     wheel.difference.add(wheel.position, stamp_ns);
@@ -179,9 +184,6 @@ void RoboclawDriver::read(SensorFrame& sensors) noexcept {
   receive();
   const bool silent = 1.0e-9 * static_cast<double>(now_ns_ - sample_ns_) > kRoboclawSilence;
   if (silent) fail(RoboclawCause::kSilent);
-  for (std::size_t i = 0; i < wheels_.size(); ++i) {
-    if (wheels_[i].blind > kBlindWay) fail(RoboclawCause::kNoCounts, i);
-  }
   const bool running = status_.state == DriverState::kRunning;
   sensors.driver_state = status_.state;
   sensors.faults = 0;
@@ -192,6 +194,8 @@ void RoboclawDriver::read(SensorFrame& sensors) noexcept {
   sensors.joint_count = joint_count_;
   for (std::size_t i = wheels_.size(); i < joint_count_; ++i) sensors.joints[i] = {};
   const std::int64_t age_ns = now_ns_ - sample_ns_;
+  // A board that restarts counts from zero: what a wheel travels during a fault is unknown.
+  const auto fault = status_.state == DriverState::kFault ? static_cast<std::uint32_t>(status_.cause) : 0U;
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
     const Wheel& wheel = wheels_[i];
     const double age = 1.0e-9 * static_cast<double>(std::clamp<std::int64_t>(age_ns, 0, kTimeoutNs));
@@ -200,7 +204,8 @@ void RoboclawDriver::read(SensorFrame& sensors) noexcept {
                          .effort = std::numeric_limits<double>::quiet_NaN(),
                          .temperature = temperature_,
                          .age_ns = age_ns,
-                         .valid = running ? std::uint32_t{kValidKinematics} : 0U};
+                         .valid = running ? std::uint32_t{kValidKinematics} : 0U,
+                         .fault = fault};
     if (running && has_temperature_) sensors.joints[i].valid |= kValidTemperature;
   }
   link_.state = !line_->connected() || silent ? LinkState::kDown : running ? LinkState::kUp : LinkState::kStarting;
@@ -221,11 +226,10 @@ bool RoboclawDriver::counts_are_trusted() const noexcept {
          (status_.cause == RoboclawCause::kSilent || status_.cause == RoboclawCause::kBoardError);
 }
 
-RoboclawDriver::Command RoboclawDriver::next() noexcept {
+RoboclawDriver::Command RoboclawDriver::next() const noexcept {
   if (status_.state == DriverState::kStarting) return setup_ < kSetup.size() ? kSetup[setup_] : Command::kEncoders;
   const unsigned pair = turn_ / 2;
-  const bool order = turn_++ % 2 == 0;
-  if (order) return counts_are_trusted() ? Command::kSpeeds : Command::kDuties;
+  if (turn_ % 2 == 0) return counts_are_trusted() ? Command::kSpeeds : Command::kDuties;
   return pair % kSlowEvery == kSlowEvery - 1 ? kSlow[pair / kSlowEvery % kSlow.size()] : Command::kEncoders;
 }
 

@@ -3,19 +3,22 @@
 /// are neither taken nor measured.
 ///
 /// One exchange runs at a time: the driver sends a request in `write`, and takes its answer in a later `read`. After
-/// kAnswerNs the answer counts as lost. In turn it orders the speeds and reads both encoders, and after kSlowEvery of
-/// these pairs battery, temperature or status. A loop of 200 Hz and more thus orders 100 times per second. The counts
-/// are those of the middle between request and answer; their speed brings them to the time of `read`.
+/// kAnswerNs the answer counts as lost; orders and readings of the encoders are repeated. In turn it orders the speeds
+/// and reads both encoders, and after kSlowEvery of these pairs battery, temperature or status. A loop of 200 Hz and
+/// more thus orders 100 times per second. The counts are those of the middle between request and answer; their speed
+/// brings them to the time of `read`.
 ///
 /// `read` reports kStarting until version, gains and QPPS of both motors were read, and its serial timeout, which is
 /// set to kTimeoutNs. It is refused with gains or a QPPS of zero: such a board answers
 /// a speed with full power. Until then, and after a fault of the counts, the order is a duty of zero. Otherwise the
-/// board brakes with the speed zero, which it keeps at rest. Faults stay until the operator's reset:
+/// board brakes with the speed zero, which it keeps at rest. Faults stay until the operator's reset.
+/// Meanwhile each joint carries the cause as its fault word, because a board that restarts counts from zero:
 ///
-///   silence         no new counts for kRoboclawSilence
+///   silence         no new counts for kRoboclawSilence, after which a board without requests has stopped by itself
 ///   error           of the board's status
 ///   position jump   counts that the joint cannot reach within its velocity limit
-///   no counts       kBlindWay was ordered, and not one count came: the encoder is unplugged, or the wheel is blocked
+///   no counts       Samples came, kBlindWay was ordered, and not one count moved: the encoder is unplugged, or the
+///                   wheel is blocked.
 
 #include <array>
 #include <functional>
@@ -48,7 +51,7 @@ enum class RoboclawCause : std::uint8_t {
 class RoboclawDriver final : public Driver {
  public:
   static constexpr std::int64_t kTimeoutNs = 100'000'000;  ///< of the board, its shortest one
-  static constexpr std::int64_t kAnswerNs = 10'000'000;
+  static constexpr std::int64_t kAnswerNs = 8'000'000;     ///< 3 ms of jitter each way, and the board's own time
   static constexpr unsigned kSlowEvery = 4;
   static constexpr double kSpeedMargin = 1.5;  ///< of the velocity limit, above which a position jumped
   static constexpr double kBlindWay = 0.5;     ///< rad
@@ -102,7 +105,7 @@ class RoboclawDriver final : public Driver {
   void accept_gains(unsigned motor) noexcept;
   void accept_counts() noexcept;
   void fail(RoboclawCause cause, std::uint64_t detail = 0) noexcept;
-  Command next() noexcept;
+  Command next() const noexcept;
   void send(Command command) noexcept;
   bool counts_are_trusted() const noexcept;
   void publish_status() noexcept;
@@ -120,7 +123,7 @@ class RoboclawDriver final : public Driver {
   std::int64_t sent_ns_ = 0;
   std::int64_t arrived_ns_ = 0;
   std::size_t setup_ = 0;  // next one of kSetup; its size: running
-  unsigned turn_ = 0;
+  unsigned turn_ = 0;      // answered exchanges since the start
   bool has_counts_ = false;
   std::int64_t sample_ns_ = 0;
   std::uint64_t valid_ = 0;  // kValidBattery, once it was read

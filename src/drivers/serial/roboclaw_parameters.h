@@ -8,8 +8,8 @@
 
 namespace robot_control {
 
-/// s without new counts, after which the driver and the monitor stop; the board itself stops after 0.1 s.
-inline constexpr double kRoboclawSilence = 0.05;
+/// s without new counts, after which the driver and the monitor stop: the board's own timeout, its shortest one.
+inline constexpr double kRoboclawSilence = 0.1;
 
 struct RoboclawLineParameters {
   std::string address;                ///< serial_port.h

@@ -86,11 +86,6 @@ class Packet {
       bytes_[size_++] = static_cast<std::uint8_t>(value >> (8 * (bytes - 1 - i)));
   }
   void clear() noexcept { size_ = 0; }
-  void drop_first() noexcept {
-    if (size_ == 0) return;
-    --size_;
-    for (std::size_t i = 0; i < size_; ++i) bytes_[i] = bytes_[i + 1];
-  }
   std::size_t size() const noexcept { return size_; }
   std::span<const std::uint8_t> bytes() const noexcept { return {bytes_.data(), size_}; }
 

@@ -61,6 +61,7 @@ void BoardFront::boot(board_reset reason) {
           }};
   if (parameters_.takes_speeds) tune(config);
   booted_ns_ = now_ns_;
+  for (std::size_t i = 0; i < wheels_.size(); ++i) wheels_[i].start = counted(i);
   sensors_.reset = reason;
   board_begin(&board_, &config);
 }
@@ -94,12 +95,16 @@ std::uint32_t BoardFront::time_us() const {
   return static_cast<std::uint32_t>(static_cast<std::uint64_t>(elapsed_us));
 }
 
+std::int64_t BoardFront::counted(std::size_t joint) const {
+  const BoardWheelParameters& wheel = parameters_.wheels[joint];
+  const double turns = wheels_[joint].position / (2 * std::numbers::pi) * static_cast<double>(wheel.direction);
+  return static_cast<std::int64_t>(std::floor(turns * wheel.counts_per_turn));
+}
+
 void BoardFront::counts(std::uint32_t* counts) const {
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
     const BoardWheelParameters& wheel = parameters_.wheels[i];
-    const double turns = wheels_[i].position / (2 * std::numbers::pi) * static_cast<double>(wheel.direction);
-    const auto counted = static_cast<std::int64_t>(std::floor(turns * wheel.counts_per_turn));
-    const auto wrapped = static_cast<std::uint32_t>(static_cast<std::uint64_t>(counted) + zero_);
+    const auto wrapped = static_cast<std::uint32_t>(static_cast<std::uint64_t>(counted(i) - wheels_[i].start) + zero_);
     counts[wheel.wheel] = wheel.counter_bits == 16 ? wrapped & 0xFFFFU : wrapped;
   }
 }

@@ -5,7 +5,7 @@
 ///
 /// `inject` takes `board` or `line` as the component; the line has faults in virtual time alone.
 ///
-///   board  ok | off | reset, brown_out (silent for kBootNs) | fault (of its wheel 0) | other_protocol
+///   board  ok | off | reset, brown_out (silent for kBootNs, counts from 0) | fault (of its wheel 0) | other_protocol
 ///          e_stop (the button is pressed, or its wire is broken)
 ///   line   kSerialFaultWords
 
@@ -64,7 +64,8 @@ class BoardFront final : public DeviceFront {
     double damping = 0;   // N·m·s/rad, of the brake
     double position = 0;  // rad, of the joint
     double velocity = 0;
-    double torque = 0;  // N·m, of the joint
+    std::int64_t start = 0;  // counts at the last boot
+    double torque = 0;       // N·m, of the joint
     double mean_torque = 0;
     board_mode mode = BOARD_BRAKE;
     double ordered = 0;  // N·m or a share of the supply, of the joint
@@ -75,6 +76,7 @@ class BoardFront final : public DeviceFront {
   void run_board();
   std::size_t joint_of(std::size_t wheel) const;
   std::uint32_t time_us() const;
+  std::int64_t counted(std::size_t joint) const;  // since the beginning
   void counts(std::uint32_t* counts) const;
   void drive(std::size_t wheel, board_mode mode, std::int32_t value);
   void read_sensors(board_sensors& sensors) const;

@@ -176,8 +176,8 @@ void RoboclawFront::run(std::span<const JointSample> joints) {
 
 std::string RoboclawFront::inject(std::string_view component, std::string_view kind) {
   const auto is = [kind](auto... words) { return ((kind == words) || ...); };
-  if (component == "board" && is("ok", "off", "reset", "fault", "no_gains")) {
-    const bool restarts = (off_ && kind != "off") || kind == "reset";
+  if (component == "board" && is("ok", "off", "reset", "brown_out", "fault", "no_gains")) {
+    const bool restarts = (off_ && kind != "off") || is("reset", "brown_out");
     off_ = kind == "off";
     fault_ = kind == "fault";
     gains_ = kind != "no_gains";
@@ -201,7 +201,8 @@ std::string RoboclawFront::inject(std::string_view component, std::string_view k
     }
   }
   return std::string(
-             "component must be board (with ok, off, reset, fault, no_gains), encoder (with ok, stuck) or line "
+             "component must be board (with ok, off, reset, brown_out, fault, no_gains), encoder (with ok, stuck) or "
+             "line "
              "(with ") +
          kSerialFaultWords + ")";
 }

@@ -7,7 +7,8 @@
 /// `inject` takes `board`, `encoder` or `line` as the component; the line has faults in virtual time alone
 /// (`SerialFaults`).
 ///
-///   board    ok | off | reset (silent for kBootNs, counts from 0) | fault (over-temperature) | no_gains (at the next start)
+///   board    ok | off | reset, brown_out (silent for kBootNs, counts from 0) | fault (over-temperature)
+///            | no_gains (at the next start)
 ///   encoder  ok | stuck (that of M1)
 
 #include <memory>

@@ -48,6 +48,17 @@ TEST_F(VelocityDriveTest, AddsTheTorqueOfTheCommandIfItTakesOne) {
   EXPECT_EQ(effort, 0);
 }
 
+/// As a slope that is too steep for the effort of the brake does.
+TEST_F(VelocityDriveTest, HoldsALoadThatItsBrakingEffortDoesNotSlowDown) {
+  constexpr double kSteep = 2.5;  // N·m, between effort and hold_effort
+  for (const double begin : {0.0, -5.0}) {
+    velocity = begin;
+    run({}, 8, kSteep);
+    EXPECT_NEAR(velocity, 0, 1e-3) << begin;
+    EXPECT_NEAR(effort, kSteep, 1e-2) << begin;
+  }
+}
+
 TEST_F(VelocityDriveTest, GivesNoMoreThanItsTorque) {
   run(at(1000), 0.1);
   EXPECT_EQ(effort, parameters.effort_limit);

@@ -1,5 +1,3 @@
-#include "drivers/serial/roboclaw_driver.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -7,39 +5,14 @@
 #include <limits>
 #include <string>
 
+#include "drivers/roboclaw_machine.h"
 #include "drivers/serial/mutated_stream.h"
-#include "drivers/wheels_in_air.h"
-#include "simulation/devices/roboclaw_front.h"
 #include "support/allocation_guard.h"
 
 namespace robot_control {
 namespace {
 
 using roboclaw::PacketCommand;
-
-RoboclawParameters two_wheels() {
-  RoboclawParameters parameters{.line = {.address = "none"}, .wheels = {}};
-  for (std::uint64_t i = 0; i < 2; ++i) {
-    parameters.wheels.push_back({.joint = i == 0 ? "left" : "right",
-                                 .motor = 2 - i,  // the joints are not in the order of the motors
-                                 .direction = i == 0 ? 1 : -1,
-                                 .counts_per_turn = 16384,
-                                 .velocity_limit = 30});
-  }
-  return parameters;
-}
-
-class RoboclawMachine final : public WheelsInAir<RoboclawFront, RoboclawDriver> {
- public:
-  explicit RoboclawMachine(double rate) : WheelsInAir(1 / rate) {
-    constexpr std::array kBrakes{kBrake, kBrake};
-    constexpr std::array kLimits{kEffortLimit, kEffortLimit};
-    board_ = std::make_unique<RoboclawFront>(two_wheels(), kBrakes, kLimits, period_, 1);
-    driver_ = std::make_unique<RoboclawDriver>(two_wheels(), 2, period_, board_->driver_end(),
-                                               [this] { return board_->now_ns(); });
-  }
-  RoboclawDriver& driver() { return *driver_; }
-};
 
 /// The healthy board at 1 kHz, whose wheels turn at 10 rad/s.
 class RoboclawDriverTest : public testing::Test {
@@ -168,25 +141,29 @@ TEST_F(RoboclawDriverTest, ABoardWithoutGainsIsRefusedBeforeAnythingMoves) {
   EXPECT_TRUE(stands());
 }
 
-/// Each lost answer costs kAnswerNs, so that three in a row are a silence.
-TEST_F(RoboclawDriverTest, OnADisturbedLineNoWrongValueIsAcceptedAndOnlySilenceStops) {
-  inject("line", "disturbed");
-  int stops = 0;
-  for (int i = 0; i < 20000; ++i) {
-    machine_.read(frame_);
-    if (frame_.driver_state == DriverState::kRunning) {
+/// 5 % of the messages are lost, 1 % are damaged, and all are up to 3 ms late.
+TEST(RoboclawLosses, OnADisturbedLineNothingStopsAndNoWrongValueIsAccepted) {
+  for (const double rate : {100.0, 250.0, 1000.0}) {
+    RoboclawMachine machine(rate);
+    machine.start();
+    const std::vector<JointCommand> commands(2, {.mode = JointMode::kDriveVelocity, .velocity = 10});
+    SensorFrame frame;
+    const int at_speed = static_cast<int>(rate);
+    for (int i = 0; i < 60 * at_speed; ++i) {
+      if (i == at_speed) {
+        ASSERT_EQ(machine.board().inject("line", "disturbed"), "");
+      }
+      machine.read(frame);
+      ASSERT_EQ(frame.driver_state, DriverState::kRunning) << rate << " Hz, " << i << machine.warning();
       // The middle of an exchange is up to 3 ms from the counts' instant. The speed, over 28 ms and more, is in error
-      // by 6 ms of that span: 2.1 rad/s, for up to 50 ms.
-      ASSERT_NEAR(frame_.joints[0].position, machine_.joints[0].position, 0.14) << i;
-    } else if (frame_.driver_state == DriverState::kFault) {
-      ASSERT_EQ(frame_.faults, kFaultLink) << machine_.warning();
-      ++stops;
-      machine_.reset();
+      // by 6 ms of that span: 2.1 rad/s, for up to 100 ms.
+      if (i > at_speed) {
+        ASSERT_NEAR(frame.joints[0].position, machine.joints[0].position, 0.24) << rate << " Hz, " << i;
+      }
+      machine.write(commands);
     }
-    machine_.write(commands_);
+    EXPECT_GT(frame.links[0].lost, 100u) << rate;
   }
-  EXPECT_GT(frame_.links[0].lost, 200u);
-  EXPECT_LT(stops, 20);
 }
 
 TEST(RoboclawRates, AreMoreThan100OrdersPerSecondFrom200Hz) {
@@ -249,7 +226,7 @@ void expect_no_motion_of_the_roboclaw(int streams) {
   auto line = std::make_unique<MutatedRoboclaw>();
   const MutatedRoboclaw& seen = *line;
   std::int64_t now_ns = 0;
-  RoboclawDriver driver(two_wheels(), 2, 0.02, std::move(line), [&now_ns] { return now_ns; });
+  RoboclawDriver driver(RoboclawMachine::parameters(), 2, 0.02, std::move(line), [&now_ns] { return now_ns; });
   driver.start();
   SensorFrame frame;
   const std::vector<JointCommand> commands(2, {.mode = JointMode::kDriveVelocity, .velocity = 5});

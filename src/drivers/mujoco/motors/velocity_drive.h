@@ -8,8 +8,9 @@
 ///
 /// τ_ff is the command's effort if the drive takes one and does not brake, else 0.
 ///
-/// The integral stands while the torque is at its limit towards e. At rest, |q̇| below the hold speed of the brake, a
-/// drive that releases gives no torque until the next velocity.
+/// The integral stands while the torque is at its limit towards e. The limit of the brake is its effort, and its hold
+/// effort from where a BrakeLaw begins to hold. At rest, |q̇| below the hold speed of the brake, a drive that releases
+/// gives no torque until the next velocity.
 ///
 /// A drive is tuned for the robot that it carries. With M, the inertia of a wheel when driving straight, and J, that of
 /// the lifted wheel:
@@ -47,11 +48,13 @@ class VelocityDrive {
         proportional_(parameters.gain *
                       std::min(parameters.loaded_inertia / kResponse, 0.4 * parameters.lifted_inertia / step)),
         integral_gain_(proportional_ / (4 * kResponse)),
-        step_(step) {}
+        step_(step),
+        brake_(parameters.brake) {}
 
   void reset() noexcept {
     integral_ = 0;
     released_ = false;
+    brake_.release();
   }
 
   /// Returns τ in N·m for the next time step.
@@ -60,7 +63,12 @@ class VelocityDrive {
     const bool rests = std::abs(velocity) <= parameters_.brake.hold_speed;
     released_ = !drives && parameters_.at_rest == DriveBrake::kRelease && (released_ || rests);
     if (released_) return integral_ = 0;
-    const double braking = rests ? parameters_.brake.hold_effort : parameters_.brake.effort;
+    if (drives) {
+      brake_.release();
+    } else {
+      brake_.step(0, 0, velocity);  // When it holds depends on the speed alone.
+    }
+    const double braking = brake_.holding() ? parameters_.brake.hold_effort : parameters_.brake.effort;
     const double limit = drives ? parameters_.effort_limit : std::min(braking, parameters_.effort_limit);
     const double error = (drives ? taken(command.velocity) : 0) - velocity;
     const double feed_forward = drives && parameters_.takes_feed_forward ? command.effort : 0;
@@ -85,6 +93,7 @@ class VelocityDrive {
   double step_;           ///< s
   double integral_ = 0;   ///< N·m
   bool released_ = false;
+  BrakeLaw brake_;
 };
 
 }  // namespace robot_control
