@@ -33,6 +33,8 @@ class ConsoleTest(ConsoleTestCase):
         self.drive(browser)
         wait_for("the verdict", lambda: browser.data("verdict") == "moving")
         self.picture(browser, "desktop")
+        browser.run("const began = performance.now(); while (performance.now() < began + 600);")
+        wait_for("why it no longer drives", lambda: "This page stood still for" in browser.text("dead-man"))
         browser.click("e-stop")
         wait_for("the stop", lambda: browser.data("state") == "STOPPED")
         wait_for("its cause", lambda: "e_stop" in browser.text("causes"))

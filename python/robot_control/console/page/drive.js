@@ -12,6 +12,8 @@ const MOTIONS = {        // forward, turning to the left, sideways to the left
 };
 const keys = new Set(), stick = { pointer: null, x: 0, y: 0, sideways: false };
 const offset = () => Date.now() - performance.now();
+/** Why this page released what an operator still holds; empty once that is let go, or something is held again. */
+export let released = "";
 let padBlocked = true, commands = false, number = 0, passed = performance.now(), awake = offset(), isHeld = false;
 const area = document.getElementById("pad"), knob = document.getElementById("stick");
 const clamp = (value) => Math.max(-1, Math.min(1, value || 0));
@@ -33,6 +35,7 @@ function held() {
 function report() {
   const motion = held(), [linear, angular, lateral] = (motion ?? [0, 0, 0]).map(clamp);
   isHeld = motion !== null;
+  if (isHeld) released = "";
   document.body.dataset.held = String(isHeld && commands);
   const sent = performance.now() / 1000;
   if (commands) send({ type: "drive", number: ++number, sent, held: isHeld, linear, angular, lateral });
@@ -86,6 +89,7 @@ function move(event) {
   knob.style.transform = `translate(${stick.x * radius}px, ${stick.y * radius}px)`;
 }
 
+for (const end of ["keyup", "pointerup"]) addEventListener(end, () => { released = ""; });
 for (const lost of ["blur", "pagehide", "freeze", "gamepaddisconnected"]) addEventListener(lost, release);
 for (const lost of ["freeze", "visibilitychange"]) document.addEventListener(lost, release);
 addEventListener("contextmenu", (event) => { if (isHeld) { event.preventDefault(); release(); } });
@@ -102,6 +106,8 @@ setInterval(() => {
   if (document.hidden) return;
   if (Math.abs(offset() - awake) > ASLEEP) reconnect();
   awake = offset();
-  if (still > FROZEN) release();
-  else report();
+  if (still <= FROZEN) return report();
+  const wasHeld = isHeld;
+  release();
+  if (wasHeld) released = `This page stood still for ${still.toFixed(0)} ms: release what you hold, and press again.`;
 }, PERIOD);

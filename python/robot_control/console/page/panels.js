@@ -1,4 +1,5 @@
 // Values → words. Text of the robot, of users and of files enters the page by textContent alone.
+import { released } from "/drive.js";
 import { on, silent } from "/link.js";
 
 export const by = (id) => document.getElementById(id);
@@ -80,7 +81,7 @@ on("authority", (authority) => {
   const ms = (value) => value === null ? "–" : `${number(1000 * value, 0)} ms`;
   const other = commander ? `${commander.name} (page ${commander.number}) commands.` : "No page commands.";
   put("who", authority.commander === authority.you ? "This page commands." : other);
-  put("dead-man", authority.dead_man);
+  put("dead-man", authority.dead_man || released);
   list("pages", authority.pages.map(({ name, number: page, role }) =>
     [name, `page ${page}`, role, page === authority.you && "this one", page === authority.commander && "commands"]
       .filter(Boolean).join(", ")));
