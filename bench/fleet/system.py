@@ -125,7 +125,7 @@ class System:
         end = time.monotonic() + limit
         while not condition():
             if time.monotonic() > end:
-                log = Path(self._folder.name, "vda5050.py.log").read_text()[-500:]
+                log = [Path(self._folder.name, f"{name}.log").read_text()[-500:] for name in self._programs]
                 raise AssertionError(f"not within {limit:g} s: {what}; {self.connection} {self.state} {log}")
             for _ in self.master.messages(0.02):
                 pass
