@@ -36,8 +36,15 @@ SHAPES: dict[str, tuple[Places, dict[str, Any]]] = {
     "turn at a node": ([(0.0, 0.0), (1.0, 0.0, math.pi / 2), (2.0, 0.0, 0.0)], {}),
 }
 EVENTS = ("", "pause", "broker", "cancel")
-LINKS = ("broker killed", "broker stalled", "cable cut", "client killed", "client stopped", "master silent")
-LOSSES = (*LINKS, "path stopped")
+LOSSES = (
+    "broker killed",
+    "broker stalled",
+    "cable cut",
+    "client killed",
+    "client stopped",
+    "master silent",
+    "path stopped",
+)
 
 
 def bench(parts: Sequence[str], first: int, runs: int | None, say: Say) -> tuple[dict[str, Any], bool]:
