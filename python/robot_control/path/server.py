@@ -148,11 +148,16 @@ class Server:
         """Why the goal does not begin; empty if it does. This program knows of no stop before its own begin."""
         if message.requested < self._began:
             return "it was sent before this program began. Start the path again"
-        return self._robot.await_drivable(self._topic, self._waits, message.requested)
+        said = -math.inf
 
-    def _waits(self) -> bool:
-        self._action.publish_feedback(FollowPathFeedback(state="waiting", reason="for the permit to drive"))
-        return self._going_on()
+        def waits() -> bool:
+            nonlocal said
+            if time.monotonic() - said >= FEEDBACK_PERIOD:
+                said = time.monotonic()
+                self._action.publish_feedback(FollowPathFeedback(state="waiting", reason="for the permit to drive"))
+            return self._going_on()
+
+        return self._robot.await_drivable(self._topic, waits, message.requested)
 
 
 class Reporter:
