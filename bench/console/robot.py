@@ -12,6 +12,7 @@ from pathlib import Path
 
 import rospy
 from nav_msgs.msg import Odometry
+from robot_control.installed_files import share_file
 
 from bench.console.process import free_port, wait_for
 
@@ -21,7 +22,8 @@ LAUNCH = ("sim.launch", "telemetry:=true", "black_box:=false")
 class Robot:
     """sim.launch with a log of every cycle."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, command_sources: bool = False) -> None:
+        """`command_sources`: the shipped list says who may command."""
         self._folder = tempfile.TemporaryDirectory(prefix="console-bench-")
         port = free_port()
         os.environ |= {
@@ -30,7 +32,9 @@ class Robot:
             "ROS_LOG_DIR": self._folder.name,
         }
         own = Path(self._folder.name, "own.yaml")
-        own.write_text("telemetry: {record: always}\n")
+        sources = share_file("config/command_sources.yaml")
+        listed = f"diff_drive_controller: {{command_sources: {sources}}}\n" if command_sources else ""
+        own.write_text("telemetry: {record: always}\n" + listed)
         command = [
             "roslaunch",
             "-p",

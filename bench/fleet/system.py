@@ -41,7 +41,7 @@ class System:
 
     def __init__(self) -> None:
         self._folder = tempfile.TemporaryDirectory(prefix="fleet-bench-")
-        self.robot = Robot()
+        self.robot = Robot(command_sources=True)
         self.broker = Broker(Path(self._folder.name))
         self.cable = Proxy()
         self.cable.target = self.broker.port
@@ -90,7 +90,8 @@ class System:
             self.broker.start()
         if self._programs["vda5050.py"].poll() is not None:
             self.begin("vda5050.py")
-        self.pause("vda5050.py", go_on=True)
+        for name in self._programs:
+            self.pause(name, go_on=True)
 
     def pause(self, name: str, *, go_on: bool = False) -> None:
         """SIGSTOP or SIGCONT."""
@@ -124,7 +125,7 @@ class System:
         end = time.monotonic() + limit
         while not condition():
             if time.monotonic() > end:
-                log = Path(self._folder.name, "vda5050.py.log").read_text()[-500:]
+                log = [Path(self._folder.name, f"{name}.log").read_text()[-500:] for name in self._programs]
                 raise AssertionError(f"not within {limit:g} s: {what}; {self.connection} {self.state} {log}")
             for _ in self.master.messages(0.02):
                 pass

@@ -221,6 +221,18 @@ TEST_F(CommandMuxTest, NaNOfAMaskedSourceHasNoEffect) {
   EXPECT_EQ(result(), 0.3);
 }
 
+TEST_F(CommandMuxTest, ASourceIsLiveForItsTimeoutFromTheStampOn) {
+  ArrivedCommand late{
+      .sender = {"/path", connections_[kPath]}, .twist = {}, .stamp_ns = now_.ros_ns - 3 * kSecond / 10};
+  late.twist.linear[0] = 0.2;
+  mux_.receive(kPath, late, now_);
+  pass(2 * kSecond / 10);
+  EXPECT_EQ(result(), 0.2);
+  EXPECT_EQ(mux_.value().age_ns, 3 * kSecond / 10) << "as it came";
+  pass(1);
+  EXPECT_EQ(result(), 0);
+}
+
 TEST_F(CommandMuxTest, AStampTooOldMakesNoSourceLive) {
   mux_.receive(kKey, {.sender = {"/late", boost::make_shared<char>()}, .twist = {}, .stamp_ns = now_.ros_ns - kSecond},
                now_);

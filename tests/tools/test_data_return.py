@@ -372,6 +372,13 @@ def check_nothing_is_lost(system):
         assert put_together(lambda wanted, begin=begin: system.far.files[f"{begin}/{wanted}"], None)["name"] == name
 
 
+@pytest.mark.parametrize(("in_batch_time", "parts"), [(0.0, 4), (1.0, 4), (10.5, 10), (100.0, 16)])
+def test_a_batch_lasts_so_long_that_its_start_costs_little_of_the_bandwidth(in_batch_time, parts):
+    entry = plan.Entry("key", "run.1.bag", "runs", 100 * plan.PART_BYTES, 0, "runs/run.1.bag")
+    bandwidth = 1e-6 * in_batch_time * plan.PART_BYTES / plan.BATCH_TIME
+    assert plan.next_parts(entry, bandwidth) == list(range(parts))
+
+
 @pytest.mark.parametrize("hashes", [True, False])
 def test_a_damaged_part_is_sent_again(tmp_path, hashes):
     system = System(tmp_path, {"run.1.bag": random.Random(1).randbytes(PART)}, VirtualFarSide(hashes=hashes))

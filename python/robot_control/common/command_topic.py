@@ -31,10 +31,10 @@ class CommandTopic:
         name: str = self._publishers[self._chosen()].resolved_name
         return name
 
-    def send(self, command: Command, age: float = 0.0) -> None:
-        """Sends it, stamped with the time of the request, `age` s ago."""
+    def send(self, command: Command, stamp: rospy.Time | None = None) -> None:
+        """Sends it, stamped with the time of the request, which is now if it is not given."""
         message = TwistStamped()
-        message.header.stamp = rospy.Time.now() - rospy.Duration(age)
+        message.header.stamp = rospy.Time.now() if stamp is None else stamp
         message.twist.linear.x, message.twist.linear.y = command.linear, command.lateral
         message.twist.angular.z = command.angular
         self._senders[self._chosen()].send(message)

@@ -39,7 +39,7 @@ class Backend:
         self._watch, self._services, self._limits = SafetyWatch(), Services(), SpeedLimits()
         self._topic, self._age = CommandTopic(SOURCE), 0.0
         self._heartbeat = rospy.Publisher("heartbeat", Empty, queue_size=1, tcp_nodelay=True)
-        self._pace = Pace(lambda command: self._topic.send(command, self._age))
+        self._pace = Pace(lambda command: self._topic.send(command, rospy.Time.now() - rospy.Duration(self._age)))
         self._interruptions, self._beat_at = 0, float("-inf")
         threading.Thread(target=self._query_master, daemon=True).start()
 

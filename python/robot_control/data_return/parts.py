@@ -14,7 +14,9 @@ from robot_control.data_return.plan import PART_BYTES, Entry, Part
 
 MANIFEST = "manifest.json"
 HELPS = 0.9
-"""a part is sent compressed if that makes it shorter than this share"""
+"""a part is sent compressed if that makes it, and its first SAMPLE bytes, shorter than this share"""
+SAMPLE = 1 << 16
+"""bytes: a part that does not compress, as those of most bags, costs a 64th of the time"""
 FORMAT = 1
 
 
@@ -27,8 +29,11 @@ def packed(path: Path, number: int) -> tuple[str, bytes]:
     with path.open("rb") as file:
         file.seek(number * PART_BYTES)
         raw = file.read(PART_BYTES)
-    short = gzip.compress(raw, compresslevel=1, mtime=0)
-    return (f"{number:05d}.gz", short) if len(short) < HELPS * len(raw) else (f"{number:05d}", raw)
+    for tried in (raw[:SAMPLE], raw):
+        short = gzip.compress(tried, compresslevel=1, mtime=0)
+        if len(short) >= HELPS * len(tried):
+            return f"{number:05d}", raw
+    return f"{number:05d}.gz", short
 
 
 def sha256(data: bytes) -> str:

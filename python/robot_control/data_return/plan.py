@@ -16,8 +16,10 @@ INCIDENT = re.compile(r"(stop|crash)\.\d+\.bag")
 CURRENT = "run.bag"
 PART_BYTES = 4 << 20
 """bytes of a file in one part: what a cut of the link costs at most"""
-BATCH = 4
-"""parts for one start of rclone, which costs a connection"""
+BATCH, LARGEST_BATCH = 4, 16
+"""parts for one start of rclone, which costs a connection; they are in memory meanwhile"""
+BATCH_TIME = 30.0
+"""s at `bandwidth`: a start of rclone and the check of a batch, when nothing is sent, last about a second"""
 FIRST_WAIT, LONGEST_WAIT = 2.0, 300.0
 """s before another try, doubled after each failure"""
 GB = 1e9
@@ -89,9 +91,10 @@ def next_entry(entries: Iterable[Entry]) -> Entry | None:
     return min(waiting, default=None, key=lambda e: (KINDS.index(e.kind), not e.parts, e.mtime_ns, e.key))
 
 
-def next_parts(entry: Entry) -> list[int]:
-    """Numbers of the parts that are sent together; none: the manifest is due."""
-    return [number for number in range(entry.count) if number not in entry.parts][:BATCH]
+def next_parts(entry: Entry, bandwidth: float) -> list[int]:
+    """Numbers of the parts that are sent together at MB/s, 0 without a limit; none: the manifest is due."""
+    size = min(LARGEST_BATCH, max(BATCH, int(BATCH_TIME * 1e6 * bandwidth / PART_BYTES)))
+    return [number for number in range(entry.count) if number not in entry.parts][:size]
 
 
 def deletable(entries: Sequence[Entry], quota: float) -> list[Entry]:

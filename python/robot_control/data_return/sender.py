@@ -85,7 +85,7 @@ class Sender:
             del self._queue.entries[each.key]
 
     def _send(self, entry: Entry) -> None:
-        numbers = next_parts(entry)
+        numbers = next_parts(entry, self._settings.bandwidth)
         if numbers:
             self._send_parts(entry, numbers)
         else:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 import socket
-import stat
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import Any
 import yaml  # type: ignore[import-untyped]
 
 from robot_control.blackbox.main import LOGS
+from robot_control.common.file_errors import problems_of
 from robot_control.common.files import given_path, printable
 
 RCLONE_CONFIG = "~/.config/rclone/rclone.conf"
@@ -117,15 +117,8 @@ def _together(settings: Settings) -> Iterator[str]:
     if 0 < settings.bandwidth < 0.01:
         yield f"bandwidth = {settings.bandwidth:g}: must be 0 (no limit) or at least 0.01 MB/s"
     remote = ":" in settings.far_side.partition("/")[0]
-    for name in ("rclone_config",) * remote + ("ca_file",) * bool(settings.ca_file):
-        yield from _file_problems(name, given_path(getattr(settings, name)), secret=name == "rclone_config")
-
-
-def _file_problems(name: str, path: Path, *, secret: bool) -> Iterator[str]:
-    try:
-        path.read_bytes()
-        if secret and stat.S_IMODE(path.stat().st_mode) & 0o077:
-            yield f"{name} = {path}: others can read the passwords in it; chmod 600 {path}"
-    except OSError as error:
-        remedy = "; make it with rclone config" if secret else ""
-        yield f"{name} = {path}: cannot be read: {error.strerror}{remedy}"
+    if remote:
+        path, remedy = given_path(settings.rclone_config), "; make it with rclone config"
+        yield from problems_of("rclone_config", path, secret=True, remedy=remedy)
+    if settings.ca_file:
+        yield from problems_of("ca_file", given_path(settings.ca_file), secret=False)

@@ -92,6 +92,7 @@ class RosRobot:
         fresh = odometry is not None and now - self._odometry_at < SILENCE
         if self.progress.status == DRIVING and now - self._feedback_at > STATUS_SILENCE:
             self._goal += 1
+            self.stop()  # one that goes on later must not drive the leg of a paused order
             self.progress = Progress(ENDED, self.progress.distance, f"{ACTION} is silent: follow_path.py has ended")
         transform = self._map_odom()
         result: dict[str, Any] = {}

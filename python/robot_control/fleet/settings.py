@@ -5,7 +5,6 @@ from __future__ import annotations
 import ipaddress
 import json
 import math
-import stat
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import Any
 import yaml  # type: ignore[import-untyped]
 
 from robot_control.blackbox.main import LOGS
+from robot_control.common.file_errors import problems_of
 from robot_control.common.files import given_path
 from robot_control.fleet.v2.capability import STANDARD, ActionKind
 from robot_control.fleet.v2.messages import VERSIONS
@@ -136,16 +136,7 @@ def _together(settings: Settings) -> Iterator[str]:
     for name in ("password_file", "ca_file", "certificate_file", "key_file"):
         path = Path(getattr(settings, name))
         if getattr(settings, name):
-            yield from _file_problems(name, path, secret=name in ("password_file", "key_file"))
-
-
-def _file_problems(name: str, path: Path, *, secret: bool) -> Iterator[str]:
-    try:
-        path.read_bytes()
-        if secret and stat.S_IMODE(path.stat().st_mode) & 0o077:
-            yield f"{name} = {path}: others can read it; chmod 600 {path}"
-    except OSError as error:
-        yield f"{name} = {path}: cannot be read: {error.strerror}"
+            yield from problems_of(name, path, secret=name in ("password_file", "key_file"))
 
 
 def _is_loopback(host: str) -> bool:

@@ -23,6 +23,8 @@ SAFETY_SILENCE = 3.0
 """s without safety_status; it comes once per second"""
 PATIENCE = 10.0
 """s to wait for odometry and the permit to drive"""
+ZERO_PERIOD = 0.02
+"""s between two zeros before a path begins; with a list of sources it begins when one of them commands"""
 CAUSE_DELAY = 0.3
 """s by which the cause of a stop may follow the refusal that it leads to: they come from two nodes"""
 
@@ -104,7 +106,7 @@ class Robot:
             if speaks and self.drivable and topic.connected and self.commands:
                 return ""
             topic.send(Command())
-            time.sleep(0.1)
+            time.sleep(ZERO_PERIOD)
         if not going_on():
             return "interrupted"
         if silence := self._silence(time.monotonic()):

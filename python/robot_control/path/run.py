@@ -78,7 +78,7 @@ class Drive:
             except PathError as error:
                 self.follower.fail(str(error))
                 return
-        self._topic.send(Command(motion.linear, motion.angular))
+        self._topic.send(Command(motion.linear, motion.angular), odometry.header.stamp)
 
     def _elapsed(self, odometry: Odometry) -> float:
         """s since the last one; more than SILENCE would have ended the path."""

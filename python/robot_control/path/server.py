@@ -128,7 +128,6 @@ class Server:
         points = limited(points_of(goal.path), goal.speeds, goal.turn_speeds)
         points = shortened(checked(points), goal.begin_at)
         result.distance = goal.begin_at
-        self._action.publish_feedback(FollowPathFeedback(state="waiting", reason="for the permit to drive"))
         refusal = self._refusal(message)
         if refusal:
             unknown = self._robot.drivable and not message.stamped
@@ -149,7 +148,16 @@ class Server:
         """Why the goal does not begin; empty if it does. This program knows of no stop before its own begin."""
         if message.requested < self._began:
             return "it was sent before this program began. Start the path again"
-        return self._robot.await_drivable(self._topic, self._going_on, message.requested)
+        said = -math.inf
+
+        def waits() -> bool:
+            nonlocal said
+            if time.monotonic() - said >= FEEDBACK_PERIOD:
+                said = time.monotonic()
+                self._action.publish_feedback(FollowPathFeedback(state="waiting", reason="for the permit to drive"))
+            return self._going_on()
+
+        return self._robot.await_drivable(self._topic, waits, message.requested)
 
 
 class Reporter:

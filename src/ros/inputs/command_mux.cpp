@@ -41,7 +41,7 @@ void CommandMux::receive(std::size_t source, const ArrivedCommand& arrived, cons
   const std::uint64_t before = from.input.value().count;
   from.input.receive(arrived, time);
   const bool accepted = from.input.value().count != before;
-  if (accepted) from.last_ns = time.loop_ns;
+  if (accepted) from.last_ns = time.loop_ns - from.input.value().age_ns;
   select(time.loop_ns);
   message_ns_ = time.loop_ns;
   update_result(time.loop_ns, true);
@@ -112,7 +112,7 @@ void CommandMux::update_result(std::int64_t loop_ns, bool message) {
     const Source& source = sources_[*winner_];
     const VelocityCommand& command = source.input.value();
     value_.content = command.content;
-    value_.age_ns = command.age_ns + std::max<std::int64_t>(0, loop_ns - source.last_ns.value_or(loop_ns));
+    value_.age_ns = std::max<std::int64_t>(0, loop_ns - source.last_ns.value_or(loop_ns));
     value_.many_senders = command.many_senders;
   }
   const bool pending = std::ranges::any_of(

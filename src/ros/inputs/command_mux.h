@@ -2,7 +2,8 @@
 /// CommandMux selects one of several command sources for the controller's inbox, with the terms and rules of twist_mux.
 /// It is pure.
 ///
-///   live      its last accepted message is no older than the source's timeout (0: never too old)
+///   live      its last accepted message is no older than the source's timeout (0: never too old), by its stamp if it
+///             has one
 ///   locked    a lock of a higher priority is set: its last message was true, or it has a timeout and received no
 ///             message within it
 ///   winner    the live source of the highest priority that is not locked
@@ -66,7 +67,7 @@ class CommandMux final : public CommandIntake {
   struct Source {
     CommandSource given;
     CommandInput input;
-    std::optional<std::int64_t> last_ns;  ///< when its last accepted message arrived
+    std::optional<std::int64_t> last_ns;  ///< when its last accepted message was stamped, or arrived
     bool live = false;
     std::optional<std::size_t> lock;  ///< lock that masks it
   };
