@@ -7,7 +7,8 @@
 ///
 /// Index 2 is the last point, 1 lies about T and 0 about 2 T before it. The standard deviations follow from the encoder
 /// and the accelerometer, whose data sheet gives the white noise n; its slow error is a = kSlowAcceleration. They also
-/// contain the slip of rolling wheels (wheel_slip_noise in the turn) and the uncertainties of gravity and base factor β:
+/// contain the slip of rolling wheels (wheel_slip_noise in the turn) and the uncertainties of gravity and the base
+/// factor β:
 ///
 ///   σ_D² = 6 encoder² + n² 2T³/3 + (a² + σ_g²) T⁴ + 2 kPathSlip² distance + (q T)²/12
 ///   σ_V² = 4 encoder² + 2 slip² distance + (B σ_β Δψ)² + (B kWindUp)² |Δω|
