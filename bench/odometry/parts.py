@@ -7,8 +7,8 @@
 
 The gyro's part takes off the bias of the first rest, or none where there is no rest. The odometry is judged against the
 better part where radii and base have errors: without errors no part could be better than the wheels. The robots of
-`wander` have the mean radius of the model and a small bias, so that a deviation that contains both is too large for
-them. Whether deviations are right is shown by `drawn`.
+`wander` have the mean radius of the model and a small bias, so that their deviations are too large. Whether deviations
+are right is shown by `drawn`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
+import yaml  # type: ignore[import-untyped]
 from robot_control.installed_files import share_file
 from robot_control.parameter_layers import DEFAULTS
 
@@ -46,7 +46,9 @@ QUANTILES = {"pose": (2.366, 7.815), "twist": (1.386, 5.991)}  # 50 and 95 % of 
 
 @dataclass(frozen=True)
 class Case:
-    """`errors` of radii and base; `most` and `most95` are the promised median and p95 of the position, mm. `drawn`: from the stated deviations."""
+    """`errors` of radii and base; `most` and `most95` are the promised median and p95 of the position, mm. `drawn`: the
+    errors and the gyro's bias are those that the parameters state.
+    """
 
     errors: bool
     rest: float
