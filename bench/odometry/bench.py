@@ -123,7 +123,7 @@ def bench(
     seeds = range(first, first + count)
     named = [scenario for scenario in scenarios if scenario != PARTS]
     runs = all_runs(seeds, named, say, level, pictured=pictured, cache=cache, runner=runner)
-    beside = parts.all_outcomes(seeds, say, level, runner) if PARTS in scenarios else []
+    beside = parts.all_outcomes(seeds, say, level, cache, runner) if PARTS in scenarios else []
     if plots is not None:
         from bench.odometry.plots import draw_all  # noqa: PLC0415 (matplotlib takes half a second to load)
 

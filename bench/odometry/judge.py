@@ -25,7 +25,7 @@ from bench.odometry.consistency import Notice, nees, notice, pose_error, twist_e
 from bench.odometry.drives import FIRST_STAND
 from bench.odometry.methods import METHODS, raw_wheels
 from bench.odometry.picture import Picture, picture_of
-from bench.odometry.recording import Recording, load_recording, record
+from bench.odometry.recording import Recording, recorded
 from bench.odometry.scenarios import draw_trial
 from bench.odometry.tested_estimator import OURS, estimate, resets_of, true_track
 from bench.odometry.truth import Array, Track, Truth, after_resets, moving, truth_of, wrapped
@@ -64,18 +64,8 @@ def run(
     scenario: str, seed: int, level: str = "data_sheet", *, picture: bool = False, cache: Path | None = None
 ) -> Run:
     """Drives, estimates and compares. `level`: one of sensor_errors.LEVELS. `cache`: folder of recordings."""
-    return judge(recorded(scenario, seed, level, cache), picture=picture)
-
-
-def recorded(scenario: str, seed: int, level: str, cache: Path | None) -> Recording:
-    """The recording from the cache; it is driven if it is not there."""
-    path = None if cache is None else cache / f"{scenario}_{seed}_{level}.npz"
-    if path is not None and path.exists():
-        return load_recording(path)
-    recording = record(draw_trial(scenario, seed, level))
-    if path is not None:
-        recording.save(path)
-    return recording
+    drive = recorded(lambda: draw_trial(scenario, seed, level), f"{scenario}_{seed}_{level}", cache)
+    return judge(drive, picture=picture)
 
 
 def judge(recording: Recording, *, picture: bool = False) -> Run:

@@ -9,6 +9,7 @@ import argparse
 import dataclasses
 import json
 import tempfile
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -101,6 +102,17 @@ def record(trial: Trial) -> Recording:
         marks=trial.marks,
         **log,
     )
+
+
+def recorded(draw: Callable[[], Trial], name: str, cache: Path | None) -> Recording:
+    """The recording of that name from the cache; it is driven if it is not there."""
+    path = None if cache is None else cache / f"{name}.npz"
+    if path is not None and path.exists():
+        return load_recording(path)
+    recording = record(draw())
+    if path is not None:
+        recording.save(path)
+    return recording
 
 
 def _loop(trial: Trial) -> ClosedLoop:

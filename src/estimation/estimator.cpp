@@ -30,7 +30,6 @@ Estimator::Estimator(const EstimatorParameters& parameters, const DriveTrain& ro
       encoder_(encoder_deviation(parameters, robot)),
       state_(parameters, robot, period),
       fresh_(state_) {
-  rate_noise_gain_ = state_.rate.noise_gain();
   const Eigen::Vector3d bias = base_from_imu_ * vector(parameters.gyro_bias);
   for (const int i : {0, 1}) state_.gyro_bias[i] = {bias[i], square(parameters.gyro_bias_initial)};
   state_.core.set_bias(bias.z(), parameters.gyro_bias_initial);

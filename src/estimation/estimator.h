@@ -178,8 +178,7 @@ class Estimator {
   WheelGeometry geometry_;
   WheelSlip wheel_slip_;
   Eigen::Matrix3d base_from_imu_;
-  double encoder_;          ///< m, deviation of one side's reading
-  double rate_noise_gain_;  ///< RateTracker::noise_gain
+  double encoder_;  ///< m, deviation of one side's reading
   State state_;
   State fresh_;  ///< state at the beginning of a run
 };

@@ -35,20 +35,19 @@ void Estimator::fill_pose(BaseState& base) const noexcept {
   middle.x += std::cos(middle.yaw) * ahead.distance;
   middle.y += std::sin(middle.yaw) * ahead.distance;
   const Planar lever = axle(middle.yaw);
-  const Eigen::Quaterniond attitude = Eigen::AngleAxisd(middle.yaw, Eigen::Vector3d::UnitZ()) *
-                                      Eigen::AngleAxisd(state_.tilt.pitch(), Eigen::Vector3d::UnitY()) *
-                                      Eigen::AngleAxisd(state_.tilt.roll(), Eigen::Vector3d::UnitX());
+  const Eigen::Quaterniond turn(std::cos(middle.yaw / 2), 0, 0, std::sin(middle.yaw / 2));
+  const Eigen::Quaterniond attitude = turn * state_.tilt.attitude();
   base.attitude = {attitude.x(), attitude.y(), attitude.z(), attitude.w()};
   base.pose_odom.position = {middle.x - lever.x, middle.y - lever.y, parameters_.planar ? 0 : state_.height};
   if (state_.pose_set) std::copy_n(state_.pose_set->begin(), 2, base.pose_odom.position.begin());
-  base.pose_odom.orientation =
-      parameters_.planar ? Quaternion{0, 0, std::sin(middle.yaw / 2), std::cos(middle.yaw / 2)} : base.attitude;
+  base.pose_odom.orientation = parameters_.planar ? Quaternion{0, 0, turn.z(), turn.w()} : base.attitude;
   fill_pose_covariance(middle.yaw, lever, base);
 }
 
-///   P = J P_core Jᵀ + m mᵀ gap²/8 + a aᵀ σ_encoder²
-/// J is the Jacobian by clock offset, x, y and yaw, a the direction of travel and m the velocity of base_link. The
-/// present is evenly distributed over the gap between two samples of the gyro.
+///   P = J P_core Jᵀ + m mᵀ p (1 − p) σ_τ² + a aᵀ σ_encoder²
+/// J is the Jacobian by clock offset τ, x, y and yaw. The direction of travel is a, the velocity of base_link is m. The
+/// wheels are late with the probability p, which leaves the position behind. Otherwise the gyro is, which leaves the
+/// yaw behind.
 void Estimator::fill_pose_covariance(double yaw, const Planar& lever, BaseState& base) const noexcept {
   const double late = late_wheels();
   const double yaw_rate = state_.rest.resting() ? 0 : state_.yaw_rate;
@@ -60,7 +59,7 @@ void Estimator::fill_pose_covariance(double yaw, const Planar& lever, BaseState&
   const Eigen::Matrix4d states = state_.core.pose_covariance();
   Eigen::Matrix3d covariance = jacobian * states * jacobian.transpose();
   const Eigen::Vector3d motion = forward_speed() * along + yaw_rate * turning;
-  covariance += square(state_.imu.gyro_gap) / 8 * motion * motion.transpose();
+  covariance += late * (1 - late) * states(0, 0) * motion * motion.transpose();
   covariance += square(encoder_) * along * along.transpose();
   if (state_.pose_set) covariance.setZero();
   Eigen::Map<PoseMatrix> published(base.pose_covariance.data());
@@ -80,7 +79,8 @@ void Estimator::fill_attitude_covariance(double yaw, double yaw_variance, BaseSt
   Eigen::Matrix2d tilt;
   tilt << state_.tilt.covariance(1, 1), -state_.tilt.covariance(1, 0), -state_.tilt.covariance(0, 1),
       state_.tilt.covariance(0, 0);
-  tilt = (Eigen::Rotation2Dd(yaw) * tilt * Eigen::Rotation2Dd(-yaw)).eval();
+  const Eigen::Matrix2d turned = Eigen::Rotation2Dd(yaw).toRotationMatrix();
+  tilt = (turned * tilt * turned.transpose()).eval();
   base.attitude_covariance = {tilt(0, 0), tilt(0, 1), 0, tilt(1, 0), tilt(1, 1), 0, 0, 0, yaw_variance};
   if (parameters_.planar) return;
   base.pose_covariance[14] += state_.tilt.covariance(0, 0) * square(state_.distance);
@@ -103,7 +103,7 @@ void Estimator::fill_twist_covariance(double yaw_rate, BaseState& base) const no
   const double speed = std::abs(state_.wheels.mean_speed()) + geometry_.wheel_base / 2 * std::abs(wheel_rate());
   double wheel =
       square(Tuning::kSpeedShare * quantum) + square(state_.core.slip()) * parameters_.speed_bandwidth * speed;
-  double turn = state_.core.bias_variance() + square(parameters_.gyro_noise) / period_ * rate_noise_gain_ +
+  double turn = state_.core.bias_variance() + square(parameters_.gyro_noise) / period_ * state_.rate.noise_gain() +
                 square(parameters_.gyro_scale_deviation * yaw_rate);
   if (!state_.imu.gyro) turn = 4 * wheel / square(geometry_.wheel_base);
   if (state_.imu.gyro && !state_.wheels.any_lost()) {

@@ -36,7 +36,6 @@ void Estimator::watch_slip(double dt, double turned, const Planar& path) noexcep
   s.slip.evaluate({.acceleration_variance = {s.tilt.acceleration_variance(0), s.tilt.acceleration_variance(1)},
                    .wheel_base = s.core.deviation(PlanarCore::kBase),
                    .clock_offset = std::hypot(s.core.deviation(PlanarCore::kOffset), s.wheels.gap / std::sqrt(12.0)),
-                   .gyro_bias = std::sqrt(s.core.bias_variance()),
                    .speed_step = s.wheels.speed_step},
                   !slides);
   smooth_nis(kAccelerometer, s.slip.nis(SlipResidual::kAlong), Tuning::kPointInterval);

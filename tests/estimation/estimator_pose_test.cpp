@@ -1,6 +1,8 @@
 // The estimated pose against a truth in closed form, with ideal sensors.
 
+#include <array>
 #include <cstring>
+#include <vector>
 
 #include "estimation/estimator_fixture.h"
 #include "support/allocation_guard.h"
@@ -338,6 +340,34 @@ TEST_F(EstimatorPoseTest, CovariancesAreSymmetricAndPositive) {
       EXPECT_LT((skew.array() / (scale * scale.transpose()).array()).abs().maxCoeff(), 1e-12) << "leg " << leg;
       EXPECT_TRUE(is_covariance(published, 0)) << "leg " << leg;
     }
+  }
+}
+
+// Late wheels leave the position behind, a late gyro the yaw. Nothing has shown yet which of them is late.
+TEST_F(EstimatorPoseTest, AClockOffsetThatIsNotKnownMayBeThatOfEitherSensor) {
+  constexpr std::size_t kLate = 50;         // cycles
+  constexpr double kAlmostCertain = 16.27;  // 99.9 % of χ² with 3 degrees of freedom
+  for (const bool gyro_is_late : {true, false}) {
+    RollingRobot robot;
+    Estimator estimator(rigid_tyres(), two_wheeler(), kPeriod);
+    std::vector<SensorFrame> frames;
+    for (int i = 0; i < 900; ++i) {
+      robot.drive(0.5, 0.8);
+      frames.push_back(robot.frame());
+      SensorFrame frame = robot.frame();
+      const SensorFrame& earlier = frames[frames.size() > kLate ? frames.size() - kLate : 0];
+      if (gyro_is_late) {
+        frame.imu = earlier.imu;
+      } else {
+        frame.joints = earlier.joints;
+      }
+      estimator.step(frame, state_);
+    }
+    const Eigen::Vector3d error(x() - robot.x(), y() - robot.y(), yaw() - robot.yaw());
+    const std::array<int, 3> plane{0, 1, 5};
+    const Eigen::Matrix3d covariance =
+        Eigen::Map<const Eigen::Matrix<double, 6, 6>>(state_.base.pose_covariance.data())(plane, plane);
+    EXPECT_LT(error.dot(covariance.inverse() * error), kAlmostCertain) << "late gyro: " << gyro_is_late;
   }
 }
 

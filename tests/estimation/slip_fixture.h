@@ -118,7 +118,7 @@ class SlipFixture : public testing::Test {
   }
 
   void evaluate(bool learns) {
-    body_.detector.evaluate({.acceleration_variance = {1e-6, 1e-6}, .wheel_base = 0.003, .gyro_bias = 1e-5}, learns);
+    body_.detector.evaluate({.acceleration_variance = {1e-6, 1e-6}, .wheel_base = 0.003}, learns);
   }
   bool any_proven() const {
     return body_.detector.proven(SlipResidual::kAlong) || body_.detector.proven(SlipResidual::kAcross) ||

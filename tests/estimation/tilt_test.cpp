@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "signals/rotation.h"
+
 namespace robot_control {
 namespace {
 
@@ -27,6 +29,11 @@ constexpr Vector3 kBiased{kForceBias, 0, kGravity};
 /// Stands for two seconds; `force` m/s²: the reading of the accelerometer.
 void stand(Tilt& tilt, const Vector3& force) {
   for (int i = 0; i < 4; ++i) tilt.rest(force, 0.5);
+}
+
+Quaternion attitude(const Tilt& tilt) {
+  const Eigen::Quaterniond q = tilt.attitude();
+  return {q.x(), q.y(), q.z(), q.w()};
 }
 
 /// Makes half a turn.
@@ -67,8 +74,8 @@ TEST(TiltTest, ItsVarianceIsBoundedHoweverLongNothingCorrectsIt) {
 TEST(TiltTest, IsThatOfGravityButForTheShareThatTheBiasMayHave) {
   Tilt tilt;
   tilt.rest(gravity(0.05), 0.5);
-  EXPECT_NEAR(tilt.pitch(), 0.05, 0.05 * 0.05);
-  EXPECT_NEAR(tilt.roll(), 0, 1e-12);
+  EXPECT_NEAR(pitch_of(attitude(tilt)), 0.05, 0.05 * 0.05);
+  EXPECT_NEAR(roll_of(attitude(tilt)), 0, 1e-12);
 }
 
 TEST(TiltTest, AForceThatIsNotGravityIsNoRest) {
@@ -99,7 +106,7 @@ TEST(TiltTest, OnASlopeTooTheTwoAreSeparated) {
     tilt.turn({0, 1e-4 * (i % 2), std::numbers::pi / 6.28}, kTiltStep);
   }
   stand(tilt, downhill);
-  EXPECT_NEAR(tilt.pitch(), 0.1, kAllowedTilt);
+  EXPECT_NEAR(pitch_of(attitude(tilt)), 0.1, kAllowedTilt);
   EXPECT_NEAR(tilt.bias(0), kForceBias, 0.1 * kForceBias);
 }
 
@@ -109,7 +116,7 @@ TEST(TiltTest, WhatTheGyroMeasuredIsASlope) {
   stand(tilt, gravity(0));
   for (int i = 0; i < 100; ++i) tilt.turn({0, 0.1 + 1e-3 * (i % 2), 0}, kTiltStep);
   stand(tilt, gravity(0.1));
-  EXPECT_NEAR(tilt.pitch(), 0.1, kAllowedTilt);
+  EXPECT_NEAR(pitch_of(attitude(tilt)), 0.1, kAllowedTilt);
   EXPECT_NEAR(tilt.bias(0), 0, 0.05);
 }
 
@@ -121,7 +128,7 @@ TEST(TiltTest, ARestThatContradictsGyroAndFloorOpensTheTiltAndLeavesTheBias) {
   stand(tilt, kBiased);
   const Vector3 slope = gravity(0.2);
   stand(tilt, {slope[0] + kForceBias, slope[1], slope[2]});
-  EXPECT_NEAR(tilt.pitch(), 0.2, kAllowedTilt);
+  EXPECT_NEAR(pitch_of(attitude(tilt)), 0.2, kAllowedTilt);
   EXPECT_NEAR(tilt.bias(0), kForceBias, 0.1 * kForceBias);
 }
 
@@ -135,7 +142,7 @@ TEST(TiltTest, TheErrorOfGravityTurnsIt) {
     const double along = gravity(0.05)[0] - kGravity * tilt.up()[0] - tilt.bias(0);
     tilt.correct(along, 0, 0.4, 0.05);
   }
-  EXPECT_NEAR(tilt.pitch(), 0.05, kAllowedTilt);
+  EXPECT_NEAR(pitch_of(attitude(tilt)), 0.05, kAllowedTilt);
 }
 
 TEST(TiltTest, IsSetToThatOfAnEarlierProcess) {
@@ -146,7 +153,9 @@ TEST(TiltTest, IsSetToThatOfAnEarlierProcess) {
   EXPECT_NEAR(tilt.up()[1], -0.05, 1e-12);
   EXPECT_NEAR(tilt.bias(0), 0.2, 1e-12);
   EXPECT_NEAR(tilt.bias(1), -0.3, 1e-12);
-  EXPECT_NEAR(tilt.pitch(), std::asin(-0.1), 1e-12);
+  EXPECT_NEAR(pitch_of(attitude(tilt)), std::asin(-0.1), 1e-12);
+  EXPECT_NEAR(roll_of(attitude(tilt)), std::atan2(-0.05, up), 1e-12);
+  EXPECT_NEAR(yaw_of(attitude(tilt)), 0, 1e-12);
   const auto acceleration = tilt.acceleration({kGravity * 0.1 + 0.2 + 0.5, -kGravity * 0.05 - 0.3 - 0.25, 0});
   EXPECT_NEAR(acceleration[0], 0.5, 1e-12);
   EXPECT_NEAR(acceleration[1], -0.25, 1e-12);

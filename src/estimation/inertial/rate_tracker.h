@@ -52,10 +52,12 @@ class RateTracker {
 
   Eigen::Vector3d rate() const noexcept { return *rate_; }  ///< rad/s
 
-  /// Returns the variance of `rate` over that of the samples of a white gyro, between 0 and 1/2. Each `measured` is the
-  /// mean of two neighbours, so the gain is Σ(cᵢ + cᵢ₋₁)²/4 over the loop's impulse response c. It costs some 10³
-  /// steps.
-  double noise_gain() const noexcept;
+  /// Returns the variance of `rate` over that of the samples of a white gyro. Each `measured` is the mean of two
+  /// neighbours.
+  double noise_gain() const noexcept {
+    const double b = period_beta_;
+    return (1 - b) * (1 + 2 * b + 2 * b * b) / (2 * (1 + b));
+  }
 
  private:
   double beta(double dt) const noexcept { return std::exp(-2 * std::numbers::pi * bandwidth_ * dt); }
@@ -67,18 +69,5 @@ class RateTracker {
   Stored<Eigen::Vector3d> rate_;
   Stored<Eigen::Vector3d> acceleration_;  ///< rad/s²
 };
-
-inline double RateTracker::noise_gain() const noexcept {
-  constexpr double kFaded = 1e-9;
-  RateTracker loop(bandwidth_, period_);
-  double sum = 0;
-  double last = 0;
-  for (double left = 1; left > kFaded; left *= period_beta_) {
-    loop.step(left == 1 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::Zero().eval(), period_);
-    sum += (loop.rate().x() + last) * (loop.rate().x() + last) / 4;
-    last = loop.rate().x();
-  }
-  return sum + last * last / 4;
-}
 
 }  // namespace robot_control

@@ -7,11 +7,11 @@
 ///
 /// Index 2 is the last point, 1 lies about T and 0 about 2 T before it. The standard deviations follow from the encoder
 /// and the accelerometer, whose data sheet gives the white noise n; its slow error is a = kSlowAcceleration. They also
-/// contain the slip of rolling wheels (wheel_slip_noise in the turn) and the uncertainties of gravity, base factor β
-/// and gyro bias b:
+/// contain the slip of rolling wheels (wheel_slip_noise in the turn) and the uncertainties of gravity and the base
+/// factor β:
 ///
 ///   σ_D² = 6 encoder² + n² 2T³/3 + (a² + σ_g²) T⁴ + 2 kPathSlip² distance + (q T)²/12
-///   σ_V² = 4 encoder² + 2 slip² distance + (B σ_β Δψ)² + (B kWindUp)² |Δω| + (B σ_b T)² + (q T)²/6
+///   σ_V² = 4 encoder² + 2 slip² distance + (B σ_β Δψ)² + (B kWindUp)² |Δω|
 
 #include <array>
 #include <cstddef>
@@ -43,7 +43,6 @@ struct SlipUncertainty {
   std::array<double, 2> acceleration_variance{};  ///< (m/s²)²: σ_g², gravity and bias, along and across
   double wheel_base = 0.03;                       ///< σ_β, factor of the wheel base
   double clock_offset = 0;                        ///< s
-  double gyro_bias = 0;                           ///< rad/s: σ_b
   double speed_step = 0;                          ///< m/s: q, step in which the wheels' speeds are reported
 };
 

@@ -1,6 +1,5 @@
 #include "estimation/tilt/tilt.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -97,12 +96,14 @@ void Tilt::set(const Vector3& up, const std::array<double, 2>& bias) noexcept {
   bound();
 }
 
-double Tilt::roll() const noexcept {
-  return std::atan2((*up_)[1], (*up_)[2]);
-}
-
-double Tilt::pitch() const noexcept {
-  return std::asin(std::clamp(-(*up_)[0], -1.0, 1.0));
+/// The half-angle formulas hold because neither angle exceeds kSteepest.
+Eigen::Quaterniond Tilt::attitude() const noexcept {
+  const auto up = *up_;
+  const double cos_pitch = std::sqrt(square(up[1]) + square(up[2]));
+  const double half_roll = std::sqrt((1 + up[2] / cos_pitch) / 2);  // cosine of half the angle
+  const double half_pitch = std::sqrt((1 + cos_pitch) / 2);
+  return Eigen::Quaterniond(half_pitch, 0, -up[0] / (2 * half_pitch), 0) *
+         Eigen::Quaterniond(half_roll, up[1] / (2 * half_roll * cos_pitch), 0, 0);
 }
 
 }  // namespace robot_control

@@ -14,6 +14,7 @@
 /// wheels. The gyro's x and y count only after a first rest has shown their bias: a broken axis reads −31 °/s at rest.
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 
 #include "estimation/values.h"
@@ -45,8 +46,8 @@ class Tilt {
   void set(const Vector3& up, const std::array<double, 2>& bias) noexcept;
 
   Vector3 up() const noexcept { return array(*up_); }
-  double roll() const noexcept;                                                    ///< rad
-  double pitch() const noexcept;                                                   ///< rad
+  /// Returns the rotation by the roll about x, then the pitch about y, which turns base axes to axes with z up.
+  Eigen::Quaterniond attitude() const noexcept;
   double bias(int axis) const noexcept { return kGravity * (*bias_)[axis]; }       ///< m/s², along and across
   double vertical_bias() const noexcept { return vertical_; }                      ///< m/s², along u
   double covariance(int i, int k) const noexcept { return (*covariance_)(i, k); }  ///< covariance of u_x, u_y
