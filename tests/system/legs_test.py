@@ -142,9 +142,9 @@ class LegsTest(LegsTestCase):
         hip = self.legs.name.index("front_left_hip_joint")
         lying = self.legs.actual[hip]
         time.sleep(SEND_PERIOD)
-        self.move("front_left_hip_joint", (1.0, lying + 0.2))  # outwards, away from the ground
+        self.move("front_left_hip_joint", (1.0, lying + 0.15))  # outwards, away from the ground
         wait_for("moving joints", lambda: self.legs.posture == "joints")
-        wait_for("the end of the path", lambda: abs(self.legs.actual[hip] - lying - 0.2) < 0.03)
+        wait_for("the end of the path", lambda: abs(self.legs.actual[hip] - lying - 0.15) < 0.03)
         wait_for("the report", lambda: "joint_trajectory of /legs_test" in self.launch.output)
         wait_for("its end", lambda: ": done" in self.launch.output)
 

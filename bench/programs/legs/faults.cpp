@@ -53,12 +53,12 @@ void faults(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
       if (robot.permit().causes != 0) stopped = std::min(stopped, t + 0.02);
     }
     const bool walks = robot.permit().causes == 0 && robot.command().legged.phase == LegPhase::kWalking;
-    const bool told = names(robot.permit(), fault) && stopped <= kNamed;
+    const bool is_named = names(robot.permit(), fault) && stopped <= kNamed;
     const bool over = robot.tilt_now() > kTurnedOver;
     worst.average("turned over by a fault", over ? 1 : 0, "of the faults");
-    worst.average("neither named nor walked through", walks || told ? 0 : 1, "of the faults");
-    worst.average("neither, " + part_of(fault) + " " + fault.kind, walks || told ? 0 : 1, "of the faults");
-    if (over || !(walks || told))
+    worst.average("neither named nor walked through", walks || is_named ? 0 : 1, "of the faults");
+    worst.average("neither, " + part_of(fault) + " " + fault.kind, walks || is_named ? 0 : 1, "of the faults");
+    if (over || !(walks || is_named))
       std::fprintf(stderr, "%s, seed %llu, %s %s: %s, first %s of joint %d, after %.2f s, tilt %.2f rad\n",
                    model.name.c_str(), static_cast<unsigned long long>(seed), fault.component.c_str(),
                    fault.kind.c_str(), over ? "turned over" : "upright",

@@ -19,7 +19,7 @@ Three things end a path of any form:
     jump        the pose moves between two messages by more than the measured speeds allow in that time
     off         the nearest point of the piece, from the farthest one reached to the reach of the lookahead, is too far
     in vain     the robot moves without coming nearer to the end of the piece, or of a turn (headway.py). Progress
-                counts from where a piece begins, and anew after a gap in the odometry: nothing steered meanwhile
+                counts from where a piece begins, and from the end of a gap in the odometry: nothing steered in it
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ class Follower:
         given = self._parameters
         self._headway = Headway(given.in_vain, given.scale_error)
         self._turning_headway = Headway(given.turned_in_vain, given.scale_error)
-        self._anew = False  # progress is judged from here on
+        self._recounts = False  # progress is judged from here on
         self._driven = 0.0  # m, length of the pieces that are done
         self._along = 0.0  # m, progress on the present piece
         self.reason = ""
@@ -160,7 +160,7 @@ class Follower:
         if not all(map(math.isfinite, (pose.x, pose.y, pose.yaw, measured.linear, measured.angular))):
             self.fail("the odometry holds a number that is not finite")
         moved = Motion(measured.linear * elapsed, measured.angular * elapsed)
-        self._anew = self._anew or elapsed > self._parameters.gap
+        self._recounts = self._recounts or elapsed > self._parameters.gap
         if not self.over:
             if self._last is None:
                 self._begin(pose)
@@ -198,7 +198,7 @@ class Follower:
 
     def _begin_piece(self) -> None:
         self._state = State.DRIVING
-        self._anew = True
+        self._recounts = True
 
     def _turn(self, pose: Pose, measured: Motion, moved: float) -> Motion:
         given = self._parameters
@@ -206,9 +206,9 @@ class Follower:
         wanted = self._route.end_heading if at_end else self._route.pieces[self._number].first_heading
         error = turned(wanted - pose.yaw)
         self.heading_error = -error
-        if self._settling or self._anew:
+        if self._settling or self._recounts:
             self._turning_headway.begin(abs(error))
-            self._anew, moved = False, 0.0
+            self._recounts, moved = False, 0.0
         if self._settling:
             self._settling = abs(measured.linear) >= given.standing
             if self._settling:
@@ -276,9 +276,9 @@ class Follower:
         if foot.distance > allowed:
             self.fail(f"{foot.distance:.2f} m off the path, more than {allowed:g} m")
             return True
-        if self._anew:
+        if self._recounts:
             self._headway.begin(left + foot.distance)
-            self._anew, driven = False, 0.0
+            self._recounts, driven = False, 0.0
         if self._headway.step(driven, left + foot.distance):
             self.fail(f"driven by {given.in_vain:g} m without coming nearer to its end")
         return self.over

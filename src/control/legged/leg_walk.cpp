@@ -151,7 +151,7 @@ void LegController::carry(const Request& request, std::uint64_t& reasons) noexce
   track(state_.carried, target, {body_motion_[kZ], body_motion_[kRoll], body_motion_[kPitch]}, period_);
 }
 
-/// Holds the body from now on by the angles of its joints, on the feet where they are.
+/// Holds the body from now on by the angles of its joints, on the feet where they are. It will lie amid them.
 void LegController::stand_here(const ControlInput& input) noexcept {
   const WalkingBody body = walker_.measure(*input.sensors, *input.state);
   const bool lies_next = state_.lies_next != 0;
@@ -159,9 +159,14 @@ void LegController::stand_here(const ControlInput& input) noexcept {
   state_.body[kZ].value = ground_ - state_.walk.ground[0];
   state_.body[kRoll].value = body.roll;
   state_.body[kPitch].value = body.pitch;
+  Eigen::Vector2d lies = Eigen::Vector2d::Zero();  // m, where the body lies
+  for (std::size_t leg = 0; leg < kLegs; ++leg)
+    lies += (body.feet[leg] - legs_[leg].kinematics.position(legs_[leg].lying)).head<2>() / kLegs;
+  state_.body[kX].value = -lies.x();
+  state_.body[kY].value = -lies.y();
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const Eigen::Vector3d& foot = body.feet[leg];
-    state_.places[leg] = {foot.x(), foot.y(), foot.z() + state_.body[kZ].value};
+    state_.places[leg] = {foot.x() - lies.x(), foot.y() - lies.y(), foot.z() + state_.body[kZ].value};
   }
   state_.share.fill(1);
   state_.lifted = kLegs;

@@ -35,7 +35,8 @@ double residual_deviation(SlipResidual::Channel channel, const SlipResidual& res
     const double base = params.wheel_base;
     return std::sqrt(4 * square(params.encoder) + 2 * square(params.wheel_slip_noise) * residual.distance +
                      square(base * uncertainty.wheel_base * residual.turned) +
-                     square(base * Tuning::kWindUp) * std::abs(residual.yaw_rate_change));
+                     square(base * Tuning::kWindUp) * std::abs(residual.yaw_rate_change) +
+                     square(uncertainty.speed_step * span) / 6);
   }
   const double slow = square(Tuning::kSlowAcceleration) + uncertainty.acceleration_variance[channel];
   return std::sqrt(6 * square(params.encoder) + square(params.accelerometer) * span * span * span * 2 / 3 +

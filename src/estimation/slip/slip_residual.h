@@ -11,7 +11,7 @@
 /// factor β:
 ///
 ///   σ_D² = 6 encoder² + n² 2T³/3 + (a² + σ_g²) T⁴ + 2 kPathSlip² distance + (q T)²/12
-///   σ_V² = 4 encoder² + 2 slip² distance + (B σ_β Δψ)² + (B kWindUp)² |Δω|
+///   σ_V² = 4 encoder² + 2 slip² distance + (B σ_β Δψ)² + (B kWindUp)² |Δω| + (q T)²/6
 
 #include <array>
 #include <cstddef>

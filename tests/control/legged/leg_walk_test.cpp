@@ -284,6 +284,25 @@ TEST(LegWalk, LiesDownAfterItsEndIfThatIsTheLastRequest) {
   EXPECT_EQ(walks.legs.out.legged.phase, LegPhase::kStanding);
 }
 
+TEST(LegWalk, LiesDownAmidItsFeet) {
+  WalkingLegs legs = ready();
+  legs.run(0.5, twist_of(0.05));
+  legs.feet[1] += Eigen::Vector3d(0.02, -0.06, 0);
+  legs.caught = 1;
+  legs.step(stance_of(kStanceLie));
+  EXPECT_LT(legs.end(), 3.7);
+  Eigen::Vector2d beside;
+  while (legs.legs.out.legged.phase != LegPhase::kLying) {
+    beside.setZero();
+    for (std::size_t leg = 0; leg < kLegs; ++leg) {
+      const Leg& model = legs.robot().legs[leg];
+      beside += (legs.legs.foot_in_base(leg) - model.kinematics.position(model.lying)).head<2>() / kLegs;
+    }
+    legs.step();
+  }
+  EXPECT_LT(beside.norm(), 2e-3);
+}
+
 TEST(LegWalk, KeepsTheSpeedOfThePermitWithoutTurningTheTwist) {
   WalkingLegs legs = ready();
   legs.legs.permit.speed_limit = 0.2;
