@@ -151,7 +151,7 @@ class LegsTest(LegsTestCase):
         for send, sentence in (
             (lambda: self.move("tail", (1, 0)), "there is no joint 'tail'"),
             (lambda: self.move("front_left_hip_joint", (1, math.nan)), "one of its positions is nan"),
-            (lambda: self.move("front_left_hip_joint", (0.05, lying)), "give it more time"),
+            (lambda: self.move("front_left_hip_joint", (0.02, lying)), "give it more time"),
             (lambda: self.move("front_left_hip_joint", (2, lying), (1, lying)), "is not after 2 s"),
         ):
             send()
