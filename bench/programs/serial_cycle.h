@@ -4,73 +4,17 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <thread>
-#include <utility>
 #include <vector>
 
 #include "bench/programs/rows.h"
-#include "drivers/serial/serial_port.h"
+#include "drivers/serial/awaited_terminal.h"
 #include "rt/clock.h"
-#include "simulation/devices/pseudo_terminal.h"
 #include "support/allocation_guard.h"
 
 namespace robot_control::bench {
-
-/// The device's end, which counts its bytes.
-class CountedEnd final : public SerialLine {
- public:
-  CountedEnd(const std::string& path, std::atomic<std::size_t>& sent) : line_(path), sent_(sent) {}
-  bool receive(SerialChunk& chunk) noexcept override { return line_.receive(chunk); }
-  bool send(std::span<const std::uint8_t> bytes) noexcept override {
-    sent_ += bytes.size();
-    return line_.send(bytes);
-  }
-  bool connected() const noexcept override { return line_.connected(); }
-  std::string name() const override { return line_.name(); }
-
- private:
-  PseudoTerminal line_;
-  std::atomic<std::size_t>& sent_;
-};
-
-/// The port of the driver. `await` waits for the bytes of the device, so that the load of the machine changes nothing.
-class AwaitedPort final : public SerialLine {
- public:
-  AwaitedPort(const std::string& path, std::atomic<std::size_t>& sent)
-      : port_(path, 0, {.name = "serial", .policy = RealtimePolicy::kOff}, &latest), sent_(sent) {}
-  void await() noexcept {
-    while (!has_next_ && taken_ < sent_) {
-      has_next_ = port_.receive(next_);
-      if (!has_next_) std::this_thread::yield();
-    }
-  }
-  bool receive(SerialChunk& chunk) noexcept override {
-    if (std::exchange(has_next_, false)) {
-      chunk = next_;
-    } else if (!port_.receive(chunk)) {
-      return false;
-    }
-    taken_ += chunk.size;
-    return true;
-  }
-  bool send(std::span<const std::uint8_t> bytes) noexcept override { return port_.send(bytes); }
-  bool connected() const noexcept override { return port_.connected(); }
-  std::string name() const override { return port_.name(); }
-
- private:
-  /// The driver takes a later time for its own present one.
-  static std::int64_t latest() { return std::numeric_limits<std::int64_t>::max(); }
-
-  SerialPort port_;
-  SerialChunk next_;
-  bool has_next_ = false;
-  std::size_t taken_ = 0;
-  std::atomic<std::size_t>& sent_;
-};
 
 /// Adds the rows of one board, whose machine (tests/drivers) has two wheels in the air.
 template <class Machine>
@@ -80,10 +24,10 @@ void add_serial_cycle(std::vector<Row>& rows, const std::string& name, const Joi
   constexpr double kRate = 500;
   constexpr double kAllowed = 20'000;
   const std::string path = "/tmp/bench_step_" + std::to_string(getpid());
-  std::atomic<std::size_t> sent = 0;
-  AwaitedPort* port = nullptr;
-  Machine machine(kRate, std::make_unique<CountedEnd>(path, sent), [&] {
-    auto made = std::make_unique<AwaitedPort>(path, sent);
+  const UnderWay bytes = std::make_shared<std::atomic<std::size_t>>(0);
+  AwaitedLine* port = nullptr;
+  Machine machine(kRate, std::make_unique<CountedLine>(path, bytes), [&] {
+    auto made = std::make_unique<AwaitedLine>(path, bytes);
     port = made.get();
     return made;
   });

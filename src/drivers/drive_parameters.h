@@ -25,6 +25,11 @@ inline std::vector<Word> words_of(SilenceReaction) {
           {"holds", SilenceReaction::kHolds}};
 }
 
+/// Returns what the drive does on silence, in words.
+inline std::string described(SilenceReaction reaction) {
+  return reaction == SilenceReaction::kUnknown ? "does what is unknown" : word_of(reaction);
+}
+
 struct DriveParameters {
   std::string joint;               ///< name in the robot's model; the name of the block
   std::uint64_t node = 0;          ///< of the drive on the bus

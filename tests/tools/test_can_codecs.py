@@ -1,7 +1,6 @@
 """The ODrive codecs equal cantools, which reads the DBC files, for every message and both ways."""
 
 import math
-import os
 import random
 import re
 import struct
@@ -9,7 +8,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from robot_control.common.pypi import use_packages
+from pypi_package import imported
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = ROOT / "build/robot_control/tests/drivers/can/odrive_codec_lines"
@@ -28,13 +27,7 @@ LOW_WORD = {("0.5", "Motor_Error"), ("0.5", "Shadow_Count"), ("0.5", "Count_in_C
 
 @pytest.fixture(scope="module")
 def databases():
-    use_packages("can")
-    try:
-        import cantools
-    except ImportError:
-        if os.environ.get("CI") and os.environ.get("ROBOT_CONTROL_NIGHTLY"):
-            raise
-        pytest.skip("cantools of PyPI is not installed: scripts/setup --can")
+    cantools = imported("cantools", "can")
     return {version: cantools.database.load_file(ROOT / "tests/data" / name) for version, name in FILES.items()}
 
 

@@ -1,6 +1,5 @@
 """The CANopen codecs exchange frames with a drive whose CANopen is that of PyPI's canopen."""
 
-import os
 import random
 import struct
 import subprocess
@@ -8,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from can_wire import Wire
-from robot_control.common.pypi import use_packages
+from pypi_package import imported
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = ROOT / "build/robot_control/tests/drivers/can/canopen_codec_lines"
@@ -81,14 +80,7 @@ class Exchange:
 
 @pytest.fixture(params=["cia402_example_e35.eds", "cia402_ros_industrial_slave.eds"])
 def exchange(request):
-    use_packages("can")
-    try:
-        import canopen
-    except ImportError:
-        if os.environ.get("CI") and os.environ.get("ROBOT_CONTROL_NIGHTLY"):
-            raise
-        pytest.skip("canopen of PyPI is not installed: scripts/setup --can")
-    opened = Exchange(canopen, request.param)
+    opened = Exchange(imported("canopen", "can"), request.param)
     yield opened
     opened.close()
 

@@ -2,7 +2,6 @@
 master."""
 
 import asyncio
-import os
 import subprocess
 import threading
 import time
@@ -10,22 +9,12 @@ from pathlib import Path
 
 import pytest
 from can_wire import Wire
-from robot_control.common.pypi import use_packages
+from pypi_package import imported
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = ROOT / "build/robot_control/tests/simulation/devices/can_peer"
 NODE = 5
 REMOTE = "R"
-
-
-def imported(name):
-    use_packages("can")
-    try:
-        return __import__(name)
-    except ImportError:
-        if os.environ.get("CI") and os.environ.get("ROBOT_CONTROL_NIGHTLY"):
-            raise
-        pytest.skip(f"{name} of PyPI is not installed: scripts/setup --can")
 
 
 class Peer:
@@ -121,7 +110,7 @@ def run_cia402(ours, drive, cycles, torque=0.0, period_ns=10_000_000):
 
 
 def test_our_driver_brings_canopens_drive_to_operation_enabled(peer, tmp_path):
-    canopen = imported("canopen")
+    canopen = imported("canopen", "can")
     drive = TorqueDrive(canopen, "cia402_example_e35.eds")
     ours = peer("drives", drive_file(tmp_path, "cia402", **CIA402), "100", "wheel")
     run_cia402(ours, drive, 300, torque=0.155)
@@ -137,7 +126,7 @@ def test_our_driver_brings_canopens_drive_to_operation_enabled(peer, tmp_path):
 
 
 def test_our_driver_names_what_a_position_drive_lacks(peer, tmp_path):
-    canopen = imported("canopen")
+    canopen = imported("canopen", "can")
     drive = TorqueDrive(canopen, "cia402_ros_industrial_slave.eds")
     ours = peer("drives", drive_file(tmp_path, "cia402", **CIA402), "100", "wheel")
     run_cia402(ours, drive, 300)
@@ -189,7 +178,7 @@ def pump():
     opened = []
 
     def start(*arguments):
-        opened.append(Pump(imported("can"), *arguments))
+        opened.append(Pump(imported("can", "can"), *arguments))
         return opened[-1]
 
     yield start
@@ -198,10 +187,10 @@ def pump():
 
 
 def test_our_driver_brings_odrive_cans_mock_to_closed_loop_and_follows_it(peer, pump, tmp_path):
-    imported("odrive_can")
+    imported("odrive_can", "can")
     from odrive_can.mock import ODriveCANMock
 
-    can = imported("can")
+    can = imported("can", "can")
     mock = ODriveCANMock(axis_id=NODE, can_bus=can.Bus(interface="virtual", channel="mock"))
     loop = asyncio.new_event_loop()
     thread = threading.Thread(target=loop.run_forever)
@@ -235,10 +224,10 @@ def test_our_driver_brings_odrive_cans_mock_to_closed_loop_and_follows_it(peer, 
 
 
 def test_odrive_cans_master_drives_our_device(peer, pump):
-    imported("odrive_can")
+    imported("odrive_can", "can")
     from odrive_can.odrive import ODriveCAN
 
-    can = imported("can")
+    can = imported("can", "can")
     ours = peer("odrive", str(NODE), "0.5")
     pump(ours, "master")
 
@@ -263,9 +252,9 @@ def test_odrive_cans_master_drives_our_device(peer, pump):
 
 
 def test_canopens_master_drives_our_device(peer, pump):
-    canopen = imported("canopen")
-    imported("canopen.profiles.p402")
-    can = imported("can")
+    canopen = imported("canopen", "can")
+    imported("canopen.profiles.p402", "can")
+    can = imported("can", "can")
     ours = peer("cia402", str(NODE))
     pump(ours, "p402")
     network = canopen.Network(can.Bus(interface="virtual", channel="p402"))

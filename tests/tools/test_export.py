@@ -1,20 +1,17 @@
 """export.py writes one log in other formats."""
 
 import csv
-import importlib
 import math
-import os
 
 import numpy as np
 import pytest
+from pypi_package import imported
 from robot_control import ClosedLoop
-from robot_control.common.pypi import use_packages
 from robot_control.common.run_log import read_log, read_run
 from robot_control.export.main import main
 from robot_control.export.topics import odom_frame, root_link
 
 SECONDS = 2.0
-MUST_RUN = bool(os.environ.get("CI") and os.environ.get("ROBOT_CONTROL_NIGHTLY"))
 
 
 @pytest.fixture(scope="module")
@@ -99,16 +96,8 @@ def test_topics_are_those_of_a_robot_at_its_rates(run_bag, tmp_path):
     assert messages["tf"][-1][0].transforms[0].header.frame_id == "odom"
 
 
-def mcap_reader():
-    """PyPI's mcap.reader, which is optional but for .ci/nightly."""
-    use_packages("export")
-    if MUST_RUN:
-        return importlib.import_module("mcap.reader")
-    return pytest.importorskip("mcap.reader", reason="mcap is not installed: scripts/setup --export")
-
-
 def test_an_mcap_holds_every_message_as_it_is(run_bag, tmp_path):
-    reader = mcap_reader()
+    reader = imported("mcap.reader", "export", "mcap")
     rosbag = pytest.importorskip("rosbag")
     main([str(run_bag), "--mcap", str(tmp_path / "run.mcap")])
     with rosbag.Bag(str(run_bag)) as bag:

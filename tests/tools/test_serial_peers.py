@@ -1,13 +1,12 @@
 """Our requests to a RoboClaw, and the simulated one, against the maker's own library (PyPI basicmicro)."""
 
 import contextlib
-import os
 import subprocess
 import time
 from pathlib import Path
 
 import pytest
-from robot_control.common.pypi import use_packages
+from pypi_package import imported
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = ROOT / "build/robot_control/tests/simulation/devices/roboclaw_peer"
@@ -18,14 +17,7 @@ QPPS = 1.2 * 30 * 1000 / (2 * 3.141592653589793)
 
 @pytest.fixture
 def library():
-    use_packages("serial")
-    try:
-        import basicmicro
-    except ImportError:
-        if os.environ.get("CI") and os.environ.get("ROBOT_CONTROL_NIGHTLY"):
-            raise
-        pytest.skip("basicmicro of PyPI is not installed: scripts/setup --serial")
-    return basicmicro
+    return imported("basicmicro", "serial")
 
 
 class Listener:

@@ -4,10 +4,9 @@ check every message of ours.
 
 import asyncio
 import json
-import os
 
 import pytest
-from robot_control.common.pypi import use_packages
+from pypi_package import imported
 from robot_control.fleet.v2.messages import time_text
 from robot_control.fleet.v2.state import visualization
 
@@ -16,17 +15,6 @@ from bench.fleet.virtual_robot import Run
 
 TARGET = f"{MANUFACTURER}/{SERIAL}"
 TOPIC = f"uagv/v2/{TARGET}"
-
-
-def imported():
-    use_packages("fleet")
-    try:
-        import vda5050
-    except ImportError:
-        if os.environ.get("CI") and os.environ.get("ROBOT_CONTROL_NIGHTLY"):
-            raise
-        pytest.skip("vda5050-sdk of PyPI is not installed: scripts/setup --fleet")
-    return vda5050
 
 
 class Wire:
@@ -106,7 +94,7 @@ async def drive(vda5050):
 
 
 def test_a_master_by_others_assigns_extends_cancels_and_sees_every_node():
-    run, states, errors, seen = asyncio.run(drive(imported()))
+    run, states, errors, seen = asyncio.run(drive(imported("vda5050", "fleet", "vda5050-sdk")))
     assert errors == []
     assert {"ONLINE", "factsheet", "visualization"} <= set(seen)
     reached = [(state.order_id, state.last_node_id) for state in states]

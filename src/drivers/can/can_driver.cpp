@@ -169,7 +169,7 @@ std::string CanDriver::description() const {
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const KnownReaction& known = statuses.drives[i].on_silence;
     text << (i == 0 ? "; on silence " : ", ") << drives_[i].drive_parameters().joint << ' '
-         << (known.reaction == SilenceReaction::kUnknown ? "does what is unknown" : word_of(known.reaction));
+         << described(known.reaction);
     if (known.evidence == ReactionEvidence::kRead) text << " (read from the drive)";
     if (known.evidence == ReactionEvidence::kConfirmed) text << " (stated in the drive file)";
   }

@@ -298,10 +298,8 @@ std::string BoardDriver::description() const {
   text << "board on " << line_->name() << ", protocol " << int{BOARD_PROTOCOL};
   if (published_status_.load(status) && status.firmware != 0) text << ", firmware " << status.firmware;
   if (load_ > 0) text << ", load of the line " << std::lround(100 * load_) << " %";
-  text << (parameters_.takes_speeds ? ", takes speeds" : ", takes torques") << "; on silence ";
-  text << (parameters_.line.on_silence == SilenceReaction::kUnknown ? "it does what is unknown"
-                                                                    : "it " + word_of(parameters_.line.on_silence))
-       << " (stated in the drive file)";
+  text << (parameters_.takes_speeds ? ", takes speeds" : ", takes torques") << "; on silence it "
+       << described(parameters_.line.on_silence) << " (stated in the drive file)";
   return text.str();
 }
 

@@ -261,10 +261,7 @@ void RoboclawDriver::write(std::span<const JointCommand> commands) noexcept {
 std::string RoboclawDriver::description() const {
   std::ostringstream text;
   text << "RoboClaw on " << line_->name() << ", takes speeds, its serial timeout is " << kTimeoutNs / 1'000'000
-       << " ms; on silence ";
-  text << (parameters_.line.on_silence == SilenceReaction::kUnknown ? "it does what is unknown"
-                                                                    : "it " + word_of(parameters_.line.on_silence))
-       << " (stated in the drive file)";
+       << " ms; on silence it " << described(parameters_.line.on_silence) << " (stated in the drive file)";
   return text.str();
 }
 

@@ -9,10 +9,10 @@
 /// brings them to the time of `read`.
 ///
 /// `read` reports kStarting until version, gains and QPPS of both motors were read, and its serial timeout, which is
-/// set to kTimeoutNs. It is refused with gains or a QPPS of zero: such a board answers
-/// a speed with full power. Until then, and after a fault of the counts, the order is a duty of zero. Otherwise the
-/// board brakes with the speed zero, which it keeps at rest. Faults stay until the operator's reset.
-/// Meanwhile each joint carries the cause as its fault word, because a board that restarts counts from zero:
+/// set to kTimeoutNs. It is refused with gains or a QPPS of zero: such a board answers a speed with full power. Until
+/// then, and after a fault of the counts, the order is a duty of zero. Otherwise the board brakes with the speed zero,
+/// which it keeps at rest. Faults stay until the operator's reset. Meanwhile each joint carries the cause as its fault
+/// word, because a board that restarts counts from zero. The causes are:
 ///
 ///   silence         no new counts for kRoboclawSilence, after which a board without requests has stopped by itself
 ///   error           of the board's status

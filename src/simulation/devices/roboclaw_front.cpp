@@ -201,9 +201,8 @@ std::string RoboclawFront::inject(std::string_view component, std::string_view k
     }
   }
   return std::string(
-             "component must be board (with ok, off, reset, brown_out, fault, no_gains), encoder (with ok, stuck) or "
-             "line "
-             "(with ") +
+             "component must be board (with ok, off, reset, brown_out, fault, no_gains), encoder (with ok, stuck) "
+             "or line (with ") +
          kSerialFaultWords + ")";
 }
 

@@ -6,14 +6,13 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <string>
 
 #include "drivers/board_machine.h"
 #include "drivers/driver.h"
+#include "drivers/serial/awaited_terminal.h"
 #include "rt/clock.h"
-#include "simulation/devices/pseudo_terminal.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
@@ -112,48 +111,8 @@ TEST_F(SerialPortTest, APseudoTerminalTakesNoLinkInUseAndReplacesOneThatLeadsNow
   EXPECT_TRUE(passes(port, device, "still there"));
 }
 
-/// Bytes that are under way to the driver.
-using UnderWay = std::shared_ptr<std::size_t>;
-
-class CountedLine final : public SerialLine {
- public:
-  CountedLine(const std::string& path, UnderWay bytes) : line_(path), bytes_(std::move(bytes)) {}
-  bool receive(SerialChunk& chunk) noexcept override { return line_.receive(chunk); }
-  bool send(std::span<const std::uint8_t> bytes) noexcept override {
-    *bytes_ += bytes.size();
-    return line_.send(bytes);
-  }
-  bool connected() const noexcept override { return line_.connected(); }
-  std::string name() const override { return line_.name(); }
-
- private:
-  PseudoTerminal line_;
-  UnderWay bytes_;
-};
-
-/// The true port. It waits for what is under way, so that the load of the machine changes nothing.
-class AwaitedLine final : public SerialLine {
- public:
-  AwaitedLine(const std::string& path, UnderWay bytes) : line_(path, 0, kThread, &latest), bytes_(std::move(bytes)) {}
-  bool receive(SerialChunk& chunk) noexcept override {
-    if (*bytes_ == 0 || !comes_true([&] { return line_.receive(chunk); })) return false;
-    *bytes_ -= chunk.size;
-    return true;
-  }
-  bool send(std::span<const std::uint8_t> bytes) noexcept override { return line_.send(bytes); }
-  bool connected() const noexcept override { return line_.connected(); }
-  std::string name() const override { return line_.name(); }
-
- private:
-  /// The driver takes a later time for its own present one.
-  static std::int64_t latest() { return std::numeric_limits<std::int64_t>::max(); }
-
-  SerialPort line_;
-  UnderWay bytes_;
-};
-
 TEST_F(SerialPortTest, TheDriverTurnsTheWheelsOfABoardBehindAPseudoTerminal) {
-  const UnderWay bytes = std::make_shared<std::size_t>(0);
+  const UnderWay bytes = std::make_shared<std::atomic<std::size_t>>(0);
   BoardMachine machine(500, std::make_unique<CountedLine>(path_, bytes),
                        [&] { return std::make_unique<AwaitedLine>(path_, bytes); });
   machine.start();
