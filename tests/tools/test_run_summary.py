@@ -152,6 +152,17 @@ def test_the_names_of_many_brakes_do_not_overlap(run, panels):
     assert "gate braked, 40 ×" in [text.get_text() for text in speed.get_legend().get_texts()]
 
 
+@pytest.mark.parametrize("measured", [True, False])
+def test_a_torque_that_no_drive_measures_is_not_in_the_legend(run, panels, measured):
+    efforts = {
+        name: values if measured else values * np.nan for name, values in run.items() if name.endswith("_effort")
+    }
+    *_, torque = panels(run | efforts)
+    labels = torque.get_legend_handles_labels()[1]
+    assert any(label.endswith("commanded") for label in labels)
+    assert any(label.endswith("actual") for label in labels) == measured
+
+
 def test_the_truth_is_drawn_over_the_noise_of_its_estimate(run, panels):
     for axes in panels(run)[1:3]:
         order = [line.get_label() for line in axes.lines]

@@ -132,7 +132,9 @@ def _draw_torques(axes: Axes, log: Log) -> None:
             alpha=0.3,
             label=f"{name}, commanded",
         )
-        axes.plot(log["time"], log[f"{joint}_effort"], color=color, linewidth=1.2, label=f"{name}, actual")
+        measured = log[f"{joint}_effort"]
+        if np.isfinite(measured).any():  # some drives measure no torque
+            axes.plot(log["time"], measured, color=color, linewidth=1.2, label=f"{name}, actual")
     axes.set_title("Torque")
     axes.set_ylabel("torque [N·m]")
 
