@@ -53,6 +53,16 @@ def test_gaps_in_the_odometry_are_no_motion_in_vain():
     assert follower.state is State.DONE, follower.reason
 
 
+def test_stamps_of_a_machine_that_stands_still_are_no_motion_in_vain():
+    """In every fifth step the simulated machine waits for 70 ms: the stamp is late, and the robot moves by a step."""
+    robot, follower = Ideal(), Follower(route(SHAPES["square"](1.0)))
+    steps = 0
+    while not follower.over:
+        steps += 1
+        robot.drive(follower.step(robot.pose, robot.motion, elapsed=PERIOD + (0.07 if steps % 5 == 0 else 0.0)))
+    assert follower.state is State.DONE, follower.reason
+
+
 def refusal(points):
     with pytest.raises(PathError) as error:
         route(points)

@@ -18,8 +18,9 @@ Three things end a path of any form:
 
     jump        the pose moves between two messages by more than the measured speeds allow in that time
     off         the nearest point of the piece, from the farthest one reached to the reach of the lookahead, is too far
-    in vain     the robot moves without coming nearer to the end of the piece, or of a turn (headway.py). Progress
-                counts from where a piece begins, and from the end of a gap in the odometry: nothing steered in it
+    in vain     the robot moves without coming nearer to the end of the piece, or of a turn (headway.py). Of the time
+                between two messages PERIOD counts at most: in a gap nothing steered, and a simulated machine that had
+                to wait did not move
 """
 
 from __future__ import annotations
@@ -56,7 +57,6 @@ class FollowParameters:
     heading_jump: float = 0.2  # rad; a localisation corrects a heading by less at once
     in_vain: float = 0.15  # m
     turned_in_vain: float = 0.5  # rad
-    gap: float = 0.1  # s between two odometry messages, five periods
     speed_error: float = 0.1  # share by which a measured speed may exceed that of the poses
     scale_error: float = 0.01  # share by which a length in the path's frame may be shorter than by odometry
 
@@ -100,7 +100,6 @@ class Follower:
         given = self._parameters
         self._headway = Headway(given.in_vain, given.scale_error)
         self._turning_headway = Headway(given.turned_in_vain, given.scale_error)
-        self._recounts = False  # progress is judged from here on
         self._driven = 0.0  # m, length of the pieces that are done
         self._along = 0.0  # m, progress on the present piece
         self.reason = ""
@@ -159,13 +158,13 @@ class Follower:
         """
         if not all(map(math.isfinite, (pose.x, pose.y, pose.yaw, measured.linear, measured.angular))):
             self.fail("the odometry holds a number that is not finite")
-        moved = Motion(measured.linear * elapsed, measured.angular * elapsed)
-        self._recounts = self._recounts or elapsed > self._parameters.gap
+        steered = min(elapsed, PERIOD)
+        moved = Motion(measured.linear * steered, measured.angular * steered)
         if not self.over:
             if self._last is None:
                 self._begin(pose)
             else:
-                moved = self._moved(*self._last, pose, measured, elapsed)
+                moved = self._moved(*self._last, pose, measured, moved, elapsed)
             self._last = pose, measured
         if self.over or self._state is State.PAUSED:
             return STAND
@@ -173,8 +172,10 @@ class Follower:
             return self._turn(pose, measured, moved.angular)
         return self._drive(pose, measured, limit, moved.linear)
 
-    def _moved(self, last: Pose, before: Motion, pose: Pose, measured: Motion, elapsed: float) -> Motion:
-        """m, rad since the last message, at the faster speed of both ends; a larger jump ends the path."""
+    def _moved(
+        self, last: Pose, before: Motion, pose: Pose, measured: Motion, moved: Motion, elapsed: float
+    ) -> Motion:
+        """m, rad since the last message, at most `moved`. A jump beyond what the faster speed allows ends the path."""
         given = self._parameters
         distance = math.dist((last.x, last.y), (pose.x, pose.y))
         angle = abs(turned(pose.yaw - last.yaw))
@@ -182,9 +183,8 @@ class Follower:
             self.fail(f"the pose jumped by {distance:.2f} m in {elapsed:.2f} s: {JUMPED}")
         elif angle > max(abs(before.angular), abs(measured.angular)) * elapsed + given.heading_jump:
             self.fail(f"the pose jumped by {math.degrees(angle):.0f} deg in {elapsed:.2f} s: {JUMPED}")
-        driven = abs(measured.linear) * elapsed
-        driven = min(driven, max(distance, (1 - given.speed_error) * driven))
-        return Motion(math.copysign(driven, measured.linear), measured.angular * elapsed)
+        driven = min(abs(moved.linear), max(distance, (1 - given.speed_error) * abs(moved.linear)))
+        return Motion(math.copysign(driven, moved.linear), moved.angular)
 
     def _begin(self, pose: Pose) -> None:
         first = self._route.pieces[0]
@@ -198,7 +198,7 @@ class Follower:
 
     def _begin_piece(self) -> None:
         self._state = State.DRIVING
-        self._recounts = True
+        self._headway.begin(self._route.pieces[self._number].length + self._reachable)
 
     def _turn(self, pose: Pose, measured: Motion, moved: float) -> Motion:
         given = self._parameters
@@ -206,10 +206,8 @@ class Follower:
         wanted = self._route.end_heading if at_end else self._route.pieces[self._number].first_heading
         error = turned(wanted - pose.yaw)
         self.heading_error = -error
-        if self._settling or self._recounts:
-            self._turning_headway.begin(abs(error))
-            self._recounts, moved = False, 0.0
         if self._settling:
+            self._turning_headway.begin(abs(error))
             self._settling = abs(measured.linear) >= given.standing
             if self._settling:
                 return STAND
@@ -275,11 +273,7 @@ class Follower:
             self._reachable = 0.0
         if foot.distance > allowed:
             self.fail(f"{foot.distance:.2f} m off the path, more than {allowed:g} m")
-            return True
-        if self._recounts:
-            self._headway.begin(left + foot.distance)
-            self._recounts, driven = False, 0.0
-        if self._headway.step(driven, left + foot.distance):
+        elif self._headway.step(driven, left + foot.distance):
             self.fail(f"driven by {given.in_vain:g} m without coming nearer to its end")
         return self.over
 

@@ -164,6 +164,10 @@ double LegModel::leg_length() const noexcept {
   return length;
 }
 
+double usual_rotor_inertia(double mass, double leg_length) noexcept {
+  return 0.01 * mass / 12.7 * leg_length * leg_length / (0.426 * 0.426);
+}
+
 const LegModel& leg_model_of(const MachineModel& machine) {
   const auto* const legged = dynamic_cast<const LegModel*>(&machine);
   if (legged == nullptr) throw RobotError(machine.source + ": this machine has no legs");
@@ -192,9 +196,8 @@ LegModel read_legs(const RobotDescription& description, const MachineParameters&
   hash.add(description.text);
   hash.add(parameters);
   hash.add(std::optional<double>(static_cast<double>(legs.knee_bend)));
-  hash.add(std::optional<double>(legs.leg_rotor_inertia));
+  hash.add(legs.leg_rotor_inertia);
   model.hash = hash.value();
-  model.rotor_inertia = legs.leg_rotor_inertia;
   const Belly belly = belly_of(*bodies, places);
   model.belly = belly.height;
   for (std::size_t i = 0; i < kLegs; ++i) {
@@ -213,12 +216,13 @@ LegModel read_legs(const RobotDescription& description, const MachineParameters&
     model.legs[i].lying = lying_posture(*bodies, model.legs[i].kinematics, places[i], belly);
     for (std::size_t j = 0; j < kLegJoints; ++j) {
       JointModel& joint = model.joints[kLegJoints * i + j];
-      joint.rotor_inertia = legs.leg_rotor_inertia;
       joint.rest_position = model.legs[i].lying[static_cast<Eigen::Index>(j)];
     }
     model.contacts.push_back(last.name);
   }
   read_masses(*bodies, parameters, model.leg_length(), model);
+  model.rotor_inertia = legs.leg_rotor_inertia.value_or(usual_rotor_inertia(model.mass, model.leg_length()));
+  for (JointModel& joint : model.joints) joint.rotor_inertia = model.rotor_inertia;
   read_imu(*bodies, parameters, model.leg_length(), model);
   model.bodies = bodies;
   note_suspicious_bodies(model);

@@ -28,7 +28,8 @@ inline std::vector<Word> words_of(KneeBend) {
 /// The user's values for a robot with legs, in the block `robot:`. They have no effect on a robot with wheels.
 struct LegParameters {
   KneeBend knee_bend = KneeBend::kDerived;
-  double leg_rotor_inertia = 0.01;  ///< kg·m², of each leg joint's rotor times its gear ratio squared
+  /// kg·m², of each leg joint's rotor times its gear ratio squared; none: of the robot's size (leg_model.h)
+  std::optional<double> leg_rotor_inertia = std::nullopt;
 };
 
 inline Keys keys(LegParameters& legs) {

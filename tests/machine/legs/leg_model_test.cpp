@@ -244,6 +244,14 @@ TEST_F(LegRefusals, FindMirroredLegsWithFlippedAxes) {
   }
 }
 
+TEST(LegModel, HasRotorsOfTheRobotsSizeUnlessTheyAreGiven) {
+  const LegModel quadbot = legged_robot("quadbot");
+  EXPECT_NEAR(quadbot.rotor_inertia, 0.01, 1e-9);
+  EXPECT_EQ(quadbot.joints[5].rotor_inertia, quadbot.rotor_inertia);
+  EXPECT_NEAR(usual_rotor_inertia(8 * quadbot.mass, 2 * quadbot.leg_length()), 0.32, 1e-7) << "twice as large";
+  EXPECT_EQ(legged_robot("quadbot", {.leg_rotor_inertia = 0.003}).rotor_inertia, 0.003);
+}
+
 TEST(HasLegs, IsTrueForQuadrupedsAndFalseForRobotsOnWheels) {
   for (const std::string& name : legged_robots())
     EXPECT_TRUE(has_legs(read_rigid_bodies(legged_description(name)))) << name;
