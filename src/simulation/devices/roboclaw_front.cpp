@@ -137,15 +137,11 @@ void RoboclawFront::obey() {
 
 double RoboclawFront::step_wheel(Wheel& wheel, std::size_t index, double seconds) const {
   if (!wheel.driven) {
-    wheel.integral = 0;
+    wheel.speed_loop.reset();
     return std::clamp(-wheel.damping * wheel.velocity, -wheel.limit, wheel.limit);
   }
   const bool blind = stuck_ && parameters_.wheels[index].motor == 1;
-  const double error = wheel.wanted - (blind ? 0 : wheel.velocity);
-  const double integral = wheel.integral + wheel.damping / kIntegralTime * error * seconds;
-  const double wanted = wheel.damping * error + integral;
-  if (std::abs(wanted) < wheel.limit) wheel.integral = integral;
-  return std::clamp(wanted, -wheel.limit, wheel.limit);
+  return wheel.speed_loop.step(wheel.wanted - (blind ? 0 : wheel.velocity), wheel.damping, wheel.limit, seconds);
 }
 
 void RoboclawFront::run(std::span<const JointSample> joints) {

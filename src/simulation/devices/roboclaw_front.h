@@ -20,6 +20,7 @@
 #include "drivers/serial/roboclaw_protocol.h"
 #include "gate/brake_law.h"
 #include "simulation/devices/device_front.h"
+#include "simulation/devices/speed_loop.h"
 #include "simulation/devices/virtual_serial.h"
 
 namespace robot_control {
@@ -28,7 +29,6 @@ class RoboclawFront final : public DeviceFront {
  public:
   static constexpr std::int64_t kStepNs = 250'000;
   static constexpr std::int64_t kBootNs = 300'000'000;  ///< in which a board that restarts is silent
-  static constexpr double kIntegralTime = 0.2;          ///< s, of the speed loop
 
   /// Before a line in virtual time. `effort_limits` are those of the motors at the joints, N·m.
   RoboclawFront(const RoboclawParameters& parameters, std::span<const Brake> brakes,
@@ -56,7 +56,7 @@ class RoboclawFront final : public DeviceFront {
     double position = 0, velocity = 0;
     double zero = 0;      // rad, at which the counts are 0
     double wanted = 0;    // rad/s, of the joint
-    double integral = 0;  // N·m
+    SpeedLoop speed_loop{};
     double mean_torque = 0;
     std::int32_t stuck = 0;
     bool driven = false;  // by a speed

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
 
 #include "drivers/can/odrive/odrive_messages_06.h"
 #include "simulation/devices/device_rig.h"
@@ -19,8 +20,11 @@ using ::testing::HasSubstr;
 struct Dialect {
   std::string name;
   std::function<Device&(DeviceRig& rig, std::uint8_t node, double clock_ppm)> add;
-  double torque_step = 0;  ///< N·m of the motor: one step of the protocol
-  double count = 0;        ///< rad of the motor
+  std::function<void(DeviceRig& rig, bool accepted)> add_unknown;  ///< A drive with an unknown reaction on silence.
+  can_frame foreign{};                                             ///< of another program that commands node 1
+  std::function<bool(const can_frame& frame)> clears;              ///< whether it requests node 1 to clear its errors
+  double torque_step = 0;                                          ///< N·m of the motor: one step of the protocol
+  double count = 0;                                                ///< rad of the motor
   bool brakes_by_itself = false;
 };
 
@@ -33,6 +37,16 @@ Dialect odrive_dialect(const std::string& name, odrive::Firmware firmware, doubl
             pair.device.clock_ppm = clock_ppm;
             return add(rig, pair);
           },
+          .add_unknown =
+              [](DeviceRig& rig, bool accepted) {
+                OdrivePair pair = odrive_pair(1);
+                pair.drive.drive.on_silence = SilenceReaction::kUnknown;
+                pair.drive.drive.accept_unknown_watchdog = accepted;
+                add(rig, pair);
+              },
+          .foreign = encode(1, odrive::SetInputTorque{.torque = 0.1}),
+          .clears =
+              [](const can_frame& frame) { return odrive::decode<odrive::v06::ClearErrors>(frame).has_value(); },
           .torque_step = 1.0e-6,
           .count = 2 * std::numbers::pi / 8192};
 }
@@ -47,6 +61,19 @@ Dialect cia402_dialect(const std::string& name, cia402::ModeChoice mode, cia402:
             pair.device.clock_ppm = clock_ppm;
             return add(rig, pair);
           },
+          .add_unknown =
+              [](DeviceRig& rig, bool accepted) {
+                Cia402Pair pair = cia402_pair(1);
+                pair.device.has_reactions = false;
+                pair.drive.drive.accept_unknown_watchdog = accepted;
+                add(rig, pair);
+              },
+          .foreign = canopen::encode_nmt({.command = canopen::NmtCommand::kStart, .node = 0}),
+          .clears =
+              [before = false](const can_frame& frame) mutable {
+                if (frame.can_id != 0x201) return false;
+                return !std::exchange(before, (frame.data[0] & 0x80U) != 0) && before;
+              },
           .torque_step = 0.002,
           .count = 2 * std::numbers::pi / 4096,
           .brakes_by_itself = true};
@@ -220,20 +247,12 @@ TEST_P(DriveAndDevice, AFaultThatRemainsIsReportedAgainAfterTheReset) {
 }
 
 TEST_P(DriveAndDevice, OneResetIsOneAttempt) {
-  const bool is_odrive = !GetParam().brakes_by_itself;
   ASSERT_TRUE(rig_.runs());
   device_->inject(DeviceFault::kEncoder);
   ASSERT_TRUE(fails());
   unsigned clears = 0;
-  bool bit_before = false;
-  rig_.bus().join([&](const can_frame& frame, std::int64_t) {
-    if (is_odrive) {
-      if (odrive::decode<odrive::v06::ClearErrors>(frame)) ++clears;
-    } else if (frame.can_id == 0x201) {
-      const bool bit = (frame.data[0] & 0x80U) != 0;
-      if (bit && !bit_before) ++clears;
-      bit_before = bit;
-    }
+  rig_.bus().join([&clears, is_one = GetParam().clears](const can_frame& frame, std::int64_t) {
+    if (is_one(frame)) ++clears;
   });
   rig_.command_all({.enabled = true, .reset = true});
   rig_.cycle();
@@ -253,9 +272,7 @@ TEST_P(DriveAndDevice, OneResetIsOneAttempt) {
 TEST_P(DriveAndDevice, AForeignCommanderIsNamedAndTheJointCanStillBrake) {
   ASSERT_TRUE(rig_.runs());
   const std::size_t foreign = rig_.bus().join([](const can_frame&, std::int64_t) {});
-  const bool is_odrive = !GetParam().brakes_by_itself;
-  rig_.bus().send(foreign, is_odrive ? encode(1, odrive::SetInputTorque{.torque = 0.1})
-                                     : canopen::encode_nmt({.command = canopen::NmtCommand::kStart, .node = 0}));
+  rig_.bus().send(foreign, GetParam().foreign);
   rig_.run(0.02);
   EXPECT_EQ(state(), DriveState::kFault);
   EXPECT_THAT(rig_.drive().words(), HasSubstr("is commanded by another program"));
@@ -267,17 +284,7 @@ TEST_P(DriveAndDevice, AForeignCommanderIsNamedAndTheJointCanStillBrake) {
 TEST_P(DriveAndDevice, AUnknownReactionOnSilenceRefusesUnlessItIsAccepted) {
   for (const bool accepted : {false, true}) {
     DeviceRig rig;
-    if (GetParam().brakes_by_itself) {
-      Cia402Pair pair = cia402_pair(1);
-      pair.device.has_reactions = false;
-      pair.drive.drive.accept_unknown_watchdog = accepted;
-      add(rig, pair);
-    } else {
-      OdrivePair pair = odrive_pair(1);
-      pair.drive.drive.on_silence = SilenceReaction::kUnknown;
-      pair.drive.drive.accept_unknown_watchdog = accepted;
-      add(rig, pair);
-    }
+    GetParam().add_unknown(rig, accepted);
     EXPECT_EQ(static_cast<bool>(rig.runs(3)), accepted);
     if (!accepted) {
       EXPECT_THAT(rig.drive().words(), HasSubstr("unknown reaction on silence"));
