@@ -6,10 +6,12 @@
 
 #include "simulation/devices/cia402_device.h"
 #include "simulation/devices/odrive_device.h"
+#include "simulation/devices/vesc_device.h"
 
 namespace robot_control {
 namespace {
 
+constexpr double kVescCurrent = 10;     // A
 constexpr double kOdriveWatchdog = 0.1;  // s, where the drive file says that it coasts on silence
 
 double clock_of(std::size_t device) {
@@ -39,6 +41,25 @@ OdriveDeviceParameters device_of(const odrive::OdriveParameters& drive, const Br
 
 std::unique_ptr<Device> make_device(const OdriveDeviceParameters& device, VirtualCan& bus, DeviceMotor& motor) {
   return std::make_unique<OdriveDevice>(device, bus, motor);
+}
+
+/// Without a torque constant in the file the motor gives its greatest torque at kVescCurrent.
+VescDeviceParameters device_of(const vesc::VescParameters& drive, const Brake& brake, double clock_ppm) {
+  const double torque = drive.drive.torque_limit / drive.drive.gear;
+  const double constant = drive.torque_constant > 0 ? drive.torque_constant : torque / kVescCurrent;
+  return {.node = static_cast<std::uint8_t>(drive.drive.node),
+          .pole_pairs = static_cast<double>(drive.pole_pairs),
+          .torque_constant = constant,
+          .max_current = torque / constant,
+          .status_period = drive.status_period,
+          .temperature_period = drive.temperature_period,
+          .brake_current = drive.drive.on_silence == SilenceReaction::kBrakes ? torque / constant : 0,
+          .speed_gain = motor_damping(drive.drive, brake),
+          .clock_ppm = clock_ppm};
+}
+
+std::unique_ptr<Device> make_device(const VescDeviceParameters& device, VirtualCan& bus, DeviceMotor& motor) {
+  return std::make_unique<VescDevice>(device, bus, motor);
 }
 
 Cia402DeviceParameters device_of(const cia402::Cia402Parameters& drive, const Brake& brake, double clock_ppm) {

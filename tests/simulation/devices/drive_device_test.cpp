@@ -26,6 +26,7 @@ struct Dialect {
   double torque_step = 0;                                          ///< N·m of the motor: one step of the protocol
   double count = 0;                                                ///< rad of the motor
   bool brakes_by_itself = false;
+  bool reports_errors = true;
 };
 
 Dialect odrive_dialect(const std::string& name, odrive::Firmware firmware, double estimates_period) {
@@ -79,7 +80,29 @@ Dialect cia402_dialect(const std::string& name, cia402::ModeChoice mode, cia402:
           .brakes_by_itself = true};
 }
 
+Dialect vesc_dialect() {
+  return {.name = "Vesc",
+          .add = [](DeviceRig& rig, std::uint8_t node, double clock_ppm) -> Device& {
+            VescPair pair = vesc_pair(node);
+            pair.device.clock_ppm = clock_ppm;
+            return add(rig, pair);
+          },
+          .add_unknown =
+              [](DeviceRig& rig, bool accepted) {
+                VescPair pair = vesc_pair(1);
+                pair.drive.drive.on_silence = SilenceReaction::kUnknown;
+                pair.drive.drive.accept_unknown_watchdog = accepted;
+                add(rig, pair);
+              },
+          .foreign = vesc::encode(1, vesc::SetCurrent{.current = 1}),
+          .clears = [](const can_frame&) { return false; },
+          .torque_step = 0.01,
+          .count = 2 * std::numbers::pi / 42,
+          .reports_errors = false};
+}
+
 const Dialect kDialects[] = {
+    vesc_dialect(),
     odrive_dialect("Odrive05", odrive::Firmware::k05, 0),
     odrive_dialect("Odrive06", odrive::Firmware::k06, 0),
     odrive_dialect("Odrive06Cyclic", odrive::Firmware::k06, 0.002),
@@ -224,6 +247,7 @@ TEST_P(DriveAndDevice, HasNoTorqueAfterItsWatchdogWhenTheHostDies) {
 
 TEST_P(DriveAndDevice, StaysInFaultUntilTheReset) {
   ASSERT_TRUE(rig_.runs());
+  rig_.command_all({.enabled = true, .torque = 0.2});
   device_->inject(DeviceFault::kEncoder);
   ASSERT_TRUE(fails());
   device_->inject(DeviceFault::kNone);
@@ -247,6 +271,7 @@ TEST_P(DriveAndDevice, AFaultThatRemainsIsReportedAgainAfterTheReset) {
 }
 
 TEST_P(DriveAndDevice, OneResetIsOneAttempt) {
+  if (!GetParam().reports_errors) GTEST_SKIP() << "an error of this drive ends by itself, and is not on the bus";
   ASSERT_TRUE(rig_.runs());
   device_->inject(DeviceFault::kEncoder);
   ASSERT_TRUE(fails());
@@ -367,10 +392,18 @@ void PrintTo(const FaultCase& fault, std::ostream* out) {
 }
 
 std::vector<FaultCase> fault_cases() {
-  const Dialect& odrive05 = kDialects[0];
-  const Dialect& odrive06 = kDialects[1];
-  const Dialect& cia402 = kDialects[3];
+  const Dialect& vesc = kDialects[0];
+  const Dialect& odrive05 = kDialects[1];
+  const Dialect& odrive06 = kDialects[2];
+  const Dialect& cia402 = kDialects[4];
   return {
+      {"OffVesc", vesc, DeviceFault::kOff, "is silent: no position"},
+      {"ResetVesc", vesc, DeviceFault::kReset, "is silent: no position"},
+      {"OtherZeroVesc", vesc, DeviceFault::kOtherZero, "reports a jump of its position, "},
+      {"EncoderVesc", vesc, DeviceFault::kEncoder, "released the motor without an error: no current"},
+      {"ReleasedVesc", vesc, DeviceFault::kReleased, "released the motor without an error: no current"},
+      {"HotVesc", vesc, DeviceFault::kHot, "is too hot: temperature, 120 instead of 90"},
+      {"UnderVoltageVesc", vesc, DeviceFault::kUnderVoltage, "has a low supply: voltage, 8 instead of 18"},
       {"Off05", odrive05, DeviceFault::kOff, "is silent: no position"},
       {"Off06", odrive06, DeviceFault::kOff, "is silent: no position"},
       {"OffCia402", cia402, DeviceFault::kOff, "is silent: no position"},
