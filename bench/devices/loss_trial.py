@@ -7,8 +7,8 @@ follows.
     seen     the driver reports the loss within `LATEST` of its kind
     brake    the gate brakes within `BRAKE_CYCLES` after that
     latch    the stop is latched with the cause driver_fault
-    pose     while the drives come back, the estimate moves in no `JUMP_TIME` by more than `JUMP` beyond the truth, other
-             than towards it, which stays within `DEVIATIONS` of it
+    pose     while the drives come back, the estimate moves in no `JUMP_TIME` by more than `JUMP` beyond the truth, unless
+             towards it; the truth stays within `DEVIATIONS` of it
     torque   from `STEADY_TIME` after the brake on, the robot does not become faster. A RoboClaw without supply brakes
              when it is switched on again
     release  it stands between the reset and the new request
@@ -185,9 +185,10 @@ def broken_rules(trial: LossTrial, loop: ClosedLoop, log: Log, request: tuple[fl
         if back[-1]["supervisor_state"][-1] not in STOPPED_STATES:
             break
         loop.e_stop_reset()
-    estimated, true = (moved(back, source, round(JUMP_TIME / period)) for source in ("estimate", "truth"))
+    span = round(JUMP_TIME / period)
+    beyond = np.minimum(moved(back, "estimate", span) - moved(back, "truth", span), error_growth(back, span))
     jump = JUMP[trial.kind == CABLE or trial.dialect in SERIAL]
-    if np.minimum(estimated - true, error_growth(back, round(JUMP_TIME / period))).max() > jump or error(back[-1]) > DEVIATIONS * deviation(back[-1]):
+    if beyond.max() > jump or error(back[-1]) > DEVIATIONS * deviation(back[-1]):
         yield "pose"
     if speed_of(loop.run(1.0), base).max() > STANDING:
         yield "release"

@@ -28,7 +28,8 @@ def test_the_robot_drives_and_stops_as_requested(gain, delay):
 
 
 @pytest.mark.parametrize(
-    ("drives", "driver"), [("board", "board"), ("odrive", "can"), ("cia402", "can"), ("vesc", "can"), ("roboclaw", "roboclaw")]
+    ("drives", "driver"),
+    [("board", "board"), ("odrive", "can"), ("cia402", "can"), ("vesc", "can"), ("roboclaw", "roboclaw")],
 )
 def test_devices_with_a_speed_loop_of_their_own_drive_and_stop(drives, driver):
     loop = ClosedLoop(

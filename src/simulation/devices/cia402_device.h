@@ -56,10 +56,10 @@ class Cia402Device final : public Device {
     DeviceMotor* motor = nullptr;
     cia402::PowerState power = cia402::PowerState::kSwitchOnDisabled;
     std::uint16_t controlword = 0;
-    double zero = 0;        // rad, true position of its zero
-    double torque = 0;      // N·m, of TQ with its slope
+    double zero = 0;         // rad, true position of its zero
+    double torque = 0;       // N·m, of TQ with its slope
     SpeedLoop speed_loop{};  // of CSV and PV
-    double held = 0;        // rad, true position that a quick stop holds
+    double held = 0;         // rad, true position that a quick stop holds
     std::int64_t updated_ns = 0;
     bool holding = false;
   };

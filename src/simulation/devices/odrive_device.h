@@ -82,7 +82,7 @@ class OdriveDevice final : public Device {
   std::uint32_t encoder_error_ = 0;
   odrive::SetControllerMode mode_{.control = odrive::ControlMode::kPosition};  // the maker's default
   double input_torque_ = 0;
-  double input_velocity_ = 0;                  // rad/s
+  double input_velocity_ = 0;  // rad/s
   SpeedLoop speed_loop_;
   double velocity_limit_ = 2 * odrive::kTurn;  // rad/s, the maker's default
   double current_limit_ = 10;                  // A, the maker's default

@@ -11,7 +11,7 @@
 namespace robot_control {
 namespace {
 
-constexpr double kVescCurrent = 10;     // A
+constexpr double kVescCurrent = 10;      // A
 constexpr double kOdriveWatchdog = 0.1;  // s, where the drive file says that it coasts on silence
 
 double clock_of(std::size_t device) {

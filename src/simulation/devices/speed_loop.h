@@ -1,5 +1,6 @@
 #pragma once
-/// SpeedLoop is the PI law with which a simulated drive closes the loop of its own speed, from the error e of the speed:
+/// SpeedLoop is the PI law with which a simulated drive closes the loop of its own speed, from the error e of the
+/// speed:
 ///
 ///   τ = feed_forward + gain · (e + ∫ e dt / kIntegralTime), within ± limit
 ///

@@ -49,7 +49,8 @@ void VescDevice::obey(Order order, double value) {
 
 void VescDevice::receive(const can_frame& frame, std::int64_t now_ns) {
   if (silent(now_ns) || !is_extended_data(frame)) return;
-  if ((node_of(frame) != parameters_.node && node_of(frame) != kEveryNode) || !commands_motion(command_of(frame))) return;
+  if ((node_of(frame) != parameters_.node && node_of(frame) != kEveryNode) || !commands_motion(command_of(frame)))
+    return;
   timeout_timer_.restart(now_ns);
   if (const auto order = decode<SetCurrent>(frame)) obey(Order::kCurrent, order->current);
   if (const auto order = decode<SetBrakeCurrent>(frame)) obey(Order::kBrake, order->current);

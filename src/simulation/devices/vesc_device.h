@@ -2,8 +2,8 @@
 /// A VESC as a device: currents, speeds, the CAN status messages 1, 4 and 5, and the timeout with its brake current.
 ///
 /// It keeps its last order until the timeout, which every order feeds; then it brakes with the brake current. An error
-/// releases the motor, is not on the bus, and ends kFaultNs after its cause. The speed loop works down to the speed zero:
-/// s_pid_min_erpm is 0.
+/// releases the motor, is not on the bus, and ends kFaultNs after its cause. The speed loop works down to the speed
+/// zero: s_pid_min_erpm is 0.
 
 #include <cstdint>
 
@@ -16,14 +16,14 @@ namespace robot_control {
 struct VescDeviceParameters {
   std::uint8_t node = 0;
   double pole_pairs = 7;
-  double torque_constant = 0.1;     ///< N·m/A
-  double max_current = 20;          ///< A
-  double status_period = 0.002;     ///< s
-  double temperature_period = 0.1;  ///< s
-  double timeout = 0.1;             ///< s
-  double brake_current = 0;         ///< A, after the timeout
+  double torque_constant = 0.1;                   ///< N·m/A
+  double max_current = 20;                        ///< A
+  double status_period = 0.002;                   ///< s
+  double temperature_period = 0.1;                ///< s
+  double timeout = 0.1;                           ///< s
+  double brake_current = 0;                       ///< A, after the timeout
   double counts_per_turn = vesc::kCountsPerTurn;  ///< of the tachometer, per electrical turn
-  double speed_gain = 0;            ///< N·m·s/rad, of the speed loop and of the brake near rest
+  double speed_gain = 0;                          ///< N·m·s/rad, of the speed loop and of the brake near rest
   double clock_ppm = 0;
 };
 

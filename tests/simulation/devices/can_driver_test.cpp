@@ -111,8 +111,8 @@ MachineUnderTest machine(const std::string& name, CanDialect dialect) {
 }
 
 INSTANTIATE_TEST_SUITE_P(CanMachines, DriverContract,
-                         testing::Values(machine("Odrive", CanDialect::kOdrive),
-                                         machine("Cia402", CanDialect::kCia402), machine("Vesc", CanDialect::kVesc)),
+                         testing::Values(machine("Odrive", CanDialect::kOdrive), machine("Cia402", CanDialect::kCia402),
+                                         machine("Vesc", CanDialect::kVesc)),
                          machine_name);
 
 class CanDriverOn : public ::testing::TestWithParam<CanDialect> {
@@ -234,7 +234,8 @@ TEST_P(CanDriverOn, BrakesAndHoldsOnASlope) {
   EXPECT_NEAR(cycles(1000).joints[0].position, held, 0.01);
 }
 
-INSTANTIATE_TEST_SUITE_P(Dialects, CanDriverOn, ::testing::Values(CanDialect::kOdrive, CanDialect::kCia402, CanDialect::kVesc),
+INSTANTIATE_TEST_SUITE_P(Dialects, CanDriverOn,
+                         ::testing::Values(CanDialect::kOdrive, CanDialect::kCia402, CanDialect::kVesc),
                          [](const auto& each) { return word_of(each.param); });
 
 }  // namespace

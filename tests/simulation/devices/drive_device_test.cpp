@@ -46,8 +46,7 @@ Dialect odrive_dialect(const std::string& name, odrive::Firmware firmware, doubl
                 add(rig, pair);
               },
           .foreign = encode(1, odrive::SetInputTorque{.torque = 0.1}),
-          .clears =
-              [](const can_frame& frame) { return odrive::decode<odrive::v06::ClearErrors>(frame).has_value(); },
+          .clears = [](const can_frame& frame) { return odrive::decode<odrive::v06::ClearErrors>(frame).has_value(); },
           .torque_step = 1.0e-6,
           .count = 2 * std::numbers::pi / 8192};
 }

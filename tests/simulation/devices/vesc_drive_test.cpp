@@ -35,7 +35,8 @@ TEST(VescDrive, NamesTheMessageThatIsNotTurnedOn) {
 TEST(VescDrive, NamesAMessageThatIsSilent) {
   VescPair pair = vesc_pair(2);
   pair.device.temperature_period = 2;
-  EXPECT_THAT(vesc_words_after(pair, {.enabled = true}), HasSubstr("fault; the drive is silent: no CAN status message 4"));
+  EXPECT_THAT(vesc_words_after(pair, {.enabled = true}),
+              HasSubstr("fault; the drive is silent: no CAN status message 4"));
 }
 
 TEST(VescDrive, ATachometerOfAnotherUnitIsNamed) {

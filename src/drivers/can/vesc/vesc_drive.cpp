@@ -28,9 +28,7 @@ DriveParameters with_statuses(const VescParameters& parameters, double period) {
 }  // namespace
 
 VescDrive::VescDrive(const VescParameters& parameters, double period)
-    : Drive(with_statuses(parameters, period), period),
-      parameters_(parameters),
-      count_(count_of(parameters)) {}
+    : Drive(with_statuses(parameters, period), period), parameters_(parameters), count_(count_of(parameters)) {}
 
 std::vector<PlannedFrames> VescDrive::plan() const {
   return {{.extended = true, .data_bytes = 4, .per_cycle = 1},

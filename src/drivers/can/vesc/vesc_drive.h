@@ -3,16 +3,16 @@
 ///
 ///   first frame → CAN status messages 1, 4 and 5 → ready → running
 ///
-/// Before `running` the drive is ordered the current 0 in each cycle, so that no order of an earlier program remains. It
-/// cannot be asked for its configuration: what it does on silence is stated in the drive file.
+/// Before `running` the drive is ordered the current 0 in each cycle, so that no order of an earlier program remains.
+/// It cannot be asked for its configuration: what it does on silence is stated in the drive file.
 ///
-/// The tachometer has few counts: 6 per electrical turn. Between two counts the position follows the speed that the drive
-/// reports, within half a count of the tachometer. Way and speed are compared every kComparedCounts: a drive whose
-/// tachometer has another unit is refused.
+/// The tachometer has few counts: 6 per electrical turn. Between two counts the position follows the speed that the
+/// drive reports, within half a count of the tachometer. Way and speed are compared every kComparedCounts: a drive
+/// whose tachometer has another unit is refused.
 ///
-/// The fault codes of a VESC are not on CAN. A drive without current for kReleasedNs is in fault, where its order needs
-/// one: a current of at least kMinCurrent below the velocity limit, or a speed that is off by kMaxLag of that limit. Then it
-/// is ordered no current until the reset, so that it does not obey again by itself.
+/// The fault codes of a VESC are not on CAN. So a drive that gives no current for kReleasedNs is in fault where its order
+/// needs one. Such an order is a current of at least kMinCurrent below the velocity limit, or a speed that is off by
+/// kMaxLag of that limit. Then it is ordered no current until the reset, so that it does not obey again by itself.
 
 #include <cstdint>
 #include <optional>

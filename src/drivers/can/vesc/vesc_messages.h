@@ -1,9 +1,10 @@
 #pragma once
 /// The frames of one VESC on CAN.
 ///
-/// The 29-bit identifier is command (8 bits) << 8 | controller (8 bits). Data are big-endian integers: bit 0 of a layout
-/// is the lowest bit of the last byte. A message of another length is not accepted. Speeds and counts are those of the
-/// electrical field: pole pairs times those of the motor. Source: VESC firmware 6, comm/comm_can.c, motor/mcpwm_foc.c.
+/// The 29-bit identifier is command (8 bits) << 8 | controller (8 bits). Data are big-endian integers: bit 0 of a
+/// layout is the lowest bit of the last byte. A message of another length is not accepted. Speeds and counts are those
+/// of the electrical field: pole pairs times those of the motor. Source: VESC firmware 6, comm/comm_can.c,
+/// motor/mcpwm_foc.c.
 
 #include <numbers>
 #include <optional>
@@ -14,8 +15,8 @@
 namespace robot_control::vesc {
 
 inline constexpr std::uint8_t kMaxNode = 254;
-inline constexpr std::uint8_t kEveryNode = 255;                   ///< All controllers obey an order to it.
-inline constexpr double kCountsPerTurn = 6;                       ///< of the tachometer, per electrical turn
+inline constexpr std::uint8_t kEveryNode = 255;                  ///< All controllers obey an order to it.
+inline constexpr double kCountsPerTurn = 6;                      ///< of the tachometer, per electrical turn
 inline constexpr double kSpeedUnit = 2 * std::numbers::pi / 60;  ///< rad/s, of one ERPM
 
 inline std::uint8_t node_of(const can_frame& frame) noexcept {
