@@ -7,8 +7,6 @@
 namespace robot_control {
 namespace {
 
-using namespace vesc;  // NOLINT(google-build-using-namespace): the messages of this device
-
 constexpr double kVescSupply = 24;  // V
 constexpr double kVescLowSupply = 8;
 constexpr double kResistance = 0.1;  // Ω, of the motor
@@ -49,12 +47,13 @@ void VescDevice::obey(Order order, double value) {
 
 void VescDevice::receive(const can_frame& frame, std::int64_t now_ns) {
   if (silent(now_ns) || !is_extended_data(frame)) return;
-  if ((node_of(frame) != parameters_.node && node_of(frame) != kEveryNode) || !commands_motion(command_of(frame)))
-    return;
+  const bool is_to_it = vesc::node_of(frame) == parameters_.node || vesc::node_of(frame) == vesc::kEveryNode;
+  if (!is_to_it || !vesc::commands_motion(vesc::command_of(frame))) return;
   timeout_timer_.restart(now_ns);
-  if (const auto order = decode<SetCurrent>(frame)) obey(Order::kCurrent, order->current);
-  if (const auto order = decode<SetBrakeCurrent>(frame)) obey(Order::kBrake, order->current);
-  if (const auto order = decode<SetSpeed>(frame)) obey(Order::kSpeed, order->speed / parameters_.pole_pairs);
+  if (const auto order = vesc::decode<vesc::SetCurrent>(frame)) obey(Order::kCurrent, order->current);
+  if (const auto order = vesc::decode<vesc::SetBrakeCurrent>(frame)) obey(Order::kBrake, order->current);
+  if (const auto order = vesc::decode<vesc::SetSpeed>(frame))
+    obey(Order::kSpeed, order->speed / parameters_.pole_pairs);
 }
 
 double VescDevice::driven_torque(double seconds) {
@@ -90,17 +89,17 @@ void VescDevice::step(std::int64_t now_ns) {
 void VescDevice::send_statuses() {
   const double current = motor_.torque / parameters_.torque_constant;
   const double duty = (kResistance * current + parameters_.torque_constant * motor_.velocity) / kVescSupply;
-  send(Status{.speed = motor_.velocity * parameters_.pole_pairs,
-              .current = duty < 0 ? -current : current,
-              .duty = std::clamp(duty, -1.0, 1.0)});
+  send(vesc::Status{.speed = motor_.velocity * parameters_.pole_pairs,
+                    .current = duty < 0 ? -current : current,
+                    .duty = std::clamp(duty, -1.0, 1.0)});
   const double counts =
       (motor_.position - zero_) / (2 * std::numbers::pi) * parameters_.pole_pairs * parameters_.counts_per_turn;
-  send(Status5{.tachometer = static_cast<std::int32_t>(static_cast<std::int64_t>(std::llround(counts))),
-               .voltage = fault_ == DeviceFault::kUnderVoltage ? kVescLowSupply : kVescSupply});
+  send(vesc::Status5{.tachometer = static_cast<std::int32_t>(static_cast<std::int64_t>(std::llround(counts))),
+                     .voltage = fault_ == DeviceFault::kUnderVoltage ? kVescLowSupply : kVescSupply});
 }
 
 void VescDevice::send_temperature() {
-  send(Status4{.transistors = kCoolVesc, .motor = fault_ == DeviceFault::kHot ? kHotVesc : kCoolVesc});
+  send(vesc::Status4{.transistors = kCoolVesc, .motor = fault_ == DeviceFault::kHot ? kHotVesc : kCoolVesc});
 }
 
 }  // namespace robot_control

@@ -354,6 +354,7 @@ void receive_random_frames(DeviceRig& rig, int count) {
       std::memcpy(frame.data, &data, sizeof data);
     }
     if (random() % 4 == 0) frame.can_id = static_cast<canid_t>(random() & CAN_SFF_MASK);
+    if (random() % 8 == 0) frame.can_id ^= canid_t{1} << random() % 16;
     if (random() % 64 == 0) frame.can_id = static_cast<canid_t>(random());
     if (random() % 16 == 0) frame.len = static_cast<std::uint8_t>(random() % 9);
     rig.drive().receive(frame, rig.now_ns());

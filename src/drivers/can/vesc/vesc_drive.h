@@ -10,9 +10,9 @@
 /// drive reports, within half a count of the tachometer. Way and speed are compared every kComparedCounts: a drive
 /// whose tachometer has another unit is refused.
 ///
-/// The fault codes of a VESC are not on CAN. So a drive that gives no current for kReleasedNs is in fault where its order
-/// needs one. Such an order is a current of at least kMinCurrent below the velocity limit, or a speed that is off by
-/// kMaxLag of that limit. Then it is ordered no current until the reset, so that it does not obey again by itself.
+/// The fault codes of a VESC are not on CAN. So a drive that gives no current for kReleasedNs is in fault where its
+/// order needs one. Such an order is a current of at least kMinCurrent below the velocity limit, or a speed that is off
+/// by kMaxLag of that limit. Then it is ordered no current until the reset, so that it does not obey again by itself.
 
 #include <cstdint>
 #include <optional>
