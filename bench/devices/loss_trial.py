@@ -7,8 +7,8 @@ follows.
     seen     the driver reports the loss within `LATEST` of its kind
     brake    the gate brakes within `BRAKE_CYCLES` after that
     latch    the stop is latched with the cause driver_fault
-    pose     while the drives come back, the estimate moves in no `JUMP_TIME` by more than `JUMP` beyond the truth, unless
-             towards it; the truth stays within `DEVIATIONS` of it
+    pose     while the drives come back, the estimate moves in no `JUMP_TIME` by more than `JUMP` beyond the truth,
+             unless towards it; the truth stays within `DEVIATIONS` of it
     torque   from `STEADY_TIME` after the brake on, the robot does not become faster. A RoboClaw without supply brakes
              when it is switched on again
     release  it stands between the reset and the new request
