@@ -12,7 +12,7 @@ from bench.devices.disturbed_drive import BUSES, DisturbedDrive, DriveFigures, r
 from bench.devices.loss_trial import (
     BRAKE_CYCLES,
     DIALECTS,
-    KINDS,
+    LATEST,
     SERIAL,
     SERIAL_LATEST,
     LossTrial,
@@ -59,8 +59,7 @@ def row(name: str, value: float, unit: str, allowed: float) -> Row:
 
 def loss_rows(first: int, runs: int, say: Callable[[str], None], runner: Runner) -> list[Row]:
     """Per dialect and kind of loss: broken rules, and the latest times until it is seen and until the brake."""
-    kinds = [(dialect, kind) for dialect in DIALECTS for kind in KINDS]
-    kinds += [(board, kind) for board, latest_of in SERIAL_LATEST.items() for kind in latest_of]
+    kinds = [(device, kind) for device, latest_of in (LATEST | SERIAL_LATEST).items() for kind in latest_of]
     trials = [LossTrial(dialect, kind, seed) for dialect, kind in kinds for seed in range(first, first + runs)]
     outcomes: dict[tuple[str, str], list[Outcome]] = {}
     for trial, outcome in zip(trials, runner.outcomes(run_trial, trials, say, chunk=10), strict=True):

@@ -8,9 +8,9 @@ from robot_control.installed_files import share_file
 
 from bench.devices.loss_trial import SPEED
 
-ROLLS = {"odrive": (0.3, 2.0), "cia402": (0.0, 0.02)}
-"""m in `SILENCE`: an ODrive releases its motor, so that the robot rolls; a CiA 402 drive brakes and holds. A body that
-slides down without friction reaches ½·g·sin 5°·t² = 1.7 m."""
+ROLLS = {"odrive": (0.3, 2.0), "cia402": (0.0, 0.02), "vesc": (0.3, 2.0)}
+"""m in `SILENCE`: an ODrive and a VESC release their motors, so that the robot rolls; a CiA 402 drive brakes and holds.
+A body that slides down without friction reaches ½·g·sin 5°·t² = 1.7 m."""
 SILENCE = 2.0  # s
 
 

@@ -150,7 +150,7 @@ int run(const std::string& path) {
   const std::filesystem::path drives = std::filesystem::path(path).parent_path() / "drives";
   std::vector<std::string> joints;
   for (const WheelModel& wheel : robot.wheels) joints.push_back(robot.joints[wheel.joint].name);
-  for (const char* dialect : {"odrive", "cia402"}) {
+  for (const char* dialect : {"odrive", "cia402", "vesc"}) {
     const std::string file = drives / (std::string(dialect) + ".yaml");
     add_can_cycle(rows, dialect, read_drive_file(file, joints, parameters.loop.rate), robot, period);
   }

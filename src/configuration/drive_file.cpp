@@ -25,6 +25,7 @@ constexpr double kMinTimeoutPeriods = 10;                   // in which a drive 
 
 using cia402::Cia402Parameters;
 using odrive::OdriveParameters;
+using vesc::VescParameters;
 
 std::string block_of(const std::string& path) {
   return path.substr(0, path.find('.'));
@@ -85,10 +86,16 @@ class DriveFileReader {
     bool known_dialect = false;
     read_block(kBus, keys(can.bus), [&](GivenValues& given) { known_dialect = given.accepted("bus.dialect"); });
     if (!known_dialect) problems_.throw_if_any(subject);
-    if (can.bus.dialect == CanDialect::kOdrive) {
-      can.joints = read_joints<OdriveParameters>(can);
-    } else {
-      can.joints = read_joints<Cia402Parameters>(can);
+    switch (can.bus.dialect) {
+      case CanDialect::kOdrive:
+        can.joints = read_joints<OdriveParameters>(can);
+        break;
+      case CanDialect::kCia402:
+        can.joints = read_joints<Cia402Parameters>(can);
+        break;
+      case CanDialect::kVesc:
+        can.joints = read_joints<VescParameters>(can);
+        break;
     }
     problems_.throw_if_any(subject);
     std::vector<PlannedFrames> plan = DriveSet(can, 1 / rate_).plan();
@@ -229,13 +236,17 @@ class DriveFileReader {
   /// Sets the values that follow from the rate where they are left out.
   void set_defaults(BoardWheelParameters& /*all*/) const {}
   void set_defaults(RoboclawWheelParameters& /*all*/) const {}
-  void set_defaults(OdriveParameters& all) const { all.drive.takes_speeds = takes_speeds_; }
+  template <class Parameters>
+  void set_defaults(Parameters& all) const {
+    all.drive.takes_speeds = takes_speeds_;
+  }
   void set_defaults(Cia402Parameters& all) const {
     all.drive.takes_speeds = takes_speeds_;
     all.host_timeout = std::max(all.host_timeout, kMinTimeoutPeriods / rate_);
   }
 
-  static bool same_axis(const OdriveParameters& one, const OdriveParameters& other) {
+  template <class Parameters>
+  static bool same_axis(const Parameters& one, const Parameters& other) {
     return one.drive.node == other.drive.node;
   }
   static bool same_axis(const Cia402Parameters& one, const Cia402Parameters& other) {
@@ -258,7 +269,7 @@ class DriveFileReader {
   }
 
   void check_dialect(const Cia402Parameters& p, const CanParameters& can, GivenValues& given) {
-    if (p.drive.node == 0 || p.drive.node == can.bus.host_node) {
+    if (p.drive.node == 0 || p.drive.node > canopen::kMaxNode || p.drive.node == can.bus.host_node) {
       refuse(given, p.drive.joint, "node", "must be 1 … 127 and not bus.host_node");
     }
     if (p.host_timeout < kMinTimeoutPeriods / rate_ * (1 - 1.0e-9)) {
@@ -274,6 +285,19 @@ class DriveFileReader {
     if (p.abort_option == 0 && p.drive.on_silence != SilenceReaction::kUnknown) {
       refuse(given, p.drive.joint, "on_silence", "contradicts abort_option: 0, with which the drive does nothing",
              "leave one of them out");
+    }
+  }
+
+  void check_dialect(const VescParameters& p, const CanParameters& /*can*/, GivenValues& given) {
+    const DriveParameters& drive = p.drive;
+    if (drive.on_silence == SilenceReaction::kHolds) {
+      refuse(given, drive.joint, "on_silence",
+             "must be coasts, brakes or unknown: the timeout of a VESC holds nothing at rest");
+    }
+    if (!takes_speeds_ && p.torque_constant == 0) {
+      refuse(given, drive.joint, "torque_constant",
+             "is missing: with robot.wheel_command: torque the currents follow from it",
+             "state N·m per A of the motor, or set robot.wheel_command to velocity");
     }
   }
 

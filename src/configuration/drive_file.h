@@ -1,9 +1,9 @@
 #pragma once
 /// The drive file is YAML: which drive on a CAN bus, or which wheel of a board, moves which joint.
 ///
-///   bus:                # CanBusParameters; dialect: odrive | cia402
+///   bus:                # CanBusParameters; dialect: odrive | cia402 | vesc
 ///   every_joint:        # may be left out; values of all joints, which the block of a joint outweighs
-///   left_wheel_joint:   # one block per joint of the robot: OdriveParameters or Cia402Parameters
+///   left_wheel_joint:   # one block per joint of the robot: OdriveParameters, Cia402Parameters or VescParameters
 ///     node: 0
 ///
 /// config/drives has one commented example per dialect.

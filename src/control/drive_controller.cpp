@@ -30,6 +30,11 @@ WheelLoops make_loops(const DriveControllerParameters& parameters, const DriveTr
   return loops;
 }
 
+SpeedLeads make_leads(const DriveTrain& robot, double period) {
+  const bool leads = robot.wheel_command == WheelCommand::kVelocity && !robot.wheel_feed_forward;
+  return {robot.wheels.size(), SpeedLead(leads ? robot.wheel_response_time : 0, period)};
+}
+
 bool is_zero(const PlanarTwist& twist) noexcept {
   return twist.linear == 0 && twist.angular == 0;
 }
@@ -68,6 +73,7 @@ DriveController::DriveController(const DriveControllerParameters& parameters, co
       limiter_(speed_limits(parameters)),
       standstill_(period),
       loops_(make_loops(parameters, robot, period)),
+      leads_(make_leads(robot, period)),
       mode_(robot.wheel_command == WheelCommand::kTorque ? JointMode::kEffort : JointMode::kDriveVelocity),
       usual_lag_(kUsualLag * robot.wheel_response_time) {}
 
@@ -77,6 +83,7 @@ void DriveController::enter_run(const VelocityCommand& inbox, bool with_zero) no
   standstill_.reset();
   held_cycles_ = 0;
   for (WheelLoop& loop : loops_) loop.reset();
+  for (SpeedLead& lead : leads_) lead.reset();
   ground_friction_.reset();
   last_cycle_.reset();
   last_angle_.reset();
@@ -213,6 +220,7 @@ void DriveController::follow_measured(const SensorFrame& sensors) noexcept {
   }
   for (std::size_t i = 0; i < loops_.size(); ++i) {
     loops_[i].reset_to_measured();
+    leads_[i].reset();
     if (standstill_.standing() && !drives_close_loops())
       loops_[i].preload_integrator(held_effort_[i] - ground_friction_.effort(i));
   }
@@ -306,7 +314,8 @@ void DriveController::drive(const PlanarTwist& requested, const SensorFrame& sen
   if (clamped) out.reasons |= kReasonSaturated;
   for (std::size_t i = 0; i < loops_.size(); ++i) {
     const double effort = loops_[i].step({velocity[i], acceleration[i], feed_forward[i]}, periods_, clamped);
-    out.joints[i] = {.mode = mode_, .velocity = velocity[i], .effort = effort};
+    const double ordered = leads_[i].step(velocity[i], acceleration[i], periods_);
+    out.joints[i] = {.mode = mode_, .velocity = ordered, .effort = effort};
     if (loops_[i].saturated()) out.reasons |= kReasonSaturated;
   }
   if (!in_control_) {

@@ -43,7 +43,8 @@
 /// detects a robot that is blocked or pushed back (stall, wrong_direction).
 ///
 /// With robot.wheel_command `velocity` the drives close the wheel loops (JointMode::kDriveVelocity). The command holds
-/// the planned speed, and the feed-forward torque for drives that take one. The loops have no gains then: they measure
+/// the planned speed, and the feed-forward torque for drives that take one. For others (robot.wheel_feed_forward) the
+/// speed leads the plan (wheel_loops/speed_lead.h). The loops have no gains then: they measure
 /// the speeds, without the torque. Nothing is preloaded or learnt. The scale of the acceleration limits follows the lag
 /// λ_i = q̇*_i − q̇_i of the wheels, in the direction of the acceleration a_i that the plan has without the scale:
 ///
@@ -65,6 +66,7 @@
 #include "control/standstill.h"
 #include "control/wheel_loops/feed_forward.h"
 #include "control/wheel_loops/ground_friction.h"
+#include "control/wheel_loops/speed_lead.h"
 #include "control/wheel_loops/wheel_loop.h"
 #include "machine/wheeled/drive_train.h"
 #include "signals/command_frame.h"
@@ -81,6 +83,7 @@ namespace robot_control {
 inline constexpr double kFastestWheel = 1000;
 
 using WheelLoops = FixedVector<WheelLoop, kMaxWheels>;
+using SpeedLeads = FixedVector<SpeedLead, kMaxWheels>;
 
 class DriveController {
  public:
@@ -133,6 +136,7 @@ class DriveController {
   SpeedLimiter limiter_;
   Standstill standstill_;
   WheelLoops loops_;                         ///< one per wheel, with the index of its joint
+  SpeedLeads leads_;                         ///< likewise
   JointMode mode_;                           ///< of the commands of driven wheels
   double usual_lag_;                         ///< s, by which wheels with a speed loop of their own may follow a plan
   std::optional<std::uint64_t> last_cycle_;  ///< cycle of the last usable sample

@@ -40,7 +40,9 @@ struct DriveParameters {
   double max_temperature = 90;     ///< °C
   double min_voltage = 0;          ///< V; 0: not judged
   bool takes_speeds = false;       ///< The drive closes the loop of its speed (robot.wheel_command).
-  bool effort_is_rare = false;     ///< The torque is measured more rarely than the position.
+  bool measures_torque = true;     ///< else the effort is not known
+  bool effort_is_rare = false;     ///< The torque is measured more rarely than in each cycle.
+  double position_step = 0;        ///< rad of the motor, by which a coarse position may move at rest
   double sample_period = 0;        ///< s between positions that the drive sends by itself; 0: one in each cycle
   std::uint64_t max_silence = 20;  ///< samples in a row that may be missing
 
@@ -51,7 +53,7 @@ struct DriveParameters {
 
 inline Keys keys(DriveParameters& drive) {
   return {
-      {"node", &drive.node, {}, 0, 127},
+      {"node", &drive.node, {}, 0, 254},
       {"direction", &drive.direction, {}, -1, 1, kOptional},
       {"gear", &drive.gear, "turns of the motor per turn of the joint", 1.0e-3, 1.0e5, kOptional},
       {"torque_limit", &drive.torque_limit, "N·m", 1.0e-3, 1.0e4},

@@ -9,7 +9,7 @@
 
 #include "drivers/serial/board_driver.h"
 #include "drivers/wheels_in_air.h"
-#include "simulation/devices/board_front.h"
+#include "simulation/devices/serial/board_front.h"
 
 namespace robot_control {
 

@@ -8,7 +8,7 @@
 
 #include "drivers/serial/roboclaw_driver.h"
 #include "drivers/wheels_in_air.h"
-#include "simulation/devices/roboclaw_front.h"
+#include "simulation/devices/serial/roboclaw_front.h"
 
 namespace robot_control {
 

@@ -32,6 +32,13 @@ left_wheel_joint: {node: 1}
 right_wheel_joint: {node: 2}
 )";
 
+constexpr const char* kVesc = R"(
+bus: {dialect: vesc}
+every_joint: {pole_pairs: 15, torque_constant: 0.5, torque_limit: 3, velocity_limit: 30, on_silence: coasts}
+left_wheel_joint: {node: 0}
+right_wheel_joint: {node: 1}
+)";
+
 class DriveFile : public ::testing::Test {
  protected:
   CanParameters read(const std::string& text, double rate = 500) const {
@@ -66,7 +73,7 @@ class DriveFile : public ::testing::Test {
 };
 
 TEST_F(DriveFile, TheExamplesAreAccepted) {
-  for (const char* name : {"odrive", "cia402"}) {
+  for (const char* name : {"odrive", "cia402", "vesc"}) {
     const std::string path = PROJECT_DIRECTORY "/config/drives/" + std::string(name) + ".yaml";
     EXPECT_NO_THROW(read_drive_file(path, kWheels, 1000)) << name;
   }
@@ -100,7 +107,7 @@ third_wheel_joint: {node: 1}
 /// Each line of the examples, its commented defaults included, is spoilt in turn.
 TEST_F(DriveFile, EverySpoiltLineOfTheExamplesIsNamed) {
   int spoilt = 0;
-  for (const char* name : {"odrive", "cia402"}) {
+  for (const char* name : {"odrive", "cia402", "vesc"}) {
     const std::string text = uncommented(name);
     ASSERT_NO_THROW(read(text)) << text;
     for (std::size_t at = text.find("  "); at != std::string::npos; at = text.find("\n  ", at + 1)) {
@@ -128,7 +135,7 @@ TEST_F(DriveFile, AMissingJointAndAForeignJointAreNamed) {
 
 TEST_F(DriveFile, AMissingOrUnknownDialectIsNamed) {
   EXPECT_THAT(refusal(kOdrive, "dialect: odrive", ""), HasSubstr("bus.dialect: missing"));
-  EXPECT_THAT(refusal(kOdrive, "odrive", "vesc"), HasSubstr("bus.dialect = vesc: "));
+  EXPECT_THAT(refusal(kOdrive, "odrive", "kelly"), HasSubstr("bus.dialect = kelly: "));
 }
 
 TEST_F(DriveFile, TwoJointsOfOneDriveAreRefused) {
@@ -142,6 +149,28 @@ TEST_F(DriveFile, WhatADialectCannotDoIsRefused) {
   EXPECT_THAT(refusal(kOdrive, "node: 0", "node: 0, enable_watchdog_endpoint: 7"),
               HasSubstr("left_wheel_joint.watchdog_timeout_endpoint: is missing"));
   EXPECT_THAT(refusal(kCia402, "node: 2", "node: 127"), HasSubstr("must be 1 … 127 and not bus.host_node"));
+  EXPECT_THAT(refusal(kCia402, "node: 2", "node: 128"), HasSubstr("must be 1 … 127 and not bus.host_node"));
+}
+
+TEST_F(DriveFile, WhatAVescCannotDoIsRefused) {
+  EXPECT_EQ(refusal(kVesc, "node: 1", "node: 254"), "");
+  EXPECT_THAT(refusal(kVesc, "node: 1", "node: 255"), HasSubstr("right_wheel_joint.node = 255: must be"));
+  EXPECT_THAT(refusal(kVesc, "node: 1", "node: 0"), HasSubstr("is the drive of left_wheel_joint, too"));
+  EXPECT_THAT(refusal(kVesc, "pole_pairs: 15", "pole_pairs: 0"), HasSubstr("every_joint.pole_pairs = 0: must be"));
+  EXPECT_THAT(refusal(kVesc, "pole_pairs: 15, ", ""), HasSubstr("left_wheel_joint.pole_pairs: missing"));
+  EXPECT_THAT(refusal(kVesc, "coasts", "holds"), HasSubstr("the timeout of a VESC holds nothing at rest"));
+  EXPECT_THAT(refusal(kVesc, "torque_constant: 0.5, ", ""),
+              HasSubstr("left_wheel_joint.torque_constant: is missing: with robot.wheel_command: torque the currents "
+                        "follow from it"));
+  EXPECT_THAT(refusal(kVesc, "node: 1", "node: 1, status_period: 0.001", 1000), HasSubstr("load the bus with"));
+}
+
+TEST_F(DriveFile, AVescThatTakesSpeedsNeedsNoTorqueConstant) {
+  std::string text = kVesc;
+  text.erase(text.find("torque_constant: 0.5, "), 22);
+  std::ofstream(path_) << text;
+  const CanParameters can = read_drive_file(path_, kWheels, 1000, true);
+  EXPECT_TRUE(std::get<std::vector<vesc::VescParameters>>(can.joints)[0].drive.takes_speeds);
 }
 
 TEST_F(DriveFile, ATimeoutOfLessThanTenPeriodsIsRefused) {

@@ -4,22 +4,17 @@ import pytest
 
 from bench.devices.bench import ODOMETRY, RIPPLE
 from bench.devices.disturbed_drive import BUSES, DisturbedDrive, run_drive
-from bench.devices.loss_trial import BOARD, DIALECTS, KINDS, ROBOCLAW, SERIAL_LATEST, LossTrial, run_trial
+from bench.devices.loss_trial import BOARD, DIALECTS, LATEST, ROBOCLAW, SERIAL_LATEST, LossTrial, run_trial
 from bench.devices.slope_trial import as_stated
 
 SEED = 1000
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("dialect", DIALECTS)
-def test_a_loss_stops_the_robot_until_the_reset(dialect, kind):
-    outcome = run_trial(LossTrial(dialect, kind, SEED))
-    assert outcome.broken == (), outcome
-
-
-@pytest.mark.parametrize(("board", "kind"), [(board, kind) for board, kinds in SERIAL_LATEST.items() for kind in kinds])
-def test_a_loss_of_a_board_stops_the_robot_until_the_reset(board, kind):
-    outcome = run_trial(LossTrial(board, kind, SEED))
+@pytest.mark.parametrize(
+    ("device", "kind"), [(device, kind) for device, kinds in (LATEST | SERIAL_LATEST).items() for kind in kinds]
+)
+def test_a_loss_stops_the_robot_until_the_reset(device, kind):
+    outcome = run_trial(LossTrial(device, kind, SEED))
     assert outcome.broken == (), outcome
 
 

@@ -10,7 +10,7 @@ from robot_control import ClosedLoop, ParameterError
 from robot_control.common.signal_names import number_of
 from robot_control.installed_files import share_file
 
-DIALECTS = ("odrive", "cia402")
+DIALECTS = ("odrive", "cia402", "vesc")
 COMMAND = (0.5, 0.2)
 """m/s, rad/s"""
 STOPPED, FAULT = (number_of("SupervisorState", name) for name in ("STOPPED", "FAULT"))

@@ -13,6 +13,17 @@ def velocity_loop(**plant):
     return ClosedLoop({"robot": {"wheel_command": "velocity"}, "mujoco_plant": {"drive": "velocity", **plant}})
 
 
+@pytest.mark.parametrize("gain", [0.5, 1.0, 1.5])
+@pytest.mark.parametrize("delay", [0, 20])
+def test_a_drive_that_takes_no_torque_hardly_overshoots_a_ramp(gain, delay):
+    """The response time is that of this drive, 20 ms for gains of 1."""
+    robot = {"wheel_command": "velocity", "wheel_feed_forward": False, "wheel_response_time": 0.02 / gain}
+    plant = {"drive": "velocity", "drive_feed_forward": False, "drive_gain": gain, "actuator_delay": delay}
+    loop = ClosedLoop({"robot": robot, "mujoco_plant": plant})
+    log = loop.run(seconds=4.0, command=lambda t: (1.0 if t >= 0.5 else 0, 0))
+    assert log["truth_linear"].max() <= 1.02
+
+
 @pytest.mark.parametrize("gain", [0.5, 1.5])
 @pytest.mark.parametrize("delay", [0, 20])
 def test_the_robot_drives_and_stops_as_requested(gain, delay):
@@ -28,7 +39,8 @@ def test_the_robot_drives_and_stops_as_requested(gain, delay):
 
 
 @pytest.mark.parametrize(
-    ("drives", "driver"), [("board", "board"), ("odrive", "can"), ("cia402", "can"), ("roboclaw", "roboclaw")]
+    ("drives", "driver"),
+    [("board", "board"), ("odrive", "can"), ("cia402", "can"), ("vesc", "can"), ("roboclaw", "roboclaw")],
 )
 def test_devices_with_a_speed_loop_of_their_own_drive_and_stop(drives, driver):
     loop = ClosedLoop(

@@ -23,7 +23,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     )
     parser.add_argument(
         "--drives",
-        choices=("odrive", "cia402", "example", "board", "roboclaw"),
+        choices=("odrive", "cia402", "vesc", "example", "board", "roboclaw"),
         help="the motors stand behind such simulated drives",
     )
     parser.add_argument(

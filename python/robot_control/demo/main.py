@@ -47,7 +47,9 @@ BUS = f"demo_{os.getpid()}"
 OUTPUTS = ("run.bag", "run.csv", "summary.json", "run.png", "launch.log", "send_cmd.log", "set_posture.log")
 EVERY_CYCLE = "telemetry: {record: always}\n"
 """parameters laid over the package's"""
-VELOCITY = "robot: {wheel_command: velocity}\n"
+VELOCITY = "robot: {{wheel_command: velocity, wheel_feed_forward: {}}}\n"
+TAKE_TORQUES = (None, "odrive")
+"""drives that take a torque beside the speed; None: those of the simulated robot"""
 SIMULATED_VELOCITY = f"{DRIVER}: {{drive: velocity}}\n"
 """the same, of drives that take speeds; the second one where no other drives stand before the motors"""
 
@@ -130,7 +132,11 @@ def run_demo(seconds: float, out: Path, robot: str, drives: Path | None = None, 
 
 def overlay(drives: Path | None, *, velocity: bool) -> str:
     """The parameters that are laid over the package's."""
-    return EVERY_CYCLE + (VELOCITY + (SIMULATED_VELOCITY if drives is None else "") if velocity else "")
+    if not velocity:
+        return EVERY_CYCLE
+    takes_torque = (drives and drives.stem) in TAKE_TORQUES
+    simulated = SIMULATED_VELOCITY if drives is None else ""
+    return EVERY_CYCLE + VELOCITY.format(str(takes_torque).lower()) + simulated
 
 
 def refusals(launch_log: str) -> list[str]:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "drivers/can/can_load.h"
@@ -55,6 +56,14 @@ CanDriver::CanDriver(const CanParameters& parameters, std::span<const Brake> bra
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     laws_.emplace_back(brakes[i], drives_[i].drive_parameters().torque_limit);
   }
+}
+
+bool CanDriver::measures(MachineInput input) const noexcept {
+  if (input != MachineInput::kJointEffort) return Driver::measures(input);
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    if (!drives_[i].drive_parameters().measures_torque) return false;
+  }
+  return true;
 }
 
 void CanDriver::stop() noexcept {
@@ -127,6 +136,7 @@ void CanDriver::read(SensorFrame& sensors) noexcept {
     const DriveSample& sample = drives_[i].sample();
     JointSample& joint = sensors.joints[i];
     joint = sample.valid ? at_time(sample, now_ns_) : sample.joint;
+    if (!drives_[i].drive_parameters().measures_torque) joint.effort = std::numeric_limits<double>::quiet_NaN();
     joint.age_ns = now_ns_ - sample.stamp_ns;
     joint.valid = (sample.valid ? kValidPosition | kValidVelocity : 0U) | (sample.effort_valid ? kValidEffort : 0U);
     const DriveStatus& status = drives_[i].status();

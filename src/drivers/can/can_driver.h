@@ -46,6 +46,7 @@ class CanDriver final : public Driver {
   void stop() noexcept override;
 
   bool accepts(JointMode mode) const noexcept override { return accepted(mode, takes_speeds_); }
+  bool measures(MachineInput input) const noexcept override;
 
   /// Returns the bus with its load, and what each joint does on silence.
   std::string description() const override;

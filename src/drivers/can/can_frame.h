@@ -27,9 +27,14 @@ inline bool is_error(const can_frame& frame) noexcept {
   return (frame.can_id & CAN_ERR_FLAG) != 0;
 }
 
-/// Returns whether the frame carries data under an identifier of 11 bits, as all messages of the dialects do.
+/// Returns whether the frame carries data under an identifier of 11 bits.
 inline bool is_standard_data(const can_frame& frame) noexcept {
   return (frame.can_id & ~CAN_SFF_MASK) == 0 && frame.len <= CAN_MAX_DLEN;
+}
+
+/// Returns whether the frame carries data under an identifier of 29 bits.
+inline bool is_extended_data(const can_frame& frame) noexcept {
+  return (frame.can_id & ~CAN_EFF_MASK) == CAN_EFF_FLAG && frame.len <= CAN_MAX_DLEN;
 }
 
 /// Builds a frame of at most 8 bytes; further bytes are ignored.

@@ -7,13 +7,14 @@
 
 #include "drivers/can/cia402/cia402_parameters.h"
 #include "drivers/can/odrive/odrive_parameters.h"
+#include "drivers/can/vesc/vesc_parameters.h"
 
 namespace robot_control {
 
-enum class CanDialect : std::uint8_t { kOdrive, kCia402 };
+enum class CanDialect : std::uint8_t { kOdrive, kCia402, kVesc };
 
 inline std::vector<Word> words_of(CanDialect) {
-  return {{"odrive", CanDialect::kOdrive}, {"cia402", CanDialect::kCia402}};
+  return {{"odrive", CanDialect::kOdrive}, {"cia402", CanDialect::kCia402}, {"vesc", CanDialect::kVesc}};
 }
 
 struct CanBusParameters {
@@ -35,7 +36,9 @@ inline Keys keys(CanBusParameters& bus) {
 struct CanParameters {
   CanBusParameters bus;
   /// In the order of the robot's joints.
-  std::variant<std::vector<odrive::OdriveParameters>, std::vector<cia402::Cia402Parameters>> joints;
+  std::variant<std::vector<odrive::OdriveParameters>, std::vector<cia402::Cia402Parameters>,
+               std::vector<vesc::VescParameters>>
+      joints;
 };
 
 }  // namespace robot_control

@@ -19,6 +19,7 @@ constexpr CauseWords kCauseWords[] = {
     {"waits for version and identity", ""},
     {"waits for object", ""},
     {"waits for the first position", "let the drive send its positions, or request them by the drive file"},
+    {"waits for", "turn it on with the maker's tool"},
     {"waits to be enabled", ""},
     {"waits for torque", ""},
     {"is silent: no", "look at its power and the cable"},
@@ -163,7 +164,8 @@ bool Drive::accept_motion(double position, double velocity, std::int64_t now_ns)
   const double moved = to_joint_ * position - joint.position;
   // A frame may be late by a period; a joint that is pushed may be twice as fast as its limit.
   const double elapsed = 1.0e-9 * static_cast<double>(now_ns - sample_.stamp_ns + 2 * period_ns_);
-  const double maximum = 2 * drive_.velocity_limit * std::fmax(elapsed, 2 * drive_.sample_period);
+  const double maximum = 2 * drive_.velocity_limit * std::fmax(elapsed, 2 * drive_.sample_period) +
+                         std::abs(to_joint_) * drive_.position_step;
   if (sample_.valid && std::abs(moved) > maximum) fail(DriveCause::kPositionJump, "position", 0, moved, maximum);
   if (!is_possible(velocity)) return false;
   joint.position = to_joint_ * position;

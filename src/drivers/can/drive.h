@@ -1,5 +1,5 @@
 #pragma once
-/// A Drive is the state machine of one motor drive on CAN. Each dialect (odrive, cia402) derives from it.
+/// A Drive is the state machine of one motor drive on CAN. Each dialect (odrive, cia402, vesc) derives from it.
 ///
 ///   starting ──set up and compared──▶ ready ──enabled──▶ running ──error, silence, jump …──▶ fault
 ///
@@ -36,6 +36,7 @@ enum class DriveCause : std::uint8_t {
   kIdentity,     ///< for version, serial number and configuration
   kSetup,        ///< for an object to be written or read; code: index << 8 | sub-index
   kFirstSample,  ///< for the first position
+  kMessage,      ///< for the message `subject`, which it has to send by itself
   kEnable,       ///< for the command that enables the motor
   kPower,        ///< for the state in which the motor has torque; code: the present state
   // The drive is in fault:
@@ -129,7 +130,7 @@ class FrameBatch {
   std::uint64_t dropped_ = 0;
 };
 
-/// Some drives measure the torque more rarely than the position (`effort_is_rare`). The effort of their samples is the
+/// Some drives measure the torque more rarely than in each cycle (`effort_is_rare`). The effort of their samples is the
 /// torque that was ordered in the last cycle. This holds while the last measurement lay among the orders of kOrders
 /// cycles, with a tolerance of kFollows times the limit. Otherwise the effort is that measurement.
 class Drive {

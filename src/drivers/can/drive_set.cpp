@@ -4,6 +4,7 @@
 
 #include "drivers/can/cia402/cia402_drive.h"
 #include "drivers/can/odrive/odrive_drive.h"
+#include "drivers/can/vesc/vesc_drive.h"
 
 namespace robot_control {
 
@@ -31,6 +32,10 @@ void DriveSet::add(const std::vector<cia402::Cia402Parameters>& joints, double p
     timeout = std::min(timeout, joints[i].host_timeout);
   }
   canopen_.emplace(host_node_, timeout);
+}
+
+void DriveSet::add(const std::vector<vesc::VescParameters>& joints, double period) {
+  for (const auto& joint : joints) drives_.push_back(std::make_unique<vesc::VescDrive>(joint, period));
 }
 
 void DriveSet::receive(const can_frame& frame, std::int64_t now_ns) noexcept {

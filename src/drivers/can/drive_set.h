@@ -30,6 +30,7 @@ class DriveSet {
  private:
   void add(const std::vector<odrive::OdriveParameters>& joints, double period);
   void add(const std::vector<cia402::Cia402Parameters>& joints, double period);
+  void add(const std::vector<vesc::VescParameters>& joints, double period);
 
   std::uint8_t host_node_;
   std::vector<std::unique_ptr<Drive>> drives_;

@@ -54,34 +54,39 @@ std::unique_ptr<Driver> make_example(const Parameters& parameters, const Machine
                                          parameters.loop.period(), connect_to_board(board.address));
 }
 
-template <class Line>
-std::unique_ptr<SerialLine> open_line(const Parameters& parameters, const Line& line,
-                                      const std::function<std::int64_t()>& clock) {
+/// `read` returns the drive file, and `make` the driver of such a board from file, motors, line and clock.
+template <class Read, class Make>
+std::unique_ptr<Driver> make_serial(const std::string& driver, const Parameters& parameters,
+                                    const MachineModel& machine, const std::vector<Brake>& brakes, DriverClock clock,
+                                    Read read, Make make) {
+  require_drive_file(parameters, driver, driver);
+  refuse_held_joints(machine, driver);
+  const DriveMotors motors = drive_motors(machine, brakes);
+  const auto file = read(parameters, motors.joints);
+  const std::function<std::int64_t()> time_ns = [clock = std::move(clock)] { return clock().time_ns; };
   const RealtimeParameters thread{
       .name = "serial", .policy = parameters.loop.realtime, .priority = kSerialPriority, .core = -1};
-  return std::make_unique<SerialPort>(line.address, static_cast<unsigned>(line.bit_rate), thread, clock);
+  const auto bit_rate = static_cast<unsigned>(file.line.bit_rate);
+  return make(file, motors, std::make_unique<SerialPort>(file.line.address, bit_rate, thread, time_ns), time_ns);
 }
 
 std::unique_ptr<Driver> make_board(const Parameters& parameters, const MachineModel& machine,
                                    const std::vector<Brake>& brakes, DriverClock clock) {
-  require_drive_file(parameters, "board", "board");
-  refuse_held_joints(machine, "board");
-  const DriveMotors motors = drive_motors(machine, brakes);
-  const BoardParameters board = read_board_file(parameters, motors.joints);
-  const auto time_ns = [clock = std::move(clock)] { return clock().time_ns; };
-  return std::make_unique<BoardDriver>(board, motors.brakes, motors.joint_count, parameters.loop.period(),
-                                       open_line(parameters, board.line, time_ns), time_ns);
+  const auto make = [&](const BoardParameters& file, const DriveMotors& motors, auto line, const auto& time_ns) {
+    return std::make_unique<BoardDriver>(file, motors.brakes, motors.joint_count, parameters.loop.period(),
+                                         std::move(line), time_ns);
+  };
+  const auto read = [](const auto&... from) { return read_board_file(from...); };
+  return make_serial("board", parameters, machine, brakes, std::move(clock), read, make);
 }
 
 std::unique_ptr<Driver> make_roboclaw(const Parameters& parameters, const MachineModel& machine,
                                       const std::vector<Brake>& brakes, DriverClock clock) {
-  require_drive_file(parameters, "roboclaw", "roboclaw");
-  refuse_held_joints(machine, "roboclaw");
-  const DriveMotors motors = drive_motors(machine, brakes);
-  const RoboclawParameters board = read_roboclaw_file(parameters, motors.joints);
-  const auto time_ns = [clock = std::move(clock)] { return clock().time_ns; };
-  return std::make_unique<RoboclawDriver>(board, motors.joint_count, parameters.loop.period(),
-                                          open_line(parameters, board.line, time_ns), time_ns);
+  const auto make = [&](const RoboclawParameters& file, const DriveMotors& motors, auto line, const auto& time_ns) {
+    return std::make_unique<RoboclawDriver>(file, motors.joint_count, parameters.loop.period(), std::move(line),
+                                            time_ns);
+  };
+  return make_serial("roboclaw", parameters, machine, brakes, std::move(clock), &read_roboclaw_file, make);
 }
 
 struct DriverRow {

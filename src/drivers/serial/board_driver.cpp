@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <sstream>
 
 namespace robot_control {
@@ -26,6 +24,11 @@ double line_load(std::size_t wheels, double period, std::uint64_t bit_rate) {
   return std::max(order, report) * kBitsPerByte / period / static_cast<double>(bit_rate);
 }
 
+std::size_t velocity_samples(double period) {
+  const std::int64_t span = std::max<std::int64_t>(1, BoardDriver::kVelocitySpanNs / std::llround(1.0e9 * period));
+  return std::min(PositionDifference::kSamples, static_cast<std::size_t>(span));
+}
+
 const char* words_of_reset(std::uint64_t reason) noexcept {
   switch (reason) {
     case BOARD_BROWN_OUT:
@@ -43,13 +46,9 @@ const char* words_of_reset(std::uint64_t reason) noexcept {
 
 BoardDriver::BoardDriver(const BoardParameters& parameters, std::span<const Brake> brakes, std::size_t joint_count,
                          double period, std::unique_ptr<SerialLine> line, std::function<std::int64_t()> clock)
-    : joint_count_(joint_count),
+    : SerialDriver(parameters.wheels, velocity_samples(period), joint_count, period, std::move(line), std::move(clock)),
       parameters_(parameters),
-      load_(line_load(parameters.wheels.size(), period, parameters.line.bit_rate)),
-      period_ns_(std::llround(1.0e9 * period)),
-      line_(std::move(line)),
-      clock_(std::move(clock)),
-      wheels_(parameters.wheels.size()) {
+      load_(line_load(parameters.wheels.size(), period, parameters.line.bit_rate)) {
   if (load_ > kMaxLineLoad) {
     std::ostringstream text;
     text << "a line of " << parameters.line.bit_rate << " bit/s carries the messages of this board at "
@@ -57,28 +56,11 @@ BoardDriver::BoardDriver(const BoardParameters& parameters, std::span<const Brak
          << " Hz: raise board.bit_rate here and in the board, or lower robot.rate";
     throw DriverError(text.str());
   }
-  const std::int64_t span = std::max<std::int64_t>(1, kVelocitySpanNs / period_ns_);
-  const auto samples = std::min(PositionDifference::kSamples, static_cast<std::size_t>(span));
-  for (std::size_t i = 0; i < wheels_.size(); ++i) {
-    const BoardWheelParameters& wheel = parameters.wheels[i];
-    laws_.emplace_back(brakes[i], wheel.torque_limit);
-    wheels_[i].rad_per_count = static_cast<double>(wheel.direction) * 2 * std::numbers::pi / wheel.counts_per_turn;
-    wheels_[i].difference = PositionDifference(samples);
-  }
-}
-
-void BoardDriver::start() {
-  stopped_ = false;
-  begin();
-}
-
-void BoardDriver::reset() noexcept {
-  if (status_.state == DriverState::kFault) begin();
+  for (std::size_t i = 0; i < wheels_.size(); ++i) laws_.emplace_back(brakes[i], parameters.wheels[i].torque_limit);
+  max_age_ns_ = static_cast<std::int64_t>(parameters.line.max_silence) * period_ns_;
 }
 
 void BoardDriver::begin() noexcept {
-  status_.state = DriverState::kStarting;
-  status_.cause = BoardCause::kNoReport;
   silent_for_ = 0;
   forget_samples();
   for (JointLaw& law : laws_) law.reset();
@@ -87,17 +69,11 @@ void BoardDriver::begin() noexcept {
 void BoardDriver::forget_samples() noexcept {
   has_report_ = false;
   board_clock_.restart();
-  for (Wheel& wheel : wheels_) wheel.difference.clear();
+  for (BoardWheel& wheel : wheels_) wheel.difference.clear();
 }
 
-void BoardDriver::fail(BoardCause cause, std::uint64_t detail) noexcept {
-  if (status_.state == DriverState::kFault) return;  // the first one stays
-  status_.cause = cause;
-  status_.detail = detail;
-  if (status_.state == DriverState::kRunning || cause == BoardCause::kPositionJump) status_.state = DriverState::kFault;
-}
-
-void BoardDriver::receive(std::int64_t now_ns) noexcept {
+bool BoardDriver::receive() noexcept {
+  ++silent_for_;
   SerialChunk chunk;
   const std::uint16_t bad = decoder_.bad;
   for (int i = 0; i < kMaxChunks && line_->receive(chunk); ++i) {
@@ -106,13 +82,14 @@ void BoardDriver::receive(std::int64_t now_ns) noexcept {
       if (size == 0) continue;
       board_report report{};
       if (board_read_report(decoder_.body, size, &report) != 0) {
-        accept(report, std::min(chunk.time_ns, now_ns));
+        accept(report, std::min(chunk.time_ns, now_ns_));
       } else if (decoder_.body[0] != BOARD_PROTOCOL) {
         fail(BoardCause::kOtherProtocol, decoder_.body[0]);
       }
     }
   }
   link_.errors += static_cast<std::uint16_t>(decoder_.bad - bad);
+  return silent_for_ > parameters_.line.max_silence;
 }
 
 void BoardDriver::accept(const board_report& report, std::int64_t arrived_ns) noexcept {
@@ -145,16 +122,13 @@ void BoardDriver::accept(const board_report& report, std::int64_t arrived_ns) no
   sensors_ = report.sensors;
   accept_imu(report);
   if ((report.flags & BOARD_WATCHDOG) != 0) return fail(BoardCause::kOwnBrake);
-  if (status_.state == DriverState::kStarting) {
-    status_.state = DriverState::kRunning;
-    status_.cause = BoardCause::kNone;
-  }
+  if (status_.state == DriverState::kStarting) run();
 }
 
 void BoardDriver::accept_counts(const board_report& report, std::int64_t elapsed_us) noexcept {
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
     const BoardWheelParameters& parameters = parameters_.wheels[i];
-    Wheel& wheel = wheels_[i];
+    BoardWheel& wheel = wheels_[i];
     const std::uint32_t counts = report.counts[parameters.wheel];
     const std::uint32_t step = counts - wheel.counts;
     const auto moved = parameters.counter_bits == 16 ? static_cast<std::int16_t>(static_cast<std::uint16_t>(step))
@@ -169,10 +143,7 @@ void BoardDriver::accept_counts(const board_report& report, std::int64_t elapsed
     } else {
       wheel.total = counts;
     }
-    wheel.position = wheel.rad_per_count * static_cast<double>(wheel.total);
-    wheel.difference.add(wheel.position,
-                         1000 * total_us_);  // the estimate of the offset moves; drift is 0.05 % at most
-    wheel.velocity = wheel.difference.velocity();
+    wheel.measure(1000 * total_us_);  // the estimate of the offset moves; drift is 0.05 % at most
     const double direction = static_cast<double>(parameters.direction);
     wheel.effort = direction * kMicro * report.sensors.effort[parameters.wheel];
     wheel.fault = report.sensors.fault[parameters.wheel];
@@ -191,64 +162,27 @@ void BoardDriver::accept_imu(const board_report& report) noexcept {
   imu_ns_ = board_clock_.host_ns(total_us_ - age_us);
 }
 
-void BoardDriver::read(SensorFrame& sensors) noexcept {
-  now_ns_ = clock_();
-  ++silent_for_;
-  receive(now_ns_);
-  const std::uint64_t max_silence = parameters_.line.max_silence;
-  if (silent_for_ > max_silence) fail(BoardCause::kSilent);
-  const bool running = status_.state == DriverState::kRunning;
-  sensors.driver_state = status_.state;
-  sensors.faults = 0;
-  if (status_.state == DriverState::kFault)
-    sensors.faults = status_.cause == BoardCause::kSilent ? kFaultLink : kFaultDrive;
-  sensors.valid = 0;
-  sensors.joint_count = joint_count_;
-  for (std::size_t i = wheels_.size(); i < joint_count_; ++i) sensors.joints[i] = {};
-  const std::int64_t age_ns = now_ns_ - sample_ns_;
-  const auto age =
-      static_cast<double>(std::clamp<std::int64_t>(age_ns, 0, static_cast<std::int64_t>(max_silence) * period_ns_));
-  const bool has_effort = (sensors_.valid & BOARD_HAS_EFFORT) != 0;
-  // A board that restarts counts from zero: what a wheel travels during a fault is unknown.
-  const auto fault = status_.state == DriverState::kFault ? static_cast<std::uint32_t>(status_.cause) : 0U;
+void BoardDriver::add_measurements(SensorFrame& sensors) noexcept {
+  const auto has = [this](unsigned bit) { return (sensors_.valid & bit) != 0; };
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
-    const Wheel& wheel = wheels_[i];
-    sensors.joints[i] = {.position = wheel.position + wheel.velocity * 1.0e-9 * age,
-                         .velocity = wheel.velocity,
-                         .effort = has_effort ? wheel.effort : std::numeric_limits<double>::quiet_NaN(),
-                         .temperature = 0.1 * sensors_.temperature_dc,
-                         .age_ns = age_ns,
-                         .valid = !running     ? 0U
-                                  : has_effort ? std::uint32_t{kValidMotion}
-                                               : kValidKinematics,
-                         .fault = wheel.fault != 0 ? wheel.fault : fault};
-    if ((sensors_.valid & BOARD_HAS_TEMPERATURE) != 0 && running) sensors.joints[i].valid |= kValidTemperature;
+    JointSample& joint = sensors.joints[i];
+    if (has(BOARD_HAS_EFFORT)) joint.effort = wheels_[i].effort;
+    joint.temperature = 0.1 * sensors_.temperature_dc;
+    if (running() && has(BOARD_HAS_EFFORT)) joint.valid |= kValidEffort;
+    if (running() && has(BOARD_HAS_TEMPERATURE)) joint.valid |= kValidTemperature;
+    if (wheels_[i].fault != 0) joint.fault = wheels_[i].fault;
   }
-  if (running && (sensors_.valid & BOARD_HAS_BATTERY) != 0) {
+  if (running() && has(BOARD_HAS_BATTERY)) {
     sensors.valid |= kValidBattery;
     sensors.battery_voltage = 1.0e-3 * sensors_.battery_mv;
     sensors.battery_current = 1.0e-2 * sensors_.battery_ca;
   }
-  const bool imu_is_new = now_ns_ - imu_ns_ <= static_cast<std::int64_t>(max_silence) * period_ns_;
-  if (running && imu_is_new && (sensors_.valid & BOARD_HAS_IMU) != 0) {
+  if (running() && has(BOARD_HAS_IMU) && now_ns_ - imu_ns_ <= max_age_ns_) {
     sensors.valid |= kValidGyro | kValidAccelerometer;
     sensors.imu = imu_;
   }
   const bool released = (sensors_.inputs & BOARD_E_STOP_RELEASED) != 0;
-  sensors.digital_inputs = 0;
   if (parameters_.line.e_stop_input && has_report_ && !released) sensors.digital_inputs = kInputEmergencyStop;
-  link_.state = !line_->connected() || silent_for_ > max_silence ? LinkState::kDown
-                : running                                        ? LinkState::kUp
-                                                                 : LinkState::kStarting;
-  sensors.link_count = 1;
-  sensors.links[0] = link_;
-  publish_status();
-}
-
-void BoardDriver::publish_status() noexcept {
-  Status last;
-  status_.connected = line_->connected() ? 1 : 0;
-  if (!published_status_.load(last) || !(last == status_)) published_status_.store(status_);
 }
 
 void BoardDriver::send_order(board_order& order) noexcept {
@@ -259,22 +193,20 @@ void BoardDriver::send_order(board_order& order) noexcept {
   const std::uint8_t size = board_encode(body.data(), board_write_order(&order, body.data()), frame.data());
   sent_ns_[cycle_ % kOrders] = clock_();
   ++orders_;
-  ++link_.sent;
-  if (!line_->send(std::span(frame).first(size))) ++link_.errors;
+  send(std::span(frame).first(size));
 }
 
 void BoardDriver::write(std::span<const JointCommand> commands) noexcept {
-  const bool obeys = !stopped_ && commands.size() == joint_count_;
   board_order order{};
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
-    if (status_.state != DriverState::kRunning) continue;  // BOARD_BRAKE
-    order.wheel[parameters_.wheels[i].wheel] = order_of(i, obeys ? commands[i] : JointCommand{});
+    if (!running()) continue;  // BOARD_BRAKE
+    order.wheel[parameters_.wheels[i].wheel] = order_of(i, obeys(commands) ? commands[i] : JointCommand{});
   }
   send_order(order);
 }
 
 board_wheel_order BoardDriver::order_of(std::size_t i, const JointCommand& command) noexcept {
-  const Wheel& wheel = wheels_[i];
+  const BoardWheel& wheel = wheels_[i];
   const BoardWheelParameters& parameters = parameters_.wheels[i];
   if (parameters_.takes_speeds) {
     const double speed = wanted_speed(command, parameters.velocity_limit);
@@ -287,16 +219,16 @@ board_wheel_order BoardDriver::order_of(std::size_t i, const JointCommand& comma
 
 void BoardDriver::stop() noexcept {
   stopped_ = true;
-  if (status_.state != DriverState::kRunning) return;
+  if (!running()) return;
   board_order order{};
   send_order(order);
 }
 
 std::string BoardDriver::description() const {
-  Status status;
+  const Status status = published();
   std::ostringstream text;
   text << "board on " << line_->name() << ", protocol " << int{BOARD_PROTOCOL};
-  if (published_status_.load(status) && status.firmware != 0) text << ", firmware " << status.firmware;
+  if (status.firmware != 0) text << ", firmware " << status.firmware;
   if (load_ > 0) text << ", load of the line " << std::lround(100 * load_) << " %";
   text << (parameters_.takes_speeds ? ", takes speeds" : ", takes torques") << "; on silence it "
        << described(parameters_.line.on_silence) << " (stated in the drive file)";
@@ -304,12 +236,11 @@ std::string BoardDriver::description() const {
 }
 
 std::string BoardDriver::warning() const {
-  Status status;
-  if (!published_status_.load(status) || status.cause == BoardCause::kNone) return "";
+  const Status status = published();
   const auto joint = [&] { return parameters_.wheels.at(status.detail).joint; };
   const std::string board = "the board on " + line_->name();
   switch (status.cause) {
-    case BoardCause::kNoReport:
+    case BoardCause::kNoAnswer:
     case BoardCause::kSilent:
       return board +
              (status.connected == 0 ? " is not there: look at its cable and at the address in the drive file"

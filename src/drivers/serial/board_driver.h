@@ -28,14 +28,11 @@
 #include <string>
 #include <vector>
 
-#include "bus/latest_value.h"
 #include "drivers/drive_speed.h"
-#include "drivers/driver.h"
 #include "drivers/joint_law.h"
-#include "drivers/position_difference.h"
 #include "drivers/serial/board_clock.h"
 #include "drivers/serial/board_parameters.h"
-#include "drivers/serial/serial_line.h"
+#include "drivers/serial/serial_driver.h"
 #include "firmware/board_frame.h"
 #include "firmware/board_messages.h"
 
@@ -43,7 +40,7 @@ namespace robot_control {
 
 enum class BoardCause : std::uint8_t {
   kNone,
-  kNoReport,  ///< none yet
+  kNoAnswer,  ///< none yet
   kSilent,
   kOwnBrake,
   kRefused,
@@ -54,7 +51,12 @@ enum class BoardCause : std::uint8_t {
   kWheelFault,
 };
 
-class BoardDriver final : public Driver {
+struct BoardWheel : CountedWheel {
+  double effort = 0;       ///< N·m
+  std::uint8_t fault = 0;  ///< its fault word
+};
+
+class BoardDriver final : public SerialDriver<BoardCause, BoardWheel> {
  public:
   static constexpr std::size_t kOrders = 256;                 ///< the answer to an older order is refused
   static constexpr std::int64_t kClockJumpNs = 200'000'000;   ///< two boots lie further apart
@@ -67,9 +69,6 @@ class BoardDriver final : public Driver {
   BoardDriver(const BoardParameters& parameters, std::span<const Brake> brakes, std::size_t joint_count, double period,
               std::unique_ptr<SerialLine> line, std::function<std::int64_t()> clock);
 
-  void start() override;
-  void reset() noexcept override;
-  void read(SensorFrame& sensors) noexcept override;
   void write(std::span<const JointCommand> commands) noexcept override;
   /// The next `write` brakes. Until then the board brakes by itself.
   void stop() noexcept override;
@@ -86,44 +85,20 @@ class BoardDriver final : public Driver {
   std::int64_t sample_ns() const noexcept { return sample_ns_; }
 
  private:
-  struct Wheel {
-    double rad_per_count = 0;
-    std::uint32_t counts = 0;
-    std::int64_t total = 0;  // counts since the first report
-    double position = 0;
-    double velocity = 0;
-    double effort = 0;
-    std::uint8_t fault = 0;
-    PositionDifference difference;
-  };
-  struct Status {
-    DriverState state = DriverState::kStarting;
-    BoardCause cause = BoardCause::kNoReport;
-    std::uint64_t detail = 0;  // of the cause: number of the joint, version, number of wheels, or reason of the reset
-    std::uint64_t firmware = 0;
-    std::uint64_t connected = 0;
-    bool operator==(const Status&) const = default;
-  };
-
-  void begin() noexcept;
+  void begin() noexcept override;
+  bool receive() noexcept override;
+  void add_measurements(SensorFrame& sensors) noexcept override;
+  bool is_fault_at_start(BoardCause cause) const noexcept override { return cause == BoardCause::kPositionJump; }
   void forget_samples() noexcept;
-  void receive(std::int64_t now_ns) noexcept;
   void accept(const board_report& report, std::int64_t arrived_ns) noexcept;
   void accept_counts(const board_report& report, std::int64_t elapsed_us) noexcept;
   void accept_imu(const board_report& report) noexcept;
-  void fail(BoardCause cause, std::uint64_t detail = 0) noexcept;
   board_wheel_order order_of(std::size_t i, const JointCommand& command) noexcept;
   void send_order(board_order& order) noexcept;
-  void publish_status() noexcept;
 
-  std::size_t joint_count_;
   BoardParameters parameters_;
   double load_;  // of the line; 0: USB
-  std::int64_t period_ns_;
-  std::unique_ptr<SerialLine> line_;
-  std::function<std::int64_t()> clock_;
   std::vector<JointLaw> laws_;
-  std::vector<Wheel> wheels_;
   board_decoder decoder_{};
   BoardClock board_clock_;
   std::array<std::int64_t, kOrders> sent_ns_{};  // of each order, by its cycle
@@ -134,16 +109,10 @@ class BoardDriver final : public Driver {
   std::uint32_t board_us_ = 0;    // its time, as sent
   std::int64_t total_us_ = 0;     // the same without wraps
   std::int64_t answered_ns_ = 0;  // when its order was sent
-  std::int64_t sample_ns_ = 0;
   std::uint64_t silent_for_ = 0;  // cycles
   board_sensors sensors_{};
   ImuSample imu_;
   std::int64_t imu_ns_ = 0;
-  LinkStatus link_;
-  Status status_;
-  LatestValue<Status> published_status_;
-  std::int64_t now_ns_ = 0;
-  bool stopped_ = true;
 };
 
 }  // namespace robot_control

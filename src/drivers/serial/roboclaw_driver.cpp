@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <sstream>
 
@@ -37,48 +36,27 @@ std::string words_of_errors(std::uint64_t bits) {
 
 RoboclawDriver::RoboclawDriver(const RoboclawParameters& parameters, std::size_t joint_count, double period,
                                std::unique_ptr<SerialLine> line, std::function<std::int64_t()> clock)
-    : joint_count_(joint_count),
-      parameters_(parameters),
-      period_ns_(std::llround(1.0e9 * period)),
-      line_(std::move(line)),
-      clock_(std::move(clock)),
-      wheels_(parameters.wheels.size()) {
-  for (std::size_t i = 0; i < wheels_.size(); ++i) {
-    const RoboclawWheelParameters& wheel = parameters.wheels[i];
-    wheels_[i].rad_per_count = static_cast<double>(wheel.direction) * 2 * std::numbers::pi / wheel.counts_per_turn;
-    wheels_[i].difference = PositionDifference(kSamples);
-  }
-}
-
-void RoboclawDriver::start() {
-  stopped_ = false;
-  begin();
-}
-
-void RoboclawDriver::reset() noexcept {
-  if (status_.state == DriverState::kFault) begin();
+    : SerialDriver(parameters.wheels, kSamples, joint_count, period, std::move(line), std::move(clock)),
+      parameters_(parameters) {
+  max_age_ns_ = kTimeoutNs;
 }
 
 void RoboclawDriver::begin() noexcept {
-  status_.state = DriverState::kStarting;
-  status_.cause = RoboclawCause::kNoAnswer;
   setup_ = 0;
   turn_ = 0;
   has_counts_ = false;
-  for (Wheel& wheel : wheels_) {
+  for (RoboclawWheel& wheel : wheels_) {
     wheel.blind = wheel.ordered = 0;
     wheel.difference.clear();
   }
 }
 
-void RoboclawDriver::fail(RoboclawCause cause, std::uint64_t detail) noexcept {
-  if (status_.state == DriverState::kFault) return;  // the first one stays
-  status_.cause = cause;
-  status_.detail = detail;
-  if (cause != RoboclawCause::kSilent || status_.state == DriverState::kRunning) status_.state = DriverState::kFault;
+bool RoboclawDriver::receive() noexcept {
+  take_bytes();
+  return 1.0e-9 * static_cast<double>(now_ns_ - sample_ns_) > kRoboclawSilence;
 }
 
-void RoboclawDriver::receive() noexcept {
+void RoboclawDriver::take_bytes() noexcept {
   SerialChunk chunk;
   for (int i = 0; i < kMaxChunks && line_->receive(chunk); ++i) {
     for (const std::uint8_t byte : chunk.received()) {
@@ -140,9 +118,7 @@ void RoboclawDriver::accept() noexcept {
     return;
   }
   if (setup_ < kSetup.size() && command_ == kSetup[setup_]) ++setup_;
-  if (setup_ < kSetup.size()) return;
-  status_.state = DriverState::kRunning;
-  status_.cause = RoboclawCause::kNone;
+  if (setup_ == kSetup.size()) run();
 }
 
 void RoboclawDriver::accept_gains(unsigned motor) noexcept {
@@ -157,7 +133,7 @@ void RoboclawDriver::accept_counts() noexcept {
   const std::int64_t stamp_ns = sent_ns_ + (arrived_ns_ - sent_ns_) / 2;
   const double elapsed = 1.0e-9 * static_cast<double>(stamp_ns - sample_ns_ + kAnswerNs);
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
-    Wheel& wheel = wheels_[i];
+    RoboclawWheel& wheel = wheels_[i];
     const RoboclawWheelParameters& parameters = parameters_.wheels[i];
     const std::uint32_t counts = received_.number(4 * (parameters.motor - 1), 4);
     const auto moved = static_cast<std::int32_t>(counts - wheel.counts);
@@ -171,57 +147,23 @@ void RoboclawDriver::accept_counts() noexcept {
       if (moved != 0) wheel.blind = 0;
       if (wheel.blind > kBlindWay) fail(RoboclawCause::kNoCounts, i);
     }
-    wheel.position = wheel.rad_per_count * static_cast<double>(wheel.total);
-    wheel.difference.add(wheel.position, stamp_ns);
-    wheel.velocity = wheel.difference.velocity();
+    wheel.measure(stamp_ns);
   }
   has_counts_ = true;
   sample_ns_ = stamp_ns;
 }
 
-void RoboclawDriver::read(SensorFrame& sensors) noexcept {
-  now_ns_ = clock_();
-  receive();
-  const bool silent = 1.0e-9 * static_cast<double>(now_ns_ - sample_ns_) > kRoboclawSilence;
-  if (silent) fail(RoboclawCause::kSilent);
-  const bool running = status_.state == DriverState::kRunning;
-  sensors.driver_state = status_.state;
-  sensors.faults = 0;
-  if (status_.state == DriverState::kFault)
-    sensors.faults = status_.cause == RoboclawCause::kSilent ? kFaultLink : kFaultDrive;
-  sensors.valid = running ? valid_ : 0;
+void RoboclawDriver::add_measurements(SensorFrame& sensors) noexcept {
+  if (running()) sensors.valid = valid_;
   sensors.battery_voltage = battery_;
-  sensors.joint_count = joint_count_;
-  for (std::size_t i = wheels_.size(); i < joint_count_; ++i) sensors.joints[i] = {};
-  const std::int64_t age_ns = now_ns_ - sample_ns_;
-  // A board that restarts counts from zero: what a wheel travels during a fault is unknown.
-  const auto fault = status_.state == DriverState::kFault ? static_cast<std::uint32_t>(status_.cause) : 0U;
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
-    const Wheel& wheel = wheels_[i];
-    const double age = 1.0e-9 * static_cast<double>(std::clamp<std::int64_t>(age_ns, 0, kTimeoutNs));
-    sensors.joints[i] = {.position = wheel.position + wheel.velocity * age,
-                         .velocity = wheel.velocity,
-                         .effort = std::numeric_limits<double>::quiet_NaN(),
-                         .temperature = temperature_,
-                         .age_ns = age_ns,
-                         .valid = running ? std::uint32_t{kValidKinematics} : 0U,
-                         .fault = fault};
-    if (running && has_temperature_) sensors.joints[i].valid |= kValidTemperature;
+    sensors.joints[i].temperature = temperature_;
+    if (running() && has_temperature_) sensors.joints[i].valid |= kValidTemperature;
   }
-  link_.state = !line_->connected() || silent ? LinkState::kDown : running ? LinkState::kUp : LinkState::kStarting;
-  sensors.link_count = 1;
-  sensors.links[0] = link_;
-  publish_status();
-}
-
-void RoboclawDriver::publish_status() noexcept {
-  Status last;
-  status_.connected = line_->connected() ? 1 : 0;
-  if (!published_status_.load(last) || !(last == status_)) published_status_.store(status_);
 }
 
 bool RoboclawDriver::counts_are_trusted() const noexcept {
-  if (status_.state == DriverState::kRunning) return true;
+  if (running()) return true;
   return status_.state == DriverState::kFault &&
          (status_.cause == RoboclawCause::kSilent || status_.cause == RoboclawCause::kBoardError);
 }
@@ -233,7 +175,7 @@ RoboclawDriver::Command RoboclawDriver::next() const noexcept {
   return pair % kSlowEvery == kSlowEvery - 1 ? kSlow[pair / kSlowEvery % kSlow.size()] : Command::kEncoders;
 }
 
-void RoboclawDriver::send(Command command) noexcept {
+void RoboclawDriver::request(Command command) noexcept {
   const bool speeds = command == Command::kSpeeds;
   const std::int32_t first = speeds ? speeds_[0] : command == Command::kSetTimeout ? kTimeoutSteps : 0;
   asked_ = roboclaw::request(static_cast<std::uint8_t>(parameters_.line.board_address), command, first,
@@ -242,20 +184,18 @@ void RoboclawDriver::send(Command command) noexcept {
   command_ = command;
   sent_ns_ = now_ns_;
   pending_ = true;
-  ++link_.sent;
-  if (!line_->send(asked_.bytes())) ++link_.errors;
+  send(asked_.bytes());
 }
 
 void RoboclawDriver::write(std::span<const JointCommand> commands) noexcept {
-  const bool obeys = !stopped_ && commands.size() == joint_count_ && status_.state == DriverState::kRunning;
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
-    Wheel& wheel = wheels_[i];
+    RoboclawWheel& wheel = wheels_[i];
     const RoboclawWheelParameters& parameters = parameters_.wheels[i];
-    wheel.ordered = obeys ? wanted_speed(commands[i], parameters.velocity_limit) : 0;
+    wheel.ordered = obeys(commands) ? wanted_speed(commands[i], parameters.velocity_limit) : 0;
     wheel.blind += std::abs(wheel.ordered) * 1.0e-9 * static_cast<double>(period_ns_);
     speeds_[parameters.motor - 1] = rounded(wheel.ordered / wheel.rad_per_count);
   }
-  if (!pending_) send(next());
+  if (!pending_) request(next());
 }
 
 std::string RoboclawDriver::description() const {
@@ -266,8 +206,7 @@ std::string RoboclawDriver::description() const {
 }
 
 std::string RoboclawDriver::warning() const {
-  Status status;
-  if (!published_status_.load(status) || status.cause == RoboclawCause::kNone) return "";
+  const Status status = published();
   const auto joint = [&] { return parameters_.wheels.at(status.detail).joint; };
   const std::string board = "the RoboClaw on " + line_->name();
   const std::string motor = "M" + std::to_string(status.detail);

@@ -26,13 +26,10 @@
 #include <string>
 #include <vector>
 
-#include "bus/latest_value.h"
 #include "drivers/drive_speed.h"
-#include "drivers/driver.h"
-#include "drivers/position_difference.h"
 #include "drivers/serial/roboclaw_parameters.h"
 #include "drivers/serial/roboclaw_protocol.h"
-#include "drivers/serial/serial_line.h"
+#include "drivers/serial/serial_driver.h"
 
 namespace robot_control {
 
@@ -48,7 +45,12 @@ enum class RoboclawCause : std::uint8_t {
   kNoCounts,
 };
 
-class RoboclawDriver final : public Driver {
+struct RoboclawWheel : CountedWheel {
+  double blind = 0;    ///< rad, ordered since the last count
+  double ordered = 0;  ///< rad/s
+};
+
+class RoboclawDriver final : public SerialDriver<RoboclawCause, RoboclawWheel> {
  public:
   static constexpr std::int64_t kTimeoutNs = 100'000'000;  ///< of the board, its shortest one
   static constexpr std::int64_t kAnswerNs = 8'000'000;     ///< 3 ms of jitter each way, and the board's own time
@@ -60,9 +62,6 @@ class RoboclawDriver final : public Driver {
   RoboclawDriver(const RoboclawParameters& parameters, std::size_t joint_count, double period,
                  std::unique_ptr<SerialLine> line, std::function<std::int64_t()> clock);
 
-  void start() override;
-  void reset() noexcept override;
-  void read(SensorFrame& sensors) noexcept override;
   void write(std::span<const JointCommand> commands) noexcept override;
   /// The next orders brake.
   void stop() noexcept override { stopped_ = true; }
@@ -80,42 +79,20 @@ class RoboclawDriver final : public Driver {
                                      Command::kEncoders};
   static constexpr std::array kSlow{Command::kBattery, Command::kTemperature, Command::kStatus};
 
-  struct Wheel {
-    double rad_per_count = 0;
-    std::uint32_t counts = 0;
-    std::int64_t total = 0;
-    double position = 0;
-    double velocity = 0;
-    double blind = 0;    // rad, ordered since the last count
-    double ordered = 0;  // rad/s
-    PositionDifference difference;
-  };
-  struct Status {
-    DriverState state = DriverState::kStarting;
-    RoboclawCause cause = RoboclawCause::kNoAnswer;
-    std::uint64_t detail = 0;
-    std::uint64_t connected = 0;
-    bool operator==(const Status&) const = default;
-  };
-
-  void begin() noexcept;
-  void receive() noexcept;
+  void begin() noexcept override;
+  bool receive() noexcept override;
+  void add_measurements(SensorFrame& sensors) noexcept override;
+  bool is_fault_at_start(RoboclawCause cause) const noexcept override { return cause != RoboclawCause::kSilent; }
+  void take_bytes() noexcept;
   bool answered() noexcept;
   void accept() noexcept;
   void accept_gains(unsigned motor) noexcept;
   void accept_counts() noexcept;
-  void fail(RoboclawCause cause, std::uint64_t detail = 0) noexcept;
   Command next() const noexcept;
-  void send(Command command) noexcept;
+  void request(Command command) noexcept;
   bool counts_are_trusted() const noexcept;
-  void publish_status() noexcept;
 
-  std::size_t joint_count_;
   RoboclawParameters parameters_;
-  std::int64_t period_ns_;
-  std::unique_ptr<SerialLine> line_;
-  std::function<std::int64_t()> clock_;
-  std::vector<Wheel> wheels_;
   std::array<std::int32_t, 2> speeds_{};  // counts per s, of the motors
   roboclaw::Packet asked_, received_;
   Command command_ = Command::kVersion;
@@ -125,16 +102,10 @@ class RoboclawDriver final : public Driver {
   std::size_t setup_ = 0;  // next one of kSetup; its size: running
   unsigned turn_ = 0;      // answered exchanges since the start
   bool has_counts_ = false;
-  std::int64_t sample_ns_ = 0;
   std::uint64_t valid_ = 0;  // kValidBattery, once it was read
   double battery_ = 0;       // V
   double temperature_ = 0;   // °C
   bool has_temperature_ = false;
-  LinkStatus link_;
-  Status status_;
-  LatestValue<Status> published_status_;
-  std::int64_t now_ns_ = 0;
-  bool stopped_ = true;
 };
 
 }  // namespace robot_control

@@ -165,11 +165,7 @@ double Cia402Device::max_torque(unsigned axis) const {
 double Cia402Device::speed_torque(unsigned axis, double seconds) {
   Axis& own = axes_[axis];
   const double target = objects_.signed_value(on_axis(kTargetVelocity, axis)) * parameters_.velocity_unit;
-  const double error = target - own.motor->velocity;
-  const double integral = own.integral + parameters_.brake_damping / kIntegralTime * error * seconds;
-  const double wanted = parameters_.brake_damping * error + integral;
-  if (std::abs(wanted) < max_torque(axis)) own.integral = integral;
-  return std::clamp(wanted, -max_torque(axis), max_torque(axis));
+  return own.speed_loop.step(target - own.motor->velocity, parameters_.brake_damping, max_torque(axis), seconds);
 }
 
 double Cia402Device::driven_torque(unsigned axis, double seconds) {
@@ -209,7 +205,8 @@ void Cia402Device::update_axis(unsigned axis) {
   if (own.power == PowerState::kOperationEnabled) {
     own.motor->torque = driven_torque(axis, seconds);
   } else {
-    own.torque = own.integral = 0;
+    own.torque = 0;
+    own.speed_loop.reset();
     own.motor->torque = brakes ? brake_torque(axis) : 0;
   }
 }

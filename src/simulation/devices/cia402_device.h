@@ -16,6 +16,7 @@
 #include "drivers/can/cia402/power_state.h"
 #include "simulation/devices/device.h"
 #include "simulation/devices/object_dictionary.h"
+#include "simulation/devices/speed_loop.h"
 
 namespace robot_control {
 
@@ -55,10 +56,10 @@ class Cia402Device final : public Device {
     DeviceMotor* motor = nullptr;
     cia402::PowerState power = cia402::PowerState::kSwitchOnDisabled;
     std::uint16_t controlword = 0;
-    double zero = 0;      // rad, true position of its zero
-    double torque = 0;    // N·m, of TQ with its slope
-    double integral = 0;  // N·m, of CSV and PV
-    double held = 0;      // rad, true position that a quick stop holds
+    double zero = 0;         // rad, true position of its zero
+    double torque = 0;       // N·m, of TQ with its slope
+    SpeedLoop speed_loop{};  // of CSV and PV
+    double held = 0;         // rad, true position that a quick stop holds
     std::int64_t updated_ns = 0;
     bool holding = false;
   };

@@ -47,8 +47,7 @@ inline std::vector<Word> words_of(DeviceFault) {
 class Device {
  public:
   static constexpr std::int64_t kBootNs = 300'000'000;
-  static constexpr double kOtherZero = 7.0;     ///< rad
-  static constexpr double kIntegralTime = 0.2;  ///< s, of a speed loop
+  static constexpr double kOtherZero = 7.0;  ///< rad
 
   virtual ~Device() = default;
 

@@ -84,32 +84,24 @@ void OdriveDevice::step(std::int64_t now_ns) {
   const bool watched = !is_06() || state_ == AxisState::kClosedLoopControl;
   if (watched && watchdog_timer_.expired(now_ns)) fail(is_06() ? kWatchdogExpired06 : kWatchdogExpired05);
   const bool closed = state_ == AxisState::kClosedLoopControl;
-  if (!closed) integral_ = 0;
-  motor_.torque = closed ? limited_torque(seconds) : 0;
+  if (!closed) speed_loop_.reset();
+  motor_.torque = closed ? driven_torque(seconds) : 0;
   if (heartbeat_timer_.expired(now_ns)) send_heartbeat();
   if (estimates_timer_.expired(now_ns)) send_estimates();
   if (effort_timer_.expired(now_ns)) is_06() ? send_torques() : send_current();
 }
 
-double OdriveDevice::wanted_torque(double seconds) {
+double OdriveDevice::driven_torque(double seconds) {
+  const double maximum = current_limit_ * parameters_.torque_constant;
   if (mode_.input != InputMode::kPassthrough) return 0;
   if (mode_.control == ControlMode::kVelocity) {
     const double error = std::clamp(input_velocity_, -velocity_limit_, velocity_limit_) - motor_.velocity;
-    integral_ += parameters_.speed_integral * error * seconds;
-    return input_torque_ + parameters_.speed_gain * error + integral_;
+    return speed_loop_.step(error, parameters_.speed_gain, maximum, seconds, input_torque_);
   }
   if (mode_.control != ControlMode::kTorque) return 0;
   const double fast = kVelocityGain * (velocity_limit_ - motor_.velocity);
   const double slow = kVelocityGain * (-velocity_limit_ - motor_.velocity);
-  return std::clamp(input_torque_, std::min(slow, fast), std::max(slow, fast));
-}
-
-double OdriveDevice::limited_torque(double seconds) {
-  const double maximum = current_limit_ * parameters_.torque_constant;
-  const double before = integral_;
-  const double wanted = wanted_torque(seconds);
-  if (std::abs(wanted) > maximum) integral_ = before;
-  return std::clamp(wanted, -maximum, maximum);
+  return std::clamp(std::clamp(input_torque_, std::min(slow, fast), std::max(slow, fast)), -maximum, maximum);
 }
 
 double OdriveDevice::measured_position() const {

@@ -12,6 +12,7 @@
 #include "drivers/can/odrive/odrive_messages.h"
 #include "drivers/can/odrive/odrive_parameters.h"
 #include "simulation/devices/device.h"
+#include "simulation/devices/speed_loop.h"
 
 namespace robot_control {
 
@@ -27,8 +28,7 @@ struct OdriveDeviceParameters {
   double watchdog_timeout = 0;    ///< s; 0: off
   std::uint16_t enable_watchdog_endpoint = 0;
   std::uint16_t watchdog_timeout_endpoint = 0;
-  double speed_gain = 0;      ///< N·m·s/rad, of velocity mode
-  double speed_integral = 0;  ///< N·m/rad
+  double speed_gain = 0;  ///< N·m·s/rad, of velocity mode (speed_loop.h)
   double clock_ppm = 0;
 };
 
@@ -52,8 +52,7 @@ class OdriveDevice final : public Device {
   void report_fault();  ///< An error that is still there comes again when the axis closes its loop.
   void clear_errors();
   double measured_position() const;
-  double wanted_torque(double seconds);
-  double limited_torque(double seconds);
+  double driven_torque(double seconds);
   void send_heartbeat();
   void send_estimates();
   void send_current();
@@ -83,8 +82,8 @@ class OdriveDevice final : public Device {
   std::uint32_t encoder_error_ = 0;
   odrive::SetControllerMode mode_{.control = odrive::ControlMode::kPosition};  // the maker's default
   double input_torque_ = 0;
-  double input_velocity_ = 0;                  // rad/s
-  double integral_ = 0;                        // N·m, of velocity mode
+  double input_velocity_ = 0;  // rad/s
+  SpeedLoop speed_loop_;
   double velocity_limit_ = 2 * odrive::kTurn;  // rad/s, the maker's default
   double current_limit_ = 10;                  // A, the maker's default
   double zero_ = 0;                            // rad, true position of the device's zero

@@ -6,19 +6,24 @@
 
 #include "simulation/devices/cia402_device.h"
 #include "simulation/devices/odrive_device.h"
+#include "simulation/devices/vesc_device.h"
 
 namespace robot_control {
 namespace {
 
+constexpr double kVescCurrent = 10;      // A
 constexpr double kOdriveWatchdog = 0.1;  // s, where the drive file says that it coasts on silence
 
 double clock_of(std::size_t device) {
   return device % 2 == 0 ? SimulatedDrives::kClockPpm : -SimulatedDrives::kClockPpm;
 }
 
-/// The gain of the speed loop is the damping of the brake, which is stable also for a lifted wheel.
+/// The gain of a motor's speed loop is the damping of the brake, which is stable also for a lifted wheel.
+double motor_damping(const DriveParameters& drive, const Brake& brake) {
+  return brake.damping / (drive.gear * drive.gear);
+}
+
 OdriveDeviceParameters device_of(const odrive::OdriveParameters& drive, const Brake& brake, double clock_ppm) {
-  const double gain = brake.damping / (drive.drive.gear * drive.drive.gear);
   return {.node = static_cast<std::uint8_t>(drive.drive.node),
           .firmware = drive.firmware == odrive::Firmware::k05 ? odrive::Firmware::k05 : odrive::Firmware::k06,
           .serial_number = drive.serial_number != 0 ? drive.serial_number : 1 + drive.drive.node,
@@ -30,9 +35,31 @@ OdriveDeviceParameters device_of(const odrive::OdriveParameters& drive, const Br
           .watchdog_timeout = drive.drive.on_silence == SilenceReaction::kCoasts ? kOdriveWatchdog : 0,
           .enable_watchdog_endpoint = static_cast<std::uint16_t>(drive.enable_watchdog_endpoint),
           .watchdog_timeout_endpoint = static_cast<std::uint16_t>(drive.watchdog_timeout_endpoint),
-          .speed_gain = gain,
-          .speed_integral = gain / Device::kIntegralTime,
+          .speed_gain = motor_damping(drive.drive, brake),
           .clock_ppm = clock_ppm};
+}
+
+std::unique_ptr<Device> make_device(const OdriveDeviceParameters& device, VirtualCan& bus, DeviceMotor& motor) {
+  return std::make_unique<OdriveDevice>(device, bus, motor);
+}
+
+/// Without a torque constant in the file the motor gives its greatest torque at kVescCurrent.
+VescDeviceParameters device_of(const vesc::VescParameters& drive, const Brake& brake, double clock_ppm) {
+  const double torque = drive.drive.torque_limit / drive.drive.gear;
+  const double constant = drive.torque_constant > 0 ? drive.torque_constant : torque / kVescCurrent;
+  return {.node = static_cast<std::uint8_t>(drive.drive.node),
+          .pole_pairs = static_cast<double>(drive.pole_pairs),
+          .torque_constant = constant,
+          .max_current = torque / constant,
+          .status_period = drive.status_period,
+          .temperature_period = drive.temperature_period,
+          .brake_current = drive.drive.on_silence == SilenceReaction::kBrakes ? torque / constant : 0,
+          .speed_gain = motor_damping(drive.drive, brake),
+          .clock_ppm = clock_ppm};
+}
+
+std::unique_ptr<Device> make_device(const VescDeviceParameters& device, VirtualCan& bus, DeviceMotor& motor) {
+  return std::make_unique<VescDevice>(device, bus, motor);
 }
 
 Cia402DeviceParameters device_of(const cia402::Cia402Parameters& drive, const Brake& brake, double clock_ppm) {
@@ -44,7 +71,7 @@ Cia402DeviceParameters device_of(const cia402::Cia402Parameters& drive, const Br
   if (drive.velocity_unit != 0) device.velocity_unit = drive.velocity_unit;
   if (drive.vendor != 0) device.vendor = static_cast<std::uint32_t>(drive.vendor);
   if (drive.product != 0) device.product = static_cast<std::uint32_t>(drive.product);
-  device.brake_damping = brake.damping / (drive.drive.gear * drive.drive.gear);
+  device.brake_damping = motor_damping(drive.drive, brake);
   device.brake_stiffness = brake.stiffness / (drive.drive.gear * drive.drive.gear);
   device.brake_hold_speed = brake.hold_speed * drive.drive.gear;
   if (drive.drive.takes_speeds) device.supported_modes = Cia402DeviceParameters::kSpeedModes;
@@ -66,13 +93,14 @@ void SimulatedDrives::disturb(bool lossy, bool late) {
   bus_.delay(late ? period_ns_ : 0);
 }
 
-void SimulatedDrives::add(const std::vector<odrive::OdriveParameters>& joints, std::span<const Brake> brakes) {
-  for (const odrive::OdriveParameters& joint : joints) {
+template <class Joint>
+void SimulatedDrives::add(const std::vector<Joint>& joints, std::span<const Brake> brakes) {
+  for (const Joint& joint : joints) {
     to_motor_.push_back(static_cast<double>(joint.drive.direction) * joint.drive.gear);
     device_of_.push_back(devices_.size());
     DeviceMotor& motor = *motors_.emplace_back(std::make_unique<DeviceMotor>());
-    const OdriveDeviceParameters device = device_of(joint, brakes[motors_.size() - 1], clock_of(devices_.size()));
-    devices_.push_back(std::make_unique<OdriveDevice>(device, bus_, motor));
+    const Brake& brake = brakes[motors_.size() - 1];
+    devices_.push_back(make_device(device_of(joint, brake, clock_of(devices_.size())), bus_, motor));
   }
 }
 

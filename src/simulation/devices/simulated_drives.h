@@ -47,7 +47,9 @@ class SimulatedDrives {
   void inject(std::size_t joint, DeviceFault fault) { devices_.at(device_of_.at(joint))->inject(fault); }
 
  private:
-  void add(const std::vector<odrive::OdriveParameters>& joints, std::span<const Brake> brakes);
+  /// One device per joint.
+  template <class Joint>
+  void add(const std::vector<Joint>& joints, std::span<const Brake> brakes);
   void add(const std::vector<cia402::Cia402Parameters>& joints, std::span<const Brake> brakes);
   void move_motors(std::span<const JointSample> joints, double seconds);
 

@@ -8,9 +8,13 @@
 namespace robot_control {
 namespace {
 
-/// The lower value wins.
-std::uint32_t arbitration(const can_frame& frame) {
-  return (frame.can_id & CAN_SFF_MASK) << 1U | (is_remote_request(frame) ? 1U : 0U);
+/// The lower value wins. The first 11 bits decide; of equal ones the identifier of 11 bits wins, because the bit after
+/// them is recessive in a longer one.
+std::uint64_t arbitration(const can_frame& frame) {
+  const bool extended = is_extended(frame);
+  const std::uint64_t id = extended ? frame.can_id & CAN_EFF_MASK : (frame.can_id & CAN_SFF_MASK) << 18U;
+  return (id >> 18U) << 20U | (extended ? 1U << 19U : 0U) | (id & 0x3FFFFU) << 1U |
+         (is_remote_request(frame) ? 1U : 0U);
 }
 
 }  // namespace

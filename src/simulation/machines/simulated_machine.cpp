@@ -15,11 +15,11 @@
 #include "drivers/mujoco/mujoco_plant.h"
 #include "drivers/serial/board_driver.h"
 #include "drivers/serial/roboclaw_driver.h"
-#include "simulation/devices/board_front.h"
 #include "simulation/devices/can_front.h"
 #include "simulation/devices/example_board.h"
-#include "simulation/devices/pseudo_terminal.h"
-#include "simulation/devices/roboclaw_front.h"
+#include "simulation/devices/serial/board_front.h"
+#include "simulation/devices/serial/pseudo_terminal.h"
+#include "simulation/devices/serial/roboclaw_front.h"
 #include "simulation/machines/driven_plant.h"
 
 namespace robot_control {

@@ -10,6 +10,7 @@
 #include "drivers/can/cia402/power_state.h"
 #include "drivers/can/cia402/sdo.h"
 #include "drivers/can/odrive_catalogue.h"
+#include "drivers/can/vesc/vesc_messages.h"
 
 namespace robot_control {
 namespace {
@@ -74,6 +75,30 @@ TEST(CodecFuzz, ODriveFramesHaveOneMeaningOrNone) {
     odrive::visit_06([&check]<class Message>(const char* name) { check.operator()<Message>(name); });
   }
   EXPECT_GT(accepted, kFrames / 2);
+}
+
+TEST(CodecFuzz, VescFramesHaveOneMeaningOrNone) {
+  Frames frames({vesc::encode(3, vesc::SetCurrent{}), vesc::encode(3, vesc::SetSpeed{}),
+                 vesc::encode(3, vesc::Status{}), vesc::encode(3, vesc::Status4{}), vesc::encode(3, vesc::Status5{})});
+  int accepted = 0;
+  const auto check = [&accepted]<class Message>(const can_frame& frame, Message) {
+    const auto message = vesc::decode<Message>(frame);
+    if (!message) return;
+    ++accepted;
+    const auto again = vesc::decode<Message>(vesc::encode(vesc::node_of(frame), *message));
+    ASSERT_TRUE(again);
+    ASSERT_EQ(packed(*again), packed(*message)) << std::hex << data_word(frame);
+  };
+  for (int i = 0; i < kFrames; ++i) {
+    const can_frame frame = frames.next();
+    check(frame, vesc::SetCurrent{});
+    check(frame, vesc::SetBrakeCurrent{});
+    check(frame, vesc::SetSpeed{});
+    check(frame, vesc::Status{});
+    check(frame, vesc::Status4{});
+    check(frame, vesc::Status5{});
+  }
+  EXPECT_GT(accepted, kFrames / 4);
 }
 
 std::vector<can_frame> valid_canopen_frames() {

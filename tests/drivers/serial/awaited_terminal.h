@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "drivers/serial/serial_port.h"
-#include "simulation/devices/pseudo_terminal.h"
+#include "simulation/devices/serial/pseudo_terminal.h"
 
 namespace robot_control {
 

@@ -29,10 +29,16 @@ class CanMachine final : public Driver {
     });
     rig_.host_lives = false;
     CanParameters parameters;
-    if (dialect == CanDialect::kOdrive) {
-      parameters.joints = std::vector{add_odrive(0), add_odrive(1)};
-    } else {
-      parameters.joints = std::vector{add_cia402(1), add_cia402(2)};
+    switch (dialect) {
+      case CanDialect::kOdrive:
+        parameters.joints = std::vector{add_odrive(0), add_odrive(1)};
+        break;
+      case CanDialect::kCia402:
+        parameters.joints = std::vector{add_cia402(1), add_cia402(2)};
+        break;
+      case CanDialect::kVesc:
+        parameters.joints = std::vector{add_vesc(0), add_vesc(1)};
+        break;
     }
     // At the joint 0.0625 kg·m²: d h/J = 0.16.
     const Brake brake{.effort = 3, .hold_effort = 3, .damping = 10, .stiffness = 400, .hold_speed = 0.3};
@@ -76,6 +82,12 @@ class CanMachine final : public Driver {
     rig_.add_device(std::make_unique<OdriveDevice>(pair.device, rig_.bus(), rig_.add_motor()));
     return pair.drive;
   }
+  vesc::VescParameters add_vesc(std::uint8_t node) {
+    VescPair pair = vesc_pair(node);
+    pair.drive.drive.max_silence = 10;  // of 2 ms
+    rig_.add_device(std::make_unique<VescDevice>(pair.device, rig_.bus(), rig_.add_motor()));
+    return pair.drive;
+  }
   cia402::Cia402Parameters add_cia402(std::uint8_t node) {
     const Cia402Pair pair = cia402_pair(node);
     rig_.add_device(
@@ -99,8 +111,8 @@ MachineUnderTest machine(const std::string& name, CanDialect dialect) {
 }
 
 INSTANTIATE_TEST_SUITE_P(CanMachines, DriverContract,
-                         testing::Values(machine("Odrive", CanDialect::kOdrive),
-                                         machine("Cia402", CanDialect::kCia402)),
+                         testing::Values(machine("Odrive", CanDialect::kOdrive), machine("Cia402", CanDialect::kCia402),
+                                         machine("Vesc", CanDialect::kVesc)),
                          machine_name);
 
 class CanDriverOn : public ::testing::TestWithParam<CanDialect> {
@@ -177,8 +189,8 @@ TEST_P(CanDriverOn, SaysWhatEachJointDoesOnSilence) {
   cycles(3000);
   const std::string text = machine_.driver().description();
   EXPECT_THAT(text, HasSubstr("load at most"));
-  EXPECT_THAT(text, HasSubstr(GetParam() == CanDialect::kOdrive ? "coasts (stated in the drive file)"
-                                                                : "holds (read from the drive)"));
+  EXPECT_THAT(text, HasSubstr(GetParam() == CanDialect::kCia402 ? "holds (read from the drive)"
+                                                                : "coasts (stated in the drive file)"));
 }
 
 TEST_P(CanDriverOn, SaysThatTheBusIsSilent) {
@@ -222,8 +234,9 @@ TEST_P(CanDriverOn, BrakesAndHoldsOnASlope) {
   EXPECT_NEAR(cycles(1000).joints[0].position, held, 0.01);
 }
 
-INSTANTIATE_TEST_SUITE_P(Dialects, CanDriverOn, ::testing::Values(CanDialect::kOdrive, CanDialect::kCia402),
-                         [](const auto& each) { return each.param == CanDialect::kOdrive ? "Odrive" : "Cia402"; });
+INSTANTIATE_TEST_SUITE_P(Dialects, CanDriverOn,
+                         ::testing::Values(CanDialect::kOdrive, CanDialect::kCia402, CanDialect::kVesc),
+                         [](const auto& each) { return word_of(each.param); });
 
 }  // namespace
 }  // namespace robot_control

@@ -12,8 +12,10 @@
 #include "drivers/can/cia402/cia402_drive.h"
 #include "drivers/can/drive_set.h"
 #include "drivers/can/odrive/odrive_drive.h"
+#include "drivers/can/vesc/vesc_drive.h"
 #include "simulation/devices/cia402_device.h"
 #include "simulation/devices/odrive_device.h"
+#include "simulation/devices/vesc_device.h"
 
 namespace robot_control {
 
@@ -149,6 +151,22 @@ inline OdrivePair odrive_pair(std::uint8_t node, odrive::Firmware firmware = odr
 inline OdriveDevice& add(DeviceRig& rig, const OdrivePair& pair) {
   rig.add_drive(pair.drive);
   return rig.add_device(std::make_unique<OdriveDevice>(pair.device, rig.bus(), rig.add_motor()));
+}
+
+struct VescPair {
+  vesc::VescParameters drive;
+  VescDeviceParameters device;
+};
+
+inline VescPair vesc_pair(std::uint8_t node) {
+  VescPair pair{.drive = {.drive = drive_parameters(node), .pole_pairs = 7, .torque_constant = 0.1}, .device = {}};
+  pair.device.node = node;
+  return pair;
+}
+
+inline VescDevice& add(DeviceRig& rig, const VescPair& pair) {
+  rig.add_drive(pair.drive);
+  return rig.add_device(std::make_unique<VescDevice>(pair.device, rig.bus(), rig.add_motor()));
 }
 
 struct Cia402Pair {

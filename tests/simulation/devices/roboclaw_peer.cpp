@@ -15,8 +15,8 @@
 #include <string>
 #include <thread>
 
-#include "simulation/devices/pseudo_terminal.h"
-#include "simulation/devices/roboclaw_front.h"
+#include "simulation/devices/serial/pseudo_terminal.h"
+#include "simulation/devices/serial/roboclaw_front.h"
 
 namespace robot_control {
 namespace {

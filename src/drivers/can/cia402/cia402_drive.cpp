@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "drivers/wrapped_count.h"
+
 namespace robot_control::cia402 {
 namespace {
 
@@ -23,12 +25,6 @@ std::int64_t value_of(const Pdo& pdo, const std::array<std::int64_t, canopen::kM
     if (pdo.mapping.entries[i].object == object) return values[i];
   }
   return 0;
-}
-
-/// Returns the counts next to `last` whose lower 32 bits are `raw`.
-std::int64_t continued(std::int64_t last, std::int32_t raw) noexcept {
-  const auto low = static_cast<std::uint32_t>(last);
-  return last + static_cast<std::int32_t>(static_cast<std::uint32_t>(raw) - low);
 }
 
 std::string hexadecimal(std::uint64_t value) {
@@ -125,7 +121,7 @@ void Cia402Drive::receive_state(const can_frame& frame, std::int64_t now_ns) noe
   power_ = power_state(statusword_);
   const auto raw = static_cast<std::int32_t>(value_of(pdos.state, values, own(kPositionEntry)));
   const double count = 2 * std::numbers::pi / setup_.units().counts_per_turn;
-  counts_ = continued(counts_.value_or(raw), raw);
+  counts_ = continued_count(counts_.value_or(raw), raw);
   const double position = count * static_cast<double>(*counts_);
   if (needs_velocity() && velocity_ns_ == 0) return judge_power();
   if (has_velocity(now_ns)) {

@@ -1,4 +1,4 @@
-#include "simulation/devices/board_front.h"
+#include "simulation/devices/serial/board_front.h"
 
 #include <algorithm>
 #include <array>
@@ -19,24 +19,8 @@ constexpr std::uint8_t kWheelFault = 1;
 
 }  // namespace
 
-BoardFront::BoardFront(const BoardParameters& parameters, std::span<const Brake> brakes, double period,
-                       std::uint64_t seed)
-    : parameters_(parameters),
-      period_ns_(std::llround(1.0e9 * period)),
-      virtual_line_(std::make_unique<VirtualSerial>(static_cast<double>(parameters.line.bit_rate), seed)),
-      line_(virtual_line_->device_end()) {
-  for (const Brake& brake : brakes) wheels_.push_back({.brake = BrakeLaw(brake), .damping = brake.damping});
-  sensors_.valid = BOARD_HAS_EFFORT;
-  sensors_.inputs = BOARD_E_STOP_RELEASED;
-  boot(BOARD_POWER_ON);
-}
-
-BoardFront::BoardFront(const BoardParameters& parameters, std::span<const Brake> brakes, double period,
-                       std::unique_ptr<SerialLine> line)
-    : parameters_(parameters),
-      period_ns_(std::llround(1.0e9 * period)),
-      true_line_(std::move(line)),
-      line_(*true_line_) {
+BoardFront::BoardFront(const BoardParameters& parameters, std::span<const Brake> brakes, double period, FrontLine line)
+    : SerialFront(brakes.size(), period, parameters.line.bit_rate, std::move(line)), parameters_(parameters) {
   for (const Brake& brake : brakes) wheels_.push_back({.brake = BrakeLaw(brake), .damping = brake.damping});
   sensors_.valid = BOARD_HAS_EFFORT;
   sensors_.inputs = BOARD_E_STOP_RELEASED;
@@ -60,7 +44,7 @@ void BoardFront::boot(board_reset reason) {
             static_cast<BoardFront*>(front)->write({bytes, size});
           }};
   if (parameters_.takes_speeds) tune(config);
-  booted_ns_ = now_ns_;
+  booted_ns_ = now_ns();
   for (std::size_t i = 0; i < wheels_.size(); ++i) wheels_[i].start = counted(i);
   sensors_.reset = reason;
   board_begin(&board_, &config);
@@ -78,7 +62,7 @@ void BoardFront::tune(board_config& config) const {
   };
   const double proportional = wheels_[joint].damping / full_torque;
   config.velocity_loop = 1;
-  config.loop_period_us = static_cast<std::uint32_t>(std::max<std::int64_t>(kLoopNs, period_ns_) / 1000);
+  config.loop_period_us = static_cast<std::uint32_t>(std::max<std::int64_t>(kLoopNs, period_ns()) / 1000);
   config.kf = gain(1 / (kFree * wheel.velocity_limit));
   config.kp = gain(proportional);
   config.ki = gain(proportional * kMicro * config.loop_period_us / kIntegralTime);
@@ -91,13 +75,13 @@ std::size_t BoardFront::joint_of(std::size_t wheel) const {
 }
 
 std::uint32_t BoardFront::time_us() const {
-  const double elapsed_us = 1.0e-3 * static_cast<double>(now_ns_ - booted_ns_) * (1 + kMicro * kClockPpm);
+  const double elapsed_us = 1.0e-3 * static_cast<double>(now_ns() - booted_ns_) * (1 + kMicro * kClockPpm);
   return static_cast<std::uint32_t>(static_cast<std::uint64_t>(elapsed_us));
 }
 
 std::int64_t BoardFront::counted(std::size_t joint) const {
   const BoardWheelParameters& wheel = parameters_.wheels[joint];
-  const double turns = wheels_[joint].position / (2 * std::numbers::pi) * static_cast<double>(wheel.direction);
+  const double turns = motion(joint).position / (2 * std::numbers::pi) * static_cast<double>(wheel.direction);
   return static_cast<std::int64_t>(std::floor(turns * wheel.counts_per_turn));
 }
 
@@ -120,7 +104,8 @@ double BoardFront::ordered_torque(std::size_t joint) const {
   const Wheel& wheel = wheels_[joint];
   if (wheel.mode != BOARD_PWM) return wheel.ordered;
   const BoardWheelParameters& parameters = parameters_.wheels[joint];
-  return kStall * parameters.torque_limit * (wheel.ordered - wheel.velocity / (kFree * parameters.velocity_limit));
+  return kStall * parameters.torque_limit *
+         (wheel.ordered - motion(joint).velocity / (kFree * parameters.velocity_limit));
 }
 
 void BoardFront::read_sensors(board_sensors& sensors) const {
@@ -136,7 +121,7 @@ void BoardFront::read_sensors(board_sensors& sensors) const {
 
 void BoardFront::write(std::span<const std::uint8_t> bytes) {
   if (!other_protocol_) {
-    line_.send(bytes);
+    board_line().send(bytes);
     return;
   }
   board_decoder decoder{};
@@ -144,13 +129,13 @@ void BoardFront::write(std::span<const std::uint8_t> bytes) {
   std::uint8_t size = 0;
   for (const std::uint8_t byte : bytes) size = board_decode(&decoder, byte);
   decoder.body[0] = BOARD_PROTOCOL + 1;
-  line_.send(std::span(frame).first(board_encode(decoder.body, size, frame.data())));
+  board_line().send(std::span(frame).first(board_encode(decoder.body, size, frame.data())));
 }
 
-void BoardFront::run_board() {
+void BoardFront::step_board() {
   SerialChunk chunk;
-  if (off_ || now_ns_ < boots_ns_) {
-    while (line_.receive(chunk)) {
+  if (off_ || booting()) {
+    while (board_line().receive(chunk)) {
     }
     for (Wheel& wheel : wheels_) {
       wheel.torque = wheel.ordered = 0;
@@ -163,63 +148,39 @@ void BoardFront::run_board() {
     boot(next_reset_);
   }
   bool stepped = false;
-  while (line_.receive(chunk)) {
+  while (board_line().receive(chunk)) {
     board_step(&board_, chunk.bytes.data(), static_cast<std::uint8_t>(chunk.size));
     stepped = true;
   }
   if (!stepped) board_step(&board_, nullptr, 0);
 }
 
-void BoardFront::run(std::span<const JointSample> joints) {
-  for (Wheel& wheel : wheels_) wheel.mean_torque = 0;
-  const std::int64_t begin_ns = now_ns_;
-  const std::int64_t end_ns = begin_ns + period_ns_;
-  while (now_ns_ < end_ns) {
-    const auto elapsed = 1.0e-9 * static_cast<double>(now_ns_ - begin_ns);
-    for (std::size_t i = 0; i < wheels_.size(); ++i) {
-      wheels_[i].position = joints[i].position + joints[i].velocity * elapsed;
-      wheels_[i].velocity = joints[i].velocity;
-    }
-    if (virtual_line_) virtual_line_->advance(now_ns_);
-    run_board();
-    const std::int64_t next_ns = std::min(now_ns_ + kStepNs, end_ns);
-    const double share = static_cast<double>(next_ns - now_ns_) / static_cast<double>(period_ns_);
-    for (std::size_t i = 0; i < wheels_.size(); ++i) {
-      Wheel& wheel = wheels_[i];
-      if (wheel.mode != BOARD_BRAKE) wheel.brake.release();
-      const double wanted = wheel.mode == BOARD_BRAKE ? wheel.brake.step(wheel.torque, wheel.position, wheel.velocity)
-                                                      : ordered_torque(i);
-      const double limit = parameters_.wheels[i].torque_limit;
-      wheel.torque = std::clamp(wanted, -limit, limit);
-      wheel.mean_torque += share * wheel.torque;
-    }
-    now_ns_ = next_ns;
-  }
-  if (virtual_line_) virtual_line_->advance(now_ns_);
+double BoardFront::step_wheel(std::size_t joint, double /*seconds*/) {
+  Wheel& wheel = wheels_[joint];
+  if (wheel.mode != BOARD_BRAKE) wheel.brake.release();
+  const double wanted = wheel.mode == BOARD_BRAKE
+                            ? wheel.brake.step(wheel.torque, motion(joint).position, motion(joint).velocity)
+                            : ordered_torque(joint);
+  const double limit = parameters_.wheels[joint].torque_limit;
+  wheel.torque = std::clamp(wanted, -limit, limit);
+  return wheel.torque;
 }
 
-std::string BoardFront::inject(std::string_view component, std::string_view kind) {
+bool BoardFront::inject_board(std::string_view component, std::string_view kind) {
   const auto is = [kind](auto... words) { return ((kind == words) || ...); };
-  if (component == "board" && is("ok", "off", "reset", "brown_out", "fault", "e_stop", "other_protocol")) {
-    const bool back = off_ && kind != "off";
-    off_ = kind == "off";
-    fault_ = kind == "fault";
-    other_protocol_ = kind == "other_protocol";
-    sensors_.inputs = kind == "e_stop" ? 0 : BOARD_E_STOP_RELEASED;
-    if (back || is("reset", "brown_out")) boots_ns_ = now_ns_ + kBootNs;
-    next_reset_ = kind == "reset" ? BOARD_RESET_BUTTON : kind == "brown_out" ? BOARD_BROWN_OUT : BOARD_POWER_ON;
-    return "";
-  }
-  if (component == "line" && virtual_line_) {
-    if (const std::optional<SerialFaults> faults = serial_faults(kind)) {
-      virtual_line_->faults() = *faults;
-      return "";
-    }
-  }
-  return std::string(
-             "component must be board (with ok, off, reset, brown_out, fault, e_stop, other_protocol) or line "
-             "(with ") +
-         kSerialFaultWords + ")";
+  if (component != "board" || !is("ok", "off", "reset", "brown_out", "fault", "e_stop", "other_protocol")) return false;
+  const bool back = off_ && kind != "off";
+  off_ = kind == "off";
+  fault_ = kind == "fault";
+  other_protocol_ = kind == "other_protocol";
+  sensors_.inputs = kind == "e_stop" ? 0 : BOARD_E_STOP_RELEASED;
+  if (back || is("reset", "brown_out")) boots_ns_ = now_ns() + kBootNs;
+  next_reset_ = kind == "reset" ? BOARD_RESET_BUTTON : kind == "brown_out" ? BOARD_BROWN_OUT : BOARD_POWER_ON;
+  return true;
+}
+
+std::string BoardFront::fault_words() const {
+  return "board (with ok, off, reset, brown_out, fault, e_stop, other_protocol)";
 }
 
 }  // namespace robot_control

@@ -1,4 +1,4 @@
-#include "simulation/devices/pseudo_terminal.h"
+#include "simulation/devices/serial/pseudo_terminal.h"
 
 #include <fcntl.h>
 #include <termios.h>

@@ -1,4 +1,4 @@
-#include "simulation/devices/virtual_serial.h"
+#include "simulation/devices/serial/virtual_serial.h"
 
 #include <algorithm>
 

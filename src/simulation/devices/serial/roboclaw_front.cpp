@@ -1,4 +1,4 @@
-#include "simulation/devices/roboclaw_front.h"
+#include "simulation/devices/serial/roboclaw_front.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,24 +22,9 @@ double counts_per_rad(const RoboclawWheelParameters& wheel) {
 }  // namespace
 
 RoboclawFront::RoboclawFront(const RoboclawParameters& parameters, std::span<const Brake> brakes,
-                             std::span<const double> effort_limits, double period, std::uint64_t seed)
-    : parameters_(parameters),
-      period_ns_(std::llround(1.0e9 * period)),
-      virtual_line_(std::make_unique<VirtualSerial>(static_cast<double>(parameters.line.bit_rate), seed)),
-      line_(virtual_line_->device_end()) {
-  add_wheels(brakes, effort_limits);
-}
-
-RoboclawFront::RoboclawFront(const RoboclawParameters& parameters, std::span<const Brake> brakes,
-                             std::span<const double> effort_limits, double period, std::unique_ptr<SerialLine> line)
-    : parameters_(parameters),
-      period_ns_(std::llround(1.0e9 * period)),
-      true_line_(std::move(line)),
-      line_(*true_line_) {
-  add_wheels(brakes, effort_limits);
-}
-
-void RoboclawFront::add_wheels(std::span<const Brake> brakes, std::span<const double> effort_limits) {
+                             std::span<const double> effort_limits, double period, FrontLine line)
+    : SerialFront(parameters.wheels.size(), period, parameters.line.bit_rate, std::move(line)),
+      parameters_(parameters) {
   for (std::size_t i = 0; i < parameters_.wheels.size(); ++i)
     wheels_.push_back({.damping = brakes[i].damping, .limit = effort_limits[i]});
 }
@@ -51,7 +36,7 @@ std::size_t RoboclawFront::joint_of(std::size_t motor) const {
 
 std::int32_t RoboclawFront::counts(std::size_t wheel) const {
   if (stuck_ && parameters_.wheels[wheel].motor == 1) return wheels_[wheel].stuck;
-  const double turned = wheels_[wheel].position - wheels_[wheel].zero;
+  const double turned = motion(wheel).position - wheels_[wheel].zero;
   return static_cast<std::int32_t>(
       static_cast<std::int64_t>(std::floor(counts_per_rad(parameters_.wheels[wheel]) * turned)));
 }
@@ -78,11 +63,11 @@ void RoboclawFront::receive_byte(std::uint8_t byte) {
 
 void RoboclawFront::answer(Packet data) {
   data.add(roboclaw::crc16(data.bytes(), roboclaw::crc16(request_.bytes())), 2);
-  line_.send(data.bytes());
+  board_line().send(data.bytes());
 }
 
 void RoboclawFront::obey() {
-  request_ns_ = now_ns_;
+  request_ns_ = now_ns();
   const auto command = static_cast<PacketCommand>(request_.number(1, 1));
   Packet data;
   switch (command) {
@@ -132,49 +117,30 @@ void RoboclawFront::obey() {
   }
   if (!roboclaw::is_write(command)) return answer(data);
   const std::uint8_t acknowledged = roboclaw::kAcknowledged;
-  line_.send({&acknowledged, 1});
+  board_line().send({&acknowledged, 1});
 }
 
-double RoboclawFront::step_wheel(Wheel& wheel, std::size_t index, double seconds) const {
+void RoboclawFront::step_board() {
+  if (timeout_ > 0 && now_ns() - request_ns_ > timeout_ * kTimeoutStepNs) stop();
+  SerialChunk chunk;
+  while (board_line().receive(chunk)) {
+    for (const std::uint8_t byte : chunk.received()) off_ || booting() ? request_.clear() : receive_byte(byte);
+  }
+}
+
+double RoboclawFront::step_wheel(std::size_t joint, double seconds) {
+  if (off_ || booting()) return 0;
+  Wheel& wheel = wheels_[joint];
+  const double velocity = motion(joint).velocity;
   if (!wheel.driven) {
-    wheel.integral = 0;
-    return std::clamp(-wheel.damping * wheel.velocity, -wheel.limit, wheel.limit);
+    wheel.speed_loop.reset();
+    return std::clamp(-wheel.damping * velocity, -wheel.limit, wheel.limit);
   }
-  const bool blind = stuck_ && parameters_.wheels[index].motor == 1;
-  const double error = wheel.wanted - (blind ? 0 : wheel.velocity);
-  const double integral = wheel.integral + wheel.damping / kIntegralTime * error * seconds;
-  const double wanted = wheel.damping * error + integral;
-  if (std::abs(wanted) < wheel.limit) wheel.integral = integral;
-  return std::clamp(wanted, -wheel.limit, wheel.limit);
+  const bool blind = stuck_ && parameters_.wheels[joint].motor == 1;
+  return wheel.speed_loop.step(wheel.wanted - (blind ? 0 : velocity), wheel.damping, wheel.limit, seconds);
 }
 
-void RoboclawFront::run(std::span<const JointSample> joints) {
-  for (Wheel& wheel : wheels_) wheel.mean_torque = 0;
-  const std::int64_t begin_ns = now_ns_;
-  const std::int64_t end_ns = begin_ns + period_ns_;
-  while (now_ns_ < end_ns) {
-    const auto elapsed = 1.0e-9 * static_cast<double>(now_ns_ - begin_ns);
-    for (std::size_t i = 0; i < wheels_.size(); ++i) {
-      wheels_[i].position = joints[i].position + joints[i].velocity * elapsed;
-      wheels_[i].velocity = joints[i].velocity;
-    }
-    if (virtual_line_) virtual_line_->advance(now_ns_);
-    const bool alive = !off_ && now_ns_ >= boots_ns_;
-    if (timeout_ > 0 && now_ns_ - request_ns_ > timeout_ * kTimeoutStepNs) stop();
-    SerialChunk chunk;
-    while (line_.receive(chunk)) {
-      for (const std::uint8_t byte : chunk.received()) alive ? receive_byte(byte) : request_.clear();
-    }
-    const std::int64_t next_ns = std::min(now_ns_ + kStepNs, end_ns);
-    const double seconds = 1.0e-9 * static_cast<double>(next_ns - now_ns_);
-    for (std::size_t i = 0; i < wheels_.size() && alive; ++i)
-      wheels_[i].mean_torque += step_wheel(wheels_[i], i, seconds) * seconds * 1.0e9 / static_cast<double>(period_ns_);
-    now_ns_ = next_ns;
-  }
-  if (virtual_line_) virtual_line_->advance(now_ns_);
-}
-
-std::string RoboclawFront::inject(std::string_view component, std::string_view kind) {
+bool RoboclawFront::inject_board(std::string_view component, std::string_view kind) {
   const auto is = [kind](auto... words) { return ((kind == words) || ...); };
   if (component == "board" && is("ok", "off", "reset", "brown_out", "fault", "no_gains")) {
     const bool restarts = (off_ && kind != "off") || is("reset", "brown_out");
@@ -182,28 +148,21 @@ std::string RoboclawFront::inject(std::string_view component, std::string_view k
     fault_ = kind == "fault";
     gains_ = kind != "no_gains";
     if (off_ || restarts || fault_) stop();
-    if (!restarts) return "";
-    boots_ns_ = now_ns_ + kBootNs;
+    if (!restarts) return true;
+    boots_ns_ = now_ns() + kBootNs;
     timeout_ = 0;
-    for (Wheel& wheel : wheels_) wheel.zero = wheel.position;
-    return "";
+    for (std::size_t i = 0; i < wheels_.size(); ++i) wheels_[i].zero = motion(i).position;
+    return true;
   }
-  if (component == "encoder" && is("ok", "stuck")) {
-    stuck_ = false;
-    for (std::size_t i = 0; i < wheels_.size(); ++i) wheels_[i].stuck = counts(i);
-    stuck_ = kind == "stuck";
-    return "";
-  }
-  if (component == "line" && virtual_line_) {
-    if (const std::optional<SerialFaults> faults = serial_faults(kind)) {
-      virtual_line_->faults() = *faults;
-      return "";
-    }
-  }
-  return std::string(
-             "component must be board (with ok, off, reset, brown_out, fault, no_gains), encoder (with ok, stuck) "
-             "or line (with ") +
-         kSerialFaultWords + ")";
+  if (component != "encoder" || !is("ok", "stuck")) return false;
+  stuck_ = false;
+  for (std::size_t i = 0; i < wheels_.size(); ++i) wheels_[i].stuck = counts(i);
+  stuck_ = kind == "stuck";
+  return true;
+}
+
+std::string RoboclawFront::fault_words() const {
+  return "board (with ok, off, reset, brown_out, fault, no_gains), encoder (with ok, stuck)";
 }
 
 }  // namespace robot_control
