@@ -1,11 +1,20 @@
 #include "navigation/doubt.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace robot_control {
 
+namespace {
+
+constexpr double kShare = 0.2;  // of the newest scan in the mean
+
+}  // namespace
+
 void Doubt::update(const Agreement& seen) {
   if (seen.rays < kFewRays) return;
+  const int agreeing = seen.rays - seen.contradicting - seen.unforeseen;
+  agreeing_ += kShare * (static_cast<double>(agreeing) / seen.rays - agreeing_);
   const bool bad = seen.contradicting > kContradicting * seen.rays || seen.explained < kExplainedLeast * seen.rays;
   bad_ = std::clamp(bad_ + (bad ? 1 : -1), 0, kDoubtful);
   doubtful_ = bad_ == kDoubtful || (doubtful_ && bad_ > 0);
@@ -14,6 +23,12 @@ void Doubt::update(const Agreement& seen) {
             std::to_string(seen.contradicting) + " pass its walls and " + std::to_string(seen.explained) +
             " end at them. Is this the map of this place, and the robot where it is taken to be?";
   }
+}
+
+std::string Doubt::remark() const {
+  if (agreeing_ >= kAgreeing) return "";
+  return "; perhaps the scan contradicts the map: " + std::to_string(std::lround(100 * agreeing_)) +
+         " % of its rays end where the map has a wall or knows nothing";
 }
 
 }  // namespace robot_control
