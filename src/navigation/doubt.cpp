@@ -27,8 +27,8 @@ void Doubt::update(const Agreement& seen) {
 
 std::string Doubt::remark() const {
   if (agreeing_ >= kAgreeing) return "";
-  return "; perhaps the scan contradicts the map: " + std::to_string(std::lround(100 * agreeing_)) +
-         " % of its rays end where the map has a wall or knows nothing";
+  return "; the scan contradicts the map in " + std::to_string(std::lround(100 * (1 - agreeing_))) +
+         " % of its rays, which pass its walls or end where it is free";
 }
 
 }  // namespace robot_control

@@ -5,8 +5,8 @@
 /// them. The doubt begins with kDoubtful more bad scans than good ones. It ends when as many good ones have followed.
 
 ///
-/// A house that is much like the map contradicts it less, and shuts ways of it. Where less than kAgreeing of the rays
-/// agree, a goal that fails may have failed for this.
+/// A house that is much like the map contradicts it less, and still shuts ways that the map has open. The reason of a
+/// failure says how much, if less than kAgreeing of the rays agree.
 
 #include <string>
 
@@ -17,7 +17,7 @@ namespace robot_control {
 inline constexpr int kDoubtful = 5;             ///< scans; what stands wrong for half a second is no noise
 inline constexpr double kContradicting = 0.15;  ///< 2° and 5 cm at 4 m make 3 to 5 %, at door posts
 inline constexpr double kExplainedLeast = 0.2;  ///< boxes all around leave a third
-inline constexpr double kAgreeing = 0.7;        ///< with 20 % of the furniture moved 75 % do; in a mirrored house 38 %
+inline constexpr double kAgreeing = 0.85;       ///< in the house of the map 89 to 99 % do
 inline constexpr int kFewRays = 20;             ///< scans of fewer hits are not judged
 
 class Doubt {

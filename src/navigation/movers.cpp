@@ -17,8 +17,8 @@ constexpr double kSlowest = 0.1;    // m/s
 constexpr double kTick = 0.1;       // s
 constexpr double kTouching = 0.02;  // m
 
-/// Returns by how much a thing that reaches from `low` to `high` along one axis has moved. The side that faces the laser
-/// shows it: the other one comes into sight and goes.
+/// Returns by how much a thing that reaches from `low` to `high` along one axis has moved. The side that faces the
+/// laser shows it: the other one comes into sight and goes.
 double shift(double old_low, double old_high, double low, double high, double sensor) {
   if (sensor < low) return low - old_low;
   if (sensor > high) return high - old_high;

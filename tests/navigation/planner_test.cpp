@@ -109,7 +109,8 @@ TEST(DoubtTest, AnUntruePoseIsDoubtedAfterHalfASecondAndATrueOneTrustedAgain) {
 TEST(DoubtTest, AHouseThatHasOtherWallsIsRemarked) {
   const Grid map = two_rooms(0.8);
   Grid other = map;
-  for (int row = 0; row < other.rows; ++row) other.cells[other.index({24, row})] = kOccupiedCell;  // nearer than the map's
+  for (int row = 0; row < other.rows; ++row)
+    other.cells[other.index({24, row})] = kOccupiedCell;  // nearer than the map's
   for (const Grid* house : std::initializer_list<const Grid*>{&map, &other}) {
     Costmap costmap = costmap_of(map);
     Doubt doubt;
