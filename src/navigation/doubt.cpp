@@ -4,7 +4,6 @@
 #include <cmath>
 
 namespace robot_control {
-
 namespace {
 
 constexpr double kShare = 0.2;  // of the newest scan in the mean
@@ -26,7 +25,7 @@ void Doubt::update(const Agreement& seen) {
 }
 
 std::string Doubt::remark() const {
-  if (agreeing_ >= kAgreeing) return "";
+  if (doubtful_ || agreeing_ >= kAgreeing) return "";
   return "; the scan contradicts the map in " + std::to_string(std::lround(100 * (1 - agreeing_))) +
          " % of its rays, which pass its walls or end where it is free";
 }

@@ -3,7 +3,6 @@
 ///
 /// A scan is bad if more than kContradicting of its rays pass walls of the map, or less than kExplainedLeast end at
 /// them. The doubt begins with kDoubtful more bad scans than good ones. It ends when as many good ones have followed.
-
 ///
 /// A house that is much like the map contradicts it less, and still shuts ways that the map has open. The reason of a
 /// failure says how much, if less than kAgreeing of the rays agree.
@@ -27,7 +26,8 @@ class Doubt {
   /// Returns the doubt as a sentence; "" without one.
   const std::string& problem() const noexcept { return doubtful_ ? text_ : none_; }
 
-  /// Returns what to add to the reason of a failure; "" if scans and map agree, on the mean of some.
+  /// Returns what to add to the reason of a failure; "" if scans and map agree on the mean, or problem()
+  /// says it.
   std::string remark() const;
 
  private:

@@ -38,7 +38,7 @@ mrpt::slam::CICP matcher() {
   return icp;
 }
 
-/// Returns the points of the scan in the axes of the base, of those nearer than `apart` to each other one, m.
+/// Returns the points of the scan in the axes of the base, at least `apart` m from each other.
 CSimplePointsMap points_of(const mrpt::obs::CObservation2DRangeScan& scan, float apart) {
   CSimplePointsMap points;
   points.insertionOptions.minDistBetweenLaserPoints = apart;
