@@ -7,23 +7,15 @@
 namespace robot_control {
 namespace {
 
-constexpr double kApart = 0.6;      // s between the two scans
+constexpr double kApart = 0.4;      // s between the two scans
 constexpr double kGap = 0.25;       // m
 constexpr double kLargest = 1.2;    // m
-constexpr double kNew = 0.15;       // of the points
-constexpr double kThrough = 0.06;   // m by which a ray passed the place of a point
+constexpr double kNew = 0.25;       // of the points
+constexpr double kThrough = 0.1;    // m by which a ray passed the place of a point
 constexpr double kFastest = 2.5;    // m/s; what is farther away is another thing
 constexpr double kSlowest = 0.1;    // m/s
 constexpr double kTick = 0.1;       // s
 constexpr double kTouching = 0.02;  // m
-
-/// Returns by how much a thing that reaches from `low` to `high` along one axis has moved. The side that faces the
-/// laser shows it: the other one comes into sight and goes.
-double shift(double old_low, double old_high, double low, double high, double sensor) {
-  if (sensor < low) return low - old_low;
-  if (sensor > high) return high - old_high;
-  return (low + high - old_low - old_high) / 2;
-}
 
 /// Returns whether the laser looked through this place.
 bool seen_free(const Scan& scan, const PlanarPose& sensor, Point at) {
@@ -59,7 +51,7 @@ std::vector<Movers::Thing> Movers::things_of(const Scan& scan, const PlanarPose&
         continue;
       }
     }
-    things.push_back({{point}, {}, {}});
+    things.push_back({{point}, {}});
   }
   for (Thing& thing : things) {
     Point low = thing.points[0], high = low;
@@ -67,7 +59,7 @@ std::vector<Movers::Thing> Movers::things_of(const Scan& scan, const PlanarPose&
       low = {std::min(low.x, point.x), std::min(low.y, point.y)};
       high = {std::max(high.x, point.x), std::max(high.y, point.y)};
     }
-    thing.low = low, thing.high = high;
+    thing.middle = {(low.x + high.x) / 2, (low.y + high.y) / 2};
     if (std::hypot(high.x - low.x, high.y - low.y) > kLargest) thing.points.clear();
   }
   std::erase_if(things, [](const Thing& thing) { return thing.points.empty(); });
@@ -89,8 +81,7 @@ std::vector<Mover> Movers::update(const Scan& scan, const PlanarPose& sensor, do
     double nearest = kFastest * elapsed;
     Point velocity;
     for (const Thing& old : before->things) {
-      const double dx = shift(old.low.x, old.high.x, thing.low.x, thing.high.x, sensor.x);
-      const double dy = shift(old.low.y, old.high.y, thing.low.y, thing.high.y, sensor.y);
+      const double dx = thing.middle.x - old.middle.x, dy = thing.middle.y - old.middle.y;
       if (std::hypot(dx, dy) >= nearest) continue;
       nearest = std::hypot(dx, dy);
       velocity = {dx / elapsed, dy / elapsed};

@@ -3,7 +3,7 @@
 ///
 /// Neighbouring rays whose ends are within kGap are one thing. A thing moves if kNew of its points lie where the laser
 /// looked through kApart before. Walls that come into sight do not: there the view was blocked. Its velocity is that of
-/// its side that faces the laser, between the two scans. A thing that is larger than kLargest is taken to stand.
+/// the middle of its points between the two scans. A thing that is larger than kLargest is taken to stand.
 
 #include <deque>
 #include <limits>
@@ -30,7 +30,7 @@ class Movers {
  private:
   struct Thing {
     std::vector<Point> points;
-    Point low, high;  // m, corners of its box
+    Point middle;
   };
   struct View {
     Scan scan;

@@ -50,19 +50,6 @@ TEST_F(MoversTest, AThingThatMovesHasItsVelocity) {
   EXPECT_NEAR(found[0].velocity.y, 0, 0.3);
 }
 
-TEST_F(MoversTest, ASlowThingIsSeenToo) {
-  EXPECT_EQ(after_a_second(0.25).size(), 1U);
-}
-
-TEST_F(MoversTest, ASideThatComesIntoSightIsNoMotion) {
-  sensor_ = {5, 5, 0};
-  movers_.update(seen({5, 7}), sensor_, 0);  // the front of the box alone
-  sensor_ = {3.5, 5, 0};                     // and its left side
-  const std::vector<Mover> found = movers_.update(seen({5, 6.6}), sensor_, 0.5);
-  ASSERT_EQ(found.size(), 1U);
-  EXPECT_NEAR(found[0].velocity.y, -0.8, 0.2);
-}
-
 TEST_F(MoversTest, WhatStandsDoesNotMoveWhereTheRobotDrivesPastIt) {
   EXPECT_TRUE(after_a_second(0, 0.5).empty());
   EXPECT_TRUE(after_a_second(0).empty());
