@@ -205,7 +205,7 @@ def faults(first: int, runs: int, say: Callable[[str], None]) -> list[dict[str, 
         tasks = [(lie, seed) for seed in range(first, first + runs)]
         drives = list(Processes().outcomes(drive_lies, tasks, say))
         affected = [trip for trip, since in drives if trip.doubts or trip.state != "reached" or lie in OTHER_MAPS]
-        unnamed = [trip for trip in affected if cause not in trip.doubts]
+        unnamed = [trip for trip in affected if cause not in trip.doubts and cause not in trip.reason]
         for trip in unnamed:
             say(f"{lie}: {trip.state}: {trip.reason}; {sorted(trip.doubts)}")
         touches = sum(trip.air <= 0 for trip, _ in drives)

@@ -147,6 +147,7 @@ Agreement Costmap::insert(const Scan& scan, const PlanarPose& sensor, double now
       result.explained += passed ? 0 : 1;
     } else {
       ends.push_back(cell);
+      result.unforeseen += !passed && grid_.cells[cell] >= 0 ? 1 : 0;
     }
   }
   for (const std::size_t cell : ends) {

@@ -30,6 +30,7 @@ struct Agreement {
   int rays = 0;           ///< those that hit
   int explained = 0;      ///< end at a wall of the map
   int contradicting = 0;  ///< passed a wall of the map
+  int unforeseen = 0;     ///< of the others, those that end where the map is free
 };
 
 class Costmap {

@@ -3,6 +3,9 @@
 ///
 /// A scan is bad if more than kContradicting of its rays pass walls of the map, or less than kExplainedLeast end at
 /// them. The doubt begins with kDoubtful more bad scans than good ones. It ends when as many good ones have followed.
+///
+/// A house that is much like the map contradicts it less, and still shuts ways that the map has open. The reason of a
+/// failure says how much, if less than kAgreeing of the rays agree.
 
 #include <string>
 
@@ -13,6 +16,7 @@ namespace robot_control {
 inline constexpr int kDoubtful = 5;             ///< scans; what stands wrong for half a second is no noise
 inline constexpr double kContradicting = 0.15;  ///< 2° and 5 cm at 4 m make 3 to 5 %, at door posts
 inline constexpr double kExplainedLeast = 0.2;  ///< boxes all around leave a third
+inline constexpr double kAgreeing = 0.85;       ///< in the house of the map 89 to 99 % do
 inline constexpr int kFewRays = 20;             ///< scans of fewer hits are not judged
 
 class Doubt {
@@ -22,8 +26,13 @@ class Doubt {
   /// Returns the doubt as a sentence; "" without one.
   const std::string& problem() const noexcept { return doubtful_ ? text_ : none_; }
 
+  /// Returns what to add to the reason of a failure; "" if scans and map agree on the mean, or problem()
+  /// says it.
+  std::string remark() const;
+
  private:
   int bad_ = 0;
+  double agreeing_ = 1;  // part of the rays
   bool doubtful_ = false;
   std::string text_, none_;
 };

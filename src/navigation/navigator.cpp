@@ -61,6 +61,7 @@ NavigatorOutput Navigator::step(const NavigatorInput& input, Costmap* costmap) {
       fail(for_seconds(reason_.empty() ? "the robot does not move" : reason_, waited), out);
   }
   out.state = state_;
+  if (state_ == NavigatorState::kFailed) reason_ += input.remark;
   if (state_ != NavigatorState::kReached) out.reason = reason_;
   if (state_ == NavigatorState::kDriving) out.remaining = remaining(input.pose);
   return out;

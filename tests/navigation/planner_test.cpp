@@ -106,6 +106,20 @@ TEST(DoubtTest, AnUntruePoseIsDoubtedAfterHalfASecondAndATrueOneTrustedAgain) {
   EXPECT_EQ(doubt.problem(), "");
 }
 
+TEST(DoubtTest, AHouseThatHasOtherWallsIsRemarked) {
+  const Grid map = two_rooms(0.8);
+  Grid other = map;
+  for (int row = 0; row < other.rows; ++row)
+    other.cells[other.index({24, row})] = kOccupiedCell;  // nearer than the map's
+  for (const Grid* house : std::initializer_list<const Grid*>{&map, &other}) {
+    Costmap costmap = costmap_of(map);
+    Doubt doubt;
+    for (int i = 0; i < 10; ++i) doubt.update(costmap.insert(scan_of(*house, kLeft), kLeft, 1));
+    EXPECT_EQ(doubt.remark().empty(), house == &map) << doubt.remark();
+    EXPECT_EQ(doubt.problem(), "");
+  }
+}
+
 TEST(PlannerTest, TheWayThroughADoorKeepsTheOutlineFree) {
   const Grid map = two_rooms(0.8);
   for (const double yaw : {0.0, 1.0, 2.0, 3.0, -1.0, -2.0}) {

@@ -49,6 +49,16 @@ def test_the_map_shows_the_true_walls_and_the_pose_in_it(sights):
     assert np.mean(away > 0.1) < 0.05
 
 
+def test_what_is_seen_again_adds_little(sights):
+    mapper = mrpt.Mapper()
+    mapped(sights, mapper)
+    once = mapper.points
+    for _ in range(4):
+        mapped(sights[::-1], mapper)
+        mapped(sights, mapper)
+    assert mapper.points < 1.3 * once
+
+
 def test_a_saved_map_goes_on_where_the_robot_is(sights, grid):
     """The odometry begins again, at another place of the map."""
     again = sights[len(sights) // 2 :]

@@ -61,6 +61,7 @@ PYBIND11_MODULE(_mrpt, module) {
           py::arg("scan"), py::arg("sensor"), py::arg("odometry"))
       .def_property_readonly("pose", [](const Mapper& mapper) { return pose_of(mapper.pose()); })
       .def_property_readonly("matched", &Mapper::matched)
+      .def_property_readonly("points", &Mapper::points)
       .def_property_readonly("reason", &Mapper::reason)
       .def_property_readonly("map", [](const Mapper& mapper) { return numpy_of(mapper.grid()); });
   bind_localizer(module);

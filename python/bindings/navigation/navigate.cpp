@@ -62,7 +62,8 @@ class Navigation {
                         : path == "active" ? State::kActive
                         : path == "done"   ? State::kDone
                                            : State::kFailed;
-    const NavigatorOutput out = navigator_.step({now, problem, "", planar_of(pose), {state, path}}, &costmap_);
+    const NavigatorOutput out =
+        navigator_.step({now, problem, doubt_.remark(), "", planar_of(pose), {state, path}}, &costmap_);
     py::object way = py::none();
     if (out.path) way = py::cast(poses_of(*out.path));
     return py::make_tuple(name_of(out.state), out.reason, way, out.cancel);

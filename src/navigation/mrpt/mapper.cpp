@@ -17,6 +17,7 @@ using mrpt::poses::CPose2D;
 constexpr float kResolution = 0.05f;                                    // m
 constexpr double kMatchDistance = 0.05, kMatchTurn = 2 * M_PI / 180;    // m, rad between two matches
 constexpr double kInsertDistance = 0.6, kInsertTurn = 15 * M_PI / 180;  // m, rad between two scans of the map
+constexpr float kKnown = 0.03f;      // m; nearer to a point of the map another one adds size alone
 constexpr double kMinMatched = 0.4;  // part of the points, below which a match is no match
 
 /// Returns whether the robot has moved by so much between two poses.
@@ -37,6 +38,15 @@ mrpt::slam::CICP matcher() {
   return icp;
 }
 
+/// Returns the points of the scan in the axes of the base, at least `apart` m from each other.
+CSimplePointsMap points_of(const mrpt::obs::CObservation2DRangeScan& scan, float apart) {
+  CSimplePointsMap points;
+  points.insertionOptions.minDistBetweenLaserPoints = apart;
+  points.insertionOptions.isPlanarMap = true;
+  points.insertObservation(scan);
+  return points;
+}
+
 }  // namespace
 
 struct Mapper::Parts {
@@ -48,26 +58,26 @@ struct Mapper::Parts {
   double matched = 1;
   bool first = true, begins_saved = false;
 
-  Parts() {
-    points.insertionOptions.minDistBetweenLaserPoints = 0.05f;
-    points.insertionOptions.fuseWithExisting = false;
-    points.insertionOptions.isPlanarMap = true;
-  }
-
   CPose2D pose() const { return correction + odometry; }
 
   void insert(const mrpt::obs::CObservation2DRangeScan& scan) {
     const mrpt::poses::CPose3D at(pose());
-    points.insertObservation(scan, at);
+    CSimplePointsMap seen = points_of(scan, 0.05f);
+    seen.changeCoordinatesReference(at);
+    std::vector<bool> known(seen.size());
+    for (std::size_t i = 0; i < known.size() && !points.empty(); ++i) {
+      float x = 0, y = 0;
+      seen.getPoint(i, x, y);
+      known[i] = points.squareDistanceToClosestCorrespondence(x, y) < kKnown * kKnown;
+    }
+    seen.applyDeletionMask(known);
+    points += seen;
     grid.insertObservation(scan, at);
     inserted_at = pose();
   }
 
   void match(const mrpt::obs::CObservation2DRangeScan& scan) {
-    CSimplePointsMap seen;
-    seen.insertionOptions.minDistBetweenLaserPoints = 0.02f;
-    seen.insertionOptions.isPlanarMap = true;
-    seen.insertObservation(scan);
+    const CSimplePointsMap seen = points_of(scan, 0.02f);
     mrpt::slam::CICP::TReturnInfo info;
     const auto found = icp.Align(&points, &seen, pose(), info);
     matched = info.goodness;
@@ -112,6 +122,9 @@ PlanarPose Mapper::correction() const noexcept {
 }
 double Mapper::matched() const noexcept {
   return parts_->matched;
+}
+std::size_t Mapper::points() const noexcept {
+  return parts_->points.size();
 }
 bool Mapper::fits() const noexcept {
   return parts_->matched >= kMinMatched;

@@ -8,6 +8,7 @@
 /// The pose in the map is correction ∘ odometry. Only the correction, the transform from map to odom, is changed by a
 /// match, so that `odom` never jumps.
 
+#include <cstddef>
 #include <memory>
 #include <string>
 
@@ -37,6 +38,9 @@ class Mapper {
 
   /// Returns the part of the last matched scan's points that found one of the map; 1 before the first match.
   double matched() const noexcept;
+
+  /// Returns the number of points with which scans are matched. It grows with what is seen, not with time.
+  std::size_t points() const noexcept;
 
   /// Returns whether the last scan fits the map. One that does not changes nothing.
   bool fits() const noexcept;

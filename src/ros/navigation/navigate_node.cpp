@@ -174,7 +174,7 @@ class NavigateNode {
     const std::string why = problem(time);
     if (navigator_.active()) {
       const std::string held = path_client_.held().empty() ? guard_.held() : path_client_.held();
-      output_ = navigator_.step({now(), why, held, pose_, path_client_.report()}, costmap_.get());
+      output_ = navigator_.step({now(), why, doubt_.remark(), held, pose_, path_client_.report()}, costmap_.get());
       if (output_.cancel) path_client_.cancel();
       if (output_.path)
         path_client_.send(*output_.path, map_frame_, goal_speed_ > 0 ? goal_speed_ : speed_, requested_);
