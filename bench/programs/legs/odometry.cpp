@@ -147,8 +147,9 @@ void contact(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
       for (std::size_t leg = 0; leg < kLegs; ++leg) {
         const bool touches = robot.truth().normal_force[leg] > kTouches;
         const bool said = robot.state().contacts[leg].probability >= 0.5;
-        if (touches && air[leg] > kAir) touchdowns += 1, waits[leg] = true, since[leg] = 0;
-        if (waits[leg] && said) found += since[leg] <= kInTime ? 1 : 0, waits[leg] = false;
+        if (touches && air[leg] > kAir) waits[leg] = true, since[leg] = 0;
+        const bool in_time = since[leg] <= kInTime;
+        if (waits[leg] && (said || !in_time)) touchdowns += 1, found += in_time ? 1 : 0, waits[leg] = false;
         since[leg] += 1;
         air[leg] = touches ? 0 : air[leg] + 1;
         const bool swings = air[leg] > kBounce;
