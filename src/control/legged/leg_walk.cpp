@@ -88,7 +88,7 @@ void LegController::walk(const ControlInput& input, const Request& request, Comm
   const bool planned = walker_.step(state_.walk, to, out);
   out.twist_limited = {.linear = {twist[0], twist[1], 0}, .angular = {0, 0, twist[2]}};
   for (std::size_t i = 0; i < 3; ++i) out.legged.body[kZ + i] = state_.carried[i].value;
-  if (!planned || (ends && all_down && state_.walk.stood > kAllDown)) stand_here(input);
+  if (!planned || (ends && all_down && state_.walk.lasted > kAllDown)) stand_here(input);
 }
 
 /// Returns true if all feet are so near to their nominal places that the robot can lie down.
