@@ -1,7 +1,7 @@
 """Measures the cost of recording every cycle: four nodes and a telemetry as processes on the wall clock, without ROS.
 
-Ten minutes at 1 kHz are recorded with the default sensor errors, of diffbot, of a real robot with four wheels if there
-is one, or of quadbot, which walks. The bounds are on lost rows, bytes on disk, and the processor times of telemetry,
+Ten minutes at 1 kHz are recorded with the default sensor errors, of diffbot and of a real robot with four wheels if
+there is one. With --robot quadbot, they are those of a robot that walks. The bounds are on lost rows, bytes on disk, and the processor times of telemetry,
 loading, replay and report. The black box, which was overwritten several times, is replayed as well, and its length is
 judged.
 """
@@ -173,7 +173,7 @@ def replayed(bag: Path) -> Replayed:
 def run_nodes(programs: Path, folder: Path, settings: dict[str, Any], seconds: float, robot: str) -> float:
     """Processor time of the telemetry, s."""
     bus = f"record.{os.getpid()}"
-    commands = {node: command(programs, node, bus, folder, settings, robot) for node in (*LOOP, TELEMETRY)}
+    commands = {node: command(programs, node, bus, folder, settings, robot=robot) for node in (*LOOP, TELEMETRY)}
     plant_command = commands.pop(DRIVER)
     nodes = {node: subprocess.Popen(each) for node, each in commands.items()}
     try:

@@ -115,7 +115,7 @@ def run_many(name: str, given: argparse.Namespace, runner: Runner) -> tuple[dict
     if name == "campaign":
         from bench.faults import campaign
 
-        return campaign.bench(given.first, given.runs or ALL_RUNS, say, runner, given.wheel_command, given.robot)
+        return campaign.bench(given.first, given.runs or ALL_RUNS, say, runner, given.wheel_command, robot=given.robot)
     if name == "devices":
         from bench.devices import bench as devices
 

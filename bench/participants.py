@@ -20,7 +20,7 @@ RECORDING = {
 
 
 def command(
-    programs: Path, node: str, bus: str, folder: Path, settings: Mapping[str, object], robot: str = DIFFBOT
+    programs: Path, node: str, bus: str, folder: Path, settings: Mapping[str, object], *, robot: str = DIFFBOT
 ) -> list[str]:
     """Command line of one node, which reads commands from script.csv in `folder`; the log goes there, too. `node` is
     the program of a robot on wheels.
@@ -31,7 +31,8 @@ def command(
     on_legs = NAMES_ON_LEGS if robot == QUADBOT else {}
     program = support_program(programs, "rc_participant")
     parameters = share_file("config/robot_params.yaml")
-    return [str(program), on_legs.get(node, node), "--bus", bus, "--params", str(parameters), *(w for p in pairs for w in ("--set", p))]
+    start = [str(program), on_legs.get(node, node), "--bus", bus, "--params", str(parameters)]
+    return [*start, *(w for p in pairs for w in ("--set", p))]
 
 
 def support_program(programs: Path, name: str) -> Path:

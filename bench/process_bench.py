@@ -41,7 +41,7 @@ class Nodes:
         signal.signal(signal.SIGUSR1, signal.SIG_IGN)  # the nodes inherit it until they install their own handler
         settings = {"telemetry.black_box": 0}
         nodes = (*LOOP, TELEMETRY)
-        self._commands = {node: command(programs, node, bus(), folder, settings, robot) for node in nodes}
+        self._commands = {node: command(programs, node, bus(), folder, settings, robot=robot) for node in nodes}
         self._running = {node: self._begin(node) for node in self._commands}
 
     def act(self, what: str, node: str, seconds: float) -> None:

@@ -99,6 +99,7 @@ def campaign(
     say: Callable[[str], None],
     runner: Runner | None = None,
     wheel_command: str = "torque",
+    *,
     robot: str = DIFFBOT,
 ) -> Tally:
     """Runs all seeds; `say` receives every failure, and the progress."""
@@ -136,11 +137,12 @@ def bench(
     say: Callable[[str], None],
     runner: Runner | None = None,
     wheel_command: str = "torque",
+    *,
     robot: str = DIFFBOT,
 ) -> tuple[dict[str, Any], bool]:
     """The result, and whether the robot survived every sequence."""
     began = time.monotonic()
     if runs == 1:
         say(drawn(first, robot_names(), wheel_command, robot).describe())
-    tally = campaign(range(first, first + runs), say, runner, wheel_command, robot)
+    tally = campaign(range(first, first + runs), say, runner, wheel_command, robot=robot)
     return result_of(tally, time.monotonic() - began), not tally.failed

@@ -88,8 +88,8 @@ class FaultSequence:
         events = ", ".join(f"{e.time:.3f} s {e.action} {e.component} {e.kind}".rstrip() for e in self.events)
         silent = "then silence" if self.falls_silent else "then zero"
         drives = "" if self.wheel_command == "torque" else f" with drives of {self.wheel_command}"
-        gait = f" in gait {self.gait}" if self.gait else ""
-        return f"{self.robot}{drives}{gait} in {self.scene}, driven {self.driven:.2f} s, {silent}: {events or 'no fault'}"
+        drives += f" in gait {self.gait}" if self.gait else ""
+        return f"{self.robot}{drives} in {self.scene}, driven {self.driven:.2f} s, {silent}: {events or 'no fault'}"
 
 
 def draw_sequence(seed: int, robots: Sequence[str], wheel_command: str = "torque") -> FaultSequence:

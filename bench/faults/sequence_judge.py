@@ -20,8 +20,8 @@ the rules of the gate alone count: "permit", "machine", that "brake" ends at res
 blocked wheel, or a motor with a wrong torque, jolts the robot harder than any brake. Its tilt then does not count. A
 drive that is slow or delayed receives the brake LATE_DRIVE later.
 
-A robot on legs lies down by its brake: it falls, which gives it up to FOLD_MARGIN, rests after FOLD_TIME, and must not
-turn over, OVER_LIMIT. Its brake is a torque, so a motor whose torque has the wrong sign has none.
+A robot on legs lies down by its brake. It falls, which gives it up to FOLD_MARGIN, and rests after FOLD_TIME. Instead of
+TILT_LIMIT, it must not turn over, OVER_LIMIT. Its brake is a torque, so a motor with a wrong torque has none.
 """
 
 from __future__ import annotations
@@ -218,8 +218,8 @@ class _Court:
     def tilt(self) -> Iterator[Violation]:
         """The robot stays upright, unless a motor jolted it."""
         tilt = self._log["truth_tilt"]
-        limit = HIT_TILT_LIMIT if self._sequence.scene in ("walls", "bumps") else TILT_LIMIT
-        limit = OVER_LIMIT if self._on_legs else limit
+        on_wheels = HIT_TILT_LIMIT if self._sequence.scene in ("walls", "bumps") else TILT_LIMIT
+        limit = OVER_LIMIT if self._on_legs else on_wheels
         for row in np.flatnonzero((tilt > limit) & ~np.logical_or.accumulate(self._jolted | self._monitor_errs)):
             yield self._violation("tilt", row, f"leans by {np.degrees(tilt[row]):.1f}°")
 

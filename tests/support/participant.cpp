@@ -2,10 +2,9 @@
 ///
 ///   rc_participant NODE --bus NAME --params YAML [--set path=value]… [--seconds S]
 ///
-/// NODE: mujoco_plant, free_wheels (free_wheels.h), state_estimator, safety_monitor, telemetry, or the controller of the
-/// robot's kind.
-/// It ends on SIGTERM or SIGINT, after S seconds, or, as the plant, after mujoco_plant.cycles. At each SIGUSR1 the
-/// controller takes another speed limit over, on wheels. Exit code 1: refused, reason on stderr.
+/// NODE: mujoco_plant, free_wheels (free_wheels.h), state_estimator, safety_monitor, telemetry, or the controller of
+/// the robot's kind. It ends on SIGTERM or SIGINT, after S seconds, or, as the plant, after mujoco_plant.cycles. At
+/// each SIGUSR1 the controller takes another speed limit over, on wheels. Exit code 1: refused, reason on stderr.
 
 #include <array>
 #include <atomic>

@@ -105,7 +105,7 @@ void drive(const LegModel& model, const Course& course, std::uint64_t seed, Wors
   const double error = 100 * end.pose.head<2>().norm() / travelled;
   const Vector3d plain = vector_of(beside.state().plain.position) - vector_of(robot.truth().pose_world.position);
   const double plain_error = 100 * plain.head<2>().norm() / travelled;
-  worst.add("error of the way, " + course.name, error, "%");
+  worst.add_p95("error of the way, " + course.name, error, "%");
   worst.add("error of yaw, " + course.name, std::abs(end.pose[5]) * 180 / kPi, "deg");
   worst.add("error of height, " + course.name, std::abs(end.pose[2]), "m");
   worst.add("RMS of the speed, " + course.name, std::sqrt(squares / cycles), "m/s");

@@ -105,7 +105,8 @@ GaitName LegController::choose_gait(const Request& request, const WalkingTwist& 
     state_.gait = std::min<std::uint64_t>(request.mode - kStanceGait, kGaits.size() - 1);
   } else if (!rests(target)) {
     const auto& now = state_.twist.axes;
-    const double fastest = std::max(pace_of(target), pace_of({now[0].speed, now[1].speed, now[2].speed})) / time_scale();
+    const double fastest =
+        std::max(pace_of(target), pace_of({now[0].speed, now[1].speed, now[2].speed})) / time_scale();
     const bool trots = fastest >= (state_.gait == kTrot ? kTrotUntil : kTrotFrom);
     state_.gait = trots ? kTrot : static_cast<std::uint64_t>(GaitName::kWalkingTrot);
   } else if (state_.gait == 0) {

@@ -184,7 +184,8 @@ void Walker::turn_clock(State& state, GaitName wanted) const noexcept {
   double farthest = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) farthest = std::max(farthest, gait.swung(leg, state.phase));
   const bool ends = wanted == GaitName::kStand && farthest * (1 - gait.duty) < 1.5 * step;
-  const bool changes = wraps && state.gait != next && wanted != GaitName::kStand && state.lasted > gait.period - period_;
+  const bool changes =
+      wraps && state.gait != next && wanted != GaitName::kStand && state.lasted > gait.period - period_;
   if (!ends && !changes) return;
   state.swings = {};  // a foot that then swings begins where it is, in the air or not
   state.gait = next;
