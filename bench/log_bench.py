@@ -1,9 +1,9 @@
 """Measures the cost of recording every cycle: four nodes and a telemetry as processes on the wall clock, without ROS.
 
 Ten minutes at 1 kHz are recorded with the default sensor errors, of diffbot and of a real robot with four wheels if
-there is one. With --robot quadbot, they are those of a robot that walks. The bounds are on lost rows, bytes on disk, and the processor times of telemetry,
-loading, replay and report. The black box, which was overwritten several times, is replayed as well, and its length is
-judged.
+there is one. With --robot quadbot, they are those of a robot that walks. The bounds are on lost rows, bytes on disk, and
+the processor times of telemetry, loading, replay and report. The black box, which was overwritten several times, is
+replayed as well, and its length is judged.
 """
 
 from __future__ import annotations

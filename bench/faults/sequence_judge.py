@@ -20,8 +20,8 @@ the rules of the gate alone count: "permit", "machine", that "brake" ends at res
 blocked wheel, or a motor with a wrong torque, jolts the robot harder than any brake. Its tilt then does not count. A
 drive that is slow or delayed receives the brake LATE_DRIVE later.
 
-A robot on legs lies down by its brake. It falls, which gives it up to FOLD_MARGIN, and rests after FOLD_TIME. Instead of
-TILT_LIMIT, it must not turn over, OVER_LIMIT. Its brake is a torque, so a motor with a wrong torque has none.
+A robot on legs lies down by its brake. It falls, which gives it up to FOLD_MARGIN, and rests after FOLD_TIME. Instead
+of TILT_LIMIT, it must not turn over, OVER_LIMIT. Its brake is a torque, so a motor with a wrong torque has none.
 """
 
 from __future__ import annotations
