@@ -26,6 +26,7 @@ from bench.drives.wheel_command import WHEEL_COMMANDS
 from bench.faults.fault_sequence import ALL_RUNS
 from bench.navigation import bench as navigation
 from bench.release.sender_sequences import sender_rows
+from bench.robot_corpus import DIFFBOT, OWN
 from bench.runs import seed_programs
 from bench.runs.address import check_address
 from bench.runs.runner import Processes, Runner
@@ -66,6 +67,7 @@ PARTS = {
 NAMES = MEASURED + JUDGED
 SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores
 BY_WHEEL_COMMAND = ("campaign", "driving", "drive", "release")
+BY_ROBOT = ("campaign", "processes", "record")
 ON_CLUSTERS = ("campaign", "devices", "driving", "odometry", "tuning", *SEED_PROGRAMS)
 
 
@@ -113,7 +115,7 @@ def run_many(name: str, given: argparse.Namespace, runner: Runner) -> tuple[dict
     if name == "campaign":
         from bench.faults import campaign
 
-        return campaign.bench(given.first, given.runs or ALL_RUNS, say, runner, given.wheel_command)
+        return campaign.bench(given.first, given.runs or ALL_RUNS, say, runner, given.wheel_command, robot=given.robot)
     if name == "devices":
         from bench.devices import bench as devices
 
@@ -163,7 +165,7 @@ def _hostile(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
 def _record(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     from bench import log_bench
 
-    return log_bench.bench(given.share, given.programs, given.keep, say)
+    return log_bench.bench(given.share, given.programs, given.keep, say, given.robot)
 
 
 def _blackbox(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
@@ -175,7 +177,7 @@ def _blackbox(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
 def _processes(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     from bench import process_bench
 
-    return process_bench.bench(given.first, given.runs or process_bench.ALL_RUNS, given.programs, say)
+    return process_bench.bench(given.first, given.runs or process_bench.ALL_RUNS, given.programs, say, given.robot)
 
 
 def _console(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
@@ -336,6 +338,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
         default=WHEEL_COMMANDS[0],
         help=f"{', '.join(BY_WHEEL_COMMAND)}: of the drives of the wheels",
     )
+    parser.add_argument("--robot", choices=OWN, default=DIFFBOT, help=f"{', '.join(BY_ROBOT)}: the robot")
     parser.add_argument("--only", type=_scenarios, metavar="SCENARIO[,…]", help="odometry: these scenarios alone")
     parser.add_argument("--plots", type=Path, help="odometry: folder for pictures")
     parser.add_argument("--keep", type=Path, help="record: folder for the logs and their reports")
@@ -362,6 +365,9 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
         parser.error(f"--markdown writes the tables of {LEVELS[0]}, not of --errors {given.errors}")
     if given.markdown and given.wheel_command != WHEEL_COMMANDS[0]:
         parser.error(f"--markdown writes the tables of --wheel-command {WHEEL_COMMANDS[0]}")
+    other = [name for name in given.names if name not in BY_ROBOT]
+    if given.robot != DIFFBOT and (other or given.markdown):
+        parser.error(f"--robot {given.robot} is for {', '.join(BY_ROBOT)} without --markdown")
     if given.markdown and given.only:
         parser.error("--markdown writes the tables of all scenarios, not of --only some")
     if given.scheduler is not None:

@@ -6,7 +6,10 @@ import math
 from collections.abc import Mapping
 from pathlib import Path
 
+from robot_control.common.roles import NAMES_ON_LEGS
 from robot_control.installed_files import share_file
+
+from bench.robot_corpus import DIFFBOT, QUADBOT, urdf_of
 
 START_LIMIT = 30.0  # s until all nodes run
 RECORDING = {
@@ -16,13 +19,20 @@ RECORDING = {
 }
 
 
-def command(programs: Path, node: str, bus: str, folder: Path, settings: Mapping[str, object]) -> list[str]:
-    """Command line of one node, which reads commands from script.csv in `folder`; the log goes there, too."""
+def command(
+    programs: Path, node: str, bus: str, folder: Path, settings: Mapping[str, object], *, robot: str = DIFFBOT
+) -> list[str]:
+    """Command line of one node, which reads commands from script.csv in `folder`; the log goes there, too. `node` is
+    the program of a robot on wheels.
+    """
     script_and_log = {"robot.command_script": folder / "script.csv", "telemetry.directory": folder}
-    pairs = [f"{key}={value}" for key, value in {**RECORDING, **script_and_log, **settings}.items()]
+    own = {"robot.urdf": urdf_of(robot)}
+    pairs = [f"{key}={value}" for key, value in {**RECORDING, **script_and_log, **own, **settings}.items()]
+    on_legs = NAMES_ON_LEGS if robot == QUADBOT else {}
     program = support_program(programs, "rc_participant")
     parameters = share_file("config/robot_params.yaml")
-    return [str(program), node, "--bus", bus, "--params", str(parameters), *(w for p in pairs for w in ("--set", p))]
+    start = [str(program), on_legs.get(node, node), "--bus", bus, "--params", str(parameters)]
+    return [*start, *(w for p in pairs for w in ("--set", p))]
 
 
 def support_program(programs: Path, name: str) -> Path:

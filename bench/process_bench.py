@@ -2,6 +2,7 @@
 killed, stopped, restarted and tuned at random moments. The log is then computed again, bit by bit.
 
 scripts/bench processes --first 17 --runs 1
+scripts/bench processes --robot quadbot
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from robot_control.replay.recorded_setup import recorded_setup
 
 from bench.log_bench import row
 from bench.participants import START_LIMIT, command, remove_shared_memory
+from bench.robot_corpus import DIFFBOT
 
 ALL_RUNS = 20
 EVENTS = 12  # of each run
@@ -35,10 +37,11 @@ LAP = 4000  # cycles: a drive, an emergency stop in every other lap, rest, a res
 class Nodes:
     """The nodes as processes of rc_participant."""
 
-    def __init__(self, programs: Path, folder: Path) -> None:
+    def __init__(self, programs: Path, folder: Path, robot: str) -> None:
         signal.signal(signal.SIGUSR1, signal.SIG_IGN)  # the nodes inherit it until they install their own handler
         settings = {"telemetry.black_box": 0}
-        self._commands = {node: command(programs, node, bus(), folder, settings) for node in (*LOOP, TELEMETRY)}
+        nodes = (*LOOP, TELEMETRY)
+        self._commands = {node: command(programs, node, bus(), folder, settings, robot=robot) for node in nodes}
         self._running = {node: self._begin(node) for node in self._commands}
 
     def act(self, what: str, node: str, seconds: float) -> None:
@@ -73,12 +76,14 @@ class Nodes:
         return subprocess.Popen(self._commands[node], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
-def bench(first: int, runs: int, programs: Path, say: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
+def bench(
+    first: int, runs: int, programs: Path, say: Callable[[str], None], robot: str = DIFFBOT
+) -> tuple[dict[str, Any], bool]:
     """The table of `runs` from seed `first` on, and whether every compared row is the same."""
     compared = missed = failed = 0
     for seed in range(first, first + runs):
         try:
-            laws, different_rows = replayed_run(seed, programs, say)
+            laws, different_rows = replayed_run(seed, programs, say, robot)
         except RuntimeError as error:
             failed += 1
             say(f"seed {seed}: {error}")
@@ -100,7 +105,9 @@ def bus() -> str:
     return f"processes-{os.getpid()}"
 
 
-def replayed_run(seed: int, programs: Path, say: Callable[[str], None]) -> tuple[list[dict[str, int]], int]:
+def replayed_run(
+    seed: int, programs: Path, say: Callable[[str], None], robot: str = DIFFBOT
+) -> tuple[list[dict[str, int]], int]:
     """Counts of each law, and the number of rows with a different field; `say` receives what differs or is not
     compared.
 
@@ -111,7 +118,7 @@ def replayed_run(seed: int, programs: Path, say: Callable[[str], None]) -> tuple
     with tempfile.TemporaryDirectory(prefix="processes-") as name:
         folder = Path(name)
         (folder / "script.csv").write_text(script(60 * LAP))
-        nodes = Nodes(programs, folder)
+        nodes = Nodes(programs, folder, robot)
         try:
             await_rows(folder / "run.bag")
             for _ in range(EVENTS):

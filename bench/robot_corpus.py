@@ -15,11 +15,12 @@ from pathlib import Path
 from robot_control.inspect.description import describe, stand
 from robot_control.installed_files import share_file
 
-DIFFBOT = "diffbot"
+DIFFBOT, QUADBOT = OWN = ("diffbot", "quadbot")
 REFUSED = ("my_bot", "p3dx_amr")  # an empty template; wheels on fixed joints
 STOP_DECELERATION = 0.5  # m/s², the parameter's default
 SCENES = ("flat", "slope_5deg", "bumps", "low_friction_patch", "walls")
 ICE = 0.1  # friction of the patch
+FOLDED = 1.0  # m/s², of a robot on legs that folds them
 BRAKED_SLOPE = math.sin(math.radians(5))
 GRAVITY = 9.81  # m/s²
 
@@ -49,8 +50,8 @@ def urdf_of(name: str) -> str:
     Raises:
         FileNotFoundError: no such robot here.
     """
-    if name == DIFFBOT:
-        return share_file("urdf/diffbot.urdf")
+    if name in OWN:
+        return share_file(f"urdf/{name}.urdf")
     folder = corpus_folder()
     if folder is None or not (folder / name / "robot.urdf").is_file():
         raise FileNotFoundError(
@@ -67,10 +68,9 @@ def stop_deceleration_of(name: str, friction: float = ICE) -> float:
     robot on a slope of 5°, and may do no more (wheel_stop.h). Sliding straight slows down with a = g·min(μ·c, sin5°),
     a spin with a·m·(b/2)²/I; on ice a long robot on a short base takes seconds. The result is a fifth less, because
     casters take weight off the wheels while the robot slows down.
-    robot on a slope of 5°, and may do no more (wheel_stop.h). Sliding straight slows down with a = g·min(μ·c, sin5°),
-    a spin with a·m·(b/2)²/I: seconds on ice, of a long robot on a short base. A fifth less, because casters take weight
-    off the wheels while it slows down.
     """
+    if name == QUADBOT:
+        return FOLDED
     robot = describe(urdf_of(name))
     lever = float(robot["mass"] * (robot["wheel_base"] / 2) ** 2 / robot["yaw_inertia"])
     grip = GRAVITY * min(friction * float(stand(urdf_of(name))["carried"]), BRAKED_SLOPE)

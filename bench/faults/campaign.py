@@ -1,6 +1,7 @@
 """Thousands of random fault sequences over random drives and robots, each judged by the truth.
 
     scripts/bench campaign --first 17 --runs 1     # repeats one and says what happened
+    scripts/bench campaign --robot quadbot         # the same on legs: random gaits and walks on flat ground
 
 A seed gives the same bits on the same build and robots, alone or among others, on however many processors.
 """
@@ -17,10 +18,10 @@ from typing import Any
 from robot_control.closed_loop import ClosedLoop
 from robot_control.common.cause_names import causes_in
 
-from bench.faults.fault_sequence import ANGULAR_LIMIT, LINEAR_LIMIT, draw_sequence
+from bench.faults.fault_sequence import ANGULAR_LIMIT, LINEAR_LIMIT, FaultSequence, draw_sequence, draw_walk
 from bench.faults.sequence_judge import RULES, judge
 from bench.faults.sequence_run import make_loop, run_sequence
-from bench.robot_corpus import robot_names
+from bench.robot_corpus import DIFFBOT, QUADBOT, robot_names
 from bench.runs.runner import Processes, Runner
 
 
@@ -34,6 +35,7 @@ class Outcome:
     stops: list[str]  # causes that ever latched
     seconds: float  # of simulated time
     wheel_command: str = "torque"
+    robot: str = DIFFBOT
 
     @property
     def text(self) -> str:
@@ -41,7 +43,7 @@ class Outcome:
         lines = [f"seed {self.seed}: {self.story}"]
         lines += [f"    {what}" for _, what in self.violations]
         if self.violations:
-            again = f"--first {self.seed} --runs 1 --wheel-command {self.wheel_command}"
+            again = f"--first {self.seed} --runs 1 --wheel-command {self.wheel_command} --robot {self.robot}"
             lines.append(f"    again: scripts/bench campaign {again}")
         return "\n".join(lines)
 
@@ -68,27 +70,42 @@ class Tally:
 
 def fastest_rim(loop: ClosedLoop) -> float:
     """m/s, largest speed over the ground that the controller may request of a side of the robot."""
-    return LINEAR_LIMIT + ANGULAR_LIMIT * float(loop.robot["wheel_base"]) / 2
+    return LINEAR_LIMIT + ANGULAR_LIMIT * wheel_base(loop) / 2
 
 
-def run_seed(seed: int, robots: Sequence[str], wheel_command: str = "torque") -> Outcome:
+def wheel_base(loop: ClosedLoop) -> float:
+    """m; 0 on legs."""
+    return float(loop.robot.get("wheel_base", 0.0))
+
+
+def drawn(seed: int, robots: Sequence[str], wheel_command: str, robot: str) -> FaultSequence:
+    """The sequence of this seed."""
+    return draw_walk(seed) if robot == QUADBOT else draw_sequence(seed, robots, wheel_command)
+
+
+def run_seed(seed: int, robots: Sequence[str], wheel_command: str = "torque", robot: str = DIFFBOT) -> Outcome:
     """Draws, runs and judges one sequence."""
-    sequence = draw_sequence(seed, robots, wheel_command)
+    sequence = drawn(seed, robots, wheel_command, robot)
     loop = make_loop(sequence)
     log = run_sequence(sequence, loop)
-    found = judge(sequence, log, loop.robot["wheel_base"], loop.period, fastest_rim(loop))
+    found = judge(sequence, log, wheel_base(loop), loop.period, fastest_rim(loop))
     violations = [(violation.rule, str(violation)) for violation in found]
     stops, seconds = causes_in(log["permit_causes"]), len(log["cycle"]) * loop.period
-    return Outcome(seed, sequence.describe(), violations, stops, seconds, wheel_command)
+    return Outcome(seed, sequence.describe(), violations, stops, seconds, wheel_command, robot)
 
 
 def campaign(
-    seeds: Sequence[int], say: Callable[[str], None], runner: Runner | None = None, wheel_command: str = "torque"
+    seeds: Sequence[int],
+    say: Callable[[str], None],
+    runner: Runner | None = None,
+    wheel_command: str = "torque",
+    *,
+    robot: str = DIFFBOT,
 ) -> Tally:
     """Runs all seeds; `say` receives every failure, and the progress."""
     tally = Tally()
     runner = runner or Processes()
-    one = partial(run_seed, robots=robot_names(), wheel_command=wheel_command)
+    one = partial(run_seed, robots=robot_names(), wheel_command=wheel_command, robot=robot)
     for outcome in runner.outcomes(one, seeds, say, chunk=4):
         tally.add(outcome)
         if outcome.violations:
@@ -115,11 +132,17 @@ def result_of(tally: Tally, seconds: float) -> dict[str, Any]:
 
 
 def bench(
-    first: int, runs: int, say: Callable[[str], None], runner: Runner | None = None, wheel_command: str = "torque"
+    first: int,
+    runs: int,
+    say: Callable[[str], None],
+    runner: Runner | None = None,
+    wheel_command: str = "torque",
+    *,
+    robot: str = DIFFBOT,
 ) -> tuple[dict[str, Any], bool]:
     """The result, and whether the robot survived every sequence."""
     began = time.monotonic()
     if runs == 1:
-        say(draw_sequence(first, robot_names(), wheel_command).describe())
-    tally = campaign(range(first, first + runs), say, runner, wheel_command)
+        say(drawn(first, robot_names(), wheel_command, robot).describe())
+    tally = campaign(range(first, first + runs), say, runner, wheel_command, robot=robot)
     return result_of(tally, time.monotonic() - began), not tally.failed

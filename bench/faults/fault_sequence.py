@@ -13,10 +13,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from robot_control.closed_loop import GAITS
 from robot_control.common.signal_names import states
+from robot_control.inspect.description import describe
 
 from bench.faults.random_drive import Leg, draw_drive
-from bench.robot_corpus import DIFFBOT, SCENES
+from bench.robot_corpus import DIFFBOT, QUADBOT, SCENES, urdf_of
 
 COMPONENTS = (
     "left_encoder",
@@ -39,6 +41,8 @@ OWN_SHARE = 0.75  # share of the sequences with the project's own robot
 LINEAR_LIMIT = 1.0  # m/s, max_linear_speed
 ANGULAR_LIMIT = 2.0  # rad/s, max_angular_speed
 BATTERY_VOLTAGE = 24.0  # V
+WALKED_LIMIT = 0.6  # m/s
+TURNED_LIMIT = 1.0  # rad/s, of a walk
 REST_TIME = 5.5  # s; sequence_judge.py says for what it has to suffice
 RELEASE_TIME = 0.8  # s
 
@@ -67,6 +71,7 @@ class FaultSequence:
     faults_end: bool  # before the release
     events: list[Event] = field(default_factory=list)
     wheel_command: str = "torque"  # one of WHEEL_COMMANDS
+    gait: str = ""  # one of GAITS; empty: on wheels
 
     @property
     def rested(self) -> float:
@@ -83,6 +88,7 @@ class FaultSequence:
         events = ", ".join(f"{e.time:.3f} s {e.action} {e.component} {e.kind}".rstrip() for e in self.events)
         silent = "then silence" if self.falls_silent else "then zero"
         drives = "" if self.wheel_command == "torque" else f" with drives of {self.wheel_command}"
+        drives += f" in gait {self.gait}" if self.gait else ""
         return f"{self.robot}{drives} in {self.scene}, driven {self.driven:.2f} s, {silent}: {events or 'no fault'}"
 
 
@@ -107,11 +113,33 @@ def draw_sequence(seed: int, robots: Sequence[str], wheel_command: str = "torque
     )
 
 
-def _faults(random: np.random.Generator, driven: float) -> list[Event]:
+def draw_walk(seed: int) -> FaultSequence:
+    """The sequence of this seed for quadbot, which stands up and walks on flat ground."""
+    random = np.random.default_rng(seed)
+    driven = random.uniform(5.0, 9.0)
+    joints = [joint["name"] for joint in describe(urdf_of(QUADBOT))["joints"]]
+    components = [f"{name}_{part}" for name in joints for part in ("encoder", "motor")]
+    components += [name for name in COMPONENTS if not name.startswith(("left_", "right_"))]
+    events = _faults(random, driven, components) + _operator(random, driven)
+    return FaultSequence(
+        seed=seed,
+        robot=QUADBOT,
+        scene="flat",
+        legs=draw_drive(random, driven, WALKED_LIMIT, TURNED_LIMIT),
+        interval=float(random.choice([0.02, 0.1])),
+        driven=driven,
+        falls_silent=bool(random.random() < 0.5),
+        faults_end=bool(random.random() < 0.5),
+        events=sorted(events, key=lambda event: event.time),
+        gait=str(random.choice(GAITS)),
+    )
+
+
+def _faults(random: np.random.Generator, driven: float, components: Sequence[str] = COMPONENTS) -> list[Event]:
     """0 … 4 faults; every second one ends, after 5 ms … 2 s."""
     events = []
     for _ in range(random.integers(5)):
-        component = str(random.choice(COMPONENTS))
+        component = str(random.choice(components))
         begins = random.uniform(0.3, driven)
         events.append(Event(begins, "inject", component, str(random.choice(KINDS))))
         if random.random() < 0.5:

@@ -19,6 +19,9 @@ GARBAGE_SPEED; the robot need not come to rest. A monitor that errs (garbage, wr
 the rules of the gate alone count: "permit", "machine", that "brake" ends at rest, and "rest" after its recovery. A
 blocked wheel, or a motor with a wrong torque, jolts the robot harder than any brake. Its tilt then does not count. A
 drive that is slow or delayed receives the brake LATE_DRIVE later.
+
+A robot on legs lies down by its brake. It falls, which gives it up to FOLD_MARGIN, and rests after FOLD_TIME. Instead
+of TILT_LIMIT, it must not turn over, OVER_LIMIT. Its brake is a torque, so a motor with a wrong torque has none.
 """
 
 from __future__ import annotations
@@ -52,6 +55,9 @@ SPEED_FACTOR, SPEED_MARGIN = 1.5, 0.7  # 1, m/s: 0.1 s of the strongest drives, 
 GARBAGE_SPEED = 1.0  # m/s
 TILT_LIMIT = np.radians(10)
 HIT_TILT_LIMIT = np.radians(30)  # a light robot that runs into a wall at 1 m/s stands up by 20° and falls back
+FOLD_TIME = 1.8  # s, the 1.5 s of docs/safety.md and the mean
+FOLD_MARGIN = 0.6  # m/s; 0.34 in 60 sequences
+OVER_LIMIT = np.radians(60)
 ICY, DRY = "low_friction_patch", 1.0  # the scene with ice, friction of the others
 GRAVITY_ON_SLOPE = 9.81 * np.sin(np.radians(5))  # m/s²
 
@@ -115,7 +121,8 @@ class _Court:
         tilt = log["truth_tilt"]
         rocks = np.abs(tilt - tilt[np.maximum(np.arange(len(tilt)) - window, 0)]) > ROCKING
         self._standing = (linear + angular * wheel_base / 2 <= STANDING_SPEED) | rocks
-        dead = ("off", "garbage", "intermittent")
+        self._on_legs = bool(sequence.gait)
+        dead = ("off", "garbage", "intermittent", *(["wrong"] if self._on_legs else []))
         self._unbraked = failing(log, "motor", *dead)
         jolts = ("stuck", "wrong", "garbage")
         self._jolted = failing(log, "motor", *jolts)
@@ -154,12 +161,13 @@ class _Court:
             start = min(stop - 1, start + round(LATE_DRIVE / self._period))
         speed = self._speed[start:stop]
         spun = float(np.max(speed[: max(1, round(SPIN_TIME / self._period))]))
-        growing = np.flatnonzero(speed > spun + BRAKE_MARGIN)
+        growing = np.flatnonzero(speed > spun + (FOLD_MARGIN if self._on_legs else BRAKE_MARGIN))
         if growing.size and not self._monitor_errs[:start].any():
             row = start + int(growing[0])
             yield self._violation("brake", row, f"{spun:.3f} m/s grew to {self._speed[row]:.3f} m/s")
         slows_down = stop_deceleration_of(self._sequence.robot, ICE if self._sequence.scene == ICY else DRY)
-        deadline = round((STOP_TIME + spun / slows_down) / self._period)
+        stop_time = FOLD_TIME if self._on_legs else STOP_TIME
+        deadline = round((stop_time + spun / slows_down) / self._period)
         late = np.flatnonzero(~self._standing[start:stop][deadline:])
         if late.size:
             row = start + deadline + int(late[0])
@@ -210,7 +218,8 @@ class _Court:
     def tilt(self) -> Iterator[Violation]:
         """The robot stays upright, unless a motor jolted it."""
         tilt = self._log["truth_tilt"]
-        limit = HIT_TILT_LIMIT if self._sequence.scene in ("walls", "bumps") else TILT_LIMIT
+        on_wheels = HIT_TILT_LIMIT if self._sequence.scene in ("walls", "bumps") else TILT_LIMIT
+        limit = OVER_LIMIT if self._on_legs else on_wheels
         for row in np.flatnonzero((tilt > limit) & ~np.logical_or.accumulate(self._jolted | self._monitor_errs)):
             yield self._violation("tilt", row, f"leans by {np.degrees(tilt[row]):.1f}°")
 

@@ -57,6 +57,8 @@ def make_loop(sequence: FaultSequence) -> ClosedLoop:
 def run_sequence(sequence: FaultSequence, loop: ClosedLoop) -> Log:
     """The log's `COLUMNS` and those of each joint, one value per cycle from the first to the last."""
     player = _Player(sequence, loop)
+    if sequence.gait:
+        loop.set_gait(sequence.gait)
     for event in sequence.events:
         player.run_until(event.time)
         player.act(event)

@@ -9,7 +9,7 @@ from robot_control import ClosedLoop
 from robot_control.common.signal_names import number_of
 
 from bench.faults.campaign import campaign, run_seed
-from bench.faults.fault_sequence import ALL_RUNS, FaultSequence, draw_sequence
+from bench.faults.fault_sequence import ALL_RUNS, FaultSequence, draw_sequence, draw_walk
 from bench.faults.random_drive import Leg
 from bench.faults.sequence_judge import RULES, judge
 from bench.faults.sequence_run import COLUMNS
@@ -166,3 +166,11 @@ def test_a_robot_that_spins_on_ice_slows_down_as_expected_of_it(robot):
 
 def test_every_rule_was_broken_above():
     assert set(RULES) == {"permit", "brake", "speed", "rest", "release", "tilt", "machine"}
+
+
+def test_a_quadruped_that_walks_survives_its_sequences_too():
+    lines = []
+    tally = campaign(range(3), lines.append, robot="quadbot")
+    assert tally.runs == 3
+    assert not tally.failed, "\n".join(lines)
+    assert draw_walk(0) == draw_walk(0) != draw_walk(1)

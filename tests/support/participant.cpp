@@ -2,9 +2,9 @@
 ///
 ///   rc_participant NODE --bus NAME --params YAML [--set path=value]… [--seconds S]
 ///
-/// NODE: mujoco_plant, free_wheels (free_wheels.h), state_estimator, diff_drive_controller, safety_monitor, telemetry.
-/// It ends on SIGTERM or SIGINT, after S seconds, or, as the plant, after mujoco_plant.cycles. At each SIGUSR1 the
-/// controller takes another speed limit over. Exit code 1: refused, reason on stderr.
+/// NODE: mujoco_plant, free_wheels (free_wheels.h), state_estimator, safety_monitor, telemetry, or the controller of
+/// the robot's kind. It ends on SIGTERM or SIGINT, after S seconds, or, as the plant, after mujoco_plant.cycles. At
+/// each SIGUSR1 the controller takes another speed limit over, on wheels. Exit code 1: refused, reason on stderr.
 
 #include <array>
 #include <atomic>
@@ -22,12 +22,14 @@
 #include "loop/processes/estimator_process.h"
 #include "loop/processes/monitor_process.h"
 #include "loop/processes/telemetry_process.h"
-#include "robots/differential_drive.h"
+#include "machine/wheeled/drive_train.h"
+#include "robots/robot_kind.h"
 #include "rt/clock.h"
 #include "rt/crash_report.h"
 #include "rt/futex.h"
 #include "rt/realtime_thread.h"
 #include "rt/thread_priority.h"
+#include "signals/robot_kinds.h"
 #include "support/free_wheels.h"
 
 namespace robot_control {
@@ -107,7 +109,8 @@ void run_telemetry(TelemetryProcess& telemetry, double seconds) {
 
 void participate(const Arguments& arguments) {
   const Parameters parameters = read_parameters(arguments.params, arguments.overlays);
-  const DifferentialDrive robot(parameters, read_drive_train(load_description(parameters.urdf), parameters.robot));
+  const std::unique_ptr<const Robot> composed = make_robot(parameters);
+  const Robot& robot = *composed;
   const LoopParameters& loop = parameters.loop;
   install_crash_report(arguments.node, "the motors brake without it");
   prepare_process(loop.clock == ClockMode::kWall ? loop.realtime : RealtimePolicy::kOff);
@@ -117,16 +120,16 @@ void participate(const Arguments& arguments) {
     run_process(driver, arguments.seconds);
   } else if (arguments.node == "free_wheels") {
     DriverProcess driver(parameters, robot, arguments.bus);
-    driver.open_driver(std::make_unique<FreeWheels>(robot.machine(), robot.brakes(), loop.period()));
+    driver.open_driver(std::make_unique<FreeWheels>(drive_train_of(robot.machine()), robot.brakes(), loop.period()));
     run_process(driver, arguments.seconds);
   } else if (arguments.node == "state_estimator") {
     EstimatorProcess estimator(parameters, robot, arguments.bus);
     run_process(estimator, arguments.seconds);
-  } else if (arguments.node == "diff_drive_controller") {
+  } else if (arguments.node == names_of_kind(robot.kind()).controller) {
     ControllerProcess controller(parameters, robot, arguments.bus);
     run_process(controller, arguments.seconds, [&controller, taken = 0]() mutable {
       constexpr std::array kLimits = {"0.5", "0.7", "1.0"};  // m/s
-      for (; taken < tunings.load(); ++taken) {
+      for (; controller.retuner() != nullptr && taken < tunings.load(); ++taken) {
         controller.retuner()->set(std::string("{max_linear_speed: ") + kLimits[taken % kLimits.size()] + "}");
       }
     });

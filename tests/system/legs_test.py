@@ -87,9 +87,10 @@ class LegsTest(LegsTestCase):
         # An e-stop folds the legs; a request from before it, or during it, moves nothing after the reset.
         self.assertTrue(rospy.ServiceProxy("e_stop_trigger", Trigger)().success)
         wait_for("a lying robot", lambda: abs(self.height() - lying) < 0.03 and self.legs.posture == "lying")
-        accepted, text = self.set_posture("standing")
-        self.assertFalse(accepted)
-        self.assertIn("e_stop_reset", text)
+        for posture in ("standing", "lying"):
+            accepted, text = self.set_posture(posture)
+            self.assertFalse(accepted)
+            self.assertIn("e_stop_reset", text)
 
         def reset() -> bool:
             return bool(rospy.ServiceProxy("e_stop_reset", Trigger)().success)

@@ -136,6 +136,40 @@ void disturbances(const LegModel& model, std::uint64_t seed, WorstValues& worst)
   disturbed(model, usual, "masses 5 % more", worst, 1.05);
 }
 
+void push_limits(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
+  constexpr int kDirections = 8, kPhases = 24, kSteps = 10;
+  constexpr double kStep = 5, kDuration = 0.1;  // N·s on a robot of 12.7 kg, s
+  struct Walk {
+    GaitName gait;
+    double speed;  // m/s
+  };
+  for (const Walk& each : {Walk{GaitName::kTrot, 0.3}, Walk{GaitName::kTrot, 1.0}, Walk{GaitName::kWalkingTrot, 0.3},
+                           Walk{GaitName::kCrawl, 0.15}}) {
+    const Gait gait = kGaits[static_cast<std::size_t>(each.gait)].scaled(model.leg_length());
+    Request walk = trot(each.speed);
+    walk.mode = kStanceGait + static_cast<std::uint64_t>(each.gait);
+    for (int i = 0; i < kDirections; ++i) {
+      Parameters parameters = walking_parameters(seed);
+      parameters.plant.push_start = kBegin + gait.period * static_cast<double>(seed % kPhases) / kPhases;
+      parameters.plant.push_duration = kDuration;
+      const double direction = 2 * kPi * i / kDirections, step = kStep * model.mass / 12.7;
+      double taken = 0;
+      for (int k = 1; k <= kSteps; ++k) {
+        parameters.plant.push_x = k * step / kDuration * std::cos(direction);
+        parameters.plant.push_y = k * step / kDuration * std::sin(direction);
+        QuadrupedLoop robot(model, parameters);
+        robot.wait(0.3);
+        robot.run(kBegin + 2.5, walk);
+        if (robot.tilt > kTurnedOver || stopped(robot) != 0) break;
+        taken = k * step;
+      }
+      worst.add_least("push taken, " + std::string(gait.name) + " of " + std::to_string(each.speed).substr(0, 4) +
+                          " m/s, " + std::to_string(45 * i) + " deg",
+                      taken, "N s");
+    }
+  }
+}
+
 void walking_silent(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   constexpr int kLosses = 200, kMin = 5, kMax = 19;  // cycles
   QuadrupedLoop robot(model, walking_parameters(seed));

@@ -59,6 +59,9 @@ void switches(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// or weak, and with masses that are not the described ones. The seed chooses one of 24 phases of the gait for the
 /// push.
 void disturbances(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// The largest push of 0.1 s, in steps of 5 N·s on 12.7 kg, with which and with all smaller ones a robot walks on.
+/// Eight directions, 0° to the front and 90° to the left, for each gait.
+void push_limits(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// A trot of 0.5 m/s with each fault of each encoder, of each motor and of the IMU. The seed chooses one of 20 phases
 /// of the gait. A fault is named if the first cause of the stop comes in time and names its joint, or the IMU.
 void faults(const LegModel& model, std::uint64_t seed, WorstValues& worst);

@@ -105,7 +105,7 @@ void drive(const LegModel& model, const Course& course, std::uint64_t seed, Wors
   const double error = 100 * end.pose.head<2>().norm() / travelled;
   const Vector3d plain = vector_of(beside.state().plain.position) - vector_of(robot.truth().pose_world.position);
   const double plain_error = 100 * plain.head<2>().norm() / travelled;
-  worst.add("error of the way, " + course.name, error, "%");
+  worst.add_p95("error of the way, " + course.name, error, "%");
   worst.add("error of yaw, " + course.name, std::abs(end.pose[5]) * 180 / kPi, "deg");
   worst.add("error of height, " + course.name, std::abs(end.pose[2]), "m");
   worst.add("RMS of the speed, " + course.name, std::sqrt(squares / cycles), "m/s");
@@ -147,8 +147,9 @@ void contact(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
       for (std::size_t leg = 0; leg < kLegs; ++leg) {
         const bool touches = robot.truth().normal_force[leg] > kTouches;
         const bool said = robot.state().contacts[leg].probability >= 0.5;
-        if (touches && air[leg] > kAir) touchdowns += 1, waits[leg] = true, since[leg] = 0;
-        if (waits[leg] && said) found += since[leg] <= kInTime ? 1 : 0, waits[leg] = false;
+        if (touches && air[leg] > kAir) waits[leg] = true, since[leg] = 0;
+        const bool in_time = since[leg] <= kInTime;
+        if (waits[leg] && (said || !in_time)) touchdowns += 1, found += in_time ? 1 : 0, waits[leg] = false;
         since[leg] += 1;
         air[leg] = touches ? 0 : air[leg] + 1;
         const bool swings = air[leg] > kBounce;

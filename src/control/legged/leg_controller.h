@@ -139,6 +139,7 @@ class LegController {
   GaitName choose_gait(const Request& request, const WalkingTwist& twist) noexcept;
   WalkingTwist capable(GaitName now, GaitName wanted) const noexcept;
   bool carries(GaitName gait, const WalkingTwist& twist) const noexcept;
+  double time_scale() const noexcept;
   double pace_of(const WalkingTwist& twist) const noexcept;
   void carry(const Request& request, std::uint64_t& reasons) noexcept;
   void stand_here(const ControlInput& input) noexcept;

@@ -71,7 +71,7 @@ void LegController::walk(const ControlInput& input, const Request& request, Comm
       limiter_.step(state_.twist, target, capable(now, gait), (out.reasons & kEmergencies) != 0, period_, out.reasons);
   carry(request, out.reasons);
   const Vector3& moves = input.state->base.twist_base.linear;
-  const bool slow = std::hypot(moves[0], moves[1]) < kSlow * std::sqrt(walker_.gaits()[1].period / kGaits[1].period);
+  const bool slow = std::hypot(moves[0], moves[1]) < kSlow * time_scale();
   const bool all_down = state_.walk.gait == static_cast<std::uint64_t>(GaitName::kStand);
   state_.idle = !wanted && rests(twist) ? state_.idle + period_ : 0;
   const bool ends = state_.idle > 0 && (all_down || (slow && (placed(input) || state_.idle > kInPlace)));
@@ -88,7 +88,7 @@ void LegController::walk(const ControlInput& input, const Request& request, Comm
   const bool planned = walker_.step(state_.walk, to, out);
   out.twist_limited = {.linear = {twist[0], twist[1], 0}, .angular = {0, 0, twist[2]}};
   for (std::size_t i = 0; i < 3; ++i) out.legged.body[kZ + i] = state_.carried[i].value;
-  if (!planned || (ends && all_down && state_.walk.stood > kAllDown)) stand_here(input);
+  if (!planned || (ends && all_down && state_.walk.lasted > kAllDown)) stand_here(input);
 }
 
 /// Returns true if all feet are so near to their nominal places that the robot can lie down.
@@ -105,8 +105,8 @@ GaitName LegController::choose_gait(const Request& request, const WalkingTwist& 
     state_.gait = std::min<std::uint64_t>(request.mode - kStanceGait, kGaits.size() - 1);
   } else if (!rests(target)) {
     const auto& now = state_.twist.axes;
-    const double fastest = std::max(pace_of(target), pace_of({now[0].speed, now[1].speed, now[2].speed})) /
-                           (walker_.gaits()[kTrot].period / kGaits[kTrot].period);
+    const double fastest =
+        std::max(pace_of(target), pace_of({now[0].speed, now[1].speed, now[2].speed})) / time_scale();
     const bool trots = fastest >= (state_.gait == kTrot ? kTrotUntil : kTrotFrom);
     state_.gait = trots ? kTrot : static_cast<std::uint64_t>(GaitName::kWalkingTrot);
   } else if (state_.gait == 0) {
@@ -131,6 +131,11 @@ bool LegController::carries(GaitName gait, const WalkingTwist& twist) const noex
   for (std::size_t i = 0; i < twist.size(); ++i)
     used += std::abs(twist[i]) / fastest_[static_cast<std::size_t>(gait)][i];
   return used <= 1 + kRounding;
+}
+
+/// Returns √(l / kReferenceLeg): times and speeds of robots of equal Froude number are as these.
+double LegController::time_scale() const noexcept {
+  return walker_.gaits()[1].period / kGaits[1].period;
 }
 
 /// Returns the speed of the fastest foot under the body in m/s.

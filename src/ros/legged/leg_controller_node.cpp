@@ -300,10 +300,10 @@ class LegControllerNode final : public CommandedNode {
              "/set_pause with false first";
     CommandFrame command;
     for (std::int64_t waited_ns = 0; waited_ns < kBeginWait; waited_ns += kRepeat) {
-      if (process().output().newest(command) == Lookup::kFrame && process().is_current(command.head) &&
-          (command.reasons & kReasonNoPermit) == 0 && begun(mode, command.legged.phase))
-        return "";
       if (std::string problem = refusal_of_permission(); !problem.empty()) return problem;
+      if (process().output().newest(command) == Lookup::kFrame && process().is_current(command.head) &&
+          (command.reasons & (kReasonNoPermit | kReasonPermitBrake)) == 0 && begun(mode, command.legged.phase))
+        return "";
       {
         const std::lock_guard lock(input_mutex_);
         end_trajectory("set_posture was called");

@@ -338,7 +338,7 @@ TEST_F(WalkerLaws, PlansEveryTenCyclesAndWhereOtherFeetBear) {
 TEST_F(WalkerLaws, AStandingRobotWalksAtOnceAndCountsHowLongItStands) {
   input.gait = GaitName::kStand;
   for (int i = 0; i < 3; ++i) step();
-  EXPECT_NEAR(state.stood, 3 * kMillisecond, kExact);
+  EXPECT_NEAR(state.lasted, 3 * kMillisecond, kExact);
   EXPECT_EQ(state.gait, 0u);
   for (const double stance_part : out.legged.stance) EXPECT_EQ(stance_part, 0.5);
   input.gait = GaitName::kTrot;
@@ -352,6 +352,7 @@ TEST_F(WalkerLaws, ThePhaseGrowsByACycleOfThePeriodAndAnotherGaitBeginsWhereItWr
     choose(next == GaitName::kTrot ? 1 : 0);
     const auto now = state.gait;
     const double cycle = kMillisecond / gait().period;
+    state.lasted = gait().period;
     state.phase = 0.9 - cycle / 2;
     ASSERT_NE(now, static_cast<std::uint64_t>(next));
     input.gait = next;
@@ -364,6 +365,20 @@ TEST_F(WalkerLaws, ThePhaseGrowsByACycleOfThePeriodAndAnotherGaitBeginsWhereItWr
     EXPECT_LT(state.phase, cycle);
     EXPECT_EQ(state.gait, static_cast<std::uint64_t>(next));
   }
+}
+
+TEST_F(WalkerLaws, AGaitLastsForAPeriodBeforeAnotherBegins) {
+  choose(0);
+  state.gait = static_cast<std::uint64_t>(GaitName::kCrawl);
+  state.phase = gait().begin;
+  state.lasted = 0;
+  const auto now = state.gait;
+  const double until_wrap = (1 - gait().begin) * gait().period, period = gait().period;
+  input.gait = GaitName::kTrot;
+  int cycles = 0;
+  for (; state.gait == now && cycles < 3000; ++cycles) step();
+  EXPECT_NEAR(cycles * kMillisecond, until_wrap + period, 2 * kMillisecond);
+  EXPECT_EQ(state.lasted, 0);
 }
 
 /// A foot is near where it left the ground within one and a half cycles of its swing.
@@ -390,7 +405,7 @@ TEST_F(WalkerLaws, EndsInTheFirstCycleInWhichNoFootIsFarFromWhereItLeftTheGround
     EXPECT_LT(farthest(phase), 1.5 * kMillisecond + kExact);
     EXPECT_EQ(state.gait, static_cast<std::uint64_t>(GaitName::kStand)) << cycles;
     EXPECT_EQ(state.phase, 0);
-    EXPECT_EQ(state.stood, 0);
+    EXPECT_EQ(state.lasted, 0);
     EXPECT_EQ(state.ahead, (std::array<double, 3>{}));
     for (const std::uint64_t bears : state.bears) EXPECT_EQ(bears, 1u);
   }

@@ -60,6 +60,7 @@ TEST_F(WalkerTest, KeepsTheLastForcesForThreePlansThatFailAndSaysSo) {
 TEST_F(WalkerTest, AFootThatIsInTheAirWhenTheGaitChangesSwingsOnFromWhereItIs) {
   state.gait = static_cast<std::uint64_t>(GaitName::kCrawl);
   state.phase = 1 - 1e-9;
+  state.lasted = walker.gaits()[static_cast<std::size_t>(GaitName::kCrawl)].period;
   state.swings[0] = 1;
   state.bears[0] = 0;
   state.bore[0] = {-0.3, 0, 0};

@@ -169,11 +169,12 @@ Eigen::Vector3d Walker::fit_ground(const State& state) const noexcept {
 void Walker::turn_clock(State& state, GaitName wanted) const noexcept {
   const auto next = static_cast<std::uint64_t>(wanted);
   const Gait& gait = this->gait(state);
+  state.lasted += period_;
   if (gait.duty >= 1) {
-    state.stood += period_;
     if (wanted == GaitName::kStand) return;
     state.gait = next;
     state.phase = gaits_[next].begin;
+    state.lasted = 0;
     return;
   }
   const double step = period_ / gait.period;
@@ -183,15 +184,14 @@ void Walker::turn_clock(State& state, GaitName wanted) const noexcept {
   double farthest = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) farthest = std::max(farthest, gait.swung(leg, state.phase));
   const bool ends = wanted == GaitName::kStand && farthest * (1 - gait.duty) < 1.5 * step;
-  if (!ends && !(wraps && wanted != GaitName::kStand)) return;
-  if (state.gait != next) {
-    state.swings = {};  // a foot that then swings begins where it is, in the air or not
-    state.phase = gaits_[next].begin;
-  }
+  const bool changes =
+      wraps && state.gait != next && wanted != GaitName::kStand && state.lasted > gait.period - period_;
+  if (!ends && !changes) return;
+  state.swings = {};  // a foot that then swings begins where it is, in the air or not
   state.gait = next;
-  if (!ends) return;
-  state.phase = state.stood = 0;
-  state.ahead = {};
+  state.phase = gaits_[next].begin;
+  state.lasted = 0;
+  if (ends) state.ahead = {};
 }
 
 /// Returns true if other feet bear than before.

@@ -3,9 +3,10 @@
 ///
 /// The level axes have the body's heading and a vertical z; their origin is that of the base.
 ///
-///   clock     the gait's phase says which feet bear (gait.h). Another gait begins where the phase wraps. A foot
-///             that then swings begins its swing where it is. A walk ends in
-///             a cycle in which no foot is far from where it left the ground
+///   clock     the gait's phase says which feet bear (gait.h). Another gait begins where the phase wraps, after a whole
+///             period of this one: until then, its feet stand where the last gait put them. A foot that then swings
+///             begins its swing where it is. A walk ends in a cycle in which no foot is far from where it left the
+///             ground
 ///   contact   a foot that meets the ground in the second half of its swing bears from then on. A foot that is late is
 ///             pushed down by the force that it is to bear
 ///   ground    is the plane through the places where the feet bore last. So a foot lands where the others stand, whatever
@@ -69,7 +70,7 @@ class Walker {
   struct State {
     std::uint64_t gait = 0;  ///< GaitName
     double phase = 0;
-    double stood = 0;                           ///< s since all feet stand
+    double lasted = 0;                          ///< s since this gait began
     std::array<std::uint64_t, kLegs> bears{};   ///< 1: its force is planned
     std::array<std::uint64_t, kLegs> swings{};  ///< 1: by the clock
     std::array<double, kLegs> touched{};        ///< s for which a contact is probable
