@@ -1,8 +1,8 @@
 """Robots of like shape walk alike, whatever their size: no law of legs has a length or a mass of its own."""
 
-import xml.etree.ElementTree as ElementTree
 from math import sqrt
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from robot_control import ClosedLoop

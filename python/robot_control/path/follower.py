@@ -158,13 +158,12 @@ class Follower:
         """
         if not all(map(math.isfinite, (pose.x, pose.y, pose.yaw, measured.linear, measured.angular))):
             self.fail("the odometry holds a number that is not finite")
-        steered = min(elapsed, PERIOD)
-        moved = Motion(measured.linear * steered, measured.angular * steered)
+        moved = STAND
         if not self.over:
             if self._last is None:
                 self._begin(pose)
             else:
-                moved = self._moved(*self._last, pose, measured, moved, elapsed)
+                moved = self._moved(*self._last, pose, measured, elapsed)
             self._last = pose, measured
         if self.over or self._state is State.PAUSED:
             return STAND
@@ -172,10 +171,8 @@ class Follower:
             return self._turn(pose, measured, moved.angular)
         return self._drive(pose, measured, limit, moved.linear)
 
-    def _moved(
-        self, last: Pose, before: Motion, pose: Pose, measured: Motion, moved: Motion, elapsed: float
-    ) -> Motion:
-        """m, rad since the last message, at most `moved`. A jump beyond what the faster speed allows ends the path."""
+    def _moved(self, last: Pose, before: Motion, pose: Pose, measured: Motion, elapsed: float) -> Motion:
+        """m, rad since the last message. A jump beyond what the faster speed of both allows ends the path."""
         given = self._parameters
         distance = math.dist((last.x, last.y), (pose.x, pose.y))
         angle = abs(turned(pose.yaw - last.yaw))
@@ -183,8 +180,10 @@ class Follower:
             self.fail(f"the pose jumped by {distance:.2f} m in {elapsed:.2f} s: {JUMPED}")
         elif angle > max(abs(before.angular), abs(measured.angular)) * elapsed + given.heading_jump:
             self.fail(f"the pose jumped by {math.degrees(angle):.0f} deg in {elapsed:.2f} s: {JUMPED}")
-        driven = min(abs(moved.linear), max(distance, (1 - given.speed_error) * abs(moved.linear)))
-        return Motion(math.copysign(driven, moved.linear), moved.angular)
+        steered = min(elapsed, PERIOD)
+        driven = abs(measured.linear) * steered
+        driven = min(driven, max(distance, (1 - given.speed_error) * driven))
+        return Motion(math.copysign(driven, measured.linear), measured.angular * steered)
 
     def _begin(self, pose: Pose) -> None:
         first = self._route.pieces[0]
