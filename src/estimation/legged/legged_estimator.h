@@ -2,19 +2,17 @@
 /// Estimates the state of a robot on legs from joints, IMU, foot sensors and what was asked of its feet. It owns the
 /// state.
 ///
-/// contacts   foot_contacts.h: what each foot bears, and how probably
-/// rest       nothing moves: joints slower than kStill in the mean over kMeanTime, a gyro within kStill about it, for
-/// kRest filter     leg_filter.h: feet that bear are landmarks. At rest the gyro measures its bias, and the velocity is
-/// zero.
-/// A
-///            robot whose feet neither bear nor are asked to lies, or falls on its body: its velocity vanishes
-/// plain      plain_legs.h. Where both velocities differ by more than kApart for kApartTime, the filter begins again
-/// with
-///            roll, pitch and velocity of the plain estimate, and the state is degraded for kDegraded
-/// height     the ground is level where the robot lies: feet that bear after it lay stand where the first ones of the
-/// run
-///            stood. While nothing moves and no foot bears, it lies, at zero. A restarted estimator takes its belly's
-///            height
+///   contacts   foot_contacts.h: what each foot bears, and how probably
+///   rest       nothing moves: joints slower than kStill in the mean over kMeanTime, and a gyro within kStill about it,
+///              for kRest
+///   filter     leg_filter.h: feet that bear are landmarks. At rest the gyro measures its bias, and the velocity is
+///              zero. A robot whose feet neither bear nor are asked to lies, or falls on its body: its velocity
+///              vanishes
+///   plain      plain_legs.h. Where both velocities differ by more than kApart for kApartTime, the filter begins again
+///              with roll, pitch and velocity of the plain estimate, and the state is degraded for kDegraded
+///   height     the ground is level where the robot lies: feet that bear after it lay stand where the first ones of the
+///              run stood. While nothing moves and no foot bears, it lies, at zero. A restarted estimator takes its
+///              belly's height
 ///
 /// The pose begins at zero. A contact's slip is the speed of its foot over the ground.
 
