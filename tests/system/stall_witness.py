@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """A process that measures its own gaps, as an independent witness that this machine stood still.
 
-As a program, `stall_witness.py SHORTEST PRIORITY CORE…`, it wakes up again and again on each of these cores.
+As a program, `stall_witness.py PARENT SHORTEST PRIORITY CORE…`, it wakes up again and again on each of these cores.
 A program on another core does not notice that one is taken away. It runs under SCHED_FIFO if the priority is above 0.
-It prints the end and the length (s) of each gap of at least SHORTEST, until its parent ends. Shorter gaps of at
-least a quarter of that are printed as one of a second if they take a quarter of it.
+It prints the end and the length (s) of each gap of at least SHORTEST, until the process PARENT ends. Shorter gaps of
+at least a quarter of that are printed as one of a second if they take a quarter of it.
 """
 
 import contextlib
@@ -25,7 +25,7 @@ class StallWitness:
         """`shortest`: s, of the gaps that count; `cores`: all on which this process may run if None."""
         self._output = tempfile.NamedTemporaryFile(prefix="stall_witness-", suffix=".log")
         cores = os.sched_getaffinity(0) if cores is None else cores
-        command = [sys.executable, __file__, str(shortest), str(priority), *map(str, cores)]
+        command = [sys.executable, __file__, *map(str, (os.getpid(), shortest, priority, *cores))]
         self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=self._output)
 
     def saw(self, begin: float, end: float) -> bool:
@@ -62,8 +62,7 @@ def watch(core: int, priority: int, shortest: float) -> None:
 
 def main() -> None:
     """Entry point of the program."""
-    shortest, priority, *cores = map(float, sys.argv[1:])
-    parent = os.getppid()
+    parent, shortest, priority, *cores = map(float, sys.argv[1:])
     for core in cores:
         threading.Thread(target=watch, args=(int(core), int(priority), shortest), daemon=True).start()
     while os.getppid() == parent:
