@@ -13,7 +13,7 @@ constexpr double kResponse = 0.05;  // s
 constexpr double kTop = 5;          // rad/s, at the end of the ramp
 constexpr double kRamp = 10;        // rad/s²
 
-/// What the ramp gains in two periods and a half, by kTop: the ramp ends, and the drive acts, once in a period.
+/// This is what the ramp gains in two periods and a half, by kTop: the ramp ends, and the drive acts, once in a period.
 constexpr double kPeriods = 2.5 * kRamp * kLeadPeriod / kTop;
 
 /// A drive with the integral time 4 · kResponse, whose gains are those of kResponse times `gain`. Returns by how much

@@ -4,7 +4,7 @@
 ///
 /// `read` takes the bytes, and then reports state, joints and link. Samples have their own time, and their velocity
 /// brings them to the time of `read`. The first fault stays until the operator's reset. A board that restarts counts
-/// from zero, so what a wheel travels during a fault is unknown: each joint then carries the cause as its fault word.
+/// from zero, so what a wheel travels during a fault is unknown. Each joint then carries the cause as its fault word.
 
 #include <algorithm>
 #include <cmath>
