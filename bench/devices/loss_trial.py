@@ -42,8 +42,8 @@ EVERY_DIALECT = {  # s, by the driver's own promises: 20 missing samples, or a h
     "encoder": 0.15,
     "under_voltage": 0.15,
 }
-VESC = {CABLE: 0.025, "off": 0.025, "reset": 0.025, "other_zero": 0.005, "encoder": 1.0, "under_voltage": 0.15}
-"""s; a release shows as soon as the order needs a current, and one without a lasting cause ends after 0.5 s"""
+VESC = {CABLE: 0.025, "off": 0.025, "reset": 0.025, "other_zero": 0.005, "under_voltage": 0.15}
+"""s; a release shows as soon as the order needs a current, which that of an even drive does not"""
 LATEST = {"odrive": EVERY_DIALECT, "cia402": EVERY_DIALECT, "vesc": VESC}
 DIALECTS = tuple(LATEST)
 SERIAL_LATEST = {

@@ -80,7 +80,9 @@ void VescDrive::receive_position(const Status5& status, std::int64_t now_ns) noe
     position_ns_ = now_ns;
   }
   const double travel = velocity_ * 1.0e-9 * static_cast<double>(now_ns - position_ns_);
-  position_ = std::clamp(position_ + travel, measured - count_ / 2, measured + count_ / 2);
+  position_ += travel;
+  const double beyond = position_ - std::clamp(position_, measured - count_ / 2, measured + count_ / 2);
+  position_ -= (std::abs(beyond) > count_ ? 1 : kCorrected) * beyond;
   position_ns_ = now_ns;
   accept_position(position_, velocity_, now_ns);
   compared_travel_ += travel;

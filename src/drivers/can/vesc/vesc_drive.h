@@ -7,8 +7,9 @@
 /// It cannot be asked for its configuration: what it does on silence is stated in the drive file.
 ///
 /// The tachometer has few counts: 6 per electrical turn. Between two counts the position follows the speed that the
-/// drive reports, within half a count of the tachometer. Way and speed are compared every kComparedCounts: a drive
-/// whose tachometer has another unit is refused.
+/// drive reports. Each message corrects kCorrected of what the position lies beyond half a count of the tachometer, and
+/// all of it if it is more than a count. All of it in each case would make a step of the speed of each message that is
+/// late by 1 ms. Way and speed are compared every kComparedCounts: a drive whose tachometer has another unit is refused.
 ///
 /// The fault codes of a VESC are not on CAN. So a drive that gives no current for kReleasedNs is in fault where its
 /// order needs one. Such an order is a current of at least kMinCurrent below the velocity limit, or a speed that is off
@@ -27,6 +28,7 @@ class VescDrive final : public Drive {
  public:
   static constexpr double kComparedCounts = 60;
   static constexpr double kUnitTolerance = 0.25;
+  static constexpr double kCorrected = 0.05;
   static constexpr std::int64_t kReleasedNs = 100'000'000;
   static constexpr double kMinCurrent = 0.5;  ///< A; ten times the current below which the firmware gives none
   static constexpr double kNoCurrent = 0.1;   ///< A, one step of the message
