@@ -7,9 +7,10 @@
 /// It cannot be asked for its configuration: what it does on silence is stated in the drive file.
 ///
 /// The tachometer has few counts: 6 per electrical turn. Between two counts the position follows the speed that the
-/// drive reports. Each message corrects kCorrected of what the position lies beyond half a count of the tachometer, and
-/// all of it if it is more than a count. All of it in each case would make a step of the speed of each message that is
-/// late by 1 ms. Way and speed are compared every kComparedCounts: a drive whose tachometer has another unit is refused.
+/// drive reports. Each message corrects kCorrected of what it lies beyond half a count of the tachometer. More than a
+/// count is corrected at once. Without that share, each message that is late by 1 ms would be a step of the speed.
+///
+/// Way and speed are compared every kComparedCounts: a drive whose tachometer has another unit is refused.
 ///
 /// The fault codes of a VESC are not on CAN. So a drive that gives no current for kReleasedNs is in fault where its
 /// order needs one. Such an order is a current of at least kMinCurrent below the velocity limit, or a speed that is off
