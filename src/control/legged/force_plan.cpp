@@ -27,7 +27,7 @@ double bearing(const std::array<bool, kLegs>& legs) noexcept {
 }  // namespace
 
 ForcePlanParameters force_plan_parameters(double mass, const Eigen::Matrix3d& inertia, double leg_length) noexcept {
-  const double length = leg_length / kReferenceLeg, heaviness = mass / 12.7;
+  const double length = leg_length / kReferenceLeg, heaviness = mass / kReferenceMass;
   ForcePlanParameters parameters{.mass = mass, .inertia = inertia, .horizon = 0.3 * std::sqrt(length)};
   const double place = 1 / (length * length), turning = length, moving = 1 / length;
   parameters.place_weight << 4, 4, 10, 6 * place, 6 * place, 50 * place;

@@ -18,8 +18,6 @@
 
 namespace robot_control {
 
-inline constexpr double kReferenceLeg = 0.426;  ///< m
-
 struct Gait {
   const char* name;
   double period;                    ///< s

@@ -6,9 +6,9 @@
 
 namespace robot_control {
 
-// These are the values of a robot of 12.7 kg with legs of 0.426 m.
+// These are the values of a robot of kReferenceMass with legs of kReferenceLeg.
 LegTuning leg_tuning(const LegModel& robot) noexcept {
-  const double length = robot.leg_length() / 0.426, mass = robot.mass / 12.7;
+  const double length = robot.leg_length() / kReferenceLeg, mass = robot.mass / kReferenceMass;
   const double time = std::sqrt(length);
   LegTuning tuning;
   tuning.stiffness = 60 * mass * length;

@@ -165,7 +165,7 @@ double LegModel::leg_length() const noexcept {
 }
 
 double usual_rotor_inertia(double mass, double leg_length) noexcept {
-  return 0.01 * mass / 12.7 * leg_length * leg_length / (0.426 * 0.426);
+  return 0.01 * mass / kReferenceMass * leg_length * leg_length / (kReferenceLeg * kReferenceLeg);
 }
 
 const LegModel& leg_model_of(const MachineModel& machine) {

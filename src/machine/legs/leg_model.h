@@ -48,6 +48,9 @@ struct LegModel : MachineModel {
   double leg_length() const noexcept;
 };
 
+inline constexpr double kReferenceMass = 12.7;  ///< kg, of the robot whose values others get in proportion
+inline constexpr double kReferenceLeg = 0.426;  ///< m, likewise
+
 /// Returns the rotor inertia of a joint, in kg·m², of a robot of this mass (kg) with legs of this length (m). Robots of
 /// like shape have one in proportion to mass · length². The published 0.01 of Go1, A1 and Go2 and 0.011 of Barkour
 /// (MuJoCo Menagerie) belong to 13 … 16 kg and legs of 0.4 m.
