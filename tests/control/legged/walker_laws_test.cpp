@@ -475,6 +475,7 @@ TEST_F(WalkerLaws, AFootThatStandsBearsItsForceUnlessAJointIsTooWeak) {
   int weak = 0, strong = 0, overloaded = 0;
   for (const double limit : {1000.0, 6.0, 0.3}) {
     for (JointModel& joint : robot.joints) joint.effort_limit = limit;
+    stance = nominal_stance(robot);  // weak knees stand higher
     walker = Walker(robot, kMu, kMillisecond);
     for (unsigned seed = 0; seed < kRandomStates; ++seed) {
       choose(seed);
@@ -513,6 +514,7 @@ TEST_F(WalkerLaws, AFootInTheAirFollowsItsPathToTheFoothold) {
   unsigned swinging = 0;
   for (const double limit : {1000.0, 0.3}) {
     for (JointModel& joint : robot.joints) joint.effort_limit = limit;
+    stance = nominal_stance(robot);  // weak knees stand higher
     walker = Walker(robot, kMu, kMillisecond);
     for (unsigned seed = 0; seed < kRandomStates; ++seed) {
       choose(seed);
@@ -522,11 +524,12 @@ TEST_F(WalkerLaws, AFootInTheAirFollowsItsPathToTheFoothold) {
       const Eigen::Matrix3d back = turned.transpose();
       for (std::size_t leg = 0; leg < kLegs; ++leg) {
         if (state.bears[leg] != 0) continue;
-        ++swinging;
         const Eigen::Vector3d from = vector(state.bore[leg]), to = landing(leg);
         const double top = std::max(from.z(), to.z()) + gait().lift;
         const double part = (gait().leg_phase(leg, state.phase) - gait().duty) / (1 - gait().duty);
         const SwingPoint point = swing_point(from, to, top, part, gait().swing_time());
+        if (robot.legs[leg].kinematics.inverse(back * point.place).reach != FootReach::kReached) continue;
+        ++swinging;
         const JointCommand* joint = &out.joints[kLegJoints * leg];
         const LegAngles commanded(joint[0].position, joint[1].position, joint[2].position);
         Eigen::Vector3d place;

@@ -15,7 +15,7 @@ namespace {
 constexpr double kFound = 0.015;  // of a speed: it is found by bisection, and at some places of a swing alone
 
 /// Returns the largest share of its speed limit that a joint has while the foot follows `path`, of 0 … 1, for `time` s.
-/// It is infinite where the leg ends.
+/// It is infinite where the leg is too straight.
 template <class Path>
 double fastest_joint(const LegModel& robot, std::size_t leg, double time, const Path& path) {
   constexpr int kSteps = 200;
@@ -23,7 +23,9 @@ double fastest_joint(const LegModel& robot, std::size_t leg, double time, const 
   LegAngles before;
   for (int k = 0; k <= kSteps; ++k) {
     const LegSolution solution = robot.legs[leg].kinematics.inverse(path(static_cast<double>(k) / kSteps));
-    if (solution.reach != FootReach::kReached) return std::numeric_limits<double>::infinity();
+    const LegKinematics& leg_at = robot.legs[leg].kinematics;
+    if (solution.reach != FootReach::kReached || leg_at.stretch(solution.angles) > kOfLength * leg_at.length())
+      return std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; k > 0 && i < kLegJoints; ++i) {
       const auto axis = static_cast<Eigen::Index>(i);
       const double rate = std::abs(solution.angles[axis] - before[axis]) * kSteps / time;

@@ -27,6 +27,7 @@ double needed_at(const LegModel& robot, std::size_t leg, const Eigen::Vector3d& 
   const LegKinematics& kinematics = robot.legs[leg].kinematics;
   const LegSolution solution = kinematics.inverse(place);
   if (solution.reach != FootReach::kReached) return kOutOfReach;
+  if (kinematics.stretch(solution.angles) > kOfLength * kinematics.length()) return kOutOfReach;
   Eigen::Vector3d foot;
   const Eigen::Matrix3d inverse = kinematics.jacobian(solution.angles, foot).inverse();
   const Eigen::Vector3d rates = inverse * velocity;

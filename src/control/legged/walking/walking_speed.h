@@ -3,10 +3,11 @@
 ///
 ///   gait   that of gait.h, scaled. Its lift is lower where a step in place would need more than kOfLift of the speed
 ///          limit of a joint
-///   speed  the largest one of the body at which each foot stays within the reach of its leg, and each joint within
-///          kOfJointSpeed of its speed limit, during stance and swing (swing.h). That holds for a steady walk, and for
-///          the first stance after a change of gaits: a foot that ended a stance may have to bear for a whole one. The
-///          slower gait of a change bounds its speed
+///   speed  the largest one of the body at which each leg stretches to at most kOfLength of its length, and each joint
+///          has at most kOfJointSpeed of its speed limit, during stance and swing (swing.h). A leg that is nearly
+///          straight does not push the body on. That holds for a steady walk, and for the first stance after a change of
+///          gaits: a foot that ended a stance may have to bear for a whole one. The slower gait of a change bounds its
+///          speed
 
 #include <array>
 
@@ -19,6 +20,7 @@ namespace robot_control {
 
 inline constexpr double kOfLift = 0.35;
 inline constexpr double kOfJointSpeed = 0.85;
+inline constexpr double kOfLength = 0.95;
 
 Gait gait_of(const LegModel& robot, const NominalStance& stance, const Gait& reference) noexcept;
 
