@@ -21,6 +21,7 @@ from bench.robot_corpus import DIFFBOT, urdf_of
 Array = NDArray[np.float64]
 
 REST = 1.0  # s at rest before a drive
+STEP = 0.1  # m/s, that the gate lets pass in one cycle
 BAND = 0.01  # share of the speed; a speed within it has settled
 SLOPES = (0.0, radians(5), -radians(5))  # uphill positive
 GRAVITY = 9.81  # m/s²
@@ -98,6 +99,17 @@ def straight(robot: str, speed: float, payload: float = 0.0, params: Mapping[str
         late.append(settled(true[part], target, BAND * size) - settled(wanted[part], target, BAND * size))
     rms = float(np.sqrt(np.mean((true - wanted) ** 2))) / size
     return Straight(rms, max(over), max(back), max(late) * loop.period)
+
+
+def response_time(robot: str, params: Mapping[str, Any]) -> float:
+    """s from a step of the ordered speed to 63 % of it: robot.wheel_response_time of drives that take no torque."""
+    sudden = {"max_linear_acceleration": 100.0, "max_linear_jerk": 0.0}
+    unled = {**params["robot"], "wheel_feed_forward": True}
+    loop = make(robot, {**params, "diff_drive_controller": sudden, "robot": unled})
+    log = loop.run(1.0, (STEP, 0.0))
+    begin = int(np.flatnonzero(log["limited_linear"])[0])
+    cycles = int(np.flatnonzero(log["truth_linear"] >= (1 - np.exp(-1)) * STEP)[0]) - begin
+    return cycles * loop.period
 
 
 def stop_error(

@@ -288,8 +288,9 @@ void DriveController::drive(const PlanarTwist& requested, const SensorFrame& sen
   } else {
     follow_measured(sensors);
   }
+  const bool ordered_rest = is_zero(limiter_.value()) && std::ranges::all_of(leads_, &SpeedLead::ended);
   const bool at_rest =
-      in_control_ ? is_zero(limiter_.value()) && standstill_.standing() : holding_ || standstill_.standing() || slow();
+      in_control_ ? ordered_rest && standstill_.standing() : holding_ || standstill_.standing() || slow();
   holding_ = is_zero(requested) && at_rest;
   if (holding_) out.reasons |= kReasonHolding;
   driving_ = (out.reasons & kBrakeReasons) == 0;

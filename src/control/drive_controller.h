@@ -7,9 +7,9 @@
 ///   - the sensors are unusable: not valid, not finite, for another number of joints, or of a cycle that does not
 ///     advance;
 ///   - a wheel angle jumped faster than kFastestWheel; the wheel loops then restart from the next sample;
-///   - the robot holds: requested and limited twist are zero and all wheels stand (standstill.h). Directly after a
-///     brake, wheels slower than kStandstillSpeed are enough. The driver's brake law keeps the position until the next
-///     requested twist ≠ 0.
+///   - the robot holds: requested and limited twist are zero, no lead is ordered any more, and all wheels stand
+///     (standstill.h). Directly after a brake, wheels slower than kStandstillSpeed are enough. The driver's brake law
+///     keeps the position until the next requested twist ≠ 0.
 /// Joints that are not wheels are always braked.
 ///
 /// A stop that was not requested ramps with the emergency deceleration. This applies after a command that timed out or

@@ -67,7 +67,7 @@ def test_progress_that_falls_back_for_ever_ends_the_path():
 
 
 def test_what_is_lost_in_the_turns_of_a_path_counts():
-    """At each corner the pose falls back along the next piece. Progress must not be counted from where a piece begins."""
+    """At each corner the pose falls back along the next piece, which must not begin its count there."""
     robot = Jumping(SHAPES["square"](0.6))
     while not robot.follower.over:
         drives = robot.follower.state is State.DRIVING
