@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from robot_control.closed_loop import ClosedLoop, Log
 
+from bench.drives.wheel_command import for_drives
 from bench.robot_corpus import DIFFBOT, urdf_of
 
 Array = NDArray[np.float64]
@@ -101,11 +102,16 @@ def straight(robot: str, speed: float, payload: float = 0.0, params: Mapping[str
     return Straight(rms, max(over), max(back), max(late) * loop.period)
 
 
-def response_time(robot: str, params: Mapping[str, Any]) -> float:
-    """s from a step of the ordered speed to 63 % of it: robot.wheel_response_time of drives that take no torque."""
-    sudden = {"max_linear_acceleration": 100.0, "max_linear_jerk": 0.0}
-    unled = {**params["robot"], "wheel_feed_forward": True}
-    loop = make(robot, {**params, "diff_drive_controller": sudden, "robot": unled})
+def response_time(robot: str, plant: Mapping[str, Any]) -> float:
+    """s from a step of the ordered speed to 63 % of it: robot.wheel_response_time of drives of speeds with these
+    parameters of `mujoco_plant`.
+    """
+    params = {
+        "diff_drive_controller": {"max_linear_acceleration": 100.0, "max_linear_jerk": 0.0},
+        "robot": {"wheel_response_time": 0.001},  # hardly any lead
+        "mujoco_plant": {**plant, "drive_feed_forward": False},
+    }
+    loop = make(robot, for_drives("velocity", params))
     log = loop.run(1.0, (STEP, 0.0))
     begin = int(np.flatnonzero(log["limited_linear"])[0])
     cycles = int(np.flatnonzero(log["truth_linear"] >= (1 - np.exp(-1)) * STEP)[0]) - begin

@@ -78,10 +78,8 @@ def drives_of_velocity(robot: str) -> list[Figure]:
         straight, stops = [], []
         for gain, delay in itertools.product(GAINS, DELAYS):
             plant = {"drive_gain": gain, "actuator_delay": delay, "drive_feed_forward": takes_torque}
-            drives = for_drives("velocity", {"mujoco_plant": plant | {"drive_feed_forward": False}})
-            response = measured.response_time(robot, drives)
-            robot_params = {"wheel_feed_forward": takes_torque, "wheel_response_time": response}
-            params = for_drives("velocity", {"robot": robot_params, "mujoco_plant": plant})
+            response = measured.response_time(robot, plant)
+            params = for_drives("velocity", {"robot": {"wheel_response_time": response}, "mujoco_plant": plant})
             straight += [measured.straight(robot, direction * FULL, params=params) for direction in (1, -1)]
             for speed, slope, silence in itertools.product((0.1, FULL), measured.SLOPES, (False, True)):
                 error, predicted = measured.stop_error(robot, speed, slope, silence=silence, params=params)

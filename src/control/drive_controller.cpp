@@ -31,8 +31,8 @@ WheelLoops make_loops(const DriveControllerParameters& parameters, const DriveTr
 }
 
 SpeedLeads make_leads(const DriveTrain& robot, double period) {
-  const bool leads = robot.wheel_command == WheelCommand::kVelocity && !robot.wheel_feed_forward;
-  return {robot.wheels.size(), SpeedLead(leads ? robot.wheel_response_time : 0, period)};
+  const double time = robot.wheel_command == WheelCommand::kVelocity ? robot.wheel_response_time : 0;
+  return {robot.wheels.size(), SpeedLead(time, period)};
 }
 
 bool is_zero(const PlanarTwist& twist) noexcept {
@@ -315,7 +315,8 @@ void DriveController::drive(const PlanarTwist& requested, const SensorFrame& sen
   if (clamped) out.reasons |= kReasonSaturated;
   for (std::size_t i = 0; i < loops_.size(); ++i) {
     const double effort = loops_[i].step({velocity[i], acceleration[i], feed_forward[i]}, periods_, clamped);
-    const double ordered = leads_[i].step(velocity[i], acceleration[i], periods_);
+    const bool alone = !has(sensors.joints[i], kTakesEffort);
+    const double ordered = alone ? leads_[i].step(velocity[i], acceleration[i], periods_) : velocity[i];
     out.joints[i] = {.mode = mode_, .velocity = ordered, .effort = effort};
     if (loops_[i].saturated()) out.reasons |= kReasonSaturated;
   }
