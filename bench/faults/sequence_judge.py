@@ -20,6 +20,10 @@ the rules of the gate alone count: "permit", "machine", that "brake" ends at res
 blocked wheel, or a motor with a wrong torque, jolts the robot harder than any brake. Its tilt then does not count. A
 drive that is slow or delayed receives the brake LATE_DRIVE later.
 
+A drive that closes the loop of its own speed holds a blocked wheel with the torque that its integral had before the
+brake. When the wheel comes free, that torque turns it until the integral has discharged. So "brake" counts the time
+to standstill from there, and "release" does not judge what follows. The gain of s stays within BRAKE_MARGIN.
+
 A robot on legs lies down by its brake. It falls, which gives it up to FOLD_MARGIN, and rests after FOLD_TIME. Instead
 of TILT_LIMIT, it must not turn over, OVER_LIMIT. Its brake is a torque, so a motor with a wrong torque has none.
 """
@@ -28,6 +32,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,11 +82,18 @@ class Violation:
         return f"{self.rule} at {self.time:.3f} s: {self.text}"
 
 
-def failing(log: Log, component: str, *kinds: str) -> Mask:
-    """Cycles in which `component` fails in one of these ways; shape (cycles,). A "motor" is that of any joint."""
+def failing_each(log: Log, component: str, *kinds: str) -> Mask:
+    """Cycles in which `component` fails in one of these ways; shape (components, cycles). A "motor" has one row per
+    joint.
+    """
     digit = (log["injected"].astype(np.int64) >> (3 * number_of("FaultComponent", component))) & 7
     failures = [digit, *(log[name] for name in log if name.endswith(f"_injected_{component}"))]
-    return np.asarray(np.isin(failures, [number_of("FaultKind", kind) for kind in kinds]).any(axis=0))
+    return np.isin(failures, [number_of("FaultKind", kind) for kind in kinds])
+
+
+def failing(log: Log, component: str, *kinds: str) -> Mask:
+    """Cycles in which any `component` fails in one of these ways; shape (cycles,)."""
+    return np.asarray(failing_each(log, component, *kinds).any(axis=0))
 
 
 def judge(sequence: FaultSequence, log: Log, wheel_base: float, period: float, fastest: float) -> list[Violation]:
@@ -126,6 +138,8 @@ class _Court:
         self._unbraked = failing(log, "motor", *dead)
         jolts = ("stuck", "wrong", "garbage")
         self._jolted = failing(log, "motor", *jolts)
+        freed = np.diff(failing_each(log, "motor", "stuck").astype(int), prepend=0) < 0
+        self._freed = freed.any(axis=0) & (sequence.wheel_command == "velocity")
         self._late = failing(log, "motor", "slow", "delayed")
         self._monitor_errs = failing(log, "monitor", "garbage", "wrong")
         self._new_run = np.concatenate([[True], np.diff(log["run"]) != 0])
@@ -152,7 +166,9 @@ class _Court:
             mask = np.zeros_like(braking)
             mask[first:end] = True
             for start, stop in blocks(mask & ~self._unbraked):
-                yield from self._braked(start, stop)
+                begins = [start, *(start + 1 + np.flatnonzero(self._freed[start + 1 : stop])), stop]
+                for part in pairwise(begins):
+                    yield from self._braked(*part)
             for start, stop in blocks(mask & self._unbraked):
                 yield from self._coasting(start, stop)
 
@@ -208,7 +224,7 @@ class _Court:
             commands = np.flatnonzero(asked[reset:])
             end = reset + int(commands[0]) if commands.size else len(asked)
             first = reset + round(MEAN_TIME / self._period)  # from here on the mean contains no earlier values
-            excused = self._unbraked | self._monitor_errs | self._new_run
+            excused = self._unbraked | self._monitor_errs | self._new_run | self._freed
             moving = ~self._standing[reset:end] & ~np.logical_or.accumulate(excused[reset:end])
             for row in range(first, end):
                 if not moving[row - reset]:
