@@ -47,6 +47,8 @@ class JointStop {
  public:
   explicit JointStop(const StopAction& action) noexcept : action_(action) {}
 
+  bool folds() const noexcept { return action_.kind == StopKind::kFold; }
+
   /// A command moves the joint.
   void release() noexcept {
     begin_.reset();
