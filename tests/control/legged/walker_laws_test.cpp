@@ -12,6 +12,7 @@
 
 #include "control/legged/foothold.h"
 #include "control/legged/ideal_legs.h"
+#include "control/legged/own_gaits.h"
 #include "control/legged/walking/swing.h"
 #include "control/legged/walking/walker.h"
 
@@ -194,7 +195,7 @@ struct WalkerLaws : testing::Test {
 
   LegModel robot = on_balls();
   NominalStance stance = nominal_stance(robot);
-  Walker walker{robot, kMu, kMillisecond};
+  Walker walker{robot, all_gaits({}), kMu, kMillisecond};
   Walker::State state, before;
   WalkInput input;
   SensorFrame sensors;
@@ -431,6 +432,17 @@ TEST_F(WalkerLaws, AFootSwingsFromWhereItIsWhenItsSwingBeginsUntilItsStance) {
   EXPECT_NEAR(out.legged.stance[1], 0.5 * cycle / gait().duty, kExact);
 }
 
+TEST_F(WalkerLaws, AFootWhoseSwingWouldHaveBegunBeforeTheGaitStandsUntilItsNextOne) {
+  OwnGaits own;
+  own[0] = {.name = "late", .period = 0.5, .duty = 0.6, .phases = NumberList<4>{0.8, 0.1, 0.1, 0.1}, .lift = 0.05};
+  walker = Walker(robot, all_gaits(own), kMu, kMillisecond);
+  walker.begin(state, sensors, estimate);
+  input.gait = static_cast<GaitName>(kGaits.size());
+  int cycles = 0;
+  for (step(); state.bears[0] != 0 && cycles < 1000; ++cycles) step();
+  EXPECT_NEAR(cycles * kMillisecond, 0.8 * gait().period, 2 * kMillisecond);
+}
+
 TEST_F(WalkerLaws, AFootThatMeetsTheGroundInTheSecondHalfOfItsSwingBearsFromThenOn) {
   for (const double swung : {0.3, 0.6}) {
     choose(0);
@@ -476,7 +488,7 @@ TEST_F(WalkerLaws, AFootThatStandsBearsItsForceUnlessAJointIsTooWeak) {
   for (const double limit : {1000.0, 6.0, 0.3}) {
     for (JointModel& joint : robot.joints) joint.effort_limit = limit;
     stance = nominal_stance(robot);  // weak knees stand higher
-    walker = Walker(robot, kMu, kMillisecond);
+    walker = Walker(robot, all_gaits({}), kMu, kMillisecond);
     for (unsigned seed = 0; seed < kRandomStates; ++seed) {
       choose(seed);
       step();
@@ -515,7 +527,7 @@ TEST_F(WalkerLaws, AFootInTheAirFollowsItsPathToTheFoothold) {
   for (const double limit : {1000.0, 0.3}) {
     for (JointModel& joint : robot.joints) joint.effort_limit = limit;
     stance = nominal_stance(robot);  // weak knees stand higher
-    walker = Walker(robot, kMu, kMillisecond);
+    walker = Walker(robot, all_gaits({}), kMu, kMillisecond);
     for (unsigned seed = 0; seed < kRandomStates; ++seed) {
       choose(seed);
       step();

@@ -84,7 +84,7 @@ struct WalkingSpeedTest : testing::Test {
   LegModel robot = lopsided();
   NominalStance stance = nominal_stance(robot);
   Gaits gaits = [this] {
-    Gaits result = kGaits;
+    Gaits result(kGaits.begin(), kGaits.end());
     for (Gait& gait : result) gait = gait_of(robot, stance, gait);
     return result;
   }();
@@ -95,17 +95,19 @@ TEST_F(WalkingSpeedTest, NoJointNeedsMoreThanItsPartAtTheSpeedsOfAGaitAndItsChan
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t gait = 1; gait < gaits.size(); ++gait) {
       const double low = (1 - kFound) * speeds[gait][axis], high = (1 + kFound) * speeds[gait][axis];
-      EXPECT_GT(low, 0.1) << gaits[gait].name << axis;
-      EXPECT_LE(steady(gaits[gait], axis, low), kOfJointSpeed) << gaits[gait].name << axis;
+      EXPECT_GT(low, 0.1) << gaits[gait].name.data() << axis;
+      EXPECT_LE(steady(gaits[gait], axis, low), kOfJointSpeed) << gaits[gait].name.data() << axis;
       double beyond = steady(gaits[gait], axis, high);
       for (std::size_t other = 1; other < gaits.size(); ++other) {
         if (speeds[other][axis] < speeds[gait][axis]) continue;  // that one bounds the change
-        EXPECT_LE(changed(gaits[other], gaits[gait], axis, low), kOfJointSpeed) << gaits[gait].name << axis << other;
-        EXPECT_LE(changed(gaits[gait], gaits[other], axis, low), kOfJointSpeed) << gaits[gait].name << axis << other;
+        EXPECT_LE(changed(gaits[other], gaits[gait], axis, low), kOfJointSpeed)
+            << gaits[gait].name.data() << axis << other;
+        EXPECT_LE(changed(gaits[gait], gaits[other], axis, low), kOfJointSpeed)
+            << gaits[gait].name.data() << axis << other;
         beyond = std::max(
             {beyond, changed(gaits[other], gaits[gait], axis, high), changed(gaits[gait], gaits[other], axis, high)});
       }
-      EXPECT_GT(beyond, kOfJointSpeed) << gaits[gait].name << axis;
+      EXPECT_GT(beyond, kOfJointSpeed) << gaits[gait].name.data() << axis;
     }
     EXPECT_EQ(speeds[number(GaitName::kStand)][axis], kMinSpeed);
   }

@@ -9,7 +9,7 @@
 ///          gaits: a foot that ended a stance may have to bear for a whole one. The slower gait of a change bounds its
 ///          speed
 
-#include <array>
+#include <vector>
 
 #include "control/legged/gait.h"
 #include "control/legged/nominal_stance.h"
@@ -24,16 +24,15 @@ inline constexpr double kOfLength = 0.95;
 
 Gait gait_of(const LegModel& robot, const NominalStance& stance, const Gait& reference) noexcept;
 
-using Gaits = std::array<Gait, kGaits.size()>;
-using Speeds = std::array<WalkingTwist, kGaits.size()>;
+using Speeds = std::vector<WalkingTwist>;
 
 /// Returns, by GaitName, the largest speeds to the front, to the left, and turning, each of them alone; at least
 /// kMinSpeed. `gaits` are those of `gait_of`.
-Speeds walking_speeds(const LegModel& robot, const NominalStance& stance, const Gaits& gaits) noexcept;
+Speeds walking_speeds(const LegModel& robot, const NominalStance& stance, const Gaits& gaits);
 
 /// Returns after how many s at most a walk ends in an emergency. That is the time of the limits, a period of the
 /// slowest gait, and kAllDown.
-double walk_ending_time(const LegControllerParameters& parameters, const LegModel& robot) noexcept;
+double walk_ending_time(const LegControllerParameters& parameters, const LegModel& robot);
 
 inline constexpr double kAllDown = 0.15;  ///< s, for which all feet stand before the joints hold the body
 
