@@ -418,13 +418,13 @@ TEST_F(WalkingConditionsTest, AMotorThatGivesNoTorqueWhileItsFootBearsBrakes) {
 }
 
 TEST_F(WalkingConditionsTest, AMotorThatGivesItsTorqueInEveryOtherCycleBrakes) {
-  const auto failing = [&](int cycles, int of) {
-    return [&, cycles, of, cycle = 0](double) mutable {
+  const auto failing = [&](int missing, int cycles) {
+    return [&, missing, cycles, cycle = 0](double) mutable {
       ++cycle;
       for (std::size_t i = 0; i < kLegsJoints; ++i) {
         JointCommand& command = command_.joints[i];
         command.effort = command.stiffness > 0 ? 0 : 0.1 * robot_.joints[i].effort_limit;
-        sensors_.joints[i].effort = i == 8 && cycle % of < cycles ? 0 : command.effort;
+        sensors_.joints[i].effort = i == 8 && cycle % cycles < missing ? 0 : command.effort;
       }
     };
   };

@@ -52,8 +52,8 @@ TEST(LegTuning, ScalesAsAModelOfTheSameRobotDoes) {
   EXPECT_DOUBLE_EQ(large.joint.acceleration, one.joint.acceleration / 4);
 }
 
-/// Half of the weight is 12.7 · 9.81 / 2 = 62.3 N. At 0.7, 0.79 and 0.85 of the leg length the levers of its knee are 0.357,
-/// 0.307 and 0.263 of that length.
+/// Half of the weight is 12.7 · 9.81 / 2 = 62.3 N. At 0.7, 0.79 and 0.85 of the leg length the levers of its knee are
+/// 0.357, 0.307 and 0.263 of that length.
 TEST(LegTuning, StandsHigherWhereAKneeIsWeak) {
   const auto height = [](double knee) {
     LegModel robot = of_size(1, 1);

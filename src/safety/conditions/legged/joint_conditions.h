@@ -36,7 +36,7 @@ class JointConditions {
   static constexpr double kTorqueTime = 0.06;  ///< s
   static constexpr double kOfTorques = 0.3;    ///< docs/evidence/derivations.md
   static constexpr double kOfAsked = 0.5;      ///< a weak or late motor is none that fails
-  static constexpr double kOfEffort = 0.03;
+  static constexpr double kOfEffort = 0.04;
 
   /// `period` s.
   JointConditions(const SafetyParameters& parameters, const LegModel& robot, double period) noexcept
