@@ -111,6 +111,7 @@ BOUNDS = {
     "speed off, crawl": 0.03,
     "speed off, walking trot": 0.03,
     "speed off, trot": 0.03,
+    "speed off, pace": 0.03,
     "roll RMS, ": 0.05,  # rad
     "pitch RMS, ": 0.05,
     "largest tilt, ": 0.15,

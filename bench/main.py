@@ -67,7 +67,7 @@ PARTS = {
 NAMES = MEASURED + JUDGED
 SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores
 BY_WHEEL_COMMAND = ("campaign", "driving", "drive", "release")
-BY_ROBOT = ("campaign", "processes", "record")
+BY_ROBOT = ("campaign", "processes", "record", "release")
 ON_CLUSTERS = ("campaign", "devices", "driving", "odometry", "tuning", *SEED_PROGRAMS)
 
 
@@ -138,13 +138,15 @@ def run_many(name: str, given: argparse.Namespace, runner: Runner) -> tuple[dict
 def run_seed_program(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     """One of `SEED_PROGRAMS`: it uses all processors by itself, or runs in blocks on the workers of a cluster."""
     runs = given.runs or SEED_PROGRAMS[name]
-    drives = [given.wheel_command] if name in BY_WHEEL_COMMAND else []
+    machine = []
+    if name in BY_WHEEL_COMMAND:
+        machine = [given.wheel_command if given.robot == DIFFBOT else given.robot]
     if given.scheduler is None:
-        result = run_program(given.programs / f"bench_{name}", str(given.first), str(runs), *drives)
+        result = run_program(given.programs / f"bench_{name}", str(given.first), str(runs), *machine)
     else:
         with opened_runner(given) as runner:
-            result = seed_programs.run_seeds(name, given.first, runs, say, runner, *drives)
-    if name == "release":
+            result = seed_programs.run_seeds(name, given.first, runs, say, runner, *machine)
+    if name == "release" and given.robot == DIFFBOT:  # the senders know no robot
         with opened_runner(given) as runner:
             result["rows"] += sender_rows(given.first, runs, say, runner)
     return result, all(row["value"] == 0 for row in result["rows"] if row["name"].endswith("sequences failed"))

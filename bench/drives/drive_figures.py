@@ -16,11 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 from robot_control.closed_loop import ClosedLoop, Log
 
+from bench.drives.wheel_command import for_drives
 from bench.robot_corpus import DIFFBOT, urdf_of
 
 Array = NDArray[np.float64]
 
 REST = 1.0  # s at rest before a drive
+STEP = 0.1  # m/s, that the gate lets pass in one cycle
 BAND = 0.01  # share of the speed; a speed within it has settled
 SLOPES = (0.0, radians(5), -radians(5))  # uphill positive
 GRAVITY = 9.81  # m/s²
@@ -98,6 +100,22 @@ def straight(robot: str, speed: float, payload: float = 0.0, params: Mapping[str
         late.append(settled(true[part], target, BAND * size) - settled(wanted[part], target, BAND * size))
     rms = float(np.sqrt(np.mean((true - wanted) ** 2))) / size
     return Straight(rms, max(over), max(back), max(late) * loop.period)
+
+
+def response_time(robot: str, plant: Mapping[str, Any]) -> float:
+    """s from a step of the ordered speed to 63 % of it: robot.wheel_response_time of drives of speeds with these
+    parameters of `mujoco_plant`.
+    """
+    params = {
+        "diff_drive_controller": {"max_linear_acceleration": 100.0, "max_linear_jerk": 0.0},
+        "robot": {"wheel_response_time": 0.001},  # hardly any lead
+        "mujoco_plant": {**plant, "drive_feed_forward": False},
+    }
+    loop = make(robot, for_drives("velocity", params))
+    log = loop.run(1.0, (STEP, 0.0))
+    begin = int(np.flatnonzero(log["limited_linear"])[0])
+    cycles = int(np.flatnonzero(log["truth_linear"] >= (1 - np.exp(-1)) * STEP)[0]) - begin
+    return cycles * loop.period
 
 
 def stop_error(

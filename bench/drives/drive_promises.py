@@ -24,7 +24,6 @@ RIPPLES = {FINE: 1.0, 512: 2.0, 90: 4.0}  # counts → % of the torque limit
 LOADED_RMS = {200: 7.0, 100: 15.0}  # Hz → %
 CURVES = ((0.7, 1.0), (-0.7, 1.0), (0.4, 1.8))  # m/s, rad/s
 GAINS = (0.5, 1.0, 1.5)  # of a drive that closes the loop of its speed, of those that its robot needs
-RESPONSE = 0.02  # s, of drives with gains of 1 (velocity_drive.h)
 DELAYS = (0, 10, 20)  # ms, cycles of 1 ms
 
 
@@ -71,16 +70,16 @@ def nearest_to_its_bound(figures: list[Figure]) -> Figure:
 
 def drives_of_velocity(robot: str) -> list[Figure]:
     """Robots whose drives close the loops of their speeds, over all gains and delays of these drives. A stop may be
-    longer by what the robot drives during the delay. The robot states the response time of its drives, which
-    the speed leads where they take no torque.
+    longer by what the robot drives during the delay. The robot states the response time of its drives, as it is
+    measured. The speed leads by it where they take no torque.
     """
     figures = []
     for name, takes_torque in (("", True), (", without feed-forward", False)):
         straight, stops = [], []
         for gain, delay in itertools.product(GAINS, DELAYS):
             plant = {"drive_gain": gain, "actuator_delay": delay, "drive_feed_forward": takes_torque}
-            robot_params = {"wheel_feed_forward": takes_torque, "wheel_response_time": RESPONSE / gain}
-            params = for_drives("velocity", {"robot": robot_params, "mujoco_plant": plant})
+            response = measured.response_time(robot, plant)
+            params = for_drives("velocity", {"robot": {"wheel_response_time": response}, "mujoco_plant": plant})
             straight += [measured.straight(robot, direction * FULL, params=params) for direction in (1, -1)]
             for speed, slope, silence in itertools.product((0.1, FULL), measured.SLOPES, (False, True)):
                 error, predicted = measured.stop_error(robot, speed, slope, silence=silence, params=params)

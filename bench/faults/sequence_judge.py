@@ -20,14 +20,21 @@ the rules of the gate alone count: "permit", "machine", that "brake" ends at res
 blocked wheel, or a motor with a wrong torque, jolts the robot harder than any brake. Its tilt then does not count. A
 drive that is slow or delayed receives the brake LATE_DRIVE later.
 
-A robot on legs lies down by its brake. It falls, which gives it up to FOLD_MARGIN, and rests after FOLD_TIME. Instead
-of TILT_LIMIT, it must not turn over, OVER_LIMIT. Its brake is a torque, so a motor with a wrong torque has none.
+A drive that closes the loop of its own speed holds a blocked wheel with the torque that its integral had before the
+brake. When the wheel comes free, that torque turns it until the integral has discharged. So "brake" counts the time
+to standstill from there, and "release" does not judge what follows. The gain of s stays within BRAKE_MARGIN.
+
+A robot on legs lies down by its brake. A body that falls gains speed, so its way is judged in place of s: FOLD_WAY at
+most. It rests after FOLD_TIME. Instead of TILT_LIMIT, it must not turn over, OVER_LIMIT. Its brake follows encoders:
+random angles are a random torque. With a motor that is off or reversed it rests, too, because the stop ends with the
+brakes of the drives (gate/stop_action.h).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,7 +63,7 @@ GARBAGE_SPEED = 1.0  # m/s
 TILT_LIMIT = np.radians(10)
 HIT_TILT_LIMIT = np.radians(30)  # a light robot that runs into a wall at 1 m/s stands up by 20° and falls back
 FOLD_TIME = 1.8  # s, the 1.5 s of docs/safety.md and the mean
-FOLD_MARGIN = 0.6  # m/s; 0.34 in 60 sequences
+FOLD_WAY = 0.4  # m, what `scripts/bench legs walking_stop` allows up to 1.0 m/s
 OVER_LIMIT = np.radians(60)
 ICY, DRY = "low_friction_patch", 1.0  # the scene with ice, friction of the others
 GRAVITY_ON_SLOPE = 9.81 * np.sin(np.radians(5))  # m/s²
@@ -77,11 +84,18 @@ class Violation:
         return f"{self.rule} at {self.time:.3f} s: {self.text}"
 
 
-def failing(log: Log, component: str, *kinds: str) -> Mask:
-    """Cycles in which `component` fails in one of these ways; shape (cycles,). A "motor" is that of any joint."""
+def failing_each(log: Log, component: str, *kinds: str) -> Mask:
+    """Cycles in which `component` fails in one of these ways; shape (components, cycles). A "motor" has one row per
+    joint.
+    """
     digit = (log["injected"].astype(np.int64) >> (3 * number_of("FaultComponent", component))) & 7
     failures = [digit, *(log[name] for name in log if name.endswith(f"_injected_{component}"))]
-    return np.asarray(np.isin(failures, [number_of("FaultKind", kind) for kind in kinds]).any(axis=0))
+    return np.isin(failures, [number_of("FaultKind", kind) for kind in kinds])
+
+
+def failing(log: Log, component: str, *kinds: str) -> Mask:
+    """Cycles in which any `component` fails in one of these ways; shape (cycles,)."""
+    return np.asarray(failing_each(log, component, *kinds).any(axis=0))
 
 
 def judge(sequence: FaultSequence, log: Log, wheel_base: float, period: float, fastest: float) -> list[Violation]:
@@ -122,10 +136,13 @@ class _Court:
         rocks = np.abs(tilt - tilt[np.maximum(np.arange(len(tilt)) - window, 0)]) > ROCKING
         self._standing = (linear + angular * wheel_base / 2 <= STANDING_SPEED) | rocks
         self._on_legs = bool(sequence.gait)
-        dead = ("off", "garbage", "intermittent", *(["wrong"] if self._on_legs else []))
-        self._unbraked = failing(log, "motor", *dead)
+        self._unbraked = failing(log, "motor", "garbage", *([] if self._on_legs else ["off", "intermittent"]))
+        if self._on_legs:
+            self._unbraked |= failing(log, "encoder", "garbage")
         jolts = ("stuck", "wrong", "garbage")
         self._jolted = failing(log, "motor", *jolts)
+        freed = np.diff(failing_each(log, "motor", "stuck").astype(int), prepend=0) < 0
+        self._freed = freed.any(axis=0) & (sequence.wheel_command == "velocity")
         self._late = failing(log, "motor", "slow", "delayed")
         self._monitor_errs = failing(log, "monitor", "garbage", "wrong")
         self._new_run = np.concatenate([[True], np.diff(log["run"]) != 0])
@@ -152,7 +169,9 @@ class _Court:
             mask = np.zeros_like(braking)
             mask[first:end] = True
             for start, stop in blocks(mask & ~self._unbraked):
-                yield from self._braked(start, stop)
+                begins = [start, *(start + 1 + np.flatnonzero(self._freed[start + 1 : stop])), stop]
+                for part in pairwise(begins):
+                    yield from self._braked(*part)
             for start, stop in blocks(mask & self._unbraked):
                 yield from self._coasting(start, stop)
 
@@ -161,10 +180,8 @@ class _Court:
             start = min(stop - 1, start + round(LATE_DRIVE / self._period))
         speed = self._speed[start:stop]
         spun = float(np.max(speed[: max(1, round(SPIN_TIME / self._period))]))
-        growing = np.flatnonzero(speed > spun + (FOLD_MARGIN if self._on_legs else BRAKE_MARGIN))
-        if growing.size and not self._monitor_errs[:start].any():
-            row = start + int(growing[0])
-            yield self._violation("brake", row, f"{spun:.3f} m/s grew to {self._speed[row]:.3f} m/s")
+        if not self._monitor_errs[:start].any():
+            yield from self._far(start, stop) if self._on_legs else self._faster(start, stop, spun + BRAKE_MARGIN)
         slows_down = stop_deceleration_of(self._sequence.robot, ICE if self._sequence.scene == ICY else DRY)
         stop_time = FOLD_TIME if self._on_legs else STOP_TIME
         deadline = round((stop_time + spun / slows_down) / self._period)
@@ -172,6 +189,17 @@ class _Court:
         if late.size:
             row = start + deadline + int(late[0])
             yield self._violation("brake", row, f"{self._speed[row]:.3f} m/s, braking from {speed[0]:.3f} m/s")
+
+    def _faster(self, start: int, stop: int, limit: float) -> Iterator[Violation]:
+        for row in start + np.flatnonzero(self._speed[start:stop] > limit)[:1]:
+            yield self._violation("brake", row, f"{limit - BRAKE_MARGIN:.3f} m/s grew to {self._speed[row]:.3f} m/s")
+
+    def _far(self, start: int, stop: int) -> Iterator[Violation]:
+        x, y = (self._log[name][start:stop] for name in ("truth_x", "truth_y"))
+        way = np.hypot(x - x[0], y - y[0])
+        jolted = np.logical_or.accumulate(self._jolted)[start:stop]
+        for row in np.flatnonzero((way > FOLD_WAY) & ~jolted)[:1]:
+            yield self._violation("brake", start + row, f"the body is {way[row]:.3f} m from where the brake began")
 
     def _coasting(self, start: int, stop: int) -> Iterator[Violation]:
         speed = self._speed[start:stop]
@@ -208,7 +236,7 @@ class _Court:
             commands = np.flatnonzero(asked[reset:])
             end = reset + int(commands[0]) if commands.size else len(asked)
             first = reset + round(MEAN_TIME / self._period)  # from here on the mean contains no earlier values
-            excused = self._unbraked | self._monitor_errs | self._new_run
+            excused = self._unbraked | self._monitor_errs | self._new_run | self._freed
             moving = ~self._standing[reset:end] & ~np.logical_or.accumulate(excused[reset:end])
             for row in range(first, end):
                 if not moving[row - reset]:

@@ -31,8 +31,8 @@ COLUMNS = (
     "driver_state",
     "injected",
 )
-JOINT_COLUMN = "_injected_motor"
-"""ends the name of a column for each joint"""
+JOINT_COLUMNS = ("_injected_encoder", "_injected_motor")
+"""end the names of columns for each joint"""
 
 
 def loop_arguments(sequence: FaultSequence) -> dict[str, Any]:
@@ -68,7 +68,7 @@ def run_sequence(sequence: FaultSequence, loop: ClosedLoop) -> Log:
             loop.inject_fault(component, "ok")
     loop.e_stop_reset()
     player.run_until(sequence.released)
-    names = [*COLUMNS, *(name for name in player.parts[0] if name.endswith(JOINT_COLUMN))]
+    names = [*COLUMNS, *(name for name in player.parts[0] if name.endswith(JOINT_COLUMNS))]
     return {name: np.concatenate([part[name] for part in player.parts]) for name in names}
 
 

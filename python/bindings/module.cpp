@@ -25,6 +25,8 @@
 #include "bindings/signal_names.h"
 #include "bindings/wheeled/offline_estimator.h"
 #include "bindings/wheeled/wheel_loops.h"
+#include "control/legged/gait.h"
+#include "control/legged/own_gaits.h"
 #include "control/legged/walking/twist_limiter.h"
 #include "control/limits/drive_limits.h"
 #include "control/limits/stop_distance.h"
@@ -280,6 +282,8 @@ void bind_closed_loop(py::module_& module) {
       .def_property_readonly("smooth_speed", &smooth_speed_of)
       .def_property_readonly("period", [](const ClosedLoop& loop) { return loop.parameters().loop.period(); })
       .def_property_readonly("robot", [](const ClosedLoop& loop) { return describe(loop.robot().machine()); })
+      .def_property_readonly(
+          "gaits", [](const ClosedLoop& loop) { return gait_words(all_gaits(loop.parameters().leg_control.gaits)); })
       .def_property_readonly("cycle", &ClosedLoop::cycle)
       .def_property_readonly("time", &ClosedLoop::time)
       .def_property_readonly("columns", &column_meanings);

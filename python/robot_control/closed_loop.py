@@ -8,7 +8,7 @@ log["truth_linear"]  # numpy, one value per cycle
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from typing import Any
 
@@ -27,8 +27,6 @@ Twist = tuple[float, float] | tuple[float, float, float]
 """(linear, angular) or (linear, lateral, angular): m/s to the front, m/s to the left, rad/s"""
 Command = Callable[[float], Twist] | Twist | None
 
-GAITS = ("auto", "trot", "walking_trot", "crawl")
-"""what set_gait takes; in the order of GaitName, whose stand no robot walks with"""
 FEET = ("front_left", "front_right", "rear_left", "rear_right")
 _LIE, _LIFT, _MOVE_JOINTS, _GAIT = 1, 3, 7, 8
 """StanceMode of src/signals/legged/legged_command.h; standing up follows lying down."""
@@ -36,7 +34,7 @@ _POSE = (0.0,) * 6
 _JOINTS = (0.0,) * 12
 
 
-def _index(word: str, words: tuple[str, ...], what: str) -> int:
+def _index(word: str, words: Sequence[str], what: str) -> int:
     if word not in words:
         raise ValueError(f"there is no {what} {word!r}; name one of {', '.join(words)}")
     return words.index(word)
@@ -155,12 +153,12 @@ class ClosedLoop:
         """Acts as a call of `set_gait` of a robot on legs, for the commands that follow.
 
         Args:
-            gait: "auto" (the speed chooses), "trot", "walking_trot" or "crawl"
+            gait: "auto" (the speed chooses), "trot", "walking_trot", "crawl", or one of the parameters gait_1 … gait_4
 
         Raises:
             ValueError: another word.
         """
-        index = _index(gait, GAITS, "gait")
+        index = _index(gait, self._loop.gaits, "gait")
         self._mode = _GAIT + index if index else 0
 
     def set_posture(self, posture: str) -> None:

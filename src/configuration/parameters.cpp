@@ -68,6 +68,7 @@ Schema schema(Parameters& p) {
             check_timeouts(all, p.loop, given);
             check(p.safety, std::string(program_of(Role::kMonitor)), given);
             check(p.controller, std::string(program_of(Role::kController)), given);
+            check(p.leg_control.gaits, std::string(names_of_kind(kLeggedKind).controller), given);
             check_stop_delay(p, given);
           },
       .other_package_remedy = &suggest_for_peer_key,

@@ -31,8 +31,8 @@ WheelLoops make_loops(const DriveControllerParameters& parameters, const DriveTr
 }
 
 SpeedLeads make_leads(const DriveTrain& robot, double period) {
-  const bool leads = robot.wheel_command == WheelCommand::kVelocity && !robot.wheel_feed_forward;
-  return {robot.wheels.size(), SpeedLead(leads ? robot.wheel_response_time : 0, period)};
+  const double time = robot.wheel_command == WheelCommand::kVelocity ? robot.wheel_response_time : 0;
+  return {robot.wheels.size(), SpeedLead(time, period)};
 }
 
 bool is_zero(const PlanarTwist& twist) noexcept {
@@ -288,8 +288,9 @@ void DriveController::drive(const PlanarTwist& requested, const SensorFrame& sen
   } else {
     follow_measured(sensors);
   }
+  const bool ordered_rest = is_zero(limiter_.value()) && std::ranges::all_of(leads_, &SpeedLead::ended);
   const bool at_rest =
-      in_control_ ? is_zero(limiter_.value()) && standstill_.standing() : holding_ || standstill_.standing() || slow();
+      in_control_ ? ordered_rest && standstill_.standing() : holding_ || standstill_.standing() || slow();
   holding_ = is_zero(requested) && at_rest;
   if (holding_) out.reasons |= kReasonHolding;
   driving_ = (out.reasons & kBrakeReasons) == 0;
@@ -314,7 +315,8 @@ void DriveController::drive(const PlanarTwist& requested, const SensorFrame& sen
   if (clamped) out.reasons |= kReasonSaturated;
   for (std::size_t i = 0; i < loops_.size(); ++i) {
     const double effort = loops_[i].step({velocity[i], acceleration[i], feed_forward[i]}, periods_, clamped);
-    const double ordered = leads_[i].step(velocity[i], acceleration[i], periods_);
+    const bool alone = !has(sensors.joints[i], kTakesEffort);
+    const double ordered = alone ? leads_[i].step(velocity[i], acceleration[i], periods_) : velocity[i];
     out.joints[i] = {.mode = mode_, .velocity = ordered, .effort = effort};
     if (loops_[i].saturated()) out.reasons |= kReasonSaturated;
   }

@@ -7,9 +7,9 @@
 ///   - the sensors are unusable: not valid, not finite, for another number of joints, or of a cycle that does not
 ///     advance;
 ///   - a wheel angle jumped faster than kFastestWheel; the wheel loops then restart from the next sample;
-///   - the robot holds: requested and limited twist are zero and all wheels stand (standstill.h). Directly after a
-///     brake, wheels slower than kStandstillSpeed are enough. The driver's brake law keeps the position until the next
-///     requested twist ≠ 0.
+///   - the robot holds: requested and limited twist are zero, no lead is ordered any more, and all wheels stand
+///     (standstill.h). Directly after a brake, wheels slower than kStandstillSpeed are enough. The driver's brake law
+///     keeps the position until the next requested twist ≠ 0.
 /// Joints that are not wheels are always braked.
 ///
 /// A stop that was not requested ramps with the emergency deceleration. This applies after a command that timed out or
@@ -43,10 +43,10 @@
 /// detects a robot that is blocked or pushed back (stall, wrong_direction).
 ///
 /// With robot.wheel_command `velocity` the drives close the wheel loops (JointMode::kDriveVelocity). The command holds
-/// the planned speed, and the feed-forward torque for drives that take one. For others (robot.wheel_feed_forward) the
-/// speed leads the plan (wheel_loops/speed_lead.h). The loops have no gains then: they measure
-/// the speeds, without the torque. Nothing is preloaded or learnt. The scale of the acceleration limits follows the lag
-/// λ_i = q̇*_i − q̇_i of the wheels, in the direction of the acceleration a_i that the plan has without the scale:
+/// the planned speed and the feed-forward torque. For drives that do not take it (kTakesEffort) the speed leads the
+/// plan (wheel_loops/speed_lead.h). The loops have no gains then: they measure the speeds, without the torque. Nothing
+/// is preloaded or learnt. The scale of the acceleration limits follows the lag λ_i = q̇*_i − q̇_i of the wheels, in the
+/// direction of the acceleration a_i that the plan has without the scale:
 ///
 ///   scale = 2 − max_i λ_i/(3 T |a_i|),   0.2 ≤ scale ≤ 1        T: robot.wheel_response_time
 ///

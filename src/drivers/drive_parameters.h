@@ -40,6 +40,7 @@ struct DriveParameters {
   double max_temperature = 90;     ///< °C
   double min_voltage = 0;          ///< V; 0: not judged
   bool takes_speeds = false;       ///< The drive closes the loop of its speed (robot.wheel_command).
+  bool takes_effort = false;       ///< beside a speed: it adds the torque of the command (kTakesEffort)
   bool measures_torque = true;     ///< else the effort is not known
   bool effort_is_rare = false;     ///< The torque is measured more rarely than in each cycle.
   double position_step = 0;        ///< rad of the motor, by which a coarse position may move at rest

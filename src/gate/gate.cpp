@@ -84,7 +84,7 @@ std::span<const JointCommand> Gate::step(const GateInput& input) noexcept {
   report_.reasons = 0;
   report_.stance = {};
   read_samples(input);
-  if (!check_and_clamp(input)) stop(elapsed_at(input.cycle));
+  if (!check_and_clamp(input)) stop(elapsed_at(input.cycle), false);
   remember();
   last_cycle_ = input.cycle;
   return {commands_.data(), limits_.size()};
@@ -113,7 +113,7 @@ bool Gate::check_and_clamp(const GateInput& input) noexcept {
   const bool held = (report_.reasons & kGateCommandHeld) != 0;
   if (held) ++report_.held;
   if (std::all_of(commands_.begin(), commands_.begin() + static_cast<std::ptrdiff_t>(limits_.size()), is_brake)) {
-    std::fill_n(commands_.begin(), limits_.size(), JointCommand{});
+    stop(elapsed_at(input.cycle), true);
     report_.reasons |= kGateControllerBrake;
     return true;
   }
@@ -255,10 +255,11 @@ void Gate::clamp(double elapsed) noexcept {
   }
 }
 
-void Gate::stop(std::uint64_t elapsed) noexcept {
+void Gate::stop(std::uint64_t elapsed, bool by_command) noexcept {
   for (std::size_t i = 0; i < limits_.size(); ++i) {
     const auto position = has_position(i) ? std::optional(samples_[i].position) : std::nullopt;
-    commands_[i] = stops_[i].step(position, static_cast<double>(elapsed) * period_, walks_);
+    const JointCommand order = stops_[i].step(position, static_cast<double>(elapsed) * period_, walks_);
+    commands_[i] = by_command && !stops_[i].folds() ? JointCommand{} : order;
   }
 }
 

@@ -10,6 +10,7 @@ namespace {
 constexpr double kQuick = 0.64;
 constexpr double kGentle = 0.18;
 constexpr double kFade = 0.2;
+constexpr double kRest = 1.2;
 
 }  // namespace
 
@@ -27,6 +28,7 @@ JointCommand JointStop::step(std::optional<double> position, double dt, bool wal
   }
   if (!begin_) begin_ = position;
   elapsed_ += dt;
+  if (elapsed_ >= kRest * action_.time) return {};
   const double time = walked ? action_.walking_time : action_.time;
   if (!begin_ || elapsed_ >= time) return damped;
   const double falling = std::min(1 / kQuick, left_ / kGentle) / time;

@@ -12,7 +12,8 @@
 ///           between P and `upright`, U, is ahead of the others, for instance that of a foot in the air, or while the
 ///           robot rises. It waits for them: q* = P + min(u, (Q − P)/(U − P)) (U − P). In the last 0.2 of `time` the
 ///           stiffness falls to 0. After `time`, and without a position, it is kDamp. A machine that walks has
-///           `walking_time` in place of `time`: a foot stays behind while the body moves on
+///           `walking_time` in place of `time`: a foot stays behind while the body moves on. After 1.2 of `time` it is
+///           kBrake: the machine lies, and a driver's own brake needs neither encoder nor the sense of the motor
 ///
 /// A driver that cannot carry out an action says so (Driver::accepts), and the loop does not start.
 
@@ -45,6 +46,8 @@ struct StopAction {
 class JointStop {
  public:
   explicit JointStop(const StopAction& action) noexcept : action_(action) {}
+
+  bool folds() const noexcept { return action_.kind == StopKind::kFold; }
 
   /// A command moves the joint.
   void release() noexcept {

@@ -63,8 +63,8 @@ using NumberList = std::array<double, N>;
 
 /// A Field points to the member that receives a value; the type of the pointer is the type of the parameter.
 using Field = std::variant<double*, std::optional<double>*, NumberList<3>*, std::optional<NumberList<3>>*,
-                           std::optional<NumberList<6>>*, std::int64_t*, std::uint64_t*, bool*, std::string*,
-                           std::vector<std::string>*, Choice>;
+                           std::optional<NumberList<4>>*, std::optional<NumberList<6>>*, std::int64_t*, std::uint64_t*,
+                           bool*, std::string*, std::vector<std::string>*, Choice>;
 
 /// Properties of a key beside its range; bits of Key::traits.
 enum KeyTrait : unsigned {

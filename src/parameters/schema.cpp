@@ -20,6 +20,9 @@ struct Rule {
   std::string operator()(const std::optional<NumberList<3>>*) const {
     return (*this)(static_cast<NumberList<3>*>(nullptr));
   }
+  std::string operator()(const std::optional<NumberList<4>>*) const {
+    return range_of(key, "a list of four numbers, each");
+  }
   std::string operator()(const std::optional<NumberList<6>>*) const {
     return range_of(key, "a list of six numbers, each");
   }

@@ -63,6 +63,7 @@ class Reader {
 
   bool operator()(NumberList<3>* to) { return numbers<NumberList<3>>(*to); }
   bool operator()(std::optional<NumberList<3>>* to) { return numbers<NumberList<3>>(*to); }
+  bool operator()(std::optional<NumberList<4>>* to) { return numbers<NumberList<4>>(*to); }
   bool operator()(std::optional<NumberList<6>>* to) { return numbers<NumberList<6>>(*to); }
 
   bool operator()(std::vector<std::string>* to) {

@@ -41,7 +41,7 @@ void Quadruped::require_drivable() const {
   if (const std::optional<LegPlace> leg = short_leg(machine_)) {
     throw ParameterError(machine_.source + ": the leg " + name_of(*leg) +
                          " does not reach the ground while the robot stands " + shortest(leg_tuning(machine_).height) +
-                         " m above it, 0.7 of the length of its legs. Give its joints ranges that allow this");
+                         " m above it. Give its joints ranges that allow this");
   }
 }
 

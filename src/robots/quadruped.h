@@ -5,7 +5,7 @@
 ///   laws            estimation/legged, control/legged, safety/conditions/legged
 ///   stop action     fold: every joint moves to the lying posture within kFoldTime, in a walk kWalkingFoldTime,
 ///                   kFoldStiffness times as stiff as
-///                   while it stands, since no feed-forward carries the body. Then it damps
+///                   while it stands, since no feed-forward carries the body. Then it damps, and at the end the drives brake
 ///   ramp            the robot lies down
 ///
 /// The time of the fold is that of legs of 0.426 m. Time and gains follow leg length and mass as in

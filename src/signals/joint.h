@@ -9,12 +9,13 @@ namespace robot_control {
 
 inline constexpr std::size_t kMaxJoints = 32;
 
-/// Bits of JointSample::valid: the numbers that the drive measured and that may be used.
+/// Bits of JointSample::valid: the numbers that the drive measured and that may be used, and what it takes.
 enum JointValidity : std::uint32_t {
   kValidPosition = 1u << 0,
   kValidVelocity = 1u << 1,
   kValidEffort = 1u << 2,
   kValidTemperature = 1u << 3,
+  kTakesEffort = 1u << 4,  ///< The drive adds the effort of a command in kDriveVelocity.
 };
 
 /// The bits of a drive with an encoder.
@@ -55,8 +56,8 @@ enum class JointMode : std::uint64_t {
   kVelocity = 2,   ///< τ = effort + damping · (velocity − q̇)
   kImpedance = 3,  ///< τ = effort + stiffness · (position − q) + damping · (velocity − q̇)
 
-  /// The drive itself closes the loop of its speed, with its own gains: q̇ → velocity. A drive that takes a torque as
-  /// feed-forward adds `effort`, any other one ignores it.
+  /// The drive itself closes the loop of its speed, with its own gains: q̇ → velocity. A drive that says
+  /// kTakesEffort adds `effort`, any other one ignores it.
   kDriveVelocity = 4,
 };
 

@@ -17,14 +17,17 @@ constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 /// Wheels that take speeds: each follows its command with a time constant, no faster than an acceleration.
 class VelocityBench {
  public:
-  explicit VelocityBench(double response, double acceleration = 1e9)
-      : response_(response), acceleration_(acceleration), controller(parameters(), robot(), kPeriod) {
+  static constexpr double kPeriod = 1e-3;
+
+  explicit VelocityBench(double response, double acceleration = 1e9, const DriveTrain& machine = robot(),
+                         std::uint32_t takes = kTakesEffort)
+      : response_(response), acceleration_(acceleration), controller(parameters(), machine, kPeriod) {
     controller.enter_run();
     permit_.action = PermitAction::kDrive;
     permit_.speed_limit = kNoSpeedLimit;
     state_.base.flags = kStateValid;
     sensors_.joint_count = robot().joints.size();
-    for (JointSample& joint : sensors_.joints) joint = {.effort = kNotMeasured, .valid = kValidKinematics};
+    for (JointSample& joint : sensors_.joints) joint = {.effort = kNotMeasured, .valid = kValidKinematics | takes};
   }
 
   void send(double linear, double angular) {
@@ -61,7 +64,6 @@ class VelocityBench {
   double speed(std::size_t wheel) const { return sensors_.joints[wheel].velocity; }
 
  private:
-  static constexpr double kPeriod = 1e-3;
   static DriveControllerParameters parameters() {
     DriveControllerParameters patient;
     patient.cmd_vel_timeout = 0;
@@ -118,6 +120,24 @@ TEST(VelocityCommand, WaitsForWheelsThatCannotAccelerateAsPlanned) {
   EXPECT_TRUE(saturated);
   EXPECT_LT(lag, 1.5) << "rad/s; without waiting it reaches 4.8";
   EXPECT_NEAR(bench.speed(0), 8, 1e-2);
+}
+
+TEST(VelocityCommand, LeadsAStopToItsEndBeforeTheWheelsAreHeld) {
+  DriveTrain slower = VelocityBench::robot();
+  slower.wheel_response_time = 0.1;
+  VelocityBench bench(0.02, 1e9, slower, 0);
+  bench.run(0.3);
+  bench.send(0.1, 0);
+  bench.run(3);
+  bench.send(0, 0);
+  double ordered = 0, planned = 0;
+  for (int i = 0; i < 4000; ++i) {
+    bench.step();
+    ordered += bench.command.joints[0].velocity * VelocityBench::kPeriod;
+    planned += bench.command.twist_limited.linear[0] / kWheelRadius * VelocityBench::kPeriod;
+  }
+  EXPECT_NEAR(ordered, planned, 1e-3) << "rad; held before, the way is shorter by what the lead would still drive";
+  EXPECT_EQ(bench.command.joints[0].mode, JointMode::kBrake);
 }
 
 TEST(VelocityCommand, RefusesGainsOfLoopsThatTheDrivesClose) {

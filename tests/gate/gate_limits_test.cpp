@@ -443,6 +443,19 @@ TEST_F(GateWithAFold, FoldsByTheTimeBetweenTheTicks) {
   EXPECT_EQ(std::memcmp(&joints_[0], &second, sizeof second), 0);
 }
 
+TEST_F(GateWithAFold, GoesOnToFoldWhereTheCommandBrakesEveryJointAfterAStop) {
+  sensors_.joints[0].position = 0.5;
+  brake();
+  JointStop fold(kFold);
+  fold.step(0.5, kPeriod);
+  permit_.action = PermitAction::kDrive;
+  command_.joints[0].mode = command_.joints[1].mode = JointMode::kBrake;
+  next();
+  EXPECT_EQ(gate_.report().reasons, kGateControllerBrake);
+  const JointCommand second = fold.step(0.5, kPeriod);
+  EXPECT_EQ(std::memcmp(&joints_[0], &second, sizeof second), 0);
+}
+
 TEST_F(GateWithAFold, FoldsFromTheBeginningAfterACommandAndInANewRun) {
   for (int i = 0; i < 100; ++i) brake();
   sensors_.joints[0].position = 0.5;

@@ -75,15 +75,15 @@ TEST(JointStop, FoldsAgainFromWhereACommandLeftTheJoint) {
   EXPECT_EQ(std::memcmp(&again, &first, sizeof first), 0);
 }
 
-TEST(JointStop, DampsAloneOnceItsTimeIsOver) {
+TEST(JointStop, DampsAloneOnceItsTimeIsOverAndEndsAsTheBrakeOfTheDriver) {
   JointStop stop(kFolding);
   EXPECT_EQ(stop.step(kBegin, kFolding.time).mode, JointMode::kVelocity);
+  EXPECT_EQ(stop.step(kBegin, 0.19 * kFolding.time).mode, JointMode::kVelocity);
+  EXPECT_EQ(stop.step(kBegin, 0.02 * kFolding.time).mode, JointMode::kBrake);
 }
 
-TEST(JointStop, WithoutNumbersIsWithoutTorque) {
-  const JointCommand order = JointStop({.kind = StopKind::kFold}).step(kBegin, kCycle);
-  EXPECT_EQ(order.mode, JointMode::kVelocity);
-  EXPECT_EQ(order.damping, 0);
+TEST(JointStop, WithoutATimeIsTheBrakeOfTheDriver) {
+  EXPECT_EQ(JointStop({.kind = StopKind::kFold}).step(kBegin, kCycle).mode, JointMode::kBrake);
 }
 
 TEST(JointStop, DampsAJointWithoutAPosition) {

@@ -14,6 +14,9 @@
 
 #include "control/derived_tuning.h"
 #include "cycle_fixture.h"
+#include "drivers/mujoco/mujoco_plant.h"
+#include "machine/legs/leg_model.h"
+#include "robots/quadruped.h"
 #include "ros/inputs/command_input.h"
 #include "ros/inputs/command_mux.h"
 #include "ros/inputs/e_stop_levels.h"
@@ -79,28 +82,42 @@ struct Button {
 
 class Sequence {
  public:
-  Sequence(std::uint64_t seed, ReleaseFigures& figures, WheelCommand drives) : random_(seed), figures_(figures) {
-    robot_.wheel_command = drives;
-    if (drives == WheelCommand::kVelocity) machine_.measured = monitored_.joint_numbers = kValidKinematics;
-    parameters_.cmd_vel_timeout = kTimeout;
-    parameters_.one_sender = chance(3);
-    with_list_ = chance(3);
-    for (double& timeout : source_timeouts_) timeout = kSourceTimeouts[random_() % kSourceTimeouts.size()];
-    for (std::size_t node = 0; node < kNodes; ++node) start(static_cast<Node>(node));
-  }
+  Sequence(std::uint64_t seed, ReleaseFigures& figures) : random_(seed), figures_(figures) {}
+  virtual ~Sequence() = default;
 
   std::optional<std::string> run() {
-    for (now_ = 0; now_ < kReleaseCycles; ++now_) {
-      disturb();
+    for (std::size_t node = 0; node < kNodes; ++node) start(static_cast<Node>(node));
+    for (now_ = 0; now_ < undisturbed_ + kReleaseCycles * rarity_; ++now_) {
+      if (now_ >= undisturbed_) disturb();
       send();
       step();
-      if (const char* violated = judge()) return "tick " + std::to_string(now_) + ": " + violated;
+      if (const std::string violated = violation(); !violated.empty())
+        return "tick " + std::to_string(now_) + ": " + violated;
     }
     return std::nullopt;
   }
 
- private:
+ protected:
+  virtual const MachineModel& model() const = 0;
+  virtual Driver& machine() = 0;
+  virtual GateParameters gate() const { return {}; }
+  virtual std::unique_ptr<EstimatorLaw> make_estimator() const = 0;
+  virtual std::unique_ptr<ControllerLaw> make_controller() const = 0;
+  virtual std::unique_ptr<MonitorLaw> make_monitor() const = 0;
+
+  /// Returns true if anything but the brake is commanded.
+  virtual bool moves() const = 0;
+
+  /// The rules of one kind.
+  virtual std::string body_violation() { return {}; }
+
+  /// Changes cmd_vel_timeout as set_parameters does.
+  virtual void tune() {}
+
   bool chance(unsigned one_in) { return random_() % one_in == 0; }
+
+  /// The same of what disturbs the robot.
+  bool disturbs(unsigned one_in) { return chance(one_in * static_cast<unsigned>(rarity_)); }
   std::int64_t below(std::int64_t end) {
     return static_cast<std::int64_t>(random_() % static_cast<std::uint64_t>(end));
   }
@@ -112,29 +129,28 @@ class Sequence {
     switch (node) {
       case kDriverNode:
         driver_ = std::make_unique<DriverCycle>(
-            machine_, robot_, DriverCycle::Channels{sensors_.writer, truth_.writer, &command_.reader, &permit_.reader},
-            kPeriodNs, nullptr);
+            machine(), model(),
+            DriverCycle::Channels{sensors_.writer, truth_.writer, &command_.reader, &permit_.reader}, kPeriodNs,
+            nullptr, gate());
         driver_->set_driver_instance(random_());
         driver_->begin_run(random_() | 1);
         break;
       case kEstimatorNode:
-        estimator_ = std::make_unique<EstimatorCycle>(
-            std::make_unique<EstimatorOf<Estimator>>(EstimatorParameters{}, robot_, kPeriod), robot_.hash,
-            sensors_.reader, state_.writer, nullptr);
+        estimator_ =
+            std::make_unique<EstimatorCycle>(make_estimator(), model().hash, sensors_.reader, state_.writer, nullptr);
         break;
       case kControllerNode:
         controller_ = std::make_unique<ControllerCycle>(
-            std::make_unique<ControllerOf<DriveController>>(parameters_, robot_, kPeriod), robot_.hash,
+            make_controller(), model().hash,
             ControllerCycle::Channels{&sensors_.reader, &state_.reader, &permit_.reader, command_.writer},
             CommandScript(), nullptr);
-        inbox_.emplace(parameters_.cmd_vel_timeout, parameters_.one_sender);
-        mux_.emplace(two_sources(source_timeouts_[0], source_timeouts_[1]), parameters_.cmd_vel_timeout,
-                     parameters_.one_sender);
+        inbox_.emplace(timeout_, one_sender_);
+        mux_.emplace(two_sources(source_timeouts_[0], source_timeouts_[1]), timeout_, one_sender_);
         start_intake();
         break;
       case kMonitorNode:
         monitor_ = std::make_unique<MonitorCycle>(
-            std::make_unique<MonitorOf<SafetyMonitor>>(monitored_, robot_, kPeriod), robot_.hash, kLossNs,
+            make_monitor(), model().hash, kLossNs,
             MonitorCycle::Channels{&sensors_.reader, &state_.reader, &command_.reader, permit_.writer}, CommandScript(),
             nullptr);
         operator_input_ = {};
@@ -242,22 +258,22 @@ class Sequence {
         start(node);
       }
       if (now_ < away_until_[i]) continue;
-      if (chance(700)) {
+      if (disturbs(700)) {
         end(node);
         dead_[i] = true;
         away_until_[i] = now_ + 1 + below(chance(2) ? 4 : 80);
-      } else if (chance(700)) {
+      } else if (disturbs(700)) {
         away_until_[i] = now_ + 1 + below(chance(2) ? 4 : 80);  // stopped, and goes on
       }
     }
-    if (driver_ && chance(900)) {
+    if (driver_ && disturbs(900)) {
       driver_->begin_run(random_() | 1);
       take_release_back();
     }
     pause();
     if (chance(300) && controller_ && !away(kControllerNode)) tune();
     if (!monitor_ || away(kMonitorNode)) return;
-    if (chance(500)) {
+    if (disturbs(500)) {
       ++operator_input_.e_stop_services;
       stop();
     }
@@ -267,7 +283,7 @@ class Sequence {
 
   /// A zero that is sent in the pause counts after it, because nothing older may move then.
   void pause() {
-    if (driver_ && !away(kDriverNode) && now_ > pause_until_ && chance(700)) {
+    if (driver_ && !away(kDriverNode) && now_ > pause_until_ && disturbs(700)) {
       pause_until_ = now_ + 1 + below(chance(2) ? 4 : 80);
       take_release_back();
     }
@@ -285,19 +301,15 @@ class Sequence {
     stopped_ = true;
   }
 
-  /// Changes cmd_vel_timeout as set_parameters does.
-  void tune() {
+  void set_timeout(double timeout) {
     silence_before_ = silence();
-    parameters_.cmd_vel_timeout = kTimeouts[random_() % kTimeouts.size()];
-    DriveTuning tuning = drive_tuning(parameters_, robot_, kPeriod);
-    tuning.count = ++tunings_;
-    controller_->tunings().store(tuning_of(tuning));
-    inbox_->set_timeout(parameters_.cmd_vel_timeout);
-    mux_->set_timeout(parameters_.cmd_vel_timeout);
+    timeout_ = timeout;
+    inbox_->set_timeout(timeout_);
+    mux_->set_timeout(timeout_);
     for (Sender& sender : senders_) sender.silence = std::min(sender.silence, silence());
   }
 
-  std::int64_t silence() const { return std::llround(silence_needed(parameters_.cmd_vel_timeout) / kPeriod); }
+  std::int64_t silence() const { return std::llround(silence_needed(timeout_) / kPeriod); }
 
   /// The shorter of the present timeout and the one before it, whose frames may still be under way.
   std::int64_t shortest_silence() const { return std::min(silence(), silence_before_); }
@@ -306,7 +318,7 @@ class Sequence {
   void press() {
     for (Button& button : buttons_) {
       if (chance(400)) button.present = !button.present;
-      if (button.present && chance(button.level ? 60 : 400)) publish(button, !button.level);
+      if (button.present && (button.level ? chance(60) : disturbs(400))) publish(button, !button.level);
     }
     if (!chance(100)) return;
     Button once{.name = "/once_" + std::to_string(now_)};
@@ -343,7 +355,10 @@ class Sequence {
 
   void send() {
     for (Sender& sender : senders_) {
-      if (chance(150)) {
+      if (now_ < undisturbed_) {
+        const bool first = &sender == senders_.data();
+        sender.message = !first ? Message::kNone : now_ < kTimeoutTicks ? Message::kZero : Message::kMotion;
+      } else if (disturbs(150)) {
         constexpr std::array kChoices{Message::kNone,  Message::kNone,     Message::kZero,
                                       Message::kZero,  Message::kMotion,   Message::kNotFinite,
                                       Message::kStale, Message::kAgedZero, Message::kAgedMotion};
@@ -352,9 +367,9 @@ class Sequence {
         sender.zero_first = chance(2);
         sender.period = 1 + below(kTimeoutTicks - 2 * kJudgesMargin);
       }
-      if (chance(300)) sender.suspended_until = now_ + below(4 * kTimeoutTicks);
-      if (chance(400)) restart(sender);
-      if (chance(400)) reopen(sender);
+      if (disturbs(300)) sender.suspended_until = now_ + below(4 * kTimeoutTicks);
+      if (disturbs(400)) restart(sender);
+      if (disturbs(400)) reopen(sender);
       if (now_ < sender.suspended_until) continue;
       if (sender.message == Message::kNone || now_ - sender.sent < sender.period) continue;
       sender.sent = now_;
@@ -378,7 +393,7 @@ class Sequence {
   void follow_permission() {
     Permit permit;
     if (permit_.reader.newest(permit) != Lookup::kFrame) return;
-    if (!current(sensors_.reader, permit.head, robot_.hash)) return;
+    if (!current(sensors_.reader, permit.head, model().hash)) return;
     const MotionPermission permission = motion_permission(permit);
     if (!std::exchange(has_looked_, true) && !permission.stopped && permission.run != earlier_run_ &&
         !earlier_requested_) {
@@ -461,7 +476,7 @@ class Sequence {
     if (std::exchange(unseen_[node], false)) start_cycle_ = withdrawn_cycle_ = cycles_;
   }
 
-  const char* judge() {
+  std::string violation() {
     if (!released_ && now_ - std::max(started_at_, last_sent_) >= shortest_silence() - kJudgesMargin) {
       released_ = true;
       release();
@@ -476,7 +491,8 @@ class Sequence {
           return "a reset was accepted while a motion was requested";
       }
     }
-    if (!ticked_ || machine_.mode == JointMode::kBrake) return nullptr;
+    if (std::string violated = body_violation(); !violated.empty()) return violated;
+    if (!ticked_ || !moves()) return {};
     ++figures_.moving_cycles;
     if (!released_ && cycles_ - start_cycle_ > kBrakesWithin) return "motion before a zero request";
     if (stopped_ && cycles_ - stop_cycle_ > kBrakesWithin) return "motion after an emergency stop";
@@ -488,15 +504,15 @@ class Sequence {
     if (requested || !in_force) requested_cycle_ = cycles_;
     if (cycles_ - std::max(requested_cycle_, withdrawn_cycle_) > kBrakesWithin)
       return "motion that was requested before a withdrawal";
-    return nullptr;
+    return {};
   }
 
   std::mt19937_64 random_;
   ReleaseFigures& figures_;
-  DriveTrain robot_ = two_wheels();
-  DriveControllerParameters parameters_;
-  StandingMachine machine_;
-  SafetyParameters monitored_;
+  double timeout_ = kTimeout;  ///< s
+  bool one_sender_ = false;
+  std::int64_t undisturbed_ = 0;  ///< ticks at the beginning, in which one sender requests motion
+  std::int64_t rarity_ = 1;       ///< a disturbance comes so many times less often, in so many times more ticks
   TestChannel<SensorFrame> sensors_;
   TestChannel<TruthFrame> truth_;
   TestChannel<StateFrame> state_;
@@ -520,7 +536,6 @@ class Sequence {
   std::array<Button, 2> buttons_{Button{.name = "/panel"}, Button{.name = "/gate"}};
   std::map<std::string, bool> buttons_heard_;
   bool held_ = false;  ///< at the last reset request a level was not to end
-  std::uint64_t tunings_ = 0;
   std::int64_t silence_before_ = kTimeoutTicks;
   std::array<Sender, 2> senders_{Sender{.name = "/a"}, Sender{.name = "/b"}};
   std::array<bool, 2> waiting_{};
@@ -545,10 +560,117 @@ class Sequence {
   std::int64_t pause_until_ = kNever;  ///< tick
 };
 
+class WheeledSequence final : public Sequence {
+ public:
+  WheeledSequence(std::uint64_t seed, ReleaseFigures& figures, WheelCommand drives) : Sequence(seed, figures) {
+    robot_.wheel_command = drives;
+    if (drives == WheelCommand::kVelocity) machine_.measured = monitored_.joint_numbers = kValidKinematics;
+    parameters_.cmd_vel_timeout = timeout_;
+    one_sender_ = chance(3);
+    with_list_ = chance(3);
+    for (double& timeout : source_timeouts_) timeout = kSourceTimeouts[random_() % kSourceTimeouts.size()];
+  }
+
+ private:
+  const MachineModel& model() const override { return robot_; }
+  Driver& machine() override { return machine_; }
+  std::unique_ptr<EstimatorLaw> make_estimator() const override {
+    return std::make_unique<EstimatorOf<Estimator>>(EstimatorParameters{}, robot_, kPeriod);
+  }
+  std::unique_ptr<ControllerLaw> make_controller() const override {
+    return std::make_unique<ControllerOf<DriveController>>(parameters_, robot_, kPeriod);
+  }
+  std::unique_ptr<MonitorLaw> make_monitor() const override {
+    return std::make_unique<MonitorOf<SafetyMonitor>>(monitored_, robot_, kPeriod);
+  }
+  bool moves() const override { return machine_.mode != JointMode::kBrake; }
+
+  void tune() override {
+    parameters_.cmd_vel_timeout = kTimeouts[random_() % kTimeouts.size()];
+    set_timeout(parameters_.cmd_vel_timeout);
+    DriveTuning tuning = drive_tuning(parameters_, robot_, kPeriod);
+    tuning.count = ++tunings_;
+    controller_->tunings().store(tuning_of(tuning));
+  }
+
+  DriveTrain robot_ = two_wheels();
+  DriveControllerParameters parameters_;
+  StandingMachine machine_;
+  SafetyParameters monitored_;
+  std::uint64_t tunings_ = 0;
+};
+
+/// Quadbot, simulated, with all conditions of its monitor. It stands up and walks before it is disturbed.
+class LeggedSequence final : public Sequence {
+ public:
+  LeggedSequence(std::uint64_t seed, ReleaseFigures& figures) : Sequence(seed, figures), parameters_(of_quadbot(seed)) {
+    one_sender_ = chance(3);
+    undisturbed_ = 4000;
+    rarity_ = 4;
+    machine_.start();
+  }
+
+ private:
+  static Parameters of_quadbot(std::uint64_t seed) {
+    Parameters parameters = read_parameters(PROJECT_DIRECTORY "/config/robot_params.yaml");
+    parameters.urdf = PROJECT_DIRECTORY "/urdf/quadbot.urdf";
+    parameters.robot = {};
+    parameters.leg_control.request_timeout = kTimeout;
+    parameters.plant.seed = seed;
+    return parameters;
+  }
+
+  static constexpr int kRests = 1500;       // driver cycles after which a stopped robot lies (docs/legs.md)
+  static constexpr double kStands = 0.1;    // m, of the body above where it lay
+  static constexpr double kHeight = 0.02;   // m, of a body that lies
+  static constexpr double kUpright = 0.15;  // rad
+  static constexpr double kMoved = 0.003;   // m, from then on: 0.01 m/s for the 0.3 s of bench/faults/sequence_judge.py
+
+  const MachineModel& model() const override { return robot_.machine(); }
+  Driver& machine() override { return machine_; }
+  GateParameters gate() const override { return robot_.gate(); }
+  std::unique_ptr<EstimatorLaw> make_estimator() const override { return robot_.make_estimator(); }
+  std::unique_ptr<ControllerLaw> make_controller() const override { return robot_.make_controller(); }
+  std::unique_ptr<MonitorLaw> make_monitor() const override { return robot_.make_monitor(); }
+  bool moves() const override { return driver_->trace().gate.verdict != GateVerdict::kBrake; }
+
+  std::string body_violation() override {
+    TruthFrame truth;
+    if (!ticked_ || truth_.reader.newest(truth) != Lookup::kFrame) return {};
+    const double height = truth.pose_world.position[2];
+    lay_at_ = std::min(lay_at_, height);
+    if (height > lay_at_ + kStands) ++figures_.standing_cycles;
+    braked_ = moves() || std::exchange(run_, truth.head.run) != truth.head.run ? 0 : braked_ + 1;
+    if (braked_ < kRests) return {};
+    ++figures_.lying_cycles;
+    const Quaternion& q = truth.pose_world.orientation;
+    const Vector3& place = truth.pose_world.position;
+    if (braked_ == kRests) rests_at_ = place;
+    const double tilt = 2 * std::hypot(q[0], q[1]);
+    const double moved = std::hypot(place[0] - rests_at_[0], place[1] - rests_at_[1], place[2] - rests_at_[2]);
+    if (height <= lay_at_ + kHeight && tilt <= kUpright && moved <= kMoved) return {};
+    return "a robot that has been stopped for " + std::to_string(braked_) + " cycles is " +
+           std::to_string(height - lay_at_) + " m above where it lay, tilted by " + std::to_string(tilt) +
+           " rad, and moved by " + std::to_string(moved) + " m since it had to rest";
+  }
+
+  Parameters parameters_;
+  Quadruped robot_{parameters_, read_legs(load_description(parameters_.urdf), {}, {})};
+  MujocoPlant machine_{robot_.machine(), parameters_.plant, kPeriod};
+  double lay_at_ = 1;  ///< m, the lowest height of the body
+  std::uint64_t run_ = 0;
+  Vector3 rests_at_{};  ///< m, the place of the body
+  int braked_ = 0;      ///< driver cycles of this run; another one begins the stop again
+};
+
 }  // namespace
 
 std::optional<std::string> release_violation(std::uint64_t seed, ReleaseFigures& figures, WheelCommand drives) {
-  return Sequence(seed, figures, drives).run();
+  return WheeledSequence(seed, figures, drives).run();
+}
+
+std::optional<std::string> walking_release_violation(std::uint64_t seed, ReleaseFigures& figures) {
+  return LeggedSequence(seed, figures).run();
 }
 
 }  // namespace robot_control

@@ -16,6 +16,7 @@
 ///               controller learns of it, and from a
 ///               release that finds it requesting motion, to its own next accepted zero, over all its connections and
 ///               all controllers of a run or of a stop
+///   lies        a robot on legs that the gate has stopped for 1.5 s lies upright, and stays where it is
 ///   reset       is accepted only if no sender's newest message of the last T, to this controller, requested motion
 ///               or was refused, and if no publisher's last word on e_stop was true, as far as this monitor or an
 ///               earlier one received it; that of one that has left counts until the first message of another
@@ -36,10 +37,15 @@ struct ReleaseFigures {
   std::uint64_t moving_cycles = 0;
   std::uint64_t accepted_resets = 0;
   std::uint64_t starts = 0;
+  std::uint64_t standing_cycles = 0;  ///< of a robot on legs
+  std::uint64_t lying_cycles = 0;     ///< after a stop, in which it was judged
 };
 
 /// The rule that `seed` violates with drives of this command, and its cycle; none if all hold. Adds to `figures`.
 std::optional<std::string> release_violation(std::uint64_t seed, ReleaseFigures& figures,
                                              WheelCommand drives = WheelCommand::kTorque);
+
+/// The same of quadbot on the simulated machine, which walks before anything happens.
+std::optional<std::string> walking_release_violation(std::uint64_t seed, ReleaseFigures& figures);
 
 }  // namespace robot_control

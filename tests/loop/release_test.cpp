@@ -28,6 +28,19 @@ TEST_P(MotionReleaseSequences, NothingMovesWithoutARelease) {
   EXPECT_GT(figures.starts, 10 * seeds);
 }
 
+TEST(WalkingReleaseSequences, NothingMovesWithoutAReleaseAndAStoppedRobotLies) {
+  constexpr std::uint64_t kWalks = kSeeds / 10;
+  ReleaseFigures figures;
+  for (std::uint64_t seed = 0; seed < kWalks; ++seed) {
+    const auto violated = walking_release_violation(seed, figures);
+    ASSERT_FALSE(violated) << "seed " << seed << ", " << *violated;
+  }
+  EXPECT_GT(figures.standing_cycles, 3000 * kWalks);
+  EXPECT_GT(figures.lying_cycles, 100 * kWalks);
+  EXPECT_GT(figures.accepted_resets, 0);
+  EXPECT_GT(figures.starts, 10 * kWalks);
+}
+
 INSTANTIATE_TEST_SUITE_P(Drives, MotionReleaseSequences,
                          testing::Values(WheelCommand::kTorque, WheelCommand::kVelocity));
 

@@ -530,6 +530,7 @@ TEST(Schema, EveryNumberHasARange) {
           std::holds_alternative<double*>(field) || std::holds_alternative<std::int64_t*>(field) ||
           std::holds_alternative<std::uint64_t*>(field) || std::holds_alternative<std::optional<double>*>(field) ||
           std::holds_alternative<Vector3*>(field) || std::holds_alternative<std::optional<Vector3>*>(field) ||
+          std::holds_alternative<std::optional<NumberList<4>>*>(field) ||
           std::holds_alternative<std::optional<CovarianceDiagonal>*>(field);
       EXPECT_EQ(number, key.min < key.max) << path_of(block, key);
     }

@@ -86,6 +86,31 @@ INSTANTIATE_TEST_SUITE_P(Walks, WalkOfQuadbot,
                                          Walk{walk(0.2, 0, 0, gait(GaitName::kCrawl)), 0.03, 0.15},
                                          Walk{walk(0.5, 0, 0, gait(GaitName::kWalkingTrot)), 0.03, 0.15}));
 
+/// One foot after the other swings, for a quarter of the period.
+TEST(Walking, AGaitOfOnesOwnCarriesTheRobotAndIsLimitedByItsLegs) {
+  const LegModel model = legged_robot("quadbot");
+  Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
+  parameters.leg_control.gaits[3] = {
+      .name = "amble", .period = 0.6, .duty = 0.75, .phases = NumberList<4>{0.5, 0, 0.25, 0.75}, .lift = 0.06};
+  QuadrupedLoop robot(model, parameters);
+  robot.wait(0.3);
+  const std::uint64_t amble = kGaits.size();
+  const Request slow = walk(0.3, 0, 0, kStanceGait + amble);
+  robot.run(3.0, slow);
+  expect_walk(robot, slow, 0.03, 0.15);
+  EXPECT_EQ(robot.command().legged.gait, amble);
+  const NominalStance stance = nominal_stance(model);
+  Gaits gaits = all_gaits(parameters.leg_control.gaits);
+  for (Gait& each : gaits) each = gait_of(model, stance, each);
+  const double fastest = walking_speeds(model, stance, gaits)[amble][0];
+  robot.run(3.0, walk(1.5, 0, 0, kStanceGait + amble));
+  EXPECT_NE(robot.command().reasons & kReasonLegSpeed, 0u);
+  EXPECT_NEAR(mean_twist(robot, 1.2, walk(1.5, 0, 0, kStanceGait + amble))[0], fastest, 0.05 * fastest);
+  EXPECT_EQ(robot.permit().causes | robot.permit().warnings, 0u) << robot.causes();
+  robot.run(0.1, walk(0.4, 0, 0, kStanceGait + amble + 1));
+  EXPECT_NE(robot.command().reasons & kReasonPartIgnored, 0u);
+}
+
 /// Returns quadbot that walks with 0.5 m/s.
 QuadrupedLoop walking() {
   QuadrupedLoop robot = loop_of("quadbot");

@@ -38,11 +38,16 @@ TEST(LegMessages, OnlyTwoPosturesCanBeSet) {
 }
 
 TEST(LegMessages, AGaitAndItsModeAreOneAndTheSame) {
-  for (const char* gait : {"auto", "trot", "walking_trot", "crawl"}) {
-    ASSERT_TRUE(mode_of_gait(gait).has_value()) << gait;
-    EXPECT_EQ(gait_of_mode(*mode_of_gait(gait)), gait);
+  OwnGaits own;
+  own[2] = {.name = "amble", .period = 0.5, .duty = 0.6, .phases = NumberList<4>{}, .lift = 0.07};
+  const Gaits gaits = all_gaits(own);
+  for (const char* gait : {"auto", "trot", "walking_trot", "crawl", "amble"}) {
+    ASSERT_TRUE(mode_of_gait(gait, gaits).has_value()) << gait;
+    EXPECT_EQ(gait_of_mode(*mode_of_gait(gait, gaits), gaits), gait);
   }
-  EXPECT_FALSE(mode_of_gait("stand").has_value());
+  EXPECT_FALSE(mode_of_gait("stand", gaits).has_value());
+  EXPECT_FALSE(mode_of_gait("amble", all_gaits({})).has_value());
+  EXPECT_EQ(gait_names(gaits), "auto, trot, walking_trot, crawl, amble");
 }
 
 TEST(LegMessages, TheStateNamesPostureFootAndReasons) {
@@ -55,10 +60,12 @@ TEST(LegMessages, TheStateNamesPostureFootAndReasons) {
   LegModel robot;
   robot.joints.resize(2);
   robot.joints[1].name = "knee";
-  const msg::LegState message = leg_state({command, plan, {}, state, kReasonOutOfReach}, robot, ros::Time(1, 2));
+  const msg::LegState message =
+      leg_state({command, plan, {}, state, all_gaits({}), kReasonOutOfReach}, robot, ros::Time(1, 2));
   EXPECT_EQ(message.posture, "standing");
   EXPECT_EQ(message.lifted, "rear_right");
   EXPECT_EQ(message.body.yaw, 0.3);
+  EXPECT_THAT(message.gaits, ElementsAre("auto", "trot", "walking_trot", "crawl"));
   EXPECT_THAT(message.reasons, ElementsAre("out_of_reach"));
   EXPECT_THAT(message.bears, ElementsAre(0, 1, 0, 0));
   EXPECT_EQ(message.load[1], 31);

@@ -417,6 +417,23 @@ TEST_F(WalkingConditionsTest, AMotorThatGivesNoTorqueWhileItsFootBearsBrakes) {
   EXPECT_EQ(joint(), 8u);
 }
 
+TEST_F(WalkingConditionsTest, AMotorThatGivesItsTorqueInEveryOtherCycleBrakes) {
+  const auto failing = [&](int missing, int cycles) {
+    return [&, missing, cycles, cycle = 0](double) mutable {
+      ++cycle;
+      for (std::size_t i = 0; i < kLegsJoints; ++i) {
+        JointCommand& command = command_.joints[i];
+        command.effort = command.stiffness > 0 ? 0 : 0.1 * robot_.joints[i].effort_limit;
+        sensors_.joints[i].effort = i == 8 && cycle % cycles < missing ? 0 : command.effort;
+      }
+    };
+  };
+  EXPECT_EQ(walk(2, failing(1, 5)), 2);
+  EXPECT_LT(walk(1, failing(10, 20)), 0.4);
+  EXPECT_EQ(causes(Reaction::kBrake), "joint_following");
+  EXPECT_EQ(joint(), 8u);
+}
+
 /// The state of a noisy gyro moves where a foot is to land.
 TEST_F(WalkingConditionsTest, ACommandThatJumpsInEachCycleIsNoStuckEncoder) {
   bool aside = false;

@@ -121,6 +121,17 @@ def test_a_robot_that_creeps_at_the_end_is_noticed(sequence, log):
     assert "rest" in rules_broken(sequence, log)
 
 
+def test_a_wheel_that_comes_free_is_turned_by_the_integral_of_its_drive_alone_and_not_for_long(sequence, log):
+    velocity = dataclasses.replace(sequence, wheel_command="velocity")
+    log["left_wheel_joint_injected_motor"] = np.zeros_like(log["injected"])
+    log["left_wheel_joint_injected_motor"][rows(1.5, 4.0)] = number_of("FaultKind", "stuck")
+    log["truth_linear"][rows(4.0, 4.3)] = 0.1
+    assert rules_broken(velocity, log) == set()
+    assert rules_broken(sequence, log) == {"brake"}
+    log["truth_linear"][rows(4.3, 5.2)] = 0.011
+    assert rules_broken(velocity, log) == {"brake"}
+
+
 def test_a_start_without_a_command_after_a_reset_is_noticed(sequence, log):
     reset = round(sequence.rested / PERIOD)
     log["supervisor_state"][reset - 1000 : reset] = STOPPED

@@ -5,6 +5,10 @@ import pytest
 from robot_control import ClosedLoop, DriverError
 from robot_control.installed_files import share_file
 
+from bench.drives.drive_figures import response_time
+from bench.drives.wheel_command import for_drives
+from bench.robot_corpus import DIFFBOT
+
 SPEED = 0.5
 """m/s"""
 
@@ -16,12 +20,11 @@ def velocity_loop(**plant):
 @pytest.mark.parametrize("gain", [0.5, 1.0, 1.5])
 @pytest.mark.parametrize("delay", [0, 20])
 def test_a_drive_that_takes_no_torque_hardly_overshoots_a_ramp(gain, delay):
-    """The response time is that of this drive, 20 ms for gains of 1."""
-    robot = {"wheel_command": "velocity", "wheel_feed_forward": False, "wheel_response_time": 0.02 / gain}
-    plant = {"drive": "velocity", "drive_feed_forward": False, "drive_gain": gain, "actuator_delay": delay}
-    loop = ClosedLoop({"robot": robot, "mujoco_plant": plant})
+    plant = {"drive_feed_forward": False, "drive_gain": gain, "actuator_delay": delay}
+    robot = {"wheel_response_time": response_time(DIFFBOT, plant)}
+    loop = ClosedLoop(for_drives("velocity", {"robot": robot, "mujoco_plant": plant}))
     log = loop.run(seconds=4.0, command=lambda t: (1.0 if t >= 0.5 else 0, 0))
-    assert log["truth_linear"].max() <= 1.02
+    assert log["truth_linear"].max() <= 1.005
 
 
 @pytest.mark.parametrize("gain", [0.5, 1.5])
@@ -52,6 +55,19 @@ def test_devices_with_a_speed_loop_of_their_own_drive_and_stop(drives, driver):
     assert np.sqrt(np.mean((speed[steady] - SPEED) ** 2)) <= 0.03 * SPEED
     assert abs(speed[-1]) < 1e-3
     assert not log["permit_causes"].any()
+
+
+@pytest.mark.parametrize(
+    ("drives", "driver", "takes"), [("odrive", "can", True), ("vesc", "can", False), ("board", "board", False)]
+)
+def test_the_speed_leads_the_plan_of_drives_that_take_no_torque(drives, driver, takes):
+    loop = ClosedLoop(
+        {"robot": {"wheel_command": "velocity", "driver": driver}}, drives=share_file(f"config/drives/{drives}.yaml")
+    )
+    loop.run(seconds=3.0, command=(0, 0))
+    log = loop.run(seconds=0.3, command=(SPEED, 0))
+    ordered = log["left_wheel_joint_velocity_command"] * loop.robot["wheels"][0]["radius"]
+    assert np.allclose(ordered, log["limited_linear"]) == takes
 
 
 def test_a_roboclaw_is_refused_where_torques_are_commanded():

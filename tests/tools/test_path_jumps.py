@@ -5,6 +5,7 @@ import math
 import pytest
 from robot_control.common.pose import Pose
 from robot_control.path.follower import Motion, State
+from robot_control.path.shapes import SHAPES
 from robot_control.path.waypoints import Waypoint
 
 from bench.release.path_jumps import FARTHEST, MAX_TIME, PERIOD, STRAIGHT, Jumping, excess
@@ -62,6 +63,21 @@ def test_progress_that_falls_back_for_ever_ends_the_path():
         robot.drive(0.2)
         robot.jump(-0.08, 0.0, 0.0)
     assert robot.driven < 2.0 + FARTHEST
+    assert "without coming nearer to its end" in robot.follower.reason
+
+
+def test_what_is_lost_in_the_turns_of_a_path_counts():
+    """At each corner the pose falls back along the next piece, which must not begin its count there."""
+    robot = Jumping(SHAPES["square"](0.6))
+    while not robot.follower.over:
+        drives = robot.follower.state is State.DRIVING
+        robot.step()
+        if drives and robot.follower.state is State.TURNING:
+            back = 0.09 * math.sin(robot.pose.yaw), -0.09 * math.cos(robot.pose.yaw), 0.0
+            robot.jump(*back)
+            robot.step()
+            robot.jump(*back)
+    assert robot.driven < robot.route.length + FARTHEST
     assert "without coming nearer to its end" in robot.follower.reason
 
 

@@ -163,8 +163,8 @@ void push_limits(const LegModel& model, std::uint64_t seed, WorstValues& worst) 
         if (robot.tilt > kTurnedOver || stopped(robot) != 0) break;
         taken = k * step;
       }
-      worst.add_least("push taken, " + std::string(gait.name) + " of " + std::to_string(each.speed).substr(0, 4) +
-                          " m/s, " + std::to_string(45 * i) + " deg",
+      worst.add_least("push taken, " + std::string(gait.name.data()) + " of " +
+                          std::to_string(each.speed).substr(0, 4) + " m/s, " + std::to_string(45 * i) + " deg",
                       taken, "N s");
     }
   }

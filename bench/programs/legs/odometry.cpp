@@ -157,8 +157,8 @@ void contact(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
         wrong += swings && said ? 1 : 0;
       }
     }
-    const std::string name =
-        std::string(kGaits[static_cast<std::size_t>(chosen.gait)].name) + (chosen.speed == 1.0 ? " 1.0 m/s" : "");
+    const std::string name = std::string(kGaits[static_cast<std::size_t>(chosen.gait)].name.data()) +
+                             (chosen.speed == 1.0 ? " 1.0 m/s" : "");
     worst.add("touchdowns not found in 15 ms, " + name, 100 * (1 - found / touchdowns), "%");
     worst.add("swing taken for a stance, " + name, 100 * wrong / swing, "%");
     worst.add("no touchdown, " + name, touchdowns > 20 ? 0 : 1, "runs");

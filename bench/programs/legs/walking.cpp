@@ -95,6 +95,11 @@ void gaits(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
     QuadrupedLoop robot(model, walking_parameters(seed));
     walk(robot, each, worst);
   }
+  Parameters own = walking_parameters(seed);
+  own.leg_control.gaits[0] = {
+      .name = "pace", .period = 0.3, .duty = 0.8, .phases = NumberList<4>{0.5, 0, 0.5, 0}, .lift = 0.06};
+  QuadrupedLoop robot(model, own);
+  walk(robot, {"pace", {0.5, 0, 0}, static_cast<GaitName>(kGaits.size())}, worst);
 }
 
 void robots(const LegModel& model, std::uint64_t seed, WorstValues& worst) {

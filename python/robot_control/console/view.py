@@ -155,6 +155,7 @@ def legs_of(message: LegState) -> Values:
         "posture": message.posture,
         "gait": message.gait,
         "chosen": message.chosen_gait,
+        "gaits": list(message.gaits),
         "feet": [{"name": name, "bears": bool(bears), "load": load} for name, bears, load in feet],
     }
 

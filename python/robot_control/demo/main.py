@@ -47,9 +47,7 @@ BUS = f"demo_{os.getpid()}"
 OUTPUTS = ("run.bag", "run.csv", "summary.json", "run.png", "launch.log", "send_cmd.log", "set_posture.log")
 EVERY_CYCLE = "telemetry: {record: always}\n"
 """parameters laid over the package's"""
-VELOCITY = "robot: {{wheel_command: velocity, wheel_feed_forward: {}}}\n"
-TAKE_TORQUES = (None, "odrive")
-"""drives that take a torque beside the speed; None: those of the simulated robot"""
+VELOCITY = "robot: {wheel_command: velocity}\n"
 SIMULATED_VELOCITY = f"{DRIVER}: {{drive: velocity}}\n"
 """the same, of drives that take speeds; the second one where no other drives stand before the motors"""
 
@@ -134,9 +132,8 @@ def overlay(drives: Path | None, *, velocity: bool) -> str:
     """The parameters that are laid over the package's."""
     if not velocity:
         return EVERY_CYCLE
-    takes_torque = (drives and drives.stem) in TAKE_TORQUES
     simulated = SIMULATED_VELOCITY if drives is None else ""
-    return EVERY_CYCLE + VELOCITY.format(str(takes_torque).lower()) + simulated
+    return EVERY_CYCLE + VELOCITY + simulated
 
 
 def refusals(launch_log: str) -> list[str]:

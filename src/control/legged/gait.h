@@ -13,18 +13,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "machine/legs/leg_model.h"
 
 namespace robot_control {
 
+inline constexpr std::size_t kMaxGaitName = 16;  ///< bytes
+
 struct Gait {
-  const char* name;
-  double period;                    ///< s
-  double duty;                      ///< 0 … 1; 1: no foot leaves the ground
-  std::array<double, kLegs> phase;  ///< 0 … 1, offsets of the legs
-  double lift;                      ///< m, of the foot's centre in the middle of its swing
-  double begin = 0;                 ///< 0 … 1, the phase with which the gait begins
+  std::array<char, kMaxGaitName + 1> name;  ///< ends with 0
+  double period;                            ///< s
+  double duty;                              ///< 0 … 1; 1: no foot leaves the ground
+  std::array<double, kLegs> phase;          ///< 0 … 1, offsets of the legs
+  double lift;                              ///< m, of the foot's centre in the middle of its swing
+  double begin = 0;                         ///< 0 … 1, the phase with which the gait begins
 
   /// Returns the phase of a leg within 0 … 1.
   double leg_phase(std::size_t leg, double gait_phase) const noexcept {
@@ -53,10 +56,14 @@ struct Gait {
   }
 };
 
+/// The gaits of a robot, by GaitName; then those of its user.
+using Gaits = std::vector<Gait>;
+
+inline constexpr double kMinSwing = 0.05;  ///< s, of a foot
+
 /// Returns true if a robot can walk with this gait. Each foot has to bear for a part of the period, to swing for long
 /// enough, and to be lifted.
 constexpr bool walkable(const Gait& gait) noexcept {
-  constexpr double kMinSwing = 0.05;  // s
   if (!(gait.duty > 0 && gait.duty <= 1 && gait.lift >= 0 && gait.period > 0 && gait.begin >= 0 && gait.begin < 1))
     return false;
   for (const double offset : gait.phase)
@@ -64,14 +71,35 @@ constexpr bool walkable(const Gait& gait) noexcept {
   return gait.duty == 1 || (gait.lift > 0 && gait.period * (1 - gait.duty) >= kMinSwing);
 }
 
+/// Returns how many feet bear at the same time at least. Other feet bear where a leg's phase passes 0 or the duty; the
+/// middles between these are counted, but for gaps of rounding errors.
+inline std::size_t fewest_feet(const Gait& gait) noexcept {
+  constexpr double kRounding = 1e-9;
+  std::array<double, 2 * kLegs + 1> changes{};
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    changes[2 * leg] = 1 - gait.leg_phase(leg, 0);
+    changes[2 * leg + 1] = 1 - gait.leg_phase(leg, 1 - gait.duty);
+  }
+  std::sort(changes.begin(), changes.end() - 1);
+  changes.back() = changes.front() + 1;
+  std::size_t fewest = kLegs;
+  for (std::size_t i = 0; i + 1 < changes.size(); ++i) {
+    if (changes[i + 1] - changes[i] < kRounding) continue;
+    std::size_t feet = 0;
+    for (std::size_t leg = 0; leg < kLegs; ++leg) feet += gait.bears(leg, (changes[i] + changes[i + 1]) / 2) ? 1 : 0;
+    fewest = std::min(fewest, feet);
+  }
+  return fewest;
+}
+
 enum class GaitName { kStand, kTrot, kWalkingTrot, kCrawl };
 
 /// By GaitName.
 inline constexpr std::array kGaits{
-    Gait{"stand", 0.5, 1, {0, 0, 0, 0}, 0},
-    Gait{"trot", 0.38, 0.5, {0.5, 0, 0, 0.5}, 0.08},
-    Gait{"walking_trot", 0.5, 0.6, {0.5, 0, 0, 0.5}, 0.07},
-    Gait{"crawl", 1.0, 0.78, {0, 0.5, 0.25, 0.75}, 0.06, 0.75},
+    Gait{{"stand"}, 0.5, 1, {0, 0, 0, 0}, 0},
+    Gait{{"trot"}, 0.38, 0.5, {0.5, 0, 0, 0.5}, 0.08},
+    Gait{{"walking_trot"}, 0.5, 0.6, {0.5, 0, 0, 0.5}, 0.07},
+    Gait{{"crawl"}, 1.0, 0.78, {0, 0.5, 0.25, 0.75}, 0.06, 0.75},
 };
 static_assert(std::all_of(kGaits.begin(), kGaits.end(), walkable));
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "control/legged/body_bounds.h"
+#include "control/legged/own_gaits.h"
 #include "control/legged/walking/walking_speed.h"
 
 namespace robot_control {
@@ -55,7 +56,7 @@ LegController::LegController(const LegModel& robot, const LegControllerParameter
       body_motion_(body_bounds(robot)),
       lie_down_after_(parameters.lie_down_after),
       limiter_(twist_limits(parameters)),
-      walker_(robot, parameters.friction, period),
+      walker_(robot, all_gaits(parameters.gaits), parameters.friction, period),
       state_(CommandWatch(parameters.request_timeout, period, kExecutable)) {
   const NominalStance stance = nominal_stance(robot);
   fastest_ = walking_speeds(robot, stance, walker_.gaits());
@@ -107,7 +108,7 @@ void LegController::step(const ControlInput& input, CommandFrame& out) noexcept 
   const bool of_standing = !of_joints && ((parts_of(request) & kPose) != 0 || lifts);
   const bool stands = state_.phase == LegPhase::kStanding || (state_.phase == LegPhase::kWalking && !lifts);
   if (of_standing && !stands && !walks(request)) out.reasons |= kReasonNotStanding;
-  if (request.mode >= kStanceGait + kGaits.size() || request.mode == kStanceGait) out.reasons |= kReasonPartIgnored;
+  if (request.mode >= kStanceGait + fastest_.size() || request.mode == kStanceGait) out.reasons |= kReasonPartIgnored;
   const bool lies = state_.phase == LegPhase::kLying || state_.phase == LegPhase::kJoints;
   if (of_joints && !lies) out.reasons |= kReasonNotLying;
   const std::array<double, kLegsJoints> before = state_.angles;

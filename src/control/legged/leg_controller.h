@@ -183,7 +183,7 @@ class LegController {
   double lie_down_after_;  ///< s; 0: never
   TwistLimiter limiter_;
   Walker walker_;
-  Speeds fastest_{};          ///< by GaitName
+  Speeds fastest_;            ///< by GaitName
   double foot_distance_ = 0;  ///< m, of the farthest foot from the centre of gravity
   State state_;
 };

@@ -1,6 +1,7 @@
 #pragma once
 /// These are the user's parameters of the leg controller.
 
+#include "control/legged/own_gaits.h"
 #include "parameters/block.h"
 
 namespace robot_control {
@@ -16,10 +17,11 @@ struct LegControllerParameters {
   double max_angular_acceleration = 4;    ///< rad/s²
   double friction = 0.4;                  ///< of the ground, up to which the feet push sideways
   double lie_down_after = 0;              ///< s without a request of motion; 0 = never
+  OwnGaits gaits{};
 };
 
 inline Keys keys(LegControllerParameters& legs) {
-  return {
+  Keys all{
       {"request_timeout", &legs.request_timeout, "s", 0, 60, kLoopTimeout | kZeroIsOff},
       {"one_sender", &legs.one_sender},
       {"max_linear_speed", &legs.max_linear_speed, "m/s", 0.001, 50},
@@ -31,6 +33,7 @@ inline Keys keys(LegControllerParameters& legs) {
       {"friction", &legs.friction, {}, 0.05, 2},
       {"lie_down_after", &legs.lie_down_after, "s", 0, 1.0e6, kZeroIsOff},
   };
+  return joined({all, keys(legs.gaits)});
 }
 
 }  // namespace robot_control

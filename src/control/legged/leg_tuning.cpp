@@ -4,7 +4,27 @@
 #include <cmath>
 #include <limits>
 
+#include "machine/gravity.h"
+
 namespace robot_control {
+namespace {
+
+double standing_height(const LegModel& robot) noexcept {
+  constexpr double kLowest = 0.7, kHighest = 0.85, kStep = 0.01;  // of the leg length
+  constexpr double kOfKnee = 0.6;
+  double height = kLowest;
+  const auto knees_bear = [&] {
+    for (std::size_t leg = 0; leg < kLegs; ++leg) {
+      const double lever = robot.legs[leg].kinematics.knee_lever(height * robot.leg_length());
+      if (robot.mass * kGravity / 2 * lever > kOfKnee * robot.joints[kLegJoints * leg + 2].effort_limit) return false;
+    }
+    return true;
+  };
+  while (height < kHighest && !knees_bear()) height += kStep;
+  return height * robot.leg_length();
+}
+
+}  // namespace
 
 // These are the values of a robot of kReferenceMass with legs of kReferenceLeg.
 LegTuning leg_tuning(const LegModel& robot) noexcept {
@@ -15,7 +35,7 @@ LegTuning leg_tuning(const LegModel& robot) noexcept {
   tuning.damping = 2 * mass * length * time;
   tuning.gather_speed = 3 / time;
   tuning.rise_time = 1.3 * time;
-  tuning.height = 0.7 * robot.leg_length();
+  tuning.height = standing_height(robot);
   tuning.lift = 0.08 * length;
   tuning.sway = 0.12 * robot.leg_length();
   tuning.bob = 0.16 * robot.leg_length();

@@ -1,5 +1,9 @@
 #pragma once
 /// The values of the leg controller that follow from the robot.
+///
+/// A robot stands at 0.7 of its leg length. It stands higher, at most at 0.85, where a knee would need more than 0.6 of
+/// its torque for half of the weight. A trot puts half of the weight on a leg, at its peak 1.27 times that. So 0.6
+/// leaves room for a payload of 20 %, or for a motor that gives 0.8 of its torque.
 
 #include <array>
 

@@ -30,7 +30,7 @@ bool usable(const ControlInput& input) noexcept {
 
 /// Returns true if this request asks the robot to walk.
 bool LegController::walks(const Request& request) const noexcept {
-  if (request.mode > kStanceGait && request.mode < kStanceGait + kGaits.size()) return true;
+  if (request.mode > kStanceGait && request.mode < kStanceGait + fastest_.size()) return true;
   return request.mode == kStanceStay && (parts_of(request) & kWalk) != 0;
 }
 
@@ -102,7 +102,7 @@ bool LegController::placed(const ControlInput& input) const noexcept {
 GaitName LegController::choose_gait(const Request& request, const WalkingTwist& target) noexcept {
   constexpr auto kTrot = static_cast<std::uint64_t>(GaitName::kTrot);
   if (request.mode > kStanceGait) {
-    state_.gait = std::min<std::uint64_t>(request.mode - kStanceGait, kGaits.size() - 1);
+    state_.gait = std::min<std::uint64_t>(request.mode - kStanceGait, fastest_.size() - 1);
   } else if (!rests(target)) {
     const auto& now = state_.twist.axes;
     const double fastest =

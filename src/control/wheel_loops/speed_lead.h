@@ -13,6 +13,8 @@
 ///
 /// Tᵢ is taken as 4 T, that of a critically damped loop. A drive that is twice as slow as T overshoots half as much as
 /// without the lead; one that is faster comes from below.
+///
+/// All in all the lead drives no way. A stop ends where the plan ends, if the lead is ordered until it has `ended`.
 
 #include <cmath>
 #include <cstdint>
@@ -25,6 +27,9 @@ class SpeedLead {
   SpeedLead(double response_time, double period) noexcept : time_(response_time), period_(period) {}
 
   void reset() noexcept { slow_ = 0; }
+
+  /// Returns true where the order is the plan until the plan accelerates.
+  bool ended() const noexcept { return slow_ == 0; }
 
   /// Returns q̇* in rad/s, `periods` after the last step, for a planned speed in rad/s with its acceleration in rad/s².
   double step(double plan, double acceleration, double periods) noexcept {

@@ -139,6 +139,7 @@ void CanDriver::read(SensorFrame& sensors) noexcept {
     if (!drives_[i].drive_parameters().measures_torque) joint.effort = std::numeric_limits<double>::quiet_NaN();
     joint.age_ns = now_ns_ - sample.stamp_ns;
     joint.valid = (sample.valid ? kValidPosition | kValidVelocity : 0U) | (sample.effort_valid ? kValidEffort : 0U);
+    if (drives_[i].drive_parameters().takes_effort) joint.valid |= kTakesEffort;
     const DriveStatus& status = drives_[i].status();
     joint.fault = status.state == DriveState::kFault ? static_cast<std::uint32_t>(status.cause) : 0;
     if (sample.voltage > 0) sensors.battery_voltage = sample.voltage;

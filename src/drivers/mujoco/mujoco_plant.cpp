@@ -343,6 +343,7 @@ void MujocoPlant::measure() noexcept {
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     measured_.joints[i].effort = std::numeric_limits<double>::quiet_NaN();
     measured_.joints[i].valid &= ~std::uint32_t{kValidEffort};
+    if (parameters_.drive_feed_forward) measured_.joints[i].valid |= kTakesEffort;
   }
   read_ = false;
 }

@@ -66,10 +66,12 @@ void RoboclawDriver::take_bytes() noexcept {
       if (answered()) accept();
     }
   }
-  if (!pending_ || now_ns_ - sent_ns_ < kAnswerNs) return;
+  const bool pauses = unanswered_ == kRepeats;
+  if (!pending_ || now_ns_ - sent_ns_ < (pauses ? kPauseNs : kAnswerNs)) return;
   // Older firmware answers with 16 bits.
   if (command_ == Command::kStatus && roboclaw::is_answer(asked_, received_, 2)) return accept();
   pending_ = false;
+  unanswered_ = pauses ? 0 : unanswered_ + 1;
   if (std::ranges::find(kSlow, command_) != kSlow.end()) ++turn_;  // a board may lack it
   ++link_.lost;
   if (received_.size() > 0) ++link_.errors;
@@ -84,6 +86,7 @@ bool RoboclawDriver::answered() noexcept {
 
 void RoboclawDriver::accept() noexcept {
   pending_ = false;
+  unanswered_ = 0;
   switch (command_) {
     case Command::kVelocityPid1:
       accept_gains(1);

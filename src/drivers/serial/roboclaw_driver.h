@@ -3,10 +3,11 @@
 /// are neither taken nor measured.
 ///
 /// One exchange runs at a time: the driver sends a request in `write`, and takes its answer in a later `read`. After
-/// kAnswerNs the answer counts as lost; orders and readings of the encoders are repeated. In turn it orders the speeds
-/// and reads both encoders, and after kSlowEvery of these pairs battery, temperature or status. A loop of 200 Hz and
-/// more thus orders 100 times per second. The counts are those of the middle between request and answer; their speed
-/// brings them to the time of `read`.
+/// kAnswerNs the answer counts as lost; orders and readings of the encoders are repeated. After kRepeats of them it
+/// pauses for kPauseNs, because a board that holds a stray byte takes each request from there. In turn it orders the
+/// speeds and reads both encoders, and after kSlowEvery of these pairs battery, temperature or status. A loop of 200 Hz
+/// and more thus orders 100 times per second. The counts are those of the middle between request and answer; their
+/// speed brings them to the time of `read`.
 ///
 /// `read` reports kStarting until version, gains and QPPS of both motors were read, and its serial timeout, which is
 /// set to kTimeoutNs. It is refused with gains or a QPPS of zero: such a board answers a speed with full power. Until
@@ -54,6 +55,8 @@ class RoboclawDriver final : public SerialDriver<RoboclawCause, RoboclawWheel> {
  public:
   static constexpr std::int64_t kTimeoutNs = 100'000'000;  ///< of the board, its shortest one
   static constexpr std::int64_t kAnswerNs = 8'000'000;     ///< 3 ms of jitter each way, and the board's own time
+  static constexpr std::int64_t kPauseNs = roboclaw::kPacketNs + 1'000'000;
+  static constexpr unsigned kRepeats = 2;
   static constexpr unsigned kSlowEvery = 4;
   static constexpr double kSpeedMargin = 1.5;  ///< of the velocity limit, above which a position jumped
   static constexpr double kBlindWay = 0.5;     ///< rad
@@ -97,6 +100,7 @@ class RoboclawDriver final : public SerialDriver<RoboclawCause, RoboclawWheel> {
   roboclaw::Packet asked_, received_;
   Command command_ = Command::kVersion;
   bool pending_ = false;
+  unsigned unanswered_ = 0;  // requests since the last answer or pause
   std::int64_t sent_ns_ = 0;
   std::int64_t arrived_ns_ = 0;
   std::size_t setup_ = 0;  // next one of kSetup; its size: running

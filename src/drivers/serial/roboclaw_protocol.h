@@ -3,7 +3,7 @@
 ///
 /// A request is address, command, data, all numbers big-endian. One that writes ends with the CRC of all its bytes and
 /// is answered by kAcknowledged. One that reads has neither data nor CRC; its answer is data and the CRC of request and
-/// data.
+/// data. The board discards the begin of a request after a pause of kPacketNs.
 
 #include <array>
 #include <cstddef>
@@ -13,6 +13,7 @@
 namespace robot_control::roboclaw {
 
 inline constexpr std::uint8_t kAcknowledged = 0xFF;
+inline constexpr std::int64_t kPacketNs = 10'000'000;
 
 enum class PacketCommand : std::uint8_t {
   kSetTimeout = 14,    ///< u8, 100 ms; 0: none

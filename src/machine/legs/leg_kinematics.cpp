@@ -63,6 +63,17 @@ double LegKinematics::bend(const LegAngles& angles) const noexcept {
   return wrapped(geometry_.sign[2] * angles[2] + lower_angle_ - upper_angle_);
 }
 
+double LegKinematics::stretch(const LegAngles& angles) const noexcept {
+  const double a = upper_length_, b = lower_length_;
+  return std::sqrt(std::max(0.0, a * a + b * b + 2 * a * b * std::cos(bend(angles))));
+}
+
+double LegKinematics::knee_lever(double stretch) const noexcept {
+  const double a = upper_length_, b = lower_length_;
+  const double cosine = (stretch * stretch - a * a - b * b) / (2 * a * b);
+  return a * b * std::sqrt(std::max(0.0, 1 - cosine * cosine)) / stretch;
+}
+
 Eigen::Vector3d LegKinematics::position(const LegAngles& angles) const noexcept {
   const double first = geometry_.sign[0] * angles[0];
   const double second = geometry_.sign[1] * angles[1];

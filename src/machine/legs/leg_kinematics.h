@@ -75,6 +75,12 @@ class LegKinematics {
   /// Returns the length from the second joint to the foot in m, while the leg is straight.
   double length() const noexcept { return upper_length_ + lower_length_; }
 
+  /// Returns the distance from the second joint to the foot in m: length() while the leg is straight.
+  double stretch(const LegAngles& angles) const noexcept;
+
+  /// Returns the lever in m, about the knee, of a force from the foot towards the second joint, `stretch` m away.
+  double knee_lever(double stretch) const noexcept;
+
   /// Returns the knee's bend β in rad, within ±π.
   double bend(const LegAngles& angles) const noexcept;
 

@@ -44,7 +44,6 @@ std::uint64_t hash_of(const std::string& urdf, const DriveTrainParameters& param
   if (parameters.wheel_command == WheelCommand::kVelocity) {
     hash.add(std::string("velocity"));
     hash.add(std::optional(parameters.wheel_response_time));
-    if (!parameters.wheel_feed_forward) hash.add(std::string("without feed-forward"));
   }
   return hash.value();
 }
@@ -211,7 +210,6 @@ DriveTrain read_drive_train(const RobotDescription& description, const DriveTrai
   static_cast<MachineModel&>(model) = named_machine(description, *bodies);
   model.hash = hash_of(description.text, parameters);
   model.wheel_command = parameters.wheel_command;
-  model.wheel_feed_forward = parameters.wheel_feed_forward;
   model.wheel_response_time = parameters.wheel_response_time;
 
   RunningGear gear = find_running_gear(*bodies, parameters, model.notes);

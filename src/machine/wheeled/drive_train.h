@@ -42,7 +42,6 @@ struct DriveTrain : MachineModel {
   double wheel_base_multiplier = 1;
 
   WheelCommand wheel_command = WheelCommand::kTorque;
-  bool wheel_feed_forward = true;  ///< drives that take velocities add the torque of the command
   double wheel_response_time = 0;  ///< s, of drives that take velocities
 
   double yaw_inertia = 0;           ///< kg·m² about the vertical through the middle of the axles

@@ -23,7 +23,6 @@ struct DriveTrainParameters : MachineParameters {
   std::optional<double> wheel_velocity_limit;           ///< rad/s, every wheel
   std::optional<double> wheel_effort_rate;              ///< N·m/s, every wheel; empty: kEffortRise
   WheelCommand wheel_command = WheelCommand::kTorque;
-  bool wheel_feed_forward = true;     ///< Drives that take velocities add the torque of the command.
   double wheel_response_time = 0.05;  ///< s, of drives that take velocities: from a step of the command to 63 % of it
 };
 
@@ -51,7 +50,6 @@ inline Keys keys(DriveTrainParameters& robot) {
           {"wheel_velocity_limit", &robot.wheel_velocity_limit, "rad/s", 0.01, 1000, kOptional},
           {"wheel_effort_rate", &robot.wheel_effort_rate, "N·m/s", 0.01, 1.0e9, kOptional},
           {"wheel_command", &robot.wheel_command},
-          {"wheel_feed_forward", &robot.wheel_feed_forward},
           {"wheel_response_time", &robot.wheel_response_time, "s", 0.001, 1},
       },
       keys(static_cast<MachineParameters&>(robot)),

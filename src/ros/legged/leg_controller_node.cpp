@@ -94,14 +94,14 @@ class LegControllerNode final : public CommandedNode {
     process().states().at(command_.head.run, command_.head.cycle, state);
     CommandFrame plan;
     if (command_.head.cycle >= 2) process().output().at(command_.head.run, command_.head.cycle - 2, plan);
-    msg::LegState message = leg_state({command_, plan, sensors, state, std::exchange(since_message_, 0)},
+    msg::LegState message = leg_state({command_, plan, sensors, state, gaits_, std::exchange(since_message_, 0)},
                                       leg_model_of(robot()), time().at(command_.head.stamp_ns));
     {
       const std::lock_guard lock(input_mutex_);
       const std::vector<std::string> senders = intake().senders(loop_ns()), revoked = intake().revoked();
       message.senders.assign(senders.begin(), senders.end());
       message.revoked.assign(revoked.begin(), revoked.end());
-      message.chosen_gait = gait_of_mode(gait_);
+      message.chosen_gait = gait_of_mode(gait_, gaits_);
     }
     leg_state_.publish(message);
     velocity_out_.publish(velocity_out(command_, report().base_frame, time().at(command_.head.stamp_ns)));
@@ -260,11 +260,11 @@ class LegControllerNode final : public CommandedNode {
 
   bool set_gait(msg::SetGaitRequest& request, msg::SetGaitResponse& response) {
     const std::lock_guard lock(input_mutex_);
-    const std::optional<std::uint64_t> mode = mode_of_gait(request.gait);
+    const std::optional<std::uint64_t> mode = mode_of_gait(request.gait, gaits_);
     const LegPhase phase = command_.legged.phase;
     std::string problem = refusal_of_permission();
     if (!mode) {
-      problem = "there is no gait '" + request.gait + "'; name auto, trot, walking_trot or crawl";
+      problem = "there is no gait '" + request.gait + "'; name one of " + gait_names(gaits_);
     } else if (problem.empty() && phase != LegPhase::kStanding && phase != LegPhase::kWalking) {
       problem = "the robot does not stand or walk, it is " + std::string(name_of(phase)) +
                 ": call set_posture with 'standing'";
@@ -330,6 +330,7 @@ class LegControllerNode final : public CommandedNode {
   ros::ServiceServer set_gait_;
   std::mutex posture_mutex_;  ///< locked only by try_lock
   CommandInput input_;
+  const Gaits gaits_ = all_gaits(parameters().leg_control.gaits);
   Posture pose_{};                      ///< the last body_pose; protected by input_mutex_
   std::uint64_t gait_ = kStanceStay;    ///< mode of the gait that set_gait fixed; protected by input_mutex_
   std::optional<Execution> execution_;  ///< protected by input_mutex_

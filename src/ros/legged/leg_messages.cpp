@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "control/legged/gait.h"
+#include "control/legged/own_gaits.h"
 #include "ros/messages/status_messages.h"
 #include "signals/names.h"
 #include "signals/roles.h"
@@ -36,20 +36,26 @@ std::string foot_names() {
   return names;
 }
 
+std::string gait_names(const Gaits& gaits) {
+  std::string names;
+  for (const std::string& word : gait_words(gaits)) names.append(names.empty() ? "" : ", ").append(word);
+  return names;
+}
+
 StanceMode mode_of(const std::string& posture) {
   if (posture == name_of(LegPhase::kStanding)) return kStanceStand;
   return posture == name_of(LegPhase::kLying) ? kStanceLie : kStanceStay;
 }
 
-std::optional<std::uint64_t> mode_of_gait(const std::string& gait) {
+std::optional<std::uint64_t> mode_of_gait(const std::string& gait, const Gaits& gaits) {
   if (gait == "auto") return kStanceStay;
-  for (std::size_t i = 1; i < kGaits.size(); ++i)
-    if (gait == kGaits[i].name) return kStanceGait + i;
+  for (std::size_t i = 1; i < gaits.size(); ++i)
+    if (gait == gaits[i].name.data()) return kStanceGait + i;
   return std::nullopt;
 }
 
-std::string gait_of_mode(std::uint64_t mode) {
-  return mode > kStanceGait && mode < kStanceGait + kGaits.size() ? kGaits[mode - kStanceGait].name : "auto";
+std::string gait_of_mode(std::uint64_t mode, const Gaits& gaits) {
+  return mode > kStanceGait && mode < kStanceGait + gaits.size() ? gaits[mode - kStanceGait].name.data() : "auto";
 }
 
 msg::LegState leg_state(const LegReport& report, const LegModel& robot, ros::Time stamp) {
@@ -58,10 +64,12 @@ msg::LegState leg_state(const LegReport& report, const LegModel& robot, ros::Tim
   message.header.stamp = stamp;
   message.posture = name_of(command.legged.phase);
   if (command.legged.lifted != 0) message.lifted = name_of(static_cast<LegPlace>(command.legged.lifted - 1));
-  if (command.legged.phase == LegPhase::kWalking && command.legged.gait < kGaits.size()) {
-    message.gait = kGaits[command.legged.gait].name;
+  if (command.legged.phase == LegPhase::kWalking && command.legged.gait < report.gaits.size()) {
+    message.gait = report.gaits[command.legged.gait].name.data();
     message.gait_phase = command.legged.gait_phase;
   }
+  const std::vector<std::string> words = gait_words(report.gaits);
+  message.gaits.assign(words.begin(), words.end());
   const auto& [x, y, height, roll, pitch, yaw] = command.legged.body;
   message.body.x = x;
   message.body.y = y;

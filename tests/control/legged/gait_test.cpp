@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <vector>
 
 namespace robot_control {
@@ -50,19 +51,33 @@ TEST(Gait, EachFootBearsForItsDutyAndSwingsOncePerPeriod) {
         bears += gait.bears(leg, phase);
         landings += gait.bears(leg, phase) && !gait.bears(leg, phase - 1.0 / kParts);
       }
-      EXPECT_NEAR(bears, gait.duty * kParts, 1) << gait.name;
-      EXPECT_EQ(landings, gait.duty < 1 ? 1 : 0) << gait.name;
+      EXPECT_NEAR(bears, gait.duty * kParts, 1) << gait.name.data();
+      EXPECT_EQ(landings, gait.duty < 1 ? 1 : 0) << gait.name.data();
     }
   }
 }
 
 TEST(Gait, NoGaitLeavesFewerThanTwoFeet) {
-  for (const Gait& gait : kGaits) {
+  for (const Gait& gait : kGaits) EXPECT_GE(fewest_feet(gait), 2u) << gait.name.data();
+}
+
+TEST(Gait, TheFewestFeetAreThoseOfAnyPartOfThePeriod) {
+  std::mt19937 random(7);
+  std::uniform_int_distribution<int> hundredth(0, 99);
+  std::array<int, kLegs + 1> found{};
+  for (int k = 0; k < 1000; ++k) {
+    Gait gait = gait_of(GaitName::kCrawl);
+    gait.duty = 0.01 * (1 + hundredth(random));
+    for (double& offset : gait.phase) offset = 0.01 * hundredth(random);
+    std::size_t fewest = kLegs;
     for (int i = 0; i < kParts; ++i) {
       const auto bears = bearing(gait, (i + 0.5) / kParts);
-      EXPECT_GE(std::count(bears.begin(), bears.end(), true), 2) << gait.name << " at " << i;
+      fewest = std::min<std::size_t>(fewest, std::count(bears.begin(), bears.end(), true));
     }
+    EXPECT_EQ(fewest_feet(gait), fewest) << k;
+    ++found[fewest];
   }
+  for (const int count : found) EXPECT_GT(count, 0);
 }
 
 TEST(Gait, ATrotMovesTheDiagonalFeetTogether) {
@@ -102,7 +117,7 @@ TEST(Gait, TheSwingGrowsFromZeroToOne) {
 }
 
 TEST(Gait, StanceAndSwingShareThePeriodByTheDuty) {
-  const Gait gait{.name = "", .period = 0.4, .duty = 0.75, .phase = {}, .lift = 0};
+  const Gait gait{.name = {}, .period = 0.4, .duty = 0.75, .phase = {}, .lift = 0};
   EXPECT_NEAR(gait.stance_time(), 0.3, 1e-12);
   EXPECT_NEAR(gait.swing_time(), 0.1, 1e-12);
 }

@@ -11,6 +11,7 @@ LegModel of_size(double mass, double length) {
   LegGeometry geometry;
   geometry.lower = geometry.foot = {0, 0, -0.213 * length};
   for (Leg& leg : robot.legs) leg.kinematics = LegKinematics(geometry);
+  for (JointModel& joint : robot.joints) joint.effort_limit = 40 * mass * length;
   return robot;
 }
 
@@ -49,6 +50,19 @@ TEST(LegTuning, ScalesAsAModelOfTheSameRobotDoes) {
   EXPECT_DOUBLE_EQ(large.foot.acceleration, one.foot.acceleration);
   EXPECT_DOUBLE_EQ(large.joint.speed, one.joint.speed / 2);
   EXPECT_DOUBLE_EQ(large.joint.acceleration, one.joint.acceleration / 4);
+}
+
+/// Half of the weight is 12.7 · 9.81 / 2 = 62.3 N. At 0.7, 0.79 and 0.85 of the leg length the levers of its knee are
+/// 0.357, 0.307 and 0.263 of that length.
+TEST(LegTuning, StandsHigherWhereAKneeIsWeak) {
+  const auto height = [](double knee) {
+    LegModel robot = of_size(1, 1);
+    robot.joints[8].effort_limit = knee;
+    return leg_tuning(robot).height / 0.426;
+  };
+  EXPECT_NEAR(height(16), 0.7, 1e-9);
+  EXPECT_NEAR(height(13.65), 0.79, 1e-9);
+  EXPECT_NEAR(height(1), 0.85, 1e-9);
 }
 
 TEST(JointBounds, AreTheRangesAndNineTenthsOfTheSpeedsThatTheGateAllows) {

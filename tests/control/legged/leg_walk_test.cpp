@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "control/legged/ideal_legs.h"
+#include "control/legged/own_gaits.h"
 
 namespace robot_control {
 namespace {
@@ -109,7 +110,7 @@ WalkingLegs ready() {
 }
 
 Speeds speeds_of(const LegModel& robot) {
-  return walking_speeds(robot, nominal_stance(robot), Walker(robot, 0.4, kCycle).gaits());
+  return walking_speeds(robot, nominal_stance(robot), Walker(robot, all_gaits({}), 0.4, kCycle).gaits());
 }
 
 TEST(LegWalk, FollowsATwistOnFeetThatAreBelowTheirHipsInTheMiddleOfTheirStance) {
@@ -214,7 +215,7 @@ TEST(LegWalk, EndsAfterAZeroOnFeetThatAreOnTheirPlaces) {
   EXPECT_EQ(legs.legs.out.legged.phase, LegPhase::kStanding);
   EXPECT_LT(time, 1.2);
   EXPECT_NEAR(stood, kAllDown, 2 * kCycle) << "all feet stand for this time before";
-  const Walker walker(legs.robot(), 0.4, kCycle);
+  const Walker walker(legs.robot(), all_gaits({}), 0.4, kCycle);
   EXPECT_LT(walker.farthest_foot(walker.measure(legs.legs.sensors, legs.legs.estimate)),
             0.1 * legs.robot().leg_length());
   for (std::size_t i = 0; i < kLegsJoints; ++i)

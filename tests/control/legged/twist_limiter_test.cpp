@@ -13,12 +13,12 @@ namespace robot_control {
 namespace {
 
 constexpr double kPeriod = 0.001;  // s
-constexpr LegControllerParameters kParameters{.max_linear_speed = 1.2,
-                                              .max_lateral_speed = 0.4,
-                                              .max_angular_speed = 2,
-                                              .max_linear_acceleration = 2,
-                                              .max_lateral_acceleration = 1.5,
-                                              .max_angular_acceleration = 4};
+const LegControllerParameters kParameters{.max_linear_speed = 1.2,
+                                          .max_lateral_speed = 0.4,
+                                          .max_angular_speed = 2,
+                                          .max_linear_acceleration = 2,
+                                          .max_lateral_acceleration = 1.5,
+                                          .max_angular_acceleration = 4};
 constexpr WalkingTwist kAnything{100, 100, 100};  // m/s, rad/s, of legs that are fast enough
 
 struct TwistLimiterTest : testing::Test {

@@ -12,6 +12,7 @@
 
 #include "control/legged/foothold.h"
 #include "control/legged/ideal_legs.h"
+#include "control/legged/own_gaits.h"
 #include "control/legged/walking/swing.h"
 #include "control/legged/walking/walker.h"
 
@@ -194,7 +195,7 @@ struct WalkerLaws : testing::Test {
 
   LegModel robot = on_balls();
   NominalStance stance = nominal_stance(robot);
-  Walker walker{robot, kMu, kMillisecond};
+  Walker walker{robot, all_gaits({}), kMu, kMillisecond};
   Walker::State state, before;
   WalkInput input;
   SensorFrame sensors;
@@ -431,6 +432,17 @@ TEST_F(WalkerLaws, AFootSwingsFromWhereItIsWhenItsSwingBeginsUntilItsStance) {
   EXPECT_NEAR(out.legged.stance[1], 0.5 * cycle / gait().duty, kExact);
 }
 
+TEST_F(WalkerLaws, AFootWhoseSwingWouldHaveBegunBeforeTheGaitStandsUntilItsNextOne) {
+  OwnGaits own;
+  own[0] = {.name = "late", .period = 0.5, .duty = 0.6, .phases = NumberList<4>{0.8, 0.1, 0.1, 0.1}, .lift = 0.05};
+  walker = Walker(robot, all_gaits(own), kMu, kMillisecond);
+  walker.begin(state, sensors, estimate);
+  input.gait = static_cast<GaitName>(kGaits.size());
+  int cycles = 0;
+  for (step(); state.bears[0] != 0 && cycles < 1000; ++cycles) step();
+  EXPECT_NEAR(cycles * kMillisecond, 0.8 * gait().period, 2 * kMillisecond);
+}
+
 TEST_F(WalkerLaws, AFootThatMeetsTheGroundInTheSecondHalfOfItsSwingBearsFromThenOn) {
   for (const double swung : {0.3, 0.6}) {
     choose(0);
@@ -475,7 +487,8 @@ TEST_F(WalkerLaws, AFootThatStandsBearsItsForceUnlessAJointIsTooWeak) {
   int weak = 0, strong = 0, overloaded = 0;
   for (const double limit : {1000.0, 6.0, 0.3}) {
     for (JointModel& joint : robot.joints) joint.effort_limit = limit;
-    walker = Walker(robot, kMu, kMillisecond);
+    stance = nominal_stance(robot);  // weak knees stand higher
+    walker = Walker(robot, all_gaits({}), kMu, kMillisecond);
     for (unsigned seed = 0; seed < kRandomStates; ++seed) {
       choose(seed);
       step();
@@ -513,7 +526,8 @@ TEST_F(WalkerLaws, AFootInTheAirFollowsItsPathToTheFoothold) {
   unsigned swinging = 0;
   for (const double limit : {1000.0, 0.3}) {
     for (JointModel& joint : robot.joints) joint.effort_limit = limit;
-    walker = Walker(robot, kMu, kMillisecond);
+    stance = nominal_stance(robot);  // weak knees stand higher
+    walker = Walker(robot, all_gaits({}), kMu, kMillisecond);
     for (unsigned seed = 0; seed < kRandomStates; ++seed) {
       choose(seed);
       step();
@@ -522,11 +536,12 @@ TEST_F(WalkerLaws, AFootInTheAirFollowsItsPathToTheFoothold) {
       const Eigen::Matrix3d back = turned.transpose();
       for (std::size_t leg = 0; leg < kLegs; ++leg) {
         if (state.bears[leg] != 0) continue;
-        ++swinging;
         const Eigen::Vector3d from = vector(state.bore[leg]), to = landing(leg);
         const double top = std::max(from.z(), to.z()) + gait().lift;
         const double part = (gait().leg_phase(leg, state.phase) - gait().duty) / (1 - gait().duty);
         const SwingPoint point = swing_point(from, to, top, part, gait().swing_time());
+        if (robot.legs[leg].kinematics.inverse(back * point.place).reach != FootReach::kReached) continue;
+        ++swinging;
         const JointCommand* joint = &out.joints[kLegJoints * leg];
         const LegAngles commanded(joint[0].position, joint[1].position, joint[2].position);
         Eigen::Vector3d place;

@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "control/legged/own_gaits.h"
 #include "control/legged/walking/walking_speed.h"
 #include "machine/legs/legs_corpus.h"
 #include "signals/legged/legged_command.h"
@@ -36,7 +37,7 @@ struct WalkerTest : testing::Test {
   }
 
   LegModel robot = legged_robot("quadbot");
-  Walker walker{robot, 0.4, 0.001};
+  Walker walker{robot, all_gaits({}), 0.4, 0.001};
   Walker::State state;
   SensorFrame sensors;
   StateFrame estimate;

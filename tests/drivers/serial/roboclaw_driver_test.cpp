@@ -166,6 +166,24 @@ TEST(RoboclawLosses, OnADisturbedLineNothingStopsAndNoWrongValueIsAccepted) {
   }
 }
 
+/// One in 256 orders ends with the address. A board that holds a stray byte then begins each request with the last byte
+/// of the one before.
+TEST(RoboclawLosses, AStrayByteIsDiscardedInAPauseWhateverIsOrdered) {
+  RoboclawMachine machine(250);
+  machine.start();
+  SensorFrame frame;
+  const std::array<std::uint8_t, 1> stray{0x80};
+  for (int order = 0; order < 4000; ++order) {
+    const std::vector<JointCommand> commands(2, {.mode = JointMode::kDriveVelocity, .velocity = 5 + 0.001 * order});
+    machine.board().driver_end()->send(stray);
+    for (int i = 0; i < 35; ++i) {
+      machine.read(frame);
+      ASSERT_EQ(frame.driver_state, DriverState::kRunning) << order << machine.warning();
+      machine.write(commands);
+    }
+  }
+}
+
 TEST(RoboclawRates, AreMoreThan100OrdersPerSecondFrom200Hz) {
   for (const double rate : {200.0, 500.0, 1000.0}) {
     RoboclawMachine machine(rate);

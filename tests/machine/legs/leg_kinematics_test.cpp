@@ -71,6 +71,25 @@ TEST_P(LegKinematicsOf, AgreesWithKdlInPositionAndJacobian) {
   }
 }
 
+/// The lever is that of the Jacobian, for a force along the line in the leg's plane.
+TEST_P(LegKinematicsOf, KnowsTheStretchOfTheLegAndTheLeverOfItsKnee) {
+  for (const Leg& each : robot_.legs) {
+    const LegKinematics& leg = each.kinematics;
+    const LegGeometry& geometry = leg.geometry();
+    for (int i = 0; i < 100; ++i) {
+      const LegAngles angles = random_angles(leg, random_);
+      Eigen::Vector3d foot;
+      const Eigen::Matrix3d jacobian = leg.jacobian(angles, foot);
+      const Eigen::AngleAxisd swung(geometry.sign[0] * angles[0], Eigen::Vector3d::UnitX());
+      Eigen::Vector3d line = foot - geometry.hip - swung * geometry.upper;
+      line -= line.dot(swung * Eigen::Vector3d::UnitY()) * (swung * Eigen::Vector3d::UnitY());
+      const double stretch = leg.stretch(angles);
+      EXPECT_NEAR(stretch, line.norm(), 1e-12);
+      EXPECT_NEAR(leg.knee_lever(stretch), std::abs(jacobian.col(2).dot(line)) / stretch, 1e-6);
+    }
+  }
+}
+
 TEST_P(LegKinematicsOf, FindsAnglesForEveryReachableFoot) {
   for (int trial = 0; trial < 1000; ++trial) {
     const LegKinematics& leg = robot_.legs[static_cast<std::size_t>(trial) % kLegs].kinematics;

@@ -36,7 +36,8 @@ on("fast", (frame) => {
   document.body.dataset.frames = String(Number(document.body.dataset.frames ?? 0) + 1);
 });
 
-function legs({ posture, gait, chosen, feet }) {
+function legs({ posture, gait, chosen, gaits, feet }) {
+  while (by("gait").children.length < gaits.length) by("gait").append(new Option(gaits[by("gait").children.length]));
   const whose = chosen === "auto" ? "by the speed" : "chosen";
   put("posture", gait ? `${posture}, ${gait} (${whose})` : `${posture}, gait: ${chosen}`);
   while (by("feet").children.length < feet.length) by("feet").append(document.createElement("span"));

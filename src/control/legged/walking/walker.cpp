@@ -40,7 +40,7 @@ Eigen::Index joint_row(std::size_t leg) noexcept {
 
 }  // namespace
 
-Walker::Walker(const LegModel& robot, double friction, double period)
+Walker::Walker(const LegModel& robot, const Gaits& gaits, double friction, double period)
     : period_(period),
       legs_(robot.legs),
       dynamics_(robot),
@@ -55,7 +55,7 @@ Walker::Walker(const LegModel& robot, double friction, double period)
       plan_(plan_parameters_) {
   for (std::size_t i = 0; i < kLegsJoints; ++i) effort_limits_[i] = kOfEffort * robot.joints[i].effort_limit;
   const NominalStance stance = nominal_stance(robot);
-  for (std::size_t i = 0; i < gaits_.size(); ++i) gaits_[i] = gait_of(robot, stance, kGaits[i]);
+  for (const Gait& gait : gaits) gaits_.push_back(gait_of(robot, stance, gait));
   const Eigen::Vector3d& centre = stance.equations.centre_of_gravity;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     nominal_[leg] = (stance.feet[leg] - centre).head<2>();
@@ -199,7 +199,9 @@ bool Walker::choose_feet(State& state, const WalkInput& input, const WalkingBody
   const Gait& gait = this->gait(state);
   const std::array<std::uint64_t, kLegs> before = state.bears;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const bool swings = !gait.bears(leg, state.phase);
+    const double swung = gait.swung(leg, state.phase) * gait.swing_time();
+    const bool of_this_gait = state.swings[leg] != 0 || swung <= state.lasted + period_;
+    const bool swings = of_this_gait && !gait.bears(leg, state.phase);
     state.touched[leg] = input.state->contacts[leg].probability >= kTouches ? state.touched[leg] + period_ : 0;
     if (!swings) {
       state.bears[leg] = 1;

@@ -5,7 +5,8 @@
 ///
 ///   clock     the gait's phase says which feet bear (gait.h). Another gait begins where the phase wraps, after a whole
 ///             period of this one: until then, its feet stand where the last gait put them. A foot that then swings
-///             begins its swing where it is. A walk ends in a cycle in which no foot is far from where it left the
+///             begins its swing where it is. One whose swing would have begun before the gait stands until its next
+///             one. A walk ends in a cycle in which no foot is far from where it left the
 ///             ground
 ///   contact   a foot that meets the ground in the second half of its swing bears from then on. A foot that is late is
 ///             pushed down by the force that it is to bear
@@ -83,8 +84,8 @@ class Walker {
     std::uint64_t failures = 0;                 ///< plans without a solution, one after the other
   };
 
-  /// `friction` is μ of the forces, `period` s.
-  Walker(const LegModel& robot, double friction, double period);
+  /// `friction` is μ of the forces, `period` s, `gaits` those of a leg of kReferenceLeg.
+  Walker(const LegModel& robot, const Gaits& gaits, double friction, double period);
 
   /// Begins with all feet on the ground.
   void begin(State& state, const SensorFrame& sensors, const StateFrame& estimate) const noexcept;
@@ -93,7 +94,7 @@ class Walker {
   bool step(State& state, const WalkInput& input, CommandFrame& out) noexcept;
 
   /// The gaits of this robot, by GaitName.
-  const std::array<Gait, kGaits.size()>& gaits() const noexcept { return gaits_; }
+  const Gaits& gaits() const noexcept { return gaits_; }
 
   WalkingBody measure(const SensorFrame& sensors, const StateFrame& estimate) const noexcept;
 
@@ -118,7 +119,7 @@ class Walker {
   LegDynamics dynamics_;
   LegTuning tuning_;
   std::array<double, kLegsJoints> effort_limits_{};  ///< N·m
-  std::array<Gait, kGaits.size()> gaits_;
+  Gaits gaits_;
   double length_;                                 ///< m, of a leg
   std::array<Eigen::Vector2d, kLegs> nominal_{};  ///< m, feet from the centre of gravity
   double height_ = 0;                             ///< m, of the centre of gravity above the ground

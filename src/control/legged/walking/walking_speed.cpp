@@ -27,6 +27,7 @@ double needed_at(const LegModel& robot, std::size_t leg, const Eigen::Vector3d& 
   const LegKinematics& kinematics = robot.legs[leg].kinematics;
   const LegSolution solution = kinematics.inverse(place);
   if (solution.reach != FootReach::kReached) return kOutOfReach;
+  if (kinematics.stretch(solution.angles) > kOfLength * kinematics.length()) return kOutOfReach;
   Eigen::Vector3d foot;
   const Eigen::Matrix3d inverse = kinematics.jacobian(solution.angles, foot).inverse();
   const Eigen::Vector3d rates = inverse * velocity;
@@ -60,9 +61,10 @@ double needed_after(const LegModel& robot, const NominalStance& stance, const Ga
                     const WalkingTwist& twist) noexcept {
   double part = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    if (!next.bears(leg, next.begin)) continue;
+    const bool bears = next.bears(leg, next.begin);
+    if (!bears && next.swung(leg, next.begin) == 0) continue;  // it swings at once
     const double stood = last.period * (std::min(last.leg_phase(leg, 0), last.duty) - last.duty / 2);
-    const double stands = next.period * (next.duty - next.leg_phase(leg, next.begin));
+    const double stands = next.period * (next.duty + (bears ? 0 : 1) - next.leg_phase(leg, next.begin));
     const Eigen::Vector3d& foot = stance.feet[leg];
     const Eigen::Vector3d velocity = velocity_of(foot, twist);
     part = std::max(part, needed_at(robot, leg, foot + (stood + stands) * velocity, velocity));
@@ -90,8 +92,8 @@ Gait gait_of(const LegModel& robot, const NominalStance& stance, const Gait& ref
   return gait;
 }
 
-Speeds walking_speeds(const LegModel& robot, const NominalStance& stance, const Gaits& gaits) noexcept {
-  Speeds speeds;
+Speeds walking_speeds(const LegModel& robot, const NominalStance& stance, const Gaits& gaits) {
+  Speeds speeds(gaits.size());
   for (std::size_t i = 0; i < gaits.size(); ++i) {
     speeds[i].fill(kMinSpeed);
     if (gaits[i].duty >= 1) continue;
@@ -114,11 +116,12 @@ Speeds walking_speeds(const LegModel& robot, const NominalStance& stance, const 
   return speeds;
 }
 
-double walk_ending_time(const LegControllerParameters& parameters, const LegModel& robot) noexcept {
+double walk_ending_time(const LegControllerParameters& parameters, const LegModel& robot) {
   double slowest = 0, period = 0;
   for (const MotionLimits& axis : twist_limits(parameters))
     slowest = std::max(slowest, axis.speed / axis.emergency_deceleration + axis.emergency_deceleration / axis.jerk);
-  for (const Gait& gait : kGaits) period = std::max(period, gait.scaled(robot.leg_length()).period);
+  for (const Gait& gait : all_gaits(parameters.gaits))
+    period = std::max(period, gait.scaled(robot.leg_length()).period);
   return slowest + period + kAllDown;
 }
 

@@ -3,12 +3,13 @@
 ///
 ///   gait   that of gait.h, scaled. Its lift is lower where a step in place would need more than kOfLift of the speed
 ///          limit of a joint
-///   speed  the largest one of the body at which each foot stays within the reach of its leg, and each joint within
-///          kOfJointSpeed of its speed limit, during stance and swing (swing.h). That holds for a steady walk, and for
-///          the first stance after a change of gaits: a foot that ended a stance may have to bear for a whole one. The
-///          slower gait of a change bounds its speed
+///   speed  the largest one of the body at which each leg stretches to at most kOfLength of its length, and each joint
+///          has at most kOfJointSpeed of its speed limit, during stance and swing (swing.h). A leg that is nearly
+///          straight does not push the body on. That holds for a steady walk, and for the first stance after a change of
+///          gaits: a foot that ended a stance may have to bear for a whole one. The slower gait of a change bounds its
+///          speed
 
-#include <array>
+#include <vector>
 
 #include "control/legged/gait.h"
 #include "control/legged/nominal_stance.h"
@@ -19,19 +20,19 @@ namespace robot_control {
 
 inline constexpr double kOfLift = 0.35;
 inline constexpr double kOfJointSpeed = 0.85;
+inline constexpr double kOfLength = 0.95;
 
 Gait gait_of(const LegModel& robot, const NominalStance& stance, const Gait& reference) noexcept;
 
-using Gaits = std::array<Gait, kGaits.size()>;
-using Speeds = std::array<WalkingTwist, kGaits.size()>;
+using Speeds = std::vector<WalkingTwist>;
 
 /// Returns, by GaitName, the largest speeds to the front, to the left, and turning, each of them alone; at least
 /// kMinSpeed. `gaits` are those of `gait_of`.
-Speeds walking_speeds(const LegModel& robot, const NominalStance& stance, const Gaits& gaits) noexcept;
+Speeds walking_speeds(const LegModel& robot, const NominalStance& stance, const Gaits& gaits);
 
 /// Returns after how many s at most a walk ends in an emergency. That is the time of the limits, a period of the
 /// slowest gait, and kAllDown.
-double walk_ending_time(const LegControllerParameters& parameters, const LegModel& robot) noexcept;
+double walk_ending_time(const LegControllerParameters& parameters, const LegModel& robot);
 
 inline constexpr double kAllDown = 0.15;  ///< s, for which all feet stand before the joints hold the body
 

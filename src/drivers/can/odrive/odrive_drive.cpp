@@ -53,6 +53,7 @@ std::uint32_t parts_in_error(const can_frame& frame) noexcept {
 
 DriveParameters with_sample_period(DriveParameters drive, double period) {
   drive.sample_period = period;
+  drive.takes_effort = drive.takes_speeds;
   drive.effort_is_rare = !drive.takes_speeds;  // The drive gives other torques than those of the command.
   return drive;
 }

@@ -6,8 +6,9 @@
 ///   following     |q − its command| > limit, while the robot stands: an encoder or a drive that no longer moves.
 ///                 While it walks, the joints of feet in the air are judged: their mean over kMeanTime > kOfSwing limit.
 ///                 This mean stays while the foot bears. The motors of feet that bear are judged by their torques:
-///                 (mean |τ − τ*| − kOfAsked mean |τ*|) / (kOfEffort L) > 1 counts as an angle beyond the limit. τ* is
-///                 the torque of the command before, L the effort limit; the means are over kTorqueTime
+///                 |τ − τ*| > kOfAsked |τ*| + kOfEffort L in more than kOfTorques of the last cycles, a mean over
+///                 kTorqueTime, counts as an angle beyond the limit. τ* is the torque of the command before, L the
+///                 effort limit. This mean stays while the foot is in the air
 ///   joint range   distance beyond the nearer end stop > limit: the zero of an encoder, or a stop that broke
 ///
 /// A number that is missing or not finite is not evaluated.
@@ -17,6 +18,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "machine/legs/leg_model.h"
@@ -31,9 +33,10 @@ class JointConditions {
  public:
   static constexpr double kMeanTime = 0.2;     ///< s
   static constexpr double kOfSwing = 0.45;     ///< docs/evidence/derivations.md
-  static constexpr double kTorqueTime = 0.02;  ///< s
+  static constexpr double kTorqueTime = 0.06;  ///< s
+  static constexpr double kOfTorques = 0.3;    ///< docs/evidence/derivations.md
   static constexpr double kOfAsked = 0.5;      ///< a weak or late motor is none that fails
-  static constexpr double kOfEffort = 0.06;
+  static constexpr double kOfEffort = 0.04;
 
   /// `period` s.
   JointConditions(const SafetyParameters& parameters, const LegModel& robot, double period) noexcept
@@ -60,7 +63,7 @@ class JointConditions {
   void step(const MonitorInput& input, std::uint64_t elapsed, ActiveCauses& out) noexcept {
     const SensorFrame& sensors = *input.sensors;
     const LegPhase phase = input.command != nullptr ? input.command->legged.phase : LegPhase::kLying;
-    if (phase != LegPhase::kWalking) behind_ = {};
+    if (phase != LegPhase::kWalking) behind_ = {}, torques_ = {};
     ConditionMeasurement speed = kNothingMeasured, effort = kNothingMeasured, range = kNothingMeasured,
                          following = kNothingMeasured, torque = kNothingMeasured;
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
@@ -108,16 +111,14 @@ class JointConditions {
     const bool bears = phase == LegPhase::kWalking && command->joints[i].mode == JointMode::kImpedance &&
                        command->joints[i].stiffness == 0;
     if (!bears || elapsed > 1 || !has(joint, kValidEffort) || !std::isfinite(joint.effort)) {
-      torque = {};
+      torque.asked.reset();
       return kNothingMeasured;
     }
-    const double asked = std::exchange(torque.asked, command->joints[i].effort), part = period_ / kTorqueTime;
-    if (torque.cycles++ == 0) return kNothingMeasured;
-    torque.off += part * (std::abs(joint.effort - asked) - torque.off);
-    torque.size += part * (std::abs(asked) - torque.size);
-    if (static_cast<double>(torque.cycles) * part < 1) return kNothingMeasured;
-    const double times = (torque.off - kOfAsked * torque.size) / (kOfEffort * limits_[i].effort);
-    return beyond(i, times * following_.limit(), following_.limit());
+    const std::optional<double> asked = std::exchange(torque.asked, command->joints[i].effort);
+    if (!asked) return kNothingMeasured;
+    const bool wrong = std::abs(joint.effort - *asked) > kOfAsked * std::abs(*asked) + kOfEffort * limits_[i].effort;
+    torque.wrong += period_ / kTorqueTime * ((wrong ? 1 : 0) - torque.wrong);
+    return beyond(i, torque.wrong / kOfTorques * following_.limit(), following_.limit());
   }
 
   static Condition without_persistence(Condition condition) noexcept {
@@ -133,11 +134,10 @@ class JointConditions {
     JointRange range;  ///< rad; ±∞ without end stops
   };
 
-  /// The torque of a motor since its foot bears.
+  /// The torques of a motor whose foot bears.
   struct Torque {
-    double asked = 0;  ///< N·m, of the last command
-    std::uint64_t cycles = 0;
-    double off = 0, size = 0;  ///< N·m, means of |τ − τ*| and |τ*|
+    std::optional<double> asked;  ///< N·m, by the last command, if the foot bore then
+    double wrong = 0;             ///< 0 … 1, of the cycles, the mean
   };
 
   double period_;

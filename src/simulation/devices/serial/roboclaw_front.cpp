@@ -124,6 +124,8 @@ void RoboclawFront::step_board() {
   if (timeout_ > 0 && now_ns() - request_ns_ > timeout_ * kTimeoutStepNs) stop();
   SerialChunk chunk;
   while (board_line().receive(chunk)) {
+    if (chunk.time_ns - byte_ns_ > roboclaw::kPacketNs) request_.clear();
+    byte_ns_ = chunk.time_ns;
     for (const std::uint8_t byte : chunk.received()) off_ || booting() ? request_.clear() : receive_byte(byte);
   }
 }

@@ -58,6 +58,7 @@ class RoboclawFront final : public SerialFront {
   std::vector<Wheel> wheels_;  // in the order of the joints
   roboclaw::Packet request_;
   std::int64_t request_ns_ = 0;  // of the newest good one
+  std::int64_t byte_ns_ = 0;     // of the newest bytes
   std::uint8_t timeout_ = 0;     // 100 ms; 0: none
   bool fault_ = false, gains_ = true, stuck_ = false;
 };

@@ -1,0 +1,40 @@
+#pragma once
+/// Gaits that a user describes in the parameters gait_1 … gait_4 of the leg controller, beside those of gait.h.
+///
+/// A gait has all of its members. It is refused where its name is taken, or where a foot swings for less than
+/// kMinSwing. It is also refused where fewer than two feet bear at any time. It begins with phase 0. How fast a robot
+/// walks with it follows from the robot (walking_speed.h).
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "parameters/block.h"
+
+namespace robot_control {
+
+struct Gait;
+
+/// The members are those of Gait, of a leg of kReferenceLeg.
+struct OwnGait {
+  std::string name{};            ///< empty: there is none
+  std::optional<double> period;  ///< s
+  std::optional<double> duty;
+  std::optional<NumberList<4>> phases;  ///< by LegPlace
+  std::optional<double> lift;           ///< m
+};
+
+inline constexpr std::array<std::string_view, 4> kOwnGaits{"gait_1", "gait_2", "gait_3", "gait_4"};  ///< names of keys
+using OwnGaits = std::array<OwnGait, kOwnGaits.size()>;
+
+Keys keys(OwnGaits& gaits);
+void check(const OwnGaits& gaits, const std::string& block, GivenValues& given);
+
+/// Returns the gaits of gait.h, and those that were given.
+std::vector<Gait> all_gaits(const OwnGaits& own);
+
+/// Returns the words of set_gait: auto, and the names of these gaits but stand.
+std::vector<std::string> gait_words(const std::vector<Gait>& gaits);
+
+}  // namespace robot_control

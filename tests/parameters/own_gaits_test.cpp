@@ -1,0 +1,80 @@
+// Gaits of the user's own: maps gait_1 … gait_4 of the leg controller.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "control/legged/gait.h"
+#include "parameters/parameter_file.h"
+
+namespace robot_control {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+/// The healthy case is the shipped file with one gait. Each test spoils one thing.
+class OwnGaitsTest : public ::testing::Test {
+ protected:
+  Parameters read(const std::vector<Overlay>& changes = {}) const {
+    return read_parameters(file.path(), laid(changes));
+  }
+  std::string refusal(const std::vector<Overlay>& changes) const { return file.refusal(laid(changes)); }
+
+  static std::vector<Overlay> laid(const std::vector<Overlay>& changes) {
+    std::vector<Overlay> all{{"leg_controller.gait_2",
+                              "{name: amble, period: 0.5, duty: 0.6, phases: [0, 0.5, 0.75, 0.25], lift: 0.05}", "me"}};
+    for (const Overlay& change : changes) all.push_back({"leg_controller." + change.path, change.text, "me"});
+    return all;
+  }
+
+  ParameterFile file;
+};
+
+TEST_F(OwnGaitsTest, FollowThoseOfTheTable) {
+  const Gaits gaits = all_gaits(read().leg_control.gaits);
+  ASSERT_EQ(gaits.size(), kGaits.size() + 1);
+  EXPECT_STREQ(gaits.back().name.data(), "amble");
+  EXPECT_EQ(gaits.back().period, 0.5);
+  EXPECT_EQ(gaits.back().duty, 0.6);
+  EXPECT_THAT(gaits.back().phase, ElementsAre(0, 0.5, 0.75, 0.25));
+  EXPECT_EQ(gaits.back().lift, 0.05);
+  EXPECT_THAT(gait_words(gaits), ElementsAre("auto", "trot", "walking_trot", "crawl", "amble"));
+}
+
+TEST_F(OwnGaitsTest, AreInTheTextFromWhichAReplayIsComposed) {
+  const std::string text = parameters_text(read());
+  file.write(text);
+  const Parameters again = read_parameters(file.path());
+  EXPECT_EQ(parameters_text(again), text);
+  EXPECT_EQ(all_gaits(again.leg_control.gaits).back().phase, all_gaits(read().leg_control.gaits).back().phase);
+}
+
+TEST_F(OwnGaitsTest, AreRefusedWithPathRuleAndRemedy) {
+  const auto expect = [&](const std::vector<Overlay>& changes, const std::vector<std::string>& words) {
+    const std::string message = refusal(changes);
+    EXPECT_EQ(problems_in(message), 1u) << message;
+    for (const std::string& word : words) EXPECT_THAT(message, HasSubstr(word));
+  };
+  expect({{"gait_2.period", "0.05", {}}}, {"gait_2.period = 0.05", "a number of 0.1 … 3 s"});
+  expect({{"gait_2.duty", "0.45", {}}}, {"gait_2.duty = 0.45", "0.5 … 0.95"});
+  expect({{"gait_2.lift", "0", {}}}, {"gait_2.lift = 0", "0.01 … 0.12 m"});
+  expect({{"gait_2.phases", "[0, 0.5, 1.01, 0]", {}}}, {"gait_2.phases", "a list of four numbers, each of 0 … 1"});
+  expect({{"gait_2.phases", "[0, 0.5, 0]", {}}}, {"gait_2.phases", "a list of four numbers"});
+  expect({{"gait_2.dutty", "0.6", {}}}, {"gait_2.dutty = 0.6: unknown key"});
+  expect({{"gait_5", "{name: fifth}", {}}}, {"gait_5", "unknown key"});
+  expect({{"gait_3", "5", {}}}, {"gait_3 = 5: must be a map of name, period, duty, phases, lift"});
+  expect({{"gait_3", "{name: pace, duty: 0.5}", {}}}, {"gait_3.name = pace", "add period, phases, lift"});
+  expect({{"gait_3", "{lift: 0.05}", {}}}, {"gait_3.lift = 0.05", "add name, period, duty, phases"});
+  for (const char* name : {"auto", "stand", "trot", "crawl"})
+    expect({{"gait_2.name", name, {}}}, {std::string("gait_2.name = ") + name, "taken", "another name"});
+  for (const char* name : {"Amble", "an amble", "an_amble_with_17b", "\"ämble\""})
+    expect({{"gait_2.name", name, {}}}, {"gait_2.name", "must be at most 16 of a … z, 0 … 9 and _"});
+  expect({{"gait_4", "{name: amble, period: 0.5, duty: 0.6, phases: [0, 0.5, 0.75, 0.25], lift: 0.05}", {}}},
+         {"gait_4.name = amble", "taken"});
+  expect({{"gait_2.period", "0.12", {}}}, {"gait_2.period = 0.12", "less than 0.05 s", "raise the period"});
+  expect({{"gait_2.phases", "[0, 0, 0, 0]", {}}},
+         {"gait_2.phases", "two feet", "duty 0.6 they leave 0", "raise the duty"});
+  expect({{"gait_2.phases", "[0, 0, 0.25, 0.5]", {}}}, {"they leave 1"});
+}
+
+}  // namespace
+}  // namespace robot_control
