@@ -257,9 +257,12 @@ void Gate::clamp(double elapsed) noexcept {
 
 void Gate::stop(std::uint64_t elapsed, bool by_command) noexcept {
   for (std::size_t i = 0; i < limits_.size(); ++i) {
+    if (by_command && !stops_[i].folds()) {
+      commands_[i] = {};
+      continue;
+    }
     const auto position = has_position(i) ? std::optional(samples_[i].position) : std::nullopt;
-    const JointCommand order = stops_[i].step(position, static_cast<double>(elapsed) * period_, walks_);
-    commands_[i] = by_command && !stops_[i].folds() ? JointCommand{} : order;
+    commands_[i] = stops_[i].step(position, static_cast<double>(elapsed) * period_, walks_);
   }
 }
 

@@ -47,7 +47,8 @@ class JointStop {
  public:
   explicit JointStop(const StopAction& action) noexcept : action_(action) {}
 
-  bool folds() const noexcept { return action_.kind == StopKind::kFold; }
+  /// Returns true from the first order of a fold on, until `release`.
+  bool folds() const noexcept { return action_.kind == StopKind::kFold && elapsed_ > 0; }
 
   /// A command moves the joint.
   void release() noexcept {

@@ -456,6 +456,14 @@ TEST_F(GateWithAFold, GoesOnToFoldWhereTheCommandBrakesEveryJointAfterAStop) {
   EXPECT_EQ(std::memcmp(&joints_[0], &second, sizeof second), 0);
 }
 
+TEST_F(GateWithAFold, BrakesWhereTheCommandBrakesEveryJointThatItMovedBefore) {
+  next();
+  command_.joints[0].mode = command_.joints[1].mode = JointMode::kBrake;
+  next();
+  EXPECT_EQ(gate_.report().reasons, kGateControllerBrake);
+  EXPECT_EQ(joints_[0].mode, JointMode::kBrake);
+}
+
 TEST_F(GateWithAFold, FoldsFromTheBeginningAfterACommandAndInANewRun) {
   for (int i = 0; i < 100; ++i) brake();
   sensors_.joints[0].position = 0.5;
