@@ -23,9 +23,9 @@
 /// kDriveVelocity command may lie between the measured speed and zero, ± acceleration·Δt.
 ///
 /// Tick 0 brakes. A brake orders the stop action of every joint (stop_action.h). A command that itself requests the
-/// brake on every joint is applied as JointCommand{}, whatever their stop actions are. But a fold that the gate has begun
-/// goes on: a robot on legs lies down after a short stop, too. GateReport counts: `refused` frames (checksum, future
-/// cycle, joint count, finiteness, mode), `missed` ticks in which the permit was good and the command missing.
+/// brake on every joint is applied as JointCommand{}, whatever their stop actions are. But a fold that the gate has
+/// begun goes on: a robot on legs lies down after a short stop, too. GateReport counts: `refused` frames (checksum,
+/// future cycle, joint count, finiteness, mode), `missed` ticks in which the permit was good and the command missing.
 
 #include <array>
 #include <cmath>
