@@ -4,8 +4,8 @@
 ///   recognised by   four legs (machine/legs/leg_model.h)
 ///   laws            estimation/legged, control/legged, safety/conditions/legged
 ///   stop action     fold: every joint moves to the lying posture within kFoldTime, in a walk kWalkingFoldTime,
-///                   kFoldStiffness times as stiff as
-///                   while it stands, since no feed-forward carries the body. Then it damps, and at the end the drives brake
+///                   kFoldStiffness times as stiff as while it stands, since no feed-forward carries the body. Then it
+///                   damps, and at the end the drives brake
 ///   ramp            the robot lies down
 ///
 /// The time of the fold is that of legs of 0.426 m. Time and gains follow leg length and mass as in

@@ -5,6 +5,7 @@
 
 #include "control/legged/own_gaits.h"
 #include "ros/messages/status_messages.h"
+#include "ros/reports/name_list.h"
 #include "signals/names.h"
 #include "signals/roles.h"
 
@@ -37,9 +38,7 @@ std::string foot_names() {
 }
 
 std::string gait_names(const Gaits& gaits) {
-  std::string names;
-  for (const std::string& word : gait_words(gaits)) names.append(names.empty() ? "" : ", ").append(word);
-  return names;
+  return joined(gait_words(gaits));
 }
 
 StanceMode mode_of(const std::string& posture) {

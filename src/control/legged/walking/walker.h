@@ -6,8 +6,7 @@
 ///   clock     the gait's phase says which feet bear (gait.h). Another gait begins where the phase wraps, after a whole
 ///             period of this one: until then, its feet stand where the last gait put them. A foot that then swings
 ///             begins its swing where it is. One whose swing would have begun before the gait stands until its next
-///             one. A walk ends in a cycle in which no foot is far from where it left the
-///             ground
+///             one. A walk ends in a cycle in which no foot is far from where it left the ground
 ///   contact   a foot that meets the ground in the second half of its swing bears from then on. A foot that is late is
 ///             pushed down by the force that it is to bear
 ///   ground    is the plane through the places where the feet bore last. So a foot lands where the others stand, whatever
