@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "control/legged/gait.h"
-#include "machine/description/wording.h"
 
 namespace robot_control {
 namespace {
@@ -24,16 +23,23 @@ bool is_word(const std::string& name) {
          });
 }
 
+/// Returns the names of these members in words.
+std::string listed(const std::vector<std::string_view>& members) {
+  std::string names;
+  for (const std::string_view member : members) names.append(names.empty() ? "" : ", ").append(member);
+  return names;
+}
+
 /// Returns true if each member is given and valid by itself.
 bool is_whole(const std::string& path, GivenValues& given) {
-  std::vector<std::string> accepted, missing;
+  std::vector<std::string_view> accepted, missing;
   for (const std::string_view member : kMembers) {
     const std::string at = path + std::string(member);
-    if (given.accepted(at)) accepted.emplace_back(member);
-    if (!given.accepted(at) && !given.refused(at)) missing.emplace_back(member);
+    if (given.accepted(at)) accepted.push_back(member);
+    if (!given.accepted(at) && !given.refused(at)) missing.push_back(member);
   }
   if (!accepted.empty() && !missing.empty())
-    given.refuse(path + accepted.front(), "describes no gait alone", "add " + list(missing));
+    given.refuse(path + std::string(accepted.front()), "describes no gait alone", "add " + listed(missing));
   return accepted.size() == kMembers.size();
 }
 
