@@ -5,7 +5,8 @@
 ///   u̇ = −ω × u        accelerometer/g = u + β at rest        u: unit vector; β: bias/g, along and across
 ///
 /// The error state is u_x, u_y, β_x, β_y. One rest shows only their sums. Rests in two headings separate them, because
-/// gravity turns against the robot and the bias does not.
+/// gravity turns against the robot and the bias does not. So in a turn a bias that a rest took for a tilt is unknown
+/// again.
 ///
 /// A rest may contradict the tilt that the gyro measured since the last one by more than kSignificant deviations. Then
 /// the tilt is unknown. The bias keeps its variance, because a failing gyro does not change it.
