@@ -56,6 +56,10 @@ bool MotionDifference::step(const Sample& sample) noexcept {
   now_.distance += sample.distance;
   const bool early = count_ > 0 && time() - record(count_ - 1).time < Tuning::kPointInterval * (1 - 1e-9);
   if (!sample.both_sides_read || early) return false;
+  if (count_ > 0) {
+    const Record& last = record(count_ - 1);
+    now_.turn_speed = (now_.right_minus_left - last.right_minus_left) / (time() - last.time);
+  }
   record(count_++) = now_;
   return true;
 }
@@ -87,7 +91,8 @@ MotionDifference::Point MotionDifference::difference(const Record& wheels) const
           .distance = wheels.distance,
           .yaw = yaw,
           .velocity = from.velocity + (to.velocity - from.velocity) * part,
-          .yaw_rate = from.yaw_rate + (to.yaw_rate - from.yaw_rate) * part};
+          .yaw_rate = from.yaw_rate + (to.yaw_rate - from.yaw_rate) * part,
+          .turn_speed = wheels.turn_speed};
 }
 
 }  // namespace robot_control

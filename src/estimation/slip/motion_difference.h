@@ -43,6 +43,7 @@ class MotionDifference {
     double yaw = 0;              ///< rad, at time − τ as all members below
     Planar velocity{};           ///< m/s, odom axes: integral of the acceleration since the restart
     double yaw_rate = 0;         ///< rad/s
+    double turn_speed = 0;       ///< m/s: right − left, since the point before
   };
 
   /// Describes the motion of one step.
@@ -89,6 +90,7 @@ class MotionDifference {
     double time = 0;               ///< s
     Planar wheel_path{};           ///< m, odom axes
     double right_minus_left = 0;   ///< m
+    double turn_speed = 0;         ///< m/s
     double distance = 0;           ///< m
     Planar inertial{};             ///< m, odom axes: lever − ∬ acceleration dt²
     Planar velocity{};             ///< m/s, odom axes: ∫ acceleration dt since the restart
