@@ -107,5 +107,7 @@ def drive_rows(first: int, seconds: float, say: Callable[[str], None], runner: R
         ratio = of.odometry / undisturbed.odometry
         rows.append(row(f"{name} error of the odometry, of the undisturbed", ratio, "", ODOMETRY))
         if dialect in DIALECTS:
-            rows.append(row(f"{name} ripple of the turn, of the undisturbed", of.ripple / undisturbed.ripple, "", RIPPLE))
+            rows.append(
+                row(f"{name} ripple of the turn, of the undisturbed", of.ripple / undisturbed.ripple, "", RIPPLE)
+            )
     return rows

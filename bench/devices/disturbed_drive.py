@@ -22,7 +22,7 @@ RIPPLE_TIME = 0.5  # s over which the speed is averaged
 BUSES = ("ok", "lossy", "disturbed")
 BOARD_RATE = 250.0  # Hz
 SAFETY = {"vesc": {"encoders_lost": {"persistence": 0.02}}}
-"""What docs/drivers.md sets of `safety_monitor` where frames are lost."""
+"""docs/drivers.md sets this of `safety_monitor` where frames are lost."""
 
 
 @dataclass(frozen=True)

@@ -93,7 +93,9 @@ def robot_behind(
     """A robot behind such drives; behind a board it runs at `board_rate` in Hz. `safety`: of `safety_monitor`."""
     serial = {"driver": dialect, "rate": board_rate, "wheel_command": SERIAL.get(dialect)}
     params = {"robot": serial} if dialect in SERIAL else {}
-    return ClosedLoop({**params, "safety_monitor": safety or {}}, seed=seed, drives=share_file(f"config/drives/{dialect}.yaml"))
+    return ClosedLoop(
+        {**params, "safety_monitor": safety or {}}, seed=seed, drives=share_file(f"config/drives/{dialect}.yaml")
+    )
 
 
 def latest(trial: LossTrial) -> float:
