@@ -1,4 +1,4 @@
-"""Half an hour of driving behind drives on a disturbed bus or line, beside the same drive on an undisturbed one.
+"""Drives behind motor drives on a disturbed bus or line, beside the same drives on an undisturbed one.
 
 The request changes every `SEGMENT`, in the middle of which the ripple is measured. The clocks of the drives are always
 apart (simulation/devices/simulated_drives.h).
@@ -21,6 +21,8 @@ SETTLED = 4.0  # s of a segment after which speed and turn are steady
 RIPPLE_TIME = 0.5  # s over which the speed is averaged
 BUSES = ("ok", "lossy", "disturbed")
 BOARD_RATE = 250.0  # Hz
+SAFETY = {"vesc": {"encoders_lost": {"persistence": 0.02}}}
+"""docs/drivers.md sets this of `safety_monitor` where frames are lost."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,7 @@ def requests(seed: int, count: int) -> list[tuple[float, float]]:
 
 def run_drive(drive: DisturbedDrive) -> DriveFigures:
     """Runs one drive."""
-    loop = robot_behind(drive.dialect, drive.seed, BOARD_RATE)
+    loop = robot_behind(drive.dialect, drive.seed, BOARD_RATE, SAFETY.get(drive.dialect))
     loop.run(1.0, (0.0, 0.0))
     loop.inject_fault("line" if drive.dialect in SERIAL else "bus", drive.bus)
     stops, odometry, ripple = 0, [], []
@@ -63,6 +65,12 @@ def run_drive(drive: DisturbedDrive) -> DriveFigures:
         mean = np.convolve(steady, np.full(width, 1 / width), "valid")
         ripple.append(float(np.std(steady[width // 2 : width // 2 + len(mean)] - mean)))
     return DriveFigures(stops, rms(odometry), rms(ripple))
+
+
+def together(drives: Sequence[DriveFigures]) -> DriveFigures:
+    """The figures of equally long drives as one."""
+    odometry, ripple = (rms([getattr(drive, name) for drive in drives]) for name in ("odometry", "ripple"))
+    return DriveFigures(sum(drive.stops for drive in drives), odometry, ripple)
 
 
 def travel(log: Log, source: str) -> NDArray[np.float64]:

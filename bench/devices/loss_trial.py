@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,11 +87,15 @@ class Outcome:
     broken: tuple[str, ...]
 
 
-def robot_behind(dialect: str, seed: int, board_rate: float = 1000.0) -> ClosedLoop:
-    """A robot behind such drives; behind a board it runs at `board_rate` in Hz."""
+def robot_behind(
+    dialect: str, seed: int, board_rate: float = 1000.0, safety: dict[str, Any] | None = None
+) -> ClosedLoop:
+    """A robot behind such drives; behind a board it runs at `board_rate` in Hz. `safety`: of `safety_monitor`."""
     serial = {"driver": dialect, "rate": board_rate, "wheel_command": SERIAL.get(dialect)}
     params = {"robot": serial} if dialect in SERIAL else {}
-    return ClosedLoop(params, seed=seed, drives=share_file(f"config/drives/{dialect}.yaml"))
+    return ClosedLoop(
+        {**params, "safety_monitor": safety or {}}, seed=seed, drives=share_file(f"config/drives/{dialect}.yaml")
+    )
 
 
 def latest(trial: LossTrial) -> float:

@@ -42,7 +42,9 @@ GOALS = ((2.0, 0.0), (0.3, 0.0))
 BOUNDS = {"slam": 15.0, "localization": 10.0, "navigate": 10.0}
 """% of a core"""
 GROWTH = 2.0
-"""MB"""
+"""MB from the first block to the last one, of the least in each: a plan takes some MB and gives them back"""
+SEEN = 10
+"""goals before the first block, until the map is whole"""
 
 
 class System:
@@ -108,12 +110,14 @@ def _of_one(with_map: bool, blocks: int, programs: Path) -> tuple[list[dict[str,
             rospy.init_node("navigation_bench", anonymous=True, disable_signals=True)
             goals = _Goals()
             shares: dict[str, list[float]] = {name: [] for name in system.names}
-            goals.drive()
-            first = {name: system.used(name)[1] for name in system.names}
+            memory: dict[str, list[float]] = {name: [] for name in system.names}
+            for _ in range(SEEN):
+                goals.drive()
+                time.sleep(SETTLING + SECONDS)
             began = time.monotonic()
-            ratios = [_block(system, goals, shares, programs) for _ in range(blocks)]
+            ratios = [_block(system, goals, shares, memory, programs) for _ in range(blocks)]
             lasted = time.monotonic() - began
-            grown = {name: system.used(name)[1] - first[name] for name in system.names}
+            grown = {name: min(used[-WINDOWS:]) - min(used[:WINDOWS]) for name, used in memory.items()}
         finally:
             system.end()
     rows = [
@@ -143,8 +147,10 @@ class _Goals:
         self._publisher.publish(goal)
 
 
-def _block(system: System, goals: _Goals, shares: dict[str, list[float]], programs: Path) -> float:
-    """The p99 of the chain with the nodes to that without them; adds their shares of a core."""
+def _block(
+    system: System, goals: _Goals, shares: dict[str, list[float]], memory: dict[str, list[float]], programs: Path
+) -> float:
+    """The p99 of the chain with the nodes to that without them; adds their shares of a core and their MB."""
     loop = Loop(programs, f"navigation-{os.getpid()}", driver=FREE_WHEELS)
     windows: dict[signal.Signals, list[tuple[int, int]]] = {signal.SIGCONT: [], signal.SIGSTOP: []}
     try:
@@ -160,7 +166,9 @@ def _block(system: System, goals: _Goals, shares: dict[str, list[float]], progra
                 spans.append((begin, time.monotonic_ns()))
                 if kind is signal.SIGCONT:
                     for name, seconds in before.items():
-                        shares[name].append(100 * (system.used(name)[0] - seconds) / SECONDS)
+                        used, megabytes = system.used(name)
+                        shares[name].append(100 * (used - seconds) / SECONDS)
+                        memory[name].append(megabytes)
         rows = loop.end()
     finally:
         system.stop(signal.SIGCONT)

@@ -94,7 +94,7 @@ def drive_goals(task: tuple[str, int]) -> list[tuple[Trip, bool, float]]:
     for _ in range(PER_ROBOT):
         start, goal = robot.place, random_goal(random, known)
         wrong = random.random() < WRONG
-        while not wrong and not (aside(obstacles, goal) and feasible(robot, known, goal)):
+        while not (aside(obstacles, goal) and (wrong or feasible(robot, known, goal))):
             goal = random_goal(random, known)
         possible, way = feasible(robot, known, goal), shortest(known, start, goal)
         trip = robot.drive(goal)

@@ -78,6 +78,7 @@ std::vector<StopScenario> stop_scenarios() {
       ahead(kCauseEncodersLost, "left_encoder", "off"),
       ahead(kCauseImuLost, "gyro", "off"),
       ahead(kCauseImuStuck, "gyro", "stuck"),
+      ahead(kCauseImuJump, "gyro", "garbage"),
       ahead(kCauseCommandStale, "controller", "delayed"),
       ahead(kCauseCommandStale, "controller", "stuck"),
       with(ahead(kCauseWheelSpeed, "controller", "wrong"),

@@ -49,7 +49,7 @@ SafetyParameters Quadruped::limits() const {
   SafetyParameters limits = legged_limits(parameters_.safety, machine_);
   limits.ramp_time =
       std::max(limits.ramp_time, walk_ending_time(parameters_.leg_control, machine_) + lying_down_time(machine_));
-  limits.imu_lost.reaction = limits.imu_stuck.reaction = Reaction::kBrake;
+  limits.imu_lost.reaction = limits.imu_stuck.reaction = limits.imu_jump.reaction = Reaction::kBrake;
   limits.lift.reaction = Reaction::kOff;  // a robot that lies stands on no foot
   return limits;
 }

@@ -9,7 +9,7 @@
 ///   ramp            the robot lies down
 ///
 /// The time of the fold is that of legs of 0.426 m. Time and gains follow leg length and mass as in
-/// control/legged. Without its IMU a robot on legs is stopped (imu_lost and imu_stuck brake instead of slowing).
+/// control/legged. Without its IMU a robot on legs is stopped (imu_lost, imu_stuck and imu_jump always brake).
 /// Its feet need not carry it, because it may lie (lift is off).
 
 #include "configuration/parameters.h"

@@ -51,6 +51,16 @@ TEST(TiltTest, IsBoundedHoweverTheGyroTurns) {
   }
 }
 
+// A rest shows tilt and bias together. After half a turn they are apart by twice the bias.
+TEST(TiltTest, ABiasThatARestTookForTiltIsUnknownAgainInATurn) {
+  constexpr TiltParams kParams;
+  Tilt tilt(kParams);
+  stand(tilt, kBiased);
+  EXPECT_LT(std::sqrt(tilt.acceleration_variance(0)), 0.1 * kParams.bias);
+  turn_back(tilt);
+  EXPECT_NEAR(std::sqrt(tilt.acceleration_variance(0)), 2 * kParams.bias, 0.1 * kParams.bias);
+}
+
 TEST(TiltTest, IsBoundedHoweverTheAccelerometerCorrectsIt) {
   Tilt tilt;
   for (int i = 0; i < 1000; ++i) {

@@ -76,5 +76,39 @@ TEST_F(OwnGaitsTest, AreRefusedWithPathRuleAndRemedy) {
   expect({{"gait_2.phases", "[0, 0, 0.25, 0.5]", {}}}, {"they leave 1"});
 }
 
+std::string gait_of(const std::string& phases, double period, double alone) {
+  return "{name: own, period: " + std::to_string(period) + ", duty: " + std::to_string(1 - alone / period) +
+         ", phases: " + phases + ", lift: 0.05}";
+}
+
+TEST_F(OwnGaitsTest, ThatTipOverAreRefused) {
+  const std::string pace = "[0.5, 0, 0.5, 0]", bound = "[0, 0, 0.5, 0.5]", trot = "[0.5, 0, 0, 0.5]";
+  struct Case {
+    std::string phases;
+    double period, alone;
+    bool tips;
+  };
+  // √(h/g) = 0.1744 s: 0.122 and 0.0698 s of a side, 0.183 and 0.1046 s of front and rear.
+  for (const Case& gait :
+       {Case{pace, 0.36, 0.18, true}, Case{pace, 0.5, 0.121, false}, Case{pace, 0.5, 0.123, true},
+        Case{pace, 0.2, 0.083, false}, Case{pace, 0.2, 0.084, true}, Case{bound, 0.36, 0.18, true},
+        Case{bound, 0.7, 0.182, false}, Case{bound, 0.7, 0.184, true}, Case{bound, 0.3, 0.125, false},
+        Case{bound, 0.3, 0.126, true}, Case{trot, 0.8, 0.4, false}}) {
+    SCOPED_TRACE(gait.phases + " " + std::to_string(gait.period) + " " + std::to_string(gait.alone));
+    const std::vector<Overlay> changes{{"gait_3", gait_of(gait.phases, gait.period, gait.alone), {}}};
+    if (!gait.tips) {
+      EXPECT_EQ(all_gaits(read(changes).leg_control.gaits).size(), kGaits.size() + 2);
+      continue;
+    }
+    EXPECT_EQ(problems_in(refusal(changes)), 1u);
+    EXPECT_THAT(refusal(changes), HasSubstr("gait_3.duty = "));
+    EXPECT_THAT(refusal(changes), HasSubstr("raise the duty, or lower the period"));
+  }
+  EXPECT_THAT(
+      refusal({{"gait_3", gait_of(pace, 0.36, 0.18), {}}}),
+      HasSubstr("lets the feet of one side bear alone for 0.18 s, in 1 of the period, and the body tips over: at "
+                "most 0.122 s, and time · part of the period at most 0.07 s"));
+}
+
 }  // namespace
 }  // namespace robot_control

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
 
 #include "machine/gravity.h"
 #include "safety/measurements/rim_speed.h"
@@ -292,6 +293,81 @@ TEST_F(BodyConditionsTest, ASlowImuIsNotStuck) {
   }
 }
 
+/// Random rates within the range of a BMI088, on all axes, or on one of them.
+class JumpingRatesTest : public BodyConditionsTest, public testing::WithParamInterface<Vector3d> {
+ protected:
+  static constexpr int kSeeds = 200;
+
+  void jump() {
+    for (int axis = 0; axis < 3; ++axis) rate_[axis] = GetParam()[axis] * random_(engine_);
+  }
+
+  std::mt19937_64 engine_;
+  std::uniform_real_distribution<double> random_{-34.9, 34.9};
+};
+
+// A rate within the limit of the one before counts as none: of one axis that is one in seven.
+TEST_P(JumpingRatesTest, AreFoundWithinTwentySamples) {
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    begin();
+    int count = 0;
+    for (; quiet() && count < 20; ++count) {
+      jump();
+      step();
+    }
+    ASSERT_EQ(out_.stopping(), kCauseImuJump) << seed;
+    ASSERT_GE(count, 5) << seed;
+    ASSERT_GT(out_.measurements()[0].value, parameters_.imu_jump.limit.value()) << seed;
+    rate_.setZero();
+    steps(RateChange::kSamples);
+    ASSERT_TRUE(quiet()) << seed << ": the gyro is sound again";
+  }
+}
+
+TEST_P(JumpingRatesTest, OfAnImuAtAHundredHertzAreFoundAtTheFifthJump) {
+  int jumps = 0;
+  for (int i = 0; quiet() && i < 200; ++i) {
+    if (i % 10 == 0) {
+      rate_ = (jumps % 2 == 0 ? 6 : 0) * GetParam();
+      sensors_.imu.angular_velocity = plain(rate_);
+      ++jumps;
+    }
+    check();
+  }
+  EXPECT_EQ(out_.stopping(), kCauseImuJump);
+  EXPECT_EQ(jumps, 5);
+}
+
+TEST_P(JumpingRatesTest, AreNoneWhileTwoSamplesInNineAreWrong) {
+  for (int i = 0; i < 900; ++i) {
+    rate_.setZero();
+    if (i % 9 == 0 || i % 9 == 4) jump();
+    step();
+    ASSERT_TRUE(quiet()) << i;
+  }
+}
+
+// A blow turns the body at 15 rad/s within 3 ms, and the ground stops it.
+TEST_P(JumpingRatesTest, AreNoBlow) {
+  for (const double rate : {5.5, 11.0, 16.5, 16.5, 8.0, 0.0, 0.0}) {
+    rate_ = rate * GetParam().normalized();
+    steps(rate == 16.5 ? 5 : 1);
+    ASSERT_EQ(out_.stopping() & kCauseImuJump, 0u) << rate;
+  }
+}
+
+TEST_P(JumpingRatesTest, OfAnEarlierRunDoNotCount) {
+  for (int i = 0; i < 8; ++i) {
+    if (i == 4) facts_.enter_run();
+    rate_ = (i % 2 == 0 ? 6 : 0) * GetParam();
+    step();
+    ASSERT_TRUE(quiet()) << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(OnAxes, JumpingRatesTest,
+                         testing::Values(Vector3d(1, 1, 1), Vector3d(1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, 0, 1)));
+
 TEST_F(BodyConditionsTest, ASampleThatIsNotFiniteIsIgnored) {
   const double before = facts_.attitude().tilt();
   for (const double bad : {kNaN, std::numeric_limits<double>::infinity()}) {
@@ -401,7 +477,7 @@ TEST_F(BodyConditionsTest, SkippedCyclesCount) {
 
 TEST_F(BodyConditionsTest, WhatIsOffIsNotFound) {
   for (Condition* condition : {&parameters_.tilt, &parameters_.tip_over, &parameters_.free_fall, &parameters_.impact,
-                               &parameters_.lift, &parameters_.imu_stuck}) {
+                               &parameters_.lift, &parameters_.imu_stuck, &parameters_.imu_jump}) {
     condition->reaction = Reaction::kOff;
   }
   begin();

@@ -94,6 +94,9 @@ const std::vector<Row>& rows() {
        }},
       {kCauseEncodersLost, &P::encoders_lost, 0, 0.01, 0, [](Robot& r) { set_joints_valid(r.sensors, 0); }},
       {kCauseImuLost, &P::imu_lost, 0, 0.1, 0, [](Robot& r) { r.sensors.valid &= ~kValidGyro; }},
+      // The median of nine changes, of which the fifth is the first.
+      {kCauseImuJump, &P::imu_jump, 5, 0, 5,
+       [](Robot& r) { r.sensors.imu.angular_velocity[1] = std::lround(r.t * 1000) % 2 == 0 ? 6 : 0; }},
       {kCauseImuStuck, &P::imu_stuck, 0, 0.25, 1, [](Robot& r) { r.noisy = false; }},
       // 51 come at once, then 100 a second.
       {kCauseOverruns, &P::overruns, 50, 1, 0,

@@ -197,6 +197,24 @@ TEST_F(LeggedConditionsTest, AJointThatDoesNotFollowItsCommandBrakesWhileTheRobo
   EXPECT_EQ(run(0.3), 0.3);
 }
 
+TEST_F(LeggedConditionsTest, AJointFarFromItsCommandBrakesBeforeItThrowsTheRobotOver) {
+  for (std::size_t i = 0; i < kLegsJoints; ++i)
+    command_.joints[i] = {.mode = JointMode::kImpedance, .position = sensors_.joints[i].position};
+  const double angle = sensors_.joints[7].position;
+  const auto count = [&](double t) {
+    sensors_.joints[7].position = angle + (std::lround(t / kPeriod) % 2 == 0 ? 0 : 1e-9);  // it is not stuck
+  };
+  for (const LegPhase phase : {LegPhase::kGathering, LegPhase::kRising, LegPhase::kLowering, LegPhase::kStanding}) {
+    command_.legged.phase = phase;
+    command_.joints[7].position = angle - (phase == LegPhase::kStanding ? 0.24 : 0.74);
+    EXPECT_EQ(run(0.5, count), 0.5);
+    command_.joints[7].position = angle - 2;  // eight times the limit
+    EXPECT_NEAR(run(1, count), 0.024, 1e-6);
+    EXPECT_EQ(causes(Reaction::kBrake), "joint_following");
+    EXPECT_EQ(joint(), 7u);
+  }
+}
+
 TEST_F(LeggedConditionsTest, AnEncoderThatJumpsBrakes) {
   command_.legged.phase = LegPhase::kLying;
   const double reach = 1.1 * robot_.joints[7].velocity_limit * kPeriod;
@@ -381,6 +399,16 @@ TEST_F(WalkingConditionsTest, AFootThatBearsInNoneOfItsStepsIsAWarning) {
   EXPECT_LT(seen, 1.0);
   EXPECT_EQ(causes(Reaction::kWarn), "foot_load");
   EXPECT_EQ(joint(), 5u);
+}
+
+// Its angle runs away in its swing, as behind an encoder that counts backwards: 1 rad is four times the limit.
+TEST_F(WalkingConditionsTest, AJointThatRunsAwayInItsSwingBrakesInThisSwing) {
+  const double seen = walk(2, [&](double) {
+    if (command_.joints[8].stiffness > 0) command_.joints[8].position += 1.0;
+  });
+  EXPECT_NEAR(seen, 0.2 + 0.049, 0.002);
+  EXPECT_EQ(causes(Reaction::kBrake), "joint_following");
+  EXPECT_EQ(joint(), 8u);
 }
 
 TEST_F(WalkingConditionsTest, AJointThatDoesNotFollowItsSwingsBrakes) {

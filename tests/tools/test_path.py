@@ -63,6 +63,17 @@ def test_stamps_of_a_machine_that_stands_still_are_no_motion_in_vain():
     assert follower.state is State.DONE, follower.reason
 
 
+def test_the_way_back_of_what_a_robot_strayed_in_its_turns_is_no_motion_in_vain():
+    """A robot on legs walks out of each corner while it turns, and its odometry says so."""
+    side = SHAPES["square"](0.5)
+    robot, follower = Ideal(), Follower(route([*side, *side[1:], *side[1:]]))
+    while not follower.over:
+        command = follower.step(robot.pose, robot.motion)
+        strays = follower.state is State.TURNING and command.angular != 0
+        robot.drive(Motion(-0.04, command.angular) if strays else command)
+    assert follower.state is State.DONE, follower.reason
+
+
 def refusal(points):
     with pytest.raises(PathError) as error:
         route(points)

@@ -102,6 +102,7 @@ class Follower:
         self._turning_headway = Headway(given.turned_in_vain, given.scale_error)
         self._driven = 0.0  # m, length of the pieces that are done
         self._along = 0.0  # m, progress on the present piece
+        self._strayed = 0.0  # m, motion since the end of the last piece
         self.reason = ""
         self.cross_track_error = 0.0  # m, to the left
         self.heading_error = 0.0  # rad, the robot's heading minus the path's
@@ -168,7 +169,7 @@ class Follower:
         if self.over or self._state is State.PAUSED:
             return STAND
         if self._state is State.TURNING:
-            return self._turn(pose, measured, moved.angular)
+            return self._turn(pose, measured, moved)
         return self._drive(pose, measured, limit, moved.linear)
 
     def _moved(self, last: Pose, before: Motion, pose: Pose, measured: Motion, elapsed: float) -> Motion:
@@ -193,14 +194,19 @@ class Follower:
                 f"the path begins {distance:.2f} m from the robot, more than {self._parameters.start_distance:g} m"
             )
         elif abs(turned(first.first_heading - pose.yaw)) < self._parameters.start_turn:
-            self._begin_piece()
+            self._begin_piece(pose)
 
-    def _begin_piece(self) -> None:
+    def _begin_piece(self, pose: Pose) -> None:
+        """The way back of what a robot strayed while it turned is no motion in vain; that of a jump is."""
         self._state = State.DRIVING
-        self._headway.begin(self._route.pieces[self._number].length + self._reachable)
+        piece = self._route.pieces[self._number]
+        strayed = min(self._strayed, math.dist(piece.points[0], (pose.x, pose.y)))
+        self._headway.begin(piece.length + max(self._reachable, strayed))
+        self._strayed = 0.0
 
-    def _turn(self, pose: Pose, measured: Motion, moved: float) -> Motion:
+    def _turn(self, pose: Pose, measured: Motion, moved: Motion) -> Motion:
         given = self._parameters
+        self._strayed += abs(moved.linear)
         at_end = self._number == len(self._route.pieces)
         wanted = self._route.end_heading if at_end else self._route.pieces[self._number].first_heading
         error = turned(wanted - pose.yaw)
@@ -215,9 +221,9 @@ class Follower:
                 if at_end:
                     self._state = State.DONE
                 else:
-                    self._begin_piece()
+                    self._begin_piece(pose)
             return STAND
-        if self._turning_headway.step(abs(moved), abs(error)):
+        if self._turning_headway.step(abs(moved.angular), abs(error)):
             self.fail(f"turned by {given.turned_in_vain:g} rad without coming nearer to its heading")
             return STAND
         left = abs(error) - abs(measured.angular) * given.reaction

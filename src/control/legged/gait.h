@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <cmath>
 #include <vector>
 
@@ -71,9 +72,10 @@ constexpr bool walkable(const Gait& gait) noexcept {
   return gait.duty == 1 || (gait.lift > 0 && gait.period * (1 - gait.duty) >= kMinSwing);
 }
 
-/// Returns how many feet bear at the same time at least. Other feet bear where a leg's phase passes 0 or the duty; the
-/// middles between these are counted, but for gaps of rounding errors.
-inline std::size_t fewest_feet(const Gait& gait) noexcept {
+/// Calls `each` with each part of the period in which the same feet bear, and with these feet by LegPlace. Other feet
+/// bear where a leg's phase passes 0 or the duty; gaps of rounding errors between these are left out.
+template <class Each>
+void for_each_support(const Gait& gait, const Each& each) {
   constexpr double kRounding = 1e-9;
   std::array<double, 2 * kLegs + 1> changes{};
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
@@ -82,13 +84,18 @@ inline std::size_t fewest_feet(const Gait& gait) noexcept {
   }
   std::sort(changes.begin(), changes.end() - 1);
   changes.back() = changes.front() + 1;
-  std::size_t fewest = kLegs;
   for (std::size_t i = 0; i + 1 < changes.size(); ++i) {
     if (changes[i + 1] - changes[i] < kRounding) continue;
-    std::size_t feet = 0;
-    for (std::size_t leg = 0; leg < kLegs; ++leg) feet += gait.bears(leg, (changes[i] + changes[i + 1]) / 2) ? 1 : 0;
-    fewest = std::min(fewest, feet);
+    std::bitset<kLegs> feet;
+    for (std::size_t leg = 0; leg < kLegs; ++leg) feet[leg] = gait.bears(leg, (changes[i] + changes[i + 1]) / 2);
+    each(changes[i + 1] - changes[i], feet);
   }
+}
+
+/// Returns how many feet bear at the same time at least.
+inline std::size_t fewest_feet(const Gait& gait) noexcept {
+  std::size_t fewest = kLegs;
+  for_each_support(gait, [&](double, const std::bitset<kLegs>& feet) { fewest = std::min(fewest, feet.count()); });
   return fewest;
 }
 

@@ -1,12 +1,23 @@
 #include "control/legged/own_gaits.h"
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 
 #include "control/legged/gait.h"
+#include "machine/gravity.h"
 
 namespace robot_control {
 namespace {
+
+/// Two pairs of feet, by LegPlace. Each is beside the body's centre.
+struct FeetBeside {
+  const char* words;
+  std::array<std::bitset<kLegs>, 2> pairs;
+  double factor;  ///< k
+};
+const std::array kFeetBeside{FeetBeside{"the feet of one side", {0b0101, 0b1010}, 1},
+                             FeetBeside{"the front or the rear feet", {0b0011, 0b1100}, 1.5}};
 
 constexpr std::size_t kMinFeet = 2;  // that bear: the forces of one foot do not hold a body
 constexpr std::array<std::string_view, 5> kMembers{"name", "period", "duty", "phases", "lift"};
@@ -28,6 +39,31 @@ std::string listed(const std::vector<std::string_view>& members) {
   std::string names;
   for (const std::string_view member : members) names.append(names.empty() ? "" : ", ").append(member);
   return names;
+}
+
+/// Returns the value in s with three decimals at most.
+std::string rounded(double value) {
+  return shortest(std::round(1000 * value) / 1000);
+}
+
+/// Returns why a body tips over with this gait; empty: it does not.
+std::string tipping(const Gait& gait) {
+  constexpr double kHeight = 0.7 * kReferenceLeg;  // m, control/legged/leg_tuning.h
+  const double fall = std::sqrt(kHeight / kGravity);
+  for (const FeetBeside& beside : kFeetBeside) {
+    double longest = 0, part = 0;
+    for_each_support(gait, [&](double length, const std::bitset<kLegs>& feet) {
+      if (std::find(beside.pairs.begin(), beside.pairs.end(), feet) == beside.pairs.end()) return;
+      longest = std::max(longest, length * gait.period);
+      part += length;
+    });
+    const double limit = 0.7 * beside.factor * fall, part_limit = 0.4 * beside.factor * fall;
+    if (longest <= limit && longest * part <= part_limit) continue;
+    return std::string("lets ") + beside.words + " bear alone for " + rounded(longest) + " s, in " + rounded(part) +
+           " of the period, and the body tips over: at most " + rounded(limit) +
+           " s, and time · part of the period at most " + rounded(part_limit) + " s";
+  }
+  return {};
 }
 
 /// Returns true if each member is given and valid by itself.
@@ -82,6 +118,8 @@ void check(const OwnGaits& gaits, const std::string& block, GivenValues& given) 
                    "must leave two feet on the ground at any time; at the duty " + shortest(gait.duty) +
                        " they leave " + std::to_string(feet),
                    "raise the duty, or choose other phases");
+    else if (const std::string why = tipping(gait); !why.empty())
+      given.refuse(path + "duty", why, "raise the duty, or lower the period");
   }
 }
 

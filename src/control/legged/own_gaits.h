@@ -4,6 +4,19 @@
 /// A gait has all of its members. It is refused where its name is taken, or where a foot swings for less than
 /// kMinSwing. It is also refused where fewer than two feet bear at any time. It begins with phase 0. How fast a robot
 /// walks with it follows from the robot (walking_speed.h).
+///
+/// While the two feet of one side bear alone, the body tips away from them, because no law sways it over these feet.
+/// The same holds for the two front or rear feet. A gait is refused unless
+///
+///   T ≤ 0.7 k √(h/g)  ∧  T s ≤ 0.4 k √(h/g)
+///
+///   T  s, the longest time for which such feet bear alone
+///   s  0 … 1, the part of the period in which such feet bear alone
+///   h  height of a body on legs of kReferenceLeg, m
+///   k  1 of sides, 1.5 of front and rear: a body is longer than wide
+///
+/// √(h/g) is the time constant with which an inverted pendulum falls. Times and heights of other legs change alike. The
+/// factors are measured (docs/evidence/legs.md#gaits-of-ones-own).
 
 #include <array>
 #include <optional>

@@ -88,6 +88,7 @@ class NavigateNode {
               origin.position.x,
               origin.position.y,
               data};
+    costmap_.reset();  // before the new one: two of the largest maps would take 0.8 GB
     costmap_ = std::make_unique<Costmap>(std::move(grid), footprint_, unknown_is_free_);
     doubt_ = Doubt();
   }

@@ -126,7 +126,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
     if ((sensors_.valid & (kValidGyro | kValidAccelerometer)) != 0) return;
     ROS_WARN(
         "there is no IMU: the odometry turns by the wheels alone, and these conditions see nothing: imu_lost, "
-        "imu_stuck, yaw_rate, tilt, tip_over, free_fall, impact");
+        "imu_stuck, imu_jump, yaw_rate, tilt, tip_over, free_fall, impact");
   }
 
   void log_robot() {

@@ -28,19 +28,21 @@ BodyConditions::BodyConditions(const SafetyParameters& parameters, const Machine
       free_fall_(kCauseFreeFall, parameters.free_fall, period),
       lift_(kCauseLift, parameters.lift, period),
       impact_(kCauseImpact, parameters.impact, period),
+      jump_(kCauseImuJump, parameters.imu_jump, period),
       attitude_(force_time),
       gyro_{.watch{kCauseImuStuck, parameters.imu_stuck, period}},
       accelerometer_{.watch{kCauseImuStuck, parameters.imu_stuck, period}},
       window_(std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(kImpactWindow / period)), 1, kMaxSamples)) {}
 
 void BodyConditions::enter_run() noexcept {
-  for (ConditionWatch* watch : {&tilt_, &tip_over_, &free_fall_, &lift_, &impact_}) watch->reset();
+  for (ConditionWatch* watch : {&tilt_, &tip_over_, &free_fall_, &lift_, &impact_, &jump_}) watch->reset();
   for (Repetition* device : {&gyro_, &accelerometer_}) {
     device->watch.reset();
     device->seen = false;
     device->cycles = 0;
   }
   attitude_.reset();
+  rate_change_.reset();
   force_ = {};
   across_ = {};
   shock_ = 0;
@@ -100,6 +102,7 @@ void BodyConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, dou
   attitude_.step(turned ? &rate : nullptr, felt ? &gravity : nullptr, static_cast<double>(elapsed) * period_);
   const double tilt = attitude_.tilt();
   const double tilt_rate = attitude_.tilt_rate();
+  if (turned) rate_change_.step(sensors.imu.angular_velocity);
   shake(felt);
   weigh(sensors);
 
@@ -112,6 +115,7 @@ void BodyConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, dou
   update(free_fall_, felt && force() < free_fall_.limit(), force());
   update(lift_, carried_ < lift_.limit(), carried_);
   update(impact_, shock_ > impact_.limit(), shock_);
+  update(jump_, turned && rate_change_.value() > jump_.limit(), rate_change_.value());
   repeat(gyro_, turned, sensors.imu.angular_velocity, elapsed, moving, out);
   repeat(accelerometer_, felt, sensors.imu.linear_acceleration, elapsed, moving, out);
 }

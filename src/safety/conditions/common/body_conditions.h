@@ -8,6 +8,8 @@
 ///              limit · kImpactWindow. The mean, because stiff bodies stop within milliseconds; the perpendicular
 ///              component, because bumps and landings accelerate upwards
 ///   lift       Σ F·u < limit · m g, if the robot has contact sensors; m = MachineModel::mass
+///   IMU jump   the change of the gyro's rates from sample to sample (rate_change.h) > limit. The accelerometer is not
+///              judged: a robot that falls shakes it as much as random samples would (docs/evidence/derivations.md)
 ///   IMU stuck  all axes of gyro or of accelerometer are bit for bit equal to the last sample while the machine moves.
 ///              Noise changes the last bits of every new sample; an IMU that is slower than the loop repeats a sample
 ///              for less than any allowed persistence. At standstill even correct sensors may repeat a value
@@ -34,6 +36,7 @@
 #include "safety/conditions/common/condition_watch.h"
 #include "safety/latch/active_causes.h"
 #include "safety/measurements/attitude.h"
+#include "safety/measurements/rate_change.h"
 #include "safety/safety_parameters.h"
 #include "signals/sensor_frame.h"
 
@@ -90,8 +93,9 @@ class BodyConditions {
   Stored<Eigen::Matrix3d> to_base_;  ///< from IMU axes
   Stored<Eigen::Vector3d> imu_;      ///< m, from the point, base axes
 
-  ConditionWatch tilt_, tip_over_, free_fall_, lift_, impact_;
+  ConditionWatch tilt_, tip_over_, free_fall_, lift_, impact_, jump_;
   Attitude attitude_;
+  RateChange rate_change_;
   Repetition gyro_, accelerometer_;
   Stored<Eigen::Vector3d> force_;
   std::size_t window_;  ///< samples in kImpactWindow

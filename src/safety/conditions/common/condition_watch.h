@@ -35,11 +35,12 @@ inline const ConditionMeasurement& worse(const ConditionMeasurement& a, const Co
 /// A measurement that is never beyond its limit and never the worse of two.
 inline constexpr ConditionMeasurement kNothingMeasured{.limit = std::numeric_limits<double>::infinity()};
 
+inline constexpr double kFarTimes = 3;  ///< a measurement of so many times its limit is far beyond it
+
 /// The number of cycles for which a measurement counts. From kFarTimes the limit on, n times the limit counts n cycles,
 /// at most kMaxTimes. A light wheel whose motor runs away (10³ rad/s) is stopped before the persistence ends; a wheel
 /// that leaves a bump is not.
 inline std::uint64_t weighed(const ConditionMeasurement& measurement, std::uint64_t elapsed) noexcept {
-  constexpr double kFarTimes = 3;
   constexpr double kMaxTimes = 50;
   if (!measurement.beyond) return elapsed;
   const double times = measurement.value / measurement.limit;

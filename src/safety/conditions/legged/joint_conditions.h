@@ -4,6 +4,8 @@
 ///   joint speed   |q̇| / velocity limit > limit
 ///   joint effort  |τ| / effort limit > limit, for the persistence: no motor may do that for long
 ///   following     |q − its command| > limit, while the robot stands: an encoder or a drive that no longer moves.
+///                 While it stands up, lies down or swings the leg, kFarTimes the limit counts. From there on n times
+///                 the limit counts n cycles: full torque throws a robot over within 0.1 s.
 ///                 While it walks, the joints of feet in the air are judged: their mean over kMeanTime > kOfSwing limit.
 ///                 This mean stays while the foot bears. The motors of feet that bear are judged by their torques:
 ///                 |τ − τ*| > kOfAsked |τ*| + kOfEffort L in more than kOfTorques of the last cycles, a mean over
@@ -83,10 +85,11 @@ class JointConditions {
       watch.step(measurement, elapsed);
       out.add(watch);
     };
+    following_.step(following, weighed(following, elapsed));
+    out.add(following_);
     update(speed_, speed);
     update(effort_, effort);
     update(range_, range);
-    update(following_, following);
     update(torque_, torque);
   }
 
@@ -94,14 +97,15 @@ class JointConditions {
   ConditionMeasurement follows(std::size_t i, LegPhase phase, const CommandFrame* command, double position,
                                std::uint64_t elapsed) noexcept {
     const bool walks = phase == LegPhase::kWalking;
-    if (!walks && phase != LegPhase::kStanding) return kNothingMeasured;
+    if (phase == LegPhase::kLying || phase == LegPhase::kJoints) return kNothingMeasured;
     const JointCommand& joint = command->joints[i];
     const bool judged = joint.mode == JointMode::kImpedance && (!walks || joint.stiffness > 0);
     const double left = judged ? std::abs(joint.position - position) : 0;
-    if (!walks) return judged ? beyond(i, left, following_.limit()) : kNothingMeasured;
     const double part = std::min(1.0, static_cast<double>(elapsed) * period_ / kMeanTime);
-    if (judged) behind_[i] += part * (left - behind_[i]);
-    return beyond(i, behind_[i], kOfSwing * following_.limit());
+    if (walks && judged) behind_[i] += part * (left - behind_[i]);
+    const double limit = following_.limit();
+    if (left > (phase == LegPhase::kStanding ? 1 : kFarTimes) * limit) return beyond(i, left, limit);
+    return walks ? beyond(i, behind_[i], kOfSwing * limit) : kNothingMeasured;
   }
 
   /// Returns how far the torque of a motor is from the commanded one while its foot bears, as an angle.
