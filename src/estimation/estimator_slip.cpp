@@ -27,7 +27,7 @@ MotionDifference::Sample Estimator::slip_sample(double dt, double turned, const 
 
 void Estimator::watch_slip(double dt, double turned, const Planar& path) noexcept {
   State& s = state_;
-  const bool resolved = s.wheels.gap <= Tuning::kSlowWheels && !s.wheels.batch;
+  const bool resolved = s.wheels.gap <= Tuning::kSlowWheels && !s.wheels.batch && !s.slip.difference().interrupted();
   if (!s.imu.gyro || !s.imu.accelerometer || s.wheels.any_lost() || !resolved) return restart_slip();
   s.slip_yaw += turned;
   if (!s.slip.step(slip_sample(dt, turned, path))) return;

@@ -170,6 +170,18 @@ TEST_F(SlipDetectorTest, ALateReadingIsNoSlip) {
   EXPECT_EQ(proven + drive(2), 0);
 }
 
+// The drives of both sides send by clocks of their own, and for seconds never in the same cycle.
+TEST_F(SlipDetectorTest, PointsThatAreMissingInterruptIt) {
+  EXPECT_FALSE(body_.detector.difference().interrupted());
+  body_.gap = 1'000'000;
+  drive(Tuning::kResidualSpans[1]);
+  EXPECT_FALSE(body_.detector.difference().interrupted());
+  drive(2 * SlidingBody::kStep);
+  EXPECT_TRUE(body_.detector.difference().interrupted());
+  body_.detector.restart();
+  EXPECT_FALSE(body_.detector.difference().interrupted());
+}
+
 /// The gyro may be late by any time of this size.
 class SlipAtAnUnknownClockOffset : public SlipFixture {
  protected:

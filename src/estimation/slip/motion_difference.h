@@ -13,7 +13,7 @@
 ///
 /// τ is learned in motion. Therefore the points keep both motions, and every difference uses the present τ. The
 /// inertial motion between two points is that of a constant acceleration. If τ < 0, the wheels are early: a point is
-/// known when t − τ has passed.
+/// known when t − τ has passed. So both motions are not compared over an interruption of the points.
 
 #include <array>
 #include <cstddef>
@@ -77,6 +77,7 @@ class MotionDifference {
 
   double time() const noexcept { return now_.time; }  ///< s, of the last step
   bool empty() const noexcept { return count_ == 0; }
+  bool interrupted() const noexcept { return !empty() && time() - record(count_ - 1).time > Tuning::kResidualSpans[1]; }
   Point last() const noexcept { return before(time()); }  ///< the newest point that is known; there must be one
   Point before(double time) const noexcept;               ///< the newest known point that is not later, else the oldest
 
