@@ -182,30 +182,6 @@ TEST_F(SlipDetectorTest, PointsThatAreMissingInterruptIt) {
   EXPECT_FALSE(body_.detector.difference().interrupted());
 }
 
-/// The gyro may be late by any time of this size.
-class SlipAtAnUnknownClockOffset : public SlipFixture {
- protected:
-  SlipAtAnUnknownClockOffset() {
-    clock_offset_ = 0.05;
-    learn();
-  }
-};
-
-// The gyro is 50 ms late: when a turn begins, the wheels turn the robot and the gyro does not yet.
-TEST_F(SlipAtAnUnknownClockOffset, ATurnBeginsWithoutSlip) {
-  body_.late = -10;
-  drive(2);
-  EXPECT_EQ(drive(0.3, 0, 0, 1.6) + drive(1), 0);
-}
-
-// A spin grows with time, a difference of the clocks does not.
-TEST_F(SlipAtAnUnknownClockOffset, ASpinOfOneWheelIsProvenLater) {
-  body_.left = 0.3;
-  const double proven = time_to_proof(SlipResidual::kTurn, 1);
-  EXPECT_GE(proven, 3 * clock_offset_);
-  EXPECT_LE(proven, Tuning::kResidualSpans[2]);
-}
-
 // A tilt with the error e accelerates it by g e, which D shows.
 TEST_F(SlipDetectorTest, TheAccelerometersSlowErrorIsTheGravityError) {
   body_.error = 0.03;

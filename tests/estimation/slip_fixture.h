@@ -118,8 +118,7 @@ class SlipFixture : public testing::Test {
   }
 
   void evaluate(bool learns) {
-    body_.detector.evaluate({.acceleration_variance = {1e-6, 1e-6}, .wheel_base = 0.003, .clock_offset = clock_offset_},
-                            learns);
+    body_.detector.evaluate({.acceleration_variance = {1e-6, 1e-6}, .wheel_base = 0.003}, learns);
   }
   bool any_proven() const {
     return body_.detector.proven(SlipResidual::kAlong) || body_.detector.proven(SlipResidual::kAcross) ||
@@ -150,7 +149,6 @@ class SlipFixture : public testing::Test {
   }
 
   SlidingBody body_;
-  double clock_offset_ = 0;  ///< s, its deviation
 };
 
 }  // namespace robot_control

@@ -58,6 +58,7 @@ TEST(TiltTest, ABiasThatARestTookForTiltIsUnknownAgainInATurn) {
   stand(tilt, kBiased);
   EXPECT_LT(std::sqrt(tilt.acceleration_variance(0)), 0.1 * kParams.bias);
   turn_back(tilt);
+  tilt.age();
   EXPECT_NEAR(std::sqrt(tilt.acceleration_variance(0)), 2 * kParams.bias, 0.1 * kParams.bias);
 }
 

@@ -54,10 +54,8 @@ bool MotionDifference::step(const Sample& sample) noexcept {
   now_.wheel_path = now_.wheel_path + sample.path;
   now_.right_minus_left += sample.right_minus_left;
   now_.distance += sample.distance;
-  const Record& last = record(count_ > 0 ? count_ - 1 : 0);
-  const double since = time() - last.time;
-  if (!sample.both_sides_read || (count_ > 0 && since < Tuning::kPointInterval * (1 - 1e-9))) return false;
-  if (count_ > 0) now_.turn_speed = (now_.right_minus_left - last.right_minus_left) / since;
+  const bool early = count_ > 0 && time() - record(count_ - 1).time < Tuning::kPointInterval * (1 - 1e-9);
+  if (!sample.both_sides_read || early) return false;
   record(count_++) = now_;
   return true;
 }
@@ -89,8 +87,7 @@ MotionDifference::Point MotionDifference::difference(const Record& wheels) const
           .distance = wheels.distance,
           .yaw = yaw,
           .velocity = from.velocity + (to.velocity - from.velocity) * part,
-          .yaw_rate = from.yaw_rate + (to.yaw_rate - from.yaw_rate) * part,
-          .turn_speed = wheels.turn_speed};
+          .yaw_rate = from.yaw_rate + (to.yaw_rate - from.yaw_rate) * part};
 }
 
 }  // namespace robot_control

@@ -1,5 +1,6 @@
 #pragma once
-/// Computes the motion by wheels and gyro minus the motion by the accelerometer. No filter's state changes it.
+/// Computes the motion by wheels and gyro minus the motion by the accelerometer. It does not depend on the state of a
+/// filter.
 ///
 ///   E(t) = path by wheels and gyro + (lever of the IMU − ∬ acceleration dt²)(t − τ)   path_difference: m, odom axes
 ///   W(t) = right − left − B ψ(t − τ)                                                  turn_difference: m
@@ -42,7 +43,6 @@ class MotionDifference {
     double yaw = 0;              ///< rad, at time − τ as all members below
     Planar velocity{};           ///< m/s, odom axes: integral of the acceleration since the restart
     double yaw_rate = 0;         ///< rad/s
-    double turn_speed = 0;       ///< m/s: right − left, since the point before
   };
 
   /// Describes the motion of one step.
@@ -62,7 +62,8 @@ class MotionDifference {
   explicit MotionDifference(const SlipParams& params) noexcept : params_(params) {}
 
   void restart() noexcept;  ///< removes all points
-  /// Continues after a slide: the past is laid on a line of E with that slope (m/s, odom axes) and a constant W.
+  /// Continues after a slide: the past is laid on a straight line of E with that slope (m/s, odom axes) and a constant
+  /// W.
   void restart_on_line(const Planar& slope) noexcept;
   /// Restarts at the end of a rest. `velocity` (m/s, odom axes) is the acceleration integrated since then.
   void restart_at_rest(double yaw, const Vector3& up, const Planar& velocity) noexcept;
@@ -89,7 +90,6 @@ class MotionDifference {
     double time = 0;               ///< s
     Planar wheel_path{};           ///< m, odom axes
     double right_minus_left = 0;   ///< m
-    double turn_speed = 0;         ///< m/s
     double distance = 0;           ///< m
     Planar inertial{};             ///< m, odom axes: lever − ∬ acceleration dt²
     Planar velocity{};             ///< m/s, odom axes: ∫ acceleration dt since the restart

@@ -57,9 +57,7 @@ void SlipDetector::evaluate_channel(Channel channel, const Residuals& residuals)
     const SlipResidual& residual = residuals[i];
     if (!residual.known) continue;
     const double change =
-        channel == SlipResidual::kTurn
-            ? std::max(params_.wheel_base * std::abs(residual.yaw_rate_change), std::abs(residual.turn_speed_change))
-            : residual.speed_change;
+        channel == SlipResidual::kTurn ? params_.wheel_base * residual.yaw_rate_change : residual.speed_change;
     const double usual = deviation(i, channel, residual);
     normalised[i] = std::abs(residual.value[channel]) / std::hypot(usual, uncertainty_.clock_offset * change);
     if (i == 0) slope_deviation_[channel] = usual / residual.span;

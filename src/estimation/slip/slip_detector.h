@@ -11,8 +11,7 @@
 /// from the data sheets. The first level is the largest of kFirstResiduals residuals; before that it is kFirstLevel.
 /// Later the logarithm of the level changes by steps of kQuantileStep (H. Robbins, S. Monro, A stochastic approximation
 /// method, 1951). A robot that drives faster shakes more: the excess over the sensors' noise grows in proportion to the
-/// speed. The clock offset's uncertainty σ_τ adds (σ_τ speed change)². In the turn it is (B σ_τ Δω)², with the larger
-/// Δω of gyro and wheels: a late gyro does not show yet that they turn the robot.
+/// speed. The clock offset's uncertainty σ_τ adds (σ_τ speed change)², and (B σ_τ Δω)² in the turn.
 
 #include <array>
 #include <cstdint>

@@ -18,7 +18,6 @@ SlipResidual slip_residual(const MotionDifference& difference, double span) noex
   residual.distance = end.distance - first.distance;
   residual.turned = end.yaw - first.yaw;
   residual.yaw_rate_change = end.yaw_rate - middle.yaw_rate;
-  residual.turn_speed_change = end.turn_speed - middle.turn_speed;
   const Planar bend =
       end.path_difference - middle.path_difference - (middle.path_difference - first.path_difference) * late / early;
   const Planar inertial_change = end.velocity - first.velocity;

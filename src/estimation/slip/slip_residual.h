@@ -29,7 +29,6 @@ struct SlipResidual {
   double distance = 0;                    ///< m, over both spans
   double turned = 0;                      ///< rad: Δψ, over both spans
   double yaw_rate_change = 0;             ///< rad/s: Δω, over the last span
-  double turn_speed_change = 0;           ///< m/s, over the last span: of right − left
   double speed_change = 0;                ///< m/s, over both spans, the smaller one of wheels and accelerometer
   std::array<double, kChannels> value{};  ///< m: D along and across, V
   double speed() const noexcept { return distance / (2 * span); }  ///< m/s

@@ -52,7 +52,6 @@ void Tilt::turn(const Vector3& rate, double dt) noexcept {
   bound();
   turned_ += rate[2] * dt;
   time_ += dt;
-  if (time_ >= Tuning::kPointInterval) age();
 }
 
 /// Gravity turns against the robot; the bias does not.

@@ -34,6 +34,7 @@ class Tilt {
   explicit Tilt(const TiltParams& params = {}) noexcept;
 
   void turn(const Vector3& rate, double dt) noexcept;  ///< rad/s, bias removed
+  void age() noexcept;  ///< brings the variances to the present heading, as each correction does
 
   /// Corrects by the excess of gravity and bias over the values in use, along and across, over `dt`; all in m/s².
   void correct(double along, double across, double dt, double deviation) noexcept;
@@ -60,7 +61,6 @@ class Tilt {
  private:
   using Covariance = Eigen::Matrix4d;
 
-  void age() noexcept;
   void bound() noexcept;
   void update(const Eigen::Vector2d& sum, double noise) noexcept;
   Eigen::Vector2d innovation(const Eigen::Vector2d& sum) const noexcept;
