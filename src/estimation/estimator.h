@@ -13,7 +13,8 @@
 /// At rest (rest/rest_watch.h) nothing is integrated: pose and covariance stay. The gyro's bias and the tilt
 /// (tilt/tilt.h) are learned. The first rest also corrects the pose. A run begins at rest. A window that turns out not
 /// to be quiet is integrated at once, together with the one before. No slip is named before the first rest,
-/// because the accelerometer's bias is not known then. Nor is that of readings beyond kSlowWheels apart.
+/// because the accelerometer's bias is not known then. Neither is that of wheels with readings more than kSlowWheels
+/// apart.
 ///
 /// Samples may come at any rate. A sample that is not finite or impossible is not used and sets kStateBadSample. A
 /// sensor that is lost sets its flag (inertial/imu_samples.h, wheels/wheel_sides.h):
@@ -101,7 +102,8 @@ class Estimator {
     std::uint64_t flags = 0;  ///< flags of this cycle
   };
 
-  /// `period` is in s and > 0. Throws std::invalid_argument if a parameter is out of range or a side has no wheel.
+  /// `period` is in s and > 0. Throws std::invalid_argument if a parameter or a measure of the robot is out of range or
+  /// a side has no wheel.
   Estimator(const EstimatorParameters& parameters, const DriveTrain& robot, double period);
 
   /// Give and replace the state, for snapshots (signals/law_snapshot.h).

@@ -46,7 +46,8 @@ void Estimator::fill_pose(BaseState& base) const noexcept {
 
 ///   P = J P_core Jᵀ + m mᵀ p (1 − p) σ_τ² + a aᵀ σ_encoder²
 /// J is the Jacobian by clock offset τ, x, y and yaw. The direction of travel is a, the velocity of base_link is m. The
-/// wheels are late with the probability p, which leaves the position behind. Otherwise the gyro, and the yaw.
+/// wheels are late with the probability p, which leaves the position behind. Otherwise the gyro is, which leaves the
+/// yaw behind.
 void Estimator::fill_pose_covariance(double yaw, const Planar& lever, BaseState& base) const noexcept {
   const double late = late_wheels();
   const double yaw_rate = state_.rest.resting() ? 0 : state_.yaw_rate;

@@ -32,8 +32,10 @@ void Estimator::watch_slip(double dt, double turned, const Planar& path) noexcep
   s.slip_yaw += turned;
   if (!s.slip.step(slip_sample(dt, turned, path))) return;
   const bool slides = s.slide.active();
-  if (slides) s.tilt.age();
-  if (!slides) s.slip.set_clock_offset(s.core.offset());
+  if (slides)
+    s.tilt.age();
+  else
+    s.slip.set_clock_offset(s.core.offset());
   s.slip.evaluate({.acceleration_variance = {s.tilt.acceleration_variance(0), s.tilt.acceleration_variance(1)},
                    .wheel_base = s.core.deviation(PlanarCore::kBase),
                    .clock_offset = std::hypot(s.core.deviation(PlanarCore::kOffset), s.wheels.gap / std::sqrt(12.0)),

@@ -48,6 +48,14 @@ def test_lost_and_late_frames_stop_nothing_and_hardly_disturb(dialect, seconds, 
     assert disturbed.odometry < ODOMETRY * undisturbed.odometry
 
 
+@pytest.mark.parametrize(
+    "drive", [DisturbedDrive("vesc", BUSES[0], 70.0, 21), DisturbedDrive("cia402", "lossy", 20.0, 11)], ids=str
+)
+def test_no_wall_is_seen_where_none_is(drive):
+    """VESCs send for seconds never in the same cycle. A turn in a slide shows the bias that a rest took for a tilt."""
+    assert run_drive(drive).odometry < 0.1  # m
+
+
 @pytest.mark.parametrize(("board", "seconds"), [(BOARD, 20.0), (ROBOCLAW, 120.0)])
 def test_a_disturbed_serial_line_stops_nothing(board, seconds):
     undisturbed, disturbed = drives(board, "disturbed", seconds)

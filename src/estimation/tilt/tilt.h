@@ -5,7 +5,7 @@
 ///   u̇ = −ω × u        accelerometer/g = u + β at rest        u: unit vector; β: bias/g, along and across
 ///
 /// The error state is u_x, u_y, β_x, β_y. One rest shows only their sums. Rests in two headings separate them, because
-/// gravity turns against the robot and the bias does not. In a turn they come apart again.
+/// gravity turns against the robot and the bias does not.
 ///
 /// A rest may contradict the tilt that the gyro measured since the last one by more than kSignificant deviations. Then
 /// the tilt is unknown. The bias keeps its variance, because a failing gyro does not change it.
@@ -36,7 +36,8 @@ class Tilt {
   void turn(const Vector3& rate, double dt) noexcept;  ///< rad/s, bias removed
   void age() noexcept;  ///< brings the variances to the present heading, as each correction does
 
-  /// Corrects by the excess of gravity and bias over the values in use, along and across, over `dt`; all in m/s².
+  /// Corrects by the excess of gravity and bias over the values in use, along and across, over the last `dt`; all in
+  /// m/s².
   void correct(double along, double across, double dt, double deviation) noexcept;
 
   /// Corrects at rest: `force` (m/s²) is the accelerometer's mean over `dt`.
