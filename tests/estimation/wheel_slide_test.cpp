@@ -176,5 +176,16 @@ TEST_F(WheelSlideTest, SlidingSidewaysIsNamedAndWidens) {
   EXPECT_LT(wheels_error(), 3 * std::sqrt(variance_));
 }
 
+// It is pushed for 0.5 s, slides on at that speed for as long, and stops.
+TEST_F(WheelSlideTest, TheEndLeavesNoSlipSideways) {
+  go(0.5, 0, 1.0);
+  go(0.5);
+  EXPECT_TRUE(slide_.sideways());
+  go(0.5, 0, -1.0);
+  EXPECT_LT(go(5), 2);
+  EXPECT_FALSE(slide_.sideways());
+  EXPECT_EQ(slide_.reasons(), 0u);
+}
+
 }  // namespace
 }  // namespace robot_control

@@ -93,9 +93,9 @@ void WheelSlide::evaluate(const SlipDetector& detector, const Excess& excess, do
   if (!slips_[0] && !slips_[1] && std::abs(excess.turn) > turns) {
     slips_[std::abs(excess.side(0)) > std::abs(excess.side(1)) ? 0 : 1] = true;
   }
-  sideways_ = detector.proven(SlipResidual::kAcross);
+  sideways_ = detector.proven(SlipResidual::kAcross) || (sideways_ && std::abs(excess.across) > carried);
   const double time = detector.difference().last().time;
-  if (slips_[0] || slips_[1]) slipped_ = time;
+  if (slips_[0] || slips_[1] || sideways_) slipped_ = time;
   active_ = time - slipped_ < kRolls;
   name(excess, treads);
 }

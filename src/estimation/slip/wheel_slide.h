@@ -8,7 +8,8 @@
 ///   σ_u² = σ² + (slow t)² + white² t        t: time since the onset; σ: of the line's slope at the onset
 ///
 /// A side slips while its share of the slope exceeds kSignificant σ_u. After sudden slip, whose largest slope exceeds
-/// kSignificantTurn σ, a side slips until half of that slope is gone, because no drift explains it. The slide ends when
+/// kSignificantTurn σ, a side slips until half of that slope is gone, because no drift explains it. Slip sideways begins
+/// where the detector has proven it and lasts while the slope across exceeds kSignificant σ_u. The slide ends when
 /// nothing has slipped for kRolls.
 ///
 /// A wall blocks the robot while both sides slip and u is zero within kSignificant σ_u. At the beginning the wheels'
