@@ -123,6 +123,17 @@ TEST_F(WheelSlideTest, AWeakSlideEndsWhereTheAccelerometerNoLongerProvesIt) {
   EXPECT_LT(go(60), 30);
 }
 
+// The accelerometer errs by 0.15 m/s² for 5 s, seven of its slow errors, which leaves a speed that is none.
+TEST_F(WheelSlideTest, ADriftIsNotSudden) {
+  spin(0.08);
+  body_.left = body_.right = 0;
+  body_.error = 0.15;
+  go(5);
+  ASSERT_TRUE(slide_.active());
+  body_.error = 0;
+  EXPECT_LT(go(60), 10);
+}
+
 // It is lifted and tipped: the accelerometer reads gravity, and its wheels stand.
 TEST_F(SlipFixture, ARobotThatIsTippedOnStandingWheelsDoesNotMove) {
   drive(0.5, 1.0);
