@@ -60,9 +60,8 @@ class SlipDetector {
   /// Describes the excess of gravity over the value in use, in base axes.
   struct GravityError {
     bool known = false;
-    double along = 0, across = 0;  ///< m/s²
-    double deviation = 0;          ///< m/s²
-    double interval = 0;           ///< s since the last one
+    double along = 0, across = 0, deviation = 0;  ///< m/s²
+    double interval = 0;                          ///< s since the last one
   };
   const GravityError& gravity_error() const noexcept { return gravity_error_; }
 
@@ -73,10 +72,9 @@ class SlipDetector {
   using Residuals = std::array<SlipResidual, kSpans>;
   struct Level {
     double in_use() const noexcept { return std::max(value, mean); }
-    double value = 0;         ///< 0: unknown
-    double mean = 0;          ///< fading
-    double largest = 0;       ///< of the first residuals
-    std::uint64_t count = 0;  ///< of residuals
+    double value = 0, mean = 0;  ///< 0: unknown; its fading mean
+    double largest = 0;          ///< of the first residuals
+    std::uint64_t count = 0;     ///< of residuals
   };
 
   void forget_judgement() noexcept;
@@ -92,11 +90,8 @@ class SlipDetector {
   SlipUncertainty uncertainty_;
   std::array<std::array<Level, SlipResidual::kChannels>, kSpans> levels_{};
   std::array<double, kSpans> learned_at_{};  ///< s
-  double usual_speed_ = 0;                   ///< m/s, at which the levels are learned
-  double speed_ = 0;                         ///< m/s
-  std::array<double, SlipResidual::kChannels> proven_span_{};
-  std::array<double, SlipResidual::kChannels> nis_{-1, -1, -1};
-  std::array<double, SlipResidual::kChannels> slope_deviation_{};
+  double usual_speed_ = 0, speed_ = 0;       ///< m/s, at which the levels are learned; now
+  std::array<double, SlipResidual::kChannels> proven_span_{}, slope_deviation_{}, nis_{-1, -1, -1};
   GravityError gravity_error_;
   double gravity_compared_at_ = 0;  ///< s
 };

@@ -176,7 +176,7 @@ Localizer::Localizer(const Grid& map, std::uint32_t seed) : parts_(std::make_uni
   if (std::ranges::count(map.cells, kFreeCell) == 0)
     throw std::invalid_argument("the map has no free cell, in which the robot could be");
   parts.particles.options.KLD_params.KLD_maxSampleSize = kMaxParticles;
-  mrpt::random::getRandomGenerator().randomize(seed);
+  mrpt::random::getRandomGenerator() = {seed};  // randomize() keeps the second number of the last normal pair
 }
 Localizer::~Localizer() = default;
 Localizer::Localizer(Localizer&&) noexcept = default;
