@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <optional>
 #include <queue>
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include "navigation/smoothing.h"
+#include "navigation/text.h"
 
 namespace robot_control {
 namespace {
@@ -37,18 +37,6 @@ constexpr float kUnreached = std::numeric_limits<float>::infinity();
 double heading_of(int sector) {
   const Cell step = kSteps[static_cast<std::size_t>(sector)];
   return std::atan2(step.row, step.column);
-}
-
-std::string place(const Grid& grid, Cell cell) {
-  std::array<char, 64> text;
-  std::snprintf(text.data(), text.size(), "(%.2f, %.2f) m", grid.x_of(cell.column), grid.y_of(cell.row));
-  return text.data();
-}
-
-std::string number(double value) {
-  std::array<char, 32> text;
-  std::snprintf(text.data(), text.size(), "%.2f", value);
-  return text.data();
 }
 
 struct Open {
@@ -233,9 +221,10 @@ std::string no_way(const Costmap& costmap, Cell start, Cell goal) {
   const auto narrow = narrowest(costmap, start, goal);
   if (!narrow) return "there is no way to the goal: obstacles or unknown space lie all around it or the robot";
   const double needed = 2 * (costmap.footprint().half_width + kPadding), wide = 2 * narrow->second;
-  const std::string where = "the narrowest place of the widest way, at " + place(costmap.grid(), narrow->first) +
-                            ", is " + number(wide) + " m wide";
-  if (wide < needed) return "there is no way for this outline: " + where + ", and it needs " + number(needed) + " m";
+  const Grid& grid = costmap.grid();
+  const std::string where = text("the narrowest place of the widest way, at (%.2f, %.2f) m, is %.2f m wide",
+                                 grid.x_of(narrow->first.column), grid.y_of(narrow->first.row), wide);
+  if (wide < needed) return "there is no way for this outline: " + where + text(", and it needs %.2f m", needed);
   return "there is no way for this outline: it cannot turn where it would have to; " + where;
 }
 
@@ -246,12 +235,12 @@ std::string goal_problem(const Costmap& costmap, const PlanarPose& goal) {
   }
   const bool near = std::abs(goal.x) <= kFarthest && std::abs(goal.y) <= kFarthest;
   const Cell cell = near ? grid.cell_at(goal.x, goal.y) : Cell{-1, -1};
-  const std::string at = "the goal (" + number(goal.x) + ", " + number(goal.y) + ") m ";
+  const std::string at = text("the goal (%.2f, %.2f) m ", goal.x, goal.y);
   if (!grid.contains(cell)) return at + "lies outside the map";
   if (costmap.occupied(cell)) return at + (costmap.unknown(cell) ? "lies in unknown space" : "lies in an obstacle");
   if (costmap.free(goal)) return "";
-  return at + "is too near to an obstacle or to unknown space for the outline: " + number(costmap.distance(cell)) +
-         " m from its base";
+  return at + text("is too near to an obstacle or to unknown space for the outline: %.2f m from its base",
+                   costmap.distance(cell));
 }
 
 }  // namespace

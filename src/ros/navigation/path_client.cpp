@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "ros/navigation/messages.h"
+
 namespace robot_control {
 
 PathClient::PathClient(ros::NodeHandle& handle)
@@ -26,8 +28,7 @@ void PathClient::send(const Plan& plan, const std::string& frame, double speed, 
   for (const PlanarPose& pose : plan.poses) {
     geometry_msgs::PoseStamped stamped;
     stamped.header = message.goal.path.header;
-    stamped.pose.position.x = pose.x, stamped.pose.position.y = pose.y;
-    stamped.pose.orientation.z = std::sin(pose.yaw / 2), stamped.pose.orientation.w = std::cos(pose.yaw / 2);
+    stamped.pose = pose_message(pose);
     message.goal.path.poses.push_back(stamped);
   }
   goal_.publish(message);
