@@ -17,15 +17,18 @@ constexpr double kSlowest = 0.1;    // m/s
 constexpr double kTick = 0.1;       // s
 constexpr double kTouching = 0.02;  // m
 
-/// Returns whether the laser looked through this place.
+/// Returns whether the laser looked through this place, by the rays on both sides of it.
 bool seen_free(const Scan& scan, const PlanarPose& sensor, Point at) {
   const double dx = at.x - sensor.x, dy = at.y - sensor.y;
   const double offset = std::atan2(dy, dx) - sensor.yaw - scan.angle_min;
   const double turns = offset / scan.angle_increment, whole = 2 * M_PI / std::abs(scan.angle_increment);
-  const auto ray = std::lround(turns - std::floor(turns / whole) * whole);
-  if (ray < 0 || static_cast<std::size_t>(ray) >= scan.ranges.size()) return false;
-  const float range = scan.ranges[static_cast<std::size_t>(ray)];
-  return range > std::hypot(dx, dy) + kThrough && range >= scan.range_min;
+  const double between = turns - std::floor(turns / whole) * whole;
+  const auto passed = [&](double ray) {
+    if (ray < 0 || ray >= static_cast<double>(scan.ranges.size())) return false;
+    const float range = scan.ranges[static_cast<std::size_t>(ray)];
+    return range > std::hypot(dx, dy) + kThrough && range >= scan.range_min;
+  };
+  return passed(std::floor(between)) && passed(std::ceil(between));
 }
 
 /// Returns the time after which the thing touches the outline that stands, s; ∞ beyond kForesight. Axes of the base.

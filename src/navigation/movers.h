@@ -2,8 +2,9 @@
 /// Movers are things in motion. Two scans of one laser show them, and where they will be.
 ///
 /// Neighbouring rays whose ends are within kGap are one thing. A thing moves if kNew of its points lie where the laser
-/// looked through kApart before. Walls that come into sight do not: there the view was blocked. Its velocity is that of
-/// the middle of its points between the two scans. A thing that is larger than kLargest is taken to stand.
+/// looked through kApart before. There the rays on both sides went on: one alone passes the next point of a wall along
+/// which it grazes. Walls that come into sight do not move: there the view was blocked. The velocity is that of the
+/// middle of the points between the two scans. A thing that is larger than kLargest is taken to stand.
 
 #include <deque>
 #include <limits>

@@ -55,6 +55,18 @@ TEST_F(MoversTest, WhatStandsDoesNotMoveWhereTheRobotDrivesPastIt) {
   EXPECT_TRUE(after_a_second(0).empty());
 }
 
+TEST_F(MoversTest, APieceOfWallAlongWhichRaysGrazeStands) {
+  for (int i = 0; i <= 20; ++i) {
+    sensor_ = {0, 0, 0.0195 * i};  // between two scans 0.4 s apart the rays lie half a step beside each other
+    Scan scan{-M_PI, 2 * M_PI / 360, 0.1, 12, std::vector<float>(360, 9)};
+    for (std::size_t ray = 0; ray < scan.ranges.size(); ++ray) {
+      const double angle = sensor_.yaw + scan.angle(ray), x = 0.7 / std::tan(angle);  // where y is 0.7 m
+      if (std::sin(angle) > 0 && x > 2.6 && x < 3.4) scan.ranges[ray] = static_cast<float>(std::hypot(x, 0.7));
+    }
+    EXPECT_TRUE(movers_.update(scan, sensor_, i * kScanPeriod).empty()) << "scan " << i;
+  }
+}
+
 /// A thing of one point with its velocity, in base axes.
 std::vector<Mover> mover(Point point, Point velocity) {
   return movers_seen_from({{{point}, velocity}}, {}, diffbot());
