@@ -13,7 +13,6 @@
 #include "navigation/doubt.h"
 #include "navigation/footprint.h"
 #include "navigation/map_file.h"
-#include "navigation/smoothing.h"
 #include "navigation/text.h"
 #include "ros/navigation/goal_servers.h"
 #include "ros/navigation/messages.h"
