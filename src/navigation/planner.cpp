@@ -102,8 +102,7 @@ class Search {
         grid_(costmap.grid()),
         goal_(goal),
         goal_cell_(grid_.cell_at(goal.x, goal.y)),
-        to_goal_(costs_to(costmap, goal_cell_)),
-        start_air_(costmap.distance(grid_.cell_at(start.x, start.y))) {
+        to_goal_(costs_to(costmap, goal_cell_)) {
     // The turn from the start's own heading to that of a sector may be free where the nearest sector is not.
     const Cell cell = grid_.cell_at(start.x, start.y);
     for (int i = 0; i < kSectors; ++i) {
@@ -168,7 +167,7 @@ class Search {
     if (costmap_.free(pose_of(next))) return true;
     // Out of a start that is not free: away from what is near.
     const double air = costmap_.distance(cell_of(next));
-    return !costmap_.free(pose_of(at)) && air >= costmap_.distance(cell_of(at)) && air > 0 && air <= start_air_ + 0.3;
+    return !costmap_.free(pose_of(at)) && air >= costmap_.distance(cell_of(at)) && air > 0;
   }
 
   void expand(std::uint64_t at, double cost) {
@@ -201,7 +200,6 @@ class Search {
   PlanarPose goal_;
   Cell goal_cell_;
   std::vector<float> to_goal_;
-  double start_air_;
   std::unordered_map<std::uint64_t, Node> nodes_;
   std::priority_queue<Open> open_;
 };

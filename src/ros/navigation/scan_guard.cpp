@@ -54,8 +54,8 @@ void ScanGuard::use(const PlacedScan& scan) {
   const std::lock_guard lock(mutex_);
   const PlanarPose& base = scan.odometry.mean;
   const std::vector<Mover> movers =
-      movers_seen_from(movers_.update(scan.scan, composed(base, scan.laser), scan.stamp.toSec()), base, footprint_);
-  newest_ = {scan, places_ahead(movers)};
+      movers_seen_from(movers_.update(scan.scan, composed(base, scan.laser), scan.stamp.toSec()), base);
+  newest_ = {scan, places_ahead(movers, footprint_)};
   const bool moves = std::abs(measured_.linear) > kStanding || std::abs(measured_.angular) > 2 * kStanding;
   const double free = free_way(footprint_, points_of(scan.scan, scan.laser), moves ? measured_ : intended_, movers);
   const double age = std::clamp((ros::Time::now() - scan.stamp).toSec(), 0.0, kSilence);
