@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "navigation/smoothing.h"
 #include "navigation/text.h"
 
 namespace robot_control {
@@ -43,30 +44,6 @@ struct Open {
   std::uint64_t state;
   bool operator<(const Open& other) const { return cost > other.cost; }  // the queue's top is the cheapest
 };
-
-/// Returns whether the outline is free in a turn on the spot, in the shorter direction.
-bool turn_is_free(const Costmap& costmap, const PlanarPose& at, double to) {
-  const double turn = std::remainder(to - at.yaw, 2 * M_PI);
-  const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(turn) / 0.1)));
-  for (int i = 0; i <= steps; ++i) {
-    if (!costmap.free({at.x, at.y, at.yaw + turn * i / steps})) return false;
-  }
-  return true;
-}
-
-/// Returns the places of the states. A cell next to either end is left out: the short segment to it would point aside.
-std::vector<PlanarPose> poses_of(const std::vector<PlanarPose>& way, const PlanarPose& start, const PlanarPose& goal,
-                                 double resolution) {
-  std::vector<PlanarPose> poses = {start};
-  const auto apart = [](const PlanarPose& a, const PlanarPose& b) { return std::hypot(a.x - b.x, a.y - b.y); };
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    const double end = std::min(apart(way[i], start), apart(way[i], goal));
-    if (apart(way[i], way[i - 1]) > 0 && end > 2 * resolution) poses.push_back(way[i]);
-  }
-  if (poses.size() > 1) poses[0].yaw = poses[1].yaw;
-  poses.push_back(goal);
-  return poses;
-}
 
 /// Costs from each cell to the goal without headings; kUnreached where there is no way even for the inscribed circle.
 std::vector<float> costs_to(const Costmap& costmap, Cell goal) {
@@ -107,7 +84,7 @@ class Search {
     const Cell cell = grid_.cell_at(start.x, start.y);
     for (int i = 0; i < kSectors; ++i) {
       const double turn = std::abs(std::remainder(heading_of(i) - start.yaw, 2 * M_PI));
-      const bool possible = turn_is_free(costmap, start, heading_of(i));
+      const bool possible = turn_is_free(costmap, {start.x, start.y}, start.yaw, heading_of(i));
       if (possible || i == sector(start.yaw)) reach(state(cell, i), turn / (2 * M_PI) * kSectors * kSectorCost, kStart);
     }
   }
@@ -121,7 +98,7 @@ class Search {
       if (node.closed) continue;
       node.closed = true;
       const double yaw = heading_of(static_cast<int>(at % kSectors));
-      if (cell_of(at) == goal_cell_ && turn_is_free(costmap_, {goal_.x, goal_.y, yaw}, goal_.yaw)) return way(at);
+      if (cell_of(at) == goal_cell_ && turn_is_free(costmap_, {goal_.x, goal_.y}, yaw, goal_.yaw)) return way(at);
       expand(at, node.cost);
     }
     return {};
@@ -278,16 +255,15 @@ Plan plan_path(const Costmap& costmap, const PlanarPose& start, const PlanarPose
   if (std::hypot(goal.x - start.x, goal.y - start.y) < kHere) {  // a path needs two points; the robot turns on the spot
     constexpr double kTiny = 0.002;                              // m
     const PlanarPose end{start.x + kTiny * std::cos(start.yaw), start.y + kTiny * std::sin(start.yaw), goal.yaw};
-    if (turn_is_free(costmap, start, goal.yaw)) return {{start, end}, kTiny, ""};
+    if (turn_is_free(costmap, {start.x, start.y}, start.yaw, goal.yaw)) return {{start, end}, kTiny, ""};
   }
   const std::vector<PlanarPose> way = Search(costmap, start, goal).run();
   if (way.empty()) {
     plan.problem = no_way(costmap, from, grid.cell_at(goal.x, goal.y));
     return plan;
   }
-  plan.poses = poses_of(way, start, goal, grid.resolution);
-  for (std::size_t i = 1; i < plan.poses.size(); ++i)
-    plan.length += std::hypot(plan.poses[i].x - plan.poses[i - 1].x, plan.poses[i].y - plan.poses[i - 1].y);
+  plan.poses = smoothed(costmap, way, start, goal);
+  plan.length = length_of(plan.poses);
   return plan;
 }
 

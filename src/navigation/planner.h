@@ -7,8 +7,8 @@
 /// MRPT's PlannerSimple2D takes a circle alone. The planners of OMPL draw samples. Their ways differ from run to run,
 /// and a timeout stands for "there is no way". Therefore neither is used.
 ///
-/// Every pose carries the robot's heading: follow_path drives a segment backwards whose poses point against it, and
-/// corners of less than 35° without a stop.
+/// The way is then smoothed (smoothing.h). Every pose carries the robot's heading: follow_path drives a segment
+/// backwards whose poses point against it.
 
 #include <string>
 #include <vector>

@@ -112,7 +112,7 @@ class LocalizationNode {
   MapTopics topics_{handle_};
   ScanInput input_{handle_, [this](const PlacedScan& scan) { use(scan); },
                    [this](const nav_msgs::Odometry& odometry) { receive_odometry(odometry); }};
-  MapService load_{handle_, "load_map", [this](const std::string& path) { return load(path); }};
+  ros::ServiceServer load_ = map_service(handle_, "load_map", [this](const std::string& path) { return load(path); });
   ros::Subscriber initial_;
   ros::Publisher pose_, cloud_;
   ros::ServiceServer global_;

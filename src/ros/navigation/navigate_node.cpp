@@ -127,8 +127,6 @@ class NavigateNode {
     std::string why, frame = goal.target.header.frame_id;
     if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);
     if (!std::isfinite(target.yaw)) return refuse("the goal's orientation is no quaternion of length 1");
-    if (!std::isfinite(target.x) || !std::isfinite(target.y))
-      return refuse("the goal holds a number that is not finite");
     if (!(goal.speed >= 0 && goal.speed <= 10)) return refuse("the goal's speed must be from 0 to 10 m/s");
     if (frame.empty()) return refuse("the goal has no frame: set header.frame_id, for instance to " + map_frame_);
     if (frame != map_frame_) {

@@ -80,8 +80,8 @@ class SlamNode {
   MapTopics topics_{handle_};
   ScanInput input_{handle_, [this](const PlacedScan& scan) { use(scan); },
                    [this](const nav_msgs::Odometry& odometry) { receive_odometry(odometry); }};
-  MapService save_{handle_, "save_map", [this](const std::string& path) { return save(path); }};
-  MapService load_{handle_, "load_map", [this](const std::string& path) { return load(path); }};
+  ros::ServiceServer save_ = map_service(handle_, "save_map", [this](const std::string& path) { return save(path); });
+  ros::ServiceServer load_ = map_service(handle_, "load_map", [this](const std::string& path) { return load(path); });
   ros::Subscriber initial_;
   ros::WallTimer timer_;
 };
