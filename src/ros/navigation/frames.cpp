@@ -2,7 +2,7 @@
 
 #include <tf2/exceptions.h>
 
-#include "ros/navigation/messages.h"
+#include "ros/navigation/navigation_messages.h"
 
 namespace robot_control {
 

@@ -1,6 +1,6 @@
 #include "ros/navigation/goal_servers.h"
 
-#include "ros/navigation/messages.h"
+#include "ros/navigation/navigation_messages.h"
 
 namespace robot_control {
 

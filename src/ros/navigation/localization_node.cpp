@@ -12,7 +12,7 @@
 #include "navigation/map_file.h"
 #include "ros/navigation/map_service.h"
 #include "ros/navigation/map_topics.h"
-#include "ros/navigation/messages.h"
+#include "ros/navigation/navigation_messages.h"
 #include "ros/navigation/scan_input.h"
 
 namespace robot_control {

@@ -15,7 +15,7 @@
 #include "navigation/map_file.h"
 #include "navigation/text.h"
 #include "ros/navigation/goal_servers.h"
-#include "ros/navigation/messages.h"
+#include "ros/navigation/navigation_messages.h"
 #include "ros/navigation/path_client.h"
 #include "ros/navigation/scan_guard.h"
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ros/navigation/messages.h"
+#include "ros/navigation/navigation_messages.h"
 
 namespace robot_control {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "ros/navigation/messages.h"
+#include "ros/navigation/navigation_messages.h"
 
 namespace robot_control {
 

@@ -8,7 +8,7 @@
 #include "navigation/mrpt/mapper.h"
 #include "ros/navigation/map_service.h"
 #include "ros/navigation/map_topics.h"
-#include "ros/navigation/messages.h"
+#include "ros/navigation/navigation_messages.h"
 #include "ros/navigation/scan_input.h"
 
 namespace robot_control {

@@ -1,4 +1,4 @@
-#include "ros/navigation/messages.h"
+#include "ros/navigation/navigation_messages.h"
 
 #include <ros/ros.h>
 
