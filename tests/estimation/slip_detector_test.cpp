@@ -245,7 +245,7 @@ TEST_P(SlipNoise, OfTheAccelerometerIsNoSlip) {
 
 INSTANTIATE_TEST_SUITE_P(Factors, SlipNoise, testing::Values(1.0, 10.0, 100.0));
 
-// On a shaking floor at most a tenth of the differences exceeds the 90 % quantile: the larger one of two levels is in use.
+// On a shaking floor at most a tenth of the differences exceeds the 90 % quantile: the larger of two levels is in use.
 TEST_F(SlipFixture, TheLevelIsTheQuantileOfTheResiduals) {
   body_.noise = 100 * SlipParams{}.accelerometer;
   drive(0.5, 1.0);

@@ -10,8 +10,8 @@
 /// channel learns a level ≥ 1: the 90 % quantile of |residual|/σ, over that of a normal distribution. Here σ follows
 /// from the data sheets. The first level is the largest of kFirstResiduals residuals; before that it is kFirstLevel.
 /// Later the logarithm of the level changes by steps of kQuantileStep (H. Robbins, S. Monro, A stochastic approximation
-/// method, 1951). The larger one of the level and its fading mean is in use, so that a level that these steps made low
-/// by chance proves nothing. A robot that drives faster shakes more: the excess over the sensors' noise grows in
+/// method, 1951). The larger one of the level and its fading mean is in use: a level that these steps made low by
+/// chance proves nothing. A robot that drives faster shakes more: the excess over the sensors' noise grows in
 /// proportion to the speed. The clock offset's uncertainty σ_τ adds (σ_τ speed change)², and (B σ_τ Δω)² in the turn.
 
 #include <algorithm>

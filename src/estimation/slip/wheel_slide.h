@@ -9,8 +9,8 @@
 ///
 /// A side slips while its share of the slope exceeds kSignificant σ_u. After sudden slip, whose slope exceeds
 /// kSignificantTurn σ_u, a side slips until half of its largest slope is gone, because no drift explains it. Slip
-/// sideways begins where the detector has proven it and lasts while the slope across exceeds kSignificant σ_u. The slide
-/// ends when nothing has slipped for kRolls.
+/// sideways begins where the detector has proven it and lasts while the slope across exceeds kSignificant σ_u. The
+/// slide ends when nothing has slipped for kRolls.
 ///
 /// A wall blocks the robot while both sides slip and u is zero within kSignificant σ_u. At the beginning the wheels'
 /// speed exceeds that, too. After kBlock the path takes back what the wheels have rolled since then. So a robot that is
