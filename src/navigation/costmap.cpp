@@ -7,34 +7,6 @@ namespace robot_control {
 namespace {
 
 constexpr float kNever = -std::numeric_limits<float>::infinity();
-constexpr double kFar = 1e12;  // cells²
-
-/// Replaces f by min_q (p − q)² + f(q), the lower envelope of parabolas.
-void transform(std::vector<double>& f, std::vector<double>& out, std::vector<int>& apex, std::vector<double>& from) {
-  const int n = static_cast<int>(f.size());
-  const auto at = [&](int i) { return f[static_cast<std::size_t>(i)] + static_cast<double>(i) * i; };
-  int k = 0;
-  apex[0] = 0, from[0] = -kFar, from[1] = kFar;
-  for (int q = 1; q < n; ++q) {
-    double cut = 0;
-    for (;; --k) {
-      const int p = apex[static_cast<std::size_t>(k)];
-      cut = (at(q) - at(p)) / (2 * (q - p));
-      if (cut > from[static_cast<std::size_t>(k)] || k == 0) break;
-    }
-    if (cut > from[static_cast<std::size_t>(k)]) ++k;
-    apex[static_cast<std::size_t>(k)] = q;
-    from[static_cast<std::size_t>(k)] = k == 0 ? -kFar : cut;
-    from[static_cast<std::size_t>(k) + 1] = kFar;
-  }
-  k = 0;
-  for (int q = 0; q < n; ++q) {
-    while (from[static_cast<std::size_t>(k) + 1] < q) ++k;
-    const int p = apex[static_cast<std::size_t>(k)];
-    out[static_cast<std::size_t>(q)] = static_cast<double>(q - p) * (q - p) + f[static_cast<std::size_t>(p)];
-  }
-}
-
 /// Calls `visit` for each cell that the line crosses, in steps of half a cell, until it returns false.
 template <class Visit>
 void follow_ray(const Grid& grid, const PlanarPose& sensor, double angle, double length, Visit visit) {
@@ -51,32 +23,23 @@ void follow_ray(const Grid& grid, const PlanarPose& sensor, double angle, double
 
 }  // namespace
 
-std::vector<float> distances(const std::vector<bool>& occupied, int columns, int rows, double resolution) {
-  const auto size = static_cast<std::size_t>(std::max(columns, rows));
-  std::vector<double> line, out(size), from(size + 1);
-  std::vector<int> apex(size);
-  std::vector<float> squares(occupied.size());
-  const auto place = [&](int column, int row) {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
-  };
-  for (int column = 0; column < columns; ++column) {
-    line.resize(static_cast<std::size_t>(rows));
-    for (int row = 0; row < rows; ++row) line[static_cast<std::size_t>(row)] = occupied[place(column, row)] ? 0 : kFar;
-    transform(line, out, apex, from);
-    for (int row = 0; row < rows; ++row)
-      squares[place(column, row)] = static_cast<float>(out[static_cast<std::size_t>(row)]);
-  }
-  line.resize(static_cast<std::size_t>(columns));
-  for (int row = 0; row < rows; ++row) {
-    std::copy_n(&squares[place(0, row)], columns, line.begin());
-    transform(line, out, apex, from);
-    for (int column = 0; column < columns; ++column) {
-      const double square = out[static_cast<std::size_t>(column)];
-      squares[place(column, row)] = square >= kFar / 2 ? std::numeric_limits<float>::infinity()
-                                                       : static_cast<float>(std::sqrt(square) * resolution);
+std::vector<float> distances(const std::vector<bool>& occupied, int columns, double resolution, double farthest) {
+  const int reach = static_cast<int>(std::ceil(farthest / resolution)), size = static_cast<int>(occupied.size());
+  std::vector<int> along(occupied.size());  // cells to the nearest one of the column, at most `reach`
+  for (int i = 0; i < size; ++i)
+    along[i] = occupied[i] ? 0 : i < columns ? reach : std::min(along[i - columns] + 1, reach);
+  for (int i = size - columns - 1; i >= 0; --i) along[i] = std::min(along[i], along[i + columns] + 1);
+  std::vector<float> result(occupied.size());
+  for (int i = 0; i < size; ++i) {
+    const int left = i % columns, right = columns - 1 - left;
+    int square = along[i] * along[i];
+    for (int k = 1; k < reach && k * k < square; ++k) {
+      if (k <= left) square = std::min(square, k * k + along[i - k] * along[i - k]);
+      if (k <= right) square = std::min(square, k * k + along[i + k] * along[i + k]);
     }
+    result[i] = static_cast<float>(std::sqrt(square) * resolution);
   }
-  return squares;
+  return result;
 }
 
 std::vector<Point> points_of(const Scan& scan, const PlanarPose& sensor) {
@@ -94,13 +57,14 @@ std::vector<Point> points_of(const Scan& scan, const PlanarPose& sensor) {
 Costmap::Costmap(Grid map, Footprint footprint, bool unknown_is_free)
     : grid_(std::move(map)),
       footprint_(std::move(footprint)),
+      farthest_(std::max(footprint_.circumscribed + kPadding, footprint_.inscribed + kComfort) + 2 * grid_.resolution),
       covered_(kHeadings),
       unknown_(grid_.cells.size()),
       unknown_is_free_(unknown_is_free),
       marked_(grid_.cells.size(), kNever) {
   std::vector<bool> walls(grid_.cells.size());
   for (std::size_t i = 0; i < walls.size(); ++i) walls[i] = grid_.cells[i] >= 65;
-  wall_distance_ = distances(walls, grid_.columns, grid_.rows, grid_.resolution);
+  wall_distance_ = distances(walls, grid_.columns, grid_.resolution, farthest_);
   const int reach = static_cast<int>(std::ceil((footprint_.circumscribed + kPadding) / grid_.resolution));
   for (int heading = 0; heading < kHeadings; ++heading) {
     const double yaw = 2 * M_PI * heading / kHeadings, c = std::cos(yaw), s = std::sin(yaw);
@@ -173,13 +137,17 @@ void Costmap::update(double now) {
   if (std::isfinite(now)) {
     for (const std::size_t cell : foreseen_) occupied[cell] = true;
   }
-  distance_ = distances(occupied, grid_.columns, grid_.rows, grid_.resolution);
+  distance_ = distances(occupied, grid_.columns, grid_.resolution, farthest_);
+}
+
+double Costmap::step_cost(Cell cell) const noexcept {
+  return 1 + std::clamp(1 - (distance(cell) - footprint_.inscribed) / kComfort, 0.0, 1.0);
 }
 
 bool Costmap::free(const PlanarPose& pose) const noexcept {
   const Cell base = grid_.cell_at(pose.x, pose.y);
   const double nearest = distance(base);
-  if (nearest > footprint_.circumscribed + kPadding + grid_.resolution && std::isfinite(nearest)) {
+  if (nearest > footprint_.circumscribed + kPadding + grid_.resolution) {
     const int reach = static_cast<int>((footprint_.circumscribed + kPadding) / grid_.resolution) + 1;
     return base.column >= reach && base.row >= reach && base.column < grid_.columns - reach &&
            base.row < grid_.rows - reach;

@@ -21,6 +21,7 @@ namespace robot_control {
 inline constexpr double kMemory = 10;       ///< s; less than the patience of a goal that it blocks
 inline constexpr double kExplained = 0.1;   ///< m
 inline constexpr double kBehindWall = 0.3;  ///< m; a ray that ends so far behind a wall contradicts the map
+inline constexpr double kComfort = 0.4;     ///< m of air from which on more is no better
 inline constexpr double kPadding = 0.07;    ///< m of air about the outline: noise of the laser and lag of the follower
 
 /// Returns the ends of all rays that hit, in the frame in which `sensor` is given.
@@ -43,17 +44,23 @@ class Costmap {
   /// Takes the places, in the map, that things in motion will take soon. They count as occupied until the next call.
   void foresee(const std::vector<Point>& places);
 
-  /// Brings the distances up to date, which `free` and `distance` use. Takes about 20 ns a cell.
+  /// Brings the distances up to date, which all below use. Takes about 20 ns a cell.
   void update(double now);
 
   bool occupied(Cell cell) const noexcept { return distance_[grid_.index(cell)] == 0; }
   bool unknown(Cell cell) const noexcept { return unknown_[grid_.index(cell)]; }
 
-  /// Returns the distance of the cell from the nearest occupied one, m; 0 outside the map.
+  /// Returns the distance of the cell from the nearest occupied one, m; 0 outside the map. A farther one than anything
+  /// here asks for is that.
   double distance(Cell cell) const noexcept { return grid_.contains(cell) ? distance_[grid_.index(cell)] : 0; }
 
   /// Returns whether the outline, grown by kPadding, holds no occupied cell and lies within the map.
   bool free(const PlanarPose& pose) const noexcept;
+
+  /// Returns the cost of a metre at this cell, d m from the nearest occupied one:
+  ///
+  ///   1 + max(0, 1 − (d − inscribed)/kComfort)
+  double step_cost(Cell cell) const noexcept;
 
   const Grid& grid() const noexcept { return grid_; }
   const Footprint& footprint() const noexcept { return footprint_; }
@@ -66,6 +73,7 @@ class Costmap {
 
   Grid grid_;
   Footprint footprint_;
+  double farthest_;                         ///< m, of the distances
   std::vector<std::vector<Cell>> covered_;  ///< per heading, relative to the cell of the base
   std::vector<float> wall_distance_;        ///< m, to the map's own walls
   std::vector<bool> unknown_;
@@ -75,8 +83,7 @@ class Costmap {
   std::vector<float> distance_;        ///< m
 };
 
-/// Returns the distance of each cell from the nearest one that is set, in m; ∞ without any (P. Felzenszwalb, D.
-/// Huttenlocher, Distance transforms of sampled functions, Theory of Computing 8, 2012).
-std::vector<float> distances(const std::vector<bool>& occupied, int columns, int rows, double resolution);
+/// Returns the distance of each cell from the nearest one that is set, in m, at most `farthest`.
+std::vector<float> distances(const std::vector<bool>& occupied, int columns, double resolution, double farthest);
 
 }  // namespace robot_control

@@ -1,7 +1,7 @@
 #pragma once
-/// The outline of a robot in the plane: the convex hull of all its shapes, seen from above, with every joint at zero.
+/// The outline of a robot in the plane: what encloses all its shapes, seen from above, with every joint at zero.
 
-#include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,6 +11,8 @@ struct Point {
   double x = 0, y = 0;  ///< m
 };
 
+/// The corners are those of the tangents in 64 directions. The polygon holds the convex hull, and exceeds a slanted
+/// side of length l by at most l/40.
 struct Footprint {
   std::vector<Point> corners;  ///< in base axes, counter-clockwise
   double inscribed = 0;        ///< m, radius of the largest circle about the base's origin that lies inside
@@ -22,8 +24,9 @@ struct Footprint {
   double distance(Point point) const noexcept;
 };
 
-/// Returns the hull of the points. Throws std::invalid_argument unless the base's origin lies inside.
-Footprint footprint_of(std::vector<Point> points);
+/// `reach` returns how far the robot reaches from the base's origin along a unit vector, m. Throws
+/// std::invalid_argument unless the base's origin lies inside.
+Footprint footprint_of(const std::function<double(Point)>& reach);
 
 /// Reads a URDF. Throws what read_rigid_bodies throws, and std::invalid_argument for a robot without shapes or whose
 /// base lies beside them.

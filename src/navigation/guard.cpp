@@ -16,7 +16,7 @@ struct Watched {
   Point point;
   double at_start;  // m from the outline
   Point velocity;   // m/s
-  double until;     // s, when the point reaches a robot that stands
+  double until;     // s, for which the velocity is foreseen
 };
 
 }  // namespace
@@ -35,10 +35,8 @@ double free_way(const Footprint& footprint, const std::vector<Point>& points, co
   };
   constexpr double kNever = std::numeric_limits<double>::infinity();
   for (const Point point : points) watch(point, {}, kNever);
-  for (const Point point : places_ahead(movers)) watch(point, {}, kNever);
   for (const Mover& mover : movers) {
-    if (!std::isfinite(mover.touches)) continue;
-    for (const Point point : mover.points) watch(point, mover.velocity, mover.touches);
+    for (const Point point : mover.points) watch(point, mover.velocity, kForesight);
   }
   const double sign = std::copysign(1.0, spot ? motion.angular : motion.linear);
   const double turn = spot                 ? sign / footprint.half_width  // rad per m

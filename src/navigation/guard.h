@@ -25,10 +25,7 @@ struct PlanarMotion {
 /// `points` are in base axes. A point inside the outline is a part of the robot. One that is nearer than kBeside at the
 /// start counts if the motion brings it nearer.
 ///
-/// `movers`, in base axes and for this outline, are things in motion. The places ahead of one that would pass a robot
-/// that stands count as points: the robot lets it pass. One that would touch the standing robot counts where it is when
-/// the robot arrives there. It counts only before the time at which it would touch the standing robot. Later, to go on
-/// is better.
+/// `movers`, in base axes, are things in motion. Within kForesight, each counts where it is when the robot arrives.
 double free_way(const Footprint& footprint, const std::vector<Point>& points, const PlanarMotion& motion,
                 const std::vector<Mover>& movers = {});
 

@@ -90,12 +90,6 @@ Head read_head(const std::string& path) {
   return head;
 }
 
-struct Picture {
-  int columns = 0, rows = 0;
-  double white = 255;
-  std::string_view pixels;
-};
-
 /// Reads the next number of a PGM's head, after white space and comments.
 std::optional<long> next_number(std::string_view& text) {
   while (!text.empty() && (std::isspace(static_cast<unsigned char>(text[0])) != 0 || text[0] == '#')) {
@@ -108,7 +102,7 @@ std::optional<long> next_number(std::string_view& text) {
   return number;
 }
 
-Picture read_picture(const std::string& path, std::string_view text, const Head& head, const std::string& yaml) {
+Grid read_picture(const std::string& path, std::string_view text, const Head& head, const std::string& yaml) {
   if (!text.starts_with("P5")) refuse(path, "is not a binary PGM (P5); convert it: convert map.png map.pgm");
   text.remove_prefix(2);
   const auto columns = next_number(text), rows = next_number(text), white = next_number(text);
@@ -122,7 +116,19 @@ Picture read_picture(const std::string& path, std::string_view text, const Head&
   if (text.size() < cells) {
     refuse(path, "is truncated: it has " + std::to_string(text.size()) + " of " + std::to_string(cells) + " pixels");
   }
-  return {static_cast<int>(*columns), static_cast<int>(*rows), static_cast<double>(*white), text.substr(0, cells)};
+  Grid grid{static_cast<int>(*columns), static_cast<int>(*rows), head.resolution, head.origin_x, head.origin_y, {}};
+  grid.cells.resize(cells);
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const char pixel = text[grid.index({column, grid.rows - 1 - row})];
+      const double share = static_cast<unsigned char>(pixel) / static_cast<double>(*white);
+      const double black = head.negate ? share : 1 - share;
+      grid.cells[grid.index({column, row})] = black > head.occupied ? kOccupiedCell
+                                              : black < head.free   ? kFreeCell
+                                                                    : kUnknownCell;
+    }
+  }
+  return grid;
 }
 
 }  // namespace
@@ -150,21 +156,7 @@ Grid read_map(const std::string& given) {
   const std::string path = resolved_path(given);
   const Head head = read_head(path);
   const std::string image = resolved_path(head.image, std::filesystem::path(path).parent_path());
-  const std::string text = read(image, kMaxCells + kMaxHead);
-  const Picture picture = read_picture(image, text, head, path);
-  Grid grid{picture.columns, picture.rows, head.resolution, head.origin_x, head.origin_y, {}};
-  grid.cells.resize(picture.pixels.size());
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) {
-      const std::size_t pixel = grid.index({column, grid.rows - 1 - row});
-      const double white = static_cast<unsigned char>(picture.pixels[pixel]) / picture.white;
-      const double black = head.negate ? white : 1 - white;
-      grid.cells[grid.index({column, row})] = black > head.occupied ? kOccupiedCell
-                                              : black < head.free   ? kFreeCell
-                                                                    : kUnknownCell;
-    }
-  }
-  return grid;
+  return read_picture(image, read(image, kMaxCells + kMaxHead), head, path);
 }
 
 void write_map(const std::string& given, const Grid& grid) {

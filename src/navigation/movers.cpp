@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace robot_control {
 namespace {
@@ -17,26 +16,18 @@ constexpr double kSlowest = 0.1;    // m/s
 constexpr double kTick = 0.1;       // s
 constexpr double kTouching = 0.02;  // m
 
-/// Returns whether the laser looked through this place.
+/// Returns whether the laser looked through this place, by the rays on both sides of it.
 bool seen_free(const Scan& scan, const PlanarPose& sensor, Point at) {
   const double dx = at.x - sensor.x, dy = at.y - sensor.y;
   const double offset = std::atan2(dy, dx) - sensor.yaw - scan.angle_min;
   const double turns = offset / scan.angle_increment, whole = 2 * M_PI / std::abs(scan.angle_increment);
-  const auto ray = std::lround(turns - std::floor(turns / whole) * whole);
-  if (ray < 0 || static_cast<std::size_t>(ray) >= scan.ranges.size()) return false;
-  const float range = scan.ranges[static_cast<std::size_t>(ray)];
-  return range > std::hypot(dx, dy) + kThrough && range >= scan.range_min;
-}
-
-/// Returns the time after which the thing touches the outline that stands, s; ∞ beyond kForesight. Axes of the base.
-double time_to_touch(const Footprint& footprint, const Mover& mover) {
-  for (double time = 0; time <= kForesight; time += kTick) {
-    for (const Point point : mover.points) {
-      const Point at{point.x + mover.velocity.x * time, point.y + mover.velocity.y * time};
-      if (footprint.distance(at) < kTouching) return time;
-    }
-  }
-  return std::numeric_limits<double>::infinity();
+  const double between = turns - std::floor(turns / whole) * whole;
+  const auto passed = [&](double ray) {
+    if (ray < 0 || ray >= static_cast<double>(scan.ranges.size())) return false;
+    const float range = scan.ranges[static_cast<std::size_t>(ray)];
+    return range > std::hypot(dx, dy) + kThrough && range >= scan.range_min;
+  };
+  return passed(std::floor(between)) && passed(std::ceil(between));
 }
 
 }  // namespace
@@ -100,26 +91,26 @@ std::vector<Point> placed(std::vector<Point> points, const PlanarPose& base) {
   return points;
 }
 
-std::vector<Mover> movers_seen_from(std::vector<Mover> movers, const PlanarPose& base, const Footprint& footprint) {
+std::vector<Mover> movers_seen_from(std::vector<Mover> movers, const PlanarPose& base) {
   const double c = std::cos(base.yaw), s = std::sin(base.yaw);
   const auto turned = [&](double x, double y) { return Point{c * x + s * y, c * y - s * x}; };
   for (Mover& mover : movers) {
     for (Point& point : mover.points) point = turned(point.x - base.x, point.y - base.y);
     mover.velocity = turned(mover.velocity.x, mover.velocity.y);
-    mover.touches = time_to_touch(footprint, mover);
   }
   return movers;
 }
 
-std::vector<Point> places_ahead(const std::vector<Mover>& movers) {
+std::vector<Point> places_ahead(const std::vector<Mover>& movers, const Footprint& footprint) {
   std::vector<Point> places;
   for (const Mover& mover : movers) {
-    if (std::isfinite(mover.touches)) continue;
-    for (double time = kTick; time <= kForesight; time += kTick) {
-      for (const Point point : mover.points) {
-        places.push_back({point.x + mover.velocity.x * time, point.y + mover.velocity.y * time});
-      }
+    std::vector<Point> own;
+    for (double time = 0; time <= kForesight; time += kTick) {
+      for (const Point point : mover.points)
+        own.push_back({point.x + mover.velocity.x * time, point.y + mover.velocity.y * time});
     }
+    if (std::ranges::any_of(own, [&](Point place) { return footprint.distance(place) < kTouching; })) continue;
+    places.insert(places.end(), own.begin(), own.end());
   }
   return places;
 }

@@ -2,11 +2,11 @@
 /// Movers are things in motion. Two scans of one laser show them, and where they will be.
 ///
 /// Neighbouring rays whose ends are within kGap are one thing. A thing moves if kNew of its points lie where the laser
-/// looked through kApart before. Walls that come into sight do not: there the view was blocked. Its velocity is that of
-/// the middle of its points between the two scans. A thing that is larger than kLargest is taken to stand.
+/// looked through kApart before. There the rays on both sides went on: one alone passes the next point of a wall along
+/// which it grazes. Walls that come into sight do not move: there the view was blocked. The velocity is that of the
+/// middle of the points between the two scans. A thing that is larger than kLargest is taken to stand.
 
 #include <deque>
-#include <limits>
 #include <vector>
 
 #include "navigation/costmap.h"
@@ -18,8 +18,6 @@ inline constexpr double kForesight = 3;  ///< s; at 0.5 m/s the outline crosses 
 struct Mover {
   std::vector<Point> points;  ///< m
   Point velocity;             ///< m/s
-  /// s, after which it touches a robot that stands
-  double touches = std::numeric_limits<double>::infinity();
 };
 
 class Movers {
@@ -46,12 +44,11 @@ class Movers {
 /// Returns points, given in the axes of `base`, in the frame in which `base` is given.
 std::vector<Point> placed(std::vector<Point> points, const PlanarPose& base);
 
-/// Returns the movers in the axes of `base`, which is given in their frame, with `touches` for this outline: ∞ beyond
-/// kForesight.
-std::vector<Mover> movers_seen_from(std::vector<Mover> movers, const PlanarPose& base, const Footprint& footprint);
+/// Returns the movers in the axes of `base`, which is given in their frame.
+std::vector<Mover> movers_seen_from(std::vector<Mover> movers, const PlanarPose& base);
 
-/// Returns the places that the movers will take within kForesight, in their axes. Those that touch the outline on their
-/// way are left out: where it stands is no better than what lies ahead.
-std::vector<Point> places_ahead(const std::vector<Mover>& movers);
+/// Returns the places that the movers, given in base axes, will take within kForesight. Those that touch the standing
+/// outline on their way are left out: where it stands is no better than what lies ahead.
+std::vector<Point> places_ahead(const std::vector<Mover>& movers, const Footprint& footprint);
 
 }  // namespace robot_control

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
+
+#include "navigation/text.h"
 
 namespace robot_control {
 namespace {
@@ -12,12 +13,6 @@ namespace {
 /// s between two updates of the distances: 20 ns a cell are 5 % of one processor at most.
 double update_period(const Costmap& costmap) {
   return std::max(0.2, 4e-7 * static_cast<double>(costmap.grid().cells.size()));
-}
-
-std::string for_seconds(const std::string& reason, double seconds) {
-  std::array<char, 32> text;
-  std::snprintf(text.data(), text.size(), " (for %.0f s)", seconds);
-  return reason + text.data();
 }
 
 }  // namespace
@@ -58,7 +53,7 @@ NavigatorOutput Navigator::step(const NavigatorInput& input, Costmap* costmap) {
     }
     const double patience = driven_ ? kPatience : kStartPatience, waited = input.now - progress_at_;
     if (active() && waited > patience)
-      fail(for_seconds(reason_.empty() ? "the robot does not move" : reason_, waited), out);
+      fail((reason_.empty() ? "the robot does not move" : reason_) + text(" (for %.0f s)", waited), out);
   }
   out.state = state_;
   if (state_ == NavigatorState::kFailed) reason_ += input.remark;

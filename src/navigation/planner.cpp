@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <optional>
 #include <queue>
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include "navigation/smoothing.h"
+#include "navigation/text.h"
 
 namespace robot_control {
 namespace {
@@ -39,18 +39,6 @@ double heading_of(int sector) {
   return std::atan2(step.row, step.column);
 }
 
-std::string place(const Grid& grid, Cell cell) {
-  std::array<char, 64> text;
-  std::snprintf(text.data(), text.size(), "(%.2f, %.2f) m", grid.x_of(cell.column), grid.y_of(cell.row));
-  return text.data();
-}
-
-std::string number(double value) {
-  std::array<char, 32> text;
-  std::snprintf(text.data(), text.size(), "%.2f", value);
-  return text.data();
-}
-
 struct Open {
   float cost;
   std::uint64_t state;
@@ -74,7 +62,7 @@ std::vector<float> costs_to(const Costmap& costmap, Cell goal) {
       const Cell next{cell.column + step.column, cell.row + step.row};
       if (!grid.contains(next) || costmap.distance(next) < costmap.footprint().inscribed) continue;
       const double length = std::hypot(step.column, step.row) * grid.resolution;
-      const auto cost = static_cast<float>(top.cost + length * step_cost(costmap, next));
+      const auto cost = static_cast<float>(top.cost + length * costmap.step_cost(next));
       if (cost >= costs[grid.index(next)]) continue;
       costs[grid.index(next)] = cost;
       open.push({cost, grid.index(next)});
@@ -91,8 +79,7 @@ class Search {
         grid_(costmap.grid()),
         goal_(goal),
         goal_cell_(grid_.cell_at(goal.x, goal.y)),
-        to_goal_(costs_to(costmap, goal_cell_)),
-        start_air_(costmap.distance(grid_.cell_at(start.x, start.y))) {
+        to_goal_(costs_to(costmap, goal_cell_)) {
     // The turn from the start's own heading to that of a sector may be free where the nearest sector is not.
     const Cell cell = grid_.cell_at(start.x, start.y);
     for (int i = 0; i < kSectors; ++i) {
@@ -157,7 +144,7 @@ class Search {
     if (costmap_.free(pose_of(next))) return true;
     // Out of a start that is not free: away from what is near.
     const double air = costmap_.distance(cell_of(next));
-    return !costmap_.free(pose_of(at)) && air >= costmap_.distance(cell_of(at)) && air > 0 && air <= start_air_ + 0.3;
+    return !costmap_.free(pose_of(at)) && air >= costmap_.distance(cell_of(at)) && air > 0;
   }
 
   void expand(std::uint64_t at, double cost) {
@@ -174,7 +161,7 @@ class Search {
       if (!grid_.contains(to) || to_goal_[grid_.index(to)] == kUnreached) continue;
       if (sign < 0 && costmap_.unknown(to)) continue;  // backwards only over what was seen
       const std::uint64_t next = state(to, heading);
-      if (allowed(next, at)) reach(next, cost + length * step_cost(costmap_, to) * (sign < 0 ? kBackFactor : 1), at);
+      if (allowed(next, at)) reach(next, cost + length * costmap_.step_cost(to) * (sign < 0 ? kBackFactor : 1), at);
     }
   }
 
@@ -190,7 +177,6 @@ class Search {
   PlanarPose goal_;
   Cell goal_cell_;
   std::vector<float> to_goal_;
-  double start_air_;
   std::unordered_map<std::uint64_t, Node> nodes_;
   std::priority_queue<Open> open_;
 };
@@ -233,9 +219,10 @@ std::string no_way(const Costmap& costmap, Cell start, Cell goal) {
   const auto narrow = narrowest(costmap, start, goal);
   if (!narrow) return "there is no way to the goal: obstacles or unknown space lie all around it or the robot";
   const double needed = 2 * (costmap.footprint().half_width + kPadding), wide = 2 * narrow->second;
-  const std::string where = "the narrowest place of the widest way, at " + place(costmap.grid(), narrow->first) +
-                            ", is " + number(wide) + " m wide";
-  if (wide < needed) return "there is no way for this outline: " + where + ", and it needs " + number(needed) + " m";
+  const Grid& grid = costmap.grid();
+  const std::string where = text("the narrowest place of the widest way, at (%.2f, %.2f) m, is %.2f m wide",
+                                 grid.x_of(narrow->first.column), grid.y_of(narrow->first.row), wide);
+  if (wide < needed) return "there is no way for this outline: " + where + text(", and it needs %.2f m", needed);
   return "there is no way for this outline: it cannot turn where it would have to; " + where;
 }
 
@@ -246,12 +233,12 @@ std::string goal_problem(const Costmap& costmap, const PlanarPose& goal) {
   }
   const bool near = std::abs(goal.x) <= kFarthest && std::abs(goal.y) <= kFarthest;
   const Cell cell = near ? grid.cell_at(goal.x, goal.y) : Cell{-1, -1};
-  const std::string at = "the goal (" + number(goal.x) + ", " + number(goal.y) + ") m ";
+  const std::string at = text("the goal (%.2f, %.2f) m ", goal.x, goal.y);
   if (!grid.contains(cell)) return at + "lies outside the map";
   if (costmap.occupied(cell)) return at + (costmap.unknown(cell) ? "lies in unknown space" : "lies in an obstacle");
   if (costmap.free(goal)) return "";
-  return at + "is too near to an obstacle or to unknown space for the outline: " + number(costmap.distance(cell)) +
-         " m from its base";
+  return at + text("is too near to an obstacle or to unknown space for the outline: %.2f m from its base",
+                   costmap.distance(cell));
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 /// Finds the way of an outline over a costmap, as poses that follow_path drives.
 ///
 /// States are (cell, heading sector of 22.5°). Moves are one step along the heading, one step back, and a turn on the
-/// spot by one sector. A step costs its length times step_cost (smoothing.h), one back kBackFactor times that, a sector
+/// spot by one sector. A step costs its length times Costmap::step_cost, one back kBackFactor times that, a sector
 /// kSectorCost. A* is guided by the same cost without headings, from a search backwards from the goal.
 /// MRPT's PlannerSimple2D takes a circle alone. The planners of OMPL draw samples. Their ways differ from run to run,
 /// and a timeout stands for "there is no way". Therefore neither is used.

@@ -2,19 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "navigation/text.h"
 
 namespace robot_control {
-namespace {
-
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  std::string result(300, '\0');
-  result.resize(static_cast<std::size_t>(std::max(0, std::snprintf(result.data(), result.size(), format, values...))));
-  return result;
-}
-
-}  // namespace
 
 std::string ScanWatch::structure_problem(const Scan& scan) const {
   const std::size_t rays = scan.ranges.size();

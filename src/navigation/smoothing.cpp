@@ -21,7 +21,7 @@ double straight_cost(const Costmap& costmap, Point a, Point b, bool back) {
     const double share = static_cast<double>(i) / steps;
     const PlanarPose pose{a.x + share * (b.x - a.x), a.y + share * (b.y - a.y), yaw};
     if (!costmap.free(pose)) return std::numeric_limits<double>::infinity();
-    if (i > 0) cost += length / steps * step_cost(costmap, costmap.grid().cell_at(pose.x, pose.y));
+    if (i > 0) cost += length / steps * costmap.step_cost(costmap.grid().cell_at(pose.x, pose.y));
   }
   return cost;
 }
@@ -129,11 +129,6 @@ std::vector<PlanarPose> poses_of(const std::vector<Vertex>& vertices, double goa
 }
 
 }  // namespace
-
-double step_cost(const Costmap& costmap, Cell cell) {
-  const double air = costmap.distance(cell) - costmap.footprint().inscribed;
-  return 1 + kNearness * std::clamp(1 - air / kComfort, 0.0, 1.0);
-}
 
 bool turn_is_free(const Costmap& costmap, Point at, double from, double to) {
   const double turn = turned(to - from);

@@ -9,13 +9,6 @@
 namespace robot_control {
 
 inline constexpr double kSpacing = 0.1;  ///< m
-inline constexpr double kNearness = 1.0;
-inline constexpr double kComfort = 0.4;  ///< m
-
-/// Returns the cost of a metre at this cell, d m from the nearest occupied one:
-///
-///   1 + kNearness·max(0, 1 − (d − inscribed)/kComfort)
-double step_cost(const Costmap& costmap, Cell cell);
 
 /// Returns whether the outline is free in a turn on the spot, in the shorter direction.
 bool turn_is_free(const Costmap& costmap, Point at, double from, double to);

@@ -236,16 +236,16 @@ class SlipNoise : public SlipFixture, public testing::WithParamInterface<double>
   SlipNoise() { body_.noise = GetParam() * SlipParams{}.accelerometer; }
 };
 
-// The drive takes 20 minutes with the pessimistic start; at most a point or two exceed the level.
+// A level that is low by chance would prove slip once in two hours at the largest factor.
 TEST_P(SlipNoise, OfTheAccelerometerIsNoSlip) {
   double proven = drive(0.5, 1.0);
-  proven += drive(1200);
-  EXPECT_LE(proven, 1e-4 * 1200);
+  proven += drive(7200);
+  EXPECT_EQ(proven, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Factors, SlipNoise, testing::Values(1.0, 3.0, 10.0, 30.0, 100.0));
+INSTANTIATE_TEST_SUITE_P(Factors, SlipNoise, testing::Values(1.0, 10.0, 100.0));
 
-// On a shaking floor a tenth of the differences exceeds the 90 % quantile. The steps of the level scatter it.
+// On a shaking floor at most a tenth of the differences exceeds the 90 % quantile: the larger of two levels is in use.
 TEST_F(SlipFixture, TheLevelIsTheQuantileOfTheResiduals) {
   body_.noise = 100 * SlipParams{}.accelerometer;
   drive(0.5, 1.0);
@@ -259,7 +259,8 @@ TEST_F(SlipFixture, TheLevelIsTheQuantileOfTheResiduals) {
     ++count;
     beyond += body_.detector.nis(SlipResidual::kAlong) > 1.645 * 1.645 ? 1 : 0;
   }
-  EXPECT_NEAR(beyond / static_cast<double>(count), 0.1, 0.04);
+  EXPECT_LT(beyond / static_cast<double>(count), 0.1);
+  EXPECT_GT(beyond / static_cast<double>(count), 0.02);
 }
 
 // The input is anything finite.

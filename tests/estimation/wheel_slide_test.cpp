@@ -123,6 +123,17 @@ TEST_F(WheelSlideTest, AWeakSlideEndsWhereTheAccelerometerNoLongerProvesIt) {
   EXPECT_LT(go(60), 30);
 }
 
+// The accelerometer errs by 0.15 m/s² for 5 s, seven of its slow errors, which leaves a speed that is none.
+TEST_F(WheelSlideTest, ADriftIsNotSudden) {
+  spin(0.08);
+  body_.left = body_.right = 0;
+  body_.error = 0.15;
+  go(5);
+  ASSERT_TRUE(slide_.active());
+  body_.error = 0;
+  EXPECT_LT(go(60), 10);
+}
+
 // It is lifted and tipped: the accelerometer reads gravity, and its wheels stand.
 TEST_F(SlipFixture, ARobotThatIsTippedOnStandingWheelsDoesNotMove) {
   drive(0.5, 1.0);
@@ -174,6 +185,17 @@ TEST_F(WheelSlideTest, SlidingSidewaysIsNamedAndWidens) {
   EXPECT_NE(slide_.reasons() & kSlipSideways, 0u);
   EXPECT_LT(std::abs(corrected_.y), 0.01);
   EXPECT_LT(wheels_error(), 3 * std::sqrt(variance_));
+}
+
+// It is pushed for 0.5 s, slides on at that speed for as long, and stops.
+TEST_F(WheelSlideTest, TheEndLeavesNoSlipSideways) {
+  go(0.5, 0, 1.0);
+  go(0.5);
+  EXPECT_TRUE(slide_.sideways());
+  go(0.5, 0, -1.0);
+  EXPECT_LT(go(5), 2);
+  EXPECT_FALSE(slide_.sideways());
+  EXPECT_EQ(slide_.reasons(), 0u);
 }
 
 }  // namespace

@@ -39,16 +39,25 @@ inline Grid two_rooms(double door) {
   return grid;
 }
 
+/// The outline of these points.
+inline Footprint hull(const std::vector<Point>& points) {
+  return footprint_of([&](Point normal) {
+    double reach = -std::numeric_limits<double>::infinity();
+    for (const Point at : points) reach = std::max(reach, normal.x * at.x + normal.y * at.y);
+    return reach;
+  });
+}
+
 /// The outline of the shipped robot, nearly.
 inline Footprint diffbot() {
-  return footprint_of({{0.12, 0.18},
-                       {0.1, 0.27},
-                       {-0.1, 0.27},
-                       {-0.28, 0.18},
-                       {0.12, -0.18},
-                       {0.1, -0.27},
-                       {-0.1, -0.27},
-                       {-0.28, -0.18}});
+  return hull({{0.12, 0.18},
+               {0.1, 0.27},
+               {-0.1, 0.27},
+               {-0.28, 0.18},
+               {0.12, -0.18},
+               {0.1, -0.27},
+               {-0.1, -0.27},
+               {-0.28, -0.18}});
 }
 
 /// A scan of `rays` over a full turn up to 8 m, without noise.

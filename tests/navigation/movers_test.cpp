@@ -55,18 +55,38 @@ TEST_F(MoversTest, WhatStandsDoesNotMoveWhereTheRobotDrivesPastIt) {
   EXPECT_TRUE(after_a_second(0).empty());
 }
 
+TEST_F(MoversTest, APieceOfWallAlongWhichRaysGrazeStands) {
+  for (int i = 0; i <= 20; ++i) {
+    sensor_ = {0, 0, 0.0195 * i};  // between two scans 0.4 s apart the rays lie half a step beside each other
+    Scan scan{-M_PI, 2 * M_PI / 360, 0.1, 12, std::vector<float>(360, 9)};
+    for (std::size_t ray = 0; ray < scan.ranges.size(); ++ray) {
+      const double angle = sensor_.yaw + scan.angle(ray), x = 0.7 / std::tan(angle);  // where y is 0.7 m
+      if (std::sin(angle) > 0 && x > 2.6 && x < 3.4) scan.ranges[ray] = static_cast<float>(std::hypot(x, 0.7));
+    }
+    EXPECT_TRUE(movers_.update(scan, sensor_, i * kScanPeriod).empty()) << "scan " << i;
+  }
+}
+
 /// A thing of one point with its velocity, in base axes.
 std::vector<Mover> mover(Point point, Point velocity) {
-  return movers_seen_from({{{point}, velocity}}, {}, diffbot());
+  return {{{point}, velocity}};
 }
 
-TEST(MoversSeenFromTest, TheTimeToTheTouchIsThatOfTheStandingOutline) {
-  EXPECT_NEAR(mover({1.12, 0}, {-0.5, 0})[0].touches, 2.0, 0.11);
-  EXPECT_TRUE(std::isinf(mover({1.12, 0}, {0.5, 0})[0].touches));
-  EXPECT_TRUE(std::isinf(mover({1.12, 0.5}, {-0.5, 0})[0].touches));
+TEST(PlacesAheadTest, TheyAreThoseOfWhatPassesAStandingRobot) {
+  EXPECT_TRUE(places_ahead(mover({1.12, 0}, {-0.5, 0}), diffbot()).empty());
+  const std::vector<Point> ahead = places_ahead(mover({1.12, 0.5}, {-0.5, 0}), diffbot());
+  ASSERT_FALSE(ahead.empty());
+  EXPECT_NEAR(ahead.back().x, 1.12 - 0.5 * kForesight, 0.051);
 }
 
-TEST(FreeWayAmongMoversTest, ItEndsBeforeThePlacesThatOneWillTake) {
+TEST(MoversSeenFromTest, TheyAreTurnedIntoTheAxesOfTheBase) {
+  const Mover seen = movers_seen_from(mover({2, 1}, {0.5, 0}), {2, 0, M_PI / 2})[0];
+  EXPECT_NEAR(seen.points[0].x, 1, 1e-9);
+  EXPECT_NEAR(seen.points[0].y, 0, 1e-9);
+  EXPECT_NEAR(seen.velocity.y, -0.5, 1e-9);
+}
+
+TEST(FreeWayAmongMoversTest, ItEndsWhereOneCrosses) {
   const std::vector<Mover> crossing = mover({1.12, -1.5}, {0, 0.8});
   EXPECT_NEAR(free_way(diffbot(), {}, {0.5, 0}, crossing), 1.0 - kBeside - kStopShort, 0.021);
 }

@@ -52,8 +52,8 @@ TEST(FootprintTest, TheOutlineOfTheShippedRobotHoldsBodyAndWheels) {
 }
 
 TEST(FootprintTest, ABaseBesideTheOutlineIsRefused) {
-  EXPECT_THROW(footprint_of({{1, 0}, {2, 0}, {2, 1}}), std::invalid_argument);
-  EXPECT_THROW(footprint_of({}), std::invalid_argument);
+  EXPECT_THROW(hull({{1, 0}, {2, 0}, {2, 1}}), std::invalid_argument);
+  EXPECT_THROW(hull({}), std::invalid_argument);
 }
 
 TEST(CostmapTest, ARayMarksWhatTheMapDoesNotHaveAndClearsItAgain) {
@@ -185,7 +185,7 @@ TEST(PlannerTest, ADeadEndIsLeftBackwards) {
     }
   }
   const PlanarPose inside{3.0, 1.85, 0};
-  const Costmap costmap(map, footprint_of({{0.2, 0.2}, {-0.6, 0.2}, {-0.6, -0.2}, {0.2, -0.2}}), false);
+  const Costmap costmap(map, hull({{0.2, 0.2}, {-0.6, 0.2}, {-0.6, -0.2}, {0.2, -0.2}}), false);
   const Plan plan = plan_path(costmap, inside, {0.8, 1.85, M_PI});
   ASSERT_EQ(plan.problem, "");
   EXPECT_LT(std::cos(plan.poses[1].yaw) * (plan.poses[1].x - plan.poses[0].x), 0);
@@ -199,7 +199,7 @@ TEST(PlannerTest, AGoalInASlotIsReachedWhoseHeadingIsBetweenTwoSectors) {
       if (row < 15 || row > 21) map.cells[map.index({column, row})] = kOccupiedCell;
     }
   }
-  const Costmap costmap(map, footprint_of({{0.2, 0.2}, {-0.6, 0.2}, {-0.6, -0.2}, {0.2, -0.2}}), false);
+  const Costmap costmap(map, hull({{0.2, 0.2}, {-0.6, 0.2}, {-0.6, -0.2}, {0.2, -0.2}}), false);
   const PlanarPose outside{0.8, 1.85, 1}, inside{3.0, 1.85, 0.235};
   ASSERT_TRUE(costmap.free(inside));
   EXPECT_EQ(plan_path(costmap, outside, inside).problem, "");

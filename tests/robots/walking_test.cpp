@@ -259,6 +259,22 @@ TEST(Walking, GoesOnWhenATrotBecomesACrawlThatIsRequestedFaster) {
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
 }
 
+/// A crawl ends while its body is twice as fast as requested, and a trot has two feet to bear it.
+TEST(Walking, DoesNotRunAheadWhereACrawlBecomesATrot) {
+  for (const GaitName next : {GaitName::kTrot, GaitName::kWalkingTrot}) {
+    QuadrupedLoop robot = loop_of("quadbot");
+    robot.wait(0.3);
+    robot.run(6.0, walk(0.13, 0, 0, gait(GaitName::kCrawl)));
+    while (robot.command().legged.gait != static_cast<std::uint64_t>(next))
+      robot.run(0.001, walk(0.13, 0, 0, gait(next)));
+    double fastest = 0;
+    robot.after_step = [&] { fastest = std::max(fastest, robot.truth().twist_base.linear[0]); };
+    robot.run(1.0, walk(0.13, 0, 0, gait(next)));
+    EXPECT_LE(fastest, 0.35) << kGaits[static_cast<std::size_t>(next)].name.data();
+    EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
+  }
+}
+
 TEST(Walking, IsStoppedByAFaultThatIsNamedBeforeItFalls) {
   struct Fault {
     std::string component, kind, cause;

@@ -411,6 +411,19 @@ TEST_F(WalkingConditionsTest, AJointThatRunsAwayInItsSwingBrakesInThisSwing) {
   EXPECT_EQ(joint(), 8u);
 }
 
+// The knee has turned by 0.2 rad after 61 ms of its swing.
+TEST_F(WalkingConditionsTest, AnEncoderThatCountsBackwardsBrakesInItsSwing) {
+  const double first = sensors_.joints[8].position;
+  for (const double sign : {1.0, -1.0}) {
+    conditions_.enter_run();
+    const double seen =
+        walk(2, [&](double) { sensors_.joints[8].position = first + sign * (command_.joints[8].position - first); });
+    EXPECT_NEAR(seen, sign > 0 ? 2 : 0.2 + 0.066, 0.006) << causes(Reaction::kBrake);
+  }
+  EXPECT_EQ(causes(Reaction::kBrake), "joint_following");
+  EXPECT_EQ(joint(), 8u);
+}
+
 TEST_F(WalkingConditionsTest, AJointThatDoesNotFollowItsSwingsBrakes) {
   const double seen = walk(2, [&](double) {
     if (command_.joints[8].stiffness > 0) command_.joints[8].position += 0.25;

@@ -78,10 +78,8 @@ class Localised:
 
     def _run(self) -> None:
         while not self._ended.wait(PERIOD):
-            if self.silent:
-                continue
             ahead = rospy.Time.now() + rospy.Duration(PERIOD)  # as a localisation does, so that no scan waits for it
-            found = [transform("map", "odom", stamp=ahead)]
+            found = [] if self.silent else [transform("map", "odom", stamp=ahead)]
             if self._place is not None:
                 found += [transform("odom", "base_link", self._place, ahead)]
             self._publisher.publish(TFMessage(found))

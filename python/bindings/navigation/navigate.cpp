@@ -37,8 +37,8 @@ class Navigation {
     watch_.receive(scan, "laser", now, now, moved);
     doubt_.update(costmap_.insert(scan, composed(planar_of(place), planar_of(sensor)), now));
     const PlanarPose base = planar_of(odometry);
-    seen_ = movers_seen_from(movers_.update(scan, composed(base, planar_of(sensor)), now), base, costmap_.footprint());
-    costmap_.foresee(placed(places_ahead(seen_), planar_of(place)));
+    seen_ = movers_seen_from(movers_.update(scan, composed(base, planar_of(sensor)), now), base);
+    costmap_.foresee(placed(places_ahead(seen_, costmap_.footprint()), planar_of(place)));
     const std::string problem = watch_.problem(now);
     return problem.empty() ? doubt_.problem() : problem;
   }

@@ -7,8 +7,11 @@
 /// Periods and lifts are those of a leg of kReferenceLeg. They change with √l and l (R. McN. Alexander, A. S. Jayes,
 /// J. Zool. 201 (1983) 135: legged machines of equal Froude number move alike).
 ///
-/// Offsets are in the order of LegPlace. A crawl begins with the feet at which a trot ends its stance: they are behind,
-/// and the body lies over the others.
+/// Offsets are in the order of LegPlace. A gait begins where the phase of the last one wraps: with its `begin` if it
+/// follows or is a crawl, else with 0. A crawl keeps three feet on the ground, with a duty of kOfCrawl or more. It
+/// begins with the feet at which a trot ends its stance: they are behind, and the body lies over the others. It ends
+/// while the body crosses the line between two feet, at twice its mean speed. These feet alone would let it fall on, so
+/// a trot after a crawl begins with all feet on the ground, for 0.1 s.
 
 #include <algorithm>
 #include <array>
@@ -21,6 +24,7 @@
 namespace robot_control {
 
 inline constexpr std::size_t kMaxGaitName = 16;  ///< bytes
+inline constexpr double kOfCrawl = 0.75;         ///< duty of a gait in which three feet bear
 
 struct Gait {
   std::array<char, kMaxGaitName + 1> name;  ///< ends with 0
@@ -28,7 +32,7 @@ struct Gait {
   double duty;                              ///< 0 … 1; 1: no foot leaves the ground
   std::array<double, kLegs> phase;          ///< 0 … 1, offsets of the legs
   double lift;                              ///< m, of the foot's centre in the middle of its swing
-  double begin = 0;                         ///< 0 … 1, the phase with which the gait begins
+  double begin = 0;                         ///< 0 … 1, the phase with which it begins after a crawl, or as one
 
   /// Returns the phase of a leg within 0 … 1.
   double leg_phase(std::size_t leg, double gait_phase) const noexcept {
@@ -44,6 +48,11 @@ struct Gait {
   double swung(std::size_t leg, double gait_phase) const noexcept {
     return bears(leg, gait_phase) ? 0 : (leg_phase(leg, gait_phase) - duty) / (1 - duty);
   }
+
+  bool crawls() const noexcept { return duty >= kOfCrawl && duty < 1; }
+
+  /// Returns the phase with which this gait begins after `last`.
+  double begins_after(const Gait& last) const noexcept { return crawls() || last.crawls() ? begin : 0; }
 
   double stance_time() const noexcept { return period * duty; }
   double swing_time() const noexcept { return period * (1 - duty); }
@@ -104,8 +113,8 @@ enum class GaitName { kStand, kTrot, kWalkingTrot, kCrawl };
 /// By GaitName.
 inline constexpr std::array kGaits{
     Gait{{"stand"}, 0.5, 1, {0, 0, 0, 0}, 0},
-    Gait{{"trot"}, 0.38, 0.5, {0.5, 0, 0, 0.5}, 0.08},
-    Gait{{"walking_trot"}, 0.5, 0.6, {0.5, 0, 0, 0.5}, 0.07},
+    Gait{{"trot"}, 0.38, 0.5, {0.5, 0, 0, 0.5}, 0.08, 0.75},
+    Gait{{"walking_trot"}, 0.5, 0.6, {0.5, 0, 0, 0.5}, 0.07, 0.9},
     Gait{{"crawl"}, 1.0, 0.78, {0, 0.5, 0.25, 0.75}, 0.06, 0.75},
 };
 static_assert(std::all_of(kGaits.begin(), kGaits.end(), walkable));

@@ -1,6 +1,5 @@
 #include "estimation/slip/slip_detector.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace robot_control {
@@ -47,7 +46,7 @@ double SlipDetector::at_speed(double level, double speed) const noexcept {
 
 /// Returns the learned standard deviation of a residual without the clock offset, in m.
 double SlipDetector::deviation(std::size_t span, Channel channel, const SlipResidual& residual) const noexcept {
-  return at_speed(levels_[span][channel].value, residual.speed()) *
+  return at_speed(levels_[span][channel].in_use(), residual.speed()) *
          residual_deviation(channel, residual, uncertainty_, params_);
 }
 
@@ -90,14 +89,15 @@ void SlipDetector::learn(std::size_t span, const SlipResidual& residual, bool sl
 void SlipDetector::learn_level(Level& level, double ratio) noexcept {
   if (++level.count > Tuning::kFirstResiduals) {
     level.value = std::max(1.0, level.value * std::exp((ratio > level.value ? 0.9 : -0.1) * Tuning::kQuantileStep));
+    level.mean += Tuning::kForgetting * (level.value - level.mean);
     return;
   }
   level.largest = std::max(level.largest, ratio);
-  if (level.count == Tuning::kFirstResiduals) level.value = std::max(1.0, level.largest);
+  if (level.count == Tuning::kFirstResiduals) level.value = level.mean = std::max(1.0, level.largest);
 }
 
 AccelerationNoise SlipDetector::acceleration_noise() const noexcept {
-  const double factor = at_speed(levels_[kTiltSpan][SlipResidual::kAlong].value, speed_);
+  const double factor = at_speed(levels_[kTiltSpan][SlipResidual::kAlong].in_use(), speed_);
   const double variance = std::max(uncertainty_.acceleration_variance[0], uncertainty_.acceleration_variance[1]);
   return {.white = factor * params_.accelerometer,
           .slow = std::sqrt(square(factor * Tuning::kSlowAcceleration) + variance)};
@@ -110,7 +110,7 @@ void SlipDetector::compare_gravity(const SlipResidual& residual, bool learns) no
   if (!residual.known || !learns || interval < residual.span) return;
   const double squared = square(residual.span);
   const SlipUncertainty alone{.speed_step = uncertainty_.speed_step};
-  const double level = at_speed(levels_[kTiltSpan][SlipResidual::kAlong].value, residual.speed());
+  const double level = at_speed(levels_[kTiltSpan][SlipResidual::kAlong].in_use(), residual.speed());
   gravity_error_ = {.known = true,
                     .along = -residual.value[SlipResidual::kAlong] / squared,
                     .across = -residual.value[SlipResidual::kAcross] / squared,

@@ -10,9 +10,11 @@
 /// channel learns a level ≥ 1: the 90 % quantile of |residual|/σ, over that of a normal distribution. Here σ follows
 /// from the data sheets. The first level is the largest of kFirstResiduals residuals; before that it is kFirstLevel.
 /// Later the logarithm of the level changes by steps of kQuantileStep (H. Robbins, S. Monro, A stochastic approximation
-/// method, 1951). A robot that drives faster shakes more: the excess over the sensors' noise grows in proportion to the
-/// speed. The clock offset's uncertainty σ_τ adds (σ_τ speed change)², and (B σ_τ Δω)² in the turn.
+/// method, 1951). The larger one of the level and its fading mean is in use: a level that these steps made low by
+/// chance proves nothing. A robot that drives faster shakes more: the excess over the sensors' noise grows in
+/// proportion to the speed. The clock offset's uncertainty σ_τ adds (σ_τ speed change)², and (B σ_τ Δω)² in the turn.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -58,9 +60,8 @@ class SlipDetector {
   /// Describes the excess of gravity over the value in use, in base axes.
   struct GravityError {
     bool known = false;
-    double along = 0, across = 0;  ///< m/s²
-    double deviation = 0;          ///< m/s²
-    double interval = 0;           ///< s since the last one
+    double along = 0, across = 0, deviation = 0;  ///< m/s²
+    double interval = 0;                          ///< s since the last one
   };
   const GravityError& gravity_error() const noexcept { return gravity_error_; }
 
@@ -70,9 +71,10 @@ class SlipDetector {
   static constexpr std::size_t kTiltSpan = 2;   ///< index of T = 0.4 s, from which tilt and noise are learned
   using Residuals = std::array<SlipResidual, kSpans>;
   struct Level {
-    double value = 0;         ///< 0: unknown
-    double largest = 0;       ///< of the first residuals
-    std::uint64_t count = 0;  ///< of residuals
+    double in_use() const noexcept { return std::max(value, mean); }
+    double value = 0, mean = 0;  ///< 0: unknown; its fading mean
+    double largest = 0;          ///< of the first residuals
+    std::uint64_t count = 0;     ///< of residuals
   };
 
   void forget_judgement() noexcept;
@@ -88,11 +90,8 @@ class SlipDetector {
   SlipUncertainty uncertainty_;
   std::array<std::array<Level, SlipResidual::kChannels>, kSpans> levels_{};
   std::array<double, kSpans> learned_at_{};  ///< s
-  double usual_speed_ = 0;                   ///< m/s, at which the levels are learned
-  double speed_ = 0;                         ///< m/s
-  std::array<double, SlipResidual::kChannels> proven_span_{};
-  std::array<double, SlipResidual::kChannels> nis_{-1, -1, -1};
-  std::array<double, SlipResidual::kChannels> slope_deviation_{};
+  double usual_speed_ = 0, speed_ = 0;       ///< m/s, at which the levels are learned; now
+  std::array<double, SlipResidual::kChannels> proven_span_{}, slope_deviation_{}, nis_{-1, -1, -1};
   GravityError gravity_error_;
   double gravity_compared_at_ = 0;  ///< s
 };

@@ -84,18 +84,18 @@ Planar WheelSlide::rolling_slope(const MotionDifference& difference) const noexc
 /// A side rolls if the slip of the other one explains its excess.
 void WheelSlide::evaluate(const SlipDetector& detector, const Excess& excess, double deviation,
                           const Speeds& treads) noexcept {
-  largest_ = std::max({largest_, std::abs(excess.side(0)), std::abs(excess.side(1))});
+  const double larger = std::max(std::abs(excess.side(0)), std::abs(excess.side(1)));
+  if (larger > Tuning::kSignificantTurn * deviation) sudden_ = std::max(sudden_, larger);
   const double carried = significant(std::hypot(deviation, detector.slope_deviation(SlipResidual::kAlong)));
-  const double tolerance =
-      largest_ > Tuning::kSignificantTurn * line_deviation_ ? std::min(carried, largest_ / 2) : carried;
+  const double tolerance = sudden_ > 0 ? std::min(carried, sudden_ / 2) : carried;
   for (const std::size_t i : {0U, 1U}) slips_[i] = std::abs(excess.side(i)) > tolerance;
   const double turns = significant(detector.slope_deviation(SlipResidual::kTurn));
   if (!slips_[0] && !slips_[1] && std::abs(excess.turn) > turns) {
     slips_[std::abs(excess.side(0)) > std::abs(excess.side(1)) ? 0 : 1] = true;
   }
-  sideways_ = detector.proven(SlipResidual::kAcross);
+  sideways_ = detector.proven(SlipResidual::kAcross) || (sideways_ && std::abs(excess.across) > carried);
   const double time = detector.difference().last().time;
-  if (slips_[0] || slips_[1]) slipped_ = time;
+  if (slips_[0] || slips_[1] || sideways_) slipped_ = time;
   active_ = time - slipped_ < kRolls;
   name(excess, treads);
 }

@@ -7,9 +7,10 @@
 ///
 ///   σ_u² = σ² + (slow t)² + white² t        t: time since the onset; σ: of the line's slope at the onset
 ///
-/// A side slips while its share of the slope exceeds kSignificant σ_u. After sudden slip, whose largest slope exceeds
-/// kSignificantTurn σ, a side slips until half of that slope is gone, because no drift explains it. The slide ends when
-/// nothing has slipped for kRolls.
+/// A side slips while its share of the slope exceeds kSignificant σ_u. After sudden slip, whose slope exceeds
+/// kSignificantTurn σ_u, a side slips until half of its largest slope is gone, because no drift explains it. Slip
+/// sideways begins where the detector has proven it and lasts while the slope across exceeds kSignificant σ_u. The
+/// slide ends when nothing has slipped for kRolls.
 ///
 /// A wall blocks the robot while both sides slip and u is zero within kSignificant σ_u. At the beginning the wheels'
 /// speed exceeds that, too. After kBlock the path takes back what the wheels have rolled since then. So a robot that is
@@ -68,7 +69,7 @@ class WheelSlide {
   double line_deviation_ = 0;  ///< m/s: σ
   double onset_ = 0;           ///< s
   double onset_speed_ = 0;     ///< m/s, along
-  double largest_ = 0;         ///< m/s, excess of a side
+  double sudden_ = 0;          ///< m/s, largest excess of a side that no drift explains; 0: none
   Point corrected_;            ///< point until which the path is corrected
   double slipped_ = 0;         ///< s, time of the last judgement in which something slipped
   std::array<bool, 2> slips_{};

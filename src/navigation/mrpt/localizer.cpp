@@ -23,13 +23,12 @@ using mrpt::poses::CPose2D;
 
 constexpr unsigned kMinParticles = 300, kMaxParticles = 20000;
 constexpr std::size_t kGlobalParticles = 20000;
-constexpr double kFreeFrom = 0.7;     // probability from which a cell is free for a global start
-constexpr double kAtWall = 0.1;       // m: a point that near to a wall is explained by the map
+constexpr double kFreeFrom = 0.7;                // probability from which a cell is free for a global start
+const mrpt::maps::TMatchingRatioParams kAtWall;  // 0.1 m: a point that near to a wall is explained by the map
 constexpr double kFits = 0.75;        // part of the points that must be explained; a fifth of them may be moved
 constexpr double kSmoothing = 0.05;   // of each new part of explained points, per scan: 2 s at 10 Hz
-constexpr double kSmallSpread = 0.3;  // m, below which a search has found the place
 constexpr int kProof = 60;            // scans within which a place that a search found must fit, else it goes on
-constexpr double kLargeSpread = 1.0;  // m, above which the place is lost
+constexpr double kSmallSpread = 0.3;  // m, below which a search has found the place
 // m, rad, between two updates: wheels that slip do more than the odometry knows.
 constexpr double kMinStep = 0.02, kMinTurn = 0.02;
 constexpr double kMapDeviation = 0.02;       // m: a wall lies anywhere in its cell, and the map has errors of its own
@@ -52,13 +51,6 @@ Eigen::Matrix3d growth(const UncertainPose& from, const UncertainPose& to) {
   const double c = std::cos(from.mean.yaw), s = std::sin(from.mean.yaw);
   r.topLeftCorner<2, 2>() << c, -s, s, c;
   return r.transpose() * (to.covariance - f * from.covariance * f.transpose()) * r;
-}
-
-mrpt::math::CMatrixDouble33 mrpt_matrix(const Eigen::Matrix3d& matrix) {
-  mrpt::math::CMatrixDouble33 result;
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 3; ++column) result(row, column) = matrix(row, column);
-  return result;
 }
 
 mrpt::bayes::CParticleFilter filter() {
@@ -103,8 +95,7 @@ struct Localizer::Parts {
   void measure_spread() {
     const auto [covariance, mean] = particles.getCovarianceAndMean();
     pose.mean = planar(CPose2D(mean));
-    for (int row = 0; row < 3; ++row)
-      for (int column = 0; column < 3; ++column) pose.covariance(row, column) = covariance(row, column);
+    pose.covariance = covariance.asEigen();
     spread = std::sqrt(pose.covariance(0, 0) + pose.covariance(1, 1));
   }
 
@@ -116,36 +107,17 @@ struct Localizer::Parts {
     measure_spread();
   }
 
-  /// Returns the part of the points that lie at a wall of the map, seen from `laser`.
-  double explained_from(const Scan& scan, const PlanarPose& laser) const {
-    int hits = 0, near = 0;
-    for (std::size_t ray = 0; ray < scan.ranges.size(); ++ray) {
-      if (!scan.hit(scan.ranges[ray])) continue;
-      const double angle = laser.yaw + scan.angle(ray);
-      const double x = laser.x + scan.ranges[ray] * std::cos(angle), y = laser.y + scan.ranges[ray] * std::sin(angle);
-      ++hits;
-      near +=
-          walls.squareDistanceToClosestCorrespondence(static_cast<float>(x), static_cast<float>(y)) < kAtWall * kAtWall;
-    }
-    return hits == 0 ? 0 : static_cast<double>(near) / hits;
+  void search() {
+    particles.resetUniformFreeSpace(map.get(), kFreeFrom, kGlobalParticles);
+    begin(Localization::kSearching);
   }
 
   void update_state() {
     const bool fits = explained > kFits;
-    if (state == Localization::kSearching) {
-      settled = spread < kSmallSpread ? settled + 1 : 0;
-      if (settled > 0 && fits) state = Localization::kLocalized;
-      if (settled > kProof) search();
-    } else if (state == Localization::kLocalized && (spread > kLargeSpread || !fits)) {
-      state = Localization::kLost;
-    } else if (state == Localization::kLost && spread < kSmallSpread && fits) {
-      state = Localization::kLocalized;
-    }
-  }
-
-  void search() {
-    particles.resetUniformFreeSpace(map.get(), kFreeFrom, kGlobalParticles);
-    begin(Localization::kSearching);
+    settled = spread < kSmallSpread ? settled + 1 : 0;
+    if (state == Localization::kLocalized && !fits) state = Localization::kLost;
+    if (state != Localization::kLocalized && fits && settled > 0) state = Localization::kLocalized;
+    if (state == Localization::kSearching && settled > kProof) search();
   }
 
   void filter_step(const mrpt::obs::CObservation2DRangeScan& scan, const UncertainPose& to) {
@@ -153,7 +125,7 @@ struct Localizer::Parts {
     const Eigen::Matrix3d noise = at_least(growth(updated, to), {kMinStep, kMinStep, kMinTurn});
     mrpt::obs::CActionRobotMovement2D motion;
     motion.rawOdometryIncrementReading = step;
-    motion.poseChange = mrpt::poses::CPosePDFGaussian::Create(step, mrpt_matrix(noise));
+    motion.poseChange = mrpt::poses::CPosePDFGaussian::Create(step, mrpt::math::CMatrixDouble33(noise));
     mrpt::obs::CActionCollection actions;
     actions.insert(motion);
     mrpt::obs::CSensoryFrame frame;
@@ -176,7 +148,7 @@ Localizer::Localizer(const Grid& map, std::uint32_t seed) : parts_(std::make_uni
   if (std::ranges::count(map.cells, kFreeCell) == 0)
     throw std::invalid_argument("the map has no free cell, in which the robot could be");
   parts.particles.options.KLD_params.KLD_maxSampleSize = kMaxParticles;
-  mrpt::random::getRandomGenerator().randomize(seed);
+  mrpt::random::getRandomGenerator() = {seed};  // randomize() keeps the second number of the last normal pair
 }
 Localizer::~Localizer() = default;
 Localizer::Localizer(Localizer&&) noexcept = default;
@@ -185,7 +157,8 @@ Localizer& Localizer::operator=(Localizer&&) noexcept = default;
 void Localizer::set_pose(const UncertainPose& pose) {
   std::vector<mrpt::math::CVectorDouble> drawn;
   const Eigen::Matrix3d covariance = at_least(pose.covariance, {kMinStep, kMinStep, kMinTurn});
-  mrpt::poses::CPosePDFGaussian(mrpt_pose(pose.mean), mrpt_matrix(covariance)).drawManySamples(2000, drawn);
+  mrpt::poses::CPosePDFGaussian(mrpt_pose(pose.mean), mrpt::math::CMatrixDouble33(covariance))
+      .drawManySamples(2000, drawn);
   parts_->particles.resetDeterministic({}, drawn.size());
   for (std::size_t i = 0; i < drawn.size(); ++i)
     parts_->particles.m_particles[i].d = {drawn[i][0], drawn[i][1], drawn[i][2]};
@@ -203,8 +176,11 @@ bool Localizer::update(const Scan& scan, const PlanarPose& sensor, const Uncerta
   parts.odometry = odometry.mean;
   const CPose2D step = mrpt_pose(odometry.mean) - mrpt_pose(parts.updated.mean);
   const bool moved = step.norm() > kUpdateDistance || std::abs(step.phi()) > kUpdateTurn;
-  if (parts.first || moved) parts.filter_step(mrpt_scan(scan, sensor), odometry);
-  parts.last_explained = parts.explained_from(scan, composed(pose().mean, sensor));
+  const mrpt::obs::CObservation2DRangeScan observation = mrpt_scan(scan, sensor);
+  if (parts.first || moved) parts.filter_step(observation, odometry);
+  const mrpt::maps::CSimplePointsMap seen = points_of(observation, 0);
+  const mrpt::poses::CPose3D at(mrpt_pose(pose().mean));
+  parts.last_explained = seen.empty() ? 0 : parts.walls.compute3DMatchingRatio(&seen, at, kAtWall);
   parts.explained += kSmoothing * (parts.last_explained - parts.explained);
   const bool updated = parts.first || moved;
   parts.first = false;
@@ -228,8 +204,6 @@ std::string Localizer::reason() const {
     case Localization::kLost:
       break;
   }
-  if (parts_->spread > kSmallSpread)
-    return "the place is lost: the poses that fit differ by " + cm(parts_->spread) + "; set one or search again";
   return "the place is lost: " + std::to_string(std::lround(100 * parts_->explained)) +
          " % of what the laser sees is in the map there, less than " + std::to_string(std::lround(100 * kFits)) +
          " %; set the pose or search again";

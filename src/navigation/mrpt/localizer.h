@@ -35,7 +35,7 @@ enum class Localization {
   kNoPose,     ///< neither a pose nor a global start was given
   kSearching,  ///< after a global start: the particles lie far apart
   kLocalized,
-  kLost,  ///< the particles lie far apart, or the scans do not fit the map
+  kLost,  ///< the scans do not fit the map
 };
 
 /// Returns "no pose", "searching", "localized" or "lost".

@@ -38,15 +38,6 @@ mrpt::slam::CICP matcher() {
   return icp;
 }
 
-/// Returns the points of the scan in the axes of the base, at least `apart` m from each other.
-CSimplePointsMap points_of(const mrpt::obs::CObservation2DRangeScan& scan, float apart) {
-  CSimplePointsMap points;
-  points.insertionOptions.minDistBetweenLaserPoints = apart;
-  points.insertionOptions.isPlanarMap = true;
-  points.insertObservation(scan);
-  return points;
-}
-
 }  // namespace
 
 struct Mapper::Parts {

@@ -1,6 +1,7 @@
 #pragma once
 /// Conversions to MRPT; headers of this folder alone may include it.
 
+#include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/poses/CPose2D.h>
 
@@ -37,6 +38,15 @@ inline mrpt::obs::CObservation2DRangeScan mrpt_scan(const Scan& scan, const Plan
     result.setScanRangeValidity(ray, hit);
   }
   return result;
+}
+
+/// Returns the points of the scan in the axes of the base, at least `apart` m from each other.
+inline mrpt::maps::CSimplePointsMap points_of(const mrpt::obs::CObservation2DRangeScan& scan, float apart) {
+  mrpt::maps::CSimplePointsMap points;
+  points.insertionOptions.minDistBetweenLaserPoints = apart;
+  points.insertionOptions.isPlanarMap = true;
+  points.insertObservation(scan);
+  return points;
 }
 
 }  // namespace robot_control

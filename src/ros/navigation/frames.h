@@ -23,18 +23,13 @@ class Frames {
   explicit Frames(ros::NodeHandle& handle);
 
   /// Returns the pose of `source` in `target` at `time`, zero: the newest; nothing, with the reason in `problem`, where
-  /// tf does not have it.
+  /// tf does not have it. Any thread may call it.
   std::optional<FoundPose> lookup(const std::string& target, const std::string& source, ros::Time time,
                                   std::string& problem) const;
 
  private:
-  void receive(const tf2_msgs::TFMessage& message, bool fixed);
-
   tf2::BufferCore buffer_;
   ros::Subscriber moving_, fixed_;
 };
-
-/// Returns the yaw of a quaternion; nothing unless its length is 1.
-std::optional<double> yaw_of(double x, double y, double z, double w);
 
 }  // namespace robot_control

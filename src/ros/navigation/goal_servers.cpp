@@ -1,6 +1,6 @@
 #include "ros/navigation/goal_servers.h"
 
-#include <cmath>
+#include "ros/navigation/navigation_messages.h"
 
 namespace robot_control {
 
@@ -52,9 +52,7 @@ void GoalServers::feedback(const NavigatorOutput& output, const PlanarPose& pose
     move_base_msgs::MoveBaseFeedback message;
     message.base_position.header.stamp = ros::Time::now();
     message.base_position.header.frame_id = map_frame;
-    message.base_position.pose.position.x = pose.x, message.base_position.pose.position.y = pose.y;
-    message.base_position.pose.orientation.z = std::sin(pose.yaw / 2);
-    message.base_position.pose.orientation.w = std::cos(pose.yaw / 2);
+    message.base_position.pose = pose_message(pose);
     move_base_.publishFeedback(message);
   }
 }

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "navigation/map_file.h"
-#include "ros/navigation/given_pose.h"
 #include "ros/navigation/map_service.h"
 #include "ros/navigation/map_topics.h"
+#include "ros/navigation/navigation_messages.h"
 #include "ros/navigation/scan_input.h"
 
 namespace robot_control {
@@ -58,16 +58,13 @@ class LocalizationNode {
   }
 
   void receive_pose(const geometry_msgs::PoseWithCovarianceStamped& message) {
-    const GivenPose given = given_pose(message);
-    if (!given.problem.empty()) {
-      ROS_WARN("%s", given.problem.c_str());
-      return;
-    }
+    const auto pose = given_pose(message);
+    if (!pose) return;
     if (!localizer_) {
       ROS_WARN("initialpose is refused: there is no map yet (load_map)");
       return;
     }
-    localizer_->set_pose(given.pose);
+    localizer_->set_pose(*pose);
   }
 
   bool search(std_srvs::Empty::Request& /*request*/, std_srvs::Empty::Response& /*response*/) {
@@ -91,15 +88,10 @@ class LocalizationNode {
   }
 
   void publish_pose() {
-    const UncertainPose pose = localizer_->pose();
     geometry_msgs::PoseWithCovarianceStamped message;
     message.header.frame_id = kMapFrame;
     message.header.stamp = stamp_;
-    message.pose.pose = pose_message(pose.mean);
-    constexpr int kOf[3] = {0, 1, 5};  // x, y, yaw among x y z roll pitch yaw
-    for (int row = 0; row < 3; ++row)
-      for (int column = 0; column < 3; ++column)
-        message.pose.covariance[static_cast<std::size_t>(6 * kOf[row] + kOf[column])] = pose.covariance(row, column);
+    message.pose = covariance_message(localizer_->pose());
     pose_.publish(message);
   }
 
@@ -120,7 +112,7 @@ class LocalizationNode {
   MapTopics topics_{handle_};
   ScanInput input_{handle_, [this](const PlacedScan& scan) { use(scan); },
                    [this](const nav_msgs::Odometry& odometry) { receive_odometry(odometry); }};
-  MapService load_{handle_, "load_map", [this](const std::string& path) { return load(path); }};
+  ros::ServiceServer load_ = map_service(handle_, "load_map", [this](const std::string& path) { return load(path); });
   ros::Subscriber initial_;
   ros::Publisher pose_, cloud_;
   ros::ServiceServer global_;

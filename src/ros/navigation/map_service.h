@@ -1,6 +1,5 @@
 #pragma once
-/// A MapService calls a function with the path of a request of robot_control/MapFile. Its text is the answer; what it
-/// throws is the reason of the refusal.
+/// A service of robot_control/MapFile, which calls a function with the path of the request.
 
 #include <robot_control/MapFile.h>
 #include <ros/ros.h>
@@ -11,15 +10,13 @@
 
 namespace robot_control {
 
-class MapService {
- public:
-  MapService(ros::NodeHandle& handle, const char* name, std::function<std::string(const std::string&)> use)
-      : use_(std::move(use)), server_(handle.advertiseService(name, &MapService::answer, this)) {}
-
- private:
-  bool answer(robot_control::MapFile::Request& request, robot_control::MapFile::Response& response) {
+/// The text that `use` returns is the answer; what it throws is the reason of the refusal.
+inline ros::ServiceServer map_service(ros::NodeHandle& handle, const char* name,
+                                      const std::function<std::string(const std::string&)>& use) {
+  const boost::function<bool(MapFile::Request&, MapFile::Response&)> answer = [use](MapFile::Request& request,
+                                                                                    MapFile::Response& response) {
     try {
-      response.message = use_(request.path);
+      response.message = use(request.path);
       response.success = 1;
     } catch (const std::exception& error) {
       response.message = error.what();
@@ -27,10 +24,8 @@ class MapService {
     }
     ROS_INFO("%s", response.message.c_str());
     return true;
-  }
-
-  std::function<std::string(const std::string&)> use_;
-  ros::ServiceServer server_;
-};
+  };
+  return handle.advertiseService(name, answer);
+}
 
 }  // namespace robot_control

@@ -2,18 +2,9 @@
 
 #include <tf2_msgs/TFMessage.h>
 
-#include <cmath>
+#include "ros/navigation/navigation_messages.h"
 
 namespace robot_control {
-
-geometry_msgs::Pose pose_message(const PlanarPose& pose) {
-  geometry_msgs::Pose message;
-  message.position.x = pose.x;
-  message.position.y = pose.y;
-  message.orientation.z = std::sin(pose.yaw / 2);
-  message.orientation.w = std::cos(pose.yaw / 2);
-  return message;
-}
 
 MapTopics::MapTopics(ros::NodeHandle& handle)
     : map_(handle.advertise<nav_msgs::OccupancyGrid>("map", 1, true)),
@@ -23,14 +14,7 @@ MapTopics::MapTopics(ros::NodeHandle& handle)
       static_map_(handle.advertiseService("static_map", &MapTopics::answer, this)) {}
 
 void MapTopics::publish(const Grid& grid) {
-  newest_.header.frame_id = kMapFrame;
-  newest_.header.stamp = ros::Time::now();
-  newest_.info.map_load_time = newest_.header.stamp;
-  newest_.info.width = static_cast<std::uint32_t>(grid.columns);
-  newest_.info.height = static_cast<std::uint32_t>(grid.rows);
-  newest_.info.resolution = static_cast<float>(grid.resolution);
-  newest_.info.origin = pose_message({grid.origin_x, grid.origin_y, 0});
-  newest_.data = grid.cells;
+  newest_ = grid_message(grid, kMapFrame);
   map_.publish(newest_);
   metadata_.publish(newest_.info);
 }

@@ -12,8 +12,6 @@
 
 namespace robot_control {
 
-inline constexpr const char* kMapFrame = "map";
-
 class MapTopics {
  public:
   explicit MapTopics(ros::NodeHandle& handle);
@@ -35,8 +33,5 @@ class MapTopics {
   nav_msgs::OccupancyGrid newest_;
   robot_control::LocalizationState last_;
 };
-
-/// Returns the pose of a planar one.
-geometry_msgs::Pose pose_message(const PlanarPose& pose);
 
 }  // namespace robot_control

@@ -7,16 +7,15 @@
 #include <std_srvs/Empty.h>
 
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <stdexcept>
 
 #include "navigation/doubt.h"
 #include "navigation/footprint.h"
 #include "navigation/map_file.h"
-#include "navigation/smoothing.h"
-#include "ros/navigation/frames.h"
+#include "navigation/text.h"
 #include "ros/navigation/goal_servers.h"
+#include "ros/navigation/navigation_messages.h"
 #include "ros/navigation/path_client.h"
 #include "ros/navigation/scan_guard.h"
 
@@ -41,9 +40,8 @@ Footprint read_footprint(ros::NodeHandle& handle) {
 class NavigateNode {
  public:
   NavigateNode()
-      : frames_(handle_),
-        guard_(handle_, read_footprint(handle_), frames_),
-        footprint_(read_footprint(handle_)),
+      : footprint_(read_footprint(handle_)),
+        guard_(handle_, footprint_),
         path_client_(handle_),
         servers_(
             handle_, [this](const GoalServers::Goal& goal) { begin(goal); }, [this] { cancel("cancelled"); }) {
@@ -67,10 +65,8 @@ class NavigateNode {
 
   void receive_map(const nav_msgs::OccupancyGrid& message) {
     const auto& [info, data] = std::tie(message.info, message.data);
-    const auto& origin = info.origin;
-    const auto yaw = yaw_of(origin.orientation.x, origin.orientation.y, origin.orientation.z, origin.orientation.w);
-    std::string problem = grid_problem(info.width, info.height, info.resolution, origin.position.x, origin.position.y,
-                                       yaw.value_or(std::nan("")));
+    const PlanarPose origin = planar_of(info.origin);
+    std::string problem = grid_problem(info.width, info.height, info.resolution, origin.x, origin.y, origin.yaw);
     if (problem.empty() && data.size() != std::size_t{info.width} * info.height) {
       problem = "the map has " + std::to_string(data.size()) + " cells, and width x height are others";
     }
@@ -82,29 +78,24 @@ class NavigateNode {
       if (!costmap_) map_problem_ = "map is refused: " + problem;
       return;
     }
-    Grid grid{static_cast<int>(info.width),
-              static_cast<int>(info.height),
-              info.resolution,
-              origin.position.x,
-              origin.position.y,
-              data};
+    const int columns = static_cast<int>(info.width), rows = static_cast<int>(info.height);
     costmap_.reset();  // before the new one: two of the largest maps would take 0.8 GB
-    costmap_ = std::make_unique<Costmap>(std::move(grid), footprint_, unknown_is_free_);
+    costmap_ = std::make_unique<Costmap>(Grid{columns, rows, info.resolution, origin.x, origin.y, data}, footprint_,
+                                         unknown_is_free_);
     doubt_ = Doubt();
   }
 
   /// Takes a scan into the costmap, and compares it with the map. A scan waits until tf knows the place at its stamp.
   void process_scan(const ros::Time& time) {
-    if (!waiting_ || (time - waiting_->stamp).toSec() > kTfPatience) {
+    if (!waiting_ || (time - waiting_->seen.stamp).toSec() > kTfPatience) {
       if (auto scan = guard_.next_scan()) waiting_ = std::move(scan);
     }
     if (!waiting_ || !costmap_) return;
-    const auto sensor = frames_.lookup(map_frame_, waiting_->frame, waiting_->stamp, scan_problem_);
-    if (!sensor) return;
-    if (sensor->upside_down) waiting_->scan.angle_min *= -1, waiting_->scan.angle_increment *= -1;
-    const auto base = frames_.lookup(map_frame_, guard_.odometry_frames().second, waiting_->stamp, scan_problem_);
-    costmap_->foresee(base ? placed(waiting_->ahead, base->pose) : std::vector<Point>());
-    doubt_.update(costmap_->insert(waiting_->scan, sensor->pose, now()));
+    const PlacedScan& seen = waiting_->seen;
+    const auto base = frames_.lookup(map_frame_, guard_.input().base_frame(), seen.stamp, scan_problem_);
+    if (!base) return;
+    costmap_->foresee(placed(waiting_->ahead, base->pose));
+    doubt_.update(costmap_->insert(seen.scan, composed(base->pose, seen.laser), now()));
     waiting_.reset();
     seen_at_ = time;
   }
@@ -112,21 +103,17 @@ class NavigateNode {
   /// Returns why nothing can be driven now, and sets the robot's place if it is known.
   std::string problem(const ros::Time& time) {
     if (!costmap_) return map_problem_;
-    if (const std::string why = guard_.problem(); !why.empty()) return why;
+    if (const std::string why = guard_.input().problem(); !why.empty()) return why;
     if (localization_ && localization_->state != "localized") {
       return "the robot is not localised: " + localization_->state + ": " + localization_->reason;
     }
     std::string why;
-    const auto place = frames_.lookup(map_frame_, guard_.odometry_frames().second, ros::Time(), why);
+    const auto place = frames_.lookup(map_frame_, guard_.input().base_frame(), ros::Time(), why);
     if (!place) return "the robot is not localised: " + why;
     pose_ = place->pose;
     const double age = time.toSec() - place->stamp;
-    if (place->stamp > 0 && age > kOldPlace) {
-      std::array<char, 120> text;
-      std::snprintf(text.data(), text.size(), "the robot is not localised: tf from %s is %.1f s old",
-                    map_frame_.c_str(), age);
-      return text.data();
-    }
+    if (place->stamp > 0 && age > kOldPlace)
+      return text("the robot is not localised: tf from %s is %.1f s old", map_frame_.c_str(), age);
     if ((time - seen_at_).toSec() > kOldPlace)
       return "tf does not give the place of the scans in the map: " + scan_problem_;
     if (!doubt_.problem().empty()) return doubt_.problem();
@@ -136,16 +123,12 @@ class NavigateNode {
   void begin(const GoalServers::Goal& goal) {
     requested_ = ros::Time::now();
     goal_speed_ = goal.speed;
-    const auto& [position, turn] = std::tie(goal.target.pose.position, goal.target.pose.orientation);
-    const auto yaw = yaw_of(turn.x, turn.y, turn.z, turn.w);
+    PlanarPose target = planar_of(goal.target.pose);
     std::string why, frame = goal.target.header.frame_id;
     if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);
-    if (!yaw) return refuse("the goal's orientation is no quaternion of length 1");
-    if (!std::isfinite(position.x) || !std::isfinite(position.y))
-      return refuse("the goal holds a number that is not finite");
+    if (!std::isfinite(target.yaw)) return refuse("the goal's orientation is no quaternion of length 1");
     if (!(goal.speed >= 0 && goal.speed <= 10)) return refuse("the goal's speed must be from 0 to 10 m/s");
     if (frame.empty()) return refuse("the goal has no frame: set header.frame_id, for instance to " + map_frame_);
-    PlanarPose target{position.x, position.y, *yaw};
     if (frame != map_frame_) {
       const auto found = frames_.lookup(map_frame_, frame, ros::Time(), why);
       if (!found) return refuse("tf does not connect the goal's frame with the map's: " + why);
@@ -204,22 +187,17 @@ class NavigateNode {
     diagnostics_.publish(array);
     if (!costmap_ || costmap_topic_.getNumSubscribers() == 0) return;
     costmap_->update(now());
-    const Grid& grid = costmap_->grid();
-    nav_msgs::OccupancyGrid message;
-    message.header.frame_id = map_frame_, message.header.stamp = array.header.stamp;
-    message.info.width = static_cast<std::uint32_t>(grid.columns),
-    message.info.height = static_cast<std::uint32_t>(grid.rows);
-    message.info.resolution = static_cast<float>(grid.resolution);
-    message.info.origin.position.x = grid.origin_x, message.info.origin.position.y = grid.origin_y;
-    message.info.origin.orientation.w = 1;
+    Grid grid = costmap_->grid();
     for (int row = 0; row < grid.rows; ++row) {
       for (int column = 0; column < grid.columns; ++column) {
         const double air = costmap_->distance({column, row}) - footprint_.inscribed;
-        message.data.push_back(air <= 0 ? (costmap_->occupied({column, row}) ? 100 : 99)
-                                        : static_cast<std::int8_t>(98 * std::max(0.0, 1 - air / kComfort)));
+        grid.cells[grid.index({column, row})] = air > 0
+                                                    ? static_cast<std::int8_t>(98 * std::max(0.0, 1 - air / kComfort))
+                                                : costmap_->occupied({column, row}) ? kOccupiedCell
+                                                                                    : 99;
       }
     }
-    costmap_topic_.publish(message);
+    costmap_topic_.publish(grid_message(grid, map_frame_));
   }
 
   bool clear(std_srvs::Empty::Request& /*request*/, std_srvs::Empty::Response& /*response*/) {
@@ -228,9 +206,9 @@ class NavigateNode {
   }
 
   ros::NodeHandle handle_;
-  Frames frames_;
-  ScanGuard guard_;
   const Footprint footprint_;
+  ScanGuard guard_;
+  const Frames& frames_ = guard_.input().frames();
   PathClient path_client_;
   Navigator navigator_;
   std::unique_ptr<Costmap> costmap_;
@@ -244,7 +222,7 @@ class NavigateNode {
   double speed_ = 0.5, goal_speed_ = 0;  // m/s
   bool unknown_is_free_ = false;
   std::string map_frame_, map_problem_ = "no map has come: start slam, or localization with a saved map";
-  std::optional<StampedScan> waiting_;  // for tf
+  std::optional<GuardedScan> waiting_;  // for tf
   ros::Time seen_at_, requested_;
   std::string scan_problem_, last_;
   Doubt doubt_;

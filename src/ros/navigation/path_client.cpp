@@ -4,7 +4,10 @@
 #include <actionlib_msgs/GoalStatus.h>
 #include <robot_control/FollowPathActionGoal.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "ros/navigation/navigation_messages.h"
 
 namespace robot_control {
 
@@ -26,8 +29,7 @@ void PathClient::send(const Plan& plan, const std::string& frame, double speed, 
   for (const PlanarPose& pose : plan.poses) {
     geometry_msgs::PoseStamped stamped;
     stamped.header = message.goal.path.header;
-    stamped.pose.position.x = pose.x, stamped.pose.position.y = pose.y;
-    stamped.pose.orientation.z = std::sin(pose.yaw / 2), stamped.pose.orientation.w = std::cos(pose.yaw / 2);
+    stamped.pose = pose_message(pose);
     message.goal.path.poses.push_back(stamped);
   }
   goal_.publish(message);
@@ -47,13 +49,10 @@ void PathClient::cancel() {
 PlanarMotion PathClient::intended(const PlanarPose& pose) const {
   if (report_.state != PathReport::State::kActive || poses_.size() < 2) return {};
   if (turning_) return {0, heading_error_ > 0 ? -1.0 : 1.0};
-  std::size_t near = 1;
-  for (std::size_t i = 1; i < poses_.size(); ++i) {
-    if (std::hypot(poses_[i].x - pose.x, poses_[i].y - pose.y) <
-        std::hypot(poses_[near].x - pose.x, poses_[near].y - pose.y))
-      near = i;
-  }
-  const PlanarPose &a = poses_[near - 1], &b = poses_[near];
+  const auto away = [&](const PlanarPose& at) { return std::hypot(at.x - pose.x, at.y - pose.y); };
+  const auto near = std::min_element(poses_.begin() + 1, poses_.end(),
+                                     [&](const PlanarPose& p, const PlanarPose& q) { return away(p) < away(q); });
+  const PlanarPose &a = near[-1], &b = *near;
   return {(b.x - a.x) * std::cos(a.yaw) + (b.y - a.y) * std::sin(a.yaw) < 0 ? -1.0 : 1.0, 0};
 }
 

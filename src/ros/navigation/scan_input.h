@@ -1,15 +1,16 @@
 #pragma once
-/// A ScanInput joins each scan with the pose of the odometry at its stamp and with the place of the laser on the robot.
+/// A ScanInput joins each scan with the place of the robot in odom at its stamp, and with that of the laser on the
+/// robot. Both are from tf, the covariance from `odom`.
 ///
-/// A scan waits for a message of `odom` that is not older; the pose is interpolated between two. A scan that ScanWatch
-/// refuses, without odometry around its stamp, or whose frame is not in tf, is not used; `problem` says why.
+/// A scan waits for a message of `odom` that is not older. One is not used that ScanWatch refuses or does not count,
+/// or whose place is not in tf; `problem` says why after kSilence without a scan that is used.
 
 #include <nav_msgs/Odometry.h>
 #include <ros/ros.h>
 #include <sensor_msgs/LaserScan.h>
 
-#include <deque>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -20,7 +21,7 @@
 namespace robot_control {
 
 struct PlacedScan {
-  Scan scan;
+  Scan scan;               ///< its angles in axes whose z points upwards
   PlanarPose laser;        ///< in the base
   UncertainPose odometry;  ///< of the base in odom, at the stamp
   ros::Time stamp;
@@ -28,31 +29,35 @@ struct PlacedScan {
 
 class ScanInput {
  public:
-  /// `use` is called for each scan, `odometry` for each message of odom.
+  /// `use` is called for each scan, `odometry` for each message of odom, in the thread of the handle's queue.
   ScanInput(ros::NodeHandle& handle, std::function<void(const PlacedScan&)> use,
             std::function<void(const nav_msgs::Odometry&)> odometry);
+
+  // Any thread may call these, but not from within `use`.
 
   /// Returns why no scan is used now; "" if they are.
   std::string problem() const;
 
+  /// Returns the frame of the base; "" before the first message of odom.
+  std::string base_frame() const;
+
+  const Frames& frames() const noexcept { return frames_; }
+
  private:
-  struct Reading {
-    ros::Time stamp;
-    UncertainPose pose;
-  };
   void receive(const ros::MessageEvent<const sensor_msgs::LaserScan>& event);
   void receive_odometry(const nav_msgs::Odometry& message);
   void use_pending();
-  std::optional<UncertainPose> odometry_at(ros::Time stamp) const;
 
   Frames frames_;
   std::function<void(const PlacedScan&)> use_;
-  std::function<void(const nav_msgs::Odometry&)> odometry_;
+  std::function<void(const nav_msgs::Odometry&)> heard_;
+
+  mutable std::mutex mutex_;  // of all below
   ScanWatch watch_;
-  std::deque<Reading> readings_;
-  std::optional<sensor_msgs::LaserScan> pending_;
-  std::string base_frame_, place_problem_;
-  double moved_ = 0;  // m + rad, by the odometry
+  sensor_msgs::LaserScan::ConstPtr pending_;
+  nav_msgs::Odometry odometry_;  // the newest
+  std::string place_problem_ = "no odom has come: start the robot";
+  double moved_ = 0, used_at_ = -1e9;  // m + rad; s
   ros::Subscriber scan_, odom_;
 };
 

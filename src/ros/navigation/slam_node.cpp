@@ -6,9 +6,9 @@
 
 #include "navigation/map_file.h"
 #include "navigation/mrpt/mapper.h"
-#include "ros/navigation/given_pose.h"
 #include "ros/navigation/map_service.h"
 #include "ros/navigation/map_topics.h"
+#include "ros/navigation/navigation_messages.h"
 #include "ros/navigation/scan_input.h"
 
 namespace robot_control {
@@ -62,16 +62,13 @@ class SlamNode {
   }
 
   void receive_pose(const geometry_msgs::PoseWithCovarianceStamped& message) {
-    const GivenPose given = given_pose(message);
-    if (!given.problem.empty()) {
-      ROS_WARN("%s", given.problem.c_str());
-      return;
-    }
+    const auto pose = given_pose(message);
+    if (!pose) return;
     if (!saved_) {
       ROS_WARN("initialpose is refused: this map began where the robot was; load a saved one before");
       return;
     }
-    mapper_ = Mapper(*saved_, given.pose.mean);
+    mapper_ = Mapper(*saved_, pose->mean);
     used_ = false;
   }
 
@@ -83,8 +80,8 @@ class SlamNode {
   MapTopics topics_{handle_};
   ScanInput input_{handle_, [this](const PlacedScan& scan) { use(scan); },
                    [this](const nav_msgs::Odometry& odometry) { receive_odometry(odometry); }};
-  MapService save_{handle_, "save_map", [this](const std::string& path) { return save(path); }};
-  MapService load_{handle_, "load_map", [this](const std::string& path) { return load(path); }};
+  ros::ServiceServer save_ = map_service(handle_, "save_map", [this](const std::string& path) { return save(path); });
+  ros::ServiceServer load_ = map_service(handle_, "load_map", [this](const std::string& path) { return load(path); });
   ros::Subscriber initial_;
   ros::WallTimer timer_;
 };

@@ -90,6 +90,24 @@ TEST(Gait, ATrotMovesTheDiagonalFeetTogether) {
   }
 }
 
+/// A foot whose swing would have begun before the gait stands until its next one.
+TEST(Gait, ATrotAfterACrawlBeginsWithAllFeetOnTheGround) {
+  const Gait &stand = gait_of(GaitName::kStand), &crawl = gait_of(GaitName::kCrawl);
+  const Gait &trot = gait_of(GaitName::kTrot), &walking = gait_of(GaitName::kWalkingTrot);
+  for (const auto& [last, next] : {std::pair(crawl, trot), std::pair(crawl, walking)}) {
+    const double begin = next.begins_after(last);
+    double until = next.period;
+    for (std::size_t leg = 0; leg < kLegs; ++leg) {
+      const double left = next.duty - next.leg_phase(leg, begin);
+      until = std::min(until, next.period * (left < 0 ? left + 1 : left));
+    }
+    EXPECT_NEAR(until, 0.1, 0.01) << next.name.data();
+  }
+  for (const auto& [last, next] : {std::pair(walking, trot), std::pair(trot, walking), std::pair(stand, trot)})
+    EXPECT_EQ(next.begins_after(last), 0) << next.name.data();
+  for (const Gait& last : {stand, trot}) EXPECT_EQ(crawl.begins_after(last), 0.75) << last.name.data();
+}
+
 TEST(Gait, ACrawlLiftsOneFootAtATimeInTheOrderOfAWalk) {
   const Gait& crawl = gait_of(GaitName::kCrawl);
   std::vector<std::size_t> order;

@@ -82,7 +82,7 @@ TEST_F(WalkerTest, ACrawlIsSoSlowThatAFootReachesThroughItsStanceAfterTheEndOfTh
   EXPECT_GT(fastest, 0.3);
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const double stood = (trot.leg_phase(leg, 0) > 0 ? 0.5 : -0.5) * trot.stance_time();
-    const double stands = crawl.period * (crawl.duty - crawl.leg_phase(leg, crawl.begin));
+    const double stands = crawl.period * (crawl.duty - crawl.leg_phase(leg, crawl.begins_after(trot)));
     const Eigen::Vector3d way(fastest * (stood + stands), 0, 0);
     EXPECT_EQ(robot.legs[leg].kinematics.inverse(stance.feet[leg] - way).reach, FootReach::kReached) << leg;
   }

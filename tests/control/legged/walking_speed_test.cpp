@@ -69,11 +69,14 @@ struct WalkingSpeedTest : testing::Test {
   /// begins.
   double changed(const Gait& last, const Gait& next, std::size_t axis, double speed) const {
     constexpr double kEnd = 0.002;  // s
+    const double begin = next.begins_after(last);
     double part = 0;
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
-      if (next.leg_phase(leg, next.begin) >= next.duty) continue;
+      const bool bears = next.bears(leg, begin);
+      if (!bears && next.swung(leg, begin) == 0) continue;  // it swings at once; another one waits for its next swing
       const double stood = std::min(last.leg_phase(leg, 0), last.duty) * last.period - last.stance_time() / 2;
-      const double until = stood + next.stance_time() - next.leg_phase(leg, next.begin) * next.period;
+      const double stands = next.stance_time() + (bears ? 0 : next.period) - next.leg_phase(leg, begin) * next.period;
+      const double until = stood + stands;
       part = std::max(part, fastest_joint(robot, leg, kEnd, [&](double done) -> Eigen::Vector3d {
                         return stance.feet[leg] + (until - kEnd + done * kEnd) * under(leg, axis, speed);
                       }));

@@ -172,8 +172,8 @@ void Walker::turn_clock(State& state, GaitName wanted) const noexcept {
   state.lasted += period_;
   if (gait.duty >= 1) {
     if (wanted == GaitName::kStand) return;
+    state.phase = gaits_[next].begins_after(gait);
     state.gait = next;
-    state.phase = gaits_[next].begin;
     state.lasted = 0;
     return;
   }
@@ -188,8 +188,8 @@ void Walker::turn_clock(State& state, GaitName wanted) const noexcept {
       wraps && state.gait != next && wanted != GaitName::kStand && state.lasted > gait.period - period_;
   if (!ends && !changes) return;
   state.swings = {};  // a foot that then swings begins where it is, in the air or not
+  state.phase = gaits_[next].begins_after(gait);
   state.gait = next;
-  state.phase = gaits_[next].begin;
   state.lasted = 0;
   if (ends) state.ahead = {};
 }

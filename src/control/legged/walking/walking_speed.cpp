@@ -59,12 +59,13 @@ double needed(const LegModel& robot, const NominalStance& stance, const Gait& ga
 /// Returns the same of the feet that stand on where `last` ends, at the end of their first stance in `next`.
 double needed_after(const LegModel& robot, const NominalStance& stance, const Gait& last, const Gait& next,
                     const WalkingTwist& twist) noexcept {
+  const double begin = next.begins_after(last);
   double part = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const bool bears = next.bears(leg, next.begin);
-    if (!bears && next.swung(leg, next.begin) == 0) continue;  // it swings at once
+    const bool bears = next.bears(leg, begin);
+    if (!bears && next.swung(leg, begin) == 0) continue;  // it swings at once
     const double stood = last.period * (std::min(last.leg_phase(leg, 0), last.duty) - last.duty / 2);
-    const double stands = next.period * (next.duty + (bears ? 0 : 1) - next.leg_phase(leg, next.begin));
+    const double stands = next.period * (next.duty + (bears ? 0 : 1) - next.leg_phase(leg, begin));
     const Eigen::Vector3d& foot = stance.feet[leg];
     const Eigen::Vector3d velocity = velocity_of(foot, twist);
     part = std::max(part, needed_at(robot, leg, foot + (stood + stands) * velocity, velocity));

@@ -10,7 +10,10 @@
 ///                 This mean stays while the foot bears. The motors of feet that bear are judged by their torques:
 ///                 |τ − τ*| > kOfAsked |τ*| + kOfEffort L in more than kOfTorques of the last cycles, a mean over
 ///                 kTorqueTime, counts as an angle beyond the limit. τ* is the torque of the command before, L the
-///                 effort limit. This mean stays while the foot is in the air
+///                 effort limit. This mean stays while the foot is in the air.
+///                 An angle that moves against its command by more than kAgainst within a swing, less what it moves
+///                 with it, counts as one beyond the limit: an encoder that counts backwards, or a motor with reversed
+///                 wires. Both are compared over kStride cycles: a noisy gyro moves the command in each
 ///   joint range   distance beyond the nearer end stop > limit: the zero of an encoder, or a stop that broke
 ///
 /// A number that is missing or not finite is not evaluated.
@@ -39,6 +42,8 @@ class JointConditions {
   static constexpr double kOfTorques = 0.3;    ///< docs/evidence/derivations.md
   static constexpr double kOfAsked = 0.5;      ///< a weak or late motor is none that fails
   static constexpr double kOfEffort = 0.04;
+  static constexpr double kAgainst = 0.2;       ///< rad (docs/evidence/derivations.md)
+  static constexpr std::uint64_t kStride = 10;  ///< cycles
 
   /// `period` s.
   JointConditions(const SafetyParameters& parameters, const LegModel& robot, double period) noexcept
@@ -47,7 +52,7 @@ class JointConditions {
         effort_(kCauseJointEffort, parameters.joint_effort, period),
         range_(kCauseJointRange, parameters.joint_range, period),
         following_(kCauseJointFollowing, parameters.joint_following, period),
-        torque_(kCauseJointFollowing, without_persistence(parameters.joint_following), period) {
+        at_once_(kCauseJointFollowing, without_persistence(parameters.joint_following), period) {
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       const JointModel& joint = robot.joints[i];
       limits_[i] = {.speed = joint.velocity_limit,
@@ -57,17 +62,18 @@ class JointConditions {
   }
 
   void enter_run() noexcept {
-    for (ConditionWatch* watch : {&speed_, &effort_, &range_, &following_, &torque_}) watch->reset();
+    for (ConditionWatch* watch : {&speed_, &effort_, &range_, &following_, &at_once_}) watch->reset();
     behind_ = {};
     torques_ = {};
+    ways_ = {};
   }
 
   void step(const MonitorInput& input, std::uint64_t elapsed, ActiveCauses& out) noexcept {
     const SensorFrame& sensors = *input.sensors;
     const LegPhase phase = input.command != nullptr ? input.command->legged.phase : LegPhase::kLying;
-    if (phase != LegPhase::kWalking) behind_ = {}, torques_ = {};
+    if (phase != LegPhase::kWalking) behind_ = {}, torques_ = {}, ways_ = {};
     ConditionMeasurement speed = kNothingMeasured, effort = kNothingMeasured, range = kNothingMeasured,
-                         following = kNothingMeasured, torque = kNothingMeasured;
+                         following = kNothingMeasured, at_once = kNothingMeasured;
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       const JointSample& joint = sensors.joints[i];
       const Limits& limits = limits_[i];
@@ -78,8 +84,9 @@ class JointConditions {
         const double outside = std::max(limits.range.lower - joint.position, joint.position - limits.range.upper);
         range = worse(range, beyond(i, outside, range_.limit()));
         following = worse(following, follows(i, phase, input.command, joint.position, elapsed));
+        at_once = worse(at_once, opposes(i, phase, input.command, joint.position, elapsed));
       }
-      torque = worse(torque, gives(i, phase, input.command, joint, elapsed));
+      at_once = worse(at_once, gives(i, phase, input.command, joint, elapsed));
     }
     const auto update = [&](ConditionWatch& watch, const ConditionMeasurement& measurement) {
       watch.step(measurement, elapsed);
@@ -90,7 +97,7 @@ class JointConditions {
     update(speed_, speed);
     update(effort_, effort);
     update(range_, range);
-    update(torque_, torque);
+    update(at_once_, at_once);
   }
 
  private:
@@ -106,6 +113,29 @@ class JointConditions {
     const double limit = following_.limit();
     if (left > (phase == LegPhase::kStanding ? 1 : kFarTimes) * limit) return beyond(i, left, limit);
     return walks ? beyond(i, behind_[i], kOfSwing * limit) : kNothingMeasured;
+  }
+
+  /// Returns how far the angle of a joint has moved against its command in this swing, as an angle beyond the limit.
+  ConditionMeasurement opposes(std::size_t i, LegPhase phase, const CommandFrame* command, double position,
+                               std::uint64_t elapsed) noexcept {
+    Way& way = ways_[i];
+    const bool swings = phase == LegPhase::kWalking && command->joints[i].mode == JointMode::kImpedance &&
+                        command->joints[i].stiffness > 0;
+    if (!swings) {
+      way = {};
+      return kNothingMeasured;
+    }
+    const double asked = command->joints[i].position;
+    way.cycles += elapsed;
+    if (!way.known || way.cycles >= kStride) {
+      const double turned = way.known ? position - way.angle : 0, wanted = asked - way.asked;
+      way.against = std::max(0.0, way.against + (wanted < 0 ? turned : wanted > 0 ? -turned : 0));
+      way.known = true;
+      way.cycles = 0;
+      way.asked = asked;
+      way.angle = position;
+    }
+    return beyond(i, way.against / kAgainst * following_.limit(), following_.limit());
   }
 
   /// Returns how far the torque of a motor is from the commanded one while its foot bears, as an angle.
@@ -144,11 +174,20 @@ class JointConditions {
     double wrong = 0;             ///< 0 … 1, of the cycles, the mean
   };
 
+  /// How a joint and its command move while its foot is in the air.
+  struct Way {
+    bool known = false;           ///< the angles
+    std::uint64_t cycles = 0;     ///< since the angles
+    double asked = 0, angle = 0;  ///< rad
+    double against = 0;           ///< rad, ≥ 0, in this swing
+  };
+
   double period_;
   std::array<Limits, kLegsJoints> limits_{};
   std::array<double, kLegsJoints> behind_{};  ///< rad, of joints of feet in the air, the mean
   std::array<Torque, kLegsJoints> torques_{};
-  ConditionWatch speed_, effort_, range_, following_, torque_;
+  std::array<Way, kLegsJoints> ways_{};
+  ConditionWatch speed_, effort_, range_, following_, at_once_;
 };
 
 }  // namespace robot_control
