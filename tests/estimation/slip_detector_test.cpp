@@ -243,9 +243,9 @@ TEST_P(SlipNoise, OfTheAccelerometerIsNoSlip) {
   EXPECT_EQ(proven, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Factors, SlipNoise, testing::Values(1.0, 10.0, 100.0));
+INSTANTIATE_TEST_SUITE_P(Factors, SlipNoise, testing::Values(1.0, 3.0, 10.0, 30.0, 100.0));
 
-// On a shaking floor at most a tenth of the differences exceeds the 90 % quantile: the larger of two levels is in use.
+// On a shaking floor a twentieth of the differences exceeds the 90 % quantile: the larger of two levels is in use.
 TEST_F(SlipFixture, TheLevelIsTheQuantileOfTheResiduals) {
   body_.noise = 100 * SlipParams{}.accelerometer;
   drive(0.5, 1.0);
@@ -259,8 +259,7 @@ TEST_F(SlipFixture, TheLevelIsTheQuantileOfTheResiduals) {
     ++count;
     beyond += body_.detector.nis(SlipResidual::kAlong) > 1.645 * 1.645 ? 1 : 0;
   }
-  EXPECT_LT(beyond / static_cast<double>(count), 0.1);
-  EXPECT_GT(beyond / static_cast<double>(count), 0.02);
+  EXPECT_NEAR(beyond / static_cast<double>(count), 0.05, 0.02);
 }
 
 // The input is anything finite.

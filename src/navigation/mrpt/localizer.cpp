@@ -177,12 +177,12 @@ bool Localizer::update(const Scan& scan, const PlanarPose& sensor, const Uncerta
   const CPose2D step = mrpt_pose(odometry.mean) - mrpt_pose(parts.updated.mean);
   const bool moved = step.norm() > kUpdateDistance || std::abs(step.phi()) > kUpdateTurn;
   const mrpt::obs::CObservation2DRangeScan observation = mrpt_scan(scan, sensor);
-  if (parts.first || moved) parts.filter_step(observation, odometry);
+  const bool updated = parts.first || moved;
+  if (updated) parts.filter_step(observation, odometry);
   const mrpt::maps::CSimplePointsMap seen = points_of(observation, 0);
   const mrpt::poses::CPose3D at(mrpt_pose(pose().mean));
   parts.last_explained = seen.empty() ? 0 : parts.walls.compute3DMatchingRatio(&seen, at, kAtWall);
   parts.explained += kSmoothing * (parts.last_explained - parts.explained);
-  const bool updated = parts.first || moved;
   parts.first = false;
   parts.update_state();
   return updated;
