@@ -54,7 +54,7 @@ class Costmap {
   /// here asks for is that.
   double distance(Cell cell) const noexcept { return grid_.contains(cell) ? distance_[grid_.index(cell)] : 0; }
 
-  /// Returns whether the outline, grown by kPadding, holds no occupied cell and lies within the map.
+  /// Returns whether the outline, grown by kPadding, holds the middle of no occupied cell and lies within the map.
   bool free(const PlanarPose& pose) const noexcept;
 
   /// Returns the cost of a metre at this cell, d m from the nearest occupied one:
@@ -69,12 +69,9 @@ class Costmap {
   void clear();
 
  private:
-  static constexpr int kHeadings = 64;  ///< of the covered cells; half a step moves the far corner of 0.5 m by 2.5 cm
-
   Grid grid_;
   Footprint footprint_;
   double farthest_;                         ///< m, of the distances
-  std::vector<std::vector<Cell>> covered_;  ///< per heading, relative to the cell of the base
   std::vector<float> wall_distance_;        ///< m, to the map's own walls
   std::vector<bool> unknown_;
   bool unknown_is_free_;

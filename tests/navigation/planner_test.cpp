@@ -185,21 +185,21 @@ TEST(PlannerTest, ADeadEndIsLeftBackwards) {
     }
   }
   const PlanarPose inside{3.0, 1.85, 0};
-  const Costmap costmap(map, hull({{0.2, 0.2}, {-0.6, 0.2}, {-0.6, -0.2}, {0.2, -0.2}}), false);
+  const Costmap costmap(map, hull({{0.2, 0.19}, {-0.6, 0.19}, {-0.6, -0.19}, {0.2, -0.19}}), false);
   const Plan plan = plan_path(costmap, inside, {0.8, 1.85, M_PI});
   ASSERT_EQ(plan.problem, "");
   EXPECT_LT(std::cos(plan.poses[1].yaw) * (plan.poses[1].x - plan.poses[0].x), 0);
 }
 
 TEST(PlannerTest, AGoalInASlotIsReachedWhoseHeadingIsBetweenTwoSectors) {
-  // A slot of 0.7 m, in which the outline of 0.8 m × 0.4 m has room for ±15°.
+  // A slot of 0.7 m, in which the outline of 0.8 m × 0.38 m has room for ±14°.
   Grid map = grid_of(std::vector<std::string>(40, std::string(40, '.')));
   for (int column = 20; column < 40; ++column) {
     for (int row = 0; row < 40; ++row) {
       if (row < 15 || row > 21) map.cells[map.index({column, row})] = kOccupiedCell;
     }
   }
-  const Costmap costmap(map, hull({{0.2, 0.2}, {-0.6, 0.2}, {-0.6, -0.2}, {0.2, -0.2}}), false);
+  const Costmap costmap(map, hull({{0.2, 0.19}, {-0.6, 0.19}, {-0.6, -0.19}, {0.2, -0.19}}), false);
   const PlanarPose outside{0.8, 1.85, 1}, inside{3.0, 1.85, 0.235};
   ASSERT_TRUE(costmap.free(inside));
   EXPECT_EQ(plan_path(costmap, outside, inside).problem, "");
