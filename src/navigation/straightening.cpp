@@ -47,7 +47,7 @@ std::vector<Vertex> vertices_of(const std::vector<PlanarPose>& way, const Planar
 
 /// Leaves out the vertices between which the straight way is free and costs no more.
 std::vector<Vertex> corners_of(const Costmap& costmap, const std::vector<Vertex>& given, double start_yaw,
-                                 double goal_yaw) {
+                               double goal_yaw) {
   constexpr std::size_t kMisses = 20;  // vertices in a row to which there is no straight way
   std::vector<double> costs = {0};     // from the start along the given way
   for (std::size_t i = 1; i < given.size(); ++i) {
@@ -99,8 +99,8 @@ bool turn_is_free(const Costmap& costmap, Point at, double from, double to) {
   return true;
 }
 
-std::vector<PlanarPose> straightened(const Costmap& costmap, const std::vector<PlanarPose>& way, const PlanarPose& start,
-                                 const PlanarPose& goal) {
+std::vector<PlanarPose> straightened(const Costmap& costmap, const std::vector<PlanarPose>& way,
+                                     const PlanarPose& start, const PlanarPose& goal) {
   return poses_of(corners_of(costmap, vertices_of(way, start, goal), start.yaw, goal.yaw), goal.yaw);
 }
 
