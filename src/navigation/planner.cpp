@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "navigation/smoothing.h"
+#include "navigation/straightening.h"
 #include "navigation/text.h"
 
 namespace robot_control {
@@ -262,7 +262,7 @@ Plan plan_path(const Costmap& costmap, const PlanarPose& start, const PlanarPose
     plan.problem = no_way(costmap, from, grid.cell_at(goal.x, goal.y));
     return plan;
   }
-  plan.poses = smoothed(costmap, way, start, goal);
+  plan.poses = straightened(costmap, way, start, goal);
   plan.length = length_of(plan.poses);
   return plan;
 }

@@ -7,7 +7,7 @@
 /// MRPT's PlannerSimple2D takes a circle alone. The planners of OMPL draw samples. Their ways differ from run to run,
 /// and a timeout stands for "there is no way". Therefore neither is used.
 ///
-/// The way is then smoothed (smoothing.h). Every pose carries the robot's heading: follow_path drives a segment
+/// The way is then straightened (straightening.h). Every pose carries the robot's heading: follow_path drives a segment
 /// backwards whose poses point against it.
 
 #include <string>
