@@ -51,7 +51,9 @@ NavigatorOutput Navigator::step(const NavigatorInput& input, Costmap* costmap) {
     } else if (input.now - planned_at_ >= kReplan) {
       plan(input, *costmap, out);
     }
-    const double patience = driven_ ? kPatience : kStartPatience, waited = input.now - progress_at_;
+    const bool drives = state_ == NavigatorState::kDriving;
+    const double patience = driven_ ? kPatience : kStartPatience;
+    const double waited = input.now - (drives ? std::max(progress_at_, began_at_) : progress_at_);
     if (active() && waited > patience)
       fail((reason_.empty() ? "the robot does not move" : reason_) + text(" (for %.0f s)", waited), out);
   }
@@ -81,7 +83,7 @@ void Navigator::plan(const NavigatorInput& input, Costmap& costmap, NavigatorOut
     }
     return wait(blocked, out);
   }
-  if (state_ != NavigatorState::kDriving) progress_at_ = input.now;
+  if (state_ != NavigatorState::kDriving) began_at_ = input.now;
   state_ = NavigatorState::kDriving;
   driven_ = true;
   passed_ = 0;
