@@ -71,8 +71,8 @@ std::vector<float> costs_to(const Costmap& costmap, Cell goal) {
   return costs;
 }
 
-/// Returns whether the outline may go from one pose to the next: it is free there, or neither is free and it has no less
-/// air there.
+/// Returns whether the outline may go from one pose to the next. It is free there, or neither is free and it has no
+/// less air there.
 bool may_go(const Costmap& costmap, const PlanarPose& from, const PlanarPose& to) {
   if (costmap.free(to)) return true;
   const auto air = [&](const PlanarPose& pose) { return costmap.distance(costmap.grid().cell_at(pose.x, pose.y)); };

@@ -32,7 +32,8 @@ struct Plan {
 Plan plan_path(const Costmap& costmap, const PlanarPose& start, const PlanarPose& goal);
 
 /// Returns the distance along the poses to the first one that is not free, from the pose nearest to `robot` on; ∞ if
-/// all are. Those by which a start that is not free is left count as free. `passed` is the number of that nearest pose and is kept between calls; it never falls.
+/// all are. Those by which a start that is not free is left count as free. `passed` is the number of that nearest pose
+/// and is kept between calls; it never falls.
 double free_distance(const Costmap& costmap, const std::vector<PlanarPose>& poses, const PlanarPose& robot,
                      std::size_t& passed);
 
