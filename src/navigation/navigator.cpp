@@ -51,9 +51,7 @@ NavigatorOutput Navigator::step(const NavigatorInput& input, Costmap* costmap) {
     } else if (input.now - planned_at_ >= kReplan) {
       plan(input, *costmap, out);
     }
-    const bool drives = state_ == NavigatorState::kDriving;
-    const double patience = driven_ ? kPatience : kStartPatience;
-    const double waited = input.now - (drives ? std::max(progress_at_, began_at_) : progress_at_);
+    const double patience = driven_ ? kPatience : kStartPatience, waited = input.now - progress_at_;
     if (active() && waited > patience)
       fail((reason_.empty() ? "the robot does not move" : reason_) + text(" (for %.0f s)", waited), out);
   }
@@ -83,7 +81,7 @@ void Navigator::plan(const NavigatorInput& input, Costmap& costmap, NavigatorOut
     }
     return wait(blocked, out);
   }
-  if (state_ != NavigatorState::kDriving) began_at_ = input.now;
+  if (state_ != NavigatorState::kDriving && attempts_++ <= kAttempts) progress_at_ = input.now;
   state_ = NavigatorState::kDriving;
   driven_ = true;
   passed_ = 0;
@@ -99,7 +97,7 @@ void Navigator::drive(const NavigatorInput& input, Costmap& costmap, NavigatorOu
     return;
   }
   if (input.path.state == PathReport::State::kFailed) {
-    if (++attempts_ > kAttempts) return fail(input.path.reason, out);
+    if (attempts_ > kAttempts) return fail(input.path.reason, out);
     state_ = NavigatorState::kWaiting;
     reason_ = input.path.reason;
     return;

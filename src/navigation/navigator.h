@@ -6,11 +6,10 @@
 ///   driving    follow_path has a path. A path that is blocked within kLookout is replaced, at most once per kReplan.
 ///              Where there is no other way, the robot drives on until kStopBefore before the obstacle
 ///   waiting    nothing is driven: the way is blocked, or the laser, the map or the place is not to be trusted. After
-///              kPatience without kProgress the goal is given up, before the first path after kStartPatience. A path
-///              that begins has kPatience of its own
+///              kPatience the goal is given up, before the first path after kStartPatience
 ///
-/// A path that follow_path gave up is planned again, kAttempts times without kProgress in between. follow_path
-/// refuses what a stop of the robot has revoked.
+/// A path that follow_path gave up is planned again, kAttempts times without kProgress in between. No later path from
+/// standstill renews the patience. follow_path refuses what a stop of the robot has revoked.
 
 #include <optional>
 #include <string>
@@ -86,8 +85,7 @@ class Navigator {
   Plan path_;
   std::size_t passed_ = 0;                        // poses of path_
   bool driven_ = false;                           // a path of this goal was sent
-  double progress_at_ = 0;                        // s, when the robot last came nearer
-  double began_at_ = 0;                           // s, when it last began to drive
+  double progress_at_ = 0;                        // s, when the robot last came nearer or began a path
   double least_remaining_ = 0;                    // m
   double planned_at_ = -1e9, updated_at_ = -1e9;  // s
   int attempts_ = 0;
