@@ -58,25 +58,12 @@ Costmap::Costmap(Grid map, Footprint footprint, bool unknown_is_free)
     : grid_(std::move(map)),
       footprint_(std::move(footprint)),
       farthest_(std::max(footprint_.circumscribed + kPadding, footprint_.inscribed + kComfort) + 2 * grid_.resolution),
-      covered_(kHeadings),
       unknown_(grid_.cells.size()),
       unknown_is_free_(unknown_is_free),
       marked_(grid_.cells.size(), kNever) {
   std::vector<bool> walls(grid_.cells.size());
   for (std::size_t i = 0; i < walls.size(); ++i) walls[i] = grid_.cells[i] >= 65;
   wall_distance_ = distances(walls, grid_.columns, grid_.resolution, farthest_);
-  const int reach = static_cast<int>(std::ceil((footprint_.circumscribed + kPadding) / grid_.resolution));
-  for (int heading = 0; heading < kHeadings; ++heading) {
-    const double yaw = 2 * M_PI * heading / kHeadings, c = std::cos(yaw), s = std::sin(yaw);
-    for (int row = -reach; row <= reach; ++row) {
-      for (int column = -reach; column <= reach; ++column) {
-        const double x = column * grid_.resolution, y = row * grid_.resolution;
-        if (footprint_.distance({c * x + s * y, c * y - s * x}) <= kPadding) {
-          covered_[static_cast<std::size_t>(heading)].push_back({column, row});
-        }
-      }
-    }
-  }
   clear();
 }
 
@@ -146,19 +133,21 @@ double Costmap::step_cost(Cell cell) const noexcept {
 
 bool Costmap::free(const PlanarPose& pose) const noexcept {
   const Cell base = grid_.cell_at(pose.x, pose.y);
+  const int reach = static_cast<int>((footprint_.circumscribed + kPadding) / grid_.resolution) + 1;
+  if (base.column < reach || base.row < reach || base.column >= grid_.columns - reach || base.row >= grid_.rows - reach)
+    return false;
   const double nearest = distance(base);
-  if (nearest > footprint_.circumscribed + kPadding + grid_.resolution) {
-    const int reach = static_cast<int>((footprint_.circumscribed + kPadding) / grid_.resolution) + 1;
-    return base.column >= reach && base.row >= reach && base.column < grid_.columns - reach &&
-           base.row < grid_.rows - reach;
-  }
+  if (nearest > footprint_.circumscribed + kPadding + grid_.resolution) return true;
   if (nearest < footprint_.inscribed) return false;
-  const double turn = std::remainder(pose.yaw, 2 * M_PI) / (2 * M_PI) * kHeadings;
-  const auto heading = static_cast<std::size_t>((static_cast<int>(std::lround(turn)) + kHeadings) % kHeadings);
-  return std::all_of(covered_[heading].begin(), covered_[heading].end(), [&](Cell offset) {
-    const Cell cell{base.column + offset.column, base.row + offset.row};
-    return grid_.contains(cell) && distance_[grid_.index(cell)] > 0;
-  });
+  const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
+  for (int row = base.row - reach; row <= base.row + reach; ++row) {
+    for (int column = base.column - reach; column <= base.column + reach; ++column) {
+      if (!occupied({column, row})) continue;
+      const double x = grid_.x_of(column) - pose.x, y = grid_.y_of(row) - pose.y;
+      if (footprint_.distance({c * x + s * y, c * y - s * x}) <= kPadding) return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace robot_control

@@ -54,7 +54,8 @@ class Costmap {
   /// here asks for is that.
   double distance(Cell cell) const noexcept { return grid_.contains(cell) ? distance_[grid_.index(cell)] : 0; }
 
-  /// Returns whether the outline, grown by kPadding, holds no occupied cell and lies within the map.
+  /// Returns whether the outline, grown by kPadding, holds the middle of no occupied cell and lies within the map. The
+  /// air that is then left is at least kPadding less half a cell's diagonal, 3.5 cm at a resolution of 5 cm.
   bool free(const PlanarPose& pose) const noexcept;
 
   /// Returns the cost of a metre at this cell, d m from the nearest occupied one:
@@ -69,13 +70,10 @@ class Costmap {
   void clear();
 
  private:
-  static constexpr int kHeadings = 64;  ///< of the covered cells; half a step moves the far corner of 0.5 m by 2.5 cm
-
   Grid grid_;
   Footprint footprint_;
-  double farthest_;                         ///< m, of the distances
-  std::vector<std::vector<Cell>> covered_;  ///< per heading, relative to the cell of the base
-  std::vector<float> wall_distance_;        ///< m, to the map's own walls
+  double farthest_;                   ///< m, of the distances
+  std::vector<float> wall_distance_;  ///< m, to the map's own walls
   std::vector<bool> unknown_;
   bool unknown_is_free_;
   std::vector<float> marked_;          ///< s, when a ray ended here; −∞: never, or passed since

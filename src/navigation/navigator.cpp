@@ -81,7 +81,7 @@ void Navigator::plan(const NavigatorInput& input, Costmap& costmap, NavigatorOut
     }
     return wait(blocked, out);
   }
-  if (state_ != NavigatorState::kDriving) progress_at_ = input.now;
+  if (state_ != NavigatorState::kDriving && attempts_++ <= kAttempts) progress_at_ = input.now;
   state_ = NavigatorState::kDriving;
   driven_ = true;
   passed_ = 0;
@@ -97,7 +97,7 @@ void Navigator::drive(const NavigatorInput& input, Costmap& costmap, NavigatorOu
     return;
   }
   if (input.path.state == PathReport::State::kFailed) {
-    if (++attempts_ > kAttempts) return fail(input.path.reason, out);
+    if (attempts_ > kAttempts) return fail(input.path.reason, out);
     state_ = NavigatorState::kWaiting;
     reason_ = input.path.reason;
     return;

@@ -8,8 +8,8 @@
 ///   waiting    nothing is driven: the way is blocked, or the laser, the map or the place is not to be trusted. After
 ///              kPatience the goal is given up, before the first path after kStartPatience
 ///
-/// A path that follow_path gave up is planned again, kAttempts times without kProgress in between. follow_path
-/// refuses what a stop of the robot has revoked.
+/// A path that follow_path gave up is planned again, kAttempts times without kProgress in between. No later path from
+/// standstill renews the patience. follow_path refuses what a stop of the robot has revoked.
 
 #include <optional>
 #include <string>
@@ -85,7 +85,7 @@ class Navigator {
   Plan path_;
   std::size_t passed_ = 0;                        // poses of path_
   bool driven_ = false;                           // a path of this goal was sent
-  double progress_at_ = 0;                        // s, when the robot last came nearer or a path was sent
+  double progress_at_ = 0;                        // s, when the robot last came nearer or began a path
   double least_remaining_ = 0;                    // m
   double planned_at_ = -1e9, updated_at_ = -1e9;  // s
   int attempts_ = 0;

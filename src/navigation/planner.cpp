@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "navigation/smoothing.h"
+#include "navigation/straightening.h"
 #include "navigation/text.h"
 
 namespace robot_control {
@@ -69,6 +69,14 @@ std::vector<float> costs_to(const Costmap& costmap, Cell goal) {
     }
   }
   return costs;
+}
+
+/// Returns whether the outline may go from one pose to the next. It is free there, or neither is free and it has no
+/// less air there.
+bool may_go(const Costmap& costmap, const PlanarPose& from, const PlanarPose& to) {
+  if (costmap.free(to)) return true;
+  const auto air = [&](const PlanarPose& pose) { return costmap.distance(costmap.grid().cell_at(pose.x, pose.y)); };
+  return !costmap.free(from) && air(to) >= air(from) && air(to) > 0;
 }
 
 /// The search over cells and headings.
@@ -140,19 +148,12 @@ class Search {
     open_.push({static_cast<float>(cost) + to_goal_[state / kSectors], state});
   }
 
-  bool allowed(std::uint64_t next, std::uint64_t at) const {
-    if (costmap_.free(pose_of(next))) return true;
-    // Out of a start that is not free: away from what is near.
-    const double air = costmap_.distance(cell_of(next));
-    return !costmap_.free(pose_of(at)) && air >= costmap_.distance(cell_of(at)) && air > 0;
-  }
-
   void expand(std::uint64_t at, double cost) {
     const Cell cell = cell_of(at);
     const int heading = static_cast<int>(at % kSectors);
     for (const int turn : {1, kSectors - 1}) {
       const std::uint64_t next = state(cell, (heading + turn) % kSectors);
-      if (allowed(next, at)) reach(next, cost + kSectorCost, at);
+      if (may_go(costmap_, pose_of(at), pose_of(next))) reach(next, cost + kSectorCost, at);
     }
     const Cell step = kSteps[static_cast<std::size_t>(heading)];
     const double length = std::hypot(step.column, step.row) * grid_.resolution;
@@ -161,7 +162,8 @@ class Search {
       if (!grid_.contains(to) || to_goal_[grid_.index(to)] == kUnreached) continue;
       if (sign < 0 && costmap_.unknown(to)) continue;  // backwards only over what was seen
       const std::uint64_t next = state(to, heading);
-      if (allowed(next, at)) reach(next, cost + length * costmap_.step_cost(to) * (sign < 0 ? kBackFactor : 1), at);
+      if (may_go(costmap_, pose_of(at), pose_of(next)))
+        reach(next, cost + length * costmap_.step_cost(to) * (sign < 0 ? kBackFactor : 1), at);
     }
   }
 
@@ -262,7 +264,7 @@ Plan plan_path(const Costmap& costmap, const PlanarPose& start, const PlanarPose
     plan.problem = no_way(costmap, from, grid.cell_at(goal.x, goal.y));
     return plan;
   }
-  plan.poses = smoothed(costmap, way, start, goal);
+  plan.poses = straightened(costmap, way, start, goal);
   plan.length = length_of(plan.poses);
   return plan;
 }
@@ -277,7 +279,7 @@ double free_distance(const Costmap& costmap, const std::vector<PlanarPose>& pose
   double along = 0;
   for (std::size_t i = passed + 1; i < poses.size(); ++i) {
     along += std::hypot(poses[i].x - poses[i - 1].x, poses[i].y - poses[i - 1].y);
-    if (!costmap.free(poses[i])) return along;
+    if (!may_go(costmap, poses[i - 1], poses[i])) return along;
   }
   return std::numeric_limits<double>::infinity();
 }

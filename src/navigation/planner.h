@@ -7,7 +7,7 @@
 /// MRPT's PlannerSimple2D takes a circle alone. The planners of OMPL draw samples. Their ways differ from run to run,
 /// and a timeout stands for "there is no way". Therefore neither is used.
 ///
-/// The way is then smoothed (smoothing.h). Every pose carries the robot's heading: follow_path drives a segment
+/// The way is then straightened (straightening.h). Every pose carries the robot's heading: follow_path drives a segment
 /// backwards whose poses point against it.
 
 #include <string>
@@ -32,7 +32,8 @@ struct Plan {
 Plan plan_path(const Costmap& costmap, const PlanarPose& start, const PlanarPose& goal);
 
 /// Returns the distance along the poses to the first one that is not free, from the pose nearest to `robot` on; ∞ if
-/// all are. `passed` is the number of that nearest pose and is kept between calls; it never falls.
+/// all are. Those by which a start that is not free is left count as free. `passed` is the number of that nearest pose
+/// and is kept between calls; it never falls.
 double free_distance(const Costmap& costmap, const std::vector<PlanarPose>& poses, const PlanarPose& robot,
                      std::size_t& passed);
 

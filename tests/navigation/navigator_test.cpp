@@ -32,6 +32,7 @@ class NavigatorTest : public testing::Test {
     if (out_.path) path_ = *out_.path, along_ = 0, report_ = {PathReport::State::kActive, ""}, ++paths_;
     if (report_.state == PathReport::State::kActive && !failing_.empty())
       report_ = {PathReport::State::kFailed, failing_};
+    if (paused_) report_.state = PathReport::State::kNone;
     if (report_.state == PathReport::State::kActive) follow();
   }
 
@@ -62,6 +63,7 @@ class NavigatorTest : public testing::Test {
   PlanarPose pose_{1.6, 1.6, 0};
   double now_ = 100, least_air_ = 1e9;
   int paths_ = 0;
+  bool paused_ = false;  // follow_path does not drive
 };
 
 TEST_F(NavigatorTest, ReachesAGoalInTheOtherRoom) {
@@ -153,12 +155,33 @@ TEST_F(NavigatorTest, APathThatCannotBeFollowedIsTriedAgainAndGivenUp) {
 }
 
 TEST_F(NavigatorTest, ARobotThatDoesNotMoveIsGivenUp) {
+  paused_ = true;
   navigator_.begin({4.7, 1.6, 0}, now_);
-  step();
-  report_.state = PathReport::State::kNone;  // follow_path is paused
   run(kPatience + 1);
   EXPECT_EQ(out_.state, State::kFailed);
   EXPECT_THAT(out_.reason, HasSubstr("does not move"));
+}
+
+TEST_F(NavigatorTest, AWayThatIsBlockedAgainAndAgainIsGivenUp) {
+  paused_ = true;
+  navigator_.begin({4.7, 1.6, 0}, now_);
+  for (const double end = now_ + 2 * kPatience; now_ < end && out_.state != State::kFailed;) {
+    problem_ = "scan is silent";
+    run(0.5);
+    problem_.clear();
+    run(1.5);
+  }
+  EXPECT_EQ(out_.state, State::kFailed);
+  EXPECT_GT(paths_, 5);
+}
+
+TEST_F(NavigatorTest, AStartTooNearToAWallIsLeftOnOnePath) {
+  pose_ = {0.25, 1.6, 0};  // as the map has it, its back is in the wall
+  ASSERT_FALSE(costmap_.free(pose_));
+  navigator_.begin({4.7, 1.6, 0}, now_);
+  run(30);
+  EXPECT_EQ(out_.state, State::kReached);
+  EXPECT_EQ(paths_, 1);
 }
 
 }  // namespace

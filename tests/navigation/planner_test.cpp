@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <random>
 
 #include "navigation/doubt.h"
 #include "navigation/house.h"
@@ -81,6 +82,25 @@ TEST(CostmapTest, WhatIsNotSeenAgainIsForgotten) {
   EXPECT_TRUE(costmap.occupied({20, 16}));
   costmap.update(1.1 + kMemory);
   EXPECT_FALSE(costmap.occupied({20, 16}));
+}
+
+TEST(CostmapTest, WhatIsFreeHasAirAboutTheTrueOutline) {
+  Grid map = grid_of(std::vector<std::string>(40, std::string(40, '.')));
+  map.resolution = 0.05;
+  map.cells[map.index({20, 20})] = kOccupiedCell;
+  const Costmap costmap = costmap_of(map);
+  const double half_cell = map.resolution * M_SQRT1_2;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> offset(-0.4, 0.4), yaw(-M_PI, M_PI);
+  double narrowest_free = 1, widest_refused = 0;
+  for (int i = 0; i < 5'000; ++i) {
+    const PlanarPose pose{map.x_of(20) + offset(random), map.y_of(20) + offset(random), yaw(random)};
+    double& found = costmap.free(pose) ? narrowest_free : widest_refused;
+    const double left = air(map, {{pose}, 0, ""});
+    found = costmap.free(pose) ? std::min(found, left) : std::max(found, left);
+  }
+  EXPECT_GT(narrowest_free, kPadding - half_cell - 1e-9);
+  EXPECT_LT(widest_refused, kPadding);
 }
 
 TEST(CostmapTest, AnUntruePoseLetsRaysPassWalls) {
@@ -185,21 +205,21 @@ TEST(PlannerTest, ADeadEndIsLeftBackwards) {
     }
   }
   const PlanarPose inside{3.0, 1.85, 0};
-  const Costmap costmap(map, hull({{0.2, 0.2}, {-0.6, 0.2}, {-0.6, -0.2}, {0.2, -0.2}}), false);
+  const Costmap costmap(map, hull({{0.2, 0.19}, {-0.6, 0.19}, {-0.6, -0.19}, {0.2, -0.19}}), false);
   const Plan plan = plan_path(costmap, inside, {0.8, 1.85, M_PI});
   ASSERT_EQ(plan.problem, "");
   EXPECT_LT(std::cos(plan.poses[1].yaw) * (plan.poses[1].x - plan.poses[0].x), 0);
 }
 
 TEST(PlannerTest, AGoalInASlotIsReachedWhoseHeadingIsBetweenTwoSectors) {
-  // A slot of 0.7 m, in which the outline of 0.8 m × 0.4 m has room for ±15°.
+  // A slot of 0.7 m, in which the outline of 0.8 m × 0.38 m has room for ±14°.
   Grid map = grid_of(std::vector<std::string>(40, std::string(40, '.')));
   for (int column = 20; column < 40; ++column) {
     for (int row = 0; row < 40; ++row) {
       if (row < 15 || row > 21) map.cells[map.index({column, row})] = kOccupiedCell;
     }
   }
-  const Costmap costmap(map, hull({{0.2, 0.2}, {-0.6, 0.2}, {-0.6, -0.2}, {0.2, -0.2}}), false);
+  const Costmap costmap(map, hull({{0.2, 0.19}, {-0.6, 0.19}, {-0.6, -0.19}, {0.2, -0.19}}), false);
   const PlanarPose outside{0.8, 1.85, 1}, inside{3.0, 1.85, 0.235};
   ASSERT_TRUE(costmap.free(inside));
   EXPECT_EQ(plan_path(costmap, outside, inside).problem, "");

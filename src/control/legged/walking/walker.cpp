@@ -253,7 +253,7 @@ void Walker::plan(State& state, const WalkInput& input, const WalkingBody& body)
     for (std::size_t i = 1; i < to.steps; ++i) {
       const double later = (static_cast<double>(i) + 0.5) * step;
       const bool landed = bears && state.swings[leg] != 0 && later < until;
-      to.bears[i][leg] = landed || gait.bears(leg, state.phase + later / gait.period);
+      to.bears[i][leg] = landed || will_bear(state, input.gait, leg, later);
     }
   }
   const ForcePlanResult result = plan_.step(to);
@@ -264,6 +264,17 @@ void Walker::plan(State& state, const WalkInput& input, const WalkingBody& body)
   }
   state.failures = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) state.forces[leg] = plain(result.forces[leg]);
+}
+
+bool Walker::will_bear(const State& state, GaitName wanted, std::size_t leg, double later) const noexcept {
+  const Gait& gait = this->gait(state);
+  const auto named = static_cast<std::uint64_t>(wanted);
+  const double left = (1 - state.phase) * gait.period;
+  const bool changes = wanted != GaitName::kStand && named != state.gait && state.lasted + left >= gait.period;
+  if (!changes || later < left) return gait.bears(leg, state.phase + later / gait.period);
+  const Gait& next = gaits_[named];
+  const double phase = next.begins_after(gait) + (later - left) / next.period;
+  return next.bears(leg, phase) || next.swung(leg, phase) * next.swing_time() > later - left;
 }
 
 double Walker::farthest_foot(const WalkingBody& body) const noexcept {

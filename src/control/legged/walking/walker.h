@@ -13,7 +13,8 @@
 ///             the error of the estimated tilt
 ///   target    moves from where the robot was, with the twist, its velocity through a low pass of half a period: a body
 ///             follows it when the next feet have landed. It stays within kFarthest of the robot
-///   plan      every kPlanCycles cycles, and where other feet bear, the forces of the feet (force_plan.h)
+///   plan      every kPlanCycles cycles, and where other feet bear, the forces of the feet (force_plan.h), which knows
+///             the gait that follows
 ///   stance    τ = h − Jᵀ f, f the planned force, h what holds the leg itself. f is scaled down until each |τ| is within
 ///             the joint's limit, so that f stays within friction
 ///   swing     the foot follows swing.h to its foothold (foothold.h) with the impedance of standing, and the efforts
@@ -107,6 +108,8 @@ class Walker {
   bool choose_feet(State& state, const WalkInput& input, const WalkingBody& body) const noexcept;
   Eigen::Vector3d landing(const State& state, const WalkInput& input, const WalkingBody& body,
                           std::size_t leg) const noexcept;
+  /// Returns whether the clock lets a foot bear in `later` s.
+  bool will_bear(const State& state, GaitName wanted, std::size_t leg, double later) const noexcept;
   void plan(State& state, const WalkInput& input, const WalkingBody& body) noexcept;
   void bear(const State& state, const WalkingBody& body, std::size_t leg, CommandFrame& out) const noexcept;
   void swing(const State& state, const WalkInput& input, const WalkingBody& body, std::size_t leg,

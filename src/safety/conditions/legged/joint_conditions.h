@@ -106,7 +106,7 @@ class JointConditions {
     const bool walks = phase == LegPhase::kWalking;
     if (phase == LegPhase::kLying || phase == LegPhase::kJoints) return kNothingMeasured;
     const JointCommand& joint = command->joints[i];
-    const bool judged = joint.mode == JointMode::kImpedance && (!walks || joint.stiffness > 0);
+    const bool judged = walks ? swings(phase, command, i) : joint.mode == JointMode::kImpedance;
     const double left = judged ? std::abs(joint.position - position) : 0;
     const double part = std::min(1.0, static_cast<double>(elapsed) * period_ / kMeanTime);
     if (walks && judged) behind_[i] += part * (left - behind_[i]);
@@ -119,21 +119,17 @@ class JointConditions {
   ConditionMeasurement opposes(std::size_t i, LegPhase phase, const CommandFrame* command, double position,
                                std::uint64_t elapsed) noexcept {
     Way& way = ways_[i];
-    const bool swings = phase == LegPhase::kWalking && command->joints[i].mode == JointMode::kImpedance &&
-                        command->joints[i].stiffness > 0;
-    if (!swings) {
+    if (!swings(phase, command, i)) {
       way = {};
       return kNothingMeasured;
     }
     const double asked = command->joints[i].position;
-    way.cycles += elapsed;
-    if (!way.known || way.cycles >= kStride) {
-      const double turned = way.known ? position - way.angle : 0, wanted = asked - way.asked;
+    if (!way.last) {
+      way.last = {asked, position, 0};
+    } else if ((way.last->age += elapsed) >= kStride) {
+      const double turned = position - way.last->angle, wanted = asked - way.last->asked;
       way.against = std::max(0.0, way.against + (wanted < 0 ? turned : wanted > 0 ? -turned : 0));
-      way.known = true;
-      way.cycles = 0;
-      way.asked = asked;
-      way.angle = position;
+      way.last = {asked, position, 0};
     }
     return beyond(i, way.against / kAgainst * following_.limit(), following_.limit());
   }
@@ -142,9 +138,7 @@ class JointConditions {
   ConditionMeasurement gives(std::size_t i, LegPhase phase, const CommandFrame* command, const JointSample& joint,
                              std::uint64_t elapsed) noexcept {
     Torque& torque = torques_[i];
-    const bool bears = phase == LegPhase::kWalking && command->joints[i].mode == JointMode::kImpedance &&
-                       command->joints[i].stiffness == 0;
-    if (!bears || elapsed > 1 || !has(joint, kValidEffort) || !std::isfinite(joint.effort)) {
+    if (!bears(phase, command, i) || elapsed > 1 || !has(joint, kValidEffort) || !std::isfinite(joint.effort)) {
       torque.asked.reset();
       return kNothingMeasured;
     }
@@ -153,6 +147,17 @@ class JointConditions {
     const bool wrong = std::abs(joint.effort - *asked) > kOfAsked * std::abs(*asked) + kOfEffort * limits_[i].effort;
     torque.wrong += period_ / kTorqueTime * ((wrong ? 1 : 0) - torque.wrong);
     return beyond(i, torque.wrong / kOfTorques * following_.limit(), following_.limit());
+  }
+
+  /// Returns whether the foot of this joint is in the air while the robot walks.
+  static bool swings(LegPhase phase, const CommandFrame* command, std::size_t i) noexcept {
+    return phase == LegPhase::kWalking && command->joints[i].mode == JointMode::kImpedance &&
+           command->joints[i].stiffness > 0;
+  }
+
+  static bool bears(LegPhase phase, const CommandFrame* command, std::size_t i) noexcept {
+    return phase == LegPhase::kWalking && command->joints[i].mode == JointMode::kImpedance &&
+           command->joints[i].stiffness == 0;
   }
 
   static Condition without_persistence(Condition condition) noexcept {
@@ -176,10 +181,12 @@ class JointConditions {
 
   /// How a joint and its command move while its foot is in the air.
   struct Way {
-    bool known = false;           ///< the angles
-    std::uint64_t cycles = 0;     ///< since the angles
-    double asked = 0, angle = 0;  ///< rad
-    double against = 0;           ///< rad, ≥ 0, in this swing
+    struct Angles {
+      double asked, angle;  ///< rad
+      std::uint64_t age;    ///< cycles
+    };
+    std::optional<Angles> last;
+    double against = 0;  ///< rad, ≥ 0, in this swing
   };
 
   double period_;

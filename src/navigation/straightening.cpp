@@ -1,4 +1,4 @@
-#include "navigation/smoothing.h"
+#include "navigation/straightening.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,6 @@
 
 namespace robot_control {
 namespace {
-
-double turned(double angle) {
-  return std::remainder(angle, 2 * M_PI);
-}
 
 /// Returns the cost of the straight segment with the outline along it; ∞ if it is not free.
 double straight_cost(const Costmap& costmap, Point a, Point b, bool back) {
@@ -50,8 +46,8 @@ std::vector<Vertex> vertices_of(const std::vector<PlanarPose>& way, const Planar
 }
 
 /// Leaves out the vertices between which the straight way is free and costs no more.
-std::vector<Vertex> straightened(const Costmap& costmap, const std::vector<Vertex>& given, double start_yaw,
-                                 double goal_yaw) {
+std::vector<Vertex> corners_of(const Costmap& costmap, const std::vector<Vertex>& given, double start_yaw,
+                               double goal_yaw) {
   constexpr std::size_t kMisses = 20;  // vertices in a row to which there is no straight way
   std::vector<double> costs = {0};     // from the start along the given way
   for (std::size_t i = 1; i < given.size(); ++i) {
@@ -77,42 +73,6 @@ std::vector<Vertex> straightened(const Costmap& costmap, const std::vector<Verte
   return kept;
 }
 
-/// Replaces corners by parabolas that begin and end on the segments, where the outline has room along them.
-std::vector<Vertex> rounded(const Costmap& costmap, const std::vector<Vertex>& given) {
-  constexpr double kLeg = 0.5, kLeast = 0.1, kMost = 2.0;  // m, rad, rad
-  std::vector<Vertex> result = {given[0]};
-  for (std::size_t i = 1; i < given.size(); ++i) {
-    const Vertex& corner = given[i];
-    if (i + 1 == given.size() || given[i + 1].back != corner.back) {
-      result.push_back(corner);
-      continue;
-    }
-    const Point a = given[i - 1].at, b = corner.at, c = given[i + 1].at;
-    const double in = std::hypot(b.x - a.x, b.y - a.y), out = std::hypot(c.x - b.x, c.y - b.y);
-    const double turn = std::abs(turned(heading(b, c, false) - heading(a, b, false)));
-    std::vector<Vertex> curve;
-    for (double leg = std::min({kLeg, in / 2, out / 2}); turn > kLeast && turn < kMost && leg > kSpacing; leg /= 2) {
-      const Point begin{b.x + (a.x - b.x) * leg / in, b.y + (a.y - b.y) * leg / in};
-      const Point end{b.x + (c.x - b.x) * leg / out, b.y + (c.y - b.y) * leg / out};
-      const int pieces = 2 + static_cast<int>(turn / 0.15);
-      curve = {{begin, corner.back}};
-      bool free = true;
-      for (int k = 1; k <= pieces && free; ++k) {
-        const double t = static_cast<double>(k) / pieces, u = 1 - t;
-        const Point at{u * u * begin.x + 2 * u * t * b.x + t * t * end.x,
-                       u * u * begin.y + 2 * u * t * b.y + t * t * end.y};
-        free = std::isfinite(straight_cost(costmap, curve.back().at, at, corner.back));
-        curve.push_back({at, corner.back});
-      }
-      if (free) break;
-      curve.clear();
-    }
-    if (curve.empty()) curve = {corner};
-    result.insert(result.end(), curve.begin(), curve.end());
-  }
-  return result;
-}
-
 std::vector<PlanarPose> poses_of(const std::vector<Vertex>& vertices, double goal_yaw) {
   std::vector<PlanarPose> poses;
   for (std::size_t i = 1; i < vertices.size(); ++i) {
@@ -131,7 +91,7 @@ std::vector<PlanarPose> poses_of(const std::vector<Vertex>& vertices, double goa
 }  // namespace
 
 bool turn_is_free(const Costmap& costmap, Point at, double from, double to) {
-  const double turn = turned(to - from);
+  const double turn = std::remainder(to - from, 2 * M_PI);
   const int steps = static_cast<int>(std::ceil(std::abs(turn) / 0.1));
   for (int i = 0; i <= steps; ++i) {
     if (!costmap.free({at.x, at.y, from + turn * i / std::max(steps, 1)})) return false;
@@ -139,10 +99,9 @@ bool turn_is_free(const Costmap& costmap, Point at, double from, double to) {
   return true;
 }
 
-std::vector<PlanarPose> smoothed(const Costmap& costmap, const std::vector<PlanarPose>& way, const PlanarPose& start,
-                                 const PlanarPose& goal) {
-  const std::vector<Vertex> vertices = straightened(costmap, vertices_of(way, start, goal), start.yaw, goal.yaw);
-  return poses_of(rounded(costmap, vertices), goal.yaw);
+std::vector<PlanarPose> straightened(const Costmap& costmap, const std::vector<PlanarPose>& way,
+                                     const PlanarPose& start, const PlanarPose& goal) {
+  return poses_of(corners_of(costmap, vertices_of(way, start, goal), start.yaw, goal.yaw), goal.yaw);
 }
 
 double length_of(const std::vector<PlanarPose>& poses) {
