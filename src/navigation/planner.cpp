@@ -151,9 +151,10 @@ class Search {
   void expand(std::uint64_t at, double cost) {
     const Cell cell = cell_of(at);
     const int heading = static_cast<int>(at % kSectors);
+    const PlanarPose here = pose_of(at);
     for (const int turn : {1, kSectors - 1}) {
       const std::uint64_t next = state(cell, (heading + turn) % kSectors);
-      if (may_go(costmap_, pose_of(at), pose_of(next))) reach(next, cost + kSectorCost, at);
+      if (may_go(costmap_, here, pose_of(next))) reach(next, cost + kSectorCost, at);
     }
     const Cell step = kSteps[static_cast<std::size_t>(heading)];
     const double length = std::hypot(step.column, step.row) * grid_.resolution;
@@ -162,7 +163,7 @@ class Search {
       if (!grid_.contains(to) || to_goal_[grid_.index(to)] == kUnreached) continue;
       if (sign < 0 && costmap_.unknown(to)) continue;  // backwards only over what was seen
       const std::uint64_t next = state(to, heading);
-      if (may_go(costmap_, pose_of(at), pose_of(next)))
+      if (may_go(costmap_, here, pose_of(next)))
         reach(next, cost + length * costmap_.step_cost(to) * (sign < 0 ? kBackFactor : 1), at);
     }
   }

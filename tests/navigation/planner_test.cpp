@@ -205,7 +205,7 @@ TEST(PlannerTest, ADeadEndIsLeftBackwards) {
     }
   }
   const PlanarPose inside{3.0, 1.85, 0};
-  const Costmap costmap(map, hull({{0.2, 0.19}, {-0.6, 0.19}, {-0.6, -0.19}, {0.2, -0.19}}), false);
+  const Costmap costmap(map, hull({{0.2, 0.2}, {-0.6, 0.2}, {-0.6, -0.2}, {0.2, -0.2}}), false);
   const Plan plan = plan_path(costmap, inside, {0.8, 1.85, M_PI});
   ASSERT_EQ(plan.problem, "");
   EXPECT_LT(std::cos(plan.poses[1].yaw) * (plan.poses[1].x - plan.poses[0].x), 0);

@@ -49,6 +49,12 @@ struct Gait {
     return bears(leg, gait_phase) ? 0 : (leg_phase(leg, gait_phase) - duty) / (1 - duty);
   }
 
+  /// Returns whether a foot swings that stood where this gait began `lasted` s ago. A swing that would have begun
+  /// before does not begin.
+  bool swings_since(std::size_t leg, double gait_phase, double lasted) const noexcept {
+    return !bears(leg, gait_phase) && swung(leg, gait_phase) * swing_time() <= lasted;
+  }
+
   bool crawls() const noexcept { return duty >= kOfCrawl && duty < 1; }
 
   /// Returns the phase with which this gait begins after `last`.

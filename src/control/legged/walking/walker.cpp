@@ -166,6 +166,11 @@ Eigen::Vector3d Walker::fit_ground(const State& state) const noexcept {
   return squares.inverse() * heights;
 }
 
+bool Walker::changes_after(const State& state, GaitName wanted, double later) const noexcept {
+  return wanted != GaitName::kStand && static_cast<std::uint64_t>(wanted) != state.gait &&
+         state.lasted + later > gait(state).period - period_;
+}
+
 void Walker::turn_clock(State& state, GaitName wanted) const noexcept {
   const auto next = static_cast<std::uint64_t>(wanted);
   const Gait& gait = this->gait(state);
@@ -184,8 +189,7 @@ void Walker::turn_clock(State& state, GaitName wanted) const noexcept {
   double farthest = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) farthest = std::max(farthest, gait.swung(leg, state.phase));
   const bool ends = wanted == GaitName::kStand && farthest * (1 - gait.duty) < 1.5 * step;
-  const bool changes =
-      wraps && state.gait != next && wanted != GaitName::kStand && state.lasted > gait.period - period_;
+  const bool changes = wraps && changes_after(state, wanted, 0);
   if (!ends && !changes) return;
   state.swings = {};  // a foot that then swings begins where it is, in the air or not
   state.phase = gaits_[next].begins_after(gait);
@@ -199,9 +203,8 @@ bool Walker::choose_feet(State& state, const WalkInput& input, const WalkingBody
   const Gait& gait = this->gait(state);
   const std::array<std::uint64_t, kLegs> before = state.bears;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const double swung = gait.swung(leg, state.phase) * gait.swing_time();
-    const bool of_this_gait = state.swings[leg] != 0 || swung <= state.lasted + period_;
-    const bool swings = of_this_gait && !gait.bears(leg, state.phase);
+    const bool swings = state.swings[leg] != 0 ? !gait.bears(leg, state.phase)
+                                               : gait.swings_since(leg, state.phase, state.lasted + period_);
     state.touched[leg] = input.state->contacts[leg].probability >= kTouches ? state.touched[leg] + period_ : 0;
     if (!swings) {
       state.bears[leg] = 1;
@@ -268,13 +271,10 @@ void Walker::plan(State& state, const WalkInput& input, const WalkingBody& body)
 
 bool Walker::will_bear(const State& state, GaitName wanted, std::size_t leg, double later) const noexcept {
   const Gait& gait = this->gait(state);
-  const auto named = static_cast<std::uint64_t>(wanted);
   const double left = (1 - state.phase) * gait.period;
-  const bool changes = wanted != GaitName::kStand && named != state.gait && state.lasted + left >= gait.period;
-  if (!changes || later < left) return gait.bears(leg, state.phase + later / gait.period);
-  const Gait& next = gaits_[named];
-  const double phase = next.begins_after(gait) + (later - left) / next.period;
-  return next.bears(leg, phase) || next.swung(leg, phase) * next.swing_time() > later - left;
+  if (later < left || !changes_after(state, wanted, left)) return gait.bears(leg, state.phase + later / gait.period);
+  const Gait& next = gaits_[static_cast<std::size_t>(wanted)];
+  return !next.swings_since(leg, next.begins_after(gait) + (later - left) / next.period, later - left);
 }
 
 double Walker::farthest_foot(const WalkingBody& body) const noexcept {

@@ -104,6 +104,8 @@ class Walker {
  private:
   Eigen::Vector3d fit_ground(const State& state) const noexcept;
   void move(State& state, const WalkInput& input, const WalkingBody& body) const noexcept;
+  /// Returns whether the wanted gait replaces this one if the phase wraps in `later` s.
+  bool changes_after(const State& state, GaitName wanted, double later) const noexcept;
   void turn_clock(State& state, GaitName wanted) const noexcept;
   bool choose_feet(State& state, const WalkInput& input, const WalkingBody& body) const noexcept;
   Eigen::Vector3d landing(const State& state, const WalkInput& input, const WalkingBody& body,

@@ -17,6 +17,7 @@
 
 #include "machine/legs/leg_model.h"
 #include "safety/conditions/common/condition_watch.h"
+#include "safety/conditions/legged/commanded_foot.h"
 #include "safety/latch/active_causes.h"
 #include "safety/monitor_input.h"
 #include "safety/safety_parameters.h"
@@ -82,9 +83,8 @@ class EncoderConditions {
   static const JointCommand* demand(const CommandFrame* command, std::size_t joint) noexcept {
     if (command == nullptr || command->joints[joint].mode != JointMode::kImpedance) return nullptr;
     const LegPhase phase = command->legged.phase;
-    const bool swings = phase == LegPhase::kWalking && command->joints[joint].stiffness > 0;
-    const bool on_feet =
-        phase == LegPhase::kRising || phase == LegPhase::kStanding || phase == LegPhase::kLowering || swings;
+    const bool on_feet = phase == LegPhase::kRising || phase == LegPhase::kStanding || phase == LegPhase::kLowering ||
+                         commanded_to_swing(command, joint);
     return on_feet ? &command->joints[joint] : nullptr;
   }
 

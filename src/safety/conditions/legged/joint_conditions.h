@@ -28,6 +28,7 @@
 
 #include "machine/legs/leg_model.h"
 #include "safety/conditions/common/condition_watch.h"
+#include "safety/conditions/legged/commanded_foot.h"
 #include "safety/latch/active_causes.h"
 #include "safety/monitor_input.h"
 #include "safety/safety_parameters.h"
@@ -84,9 +85,9 @@ class JointConditions {
         const double outside = std::max(limits.range.lower - joint.position, joint.position - limits.range.upper);
         range = worse(range, beyond(i, outside, range_.limit()));
         following = worse(following, follows(i, phase, input.command, joint.position, elapsed));
-        at_once = worse(at_once, opposes(i, phase, input.command, joint.position, elapsed));
+        at_once = worse(at_once, opposes(i, input.command, joint.position, elapsed));
       }
-      at_once = worse(at_once, gives(i, phase, input.command, joint, elapsed));
+      at_once = worse(at_once, gives(i, input.command, joint, elapsed));
     }
     const auto update = [&](ConditionWatch& watch, const ConditionMeasurement& measurement) {
       watch.step(measurement, elapsed);
@@ -106,7 +107,7 @@ class JointConditions {
     const bool walks = phase == LegPhase::kWalking;
     if (phase == LegPhase::kLying || phase == LegPhase::kJoints) return kNothingMeasured;
     const JointCommand& joint = command->joints[i];
-    const bool judged = walks ? swings(phase, command, i) : joint.mode == JointMode::kImpedance;
+    const bool judged = walks ? commanded_to_swing(command, i) : joint.mode == JointMode::kImpedance;
     const double left = judged ? std::abs(joint.position - position) : 0;
     const double part = std::min(1.0, static_cast<double>(elapsed) * period_ / kMeanTime);
     if (walks && judged) behind_[i] += part * (left - behind_[i]);
@@ -116,10 +117,10 @@ class JointConditions {
   }
 
   /// Returns how far the angle of a joint has moved against its command in this swing, as an angle beyond the limit.
-  ConditionMeasurement opposes(std::size_t i, LegPhase phase, const CommandFrame* command, double position,
+  ConditionMeasurement opposes(std::size_t i, const CommandFrame* command, double position,
                                std::uint64_t elapsed) noexcept {
     Way& way = ways_[i];
-    if (!swings(phase, command, i)) {
+    if (!commanded_to_swing(command, i)) {
       way = {};
       return kNothingMeasured;
     }
@@ -135,10 +136,10 @@ class JointConditions {
   }
 
   /// Returns how far the torque of a motor is from the commanded one while its foot bears, as an angle.
-  ConditionMeasurement gives(std::size_t i, LegPhase phase, const CommandFrame* command, const JointSample& joint,
+  ConditionMeasurement gives(std::size_t i, const CommandFrame* command, const JointSample& joint,
                              std::uint64_t elapsed) noexcept {
     Torque& torque = torques_[i];
-    if (!bears(phase, command, i) || elapsed > 1 || !has(joint, kValidEffort) || !std::isfinite(joint.effort)) {
+    if (!commanded_to_bear(command, i) || elapsed > 1 || !has(joint, kValidEffort) || !std::isfinite(joint.effort)) {
       torque.asked.reset();
       return kNothingMeasured;
     }
@@ -147,17 +148,6 @@ class JointConditions {
     const bool wrong = std::abs(joint.effort - *asked) > kOfAsked * std::abs(*asked) + kOfEffort * limits_[i].effort;
     torque.wrong += period_ / kTorqueTime * ((wrong ? 1 : 0) - torque.wrong);
     return beyond(i, torque.wrong / kOfTorques * following_.limit(), following_.limit());
-  }
-
-  /// Returns whether the foot of this joint is in the air while the robot walks.
-  static bool swings(LegPhase phase, const CommandFrame* command, std::size_t i) noexcept {
-    return phase == LegPhase::kWalking && command->joints[i].mode == JointMode::kImpedance &&
-           command->joints[i].stiffness > 0;
-  }
-
-  static bool bears(LegPhase phase, const CommandFrame* command, std::size_t i) noexcept {
-    return phase == LegPhase::kWalking && command->joints[i].mode == JointMode::kImpedance &&
-           command->joints[i].stiffness == 0;
   }
 
   static Condition without_persistence(Condition condition) noexcept {
