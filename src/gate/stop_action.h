@@ -13,7 +13,9 @@
 ///           robot rises. It waits for them: q* = P + min(u, (Q − P)/(U − P)) (U − P). In the last 0.2 of `time` the
 ///           stiffness falls to 0. After `time`, and without a position, it is kDamp. A machine that walks has
 ///           `walking_time` in place of `time`: a foot stays behind while the body moves on. After 1.2 of `time` it is
-///           kBrake: the machine lies, and a driver's own brake needs neither encoder nor the sense of the motor
+///           kBrake: the machine lies, and a driver's own brake needs neither encoder nor the sense of the motor. So it
+///           is from where q is farther than kLost from q*. Sound joints stay within 0.1; a failed encoder or a
+///           reversed motor drives the joint away
 ///
 /// A driver that cannot carry out an action says so (Driver::accepts), and the loop does not start.
 
@@ -55,6 +57,7 @@ class JointStop {
     begin_.reset();
     elapsed_ = 0;
     left_ = 1;
+    lost_ = false;
   }
 
   /// Returns the order of one cycle, `dt` s after the last one. `position`: measured, rad or m; none: not known.
@@ -66,6 +69,7 @@ class JointStop {
   std::optional<double> begin_;  ///< rad or m, at the first order
   double elapsed_ = 0;           ///< s, since then
   double left_ = 1;              ///< u
+  bool lost_ = false;            ///< farther than kLost from q* since the first order
 };
 
 }  // namespace robot_control

@@ -14,6 +14,16 @@ constexpr StopAction kFolding{.kind = StopKind::kFold, .damping = 2, .stiffness 
 constexpr double kCycle = 0.001;  // s
 constexpr double kBegin = 0.5;    // rad
 
+/// The order after `time` s in which the joint, from `position` on, is where it was ordered.
+JointCommand followed(JointStop& stop, double time, double position = kBegin) {
+  JointCommand order;
+  for (double t = 0; t < time; t += kCycle) {
+    order = stop.step(position, kCycle);
+    if (order.mode == JointMode::kImpedance) position = order.position;
+  }
+  return order;
+}
+
 TEST(JointStop, FoldsQuicklyAtFirstAndGentlyAtTheEnd) {
   JointStop stop(kFolding);
   const JointCommand first = stop.step(kBegin, kCycle);
@@ -24,7 +34,7 @@ TEST(JointStop, FoldsQuicklyAtFirstAndGentlyAtTheEnd) {
   EXPECT_EQ(first.damping, 2);
   JointCommand last = first;
   for (double t = 2 * kCycle; t < 0.99; t += kCycle) {
-    const JointCommand next = stop.step(kBegin, kCycle);
+    const JointCommand next = stop.step(last.position, kCycle);
     EXPECT_GE(next.position, last.position);
     EXPECT_LE(next.velocity, last.velocity);
     EXPECT_EQ(next.stiffness, 60);
@@ -36,10 +46,8 @@ TEST(JointStop, FoldsQuicklyAtFirstAndGentlyAtTheEnd) {
 
 TEST(JointStop, DampsAloneAfterItsStiffnessFaded) {
   JointStop stop(kFolding);
-  JointCommand last;
-  for (double t = 0; t < 1.2; t += kCycle) last = stop.step(kBegin, kCycle);
-  EXPECT_NEAR(last.stiffness, 60 * 0.05 / 0.25, 1);
-  for (double t = 0; t < 0.1; t += kCycle) last = stop.step(kBegin, kCycle);
+  EXPECT_NEAR(followed(stop, 1.2).stiffness, 60 * 0.05 / 0.25, 1);
+  const JointCommand last = followed(stop, 0.1, kFolding.posture);
   EXPECT_EQ(last.mode, JointMode::kVelocity);
   EXPECT_EQ(last.velocity, 0);
   EXPECT_EQ(last.damping, 2);
@@ -50,9 +58,10 @@ TEST(JointStop, OfAJointThatIsAheadWaitsForTheOthers) {
   StopAction action = kFolding;
   action.upright = 0.3;
   JointStop ahead(action), usual(action);
-  for (double t = 0; t < 2; t += kCycle) {
-    const JointCommand waits = ahead.step(0.9, kCycle), other = usual.step(0.3, kCycle);
-    if (waits.mode != JointMode::kImpedance) break;
+  JointCommand waits{.position = 0.9}, other{.position = 0.3};
+  for (double t = 0; t < 1.2; t += kCycle) {
+    waits = ahead.step(waits.position, kCycle);
+    other = usual.step(other.position, kCycle);
     EXPECT_NEAR(waits.position, std::max(0.9, other.position), 1e-9);
     EXPECT_EQ(waits.velocity, other.position < 0.9 ? 0 : other.velocity);
   }
@@ -69,7 +78,7 @@ TEST(JointStop, OfAJointThatIsBehindOrBeyondBeginsAtOnce) {
 
 TEST(JointStop, FoldsAgainFromWhereACommandLeftTheJoint) {
   JointStop stop(kFolding);
-  for (double t = 0; t < 2; t += kCycle) stop.step(kBegin, kCycle);
+  followed(stop, 2);
   stop.release();
   const JointCommand again = stop.step(1.0, kCycle), first = JointStop(kFolding).step(1.0, kCycle);
   EXPECT_EQ(std::memcmp(&again, &first, sizeof first), 0);
@@ -77,9 +86,24 @@ TEST(JointStop, FoldsAgainFromWhereACommandLeftTheJoint) {
 
 TEST(JointStop, DampsAloneOnceItsTimeIsOverAndEndsAsTheBrakeOfTheDriver) {
   JointStop stop(kFolding);
-  EXPECT_EQ(stop.step(kBegin, kFolding.time).mode, JointMode::kVelocity);
-  EXPECT_EQ(stop.step(kBegin, 0.19 * kFolding.time).mode, JointMode::kVelocity);
-  EXPECT_EQ(stop.step(kBegin, 0.02 * kFolding.time).mode, JointMode::kBrake);
+  const double lying = kFolding.posture;
+  EXPECT_EQ(stop.step(lying, kFolding.time).mode, JointMode::kVelocity);
+  EXPECT_EQ(stop.step(lying, 0.19 * kFolding.time).mode, JointMode::kVelocity);
+  EXPECT_EQ(stop.step(lying, 0.02 * kFolding.time).mode, JointMode::kBrake);
+}
+
+// Its encoder or its motor has failed: what folds and what damps would drive it on.
+TEST(JointStop, OfAJointThatIsFarFromItsOrderIsTheBrakeOfTheDriverFromThereOn) {
+  for (const double time : {0.4, 1.3}) {
+    JointStop stop(kFolding);
+    const JointCommand order = followed(stop, time);
+    const double at = order.mode == JointMode::kImpedance ? order.position : kFolding.posture;
+    EXPECT_NE(stop.step(at - 0.2, kCycle).mode, JointMode::kBrake);
+    EXPECT_EQ(stop.step(at - 0.3, kCycle).mode, JointMode::kBrake);
+    EXPECT_EQ(stop.step(at, kCycle).mode, JointMode::kBrake);
+    stop.release();
+    EXPECT_EQ(stop.step(kBegin, kCycle).mode, JointMode::kImpedance);
+  }
 }
 
 TEST(JointStop, WithoutATimeIsTheBrakeOfTheDriver) {
@@ -94,7 +118,9 @@ TEST(JointStop, DampsAJointWithoutAPosition) {
 TEST(JointStop, DoesNotPassThePostureAfterALongGap) {
   JointStop stop(kFolding);
   stop.step(kBegin, kCycle);
-  EXPECT_LE(stop.step(kBegin, 1.0).position, kFolding.posture);
+  const JointCommand late = stop.step(kFolding.posture, 1.0);
+  EXPECT_EQ(late.mode, JointMode::kImpedance);
+  EXPECT_LE(late.position, kFolding.posture);
 }
 
 }  // namespace
