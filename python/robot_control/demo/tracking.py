@@ -87,7 +87,6 @@ class Axis:
     truth: float
     estimate: float
     rms_error: float
-    worst_error: float
 
 
 @dataclass(frozen=True)
@@ -188,7 +187,6 @@ def judge(log: Log, linear: float, angular: float, tolerances: Tolerances = ON_W
                 float(truth.mean()),
                 float(np.nanmean(log[f"estimate_{name}"][rows])),
                 float(np.sqrt(np.mean(error**2)) * abs(commanded)),
-                float(worst * commanded),
             )
         )
 
