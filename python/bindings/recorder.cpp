@@ -1,12 +1,10 @@
 #include "bindings/recorder.h"
 
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <stdexcept>
-#include <string>
-#include <utility>
 #include <vector>
+
+#include "machine/wheeled/drive_train.h"
 
 namespace py = pybind11;
 
