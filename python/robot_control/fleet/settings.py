@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ipaddress
 import json
 import math
 from collections.abc import Iterator
@@ -12,6 +11,7 @@ from pathlib import Path
 from robot_control.blackbox.main import LOGS
 from robot_control.common.file_errors import problems_of
 from robot_control.common.files import given_path
+from robot_control.common.loopback import is_loopback
 from robot_control.common.settings_files import SettingsError, overlaid
 from robot_control.fleet.v2.capability import STANDARD, ActionKind
 from robot_control.fleet.v2.messages import VERSIONS
@@ -117,7 +117,7 @@ def _together(settings: Settings) -> Iterator[str]:
             yield f"{each.name} = {value}: must be finite"
     for name in settings.actions.keys() & STANDARD.keys():
         yield f"actions.{name}: is an action of the standard"
-    if not (settings.ca_file or settings.insecure or _is_loopback(settings.host)):
+    if not (settings.ca_file or settings.insecure or is_loopback(settings.host)):
         yield f"host = {settings.host}: beyond the loopback it needs ca_file (TLS), or insecure: true"
     if settings.key_file and not settings.certificate_file:
         yield "key_file: needs certificate_file"
@@ -127,13 +127,6 @@ def _together(settings: Settings) -> Iterator[str]:
         path = Path(getattr(settings, name))
         if getattr(settings, name):
             yield from problems_of(name, path, secret=name in ("password_file", "key_file"))
-
-
-def _is_loopback(host: str) -> bool:
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return host == "localhost"
 
 
 def _what(action: CustomAction) -> str:
