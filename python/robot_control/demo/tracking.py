@@ -22,6 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from robot_control.common.pose import Pose, turned
 from robot_control.common.run_log import BoolArray, FloatArray, Log
 from robot_control.common.signal_names import mask_of
 from robot_control.demo.brakes import GATE_BRAKE
@@ -54,15 +55,6 @@ class Tolerances:
 ON_WHEELS = Tolerances()
 ON_LEGS = Tolerances(mean=0.03, cycle=None, pose=0.02, rise=5.0)
 """It stands up within 2 s before it walks."""
-
-
-@dataclass(frozen=True)
-class Pose:
-    """x, y [m] and yaw [rad] in the frame in which the run began."""
-
-    x: float
-    y: float
-    yaw: float
 
 
 @dataclass(frozen=True)
@@ -207,7 +199,7 @@ def judge(log: Log, linear: float, angular: float, tolerances: Tolerances = ON_W
         estimated_pose=estimated_pose,
         distance=distance,
         position_error=position_error,
-        yaw_error=_wrap(estimated_pose.yaw - true_pose.yaw),
+        yaw_error=turned(estimated_pose.yaw - true_pose.yaw),
         checks=tuple(checks),
     )
 
@@ -237,7 +229,7 @@ def _is_twist(log: Log, prefix: str, linear: float, angular: float) -> BoolArray
 
 def _integrate(log: Log, row: int) -> Pose:
     x, y, yaw = commanded_path(log)
-    return Pose(float(x[row]), float(y[row]), _wrap(float(yaw[row])))
+    return Pose(float(x[row]), float(y[row]), turned(float(yaw[row])))
 
 
 def _pose(log: Log, prefix: str, row: int) -> Pose:
@@ -247,7 +239,3 @@ def _pose(log: Log, prefix: str, row: int) -> Pose:
 def _path_length(x: FloatArray, y: FloatArray) -> float:
     known = ~np.isnan(x) & ~np.isnan(y)
     return float(np.hypot(np.diff(x[known]), np.diff(y[known])).sum())
-
-
-def _wrap(angle: float) -> float:
-    return math.remainder(angle, 2 * math.pi)

@@ -18,9 +18,11 @@
 #include <trajectory_msgs/JointTrajectory.h>
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
+#include "control/legged/leg_controller.h"
 #include "machine/legs/leg_model.h"
 #include "ros/messages/bounded_message.h"
 #include "ros/messages/messages.h"
