@@ -18,8 +18,7 @@ from typing import Any
 
 import numpy as np
 from robot_control.closed_loop import ClosedLoop, Log
-from robot_control.common.cause_names import causes_in
-from robot_control.common.signal_names import mask_of
+from robot_control.common.signal_names import causes_in, mask_of
 from robot_control.demo.intervals import intervals
 from robot_control.report.drive import Drive as ReportedDrive
 from robot_control.report.figures import DEGRADED

@@ -16,7 +16,7 @@ from functools import partial
 from typing import Any
 
 from robot_control.closed_loop import ClosedLoop
-from robot_control.common.cause_names import causes_in
+from robot_control.common.signal_names import causes_in
 
 from bench.faults.fault_sequence import ANGULAR_LIMIT, LINEAR_LIMIT, FaultSequence, draw_sequence, draw_walk
 from bench.faults.sequence_judge import RULES, judge

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+import ipaddress
 from dataclasses import dataclass
 from urllib.parse import urlsplit
-
-from robot_control.common.loopback import is_loopback
 
 
 class AddressError(ValueError):
@@ -25,6 +24,14 @@ class Origins:
     def origin_is_own(self, origin: str | None, host: str | None) -> bool:
         """True for a request that a page of this console has sent, to the name from which it came."""
         return origin in self.own and urlsplit(origin).netloc == (host or "").lower()
+
+
+def is_loopback(address: str) -> bool:
+    """True for 127.0.0.0/8, ::1 and localhost."""
+    try:
+        return ipaddress.ip_address(address).is_loopback
+    except ValueError:
+        return address == "localhost"
 
 
 def bracketed(address: str) -> str:

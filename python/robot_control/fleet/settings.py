@@ -11,8 +11,8 @@ from pathlib import Path
 from robot_control.blackbox.main import LOGS
 from robot_control.common.file_errors import problems_of
 from robot_control.common.files import given_path
-from robot_control.common.loopback import is_loopback
 from robot_control.common.settings_files import SettingsError, overlaid
+from robot_control.console.addresses import is_loopback
 from robot_control.fleet.v2.capability import STANDARD, ActionKind
 from robot_control.fleet.v2.messages import VERSIONS
 
