@@ -57,6 +57,6 @@ def bits_in(kind: str, value: int) -> list[BitName]:
 
 
 def causes_in(column: NDArray[np.float64]) -> list[str]:
-    """Names of all bits of StopCause that were ever set in a column of a log, lowest first. A NaN stands for no message."""
+    """Names of all bits of StopCause that were ever set in a column, lowest first. A NaN stands for no message."""
     found = int(np.bitwise_or.reduce(column[~np.isnan(column)].astype(np.int64), initial=0))
     return [cause.name for cause in bits_in("StopCause", found)]
