@@ -18,6 +18,11 @@ def compared(name: str, value: float, unit: str, reference: float, reference_nam
     }
 
 
+def plain(name: str, value: float, unit: str) -> dict[str, Any]:
+    """A figure with nothing beside it."""
+    return compared(name, value, unit, 0, "none")
+
+
 def bounded(name: str, value: float, unit: str, bound: float) -> dict[str, Any]:
     """A figure beside its bound."""
     return compared(name, value, unit, bound, "the bound")

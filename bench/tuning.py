@@ -28,9 +28,10 @@ import numpy as np
 from numpy.typing import NDArray
 from robot_control._robot_control import ParameterError
 from robot_control.closed_loop import ClosedLoop, Log
-from robot_control.common.cause_names import causes_in
+from robot_control.common.signal_names import causes_in
 
 from bench.robot_corpus import DIFFBOT, robot_names, urdf_of
+from bench.rows import plain
 from bench.runs.runner import Processes, Runner
 
 ROBOTS = (DIFFBOT, "kobuki", "boxer", "jackal", "pmb2")
@@ -279,9 +280,6 @@ def bench(
         ("sets amiss", amiss, ""),
         ("speed", len(seeds) / (time.monotonic() - began), "sets per s"),
     ]
-    rows = [
-        {"name": name, "value": value, "unit": unit, "reference": 0, "reference_name": "none", "ratio": 0}
-        for name, value, unit in figures
-    ]
+    rows = [plain(*figure) for figure in figures]
     absent = [robot for robot in ROBOTS if robot not in present]
     return {"bench": "tuning", "rows": rows, "not_judged": absent}, amiss == 0 and driven == len(seeds) > 0

@@ -18,8 +18,7 @@ from typing import Any
 
 import numpy as np
 from robot_control.closed_loop import ClosedLoop, Log
-from robot_control.common.cause_names import causes_in
-from robot_control.common.signal_names import mask_of
+from robot_control.common.signal_names import causes_in, mask_of
 from robot_control.demo.intervals import intervals
 from robot_control.report.drive import Drive as ReportedDrive
 from robot_control.report.figures import DEGRADED
@@ -29,6 +28,7 @@ from bench.drives.normal_drive import LINEAR_LIMIT, WHEEL_COLUMNS, NormalDrive, 
 from bench.drives.sensor_errors import LEVELS, plant_parameters
 from bench.drives.wheel_command import WHEEL_COMMANDS, for_drives
 from bench.robot_corpus import DIFFBOT, SCENES, robot_names, scene_of, urdf_of
+from bench.rows import plain
 from bench.runs.runner import Processes, Runner
 
 RATES = {1000: 960.0, 100: 240.0, 2000: 120.0}  # Hz → s in each scene, of the project's own robot
@@ -188,10 +188,7 @@ def bench(
         ("of them with a warning", sum(bool(turning.warnings) for turning in turned), ""),
         ("speed", simulated / (time.monotonic() - began), "simulated s per s"),
     ]
-    rows = [
-        {"name": name, "value": value, "unit": unit, "reference": 0, "reference_name": "none", "ratio": 0}
-        for name, value, unit in figures
-    ]
+    rows = [plain(*figure) for figure in figures]
     amiss = [str(outcome) for outcome in driven if outcome.causes or outcome.warnings]
     amiss += [str(turning) for turning in turned if turning.causes or turning.warnings]
     return {"bench": "driving", "rows": rows, "amiss": amiss}, not amiss

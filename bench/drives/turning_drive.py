@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 from robot_control.closed_loop import ClosedLoop
-from robot_control.common.cause_names import causes_in
+from robot_control.common.signal_names import causes_in
 
 from bench.drives.sensor_errors import plant_parameters
 from bench.drives.wheel_command import for_drives

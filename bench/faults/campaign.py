@@ -16,12 +16,13 @@ from functools import partial
 from typing import Any
 
 from robot_control.closed_loop import ClosedLoop
-from robot_control.common.cause_names import causes_in
+from robot_control.common.signal_names import causes_in
 
 from bench.faults.fault_sequence import ANGULAR_LIMIT, LINEAR_LIMIT, FaultSequence, draw_sequence, draw_walk
 from bench.faults.sequence_judge import RULES, judge
 from bench.faults.sequence_run import make_loop, run_sequence
 from bench.robot_corpus import DIFFBOT, QUADBOT, robot_names
+from bench.rows import plain
 from bench.runs.runner import Processes, Runner
 
 
@@ -115,14 +116,10 @@ def campaign(
 
 def result_of(tally: Tally, seconds: float) -> dict[str, Any]:
     """As the benchmark programs print it; `seconds` of wall-clock time."""
-
-    def row(name: str, value: float, unit: str) -> dict[str, Any]:
-        return {"name": name, "value": value, "unit": unit, "reference": 0, "reference_name": "none", "ratio": 0}
-
-    rows = [row("sequences", tally.runs, ""), row("sequences failed", len(tally.failed), "")]
-    rows += [row(f"{rule} violated", tally.violations[rule], "") for rule in RULES]
-    rows.append(row("simulated", tally.simulated / 3600, "h"))
-    rows.append(row("speed", tally.simulated / seconds, "simulated s per s"))
+    rows = [plain("sequences", tally.runs, ""), plain("sequences failed", len(tally.failed), "")]
+    rows += [plain(f"{rule} violated", tally.violations[rule], "") for rule in RULES]
+    rows.append(plain("simulated", tally.simulated / 3600, "h"))
+    rows.append(plain("speed", tally.simulated / seconds, "simulated s per s"))
     return {
         "bench": "campaign",
         "rows": rows,

@@ -17,6 +17,7 @@ from bench.faults.fault_sequence import ALL_RUNS as CAMPAIGN_RUNS
 from bench.faults.fault_sequence import draw_sequence
 from bench.faults.sequence_run import loop_arguments, run_sequence
 from bench.robot_corpus import robot_names
+from bench.rows import plain
 
 ALL_RUNS = 200
 STEP = CAMPAIGN_RUNS // ALL_RUNS  # from one seed to the next, so that the sequences cover the whole campaign
@@ -85,14 +86,11 @@ def bench(first: int, runs: int, say: Callable[[str], None]) -> tuple[dict[str, 
     """The result, and whether every row of every sequence was computed again, bit by bit."""
     tally = replay_seeds(range(first, first + runs * STEP, STEP), say)
 
-    def row(name: str, value: float, unit: str) -> dict[str, Any]:
-        return {"name": name, "value": value, "unit": unit, "reference": 0, "reference_name": "none", "ratio": 0}
-
     rows = [
-        row("sequences", tally.runs, ""),
-        row("sequences not exact", len(tally.failed), ""),
-        row("rows compared", tally.rows, ""),
-        row("simulated", tally.simulated, "s"),
-        row("speed of the replay", tally.simulated / tally.seconds, "s per s of processor time"),
+        plain("sequences", tally.runs, ""),
+        plain("sequences not exact", len(tally.failed), ""),
+        plain("rows compared", tally.rows, ""),
+        plain("simulated", tally.simulated, "s"),
+        plain("speed of the replay", tally.simulated / tally.seconds, "s per s of processor time"),
     ]
     return {"bench": "replay", "rows": rows, "failed": tally.failed}, not tally.failed

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from robot_control import ClosedLoop
+from robot_control.common.pose import turned
 from robot_control.installed_files import share_file
 
 SCAN_PERIOD = 0.1  # s
@@ -66,17 +67,12 @@ def look(loop: ClosedLoop, command: tuple[float, float]) -> Sight:
     )
 
 
-def turn_to(angle: float) -> float:
-    """The same angle within ±π."""
-    return math.remainder(angle, 2 * math.pi)
-
-
 def command_to(pose: NDArray[np.float64], corner: tuple[float, float]) -> tuple[float, float] | None:
     """Turns on the spot, then drives; None where the corner is reached."""
     away = math.hypot(corner[0] - pose[0], corner[1] - pose[1])
     if away < NEAR:
         return None
-    off = turn_to(math.atan2(corner[1] - pose[1], corner[0] - pose[0]) - pose[2])
+    off = turned(math.atan2(corner[1] - pose[1], corner[0] - pose[0]) - pose[2])
     turn = max(-TURN, min(TURN, 2 * off))
     return (0.0 if abs(off) > 3 * FACING else max(0.1, min(SPEED, away)), turn)
 

@@ -22,6 +22,7 @@ from bench.odometry.judge import Run, run
 from bench.odometry.promises import Promise, all_promises, runs_of
 from bench.odometry.scenarios import SCENARIOS
 from bench.odometry.table import table
+from bench.rows import plain
 from bench.runs.runner import Processes, Runner
 
 SEEDS = 50
@@ -75,9 +76,9 @@ def result_of(
     for scenario in SCENARIOS:
         pitch = [each.pitch for each in runs_of(runs, scenario)]
         if scenario == "waves" and pitch:
-            rows.append(_plain("waves, pitch RMS", float(np.rad2deg(np.median(pitch))), "°"))
-    rows.append(_plain("seeds", len({each.seed for each in runs}), ""))
-    rows.append(_plain("wall-clock time", seconds, "s"))
+            rows.append(plain("waves, pitch RMS", float(np.rad2deg(np.median(pitch))), "°"))
+    rows.append(plain("seeds", len({each.seed for each in runs}), ""))
+    rows.append(plain("wall-clock time", seconds, "s"))
     errors = [
         {
             "scenario": each.scenario,
@@ -97,10 +98,6 @@ def result_of(
 def every_promise(runs: Sequence[Run], level: str, beside: Sequence[parts.Outcome]) -> list[Promise]:
     """Those of the scenarios and of `parts`."""
     return (all_promises(runs, level) if runs else []) + (parts.promises(beside) if beside else [])
-
-
-def _plain(name: str, value: float, unit: str) -> dict[str, Any]:
-    return {"name": name, "value": value, "unit": unit, "reference": 0, "reference_name": "none", "ratio": 0}
 
 
 def bench(

@@ -19,7 +19,6 @@ from bench.odometry.tested_estimator import OURS
 from bench.odometry.truth import Array
 
 SIMPLE, RAW, CALIBRATED = "simple odometry", "raw wheels", "calibrated wheels"
-WITHOUT_SLIP = "random"  # its NEES is judged; within default limits on dry ground nothing slips
 WORTH = 0.2  # m; a slip run counts only if calibrated wheels err by more
 
 

@@ -30,8 +30,6 @@ class Ours:
     twist_covariance: Array
     slip: NDArray[np.bool_]
     valid: NDArray[np.bool_]
-    radius_ratio: Array
-    wheel_base_factor: Array
 
 
 def estimate(recording: Recording, gyro_until: float = np.inf) -> Ours:
@@ -48,8 +46,6 @@ def estimate(recording: Recording, gyro_until: float = np.inf) -> Ours:
         twist_covariance=out["twist_covariance"][:, DRIVEN][:, :, DRIVEN],
         slip=(out["flags"] & FLAGS["slip"]) != 0,
         valid=out["valid"],
-        radius_ratio=out["radius_ratio"],
-        wheel_base_factor=out["wheel_base_factor"],
     )
 
 

@@ -4,7 +4,6 @@
 /// Rates are the median over the parts; torn and reordered frames are counted over all of them. A frame counts as read
 /// if a look-up found it; look-ups alternate between the newest frame and an earlier one.
 
-#include <cstdlib>
 #include <cstring>
 #include <iostream>
 #include <string>

@@ -10,11 +10,9 @@
 
 #include <array>
 #include <atomic>
-#include <cstdio>
 #include <cstdlib>
 #include <iostream>
 #include <new>
-#include <string>
 #include <vector>
 
 #include "rt/clock.h"

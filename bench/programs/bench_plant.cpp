@@ -12,6 +12,7 @@
 #include "bench/programs/rows.h"
 #include "configuration/parameters.h"
 #include "drivers/mujoco/mujoco_plant.h"
+#include "machine/wheeled/drive_train.h"
 #include "rt/clock.h"
 
 namespace robot_control::bench {

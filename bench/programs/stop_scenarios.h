@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "configuration/parameters.h"
 #include "signals/permit.h"
 #include "simulation/closed_loop.h"
 

@@ -6,9 +6,9 @@ import math
 import random
 from collections.abc import Callable, Sequence
 
-from robot_control.common.pose import Pose
+from robot_control.common.pose import Pose, turned
 from robot_control.path.follower import Follower, FollowParameters, Motion
-from robot_control.path.pieces import route, turned
+from robot_control.path.pieces import route
 from robot_control.path.shapes import SHAPES
 from robot_control.path.waypoints import Waypoint
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import ipaddress
 from urllib.parse import urlsplit
+
+from robot_control.console.addresses import is_loopback
 
 
 def check_address(address: str, *, insecure: bool) -> None:
@@ -15,16 +16,9 @@ def check_address(address: str, *, insecure: bool) -> None:
     parts = urlsplit(address)
     if parts.scheme not in ("tls", "tcp") or not parts.hostname:
         raise ValueError(f"{address} is no address of a scheduler: tls://HOST:8786")
-    if parts.scheme == "tls" or insecure or _is_loopback(parts.hostname):
+    if parts.scheme == "tls" or insecure or is_loopback(parts.hostname):
         return
     raise ValueError(
         f"{address} is plain text: anyone who reaches that port can run programs as the users of all workers. "
         "Use tls://, or --insecure in a network that you trust"
     )
-
-
-def _is_loopback(host: str) -> bool:
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return host == "localhost"

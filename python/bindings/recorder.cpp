@@ -1,12 +1,10 @@
 #include "bindings/recorder.h"
 
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <stdexcept>
-#include <string>
-#include <utility>
 #include <vector>
+
+#include "machine/machine_model.h"
 
 namespace py = pybind11;
 
@@ -66,7 +64,7 @@ py::dict record(ClosedLoop& loop, const py::array_t<double>& commands) {
   constexpr py::ssize_t kBlock = 10000;  // cycles between two checks for Ctrl-C
   const py::ssize_t cycles = commands.shape(0);
   const auto command = commands.unchecked<2>();
-  std::vector<Recorded> recorded = all_recorded(cycles, drive_train_of(loop.robot().machine()).wheels.size());
+  std::vector<Recorded> recorded = all_recorded(cycles, driven_joint_indices(loop.robot().machine()).size());
   py::array_t<double> time(cycles), stopped(cycles);
   for (py::ssize_t row = 0; row < cycles; ++row) {
     if (std::isfinite(command(row, 0))) {

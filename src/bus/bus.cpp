@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdio>
 
 #include "signals/checksum.h"
 
@@ -13,12 +12,6 @@ std::uint64_t hash_of(const std::string& text) noexcept {
   Checksum sum;
   sum.mix(text);
   return sum.sum();
-}
-
-std::string hex(std::uint64_t value) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
-  return text;
 }
 
 /// "http://host:11311/" → "11311"

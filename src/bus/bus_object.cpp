@@ -11,7 +11,6 @@
 #include <climits>
 #include <cstddef>
 #include <cstdio>
-#include <cstring>
 #include <system_error>
 #include <utility>
 

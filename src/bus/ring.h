@@ -16,7 +16,6 @@
 #include <type_traits>
 
 #include "bus/latest_frames.h"
-#include "rt/futex.h"
 
 namespace robot_control {
 

@@ -6,7 +6,6 @@
 #include <array>
 
 #include "configuration/parameters.h"
-#include "signals/roles.h"
 
 namespace robot_control {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "machine/wheeled/drive_train.h"
+#include "signals/wheeled/wheel_count.h"
 
 namespace robot_control {
 

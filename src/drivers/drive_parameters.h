@@ -3,7 +3,6 @@
 /// reaction on silence.
 
 #include <cstdint>
-#include <limits>
 #include <string>
 
 #include "parameters/block.h"

@@ -45,7 +45,6 @@
 #include "estimation/slip/slip_detector.h"
 #include "estimation/slip/wheel_slide.h"
 #include "estimation/tilt/tilt.h"
-#include "estimation/tuning.h"
 #include "estimation/wheels/middle_travel.h"
 #include "estimation/wheels/wheel_geometry.h"
 #include "estimation/wheels/wheel_sides.h"

@@ -1,6 +1,5 @@
 // The estimator finds rests, learns the biases there and integrates the motion that was held back.
 
-#include <cmath>
 #include <optional>
 
 #include "estimation/estimator.h"

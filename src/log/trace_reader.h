@@ -10,7 +10,6 @@
 
 #include "log/bag/bag_reader.h"
 #include "log/messages/log_messages.h"
-#include "log/messages/message_types.h"
 #include "log/messages/trace_message.h"
 
 namespace robot_control {

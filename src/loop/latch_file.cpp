@@ -3,7 +3,6 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
-#include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <optional>
@@ -31,12 +30,6 @@ std::string utc_now() {
   gmtime_r(&now, &utc);
   std::array<char, 32> text{};
   std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text.data();
-}
-
-std::string hexadecimal(std::uint64_t number) {
-  std::array<char, 20> text{};
-  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(number));
   return text.data();
 }
 
@@ -101,7 +94,7 @@ std::string latch_text(const LatchRecord& record) {
   const std::string text = body(record);
   Checksum sum;
   sum.mix(text);
-  return text + "checksum: " + hexadecimal(sum.sum()) + "\n";
+  return text + "checksum: " + hex(sum.sum()) + "\n";
 }
 
 LatchRecord parse_latch(const std::string& text) {

@@ -9,7 +9,6 @@
 #include "files/input_file.h"
 #include "log/messages/message_types.h"
 #include "machine/joint_role.h"
-#include "parameters/parameters_text.h"
 
 namespace robot_control {
 namespace {

@@ -7,6 +7,7 @@ namespace robot_control {
 namespace {
 
 constexpr float kNever = -std::numeric_limits<float>::infinity();
+
 /// Calls `visit` for each cell that the line crosses, in steps of half a cell, until it returns false.
 template <class Visit>
 void follow_ray(const Grid& grid, const PlanarPose& sensor, double angle, double length, Visit visit) {
@@ -62,7 +63,7 @@ Costmap::Costmap(Grid map, Footprint footprint, bool unknown_is_free)
       unknown_is_free_(unknown_is_free),
       marked_(grid_.cells.size(), kNever) {
   std::vector<bool> walls(grid_.cells.size());
-  for (std::size_t i = 0; i < walls.size(); ++i) walls[i] = grid_.cells[i] >= 65;
+  for (std::size_t i = 0; i < walls.size(); ++i) walls[i] = grid_.cells[i] >= kOccupiedFrom;
   wall_distance_ = distances(walls, grid_.columns, grid_.resolution, farthest_);
   clear();
 }

@@ -9,7 +9,6 @@
 /// Rays also say whether map and pose can be true. Something that was added shortens a ray. Only a thing that is gone,
 /// or an untrue pose or map, lets a ray pass a wall of the map.
 
-#include <limits>
 #include <vector>
 
 #include "navigation/footprint.h"

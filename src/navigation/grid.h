@@ -14,6 +14,7 @@ namespace robot_control {
 inline constexpr std::int8_t kUnknownCell = -1;
 inline constexpr std::int8_t kFreeCell = 0;
 inline constexpr std::int8_t kOccupiedCell = 100;
+inline constexpr std::int8_t kOccupiedFrom = 65;  ///< %, as map_server's map_saver
 
 /// 250 m × 250 m at 5 cm. A costmap of that size takes 0.4 GB.
 inline constexpr std::size_t kMaxCells = 25'000'000;
@@ -38,6 +39,10 @@ struct Grid {
   std::size_t index(Cell cell) const noexcept {
     return static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(columns) +
            static_cast<std::size_t>(cell.column);
+  }
+  Cell cell_of(std::size_t index) const noexcept {
+    const auto width = static_cast<std::size_t>(columns);
+    return {static_cast<int>(index % width), static_cast<int>(index / width)};
   }
   /// The place must be within ±kFarthest.
   Cell cell_at(double x, double y) const noexcept {

@@ -18,8 +18,8 @@
 namespace robot_control {
 namespace {
 
-constexpr std::size_t kMaxHead = 65536;               // bytes of a picture before its pixels, comments included
-constexpr double kFreeUpTo = 25, kOccupiedFrom = 65;  // %, of map_server's map_saver
+constexpr std::size_t kMaxHead = 65536;  // bytes of a picture before its pixels, comments included
+constexpr int kFreeUpTo = 25;            // %, of map_server's map_saver
 constexpr auto kKeys = std::to_array<std::string_view>(
     {"image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode"});
 

@@ -56,8 +56,7 @@ std::vector<float> costs_to(const Costmap& costmap, Cell goal) {
     const Open top = open.top();
     open.pop();
     if (top.cost > costs[top.state]) continue;
-    const Cell cell{static_cast<int>(top.state % static_cast<std::uint64_t>(grid.columns)),
-                    static_cast<int>(top.state / static_cast<std::uint64_t>(grid.columns))};
+    const Cell cell = grid.cell_of(top.state);
     for (const Cell step : kSteps) {
       const Cell next{cell.column + step.column, cell.row + step.row};
       if (!grid.contains(next) || costmap.distance(next) < costmap.footprint().inscribed) continue;
@@ -131,10 +130,7 @@ class Search {
   std::uint64_t state(Cell cell, int sector) const {
     return grid_.index(cell) * kSectors + static_cast<std::uint64_t>(sector);
   }
-  Cell cell_of(std::uint64_t state) const {
-    const auto columns = static_cast<std::uint64_t>(grid_.columns);
-    return {static_cast<int>(state / kSectors % columns), static_cast<int>(state / kSectors / columns)};
-  }
+  Cell cell_of(std::uint64_t state) const { return grid_.cell_of(state / kSectors); }
   PlanarPose pose_of(std::uint64_t state) const {
     const Cell cell = cell_of(state);
     return {grid_.x_of(cell.column), grid_.y_of(cell.row), heading_of(static_cast<int>(state % kSectors))};
@@ -200,16 +196,12 @@ std::optional<std::pair<Cell, double>> narrowest(const Costmap& costmap, Cell st
     open.emplace(wide, index);
   };
   reach(start, kUnreached, grid.index(start));
-  const auto columns = static_cast<std::size_t>(grid.columns);
   while (!open.empty()) {
     const auto [wide, index] = open.top();
     open.pop();
     if (wide < width[index]) continue;
-    const Cell cell{static_cast<int>(index % columns), static_cast<int>(index / columns)};
-    if (cell == goal) {
-      const std::size_t narrow = at_cell[index];
-      return std::pair{Cell{static_cast<int>(narrow % columns), static_cast<int>(narrow / columns)}, double{wide}};
-    }
+    const Cell cell = grid.cell_of(index);
+    if (cell == goal) return std::pair{grid.cell_of(at_cell[index]), double{wide}};
     for (const Cell step : {Cell{1, 0}, Cell{0, 1}, Cell{-1, 0}, Cell{0, -1}}) {
       const Cell next{cell.column + step.column, cell.row + step.row};
       if (grid.contains(next)) reach(next, wide, at_cell[index]);

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "navigation/costmap.h"
+#include "navigation/scan.h"
 
 namespace robot_control {
 

@@ -7,10 +7,14 @@
 namespace robot_control {
 namespace {
 
+double heading(Point a, Point b, bool back) {
+  return std::atan2(b.y - a.y, b.x - a.x) + (back ? M_PI : 0);
+}
+
 /// Returns the cost of the straight segment with the outline along it; ∞ if it is not free.
 double straight_cost(const Costmap& costmap, Point a, Point b, bool back) {
   const double length = std::hypot(b.x - a.x, b.y - a.y), resolution = costmap.grid().resolution;
-  const double yaw = std::atan2(b.y - a.y, b.x - a.x) + (back ? M_PI : 0);
+  const double yaw = heading(a, b, back);
   const int steps = std::max(1, static_cast<int>(std::ceil(length / resolution)));
   double cost = 0;
   for (int i = 0; i <= steps; ++i) {
@@ -27,10 +31,6 @@ struct Vertex {
   Point at;
   bool back = false;
 };
-
-double heading(Point a, Point b, bool back) {
-  return std::atan2(b.y - a.y, b.x - a.x) + (back ? M_PI : 0);
-}
 
 /// The ends of the segments of a way, which turns on the spot at some of them.
 std::vector<Vertex> vertices_of(const std::vector<PlanarPose>& way, const PlanarPose& start, const PlanarPose& goal) {

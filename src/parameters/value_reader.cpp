@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "files/given_path.h"
+#include "parameters/schema.h"
 
 namespace robot_control {
 namespace {

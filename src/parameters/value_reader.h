@@ -1,9 +1,9 @@
 #pragma once
 /// These functions convert one written value into one field, or one problem.
 
+#include "parameters/block.h"
 #include "parameters/parameter_tree.h"
 #include "parameters/problem_list.h"
-#include "parameters/schema.h"
 
 namespace robot_control {
 

@@ -15,7 +15,6 @@
 #include <cstring>
 #include <fstream>
 #include <future>
-#include <mutex>
 #include <string_view>
 #include <system_error>
 #include <utility>

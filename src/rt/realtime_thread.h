@@ -12,7 +12,6 @@
 /// capability>)". Under kRequired a refusal is an error at start-up. The core needs no privilege and is set under every
 /// policy.
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>

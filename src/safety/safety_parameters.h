@@ -12,9 +12,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "machine/wheeled/drive_train.h"
 #include "parameters/block.h"
 #include "signals/joint.h"
+#include "signals/wheeled/wheel_count.h"
 
 namespace robot_control {
 

@@ -2,9 +2,11 @@
 /// This is the checksum of all data except frames on the bus: messages of a log, records, files, a robot, the gate's
 /// output. It detects changes, but does not protect against an author who computes it again.
 
-#include <cstddef>
+#include <array>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
+#include <string>
 #include <string_view>
 
 namespace robot_control {
@@ -35,5 +37,12 @@ class Checksum {
  private:
   std::uint64_t sum_ = 0xCBF29CE484222325U;
 };
+
+/// Returns the 16 digits in which sums and builds are written.
+inline std::string hex(std::uint64_t number) {
+  std::array<char, 17> text{};
+  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(number));
+  return text.data();
+}
 
 }  // namespace robot_control

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <span>
-#include <string_view>
 
 #include "signals/checksum.h"
 #include "signals/gate_report.h"

@@ -19,7 +19,6 @@
 #include "signals/injected_fault.h"
 #include "signals/permit.h"
 #include "signals/robot_kinds.h"
-#include "signals/roles.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
 

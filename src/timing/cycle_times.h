@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "signals/roles.h"
 #include "signals/trace.h"
 
 namespace robot_control {

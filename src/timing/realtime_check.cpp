@@ -1,7 +1,5 @@
 #include "timing/realtime_check.h"
 
-#include <algorithm>
-
 namespace robot_control {
 
 void RealtimeCheck::add(const RealtimeReading& reading) noexcept {

@@ -4,7 +4,6 @@
 /// An ordinary thread of a node reads its own ring and those of the driver and of the node that wakes it. The real-time
 /// threads do not notice it. A row that was overwritten before it was read, or whose driver's row was, does not count.
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>

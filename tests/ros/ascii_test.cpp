@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "machine/wheeled/drive_train.h"
 #include "ros/messages/status_messages.h"
 #include "ros/reports/diagnostics.h"
 #include "signals/names.h"

@@ -1,5 +1,4 @@
 #include "bench/programs/legs/loop_rows.h"
-#include "control/legged/body_bounds.h"
 
 namespace robot_control::bench {
 namespace {

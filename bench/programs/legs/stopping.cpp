@@ -1,4 +1,3 @@
-#include <optional>
 
 #include "bench/programs/legs/loop_rows.h"
 #include "gate/stop_action.h"

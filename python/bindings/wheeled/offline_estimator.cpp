@@ -5,12 +5,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
 #include "bindings/installed_file.h"
+#include "configuration/parameters.h"
 #include "configuration/wheeled/calibration_file.h"
 #include "signals/names.h"
 #include "signals/rotation.h"

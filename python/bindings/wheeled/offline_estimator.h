@@ -19,7 +19,6 @@
 #include <utility>
 #include <vector>
 
-#include "configuration/parameters.h"
 #include "estimation/estimator.h"
 #include "machine/wheeled/drive_train.h"
 

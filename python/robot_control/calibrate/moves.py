@@ -13,7 +13,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from robot_control.common.pose import Pose
+from robot_control.common.pose import Pose, turned
 
 APPROACH = 1.2  # 1/s
 CREEP = 0.02  # m/s; 2 mm of overshoot per 0.1 s of delay
@@ -57,7 +57,7 @@ def square(side: float, *, clockwise: bool) -> list[Move]:
     x = y = 0.0
     for leg in range(4):
         yaw = sign * leg * math.pi / 2
-        moves += [Line(Pose(x, y, yaw), side), Corner(_wrap(yaw + sign * math.pi / 2), left=not clockwise)]
+        moves += [Line(Pose(x, y, yaw), side), Corner(turned(yaw + sign * math.pi / 2), left=not clockwise)]
         x, y = x + side * math.cos(yaw), y + side * math.sin(yaw)
     return moves
 
@@ -94,7 +94,7 @@ class Pilot:
         if self._number >= len(self._moves):
             return 0.0, 0.0
         move = self._moves[self._number]
-        here = Pose(*pose.seen_from(self._start), _wrap(pose.yaw - self._start.yaw))
+        here = Pose(*pose.seen_from(self._start), turned(pose.yaw - self._start.yaw))
         wanted = self._line(move, here) if isinstance(move, Line) else self._corner(move, here)
         if wanted is None:
             self._number += 1
@@ -107,17 +107,12 @@ class Pilot:
         rest = line.length - ahead
         if rest <= ARRIVED:
             return None
-        steer = -HEADING * _wrap(here.yaw - line.begin.yaw) - SIDEWAYS * left
+        steer = -HEADING * turned(here.yaw - line.begin.yaw) - SIDEWAYS * left
         return min(self._speed, CREEP + APPROACH * rest), max(-STEER, min(STEER, steer))
 
     def _corner(self, corner: Corner, here: Pose) -> tuple[float, float] | None:
         sign = 1 if corner.left else -1
-        rest = _wrap(sign * (corner.yaw - here.yaw))
+        rest = turned(sign * (corner.yaw - here.yaw))
         if rest <= TURNED:
             return None
         return 0.0, sign * min(self._turn_speed, CREEP_TURN + APPROACH * rest)
-
-
-def _wrap(angle: float) -> float:
-    """The same angle in (−π, π]."""
-    return math.pi - (math.pi - angle) % (2 * math.pi)

@@ -38,6 +38,12 @@ def yaw_of(q: _Quaternion) -> float:
     return math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
 
 
+def turned(angle: float) -> float:
+    """The same angle in (−π, π]."""
+    rest = math.remainder(angle, math.tau)
+    return math.pi if rest <= -math.pi else rest
+
+
 @dataclass(frozen=True)
 class Pose:
     """Pose of the robot in one frame, for instance odom."""

@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from robot_control._robot_control import signal_names
 
 _ALL: dict[str, list[Any]] = signal_names
@@ -51,3 +54,9 @@ def bit(kind: str, number: int) -> BitName:
 def bits_in(kind: str, value: int) -> list[BitName]:
     """All bits that are set in `value`."""
     return [bit(kind, number) for number in range(value.bit_length()) if value >> number & 1]
+
+
+def causes_in(column: NDArray[np.float64]) -> list[str]:
+    """Names of all bits of StopCause that were ever set in a column, lowest first. A NaN stands for no message."""
+    found = int(np.bitwise_or.reduce(column[~np.isnan(column)].astype(np.int64), initial=0))
+    return [cause.name for cause in bits_in("StopCause", found)]

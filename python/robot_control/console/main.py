@@ -22,12 +22,13 @@ from aiohttp import web
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message, given_path
 from robot_control.common.ros_node import running_node
+from robot_control.common.settings_files import SettingsError
 from robot_control.common.topic_sender import Signals
 from robot_control.console.addresses import AddressError, Origins, bracketed, origins_of, require_protection
 from robot_control.console.backend import Backend
 from robot_control.console.client import FRAME
 from robot_control.console.server import Server
-from robot_control.console.settings import Settings, SettingsError, read_settings
+from robot_control.console.settings import Settings, read_settings
 from robot_control.console.tls import TlsError, context_of, fingerprint, self_made
 from robot_control.console.users import FOLDER, Users, UsersError
 from robot_control.installed_files import share_file

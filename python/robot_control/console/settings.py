@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
-import yaml  # type: ignore[import-untyped]
+from robot_control.common.settings_files import SettingsError, overlaid
 
 MARGIN = 0.1
 """s for the server's passes, the network beyond it and the robot's nodes; measured below 40 ms on an idle machine"""
-
-
-class SettingsError(ValueError):
-    """The settings cannot be used; the message names every problem."""
 
 
 @dataclass(frozen=True)
@@ -36,22 +33,19 @@ class Settings:
 
 def read_settings(*paths: Path) -> Settings:
     """The values of these files, each laid over the one before. Raises SettingsError with all problems, OSError."""
-    settings, problems = Settings(), []
-    for path in paths:
-        try:
-            tree = yaml.safe_load(path.read_text(encoding="utf-8")) or {}
-        except (yaml.YAMLError, UnicodeDecodeError, RecursionError) as error:
-            raise SettingsError(f"{path}: is no YAML: {error}") from None
-        if not isinstance(tree, dict):
-            raise SettingsError(f"{path}: must be a map of names and numbers")
-        for name, value in tree.items():
-            number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-            if name not in ("distance", "link_gap"):
-                problems.append(f"{path}: {name}: unknown; known are distance, link_gap")
-            elif not number or value <= 0:
-                problems.append(f"{path}: {name} = {value!r}: must be a number above zero")
-            else:
-                settings = replace(settings, **{name: float(value)})
+    values, problems = overlaid(paths, _wrong)
     if problems:
         raise SettingsError("; ".join(problems))
-    return settings
+    return Settings(**{name: float(value) for name, value in values.items()})
+
+
+def _wrong(tree: object) -> Iterator[str]:
+    if not isinstance(tree, dict):
+        yield "must be a map of names and numbers"
+        return
+    for name, value in tree.items():
+        number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+        if name not in ("distance", "link_gap"):
+            yield f"{name}: unknown; known are distance, link_gap"
+        elif not number or value <= 0:
+            yield f"{name} = {value!r}: must be a number above zero"

@@ -11,12 +11,13 @@ import rospy
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import escaped, fit_for_message, given_path
 from robot_control.common.ros_node import running_node
+from robot_control.common.settings_files import SettingsError
 from robot_control.data_return.far_side import FarSideError, require_rclone
 from robot_control.data_return.fetch import verify
 from robot_control.data_return.node import Node, lower_priority
 from robot_control.data_return.plan import progress
 from robot_control.data_return.queue_file import QueueError, QueueFile
-from robot_control.data_return.settings import RCLONE_CONFIG, Settings, SettingsError, read_settings
+from robot_control.data_return.settings import RCLONE_CONFIG, Settings, read_settings
 from robot_control.installed_files import share_file
 
 

@@ -8,22 +8,16 @@ import socket
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
-
-import yaml  # type: ignore[import-untyped]
 
 from robot_control.blackbox.main import LOGS
 from robot_control.common.file_errors import problems_of
 from robot_control.common.files import given_path, printable
+from robot_control.common.settings_files import SettingsError, overlaid
 
 RCLONE_CONFIG = "~/.config/rclone/rclone.conf"
 """rclone's own place for it"""
 HOURS = re.compile(r"([01]\d|2[0-3]):([0-5]\d)-([01]\d|2[0-3]):([0-5]\d)")
 ROBOT = re.compile(r"[A-Za-z0-9_.-]{1,64}")
-
-
-class SettingsError(ValueError):
-    """The settings cannot be used; the message names every problem."""
 
 
 @dataclass(frozen=True)
@@ -68,15 +62,7 @@ def read_settings(*paths: Path) -> Settings:
         SettingsError: with all problems.
         OSError: a file cannot be read.
     """
-    values, problems = dict[str, Any](), list[str]()
-    for path in paths:
-        try:
-            tree = yaml.safe_load(path.read_text(encoding="utf-8")) or {}
-        except (yaml.YAMLError, UnicodeDecodeError, RecursionError) as error:
-            raise SettingsError(f"{path}: is no YAML: {error}") from None
-        found = list(_wrong_types(tree))
-        problems += [f"{path}: {each}" for each in found]
-        values |= {} if found else tree
+    values, problems = overlaid(paths, _wrong_types)
     values = {name: tuple(value) if isinstance(value, list) else value for name, value in values.items()}
     settings = Settings(**values)
     problems += _together(settings)

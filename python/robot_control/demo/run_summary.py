@@ -11,9 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from robot_control.common.cause_names import causes_in
 from robot_control.common.run_log import FloatArray, Log, last
-from robot_control.common.signal_names import states
+from robot_control.common.signal_names import causes_in, states
 from robot_control.demo.brakes import Brake, brakes_in_drive
 from robot_control.demo.loop_timing import Distribution, LoopTiming, loop_timing
 from robot_control.demo.tracking import ON_LEGS, ON_WHEELS, SETTLE, NotSteadyError, Tracking, judge

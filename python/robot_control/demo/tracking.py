@@ -22,6 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from robot_control.common.pose import Pose, turned
 from robot_control.common.run_log import BoolArray, FloatArray, Log
 from robot_control.common.signal_names import mask_of
 from robot_control.demo.brakes import GATE_BRAKE
@@ -57,15 +58,6 @@ ON_LEGS = Tolerances(mean=0.03, cycle=None, pose=0.02, rise=5.0)
 
 
 @dataclass(frozen=True)
-class Pose:
-    """x, y [m] and yaw [rad] in the frame in which the run began."""
-
-    x: float
-    y: float
-    yaw: float
-
-
-@dataclass(frozen=True)
 class Check:
     """One demand and the value that the run reached; both relative."""
 
@@ -87,7 +79,6 @@ class Axis:
     truth: float
     estimate: float
     rms_error: float
-    worst_error: float
 
 
 @dataclass(frozen=True)
@@ -188,7 +179,6 @@ def judge(log: Log, linear: float, angular: float, tolerances: Tolerances = ON_W
                 float(truth.mean()),
                 float(np.nanmean(log[f"estimate_{name}"][rows])),
                 float(np.sqrt(np.mean(error**2)) * abs(commanded)),
-                float(worst * commanded),
             )
         )
 
@@ -209,7 +199,7 @@ def judge(log: Log, linear: float, angular: float, tolerances: Tolerances = ON_W
         estimated_pose=estimated_pose,
         distance=distance,
         position_error=position_error,
-        yaw_error=_wrap(estimated_pose.yaw - true_pose.yaw),
+        yaw_error=turned(estimated_pose.yaw - true_pose.yaw),
         checks=tuple(checks),
     )
 
@@ -239,7 +229,7 @@ def _is_twist(log: Log, prefix: str, linear: float, angular: float) -> BoolArray
 
 def _integrate(log: Log, row: int) -> Pose:
     x, y, yaw = commanded_path(log)
-    return Pose(float(x[row]), float(y[row]), _wrap(float(yaw[row])))
+    return Pose(float(x[row]), float(y[row]), turned(float(yaw[row])))
 
 
 def _pose(log: Log, prefix: str, row: int) -> Pose:
@@ -249,7 +239,3 @@ def _pose(log: Log, prefix: str, row: int) -> Pose:
 def _path_length(x: FloatArray, y: FloatArray) -> float:
     known = ~np.isnan(x) & ~np.isnan(y)
     return float(np.hypot(np.diff(x[known]), np.diff(y[known])).sum())
-
-
-def _wrap(angle: float) -> float:
-    return math.remainder(angle, 2 * math.pi)

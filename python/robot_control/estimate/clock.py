@@ -33,7 +33,6 @@ class TurnFit:
     offset: float  # s, τ
     offset_deviation: float  # s
     wheel_base: float  # m, B
-    wheel_base_deviation: float  # m
     explained: float  # share of the variance of ΔW
 
 
@@ -111,7 +110,7 @@ class _Problem:
             return None
         deviations = np.sqrt(variance * np.diagonal(np.linalg.inv(columns.T @ columns)))
         explained = 1 - float(np.mean(np.minimum(residuals**2, 9 * variance)) / np.var(self.difference))
-        return TurnFit(offset, float(deviations[3]), base, float(deviations[0]), explained)
+        return TurnFit(offset, float(deviations[3]), base, explained)
 
     def _columns(self, offset: float) -> FloatArray:
         turned, faster = (np.diff(np.interp(self.time + offset, self.gyro_time, column)) for column in self.turning.T)

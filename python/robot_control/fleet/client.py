@@ -8,6 +8,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import Protocol
 
+from robot_control.common.pose import turned
 from robot_control.fleet.settings import Settings
 from robot_control.fleet.v2.capability import INSTANT, Capabilities
 from robot_control.fleet.v2.leg import Leg, PathPoint, Way, leg_of
@@ -15,7 +16,6 @@ from robot_control.fleet.v2.messages import INBOUND, MAX_ID, Error, Message, Ref
 from robot_control.fleet.v2.order import Action, Node, Order, order_of
 from robot_control.fleet.v2.state import STATE_PERIOD, Facts, Machine, factsheet, state, visualization
 from robot_control.fleet.v2.vehicle import FAILED, FINISHED, RUNNING, ActionState, Vehicle
-from robot_control.path.pieces import turned
 
 IDLE, DRIVING, DONE, ENDED = "idle", "driving", "done", "ended"
 OFF_EDGE = 0.3

@@ -15,12 +15,13 @@ from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message, given_path
 from robot_control.common.ros_node import running_node
 from robot_control.common.server_values import ServerValueError
+from robot_control.common.settings_files import SettingsError
 from robot_control.common.topic_sender import Signals
 from robot_control.fleet.client import DRIVING, Client
 from robot_control.fleet.machine import machine_of, running_description
 from robot_control.fleet.memory import Memory, MemoryFileError
 from robot_control.fleet.robot import RosRobot
-from robot_control.fleet.settings import Settings, SettingsError, read_settings
+from robot_control.fleet.settings import Settings, read_settings
 from robot_control.fleet.v2.vehicle import Vehicle
 from robot_control.installed_files import share_file
 

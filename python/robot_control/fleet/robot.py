@@ -16,7 +16,7 @@ from sensor_msgs.msg import BatteryState
 from std_srvs.srv import Trigger
 from tf2_msgs.msg import TFMessage
 
-from robot_control.common.pose import pose_of
+from robot_control.common.pose import pose_of, turned
 from robot_control.fleet.client import DONE, DRIVING, ENDED, Progress
 from robot_control.fleet.custom import Actions
 from robot_control.fleet.settings import Settings
@@ -26,7 +26,6 @@ from robot_control.fleet.v2.order import Action
 from robot_control.fleet.v2.state import Facts
 from robot_control.msg import FollowPathAction, FollowPathFeedback, FollowPathGoal, RobotStatus, SafetyStatus
 from robot_control.path.frames import Tf
-from robot_control.path.pieces import turned
 from robot_control.path.waypoints import PathError
 from robot_control.safety.states import DRIVABLE, STOPPED
 from robot_control.safety.watch import CATCH_UP, LATE

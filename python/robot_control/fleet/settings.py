@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-import ipaddress
 import json
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any
-
-import yaml  # type: ignore[import-untyped]
 
 from robot_control.blackbox.main import LOGS
 from robot_control.common.file_errors import problems_of
 from robot_control.common.files import given_path
+from robot_control.common.settings_files import SettingsError, overlaid
+from robot_control.console.addresses import is_loopback
 from robot_control.fleet.v2.capability import STANDARD, ActionKind
 from robot_control.fleet.v2.messages import VERSIONS
-
-
-class SettingsError(ValueError):
-    """The settings cannot be used; the message names every problem."""
 
 
 @dataclass(frozen=True)
@@ -95,18 +89,14 @@ def read_settings(*paths: Path) -> Settings:
     import jsonschema
 
     rules = json.loads(Path(__file__).with_name("settings.schema.json").read_text(encoding="utf-8"))
-    values, problems = dict[str, Any](), list[str]()
-    for path in paths:
-        try:
-            tree = yaml.safe_load(path.read_text(encoding="utf-8")) or {}
-        except (yaml.YAMLError, UnicodeDecodeError, RecursionError) as error:
-            raise SettingsError(f"{path}: is no YAML: {error}") from None
-        found = [
-            f"{path}: {'.'.join(map(str, error.absolute_path)) or 'a key'}: {error.message}"
-            for error in jsonschema.Draft202012Validator(rules).iter_errors(tree)
-        ]
-        problems += found
-        values |= {} if found else tree
+    schema = jsonschema.Draft202012Validator(rules)
+    values, problems = overlaid(
+        paths,
+        lambda tree: (
+            f"{'.'.join(map(str, error.absolute_path)) or 'a key'}: {error.message}"
+            for error in schema.iter_errors(tree)
+        ),
+    )
     custom = {
         str(name): CustomAction(**{**each, "scopes": tuple(each.get("scopes", CustomAction.scopes))})
         for name, each in values.pop("actions", {}).items()
@@ -127,7 +117,7 @@ def _together(settings: Settings) -> Iterator[str]:
             yield f"{each.name} = {value}: must be finite"
     for name in settings.actions.keys() & STANDARD.keys():
         yield f"actions.{name}: is an action of the standard"
-    if not (settings.ca_file or settings.insecure or _is_loopback(settings.host)):
+    if not (settings.ca_file or settings.insecure or is_loopback(settings.host)):
         yield f"host = {settings.host}: beyond the loopback it needs ca_file (TLS), or insecure: true"
     if settings.key_file and not settings.certificate_file:
         yield "key_file: needs certificate_file"
@@ -137,13 +127,6 @@ def _together(settings: Settings) -> Iterator[str]:
         path = Path(getattr(settings, name))
         if getattr(settings, name):
             yield from problems_of(name, path, secret=name in ("password_file", "key_file"))
-
-
-def _is_loopback(host: str) -> bool:
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return host == "localhost"
 
 
 def _what(action: CustomAction) -> str:

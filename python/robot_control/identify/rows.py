@@ -7,9 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from robot_control.common.cause_names import causes_in
 from robot_control.common.run_log import BoolArray, FloatArray, Log, joint_names, last
-from robot_control.common.signal_names import mask_of, number_of
+from robot_control.common.signal_names import causes_in, mask_of, number_of
 
 EFFORT_MODE = number_of("JointMode", "effort")
 UNCHANGED = tuple(number_of("GateVerdict", name) for name in ("passed", "held"))

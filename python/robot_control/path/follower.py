@@ -29,9 +29,9 @@ import math
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from robot_control.common.pose import Pose
+from robot_control.common.pose import Pose, turned
 from robot_control.path.headway import Headway
-from robot_control.path.pieces import Foot, Route, turned
+from robot_control.path.pieces import Foot, Route
 
 
 @dataclass(frozen=True)

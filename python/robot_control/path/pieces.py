@@ -8,18 +8,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate, pairwise
 
+from robot_control.common.pose import turned
 from robot_control.path.waypoints import Waypoint, checked
 
 CORNER = math.radians(35.0)
 """rad; a sharper change of direction is turned on the spot"""
 
 Point = tuple[float, float]
-
-
-def turned(angle: float) -> float:
-    """The same angle in (−π, π]."""
-    rest = math.remainder(angle, math.tau)
-    return math.pi if rest <= -math.pi else rest
 
 
 @dataclass(frozen=True)

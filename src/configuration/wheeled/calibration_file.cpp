@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <functional>
 
 #include "configuration/peer_file.h"
 #include "estimation/calibration_bounds.h"

@@ -14,7 +14,6 @@
 
 #include <array>
 
-#include "control/legged/nominal_stance.h"
 #include "control/legged/tracked_axis.h"
 #include "machine/legs/leg_model.h"
 

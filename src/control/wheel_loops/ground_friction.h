@@ -37,9 +37,6 @@
 
 namespace robot_control {
 
-/// This is the friction of a usual floor, between smooth wet floors (0.5) and rubber on dry concrete (1).
-inline constexpr double kGroundFriction = 0.7;
-
 /// This is the friction before the first turn; most floors exceed it.
 inline constexpr double kInitialGroundFriction = 0.3;
 

@@ -17,7 +17,6 @@
 /// All in all the lead drives no way. A stop ends where the plan ends, if the lead is ordered until it has `ended`.
 
 #include <cmath>
-#include <cstdint>
 
 namespace robot_control {
 

@@ -1,7 +1,6 @@
 #include "control/wheel_loops/wheel_loop.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace robot_control {
 namespace {

@@ -7,7 +7,6 @@
 /// acknowledgement, end of frame) and 3 bits between frames. A remote request has no data, whatever its length says.
 /// Source: ISO 11898-1, 10.4 and 10.5; Nolte, Hansson, Norström: "Minimizing CAN response-time jitter", RTAS 2002.
 
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>

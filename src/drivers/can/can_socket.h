@@ -13,7 +13,6 @@
 #include <linux/can.h>
 #include <sys/un.h>
 
-#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>

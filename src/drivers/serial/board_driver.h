@@ -81,9 +81,6 @@ class BoardDriver final : public SerialDriver<BoardCause, BoardWheel> {
 
   const BoardClock& board_clock() const noexcept { return board_clock_; }
 
-  /// Returns when the newest counts were latched, on the clock of the host.
-  std::int64_t sample_ns() const noexcept { return sample_ns_; }
-
  private:
   void begin() noexcept override;
   bool receive() noexcept override;

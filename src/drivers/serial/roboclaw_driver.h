@@ -25,7 +25,6 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "drivers/drive_speed.h"
 #include "drivers/serial/roboclaw_parameters.h"

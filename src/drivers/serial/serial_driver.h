@@ -13,7 +13,6 @@
 #include <memory>
 #include <numbers>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 

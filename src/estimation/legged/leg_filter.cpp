@@ -1,7 +1,5 @@
 #include "estimation/legged/leg_filter.h"
 
-#include <cmath>
-
 #include "estimation/legged/small_turn.h"
 #include "machine/gravity.h"
 

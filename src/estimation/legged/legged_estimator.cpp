@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "estimation/legged/small_turn.h"
-#include "machine/gravity.h"
 #include "signals/rotation.h"
 
 namespace robot_control {

@@ -4,7 +4,6 @@
 /// A side is lost if no reading was accepted for kMaxHeld periods and for twice the usual gap between its readings.
 
 #include <array>
-#include <cstddef>
 
 #include "estimation/wheels/side_encoder.h"
 #include "estimation/wheels/speed_quantum.h"

@@ -4,7 +4,6 @@
 #include <lz4frame.h>
 
 #include <algorithm>
-#include <memory>
 
 namespace robot_control {
 namespace {

@@ -6,7 +6,6 @@
 #include <functional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "log/bag/bag_file.h"
 #include "log/bag/bag_record.h"

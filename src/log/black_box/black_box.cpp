@@ -3,7 +3,8 @@
 #include <lz4.h>
 
 #include <algorithm>
-#include <cstdio>
+
+#include "signals/checksum.h"
 
 namespace robot_control {
 
@@ -14,15 +15,9 @@ constexpr std::size_t kMaxRecord = std::max(
 
 }  // namespace
 
-std::string black_box_build(std::uint64_t build) {
-  char text[kBlackBoxBuildLength + 1];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(build));
-  return text;
-}
-
 BlackBox::BlackBox(const std::string& path, std::size_t bytes, std::uint64_t build, const LogHeader& header)
     : packed_(static_cast<std::size_t>(LZ4_compressBound(static_cast<int>(kMaxRecord)))),
-      file_(path, bytes, black_box_build(build) + encode(header)) {}
+      file_(path, bytes, hex(build) + encode(header)) {}
 
 void BlackBox::add(const DriverTrace& row) noexcept {
   add_bytes(BlackBoxKind::kDriver, row.sensors.head.stamp_ns, &row, sizeof row);

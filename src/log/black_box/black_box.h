@@ -23,9 +23,8 @@ struct BlackBoxState {
   std::uint64_t lost = 0;           ///< rows that were lost before they reached the black box
 };
 
-/// The file's description begins with the build that wrote the file; the header follows.
+/// The file's description begins with the build that wrote the file, by `hex`; the header follows.
 inline constexpr std::size_t kBlackBoxBuildLength = 16;
-std::string black_box_build(std::uint64_t build);
 
 class BlackBox {
  public:

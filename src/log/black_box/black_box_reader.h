@@ -9,10 +9,8 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "log/black_box/black_box_file.h"
 

@@ -3,7 +3,6 @@
 #include <lz4.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -17,6 +16,7 @@
 #include "log/black_box/lost_rows.h"
 #include "log/messages/message_types.h"
 #include "log/rows/join.h"
+#include "signals/checksum.h"
 
 namespace robot_control {
 namespace {
@@ -215,8 +215,8 @@ class Growing {
 std::string_view first_header(const BlackBoxReader& reader, std::uint64_t build, const std::string& path) {
   const std::string& description = reader.description();
   const std::string writer = description.substr(0, kBlackBoxBuildLength);
-  if (writer != black_box_build(build)) {
-    throw LogError(path + " was written by the build " + writer + ", this is " + black_box_build(build) +
+  if (writer != hex(build)) {
+    throw LogError(path + " was written by the build " + writer + ", this is " + hex(build) +
                    ": read it with the programs that wrote it");
   }
   return std::string_view(description).substr(kBlackBoxBuildLength);

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <bit>
 
 #include "log/fields/trace_field_groups.h"

@@ -4,7 +4,6 @@
 /// `Get` is a stateless lambda that returns a reference to a member of one part of a row, as `MEMBER` makes it. `Wire`
 /// is the type in the message. If the part is missing, numbers are NaN and integers 0.
 
-#include <algorithm>
 #include <array>
 #include <limits>
 #include <type_traits>

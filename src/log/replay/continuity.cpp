@@ -1,20 +1,10 @@
 #include "log/replay/continuity.h"
 
-#include <cstdio>
-
 #include "log/replay/replay_error.h"
 #include "loop/build_id.h"
+#include "signals/checksum.h"
 
 namespace robot_control {
-namespace {
-
-std::string hex(std::uint64_t number) {
-  std::array<char, 20> text{};
-  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(number));
-  return text.data();
-}
-
-}  // namespace
 
 bool SnapshotStore::add(const LawSnapshot& snapshot) {
   if (!intact(snapshot)) return false;

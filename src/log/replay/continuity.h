@@ -5,7 +5,6 @@
 #include <map>
 #include <string>
 #include <tuple>
-#include <vector>
 
 #include "log/replay/report.h"
 #include "signals/law_calls.h"

@@ -13,7 +13,6 @@
 /// rows, in another process. The same holds after it used a frame that is neither in the log nor computed again. If an
 /// injected fault replaced a law's output, the log holds the published frame, which the other laws used.
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>

@@ -1,7 +1,6 @@
 #pragma once
 /// A reader gives rows that own the parts to which JoinedRow points.
 
-#include <cstddef>
 #include <cstdint>
 
 #include "log/rows/joined_row.h"

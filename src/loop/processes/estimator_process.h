@@ -2,7 +2,6 @@
 /// The estimator without ROS: woken by sensors, writes state.
 
 #include <string>
-#include <vector>
 
 #include "loop/cycles/estimator_cycle.h"
 #include "loop/processes/consumer_process.h"

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "loop/machine_identity.h"
+
 namespace robot_control {
 
 Process::Process(const Parameters& parameters, const Robot& robot, LoopPriority priority, std::string thread_name)

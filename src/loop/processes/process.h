@@ -16,7 +16,6 @@
 #include "bus/latest_frames.h"
 #include "configuration/parameters.h"
 #include "loop/cycles/cycle_clock.h"
-#include "loop/machine_identity.h"
 #include "robots/robot.h"
 #include "rt/clock.h"
 #include "rt/realtime_thread.h"

@@ -13,7 +13,6 @@
 #include <csignal>
 #include <fstream>
 #include <string_view>
-#include <utility>
 
 namespace robot_control {
 namespace {

@@ -7,7 +7,6 @@
 #include <mutex>
 
 #include "machine/description/markup/urdf_markup.h"
-#include "machine/description/wording.h"
 
 namespace robot_control {
 namespace {

@@ -1,7 +1,6 @@
 #include "machine/description/wording.h"
 
 #include <algorithm>
-#include <array>
 #include <sstream>
 
 namespace robot_control {

@@ -1,6 +1,5 @@
 #include "machine/description/xacro.h"
 
-#include <algorithm>
 #include <filesystem>
 
 #include "files/given_path.h"

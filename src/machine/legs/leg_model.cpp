@@ -6,7 +6,6 @@
 #include <set>
 #include <sstream>
 
-#include "machine/bodies/gyration.h"
 #include "machine/description/wording.h"
 #include "machine/legs/leg_search.h"
 #include "machine/legs/lying_posture.h"

@@ -1,6 +1,5 @@
 #include "machine/legs/leg_search.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

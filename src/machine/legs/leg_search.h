@@ -1,7 +1,6 @@
 #pragma once
 /// Finds the chains of joints that are legs.
 
-#include <array>
 #include <cstddef>
 #include <vector>
 

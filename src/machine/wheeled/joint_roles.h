@@ -5,7 +5,6 @@
 ///             wheel), followers of a <mimic>, joints without an effort limit
 ///   kHeld     the others: arms, lifts, grippers
 
-#include <cstddef>
 #include <vector>
 
 #include "machine/wheeled/wheels/drive_wheels.h"

@@ -3,11 +3,6 @@
 #include <cmath>
 
 namespace robot_control {
-namespace {
-
-constexpr std::int8_t kOccupiedFrom = 65;  // %, as in map_server's files
-
-}  // namespace
 
 mrpt::maps::COccupancyGridMap2D mrpt_grid(const Grid& grid) {
   const auto width = static_cast<float>(grid.columns * grid.resolution);

@@ -1,7 +1,6 @@
 #include "robots/wheeled/retuning.h"
 
 #include <algorithm>
-#include <limits>
 #include <sstream>
 
 #include "control/control_problems.h"

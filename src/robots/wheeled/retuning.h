@@ -21,7 +21,6 @@
 #include "machine/wheeled/drive_train.h"
 #include "robots/robot.h"
 #include "safety/safety_parameters.h"
-#include "signals/wheeled/drive_tuning.h"
 
 namespace robot_control {
 

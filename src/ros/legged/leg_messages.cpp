@@ -1,6 +1,5 @@
 #include "ros/legged/leg_messages.h"
 
-#include <cmath>
 #include <limits>
 
 #include "control/legged/own_gaits.h"

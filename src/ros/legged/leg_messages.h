@@ -19,6 +19,7 @@
 #include "ros/messages/messages.h"
 #include "signals/command_frame.h"
 #include "signals/permit.h"
+#include "signals/robot_kinds.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
 

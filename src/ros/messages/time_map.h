@@ -10,7 +10,7 @@
 
 #include <cstdint>
 
-#include "configuration/parameters.h"
+#include "configuration/loop_parameters.h"
 #include "signals/sensor_frame.h"
 
 namespace ros {

@@ -11,7 +11,6 @@
 
 #include <functional>
 #include <mutex>
-#include <optional>
 #include <string>
 
 #include "navigation/mrpt/localizer.h"

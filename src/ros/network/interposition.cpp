@@ -4,7 +4,6 @@
 #include <elf.h>
 #include <link.h>
 
-#include <cstdint>
 #include <cstring>
 
 namespace robot_control {

@@ -24,6 +24,7 @@
 
 #include "ros/network/interposition.h"
 #include "ros/network/publisher_uri.h"
+#include "ros/reports/name_list.h"
 
 namespace robot_control {
 namespace {
@@ -111,23 +112,20 @@ ros::console::Level level_of(LoggerProbe& probe) {
 std::string unguarded() {
   const std::string roscpp = "libroscpp.so";
   const std::string xmlrpcpp = "libxmlrpcpp.so";
-  std::string text;
-  for (const std::string& missing : not_replaced({
-           {roscpp, kParseShared, "connection headers"},
-           {roscpp, kRead, "announced lengths"},
-           {roscpp, kCreateOutgoing, "datagram sizes"},
-           {roscpp, kGetLoggers, "get_loggers"},
-           {xmlrpcpp, kNbRead, "lengths of XML-RPC requests"},
-           {xmlrpcpp, kFromXml, "nesting of XML-RPC requests"},
-           {xmlrpcpp, kExecuteMethod, "what an XML-RPC method throws"},
-           {roscpp, kSetHeader, "publishers' addresses"},
-           {roscpp, "accept", "accepted connections"},
-           {xmlrpcpp, "accept", "accepted XML-RPC connections"},
-           {roscpp, "socket", "outgoing connections"},
-           {xmlrpcpp, "socket", "outgoing XML-RPC connections"},
-       })) {
-    text += (text.empty() ? "" : ", ") + missing;
-  }
+  const std::string text = joined(not_replaced({
+      {roscpp, kParseShared, "connection headers"},
+      {roscpp, kRead, "announced lengths"},
+      {roscpp, kCreateOutgoing, "datagram sizes"},
+      {roscpp, kGetLoggers, "get_loggers"},
+      {xmlrpcpp, kNbRead, "lengths of XML-RPC requests"},
+      {xmlrpcpp, kFromXml, "nesting of XML-RPC requests"},
+      {xmlrpcpp, kExecuteMethod, "what an XML-RPC method throws"},
+      {roscpp, kSetHeader, "publishers' addresses"},
+      {roscpp, "accept", "accepted connections"},
+      {xmlrpcpp, "accept", "accepted XML-RPC connections"},
+      {roscpp, "socket", "outgoing connections"},
+      {xmlrpcpp, "socket", "outgoing XML-RPC connections"},
+  }));
   if (text.empty()) return "";
   return "the loaded roscpp does not use this program's checks of " + text +
          ": a malformed connection may end this node, and a restarted sender may have to send a zero first; "

@@ -18,6 +18,7 @@
 #include "ros/network/wire_guard.h"
 #include "ros/nodes/launch_end.h"
 #include "ros/reports/diagnostics.h"
+#include "ros/reports/name_list.h"
 #include "ros/startup/command_line.h"
 #include "ros/startup/description.h"
 #include "rt/clock.h"
@@ -60,9 +61,7 @@ class WaitingNote {
       return;
     }
     if (reported_ || now_ns - since_ns_ < kSilentWait) return;
-    std::string names;
-    for (const std::string& name : missing) names += (names.empty() ? "" : ", ") + name;
-    ROS_WARN("waiting for %s", names.c_str());
+    ROS_WARN("waiting for %s", joined(missing).c_str());
     reported_ = true;
   }
 
@@ -150,9 +149,7 @@ class NodeLoop {
   void log_refusals(const std::vector<std::string>& refusals) {
     if (refusals_reported_ || refusals.empty()) return;
     refusals_reported_ = true;
-    std::string text;
-    for (const std::string& refusal : refusals) text += (text.empty() ? "" : ", ") + refusal;
-    ROS_WARN("%s: see docs/realtime.md", text.c_str());
+    ROS_WARN("%s: see docs/realtime.md", joined(refusals).c_str());
   }
 
   void diagnose(std::int64_t now_ns) {

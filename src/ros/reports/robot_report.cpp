@@ -2,8 +2,6 @@
 
 #include <sstream>
 
-#include "machine/description/wording.h"
-
 namespace robot_control {
 
 std::string summary(const MachineModel& robot) {

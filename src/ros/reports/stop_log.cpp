@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdio>
 #include <limits>
-#include <string_view>
 
 #include "signals/names.h"
 

@@ -10,7 +10,6 @@
 /// to the URDF are therefore found only if that text equals the file in 3. Meshes named by package:// and file:// are
 /// always found.
 
-#include <optional>
 #include <string>
 
 #include "configuration/parameters.h"

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "configuration/parameters.h"
+#include "parameters/parameter_tree.h"
 
 namespace XmlRpc {
 class XmlRpcValue;

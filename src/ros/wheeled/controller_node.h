@@ -10,7 +10,6 @@
 #include <memory>
 
 #include "ros/nodes/node.h"
-#include "signals/command_frame.h"
 
 namespace robot_control {
 

@@ -12,11 +12,10 @@
 /// moving.
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 
-#include "machine/wheeled/drive_train.h"
 #include "safety/measurements/wheel_motion.h"
+#include "signals/wheeled/wheel_count.h"
 
 namespace robot_control {
 

@@ -11,7 +11,6 @@
 /// While the wheel speeds are not known (wheel_motion.h), u keeps its value.
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 
 #include "machine/wheeled/drive_train.h"

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "safety/derived_limits.h"
+
 namespace robot_control {
 
 WheelMotion::WheelMotion(std::size_t wheels, double period) noexcept

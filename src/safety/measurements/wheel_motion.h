@@ -20,9 +20,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "machine/wheeled/drive_train.h"
-#include "safety/derived_limits.h"
 #include "signals/sensor_frame.h"
+#include "signals/wheeled/wheel_count.h"
 
 namespace robot_control {
 

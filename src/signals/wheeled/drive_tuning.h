@@ -3,7 +3,6 @@
 /// derived.
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 
 #include "signals/wheeled/wheel_count.h"

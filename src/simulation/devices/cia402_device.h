@@ -6,7 +6,6 @@
 /// pre-operational, and each axis follows 6007. A quick stop follows 605A and a fault 605E: the axis is damped down to
 /// brake_hold_speed, and then released or, with 605A of 5 … 8, held.
 
-#include <array>
 #include <cstdint>
 #include <vector>
 

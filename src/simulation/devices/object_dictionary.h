@@ -2,7 +2,6 @@
 /// The entries of a CANopen device, each a number of 1, 2 or 4 bytes, and the SDO server for them (expedited alone).
 
 #include <cstdint>
-#include <optional>
 #include <unordered_map>
 
 #include "drivers/can/cia402/pdo.h"

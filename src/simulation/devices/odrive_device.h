@@ -6,7 +6,6 @@
 /// enable_torque_mode_vel_limit does. An expired watchdog releases the motor, as every error does. With 0.5 any frame
 /// to the axis feeds the watchdog, also in idle; with 0.6 it runs in closed loop alone.
 
-#include <array>
 #include <cstdint>
 
 #include "drivers/can/odrive/odrive_messages.h"

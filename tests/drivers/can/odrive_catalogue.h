@@ -1,5 +1,5 @@
 #pragma once
-/// All messages of ODrive CANSimple under the names of the DBC files.
+/// The messages of ODrive CANSimple that the driver uses, under the names of the DBC files.
 
 #include "drivers/can/odrive/odrive_messages.h"
 #include "drivers/can/odrive/odrive_messages_05.h"
@@ -17,12 +17,8 @@ void visit_common(Visit visit) {
   visit.template operator()<SetInputVelocity>("Set_Input_Vel");
   visit.template operator()<SetInputTorque>("Set_Input_Torque");
   visit.template operator()<SetLimits>("Set_Limits");
-  visit.template operator()<SetTrajectoryVelocity>("Set_Traj_Vel_Limit");
-  visit.template operator()<SetTrajectoryAcceleration>("Set_Traj_Accel_Limits");
-  visit.template operator()<SetTrajectoryInertia>("Set_Traj_Inertia");
   visit.template operator()<Iq>("Get_Iq");
   visit.template operator()<BusVoltageCurrent>("Get_Bus_Voltage_Current");
-  visit.template operator()<SetPositionGain>("Set_Pos_Gain");
   visit.template operator()<SetVelocityGains>("Set_Vel_Gains");
 }
 
@@ -33,14 +29,9 @@ void visit_05(Visit visit) {
   visit.template operator()<v05::MotorError>("Get_Motor_Error");
   visit.template operator()<v05::EncoderError>("Get_Encoder_Error");
   visit.template operator()<v05::SensorlessError>("Get_Sensorless_Error");
-  visit.template operator()<v05::SetAxisNodeId>("Set_Axis_Node_ID");
-  visit.template operator()<v05::EncoderCount>("Get_Encoder_Count");
-  visit.template operator()<v05::StartAnticogging>("Start_Anticogging");
-  visit.template operator()<v05::SensorlessEstimates>("Get_Sensorless_Estimates");
   visit.template operator()<v05::Reboot>("Reboot");
   visit.template operator()<v05::ClearErrors>("Clear_Errors");
   visit.template operator()<v05::SetLinearCount>("Set_Linear_Count");
-  visit.template operator()<v05::AdcVoltage>("Get_ADC_Voltage");
   visit.template operator()<v05::ControllerError>("Get_Controller_Error");
 }
 
@@ -59,8 +50,6 @@ void visit_06(Visit visit) {
   visit.template operator()<v06::ClearErrors>("Clear_Errors");
   visit.template operator()<v06::SetAbsolutePosition>("Set_Absolute_Position");
   visit.template operator()<v06::Torques>("Get_Torques");
-  visit.template operator()<v06::Powers>("Get_Powers");
-  visit.template operator()<v06::EnterDfuMode>("Enter_DFU_Mode");
 }
 
 }  // namespace robot_control::odrive

@@ -12,10 +12,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
+from robot_control.common.pose import turned
 from robot_control.fleet.v2.curve import CurveError, Point, points_of
 from robot_control.fleet.v2.messages import Message, RefusedError
 from robot_control.fleet.v2.order import NONE, Edge, Node, Place
-from robot_control.path.pieces import CORNER, turned
+from robot_control.path.pieces import CORNER
 
 SAME_HEADING = math.radians(2.0)
 """rad between two orientations that count as one"""

@@ -4,7 +4,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "control/legged/foothold.h"
 #include "control/legged/walking/swing.h"

@@ -30,7 +30,6 @@ enum class NmtCommand : std::uint8_t {
   kStop = 0x02,
   kEnterPreOperational = 0x80,
   kResetNode = 0x81,
-  kResetCommunication = 0x82,
 };
 
 struct NmtRequest {

@@ -1,6 +1,5 @@
 #include "drivers/can/cia402/cia402_drive.h"
 
-#include <cmath>
 #include <cstdio>
 
 #include "drivers/wrapped_count.h"

@@ -14,10 +14,8 @@ using canopen::PdoKind;
 
 /// Modes of operation: values of 6060 and 6061; bit (value − 1) of 6502 says that the drive has it.
 enum class Mode : std::int8_t {
-  kProfilePosition = 1,
   kProfileVelocity = 3,
   kTorque = 4,
-  kCyclicPosition = 8,
   kCyclicVelocity = 9,
   kCyclicTorque = 10,
 };

@@ -15,7 +15,6 @@
 /// Objects that are optional in CiA 402 may be absent. With VelocityPdo::kDerived those of the velocity are optional,
 /// too. The velocity follows from the position where one of them is absent, refused or different.
 
-#include <array>
 #include <cstdint>
 #include <vector>
 

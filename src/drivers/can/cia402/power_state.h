@@ -35,9 +35,7 @@ const char* power_state_words(PowerState state) noexcept;
 struct StatusBits {
   static constexpr std::uint16_t kVoltageEnabled = 1U << 4U;
   static constexpr std::uint16_t kWarning = 1U << 7U;
-  static constexpr std::uint16_t kRemote = 1U << 9U;  ///< The drive obeys the controlword.
-  static constexpr std::uint16_t kTargetReached = 1U << 10U;
-  static constexpr std::uint16_t kInternalLimit = 1U << 11U;
+  static constexpr std::uint16_t kRemote = 1U << 9U;           ///< The drive obeys the controlword.
   static constexpr std::uint16_t kFollowsCommand = 1U << 12U;  ///< in the cyclic modes
 };
 

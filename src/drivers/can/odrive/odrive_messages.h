@@ -12,17 +12,12 @@ inline constexpr double kTurn = 2 * std::numbers::pi;  ///< rad
 enum class AxisState : std::uint32_t {
   kUndefined = 0,
   kIdle = 1,  ///< The motor is released: the axis coasts.
-  kStartupSequence = 2,
-  kFullCalibrationSequence = 3,
-  kMotorCalibration = 4,
-  kEncoderIndexSearch = 6,
-  kEncoderOffsetCalibration = 7,
   kClosedLoopControl = 8,
 };
 
-enum class ControlMode : std::uint32_t { kVoltage = 0, kTorque = 1, kVelocity = 2, kPosition = 3 };
+enum class ControlMode : std::uint32_t { kTorque = 1, kVelocity = 2, kPosition = 3 };
 
-enum class InputMode : std::uint32_t { kInactive = 0, kPassthrough = 1, kVelocityRamp = 2, kTorqueRamp = 6 };
+enum class InputMode : std::uint32_t { kPassthrough = 1 };
 
 /// The axis stops with the error ESTOP_REQUESTED.
 struct Estop {
@@ -102,31 +97,6 @@ struct SetLimits {
   }
 };
 
-struct SetTrajectoryVelocity {
-  static constexpr Command kCommand = to_axis(0x11);
-  double velocity = 0;  ///< limit, rad/s
-
-  static constexpr auto layout() { return std::tuple{wire_float(&SetTrajectoryVelocity::velocity, 0, kTurn)}; }
-};
-
-struct SetTrajectoryAcceleration {
-  static constexpr Command kCommand = to_axis(0x12);
-  double acceleration = 0;  ///< limit, rad/s²
-  double deceleration = 0;  ///< limit, rad/s²
-
-  static constexpr auto layout() {
-    return std::tuple{wire_float(&SetTrajectoryAcceleration::acceleration, 0, kTurn),
-                      wire_float(&SetTrajectoryAcceleration::deceleration, 32, kTurn)};
-  }
-};
-
-struct SetTrajectoryInertia {
-  static constexpr Command kCommand = to_axis(0x13);
-  double inertia = 0;  ///< N·m/(rad/s²)
-
-  static constexpr auto layout() { return std::tuple{wire_float(&SetTrajectoryInertia::inertia, 0, 1 / kTurn)}; }
-};
-
 /// Torque = current · torque constant of the motor.
 struct Iq {
   static constexpr Command kCommand = from_axis(0x14);
@@ -144,13 +114,6 @@ struct BusVoltageCurrent {
   static constexpr auto layout() {
     return std::tuple{wire_float(&BusVoltageCurrent::voltage, 0), wire_float(&BusVoltageCurrent::current, 32)};
   }
-};
-
-struct SetPositionGain {
-  static constexpr Command kCommand = to_axis(0x1A);
-  double gain = 0;  ///< (rad/s)/rad
-
-  static constexpr auto layout() { return std::tuple{wire_float(&SetPositionGain::gain, 0)}; }
 };
 
 struct SetVelocityGains {

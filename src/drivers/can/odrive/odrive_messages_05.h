@@ -46,40 +46,6 @@ struct SensorlessError {
   static constexpr auto layout() { return std::tuple{wire_unsigned(&SensorlessError::error, 0, 32)}; }
 };
 
-struct SetAxisNodeId {
-  static constexpr Command kCommand = to_axis(0x06);
-  std::uint32_t node = 0;
-
-  static constexpr auto layout() { return std::tuple{wire_unsigned(&SetAxisNodeId::node, 0, 32)}; }
-};
-
-struct EncoderCount {
-  static constexpr Command kCommand = from_axis(0x0A);
-  std::int32_t shadow = 0;  ///< counts since the start of the drive
-  std::int32_t in_cpr = 0;  ///< counts within one turn
-
-  static constexpr auto layout() {
-    return std::tuple{wire_signed(&EncoderCount::shadow, 0, 32), wire_signed(&EncoderCount::in_cpr, 32, 32)};
-  }
-};
-
-struct StartAnticogging {
-  static constexpr Command kCommand = to_axis(0x10);
-
-  static constexpr auto layout() { return std::tuple{}; }
-};
-
-struct SensorlessEstimates {
-  static constexpr Command kCommand = from_axis(0x15);
-  double position = 0;  ///< rad
-  double velocity = 0;  ///< rad/s
-
-  static constexpr auto layout() {
-    return std::tuple{wire_float(&SensorlessEstimates::position, 0, kTurn),
-                      wire_float(&SensorlessEstimates::velocity, 32, kTurn)};
-  }
-};
-
 struct Reboot {
   static constexpr Command kCommand = to_axis(0x16);
 
@@ -97,21 +63,6 @@ struct SetLinearCount {
   std::int32_t position = 0;  ///< counts
 
   static constexpr auto layout() { return std::tuple{wire_signed(&SetLinearCount::position, 0, 32)}; }
-};
-
-struct AdcVoltage {
-  static constexpr Command kCommand = from_axis(0x1C);
-  double voltage = 0;  ///< V
-
-  static constexpr auto layout() { return std::tuple{wire_float(&AdcVoltage::voltage, 0)}; }
-};
-
-/// Requests AdcVoltage, under the same identifier. A remote request has no place for the number of the input.
-struct GetAdcVoltage {
-  static constexpr Command kCommand = to_axis(0x1C);
-  std::uint8_t gpio = 0;
-
-  static constexpr auto layout() { return std::tuple{wire_unsigned(&GetAdcVoltage::gpio, 0, 8)}; }
 };
 
 struct ControllerError {

@@ -98,7 +98,7 @@ struct Temperature {
 
 struct Reboot {
   static constexpr Command kCommand = to_axis(0x16);
-  static constexpr std::uint8_t kReboot = 0, kSaveConfiguration = 1, kEraseConfiguration = 2, kEnterDfuMode = 3;
+  static constexpr std::uint8_t kReboot = 0;
   std::uint8_t action = kReboot;
 
   static constexpr auto layout() { return std::tuple{wire_unsigned(&Reboot::action, 0, 8)}; }
@@ -126,22 +126,6 @@ struct Torques {
   static constexpr auto layout() {
     return std::tuple{wire_float(&Torques::target, 0), wire_float(&Torques::estimate, 32)};
   }
-};
-
-struct Powers {
-  static constexpr Command kCommand = from_axis(0x1D);
-  double electrical = 0;  ///< W
-  double mechanical = 0;  ///< W
-
-  static constexpr auto layout() {
-    return std::tuple{wire_float(&Powers::electrical, 0), wire_float(&Powers::mechanical, 32)};
-  }
-};
-
-struct EnterDfuMode {
-  static constexpr Command kCommand = to_axis(0x1F);
-
-  static constexpr auto layout() { return std::tuple{}; }
 };
 
 }  // namespace robot_control::odrive::v06

@@ -2,7 +2,6 @@
 /// OdriveParameters are the statements of the drive file about one ODrive axis.
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "drivers/drive_parameters.h"

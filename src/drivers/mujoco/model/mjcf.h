@@ -29,7 +29,6 @@
 #include <mujoco/mujoco.h>
 
 #include <array>
-#include <optional>
 #include <string>
 
 #include "drivers/mujoco/model/true_robot.h"

@@ -4,7 +4,7 @@
 #include <locale>
 #include <sstream>
 
-#include "drivers/mujoco/model/mjcf.h"
+#include "drivers/mujoco/model/true_robot.h"
 
 namespace robot_control {
 namespace {

@@ -28,7 +28,6 @@
 /// do not change. Valid samples stay valid with every kind except off, because a device does not detect its own wrong
 /// values.
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>

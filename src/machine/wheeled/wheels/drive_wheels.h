@@ -22,7 +22,6 @@
 /// (swivel.h). Without a swivel a turn would drag it sideways, so it counts as an omni wheel (WheelModel::omni). With
 /// too short a trail it slides. Both are noted. other_drives.h refuses robots that are no differential drives.
 
-#include <string>
 #include <vector>
 
 #include "machine/bodies/rolling.h"

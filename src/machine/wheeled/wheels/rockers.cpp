@@ -1,6 +1,5 @@
 #include "machine/wheeled/wheels/rockers.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "machine/bodies/rolling.h"

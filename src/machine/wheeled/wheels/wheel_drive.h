@@ -10,7 +10,6 @@
 ///             loop at 1 kHz unstable (kp dt/J < 1). Passive wheels have kCasterShare
 /// m is the URDF's mass. n is the number of drive wheels, and for casters the number of all rolling bodies.
 
-#include <string>
 #include <vector>
 
 #include "machine/wheeled/wheels/drive_wheels.h"

@@ -7,7 +7,6 @@
 /// robot that turns by skidding slip in every turn.
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 
 #include "machine/wheeled/drive_train.h"

@@ -9,7 +9,6 @@
 ///          e_stop (the button is pressed, or its wire is broken)
 ///   line   kSerialFaultWords
 
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>

@@ -11,7 +11,6 @@
 ///            | no_gains (at the next start)
 ///   encoder  ok | stuck (that of M1)
 
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>

@@ -5,7 +5,6 @@
 /// `inject` takes the component `line` with the kinds of virtual_serial.h, and those of the board.
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>

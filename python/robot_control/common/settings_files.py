@@ -1,0 +1,32 @@
+"""The settings of a program in YAML files, each laid over the one before."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+import yaml  # type: ignore[import-untyped]
+
+
+class SettingsError(ValueError):
+    """The settings cannot be used; the message names every problem."""
+
+
+def overlaid(paths: Iterable[Path], problems_of: Callable[[Any], Iterable[str]]) -> tuple[dict[str, Any], list[str]]:
+    """The values of all files without a problem, and the problems of the others, each with the file.
+
+    Raises:
+        SettingsError: a file is no YAML.
+        OSError: a file cannot be read.
+    """
+    values, problems = dict[str, Any](), list[str]()
+    for path in paths:
+        try:
+            tree = yaml.safe_load(path.read_text(encoding="utf-8")) or {}
+        except (yaml.YAMLError, UnicodeDecodeError, RecursionError) as error:
+            raise SettingsError(f"{path}: is no YAML: {error}") from None
+        found = [f"{path}: {problem}" for problem in problems_of(tree)]
+        problems += found
+        values |= {} if found else tree
+    return values, problems
