@@ -73,14 +73,16 @@ double needed_after(const LegModel& robot, const NominalStance& stance, const Ga
   return part;
 }
 
-/// Returns the largest speed on this axis for which `part_of` returns at most kOfJointSpeed.
+/// Returns the largest speed on this axis, either way, for which `part_of` returns at most kOfJointSpeed.
 template <class Part>
 double largest(std::size_t axis, const Part& part_of) noexcept {
   double low = 0, high = kFastest;
   for (int i = 0; i < kHalvings; ++i) {
-    WalkingTwist twist{};
-    twist[axis] = (low + high) / 2;
-    (part_of(twist) <= kOfJointSpeed ? low : high) = twist[axis];
+    const double speed = (low + high) / 2;
+    WalkingTwist ahead{}, back{};
+    ahead[axis] = speed;
+    back[axis] = -speed;
+    (std::max(part_of(ahead), part_of(back)) <= kOfJointSpeed ? low : high) = speed;
   }
   return std::max(kMinSpeed, low);
 }
