@@ -124,6 +124,16 @@ TEST_F(WalkingSpeedTest, NoJointNeedsMoreThanItsPartAtTheSpeedsOfAGaitAndItsChan
   }
 }
 
+TEST_F(WalkingSpeedTest, NoGaitIsFasterThanATrotKeepsItsBalance) {
+  for (const double size : {1.0, 0.25}) {
+    LegModel fast = sized(size);
+    for (JointModel& joint : fast.joints) joint.velocity_limit = 1000;
+    const NominalStance stands = nominal_stance(fast);
+    const Gait trot = gait_of(fast, stands, kGaits[number(GaitName::kTrot)]);
+    EXPECT_NEAR(walking_speeds(fast, stands, {trot})[0][0], 1.7 * std::sqrt(fast.leg_length() / kReferenceLeg), 1e-9);
+  }
+}
+
 TEST_F(WalkingSpeedTest, AStepInPlaceIsLowerWhereItsJointsAreSlow) {
   const Gait trot = kGaits[number(GaitName::kTrot)].scaled(robot.leg_length());
   for (JointModel& joint : robot.joints) joint.velocity_limit = 1000;

@@ -10,7 +10,8 @@
 namespace robot_control {
 namespace {
 
-constexpr double kFastest = 10;  // m/s, rad/s
+constexpr double kFastest = 10;      // m/s, rad/s
+constexpr double kFastestLeg = 1.7;  // m/s, ahead, of legs of kReferenceLeg
 constexpr int kHalvings = 12;
 constexpr int kSamples = 24;
 
@@ -116,6 +117,8 @@ Speeds walking_speeds(const LegModel& robot, const NominalStance& stance, const 
       }
     }
   }
+  const double fastest = kFastestLeg * std::sqrt(robot.leg_length() / kReferenceLeg);
+  for (WalkingTwist& speed : speeds) speed[0] = std::min(speed[0], fastest);
   return speeds;
 }
 
