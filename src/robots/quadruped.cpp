@@ -7,6 +7,7 @@
 #include "control/legged/body_bounds.h"
 #include "control/legged/gait.h"
 #include "control/legged/leg_controller.h"
+#include "control/legged/leg_tuning.h"
 #include "control/legged/walking/walking_speed.h"
 #include "estimation/legged/legged_estimator.h"
 #include "parameters/problem_list.h"
@@ -38,10 +39,17 @@ void Quadruped::require_drivable() const {
     throw ParameterError(
         "robot.driver: motor drives move robots on wheels alone. Leave robot.driver and robot.drives out");
   }
+  const auto rounded = [](double value) { return shortest(std::round(100 * value) / 100); };
   if (const std::optional<LegPlace> leg = short_leg(machine_)) {
     throw ParameterError(machine_.source + ": the leg " + name_of(*leg) +
-                         " does not reach the ground while the robot stands " + shortest(leg_tuning(machine_).height) +
+                         " does not reach the ground while the robot stands " + rounded(leg_tuning(machine_).height) +
                          " m above it. Give its joints ranges that allow this");
+  }
+  if (const LoadedKnee knee = loaded_knee(machine_); knee.part > kMaxKneePart) {
+    throw ParameterError(machine_.source + ": the knee " + machine_.joints[knee.joint].name + " needs " +
+                         rounded(knee.effort) + " N·m for half of the weight, as in a trot: " + rounded(knee.part) +
+                         " of its effort limit, at most " + shortest(kMaxKneePart) +
+                         ". Give a stronger motor, or a lighter robot");
   }
 }
 

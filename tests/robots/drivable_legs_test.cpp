@@ -8,15 +8,31 @@
 namespace robot_control {
 namespace {
 
+/// Returns why it is refused; empty: it is not.
+std::string refusal_of(const LegModel& robot) {
+  try {
+    Quadruped(QuadrupedLoop::parameters(0, ErrorLevel::kIdeal), robot).require_drivable();
+    return {};
+  } catch (const ParameterError& error) {
+    return error.what();
+  }
+}
+
 TEST(Quadruped, OfLegsThatDoNotReachTheGroundIsRefused) {
   LegModel robot = legged_robot("quadbot");
   robot.legs[0].foot_radius = -10;
-  try {
-    Quadruped(QuadrupedLoop::parameters(0, ErrorLevel::kIdeal), robot).require_drivable();
-    FAIL();
-  } catch (const ParameterError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("does not reach the ground while the robot stands 0.2"));
-  }
+  EXPECT_THAT(refusal_of(robot), testing::HasSubstr("does not reach the ground while the robot stands 0.3 m above"));
+}
+
+TEST(Quadruped, OfAKneeThatDoesNotBearATrotIsRefused) {
+  LegModel robot = legged_robot("quadbot");
+  const double needs = 12.7 * 9.81 / 2 * 0.213 * std::sin(std::acos(2 * 0.85 * 0.85 - 1)) / (2 * 0.85);  // N·m
+  robot.joints[8].effort_limit = needs / 0.64;
+  EXPECT_EQ(refusal_of(robot), "");
+  robot.joints[8].effort_limit = needs / 0.66;
+  EXPECT_THAT(refusal_of(robot),
+              testing::HasSubstr("the knee rear_left_knee_joint needs 6.99 N·m for half of the weight, as in a trot: "
+                                 "0.66 of its effort limit, at most 0.65. Give"));
 }
 
 }  // namespace

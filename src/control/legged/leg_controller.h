@@ -137,7 +137,7 @@ class LegController {
   void walk(const ControlInput& input, const Request& request, CommandFrame& out) noexcept;
   bool placed(const ControlInput& input) const noexcept;
   GaitName choose_gait(const Request& request, const WalkingTwist& twist) noexcept;
-  WalkingTwist capable(GaitName now, GaitName wanted) const noexcept;
+  WalkingTwist capable(GaitName wanted) const noexcept;
   bool carries(GaitName gait, const WalkingTwist& twist) const noexcept;
   double time_scale() const noexcept;
   double pace_of(const WalkingTwist& twist) const noexcept;

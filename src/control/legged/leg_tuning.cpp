@@ -9,22 +9,31 @@
 namespace robot_control {
 namespace {
 
+/// Returns the knee that needs the largest part of its torque for half of the weight, at that height [m].
+LoadedKnee loaded_knee_at(const LegModel& robot, double height) noexcept {
+  LoadedKnee worst;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const std::size_t joint = kLegJoints * leg + 2;
+    const double effort = robot.mass * kGravity / 2 * robot.legs[leg].kinematics.knee_lever(height);
+    const double part = effort / robot.joints[joint].effort_limit;
+    if (part > worst.part) worst = {joint, effort, part};
+  }
+  return worst;
+}
+
 double standing_height(const LegModel& robot) noexcept {
   constexpr double kLowest = 0.7, kHighest = 0.85, kStep = 0.01;  // of the leg length
   constexpr double kOfKnee = 0.6;
   double height = kLowest;
-  const auto knees_bear = [&] {
-    for (std::size_t leg = 0; leg < kLegs; ++leg) {
-      const double lever = robot.legs[leg].kinematics.knee_lever(height * robot.leg_length());
-      if (robot.mass * kGravity / 2 * lever > kOfKnee * robot.joints[kLegJoints * leg + 2].effort_limit) return false;
-    }
-    return true;
-  };
-  while (height < kHighest && !knees_bear()) height += kStep;
+  while (height < kHighest && loaded_knee_at(robot, height * robot.leg_length()).part > kOfKnee) height += kStep;
   return height * robot.leg_length();
 }
 
 }  // namespace
+
+LoadedKnee loaded_knee(const LegModel& robot) noexcept {
+  return loaded_knee_at(robot, standing_height(robot));
+}
 
 // These are the values of a robot of kReferenceMass with legs of kReferenceLeg.
 LegTuning leg_tuning(const LegModel& robot) noexcept {

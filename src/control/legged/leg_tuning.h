@@ -3,7 +3,8 @@
 ///
 /// A robot stands at 0.7 of its leg length. It stands higher, at most at 0.85, where a knee would need more than 0.6 of
 /// its torque for half of the weight. A trot puts half of the weight on a leg, at its peak 1.27 times that. So 0.6
-/// leaves room for a payload of 20 %, or for a motor that gives 0.8 of its torque.
+/// leaves room for a payload of 20 %, or for a motor that gives 0.8 of its torque. Robots whose knees need more than
+/// 0.65 at 0.85 fell or sank (docs/evidence/legs.md).
 
 #include <array>
 
@@ -28,6 +29,16 @@ struct LegTuning {
 };
 
 LegTuning leg_tuning(const LegModel& robot) noexcept;
+
+/// The knee of a standing robot that needs the largest part of its torque for half of the weight.
+struct LoadedKnee {
+  std::size_t joint = 0;
+  double effort = 0;  ///< N·m
+  double part = 0;    ///< of the effort limit
+};
+LoadedKnee loaded_knee(const LegModel& robot) noexcept;
+
+inline constexpr double kMaxKneePart = 0.65;  ///< of its effort limit, with which a robot walks
 
 /// The bounds of a joint while the robot lies.
 struct JointBounds {

@@ -68,7 +68,7 @@ void LegController::walk(const ControlInput& input, const Request& request, Comm
   const GaitName gait = choose_gait(request, target);
   const auto now = static_cast<GaitName>(state_.walk.gait);
   const WalkingTwist twist =
-      limiter_.step(state_.twist, target, capable(now, gait), (out.reasons & kEmergencies) != 0, period_, out.reasons);
+      limiter_.step(state_.twist, target, capable(gait), (out.reasons & kEmergencies) != 0, period_, out.reasons);
   carry(request, out.reasons);
   const Vector3& moves = input.state->base.twist_base.linear;
   const bool slow = std::hypot(moves[0], moves[1]) < kSlow * time_scale();
@@ -115,12 +115,17 @@ GaitName LegController::choose_gait(const Request& request, const WalkingTwist& 
   return static_cast<GaitName>(state_.gait);
 }
 
-/// Returns the speeds that the gait in force and the wanted one can have.
-WalkingTwist LegController::capable(GaitName now, GaitName wanted) const noexcept {
+/// Returns the speeds that the gait in force and the wanted one can have. In its first period some feet still bear
+/// since the last gait, whose speeds count as well.
+WalkingTwist LegController::capable(GaitName wanted) const noexcept {
+  const Walker::State& walk = state_.walk;
   WalkingTwist speeds = fastest_[static_cast<std::size_t>(wanted)];
-  if (now == GaitName::kStand) return speeds;
-  for (std::size_t i = 0; i < speeds.size(); ++i)
-    speeds[i] = std::min(speeds[i], fastest_[static_cast<std::size_t>(now)][i]);
+  const auto bound = [&](std::uint64_t gait) {
+    if (gait == static_cast<std::uint64_t>(GaitName::kStand)) return;
+    for (std::size_t i = 0; i < speeds.size(); ++i) speeds[i] = std::min(speeds[i], fastest_[gait][i]);
+  };
+  bound(walk.gait);
+  if (walk.lasted < walker_.gaits()[walk.gait].period) bound(walk.last);
   return speeds;
 }
 

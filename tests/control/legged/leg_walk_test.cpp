@@ -199,6 +199,9 @@ TEST(LegWalk, ChangesToASlowerGaitWhenItsLegsCarryTheBody) {
     EXPECT_LE(legs.speed(0), slow + 1e-6) << "both gaits bound the speed until then";
     legs.step();
   }
+  const double period = Walker(legs.robot(), all_gaits({}), 0.4, kCycle).gaits()[number(GaitName::kTrot)].period;
+  legs.run(period - kCycle, twist_of(0.9, 0, 0, mode_of(GaitName::kTrot)));
+  EXPECT_NEAR(legs.speed(0), slow, 1e-6) << "feet still bear that the crawl had set down";
   legs.run(1, twist_of(0.9, 0, 0, mode_of(GaitName::kTrot)));
   EXPECT_NEAR(legs.speed(0), 0.9, 1e-9);
 }

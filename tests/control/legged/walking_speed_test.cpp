@@ -46,8 +46,12 @@ struct WalkingSpeedTest : testing::Test {
     return -speed * Eigen::Vector3d::Unit(static_cast<Eigen::Index>(axis));
   }
 
-  /// Returns what the joints need in a steady walk.
+  /// Returns what the joints need in a steady walk, either way.
   double steady(const Gait& gait, std::size_t axis, double speed) const {
+    return std::max(steady_ahead(gait, axis, speed), steady_ahead(gait, axis, -speed));
+  }
+
+  double steady_ahead(const Gait& gait, std::size_t axis, double speed) const {
     double part = 0;
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
       const Eigen::Vector3d& foot = stance.feet[leg];
@@ -65,9 +69,13 @@ struct WalkingSpeedTest : testing::Test {
     return part;
   }
 
-  /// Returns what they need at the end of the first stance after a change, where the phase of `last` wraps and `next`
-  /// begins.
+  /// Returns what they need, either way, at the end of the first stance after a change, where the phase of `last` wraps
+  /// and `next` begins.
   double changed(const Gait& last, const Gait& next, std::size_t axis, double speed) const {
+    return std::max(changed_ahead(last, next, axis, speed), changed_ahead(last, next, axis, -speed));
+  }
+
+  double changed_ahead(const Gait& last, const Gait& next, std::size_t axis, double speed) const {
     constexpr double kEnd = 0.002;  // s
     const double begin = next.begins_after(last);
     double part = 0;
@@ -113,6 +121,16 @@ TEST_F(WalkingSpeedTest, NoJointNeedsMoreThanItsPartAtTheSpeedsOfAGaitAndItsChan
       EXPECT_GT(beyond, kOfJointSpeed) << gaits[gait].name.data() << axis;
     }
     EXPECT_EQ(speeds[number(GaitName::kStand)][axis], kMinSpeed);
+  }
+}
+
+TEST_F(WalkingSpeedTest, NoGaitIsFasterThanATrotKeepsItsBalance) {
+  for (const double size : {1.0, 0.25}) {
+    LegModel fast = sized(size);
+    for (JointModel& joint : fast.joints) joint.velocity_limit = 1000;
+    const NominalStance stands = nominal_stance(fast);
+    const Gait trot = gait_of(fast, stands, kGaits[number(GaitName::kTrot)]);
+    EXPECT_NEAR(walking_speeds(fast, stands, {trot})[0][0], 1.7 * std::sqrt(fast.leg_length() / kReferenceLeg), 1e-9);
   }
 }
 

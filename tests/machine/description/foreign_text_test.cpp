@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <urdf_model/model.h>
 
 #include "machine/description/mesh.h"
 #include "machine/description/robot_description.h"
@@ -59,6 +60,15 @@ TEST_F(ForeignText, Utf16IsNamed) {
     }
   }
   EXPECT_THAT(reading("n.urdf", std::string("<robot name=\"r\"><link name=\"a\"/>\0</robot>", 41)), HasSubstr("NUL"));
+}
+
+TEST_F(ForeignText, ACharacterReferenceIsUtf8WithAndWithoutADeclaration) {
+  for (const std::string declared :
+       {"", "<?xml version=\"1.0\"?>\n", "<?xml version=\"1.0\" encoding=\"ISO-8859-1\"?>\n"}) {
+    const std::string path =
+        folder_.write("r.urdf", declared + "<robot name=\"K&#246;rper\"><link name=\"a\"/></robot>");
+    EXPECT_EQ(parse_urdf(load_description(path)).model->getName(), "Körper") << declared;
+  }
 }
 
 TEST_F(ForeignText, BytesThatAreNotUtf8AreNamedWithTheirLine) {

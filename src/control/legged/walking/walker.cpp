@@ -170,15 +170,20 @@ bool Walker::changes_after(const State& state, GaitName wanted, double later) co
          state.lasted + later > gait(state).period - period_;
 }
 
+void Walker::begin_gait(State& state, std::uint64_t next) const noexcept {
+  state.phase = gaits_[next].begins_after(gait(state));
+  state.last = state.gait;
+  state.gait = next;
+  state.lasted = 0;
+}
+
 void Walker::turn_clock(State& state, GaitName wanted) const noexcept {
   const auto next = static_cast<std::uint64_t>(wanted);
   const Gait& gait = this->gait(state);
   state.lasted += period_;
   if (gait.duty >= 1) {
     if (wanted == GaitName::kStand) return;
-    state.phase = gaits_[next].begins_after(gait);
-    state.gait = next;
-    state.lasted = 0;
+    begin_gait(state, next);
     return;
   }
   const double step = period_ / gait.period;
@@ -191,9 +196,7 @@ void Walker::turn_clock(State& state, GaitName wanted) const noexcept {
   const bool changes = wraps && changes_after(state, wanted, 0);
   if (!ends && !changes) return;
   state.swings = {};  // a foot that then swings begins where it is, in the air or not
-  state.phase = gaits_[next].begins_after(gait);
-  state.gait = next;
-  state.lasted = 0;
+  begin_gait(state, next);
   if (ends) state.ahead = {};
 }
 

@@ -70,6 +70,7 @@ class Walker {
 
   struct State {
     std::uint64_t gait = 0;  ///< GaitName
+    std::uint64_t last = 0;  ///< GaitName, the one before
     double phase = 0;
     double lasted = 0;                          ///< s since this gait began
     std::array<std::uint64_t, kLegs> bears{};   ///< 1: its force is planned
@@ -106,6 +107,7 @@ class Walker {
   void move(State& state, const WalkInput& input, const WalkingBody& body) const noexcept;
   /// Returns whether the wanted gait replaces this one if the phase wraps in `later` s.
   bool changes_after(const State& state, GaitName wanted, double later) const noexcept;
+  void begin_gait(State& state, std::uint64_t next) const noexcept;
   void turn_clock(State& state, GaitName wanted) const noexcept;
   bool choose_feet(State& state, const WalkInput& input, const WalkingBody& body) const noexcept;
   Eigen::Vector3d landing(const State& state, const WalkInput& input, const WalkingBody& body,

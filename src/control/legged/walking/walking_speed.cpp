@@ -10,7 +10,8 @@
 namespace robot_control {
 namespace {
 
-constexpr double kFastest = 10;  // m/s, rad/s
+constexpr double kFastest = 10;      // m/s, rad/s
+constexpr double kFastestLeg = 1.7;  // m/s, ahead, of legs of kReferenceLeg
 constexpr int kHalvings = 12;
 constexpr int kSamples = 24;
 
@@ -73,14 +74,16 @@ double needed_after(const LegModel& robot, const NominalStance& stance, const Ga
   return part;
 }
 
-/// Returns the largest speed on this axis for which `part_of` returns at most kOfJointSpeed.
+/// Returns the largest speed on this axis, either way, for which `part_of` returns at most kOfJointSpeed.
 template <class Part>
 double largest(std::size_t axis, const Part& part_of) noexcept {
   double low = 0, high = kFastest;
   for (int i = 0; i < kHalvings; ++i) {
-    WalkingTwist twist{};
-    twist[axis] = (low + high) / 2;
-    (part_of(twist) <= kOfJointSpeed ? low : high) = twist[axis];
+    const double speed = (low + high) / 2;
+    WalkingTwist ahead{}, back{};
+    ahead[axis] = speed;
+    back[axis] = -speed;
+    (std::max(part_of(ahead), part_of(back)) <= kOfJointSpeed ? low : high) = speed;
   }
   return std::max(kMinSpeed, low);
 }
@@ -114,6 +117,8 @@ Speeds walking_speeds(const LegModel& robot, const NominalStance& stance, const 
       }
     }
   }
+  const double fastest = kFastestLeg * std::sqrt(robot.leg_length() / kReferenceLeg);
+  for (WalkingTwist& speed : speeds) speed[0] = std::min(speed[0], fastest);
   return speeds;
 }
 

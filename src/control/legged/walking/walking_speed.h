@@ -5,9 +5,10 @@
 ///          limit of a joint
 ///   speed  the largest one of the body at which each leg stretches to at most kOfLength of its length, and each joint
 ///          has at most kOfJointSpeed of its speed limit, during stance and swing (swing.h). A leg that is nearly
-///          straight does not push the body on. That holds for a steady walk, and for the first stance after a change of
-///          gaits: a foot that ended a stance may have to bear for a whole one. The slower gait of a change bounds its
-///          speed
+///          straight does not push the body on. That holds either way, for a steady walk and for the first stance after
+///          a change of gaits: a foot that ended a stance may have to bear for a whole one. The slower gait of a change
+///          bounds its speed until the other one has lasted for a period. To the front and back no gait is faster than
+///          1.7 m/s √(l/kReferenceLeg): beyond it a trot loses its balance (docs/evidence/legs.md)
 
 #include <vector>
 

@@ -282,7 +282,7 @@ void repair_joint(TiXmlElement& joint) {
 TiXmlElement& parse_markup(const RobotDescription& description, TiXmlDocument& xml) {
   check_text(description);
   check_depth(description);
-  xml.Parse(description.text.c_str());
+  xml.Parse(description.text.c_str(), nullptr, TIXML_ENCODING_UTF8);
   if (xml.Error()) {
     const std::string line = xml.ErrorRow() > 0 ? " line " + std::to_string(xml.ErrorRow()) : "";
     refuse(description.source + line, "XML", xml.ErrorDesc(), "Repair the markup");
