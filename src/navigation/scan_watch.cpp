@@ -36,10 +36,11 @@ std::string ScanWatch::structure_problem(const Scan& scan) const {
 std::string ScanWatch::receive(const Scan& scan, const std::string& publisher, double stamp, double now, double moved) {
   const auto refuse = [&](const std::string& why) { return refused_ = why; };
   if (const std::string why = structure_problem(scan); !why.empty()) return refuse(why);
-  if (publisher != publisher_ && now - received_ < 2 * kSilence) {
+  const bool bound = std::abs(now - received_) < kBinding;
+  if (bound && publisher != publisher_) {
     return refuse("scan has two publishers, " + publisher_ + " and " + publisher + ": stop one of them");
   }
-  if (publisher == publisher_ && stamp < stamp_) {
+  if (bound && stamp < stamp_) {
     return refuse(
         text("the stamps of scan go back by %.3f s: check the clock of the laser's computer", stamp_ - stamp));
   }

@@ -66,6 +66,14 @@ TEST_F(ScanWatchTest, ASecondPublisherAndTimeThatGoesBackAreRefused) {
   EXPECT_EQ(watch_.receive(healthy(), "rear", 12, 12, 0), "");
 }
 
+TEST_F(ScanWatchTest, AfterOneWrongStampOrAClockThatWasSetBackTheLaserIsTakenAgain) {
+  EXPECT_EQ(watch_.receive(healthy(), "laser", 3610, 10, 0), "");
+  EXPECT_THAT(watch_.receive(healthy(), "laser", 10.1, 10.1, 0), HasSubstr("go back by 3599.900 s"));
+  EXPECT_EQ(watch_.receive(healthy(), "laser", 11.1, 11.1, 0), "");
+  EXPECT_EQ(watch_.receive(healthy(), "laser", 5, 5, 0), "");
+  EXPECT_EQ(watch_.problem(5), "");
+}
+
 TEST_F(ScanWatchTest, AFrozenScanIsNamedOnceTheRobotMoved) {
   watch_.receive(healthy(), "laser", 10, 10, 0);
   watch_.receive(healthy(), "laser", 10.1, 10.1, 0.04);
