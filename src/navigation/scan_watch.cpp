@@ -9,8 +9,7 @@ namespace robot_control {
 
 std::string ScanWatch::structure_problem(const Scan& scan) const {
   const std::size_t rays = scan.ranges.size();
-  if (rays == 0) return "scan has no rays";
-  if (rays > kMaxRays) return text("scan has %zu rays: at most %zu are taken", rays, kMaxRays);
+  if (rays < 2 || rays > kMaxRays) return text("scan has %zu rays: 2 to %zu are taken", rays, kMaxRays);
   if (!std::isfinite(scan.angle_min) || !std::isfinite(scan.angle_increment) || scan.angle_increment == 0) {
     return text("scan has angle_min %g and angle_increment %g: both must be finite, the increment not zero",
                 scan.angle_min, scan.angle_increment);

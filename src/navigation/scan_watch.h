@@ -1,7 +1,7 @@
 #pragma once
 /// Whether a laser can be trusted, from its messages alone.
 ///
-/// A message is refused that has no ray, more than kMaxRays, or more than one turn. Angles and limits have to be
+/// A message is refused that has less than two rays, more than kMaxRays, or more than one turn. Angles and limits have to be
 /// finite, and the increment not zero. A stated angle_max has to be within two steps of the last ray. In some drivers
 /// it lies one step behind it. A message is refused, too, with a stamp before that of the last one, or of another
 /// publisher. That lasts for kBinding: a clock that was set back counts from then on. A refused message is as good as

@@ -29,8 +29,9 @@ TEST_F(ScanWatchTest, AHealthyScanCounts) {
 
 TEST_F(ScanWatchTest, EachMessageThatIsNoScanIsRefused) {
   const auto nan = std::nan("");
-  EXPECT_THAT(refusal([](Scan& scan) { scan.ranges.clear(); }), HasSubstr("has no rays"));
-  EXPECT_THAT(refusal([](Scan& scan) { scan.ranges.resize(100'000); }), HasSubstr("has 100000 rays: at most 20000"));
+  EXPECT_THAT(refusal([](Scan& scan) { scan.ranges.clear(); }), HasSubstr("has 0 rays: 2 to 20000"));
+  EXPECT_THAT(refusal([](Scan& scan) { scan.ranges.resize(1); }), HasSubstr("has 1 rays"));
+  EXPECT_THAT(refusal([](Scan& scan) { scan.ranges.resize(100'000); }), HasSubstr("has 100000 rays"));
   EXPECT_THAT(refusal([](Scan& scan) { scan.angle_increment = 0; }), HasSubstr("the increment not zero"));
   EXPECT_THAT(refusal([&](Scan& scan) { scan.angle_min = nan; }), HasSubstr("both must be finite"));
   EXPECT_THAT(refusal([](Scan& scan) { scan.angle_increment = 0.1; }), HasSubstr("covers 35.9 rad"));

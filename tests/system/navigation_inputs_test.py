@@ -164,7 +164,7 @@ class NavigationInputsTest(unittest.TestCase):
 
         wrong = {
             "scan is silent": lambda _scan: None,
-            "has no rays": changed(ranges=[]),
+            "has 0 rays": changed(ranges=[]),
             "has 100000 rays": changed(ranges=[1.0] * 100_000),
             "no range that was measured": changed(ranges=[0.0] * RAYS),
             "angle_increment 0": changed(angle_increment=0.0),
