@@ -49,6 +49,15 @@ def test_the_map_shows_the_true_walls_and_the_pose_in_it(sights):
     assert np.mean(away > 0.1) < 0.05
 
 
+def test_a_map_begins_with_the_first_wall_in_sight(sights):
+    mapper = mrpt.Mapper()
+    nothing = dict(sights[0].scan, ranges=np.full(len(sights[0].scan["ranges"]), np.inf, dtype=np.float32))
+    mapper.update(nothing, LASER, sights[0].odometry)
+    mapped(sights[:20], mapper)
+    assert mapper.points > 100
+    assert mapper.reason == ""
+
+
 def test_what_is_seen_again_adds_little(sights):
     mapper = mrpt.Mapper()
     mapped(sights, mapper)
