@@ -86,9 +86,11 @@ Mapper& Mapper::operator=(Mapper&&) noexcept = default;
 
 Mapper::Mapper(const Grid& saved, const PlanarPose& pose) : Mapper() {
   Parts& parts = *parts_;
-  parts.correction = mrpt_pose(pose);
-  parts.grid = mrpt_grid(saved);
-  parts.points = wall_points(saved);
+  Grid aligned = saved;
+  const PlanarPose moved = align(aligned);
+  parts.correction = mrpt_pose({pose.x - moved.x, pose.y - moved.y, pose.yaw});
+  parts.grid = mrpt_grid(aligned);
+  parts.points = wall_points(aligned);
 }
 
 void Mapper::update(const Scan& scan, const PlanarPose& sensor, const PlanarPose& odometry) {
