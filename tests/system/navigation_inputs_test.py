@@ -17,7 +17,7 @@ from navigation_support import Localised, message_of, missing, share, transform
 from robot_control.msg import FollowPathActionGoal, NavigateToAction, NavigateToGoal
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float64
-from system_support import Process, Program, init_test_node, wait_for
+from system_support import Process, Program, init_test_node, refusal, wait_for
 from tf2_msgs.msg import TFMessage
 
 HALL = np.zeros((80, 120), dtype=np.int8)
@@ -206,6 +206,12 @@ class NavigationInputsTest(unittest.TestCase):
         self.client.cancel_goal()
         wait_for("no limit after the goal", lambda: math.isinf(clearances[-1]))
         subscriber.unregister()
+
+    def test_6_a_parameter_of_another_type_refuses_the_start(self) -> None:
+        for name, value in {"speed": "fast", "unknown_is_free": 1, "map_frame": 2}.items():
+            with self.subTest(name):
+                rospy.set_param("/wrong", {name: value})
+                self.assertIn(f"~{name} must be", refusal("navigate", "__name:=wrong"))
 
 
 if __name__ == "__main__":
