@@ -11,7 +11,7 @@ import actionlib
 import numpy as np
 import rospy
 import rostest
-from actionlib_msgs.msg import GoalStatus
+from actionlib_msgs.msg import GoalID, GoalStatus
 from nav_msgs.msg import OccupancyGrid, Odometry
 from navigation_support import Localised, message_of, missing, share, transform
 from robot_control.msg import FollowPathActionGoal, NavigateToAction, NavigateToGoal
@@ -212,6 +212,23 @@ class NavigationInputsTest(unittest.TestCase):
             with self.subTest(name):
                 rospy.set_param("/wrong", {name: value})
                 self.assertIn(f"~{name} must be", refusal("navigate", "__name:=wrong"))
+
+    def test_7_one_that_is_started_again_ends_the_path_of_the_one_before_and_frees_the_robot(self) -> None:
+        clearances: list[float] = []
+        cancelled: list[GoalID] = []
+        self.assert_driven()
+        self.navigate.kill()
+        subscribers = [
+            rospy.Subscriber("clearance", Float64, lambda message: clearances.append(message.data)),
+            rospy.Subscriber("follow_path/cancel", GoalID, cancelled.append),
+        ]
+        self.__class__.navigate = Program("navigate")
+        wait_for("no limit", lambda: bool(clearances) and math.isinf(clearances[-1]))
+        wait_for("the end of all paths before", lambda: bool(cancelled))
+        self.assertGreater(cancelled[0].stamp, self.paths[-1].goal_id.stamp)
+        self.assertEqual(cancelled[0].id, "")
+        for subscriber in subscribers:
+            subscriber.unregister()
 
 
 if __name__ == "__main__":
