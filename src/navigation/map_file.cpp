@@ -163,6 +163,7 @@ void write_map(const std::string& given, const Grid& grid) {
   std::filesystem::path path = resolved_path(given);
   if (path.extension() == ".yaml") path.replace_extension();
   const std::string stem = path.filename().string();
+  if (stem.empty()) refuse(given, "names no file; give the path of the YAML file");
   std::string pixels(grid.cells.size(), '\xcd');  // 205, map_server's unknown
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {

@@ -71,6 +71,11 @@ TEST_F(MapFileTest, AnyNameOfAFileIsReadAgain) {
   }
 }
 
+TEST_F(MapFileTest, APathWithoutANameOfAFileIsRefused) {
+  EXPECT_THROW(write_map("", read()), MapError);
+  EXPECT_THROW(write_map(folder_.string() + "/", read()), MapError);
+}
+
 /// The forms in which public packages keep the maps of map_server. Each is the head as it stands there.
 TEST_F(MapFileTest, TheFilesOfPublicMapPackagesAreRead) {
   struct Public {
