@@ -53,8 +53,8 @@ struct Grid {
 inline Grid coarsened(const Grid& given, double coarsest) {
   const int n = static_cast<int>(coarsest / given.resolution + 0.01);  // a float's 0.05 is more than 0.05
   if (n < 2) return given;
-  Grid grid{(given.columns + n - 1) / n, (given.rows + n - 1) / n, given.resolution * n, given.origin_x,
-            given.origin_y, {}};
+  Grid grid{
+      (given.columns + n - 1) / n, (given.rows + n - 1) / n, given.resolution * n, given.origin_x, given.origin_y, {}};
   grid.cells.resize(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows), kUnknownCell);
   for (int row = 0; row < given.rows; ++row) {
     for (int column = 0; column < given.columns; ++column) {

@@ -89,9 +89,9 @@ struct Localizer::Parts {
   bool first = true;      // the next scan updates
   double explained = 0;   // smoothed
   double last_explained = 0;
-  double spread = 0;  // m
+  double spread = 0;   // m
   PlanarPose aligned;  // of the frame of all these in that of the given map
-  int settled = 0;    // scans since the particles of a search came together
+  int settled = 0;     // scans since the particles of a search came together
 
   /// Returns the pose at the last scan.
   CPose2D now() const { return mrpt_pose(pose.mean) + (mrpt_pose(odometry) - mrpt_pose(updated.mean)); }
@@ -165,8 +165,7 @@ void Localizer::set_pose(const UncertainPose& pose) {
   const Eigen::Matrix3d covariance = at_least(pose.covariance, {kMinStep, kMinStep, kMinTurn});
   const PlanarPose& aligned = parts_->aligned;
   const CPose2D mean(pose.mean.x - aligned.x, pose.mean.y - aligned.y, pose.mean.yaw);
-  mrpt::poses::CPosePDFGaussian(mean, mrpt::math::CMatrixDouble33(covariance))
-      .drawManySamples(2000, drawn);
+  mrpt::poses::CPosePDFGaussian(mean, mrpt::math::CMatrixDouble33(covariance)).drawManySamples(2000, drawn);
   parts_->particles.resetDeterministic({}, drawn.size());
   for (std::size_t i = 0; i < drawn.size(); ++i)
     parts_->particles.m_particles[i].d = {drawn[i][0], drawn[i][1], drawn[i][2]};
