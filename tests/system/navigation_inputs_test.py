@@ -169,7 +169,7 @@ class NavigationInputsTest(unittest.TestCase):
             "no range that was measured": changed(ranges=[0.0] * RAYS),
             "angle_increment 0": changed(angle_increment=0.0),
             "covers 35.9 rad": changed(angle_increment=0.1),
-            "3.0 s old": late,
+            "s old: synchronise": late,
             "tf does not give the place of the laser": foreign,
             "contradicts the map": lambda _scan: scan_of((-3.0, 5.0, -3.0, 3.0)),
         }
