@@ -55,8 +55,8 @@ std::vector<Point> points_of(const Scan& scan, const PlanarPose& sensor) {
   return points;
 }
 
-Costmap::Costmap(Grid map, Footprint footprint, bool unknown_is_free)
-    : grid_(std::move(map)),
+Costmap::Costmap(const Grid& map, Footprint footprint, bool unknown_is_free)
+    : grid_(coarsened(map, kCoarsest)),
       footprint_(std::move(footprint)),
       farthest_(std::max(footprint_.circumscribed + kPadding, footprint_.inscribed + kComfort) + 2 * grid_.resolution),
       unknown_(grid_.cells.size()),

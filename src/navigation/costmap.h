@@ -6,6 +6,8 @@
 /// kExplained of an occupied cell of the map marks nothing. It has hit the map's own wall, within the error of the
 /// localisation.
 ///
+/// A map of finer cells is taken in cells of up to kCoarsest. A plan in cells of 1 cm would take minutes.
+///
 /// Rays also say whether map and pose can be true. Something that was added shortens a ray. Only a thing that is gone,
 /// or an untrue pose or map, lets a ray pass a wall of the map.
 
@@ -20,6 +22,7 @@ namespace robot_control {
 inline constexpr double kMemory = 10;       ///< s; less than the patience of a goal that it blocks
 inline constexpr double kExplained = 0.1;   ///< m
 inline constexpr double kBehindWall = 0.3;  ///< m; a ray that ends so far behind a wall contradicts the map
+inline constexpr double kCoarsest = 0.05;   ///< m
 inline constexpr double kComfort = 0.4;     ///< m of air from which on more is no better
 inline constexpr double kPadding = 0.07;    ///< m of air about the outline: noise of the laser and lag of the follower
 
@@ -35,7 +38,7 @@ struct Agreement {
 
 class Costmap {
  public:
-  Costmap(Grid map, Footprint footprint, bool unknown_is_free);
+  Costmap(const Grid& map, Footprint footprint, bool unknown_is_free);
 
   /// Takes one scan whose sensor was at `sensor` in the map; `now` in s of any clock that does not turn back.
   Agreement insert(const Scan& scan, const PlanarPose& sensor, double now);

@@ -4,6 +4,7 @@
 /// Cell (column, row) begins at x = origin_x + column·resolution and y = origin_y + row·resolution of the frame `map`.
 /// The cells lie row by row, that of the smallest y first. The grid is not turned against its frame.
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -52,6 +53,22 @@ struct Grid {
   double x_of(int column) const noexcept { return origin_x + (column + 0.5) * resolution; }  ///< m, of its middle
   double y_of(int row) const noexcept { return origin_y + (row + 0.5) * resolution; }        ///< m, of its middle
 };
+
+/// Returns the grid with cells of n × n given ones, as many as stay within `coarsest` m; the fullest of them counts.
+inline Grid coarsened(const Grid& given, double coarsest) {
+  const int n = static_cast<int>(coarsest / given.resolution + 0.01);  // a float's 0.05 is more than 0.05
+  if (n < 2) return given;
+  Grid grid{
+      (given.columns + n - 1) / n, (given.rows + n - 1) / n, given.resolution * n, given.origin_x, given.origin_y, {}};
+  grid.cells.resize(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows), kUnknownCell);
+  for (int row = 0; row < given.rows; ++row) {
+    for (int column = 0; column < given.columns; ++column) {
+      std::int8_t& cell = grid.cells[grid.index({column / n, row / n})];
+      cell = std::max(cell, given.cells[given.index({column, row})]);
+    }
+  }
+  return grid;
+}
 
 /// The pose of a robot or sensor in a plane.
 struct PlanarPose {

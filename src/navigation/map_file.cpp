@@ -163,6 +163,7 @@ void write_map(const std::string& given, const Grid& grid) {
   std::filesystem::path path = resolved_path(given);
   if (path.extension() == ".yaml") path.replace_extension();
   const std::string stem = path.filename().string();
+  if (stem.empty()) refuse(given, "names no file; give the path of the YAML file");
   std::string pixels(grid.cells.size(), '\xcd');  // 205, map_server's unknown
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
@@ -175,9 +176,9 @@ void write_map(const std::string& given, const Grid& grid) {
   try {
     write_output_file(path.string() + ".pgm",
                       "P5\n" + std::to_string(grid.columns) + " " + std::to_string(grid.rows) + "\n255\n" + pixels);
-    write_output_file(path.string() + ".yaml", "image: " + stem + ".pgm\nresolution: " + text_of(grid.resolution) +
-                                                   "\norigin: [" + text_of(grid.origin_x) + ", " +
-                                                   text_of(grid.origin_y) +
+    write_output_file(path.string() + ".yaml", "image: " + YAML::Dump(YAML::Node(stem + ".pgm")) +
+                                                   "\nresolution: " + text_of(grid.resolution) + "\norigin: [" +
+                                                   text_of(grid.origin_x) + ", " + text_of(grid.origin_y) +
                                                    ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
   } catch (const std::system_error& error) {
     throw MapError(error.what());

@@ -9,8 +9,7 @@ namespace robot_control {
 
 std::string ScanWatch::structure_problem(const Scan& scan) const {
   const std::size_t rays = scan.ranges.size();
-  if (rays == 0) return "scan has no rays";
-  if (rays > kMaxRays) return text("scan has %zu rays: at most %zu are taken", rays, kMaxRays);
+  if (rays < 2 || rays > kMaxRays) return text("scan has %zu rays: 2 to %zu are taken", rays, kMaxRays);
   if (!std::isfinite(scan.angle_min) || !std::isfinite(scan.angle_increment) || scan.angle_increment == 0) {
     return text("scan has angle_min %g and angle_increment %g: both must be finite, the increment not zero",
                 scan.angle_min, scan.angle_increment);
@@ -36,10 +35,11 @@ std::string ScanWatch::structure_problem(const Scan& scan) const {
 std::string ScanWatch::receive(const Scan& scan, const std::string& publisher, double stamp, double now, double moved) {
   const auto refuse = [&](const std::string& why) { return refused_ = why; };
   if (const std::string why = structure_problem(scan); !why.empty()) return refuse(why);
-  if (publisher != publisher_ && now - received_ < 2 * kSilence) {
+  const bool bound = std::abs(now - received_) < kBinding;
+  if (bound && publisher != publisher_) {
     return refuse("scan has two publishers, " + publisher_ + " and " + publisher + ": stop one of them");
   }
-  if (publisher == publisher_ && stamp < stamp_) {
+  if (bound && stamp < stamp_) {
     return refuse(
         text("the stamps of scan go back by %.3f s: check the clock of the laser's computer", stamp_ - stamp));
   }

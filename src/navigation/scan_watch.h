@@ -1,10 +1,11 @@
 #pragma once
 /// Whether a laser can be trusted, from its messages alone.
 ///
-/// A message is refused that has no ray, more than kMaxRays, or more than one turn. Angles and limits have to be
-/// finite, and the increment not zero. A stated angle_max has to be within two steps of the last ray. In some drivers
-/// it lies one step behind it. A message is refused, too, with a stamp before that of the last one. So is one of
-/// another publisher while the first one still sends. A refused message is as good as none.
+/// A message is refused that has less than two rays, more than kMaxRays, or more than one turn. Angles and limits have
+/// to be finite, and the increment not zero. A stated angle_max has to be within two steps of the last ray. In some
+/// drivers it lies one step behind it. A message is refused, too, with a stamp before that of the last one, or of
+/// another publisher. That lasts for kBinding: a clock that was set back counts from then on. A refused message is as
+/// good as none.
 ///
 /// The scan is silent if no message was accepted for kSilence, or if its stamps are older than that. It is blind
 /// without one range that was measured, and frozen if the same ranges come again while the robot moved by kMoved.
@@ -18,6 +19,7 @@ namespace robot_control {
 
 inline constexpr std::size_t kMaxRays = 20'000;
 inline constexpr double kSilence = 0.5;  ///< s
+inline constexpr double kBinding = 1;    ///< s
 inline constexpr double kMoved = 0.05;   ///< m or rad
 
 class ScanWatch {

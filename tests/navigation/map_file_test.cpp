@@ -64,6 +64,18 @@ TEST_F(MapFileTest, AWrittenMapIsReadAgain) {
   EXPECT_EQ(copy.resolution, 0.05);
 }
 
+TEST_F(MapFileTest, AnyNameOfAFileIsReadAgain) {
+  for (const std::string name : {"house #1.yaml", "my: house.yaml", "[x].yaml", "- a.yaml", "\"b\".yaml", " c.yaml"}) {
+    write_map((folder_ / name).string(), read());
+    EXPECT_EQ(read(name).cells, read().cells) << name;
+  }
+}
+
+TEST_F(MapFileTest, APathWithoutANameOfAFileIsRefused) {
+  EXPECT_THROW(write_map("", read()), MapError);
+  EXPECT_THROW(write_map(folder_.string() + "/", read()), MapError);
+}
+
 /// The forms in which public packages keep the maps of map_server. Each is the head as it stands there.
 TEST_F(MapFileTest, TheFilesOfPublicMapPackagesAreRead) {
   struct Public {

@@ -57,6 +57,18 @@ TEST(FootprintTest, ABaseBesideTheOutlineIsRefused) {
   EXPECT_THROW(hull({}), std::invalid_argument);
 }
 
+TEST(CostmapTest, AMapOfFinerCellsIsTakenInCoarserOnes) {
+  Grid fine{.columns = 602, .rows = 400, .resolution = 0.01F, .origin_x = -1, .origin_y = 2, .cells = {}};
+  fine.cells.assign(602 * 400, kFreeCell);
+  fine.cells[fine.index({601, 7})] = kOccupiedCell;
+  const Costmap costmap = costmap_of(fine);
+  EXPECT_EQ(costmap.grid().columns, 121);
+  EXPECT_EQ(costmap.grid().rows, 80);
+  EXPECT_NEAR(costmap.grid().resolution, 0.05, 1e-6);
+  EXPECT_TRUE(costmap.occupied(costmap.grid().cell_at(5.015, 2.075)));
+  EXPECT_FALSE(costmap.occupied(costmap.grid().cell_at(4.945, 2.075)));
+}
+
 TEST(CostmapTest, ARayMarksWhatTheMapDoesNotHaveAndClearsItAgain) {
   const Grid map = two_rooms(0.8);
   Grid world = map;

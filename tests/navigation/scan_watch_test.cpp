@@ -29,8 +29,9 @@ TEST_F(ScanWatchTest, AHealthyScanCounts) {
 
 TEST_F(ScanWatchTest, EachMessageThatIsNoScanIsRefused) {
   const auto nan = std::nan("");
-  EXPECT_THAT(refusal([](Scan& scan) { scan.ranges.clear(); }), HasSubstr("has no rays"));
-  EXPECT_THAT(refusal([](Scan& scan) { scan.ranges.resize(100'000); }), HasSubstr("has 100000 rays: at most 20000"));
+  EXPECT_THAT(refusal([](Scan& scan) { scan.ranges.clear(); }), HasSubstr("has 0 rays: 2 to 20000"));
+  EXPECT_THAT(refusal([](Scan& scan) { scan.ranges.resize(1); }), HasSubstr("has 1 rays"));
+  EXPECT_THAT(refusal([](Scan& scan) { scan.ranges.resize(100'000); }), HasSubstr("has 100000 rays"));
   EXPECT_THAT(refusal([](Scan& scan) { scan.angle_increment = 0; }), HasSubstr("the increment not zero"));
   EXPECT_THAT(refusal([&](Scan& scan) { scan.angle_min = nan; }), HasSubstr("both must be finite"));
   EXPECT_THAT(refusal([](Scan& scan) { scan.angle_increment = 0.1; }), HasSubstr("covers 35.9 rad"));
@@ -64,6 +65,14 @@ TEST_F(ScanWatchTest, ASecondPublisherAndTimeThatGoesBackAreRefused) {
   EXPECT_THAT(watch_.receive(healthy(), "front", 9, 10.1, 0), HasSubstr("go back by 1.000 s"));
   EXPECT_EQ(watch_.problem(10.1), "");
   EXPECT_EQ(watch_.receive(healthy(), "rear", 12, 12, 0), "");
+}
+
+TEST_F(ScanWatchTest, AfterOneWrongStampOrAClockThatWasSetBackTheLaserIsTakenAgain) {
+  EXPECT_EQ(watch_.receive(healthy(), "laser", 3610, 10, 0), "");
+  EXPECT_THAT(watch_.receive(healthy(), "laser", 10.1, 10.1, 0), HasSubstr("go back by 3599.900 s"));
+  EXPECT_EQ(watch_.receive(healthy(), "laser", 11.1, 11.1, 0), "");
+  EXPECT_EQ(watch_.receive(healthy(), "laser", 5, 5, 0), "");
+  EXPECT_EQ(watch_.problem(5), "");
 }
 
 TEST_F(ScanWatchTest, AFrozenScanIsNamedOnceTheRobotMoved) {

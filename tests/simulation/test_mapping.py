@@ -49,6 +49,15 @@ def test_the_map_shows_the_true_walls_and_the_pose_in_it(sights):
     assert np.mean(away > 0.1) < 0.05
 
 
+def test_a_map_begins_with_the_first_wall_in_sight(sights):
+    mapper = mrpt.Mapper()
+    nothing = dict(sights[0].scan, ranges=np.full(len(sights[0].scan["ranges"]), np.inf, dtype=np.float32))
+    mapper.update(nothing, LASER, sights[0].odometry)
+    mapped(sights[:20], mapper)
+    assert mapper.points > 100
+    assert mapper.reason == ""
+
+
 def test_what_is_seen_again_adds_little(sights):
     mapper = mrpt.Mapper()
     mapped(sights, mapper)
@@ -93,6 +102,20 @@ def test_a_robot_is_followed_in_the_map_and_its_ellipse_is_true(sights, grid):
     off = errors(sights[-1:], np.array([pose]))[0]
     assert np.hypot(off[0], off[1]) < 0.05
     assert off @ np.linalg.solve(covariance, off) < 11.3  # 99 % in three dimensions
+
+
+def test_a_map_whose_origin_lies_within_a_cell_keeps_its_walls_and_places(sights, grid):
+    """Maps of other programs begin anywhere."""
+    x, y, resolution, cells = grid
+    shift = np.array([0.5 * resolution, -0.3 * resolution, 0.0])
+    moved = (x + shift[0], y + shift[1], resolution, cells)
+    assert np.array_equal(mrpt.Mapper(moved, (0.0, 0.0, 0.0)).map[3] >= 65, cells >= 65)
+    localizer, given = mrpt.Localizer(moved, 1), mrpt.Localizer(grid, 1)
+    localizer.set_pose(sights[0].truth + shift, KNOWN)
+    given.set_pose(sights[0].truth, KNOWN)
+    followed(localizer, sights)
+    followed(given, sights)
+    assert localizer.pose[0] == pytest.approx(given.pose[0] + shift, abs=0.01)
 
 
 def test_the_same_seed_gives_the_same_pose(sights, grid):

@@ -11,13 +11,13 @@ import actionlib
 import numpy as np
 import rospy
 import rostest
-from actionlib_msgs.msg import GoalStatus
+from actionlib_msgs.msg import GoalID, GoalStatus
 from nav_msgs.msg import OccupancyGrid, Odometry
 from navigation_support import Localised, message_of, missing, share, transform
 from robot_control.msg import FollowPathActionGoal, NavigateToAction, NavigateToGoal
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float64
-from system_support import Process, Program, init_test_node, wait_for
+from system_support import Process, Program, init_test_node, refusal, wait_for
 from tf2_msgs.msg import TFMessage
 
 HALL = np.zeros((80, 120), dtype=np.int8)
@@ -164,12 +164,12 @@ class NavigationInputsTest(unittest.TestCase):
 
         wrong = {
             "scan is silent": lambda _scan: None,
-            "has no rays": changed(ranges=[]),
+            "has 0 rays": changed(ranges=[]),
             "has 100000 rays": changed(ranges=[1.0] * 100_000),
             "no range that was measured": changed(ranges=[0.0] * RAYS),
             "angle_increment 0": changed(angle_increment=0.0),
             "covers 35.9 rad": changed(angle_increment=0.1),
-            "go back by": late,
+            "s old: synchronise": late,
             "tf does not give the place of the laser": foreign,
             "contradicts the map": lambda _scan: scan_of((-3.0, 5.0, -3.0, 3.0)),
         }
@@ -206,6 +206,29 @@ class NavigationInputsTest(unittest.TestCase):
         self.client.cancel_goal()
         wait_for("no limit after the goal", lambda: math.isinf(clearances[-1]))
         subscriber.unregister()
+
+    def test_6_a_parameter_of_another_type_refuses_the_start(self) -> None:
+        for name, value in {"speed": "fast", "unknown_is_free": 1, "map_frame": 2}.items():
+            with self.subTest(name):
+                rospy.set_param("/wrong", {name: value})
+                self.assertIn(f"~{name} must be", refusal("navigate", "__name:=wrong"))
+
+    def test_7_one_that_is_started_again_ends_the_path_of_the_one_before_and_frees_the_robot(self) -> None:
+        clearances: list[float] = []
+        cancelled: list[GoalID] = []
+        self.assert_driven()
+        self.navigate.kill()
+        subscribers = [
+            rospy.Subscriber("clearance", Float64, lambda message: clearances.append(message.data)),
+            rospy.Subscriber("follow_path/cancel", GoalID, cancelled.append),
+        ]
+        self.__class__.navigate = Program("navigate")
+        wait_for("no limit", lambda: bool(clearances) and math.isinf(clearances[-1]))
+        wait_for("the end of all paths before", lambda: bool(cancelled))
+        self.assertGreater(cancelled[0].stamp, self.paths[-1].goal_id.stamp)
+        self.assertEqual(cancelled[0].id, "")
+        for subscriber in subscribers:
+            subscriber.unregister()
 
 
 if __name__ == "__main__":

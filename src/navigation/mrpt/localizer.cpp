@@ -89,8 +89,12 @@ struct Localizer::Parts {
   bool first = true;      // the next scan updates
   double explained = 0;   // smoothed
   double last_explained = 0;
-  double spread = 0;  // m
-  int settled = 0;    // scans since the particles of a search came together
+  double spread = 0;   // m
+  PlanarPose aligned;  // of the frame of all these in that of the given map
+  int settled = 0;     // scans since the particles of a search came together
+
+  /// Returns the pose at the last scan.
+  CPose2D now() const { return mrpt_pose(pose.mean) + (mrpt_pose(odometry) - mrpt_pose(updated.mean)); }
 
   void measure_spread() {
     const auto [covariance, mean] = particles.getCovarianceAndMean();
@@ -141,9 +145,11 @@ struct Localizer::Parts {
 
 Localizer::Localizer(const Grid& map, std::uint32_t seed) : parts_(std::make_unique<Parts>()) {
   Parts& parts = *parts_;
-  parts.map = likelihood_field(map, 0.1f);
-  parts.wide = likelihood_field(map, 0.2f);  // few of the particles of a search are near the place
-  parts.walls = wall_points(map);
+  Grid grid = map;
+  parts.aligned = align(grid);
+  parts.map = likelihood_field(grid, 0.1f);
+  parts.wide = likelihood_field(grid, 0.2f);  // few of the particles of a search are near the place
+  parts.walls = wall_points(grid);
   if (parts.walls.empty()) throw std::invalid_argument("the map has no occupied cell, so that no scan fits it");
   if (std::ranges::count(map.cells, kFreeCell) == 0)
     throw std::invalid_argument("the map has no free cell, in which the robot could be");
@@ -157,8 +163,9 @@ Localizer& Localizer::operator=(Localizer&&) noexcept = default;
 void Localizer::set_pose(const UncertainPose& pose) {
   std::vector<mrpt::math::CVectorDouble> drawn;
   const Eigen::Matrix3d covariance = at_least(pose.covariance, {kMinStep, kMinStep, kMinTurn});
-  mrpt::poses::CPosePDFGaussian(mrpt_pose(pose.mean), mrpt::math::CMatrixDouble33(covariance))
-      .drawManySamples(2000, drawn);
+  const PlanarPose& aligned = parts_->aligned;
+  const CPose2D mean(pose.mean.x - aligned.x, pose.mean.y - aligned.y, pose.mean.yaw);
+  mrpt::poses::CPosePDFGaussian(mean, mrpt::math::CMatrixDouble33(covariance)).drawManySamples(2000, drawn);
   parts_->particles.resetDeterministic({}, drawn.size());
   for (std::size_t i = 0; i < drawn.size(); ++i)
     parts_->particles.m_particles[i].d = {drawn[i][0], drawn[i][1], drawn[i][2]};
@@ -180,7 +187,7 @@ bool Localizer::update(const Scan& scan, const PlanarPose& sensor, const Uncerta
   const bool updated = parts.first || moved;
   if (updated) parts.filter_step(observation, odometry);
   const mrpt::maps::CSimplePointsMap seen = points_of(observation, 0);
-  const mrpt::poses::CPose3D at(mrpt_pose(pose().mean));
+  const mrpt::poses::CPose3D at(parts.now());
   parts.last_explained = seen.empty() ? 0 : parts.walls.compute3DMatchingRatio(&seen, at, kAtWall);
   parts.explained += kSmoothing * (parts.last_explained - parts.explained);
   parts.first = false;
@@ -210,8 +217,7 @@ std::string Localizer::reason() const {
 }
 
 UncertainPose Localizer::pose() const {
-  const CPose2D step = mrpt_pose(parts_->odometry) - mrpt_pose(parts_->updated.mean);
-  UncertainPose result{planar(mrpt_pose(parts_->pose.mean) + step), parts_->pose.covariance};
+  UncertainPose result{composed(parts_->aligned, planar(parts_->now())), parts_->pose.covariance};
   const Eigen::Vector3d map(kMapDeviation, kMapDeviation, kHeadingDeviation);
   result.covariance.diagonal() += map.cwiseProduct(map);
   return result;
@@ -228,7 +234,7 @@ double Localizer::explained() const noexcept {
 std::vector<PlanarPose> Localizer::particles() const {
   std::vector<PlanarPose> result;
   for (const auto& particle : parts_->particles.m_particles)
-    result.push_back({particle.d.x, particle.d.y, particle.d.phi});
+    result.push_back(composed(parts_->aligned, {particle.d.x, particle.d.y, particle.d.phi}));
   return result;
 }
 

@@ -4,6 +4,8 @@
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/slam/CICP.h>
 
+#include <utility>
+
 #include "navigation/mrpt/mrpt_grid.h"
 #include "navigation/mrpt/mrpt_scan.h"
 
@@ -47,7 +49,7 @@ struct Mapper::Parts {
   CPose2D correction, odometry;
   CPose2D matched_at, inserted_at;  // in odom, in the map
   double matched = 1;
-  bool first = true, begins_saved = false;
+  bool first = true;
 
   CPose2D pose() const { return correction + odometry; }
 
@@ -84,22 +86,21 @@ Mapper& Mapper::operator=(Mapper&&) noexcept = default;
 
 Mapper::Mapper(const Grid& saved, const PlanarPose& pose) : Mapper() {
   Parts& parts = *parts_;
-  parts.correction = mrpt_pose(pose);
-  parts.begins_saved = true;
-  parts.grid = mrpt_grid(saved);
-  parts.points = wall_points(saved);
+  Grid aligned = saved;
+  const PlanarPose moved = align(aligned);
+  parts.correction = mrpt_pose({pose.x - moved.x, pose.y - moved.y, pose.yaw});
+  parts.grid = mrpt_grid(aligned);
+  parts.points = wall_points(aligned);
 }
 
 void Mapper::update(const Scan& scan, const PlanarPose& sensor, const PlanarPose& odometry) {
   Parts& parts = *parts_;
   const mrpt::obs::CObservation2DRangeScan observation = mrpt_scan(scan, sensor);
   parts.odometry = mrpt_pose(odometry);
-  if (parts.first) {
-    parts.first = false;
-    parts.correction = parts.correction + -parts.odometry;
-    if (!parts.begins_saved) return parts.insert(observation);
-    return parts.match(observation);
-  }
+  const bool first = std::exchange(parts.first, false);
+  if (first) parts.correction = parts.correction + -parts.odometry;
+  if (parts.points.empty()) return parts.insert(observation);
+  if (first) return parts.match(observation);
   if (moved(parts.matched_at, parts.odometry, kMatchDistance, kMatchTurn)) parts.match(observation);
   if (parts.matched >= kMinMatched && moved(parts.inserted_at, parts.pose(), kInsertDistance, kInsertTurn))
     parts.insert(observation);

@@ -22,7 +22,7 @@ class Mapper {
   /// The map begins empty, and its origin is the pose of the first scan's robot.
   Mapper();
 
-  /// The map begins with `saved`, in which the robot is at `pose`.
+  /// The map begins with `saved`, in which the robot is at `pose`. Walls and robot move by up to half a cell (align).
   Mapper(const Grid& saved, const PlanarPose& pose);
   ~Mapper();
   Mapper(Mapper&&) noexcept;

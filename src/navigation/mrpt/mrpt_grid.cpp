@@ -4,6 +4,13 @@
 
 namespace robot_control {
 
+PlanarPose align(Grid& grid) {
+  const double x = grid.origin_x, y = grid.origin_y;
+  grid.origin_x = std::round(grid.origin_x / grid.resolution) * grid.resolution;
+  grid.origin_y = std::round(grid.origin_y / grid.resolution) * grid.resolution;
+  return {x - grid.origin_x, y - grid.origin_y, 0};
+}
+
 mrpt::maps::COccupancyGridMap2D mrpt_grid(const Grid& grid) {
   const auto width = static_cast<float>(grid.columns * grid.resolution);
   const auto height = static_cast<float>(grid.rows * grid.resolution);
@@ -13,8 +20,7 @@ mrpt::maps::COccupancyGridMap2D mrpt_grid(const Grid& grid) {
     for (int column = 0; column < grid.columns; ++column) {
       const std::int8_t cell = grid.cells[grid.index({column, row})];
       if (cell == kUnknownCell) continue;
-      const int at = map.x2idx(static_cast<float>(grid.x_of(column)));
-      map.setCell(at, map.y2idx(static_cast<float>(grid.y_of(row))), 1 - static_cast<float>(cell) / 100);
+      map.setCell(column, row, 1 - static_cast<float>(cell) / 100);
     }
   }
   return map;

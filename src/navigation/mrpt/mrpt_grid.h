@@ -8,6 +8,11 @@
 
 namespace robot_control {
 
+/// Moves the grid by up to half a cell, so that it begins at a multiple of its resolution, as each grid of MRPT does.
+/// Returns where the frame of the moved grid lies in that of the given one.
+PlanarPose align(Grid& grid);
+
+/// The grid is aligned.
 mrpt::maps::COccupancyGridMap2D mrpt_grid(const Grid& grid);
 
 /// Cells with the probability one half are unknown.

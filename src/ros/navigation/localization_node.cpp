@@ -13,6 +13,7 @@
 #include "ros/navigation/map_service.h"
 #include "ros/navigation/map_topics.h"
 #include "ros/navigation/navigation_messages.h"
+#include "ros/navigation/own_parameter.h"
 #include "ros/navigation/scan_input.h"
 
 namespace robot_control {
@@ -22,17 +23,18 @@ constexpr std::uint32_t kSeed = 1;    // the same scans give the same particles
 constexpr double kCloudPeriod = 1;    // s
 constexpr std::size_t kShown = 2000;  // particles of particlecloud
 
+constexpr const char* kThreeNumbers = "three finite numbers: x, y in m and yaw in rad";
+
 /// Deviations at ~initial_pose: a robot that is set down by hand on a mark.
 const Eigen::Vector3d kByHand(0.2, 0.2, 0.1);  // m, m, rad
 
 class LocalizationNode {
  public:
   LocalizationNode() {
-    ros::NodeHandle own("~");
-    const std::string path = own.param("map", std::string());
+    const auto path = own_parameter<std::string>("map", "", "the path of a YAML file");
     if (!path.empty()) load(path);
-    std::vector<double> pose;
-    if (own.getParam("initial_pose", pose)) begin_at(pose);
+    const auto pose = own_parameter<std::vector<double>>("initial_pose", {}, kThreeNumbers);
+    if (!pose.empty()) begin_at(pose);
     initial_ = handle_.subscribe("initialpose", 1, &LocalizationNode::receive_pose, this);
     pose_ = handle_.advertise<geometry_msgs::PoseWithCovarianceStamped>("amcl_pose", 2, true);
     cloud_ = handle_.advertise<geometry_msgs::PoseArray>("particlecloud", 1, true);
@@ -52,7 +54,7 @@ class LocalizationNode {
 
   void begin_at(const std::vector<double>& pose) {
     if (pose.size() != 3 || !std::isfinite(pose[0] + pose[1] + pose[2]))
-      throw std::invalid_argument("~initial_pose must be three finite numbers: x, y in m and yaw in rad");
+      throw std::invalid_argument(std::string("~initial_pose must be ") + kThreeNumbers);
     if (!localizer_) throw std::invalid_argument("~initial_pose needs a map: set ~map, too");
     localizer_->set_pose({{pose[0], pose[1], pose[2]}, kByHand.cwiseProduct(kByHand).asDiagonal()});
   }

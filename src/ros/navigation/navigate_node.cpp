@@ -16,6 +16,7 @@
 #include "navigation/text.h"
 #include "ros/navigation/goal_servers.h"
 #include "ros/navigation/navigation_messages.h"
+#include "ros/navigation/own_parameter.h"
 #include "ros/navigation/path_client.h"
 #include "ros/navigation/scan_guard.h"
 
@@ -45,10 +46,9 @@ class NavigateNode {
         path_client_(handle_),
         servers_(
             handle_, [this](const GoalServers::Goal& goal) { begin(goal); }, [this] { cancel("cancelled"); }) {
-    ros::NodeHandle own("~");
-    speed_ = own.param("speed", 0.5);
-    unknown_is_free_ = own.param("unknown_is_free", false);
-    map_frame_ = own.param("map_frame", std::string("map"));
+    speed_ = own_parameter("speed", 0.5, "a number of m/s");
+    unknown_is_free_ = own_parameter("unknown_is_free", false, "true or false");
+    map_frame_ = own_parameter<std::string>("map_frame", "map", "the name of a frame");
     if (!(speed_ > 0 && speed_ <= 10)) throw std::runtime_error("~speed must be above 0 and at most 10 m/s");
     map_ = handle_.subscribe("map", 1, &NavigateNode::receive_map, this);
     localized_ = handle_.subscribe<LocalizationState>(

@@ -17,6 +17,7 @@ namespace robot_control {
 
 class PathClient {
  public:
+  /// Cancels what follow_path was sent before: a navigate that ended while it drove has left its path.
   explicit PathClient(ros::NodeHandle& handle);
 
   /// `frame` is that of the poses, `speed` in m/s.

@@ -30,6 +30,7 @@ ScanGuard::ScanGuard(const ros::NodeHandle& handle, Footprint footprint)
             measured_ = {odometry.twist.twist.linear.x, odometry.twist.twist.angular.z};
           }) {
   timer_ = handle_.createWallTimer(ros::WallDuration(kTick), [this](const ros::WallTimerEvent&) { watch(); });
+  publish(std::numeric_limits<double>::infinity());
   spinner_.start();
 }
 

@@ -2,7 +2,8 @@
 /// Publishes `clearance` from the laser while a goal is driven, in a thread of its own: planning delays it by nothing.
 ///
 /// With a scan that does not count the clearance is 0, and the robot stands. After the goal, once the robot stands, it
-/// is infinite, so that the robot can be driven by hand.
+/// is infinite, so that the robot can be driven by hand. It is at the start, too: a navigate that ended while it drove
+/// has left the clearance 0.
 
 #include <ros/callback_queue.h>
 #include <std_msgs/Float64.h>
@@ -45,7 +46,7 @@ class ScanGuard {
   const Footprint footprint_;
   ros::CallbackQueue queue_;
   ros::NodeHandle handle_;  // of this queue
-  ros::Publisher clearance_ = handle_.advertise<std_msgs::Float64>("clearance", 1);
+  ros::Publisher clearance_ = handle_.advertise<std_msgs::Float64>("clearance", 1, true);
 
   std::mutex mutex_;  // of all below but the input
   std::optional<GuardedScan> newest_;

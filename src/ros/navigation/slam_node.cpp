@@ -9,6 +9,7 @@
 #include "ros/navigation/map_service.h"
 #include "ros/navigation/map_topics.h"
 #include "ros/navigation/navigation_messages.h"
+#include "ros/navigation/own_parameter.h"
 #include "ros/navigation/scan_input.h"
 
 namespace robot_control {
@@ -19,8 +20,7 @@ constexpr double kMapPeriod = 2;  // s between two messages of a map that grows
 class SlamNode {
  public:
   SlamNode() {
-    ros::NodeHandle own("~");
-    const std::string path = own.param("map", std::string());
+    const auto path = own_parameter<std::string>("map", "", "the path of a YAML file");
     if (!path.empty()) load(path);
     initial_ = handle_.subscribe("initialpose", 1, &SlamNode::receive_pose, this);
     timer_ =
