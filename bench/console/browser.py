@@ -86,9 +86,12 @@ class Browser:
         wait_for("a state and a model", lambda: self.data("state") and self.data("model"))
         return time.monotonic() - began
 
-    def new_tab(self) -> None:
-        """Opens another tab, which hides this one; what follows is asked of the new one."""
+    def new_tab(self, *, show: bool = True) -> None:
+        """Opens another tab, which hides this one. `show`: what follows is asked of the new one."""
+        first = self.driver.current_window_handle
         self.driver.switch_to.new_window("tab")
+        if not show:
+            self.driver.switch_to.window(first)
 
     def first_tab(self) -> None:
         """Ends all tabs but the first."""
