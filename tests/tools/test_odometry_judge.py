@@ -185,7 +185,7 @@ def _ours(rows):
     flags = np.zeros(rows, dtype=bool)
     track = Track(zeros, zeros, zeros)
     pose, twist = np.tile(np.eye(3), (rows, 1, 1)), np.tile(np.eye(2), (rows, 1, 1))
-    return Ours(track, pose, zeros, zeros, twist, flags, ~flags, zeros, zeros)
+    return Ours(track, pose, zeros, zeros, twist, flags, ~flags)
 
 
 # Promises.
