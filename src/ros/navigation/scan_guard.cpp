@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kTick = 0.1;       // s
 constexpr double kStanding = 0.02;  // m/s, rad/s
+constexpr int kStood = 10;          // ticks
 
 ros::NodeHandle with_queue(ros::NodeHandle handle, ros::CallbackQueue& queue) {
   handle.setCallbackQueue(&queue);
@@ -30,7 +31,6 @@ ScanGuard::ScanGuard(const ros::NodeHandle& handle, Footprint footprint)
             measured_ = {odometry.twist.twist.linear.x, odometry.twist.twist.angular.z};
           }) {
   timer_ = handle_.createWallTimer(ros::WallDuration(kTick), [this](const ros::WallTimerEvent&) { watch(); });
-  publish(std::numeric_limits<double>::infinity());
   spinner_.start();
 }
 
@@ -67,7 +67,8 @@ void ScanGuard::watch() {
   const bool trusted = input_.problem().empty();
   const std::lock_guard lock(mutex_);
   const bool stands = std::abs(measured_.linear) < kStanding && std::abs(measured_.angular) < kStanding;
-  if (!active_ && guards_ && stands) {
+  stood_ = stands ? stood_ + 1 : 0;
+  if (!active_ && guards_ && stood_ >= kStood) {
     guards_ = false;
     publish(std::numeric_limits<double>::infinity());
   }

@@ -1,9 +1,10 @@
 #pragma once
 /// Publishes `clearance` from the laser while a goal is driven, in a thread of its own: planning delays it by nothing.
 ///
-/// With a scan that does not count the clearance is 0, and the robot stands. After the goal, once the robot stands, it
-/// is infinite, so that the robot can be driven by hand. It is at the start, too: a navigate that ended while it drove
-/// has left the clearance 0.
+/// With a scan that does not count the clearance is 0, and the robot stands. After the goal, once the robot has stood
+/// for 1 s, it is infinite, so that the robot can be driven by hand. The start is as the end of a goal: a navigate that
+/// ended while it drove has left the clearance 0 and a path, which goes on until follow_path hears that it is
+/// cancelled.
 
 #include <ros/callback_queue.h>
 #include <std_msgs/Float64.h>
@@ -53,7 +54,8 @@ class ScanGuard {
   PlanarMotion measured_, intended_;
   Movers movers_;
   double published_ = 0;  // m
-  bool active_ = false, guards_ = false;
+  bool active_ = false, guards_ = true;
+  int stood_ = 0;  // ticks
 
   ScanInput input_;
   ros::WallTimer timer_;
