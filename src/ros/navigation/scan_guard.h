@@ -2,9 +2,8 @@
 /// Publishes `clearance` from the laser while a goal is driven, in a thread of its own: planning delays it by nothing.
 ///
 /// With a scan that does not count the clearance is 0, and the robot stands. After the goal, once the robot has stood
-/// for 1 s, it is infinite, so that the robot can be driven by hand. The start is as the end of a goal: a navigate that
-/// ended while it drove has left the clearance 0 and a path, which goes on until follow_path hears that it is
-/// cancelled.
+/// for 1 s, it is infinite, so that the robot can be driven by hand. The start is as the end of a goal. A navigate that
+/// ended while it drove has left the clearance 0 and a path. That goes on until follow_path hears that it is cancelled.
 
 #include <ros/callback_queue.h>
 #include <std_msgs/Float64.h>
