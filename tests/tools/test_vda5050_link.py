@@ -83,12 +83,10 @@ def test_online_is_retained_after_every_connection_and_offline_before_the_end(tm
 
 
 def test_two_clients_of_one_serial_number_notice_each_other_and_one_does_not_notice_itself(tmp_path, broker):
-    links = []
-    for number in range(2):
-        folder = tmp_path / str(number)
+    folders = [tmp_path / "first", tmp_path / "second"]
+    for folder in folders:
         folder.mkdir()
-        links.append(link_of(folder, broker.port))
-    first, second = links
+    first = link_of(folders[0], broker.port)
     first.begin()
     wait_for(lambda: first.came_up)
     broker.kill()
@@ -98,7 +96,9 @@ def test_two_clients_of_one_serial_number_notice_each_other_and_one_does_not_not
     wait_for(lambda: first.came_up)
     time.sleep(0.5)
     assert first.received.empty()
+    second = link_of(folders[1], broker.port)  # not in the millisecond of the first: their wills would be equal
     second.begin()
+    links = (first, second)
     for each in links:
         wait_for(lambda each=each: not each.received.empty())
         assert each.received.get()[0] == "connection"
