@@ -1,7 +1,7 @@
 """The result of doctor.py for the page, made on request.
 
-Its process has the usual priority: it needs 0.2 s of a processor, which the lowest one does not get in 20 s on a loaded
-machine, where the findings are wanted most.
+Its process has the usual priority. On a loaded machine, where the findings are wanted most, one of the lowest does not
+get the 0.2 s of a processor that it needs.
 """
 
 from __future__ import annotations

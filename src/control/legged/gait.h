@@ -49,6 +49,13 @@ struct Gait {
     return bears(leg, gait_phase) ? 0 : (leg_phase(leg, gait_phase) - duty) / (1 - duty);
   }
 
+  /// Returns for how many s a foot that bears still does, until its next swing. It has landed early if the clock lets
+  /// it swing; where its swing begins it is 0.
+  double bears_for(std::size_t leg, double gait_phase) const noexcept {
+    const double own = leg_phase(leg, gait_phase);
+    return own == duty ? 0 : period * (duty - own + (own < duty ? 0 : 1));
+  }
+
   /// Returns whether a foot swings that stood where this gait began `lasted` s ago. A swing that would have begun
   /// before does not begin.
   bool swings_since(std::size_t leg, double gait_phase, double lasted) const noexcept {

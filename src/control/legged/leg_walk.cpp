@@ -21,6 +21,13 @@ bool rests(const WalkingTwist& twist) noexcept {
   return twist[0] == 0 && twist[1] == 0 && twist[2] == 0;
 }
 
+/// Returns which part of what the legs can is used: Σ |xᵢ|/cᵢ.
+double used_part(const WalkingTwist& twist, const WalkingTwist& capable) noexcept {
+  double used = 0;
+  for (std::size_t i = 0; i < twist.size(); ++i) used += std::abs(twist[i]) / capable[i];
+  return used;
+}
+
 bool usable(const ControlInput& input) noexcept {
   return input.state != nullptr && input.state->head.cycle == input.sensors->head.cycle &&
          (input.state->base.flags & kStateValid) != 0;
@@ -66,9 +73,17 @@ void LegController::walk(const ControlInput& input, const Request& request, Comm
     for (double& axis : target) axis *= input.permit->speed_limit / speed;
   }
   const GaitName gait = choose_gait(request, target);
+  const WalkingTwist speeds = capable(gait);
+  WalkingTwist carried = target;
+  for (double& axis : carried) axis /= std::max(1.0, used_part(target, speeds));
+  const double part = walker_.part_in_reach(state_.walk, *input.sensors, gait, carried);
+  if (part < 1) {
+    for (std::size_t i = 0; i < target.size(); ++i) target[i] = part * carried[i];
+    out.reasons |= kReasonLegSpeed;
+  }
   const auto now = static_cast<GaitName>(state_.walk.gait);
   const WalkingTwist twist =
-      limiter_.step(state_.twist, target, capable(gait), (out.reasons & kEmergencies) != 0, period_, out.reasons);
+      limiter_.step(state_.twist, target, speeds, (out.reasons & kEmergencies) != 0, period_, out.reasons);
   carry(request, out.reasons);
   const Vector3& moves = input.state->base.twist_base.linear;
   const bool slow = std::hypot(moves[0], moves[1]) < kSlow * time_scale();
@@ -132,10 +147,7 @@ WalkingTwist LegController::capable(GaitName wanted) const noexcept {
 /// Returns true if the legs carry the body at this twist in this gait.
 bool LegController::carries(GaitName gait, const WalkingTwist& twist) const noexcept {
   constexpr double kRounding = 1e-9;
-  double used = 0;
-  for (std::size_t i = 0; i < twist.size(); ++i)
-    used += std::abs(twist[i]) / fastest_[static_cast<std::size_t>(gait)][i];
-  return used <= 1 + kRounding;
+  return used_part(twist, fastest_[static_cast<std::size_t>(gait)]) <= 1 + kRounding;
 }
 
 /// Returns √(l / kReferenceLeg): times and speeds of robots of equal Froude number are as these.

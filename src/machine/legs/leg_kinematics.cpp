@@ -144,12 +144,18 @@ LegKinematics::Branch LegKinematics::branch(const Eigen::Vector3d& from_hip, dou
   return result;
 }
 
+std::optional<LegAngles> LegKinematics::reached(const Eigen::Vector3d& foot) const noexcept {
+  for (const double side : {-1.0, 1.0}) {
+    const Branch found = branch(foot - geometry_.hip, side);
+    if (found.reached && found.in_range) return found.angles;
+  }
+  return std::nullopt;
+}
+
 LegSolution LegKinematics::inverse(const Eigen::Vector3d& foot) const noexcept {
+  if (const std::optional<LegAngles> angles = reached(foot)) return {*angles, FootReach::kReached};
   const Eigen::Vector3d from_hip = foot - geometry_.hip;
-  const Branch below = branch(from_hip, -1);
-  if (below.reached && below.in_range) return {below.angles, FootReach::kReached};
-  const Branch above = branch(from_hip, 1);
-  if (above.reached && above.in_range) return {above.angles, FootReach::kReached};
+  const Branch below = branch(from_hip, -1), above = branch(from_hip, 1);
   LegSolution result{.angles = below.angles};  // stays where the distance is not finite
   result.reach = below.reached || above.reached ? FootReach::kBeyondRange : FootReach::kBeyondReach;
   double best = std::numeric_limits<double>::infinity();

@@ -16,6 +16,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 
 #include "machine/machine_model.h"
 
@@ -71,6 +72,9 @@ class LegKinematics {
   /// hip is the preferred one of two solutions. If none exists, the angles are those of the nearest point that the
   /// search of leg_nearest.cpp finds within the ranges.
   LegSolution inverse(const Eigen::Vector3d& foot) const noexcept;
+
+  /// Returns the angles of `inverse`, but none if the leg does not reach `foot`.
+  std::optional<LegAngles> reached(const Eigen::Vector3d& foot) const noexcept;
 
   /// Returns the length from the second joint to the foot in m, while the leg is straight.
   double length() const noexcept { return upper_length_ + lower_length_; }

@@ -134,6 +134,14 @@ TEST(Gait, TheSwingGrowsFromZeroToOne) {
   EXPECT_NEAR(trot.swung(0, 0.25), 0.5, 1e-12);
 }
 
+TEST(Gait, AFootBearsUntilItsNextSwing) {
+  const Gait gait{.name = {}, .period = 0.4, .duty = 0.75, .phase = {0, 0.5}, .lift = 0};
+  EXPECT_NEAR(gait.bears_for(0, 0.25), 0.2, 1e-12);
+  EXPECT_NEAR(gait.bears_for(1, 0), 0.1, 1e-12);
+  EXPECT_EQ(gait.bears_for(0, 0.75), 0) << "it swings";
+  EXPECT_NEAR(gait.bears_for(0, 0.875), 0.35, 1e-12) << "it has landed early";
+}
+
 TEST(Gait, StanceAndSwingShareThePeriodByTheDuty) {
   const Gait gait{.name = {}, .period = 0.4, .duty = 0.75, .phase = {}, .lift = 0};
   EXPECT_NEAR(gait.stance_time(), 0.3, 1e-12);

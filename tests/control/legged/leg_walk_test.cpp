@@ -329,6 +329,24 @@ TEST(LegWalk, KeepsTheSpeedOfThePermitWithoutTurningTheTwist) {
   EXPECT_EQ(held.gait(), number(GaitName::kTrot)) << "in place";
 }
 
+TEST(LegWalk, TurnsBackSlowlyUntilTheFeetHaveLandedAnew) {
+  WalkingLegs legs = ready();
+  const double turning = 0.95 * speeds_of(legs.robot())[number(GaitName::kCrawl)][2];
+  legs.run(3, twist_of(0, 0, -turning, mode_of(GaitName::kCrawl)));
+  EXPECT_EQ(legs.speed(2), -turning);
+  EXPECT_EQ(legs.legs.out.reasons, 0u) << "a steady turn has reach";
+  legs.legs.request(twist_of(0, 0, turning, mode_of(GaitName::kCrawl)));
+  std::uint64_t reasons = 0;
+  for (double time = 0; time < 1; time += kCycle) {
+    legs.step();
+    reasons |= legs.legs.out.reasons;
+  }
+  EXPECT_NE(reasons & kReasonLegSpeed, 0u);
+  legs.run(2, twist_of(0, 0, turning, mode_of(GaitName::kCrawl)));
+  EXPECT_EQ(legs.speed(2), turning);
+  EXPECT_EQ(legs.legs.out.reasons, 0u);
+}
+
 TEST(LegWalk, BrakesHarderInAnEmergency) {
   const MotionLimits limits = twist_limits({})[0];
   const auto hardest = [&](const auto& happens) {

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "control/legged/foothold.h"
 #include "control/legged/walking/swing.h"
@@ -20,6 +21,7 @@ constexpr double kGroundTime = 0.05;  // s, in which the ground follows the feet
 constexpr double kLevel = 0.1;        // of a leg length, by how much the feet have to be apart to show a slope
 constexpr double kEarly = 0.5;        // of the swing, from which on a foot may touch down
 constexpr double kTouches = 0.5;      // probability of a contact
+constexpr int kReachHalvings = 6;     // down to this part of a twist, 2⁻⁶
 constexpr double kTouchTime = 0.005;  // s, for which an early foot touches: the observed load is noisy in the air
 
 using Map = Eigen::Map<Eigen::Vector3d>;
@@ -277,6 +279,40 @@ bool Walker::will_bear(const State& state, GaitName wanted, std::size_t leg, dou
   if (later < left || !changes_after(state, wanted, left)) return gait.bears(leg, state.phase + later / gait.period);
   const Gait& next = gaits_[static_cast<std::size_t>(wanted)];
   return !next.swings_since(leg, next.begins_after(gait) + (later - left) / next.period, later - left);
+}
+
+double Walker::bears_for(const State& state, GaitName wanted, std::size_t leg) const noexcept {
+  const Gait& gait = this->gait(state);
+  const double left = (1 - state.phase) * gait.period, bears = gait.bears_for(leg, state.phase);
+  if (bears < left || !changes_after(state, wanted, left)) return bears;
+  const Gait& next = gaits_[static_cast<std::size_t>(wanted)];
+  return left + next.bears_for(leg, next.begins_after(gait));
+}
+
+double Walker::part_in_reach(const State& state, const SensorFrame& sensors, GaitName wanted,
+                             const WalkingTwist& twist) const noexcept {
+  double part = 1;
+  if (gait(state).duty >= 1) return part;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    if (state.bears[leg] == 0) continue;
+    const LegKinematics& kinematics = legs_[leg].kinematics;
+    LegAngles now;
+    for (std::size_t i = 0; i < kLegJoints; ++i)
+      now[static_cast<Eigen::Index>(i)] = sensors.joints[kLegJoints * leg + i].position;
+    const Eigen::Vector3d foot = kinematics.position(now);
+    const Eigen::Vector3d way = bears_for(state, wanted, leg) * velocity_below(foot, twist);
+    const double longest = std::max(kOfLength * kinematics.length(), kinematics.stretch(now));
+    const auto reaches = [&](double of_twist) {
+      const std::optional<LegAngles> end = kinematics.reached(foot + of_twist * way);
+      return end && kinematics.stretch(*end) <= longest;
+    };
+    if (way.isZero() || reaches(part)) continue;
+    double step = part / 2;
+    part = 0;
+    for (int i = 0; i < kReachHalvings; ++i, step /= 2)
+      if (reaches(part + step)) part += step;
+  }
+  return part;
 }
 
 double Walker::farthest_foot(const WalkingBody& body) const noexcept {

@@ -17,6 +17,8 @@
 ///             the gait that follows
 ///   stance    τ = h − Jᵀ f, f the planned force, h what holds the leg itself. f is scaled down until each |τ| is within
 ///             the joint's limit, so that f stays within friction
+///   reach     a foot that bears stays within kOfLength of its leg's length (walking_speed.h) until its next swing, or
+///             where it is if it is beyond. A foot that landed for another twist bounds the twist by that
 ///   swing     the foot follows swing.h to its foothold (foothold.h) with the impedance of standing, and the efforts
 ///             M q̈ + h of its own leg
 ///
@@ -94,6 +96,11 @@ class Walker {
   /// Fills joints, gait and stance of `out`, and adds to its reasons. Returns false if the plan has failed too often.
   bool step(State& state, const WalkInput& input, CommandFrame& out) noexcept;
 
+  /// Returns the largest part 0 … 1 of `twist` with which each foot that bears is in reach at the end of its stance.
+  /// `wanted` is the gait that follows.
+  double part_in_reach(const State& state, const SensorFrame& sensors, GaitName wanted,
+                       const WalkingTwist& twist) const noexcept;
+
   /// The gaits of this robot, by GaitName.
   const Gaits& gaits() const noexcept { return gaits_; }
 
@@ -114,6 +121,8 @@ class Walker {
                           std::size_t leg) const noexcept;
   /// Returns whether the clock lets a foot bear in `later` s.
   bool will_bear(const State& state, GaitName wanted, std::size_t leg, double later) const noexcept;
+  /// Returns for how many s a foot that bears still does by the clock.
+  double bears_for(const State& state, GaitName wanted, std::size_t leg) const noexcept;
   void plan(State& state, const WalkInput& input, const WalkingBody& body) noexcept;
   void bear(const State& state, const WalkingBody& body, std::size_t leg, CommandFrame& out) const noexcept;
   void swing(const State& state, const WalkInput& input, const WalkingBody& body, std::size_t leg,

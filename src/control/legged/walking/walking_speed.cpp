@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "control/legged/walking/swing.h"
 
@@ -17,20 +18,14 @@ constexpr int kSamples = 24;
 
 constexpr double kOutOfReach = std::numeric_limits<double>::infinity();
 
-/// Returns the velocity of a foot that stands, under the body.
-Eigen::Vector3d velocity_of(const Eigen::Vector3d& foot, const WalkingTwist& twist) noexcept {
-  return {twist[2] * foot.y() - twist[0], -twist[2] * foot.x() - twist[1], 0};
-}
-
 /// Returns the largest part of its speed limit that a joint of this leg needs; kOutOfReach where the leg ends.
 double needed_at(const LegModel& robot, std::size_t leg, const Eigen::Vector3d& place,
                  const Eigen::Vector3d& velocity) noexcept {
   const LegKinematics& kinematics = robot.legs[leg].kinematics;
-  const LegSolution solution = kinematics.inverse(place);
-  if (solution.reach != FootReach::kReached) return kOutOfReach;
-  if (kinematics.stretch(solution.angles) > kOfLength * kinematics.length()) return kOutOfReach;
+  const std::optional<LegAngles> angles = kinematics.reached(place);
+  if (!angles || kinematics.stretch(*angles) > kOfLength * kinematics.length()) return kOutOfReach;
   Eigen::Vector3d foot;
-  const Eigen::Matrix3d inverse = kinematics.jacobian(solution.angles, foot).inverse();
+  const Eigen::Matrix3d inverse = kinematics.jacobian(*angles, foot).inverse();
   const Eigen::Vector3d rates = inverse * velocity;
   double part = 0;
   for (std::size_t i = 0; i < kLegJoints; ++i)
@@ -46,7 +41,7 @@ double needed(const LegModel& robot, const NominalStance& stance, const Gait& ga
   double part = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const Eigen::Vector3d& foot = stance.feet[leg];
-    const Eigen::Vector3d velocity = velocity_of(foot, twist);
+    const Eigen::Vector3d velocity = velocity_below(foot, twist);
     const Eigen::Vector3d from = foot + half * velocity, to = foot - (half + time) * velocity;  // over ground
     for (int i = 0; i <= kSamples; ++i) {
       const double swung = static_cast<double>(i) / kSamples;
@@ -63,12 +58,11 @@ double needed_after(const LegModel& robot, const NominalStance& stance, const Ga
   const double begin = next.begins_after(last);
   double part = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const bool bears = next.bears(leg, begin);
-    if (!bears && next.swung(leg, begin) == 0) continue;  // it swings at once
+    const double stands = next.bears_for(leg, begin);
+    if (stands == 0) continue;
     const double stood = last.period * (std::min(last.leg_phase(leg, 0), last.duty) - last.duty / 2);
-    const double stands = next.period * (next.duty + (bears ? 0 : 1) - next.leg_phase(leg, begin));
     const Eigen::Vector3d& foot = stance.feet[leg];
-    const Eigen::Vector3d velocity = velocity_of(foot, twist);
+    const Eigen::Vector3d velocity = velocity_below(foot, twist);
     part = std::max(part, needed_at(robot, leg, foot + (stood + stands) * velocity, velocity));
   }
   return part;
@@ -89,6 +83,10 @@ double largest(std::size_t axis, const Part& part_of) noexcept {
 }
 
 }  // namespace
+
+Eigen::Vector3d velocity_below(const Eigen::Vector3d& foot, const WalkingTwist& twist) noexcept {
+  return {twist[2] * foot.y() - twist[0], -twist[2] * foot.x() - twist[1], 0};
+}
 
 Gait gait_of(const LegModel& robot, const NominalStance& stance, const Gait& reference) noexcept {
   Gait gait = reference.scaled(robot.leg_length());

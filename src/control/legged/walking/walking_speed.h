@@ -10,6 +10,7 @@
 ///          bounds its speed until the other one has lasted for a period. To the front and back no gait is faster than
 ///          1.7 m/s √(l/kReferenceLeg): beyond it a trot loses its balance (docs/evidence/legs.md)
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "control/legged/gait.h"
@@ -24,6 +25,9 @@ inline constexpr double kOfJointSpeed = 0.85;
 inline constexpr double kOfLength = 0.95;
 
 Gait gait_of(const LegModel& robot, const NominalStance& stance, const Gait& reference) noexcept;
+
+/// Returns the velocity in m/s of a foot that stands on the ground, below a body with this twist.
+Eigen::Vector3d velocity_below(const Eigen::Vector3d& foot, const WalkingTwist& twist) noexcept;
 
 using Speeds = std::vector<WalkingTwist>;
 
