@@ -225,10 +225,14 @@ def test_a_file_of_any_size_is_put_together(tmp_path, size):
         ("00001", lambda data: bytes(len(data)), "part 2 of 3: 00001 has another content than was sent"),
         ("00000", None, "part 1 of 3: 00000 is missing"),
         (MANIFEST, lambda data: data[:-5], "manifest.json is cut off or damaged"),
+        (MANIFEST, lambda data: data.replace(b'"size": 1000', b'"size": 1e999'), "manifest.json is cut off or damaged"),
+        (MANIFEST, lambda _: b"[" * 100_000, "manifest.json is cut off or damaged"),
+        (MANIFEST, lambda data: data.replace(b'_size": 1000', b'_size": 0'), "part_size is 0, and must be from 1 to"),
+        (MANIFEST, lambda data: re.sub(rb'_ns": \d+', b'_ns": 99999999999999999999', data), "mtime_ns is 99999999999"),
         (MANIFEST, lambda data: data.replace(b"00001", b"../01"), "does not list the parts one by one"),
         (MANIFEST, lambda data: data.replace(b'"size": 3000,\n "m', b'"size": 3001,\n "m'), "hold 3000 of 3001 bytes"),
     ],
-    ids=["short", "other content", "missing", "cut manifest", "other names", "other size"],
+    ids=["short", "content", "missing", "cut manifest", "infinity", "deep", "part size", "time", "names", "size"],
 )
 def test_every_gap_is_named(tmp_path, capsys, name, change, words):
     system = System(tmp_path, {"run.1.bag": random.Random(1).randbytes(3 * PART)})

@@ -18,6 +18,8 @@ HELPS = 0.9
 SAMPLE = 1 << 16
 """bytes: a part that does not compress, as those of most bags, costs a 64th of the time"""
 FORMAT = 1
+RANGES = {"size": (0, 2**63 - 1), "mtime_ns": (0, 2**63 - 1), "part_size": (1, 1 << 30)}
+"""of the numbers of a manifest; a part is in memory while it is verified"""
 
 
 class GapError(ValueError):
@@ -68,14 +70,12 @@ def read_manifest(data: bytes) -> Mapping[str, Any]:
         names = [part.name.removesuffix(".gz") for part in parts]
         if not parts or names != [f"{number:05d}" for number in range(len(parts))]:
             raise GapError(f"{MANIFEST} does not list the parts one by one")
-        return {
-            "name": str(content["name"]),
-            "size": int(content["size"]),
-            "mtime_ns": int(content["mtime_ns"]),
-            "part_size": int(content["part_size"]),
-            "parts": parts,
-        }
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        numbers = {name: int(content[name]) for name in RANGES}
+        for name, (least, most) in RANGES.items():
+            if not least <= numbers[name] <= most:
+                raise GapError(f"{MANIFEST}: {name} is {numbers[name]}, and must be from {least} to {most}")
+        return {"name": str(content["name"]), "parts": parts, **numbers}
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as error:
         if isinstance(error, GapError):
             raise
         raise GapError(f"{MANIFEST} is cut off or damaged") from None
