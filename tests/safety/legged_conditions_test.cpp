@@ -538,7 +538,7 @@ TEST_F(LeggedConditionsTest, AnAccelerometerThatShowsTheBodyPulledDownBrakes) {
     command_.legged.phase = phase;
     EXPECT_EQ(run(0.2, shows(0, 0.1)), 0.2) << "it falls";
     conditions_.enter_run();
-    EXPECT_NEAR(run(0.3, shows(-9.81, 0.1)), 0.115, 0.001);
+    EXPECT_NEAR(run(0.3, shows(-9.81, 0.1)), 0.121, 0.002);
     EXPECT_EQ(causes(Reaction::kBrake), "imu_reversed");
   }
   command_.legged.phase = LegPhase::kLying;

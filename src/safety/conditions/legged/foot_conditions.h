@@ -6,10 +6,10 @@
 ///              feet by the measured angles. It stays while both stand, however the body moves, and changes by the
 ///              slip. Feet that slip together are not noticed. A ball that rolls changes d by less than its radius
 ///              times the body's turn
-///   body rate  max over these pairs of (|n| − kOfSlip |p|) / (T |d|) > limit, while it walks, T = kTurnTime. Within T the
-///              vector d from one foot to the other turns by θ × d less than the gyro turned; p and n are its other
-///              changes, along d and across. The ground turns with the body only if the gyro errs. A foot that slips, or
-///              an encoder, changes the length of d as well
+///   body rate  max over these pairs of (|n| − kOfSlip |p|) / (T |v|) > limit, while it walks, T = kSamplesInTurn
+///              samples. v is the vector from foot to foot, and c = Δv + θ × v is its change within T, in which the gyro
+///              turned by θ. c is 0 over ground that rests, if the gyro is right. p is its part along v, n that across.
+///              A foot that slips, or an encoder that errs, changes the length of v, too
 ///   foot load  F·u / w < limit, with the measured force F of a foot, the vertical u and an equal share w of the weight
 ///   sinking    (c − c₀ − (h − h₀)) / l > limit, while it walks. h is the mean height of the body above its feet by the
 ///              measured angles, c the commanded height, l the leg length. h₀ and c₀ are those of the robot that stood
