@@ -505,6 +505,47 @@ TEST_F(WalkingConditionsTest, ABodyThatSinksBrakes) {
   EXPECT_EQ(causes(Reaction::kBrake), "sinking");
 }
 
+// It turns to and fro by up to 1.2 rad/s, above feet that stand.
+TEST_F(WalkingConditionsTest, AGyroThatContradictsTheFeetBrakes) {
+  const auto turns = [&](double of_gyro) {
+    return [&, of_gyro](double t) {
+      const Eigen::Matrix3d back =
+          Eigen::AngleAxisd(-0.1 * std::sin(12 * t), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+      std::array<Eigen::Vector3d, kLegs> feet = stand_;
+      for (Eigen::Vector3d& foot : feet) foot = back * foot;
+      place(feet);
+      for (std::size_t i = 0; i < kLegsJoints; ++i) command_.joints[i].position = sensors_.joints[i].position;
+      sensors_.imu.angular_velocity[2] = of_gyro * 1.2 * std::cos(12 * t);
+    };
+  };
+  for (const double healthy : {1.0, 0.4, 1.6}) EXPECT_EQ(walk(1, turns(healthy)), 1) << causes(Reaction::kBrake);
+  for (const double wrong : {0.0, -1.0}) {
+    conditions_.enter_run();
+    EXPECT_LT(walk(1, turns(wrong)), 0.3) << "within half a turn to and fro";
+    EXPECT_EQ(causes(Reaction::kBrake), "body_rate");
+  }
+  conditions_.enter_run();
+  sensors_.valid = kValidAccelerometer;
+  EXPECT_EQ(walk(0.3, turns(0)), 0.3) << "a gyro that is missing is imu_lost";
+}
+
+TEST_F(LeggedConditionsTest, AnAccelerometerThatShowsTheBodyPulledDownBrakes) {
+  const auto shows = [&](double force, double from) {
+    return [&, force, from](double t) { sensors_.imu.linear_acceleration[2] = t < from ? 9.81 : force; };
+  };
+  for (const LegPhase phase : {LegPhase::kGathering, LegPhase::kRising, LegPhase::kStanding, LegPhase::kWalking}) {
+    conditions_.enter_run();
+    command_.legged.phase = phase;
+    EXPECT_EQ(run(0.2, shows(0, 0.1)), 0.2) << "it falls";
+    conditions_.enter_run();
+    EXPECT_NEAR(run(0.3, shows(-9.81, 0.1)), 0.121, 0.002);
+    EXPECT_EQ(causes(Reaction::kBrake), "imu_reversed");
+  }
+  command_.legged.phase = LegPhase::kLying;
+  conditions_.enter_run();
+  EXPECT_EQ(run(0.3, shows(-9.81, 0.1)), 0.3) << "one that lies may be shaken";
+}
+
 TEST_F(LeggedConditionsTest, FeetAreJudgedOnlyWhileItStands) {
   for (ContactSample& contact : sensors_.contacts) contact.force = {};
   for (const LegPhase phase : {LegPhase::kLying, LegPhase::kGathering, LegPhase::kRising, LegPhase::kJoints}) {

@@ -31,7 +31,8 @@ std::string part_of(const Fault& fault) {
 /// Returns whether the permit names the faulty part: its joint, or the IMU.
 bool names(const Permit& permit, const Fault& fault) {
   if (permit.causes == 0) return false;
-  constexpr std::uint64_t kOfImu = kCauseImuLost | kCauseImuStuck | kCauseImuJump | kCauseNotFinite;
+  constexpr std::uint64_t kOfImu =
+      kCauseImuLost | kCauseImuStuck | kCauseImuJump | kCauseImuReversed | kCauseBodyRate | kCauseNotFinite;
   if (fault.joint == kLegsJoints) return (permit.first_cause & kOfImu) != 0;
   return (permit.first_cause & kNoNames) == 0 && permit.evidence[0].joint == fault.joint;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "machine/gravity.h"
 #include "signals/rotation.h"
@@ -103,6 +104,7 @@ void BodyConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, dou
   const double tilt = attitude_.tilt();
   const double tilt_rate = attitude_.tilt_rate();
   if (turned) rate_change_.step(sensors.imu.angular_velocity);
+  *rate_ = turned ? rate : Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   shake(felt);
   weigh(sensors);
 

@@ -9,12 +9,26 @@
 namespace robot_control {
 namespace {
 
+using Map = Eigen::Map<Eigen::Vector3d>;
+using ConstMap = Eigen::Map<const Eigen::Vector3d>;
+
 std::size_t knee_of(std::size_t leg) noexcept {
   return kLegJoints * leg + kLegJoints - 1;
 }
 
 Vector3 plain(const Eigen::Vector3d& vector) noexcept {
   return {vector.x(), vector.y(), vector.z()};
+}
+
+Eigen::Vector3d between(const std::array<Vector3, kLegs>& feet, std::size_t a, std::size_t b) noexcept {
+  return ConstMap(feet[b].data()) - ConstMap(feet[a].data());
+}
+
+template <class Each>
+void for_each_pair(const Each& each) noexcept {
+  for (std::size_t a = 0; a < kLegs; ++a) {
+    for (std::size_t b = a + 1; b < kLegs; ++b) each(a, b);
+  }
 }
 
 Eigen::Vector3d turned(const Eigen::Vector3d& axis, double angle, const Eigen::Vector3d& vector) noexcept {
@@ -31,15 +45,18 @@ SafetyParameters legged_limits(const SafetyParameters& given, const LegModel& ro
 
 FootConditions::FootConditions(const SafetyParameters& parameters, const LegModel& robot, double period)
     : weight_(robot.mass * kGravity),
+      period_(period),
       interval_(
           std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::lround(kWindow / kSamplesInWindow / period)))),
       window_(static_cast<double>(interval_ * kSamplesInWindow) * period),
       slip_(kCauseFootSlip, parameters.foot_slip, period),
       load_(kCauseFootLoad, parameters.foot_load, period),
       sinking_(kCauseSinking, parameters.sinking, period),
+      turning_(kCauseBodyRate, parameters.body_rate, period),
       length_(robot.leg_length()),
       worst_(kNothingMeasured),
-      sunk_(kNothingMeasured) {
+      sunk_(kNothingMeasured),
+      turned_(kNothingMeasured) {
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const LegGeometry& given = robot.legs[leg].kinematics.geometry();
     legs_[leg] = {.hip = plain(given.hip),
@@ -52,26 +69,25 @@ FootConditions::FootConditions(const SafetyParameters& parameters, const LegMode
 
 /// The formula is that of leg_kinematics.h.
 Eigen::Vector3d FootConditions::position(const Lengths& leg, const LegAngles& angles) noexcept {
-  using Map = Eigen::Map<const Eigen::Vector3d>;
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY();
-  const Eigen::Vector3d shank = Map(leg.lower.data()) + turned(y, leg.sign[2] * angles[2], Map(leg.foot.data()));
-  const Eigen::Vector3d thigh = Map(leg.upper.data()) + turned(y, leg.sign[1] * angles[1], shank);
-  return Map(leg.hip.data()) + turned(x, leg.sign[0] * angles[0], thigh);
+  const Eigen::Vector3d shank =
+      ConstMap(leg.lower.data()) + turned(y, leg.sign[2] * angles[2], ConstMap(leg.foot.data()));
+  const Eigen::Vector3d thigh = ConstMap(leg.upper.data()) + turned(y, leg.sign[1] * angles[1], shank);
+  return ConstMap(leg.hip.data()) + turned(x, leg.sign[0] * angles[0], thigh);
 }
 
 void FootConditions::enter_run() noexcept {
-  slip_.reset();
-  load_.reset();
-  sinking_.reset();
+  for (ConditionWatch* watch : {&slip_, &load_, &sinking_, &turning_}) watch->reset();
   counts_ = {};
   loads_.fill(1);
   judged_ = {};
-  worst_ = sunk_ = kNothingMeasured;
+  worst_ = sunk_ = turned_ = kNothingMeasured;
+  turn_ = {};
   stood_ = false;
 }
 
-void FootConditions::step(const MonitorInput& input, const Eigen::Vector3d& up, std::uint64_t elapsed,
-                          ActiveCauses& out) noexcept {
+void FootConditions::step(const MonitorInput& input, const Eigen::Vector3d& up, const Eigen::Vector3d& rate,
+                          std::uint64_t elapsed, ActiveCauses& out) noexcept {
   const LeggedCommand asked = input.command != nullptr ? input.command->legged : LeggedCommand{};
   const bool stands = asked.phase == LegPhase::kStanding, walks = asked.phase == LegPhase::kWalking;
   Feet judged{};
@@ -85,7 +101,8 @@ void FootConditions::step(const MonitorInput& input, const Eigen::Vector3d& up, 
   waited_ += elapsed;
   const bool any = judged != Feet{};
   if (!any) worst_ = kNothingMeasured;
-  if (!walks) sunk_ = kNothingMeasured;
+  if (!walks) sunk_ = turned_ = kNothingMeasured;
+  Map(turn_.data()) += static_cast<double>(elapsed) * period_ * rate;
   if (any && (begins || waited_ >= interval_)) {
     waited_ = 0;
     sample(*input.sensors, asked, up, judged);
@@ -97,6 +114,8 @@ void FootConditions::step(const MonitorInput& input, const Eigen::Vector3d& up, 
   out.add(load_);
   sinking_.step(sunk_, elapsed);
   out.add(sinking_);
+  turning_.step(turned_, elapsed);
+  out.add(turning_);
 }
 
 void FootConditions::sample(const SensorFrame& sensors, const LeggedCommand& asked, const Eigen::Vector3d& up,
@@ -106,12 +125,14 @@ void FootConditions::sample(const SensorFrame& sensors, const LeggedCommand& ask
     if (!has_position(sensors.joints[i])) return;
     angles[i] = sensors.joints[i].position;
   }
-  std::array<Eigen::Vector3d, kLegs> feet;
+  Sample now{.feet = {}, .turn = turn_};
+  turn_ = {};
   double height = 0, count = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    feet[leg] = position(legs_[leg], LegModel::angles_of(angles, leg));
+    const Eigen::Vector3d foot = position(legs_[leg], LegModel::angles_of(angles, leg));
+    now.feet[leg] = plain(foot);
     if (!judged[leg]) continue;
-    height -= up.dot(feet[leg]);
+    height -= up.dot(foot);
     ++count;
   }
   height = height / count - asked.body[2];
@@ -121,34 +142,48 @@ void FootConditions::sample(const SensorFrame& sensors, const LeggedCommand& ask
   } else if (stood_) {
     sunk_ = beyond(kMaxJoints, (reference_ - height) / length_, sinking_.limit());
   }
-  Distances now{};
-  std::size_t pair = 0;
-  for (std::size_t a = 0; a < kLegs; ++a) {
-    for (std::size_t b = a + 1; b < kLegs; ++b) now[pair++] = (feet[a] - feet[b]).norm();
-  }
-  compare(now, (asked.phase == LegPhase::kWalking ? kOfStep : 1) * slip_.limit());
+  const bool walks = asked.phase == LegPhase::kWalking;
+  judge_slip(now, (walks ? kOfStep : 1) * slip_.limit());
+  if (walks) judge_turn(now);
   samples_[next_] = now;
   next_ = (next_ + 1) % kSamplesInWindow;
   for (std::size_t leg = 0; leg < kLegs; ++leg) counts_[leg] += judged[leg] ? 1 : 0;
 }
 
 /// The oldest sample is about to be replaced by `now`.
-void FootConditions::compare(const Distances& now, double limit) noexcept {
-  const Distances& before = samples_[next_];
+void FootConditions::judge_slip(const Sample& now, double limit) noexcept {
+  const Sample& before = samples_[next_];
   std::array<double, kLegs> changes{};
   double largest = 0;
-  std::size_t pair = 0;
-  for (std::size_t a = 0; a < kLegs; ++a) {
-    for (std::size_t b = a + 1; b < kLegs; ++b, ++pair) {
-      if (std::min(counts_[a], counts_[b]) < kSamplesInWindow) continue;
-      const double change = std::abs(now[pair] - before[pair]);
-      largest = std::max(largest, change);
-      changes[a] += change;
-      changes[b] += change;
-    }
-  }
+  for_each_pair([&](std::size_t a, std::size_t b) {
+    if (std::min(counts_[a], counts_[b]) < kSamplesInWindow) return;
+    const double change = std::abs(between(now.feet, a, b).norm() - between(before.feet, a, b).norm());
+    largest = std::max(largest, change);
+    changes[a] += change;
+    changes[b] += change;
+  });
   const auto foot = static_cast<std::size_t>(std::ranges::max_element(changes) - changes.begin());
   worst_ = beyond(knee_of(foot), largest / window_, limit);
+}
+
+void FootConditions::judge_turn(const Sample& now) noexcept {
+  const Sample* before = nullptr;
+  Eigen::Vector3d turn = ConstMap(now.turn.data());
+  for (std::size_t i = 1; i <= kSamplesInTurn; ++i) {
+    before = &samples_[(next_ + kSamplesInWindow - i) % kSamplesInWindow];
+    if (i < kSamplesInTurn) turn += ConstMap(before->turn.data());
+  }
+  double largest = 0;
+  for_each_pair([&](std::size_t a, std::size_t b) {
+    if (std::min(counts_[a], counts_[b]) < kSamplesInTurn) return;
+    const Eigen::Vector3d first = between(before->feet, a, b), last = between(now.feet, a, b);
+    const Eigen::Vector3d middle = (first + last) / 2, change = last - first + turn.cross(middle);
+    const double length = middle.norm(), along = std::abs(change.dot(middle)) / length;
+    const double across = std::sqrt(std::max(0.0, change.squaredNorm() - along * along));
+    largest = std::max(largest, (across - kOfSlip * along) / length);
+  });
+  const double time = window_ * kSamplesInTurn / kSamplesInWindow;
+  turned_ = beyond(kMaxJoints, largest / time, turning_.limit());
 }
 
 ConditionMeasurement FootConditions::lightest(const SensorFrame& sensors, const Eigen::Vector3d& up, const Feet& judged,

@@ -1,7 +1,7 @@
 #pragma once
 /// The conditions of a robot on legs compare body, joints and feet with their limits (body_conditions.h,
-/// joint_conditions.h, encoder_conditions.h, foot_conditions.h). They tell whether the joints stand. Joints stand while
-/// every one stays within kWindow of its angle for kStandingTime.
+/// downward_force.h, joint_conditions.h, encoder_conditions.h, foot_conditions.h). They tell whether the joints stand.
+/// Joints stand while every one stays within kWindow of its angle for kStandingTime.
 ///
 ///   moving    a joint left its window, or its angle is not known; until the robot stands again
 ///   standing  all joints are inside for kStandingTime
@@ -13,6 +13,7 @@
 
 #include "machine/legs/leg_model.h"
 #include "safety/conditions/common/body_conditions.h"
+#include "safety/conditions/legged/downward_force.h"
 #include "safety/conditions/legged/encoder_conditions.h"
 #include "safety/conditions/legged/foot_conditions.h"
 #include "safety/conditions/legged/joint_conditions.h"
@@ -32,6 +33,7 @@ class LeggedConditions {
   LeggedConditions(const SafetyParameters& parameters, const LegModel& robot, double period)
       : period_(period),
         body_conditions_(parameters, robot, {}, period, kForceTime),
+        downward_force_(parameters, period),
         joint_conditions_(parameters, robot, period),
         encoder_conditions_(parameters, robot, period),
         foot_conditions_(parameters, robot, period) {}
@@ -40,6 +42,7 @@ class LeggedConditions {
 
   void enter_run() noexcept {
     body_conditions_.enter_run();
+    downward_force_.enter_run();
     joint_conditions_.enter_run();
     encoder_conditions_.enter_run();
     foot_conditions_.enter_run();
@@ -59,9 +62,11 @@ class LeggedConditions {
     }
     if (standing()) moving_ = false;
     body_conditions_.step(sensors, elapsed, 0, moving_, out);
+    const LegPhase phase = input.command != nullptr ? input.command->legged.phase : LegPhase::kLying;
+    downward_force_.step(body_conditions_.specific_force(), phase, elapsed, out);
     joint_conditions_.step(input, elapsed, out);
     encoder_conditions_.step(input, elapsed, out);
-    foot_conditions_.step(input, body_conditions_.attitude().up(), elapsed, out);
+    foot_conditions_.step(input, body_conditions_.attitude().up(), body_conditions_.rate(), elapsed, out);
   }
 
   bool moving() const noexcept { return moving_; }
@@ -80,6 +85,7 @@ class LeggedConditions {
 
   double period_;
   BodyConditions body_conditions_;
+  DownwardForce downward_force_;
   JointConditions joint_conditions_;
   EncoderConditions encoder_conditions_;
   FootConditions foot_conditions_;
