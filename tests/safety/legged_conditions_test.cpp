@@ -506,8 +506,7 @@ TEST_F(WalkingConditionsTest, ABodyThatSinksBrakes) {
   EXPECT_EQ(causes(Reaction::kBrake), "sinking");
 }
 
-// It turns to and fro by up to 1.8 rad/s about a slanting axis, above feet that stand; the IMU's x axis points to the
-// left.
+// It turns to and fro by up to 1.8 rad/s about a slanting axis, above feet that stand. The IMU's x axis points left.
 TEST_F(WalkingConditionsTest, AGyroThatContradictsTheFeetBrakes) {
   const Eigen::Quaterniond mounting(Eigen::AngleAxisd(1.5708, Eigen::Vector3d::UnitZ()));
   robot_.imu_in_base.orientation = {mounting.x(), mounting.y(), mounting.z(), mounting.w()};

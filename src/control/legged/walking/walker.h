@@ -97,8 +97,8 @@ class Walker {
   /// Fills joints, gait and stance of `out`, and adds to its reasons. Returns false if the plan has failed too often.
   bool step(State& state, const WalkInput& input, CommandFrame& out) noexcept;
 
-  /// Returns the largest part 0 … 1 of the input's twist with which each foot that bears is in reach at the end of its
-  /// stance, before its wanted gait and in it.
+  /// Returns the largest part 0 … 1 of the input's twist that keeps the feet in reach. The wanted gait may begin
+  /// meanwhile.
   double part_in_reach(const State& state, const WalkInput& input) const noexcept;
 
   /// The gaits of this robot, by GaitName.
