@@ -43,7 +43,7 @@ class LeggedConditionsTest : public testing::Test {
   double run(double seconds, const std::function<void(double)>& change = {}) {
     for (double t = 0; t < seconds; t += kPeriod) {
       if (change) change(t);
-      sensors_.imu.angular_velocity[0] = 1e-6 * t;  // every sample is another one
+      sensors_.imu.angular_velocity = {rate_[0] + 1e-6 * t, rate_[1], rate_[2]};  // every sample is another one
       sensors_.imu.linear_acceleration[0] = 1e-3 * t;
       active_.clear();
       conditions_.step({.sensors = &sensors_, .command = &command_}, 1, 0, active_);
@@ -67,6 +67,7 @@ class LeggedConditionsTest : public testing::Test {
   CommandFrame command_;
   ActiveCauses active_;
   std::array<Eigen::Vector3d, kLegs> stand_;
+  Eigen::Vector3d rate_ = Eigen::Vector3d::Zero();  // rad/s, of the gyro
 };
 
 TEST_F(LeggedConditionsTest, StandAfterATenthOfASecondAndDoNotMoveBeforeThat) {
@@ -505,20 +506,23 @@ TEST_F(WalkingConditionsTest, ABodyThatSinksBrakes) {
   EXPECT_EQ(causes(Reaction::kBrake), "sinking");
 }
 
-// It turns to and fro by up to 1.2 rad/s, above feet that stand.
+// It turns to and fro by up to 1.8 rad/s about a slanting axis, above feet that stand. The IMU's x axis points left.
 TEST_F(WalkingConditionsTest, AGyroThatContradictsTheFeetBrakes) {
+  const Eigen::Quaterniond mounting(Eigen::AngleAxisd(1.5708, Eigen::Vector3d::UnitZ()));
+  robot_.imu_in_base.orientation = {mounting.x(), mounting.y(), mounting.z(), mounting.w()};
+  conditions_ = LeggedConditions(limits(robot_), robot_, kPeriod);
+  const Eigen::Vector3d axis = Eigen::Vector3d(1, 2, 3).normalized();
   const auto turns = [&](double of_gyro) {
     return [&, of_gyro](double t) {
-      const Eigen::Matrix3d back =
-          Eigen::AngleAxisd(-0.1 * std::sin(12 * t), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+      const Eigen::Matrix3d back = Eigen::AngleAxisd(-0.15 * std::sin(12 * t), axis).toRotationMatrix();
       std::array<Eigen::Vector3d, kLegs> feet = stand_;
       for (Eigen::Vector3d& foot : feet) foot = back * foot;
       place(feet);
       for (std::size_t i = 0; i < kLegsJoints; ++i) command_.joints[i].position = sensors_.joints[i].position;
-      sensors_.imu.angular_velocity[2] = of_gyro * 1.2 * std::cos(12 * t);
+      rate_ = of_gyro * 1.8 * std::cos(12 * t) * (mounting.inverse() * axis);
     };
   };
-  for (const double healthy : {1.0, 0.4, 1.6}) EXPECT_EQ(walk(1, turns(healthy)), 1) << causes(Reaction::kBrake);
+  for (const double healthy : {1.0, 0.6, 1.4}) EXPECT_EQ(walk(1, turns(healthy)), 1) << causes(Reaction::kBrake);
   for (const double wrong : {0.0, -1.0}) {
     conditions_.enter_run();
     EXPECT_LT(walk(1, turns(wrong)), 0.3) << "within half a turn to and fro";
@@ -529,6 +533,18 @@ TEST_F(WalkingConditionsTest, AGyroThatContradictsTheFeetBrakes) {
   EXPECT_EQ(walk(0.3, turns(0)), 0.3) << "a gyro that is missing is imu_lost";
 }
 
+TEST_F(WalkingConditionsTest, OneWrongAngleIsNoBodyRate) {
+  for (int wrong = 0; wrong < 40; ++wrong) {
+    conditions_.enter_run();
+    const double seen = walk(0.6, [&](double t) {
+      const bool now = std::lround(t * 1000) == 500 + wrong;
+      for (const std::size_t hip : {0, 9}) sensors_.joints[hip].position += now ? 0.05 : 0;
+      for (std::size_t i = 0; i < kLegsJoints; ++i) command_.joints[i].position = sensors_.joints[i].position;
+    });
+    EXPECT_EQ(seen, 0.6) << wrong << causes(Reaction::kBrake);
+  }
+}
+
 TEST_F(LeggedConditionsTest, AnAccelerometerThatShowsTheBodyPulledDownBrakes) {
   const auto shows = [&](double force, double from) {
     return [&, force, from](double t) { sensors_.imu.linear_acceleration[2] = t < from ? 9.81 : force; };
@@ -537,6 +553,16 @@ TEST_F(LeggedConditionsTest, AnAccelerometerThatShowsTheBodyPulledDownBrakes) {
     conditions_.enter_run();
     command_.legged.phase = phase;
     EXPECT_EQ(run(0.2, shows(0, 0.1)), 0.2) << "it falls";
+    const auto rings = [&](double t) {
+      sensors_.imu.linear_acceleration[2] = std::lround(t * 1000) == 100 ? -150 : 9.81;
+    };
+    EXPECT_EQ(run(0.2, rings), 0.2) << "one sample is none";
+    const auto is_silent = [&](double t) {
+      sensors_.imu.linear_acceleration[2] = t < 0.1 ? 9.81 : -9.81;
+      sensors_.valid = t < 0.101 ? kValidGyro | kValidAccelerometer : kValidGyro;
+    };
+    EXPECT_EQ(run(0.15, is_silent), 0.15) << "a missing sample is none";
+    sensors_.valid = kValidGyro | kValidAccelerometer;
     conditions_.enter_run();
     EXPECT_NEAR(run(0.3, shows(-9.81, 0.1)), 0.121, 0.002);
     EXPECT_EQ(causes(Reaction::kBrake), "imu_reversed");

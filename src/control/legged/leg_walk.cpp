@@ -74,32 +74,33 @@ void LegController::walk(const ControlInput& input, const Request& request, Comm
   }
   const GaitName gait = choose_gait(request, target);
   const WalkingTwist speeds = capable(gait);
-  WalkingTwist carried = target;
-  for (double& axis : carried) axis /= std::max(1.0, used_part(target, speeds));
-  const double part = walker_.part_in_reach(state_.walk, *input.sensors, gait, carried);
+  carry(request, out.reasons);
+  WalkInput to{.sensors = input.sensors,
+               .state = input.state,
+               .twist = target,
+               .height = state_.carried[0].value,
+               .roll = state_.carried[1].value,
+               .pitch = state_.carried[2].value,
+               .gait = gait};
+  for (double& axis : to.twist) axis /= std::max(1.0, used_part(target, speeds));
+  const double part = walker_.part_in_reach(state_.walk, to);
   if (part < 1) {
-    for (std::size_t i = 0; i < target.size(); ++i) target[i] = part * carried[i];
+    for (std::size_t i = 0; i < target.size(); ++i) target[i] = part * to.twist[i];
     out.reasons |= kReasonLegSpeed;
   }
   const auto now = static_cast<GaitName>(state_.walk.gait);
   const WalkingTwist twist =
       limiter_.step(state_.twist, target, speeds, (out.reasons & kEmergencies) != 0, period_, out.reasons);
-  carry(request, out.reasons);
   const Vector3& moves = input.state->base.twist_base.linear;
   const bool slow = std::hypot(moves[0], moves[1]) < kSlow * time_scale();
   const bool all_down = state_.walk.gait == static_cast<std::uint64_t>(GaitName::kStand);
   state_.idle = !wanted && rests(twist) ? state_.idle + period_ : 0;
   const bool ends = state_.idle > 0 && (all_down || (slow && (placed(input) || state_.idle > kInPlace)));
-  const WalkInput to{.sensors = input.sensors,
-                     .state = input.state,
-                     .twist = twist,
-                     .height = state_.carried[0].value,
-                     .roll = state_.carried[1].value,
-                     .pitch = state_.carried[2].value,
-                     .gait = ends                   ? GaitName::kStand
-                             : state_.idle > 0      ? GaitName::kTrot  // it sets the feet on their places
-                             : carries(gait, twist) ? gait
-                                                    : now};
+  to.twist = twist;
+  to.gait = ends                   ? GaitName::kStand
+            : state_.idle > 0      ? GaitName::kTrot  // it sets the feet on their places
+            : carries(gait, twist) ? gait
+                                   : now;
   const bool planned = walker_.step(state_.walk, to, out);
   out.twist_limited = {.linear = {twist[0], twist[1], 0}, .angular = {0, 0, twist[2]}};
   for (std::size_t i = 0; i < 3; ++i) out.legged.body[kZ + i] = state_.carried[i].value;

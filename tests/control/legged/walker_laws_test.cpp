@@ -570,17 +570,19 @@ TEST_F(WalkerLaws, KnowsThePartOfATwistThatKeepsEachFootInReachUntilItsSwing) {
   unsigned shortened = 0;
   for (unsigned seed = 0; seed < kRandomStates; ++seed) {
     choose(seed);
-    const WalkingTwist twist{uniform(2), uniform(1), uniform(3)};
-    const double part = walker.part_in_reach(state, sensors, input.gait, twist);
+    input.sensors = &sensors;
+    const WalkingTwist& twist = input.twist = {uniform(2), uniform(1), uniform(3)};
+    const double part = walker.part_in_reach(state, input);
     const auto too_long = [&](double of_twist) {
       double farthest = -1;
       for (std::size_t leg = 0; leg < kLegs; ++leg) {
         if (state.bears[leg] == 0) continue;
         const LegKinematics& kinematics = robot.legs[leg].kinematics;
-        const Eigen::Vector3d place = kinematics.position(angles(leg));
         const double time = gait().period * (gait().duty - gait().leg_phase(leg, state.phase));
+        const Eigen::Vector3d place = tilt(input.roll, input.pitch) * kinematics.position(angles(leg));
         const Eigen::Vector3d moves(twist[0] - twist[2] * place.y(), twist[1] + twist[2] * place.x(), 0);
-        const LegSolution end = kinematics.inverse(place - of_twist * time * moves);
+        const Eigen::Vector3d ends = place - of_twist * time * moves;
+        const LegSolution end = kinematics.inverse(tilt(input.roll, input.pitch).transpose() * ends);
         const double longest = std::max(0.95 * kinematics.length(), kinematics.stretch(angles(leg)));
         farthest = std::max(farthest, end.reach == FootReach::kReached ? kinematics.stretch(end.angles) - longest : 1);
       }
@@ -594,7 +596,8 @@ TEST_F(WalkerLaws, KnowsThePartOfATwistThatKeepsEachFootInReachUntilItsSwing) {
   EXPECT_GT(shortened, kRandomStates / 4);
   EXPECT_LT(shortened, kRandomStates);
   state = {};
-  EXPECT_EQ(walker.part_in_reach(state, sensors, GaitName::kTrot, {9, 9, 9}), 1) << "before the first swing";
+  input.twist = {9, 9, 9};
+  EXPECT_EQ(walker.part_in_reach(state, input), 1) << "before the first swing";
 }
 
 TEST_F(WalkerLaws, KnowsTheFootThatIsFarthestFromItsPlace) {

@@ -289,18 +289,21 @@ double Walker::bears_for(const State& state, GaitName wanted, std::size_t leg) c
   return left + next.bears_for(leg, next.begins_after(gait));
 }
 
-double Walker::part_in_reach(const State& state, const SensorFrame& sensors, GaitName wanted,
-                             const WalkingTwist& twist) const noexcept {
+double Walker::part_in_reach(const State& state, const WalkInput& input) const noexcept {
   double part = 1;
   if (gait(state).duty >= 1) return part;
+  const Eigen::Matrix3d leaning = (Eigen::AngleAxisd(input.pitch, Eigen::Vector3d::UnitY()) *
+                                   Eigen::AngleAxisd(input.roll, Eigen::Vector3d::UnitX()))
+                                      .toRotationMatrix();  // base axes → those of the ground
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     if (state.bears[leg] == 0) continue;
     const LegKinematics& kinematics = legs_[leg].kinematics;
     LegAngles now;
     for (std::size_t i = 0; i < kLegJoints; ++i)
-      now[static_cast<Eigen::Index>(i)] = sensors.joints[kLegJoints * leg + i].position;
+      now[static_cast<Eigen::Index>(i)] = input.sensors->joints[kLegJoints * leg + i].position;
     const Eigen::Vector3d foot = kinematics.position(now);
-    const Eigen::Vector3d way = bears_for(state, wanted, leg) * velocity_below(foot, twist);
+    const Eigen::Vector3d way =
+        bears_for(state, input.gait, leg) * (leaning.transpose() * velocity_below(leaning * foot, input.twist));
     const double longest = std::max(kOfLength * kinematics.length(), kinematics.stretch(now));
     const auto reaches = [&](double of_twist) {
       const std::optional<LegAngles> end = kinematics.reached(foot + of_twist * way);

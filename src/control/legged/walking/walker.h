@@ -17,8 +17,9 @@
 ///             the gait that follows
 ///   stance    τ = h − Jᵀ f, f the planned force, h what holds the leg itself. f is scaled down until each |τ| is within
 ///             the joint's limit, so that f stays within friction
-///   reach     a foot that bears stays within kOfLength of its leg's length (walking_speed.h) until its next swing, or
-///             where it is if it is beyond. A foot that landed for another twist bounds the twist by that
+///   reach     the twist that is requested keeps each foot that bears in reach until its next swing, within the ranges of
+///             its joints and kOfLength of its leg's length (walking_speed.h), or no farther than it is. A foot that landed
+///             for another twist bounds it by that
 ///   swing     the foot follows swing.h to its foothold (foothold.h) with the impedance of standing, and the efforts
 ///             M q̈ + h of its own leg
 ///
@@ -96,10 +97,9 @@ class Walker {
   /// Fills joints, gait and stance of `out`, and adds to its reasons. Returns false if the plan has failed too often.
   bool step(State& state, const WalkInput& input, CommandFrame& out) noexcept;
 
-  /// Returns the largest part 0 … 1 of `twist` with which each foot that bears is in reach at the end of its stance.
-  /// `wanted` is the gait that follows.
-  double part_in_reach(const State& state, const SensorFrame& sensors, GaitName wanted,
-                       const WalkingTwist& twist) const noexcept;
+  /// Returns the largest part 0 … 1 of the input's twist that keeps the feet in reach. The wanted gait may begin
+  /// meanwhile.
+  double part_in_reach(const State& state, const WalkInput& input) const noexcept;
 
   /// The gaits of this robot, by GaitName.
   const Gaits& gaits() const noexcept { return gaits_; }

@@ -104,7 +104,9 @@ void BodyConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, dou
   const double tilt = attitude_.tilt();
   const double tilt_rate = attitude_.tilt_rate();
   if (turned) rate_change_.step(sensors.imu.angular_velocity);
-  *rate_ = turned ? rate : Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  *rate_ = turned ? rate : Eigen::Vector3d::Constant(kNone);
+  along_z_ = felt ? (*force_).z() : kNone;
   shake(felt);
   weigh(sensors);
 

@@ -65,9 +65,9 @@ class BodyConditions {
   double carried() const noexcept {
     return carried_;
   }  ///< part of the weight on the contacts; 1 without contact sensors
-  Eigen::Vector3d specific_force() const noexcept { return *force_; }  ///< m/s², base axes, the last good sample
-  Eigen::Vector3d rate() const noexcept { return *rate_; }             ///< rad/s, base axes; NaN without a sample
-  double force() const noexcept { return (*force_).norm(); }           ///< m/s², |a|, of the last good sample
+  double along_z() const noexcept { return along_z_; }        ///< m/s², a_z; NaN without a sample
+  Eigen::Vector3d rate() const noexcept { return *rate_; }    ///< rad/s, base axes; NaN without a sample
+  double force() const noexcept { return (*force_).norm(); }  ///< m/s², |a|, of the last good sample
 
  private:
   static constexpr std::size_t kMaxSamples = 20;  ///< kImpactWindow at 2 kHz
@@ -103,6 +103,7 @@ class BodyConditions {
   std::size_t window_;  ///< samples in kImpactWindow
   std::size_t next_ = 0;
   std::array<Stored<Eigen::Vector3d>, kMaxSamples> across_;  ///< m/s², the last ones
+  double along_z_ = 0;
   double shock_ = 0;
   double carried_ = 1;
 };

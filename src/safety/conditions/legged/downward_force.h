@@ -1,15 +1,19 @@
 #pragma once
 /// The accelerometer of a robot on legs is compared with what the ground can do.
 ///
-///   imu reversed  −f_z > limit, on its feet or on the way to them; f: low pass of the specific force over kTime
+///   imu reversed  −f > limit, on its feet or on the way to them. f is the low pass over kTime of the specific force along
+///                 the body's z axis, within ±kLargest
 ///
-/// The ground pushes the feet and never pulls them, so that f points up the body, and is 0 in free fall. A sign or a
-/// mounting that is wrong shows it downwards. The attitude (attitude.h) and the estimator would believe it.
+/// The ground pushes the feet and never pulls them, so that f is up, and 0 in free fall. An IMU whose axes turn round
+/// shows it downwards. The attitude (attitude.h) and the estimator would believe it. One sample is at most a quarter of
+/// f, so that none reaches the default limit alone. A missing sample changes nothing.
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
+#include "machine/gravity.h"
 #include "safety/conditions/common/condition_watch.h"
 #include "safety/latch/active_causes.h"
 #include "safety/safety_parameters.h"
@@ -19,7 +23,8 @@ namespace robot_control {
 
 class DownwardForce {
  public:
-  static constexpr double kTime = 0.02;  ///< s
+  static constexpr double kTime = 0.02;             ///< s, a tenth of the stance of a trot
+  static constexpr double kLargest = 2 * kGravity;  ///< m/s²
 
   /// `period` s.
   DownwardForce(const SafetyParameters& parameters, double period) noexcept
@@ -30,9 +35,10 @@ class DownwardForce {
     force_ = 0;
   }
 
-  /// `force`: m/s², specific, base axes.
-  void step(const Eigen::Vector3d& force, LegPhase phase, std::uint64_t elapsed, ActiveCauses& out) noexcept {
-    force_ += std::min(1.0, static_cast<double>(elapsed) * period_ / kTime) * (force.z() - force_);
+  /// `along_z`: m/s², NaN without a sample.
+  void step(double along_z, LegPhase phase, std::uint64_t elapsed, ActiveCauses& out) noexcept {
+    const double weight = std::min(0.25, static_cast<double>(elapsed) * period_ / kTime);
+    if (std::isfinite(along_z)) force_ += weight * (std::clamp(along_z, -kLargest, kLargest) - force_);
     const bool on_feet = phase != LegPhase::kLying && phase != LegPhase::kLowering && phase != LegPhase::kJoints;
     watch_.step({.beyond = on_feet && -force_ > watch_.limit(), .value = -force_, .limit = watch_.limit()}, elapsed);
     out.add(watch_);
@@ -41,7 +47,7 @@ class DownwardForce {
  private:
   double period_;
   ConditionWatch watch_;
-  double force_ = 0;  ///< m/s², f_z
+  double force_ = 0;  ///< m/s², f
 };
 
 }  // namespace robot_control

@@ -82,7 +82,7 @@ void FootConditions::enter_run() noexcept {
   loads_.fill(1);
   judged_ = {};
   worst_ = sunk_ = turned_ = kNothingMeasured;
-  turn_ = {};
+  since_ = {};
   stood_ = false;
 }
 
@@ -100,9 +100,11 @@ void FootConditions::step(const MonitorInput& input, const Eigen::Vector3d& up, 
   if (!walks) loads_.fill(1);
   waited_ += elapsed;
   const bool any = judged != Feet{};
-  if (!any) worst_ = kNothingMeasured;
+  if (!any) worst_ = turned_ = kNothingMeasured;
   if (!walks) sunk_ = turned_ = kNothingMeasured;
-  Map(turn_.data()) += static_cast<double>(elapsed) * period_ * rate;
+  const double time = static_cast<double>(elapsed) * period_;
+  since_.time += time;
+  Map(since_.turn.data()) += time * rate;
   if (any && (begins || waited_ >= interval_)) {
     waited_ = 0;
     sample(*input.sensors, asked, up, judged);
@@ -125,8 +127,8 @@ void FootConditions::sample(const SensorFrame& sensors, const LeggedCommand& ask
     if (!has_position(sensors.joints[i])) return;
     angles[i] = sensors.joints[i].position;
   }
-  Sample now{.feet = {}, .turn = turn_};
-  turn_ = {};
+  Sample now = since_;
+  since_ = {};
   double height = 0, count = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const Eigen::Vector3d foot = position(legs_[leg], LegModel::angles_of(angles, leg));
@@ -144,7 +146,7 @@ void FootConditions::sample(const SensorFrame& sensors, const LeggedCommand& ask
   }
   const bool walks = asked.phase == LegPhase::kWalking;
   judge_slip(now, (walks ? kOfStep : 1) * slip_.limit());
-  if (walks) judge_turn(now);
+  if (walks) judge_turn(now, asked.stance);
   samples_[next_] = now;
   next_ = (next_ + 1) % kSamplesInWindow;
   for (std::size_t leg = 0; leg < kLegs; ++leg) counts_[leg] += judged[leg] ? 1 : 0;
@@ -166,23 +168,26 @@ void FootConditions::judge_slip(const Sample& now, double limit) noexcept {
   worst_ = beyond(knee_of(foot), largest / window_, limit);
 }
 
-void FootConditions::judge_turn(const Sample& now) noexcept {
+/// A foot whose stance ends bears little, and may leave the ground early.
+void FootConditions::judge_turn(const Sample& now, const FootStances& stance) noexcept {
   const Sample* before = nullptr;
   Eigen::Vector3d turn = ConstMap(now.turn.data());
+  double time = now.time;
   for (std::size_t i = 1; i <= kSamplesInTurn; ++i) {
     before = &samples_[(next_ + kSamplesInWindow - i) % kSamplesInWindow];
-    if (i < kSamplesInTurn) turn += ConstMap(before->turn.data());
+    if (i == kSamplesInTurn) break;
+    turn += ConstMap(before->turn.data());
+    time += before->time;
   }
   double largest = 0;
   for_each_pair([&](std::size_t a, std::size_t b) {
-    if (std::min(counts_[a], counts_[b]) < kSamplesInTurn) return;
+    if (std::min(counts_[a], counts_[b]) < kSamplesInTurn || std::max(stance[a], stance[b]) > 1 - kEdge) return;
     const Eigen::Vector3d first = between(before->feet, a, b), last = between(now.feet, a, b);
     const Eigen::Vector3d middle = (first + last) / 2, change = last - first + turn.cross(middle);
     const double length = middle.norm(), along = std::abs(change.dot(middle)) / length;
     const double across = std::sqrt(std::max(0.0, change.squaredNorm() - along * along));
     largest = std::max(largest, (across - kOfSlip * along) / length);
   });
-  const double time = window_ * kSamplesInTurn / kSamplesInWindow;
   turned_ = beyond(kMaxJoints, largest / time, turning_.limit());
 }
 

@@ -6,10 +6,11 @@
 ///              feet by the measured angles. It stays while both stand, however the body moves, and changes by the
 ///              slip. Feet that slip together are not noticed. A ball that rolls changes d by less than its radius
 ///              times the body's turn
-///   body rate  max over these pairs of (|n| − kOfSlip |p|) / (T |v|) > limit, while it walks, T = kSamplesInTurn
-///              samples. v is the vector from foot to foot, and c = Δv + θ × v is its change within T, in which the gyro
-///              turned by θ. c is 0 over ground that rests, if the gyro is right. p is its part along v, n that across.
-///              A foot that slips, or an encoder that errs, changes the length of v, too
+///   body rate  max over these pairs of (|n| − kOfSlip |p|) / (T |v|) > limit, while it walks, before the last kEdge of
+///              both stances. T is kSamplesInTurn samples. v is the vector from foot to foot, and c = Δv + θ × v its
+///              change within T, in which the gyro turned by θ. c is 0 over ground that rests, if the gyro is right. p is
+///              its part along v, n that across. A foot that slips, or an encoder that errs, changes the length of v,
+///              too. A foot above a hole does not
 ///   foot load  F·u / w < limit, with the measured force F of a foot, the vertical u and an equal share w of the weight
 ///   sinking    (c − c₀ − (h − h₀)) / l > limit, while it walks. h is the mean height of the body above its feet by the
 ///              measured angles, c the commanded height, l the leg length. h₀ and c₀ are those of the robot that stood
@@ -37,8 +38,8 @@ class FootConditions {
  public:
   static constexpr double kWindow = 0.1;  ///< s
   static constexpr std::size_t kSamplesInWindow = 10;
-  static constexpr std::size_t kSamplesInTurn = 3;  ///< T of the body rate is 0.03 s
-  static constexpr double kOfSlip = 2;
+  static constexpr std::size_t kSamplesInTurn = 3;  ///< of at least kWindow / kSamplesInWindow each
+  static constexpr double kOfSlip = 2;              ///< docs/evidence/legs.md
   static constexpr double kEdge = 0.15;
   static constexpr double kOfStep = 0.55;  ///< docs/evidence/derivations.md
 
@@ -54,13 +55,14 @@ class FootConditions {
   using Feet = std::array<bool, kLegs>;
   struct Sample {
     std::array<Vector3, kLegs> feet{};  ///< m, base axes
-    Vector3 turn{};                     ///< rad, of the gyro since the sample before
+    double time = 0;                    ///< s since the sample before
+    Vector3 turn{};                     ///< rad, of the gyro since then
   };
 
   void sample(const SensorFrame& sensors, const LeggedCommand& asked, const Eigen::Vector3d& up,
               const Feet& judged) noexcept;
   void judge_slip(const Sample& now, double limit) noexcept;
-  void judge_turn(const Sample& now) noexcept;
+  void judge_turn(const Sample& now, const FootStances& stance) noexcept;
   ConditionMeasurement lightest(const SensorFrame& sensors, const Eigen::Vector3d& up, const Feet& judged, double share,
                                 bool walks) noexcept;
 
@@ -82,7 +84,7 @@ class FootConditions {
   std::size_t next_ = 0;                     ///< index of the oldest sample
   std::array<std::size_t, kLegs> counts_{};  ///< samples since the foot stands
   std::uint64_t waited_ = 0;                 ///< cycles since the last sample
-  Vector3 turn_{};                           ///< rad, of the gyro since then
+  Sample since_{};                           ///< then; without feet
   std::array<double, kLegs> loads_{};        ///< of a share, of the feet when they were judged last
   Feet judged_{};                            ///< in the last cycle
   bool stood_ = false;                       ///< reference_ is known

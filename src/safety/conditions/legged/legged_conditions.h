@@ -63,7 +63,7 @@ class LeggedConditions {
     if (standing()) moving_ = false;
     body_conditions_.step(sensors, elapsed, 0, moving_, out);
     const LegPhase phase = input.command != nullptr ? input.command->legged.phase : LegPhase::kLying;
-    downward_force_.step(body_conditions_.specific_force(), phase, elapsed, out);
+    downward_force_.step(body_conditions_.along_z(), phase, elapsed, out);
     joint_conditions_.step(input, elapsed, out);
     encoder_conditions_.step(input, elapsed, out);
     foot_conditions_.step(input, body_conditions_.attitude().up(), body_conditions_.rate(), elapsed, out);
