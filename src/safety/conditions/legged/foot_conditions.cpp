@@ -170,19 +170,20 @@ void FootConditions::judge_slip(const Sample& now, double limit) noexcept {
 
 /// A foot whose stance ends bears little, and may leave the ground early.
 void FootConditions::judge_turn(const Sample& now, const FootStances& stance) noexcept {
-  const Sample* before = nullptr;
+  const auto ago = [&](std::size_t samples) -> const Sample& {
+    return samples_[(next_ + kSamplesInWindow - samples) % kSamplesInWindow];
+  };
   Eigen::Vector3d turn = ConstMap(now.turn.data());
   double time = now.time;
-  for (std::size_t i = 1; i <= kSamplesInTurn; ++i) {
-    before = &samples_[(next_ + kSamplesInWindow - i) % kSamplesInWindow];
-    if (i == kSamplesInTurn) break;
-    turn += ConstMap(before->turn.data());
-    time += before->time;
+  for (std::size_t i = 1; i < kSamplesInTurn; ++i) {
+    turn += ConstMap(ago(i).turn.data());
+    time += ago(i).time;
   }
+  const Sample& before = ago(kSamplesInTurn);
   double largest = 0;
   for_each_pair([&](std::size_t a, std::size_t b) {
     if (std::min(counts_[a], counts_[b]) < kSamplesInTurn || std::max(stance[a], stance[b]) > 1 - kEdge) return;
-    const Eigen::Vector3d first = between(before->feet, a, b), last = between(now.feet, a, b);
+    const Eigen::Vector3d first = between(before.feet, a, b), last = between(now.feet, a, b);
     const Eigen::Vector3d middle = (first + last) / 2, change = last - first + turn.cross(middle);
     const double length = middle.norm(), along = std::abs(change.dot(middle)) / length;
     const double across = std::sqrt(std::max(0.0, change.squaredNorm() - along * along));
