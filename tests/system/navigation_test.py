@@ -87,8 +87,8 @@ class NavigationTest(RobotTestCase):
         simple = rospy.Publisher("move_base_simple/goal", PoseStamped, queue_size=1)
         wait_for("navigate", lambda: simple.get_num_connections() > 0)
         x = self.robot.pose.x
-        simple.publish(self.pose(2.4, 0.0))
-        wait_for("motion", lambda: abs(self.robot.pose.x - x) > 0.1)
+        moved = lambda: abs(self.robot.pose.x - x) > 0.6  # noqa: E731
+        wait_for("motion", moved, every=lambda: simple.publish(self.pose(2.4, 0.0)))
         client = self.end_of("navigate_to", NavigateToAction, NavigateToGoal(target=self.pose(0.2, 0.0, math.pi)))
         self.assertEqual((client.get_state(), client.get_result().reason), (SUCCEEDED, "reached"))
         self.assert_reached(0.2, 0.0)
