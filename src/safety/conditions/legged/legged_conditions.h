@@ -1,8 +1,8 @@
 #pragma once
 /// The conditions of a robot on legs compare body, joints and feet with their limits (body_conditions.h,
-/// downward_force.h, joint_conditions.h, encoder_conditions.h, foot_conditions.h). The state is compared with the gyro
-/// (state_rate.h). The conditions tell whether the joints stand. Joints stand while every one stays within kWindow of
-/// its angle for kStandingTime.
+/// downward_force.h, joint_conditions.h, encoder_conditions.h, foot_conditions.h). They also compare the state with the
+/// gyro (state_rate.h), and tell whether the joints stand. Joints stand while every one stays within kWindow of its
+/// angle for kStandingTime.
 ///
 ///   moving    a joint left its window, or its angle is not known; until the robot stands again
 ///   standing  all joints are inside for kStandingTime
