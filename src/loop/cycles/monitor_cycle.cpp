@@ -138,6 +138,7 @@ bool MonitorCycle::step_without_frame(bool timed_out) noexcept {
                            .operator_input = operator_input_};
   if (!happened(input)) return false;
   input_ = input;
+  calls_.command = calls_.state = {};
   if (clock_.run() != 0) {
     step_law(clock_.now());
     return true;

@@ -1,8 +1,8 @@
 #pragma once
 /// The accelerometer of a robot on legs is compared with what the ground can do.
 ///
-///   imu reversed  −f > limit, on its feet or on the way to them. f is the low pass over kTime of the specific force along
-///                 the body's z axis, within ±kLargest
+///   imu reversed  −f > limit, on its feet. f is the low pass over kTime of the specific force along the body's z axis,
+///                 within ±kLargest
 ///
 /// The ground pushes the feet and never pulls them, so that f is up, and 0 in free fall. An IMU whose axes turn round
 /// shows it downwards. The attitude (attitude.h) and the estimator would believe it. One sample is at most a quarter of
@@ -38,7 +38,7 @@ class DownwardForce {
 
   /// `along_z`: m/s², NaN without a sample.
   void step(double along_z, LegPhase phase, std::uint64_t elapsed, ActiveCauses& out) noexcept {
-    const bool on_feet = phase != LegPhase::kLying && phase != LegPhase::kLowering && phase != LegPhase::kJoints;
+    const bool on_feet = phase == LegPhase::kRising || phase == LegPhase::kStanding || phase == LegPhase::kWalking;
     const double weight = std::min(0.25, static_cast<double>(elapsed) * period_ / kTime);
     if (!on_feet) force_ = 0;
     if (on_feet && std::isfinite(along_z)) force_ += weight * (std::clamp(along_z, -kLargest, kLargest) - force_);
