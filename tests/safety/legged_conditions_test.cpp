@@ -25,6 +25,7 @@ class LeggedConditionsTest : public testing::Test {
     sensors_.contact_count = kLegs;
     sensors_.valid = kValidGyro | kValidAccelerometer;
     sensors_.imu.linear_acceleration = {0, 0, 9.81};
+    sensors_.gate.verdict = GateVerdict::kPassed;
     set_joints_valid(sensors_, kValidMotion);
     command_.legged.phase = LegPhase::kStanding;
     place(stand_);
@@ -529,6 +530,12 @@ TEST_F(WalkingConditionsTest, AGyroThatContradictsTheFeetBrakes) {
     EXPECT_LT(walk(1, turns(wrong)), 0.3) << "within half a turn to and fro";
     EXPECT_EQ(causes(Reaction::kBrake), "body_rate");
   }
+  conditions_.enter_run();
+  const auto brakes = [&](double t) {
+    turns(0)(t);
+    sensors_.gate.verdict = std::lround(t * 1000) % 90 == 0 ? GateVerdict::kBrake : GateVerdict::kPassed;
+  };
+  EXPECT_EQ(walk(0.3, brakes), 0.3) << "its legs have just folded";
   conditions_.enter_run();
   sensors_.valid = kValidAccelerometer;
   EXPECT_EQ(walk(0.3, turns(0)), 0.3) << "a gyro that is missing is imu_lost";
