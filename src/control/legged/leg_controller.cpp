@@ -130,7 +130,7 @@ void LegController::step(const ControlInput& input, CommandFrame& out) noexcept 
 
 /// All joints brake in this cycle.
 void LegController::pause() noexcept {
-  if (++state_.gap > kLongestGap) state_ = State(state_.watch);
+  if (++state_.gap > kMaxGap) state_ = State(state_.watch);
 }
 
 /// Returns true if the joints begin to move in this cycle.

@@ -16,7 +16,7 @@
 ///              are
 ///
 /// Without a permit, an angle of each joint or, while it walks, a state of this cycle, every joint brakes. The robot
-/// goes on where it was if that ends within kLongestGap; else, and after a permit to brake, it lies.
+/// goes on where it was if that ends within kMaxGap; else, and after a permit to brake, it lies.
 ///
 /// Request::mode is a StanceMode. A mode that the present posture does not allow has no effect. The posture of the
 /// request is
@@ -70,8 +70,8 @@
 
 namespace robot_control {
 
-inline constexpr std::uint64_t kLongestGap = 20;  ///< cycles; the monitor latches a longer loss
-inline constexpr double kLoadTime = 0.2;          ///< s, in which a foot's share of the weight comes and goes
+inline constexpr std::uint64_t kMaxGap = 20;  ///< cycles; the monitor latches a longer loss
+inline constexpr double kLoadTime = 0.2;      ///< s, in which a foot's share of the weight comes and goes
 
 static_assert(kLegsJoints == kRequestJoints);
 
