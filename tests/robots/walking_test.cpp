@@ -282,7 +282,7 @@ TEST(Walking, IsStoppedByAFaultThatIsNamedBeforeItFalls) {
   for (const Fault& fault :
        {Fault{"front_left_knee_joint_motor", "off", "joint_following"}, Fault{"gyro", "stuck", "imu_stuck"},
         Fault{"gyro", "garbage", "imu_jump"}, Fault{"gyro", "wrong", "body_rate"},
-        Fault{"accelerometer", "wrong", "imu_reversed"}, Fault{"estimator", "wrong", "state_rate"}}) {
+        Fault{"accelerometer", "wrong", "imu_reversed"}, Fault{"estimator", "wrong", "wrong_state"}}) {
     SCOPED_TRACE(fault.component);
     QuadrupedLoop robot(legged_robot("quadbot"), 0, ErrorLevel::kDataSheet);
     robot.wait(0.3);

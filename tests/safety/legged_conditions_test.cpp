@@ -602,7 +602,7 @@ TEST_F(LeggedConditionsTest, AStateThatContradictsTheGyroOfItsCycleBrakes) {
   EXPECT_EQ(run(0.004, turns(1, 2)), 0.004) << "a few samples";
   conditions_.enter_run();
   EXPECT_LT(run(0.5, turns(-1, 0)), 0.03);
-  EXPECT_EQ(causes(Reaction::kBrake), "state_rate");
+  EXPECT_EQ(causes(Reaction::kBrake), "wrong_state");
   conditions_.enter_run();
   sensors_.valid = kValidAccelerometer;
   EXPECT_EQ(run(0.05, turns(1, 2)), 0.05) << "a gyro that is missing is imu_lost";

@@ -1,7 +1,7 @@
 #pragma once
 /// The conditions of a robot on legs compare body, joints and feet with their limits (body_conditions.h,
 /// downward_force.h, joint_conditions.h, encoder_conditions.h, foot_conditions.h). They also compare the state with the
-/// gyro (state_rate.h), and tell whether the joints stand. Joints stand while every one stays within kWindow of its
+/// gyro (wrong_state.h), and tell whether the joints stand. Joints stand while every one stays within kWindow of its
 /// angle for kStandingTime.
 ///
 ///   moving    a joint left its window, or its angle is not known; until the robot stands again
@@ -18,7 +18,7 @@
 #include "safety/conditions/legged/encoder_conditions.h"
 #include "safety/conditions/legged/foot_conditions.h"
 #include "safety/conditions/legged/joint_conditions.h"
-#include "safety/conditions/legged/state_rate.h"
+#include "safety/conditions/legged/wrong_state.h"
 #include "safety/latch/active_causes.h"
 #include "safety/monitor_input.h"
 #include "safety/safety_parameters.h"
@@ -36,7 +36,7 @@ class LeggedConditions {
       : period_(period),
         body_conditions_(parameters, robot, {}, period, kForceTime),
         downward_force_(parameters, period),
-        state_rate_(parameters, period),
+        wrong_state_(parameters, period),
         joint_conditions_(parameters, robot, period),
         encoder_conditions_(parameters, robot, period),
         foot_conditions_(parameters, robot, period) {}
@@ -46,7 +46,7 @@ class LeggedConditions {
   void enter_run() noexcept {
     body_conditions_.enter_run();
     downward_force_.enter_run();
-    state_rate_.enter_run();
+    wrong_state_.enter_run();
     joint_conditions_.enter_run();
     encoder_conditions_.enter_run();
     foot_conditions_.enter_run();
@@ -68,7 +68,7 @@ class LeggedConditions {
     body_conditions_.step(sensors, elapsed, 0, moving_, out);
     const LegPhase phase = input.command != nullptr ? input.command->legged.phase : LegPhase::kLying;
     downward_force_.step(body_conditions_.along_z(), phase, elapsed, out);
-    state_rate_.step(input.state, body_conditions_.rate(), elapsed, out);
+    wrong_state_.step(input.state, body_conditions_.rate(), elapsed, out);
     joint_conditions_.step(input, elapsed, out);
     encoder_conditions_.step(input, elapsed, out);
     foot_conditions_.step(input, body_conditions_.attitude().up(), body_conditions_.rate(), elapsed, out);
@@ -91,7 +91,7 @@ class LeggedConditions {
   double period_;
   BodyConditions body_conditions_;
   DownwardForce downward_force_;
-  StateRate state_rate_;
+  WrongState wrong_state_;
   JointConditions joint_conditions_;
   EncoderConditions encoder_conditions_;
   FootConditions foot_conditions_;

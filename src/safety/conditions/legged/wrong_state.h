@@ -1,10 +1,10 @@
 #pragma once
 /// The estimator's state is compared with the gyro.
 ///
-///   state rate  |ω − ω_g| > limit, with the state's turning rate ω of the cycle before and the gyro's ω_g of that cycle
+///   wrong state  |ω − ω_g| > limit, with the state's turning rate ω of the cycle before and the gyro's ω_g of that cycle
 ///
 /// They differ by the gyro's bias. A walk is balanced by the state, so that a robot whose state has the wrong sign tips
-/// within 0.2 s. Without one of them nothing is compared.
+/// within 0.2 s. A state that is 10 ms old may differ as much. Without one of them nothing is compared.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -17,11 +17,11 @@
 
 namespace robot_control {
 
-class StateRate {
+class WrongState {
  public:
   /// `period` s.
-  StateRate(const SafetyParameters& parameters, double period) noexcept
-      : watch_(kCauseStateRate, parameters.state_rate, period) {}
+  WrongState(const SafetyParameters& parameters, double period) noexcept
+      : watch_(kCauseWrongState, parameters.wrong_state, period) {}
 
   void enter_run() noexcept {
     watch_.reset();
