@@ -130,7 +130,7 @@ BOUNDS = {
     "tilt while gaits change": 0.3,  # rad
     "dip of the speed while gaits change": 0.3,
     "pushed over": 0.02,
-    "tilt with a silent controller": 0.15,  # rad
+    "tilt with a silent ": 0.15,  # rad
     "stops in an hour": 0,
     "time with a warning in an hour": 0,  # s
     "stops in ten minutes": 0,

@@ -142,7 +142,7 @@ int run(const std::string& path) {
               [&](std::size_t k) {
                 monitor.step({.sensors = &drive.sensors[k],
                               .command = &drive.commands[k - 1],
-                              .state_seen = true,
+                              .state = &drive.states[k - 1],
                               .operator_input = {}},
                              permit);
               }));

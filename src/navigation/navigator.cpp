@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "navigation/text.h"
 
@@ -23,20 +24,22 @@ const char* name_of(NavigatorState state) {
 }
 
 void Navigator::begin(const PlanarPose& goal, double now) {
+  const bool sent = sent_;
   *this = Navigator();
+  sent_ = sent;
   state_ = NavigatorState::kPlanning;
   goal_ = goal;
   progress_at_ = now;
 }
 
 void Navigator::wait(const std::string& reason, NavigatorOutput& out) {
-  out.cancel = state_ == NavigatorState::kDriving;
+  out.cancel = std::exchange(sent_, false);
   if (driven_) state_ = NavigatorState::kWaiting;
   reason_ = reason;
 }
 
 void Navigator::fail(const std::string& reason, NavigatorOutput& out) {
-  out.cancel = state_ == NavigatorState::kDriving;
+  out.cancel = std::exchange(sent_, false);
   state_ = NavigatorState::kFailed;
   reason_ = reason;
 }
@@ -83,7 +86,7 @@ void Navigator::plan(const NavigatorInput& input, Costmap& costmap, NavigatorOut
   }
   if (state_ != NavigatorState::kDriving && attempts_++ <= kAttempts) progress_at_ = input.now;
   state_ = NavigatorState::kDriving;
-  driven_ = true;
+  driven_ = sent_ = true;
   passed_ = 0;
   path_ = found;
   least_remaining_ = found.length;

@@ -57,11 +57,11 @@ struct NavigatorOutput {
 
 class Navigator {
  public:
-  /// Begins a goal, in place of the one before.
+  /// Begins a goal, in place of the one before, whose path is driven until the new one is planned or refused.
   void begin(const PlanarPose& goal, double now);
 
   /// Ends the goal.
-  void end() { state_ = NavigatorState::kIdle; }
+  void end() { *this = Navigator(); }
 
   /// `costmap` is null without a map, and then `input.problem` says so.
   NavigatorOutput step(const NavigatorInput& input, Costmap* costmap);
@@ -81,6 +81,7 @@ class Navigator {
 
   NavigatorState state_ = NavigatorState::kIdle;
   PlanarPose goal_;
+  bool sent_ = false;  // follow_path has a path, of this goal or of the one before
   Plan path_;
   std::size_t passed_ = 0;                        // poses of path_
   bool driven_ = false;                           // a path of this goal was sent

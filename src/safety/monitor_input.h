@@ -7,6 +7,7 @@
 #include "signals/law_calls.h"
 #include "signals/permit.h"
 #include "signals/sensor_frame.h"
+#include "signals/state_frame.h"
 #include "signals/velocity_command.h"
 
 namespace robot_control {
@@ -25,8 +26,7 @@ struct MonitorInput {
 
   // The inputs of cycle k-1; they are used together with `sensors` of cycle k.
   const CommandFrame* command = nullptr;  ///< null: missing
-  bool state_seen = false;                ///< a state exists; of its content only the next member is used
-  std::uint64_t state_first_cycle = 0;    ///< StateFrame::first_cycle
+  const StateFrame* state = nullptr;      ///< null: missing
 
   /// Wrong checksums. With `sensors`: 1 if an input was corrupt since the last frame. Without: the number of attempts
   /// in a row that read a corrupt sensor frame, at most FrameConditions::kPersistence.

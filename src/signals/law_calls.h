@@ -73,9 +73,7 @@ enum class SensorSilence : std::uint64_t {
 struct MonitorCalls {
   LawRow law;
   SensorSilence silence = SensorSilence::kNone;
-  UsedFrame command;  ///< of the cycle before
-  std::uint64_t state_seen = 0;
-  std::uint64_t state_first_cycle = 0;
+  UsedFrame command, state;  ///< of the cycle before
   std::uint64_t corrupt = 0;
   OperatorInput operator_input;
 };

@@ -611,8 +611,8 @@ TEST_F(MonitorCycleTest, ReadsCommandAndStateOfTheCycleBefore) {
   publish(state, 0);
   step(0);
   EXPECT_EQ(law_->input.command, nullptr) << "cycle 0 has none before it";
-  EXPECT_FALSE(law_->input.state_seen);
-  EXPECT_EQ(cycle_->trace().calls.state_seen, 0u);
+  EXPECT_EQ(law_->input.state, nullptr);
+  EXPECT_EQ(cycle_->trace().calls.state.found, Lookup::kMissing);
   StateFrame late;
   late.first_cycle = 9;
   late.head = {.run = kRun, .cycle = 9};
@@ -621,16 +621,14 @@ TEST_F(MonitorCycleTest, ReadsCommandAndStateOfTheCycleBefore) {
   step(10);
   ASSERT_NE(law_->input.command, nullptr);
   EXPECT_EQ(cycle_->trace().calls.command.checksum, frame.head.checksum);
-  EXPECT_TRUE(law_->input.state_seen);
-  EXPECT_EQ(law_->input.state_first_cycle, 9u);
-  EXPECT_EQ(cycle_->trace().calls.state_seen, 1u);
-  EXPECT_EQ(cycle_->trace().calls.state_first_cycle, 9u);
+  ASSERT_NE(law_->input.state, nullptr);
+  EXPECT_EQ(law_->input.state->first_cycle, 9u);
+  EXPECT_EQ(cycle_->trace().calls.state.cycle, 9u);
   EXPECT_EQ(law_->input.corrupt, 0u);
   EXPECT_EQ(law_->input.silence, SensorSilence::kNone);
   step(11);
   EXPECT_EQ(law_->input.command, nullptr);
-  EXPECT_FALSE(law_->input.state_seen);
-  EXPECT_EQ(law_->input.state_first_cycle, 0u);
+  EXPECT_EQ(law_->input.state, nullptr);
 }
 
 TEST_F(MonitorCycleTest, CountsACorruptFrameOfEachKind) {

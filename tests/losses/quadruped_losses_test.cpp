@@ -155,17 +155,16 @@ TEST_P(PlantOfATrottingQuadbot, BrakesInItsFirstCyclesAndTheRobotLies) {
 INSTANTIATE_TEST_SUITE_P(Nightly, PlantOfATrottingQuadbot, ::testing::Values(SIGKILL, SIGSTOP),
                          [](const auto& each) { return name_of_signal(each.param); });
 
-using NightlyLateNode = LossOfQuadbot;
+class NightlyLateNode : public LossOfQuadbot, public ::testing::WithParamInterface<LoopNode> {};
 
-/// The gate holds the last command for 3 cycles and then folds; the controller that comes back finds a robot that
-/// trots.
-TEST_F(NightlyLateNode, ATrottingRobotWalksOnAfterItsControllerWasLateBy12Cycles) {
+/// The gate holds the last command for 3 cycles and then folds; the node that comes back finds a robot that trots.
+TEST_P(NightlyLateNode, ATrottingRobotWalksOnAfterItWasLateBy12Cycles) {
   constexpr std::int64_t kLate = 12'000'000;  // ns; 20 cycles latch
   repeat([&] {
     if (!trot()) return false;
-    robot_.nodes().process(LoopNode::kController).send(SIGSTOP);
+    robot_.nodes().process(GetParam()).send(SIGSTOP);
     sleep_ns(kLate);
-    robot_.nodes().process(LoopNode::kController).send(SIGCONT);
+    robot_.nodes().process(GetParam()).send(SIGCONT);
     robot_.await_cycles(1000);
     const bool walks = drives() && robot_.speed() > 0.8 * kSpeed;
     if (!walks) {
@@ -174,6 +173,9 @@ TEST_F(NightlyLateNode, ATrottingRobotWalksOnAfterItsControllerWasLateBy12Cycles
     return walks;
   });
 }
+
+INSTANTIATE_TEST_SUITE_P(OfTheChain, NightlyLateNode,
+                         ::testing::Values(LoopNode::kController, LoopNode::kEstimator, LoopNode::kMonitor));
 
 /// The chain runs on core 0, the test elsewhere.
 class HogOfATrottingQuadbot : public LossOfQuadbot {

@@ -83,6 +83,29 @@ TEST_F(NavigatorTest, AGoalInAWallIsRefusedAtOnce) {
   EXPECT_THAT(out_.reason, HasSubstr("lies in an obstacle"));
 }
 
+TEST_F(NavigatorTest, ANewGoalTakesThePlaceOfTheOneBeforeWithoutAStop) {
+  navigator_.begin({4.7, 2.2, 1}, now_);
+  run(1);
+  for (int i = 0; i < 40; ++i) {
+    navigator_.begin({4.7, 2.2 - 0.02 * i, 1}, now_);
+    step();
+    EXPECT_FALSE(out_.cancel) << i;
+    EXPECT_EQ(out_.state, State::kDriving) << i;
+  }
+  run(30);
+  EXPECT_EQ(out_.state, State::kReached);
+  EXPECT_NEAR(pose_.y, 1.42, 1e-6);
+}
+
+TEST_F(NavigatorTest, ANewGoalThatIsRefusedEndsThePathOfTheOneBefore) {
+  navigator_.begin({4.7, 2.2, 1}, now_);
+  run(1);
+  navigator_.begin({3.15, 0.3, 0}, now_);
+  step();
+  EXPECT_EQ(out_.state, State::kFailed);
+  EXPECT_TRUE(out_.cancel);
+}
+
 TEST_F(NavigatorTest, ABoxOnThePathIsPassed) {
   box(45, 16);
   navigator_.begin({5.6, 1.6, 0}, now_);

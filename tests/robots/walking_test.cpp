@@ -279,9 +279,10 @@ TEST(Walking, IsStoppedByAFaultThatIsNamedBeforeItFalls) {
   struct Fault {
     std::string component, kind, cause;
   };
-  for (const Fault& fault : {Fault{"front_left_knee_joint_motor", "off", "joint_following"},
-                             Fault{"gyro", "stuck", "imu_stuck"}, Fault{"gyro", "garbage", "imu_jump"},
-                             Fault{"gyro", "wrong", "body_rate"}, Fault{"accelerometer", "wrong", "imu_reversed"}}) {
+  for (const Fault& fault :
+       {Fault{"front_left_knee_joint_motor", "off", "joint_following"}, Fault{"gyro", "stuck", "imu_stuck"},
+        Fault{"gyro", "garbage", "imu_jump"}, Fault{"gyro", "wrong", "body_rate"},
+        Fault{"accelerometer", "wrong", "imu_reversed"}, Fault{"estimator", "wrong", "wrong_state"}}) {
     SCOPED_TRACE(fault.component);
     QuadrupedLoop robot(legged_robot("quadbot"), 0, ErrorLevel::kDataSheet);
     robot.wait(0.3);

@@ -101,7 +101,7 @@ TEST_F(CausesTest, ACommandInTimeRestartsTheCount) {
 }
 
 TEST_F(CausesTest, EstimatorIsLostInTheTwentiethCycleWithoutAState) {
-  input_.state_seen = false;
+  input_.state = nullptr;
   steps(kLoss - 1);
   expect_driving();
   step();
@@ -297,7 +297,7 @@ TEST_F(CausesTest, RemembersTheFirstCauseAndCollectsAll) {
   step();
   input_.command = nullptr;
   steps(kLoss);
-  input_.state_seen = false;
+  input_.state = nullptr;
   steps(kLoss);
   EXPECT_EQ(permit_.first_cause, std::uint64_t{kCauseEmergencyStopService});
   EXPECT_EQ(permit_.causes, kCauseEmergencyStopService | kCauseControllerLost | kCauseEstimatorLost);
@@ -306,7 +306,7 @@ TEST_F(CausesTest, RemembersTheFirstCauseAndCollectsAll) {
 
 TEST_F(CausesTest, WithoutAStateTheControllerIsNotBlamed) {
   input_.command = nullptr;
-  input_.state_seen = false;
+  input_.state = nullptr;
   steps(kLoss);
   expect_stop(SupervisorState::kStopped, kCauseEstimatorLost);
 }

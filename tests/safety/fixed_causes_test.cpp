@@ -44,7 +44,7 @@ class FixedCauses : public MonitorTest, public testing::WithParamInterface<Fixed
         input_.command = nullptr;
         return kLoss;
       case kCauseEstimatorLost:
-        input_.state_seen = false;
+        input_.state = nullptr;
         return kLoss;
       case kCauseHeartbeatLost:
         return kHeartbeat + 1;

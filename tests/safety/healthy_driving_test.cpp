@@ -92,13 +92,14 @@ class HealthyDriving : public testing::TestWithParam<Machine> {
     command_.head.cycle = command_.state_cycle = cycle_ == 0 ? 0 : cycle_ - 1;
     command_.requested.twist.linear[0] = request(static_cast<double>(cycle_) / GetParam().rate);
     command_.zero_requests = 1;  // the run begins with a zero request
-    input_ = {.sensors = &sensors_, .command = &command_, .state_seen = true, .operator_input = {}};
+    input_ = {.sensors = &sensors_, .command = &command_, .state = &state_, .operator_input = {}};
   }
 
   const DriveTrain robot_ = two_wheels();
   std::optional<SafetyMonitor> monitor_;
   SensorFrame sensors_;
   CommandFrame command_;
+  StateFrame state_;
   MonitorInput input_;
   Permit permit_;
   std::uint64_t cycle_ = 0;

@@ -25,6 +25,7 @@ class LeggedConditionsTest : public testing::Test {
     sensors_.contact_count = kLegs;
     sensors_.valid = kValidGyro | kValidAccelerometer;
     sensors_.imu.linear_acceleration = {0, 0, 9.81};
+    sensors_.gate.verdict = GateVerdict::kPassed;
     set_joints_valid(sensors_, kValidMotion);
     command_.legged.phase = LegPhase::kStanding;
     place(stand_);
@@ -46,7 +47,7 @@ class LeggedConditionsTest : public testing::Test {
       sensors_.imu.angular_velocity = {rate_[0] + 1e-6 * t, rate_[1], rate_[2]};  // every sample is another one
       sensors_.imu.linear_acceleration[0] = 1e-3 * t;
       active_.clear();
-      conditions_.step({.sensors = &sensors_, .command = &command_}, 1, 0, active_);
+      conditions_.step({.sensors = &sensors_, .command = &command_, .state = state_}, 1, 0, active_);
       if (active_.with(Reaction::kBrake) + active_.with(Reaction::kRamp) + active_.with(Reaction::kWarn) != 0) return t;
     }
     return seconds;
@@ -65,6 +66,7 @@ class LeggedConditionsTest : public testing::Test {
   LeggedConditions conditions_{limits(robot_), robot_, kPeriod};
   SensorFrame sensors_;
   CommandFrame command_;
+  const StateFrame* state_ = nullptr;
   ActiveCauses active_;
   std::array<Eigen::Vector3d, kLegs> stand_;
   Eigen::Vector3d rate_ = Eigen::Vector3d::Zero();  // rad/s, of the gyro
@@ -529,6 +531,12 @@ TEST_F(WalkingConditionsTest, AGyroThatContradictsTheFeetBrakes) {
     EXPECT_EQ(causes(Reaction::kBrake), "body_rate");
   }
   conditions_.enter_run();
+  const auto brakes = [&](double t) {
+    turns(0)(t);
+    sensors_.gate.verdict = std::lround(t * 1000) % 90 == 0 ? GateVerdict::kBrake : GateVerdict::kPassed;
+  };
+  EXPECT_EQ(walk(0.3, brakes), 0.3) << "its legs have just folded";
+  conditions_.enter_run();
   sensors_.valid = kValidAccelerometer;
   EXPECT_EQ(walk(0.3, turns(0)), 0.3) << "a gyro that is missing is imu_lost";
 }
@@ -549,7 +557,7 @@ TEST_F(LeggedConditionsTest, AnAccelerometerThatShowsTheBodyPulledDownBrakes) {
   const auto shows = [&](double force, double from) {
     return [&, force, from](double t) { sensors_.imu.linear_acceleration[2] = t < from ? 9.81 : force; };
   };
-  for (const LegPhase phase : {LegPhase::kGathering, LegPhase::kRising, LegPhase::kStanding, LegPhase::kWalking}) {
+  for (const LegPhase phase : {LegPhase::kRising, LegPhase::kStanding, LegPhase::kWalking}) {
     conditions_.enter_run();
     command_.legged.phase = phase;
     EXPECT_EQ(run(0.2, shows(0, 0.1)), 0.2) << "it falls";
@@ -563,13 +571,41 @@ TEST_F(LeggedConditionsTest, AnAccelerometerThatShowsTheBodyPulledDownBrakes) {
     };
     EXPECT_EQ(run(0.15, is_silent), 0.15) << "a missing sample is none";
     sensors_.valid = kValidGyro | kValidAccelerometer;
+    const auto folds = [&](double t) {
+      command_.legged.phase = t > 0.1 && t < 0.12 ? LegPhase::kLying : phase;
+      sensors_.imu.linear_acceleration[2] = t > 0.1 && t < 0.125 ? -6 : 9.81;
+    };
+    EXPECT_EQ(run(0.2, folds), 0.2) << "its legs fold while the controller is silent";
     conditions_.enter_run();
     EXPECT_NEAR(run(0.3, shows(-9.81, 0.1)), 0.121, 0.002);
     EXPECT_EQ(causes(Reaction::kBrake), "imu_reversed");
   }
-  command_.legged.phase = LegPhase::kLying;
+  for (const LegPhase phase : {LegPhase::kLying, LegPhase::kGathering}) {
+    command_.legged.phase = phase;
+    conditions_.enter_run();
+    EXPECT_EQ(run(0.3, shows(-9.81, 0.1)), 0.3) << "one that lies may be shaken";
+  }
+}
+
+TEST_F(LeggedConditionsTest, AStateThatContradictsTheGyroOfItsCycleBrakes) {
+  StateFrame state;
+  state_ = &state;
+  Eigen::Vector3d before = Eigen::Vector3d::Zero();
+  const auto turns = [&](double of_gyro, double off) {
+    return [&, of_gyro, off](double t) {
+      Eigen::Map<Eigen::Vector3d>(state.base.twist_base.angular.data()) = of_gyro * before;
+      state.base.twist_base.angular[1] += off;
+      before = rate_ = Eigen::Vector3d(0.1, 0.6, -0.2) * std::sin(30 * t);
+    };
+  };
+  EXPECT_EQ(run(0.5, turns(1, 0.4)), 0.5) << "a gyro has a bias";
+  EXPECT_EQ(run(0.004, turns(1, 2)), 0.004) << "a few samples";
   conditions_.enter_run();
-  EXPECT_EQ(run(0.3, shows(-9.81, 0.1)), 0.3) << "one that lies may be shaken";
+  EXPECT_LT(run(0.5, turns(-1, 0)), 0.03);
+  EXPECT_EQ(causes(Reaction::kBrake), "wrong_state");
+  conditions_.enter_run();
+  sensors_.valid = kValidAccelerometer;
+  EXPECT_EQ(run(0.05, turns(1, 2)), 0.05) << "a gyro that is missing is imu_lost";
 }
 
 TEST_F(LeggedConditionsTest, FeetAreJudgedOnlyWhileItStands) {

@@ -59,7 +59,7 @@ class MonitorTest : public testing::Test {
     sensors_.joint_count = command_.joint_count = kWheels;
     input_.sensors = &sensors_;
     input_.command = &command_;
-    input_.state_seen = true;
+    input_.state = &state_;
     while (sensors_.head.cycle < kStart) step();
   }
 
@@ -129,7 +129,7 @@ class MonitorTest : public testing::Test {
     ++sensors_.head.run;
     sensors_.head.cycle = 0;
     begun_ = false;
-    command_.zero_requests = command_.first_cycle = input_.state_first_cycle = 0;
+    command_.zero_requests = command_.first_cycle = state_.first_cycle = 0;
   }
   /// Another monitor, which inherits the last permit in its next step.
   void restart_monitor() {
@@ -189,6 +189,7 @@ class MonitorTest : public testing::Test {
 
   SensorFrame sensors_;
   CommandFrame command_;
+  StateFrame state_;
   MonitorInput input_;
   InheritedLatch inherited_;
   Permit last_permit_;  ///< that an earlier monitor left

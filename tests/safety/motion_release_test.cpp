@@ -25,7 +25,7 @@ class MotionReleaseTest : public testing::Test {
     command_.head.cycle = command_.state_cycle = cycle == 0 ? 0 : cycle - 1;
     command_.silent_cycles += elapsed;
     input_.command = cycle == 0 || no_command_ ? nullptr : &command_;
-    input_.state_seen = cycle > 0;
+    input_.state = cycle > 0 ? &state_ : nullptr;
     release_.step(input_, elapsed);
   }
   void steps(std::uint64_t count) {
@@ -67,6 +67,7 @@ class MotionReleaseTest : public testing::Test {
 
   SensorFrame sensors_;
   CommandFrame command_;
+  StateFrame state_;
   MonitorInput input_;
   MotionRelease release_;
   std::uint64_t cycle_ = 0;
@@ -181,7 +182,7 @@ TEST_F(MotionReleaseTest, ARestartedEstimatorTakesTheReleaseBackAndOlderZerosDoN
   request_zero();
   steps(5);
   request_motion();
-  input_.state_first_cycle = cycle_ - 1;
+  state_.first_cycle = cycle_ - 1;
   expect_release_by_a_new_zero_only();
 }
 
@@ -313,7 +314,7 @@ TEST_F(MonitorTest, AtAColdStartNothingMovesBeforeAZeroRequest) {
 
 TEST_F(MonitorTest, ARestartedEstimatorBrakesWithoutALatchUntilAZeroRequest) {
   drive();
-  input_.state_first_cycle = cycle();
+  state_.first_cycle = cycle();
   step();
   EXPECT_EQ(permit_.state, SupervisorState::kInit);
   EXPECT_EQ(permit_.action, PermitAction::kBrake);

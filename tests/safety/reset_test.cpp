@@ -190,7 +190,7 @@ TEST_F(MonitorTest, NeverPermitsDrivingUnderALatch) {
       const bool asked = chance(15);
       if (asked) ++operator_input.resets;
       if (chance(30)) input_.command = chance(4) ? nullptr : &command_;
-      if (chance(30)) input_.state_seen = !chance(4);
+      if (chance(30)) input_.state = chance(4) ? nullptr : &state_;
       if (chance(30)) input_.corrupt = chance(8);
       if (chance(30)) sensors_.faults = chance(10) ? 1 : 0;
       if (chance(30)) sensors_.digital_inputs = chance(10) ? 1 : 0;

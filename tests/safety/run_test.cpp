@@ -21,13 +21,13 @@ class RunTest : public MonitorTest {
 TEST_F(RunTest, InitBrakesUnlatchedAndNamesTheMissingNode) {
   new_run();
   input_.command = nullptr;
-  input_.state_seen = false;
+  input_.state = nullptr;
   steps(10 * kLoss);
   EXPECT_EQ(permit_.state, SupervisorState::kInit);
   EXPECT_EQ(permit_.action, PermitAction::kBrake);
   EXPECT_EQ(permit_.causes, 0u);
   EXPECT_EQ(permit_.missing, kMissingState | kMissingCommand);
-  input_.state_seen = true;
+  input_.state = &state_;
   step();
   EXPECT_EQ(permit_.missing, std::uint64_t{kMissingCommand});
 }
@@ -37,11 +37,11 @@ TEST_F(RunTest, StateAndCommandNeedToBeSeenInOneCycle) {
   input_.command = nullptr;
   step();
   input_.command = &command_;
-  input_.state_seen = false;
+  input_.state = nullptr;
   step();
   EXPECT_EQ(permit_.state, SupervisorState::kInit);
   EXPECT_EQ(permit_.missing, 0u);
-  input_.state_seen = true;
+  input_.state = &state_;
   step();
   EXPECT_EQ(permit_.state, SupervisorState::kReady);
   EXPECT_EQ(permit_.missing, 0u);

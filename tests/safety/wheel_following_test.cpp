@@ -256,7 +256,7 @@ TEST_F(WheelFollowingTest, ACommandIsStaleAsLateInANewRun) {
 
 TEST_F(WheelFollowingTest, ACommandIsNotStaleForWantOfAState) {
   fresh_state_ = false;
-  input_.state_seen = false;
+  input_.state = nullptr;
   steps(kLoss);
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseEstimatorLost});
 }

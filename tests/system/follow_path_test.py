@@ -259,7 +259,7 @@ class FollowPathTest(RobotTestCase):
         self.send_unstamped("latched", 2.0, latch=True)
         self.server.kill()
         type(self).server = Program("follow_path.py")
-        wait_for("its words", lambda: "it was sent before this program began" in self.server.output)
+        wait_for("its words", lambda: "it was requested before follow_path began" in self.server.output)
         time.sleep(1.0)
         self.assertAlmostEqual(self.robot.distance, before, delta=0.01)
 

@@ -172,21 +172,26 @@ void push_limits(const LegModel& model, std::uint64_t seed, WorstValues& worst) 
 
 void walking_silent(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   constexpr int kLosses = 200, kMin = 5, kMax = 19;  // cycles
-  QuadrupedLoop robot(model, walking_parameters(seed));
-  robot.wait(0.3);
-  robot.run(kBegin, trot(1.0));
-  robot.clear();
   const double period = kGaits[static_cast<std::size_t>(GaitName::kTrot)].scaled(model.leg_length()).period;
-  for (int i = 0; i < kLosses && stopped(robot) == 0; ++i) {
-    const int silent = kMin + i % (kMax - kMin + 1);
-    robot.loop.request(trot(1.0));
-    robot.loop.inject_fault("controller", "off");
-    robot.wait(0.001 * silent);
-    robot.loop.inject_fault("controller", "ok");
-    robot.run(0.6 + period * i / kLosses, trot(1.0));
+  for (const std::string node : {"controller", "estimator", "monitor"}) {
+    QuadrupedLoop robot(model, walking_parameters(seed));
+    robot.wait(0.3);
+    robot.run(kBegin, trot(1.0));
+    robot.clear();
+    for (int i = 0; i < kLosses && stopped(robot) == 0; ++i) {
+      const int silent = kMin + i % (kMax - kMin + 1);
+      robot.loop.request(trot(1.0));
+      robot.loop.inject_fault(node, "off");
+      robot.wait(0.001 * silent);
+      robot.loop.inject_fault(node, "ok");
+      robot.run(0.6 + period * i / kLosses, trot(1.0));
+      if (stopped(robot) != 0)
+        std::fprintf(stderr, "%s, seed %llu, %s silent for %d cycles: %s\n", model.name.c_str(),
+                     static_cast<unsigned long long>(seed), node.c_str(), silent, robot.causes().c_str());
+    }
+    worst.add("tilt with a silent " + node, robot.tilt, "rad");
+    worst.add("stops, silent " + node, stopped(robot), "");
   }
-  worst.add("tilt with a silent controller", robot.tilt, "rad");
-  worst.add("stops, silent controller", stopped(robot), "");
 }
 
 }  // namespace robot_control::bench

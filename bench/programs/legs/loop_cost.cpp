@@ -193,7 +193,9 @@ void cost(const LegModel& model, std::uint64_t /*seed*/, WorstValues& worst) {
   measure_law(
       "monitor", frames, *monitor,
       [&](std::size_t k) {
-        monitor->step({.sensors = &frames.sensors[k], .command = &frames.commands[k - 1], .state_seen = true}, permit);
+        monitor->step(
+            {.sensors = &frames.sensors[k], .command = &frames.commands[k - 1], .state = &frames.states[k - 1]},
+            permit);
       },
       worst);
   worst.add("monitor that stops", permit.causes == 0 ? 0 : 1, "runs");

@@ -147,7 +147,7 @@ class Server:
     def _refusal(self, message: TimedGoal) -> str:
         """Why the goal does not begin; empty if it does. This program knows of no stop before its own begin."""
         if message.requested < self._began:
-            return "it was sent before this program began. Start the path again"
+            return "it was requested before follow_path began. Start the path again"
         said = -math.inf
 
         def waits() -> bool:

@@ -93,15 +93,14 @@ void LegController::step(const ControlInput& input, CommandFrame& out) noexcept 
   if (input.permit == nullptr) out.reasons |= kReasonNoPermit;
   if (input.permit != nullptr && braked) out.reasons |= kReasonPermitBrake;
   if (!measured) out.reasons |= kReasonBadSensors;
-  if (braked || !measured) {
-    state_ = State(state_.watch);
-    return;  // all joints brake
-  }
+  if (input.permit != nullptr && braked) state_ = State(state_.watch);
+  if (braked || !measured) return pause();
   Request request = out.requested;
   if (input.permit->action == PermitAction::kRamp) {
     out.reasons |= kReasonPermitRamp;
     request = {.twist = {}, .posture = {}, .mode = kStanceLie};
   }
+  if (state_.phase != LegPhase::kWalking) state_.gap = 0;
   state_.pace = std::min(1.0, input.permit->speed_limit / body_motion_[kX].speed);
   const bool of_joints = request.mode == kStanceJoints;
   const bool lifts = request.mode >= kStanceLift && request.mode < kStanceLift + kLegs;
@@ -127,6 +126,11 @@ void LegController::step(const ControlInput& input, CommandFrame& out) noexcept 
     out.twist_limited.linear[axis] = state_.body[axis].speed;
     out.twist_limited.angular[axis] = state_.body[kRoll + axis].speed;
   }
+}
+
+/// All joints brake in this cycle.
+void LegController::pause() noexcept {
+  if (++state_.gap > kMaxGap) state_ = State(state_.watch);
 }
 
 /// Returns true if the joints begin to move in this cycle.

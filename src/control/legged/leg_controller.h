@@ -15,6 +15,9 @@
 ///              limits. The legs carry their own weight alone. Without a request in force the joints stay where they
 ///              are
 ///
+/// Without a permit, an angle of each joint or, while it walks, a state of this cycle, every joint brakes. The robot
+/// goes on where it was if that ends within kMaxGap; else, and after a permit to brake, it lies.
+///
 /// Request::mode is a StanceMode. A mode that the present posture does not allow has no effect. The posture of the
 /// request is
 ///
@@ -67,7 +70,8 @@
 
 namespace robot_control {
 
-inline constexpr double kLoadTime = 0.2;  ///< s, in which a foot's share of the weight comes and goes
+inline constexpr std::uint64_t kMaxGap = 20;  ///< cycles; the monitor latches a longer loss
+inline constexpr double kLoadTime = 0.2;      ///< s, in which a foot's share of the weight comes and goes
 
 static_assert(kLegsJoints == kRequestJoints);
 
@@ -95,6 +99,7 @@ class LegController {
 
     CommandWatch watch;
     LegPhase phase = LegPhase::kLying;
+    std::uint64_t gap = 0;                     ///< cycles in which it could not command, up to the present one
     double elapsed = 0;                        ///< s, in this phase
     std::uint64_t sinks = 0;                   ///< 1: lowering, and the body has begun to sink
     std::array<double, kLegsJoints> from{};    ///< rad, joint angles at the beginning of gathering
@@ -143,6 +148,7 @@ class LegController {
   double pace_of(const WalkingTwist& twist) const noexcept;
   void carry(const Request& request, std::uint64_t& reasons) noexcept;
   void stand_here(const ControlInput& input) noexcept;
+  void pause() noexcept;
   void report(CommandFrame& out) const noexcept;
   void enter(LegPhase phase, double elapsed) noexcept;
   void move_joints(const Request& request, std::uint64_t& reasons) noexcept;

@@ -58,10 +58,10 @@ void LegController::walk(const ControlInput& input, const Request& request, Comm
   out.legged.phase = LegPhase::kWalking;
   if (!usable(input)) {
     out.reasons |= kReasonNoState;
-    state_ = State(state_.watch);
     out.legged.phase = LegPhase::kLying;
-    return;  // all joints brake
+    return pause();
   }
+  state_.gap = 0;
   const bool wanted = walks(request);
   if (request.mode == kStanceLie) state_.lies_next = 1;
   if (wanted || request.mode == kStanceStand) state_.lies_next = 0;

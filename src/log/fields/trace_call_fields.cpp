@@ -111,6 +111,7 @@ void add_calls(TraceFields& to) {
   add_used<D>(to, "gate_used_permit", MEMBER(calls.permit));
   add_used<C>(to, "controller_used_permit", MEMBER(calls.permit));
   add_used<M>(to, "monitor_used_command", MEMBER(calls.command));
+  add_used<M>(to, "monitor_used_state", MEMBER(calls.state));
   to.push_back(field<C, u64>("controller_used_state_checksum", "of the state of this cycle", MEMBER(calls.state)));
   to.push_back(field<E, u64>("estimator_first_cycle", "", MEMBER(calls.first_cycle)));
   to.push_back(field<E, u64>("pose_set", "1: the pose was set before this step", MEMBER(calls.pose_set)));
@@ -121,8 +122,6 @@ void add_calls(TraceFields& to) {
   add_velocity(to, "request", MEMBER(calls.request));
   add_velocity(to, "inbox", MEMBER(calls.inbox));
   to.push_back(field<M, u8>("monitor_silence", "SensorSilence, where it used no sensors", MEMBER(calls.silence)));
-  to.push_back(field<M, u64>("monitor_state_seen", "", MEMBER(calls.state_seen)));
-  to.push_back(field<M, u64>("monitor_state_first_cycle", "", MEMBER(calls.state_first_cycle)));
   to.push_back(field<M, u64>("monitor_corrupt", "", MEMBER(calls.corrupt)));
   add_operator(to, "operator", MEMBER(calls.operator_input));
   to.push_back(whole_frame<E, StateFrame>("whole_state", MEMBER(state)));

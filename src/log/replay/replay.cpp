@@ -268,17 +268,17 @@ void Replay::Parts::run(const OwnedRow& row, MonitorTrace& trace) {
   const StateBefore state = before(monitor, calls.law);
   SensorFrame sensors;
   const bool framed = calls.law.sensors != 0;
-  const bool commanded = calls.command.found == Lookup::kFrame;
+  const bool commanded = calls.command.found == Lookup::kFrame, estimated = calls.state.found == Lookup::kFrame;
   const bool has_sensors = !framed || sensors_of(frames.sensors, trace.permit.head, calls.law.sensors, sensors);
   const MonitorInput input{.sensors = framed ? &sensors : nullptr,
                            .silence = calls.silence,
                            .command = commanded ? frames.command.find(calls.command.checksum) : nullptr,
-                           .state_seen = calls.state_seen != 0,
-                           .state_first_cycle = calls.state_first_cycle,
+                           .state = estimated ? frames.state.find(calls.state.checksum) : nullptr,
                            .corrupt = calls.corrupt,
                            .operator_input = calls.operator_input};
   const std::string missing = unknown({{"sensor frame", has_sensors, row.cycle()},
-                                       {"command", !commanded || input.command != nullptr, calls.command.cycle}});
+                                       {"command", !commanded || input.command != nullptr, calls.command.cycle},
+                                       {"state", !estimated || input.state != nullptr, calls.state.cycle}});
   if (state != StateBefore::kUnknown && !missing.empty()) monitor.continuity.lose(missing);
   if (!monitor.continuity.known()) {
     publish<Permit>(calls.law, trace.permit, nullptr, frames.permit);
@@ -289,6 +289,7 @@ void Replay::Parts::run(const OwnedRow& row, MonitorTrace& trace) {
   compare(row, monitor, calls.law, trace.permit, fault_of(sensors.injected, FaultComponent::kMonitor), frames.permit);
   if (framed) calls.silence = SensorSilence::kNone;
   calls.command = commanded ? used(Lookup::kFrame, *input.command) : UsedFrame{.found = calls.command.found};
+  calls.state = estimated ? used(Lookup::kFrame, *input.state) : UsedFrame{.found = calls.state.found};
   if (varied == nullptr) return;
   watch({.run = row.run(), .cycle = row.cycle(), .permit = &monitor.output, .varied_permit = varied});
 }

@@ -83,13 +83,14 @@ void MonitorCycle::read_inputs(const SensorFrame& sensors) noexcept {
   corrupt_sensors_ = 0;
   const std::uint64_t run = head_.run;
   const std::uint64_t cycle = head_.cycle;
+  calls_.command = calls_.state = {};
   if (cycle == 0) return;
   const auto [command_found, command] = channels_.command->find_at(run, cycle - 1, command_);
   const auto [state_found, state] = channels_.state->find_at(run, cycle - 1, state_);
   input_.command = command_found == Lookup::kFrame ? command : nullptr;
   calls_.command = used(command_found, *command);
-  input_.state_seen = state_found == Lookup::kFrame;
-  input_.state_first_cycle = input_.state_seen ? state->first_cycle : 0;
+  input_.state = state_found == Lookup::kFrame ? state : nullptr;
+  calls_.state = used(state_found, *state);
   if (command_found == Lookup::kCorrupt || state_found == Lookup::kCorrupt) input_.corrupt = 1;
 }
 
@@ -137,6 +138,7 @@ bool MonitorCycle::step_without_frame(bool timed_out) noexcept {
                            .operator_input = operator_input_};
   if (!happened(input)) return false;
   input_ = input;
+  calls_.command = calls_.state = {};
   if (clock_.run() != 0) {
     step_law(clock_.now());
     return true;
@@ -152,8 +154,6 @@ void MonitorCycle::step_law(std::int64_t woke_ns) noexcept {
   publish(clock_.run());
   trace_.timing = clock_.timing(woke_ns, due_ns_);
   calls_.silence = input_.silence;
-  calls_.state_seen = input_.state_seen ? 1 : 0;
-  calls_.state_first_cycle = input_.state_first_cycle;
   calls_.corrupt = input_.corrupt;
   calls_.operator_input = input_.operator_input;
   const std::uint64_t sensors = input_.sensors != nullptr ? head_.checksum : 0;

@@ -1,5 +1,5 @@
 #pragma once
-/// The monitor's duty in one cycle: sensors k (which woke it), command k-1, head of state k-1 → permit k.
+/// The monitor's duty in one cycle: sensors k (which woke it), command k-1, state k-1 → permit k.
 ///
 /// Every step of the law has one row of the trace. A step without a new sensor frame repeats the run, cycle and stamp
 /// of the last one in its permit. Before the first frame it has no row: the snapshot in the first row covers it.

@@ -3,13 +3,26 @@
 #include "ros/navigation/navigation_messages.h"
 
 namespace robot_control {
+namespace {
+
+constexpr const char* kReplaced = "replaced by a newer goal";
+
+/// actionlib calls a preempt callback before each new goal, too, which is no cancellation.
+template <class Server>
+void register_cancel(Server& server, const std::function<void()>& cancel) {
+  server.registerPreemptCallback([&server, cancel] {
+    if (!server.isNewGoalAvailable()) cancel();
+  });
+}
+
+}  // namespace
 
 GoalServers::GoalServers(ros::NodeHandle& handle, std::function<void(const Goal&)> begin, std::function<void()> cancel)
     : begin_(std::move(begin)), navigate_to_(handle, "navigate_to", false), move_base_(handle, "move_base", false) {
   navigate_to_.registerGoalCallback([this] { accept_navigate_to(); });
   move_base_.registerGoalCallback([this] { accept_move_base(); });
-  navigate_to_.registerPreemptCallback(cancel);
-  move_base_.registerPreemptCallback(cancel);
+  register_cancel(navigate_to_, cancel);
+  register_cancel(move_base_, cancel);
   navigate_to_.start();
   move_base_.start();
   simple_ = handle.advertise<move_base_msgs::MoveBaseActionGoal>("move_base/goal", 1);
@@ -26,17 +39,15 @@ GoalServers::GoalServers(ros::NodeHandle& handle, std::function<void(const Goal&
 
 void GoalServers::accept_navigate_to() {
   if (!navigate_to_.isNewGoalAvailable()) return;
+  conclude(false, true, kReplaced);
   const auto goal = navigate_to_.acceptNewGoal();
-  if (move_base_.isActive()) move_base_.setPreempted({}, "replaced by a newer goal");
   begin_({goal->target, goal->speed});
 }
 
 void GoalServers::accept_move_base() {
   if (!move_base_.isNewGoalAvailable()) return;
+  conclude(false, true, kReplaced);
   const auto goal = move_base_.acceptNewGoal();
-  NavigateToResult replaced;
-  replaced.reason = "replaced by a newer goal";
-  if (navigate_to_.isActive()) navigate_to_.setPreempted(replaced, replaced.reason);
   begin_({goal->target_pose, 0});
 }
 

@@ -134,7 +134,6 @@ class NavigateNode {
       if (!found) return refuse("tf does not connect the goal's frame with the map's: " + why);
       target = composed(found->pose, target);
     }
-    if (navigator_.active()) path_client_.cancel();
     navigator_.begin(target, now());
   }
 

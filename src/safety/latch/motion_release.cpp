@@ -42,11 +42,11 @@ void MotionRelease::step(const MonitorInput& input, std::uint64_t elapsed) noexc
     start(cycle);
   }
   resumes_ = resumes;
-  if (input.state_seen) update_start(state_first_, input.state_first_cycle);
+  if (input.state != nullptr) update_start(state_first_, input.state->first_cycle);
   if (command != nullptr) update_start(command_first_, command->first_cycle);
   if (elapsed > 1) since_gap_.restart(cycle - 1);
   no_motion_requested_ = false;
-  if (command != nullptr && input.state_seen && command->state_cycle == command->head.cycle) {
+  if (command != nullptr && input.state != nullptr && command->state_cycle == command->head.cycle) {
     evaluate(*command);
   } else {
     since_gap_.restart(cycle);

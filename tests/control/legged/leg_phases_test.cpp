@@ -236,19 +236,27 @@ TEST(LoweringLegs, StandAgainAtOnceWhereTheBodyHasNotSunk) {
   EXPECT_EQ(legs.out.legged.phase, LegPhase::kStanding);
 }
 
-TEST(StandingLegs, AreReleasedWithoutAPermitAndWithOneToBrake) {
-  for (const bool none : {false, true}) {
+TEST(StandingLegs, AreReleasedByAPermitToBrakeAndWhereThePermitIsMissingForLong) {
+  struct Case {
+    bool none;
+    int cycles;
+    LegPhase after;
+  };
+  for (const auto& [none, cycles, after] : {Case{false, 1, LegPhase::kLying}, Case{true, 1, LegPhase::kStanding},
+                                            Case{true, 20, LegPhase::kStanding}, Case{true, 21, LegPhase::kLying}}) {
     IdealLegs legs = standing();
     legs.has_permit = !none;
-    legs.permit.action = PermitAction::kBrake;
-    legs.step();
-    EXPECT_EQ(legs.out.reasons, none ? std::uint64_t{kReasonNoPermit} : std::uint64_t{kReasonPermitBrake});
-    EXPECT_EQ(legs.out.joints[3].mode, JointMode::kBrake);
-    EXPECT_EQ(legs.out.legged.phase, LegPhase::kLying);
+    legs.permit.action = none ? PermitAction::kDrive : PermitAction::kBrake;
+    for (int i = 0; i < cycles; ++i) {
+      legs.step();
+      EXPECT_EQ(legs.out.reasons, none ? std::uint64_t{kReasonNoPermit} : std::uint64_t{kReasonPermitBrake});
+      EXPECT_EQ(legs.out.joints[3].mode, JointMode::kBrake);
+      EXPECT_EQ(legs.out.legged.phase, LegPhase::kLying);
+    }
     legs.has_permit = true;
     legs.permit.action = PermitAction::kDrive;
     legs.step();
-    EXPECT_EQ(legs.out.legged.phase, LegPhase::kLying) << "it has to be told to stand up again";
+    EXPECT_EQ(legs.out.legged.phase, after) << "one that lies has to be told to stand up again";
     EXPECT_EQ(legs.out.requests_received, legs.inbox.count);
   }
 }

@@ -387,6 +387,11 @@ TEST(LegWalk, NeedsAStateOfThisCycle) {
     EXPECT_EQ(legs.legs.out.reasons, std::uint64_t{kReasonNoState});
     EXPECT_EQ(legs.legs.out.legged.phase, LegPhase::kLying);
     for (std::size_t i = 0; i < kLegsJoints; ++i) EXPECT_EQ(legs.legs.out.joints[i].mode, JointMode::kBrake) << i;
+    for (int i = 0; i < 19; ++i) legs.step();
+    legs.legs.has_estimate = true;
+    legs.legs.estimate.base.flags = kStateValid;
+    legs.step();
+    EXPECT_EQ(legs.legs.out.legged.phase, LegPhase::kWalking) << "it goes on";
   }
   WalkingLegs legs = ready();
   legs.run(0.5, twist_of(0.3));

@@ -6,7 +6,7 @@ void Presence::step(const MonitorInput& input, std::uint64_t elapsed, ActiveCaus
   const std::uint64_t cycle = input.sensors->head.cycle;
   const CommandFrame* command = input.command;
   missing_ &= ~static_cast<std::uint64_t>(kMissingSensors);
-  if (input.state_seen) missing_ &= ~static_cast<std::uint64_t>(kMissingState);
+  if (input.state != nullptr) missing_ &= ~static_cast<std::uint64_t>(kMissingState);
   if (command != nullptr) missing_ &= ~static_cast<std::uint64_t>(kMissingCommand);
   if (!complete_) {
     missing_ &= ~static_cast<std::uint64_t>(kMissingGate);
@@ -16,9 +16,9 @@ void Presence::step(const MonitorInput& input, std::uint64_t elapsed, ActiveCaus
 
   const bool command_awaited = (missing_ & kMissingCommand) == 0;
   const bool state_awaited = (missing_ & kMissingState) == 0;
-  if (input.state_seen || !state_awaited) state_seen_ = cycle;
-  if (command != nullptr || !command_awaited || !input.state_seen) command_seen_ = cycle;
-  if (command != nullptr && input.state_seen) {
+  if (input.state != nullptr || !state_awaited) state_seen_ = cycle;
+  if (command != nullptr || !command_awaited || input.state == nullptr) command_seen_ = cycle;
+  if (command != nullptr && input.state != nullptr) {
     stale_ = command->state_cycle == command->head.cycle ? 0 : stale_ + elapsed;
   }
   add_if_lost(kCauseControllerLost, cycle - command_seen_, out);

@@ -1,12 +1,13 @@
 #pragma once
 /// The accelerometer of a robot on legs is compared with what the ground can do.
 ///
-///   imu reversed  −f > limit, on its feet or on the way to them. f is the low pass over kTime of the specific force along
-///                 the body's z axis, within ±kLargest
+///   imu reversed  −f > limit, on its feet. f is the low pass over kTime of the specific force along the body's z axis,
+///                 within ±kLargest
 ///
 /// The ground pushes the feet and never pulls them, so that f is up, and 0 in free fall. An IMU whose axes turn round
 /// shows it downwards. The attitude (attitude.h) and the estimator would believe it. One sample is at most a quarter of
-/// f, so that none reaches the default limit alone. A missing sample changes nothing.
+/// f, so that none reaches the default limit alone. A missing sample changes nothing. Without a command the driver
+/// folds the legs, which pulls the body down: f begins with 0 after it.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -37,9 +38,10 @@ class DownwardForce {
 
   /// `along_z`: m/s², NaN without a sample.
   void step(double along_z, LegPhase phase, std::uint64_t elapsed, ActiveCauses& out) noexcept {
+    const bool on_feet = phase == LegPhase::kRising || phase == LegPhase::kStanding || phase == LegPhase::kWalking;
     const double weight = std::min(0.25, static_cast<double>(elapsed) * period_ / kTime);
-    if (std::isfinite(along_z)) force_ += weight * (std::clamp(along_z, -kLargest, kLargest) - force_);
-    const bool on_feet = phase != LegPhase::kLying && phase != LegPhase::kLowering && phase != LegPhase::kJoints;
+    if (!on_feet) force_ = 0;
+    if (on_feet && std::isfinite(along_z)) force_ += weight * (std::clamp(along_z, -kLargest, kLargest) - force_);
     watch_.step({.beyond = on_feet && -force_ > watch_.limit(), .value = -force_, .limit = watch_.limit()}, elapsed);
     out.add(watch_);
   }

@@ -83,6 +83,7 @@ void FootConditions::enter_run() noexcept {
   judged_ = {};
   worst_ = sunk_ = turned_ = kNothingMeasured;
   since_ = {};
+  unbraked_ = 0;
   stood_ = false;
 }
 
@@ -103,6 +104,7 @@ void FootConditions::step(const MonitorInput& input, const Eigen::Vector3d& up, 
   if (!any) worst_ = turned_ = kNothingMeasured;
   if (!walks) sunk_ = turned_ = kNothingMeasured;
   const double time = static_cast<double>(elapsed) * period_;
+  unbraked_ = input.sensors->gate.verdict == GateVerdict::kBrake ? 0 : unbraked_ + time;
   since_.time += time;
   Map(since_.turn.data()) += time * rate;
   if (any && (begins || waited_ >= interval_)) {
@@ -146,7 +148,7 @@ void FootConditions::sample(const SensorFrame& sensors, const LeggedCommand& ask
   }
   const bool walks = asked.phase == LegPhase::kWalking;
   judge_slip(now, (walks ? kOfStep : 1) * slip_.limit());
-  if (walks) judge_turn(now, asked.stance);
+  if (walks && unbraked_ > kWindow) judge_turn(now, asked.stance);
   samples_[next_] = now;
   next_ = (next_ + 1) % kSamplesInWindow;
   for (std::size_t leg = 0; leg < kLegs; ++leg) counts_[leg] += judged[leg] ? 1 : 0;

@@ -7,10 +7,10 @@
 ///              slip. Feet that slip together are not noticed. A ball that rolls changes d by less than its radius
 ///              times the body's turn
 ///   body rate  max over these pairs of (|n| − kOfSlip |p|) / (T |v|) > limit, while it walks, before the last kEdge of
-///              both stances. T is kSamplesInTurn samples. v is the vector from foot to foot, and c = Δv + θ × v its
-///              change within T, in which the gyro turned by θ. c is 0 over ground that rests, if the gyro is right. p is
-///              its part along v, n that across. A foot that slips, or an encoder that errs, changes the length of v,
-///              too. A foot above a hole does not
+///              both stances, and kWindow after the driver braked. T is kSamplesInTurn samples. v is the vector from foot
+///              to foot, and c = Δv + θ × v its change within T, in which the gyro turned by θ. c is 0 over ground that
+///              rests, if the gyro is right. p is its part along v, n that across. A foot that slips, or an encoder that
+///              errs, changes the length of v, too. A foot above a hole does not
 ///   foot load  F·u / w < limit, with the measured force F of a foot, the vertical u and an equal share w of the weight
 ///   sinking    (c − c₀ − (h − h₀)) / l > limit, while it walks. h is the mean height of the body above its feet by the
 ///              measured angles, c the commanded height, l the leg length. h₀ and c₀ are those of the robot that stood
@@ -87,6 +87,7 @@ class FootConditions {
   Sample since_{};                           ///< then; without feet
   std::array<double, kLegs> loads_{};        ///< of a share, of the feet when they were judged last
   Feet judged_{};                            ///< in the last cycle
+  double unbraked_ = 0;                      ///< s since the driver braked
   bool stood_ = false;                       ///< reference_ is known
   double reference_ = 0;                     ///< m, height of the body less the commanded one, when it stood last
   ConditionMeasurement worst_{};             ///< slip of the last sample

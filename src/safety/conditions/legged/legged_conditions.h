@@ -1,7 +1,8 @@
 #pragma once
 /// The conditions of a robot on legs compare body, joints and feet with their limits (body_conditions.h,
-/// downward_force.h, joint_conditions.h, encoder_conditions.h, foot_conditions.h). They tell whether the joints stand.
-/// Joints stand while every one stays within kWindow of its angle for kStandingTime.
+/// downward_force.h, joint_conditions.h, encoder_conditions.h, foot_conditions.h). They also compare the state with the
+/// gyro (wrong_state.h), and tell whether the joints stand. Joints stand while every one stays within kWindow of its
+/// angle for kStandingTime.
 ///
 ///   moving    a joint left its window, or its angle is not known; until the robot stands again
 ///   standing  all joints are inside for kStandingTime
@@ -17,6 +18,7 @@
 #include "safety/conditions/legged/encoder_conditions.h"
 #include "safety/conditions/legged/foot_conditions.h"
 #include "safety/conditions/legged/joint_conditions.h"
+#include "safety/conditions/legged/wrong_state.h"
 #include "safety/latch/active_causes.h"
 #include "safety/monitor_input.h"
 #include "safety/safety_parameters.h"
@@ -34,6 +36,7 @@ class LeggedConditions {
       : period_(period),
         body_conditions_(parameters, robot, {}, period, kForceTime),
         downward_force_(parameters, period),
+        wrong_state_(parameters, period),
         joint_conditions_(parameters, robot, period),
         encoder_conditions_(parameters, robot, period),
         foot_conditions_(parameters, robot, period) {}
@@ -43,6 +46,7 @@ class LeggedConditions {
   void enter_run() noexcept {
     body_conditions_.enter_run();
     downward_force_.enter_run();
+    wrong_state_.enter_run();
     joint_conditions_.enter_run();
     encoder_conditions_.enter_run();
     foot_conditions_.enter_run();
@@ -64,6 +68,7 @@ class LeggedConditions {
     body_conditions_.step(sensors, elapsed, 0, moving_, out);
     const LegPhase phase = input.command != nullptr ? input.command->legged.phase : LegPhase::kLying;
     downward_force_.step(body_conditions_.along_z(), phase, elapsed, out);
+    wrong_state_.step(input.state, body_conditions_.rate(), elapsed, out);
     joint_conditions_.step(input, elapsed, out);
     encoder_conditions_.step(input, elapsed, out);
     foot_conditions_.step(input, body_conditions_.attitude().up(), body_conditions_.rate(), elapsed, out);
@@ -86,6 +91,7 @@ class LeggedConditions {
   double period_;
   BodyConditions body_conditions_;
   DownwardForce downward_force_;
+  WrongState wrong_state_;
   JointConditions joint_conditions_;
   EncoderConditions encoder_conditions_;
   FootConditions foot_conditions_;
