@@ -280,8 +280,8 @@ TEST(Walking, IsStoppedByAFaultThatIsNamedBeforeItFalls) {
     std::string component, kind, cause;
   };
   for (const Fault& fault :
-       {Fault{"front_left_knee_joint_motor", "off", "joint_following"}, Fault{"gyro", "stuck", "imu_stuck"},
-        Fault{"gyro", "garbage", "imu_jump"}, Fault{"gyro", "wrong", "body_rate"},
+       {Fault{"front_left_knee_joint_motor", "off", "joint_following"}, Fault{"gyro", "stuck", "body_turn"},
+        Fault{"gyro", "garbage", "imu_jump"}, Fault{"gyro", "wrong", "body_turn"},
         Fault{"accelerometer", "wrong", "imu_reversed"}, Fault{"estimator", "wrong", "wrong_state"}}) {
     SCOPED_TRACE(fault.component);
     QuadrupedLoop robot(legged_robot("quadbot"), 0, ErrorLevel::kDataSheet);

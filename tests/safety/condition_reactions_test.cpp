@@ -110,7 +110,7 @@ const std::vector<Row>& rows() {
 /// These are in legged_conditions_test.cpp.
 constexpr std::uint64_t kOfLegs = kCauseJointSpeed | kCauseJointEffort | kCauseJointRange | kCauseFootSlip |
                                   kCauseFootLoad | kCauseJointFollowing | kCauseEncoderJump | kCauseEncoderStuck |
-                                  kCauseSinking | kCauseBodyRate | kCauseImuReversed | kCauseWrongState;
+                                  kCauseSinking | kCauseBodyTurn | kCauseImuReversed | kCauseWrongState;
 
 /// All conditions but one are off, so that nothing else stops the robot.
 SafetyParameters only(const SafetyParameters& given, const Row& row, Reaction reaction) {

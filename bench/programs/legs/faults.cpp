@@ -32,7 +32,7 @@ std::string part_of(const Fault& fault) {
 bool names(const Permit& permit, const Fault& fault) {
   if (permit.causes == 0) return false;
   constexpr std::uint64_t kOfImu =
-      kCauseImuLost | kCauseImuStuck | kCauseImuJump | kCauseImuReversed | kCauseBodyRate | kCauseNotFinite;
+      kCauseImuLost | kCauseImuStuck | kCauseImuJump | kCauseImuReversed | kCauseBodyTurn | kCauseNotFinite;
   if (fault.joint == kLegsJoints) return (permit.first_cause & kOfImu) != 0;
   return (permit.first_cause & kNoNames) == 0 && permit.evidence[0].joint == fault.joint;
 }

@@ -52,9 +52,9 @@ FootConditions::FootConditions(const SafetyParameters& parameters, const LegMode
       slip_(kCauseFootSlip, parameters.foot_slip, period),
       load_(kCauseFootLoad, parameters.foot_load, period),
       sinking_(kCauseSinking, parameters.sinking, period),
-      turning_(kCauseBodyRate, parameters.body_rate, period),
+      turning_(kCauseBodyTurn, parameters.body_turn, period),
       length_(robot.leg_length()),
-      worst_(kNothingMeasured),
+      slipped_(kNothingMeasured),
       sunk_(kNothingMeasured),
       turned_(kNothingMeasured) {
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
@@ -81,7 +81,7 @@ void FootConditions::enter_run() noexcept {
   counts_ = {};
   loads_.fill(1);
   judged_ = {};
-  worst_ = sunk_ = turned_ = kNothingMeasured;
+  slipped_ = sunk_ = turned_ = kNothingMeasured;
   since_ = {};
   unbraked_ = 0;
   stood_ = false;
@@ -101,7 +101,7 @@ void FootConditions::step(const MonitorInput& input, const Eigen::Vector3d& up, 
   if (!walks) loads_.fill(1);
   waited_ += elapsed;
   const bool any = judged != Feet{};
-  if (!any) worst_ = turned_ = kNothingMeasured;
+  if (!any) slipped_ = turned_ = kNothingMeasured;
   if (!walks) sunk_ = turned_ = kNothingMeasured;
   const double time = static_cast<double>(elapsed) * period_;
   unbraked_ = input.sensors->gate.verdict == GateVerdict::kBrake ? 0 : unbraked_ + time;
@@ -111,7 +111,7 @@ void FootConditions::step(const MonitorInput& input, const Eigen::Vector3d& up, 
     waited_ = 0;
     sample(*input.sensors, asked, up, judged);
   }
-  slip_.step(worst_, elapsed);
+  slip_.step(slipped_, elapsed);
   out.add(slip_);
   const double share = weight_ / static_cast<double>(stands && asked.lifted != 0 ? kLegs - 1 : kLegs);
   load_.step(stands || walks ? lightest(*input.sensors, up, judged, share, walks) : kNothingMeasured, elapsed);
@@ -146,52 +146,41 @@ void FootConditions::sample(const SensorFrame& sensors, const LeggedCommand& ask
   } else if (stood_) {
     sunk_ = beyond(kMaxJoints, (reference_ - height) / length_, sinking_.limit());
   }
-  const bool walks = asked.phase == LegPhase::kWalking;
-  judge_slip(now, (walks ? kOfStep : 1) * slip_.limit());
-  if (walks && unbraked_ > kWindow) judge_turn(now, asked.stance);
+  compare(now, asked, up);
   samples_[next_] = now;
   next_ = (next_ + 1) % kSamplesInWindow;
   for (std::size_t leg = 0; leg < kLegs; ++leg) counts_[leg] += judged[leg] ? 1 : 0;
 }
 
-/// The oldest sample is about to be replaced by `now`.
-void FootConditions::judge_slip(const Sample& now, double limit) noexcept {
-  const Sample& before = samples_[next_];
-  std::array<double, kLegs> changes{};
-  double largest = 0;
-  for_each_pair([&](std::size_t a, std::size_t b) {
-    if (std::min(counts_[a], counts_[b]) < kSamplesInWindow) return;
-    const double change = std::abs(between(now.feet, a, b).norm() - between(before.feet, a, b).norm());
-    largest = std::max(largest, change);
-    changes[a] += change;
-    changes[b] += change;
-  });
-  const auto foot = static_cast<std::size_t>(std::ranges::max_element(changes) - changes.begin());
-  worst_ = beyond(knee_of(foot), largest / window_, limit);
-}
-
 /// A foot whose stance ends bears little, and may leave the ground early.
-void FootConditions::judge_turn(const Sample& now, const FootStances& stance) noexcept {
+void FootConditions::compare(const Sample& now, const LeggedCommand& asked, const Eigen::Vector3d& up) noexcept {
+  const bool walks = asked.phase == LegPhase::kWalking;
   const auto ago = [&](std::size_t samples) -> const Sample& {
     return samples_[(next_ + kSamplesInWindow - samples) % kSamplesInWindow];
   };
-  Eigen::Vector3d turn = ConstMap(now.turn.data());
-  double time = now.time;
-  for (std::size_t i = 1; i < kSamplesInTurn; ++i) {
-    turn += ConstMap(ago(i).turn.data());
-    time += ago(i).time;
-  }
-  const Sample& before = ago(kSamplesInTurn);
-  double largest = 0;
+  const auto turn_within = [&](std::size_t samples) {
+    Eigen::Vector3d turn = ConstMap(now.turn.data());
+    for (std::size_t i = 1; i < samples; ++i) turn += ConstMap(ago(i).turn.data());
+    return turn;
+  };
+  std::array<double, kLegs> slips{};
+  double slip = 0, turn = 0;
   for_each_pair([&](std::size_t a, std::size_t b) {
-    if (std::min(counts_[a], counts_[b]) < kSamplesInTurn || std::max(stance[a], stance[b]) > 1 - kEdge) return;
-    const Eigen::Vector3d first = between(before.feet, a, b), last = between(now.feet, a, b);
-    const Eigen::Vector3d middle = (first + last) / 2, change = last - first + turn.cross(middle);
-    const double length = middle.norm(), along = std::abs(change.dot(middle)) / length;
-    const double across = std::sqrt(std::max(0.0, change.squaredNorm() - along * along));
-    largest = std::max(largest, (across - kOfSlip * along) / length);
+    const std::size_t samples = std::min({counts_[a], counts_[b], kSamplesInWindow});
+    if (samples < kFewestSamples) return;
+    const Eigen::Vector3d first = between(ago(samples).feet, a, b), last = between(now.feet, a, b);
+    const double along = std::abs(last.norm() - first.norm());
+    slip = std::max(slip, along);
+    slips[a] += along;
+    slips[b] += along;
+    if (!walks || unbraked_ <= kWindow || std::max(asked.stance[a], asked.stance[b]) > 1 - kEdge) return;
+    const Eigen::Vector3d middle = (first + last) / 2, change = last - first + turn_within(samples).cross(middle);
+    const double rise = std::abs(change.dot(up)), yaw = std::abs(change.dot(up.cross(middle).normalized()));
+    turn = std::max(turn, (std::max(rise, kOfYaw * yaw) - kOfSlip * along) / middle.norm());
   });
-  turned_ = beyond(kMaxJoints, largest / time, turning_.limit());
+  const auto foot = static_cast<std::size_t>(std::ranges::max_element(slips) - slips.begin());
+  slipped_ = beyond(knee_of(foot), slip / window_, (walks ? kOfStep : 1) * slip_.limit());
+  turned_ = beyond(kMaxJoints, turn, turning_.limit());
 }
 
 ConditionMeasurement FootConditions::lightest(const SensorFrame& sensors, const Eigen::Vector3d& up, const Feet& judged,

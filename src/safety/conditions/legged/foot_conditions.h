@@ -2,15 +2,15 @@
 /// How the feet stand, while the command says that the robot stands or walks. Feet in the air, or on their way, are
 /// left out. While it walks, a foot is judged after kEdge of its stance, and its slip with kOfStep of the limit.
 ///
-///   foot slip  max over pairs of standing feet of |d(t) − d(t − T)| / T > limit, T = kWindow. d is the distance of two
-///              feet by the measured angles. It stays while both stand, however the body moves, and changes by the
-///              slip. Feet that slip together are not noticed. A ball that rolls changes d by less than its radius
-///              times the body's turn
-///   body rate  max over these pairs of (|n| − kOfSlip |p|) / (T |v|) > limit, while it walks, before the last kEdge of
-///              both stances, and kWindow after the driver braked. T is kSamplesInTurn samples. v is the vector from foot
-///              to foot, and c = Δv + θ × v its change within T, in which the gyro turned by θ. c is 0 over ground that
-///              rests, if the gyro is right. p is its part along v, n that across. A foot that slips, or an encoder that
-///              errs, changes the length of v, too. A foot above a hole does not
+///   foot slip  max over pairs of standing feet of |Δd| / kWindow > limit. d is the distance of two feet by the measured
+///              angles, and Δd its change within T: kWindow, or since both stand, but kFewestSamples at least. d stays
+///              while both stand, however the body moves, and changes by the slip. Feet that slip together are not
+///              noticed. A ball that rolls changes d by less than its radius times the body's turn
+///   body turn  max over these pairs of (max(|c·u|, kOfYaw |h|) − kOfSlip |Δd|) / |v| > limit, while it walks, before the
+///              last kEdge of both stances, and kWindow after the driver braked. v is the vector from foot to foot, and
+///              c = Δv + θ × v its change within T, in which the gyro turned by θ. c is 0 over ground that rests, if the
+///              gyro is right. u is the vertical. h is the part of c across v and u: the feet creep where the robot turns
+///              about u. An encoder that errs changes d, too. A foot above a hole does not
 ///   foot load  F·u / w < limit, with the measured force F of a foot, the vertical u and an equal share w of the weight
 ///   sinking    (c − c₀ − (h − h₀)) / l > limit, while it walks. h is the mean height of the body above its feet by the
 ///              measured angles, c the commanded height, l the leg length. h₀ and c₀ are those of the robot that stood
@@ -38,8 +38,9 @@ class FootConditions {
  public:
   static constexpr double kWindow = 0.1;  ///< s
   static constexpr std::size_t kSamplesInWindow = 10;
-  static constexpr std::size_t kSamplesInTurn = 3;  ///< of at least kWindow / kSamplesInWindow each
+  static constexpr std::size_t kFewestSamples = 3;  ///< of at least kWindow / kSamplesInWindow each
   static constexpr double kOfSlip = 2;              ///< docs/evidence/legs.md
+  static constexpr double kOfYaw = 0.5;             ///< docs/evidence/legs.md
   static constexpr double kEdge = 0.15;
   static constexpr double kOfStep = 0.55;  ///< docs/evidence/derivations.md
 
@@ -61,8 +62,7 @@ class FootConditions {
 
   void sample(const SensorFrame& sensors, const LeggedCommand& asked, const Eigen::Vector3d& up,
               const Feet& judged) noexcept;
-  void judge_slip(const Sample& now, double limit) noexcept;
-  void judge_turn(const Sample& now, const FootStances& stance) noexcept;
+  void compare(const Sample& now, const LeggedCommand& asked, const Eigen::Vector3d& up) noexcept;
   ConditionMeasurement lightest(const SensorFrame& sensors, const Eigen::Vector3d& up, const Feet& judged, double share,
                                 bool walks) noexcept;
 
@@ -90,8 +90,7 @@ class FootConditions {
   double unbraked_ = 0;                      ///< s since the driver braked
   bool stood_ = false;                       ///< reference_ is known
   double reference_ = 0;                     ///< m, height of the body less the commanded one, when it stood last
-  ConditionMeasurement worst_{};             ///< slip of the last sample
-  ConditionMeasurement sunk_{}, turned_{};   ///< of the last sample
+  ConditionMeasurement slipped_{}, sunk_{}, turned_{};  ///< of the last sample
 };
 
 }  // namespace robot_control
