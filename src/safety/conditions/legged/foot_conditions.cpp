@@ -170,9 +170,11 @@ void FootConditions::compare(const Sample& now, const LeggedCommand& asked, cons
     if (samples < kFewestSamples) return;
     const Eigen::Vector3d first = between(ago(samples).feet, a, b), last = between(now.feet, a, b);
     const double along = std::abs(last.norm() - first.norm());
-    slip = std::max(slip, along);
-    slips[a] += along;
-    slips[b] += along;
+    if (samples == kSamplesInWindow) {
+      slip = std::max(slip, along);
+      slips[a] += along;
+      slips[b] += along;
+    }
     if (!walks || unbraked_ <= kWindow || std::max(asked.stance[a], asked.stance[b]) > 1 - kEdge) return;
     const Eigen::Vector3d middle = (first + last) / 2, change = last - first + turn_within(samples).cross(middle);
     const double rise = std::abs(change.dot(up)), yaw = std::abs(change.dot(up.cross(middle).normalized()));

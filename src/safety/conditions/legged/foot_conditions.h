@@ -3,14 +3,15 @@
 /// left out. While it walks, a foot is judged after kEdge of its stance, and its slip with kOfStep of the limit.
 ///
 ///   foot slip  max over pairs of standing feet of |Δd| / kWindow > limit. d is the distance of two feet by the measured
-///              angles, and Δd its change within T: kWindow, or since both stand, but kFewestSamples at least. d stays
-///              while both stand, however the body moves, and changes by the slip. Feet that slip together are not
-///              noticed. A ball that rolls changes d by less than its radius times the body's turn
+///              angles, and Δd its change within kWindow. d stays while both stand, however the body moves, and changes
+///              by the slip. Feet that slip together are not noticed. A ball that rolls changes d by less than its radius
+///              times the body's turn
 ///   body turn  max over these pairs of (max(|c·u|, kOfYaw |h|) − kOfSlip |Δd|) / |v| > limit, while it walks, before the
 ///              last kEdge of both stances, and kWindow after the driver braked. v is the vector from foot to foot, and
-///              c = Δv + θ × v its change within T, in which the gyro turned by θ. c is 0 over ground that rests, if the
-///              gyro is right. u is the vertical. h is the part of c across v and u: the feet creep where the robot turns
-///              about u. An encoder that errs changes d, too. A foot above a hole does not
+///              c = Δv + θ × v its change, in which the gyro turned by θ. It is judged within kWindow, or since both
+///              stand, but kFewestSamples at least. c is 0 over ground that rests, if the gyro is right. u is the
+///              vertical. h is the part of c across v and u: the feet creep where the robot turns about u. An encoder
+///              that errs changes d, too. A foot above a hole does not
 ///   foot load  F·u / w < limit, with the measured force F of a foot, the vertical u and an equal share w of the weight
 ///   sinking    (c − c₀ − (h − h₀)) / l > limit, while it walks. h is the mean height of the body above its feet by the
 ///              measured angles, c the commanded height, l the leg length. h₀ and c₀ are those of the robot that stood
