@@ -370,6 +370,19 @@ class WalkingConditionsTest : public LeggedConditionsTest {
       if (change) change(t);
     });
   }
+
+  /// The commands demand the measured angles.
+  void follow() {
+    for (std::size_t i = 0; i < kLegsJoints; ++i) command_.joints[i].position = sensors_.joints[i].position;
+  }
+
+  /// Turns the body by `angle` rad about `axis`, above feet that stand.
+  void turn_body(const Eigen::Vector3d& axis, double angle) {
+    std::array<Eigen::Vector3d, kLegs> feet = stand_;
+    for (Eigen::Vector3d& foot : feet) foot = Eigen::AngleAxisd(-angle, axis) * foot;
+    place(feet);
+    follow();
+  }
 };
 
 TEST_F(WalkingConditionsTest, AreNoneWhileItTrots) {
@@ -390,7 +403,7 @@ TEST_F(WalkingConditionsTest, AFootThatSlipsInItsStanceLetsItLieDown) {
     const double since = std::fmod(t + 0.2, 0.4);  // since the rear right foot's stance began
     feet[3].x() -= 0.8 * robot_.leg_length() * std::min(since, 0.4 - since);
     if (t > 0.6) place(feet);
-    for (std::size_t i = 0; i < kLegsJoints; ++i) command_.joints[i].position = sensors_.joints[i].position;
+    follow();
   });
   EXPECT_LT(seen, 1.2);
   EXPECT_EQ(causes(Reaction::kRamp), "foot_slip") << causes(Reaction::kBrake);
@@ -498,7 +511,7 @@ TEST_F(WalkingConditionsTest, ABodyThatSinksBrakes) {
       std::array<Eigen::Vector3d, kLegs> feet = stand_;
       for (Eigen::Vector3d& foot : feet) foot.z() += depth;
       place(feet);
-      for (std::size_t i = 0; i < kLegsJoints; ++i) command_.joints[i].position = sensors_.joints[i].position;
+      follow();
     };
   };
   EXPECT_EQ(walk(1, sinks(0.9 * limit)), 1);
@@ -516,11 +529,7 @@ TEST_F(WalkingConditionsTest, AGyroThatContradictsTheFeetBrakes) {
   const Eigen::Vector3d axis = Eigen::Vector3d(1, 2, 3).normalized();
   const auto turns = [&](double of_gyro) {
     return [&, of_gyro](double t) {
-      const Eigen::Matrix3d back = Eigen::AngleAxisd(-0.15 * std::sin(12 * t), axis).toRotationMatrix();
-      std::array<Eigen::Vector3d, kLegs> feet = stand_;
-      for (Eigen::Vector3d& foot : feet) foot = back * foot;
-      place(feet);
-      for (std::size_t i = 0; i < kLegsJoints; ++i) command_.joints[i].position = sensors_.joints[i].position;
+      turn_body(axis, 0.15 * std::sin(12 * t));
       rate_ = of_gyro * 1.8 * std::cos(12 * t) * (mounting.inverse() * axis);
     };
   };
@@ -544,12 +553,7 @@ TEST_F(WalkingConditionsTest, AGyroThatContradictsTheFeetBrakes) {
 // Feet creep where a robot turns round. A body that tips is known from any two feet.
 TEST_F(WalkingConditionsTest, AGyroThatMissesASlowTipBrakes) {
   const auto turns = [&](const Eigen::Vector3d& axis, double rate) {
-    return [&, axis, rate](double t) {
-      std::array<Eigen::Vector3d, kLegs> feet = stand_;
-      for (Eigen::Vector3d& foot : feet) foot = Eigen::AngleAxisd(-rate * t, axis) * foot;
-      place(feet);
-      for (std::size_t i = 0; i < kLegsJoints; ++i) command_.joints[i].position = sensors_.joints[i].position;
-    };
+    return [&, axis, rate](double t) { turn_body(axis, rate * t); };
   };
   EXPECT_EQ(walk(0.5, turns(Eigen::Vector3d::UnitZ(), 0.35)), 0.5);
   EXPECT_EQ(walk(0.5, turns(Eigen::Vector3d::UnitY(), 0.15)), 0.5) << "more than any gyro's bias";
@@ -563,7 +567,7 @@ TEST_F(WalkingConditionsTest, OneWrongAngleIsNoBodyTurn) {
     const double seen = walk(0.6, [&](double t) {
       const bool now = std::lround(t * 1000) == 500 + wrong;
       for (const std::size_t hip : {0, 9}) sensors_.joints[hip].position += now ? 0.05 : 0;
-      for (std::size_t i = 0; i < kLegsJoints; ++i) command_.joints[i].position = sensors_.joints[i].position;
+      follow();
     });
     EXPECT_EQ(seen, 0.6) << wrong << causes(Reaction::kBrake);
   }

@@ -105,7 +105,6 @@ void FootConditions::step(const MonitorInput& input, const Eigen::Vector3d& up, 
   if (!walks) sunk_ = turned_ = kNothingMeasured;
   const double time = static_cast<double>(elapsed) * period_;
   unbraked_ = input.sensors->gate.verdict == GateVerdict::kBrake ? 0 : unbraked_ + time;
-  since_.time += time;
   Map(since_.turn.data()) += time * rate;
   if (any && (begins || waited_ >= interval_)) {
     waited_ = 0;

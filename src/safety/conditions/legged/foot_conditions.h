@@ -57,8 +57,7 @@ class FootConditions {
   using Feet = std::array<bool, kLegs>;
   struct Sample {
     std::array<Vector3, kLegs> feet{};  ///< m, base axes
-    double time = 0;                    ///< s since the sample before
-    Vector3 turn{};                     ///< rad, of the gyro since then
+    Vector3 turn{};                     ///< rad, of the gyro since the sample before
   };
 
   void sample(const SensorFrame& sensors, const LeggedCommand& asked, const Eigen::Vector3d& up,
