@@ -111,6 +111,18 @@ TEST(Walking, AGaitOfOnesOwnCarriesTheRobotAndIsLimitedByItsLegs) {
   EXPECT_NE(robot.command().reasons & kReasonPartIgnored, 0u);
 }
 
+/// Feet that met a tile before its time and did not bear there would let it lean by 0.13 rad.
+TEST(Walking, GoesOverTilesOf40Millimetres) {
+  Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
+  parameters.plant.scene = PROJECT_DIRECTORY "/urdf/scenes/tiles.xml";
+  QuadrupedLoop robot(legged_robot("quadbot"), parameters);
+  robot.wait(0.3);
+  robot.run(10.0, walk(0.4, 0, 0, gait(GaitName::kWalkingTrot)));
+  EXPECT_GT(robot.truth().pose_world.position[0], 2.5);
+  EXPECT_LE(robot.tilt, 0.11);
+  EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
+}
+
 /// Returns quadbot that walks with 0.5 m/s.
 QuadrupedLoop walking() {
   QuadrupedLoop robot = loop_of("quadbot");

@@ -446,6 +446,7 @@ TEST_F(WalkerLaws, AFootWhoseSwingWouldHaveBegunBeforeTheGaitStandsUntilItsNextO
 TEST_F(WalkerLaws, AFootThatMeetsTheGroundInTheSecondHalfOfItsSwingBearsFromThenOn) {
   for (const double swung : {0.3, 0.6}) {
     choose(0);
+    estimate.base.twist_base = {};
     state.swings = {0, 1, 1, 0};
     state.bears = {1, 0, 0, 1};
     state.phase = gait().duty + swung * (1 - gait().duty) - gait().phase[1];
@@ -466,6 +467,20 @@ TEST_F(WalkerLaws, AFootThatMeetsTheGroundInTheSecondHalfOfItsSwingBearsFromThen
     estimate.contacts[1].probability = 0;
     step();
     EXPECT_EQ(state.bears[1], 1u);
+  }
+}
+
+TEST_F(WalkerLaws, AFootThatMovesOverTheGroundHasNotMetIt) {
+  for (const double speed : {0.5, 0.8}) {  // 2.5 and 4 mm within the time for which it has to touch
+    choose(0);
+    estimate.base.twist_base = {.linear = {0, speed, 0}, .angular = {}};
+    state.swings = {0, 1, 1, 0};
+    state.bears = {1, 0, 0, 1};
+    state.phase = gait().duty + 0.6 * (1 - gait().duty) - gait().phase[1];
+    estimate.contacts = {};
+    estimate.contacts[1].probability = 1;
+    for (int i = 0; i < 12; ++i) step();
+    EXPECT_EQ(state.bears[1], speed < 0.6 ? 1u : 0u);
   }
 }
 
