@@ -23,7 +23,7 @@ constexpr double kEarly = 0.5;        // of the swing, from which on a foot may 
 constexpr double kTouches = 0.5;      // probability of a contact
 constexpr int kReachHalvings = 6;     // down to this part of a twist, 2⁻⁶
 constexpr double kTouchTime = 0.005;  // s, for which an early foot touches: the observed load is noisy in the air
-constexpr double kStays = 0.003;      // m, within which it stays meanwhile: a joint whose angle is wrong is a load, too
+constexpr double kMetWithin = 0.003;  // m, in which it stays meanwhile: a wrong angle of a joint looks like a load
 
 using Map = Eigen::Map<Eigen::Vector3d>;
 using ConstMap = Eigen::Map<const Eigen::Vector3d>;
@@ -212,7 +212,7 @@ bool Walker::choose_feet(State& state, const WalkInput& input, const WalkingBody
     const bool swings = state.swings[leg] != 0 ? !gait.bears(leg, state.phase)
                                                : gait.swings_since(leg, state.phase, state.lasted + period_);
     const bool touches = input.state->contacts[leg].probability >= kTouches &&
-                         (body.feet[leg] - ConstMap(state.met[leg].data())).norm() <= kStays;
+                         (body.feet[leg] - ConstMap(state.met[leg].data())).norm() <= kMetWithin;
     state.touched[leg] = touches ? state.touched[leg] + period_ : 0;
     if (!touches) state.met[leg] = plain(body.feet[leg]);
     if (!swings) {
