@@ -307,7 +307,7 @@ TEST(Walking, IsStoppedByAFaultThatIsNamedBeforeItFalls) {
   }
 }
 
-/// Its speed jumps, which looks like a load; a foot that bears is not told any angle.
+/// Its speed jumps, which looks like a load. A foot that bears has no commanded angle.
 TEST(Walking, AThighWhoseEncoderTurnsRoundInMidSwingIsNamedInThatSwing) {
   constexpr std::size_t kLeg = 3;
   QuadrupedLoop robot = with_errors("quadbot", 0);
