@@ -111,6 +111,18 @@ TEST(Walking, AGaitOfOnesOwnCarriesTheRobotAndIsLimitedByItsLegs) {
   EXPECT_NE(robot.command().reasons & kReasonPartIgnored, 0u);
 }
 
+/// Feet that met a tile before their time and did not bear there would let it lean by 0.13 rad.
+TEST(Walking, GoesOverTilesOfUpTo40Millimetres) {
+  Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
+  parameters.plant.scene = PROJECT_DIRECTORY "/urdf/scenes/tiles.xml";
+  QuadrupedLoop robot(legged_robot("quadbot"), parameters);
+  robot.wait(0.3);
+  robot.run(10.0, walk(0.4, 0, 0, gait(GaitName::kWalkingTrot)));
+  EXPECT_GT(robot.truth().pose_world.position[0], 2.5);
+  EXPECT_LE(robot.tilt, 0.11);
+  EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
+}
+
 /// Returns quadbot that walks with 0.5 m/s.
 QuadrupedLoop walking() {
   QuadrupedLoop robot = loop_of("quadbot");
@@ -293,6 +305,22 @@ TEST(Walking, IsStoppedByAFaultThatIsNamedBeforeItFalls) {
     robot.run(2.0, {});
     EXPECT_LT(robot.tilt_now(), 0.3);
   }
+}
+
+/// Its speed jumps, which looks like a load. A foot that bears has no commanded angle.
+TEST(Walking, AThighWhoseEncoderTurnsRoundInMidSwingIsNamedInThatSwing) {
+  constexpr std::size_t kLeg = 3;
+  QuadrupedLoop robot = with_errors("quadbot", 0);
+  robot.wait(0.3);
+  robot.run(4.0, walk(0.4, 0, 0));
+  const auto amid = [&] { return kGaits[1].swung(kLeg, robot.command().legged.gait_phase) > 0.6; };
+  while (amid()) robot.run(0.001, walk(0.4, 0, 0));
+  while (!amid()) robot.run(0.001, walk(0.4, 0, 0));
+  robot.loop.inject_fault("rear_right_thigh_joint_encoder", "wrong");
+  robot.run(0.08, walk(0.4, 0, 0));
+  EXPECT_EQ(names_of(kStopCauseNames, robot.permit().first_cause), "joint_following");
+  robot.run(2.0, {});
+  EXPECT_LT(robot.tilt, 0.2);
 }
 
 TEST(Walking, IsLimitedInItsSpeed) {

@@ -101,6 +101,7 @@ struct WalkerLaws : testing::Test {
       state.bore[leg] = array(feet[leg] + around(0.02));
       estimate.contacts[leg].probability = uniform(1) > 0 ? 0.5 : 0.49;
       if (state.swings[leg] != 0) estimate.contacts[leg].probability = 0;
+      state.met[leg] = array(feet[leg] + around(0.001));
       state.forces[leg] = {uniform(10), uniform(10), 40 + uniform(30)};
     }
     for (double& axis : state.ahead) axis = uniform(0.05);
@@ -252,11 +253,15 @@ TEST_F(WalkerLaws, WhatIsKeptInLevelAxesMovesAgainstTheBody) {
     const WalkingBody now = body();
     step();
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
-      const Eigen::Vector3d bore = vector(before.bore[leg]);
-      const Eigen::Vector3d turns = now.rate.z() * Eigen::Vector3d::UnitZ().cross(bore);
-      const bool stands = before.bears[leg] != 0 && estimate.contacts[leg].probability >= 0.5;
-      const Eigen::Vector3d expected = stands ? foot(leg) : bore - kMillisecond * (now.velocity + turns);
-      EXPECT_LE((vector(state.bore[leg]) - expected).norm(), kExact) << leg;
+      const auto moved = [&](const Vector3& place) -> Eigen::Vector3d {
+        const Eigen::Vector3d turns = now.rate.z() * Eigen::Vector3d::UnitZ().cross(vector(place));
+        return vector(place) - kMillisecond * (now.velocity + turns);
+      };
+      const bool touches = estimate.contacts[leg].probability >= 0.5, stands = before.bears[leg] != 0 && touches;
+      const Eigen::Vector3d bore = stands ? foot(leg) : moved(before.bore[leg]);
+      const Eigen::Vector3d met = touches ? moved(before.met[leg]) : foot(leg);
+      EXPECT_LE((vector(state.bore[leg]) - bore).norm(), kExact) << leg;
+      EXPECT_LE((vector(state.met[leg]) - met).norm(), kExact) << leg;
     }
     const double part = kMillisecond / (gait().period / 2);
     const std::array<double, 3> moves{now.velocity.x(), now.velocity.y(), now.rate.z()};
@@ -275,7 +280,7 @@ TEST_F(WalkerLaws, TheTargetStaysNearTheRobot) {
   const double farthest = kTargetAway * robot.leg_length() / kReferenceLeg;
   for (const double sense : {1.0, -1.0}) {
     choose(0);
-    estimate.base.twist_base = {};
+    estimate.base.twist_base = {};  // each foot stays where it is
     input.twist = {5 * sense, -5 * sense, 5 * sense};
     for (int i = 0; i < 300; ++i) step();
     EXPECT_EQ(state.ahead, (std::array<double, 3>{farthest * sense, -farthest * sense, 0.3 * sense}));
@@ -446,6 +451,7 @@ TEST_F(WalkerLaws, AFootWhoseSwingWouldHaveBegunBeforeTheGaitStandsUntilItsNextO
 TEST_F(WalkerLaws, AFootThatMeetsTheGroundInTheSecondHalfOfItsSwingBearsFromThenOn) {
   for (const double swung : {0.3, 0.6}) {
     choose(0);
+    estimate.base.twist_base = {};
     state.swings = {0, 1, 1, 0};
     state.bears = {1, 0, 0, 1};
     state.phase = gait().duty + swung * (1 - gait().duty) - gait().phase[1];
@@ -466,6 +472,20 @@ TEST_F(WalkerLaws, AFootThatMeetsTheGroundInTheSecondHalfOfItsSwingBearsFromThen
     estimate.contacts[1].probability = 0;
     step();
     EXPECT_EQ(state.bears[1], 1u);
+  }
+}
+
+TEST_F(WalkerLaws, AFootThatMovesOverTheGroundHasNotMetIt) {
+  for (const double speed : {0.5, 0.8}) {  // 2.5 and 4 mm within the time for which it has to touch
+    choose(0);
+    estimate.base.twist_base = {.linear = {0, speed, 0}, .angular = {}};
+    state.swings = {0, 1, 1, 0};
+    state.bears = {1, 0, 0, 1};
+    state.phase = gait().duty + 0.6 * (1 - gait().duty) - gait().phase[1];
+    estimate.contacts = {};
+    estimate.contacts[1].probability = 1;
+    for (int i = 0; i < 12; ++i) step();
+    EXPECT_EQ(state.bears[1], speed < 0.6 ? 1u : 0u);
   }
 }
 

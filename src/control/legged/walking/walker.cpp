@@ -23,6 +23,7 @@ constexpr double kEarly = 0.5;        // of the swing, from which on a foot may 
 constexpr double kTouches = 0.5;      // probability of a contact
 constexpr int kReachHalvings = 6;     // down to this part of a twist, 2⁻⁶
 constexpr double kTouchTime = 0.005;  // s, for which an early foot touches: the observed load is noisy in the air
+constexpr double kMetWithin = 0.003;  // m, in which it stays meanwhile: a wrong angle of a joint looks like a load
 
 using Map = Eigen::Map<Eigen::Vector3d>;
 using ConstMap = Eigen::Map<const Eigen::Vector3d>;
@@ -135,8 +136,9 @@ bool Walker::step(State& state, const WalkInput& input, CommandFrame& out) noexc
 void Walker::move(State& state, const WalkInput& input, const WalkingBody& body) const noexcept {
   const Eigen::Vector3d turning(0, 0, body.rate.z());
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    Map bore(state.bore[leg].data());
+    Map bore(state.bore[leg].data()), met(state.met[leg].data());
     bore -= period_ * (body.velocity + turning.cross(bore));
+    met -= period_ * (body.velocity + turning.cross(met));
     if (state.bears[leg] != 0 && input.state->contacts[leg].probability >= kTouches) bore = body.feet[leg];
   }
   const double farthest = kFarthest * length_ / kReferenceLeg;
@@ -209,7 +211,10 @@ bool Walker::choose_feet(State& state, const WalkInput& input, const WalkingBody
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const bool swings = state.swings[leg] != 0 ? !gait.bears(leg, state.phase)
                                                : gait.swings_since(leg, state.phase, state.lasted + period_);
-    state.touched[leg] = input.state->contacts[leg].probability >= kTouches ? state.touched[leg] + period_ : 0;
+    const bool touches = input.state->contacts[leg].probability >= kTouches &&
+                         (body.feet[leg] - ConstMap(state.met[leg].data())).norm() <= kMetWithin;
+    state.touched[leg] = touches ? state.touched[leg] + period_ : 0;
+    if (!touches) state.met[leg] = plain(body.feet[leg]);
     if (!swings) {
       state.bears[leg] = 1;
     } else if (state.swings[leg] == 0) {

@@ -7,8 +7,8 @@
 ///             period of this one: until then, its feet stand where the last gait put them. A foot that then swings
 ///             begins its swing where it is. One whose swing would have begun before the gait stands until its next
 ///             one. A walk ends in a cycle in which no foot is far from where it left the ground
-///   contact   a foot that meets the ground in the second half of its swing bears from then on. A foot that is late is
-///             pushed down by the force that it is to bear
+///   contact   a foot that touches the ground in the second half of its swing, for kTouchTime within kMetWithin, bears
+///             from then on. A foot that is late is pushed down by the force that it is to bear
 ///   ground    is the plane through the places where the feet bore last. So a foot lands where the others stand, whatever
 ///             the error of the estimated tilt
 ///   target    moves from where the robot was, with the twist, its velocity through a low pass of half a period: a body
@@ -78,7 +78,8 @@ class Walker {
     double lasted = 0;                          ///< s since this gait began
     std::array<std::uint64_t, kLegs> bears{};   ///< 1: its force is planned
     std::array<std::uint64_t, kLegs> swings{};  ///< 1: by the clock
-    std::array<double, kLegs> touched{};        ///< s for which a contact is probable
+    std::array<double, kLegs> touched{};        ///< s for which a contact is probable and it stays at `met`
+    std::array<Vector3, kLegs> met{};           ///< m, level axes: where that began
     std::array<Vector3, kLegs> bore{};          ///< m, level axes: where it bore last
     std::array<Vector3, kLegs> forces{};        ///< N, level axes
     WalkingTwist follows{};                     ///< the twist with which the target moves
