@@ -9,7 +9,8 @@ robots do for seconds.
                s/a the robot stands, a what brakes reach on the ground of the scene.
     speed      s stays below SPEED_FACTOR times the fastest that the controller may ask for, plus SPEED_MARGIN.
     rest       At the end of the rest the robot stands.
-    release    After the release it stands on, and after each reset that was accepted until a command comes.
+    release    After the release it stands on, and after each reset that was accepted until a command comes. A robot on
+               legs may lie down by its brake meanwhile.
     tilt       It never leans by TILT_LIMIT, nor among walls and bumps, which lift it, by HIT_TILT_LIMIT.
     machine    The simulation does not diverge.
 
@@ -143,6 +144,9 @@ class _Court:
         self._jolted = failing(log, "motor", *jolts)
         freed = np.diff(failing_each(log, "motor", "stuck").astype(int), prepend=0) < 0
         self._freed = freed.any(axis=0) & (sequence.wheel_command == "velocity")
+        self._folding = np.zeros_like(self._standing)
+        for first, end in blocks(log["gate_verdict"] == BRAKE) if self._on_legs else ():
+            self._folding[first : min(end, first + round(FOLD_TIME / period))] = True
         self._late = failing(log, "motor", "slow", "delayed")
         self._monitor_errs = failing(log, "monitor", "garbage", "wrong")
         self._new_run = np.concatenate([[True], np.diff(log["run"]) != 0])
@@ -237,7 +241,7 @@ class _Court:
             end = reset + int(commands[0]) if commands.size else len(asked)
             first = reset + round(MEAN_TIME / self._period)  # from here on the mean contains no earlier values
             excused = self._unbraked | self._monitor_errs | self._new_run | self._freed
-            moving = ~self._standing[reset:end] & ~np.logical_or.accumulate(excused[reset:end])
+            moving = ~(self._standing | self._folding)[reset:end] & ~np.logical_or.accumulate(excused[reset:end])
             for row in range(first, end):
                 if not moving[row - reset]:
                     continue

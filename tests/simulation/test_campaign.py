@@ -141,6 +141,18 @@ def test_a_start_without_a_command_after_a_reset_is_noticed(sequence, log):
     assert rules_broken(sequence, log) == {"release"}
 
 
+def test_a_robot_on_legs_may_lie_down_by_its_brake_after_a_reset_and_then_rests(sequence, log):
+    legs = dataclasses.replace(sequence, gait="trot")
+    brakes = DRIVEN + 1.0
+    log["supervisor_state"][round(brakes / PERIOD)] = STOPPED
+    log["truth_linear"][rows(brakes + 0.1, brakes + 0.8)] = 0.3
+    assert rules_broken(legs, log) == set()
+    assert "release" in rules_broken(sequence, log)
+    log["gate_verdict"][rows(brakes + 1.0, sequence.rested)] = PASSED
+    log["truth_linear"][rows(brakes + 1.2, brakes + 1.6)] = 0.1
+    assert rules_broken(legs, log) == {"release"}
+
+
 @pytest.mark.parametrize(("scene", "limit"), [("flat", 10), ("walls", 30)])
 def test_a_lean_is_noticed(sequence, log, scene, limit):
     sequence = dataclasses.replace(sequence, scene=scene)
