@@ -145,7 +145,7 @@ class _Court:
         freed = np.diff(failing_each(log, "motor", "stuck").astype(int), prepend=0) < 0
         self._freed = freed.any(axis=0) & (sequence.wheel_command == "velocity")
         self._folding = np.zeros_like(self._standing)
-        for first, end in blocks(log["gate_verdict"] == BRAKE) if self._on_legs else ():
+        for first, end in blocks((log["gate_verdict"] == BRAKE) & self._on_legs):
             self._folding[first : min(end, first + round(FOLD_TIME / period))] = True
         self._late = failing(log, "motor", "slow", "delayed")
         self._monitor_errs = failing(log, "monitor", "garbage", "wrong")

@@ -310,10 +310,10 @@ TEST(Walking, IsStoppedByAFaultThatIsNamedBeforeItFalls) {
 /// Its speed jumps, which looks like a load. A foot that bears has no commanded angle.
 TEST(Walking, AThighWhoseEncoderTurnsRoundInMidSwingIsNamedInThatSwing) {
   constexpr std::size_t kLeg = 3;
+  const Gait& trot = kGaits[static_cast<std::size_t>(GaitName::kTrot)];
   QuadrupedLoop robot = with_errors("quadbot", 0);
-  robot.wait(0.3);
   robot.run(4.0, walk(0.4, 0, 0));
-  const auto amid = [&] { return kGaits[1].swung(kLeg, robot.command().legged.gait_phase) > 0.6; };
+  const auto amid = [&] { return trot.swung(kLeg, robot.command().legged.gait_phase) > 0.6; };
   while (amid()) robot.run(0.001, walk(0.4, 0, 0));
   while (!amid()) robot.run(0.001, walk(0.4, 0, 0));
   robot.loop.inject_fault("rear_right_thigh_joint_encoder", "wrong");

@@ -115,6 +115,15 @@ struct WalkerLaws : testing::Test {
     before = state;
   }
 
+  /// Legs 1 and 2 have done this part of their swing, without a contact.
+  void choose_swing(double part) {
+    choose(0);
+    state.swings = {0, 1, 1, 0};
+    state.bears = {1, 0, 0, 1};
+    state.phase = gait().duty + part * (1 - gait().duty) - gait().phase[1];
+    estimate.contacts = {};
+  }
+
   bool step() {
     out = {};
     before = state;
@@ -280,7 +289,7 @@ TEST_F(WalkerLaws, TheTargetStaysNearTheRobot) {
   const double farthest = kTargetAway * robot.leg_length() / kReferenceLeg;
   for (const double sense : {1.0, -1.0}) {
     choose(0);
-    estimate.base.twist_base = {};  // each foot stays where it is
+    estimate.base.twist_base = {};
     input.twist = {5 * sense, -5 * sense, 5 * sense};
     for (int i = 0; i < 300; ++i) step();
     EXPECT_EQ(state.ahead, (std::array<double, 3>{farthest * sense, -farthest * sense, 0.3 * sense}));
@@ -450,12 +459,8 @@ TEST_F(WalkerLaws, AFootWhoseSwingWouldHaveBegunBeforeTheGaitStandsUntilItsNextO
 
 TEST_F(WalkerLaws, AFootThatMeetsTheGroundInTheSecondHalfOfItsSwingBearsFromThenOn) {
   for (const double swung : {0.3, 0.6}) {
-    choose(0);
-    estimate.base.twist_base = {};
-    state.swings = {0, 1, 1, 0};
-    state.bears = {1, 0, 0, 1};
-    state.phase = gait().duty + swung * (1 - gait().duty) - gait().phase[1];
-    estimate.contacts = {};
+    choose_swing(swung);
+    estimate.base.twist_base = {};  // each foot stays where it is
     estimate.contacts[1].probability = 0.5;
     for (int i = 0; i < 3; ++i) step();
     estimate.contacts[1].probability = 0.49;  // a load as noisy as this is no contact
@@ -477,12 +482,8 @@ TEST_F(WalkerLaws, AFootThatMeetsTheGroundInTheSecondHalfOfItsSwingBearsFromThen
 
 TEST_F(WalkerLaws, AFootThatMovesOverTheGroundHasNotMetIt) {
   for (const double speed : {0.5, 0.8}) {  // 2.5 and 4 mm within the time for which it has to touch
-    choose(0);
+    choose_swing(0.6);
     estimate.base.twist_base = {.linear = {0, speed, 0}, .angular = {}};
-    state.swings = {0, 1, 1, 0};
-    state.bears = {1, 0, 0, 1};
-    state.phase = gait().duty + 0.6 * (1 - gait().duty) - gait().phase[1];
-    estimate.contacts = {};
     estimate.contacts[1].probability = 1;
     for (int i = 0; i < 12; ++i) step();
     EXPECT_EQ(state.bears[1], speed < 0.6 ? 1u : 0u);

@@ -136,10 +136,12 @@ bool Walker::step(State& state, const WalkInput& input, CommandFrame& out) noexc
 void Walker::move(State& state, const WalkInput& input, const WalkingBody& body) const noexcept {
   const Eigen::Vector3d turning(0, 0, body.rate.z());
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    Map bore(state.bore[leg].data()), met(state.met[leg].data());
-    bore -= period_ * (body.velocity + turning.cross(bore));
-    met -= period_ * (body.velocity + turning.cross(met));
-    if (state.bears[leg] != 0 && input.state->contacts[leg].probability >= kTouches) bore = body.feet[leg];
+    for (Vector3* kept : {&state.bore[leg], &state.met[leg]}) {
+      Map place(kept->data());
+      place -= period_ * (body.velocity + turning.cross(place));
+    }
+    const bool stands = state.bears[leg] != 0 && input.state->contacts[leg].probability >= kTouches;
+    if (stands) state.bore[leg] = plain(body.feet[leg]);
   }
   const double farthest = kFarthest * length_ / kReferenceLeg;
   std::array<double, 3>& ahead = state.ahead;
