@@ -276,7 +276,7 @@ TEST_F(LeggedConditionsTest, AnEncoderThatRepeatsOneAngleWhileItsCommandMovesBra
   }
 }
 
-TEST_F(LeggedConditionsTest, AFootThatSlipsLetsItLieDown) {
+TEST_F(LeggedConditionsTest, AFootThatSlipsBrakes) {
   const auto slide = [&](std::size_t foot, double speed) {
     return [this, foot, speed](double t) {
       std::array<Eigen::Vector3d, kLegs> feet = stand_;
@@ -307,7 +307,7 @@ TEST_F(LeggedConditionsTest, AFootThatSlipsLetsItLieDown) {
   run(0.3);
   // The window of 0.1 s has its mean beyond the limit after 0.1/1.5 s, in steps of 10 ms, then 0.05 s of persistence.
   EXPECT_NEAR(run(0.3, slide(3, 1.5 * limit)), 0.12, 0.012);
-  EXPECT_EQ(causes(Reaction::kRamp), "foot_slip");
+  EXPECT_EQ(causes(Reaction::kBrake), "foot_slip");
   // It leaves the foot beside it, along the line of both.
   EXPECT_NEAR(active_.measurements()[0].value, 1.5 * limit, 1e-3 * limit);
 }
@@ -397,7 +397,7 @@ TEST_F(WalkingConditionsTest, AreNoneWhileEachFootLeavesTheGroundALittleEarly) {
   EXPECT_EQ(seen, 2) << causes(Reaction::kWarn);
 }
 
-TEST_F(WalkingConditionsTest, AFootThatSlipsInItsStanceLetsItLieDown) {
+TEST_F(WalkingConditionsTest, AFootThatSlipsInItsStanceBrakes) {
   const double seen = walk(2, [&](double t) {
     std::array<Eigen::Vector3d, kLegs> feet = stand_;
     const double since = std::fmod(t + 0.2, 0.4);  // since the rear right foot's stance began
@@ -406,7 +406,7 @@ TEST_F(WalkingConditionsTest, AFootThatSlipsInItsStanceLetsItLieDown) {
     follow();
   });
   EXPECT_LT(seen, 1.2);
-  EXPECT_EQ(causes(Reaction::kRamp), "foot_slip") << causes(Reaction::kBrake);
+  EXPECT_EQ(causes(Reaction::kBrake), "foot_slip");
 }
 
 TEST_F(WalkingConditionsTest, AFootThatBearsInNoneOfItsStepsIsAWarning) {
