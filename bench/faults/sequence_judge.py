@@ -28,7 +28,8 @@ to standstill from there, and "release" does not judge what follows. The gain of
 A robot on legs lies down by its brake. A body that falls gains speed, so its way is judged in place of s: FOLD_WAY at
 most. It rests after FOLD_TIME. Instead of TILT_LIMIT, it must not turn over, OVER_LIMIT. Its brake follows encoders:
 random angles are a random torque. With a motor that is off or reversed it rests, too, because the stop ends with the
-brakes of the drives (gate/stop_action.h). While it stands, its motors hold it: on an intermittent one it sways.
+brakes of the drives (gate/stop_action.h). While it stands, its motors hold it: on an intermittent one it sways
+by up to SWAY_SPEED.
 """
 
 from __future__ import annotations
@@ -53,6 +54,7 @@ STOPPED_STATES = [number_of("SupervisorState", name) for name in ("STOPPED", "FA
 RULES = ("permit", "brake", "speed", "rest", "release", "tilt", "machine")
 
 STANDING_SPEED = 0.01  # m/s
+SWAY_SPEED = 0.1  # m/s
 MEAN_TIME = 0.3  # s
 ROCKING = 0.005  # rad, change of tilt within MEAN_TIME
 LATE_DRIVE = 0.02  # s, for 10 cycles of 1 ms and the reaction
@@ -140,8 +142,8 @@ class _Court:
         self._unbraked = failing(log, "motor", "garbage", *([] if self._on_legs else ["off", "intermittent"]))
         if self._on_legs:
             self._unbraked |= failing(log, "encoder", "garbage")
-        stands = self._on_legs & (log["gate_verdict"] != BRAKE)
-        self._unheld = self._unbraked | (failing(log, "motor", "intermittent") & stands)
+            sways = failing(log, "motor", "intermittent") & (log["gate_verdict"] != BRAKE)
+            self._standing |= sways & (linear + angular * wheel_base / 2 <= SWAY_SPEED)
         jolts = ("stuck", "wrong", "garbage")
         self._jolted = failing(log, "motor", *jolts)
         freed = np.diff(failing_each(log, "motor", "stuck").astype(int), prepend=0) < 0
@@ -226,7 +228,7 @@ class _Court:
         """The robot stands in the last tenth of a second of the rest."""
         last = round(self._sequence.rested / self._period)
         first = last - round(0.1 / self._period)
-        if (self._unheld | self._monitor_errs)[first:last].any():
+        if (self._unbraked | self._monitor_errs)[first:last].any():
             return
         for row in range(first, last):
             if not self._standing[row]:
@@ -242,7 +244,7 @@ class _Court:
             commands = np.flatnonzero(asked[reset:])
             end = reset + int(commands[0]) if commands.size else len(asked)
             first = reset + round(MEAN_TIME / self._period)  # from here on the mean contains no earlier values
-            excused = self._unheld | self._monitor_errs | self._new_run | self._freed
+            excused = self._unbraked | self._monitor_errs | self._new_run | self._freed
             moving = ~(self._standing | self._folding)[reset:end] & ~np.logical_or.accumulate(excused[reset:end])
             for row in range(first, end):
                 if not moving[row - reset]:

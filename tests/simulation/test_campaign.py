@@ -162,6 +162,9 @@ def test_a_robot_on_legs_may_sway_on_an_intermittent_motor_while_it_stands_and_r
     assert rules_broken(legs, log) == set()
     log["gate_verdict"][last] = BRAKE
     assert "rest" in rules_broken(legs, log)
+    log["truth_linear"][last] = 0.15
+    log["gate_verdict"][last] = PASSED
+    assert "rest" in rules_broken(legs, log)
 
 
 @pytest.mark.parametrize(("scene", "limit"), [("flat", 10), ("walls", 30)])
