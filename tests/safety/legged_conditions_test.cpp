@@ -504,8 +504,8 @@ class SwingingMotorTest : public WalkingConditionsTest {
   SwingingMotorTest() { motors_obey_ = false; }
 
   /// Returns as `walk`. The motor gives `part` of what the command of `late` cycles before demands. The encoder reports
-  /// every `interval` cycles.
-  double swing(double part, std::size_t late, std::uint64_t interval = 1) {
+  /// every `interval` cycles. The command at `infinite` s is not finite.
+  double swing(double part, std::size_t late, std::uint64_t interval = 1, double infinite = -1) {
     conditions_.enter_run();
     std::deque<JointCommand> commands(late + 1, JointCommand{});
     double last = sensors_.joints[8].position;
@@ -528,12 +528,13 @@ class SwingingMotorTest : public WalkingConditionsTest {
       joint.effort = part * demand;
       commands.pop_front();
       commands.push_back(command);
+      if (std::abs(t - infinite) < 5e-4) command.effort = std::numeric_limits<double>::quiet_NaN();
     });
   }
 };
 
 TEST_F(SwingingMotorTest, MayBeWeakOrLateOrHaveALateEncoder) {
-  EXPECT_EQ(swing(0.6, 0), 1) << causes(Reaction::kBrake);
+  EXPECT_EQ(swing(0.55, 0), 1) << causes(Reaction::kBrake);
   for (const std::size_t late : {0, 5, 10}) EXPECT_EQ(swing(1, late), 1) << late << causes(Reaction::kBrake);
   EXPECT_EQ(swing(1, 0, 10), 1) << causes(Reaction::kBrake);
 }
@@ -547,6 +548,7 @@ TEST_F(SwingingMotorTest, BrakesInItsFirstSwingsIfItsTorqueIsAnother) {
   expect_stop(swing(0, 0), 0.23);
   expect_stop(swing(-1, 0), 0.23);
   expect_stop(swing(1, 40), 0.3);
+  expect_stop(swing(0, 0, 1, 0.1), 0.23);
 }
 
 TEST_F(SwingingMotorTest, IsNotJudgedWhileTheDriverBrakesOrTheGateClamps) {

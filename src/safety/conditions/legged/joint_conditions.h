@@ -142,7 +142,7 @@ class JointConditions {
     const JointSample& joint = input.sensors->joints[i];
     const GateReport& gate = input.sensors->gate;
     if (!walks_by(input.command, i) || gate.verdict == GateVerdict::kBrake || elapsed > 1 ||
-        (gate.reasons & kOtherLaw) != 0 || !has(joint, kValidMotion) ||
+        (gate.reasons & kOtherLaw) != 0 || !finite(input.command->joints[i]) || !has(joint, kValidMotion) ||
         !std::isfinite(joint.position + joint.velocity + joint.effort)) {
       torque.forget();
       return kNothingMeasured;

@@ -23,12 +23,13 @@ namespace robot_control {
 class MotorTorque {
  public:
   static constexpr std::array<std::size_t, 3> kLate{0, 5, 10};  ///< cycles: a late motor is none that fails
-  static constexpr double kOfDemand = 0.5;                      ///< nor is a weak one
-  static constexpr double kOfEffort = 0.04;                     ///< docs/evidence/derivations.md
-  static constexpr double kMean = 0.01;                         ///< s
-  static constexpr double kTime = 0.06;                         ///< s
+  static constexpr std::size_t kCommands = kLate.back() + 1;
+  static constexpr double kOfDemand = 0.5;   ///< nor is a weak one
+  static constexpr double kOfEffort = 0.04;  ///< docs/evidence/derivations.md
+  static constexpr double kMean = 0.01;      ///< s
+  static constexpr double kTime = 0.06;      ///< s
 
-  /// Commands before this cycle are not in force any more. It is not judged until kLate is known again.
+  /// Commands before this cycle are not in force any more. It is not judged until kCommands are known again.
   void forget() noexcept { known_ = 0; }
 
   void reset() noexcept {
@@ -66,8 +67,6 @@ class MotorTorque {
   double wrong() const noexcept { return wrong_; }
 
  private:
-  static constexpr std::size_t kCommands = kLate.back() + 1;
-
   double demanded(std::size_t ago, const JointSample& joint) const noexcept {
     const JointCommand& law = commands_[(next_ + kCommands - 1 - ago) % kCommands];
     return law.effort + law.stiffness * (law.position - joint.position) + law.damping * (law.velocity - joint.velocity);
