@@ -1,10 +1,10 @@
 #pragma once
 /// A MotorTorque tells how often a motor gives another torque than its commands demand.
 ///
-/// A torque is wrong if it is outside of the range of the torques that the commands of kLate cycles ago demand at the
-/// measured angle and speed, by more than kOfDemand of that range's end and kOfEffort of the effort limit. All of these
-/// torques are means over kMean, because measured speeds come in steps. The result w is the part of the last cycles
-/// in which the torque was wrong:
+/// The commands of kLate cycles ago demand torques at the measured angle and speed, which span a range. Another torque
+/// is wrong, by more than kOfDemand of that range's end and kOfEffort of the effort limit. All of these torques are means
+/// over kMean, because measured speeds come in steps. The result w is the part of the last cycles in which the torque
+/// was wrong:
 ///
 ///   w += T/kTime (1 − w), or T/kTime (0 − w)      T: period
 ///
