@@ -28,7 +28,8 @@ to standstill from there, and "release" does not judge what follows. The gain of
 A robot on legs lies down by its brake. A body that falls gains speed, so its way is judged in place of s: FOLD_WAY at
 most. It rests after FOLD_TIME. Instead of TILT_LIMIT, it must not turn over, OVER_LIMIT. Its brake follows encoders:
 random angles are a random torque. With a motor that is off or reversed it rests, too, because the stop ends with the
-brakes of the drives (gate/stop_action.h).
+brakes of the drives (gate/stop_action.h). While it stands, its motors hold it: on an intermittent one it sways
+by up to SWAY_SPEED.
 """
 
 from __future__ import annotations
@@ -53,6 +54,7 @@ STOPPED_STATES = [number_of("SupervisorState", name) for name in ("STOPPED", "FA
 RULES = ("permit", "brake", "speed", "rest", "release", "tilt", "machine")
 
 STANDING_SPEED = 0.01  # m/s
+SWAY_SPEED = 0.1  # m/s
 MEAN_TIME = 0.3  # s
 ROCKING = 0.005  # rad, change of tilt within MEAN_TIME
 LATE_DRIVE = 0.02  # s, for 10 cycles of 1 ms and the reaction
@@ -140,6 +142,8 @@ class _Court:
         self._unbraked = failing(log, "motor", "garbage", *([] if self._on_legs else ["off", "intermittent"]))
         if self._on_legs:
             self._unbraked |= failing(log, "encoder", "garbage")
+            sways = failing(log, "motor", "intermittent") & (log["gate_verdict"] != BRAKE)
+            self._standing |= sways & (linear + angular * wheel_base / 2 <= SWAY_SPEED)
         jolts = ("stuck", "wrong", "garbage")
         self._jolted = failing(log, "motor", *jolts)
         freed = np.diff(failing_each(log, "motor", "stuck").astype(int), prepend=0) < 0

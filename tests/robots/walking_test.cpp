@@ -307,6 +307,20 @@ TEST(Walking, IsStoppedByAFaultThatIsNamedBeforeItFalls) {
   }
 }
 
+/// A walk that goes on until it ends, or a robot that lies down as usual, needs feet that hold.
+TEST(Walking, IsStoppedUprightWhereItsFeetSlip) {
+  for (const std::uint64_t seed : {0, 1}) {
+    Parameters parameters = QuadrupedLoop::parameters(seed, ErrorLevel::kDataSheet);
+    parameters.plant.ground_friction = 0.1;
+    QuadrupedLoop robot(legged_robot("quadbot"), parameters);
+    robot.wait(0.3);
+    robot.run(8.0, walk(0.2, 0, 0, gait(GaitName::kCrawl)));
+    EXPECT_EQ(names_of(kStopCauseNames, robot.permit().first_cause), "foot_slip");
+    EXPECT_LT(robot.tilt, 0.25);
+    EXPECT_LT(robot.tilt_now(), 0.05);
+  }
+}
+
 /// Its speed jumps, which looks like a load. A foot that bears has no commanded angle.
 TEST(Walking, AThighWhoseEncoderTurnsRoundInMidSwingIsNamedInThatSwing) {
   constexpr std::size_t kLeg = 3;

@@ -153,6 +153,20 @@ def test_a_robot_on_legs_may_lie_down_by_its_brake_after_a_reset_and_then_rests(
     assert rules_broken(legs, log) == {"release"}
 
 
+def test_a_robot_on_legs_may_sway_on_an_intermittent_motor_while_it_stands_and_rests_under_its_brake(sequence, log):
+    legs = dataclasses.replace(sequence, gait="trot")
+    log["rear_right_knee_injected_motor"] = np.full_like(log["injected"], number_of("FaultKind", "intermittent"))
+    last = rows(sequence.rested - 0.4, sequence.rested)
+    log["truth_linear"][last] = 0.05
+    log["gate_verdict"][last] = PASSED
+    assert rules_broken(legs, log) == set()
+    log["gate_verdict"][last] = BRAKE
+    assert "rest" in rules_broken(legs, log)
+    log["truth_linear"][last] = 0.15
+    log["gate_verdict"][last] = PASSED
+    assert "rest" in rules_broken(legs, log)
+
+
 @pytest.mark.parametrize(("scene", "limit"), [("flat", 10), ("walls", 30)])
 def test_a_lean_is_noticed(sequence, log, scene, limit):
     sequence = dataclasses.replace(sequence, scene=scene)

@@ -1,6 +1,6 @@
 #pragma once
-/// These functions tell whether a leg's foot is commanded to swing or to bear. A walk gives stiffness to the joints of
-/// feet in the air alone. Feet that bear are commanded by torques.
+/// What a command says of the feet of a robot that walks. A walk gives stiffness to the joints of feet in the air
+/// alone. Feet that bear are commanded by torques.
 
 #include <cstddef>
 
@@ -17,11 +17,6 @@ inline bool walks_by(const CommandFrame* command, std::size_t joint) noexcept {
 /// Returns whether the joint's foot is in the air.
 inline bool commanded_to_swing(const CommandFrame* command, std::size_t joint) noexcept {
   return walks_by(command, joint) && command->joints[joint].stiffness > 0;
-}
-
-/// Returns whether the joint's foot bears.
-inline bool commanded_to_bear(const CommandFrame* command, std::size_t joint) noexcept {
-  return walks_by(command, joint) && command->joints[joint].stiffness == 0;
 }
 
 }  // namespace robot_control

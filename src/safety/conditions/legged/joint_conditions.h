@@ -7,10 +7,10 @@
 ///                 While it stands up, lies down or swings the leg, kFarTimes the limit counts. From there on n times
 ///                 the limit counts n cycles: full torque throws a robot over within 0.1 s.
 ///                 While it walks, the joints of feet in the air are judged: their mean over kMeanTime > kOfSwing limit.
-///                 This mean stays while the foot bears. The motors of feet that bear are judged by their torques:
-///                 |τ − τ*| > kOfAsked |τ*| + kOfEffort L in more than kOfTorques of the last cycles, a mean over
-///                 kTorqueTime, counts as an angle beyond the limit. τ* is the torque of the command before, L the
-///                 effort limit. This mean stays while the foot is in the air.
+///                 This mean stays while the foot bears.
+///                 A motor of a robot that walks whose torque is wrong (motor_torque.h) in more than kOfTorques of the last
+///                 cycles counts as an angle beyond the limit. Cycles are not judged in which the driver brakes, or
+///                 the gate clamps a command by more than the effort limit
 ///                 An angle that moves against its command by more than kAgainst within a swing, less what it moves
 ///                 with it, counts as one beyond the limit: an encoder that counts backwards, or a motor with reversed
 ///                 wires. Both are compared over kStride cycles: a noisy gyro moves the command in each
@@ -24,11 +24,11 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <utility>
 
 #include "machine/legs/leg_model.h"
 #include "safety/conditions/common/condition_watch.h"
 #include "safety/conditions/legged/commanded_foot.h"
+#include "safety/conditions/legged/motor_torque.h"
 #include "safety/latch/active_causes.h"
 #include "safety/monitor_input.h"
 #include "safety/safety_parameters.h"
@@ -37,12 +37,9 @@ namespace robot_control {
 
 class JointConditions {
  public:
-  static constexpr double kMeanTime = 0.2;     ///< s
-  static constexpr double kOfSwing = 0.45;     ///< docs/evidence/derivations.md
-  static constexpr double kTorqueTime = 0.06;  ///< s
-  static constexpr double kOfTorques = 0.3;    ///< docs/evidence/derivations.md
-  static constexpr double kOfAsked = 0.5;      ///< a weak or late motor is none that fails
-  static constexpr double kOfEffort = 0.04;
+  static constexpr double kMeanTime = 0.2;      ///< s
+  static constexpr double kOfSwing = 0.45;      ///< docs/evidence/derivations.md
+  static constexpr double kOfTorques = 0.2;     ///< docs/evidence/derivations.md
   static constexpr double kAgainst = 0.2;       ///< rad (docs/evidence/derivations.md)
   static constexpr std::uint64_t kStride = 10;  ///< cycles
 
@@ -72,7 +69,10 @@ class JointConditions {
   void step(const MonitorInput& input, std::uint64_t elapsed, ActiveCauses& out) noexcept {
     const SensorFrame& sensors = *input.sensors;
     const LegPhase phase = input.command != nullptr ? input.command->legged.phase : LegPhase::kLying;
-    if (phase != LegPhase::kWalking) behind_ = {}, torques_ = {}, ways_ = {};
+    if (phase != LegPhase::kWalking) {
+      behind_ = {}, ways_ = {};
+      for (MotorTorque& torque : torques_) torque.reset();
+    }
     ConditionMeasurement speed = kNothingMeasured, effort = kNothingMeasured, range = kNothingMeasured,
                          following = kNothingMeasured, at_once = kNothingMeasured;
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
@@ -87,7 +87,7 @@ class JointConditions {
         following = worse(following, follows(i, phase, input.command, joint.position, elapsed));
         at_once = worse(at_once, opposes(i, input.command, joint.position, elapsed));
       }
-      at_once = worse(at_once, gives(i, input.command, joint, elapsed));
+      at_once = worse(at_once, gives(i, input, elapsed));
     }
     const auto update = [&](ConditionWatch& watch, const ConditionMeasurement& measurement) {
       watch.step(measurement, elapsed);
@@ -135,19 +135,21 @@ class JointConditions {
     return beyond(i, way.against / kAgainst * following_.limit(), following_.limit());
   }
 
-  /// Returns how far the torque of a motor is from the commanded one while its foot bears, as an angle.
-  ConditionMeasurement gives(std::size_t i, const CommandFrame* command, const JointSample& joint,
-                             std::uint64_t elapsed) noexcept {
-    Torque& torque = torques_[i];
-    if (!commanded_to_bear(command, i) || elapsed > 1 || !has(joint, kValidEffort) || !std::isfinite(joint.effort)) {
-      torque.asked.reset();
+  /// Returns how often the torque of a motor is wrong, as an angle.
+  ConditionMeasurement gives(std::size_t i, const MonitorInput& input, std::uint64_t elapsed) noexcept {
+    constexpr std::uint64_t kOtherLaw = kGateRateClamped | kGateSpeedClamped | kGatePositionClamped;
+    MotorTorque& torque = torques_[i];
+    const JointSample& joint = input.sensors->joints[i];
+    const GateReport& gate = input.sensors->gate;
+    if (!walks_by(input.command, i) || gate.verdict == GateVerdict::kBrake || elapsed > 1 ||
+        (gate.reasons & kOtherLaw) != 0 || !finite(input.command->joints[i]) || !has(joint, kValidMotion) ||
+        !std::isfinite(joint.position + joint.velocity + joint.effort)) {
+      torque.forget();
       return kNothingMeasured;
     }
-    const std::optional<double> asked = std::exchange(torque.asked, command->joints[i].effort);
-    if (!asked) return kNothingMeasured;
-    const bool wrong = std::abs(joint.effort - *asked) > kOfAsked * std::abs(*asked) + kOfEffort * limits_[i].effort;
-    torque.wrong += period_ / kTorqueTime * ((wrong ? 1 : 0) - torque.wrong);
-    return beyond(i, torque.wrong / kOfTorques * following_.limit(), following_.limit());
+    torque.step(joint, limits_[i].effort, period_);
+    torque.add(input.command->joints[i]);
+    return beyond(i, torque.wrong() / kOfTorques * following_.limit(), following_.limit());
   }
 
   static Condition without_persistence(Condition condition) noexcept {
@@ -163,12 +165,6 @@ class JointConditions {
     JointRange range;  ///< rad; ±∞ without end stops
   };
 
-  /// The torques of a motor whose foot bears.
-  struct Torque {
-    std::optional<double> asked;  ///< N·m, by the last command, if the foot bore then
-    double wrong = 0;             ///< 0 … 1, of the cycles, the mean
-  };
-
   /// How a joint and its command move while its foot is in the air.
   struct Way {
     struct Angles {
@@ -182,7 +178,7 @@ class JointConditions {
   double period_;
   std::array<Limits, kLegsJoints> limits_{};
   std::array<double, kLegsJoints> behind_{};  ///< rad, of joints of feet in the air, the mean
-  std::array<Torque, kLegsJoints> torques_{};
+  std::array<MotorTorque, kLegsJoints> torques_{};
   std::array<Way, kLegsJoints> ways_{};
   ConditionWatch speed_, effort_, range_, following_, at_once_;
 };

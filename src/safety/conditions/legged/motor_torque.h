@@ -1,0 +1,82 @@
+#pragma once
+/// A MotorTorque tells how often a motor gives another torque than its commands demand.
+///
+/// The commands of kLate cycles ago demand torques at the measured angle and speed, which span a range. Another torque
+/// is wrong, by more than kOfDemand of that range's end and kOfEffort of the effort limit. All of these torques are means
+/// over kMean, because measured speeds come in steps. The result w is the part of the last cycles in which the torque
+/// was wrong:
+///
+///   w += T/kTime (1 − w), or T/kTime (0 − w)      T: period
+///
+/// In the simulator a faulty encoder errs on its way to this computer alone, so that its motor seems to give a wrong
+/// torque. A drive that follows the wrong angle itself gives the torque that this angle demands.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "signals/joint.h"
+
+namespace robot_control {
+
+class MotorTorque {
+ public:
+  static constexpr std::array<std::size_t, 3> kLate{0, 5, 10};  ///< cycles: a late motor is none that fails
+  static constexpr std::size_t kCommands = kLate.back() + 1;
+  static constexpr double kOfDemand = 0.5;   ///< nor is a weak one
+  static constexpr double kOfEffort = 0.04;  ///< docs/evidence/derivations.md
+  static constexpr double kMean = 0.01;      ///< s
+  static constexpr double kTime = 0.06;      ///< s
+
+  /// Commands before this cycle are not in force any more. It is not judged until kCommands are known again.
+  void forget() noexcept { known_ = 0; }
+
+  void reset() noexcept {
+    known_ = 0;
+    wrong_ = 0;
+  }
+
+  /// Compares the torque of `joint`, whose numbers are finite, with the commands before. `limit` N·m, `period` s.
+  void step(const JointSample& joint, double limit, double period) noexcept {
+    if (known_ < kCommands) {
+      given_ = joint.effort;
+      demanded_.fill(joint.effort);
+      return;
+    }
+    const double part = std::min(1.0, period / kMean);
+    given_ += part * (joint.effort - given_);
+    for (std::size_t i = 0; i < kLate.size(); ++i) {
+      const double demand = std::clamp(demanded(kLate[i], joint), -limit, limit);
+      demanded_[i] += part * (demand - demanded_[i]);
+    }
+    const auto [lower, upper] = std::ranges::minmax(demanded_);
+    const bool wrong = given_ < lower - kOfDemand * std::abs(lower) - kOfEffort * limit ||
+                       given_ > upper + kOfDemand * std::abs(upper) + kOfEffort * limit;
+    wrong_ += period / kTime * ((wrong ? 1 : 0) - wrong_);
+  }
+
+  /// The command that follows this sample.
+  void add(const JointCommand& command) noexcept {
+    commands_[next_] = command;
+    next_ = (next_ + 1) % kCommands;
+    known_ = std::min(known_ + 1, kCommands);
+  }
+
+  /// Returns w, 0 … 1.
+  double wrong() const noexcept { return wrong_; }
+
+ private:
+  double demanded(std::size_t ago, const JointSample& joint) const noexcept {
+    const JointCommand& law = commands_[(next_ + kCommands - 1 - ago) % kCommands];
+    return law.effort + law.stiffness * (law.position - joint.position) + law.damping * (law.velocity - joint.velocity);
+  }
+
+  std::array<JointCommand, kCommands> commands_{};  ///< of the last cycles, a ring
+  std::size_t next_ = 0, known_ = 0;                ///< index of the oldest one, how many there are
+  double given_ = 0;                                ///< N·m, the mean
+  std::array<double, kLate.size()> demanded_{};     ///< N·m, the means
+  double wrong_ = 0;
+};
+
+}  // namespace robot_control
