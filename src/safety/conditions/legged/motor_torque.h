@@ -1,5 +1,5 @@
 #pragma once
-/// A MotorTorque tells how often a motor gives another torque than its commands demand.
+/// A MotorTorque measures how often a motor gives another torque than its commands demand.
 ///
 /// The commands of kLate cycles ago demand torques at the measured angle and speed, which span a range. Another torque
 /// is wrong, by more than kOfDemand of that range's end and kOfEffort of the effort limit. All of these torques are means
