@@ -1,6 +1,6 @@
 #pragma once
-/// What a command says of the feet of a robot that walks. A walk gives stiffness to the joints of feet in the air
-/// alone. Feet that bear are commanded by torques.
+/// A command says which feet swing. A walk gives stiffness to the joints of feet in the air alone. Feet that bear are
+/// commanded by torques.
 
 #include <cstddef>
 

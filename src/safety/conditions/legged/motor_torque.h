@@ -2,9 +2,9 @@
 /// A MotorTorque measures how often a motor gives another torque than its commands demand.
 ///
 /// The commands of kLate cycles ago demand torques at the measured angle and speed, which span a range. Another torque
-/// is wrong, by more than kOfDemand of that range's end and kOfEffort of the effort limit. All of these torques are means
-/// over kMean, because measured speeds come in steps. The result w is the part of the last cycles in which the torque
-/// was wrong:
+/// is wrong, by more than kOfDemand of that range's end and kOfEffort of the effort limit. All of these torques are
+/// means over kMean, because measured speeds come in steps. The result w is the part of the last cycles in which the
+/// torque was wrong:
 ///
 ///   w += T/kTime (1 − w), or T/kTime (0 − w)      T: period
 ///
