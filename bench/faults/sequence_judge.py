@@ -28,8 +28,8 @@ to standstill from there, and "release" does not judge what follows. The gain of
 A robot on legs lies down by its brake. A body that falls gains speed, so its way is judged in place of s: FOLD_WAY at
 most. It rests after FOLD_TIME. Instead of TILT_LIMIT, it must not turn over, OVER_LIMIT. Its brake follows encoders:
 random angles are a random torque. With a motor that is off or reversed it rests, too, because the stop ends with the
-brakes of the drives (gate/stop_action.h). While it stands, its motors hold it: on an intermittent one it sways
-by up to SWAY_SPEED.
+brakes of the drives (gate/stop_action.h). While it stands, its motors hold it: on an intermittent one it sways by up
+to SWAY_SPEED.
 """
 
 from __future__ import annotations
@@ -137,13 +137,14 @@ class _Court:
         linear, angular = (np.abs(_mean(log[name], window)) for name in ("truth_linear", "truth_angular"))
         tilt = log["truth_tilt"]
         rocks = np.abs(tilt - tilt[np.maximum(np.arange(len(tilt)) - window, 0)]) > ROCKING
-        self._standing = (linear + angular * wheel_base / 2 <= STANDING_SPEED) | rocks
+        mean_speed = linear + angular * wheel_base / 2
+        self._standing = (mean_speed <= STANDING_SPEED) | rocks
         self._on_legs = bool(sequence.gait)
         self._unbraked = failing(log, "motor", "garbage", *([] if self._on_legs else ["off", "intermittent"]))
         if self._on_legs:
             self._unbraked |= failing(log, "encoder", "garbage")
             sways = failing(log, "motor", "intermittent") & (log["gate_verdict"] != BRAKE)
-            self._standing |= sways & (linear + angular * wheel_base / 2 <= SWAY_SPEED)
+            self._standing |= sways & (mean_speed <= SWAY_SPEED)
         jolts = ("stuck", "wrong", "garbage")
         self._jolted = failing(log, "motor", *jolts)
         freed = np.diff(failing_each(log, "motor", "stuck").astype(int), prepend=0) < 0

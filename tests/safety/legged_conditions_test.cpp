@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <functional>
+#include <limits>
 #include <random>
 
 #include "machine/legs/legs_corpus.h"

@@ -147,8 +147,7 @@ class JointConditions {
       torque.forget();
       return kNothingMeasured;
     }
-    torque.step(joint, limits_[i].effort, period_);
-    torque.add(input.command->joints[i]);
+    torque.step(joint, input.command->joints[i], limits_[i].effort, period_);
     return beyond(i, torque.wrong() / kOfTorques * following_.limit(), following_.limit());
   }
 

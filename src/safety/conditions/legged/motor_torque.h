@@ -1,10 +1,10 @@
 #pragma once
 /// A MotorTorque measures how often a motor gives another torque than its commands demand.
 ///
-/// The commands of kLate cycles ago demand torques at the measured angle and speed, which span a range. Another torque
-/// is wrong, by more than kOfDemand of that range's end and kOfEffort of the effort limit. All of these torques are
-/// means over kMean, because measured speeds come in steps. The result w is the part of the last cycles in which the
-/// torque was wrong:
+/// The commands of kLate cycles ago demand torques at the measured angle and speed, which span a range. A torque is
+/// wrong if it is outside by more than kOfDemand of the range's end and kOfEffort of the effort limit. All of these
+/// torques are means over kMean, because measured speeds come in steps. The result w is the part of the last cycles in
+/// which the torque was wrong:
 ///
 ///   w += T/kTime (1 − w), or T/kTime (0 − w)      T: period
 ///
@@ -37,8 +37,20 @@ class MotorTorque {
     wrong_ = 0;
   }
 
-  /// Compares the torque of `joint`, whose numbers are finite, with the commands before. `limit` N·m, `period` s.
-  void step(const JointSample& joint, double limit, double period) noexcept {
+  /// Compares the torque of `joint` with the commands before, and remembers the one that follows. All numbers are
+  /// finite. `limit` N·m, `period` s.
+  void step(const JointSample& joint, const JointCommand& command, double limit, double period) noexcept {
+    compare(joint, limit, period);
+    commands_[next_] = command;
+    next_ = (next_ + 1) % kCommands;
+    known_ = std::min(known_ + 1, kCommands);
+  }
+
+  /// Returns w, 0 … 1.
+  double wrong() const noexcept { return wrong_; }
+
+ private:
+  void compare(const JointSample& joint, double limit, double period) noexcept {
     if (known_ < kCommands) {
       given_ = joint.effort;
       demanded_.fill(joint.effort);
@@ -56,17 +68,6 @@ class MotorTorque {
     wrong_ += period / kTime * ((wrong ? 1 : 0) - wrong_);
   }
 
-  /// The command that follows this sample.
-  void add(const JointCommand& command) noexcept {
-    commands_[next_] = command;
-    next_ = (next_ + 1) % kCommands;
-    known_ = std::min(known_ + 1, kCommands);
-  }
-
-  /// Returns w, 0 … 1.
-  double wrong() const noexcept { return wrong_; }
-
- private:
   double demanded(std::size_t ago, const JointSample& joint) const noexcept {
     const JointCommand& law = commands_[(next_ + kCommands - 1 - ago) % kCommands];
     return law.effort + law.stiffness * (law.position - joint.position) + law.damping * (law.velocity - joint.velocity);
