@@ -20,6 +20,7 @@
 #include "bindings/legs.h"
 #include "bindings/log_replay.h"
 #include "bindings/loop_replay.h"
+#include "bindings/numpy_version.h"
 #include "bindings/recorder.h"
 #include "bindings/run_bag.h"
 #include "bindings/signal_names.h"
@@ -294,6 +295,7 @@ void bind_closed_loop(py::module_& module) {
 
 PYBIND11_MODULE(_robot_control, module) {
   using namespace robot_control;
+  check_numpy_version();
   py::register_exception<ParameterError>(module, "ParameterError", PyExc_ValueError);
   py::register_exception<RobotError>(module, "RobotError", PyExc_ValueError);
   py::register_exception<DriverError>(module, "DriverError", PyExc_RuntimeError);

@@ -31,15 +31,18 @@ def test_any_other_error_keeps_its_words():
     assert in_words(OSError(28, "No space left on device")) == "No space left on device"
 
 
-def imported(folder):
-    """The message of `from robot_control import ClosedLoop` with `folder` alone on the path."""
-    environment = {**os.environ, "PYTHONPATH": str(folder)}
-    code = "from robot_control import ClosedLoop"
+def failed(code, path):
+    """The message of `code` with `path` alone."""
+    environment = {**os.environ, "PYTHONPATH": path}
     done = subprocess.run(
         [sys.executable, "-c", code], env=environment, cwd="/", capture_output=True, text=True, check=False, timeout=60
     )
     assert done.returncode == 1
     return done.stderr.splitlines()[-1]
+
+
+def imported(folder):
+    return failed("from robot_control import ClosedLoop", str(folder))
 
 
 def test_sources_that_are_not_built_say_what_to_do():
@@ -55,4 +58,13 @@ def test_for_another_python_the_message_names_the_right_one(tmp_path):
     (tmp_path / "robot_control" / "_robot_control.cpython-300-x86_64-linux-gnu.so").touch()
     message = imported(tmp_path)
     assert "is not for this Python" in message
+    assert "/usr/bin/python3" in message
+
+
+@pytest.mark.parametrize("module", ["_robot_control", "_navigation"])
+def test_a_numpy_whose_arrays_would_be_misread_is_refused(module, tmp_path):
+    (tmp_path / "numpy").mkdir()
+    (tmp_path / "numpy" / "__init__.py").write_text('__version__ = "2.4.6"')
+    message = failed(f"import robot_control.{module}", f"{tmp_path}:{os.environ['PYTHONPATH']}")
+    assert f"numpy 2.4.6 of {tmp_path}/numpy/__init__.py" in message
     assert "/usr/bin/python3" in message
