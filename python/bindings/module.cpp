@@ -249,8 +249,10 @@ void bind_spectral_radius(py::module_& module) {
 
 void bind_closed_loop(py::module_& module) {
   py::class_<ClosedLoop>(module, "ClosedLoop")
-      .def(py::init(
-               [](const std::string& path, const Values& values) { return ClosedLoop(parameters_from(path, values)); }),
+      .def(py::init([](const std::string& path, const Values& values) {
+             check_numpy_version();
+             return ClosedLoop(parameters_from(path, values));
+           }),
            py::arg("path"), py::arg("values"))
       .def(
           "command",
@@ -295,7 +297,6 @@ void bind_closed_loop(py::module_& module) {
 
 PYBIND11_MODULE(_robot_control, module) {
   using namespace robot_control;
-  check_numpy_version();
   py::register_exception<ParameterError>(module, "ParameterError", PyExc_ValueError);
   py::register_exception<RobotError>(module, "RobotError", PyExc_ValueError);
   py::register_exception<DriverError>(module, "DriverError", PyExc_RuntimeError);

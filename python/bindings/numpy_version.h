@@ -8,7 +8,7 @@
 
 namespace robot_control {
 
-/// Each module that exchanges arrays calls it when it is loaded.
+/// Each function that exchanges arrays calls it first; programs that need names alone do without numpy.
 /// Throws ImportError: the numpy that Python finds first has version 2 or later, and pybind11 is older than 2.12.
 inline void check_numpy_version() {
 #if PYBIND11_VERSION_HEX < 0x020C0000

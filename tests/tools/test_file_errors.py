@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from robot_control import _robot_control
 from robot_control.common.file_errors import in_words
 
 PYTHON = Path(__file__).parents[2] / "python"
@@ -61,10 +62,21 @@ def test_for_another_python_the_message_names_the_right_one(tmp_path):
     assert "/usr/bin/python3" in message
 
 
-@pytest.mark.parametrize("module", ["_robot_control", "_navigation"])
-def test_a_numpy_whose_arrays_would_be_misread_is_refused(module, tmp_path):
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import robot_control._navigation",
+        'from robot_control._robot_control import ClosedLoop; ClosedLoop("", [])',
+        'from robot_control._robot_control import OfflineEstimator; OfflineEstimator("", [], True)',
+        'from robot_control._robot_control import replay_log; replay_log("", ("", []), None)',
+        'from robot_control._robot_control import read_run_bag; read_run_bag("", [])',
+        'from robot_control._robot_control import each_part_of_run_bag; each_part_of_run_bag("", print)',
+    ],
+)
+def test_a_numpy_whose_arrays_would_be_misread_is_refused(code, tmp_path):
     (tmp_path / "numpy").mkdir()
     (tmp_path / "numpy" / "__init__.py").write_text('__version__ = "2.4.6"')
-    message = failed(f"import robot_control.{module}", f"{tmp_path}:{os.environ['PYTHONPATH']}")
+    built = Path(_robot_control.__file__).parents[1]
+    message = failed(code, f"{tmp_path}:{built}")
     assert f"numpy 2.4.6 of {tmp_path}/numpy/__init__.py" in message
     assert "/usr/bin/python3" in message
