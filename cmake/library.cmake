@@ -21,9 +21,10 @@ if(ROBOT_CONTROL_SANITIZER)
   set(CMAKE_CXX_FLAGS_RELEASE "-O1 -DNDEBUG")
 endif()
 # Without ROBOT_CONTROL_SANITIZE_ALL libraries that give the sanitizer nothing to find are compiled without it, in half of
-# the time: laws see neither foreign text nor shared memory, and what one thread reads at its start has no races.
-set(plain_under_address estimation control safety)
-set(plain_under_thread estimation control safety files bag description machine wheeled parameters configuration)
+# the time: laws see neither foreign text, but for the gaits that legged_control reads, nor shared memory, and what one
+# thread reads at its start has no races.
+set(plain_under_address estimation control safety legged_estimation legged_safety)
+set(plain_under_thread ${plain_under_address} legged_control files bag description machine wheeled legs parameters configuration)
 
 function(robot_control_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bindings/loop_replay.h"
+#include "bindings/numpy_version.h"
 #include "configuration/live_parameters.h"
 #include "log/messages/message_types.h"
 #include "log/replay/replay_error.h"
@@ -121,6 +122,7 @@ std::vector<std::string> header_differences(const LogHeader& logged, const LogHe
 
 /// `logged` are the parameters of the log, `varied` are other parameters or None.
 py::dict replay_log(const std::string& path, const Layers& logged, const std::optional<Layers>& varied) {
+  check_numpy_version();
   const Parameters parameters = parameters_in(logged, logged.first);
   const std::unique_ptr<Robot> composed = make_robot(parameters);
   const MachineModel& robot = composed->machine();

@@ -20,6 +20,7 @@
 #include "bindings/legs.h"
 #include "bindings/log_replay.h"
 #include "bindings/loop_replay.h"
+#include "bindings/numpy_version.h"
 #include "bindings/recorder.h"
 #include "bindings/run_bag.h"
 #include "bindings/signal_names.h"
@@ -248,8 +249,10 @@ void bind_spectral_radius(py::module_& module) {
 
 void bind_closed_loop(py::module_& module) {
   py::class_<ClosedLoop>(module, "ClosedLoop")
-      .def(py::init(
-               [](const std::string& path, const Values& values) { return ClosedLoop(parameters_from(path, values)); }),
+      .def(py::init([](const std::string& path, const Values& values) {
+             check_numpy_version();
+             return ClosedLoop(parameters_from(path, values));
+           }),
            py::arg("path"), py::arg("values"))
       .def(
           "command",

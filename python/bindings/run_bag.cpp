@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "bindings/numpy_version.h"
 #include "log/bag_log.h"
 #include "log/black_box/saved_black_box.h"
 #include "log/log_error.h"
@@ -131,6 +132,7 @@ class Table {
 
 py::dict read_run_bag(const std::string& path, const std::vector<std::string>& names) {
   using namespace py::literals;
+  check_numpy_version();
   constexpr std::uint64_t kLook = 1 << 16;  // rows between two checks for Ctrl-C
   std::optional<Table> table;
   std::uint64_t rows = 0;
@@ -149,6 +151,7 @@ py::dict read_run_bag(const std::string& path, const std::vector<std::string>& n
 
 /// Gives all runs of a log to `use(arrays by column, names of the columns of integers)`, in parts.
 void each_part_of_run_bag(const std::string& path, const py::function& use) {
+  check_numpy_version();
   constexpr std::size_t kRows = 1 << 14;
   TraceReader reader(path);
   Table table(reader.header(), {});

@@ -2,10 +2,11 @@
 /// The user's parameters of the safety monitor.
 ///
 /// A condition is active when a quantity measured from raw sensors and the command is beyond `limit` without
-/// interruption for `persistence`. An active condition is a cause, and `reaction` is what the monitor does. The
-/// conditions and their defaults: signals/stop_causes.def. Those of wheels are defined in wheel_limits.h,
-/// wheel_following.h, yaw_agreement.h and torque_oscillation.h. Those of legs are in joint_conditions.h and
-/// foot_conditions.h, the others in body_conditions.h, sensor_presence.h and machine_conditions.h.
+/// interruption for `persistence`. Only wrong_state.h looks at the estimate, to doubt it. An active condition is a
+/// cause, and `reaction` is what the monitor does. The conditions and their defaults: signals/stop_causes.def. Those of
+/// wheels are defined in wheel_limits.h, wheel_following.h, yaw_agreement.h and torque_oscillation.h. Those of legs are
+/// in joint_conditions.h, encoder_conditions.h, foot_conditions.h, downward_force.h and wrong_state.h. The others are
+/// in body_conditions.h, sensor_presence.h and machine_conditions.h.
 
 #include <algorithm>
 #include <array>
@@ -33,9 +34,9 @@ inline std::vector<Word> words_of(Reaction) {
 }
 
 struct Condition {
-  std::optional<double>
-      limit;               ///< absent: derived from the robot where it can be (derived_limits.h), else no condition
-  double persistence = 0;  ///< s; 0: the first cycle counts
+  std::optional<double> limit;  ///< absent: derived from the robot where it can be (derived_limits.h, on legs
+                                ///< foot_conditions.h), else no condition
+  double persistence = 0;       ///< s; 0: the first cycle counts
   Reaction reaction = Reaction::kBrake;
 };
 

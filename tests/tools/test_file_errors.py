@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from robot_control import _robot_control
 from robot_control.common.file_errors import in_words
 
 PYTHON = Path(__file__).parents[2] / "python"
@@ -31,15 +32,18 @@ def test_any_other_error_keeps_its_words():
     assert in_words(OSError(28, "No space left on device")) == "No space left on device"
 
 
-def imported(folder):
-    """The message of `from robot_control import ClosedLoop` with `folder` alone on the path."""
-    environment = {**os.environ, "PYTHONPATH": str(folder)}
-    code = "from robot_control import ClosedLoop"
+def failed(code, path):
+    """The message of `code` with `path` alone."""
+    environment = {**os.environ, "PYTHONPATH": path}
     done = subprocess.run(
         [sys.executable, "-c", code], env=environment, cwd="/", capture_output=True, text=True, check=False, timeout=60
     )
     assert done.returncode == 1
     return done.stderr.splitlines()[-1]
+
+
+def imported(folder):
+    return failed("from robot_control import ClosedLoop", str(folder))
 
 
 def test_sources_that_are_not_built_say_what_to_do():
@@ -55,4 +59,24 @@ def test_for_another_python_the_message_names_the_right_one(tmp_path):
     (tmp_path / "robot_control" / "_robot_control.cpython-300-x86_64-linux-gnu.so").touch()
     message = imported(tmp_path)
     assert "is not for this Python" in message
+    assert "/usr/bin/python3" in message
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import robot_control._navigation",
+        'from robot_control._robot_control import ClosedLoop; ClosedLoop("", [])',
+        'from robot_control._robot_control import OfflineEstimator; OfflineEstimator("", [], True)',
+        'from robot_control._robot_control import replay_log; replay_log("", ("", []), None)',
+        'from robot_control._robot_control import read_run_bag; read_run_bag("", [])',
+        'from robot_control._robot_control import each_part_of_run_bag; each_part_of_run_bag("", print)',
+    ],
+)
+def test_a_numpy_whose_arrays_would_be_misread_is_refused(code, tmp_path):
+    (tmp_path / "numpy").mkdir()
+    (tmp_path / "numpy" / "__init__.py").write_text('__version__ = "2.4.6"')
+    built = Path(_robot_control.__file__).parents[1]
+    message = failed(code, f"{tmp_path}:{built}")
+    assert f"numpy 2.4.6 of {tmp_path}/numpy/__init__.py" in message
     assert "/usr/bin/python3" in message

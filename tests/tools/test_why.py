@@ -226,12 +226,22 @@ def legged(driving) -> Facts:
     return replace(
         driving,
         kind=Kind(LEGGED, controller="leg_controller"),
-        safety=Safety("DRIVE", "drive", speed_limit=0.0),
+        safety=Safety("DRIVE", "drive"),
         reports={**{name: driving.reports[name] for name in (DRIVER, ESTIMATOR, MONITOR)}, "leg_controller": own},
         senders=("/poser",),
         limited=None,
         measured=(-0.004, 0.02),
     )
+
+
+def test_a_clearance_of_zero_stops_a_robot_on_legs_that_would_move(legged):
+    near = replace(legged, safety=Safety("DRIVE", "drive", speed_limit=0.0))
+    assert judge(near).headline == "It stands; nothing stands against motion, and it follows /poser."
+    held = saying(near, "leg_controller", command__permit_slow="the safety monitor limits the speed")
+    assert judge(held).headline == "The path is not free: clearance leaves it no speed."
+    assert "not faster than 0 m/s, by clearance" in text(held)
+    slow = replace(held, safety=Safety("DRIVE", "drive", speed_limit=0.1))
+    assert judge(slow).headline.endswith("it follows /poser; the safety monitor limits the speed.")
 
 
 def test_a_robot_on_legs_that_stands_has_no_speeds(legged):

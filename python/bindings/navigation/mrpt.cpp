@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include "bindings/navigation/conversions.h"
+#include "bindings/numpy_version.h"
 #include "navigation/mrpt/localizer.h"
 #include "navigation/mrpt/mapper.h"
 
@@ -49,6 +50,7 @@ void bind_localizer(py::module_& module) {
 
 PYBIND11_MODULE(_mrpt, module) {
   using namespace robot_control;
+  check_numpy_version();
   py::class_<Mapper>(module, "Mapper")
       .def(py::init<>())
       .def(py::init([](const py::tuple& map, const Pose& pose) { return Mapper(grid_of(map), planar_of(pose)); }),

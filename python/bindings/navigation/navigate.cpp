@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include "bindings/navigation/conversions.h"
+#include "bindings/numpy_version.h"
 #include "navigation/doubt.h"
 #include "navigation/guard.h"
 #include "navigation/map_file.h"
@@ -83,6 +84,7 @@ class Navigation {
 
 PYBIND11_MODULE(_navigation, module) {
   using namespace robot_control;
+  check_numpy_version();
   module.def(
       "read_map", [](const std::string& path) { return numpy_of(read_map(path)); }, py::arg("path"));
   module.def(

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "bindings/installed_file.h"
+#include "bindings/numpy_version.h"
 #include "configuration/parameters.h"
 #include "configuration/wheeled/calibration_file.h"
 #include "signals/names.h"
@@ -182,6 +183,7 @@ struct OfflineEstimator::Rows {
 };
 
 OfflineEstimator::OfflineEstimator(const std::string& path, const Values& values, bool use_two_wheels) {
+  check_numpy_version();
   const Parameters parameters = parameters_of(path, values);
   robot_ = use_two_wheels ? two_wheels(parameters.robot)
                           : read_drive_train(load_description(parameters.urdf), parameters.robot);

@@ -185,6 +185,8 @@ def _navigation(facts: Facts) -> Answer | None:
 def _no_path(facts: Facts) -> Answer | None:
     if facts.speed_limit >= MOVING or not _requested(facts):
         return None
+    if facts.kind.legged and "permit_slow" not in facts.reasons(facts.controller, "command"):
+        return None  # it stands in the pose that is requested
     remedy = "clear the path, and publish it on clearance in metres"
     if facts.clearance_senders:
         remedy += f": {', '.join(facts.clearance_senders)} {'does' if len(facts.clearance_senders) == 1 else 'do'}"

@@ -40,6 +40,7 @@ def execution(facts: Facts) -> Answer:
     does = {"standing": "It stands", "joints": "It lies, and its joints may be moved"}.get(posture, "It may move")
     senders = facts.value(facts.controller, "senders")
     requested = f"it follows {senders}" if senders else "no motion is requested"
+    requested += f"; {reasons['permit_slow']}" if "permit_slow" in reasons else ""
     silent = next((name for name in ("stale", "timed_out") if name in reasons and not senders), "")
     actions = (("operator", remedies[silent]),) if remedies.get(silent) else ()
     return Answer(Verdict.IDLE, f"{does}; nothing stands against motion, and {requested}.", actions)

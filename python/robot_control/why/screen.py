@@ -65,7 +65,7 @@ def _rows(facts: Facts, answer: Answer, layout: Layout) -> Rows:
     yield from _to_do(answer)
     safety = facts.received()
     if safety is not None:
-        yield from _safety(safety, facts.speed_limit, layout)
+        yield from _safety(safety, facts, layout)
     yield from _nodes(facts)
     if any(facts.there(node) for node in facts.loop):
         yield from _command(facts, layout)
@@ -82,7 +82,7 @@ def _to_do(answer: Answer) -> Rows:
         yield "", "", ""
 
 
-def _safety(safety: Safety, speed_limit: float, layout: Layout) -> Rows:
+def _safety(safety: Safety, facts: Facts, layout: Layout) -> Rows:
     since = f" for {_duration(safety.held)}" if layout.times else ""
     yield "safety", f"{safety.state}{since}, permit: {safety.permit}", ""
     for number, cause in enumerate(sorted(safety.causes, key=lambda cause: not cause.first)):
@@ -92,9 +92,10 @@ def _safety(safety: Safety, speed_limit: float, layout: Layout) -> Rows:
         yield "causes" if number == 0 else "", f"{cause.name}: {cause.sentence}{measured}{mark}", ""
     for number, warning in enumerate(safety.warnings):
         yield "warnings" if number == 0 else "", warning, "33"
-    if speed_limit < float("inf"):
+    if facts.speed_limit < float("inf"):
+        what = "not" if facts.kind.legged else "no rim"
         whose = "a warning or clearance" if safety.warnings else "clearance"
-        yield "limit", f"no rim faster than {speed_limit:.3g} m/s, by {whose}", ""
+        yield "limit", f"{what} faster than {facts.speed_limit:.3g} m/s, by {whose}", ""
     for number, refusal in enumerate(safety.refusal):
         yield "last reset" if number == 0 else "", f"refused: {refusal}", ""
 

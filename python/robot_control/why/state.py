@@ -105,9 +105,9 @@ class Facts:
 
     @property
     def speed_limit(self) -> float:
-        """m/s, of the last status that counts; a robot on legs has none."""
+        """m/s, of the last status that counts."""
         safety = self.received()
-        return float("inf") if safety is None or self.kind.legged else safety.speed_limit
+        return float("inf") if safety is None else safety.speed_limit
 
     def value(self, node: str, key: str) -> str:
         """A value of a node that reports; else empty."""

@@ -6,8 +6,8 @@
 ///
 /// The ground pushes the feet and never pulls them, so that f is up, and 0 in free fall. An IMU whose axes turn round
 /// shows it downwards. The attitude (attitude.h) and the estimator would believe it. One sample is at most a quarter of
-/// f, so that none reaches the default limit alone. A missing sample changes nothing. Without a command the driver
-/// folds the legs, which pulls the body down: f begins with 0 after it.
+/// f, so that none brings the f of a robot that stands to the default limit. A missing sample changes nothing. Without
+/// a command the driver folds the legs, which pulls the body down: f begins with 0 after it.
 
 #include <Eigen/Core>
 #include <algorithm>
