@@ -12,10 +12,10 @@
 ///           between P and `upright`, U, is ahead of the others, for instance that of a foot in the air, or while the
 ///           robot rises. It waits for them: q* = P + min(u, (Q − P)/(U − P)) (U − P). In the last 0.2 of `time` the
 ///           stiffness falls to 0. After `time`, and without a position, it is kDamp. A machine that walks has
-///           `walking_time` in place of `time`: a foot stays behind while the body moves on. After 1.2 of `time`, walking or not, it is
-///           kBrake: the machine lies, and a driver's own brake needs neither encoder nor the sense of the motor. So it
-///           is from where q is farther than kLost from q*. Sound joints stay within 0.1; a failed encoder or a
-///           reversed motor drives the joint away
+///           `walking_time` in place of `time`: a foot stays behind while the body moves on. After 1.2 of `time`, walking
+///           or not, it is kBrake: the machine lies, and a driver's own brake needs neither encoder nor the sense of the
+///           motor. So it is from where q is farther than kLost from q*. Sound joints stay within 0.1; a failed encoder
+///           or a reversed motor drives the joint away
 ///
 /// A driver that cannot carry out an action says so (Driver::accepts), and the loop does not start.
 
