@@ -505,6 +505,8 @@ class Copy:
         for name in sorted(files):
             content = (ROOT / name).read_bytes()
             for before, after in DIFFERENCES.get(name, {}).items():
+                if before.encode() not in content:
+                    fail(f"{name} does not contain {before!r}: adapt DIFFERENCES in {Path(__file__).name}")
                 content = content.replace(before.encode(), after.encode())
             if name.startswith(f"src/{self.folder}/") and name.endswith((".h", ".cpp")):
                 source = Source(name, content.decode(), freed, len(changes), bad[name])

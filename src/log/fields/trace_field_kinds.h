@@ -63,17 +63,25 @@ const Part* published_part(const JoinedRow& row) {
   if constexpr (std::is_same_v<Part, MonitorTrace>) return row.monitor;
 }
 
-/// A column of a part. `Compute` is a stateless lambda of the part and the element.
+/// The number of a column. `Compute` is a stateless lambda of the part and the element.
 template <class Part, class Compute>
-TraceColumn column(std::string name, std::string meaning, Compute) {
-  return {.name = std::move(name),
-          .meaning = std::move(meaning),
-          .integer = !std::is_floating_point_v<std::invoke_result_t<Compute, const Part&, std::size_t>>,
-          .value = [](const JoinedRow& row, std::size_t element) -> double {
-            const Part* part = published_part<Part>(row);
-            if (part == nullptr) return std::numeric_limits<double>::quiet_NaN();
-            return static_cast<double>(Compute{}(*part, element));
-          }};
+void set_value(TraceColumn& column, Compute) {
+  column.integer = !std::is_floating_point_v<std::invoke_result_t<Compute, const Part&, std::size_t>>;
+  column.value = [](const JoinedRow& row, std::size_t element) -> double {
+    const Part* part = published_part<Part>(row);
+    if (part == nullptr) return std::numeric_limits<double>::quiet_NaN();
+    return static_cast<double>(Compute{}(*part, element));
+  };
+}
+
+TraceColumn empty_column(std::string_view name, std::string_view meaning);
+
+/// A column of a part.
+template <class Part, class Compute>
+TraceColumn column(std::string_view name, std::string_view meaning, Compute compute) {
+  TraceColumn result = empty_column(name, meaning);
+  set_value<Part>(result, compute);
+  return result;
 }
 
 /// The number is NaN where `exists` is false.
@@ -125,31 +133,37 @@ struct ArraySize : std::integral_constant<std::size_t, 0> {};
 template <class Element, std::size_t N>
 struct ArraySize<std::array<Element, N>> : std::integral_constant<std::size_t, N> {};
 
+/// Appends a field that nothing writes, reads or shows as yet. `elements`: "" of a number, "[]" of a list, "[3]" of an
+/// array.
+TraceField& add_field(TraceFields& to, std::string_view name, std::string_view type, std::string_view comment,
+                      std::string_view elements = "");
+
 /// The field is a number, or an array of fixed length.
 template <class Part, class Wire, class Get>
-TraceField field(std::string name, std::string comment, Get) {
+TraceField& field(TraceFields& to, std::string_view name, std::string_view comment, Get) {
   using Value = std::decay_t<std::invoke_result_t<Get, Part&>>;
   constexpr std::size_t kSize = ArraySize<Value>::value;
-  TraceField result{.name = std::move(name), .type = wire_name<Wire>(), .comment = std::move(comment)};
   if constexpr (kSize == 0) {
-    result.plain = column<Part>("", "", [](const Part& part, std::size_t) { return as_number(Get{}(part)); });
-    result.write = [](const TraceSource& source, std::string& to) {
+    TraceField& result = add_field(to, name, wire_name<Wire>(), comment);
+    set_value<Part>(result.plain, [](const Part& part, std::size_t) { return as_number(Get{}(part)); });
+    result.write = [](const TraceSource& source, std::string& message) {
       const Part* part = part_of<Part>(source.row);
-      write_number(to, part != nullptr ? static_cast<Wire>(Get{}(*part)) : none<Wire>());
+      write_number(message, part != nullptr ? static_cast<Wire>(Get{}(*part)) : none<Wire>());
     };
     result.read = [](ByteSource& from, TraceRow& row) {
       Get{}(part_of<Part>(row)) = static_cast<Value>(from.number<Wire>());
       return true;
     };
+    return result;
   } else {
-    result.type += "[" + std::to_string(kSize) + "]";
+    TraceField& result = add_field(to, name, wire_name<Wire>(), comment, "[" + std::to_string(kSize) + "]");
     if constexpr (std::is_arithmetic_v<typename Value::value_type>) {
-      result.plain = column<Part>("", "", [](const Part& part, std::size_t i) { return as_number(Get{}(part)[i]); });
+      set_value<Part>(result.plain, [](const Part& part, std::size_t i) { return as_number(Get{}(part)[i]); });
     }
-    result.write = [](const TraceSource& source, std::string& to) {
+    result.write = [](const TraceSource& source, std::string& message) {
       const Part* part = part_of<Part>(source.row);
       for (std::size_t i = 0; i < kSize; ++i) {
-        write_number(to, part != nullptr ? static_cast<Wire>(Get{}(*part)[i]) : none<Wire>());
+        write_number(message, part != nullptr ? static_cast<Wire>(Get{}(*part)[i]) : none<Wire>());
       }
     };
     result.read = [](ByteSource& from, TraceRow& row) {
@@ -157,23 +171,22 @@ TraceField field(std::string name, std::string comment, Get) {
       for (auto& value : values) value = static_cast<std::decay_t<decltype(value)>>(from.number<Wire>());
       return true;
     };
+    return result;
   }
-  return result;
 }
 
 /// A list has at most `Max` elements. `Size` is a stateless lambda of a part (null: missing) and the number of joints.
 template <class Part, class Wire, std::size_t Max, class Size, class Get>
-TraceField list(std::string name, std::string comment, Size, Get) {
+TraceField& list(TraceFields& to, std::string_view name, std::string_view comment, Size, Get) {
   using Value = std::decay_t<std::invoke_result_t<Get, Part&, std::size_t>>;
-  TraceField result{
-      .name = std::move(name), .type = std::string(wire_name<Wire>()) + "[]", .comment = std::move(comment)};
-  result.plain = column<Part>("", "", [](const Part& part, std::size_t i) { return as_number(Get{}(part, i)); });
-  result.write = [](const TraceSource& source, std::string& to) {
+  TraceField& result = add_field(to, name, wire_name<Wire>(), comment, "[]");
+  set_value<Part>(result.plain, [](const Part& part, std::size_t i) { return as_number(Get{}(part, i)); });
+  result.write = [](const TraceSource& source, std::string& message) {
     const Part* part = part_of<Part>(source.row);
     const std::size_t size = Size{}(part, source.joints);
-    write_number(to, static_cast<std::uint32_t>(size));
+    write_number(message, static_cast<std::uint32_t>(size));
     for (std::size_t i = 0; i < size; ++i) {
-      write_number(to, part != nullptr ? static_cast<Wire>(Get{}(*part, i)) : none<Wire>());
+      write_number(message, part != nullptr ? static_cast<Wire>(Get{}(*part, i)) : none<Wire>());
     }
   };
   result.read = [](ByteSource& from, TraceRow& row) {
@@ -189,40 +202,40 @@ TraceField list(std::string name, std::string comment, Size, Get) {
 
 /// The list holds a value for each joint.
 template <class Part, class Wire, class Get>
-TraceField per_joint(std::string name, std::string comment, Get get) {
+TraceField& per_joint(TraceFields& to, std::string_view name, std::string_view comment, Get get) {
   return list<Part, Wire, kMaxJoints>(
-      std::move(name), std::move(comment), [](const Part*, std::size_t joints) { return joints; }, get);
+      to, name, comment, [](const Part*, std::size_t joints) { return joints; }, get);
 }
 
 /// Appends the fields of a Request behind its twist. `Get` returns the Request.
 template <class Get>
 void add_request(TraceFields& to, const std::string& name, Get) {
   using Part = ControllerTrace;
-  to.push_back(field<Part, double>(name + "_height", "m, above the nominal posture", OF(posture.height)));
-  to.push_back(field<Part, double>(name + "_roll", "rad", OF(posture.roll)));
-  to.push_back(field<Part, double>(name + "_pitch", "rad", OF(posture.pitch)));
-  to.push_back(field<Part, double>(name + "_x", "m, to the front", OF(posture.x)));
-  to.push_back(field<Part, double>(name + "_y", "m, to the left", OF(posture.y)));
-  to.push_back(field<Part, double>(name + "_yaw", "rad", OF(posture.yaw)));
-  to.push_back(list<Part, double, kRequestJoints>(
-      name + "_joints", "rad or m; empty: all zero",
+  field<Part, double>(to, name + "_height", "m, above the nominal posture", OF(posture.height));
+  field<Part, double>(to, name + "_roll", "rad", OF(posture.roll));
+  field<Part, double>(to, name + "_pitch", "rad", OF(posture.pitch));
+  field<Part, double>(to, name + "_x", "m, to the front", OF(posture.x));
+  field<Part, double>(to, name + "_y", "m, to the left", OF(posture.y));
+  field<Part, double>(to, name + "_yaw", "rad", OF(posture.yaw));
+  list<Part, double, kRequestJoints>(
+      to, name + "_joints", "rad or m; empty: all zero",
       [](const Part* part, std::size_t) { return part != nullptr ? logged_joints(Get{}(*part)) : 0; },
-      [](auto& part, std::size_t i) -> auto& { return Get{}(part).joints[i]; }));
-  to.push_back(field<Part, std::uint64_t>(name + "_mode", "0: the default of the machine", OF(mode)));
+      [](auto& part, std::size_t i) -> auto& { return Get{}(part).joints[i]; });
+  field<Part, std::uint64_t>(to, name + "_mode", "0: the default of the machine", OF(mode));
 }
 
 /// The field holds the yaw of an orientation, computed from the recorded float32. A reader ignores it. The column is
 /// the yaw of the member.
 template <class Part, class Get>
-TraceField yaw(std::string name, Get) {
-  TraceField result{.name = std::move(name), .type = wire_name<float>(), .comment = "rad"};
-  result.plain = column<Part>("", "", [](const Part& part, std::size_t) { return yaw_of(Get{}(part)); });
-  result.write = [](const TraceSource& source, std::string& to) {
+TraceField& yaw(TraceFields& to, std::string_view name, Get) {
+  TraceField& result = add_field(to, name, wire_name<float>(), "rad");
+  set_value<Part>(result.plain, [](const Part& part, std::size_t) { return yaw_of(Get{}(part)); });
+  result.write = [](const TraceSource& source, std::string& message) {
     const Part* part = part_of<Part>(source.row);
-    if (part == nullptr) return write_number(to, none<float>());
+    if (part == nullptr) return write_number(message, none<float>());
     Quaternion recorded = Get{}(*part);
     for (double& entry : recorded) entry = static_cast<float>(entry);
-    write_number(to, static_cast<float>(yaw_of(recorded)));
+    write_number(message, static_cast<float>(yaw_of(recorded)));
   };
   result.read = [](ByteSource& from, TraceRow&) {
     from.number<float>();

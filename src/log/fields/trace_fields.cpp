@@ -26,83 +26,79 @@ u8 bits_of(const void* driver, const void* estimator, const void* controller, co
 }
 
 template <class Wire, class Put, class Take>
-TraceField of_row(std::string name, std::string comment, Put, Take) {
-  return {.name = std::move(name),
-          .type = wire_name<Wire>(),
-          .comment = std::move(comment),
-          .plain = {.integer = true,
-                    .value = [](const JoinedRow& row,
-                                std::size_t) { return static_cast<double>(Put{}(TraceSource{.row = row})); }},
-          .write = [](const TraceSource& source, std::string& to) { write_number(to, Wire(Put{}(source))); },
-          .read =
-              [](ByteSource& from, TraceRow& row) {
-                Take{}(row, from.number<Wire>());
-                return true;
-              }};
+TraceField& of_row(TraceFields& to, std::string_view name, std::string_view comment, Put, Take) {
+  TraceField& result = add_field(to, name, wire_name<Wire>(), comment);
+  result.plain.integer = true;
+  result.plain.value = [](const JoinedRow& row, std::size_t) {
+    return static_cast<double>(Put{}(TraceSource{.row = row}));
+  };
+  result.write = [](const TraceSource& source, std::string& message) { write_number(message, Wire(Put{}(source))); };
+  result.read = [](ByteSource& from, TraceRow& row) {
+    Take{}(row, from.number<Wire>());
+    return true;
+  };
+  return result;
 }
 
 void add_row(TraceFields& to) {
   using S = const TraceSource&;
   using R = TraceRow&;
-  to.push_back(of_row<std::int64_t>(
-                   "run", "0, 1, ... in the order in which the runs began; a run ends with the driver or a reset",
-                   [](S s) { return s.row.run; }, [](R r, i64 value) { r.run = value; })
-                   .shown());
-  to.push_back(of_row<u64>(
-      "run_id", "random number of the run",
+  of_row<std::int64_t>(
+      to, "run", "0, 1, ... in the order in which the runs began; a run ends with the driver or a reset",
+      [](S s) { return s.row.run; }, [](R r, i64 value) { r.run = value; })
+      .shown();
+  of_row<u64>(
+      to, "run_id", "random number of the run",
       [](S s) {
         const FrameHead* head = head_of(s.row);
         return head != nullptr ? head->run : 0;
       },
-      [](R r, u64 value) { r.run_id = value; }));
-  to.push_back(
-      of_row<u64>(
-          "cycle", "k, from 0 in each run", [](S s) { return s.row.cycle; }, [](R r, u64 value) { r.cycle = value; })
-          .shown()
-          .shown_as({.name = "time",
-                     .meaning = "s since the run began, cycle times period",
-                     .value = [](const JoinedRow& row, std::size_t) { return row.time; }}));
-  to.push_back(of_row<i64>(
-                   "stamp_ns",
-                   "ns, of the sensor sample, on the clock of the loop (CLOCK_MONOTONIC, or simulated time)",
-                   [](S s) {
-                     const FrameHead* head = head_of(s.row);
-                     return head != nullptr ? head->stamp_ns : 0;
-                   },
-                   [](R r, i64 value) { r.stamp_ns = value; })
-                   .shown()
-                   .as_timing());
-  to.push_back(of_row<u8>(
-      "parts", "bits of the nodes that have a row in this cycle: 1 driver, 2 estimator, 4 controller, 8 monitor",
+      [](R r, u64 value) { r.run_id = value; });
+  of_row<u64>(
+      to, "cycle", "k, from 0 in each run", [](S s) { return s.row.cycle; }, [](R r, u64 value) { r.cycle = value; })
+      .shown()
+      .shown_as({.name = "time",
+                 .meaning = "s since the run began, cycle times period",
+                 .value = [](const JoinedRow& row, std::size_t) { return row.time; }});
+  of_row<i64>(
+      to, "stamp_ns", "ns, of the sensor sample, on the clock of the loop (CLOCK_MONOTONIC, or simulated time)",
+      [](S s) {
+        const FrameHead* head = head_of(s.row);
+        return head != nullptr ? head->stamp_ns : 0;
+      },
+      [](R r, i64 value) { r.stamp_ns = value; })
+      .shown()
+      .as_timing();
+  of_row<u8>(
+      to, "parts", "bits of the nodes that have a row in this cycle: 1 driver, 2 estimator, 4 controller, 8 monitor",
       [](S s) { return bits_of(s.row.driver, s.row.laws.estimator, s.row.laws.controller, s.row.laws.monitor); },
-      [](R r, u8 value) { r.parts = value; }));
-  to.push_back(of_row<u8>(
-      "published", "bits of those whose frame was published; the others were suppressed by an injected fault",
+      [](R r, u8 value) { r.parts = value; });
+  of_row<u8>(
+      to, "published", "bits of those whose frame was published; the others were suppressed by an injected fault",
       [](S s) { return bits_of(s.row.driver, s.row.estimator, s.row.controller, s.row.monitor); },
-      [](R r, u8 value) { r.published = value; }));
-  to.push_back(of_row<u8>(
-      "repeats",
+      [](R r, u8 value) { r.published = value; });
+  of_row<u8>(
+      to, "repeats",
       "1: a node answered a cycle again (started again, or the monitor without a new sensor frame); no row of the run",
-      [](S s) { return s.row.repeats; }, [](R r, u8 value) { r.repeats = value != 0; }));
-  to.push_back(of_row<u64>(
-      "lost",
+      [](S s) { return s.row.repeats; }, [](R r, u8 value) { r.repeats = value != 0; });
+  of_row<u64>(
+      to, "lost",
       "rows lost since telemetry began: in the rings, or not taken by the disk. Cycles that are missing though it "
       "stays the same were left out, because nothing moved (telemetry.record)",
-      [](S s) { return s.lost; }, [](R r, u64 value) { r.lost = value; }));
+      [](S s) { return s.lost; }, [](R r, u64 value) { r.lost = value; });
 }
 
 /// A reader ignores it: a replay computes it again.
 void add_checksum(TraceFields& to) {
-  to.push_back({.name = "checksum",
-                .type = wire_name<u32>(),
-                .comment = "of the fields before it and of the message's time in the bag",
-                .write = [](const TraceSource& source,
-                            std::string& message) { write_number(message, message_checksum(message, source.time_ns)); },
-                .read =
-                    [](ByteSource& from, TraceRow&) {
-                      from.number<u32>();
-                      return true;
-                    }});
+  TraceField& checksum =
+      add_field(to, "checksum", wire_name<u32>(), "of the fields before it and of the message's time in the bag");
+  checksum.write = [](const TraceSource& source, std::string& message) {
+    write_number(message, message_checksum(message, source.time_ns));
+  };
+  checksum.read = [](ByteSource& from, TraceRow&) {
+    from.number<u32>();
+    return true;
+  };
 }
 
 TraceFields all_fields() {
@@ -130,41 +126,51 @@ TraceFields all_fields() {
 
 }  // namespace
 
-TraceField TraceField::shown() && {
-  return std::move(*this).shown({name});
+TraceColumn empty_column(std::string_view name, std::string_view meaning) {
+  return {.name = std::string(name), .meaning = std::string(meaning)};
 }
 
-TraceField TraceField::shown(const std::vector<std::string>& names) && {
+TraceField& add_field(TraceFields& to, std::string_view name, std::string_view type, std::string_view comment,
+                      std::string_view elements) {
+  return to.emplace_back(TraceField{
+      .name = std::string(name), .type = std::string(type).append(elements), .comment = std::string(comment)});
+}
+
+TraceField& TraceField::shown() {
+  return shown({name});
+}
+
+TraceField& TraceField::shown(const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     columns.push_back(plain);
     columns.back().name = names[i];
     columns.back().element = i;
   }
-  return std::move(*this);
+  return *this;
 }
 
-TraceField TraceField::shown_per_joint(std::string suffix) && {
+TraceField& TraceField::shown_per_joint(std::string suffix) {
   columns.push_back(plain);
   columns.back().name = std::move(suffix);
   columns.back().owner = TraceColumn::Owner::kJoint;
-  return std::move(*this);
+  return *this;
 }
 
-TraceField TraceField::shown_per_contact() && {
+TraceField& TraceField::shown_per_contact() {
   columns.push_back(plain);
   columns.back().name = name;
   columns.back().owner = TraceColumn::Owner::kContact;
-  return std::move(*this);
+  return *this;
 }
 
-TraceField TraceField::shown_as(TraceColumn column) && {
+TraceField& TraceField::shown_as(TraceColumn column) {
   columns.push_back(std::move(column));
-  return std::move(*this);
+  return *this;
 }
 
-TraceField TraceField::as_timing() && {
+TraceField& TraceField::as_timing() {
   for (TraceColumn& column : columns) column.timing = true;
-  return std::move(*this);
+  return *this;
 }
 
 const std::vector<TraceField>& trace_fields() {

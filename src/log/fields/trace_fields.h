@@ -80,19 +80,19 @@ struct TraceField {
   std::size_t max_joints = kMaxJoints;  ///< number of joints that have columns
   TraceColumn plain = {};               ///< shows the member itself, without a name
 
-  void (*write)(const TraceSource& source, std::string& to) = nullptr;
+  void (*write)(const TraceSource& source, std::string& message) = nullptr;
   /// False: the list is longer than the member.
   bool (*read)(ByteSource& from, TraceRow& row) = nullptr;
 
   /// These functions add columns. Without names, the column has the name of the field; with names, each of the first
   /// elements has a column.
-  TraceField shown() &&;
-  TraceField shown(const std::vector<std::string>& names) &&;
-  TraceField shown_per_joint(std::string suffix) &&;
-  TraceField shown_per_contact() &&;
-  TraceField shown_as(TraceColumn column) &&;
+  TraceField& shown();
+  TraceField& shown(const std::vector<std::string>& names);
+  TraceField& shown_per_joint(std::string suffix);
+  TraceField& shown_per_contact();
+  TraceField& shown_as(TraceColumn column);
   /// All columns of this field are of kind `timing`.
-  TraceField as_timing() &&;
+  TraceField& as_timing();
 };
 
 using TraceFields = std::vector<TraceField>;
