@@ -58,7 +58,7 @@ def test_the_page_of_navigation_is_followed_from_an_empty_house_to_a_goal(tmp_pa
         terminal.run(house)
         until(lambda: "/save_map" in terminal.registered(), "slam", terminal.launch)
         terminal.run_python(LOCALIZED)
-        # A command before that would be taken for a sender that the robot must not start under.
+        # Until the robot is ready, a sender that requests motion keeps it under the brake.
         until(lambda: "ready: send cmd_vel" in terminal.launch.text(), "ready", terminal.launch)
         terminal.run_python(HAND)
         terminal.run(save)

@@ -74,12 +74,13 @@ void set_value(TraceColumn& column, Compute) {
   };
 }
 
-TraceColumn empty_column(std::string_view name, std::string_view meaning);
+/// A column without its number.
+TraceColumn named_column(std::string_view name, std::string_view meaning);
 
 /// A column of a part.
 template <class Part, class Compute>
 TraceColumn column(std::string_view name, std::string_view meaning, Compute compute) {
-  TraceColumn result = empty_column(name, meaning);
+  TraceColumn result = named_column(name, meaning);
   set_value<Part>(result, compute);
   return result;
 }

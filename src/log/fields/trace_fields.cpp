@@ -126,7 +126,7 @@ TraceFields all_fields() {
 
 }  // namespace
 
-TraceColumn empty_column(std::string_view name, std::string_view meaning) {
+TraceColumn named_column(std::string_view name, std::string_view meaning) {
   return {.name = std::string(name), .meaning = std::string(meaning)};
 }
 
