@@ -1,0 +1,129 @@
+"""The boundary of a program beside the loop: foreign input becomes checked data here, or it is dropped.
+
+Every program of layer 4 subscribes with `subscribe`. A message stays bytes until it is checked: its size, its
+deserialization by the type's own code, and that its numbers are finite. Whatever else comes from outside (a message of
+a broker or of a page, an order, a file) is taken inside `crossing`. An input that is dropped is counted by its source
+and named in the log; the program goes on. An exception that the checks did not foresee first calls what `stops` has
+registered, because an input that surprises the program may have left it half way through a motion.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import threading
+import traceback
+from collections.abc import Callable, Collection, Iterator
+from functools import cache
+from typing import Any
+
+import genpy
+import rospy
+
+from robot_control.common.files import fit_for_message
+
+MAX_BYTES = 1 << 26
+"""of a message; a map of 8000 by 8000 cells"""
+FLOATS = ("float32", "float64")
+
+
+class UnfitError(ValueError):
+    """A message that cannot be used, with the reason."""
+
+
+class Boundary:
+    """The inputs that one program dropped, by their source; usable from every thread."""
+
+    def __init__(self, say: Callable[[str], None] = rospy.logwarn) -> None:
+        self.dropped: dict[str, int] = {}
+        """number of inputs by source; a source is a name of this program's own, never one from outside"""
+        self._say, self._lock = say, threading.Lock()
+        self._stops: list[Callable[[], None]] = []
+
+    def stops(self, stop: Callable[[], None]) -> None:
+        """`stop` ends what this program moves; it is called before an unforeseen exception is reported."""
+        self._stops.append(stop)
+
+    def drop(self, source: str, why: str) -> None:
+        """Counts an input that is not used; the log names the first, second, fourth, eighth … one of a source."""
+        with self._lock:
+            count = self.dropped[source] = self.dropped.get(source, 0) + 1
+        if count & (count - 1) == 0:
+            self._say(fit_for_message(f"{source}: an input is dropped ({count} until now): {why}"))
+
+    @contextlib.contextmanager
+    def crossing(self, source: str) -> Iterator[None]:
+        """The block takes one input of `source`; an exception drops this input."""
+        try:
+            yield
+        except UnfitError as error:
+            self.drop(source, str(error))
+        except Exception as error:  # all that the checks did not foresee
+            for stop in self._stops:
+                with contextlib.suppress(Exception):
+                    stop()
+            place = traceback.extract_tb(error.__traceback__)[-1]
+            self.drop(
+                source, f"{type(error).__name__}: {error} ({place.name}, line {place.lineno}); what moved is stopped"
+            )
+
+
+boundary = Boundary()
+"""of this program"""
+
+
+def subscribe(
+    topic: str, kind: type, receive: Callable[[Any], None], *, not_finite: Collection[str] = (), **options: Any
+) -> rospy.Subscriber:
+    """A subscriber whose callback gets checked messages of `kind` only.
+
+    Args:
+        topic: name; it is the source of what is dropped
+        kind: type of the messages; a publisher of another type is refused, as by any subscriber
+        receive: called in rospy's thread
+        not_finite: names of fields in which a NaN or an infinity has a meaning
+        options: as for `rospy.Subscriber`
+    """
+
+    def arrive(sealed: Any) -> None:
+        with boundary.crossing(topic):
+            receive(opened(sealed, not_finite))
+
+    return rospy.Subscriber(topic, _sealed(kind), arrive, **options)
+
+
+@cache
+def _sealed(kind: type) -> type:
+    """The type as it is on the wire, whose messages stay bytes. rospy has one type per topic and process."""
+    own = {name: getattr(kind, name) for name in ("_type", "_md5sum", "_has_header", "_full_text")}
+    return type(f"Sealed{kind.__name__}", (rospy.AnyMsg,), {**own, "__slots__": [], "kind": kind})
+
+
+def opened(sealed: Any, not_finite: Collection[str] = ()) -> Any:
+    """The checked message of the bytes. Raises UnfitError."""
+    data: bytes = sealed._buff  # all that AnyMsg has
+    if len(data) > MAX_BYTES:
+        raise UnfitError(f"has {len(data)} bytes, more than {MAX_BYTES}")
+    try:
+        message = sealed.kind().deserialize(data)
+    except (genpy.DeserializationError, UnicodeError, ValueError, TypeError, MemoryError, OverflowError) as error:
+        raise UnfitError(f"is no {sealed.kind._type}: {str(error)[:100]}") from None
+    require_finite(message, not_finite)
+    with contextlib.suppress(AttributeError):
+        message._connection_header = sealed._connection_header
+    return message
+
+
+def require_finite(message: Any, except_: Collection[str] = (), path: str = "") -> None:
+    """Raises UnfitError, with the field, where a number of a message is NaN or infinite."""
+    for name, kind in zip(message.__slots__, message._slot_types, strict=True):
+        if name in except_:
+            continue
+        value, where = getattr(message, name), f"{path}{name}"
+        element, is_array = kind.partition("[")[0], "[" in kind
+        if element in FLOATS:
+            if not (all(map(math.isfinite, value)) if is_array else math.isfinite(value)):
+                raise UnfitError(f"{where} must be finite")
+        elif "/" in element and element != "std_msgs/Header":
+            for each in value if is_array else (value,):
+                require_finite(each, except_, f"{where}.")
