@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from robot_control.fleet.client import RIVAL_SILENCE
+from robot_control.fleet.client import DUPLICATE_SILENCE
 
 from bench.fleet.attack import mutated
 from bench.fleet.messages import action, header, order
@@ -97,7 +97,7 @@ def test_a_second_client_of_the_serial_number_makes_the_robot_stand_until_a_pers
     assert "another client" in state["errors"][0]["errorDescription"]
     run.send(order(PLACES, 3, name="another"))
     assert run.client.resume() == "another client uses this serial number"
-    run.step(RIVAL_SILENCE)
+    run.step(DUPLICATE_SILENCE)
     assert not [each for each in run.state["errors"] if each["errorType"] == "connectionError"]
     assert run.state["paused"]
     assert run.robot.goals == goals

@@ -20,12 +20,6 @@ ROOT = Path(__file__).parents[2]
 LINE = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0)]
 
 
-@pytest.fixture(autouse=True)
-def without_schemas(monkeypatch):
-    """The order rules need no package; test_vda5050.py has the schemas."""
-    monkeypatch.setattr("robot_control.fleet.v2.messages._check_schema", lambda *_: None)
-
-
 def instant(*actions):
     return {**header(), "actions": list(actions)}
 

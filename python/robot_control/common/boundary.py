@@ -114,6 +114,22 @@ def opened(sealed: Any, not_finite: Collection[str] = ()) -> Any:
     return message
 
 
+def unsealed(kind: type, not_finite: Collection[str] = ()) -> type:
+    """The type for actionlib, which subscribes by itself: a message that is not fit arrives empty, for rospy would keep
+    what cannot be read, and read it again with every later message.
+    """
+
+    def deserialize(self: Any, data: bytes) -> Any:
+        sealed = _sealed(kind)().deserialize(data)
+        with boundary.crossing(kind._type):  # type: ignore[attr-defined]
+            message = opened(sealed, not_finite)
+            for name in kind.__slots__:  # type: ignore[attr-defined]
+                setattr(self, name, getattr(message, name))
+        return self
+
+    return type(kind.__name__, (kind,), {"__slots__": kind.__slots__, "deserialize": deserialize})  # type: ignore[attr-defined]
+
+
 def require_finite(message: Any, except_: Collection[str] = (), path: str = "") -> None:
     """Raises UnfitError, with the field, where a number of a message is NaN or infinite."""
     for name, kind in zip(message.__slots__, message._slot_types, strict=True):

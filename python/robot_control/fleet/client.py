@@ -5,14 +5,28 @@ neither ROS nor MQTT, whose parts it sees as `Robot` and as the list that `step`
 from __future__ import annotations
 
 import math
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Protocol
 
-from robot_control.common.pose import turned
+from robot_control.common.boundary import Boundary
 from robot_control.fleet.settings import Settings
 from robot_control.fleet.v2.capability import INSTANT, Capabilities
-from robot_control.fleet.v2.leg import Leg, PathPoint, Way, leg_of
-from robot_control.fleet.v2.messages import INBOUND, MAX_ID, Error, Message, RefusedError, decoded
+from robot_control.fleet.v2.leg import Leg, PathPoint, aligned, leg_of
+from robot_control.fleet.v2.messages import (
+    CONNECTIONS,
+    INBOUND,
+    LARGEST,
+    MAX_ID,
+    MAX_TEXT,
+    Error,
+    Message,
+    RefusedError,
+    decoded,
+    read,
+)
 from robot_control.fleet.v2.order import Action, Node, Order, order_of
 from robot_control.fleet.v2.state import STATE_PERIOD, Facts, Machine, factsheet, state, visualization
 from robot_control.fleet.v2.vehicle import FAILED, FINISHED, RUNNING, ActionState, Vehicle
@@ -26,9 +40,9 @@ GAP = 1.0
 """s without a pass after which messages may have waited, and for which they are then refused"""
 LATE = 0.4
 """s by which the distance that follow_path reports is late at most"""
-RIVAL_SILENCE = 60.0
+DUPLICATE_SILENCE = 60.0
 """s without a sign of another client of this serial number after which it is gone; it connects again within 30 s"""
-RIVAL = Error(
+DUPLICATE_CLIENT = Error(
     "connectionError",
     "another client uses this serial number",
     hint="give each robot a serial_number of its own; then stopPause or vda5050/resume",
@@ -78,57 +92,93 @@ class Robot(Protocol):
 class Client:
     """One robot; `step` is called 50 times per second."""
 
-    def __init__(self, robot: Robot, settings: Settings, machine: Machine, vehicle: Vehicle) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        settings: Settings,
+        machine: Machine,
+        vehicle: Vehicle,
+        keep: Callable[[Vehicle], str] = lambda _: "",
+        boundary: Boundary | None = None,
+    ) -> None:
+        """`keep` saves what an order makes of the vehicle; why it cannot, empty if it did. An exception that nothing
+        foresaw drops the order; `boundary` names it.
+        """
         self.robot, self.settings, self.machine, self.vehicle = robot, settings, machine, vehicle
+        self._keep, self._boundary = keep, boundary or Boundary()
+        self._boundary.stops(self.robot.stop)
+        self._boundary.stops(self._drop_order)
         self._leg: Leg | None = None
         self._facts = robot.facts()
         self._mode, self._permit = self._facts.mode, self._facts.permit
         self._driving_error: Error | None = None
+        self.file_problem = ""
+        """why the order's progress is not in the file; empty if it is"""
         self._outbox: list[tuple[str, Message]] = []
         self._sent_key: object = None  # what the last state said
         self._state_at = self._visualization_at = -math.inf
-        self._stepped_at, self._deaf_until = math.inf, -math.inf
-        self._rival_until = -math.inf
+        self._stepped_at, self._ignore_until = math.inf, -math.inf
+        self._duplicate_until = -math.inf
         self._planned: object = None  # revision of the order that the present leg is made of
-        self._asked = True  # a state is due, whatever it says
+        self._state_due = True  # whatever it says
 
     # messages
 
     def connected(self) -> None:
         """The broker is there (again): everything is sent at once."""
-        self._asked = True
+        self._state_due = True
         self._outbox.append(("factsheet", factsheet(self.machine)))
 
     def receive(self, topic: str, payload: bytes, now: float, *, retained: bool = False) -> None:
-        """Takes a message of the master at `now` s; one that waited while this program stood still moves nothing."""
-        try:
+        """Takes a message of the master at `now` s; one that waited while this program stood still moves nothing. What
+        surprises the program ends the leg and drops the order.
+        """
+        with self._boundary.crossing(topic), self._refusing(topic):
             if now - self._stepped_at > GAP:
-                self._deaf_until = now + GAP
-            if now < self._deaf_until:
+                self._ignore_until = now + GAP
+            if now < self._ignore_until:
                 raise RefusedError("orderError", f"{topic} came while the robot's client stood still: send it again")
-            if topic == "connection":  # the link passes on no own one
-                self._rival_until = now + RIVAL_SILENCE
-                return
-            if now < self._rival_until:
-                raise RefusedError("orderError", f"{topic}: {RIVAL.description}")
-            if topic not in INBOUND or retained:
+            if topic not in (*INBOUND, "connection") or (retained and topic != "connection"):
                 raise RefusedError("validationError", f"{topic} must not be retained: the robot cannot know its age")
+            if now < self._duplicate_until and topic != "connection":
+                raise RefusedError("orderError", f"{topic}: {DUPLICATE_CLIENT.description}")
+            if topic == "connection":
+                if read(payload).get("connectionState") in CONNECTIONS:  # the link passes on no own one
+                    self._duplicate_until = now + DUPLICATE_SILENCE
+                return
             message = decoded(payload, topic, self.settings.manufacturer, self.settings.serial_number)
             if topic == "order":
                 self._take_order(message)
             else:
                 for raw in message["actions"]:
-                    self._take_instant(Action.of(raw))
+                    with self._boundary.crossing(topic), self._refusing(topic):
+                        self._take_instant(Action.of(raw))
+
+    @contextmanager
+    def _refusing(self, topic: str) -> Iterator[None]:
+        """The block may refuse a message or an action of this topic, which the state reports."""
+        try:
+            yield
         except RefusedError as refused:
             self.vehicle.refuse(replace(refused.error, references=(*refused.error.references, ("topic", topic))))
+
+    def _drop_order(self) -> None:
+        """Called where an exception is handled that nothing foresaw: an order that led to it must not do so again."""
+        why = f"the order was dropped: {type(sys.exception()).__name__}: {sys.exception()}"[:MAX_TEXT]
+        self._leg, self._state_due = None, True
+        self._driving_error = Error("internalError", why, (), "the log of vda5050 names it; send another order")
+        self._interrupt(self.vehicle.clear("an internal error"))
 
     def _take_order(self, message: Message) -> None:
         order = order_of(message)
         new = order.id != self.vehicle.order_id
         if self._facts.mode != "AUTOMATIC":
             raise RefusedError("orderError", f"the mode is {self._facts.mode}", **order.references)
-        if self.vehicle.receive(order, self._near, self._refuse):
-            self._asked = True
+        taken = self.vehicle.copy()
+        if taken.receive(order, self._near, self._refuse, self._aligned):
+            if why := self._keep(taken):
+                raise RefusedError("orderError", f"the order cannot be kept over a restart: {why}", **order.references)
+            self.vehicle, self._state_due = taken, True
             self._driving_error = None if new else self._driving_error
 
     def _refuse(self, order: Order) -> None:
@@ -143,17 +193,16 @@ class Client:
         if node.place is None:
             return True  # refused with its reason by the capabilities
         off = math.dist((node.place.x, node.place.y), (self._facts.x, self._facts.y))
-        beyond = 0.0
-        if node.place.theta is not None and node.place.deviation_theta is not None:
-            beyond = abs(turned(node.place.theta - self._facts.theta)) - node.place.deviation_theta
-        near = off <= max(node.place.deviation_xy, self.settings.node_tolerance)
-        return near and beyond <= self.settings.heading_tolerance
+        return off <= max(node.place.deviation_xy, self.settings.node_tolerance)
+
+    def _aligned(self, node: Node) -> bool:
+        return aligned(node.place, self._facts.theta, self.settings.heading_tolerance)
 
     def _take_instant(self, action: Action) -> None:
         state = self.vehicle.add_instant(action)
         if state is None:
             return
-        self._asked = True
+        self._state_due = True
         try:
             Capabilities(actions=dict(self.machine.actions)).refuse_action(action, INSTANT)
         except RefusedError:
@@ -177,8 +226,8 @@ class Client:
         """stopPause, or the same at the robot; why it does not go on, empty if it does."""
         if not self._facts.may_drive or self._facts.silent:
             return "the safety monitor does not permit to drive, or it or odometry is silent"
-        if self._stepped_at < self._rival_until:
-            return RIVAL.description
+        if self._stepped_at < self._duplicate_until:
+            return DUPLICATE_CLIENT.description
         why = self.robot.resume() if self._facts.held_by else ""
         if not why:
             self.vehicle.paused, self._driving_error = False, None
@@ -193,13 +242,21 @@ class Client:
     def step(self, now: float) -> list[tuple[str, Message]]:
         """One pass at `now` s, monotonic; topics and messages that are due, without their headers."""
         self._stepped_at = now
+        with self._boundary.crossing("a pass"):
+            self._advance(now)
+        with self._boundary.crossing("a state"):
+            self._publish(now)
+        outbox, self._outbox = self._outbox, []
+        return outbox
+
+    def _advance(self, now: float) -> None:
         before, self._facts = self._facts, self.robot.facts()
         vehicle, facts = self.vehicle, self._facts
         vehicle.standing = not facts.driving and self.robot.progress.status != DRIVING
         if facts.mode != self._mode:
             self._mode = facts.mode
             self._interrupt(vehicle.clear(f"the mode became {facts.mode}"))
-        if vehicle.nodes and (now < self._rival_until or not facts.may_drive or facts.permit != self._permit):
+        if vehicle.nodes and (now < self._duplicate_until or not facts.may_drive or facts.permit != self._permit):
             vehicle.paused = True
         self._permit = facts.permit
         self._follow(before)
@@ -211,9 +268,6 @@ class Client:
             self._begin(begun)
         vehicle.settle()
         self._drive()
-        self._publish(now)
-        outbox, self._outbox = self._outbox, []
-        return outbox
 
     def _begin(self, state: ActionState) -> None:
         if state.action.kind != "initPosition":
@@ -226,8 +280,8 @@ class Client:
             x = y = theta = math.nan
         if self.vehicle.executing or not self.vehicle.standing:
             why = "the robot must stand without an order"
-        elif not math.isfinite(x + y + theta) or not 0 < len(str(given["mapId"])) <= MAX_ID:
-            why = "x, y and theta must be numbers, and mapId a name"
+        elif not all(abs(each) <= LARGEST for each in (x, y, theta)) or not 0 < len(str(given["mapId"])) <= MAX_ID:
+            why = f"x, y and theta must be numbers up to {LARGEST:g}, and mapId a name"
         else:
             why = self.robot.set_position(x, y, theta, str(given["mapId"]))
         if not why:
@@ -255,14 +309,17 @@ class Client:
             last = node is leg.nodes[-1]
             off = _from_segment(node.place.x, node.place.y, before, self._facts)
             if progress.status == DONE or (not last and off <= radius and progress.distance + late >= along - radius):
-                for ended in vehicle.traverse():
-                    self.robot.end(ended.action.id)
+                self._traverse()
             else:
                 if not last and progress.distance > along + radius:
                     self._fail(f"node {node.id} was passed at {off:.2f} m, more than {radius:g} m")
                 break
         if progress.status != DRIVING:
             self._leg = None
+
+    def _traverse(self) -> None:
+        for ended in self.vehicle.traverse():
+            self.robot.end(ended.action.id)
 
     def _fail(self, reason: str) -> None:
         node = self.vehicle.nodes[0].id if self.vehicle.nodes else ""
@@ -298,17 +355,20 @@ class Client:
 
     def _begin_leg(self, wanted: Leg) -> None:
         """Sends it from where the robot stands."""
-        vehicle = self.vehicle
         along, off = wanted.foot(self._facts.x, self._facts.y, OFF_EDGE)
-        if off > OFF_EDGE:
-            if not self._near(wanted.begin):
-                self._fail(f"the robot is {off:.2f} m off edge {vehicle.edges[0].id}, more than {OFF_EDGE:g} m")
-                return
-            wanted, along = _straight(wanted, self._facts), 0.0
+        if off > OFF_EDGE and not self._near(wanted.begin):
+            end = wanted.nodes[0].id
+            self._fail(f"the robot is {off:.2f} m off the way to node {end}, more than {OFF_EDGE:g} m")
+            return
+        if not wanted.length and self._aligned(wanted.nodes[0]):
+            self._traverse()
+            return
+        if off > OFF_EDGE or not wanted.length:
+            wanted, along = _from_here(wanted, self._facts), 0.0
         passed = [end for end in wanted.ends[:-1] if end <= along - self.settings.node_tolerance]
         if passed:  # while this program did not run; follow_path drove them as they were ordered
-            for ended in [each for _ in passed for each in vehicle.traverse()]:
-                self.robot.end(ended.action.id)
+            for _ in passed:
+                self._traverse()
             return
         self._send(wanted, min(along, wanted.length - REST))
 
@@ -334,11 +394,15 @@ class Client:
         vehicle, facts = self.vehicle, self._facts
         if self._driving_error is not None:
             facts = replace(facts, errors=(*facts.errors, self._driving_error))
-        if now < self._rival_until:
-            facts = replace(facts, errors=(*facts.errors, RIVAL))
+        if self.file_problem:
+            error = Error("fileError", self.file_problem[:MAX_TEXT], (), "free the disk, or repair the file")
+            facts = replace(facts, errors=(*facts.errors, error))
+        if now < self._duplicate_until:
+            facts = replace(facts, errors=(*facts.errors, DUPLICATE_CLIENT))
         short = self._base_is_short
         key = (
             vehicle.revision,
+            tuple(vehicle.refusals),
             short,
             facts.driving,
             facts.mode,
@@ -347,8 +411,8 @@ class Client:
             facts.held_by,
             facts.errors,
         )
-        if self._asked or key != self._sent_key or now - self._state_at >= STATE_PERIOD:
-            self._asked, self._sent_key, self._state_at = False, key, now
+        if self._state_due or key != self._sent_key or now - self._state_at >= STATE_PERIOD:
+            self._state_due, self._sent_key, self._state_at = False, key, now
             charge = self.settings.unknown_battery_charge
             self._outbox.append(("state", state(vehicle, facts, charge, new_base=short)))
         if self.settings.visualization_rate * (now - self._visualization_at) >= 1:
@@ -364,8 +428,8 @@ def _from_segment(x: float, y: float, a: Facts, b: Facts) -> float:
     return math.hypot(x - a.x - share * dx, y - a.y - share * dy)
 
 
-def _straight(leg: Leg, facts: Facts) -> Leg:
-    """The leg whose first edge begins where the robot stands, within the deviation that the master allows."""
-    first = leg.ways[0]
-    way = Way(((facts.x, facts.y), first.points[-1]), first.sign, first.speed, first.turn_speed)
-    return Leg(leg.begin, (way, *leg.ways[1:]), leg.nodes)
+def _from_here(leg: Leg, facts: Facts) -> Leg:
+    """The leg whose first edge, or turn, begins where the robot stands, within the deviation that the master allows."""
+    first, here = leg.ways[0], (facts.x, facts.y)
+    points = (here, first.points[-1]) if len(first.points) > 1 else (here,)
+    return Leg(leg.begin, (replace(first, points=points), *leg.ways[1:]), leg.nodes)

@@ -12,6 +12,7 @@ from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
 from robot_control.blackbox.main import LOGS, incidents_of
+from robot_control.common.topic_sender import Sender
 from robot_control.fleet.settings import CustomAction
 from robot_control.fleet.v2.order import Action
 from robot_control.fleet.v2.vehicle import FAILED, FINISHED
@@ -27,10 +28,12 @@ class Actions:
         self._results: queue.SimpleQueue[Result] = queue.SimpleQueue()
         self._ends: dict[str, tuple[float, str]] = {}  # s, monotonic; its topic or service, empty: waitForTrigger
         self._topics = {
-            each.topic: rospy.Publisher(each.topic, Bool, queue_size=1, latch=True)
+            each.topic: Sender(rospy.Publisher(each.topic, Bool, queue_size=1, latch=True), Bool(data=False))
             for each in custom.values()
             if each.topic
         }
+        for topic in self._topics.values():
+            topic.send(Bool(data=False))  # a program that was killed could not
 
     def begin(self, action: Action) -> None:
         """Its end comes with `results`."""
@@ -44,7 +47,7 @@ class Actions:
             seconds = custom.seconds if custom.topic else custom.timeout
             self._ends[action.id] = time.monotonic() + seconds, custom.topic or custom.service
             if custom.topic:
-                self._topics[custom.topic].publish(data=True)
+                self._topics[custom.topic].send(Bool(data=True))
             else:
                 threading.Thread(target=self._call, args=(action.id, custom), daemon=True).start()
 
@@ -55,7 +58,7 @@ class Actions:
             return False
         del self._ends[action_id]
         if name:
-            self._topics[name].publish(data=False)
+            self._topics[name].send(Bool(data=False))
         return True
 
     def trigger(self) -> bool:
@@ -72,7 +75,7 @@ class Actions:
             if time.monotonic() < end:
                 continue
             if name in self._topics:
-                self._topics[name].publish(data=False)
+                self._topics[name].send(Bool(data=False))
                 ended.append((action_id, FINISHED, ""))
             else:
                 ended.append((action_id, FAILED, f"{name} did not answer in time"))

@@ -1,24 +1,36 @@
-"""The connection to the broker (6.2, 6.14): what is sent with which quality, and what was received."""
+"""The connection to the broker (6.2, 6.14): what is sent with which quality, and what was received.
+
+Another client of the same serial number shows itself on `connection`. What this robot sent there comes back, too: at
+once; after a reconnection, when paho sends again what was not acknowledged; and retained, even years old, from a broker
+that was restored. So the file holds the digests of the last OWN of them. An empty message only ends a retained one.
+"""
 
 from __future__ import annotations
 
+import hashlib
 import math
 import queue
 import ssl
 import sys
 import time
+from collections import deque
 from typing import Any
 
 import paho.mqtt.client as mqtt
 
+from robot_control.common.boundary import UnfitError, boundary
 from robot_control.fleet.memory import Memory
 from robot_control.fleet.settings import Settings
 from robot_control.fleet.v2.messages import INBOUND, MAX_BYTES, Message, encoded, time_text
 
 RETRY = (1, 30)
 """s between two tries to connect: the first, and the longest after doubling"""
-WAITING = 50
-"""messages that may wait; more than a master sends in a second. Further ones are dropped"""
+WAITING = 1000
+"""messages that may wait; further ones are dropped. So many small ones are taken in 0.1 s, and a flood keeps no other out"""
+LARGE, SMALL = 50, 1 << 13
+"""messages that may wait where the next one is larger than so many bytes"""
+OWN = 200
+"""messages on `connection`; a robot that loses the broker each 30 s sends so many in 100 minutes"""
 BROKER_CHECK = 5.0
 """s between two looks of mosquitto for silent clients; by so much its will may come later than 1.5 keep-alives"""
 END = 2.0
@@ -31,11 +43,12 @@ class Link:
 
     def __init__(self, settings: Settings, memory: Memory) -> None:
         self._settings, self._memory = settings, memory
-        self.received: queue.Queue[tuple[str, bytes, bool]] = queue.Queue(WAITING)
+        self.received: queue.SimpleQueue[tuple[str, bytes, bool]] = queue.SimpleQueue()
         self.up = False
         self.came_up = False  # a connection was made; the reader sets it back
         self.reason = ""  # why there is none
         self._connections = 0
+        self._own: deque[str] = deque(memory["connection"] or (), OWN)
         name = f"{settings.manufacturer}-{settings.serial_number}"
         self._client = mqtt.Client(client_id=name, clean_session=True)
         self._client.on_connect, self._client.on_disconnect = self._connected, self._disconnected
@@ -48,7 +61,6 @@ class Link:
             self._client.tls_set(settings.ca_file, *certificate, tls_version=ssl.PROTOCOL_TLS_CLIENT)
         broken = self._bytes("connection", {"connectionState": "CONNECTIONBROKEN"})
         self._client.will_set(self._topic("connection"), broken, qos=1, retain=True)
-        self._own = [broken, b""]  # what this program says on `connection`: the will, and the last message
 
     def begin(self) -> None:
         """Connects, now or as soon as the broker answers."""
@@ -61,8 +73,6 @@ class Link:
         if not self.up:
             return None
         quality, payload = int(topic == "connection"), self._bytes(topic, message)
-        if topic == "connection":
-            self._own[1] = payload
         return self._client.publish(self._topic(topic), payload, qos=quality, retain=topic in RETAINED)
 
     def end(self) -> None:
@@ -85,7 +95,11 @@ class Link:
             "manufacturer": self._settings.manufacturer,
             "serialNumber": self._settings.serial_number,
         }
-        return encoded({**header, **message})
+        payload = encoded({**header, **message})
+        if topic == "connection":
+            self._own.append(_digest(payload))
+            self._memory.save(connection=list(self._own))
+        return payload
 
     def _connected(self, client: mqtt.Client, _data: Any, _flags: Any, code: int) -> None:
         self.reason = mqtt.connack_string(code) if code else ""
@@ -105,12 +119,17 @@ class Link:
         self.reason = self.reason or (mqtt.error_string(code) if code else "")
 
     def _message(self, _client: mqtt.Client, _data: Any, message: mqtt.MQTTMessage) -> None:
-        topic = message.topic.rpartition("/")[2]
-        before = message.retain and self._connections == 1  # of this robot's program before
-        if topic == "connection" and (before or message.payload in self._own):
-            return
-        try:
+        with boundary.crossing("mqtt"):  # an exception would end paho's thread
+            topic = message.topic.rpartition("/")[2]
             payload = message.payload[: MAX_BYTES + 1]  # one byte more than is taken
-            self.received.put_nowait((topic, payload, bool(message.retain)))
-        except queue.Full:
-            self.reason = f"more than {WAITING} messages wait: one was dropped"
+            if topic == "connection":
+                before = message.retain and self._connections == 1  # of this robot's program before
+                if before or not payload or _digest(payload) in self._own:
+                    return
+            if self.received.qsize() >= (WAITING if len(payload) <= SMALL else LARGE):
+                raise UnfitError(f"{topic}: {self.received.qsize()} messages wait")
+            self.received.put((topic, payload, bool(message.retain)))
+
+
+def _digest(payload: bytes) -> str:
+    return hashlib.sha256(payload).hexdigest()[:16]

@@ -3,30 +3,38 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import rospy
 from std_srvs.srv import Trigger, TriggerResponse
 
 from robot_control._robot_control import ParameterError, RobotError
+from robot_control.common.boundary import boundary
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import fit_for_message, given_path
+from robot_control.common.files import InputFileError, fit_for_message, given_path
 from robot_control.common.ros_node import running_node
 from robot_control.common.server_values import ServerValueError
 from robot_control.common.settings_files import SettingsError
 from robot_control.common.topic_sender import Signals
 from robot_control.fleet.client import DRIVING, Client
 from robot_control.fleet.machine import machine_of, running_description
-from robot_control.fleet.memory import Memory, MemoryFileError
+from robot_control.fleet.memory import Memory
 from robot_control.fleet.robot import RosRobot
 from robot_control.fleet.settings import Settings, read_settings
+from robot_control.fleet.v2.messages import LARGEST, MAX_TEXT, Error
 from robot_control.fleet.v2.vehicle import Vehicle
 from robot_control.installed_files import share_file
 
 PERIOD = 0.02
 """s of one pass; odometry comes as often"""
+RECEIVING = 0.01
+"""s of a pass for the messages of the master; what waits then is for the next pass"""
+SAVE_AGAIN = 1.0
+"""s after which a file that could not be written is tried again"""
 END = 3.0
 """s for the robot to stop when the program is ended"""
 MISSING = "needs Debian's python3-paho-mqtt and python3-jsonschema: scripts/setup --fleet"
@@ -36,18 +44,18 @@ class Node:
     """The client with its robot, its link and its file."""
 
     def __init__(self, settings: Settings) -> None:
-        """Raises OSError, MemoryFileError, and what `running_description` raises."""
+        """Raises OSError, InputFileError, and what `running_description` raises."""
         from robot_control.fleet.link import Link
 
         self._memory = Memory(settings.memory)
-        self.robot = RosRobot(settings, self._memory["position"])
-        vehicle = Vehicle()
-        if self._memory["vehicle"]:
-            vehicle.load(self._memory["vehicle"])
-        self.client = Client(self.robot, settings, machine_of(running_description(), settings), vehicle)
+        vehicle, position = recalled(self._memory)
+        self.robot = RosRobot(settings, position)
+        machine = machine_of(running_description(), settings)
+        self.client = Client(self.robot, settings, machine, vehicle, self._keep, boundary)
         self.link = Link(settings, self._memory)
         self._saved: object = None
-        self._reason = ""
+        self._save_at = -math.inf
+        self._reasons = {"broker": "", "file": ""}
         for name in ("pause", "resume", "trigger"):
             rospy.Service(f"~{name}", Trigger, getattr(self, f"_{name}"))
         self.robot.stop_all()
@@ -57,7 +65,8 @@ class Node:
         self.link.begin()
         due = time.monotonic()
         while signals.going_on():
-            self.step()
+            with boundary.crossing("vda5050"):
+                self.step()
             due = max(due + PERIOD, time.monotonic())
             time.sleep(max(0.0, due - time.monotonic()))
         self.robot.stop()
@@ -65,7 +74,8 @@ class Node:
         while self.robot.progress.status == DRIVING and time.monotonic() < end:
             time.sleep(PERIOD)
         self.client.vehicle.paused = bool(self.client.vehicle.nodes)
-        self.step()
+        with boundary.crossing("vda5050"):
+            self.step()
         self.link.end()
 
     def step(self) -> None:
@@ -74,24 +84,31 @@ class Node:
             self.link.came_up = False
             rospy.loginfo("connected to the broker")
             self.client.connected()
-        while not self.link.received.empty():
+        end = time.monotonic() + RECEIVING
+        while not self.link.received.empty() and time.monotonic() < end:
             topic, payload, retained = self.link.received.get()
             self.client.receive(topic, payload, time.monotonic(), retained=retained)
         outbox = self.client.step(time.monotonic())
-        self._save()
+        key = (self.client.vehicle.revision, self.robot.position)
+        if key != self._saved and time.monotonic() > self._save_at:
+            self._save_at = time.monotonic() + SAVE_AGAIN if self._keep(self.client.vehicle) else -math.inf
+        self.client.file_problem = self._memory.problem
         for topic, message in outbox:
             self.link.publish(topic, message)
-        if self.link.reason != self._reason:
-            self._reason = self.link.reason
-            if self._reason:
-                rospy.logwarn(f"broker: {self._reason}; the robot drives on to the end of its base")
+        self._report("broker", self.link.reason, "the robot drives on to the end of its base")
+        self._report("file", self._memory.problem, "no further order is taken that it cannot keep")
 
-    def _save(self) -> None:
+    def _report(self, what: str, reason: str, consequence: str) -> None:
+        if reason and reason != self._reasons[what]:
+            rospy.logwarn(f"{what}: {fit_for_message(reason)}; {consequence}")
+        self._reasons[what] = reason
+
+    def _keep(self, vehicle: Vehicle) -> str:
+        """Why it is not in the file; empty if it is."""
         position = self.robot.position
-        key = (self.client.vehicle.revision, position)
-        if key != self._saved:
-            self._saved = key
-            self._memory.save(vehicle=self.client.vehicle.dump(), position=position)
+        why = self._memory.save(vehicle=vehicle.dump(), position=position)
+        self._saved = self._saved if why else (vehicle.revision, position)
+        return why
 
     def _pause(self, _request: object) -> TriggerResponse:
         self.client.pause()
@@ -104,6 +121,25 @@ class Node:
     def _trigger(self, _request: object) -> TriggerResponse:
         triggered = self.robot.actions.trigger()
         return TriggerResponse(success=triggered, message="" if triggered else "no waitForTrigger runs")
+
+
+def recalled(memory: Memory) -> tuple[Vehicle, list[Any] | None]:
+    """The vehicle and the position of the program before; new ones where the file holds no such. Raises OSError."""
+    vehicle, position = Vehicle(), memory["position"]
+    try:
+        if memory["vehicle"]:
+            vehicle.load(memory["vehicle"])
+        if position is not None:
+            given, run = position
+            map_id, x, y, yaw = given or ["", 0.0, 0.0, 0.0]
+            if type(run) is not int or type(map_id) is not str or not all(abs(each) <= LARGEST for each in (x, y, yaw)):
+                raise ValueError("no position")
+    except (ValueError, TypeError, KeyError, AttributeError) as error:
+        memory.move_aside(f"{type(error).__name__}: {error}")
+        vehicle, position = Vehicle(), None
+    if memory.problem:
+        vehicle.refuse(Error("fileError", memory.problem[:MAX_TEXT], (), "send the order again"))
+    return vehicle, position
 
 
 def arguments(given: list[str]) -> argparse.Namespace:
@@ -134,5 +170,5 @@ def main() -> None:
     try:
         with running_node("vda5050") as signals:
             Node(settings).run(signals)
-    except (MemoryFileError, RobotError, ParameterError, ServerValueError) as error:
-        sys.exit(f"vda5050.py: {fit_for_message(str(error))}")
+    except (InputFileError, OSError, RobotError, ParameterError, ServerValueError) as error:
+        sys.exit(f"vda5050.py: {fit_for_message(in_words(error))}")

@@ -7,51 +7,69 @@ import threading
 from pathlib import Path
 from typing import Any
 
-from robot_control.common.files import write_durably
+from robot_control.common.file_errors import in_words
+from robot_control.common.files import check_input, write_durably
 
 BLOCK = 1000
 """headerIds that are reserved with one write: they grow over restarts, and a write per message is saved"""
+MAX_FILE = 1 << 24
+"""bytes; an order of 500 nodes has 200,000"""
 Content = dict[str, Any]
-
-
-class MemoryFileError(ValueError):
-    """The file holds something else; the message names it."""
 
 
 class Memory:
     """A file that holds the last state that was saved, whatever ends the program or the machine."""
 
     def __init__(self, path: Path) -> None:
-        """Raises OSError, MemoryFileError."""
+        """What is no content of this program is moved aside, with `.damaged` behind its name.
+
+        Raises:
+            OSError, InputFileError: there cannot be a file.
+        """
         self.path = path
+        self.problem = ""
+        """why the last content could not be saved, or was moved aside; empty if it is in the file"""
         path.parent.mkdir(parents=True, exist_ok=True)
         self._content: Content = {"headers": {}}
         if path.exists():
+            check_input(path, MAX_FILE)
             try:
                 self._content = json.loads(path.read_text(encoding="utf-8"))
-                self._content["headers"] = {str(name): int(at) for name, at in self._content["headers"].items()}
-            except (ValueError, KeyError, TypeError, AttributeError) as error:
-                raise MemoryFileError(f"{path} is not a file of vda5050.py ({error}); move it away") from None
+                self._content["headers"] = {name: int(at) % 2**32 for name, at in self._content["headers"].items()}
+                if not isinstance(self._content.get("connection", []), list):
+                    raise TypeError("connection is no list")
+            except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as error:
+                self._content = {"headers": {}}
+                self.move_aside(str(error))
         self._reserved: dict[str, int] = dict(self._content["headers"])
         self._next = dict(self._reserved)
         self._lock = threading.RLock()  # the link has a thread of its own
+
+    def move_aside(self, why: str) -> None:
+        """Begins anew; the file keeps its content under another name. Raises OSError."""
+        aside = self.path.with_name(f"{self.path.name}.damaged")
+        if self.path.exists():
+            self.path.replace(aside)
+        self._content = {"headers": self._content["headers"]}
+        self.problem = f"{self.path} was no file of vda5050.py ({why[:100]}) and is {aside} now: no order is known"
 
     def __getitem__(self, name: str) -> Any:
         """The value that was saved as `name`; None if there is none."""
         return self._content.get(name)
 
-    def save(self, **values: Any) -> None:
-        """Raises OSError."""
+    def save(self, **values: Any) -> str:
+        """Why these values are not in the file; empty if they are."""
         with self._lock:
-            self._write(values)
-
-    def _write(self, values: Content) -> None:
-        self._content |= values
-        self._content["headers"] = self._reserved
-        write_durably(self.path, json.dumps(self._content))
+            content = self._content | values | {"headers": self._reserved}
+            try:
+                write_durably(self.path, json.dumps(content))
+                self._content, self.problem = content, ""
+            except OSError as error:
+                self.problem = in_words(error)
+            return self.problem
 
     def header_id(self, topic: str) -> int:
-        """The next one of this topic. Raises OSError."""
+        """The next one of this topic; where the file cannot be written they begin again after a restart."""
         with self._lock:
             number = self._next.get(topic, 0)
             if number >= self._reserved.get(topic, 0):

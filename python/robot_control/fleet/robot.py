@@ -16,16 +16,26 @@ from sensor_msgs.msg import BatteryState
 from std_srvs.srv import Trigger
 from tf2_msgs.msg import TFMessage
 
+from robot_control.common.boundary import subscribe, unsealed
 from robot_control.common.pose import pose_of, turned
 from robot_control.fleet.client import DONE, DRIVING, ENDED, Progress
 from robot_control.fleet.custom import Actions
 from robot_control.fleet.settings import Settings
 from robot_control.fleet.v2.leg import PathPoint
-from robot_control.fleet.v2.messages import Error
+from robot_control.fleet.v2.messages import MAX_TEXT, Error
 from robot_control.fleet.v2.order import Action
 from robot_control.fleet.v2.state import Facts
-from robot_control.msg import FollowPathAction, FollowPathFeedback, FollowPathGoal, RobotStatus, SafetyStatus
+from robot_control.msg import (
+    FollowPathAction,
+    FollowPathActionFeedback,
+    FollowPathActionResult,
+    FollowPathFeedback,
+    FollowPathGoal,
+    RobotStatus,
+    SafetyStatus,
+)
 from robot_control.path.frames import Tf
+from robot_control.path.robot import subscribe_odometry
 from robot_control.path.waypoints import PathError
 from robot_control.safety.states import DRIVABLE, STOPPED
 from robot_control.safety.watch import CATCH_UP, LATE
@@ -38,8 +48,21 @@ STATUS_SILENCE = 3.0
 ACTION = "follow_path"
 JUMP = 0.5
 """m, rad beyond the measured motion: odometry was set, and map → odom does not hold any more"""
+UNMEASURED = tuple(BatteryState.__slots__)
+"""fields of battery_state in which NaN stands for nothing measured"""
+MAX_ERRORS = 20
+"""of each kind of errors in a state; the monitor has fewer causes"""
 SPEED_CHANGE = 1.0
 """m/s², rad/s² by which the robot may have been faster between two messages than at both"""
+
+
+class GuardedAction(FollowPathAction):  # type: ignore[misc]
+    """The action follow_path with results and feedback that are checked."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.action_result = unsealed(FollowPathActionResult)()
+        self.action_feedback = unsealed(FollowPathActionFeedback)()
 
 
 class RosRobot:
@@ -60,11 +83,12 @@ class RosRobot:
         self.map_odom: list[Any] | None = None  # mapId, x, y, yaw of odom in the map, if this program sets it
         self._tf = Tf() if settings.localization else None
         self._static = rospy.Publisher("tf_static", TFMessage, queue_size=1, latch=True)
-        rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1, tcp_nodelay=True)
-        rospy.Subscriber("safety_status", SafetyStatus, self._receive_safety, queue_size=1)
-        rospy.Subscriber("robot_status", RobotStatus, self._receive_status, queue_size=1)
-        rospy.Subscriber("battery_state", BatteryState, self._receive_battery, queue_size=1)
-        self._client = actionlib.ActionClient(ACTION, FollowPathAction)
+        subscribe_odometry(self._receive_odometry)
+        subscribe("safety_status", SafetyStatus, self._receive_safety, not_finite=("speed_limit",), queue_size=1)
+        unknown = ("odometry_confidence",)
+        subscribe("robot_status", RobotStatus, self._receive_status, not_finite=unknown, queue_size=1)
+        subscribe("battery_state", BatteryState, self._receive_battery, not_finite=UNMEASURED, queue_size=1)
+        self._client = actionlib.ActionClient(ACTION, GuardedAction)
         self._handles: list[actionlib.ClientGoalHandle] = []  # of goals that have not ended, the present one last
 
     def begin(self, action: Action) -> None:
@@ -258,7 +282,7 @@ class RosRobot:
 
 def _jumped(before: Odometry, after: Odometry) -> bool:
     """True if the pose moved by more than the measured speeds allow in the time between the two messages."""
-    elapsed = max(0.0, float((after.header.stamp - before.header.stamp).to_sec()))
+    elapsed = max(0.0, after.header.stamp.to_sec() - before.header.stamp.to_sec())
     a, b, twists = pose_of(before), pose_of(after), (before.twist.twist, after.twist.twist)
     way = JUMP + elapsed * (SPEED_CHANGE * elapsed + max(abs(twist.linear.x) for twist in twists))
     turn = JUMP + elapsed * (SPEED_CHANGE * elapsed + max(abs(twist.angular.z) for twist in twists))
@@ -272,7 +296,7 @@ def _silent(what: str, topic: str) -> Error:
 def _errors(safety: SafetyStatus) -> list[Error]:
     """Latched causes need a person at the robot; warnings and what is waited for end by themselves."""
     causes = [
-        Error(name, f"{sentence} {detail}".strip(), (("actor", actor),), remedy, fatal=True)
+        Error(name[:MAX_TEXT], f"{sentence} {detail}".strip()[:MAX_TEXT], (("actor", actor),), remedy, fatal=True)
         for name, sentence, remedy, actor, detail in zip(
             safety.causes, safety.sentences, safety.remedies, safety.actors, safety.details, strict=False
         )
@@ -283,4 +307,4 @@ def _errors(safety: SafetyStatus) -> list[Error]:
     waits = [Error("nodeMissing", f"{name} does not run", (), f"start {name}") for name in safety.missing]
     if safety.awaiting_zero_request:
         waits.append(Error("awaitingZeroRequest", "no zero velocity was requested since the start"))
-    return [*causes, *warnings, *waits]
+    return [*causes[:MAX_ERRORS], *warnings[:MAX_ERRORS], *waits[:MAX_ERRORS]]

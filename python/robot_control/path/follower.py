@@ -12,7 +12,7 @@ path lies at (x_L, y_L) in the robot's axes, turned by π if it drives backwards
 distance dᵢ is entered at its speed vᵢ.
 
 A path is driven in pieces (pieces.py). Between two of them, and at the end, the robot stands and turns on the spot:
-ω = ±min(ω_max, √(2·α·|error|)).
+ω = ±min(ω_max, √(2·α·|error|)). A path of one point with a heading is such a turn alone.
 
 Three things end a path of any form:
 
@@ -131,7 +131,7 @@ class Follower:
     @property
     def progress(self) -> float:
         """0 … 1"""
-        return 1.0 if self._state is State.DONE else 1.0 - self.remaining / self._route.length
+        return 1.0 if self._state is State.DONE else self.distance / (self._route.length or math.inf)
 
     def pause(self) -> None:
         """Stands until `resume` is called."""
@@ -187,14 +187,15 @@ class Follower:
         return Motion(math.copysign(driven, measured.linear), measured.angular * steered)
 
     def _begin(self, pose: Pose) -> None:
-        first = self._route.pieces[0]
-        distance = self._reachable = math.dist(first.points[0], (pose.x, pose.y))
+        distance = self._reachable = math.dist(self._route.begin, (pose.x, pose.y))
         if distance > self._parameters.start_distance:
             self.fail(
                 f"the path begins {distance:.2f} m from the robot, more than {self._parameters.start_distance:g} m"
             )
-        elif abs(turned(first.first_heading - pose.yaw)) < self._parameters.start_turn:
-            self._begin_piece(pose)
+        elif self._route.pieces:
+            heading = self._route.pieces[0].first_heading
+            if abs(turned(heading - pose.yaw)) < self._parameters.start_turn:
+                self._begin_piece(pose)
 
     def _begin_piece(self, pose: Pose) -> None:
         """The way back of what a robot strayed while it turned is no motion in vain; that of a jump is."""
@@ -234,6 +235,8 @@ class Follower:
     def _turn_limit(self) -> float:
         """rad/s on the spot: that of the segment that follows, at the end that of the last one."""
         pieces = self._route.pieces
+        if not pieces:
+            return min(self._route.turn_speed, self._parameters.max_angular_speed)
         piece = pieces[min(self._number, len(pieces) - 1)]
         at = piece.length if self._number == len(pieces) else 0.0
         return piece.turn_speed_at(at, self._parameters.max_angular_speed)

@@ -12,8 +12,9 @@ import rospy
 import tf2_py
 from tf2_msgs.msg import TFMessage
 
+from robot_control.common.boundary import subscribe
 from robot_control.common.pose import Pose, yaw_of
-from robot_control.path.waypoints import PathError, Waypoint, placed
+from robot_control.path.waypoints import FARTHEST, PathError, Waypoint, placed
 
 SILENCE = 1.0
 """s without a newer transform between two frames that move against each other"""
@@ -45,8 +46,9 @@ class Tf:
         self._buffer = tf2_py.BufferCore(rospy.Duration(10))
         self._lock = threading.Lock()
         self._complete_at = time.monotonic() + PATIENCE
-        rospy.Subscriber("tf", TFMessage, self._receive, self._buffer.set_transform, tcp_nodelay=True)
-        rospy.Subscriber("tf_static", TFMessage, self._receive, self._buffer.set_transform_static)
+        static = self._buffer.set_transform_static
+        subscribe("tf", TFMessage, lambda message: self._receive(message, self._buffer.set_transform), tcp_nodelay=True)
+        subscribe("tf_static", TFMessage, lambda message: self._receive(message, static))
 
     def lookup(self, target: str, source: str) -> Transform:
         """The newest transform; a missing one is waited for in the first PATIENCE seconds. Raises PathError: tf does
@@ -61,8 +63,10 @@ class Tf:
                 if time.monotonic() > self._complete_at:
                     raise PathError(f"tf does not connect the path's frame with the robot's: {error}") from None
             time.sleep(POLL_PERIOD)
-        shift = found.transform.translation
-        return Transform(Pose(shift.x, shift.y, yaw_of(found.transform.rotation)), found.header.stamp.to_sec())
+        shift, yaw = found.transform.translation, yaw_of(found.transform.rotation)
+        if not all(abs(number) <= FARTHEST for number in (shift.x, shift.y, yaw)):  # NaN is none, either
+            raise PathError(f"tf from {source!r} to {target!r} is beyond {FARTHEST:g} m")
+        return Transform(Pose(shift.x, shift.y, yaw), found.header.stamp.to_sec())
 
     def _receive(self, message: TFMessage, store: object) -> None:
         with self._lock:

@@ -127,10 +127,12 @@ class Piece:
 
 @dataclass(frozen=True)
 class Route:
-    """All pieces in their order."""
+    """All pieces in their order; none where the robot turns on the spot alone."""
 
     pieces: tuple[Piece, ...]
     end_heading: float  # rad
+    begin: Point
+    turn_speed: float  # rad/s at most, of a turn without pieces
 
     @property
     def length(self) -> float:
@@ -154,7 +156,8 @@ def route(waypoints: Sequence[Waypoint]) -> Route:
             pieces.append(Piece(part, signs[begin], speeds[begin:number], turn_speeds[begin:number]))
             begin = number
     end = points[-1].yaw
-    return Route(tuple(pieces), pieces[-1].last_heading if end is None else turned(end))
+    heading = pieces[-1].last_heading if end is None else turned(end)
+    return Route(tuple(pieces), heading, (points[0].x, points[0].y), points[-1].turn_speed or math.inf)
 
 
 def _held(given: list[float | None]) -> list[float | None]:

@@ -5,14 +5,18 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
+from typing import Any
 
 import rospy
 from nav_msgs.msg import Odometry
 
+from robot_control.common.boundary import UnfitError, subscribe
 from robot_control.common.command import Command
 from robot_control.common.command_topic import CommandTopic
+from robot_control.common.pose import pose_of
 from robot_control.common.roles import ESTIMATOR, MONITOR
 from robot_control.msg import DriveState, LegState, SafetyStatus
+from robot_control.path.waypoints import FARTHEST
 from robot_control.safety.states import DRIVABLE, STOPPED
 from robot_control.safety.watch import SafetyWatch
 
@@ -27,6 +31,22 @@ ZERO_PERIOD = 0.02
 """s between two zeros before a path begins; with a list of sources it begins when one of them commands"""
 CAUSE_DELAY = 0.3
 """s by which the cause of a stop may follow the refusal that it leads to: they come from two nodes"""
+
+
+MEASURED = ("wanted", "actual", "error", "effort", "load", "slip")
+"""fields of drive_state and leg_state in which NaN stands for nothing measured"""
+
+
+def subscribe_odometry(receive: Callable[[Odometry], None]) -> rospy.Subscriber:
+    """Messages of odom whose pose is a place, and whose speeds are some."""
+
+    def arrive(message: Odometry) -> None:
+        pose, twist = pose_of(message), message.twist.twist
+        if not all(abs(each) <= FARTHEST for each in (pose.x, pose.y, pose.yaw, twist.linear.x, twist.angular.z)):
+            raise UnfitError(f"holds a number beyond {FARTHEST:g}")
+        receive(message)
+
+    return subscribe("odom", Odometry, arrive, queue_size=1, tcp_nodelay=True)
 
 
 def in_words(safety: SafetyStatus) -> str:
@@ -47,9 +67,10 @@ class Robot:
         self.commands = False  # true if the commands of this program reach the joints
         self.refused_at = math.inf  # s, since when the controller awaits a zero from this program after a stop
         self.masked_by = ""
-        rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1, tcp_nodelay=True)
-        rospy.Subscriber("drive_state", DriveState, self._receive_state, queue_size=1, tcp_nodelay=True)
-        rospy.Subscriber("leg_state", LegState, self._receive_refusal, queue_size=1, tcp_nodelay=True)
+        subscribe_odometry(self._receive_odometry)
+        newest: dict[str, Any] = {"not_finite": MEASURED, "queue_size": 1, "tcp_nodelay": True}
+        subscribe("drive_state", DriveState, self._receive_state, **newest)
+        subscribe("leg_state", LegState, self._receive_refusal, **newest)
 
     @property
     def frames(self) -> tuple[str, str]:
@@ -131,7 +152,7 @@ class Robot:
         self.odometry, self.odometry_at = message, time.monotonic()
 
     def _receive_state(self, message: DriveState) -> None:
-        states = dict(text.split(": ", 1) for text in message.sources)
+        states = {name: state for name, _, state in (text.partition(": ") for text in message.sources)}
         state = states.get(SOURCE, "")
         self.masked_by = state if state.startswith(("masked", "locked")) else ""
         self._receive_refusal(message, chosen=state in {"", "commands"})

@@ -34,7 +34,7 @@ class Drive:
         self._robot, self._topic, self.follower, self._frame = robot, topic, follower, frame
         self._requested = requested
         self._lock = threading.Lock()  # services come in threads of their own
-        self._stamp: rospy.Time | None = None  # of the last odometry
+        self._stamp: float | None = None  # s, of the last odometry
         self.paused_by = ""
 
     def run(self, going_on: Callable[[], bool], poll: Callable[[], None]) -> None:
@@ -82,8 +82,8 @@ class Drive:
 
     def _elapsed(self, odometry: Odometry) -> float:
         """s since the last one; more than SILENCE would have ended the path."""
-        last, self._stamp = self._stamp or odometry.header.stamp, odometry.header.stamp
-        return min(max(0.0, float((self._stamp - last).to_sec())), SILENCE)
+        last, self._stamp = self._stamp, odometry.header.stamp.to_sec()
+        return min(max(0.0, self._stamp - (self._stamp if last is None else last)), SILENCE)
 
     def describe(self) -> str:
         """One line for the log."""

@@ -12,6 +12,7 @@ import actionlib
 import rospy
 from nav_msgs.msg import Path
 
+from robot_control.common.boundary import boundary, unsealed
 from robot_control.common.command import Command
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.ros_node import running_node
@@ -28,7 +29,7 @@ from robot_control.path.frames import Tf, located
 from robot_control.path.pieces import route
 from robot_control.path.robot import SOURCE, Robot
 from robot_control.path.run import Drive, PauseServices, message_of, points_of
-from robot_control.path.waypoints import PathError, checked, limited, shortened
+from robot_control.path.waypoints import FARTHEST, PathError, checked, limited, shortened
 from robot_control.safety.interruptions import GAP, requested_at
 
 NAME = "follow_path"
@@ -41,9 +42,9 @@ POLL_PERIOD = 0.05
 UNSTAMPED = f"a goal without goal_id.stamp counts as sent {GAP:g} s before it arrived"
 
 
-class TimedGoal(FollowPathActionGoal):  # type: ignore[misc]
+class TimedGoal(unsealed(FollowPathActionGoal)):  # type: ignore[misc]
     """A goal that notes its time of request: a long one takes seconds to be read, and actionlib stamps one without
-    time.
+    time. One that is not fit replaces the present goal and is refused, for it has no path.
     """
 
     stamped = False
@@ -54,9 +55,9 @@ class TimedGoal(FollowPathActionGoal):  # type: ignore[misc]
         """Called by rospy with the bytes of one message."""
         arrived = time.monotonic()
         super().deserialize(buffer)
-        stamp, now = self.goal_id.stamp, time.monotonic()
-        self.stamped = bool(stamp)
-        sent = now - (rospy.Time.now() - stamp).to_sec() if stamp else None
+        stamp, now = self.goal_id.stamp.to_sec(), time.monotonic()
+        self.stamped = stamp > 0
+        sent = now - (rospy.Time.now().to_sec() - stamp) if stamp else None
         self.requested = requested_at(arrived, sent)
         return self
 
@@ -80,6 +81,7 @@ class Server:
         self._idle = threading.Event()
         self._idle.set()
         self._action = actionlib.SimpleActionServer(NAME, TimedAction, self._execute, auto_start=False)
+        boundary.stops(self._stop)
         self._action.start()
 
     def attend(self) -> None:
@@ -90,23 +92,28 @@ class Server:
         """Waits after a signal for the end of the goal that is driven."""
         self._idle.wait(END)
 
+    def _stop(self) -> None:
+        if drive := self._services.drive:
+            drive.follower.fail("an input surprised follow_path, whose log names it. Start the path again")
+        self._topic.send(Command())
+
     def _going_on(self) -> bool:
         return self._signals.going_on() and not self._action.is_preempt_requested()
 
     def _execute(self, goal: FollowPathGoal) -> None:
         self._idle.clear()
-        result = FollowPathResult()
-        try:
-            result.reason = self._drive(goal, result)
-        except PathError as error:
-            result.reason = str(error)
-        finally:
-            self._services.drive = None
-            replaced = self._action.is_new_goal_available()
-            if result.reason or not replaced:
-                self._topic.send(Command())
-            self._conclude(result, replaced=replaced)
-            self._idle.set()
+        result = FollowPathResult(reason="the goal surprised follow_path, whose log names it")
+        with boundary.crossing(NAME):
+            try:
+                result.reason = self._drive(goal, result)
+            except PathError as error:
+                result.reason = str(error)
+        self._services.drive = None
+        replaced = self._action.is_new_goal_available()
+        if result.reason or not replaced:
+            self._topic.send(Command())
+        self._conclude(result, replaced=replaced)
+        self._idle.set()
 
     def _conclude(self, result: FollowPathResult, *, replaced: bool) -> None:
         if result.reason == "done":
@@ -122,7 +129,7 @@ class Server:
 
     def _drive(self, goal: FollowPathGoal, result: FollowPathResult) -> str:
         """Why the path ended. Raises PathError: the goal cannot be driven."""
-        if not (math.isfinite(goal.speed) and goal.speed >= 0):
+        if not 0 <= goal.speed <= FARTHEST:
             raise PathError(f"speed is {goal.speed:g} m/s: it must be a number from zero on; zero is the default")
         message = self._action.current_goal.goal
         points = limited(points_of(goal.path), goal.speeds, goal.turn_speeds)
@@ -178,7 +185,7 @@ class Reporter:
             FollowPathFeedback(
                 state=follower.state.name.lower(),
                 reason=self._drive.paused_by,
-                progress=distance / (distance + follower.remaining),
+                progress=follower.progress if not distance else distance / (distance + follower.remaining),
                 distance=distance,
                 remaining_distance=follower.remaining,
                 cross_track_error=follower.cross_track_error,

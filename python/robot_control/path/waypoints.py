@@ -14,6 +14,8 @@ MAX_POINTS = 100_000
 """points"""
 MAX_FILE = 1 << 24
 """bytes of a CSV file"""
+FARTHEST = 1e6
+"""m, m/s, rad; a larger number in a path or in odometry is none: its square may overflow"""
 JUMP, JUMP_RATIO, ENOUGH = 1.0, 20.0, 10
 """m, times the median distance, points: in a path of so many a longer step than both is an error"""
 
@@ -35,10 +37,10 @@ class Waypoint:
 
 
 def checked(points: Sequence[Waypoint]) -> list[Waypoint]:
-    """The points without repetitions; the last one's yaw stays.
+    """The points without repetitions; the last one's yaw stays. A single point with a yaw is a turn on the spot.
 
     Raises:
-        PathError: fewer than two points, a number that is not finite, a speed that is not above zero, a jump.
+        PathError: fewer than two points and no turn, a number that is none, a speed that is not above zero, a jump.
     """
     if len(points) > MAX_POINTS:
         raise PathError(f"the path has {len(points)} points, more than {MAX_POINTS}")
@@ -46,6 +48,8 @@ def checked(points: Sequence[Waypoint]) -> list[Waypoint]:
         numbers = (point.x, point.y, point.yaw or 0.0, point.speed or 0.0)
         if not all(map(math.isfinite, numbers)):
             raise PathError(f"point {number} of the path holds a number that is not finite")
+        if max(map(abs, numbers)) > FARTHEST:
+            raise PathError(f"point {number} of the path holds a number beyond {FARTHEST:g}")
         if point.speed is not None and point.speed <= 0:
             raise PathError(f"point {number} of the path has a speed of {point.speed:g} m/s: it must be above zero")
         if point.turn_speed is not None and not point.turn_speed > 0:
@@ -56,17 +60,19 @@ def checked(points: Sequence[Waypoint]) -> list[Waypoint]:
             kept[-1] = replace(kept[-1], yaw=point.yaw if point.yaw is not None else kept[-1].yaw)
         else:
             kept.append(point)
-    if len(kept) < 2:
+    if len(kept) < 2 and (not kept or kept[0].yaw is None):
         raise PathError(f"the path has {len(kept)} different points: it needs two at least")
     _refuse_jumps(kept)
     return kept
 
 
 def _refuse_jumps(points: list[Waypoint]) -> None:
+    if len(points) < ENOUGH:
+        return
     lengths = [math.hypot(b.x - a.x, b.y - a.y) for a, b in itertools.pairwise(points)]
     median = sorted(lengths)[len(lengths) // 2]
     for number, length in enumerate(lengths):
-        if len(points) >= ENOUGH and length > max(JUMP, JUMP_RATIO * median):
+        if length > max(JUMP, JUMP_RATIO * median):
             raise PathError(
                 f"the path jumps by {length:.2f} m after point {number}, where its points are {median:.3g} m apart"
             )
@@ -96,6 +102,8 @@ def shortened(points: Sequence[Waypoint], begin_at: float) -> list[Waypoint]:
         PathError: it is not that long, or the length is none.
     """
     length = sum(math.hypot(b.x - a.x, b.y - a.y) for a, b in itertools.pairwise(points))
+    if begin_at == 0:
+        return list(points)
     if not 0 <= begin_at < length:
         raise PathError(f"begin_at is {begin_at:g} m: it must be from 0 to below the path's length, {length:.2f} m")
     speed, turn_speed, start = None, None, 0.0

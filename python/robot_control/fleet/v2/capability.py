@@ -9,9 +9,10 @@ from robot_control.fleet.v2.curve import STEP
 from robot_control.fleet.v2.leg import way_of
 from robot_control.fleet.v2.messages import RefusedError
 from robot_control.fleet.v2.order import Action, Node, Order
+from robot_control.path.waypoints import JUMP
 
-MAX_POINTS = 20_000
-"""of all edges of an order: a longer one takes seconds to plan"""
+MAX_POINTS = 10_000
+"""of all edges of an order: 500 m of curves, which are planned in less than 0.1 s"""
 INSTANT, NODE, EDGE = "INSTANT", "NODE", "EDGE"
 
 
@@ -68,7 +69,7 @@ class Capabilities:
             raise RefusedError("orderError", "the position of the robot is not initialized: send initPosition")
         if order.zone_set:
             raise RefusedError("orderError", "the robot knows no zones", parameter="zoneSetId")
-        points = 0
+        points = 0.0
         nodes = [last or order.nodes[0], *order.nodes[1:]]
         for node in nodes:
             if node.place is None:
@@ -85,9 +86,10 @@ class Capabilities:
                 why = f"edge {edge.id}: maxHeight is below the robot's {self.height:g} m"
                 raise RefusedError("orderError", why, edgeId=edge.id, parameter="maxHeight")
             if begin.place is not None and end.place is not None:
-                points += len(way_of(edge, begin.place, end.place).points)
+                way = way_of(edge, begin.place, end.place)
+                points += len(way.points) + way.length / JUMP
             if points > MAX_POINTS:
-                why = f"edge {edge.id}: the trajectories have more than {MAX_POINTS} points, one each {STEP:g} m"
+                why = f"edge {edge.id}: the way has more than {MAX_POINTS} points, one each {STEP:g} to {JUMP:g} m"
                 raise RefusedError("orderError", why, edgeId=edge.id, parameter="trajectory")
             for action in edge.actions:
                 self.refuse_action(action, EDGE)

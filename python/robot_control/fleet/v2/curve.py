@@ -8,8 +8,10 @@ by de Boor's algorithm in homogeneous coordinates: L. Piegl, W. Tiller, The NURB
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
 from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
 
 from robot_control.fleet.v2.messages import Message
 
@@ -19,6 +21,8 @@ STEP = 0.05
 MAX_DEGREE = 10
 MAX_LENGTH = 200.0
 """m along the control points of one edge"""
+MAX_WEIGHT_RATIO = 1e6
+"""of the largest weight of a curve to its smallest one; in the books both are near 1"""
 
 
 class CurveError(ValueError):
@@ -36,9 +40,11 @@ def points_of(trajectory: Message) -> list[Point]:
     if any(b < a for a, b in pairwise(knots)) or knots[degree] == knots[count]:
         raise CurveError("knotVector must not fall, and must rise between its ends")
     weights = [each.get("weight", 1.0) for each in controls]
-    if min(weights) <= 0:
-        raise CurveError("every weight must be above zero")
-    homogeneous = [(w * each["x"], w * each["y"], w) for w, each in zip(weights, controls, strict=True)]
+    heaviest = max(weights)
+    if min(weights) <= 0 or min(weights) < heaviest / MAX_WEIGHT_RATIO:
+        raise CurveError(f"every weight must be above zero, and at least {1 / MAX_WEIGHT_RATIO:g} of the largest one")
+    shares = [weight / heaviest for weight in weights]
+    homogeneous = [(w * each["x"], w * each["y"], w) for w, each in zip(shares, controls, strict=True)]
     length = sum(math.dist((a["x"], a["y"]), (b["x"], b["y"])) for a, b in pairwise(controls))
     if length > MAX_LENGTH:
         raise CurveError(f"its control points are {length:.0f} m long, more than {MAX_LENGTH:g} m")
@@ -46,18 +52,19 @@ def points_of(trajectory: Message) -> list[Point]:
     if degree == 1:
         return [(each["x"], each["y"]) for each in controls]
     steps = max(2 * count, math.ceil(length / STEP))
-    return [_at(begin + (end - begin) * n / steps, degree, knots, homogeneous) for n in range(steps + 1)]
+    return _at(np.linspace(begin, end, steps + 1), degree, np.asarray(knots, float), np.asarray(homogeneous))
 
 
-def _at(u: float, degree: int, knots: list[float], controls: list[tuple[float, float, float]]) -> Point:
-    span = min(max(bisect_right(knots, u) - 1, degree), len(controls) - 1)
-    while knots[span] == knots[span + 1]:
-        span -= 1  # u is the last knot
-    local = [list(controls[span - degree + n]) for n in range(degree + 1)]
+def _at(u: NDArray[np.float64], degree: int, knots: NDArray[np.float64], controls: NDArray[np.float64]) -> list[Point]:
+    """`controls`: (count, 3), homogeneous."""
+    inside = knots[: len(controls) + 1]
+    last = int(np.searchsorted(inside, inside[-1])) - 1  # the span that ends with the last knot
+    span = np.clip(np.searchsorted(inside, u, side="right") - 1, degree, last)
+    local = controls[span[:, None] + np.arange(-degree, 1)]
     for level in range(1, degree + 1):
         for n in range(degree, level - 1, -1):
             low, high = knots[span - degree + n], knots[span + 1 + n - level]
-            share = 0.0 if high == low else (u - low) / (high - low)
-            local[n] = [(1 - share) * a + share * b for a, b in zip(local[n - 1], local[n], strict=True)]
-    x, y, w = local[degree]
-    return x / w, y / w
+            share = np.divide(u - low, high - low, out=np.zeros_like(u), where=high > low)[:, None]
+            local[:, n] = (1 - share) * local[:, n - 1] + share * local[:, n]
+    points: list[Point] = list(map(tuple, (local[:, degree, :2] / local[:, degree, 2:]).tolist()))
+    return points

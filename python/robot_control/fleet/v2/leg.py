@@ -1,7 +1,8 @@
 """The way from one stand to the next: what follow_path is given, and where its nodes lie on it.
 
 A leg ends where the robot has to stand: at the end of the base, and at a node with another orientation than the way. It
-also ends before a SOFT or HARD action, which belongs to the node or to the edge after it.
+also ends before a SOFT or HARD action, which belongs to the node or to the edge after it. An edge without length is a leg
+of its own, in which the robot turns to the orientation of its last node; so is the turn on the first node of an order.
 """
 
 from __future__ import annotations
@@ -16,14 +17,18 @@ from robot_control.common.pose import turned
 from robot_control.fleet.v2.curve import CurveError, Point, points_of
 from robot_control.fleet.v2.messages import Message, RefusedError
 from robot_control.fleet.v2.order import NONE, Edge, Node, Place
+from robot_control.path.follower import FollowParameters
 from robot_control.path.pieces import CORNER
+from robot_control.path.waypoints import JUMP
 
 SAME_HEADING = math.radians(2.0)
 """rad between two orientations that count as one"""
 END_GAP = 0.1
 """m that the ends of a trajectory may lie off their nodes"""
 SHORTEST = 0.02
-"""m of an edge that is driven"""
+"""m of an edge that is driven; a shorter one has no length"""
+SLOWEST = FollowParameters.slowest
+"""m/s, rad/s that follow_path keeps"""
 
 
 class PathPoint(NamedTuple):
@@ -40,7 +45,7 @@ class PathPoint(NamedTuple):
 class Way:
     """An edge as it is driven."""
 
-    points: tuple[Point, ...]
+    points: tuple[Point, ...]  # one: the robot stands
     sign: int  # −1: backwards
     speed: float  # m/s, 0: the speed of the robot
     turn_speed: float  # rad/s, 0: that of the robot
@@ -50,6 +55,11 @@ class Way:
         """m"""
         return sum(math.dist(a, b) for a, b in pairwise(self.points))
 
+    def limits(self, number: int, fastest: float) -> tuple[float, float, float]:
+        """yaw, speed and turn_speed of the points of a segment; `fastest`: m/s."""
+        yaw = self.heading(number) if len(self.points) > 1 else 0.0
+        return yaw, self.sign * min(self.speed or fastest, fastest), self.turn_speed
+
     def heading(self, number: int) -> float:
         """rad, of the robot on a segment."""
         (ax, ay), (bx, by) = self.points[number : number + 2] if number >= 0 else self.points[-2:]
@@ -57,7 +67,7 @@ class Way:
 
     def foot(self, x: float, y: float, start: float) -> tuple[float, float]:
         """Its nearest point: m along it plus `start`, m of distance."""
-        best = (0.0, math.inf)
+        best = (start, math.dist((x, y), self.points[0]))
         for (ax, ay), (bx, by) in pairwise(self.points):
             size = math.dist((ax, ay), (bx, by))
             share = min(1.0, max(0.0, ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / size**2))
@@ -79,8 +89,9 @@ def way_of(edge: Edge, begin: Place, end: Place) -> Way:
             raise refused(field, "cannot be followed by this robot")
     if raw.get("minHeight", 0.0) > 0:
         raise refused("minHeight", "needs a load handling device, and the robot has none")
-    if not raw.get("maxSpeed", 1.0) > 0 or not raw.get("maxRotationSpeed", 1.0) > 0:
-        raise refused("maxSpeed" if raw.get("maxSpeed", 1.0) <= 0 else "maxRotationSpeed", "must be above zero")
+    for field in ("maxSpeed", "maxRotationSpeed"):
+        if raw.get(field, SLOWEST) < SLOWEST:
+            raise refused(field, f"must be at least {SLOWEST:g}")
     points: list[Point] = [(begin.x, begin.y), (end.x, end.y)]
     if "trajectory" in raw:
         try:
@@ -93,8 +104,10 @@ def way_of(edge: Edge, begin: Place, end: Place) -> Way:
     kept = [points[0]]
     kept += [b for a, b in pairwise(points) if b != a]
     way = Way(tuple(kept), 1, raw.get("maxSpeed", 0.0), raw.get("maxRotationSpeed", 0.0))
-    if len(kept) < 2 or way.length < SHORTEST:
-        raise refused("trajectory" if "trajectory" in raw else "endNodeId", f"is shorter than {SHORTEST:g} m")
+    if way.length < SHORTEST:
+        if raw.get("orientationType") == "GLOBAL":
+            raise refused("orientation", f"needs an edge of {SHORTEST:g} m: give theta to its last node")
+        return Way(way.points[-1:], 1, way.speed, way.turn_speed)
     if raw.get("rotationAllowed") is False and _sharpest(way) > CORNER:
         raise refused("rotationAllowed", "is false, and the trajectory has a corner")
     return Way(way.points, _sign(way, raw, refused), way.speed, way.turn_speed)
@@ -142,15 +155,22 @@ class Leg:
         return self.ends[-1]
 
     def path(self, fastest: float) -> list[PathPoint]:
-        """Its points; the last one's yaw is the orientation of the last node, if it has one. `fastest`: m/s."""
+        """Its points; the last one's yaw is the orientation of the last node, if it has one. `fastest`: m/s.
+
+        Beside a curve a straight edge has points, too: in a path of close points follow_path refuses a long step.
+        """
+        dense = any(len(way.points) > 2 for way in self.ways)
         result = [
-            PathPoint(x, y, way.heading(number), way.sign * min(way.speed or fastest, fastest), way.turn_speed)
+            PathPoint(ax + (bx - ax) * part / parts, ay + (by - ay) * part / parts, *way.limits(number, fastest))
             for way in self.ways
-            for number, (x, y) in enumerate(way.points[:-1])
+            for number, ((ax, ay), (bx, by)) in enumerate(pairwise(way.points))
+            for parts in [math.ceil(math.dist((ax, ay), (bx, by)) / JUMP) if dense else 1]
+            for part in range(parts)
         ]
         last, place = self.ways[-1], self.nodes[-1].place
-        yaw = last.heading(-1) if place is None or place.theta is None else place.theta
-        return [*result, PathPoint(*last.points[-1], yaw, result[-1].speed, last.turn_speed)]
+        yaw, *limits = last.limits(-1, fastest)
+        theta = yaw if place is None or place.theta is None else place.theta
+        return [*result, PathPoint(*last.points[-1], theta, *limits)]
 
     def without_driven(self, along: float) -> tuple[Leg, float]:
         """The leg from the edge on which the robot is, and the distance on it."""
@@ -169,7 +189,11 @@ class Leg:
 
 
 def leg_of(begin: Node, base: Sequence[Node | Edge], tolerance: float) -> Leg:
-    """The leg from a node over the base, which begins with an edge. `tolerance`: rad, of an orientation."""
+    """The leg from a node over the base. It begins with an edge, or with this node, which is then not reached before
+    the robot has its orientation. `tolerance`: rad, of an orientation.
+    """
+    if base and isinstance(base[0], Node) and begin.place is not None:
+        return Leg(begin, (Way(((begin.place.x, begin.place.y),), 1, 0.0, 0.0),), (begin,))
     ways: list[Way] = []
     nodes: list[Node] = []
     for edge, node in zip(base[::2], base[1::2], strict=False):
@@ -180,14 +204,19 @@ def leg_of(begin: Node, base: Sequence[Node | Edge], tolerance: float) -> Leg:
             break
         if nodes and any(action.blocking != NONE for action in edge.actions):
             break
-        ways.append(way_of(edge, before.place, node.place))
+        way = way_of(edge, before.place, node.place)
+        if nodes and not way.length:
+            break
+        ways.append(way)
         nodes.append(node)
-        if any(action.blocking != NONE for action in node.actions) or _turns(node.place, ways[-1], tolerance):
+        blocks = any(action.blocking != NONE for action in node.actions)
+        if blocks or not way.length or not aligned(node.place, way.heading(-1), tolerance):
             break
     return Leg(begin, tuple(ways), tuple(nodes))
 
 
-def _turns(place: Place, way: Way, tolerance: float) -> bool:
-    if place.theta is None:
-        return False
-    return abs(turned(place.theta - way.heading(-1))) > max(place.deviation_theta or 0.0, tolerance)
+def aligned(place: Place | None, heading: float, tolerance: float) -> bool:
+    """True if a heading is the orientation of a node within its deviation, or the node has none."""
+    if place is None or place.theta is None:
+        return True
+    return abs(turned(place.theta - heading)) <= max(place.deviation_theta or 0.0, tolerance)

@@ -12,14 +12,19 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from robot_control.path.waypoints import FARTHEST
+
 Message = dict[str, Any]
 
 VERSIONS = ("2.1.0", "2.0.0")
 """that the headers may declare; the first one is what the schemas describe"""
 INBOUND = ("order", "instantActions")
+CONNECTIONS = ("ONLINE", "OFFLINE", "CONNECTIONBROKEN")
 MAX_BYTES = 1 << 18
 MAX_DEPTH = 16
 """levels of brackets; an order of the standard has 7"""
+MAX_VALUES = 40_000
+"""of all fields and entries; an order of MAX_BYTES has 20,000, and a foreign list of zeros six times as many"""
 MAX_NUMBER = 2**32 - 1
 """uint32 of headerId, orderUpdateId and sequenceId"""
 MAX_ID = 128
@@ -32,6 +37,15 @@ LIMITS = {"nodes": 500, "edges": 499, "actions": 32, "actionParameters": 32, "kn
 """entries of each array of that name"""
 TIME = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d{1,9})?Z")
 COUNTS = ("headerId", "orderUpdateId", "sequenceId")
+MEASURES = (
+    *("x", "y", "theta", "allowedDeviationXY", "allowedDeviationTheta", "orientation", "maxSpeed", "maxRotationSpeed"),
+    *("minHeight", "maxHeight", "degree", "knotVector", "weight"),
+)
+"""numbers of an order with which the robot computes"""
+LARGEST = FARTHEST
+"""of each of them, in SI units: a place 1000 km away is none, and the square of a far larger number overflows"""
+Where = tuple[Any, Any]
+"""of a field: that of the object or array in which it stands, and its name or number there; empty for the message"""
 
 
 @dataclass(frozen=True)
@@ -71,12 +85,10 @@ def decoded(payload: bytes, topic: str, manufacturer: str, serial_number: str) -
     Raises:
         RefusedError: validationError with the path of the field.
     """
-    message = _read(payload)
+    message = read(payload)
     if topic == "instantActions" and "instantActions" in message:
         message.setdefault("actions", message.pop("instantActions"))  # its name in some masters of 2.0.0
-    for path, value in _fields(message):
-        _check_field(path, value)
-    _check_schema(message, topic)
+    check(message, topic)
     for name, own in (("manufacturer", manufacturer), ("serialNumber", serial_number)):
         if message[name] != own:
             raise _malformed(name, "is that of another robot")
@@ -87,23 +99,54 @@ def decoded(payload: bytes, topic: str, manufacturer: str, serial_number: str) -
     return message
 
 
+def check(message: Message, topic: str) -> None:
+    """Raises RefusedError: validationError with the path of a field that the robot, or the schema, does not allow."""
+    whole, against = schema(topic), None
+    left: list[tuple[Where | None, str, Any, Message, int]] = [(None, "", message, whole, 0)]
+    values = 0
+    while left:
+        where, name, value, rules, depth = left.pop()
+        values += 1
+        if values > MAX_VALUES:
+            raise _malformed("", f"has more than {MAX_VALUES} values")
+        if depth > MAX_DEPTH:
+            raise _malformed("", TOO_DEEP)
+        if "$ref" in rules:
+            rules = whole["definitions"][rules["$ref"].rpartition("/")[2]]
+        if broken := _broken(name, value):
+            raise _malformed(_path(where), broken)
+        if not against and (broken := _against(value, rules)):
+            against = _malformed(_path(where), broken)
+        if isinstance(value, dict):
+            of = rules.get("properties", {})
+            left += [((where, key), key, each, of.get(key, {}), depth + 1) for key, each in value.items()]
+        elif isinstance(value, list):
+            of = rules.get("items", {})
+            left += [((where, number), name, each, of, depth + 1) for number, each in enumerate(value)]
+    if against:
+        raise against
+
+
+def _path(where: Where | None) -> str:
+    if where is None:
+        return ""
+    before, own = _path(where[0]), where[1]
+    return f"{before}[{own}]" if isinstance(own, int) else f"{before}.{own[:MAX_ID]}" if before else own[:MAX_ID]
+
+
 def _malformed(path: str, rule: str, **references: object) -> RefusedError:
     return RefusedError("validationError", f"{path or 'the message'} {rule}", parameter=path, **references)
 
 
-def _read(payload: bytes) -> Message:
+def read(payload: bytes) -> Message:
+    """The object of these bytes, in linear time. Raises RefusedError: validationError."""
     if len(payload) > MAX_BYTES:
         raise _malformed("", f"has {len(payload)} bytes, more than {MAX_BYTES}")
-    outside = re.sub(rb'"(?:\\.|[^"\\])*"', b"", payload)
-    depth = deepest = 0
-    for sign in re.findall(rb"[\[\]{}]", outside):
-        depth += 1 if sign in b"[{" else -1
-        deepest = max(deepest, depth)
-    if deepest > MAX_DEPTH:
-        raise _malformed("", f"is {deepest} levels deep, more than {MAX_DEPTH}")
     try:
-        message = json.loads(payload.decode(), parse_constant=_no_constant, object_pairs_hook=_unique)
-    except (ValueError, RecursionError) as error:
+        message = DECODER.decode(payload.decode())
+    except RecursionError:
+        raise _malformed("", TOO_DEEP) from None
+    except ValueError as error:
         raise _malformed("", f"is no JSON of UTF-8: {str(error)[:80]}") from None
     if not isinstance(message, dict):
         raise _malformed("", "must be an object")
@@ -121,30 +164,27 @@ def _unique(pairs: list[tuple[str, Any]]) -> Message:
     return result
 
 
-def _fields(value: Any, path: str = "") -> Any:
-    """Path and value of every field."""
-    yield path, value
-    if isinstance(value, dict):
-        for name, each in value.items():
-            yield from _fields(each, f"{path}.{name}" if path else name)
-    elif isinstance(value, list):
-        for number, each in enumerate(value):
-            yield from _fields(each, f"{path}[{number}]")
+DECODER = json.JSONDecoder(parse_constant=_no_constant, object_pairs_hook=_unique)
+NUMBER, NOTHING = "number", type(None)
+KINDS = {dict: "object", list: "array", str: "string", bool: "boolean", int: NUMBER, float: NUMBER, NOTHING: "null"}
+TOO_DEEP = f"is more than {MAX_DEPTH} levels deep"
 
 
-def _check_field(path: str, value: Any) -> None:
-    name = path.rpartition(".")[2]
+def _broken(name: str, value: Any) -> str:
+    """The rule that the value of a field, or of an array, of this name breaks; empty if it breaks none."""
     if isinstance(value, float) and not math.isfinite(value):
-        raise _malformed(path, "must be finite")
-    if isinstance(value, int) and abs(value) > 1 << 63:
-        raise _malformed(path, "must fit into 64 bits")
+        return "must be finite"
+    if isinstance(value, int | float):
+        if abs(value) > (LARGEST if name in MEASURES else 1 << 63):
+            return f"must be at most {LARGEST:g}" if name in MEASURES else "must fit into 64 bits"
+        if name in COUNTS and not 0 <= value <= MAX_NUMBER:
+            return f"must be from 0 to {MAX_NUMBER}"
     if isinstance(value, list) and len(value) > LIMITS.get(name, MAX_BYTES):
-        raise _malformed(path, f"has {len(value)} entries, more than {LIMITS[name]}")
-    if name in COUNTS and isinstance(value, int | float) and not 0 <= value <= MAX_NUMBER:
-        raise _malformed(path, f"must be from 0 to {MAX_NUMBER}")
+        return f"has {len(value)} entries, more than {LIMITS[name]}"
     wrong_id = isinstance(value, str) and (len(value) > MAX_ID or not value.isprintable() or set(value) & set(NO_ID))
     if name.endswith(("Id", "Type")) and wrong_id:
-        raise _malformed(path, f"must be at most {MAX_ID} printable characters, without {' '.join(NO_ID)}")
+        return f"must be at most {MAX_ID} printable characters, without {' '.join(NO_ID)}"
+    return ""
 
 
 @cache
@@ -155,16 +195,19 @@ def schema(topic: str) -> Message:
     return result
 
 
-@cache
-def _validator(topic: str) -> Any:
-    import jsonschema  # Debian's package of the section fleet; the order rules do not need it
-
-    return jsonschema.Draft202012Validator(schema(topic))
-
-
-def _check_schema(message: Message, topic: str) -> None:
-    for error in _validator(topic).iter_errors(message):
-        raise _malformed(error.json_path.removeprefix("$").removeprefix("."), error.message[:120])
+def _against(value: Any, rules: Message) -> str:
+    """The keyword of a schema that a value breaks; the standard's schemas know no other ones."""
+    whole = type(value) is int or (type(value) is float and value.is_integer())
+    if not any(kind in rules.get("type", kind) for kind in (KINDS[type(value)], *(["integer"] if whole else []))):
+        return f"must be of the type {rules['type']}"
+    if missing := [name for name in rules.get("required", ()) if name not in value]:
+        return f"needs {missing[0]}"
+    if value not in rules.get("enum", [value]):
+        return f"must be one of {', '.join(rules['enum'])}"
+    least, largest = rules.get("minimum", -math.inf), rules.get("maximum", math.inf)
+    if KINDS[type(value)] == NUMBER and not least <= value <= largest:
+        return f"must be from {least:g} to {largest:g}"
+    return ""
 
 
 def is_time(text: str) -> bool:

@@ -19,11 +19,11 @@ counted as reached is not measured again: its deviation held at that time.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
-from robot_control.fleet.v2.messages import Error, Message, RefusedError
-from robot_control.fleet.v2.order import HARD, NONE, Action, Edge, Node, Order, in_sequence
+from robot_control.fleet.v2.messages import Error, Message, RefusedError, check
+from robot_control.fleet.v2.order import HARD, NONE, Action, Edge, Node, Order, in_sequence, order_of
 
 WAITING, RUNNING, FINISHED, FAILED = "WAITING", "RUNNING", "FINISHED", "FAILED"
 OVER = (FINISHED, FAILED)
@@ -35,7 +35,7 @@ MAX_INSTANT = 100
 """finished instant actions that are kept until the next order; an older one makes room"""
 
 Near = Callable[[Node], bool]
-"""True if the robot stands on this node, within its deviation"""
+"""True if the robot stands on this node, within its deviation, or has its orientation"""
 
 
 @dataclass
@@ -75,13 +75,16 @@ class Vehicle:
 
     # what the master wants
 
-    def receive(self, order: Order, near: Near, refuse: Callable[[Order], None]) -> bool:
+    def receive(
+        self, order: Order, near: Near, refuse: Callable[[Order], None], aligned: Near = lambda _: True
+    ) -> bool:
         """True if the order, or the update, is taken; False if it is already here.
 
         Args:
             order: a valid one.
             near: says whether the robot stands on a node.
             refuse: raises RefusedError for what this robot cannot do.
+            aligned: says whether the robot has the orientation of a node.
 
         Raises:
             RefusedError: with the reason, for `refuse`.
@@ -90,6 +93,8 @@ class Vehicle:
             self._check_new(order, near)
             refuse(order)
             self._take_new(order)
+            if aligned(order.nodes[0]):
+                self.traverse()
         else:
             if order.update == self.update_id:
                 return False
@@ -159,7 +164,7 @@ class Vehicle:
         self.order_id, self.update_id = order.id, order.update
         self.nodes, self.edges = list(order.nodes), list(order.edges)
         self._add_actions(order.elements)
-        self.traverse()  # the robot stands on its first node
+        self.last = order.nodes[0]  # the robot stands on it
 
     def _take_update(self, order: Order) -> None:
         """The stitching node keeps its content; the horizon makes room for the new one."""
@@ -296,10 +301,18 @@ class Vehicle:
 
     @property
     def revision(self) -> object:
-        """Differs after every change of what the state says of the order."""
+        """Differs after every change of what `dump` holds."""
         statuses = tuple((each.action.id, each.status) for each in self.actions)
         point = (self.order_id, self.update_id, self.last_id, self.last_sequence, len(self.nodes), self.paused)
-        return *point, statuses, tuple(self.refusals)
+        return *point, statuses
+
+    def copy(self) -> Vehicle:
+        """One that changes without this one: an order is taken by it first, and it is then this one, or forgotten."""
+        other = Vehicle()
+        other.__dict__ |= self.__dict__
+        other.nodes, other.edges, other.refusals = [*self.nodes], [*self.edges], [*self.refusals]
+        other.actions = [replace(state) for state in self.actions]
+        return other
 
     # across a restart
 
@@ -315,15 +328,34 @@ class Vehicle:
         }
 
     def load(self, dumped: dict[str, Any]) -> None:
-        """Paused, if there is an order; what ran when the program ended has FAILED."""
+        """Paused, if there is an order; what ran when the program ended has FAILED.
+
+        Raises:
+            ValueError, TypeError, KeyError, AttributeError: it was not dumped like this; nothing of it may be used.
+        """
         self.order_id, self.update_id, self.last_id, self.last_sequence = dumped["ids"]
-        self.last = Node.of(dumped["last"]) if dumped["last"] else None
-        self.nodes, self.edges = list(map(Node.of, dumped["nodes"])), list(map(Edge.of, dumped["edges"]))
+        if [type(each) for each in dumped["ids"]] != [str, int, str, int]:
+            raise ValueError("no ids")
+        last, nodes, edges = dumped["last"], dumped["nodes"], dumped["edges"]
+        turns = nodes[:1] == [last]  # on the first node, which is not reached yet
+        known = nodes if turns or not last else [last, *nodes]
+        head: Message = dict.fromkeys(("timestamp", "version", "manufacturer", "serialNumber"), "")
+        head |= {"headerId": 0, "orderId": self.order_id, "orderUpdateId": self.update_id, "nodes": [], "edges": []}
+        for name, raws in (("nodes", known), ("edges", edges), ("actions", [raw for raw, *_ in dumped["actions"]])):
+            for raw in raws:
+                check({**head, name: [raw]}, "instantActions" if name == "actions" else "order")
+        if known or edges:
+            order_of({**head, "nodes": known, "edges": edges})
+        self.last = Node.of(last) if last else None
+        self.nodes, self.edges = list(map(Node.of, nodes)), list(map(Edge.of, edges))
         self.actions = [ActionState(Action.of(raw), *rest) for raw, *rest in dumped["actions"]]
         for state in self.actions:
+            kinds = (type(state.sequence), type(state.result), type(state.triggered))
+            if state.status not in (WAITING, RUNNING, *OVER) or kinds != (int, str, bool):
+                raise ValueError("no state of an action")
             if state.status == RUNNING and state.action.kind != "cancelOrder":
                 state.end(FAILED, "the program was restarted")
-        self.paused = dumped["paused"] or bool(self.nodes)
+        self.paused = bool(dumped["paused"] or self.nodes)
 
 
 def _own(state: ActionState) -> bool:
