@@ -15,18 +15,7 @@ from robot_control.common.boundary import Boundary
 from robot_control.fleet.settings import Settings
 from robot_control.fleet.v2.capability import INSTANT, Capabilities
 from robot_control.fleet.v2.leg import Leg, PathPoint, aligned, leg_of
-from robot_control.fleet.v2.messages import (
-    CONNECTIONS,
-    INBOUND,
-    LARGEST,
-    MAX_ID,
-    MAX_TEXT,
-    Error,
-    Message,
-    RefusedError,
-    decoded,
-    read,
-)
+from robot_control.fleet.v2.messages import INBOUND, LARGEST, MAX_ID, Error, Message, RefusedError, decoded, is_connection
 from robot_control.fleet.v2.order import Action, Node, Order, order_of
 from robot_control.fleet.v2.state import STATE_PERIOD, Facts, Machine, factsheet, state, visualization
 from robot_control.fleet.v2.vehicle import FAILED, FINISHED, RUNNING, ActionState, Vehicle
@@ -143,7 +132,7 @@ class Client:
             if now < self._duplicate_until and topic != "connection":
                 raise RefusedError("orderError", f"{topic}: {DUPLICATE_CLIENT.description}")
             if topic == "connection":
-                if read(payload).get("connectionState") in CONNECTIONS:  # the link passes on no own one
+                if is_connection(payload):  # the link passes on no own one
                     self._duplicate_until = now + DUPLICATE_SILENCE
                 return
             message = decoded(payload, topic, self.settings.manufacturer, self.settings.serial_number)
@@ -164,7 +153,7 @@ class Client:
 
     def _drop_order(self) -> None:
         """Called where an exception is handled that nothing foresaw: an order that led to it must not do so again."""
-        why = f"the order was dropped: {type(sys.exception()).__name__}: {sys.exception()}"[:MAX_TEXT]
+        why = f"the order was dropped: {type(sys.exception()).__name__}: {sys.exception()}"
         self._leg, self._state_due = None, True
         self._driving_error = Error("internalError", why, (), "the log of vda5050 names it; send another order")
         self._interrupt(self.vehicle.clear("an internal error"))
@@ -395,7 +384,7 @@ class Client:
         if self._driving_error is not None:
             facts = replace(facts, errors=(*facts.errors, self._driving_error))
         if self.file_problem:
-            error = Error("fileError", self.file_problem[:MAX_TEXT], (), "free the disk, or repair the file")
+            error = Error("fileError", self.file_problem, (), "free the disk, or repair the file")
             facts = replace(facts, errors=(*facts.errors, error))
         if now < self._duplicate_until:
             facts = replace(facts, errors=(*facts.errors, DUPLICATE_CLIENT))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import queue
+import subprocess
 import threading
 import time
 
@@ -18,6 +19,8 @@ from robot_control.fleet.v2.order import Action
 from robot_control.fleet.v2.vehicle import FAILED, FINISHED
 
 Result = tuple[str, str, str]
+RELEASE = ("sh", "-c", 'read -r _ || for topic; do timeout 10 rostopic pub -1 "$topic" std_msgs/Bool false & done', "-")
+"""Waits for a line. Where the pipe ends without one the program was killed, and each topic becomes false."""
 
 
 class Actions:
@@ -34,6 +37,12 @@ class Actions:
         }
         for topic in self._topics.values():
             topic.send(Bool(data=False))  # a program that was killed could not
+        names = [rospy.resolve_name(name) for name in self._topics]
+        self._release = subprocess.Popen([*RELEASE, *names], stdin=subprocess.PIPE, start_new_session=True)
+
+    def close(self) -> None:
+        """The program ends by itself: each `Sender` sends the last false."""
+        self._release.communicate(b"ended\n")
 
     def begin(self, action: Action) -> None:
         """Its end comes with `results`."""

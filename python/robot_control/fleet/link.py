@@ -7,7 +7,6 @@ that was restored. So the file holds the digests of the last OWN of them. An emp
 
 from __future__ import annotations
 
-import hashlib
 import math
 import queue
 import ssl
@@ -19,7 +18,7 @@ from typing import Any
 import paho.mqtt.client as mqtt
 
 from robot_control.common.boundary import UnfitError, boundary
-from robot_control.fleet.memory import Memory
+from robot_control.fleet.memory import Memory, digest_of
 from robot_control.fleet.settings import Settings
 from robot_control.fleet.v2.messages import INBOUND, MAX_BYTES, Message, encoded, time_text
 
@@ -97,7 +96,7 @@ class Link:
         }
         payload = encoded({**header, **message})
         if topic == "connection":
-            self._own.append(_digest(payload))
+            self._own.append(digest_of(payload).decode())
             self._memory.save(connection=list(self._own))
         return payload
 
@@ -124,12 +123,8 @@ class Link:
             payload = message.payload[: MAX_BYTES + 1]  # one byte more than is taken
             if topic == "connection":
                 before = message.retain and self._connections == 1  # of this robot's program before
-                if before or not payload or _digest(payload) in self._own:
+                if before or not payload or digest_of(payload).decode() in self._own:
                     return
             if self.received.qsize() >= (WAITING if len(payload) <= SMALL else LARGE):
                 raise UnfitError(f"{topic}: {self.received.qsize()} messages wait")
             self.received.put((topic, payload, bool(message.retain)))
-
-
-def _digest(payload: bytes) -> str:
-    return hashlib.sha256(payload).hexdigest()[:16]

@@ -25,7 +25,7 @@ from robot_control.fleet.machine import machine_of, running_description
 from robot_control.fleet.memory import Memory
 from robot_control.fleet.robot import RosRobot
 from robot_control.fleet.settings import Settings, read_settings
-from robot_control.fleet.v2.messages import LARGEST, MAX_TEXT, Error
+from robot_control.fleet.v2.messages import MAX_TEXT, Error
 from robot_control.fleet.v2.vehicle import Vehicle
 from robot_control.installed_files import share_file
 
@@ -77,6 +77,7 @@ class Node:
         with boundary.crossing("vda5050"):
             self.step()
         self.link.end()
+        self.robot.actions.close()
 
     def step(self) -> None:
         """One pass. An accepted order is in the file before the master knows of it."""
@@ -129,12 +130,7 @@ def recalled(memory: Memory) -> tuple[Vehicle, list[Any] | None]:
     try:
         if memory["vehicle"]:
             vehicle.load(memory["vehicle"])
-        if position is not None:
-            given, run = position
-            map_id, x, y, yaw = given or ["", 0.0, 0.0, 0.0]
-            if type(run) is not int or type(map_id) is not str or not all(abs(each) <= LARGEST for each in (x, y, yaw)):
-                raise ValueError("no position")
-    except (ValueError, TypeError, KeyError, AttributeError) as error:
+    except Exception as error:  # of another version, say
         memory.move_aside(f"{type(error).__name__}: {error}")
         vehicle, position = Vehicle(), None
     if memory.problem:

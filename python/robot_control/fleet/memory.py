@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import threading
 from pathlib import Path
@@ -14,33 +15,28 @@ BLOCK = 1000
 """headerIds that are reserved with one write: they grow over restarts, and a write per message is saved"""
 MAX_FILE = 1 << 24
 """bytes; an order of 500 nodes has 200,000"""
-Content = dict[str, Any]
 
 
 class Memory:
-    """A file that holds the last state that was saved, whatever ends the program or the machine."""
+    """A file that holds the last state that was saved, whatever ends the program or the machine.
+
+    Its first line is the digest of the second one, so that nothing is taken from a file that was damaged or is another.
+    """
 
     def __init__(self, path: Path) -> None:
-        """What is no content of this program is moved aside, with `.damaged` behind its name.
-
-        Raises:
-            OSError, InputFileError: there cannot be a file.
-        """
+        """A file whose digest is wrong is moved aside. Raises OSError, InputFileError: there cannot be a file."""
         self.path = path
         self.problem = ""
         """why the last content could not be saved, or was moved aside; empty if it is in the file"""
         path.parent.mkdir(parents=True, exist_ok=True)
-        self._content: Content = {"headers": {}}
+        self._content: dict[str, Any] = {"headers": {}}
         if path.exists():
             check_input(path, MAX_FILE)
-            try:
-                self._content = json.loads(path.read_text(encoding="utf-8"))
-                self._content["headers"] = {name: int(at) % 2**32 for name, at in self._content["headers"].items()}
-                if not isinstance(self._content.get("connection", []), list):
-                    raise TypeError("connection is no list")
-            except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as error:
-                self._content = {"headers": {}}
-                self.move_aside(str(error))
+            digest, _, text = path.read_bytes().partition(b"\n")
+            if digest == digest_of(text):
+                self._content = json.loads(text)
+            else:
+                self.move_aside("its digest is wrong")
         self._reserved: dict[str, int] = dict(self._content["headers"])
         self._next = dict(self._reserved)
         self._lock = threading.RLock()  # the link has a thread of its own
@@ -48,10 +44,9 @@ class Memory:
     def move_aside(self, why: str) -> None:
         """Begins anew; the file keeps its content under another name. Raises OSError."""
         aside = self.path.with_name(f"{self.path.name}.damaged")
-        if self.path.exists():
-            self.path.replace(aside)
+        self.path.replace(aside)
         self._content = {"headers": self._content["headers"]}
-        self.problem = f"{self.path} was no file of vda5050.py ({why[:100]}) and is {aside} now: no order is known"
+        self.problem = f"{self.path} cannot be used ({why}) and is {aside} now: the order before is not known"
 
     def __getitem__(self, name: str) -> Any:
         """The value that was saved as `name`; None if there is none."""
@@ -61,8 +56,9 @@ class Memory:
         """Why these values are not in the file; empty if they are."""
         with self._lock:
             content = self._content | values | {"headers": self._reserved}
+            text = json.dumps(content)
             try:
-                write_durably(self.path, json.dumps(content))
+                write_durably(self.path, f"{digest_of(text.encode()).decode()}\n{text}")
                 self._content, self.problem = content, ""
             except OSError as error:
                 self.problem = in_words(error)
@@ -77,3 +73,8 @@ class Memory:
                 self.save()
             self._next[topic] = number + 1
             return number % 2**32
+
+
+def digest_of(payload: bytes) -> bytes:
+    """Says whether a payload is another one."""
+    return hashlib.sha256(payload).hexdigest().encode()

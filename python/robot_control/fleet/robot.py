@@ -25,15 +25,7 @@ from robot_control.fleet.v2.leg import PathPoint
 from robot_control.fleet.v2.messages import MAX_TEXT, Error
 from robot_control.fleet.v2.order import Action
 from robot_control.fleet.v2.state import Facts
-from robot_control.msg import (
-    FollowPathAction,
-    FollowPathActionFeedback,
-    FollowPathActionResult,
-    FollowPathFeedback,
-    FollowPathGoal,
-    RobotStatus,
-    SafetyStatus,
-)
+from robot_control.msg import FollowPathAction, FollowPathFeedback, FollowPathGoal, RobotStatus, SafetyStatus
 from robot_control.path.frames import Tf
 from robot_control.path.robot import subscribe_odometry
 from robot_control.path.waypoints import PathError
@@ -61,8 +53,8 @@ class GuardedAction(FollowPathAction):  # type: ignore[misc]
 
     def __init__(self) -> None:
         super().__init__()
-        self.action_result = unsealed(FollowPathActionResult)()
-        self.action_feedback = unsealed(FollowPathActionFeedback)()
+        self.action_result = unsealed(type(self.action_result))()
+        self.action_feedback = unsealed(type(self.action_feedback))()
 
 
 class RosRobot:

@@ -164,7 +164,7 @@ class Leg:
             PathPoint(ax + (bx - ax) * part / parts, ay + (by - ay) * part / parts, *way.limits(number, fastest))
             for way in self.ways
             for number, ((ax, ay), (bx, by)) in enumerate(pairwise(way.points))
-            for parts in [math.ceil(math.dist((ax, ay), (bx, by)) / JUMP) if dense else 1]
+            for parts in [1 + int(math.dist((ax, ay), (bx, by)) / JUMP) if dense else 1]
             for part in range(parts)
         ]
         last, place = self.ways[-1], self.nodes[-1].place
