@@ -86,6 +86,23 @@ def test_one_point_is_no_path():
     assert "0 different" in refusal([])
 
 
+def test_one_point_with_a_heading_is_a_turn_on_the_spot():
+    robot, follower = Ideal(0.1, 0.0), Follower(route([Waypoint(0.0, 0.0, yaw=math.pi / 2, turn_speed=0.5)]))
+    assert follower.progress == 0.0
+    commands = drive(follower, robot, 6.0)
+    assert (follower.state, follower.progress, follower.remaining) == (State.DONE, 1.0, 0.0)
+    assert robot.pose.yaw == pytest.approx(math.pi / 2, abs=0.01)
+    assert (robot.pose.x, max(each.angular for each in commands)) == (0.1, 0.5)
+    far = Follower(route([Waypoint(2.0, 0.0, yaw=1.0)]))
+    far.step(Pose(0.0, 0.0, 0.0), Motion())
+    assert "begins 2.00 m from the robot" in far.reason
+
+
+def test_a_number_without_sense_is_refused_with_its_point():
+    assert refusal([*STRAIGHT, Waypoint(1e155, 0.0)]) == "point 2 of the path holds a number beyond 1e+06"
+    assert "beyond 1e+06" in refusal([*STRAIGHT, Waypoint(1.0, 1.0, speed=1e200)])
+
+
 @pytest.mark.parametrize("wrong", [Waypoint(math.nan, 0.0), Waypoint(0.0, math.inf), Waypoint(1.0, 1.0, math.nan)])
 def test_a_number_that_is_not_finite_is_refused_with_its_point(wrong):
     assert refusal([*STRAIGHT, wrong]) == "point 2 of the path holds a number that is not finite"

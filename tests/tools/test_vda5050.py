@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 import yaml
 from robot_control.fleet.machine import size_of
-from robot_control.fleet.memory import BLOCK, Memory, MemoryFileError
+from robot_control.fleet.memory import BLOCK, Memory
 from robot_control.fleet.settings import Settings, SettingsError, read_settings
 from robot_control.fleet.v2.messages import Error, RefusedError, decoded, is_time, schema, time_text
 from robot_control.fleet.v2.state import factsheet, visualization
@@ -197,14 +197,15 @@ def test_header_ids_grow_over_restarts_with_one_write_per_thousand(tmp_path):
     assert Memory(path).header_id("state") == BLOCK
 
 
-def test_what_was_saved_outlives_and_another_file_is_refused(tmp_path):
+def test_what_was_saved_outlives_and_another_file_is_moved_aside(tmp_path):
     path = tmp_path / "r1.json"
     run = Run()
     run.send(order(PLACES))
     Memory(path).save(vehicle=run.client.vehicle.dump())
     again = Memory(path)
     assert again["vehicle"]["ids"][0] == "o1"
-    assert again["position"] is None
+    assert (again["position"], again.problem) == (None, "")
     path.write_text("[]")
-    with pytest.raises(MemoryFileError, match="move it away"):
-        Memory(path)
+    other = Memory(path)
+    assert (other["vehicle"], "is " + str(tmp_path / "r1.json.damaged") in other.problem) == (None, True)
+    assert (tmp_path / "r1.json.damaged").read_text() == "[]"

@@ -4,14 +4,20 @@ import json
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
 import pytest
+from robot_control.common.boundary import Boundary
+from robot_control.fleet.main import Node
+from robot_control.fleet.master import Master
 from robot_control.fleet.memory import Memory
 from robot_control.fleet.settings import Settings
 
 from bench.fleet.broker import Broker, missing
+from bench.fleet.virtual_robot import Run
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing())
+ACTIONS = "uagv/v2/robot_control/r1/instantActions"
 LIMIT = 20.0  # s; on an idle machine everything here takes a second
 
 
@@ -106,6 +112,45 @@ def test_two_clients_of_one_serial_number_notice_each_other_and_one_does_not_not
         each.end()
 
 
+def noticed(link):
+    """Messages on connection that are taken for those of another client."""
+    time.sleep(0.5)
+    return [link.received.get()[:2] for _ in range(link.received.qsize())]
+
+
+def test_what_this_robot_said_on_connection_is_not_another_client(tmp_path, broker):
+    """From a broker that kept it over its end, from a program before, or sent again as it was not acknowledged."""
+    listener = Listener(broker.port)
+    link = link_of(tmp_path, broker.port)
+    link.begin()
+    wait_for(lambda: listener.states() == ["ONLINE"])
+    link.end()
+    wait_for(lambda: listener.states()[-1] == "OFFLINE")
+    said = [each.payload for each in listener.messages if each.topic.endswith("/connection")]
+    topic = "uagv/v2/robot_control/r1/connection"
+    again = link_of(tmp_path, broker.port)
+    again.begin()
+    wait_for(lambda: again.came_up)
+    again.came_up = False
+    broker.kill()
+    broker.start()
+    with_memory = Listener(broker.port)
+    for payload in (*said, b""):
+        with_memory.client.publish(topic, payload, qos=1, retain=True)
+    wait_for(lambda: again.came_up)
+    for payload in (*said, b""):
+        with_memory.client.publish(topic, payload, qos=1, retain=True)
+    assert noticed(again) == []
+    other = said[0].replace(b'"headerId":1', b'"headerId":7')
+    assert other != said[0]
+    with_memory.client.publish(topic, other, qos=1)
+    wait_for(lambda: not again.received.empty())
+    assert noticed(again) == [("connection", other)]
+    again.end()
+    listener.end()
+    with_memory.end()
+
+
 PROGRAM = """
 import sys, time
 from pathlib import Path
@@ -128,26 +173,80 @@ def test_a_killed_client_leaves_its_will(tmp_path, broker):
     listener.end()
 
 
-def test_messages_of_the_master_arrive_bounded(tmp_path, broker):
-    from robot_control.fleet.link import WAITING
-    from robot_control.fleet.v2.messages import MAX_BYTES
-
+def subscribed(tmp_path, broker):
+    """A link, and a sender whose messages on instantActions arrive there."""
     link = link_of(tmp_path, broker.port)
     link.begin()
     wait_for(lambda: link.came_up)
     sender = Listener(broker.port)
-    topic = "uagv/v2/robot_control/r1/order"
-    wait_for(lambda: (sender.client.publish(topic, b"{}"), time.sleep(0.1), link.received.qsize())[2])  # subscribed
-    sender.client.publish(topic, b"x" * 10_000_000)
+    wait_for(lambda: (sender.client.publish(ACTIONS, b"{}"), time.sleep(0.1), link.received.qsize())[2])
+    return link, sender
+
+
+def test_messages_of_the_master_arrive_bounded_and_what_is_dropped_is_counted(tmp_path, broker, monkeypatch):
+    from robot_control.fleet import link as module
+    from robot_control.fleet.v2.messages import MAX_BYTES
+
+    counted = Boundary(lambda _: None)
+    monkeypatch.setattr(module, "boundary", counted)
+    link, sender = subscribed(tmp_path, broker)
+    sender.client.publish(ACTIONS, b"x" * 10_000_000)
     sizes = []
     wait_for(lambda: (sizes.append(len(link.received.get(timeout=LIMIT)[1])), sizes[-1] > 2)[1])
     assert sizes[-1] == MAX_BYTES + 1
-    for _ in range(3 * WAITING):
-        sender.client.publish(topic, b"{}")
-    wait_for(lambda: "one was dropped" in link.reason)
-    assert link.received.qsize() == WAITING
+    for _ in range(3 * module.FEW):
+        sender.client.publish(ACTIONS, b"x" * (module.SMALL + 1))
+    wait_for(lambda: counted.dropped.get("mqtt", 0) == 2 * module.FEW)
+    assert link.received.qsize() == module.FEW
+    for _ in range(2 * module.WAITING):
+        sender.client.publish(ACTIONS, b"{}")
+    wait_for(lambda: counted.dropped["mqtt"] > 2 * module.FEW)
+    assert link.received.qsize() == module.WAITING
     link.end()
     sender.end()
+
+
+FLOOD = """
+import sys, time
+import paho.mqtt.client as mqtt
+client = mqtt.Client()
+client.connect("127.0.0.1", int(sys.argv[1]))
+client.loop_start()
+while True:
+    for _ in range(100):
+        client.publish(sys.argv[2], b"x")
+    time.sleep(0.02)
+"""
+
+
+def test_a_flood_of_one_byte_keeps_no_state_request_out(tmp_path, broker):
+    """The passes of vda5050.py, with a robot in virtual time, while 5,000 messages come per second."""
+    link, sender = subscribed(tmp_path, broker)
+    sender.end()
+    run, node = Run(), Node.__new__(Node)
+    node.__dict__ |= {"link": link, "robot": SimpleNamespace(position=None), "client": run.client, "_saved": None}
+    node.__dict__ |= {"_memory": Memory(tmp_path / "node.json"), "_save_at": 0.0, "_reasons": {"broker": "", "file": ""}}
+    master = Master("127.0.0.1", broker.port, "uagv/v2/robot_control/r1")
+    while not link.received.empty():
+        link.received.get()
+    node.step()
+    flood = subprocess.Popen([sys.executable, "-c", FLOOD, str(broker.port), ACTIONS])
+    waited, asked, request = [], time.monotonic(), master.act("stateRequest")
+    over = asked + 8.0
+    try:
+        while time.monotonic() < over:
+            node.step()
+            for topic, message in master.messages(0.02):
+                if topic == "state" and request in [each["actionId"] for each in message["actionStates"]]:
+                    waited.append(time.monotonic() - asked)
+                    asked, request = time.monotonic(), master.act("stateRequest")
+    finally:
+        flood.kill()
+        flood.wait()
+        master.end()
+        link.end()
+    assert len(waited) > 20
+    assert max(waited) < 1.0
 
 
 def openssl(folder, *words):

@@ -448,6 +448,79 @@ def test_the_robot_takes_the_orientation_of_a_node_and_drives_on():
     assert run.robot.pose.x == pytest.approx(2.0, abs=0.02)
 
 
+def test_an_edge_without_length_turns_the_robot_on_the_spot():
+    run = Run()
+    state = run.send(order([(0.0, 0.0, 0.0), (0.0, 0.0, math.pi / 2), (0.0, 0.0), (0.0, 1.0)]))
+    assert (kinds(state), state["lastNodeId"]) == ([], "n0")
+    while run.state["lastNodeId"] == "n0":
+        run.step(0.02)
+    assert run.robot.pose.yaw == pytest.approx(math.pi / 2, abs=0.02)
+    assert (run.robot.pose.x, run.robot.pose.y) == (0.0, 0.0)
+    run.until_over()
+    assert (run.robot.pose.x, run.robot.pose.y) == pytest.approx((0.0, 1.0), abs=0.02)
+    field_refused(Run(), order([(0.0, 0.0)] * 2, orientation=1.0, orientationType="GLOBAL"), "orientation")
+
+
+@pytest.mark.parametrize("places", [[], [(1.0, 0.0)]])
+def test_the_robot_takes_the_orientation_of_the_first_node_before_it_counts_as_reached(places):
+    run = Run()
+    state = run.send(order([(0.0, 0.0, math.pi / 2), *places], actions={0: [action("horn", 1, "HARD")]}))
+    assert (kinds(state), nodes(state)[0], statuses(state)) == ([], ("n0", True), {"1": "WAITING"})
+    assert kinds(run.send(order([(0.0, 0.0)], name="o2"))) == ["orderError"]
+    while run.state["lastNodeId"] == "":
+        run.step(0.02)
+    assert run.robot.pose.yaw == pytest.approx(math.pi / 2, abs=0.02)
+    assert statuses(run.state) == {"1": "RUNNING"}
+    run.robot.ended.append(("1", "FINISHED", ""))
+    run.until_over()
+    assert (run.robot.pose.x, run.robot.pose.y) == pytest.approx((*places, (0.0, 0.0))[0], abs=0.02)
+
+
+def test_an_orientation_within_its_deviation_needs_no_turn():
+    run = Run(VirtualRobot(yaw=0.3))
+    message = order([(0.0, 0.0, 0.0)])
+    message["nodes"][0]["nodePosition"]["allowedDeviationTheta"] = 0.4
+    assert run.send(message)["lastNodeId"] == "n0"
+    assert run.robot.goals == 0
+
+
+@pytest.mark.parametrize("after", ["startPause", "cancelOrder", "restart"])
+def test_a_turn_on_the_first_node_is_paused_cancelled_and_kept_as_any_way(after):
+    run = Run()
+    run.send(order([(0.0, 0.0, math.pi / 2), (1.0, 0.0)]))
+    run.step(0.5)
+    if after == "restart":
+        run.restart()
+    else:
+        run.send(instant(action(after, "a")))
+    run.step(2.0)
+    assert run.robot.motion.angular == 0.0
+    assert run.state["lastNodeId"] == ""
+    if after == "cancelOrder":
+        assert (statuses(run.state)["a"], nodes(run.state)) == ("FINISHED", [])
+        return
+    assert nodes(run.state)[0] == ("n0", True)
+    run.send(instant(action("stopPause", "s")))
+    run.until_over()
+    assert (run.state["lastNodeId"], kinds(run.state)) == ("n1", [])
+
+
+def test_a_straight_edge_of_any_length_follows_a_curve():
+    arc = {
+        "degree": 2,
+        "knotVector": [0, 0, 0, 1, 1, 1],
+        "controlPoints": [{"x": 0, "y": 0}, {"x": 1, "y": 0}, {"x": 1, "y": 1}],
+    }
+    for length in (1.0, 2.0, 7.3):
+        run = Run()
+        message = order([(0.0, 0.0), (1.0, 1.0), (1.0, 1.0 + length)])
+        message["edges"][0]["trajectory"] = arc
+        assert kinds(run.send(message)) == []
+        run.until_over()
+        assert kinds(run.state) == []
+        assert (run.robot.pose.x, run.robot.pose.y) == pytest.approx((1.0, 1.0 + length), abs=0.02)
+
+
 def test_a_trajectory_is_a_nurbs():
     """A quarter of a circle of 1 m, as in The NURBS Book, 7.3."""
     arc = {

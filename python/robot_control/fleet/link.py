@@ -25,9 +25,9 @@ from robot_control.fleet.v2.messages import INBOUND, MAX_BYTES, Message, encoded
 RETRY = (1, 30)
 """s between two tries to connect: the first, and the longest after doubling"""
 WAITING = 1000
-"""messages that may wait; further ones are dropped. So many small ones are taken in 0.1 s, and a flood keeps no other out"""
-LARGE, SMALL = 50, 1 << 13
-"""messages that may wait where the next one is larger than so many bytes"""
+"""messages that may wait; further ones are dropped. So many are taken in 0.1 s"""
+FEW, SMALL = 50, 1 << 13
+"""messages that may wait where the next one has more than so many bytes or is no object: they keep no other one out"""
 OWN = 200
 """messages on `connection`; a robot that loses the broker each 30 s sends so many in 100 minutes"""
 BROKER_CHECK = 5.0
@@ -125,6 +125,7 @@ class Link:
                 before = message.retain and self._connections == 1  # of this robot's program before
                 if before or not payload or digest_of(payload).decode() in self._own:
                     return
-            if self.received.qsize() >= (WAITING if len(payload) <= SMALL else LARGE):
+            plain = len(payload) <= SMALL and payload.lstrip()[:1] == b"{"
+            if self.received.qsize() >= (WAITING if plain else FEW):
                 raise UnfitError(f"{topic}: {self.received.qsize()} messages wait")
             self.received.put((topic, payload, bool(message.retain)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -106,10 +107,10 @@ def is_connection(payload: bytes) -> bool:
 def check(message: Message, topic: str) -> None:
     """Raises RefusedError: validationError with the path of a field that the robot, or the schema, does not allow."""
     whole, against = schema(topic), None
-    left: list[tuple[Where | None, str, Any, Message, int]] = [(None, "", message, whole, 0)]
+    left: deque[tuple[Where | None, str, Any, Message, int]] = deque([(None, "", message, whole, 0)])
     values = 0
     while left:
-        where, name, value, rules, depth = left.pop()
+        where, name, value, rules, depth = left.popleft()
         values += len(value) if isinstance(value, dict | list) else 0
         if values > MAX_VALUES:
             raise _malformed("", f"has more than {MAX_VALUES} values")
