@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """vda5050.py on a running robot behind a broker: orders, a broker that is killed, a client that is killed."""
 
+import math
 import tempfile
 import time
 import unittest
@@ -11,7 +12,9 @@ from typing import Any
 import rospy
 import rostest
 import yaml
+from nav_msgs.msg import Odometry
 from robot_control.fleet.master import Master
+from robot_control.msg import FollowPathActionGoal
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger, TriggerResponse
 from system_support import Program, RobotTestCase, again_after_a_stall, wait_for
@@ -33,6 +36,7 @@ class Vda5050Test(RobotTestCase):
         cls.config = Path(cls.folder.name) / "fleet.yaml"
         values = {"port": cls.broker.port, "keep_alive": KEEP_ALIVE, "memory_file": f"{cls.folder.name}/memory.json"}
         values["actions"] = {"horn": {"topic": "horn", "seconds": 0.5}, "lift": {"service": "lift", "timeout": 5}}
+        values["actions"]["siren"] = {"topic": "siren", "seconds": 3600}
         cls.config.write_text(yaml.safe_dump(values))
         cls.follower = Program("follow_path.py")
         cls.client = Program("vda5050.py", "--config", str(cls.config))
@@ -153,6 +157,48 @@ class Vda5050Test(RobotTestCase):
         self.assertEqual((self.state["orderId"], self.state["lastNodeId"]), (f"o{self.count}", "n0"))
         rospy.ServiceProxy("vda5050/resume", Trigger)()
         self.listen("the end", lambda: self.reached("n2")() and not self.state["nodeStates"])
+
+    @again_after_a_stall
+    def test_a_turn_is_an_edge_without_length_or_the_theta_of_the_first_node(self) -> None:
+        begin = self.robot.pose
+        self.send([(0.0, 0.0, 1.0), (0.0, 0.0, 2.0), (0.0, 0.0, 0.0)])
+        for node, heading in (("n0", 1.0), ("n1", 2.0), ("n2", 0.0)):
+            self.listen(node, self.reached(node))
+            self.assertAlmostEqual(math.remainder(self.robot.pose.yaw - begin.yaw - heading, math.tau), 0.0, delta=0.1)
+        self.assertEqual(self.state["errors"], [])
+
+    @again_after_a_stall
+    def test_what_an_action_holds_true_ends_with_a_killed_client(self) -> None:
+        heard: list[bool] = []
+        horn = rospy.Subscriber("siren", Bool, lambda message: heard.append(message.data))
+        self.master.act("siren")
+        self.listen("true", lambda: heard[-1:] == [True])
+        self.client.kill()
+        wait_for("false", lambda: heard[-1:] == [False])
+        type(self).client = Program("vda5050.py", "--config", str(self.config))
+        self.listen("ONLINE", lambda: self.master.last["connection"]["connectionState"] == "ONLINE")
+        self.listen("a state", lambda: not self.state["nodeStates"])
+        horn.unregister()
+
+    @again_after_a_stall
+    def test_what_is_no_order_no_odometry_and_no_goal_ends_no_program(self) -> None:
+        noise = rospy.Publisher("odom", Odometry, queue_size=10)
+        goals = rospy.Publisher("follow_path/goal", FollowPathActionGoal, queue_size=10)
+        wait_for("connections", lambda: noise.get_num_connections() > 1 and goals.get_num_connections() > 0)
+        wrong = Odometry()
+        for number in (math.nan, math.inf, 1e300):
+            wrong.pose.pose.position.x = number
+            noise.publish(wrong)
+            goal = FollowPathActionGoal()
+            goal.goal.speed, goal.goal.begin_at = number, number
+            goals.publish(goal)
+            self.send([(0.0, 0.0), (1e155, 0.0)])
+        for _ in self.master.messages(2.0):
+            pass
+        noise.unregister()
+        goals.unregister()
+        self.send([(0.0, 0.0), (0.5, 0.0)])
+        self.listen("the end", self.reached("n1"))
 
     @again_after_a_stall
     def test_after_a_stop_and_its_reset_the_order_waits_for_stop_pause(self) -> None:
