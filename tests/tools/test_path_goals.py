@@ -1,4 +1,4 @@
-"""Goals of follow_path with their real decoding: what is no path is refused with its reason, and what is one is driven."""
+"""Goals of follow_path with their real decoding: what is no path is refused with its reason."""
 
 import io
 import itertools
@@ -75,9 +75,8 @@ def follow_path(monkeypatch):
     made._tf = SimpleNamespace(lookup=lambda *_: (_ for _ in ()).throw(server.PathError("no tf")))
     odometry = Odometry()
     odometry.pose.pose.orientation.w = 1.0
-    made._robot = SimpleNamespace(
-        frames=("odom", "base_link"), odometry=odometry, odometry_at=1.0, masked_by="", speed_limit=math.inf, drivable=True
-    )  # fmt: skip
+    made._robot = SimpleNamespace(frames=("odom", "base_link"), odometry=odometry, odometry_at=1.0, masked_by="")
+    made._robot.speed_limit, made._robot.drivable = math.inf, True
     made._robot.await_drivable = lambda *_: ""
     made._robot.revoked = lambda *_, **__: ""
     made._robot.against_driving = lambda _: ""

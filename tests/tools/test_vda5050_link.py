@@ -225,7 +225,11 @@ def test_a_flood_of_one_byte_keeps_no_state_request_out(tmp_path, broker):
     sender.end()
     run, node = Run(), Node.__new__(Node)
     node.__dict__ |= {"link": link, "robot": SimpleNamespace(position=None), "client": run.client, "_saved": None}
-    node.__dict__ |= {"_memory": Memory(tmp_path / "node.json"), "_save_at": 0.0, "_reasons": {"broker": "", "file": ""}}
+    node.__dict__ |= {
+        "_memory": Memory(tmp_path / "node.json"),
+        "_save_at": 0.0,
+        "_reasons": {"broker": "", "file": ""},
+    }
     master = Master("127.0.0.1", broker.port, "uagv/v2/robot_control/r1")
     while not link.received.empty():
         link.received.get()

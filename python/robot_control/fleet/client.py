@@ -15,10 +15,11 @@ from robot_control.common.boundary import Boundary
 from robot_control.fleet.settings import Settings
 from robot_control.fleet.v2.capability import INSTANT, Capabilities
 from robot_control.fleet.v2.leg import Leg, PathPoint, aligned, leg_of
-from robot_control.fleet.v2.messages import INBOUND, LARGEST, MAX_ID, Error, Message, RefusedError, decoded, is_connection
+from robot_control.fleet.v2.messages import INBOUND, MAX_ID, Error, Message, RefusedError, decoded, is_connection
 from robot_control.fleet.v2.order import Action, Node, Order, order_of
 from robot_control.fleet.v2.state import STATE_PERIOD, Facts, Machine, factsheet, state, visualization
 from robot_control.fleet.v2.vehicle import FAILED, FINISHED, RUNNING, ActionState, Vehicle
+from robot_control.path.waypoints import FARTHEST
 
 IDLE, DRIVING, DONE, ENDED = "idle", "driving", "done", "ended"
 OFF_EDGE = 0.3
@@ -87,6 +88,7 @@ class Client:
         settings: Settings,
         machine: Machine,
         vehicle: Vehicle,
+        *,
         keep: Callable[[Vehicle], str] = lambda _: "",
         boundary: Boundary | None = None,
     ) -> None:
@@ -127,14 +129,14 @@ class Client:
                 self._ignore_until = now + GAP
             if now < self._ignore_until:
                 raise RefusedError("orderError", f"{topic} came while the robot's client stood still: send it again")
-            if topic not in (*INBOUND, "connection") or (retained and topic != "connection"):
-                raise RefusedError("validationError", f"{topic} must not be retained: the robot cannot know its age")
-            if now < self._duplicate_until and topic != "connection":
-                raise RefusedError("orderError", f"{topic}: {DUPLICATE_CLIENT.description}")
             if topic == "connection":
                 if is_connection(payload):  # the link passes on no own one
                     self._duplicate_until = now + DUPLICATE_SILENCE
                 return
+            if now < self._duplicate_until:
+                raise RefusedError("orderError", f"{topic}: {DUPLICATE_CLIENT.description}")
+            if topic not in INBOUND or retained:
+                raise RefusedError("validationError", f"{topic} must not be retained: the robot cannot know its age")
             message = decoded(payload, topic, self.settings.manufacturer, self.settings.serial_number)
             if topic == "order":
                 self._take_order(message)
@@ -269,8 +271,8 @@ class Client:
             x = y = theta = math.nan
         if self.vehicle.executing or not self.vehicle.standing:
             why = "the robot must stand without an order"
-        elif not all(abs(each) <= LARGEST for each in (x, y, theta)) or not 0 < len(str(given["mapId"])) <= MAX_ID:
-            why = f"x, y and theta must be numbers up to {LARGEST:g}, and mapId a name"
+        elif not all(abs(each) <= FARTHEST for each in (x, y, theta)) or not 0 < len(str(given["mapId"])) <= MAX_ID:
+            why = f"x, y and theta must be numbers up to {FARTHEST:g}, and mapId a name"
         else:
             why = self.robot.set_position(x, y, theta, str(given["mapId"]))
         if not why:
@@ -355,11 +357,10 @@ class Client:
         if off > OFF_EDGE or not wanted.length:
             wanted, along = _from_here(wanted, self._facts), 0.0
         passed = [end for end in wanted.ends[:-1] if end <= along - self.settings.node_tolerance]
-        if passed:  # while this program did not run; follow_path drove them as they were ordered
-            for _ in passed:
-                self._traverse()
-            return
-        self._send(wanted, min(along, wanted.length - REST))
+        for _ in passed:  # while this program did not run; follow_path drove them as they were ordered
+            self._traverse()
+        if not passed:
+            self._send(wanted, min(along, wanted.length - REST))
 
     def _send(self, leg: Leg, begin_at: float) -> None:
         self._leg = leg
@@ -389,17 +390,8 @@ class Client:
         if now < self._duplicate_until:
             facts = replace(facts, errors=(*facts.errors, DUPLICATE_CLIENT))
         short = self._base_is_short
-        key = (
-            vehicle.revision,
-            tuple(vehicle.refusals),
-            short,
-            facts.driving,
-            facts.mode,
-            facts.map_id,
-            facts.stopped,
-            facts.held_by,
-            facts.errors,
-        )
+        known = facts.driving, facts.mode, facts.map_id, facts.stopped, facts.held_by, facts.errors
+        key = vehicle.revision, tuple(vehicle.refusals), short, known
         if self._state_due or key != self._sent_key or now - self._state_at >= STATE_PERIOD:
             self._state_due, self._sent_key, self._state_at = False, key, now
             charge = self.settings.unknown_battery_charge

@@ -78,7 +78,7 @@ class Link:
         """OFFLINE, then the orderly end."""
         last = self.publish("connection", {"connectionState": "OFFLINE"})
         end = time.monotonic() + END
-        while last is not None and not last.is_published() and time.monotonic() < end:
+        while last is not None and not last.rc and not last.is_published() and time.monotonic() < end:
             time.sleep(0.01)
         self._client.disconnect()
         self._client.loop_stop()

@@ -51,7 +51,7 @@ class Node:
         vehicle, position = recalled(self._memory)
         self.robot = RosRobot(settings, position)
         machine = machine_of(running_description(), settings)
-        self.client = Client(self.robot, settings, machine, vehicle, self._keep, boundary)
+        self.client = Client(self.robot, settings, machine, vehicle, keep=self._keep, boundary=boundary)
         self.link = Link(settings, self._memory)
         self._saved: object = None
         self._save_at = -math.inf

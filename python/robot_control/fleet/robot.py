@@ -53,8 +53,8 @@ class GuardedAction(FollowPathAction):  # type: ignore[misc]
 
     def __init__(self) -> None:
         super().__init__()
-        self.action_result = unsealed(type(self.action_result))()
-        self.action_feedback = unsealed(type(self.action_feedback))()
+        for name in ("action_result", "action_feedback"):
+            setattr(self, name, unsealed(type(getattr(self, name)))())
 
 
 class RosRobot:

@@ -1,8 +1,8 @@
 """The way from one stand to the next: what follow_path is given, and where its nodes lie on it.
 
 A leg ends where the robot has to stand: at the end of the base, and at a node with another orientation than the way. It
-also ends before a SOFT or HARD action, which belongs to the node or to the edge after it. An edge without length is a leg
-of its own, in which the robot turns to the orientation of its last node; so is the turn on the first node of an order.
+also ends before a SOFT or HARD action, which belongs to the node or to the edge after it. An edge without length is a
+leg of its own: a turn to the orientation of its last node. So is the turn on the first node of an order.
 """
 
 from __future__ import annotations

@@ -42,8 +42,7 @@ MEASURES = (
     *("minHeight", "maxHeight", "degree", "knotVector", "weight"),
 )
 """numbers of an order with which the robot computes"""
-LARGEST = FARTHEST
-"""of each of them, in SI units: a place 1000 km away is none, and the square of a far larger number overflows"""
+BOUNDS = dict.fromkeys(COUNTS, (0, MAX_NUMBER)) | dict.fromkeys(MEASURES, (-FARTHEST, FARTHEST))
 Where = tuple[Any, Any]
 """of a field: that of the object or array in which it stands, and its name or number there; empty for the message"""
 
@@ -179,12 +178,11 @@ def _broken(name: str, value: Any) -> str:
     if isinstance(value, float) and not math.isfinite(value):
         return "must be finite"
     if isinstance(value, int | float):
-        if name in MEASURES and abs(value) > LARGEST:
-            return f"must be at most {LARGEST:g}"
+        least, most = BOUNDS.get(name, (-math.inf, math.inf))
+        if not least <= value <= most:
+            return f"must be from {least} to {most}"
         if isinstance(value, int) and abs(value) > 1 << 63:
             return "must fit into 64 bits"
-        if name in COUNTS and not 0 <= value <= MAX_NUMBER:
-            return f"must be from 0 to {MAX_NUMBER}"
     if isinstance(value, list) and len(value) > LIMITS.get(name, MAX_BYTES):
         return f"has {len(value)} entries, more than {LIMITS[name]}"
     wrong_id = isinstance(value, str) and (len(value) > MAX_ID or not value.isprintable() or set(value) & set(NO_ID))
