@@ -173,11 +173,11 @@ class Vda5050Test(RobotTestCase):
         horn = rospy.Subscriber("siren", Bool, lambda message: heard.append(message.data))
         self.master.act("siren")
         self.listen("true", lambda: heard[-1:] == [True])
+        number = self.state["headerId"]
         self.client.kill()
         wait_for("false", lambda: heard[-1:] == [False])
         type(self).client = Program("vda5050.py", "--config", str(self.config))
-        self.listen("ONLINE", lambda: self.master.last["connection"]["connectionState"] == "ONLINE")
-        self.listen("a state", lambda: not self.state["nodeStates"])
+        self.listen("a state", lambda: self.state["headerId"] > number + 500)  # they are reserved by the thousand
         horn.unregister()
 
     @again_after_a_stall

@@ -11,6 +11,7 @@ import time
 from types import SimpleNamespace
 
 import pytest
+import yaml
 from mutants import mutants
 from nav_msgs.msg import Odometry
 from robot_control.common import boundary as crossing
@@ -24,7 +25,6 @@ from robot_control.fleet.settings import Settings, read_settings
 from robot_control.fleet.v2.messages import RefusedError, decoded, encoded, schema
 from robot_control.fleet.v2.order import order_of
 from robot_control.fleet.v2.vehicle import Vehicle
-from robot_control.installed_files import share_file
 from robot_control.msg import FollowPathActionFeedback, RobotStatus, SafetyStatus
 from sensor_msgs.msg import BatteryState
 
@@ -140,6 +140,15 @@ def test_each_action_of_a_message_is_taken_for_itself():
     assert run.robot.motion.linear == 0.0
     assert {each["actionStatus"] for each in run.state["actionStates"]} == {"FAILED", "FINISHED"}
     assert not run.state["nodeStates"]
+
+
+def test_instant_actions_that_never_end_are_bounded_and_a_pause_is_taken():
+    run = Run()
+    for number in range(200):
+        run.client.receive("instantActions", encoded({**header(), "actions": [action("horn", number)]}), run.now)
+    state = run.send({**header(), "actions": [action("startPause", "p")]})
+    assert (len(state["actionStates"]), state["paused"]) == (101, True)
+    assert "100 instant actions are not over" in state["errors"][0]["errorDescription"]
 
 
 def test_an_empty_message_on_connection_is_no_other_client():
@@ -297,7 +306,7 @@ def random_order(seed):
 
 @BOTH
 def test_what_is_accepted_is_driven_to_its_end(count):
-    for seed in range(count // 20):
+    for seed in range(count // 50):
         run, message = Run(), random_order(seed)
         assert not run.send(message)["errors"], seed
         run.until_over(200.0)
@@ -311,9 +320,11 @@ def test_what_is_accepted_is_driven_to_its_end(count):
 
 @BOTH
 def test_no_settings_file_ends_the_program_but_with_its_problem(count, tmp_path):
-    valid = open(share_file("config/fleet.yaml"), "rb").read() + b"\nactions: {horn: {topic: horn, seconds: 2}}\n"  # noqa: PTH123, SIM115
+    values = {"serial_number": "r1", "keep_alive": 15, "host": "127.0.0.1", "speed": 0.5, "insecure": False}
+    values["actions"] = {"horn": {"topic": "horn", "seconds": 2.0, "scopes": ["NODE"]}}
+    valid = yaml.safe_dump(values).encode()
     path = tmp_path / "fleet.yaml"
-    for payload in mutants(valid, count // 4, seed=1):
+    for payload in mutants(valid, count, seed=1):
         path.write_bytes(payload)
         with contextlib.suppress(SettingsError, OSError):
             assert isinstance(read_settings(path), Settings)

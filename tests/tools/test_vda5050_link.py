@@ -228,7 +228,7 @@ def test_a_flood_of_one_byte_keeps_no_state_request_out(tmp_path, broker):
     node.__dict__ |= {
         "_memory": Memory(tmp_path / "node.json"),
         "_save_at": 0.0,
-        "_reasons": {"broker": "", "file": ""},
+        "_reason": "",
     }
     master = Master("127.0.0.1", broker.port, "uagv/v2/robot_control/r1")
     while not link.received.empty():

@@ -55,7 +55,7 @@ class Node:
         self.link = Link(settings, self._memory)
         self._saved: object = None
         self._save_at = -math.inf
-        self._reasons = {"broker": "", "file": ""}
+        self._reason = ""
         for name in ("pause", "resume", "trigger"):
             rospy.Service(f"~{name}", Trigger, getattr(self, f"_{name}"))
         self.robot.stop_all()
@@ -90,25 +90,24 @@ class Node:
             topic, payload, retained = self.link.received.get()
             self.client.receive(topic, payload, time.monotonic(), retained=retained)
         outbox = self.client.step(time.monotonic())
-        key = (self.client.vehicle.revision, self.robot.position)
-        if key != self._saved and time.monotonic() > self._save_at:
-            self._save_at = time.monotonic() + SAVE_AGAIN if self._keep(self.client.vehicle) else -math.inf
-        self.client.file_problem = self._memory.problem
+        if (self.client.vehicle.revision, self.robot.position) != self._saved and time.monotonic() > self._save_at:
+            self._keep(self.client.vehicle)
         for topic, message in outbox:
             self.link.publish(topic, message)
-        self._report("broker", self.link.reason, "the robot drives on to the end of its base")
-        self._report("file", self._memory.problem, "no further order is taken that it cannot keep")
-
-    def _report(self, what: str, reason: str, consequence: str) -> None:
-        if reason and reason != self._reasons[what]:
-            rospy.logwarn(f"{what}: {fit_for_message(reason)}; {consequence}")
-        self._reasons[what] = reason
+        if self.link.reason != self._reason:
+            self._reason = self.link.reason
+            if self._reason:
+                rospy.logwarn(f"broker: {self._reason}; the robot drives on to the end of its base")
 
     def _keep(self, vehicle: Vehicle) -> str:
         """Why it is not in the file; empty if it is."""
         position = self.robot.position
-        why = self._memory.save(vehicle=vehicle.dump(), position=position)
-        self._saved = self._saved if why else (vehicle.revision, position)
+        why = self.client.file_problem = self._memory.save(vehicle=vehicle.dump(), position=position)
+        if why:
+            boundary.drop("memory_file", why)
+            self._save_at = time.monotonic() + SAVE_AGAIN
+        else:
+            self._saved = vehicle.revision, position
         return why
 
     def _pause(self, _request: object) -> TriggerResponse:

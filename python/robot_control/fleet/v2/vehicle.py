@@ -32,7 +32,7 @@ IMMEDIATE = ("startPause", "stopPause", "cancelOrder", "stateRequest", "factshee
 MAX_ERRORS = 20
 """refusals that are reported; an older one makes room"""
 MAX_INSTANT = 100
-"""finished instant actions that are kept until the next order; an older one makes room"""
+"""finished instant actions that are kept until the next order, where an older one makes room; and that may run"""
 
 Near = Callable[[Node], bool]
 """True if the robot stands on this node, within its deviation, or has its orientation"""
@@ -182,10 +182,18 @@ class Vehicle:
     # instant actions
 
     def add_instant(self, action: Action) -> ActionState | None:
-        """Its state, triggered; None if an action of this id is here already: it came twice."""
+        """Its state, triggered; None if an action of this id is here already: it came twice.
+
+        Raises:
+            RefusedError: too many others of the robot are not over.
+        """
         if any(state.action.id == action.id for state in self.actions):
             return None
-        over = [state for state in self.actions if state.sequence < 0 and state.over]
+        instant = [state for state in self.actions if state.sequence < 0]
+        over = [state for state in instant if state.over]
+        if len(instant) - len(over) >= MAX_INSTANT and action.kind not in IMMEDIATE:
+            why = f"{MAX_INSTANT} instant actions are not over"
+            raise RefusedError("orderError", why, actionId=action.id)
         for state in over[: max(0, len(over) - MAX_INSTANT + 1)]:
             self.actions.remove(state)
         state = ActionState(action, -1, triggered=True)
