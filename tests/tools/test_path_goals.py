@@ -38,7 +38,7 @@ def wire(message):
 
 
 class Results:
-    """The action server: what it was told at the end of a goal."""
+    """The action server: the reasons with which goals ended."""
 
     def __init__(self):
         self.reasons = []

@@ -42,7 +42,7 @@ class Memory:
         self._lock = threading.RLock()  # the link has a thread of its own
 
     def move_aside(self, why: str) -> None:
-        """Begins anew; the file keeps its content under another name. Raises OSError."""
+        """Begins without content; the file keeps its own under another name. Raises OSError."""
         aside = self.path.with_name(f"{self.path.name}.damaged")
         self.path.replace(aside)
         self._content = {"headers": self._content["headers"]}
