@@ -25,7 +25,7 @@ from robot_control.fleet.machine import machine_of, running_description
 from robot_control.fleet.memory import Memory
 from robot_control.fleet.robot import RosRobot
 from robot_control.fleet.settings import Settings, read_settings
-from robot_control.fleet.v2.messages import MAX_TEXT, Error
+from robot_control.fleet.v2.messages import Error
 from robot_control.fleet.v2.vehicle import Vehicle
 from robot_control.installed_files import share_file
 
@@ -133,7 +133,7 @@ def recalled(memory: Memory) -> tuple[Vehicle, list[Any] | None]:
         memory.move_aside(f"{type(error).__name__}: {error}")
         vehicle, position = Vehicle(), None
     if memory.problem:
-        vehicle.refuse(Error("fileError", memory.problem[:MAX_TEXT], (), "send the order again"))
+        vehicle.refuse(Error("fileError", memory.problem, (), "send the order again"))
     return vehicle, position
 
 

@@ -22,7 +22,7 @@ from robot_control.fleet.client import DONE, DRIVING, ENDED, Progress
 from robot_control.fleet.custom import Actions
 from robot_control.fleet.settings import Settings
 from robot_control.fleet.v2.leg import PathPoint
-from robot_control.fleet.v2.messages import MAX_TEXT, Error
+from robot_control.fleet.v2.messages import Error
 from robot_control.fleet.v2.order import Action
 from robot_control.fleet.v2.state import Facts
 from robot_control.msg import FollowPathAction, FollowPathFeedback, FollowPathGoal, RobotStatus, SafetyStatus
@@ -77,8 +77,7 @@ class RosRobot:
         self._static = rospy.Publisher("tf_static", TFMessage, queue_size=1, latch=True)
         subscribe_odometry(self._receive_odometry)
         subscribe("safety_status", SafetyStatus, self._receive_safety, not_finite=("speed_limit",), queue_size=1)
-        unknown = ("odometry_confidence",)
-        subscribe("robot_status", RobotStatus, self._receive_status, not_finite=unknown, queue_size=1)
+        subscribe("robot_status", RobotStatus, self._receive_status, not_finite=("odometry_confidence",), queue_size=1)
         subscribe("battery_state", BatteryState, self._receive_battery, not_finite=UNMEASURED, queue_size=1)
         self._client = actionlib.ActionClient(ACTION, GuardedAction)
         self._handles: list[actionlib.ClientGoalHandle] = []  # of goals that have not ended, the present one last
@@ -288,7 +287,7 @@ def _silent(what: str, topic: str) -> Error:
 def _errors(safety: SafetyStatus) -> list[Error]:
     """Latched causes need a person at the robot; warnings and what is waited for end by themselves."""
     causes = [
-        Error(name[:MAX_TEXT], f"{sentence} {detail}".strip()[:MAX_TEXT], (("actor", actor),), remedy, fatal=True)
+        Error(name, f"{sentence} {detail}".strip(), (("actor", actor),), remedy, fatal=True)
         for name, sentence, remedy, actor, detail in zip(
             safety.causes, safety.sentences, safety.remedies, safety.actors, safety.details, strict=False
         )

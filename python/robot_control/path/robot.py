@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from typing import Any
 
 import rospy
 from nav_msgs.msg import Odometry
@@ -68,9 +67,8 @@ class Robot:
         self.refused_at = math.inf  # s, since when the controller awaits a zero from this program after a stop
         self.masked_by = ""
         subscribe_odometry(self._receive_odometry)
-        newest: dict[str, Any] = {"not_finite": MEASURED, "queue_size": 1, "tcp_nodelay": True}
-        subscribe("drive_state", DriveState, self._receive_state, **newest)
-        subscribe("leg_state", LegState, self._receive_refusal, **newest)
+        subscribe("drive_state", DriveState, self._receive_state, not_finite=MEASURED, queue_size=1, tcp_nodelay=True)
+        subscribe("leg_state", LegState, self._receive_refusal, not_finite=MEASURED, queue_size=1, tcp_nodelay=True)
 
     @property
     def frames(self) -> tuple[str, str]:

@@ -62,7 +62,7 @@ class Error:
         result: Message = {
             "errorType": self.kind,
             "errorLevel": "FATAL" if self.fatal else "WARNING",
-            "errorDescription": self.description,
+            "errorDescription": self.description[:MAX_TEXT],
             "errorReferences": [{"referenceKey": key, "referenceValue": value} for key, value in self.references],
         }
         return result | ({"errorHint": self.hint} if self.hint else {})
@@ -111,10 +111,8 @@ def check(message: Message, topic: str) -> None:
     while left:
         where, name, value, rules, depth = left.popleft()
         values += len(value) if isinstance(value, dict | list) else 0
-        if values > MAX_VALUES:
-            raise _malformed("", f"has more than {MAX_VALUES} values")
-        if depth > MAX_DEPTH:
-            raise _malformed("", TOO_DEEP)
+        if values > MAX_VALUES or depth > MAX_DEPTH:
+            raise _malformed("", TOO_LARGE)
         if "$ref" in rules:
             rules = whole["definitions"][rules["$ref"].rpartition("/")[2]]
         if broken := _broken(name, value):
@@ -148,7 +146,7 @@ def _read(payload: bytes) -> Message:
     try:
         message = DECODER.decode(payload.decode())
     except RecursionError:
-        raise _malformed("", TOO_DEEP) from None
+        raise _malformed("", TOO_LARGE) from None
     except ValueError as error:
         raise _malformed("", f"is no JSON of UTF-8: {str(error)[:80]}") from None
     if not isinstance(message, dict):
@@ -170,7 +168,7 @@ def _unique(pairs: list[tuple[str, Any]]) -> Message:
 DECODER = json.JSONDecoder(parse_constant=_no_constant, object_pairs_hook=_unique)
 NUMBER, NOTHING = "number", type(None)
 KINDS = {dict: "object", list: "array", str: "string", bool: "boolean", int: NUMBER, float: NUMBER, NOTHING: "null"}
-TOO_DEEP = f"is more than {MAX_DEPTH} levels deep"
+TOO_LARGE = f"is more than {MAX_DEPTH} levels deep, or has more than {MAX_VALUES} values"
 
 
 def _broken(name: str, value: Any) -> str:
