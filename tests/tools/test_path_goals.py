@@ -107,7 +107,8 @@ def test_a_turn_alone_and_a_path_are_driven_and_what_is_none_is_refused(follow_p
     assert "beyond 1e+06" in executed(follow_path, wire(goal_of([(0.0, 0.0, 0.0), (1e155, 0.0, 0.0)])))
     wrong = goal_of([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0)])
     wrong.goal.path.poses[1].pose.position.x = math.nan
-    assert "0 different points" in executed(follow_path, wire(wrong))
+    assert "point 1 of the path holds a number that is not finite" in executed(follow_path, wire(wrong))
+    assert "0 different points" in executed(follow_path, wire(wrong)[:-1])
     assert crossing.boundary.dropped == {"robot_control/FollowPathActionGoal": 1}
 
 

@@ -39,12 +39,14 @@ END = 2.0
 """s for the goal that is driven when the program is ended"""
 POLL_PERIOD = 0.05
 """s between two looks of the main thread"""
+NUMBERS = ("x", "y", "z", "w", "speed", "speeds", "turn_speeds", "begin_at")
+"""fields of a goal whose numbers are checked when it begins: the result says which one is wrong"""
 UNSTAMPED = f"a goal without goal_id.stamp counts as sent {GAP:g} s before it arrived"
 
 
-class TimedGoal(unsealed(FollowPathActionGoal)):  # type: ignore[misc]
+class TimedGoal(unsealed(FollowPathActionGoal, NUMBERS)):  # type: ignore[misc]
     """A goal that notes its time of request: a long one takes seconds to be read, and actionlib stamps one without
-    time. One that is not fit replaces the present goal and is refused, for it has no path.
+    time. One that cannot be read replaces the present goal and is refused, for it has no path.
     """
 
     stamped = False
