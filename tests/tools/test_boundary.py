@@ -9,7 +9,7 @@ import math
 import pytest
 from mutants import mutants
 from nav_msgs.msg import Odometry
-from robot_control.common.boundary import Boundary, UnfitError, _sealed, opened
+from robot_control.common.boundary import Boundary, UnfitError, _sealed, opened, unsealed
 from sensor_msgs.msg import BatteryState
 
 
@@ -31,6 +31,17 @@ def said() -> list[str]:
 @pytest.fixture
 def boundary(said: list[str]) -> Boundary:
     return Boundary(said.append)
+
+
+def test_what_actionlib_cannot_read_arrives_empty_and_counts(
+    monkeypatch: pytest.MonkeyPatch, boundary: Boundary
+) -> None:
+    monkeypatch.setattr("robot_control.common.boundary.boundary", boundary)
+    kind = unsealed(Odometry)
+    assert (kind._type, kind._md5sum) == (Odometry._type, Odometry._md5sum)
+    data = wire(Odometry(child_frame_id="base_link"))
+    assert [kind().deserialize(each).child_frame_id for each in (data, data[:-1])] == ["base_link", ""]
+    assert boundary.dropped == {"nav_msgs/Odometry": 1}
 
 
 def test_a_healthy_message_arrives() -> None:
