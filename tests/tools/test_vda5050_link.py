@@ -207,6 +207,16 @@ def test_messages_of_the_master_arrive_bounded_and_what_is_dropped_is_counted(tm
     sender.end()
 
 
+def test_what_is_no_message_leaves_room_for_those_that_are_one(tmp_path, broker):
+    link = link_of(tmp_path, broker.port)
+    request = b'{"actions": []}'
+    for payload in (*[b"x"] * 10_000, request):
+        link._message(None, None, SimpleNamespace(topic=ACTIONS, payload=payload, retain=False))
+    waiting = [link.received.get()[1] for _ in range(link.received.qsize())]
+    assert waiting[-1] == request
+    assert len(waiting) < 100
+
+
 FLOOD = """
 import sys, time
 import paho.mqtt.client as mqtt
