@@ -1,4 +1,4 @@
-"""What crosses the boundary of vda5050.py: no message, topic or file ends it, and each costs little time."""
+"""The boundary of vda5050.py: no message, topic or file ends the program, and each costs little time."""
 
 from __future__ import annotations
 

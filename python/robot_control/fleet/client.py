@@ -121,8 +121,8 @@ class Client:
         self._outbox.append(("factsheet", factsheet(self.machine)))
 
     def receive(self, topic: str, payload: bytes, now: float, *, retained: bool = False) -> None:
-        """Takes a message of the master at `now` s; one that waited while this program stood still moves nothing. What
-        surprises the program ends the leg and drops the order.
+        """Takes a message of the master at `now` s; one that waited while this program stood still moves nothing. A
+        message that surprises the program ends the leg and drops the order.
         """
         with self._boundary.crossing(topic), self._refusing(topic):
             if now - self._stepped_at > GAP:

@@ -20,7 +20,7 @@ from robot_control.fleet.v2.vehicle import FAILED, FINISHED
 
 Result = tuple[str, str, str]
 RELEASE = ("sh", "-c", 'read -r _ || for topic; do timeout 10 rostopic pub -1 "$topic" std_msgs/Bool false & done', "-")
-"""Waits for a line. Where the pipe ends without one the program was killed, and each topic becomes false."""
+"""Waits for a line. If the pipe ends without one, the program was killed, and each topic becomes false."""
 
 
 class Actions:

@@ -1,8 +1,8 @@
 """The connection to the broker (6.2, 6.14): what is sent with which quality, and what was received.
 
-Another client of the same serial number shows itself on `connection`. What this robot sent there comes back, too: at
-once; after a reconnection, when paho sends again what was not acknowledged; and retained, even years old, from a broker
-that was restored. So the file holds the digests of the last OWN of them. An empty message only ends a retained one.
+Another client of the same serial number shows itself on `connection`. The robot's own messages come back there, too:
+paho sends again those that were not acknowledged, and a broker that was restored sends old retained ones. The file
+therefore holds the digests of the last OWN of them. An empty message only ends a retained one.
 """
 
 from __future__ import annotations
