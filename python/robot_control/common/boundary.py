@@ -115,8 +115,8 @@ def opened(sealed: Any, not_finite: Collection[str] = ()) -> Any:
 
 
 def unsealed(kind: type, not_finite: Collection[str] = ()) -> type:
-    """The type for actionlib, which subscribes by itself: a message that is not fit arrives empty. rospy would keep it
-    and read it again with every later message.
+    """The type for actionlib, which subscribes by itself. A message that is not fit arrives empty, for rospy would keep
+    it, and read it again with every later one.
     """
 
     def deserialize(self: Any, data: bytes) -> Any:

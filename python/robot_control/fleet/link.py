@@ -1,7 +1,7 @@
 """The connection to the broker (6.2, 6.14): what is sent with which quality, and what was received.
 
-Another client of the same serial number shows itself on `connection`. The robot's own messages come back there, too:
-paho sends again those that were not acknowledged, and a broker that was restored sends old retained ones. The file
+Another client of the same serial number shows itself on `connection`. The robot's own messages come back there, too.
+Paho sends again those that were not acknowledged, and a broker that was restored sends old retained ones. The file
 therefore holds the digests of the last OWN of them. An empty message only ends a retained one.
 """
 
