@@ -81,6 +81,7 @@ struct Statement {
   std::string process, topic;
   Request request;
   std::int64_t cycle = 0;  // of all driver cycles
+  std::uint64_t gait = 0;  // mode that was chosen then, since the last withdrawal
 };
 
 /// A publisher of e_stop in the judge's model.
@@ -133,6 +134,9 @@ class Sequence {
 
   /// Calls the services that request something.
   virtual void call() {}
+
+  /// Returns the mode that set_gait chose since the last withdrawal; 0: none.
+  virtual std::uint64_t chosen() const { return 0; }
 
   /// Returns whether the request in force consists of what one process has stated.
   virtual bool owned(const Request&) { return true; }
@@ -393,7 +397,7 @@ class Sequence {
     for (Sender& sender : senders_) {
       if (now_ < undisturbed_) {
         const bool first = &sender == senders_.data();
-        sender.message = !first ? Message::kNone : now_ < ticks_ ? Message::kZero : Message::kMotion;
+        sender.message = !first ? Message::kNone : now_ < kTimeoutTicks ? Message::kZero : Message::kMotion;
       } else if (disturbs(150)) {
         constexpr std::array kChoices{Message::kNone,  Message::kNone,     Message::kZero,
                                       Message::kZero,  Message::kMotion,   Message::kNotFinite,
@@ -461,7 +465,8 @@ class Sequence {
     } else {
       inbox_->receive(arrived, time);
     }
-    if (intake().value().count != accepted) statements_.push_back({process(sender), sender.topic, stated, cycles_});
+    if (intake().value().count != accepted)
+      statements_.push_back({process(sender), sender.topic, stated, cycles_, chosen()});
     const bool accepted_zero =
         parts_of(stated) == 0 && intake().value().stale == refused;  // without a timeout none is old
     sender.received = accepted_zero ? Message::kZero : Message::kMotion;
@@ -742,6 +747,8 @@ class LeggedSequence final : public Sequence {
     posture_ = kStanceStay;
   }
 
+  std::uint64_t chosen() const override { return chosen_.second >= withdrawn_cycle_ ? chosen_.first : 0; }
+
   bool owned(const Request& request) override {
     const Statement* twist = nullptr;
     const Statement* rest = nullptr;
@@ -756,8 +763,8 @@ class LeggedSequence final : public Sequence {
       const bool same_mode = one.request.mode == request.mode && one.request.joints == request.joints;
       if (has_rest && is(one.request.posture, request.posture) && (walks || same_mode)) rest = &one;
     }
-    const bool chosen = request.mode == chosen_.first && chosen_.second >= withdrawn_cycle_;
-    if (walks && (twist == nullptr || (request.mode != twist->request.mode && !chosen))) return false;
+    if (walks && twist == nullptr) return false;
+    if (walks && request.mode != twist->request.mode && request.mode != twist->gait) return false;
     return !has_rest || (rest != nullptr && (!walks || rest->process == twist->process));
   }
 
