@@ -129,6 +129,9 @@ class Sequence {
   /// Makes a message of motion.
   virtual void ask(const Sender&, ArrivedCommand& to) { to.twist.linear[0] = 0.5; }
 
+  /// Returns whether a sender sends nothing for a while.
+  virtual bool rests(const Sender&) { return false; }
+
   /// Makes a message that is not finite.
   virtual void spoil(ArrivedCommand& to) { to.twist.linear[0] = std::numeric_limits<double>::quiet_NaN(); }
 
@@ -396,14 +399,15 @@ class Sequence {
   void send() {
     for (Sender& sender : senders_) {
       if (now_ < undisturbed_) {
-        const bool first = &sender == senders_.data();
-        sender.message = !first ? Message::kNone : now_ < kTimeoutTicks ? Message::kZero : Message::kMotion;
+        const bool begins = now_ >= (sender.part == StatedPart::kPose ? undisturbed_ / 2 : kTimeoutTicks);
+        sender.message = sender.name != "/a" ? Message::kNone : begins ? Message::kMotion : Message::kZero;
       } else if (disturbs(150)) {
         constexpr std::array kChoices{Message::kNone,  Message::kNone,     Message::kZero,
                                       Message::kZero,  Message::kMotion,   Message::kNotFinite,
                                       Message::kStale, Message::kAgedZero, Message::kAgedMotion};
         sender.message = kChoices[random_() % kChoices.size()];
         if (chance(3)) sender.message = Message::kMotion;
+        if (rests(sender)) sender.message = Message::kNone;
         sender.zero_first = chance(2);
         sender.period = 1 + below(kTimeoutTicks - 2 * kJudgesMargin);
       }
@@ -709,6 +713,9 @@ class LeggedSequence final : public Sequence {
       to.mode = kStanceJoints;
     }
   }
+
+  /// Of three processes that request something all the time, none is released.
+  bool rests(const Sender& sender) override { return sender.name != "/a" && !chance(3); }
 
   void spoil(ArrivedCommand& to) override {
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
