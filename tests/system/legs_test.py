@@ -170,6 +170,7 @@ class LegsTest(LegsTestCase):
         self.body_pose.publish(BodyPose())
         self.assertEqual(self.walk_for(1.0)[1], {"walking"})
         wait_for("standing", lambda: self.legs.posture == "standing", every=lambda: self.cmd_vel.publish(Twist()))
+        wait_for("lying", lambda: self.set_posture("lying")[0] and self.legs.posture == "lying")
 
     def move(self, joint: str, *points: tuple[float, float]) -> None:
         """Publishes a trajectory of (time, position)."""
