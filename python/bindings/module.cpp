@@ -50,10 +50,8 @@ namespace py = pybind11;
 namespace robot_control {
 namespace {
 
-/// Returns a request to drive. `mode` is the way of moving while the twist is not zero.
-Request planar(double linear, double lateral, double angular, std::uint64_t mode) {
-  const bool moves = linear != 0 || lateral != 0 || angular != 0;
-  return {.twist = {.linear = {linear, lateral, 0}, .angular = {0, 0, angular}}, .mode = moves ? mode : 0};
+Twist planar(double linear, double lateral, double angular) {
+  return {.linear = {linear, lateral, 0}, .angular = {0, 0, angular}};
 }
 
 std::vector<TraceColumn> columns_of(const ClosedLoop& loop) {
@@ -64,15 +62,15 @@ std::vector<TraceColumn> columns_of(const ClosedLoop& loop) {
 }
 
 /// Passes the result of a command function to the loop as a command that arrives now.
-void receive(ClosedLoop& loop, const py::object& given, std::uint64_t mode) {
+void receive(ClosedLoop& loop, const py::object& given) {
   std::vector<double> numbers;
   try {
     numbers = given.cast<std::vector<double>>();
   } catch (const py::cast_error&) {
     numbers.clear();
   }
-  if (numbers.size() == 2) return loop.request(planar(numbers[0], 0, numbers[1], mode));
-  if (numbers.size() == 3) return loop.request(planar(numbers[0], numbers[1], numbers[2], mode));
+  if (numbers.size() == 2) return loop.command(planar(numbers[0], 0, numbers[1]));
+  if (numbers.size() == 3) return loop.command(planar(numbers[0], numbers[1], numbers[2]));
   throw py::type_error(
       "command must give (linear, angular), two numbers in m/s and rad/s, or (linear, lateral, "
       "angular); it gave " +
@@ -81,7 +79,7 @@ void receive(ClosedLoop& loop, const py::object& given, std::uint64_t mode) {
 
 /// Runs `cycles` cycles. `command(t)` returns (linear, angular) or (linear, lateral, angular), or is None. Other Python
 /// threads run meanwhile if no command function needs the interpreter. `replay` stores the cycles, or is None.
-py::dict run(ClosedLoop& loop, std::int64_t cycles, const py::object& command, LoopReplay* replay, std::uint64_t mode) {
+py::dict run(ClosedLoop& loop, std::int64_t cycles, const py::object& command, LoopReplay* replay) {
   constexpr std::int64_t kBlock = 1000;  // cycles between two checks for Ctrl-C
   if (cycles < 0) throw py::value_error("cycles must not be negative");
   const std::vector<TraceColumn> columns = columns_of(loop);
@@ -105,7 +103,7 @@ py::dict run(ClosedLoop& loop, std::int64_t cycles, const py::object& command, L
       for (std::int64_t row = first; row < last; ++row) step(row);
     } else {
       for (std::int64_t row = first; row < last; ++row) {
-        receive(loop, command(loop.time()), mode);
+        receive(loop, command(loop.time()));
         step(row);
       }
     }
@@ -256,10 +254,11 @@ void bind_closed_loop(py::module_& module) {
            py::arg("path"), py::arg("values"))
       .def(
           "command",
-          [](ClosedLoop& loop, double linear, double angular, double lateral, std::uint64_t mode) {
-            loop.request(planar(linear, lateral, angular, mode));
+          [](ClosedLoop& loop, double linear, double angular, double lateral) {
+            loop.command(planar(linear, lateral, angular));
           },
-          py::arg("linear"), py::arg("angular"), py::arg("lateral") = 0.0, py::arg("mode") = 0)
+          py::arg("linear"), py::arg("angular"), py::arg("lateral") = 0.0)
+      .def("choose_mode", &ClosedLoop::choose_mode, py::arg("mode"))
       .def(
           "request",
           [](ClosedLoop& loop, const std::array<double, 6>& pose, std::uint64_t mode,
@@ -278,7 +277,7 @@ void bind_closed_loop(py::module_& module) {
       .def("reset", &ClosedLoop::reset)
       .def("set_parameters", &ClosedLoop::set_parameters, py::arg("request"))
       .def("inject_fault", &ClosedLoop::inject_fault, py::arg("component"), py::arg("kind"))
-      .def("run", &run, py::arg("cycles"), py::arg("command"), py::arg("replay") = nullptr, py::arg("mode") = 0)
+      .def("run", &run, py::arg("cycles"), py::arg("command"), py::arg("replay") = nullptr)
       .def("record", &record, py::arg("commands"))
       .def("scan", &scan_of)
       .def("stop_distance", &distance_to_stop, py::arg("speed"), py::arg("emergency"))

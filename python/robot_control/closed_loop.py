@@ -83,7 +83,6 @@ class ClosedLoop:
     ) -> None:
         """Takes the arguments above."""
         self._running = False
-        self._mode = 0
         self._path, self._values = layered(params, urdf)
         if scene is not None:
             self._values.append((f"{DRIVER}.scene", utf8(scene)))
@@ -147,10 +146,10 @@ class ClosedLoop:
         """Acts as a message on cmd_vel: linear [m/s], angular [rad/s], of a robot on legs also lateral [m/s], to the
         left. It times out like cmd_vel. A robot that lies stands up first.
         """
-        self._loop.command(linear, angular, lateral, self._mode)
+        self._loop.command(linear, angular, lateral)
 
     def set_gait(self, gait: str) -> None:
-        """Acts as a call of `set_gait` of a robot on legs, for the commands that follow.
+        """Acts as a call of `set_gait` of a robot on legs, for the commands that follow, until a stop or a reset.
 
         Args:
             gait: "auto" (the speed chooses), "trot", "walking_trot", "crawl", or one of the parameters gait_1 … gait_4
@@ -159,7 +158,7 @@ class ClosedLoop:
             ValueError: another word.
         """
         index = _index(gait, self._loop.gaits, "gait")
-        self._mode = _GAIT + index if index else 0
+        self._loop.choose_mode(_GAIT + index if index else 0)
 
     def set_posture(self, posture: str) -> None:
         """Acts as a call of `set_posture` of a robot on legs.
@@ -260,7 +259,7 @@ class ClosedLoop:
         self._refuse_inside_a_run("step and run")
         self._running = True
         try:
-            return self._loop.run(cycles, command, None, self._mode)
+            return self._loop.run(cycles, command)
         finally:
             self._running = False
 

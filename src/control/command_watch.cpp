@@ -53,7 +53,7 @@ void CommandWatch::set_timeout(double timeout) noexcept {
 void CommandWatch::accept(const VelocityCommand& request, std::uint64_t parts, std::uint64_t cycle) noexcept {
   request_cycle_ = cycle;
   life_ = cycles_left(timeout_, request.age_ns, period_);
-  const bool good = finite(request.content);
+  const bool good = request.contested != kNotFiniteMessage && finite(request.content);
   reason_ = good ? 0u : std::uint64_t{kReasonRefused};
   requested_ = good ? request.content : Request{};
   ignored_ = good ? parts & ~executable_ : 0;
@@ -64,8 +64,8 @@ void CommandWatch::accept(const VelocityCommand& request, std::uint64_t parts, s
 void CommandWatch::note_messages(const VelocityCommand& request, std::uint64_t parts, std::uint64_t cycle) noexcept {
   const bool first = !first_cycle_.has_value();
   if (first) first_cycle_ = message_cycle_ = cycle;
-  const bool refused =
-      request.stale != last_.stale || request.crowded != last_.crowded || request.revoked != last_.revoked;
+  const bool refused = request.stale != last_.stale || request.crowded != last_.crowded ||
+                       request.revoked != last_.revoked || request.not_finite != last_.not_finite;
   const bool accepted = request.count != last_.count && request.contested != kNoMessage;
   if (!refused && !accepted) return;
   message_cycle_ = cycle;

@@ -14,14 +14,14 @@
 /// A command is accepted as a whole even if the machine cannot execute all of its parts. Parts that are not zero and
 /// not executable are named (`ignored`), and such commands are counted (`partial`).
 ///
-/// A message that is refused for its stamp or its sender (VelocityCommand::stale, revoked) has no effect. The command
-/// before it stays in force until its own timeout. Commands that are overwritten in the inbox between two cycles count
-/// as received; only the last one is evaluated. Only cycles are counted, so a clock that jumps cannot end a command
-/// early or restore an old one.
+/// A message that is refused beside a command in force (VelocityCommand::stale, crowded, revoked, not_finite) has no
+/// effect. That command stays in force until its own timeout. Commands that are overwritten in the inbox between two
+/// cycles count as received; only the last one is evaluated. Only cycles are counted, so a clock that jumps cannot end
+/// a command early or restore an old one.
 ///
 /// The safety monitor (motion_release.h) uses this class as evidence that no motion is requested:
 ///
-///   zero request    an accepted command, all of whose parts are zero, that is not VelocityCommand::contested; commands
+///   zero request    an accepted command, all of whose parts are zero, with VelocityCommand::contested 0; commands
 ///                   in the inbox before the first step do not count, because they may be as old as the process
 ///   zero requested  a zero request was received, and no other message since then
 ///   silent cycles   k − k_message; k_message is the cycle of the last message, accepted or refused, or of the first
@@ -63,8 +63,8 @@ class CommandWatch {
   std::uint64_t ignored() const noexcept { return ignored_; }
   std::uint64_t partial() const noexcept { return partial_; }  ///< accepted commands with an ignored part
   std::uint64_t request_cycle() const noexcept { return request_cycle_; }
-  std::uint64_t received() const noexcept { return last_.count - first_.count + stale() + crowded() + revoked(); }
-  std::uint64_t refused() const noexcept { return not_finite_ + stale() + crowded() + revoked(); }
+  std::uint64_t received() const noexcept { return last_.count - first_.count + without_effect(); }
+  std::uint64_t refused() const noexcept { return not_finite_ + without_effect(); }
   std::uint64_t stale() const noexcept { return last_.stale - first_.stale; }
   std::uint64_t crowded() const noexcept { return last_.crowded - first_.crowded; }
   std::uint64_t revoked() const noexcept { return last_.revoked - first_.revoked; }
@@ -80,6 +80,9 @@ class CommandWatch {
   /// `parts` are those of a new command.
   void accept(const VelocityCommand& request, std::uint64_t parts, std::uint64_t cycle) noexcept;
   void note_messages(const VelocityCommand& request, std::uint64_t parts, std::uint64_t cycle) noexcept;
+  std::uint64_t without_effect() const noexcept {
+    return stale() + crowded() + revoked() + last_.not_finite - first_.not_finite;
+  }
 
   double timeout_;
   double period_;

@@ -53,43 +53,29 @@ enum RequestPart : std::uint64_t {
   kPartJoints = 1u << 13,
 };
 
-/// Returns true if posture and joints are zero, as in every velocity command. One pass over their bits costs less than
-/// 18 comparisons.
-inline bool posture_and_joints_are_zero(const Request& request) noexcept {
-  std::uint64_t bits = 0;
-  for (const std::uint64_t value : std::bit_cast<std::array<std::uint64_t, 6>>(request.posture)) bits |= value;
-  for (const std::uint64_t value : std::bit_cast<std::array<std::uint64_t, kRequestJoints>>(request.joints))
-    bits |= value;
-  return bits << 1 == 0;  // a zero may have a sign
+/// The numbers of twist and posture in the order of their RequestPart bits, without kPartMode.
+inline std::array<double, 12> numbers_of(const Request& request) noexcept {
+  const auto& [linear, angular] = request.twist;
+  const Posture& to = request.posture;
+  return {linear[0], linear[1], linear[2], angular[0], angular[1], angular[2],
+          to.height, to.roll,   to.pitch,  to.x,       to.y,       to.yaw};
 }
 
 /// Returns the RequestPart bits of the parts that are not zero.
 inline std::uint64_t parts_of(const Request& request) noexcept {
-  const auto& [linear, angular] = request.twist;
   std::uint64_t parts = request.mode != 0 ? std::uint64_t{kPartMode} : 0;
   std::uint64_t part = kPartLinearX;
-  for (const double value : {linear[0], linear[1], linear[2], angular[0], angular[1], angular[2]}) {
-    if (value != 0) parts |= part;
-    part <<= 1;
+  for (const double number : numbers_of(request)) {
+    if (number != 0) parts |= part;
+    part <<= part == kPartPitch ? 2 : 1;  // kPartMode lies between
   }
-  if (posture_and_joints_are_zero(request)) return parts;
-  if (request.posture.height != 0) parts |= kPartHeight;
-  if (request.posture.roll != 0) parts |= kPartRoll;
-  if (request.posture.pitch != 0) parts |= kPartPitch;
-  if (request.posture.x != 0) parts |= kPartX;
-  if (request.posture.y != 0) parts |= kPartY;
-  if (request.posture.yaw != 0) parts |= kPartYaw;
   if (std::ranges::any_of(request.joints, [](double joint) { return joint != 0; })) parts |= kPartJoints;
   return parts;
 }
 
 inline bool finite(const Request& request) noexcept {
-  if (posture_and_joints_are_zero(request)) return finite(request.twist);
-  const Posture& posture = request.posture;
-  return finite(request.twist) && std::isfinite(posture.height) && std::isfinite(posture.roll) &&
-         std::isfinite(posture.pitch) && std::isfinite(posture.x) && std::isfinite(posture.y) &&
-         std::isfinite(posture.yaw) &&
-         std::ranges::all_of(request.joints, [](double joint) { return std::isfinite(joint); });
+  const auto is_finite = [](double number) { return std::isfinite(number); };
+  return std::ranges::all_of(numbers_of(request), is_finite) && std::ranges::all_of(request.joints, is_finite);
 }
 
 /// Returns the number of joints that the log writes of a request: all, or none where each is zero.
@@ -99,9 +85,9 @@ inline std::size_t logged_joints(const Request& request) noexcept {
   return any ? kRequestJoints : 0;
 }
 
-/// The value of VelocityCommand::contested for a command without sender, which is neither a request nor the end of a
-/// silence.
-inline constexpr std::uint64_t kNoMessage = 2;
+/// Values of VelocityCommand::contested: the command has no sender and is neither a request nor the end of a silence;
+/// a message of its sender was refused because it was NaN or infinite.
+inline constexpr std::uint64_t kNoMessage = 2, kNotFiniteMessage = 3;
 
 /// Returns how many seconds without a message count as a zero request; `timeout` is cmd_vel_timeout in s, 0 if messages
 /// never time out.
@@ -115,18 +101,20 @@ inline double silence_needed(double timeout) noexcept {
 /// converted to an age (ros/inputs/command_input.h). From then on its age is counted in cycles, independent of any
 /// clock.
 struct VelocityCommand {
-  Request content;  ///< NaN and infinity are passed on, the controller refuses them
+  Request content;
   std::uint64_t count = 0;
   std::int64_t age_ns = 0;         ///< ≥ 0, age of the command at its arrival by its stamp; 0 without a stamp
   std::uint64_t stale = 0;         ///< grows with every message refused for its stamp: too old, or in the future
-  std::uint64_t crowded = 0;       ///< grows with every message refused because more than one node sends
+  std::uint64_t crowded = 0;       ///< grows with every message refused because another node sends
   std::uint64_t revoked = 0;       ///< grows with every message refused because its sender is revoked
+  std::uint64_t not_finite = 0;    ///< grows with every message that was NaN or infinite and ended no command
   std::uint64_t many_senders = 0;  ///< 1: more than one node sends now, and one_sender forbids it
 
   /// 1 if, when the command arrived, another sender's newest message within silence_needed was refused or not of zero
   /// velocity. Then a zero velocity is no evidence that no motion is requested. The value is kNoMessage for the zero
   /// velocity that is in force while no source commands (command_mux.h), or because a command ended. If that command
-  /// arrived so recently that the controller may not have read it, the value is 1 instead.
+  /// arrived so recently that the controller may not have read it, the value is 1 instead. It is kNotFiniteMessage for
+  /// a zero velocity in place of a refused message.
   std::uint64_t contested = 0;
 };
 

@@ -38,6 +38,10 @@ class ClosedLoop {
   /// The same with every part of a request.
   void request(const Request& request) noexcept;
 
+  /// Sets Request::mode of later commands other than zero, as set_gait of a robot on legs does. It ends with the
+  /// permission to move.
+  void choose_mode(std::uint64_t mode) noexcept;
+
   /// These act like calls of e_stop_trigger and e_stop_reset, and like a message on heartbeat.
   void e_stop() noexcept;
   void e_stop_reset() noexcept;

@@ -119,6 +119,28 @@ TEST_F(CommandWatchTest, RefusesEveryComponentThatIsNotFiniteUntilAGoodMessageAr
   EXPECT_EQ(watch.timeouts(), 0u);
 }
 
+TEST_F(CommandWatchTest, AMessageThatItsInputRefusedAsNotFiniteEndsTheRequestLikewise) {
+  send(0.5);
+  watch.step(request, 0);
+  request.content = {};
+  request.contested = kNotFiniteMessage;
+  ++request.count;
+  EXPECT_EQ(watch.step(request, 1).twist.linear[0], 0);
+  EXPECT_EQ(watch.reasons(), kReasonRefused);
+  EXPECT_EQ(watch.refused(), 1u);
+  EXPECT_EQ(watch.received(), 2u);
+}
+
+TEST_F(CommandWatchTest, ARefusedMessageBesideTheCommandInForceIsCountedWithoutEffect) {
+  send(0.5);
+  watch.step(request, 0);
+  ++request.not_finite;
+  EXPECT_EQ(watch.step(request, 1).twist.linear[0], 0.5);
+  EXPECT_EQ(watch.reasons(), 0u);
+  EXPECT_EQ(watch.refused(), 1u);
+  EXPECT_EQ(watch.received(), 2u);
+}
+
 /// Each number behind the twist, by which a request may be more than a velocity command.
 std::vector<double*> numbers_behind_the_twist(Request& request) {
   Posture& posture = request.posture;
@@ -269,11 +291,12 @@ TEST_F(CommandWatchTest, AZeroRequestIsEvidenceUntilAnythingElseIsReceived) {
   watch.step(request, 1);
   EXPECT_TRUE(watch.zero_requested());
   EXPECT_EQ(watch.zero_requests(), 1u);
-  for (auto disturb :
-       {+[](VelocityCommand& r) { r.content.twist.angular[2] = 1, ++r.count; }, +[](VelocityCommand& r) { ++r.stale; },
-        +[](VelocityCommand& r) { ++r.crowded; }, +[](VelocityCommand& r) { ++r.revoked; },
-        +[](VelocityCommand& r) { r.content.twist.linear[0] = std::nan(""), ++r.count; },
-        +[](VelocityCommand& r) { r.contested = 1, ++r.count; }}) {
+  for (auto disturb : {+[](VelocityCommand& r) { r.content.twist.angular[2] = 1, ++r.count; },
+                       +[](VelocityCommand& r) { ++r.stale; }, +[](VelocityCommand& r) { ++r.crowded; },
+                       +[](VelocityCommand& r) { ++r.revoked; }, +[](VelocityCommand& r) { ++r.not_finite; },
+                       +[](VelocityCommand& r) { r.contested = kNotFiniteMessage, ++r.count; },
+                       +[](VelocityCommand& r) { r.content.twist.linear[0] = std::nan(""), ++r.count; },
+                       +[](VelocityCommand& r) { r.contested = 1, ++r.count; }}) {
     disturb(request);
     watch.step(request, 2);
     EXPECT_FALSE(watch.zero_requested());

@@ -407,6 +407,7 @@ TEST_F(ControllerCycleTest, HandsOnTheInboxAsItIs) {
   wanted.stale = 12;
   wanted.crowded = 13;
   wanted.revoked = 14;
+  wanted.not_finite = 15;
   wanted.many_senders = 1;
   wanted.contested = 2;
   cycle_->inbox().store(wanted);
@@ -418,6 +419,7 @@ TEST_F(ControllerCycleTest, HandsOnTheInboxAsItIs) {
     EXPECT_EQ(request.stale, 12u);
     EXPECT_EQ(request.crowded, 13u);
     EXPECT_EQ(request.revoked, 14u);
+    EXPECT_EQ(request.not_finite, 15u);
     EXPECT_EQ(request.many_senders, 1u);
     EXPECT_EQ(request.contested, 2u);
   }

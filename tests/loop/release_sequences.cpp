@@ -30,6 +30,7 @@ enum class Message { kNone, kZero, kMotion, kNotFinite, kStale, kAgedZero, kAged
 constexpr double kTimeout = 0.05;  // s, at first
 constexpr std::int64_t kTimeoutTicks = 50;
 constexpr std::array kTimeouts{0.0, 0.02, kTimeout, 0.1};  // s, that set_parameters takes
+constexpr std::array kLegTimeouts{kTimeout, 0.0, 1.25};    // s, request_timeout by seed
 constexpr std::int64_t kJudgesMargin = 6;                  // ticks, of the judge's T
 constexpr std::int64_t kWithRelease = 100;                 // driver cycles, MotionRequests::in_transit_ns
 constexpr std::int64_t kInTransit = 3;  // driver cycles from a message to the command frame that the monitor reads
@@ -44,8 +45,11 @@ CommandSourceList two_sources(double first_timeout, double second_timeout) {
           .locks = {{"pause", "pause", 0, 255}}};
 }
 
+/// One connection of a process.
 struct Sender {
   std::string name;
+  std::string topic = "cmd_vel";
+  StatedPart part = StatedPart::kAll;
   std::string uri = "0";  // of its process
   boost::shared_ptr<const void> connection = boost::make_shared<char>();
   std::int64_t suspended_until = 0;
@@ -70,6 +74,14 @@ struct Sender {
   bool requests_motion(std::int64_t now) const {
     return has_requested() && now - received_at < silence - kJudgesMargin;
   }
+};
+
+/// What a connection, or a service, has requested since the last withdrawal. Its numbers occur in no other one.
+struct Statement {
+  std::string process, topic;
+  Request request;
+  std::int64_t cycle = 0;  // of all driver cycles
+  std::uint64_t gait = 0;  // mode that was chosen then, since the last withdrawal
 };
 
 /// A publisher of e_stop in the judge's model.
@@ -113,6 +125,24 @@ class Sequence {
 
   /// Changes cmd_vel_timeout as set_parameters does.
   virtual void tune() {}
+
+  /// Makes a message of motion.
+  virtual void ask(const Sender&, ArrivedCommand& to) { to.twist.linear[0] = 0.5; }
+
+  /// Returns whether a sender sends nothing for a while.
+  virtual bool rests(const Sender&) { return false; }
+
+  /// Makes a message that is not finite.
+  virtual void spoil(ArrivedCommand& to) { to.twist.linear[0] = std::numeric_limits<double>::quiet_NaN(); }
+
+  /// Calls the services that request something.
+  virtual void call() {}
+
+  /// Returns the mode that set_gait chose since the last withdrawal; 0: none.
+  virtual std::uint64_t chosen() const { return 0; }
+
+  /// Returns whether the request in force consists of what one process has stated.
+  virtual bool owned(const Request&) { return true; }
 
   bool chance(unsigned one_in) { return random_() % one_in == 0; }
 
@@ -176,7 +206,7 @@ class Sequence {
       earlier.requested = requests_motion(command);
     }
     for (Sender& sender : senders_) {
-      earlier.present.push_back({sender.name, nullptr, sender.uri});
+      earlier.present.push_back({sender.name, nullptr, sender.uri, ""});
       reopen(sender);
       sender.motion_at = kNever;  // It owes a zero since this start, and no more for what it sent before.
     }
@@ -197,6 +227,8 @@ class Sequence {
   /// Every earlier request loses its effect.
   void withdraw() {
     withdrawn_cycle_ = cycles_;
+    service_requests_ = false;
+    statements_.clear();
     for (Sender& sender : senders_) {
       sender.zero_since = sender.left_requesting = false;
       sender.requested_lately = !sender.owes_zero && !sender.has_requested() && lately(sender);
@@ -220,8 +252,14 @@ class Sequence {
     for (Sender& sender : senders_) {
       const bool with_release = sender.zero_since && cycles_ - sender.received_cycle <= kWithRelease;
       sender.owes_zero |= sender.has_requested() && !with_release;
+      if (sender.owes_zero)
+        std::erase_if(statements_, [&](const Statement& one) {
+          return one.process == process(sender) && one.topic == sender.topic;
+        });
     }
   }
+
+  static std::string process(const Sender& sender) { return sender.name + " " + sender.uri; }
 
   /// The same process closes its connection and opens another one, or does so to another controller.
   static void reopen(Sender& sender) {
@@ -229,10 +267,14 @@ class Sequence {
     sender.received_at = kNever;
   }
 
-  void restart(Sender& sender) {
-    reopen(sender);
-    sender.uri = std::to_string(++processes_);
-    forget(sender);
+  void restart(const Sender& of) {
+    const std::string name = of.name, uri = std::to_string(++processes_);
+    for (Sender& sender : senders_) {
+      if (sender.name != name) continue;
+      reopen(sender);
+      sender.uri = uri;
+      forget(sender);
+    }
   }
 
   static void forget(Sender& sender) {
@@ -272,6 +314,7 @@ class Sequence {
     }
     pause();
     if (chance(300) && controller_ && !away(kControllerNode)) tune();
+    if (controller_ && !away(kControllerNode)) call();
     if (!monitor_ || away(kMonitorNode)) return;
     if (disturbs(500)) {
       ++operator_input_.e_stop_services;
@@ -356,18 +399,19 @@ class Sequence {
   void send() {
     for (Sender& sender : senders_) {
       if (now_ < undisturbed_) {
-        const bool first = &sender == senders_.data();
-        sender.message = !first ? Message::kNone : now_ < kTimeoutTicks ? Message::kZero : Message::kMotion;
+        const bool begins = now_ >= (sender.part == StatedPart::kPose ? undisturbed_ / 2 : kTimeoutTicks);
+        sender.message = sender.name != "/a" ? Message::kNone : begins ? Message::kMotion : Message::kZero;
       } else if (disturbs(150)) {
         constexpr std::array kChoices{Message::kNone,  Message::kNone,     Message::kZero,
                                       Message::kZero,  Message::kMotion,   Message::kNotFinite,
                                       Message::kStale, Message::kAgedZero, Message::kAgedMotion};
         sender.message = kChoices[random_() % kChoices.size()];
         if (chance(3)) sender.message = Message::kMotion;
+        if (rests(sender)) sender.message = Message::kNone;
         sender.zero_first = chance(2);
         sender.period = 1 + below(kTimeoutTicks - 2 * kJudgesMargin);
       }
-      if (disturbs(300)) sender.suspended_until = now_ + below(4 * kTimeoutTicks);
+      if (disturbs(300)) sender.suspended_until = now_ + below(4 * ticks_);
       if (disturbs(400)) restart(sender);
       if (disturbs(400)) reopen(sender);
       if (now_ < sender.suspended_until) continue;
@@ -405,23 +449,30 @@ class Sequence {
 
   void receive(Sender& sender) {
     follow_permission();
-    ArrivedCommand arrived{.sender = {sender.name, sender.connection, sender.uri}, .twist = {}, .stamp_ns = 0};
+    ArrivedCommand arrived{.sender = {sender.name, sender.connection, sender.uri, sender.topic},
+                           .twist = {},
+                           .stamp_ns = 0,
+                           .part = sender.part};
     const Message message = std::exchange(sender.zero_first, false) ? Message::kZero : sender.message;
-    if (message == Message::kMotion || message == Message::kAgedMotion) arrived.twist.linear[0] = 0.5;
-    if (message == Message::kNotFinite) arrived.twist.linear[0] = std::numeric_limits<double>::quiet_NaN();
+    if (message == Message::kMotion || message == Message::kAgedMotion) ask(sender, arrived);
+    if (message == Message::kNotFinite) spoil(arrived);
     if (message == Message::kStale) arrived.stamp_ns = 1;
     // The clock of the senders' stamps jumps at random.
     const ArrivalTime time{.ros_ns = 1'000'000'000'000 + below(2'000'000'000), .loop_ns = loop_ns()};
     const bool aged = message == Message::kAgedZero || message == Message::kAgedMotion;
     if (aged) arrived.stamp_ns = time.ros_ns - below(150'000'000) + (chance(5) ? 120'000'000 : 0);
-    const std::uint64_t refused = intake().value().stale;
+    const std::uint64_t refused = intake().value().stale, accepted = intake().value().count;
+    const Request stated{
+        .twist = arrived.twist, .posture = arrived.posture, .mode = arrived.mode, .joints = arrived.joints};
     if (with_list_) {
       mux_->receive(static_cast<std::size_t>(&sender - senders_.data()), arrived, time);
     } else {
       inbox_->receive(arrived, time);
     }
+    if (intake().value().count != accepted)
+      statements_.push_back({process(sender), sender.topic, stated, cycles_, chosen()});
     const bool accepted_zero =
-        zero(arrived.twist) && intake().value().stale == refused;  // without a timeout none is old
+        parts_of(stated) == 0 && intake().value().stale == refused;  // without a timeout none is old
     sender.received = accepted_zero ? Message::kZero : Message::kMotion;
     if (accepted_zero) {
       sender.zero_since = true;
@@ -496,14 +547,14 @@ class Sequence {
     ++figures_.moving_cycles;
     if (!released_ && cycles_ - start_cycle_ > kBrakesWithin) return "motion before a zero request";
     if (stopped_ && cycles_ - stop_cycle_ > kBrakesWithin) return "motion after an emergency stop";
-    const bool requested = std::ranges::any_of(senders_, [](const Sender& sender) {
-      return sender.left_requesting || (sender.has_requested() && !sender.owes_zero);
-    });
+    const bool requested = service_requests_ || std::ranges::any_of(senders_, [](const Sender& sender) {
+                             return sender.left_requesting || (sender.has_requested() && !sender.owes_zero);
+                           });
     CommandFrame command;  // the request in force; a ramp to zero may outlast it
-    const bool in_force = command_.reader.newest(command) == Lookup::kFrame && !zero(command.requested.twist);
-    if (requested || !in_force) requested_cycle_ = cycles_;
+    const bool in_force = command_.reader.newest(command) == Lookup::kFrame && parts_of(command.requested) != 0;
+    if (!in_force || (requested && owned(command.requested))) requested_cycle_ = cycles_;
     if (cycles_ - std::max(requested_cycle_, withdrawn_cycle_) > kBrakesWithin)
-      return "motion that was requested before a withdrawal";
+      return "motion that was requested before a withdrawal, or by no sender";
     return {};
   }
 
@@ -537,8 +588,11 @@ class Sequence {
   std::map<std::string, bool> buttons_heard_;
   bool held_ = false;  ///< at the last reset request a level was not to end
   std::int64_t silence_before_ = kTimeoutTicks;
-  std::array<Sender, 2> senders_{Sender{.name = "/a"}, Sender{.name = "/b"}};
-  std::array<bool, 2> waiting_{};
+  std::vector<Sender> senders_{Sender{.name = "/a"}, Sender{.name = "/b"}};
+  std::array<bool, 4> waiting_{};
+  std::vector<Statement> statements_;
+  bool service_requests_ = false;       ///< a service has requested something since the last withdrawal
+  std::int64_t ticks_ = kTimeoutTicks;  ///< of the timeout at first
   std::array<bool, kNodes> dead_{};
   std::array<bool, kNodes> unseen_{};  ///< no frame that the monitor can use since its start
   std::array<std::int64_t, kNodes> away_until_{};
@@ -607,6 +661,13 @@ class LeggedSequence final : public Sequence {
     one_sender_ = chance(3);
     undisturbed_ = 4000;
     rarity_ = 4;
+    timeout_ = parameters_.leg_control.request_timeout;
+    silence_before_ = ticks_ = silence();
+    senders_[0].part = StatedPart::kTwist;
+    senders_[1].topic = "all parts";
+    senders_.push_back({.name = "/a", .topic = "body_pose", .part = StatedPart::kPose});
+    senders_.push_back({.name = "/c", .topic = "body_pose", .part = StatedPart::kPose});
+    for (Sender& sender : senders_) sender.silence = ticks_;
     machine_.start();
   }
 
@@ -615,7 +676,7 @@ class LeggedSequence final : public Sequence {
     Parameters parameters = read_parameters(PROJECT_DIRECTORY "/config/robot_params.yaml");
     parameters.urdf = PROJECT_DIRECTORY "/urdf/quadbot.urdf";
     parameters.robot = {};
-    parameters.leg_control.request_timeout = kTimeout;
+    parameters.leg_control.request_timeout = kLegTimeouts[seed % kLegTimeouts.size()];
     parameters.plant.seed = seed;
     return parameters;
   }
@@ -633,6 +694,86 @@ class LeggedSequence final : public Sequence {
   std::unique_ptr<ControllerLaw> make_controller() const override { return robot_.make_controller(); }
   std::unique_ptr<MonitorLaw> make_monitor() const override { return robot_.make_monitor(); }
   bool moves() const override { return driver_->trace().gate.verdict != GateVerdict::kBrake; }
+
+  void ask(const Sender& sender, ArrivedCommand& to) override {
+    const double number = 1e-9 * static_cast<double>(++asked_);  // no two requests are the same
+    const std::uint64_t kind = now_ < undisturbed_ ? 0 : random_() % 6;
+    if (sender.part == StatedPart::kPose) {
+      to.posture = {.height = -0.02, .roll = 0.1 + number};
+    } else if (sender.part == StatedPart::kTwist || kind < 2) {
+      to.twist.linear[0] = 0.3 + number;
+      if (sender.part == StatedPart::kAll) to.mode = random_() % 2 == 0 ? 0 : kStanceGait + 1 + random_() % 3;
+    } else if (kind == 2) {
+      to.posture = {.height = -0.02, .pitch = 0.1 + number};
+    } else if (kind == 3) {
+      to.posture = {.height = 0.08 + number};
+      to.mode = kStanceLift + random_() % kLegs;
+    } else {
+      to.joints.fill(0.1 + number);
+      to.mode = kStanceJoints;
+    }
+  }
+
+  /// Of three processes that request something all the time, none is released.
+  bool rests(const Sender& sender) override { return sender.name != "/a" && !chance(3); }
+
+  void spoil(ArrivedCommand& to) override {
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    (to.part == StatedPart::kTwist ? to.twist.linear[0] : to.posture.yaw) = kNaN;
+  }
+
+  /// Acts as the node's set_posture and set_gait.
+  void call() override {
+    Permit permit;
+    CommandFrame command;
+    const bool granted = permit_.reader.newest(permit) == Lookup::kFrame && permit.action == PermitAction::kDrive &&
+                         current(sensors_.reader, permit.head, model().hash) &&
+                         command_.reader.newest(command) == Lookup::kFrame;
+    if (granted && chance(400)) {
+      const std::uint64_t gait = kStanceGait + 1 + random_() % 3;
+      inbox_->choose_mode(gait);
+      chosen_ = {gait, cycles_};
+    }
+    if (posture_ == kStanceStay && granted && disturbs(200)) {
+      posture_ = chance(2) ? kStanceStand : kStanceLie;
+      called_at_ = now_;
+    }
+    if (posture_ == kStanceStay || (now_ - called_at_) % 10 != 0) return;
+    const LegPhase phase = command.legged.phase;
+    const bool begun = posture_ == kStanceLie ? phase == LegPhase::kLying || phase == LegPhase::kLowering
+                                              : phase > LegPhase::kLying && phase < LegPhase::kLowering;
+    if (granted && !begun && now_ - called_at_ < 1000) {
+      follow_permission();
+      const std::uint64_t accepted = inbox_->value().count;
+      inbox_->receive_once({.twist = {}, .posture = {}, .mode = posture_}, {.ros_ns = 0, .loop_ns = loop_ns()});
+      if (inbox_->value().count != accepted) statements_.push_back({"service", "", inbox_->value().content, cycles_});
+      service_requests_ |= released_ && !stopped_;
+      return;
+    }
+    if (granted && !begun) inbox_->withdraw(posture_, loop_ns());
+    posture_ = kStanceStay;
+  }
+
+  std::uint64_t chosen() const override { return chosen_.second >= withdrawn_cycle_ ? chosen_.first : 0; }
+
+  bool owned(const Request& request) override {
+    const Statement* twist = nullptr;
+    const Statement* rest = nullptr;
+    const bool walks = !zero(request.twist);
+    const auto is = [](const Posture& a, const Posture& b) {
+      return a.height == b.height && a.roll == b.roll && a.pitch == b.pitch;
+    };
+    const bool has_rest = !is(request.posture, {}) || (request.mode != 0 && !walks);
+    for (const Statement& one : statements_) {
+      if (one.cycle < withdrawn_cycle_ || (timeout_ > 0 && cycles_ - one.cycle > 2 * ticks_ + kMaxAway)) continue;
+      if (walks && one.request.twist.linear == request.twist.linear) twist = &one;
+      const bool same_mode = one.request.mode == request.mode && one.request.joints == request.joints;
+      if (has_rest && is(one.request.posture, request.posture) && (walks || same_mode)) rest = &one;
+    }
+    if (walks && twist == nullptr) return false;
+    if (walks && request.mode != twist->request.mode && request.mode != twist->gait) return false;
+    return !has_rest || (rest != nullptr && (!walks || rest->process == twist->process));
+  }
 
   std::string body_violation() override {
     TruthFrame truth;
@@ -657,7 +798,12 @@ class LeggedSequence final : public Sequence {
   Parameters parameters_;
   Quadruped robot_{parameters_, read_legs(load_description(parameters_.urdf), {}, {})};
   MujocoPlant machine_{robot_.machine(), parameters_.plant, kPeriod};
-  double lay_at_ = 1;  ///< m, the lowest height of the body
+  static constexpr std::int64_t kMaxAway = 100;  ///< ticks, more than a node is stopped
+  std::uint64_t asked_ = 0;
+  std::pair<std::uint64_t, std::int64_t> chosen_{0, kNever};  ///< mode of the last set_gait, and its driver cycle
+  std::uint64_t posture_ = kStanceStay;                       ///< mode of the set_posture that is being answered
+  std::int64_t called_at_ = 0;                                ///< tick
+  double lay_at_ = 1;                                         ///< m, the lowest height of the body
   std::uint64_t run_ = 0;
   Vector3 rests_at_{};  ///< m, the place of the body
   int braked_ = 0;      ///< driver cycles of this run; another one begins the stop again

@@ -4,6 +4,8 @@
 /// their connections. Publishers of e_stop come and go; cmd_vel_timeouts change; emergency stops and resets are
 /// requested. A restart builds the node's classes again on the channels of their predecessors, with an empty inbox. In
 /// a third of the sequences the senders are two sources of a list with a lock, whose timeouts are short, long or none.
+/// A robot on legs has three processes: one sends twists and poses, one sends twists, poses, feet and joints over one
+/// connection, one sends poses; set_posture and set_gait are called. Its request_timeout is 0, 0.05 or 1.25 s.
 ///
 /// The judge knows only what was sent, which stamps were refused, and what was started. With T = the shorter of
 /// cmd_vel_timeout and the one before it, in cycles:
@@ -16,6 +18,9 @@
 ///               controller learns of it, and from a
 ///               release that finds it requesting motion, to its own next accepted zero, over all its connections and
 ///               all controllers of a run or of a stop
+///   owner       … and on legs only what one process, or one call of set_posture, has stated since the last withdrawal
+///               and within two timeouts: every part of the request in force is of that process, and its gait is that
+///               of the request, or was chosen since then
 ///   lies        a robot on legs that the gate has stopped for 1.5 s lies upright, and stays where it is
 ///   reset       is accepted only if no sender's newest message of the last T, to this controller, requested motion
 ///               or was refused, and if no publisher's last word on e_stop was true, as far as this monitor or an

@@ -58,6 +58,31 @@ TEST(LegsInputs, GaitsThatSwitchInEveryCycleDoNotStopTheWalk) {
   EXPECT_LT(robot.tilt, 0.2);
 }
 
+TEST(LegsInputs, NothingThatNeverTimesOutMovesAnythingAfterAStopAndItsReset) {
+  Request joints = stance(kStanceJoints);
+  joints.joints.fill(0.1);
+  for (const Request& request : {stance(kStanceStand), walk(0.3), joints}) {
+    Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
+    parameters.leg_control.request_timeout = 0;
+    QuadrupedLoop robot(legged_robot("quadbot"), parameters);
+    robot.wait(0.3);
+    robot.run(1.0, request);
+    robot.fold();
+    for (int seconds = 0; seconds < 3; ++seconds) {
+      robot.loop.e_stop_reset();
+      robot.wait(1.0);
+      EXPECT_EQ(robot.gate().verdict, GateVerdict::kBrake) << request.mode;
+      EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying) << request.mode;
+    }
+    robot.loop.command({});
+    robot.wait(0.1);
+    robot.loop.e_stop_reset();
+    robot.wait(1.0);
+    EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
+    EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying) << request.mode;
+  }
+}
+
 TEST(LegsInputs, ATwistWhileAFootIsInTheAirSetsItDownFirst) {
   QuadrupedLoop robot = loop_of("quadbot");
   robot.wait(0.3);

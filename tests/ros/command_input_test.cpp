@@ -29,7 +29,8 @@ class CommandInputTest : public testing::Test {
   /// The same process for the same name until `restart`, and the same connection until `reopen`.
   Publisher publisher(const std::string& name) {
     Publisher& publisher = publishers_[name];
-    if (publisher.name.empty()) publisher = {name, boost::make_shared<char>(), std::to_string(++processes_)};
+    if (publisher.name.empty())
+      publisher = {name, boost::make_shared<char>(), std::to_string(++processes_), "cmd_vel_stamped"};
     return publisher;
   }
 
@@ -501,7 +502,7 @@ TEST_F(RevokedSenderTest, TheSameCommandIsReportedEveryTenSecondsAtMost) {
   EXPECT_EQ(lines, 6u);
 }
 
-TEST_F(CommandInputTest, ARequestOfNoSenderCanBeWithdrawnAndIsNoZeroOfASender) {
+TEST_F(RevokedSenderTest, ARequestOfNoSenderCanBeWithdrawnAndIsNoZeroOfASender) {
   input_.receive_once({.twist = {}, .posture = {}, .mode = 2}, now_);
   input_.withdraw(1, now_.loop_ns);
   EXPECT_EQ(value().content.mode, 2u) << "another request is in force";
@@ -510,10 +511,170 @@ TEST_F(CommandInputTest, ARequestOfNoSenderCanBeWithdrawnAndIsNoZeroOfASender) {
   EXPECT_NE(value().contested, 0u);
 }
 
-TEST_F(CommandInputTest, NaNIsPassedOnForTheControllerToRefuse) {
-  receive("/teleop", std::numeric_limits<double>::quiet_NaN());
+TEST_F(CommandInputTest, ARequestOfNoSenderHasNoEffectWithoutThePermissionToMove) {
+  input_.receive_once({.twist = {}, .posture = {}, .mode = 2}, now_);
+  EXPECT_EQ(value().count, 0u);
+  EXPECT_EQ(value().content.mode, 0u);
+}
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+TEST_F(CommandInputTest, NaNNeverReachesTheLoopAndEndsTheCommandOfItsSender) {
+  receive("/teleop", 0.5);
+  receive("/teleop", kNaN);
+  EXPECT_EQ(value().content.twist.linear[0], 0);
+  EXPECT_EQ(value().contested, kNotFiniteMessage);
+  EXPECT_EQ(value().count, 2u);
+  EXPECT_EQ(reported(), "W cmd_vel_stamped holds NaN or infinity: refused; repair its sender /teleop\n");
+  receive("/teleop", 0.5);
+  EXPECT_EQ(value().content.twist.linear[0], 0.5);
+  EXPECT_EQ(value().contested, 0u);
+}
+
+TEST_F(CommandInputTest, NaNOfAnotherSenderLeavesTheCommandInForce) {
+  receive("/teleop", 0.5);
+  receive("/broken", kNaN);
+  EXPECT_EQ(value().content.twist.linear[0], 0.5);
   EXPECT_EQ(value().count, 1u);
-  EXPECT_TRUE(std::isnan(value().content.twist.linear[0]));
+  EXPECT_EQ(value().not_finite, 1u);
+  EXPECT_THAT(reported(), HasSubstr("refused; repair its sender /broken"));
+}
+
+/// Twists and poses of robots on legs, each over a connection of its own.
+class PoseInputTest : public RevokedSenderTest {
+ protected:
+  void twist(const std::string& sender, double linear) {
+    ArrivedCommand arrived{.sender = publisher(sender), .twist = {}, .part = StatedPart::kTwist};
+    arrived.twist.linear[0] = linear;
+    input_.receive(arrived, now_);
+  }
+  void pose(const std::string& sender, double roll) {
+    Publisher of_poses = publisher(sender);
+    of_poses.connection = pose_connection_;
+    of_poses.topic = "body_pose";
+    input_.receive({.sender = of_poses, .twist = {}, .posture = {.roll = roll}, .part = StatedPart::kPose}, now_);
+  }
+  double roll() const { return value().content.posture.roll; }
+  double speed() const { return value().content.twist.linear[0]; }
+
+  boost::shared_ptr<const void> pose_connection_ = boost::make_shared<char>();
+};
+
+TEST_F(PoseInputTest, AWalkCarriesThePoseOfItsOwnSenderAlone) {
+  pose("/teleop", 0.1);
+  twist("/teleop", 0.5);
+  EXPECT_EQ(roll(), 0.1);
+  twist("/planner", 0.5);
+  EXPECT_EQ(roll(), 0);
+  twist("/teleop", 0.5);
+  EXPECT_EQ(roll(), 0) << "what another sender replaced does not come back";
+}
+
+TEST_F(PoseInputTest, APoseDuringTheWalkOfItsSenderKeepsTheTwistAndItsTime) {
+  input_.choose_mode(9);
+  twist("/teleop", 0.5);
+  pass(kSecond);
+  pose("/teleop", 0.1);
+  EXPECT_EQ(speed(), 0.5);
+  EXPECT_EQ(roll(), 0.1);
+  EXPECT_EQ(value().content.mode, 9u);
+  EXPECT_EQ(value().age_ns, kSecond) << "of the twist, which a pose does not prolong";
+  pass(kSecond / 8);
+  pose("/teleop", 0.1);
+  EXPECT_EQ(value().age_ns, kSecond + kSecond / 8);
+  pass(kSecond / 4);
+  pose("/teleop", 0.1);
+  EXPECT_EQ(speed(), 0) << "the twist has timed out";
+  EXPECT_EQ(value().age_ns, 0);
+}
+
+TEST_F(PoseInputTest, APoseEndsWithItsTimeoutWhileTheWalkGoesOn) {
+  pose("/teleop", 0.1);
+  for (int i = 0; i < 12; ++i) {
+    twist("/teleop", 0.5);
+    EXPECT_EQ(roll(), 0.1);
+    pass(kSecond / 10);
+  }
+  pass(kSecond / 10);
+  twist("/teleop", 0.5);
+  EXPECT_EQ(roll(), 0);
+}
+
+TEST_F(PoseInputTest, APoseThatNeverTimesOutOutlivesNeitherItsSenderNorAStop) {
+  input_.set_timeout(0);
+  pose("/teleop", 0.1);
+  pass(100 * kSecond);
+  twist("/teleop", 0.5);
+  EXPECT_EQ(roll(), 0.1);
+  restart("/teleop");
+  twist("/teleop", 0.5);
+  EXPECT_EQ(roll(), 0);
+  pose("/teleop", 0.1);
+  stop();
+  EXPECT_EQ(parts_of(value().content), 0u);
+  pass(kSecond);
+  grant();
+  twist("/teleop", 0);
+  twist("/teleop", 0.5);
+  EXPECT_EQ(speed(), 0.5);
+  EXPECT_EQ(roll(), 0);
+  pose("/teleop", 0.1);
+  EXPECT_EQ(roll(), 0) << "its topic owes a zero of its own";
+  EXPECT_EQ(value().revoked, 1u);
+}
+
+TEST_F(PoseInputTest, APoseOfAnotherSenderIsRefusedDuringAWalk) {
+  twist("/teleop", 0.5);
+  reported();
+  pose("/posing", 0.1);
+  EXPECT_EQ(speed(), 0.5);
+  EXPECT_EQ(roll(), 0);
+  EXPECT_EQ(value().crowded, 1u);
+  EXPECT_THAT(reported(), HasSubstr("W body_pose of /posing is refused: the robot walks for /teleop"));
+  twist("/teleop", 0);
+  pose("/posing", 0.1);
+  EXPECT_EQ(roll(), 0.1);
+}
+
+TEST_F(PoseInputTest, APoseOfNaNEndsNoWalkAndNoLaterTwist) {
+  for (const char* sender : {"/teleop", "/posing"}) {
+    twist("/teleop", 0.5);
+    const std::uint64_t refused = value().not_finite;
+    pose(sender, kNaN);
+    EXPECT_EQ(speed(), 0.5);
+    EXPECT_EQ(value().not_finite, refused + 1);
+    twist("/teleop", 0.4);
+    EXPECT_EQ(speed(), 0.4);
+    EXPECT_EQ(roll(), 0);
+  }
+}
+
+TEST_F(PoseInputTest, ThePlaceOfAFootIsNoPoseOfAWalk) {
+  input_.receive({.sender = publisher("/teleop"), .twist = {}, .posture = {.height = 0.08}, .mode = 3}, now_);
+  twist("/teleop", 0.5);
+  EXPECT_EQ(value().content.posture.height, 0);
+  EXPECT_EQ(value().content.mode, 0u);
+}
+
+TEST_F(PoseInputTest, AZeroTwistIsNoZeroWhileThePoseOfItsSenderIsInForce) {
+  pose("/teleop", 0.1);
+  twist("/teleop", 0.5);
+  twist("/teleop", 0);
+  EXPECT_EQ(roll(), 0.1);
+  pose("/teleop", 0);
+  EXPECT_EQ(parts_of(value().content), 0u);
+  EXPECT_EQ(value().contested, 0u);
+}
+
+TEST_F(PoseInputTest, AChosenGaitEndsWithThePermissionToMove) {
+  input_.choose_mode(9);
+  twist("/teleop", 0);
+  EXPECT_EQ(value().content.mode, 0u) << "a gait moves nothing without a twist";
+  stop();
+  grant();
+  twist("/pad", 0.5);
+  EXPECT_EQ(value().content.mode, 0u);
+  EXPECT_EQ(input_.chosen_mode(), 0u);
 }
 
 }  // namespace

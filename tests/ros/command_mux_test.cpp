@@ -206,7 +206,7 @@ TEST_F(CommandMuxTest, ASourceAt5KilohertzMovesNothingThatItMayNot) {
   }
 }
 
-TEST_F(CommandMuxTest, NaNOfTheWinnerReachesTheControllerWhichRefusesIt) {
+TEST_F(CommandMuxTest, NaNOfTheWinnerEndsItsCommandAndIsCounted) {
   receive(kCmd, 0.2);
   receive(kKey, std::numeric_limits<double>::quiet_NaN());
   CommandWatch watch(1.25, 0.001, kPartLinearX | kPartAngularZ);

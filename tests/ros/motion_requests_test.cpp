@@ -80,6 +80,22 @@ TEST_F(MotionRequestsTest, GoOnOverAConnectionThatTheSameProcessOpensAgain) {
   EXPECT_FALSE(requests_.revoked(teleop_));
 }
 
+TEST_F(MotionRequestsTest, OfTwoTopicsGoOnOverTheConnectionToTheirOwn) {
+  Publisher poses{"/teleop", boost::make_shared<char>(), teleop_.uri, "body_pose"};
+  requests_.request(poses, now_);
+  requests_.request(teleop_, now_);
+  requests_.end(teleop_);
+  now_ += 2 * kWindow;
+  withdraw();
+  grant();
+  poses.connection.reset();
+  teleop_.connection.reset();
+  EXPECT_FALSE(revoked_again(teleop_));
+  EXPECT_TRUE(revoked_again(poses));
+  Publisher another{"/teleop", nullptr, teleop_.uri, "foot_target"};
+  EXPECT_TRUE(revoked_again(another)) << "a topic without a record of its own";
+}
+
 TEST_F(MotionRequestsTest, OfANewProcessOfTheSameNameAreItsOwn) {
   requests_.request(teleop_, now_);
   withdraw();
@@ -100,6 +116,42 @@ TEST_F(MotionRequestsTest, OfClosedConnectionsAreForgottenBeyondABound) {
   EXPECT_TRUE(requests_.revoked(teleop_)) << "it is open";
   EXPECT_TRUE(revoked_again({name(MotionRequests::kMaxClosed)}));
   EXPECT_FALSE(revoked_again({name(0)}));
+}
+
+/// The nodes that sent lately.
+class SendersTest : public MotionRequestsTest {
+ protected:
+  void send(const std::string& name, std::int64_t at) {
+    requests_.sent({name, connections_.emplace_back(boost::make_shared<char>()), name}, at);
+  }
+  std::vector<std::string> at(std::int64_t now) const { return requests_.senders(now, 100); }
+};
+
+TEST_F(SendersTest, AreThoseReceivedWithinTheWindow) {
+  EXPECT_THAT(at(0), IsEmpty());
+  send("/b", 10);
+  send("/a", 50);
+  EXPECT_THAT(at(110), ElementsAre("/a", "/b"));
+  EXPECT_THAT(at(111), ElementsAre("/a"));
+  EXPECT_THAT(at(151), IsEmpty());
+}
+
+TEST_F(SendersTest, OfOneNameAreOne) {
+  for (std::int64_t now = 0; now < 50; ++now) send("/a", now);
+  EXPECT_THAT(at(50), ElementsAre("/a"));
+}
+
+TEST_F(SendersTest, AreForgottenWhenTimeTurnsBackByMoreThanTheWindow) {
+  send("/a", 1000);
+  EXPECT_THAT(at(900), ElementsAre("/a")) << "two threads looked in another order";
+  EXPECT_THAT(at(899), IsEmpty());
+  send("/a", 900);
+  EXPECT_THAT(at(950), ElementsAre("/a"));
+}
+
+TEST_F(SendersTest, AreListedUpToABound) {
+  for (int i = 0; i < 1000; ++i) send("/sender_" + std::to_string(i), 10);
+  EXPECT_EQ(at(10).size(), MotionRequests::kMaxNames);
 }
 
 /// This controller was started beside a node that publishes already.

@@ -83,6 +83,19 @@ TEST_F(MotionReleaseTest, AMotionRequestedSinceTheStartReleasesNothing) {
   }
 }
 
+TEST_F(MotionReleaseTest, NoPartOfARequestInForceIsSilence) {
+  for (const Request& part : {Request{.twist = {.linear = {}, .angular = {0, 0, 1}}}, Request{.posture = {.roll = 0.1}},
+                              Request{.mode = 2}, Request{.joints = {0.1}}}) {
+    command_.requested = part;
+    steps(10 * kSilence);
+    EXPECT_FALSE(release_.released());
+    EXPECT_FALSE(release_.no_motion_requested());
+  }
+  command_.requested = {};
+  step();
+  EXPECT_TRUE(release_.released());
+}
+
 TEST_F(MotionReleaseTest, AZeroRequestReleasesAndMotionMayFollow) {
   request_zero();
   step();

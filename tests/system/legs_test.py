@@ -2,6 +2,7 @@
 """sim.launch robot:=quadbot: a robot on legs stands up, sways, lifts a foot, moves its joints, is stopped and reset."""
 
 import math
+import subprocess
 import time
 from collections.abc import Callable
 
@@ -126,6 +127,50 @@ class LegsTest(LegsTestCase):
             lambda: "there is no foot 'tail'; name one of front_left, front_right" in self.launch.output,
             every=lambda: self.foot_target.publish(FootTarget(foot="tail")),
         )
+
+    def walk_for(self, seconds: float, message: BodyPose | None = None) -> tuple[float, set[str]]:
+        """Walks at 0.2 m/s, and publishes `message` beside the twists; returns the largest roll, and the postures."""
+        end, roll, postures = time.monotonic() + seconds, 0.0, set()
+        walk = Twist()
+        walk.linear.x = 0.2
+        while time.monotonic() < end:
+            self.cmd_vel.publish(walk)
+            if message is not None:
+                self.body_pose.publish(message)
+            time.sleep(SEND_PERIOD / 2)
+            roll = max(roll, abs(self.legs.body.roll))
+            postures.add(self.legs.posture)
+        return roll, postures
+
+    @again_after_a_stall
+    def test_a_walk_carries_the_pose_of_its_own_sender_alone_and_survives_nan(self) -> None:
+        for publisher, zero in ((self.cmd_vel, Twist()), (self.body_pose, BodyPose())):
+            wait_for("a subscriber", lambda p=publisher: p.get_num_connections() > 0)
+            publisher.publish(zero)  # a stop may have revoked this sender: its zero ends that
+        self.stand()
+        posing = subprocess.Popen(
+            ["rostopic", "pub", "-r", "10", "body_pose", "robot_control/BodyPose", "{roll: 0.1}"],
+            stdout=subprocess.DEVNULL,
+        )
+        self.addCleanup(posing.wait)
+        self.addCleanup(posing.kill)
+        wait_for("a leaning body", lambda: abs(self.legs.body.roll) > 0.05)
+        wait_for("a level walk", lambda: self.walk_for(0.5)[0] < 0.01 and self.legs.posture == "walking")
+        roll, postures = self.walk_for(2.0)
+        self.assertEqual(postures, {"walking"}, "the pose of another node ends no walk")
+        self.assertLess(roll, 0.01, "nor leans it")
+        self.assertIn("is refused: the robot walks for /legs_test", self.launch.output)
+        posing.kill()
+        posing.wait()
+        self.assertLess(self.walk_for(2.0)[0], 0.01, "nor does what it has left")
+        self.assertGreater(self.walk_for(1.5, BodyPose(roll=0.05))[0], 0.045, "its own pose does")
+        roll, postures = self.walk_for(2.0, BodyPose(roll=math.nan))
+        self.assertEqual(postures, {"walking"})
+        self.assertIn("body_pose holds NaN or infinity: refused; repair its sender /legs_test", self.launch.output)
+        self.body_pose.publish(BodyPose())
+        self.assertEqual(self.walk_for(1.0)[1], {"walking"})
+        wait_for("standing", lambda: self.legs.posture == "standing", every=lambda: self.cmd_vel.publish(Twist()))
+        wait_for("lying", lambda: self.set_posture("lying")[0] and self.legs.posture == "lying")
 
     def move(self, joint: str, *points: tuple[float, float]) -> None:
         """Publishes a trajectory of (time, position)."""

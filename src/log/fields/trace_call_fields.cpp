@@ -43,10 +43,13 @@ void add_velocity(TraceFields& to, const std::string& name, Get) {
   number("count", "usable commands so far", OF(count));
   field<C, std::int64_t>(to, name + "_age_ns", "ns, when it arrived, by its stamp", OF(age_ns));
   number("stale", "refused for their stamp", OF(stale));
-  number("crowded", "refused because more than one node sends", OF(crowded));
+  number("crowded", "refused because another node sends", OF(crowded));
   number("revoked", "refused because their sender owes a zero velocity", OF(revoked));
+  number("not_finite", "refused as NaN or infinite beside a command in force", OF(not_finite));
   number("many_senders", "1: more than one node sends now", OF(many_senders));
-  number("contested", "1: another sender requested motion; 2: a zero velocity of no sender", OF(contested));
+  number("contested",
+         "1: another sender requested motion; 2: a zero velocity of no sender; 3: in place of NaN or infinity",
+         OF(contested));
 }
 
 template <class Get>

@@ -19,12 +19,11 @@ ControllerCycle::ControllerCycle(std::unique_ptr<ControllerLaw> controller, std:
 
 /// Takes over every member but the command itself, which script and inbox share.
 void ControllerCycle::take_over(const VelocityCommand& arrived) noexcept {
-  received_ = arrived;
-  request_.stale = arrived.stale;
-  request_.crowded = arrived.crowded;
-  request_.revoked = arrived.revoked;
-  request_.many_senders = arrived.many_senders;
-  request_.contested = arrived.contested;
+  VelocityCommand merged = received_ = arrived;
+  merged.content = request_.content;
+  merged.count = request_.count;
+  merged.age_ns = request_.age_ns;
+  request_ = merged;
 }
 
 void ControllerCycle::enter_run(std::uint64_t run) noexcept {
@@ -53,6 +52,7 @@ void ControllerCycle::receive(std::uint64_t cycle) noexcept {
     request_.content = {.twist = events.twist};
     request_.age_ns = 0;
     request_.count += events.twists;
+    if (request_.contested == kNotFiniteMessage) request_.contested = 0;
   }
 }
 

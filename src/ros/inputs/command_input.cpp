@@ -12,7 +12,7 @@
 namespace robot_control {
 namespace {
 
-constexpr std::size_t kMaxNames = 16;  // names stored at most, as in CommandSenders
+constexpr std::size_t kMaxNames = MotionRequests::kMaxNames;
 
 std::int64_t nanoseconds(double seconds) {
   return std::llround(1.0e9 * seconds);
@@ -26,15 +26,14 @@ std::string seconds(double value) {
 
 }  // namespace
 
-CommandInput::CommandInput(double timeout, bool one_sender, CommandWords words)
-    : one_sender_(one_sender), words_(std::move(words)) {
+CommandInput::CommandInput(double timeout, bool one_sender, std::string parameter)
+    : one_sender_(one_sender), parameter_(std::move(parameter)) {
   set_timeout(timeout);
 }
 
 void CommandInput::set_timeout(double timeout) {
   timeout_ = timeout;
   timeout_ns_ = nanoseconds(timeout);
-  senders_.set_window(nanoseconds(std::max(timeout, kSenderWindow)));
   set_silence(silence_needed(timeout));
 }
 
@@ -42,48 +41,97 @@ void CommandInput::set_silence(double silence) {
   requests_.set_window(nanoseconds(silence));
 }
 
+std::vector<std::string> CommandInput::senders(std::int64_t loop_ns) {
+  return requests_.senders(loop_ns, nanoseconds(std::max(timeout_, kSenderWindow)));
+}
+
 void CommandInput::receive(const ArrivedCommand& arrived, const ArrivalTime& time) {
   const JudgedStamp stamp = judge_stamp(arrived.stamp_ns, time.ros_ns, timeout_ns_);
   if (stamp.verdict != StampVerdict::kUsable) {
     ++value_.stale;
     requests_.request(arrived.sender, time.loop_ns);
-    refuse_stamp(arrived.sender.name, stamp, time.loop_ns);
+    refuse_stamp(arrived.sender, stamp, time.loop_ns);
     return;
   }
   reported_stamps_.erase(arrived.sender.name);
-  senders_.add(arrived.sender.name, time.loop_ns);
+  requests_.sent(arrived.sender, time.loop_ns);
   update(time.loop_ns);
   if (value_.many_senders != 0) {
     ++value_.crowded;
     requests_.request(arrived.sender, time.loop_ns);
     return;
   }
-  const Request content{
-      .twist = arrived.twist, .posture = arrived.posture, .mode = arrived.mode, .joints = arrived.joints};
-  const bool zero = parts_of(content) == 0;
-  if (zero) {
+  Request content{.twist = arrived.twist, .posture = arrived.posture, .mode = arrived.mode, .joints = arrived.joints};
+  if (arrived.part == StatedPart::kTwist && !zero(content.twist)) content.mode = mode_;
+  if (parts_of(content) == 0) {
     requests_.end(arrived.sender);
   } else {
     requests_.request(arrived.sender, time.loop_ns, arrived.stamp_ns == 0 ? 0 : time.ros_ns - arrived.stamp_ns);
   }
   if (requests_.revoked(arrived.sender)) {
     ++value_.revoked;
-    refuse_revoked(arrived.sender.name, time.loop_ns);
-    return;
+    return warn(
+        "motion of " + arrived.sender.name +
+            " is refused: it was requested before a stop, a restart or a pause ended the permission to move, or "
+            "meanwhile, or may have been; let that sender send zero, or restart it",
+        time.loop_ns);
   }
-  value_.contested = zero && motion_requested(time.loop_ns) ? 1 : 0;
+  accept(arrived, content, stamp.age_ns, time);
+}
+
+void CommandInput::accept(const ArrivedCommand& arrived, Request content, std::int64_t age_ns,
+                          const ArrivalTime& time) {
+  const std::string& topic = arrived.sender.topic;
+  const bool own = same_process(sender_, arrived.sender);
+  const bool beside_twist =
+      arrived.part == StatedPart::kPose && !zero(value_.content.twist) && in_time(command_ns_ - value_.age_ns, time);
+  if (!finite(content)) {
+    if (own && beside_twist) pose_ns_.reset();
+    if (own ? beside_twist : parts_of(value_.content) != 0) {
+      ++value_.not_finite;
+    } else {
+      set_command({}, arrived.sender, kNotFiniteMessage, time);
+    }
+    return warn(topic + " holds NaN or infinity: refused; repair its sender " + arrived.sender.name, time.loop_ns);
+  }
+  if (beside_twist && !own) {
+    ++value_.crowded;
+    return warn(topic + " of " + arrived.sender.name + " is refused: the robot walks for " + sender_.name +
+                    "; let the sender of the twists send the pose, too",
+                time.loop_ns);
+  }
+  if (beside_twist) {
+    content.twist = value_.content.twist;
+    content.mode = value_.content.mode;
+    age_ns = time.loop_ns - command_ns_ + value_.age_ns;
+  }
+  if (own && arrived.part == StatedPart::kTwist && pose_ns_ && in_time(*pose_ns_, time)) {
+    content.posture = value_.content.posture;
+  } else {
+    pose_ns_.reset();
+  }
+  if (arrived.part == StatedPart::kPose) pose_ns_ = time.loop_ns;
+  set_command(content, arrived.sender, parts_of(content) == 0 && motion_requested(time.loop_ns) ? 1 : 0, time, age_ns);
+}
+
+void CommandInput::receive_once(const Request& request, const ArrivalTime& time) {
+  if (!requests_.granted()) return;
+  pose_ns_.reset();
+  set_command(request, {}, 0, time);
+}
+
+void CommandInput::set_command(const Request& content, const Publisher& sender, std::uint64_t contested,
+                               const ArrivalTime& time, std::int64_t age_ns) {
   value_.content = content;
-  value_.age_ns = stamp.age_ns;
+  value_.contested = contested;
+  value_.age_ns = age_ns;
+  sender_ = {sender.name, nullptr, sender.uri};
   command_ns_ = time.loop_ns;
   ++value_.count;
 }
 
-void CommandInput::receive_once(const Request& request, const ArrivalTime& time) {
-  value_.content = request;
-  value_.contested = 0;
-  value_.age_ns = 0;
-  command_ns_ = time.loop_ns;
-  ++value_.count;
+bool CommandInput::in_time(std::int64_t since_ns, const ArrivalTime& time) const {
+  return timeout_ns_ <= 0 || time.loop_ns - since_ns <= timeout_ns_;
 }
 
 void CommandInput::withdraw(std::uint64_t mode, std::int64_t loop_ns) {
@@ -94,18 +142,20 @@ bool CommandInput::update(std::int64_t loop_ns) {
   report_senders(loop_ns);
   const bool over = !requests_.granted() && parts_of(value_.content) != 0 && !motion_requested(loop_ns);
   if (over) end_command(loop_ns);
-  const std::uint64_t many = one_sender_ && senders_.count(loop_ns) > 1 ? 1 : 0;
+  const std::uint64_t many = one_sender_ && senders(loop_ns).size() > 1 ? 1 : 0;
   return std::exchange(value_.many_senders, many) != many || over;
 }
 
 bool CommandInput::follow(const MotionPermission& permission, std::int64_t loop_ns) {
   if (!requests_.follow(permission, loop_ns)) return false;
+  mode_ = 0;
   if (parts_of(value_.content) != 0) end_command(loop_ns);
   return true;
 }
 
 void CommandInput::end_command(std::int64_t loop_ns) {
   value_.content = {};
+  sender_ = {};
   value_.contested = std::abs(loop_ns - command_ns_) < unread_ns_ ? 1 : kNoMessage;
   ++value_.count;
 }
@@ -114,14 +164,12 @@ std::vector<ReportLine> CommandInput::lines() {
   return std::exchange(lines_, {});
 }
 
-void CommandInput::refuse_revoked(const std::string& sender, std::int64_t loop_ns) {
-  if (!may_report(sender + " revoked", loop_ns)) return;
-  lines_.push_back({true, "motion of " + sender +
-                              " is refused: it was requested before a stop, a restart or a pause ended the permission "
-                              "to move, or meanwhile, or may have been; let that sender send zero, or restart it"});
+void CommandInput::warn(std::string text, std::int64_t loop_ns) {
+  if (may_report(text, loop_ns)) lines_.push_back({true, std::move(text)});
 }
 
-void CommandInput::refuse_stamp(const std::string& sender, const JudgedStamp& stamp, std::int64_t loop_ns) {
+void CommandInput::refuse_stamp(const Publisher& from, const JudgedStamp& stamp, std::int64_t loop_ns) {
+  const std::string& sender = from.name;
   const bool too_old = stamp.verdict == StampVerdict::kTooOld;
   const auto reported = reported_stamps_.find(sender);
   if (reported != reported_stamps_.end() && reported->second == stamp.verdict) return;
@@ -129,21 +177,19 @@ void CommandInput::refuse_stamp(const std::string& sender, const JudgedStamp& st
   if (reported_stamps_.size() >= kMaxNames) reported_stamps_.clear();
   reported_stamps_[sender] = stamp.verdict;
   const double age = 1.0e-9 * static_cast<double>(stamp.age_ns);
-  const std::string remedy =
-      "; synchronise it (chrony), or let it send without a stamp: the age then counts from the arrival";
-  if (too_old) {
-    lines_.push_back({true, words_.stamped + " of " + sender + " is " + seconds(age) + " old by its stamp, more than " +
-                                words_.timeout + " (" + seconds(timeout_) +
-                                "): refused; it was long under way, or that sender's clock is behind" + remedy});
-  } else {
-    lines_.push_back({true, words_.stamped + " of " + sender + " is stamped " + seconds(-age) +
-                                " in the future, more than clocks may differ (" + seconds(1.0e-9 * kClockSkew) +
-                                "): refused; that sender's clock is ahead, or is not the robot's /clock" + remedy});
-  }
+  const std::string judged =
+      too_old
+          ? "is " + seconds(age) + " old by its stamp, more than " + parameter_ + " (" + seconds(timeout_) +
+                "): refused; it was long under way, or that sender's clock is behind"
+          : "is stamped " + seconds(-age) + " in the future, more than clocks may differ (" +
+                seconds(1.0e-9 * kClockSkew) + "): refused; that sender's clock is ahead, or is not the robot's /clock";
+  lines_.push_back(
+      {true, from.topic + " of " + sender + " " + judged +
+                 "; synchronise it (chrony), or let it send without a stamp: the age then counts from the arrival"});
 }
 
 void CommandInput::report_senders(std::int64_t loop_ns) {
-  const std::vector<std::string> names = senders_.at(loop_ns);
+  const std::vector<std::string> names = senders(loop_ns);
   if (names.size() < 2) {
     if (reported_senders_.empty()) return;
     lines_.push_back({false, names.empty() ? "no node sends commands any more"

@@ -5,11 +5,17 @@
 /// A message passes these checks:
 ///   1. its stamp (command_stamp.h): a message that is too old or in the future is refused. The last command stays in
 ///      force until its timeout, and the sender of the refused message does not count as a sender;
-///   2. its sender (command_senders.h): with `one_sender`, two or more senders within cmd_vel_timeout, but at least
+///   2. its sender: with `one_sender`, two or more senders within cmd_vel_timeout, but at least
 ///      within kSenderWindow, exclude each other: all their messages are refused, and the robot ramps to rest until one
 ///      sender is left. Without `one_sender` each message overrides the one before, and that is reported;
-///   3. its connection (motion_requests.h): motion is refused while the connection is revoked;
-///   4. NaN and infinity are refused by the controller (control/command_watch.h).
+///   3. its numbers: NaN and infinity are refused. What this message would have replaced ends if it is its sender's;
+///      the command of another sender stays in force;
+///   4. its connection (motion_requests.h): motion is refused while the connection is revoked.
+///
+/// The command in force has one sender, one time and one end. Twist and pose of one process are parts of it: a twist
+/// keeps the pose that the same process sent within the timeout, and a pose keeps its twist, with the twist's time.
+/// While a twist is in force, a pose of another process is refused (VelocityCommand::crowded). Every other message
+/// replaces the whole.
 ///
 /// A zero velocity is contested (VelocityCommand::contested) if another connection has requested motion within
 /// cmd_vel_timeout (1 s if that is 0). It is executed, but does not count as evidence (safety/latch/motion_release.h).
@@ -22,11 +28,11 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ros/inputs/command_intake.h"
-#include "ros/inputs/command_senders.h"
 #include "ros/inputs/command_stamp.h"
 #include "ros/inputs/motion_requests.h"
 #include "ros/reports/report_line.h"
@@ -39,6 +45,9 @@ namespace robot_control {
 inline constexpr double kSenderWindow = 1.25;
 inline constexpr std::int64_t kRepeatAfter = 10'000'000'000;  ///< ns
 
+/// The part of a request that a message states.
+enum class StatedPart { kAll, kTwist, kPose };
+
 struct ArrivedCommand {
   Publisher sender;
   Twist twist;
@@ -46,6 +55,7 @@ struct ArrivedCommand {
   Posture posture{};                            ///< of robots on legs
   std::uint64_t mode = 0;                       ///< likewise
   std::array<double, kRequestJoints> joints{};  ///< likewise
+  StatedPart part = StatedPart::kAll;
 };
 
 /// The time at which a message arrived, on two clocks.
@@ -54,16 +64,10 @@ struct ArrivalTime {
   std::int64_t loop_ns = 0;  ///< stamp of the newest sensor frame; 0 before the first
 };
 
-/// The names in reports.
-struct CommandWords {
-  std::string stamped = "cmd_vel_stamped";  ///< topic of messages with a stamp
-  std::string timeout = "cmd_vel_timeout";  ///< parameter
-};
-
 class CommandInput final : public CommandIntake {
  public:
-  /// `timeout` is cmd_vel_timeout in s; 0 means that commands never time out.
-  CommandInput(double timeout, bool one_sender, CommandWords words = {});
+  /// `timeout` is the value of `parameter` in s; 0 means that commands never time out.
+  CommandInput(double timeout, bool one_sender, std::string parameter = "cmd_vel_timeout");
 
   /// Sets the timeout in s for the next message and all later ones.
   void set_timeout(double timeout) override;
@@ -73,8 +77,13 @@ class CommandInput final : public CommandIntake {
 
   void receive(const ArrivedCommand& arrived, const ArrivalTime& time);
 
-  /// Receives a request of no sender, which ends by itself or with the permission to move: a service was called.
+  /// Receives a request of no sender, which ends by itself or with the permission to move: a service was called. It has
+  /// no effect without that permission.
   void receive_once(const Request& request, const ArrivalTime& time);
+
+  /// Sets the mode of later messages that state a twist, until the permission to move ends; 0: none.
+  void choose_mode(std::uint64_t mode) { mode_ = mode; }
+  std::uint64_t chosen_mode() const { return mode_; }
 
   /// Ends the request in force, if it has this mode.
   void withdraw(std::uint64_t mode, std::int64_t loop_ns);
@@ -89,7 +98,7 @@ class CommandInput final : public CommandIntake {
 
   const VelocityCommand& value() const noexcept override { return value_; }
   std::vector<ReportLine> lines() override;
-  std::vector<std::string> senders(std::int64_t loop_ns) override { return senders_.at(loop_ns); }
+  std::vector<std::string> senders(std::int64_t loop_ns) override;
 
   bool follow(const MotionPermission& permission, std::int64_t loop_ns) override;
 
@@ -99,20 +108,26 @@ class CommandInput final : public CommandIntake {
   bool motion_requested(std::int64_t loop_ns) const { return requests_.any(loop_ns); }
 
  private:
+  void accept(const ArrivedCommand& arrived, Request content, std::int64_t age_ns, const ArrivalTime& time);
+  void set_command(const Request& content, const Publisher& sender, std::uint64_t contested, const ArrivalTime& time,
+                   std::int64_t age_ns = 0);
+  bool in_time(std::int64_t since_ns, const ArrivalTime& time) const;
   void end_command(std::int64_t loop_ns);
-  void refuse_revoked(const std::string& sender, std::int64_t loop_ns);
-  void refuse_stamp(const std::string& sender, const JudgedStamp& stamp, std::int64_t loop_ns);
+  void warn(std::string text, std::int64_t loop_ns);
+  void refuse_stamp(const Publisher& from, const JudgedStamp& stamp, std::int64_t loop_ns);
   void report_senders(std::int64_t loop_ns);
   bool may_report(const std::string& what, std::int64_t loop_ns);
 
   bool one_sender_;
-  CommandWords words_;
+  std::string parameter_;
   double timeout_ = 0;  ///< s
   std::int64_t timeout_ns_ = 0;
-  CommandSenders senders_;
   MotionRequests requests_;
   VelocityCommand value_;
-  std::int64_t command_ns_ = 0;  ///< when the command in force arrived
+  std::int64_t command_ns_ = 0;          ///< when the command in force arrived
+  Publisher sender_;                     ///< of the command in force, without its connection; empty: it has none
+  std::optional<std::int64_t> pose_ns_;  ///< when the posture of the command in force arrived, if it is a pose
+  std::uint64_t mode_ = 0;               ///< of later twists
   std::int64_t unread_ns_ = unread_ns(0);
   std::map<std::string, StampVerdict> reported_stamps_;  ///< last reported verdict of each sender with wrong stamps
   std::map<std::string, std::int64_t>

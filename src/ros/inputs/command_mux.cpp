@@ -116,11 +116,13 @@ void CommandMux::update_result(std::int64_t loop_ns, bool message) {
     value_.many_senders = command.many_senders;
   }
   const bool pending = std::ranges::any_of(
-      sources_, [](const Source& source) { return source.live && !zero(source.input.value().content.twist); });
+      sources_, [](const Source& source) { return source.live && parts_of(source.input.value().content) != 0; });
   const bool requested =
       pending || std::ranges::any_of(sources_, [&](Source& source) { return source.input.motion_requested(loop_ns); });
-  value_.contested = zero(value_.content.twist) && requested ? 1 : 0;
-  if (zero(value_.content.twist) && !message && !pending) value_.contested = unread(loop_ns) ? 1 : kNoMessage;
+  const bool rests = parts_of(value_.content) == 0;
+  value_.contested = rests && requested ? 1 : 0;
+  if (rests && !message && !pending) value_.contested = unread(loop_ns) ? 1 : kNoMessage;
+  if (winner_ && sources_[*winner_].input.value().contested == kNotFiniteMessage) value_.contested = kNotFiniteMessage;
   ++value_.count;
   add_refusals();
 }
@@ -130,11 +132,12 @@ bool CommandMux::unread(std::int64_t loop_ns) const {
 }
 
 void CommandMux::add_refusals() {
-  value_.stale = value_.crowded = value_.revoked = 0;
+  value_.stale = value_.crowded = value_.revoked = value_.not_finite = 0;
   for (const Source& source : sources_) {
     value_.stale += source.input.value().stale;
     value_.crowded += source.input.value().crowded;
     value_.revoked += source.input.value().revoked;
+    value_.not_finite += source.input.value().not_finite;
   }
 }
 

@@ -55,8 +55,9 @@ class InputTopic {
   }
 
  private:
-  static Publisher publisher_of(const ros::MessageEvent<const BoundedMessage>& event) {
-    return {event.getPublisherName(), event.getConnectionHeaderPtr(), publisher_uri(event.getConnectionHeader())};
+  Publisher publisher_of(const ros::MessageEvent<const BoundedMessage>& event) const {
+    return {event.getPublisherName(), event.getConnectionHeaderPtr(), publisher_uri(event.getConnectionHeader()),
+            name_};
   }
 
   void warn() {

@@ -19,10 +19,12 @@ bool any_same_process(const std::vector<Publisher>& senders, const Publisher& se
 
 MotionRequests::Record& MotionRequests::record_of(const Publisher& sender) {
   Record* closed = nullptr;
+  bool revoked = permission_.run != 0 && any_same_process(earlier_.present, sender);
   for (Record& record : records_) {
     if (same(record.connection, sender.connection)) return record;
-    const bool continued = record.connection.expired() && same_process(record.sender, sender);
-    if (continued && (closed == nullptr || record.revoked)) closed = &record;
+    if (!record.connection.expired() || !same_process(record.sender, sender)) continue;
+    revoked |= record.revoked;
+    if (record.sender.topic == sender.topic && (closed == nullptr || record.revoked)) closed = &record;
   }
   if (closed != nullptr) {
     closed->connection = sender.connection;
@@ -30,10 +32,10 @@ MotionRequests::Record& MotionRequests::record_of(const Publisher& sender) {
   }
   forget_the_oldest_closed();
   Record& record = records_.emplace_back();
-  record.sender = {sender.name, nullptr, sender.uri};
+  record.sender = {sender.name, nullptr, sender.uri, sender.topic};
   record.connection = sender.connection;
-  record.revoked = permission_.run != 0 && any_same_process(earlier_.present, sender);
-  if (record.revoked) record.requested_ns = started_ns_;
+  record.revoked = revoked;
+  if (revoked) record.requested_ns = started_ns_;
   return record;
 }
 
@@ -41,6 +43,15 @@ void MotionRequests::forget_the_oldest_closed() {
   const auto closed = [](const Record& record) { return record.connection.expired(); };
   if (std::ranges::count_if(records_, closed) >= static_cast<std::ptrdiff_t>(kMaxClosed))
     records_.erase(std::ranges::find_if(records_, closed));
+}
+
+std::vector<std::string> MotionRequests::senders(std::int64_t now_ns, std::int64_t window_ns) const {
+  std::set<std::string> names;
+  for (const Record& record : records_) {
+    const bool lately = record.sent_ns && std::abs(now_ns - *record.sent_ns) <= window_ns;
+    if (lately && names.size() < kMaxNames) names.insert(record.sender.name);
+  }
+  return {names.begin(), names.end()};
 }
 
 void MotionRequests::request(const Publisher& sender, std::int64_t now_ns, std::int64_t age_ns) {
@@ -53,8 +64,9 @@ void MotionRequests::request(const Publisher& sender, std::int64_t now_ns, std::
 void MotionRequests::end(const Publisher& sender) {
   const Record& own = record_of(sender);
   for (Record& record : records_) {
-    const bool closed = record.connection.expired() && same_process(record.sender, sender);
-    if (&record != &own && !closed) continue;
+    const bool continued =
+        record.connection.expired() && same_process(record.sender, sender) && record.sender.topic == sender.topic;
+    if (&record != &own && !continued) continue;
     record.requests = record.revoked = false;
     record.zero_sent = true;
   }

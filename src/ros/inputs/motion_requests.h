@@ -1,5 +1,5 @@
 #pragma once
-/// MotionRequests records which connections request motion and which of them are revoked. It is pure.
+/// MotionRequests records which connections send, which of them request motion, and which are revoked. It is pure.
 ///
 /// A connection requests motion from a message that is refused or not of zero velocity until its next accepted zero
 /// velocity. A latched stop, a start of a node and the end of a pause withdraw the permission to move
@@ -11,8 +11,9 @@
 ///   - from the beginning, if this controller was restarted and the sender's process was present at its start
 ///     (EarlierController): its requests to the earlier controller are not known.
 /// It stays revoked until its own next accepted zero velocity. A new connection of a process (same_process) continues
-/// the state of one that the process has closed, first that of a revoked one. A restarted process begins without
-/// revocation. The state of the newest kMaxClosed closed connections is kept.
+/// the state of one to its topic that the process has closed, first that of a revoked one. If there is none, it begins
+/// revoked where a closed one to another topic is. A restarted process begins without revocation. The state of the
+/// newest kMaxClosed closed connections is kept.
 ///
 /// Time is that of the loop's frames.
 
@@ -62,12 +63,20 @@ class MotionRequests {
     return std::max(kInTransit, 10 * period_ns);
   }
   static constexpr std::size_t kMaxClosed = 256;
+  static constexpr std::size_t kMaxNames = 16;
 
   /// Sets after which silence a request ends (`window_ns` > 0), except for the rules of revocation.
   void set_window(std::int64_t window_ns) { window_ns_ = window_ns; }
 
   /// Sets the situation at the start; is called before the first call of `follow`.
   void start(const EarlierController& earlier) { earlier_ = earlier; }
+
+  /// Records a message with a usable stamp.
+  void sent(const Publisher& sender, std::int64_t now_ns) { record_of(sender).sent_ns = now_ns; }
+
+  /// Returns the names of the nodes that sent within `window_ns`, sorted, and at most kMaxNames of them. A node that
+  /// only advertises a topic is not one of them. If time goes back by more than the window (a new simulation), none is.
+  std::vector<std::string> senders(std::int64_t now_ns, std::int64_t window_ns) const;
 
   /// Records a message that was refused or is not of zero velocity, of this age by its stamp (0 without one).
   void request(const Publisher& sender, std::int64_t now_ns, std::int64_t age_ns = 0);
@@ -95,6 +104,7 @@ class MotionRequests {
   struct Record {
     Publisher sender;  ///< without its connection
     boost::weak_ptr<const void> connection;
+    std::optional<std::int64_t> sent_ns;       ///< time of the last message with a usable stamp
     std::optional<std::int64_t> requested_ns;  ///< time of the last request
     bool requests = false;
     bool zero_sent = false;  ///< a zero velocity was accepted since the last withdrawal

@@ -10,6 +10,7 @@ struct Publisher {
   std::string name;                               ///< name of the node
   boost::shared_ptr<const void> connection = {};  ///< an object that roscpp keeps until the connection has ended
   std::string uri = {};                           ///< address of its XML-RPC server, host and port; empty: not known
+  std::string topic = {};                         ///< to which the connection belongs
 };
 
 /// Returns whether two publishers are one process. A restarted node has another URI. If one URI is not known, equal

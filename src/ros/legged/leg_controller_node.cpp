@@ -45,8 +45,7 @@ class LegControllerNode final : public CommandedNode {
  public:
   explicit LegControllerNode(const Setup& setup)
       : CommandedNode(setup, input_),
-        input_(parameters().leg_control.request_timeout, parameters().leg_control.one_sender,
-               {.stamped = "joint_trajectory", .timeout = "request_timeout"}),
+        input_(parameters().leg_control.request_timeout, parameters().leg_control.one_sender, "request_timeout"),
         pace_(report().leg_state_rate) {}
 
   void connect(ros::NodeHandle& handle) override {
@@ -56,8 +55,9 @@ class LegControllerNode final : public CommandedNode {
     set_gait_ = handle.advertiseService("set_gait", &LegControllerNode::set_gait, this);
     intake().start(
         earlier_controller(handle, {"body_pose", "foot_target", "joint_trajectory", "cmd_vel", "cmd_vel_stamped"}));
-    body_pose_.connect_with_sender(
-        handle, [this](const msg::BodyPose& message, const Publisher& sender) { pose(posture_of(message), sender); });
+    body_pose_.connect_with_sender(handle, [this](const msg::BodyPose& message, const Publisher& sender) {
+      receive({.sender = sender, .twist = {}, .posture = posture_of(message), .part = StatedPart::kPose});
+    });
     foot_target_.connect_with_sender(handle, [this](const msg::FootTarget& message, const Publisher& sender) {
       const auto request = request_of(message);
       if (request) return receive({.sender = sender, .twist = {}, .posture = request->posture, .mode = request->mode});
@@ -67,11 +67,11 @@ class LegControllerNode final : public CommandedNode {
     joint_trajectory_.connect_with_sender(
         handle, [this](const msg::JointTrajectory& message, const Publisher& sender) { begin(message, sender); });
     cmd_vel_.connect_with_sender(handle, [this](const msg::Twist& message, const Publisher& sender) {
-      walk({.sender = sender, .twist = twist_of(message)});
+      receive({.sender = sender, .twist = twist_of(message), .part = StatedPart::kTwist});
     });
     cmd_vel_stamped_.connect_with_sender(handle, [this](const msg::TwistStamped& message, const Publisher& sender) {
       const auto stamp_ns = static_cast<std::int64_t>(message.header.stamp.toNSec());
-      walk({.sender = sender, .twist = twist_of(message.twist), .stamp_ns = stamp_ns});
+      receive({.sender = sender, .twist = twist_of(message.twist), .stamp_ns = stamp_ns, .part = StatedPart::kTwist});
     });
   }
 
@@ -101,7 +101,7 @@ class LegControllerNode final : public CommandedNode {
       const std::vector<std::string> senders = intake().senders(loop_ns()), revoked = intake().revoked();
       message.senders.assign(senders.begin(), senders.end());
       message.revoked.assign(revoked.begin(), revoked.end());
-      message.chosen_gait = gait_of_mode(gait_, gaits_);
+      message.chosen_gait = gait_of_mode(input_.chosen_mode(), gaits_);
     }
     leg_state_.publish(message);
     velocity_out_.publish(velocity_out(command_, report().base_frame, time().at(command_.head.stamp_ns)));
@@ -123,25 +123,6 @@ class LegControllerNode final : public CommandedNode {
     store();
   }
 
-  /// While the robot walks, the twist's sender alone requests motion, and its twists carry this pose.
-  void pose(const Posture& posture, const Publisher& sender) {
-    {
-      const std::lock_guard lock(input_mutex_);
-      pose_ = posture;
-      if (command_.legged.phase == LegPhase::kWalking) return;
-    }
-    receive({.sender = sender, .twist = {}, .posture = posture});
-  }
-
-  void walk(ArrivedCommand arrived) {
-    if (!zero(arrived.twist)) {
-      const std::lock_guard lock(input_mutex_);
-      arrived.posture = pose_;
-      arrived.mode = gait_;
-    }
-    receive(arrived);
-  }
-
   /// A trajectory that is being executed.
   struct Execution {
     JointTrajectory path;
@@ -160,7 +141,8 @@ class LegControllerNode final : public CommandedNode {
       store();
       return;
     }
-    Execution next{.path = {}, .sender = {sender.name, nullptr, sender.uri}, .connection = sender.connection};
+    Execution next{
+        .path = {}, .sender = {sender.name, nullptr, sender.uri, sender.topic}, .connection = sender.connection};
     next.requested_ns = loop_ns();
     std::string problem = read(message, next);
     // A request during a stop is received, so that its sender is revoked, and not executed.
@@ -269,7 +251,7 @@ class LegControllerNode final : public CommandedNode {
       problem = "the robot does not stand or walk, it is " + std::string(name_of(phase)) +
                 ": call set_posture with 'standing'";
     }
-    if (problem.empty()) gait_ = *mode;
+    if (problem.empty()) input_.choose_mode(*mode);
     response.success = problem.empty() ? 1 : 0;
     response.message = ascii(problem.empty() ? request.gait : "refused: " + problem);
     return true;
@@ -331,8 +313,6 @@ class LegControllerNode final : public CommandedNode {
   std::mutex posture_mutex_;  ///< locked only by try_lock
   CommandInput input_;
   const Gaits gaits_ = all_gaits(parameters().leg_control.gaits);
-  Posture pose_{};                      ///< the last body_pose; protected by input_mutex_
-  std::uint64_t gait_ = kStanceStay;    ///< mode of the gait that set_gait fixed; protected by input_mutex_
   std::optional<Execution> execution_;  ///< protected by input_mutex_
   Pacer pace_;
 };

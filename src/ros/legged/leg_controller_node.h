@@ -8,6 +8,9 @@
 /// another topic end it, too. Its sender may replace it, others may not. After it the sender counts as having sent
 /// zero.
 ///
+/// While the robot walks, a body_pose belongs to the request of the node that sends the twists (command_input.h). The
+/// gait of set_gait holds until the permission to move ends.
+///
 /// set_posture is answered when the posture begins to change, or with the reason why it does not. Its request is no
 /// sender's: nothing of it is left when the permission to move ends.
 

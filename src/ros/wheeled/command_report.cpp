@@ -48,10 +48,9 @@ void CommandReport::limit(const DriveControllerParameters& parameters) {
 
 void CommandReport::enter_run(const CommandFrame& command) {
   run_ = command.head.run;
-  refused_ = timeouts_ = 0;
-  refusing_ = false;
+  timeouts_ = 0;
   reported_.reset();
-  line_gap_ = timeout_gap_ = refusal_gap_ = {};
+  line_gap_ = timeout_gap_ = {};
 }
 
 CommandReport::Report CommandReport::made_of(const CommandFrame& command) const {
@@ -92,12 +91,8 @@ std::vector<ReportLine> CommandReport::update(const CommandFrame& command) {
   if (command.head.run != run_) enter_run(command);
   const std::int64_t now_ns = command.head.stamp_ns;
   const bool timed_out = command.timeouts > timeouts_;
-  const std::uint64_t not_finite =
-      command.requests_refused - command.requests_stale - command.requests_crowded - command.requests_revoked;
-  const bool refused = not_finite > refused_;
   const bool stands = (command.reasons & kNoEffect) != 0;
   timeouts_ = command.timeouts;
-  refused_ = not_finite;
 
   if (timed_out) {
     const bool moved = reported_ && !reported_->zero && !stands;
@@ -107,18 +102,9 @@ std::vector<ReportLine> CommandReport::update(const CommandFrame& command) {
     }
     reported_.reset();
   }
-  if (refused) {
-    if (!refusing_ && refusal_gap_.over(now_ns)) {
-      lines.push_back({true, std::string("cmd_vel holds NaN or infinity: refused") +
-                                 (stands ? "" : ", ramping down to standstill")});
-      refusal_gap_.begin(now_ns);
-    }
-    refusing_ = true;
-    reported_.reset();
-  }
+  if ((command.reasons & kReasonRefused) != 0) reported_.reset();
   if ((command.reasons & kNoWish) != 0 || command.requests_received == 0) return lines;
 
-  refusing_ = false;
   const Report made = made_of(command);
   if (made.hindrance != hindrance_) hindered_since_ns_ = now_ns;
   hindrance_ = made.hindrance;

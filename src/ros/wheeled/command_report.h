@@ -4,12 +4,12 @@
 ///   normal driving        the wheel speeds that result, after the speed limits if these apply
 ///   brake or ramp         the command has no effect, with the reason
 ///   slowed down           the safety monitor limits the speed, and where its reason is shown
-///   warnings              a timeout that stopped a motion, a series of refused (NaN, infinite) messages
+///   warning               a timeout that stopped a motion
 ///
 /// A line is written when one of these changes; wheel speeds have to change by kSpeedStep or more. Lines of one kind
 /// are at least kGap apart, and a change within the gap is reported after it. A new effect is reported after it has
-/// lasted for kSettle, so that a single late cycle is not reported. CommandInput reports messages that are refused for
-/// their stamp or sender. Time is that of the frames.
+/// lasted for kSettle, so that a single late cycle is not reported. CommandInput reports messages that are refused.
+/// Time is that of the frames.
 
 #include <cstdint>
 #include <optional>
@@ -67,15 +67,12 @@ class CommandReport {
   SpeedLimits limits_;
   double timeout_;  ///< s
   std::uint64_t run_ = 0;
-  std::uint64_t refused_ = 0;  ///< messages with NaN or infinity
   std::uint64_t timeouts_ = 0;
-  bool refusing_ = false;
   std::optional<Report> reported_;  ///< last line about the present motion
   std::uint64_t hindrance_ = 0;     ///< CommandReason bits of the last frame
   std::int64_t hindered_since_ns_ = 0;
   Gap line_gap_;
   Gap timeout_gap_;
-  Gap refusal_gap_;
 };
 
 }  // namespace robot_control

@@ -56,7 +56,7 @@ void MotionRelease::step(const MonitorInput& input, std::uint64_t elapsed) noexc
 void MotionRelease::evaluate(const CommandFrame& command) noexcept {
   const bool zero_after_start = since_start_.grown(command);
   const bool zero_after_gap = since_gap_.grown(command);
-  const bool in_force = !zero(command.requested.twist);
+  const bool in_force = parts_of(command.requested) != 0;
   const std::uint64_t current_cycles = command.head.cycle - std::min(command.head.cycle, since_gap_.after);
   const bool silent = !in_force && std::min(command.silent_cycles, current_cycles) >=
                                        std::max<std::uint64_t>(command.silence_needed, 1);

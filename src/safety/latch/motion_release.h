@@ -10,12 +10,12 @@
 ///   the first cycle after a pause (SensorFrame::resumes)
 /// After the latest start motion is released as soon as a current command frame reports one of
 ///   zero     a zero request was received after that start
-///   silence  no message of any sender, accepted or refused, for silence_needed cycles after that start, and no command
-///            in force requests motion
+///   silence  no message of any sender, accepted or refused, for silence_needed cycles after that start, and no part of
+///            the request in force is other than zero
 /// Once released, motion stays released until the next start.
 ///
-/// **Evidence for a reset.** It exists in cycle k if the current command frame reports that the velocity in force is
-/// zero, and one of
+/// **Evidence for a reset.** It exists in cycle k if the current command frame reports that every part of the request
+/// in force is zero, and one of
 ///   zero     a zero request was received after the last gap, and only zero requests since then
 ///   silence  as above, after the last gap
 /// A *gap* is a start, a cycle without a current command frame, or a cycle that the monitor skipped. Messages and
