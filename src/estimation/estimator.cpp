@@ -103,6 +103,7 @@ void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
   for (const std::size_t side : {kLeft, kRight}) {
     const double time = s.wheels.unknown_time[side];
     if (time == 0) continue;
+    s.flags |= kStateEncoderRestarted;
     const bool replaced = !s.wheels.lost[1 - side] && s.wheels.unknown_time[1 - side] == 0;
     s.comparison.suspend();
     s.middle_travel.forget_credit(side);

@@ -18,13 +18,12 @@ struct WheelGeometry {
   double axle_y = 0;      ///< m
   double ground = 0;      ///< m
 
-  explicit WheelGeometry(const DriveTrain& robot) noexcept : wheel_base(robot.effective_wheel_base()) {
-    const auto count = static_cast<double>(robot.wheels.size());
-    for (const WheelModel& wheel : robot.wheels) {
-      axle_x += wheel.centre_base[0] / count;
-      axle_y += wheel.centre_base[1] / count;
-      ground += (wheel.centre_base[2] - wheel.radius) / count;
-    }
+  explicit WheelGeometry(const DriveTrain& robot) noexcept
+      : wheel_base(robot.effective_wheel_base()),
+        axle_x(middle_of_axles(robot)[0]),
+        axle_y(middle_of_axles(robot)[1]),
+        ground(middle_of_axles(robot)[2]) {
+    for (const WheelModel& wheel : robot.wheels) ground -= wheel.radius / static_cast<double>(robot.wheels.size());
   }
 
   double turn(double left, double right) const noexcept { return (right - left) / wheel_base; }
