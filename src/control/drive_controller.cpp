@@ -291,7 +291,7 @@ bool DriveController::leaves_stop(bool stops, bool planned_rest) noexcept {
   WheelValues off{};
   for (std::size_t i = 0; i < loops_.size(); ++i) off[i] = loops_[i].off_plan();
   const SidePair way = kinematics_.rim_speeds(kinematics_.twist(off));
-  const double allowed = planned_rest ? kRestWay : kStopWay;
+  const double allowed = planned_rest ? kRestWay : kStopWay * std::max(1.0, tuning_.linear.speed);
   return rest_time_ > kRestTime || std::max(std::abs(way.left), std::abs(way.right)) > allowed;
 }
 

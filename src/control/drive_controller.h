@@ -14,7 +14,8 @@
 /// A stop is planned by the limiter. It has ended when limited twist and lead are zero and all wheels stand
 /// (standstill.h). It also ends in the brake if the wheels do not get there:
 ///   - kRestTime after the end of the plan;
-///   - when the rims of a side have moved kStopWay off the plan, or kRestWay after its end.
+///   - when the rims of a side have moved kStopWay off the plan (in proportion for limits above 1 m/s), or kRestWay
+///     after its end.
 /// So a load that slow wheel loops do not find, as on a slope at 20 Hz, does not move the robot for long. Drives that
 /// close their own loops lag behind a ramp, so kStopWay does not apply to them.
 ///
@@ -88,9 +89,8 @@ namespace robot_control {
 /// No wheel reaches this speed, in rad/s (10⁴ rpm): a faster change of angle is an encoder error.
 inline constexpr double kFastestWheel = 1000;
 
-// A brake on a slope of 15° needs 0.03 m; together it is less than 0.1 m beyond the plan.
-inline constexpr double kStopWay = 0.07;  ///< m
-inline constexpr double kRestWay = 0.02;  ///< m
+inline constexpr double kStopWay = 0.07;  ///< m; a robot of twice its mass leaves its plan by 0.05 m at 1 m/s
+inline constexpr double kRestWay = 0.02;  ///< m; at 20 Hz a wheel turns on by 0.01 m
 inline constexpr double kRestTime = 0.5;  ///< s; twice kStandstillTime
 
 using WheelLoops = FixedVector<WheelLoop, kMaxWheels>;

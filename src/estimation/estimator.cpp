@@ -246,7 +246,7 @@ Eigen::Vector3d Estimator::gyro_bias_variance() const noexcept {
 
 /// Returns the vector from base_link to the middle of the wheels, in m, odom axes.
 Planar Estimator::axle(double yaw) const noexcept {
-  return rotated({geometry_.axle_x, geometry_.axle_y}, yaw);
+  return rotated({geometry_.axle[0], geometry_.axle[1]}, yaw);
 }
 
 }  // namespace robot_control

@@ -24,9 +24,8 @@ bool SideEncoder::Wheel::measured(const SensorFrame& sensors) const noexcept {
 
 bool SideEncoder::Wheel::plausible(const SensorFrame& sensors, double time, double late) const noexcept {
   const double position = sensors.joints[joint].position, velocity = tracking.velocity();
-  const bool at_zero = std::abs(position) <= Tuning::kEncoderSlack + std::abs(velocity) * time;
-  const double jump = std::abs(position - angle - velocity * time);
-  if (at_zero && jump > Tuning::kNewZero + std::abs(velocity) * late) return false;
+  const bool jumps = std::abs(position - angle - velocity * time) > Tuning::kNewZero + std::abs(velocity) * late;
+  if (jumps && std::abs(position) <= Tuning::kEncoderSlack + std::abs(velocity) * time) return false;
   return std::abs(position - angle) <= velocity_bound * time + Tuning::kEncoderSlack;
 }
 

@@ -10,14 +10,13 @@
 /// The side's wheels are read together: one unused sample rejects the reading. The first reading is the offset, without
 /// travel. A sample that is missing, not finite, impossible or old is not used; the next good one brings the travel of
 /// the gap. A difference is impossible above 2 · velocity_limit times the time passed, plus kEncoderSlack; without a
-/// limit, kFastestWheel replaces 2 · velocity_limit. However slow the readings are, a jump to zero is impossible, too,
-/// where the travel of readings that were held up does not explain it:
+/// limit, kFastestWheel replaces 2 · velocity_limit. A jump to zero is impossible, too, if readings that were held up
+/// do not explain it, with the tracked speed q̇ and the time t since the last reading:
 ///
-///   |q| ≤ kEncoderSlack + |q̇|·t    and    |q − qₗₐₛₜ − q̇·t| > kNewZero + |q̇|·(t + usual gap)
+///   |q| ≤ kEncoderSlack + |q̇|·t   and   |q − qₗₐₛₜ − q̇·t| > kNewZero + |q̇|·(t + gap),   later > kNewZero
 ///
-/// t is the time since the last reading and q̇ the tracked speed; after a first such jump kNewZero suffices. If angles
-/// stay impossible for more than kMaxHeld readings, the encoder was reset. Then the present angles become the offset,
-/// and the travel in between is lost. The same holds for the first angles after a drive had a fault and then no
+/// If angles stay impossible for more than kMaxHeld readings, the encoder was reset. Then the present angles become the
+/// offset, and the travel in between is lost. The same holds for the first angles after a drive had a fault and then no
 /// position, because its zero may be another one.
 
 #include <array>
