@@ -40,6 +40,7 @@ JUDGED = (
     "limiter",
     "release",
     "drive",
+    "slopes",
     "legs",
     "odometry",
     "hostile",
@@ -221,6 +222,12 @@ def _drive(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     return drive_promises.bench(say, given.wheel_command)
 
 
+def _slopes(_given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    from bench.drives import slopes
+
+    return slopes.bench(say)
+
+
 def _board_clock(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     from bench.devices import board_clock
 
@@ -239,6 +246,7 @@ TRIALS = {
     "blackbox": _blackbox,
     "processes": _processes,
     "drive": _drive,
+    "slopes": _slopes,
     "board_clock": _board_clock,
     "console": _console,
     "fleet": _fleet,

@@ -183,7 +183,7 @@ PlanarTwist DriveController::permitted_twist(const Permit* permit, CommandFrame&
   if (permit->speed_limit >= kNoSpeedLimit) return requested;
   const double scale = kinematics_.rim_speed_scale(requested, permit->speed_limit);
   if (scale < 1) out.reasons |= kReasonPermitSlow;
-  return {scale * requested.linear, scale * requested.angular};
+  return scaled(requested, scale);
 }
 
 bool DriveController::slow() const noexcept {
@@ -206,11 +206,13 @@ PlanarTwist DriveController::measured_twist() const noexcept {
 
 void DriveController::follow_measured(const SensorFrame& sensors) noexcept {
   if (!drives_close_loops()) average_held_efforts(sensors);
+  if (standstill_.standing()) std::ranges::for_each(loops_, &WheelLoop::stand);
   const PlanarTwist twist = measured_twist();
   const double scale = kinematics_.wheel_speed_scale(twist);  // The plan stays within the joints' limits.
   // Strained treads tremble under a brake. A plan that began with that motion would strain them the other way.
   const bool rests = ground_friction_.scrubs() && (standstill_.standing() || slow());
-  limiter_.restart_from(rests ? PlanarTwist{} : PlanarTwist{scale * twist.linear, scale * twist.angular});
+  rest_time_ = 0;
+  limiter_.restart_from(rests ? PlanarTwist{} : scaled(twist, scale));
   if (ground_friction_.scrubs()) {
     if (rests) {
       ground_friction_.rest([&](std::size_t wheel) { return held_effort_[wheel]; });
@@ -282,16 +284,29 @@ void DriveController::learn_ground_friction() noexcept {
   for (std::size_t i = 0; i < loops_.size(); ++i) loops_[i].move_to_feed_forward(more * ground_friction_.strain(i));
 }
 
+bool DriveController::leaves_stop(bool stops, bool planned_rest) noexcept {
+  const bool begins = !stops || (planned_rest && rest_time_ == 0);
+  rest_time_ = planned_rest ? rest_time_ + periods_ * period_ : 0;
+  if (begins || (drives_close_loops() && !planned_rest)) std::ranges::for_each(loops_, &WheelLoop::expect_plan);
+  WheelValues off{};
+  for (std::size_t i = 0; i < loops_.size(); ++i) off[i] = loops_[i].off_plan();
+  const SidePair way = kinematics_.rim_speeds(kinematics_.twist(off));
+  const double allowed = planned_rest ? kRestWay : kStopWay * std::max(1.0, tuning_.linear.speed);
+  return rest_time_ > kRestTime || std::max(std::abs(way.left), std::abs(way.right)) > allowed;
+}
+
 void DriveController::drive(const PlanarTwist& requested, const SensorFrame& sensors, CommandFrame& out) noexcept {
+  const bool stops = is_zero(requested);
+  bool at_rest = false;
   if (in_control_) {
     held_cycles_ = 0;
+    const bool planned_rest = is_zero(limiter_.value()) && std::ranges::all_of(leads_, &SpeedLead::ended);
+    at_rest = leaves_stop(stops, planned_rest) || (planned_rest && standstill_.standing());
   } else {
     follow_measured(sensors);
+    at_rest = holding_ || standstill_.standing() || slow();
   }
-  const bool ordered_rest = is_zero(limiter_.value()) && std::ranges::all_of(leads_, &SpeedLead::ended);
-  const bool at_rest =
-      in_control_ ? ordered_rest && standstill_.standing() : holding_ || standstill_.standing() || slow();
-  holding_ = is_zero(requested) && at_rest;
+  holding_ = stops && at_rest;
   if (holding_) out.reasons |= kReasonHolding;
   driving_ = (out.reasons & kBrakeReasons) == 0;
   if (!driving_) return;

@@ -7,10 +7,17 @@
 ///   - the sensors are unusable: not valid, not finite, for another number of joints, or of a cycle that does not
 ///     advance;
 ///   - a wheel angle jumped faster than kFastestWheel; the wheel loops then restart from the next sample;
-///   - the robot holds: requested and limited twist are zero, no lead is ordered any more, and all wheels stand
-///     (standstill.h). Directly after a brake, wheels slower than kStandstillSpeed are enough. The driver's brake law
-///     keeps the position until the next requested twist ≠ 0.
+///   - the robot holds: the requested twist is zero, the stop has ended, and the driver's brake law keeps the position
+///     until the next requested twist ≠ 0. Directly after a brake, wheels slower than kStandstillSpeed are enough.
 /// Joints that are not wheels are always braked.
+///
+/// A stop is planned by the limiter. It has ended when limited twist and lead are zero and all wheels stand
+/// (standstill.h). It also ends in the brake if the wheels do not get there:
+///   - kRestTime after the end of the plan;
+///   - when the rims of a side have moved kStopWay off the plan (in proportion for limits above 1 m/s), or kRestWay
+///     after its end.
+/// So a load that slow wheel loops do not find, as on a slope at 20 Hz, does not move the robot for long. Drives that
+/// close their own loops lag behind a ramp, so kStopWay does not apply to them.
 ///
 /// A stop that was not requested ramps with the emergency deceleration. This applies after a command that timed out or
 /// was refused, with more than one sender if that is forbidden, and under a ramp permit. A ramp permit sets the
@@ -18,9 +25,9 @@
 /// rim is faster.
 ///
 /// The controller is not in control while it brakes, or if the gate reports that tick k−1 was braked. Then limiter and
-/// wheel loops are set to the measured speed in every cycle, so that nothing jumps at release. The first torque is that
-/// of an unaccelerated motion, and the ramp starts once the gate has passed it. If treads scrub and the wheels stand,
-/// the limiter starts from rest.
+/// wheel loops are set to the measured speed in every cycle, so that nothing jumps at release. While the wheels stand,
+/// that speed is zero. The first torque is that of an unaccelerated motion, and the ramp starts once the gate has
+/// passed it. If treads scrub and the wheels are slow, the limiter starts from rest.
 ///
 /// While the wheels stand, the integrators are preloaded with the load that the brake holds. It is the mean of the
 /// measured effort over about the last kStandstillTime of standstill without control. One sample is not enough, because
@@ -82,6 +89,10 @@ namespace robot_control {
 /// No wheel reaches this speed, in rad/s (10⁴ rpm): a faster change of angle is an encoder error.
 inline constexpr double kFastestWheel = 1000;
 
+inline constexpr double kStopWay = 0.07;  ///< m; a robot of twice its mass leaves its plan by 0.05 m at 1 m/s
+inline constexpr double kRestWay = 0.02;  ///< m; at 20 Hz a wheel turns on by 0.01 m
+inline constexpr double kRestTime = 0.5;  ///< s; twice kStandstillTime
+
 using WheelLoops = FixedVector<WheelLoop, kMaxWheels>;
 using SpeedLeads = FixedVector<SpeedLead, kMaxWheels>;
 
@@ -124,6 +135,8 @@ class DriveController {
   WheelValues planned_efforts(const PlanarTwist& twist, const PlanarTwist& acceleration) noexcept;
   void search_ground_friction(const PlanarTwist& twist) noexcept;
   void learn_ground_friction() noexcept;
+  /// Returns whether the brake has to end the stop; `stops`: the requested twist is zero.
+  bool leaves_stop(bool stops, bool planned_rest) noexcept;
   void drive(const PlanarTwist& requested, const SensorFrame& sensors, CommandFrame& out) noexcept;
 
   DriveTuning tuning_;
@@ -144,6 +157,7 @@ class DriveController {
   WheelValues held_effort_{};                ///< N·m, mean since `held_cycles_`
   std::uint64_t held_cycles_ = 0;  ///< cycles in which the wheels stood and this controller was not in control
   double acceleration_scale_ = 1;  ///< share of the acceleration limits that the wheels' torque allows
+  double rest_time_ = 0;           ///< s, since the plan of a stop ended
   double periods_ = 1;             ///< between the last two usable samples
   bool driving_ = false;           ///< The last command was not the brake.
   bool holding_ = false;           ///< kReasonHolding in the last cycle

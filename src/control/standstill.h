@@ -5,6 +5,7 @@
 /// threshold, but does not leave the angle window of 0.005 rad.
 
 #include <cstdint>
+#include <optional>
 
 #include "control/planar_twist.h"
 
@@ -19,12 +20,12 @@ class Standstill {
   explicit Standstill(double period);
 
   /// Restarts; the robot may be moving.
-  void reset() noexcept;
+  void reset() noexcept { since_.reset(); }
 
   /// `angles` are in rad for every wheel's joint; `cycle` is that of the sample.
   void step(const WheelValues& angles, std::uint64_t cycle) noexcept;
 
-  bool standing() const noexcept { return standing_; }
+  bool standing() const noexcept { return since_ && cycles_ >= cycles_needed_; }
   std::uint64_t cycles() const noexcept { return cycles_; }  ///< cycles for which all angles have stayed in the window
   std::uint64_t cycles_needed() const noexcept { return cycles_needed_; }  ///< kStandstillTime in cycles
 
@@ -32,9 +33,7 @@ class Standstill {
   std::uint64_t cycles_needed_;
   std::uint64_t cycles_ = 0;
   WheelValues anchor_{};
-  std::uint64_t since_ = 0;
-  bool anchored_ = false;
-  bool standing_ = false;
+  std::optional<std::uint64_t> since_;  ///< cycle of `anchor_`
 };
 
 }  // namespace robot_control

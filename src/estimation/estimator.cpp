@@ -103,6 +103,7 @@ void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
   for (const std::size_t side : {kLeft, kRight}) {
     const double time = s.wheels.unknown_time[side];
     if (time == 0) continue;
+    s.flags |= kStateEncoderRestarted;
     const bool replaced = !s.wheels.lost[1 - side] && s.wheels.unknown_time[1 - side] == 0;
     s.comparison.suspend();
     s.middle_travel.forget_credit(side);
@@ -245,7 +246,7 @@ Eigen::Vector3d Estimator::gyro_bias_variance() const noexcept {
 
 /// Returns the vector from base_link to the middle of the wheels, in m, odom axes.
 Planar Estimator::axle(double yaw) const noexcept {
-  return rotated({geometry_.axle_x, geometry_.axle_y}, yaw);
+  return rotated({geometry_.axle[0], geometry_.axle[1]}, yaw);
 }
 
 }  // namespace robot_control

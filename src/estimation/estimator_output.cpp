@@ -115,9 +115,9 @@ void Estimator::fill_twist_covariance(double yaw_rate, BaseState& base) const no
   const double slides = state_.slide.active() ? square(state_.slide.speed_deviation()) : 0;
   base.twist_covariance = {};
   base.twist_covariance[0] = wheel / 2 + slides + square(parameters_.wheel_radius_deviation * forward_speed()) +
-                             square(geometry_.axle_y) * turn;
-  base.twist_covariance[7] =
-      wheel / 2 + slides + square(geometry_.axle_x) * turn + square(yaw_rate * state_.core.deviation(PlanarCore::kIcr));
+                             square(geometry_.axle[1]) * turn;
+  base.twist_covariance[7] = wheel / 2 + slides + square(geometry_.axle[0]) * turn +
+                             square(yaw_rate * state_.core.deviation(PlanarCore::kIcr));
   base.twist_covariance[35] = turn;
   for (const std::size_t i : {14U, 21U, 28U}) base.twist_covariance[i] = Tuning::kPlanarVariance;
 }

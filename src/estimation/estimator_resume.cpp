@@ -50,7 +50,7 @@ void Estimator::resume(const StateFrame& last) noexcept {
   place({last.base.pose_odom.position[0], last.base.pose_odom.position[1], yaw_of(last.base.pose_odom.orientation)});
   s.core.set_pose_covariance(covariance_of_middle(last, axle(yaw_of(last.base.pose_odom.orientation))));
   s.yaw_rate = last.base.twist_base.angular[2];
-  const double speed = last.base.twist_base.linear[0] - s.yaw_rate * geometry_.axle_y;
+  const double speed = last.base.twist_base.linear[0] - s.yaw_rate * geometry_.axle[1];
   const double faster = s.yaw_rate * geometry_.wheel_base / 2;
   s.wheel_sides.set_speed(speed - faster, speed + faster);
   s.rest.resume();

@@ -82,14 +82,15 @@ RestWatchParams rest_params(const EstimatorParameters& parameters, const DriveTr
 }
 
 SlipParams slip_params(const EstimatorParameters& parameters, const DriveTrain& robot) {
-  const WheelGeometry wheels(robot);
+  Vector3 ground = middle_of_axles(robot);
+  for (const WheelModel& wheel : robot.wheels) ground[2] -= wheel.radius / static_cast<double>(robot.wheels.size());
   return {.encoder = encoder_deviation(parameters, robot),
           .accelerometer = parameters.accelerometer_noise,
-          .wheel_base = wheels.wheel_base,
+          .wheel_base = robot.effective_wheel_base(),
           .wheel_slip_noise = parameters.wheel_slip_noise,
-          .imu_x = robot.imu_in_base.position[0] - wheels.axle_x,
-          .imu_y = robot.imu_in_base.position[1] - wheels.axle_y,
-          .imu_above_ground = robot.imu_in_base.position[2] - wheels.ground};
+          .imu_x = robot.imu_in_base.position[0] - ground[0],
+          .imu_y = robot.imu_in_base.position[1] - ground[1],
+          .imu_above_ground = robot.imu_in_base.position[2] - ground[2]};
 }
 
 }  // namespace robot_control

@@ -6,7 +6,6 @@
 #include "estimation/rest/rest_watch.h"
 #include "estimation/slip/motion_difference.h"
 #include "estimation/tilt/tilt.h"
-#include "estimation/wheels/wheel_geometry.h"
 #include "machine/wheeled/drive_train.h"
 
 namespace robot_control {

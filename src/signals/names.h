@@ -164,6 +164,8 @@ inline constexpr auto kStateFlagNames = std::to_array<BitName>({
      "look at the IMU"},
     {kStateDegraded, "degraded", "the pose is less certain than usual: slip, or no gyro bias yet",
      "read the reason in degraded"},
+    {kStateEncoderRestarted, "encoder_restarted", "an encoder began again; the travel since its last reading is lost",
+     "look at the encoders' cables and power"},
 });
 
 inline constexpr auto kDegradedReasonNames = std::to_array<BitName>({

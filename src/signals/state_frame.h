@@ -21,11 +21,12 @@ enum StateFlag : std::uint64_t {
       1u << 3,              ///< The state continues from the last frame of an earlier process, with a grown covariance.
   kStateSkipped = 1u << 4,  ///< At least one cycle of sensors was missed since the last frame.
   kStateNoGyro = 1u << 5,   ///< Yaw comes from the wheels alone.
-  kStateBadSample = 1u << 6,        ///< A sample of this cycle was missing or not finite and was not used.
-  kStateNoLeftEncoder = 1u << 7,    ///< No valid readings of the left encoders.
-  kStateNoRightEncoder = 1u << 8,   ///< No valid readings of the right encoders.
-  kStateNoAccelerometer = 1u << 9,  ///< Tilt and simultaneous slip of all wheels are not detected.
-  kStateDegraded = 1u << 10,        ///< The pose is less certain than usual; BaseState::degraded says why.
+  kStateBadSample = 1u << 6,          ///< A sample of this cycle was missing or not finite and was not used.
+  kStateNoLeftEncoder = 1u << 7,      ///< No valid readings of the left encoders.
+  kStateNoRightEncoder = 1u << 8,     ///< No valid readings of the right encoders.
+  kStateNoAccelerometer = 1u << 9,    ///< Tilt and simultaneous slip of all wheels are not detected.
+  kStateDegraded = 1u << 10,          ///< The pose is less certain than usual; BaseState::degraded says why.
+  kStateEncoderRestarted = 1u << 11,  ///< An encoder began again in this cycle: its travel is lost.
 };
 
 /// Bits of BaseState::degraded: why the pose is less certain.

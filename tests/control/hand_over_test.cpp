@@ -82,6 +82,27 @@ TEST_F(HandOver, HoldsThoughAnEncoderJumpsWhileNobodyAsksForAMotion) {
   }
 }
 
+TEST_F(HandOver, BeginsAtRestThoughTheLastCountFlickers) {
+  constexpr double kCount = 2 * std::numbers::pi / 4096;
+  bench.spoil = [&](SensorFrame& sensors) {
+    sensors.joints[0].position += bench.cycle / 3 % 2 == 0 ? 0 : kCount;
+    sensors.joints[1].position -= bench.cycle / 5 % 2 == 0 ? 0 : kCount;
+  };
+  for (int k = 0; k < 20; ++k) {  // one begins in each phase of the counts
+    bench.send(0, 0);
+    bench.run(0.4 + 1e-3 * k);
+    ASSERT_TRUE(bench.command.reasons & kReasonHolding);
+    bench.send(0.5, 0.2);
+    bench.step();
+    EXPECT_EQ(bench.command.twist_limited.linear[0], 0) << k;
+    EXPECT_EQ(bench.command.twist_limited.angular[2], 0) << k;
+    bench.run(0.01);
+    EXPECT_LT(bench.command.twist_limited.linear[0], 0.0101) << "1 m/s² from zero";
+    bench.send(0, 0);
+    bench.run(1);
+  }
+}
+
 TEST_F(HandOver, SagsWithoutTheLoadInTheIntegrator) {
   // This shows that the test above can fail, with a driver that reports no effort.
   bench.spoil = [](SensorFrame& sensors) {

@@ -87,6 +87,7 @@ TEST_F(EstimatorFaultsTest, EncodersThatBeganAnewCostCovarianceNotAJump) {
     EXPECT_LT(position_error(), Tuning::kRestart) << i;  // a jump would be 50 m
   }
   EXPECT_GT(state_.base.pose_covariance[0], variance);
+  EXPECT_TRUE(has(kStateEncoderRestarted));
   for (int i = 0; i < 500; ++i) {
     broken([](SensorFrame& frame) {
       frame.joints[0].position -= 500;

@@ -106,7 +106,7 @@ class RollingRobot {
     distance += std::abs((motion.velocity.x() + end.velocity.x()) / 2) * period_;
     const Eigen::Vector3d gained = rotation * of_point(end, imu_) - before * of_point(motion, imu_);
     const Eigen::Vector3d force = middle.transpose() * (gained / period_ + Eigen::Vector3d(0, 0, kGravity));
-    const Eigen::Vector3d axle{wheels_.axle_x, wheels_.axle_y, wheels_.ground};
+    const Eigen::Vector3d axle = ground();
     const Eigen::Vector3d pushed = rotation * of_point(end, axle) - before * of_point(motion, axle);
     roll(motion, end, middle.col(0).dot(pushed / period_ + Eigen::Vector3d(0, 0, kGravity)));
     motion = end;
@@ -153,15 +153,21 @@ class RollingRobot {
     return Eigen::AngleAxisd(norm, angle / norm).toRotationMatrix();
   }
 
+  /// m, base axes: below the middle of the axles
+  Eigen::Vector3d ground() const {
+    const auto [x, y, z] = wheels_.axle;
+    return {x, y, z - model_.wheels.front().radius};
+  }
+
   Eigen::Vector3d of_point(const Rolling& m, const Eigen::Vector3d& point) const {
-    return m.velocity + m.rate.cross(point - Eigen::Vector3d(wheels_.axle_x, wheels_.axle_y, wheels_.ground));
+    return m.velocity + m.rate.cross(point - ground());
   }
 
   void roll(const Rolling& from, const Rolling& to, double force) {
     const double half = wheels_.wheel_base * (1 + wheel_base) / 2;
     for (const std::size_t side : {0U, 1U}) {
       const double sign = side == 0 ? 1 : -1;
-      const Eigen::Vector3d contact{wheels_.axle_x, wheels_.axle_y + sign * half, wheels_.ground};
+      const Eigen::Vector3d contact = ground() + Eigen::Vector3d(0, sign * half, 0);
       const double rolling = (of_point(from, contact).x() + of_point(to, contact).x()) / 2;
       const double turning = rolling + creep * std::abs(rolling) * force;
       turn_[side] += period_ * tread[side].value_or(turning) / (1 - sign * radius_ratio / 2);

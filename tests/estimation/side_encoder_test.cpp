@@ -140,5 +140,25 @@ TEST_F(SideEncoderTest, AJumpThatDoesNotLastCostsNothing) {
   EXPECT_NEAR(encoder_.travel(), 0.003, 1e-15);
 }
 
+// Ten readings a second, in each of which the wheel might turn by 6 rad.
+TEST_F(SideEncoderTest, AWheelThatBeginsAgainAtZeroHasNotTravelled) {
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(read(3.0, 0.3), EncoderReading::kTravel) << i;
+  for (std::uint64_t i = 0; i < Tuning::kMaxHeld; ++i) EXPECT_EQ(read(0.05, 0.1), EncoderReading::kRejected) << i;
+  EXPECT_EQ(read(0.05, 0.1), EncoderReading::kLost);
+  EXPECT_EQ(encoder_.travel(), 0);
+  EXPECT_EQ(read(0.06, 0.1), EncoderReading::kTravel);
+}
+
+TEST_F(SideEncoderTest, AZeroThatDoesNotLastCostsNothing) {
+  for (int i = 0; i < 50; ++i) read(3.0, 0.3);
+  EXPECT_EQ(read(0, 0.1), EncoderReading::kRejected);
+  EXPECT_EQ(read(3.0, 0.1), EncoderReading::kTravel);
+  EXPECT_EQ(encoder_.travel(), 0);
+}
+
+TEST_F(SideEncoderTest, AWheelThatTurnsBackToZeroHas) {
+  for (double angle = 12.5; angle > -2; angle -= 0.5) EXPECT_EQ(read(angle, 0.1), EncoderReading::kTravel) << angle;
+}
+
 }  // namespace
 }  // namespace robot_control

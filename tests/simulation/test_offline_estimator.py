@@ -472,3 +472,35 @@ def test_other_threads_run_meanwhile_and_may_not_enter():
             pass
     assert turns > 100
     assert refused > 100
+
+
+@pytest.mark.parametrize("rate", [10, 20, 100, 1000])
+@pytest.mark.parametrize("turned", [3.0, 12.0, 42.0])
+@pytest.mark.parametrize("gap", [0.0, 0.5])
+def test_encoders_that_begin_again_at_zero_are_no_travel(rate, turned, gap):
+    """At 0.3 m/s, `gap` seconds without a reading before; `turned` rad until then."""
+    speed = 3.0  # rad/s
+    time = np.arange(0, turned / speed + gap + 3, 1 / rate)
+    angle = speed * np.maximum(time - 1, 0)
+    restart = np.searchsorted(time, 1 + turned / speed)
+    again = np.searchsorted(time, 1 + turned / speed + gap)
+    angle[restart:] -= angle[again]
+    angle[restart:again] = np.nan
+    gyro, accel = np.zeros((time.size, 3)), np.tile([0.0, 0.0, 9.81], (time.size, 1))
+    for given in ({}, {"urdf": DIFFBOT}):
+        estimator = Estimator(**(given or {"wheel_radius": 0.1, "wheel_base": 0.5}))
+        out = estimator.process(time, angle, angle, gyro, accel)
+        restarted = np.flatnonzero(out["flags"] & FLAGS["encoder_restarted"])
+        assert restarted.tolist() == [again + 4], "after four readings at its new zero"
+        lost = 0.1 * speed * (gap + 5 / rate)
+        assert 0.1 * speed * (time[-1] - 1) - out["x"][-1] == pytest.approx(lost / 2, abs=0.06 + lost / 2), given
+
+
+def test_a_wheel_that_rolls_back_to_its_zero_travels():
+    """Also with messages that hold the same angle for a tenth of a second."""
+    time = np.arange(0, 12, 0.01)
+    for hold in (1, 10):
+        angle = 8 * np.sin(time - 1)[np.arange(time.size) // hold * hold] * (time >= 1)
+        out = Estimator(wheel_radius=0.1, wheel_base=0.5).process(time, angle, angle)
+        assert not (out["flags"] & FLAGS["encoder_restarted"]).any()
+        assert out["wheel_x"][-1] == pytest.approx(0.1 * angle[-1], abs=1e-9)

@@ -252,7 +252,7 @@ def spoil(line, old, new):
         ((4, "0.01,", "nan,"), "line 4: the time is 'nan'"),
         ((4, "0.01,", "0.005,"), "line 4: time is 0.005, not after the row before"),
         ((4, "0.01,", "0.001,"), "line 4: time is 0.001, not after the row before"),
-        ((4, "0.01,", "1e30,"), "line 4: the time is 1e30, beyond 292 years; look at --time-unit"),
+        ((4, "0.01,", "1e30,"), "line 4: the time is 1e30, beyond 146 years; look at --time-unit"),
         ((4, "0.01,0.0", "0.01,fast"), "line 4, column left: 'fast' is no number; leave the cell of an absent sample"),
         ((4, "0.01,", "0.01,1,"), "line 4: 10 cells, the header has 9"),
         ((4, "0.01,", "0.01 "), "line 4: 8 cells, the header has 9"),
@@ -751,3 +751,33 @@ def test_late_stamps_of_the_imu_are_found_said_and_taken_out(run, exact):
     assert_at(read_csv("out.csv"), exact)
     for given in (["--imu-delay", "0"], ["--imu-delay", "-0.01"]):
         assert "taken out" not in run("in.csv", *ROBOT, *given)[0]
+
+
+def test_a_jump_of_the_clock_costs_no_time_of_its_own_and_is_named_in_its_row(run, columns, exact):
+    row = 1000
+    for jump in (86400.0, 6 * 365 * 86400.0):
+        columns["time"] = np.arange(0, 12, 0.005) + np.where(np.arange(2400) >= row, jump, 0)
+        write_csv("in.csv", columns)
+        report, message = run("in.csv", *ROBOT, "--csv", "out.csv", "--plot", "out.png", "--rate", 50)
+        assert message == ""
+        assert (
+            f"the time jumps by {jump + 0.005:.3f} s to {jump + 5:.3f} s in row {row + 1}: the clock was set" in report
+        )
+        assert re.search(r"^recording +11\.995 s, 2400 rows; wheels 200 Hz", report, re.MULTILINE)
+        assert "not to be trusted" not in report
+        out = read_csv("out.csv")
+        assert out["time"][-1] == pytest.approx(jump + 11.995), "the stamps of the recording"
+        out["time"][-1] -= jump
+        assert_at(out, exact)
+
+
+def test_encoders_that_begin_again_are_no_travel_and_are_named(run, columns, exact):
+    begun = columns["time"] >= 6
+    for side in ("left", "right"):
+        columns[side][begun] -= columns[side][begun][0]
+    write_csv("in.csv", columns)
+    report, message = run("in.csv", *ROBOT, "--csv", "out.csv")
+    assert message == ""
+    assert re.search(r"^warning +an encoder began again after 6\.020 s: the travel", report, re.MULTILINE)
+    out, truth = read_csv("out.csv"), exact.at([11.995])
+    assert np.hypot(out["x"][-1] - truth.x[0], out["y"][-1] - truth.y[0]) < 0.04, "five readings at 5 ms"

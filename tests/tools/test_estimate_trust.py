@@ -18,6 +18,7 @@ def estimate():
     covariance = np.zeros((ROWS, 6, 6))
     covariance[:, 5, 5] = math.radians(1) ** 2
     return {
+        "time": (TIME - TIME[0]) / 1e9,
         "flags": np.full(ROWS, FLAGS["valid"]),
         "distance": np.linspace(0, 10, ROWS),
         "pose_covariance": covariance,

@@ -126,6 +126,38 @@ def test_text_of_a_log_reaches_no_terminal_as_control_characters(hostile_log, ca
     assert not any(line.startswith("exact") for line in lines)
 
 
+@pytest.fixture(params=[5e-324, 0.0, -0.001, float("nan"), 1e300])
+def timeless_log(log, tmp_path, request):
+    """A log whose header has the period of no loop."""
+
+    def edit(topic, message):
+        if topic == "trace_header":
+            message.period = request.param
+
+    return str(forged(log, tmp_path, edit))
+
+
+@pytest.mark.parametrize(
+    ("program", "arguments"),
+    [
+        ("replay", ["%"]),
+        ("report", ["%"]),
+        ("estimate", ["%"]),
+        ("export", ["%", "--csv", "%.csv"]),
+        ("identify", ["--log=%", "--output=%.yaml"]),
+    ],
+)
+def test_a_period_of_no_loop_is_refused_in_one_sentence(timeless_log, monkeypatch, capsys, program, arguments):
+    entry = importlib.import_module(f"robot_control.{program}.main").main
+    words = [argument.replace("%", timeless_log) for argument in arguments]
+    monkeypatch.setattr("sys.argv", [program, *words])
+    with pytest.raises(SystemExit) as end:
+        entry() if program == "identify" else entry(words)
+    said = str(end.value.code) + capsys.readouterr().err
+    assert "the period of TraceHeader" in said
+    assert "of no loop" in said
+
+
 def test_a_log_of_another_layout_is_refused_with_the_version_that_wrote_it_and_the_remedy(log, tmp_path, capsys):
     other = tmp_path / "other.bag"
     with rosbag.Bag(str(log)) as source, rosbag.Bag(str(other), "w") as target:

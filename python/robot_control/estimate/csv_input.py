@@ -181,9 +181,9 @@ class _Table:
             raise InputError(
                 f"{self.path}, line {line}: the time is {cell.strip()!r}; every row needs a finite number"
             ) from None
-        if abs(stamp) >= 2**63:
+        if abs(stamp) >= 2**62:  # so that a difference of two is a number of 64 bits
             raise InputError(
-                f"{self.path}, line {line}: the time is {cell.strip()}, beyond 292 years; look at --time-unit"
+                f"{self.path}, line {line}: the time is {cell.strip()}, beyond 146 years; look at --time-unit"
             )
         return round(stamp)
 

@@ -131,7 +131,7 @@ def _checked(options: argparse.Namespace, samples: Samples, robot: Robot) -> Sam
     if options.counts_per_turn is None and options.input.suffix != ".bag" and not samples.own_log:
         check_angles(samples)
     findings = check(samples, robot)
-    samples.warnings += findings.warnings
+    samples.warnings += samples.jumps() + findings.warnings
     note = samples.gap_note()
     samples.notes += [] if note is None else [note]
     delay = options.imu_delay

@@ -84,33 +84,36 @@ def agreement(streams: Streams) -> float:
 
 
 def _motion(streams: Streams) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Ends of blocks [s] (n + 1,), Δv and ∫ v ω dt of each (n,) m/s."""
+    """Begin and end of blocks [s] (n, 2), Δv and ∫ v ω dt of each (n,) m/s; none where the wheels have no readings."""
     time = streams.wheel_time
     if time.size < FEWEST or streams.accel_time.size < FEWEST:
-        return np.empty(0), np.empty(0), np.empty(0)
+        return np.empty((0, 2)), np.empty(0), np.empty(0)
     begin, end = max(time[0], streams.accel_time[0]), min(time[-1], streams.accel_time[-1])
-    marks = np.arange(begin, end, BLOCK)
-    if marks.size < FEWEST + 2:
-        return np.empty(0), np.empty(0), np.empty(0)
+    cells = np.unique((time[(time >= begin) & (time < end)] - begin) // BLOCK)
+    if cells.size < FEWEST + 2:
+        return np.empty((0, 2)), np.empty(0), np.empty(0)
+    marks = begin + BLOCK * cells
     travel = np.interp(marks, time, streams.way)
     turn = np.interp(marks, time, streams.right - streams.left) / streams.wheel_base
     speed = np.diff(travel) / BLOCK  # in the middle of each block: Δv is between middles
     rate = np.diff(turn) / BLOCK
     sideways = (speed * rate)[1:] / 2 + (speed * rate)[:-1] / 2
-    return (marks[1:] + marks[:-1]) / 2, np.diff(speed), sideways * BLOCK
+    middles = (marks[1:] + marks[:-1]) / 2
+    whole = cells[2:] - cells[:-2] == 2
+    return np.column_stack([middles[:-1], middles[1:]])[whole], np.diff(speed)[whole], sideways[whole] * BLOCK
 
 
 def _agreements(
     streams: Streams, motion: tuple[FloatArray, FloatArray, FloatArray], mounting: FloatArray
 ) -> tuple[float, float]:
     """Agreement of a mounting, plain and with the IMU's y axis mirrored."""
-    marks, faster, aside = motion
-    if marks.size == 0:
+    blocks, faster, aside = motion
+    if blocks.size == 0:
         return 0.0, 0.0
     force = streams.accel @ mounting.T
     steps = np.diff(streams.accel_time, prepend=streams.accel_time[0])
     velocity = np.cumsum(force[:, :2] * steps[:, None], axis=0)
-    gained = np.column_stack([np.diff(np.interp(marks, streams.accel_time, velocity[:, i])) for i in (0, 1)])
+    gained = np.column_stack([np.diff(np.interp(blocks, streams.accel_time, axis))[:, 0] for axis in velocity.T])
     gained -= np.median(gained, axis=0)
     ahead, sideways = float(gained[:, 0] @ faster), float(gained[:, 1] @ aside)
     scale = math.sqrt(float((faster @ faster + aside @ aside) * np.sum(gained**2))) or 1.0

@@ -22,7 +22,7 @@ WHEELS = ("wheel_x", "wheel_y", "wheel_yaw", "wheel_linear", "wheel_angular")
 class Sink(Protocol):
     """Takes the estimate a piece at a time."""
 
-    def add(self, time_ns: IntArray, estimate: Estimate) -> None:
+    def add(self, time_ns: IntArray, estimate: Estimate, /) -> None:
         """Rows in their order; `estimate` as `Estimator.process` gives it."""
 
 

@@ -41,8 +41,8 @@ class Picture:
     def __init__(self, rows: int) -> None:
         self._every = max(1, rows // POINTS)
         self._count = 0
-        self._parts: list[tuple[FloatArray, Estimate]] = []
-        self._slip: list[tuple[IntArray, FloatArray]] = []
+        self._parts: list[Estimate] = []
+        self._slip: list[tuple[FloatArray, FloatArray]] = []
 
     def add(self, time_ns: IntArray, estimate: Estimate) -> None:
         """Adds rows."""
@@ -51,16 +51,13 @@ class Picture:
         rows = dict(estimate)
         for name in ("linear", "angular"):
             rows[name] = _mean_of_neighbours(rows[name], time_ns)
-        self._parts.append((time_ns[chosen] / 1e9, {name: values[chosen] for name, values in rows.items()}))
-        self._slip.append((time_ns, (estimate["flags"] & FLAGS["slip"]) != 0))
+        self._parts.append({name: values[chosen] for name, values in rows.items()})
+        self._slip.append((estimate["time"], (estimate["flags"] & FLAGS["slip"]) != 0))
 
     def draw(self, path: Path, title: str) -> None:
         """Writes a picture of 1760 × 990 pixels, in the format that the name ends in."""
-        time = np.concatenate([part[0] for part in self._parts])
-        rows = {name: np.concatenate([part[1][name] for part in self._parts]) for name in self._parts[0][1]}
-        begin = self._slip[0][0][0] / 1e9
-        time = time - begin
-        spans = [(first - begin, last - begin) for first, last in self._spans()]
+        rows = {name: np.concatenate([part[name] for part in self._parts]) for name in self._parts[0]}
+        time, spans = rows["time"], self._spans()
         with mpl.rc_context(STYLE):
             figure = plt.figure(figsize=(16, 9), layout="constrained")
             figure.get_layout_engine().set(w_pad=0.12, h_pad=0.08)
@@ -87,7 +84,7 @@ class Picture:
 
     def _spans(self) -> list[tuple[float, float]]:
         """Begin and end [s] of every stretch of slip."""
-        time = np.concatenate([part[0] for part in self._slip]) / 1e9
+        time = np.concatenate([part[0] for part in self._slip])
         slip = np.concatenate([part[1] for part in self._slip])
         edges = np.diff(np.concatenate([[0], slip.astype(int), [0]]))
         begins, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1

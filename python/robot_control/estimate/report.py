@@ -22,12 +22,12 @@ class Summary:
         self.reasons = 0
         self.degraded = 0
         self.last: Estimate = {}
-        self._before: int | None = None
+        self._before: float | None = None  # s
 
-    def add(self, time_ns: IntArray, estimate: Estimate) -> None:
+    def add(self, _time_ns: IntArray, estimate: Estimate) -> None:
         """Adds rows; each counts for the time since the one before."""
-        begin = time_ns[0] if self._before is None else self._before
-        steps = np.diff(time_ns, prepend=begin) / 1e9
+        time = estimate["time"]
+        steps = np.diff(time, prepend=time[0] if self._before is None else self._before)
         flags = estimate["flags"]
         self.seconds["slip"] += float(steps[flags & FLAGS["slip"] != 0].sum())
         self.seconds["standstill"] += float(steps[flags & FLAGS["standstill"] != 0].sum())
@@ -36,7 +36,7 @@ class Summary:
         self.seconds["invalid"] += float(steps[~estimate["valid"]].sum())
         self.reasons |= int(np.bitwise_or.reduce(estimate["slip"]))
         self.last = {name: values[-1] for name, values in estimate.items()}
-        self._before = int(time_ns[-1])
+        self._before = float(time[-1])
 
     def report(self, samples: Samples, robot: Robot) -> str:
         """The report for a user."""

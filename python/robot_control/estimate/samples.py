@@ -20,6 +20,8 @@ ACCEL = tuple(f"accel_{axis}" for axis in AXES)
 
 GAP = 0.5
 """s without any sample from which a gap is reported; a robot at 1 m/s is half a metre on"""
+JUMP = 60 * 10**9
+"""ns between two rows above which the clock was set, or the recording paused; no law bridges a minute"""
 
 
 class InputError(ValueError):
@@ -41,8 +43,10 @@ class Samples:
 
     @property
     def seconds(self) -> FloatArray:
-        """s since the first row."""
-        seconds: FloatArray = (self.time_ns - self.time_ns[0]) / 1e9
+        """s since the first row; a jump of the time counts as a usual step."""
+        steps = np.diff(self.time_ns, prepend=self.time_ns[0])
+        jumped = np.where(steps > JUMP, steps - min(int(np.median(steps)), JUMP), 0)
+        seconds: FloatArray = (self.time_ns - self.time_ns[0] - np.cumsum(jumped)) / 1e9
         return seconds
 
     @property
@@ -70,6 +74,15 @@ class Samples:
         """Mean rate [Hz] of each sensor that there is."""
         tables = {"wheels": self.left, "gyro": self.gyro, "accelerometer": self.accel}
         return {name: _rate(self.seconds, table) for name, table in tables.items() if table is not None}
+
+    def jumps(self) -> list[str]:
+        """Names jumps of the time, at most three of them."""
+        steps = np.diff(self.time_ns)
+        return [
+            f"the time jumps by {steps[row] / 1e9:.3f} s to {self.time_ns[row + 1] / 1e9:.3f} s in row {row + 2}: the "
+            "clock was set, or the recording paused. It counts as one step"
+            for row in np.flatnonzero(steps > JUMP)[:3].tolist()
+        ]
 
     def gap_note(self) -> str | None:
         """The longest silence of all sensors, where it is long for this recording."""

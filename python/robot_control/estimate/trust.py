@@ -22,24 +22,26 @@ class Trust:
     def __init__(self) -> None:
         self._slipped = 0.0  # m
         self._without = dict.fromkeys(USED_BY, 0.0)  # s
-        self._before: tuple[int, float] | None = None  # ns, m
+        self._before: tuple[float, float] | None = None  # s, m
+        self._restarts: list[float] = []  # s
         self._duration = 0.0  # s
         self._distance = 0.0  # m
         self._yaw_deviation = 0.0  # rad
 
-    def add(self, time_ns: IntArray, estimate: Estimate) -> None:
+    def add(self, _time_ns: IntArray, estimate: Estimate) -> None:
         """Adds rows; each counts for the time and the way since the one before."""
-        stamp, distance = self._before or (int(time_ns[0]), float(estimate["distance"][0]))
-        steps = np.diff(time_ns, prepend=stamp) / 1e9
+        time, distance = self._before or (float(estimate["time"][0]), float(estimate["distance"][0]))
+        steps = np.diff(estimate["time"], prepend=time)
         ways = np.diff(estimate["distance"], prepend=distance)
         flags = estimate["flags"]
         self._slipped += float(ways[flags & FLAGS["slip"] != 0].sum())
         for sensor, flag in USED_BY.items():
             self._without[sensor] += float(steps[flags & FLAGS[flag] != 0].sum())
+        self._restarts += estimate["time"][flags & FLAGS["encoder_restarted"] != 0].tolist()
         self._duration += float(steps.sum())
         self._distance += float(ways.sum())
         self._yaw_deviation = math.sqrt(max(0.0, float(estimate["pose_covariance"][-1, 5, 5])))
-        self._before = int(time_ns[-1]), float(estimate["distance"][-1])
+        self._before = float(estimate["time"][-1]), float(estimate["distance"][-1])
 
     def doubts(self, samples: Samples) -> list[str]:
         """Reasons to doubt the estimate, a sentence each; empty if there are none."""
@@ -51,6 +53,9 @@ class Trust:
                 f"not to be trusted: slip on {100 * self._slipped / self._distance:.0f} % of the distance is rare; "
                 "look at clocks, units and mounting, and at what shakes the IMU"
             )
+        if self._restarts:
+            often = f"{len(self._restarts)} times, first " if len(self._restarts) > 1 else ""
+            found.append(f"an encoder began again {often}after {self._restarts[0]:.3f} s: the travel meanwhile is lost")
         rates = samples.rates()
         for sensor, seconds in self._without.items():
             if sensor in rates and self._duration > 0 and seconds > UNUSED * self._duration:

@@ -1,6 +1,5 @@
 #include "control/wheel_loops/feed_forward.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace robot_control {
@@ -9,39 +8,19 @@ namespace {
 
 constexpr double kFrictionSpeed = 0.1;  // rad/s, ε of the header
 
-/// Returns h of the header.
-double wheels_beside(const DriveTrain& robot, const WheelModel& wheel) noexcept {
-  return static_cast<double>(std::ranges::count(robot.wheels, wheel.side, &WheelModel::side));
-}
-
-double middle_of_wheels(const DriveTrain& robot) noexcept {
-  double sum = 0;
-  for (const WheelModel& wheel : robot.wheels) sum += wheel.centre_base[0];
-  return sum / static_cast<double>(robot.wheels.size());
-}
-
 }  // namespace
-
-double straight_inertia(const DriveTrain& robot, const WheelModel& wheel) noexcept {
-  return wheel.inertia + 0.5 * robot.mass * wheel.radius * wheel.radius / wheels_beside(robot, wheel);
-}
-
-double turning_inertia(const DriveTrain& robot, const WheelModel& wheel) noexcept {
-  const double levers = wheel.radius * wheel.radius / (robot.wheel_base * robot.effective_wheel_base());
-  return wheel.inertia + 2 * robot.yaw_inertia * levers / wheels_beside(robot, wheel);
-}
 
 FeedForward::FeedForward(const DriveTrain& robot)
     : mass_(robot.mass),
       yaw_inertia_(robot.yaw_inertia),
-      centre_ahead_(robot.centre_of_gravity_base[0] - middle_of_wheels(robot)),
+      centre_ahead_(robot.centre_of_gravity_base[0] - middle_of_axles(robot)[0]),
       wheel_base_(robot.wheel_base),
       half_base_(0.5 * robot.effective_wheel_base()),
       wheels_(robot.wheels.size()) {
   for (std::size_t i = 0; i < wheels_; ++i) {
     const WheelModel& wheel = robot.wheels[i];
     side_[i] = wheel.side == Side::kLeft ? -1 : 1;
-    effort_per_force_[i] = wheel.sign * wheel.radius / wheels_beside(robot, wheel);
+    effort_per_force_[i] = wheel.sign * wheel.radius / robot.wheels_beside(wheel);
     turn_per_rim_[i] = wheel.sign / wheel.radius;
     effort_per_acceleration_[i] = turn_per_rim_[i] * wheel.inertia;
     damping_[i] = robot.joints[wheel.joint].damping;

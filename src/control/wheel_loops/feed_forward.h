@@ -16,7 +16,7 @@
 /// The joint with damping d and dry friction f also needs d·q̇ + f·tanh(q̇/ε). Here ε = 0.1 rad/s approximates the
 /// friction near zero speed.
 ///
-/// The inertia of a wheel, per rad/s² of its joint, is therefore
+/// The inertia of a wheel, per rad/s² of its joint, is therefore (drive_train.h)
 ///   straight: J + m·r²/(2·h)      turning: J + 2·I·r²/(h·b·b_eff)      lifted: J
 /// With 12 kg, r = 0.1 m, J = 0.005, I = 0.5 kg·m², b = 0.5 m, h = 1: 0.065, 0.045 and 0.005 kg·m².
 ///
@@ -28,10 +28,6 @@
 #include "signals/wheeled/drive_tuning.h"
 
 namespace robot_control {
-
-/// Returns the inertia about the axle of one wheel, in kg·m².
-double straight_inertia(const DriveTrain& robot, const WheelModel& wheel) noexcept;
-double turning_inertia(const DriveTrain& robot, const WheelModel& wheel) noexcept;
 
 class FeedForward {
  public:

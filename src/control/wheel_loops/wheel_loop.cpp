@@ -56,6 +56,8 @@ void WheelLoop::measure(const JointSample& sample, double periods, bool driven) 
   if (!driven) tracking_.know_less(effort_residual_ / gains_.model_inertia);
   taken_effort_ = driven ? efforts_[1] - sample.effort : 0;
   effort_residual_ = driven ? sample.effort - plan.feed_forward - load_ : 0;
+  const double dt = periods * period_;
+  off_plan_ += sample.position - tracking_.measured() - (plan.velocity - 0.5 * plan.acceleration * dt) * dt;
   tracking_.step(sample.position, driven ? plan.acceleration + effort_residual_ / gains_.model_inertia : 0.0, periods);
 }
 
@@ -64,7 +66,7 @@ void WheelLoop::reset_to_measured() noexcept {
   planned_hand_over_ = gain_hand_over_ = 0;
   load_ = integral_;
   efforts_.fill(0);
-  taken_effort_ = excused_ = 0;
+  taken_effort_ = excused_ = off_plan_ = 0;
   last_gains_.reset();
   saturated_ = false;
 }

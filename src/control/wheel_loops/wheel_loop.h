@@ -103,6 +103,9 @@ class WheelLoop {
   /// then came from this loop.
   void measure(const JointSample& sample, double periods, bool driven) noexcept;
 
+  /// Sets the measured speed to 0: the angle has not changed under the brake, and what was tracked is noise.
+  void stand() noexcept { tracking_.restart_from(tracking_.measured(), 0); }
+
   /// Replaces the plan by the measured speed while this loop is not in control.
   void reset_to_measured() noexcept;
 
@@ -112,9 +115,13 @@ class WheelLoop {
   /// Returns the torque in N·m. `clamped` states that the gate reduced the last torque.
   double step(const WheelPlan& plan, double periods, bool clamped = false) noexcept;
 
-  double velocity() const noexcept { return tracking_.velocity(); }       ///< rad/s
-  double integral() const noexcept { return integral_; }                  ///< N·m
-  bool saturated() const noexcept { return saturated_; }                  ///< The last step was clamped.
+  /// Counts `off_plan` from here.
+  void expect_plan() noexcept { off_plan_ = 0; }
+
+  double velocity() const noexcept { return tracking_.velocity(); }  ///< rad/s
+  double off_plan() const noexcept { return off_plan_; }             ///< rad, turned less planned, while in control
+  double integral() const noexcept { return integral_; }             ///< N·m
+  bool saturated() const noexcept { return saturated_; }             ///< The last step was clamped.
   double unclamped_effort() const noexcept { return unclamped_effort_; }  ///< N·m, in the last step, before the clamp
   double effort_limit() const noexcept { return effort_limit_; }          ///< N·m
 
@@ -131,6 +138,7 @@ class WheelLoop {
   double taken_effort_ = 0;           ///< N·m, ordered minus measured torque of the last sample
   double excused_ = 0;                ///< rad/s
   double integral_ = 0;
+  double off_plan_ = 0;                       ///< rad
   double planned_hand_over_ = 0;              ///< N·m, share of the feed-forward for the acceleration
   double gain_hand_over_ = 0;                 ///< N·m, share of the proportional and derivative parts
   double unclamped_effort_ = 0;               ///< N·m, the last effort before the clamp

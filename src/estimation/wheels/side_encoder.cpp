@@ -22,8 +22,11 @@ bool SideEncoder::Wheel::measured(const SensorFrame& sensors) const noexcept {
          taken.precedes(sensors, sensors.joints[joint]);
 }
 
-bool SideEncoder::Wheel::plausible(const SensorFrame& sensors, double time) const noexcept {
-  return std::abs(sensors.joints[joint].position - angle) <= velocity_bound * time + Tuning::kEncoderSlack;
+bool SideEncoder::Wheel::plausible(const SensorFrame& sensors, double time, double late) const noexcept {
+  const double position = sensors.joints[joint].position, velocity = tracking.velocity();
+  const bool jumps = std::abs(position - angle - velocity * time) > Tuning::kNewZero + std::abs(velocity) * late;
+  if (jumps && std::abs(position) <= Tuning::kEncoderSlack + std::abs(velocity) * time) return false;
+  return std::abs(position - angle) <= velocity_bound * time + Tuning::kEncoderSlack;
 }
 
 bool SideEncoder::Wheel::lost_zero(const SensorFrame& sensors) noexcept {
@@ -71,7 +74,8 @@ EncoderReading SideEncoder::step(const SensorFrame& sensors, double dt) noexcept
   travel_ = 0;
   waiting_ += dt;
   const auto measured = [&](const Wheel& wheel) { return wheel.measured(sensors); };
-  const auto plausible = [&](const Wheel& wheel) { return wheel.plausible(sensors, waiting_); };
+  const double late = rejected_ == 0 ? waiting_ + gap_ : 0;
+  const auto plausible = [&](const Wheel& wheel) { return wheel.plausible(sensors, waiting_, late); };
   for (Wheel& wheel : wheels_) zero_lost_ = wheel.lost_zero(sensors) || zero_lost_;
   if (!std::ranges::all_of(wheels_, measured)) return EncoderReading::kRejected;
   EncoderReading reading = EncoderReading::kTravel;

@@ -10,9 +10,14 @@
 /// The side's wheels are read together: one unused sample rejects the reading. The first reading is the offset, without
 /// travel. A sample that is missing, not finite, impossible or old is not used; the next good one brings the travel of
 /// the gap. A difference is impossible above 2 · velocity_limit times the time passed, plus kEncoderSlack; without a
-/// limit, kFastestWheel replaces 2 · velocity_limit. If angles stay impossible for more than kMaxHeld readings, the
-/// encoder was reset. Then the present angles become the offset, and the travel in between is lost. The same holds for
-/// the first angles after a drive had a fault and then no position, because its zero may be another one.
+/// limit, kFastestWheel replaces 2 · velocity_limit. A jump to zero is impossible, too, if readings that were held up
+/// do not explain it, with the tracked speed q̇ and the time t since the last reading:
+///
+///   |q| ≤ kEncoderSlack + |q̇|·t   and   |q − qₗₐₛₜ − q̇·t| > kNewZero + |q̇|·(t + gap),   later > kNewZero
+///
+/// If angles stay impossible for more than kMaxHeld readings, the encoder was reset. Then the present angles become the
+/// offset, and the travel in between is lost. The same holds for the first angles after a drive had a fault and then no
+/// position, because its zero may be another one.
 
 #include <array>
 #include <cstdint>
@@ -71,7 +76,7 @@ class SideEncoder {
 
     Wheel(const WheelModel& wheel, const DriveTrain& robot, double bandwidth, double period);
     bool measured(const SensorFrame& sensors) const noexcept;
-    bool plausible(const SensorFrame& sensors, double time) const noexcept;
+    bool plausible(const SensorFrame& sensors, double time, double late) const noexcept;  ///< s, s
     bool lost_zero(const SensorFrame& sensors) noexcept;  ///< The drive may come back with another zero.
     double accept(const SensorFrame& sensors) noexcept;   ///< m, travel
     void track(double periods) noexcept;                  ///< since the last accepted angle; 0: it does not continue

@@ -2,10 +2,9 @@
 /// Converts the wheels' travel to the motion of base_link. Wheels behind each other turn the robot about their middle.
 ///
 ///   distance = (right + left) / 2        turn = (right − left) / wheel_base
-///   forward  = distance + turn · axle_y  left = −turn · axle_x
+///   forward  = distance + turn · axle.y  left = −turn · axle.x
 ///
-/// wheel_base is the effective one (DriveTrain), and left and right are the means of a side. The point (axle_x, axle_y)
-/// is the middle of the wheels in base axes. `ground` is the height of the contacts.
+/// wheel_base is the effective one (DriveTrain), and left and right are the means of a side.
 
 #include "estimation/wheels/arc.h"
 #include "machine/wheeled/drive_train.h"
@@ -14,24 +13,16 @@ namespace robot_control {
 
 struct WheelGeometry {
   double wheel_base = 1;  ///< m, effective
-  double axle_x = 0;      ///< m
-  double axle_y = 0;      ///< m
-  double ground = 0;      ///< m
+  Vector3 axle{};         ///< m, middle of the axles in base axes
 
-  explicit WheelGeometry(const DriveTrain& robot) noexcept : wheel_base(robot.effective_wheel_base()) {
-    const auto count = static_cast<double>(robot.wheels.size());
-    for (const WheelModel& wheel : robot.wheels) {
-      axle_x += wheel.centre_base[0] / count;
-      axle_y += wheel.centre_base[1] / count;
-      ground += (wheel.centre_base[2] - wheel.radius) / count;
-    }
-  }
+  explicit WheelGeometry(const DriveTrain& robot) noexcept
+      : wheel_base(robot.effective_wheel_base()), axle(middle_of_axles(robot)) {}
 
   double turn(double left, double right) const noexcept { return (right - left) / wheel_base; }
 
   /// Converts travel (m, rad) as well as speed (m/s, rad/s).
   Motion base_motion(double distance, double turn) const noexcept {
-    return {distance + turn * axle_y, -turn * axle_x, turn};
+    return {distance + turn * axle[1], -turn * axle[0], turn};
   }
 };
 

@@ -224,7 +224,7 @@ std::string_view first_header(const BlackBoxReader& reader, std::uint64_t build,
 
 LogHeader header_of(std::string_view encoded, const std::string& path) {
   LogHeader header = decode_header(encoded, trace_header_type().definition);
-  if (header.joints.size() > kMaxJoints || !(header.period > 0)) throw LogError(path + " is of no robot");
+  if (header.joints.size() > kMaxJoints) throw LogError(path + " is of no robot");
   header.record = "always";
   header.part = 0;
   return header;

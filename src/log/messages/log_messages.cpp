@@ -182,6 +182,8 @@ LogHeader decode_header(std::string_view message, const std::string& definition)
     if (!known) pass_over(read, type, name);
   }
   if (!read.whole()) throw TraceError("the message TraceHeader has not the length of its fields");
+  const double rate = 1 / header.period;  // Hz; robot.rate is 20 … 2000
+  if (!(rate >= 1 && rate <= 1e5)) throw TraceError("the period of TraceHeader is of no loop");
   return header;
 }
 

@@ -62,6 +62,7 @@ class TrackingLoop {
   /// Takes the sample `periods` ≥ 1 periods after the last one.
   void step(double position_measured, double known_acceleration, double periods) noexcept;
 
+  double measured() const noexcept { return measured_; }               ///< rad, the last sample
   double position() const noexcept { return position_; }               ///< rad
   double velocity() const noexcept { return velocity_; }               ///< rad/s
   double acceleration() const noexcept { return known_ + residual_; }  ///< rad/s²

@@ -119,19 +119,15 @@ void read_joints(const RigidBodies& robot, const DriveTrainParameters& parameter
   }
 }
 
-Eigen::Vector2d middle_of_axles(const DriveTrain& model) {
-  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
-  for (const WheelModel& wheel : model.wheels) {
-    middle += Eigen::Vector2d(wheel.centre_base[0], wheel.centre_base[1]) / static_cast<double>(model.wheels.size());
-  }
-  return middle;
+/// Returns the place of the centre of gravity from the middle of the axles, m.
+Eigen::Vector2d centre_from_axles(const DriveTrain& model) {
+  const Vector3 middle = middle_of_axles(model);
+  return {model.centre_of_gravity_base[0] - middle[0], model.centre_of_gravity_base[1] - middle[1]};
 }
 
 void read_yaw_inertia(const RigidBodies& robot, DriveTrain& model) {
   const MassSum sum = sum_of_masses(robot);
-  const Eigen::Vector2d centre(model.centre_of_gravity_base[0], model.centre_of_gravity_base[1]);
-  model.yaw_inertia =
-      model.mass / sum.mass * sum.yaw_inertia + model.mass * (centre - middle_of_axles(model)).squaredNorm();
+  model.yaw_inertia = model.mass / sum.mass * sum.yaw_inertia + model.mass * centre_from_axles(model).squaredNorm();
 }
 
 /// A wheel of the robot on its wheels is accelerated by all wheels together, straight or turning. The factor admits a
@@ -139,21 +135,16 @@ void read_yaw_inertia(const RigidBodies& robot, DriveTrain& model) {
 void set_acceleration_limits(DriveTrain& model) {
   constexpr double kLighter = 2;
   for (const WheelModel& wheel : model.wheels) {
-    const double square = wheel.radius * wheel.radius / static_cast<double>(model.wheels.size());
-    const double straight = model.mass * square;
-    const double turning = 4 * model.yaw_inertia * square / (model.wheel_base * model.effective_wheel_base());
+    const double inertia = std::min(straight_inertia(model, wheel), turning_inertia(model, wheel));
     JointModel& joint = model.joints[wheel.joint];
-    joint.acceleration_limit = kLighter * joint.effort_limit / (wheel.inertia + std::min(straight, turning));
+    joint.acceleration_limit = kLighter * joint.effort_limit / inertia;
   }
 }
 
 /// The multiplier is that of equal loads.
 void note_unequal_loads(const DriveTrainParameters& parameters, DriveTrain& model) {
   if (model.wheels.size() == 2 || parameters.wheel_base_multiplier) return;
-  Eigen::Vector2d offset(model.centre_of_gravity_base[0], model.centre_of_gravity_base[1]);
-  for (const WheelModel& wheel : model.wheels) {
-    offset -= Eigen::Vector2d(wheel.centre_base[0], wheel.centre_base[1]) / static_cast<double>(model.wheels.size());
-  }
+  const Eigen::Vector2d offset = centre_from_axles(model);
   if (offset.norm() <= kCentral * model.wheel_base) return;
   model.notes.push_back({RobotNote::Kind::kSuspicious, "robot/wheel_base_multiplier",
                          "the centre of gravity lies " + number(offset.x()) + " m before and " + number(offset.y()) +
@@ -181,6 +172,28 @@ void check_finite(const DriveTrain& model) {
 }
 
 }  // namespace
+
+double DriveTrain::wheels_beside(const WheelModel& wheel) const noexcept {
+  return static_cast<double>(std::ranges::count(wheels, wheel.side, &WheelModel::side));
+}
+
+Vector3 middle_of_axles(const DriveTrain& robot) noexcept {
+  Vector3 middle{};
+  for (std::size_t axis = 0; axis < middle.size(); ++axis) {
+    for (const WheelModel& wheel : robot.wheels) middle[axis] += wheel.centre_base[axis];
+    if (!robot.wheels.empty()) middle[axis] /= static_cast<double>(robot.wheels.size());
+  }
+  return middle;
+}
+
+double straight_inertia(const DriveTrain& robot, const WheelModel& wheel) noexcept {
+  return wheel.inertia + 0.5 * robot.mass * wheel.radius * wheel.radius / robot.wheels_beside(wheel);
+}
+
+double turning_inertia(const DriveTrain& robot, const WheelModel& wheel) noexcept {
+  const double levers = wheel.radius * wheel.radius / (robot.wheel_base * robot.effective_wheel_base());
+  return wheel.inertia + 2 * robot.yaw_inertia * levers / robot.wheels_beside(wheel);
+}
 
 std::string DriveTrain::parts() const {
   const auto names_of = [this](Side side) {

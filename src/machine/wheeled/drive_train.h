@@ -52,7 +52,18 @@ struct DriveTrain : MachineModel {
 
   /// Returns the effective wheel base in m.
   double effective_wheel_base() const noexcept { return wheel_base * wheel_base_multiplier; }
+
+  /// Returns the number of drive wheels on the side of this one, itself included.
+  double wheels_beside(const WheelModel& wheel) const noexcept;
 };
+
+/// Returns the middle of the axles in base axes, m; the base's origin without wheels.
+Vector3 middle_of_axles(const DriveTrain& robot) noexcept;
+
+/// Return the inertia about its axle of one wheel of a robot that drives straight on or turns, in kg·m²: J + m r²/(2 h)
+/// and J + 2 I r²/(h b b_eff), with h wheels beside it, the yaw inertia I and the wheel base b.
+double straight_inertia(const DriveTrain& robot, const WheelModel& wheel) noexcept;
+double turning_inertia(const DriveTrain& robot, const WheelModel& wheel) noexcept;
 
 /// Returns the drive train that a machine is. Throws RobotError for a machine without drive wheels.
 const DriveTrain& drive_train_of(const MachineModel& machine);

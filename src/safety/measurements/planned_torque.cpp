@@ -14,7 +14,7 @@ PlannedTorque::PlannedTorque(const DriveTrain& robot) noexcept
     const WheelModel& wheel = robot.wheels[i];
     wheels_[i] = {.side = wheel.side == Side::kLeft ? -1.0 : 1.0,
                   .rim = wheel.sign * wheel.radius,
-                  .beside = static_cast<double>(std::ranges::count(robot.wheels, wheel.side, &WheelModel::side)),
+                  .beside = robot.wheels_beside(wheel),
                   .inertia = wheel.inertia};
   }
 }

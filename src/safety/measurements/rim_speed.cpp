@@ -5,15 +5,6 @@
 
 namespace robot_control {
 
-Vector3 middle_of_axles(const DriveTrain& robot) noexcept {
-  Vector3 middle{};
-  for (std::size_t axis = 0; axis < middle.size(); ++axis) {
-    for (const WheelModel& wheel : robot.wheels) middle[axis] += wheel.centre_base[axis];
-    if (!robot.wheels.empty()) middle[axis] /= static_cast<double>(robot.wheels.size());
-  }
-  return middle;
-}
-
 RimSpeed::RimSpeed(const DriveTrain& robot) noexcept : count_(std::min(robot.wheels.size(), kMaxWheels)) {
   for (std::size_t i = 0; i < count_; ++i) {
     const WheelModel& wheel = robot.wheels[i];

@@ -10,9 +10,6 @@
 
 namespace robot_control {
 
-/// Returns the middle of the axles in base axes, m; the base's origin without wheels.
-Vector3 middle_of_axles(const DriveTrain& robot) noexcept;
-
 class RimSpeed {
  public:
   explicit RimSpeed(const DriveTrain& robot) noexcept;

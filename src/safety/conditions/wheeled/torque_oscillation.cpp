@@ -17,14 +17,6 @@ Condition announced(const Condition& condition) noexcept {
           .reaction = latches(condition) ? Reaction::kWarn : Reaction::kOff};
 }
 
-double loaded_inertia(const DriveTrain& robot, const WheelModel& wheel) noexcept {
-  const auto beside = static_cast<double>(std::ranges::count(robot.wheels, wheel.side, &WheelModel::side));
-  const double square = wheel.radius * wheel.radius / beside;
-  const double straight = 0.5 * robot.mass * square;
-  const double turning = 2 * robot.yaw_inertia * square / (robot.wheel_base * robot.effective_wheel_base());
-  return wheel.inertia + std::max(straight, turning);
-}
-
 }  // namespace
 
 void TorqueOscillation::Ripple::step(double value, const Weights& weights) noexcept {
@@ -46,7 +38,7 @@ TorqueOscillation::TorqueOscillation(const SafetyParameters& parameters, const D
       count_ripple_(parameters.count_ripple) {
   for (std::size_t i = 0; i < std::min(robot.wheels.size(), kMaxWheels); ++i) {
     effort_limit_[i] = robot.joints[robot.wheels[i].joint].effort_limit;
-    inertia_[i] = loaded_inertia(robot, robot.wheels[i]);
+    inertia_[i] = std::max(straight_inertia(robot, robot.wheels[i]), turning_inertia(robot, robot.wheels[i]));
   }
 }
 

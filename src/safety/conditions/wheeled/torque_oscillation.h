@@ -4,8 +4,7 @@
 ///   ripple     τ minus its low pass of kSlow; RMS over kWindow. The smaller of the ripples of measured and commanded
 ///              torque: a command that the gate clamps, and ripple that the motor adds, do not count
 ///   explained  J·α*, α* the planned acceleration of the wheel's target, filtered in the same way. J: inertia of the
-///              loaded wheel, the larger of driving straight and turning (control/wheel_loops/feed_forward.h, robot as
-///              described)
+///              loaded wheel, the larger of driving straight and turning (drive_train.h, robot as described)
 ///   counted    SafetyParameters::count_ripple · quantum (wheel_motion.h): the torque that derived gains produce from
 ///              encoder quantisation. With few counts per turn it exceeds the motor's torque, and the condition cannot
 ///              be active

@@ -53,8 +53,7 @@ void WheelFollowing::step(const SensorFrame& sensors, const WheelTargets& target
       wrong_direction_[i].reset();
       continue;
     }
-    update_runaway(targets, motion, i, elapsed, out);
-    update_direction(targets, motion, i, elapsed, out);
+    update_excesses(targets, motion, i, elapsed, out);
   }
   const double dt = static_cast<double>(elapsed) * period_;
   planned_.step(targets, dt);
@@ -77,23 +76,15 @@ void WheelFollowing::Excess::step(const ConditionMeasurement& measurement, doubl
   out.update(watch, measurement, elapsed);
 }
 
-void WheelFollowing::update_runaway(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel,
-                                    std::uint64_t elapsed, ActiveCauses& out) noexcept {
-  Excess& excess = runaway_[wheel];
-  const double target = targets[wheel];
+void WheelFollowing::update_excesses(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel,
+                                     std::uint64_t elapsed, ActiveCauses& out) noexcept {
+  Excess &runaway = runaway_[wheel], &wrong = wrong_direction_[wheel];
+  const double target = targets[wheel], tolerance = motion.speed_tolerance(wheel), progress = kProgress + tolerance;
   const double speed = target == 0 ? std::abs(motion.speed(wheel)) : along(target, motion.speed(wheel));
-  const double tolerance = motion.speed_tolerance(wheel);
-  const ConditionMeasurement measurement = beyond(wheel, speed - std::abs(target), excess.watch.limit() + tolerance);
-  excess.step(measurement, speed, kProgress + tolerance, weighed(measurement, elapsed), out);
-}
-
-void WheelFollowing::update_direction(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel,
-                                      std::uint64_t elapsed, ActiveCauses& out) noexcept {
-  Excess& excess = wrong_direction_[wheel];
-  const double target = targets[wheel];
-  const double speed = target == 0 ? 0 : -along(target, motion.speed(wheel));
-  const double tolerance = motion.speed_tolerance(wheel);
-  excess.step(beyond(wheel, speed, excess.watch.limit() + tolerance), speed, kProgress + tolerance, elapsed, out);
+  const double back = target == 0 ? 0 : -speed;
+  const ConditionMeasurement ahead = beyond(wheel, speed - std::abs(target), runaway.watch.limit() + tolerance);
+  runaway.step(ahead, speed, progress, weighed(ahead, elapsed), out);
+  wrong.step(beyond(wheel, back, wrong.watch.limit() + tolerance), back, progress, elapsed, out);
 }
 
 bool WheelFollowing::Stall::builds_up(double torque, double held, double dt) noexcept {

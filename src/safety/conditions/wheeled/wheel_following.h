@@ -96,10 +96,8 @@ class WheelFollowing {
               ActiveCauses& out) noexcept;
   };
 
-  void update_runaway(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel, std::uint64_t elapsed,
-                      ActiveCauses& out) noexcept;
-  void update_direction(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel,
-                        std::uint64_t elapsed, ActiveCauses& out) noexcept;
+  void update_excesses(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel, std::uint64_t elapsed,
+                       ActiveCauses& out) noexcept;
   ConditionMeasurement stalled(const SensorFrame& sensors, const WheelTargets& targets, const WheelMotion& motion,
                                double yaw_excess, double dt) noexcept;
   double held(std::size_t wheel, double scrubbing) const noexcept;

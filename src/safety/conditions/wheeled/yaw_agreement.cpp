@@ -15,14 +15,12 @@ Vector3 up_in_imu(const Quaternion& q) noexcept {
 
 YawAgreement::YawAgreement(const Condition& condition, const DriveTrain& robot, double period) noexcept
     : watch_(kCauseYawRate, condition, period), up_imu_(up_in_imu(robot.imu_in_base.orientation)) {
-  std::array<double, 2> count{};
-  for (const WheelModel& wheel : robot.wheels) count[wheel.side == Side::kRight ? 1 : 0] += 1;
-  scrub_ = count[0] > 1 || count[1] > 1 ? kScrub : 0;
   std::size_t i = 0;
   for (const WheelModel& wheel : robot.wheels) {
-    const bool right = wheel.side == Side::kRight;
-    const double share = wheel.sign * wheel.radius / (count[right ? 1 : 0] * robot.effective_wheel_base());
-    yaw_per_speed_[i++] = right ? share : -share;
+    const double beside = robot.wheels_beside(wheel);
+    if (beside > 1) scrub_ = kScrub;
+    const double share = wheel.sign * wheel.radius / (beside * robot.effective_wheel_base());
+    yaw_per_speed_[i++] = wheel.side == Side::kRight ? share : -share;
   }
 }
 

@@ -39,7 +39,7 @@ class YawAgreement {
 
   ConditionWatch watch_;
   Vector3 up_imu_;  ///< the base's z axis in the IMU's axes
-  double scrub_;
+  double scrub_ = 0;
   double excess_ = 0;
   std::array<double, kMaxWheels> yaw_per_speed_{};  ///< yaw rate per wheel speed, signed
 };
