@@ -3,8 +3,7 @@
 /// states unit, meaning and origin. Deviations are standard deviations.
 ///
 /// The origin "recordings" means drives of real robots and drives with their errors (bench/odometry/recordings.py,
-/// field_bench.py). The origin "faults" means drives in which a sensor fails for a short time
-/// (bench/odometry/short_faults.py).
+/// field_bench.py), "faults" drives in which a sensor fails for a short time (bench/odometry/short_faults.py).
 
 #include <array>
 #include <cstdint>

@@ -25,8 +25,7 @@
 /// beside P, grows by the angle between both. Wheels that are dragged may turn the robot by three quarters of their own
 /// turn. Each block in which both agree takes kAgreement of the doubt. Turns that drag wheels triple that.
 /// ε and β walk in proportion to the slip noise (wheel_noise.h). The blocks that follow check them: where those of the
-/// start predict the blocks better, by a nis of kSignificant², ε and β are dropped. They begin again with the deviation
-/// of the start.
+/// start predict better, by a nis of kSignificant², ε and β begin again with value and deviation of the start.
 
 #include <Eigen/Core>
 #include <algorithm>

@@ -93,10 +93,13 @@ struct Status5 {
   }
 };
 
-/// Returns whether the command moves a motor: duty, current, brake current, speed, position (0 … 4), and the relative
-/// and holding currents (10 … 13).
+/// Returns whether a controller obeys the command. Such commands are duty, current, brake current, speed, position (0 …
+/// 4), those of a maker's tool that another controller forwards (5 … 8), the relative and holding currents (10 … 13),
+/// the detection of the motor (19), the limits of currents, speeds and battery (21 … 26, 29, 30), and the shutdown
+/// (31).
 constexpr bool commands_motion(std::uint32_t command) noexcept {
-  return command <= 4 || (command >= 10 && command <= 13);
+  return command <= 8 || (command >= 10 && command <= 13) || command == 19 || (command >= 21 && command <= 26) ||
+         (command >= 29 && command <= 31);
 }
 
 template <class Message>
