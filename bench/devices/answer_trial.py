@@ -2,8 +2,8 @@
 rest?
 
 The robot drives at a random speed, and turns. At a random phase of its exchanges the answers fail for `FAULT_TIME`,
-while the request for motion goes on. It must be at rest within the time that docs/drivers.md states of these drives,
-and stay there, also when the answers are good again: only the operator's reset ends the stop.
+while the request for motion goes on. It must be at rest within the time that docs/drivers.md states of these drives.
+It stays there also when the answers are good again: only the operator's reset ends the stop.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def time_to_rest(trial: AnswerTrial) -> float:
     """s after which the robot stands for good."""
     random = np.random.default_rng(trial.seed)
     loop = robot_behind(trial.drive, trial.seed, wheel_command=trial.wheel_command)
-    request = random.choice((-1, 1)) * random.uniform(0.2, 0.9), random.uniform(-0.4, 0.4)
+    request = random.choice((-1, 1)) * random.uniform(0.2, 1.0), random.uniform(-0.4, 0.4)
     loop.run(0.5, (0.0, 0.0))
     loop.run(random.uniform(1.5, 2.5), request)
     component = "line" if trial.drive in SERIAL else "bus"

@@ -1,4 +1,4 @@
-"""The table of `scripts/bench devices`: losses, answers that fail, silence on a slope, and disturbed buses and lines, by
+"""The table of `scripts/bench devices`: losses, failing answers, silence on a slope, and disturbed buses and lines, by
 dialect.
 
 scripts/bench devices --first 40 --runs 1

@@ -3,10 +3,10 @@
 /// are neither taken nor measured.
 ///
 /// One exchange runs at a time: the driver sends a request in `write`, and takes its answer in a later `read`. After
-/// kAnswerNs the answer counts as lost. In turn it orders the speeds and asks a question, which is that for both
-/// encoders, and each kSlowEvery-th one that for battery, temperature or status. A loop of 200 Hz and more thus orders
-/// 100 times per second. The counts are those of the middle between request and answer; their speed brings them to the
-/// time of `read`.
+/// kAnswerNs the answer counts as lost. In turn it orders the speeds and asks a question. Most questions are for both
+/// encoders, and each kSlowEvery-th one for battery, temperature or status. A loop of 200 Hz and more thus orders 100
+/// times per second. The counts are those of the middle between request and answer; their speed brings them to the time
+/// of `read`.
 ///
 /// An order is repeated until the board acknowledges it, and no question is asked before, because each one restarts
 /// the board's timeout. A question is repeated at most kRepeats − 1 times: then it waits behind the next order. After

@@ -1,6 +1,6 @@
 #pragma once
-/// What happens to every answer of simulated devices on its way to the driver, while all orders arrive. It is the same
-/// for a serial line and a CAN bus, although the controller of a true bus hides damage.
+/// An AnswerFault happens to every answer of simulated devices on its way to the driver, while all orders arrive. It is
+/// the same for a serial line and a CAN bus, although the controller of a true bus hides damage.
 
 #include <algorithm>
 #include <array>

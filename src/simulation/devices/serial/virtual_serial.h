@@ -28,7 +28,7 @@ struct SerialFaults {
 };
 
 /// The words of `inject`: lossy (5 % of the messages are lost, 1 % damaged), late (3 ms of jitter), disturbed (both),
-/// partial (writes are taken in part), and those of AnswerFault.
+/// partial (writes are taken in part). Those of AnswerFault are words, too.
 inline constexpr const char* kSerialFaultWords = "ok, lossy, late, disturbed, partial, stalled, cut";
 
 /// Returns nothing for another word.
