@@ -3,7 +3,7 @@
 ///
 /// `start` returns at once; `read` reports kStarting until all drives are running, so that the brake of the driver
 /// holds from kRunning on. A fault of a drive stays until the operator's reset, or the next `start`. Meanwhile the
-/// other joints brake, and so does this drive by itself (drives/can/drive.h).
+/// other joints brake, and so does this drive by itself (drivers/can/drive.h).
 ///
 /// The samples of all drives are brought to the time of `read` by their velocities. A sample that is missing therefore
 /// moves on, and its age grows.
