@@ -18,21 +18,21 @@ static void brake_all(struct board* board) {
 }
 
 void board_begin(struct board* board, const struct board_config* config) {
-  *board = (struct board){.flags = BOARD_WATCHDOG};
+  *board = (struct board){.braked = BOARD_WATCHDOG};
   board->config = *config;
   if (board->config.watchdog_us == 0) board->config.watchdog_us = default_watchdog_us;
   if (board->config.wheels > BOARD_MAX_WHEELS) board->config.wheels = BOARD_MAX_WHEELS;
   brake_all(board);
 }
 
-static void report(struct board* board, uint32_t time_us, uint16_t cycle) {
+static void report(struct board* board, uint32_t time_us, uint16_t cycle, uint8_t flags) {
   const struct board_functions* functions = &board->config.functions;
   void* context = board->config.context;
   struct board_report report = {0};
   report.cycle = cycle;
   report.time_us = time_us;
   report.wheels = board->config.wheels;
-  report.flags = board->flags;
+  report.flags = flags;
   report.firmware = board->config.firmware;
   report.lost = board->lost;
   report.bad = board->decoder.bad;
@@ -58,9 +58,8 @@ static void receive(struct board* board, uint8_t size) {
   const uint32_t now_us = board->config.functions.time_us(board->config.context);
   struct board_order order = board->order;
   if (!board_read_order(board->decoder.body, size, &order) || !is_known(board, &order)) {
-    board->flags |= BOARD_REFUSED;
     brake_all(board);
-    report(board, now_us, board->order.cycle);
+    report(board, now_us, board->order.cycle, board->braked | BOARD_REFUSED);
     return;
   }
   const uint16_t step = (uint16_t)(order.cycle - board->order.cycle);
@@ -73,8 +72,8 @@ static void receive(struct board* board, uint8_t size) {
   board->order = order;
   board->order_us = now_us;
   board->has_order = 1;
-  board->flags = 0;
-  report(board, now_us, order.cycle);
+  report(board, now_us, order.cycle, board->braked);
+  board->braked = 0;
 }
 
 static void run_velocity_loop(struct board* board, uint32_t now_us) {
@@ -106,7 +105,7 @@ void board_step(struct board* board, const uint8_t* bytes, uint8_t size) {
   }
   const uint32_t now_us = config->functions.time_us(config->context);
   if (!board->has_order || now_us - board->order_us >= config->watchdog_us) {
-    board->flags |= BOARD_WATCHDOG;
+    board->braked = BOARD_WATCHDOG;
     board->has_order = 0; /* the clock of the board wraps; an old order does not become new */
     brake_all(board);
   }

@@ -24,9 +24,10 @@ extern "C" {
 
 /* The five functions of the user. `context` is that of the configuration. */
 struct board_functions {
-  uint32_t (*time_us)(void* context);                 /* free-running, modulo 2^32 */
-  void (*counts)(void* context, uint32_t* counts);    /* of all encoders, latched at one instant */
-  void (*drive)(void* context, uint8_t wheel, enum board_mode mode, int32_t value); /* at once; BOARD_BRAKE holds or releases */
+  uint32_t (*time_us)(void* context);              /* free-running, modulo 2^32 */
+  void (*counts)(void* context, uint32_t* counts); /* of all encoders, latched at one instant */
+  void (*drive)(void* context, uint8_t wheel, enum board_mode mode,
+                int32_t value); /* at once; BOARD_BRAKE holds or releases */
   void (*sensors)(void* context, uint8_t outputs, struct board_sensors* sensors);
   void (*write)(void* context, const uint8_t* bytes, uint8_t size); /* to the line; drops what does not fit */
 };
@@ -49,7 +50,7 @@ struct board {
   struct board_order order; /* the one in force */
   uint32_t order_us;        /* when it came */
   uint8_t has_order;
-  uint8_t flags;
+  uint8_t braked; /* BOARD_WATCHDOG: by itself since the last good order */
   uint16_t lost;
   uint32_t loop_us; /* last step of the PI loop */
   uint32_t loop_counts[BOARD_MAX_WHEELS];

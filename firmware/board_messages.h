@@ -25,7 +25,7 @@ enum board_validity { BOARD_HAS_EFFORT = 1, BOARD_HAS_BATTERY = 2, BOARD_HAS_TEM
 enum board_input { BOARD_E_STOP_RELEASED = 1 };
 
 enum board_flag {
-  BOARD_WATCHDOG = 1, /* no order for the time of the watchdog: the board brakes until the next one */
+  BOARD_WATCHDOG = 1, /* no order came for the time of the watchdog: the board braked until this one */
   BOARD_REFUSED = 2,  /* the order was of another protocol or number of wheels, or had an unknown mode: it brakes */
 };
 
@@ -44,16 +44,16 @@ struct board_order {
 };
 
 struct board_imu {
-  uint32_t time_us; /* of the sample, on the clock of the board */
-  uint16_t rate;    /* Hz */
+  uint32_t time_us;               /* of the sample, on the clock of the board */
+  uint16_t rate;                  /* Hz */
   int32_t angular_velocity[3];    /* urad/s */
   int32_t linear_acceleration[3]; /* um/s2, the specific force */
 };
 
 struct board_sensors {
-  uint8_t valid;  /* board_validity */
-  uint8_t inputs; /* board_input */
-  uint8_t reset;  /* board_reset */
+  uint8_t valid;                    /* board_validity */
+  uint8_t inputs;                   /* board_input */
+  uint8_t reset;                    /* board_reset */
   int32_t effort[BOARD_MAX_WHEELS]; /* uN m, measured */
   uint8_t fault[BOARD_MAX_WHEELS];  /* the user's codes; 0: none */
   uint16_t battery_mv;

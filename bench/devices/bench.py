@@ -1,4 +1,5 @@
-"""The table of `scripts/bench devices`: losses, silence on a slope, and disturbed buses and lines, by dialect.
+"""The table of `scripts/bench devices`: losses, failing answers, silence on a slope, and disturbed buses and lines, by
+dialect.
 
 scripts/bench devices --first 40 --runs 1
 """
@@ -8,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from bench.devices.answer_trial import KINDS, STATED, AnswerTrial, time_to_rest
 from bench.devices.disturbed_drive import BUSES, DisturbedDrive, run_drive, together
 from bench.devices.loss_trial import (
     BRAKE_CYCLES,
@@ -48,6 +50,7 @@ def bench(
     """
     rows: list[Row] = list(program("bench_board_losses", first, runs)["rows"])
     rows += loss_rows(first, runs, say, runner)
+    rows += answer_rows(first, runs, say, runner)
     rows += slope_rows(first, runs, say, runner)
     rows += drive_rows(first, max(60.0, DRIVE_TIME * min(runs, ALL_RUNS) / ALL_RUNS), say, runner)
     return {"bench": "devices", "rows": rows}, all(row["value"] <= row["reference"] for row in rows)
@@ -76,6 +79,20 @@ def loss_rows(first: int, runs: int, say: Callable[[str], None], runner: Runner)
             row(f"{dialect} {kind}: until it is seen", max(each.seen for each in found), "ms", allowed),
             row(f"{dialect} {kind}: from there to the brake", max(e.brake for e in found), "cycles", BRAKE_CYCLES),
         ]
+    return rows
+
+
+def answer_rows(first: int, runs: int, say: Callable[[str], None], runner: Runner) -> list[Row]:
+    """Per drive, wheel command and fault of its answers: the latest rest."""
+    rows = []
+    for (drive, command), stated in STATED.items():
+        for kind in KINDS:
+            trials = [AnswerTrial(drive, command, kind, seed) for seed in range(first, first + runs)]
+            times = list(runner.outcomes(time_to_rest, trials, say, chunk=10))
+            late = [trial.seed for trial, time in zip(trials, times, strict=True) if time > stated]
+            if late:
+                say(f"{drive} {command} {kind}: later than {stated} s with the seeds {late}")
+            rows.append(row(f"{drive} with {command}, {kind}: latest rest", max(times), "s", stated))
     return rows
 
 

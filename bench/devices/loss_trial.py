@@ -88,14 +88,18 @@ class Outcome:
 
 
 def robot_behind(
-    dialect: str, seed: int, board_rate: float = 1000.0, safety: dict[str, Any] | None = None
+    dialect: str,
+    seed: int,
+    board_rate: float = 1000.0,
+    safety: dict[str, Any] | None = None,
+    wheel_command: str | None = None,
 ) -> ClosedLoop:
     """A robot behind such drives; behind a board it runs at `board_rate` in Hz. `safety`: of `safety_monitor`."""
-    serial = {"driver": dialect, "rate": board_rate, "wheel_command": SERIAL.get(dialect)}
-    params = {"robot": serial} if dialect in SERIAL else {}
-    return ClosedLoop(
-        {**params, "safety_monitor": safety or {}}, seed=seed, drives=share_file(f"config/drives/{dialect}.yaml")
-    )
+    robot: dict[str, Any] = {"wheel_command": wheel_command or SERIAL.get(dialect, "torque")}
+    if dialect in SERIAL:
+        robot |= {"driver": dialect, "rate": board_rate}
+    drives = share_file(f"config/drives/{dialect}.yaml")
+    return ClosedLoop({"robot": robot, "safety_monitor": safety or {}}, seed=seed, drives=drives)
 
 
 def latest(trial: LossTrial) -> float:

@@ -92,7 +92,7 @@ void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
 void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
   State& s = state_;
   s.imu = s.imu_samples.step(sensors, base_from_imu_, dt);
-  s.wheels = s.wheel_sides.step(sensors, dt);
+  s.wheels = s.wheel_sides.step(sensors, dt, s.imu.gyro.has_value());
   if (s.imu.fresh_gyro) s.gyro_noise.add(s.imu.sample[2], s.imu.gyro_gap, s.rest.standing());
   if (s.imu.refused || s.wheels.refused) s.flags |= kStateBadSample;
   if (!s.imu.gyro) s.flags |= kStateNoGyro;
@@ -216,7 +216,8 @@ Estimator::Prediction Estimator::prediction() const noexcept {
   const State& s = state_;
   if (s.rest.resting()) return {};
   const double offset = s.core.offset();
-  return {.distance = s.wheels.unread + (offset > 0 ? forward_speed() * offset : 0),
+  const double lost = (s.wheels.lost_speed[kLeft] + s.wheels.lost_speed[kRight]) / 2;
+  return {.distance = s.wheels.unread + (offset > 0 ? (forward_speed() + lost) * offset : 0),
           .turn = offset > 0 ? 0 : -s.yaw_rate * offset};
 }
 

@@ -21,7 +21,8 @@
 ///   gyro            the wheels turn the robot, by the calibration learned so far
 ///   accelerometer   tilt and slip of all wheels together are not noticed
 ///   one encoder     gyro and the other side continue
-///   both encoders, or one and the gyro: kStateValid is cleared. The next good reading brings the whole travel.
+///   both encoders, or one and the gyro: kStateValid is cleared. A lost side counts as standing in twist and pose, whose
+///                   deviations are its last speed and its way. The next good reading brings the whole travel.
 /// A drive that had a fault and then no position may have another zero. If the other side did not replace its travel,
 /// the deviation of the position grows by the last speed times that time.
 ///
@@ -101,8 +102,7 @@ class Estimator {
     std::uint64_t flags = 0;  ///< flags of this cycle
   };
 
-  /// `period` is in s and > 0. Throws std::invalid_argument if a parameter or a measure of the robot is out of range or
-  /// a side has no wheel.
+  /// `period` is in s and > 0. Throws std::invalid_argument for a value out of range, and for a side without a wheel.
   Estimator(const EstimatorParameters& parameters, const DriveTrain& robot, double period);
 
   /// Give and replace the state, for snapshots (signals/law_snapshot.h).
@@ -113,8 +113,7 @@ class Estimator {
   void enter_run() noexcept { state_ = fresh_; }
 
   /// Continues from the last published frame after a restart within a run. The covariance grows by the restart
-  /// constants and by the distance that the last twist travels in the missed cycles. A frame that is not finite or
-  /// never was valid is ignored.
+  /// constants and by the last twist's way in the missed cycles. A frame that is not finite or not valid is ignored.
   void resume(const StateFrame& last) noexcept;
 
   /// Requests the pose (x [m], y [m], yaw [rad]) for the services set_odometry and reset_odometry. The next frame has
@@ -130,8 +129,7 @@ class Estimator {
  private:
   static constexpr std::size_t kLeft = 0, kRight = 1;
 
-  /// Holds the motion from the core's pose, which belongs to the sensor that is late by the clock offset, to the
-  /// present pose.
+  /// Holds the motion from the core's pose, which is that of the sensor that is late, to the present pose.
   struct Prediction {
     double distance = 0, turn = 0;  ///< m, rad
   };

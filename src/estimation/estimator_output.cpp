@@ -61,6 +61,9 @@ void Estimator::fill_pose_covariance(double yaw, const Planar& lever, BaseState&
   const Eigen::Vector3d motion = forward_speed() * along + yaw_rate * turning;
   covariance += late * (1 - late) * states(0, 0) * motion * motion.transpose();
   covariance += square(encoder_) * along * along.transpose();
+  const double unknown = state_.wheels.unknown_speed() * state_.wheels.lost_time;
+  covariance.diagonal() +=
+      square(unknown) * Eigen::Vector3d(1, 1, state_.imu.gyro ? 0 : 4 / square(geometry_.wheel_base));
   if (state_.pose_set) covariance.setZero();
   Eigen::Map<PoseMatrix> published(base.pose_covariance.data());
   published = Tuning::kPlanarVariance * PoseMatrix::Identity();
@@ -101,8 +104,8 @@ void Estimator::fill_twist(BaseState& base) const noexcept {
 void Estimator::fill_twist_covariance(double yaw_rate, BaseState& base) const noexcept {
   const double quantum = std::sqrt(12.0) * encoder_ / period_;
   const double speed = std::abs(state_.wheels.mean_speed()) + geometry_.wheel_base / 2 * std::abs(wheel_rate());
-  double wheel =
-      square(Tuning::kSpeedShare * quantum) + square(state_.core.slip()) * parameters_.speed_bandwidth * speed;
+  double wheel = square(Tuning::kSpeedShare * quantum) + 2 * square(state_.wheels.unknown_speed()) +
+                 square(state_.core.slip()) * parameters_.speed_bandwidth * speed;
   double turn = state_.core.bias_variance() + square(parameters_.gyro_noise) / period_ * state_.rate.noise_gain() +
                 square(parameters_.gyro_scale_deviation * yaw_rate);
   if (!state_.imu.gyro) turn = 4 * wheel / square(geometry_.wheel_base);

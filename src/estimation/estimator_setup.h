@@ -21,8 +21,7 @@ double encoder_deviation(const EstimatorParameters& parameters, const DriveTrain
 /// the first and the last axle. If the places of the wheels are not known, the wheel base's multiplier gives the length
 /// between the axles (DriveTrain::wheel_base_multiplier).
 double icr_deviation(const DriveTrain& robot);
-/// Returns true if a turn drags wheels over the floor: wheels behind each other, tracks, or a robot without known
-/// bodies.
+/// Returns true if a turn drags wheels over the floor: wheels behind each other, tracks, or bodies that are unknown.
 bool drags_wheels(const DriveTrain& robot);
 
 /// Without self_calibration the radius ratio and the wheel base are held.

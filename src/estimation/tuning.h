@@ -2,9 +2,8 @@
 /// These are the constants of the estimator that are neither parameters (estimator_parameters.h) nor derived. Each line
 /// states unit, meaning and origin. Deviations are standard deviations.
 ///
-/// The origin "recordings" means drives of real robots and drives with their errors (bench/odometry/recordings.py,
-/// field_bench.py). The origin "faults" means drives in which a sensor fails for a short time
-/// (bench/odometry/short_faults.py).
+/// The origin "recordings" means drives of real robots, or with their errors (bench/odometry/recordings.py,
+/// field_bench.py). The origin "faults" means sensors that fail shortly (bench/odometry/short_faults.py).
 
 #include <array>
 #include <cstdint>

@@ -30,7 +30,8 @@ class RoboclawMachine final : public WheelsInAir<RoboclawFront, RoboclawDriver> 
   RoboclawDriver& driver() { return *driver_; }
 
   /// The driver's process ended, and another one is there. The board ran on.
-  void replace_driver() { connect(board_->driver_end()); }
+  void replace_driver() { replace_driver(board_->driver_end()); }
+  void replace_driver(std::unique_ptr<SerialLine> driver_end) { connect(std::move(driver_end)); }
 
   static RoboclawParameters parameters() {
     RoboclawParameters parameters{.line = {.address = "none"}, .wheels = {}};

@@ -51,6 +51,41 @@ TEST_F(EstimatorFaultsTest, EncodersMissingForLongAreNoValidState) {
   EXPECT_TRUE(has(kStateValid));
 }
 
+// Nothing shows the speed, so the pose stays and the twist is zero. The deviation of the speed is the last one, and
+// that of the position grows by it.
+TEST_F(EstimatorFaultsTest, WithoutAnEncoderTwistAndPoseAgreeAndTheirDeviationsGrow) {
+  set_joints_valid(robot_.frame(), 0);
+  drive(0.5, 0, 10);
+  const StateFrame lost = state_;
+  double before = 0;
+  for (int i = 0; i < 100; ++i) {
+    drive(0.5, 0, 100);
+    EXPECT_EQ(x(), lost.base.pose_odom.position[0]);
+    EXPECT_EQ(speed(), 0);
+    EXPECT_NEAR(std::sqrt(state_.base.twist_covariance[0]), 0.5, 0.01);
+    const double deviation = std::sqrt(state_.base.pose_covariance[0]);
+    EXPECT_NEAR(deviation - before, 0.5 * 0.1, i == 0 ? 0.05 : 0.001) << i;
+    EXPECT_LT(std::abs(x() - robot_.x()), 2 * deviation);
+    before = deviation;
+  }
+  EXPECT_TRUE(all_finite(state_));
+  EXPECT_TRUE(is_covariance(state_.base.pose_covariance, 1e-9));
+}
+
+// The other wheel shows nothing of a side that is lost, unless the gyro shows the turn.
+TEST_F(EstimatorFaultsTest, WithoutOneEncoderAndTheGyroTwistAndPoseAgree) {
+  lose(kValidGyro);
+  for (int i = 0; i < 300; ++i) broken([](SensorFrame& frame) { frame.joints[0].position = kNaN; });
+  const double begin_yaw = yaw();
+  double turned = 0;
+  for (int i = 0; i < 300; ++i) {
+    broken([](SensorFrame& frame) { frame.joints[0].position = kNaN; });
+    turned += state_.base.twist_base.angular[2] * kPeriod;
+  }
+  EXPECT_NEAR(yaw() - begin_yaw, turned, 0.01 * std::abs(turned) + 1.0e-3);
+  EXPECT_GT(std::sqrt(state_.base.twist_covariance[35]), 0.9);  // rad/s: one side has 0.5 m/s or none
+}
+
 // Both are missing for two seconds: the next good reading brings the whole travel.
 TEST_F(EstimatorFaultsTest, EncodersThatComeBackBringTheWholeTravel) {
   set_joints_valid(robot_.frame(), 0);

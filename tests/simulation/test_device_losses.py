@@ -1,9 +1,12 @@
 """Losses behind simulated drives: one in a hundred of those of scripts/bench devices."""
 
+import re
 from functools import cache
+from pathlib import Path
 
 import pytest
 
+from bench.devices.answer_trial import KINDS, STATED, AnswerTrial, time_to_rest
 from bench.devices.bench import ODOMETRY, RIPPLE
 from bench.devices.disturbed_drive import BUSES, DisturbedDrive, run_drive
 from bench.devices.loss_trial import BOARD, DIALECTS, LATEST, ROBOCLAW, SERIAL_LATEST, LossTrial, run_trial
@@ -20,6 +23,20 @@ DISTURBED = ["disturbed", pytest.param("lossy", marks=pytest.mark.nightly)]
 def test_a_loss_stops_the_robot_until_the_reset(device, kind):
     outcome = run_trial(LossTrial(device, kind, SEED))
     assert outcome.broken == (), outcome
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(("drive", "command"), STATED)
+def test_a_robot_whose_answers_fail_is_at_rest_in_its_stated_time(drive, command, kind):
+    assert time_to_rest(AnswerTrial(drive, command, kind, SEED)) <= STATED[drive, command]
+
+
+def test_the_stated_times_are_those_of_the_page():
+    page = (Path(__file__).parents[2] / "docs/drivers.md").read_text()
+    rows = re.findall(r"^\| `(\w+)` \| .* \| (\S+)(?: s)? \| (\S+) s \|$", page, re.MULTILINE)
+    stated = {(drive, "torque"): torque for drive, torque, _ in rows if torque != "–"}
+    stated |= {(drive, "velocity"): speed for drive, _, speed in rows}
+    assert {key: float(time) for key, time in stated.items()} == STATED
 
 
 @pytest.mark.parametrize("dialect", DIALECTS)

@@ -49,7 +49,7 @@ std::size_t CanBus::send(std::span<const can_frame> frames) noexcept {
     sent += part.frames;
     error = part.error;
   }
-  if (error != 0 && !queue_is_full(error)) count_error(error);
+  if (error != 0 && !queue_is_full(error)) ++counts_.errors;
   counts_.sent += sent;
   counts_.refused += frames.size() - sent;
   return sent;
@@ -137,7 +137,7 @@ ReceivedFrames CanBus::receive(const CanTime& now) noexcept {
     messages[i].msg_hdr.msg_controllen = kControlBytes;
   }
   const int received = recvmmsg(socket_.descriptor(), messages.data(), kMaxDatagrams, MSG_DONTWAIT, nullptr);
-  if (received < 0 && errno != EAGAIN && errno != EINTR) count_error(errno);
+  if (received < 0 && errno != EAGAIN && errno != EINTR) ++counts_.errors;
 
   received_count_ = 0;
   for (int i = 0; i < received; ++i) {
@@ -198,11 +198,6 @@ void CanBus::count_dropped(msghdr& head) noexcept {
   if (dropped == nullptr) return;
   counts_.lost += *dropped - dropped_;
   dropped_ = *dropped;
-}
-
-void CanBus::count_error(int error) noexcept {
-  ++counts_.errors;
-  last_error_ = error;
 }
 
 }  // namespace robot_control

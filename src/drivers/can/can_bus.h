@@ -77,9 +77,6 @@ class CanBus {
   /// Returns the last frame that `error_frames` counts (can_errors.h); one without an identifier: there was none.
   const can_frame& last_error_frame() const noexcept { return last_error_frame_; }
 
-  /// Returns errno of the last failed system call that `errors` counts; 0: none failed.
-  int last_error() const noexcept { return last_error_; }
-
  private:
   using Frames = std::array<can_frame, kMaxFramesPerDatagram>;
 
@@ -96,13 +93,11 @@ class CanBus {
   void evaluate_error_frame(const can_frame& frame) noexcept;
   std::int64_t stamp_of(msghdr& head, const CanTime& now) noexcept;
   void count_dropped(msghdr& head) noexcept;
-  void count_error(int error) noexcept;
 
   CanSocket socket_;
   CanState state_ = CanState::kActive;
   CanCounts counts_;
   can_frame last_error_frame_{};
-  int last_error_ = 0;
   std::bitset<kMaxParties> present_;  // parties that may be there
   std::int64_t searched_ns_ = 0;
   std::int64_t emptied_ns_ = 0;  // the last call of `receive` that left nothing

@@ -52,6 +52,7 @@ CanDriver::CanDriver(const CanParameters& parameters, std::span<const Brake> bra
       takes_speeds_(drives_.size() > 0 && drives_[0].drive_parameters().takes_speeds),
       load_(bus_load(drives_.plan(), 1 / period, parameters.bus.bit_rate)),
       clock_(std::move(clock)),
+      brakes_(brakes.begin(), brakes.end()),
       commands_(drives_.size()) {
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     laws_.emplace_back(brakes[i], drives_[i].drive_parameters().torque_limit);
@@ -212,7 +213,8 @@ std::string CanDriver::warning() const {
 }
 
 DriveCommand CanDriver::wanted(std::size_t joint, const JointCommand& command) noexcept {
-  DriveCommand wanted{.enabled = true, .reset = reset_};
+  DriveCommand wanted{.enabled = true, .reset = reset_, .brake_torque = brakes_[joint].effort};
+  wanted.brake_damping = brakes_[joint].damping;
   const DriveSample& sample = drives_[joint].sample();
   if (!sample.valid) {
     laws_[joint].reset();
@@ -233,12 +235,6 @@ void CanDriver::write(std::span<const JointCommand> commands) noexcept {
   }
   reset_ = false;
   send_commands(now_ns_);
-}
-
-std::vector<std::string> CanDriver::words() const {
-  std::vector<std::string> lines;
-  for (std::size_t i = 0; i < drives_.size(); ++i) lines.push_back(drives_[i].words());
-  return lines;
 }
 
 }  // namespace robot_control

@@ -3,7 +3,7 @@
 ///
 /// `start` returns at once; `read` reports kStarting until all drives are running, so that the brake of the driver
 /// holds from kRunning on. A fault of a drive stays until the operator's reset, or the next `start`. Meanwhile the
-/// other joints brake.
+/// other joints brake, and so does this drive by itself (drivers/can/drive.h).
 ///
 /// The samples of all drives are brought to the time of `read` by their velocities. A sample that is missing therefore
 /// moves on, and its age grows.
@@ -54,8 +54,6 @@ class CanDriver final : public Driver {
   /// Returns what is wrong with the bus, and the words of every drive that is not running; any thread may call it.
   std::string warning() const override;
 
-  /// Returns one line per drive: its state, its cause and the remedy.
-  std::vector<std::string> words() const;
   const DriveSet& drives() const noexcept { return drives_; }
   const CanBus& bus() const noexcept { return bus_; }
 
@@ -83,6 +81,7 @@ class CanDriver final : public Driver {
   bool takes_speeds_;
   double load_;  // of the bus, planned
   std::function<CanTime()> clock_;
+  std::vector<Brake> brakes_;
   std::vector<JointLaw> laws_;
   std::vector<DriveCommand> commands_;
   FrameBatch send_;

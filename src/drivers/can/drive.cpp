@@ -94,6 +94,7 @@ void Drive::step(const DriveCommand& command, std::int64_t now_ns, FrameBatch& s
 void Drive::begin(bool reset, std::int64_t now_ns) noexcept {
   status_ = {};
   sample_ = {};
+  zero_ = 0;
   position_.clear();
   difference_.clear();
   on_silence_ = {};
@@ -128,6 +129,7 @@ void Drive::fail(DriveCause cause, const char* subject, std::uint64_t code, doub
   const bool brakes =
       cause == DriveCause::kHot || cause == DriveCause::kUnderVoltage || cause == DriveCause::kForeignCommander;
   if (status_.state == DriveState::kFault && (brakes || !may_brake_)) return;
+  had_torque_ = status_.state >= DriveState::kRunning;
   may_brake_ = brakes && status_.state == DriveState::kRunning;
   status_ = {.state = DriveState::kFault,
              .cause = cause,
@@ -145,7 +147,7 @@ constexpr double kImpossibleSpeed = 10;  // times the limit: a number that no jo
 
 void Drive::accept_position(double position, double velocity, std::int64_t now_ns) noexcept {
   if (accept_motion(position, velocity, now_ns)) {
-    sample_.joint.position = position_.step(to_joint_ * position, to_joint_ * velocity, now_ns);
+    sample_.joint.position = position_.step(sample_.joint.position, to_joint_ * velocity, now_ns);
   }
 }
 
@@ -161,14 +163,22 @@ bool Drive::accept_motion(double position, double velocity, std::int64_t now_ns)
     return false;
   }
   JointSample& joint = sample_.joint;
-  const double moved = to_joint_ * position - joint.position;
+  const double moved = to_joint_ * position + zero_ - joint.position;
   // A frame may be late by a period; a joint that is pushed may be twice as fast as its limit.
   const double elapsed = 1.0e-9 * static_cast<double>(now_ns - sample_.stamp_ns + 2 * period_ns_);
   const double maximum = 2 * drive_.velocity_limit * std::fmax(elapsed, 2 * drive_.sample_period) +
                          std::abs(to_joint_) * drive_.position_step;
-  if (sample_.valid && std::abs(moved) > maximum) fail(DriveCause::kPositionJump, "position", 0, moved, maximum);
+  if (sample_.valid && std::abs(moved) > maximum) {
+    if (status_.state >= DriveState::kRunning) {
+      fail(DriveCause::kPositionJump, "position", 0, moved, maximum);
+    } else {
+      zero_ -= moved;
+      position_.clear();
+      difference_.clear();
+    }
+  }
   if (!is_possible(velocity)) return false;
-  joint.position = to_joint_ * position;
+  joint.position = to_joint_ * position + zero_;
   joint.velocity = to_joint_ * velocity;
   sample_.stamp_ns = now_ns;
   sample_.valid = true;

@@ -6,7 +6,12 @@
 /// Frames that were received, the time and the command go in; frames to send, a status and a sample come out. Nothing
 /// reads a clock. After construction nothing allocates or throws, except `words`.
 ///
-/// In `starting` a drive may be absent for any time. In `ready` the motor has no torque. A fault is left by the
+/// In each cycle a drive is sent its order, whatever it answers: no order to brake waits behind an answer. A drive that
+/// had torque when its fault came brakes with what it has of its own, without the driver's measurements. Any other one
+/// gets no torque.
+///
+/// In `starting` a drive may be absent for any time. In `ready` the motor has no torque. A position that jumps before
+/// `running` is that of another zero, and the joint's continues. A fault is left by the
 /// operator's reset alone, with which the start-up begins again. One reset is one attempt: the drive is asked at most
 /// kMaxClears times to clear its errors. A fault that remains waits for the next reset. Position, velocity and torque
 /// belong to the joint: motor angle = direction · gear · joint angle, motor torque = direction · joint torque / gear.
@@ -103,6 +108,7 @@ struct DriveCommand {
   bool reset = false;    ///< The operator resets; its rising edge counts.
   double torque = 0;     ///< N·m or N, of the joint; applied in `running` alone; a drive that takes speeds may add it
   double speed = 0;      ///< rad/s or m/s, of the joint, for a drive that takes speeds; the same
+  double brake_torque = 0, brake_damping = 0;  ///< N·m, N·m·s/rad, of the joint, of a drive that brakes by itself
 };
 
 struct DriveSample {
@@ -181,6 +187,8 @@ class Drive {
   /// Returns whether the motor is to have no torque because of a fault. A running drive that is hot, has a low voltage
   /// or a second commander obeys further, because it can brake the joint.
   bool disabled() const noexcept { return status_.state == DriveState::kFault && !may_brake_; }
+  /// Returns whether a drive that is disabled had torque when its fault came.
+  bool brakes_by_itself() const noexcept { return disabled() && had_torque_; }
 
   void set(DriveState state, DriveCause cause, const char* subject = "", std::uint64_t code = 0) noexcept;
   /// Begins again, as after a reset of the operator if `reset` is true.
@@ -225,6 +233,7 @@ class Drive {
   double to_joint_;  // joint angle = to_joint_ · motor angle, motor torque = to_joint_ · joint torque
   DriveStatus status_;
   DriveSample sample_;
+  double zero_ = 0;                // of the joint, where the drive reports 0
   LatePosition position_;          // of the joint
   PositionDifference difference_;  // of the motor
   KnownReaction on_silence_;
@@ -234,6 +243,7 @@ class Drive {
   bool reset_before_ = false;
   unsigned clears_ = 0;  // requests since the operator's reset
   bool may_brake_ = false;
+  bool had_torque_ = false;
 };
 
 }  // namespace robot_control

@@ -96,13 +96,16 @@ void BoardDriver::accept(const board_report& report, std::int64_t arrived_ns) no
   status_.firmware = report.firmware;
   if (report.wheels != wheels_.size()) return fail(BoardCause::kOtherWheels, report.wheels);
   if ((report.flags & BOARD_REFUSED) != 0) return fail(BoardCause::kRefused);
+  const bool braked = (report.flags & BOARD_WATCHDOG) != 0;
+  if (braked) fail(BoardCause::kOwnBrake);
   const auto behind = static_cast<std::uint16_t>(cycle_ - report.cycle);
   const auto after = static_cast<std::uint16_t>(report.cycle - answered_);
-  if (behind >= std::min<std::uint64_t>(kOrders, orders_) || (has_report_ && (after == 0 || after >= kOrders))) {
+  const std::int64_t sent_ns = sent_ns_[report.cycle % kOrders];
+  if (behind >= std::min<std::uint64_t>(kOrders, orders_) || arrived_ns - sent_ns > kMaxTripNs ||
+      (has_report_ && (after == 0 || after >= kOrders))) {
     ++link_.late;
     return;
   }
-  const std::int64_t sent_ns = sent_ns_[report.cycle % kOrders];
   if (has_report_) link_.lost += after - 1U;
   const std::int64_t elapsed_us = has_report_ ? static_cast<std::uint32_t>(report.time_us - board_us_) : 0;
   if (has_report_ && std::abs(1000 * elapsed_us - (sent_ns - answered_ns_)) > kClockJumpNs) {
@@ -121,8 +124,7 @@ void BoardDriver::accept(const board_report& report, std::int64_t arrived_ns) no
   silent_for_ = 0;
   sensors_ = report.sensors;
   accept_imu(report);
-  if ((report.flags & BOARD_WATCHDOG) != 0) return fail(BoardCause::kOwnBrake);
-  if (status_.state == DriverState::kStarting) run();
+  if (status_.state == DriverState::kStarting && !braked) run();
 }
 
 void BoardDriver::accept_counts(const board_report& report, std::int64_t elapsed_us) noexcept {

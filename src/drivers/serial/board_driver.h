@@ -19,7 +19,7 @@
 ///   position jump   counts that the joint cannot reach within its velocity limit
 ///   fault word      of a wheel; the user's code gives the numbers
 ///
-/// A report counts once, and only if it answers an order of the last kOrders cycles.
+/// A report counts once, and only if it answers an order of the last kOrders cycles within kMaxTripNs.
 
 #include <array>
 #include <functional>
@@ -59,6 +59,7 @@ struct BoardWheel : CountedWheel {
 class BoardDriver final : public SerialDriver<BoardCause, BoardWheel> {
  public:
   static constexpr std::size_t kOrders = 256;                 ///< the answer to an older order is refused
+  static constexpr std::int64_t kMaxTripNs = 50'000'000;      ///< after which the watchdog of a board has braked
   static constexpr std::int64_t kClockJumpNs = 200'000'000;   ///< two boots lie further apart
   static constexpr std::int64_t kVelocitySpanNs = 8'000'000;  ///< over which a velocity is measured, at 125 Hz and more
   static constexpr double kSpeedMargin = 1.5;                 ///< of the velocity limit, above which a position jumped

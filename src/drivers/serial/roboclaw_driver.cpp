@@ -44,6 +44,7 @@ RoboclawDriver::RoboclawDriver(const RoboclawParameters& parameters, std::size_t
 void RoboclawDriver::begin() noexcept {
   setup_ = 0;
   turn_ = 0;
+  ordered_ = false;
   has_counts_ = false;
   for (RoboclawWheel& wheel : wheels_) {
     wheel.blind = wheel.ordered = 0;
@@ -60,9 +61,10 @@ void RoboclawDriver::take_bytes() noexcept {
   SerialChunk chunk;
   for (int i = 0; i < kMaxChunks && line_->receive(chunk); ++i) {
     for (const std::uint8_t byte : chunk.received()) {
+      arrived_ns_ = std::min(chunk.time_ns, now_ns_);
+      if (!pending_) stray_ns_ = arrived_ns_;
       if (!pending_) continue;
       received_.add(byte, 1);
-      arrived_ns_ = std::min(chunk.time_ns, now_ns_);
       if (answered()) accept();
     }
   }
@@ -72,9 +74,12 @@ void RoboclawDriver::take_bytes() noexcept {
   if (command_ == Command::kStatus && roboclaw::is_answer(asked_, received_, 2)) return accept();
   pending_ = false;
   unanswered_ = pauses ? 0 : unanswered_ + 1;
+  if (unanswered_ == kRepeats) ordered_ = false;
   if (std::ranges::find(kSlow, command_) != kSlow.end()) ++turn_;  // a board may lack it
   ++link_.lost;
-  if (received_.size() > 0) ++link_.errors;
+  if (received_.size() == 0) return;
+  ++link_.errors;
+  stray_ns_ = arrived_ns_;
 }
 
 bool RoboclawDriver::answered() noexcept {
@@ -116,6 +121,9 @@ void RoboclawDriver::accept() noexcept {
     default:
       break;
   }
+  const bool is_order = command_ == Command::kSpeeds || command_ == Command::kDuties;
+  ordered_ = is_order;
+  if (is_order) return;
   if (status_.state != DriverState::kStarting) {
     ++turn_;
     return;
@@ -172,10 +180,9 @@ bool RoboclawDriver::counts_are_trusted() const noexcept {
 }
 
 RoboclawDriver::Command RoboclawDriver::next() const noexcept {
+  if (!ordered_) return counts_are_trusted() ? Command::kSpeeds : Command::kDuties;
   if (status_.state == DriverState::kStarting) return setup_ < kSetup.size() ? kSetup[setup_] : Command::kEncoders;
-  const unsigned pair = turn_ / 2;
-  if (turn_ % 2 == 0) return counts_are_trusted() ? Command::kSpeeds : Command::kDuties;
-  return pair % kSlowEvery == kSlowEvery - 1 ? kSlow[pair / kSlowEvery % kSlow.size()] : Command::kEncoders;
+  return turn_ % kSlowEvery == kSlowEvery - 1 ? kSlow[turn_ / kSlowEvery % kSlow.size()] : Command::kEncoders;
 }
 
 void RoboclawDriver::request(Command command) noexcept {
@@ -198,7 +205,7 @@ void RoboclawDriver::write(std::span<const JointCommand> commands) noexcept {
     wheel.blind += std::abs(wheel.ordered) * 1.0e-9 * static_cast<double>(period_ns_);
     speeds_[parameters.motor - 1] = rounded(wheel.ordered / wheel.rad_per_count);
   }
-  if (!pending_) request(next());
+  if (!pending_ && now_ns_ - stray_ns_ >= kPauseNs) request(next());
 }
 
 std::string RoboclawDriver::description() const {

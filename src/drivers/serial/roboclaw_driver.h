@@ -3,11 +3,16 @@
 /// are neither taken nor measured.
 ///
 /// One exchange runs at a time: the driver sends a request in `write`, and takes its answer in a later `read`. After
-/// kAnswerNs the answer counts as lost; orders and readings of the encoders are repeated. After kRepeats of them it
-/// pauses for kPauseNs, because a board that holds a stray byte takes each request from there. In turn it orders the
-/// speeds and reads both encoders, and after kSlowEvery of these pairs battery, temperature or status. A loop of 200 Hz
-/// and more thus orders 100 times per second. The counts are those of the middle between request and answer; their
-/// speed brings them to the time of `read`.
+/// kAnswerNs the answer counts as lost. In turn it orders the speeds and asks a question. Most questions are for both
+/// encoders, and each kSlowEvery-th one for battery, temperature or status. A loop of 200 Hz and more thus orders 100
+/// times per second. The counts are those of the middle between request and answer; their speed brings them to the time
+/// of `read`.
+///
+/// An order is repeated until the board acknowledges it, and no question is asked before, because each one restarts
+/// the board's timeout. A question is repeated at most kRepeats − 1 times: then it waits behind the next order. After
+/// kRepeats lost answers the driver pauses for kPauseNs, because a board that holds a stray byte takes each request
+/// from there. It also pauses until no byte came for kPauseNs that nothing awaits: answers that are late would count
+/// as those of later questions. In a pause the board's timeout runs.
 ///
 /// `read` reports kStarting until version, gains and QPPS of both motors were read, and its serial timeout, which is
 /// set to kTimeoutNs. It is refused with gains or a QPPS of zero: such a board answers a speed with full power. Until
@@ -102,8 +107,10 @@ class RoboclawDriver final : public SerialDriver<RoboclawCause, RoboclawWheel> {
   unsigned unanswered_ = 0;  // requests since the last answer or pause
   std::int64_t sent_ns_ = 0;
   std::int64_t arrived_ns_ = 0;
-  std::size_t setup_ = 0;  // next one of kSetup; its size: running
-  unsigned turn_ = 0;      // answered exchanges since the start
+  std::int64_t stray_ns_ = -kPauseNs;  // when a byte came that no request awaits
+  std::size_t setup_ = 0;              // next one of kSetup; its size: running
+  unsigned turn_ = 0;                  // questions since the start
+  bool ordered_ = false;               // The board acknowledged an order, so that a question may follow.
   bool has_counts_ = false;
   std::uint64_t valid_ = 0;  // kValidBattery, once it was read
   double battery_ = 0;       // V

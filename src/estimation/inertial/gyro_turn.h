@@ -18,8 +18,7 @@ namespace robot_control {
 
 class GyroTurn {
  public:
-  /// Returns the angle in rad, bias included; empty: the wheels turn. `wheel_turn` is in rad, `bias` in rad/s, `dt` in
-  /// s.
+  /// Returns the angle, bias included; empty: the wheels turn. `wheel_turn` is in rad, `bias` in rad/s, `dt` in s.
   std::optional<double> step(const ImuReading& imu, double wheel_turn, double bias, double dt) noexcept {
     const double before = std::exchange(sample_, imu.fresh_gyro ? imu.sample[2] : sample_);
     if (imu.gyro && silence_ == 0) return (*imu.gyro)[2] * dt;

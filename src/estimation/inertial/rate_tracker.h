@@ -52,8 +52,7 @@ class RateTracker {
 
   Eigen::Vector3d rate() const noexcept { return *rate_; }  ///< rad/s
 
-  /// Returns the variance of `rate` over that of the samples of a white gyro. Each `measured` is the mean of two
-  /// neighbours.
+  /// Returns the variance of `rate` over that of a white gyro's samples. Each `measured` is the mean of two neighbours.
   double noise_gain() const noexcept {
     const double b = period_beta_;
     return (1 - b) * (1 + 2 * b + 2 * b * b) / (2 * (1 + b));

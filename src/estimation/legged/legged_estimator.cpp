@@ -29,9 +29,10 @@ constexpr double kEdge = 0.15;              // of a stance
 constexpr double kSpeedPart = 0.07;
 
 /// Returns which feet stand: those that bear as the command asked, or, where none is asked to, those that bear. A foot
-/// that stood still does while it may bear.
+/// that stood still does while it may bear. Without the angles of all joints no foot is known to stand.
 std::array<bool, kLegs> feet_that_stand(const SensorFrame& sensors, const LeggedEstimator::State& state) noexcept {
   std::array<bool, kLegs> stand{};
+  if (!joints_have(sensors, kLegsJoints, kValidMotion)) return stand;
   const bool asked = feet_asked(sensors);
   for (std::size_t leg = 0; leg < kLegs; ++leg)
     stand[leg] = (FootContacts::bears(state.contacts.probability[leg]) ||
@@ -154,7 +155,8 @@ bool LeggedEstimator::read(const SensorFrame& sensors, double dt) noexcept {
   Map mean(state_.mean_rate.data());
   if (gyro) Map(state_.rate.data()) = rate;
   if (gyro) mean += std::min(1.0, dt / kMeanTime) * (rate - mean);
-  bool moves = !gyro || (rate - mean).cwiseAbs().maxCoeff() > kStill ||
+  const bool measured = joints_have(sensors, kLegsJoints, kValidMotion);
+  bool moves = !gyro || !measured || (rate - mean).cwiseAbs().maxCoeff() > kStill ||
                (mean - ConstMap(state_.filter.rate_bias.data())).cwiseAbs().maxCoeff() > kMaxBias;
   for (std::size_t i = 0; i < kLegsJoints; ++i) {
     double& joint = state_.mean_rates[i];
@@ -193,7 +195,8 @@ void LeggedEstimator::filter(const SensorFrame& sensors, const FeetMotion& feet,
   if (state_.still > kRest) {
     filter.rest(ConstMap(state_.rate.data()), kRestRate * once);
     filter.stop(kRestSpeed * once);
-  } else if (stand == std::array<bool, kLegs>{} && !feet_asked(sensors)) {
+  } else if (stand == std::array<bool, kLegs>{} && joints_have(sensors, kLegsJoints, kValidMotion) &&
+             !feet_asked(sensors)) {
     filter.stop(kFallSpeed * once);
   }
   filter.finish();

@@ -24,9 +24,8 @@
 /// kGate deviations wheels and gyro contradict each other. The heading then follows the gyro. Its doubt, a deviation
 /// beside P, grows by the angle between both. Wheels that are dragged may turn the robot by three quarters of their own
 /// turn. Each block in which both agree takes kAgreement of the doubt. Turns that drag wheels triple that.
-/// ε and β walk in proportion to the slip noise (wheel_noise.h). The blocks that follow check them: where those of the
-/// start predict the blocks better, by a nis of kSignificant², ε and β are dropped. They begin again with the deviation
-/// of the start.
+/// ε and β walk in proportion to the slip noise (wheel_noise.h). The blocks that follow check them. If the
+/// values of the start predict better, by a nis of kSignificant², ε and β begin again from these.
 
 #include <Eigen/Core>
 #include <algorithm>

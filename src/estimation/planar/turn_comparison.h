@@ -1,8 +1,7 @@
 #pragma once
 /// Divides a drive into blocks of at least kBlock, over which the planar core compares the turn of the wheels with that
 /// of the gyro. A block begins and ends where both sides have been read. While wheels slip, blocks show contradictions
-/// but teach nothing. After a fault of a drive no block begins before the next rest: one wheel brakes while the other
-/// coasts.
+/// but teach nothing. After a fault of a drive none begins before the next rest: one wheel coasts, others brake.
 
 #include "estimation/planar/planar_core.h"
 

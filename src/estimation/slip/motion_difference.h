@@ -62,8 +62,7 @@ class MotionDifference {
   explicit MotionDifference(const SlipParams& params) noexcept : params_(params) {}
 
   void restart() noexcept;  ///< removes all points
-  /// Continues after a slide: the past is laid on a straight line of E with that slope (m/s, odom axes) and a constant
-  /// W.
+  /// Continues after a slide: the past is laid on a line of E with that slope (m/s, odom axes) and a constant W.
   void restart_on_line(const Planar& slope) noexcept;
   /// Restarts at the end of a rest. `velocity` (m/s, odom axes) is the acceleration integrated since then.
   void restart_at_rest(double yaw, const Vector3& up, const Planar& velocity) noexcept;

@@ -36,8 +36,7 @@ class Tilt {
   void turn(const Vector3& rate, double dt) noexcept;  ///< rad/s, bias removed
   void age() noexcept;  ///< brings the variances to the present heading, as each correction does
 
-  /// Corrects by the excess of gravity and bias over the values in use, along and across, over the last `dt`; all in
-  /// m/s².
+  /// Corrects by the excess of gravity and bias over the values in use, along and across, in the last `dt`, in m/s².
   void correct(double along, double across, double dt, double deviation) noexcept;
 
   /// Corrects at rest: `force` (m/s²) is the accelerometer's mean over `dt`.

@@ -5,8 +5,7 @@
 /// without steps leave only that rounding. An encoder's counts are steps of the travel, whose error does not grow, so
 /// that a step that the count explains is ignored.
 ///
-/// A reading is off by up to half a step, and each that repeats it is off by the same. So n equal readings in a row are
-/// off by n times as much.
+/// A reading is off by up to half a step, as is each that repeats it. So n equal ones in a row are off by n times that.
 
 #include <algorithm>
 #include <cmath>

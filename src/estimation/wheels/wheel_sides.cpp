@@ -1,6 +1,7 @@
 #include "estimation/wheels/wheel_sides.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "estimation/tuning.h"
 
@@ -11,7 +12,7 @@ WheelSides::WheelSides(const DriveTrain& robot, double bandwidth, double period,
       sides_{SideEncoder(robot, Side::kLeft, bandwidth, period), SideEncoder(robot, Side::kRight, bandwidth, period)},
       quantum_(count) {}
 
-WheelReading WheelSides::step(const SensorFrame& sensors, double dt) noexcept {
+WheelReading WheelSides::step(const SensorFrame& sensors, double dt, bool turns) noexcept {
   WheelReading reading;
   for (const std::size_t i : {0U, 1U}) {
     SideEncoder& encoder = sides_[i];
@@ -31,8 +32,11 @@ WheelReading WheelSides::step(const SensorFrame& sensors, double dt) noexcept {
     reading.lost[i] = lost(encoder);
   }
   for (const std::size_t i : {0U, 1U}) {
-    if (reading.received[i] || (reading.lost[i] && !reading.lost[1 - i])) continue;  // The other side replaces it.
+    if (reading.received[i] || (reading.lost[i] && !reading.lost[1 - i] && turns)) continue;  // It is replaced.
     reading.unread += reading.speed[i] * std::min(sides_[i].waiting(), std::max(sides_[i].gap(), longest_held_)) / 2;
+    if (!reading.lost[i]) continue;
+    reading.lost_time = std::max(reading.lost_time, sides_[i].waiting());
+    reading.lost_speed[i] = std::exchange(reading.speed[i], 0);
   }
   reading.fell_silent = reading.both_lost() && sides_[0].gap() > 0 && sides_[1].gap() > 0;
   reading.batch = reading.both_received() && sides_[0].time() < Tuning::kBatch * usual_gap_;

@@ -10,12 +10,21 @@ CanFront::CanFront(const CanParameters& parameters, std::span<const Brake> brake
     : drives_(parameters, brakes, period, seed),
       line_(std::move(socket)),
       period_ns_(std::llround(1.0e9 * period)),
-      host_(drives_.bus().join([this](const can_frame& frame, std::int64_t) { to_host_.push_back(frame); })) {
+      host_(drives_.bus().join([this](const can_frame& frame, std::int64_t now_ns) { carry(frame, now_ns); })),
+      random_(seed) {
   std::visit(
       [this](const auto& joints) {
         for (const auto& joint : joints) joints_.push_back(joint.drive.joint);
       },
       parameters.joints);
+}
+
+void CanFront::carry(can_frame frame, std::int64_t now_ns) {
+  if (fault_ == AnswerFault::kLost) return;
+  const auto bit = static_cast<unsigned>(fault_ == AnswerFault::kDamaged ? random_() % 64 : 64);
+  if (bit / 8 < frame.len) frame.data[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
+  if (fault_ == AnswerFault::kShifted) std::rotate(frame.data, frame.data + 7, frame.data + 8);
+  answers_.push_back({frame, now_ns + (fault_ == AnswerFault::kLate ? kLateAnswerNs : 0)});
 }
 
 void CanFront::run(std::span<const JointSample> joints) {
@@ -26,24 +35,30 @@ void CanFront::run(std::span<const JointSample> joints) {
     more = received.more;
   }
   drives_.run(joints, now_ns + period_ns_);
-  line_.send(to_host_);
-  to_host_.clear();
+  std::vector<can_frame> arrived;
+  for (; !answers_.empty() && answers_.front().due_ns <= now_ns + period_ns_; answers_.pop_front())
+    arrived.push_back(answers_.front().frame);
+  line_.send(arrived);
 }
 
 std::string CanFront::inject(std::string_view component, std::string_view kind) {
   const std::vector<Word> words = words_of(DeviceFault());
   const auto word = std::ranges::find(words, kind, &Word::text);
   const auto joint = std::ranges::find(joints_, component);
-  if (component == "bus" && (kind == "ok" || kind == "off" || kind == "lossy" || kind == "disturbed")) {
+  const AnswerFault answers = answer_fault(kind);
+  const auto is = [kind](auto... of_bus) { return ((kind == of_bus) || ...); };
+  if (component == "bus" && (is("ok", "off", "lossy", "disturbed") || answers != AnswerFault::kNone)) {
+    fault_ = answers;
     drives_.bus().connect(host_, kind != "off");
-    drives_.disturb(kind == "lossy" || kind == "disturbed", kind == "disturbed");
+    drives_.disturb(is("lossy", "disturbed"), is("disturbed"));
     return "";
   }
   if (joint != joints_.end() && word != words.end()) {
     drives_.inject(static_cast<std::size_t>(joint - joints_.begin()), static_cast<DeviceFault>(word->value));
     return "";
   }
-  std::string problem = "component must be bus (with ok, off, lossy or disturbed)";
+  std::string problem =
+      std::string("component must be bus (with ok, off, lossy, disturbed, ") + kAnswerFaultWords + ")";
   for (const std::string& name : joints_) problem += ", " + name;
   problem += "; kind";
   for (const Word& each : words) problem += " " + std::string(each.text);

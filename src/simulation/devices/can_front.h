@@ -3,13 +3,16 @@
 ///
 /// `inject` takes a joint or `bus` as the component. The kinds of the bus are ok, off, lossy and disturbed. Off means
 /// that the driver's cable is out, lossy that 5 % of the frames are lost. On a disturbed bus the others are late as
-/// well, by up to one period.
+/// well, by up to one period. With a word of AnswerFault this happens to the frames to the driver.
 
+#include <deque>
+#include <random>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "drivers/can/can_bus.h"
+#include "simulation/devices/answer_faults.h"
 #include "simulation/devices/device_front.h"
 #include "simulation/devices/simulated_drives.h"
 
@@ -29,12 +32,21 @@ class CanFront final : public DeviceFront {
   std::string inject(std::string_view component, std::string_view kind) override;
 
  private:
+  struct Answer {
+    can_frame frame{};
+    std::int64_t due_ns = 0;
+  };
+
+  void carry(can_frame frame, std::int64_t now_ns);
+
   SimulatedDrives drives_;
   CanBus line_;
   std::int64_t period_ns_;
   std::vector<std::string> joints_;
-  std::size_t host_;                // the driver's party on the simulated bus
-  std::vector<can_frame> to_host_;  // of the present period
+  std::size_t host_;            // the driver's party on the simulated bus
+  std::deque<Answer> answers_;  // on their way to the driver
+  AnswerFault fault_ = AnswerFault::kNone;
+  std::mt19937_64 random_;
 };
 
 }  // namespace robot_control

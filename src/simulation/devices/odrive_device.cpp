@@ -40,6 +40,7 @@ void OdriveDevice::boot(std::int64_t now_ns) {
   clear_errors();
   disarm_reason_ = 0;
   mode_ = {.control = ControlMode::kPosition};
+  gains_.reset();
   input_torque_ = input_velocity_ = 0;
   zero_ = motor_.position;
   motor_.torque = 0;
@@ -96,6 +97,7 @@ double OdriveDevice::driven_torque(double seconds) {
   if (mode_.input != InputMode::kPassthrough) return 0;
   if (mode_.control == ControlMode::kVelocity) {
     const double error = std::clamp(input_velocity_, -velocity_limit_, velocity_limit_) - motor_.velocity;
+    if (gains_) return std::clamp(input_torque_ + gains_->gain * error, -maximum, maximum);
     return speed_loop_.step(error, parameters_.speed_gain, maximum, seconds, input_torque_);
   }
   if (mode_.control != ControlMode::kTorque) return 0;
@@ -170,6 +172,7 @@ void OdriveDevice::receive_command(const can_frame& frame) {
     if (closes) report_fault();
   }
   if (const auto mode = decode<SetControllerMode>(frame)) mode_ = *mode;
+  if (const auto gains = decode<SetVelocityGains>(frame)) gains_ = gains;
   if (const auto input = decode<SetInputTorque>(frame)) input_torque_ = input->torque;
   if (const auto input = decode<SetInputVelocity>(frame)) {
     input_velocity_ = input->velocity;

@@ -7,6 +7,7 @@
 /// to the axis feeds the watchdog, also in idle; with 0.6 it runs in closed loop alone.
 
 #include <cstdint>
+#include <optional>
 
 #include "drivers/can/odrive/odrive_messages.h"
 #include "drivers/can/odrive/odrive_parameters.h"
@@ -80,6 +81,7 @@ class OdriveDevice final : public Device {
   std::uint64_t motor_error_ = 0;
   std::uint32_t encoder_error_ = 0;
   odrive::SetControllerMode mode_{.control = odrive::ControlMode::kPosition};  // the maker's default
+  std::optional<odrive::SetVelocityGains> gains_;                              // of a brake, without an integrator
   double input_torque_ = 0;
   double input_velocity_ = 0;  // rad/s
   SpeedLoop speed_loop_;

@@ -13,7 +13,6 @@ void visit_common(Visit visit) {
   visit.template operator()<SetAxisState>("Set_Axis_State");
   visit.template operator()<EncoderEstimates>("Get_Encoder_Estimates");
   visit.template operator()<SetControllerMode>("Set_Controller_Mode");
-  visit.template operator()<SetInputPosition>("Set_Input_Pos");
   visit.template operator()<SetInputVelocity>("Set_Input_Vel");
   visit.template operator()<SetInputTorque>("Set_Input_Torque");
   visit.template operator()<SetLimits>("Set_Limits");
@@ -28,8 +27,6 @@ void visit_05(Visit visit) {
   visit.template operator()<v05::Heartbeat>("Heartbeat");
   visit.template operator()<v05::MotorError>("Get_Motor_Error");
   visit.template operator()<v05::EncoderError>("Get_Encoder_Error");
-  visit.template operator()<v05::SensorlessError>("Get_Sensorless_Error");
-  visit.template operator()<v05::Reboot>("Reboot");
   visit.template operator()<v05::ClearErrors>("Clear_Errors");
   visit.template operator()<v05::SetLinearCount>("Set_Linear_Count");
   visit.template operator()<v05::ControllerError>("Get_Controller_Error");
@@ -46,7 +43,6 @@ void visit_06(Visit visit) {
   visit.template operator()<v06::TxSdo>("TxSdo");
   visit.template operator()<v06::Address>("Address");
   visit.template operator()<v06::Temperature>("Get_Temperature");
-  visit.template operator()<v06::Reboot>("Reboot");
   visit.template operator()<v06::ClearErrors>("Clear_Errors");
   visit.template operator()<v06::SetAbsolutePosition>("Set_Absolute_Position");
   visit.template operator()<v06::Torques>("Get_Torques");

@@ -108,6 +108,49 @@ TEST_F(BoardDriverTest, AHostThatEndsLeavesTheBoardBrakedAfterItsWatchdog) {
   EXPECT_FALSE(turns());
 }
 
+TEST_F(BoardDriverTest, StandsHalfASecondAfterItsAnswersFailAndAsLongAsTheyDo) {
+  for (const AnswerFault fault :
+       {AnswerFault::kLost, AnswerFault::kDamaged, AnswerFault::kShifted, AnswerFault::kLate}) {
+    SCOPED_TRACE(std::string(kAnswerFaults[static_cast<std::size_t>(fault)]));
+    machine_.board().line().faults().answers = fault;
+    cycles(250);
+    for (int i = 0; i < 20; ++i) {
+      EXPECT_FALSE(turns()) << i;
+      cycles(100);
+    }
+    EXPECT_EQ(frame_.driver_state, DriverState::kFault);
+    machine_.reset();  // while the answers still fail
+    cycles(2000);
+    EXPECT_FALSE(turns());
+    machine_.board().line().faults().answers = AnswerFault::kNone;
+    cycles(1000);
+    machine_.reset();
+    cycles(1000);
+    ASSERT_TRUE(turns()) << machine_.warning();
+  }
+}
+
+/// At 100 Hz the watchdog of 50 ms expires before 12 reports are missing.
+TEST(BoardAt100Hz, ThatBrakedByItselfIsAFaultWithThisCause) {
+  BoardMachine machine(100);
+  machine.start();
+  SensorFrame frame;
+  const std::vector<JointCommand> commands(2, {.mode = JointMode::kVelocity, .velocity = 5, .damping = 0.1});
+  for (int i = 0; i < 107; ++i) {
+    ASSERT_EQ(machine.board().inject("line", i < 100 ? "ok" : "stalled"), "");
+    machine.read(frame);
+    ASSERT_EQ(frame.driver_state, DriverState::kRunning) << i << machine.warning();
+    machine.write(commands);
+  }
+  ASSERT_EQ(machine.board().inject("line", "ok"), "");
+  for (int i = 0; i < 3; ++i) {
+    machine.write(commands);
+    machine.read(frame);
+  }
+  EXPECT_EQ(frame.driver_state, DriverState::kFault);
+  EXPECT_NE(machine.warning().find("braked by itself"), std::string::npos) << machine.warning();
+}
+
 TEST_F(BoardDriverTest, EveryLossIsAFaultWithItsCauseAndStandsUntilTheReset) {
   struct Loss {
     const char* component;

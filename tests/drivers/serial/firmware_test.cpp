@@ -127,9 +127,26 @@ TEST_F(BoardTest, AnswersAnOrderWithItsCycleAndDrives) {
   EXPECT_EQ(report_.cycle, 77);
   EXPECT_EQ(report_.time_us, now_us_);
   EXPECT_EQ(report_.counts[1], 0xFFFFFFFFu);
-  EXPECT_EQ(report_.flags, 0);
+  EXPECT_EQ(report_.flags, BOARD_WATCHDOG) << "it braked before its first order";
   EXPECT_EQ(driven_[1].mode, BOARD_EFFORT);
   EXPECT_EQ(driven_[1].value, -1234567);
+  order(BOARD_EFFORT, -1234567, 78);
+  EXPECT_EQ(report_.flags, 0);
+}
+
+TEST_F(BoardTest, TheReportOfTheNextGoodOrderSaysThatItBrakedByItself) {
+  order(BOARD_EFFORT, 1);
+  order(BOARD_EFFORT, 1, 2);
+  ASSERT_EQ(report_.flags, 0);
+  now_us_ += 50'000;
+  give({});
+  order(BOARD_EFFORT, 1, 3, 1);  // of another number of wheels
+  EXPECT_EQ(report_.flags, BOARD_WATCHDOG | BOARD_REFUSED);
+  order(BOARD_EFFORT, 1, 4);
+  EXPECT_EQ(report_.flags, BOARD_WATCHDOG);
+  EXPECT_EQ(driven_[0].mode, BOARD_EFFORT);
+  order(BOARD_EFFORT, 1, 5);
+  EXPECT_EQ(report_.flags, 0);
 }
 
 TEST_F(BoardTest, BrakesFiftyMillisecondsAfterTheLastOrderAndUntilTheNextOne) {

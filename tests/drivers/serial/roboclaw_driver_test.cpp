@@ -130,6 +130,79 @@ TEST_F(RoboclawDriverTest, EveryLossIsAFaultWithItsCauseAndStandsUntilTheReset) 
   }
 }
 
+TEST_F(RoboclawDriverTest, StandsHalfASecondAfterItsAnswersFailAndAsLongAsTheyDo) {
+  for (const AnswerFault fault :
+       {AnswerFault::kLost, AnswerFault::kDamaged, AnswerFault::kShifted, AnswerFault::kLate}) {
+    for (int phase = 0; phase < 40; ++phase) {
+      SCOPED_TRACE(std::string(kAnswerFaults[static_cast<std::size_t>(fault)]) + " in cycle " + std::to_string(phase));
+      cycles(phase);
+      machine_.board().line().faults().answers = fault;
+      cycles(500);
+      for (int i = 0; i < 20; ++i) {
+        EXPECT_TRUE(stands()) << i;
+        cycles(100);
+      }
+      EXPECT_EQ(frame_.driver_state, DriverState::kFault);
+      machine_.board().line().faults().answers = AnswerFault::kNone;
+      cycles(1200);
+      EXPECT_TRUE(stands()) << "until the reset";
+      machine_.reset();
+      cycles(1000);
+      ASSERT_TRUE(turns()) << machine_.warning();
+    }
+  }
+}
+
+TEST_F(RoboclawDriverTest, ADriverThatStartsWithoutAnswersStopsABoardThatStillTurns) {
+  machine_.board().line().faults().answers = AnswerFault::kLost;
+  machine_.replace_driver();
+  machine_.driver().start();
+  cycles(500);
+  EXPECT_EQ(frame_.driver_state, DriverState::kStarting);
+  EXPECT_TRUE(stands());
+}
+
+/// A line that carries all but the acknowledgement of orders, and counts what the driver sends.
+class LineWithoutAcknowledgement final : public SerialLine {
+ public:
+  explicit LineWithoutAcknowledgement(std::unique_ptr<SerialLine> line) : line_(std::move(line)) {}
+  bool receive(SerialChunk& chunk) noexcept override {
+    if (!line_->receive(chunk)) return false;
+    if (lost && chunk.size == 1) return receive(chunk);
+    return true;
+  }
+  bool send(std::span<const std::uint8_t> request) noexcept override {
+    const bool question = !roboclaw::is_write(static_cast<PacketCommand>(request[1]));
+    questions += question ? 1 : 0;
+    orders += question ? 0 : 1;
+    return line_->send(request);
+  }
+  bool connected() const noexcept override { return true; }
+  std::string name() const override { return "a line without acknowledgement"; }
+
+  bool lost = false;
+  int questions = 0, orders = 0;
+
+ private:
+  std::unique_ptr<SerialLine> line_;
+};
+
+/// Each question would restart the timeout of a board that receives no order.
+TEST_F(RoboclawDriverTest, AsksNothingMoreUntilAnOrderIsAcknowledged) {
+  auto owned = std::make_unique<LineWithoutAcknowledgement>(machine_.board().driver_end());
+  LineWithoutAcknowledgement& line = *owned;
+  machine_.replace_driver(std::move(owned));
+  machine_.start();
+  cycles(1000);
+  ASSERT_TRUE(turns()) << machine_.warning();
+  line.lost = true;
+  line.questions = line.orders = 0;
+  cycles(5000);
+  EXPECT_LE(line.questions, 1);
+  EXPECT_GT(line.orders, 400);
+  EXPECT_TRUE(stands());
+}
+
 TEST_F(RoboclawDriverTest, ABoardWithoutGainsIsRefusedBeforeAnythingMoves) {
   inject("board", "no_gains");
   inject("line", "cut");

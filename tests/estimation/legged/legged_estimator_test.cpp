@@ -53,6 +53,21 @@ TEST(LeggedEstimator, LearnsTheGyrosBiasAtRest) {
   EXPECT_EQ(robot.out.base.degraded, 0u);
 }
 
+// Joints that are not valid keep their last angles, at which the feet would seem to hold the robot where it is.
+TEST(LeggedEstimator, WithoutTheJointsTheDeviationsGrow) {
+  Standing robot;
+  robot.run(1);
+  const double place = robot.out.base.pose_covariance[0];
+  for (std::size_t i = 0; i < kLegsJoints; ++i) robot.sensors.joints[i].valid = 0;
+  double before = robot.out.base.twist_covariance[0];
+  for (int i = 0; i < 20; ++i) {
+    robot.run(0.1);
+    EXPECT_GT(robot.out.base.twist_covariance[0], before) << i;
+    before = robot.out.base.twist_covariance[0];
+  }
+  EXPECT_GT(robot.out.base.pose_covariance[0], place + 1e-3);
+}
+
 TEST(LeggedEstimator, GivesWayToThePlainEstimateWhereTheyContradict) {
   Standing robot;
   robot.run(1);

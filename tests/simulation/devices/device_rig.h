@@ -25,7 +25,7 @@ class DeviceRig {
 
   explicit DeviceRig(double rate = 500, double bit_rate = 1.0e6, std::uint64_t seed = 1)
       : period_(1 / rate), bus_(bit_rate, seed), host_(bus_.join([this](const can_frame& frame, std::int64_t now_ns) {
-          if (host_lives) received_.push_back({frame, now_ns});
+          if (host_lives && answers) received_.push_back({frame, now_ns});
         })) {}
 
   double period() const { return period_; }
@@ -57,6 +57,7 @@ class DeviceRig {
   /// One command per drive.
   std::vector<DriveCommand> commands;
   bool host_lives = true;
+  bool answers = true;    ///< The host receives what the devices send.
   double inertia = 0.01;  ///< kg·m² of each motor
   double slope = 0;       ///< N·m that pulls each motor
 

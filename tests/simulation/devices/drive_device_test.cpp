@@ -21,13 +21,33 @@ struct Dialect {
   std::string name;
   std::function<Device&(DeviceRig& rig, std::uint8_t node, double clock_ppm)> add;
   std::function<void(DeviceRig& rig, bool accepted)> add_unknown;  ///< A drive with an unknown reaction on silence.
-  can_frame foreign{};                                             ///< of another program that commands node 1
+  std::vector<can_frame> foreign;                                  ///< each of another program that commands node 1
   std::function<bool(const can_frame& frame)> clears;              ///< whether it requests node 1 to clear its errors
   double torque_step = 0;                                          ///< N·m of the motor: one step of the protocol
   double count = 0;                                                ///< rad of the motor
   bool brakes_by_itself = false;
   bool reports_errors = true;
 };
+
+/// Firmware 0.5.6, can_simple.cpp; ros_odrive, can_simple_messages.hpp.
+std::vector<can_frame> foreign_to_odrive(odrive::Firmware firmware) {
+  std::vector<can_frame> frames{encode(1, odrive::SetInputTorque{.torque = 0.1}), encode(1, odrive::SetAxisState{}),
+                                word_frame(1U << 5U | 0x02U | CAN_RTR_FLAG, 0, 0)};  // Estop
+  for (const canid_t command : {0x10U, 0x11U, 0x12U, 0x13U, 0x1AU})
+    frames.push_back(word_frame(1U << 5U | command, 0, 8));
+  const bool is_06 = firmware == odrive::Firmware::k06;
+  frames.push_back(is_06 ? odrive::encode(1, odrive::v06::RxSdo{.opcode = odrive::v06::RxSdo::kWrite, .endpoint = 200})
+                         : word_frame(1U << 5U | 0x06U, 2, 8));  // another node number
+  return frames;
+}
+
+/// Firmware 6, datatypes.h: what moves a motor, configures one, or is forwarded to the commands of a maker's tool.
+std::vector<can_frame> foreign_to_vesc() {
+  std::vector<can_frame> frames;
+  for (const canid_t command : {0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 10U, 11U, 12U, 13U, 19U, 21U, 26U, 29U, 30U, 31U})
+    frames.push_back(word_frame(CAN_EFF_FLAG | command << 8U | 1U, 0, 4));
+  return frames;
+}
 
 Dialect odrive_dialect(const std::string& name, odrive::Firmware firmware, double estimates_period) {
   return {.name = name,
@@ -45,7 +65,7 @@ Dialect odrive_dialect(const std::string& name, odrive::Firmware firmware, doubl
                 pair.drive.drive.accept_unknown_watchdog = accepted;
                 add(rig, pair);
               },
-          .foreign = encode(1, odrive::SetInputTorque{.torque = 0.1}),
+          .foreign = foreign_to_odrive(firmware),
           .clears = [](const can_frame& frame) { return odrive::decode<odrive::v06::ClearErrors>(frame).has_value(); },
           .torque_step = 1.0e-6,
           .count = 2 * std::numbers::pi / 8192};
@@ -68,7 +88,9 @@ Dialect cia402_dialect(const std::string& name, cia402::ModeChoice mode, cia402:
                 pair.drive.drive.accept_unknown_watchdog = accepted;
                 add(rig, pair);
               },
-          .foreign = canopen::encode_nmt({.command = canopen::NmtCommand::kStart, .node = 0}),
+          .foreign = {canopen::encode_nmt({.command = canopen::NmtCommand::kStart, .node = 0}), word_frame(0x201, 0, 4),
+                      encode_sdo(canopen::SdoSide::kRequest, 1,
+                                 canopen::expedited_download({.index = 0x6040, .sub = 0}, 0x0F, 2))},
           .clears =
               [before = false](const can_frame& frame) mutable {
                 if (frame.can_id != 0x201) return false;
@@ -83,6 +105,7 @@ Dialect vesc_dialect() {
   return {.name = "Vesc",
           .add = [](DeviceRig& rig, std::uint8_t node, double clock_ppm) -> Device& {
             VescPair pair = vesc_pair(node);
+            pair.device.speed_gain = 1;
             pair.device.clock_ppm = clock_ppm;
             return add(rig, pair);
           },
@@ -93,7 +116,7 @@ Dialect vesc_dialect() {
                 pair.drive.drive.accept_unknown_watchdog = accepted;
                 add(rig, pair);
               },
-          .foreign = vesc::encode(1, vesc::SetCurrent{.current = 1}),
+          .foreign = foreign_to_vesc(),
           .clears = [](const can_frame&) { return false; },
           .torque_step = 0.01,
           .count = 2 * std::numbers::pi / 42,
@@ -294,15 +317,47 @@ TEST_P(DriveAndDevice, OneResetIsOneAttempt) {
 }
 
 TEST_P(DriveAndDevice, AForeignCommanderIsNamedAndTheJointCanStillBrake) {
+  for (const can_frame& frame : GetParam().foreign) {
+    SCOPED_TRACE(frame.can_id);
+    DeviceRig rig;
+    GetParam().add(rig, 1, 0);
+    ASSERT_TRUE(rig.runs());
+    rig.drive().receive(frame, rig.now_ns());
+    EXPECT_EQ(rig.drive().status().state, DriveState::kFault);
+    EXPECT_THAT(rig.drive().words(), HasSubstr("is commanded by another program"));
+    rig.command_all({.enabled = true, .torque = 1});
+    rig.run(0.02);
+    EXPECT_NEAR(rig.motor().torque, 1 / motor_per_joint(), GetParam().torque_step);
+  }
+}
+
+TEST_P(DriveAndDevice, APositionThatJumpsBeforeTheMotorHasTorqueIsAnotherZero) {
+  ASSERT_TRUE(rig_.run_until([this] { return state() == DriveState::kReady; }, 5)) << rig_.drive().words();
+  rig_.run(0.1);
+  const double before = rig_.drive().sample().joint.position;
+  device_->inject(DeviceFault::kOtherZero);
+  rig_.run(0.1);
   ASSERT_TRUE(rig_.runs());
-  const std::size_t foreign = rig_.bus().join([](const can_frame&, std::int64_t) {});
-  rig_.bus().send(foreign, GetParam().foreign);
-  rig_.run(0.02);
-  EXPECT_EQ(state(), DriveState::kFault);
-  EXPECT_THAT(rig_.drive().words(), HasSubstr("is commanded by another program"));
-  rig_.command_all({.enabled = true, .torque = 1});
-  rig_.run(0.02);
-  EXPECT_NEAR(rig_.motor().torque, 1 / motor_per_joint(), GetParam().torque_step);
+  rig_.run(0.1);
+  EXPECT_NEAR(rig_.drive().sample().joint.position, before, 0.1 * DeviceRig::kStepNs * 1.0e-9);
+}
+
+TEST_P(DriveAndDevice, BrakesByItselfWhenItsAnswersAreLost) {
+  ASSERT_TRUE(rig_.runs());
+  rig_.command_all({.enabled = true, .torque = 0.5});
+  rig_.run(0.2);
+  rig_.command_all({.enabled = true, .torque = 0.5, .brake_torque = 0.5, .brake_damping = 1});
+  rig_.answers = false;
+  rig_.run(0.05);
+  double speed = std::abs(rig_.motor().velocity);
+  for (int i = 0; i < 1500; ++i) {
+    rig_.cycle();
+    ASSERT_LE(std::abs(rig_.motor().velocity), speed + 0.01) << i;
+    speed = std::abs(rig_.motor().velocity);
+    if (GetParam().brakes_by_itself) continue;
+    ASSERT_LE(std::abs(rig_.motor().torque), std::abs(0.5 / motor_per_joint()) + GetParam().torque_step) << i;
+  }
+  EXPECT_LT(speed, 0.1);
 }
 
 TEST_P(DriveAndDevice, AUnknownReactionOnSilenceRefusesUnlessItIsAccepted) {

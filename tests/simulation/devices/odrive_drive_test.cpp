@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "drivers/can/odrive/odrive_messages_05.h"
 #include "drivers/can/odrive/odrive_messages_06.h"
 #include "simulation/devices/device_rig.h"
 
@@ -150,6 +151,77 @@ TEST(OdriveDrive, KeepsItsResolutionAfterManyTurnsWithoutAJump) {
       ASSERT_NEAR(rig.drive().sample().joint.position, rig.motor().position / 2.5 + offset, 0.0008);
     }
   }
+}
+
+/// An axis of firmware 0.5 that reports zeros until it closes its loop, and then `position` in turns.
+class ZeroUntilClosedLoop {
+ public:
+  explicit ZeroUntilClosedLoop(double position) : position_(position) {}
+
+  /// Runs one cycle of 10 ms.
+  void cycle(bool reset = false) {
+    now_ns_ += 10'000'000;
+    if (now_ns_ % 100'000'000 == 0) drive_.receive(encode(0, v05::Heartbeat{.state = state_}), now_ns_);
+    const double turns = state_ == AxisState::kClosedLoopControl ? position_ : 0;
+    drive_.receive(encode(0, EncoderEstimates{.position = kTurn * turns}), now_ns_);
+    FrameBatch send;
+    drive_.step({.enabled = true, .reset = reset}, now_ns_, send);
+    for (const can_frame& frame : send.frames()) {
+      if (const auto wanted = decode<SetAxisState>(frame); wanted && !is_remote_request(frame)) state_ = wanted->state;
+    }
+  }
+  OdriveDrive& drive() { return drive_; }
+  void lose_torque() { state_ = AxisState::kIdle; }
+
+ private:
+  static OdriveParameters parameters() {
+    OdriveParameters parameters = odrive_pair(0, Firmware::k05).drive;
+    parameters.estimates_period = 0.01;
+    return parameters;
+  }
+
+  double position_;
+  OdriveDrive drive_{parameters(), 0.01};
+  AxisState state_ = AxisState::kIdle;
+  std::int64_t now_ns_ = 0;
+};
+
+TEST(OdriveDrive, APositionIsNoZeroBeforeTheAxisIsInClosedLoop) {
+  for (const double turns : {12.34, -0.8, 3000.0}) {
+    ZeroUntilClosedLoop axis(turns);
+    for (int attempt = 0; attempt < 3; ++attempt) {
+      for (int i = 0; i < 300; ++i) axis.cycle(i == 0);
+      ASSERT_EQ(axis.drive().status().state, DriveState::kRunning) << axis.drive().words();
+      const double position = axis.drive().sample().joint.position;
+      for (int i = 0; i < 100; ++i) {
+        axis.cycle();
+        ASSERT_NEAR(axis.drive().sample().joint.position, position, 1.0e-9) << i;
+      }
+      axis.lose_torque();
+      for (int i = 0; i < 20; ++i) axis.cycle();
+      ASSERT_EQ(axis.drive().status().state, DriveState::kFault);
+    }
+  }
+}
+
+TEST(OdriveDrive, ThatTakesSpeedsBrakesByItselfWhenItsAnswersAreLost) {
+  OdrivePair pair = odrive_pair(2);
+  pair.drive.drive.takes_speeds = true;
+  pair.device.speed_gain = 0.1;
+  DeviceRig rig;
+  OdriveDevice& device = add(rig, pair);
+  ASSERT_TRUE(rig.runs());
+  rig.command_all({.enabled = true, .speed = 4});
+  rig.run(2);
+  ASSERT_NEAR(rig.motor().velocity, 10, 0.5);
+  rig.answers = false;
+  rig.run(2);
+  EXPECT_EQ(device.state(), AxisState::kClosedLoopControl);
+  EXPECT_NEAR(rig.motor().velocity, 0, 0.05);
+  rig.answers = true;
+  rig.run(1);
+  EXPECT_EQ(rig.drive().status().state, DriveState::kFault);
+  EXPECT_NEAR(rig.motor().velocity, 0, 0.05);
 }
 
 TEST(OdriveDrive, IsIdleAgainWhenItIsNotEnabled) {

@@ -77,7 +77,8 @@ void Cia402Drive::restart(bool reset, std::int64_t now_ns) noexcept {
 void Cia402Drive::receive(const can_frame& frame, std::int64_t now_ns) noexcept {
   if (!is_standard_data(frame)) return;
   const auto nmt = canopen::decode_nmt(frame);
-  if ((nmt && (nmt->node == 0 || nmt->node == node())) ||
+  const auto sdo = canopen::decode_sdo(canopen::SdoSide::kRequest, node(), frame);
+  if ((nmt && (nmt->node == 0 || nmt->node == node())) || (sdo && sdo->command == canopen::SdoCommand::kDownload) ||
       (set_up() && frame.can_id == setup_.pdos().command.cob_id(node()))) {
     return fail(DriveCause::kForeignCommander, "", frame.can_id);
   }

@@ -1,6 +1,7 @@
 #include "drivers/can/odrive/odrive_drive.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -15,28 +16,15 @@ namespace {
 constexpr std::int64_t kSlowNs = 100'000'000;     // of temperature and voltage
 constexpr std::int64_t kAddressNs = 20'000'000;   // in which a second drive would have answered
 constexpr std::int64_t kEnterNs = 3'000'000'000;  // more than any axis needs to enter closed loop
+constexpr std::int64_t kModeNs = 10'000'000;      // between repetitions of the mode in which a drive brakes
 constexpr double kMaxHeartbeats = 6.5;            // Five lost ones in a row happen once in 10⁶ at a loss of 5 %.
 constexpr double kVelocityMargin = 1.5;           // Torque mode reduces the torque before the limit.
 
-/// Messages to an axis that move it or change how it moves.
-constexpr bool commands_motion(std::uint8_t command) noexcept {
-  switch (command) {
-    case Estop::kCommand.number:
-    case SetAxisState::kCommand.number:
-    case SetControllerMode::kCommand.number:
-    case SetInputPosition::kCommand.number:
-    case SetInputVelocity::kCommand.number:
-    case SetInputTorque::kCommand.number:
-    case SetLimits::kCommand.number:
-    case v06::Reboot::kCommand.number:
-    case v06::ClearErrors::kCommand.number:
-    case v06::SetAbsolutePosition::kCommand.number:
-    case SetVelocityGains::kCommand.number:
-      return true;
-    default:
-      return false;
-  }
-}
+/// Commands that move an axis or change how it moves: Estop, Set_Axis_State, Set_Controller_Mode, Set_Input_Pos, _Vel
+/// and _Torque, Set_Limits, Start_Anticogging, three of trajectories, Reboot, Clear_Errors, and those of position and
+/// gains.
+constexpr std::array kMotionCommands{0x02, 0x07, 0x0B, 0x0C, 0x0D, 0x0E, 0x0F, 0x10,
+                                     0x11, 0x12, 0x13, 0x16, 0x18, 0x19, 0x1A, 0x1B};
 
 /// Returns the distance to the next float of this many turns, in rad.
 double float_step(double position) noexcept {
@@ -120,11 +108,17 @@ bool OdriveDrive::due(std::int64_t& next_ns, std::int64_t interval_ns, std::int6
   return true;
 }
 
+/// A command needs no data: a remote request under its identifier is one, too.
+bool OdriveDrive::is_foreign_command(const can_frame& frame) const noexcept {
+  if (std::ranges::find(kMotionCommands, command_of(frame)) != kMotionCommands.end()) return true;
+  if (firmware_ == Firmware::k05) return command_of(frame) == v06::Address::kCommand.number;  // there Set_Axis_Node_ID
+  const auto sdo = firmware_ == Firmware::k06 ? decode<v06::RxSdo>(frame) : std::nullopt;
+  return sdo && sdo->opcode == v06::RxSdo::kWrite;
+}
+
 void OdriveDrive::receive(const can_frame& frame, std::int64_t now_ns) noexcept {
-  if (!is_standard_data(frame) || node_of(frame) != node()) return;
-  if (commands_motion(command_of(frame))) {
-    return fail(DriveCause::kForeignCommander, "", frame.can_id);
-  }
+  if ((frame.can_id & ~(CAN_SFF_MASK | CAN_RTR_FLAG)) != 0 || node_of(frame) != node()) return;
+  if (is_foreign_command(frame)) return fail(DriveCause::kForeignCommander, "", frame.can_id & CAN_SFF_MASK);
   receive_heartbeat(frame, now_ns);
   receive_identity(frame);
   if (const auto estimates = decode<EncoderEstimates>(frame)) receive_estimates(*estimates, now_ns);
@@ -136,6 +130,7 @@ void OdriveDrive::receive_heartbeat(const can_frame& frame, std::int64_t now_ns)
   const auto heartbeat = decode<v06::Heartbeat>(frame);  // Error and state are at the same place in 0.5.
   if (!heartbeat) return;
   heartbeat_ns_ = now_ns;
+  if (axis_state_ != heartbeat->state) changed_ns_ = now_ns;
   axis_state_ = heartbeat->state;
   axis_error_ = heartbeat->error;
   if (phase_ == Phase::kHeartbeat) enter(Phase::kVersion);
@@ -196,8 +191,8 @@ void OdriveDrive::receive_error_details(const can_frame& frame) noexcept {
 
 void OdriveDrive::advance(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept {
   if (disabled()) {
-    send.add(input({}));
-    send_idle(now_ns, send);
+    send.add(brakes_by_itself() ? encode(node(), SetInputVelocity{}) : input({}));
+    brakes_by_itself() ? send_brake(command, now_ns, send) : send_idle(now_ns, send);
     if (due(next_details_ns_, kSlowNs, now_ns)) {
       send.add(request<v06::Error>(node()));
       if (firmware_ == Firmware::k05) {
@@ -291,13 +286,9 @@ void OdriveDrive::advance_power(const DriveCommand& command, std::int64_t now_ns
   if (tries_ < kZeroCycles) {
     ++tries_;
     const DriveParameters& drive = drive_parameters();
-    send.add(encode(node(),
-                    SetControllerMode{.control = drive.takes_speeds ? ControlMode::kVelocity : ControlMode::kTorque}));
-    const double velocity = parameters_.motor_velocity_limit > 0 ? parameters_.motor_velocity_limit
-                                                                 : kVelocityMargin * drive.velocity_limit * drive.gear;
-    const double current = drive.torque_limit / drive.gear / parameters_.torque_constant;
-    send.add(encode(node(), SetLimits{.velocity = velocity, .current = current}));
+    send_mode(drive.takes_speeds ? ControlMode::kVelocity : ControlMode::kTorque, drive.torque_limit, send);
   } else if (axis_state_ == AxisState::kClosedLoopControl && axis_error_ == 0) {
+    if (sample().stamp_ns <= changed_ns_) return;
     reset_ = false;
     enter(Phase::kRunning);
   } else if (now_ns > deadline_ns_) {
@@ -322,6 +313,24 @@ can_frame OdriveDrive::input(const DriveCommand& command) const noexcept {
   const double torque = motor_torque(command.torque);
   if (!drive_parameters().takes_speeds) return encode(node(), SetInputTorque{.torque = torque});
   return encode(node(), SetInputVelocity{.velocity = motor_speed(command.speed), .torque = torque});
+}
+
+/// `torque` is the limit, of the joint.
+void OdriveDrive::send_mode(ControlMode control, double torque, FrameBatch& send) const noexcept {
+  const DriveParameters& drive = drive_parameters();
+  const double velocity = parameters_.motor_velocity_limit > 0 ? parameters_.motor_velocity_limit
+                                                               : kVelocityMargin * drive.velocity_limit * drive.gear;
+  const double current = torque / drive.gear / parameters_.torque_constant;
+  send.add(encode(node(), SetControllerMode{.control = control}));
+  send.add(encode(node(), SetLimits{.velocity = velocity, .current = current}));
+}
+
+/// Without an integrator the gain of the speed is the damping of a brake.
+void OdriveDrive::send_brake(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept {
+  const DriveParameters& drive = drive_parameters();
+  if (drive.takes_speeds || !due(next_request_ns_, kModeNs, now_ns)) return;
+  send.add(encode(node(), SetVelocityGains{.gain = command.brake_damping / (drive.gear * drive.gear)}));
+  send_mode(ControlMode::kVelocity, command.brake_torque, send);
 }
 
 void OdriveDrive::send_idle(std::int64_t now_ns, FrameBatch& send) noexcept {

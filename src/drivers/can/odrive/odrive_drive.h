@@ -8,7 +8,10 @@
 /// The zero input is sent in every cycle before closed loop, because the axis executes the last set-point that it has
 /// received. That may be one of an earlier program. In closed loop the state of each heartbeat is judged: an axis may
 /// become idle without an error. Errors are cleared before closed loop is requested. An ODrive whose watchdog expires
-/// becomes idle: the joint coasts.
+/// becomes idle: the joint coasts. Firmware 0.5 may report a position of zero until the axis is in closed loop, so
+/// `running` begins with a position that came after this state.
+///
+/// An axis with torque brakes in a fault by its own loop of the speed, whose gain is then the damping of the brake.
 ///
 /// The position is a float of turns, whose step grows with the number of turns. If the step exceeds max_position_step,
 /// the position of the drive is set back by whole turns as soon as the axis has rested for kRestNs. The position of the
@@ -46,6 +49,7 @@ class OdriveDrive final : public Drive {
   void add_details(DriveStatus& status) const noexcept override;
   std::string code_words(const DriveStatus& status) const override;
 
+  bool is_foreign_command(const can_frame& frame) const noexcept;
   void receive_heartbeat(const can_frame& frame, std::int64_t now_ns) noexcept;
   void receive_identity(const can_frame& frame) noexcept;
   void receive_estimates(const EncoderEstimates& estimates, std::int64_t now_ns) noexcept;
@@ -63,6 +67,8 @@ class OdriveDrive final : public Drive {
   void set_position(double position, FrameBatch& send) const noexcept;
   void clear_errors(std::int64_t now_ns, FrameBatch& send) noexcept;
   can_frame input(const DriveCommand& command) const noexcept;
+  void send_mode(ControlMode control, double torque, FrameBatch& send) const noexcept;
+  void send_brake(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept;
   void send_idle(std::int64_t now_ns, FrameBatch& send) noexcept;
   bool due(std::int64_t& next_ns, std::int64_t interval_ns, std::int64_t now_ns) const noexcept;
   std::uint8_t node() const noexcept { return static_cast<std::uint8_t>(drive_parameters().node); }
@@ -80,6 +86,7 @@ class OdriveDrive final : public Drive {
 
   std::int64_t heartbeat_ns_ = 0;
   std::int64_t cleared_ns_ = 0;  // when the drive was last asked to clear its errors
+  std::int64_t changed_ns_ = 0;  // when a heartbeat first had this state of the axis
   AxisState axis_state_ = AxisState::kUndefined;
   std::uint32_t axis_error_ = 0;
   std::array<std::uint64_t, 4> details_{};  // motor, encoder and controller of 0.5; disarm reason of 0.6

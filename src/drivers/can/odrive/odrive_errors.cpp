@@ -64,11 +64,6 @@ constexpr NamedBit kEncoderNames05[] = {
     {0x100, "ABS_SPI_NOT_READY"}, {0x200, "HALL_NOT_CALIBRATED_YET"},
 };
 
-constexpr NamedBit kSensorlessNames05[] = {
-    {0x1, "UNSTABLE_GAIN"},
-    {0x2, "UNKNOWN_CURRENT_MEASUREMENT"},
-};
-
 constexpr NamedBit kControllerNames05[] = {
     {0x1, "OVERSPEED"},
     {0x2, "INVALID_INPUT_MODE"},
@@ -113,8 +108,6 @@ std::span<const NamedBit> names_of(ErrorKind kind) {
       return kMotorNames05;
     case ErrorKind::kEncoder05:
       return kEncoderNames05;
-    case ErrorKind::kSensorless05:
-      return kSensorlessNames05;
     case ErrorKind::kController05:
       return kControllerNames05;
     case ErrorKind::kAny06:

@@ -7,14 +7,12 @@
 
 namespace robot_control::odrive {
 
-/// The message that an error came with. Sensorless: v05::SensorlessError.
-enum class ErrorKind : std::uint8_t { kAxis05, kMotor05, kEncoder05, kSensorless05, kController05, kAny06 };
+/// The message that an error came with.
+enum class ErrorKind : std::uint8_t { kAxis05, kMotor05, kEncoder05, kController05, kAny06 };
 
 /// Bits with a reaction of the driver: the axis errors of v05::Heartbeat, the errors of v06::Heartbeat and v06::Error.
 inline constexpr std::uint32_t kWatchdogExpired05 = 0x800, kWatchdogExpired06 = 0x0100'0000;
 inline constexpr std::uint32_t kEstopRequested05 = 0x4000, kEstopRequested06 = 0x0200'0000;
-inline constexpr std::uint32_t kOverTemperature05 = 0x40000;
-inline constexpr std::uint32_t kOverTemperature06 = 0x6000;  ///< motor or inverter
 inline constexpr std::uint32_t kUnderVoltage06 = 0x200;
 
 /// Returns the names of the set bits with a blank between them, unknown bits as a hexadecimal number. "NONE" is 0.

@@ -55,20 +55,6 @@ struct SetControllerMode {
   }
 };
 
-/// The feed-forward values saturate at ± 32.768 turns/s and ± 32.768 N·m, in the firmware's default scale.
-struct SetInputPosition {
-  static constexpr Command kCommand = to_axis(0x0C);
-  double position = 0;  ///< rad
-  double velocity = 0;  ///< feed-forward, rad/s
-  double torque = 0;    ///< feed-forward, N·m
-
-  static constexpr auto layout() {
-    return std::tuple{wire_float(&SetInputPosition::position, 0, kTurn),
-                      wire_signed(&SetInputPosition::velocity, 32, 16, 0.001 * kTurn),
-                      wire_signed(&SetInputPosition::torque, 48, 16, 0.001)};
-  }
-};
-
 struct SetInputVelocity {
   static constexpr Command kCommand = to_axis(0x0D);
   double velocity = 0;  ///< rad/s

@@ -39,19 +39,6 @@ struct EncoderError {
   static constexpr auto layout() { return std::tuple{wire_unsigned(&EncoderError::error, 0, 32)}; }
 };
 
-struct SensorlessError {
-  static constexpr Command kCommand = from_axis(0x05);
-  std::uint32_t error = 0;
-
-  static constexpr auto layout() { return std::tuple{wire_unsigned(&SensorlessError::error, 0, 32)}; }
-};
-
-struct Reboot {
-  static constexpr Command kCommand = to_axis(0x16);
-
-  static constexpr auto layout() { return std::tuple{}; }
-};
-
 struct ClearErrors {
   static constexpr Command kCommand = to_axis(0x18);
 

@@ -96,14 +96,6 @@ struct Temperature {
   }
 };
 
-struct Reboot {
-  static constexpr Command kCommand = to_axis(0x16);
-  static constexpr std::uint8_t kReboot = 0;
-  std::uint8_t action = kReboot;
-
-  static constexpr auto layout() { return std::tuple{wire_unsigned(&Reboot::action, 0, 8)}; }
-};
-
 struct ClearErrors {
   static constexpr Command kCommand = to_axis(0x18);
   std::uint8_t identify = 0;  ///< 1: the drive blinks

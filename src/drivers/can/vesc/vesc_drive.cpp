@@ -85,6 +85,7 @@ void VescDrive::receive_position(const Status5& status, std::int64_t now_ns) noe
   position_ -= (std::abs(beyond) > count_ ? 1 : kCorrected) * beyond;
   position_ns_ = now_ns;
   accept_position(position_, velocity_, now_ns);
+  if (!running_) return;
   compared_travel_ += travel;
   compare_units(count_ * static_cast<double>(*counts_ - before));
 }
@@ -109,7 +110,7 @@ const char* VescDrive::missing_message(std::int64_t now_ns) const noexcept {
 
 void VescDrive::advance(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept {
   const bool drives = running_ && command.enabled && !disabled();
-  send.add(drives ? order(command) : encode(node(), SetCurrent{}));
+  send.add(drives ? order(command) : brakes_by_itself() ? brake(command) : encode(node(), SetCurrent{}));
   if (disabled()) return;
   if (const char* missing = missing_message(now_ns)) {
     if (running_) return fail(DriveCause::kSilent, missing);
@@ -146,6 +147,12 @@ can_frame VescDrive::order(const DriveCommand& command) const noexcept {
     return encode(node(), SetSpeed{.speed = motor_speed(command.speed) * static_cast<double>(parameters_.pole_pairs)});
   }
   return encode(node(), SetCurrent{.current = motor_torque(command.torque) / parameters_.torque_constant});
+}
+
+can_frame VescDrive::brake(const DriveCommand& command) const noexcept {
+  if (drive_parameters().takes_speeds) return encode(node(), SetSpeed{});
+  return encode(node(),
+                SetBrakeCurrent{.current = std::abs(motor_torque(command.brake_torque)) / parameters_.torque_constant});
 }
 
 std::string VescDrive::code_words(const DriveStatus& status) const {

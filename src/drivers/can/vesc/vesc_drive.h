@@ -14,7 +14,9 @@
 ///
 /// The fault codes of a VESC are not on CAN. So a drive that gives no current for kReleasedNs is in fault where its
 /// order needs one. Such an order is a current of at least kMinCurrent below the velocity limit, or a speed that is off
-/// by kMaxLag of that limit. Then it is ordered no current until the reset, so that it does not obey again by itself.
+/// by kMaxLag of that limit. Then it does not obey again by itself until the reset.
+///
+/// In a fault it is ordered the speed zero, or a brake current, which needs no measurement of this program.
 
 #include <cstdint>
 #include <optional>
@@ -53,6 +55,7 @@ class VescDrive final : public Drive {
   bool needs_current(const DriveCommand& command) const noexcept;
   void judge_release(const DriveCommand& command, std::int64_t now_ns) noexcept;
   can_frame order(const DriveCommand& command) const noexcept;
+  can_frame brake(const DriveCommand& command) const noexcept;
   std::uint8_t node() const noexcept { return static_cast<std::uint8_t>(drive_parameters().node); }
 
   VescParameters parameters_;

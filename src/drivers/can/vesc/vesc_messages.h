@@ -93,10 +93,12 @@ struct Status5 {
   }
 };
 
-/// Returns whether the command moves a motor: duty, current, brake current, speed, position (0 … 4), and the relative
-/// and holding currents (10 … 13).
+/// Returns whether a controller obeys the command. It moves a motor by duty, current, brake current, speed and position
+/// (0 … 4) and by relative and holding currents (10 … 13). A maker's tool is forwarded by another controller (5 … 8).
+/// The others detect the motor (19), limit currents, speeds and battery (21 … 26, 29, 30), and shut down (31).
 constexpr bool commands_motion(std::uint32_t command) noexcept {
-  return command <= 4 || (command >= 10 && command <= 13);
+  return command <= 8 || (command >= 10 && command <= 13) || command == 19 || (command >= 21 && command <= 26) ||
+         (command >= 29 && command <= 31);
 }
 
 template <class Message>

@@ -39,7 +39,7 @@ std::string SerialFront::inject(std::string_view component, std::string_view kin
       return "";
     }
   }
-  return "component must be " + fault_words() + " or line (with " + kSerialFaultWords + ")";
+  return "component must be " + fault_words() + " or line (with " + kSerialFaultWords + ", " + kAnswerFaultWords + ")";
 }
 
 }  // namespace robot_control

@@ -13,8 +13,10 @@ constexpr std::int64_t kFirstBytesNs = 100'000;  // bytes that arrive within thi
 
 std::optional<SerialFaults> serial_faults(std::string_view word) {
   const auto is = [word](auto... words) { return ((word == words) || ...); };
-  if (!is("ok", "lossy", "late", "disturbed", "partial", "stalled", "cut")) return std::nullopt;
   SerialFaults faults;
+  faults.answers = answer_fault(word);
+  if (faults.answers == AnswerFault::kNone && !is("ok", "lossy", "late", "disturbed", "partial", "stalled", "cut"))
+    return std::nullopt;
   faults.message_loss = is("lossy", "disturbed") ? 0.05 : 0;
   faults.bit_errors = is("lossy", "disturbed") ? 0.01 : 0;
   faults.jitter_ns = is("late", "disturbed") ? 3'000'000 : 0;
@@ -47,20 +49,23 @@ bool VirtualSerial::receive(Way& way, SerialChunk& chunk) const noexcept {
 
 bool VirtualSerial::send(Way& way, std::span<const std::uint8_t> bytes) {
   if (faults_.cut) return false;
-  if (chance() < faults_.message_loss) return true;
+  const AnswerFault fault = &way == &to_driver_ ? faults_.answers : AnswerFault::kNone;
+  if (fault == AnswerFault::kLost || chance() < faults_.message_loss) return true;
   const bool partial = faults_.partial && chance() < kPartialWrites;
   const std::size_t taken = partial ? bytes.size() / 2 : bytes.size();
-  const bool damaged = chance() < faults_.bit_errors;
+  const bool damaged = chance() < faults_.bit_errors || fault == AnswerFault::kDamaged;
   const std::size_t damage = random_() % (8 * std::max<std::size_t>(1, taken));
   const auto late_ns = faults_.delay_ns + static_cast<std::int64_t>(chance() * static_cast<double>(faults_.jitter_ns));
-  std::int64_t time_ns = std::max(now_ns_ + late_ns, way.free_ns);
-  for (std::size_t i = 0; i < taken; ++i) {
+  const std::int64_t due_ns = now_ns_ + late_ns + (fault == AnswerFault::kLate ? kLateAnswerNs : 0);
+  std::int64_t time_ns = std::max(due_ns, way.free_ns);
+  const auto carry = [&](unsigned byte) {
     time_ns += byte_ns_;
-    if (faults_.byte_loss > 0 && chance() < faults_.byte_loss) continue;
-    const unsigned flip = damaged && damage / 8 == i ? 1U << damage % 8 : 0U;
-    if (way.written - way.taken == kBufferBytes) continue;
-    way.bytes[way.written++ % kBufferBytes] = {time_ns, static_cast<std::uint8_t>(bytes[i] ^ flip)};
-  }
+    if (faults_.byte_loss > 0 && chance() < faults_.byte_loss) return;
+    if (way.written - way.taken == kBufferBytes) return;
+    way.bytes[way.written++ % kBufferBytes] = {time_ns, static_cast<std::uint8_t>(byte)};
+  };
+  if (fault == AnswerFault::kShifted) carry(static_cast<unsigned>(random_() % 256));
+  for (std::size_t i = 0; i < taken; ++i) carry(bytes[i] ^ (damaged && damage / 8 == i ? 1U << damage % 8 : 0U));
   way.free_ns = time_ns;
   return !partial;
 }

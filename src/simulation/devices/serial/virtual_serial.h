@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "drivers/serial/serial_line.h"
+#include "simulation/devices/answer_faults.h"
 
 namespace robot_control {
 
@@ -23,10 +24,11 @@ struct SerialFaults {
   bool partial = false;     ///< A message is taken in part, as by a full buffer, one time in ten.
   bool stalled = false;
   bool cut = false;
+  AnswerFault answers = AnswerFault::kNone;  ///< of all messages to the driver
 };
 
 /// The words of `inject`: lossy (5 % of the messages are lost, 1 % damaged), late (3 ms of jitter), disturbed (both),
-/// partial (writes are taken in part).
+/// partial (writes are taken in part). Those of AnswerFault are words, too.
 inline constexpr const char* kSerialFaultWords = "ok, lossy, late, disturbed, partial, stalled, cut";
 
 /// Returns nothing for another word.
