@@ -110,7 +110,11 @@ def test_a_stuck_encoder_stops_the_robot(rate):
 
 
 @at_every_rate
-def test_a_quadruped_stands_leans_and_folds(rate):
+def test_a_quadruped_stands_leans_and_folds_or_its_rate_is_refused(rate):
+    if rate < 100:
+        with pytest.raises(ParameterError, match=r"a robot on legs falls below 100 Hz"):
+            loop_at(rate, urdf=QUADBOT)
+        return
     loop = loop_at(rate, urdf=QUADBOT)
     loop.run(0.5)
     loop.set_posture("standing")
@@ -127,6 +131,24 @@ def test_a_quadruped_stands_leans_and_folds(rate):
     fold = loop.run(3.0)
     assert np.abs(fold["truth_tilt"]).max() < 0.15
     assert fold["permit_causes"][-1] == E_STOP
+
+
+@pytest.mark.parametrize(
+    ("gait", "twist"), [(None, (0.5, 0.0, 0.0)), (None, (0.3, 0.2, 0.5)), ("crawl", (0.2, 0.0, 0.0))]
+)
+@pytest.mark.parametrize("rate", [100, 150, 200, 300, 500, 2000])
+def test_a_quadruped_walks(rate, gait, twist):
+    loop = loop_at(rate, {"contact_sensors": False}, urdf=QUADBOT)
+    loop.run(3.0, (0.0, 0.0))
+    if gait is not None:
+        loop.set_gait(gait)
+    log = loop.run(6.0, twist)
+    assert not stopped(log).any()
+    assert np.abs(log["truth_tilt"]).max() < 0.1
+    steady = log["time"] > log["time"][0] + 4.0
+    assert np.mean(log["truth_linear"][steady]) == pytest.approx(twist[0], rel=0.05)
+    loop.inject_fault("rear_left_knee_joint_motor", "off")
+    assert stopped(loop.run(2.0, twist)).any(), "what a motor gives is judged at any rate"
 
 
 @pytest.mark.parametrize("dialect", ["odrive", "cia402"])

@@ -1,5 +1,6 @@
 #include "control/legged/leg_tuning.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -29,6 +30,30 @@ double standing_height(const LegModel& robot) noexcept {
   return height * robot.leg_length();
 }
 
+/// Returns the time in s in which the body rises above its feet, and no joint is faster than kOfLimit of its limit.
+double fastest_rise(const LegModel& robot) noexcept {
+  constexpr int kSamples = 20;
+  double time = 0;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const LegKinematics& kinematics = robot.legs[leg].kinematics;
+    const LegGeometry& geometry = kinematics.geometry();
+    Eigen::Vector3d foot = kinematics.position(robot.legs[leg].lying);
+    const double lying = robot.belly + robot.legs[leg].foot_radius;
+    const double way = lying - (geometry.hip.z() + geometry.upper.z() - standing_height(robot));
+    for (int i = 1; i < kSamples; ++i) {
+      const double s = static_cast<double>(i) / kSamples;
+      foot.z() = lying - s * s * (3 - 2 * s) * way;
+      Eigen::Vector3d reached;
+      const Eigen::Vector3d rates =
+          kinematics.jacobian(kinematics.inverse(foot).angles, reached).inverse().col(2) * (6 * s * (1 - s) * way);
+      for (std::size_t j = 0; j < kLegJoints; ++j)
+        time = std::max(time, std::abs(rates[static_cast<Eigen::Index>(j)]) /
+                                  (kOfLimit * robot.joints[kLegJoints * leg + j].velocity_limit));
+    }
+  }
+  return time;
+}
+
 }  // namespace
 
 LoadedKnee loaded_knee(const LegModel& robot) noexcept {
@@ -42,8 +67,7 @@ LegTuning leg_tuning(const LegModel& robot) noexcept {
   LegTuning tuning;
   tuning.stiffness = 60 * mass * length;
   tuning.damping = 2 * mass * length * time;
-  tuning.gather_speed = 3 / time;
-  tuning.rise_time = 1.3 * time;
+  tuning.rise_time = std::max(1.3 * time, fastest_rise(robot));
   tuning.height = standing_height(robot);
   tuning.lift = 0.08 * length;
   tuning.sway = 0.12 * robot.leg_length();
@@ -56,7 +80,6 @@ LegTuning leg_tuning(const LegModel& robot) noexcept {
 }
 
 std::array<JointBounds, kLegsJoints> joint_bounds(const LegModel& robot) noexcept {
-  constexpr double kOfLimit = 0.9;  // the gate clamps above it
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const AxisBounds motion = leg_tuning(robot).joint;
   std::array<JointBounds, kLegsJoints> bounds;
