@@ -137,6 +137,7 @@ TEST_F(LeggedConditionsTest, JointsBeyondTheirLimitsByTurnsAreNoStop) {
     sensors_.joints[i].effort = 0.95 * robot_.joints[i].effort_limit;
   };
   EXPECT_EQ(run(2, [&](double t) { beyond(t, 2); }), 2) << causes(Reaction::kBrake) << causes(Reaction::kRamp);
+  conditions_.enter_run();
   EXPECT_NEAR(run(2, [&](double t) { beyond(t, 1); }), 0.049, 1e-6);
   // Two hips are beyond their end stops by turns, where a hand turns them to and fro.
   sensors_ = healthy;
@@ -150,6 +151,24 @@ TEST_F(LeggedConditionsTest, JointsBeyondTheirLimitsByTurnsAreNoStop) {
                 }),
             2)
       << causes(Reaction::kBrake);
+}
+
+// A body that a late loop let down for some cycles meets the ground. Nothing else hit it.
+TEST_F(LeggedConditionsTest, TheBlowOfItsOwnFoldIsNoImpact) {
+  const auto shaken = [&](double braked, double hit) {
+    conditions_.enter_run();
+    sensors_.imu.linear_acceleration[1] = 0;
+    run(0.8);
+    return run(1, [&, braked, hit](double t) {
+      sensors_.gate.verdict = t < braked ? GateVerdict::kBrake : GateVerdict::kPassed;
+      const bool now = t > hit && t < hit + 0.02;
+      sensors_.imu.linear_acceleration[1] = now ? 100 : 0;
+    });
+  };
+  EXPECT_EQ(shaken(0.01, 0.2), 1) << causes(Reaction::kBrake);
+  EXPECT_NEAR(shaken(0.01, 0.6), 0.61, 0.005);
+  EXPECT_EQ(causes(Reaction::kBrake), "impact");
+  EXPECT_NEAR(shaken(-1, 0.2), 0.21, 0.005);
 }
 
 TEST_F(LeggedConditionsTest, ANumberThatIsMissingIsNotEvaluated) {

@@ -1,10 +1,10 @@
 #include "control/legged/leg_tuning.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "control/legged/walking/walking_speed.h"
 #include "machine/gravity.h"
 
 namespace robot_control {
@@ -32,23 +32,18 @@ double standing_height(const LegModel& robot) noexcept {
 
 /// Returns the time in s in which the body rises above its feet, and no joint is faster than kOfLimit of its limit.
 double fastest_rise(const LegModel& robot) noexcept {
-  constexpr int kSamples = 20;
+  constexpr int kParts = 20;
   double time = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const LegKinematics& kinematics = robot.legs[leg].kinematics;
-    const LegGeometry& geometry = kinematics.geometry();
-    Eigen::Vector3d foot = kinematics.position(robot.legs[leg].lying);
-    const double lying = robot.belly + robot.legs[leg].foot_radius;
-    const double way = lying - (geometry.hip.z() + geometry.upper.z() - standing_height(robot));
-    for (int i = 1; i < kSamples; ++i) {
-      const double s = static_cast<double>(i) / kSamples;
-      foot.z() = lying - s * s * (3 - 2 * s) * way;
-      Eigen::Vector3d reached;
-      const Eigen::Vector3d rates =
-          kinematics.jacobian(kinematics.inverse(foot).angles, reached).inverse().col(2) * (6 * s * (1 - s) * way);
-      for (std::size_t j = 0; j < kLegJoints; ++j)
-        time = std::max(time, std::abs(rates[static_cast<Eigen::Index>(j)]) /
-                                  (kOfLimit * robot.joints[kLegJoints * leg + j].velocity_limit));
+    const LegGeometry& geometry = robot.legs[leg].kinematics.geometry();
+    Eigen::Vector3d foot = robot.legs[leg].kinematics.position(robot.legs[leg].lying);
+    const double lies = robot.belly + robot.legs[leg].foot_radius;
+    const double way = lies - (geometry.hip.z() + geometry.upper.z() - standing_height(robot));
+    for (int i = 1; i < kParts; ++i) {
+      const double s = static_cast<double>(i) / kParts;
+      foot.z() = lies - s * s * (3 - 2 * s) * way;
+      const double part = needed_speed(robot, leg, foot, {0, 0, -6 * s * (1 - s) * way});
+      if (std::isfinite(part)) time = std::max(time, part / kOfLimit);
     }
   }
   return time;

@@ -105,7 +105,7 @@ inline constexpr double kBeyondRobots = 1e9;  ///< kg, m, kg·m²: larger number
 RigidBodies read_rigid_bodies(const RobotDescription& description,
                               double endless = std::numeric_limits<double>::infinity());
 
-/// Returns the bodies of all joints that move, whatever they weigh: what tells the kind of a robot.
+/// Returns the bodies of all joints that move, whatever they weigh. The kind of a robot follows from them.
 RigidBodies read_moving_bodies(const RobotDescription& description);
 
 /// Returns the mass of all bodies in kg.

@@ -117,50 +117,36 @@ LegGeometry geometry_of(const RigidBodies& robot, const Chain& chain, const Eige
   return geometry;
 }
 
+LegKinematics bent(LegGeometry geometry, double bend) {
+  geometry.bend = bend;
+  return LegKinematics(geometry);
+}
+
 /// Returns the part of the knee's range that bends it to the side of `bend`, in rad.
 double room(const LegGeometry& geometry, double bend) {
-  LegGeometry one_way = geometry;
-  one_way.bend = bend;
-  const JointRange range = LegKinematics(one_way).range(2);
+  const JointRange range = bent(geometry, bend).range(2);
   return range.upper - range.lower;
 }
 
 /// Returns whether the ranges of thigh and knee let the leg stand on a foot below its second joint, bent to this side.
 bool stands(const LegGeometry& geometry, double bend) {
-  LegGeometry one_way = geometry;
-  one_way.bend = bend;
-  const LegKinematics leg(one_way);
-  Eigen::Vector3d foot = geometry.hip + geometry.upper;
-  foot.y() += geometry.lower.y() + geometry.foot.y();
-  foot.z() -= kStanding * leg.length();
-  return leg.reached(foot).has_value();
+  const LegKinematics leg = bent(geometry, bend);
+  const Eigen::Vector3d below(0, geometry.lower.y() + geometry.foot.y(), -kStanding * leg.length());
+  return leg.reached(geometry.hip + geometry.upper + below).has_value();
 }
 
 double bend_of(const RigidBodies& robot, const LegGeometry& geometry, const Chain& chain, bool front, KneeBend wanted) {
   const double middle = front ? -1 : 1;
-  const bool forward = room(geometry, 1) >= kBothWays, backward = room(geometry, -1) >= kBothWays;
-  double bend = middle;
-  switch (wanted) {
-    case KneeBend::kDerived:
-      if (forward && backward && !stands(geometry, middle) && stands(geometry, -middle)) return -middle;
-      if (forward != backward) bend = forward ? 1 : -1;
-      if (!forward && !backward) bend = room(geometry, 1) >= room(geometry, -1) ? 1 : -1;
-      return bend;
-    case KneeBend::kMiddle:
-      break;
-    case KneeBend::kOutwards:
-      bend = -middle;
-      break;
-    case KneeBend::kForward:
-      bend = 1;
-      break;
-    case KneeBend::kBackward:
-      bend = -1;
-      break;
+  if (wanted == KneeBend::kDerived) {
+    const double forward = room(geometry, 1), backward = room(geometry, -1);
+    if (std::min(forward, backward) < kBothWays) return forward >= backward ? 1 : -1;
+    return !stands(geometry, middle) && stands(geometry, -middle) ? -middle : middle;
   }
-  if (bend > 0 ? forward : backward) return bend;
+  const bool forward = wanted == KneeBend::kForward || wanted == (front ? KneeBend::kOutwards : KneeBend::kMiddle);
+  const double bend = forward ? 1 : -1;
+  if (room(geometry, bend) >= kBothWays) return bend;
   refuse(robot.source, joint_element(robot.bodies[chain[2]].joint.name),
-         std::string("robot/knee_bend lets this knee point ") + (bend > 0 ? "forward" : "backward") +
+         std::string("robot/knee_bend lets this knee point ") + (forward ? "forward" : "backward") +
              ", which its range does not allow",
          "Leave robot/knee_bend out, or set the other side");
 }
