@@ -25,7 +25,10 @@ std::string ScanWatch::structure_problem(const Scan& scan) const {
         "scan has angle_max %.3f rad, and its last ray is at %.3f rad: angle_min + angle_increment x (rays - 1)",
         scan.angle_max, last);
   }
-  if (!(scan.range_min >= 0 && scan.range_min < scan.range_max && std::isfinite(scan.range_max))) {
+  if (!std::isfinite(scan.range_max)) {
+    return text("scan has range_max %g m: it must be finite, set that of the laser's driver", scan.range_max);
+  }
+  if (!(scan.range_min >= 0 && scan.range_min < scan.range_max)) {
     return text("scan has range_min %g m and range_max %g m: 0 <= range_min < range_max must hold", scan.range_min,
                 scan.range_max);
   }

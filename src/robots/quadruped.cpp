@@ -39,6 +39,11 @@ void Quadruped::require_drivable() const {
     throw ParameterError(
         "robot.driver: motor drives move robots on wheels alone. Leave robot.driver and robot.drives out");
   }
+  if (parameters_.loop.rate < kMinWalkingRate) {
+    throw ParameterError("robot.rate = " + shortest(parameters_.loop.rate) + " Hz: a robot on legs falls below " +
+                         shortest(kMinWalkingRate) +
+                         " Hz, because the forces of its feet change too late. Set at least that");
+  }
   const auto rounded = [](double value) { return shortest(std::round(100 * value) / 100); };
   if (const std::optional<LegPlace> leg = short_leg(machine_)) {
     throw ParameterError(machine_.source + ": the leg " + name_of(*leg) +

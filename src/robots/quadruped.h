@@ -19,6 +19,8 @@
 
 namespace robot_control {
 
+inline constexpr double kMinWalkingRate = 100;  ///< Hz of robot.rate (docs/evidence/legs.md)
+
 class Quadruped : public Robot {
  public:
   static constexpr double kFoldTime = 1.25;        ///< s

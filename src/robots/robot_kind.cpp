@@ -10,7 +10,7 @@
 namespace robot_control {
 
 MachineKind kind_of(const RobotDescription& description) {
-  return has_legs(read_rigid_bodies(description)) ? MachineKind::kOnLegs : MachineKind::kOnWheels;
+  return has_legs(read_moving_bodies(description)) ? MachineKind::kOnLegs : MachineKind::kOnWheels;
 }
 
 std::unique_ptr<MachineModel> read_robot(const RobotDescription& description, const Parameters& parameters) {

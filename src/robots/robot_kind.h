@@ -15,7 +15,7 @@ namespace robot_control {
 
 enum class MachineKind { kOnWheels, kOnLegs };
 
-/// Throws RobotError as read_rigid_bodies.
+/// Throws RobotError as read_moving_bodies.
 MachineKind kind_of(const RobotDescription& description);
 
 /// Returns the machine of its kind: a DriveTrain or a LegModel. Throws RobotError as read_drive_train or read_legs.

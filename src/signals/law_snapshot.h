@@ -22,7 +22,7 @@ inline constexpr std::array<std::string_view, kLaws> kLawNames{"gate", "estimato
 /// The distance of two snapshots of a law in cycles. It is half the length of a trace ring (bus/ring.h). So telemetry
 /// that begins to read finds a snapshot in the ring, and all later rows can be replayed.
 inline constexpr std::uint64_t kSnapshotCycles = 1024;
-inline constexpr std::size_t kSnapshotBytes = 40 * 1024;  ///< bytes of the longest state; that of the monitor has 30 KB
+inline constexpr std::size_t kSnapshotBytes = 48 * 1024;  ///< bytes of the longest state; that of the monitor has 42 KB
 
 /// A snapshot is taken in a node's first two cycles, in the first cycle of a run and every kSnapshotCycles. It is taken
 /// before the step of that cycle, after enter_run of gate, estimator and controller, before set_pose and tune.

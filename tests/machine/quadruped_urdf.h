@@ -8,6 +8,8 @@
 
 namespace robot_control {
 
+inline constexpr const char* kSmall = "ixx=\"0.001\" iyy=\"0.001\" izz=\"0.001\" ixy=\"0\" ixz=\"0\" iyz=\"0\"";
+
 inline std::string leg(const std::string& place, double x, double y) {
   const auto text = [](double value) { return std::to_string(value); };
   const std::string names[3] = {place + "_hip", place + "_thigh", place + "_calf"};
@@ -19,9 +21,7 @@ inline std::string leg(const std::string& place, double x, double y) {
   const std::string places[3] = {text(x) + " " + text(y) + " 0", "0 " + text(y > 0 ? 0.08 : -0.08) + " 0", "0 0 -0.21"};
   std::string content, parent = "trunk";
   for (std::size_t i = 0; i < 3; ++i) {
-    content +=
-        link(names[i], inertial("0.5", "ixx=\"0.001\" iyy=\"0.001\" izz=\"0.001\" ixy=\"0\" ixz=\"0\" iyz=\"0\"") +
-                           (i < 2 ? collision(shapes[i]) : std::string()));
+    content += link(names[i], inertial("0.5", kSmall) + (i < 2 ? collision(shapes[i]) : std::string()));
     content += joint({.name = names[i] + "_joint",
                       .child = names[i],
                       .xyz = places[i],

@@ -258,6 +258,13 @@ TEST(RobotRefusals, AChainOfTooManyLinks) {
   EXPECT_THAT(refusal_of(robot_of(text)), HasSubstr("20003 links. At most 2000 are read"));
 }
 
+TEST(RobotRefusals, TooManyShapes) {
+  std::string shapes;
+  for (int i = 0; i < 60000; ++i) shapes += collision("<box size=\"0.1 0.1 0.1\"/>");
+  EXPECT_THAT(refusal_of(robot_of(two_wheels() + link("heap", shapes))),
+              HasSubstr("60002 shapes. At most 4000 are read"));
+}
+
 TEST(RobotRefusals, AnAxisWithoutDirection) {
   EXPECT_THAT(refusal(diffbot_with(kFirstJoint, "<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 0 0\"/>")),
               names("left_wheel_joint", "axis"));

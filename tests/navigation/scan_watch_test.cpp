@@ -36,6 +36,7 @@ TEST_F(ScanWatchTest, EachMessageThatIsNoScanIsRefused) {
   EXPECT_THAT(refusal([&](Scan& scan) { scan.angle_min = nan; }), HasSubstr("both must be finite"));
   EXPECT_THAT(refusal([](Scan& scan) { scan.angle_increment = 0.1; }), HasSubstr("covers 35.9 rad"));
   EXPECT_THAT(refusal([](Scan& scan) { scan.range_max = 0; }), HasSubstr("range_max 0 m"));
+  EXPECT_THAT(refusal([](Scan& scan) { scan.range_max = HUGE_VAL; }), HasSubstr("range_max inf m: it must be finite"));
   EXPECT_THAT(refusal([](Scan& scan) { scan.angle_max = M_PI / 2; }), HasSubstr("angle_max 1.571 rad"));
   EXPECT_THAT(refusal([](Scan& scan) { scan.range_min = -1; }), HasSubstr("range_min -1 m"));
   EXPECT_THAT(watch_.problem(10), HasSubstr("range_min -1 m"));

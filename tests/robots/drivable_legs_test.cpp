@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "robots/quadruped_fixture.h"
+#include "support/message_of.h"
 
 namespace robot_control {
 namespace {
@@ -16,6 +17,16 @@ std::string refusal_of(const LegModel& robot) {
   } catch (const ParameterError& error) {
     return error.what();
   }
+}
+
+TEST(Quadruped, AtARateAtWhichItFallsIsRefused) {
+  Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
+  const auto refusal_at = [&](double rate) {
+    parameters.loop.rate = rate;
+    return message_of<ParameterError>([&] { Quadruped(parameters, legged_robot("quadbot")).require_drivable(); }, "");
+  };
+  EXPECT_EQ(refusal_at(100), "");
+  EXPECT_THAT(refusal_at(99), testing::HasSubstr("robot.rate = 99 Hz: a robot on legs falls below 100 Hz"));
 }
 
 TEST(Quadruped, OfLegsThatDoNotReachTheGroundIsRefused) {

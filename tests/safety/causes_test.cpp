@@ -330,6 +330,27 @@ TEST_F(CausesTest, AMonitorThatMissedMoreThanLossCyclesStops) {
   expect_stop(SupervisorState::kStopped, kCauseMonitorLate);
 }
 
+// The driver skipped the cycles, too: no node had them.
+TEST_F(CausesTest, ALateLoopIsNamedBeforeTheNodesThatItKept) {
+  input_.state = nullptr;
+  input_.command = nullptr;
+  sensors_.head.cycle += 2 * kLoss;
+  step();
+  expect_stop(SupervisorState::kStopped, kCauseMonitorLate);
+}
+
+// At half its rate the loop has the state of no cycle before.
+TEST_F(CausesTest, ALoopAtHalfItsRateIsLateAndStopsAsSoon) {
+  input_.state = nullptr;
+  const std::uint64_t gone = cycle();
+  while (permit_.causes == 0) {
+    sensors_.head.cycle += 1;
+    step();
+  }
+  EXPECT_LT(cycle() - gone, kLoss + 2);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseMonitorLate});
+}
+
 TEST_F(CausesTest, AFaultAfterAStopIsAFault) {
   ++input_.operator_input.e_stop_services;
   step();

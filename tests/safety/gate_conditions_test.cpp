@@ -37,6 +37,27 @@ TEST_F(GateConditionsTest, AGateThatBrakesInSpiteOfThePermitIsRefusingAfterLossC
   EXPECT_EQ(permit_.evidence[0].value, static_cast<double>(kLoss));
 }
 
+// What it did not find in time was late.
+TEST_F(GateConditionsTest, AGateThatFindsNoPermitOrNoCommandInTimeNamesWhatIsLate) {
+  for (const auto& [reason, cause] :
+       {std::pair{kGateNoCommand, kCauseCommandStale}, std::pair{kGatePermitExpired, kCauseMonitorLate},
+        std::pair{kGateNoPermit, kCauseMonitorLate}}) {
+    GateConditions conditions(kLoss, 0.001);
+    ActiveCauses active;
+    Permit permit;
+    permit.action = PermitAction::kDrive;
+    for (std::uint64_t k = 1; k < 2 * kLoss; ++k) {
+      SensorFrame sensors;
+      sensors.head.cycle = k;
+      sensors.gate = {.cycle = k - 1, .verdict = GateVerdict::kBrake, .reasons = reason};
+      active.clear();
+      conditions.step(sensors, active);
+      conditions.remember(permit, k);
+    }
+    EXPECT_EQ(active.stopping(), std::uint64_t{cause});
+  }
+}
+
 // It brakes in 6 ticks of 10, as with a controller whose commands come every tenth cycle: more than half of 1000 after
 // 833 ticks.
 TEST_F(GateConditionsTest, AGateThatBrakesInMoreThanHalfOfASecondIsRefusing) {

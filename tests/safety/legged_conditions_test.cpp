@@ -126,6 +126,51 @@ TEST_F(LeggedConditionsTest, AJointThatIsTooFastBrakes) {
   EXPECT_NEAR(active_.measurements()[0].value, 1.2, 1e-9);
 }
 
+// Measured speeds come in counts: of twelve joints there is often one that shows a count more than its limit.
+TEST_F(LeggedConditionsTest, JointsBeyondTheirLimitsByTurnsAreNoStop) {
+  command_.legged.phase = LegPhase::kLying;
+  const SensorFrame healthy = sensors_;
+  const auto beyond = [&](double t, std::size_t joints) {
+    sensors_ = healthy;
+    const std::size_t i = static_cast<std::size_t>(std::lround(t / kPeriod)) % joints;
+    sensors_.joints[i].velocity = 1.2 * robot_.joints[i].velocity_limit;
+    sensors_.joints[i].effort = 0.95 * robot_.joints[i].effort_limit;
+  };
+  EXPECT_EQ(run(2, [&](double t) { beyond(t, 2); }), 2) << causes(Reaction::kBrake) << causes(Reaction::kRamp);
+  conditions_.enter_run();
+  EXPECT_NEAR(run(2, [&](double t) { beyond(t, 1); }), 0.049, 1e-6);
+  // Two hips are beyond their end stops by turns, where a hand turns them to and fro.
+  sensors_ = healthy;
+  const double upper = robot_.joints[0].range->upper;
+  EXPECT_EQ(run(2,
+                [&](double t) {
+                  const double s = 0.015 * std::sin(80 * t);
+                  sensors_.joints[0].position = upper + 0.1 + s;
+                  sensors_.joints[3].position = upper + 0.1 - s;
+                  if (t == 0) conditions_.enter_run();
+                }),
+            2)
+      << causes(Reaction::kBrake);
+}
+
+// A body that a late loop let down for some cycles meets the ground. Nothing else hit it.
+TEST_F(LeggedConditionsTest, TheBlowOfItsOwnFoldIsNoImpact) {
+  const auto shaken = [&](double braked, double hit) {
+    conditions_.enter_run();
+    sensors_.imu.linear_acceleration[1] = 0;
+    run(0.8);
+    return run(1, [&, braked, hit](double t) {
+      sensors_.gate.verdict = t < braked ? GateVerdict::kBrake : GateVerdict::kPassed;
+      const bool now = t > hit && t < hit + 0.02;
+      sensors_.imu.linear_acceleration[1] = now ? 100 : 0;
+    });
+  };
+  EXPECT_EQ(shaken(0.01, 0.2), 1) << causes(Reaction::kBrake);
+  EXPECT_NEAR(shaken(0.01, 0.6), 0.61, 0.005);
+  EXPECT_EQ(causes(Reaction::kBrake), "impact");
+  EXPECT_NEAR(shaken(-1, 0.2), 0.21, 0.005);
+}
+
 TEST_F(LeggedConditionsTest, ANumberThatIsMissingIsNotEvaluated) {
   command_.joints[3] = {.mode = JointMode::kImpedance, .position = sensors_.joints[3].position};
   sensors_.joints[3] = {.position = 100, .velocity = 1000, .effort = 1000};

@@ -3,13 +3,16 @@
 import numpy as np
 import pytest
 from robot_control import ClosedLoop, ParameterError
-from robot_control.common.signal_names import mask_of, number_of
+from robot_control.common.signal_names import causes_in, mask_of, number_of
 from robot_control.installed_files import share_file
+
+from bench.legs import urdfs
 
 RATES = (20, 50, 100, 333, 2000)
 """Hz"""
 SLOPE = share_file("urdf/scenes/slope_5deg.xml")
-QUADBOT = share_file("urdf/quadbot.urdf")
+QUADBOT, *OTHERS = urdfs()
+ON_LEGS = [QUADBOT, *(pytest.param(urdf, marks=pytest.mark.nightly) for urdf in OTHERS)]
 BRAKE = number_of("GateVerdict", "brake")
 E_STOP = mask_of("StopCause", "e_stop_service")
 
@@ -110,7 +113,11 @@ def test_a_stuck_encoder_stops_the_robot(rate):
 
 
 @at_every_rate
-def test_a_quadruped_stands_leans_and_folds(rate):
+def test_a_quadruped_stands_leans_and_folds_or_its_rate_is_refused(rate):
+    if rate < 100:
+        with pytest.raises(ParameterError, match=r"a robot on legs falls below 100 Hz"):
+            loop_at(rate, urdf=QUADBOT)
+        return
     loop = loop_at(rate, urdf=QUADBOT)
     loop.run(0.5)
     loop.set_posture("standing")
@@ -127,6 +134,34 @@ def test_a_quadruped_stands_leans_and_folds(rate):
     fold = loop.run(3.0)
     assert np.abs(fold["truth_tilt"]).max() < 0.15
     assert fold["permit_causes"][-1] == E_STOP
+
+
+@pytest.mark.parametrize(
+    ("gait", "twist"), [(None, (0.5, 0.0, 0.0)), (None, (0.3, 0.2, 0.5)), ("crawl", (0.2, 0.0, 0.0))]
+)
+@pytest.mark.parametrize("rate", [100, 150, 200, 300, 500, 2000])
+@pytest.mark.parametrize("urdf", ON_LEGS)
+def test_a_quadruped_walks(urdf, rate, gait, twist):
+    loop = loop_at(rate, {"contact_sensors": False}, urdf=urdf)
+    loop.run(3.0, (0.0, 0.0, 0.0))
+    if gait is not None:
+        loop.set_gait(gait)
+    log = loop.run(6.0, twist)
+    assert not stopped(log).any(), causes_in(log["permit_causes"])
+    assert np.abs(log["truth_tilt"]).max() < 0.1
+    steady = log["time"] > log["time"][0] + 4.0
+    assert np.mean(log["truth_linear"][steady]) == pytest.approx(twist[0], rel=0.07)
+
+
+@pytest.mark.parametrize("rate", [100, 200, 2000])
+@pytest.mark.parametrize("kind", ["off", "wrong"])
+def test_a_motor_of_a_walking_quadruped_that_gives_another_torque_is_named(rate, kind):
+    loop = loop_at(rate, {"contact_sensors": False}, urdf=QUADBOT)
+    loop.run(5.0, (0.5, 0.0, 0.0))
+    loop.inject_fault("rear_left_knee_joint_motor", kind)
+    log = loop.run(2.0, (0.5, 0.0, 0.0))
+    assert seconds_until(stopped(log), log) < 0.3
+    assert causes_in(log["permit_causes"][: np.argmax(stopped(log)) + 1]) == ["joint_following"]
 
 
 @pytest.mark.parametrize("dialect", ["odrive", "cia402"])

@@ -222,10 +222,9 @@ void LegController::move_joints(const Request& request, std::uint64_t& reasons) 
 }
 
 void LegController::gather() noexcept {
-  double farthest = 0;
-  for (std::size_t i = 0; i < kLegsJoints; ++i) farthest = std::max(farthest, std::abs(lying(i) - state_.from[i]));
-  // The smooth way is 1.5 times as fast in its middle.
-  const double time = std::max(kMinTime, 1.5 * farthest / tuning_.gather_speed);
+  double time = kMinTime;
+  for (std::size_t i = 0; i < kLegsJoints; ++i)  // the smooth way is 1.5 times as fast in its middle
+    time = std::max(time, 1.5 * std::abs(lying(i) - state_.from[i]) / joint_motion_[i].speed);
   const double part = smooth(state_.elapsed / time);
   for (std::size_t i = 0; i < kLegsJoints; ++i) state_.angles[i] = state_.from[i] + part * (lying(i) - state_.from[i]);
   if (state_.elapsed < time) return;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "control/legged/walking/walking_speed.h"
 #include "machine/gravity.h"
 
 namespace robot_control {
@@ -29,6 +30,25 @@ double standing_height(const LegModel& robot) noexcept {
   return height * robot.leg_length();
 }
 
+/// Returns the time in s in which the body rises above its feet, and no joint is faster than kOfLimit of its limit.
+double fastest_rise(const LegModel& robot) noexcept {
+  constexpr int kParts = 20;
+  double time = 0;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const LegGeometry& geometry = robot.legs[leg].kinematics.geometry();
+    Eigen::Vector3d foot = robot.legs[leg].kinematics.position(robot.legs[leg].lying);
+    const double lies = robot.belly + robot.legs[leg].foot_radius;
+    const double way = lies - (geometry.hip.z() + geometry.upper.z() - standing_height(robot));
+    for (int i = 1; i < kParts; ++i) {
+      const double s = static_cast<double>(i) / kParts;
+      foot.z() = lies - s * s * (3 - 2 * s) * way;
+      const double part = needed_speed(robot, leg, foot, {0, 0, -6 * s * (1 - s) * way});
+      if (std::isfinite(part)) time = std::max(time, part / kOfLimit);
+    }
+  }
+  return time;
+}
+
 }  // namespace
 
 LoadedKnee loaded_knee(const LegModel& robot) noexcept {
@@ -42,8 +62,7 @@ LegTuning leg_tuning(const LegModel& robot) noexcept {
   LegTuning tuning;
   tuning.stiffness = 60 * mass * length;
   tuning.damping = 2 * mass * length * time;
-  tuning.gather_speed = 3 / time;
-  tuning.rise_time = 1.3 * time;
+  tuning.rise_time = std::max(1.3 * time, fastest_rise(robot));
   tuning.height = standing_height(robot);
   tuning.lift = 0.08 * length;
   tuning.sway = 0.12 * robot.leg_length();
@@ -56,7 +75,6 @@ LegTuning leg_tuning(const LegModel& robot) noexcept {
 }
 
 std::array<JointBounds, kLegsJoints> joint_bounds(const LegModel& robot) noexcept {
-  constexpr double kOfLimit = 0.9;  // the gate clamps above it
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const AxisBounds motion = leg_tuning(robot).joint;
   std::array<JointBounds, kLegsJoints> bounds;

@@ -13,19 +13,20 @@
 
 namespace robot_control {
 
+inline constexpr double kOfLimit = 0.9;  ///< of a joint's speed limit; the gate clamps above it
+
 struct LegTuning {
-  double stiffness = 0;     ///< N·m/rad, of each joint
-  double damping = 0;       ///< N·m·s/rad
-  double gather_speed = 0;  ///< rad/s
-  double rise_time = 0;     ///< s, also of lowering
-  double height = 0;        ///< m, from the feet to the second joints, while standing
-  double lift = 0;          ///< m, of a foot in the air
-  double sway = 0;          ///< m, range of the body in x and y
-  double bob = 0;           ///< m, range of its height
-  double lean = 0;          ///< rad, range of roll and pitch together, and of yaw
-  double foot_range = 0;    ///< m, of a foot in the air, from above its place
-  AxisBounds foot;          ///< m
-  AxisBounds joint;         ///< rad, of a joint while the robot lies
+  double stiffness = 0;   ///< N·m/rad, of each joint
+  double damping = 0;     ///< N·m·s/rad
+  double rise_time = 0;   ///< s, also of lowering; longer where a joint would exceed kOfLimit of its speed limit
+  double height = 0;      ///< m, from the feet to the second joints, while standing
+  double lift = 0;        ///< m, of a foot in the air
+  double sway = 0;        ///< m, range of the body in x and y
+  double bob = 0;         ///< m, range of its height
+  double lean = 0;        ///< rad, range of roll and pitch together, and of yaw
+  double foot_range = 0;  ///< m, of a foot in the air, from above its place
+  AxisBounds foot;        ///< m
+  AxisBounds joint;       ///< rad, of a joint while the robot lies
 };
 
 LegTuning leg_tuning(const LegModel& robot) noexcept;

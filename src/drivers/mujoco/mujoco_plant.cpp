@@ -144,12 +144,14 @@ void MujocoPlant::settle() {
   }
   if (rested < kRestTime && !at_rest(model_, *data_, kLastRestSpeed, kLastJointSpeed)) {
     const std::vector<std::string> moving = moving_joints(model_, *data_, kJointRestSpeed);
-    refuse(
-        "with its brakes on the robot does not come to rest at the site \"start\". " +
-        (moving.empty() ? ""
-                        : "These joints move, give them a <limit effort> that holds them: " + list(moving) + ". ") +
-        "Put the site on a plane, z upwards from it, less steep than brakes and friction can hold; where the centre of "
-        "gravity lies over the only axle, put it where casters carry a part of it.");
+    refuse("with its brakes on the robot does not come to rest at the site \"start\". " +
+           (moving.empty() ? ""
+                           : "These joints move, give them a <limit effort> that holds them: " + list(moving) + ". ") +
+           "Put the site on a plane, z upwards from it, less steep than brakes and friction can hold" +
+           (model_.robot.drive_wheels == 0
+                ? "."
+                : "; where the centre of gravity lies over the only axle, put it where casters "
+                  "carry a part of it."));
   }
   // The text is the same after every start and is set only once, because other threads read it.
   if (!has_rested_) {

@@ -248,11 +248,18 @@ double total_mass(const RigidBodies& robot) {
   return mass;
 }
 
+RigidBodies read_moving_bodies(const RobotDescription& description) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return Lumper(parse_urdf(description), description, kInfinity, {}, kInfinity).lump().robot;
+}
+
 RigidBodies read_rigid_bodies(const RobotDescription& description, double endless) {
   const UrdfDocument document = parse_urdf(description);
   LumpedBodies lumped = Lumper(document, description, endless, {}, std::numeric_limits<double>::infinity()).lump();
   const std::set<std::string> idle = idle_massless_joints(lumped);
   const double size = robot_size(lumped.robot);
+  std::vector<std::string> massless;
+  for (const std::string& joint : idle) massless.push_back(lumped.robot.moved_by(joint)->name);
   const auto& links = document.model->links_;
   const auto too_large = [size](const auto& link) { return gyration_radius(*link.second) > size; };
   if (!idle.empty() || std::any_of(links.begin(), links.end(), too_large)) {
@@ -262,6 +269,7 @@ RigidBodies read_rigid_bodies(const RobotDescription& description, double endles
     lumped.robot.notes.push_back({RobotNote::Kind::kAssumed, joint_element(joint),
                                   "what it moves has no <inertial>, and nothing rolls on it: taken as fixed"});
   }
+  lumped.robot.massless = std::move(massless);
   assign_massless_inertia(lumped);
   for (RigidBody& body : lumped.robot.bodies) {
     if (!of_this_world(body)) {

@@ -89,6 +89,7 @@ struct RigidBodies {
   std::set<std::string> unsaid_axes;        ///< joints without a given axis, which is then 1 0 0
   std::set<std::string> turned_joints;      ///< joints whose origin is turned by more than a whole turn
   std::vector<std::string> missing_meshes;  ///< messages about <collision> shapes that are left out (link_shapes.h)
+  std::vector<std::string> massless;        ///< links without <inertial> whose joints count as fixed
   std::vector<RobotNote> notes;             ///< values that were assumed, repaired or ignored
 
   /// Returns the body that the joint moves; null if no moving joint has this name.
@@ -103,6 +104,9 @@ inline constexpr double kBeyondRobots = 1e9;  ///< kg, m, kg·m²: larger number
 /// than `endless` rad is taken as continuous.
 RigidBodies read_rigid_bodies(const RobotDescription& description,
                               double endless = std::numeric_limits<double>::infinity());
+
+/// Returns the bodies of all joints that move, whatever they weigh. The kind of a robot follows from them.
+RigidBodies read_moving_bodies(const RobotDescription& description);
 
 /// Returns the mass of all bodies in kg.
 double total_mass(const RigidBodies& robot);

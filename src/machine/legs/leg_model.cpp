@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 #include <sstream>
 
+#include "machine/bodies/rolling.h"
 #include "machine/description/wording.h"
 #include "machine/legs/leg_search.h"
 #include "machine/legs/lying_posture.h"
@@ -17,6 +19,7 @@ namespace robot_control {
 namespace {
 
 constexpr double kBothWays = 0.5;   // rad by which a knee must bend to either side to bend both ways
+constexpr double kStanding = 0.7;   // of the leg length, as high as most robots stand (leg_tuning.h)
 constexpr double kShortest = 1e-4;  // m, of thigh and shank
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -28,8 +31,22 @@ std::string ends_of(const RigidBodies& robot, const std::vector<BodyChain>& chai
   return list(names);
 }
 
+void refuse_other_axes(const RigidBodies& robot, const BodyChain& chain) {
+  for (std::size_t i = 0; i < kLegJoints; ++i) {
+    const RigidBody& body = robot.bodies[chain.bodies[i]];
+    const double off = std::acos(std::min(1.0, std::abs(axis_in_base(body)[leg_axis(i)])));
+    if (off <= kAxleTolerance) continue;
+    const std::string axis = i == 0 ? "lengthwise (x)" : "lateral (y)";
+    refuse(robot.source, joint_element(body.joint.name),
+           "its axis is " + number(std::round(off * 1800 / std::numbers::pi) / 10) + "° off the " + axis + " axis of " +
+               robot.bodies[0].name + ", 0.2° are allowed: a leg turns about x, y and y at the zero pose",
+           "Correct its <axis xyz=\"…\">, or the <origin rpy=\"…\"> of the joints up to it");
+  }
+}
+
 void refuse_other_chains(const RigidBodies& robot, const std::vector<BodyChain>& chains) {
   for (const BodyChain& chain : chains) {
+    refuse_other_axes(robot, chain);
     if (chain.bodies.size() == kLegJoints) continue;
     refuse(robot.source, joint_element(robot.bodies[chain.bodies[kLegJoints]].joint.name),
            "it moves on a leg, behind the leg's three joints: wheels or feet on legs are not supported",
@@ -88,7 +105,7 @@ LegGeometry geometry_of(const RigidBodies& robot, const Chain& chain, const Eige
   geometry.foot = foot - origin(2);
   for (std::size_t i = 0; i < kLegJoints; ++i) {
     const RigidBody& body = robot.bodies[chain[i]];
-    geometry.sign[i] = axis_in_base(body)[i == 0 ? 0 : 1] > 0 ? 1 : -1;
+    geometry.sign[i] = axis_in_base(body)[leg_axis(i)] > 0 ? 1 : -1;
     geometry.range[i] = range_of(body.joint);
   }
   for (const auto& [part, body] : {std::pair{geometry.lower, chain[1]}, std::pair{geometry.foot, chain[2]}}) {
@@ -100,38 +117,36 @@ LegGeometry geometry_of(const RigidBodies& robot, const Chain& chain, const Eige
   return geometry;
 }
 
+LegKinematics bent(LegGeometry geometry, double bend) {
+  geometry.bend = bend;
+  return LegKinematics(geometry);
+}
+
 /// Returns the part of the knee's range that bends it to the side of `bend`, in rad.
 double room(const LegGeometry& geometry, double bend) {
-  LegGeometry one_way = geometry;
-  one_way.bend = bend;
-  const JointRange range = LegKinematics(one_way).range(2);
+  const JointRange range = bent(geometry, bend).range(2);
   return range.upper - range.lower;
+}
+
+/// Returns whether the ranges of thigh and knee let the leg stand on a foot below its second joint, bent to this side.
+bool stands(const LegGeometry& geometry, double bend) {
+  const LegKinematics leg = bent(geometry, bend);
+  const Eigen::Vector3d below(0, geometry.lower.y() + geometry.foot.y(), -kStanding * leg.length());
+  return leg.reached(geometry.hip + geometry.upper + below).has_value();
 }
 
 double bend_of(const RigidBodies& robot, const LegGeometry& geometry, const Chain& chain, bool front, KneeBend wanted) {
   const double middle = front ? -1 : 1;
-  const bool forward = room(geometry, 1) >= kBothWays, backward = room(geometry, -1) >= kBothWays;
-  double bend = middle;
-  switch (wanted) {
-    case KneeBend::kDerived:
-      if (forward != backward) bend = forward ? 1 : -1;
-      if (!forward && !backward) bend = room(geometry, 1) >= room(geometry, -1) ? 1 : -1;
-      return bend;
-    case KneeBend::kMiddle:
-      break;
-    case KneeBend::kOutwards:
-      bend = -middle;
-      break;
-    case KneeBend::kForward:
-      bend = 1;
-      break;
-    case KneeBend::kBackward:
-      bend = -1;
-      break;
+  if (wanted == KneeBend::kDerived) {
+    const double forward = room(geometry, 1), backward = room(geometry, -1);
+    if (std::min(forward, backward) < kBothWays) return forward >= backward ? 1 : -1;
+    return !stands(geometry, middle) && stands(geometry, -middle) ? -middle : middle;
   }
-  if (bend > 0 ? forward : backward) return bend;
+  const bool forward = wanted == KneeBend::kForward || wanted == (front ? KneeBend::kOutwards : KneeBend::kMiddle);
+  const double bend = forward ? 1 : -1;
+  if (room(geometry, bend) >= kBothWays) return bend;
   refuse(robot.source, joint_element(robot.bodies[chain[2]].joint.name),
-         std::string("robot/knee_bend lets this knee point ") + (bend > 0 ? "forward" : "backward") +
+         std::string("robot/knee_bend lets this knee point ") + (forward ? "forward" : "backward") +
              ", which its range does not allow",
          "Leave robot/knee_bend out, or set the other side");
 }
@@ -184,6 +199,11 @@ LegModel read_legs(const RobotDescription& description, const MachineParameters&
   const auto bodies = std::make_shared<const RigidBodies>(read_rigid_bodies(description));
   refuse_too_many_joints(*bodies);
   const std::vector<BodyChain> chains = leg_chains(*bodies);
+  if (chains.size() != kLegs && leg_chains(read_moving_bodies(description)).size() == kLegs) {
+    refuse(bodies->source, "<robot>",
+           "nearly a quadruped, but these links have no <inertial>, and count as fixed: " + list(bodies->massless),
+           "Give each link of a leg its <inertial> with <mass> and <inertia>");
+  }
   refuse_other_chains(*bodies, chains);
   std::vector<Foot> feet;
   for (const BodyChain& chain : chains) feet.push_back(foot_of(*bodies, bodies->bodies[chain.bodies.back()]));
@@ -198,6 +218,10 @@ LegModel read_legs(const RobotDescription& description, const MachineParameters&
   hash.add(legs.leg_rotor_inertia);
   model.hash = hash.value();
   const Belly belly = belly_of(*bodies, places);
+  if (!std::isfinite(belly.height)) {
+    refuse(bodies->source, link_element(bodies->bodies[0].name), "a robot on legs lies on its body, which has no shape",
+           "Give it a <collision>");
+  }
   model.belly = belly.height;
   for (std::size_t i = 0; i < kLegs; ++i) {
     for (const std::size_t index : places[i]) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "machine/bodies/rolling.h"
 #include "machine/bodies/shape_support.h"
@@ -14,12 +15,14 @@ constexpr double kSameReach = 0.005;  // m by which another shape may reach beyo
 
 bool turns_about(const RigidBody& body, Eigen::Index axis) {
   if (body.joint.type != JointType::kRevolute && body.joint.type != JointType::kContinuous) return false;
-  return std::abs(axis_in_base(body)[axis]) >= std::cos(kAxleTolerance);
+  return std::abs(axis_in_base(body)[axis]) > std::numbers::sqrt2 / 2;
 }
 
 bool begins_as_leg(const RigidBodies& robot, const BodyChain& chain) {
-  return chain.bodies.size() >= kLegJoints && turns_about(robot.bodies[chain.bodies[0]], 0) &&
-         turns_about(robot.bodies[chain.bodies[1]], 1) && turns_about(robot.bodies[chain.bodies[2]], 1);
+  bool begins = chain.bodies.size() >= kLegJoints;
+  for (std::size_t i = 0; i < kLegJoints && begins; ++i)
+    begins = turns_about(robot.bodies[chain.bodies[i]], leg_axis(i));
+  return begins;
 }
 
 /// A ball has its own radius, and so has a cylinder across the leg.

@@ -14,8 +14,14 @@ struct BodyChain {
   std::vector<std::size_t> bodies;
 };
 
-/// Returns the chains that begin as a leg: turning joints about x, y and y. A chain that branches ends there.
+/// Returns the chains that begin as a leg: turning joints that are nearer to x, y and y than to other axes. A chain
+/// that branches ends there.
 std::vector<BodyChain> leg_chains(const RigidBodies& robot);
+
+/// Returns the axis of the base that a leg's joint turns about, by its place from the body outwards.
+inline Eigen::Index leg_axis(std::size_t place) noexcept {
+  return place == 0 ? 0 : 1;
+}
 
 /// Returns the joint's axis in the base's axes at the zero pose.
 Eigen::Vector3d axis_in_base(const RigidBody& body);

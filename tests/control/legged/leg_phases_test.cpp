@@ -65,7 +65,7 @@ TEST(GatheringLegs, GoSmoothlyToTheLyingPostureWithinTheGatherSpeed) {
     from[i] = legs.sensors.joints[i].position = to[i] + (i % 2 == 0 ? 0.3 : -0.2) - 0.01 * static_cast<double>(i);
     farthest = std::max(farthest, std::abs(to[i] - from[i]));
   }
-  const double speed = leg_tuning(legs.robot).gather_speed, time = 1.5 * farthest / speed;
+  const double speed = leg_tuning(legs.robot).joint.speed, time = 1.5 * farthest / speed;
   double fastest = 0;
   legs.step(stance_of(kStanceStand));
   for (std::size_t i = 0; i < kLegsJoints; ++i) {

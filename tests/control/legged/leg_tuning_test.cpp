@@ -10,8 +10,12 @@ LegModel of_size(double mass, double length) {
   robot.joints.resize(kLegsJoints);
   LegGeometry geometry;
   geometry.lower = geometry.foot = {0, 0, -0.213 * length};
+  geometry.range.fill({-3, 3});
   for (Leg& leg : robot.legs) leg.kinematics = LegKinematics(geometry);
-  for (JointModel& joint : robot.joints) joint.effort_limit = 40 * mass * length;
+  for (JointModel& joint : robot.joints) {
+    joint.effort_limit = 40 * mass * length;
+    joint.velocity_limit = 1e3;
+  }
   return robot;
 }
 
@@ -19,7 +23,6 @@ TEST(LegTuning, IsThatOfTheRobotThatItWasFoundWith) {
   const LegTuning tuning = leg_tuning(of_size(1, 1));
   EXPECT_DOUBLE_EQ(tuning.stiffness, 60);
   EXPECT_DOUBLE_EQ(tuning.damping, 2);
-  EXPECT_DOUBLE_EQ(tuning.gather_speed, 3);
   EXPECT_DOUBLE_EQ(tuning.rise_time, 1.3);
   EXPECT_DOUBLE_EQ(tuning.height, 0.7 * 0.426);
   EXPECT_DOUBLE_EQ(tuning.lift, 0.08);
@@ -38,7 +41,6 @@ TEST(LegTuning, ScalesAsAModelOfTheSameRobotDoes) {
   const LegTuning one = leg_tuning(of_size(1, 1)), large = leg_tuning(of_size(3, 4));
   EXPECT_DOUBLE_EQ(large.stiffness, 12 * one.stiffness);
   EXPECT_DOUBLE_EQ(large.damping, 24 * one.damping);
-  EXPECT_DOUBLE_EQ(large.gather_speed, one.gather_speed / 2);
   EXPECT_DOUBLE_EQ(large.rise_time, 2 * one.rise_time);
   EXPECT_DOUBLE_EQ(large.height, 4 * one.height);
   EXPECT_DOUBLE_EQ(large.lift, 4 * one.lift);
@@ -50,6 +52,20 @@ TEST(LegTuning, ScalesAsAModelOfTheSameRobotDoes) {
   EXPECT_DOUBLE_EQ(large.foot.acceleration, one.foot.acceleration);
   EXPECT_DOUBLE_EQ(large.joint.speed, one.joint.speed / 2);
   EXPECT_DOUBLE_EQ(large.joint.acceleration, one.joint.acceleration / 4);
+}
+
+/// A rise takes 1.3 s where it needs less than nine tenths of each joint's speed limit.
+TEST(LegTuning, RisesNoFasterThanItsJointsTurn) {
+  for (const std::string& name : legged_robots()) {
+    const LegModel fast = legged_robot(name);
+    EXPECT_DOUBLE_EQ(leg_tuning(fast).rise_time, 1.3 * std::sqrt(fast.leg_length() / kReferenceLeg)) << name;
+  }
+  LegModel robot = legged_robot("quadbot");
+  for (JointModel& joint : robot.joints) joint.velocity_limit = 0.5;
+  const double slow = leg_tuning(robot).rise_time;
+  EXPECT_GT(slow, 2.6);
+  for (JointModel& joint : robot.joints) joint.velocity_limit = 0.25;
+  EXPECT_DOUBLE_EQ(leg_tuning(robot).rise_time, 2 * slow);
 }
 
 /// Half of the weight is 12.7 · 9.81 / 2 = 62.3 N. At 0.7, 0.79 and 0.85 of the leg length the levers of its knee are

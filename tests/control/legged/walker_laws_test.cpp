@@ -304,7 +304,7 @@ TEST_F(WalkerLaws, PlansTheForcesOfItsFeetFromWhereItIsToItsTarget) {
   ForcePlan plan(parameters);
   for (unsigned seed = 0; seed < kRandomStates; ++seed) {
     choose(seed);
-    state.planned = Walker::kPlanCycles - 1;
+    state.planned = Walker::plan_cycles(kMillisecond) - 1;
     const std::size_t early = seed % kLegs;  // this foot has met the ground before the end of its swing
     if (state.swings[early] != 0) state.bears[early] = 1;
     step();
@@ -342,7 +342,7 @@ TEST_F(WalkerLaws, PlansEveryTenCyclesAndWhereOtherFeetBear) {
   state.phase =
       gait().duty - gait().phase[1] - 5.5 * kMillisecond / gait().period;  // leg 1 lifts off in the sixth cycle
   std::vector<int> planned;
-  state.planned = Walker::kPlanCycles - 1;
+  state.planned = Walker::plan_cycles(kMillisecond) - 1;
   for (int i = 0; i < 30; ++i) {
     step();
     if (state.planned == 0) planned.push_back(i);

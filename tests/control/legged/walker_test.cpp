@@ -32,7 +32,7 @@ struct WalkerTest : testing::Test {
   /// Returns whether the walk goes on after a plan.
   bool plan() {
     out = {};
-    state.planned = Walker::kPlanCycles;
+    state.planned = Walker::plan_cycles(0.001);
     return walker.step(state, {.sensors = &sensors, .state = &estimate, .twist = {}, .gait = GaitName::kStand}, out);
   }
 

@@ -193,6 +193,30 @@ TEST_F(LegRefusals, NameAJointWithoutLimits) {
               HasSubstr("_calf_joint\">: a joint of a leg without velocity limit"));
 }
 
+TEST_F(LegRefusals, NameAnAxisThatIsFarFromThatOfALeg) {
+  const std::string off = replaced(legs_, R"(<axis xyz="0 1 0"/>)", R"(<axis xyz="0.12187 0.99255 0"/>)");
+  EXPECT_THAT(refusal(body_ + off), HasSubstr("a_thigh_joint\">: its axis is 7° off the lateral (y) axis of trunk"));
+  const std::string hips = replaced(legs_, R"(<axis xyz="1 0 0"/>)", R"(<axis xyz="0.99619 0 0.08716"/>)");
+  EXPECT_THAT(refusal(body_ + hips), HasSubstr("a_hip_joint\">: its axis is 5° off the lengthwise (x) axis of trunk"));
+  EXPECT_TRUE(has_legs(read_moving_bodies(robot_of(body_ + off))));
+}
+
+TEST_F(LegRefusals, NameLinksWithoutInertial) {
+  const std::string weightless = without(legs_, inertial("0.5", kSmall));
+  EXPECT_THAT(refusal(body_ + weightless),
+              HasSubstr("nearly a quadruped, but these links have no <inertial>, and count as fixed: a_calf, a_hip, "
+                        "a_thigh, b_calf"));
+  EXPECT_TRUE(has_legs(read_moving_bodies(robot_of(body_ + weightless))));
+  EXPECT_TRUE(
+      has_legs(read_moving_bodies(robot_of(link("trunk", collision("<box size=\"0.4 0.2 0.1\"/>")) + weightless))));
+}
+
+TEST_F(LegRefusals, NameABodyWithoutAShape) {
+  const std::string hips = without(legs_, collision("<sphere radius=\"0.04\"/>"));
+  EXPECT_THAT(refusal(link("trunk", inertial("6")) + hips),
+              HasSubstr("<link name=\"trunk\">: a robot on legs lies on its body, which has no shape"));
+}
+
 TEST_F(LegRefusals, NameAFootWithoutAShape) {
   EXPECT_THAT(refusal(body_ + without(legs_, collision("<sphere radius=\"0.02\"/>"))),
               HasSubstr("_calf\">: the leg that ends here has no shape"));
@@ -231,6 +255,19 @@ TEST_F(LegRefusals, NameAKneeThatCannotBendAsAsked) {
               HasSubstr("robot/knee_bend lets this knee point forward, which its range does not allow"));
 }
 
+TEST_F(LegRefusals, BendTheKneeToTheSideOnWhichTheThighLetsTheLegStand) {
+  std::string both = replaced(legs_, R"(lower="-2.7" upper="-0.9")", R"(lower="-2.7" upper="2.7")");
+  const auto bends = [&] {
+    std::string text;
+    for (const Leg& leg : read_legs(robot_of(body_ + both), {}, {}).legs)
+      text += leg.kinematics.geometry().bend > 0 ? "+" : "-";
+    return text;
+  };
+  EXPECT_EQ(bends(), "--++") << "towards the middle";
+  both = replaced(both, R"(lower="-9.42" upper="9.42")", R"(lower="0.2" upper="3")");
+  EXPECT_EQ(bends(), "----") << "a thigh that turns backward alone";
+}
+
 TEST_F(LegRefusals, FindMirroredLegsWithFlippedAxes) {
   std::string flipped = replaced(legs_, "<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 -1 0\"/>");
   flipped = replaced(flipped, "lower=\"-2.7\" upper=\"-0.9\"", "lower=\"0.9\" upper=\"2.7\"");
@@ -254,12 +291,12 @@ TEST(LegModel, HasRotorsOfTheRobotsSizeUnlessTheyAreGiven) {
 
 TEST(HasLegs, IsTrueForQuadrupedsAndFalseForRobotsOnWheels) {
   for (const std::string& name : legged_robots())
-    EXPECT_TRUE(has_legs(read_rigid_bodies(legged_description(name)))) << name;
+    EXPECT_TRUE(has_legs(read_moving_bodies(legged_description(name)))) << name;
   if (corpus().empty()) return;
   for (const auto& folder : std::filesystem::directory_iterator(corpus())) {
     const std::filesystem::path file = folder.path() / "robot.urdf";
     if (!std::filesystem::exists(file)) continue;
-    EXPECT_FALSE(has_legs(read_rigid_bodies(load_description(file.string())))) << file;
+    EXPECT_FALSE(has_legs(read_moving_bodies(load_description(file.string())))) << file;
   }
 }
 

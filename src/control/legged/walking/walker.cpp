@@ -104,7 +104,7 @@ void Walker::begin(State& state, const SensorFrame& sensors, const StateFrame& e
     state.bore[leg] = plain(body.feet[leg]);
   }
   state.ground = plain(fit_ground(state));
-  state.planned = kPlanCycles;
+  state.planned = plan_cycles(period_);
 }
 
 bool Walker::step(State& state, const WalkInput& input, CommandFrame& out) noexcept {
@@ -112,7 +112,7 @@ bool Walker::step(State& state, const WalkInput& input, CommandFrame& out) noexc
   move(state, input, body);
   turn_clock(state, input.gait);
   const bool changed = choose_feet(state, input, body);
-  if (++state.planned >= kPlanCycles || changed) plan(state, input, body);
+  if (++state.planned >= plan_cycles(period_) || changed) plan(state, input, body);
   const Gait& gait = this->gait(state);
   out.legged.gait = state.gait;
   out.legged.gait_phase = state.phase;

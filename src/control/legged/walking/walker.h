@@ -13,7 +13,7 @@
 ///             the error of the estimated tilt
 ///   target    moves from where the robot was, with the twist, its velocity through a low pass of half a period: a body
 ///             follows it when the next feet have landed. It stays within kFarthest of the robot
-///   plan      every kPlanCycles cycles, and where other feet bear, the forces of the feet (force_plan.h), which knows
+///   plan      every kPlanTime or cycle, and where other feet bear, the forces of the feet (force_plan.h), which knows
 ///             the gait that follows
 ///   stance    τ = h − Jᵀ f, f the planned force, h what holds the leg itself. f is scaled down until each |τ| is within
 ///             the joint's limit, so that f stays within friction
@@ -26,6 +26,7 @@
 /// If a plan fails, the last forces stay for up to kFailures plans (kReasonNoPlan).
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -68,7 +69,7 @@ struct WalkingBody {
 
 class Walker {
  public:
-  static constexpr std::uint64_t kPlanCycles = 10;
+  static constexpr double kPlanTime = 0.01;  ///< s
   static constexpr std::uint64_t kFailures = 3;
 
   struct State {
@@ -88,6 +89,11 @@ class Walker {
     std::uint64_t planned = 0;                  ///< cycles since the last plan
     std::uint64_t failures = 0;                 ///< plans without a solution, one after the other
   };
+
+  /// Returns the cycles from plan to plan.
+  static std::uint64_t plan_cycles(double period) noexcept {
+    return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(kPlanTime / period + 1e-9));
+  }
 
   /// `friction` is μ of the forces, `period` s, `gaits` those of a leg of kReferenceLeg.
   Walker(const LegModel& robot, const Gaits& gaits, double friction, double period);

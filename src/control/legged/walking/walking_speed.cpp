@@ -18,22 +18,6 @@ constexpr int kSamples = 24;
 
 constexpr double kOutOfReach = std::numeric_limits<double>::infinity();
 
-/// Returns the largest part of its speed limit that a joint of this leg needs; kOutOfReach where the leg ends.
-double needed_at(const LegModel& robot, std::size_t leg, const Eigen::Vector3d& place,
-                 const Eigen::Vector3d& velocity) noexcept {
-  const LegKinematics& kinematics = robot.legs[leg].kinematics;
-  const std::optional<LegAngles> angles = kinematics.reached(place);
-  if (!angles || kinematics.stretch(*angles) > kOfLength * kinematics.length()) return kOutOfReach;
-  Eigen::Vector3d foot;
-  const Eigen::Matrix3d inverse = kinematics.jacobian(*angles, foot).inverse();
-  const Eigen::Vector3d rates = inverse * velocity;
-  double part = 0;
-  for (std::size_t i = 0; i < kLegJoints; ++i)
-    part = std::max(part,
-                    std::abs(rates[static_cast<Eigen::Index>(i)]) / robot.joints[kLegJoints * leg + i].velocity_limit);
-  return part;
-}
-
 /// Returns the largest part of its speed limit that a joint needs at this twist.
 double needed(const LegModel& robot, const NominalStance& stance, const Gait& gait,
               const WalkingTwist& twist) noexcept {
@@ -46,7 +30,7 @@ double needed(const LegModel& robot, const NominalStance& stance, const Gait& ga
     for (int i = 0; i <= kSamples; ++i) {
       const double swung = static_cast<double>(i) / kSamples;
       const SwingPoint point = swing_point(from, to, foot.z() + gait.lift, swung, time);
-      part = std::max(part, needed_at(robot, leg, point.place + swung * time * velocity, point.velocity + velocity));
+      part = std::max(part, needed_speed(robot, leg, point.place + swung * time * velocity, point.velocity + velocity));
     }
   }
   return part;
@@ -63,7 +47,7 @@ double needed_after(const LegModel& robot, const NominalStance& stance, const Ga
     const double stood = last.period * (std::min(last.leg_phase(leg, 0), last.duty) - last.duty / 2);
     const Eigen::Vector3d& foot = stance.feet[leg];
     const Eigen::Vector3d velocity = velocity_below(foot, twist);
-    part = std::max(part, needed_at(robot, leg, foot + (stood + stands) * velocity, velocity));
+    part = std::max(part, needed_speed(robot, leg, foot + (stood + stands) * velocity, velocity));
   }
   return part;
 }
@@ -83,6 +67,21 @@ double largest(std::size_t axis, const Part& part_of) noexcept {
 }
 
 }  // namespace
+
+double needed_speed(const LegModel& robot, std::size_t leg, const Eigen::Vector3d& place,
+                    const Eigen::Vector3d& velocity) noexcept {
+  const LegKinematics& kinematics = robot.legs[leg].kinematics;
+  const std::optional<LegAngles> angles = kinematics.reached(place);
+  if (!angles || kinematics.stretch(*angles) > kOfLength * kinematics.length()) return kOutOfReach;
+  Eigen::Vector3d foot;
+  const Eigen::Matrix3d inverse = kinematics.jacobian(*angles, foot).inverse();
+  const Eigen::Vector3d rates = inverse * velocity;
+  double part = 0;
+  for (std::size_t i = 0; i < kLegJoints; ++i)
+    part = std::max(part,
+                    std::abs(rates[static_cast<Eigen::Index>(i)]) / robot.joints[kLegJoints * leg + i].velocity_limit);
+  return part;
+}
 
 Eigen::Vector3d velocity_below(const Eigen::Vector3d& foot, const WalkingTwist& twist) noexcept {
   return {twist[2] * foot.y() - twist[0], -twist[2] * foot.x() - twist[1], 0};

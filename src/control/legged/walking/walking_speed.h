@@ -26,6 +26,11 @@ inline constexpr double kOfLength = 0.95;
 
 Gait gait_of(const LegModel& robot, const NominalStance& stance, const Gait& reference) noexcept;
 
+/// Returns the largest part of its speed limit that a joint of this leg needs at this place and velocity of its foot in
+/// m and m/s; infinite where the leg does not reach it with kOfLength of its length.
+double needed_speed(const LegModel& robot, std::size_t leg, const Eigen::Vector3d& place,
+                    const Eigen::Vector3d& velocity) noexcept;
+
 /// Returns the velocity in m/s of a foot that stands on the ground, below a body with this twist.
 Eigen::Vector3d velocity_below(const Eigen::Vector3d& foot, const WalkingTwist& twist) noexcept;
 

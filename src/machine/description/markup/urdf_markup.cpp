@@ -126,14 +126,19 @@ void check_expanded(const RobotDescription& description, const TiXmlElement& rob
 }
 
 void check_size(const RobotDescription& description, const TiXmlElement& robot) {
-  std::size_t links = 0;
+  std::size_t links = 0, shapes = 0;
   for (const TiXmlElement* link = robot.FirstChildElement("link"); link != nullptr;
        link = link->NextSiblingElement("link")) {
     ++links;
+    for (const TiXmlElement* part = link->FirstChildElement(); part != nullptr; part = part->NextSiblingElement())
+      shapes += part->ValueStr() == "collision" || part->ValueStr() == "visual" ? 1 : 0;
   }
-  if (links <= kMaxLinks) return;
-  refuse(description.source, "<robot>", std::to_string(links) + " links",
-         "At most " + std::to_string(kMaxLinks) + " are read; join those that never move against each other");
+  if (links > kMaxLinks)
+    refuse(description.source, "<robot>", std::to_string(links) + " links",
+           "At most " + std::to_string(kMaxLinks) + " are read; join those that never move against each other");
+  if (shapes > kMaxShapes)
+    refuse(description.source, "<robot>", std::to_string(shapes) + " shapes",
+           "At most " + std::to_string(kMaxShapes) + " are read; describe the parts by coarser ones");
 }
 
 std::set<std::string> words(const std::string& text) {

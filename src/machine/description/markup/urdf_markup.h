@@ -21,7 +21,8 @@
 namespace robot_control {
 
 inline constexpr int kDeepest = 100;
-inline constexpr std::size_t kMaxLinks = 2000;  ///< bound for code that descends the tree by recursion
+inline constexpr std::size_t kMaxShapes = 4000;  ///< <collision> and <visual> together
+inline constexpr std::size_t kMaxLinks = 2000;   ///< bound for code that descends the tree by recursion
 
 /// Fills `xml` and returns its `<robot>`. Throws RobotError with the line in these cases:
 ///   - text: bytes that are not UTF-8, NUL characters, a git-LFS pointer, entities of its own
@@ -29,7 +30,7 @@ inline constexpr std::size_t kMaxLinks = 2000;  ///< bound for code that descend
 ///     xacro, a percent sign outside file names
 ///   - joints: an unknown type, a floating or planar one that is not free_joint (free_root.h), a revolute joint without
 ///   limits
-///   - links: two parents, a ring, more than kMaxLinks
+///   - links: two parents, a ring, more than kMaxLinks, more than kMaxShapes shapes
 TiXmlElement& parse_markup(const RobotDescription& description, TiXmlDocument& xml);
 
 /// Returns the joints that the file drives, in the formats of ROS 1, ROS 2 and Gazebo. A <transmission> names the

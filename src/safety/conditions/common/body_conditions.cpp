@@ -16,10 +16,11 @@ using Vector = Eigen::Map<const Eigen::Vector3d>;
 }  // namespace
 
 BodyConditions::BodyConditions(const SafetyParameters& parameters, const MachineModel& machine, const Vector3& point,
-                               double period, double force_time)
+                               double period, double force_time, double landing)
     : period_(period),
       weight_(machine.mass * kGravity),
       persistence_(parameters.imu_stuck.persistence),
+      landing_(landing),
       tip_tilt_(parameters.tilt.limit.value_or(0) / 2),
       contacts_(std::min(machine.contacts.size(), kMaxContacts)),
       to_base_(rotation_of(machine.imu_in_base.orientation)),
@@ -46,7 +47,7 @@ void BodyConditions::enter_run() noexcept {
   rate_change_.reset();
   force_ = {};
   across_ = {};
-  shock_ = 0;
+  shock_ = unbraked_ = 0;
   carried_ = 1;
 }
 
@@ -65,8 +66,7 @@ void BodyConditions::repeat(Repetition& device, bool good, const Vector3& axes, 
   device.bits = bits;
   device.seen = good;
   const double repeated_s = static_cast<double>(device.cycles) * period_;
-  device.watch.step({.beyond = same, .value = repeated_s, .limit = persistence_}, elapsed);
-  out.add(device.watch);
+  out.update(device.watch, {.beyond = same, .value = repeated_s, .limit = persistence_}, elapsed);
 }
 
 void BodyConditions::weigh(const SensorFrame& sensors) noexcept {
@@ -109,16 +109,16 @@ void BodyConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, dou
   along_z_ = felt ? (*force_).z() : kNone;
   shake(felt);
   weigh(sensors);
+  unbraked_ = sensors.gate.verdict == GateVerdict::kBrake ? 0 : unbraked_ + static_cast<double>(elapsed) * period_;
 
   const auto update = [&](ConditionWatch& watch, bool beyond, double value) {
-    watch.step({.beyond = beyond, .value = value, .limit = watch.limit()}, elapsed);
-    out.add(watch);
+    out.update(watch, {.beyond = beyond, .value = value, .limit = watch.limit()}, elapsed);
   };
   update(tilt_, attitude_.known() && tilt > tilt_.limit(), tilt);
   update(tip_over_, attitude_.known() && tilt > tip_tilt_ && tilt_rate > tip_over_.limit(), tilt_rate);
   update(free_fall_, felt && force() < free_fall_.limit(), force());
   update(lift_, carried_ < lift_.limit(), carried_);
-  update(impact_, shock_ > impact_.limit(), shock_);
+  update(impact_, unbraked_ >= landing_ && shock_ > impact_.limit(), shock_);
   update(jump_, turned && rate_change_.value() > jump_.limit(), rate_change_.value());
   repeat(gyro_, turned, sensors.imu.angular_velocity, elapsed, moving, out);
   repeat(accelerometer_, felt, sensors.imu.linear_acceleration, elapsed, moving, out);

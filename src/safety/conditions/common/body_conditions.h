@@ -6,7 +6,8 @@
 ///   free fall  |a| < limit
 ///   impact     component of a perpendicular to u, mean over kImpactWindow, > limit; that is a speed change of
 ///              limit · kImpactWindow. The mean, because stiff bodies stop within milliseconds; the perpendicular
-///              component, because bumps and landings accelerate upwards
+///              component, because bumps and landings accelerate upwards. It is not judged while the gate brakes a
+///              machine that folds its legs, and for `landing` after it: the blow is its own
 ///   lift       Σ F·u < limit · m g, if the robot has contact sensors; m = MachineModel::mass
 ///   IMU jump   the change of the gyro's rates from sample to sample (rate_change.h) > limit. The accelerometer is not
 ///              judged: a robot that falls shakes it as much as random samples would (docs/evidence/derivations.md)
@@ -47,9 +48,9 @@ class BodyConditions {
   static constexpr double kImpactWindow = 0.01;  ///< s
 
   /// `point` is the one to which the forward speed belongs, m, base axes. `period` s. `force_time` is that of
-  /// Attitude.
+  /// Attitude. `landing` s is 0 for a machine that does not fold.
   BodyConditions(const SafetyParameters& parameters, const MachineModel& machine, const Vector3& point, double period,
-                 double force_time = 0);
+                 double force_time = 0, double landing = 0);
 
   /// A new run: all state restarts.
   void enter_run() noexcept;
@@ -88,9 +89,11 @@ class BodyConditions {
   void shake(bool felt) noexcept;
 
   double period_;
-  double weight_;       ///< N
-  double persistence_;  ///< s, of imu_stuck
-  double tip_tilt_;     ///< rad
+  double weight_;        ///< N
+  double persistence_;   ///< s, of imu_stuck
+  double landing_;       ///< s
+  double unbraked_ = 0;  ///< s since the gate braked
+  double tip_tilt_;      ///< rad
   std::size_t contacts_;
   Stored<Eigen::Matrix3d> to_base_;  ///< from IMU axes
   Stored<Eigen::Vector3d> imu_;      ///< m, from the point, base axes

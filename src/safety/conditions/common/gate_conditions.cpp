@@ -28,12 +28,17 @@ void GateConditions::step(const SensorFrame& sensors, ActiveCauses& out) noexcep
   const bool out_of_place = report.cycle >= frame || (report.cycle < frame_ && frame_ < frame);
   count(refuses(report), frame_ == 0 || out_of_place ? 1 : report.cycle - tick_);
   refused_frames_ = report.refused;
-  if (in_a_row_ >= loss_cycles_) {
-    out.add(kCauseGateRefuses, Reaction::kBrake,
-            {.beyond = true, .value = static_cast<double>(in_a_row_), .limit = static_cast<double>(loss_cycles_)});
-  } else if (2 * in_second_ > second_) {
-    out.add(kCauseGateRefuses, Reaction::kBrake,
-            {.beyond = true, .value = static_cast<double>(in_second_), .limit = static_cast<double>(second_) / 2});
+  const bool in_a_row = in_a_row_ >= loss_cycles_;
+  if (in_a_row || 2 * in_second_ > second_) {
+    const bool no_permit = (report.reasons & (kGateNoPermit | kGatePermitExpired)) != 0;
+    const bool no_command = (report.reasons & kGateNoCommand) != 0;
+    out.add(no_permit    ? kCauseMonitorLate
+            : no_command ? kCauseCommandStale
+                         : kCauseGateRefuses,
+            Reaction::kBrake,
+            {.beyond = true,
+             .value = static_cast<double>(in_a_row ? in_a_row_ : in_second_),
+             .limit = in_a_row ? static_cast<double>(loss_cycles_) : static_cast<double>(second_) / 2});
   }
   if (report.verdict != GateVerdict::kBrake && (out_of_place || disobeys(report)))
     out.add(kCauseGateDisobeys, Reaction::kBrake, {.beyond = true, .value = 1});

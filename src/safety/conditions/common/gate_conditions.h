@@ -5,8 +5,8 @@
 ///   due         the newest permit of cycles < t that was alive in tick t: the one that the gate should have used
 ///   refuses     the due permit allowed motion (drive, or ramp while t ≤ ramp_until), the command did not request the
 ///               brake, and yet the tick braked or rejected a frame: in loss_cycles ticks in a row, or in more than
-///               half of the ticks of the last second. Reasons are a slow or intermittent controller, or permits that
-///               do not arrive. A robot that stops and continues by itself is not predictable
+///               half of the ticks of the last second. A robot that stops and continues by itself is not predictable.
+///               A gate that found no permit in time is monitor_late, one that found no command command_stale
 ///   disobeys    a command passed although the permit ordered the brake, its ramp had ended, it had expired, or it was
 ///               never issued, or t is not between the last frame that the monitor read and this one: software can no
 ///               longer stop this machine, so it leads to FAULT

@@ -21,10 +21,12 @@ void Presence::step(const MonitorInput& input, std::uint64_t elapsed, ActiveCaus
   if (command != nullptr && input.state != nullptr) {
     stale_ = command->state_cycle == command->head.cycle ? 0 : stale_ + elapsed;
   }
+  skipped_ += elapsed - 1;
   add_if_lost(kCauseControllerLost, cycle - command_seen_, out);
   add_if_lost(kCauseEstimatorLost, cycle - state_seen_, out);
   add_if_lost(kCauseCommandStale, stale_, out);
   if (elapsed > loss_cycles_) add_if_lost(kCauseMonitorLate, elapsed, out);
+  if (state_seen_ == cycle && command_seen_ == cycle && stale_ == 0) skipped_ = 0;
 }
 
 bool Presence::gate_finds_both(const MonitorInput& input) const noexcept {
@@ -35,7 +37,7 @@ bool Presence::gate_finds_both(const MonitorInput& input) const noexcept {
 
 void Presence::add_if_lost(StopCause cause, std::uint64_t cycles, ActiveCauses& out) const noexcept {
   if (cycles < loss_cycles_) return;
-  out.add(cause, Reaction::kBrake,
+  out.add(2 * skipped_ >= cycles ? kCauseMonitorLate : cause, Reaction::kBrake,
           {.beyond = true, .value = static_cast<double>(cycles), .limit = static_cast<double>(loss_cycles_)});
 }
 

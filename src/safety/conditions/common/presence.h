@@ -10,7 +10,8 @@
 ///                    monitor has. The driver looks for new channels only ten times a second. A monitor that is READY
 ///                    before would see the gate refuse. In tick 0 the gate looks at neither, and nothing is missing
 ///   monitor late     k − k_last > loss_cycles between two steps of one run: the other losses would have been detected
-///                    too late
+///                    too late. So is a loss called of whose cycles half or more were skipped: in a late loop no node
+///                    has what another one did not give it
 ///
 /// All counts are cycles of the driver, not steps of the monitor: skipped cycles do not delay the detection of a loss.
 
@@ -36,7 +37,7 @@ class Presence {
 
  private:
   bool gate_finds_both(const MonitorInput& input) const noexcept;
-  void add_if_lost(StopCause cause, std::uint64_t cycles, ActiveCauses& out) const noexcept;
+  void add_if_lost(StopCause cause, std::uint64_t cycles, ActiveCauses& out) const noexcept;  ///< or late
 
   std::uint64_t loss_cycles_;
   std::uint64_t missing_ = kMissingSensors | kMissingState | kMissingCommand;
@@ -44,6 +45,7 @@ class Presence {
   std::uint64_t command_seen_ = 0;  ///< last cycle with a command, or without a state
   std::uint64_t state_seen_ = 0;    ///< last cycle with a state
   std::uint64_t stale_ = 0;         ///< cycles in a row
+  std::uint64_t skipped_ = 0;       ///< cycles without a step since the last one with state and command
 };
 
 }  // namespace robot_control

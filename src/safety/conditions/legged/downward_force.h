@@ -42,8 +42,7 @@ class DownwardForce {
     const double weight = std::min(0.25, static_cast<double>(elapsed) * period_ / kTime);
     if (!on_feet) force_ = 0;
     if (on_feet && std::isfinite(along_z)) force_ += weight * (std::clamp(along_z, -kLargest, kLargest) - force_);
-    watch_.step({.beyond = on_feet && -force_ > watch_.limit(), .value = -force_, .limit = watch_.limit()}, elapsed);
-    out.add(watch_);
+    out.update(watch_, on_feet ? beyond(kMaxJoints, -force_, watch_.limit()) : kNothingMeasured, elapsed);
   }
 
  private:

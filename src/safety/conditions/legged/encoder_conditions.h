@@ -1,11 +1,11 @@
 #pragma once
-/// The encoder of a leg's joint reports angles that its joint cannot have. The worst joint counts and is named.
+/// The encoder of a leg's joint reports angles that its joint cannot have. The worst joint is named.
 ///
-///   jump   |q − q₀| − kFaster V t > limit. q₀ is the last angle that was possible, t s ago, V the velocity limit
+///   jump   |q − q₀| − kFaster V t > limit, each joint with its own persistence. q₀ is the last angle that was possible, t s ago, V the velocity limit
 ///   stuck  |c − c₀| > limit, while the robot is on its feet. c is the angle that q can show: the command demanded it
 ///          kAnswer cycles ago. c₀ was this angle when q changed for the last time. A joint that is blocked looks the same.
 ///          The command of a robot that walks demands angles of feet in the air alone. Its limit is kOfSwing larger. q
-///          has to stay for kStays cycles: a noisy gyro moves the command at once, and no joint
+///          has to stay for kStays, and for two cycles: a noisy gyro moves the command at once, and no joint
 ///
 /// While c stays, a stuck encoder changes nothing: the joint is where it reports to be. An angle that is missing or not
 /// finite is not evaluated.
@@ -21,25 +21,27 @@
 #include "safety/latch/active_causes.h"
 #include "safety/monitor_input.h"
 #include "safety/safety_parameters.h"
+#include "signals/fixed_vector.h"
 
 namespace robot_control {
 
 class EncoderConditions {
  public:
-  static constexpr double kFaster = 1.1;       ///< as the default limit of joint_speed
-  static constexpr double kOfSwing = 1.8;      ///< a foot leaves the ground late (docs/evidence/derivations.md)
-  static constexpr std::uint64_t kStays = 10;  ///< cycles
-  static constexpr std::size_t kAnswer = 2;    ///< cycles: command k − 1 moves the joint from cycle k to k + 1
+  static constexpr double kFaster = 1.1;     ///< as the default limit of joint_speed
+  static constexpr double kOfSwing = 1.8;    ///< a foot leaves the ground late (docs/evidence/derivations.md)
+  static constexpr double kStays = 0.01;     ///< s
+  static constexpr std::size_t kAnswer = 2;  ///< cycles: command k − 1 moves the joint from cycle k to k + 1
 
   /// `period` s.
   EncoderConditions(const SafetyParameters& parameters, const LegModel& robot, double period) noexcept
-      : jump_(kCauseEncoderJump, parameters.encoder_jump, period),
+      : stays_(std::max<std::uint64_t>(2, static_cast<std::uint64_t>(std::lround(kStays / period)))),
+        jump_(kLegsJoints, {kCauseEncoderJump, parameters.encoder_jump, period}),
         stuck_(kCauseEncoderStuck, parameters.encoder_stuck, period) {
     for (std::size_t i = 0; i < kLegsJoints; ++i) joints_[i].reach = kFaster * robot.joints[i].velocity_limit * period;
   }
 
   void enter_run() noexcept {
-    jump_.reset();
+    for (ConditionWatch& watch : jump_) watch.reset();
     stuck_.reset();
     for (Joint& joint : joints_) {
       joint.known = joint.demanded = false;
@@ -48,21 +50,20 @@ class EncoderConditions {
   }
 
   void step(const MonitorInput& input, std::uint64_t elapsed, ActiveCauses& out) noexcept {
-    ConditionMeasurement jump = kNothingMeasured, stuck = kNothingMeasured;
+    ConditionMeasurement stuck = kNothingMeasured;
     const bool walks = input.command != nullptr && input.command->legged.phase == LegPhase::kWalking;
     const double limit = (walks ? kOfSwing : 1) * stuck_.limit();
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       Joint& joint = joints_[i];
       joint.cycles += elapsed;
       const JointSample& sample = input.sensors->joints[i];
+      ConditionMeasurement jump = kNothingMeasured;
+      if (has_position(sample)) jump = beyond(i, jumped(joint, sample.position, jump_[i].limit()), jump_[i].limit());
+      out.update(jump_[i], jump, elapsed);
       if (!has_position(sample)) continue;
-      jump = worse(jump, beyond(i, jumped(joint, sample.position), jump_.limit()));
       stuck = worse(stuck, beyond(i, demanded(joint, sample.position, demand(input.command, i), elapsed), limit));
     }
-    jump_.step(jump, elapsed);
-    out.add(jump_);
-    stuck_.step(stuck, elapsed);
-    out.add(stuck_);
+    out.update(stuck_, stuck, elapsed);
   }
 
  private:
@@ -89,10 +90,10 @@ class EncoderConditions {
   }
 
   /// Returns by how many rad the angle is beyond the reach of the joint.
-  double jumped(Joint& joint, double position) const noexcept {
+  static double jumped(Joint& joint, double position, double limit) noexcept {
     const double past =
         joint.known ? std::abs(position - joint.possible) - joint.reach * static_cast<double>(joint.cycles) : 0;
-    if (!joint.known || past <= jump_.limit()) {
+    if (!joint.known || past <= limit) {
       joint.known = true;
       joint.possible = position;
       joint.cycles = 0;
@@ -101,13 +102,13 @@ class EncoderConditions {
   }
 
   /// Returns by how many rad the command moved while the angle stayed.
-  static double demanded(Joint& joint, double position, const JointCommand* command, std::uint64_t elapsed) noexcept {
+  double demanded(Joint& joint, double position, const JointCommand* command, std::uint64_t elapsed) const noexcept {
     double moved = 0;
     joint.stays = position == joint.reported ? joint.stays + elapsed : 0;
     if (joint.demand_count == kAnswer && command != nullptr) {
       if (!joint.demanded || position != joint.reported) joint.demand = joint.demands.front();
       joint.demanded = true;
-      if (joint.stays >= kStays) moved = std::abs(joint.demands.front() - joint.demand);
+      if (joint.stays >= stays_) moved = std::abs(joint.demands.front() - joint.demand);
     }
     joint.reported = position;
     remember(joint, command);
@@ -125,8 +126,10 @@ class EncoderConditions {
     joint.demand_count = std::min(joint.demand_count + 1, kAnswer);
   }
 
+  std::uint64_t stays_;  ///< cycles
   std::array<Joint, kLegsJoints> joints_{};
-  ConditionWatch jump_, stuck_;
+  FixedVector<ConditionWatch, kLegsJoints> jump_;
+  ConditionWatch stuck_;
 };
 
 }  // namespace robot_control

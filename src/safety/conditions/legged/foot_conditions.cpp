@@ -110,15 +110,11 @@ void FootConditions::step(const MonitorInput& input, const Eigen::Vector3d& up, 
     waited_ = 0;
     sample(*input.sensors, asked, up, judged);
   }
-  slip_.step(slipped_, elapsed);
-  out.add(slip_);
+  out.update(slip_, slipped_, elapsed);
   const double share = weight_ / static_cast<double>(stands && asked.lifted != 0 ? kLegs - 1 : kLegs);
-  load_.step(stands || walks ? lightest(*input.sensors, up, judged, share, walks) : kNothingMeasured, elapsed);
-  out.add(load_);
-  sinking_.step(sunk_, elapsed);
-  out.add(sinking_);
-  turning_.step(turned_, elapsed);
-  out.add(turning_);
+  out.update(load_, stands || walks ? lightest(*input.sensors, up, judged, share, walks) : kNothingMeasured, elapsed);
+  out.update(sinking_, sunk_, elapsed);
+  out.update(turning_, turned_, elapsed);
 }
 
 void FootConditions::sample(const SensorFrame& sensors, const LeggedCommand& asked, const Eigen::Vector3d& up,

@@ -1,5 +1,6 @@
 #pragma once
-/// The joints of a robot on legs are compared with their own limits. The worst joint counts and is named.
+/// The joints of a robot on legs are compared with their own limits. Each joint has its own persistence. The first one
+/// that was beyond its limit for so long is named.
 ///
 ///   joint speed   |q̇| / velocity limit > limit
 ///   joint effort  |τ| / effort limit > limit, for the persistence: no motor may do that for long
@@ -32,24 +33,25 @@
 #include "safety/latch/active_causes.h"
 #include "safety/monitor_input.h"
 #include "safety/safety_parameters.h"
+#include "signals/fixed_vector.h"
 
 namespace robot_control {
 
 class JointConditions {
  public:
-  static constexpr double kMeanTime = 0.2;      ///< s
-  static constexpr double kOfSwing = 0.45;      ///< docs/evidence/derivations.md
-  static constexpr double kOfTorques = 0.2;     ///< docs/evidence/derivations.md
-  static constexpr double kAgainst = 0.2;       ///< rad (docs/evidence/derivations.md)
-  static constexpr std::uint64_t kStride = 10;  ///< cycles
+  static constexpr double kMeanTime = 0.2;   ///< s
+  static constexpr double kOfSwing = 0.45;   ///< docs/evidence/derivations.md
+  static constexpr double kOfTorques = 0.2;  ///< docs/evidence/derivations.md
+  static constexpr double kAgainst = 0.2;    ///< rad (docs/evidence/derivations.md)
+  static constexpr double kStride = 0.01;    ///< s
 
   /// `period` s.
   JointConditions(const SafetyParameters& parameters, const LegModel& robot, double period) noexcept
       : period_(period),
-        speed_(kCauseJointSpeed, parameters.joint_speed, period),
-        effort_(kCauseJointEffort, parameters.joint_effort, period),
-        range_(kCauseJointRange, parameters.joint_range, period),
-        following_(kCauseJointFollowing, parameters.joint_following, period),
+        speed_(kLegsJoints, {kCauseJointSpeed, parameters.joint_speed, period}),
+        effort_(kLegsJoints, {kCauseJointEffort, parameters.joint_effort, period}),
+        range_(kLegsJoints, {kCauseJointRange, parameters.joint_range, period}),
+        following_(kLegsJoints, {kCauseJointFollowing, parameters.joint_following, period}),
         at_once_(kCauseJointFollowing, without_persistence(parameters.joint_following), period) {
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       const JointModel& joint = robot.joints[i];
@@ -60,7 +62,9 @@ class JointConditions {
   }
 
   void enter_run() noexcept {
-    for (ConditionWatch* watch : {&speed_, &effort_, &range_, &following_, &at_once_}) watch->reset();
+    for (Watches* watches : {&speed_, &effort_, &range_, &following_})
+      for (ConditionWatch& watch : *watches) watch.reset();
+    at_once_.reset();
     behind_ = {};
     torques_ = {};
     ways_ = {};
@@ -73,35 +77,30 @@ class JointConditions {
       behind_ = {}, ways_ = {};
       for (MotorTorque& torque : torques_) torque.reset();
     }
-    ConditionMeasurement speed = kNothingMeasured, effort = kNothingMeasured, range = kNothingMeasured,
-                         following = kNothingMeasured, at_once = kNothingMeasured;
+    ConditionMeasurement at_once = kNothingMeasured;
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       const JointSample& joint = sensors.joints[i];
       const Limits& limits = limits_[i];
-      speed = worse(speed, beyond(i, std::abs(valid_velocity(joint)) / limits.speed, speed_.limit()));
-      if (has(joint, kValidEffort))
-        effort = worse(effort, beyond(i, std::abs(joint.effort) / limits.effort, effort_.limit()));
+      ConditionMeasurement effort = kNothingMeasured, range = kNothingMeasured, following = kNothingMeasured;
+      if (has(joint, kValidEffort)) effort = beyond(i, std::abs(joint.effort) / limits.effort, effort_[i].limit());
       if (has_position(joint)) {
         const double outside = std::max(limits.range.lower - joint.position, joint.position - limits.range.upper);
-        range = worse(range, beyond(i, outside, range_.limit()));
-        following = worse(following, follows(i, phase, input.command, joint.position, elapsed));
+        range = beyond(i, outside, range_[i].limit());
+        following = follows(i, phase, input.command, joint.position, elapsed);
         at_once = worse(at_once, opposes(i, input.command, joint.position, elapsed));
       }
       at_once = worse(at_once, gives(i, input, elapsed));
+      out.update(following_[i], following, weighed(following, elapsed));
+      out.update(speed_[i], beyond(i, std::abs(valid_velocity(joint)) / limits.speed, speed_[i].limit()), elapsed);
+      out.update(effort_[i], effort, elapsed);
+      out.update(range_[i], range, elapsed);
     }
-    const auto update = [&](ConditionWatch& watch, const ConditionMeasurement& measurement) {
-      watch.step(measurement, elapsed);
-      out.add(watch);
-    };
-    following_.step(following, weighed(following, elapsed));
-    out.add(following_);
-    update(speed_, speed);
-    update(effort_, effort);
-    update(range_, range);
-    update(at_once_, at_once);
+    out.update(at_once_, at_once, elapsed);
   }
 
  private:
+  using Watches = FixedVector<ConditionWatch, kLegsJoints>;  ///< by joint
+
   ConditionMeasurement follows(std::size_t i, LegPhase phase, const CommandFrame* command, double position,
                                std::uint64_t elapsed) noexcept {
     const bool walks = phase == LegPhase::kWalking;
@@ -111,7 +110,7 @@ class JointConditions {
     const double left = judged ? std::abs(joint.position - position) : 0;
     const double part = std::min(1.0, static_cast<double>(elapsed) * period_ / kMeanTime);
     if (walks && judged) behind_[i] += part * (left - behind_[i]);
-    const double limit = following_.limit();
+    const double limit = at_once_.limit();
     if (left > (phase == LegPhase::kStanding ? 1 : kFarTimes) * limit) return beyond(i, left, limit);
     return walks ? beyond(i, behind_[i], kOfSwing * limit) : kNothingMeasured;
   }
@@ -127,12 +126,12 @@ class JointConditions {
     const double asked = command->joints[i].position;
     if (!way.last) {
       way.last = {asked, position, 0};
-    } else if ((way.last->age += elapsed) >= kStride) {
+    } else if (static_cast<double>(way.last->age += elapsed) * period_ > kStride - period_ / 2) {
       const double turned = position - way.last->angle, wanted = asked - way.last->asked;
       way.against = std::max(0.0, way.against + (wanted < 0 ? turned : wanted > 0 ? -turned : 0));
       way.last = {asked, position, 0};
     }
-    return beyond(i, way.against / kAgainst * following_.limit(), following_.limit());
+    return beyond(i, way.against / kAgainst * at_once_.limit(), at_once_.limit());
   }
 
   /// Returns how often the torque of a motor is wrong, as an angle.
@@ -148,7 +147,7 @@ class JointConditions {
       return kNothingMeasured;
     }
     torque.step(joint, input.command->joints[i], limits_[i].effort, period_);
-    return beyond(i, torque.wrong() / kOfTorques * following_.limit(), following_.limit());
+    return beyond(i, torque.wrong() / kOfTorques * at_once_.limit(), at_once_.limit());
   }
 
   static Condition without_persistence(Condition condition) noexcept {
@@ -179,7 +178,8 @@ class JointConditions {
   std::array<double, kLegsJoints> behind_{};  ///< rad, of joints of feet in the air, the mean
   std::array<MotorTorque, kLegsJoints> torques_{};
   std::array<Way, kLegsJoints> ways_{};
-  ConditionWatch speed_, effort_, range_, following_, at_once_;
+  Watches speed_, effort_, range_, following_;
+  ConditionWatch at_once_;
 };
 
 }  // namespace robot_control

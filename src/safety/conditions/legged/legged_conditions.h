@@ -30,11 +30,12 @@ class LeggedConditions {
   static constexpr double kWindow = 0.01;       ///< rad
   static constexpr double kStandingTime = 0.1;  ///< s
   static constexpr double kForceTime = 0.3;     ///< s, of attitude.h: some steps of a trot
+  static constexpr double kLanding = 0.5;       ///< s, of body_conditions.h: a fold in a walk, and its blow
 
   /// `period` s.
   LeggedConditions(const SafetyParameters& parameters, const LegModel& robot, double period)
       : period_(period),
-        body_conditions_(parameters, robot, {}, period, kForceTime),
+        body_conditions_(parameters, robot, {}, period, kForceTime, kLanding),
         downward_force_(parameters, period),
         wrong_state_(parameters, period),
         joint_conditions_(parameters, robot, period),

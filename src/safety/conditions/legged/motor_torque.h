@@ -1,10 +1,10 @@
 #pragma once
 /// A MotorTorque measures how often a motor gives another torque than its commands demand.
 ///
-/// The commands of kLate cycles ago demand torques at the measured angle and speed, which span a range. A torque is
-/// wrong if it is outside by more than kOfDemand of the range's end and kOfEffort of the effort limit. All of these
-/// torques are means over kMean, because measured speeds come in steps. The result w is the part of the last cycles in
-/// which the torque was wrong:
+/// The commands of now, of kLate and of 2 kLate ago, rounded to whole cycles but 0, demand torques at the measured
+/// angle and speed of this cycle and of the one before. They span a range. A torque is wrong if it is outside by more
+/// than kOfDemand of the range's end and kOfEffort of the effort limit. All of these torques are means over kMean,
+/// because measured speeds come in steps. The result w is the part of the last cycles in which the torque was wrong:
 ///
 ///   w += T/kTime (1 − w), or T/kTime (0 − w)      T: period
 ///
@@ -22,14 +22,14 @@ namespace robot_control {
 
 class MotorTorque {
  public:
-  static constexpr std::array<std::size_t, 3> kLate{0, 5, 10};  ///< cycles: a late motor is none that fails
-  static constexpr std::size_t kCommands = kLate.back() + 1;
-  static constexpr double kOfDemand = 0.5;   ///< nor is a weak one
-  static constexpr double kOfEffort = 0.04;  ///< docs/evidence/derivations.md
-  static constexpr double kMean = 0.01;      ///< s
-  static constexpr double kTime = 0.06;      ///< s
+  static constexpr double kLate = 0.005;        ///< s: a late motor is none that fails
+  static constexpr std::size_t kCommands = 21;  ///< of 2 kLate at 2 kHz
+  static constexpr double kOfDemand = 0.5;      ///< nor is a weak one
+  static constexpr double kOfEffort = 0.04;     ///< docs/evidence/derivations.md
+  static constexpr double kMean = 0.01;         ///< s
+  static constexpr double kTime = 0.06;         ///< s
 
-  /// Commands before this cycle are not in force any more. It is not judged until kCommands are known again.
+  /// Commands before this cycle are not in force any more. It is not judged until those of 2 kLate are known again.
   void forget() noexcept { known_ = 0; }
 
   void reset() noexcept {
@@ -41,6 +41,7 @@ class MotorTorque {
   /// finite. `limit` N·m, `period` s.
   void step(const JointSample& joint, const JointCommand& command, double limit, double period) noexcept {
     compare(joint, limit, period);
+    before_ = {joint.position, joint.velocity};
     commands_[next_] = command;
     next_ = (next_ + 1) % kCommands;
     known_ = std::min(known_ + 1, kCommands);
@@ -50,16 +51,20 @@ class MotorTorque {
   double wrong() const noexcept { return wrong_; }
 
  private:
+  using Motion = std::array<double, 2>;  ///< rad, rad/s
+
   void compare(const JointSample& joint, double limit, double period) noexcept {
-    if (known_ < kCommands) {
+    const auto late = static_cast<std::size_t>(std::max(1.0, std::round(kLate / period)));  // cycles
+    if (known_ <= 2 * late) {
       given_ = joint.effort;
       demanded_.fill(joint.effort);
       return;
     }
     const double part = std::min(1.0, period / kMean);
     given_ += part * (joint.effort - given_);
-    for (std::size_t i = 0; i < kLate.size(); ++i) {
-      const double demand = std::clamp(demanded(kLate[i], joint), -limit, limit);
+    for (std::size_t i = 0; i < demanded_.size(); ++i) {
+      const Motion& motion = i % 2 == 0 ? Motion{joint.position, joint.velocity} : before_;
+      const double demand = std::clamp(demanded(i / 2 * late, motion), -limit, limit);
       demanded_[i] += part * (demand - demanded_[i]);
     }
     const auto [lower, upper] = std::ranges::minmax(demanded_);
@@ -68,15 +73,16 @@ class MotorTorque {
     wrong_ += period / kTime * ((wrong ? 1 : 0) - wrong_);
   }
 
-  double demanded(std::size_t ago, const JointSample& joint) const noexcept {
+  double demanded(std::size_t ago, const Motion& motion) const noexcept {
     const JointCommand& law = commands_[(next_ + kCommands - 1 - ago) % kCommands];
-    return law.effort + law.stiffness * (law.position - joint.position) + law.damping * (law.velocity - joint.velocity);
+    return law.effort + law.stiffness * (law.position - motion[0]) + law.damping * (law.velocity - motion[1]);
   }
 
   std::array<JointCommand, kCommands> commands_{};  ///< of the last cycles, a ring
   std::size_t next_ = 0, known_ = 0;                ///< index of the oldest one, how many there are
+  Motion before_{};                                 ///< of the cycle before
   double given_ = 0;                                ///< N·m, the mean
-  std::array<double, kLate.size()> demanded_{};     ///< N·m, the means
+  std::array<double, 6> demanded_{};                ///< N·m, the means: of three commands, each at both motions
   double wrong_ = 0;
 };
 

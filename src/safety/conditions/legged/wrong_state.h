@@ -37,8 +37,7 @@ class WrongState {
       measured = beyond(kMaxJoints, (by_state - by_gyro).norm(), watch_.limit());
     }
     Eigen::Map<Eigen::Vector3d>(before_.data()) = rate;
-    watch_.step(measured, elapsed);
-    out.add(watch_);
+    out.update(watch_, measured, elapsed);
   }
 
  private:
