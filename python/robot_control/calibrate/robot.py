@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import rospy
 from nav_msgs.msg import Odometry
 
 from robot_control.calibrate.law import FloatArray
+from robot_control.common.boundary import subscribe
 from robot_control.common.pose import Pose, pose_of
 from robot_control.identify.robot import RunningRobot
 
@@ -20,8 +20,8 @@ class CalibratedRobot(RunningRobot):
         self._path: list[tuple[float, float, float]] = []
         self._truth: Pose | None = None
         self._subscribers += [
-            rospy.Subscriber("wheel_odom", Odometry, self._receive_wheels, queue_size=100, tcp_nodelay=True),
-            rospy.Subscriber("ground_truth/odom", Odometry, self._receive_truth, queue_size=1, tcp_nodelay=True),
+            subscribe("wheel_odom", Odometry, self._receive_wheels, queue_size=100, tcp_nodelay=True),
+            subscribe("ground_truth/odom", Odometry, self._receive_truth, queue_size=1, tcp_nodelay=True),
         ]
 
     def begin(self) -> None:

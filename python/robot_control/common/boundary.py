@@ -12,7 +12,9 @@ from __future__ import annotations
 import contextlib
 import math
 import threading
+import time
 import traceback
+from collections import deque
 from collections.abc import Callable, Collection, Iterator
 from functools import cache
 from typing import Any
@@ -22,9 +24,32 @@ import rospy
 
 from robot_control.common.files import fit_for_message
 
-MAX_BYTES = 1 << 26
-"""of a message; a map of 8000 by 8000 cells"""
+MAX_BYTES = 1 << 16
+"""of a message; the state of a robot of 32 joints has 8 KiB"""
+MAX_BYTES_OF = {
+    "diagnostic_msgs/DiagnosticArray": 1 << 18,
+    "sensor_msgs/LaserScan": 1 << 20,
+    "geometry_msgs/PoseArray": 1 << 20,
+    "tf2_msgs/TFMessage": 1 << 20,
+    "nav_msgs/Path": 1 << 22,
+    "robot_control/FollowPathActionGoal": 1 << 22,
+    "nav_msgs/OccupancyGrid": 1 << 26,
+}
+"""By type, for what is long: a path of 40,000 poses, a map of 8000 by 8000 cells"""
 FLOATS = ("float32", "float64")
+MAY_BE_INFINITE = {
+    "robot_control/SafetyStatus": ("speed_limit",),
+    "robot_control/DriveState": ("wanted", "actual", "error", "effort"),
+    "robot_control/LegState": ("wanted", "actual", "effort", "load", "slip"),
+    "robot_control/RobotStatus": ("odometry_confidence",),
+    "sensor_msgs/JointState": ("position", "velocity", "effort"),
+    "sensor_msgs/LaserScan": ("ranges", "intensities", "range_max"),
+    "dynamic_reconfigure/Config": ("value",),
+}
+"""By type: fields in which NaN or an infinity has a meaning, such as no limit, no return or not measured"""
+
+POLL_PERIOD = 0.02
+"""s between two looks for a message that is waited for"""
 
 
 class UnfitError(ValueError):
@@ -81,7 +106,7 @@ def subscribe(
         topic: name; it is the source of what is dropped
         kind: type of the messages; a publisher of another type is refused, as by any subscriber
         receive: called in rospy's thread
-        not_finite: names of fields in which a NaN or an infinity has a meaning
+        not_finite: names of fields in which a NaN or an infinity has a meaning, beside MAY_BE_INFINITE
         options: as for `rospy.Subscriber`
     """
 
@@ -90,6 +115,57 @@ def subscribe(
             receive(opened(sealed, not_finite))
 
     return rospy.Subscriber(topic, _sealed(kind), arrive, **options)
+
+
+class Latest:
+    """The newest message of a topic, for a program that polls: it is checked when it is read, as most are not."""
+
+    def __init__(self, topic: str, kind: type) -> None:
+        self._topic = topic
+        self._unread: deque[tuple[Any, float]] = deque(maxlen=1)
+        self._newest: Any = None
+        self._received_at = -math.inf
+        self._subscriber = rospy.Subscriber(topic, _sealed(kind), self._receive, queue_size=1, tcp_nodelay=True)
+
+    @property
+    def message(self) -> Any:
+        """The newest one that passed the checks, or None."""
+        try:
+            sealed, at = self._unread.popleft()
+        except IndexError:
+            return self._newest
+        with boundary.crossing(self._topic):
+            self._newest, self._received_at = opened(sealed), at
+        return self._newest
+
+    @property
+    def received_at(self) -> float:
+        """s, monotonic, of that message; minus infinity without one."""
+        return self._received_at if self.message is not None else -math.inf
+
+    def age(self, now: float) -> float | None:
+        """s since that message was received; None without one."""
+        return None if self.message is None else round(now - self._received_at, 2)
+
+    def fresh(self, now: float, silence: float) -> Any:
+        """That message if it was received less than `silence` s ago; else None."""
+        return self.message if now - self.received_at < silence else None
+
+    def end(self) -> None:
+        """Ends the subscription."""
+        self._subscriber.unregister()
+
+    def _receive(self, sealed: Any) -> None:
+        self._unread.append((sealed, time.monotonic()))
+
+
+def next_message(topic: str, kind: type, patience: float) -> Any:
+    """The next message, or the last one if the topic is latched; None if none came within `patience` s."""
+    latest, end = Latest(topic, kind), time.monotonic() + patience
+    while latest.message is None and time.monotonic() < end and not rospy.is_shutdown():
+        time.sleep(POLL_PERIOD)
+    latest.end()
+    return latest.message
 
 
 @cache
@@ -102,13 +178,14 @@ def _sealed(kind: type) -> type:
 def opened(sealed: Any, not_finite: Collection[str] = ()) -> Any:
     """The checked message of the bytes. Raises UnfitError."""
     data: bytes = sealed._buff  # all that AnyMsg has
-    if len(data) > MAX_BYTES:
-        raise UnfitError(f"has {len(data)} bytes, more than {MAX_BYTES}")
+    bound = MAX_BYTES_OF.get(sealed.kind._type, MAX_BYTES)
+    if len(data) > bound:
+        raise UnfitError(f"has {len(data)} bytes, more than {bound}")
     try:
         message = sealed.kind().deserialize(data)
     except (genpy.DeserializationError, UnicodeError, ValueError, TypeError, MemoryError, OverflowError) as error:
         raise UnfitError(f"is no {sealed.kind._type}: {str(error)[:100]}") from None
-    require_finite(message, not_finite)
+    require_finite(message, {*not_finite, *MAY_BE_INFINITE.get(sealed.kind._type, ())})
     with contextlib.suppress(AttributeError):
         message._connection_header = sealed._connection_header
     return message

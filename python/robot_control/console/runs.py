@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import subprocess
 import sys
 import tempfile
@@ -70,4 +71,4 @@ class Runs:
         except OSError:
             return {}
         files = {path for path in paths if path.is_file() and not path.is_symlink()}
-        return {hashlib.sha256(str(path).encode(errors="replace")).hexdigest()[:16]: path for path in sorted(files)}
+        return {hashlib.sha256(os.fsencode(path)).hexdigest()[:16]: path for path in sorted(files)}

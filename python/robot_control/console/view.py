@@ -12,10 +12,10 @@ from geometry_msgs.msg import TwistStamped
 from nav_msgs.msg import Odometry, Path
 from sensor_msgs.msg import JointState
 
+from robot_control.common.boundary import Latest
 from robot_control.common.command import Command
 from robot_control.common.pose import pose_of
 from robot_control.console.navigation import NavigationView
-from robot_control.console.topics import Latest
 from robot_control.msg import DriveState, FollowPathActionFeedback, LegState, RobotStatus
 from robot_control.view.scene import Trail
 from robot_control.why.diagnosis import judge, missing_nodes
@@ -49,9 +49,9 @@ class View:
 
     def revoked(self, node: str) -> bool:
         """True if the controller refuses what the node requested before a stop."""
-        states = (self._topics["drive"], self._topics["legs"])
         now = time.monotonic()
-        return any(now - state.received_at < DRIVE_SILENCE and node in state.message.revoked for state in states)
+        states = [self._topics[name].fresh(now, DRIVE_SILENCE) for name in ("drive", "legs")]
+        return any(state is not None and node in state.revoked for state in states)
 
     def pose(self) -> tuple[float, float, float] | None:
         """x, y [m], yaw [rad] in odom."""

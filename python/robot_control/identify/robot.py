@@ -10,7 +10,9 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 
+from robot_control.common.boundary import subscribe
 from robot_control.common.pose import pose_of
+from robot_control.common.recent import Recent, sender_of
 from robot_control.common.topic_sender import Sender
 from robot_control.identify.excitation_watch import Observation
 from robot_control.identify.recorded_log import RunningTelemetry
@@ -25,7 +27,7 @@ class RunningRobot:
 
     def __init__(self, *, sends: bool = True) -> None:
         """If `sends` is false, it only receives and does not count as a sender on cmd_vel."""
-        self.logs: dict[str, RunningTelemetry] = {}
+        self._logs = Recent[RunningTelemetry](math.inf)
         self._odometry: Odometry | None = None
         self._odometry_at = NEVER
         self.requested = process_began()
@@ -34,9 +36,14 @@ class RunningRobot:
         self._publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True) if sends else None
         self._sender = None if self._publisher is None else Sender(self._publisher, Twist())
         self._subscribers = [
-            rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1, tcp_nodelay=True),
-            rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive_diagnostics),
+            subscribe("odom", Odometry, self._receive_odometry, queue_size=1, tcp_nodelay=True),
+            subscribe("/diagnostics", DiagnosticArray, self._receive_diagnostics),
         ]
+
+    @property
+    def logs(self) -> dict[str, RunningTelemetry]:
+        """The newest report of each telemetry, by node."""
+        return {node: running for node, (_, running) in self._logs.items(time.monotonic()).items()}
 
     def send(self, linear: float, angular: float) -> None:
         """m/s, rad/s."""
@@ -82,4 +89,5 @@ class RunningRobot:
             path = values.get("bag")
             if path:
                 node = "/" + status.name.lstrip("/")
-                self.logs[node] = RunningTelemetry(node, path, values.get("recording") == "1")
+                running = RunningTelemetry(node, path, values.get("recording") == "1")
+                self._logs.put(sender_of(message), node, running, time.monotonic())

@@ -12,6 +12,7 @@ from nav_msgs.msg import Odometry, Path
 from visualization_msgs.msg import Marker, MarkerArray
 
 from robot_control._robot_control import LegModel
+from robot_control.common.boundary import boundary, subscribe
 from robot_control.common.ros_node import running_node
 from robot_control.msg import DriveState, LegState, SafetyStatus
 from robot_control.view.feet import Swings, in_odom, load_arrows
@@ -43,10 +44,10 @@ class View:
         self._swings = Swings()
         self._markers = rospy.Publisher("view/markers", MarkerArray, queue_size=1)
         self._path = rospy.Publisher("view/path_driven", Path, queue_size=1, latch=True)
-        rospy.Subscriber("safety_status", SafetyStatus, self._receive_safety)
-        rospy.Subscriber("drive_state", DriveState, self._receive_drive, queue_size=1)
-        rospy.Subscriber("leg_state", LegState, self._receive_legs, queue_size=1)
-        rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1)
+        subscribe("safety_status", SafetyStatus, self._receive_safety)
+        subscribe("drive_state", DriveState, self._receive_drive, queue_size=1)
+        subscribe("leg_state", LegState, self._receive_legs, queue_size=1)
+        subscribe("odom", Odometry, self._receive_odometry, queue_size=1)
 
     def draw(self) -> None:
         """Draws nothing before the first odometry, because the markers use its frames."""
@@ -144,5 +145,6 @@ def main() -> None:
     with running_node("view_markers") as signals:
         view = View()
         while signals.going_on():
-            view.draw()
+            with boundary.crossing("what is drawn"):
+                view.draw()
             rospy.rostime.wallsleep(PERIOD)

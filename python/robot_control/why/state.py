@@ -133,7 +133,8 @@ class Facts:
     def sources(self) -> dict[str, str]:
         """The state of each command source, by priority; empty if the robot has no list of them."""
         text = self.value(self.controller, "sources")
-        return dict(part.split(": ", 1) for part in text.split(", ")) if text else {}
+        parts = [part.partition(": ") for part in text.split(", ")]
+        return {name: state for name, colon, state in parts if colon}
 
     def path(self, name: str) -> str:
         """The absolute name of a topic or service."""
