@@ -107,7 +107,9 @@ class DrivingPage:
     def ready(self) -> bool:
         """True if it commands over a link that allows some speed, and everything was released."""
         state = self.authority
-        return bool(state) and state["commander"] == state["you"] and state["link"]["cap"] > 0.3 and not state["dead_man"]
+        return (
+            bool(state) and state["commander"] == state["you"] and state["link"]["cap"] > 0.3 and not state["dead_man"]
+        )
 
 
 @contextlib.asynccontextmanager
