@@ -78,7 +78,7 @@ def test_the_process_of_xacro_reads_and_does_nothing_else(act: str, tmp_path, tc
 
 @pytest.fixture
 def tcp_port():
-    import socket  # noqa: PLC0415
+    import socket
 
     with socket.create_server(("127.0.0.1", 0)) as server:
         yield server.getsockname()[1]

@@ -192,7 +192,7 @@ def opened(sealed: Any, not_finite: Collection[str] = ()) -> Any:
 
 
 def require_finite(message: Any, except_: Collection[str] = (), path: str = "") -> None:
-    """Raises UnfitError, with the field, where a number of a message is NaN or infinite."""
+    """Raises UnfitError, with the field, where a number of a message is NaN or infinite, or a text has a zero byte."""
     for name, kind in zip(message.__slots__, message._slot_types, strict=True):
         if name in except_:
             continue
@@ -201,6 +201,9 @@ def require_finite(message: Any, except_: Collection[str] = (), path: str = "") 
         if element in FLOATS:
             if not (all(map(math.isfinite, value)) if is_array else math.isfinite(value)):
                 raise UnfitError(f"{where} must be finite")
-        elif "/" in element and element != "std_msgs/Header":
+        elif element == "string":
+            if "\0" in ("".join(value) if is_array else value):
+                raise UnfitError(f"{where} must have no zero byte")
+        elif "/" in element:
             for each in value if is_array else (value,):
                 require_finite(each, except_, f"{where}.")

@@ -25,6 +25,7 @@ FOLDER = given_path(str(LOGS))
 """The folder of the console's own files."""
 FILE = FOLDER / "console_users.json"
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,31}")
+HEXADECIMAL = re.compile("(?:[0-9a-f]{2})*")
 LINK_LIFE = 24 * 3600.0
 """s"""
 MIN_PASSWORD, MAX_PASSWORD = 10, 256
@@ -64,8 +65,8 @@ class Users:
             raise UsersError(f"{self.path}: must belong to this account alone: chmod 600 {self.path}")
         try:
             rows = json.loads(self.path.read_text(encoding="utf-8"))
-            users = [User(**{**row, "role": Role[row["role"].upper()]}) for row in rows]
-        except (ValueError, TypeError, KeyError, AttributeError):
+            users = [_checked(User(**{**row, "role": Role[row["role"].upper()]})) for row in rows]
+        except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
             raise UsersError(
                 f"{self.path}: is no file of console_users.py; remove it and add the users again"
             ) from None
@@ -116,6 +117,14 @@ class Users:
             partial.touch(mode=0o600)
             partial.chmod(0o600)
             partial.write_text(json.dumps(rows, indent=1), encoding="utf-8")
+
+
+def _checked(user: User) -> User:
+    """Raises ValueError or TypeError for an entry that this module has not written."""
+    hexadecimal = all(HEXADECIMAL.fullmatch(text) for text in (user.salt, user.password, user.link))
+    if not (hexadecimal and NAME.fullmatch(user.name) and float(user.link_ends) >= 0):
+        raise ValueError
+    return user
 
 
 def _hash(password: str, salt: str) -> str:
