@@ -125,7 +125,7 @@ def confine() -> None:
     kernel.unshare(NEW_USERS | NEW_NETWORK)
     kernel.prctl(NO_NEW_PRIVILEGES, 1, 0, 0, 0)
     version = kernel.syscall(CREATE_RULESET, None, 0, 1)
-    changes = struct.pack("Q", CHANGES | (CHANGES_SINCE_3 if version >= 3 else 0))  # noqa: PLR2004 (of landlock)
+    changes = struct.pack("Q", CHANGES | (CHANGES_SINCE_3 if version >= 3 else 0))
     rules = kernel.syscall(CREATE_RULESET, changes, len(changes), 0) if version > 0 else -1
     if rules >= 0:
         kernel.syscall(RESTRICT_SELF, rules, 0)

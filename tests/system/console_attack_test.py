@@ -17,12 +17,26 @@ from typing import Any
 import rospy
 import rostest
 from console_pages import DrivingPage, NoRedirect, answer, driving_page, socket_of
-from geometry_msgs.msg import TwistStamped
-from system_support import Program, RobotTestCase, again_after_a_stall, wait_for
+from geometry_msgs.msg import PoseArray, TwistStamped
+from nav_msgs.msg import OccupancyGrid, Path
+from robot_control.msg import FollowPathActionFeedback, LegState, RobotKind
+from sensor_msgs.msg import LaserScan
+from system_support import Program, RobotTestCase, again_after_a_stall, truncated_messages, wait_for
 
 from bench.console.process import Console
 
 DRIVE = {"type": "drive", "number": 1, "sent": 1.0, "held": True, "linear": 1.0, "angular": 0.0, "lateral": 0.0}
+SHOWN = {
+    "map": OccupancyGrid,
+    "costmap": OccupancyGrid,
+    "scan": LaserScan,
+    "particlecloud": PoseArray,
+    "path_wanted": Path,
+    "leg_state": LegState,
+    "robot_kind": RobotKind,
+    "follow_path/feedback": FollowPathActionFeedback,
+}
+"""Topics of the page to which this test may publish beside the robot"""
 PASSWORD, SPEED = "long enough", 0.3
 TAKE = {"type": "take", "force": False}
 
@@ -250,6 +264,22 @@ class ConsoleAttackTest(RobotTestCase):
 
         self.run_page(play)
         self.assertEqual(status(f"{self.console.origin}/login"), 200)
+
+    def test_truncated_messages_on_what_is_shown_end_nothing(self) -> None:
+        async def play(page: Any) -> None:
+            await self.until(page, "fast")
+            with contextlib.ExitStack() as stack:
+                await asyncio.to_thread(stack.enter_context, truncated_messages(SHOWN))
+                self.assertEqual((await self.until(page, "slow"))["safety"]["state"], "READY")
+                await self.until(page, "fast")
+                _, said, _ = await asyncio.to_thread(answer, self.console, "/api/e_stop", {}, self.cookie)
+                self.assertTrue(said["confirmed"], said)
+                await self.until(page, "slow", '"state": "STOPPED"')
+
+        self.run_page(play)
+        self.robot.release()
+        self.assertIn("an input is dropped", self.console.output)
+        self.alive()
 
     # connections
 

@@ -46,6 +46,7 @@ class ConsoleMasterTest(RobotTestCase):
             self.assertGreater(page.speed, 0.8 * SPEED, page.said)
             self.assertEqual((page.ended, page.authority["link"]["gaps"]), (0, 0))
             self.assertNotIn("No node", page.newest["slow"]["headline"])
+            self.assertIn("the ROS master was restarted", page.authority["against"]["step"])
             code, said, _ = await asyncio.to_thread(answer, self.console, "/api/e_stop", {}, cookie)
             self.assertEqual((code, said["confirmed"]), (200, True), said)
             await until("standstill", lambda: abs(self.robot.speed) < 0.01)

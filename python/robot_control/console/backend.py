@@ -41,7 +41,7 @@ class Backend:
         self.listener, self.view = Listener(), View()
         self.calls = Calls(self.view.pose, self.view.navigation.frame)
         self.said: list[str] = []  # for all pages, and taken by the server
-        self.available: set[str] = set()  # services of the robot
+        self.available: set[str] | None = set()  # services of the robot; None: the master does not know the robot
         self._watch, self._limits = SafetyWatch(), SpeedLimits()
         self._services = Services(self._watch)
         self._e_stop, self._e_stop_at = NOT_ANSWERED, -math.inf  # the last answer, and when it came, s
@@ -136,5 +136,6 @@ class Backend:
         while True:
             with boundary.crossing("the master"):
                 self.listener.query_master()
-                self.available = self.listener.services()
+                forgotten = self.listener.facts().forgotten
+                self.available = None if forgotten else self.listener.services()
             time.sleep(MASTER_PERIOD)

@@ -104,6 +104,11 @@ class Facts:
         return self.safety if fresh else None
 
     @property
+    def forgotten(self) -> bool:
+        """True if the monitor reports, and the master, which was started again, does not know it."""
+        return self.master_answers and self.received() is not None and self.kind.monitor not in self.registered
+
+    @property
     def speed_limit(self) -> float:
         """m/s, of the last status that counts."""
         safety = self.received()
