@@ -37,17 +37,9 @@ MAX_BYTES_OF = {
 }
 """By type, for what is long: a path of 40,000 poses, a map of 8000 by 8000 cells"""
 FLOATS = ("float32", "float64")
-MAY_BE_INFINITE = {
-    "robot_control/SafetyStatus": ("speed_limit",),
-    "robot_control/DriveState": ("wanted", "actual", "error", "effort"),
-    "robot_control/LegState": ("wanted", "actual", "effort", "load", "slip"),
-    "robot_control/RobotStatus": ("odometry_confidence",),
-    "sensor_msgs/JointState": ("position", "velocity", "effort"),
-    "sensor_msgs/LaserScan": ("ranges", "intensities", "range_max"),
-    "dynamic_reconfigure/Config": ("value",),
-}
-"""By type: fields in which NaN or an infinity has a meaning, such as no limit, no return or not measured"""
-
+LIMITS, MEASURED = {"speed_limit", "range_max"}, {"wanted", "actual", "error", "effort", "load", "slip", "ranges"}
+MAY_BE_INFINITE = LIMITS | MEASURED | {"intensities", "odometry_confidence", "value"}
+"""Fields of any message in which NaN or an infinity has a meaning, such as no limit, no return or not measured"""
 POLL_PERIOD = 0.02
 """s between two looks for a message that is waited for"""
 
@@ -185,7 +177,7 @@ def opened(sealed: Any, not_finite: Collection[str] = ()) -> Any:
         message = sealed.kind().deserialize(data)
     except (genpy.DeserializationError, UnicodeError, ValueError, TypeError, MemoryError, OverflowError) as error:
         raise UnfitError(f"is no {sealed.kind._type}: {str(error)[:100]}") from None
-    require_finite(message, {*not_finite, *MAY_BE_INFINITE.get(sealed.kind._type, ())})
+    require_finite(message, MAY_BE_INFINITE.union(not_finite))
     with contextlib.suppress(AttributeError):
         message._connection_header = sealed._connection_header
     return message

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from robot_control.common.boundary import next_message, subscribe
+from robot_control.common.boundary import Latest, next_message
 from robot_control.common.roles import Kind, refuse_legs
 from robot_control.msg import RobotKind
 
@@ -24,19 +24,10 @@ def kind_of(message: RobotKind) -> Kind:
     )
 
 
-class _Topic:
-    def __init__(self) -> None:
-        self.newest = Kind()
-        subscribe("robot_kind", RobotKind, self._receive, queue_size=1)
-
-    def _receive(self, message: RobotKind) -> None:
-        self.newest = kind_of(message)
-
-
 @cache
-def _topic() -> _Topic:
+def _topic() -> Latest:
     """One subscription for all parts of a process."""
-    return _Topic()
+    return Latest("robot_kind", RobotKind)
 
 
 forget = _topic.cache_clear
@@ -58,4 +49,5 @@ def refuse_running_legs(tool: str) -> None:
 
 def running_kind() -> Kind:
     """The kind that was received last; before, one without a name."""
-    return _topic().newest
+    message = _topic().message
+    return Kind() if message is None else kind_of(message)

@@ -99,12 +99,8 @@ class Backend:
 
     def authority_of(self, page: Page) -> dict[str, Any]:
         """The values that this page shows of itself and of the others."""
-        now, commander, dead_man, limits = (
-            time.monotonic(),
-            self.authority.commander,
-            page.dead_man,
-            self._limits.newest(),
-        )
+        now, commander = time.monotonic(), self.authority.commander
+        dead_man, limits = page.dead_man, self._limits.newest()
         return finite(
             {
                 "type": "authority",

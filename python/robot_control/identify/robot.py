@@ -10,7 +10,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 
-from robot_control.common.boundary import subscribe
+from robot_control.common.boundary import Latest, subscribe
 from robot_control.common.pose import pose_of
 from robot_control.common.recent import Recent, sender_of
 from robot_control.common.topic_sender import Sender
@@ -19,8 +19,6 @@ from robot_control.identify.recorded_log import RunningTelemetry
 from robot_control.safety.process_start import process_began
 from robot_control.safety.watch import SafetyWatch
 
-NEVER = -math.inf
-
 
 class RunningRobot:
     """Receives the reports of one robot; sends commands on cmd_vel, a zero when the node is shut down."""
@@ -28,17 +26,13 @@ class RunningRobot:
     def __init__(self, *, sends: bool = True) -> None:
         """If `sends` is false, it only receives and does not count as a sender on cmd_vel."""
         self._logs = Recent[RunningTelemetry](math.inf)
-        self._odometry: Odometry | None = None
-        self._odometry_at = NEVER
+        self._odometry = Latest("odom", Odometry)
         self.requested = process_began()
         """s (monotonic), of the motion that follows"""
         self._watch = SafetyWatch()
         self._publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True) if sends else None
         self._sender = None if self._publisher is None else Sender(self._publisher, Twist())
-        self._subscribers = [
-            subscribe("odom", Odometry, self._receive_odometry, queue_size=1, tcp_nodelay=True),
-            subscribe("/diagnostics", DiagnosticArray, self._receive_diagnostics),
-        ]
+        subscribe("/diagnostics", DiagnosticArray, self._receive_diagnostics)
 
     @property
     def logs(self) -> dict[str, RunningTelemetry]:
@@ -59,18 +53,18 @@ class RunningRobot:
 
     def reports(self) -> bool:
         """True if odometry and a report of the safety monitor have arrived."""
-        return self._odometry is not None and self._watch.message is not None
+        return self._odometry.message is not None and self._watch.message is not None
 
     def observe(self, senders: tuple[str, ...] = ()) -> Observation:
         """The present state; `senders` are the others on cmd_vel."""
         revoked = self._watch.revoked(self.requested, waited=True)
         now = time.monotonic()
-        odometry, status = self._odometry, self._watch.message
+        odometry, status = self._odometry.message, self._watch.message
         return Observation(
             pose=None if odometry is None else pose_of(odometry),
             linear=0.0 if odometry is None else odometry.twist.twist.linear.x,
             angular=0.0 if odometry is None else odometry.twist.twist.angular.z,
-            pose_age=now - self._odometry_at,
+            pose_age=now - self._odometry.received_at,
             state="" if status is None else status.state_name,
             status_age=now - self._watch.received_at,
             revoked=revoked,
@@ -79,9 +73,6 @@ class RunningRobot:
             speed_limit=math.inf if status is None else status.speed_limit,
             senders=senders,
         )
-
-    def _receive_odometry(self, message: Odometry) -> None:
-        self._odometry, self._odometry_at = message, time.monotonic()
 
     def _receive_diagnostics(self, message: DiagnosticArray) -> None:
         for status in message.status:

@@ -12,7 +12,7 @@ from typing import Any
 import rospy
 from sensor_msgs.msg import Joy
 
-from robot_control.common.boundary import boundary, subscribe
+from robot_control.common.boundary import Latest, boundary, subscribe
 from robot_control.common.command import SEND_PERIOD, Pace
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.files import printable
@@ -113,12 +113,13 @@ class Refusal:
     """Whether the controller refuses the motion that this program requests (DriveState.revoked, LegState.revoked)."""
 
     def __init__(self) -> None:
-        self.active = False
-        for name, kind in (("drive_state", DriveState), ("leg_state", LegState)):
-            subscribe(name, kind, self._receive, queue_size=1, tcp_nodelay=True)
+        self._states = Latest("drive_state", DriveState), Latest("leg_state", LegState)
 
-    def _receive(self, message: DriveState | LegState) -> None:
-        self.active = rospy.get_name() in message.revoked
+    @property
+    def active(self) -> bool:
+        """True if the newest message of the robot's controller says so."""
+        newest = max(self._states, key=lambda state: state.received_at).message
+        return newest is not None and rospy.get_name() in newest.revoked
 
 
 def drive(given: argparse.Namespace, signals: Signals) -> None:

@@ -10,7 +10,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Twist, TwistStamped
 from nav_msgs.msg import Odometry
 
-from robot_control.common.boundary import subscribe
+from robot_control.common.boundary import Latest, subscribe
 from robot_control.common.live_parameters import LiveParameters
 from robot_control.common.recent import Recent, sender_of
 from robot_control.common.robot_kind import running_kind
@@ -34,13 +34,10 @@ class Listener:
         self._registered = True  # with the present master, by all of its topics
         self._safety: tuple[Safety, float, rospy.Time] | None = None  # when it came, and since when the state is held
         self._reports = Recent[Report](SILENCE)  # by absolute name
-        self._limited: tuple[Speeds, float] | None = None  # and when
-        self._measured: tuple[Speeds, float] | None = None
+        self._limited, self._measured = Latest("cmd_vel_out", TwistStamped), Latest("odom", Odometry)
         self._parameters = LiveParameters()
         subscribe("safety_status", SafetyStatus, self._receive_status)
         subscribe("/diagnostics", DiagnosticArray, self._receive_diagnostics)
-        subscribe("cmd_vel_out", TwistStamped, self._receive_limited, queue_size=1)
-        subscribe("odom", Odometry, self._receive_odometry, queue_size=1)
 
     def _receive_status(self, message: SafetyStatus) -> None:
         self._safety = safety_of(message, 0.0, 0.0), time.monotonic(), message.since
@@ -49,12 +46,6 @@ class Listener:
         for status in message.status:
             report = Report(status.message, {pair.key: pair.value for pair in status.values})
             self._reports.put(sender_of(message), "/" + status.name.lstrip("/"), report, time.monotonic())
-
-    def _receive_limited(self, message: TwistStamped) -> None:
-        self._limited = _speeds(message.twist), time.monotonic()
-
-    def _receive_odometry(self, message: Odometry) -> None:
-        self._measured = _speeds(message.twist.twist), time.monotonic()
 
     def query_master(self) -> None:
         """Queries the master at most every MASTER_PERIOD; waits up to ros_master.TIMEOUT.
@@ -85,7 +76,7 @@ class Listener:
         """The present facts."""
         now = time.monotonic()
         state = self._state or ([], [], [])
-        kind = running_kind()
+        kind, limited, measured = running_kind(), self._limited.fresh(now, SILENCE), self._measured.fresh(now, SILENCE)
         reports = {name: replace(last, age=now - at) for name, (at, last) in self._reports.items(now).items()}
         return Facts(
             master=self.master.uri,
@@ -98,8 +89,8 @@ class Listener:
             elsewhere=other_robots(self.namespace, reports),
             senders=senders_of(state[0], map(rospy.resolve_name, kind.request_topics), rospy.get_name()),
             clearance_senders=senders_of(state[0], [rospy.resolve_name("clearance")], rospy.get_name()),
-            limited=_fresh(self._limited, now),
-            measured=_fresh(self._measured, now),
+            limited=None if limited is None else _speeds(limited.twist),
+            measured=None if measured is None else _speeds(measured.twist.twist),
             command_timeout=self._parameters.command_timeout,
         )
 
@@ -114,7 +105,3 @@ class Listener:
 
 def _speeds(twist: Twist) -> Speeds:
     return (twist.linear.x, twist.angular.z, twist.linear.y)
-
-
-def _fresh(received: tuple[Speeds, float] | None, now: float) -> Speeds | None:
-    return None if received is None or now - received[1] > SILENCE else received[0]
