@@ -11,12 +11,21 @@ import pytest
 import rospy
 from mutants import mutants
 from nav_msgs.msg import OccupancyGrid, Odometry
-from robot_control.common.boundary import MAX_BYTES, Boundary, Latest, UnfitError, _sealed, next_message, opened
+from robot_control.common.boundary import (
+    MAX_BYTES,
+    MAX_LONG_BYTES,
+    Boundary,
+    Latest,
+    UnfitError,
+    _sealed,
+    next_message,
+    opened,
+)
 from robot_control.common.boundary import boundary as boundary_of_this_process
-from robot_control.common.recent import MAX_NAMES, MAX_SENDERS, Recent
 from robot_control.msg import LegState, SafetyStatus
 from robot_control.safety.interruptions import SURPRISE
 from robot_control.safety.watch import SafetyWatch
+from robot_control.why.recent import MAX_NAMES, MAX_SENDERS, Recent
 from sensor_msgs.msg import BatteryState
 from topics import Topics, wire
 
@@ -139,7 +148,7 @@ def test_a_message_that_is_waited_for_is_none_where_none_comes_or_it_is_truncate
     assert next_message("odom", Odometry, 0.05) is None
 
 
-@pytest.mark.parametrize(("kind", "size"), [(Odometry, MAX_BYTES), (OccupancyGrid, 1 << 26)])
+@pytest.mark.parametrize(("kind", "size"), [(Odometry, MAX_BYTES), (OccupancyGrid, MAX_LONG_BYTES)])
 def test_a_message_that_is_too_long_for_its_type_is_refused_before_it_is_read(kind: type, size: int) -> None:
     with pytest.raises(UnfitError, match=f"has {size + 1} bytes, more than {size}"):
         opened(sealed(kind, bytes(size + 1)))

@@ -45,14 +45,7 @@ class Server:
     """All routes."""
 
     def __init__(
-        self,
-        backend: Backend,
-        origins: Origins,
-        users: Users | None,
-        runs: Path,
-        *,
-        port: int,
-        read_only: bool,
+        self, backend: Backend, origins: Origins, users: Users | None, runs: Path, *, port: int, read_only: bool
     ) -> None:
         """`users`: None where the token alone opens."""
         self._backend, self._origins, self._users, self._read_only = backend, origins, users, read_only

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import secrets
 from collections.abc import Mapping
@@ -71,7 +72,7 @@ class Tries:
 
     def admit(self, user: str, address: str, now: float) -> float:
         """Counts a try and returns zero; s until the next one is admitted if this one is not."""
-        self._times = {key: times for key, times in self._times.items() if now - times[-1] < PERIOD}
+        self._times = {key: times for key, times in self._times.items() if times and now - times[-1] < PERIOD}
         keys = (("user", user), ("address", address))
         for key, bound in zip(keys, (TRIES_OF_USER, TRIES_OF_ADDRESS), strict=True):
             lately = [at for at in self._times.get(key, []) if now - at < PERIOD]
@@ -84,10 +85,8 @@ class Tries:
     def succeed(self, user: str, address: str, admitted: float) -> None:
         """Takes back the try that was admitted at this time."""
         for key in (("user", user), ("address", address)):
-            times = self._times.get(key, [])
-            if admitted in times:
-                times.remove(admitted)
-        self._times = {key: times for key, times in self._times.items() if times}
+            with contextlib.suppress(KeyError, ValueError):  # it may have expired meanwhile
+                self._times[key].remove(admitted)
 
 
 def digest(secret: str) -> str:

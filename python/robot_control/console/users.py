@@ -25,7 +25,6 @@ FOLDER = given_path(str(LOGS))
 """The folder of the console's own files."""
 FILE = FOLDER / "console_users.json"
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,31}")
-HEXADECIMAL = re.compile("(?:[0-9a-f]{2})*")
 LINK_LIFE = 24 * 3600.0
 """s"""
 MIN_PASSWORD, MAX_PASSWORD = 10, 256
@@ -121,8 +120,9 @@ class Users:
 
 def _checked(user: User) -> User:
     """Raises ValueError or TypeError for an entry that this module has not written."""
-    hexadecimal = all(HEXADECIMAL.fullmatch(text) for text in (user.salt, user.password, user.link))
-    if not (hexadecimal and NAME.fullmatch(user.name) and float(user.link_ends) >= 0):
+    for text in (user.salt, user.password, user.link):
+        bytes.fromhex(text)
+    if not NAME.fullmatch(user.name) or float(user.link_ends) < 0:
         raise ValueError
     return user
 

@@ -25,6 +25,7 @@ MAX_PATH = 2000
 """Points of a wanted path that are sent; a longer path is thinned evenly."""
 DRIVE_SILENCE = 1.0
 """s after which a drive_state or leg_state is too old to count"""
+PROGRESS = ("state", "reason", "progress", "remaining_distance", "cross_track_error")
 
 Values = dict[str, Any]
 
@@ -101,14 +102,8 @@ class View:
         answer, safety, estimator = judge(facts), facts.received(), facts.kind.estimator
         drive, legs = (self._topics[name].message for name in ("drive", "legs"))
         feedback, revoked, status = self._topics["feedback"], drive or legs, self._status.message
-        progress = (
-            {}
-            if feedback.message is None
-            else {
-                name: getattr(feedback.message.feedback, name)
-                for name in ("state", "reason", "progress", "remaining_distance", "cross_track_error")
-            }
-        )
+        way = None if feedback.message is None else feedback.message.feedback
+        progress = {} if way is None else {name: getattr(way, name) for name in PROGRESS}
         return finite(
             {
                 "type": "slow",

@@ -12,12 +12,12 @@ from nav_msgs.msg import Odometry
 
 from robot_control.common.boundary import Latest, subscribe
 from robot_control.common.pose import pose_of
-from robot_control.common.recent import Recent, sender_of
 from robot_control.common.topic_sender import Sender
 from robot_control.identify.excitation_watch import Observation
 from robot_control.identify.recorded_log import RunningTelemetry
 from robot_control.safety.process_start import process_began
 from robot_control.safety.watch import SafetyWatch
+from robot_control.why.recent import Recent, sender_of
 
 
 class RunningRobot:

@@ -12,10 +12,10 @@ from diagnostic_msgs.msg import DiagnosticArray
 from robot_control.common.boundary import subscribe
 from robot_control.common.files import given_path
 from robot_control.common.picture_file import check_picture
-from robot_control.common.recent import Recent, sender_of
 from robot_control.common.ros_master import require_master
 from robot_control.common.ros_node import begin_node
 from robot_control.latency.figures import Figures, figures_of, table
+from robot_control.why.recent import Recent, sender_of
 
 FRAME = 1.0
 """s between two tables; nodes report once per second"""

@@ -12,13 +12,13 @@ import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
 from robot_control.common.boundary import Latest, boundary, subscribe
-from robot_control.common.recent import Recent, sender_of
 from robot_control.common.robot_kind import running_kind
 from robot_control.common.ros_node import running_node
 from robot_control.installed_files import share_file
 from robot_control.msg import DriveState, LegState, RobotStatus, SafetyStatus
 from robot_control.status.report import Reports, changed, status_of
 from robot_control.why.facts import below
+from robot_control.why.recent import Recent, sender_of
 from robot_control.why.state import SILENCE
 
 POLL_PERIOD = 0.05

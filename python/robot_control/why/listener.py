@@ -12,11 +12,11 @@ from nav_msgs.msg import Odometry
 
 from robot_control.common.boundary import Latest, subscribe
 from robot_control.common.live_parameters import LiveParameters
-from robot_control.common.recent import Recent, sender_of
 from robot_control.common.robot_kind import running_kind
 from robot_control.common.ros_master import Master, senders_of
 from robot_control.msg import SafetyStatus
 from robot_control.why.facts import below, nodes_of, other_robots, safety_of
+from robot_control.why.recent import Recent, sender_of
 from robot_control.why.state import SILENCE, Facts, Report, Safety, Speeds
 
 MASTER_PERIOD = 1.0
@@ -50,8 +50,8 @@ class Listener:
     def query_master(self) -> None:
         """Queries the master at most every MASTER_PERIOD; waits up to ros_master.TIMEOUT.
 
-        A master that was started again does not know this program. It is registered anew, and its connections stay:
-        over them it still reaches the nodes that the new master does not know either.
+        A master that was started again does not know this program. The node is registered again, and its connections
+        stay. Over them it still reaches the nodes that the new master does not know either.
         """
         now = time.monotonic()
         if now - self._queried_at < MASTER_PERIOD:
