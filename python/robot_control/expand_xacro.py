@@ -99,7 +99,7 @@ def require_values(expression: str) -> None:
 
 
 def admit_values_alone() -> None:
-    """Lets xacro evaluate only what `require_values` admits. What stands in `$(eval …)` can call no function."""
+    """Lets xacro evaluate only what `require_values` admits. An expression in `$(eval …)` can call no function."""
     import xacro
 
     evaluate = xacro.safe_eval

@@ -22,7 +22,7 @@ Place = TypeVar("Place", bound=Held)
 def gives_way(places: Sequence[Place], user: str, role: Role) -> Place | None:
     """The place that a new one of this user takes; None if the new one is refused.
 
-    It is the user's own oldest one, else the oldest of the user who holds most: of those who have a lower role, or the
+    It is the user's own oldest one, else the oldest of the user who holds most. Such a user has a lower role, or the
     same role and several places.
 
     Args:

@@ -36,7 +36,7 @@ class Sessions:
         self._sessions: dict[str, Session] = {}  # by key, the oldest first
 
     def begin(self, user: str, role: Role, now: float, kept: Session | None = None) -> str:
-        """Begins a session; the text of its cookie. What is too much ends the user's own oldest one, but not `kept`."""
+        """Begins a session; the text of its cookie. One too many ends the user's own oldest one, but not `kept`."""
         cookie = secrets.token_urlsafe(32)
         own = [each for each in self._sessions.values() if each.user == user and each is not kept]
         for each in own[: max(0, len(own) + 1 - MAX_SESSIONS)]:
