@@ -4,7 +4,7 @@ Every program of layer 4 subscribes with `subscribe`. A message stays bytes unti
 deserialization by the type's own code, and that its numbers are finite. Whatever else comes from outside (a message of
 a broker or of a page, an order, a file) is taken inside `crossing`. An input that is dropped is counted by its source
 and named in the log; the program goes on. An exception that the checks did not foresee first calls what `stops` has
-registered: such an input may have left the program half way through a motion.
+registered. Such an input may have left the program half way through a motion.
 """
 
 from __future__ import annotations

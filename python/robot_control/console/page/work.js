@@ -8,6 +8,7 @@ const messages = [];
 let authority = null, robot = null, key = "";
 
 function say(text) {
+  if (messages[0]?.endsWith(` ${text}`)) return;
   messages.unshift(`${new Date().toLocaleTimeString()} ${text}`);
   messages.length = Math.min(messages.length, 8);
   list("messages", messages);
