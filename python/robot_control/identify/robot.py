@@ -6,18 +6,17 @@ import math
 import time
 
 import rospy
-from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 
-from robot_control.common.boundary import Latest, subscribe
+from robot_control.common.boundary import Latest
 from robot_control.common.pose import pose_of
 from robot_control.common.topic_sender import Sender
 from robot_control.identify.excitation_watch import Observation
 from robot_control.identify.recorded_log import RunningTelemetry
 from robot_control.safety.process_start import process_began
 from robot_control.safety.watch import SafetyWatch
-from robot_control.why.recent import Recent, sender_of
+from robot_control.why.recent import Diagnostics, values_of
 
 
 class RunningRobot:
@@ -25,19 +24,23 @@ class RunningRobot:
 
     def __init__(self, *, sends: bool = True) -> None:
         """If `sends` is false, it only receives and does not count as a sender on cmd_vel."""
-        self._logs = Recent[RunningTelemetry](math.inf)
+        self._reports = Diagnostics(math.inf)
         self._odometry = Latest("odom", Odometry)
         self.requested = process_began()
         """s (monotonic), of the motion that follows"""
         self._watch = SafetyWatch()
         self._publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True) if sends else None
         self._sender = None if self._publisher is None else Sender(self._publisher, Twist())
-        subscribe("/diagnostics", DiagnosticArray, self._receive_diagnostics)
 
     @property
     def logs(self) -> dict[str, RunningTelemetry]:
         """The newest report of each telemetry, by node."""
-        return {node: running for node, (_, running) in self._logs.items(time.monotonic()).items()}
+        values = {node: values_of(status) for node, (_, status) in self._reports.items(time.monotonic()).items()}
+        return {
+            node: RunningTelemetry(node, each["bag"], each.get("recording") == "1")
+            for node, each in values.items()
+            if each.get("bag")
+        }
 
     def send(self, linear: float, angular: float) -> None:
         """m/s, rad/s."""
@@ -73,12 +76,3 @@ class RunningRobot:
             speed_limit=math.inf if status is None else status.speed_limit,
             senders=senders,
         )
-
-    def _receive_diagnostics(self, message: DiagnosticArray) -> None:
-        for status in message.status:
-            values = {pair.key: pair.value for pair in status.values}
-            path = values.get("bag")
-            if path:
-                node = "/" + status.name.lstrip("/")
-                running = RunningTelemetry(node, path, values.get("recording") == "1")
-                self._logs.put(sender_of(message), node, running, time.monotonic())

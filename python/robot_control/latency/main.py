@@ -15,13 +15,15 @@ from robot_control.common.picture_file import check_picture
 from robot_control.common.ros_master import require_master
 from robot_control.common.ros_node import begin_node
 from robot_control.latency.figures import Figures, figures_of, table
-from robot_control.why.recent import Recent, sender_of
+from robot_control.why.recent import Diagnostics, values_of
 
 FRAME = 1.0
 """s between two tables; nodes report once per second"""
 SILENCE = 3.0
 """s; the values of a node that reports no longer are not shown"""
 
+MEASURED = "period_10s_us"
+"""Key of a report with figures"""
 MAX_SAMPLES = 1_000_000
 """of the plot; four nodes make them in three days"""
 
@@ -30,7 +32,7 @@ class Listener:
     """Keeps the newest values of each node with figures, and all figures for the plot."""
 
     def __init__(self) -> None:
-        self._nodes = Recent[dict[str, str]](SILENCE)
+        self._reports = Diagnostics(SILENCE)
         self._start = time.monotonic()
         self.samples: deque[tuple[float, str, dict[str, Figures]]] = deque(maxlen=MAX_SAMPLES)
         subscribe("/diagnostics", DiagnosticArray, self._receive, queue_size=100)
@@ -38,15 +40,15 @@ class Listener:
     def _receive(self, message: DiagnosticArray) -> None:
         now = time.monotonic()
         for status in message.status:
-            values = {pair.key: pair.value for pair in status.values}
-            if "period_10s_us" not in values:
-                continue
-            self._nodes.put(sender_of(message), status.name, values, now)
-            self.samples.append((now - self._start, status.name, figures_of(values)))
+            values = values_of(status)
+            if MEASURED in values:
+                self.samples.append((now - self._start, status.name, figures_of(values)))
 
     def nodes(self) -> dict[str, dict[str, str]]:
         """Node → values, of those that report."""
-        return {node: values for node, (_, values) in sorted(self._nodes.items(time.monotonic()).items())}
+        newest = sorted(self._reports.items(time.monotonic()).items())
+        values = {status.name: values_of(status) for _, (_, status) in newest}
+        return {node: each for node, each in values.items() if MEASURED in each}
 
 
 def show(listener: Listener, seconds: float) -> None:

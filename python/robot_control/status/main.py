@@ -9,16 +9,15 @@ import time
 import xml.etree.ElementTree as ET
 
 import rospy
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
-from robot_control.common.boundary import Latest, boundary, subscribe
+from robot_control.common.boundary import Latest, boundary
 from robot_control.common.robot_kind import running_kind
 from robot_control.common.ros_node import running_node
 from robot_control.installed_files import share_file
 from robot_control.msg import DriveState, LegState, RobotStatus, SafetyStatus
 from robot_control.status.report import Reports, changed, status_of
 from robot_control.why.facts import below
-from robot_control.why.recent import Recent, sender_of
+from robot_control.why.recent import Diagnostics
 from robot_control.why.state import SILENCE
 
 POLL_PERIOD = 0.05
@@ -37,10 +36,9 @@ class Status:
         self._published_at = -math.inf
         self._safety = Latest("safety_status", SafetyStatus)
         self._drive, self._legs = Latest("drive_state", DriveState), Latest("leg_state", LegState)
-        self._reports = Recent[DiagnosticStatus](SILENCE)
+        self._reports = Diagnostics(SILENCE)
         self._published = RobotStatus()
         self._publisher = rospy.Publisher("robot_status", RobotStatus, queue_size=1, latch=True)
-        subscribe("/diagnostics", DiagnosticArray, self._receive_diagnostics)
 
     def poll(self, now: float) -> None:
         """Publishes if a message is due."""
@@ -55,19 +53,14 @@ class Status:
 
     def _reports_of_now(self, now: float) -> Reports:
         drive, legs = (topic.fresh(now, SILENCE) for topic in (self._drive, self._legs))
+        newest = {below(self._namespace, name): report for name, (_, report) in self._reports.items(now).items()}
         return Reports(
             safety=self._safety.fresh(now, SILENCE),
-            diagnostics={name: report for name, (_, report) in self._reports.items(now).items()},
+            diagnostics={name: report for name, report in newest.items() if name},
             kind=running_kind(),
             commander="" if drive is None else drive.commander,
             posture="" if legs is None else legs.posture,
         )
-
-    def _receive_diagnostics(self, message: DiagnosticArray) -> None:
-        for report in message.status:
-            name = below(self._namespace, "/" + report.name.lstrip("/"))
-            if name:
-                self._reports.put(sender_of(message), name, report, time.monotonic())
 
 
 def main() -> None:

@@ -6,7 +6,6 @@ from dataclasses import replace
 from typing import Any
 
 import rospy
-from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Twist, TwistStamped
 from nav_msgs.msg import Odometry
 
@@ -16,7 +15,7 @@ from robot_control.common.robot_kind import running_kind
 from robot_control.common.ros_master import Master, senders_of
 from robot_control.msg import SafetyStatus
 from robot_control.why.facts import below, nodes_of, other_robots, safety_of
-from robot_control.why.recent import Recent, sender_of
+from robot_control.why.recent import Diagnostics, values_of
 from robot_control.why.state import SILENCE, Facts, Report, Safety, Speeds
 
 MASTER_PERIOD = 1.0
@@ -33,19 +32,13 @@ class Listener:
         self._queried_at = 0.0
         self._registered = True  # with the present master, by all of its topics
         self._safety: tuple[Safety, float, rospy.Time] | None = None  # when it came, and since when the state is held
-        self._reports = Recent[Report](SILENCE)  # by absolute name
+        self._reports = Diagnostics(SILENCE)
         self._limited, self._measured = Latest("cmd_vel_out", TwistStamped), Latest("odom", Odometry)
         self._parameters = LiveParameters()
         subscribe("safety_status", SafetyStatus, self._receive_status)
-        subscribe("/diagnostics", DiagnosticArray, self._receive_diagnostics)
 
     def _receive_status(self, message: SafetyStatus) -> None:
         self._safety = safety_of(message, 0.0, 0.0), time.monotonic(), message.since
-
-    def _receive_diagnostics(self, message: DiagnosticArray) -> None:
-        for status in message.status:
-            report = Report(status.message, {pair.key: pair.value for pair in status.values})
-            self._reports.put(sender_of(message), "/" + status.name.lstrip("/"), report, time.monotonic())
 
     def query_master(self) -> None:
         """Queries the master at most every MASTER_PERIOD; waits up to ros_master.TIMEOUT.
@@ -77,7 +70,8 @@ class Listener:
         now = time.monotonic()
         state = self._state or ([], [], [])
         kind, limited, measured = running_kind(), self._limited.fresh(now, SILENCE), self._measured.fresh(now, SILENCE)
-        reports = {name: replace(last, age=now - at) for name, (at, last) in self._reports.items(now).items()}
+        newest = self._reports.items(now).items()
+        reports = {name: Report(status.message, values_of(status), now - at) for name, (at, status) in newest}
         return Facts(
             master=self.master.uri,
             master_answers=self._state is not None,

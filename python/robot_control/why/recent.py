@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 import threading
+import time
 from typing import Generic, TypeVar
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+
+from robot_control.common.boundary import subscribe
 
 Value = TypeVar("Value")
 MAX_NAMES, MAX_SENDERS = 100, 100
@@ -40,7 +45,19 @@ class Recent(Generic[Value]):
         return dict(sorted(recent, key=lambda row: row[1][0]))
 
 
-def sender_of(message: object) -> str:
-    """The node from which a message came."""
-    header: dict[str, str] = getattr(message, "_connection_header", None) or {}
-    return header.get("callerid", "")
+class Diagnostics(Recent[DiagnosticStatus]):
+    """The reports on /diagnostics, by the absolute names of the nodes."""
+
+    def __init__(self, life: float) -> None:
+        super().__init__(life)
+        subscribe("/diagnostics", DiagnosticArray, self._receive)
+
+    def _receive(self, message: DiagnosticArray) -> None:
+        sender = message._connection_header.get("callerid", "")  # noqa: SLF001 (where rospy keeps it)
+        for status in message.status:
+            self.put(sender, "/" + status.name.lstrip("/"), status, time.monotonic())
+
+
+def values_of(status: DiagnosticStatus) -> dict[str, str]:
+    """The values of a report, by their names."""
+    return {pair.key: pair.value for pair in status.values}
