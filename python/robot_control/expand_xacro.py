@@ -114,7 +114,8 @@ def admit_values_alone() -> None:
 def confine() -> None:
     """Gives up network, changes of files and starts of programs, as far as the kernel permits that."""
     kernel = ctypes.CDLL(None, use_errno=True)
-    kernel.unshare(NEW_USERS | NEW_NETWORK)
+    if kernel.unshare(NEW_NETWORK) != 0:
+        kernel.unshare(NEW_USERS | NEW_NETWORK)
     kernel.prctl(NO_NEW_PRIVILEGES, 1, 0, 0, 0)
     for changes in CHANGES:  # a kernel refuses what it does not know
         rules = kernel.syscall(CREATE_RULESET, struct.pack("Q", changes), 8, 0)
