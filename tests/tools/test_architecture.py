@@ -524,6 +524,32 @@ def test_every_package_is_installed():
     assert named == {path.parent.name for path in (ROOT / "python/robot_control").glob("*/__init__.py")}
 
 
+BEHIND_THE_BOUNDARY = (
+    *(
+        "calibrate",
+        "common",
+        "console",
+        "drive",
+        "identify",
+        "latency",
+        "pad",
+        "safety",
+        "status",
+        "teleop",
+        "view",
+        "why",
+    ),
+)
+
+
+@pytest.mark.parametrize("folder", BEHIND_THE_BOUNDARY)
+def test_a_program_beside_the_loop_receives_messages_through_the_boundary_alone(folder):
+    for path in (ROOT / "python" / "robot_control" / folder).rglob("*.py"):
+        if path.name != "boundary.py":
+            found = re.findall(r"rospy\.(?:Subscriber\(|wait_for_message|AnyMsg)", path.read_text(encoding="utf-8"))
+            assert not found, f"{path}: {found}"
+
+
 def test_no_folder_of_python_holds_more_than_25_files():
     folders = {path.parent for name in ("scripts", "python", "bench") for path in (ROOT / name).rglob("*.py")}
     assert len(folders) > 10
