@@ -120,7 +120,9 @@ class Latest:
         except IndexError:
             return self._newest
         with boundary.crossing(self._topic):
-            self._newest, self._received_at = opened(sealed), at
+            message = opened(sealed)
+            if at > self._received_at:  # another thread may have read a newer one meanwhile
+                self._newest, self._received_at = message, at
         return self._newest
 
     @property
